@@ -1,0 +1,34 @@
+# How a folder becomes a target.
+#
+#   openclose_library(NAME SOURCES a.cpp ... DEPENDS other folders or imported targets ...)
+#
+# A header of src/<folder> is included as "openclose/<folder>/file.h". That path is a link in the build
+# tree which only the targets linked to the folder can see, so an include against the direction of the
+# data (scene -> blocks -> contacts -> law -> solve -> analysis -> output) does not compile.
+
+add_library(openclose_options INTERFACE)
+target_compile_options(openclose_options INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
+  -ffp-contract=off)  # the same bits on every machine
+if(OPENCLOSE_TUNE)
+  target_compile_options(openclose_options INTERFACE -march=native)
+endif()
+if(OPENCLOSE_SANITIZE)
+  target_compile_options(openclose_options INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(openclose_options INTERFACE -fsanitize=address,undefined)
+endif()
+
+function(openclose_include_root target folder)
+  set(root ${PROJECT_BINARY_DIR}/include/${folder})
+  file(MAKE_DIRECTORY ${root}/openclose)
+  file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR} ${root}/openclose/${folder} SYMBOLIC)
+  target_include_directories(${target} PUBLIC ${root})
+endfunction()
+
+function(openclose_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS" ${ARGN})
+  add_library(openclose_${name} STATIC ${ARG_SOURCES})
+  add_library(openclose::${name} ALIAS openclose_${name})
+  openclose_include_root(openclose_${name} ${name})
+  target_link_libraries(openclose_${name} PUBLIC ${ARG_DEPENDS} PRIVATE openclose_options)
+endfunction()

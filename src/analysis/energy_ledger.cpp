@@ -1,0 +1,109 @@
+#include "openclose/analysis/energy_ledger.h"
+
+#include <cmath>
+
+namespace openclose {
+namespace {
+
+double square(double x) { return x * x; }
+
+/// One contact of an elastic enforcement; paths are the products of the force directions at start and end with the work displacement.
+struct ContactPaths {
+  double normal_end, shear_end;
+  double normal_start, shear_start;
+};
+
+template <int N>
+void add_elastic_contact(EnergyLedger& ledger, const Contact& contact, const ContactOutcome<N>& end, const ContactForces& start,
+                         const ContactPaths& paths, double theta) {
+  const ContactSprings& k = end.springs;
+  const double gap_change = end.kinematics.gap_change, slip = end.kinematics.slip_change;
+  const double n0 = start.normal, n1 = end.forces.normal, t0 = start.shear, t1 = end.forces.shear;
+  const double p0 = n0 / k.normal, p1 = n1 / k.normal, u0 = contact.elastic_slip, u1 = -t1 / k.shear;
+  const double opening0 = k.gap + p0, opening1 = k.gap + gap_change + p1;
+
+  ledger.contact_springs += 0.5 * k.normal * (p1 * p1 - p0 * p0) + 0.5 * k.shear * (u1 * u1 - u0 * u0);
+  ledger.scheme += (theta - 0.5) * (k.normal * square(p1 - p0) + k.shear * square(u1 - u0)) + theta * n1 * opening0 - (1.0 - theta) * n0 * opening1;
+  ledger.scheme -= theta * (n1 * (paths.normal_end - gap_change) + t1 * (paths.shear_end - slip)) +
+                   (1.0 - theta) * (n0 * (paths.normal_start - gap_change) + t0 * (paths.shear_start - slip));
+  ledger.friction -= (theta * t1 + (1.0 - theta) * t0) * (slip - (u1 - u0));
+}
+
+}  // namespace
+
+double stored_energy(const ContactSprings& springs, double normal, double shear) {
+  return 0.5 * (normal * normal / springs.normal + shear * shear / springs.shear);
+}
+
+template <int N>
+void add_step(EnergyLedger& ledger, const StepProblem<N>& problem, const StepSolution<N>& solution, const TimeScheme<N>& scheme, bool elastic) {
+  using Unknowns = typename Motion<N>::Unknowns;
+  const BlockSystem<N>& system = problem.system;
+  const double dt = problem.dt, theta = problem.end_weight;
+  // A static step starts from rest, whatever the scheme, and drops its kinetic energy at the end.
+  const auto work_displacement = [&](int b) -> Unknowns {
+    const Unknowns d = solution.of(system, b);
+    return problem.statics ? d : scheme.work_displacement(dt, d, system.velocity(b));
+  };
+
+  for (int b : system.free_blocks()) {
+    const auto& mass = system.block(b).mass;
+    const Unknowns d = solution.of(system, b), path = work_displacement(b), v0 = problem.velocity(b);
+    const Unknowns v1 = problem.statics ? Unknowns(2.0 / dt * d) : scheme.next_velocity(dt, d, v0);
+    const double before = 0.5 * v0.dot(mass.cwiseProduct(v0)), after = 0.5 * v1.dot(mass.cwiseProduct(v1));
+    if (problem.statics) {
+      ledger.scheme += after;
+    } else {
+      ledger.kinetic += after - before;
+    }
+    const double weight_work = problem.external.weight(system, b).dot(path);
+    ledger.gravity -= weight_work;
+    ledger.turnover += std::abs(after - before) + std::abs(weight_work);
+  }
+
+  const auto add_point_forces = [&](const auto& forces, double& account) {
+    for (const auto& f : forces) {
+      const int b = system.point_block(f.point);
+      if (system.block(b).equation < 0) continue;
+      const Unknowns d = solution.of(system, b), path = work_displacement(b);
+      const Vec2 arm0 = system.point_arm(f.point);
+      const Vec2 moved = Motion<N>::displacement(d, arm0, system.rotation_kind());
+      const Vec2 arm1 = arm0 + moved - Motion<N>::translation(d);
+      const Vec2 x0 = system.point_position(f.point) - f.anchor, x1 = x0 + moved;
+      const double work = theta * Motion<N>::gradient(arm1, f.force - f.stiffness.cwiseProduct(x1)).dot(path) +
+                          (1.0 - theta) * Motion<N>::gradient(arm0, f.force - f.stiffness.cwiseProduct(x0)).dot(path);
+      const double stored = 0.5 * f.stiffness.dot(x1.cwiseAbs2() - x0.cwiseAbs2());
+      const double by_load = f.force.dot(moved);
+      account += stored - by_load;
+      ledger.scheme -= work + stored - by_load;
+      ledger.turnover += std::abs(by_load);
+    }
+  };
+  add_point_forces(problem.external.loads(), ledger.loads);
+  add_point_forces(problem.external.supports(), ledger.support_springs);
+
+  for (std::size_t c = 0; c < problem.contacts.size(); ++c) {
+    const Contact& contact = problem.contacts[c];
+    const ContactOutcome<N>& end = solution.contacts[c];
+    const Unknowns pv = work_displacement(contact.vertex_block), pe = work_displacement(contact.edge_block);
+    const auto path = [&](const Unknowns& on_vertex, const Unknowns& on_edge) { return on_vertex.dot(pv) + on_edge.dot(pe); };
+    ContactPaths paths{path(end.kinematics.normal_vertex, end.kinematics.normal_edge), path(end.kinematics.shear_vertex, end.kinematics.shear_edge), 0.0, 0.0};
+    if (!elastic) {
+      ledger.impact -= end.forces.normal * paths.normal_end;
+      ledger.friction -= end.forces.shear * paths.shear_end;
+      continue;
+    }
+    ContactForces start = spring_slider(end.springs, ContactStrength(problem.joints.joint(contact.joint), contact), 0.0, 0.0);
+    if (!solution.start_contacts.empty()) {
+      const ContactOutcome<N>& s = solution.start_contacts[c];
+      start = s.forces;
+      paths.normal_start = path(s.kinematics.normal_vertex, s.kinematics.normal_edge);
+      paths.shear_start = path(s.kinematics.shear_vertex, s.kinematics.shear_edge);
+    }
+    add_elastic_contact(ledger, contact, end, start, paths, theta);
+  }
+}
+
+template void add_step<3>(EnergyLedger&, const StepProblem<3>&, const StepSolution<3>&, const TimeScheme<3>&, bool);
+
+}  // namespace openclose

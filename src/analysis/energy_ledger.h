@@ -1,0 +1,40 @@
+// Where the energy went, in joules per metre of thickness since the start. Each entry comes from its own formula, per contact and step; none is the
+// difference of the others, so that the imbalance can fail.
+//
+// With the work displacement of the time scheme the change of kinetic energy of a step is exactly the work of the forces in its equation of motion.
+// For a contact with springs k, compression p = N/k, gap g = g+ - p (g+ the free opening), stretch u = -T/k of the shear spring and weights theta at
+// the end, 1 - theta at the start of the step, minus its work is the sum of
+//   springs   k (p1^2 - p0^2)/2 + k_s (u1^2 - u0^2)/2
+//   scheme    (theta - 1/2) [k (p1 - p0)^2 + k_s (u1 - u0)^2] + theta N1 g0+ - (1 - theta) N0 g1+    (for Shi's theta = 1 half k times the square)
+//             and what the finite rotation of a step leaves between the path of its forces and the change of gap and slip
+//   friction  -(theta T1 + (1 - theta) T0) (slip - change of u)
+// Hard contacts store nothing: minus their normal work is the loss of impacts, minus their shear work is friction.
+#pragma once
+
+#include "openclose/integrator/enforcement.h"
+
+namespace openclose {
+
+struct EnergyLedger {
+  double kinetic = 0.0;          ///< change
+  double gravity = 0.0;          ///< change of potential energy
+  double contact_springs = 0.0;  ///< change of stored energy
+  double support_springs = 0.0;  ///< change of stored energy: work at the fixed points
+  double loads = 0.0;            ///< minus the work of point loads
+  double friction = 0.0;         ///< dissipated
+  double impact = 0.0;           ///< dissipated by hard contacts that close
+  double scheme = 0.0;           ///< dissipated by the time integration
+  double redefinition = 0.0;     ///< released where contacts change their tributary length, their gap's linearisation, or end while loaded
+  double turnover = 0.0;         ///< sum of the absolute changes of kinetic, gravity and loads: what an imbalance is compared with
+
+  double imbalance() const { return kinetic + gravity + contact_springs + support_springs + loads + friction + impact + scheme + redefinition; }
+};
+
+/// Adds an accepted step. `system` still holds the state at its start; `elastic` is Enforcement::has_elastic_contacts().
+template <int N>
+void add_step(EnergyLedger& ledger, const StepProblem<N>& problem, const StepSolution<N>& solution, const TimeScheme<N>& scheme, bool elastic);
+
+/// Energy stored in the springs of a contact carrying these forces [J].
+double stored_energy(const ContactSprings& springs, double normal, double shear);
+
+}  // namespace openclose

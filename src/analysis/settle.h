@@ -1,0 +1,23 @@
+// Static equilibrium by continuation: pseudo-time steps from rest, longer and longer, until the unbalanced force is below a stated fraction of the
+// weight.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "openclose/analysis/simulation.h"
+
+namespace openclose {
+
+struct SettleResult {
+  bool settled = false;
+  std::string criterion;            ///< what decided: "unbalanced force", "displacement", "steps", or the reason of a step that failed
+  int steps = 0;
+  double unbalanced_fraction = 1.0;  ///< [-] of Simulation::force_scale()
+  double displacement = 0.0;         ///< [m] largest of any block on the way
+};
+
+template <int N>
+SettleResult settle(Simulation<N>& simulation, const std::function<void()>& tick = {});
+
+}  // namespace openclose

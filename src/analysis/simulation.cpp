@@ -1,0 +1,230 @@
+#include "openclose/analysis/simulation.h"
+
+#include <algorithm>
+#include <ctime>
+
+#include "openclose/integrator/registry.h"
+
+namespace openclose {
+namespace {
+
+/// Adds the CPU time of its own life to an account.
+class Stopwatch {
+ public:
+  explicit Stopwatch(double& account) : account_(account), start_(now()) {}
+  ~Stopwatch() { account_ += now() - start_; }
+  Stopwatch(const Stopwatch&) = delete;
+  Stopwatch& operator=(const Stopwatch&) = delete;
+
+ private:
+  static double now() {
+    timespec t{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+  }
+  double& account_;
+  double start_;
+};
+
+}  // namespace
+
+template <int N>
+Simulation<N>::Simulation(const Scene& scene) : Simulation(scene, make_enforcement<N>(scene.method)) {}
+
+template <int N>
+Simulation<N>::Simulation(const Scene& scene, std::unique_ptr<Enforcement<N>> enforcement)
+    : scene_(scene),
+      system_(scene),
+      external_(scene, system_),
+      joints_(scene),
+      enforcement_(std::move(enforcement)),
+      scheme_(enforcement_->make_time_scheme(scene.method)),
+      // Two vertices may approach each other by the largest displacement each.
+      detector_(2.0 * scene.step.max_displacement, scene.method.skip_search) {
+  for (int b = 0; b < system_.block_count(); ++b) output_velocity_.push_back(system_.velocity(b));
+}
+
+template <int N>
+double Simulation<N>::stored_contact_energy() const {
+  double energy = 0.0;
+  for (const Contact& c : contacts_) energy += c.stored_energy;
+  return energy;
+}
+
+template <int N>
+double Simulation<N>::force_scale() const {
+  double scale = 0.0;
+  for (int b : system_.free_blocks()) scale = std::max(scale, external_.weight(system_, b).norm());
+  if (scale > 0.0) return scale;
+  for (const auto& load : external_.loads()) scale = std::max(scale, load.force.norm());
+  for (const Contact& c : contacts_) scale = std::max({scale, c.normal_force, std::abs(c.shear_force)});
+  return scale > 0.0 ? scale : 1.0;
+}
+
+template <int N>
+void Simulation<N>::detect() {
+  const Stopwatch watch(stage_times_.detection);
+  const double before = stored_contact_energy();
+  detector_.update(system_, joints_, contacts_);
+  contacts_current_ = true;
+  if (!enforcement_->has_elastic_contacts()) return;
+  const StepProblem<N> p = problem(scene_.step.dt, false);
+  for (Contact& c : contacts_) {
+    const ContactSprings springs = enforcement_->springs(p, c);
+    const ContactForces f = spring_slider(springs, ContactStrength(joints_.joint(c.joint), c), 0.0, 0.0);
+    c.stored_energy = stored_energy(springs, f.normal, springs.initial_shear);
+  }
+  ledger_.redefinition -= stored_contact_energy() - before;
+  ledger_.contact_springs += stored_contact_energy() - before;
+}
+
+template <int N>
+std::vector<Contact>& Simulation<N>::contacts() {
+  if (!contacts_current_) detect();
+  return contacts_;
+}
+
+template <int N>
+StepProblem<N> Simulation<N>::problem(double dt, bool statics) {
+  contacts();
+  StepProblem<N> p{system_, external_, joints_, contacts_, detector_.candidate_pairs(), detector_.pairs_version(), scene_.method};
+  p.dt = dt;
+  p.statics = statics;
+  p.inertia = statics ? 2.0 / (dt * dt) : scheme_->inertia(dt);
+  p.end_weight = statics ? 1.0 : scheme_->end_weight();
+  return p;
+}
+
+template <int N>
+bool Simulation<N>::moved_too_far(const StepSolution<N>& solution) const {
+  const double limit = scene_.step.max_displacement;
+  for (int b : system_.free_blocks()) {
+    const auto& block = system_.block(b);
+    const Unknowns d = solution.of(system_, b);
+    if (Motion<N>::displacement_bound(d, block.radius) <= limit) continue;
+    for (int v = block.first_vertex; v < block.first_vertex + block.vertex_count; ++v) {
+      if (Motion<N>::displacement(d, system_.arm(v), system_.rotation_kind()).norm() > limit) return true;
+    }
+  }
+  return false;
+}
+
+template <int N>
+StepResult Simulation<N>::step(double dt, bool statics) {
+  StepResult result;
+  const StepProblem<N> p = problem(dt, statics);
+  StepSolution<N> solution;
+  {
+    const Stopwatch watch(stage_times_.solution);
+    solution = enforcement_->solve(p);
+  }
+  step_counters_.iterations += solution.iterations;
+  const bool too_far = solution.converged && moved_too_far(solution);
+  if (!solution.converged || too_far) {
+    result.reason = too_far ? "a block moved farther in one step than step.max_displacement_m" : solution.reason;
+    ++step_counters_.cuts;
+    return result;
+  }
+  const Stopwatch watch(stage_times_.bookkeeping);
+  if (statics) {
+    for (int b : system_.free_blocks()) {
+      const Unknowns inertia_force = p.inertia * system_.block(b).mass.cwiseProduct(solution.of(system_, b));
+      result.unbalanced_force = std::max(result.unbalanced_force, Motion<N>::largest_force(inertia_force, system_.block(b).radius));
+    }
+  }
+  accept(p, solution);
+  result.accepted = true;
+  return result;
+}
+
+template <int N>
+void Simulation<N>::accept(const StepProblem<N>& problem, const StepSolution<N>& solution) {
+  add_step(ledger_, problem, solution, *scheme_, enforcement_->has_elastic_contacts());
+  accept_contacts(solution);
+  for (int b : system_.free_blocks()) {
+    const Unknowns d = solution.of(system_, b), v = problem.velocity(b);
+    const bool statics = problem.statics;
+    output_velocity_[b] = statics ? Unknowns(Unknowns::Zero()) : scheme_->velocity_at_end(problem.dt, d, v);
+    system_.set_velocity(b, statics ? Unknowns(Unknowns::Zero()) : scheme_->next_velocity(problem.dt, d, v));
+  }
+  for (int b : system_.free_blocks()) system_.advance(b, solution.of(system_, b));
+  if (!problem.statics) scheme_->accept(problem.dt);
+  time_ += problem.dt;
+  ++step_counters_.steps;
+  contacts_current_ = false;
+}
+
+template <int N>
+void Simulation<N>::accept_contacts(const StepSolution<N>& solution) {
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    Contact& c = contacts_[i];
+    const ContactOutcome<N>& o = solution.contacts[i];
+    c.bonded = stays_bonded(joints_.joint(c.joint), c.bonded, o.forces.status);
+    c.status = o.forces.status;
+    c.normal_force = o.forces.normal;
+    c.shear_force = o.forces.shear;
+    c.elastic_slip = -o.forces.shear / o.springs.shear;
+    c.gap = o.springs.gap + o.kinematics.gap_change;
+    c.stored_energy = enforcement_->has_elastic_contacts() ? stored_energy(o.springs, o.forces.normal, o.forces.shear) : 0.0;
+    if (c.status != ContactStatus::open) max_penetration_ = std::max(max_penetration_, -c.gap);
+  }
+}
+
+template <int N>
+bool Simulation<N>::advance(double dt) {
+  double remaining = dt, trial = dt;
+  const double smallest = scene_.step.smallest_fraction * dt;
+  while (remaining > 0.0) {
+    trial = std::min(trial, remaining);
+    const StepResult result = step(trial, scene_.method.statics);
+    if (result.accepted) {
+      // A rest below rounding is no step.
+      remaining = remaining - trial > 1e-12 * dt ? remaining - trial : 0.0;
+      trial *= 2.0;
+      continue;
+    }
+    trial *= enforcement_->step_cut(scene_.method);
+    if (trial < smallest) {
+      reason_ = result.reason;
+      return false;
+    }
+  }
+  return true;
+}
+
+template <int N>
+void Simulation<N>::restart_clock() {
+  time_ = 0.0;
+  ledger_ = EnergyLedger();
+  max_penetration_ = 0.0;
+  scheme_ = enforcement_->make_time_scheme(scene_.method);
+}
+
+template <int N>
+void Simulation<N>::restore_velocities() {
+  const BlockSystem<N> initial(scene_);
+  for (int b = 0; b < system_.block_count(); ++b) {
+    system_.set_velocity(b, initial.velocity(b));
+    output_velocity_[b] = initial.velocity(b);
+  }
+}
+
+template <int N>
+typename Simulation<N>::Snapshot Simulation<N>::save() {
+  contacts();
+  return {system_.state(), contacts_};
+}
+
+template <int N>
+void Simulation<N>::restore(const Snapshot& snapshot) {
+  system_.restore(snapshot.blocks);
+  contacts_ = snapshot.contacts;
+  detector_.search(system_);
+  contacts_current_ = true;
+  scheme_ = enforcement_->make_time_scheme(scene_.method);
+  for (int b = 0; b < system_.block_count(); ++b) output_velocity_[b] = system_.velocity(b);
+}
+
+template class Simulation<3>;
+
+}  // namespace openclose

@@ -1,0 +1,125 @@
+#include "openclose/analysis/strength_reduction.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace openclose {
+namespace {
+
+constexpr double bracket_ratio = 1.25;    ///< [-] between the factors tried first
+constexpr double smallest_factor = 1e-3;  ///< [-] below which nothing is stable at any strength one could mean
+
+template <int N>
+class StrengthReduction {
+ public:
+  StrengthReduction(Simulation<N>& simulation, const std::function<void(double)>& progress)
+      : simulation_(simulation), points_(simulation), input_(simulation.scene().strength_reduction), progress_(progress) {}
+
+  FactorOfSafety<N> run() {
+    if (!settle_first()) {
+      result_.reason = "not stable even at a strength reduction factor of " + std::to_string(smallest_factor);
+      return std::move(result_);
+    }
+    if (!bracket()) {
+      result_.reason = "still stable at strength_reduction.upper_limit";
+      return std::move(result_);
+    }
+    bisect();
+    result_.found = true;
+    curve();
+    return std::move(result_);
+  }
+
+ private:
+  /// The settled state is reached at factor 1, or at a smaller one if the scene fails with its own strength.
+  bool settle_first() {
+    const auto initial = simulation_.save();
+    for (double srf = 1.0; srf >= smallest_factor; srf /= bracket_ratio * bracket_ratio) {
+      simulation_.restore(initial);
+      simulation_.joints().reduce_strength(srf);
+      const SettleResult settled = settle(simulation_);
+      record(srf, "bracket", settled);
+      if (settled.settled) {
+        result_.stable = srf;
+        result_.settled_state = simulation_.save();
+        points_.restart();
+        result_.trials.back().displacement = 0.0;
+        return true;
+      }
+      result_.failed = srf;
+      result_.criterion = settled.criterion;
+      result_.failed_state = simulation_.save();
+    }
+    return false;
+  }
+
+  bool bracket() {
+    double srf = result_.stable;
+    while (result_.failed == 0.0) {
+      if (srf >= input_.upper_limit) return false;
+      srf = std::min(srf * bracket_ratio, input_.upper_limit);
+      attempt(srf, "bracket");
+    }
+    return true;
+  }
+
+  void bisect() {
+    const double first_width = result_.failed - result_.stable;
+    while (result_.failed - result_.stable > input_.width) {
+      attempt(0.5 * (result_.stable + result_.failed), "bisect");
+      const double width = result_.failed - result_.stable;
+      if (progress_) progress_(std::min(1.0, std::log(first_width / width) / std::log(first_width / input_.width)));
+    }
+  }
+
+  void attempt(double srf, const char* stage) {
+    simulation_.restore(result_.settled_state);
+    simulation_.joints().reduce_strength(srf);
+    const SettleResult settled = settle(simulation_);
+    record(srf, stage, settled);
+    if (settled.settled) {
+      result_.stable = std::max(result_.stable, srf);
+    } else {
+      result_.failed = srf;
+      result_.criterion = settled.criterion;
+      result_.failed_state = simulation_.save();
+    }
+  }
+
+  void curve() {
+    for (double srf : input_.curve) {
+      simulation_.restore(result_.settled_state);
+      simulation_.joints().reduce_strength(srf);
+      record(srf, "curve", settle(simulation_));
+      if (!input_.curve_time) continue;
+      simulation_.restore(result_.settled_state);
+      const double dt = simulation_.scene().step.dt;
+      const long steps = std::lround(*input_.curve_time / dt);
+      for (long i = 0; i < steps; ++i) {
+        if (!simulation_.advance(dt)) break;
+      }
+      for (const PointMotion& m : points_.motions()) result_.curve.push_back({srf, m.name, m.displacement.norm()});
+    }
+  }
+
+  void record(double srf, const char* stage, const SettleResult& settled) {
+    result_.trials.push_back({srf, stage, settled.settled, settled.criterion, settled.steps, points_.largest_displacement()});
+  }
+
+  Simulation<N>& simulation_;
+  MeasuredPoints<N> points_;
+  const StrengthReductionInput& input_;
+  std::function<void(double)> progress_;
+  FactorOfSafety<N> result_;
+};
+
+}  // namespace
+
+template <int N>
+FactorOfSafety<N> factor_of_safety(Simulation<N>& simulation, const std::function<void(double)>& progress) {
+  return StrengthReduction<N>(simulation, progress).run();
+}
+
+template FactorOfSafety<3> factor_of_safety<3>(Simulation<3>&, const std::function<void(double)>&);
+
+}  // namespace openclose

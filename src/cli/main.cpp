@@ -1,0 +1,222 @@
+// The command: reads what the user asked for, runs it, says how it ended. No physics here.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <iostream>
+
+#include "openclose/analysis/strength_reduction.h"
+#include "openclose/io/progress.h"
+#include "openclose/io/results.h"
+#include "openclose/scene/check.h"
+#include "openclose/scene/reader.h"
+#include "openclose/version.h"
+
+namespace openclose {
+namespace {
+
+/// Rigid blocks: three unknowns each.
+constexpr int unknowns = 3;
+
+struct Options {
+  std::string scene_file;
+  std::string folder;
+  std::vector<std::string> overrides;
+  bool quiet = false;
+};
+
+struct Loaded {
+  Scene scene;
+  std::vector<std::string> warnings;
+};
+
+Loaded load(const Options& options) {
+  Loaded loaded{read_scene(options.scene_file, options.overrides), {}};
+  loaded.warnings = check_scene(loaded.scene);
+  for (const std::string& warning : loaded.warnings) fmt::print(stderr, "openclose: warning: {}\n", warning);
+  return loaded;
+}
+
+OutputFolder output_folder(const Options& options) {
+  if (!options.folder.empty()) return OutputFolder(options.folder);
+  return OutputFolder("results/" + std::filesystem::path(options.scene_file).stem().string());
+}
+
+Summary summary_of(const std::string& command, const Options& options, const Loaded& loaded) {
+  Summary summary;
+  summary.command = command;
+  summary.scene_file = options.scene_file;
+  summary.overrides = options.overrides;
+  summary.warnings = loaded.warnings;
+  return summary;
+}
+
+int run_command(const Options& options) {
+  const Loaded loaded = load(options);
+  if (loaded.scene.step.dt <= 0.0) throw InputError(loaded.scene.where, "step.dt_s", "missing", "a step in seconds, here or with --dt");
+  if (loaded.scene.end_time <= 0.0) throw InputError(loaded.scene.where, "end.time_s", "missing", "an end time in seconds, here or with --end");
+  Simulation<unknowns> simulation(loaded.scene);
+  MeasuredPoints<unknowns> points(simulation);
+  if (loaded.scene.method.start == Start::normal_balanced || loaded.scene.method.start == Start::steady_sliding) {
+    // These starts can be refused: find out on a copy, before any file is written.
+    Simulation<unknowns> trial(loaded.scene);
+    prepare_start(trial);
+  }
+
+  const OutputFolder folder = output_folder(options);
+  HistoryFile history(folder);
+  EnergyFile energy(folder);
+  BlocksFile<unknowns> blocks(folder);
+  blocks.add("initial", simulation);
+  Progress progress("run", options.quiet);
+
+  RunObserver<unknowns> observer;
+  observer.started = [&](const Simulation<unknowns>& s) {
+    points.restart();
+    blocks.add("start", s);
+  };
+  observer.output = [&](const Simulation<unknowns>& s) {
+    history.add(s.time(), points.motions());
+    energy.add(s.time(), s.ledger());
+  };
+  observer.progress = [&](double fraction) { progress.update(fraction); };
+  const RunResult result = run(simulation, observer);
+
+  blocks.add("final", simulation);
+  history.close();
+  energy.close();
+  blocks.close();
+  write_contacts(folder, "final", simulation);
+  Summary summary = summary_of("run", options, loaded);
+  summary.converged = result.converged;
+  summary.reason = result.reason;
+  summary.settling = result.settling;
+  summary.ledger = simulation.ledger();
+  summary.max_penetration = simulation.max_penetration();
+  write_summary(folder, summary, simulation);
+
+  if (!result.converged) {
+    fmt::print(stderr, "openclose: not converged at t = {:.6g} s: {}; state saved in {}\n", simulation.time(), result.reason, folder.path());
+    return exit_not_converged;
+  }
+  if (!options.quiet) {
+    fmt::print("{}: {} blocks, {} steps to t = {:.6g} s, deepest penetration {:.3g} m, energy imbalance {:.2g} of {:.3g} J; written to {}\n",
+               loaded.scene.method.contact, simulation.system().block_count(), simulation.step_counters().steps, simulation.time(),
+               simulation.max_penetration(), simulation.ledger().imbalance(), simulation.ledger().turnover, folder.path());
+  }
+  return exit_success;
+}
+
+int fos_command(const Options& options) {
+  Loaded loaded = load(options);
+  if (loaded.scene.strength_reduction.curve_time && loaded.scene.step.dt <= 0.0) {
+    throw InputError(loaded.scene.where, "step.dt_s", "missing", "a step in seconds: strength_reduction.curve_time_s asks for motion");
+  }
+  if (loaded.scene.step.dt <= 0.0) loaded.scene.step.dt = loaded.scene.settle.first_dt;
+  Simulation<unknowns> simulation(loaded.scene);
+  const OutputFolder folder = output_folder(options);
+  BlocksFile<unknowns> blocks(folder);
+  blocks.add("initial", simulation);
+  FactorOfSafety<unknowns> safety;
+  {
+    Progress progress("strength reduction", options.quiet);
+    safety = factor_of_safety<unknowns>(simulation, [&](double fraction) { progress.update(fraction); });
+  }
+
+  if (safety.stable > 0.0) {
+    simulation.restore(safety.settled_state);
+    blocks.add("settled", simulation);
+  }
+  if (safety.failed > 0.0) {
+    simulation.restore(safety.failed_state);
+    blocks.add("failed", simulation);
+    write_contacts(folder, "failed", simulation);
+  }
+  blocks.close();
+  write_trials(folder, safety.trials);
+  if (!safety.curve.empty()) write_curve(folder, safety.curve);
+  Summary summary = summary_of("fos", options, loaded);
+  summary.converged = safety.found;
+  summary.reason = safety.reason;
+  summary.max_penetration = simulation.max_penetration();
+  write_summary(folder, summary, simulation, &safety);
+
+  if (!safety.found) {
+    fmt::print(stderr, "openclose: no factor of safety: {}; state saved in {}\n", safety.reason, folder.path());
+    return exit_not_converged;
+  }
+  if (!options.quiet) {
+    fmt::print("factor of safety {:.6g} ({}; stable at {:.6g}, failed at {:.6g} by {}); written to {}\n", safety.stable, loaded.scene.method.contact,
+               safety.stable, safety.failed, safety.criterion, folder.path());
+  }
+  return exit_success;
+}
+
+int check_command(const Options& options) {
+  const Loaded loaded = load(options);
+  Simulation<unknowns> simulation(loaded.scene);
+  double area = 0.0;
+  for (const auto& block : simulation.system().blocks()) area += block.area;
+  fmt::print("{}: {} blocks, {} of them free, {:.6g} m2; {} contacts within reach at the start; method {}\n", options.scene_file,
+             simulation.system().block_count(), simulation.system().free_count(), area, simulation.contacts().size(), loaded.scene.method.contact);
+  return exit_success;
+}
+
+/// The options that scene commands share; the named ones are short for --set.
+void add_options(CLI::App& app, Options& options, bool writes) {
+  app.add_option("scene", options.scene_file, "scene file (TOML)")->required();
+  const auto shorthand = [&app, &options](const std::string& flag, const std::string& key, const std::string& help) {
+    app.add_option_function<std::string>(flag, [&options, key](const std::string& value) { options.overrides.push_back(key + "=" + value); }, help);
+  };
+  shorthand("--contact", "method.contact", "contact enforcement: soft, hard or shi");
+  shorthand("--start", "method.start", "start state: unloaded, settled, normal_balanced or steady_sliding");
+  shorthand("--dt", "step.dt_s", "time step [s]");
+  shorthand("--end", "end.time_s", "end time [s]");
+  app.add_option_function<std::vector<std::string>>(
+         "--set", [&options](const std::vector<std::string>& v) { options.overrides.insert(options.overrides.end(), v.begin(), v.end()); },
+         "KEY=VALUE: overrides any key of the scene, e.g. joint[0].friction_angle_deg=20")
+      ->allow_extra_args(false);
+  if (!writes) return;
+  app.add_option("-o,--output", options.folder, "output folder (default: results/<name of the scene>)");
+  app.add_flag("-q,--quiet", options.quiet, "print nothing but warnings and errors");
+}
+
+int main_checked(int argc, char** argv) {
+  CLI::App app{"Openclose: 2-D block systems of jointed rock and masonry. Exit status: 0 success, 1 not converged (state saved), 2 bad input (nothing written)."};
+  app.set_version_flag("--version", version);
+  app.require_subcommand(1);
+  Options options;
+  int (*command)(const Options&) = nullptr;
+  const auto subcommand = [&](const char* name, const char* help, bool writes, int (*f)(const Options&)) {
+    CLI::App* sub = app.add_subcommand(name, help);
+    add_options(*sub, options, writes);
+    sub->callback([&command, f] { command = f; });
+  };
+  subcommand("run", "follow the blocks in time", true, &run_command);
+  subcommand("fos", "factor of safety by strength reduction", true, &fos_command);
+  subcommand("check", "read and check a scene, write nothing", false, &check_command);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& e) {
+    return app.exit(e);
+  } catch (const CLI::ParseError& e) {
+    fmt::print(stderr, "openclose: {}; see openclose --help\n", e.what());
+    return exit_bad_input;
+  }
+  return command(options);
+}
+
+}  // namespace
+}  // namespace openclose
+
+int main(int argc, char** argv) {
+  try {
+    return openclose::main_checked(argc, argv);
+  } catch (const openclose::InputError& e) {
+    fmt::print(stderr, "openclose: {}\n", e.what());
+    return openclose::exit_bad_input;
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "openclose: internal error: {}\n", e.what());
+    return openclose::exit_not_converged;
+  }
+}

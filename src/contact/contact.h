@@ -1,0 +1,31 @@
+// A contact: one vertex of a block against one edge of another, with its history.
+#pragma once
+
+namespace openclose {
+
+enum class ContactStatus : unsigned char { open, sticking, sliding };
+
+/// Signs: gap > 0 open; normal force > 0 compression; slip and shear force are measured along the edge's direction (counter-clockwise around its
+/// block), the force is the one on the vertex's block. All forces per metre of thickness.
+struct Contact {
+  // Who touches whom. Constant while the contact lives.
+  int vertex_block = 0;
+  int vertex = 0;
+  int edge_block = 0;
+  int edge = 0;  ///< first vertex of the edge
+  int joint = 0;  ///< index into the joint table
+
+  // Geometry at the start of the step.
+  double length = 0.0;  ///< [m] tributary length: stiffness, cohesion and tensile strength are per length
+  double gap = 0.0;     ///< [m]
+
+  // History, as the last accepted step left it.
+  ContactStatus status = ContactStatus::open;
+  bool bonded = true;           ///< cohesion and tensile strength are still there
+  double elastic_slip = 0.0;    ///< [m] stretch of the shear spring; shear force = -shear stiffness * elastic slip
+  double normal_force = 0.0;    ///< [N]
+  double shear_force = 0.0;     ///< [N]
+  double stored_energy = 0.0;   ///< [J] in both springs
+};
+
+}  // namespace openclose

@@ -1,0 +1,28 @@
+// Joint properties by material pair, ready for look-up by two integers.
+#pragma once
+
+#include <vector>
+
+#include "openclose/scene/scene.h"
+
+namespace openclose {
+
+class JointTable {
+ public:
+  /// Throws InputError if two blocks could touch for whose materials the scene gives no joint.
+  explicit JointTable(const Scene& scene);
+
+  int index(int material_a, int material_b) const { return index_[material_a * material_count_ + material_b]; }
+  const JointProperties& joint(int i) const { return joints_[i]; }
+
+  /// Divides tan(friction angle), cohesion and tensile strength of every joint, as the scene gave them, by the strength reduction factor.
+  void reduce_strength(double factor);
+
+ private:
+  int material_count_ = 0;
+  std::vector<int> index_;
+  std::vector<JointProperties> joints_;
+  std::vector<JointProperties> unreduced_;
+};
+
+}  // namespace openclose

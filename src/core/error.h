@@ -1,0 +1,30 @@
+// The two ways a run can end badly: the input is wrong (exit code 2, nothing written), or the analysis does not converge (exit code 1, state and
+// reason saved). Anything else that is thrown is a fault of the program.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace openclose {
+
+inline constexpr int exit_success = 0;
+inline constexpr int exit_not_converged = 1;
+inline constexpr int exit_bad_input = 2;
+
+/// Where in a scene file a value stands; line 0 means that the file as a whole is meant.
+struct SourceLocation {
+  std::string file;
+  int line = 0;
+};
+
+/// Bad input. what() is one line: "file:line: key: what is wrong; what is accepted".
+class InputError : public std::runtime_error {
+ public:
+  explicit InputError(const std::string& message) : std::runtime_error(message) {}
+  /// \param key       dotted key as the user wrote it, e.g. "joint[2].friction_angle_deg"; may be empty
+  /// \param read      what was read, with the verdict, e.g. "-3 is negative"
+  /// \param accepted  what would be right, e.g. "a number of degrees in [0, 90)"
+  InputError(const SourceLocation& where, const std::string& key, const std::string& read, const std::string& accepted);
+};
+
+}  // namespace openclose

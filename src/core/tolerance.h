@@ -1,0 +1,49 @@
+// Every numerical threshold of the program that is not a user's input: name, value, unit, reason. None is scaled by the size of the model.
+#pragma once
+
+namespace openclose::tolerance {
+
+/// [m] Edges shorter than this are not edges: two orders above the rounding of coordinates of 1e6 m (1e6 * 2^-52 = 2e-10 m).
+inline constexpr double shortest_edge_m = 1e-8;
+
+/// [m] Width (2 area / longest edge) below which a polygon is a sliver that carries no usable mass or normal.
+inline constexpr double thinnest_block_m = 1e-6;
+
+/// [m] Depth to which blocks may overlap in the file: drawings are rounded to millimetres, joint closures under load are of that size.
+inline constexpr double deepest_initial_overlap_m = 1e-3;
+
+/// [rad] An interior angle this close to pi is no corner: the vertex is dropped. An edge of 100 m then bends by less than 1e-7 m.
+inline constexpr double straight_corner_rad = 1e-9;
+
+/// [rad] Two edges face each other along their overlap up to parallel_full; beyond parallel_none a corner stands alone. Between them the tributary
+/// length passes from one rule to the other linearly. Joint sets in rock cross at more than parallel_none, so that four blocks that meet in one
+/// corner get no length across the corner; a rocking block stays below parallel_full until long after its far corner has opened.
+inline constexpr double parallel_full_rad = 5.0 * 3.14159265358979323846 / 180.0;
+inline constexpr double parallel_none_rad = 15.0 * 3.14159265358979323846 / 180.0;
+
+/// [m] Overlaps of edges shorter than this carry no contact: rounding of coordinates of 1e3 m, a thousandfold.
+inline constexpr double shortest_overlap_m = 1e-10;
+
+/// [m] A corner this far beyond the end of an edge still counts as opposite to it: corners that coincide in a drawing differ by rounding.
+inline constexpr double edge_end_m = 1e-6;
+
+/// [m] Room around a block's box within which candidates are kept although they cannot touch yet; larger: fewer searches, more candidates.
+inline constexpr double search_skin_m = 0.25;
+
+/// [-] Part of the cohesion's force, as a normal force, over which the shear strength of a bonded contact rises from zero (a jump there has no
+/// solution on either side and makes contact states cycle; 0.1 changed 8 s of slope failure by 0.1 %).
+inline constexpr double cohesion_ramp = 0.1;
+
+/// [m] `hard`: a closed contact may differ from its target gap by this much.
+inline constexpr double hard_gap_m = 1e-11;
+
+/// [m/s] `hard`: speed at which a penetration found at closing is pushed out.
+inline constexpr double hard_recovery_m_per_s = 0.1;
+
+/// [m] Coordinates in the file beyond this are refused: rounding (1e7 * 2^-52 = 2e-9 m) would come near the length of the shortest edge.
+inline constexpr double farthest_coordinate_m = 1e7;
+
+/// [m] A measured, loaded or supported point may lie this far outside its block: points copied from vertices are written with six decimals.
+inline constexpr double farthest_point_outside_block_m = 1e-6;
+
+}  // namespace openclose::tolerance

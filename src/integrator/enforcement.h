@@ -1,0 +1,90 @@
+// Contact enforcement: how one step is solved so that contacts carry their forces. `soft`, `hard` and `shi` stand behind this interface; registry.h
+// lists them.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "openclose/contact/joint_table.h"
+#include "openclose/contact/kinematics.h"
+#include "openclose/integrator/time_scheme.h"
+#include "openclose/law/joint_law.h"
+#include "openclose/linear/solver.h"
+#include "openclose/model/external_forces.h"
+
+namespace openclose {
+
+/// What one contact did in a step.
+template <int N>
+struct ContactOutcome {
+  ContactSprings springs;
+  ContactForces forces;               ///< at the end of the step
+  ContactKinematics<N> kinematics;    ///< whose gradients carried these forces in the equation of motion
+};
+
+/// One step to be solved. Everything is as it stands at the start of the step.
+template <int N>
+struct StepProblem {
+  const BlockSystem<N>& system;
+  const ExternalForces<N>& external;
+  const JointTable& joints;
+  const std::vector<Contact>& contacts;
+  const std::vector<std::pair<int, int>>& candidate_pairs;  ///< blocks that may touch: the pattern of the matrix
+  long candidates_version = 0;
+  const MethodInput& method;
+  double dt = 0.0;          ///< [s]
+  bool statics = false;     ///< velocities count as zero
+  double inertia = 0.0;     ///< [1/s2] see time_scheme.h
+  double end_weight = 1.0;  ///< theta
+
+  typename Motion<N>::Unknowns velocity(int b) const {
+    if (statics) return Motion<N>::Unknowns::Zero();
+    return system.velocity(b);
+  }
+
+  /// Pairs of block rows that candidate contacts couple.
+  std::vector<std::pair<int, int>> couplings() const {
+    std::vector<std::pair<int, int>> rows;
+    for (const auto& [a, b] : candidate_pairs) {
+      const int i = system.block(a).equation, j = system.block(b).equation;
+      if (i >= 0 && j >= 0) rows.emplace_back(i, j);
+    }
+    return rows;
+  }
+};
+
+template <int N>
+struct StepSolution {
+  bool converged = false;
+  std::string reason;      ///< why not
+  int iterations = 0;      ///< linear solves
+  Eigen::VectorXd d;       ///< displacement of the step, N per free block
+  std::vector<ContactOutcome<N>> contacts;
+  std::vector<ContactOutcome<N>> start_contacts;  ///< forces that entered with weight 1 - theta; empty for theta = 1
+
+  /// Displacement of block b: zero if fixed.
+  typename Motion<N>::Unknowns of(const BlockSystem<N>& system, int b) const {
+    const int equation = system.block(b).equation;
+    if (equation < 0) return Motion<N>::Unknowns::Zero();
+    return d.template segment<N>(N * equation);
+  }
+};
+
+template <int N>
+class Enforcement {
+ public:
+  virtual ~Enforcement() = default;
+
+  /// Springs of a contact at the start of a step.
+  virtual ContactSprings springs(const StepProblem<N>& problem, const Contact& contact) const = 0;
+  virtual StepSolution<N> solve(const StepProblem<N>& problem) = 0;
+
+  virtual std::unique_ptr<TimeScheme<N>> make_time_scheme(const MethodInput& method) const = 0;
+  virtual bool has_elastic_contacts() const { return true; }  ///< false: contacts store no energy and keep no penetration
+  virtual double step_cut(const MethodInput&) const { return 0.5; }  ///< factor on a step that failed
+  virtual const LinearCounters& linear_counters() const = 0;
+};
+
+}  // namespace openclose

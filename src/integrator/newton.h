@@ -1,0 +1,60 @@
+// Newton's method for one step with given contact springs.
+//
+// Two tangents: the exact one, non-symmetric where contacts slide, and a symmetric one (sticking springs only) with an energy line search, which makes
+// progress while many contacts still change state. Convergence means the residual alone: the contact states are functions of the displacement.
+#pragma once
+
+#include "openclose/integrator/enforcement.h"
+
+namespace openclose {
+
+template <int N>
+class Newton {
+ public:
+  using Unknowns = typename Motion<N>::Unknowns;
+
+  /// Solves for solution.d, starting from the value it has; fills its contacts. iterations is added to.
+  void solve(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs, StepSolution<N>& solution);
+
+  /// Minus the derivative of all forces but inertia by the unknowns, at the start of the step, contacts in the status they have.
+  Eigen::MatrixXd stiffness(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs);
+
+  /// [N] forces of contacts, gravity, loads and supports at the present position.
+  Eigen::VectorXd forces(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs);
+
+  double force_scale() const { return force_scale_; }  ///< [N] largest single force in the last evaluation
+  const LinearCounters& linear_counters() const { return linear_counters_; }
+
+ private:
+  enum class Tangent { exact, symmetric };
+
+  void prepare(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs);
+  void evaluate(const Eigen::VectorXd& d);
+  /// Derivatives for the first tangent: states of the last step; corners that only touch count as sticking.
+  void take_last_states();
+  double residual_norm() const;  ///< largest residual of a block over what is tolerated: converged at 1
+  void assemble(const Eigen::VectorXd& d, Tangent tangent);
+  void add_contact_stiffness(std::size_t c, Tangent tangent);
+  Eigen::VectorXd direction(const Eigen::VectorXd& d, Tangent tangent);
+  double line_search(const Eigen::VectorXd& d, const Eigen::VectorXd& step, double slope);
+  int switched(const std::vector<ContactStatus>& before) const;
+  std::vector<ContactStatus> statuses() const;
+
+  const StepProblem<N>* problem_ = nullptr;
+  const std::vector<ContactSprings>* springs_ = nullptr;
+  std::vector<ContactOutcome<N>> outcome_;
+  std::vector<ContactStrength> strength_;
+  Eigen::VectorXd force_;      ///< all forces at the trial position but inertia
+  Eigen::VectorXd start_force_;  ///< the same at the start of the step, used if theta < 1
+  Eigen::VectorXd residual_;
+  Eigen::VectorXd rounding_;   ///< [N] per free block: what rounding leaves in the residual
+  double force_scale_ = 0.0;
+  BlockMatrix<N> matrix_;
+  std::unique_ptr<LinearSolver<N>> solver_;
+  LinearCounters linear_counters_;
+  long candidates_version_ = -1;
+};
+
+extern template class Newton<3>;
+
+}  // namespace openclose

@@ -1,0 +1,225 @@
+// `shi`, the original DDA: penalty springs, open-close iterations over three contact states, friction of sliding contacts as a known force.
+//
+// G.-H. Shi (1988, 1993), as the paper describes it. Every pass linearises the contacts at the start of the step, solves once, and lets each contact
+// change its state: open <-> closed by the sign of the normal spring, locked -> sliding when the shear spring exceeds the strength, sliding -> locked
+// when the slip runs against its friction. The pass is the last when no state changes; the friction of a sliding contact is then still the one of the pass
+// before. A step that does not settle, or that leaves a contact deeper than the penetration tolerance, is cut.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "openclose/integrator/registry.h"
+
+namespace openclose {
+namespace {
+
+/// [-] Default penalty over the stiffest joint contact of the scene: the original takes about 50 E, and rigid blocks have no E.
+constexpr double default_penalty_over_joint = 10.0;
+
+template <int N>
+class Shi : public Enforcement<N> {
+ public:
+  ContactSprings springs(const StepProblem<N>& problem, const Contact& contact) const override {
+    ContactSprings s;
+    s.normal = penalty(problem);
+    s.shear = problem.method.penalty_shear_ratio * s.normal;
+    s.gap = contact.gap;
+    s.initial_shear = -s.shear * contact.elastic_slip;
+    return s;
+  }
+
+  StepSolution<N> solve(const StepProblem<N>& problem) override {
+    begin(problem);
+    StepSolution<N> solution;
+    for (int pass = 0; pass < problem.method.max_open_close_iterations; ++pass) {
+      if (!solve_once(problem, solution)) return solution;
+      if (!change_states(problem, solution.d)) {
+        finish(problem, solution);
+        return solution;
+      }
+    }
+    solution.reason = "open-close iterations did not settle";
+    return solution;
+  }
+
+  std::unique_ptr<TimeScheme<N>> make_time_scheme(const MethodInput&) const override { return make_theta_scheme<N>(1.0); }
+  double step_cut(const MethodInput& method) const override { return method.step_cut; }
+  const LinearCounters& linear_counters() const override { return counters_; }
+
+ private:
+  using Unknowns = typename Motion<N>::Unknowns;
+
+  double penalty(const StepProblem<N>& problem) const {
+    if (problem.method.penalty) return *problem.method.penalty;
+    // Once and for all from the first contacts: a penalty that changed with the contacts would change stored energy.
+    if (default_penalty_ == 0.0) {
+      for (const Contact& c : problem.contacts) {
+        default_penalty_ = std::max(default_penalty_, default_penalty_over_joint * problem.joints.joint(c.joint).normal_stiffness * c.length);
+      }
+    }
+    return default_penalty_;
+  }
+
+  void begin(const StepProblem<N>& problem) {
+    const Unknowns still = Unknowns::Zero();
+    outcome_.clear();
+    strength_.clear();
+    applied_shear_.clear();
+    for (const Contact& c : problem.contacts) {
+      strength_.emplace_back(problem.joints.joint(c.joint), c);
+      ContactOutcome<N> o{springs(problem, c), {}, ContactKinematics<N>(problem.system, c, still, still)};
+      o.forces.status = c.status == ContactStatus::open && c.gap < -problem.method.closing_tolerance ? ContactStatus::sticking : c.status;
+      o.forces.normal = c.normal_force;
+      o.forces.shear = std::copysign(strength_.back().shear_bound(c.normal_force).value, c.shear_force);
+      outcome_.push_back(o);
+      applied_shear_.push_back(0.0);
+    }
+    if (candidates_version_ != problem.candidates_version || !solver_) {
+      matrix_.set_pattern(problem.system.free_count(), problem.couplings());
+      if (!solver_) solver_ = make_solver<N>(problem.system.free_count());
+      candidates_version_ = problem.candidates_version;
+    }
+  }
+
+  bool solve_once(const StepProblem<N>& problem, StepSolution<N>& solution) {
+    const BlockSystem<N>& system = problem.system;
+    matrix_.set_zero();
+    Eigen::VectorXd right = Eigen::VectorXd::Zero(N * system.free_count());
+    const Unknowns still = Unknowns::Zero();
+    for (int b : system.free_blocks()) {
+      const auto& block = system.block(b);
+      typename Motion<N>::Matrix diagonal = problem.external.stiffness(system, b, still);
+      diagonal += (problem.inertia * block.mass).asDiagonal();
+      matrix_.add(block.equation, block.equation, diagonal);
+      right.template segment<N>(N * block.equation) =
+          problem.inertia * problem.dt * block.mass.cwiseProduct(problem.velocity(b)) + problem.external.force(system, b, still);
+    }
+    for (std::size_t c = 0; c < outcome_.size(); ++c) add_contact(problem, c, right);
+    for (int b : system.free_blocks()) {
+      const auto& block = system.block(b);
+      if (!block.rotation_locked) continue;
+      matrix_.eliminate(block.equation, Motion<N>::rotation_index);
+      right[N * block.equation + Motion<N>::rotation_index] = 0.0;
+    }
+    ++solution.iterations;
+    const bool regular = solver_->factor(matrix_);
+    if (regular) solution.d = solver_->solve(right);
+    counters_ = solver_->counters();
+    if (!regular || !solution.d.allFinite()) {
+      solution.reason = "singular matrix";
+      return false;
+    }
+    return true;
+  }
+
+  void add_contact(const StepProblem<N>& problem, std::size_t c, Eigen::VectorXd& right) {
+    const Contact& contact = problem.contacts[c];
+    const ContactOutcome<N>& o = outcome_[c];
+    if (o.forces.status == ContactStatus::open) return;
+    const bool locked = o.forces.status == ContactStatus::sticking;
+    const double kn = o.springs.normal, ks = locked ? o.springs.shear : 0.0;
+    const double normal = -kn * o.springs.gap;
+    const double shear = locked ? o.springs.initial_shear : o.forces.shear;
+    applied_shear_[c] = shear;
+    const ContactKinematics<N>& k = o.kinematics;
+    const int i = problem.system.block(contact.vertex_block).equation, j = problem.system.block(contact.edge_block).equation;
+    const auto block = [&](const Unknowns& n1, const Unknowns& t1, const Unknowns& n2, const Unknowns& t2) {
+      return typename Motion<N>::Matrix(kn * n1 * n2.transpose() + ks * t1 * t2.transpose());
+    };
+    if (i >= 0) {
+      matrix_.add(i, i, block(k.normal_vertex, k.shear_vertex, k.normal_vertex, k.shear_vertex));
+      right.template segment<N>(N * i) += normal * k.normal_vertex + shear * k.shear_vertex;
+    }
+    if (j >= 0) {
+      matrix_.add(j, j, block(k.normal_edge, k.shear_edge, k.normal_edge, k.shear_edge));
+      right.template segment<N>(N * j) += normal * k.normal_edge + shear * k.shear_edge;
+    }
+    if (i >= 0 && j >= 0) {
+      matrix_.add(i, j, block(k.normal_vertex, k.shear_vertex, k.normal_edge, k.shear_edge));
+      matrix_.add(j, i, block(k.normal_edge, k.shear_edge, k.normal_vertex, k.shear_vertex));
+    }
+  }
+
+  /// Moves every contact to the state its springs ask for; true if any state has changed. Forces are updated either way.
+  bool change_states(const StepProblem<N>& problem, const Eigen::VectorXd& d) {
+    bool changed = false;
+    for (std::size_t c = 0; c < outcome_.size(); ++c) {
+      const Contact& contact = problem.contacts[c];
+      ContactOutcome<N>& o = outcome_[c];
+      const auto path = [&](int b, const Unknowns& gradient) {
+        const int i = problem.system.block(b).equation;
+        return i < 0 ? 0.0 : gradient.dot(d.template segment<N>(N * i));
+      };
+      o.kinematics.gap_change = path(contact.vertex_block, o.kinematics.normal_vertex) + path(contact.edge_block, o.kinematics.normal_edge);
+      o.kinematics.slip_change = path(contact.vertex_block, o.kinematics.shear_vertex) + path(contact.edge_block, o.kinematics.shear_edge);
+      const ContactStatus before = o.forces.status;
+      o.forces = next_forces(problem, o, strength_[c]);
+      changed |= o.forces.status != before;
+    }
+    return changed;
+  }
+
+  static ContactForces next_forces(const StepProblem<N>& problem, const ContactOutcome<N>& o, const ContactStrength& strength) {
+    const double gap = o.springs.gap + o.kinematics.gap_change;
+    const double normal = -o.springs.normal * gap;
+    ContactForces f;
+    if (o.forces.status == ContactStatus::open) {
+      if (gap >= -problem.method.closing_tolerance) return f;
+      f.status = ContactStatus::sticking;
+      f.normal = normal;
+      f.shear = o.springs.initial_shear - o.springs.shear * o.kinematics.slip_change;
+      return f;
+    }
+    if (normal < -strength.tension || (strength.tension == 0.0 && normal <= 0.0)) return f;
+    f.normal = normal;
+    const double bound = strength.shear_bound(normal).value;
+    if (o.forces.status == ContactStatus::sticking) {
+      const double trial = o.springs.initial_shear - o.springs.shear * o.kinematics.slip_change;
+      f.status = std::abs(trial) > bound ? ContactStatus::sliding : ContactStatus::sticking;
+      f.shear = f.status == ContactStatus::sliding ? std::copysign(bound, trial) : trial;
+      return f;
+    }
+    const bool runs_against_friction = o.forces.shear * o.kinematics.slip_change > 0.0;
+    f.status = runs_against_friction ? ContactStatus::sticking : ContactStatus::sliding;
+    f.shear = std::copysign(bound, o.forces.shear);
+    return f;
+  }
+
+  void finish(const StepProblem<N>& problem, StepSolution<N>& solution) {
+    for (const ContactOutcome<N>& o : outcome_) {
+      const double depth = o.forces.status == ContactStatus::open ? 0.0 : -(o.springs.gap + o.kinematics.gap_change);
+      if (depth > problem.method.penetration_tolerance) {
+        solution.reason = fmt::format("penetration of {:.3g} m exceeds method.penetration_tolerance_m = {:.3g}; a larger method.penalty_n_per_m would reduce it",
+                                      depth, problem.method.penetration_tolerance);
+        return;
+      }
+    }
+    solution.converged = true;
+    solution.contacts = outcome_;
+    // What a sliding contact carried in this step is the friction of the pass before.
+    for (std::size_t c = 0; c < outcome_.size(); ++c) {
+      if (outcome_[c].forces.status == ContactStatus::sliding) solution.contacts[c].forces.shear = applied_shear_[c];
+    }
+  }
+
+  mutable double default_penalty_ = 0.0;
+  std::vector<ContactOutcome<N>> outcome_;
+  std::vector<ContactStrength> strength_;
+  std::vector<double> applied_shear_;  ///< [N] right side of the last pass
+  BlockMatrix<N> matrix_;
+  std::unique_ptr<LinearSolver<N>> solver_;
+  LinearCounters counters_;
+  long candidates_version_ = -1;
+};
+
+}  // namespace
+
+template <int N>
+std::unique_ptr<Enforcement<N>> make_shi() {
+  return std::make_unique<Shi<N>>();
+}
+
+template std::unique_ptr<Enforcement<3>> make_shi<3>();
+
+}  // namespace openclose

@@ -1,0 +1,48 @@
+// `soft`, the paper's DDA-SC: the springs are the joint's own stiffness; penetration is the joint's closure and is not constrained.
+#include "openclose/integrator/newton.h"
+#include "openclose/integrator/registry.h"
+
+namespace openclose {
+namespace {
+
+template <int N>
+class Soft : public Enforcement<N> {
+ public:
+  ContactSprings springs(const StepProblem<N>& problem, const Contact& contact) const override {
+    const JointProperties& joint = problem.joints.joint(contact.joint);
+    ContactSprings s;
+    s.normal = joint.normal_stiffness * contact.length;
+    s.shear = joint.shear_stiffness * contact.length;
+    s.gap = contact.gap;
+    // The memory is the stretch of the spring, not its force: when the tributary length changes, strength and force change alike.
+    s.initial_shear = -s.shear * contact.elastic_slip;
+    return s;
+  }
+
+  StepSolution<N> solve(const StepProblem<N>& problem) override {
+    springs_.clear();
+    for (const Contact& c : problem.contacts) springs_.push_back(springs(problem, c));
+    StepSolution<N> solution;
+    solution.d = Eigen::VectorXd::Zero(N * problem.system.free_count());
+    newton_.solve(problem, springs_, solution);
+    return solution;
+  }
+
+  std::unique_ptr<TimeScheme<N>> make_time_scheme(const MethodInput& method) const override { return make_theta_scheme<N>(method.theta); }
+  const LinearCounters& linear_counters() const override { return newton_.linear_counters(); }
+
+ private:
+  Newton<N> newton_;
+  std::vector<ContactSprings> springs_;
+};
+
+}  // namespace
+
+template <int N>
+std::unique_ptr<Enforcement<N>> make_soft() {
+  return std::make_unique<Soft<N>>();
+}
+
+template std::unique_ptr<Enforcement<3>> make_soft<3>();
+
+}  // namespace openclose

@@ -1,0 +1,57 @@
+#include "openclose/integrator/time_scheme.h"
+
+namespace openclose {
+namespace {
+
+template <int N>
+class ThetaScheme : public TimeScheme<N> {
+ public:
+  using Unknowns = typename TimeScheme<N>::Unknowns;
+  explicit ThetaScheme(double theta) : theta_(theta) {}
+
+  double inertia(double dt) const override { return 2.0 / (dt * dt); }
+  double end_weight() const override { return theta_; }
+  Unknowns next_velocity(double dt, const Unknowns& d, const Unknowns& v) const override { return (2.0 / dt) * d - v; }
+  Unknowns work_displacement(double, const Unknowns& d, const Unknowns&) const override { return d; }
+  Unknowns velocity_at_end(double dt, const Unknowns& d, const Unknowns& v) const override { return next_velocity(dt, d, v); }
+
+ private:
+  double theta_;
+};
+
+template <int N>
+class MidstepScheme : public TimeScheme<N> {
+ public:
+  using Unknowns = typename TimeScheme<N>::Unknowns;
+
+  double inertia(double dt) const override { return 1.0 / (dt * span(dt)); }
+  double end_weight() const override { return 1.0; }
+  Unknowns next_velocity(double dt, const Unknowns& d, const Unknowns&) const override { return d / dt; }
+  Unknowns work_displacement(double dt, const Unknowns& d, const Unknowns& v) const override { return 0.5 * span(dt) * (d / dt + v); }
+  Unknowns velocity_at_end(double dt, const Unknowns& d, const Unknowns& v) const override {
+    const Unknowns acceleration = (d / dt - v) / span(dt);
+    return d / dt + 0.5 * dt * acceleration;
+  }
+  void accept(double dt) override { previous_dt_ = dt; }
+
+ private:
+  double span(double dt) const { return 0.5 * (dt + previous_dt_); }
+  double previous_dt_ = 0.0;
+};
+
+}  // namespace
+
+template <int N>
+std::unique_ptr<TimeScheme<N>> make_theta_scheme(double theta) {
+  return std::make_unique<ThetaScheme<N>>(theta);
+}
+
+template <int N>
+std::unique_ptr<TimeScheme<N>> make_midstep_scheme() {
+  return std::make_unique<MidstepScheme<N>>();
+}
+
+template std::unique_ptr<TimeScheme<3>> make_theta_scheme<3>(double);
+template std::unique_ptr<TimeScheme<3>> make_midstep_scheme<3>();
+
+}  // namespace openclose

@@ -1,0 +1,31 @@
+#include "openclose/io/output_folder.h"
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <stdexcept>
+
+#include "openclose/core/error.h"
+
+namespace openclose {
+
+OutputFolder::OutputFolder(const std::string& path) : path_(path) {
+  std::error_code error;
+  std::filesystem::create_directories(path, error);
+  const bool usable = !error && std::filesystem::is_directory(path) && access(path.c_str(), W_OK | X_OK) == 0;
+  if (!usable) throw InputError({path, 0}, "", "cannot write to this output folder", "-o with a folder that exists or can be made, and may be written to");
+}
+
+std::ofstream OutputFolder::open(const std::string& name) const {
+  const std::string full = path_ + "/" + name;
+  std::ofstream file(full);
+  if (!file) throw InputError({full, 0}, "", "cannot be written", "an output folder in which files can be made");
+  return file;
+}
+
+void finish(std::ofstream& file, const std::string& name) {
+  file.close();
+  if (!file) throw std::runtime_error("writing " + name + " failed: is the disk full?");
+}
+
+}  // namespace openclose

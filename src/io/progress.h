@@ -1,0 +1,28 @@
+// A progress bar on a terminal, for work longer than a second; silent where standard error is a file or a pipe.
+#pragma once
+
+#include <chrono>
+#include <string>
+
+namespace openclose {
+
+class Progress {
+ public:
+  Progress(std::string label, bool quiet);
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  /// \param fraction  of the work that is done, 0 to 1
+  void update(double fraction);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  std::string label_;
+  bool enabled_;
+  bool drawn_ = false;
+  Clock::time_point start_;
+  Clock::time_point last_;
+};
+
+}  // namespace openclose

@@ -1,0 +1,199 @@
+#include "openclose/io/results.h"
+
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+
+#include <nlohmann/json.hpp>
+
+#include "openclose/version.h"
+
+namespace openclose {
+namespace {
+
+const char* name_of(ContactStatus status) {
+  switch (status) {
+    case ContactStatus::open:
+      return "open";
+    case ContactStatus::sticking:
+      return "sticking";
+    case ContactStatus::sliding:
+      return "sliding";
+  }
+  return "";
+}
+
+const char* name_of(Start start) {
+  switch (start) {
+    case Start::unloaded:
+      return "unloaded";
+    case Start::settled:
+      return "settled";
+    case Start::normal_balanced:
+      return "normal_balanced";
+    case Start::steady_sliding:
+      return "steady_sliding";
+  }
+  return "";
+}
+
+/// A text field: quoted if it holds what would break the row.
+std::string field(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (char c : text) {
+    if (c == '"') quoted += '"';
+    quoted += c;
+  }
+  return quoted + '"';
+}
+
+/// The ledger's entries with their names, in the order of the files.
+std::vector<std::pair<const char*, double>> entries(const EnergyLedger& l) {
+  return {{"kinetic_j", l.kinetic},   {"gravity_j", l.gravity},           {"contact_springs_j", l.contact_springs}, {"support_springs_j", l.support_springs},
+          {"loads_j", l.loads},       {"friction_j", l.friction},         {"impact_j", l.impact},                   {"scheme_j", l.scheme},
+          {"redefinition_j", l.redefinition}, {"turnover_j", l.turnover}, {"imbalance_j", l.imbalance()}};
+}
+
+}  // namespace
+
+HistoryFile::HistoryFile(const OutputFolder& folder) : file_(folder.open("history.csv")) {
+  file_ << "time_s,point,displacement_x_m,displacement_y_m,rotation_rad,velocity_x_m_per_s,velocity_y_m_per_s\n";
+}
+
+void HistoryFile::add(double time, const std::vector<PointMotion>& motions) {
+  for (const PointMotion& m : motions) {
+    fmt::print(file_, "{:.17g},{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g}\n", time, field(m.name), m.displacement.x(), m.displacement.y(), m.rotation,
+               m.velocity.x(), m.velocity.y());
+  }
+}
+
+EnergyFile::EnergyFile(const OutputFolder& folder) : file_(folder.open("energy.csv")) {
+  file_ << "time_s";
+  for (const auto& entry : entries({})) file_ << ',' << entry.first;
+  file_ << '\n';
+}
+
+void EnergyFile::add(double time, const EnergyLedger& ledger) {
+  fmt::print(file_, "{:.17g}", time);
+  for (const auto& entry : entries(ledger)) fmt::print(file_, ",{:.17g}", entry.second);
+  file_ << '\n';
+}
+
+template <int N>
+BlocksFile<N>::BlocksFile(const OutputFolder& folder) : file_(folder.open("blocks.csv")) {
+  file_ << "state,block,vertex,x_m,y_m\n";
+}
+
+template <int N>
+void BlocksFile<N>::add(const std::string& state, const Simulation<N>& simulation) {
+  const auto& system = simulation.system();
+  for (int b = 0; b < system.block_count(); ++b) {
+    const auto& block = system.block(b);
+    for (int i = 0; i < block.vertex_count; ++i) {
+      const Vec2 p = system.position(b, block.first_vertex + i) + system.origin();
+      fmt::print(file_, "{},{},{},{:.17g},{:.17g}\n", state, field(simulation.scene().blocks[b].name), i, p.x(), p.y());
+    }
+  }
+}
+
+template <int N>
+void write_contacts(const OutputFolder& folder, const std::string& state, Simulation<N>& simulation) {
+  std::ofstream file = folder.open("contacts.csv");
+  file << "state,block_a,block_b,x_m,y_m,normal_x,normal_y,length_m,gap_m,normal_force_n,shear_force_n,status\n";
+  const auto& system = simulation.system();
+  const auto still = Motion<N>::Unknowns::Zero().eval();
+  for (const Contact& c : simulation.contacts()) {
+    const Vec2 p = system.position(c.vertex_block, c.vertex) + system.origin();
+    const Vec2 n = ContactKinematics<N>(system, c, still, still).normal;
+    fmt::print(file, "{},{},{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{}\n", state,
+               field(simulation.scene().blocks[c.vertex_block].name), field(simulation.scene().blocks[c.edge_block].name), p.x(), p.y(), n.x(), n.y(),
+               c.length, c.gap, c.normal_force, c.shear_force, name_of(c.status));
+  }
+  finish(file, "contacts.csv");
+}
+
+void write_trials(const OutputFolder& folder, const std::vector<StrengthTrial>& trials) {
+  std::ofstream file = folder.open("trials.csv");
+  file << "srf,stage,stable,criterion,steps,displacement_m\n";
+  for (const StrengthTrial& t : trials) {
+    fmt::print(file, "{:.17g},{},{},{},{},{:.17g}\n", t.srf, t.stage, t.stable ? 1 : 0, field(t.criterion), t.steps, t.displacement);
+  }
+  finish(file, "trials.csv");
+}
+
+void write_curve(const OutputFolder& folder, const std::vector<CurvePoint>& curve) {
+  std::ofstream file = folder.open("curve.csv");
+  file << "srf,point,displacement_m\n";
+  for (const CurvePoint& p : curve) fmt::print(file, "{:.17g},{},{:.17g}\n", p.srf, field(p.point), p.displacement);
+  finish(file, "curve.csv");
+}
+
+template <int N>
+void write_summary(const OutputFolder& folder, const Summary& summary, const Simulation<N>& simulation, const FactorOfSafety<N>* safety) {
+  using nlohmann::ordered_json;
+  const Scene& scene = simulation.scene();
+  const StepCounters& steps = simulation.step_counters();
+  const DetectionCounters& detection = simulation.detection_counters();
+  const LinearCounters& linear = simulation.enforcement().linear_counters();
+  const StageTimes& cpu = simulation.stage_times();
+
+  ordered_json j;
+  j["version"] = version;
+  j["command"] = summary.command;
+  j["scene"] = summary.scene_file;
+  j["title"] = scene.title;
+  j["overrides"] = summary.overrides;
+  j["options"] = {{"contact", scene.method.contact},
+                  {"theta", scene.method.theta},
+                  {"rotation", scene.method.rotation == RotationKind::exact ? "exact" : "linear"},
+                  {"start", name_of(scene.method.start)},
+                  {"statics", scene.method.statics},
+                  {"residual_tolerance", scene.method.residual_tolerance},
+                  {"skip_search", scene.method.skip_search},
+                  {"dt_s", scene.step.dt},
+                  {"max_displacement_m", scene.step.max_displacement},
+                  {"end_time_s", scene.end_time}};
+  j["warnings"] = summary.warnings;
+  j["blocks"] = simulation.system().block_count();
+  j["free_blocks"] = simulation.system().free_count();
+  j["converged"] = summary.converged;
+  j["reason"] = summary.reason;
+  j["time_s"] = simulation.time();
+  if (summary.settling.steps > 0) {
+    j["settling"] = {{"settled", summary.settling.settled},
+                     {"criterion", summary.settling.criterion},
+                     {"steps", summary.settling.steps},
+                     {"unbalanced_fraction", summary.settling.unbalanced_fraction},
+                     {"displacement_m", summary.settling.displacement}};
+  }
+  if (safety) {
+    j["factor_of_safety"] = safety->found ? ordered_json(safety->stable) : ordered_json(nullptr);
+    j["bracket"] = {safety->stable, safety->failed};
+    j["criterion"] = safety->criterion;
+  } else {
+    ordered_json ledger;
+    for (const auto& [name, value] : entries(summary.ledger)) ledger[name] = value;
+    j["energy_ledger"] = ledger;
+  }
+  j["max_penetration_m"] = summary.max_penetration;
+  j["counters"] = {{"steps", steps.steps},
+                   {"steps_cut", steps.cuts},
+                   {"iterations", steps.iterations},
+                   {"searches", detection.searches},
+                   {"searches_skipped", detection.searches_skipped},
+                   {"narrow_phases", detection.narrow_phases},
+                   {"history_transfers", detection.transfers},
+                   {"factorisations", linear.factorisations},
+                   {"symbolic", linear.symbolic},
+                   {"symbolic_skipped", linear.symbolic_skipped}};
+  j["cpu_s"] = {{"detection", cpu.detection}, {"solution", cpu.solution}, {"bookkeeping", cpu.bookkeeping}};
+  std::ofstream file = folder.open("summary.json");
+  file << j.dump(2) << '\n';
+  finish(file, "summary.json");
+}
+
+template class BlocksFile<3>;
+template void write_contacts<3>(const OutputFolder&, const std::string&, Simulation<3>&);
+template void write_summary<3>(const OutputFolder&, const Summary&, const Simulation<3>&, const FactorOfSafety<3>*);
+
+}  // namespace openclose

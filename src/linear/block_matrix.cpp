@@ -1,0 +1,72 @@
+#include "openclose/linear/block_matrix.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace openclose {
+
+template <int N>
+void BlockMatrix<N>::set_pattern(int rows, const std::vector<std::pair<int, int>>& couplings) {
+  std::vector<std::pair<int, int>> entries;
+  entries.reserve(rows + 2 * couplings.size());
+  for (int i = 0; i < rows; ++i) entries.emplace_back(i, i);
+  for (const auto& [i, j] : couplings) {
+    entries.emplace_back(i, j);
+    entries.emplace_back(j, i);
+  }
+  std::sort(entries.begin(), entries.end());
+  entries.erase(std::unique(entries.begin(), entries.end()), entries.end());
+  row_start_.assign(rows + 1, 0);
+  columns_.clear();
+  for (const auto& [i, j] : entries) {
+    ++row_start_[i + 1];
+    columns_.push_back(j);
+  }
+  for (int i = 0; i < rows; ++i) row_start_[i + 1] += row_start_[i];
+  values_.assign(columns_.size(), Block::Zero());
+  ++pattern_version_;
+}
+
+template <int N>
+void BlockMatrix<N>::set_zero() {
+  for (Block& v : values_) v.setZero();
+}
+
+template <int N>
+int BlockMatrix<N>::slot(int row, int column) const {
+  const auto begin = columns_.begin() + row_start_[row], end = columns_.begin() + row_start_[row + 1];
+  const auto it = std::lower_bound(begin, end, column);
+  if (it == end || *it != column) throw std::logic_error("BlockMatrix: entry outside the pattern");
+  return static_cast<int>(it - columns_.begin());
+}
+
+template <int N>
+void BlockMatrix<N>::eliminate(int row, int k) {
+  for (int s = row_start_[row]; s < row_start_[row + 1]; ++s) {
+    values_[s].row(k).setZero();
+    values_[slot(columns_[s], row)].col(k).setZero();
+  }
+  values_[slot(row, row)](k, k) = 1.0;
+}
+
+template <int N>
+Eigen::VectorXd BlockMatrix<N>::multiply(const Eigen::VectorXd& x) const {
+  Eigen::VectorXd y = Eigen::VectorXd::Zero(unknowns());
+  for (int i = 0; i < rows(); ++i) {
+    for (int s = row_start_[i]; s < row_start_[i + 1]; ++s) y.segment<N>(N * i) += values_[s] * x.segment<N>(N * columns_[s]);
+  }
+  return y;
+}
+
+template <int N>
+Eigen::MatrixXd BlockMatrix<N>::dense() const {
+  Eigen::MatrixXd a = Eigen::MatrixXd::Zero(unknowns(), unknowns());
+  for (int i = 0; i < rows(); ++i) {
+    for (int s = row_start_[i]; s < row_start_[i + 1]; ++s) a.block<N, N>(N * i, N * columns_[s]) = values_[s];
+  }
+  return a;
+}
+
+template class BlockMatrix<3>;
+
+}  // namespace openclose

@@ -1,0 +1,49 @@
+// Sparse matrix of small dense blocks, N unknowns each, on a pattern given by the pairs of blocks that may touch. Both triangles are stored, because
+// sliding contacts make the tangent non-symmetric.
+#pragma once
+
+#include <Eigen/Core>
+#include <utility>
+#include <vector>
+
+namespace openclose {
+
+template <int N>
+class BlockMatrix {
+ public:
+  using Block = Eigen::Matrix<double, N, N>;
+
+  /// \param couplings  pairs of different block rows, in any order, repetitions allowed; the diagonal is always there
+  void set_pattern(int rows, const std::vector<std::pair<int, int>>& couplings);
+
+  int rows() const { return static_cast<int>(row_start_.size()) - 1; }
+  int unknowns() const { return N * rows(); }
+  long pattern_version() const { return pattern_version_; }  ///< changes with every new pattern
+
+  void set_zero();
+  /// Throws std::logic_error if the pair is not in the pattern.
+  void add(int row, int column, const Block& value) { values_[slot(row, column)] += value; }
+  const Block& at(int row, int column) const { return values_[slot(row, column)]; }
+
+  /// Takes unknown k of a row out of the system: its row and column become those of the unit matrix.
+  void eliminate(int row, int k);
+
+  int row_start(int row) const { return row_start_[row]; }
+  int column(int slot) const { return columns_[slot]; }
+  const Block& value(int slot) const { return values_[slot]; }
+
+  Eigen::VectorXd multiply(const Eigen::VectorXd& x) const;
+  Eigen::MatrixXd dense() const;
+
+ private:
+  int slot(int row, int column) const;
+
+  long pattern_version_ = 0;
+  std::vector<int> row_start_{0};
+  std::vector<int> columns_;
+  std::vector<Block, Eigen::aligned_allocator<Block>> values_;
+};
+
+extern template class BlockMatrix<3>;
+
+}  // namespace openclose

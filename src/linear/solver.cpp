@@ -1,0 +1,97 @@
+#include "openclose/linear/solver.h"
+
+#include <Eigen/LU>
+#include <Eigen/SparseLU>
+
+namespace openclose {
+namespace {
+
+/// Up to here dense LU beats the bookkeeping of a sparse one (3 unknowns a block: 24 x 24 takes about 6 us either way).
+constexpr int largest_dense_system_blocks = 8;
+
+template <int N>
+class DenseSolver : public LinearSolver<N> {
+ public:
+  bool factor(const BlockMatrix<N>& matrix) override {
+    ++this->counters_.factorisations;
+    lu_.compute(matrix.dense());
+    return lu_.matrixLU().diagonal().cwiseAbs().minCoeff() > 0.0 && lu_.matrixLU().allFinite();
+  }
+  Eigen::VectorXd solve(const Eigen::VectorXd& right_side) override {
+    ++this->counters_.solves;
+    return lu_.solve(right_side);
+  }
+
+ private:
+  Eigen::PartialPivLU<Eigen::MatrixXd> lu_;
+};
+
+template <int N>
+class SparseSolver : public LinearSolver<N> {
+ public:
+  bool factor(const BlockMatrix<N>& matrix) override {
+    if (version_ != matrix.pattern_version() || scalar_.rows() != matrix.unknowns()) {
+      build(matrix);
+    } else {
+      ++this->counters_.symbolic_skipped;
+    }
+    double* values = scalar_.valuePtr();
+    for (int s = 0; s < matrix.row_start(matrix.rows()); ++s) {
+      Eigen::Map<const Eigen::Matrix<double, N * N, 1>> block(matrix.value(s).data());
+      for (int k = 0; k < N * N; ++k) values[position_[s * N * N + k]] = block[k];
+    }
+    ++this->counters_.factorisations;
+    lu_.factorize(scalar_);
+    return lu_.info() == Eigen::Success;
+  }
+  Eigen::VectorXd solve(const Eigen::VectorXd& right_side) override {
+    ++this->counters_.solves;
+    return lu_.solve(right_side);
+  }
+
+ private:
+  void build(const BlockMatrix<N>& matrix) {
+    // Number the entries, sort them into columns, and read back where each went.
+    std::vector<Eigen::Triplet<double>> entries;
+    for (int i = 0; i < matrix.rows(); ++i) {
+      for (int s = matrix.row_start(i); s < matrix.row_start(i + 1); ++s) {
+        for (int k = 0; k < N * N; ++k) entries.emplace_back(N * i + k % N, N * matrix.column(s) + k / N, static_cast<double>(entries.size()));
+      }
+    }
+    scalar_.resize(matrix.unknowns(), matrix.unknowns());
+    scalar_.setFromTriplets(entries.begin(), entries.end());
+    position_.resize(entries.size());
+    for (Eigen::Index p = 0; p < scalar_.nonZeros(); ++p) position_[static_cast<std::size_t>(scalar_.valuePtr()[p])] = p;
+    lu_.analyzePattern(scalar_);
+    version_ = matrix.pattern_version();
+    ++this->counters_.symbolic;
+  }
+
+  long version_ = -1;
+  Eigen::SparseMatrix<double> scalar_;
+  std::vector<Eigen::Index> position_;
+  Eigen::SparseLU<Eigen::SparseMatrix<double>, Eigen::COLAMDOrdering<int>> lu_;
+};
+
+}  // namespace
+
+template <int N>
+std::unique_ptr<LinearSolver<N>> make_dense_solver() {
+  return std::make_unique<DenseSolver<N>>();
+}
+
+template <int N>
+std::unique_ptr<LinearSolver<N>> make_sparse_solver() {
+  return std::make_unique<SparseSolver<N>>();
+}
+
+template <int N>
+std::unique_ptr<LinearSolver<N>> make_solver(int blocks) {
+  return blocks <= largest_dense_system_blocks ? make_dense_solver<N>() : make_sparse_solver<N>();
+}
+
+template std::unique_ptr<LinearSolver<3>> make_dense_solver<3>();
+template std::unique_ptr<LinearSolver<3>> make_sparse_solver<3>();
+template std::unique_ptr<LinearSolver<3>> make_solver<3>(int);
+
+}  // namespace openclose

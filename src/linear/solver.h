@@ -1,0 +1,42 @@
+// Direct solvers for BlockMatrix behind one interface.
+#pragma once
+
+#include <memory>
+
+#include "openclose/linear/block_matrix.h"
+
+namespace openclose {
+
+struct LinearCounters {
+  long symbolic = 0;
+  long symbolic_skipped = 0;  ///< factorisations on a known pattern
+  long factorisations = 0;
+  long solves = 0;
+};
+
+template <int N>
+class LinearSolver {
+ public:
+  virtual ~LinearSolver() = default;
+  /// Factors the matrix; false if it is singular to working precision. The symbolic part is kept while the pattern stands.
+  virtual bool factor(const BlockMatrix<N>& matrix) = 0;
+  virtual Eigen::VectorXd solve(const Eigen::VectorXd& right_side) = 0;
+  const LinearCounters& counters() const { return counters_; }
+
+ protected:
+  LinearCounters counters_;
+};
+
+/// Dense LU with partial pivoting: cheapest for a handful of blocks.
+template <int N>
+std::unique_ptr<LinearSolver<N>> make_dense_solver();
+
+/// Eigen's sparse LU with column ordering: the plain reference for larger systems.
+template <int N>
+std::unique_ptr<LinearSolver<N>> make_sparse_solver();
+
+/// The solver for a system of this many blocks.
+template <int N>
+std::unique_ptr<LinearSolver<N>> make_solver(int blocks);
+
+}  // namespace openclose

@@ -1,0 +1,88 @@
+#include "openclose/model/block_system.h"
+
+#include "openclose/geometry/polygon.h"
+
+namespace openclose {
+
+template <int N>
+BlockSystem<N>::BlockSystem(const Scene& scene) : rotation_kind_(scene.method.rotation) {
+  if (!scene.blocks.empty()) origin_ = scene.blocks.front().vertices.front();
+  for (const BlockInput& input : scene.blocks) {
+    const PolygonProperties properties = polygon_properties(input.vertices);
+    Block block;
+    block.first_vertex = static_cast<int>(reference_arm_.size());
+    block.vertex_count = static_cast<int>(input.vertices.size());
+    block.material = input.material;
+    block.area = properties.area;
+    block.rotation_locked = input.rotation_locked;
+    block.mass = Motion<N>::mass(scene.materials[input.material].density, properties.area, properties.polar_second_moment);
+    block.reference_centroid = properties.centroid - origin_;
+    for (int i = 0; i < block.vertex_count; ++i) {
+      // Differences of scene coordinates first: they are exact for neighbouring numbers.
+      const Vec2 arm = (input.vertices[i] - origin_) - block.reference_centroid;
+      const Vec2 back = input.vertices[(i + block.vertex_count - 1) % block.vertex_count] - input.vertices[i];
+      const Vec2 ahead = input.vertices[(i + 1) % block.vertex_count] - input.vertices[i];
+      reference_arm_.push_back(arm);
+      next_.push_back(block.first_vertex + (i + 1) % block.vertex_count);
+      previous_.push_back(block.first_vertex + (i + block.vertex_count - 1) % block.vertex_count);
+      reflex_.push_back(cross(ahead, back) < 0.0);
+      block.radius = std::max(block.radius, arm.norm());
+    }
+    const int b = block_count();
+    Unknowns velocity = Unknowns::Zero();
+    if (!input.fixed) {
+      block.equation = free_count();
+      free_blocks_.push_back(b);
+      velocity << input.velocity, input.angular_velocity;
+    }
+    blocks_.push_back(block);
+    state_.displacement.push_back(Unknowns::Zero());
+    state_.velocity.push_back(velocity);
+  }
+  state_.arm = reference_arm_;
+}
+
+template <int N>
+int BlockSystem<N>::follow_point(int b, const Vec2& point) {
+  const Vec2 arm = (point - origin_) - blocks_[b].reference_centroid;
+  points_.push_back({b, arm});
+  state_.point_arm.push_back(arm + Motion<N>::turned_by(Motion<N>::rotation(state_.displacement[b]), arm, rotation_kind_));
+  return static_cast<int>(points_.size()) - 1;
+}
+
+template <int N>
+void BlockSystem<N>::stop() {
+  for (Unknowns& v : state_.velocity) v.setZero();
+}
+
+template <int N>
+Vec2 BlockSystem<N>::turned_arm(const Vec2& reference, const Vec2& current, double total_angle, double angle) const {
+  // Exact rotation starts from the reference each time, so that rounding does not deform the block; Shi's linear one adds to what it had.
+  if (rotation_kind_ == RotationKind::exact) return reference + Motion<N>::turned_by(total_angle, reference, rotation_kind_);
+  return current + Motion<N>::turned_by(angle, current, rotation_kind_);
+}
+
+template <int N>
+void BlockSystem<N>::advance(int b, const Unknowns& d) {
+  state_.displacement[b] += d;
+  const Block& block = blocks_[b];
+  const double angle = Motion<N>::rotation(d);
+  const double total = Motion<N>::rotation(state_.displacement[b]);
+  for (int v = block.first_vertex; v < block.first_vertex + block.vertex_count; ++v) {
+    state_.arm[v] = turned_arm(reference_arm_[v], state_.arm[v], total, angle);
+  }
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    if (points_[i].block == b) state_.point_arm[i] = turned_arm(points_[i].reference_arm, state_.point_arm[i], total, angle);
+  }
+}
+
+template <int N>
+double BlockSystem<N>::kinetic_energy() const {
+  double energy = 0.0;
+  for (int b : free_blocks_) energy += 0.5 * state_.velocity[b].dot(blocks_[b].mass.cwiseProduct(state_.velocity[b]));
+  return energy;
+}
+
+template class BlockSystem<3>;
+
+}  // namespace openclose

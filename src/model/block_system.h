@@ -1,0 +1,97 @@
+// The block system: geometry, mass and motion of all blocks. The only owner of their state.
+//
+// Blocks and vertices live in flat arrays; vertex v of a block is followed counter-clockwise by next(v), and edge v runs from vertex v to next(v).
+// Coordinates are taken relative to origin(), the first vertex of the scene, so that a model far from zero loses no digits while it moves.
+// Fixed blocks have no unknowns (equation = -1).
+#pragma once
+
+#include <vector>
+
+#include "openclose/model/motion.h"
+#include "openclose/scene/scene.h"
+
+namespace openclose {
+
+template <int N>
+class BlockSystem {
+ public:
+  using Unknowns = typename Motion<N>::Unknowns;
+
+  struct Block {
+    int first_vertex = 0;
+    int vertex_count = 0;
+    int equation = -1;                   ///< block row of the unknowns, -1 if fixed
+    int material = 0;
+    double area = 0.0;                   ///< [m2]
+    double radius = 0.0;                 ///< [m] farthest vertex from the centroid
+    bool rotation_locked = false;
+    Unknowns mass = Unknowns::Zero();    ///< diagonal mass [kg, kg, kg m2]
+    Vec2 reference_centroid = Vec2::Zero();  ///< [m] relative to origin()
+  };
+
+  /// Everything that changes in time; copied to save and restore a step.
+  struct State {
+    std::vector<Unknowns> displacement;  ///< accumulated since the reference configuration, per block
+    std::vector<Unknowns> velocity;      ///< per block; zero for fixed blocks
+    std::vector<Vec2> arm;               ///< [m] centroid to vertex, per vertex
+    std::vector<Vec2> point_arm;         ///< [m] centroid to material point, per point
+  };
+
+  explicit BlockSystem(const Scene& scene);
+
+  const std::vector<Block>& blocks() const { return blocks_; }
+  const Block& block(int b) const { return blocks_[b]; }
+  int block_count() const { return static_cast<int>(blocks_.size()); }
+  int free_count() const { return static_cast<int>(free_blocks_.size()); }
+  const std::vector<int>& free_blocks() const { return free_blocks_; }  ///< in the order of their equations
+  const Vec2& origin() const { return origin_; }
+  RotationKind rotation_kind() const { return rotation_kind_; }
+
+  int next(int vertex) const { return next_[vertex]; }
+  int previous(int vertex) const { return previous_[vertex]; }
+  bool is_reflex(int vertex) const { return reflex_[vertex]; }  ///< interior angle above pi
+
+  Vec2 centroid(int b) const { return blocks_[b].reference_centroid + Motion<N>::translation(state_.displacement[b]); }
+  const Vec2& arm(int vertex) const { return state_.arm[vertex]; }
+  Vec2 position(int b, int vertex) const { return centroid(b) + state_.arm[vertex]; }  ///< [m] relative to origin()
+
+  /// Follows the material point of block b that lies at `point` (scene coordinates, m) in the reference configuration; returns its number.
+  int follow_point(int b, const Vec2& point);
+  int point_block(int point) const { return points_[point].block; }
+  const Vec2& point_arm(int point) const { return state_.point_arm[point]; }
+  Vec2 point_position(int point) const { return centroid(points_[point].block) + state_.point_arm[point]; }  ///< [m] relative to origin()
+
+  const State& state() const { return state_; }
+  void restore(const State& state) { state_ = state; }
+
+  const Unknowns& displacement(int b) const { return state_.displacement[b]; }
+  const Unknowns& velocity(int b) const { return state_.velocity[b]; }
+  void set_velocity(int b, const Unknowns& v) { state_.velocity[b] = v; }
+  void stop();  ///< all velocities to zero
+
+  /// Moves block b by d.
+  void advance(int b, const Unknowns& d);
+
+  double kinetic_energy() const;  ///< [J] per metre of thickness
+
+ private:
+  std::vector<Block> blocks_;
+  std::vector<int> free_blocks_;
+  std::vector<int> next_, previous_;
+  std::vector<char> reflex_;
+  struct Point {
+    int block = 0;
+    Vec2 reference_arm = Vec2::Zero();
+  };
+  Vec2 turned_arm(const Vec2& reference, const Vec2& current, double total_angle, double angle) const;
+
+  std::vector<Vec2> reference_arm_;
+  std::vector<Point> points_;
+  Vec2 origin_ = Vec2::Zero();
+  RotationKind rotation_kind_ = RotationKind::exact;
+  State state_;
+};
+
+extern template class BlockSystem<3>;
+
+}  // namespace openclose

@@ -1,0 +1,52 @@
+#include "openclose/model/external_forces.h"
+
+namespace openclose {
+
+template <int N>
+ExternalForces<N>::ExternalForces(const Scene& scene, BlockSystem<N>& system)
+    : gravity_(scene.gravity), loads_of_(scene.blocks.size()), supports_of_(scene.blocks.size()) {
+  for (const Load& load : scene.loads) {
+    loads_of_[load.block].push_back(static_cast<int>(loads_.size()));
+    loads_.push_back({system.follow_point(load.block, load.point), load.force, Vec2::Zero(), Vec2::Zero()});
+  }
+  for (const Support& support : scene.supports) {
+    supports_of_[support.block].push_back(static_cast<int>(supports_.size()));
+    const int point = system.follow_point(support.block, support.point);
+    supports_.push_back({point, Vec2::Zero(), support.stiffness, system.point_position(point)});
+  }
+}
+
+template <int N>
+typename ExternalForces<N>::Unknowns ExternalForces<N>::weight(const BlockSystem<N>& system, int b) const {
+  return Motion<N>::gradient(Vec2::Zero(), system.block(b).mass[0] * gravity_);
+}
+
+template <int N>
+typename ExternalForces<N>::Unknowns ExternalForces<N>::force(const BlockSystem<N>& system, int b, const Unknowns& d) const {
+  Unknowns total = weight(system, b);
+  for_each_point_force(b, [&](const PointForce& f) {
+    const Vec2 moved = Motion<N>::displacement(d, system.point_arm(f.point), system.rotation_kind());
+    const Vec2 stretch = (system.point_position(f.point) - f.anchor) + moved;
+    const Vec2 arm = system.point_arm(f.point) + moved - Motion<N>::translation(d);
+    total += Motion<N>::gradient(arm, f.force - f.stiffness.cwiseProduct(stretch));
+  });
+  return total;
+}
+
+template <int N>
+typename ExternalForces<N>::Matrix ExternalForces<N>::stiffness(const BlockSystem<N>& system, int b, const Unknowns& d) const {
+  Matrix total = Matrix::Zero();
+  for_each_point_force(b, [&](const PointForce& f) {
+    const Vec2 moved = Motion<N>::displacement(d, system.point_arm(f.point), system.rotation_kind());
+    const Vec2 stretch = (system.point_position(f.point) - f.anchor) + moved;
+    const Vec2 arm = system.point_arm(f.point) + moved - Motion<N>::translation(d);
+    const Unknowns gx = Motion<N>::gradient(arm, {1.0, 0.0}), gy = Motion<N>::gradient(arm, {0.0, 1.0});
+    total += f.stiffness.x() * gx * gx.transpose() + f.stiffness.y() * gy * gy.transpose();
+    total -= Motion<N>::hessian(arm, f.force - f.stiffness.cwiseProduct(stretch));
+  });
+  return total;
+}
+
+template class ExternalForces<3>;
+
+}  // namespace openclose

@@ -1,0 +1,49 @@
+// Forces on blocks that do not come from contacts: gravity, constant forces at points, springs that hold points.
+#pragma once
+
+#include <vector>
+
+#include "openclose/model/block_system.h"
+
+namespace openclose {
+
+template <int N>
+class ExternalForces {
+ public:
+  using Unknowns = typename Motion<N>::Unknowns;
+  using Matrix = typename Motion<N>::Matrix;
+
+  /// Makes `system` follow the points of the scene's loads and supports.
+  ExternalForces(const Scene& scene, BlockSystem<N>& system);
+
+  Unknowns weight(const BlockSystem<N>& system, int b) const;  ///< [N]
+  /// Forces of gravity, loads and supports on block b after it has moved by d from the system's present state.
+  Unknowns force(const BlockSystem<N>& system, int b, const Unknowns& d) const;
+  /// Minus the derivative of force() by d.
+  Matrix stiffness(const BlockSystem<N>& system, int b, const Unknowns& d) const;
+
+  struct PointForce {
+    int point = 0;                        ///< followed point of the system
+    Vec2 force = Vec2::Zero();            ///< [N] constant part
+    Vec2 stiffness = Vec2::Zero();        ///< [N/m] of springs in x and y
+    Vec2 anchor = Vec2::Zero();           ///< [m] where the springs are slack, relative to the system's origin
+  };
+  const std::vector<PointForce>& loads() const { return loads_; }
+  const std::vector<PointForce>& supports() const { return supports_; }
+  const Vec2& gravity() const { return gravity_; }
+
+ private:
+  template <class F>
+  void for_each_point_force(int b, F f) const {
+    for (int i : loads_of_[b]) f(loads_[i]);
+    for (int i : supports_of_[b]) f(supports_[i]);
+  }
+
+  Vec2 gravity_;
+  std::vector<PointForce> loads_, supports_;
+  std::vector<std::vector<int>> loads_of_, supports_of_;
+};
+
+extern template class ExternalForces<3>;
+
+}  // namespace openclose

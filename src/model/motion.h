@@ -1,0 +1,59 @@
+// How the unknowns of one block move its points. The number of unknowns is a compile-time parameter, so that rigid scenes never pay for strains.
+//
+//   Motion<3>: rigid block, unknowns (u, v, r): translation of the centroid [m], rotation counter-clockwise [rad].
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+
+#include "openclose/core/vector.h"
+#include "openclose/scene/scene.h"
+
+namespace openclose {
+
+template <int N>
+struct Motion;
+
+template <>
+struct Motion<3> {
+  using Unknowns = Eigen::Vector3d;
+  using Matrix = Eigen::Matrix3d;
+
+  static Vec2 translation(const Unknowns& d) { return d.head<2>(); }
+  static double rotation(const Unknowns& d) { return d[2]; }
+
+  /// (R(angle) - I) r without cancellation for small angles; Shi's linear rotation keeps the first-order term only.
+  static Vec2 turned_by(double angle, const Vec2& r, RotationKind kind) {
+    if (kind == RotationKind::linear) return angle * perpendicular(r);
+    const double half = std::sin(0.5 * angle);
+    return std::sin(angle) * perpendicular(r) - (2.0 * half * half) * r;
+  }
+
+  /// Displacement [m] of the point at r [m] from the centroid when the block moves by d.
+  static Vec2 displacement(const Unknowns& d, const Vec2& r, RotationKind kind) { return translation(d) + turned_by(rotation(d), r, kind); }
+
+  /// Derivative by the unknowns of m . (position of the point now at r): the generalised force of a force m at that point.
+  static Unknowns gradient(const Vec2& r, const Vec2& m) { return {m.x(), m.y(), cross(r, m)}; }
+
+  /// Second derivative of the same quantity for exact rotation.
+  static Matrix hessian(const Vec2& r, const Vec2& m) {
+    Matrix h = Matrix::Zero();
+    h(2, 2) = -m.dot(r);
+    return h;
+  }
+
+  /// Diagonal of the mass matrix [kg, kg, kg m2] per metre of thickness.
+  static Unknowns mass(double density, double area, double polar_second_moment) {
+    return density * Unknowns(area, area, polar_second_moment);
+  }
+
+  /// Each component as a force [N]: moments over the radius of the block [m].
+  static double largest_force(const Unknowns& f, double radius) { return std::max(f.head<2>().norm(), std::abs(f[2]) / radius); }
+
+  /// [m] no point of a block of this radius moves farther than this.
+  static double displacement_bound(const Unknowns& d, double radius) { return translation(d).norm() + radius * std::abs(rotation(d)); }
+
+  static constexpr int rotation_index = 2;
+};
+
+}  // namespace openclose

@@ -1,0 +1,85 @@
+#include "openclose/scene/check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "openclose/core/tolerance.h"
+#include "openclose/geometry/box.h"
+#include "openclose/geometry/overlap.h"
+
+namespace openclose {
+namespace {
+
+[[noreturn]] void fail_overlap(const BlockInput& a, const BlockInput& b, double depth) {
+  throw InputError(b.where, "block",
+                   fmt::format("\"{}\" overlaps \"{}\" (line {}) by at least {:.3g} m at the start", b.name, a.name, a.where.line, depth),
+                   fmt::format("overlaps of at most {} m", tolerance::deepest_initial_overlap_m));
+}
+
+/// Sweep over x: a block is compared only with those that begin before it ends.
+void require_no_overlap(const std::vector<BlockInput>& blocks) {
+  std::vector<Box> boxes;
+  for (const BlockInput& block : blocks) boxes.push_back(Box::around(block.vertices));
+  std::vector<int> by_x(blocks.size());
+  std::iota(by_x.begin(), by_x.end(), 0);
+  std::sort(by_x.begin(), by_x.end(), [&](int a, int b) { return boxes[a].low.x() < boxes[b].low.x(); });
+
+  for (std::size_t i = 0; i < by_x.size(); ++i) {
+    // Polygons cannot be deeper in each other than their boxes are.
+    const Box reach = boxes[by_x[i]].inflated(-tolerance::deepest_initial_overlap_m);
+    for (std::size_t j = i + 1; j < by_x.size() && boxes[by_x[j]].low.x() <= reach.high.x(); ++j) {
+      if (!boxes[by_x[i]].overlaps(boxes[by_x[j]].inflated(-tolerance::deepest_initial_overlap_m))) continue;
+      const auto [first, second] = std::minmax(by_x[i], by_x[j]);
+      const double depth = overlap_depth(blocks[first].vertices, blocks[second].vertices);
+      if (depth > tolerance::deepest_initial_overlap_m) fail_overlap(blocks[first], blocks[second], depth);
+    }
+  }
+}
+
+struct Use {
+  int blocks = 0;
+  int free_blocks = 0;
+};
+
+/// Whether two blocks of these materials, one of them free to move, can be found.
+bool can_meet(const std::vector<Use>& uses, std::size_t a, std::size_t b) {
+  if (a == b) return uses[a].blocks >= 2 && uses[a].free_blocks >= 1;
+  return uses[a].blocks >= 1 && uses[b].blocks >= 1 && uses[a].free_blocks + uses[b].free_blocks >= 1;
+}
+
+std::vector<std::string> materials_without_joint(const Scene& scene) {
+  std::vector<Use> uses(scene.materials.size());
+  for (const BlockInput& block : scene.blocks) {
+    ++uses[block.material].blocks;
+    if (!block.fixed) ++uses[block.material].free_blocks;
+  }
+  std::vector<std::string> warnings;
+  for (std::size_t a = 0; a < uses.size(); ++a) {
+    for (std::size_t b = a; b < uses.size(); ++b) {
+      if (!can_meet(uses, a, b) || scene.joint(static_cast<int>(a), static_cast<int>(b)) != nullptr) continue;
+      warnings.push_back(fmt::format("{}: no [[joint]] for the materials \"{}\" and \"{}\": their blocks must never touch", scene.where.file,
+                                     scene.materials[a].name, scene.materials[b].name));
+    }
+  }
+  return warnings;
+}
+
+bool nothing_holds(const Scene& scene) {
+  const bool any_fixed = std::any_of(scene.blocks.begin(), scene.blocks.end(), [](const BlockInput& block) { return block.fixed; });
+  return !any_fixed && scene.supports.empty() && !scene.gravity.isZero(0.0);
+}
+
+}  // namespace
+
+std::vector<std::string> check_scene(const Scene& scene) {
+  require_no_overlap(scene.blocks);
+  std::vector<std::string> warnings = materials_without_joint(scene);
+  if (nothing_holds(scene)) {
+    warnings.insert(warnings.begin(), scene.where.file + ": nothing is fixed or supported under gravity: every block will fall");
+  }
+  return warnings;
+}
+
+}  // namespace openclose

@@ -1,0 +1,39 @@
+// The words of the scene file that stand for the values of an enumeration. A new value is one line here.
+#pragma once
+
+#include <array>
+#include <string_view>
+
+#include "openclose/scene/limits.h"
+#include "openclose/scene/scene.h"
+
+namespace openclose {
+
+inline constexpr std::array cohesion_behaviour_words{
+    Word{"ductile", CohesionBehaviour::ductile},
+    Word{"lost_on_opening", CohesionBehaviour::lost_on_opening},
+    Word{"lost_on_slip", CohesionBehaviour::lost_on_slip},
+};
+
+inline constexpr std::array rotation_words{
+    Word{"exact", RotationKind::exact},
+    Word{"linear", RotationKind::linear},
+};
+
+inline constexpr std::array start_words{
+    Word{"unloaded", Start::unloaded},
+    Word{"settled", Start::settled},
+    Word{"normal_balanced", Start::normal_balanced},
+    Word{"steady_sliding", Start::steady_sliding},
+};
+
+/// The word for a value; every value has one.
+template <typename Words, typename Enum>
+constexpr std::string_view word_for(const Words& words, Enum value) {
+  for (const auto& word : words) {
+    if (word.value == value) return word.text;
+  }
+  return {};
+}
+
+}  // namespace openclose

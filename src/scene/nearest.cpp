@@ -1,0 +1,68 @@
+#include "openclose/scene/nearest.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+#include <string_view>
+
+namespace openclose {
+namespace {
+
+constexpr std::size_t longest_list = 14;  // the keys of [method], the largest table, all fit
+
+constexpr std::array<std::string_view, 45> unit_words{
+    "per", "m",   "mm",  "cm",   "km",  "ft",  "m2",  "mm2", "cm2",     "m3",      "mm3", "cm3", "s",       "s2",     "ms",
+    "us",  "min", "h",   "hour", "day", "hz",  "kg",  "g",   "t",       "mg",      "lb",  "n",   "kn",      "mn",     "gn",
+    "pa",  "kpa", "mpa", "gpa",  "bar", "psi", "deg", "rad", "degrees", "radians", "nm",  "knm", "seconds", "metres", "meters",
+};
+
+bool is_unit_word(std::string_view word) {
+  return std::find(unit_words.begin(), unit_words.end(), word) != unit_words.end();
+}
+
+/// Levenshtein's distance: single characters inserted, deleted or replaced.
+std::size_t edit_distance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i + 1;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({replaced, diagonal + 1, row[j] + 1});
+    }
+  }
+  return row[b.size()];
+}
+
+}  // namespace
+
+std::string suggestions(const std::string& word, std::vector<std::string> accepted) {
+  std::stable_sort(accepted.begin(), accepted.end(),
+                   [&](const std::string& a, const std::string& b) { return edit_distance(word, a) < edit_distance(word, b); });
+  const std::size_t shown = std::min(accepted.size(), longest_list);
+  std::string text = fmt::format("{}", fmt::join(accepted.begin(), accepted.begin() + static_cast<std::ptrdiff_t>(shown), ", "));
+  if (shown < accepted.size()) text += fmt::format(" ... ({} in all)", accepted.size());
+  return text;
+}
+
+std::string without_unit(const std::string& key) {
+  std::string rest = key;
+  for (std::size_t cut = rest.rfind('_'); cut != std::string::npos && is_unit_word(std::string_view(rest).substr(cut + 1)); cut = rest.rfind('_')) {
+    rest.resize(cut);
+  }
+  return rest;
+}
+
+std::vector<std::string> same_quantity(const std::string& key, const std::vector<std::string>& accepted) {
+  std::vector<std::string> same;
+  for (const std::string& candidate : accepted) {
+    if (without_unit(candidate) == without_unit(key)) same.push_back(candidate);
+  }
+  return same;
+}
+
+}  // namespace openclose

@@ -1,0 +1,18 @@
+// Suggestions for a word that the program does not know.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace openclose {
+
+/// The accepted words for an error message, those most like `word` first; of many, only the first few and how many there are.
+std::string suggestions(const std::string& word, std::vector<std::string> accepted);
+
+/// A key without the unit at its end: "density_kg_per_m3" -> "density". Units are SI and those a user may be tempted to write instead.
+std::string without_unit(const std::string& key);
+
+/// The accepted keys that mean the same quantity in another unit (or with the unit left out, or added).
+std::vector<std::string> same_quantity(const std::string& key, const std::vector<std::string>& accepted);
+
+}  // namespace openclose

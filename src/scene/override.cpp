@@ -1,0 +1,97 @@
+#include "openclose/scene/override.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+
+#include "openclose/scene/table.h"
+
+namespace openclose {
+namespace {
+
+constexpr const char* accepted_form = "--set KEY=VALUE, e.g. --set joint[0].friction_angle_deg=20";
+
+struct Override {
+  std::string source;  ///< stands in for the name of the file
+  std::string key;
+  std::string value;
+
+  [[noreturn]] void fail(const std::string& read, const std::string& accepted) const { throw_input_error({source, 0}, "", read, accepted); }
+};
+
+Override parse_override(const std::string& file, const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos || equals == 0) throw_input_error({file, 0}, "--set " + text, "this is no assignment", accepted_form);
+  const std::string key = text.substr(0, text.find_last_not_of(' ', equals - 1) + 1);
+  return {fmt::format("{}: --set {}", file, key), key, text.substr(equals + 1)};
+}
+
+bool is_word(const std::string& text) {
+  return !text.empty() && std::all_of(text.begin(), text.end(),
+                                      [](unsigned char letter) { return std::isalnum(letter) || letter == '_' || letter == '-' || letter == '.'; });
+}
+
+/// A table with the one key "value".
+toml::table parse_value(const Override& override, const std::string& value) {
+  try {
+    toml::table table = toml::parse("value = " + value, override.source);
+    if (table.size() == 1) return table;
+  } catch (const toml::parse_error&) {
+    if (is_word(value)) return parse_value(override, fmt::format("\"{}\"", value));
+  }
+  override.fail(in_quotes(value) + " is not a TOML value", "a number, true, false, a text, or [x, y]");
+}
+
+/// The element of an array that an index names.
+toml::node& element(const Override& override, toml::node& parent, std::size_t index) {
+  toml::array* array = parent.as_array();
+  if (array == nullptr) override.fail(fmt::format("[{}] follows something that is not an array", index), "a key that the scene has");
+  if (index < array->size()) return *array->get(index);
+  override.fail(fmt::format("there is no [{}]", index),
+                array->empty() ? "no index, the array is empty" : fmt::format("[0] to [{}]", array->size() - 1));
+}
+
+toml::table& as_table(const Override& override, toml::node& parent, const std::string& key) {
+  if (toml::table* table = parent.as_table()) return *table;
+  if (const toml::array* array = parent.as_array(); array != nullptr && !array->empty()) {
+    override.fail(fmt::format("{} follows an array", in_quotes(key)), fmt::format("an index, [0] to [{}], before it", array->size() - 1));
+  }
+  override.fail(fmt::format("{} follows something that is not a table", in_quotes(key)), "a key that the scene has");
+}
+
+toml::node& member(const Override& override, toml::node& parent, const std::string& key) {
+  toml::table& table = as_table(override, parent, key);
+  if (!table.contains(key)) table.insert_or_assign(key, std::move(*parse_value(override, "{}").get_as<toml::table>("value")));
+  return *table.get(key);
+}
+
+}  // namespace
+
+void apply_override(toml::table& scene, const std::string& file, const std::string& key_and_value) {
+  const Override override = parse_override(file, key_and_value);
+  const toml::path path(override.key);
+  // The parser of paths mends some that are wrong, e.g. "joint[0"; what it made of the key tells.
+  if (path.empty() || path.str() != override.key) override.fail("this is not a dotted key", accepted_form);
+
+  toml::table replacement = parse_value(override, override.value);
+  toml::node* parent = &scene;
+  for (std::size_t i = 0; i + 1 < path.size(); ++i) {
+    const toml::path_component& step = path[i];
+    const bool is_key = step.type() == toml::path_component_type::key;
+    parent = is_key ? &member(override, *parent, step.key()) : &element(override, *parent, step.index());
+  }
+
+  const toml::path_component& last = path[path.size() - 1];
+  replacement.get("value")->visit([&](auto& node) {
+    if (last.type() == toml::path_component_type::key) {
+      as_table(override, *parent, last.key()).insert_or_assign(last.key(), std::move(node));
+    } else {
+      element(override, *parent, last.index());
+      toml::array& array = *parent->as_array();
+      array.replace(array.cbegin() + static_cast<std::ptrdiff_t>(last.index()), std::move(node));
+    }
+  });
+}
+
+}  // namespace openclose

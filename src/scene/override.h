@@ -1,0 +1,16 @@
+// Values of the command line that replace values of the scene file.
+#pragma once
+
+#include <toml++/toml.h>
+
+#include <string>
+
+namespace openclose {
+
+/// Applies KEY=VALUE to a parsed scene. KEY is dotted, with elements of arrays by index from 0: "joint[0].friction_angle_deg"; a table that the
+/// file leaves out is made. VALUE is a TOML value; a single word that is none is taken as a text. The new nodes carry "FILE: --set KEY" as their
+/// source, so that later errors name the override.
+/// Throws InputError.
+void apply_override(toml::table& scene, const std::string& file, const std::string& key_and_value);
+
+}  // namespace openclose

@@ -1,0 +1,265 @@
+#include "openclose/scene/reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+
+#include "openclose/scene/angle.h"
+#include "openclose/scene/names.h"
+#include "openclose/scene/outline.h"
+#include "openclose/scene/override.h"
+#include "openclose/scene/table.h"
+
+namespace openclose {
+namespace {
+
+std::string read_text(const std::string& path) {
+  const std::string accepted = "the path of a scene file";
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status)) throw_input_error({path, 0}, "", "there is no such file", accepted);
+  if (!std::filesystem::is_regular_file(status)) throw_input_error({path, 0}, "", "this is not a regular file", accepted);
+  std::ifstream stream(path, std::ios::binary);
+  std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  if (!stream) throw_input_error({path, 0}, "", "the file cannot be read", accepted);
+  return text;
+}
+
+toml::table parse(const std::string& path) {
+  const std::string text = read_text(path);
+  try {
+    toml::table document = toml::parse(text, path);
+    if (document.empty()) throw_input_error({path, 0}, "", "the file is empty", "a scene with at least one [[material]] and one [[block]]");
+    return document;
+  } catch (const toml::parse_error& error) {
+    throw_input_error({path, static_cast<int>(error.source().begin.line)}, "", in_quotes(error.description()), "TOML 1.0");
+  }
+}
+
+Material read_material(Table table, const Vec2& gravity, NameList& names) {
+  Material material;
+  std::optional<double> density;
+  std::optional<double> unit_weight;
+  table.required("name", material.name);
+  table.optional("density_kg_per_m3", density, positive);
+  table.optional("unit_weight_n_per_m3", unit_weight, positive);
+  table.finish();
+
+  names.add(table.at("name"), material.name);
+  if (density.has_value() == unit_weight.has_value()) {
+    table.fail(density ? "both density and unit weight are given" : "neither density nor unit weight is given",
+               "exactly one of density_kg_per_m3, unit_weight_n_per_m3");
+  }
+  if (unit_weight && gravity.isZero(0.0)) table.at("unit_weight_n_per_m3").fail("without gravity a unit weight gives no mass", "density_kg_per_m3");
+  material.density = density ? *density : *unit_weight / gravity.norm();
+  return material;
+}
+
+JointProperties read_joint(Table table, const NameList& material_names) {
+  JointProperties joint;
+  std::vector<int> materials;
+  double friction_angle_deg = 0.0;
+  table.required("materials", materials, material_names);
+  table.required("normal_stiffness_pa_per_m", joint.normal_stiffness, positive);
+  table.required("shear_stiffness_pa_per_m", joint.shear_stiffness, positive);
+  table.required("friction_angle_deg", friction_angle_deg, Range{.low = 0.0, .high = 90.0, .low_included = true});
+  table.optional("cohesion_pa", joint.cohesion, not_negative);
+  table.optional("tensile_strength_pa", joint.tensile_strength, not_negative);
+  table.optional("cohesion_behaviour", joint.cohesion_behaviour, cohesion_behaviour_words);
+  table.finish();
+
+  if (materials.size() != 2) table.at("materials").fail(fmt::format("there are {} names", materials.size()), "two names of materials");
+  joint.materials = {materials[0], materials[1]};
+  joint.friction_angle = radians(friction_angle_deg);
+  return joint;
+}
+
+std::vector<JointProperties> read_joints(const std::vector<Table>& tables, const NameList& material_names) {
+  std::vector<JointProperties> joints;
+  std::map<std::pair<int, int>, SourceLocation> known;
+  for (const Table& table : tables) {
+    joints.push_back(read_joint(table, material_names));
+    const auto& [a, b] = joints.back().materials;
+    const auto [earlier, is_new] = known.try_emplace(std::minmax(a, b), table.where());
+    if (!is_new) {
+      table.fail(fmt::format("the joint of {} is for the same two materials", place_name(earlier->second)),
+                 "one [[joint]] for each pair of materials");
+    }
+  }
+  return joints;
+}
+
+BlockInput read_block(Table table, const NameList& material_names, NameList& block_names) {
+  BlockInput block;
+  Polygon vertices;
+  block.where = table.where();
+  table.required("name", block.name);
+  table.required("material", block.material, material_names);
+  table.required("vertices_m", vertices, coordinate);
+  table.optional("fixed", block.fixed);
+  table.optional("rotation_locked", block.rotation_locked);
+  table.optional("velocity_m_per_s", block.velocity);
+  table.optional("angular_velocity_rad_per_s", block.angular_velocity);
+  table.finish();
+
+  block_names.add(table.at("name"), block.name);
+  block.vertices = outline(table.at("vertices_m"), vertices);
+  return block;
+}
+
+void require_inside(const Table& table, const Vec2& point, const BlockInput& block) {
+  require_inside(table.at("point_m"), point, block.vertices, block.name);
+}
+
+Support read_support(Table table, const Scene& scene, const NameList& block_names) {
+  Support support;
+  table.required("block", support.block, block_names);
+  table.required("point_m", support.point);
+  table.required("stiffness_n_per_m", support.stiffness, not_negative);
+  table.finish();
+
+  if (support.stiffness.isZero(0.0)) table.at("stiffness_n_per_m").fail("both stiffnesses are 0", "[kx, ky] of which one may be 0");
+  require_inside(table, support.point, scene.blocks[support.block]);
+  return support;
+}
+
+Load read_load(Table table, const Scene& scene, const NameList& block_names) {
+  Load load;
+  table.required("block", load.block, block_names);
+  table.required("point_m", load.point);
+  table.required("force_n", load.force);
+  table.finish();
+
+  require_inside(table, load.point, scene.blocks[load.block]);
+  return load;
+}
+
+MeasuredPoint read_measured_point(Table table, const Scene& scene, const NameList& block_names, NameList& point_names) {
+  MeasuredPoint measured;
+  table.required("name", measured.name);
+  table.required("block", measured.block, block_names);
+  table.required("point_m", measured.point);
+  table.finish();
+
+  point_names.add(table.at("name"), measured.name);
+  require_inside(table, measured.point, scene.blocks[measured.block]);
+  return measured;
+}
+
+MethodInput read_method(Table table, const SourceLocation& scene_where) {
+  MethodInput method;
+  method.contact_where = scene_where;
+  const bool contact_given = table.optional("contact", method.contact);
+  table.optional("theta", method.theta, Range{.low = 0.5, .high = 1.0, .low_included = true, .high_included = true});
+  table.optional("rotation", method.rotation, rotation_words);
+  table.optional("start", method.start, start_words);
+  table.optional("statics", method.statics);
+  table.optional("residual_tolerance", method.residual_tolerance, between_0_and_1);
+  table.optional("max_iterations", method.max_iterations, count);
+  table.optional("skip_search", method.skip_search);
+  table.optional("penalty_n_per_m", method.penalty, positive);
+  table.optional("penalty_shear_ratio", method.penalty_shear_ratio, positive);
+  table.optional("penetration_tolerance_m", method.penetration_tolerance, positive);
+  table.optional("closing_tolerance_m", method.closing_tolerance, not_negative);
+  table.optional("max_open_close_iterations", method.max_open_close_iterations, count);
+  table.optional("step_cut", method.step_cut, between_0_and_1);
+  table.finish();
+
+  if (contact_given) method.contact_where = table.at("contact").where();
+  if (method.contact.empty()) table.at("contact").fail("the name is empty", "the name of a contact method, e.g. \"soft\"");
+  return method;
+}
+
+StepInput read_step(Table table) {
+  StepInput step;
+  table.optional("dt_s", step.dt, positive);
+  table.optional("max_displacement_m", step.max_displacement, positive);
+  table.optional("smallest_fraction", step.smallest_fraction, Range{.low = 0.0, .high = 1.0, .high_included = true});
+  table.finish();
+  return step;
+}
+
+double read_single(Table table, const std::string& key) {
+  double value = 0.0;
+  table.optional(key, value, not_negative);
+  table.finish();
+  return value;
+}
+
+SettleInput read_settle(Table table) {
+  SettleInput settle;
+  table.optional("unbalanced_fraction", settle.unbalanced_fraction, between_0_and_1);
+  table.optional("first_dt_s", settle.first_dt, positive);
+  table.optional("max_steps", settle.max_steps, count);
+  table.optional("failure_displacement_m", settle.failure_displacement, positive);
+  table.finish();
+  return settle;
+}
+
+StrengthReductionInput read_strength_reduction(Table table) {
+  StrengthReductionInput reduction;
+  table.optional("width", reduction.width, positive);
+  table.optional("upper_limit", reduction.upper_limit, Range{.low = 1.0});
+  table.optional("curve", reduction.curve, positive);
+  table.optional("curve_time_s", reduction.curve_time, positive);
+  table.finish();
+  return reduction;
+}
+
+void require_some(const std::vector<Table>& tables, const SourceLocation& where, const std::string& key) {
+  if (tables.empty()) throw_input_error(where, key, "the scene has none", fmt::format("at least one [[{}]]", key));
+}
+
+Scene interpret(const toml::table& document, const std::string& file) {
+  Scene scene;
+  scene.where = {file, 0};
+  Table root(&document, "", file);
+  root.optional("title", scene.title);
+  root.optional("gravity_m_per_s2", scene.gravity);
+  const std::vector<Table> materials = root.tables("material");
+  const std::vector<Table> joints = root.tables("joint");
+  const std::vector<Table> blocks = root.tables("block");
+  const std::vector<Table> supports = root.tables("support");
+  const std::vector<Table> loads = root.tables("load");
+  const std::vector<Table> measured_points = root.tables("measured_point");
+  const Table method = root.table("method");
+  const Table step = root.table("step");
+  const Table end = root.table("end");
+  const Table output = root.table("output");
+  const Table settle = root.table("settle");
+  const Table strength_reduction = root.table("strength_reduction");
+  root.finish();
+  require_some(materials, scene.where, "material");
+  require_some(blocks, scene.where, "block");
+
+  NameList material_names("material");
+  NameList block_names("block");
+  NameList point_names("measured point");
+  for (const Table& table : materials) scene.materials.push_back(read_material(table, scene.gravity, material_names));
+  scene.joints = read_joints(joints, material_names);
+  for (const Table& table : blocks) scene.blocks.push_back(read_block(table, material_names, block_names));
+  for (const Table& table : supports) scene.supports.push_back(read_support(table, scene, block_names));
+  for (const Table& table : loads) scene.loads.push_back(read_load(table, scene, block_names));
+  for (const Table& table : measured_points) scene.measured_points.push_back(read_measured_point(table, scene, block_names, point_names));
+  scene.method = read_method(method, scene.where);
+  scene.step = read_step(step);
+  scene.end_time = read_single(end, "time_s");
+  scene.output_every = read_single(output, "every_s");
+  scene.settle = read_settle(settle);
+  scene.strength_reduction = read_strength_reduction(strength_reduction);
+  return scene;
+}
+
+}  // namespace
+
+Scene read_scene(const std::string& path, const std::vector<std::string>& overrides) {
+  toml::table document = parse(path);
+  for (const std::string& key_and_value : overrides) apply_override(document, path, key_and_value);
+  return interpret(document, path);
+}
+
+}  // namespace openclose

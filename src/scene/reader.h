@@ -1,0 +1,17 @@
+// Reads a scene file.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "openclose/scene/scene.h"
+
+namespace openclose {
+
+/// Reads a TOML scene. Everything is checked that can be checked about a single entry; check_scene looks at the blocks together.
+/// \param path       of a regular file
+/// \param overrides  "KEY=VALUE", in order, each replacing a value of the file (see apply_override)
+/// Throws InputError, one line that names file, line, key, what was read and what is accepted.
+Scene read_scene(const std::string& path, const std::vector<std::string>& overrides = {});
+
+}  // namespace openclose

@@ -1,0 +1,142 @@
+// What the user wrote, as plain data. SI units and radians; names resolved by the reader, so that every index below is valid.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "openclose/core/error.h"
+#include "openclose/core/vector.h"
+
+namespace openclose {
+
+struct Material {
+  std::string name;
+  double density = 0.0;  ///< [kg/m3]
+};
+
+/// What happens to the cohesion (and the tensile strength) of a joint that has failed.
+enum class CohesionBehaviour {
+  ductile,          ///< kept for ever
+  lost_on_opening,  ///< gone once the contact has opened
+  lost_on_slip,     ///< gone once the contact has slipped or opened
+};
+
+/// Mohr-Coulomb joint with tension cut-off, for one unordered pair of materials.
+struct JointProperties {
+  std::array<int, 2> materials{};  ///< indices into Scene::materials
+  double normal_stiffness = 0.0;   ///< [Pa/m]
+  double shear_stiffness = 0.0;    ///< [Pa/m]
+  double friction_angle = 0.0;     ///< [rad]
+  double cohesion = 0.0;           ///< [Pa]
+  double tensile_strength = 0.0;   ///< [Pa]
+  CohesionBehaviour cohesion_behaviour = CohesionBehaviour::ductile;
+};
+
+struct BlockInput {
+  std::string name;
+  int material = 0;
+  std::vector<Vec2> vertices;  ///< [m] counter-clockwise, simple, no repeated first vertex
+  bool fixed = false;
+  bool rotation_locked = false;
+  Vec2 velocity = Vec2::Zero();   ///< [m/s]
+  double angular_velocity = 0.0;  ///< [rad/s] counter-clockwise
+  SourceLocation where;
+};
+
+/// A spring that holds one material point of a block at its initial place.
+struct Support {
+  int block = 0;
+  Vec2 point = Vec2::Zero();       ///< [m]
+  Vec2 stiffness = Vec2::Zero();   ///< [N/m] in x and y; 0 leaves that direction free
+};
+
+/// A constant force at a material point of a block.
+struct Load {
+  int block = 0;
+  Vec2 point = Vec2::Zero();  ///< [m]
+  Vec2 force = Vec2::Zero();  ///< [N]
+};
+
+struct MeasuredPoint {
+  std::string name;
+  int block = 0;
+  Vec2 point = Vec2::Zero();  ///< [m]
+};
+
+/// How a run starts.
+enum class Start {
+  unloaded,         ///< gravity drops on unloaded springs at t = 0
+  settled,          ///< static equilibrium first
+  normal_balanced,  ///< normal forces and moments in balance, shear springs relaxed
+  steady_sliding,   ///< as normal_balanced, with friction fully mobilised against the driving force
+};
+
+enum class RotationKind {
+  exact,   ///< rotation matrix
+  linear,  ///< Shi's first-order rotation, which makes spinning blocks grow
+};
+
+/// How contacts are enforced and steps are taken.
+struct MethodInput {
+  std::string contact = "soft";                ///< name in the registry of enforcements (analysis looks it up): soft, hard, shi
+  SourceLocation contact_where;                ///< for the error of an unknown name
+  double theta = 1.0;                          ///< [-] 1: Newmark (1/2, 1), Shi's; 1/2: trapezoid (Newmark (1/4, 1/2))
+  RotationKind rotation = RotationKind::exact;
+  Start start = Start::settled;
+  bool statics = false;                        ///< dynamic coefficient 0: every step starts from rest
+  double residual_tolerance = 1e-12;           ///< [-] unbalanced force left by Newton, as a fraction of the largest force in the system
+  int max_iterations = 60;                     ///< per step, before the step is cut
+  bool skip_search = true;                     ///< search candidates only once something has moved beyond the skin
+  std::optional<double> penalty;               ///< [N/m] shi: normal penalty of a contact; absent: 10 times the stiffest joint contact
+  double penalty_shear_ratio = 0.4;            ///< [-] shi: shear penalty over normal penalty
+  double penetration_tolerance = 1e-3;         ///< [m] shi: deeper contacts cut the step
+  double closing_tolerance = 1e-9;             ///< [m] shi: an open contact closes beyond this penetration
+  int max_open_close_iterations = 6;           ///< shi: per step, before the step is cut
+  double step_cut = 0.3;                       ///< [-] shi: factor on the step when open-close does not settle
+};
+
+struct StepInput {
+  double dt = 0.0;                  ///< [s]
+  double max_displacement = 0.1;    ///< [m] of any vertex in one step; a step that would move more is cut
+  double smallest_fraction = 1e-6;  ///< [-] of dt, below which cutting is given up
+};
+
+/// Static settling: when it is done, and when it has failed.
+struct SettleInput {
+  double unbalanced_fraction = 1e-8;  ///< [-] largest unbalanced force over the weight of the heaviest free block
+  double first_dt = 1.0;              ///< [s] first pseudo-time step; grows tenfold while steps succeed
+  int max_steps = 200;
+  double failure_displacement = 1.0;  ///< [m] a block that moved farther is failing
+};
+
+struct StrengthReductionInput {
+  double width = 1e-4;                    ///< [-] of the final bracket
+  double upper_limit = 100.0;             ///< [-] strength reduction factor beyond which the search stops
+  std::vector<double> curve;              ///< [-] further factors at which displacement is recorded
+  std::optional<double> curve_time;       ///< [s] physical time of a dynamic run at each of them; absent: settled displacement only
+};
+
+struct Scene {
+  SourceLocation where;
+  std::string title;
+  Vec2 gravity{0.0, -9.81};  ///< [m/s2]
+  std::vector<Material> materials;
+  std::vector<JointProperties> joints;
+  std::vector<BlockInput> blocks;
+  std::vector<Support> supports;
+  std::vector<Load> loads;
+  std::vector<MeasuredPoint> measured_points;
+  MethodInput method;
+  StepInput step;
+  double end_time = 0.0;        ///< [s]
+  double output_every = 0.0;    ///< [s] interval of the history rows; 0: every step
+  SettleInput settle;
+  StrengthReductionInput strength_reduction;
+
+  /// The joint between two materials, in either order; null if the scene gives none.
+  const JointProperties* joint(int material_a, int material_b) const;
+};
+
+}  // namespace openclose
