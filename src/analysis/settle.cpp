@@ -36,7 +36,8 @@ SettleResult settle(Simulation<N>& simulation, const std::function<void()>& tick
     for (int b : system.free_blocks()) {
       result.displacement = std::max(result.displacement, Motion<N>::displacement_bound(system.displacement(b) - start[b], system.block(b).radius));
     }
-    if (result.unbalanced_fraction <= input.unbalanced_fraction) {
+    // Forces that were in balance with cohesion that is gone now are to be balanced anew.
+    if (result.unbalanced_fraction <= input.unbalanced_fraction && !step.lost_strength) {
       result.settled = true;
       result.criterion = "unbalanced force";
       return result;

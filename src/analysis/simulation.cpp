@@ -1,29 +1,25 @@
 #include "openclose/analysis/simulation.h"
 
 #include <algorithm>
-#include <ctime>
+#include <chrono>
 
 #include "openclose/integrator/registry.h"
 
 namespace openclose {
 namespace {
 
-/// Adds the CPU time of its own life to an account.
+/// Adds the time of its own life to an account. Wall time: asking for CPU time costs more than a step of a small scene.
 class Stopwatch {
  public:
-  explicit Stopwatch(double& account) : account_(account), start_(now()) {}
-  ~Stopwatch() { account_ += now() - start_; }
+  explicit Stopwatch(double& account) : account_(account) {}
+  ~Stopwatch() { account_ += std::chrono::duration<double>(Clock::now() - start_).count(); }
   Stopwatch(const Stopwatch&) = delete;
   Stopwatch& operator=(const Stopwatch&) = delete;
 
  private:
-  static double now() {
-    timespec t{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-  }
+  using Clock = std::chrono::steady_clock;
   double& account_;
-  double start_;
+  Clock::time_point start_ = Clock::now();
 };
 
 }  // namespace
@@ -126,15 +122,39 @@ StepResult Simulation<N>::step(double dt, bool statics) {
     return result;
   }
   const Stopwatch watch(stage_times_.bookkeeping);
-  if (statics) {
-    for (int b : system_.free_blocks()) {
-      const Unknowns inertia_force = p.inertia * system_.block(b).mass.cwiseProduct(solution.of(system_, b));
-      result.unbalanced_force = std::max(result.unbalanced_force, Motion<N>::largest_force(inertia_force, system_.block(b).radius));
-    }
-  }
+  if (statics) result.unbalanced_force = unbalanced_force(p, solution);
+  result.lost_strength = loses_strength(solution);
   accept(p, solution);
   result.accepted = true;
   return result;
+}
+
+template <int N>
+double Simulation<N>::unbalanced_force(const StepProblem<N>& problem, const StepSolution<N>& solution) const {
+  double largest = 0.0;
+  for (int b : system_.free_blocks()) {
+    const Unknowns inertia_force = problem.inertia * system_.block(b).mass.cwiseProduct(solution.of(system_, b));
+    largest = std::max(largest, Motion<N>::largest_force(inertia_force, system_.block(b).radius));
+  }
+  // Where friction lags behind the normal force, equilibrium with the old friction is none yet.
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    const ContactForces& f = solution.contacts[i].forces;
+    if (f.status != ContactStatus::sliding) continue;
+    const double bound = ContactStrength(joints_.joint(contacts_[i].joint), contacts_[i]).shear_bound(f.normal).value;
+    largest = std::max(largest, std::abs(bound - std::abs(f.shear)));
+  }
+  return largest;
+}
+
+template <int N>
+bool Simulation<N>::loses_strength(const StepSolution<N>& solution) const {
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    const Contact& c = contacts_[i];
+    const JointProperties& joint = joints_.joint(c.joint);
+    const bool has_any = joint.tensile_strength > 0.0 || (joint.cohesion > 0.0 && joint.cohesion_behaviour != CohesionBehaviour::ductile);
+    if (has_any && c.bonded && !stays_bonded(joint, c.bonded, solution.contacts[i].forces.status)) return true;
+  }
+  return false;
 }
 
 template <int N>

@@ -17,7 +17,7 @@ struct StepCounters {
   long iterations = 0;  ///< linear solves, thrown-away attempts included
 };
 
-/// CPU time [s] of the stages.
+/// Wall time [s] of the stages; one thread.
 struct StageTimes {
   double detection = 0.0;
   double solution = 0.0;
@@ -28,6 +28,7 @@ struct StepResult {
   bool accepted = false;
   std::string reason;
   double unbalanced_force = 0.0;  ///< [N] largest sum of forces without inertia on a block; static steps only
+  bool lost_strength = false;     ///< a contact has lost its cohesion or tensile strength at the end of the step
 };
 
 template <int N>
@@ -88,8 +89,10 @@ class Simulation {
  private:
   void detect();
   bool moved_too_far(const StepSolution<N>& solution) const;
+  double unbalanced_force(const StepProblem<N>& problem, const StepSolution<N>& solution) const;
   void accept(const StepProblem<N>& problem, const StepSolution<N>& solution);
   void accept_contacts(const StepSolution<N>& solution);
+  bool loses_strength(const StepSolution<N>& solution) const;
 
   Scene scene_;
   BlockSystem<N> system_;

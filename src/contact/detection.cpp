@@ -116,7 +116,8 @@ class NarrowPhase {
       for_each_vertex(edge_block, [&](int e) {
         const Edge edge = edge_at(edge_block, e);
         if (edge.gap(p) > reach_) return;
-        if (!opposite(edge, p)) return;
+        const double along = edge.along(p);
+        if (along < -tolerance::edge_end_m || along > edge.length + tolerance::edge_end_m) return;
         const Vec2 ahead = system_.arm(system_.next(v)) - system_.arm(v), back = system_.arm(system_.previous(v)) - system_.arm(v);
         const double weight = std::max(parallel_weight(-ahead.normalized().dot(edge.direction)), parallel_weight(back.normalized().dot(edge.direction)));
         if (weight == 1.0) return;
@@ -139,7 +140,7 @@ class NarrowPhase {
     const Vec2 p = system_.position(vertex_block, v);
     const double gap = edge.gap(p);
     if (gap > reach_ || !outside(v, edge)) return;
-    if (gap < 0.0 && !previous_.was_closed(v, e) && !entered_through(v, p, edge_block, e, gap)) return;
+    if (gap < 0.0 && !entered_through(v, p, edge_block, e, gap)) return;
     Contact contact;
     contact.vertex_block = vertex_block;
     contact.vertex = v;
@@ -157,25 +158,21 @@ class NarrowPhase {
     return edge.normal().dot(ahead.normalized()) >= -tilt && edge.normal().dot(back.normalized()) >= -tilt;
   }
 
-  bool opposite(const Edge& edge, const Vec2& p) const {
-    const double along = edge.along(p);
-    return along >= -tolerance::edge_end_m && along <= edge.length + tolerance::edge_end_m;
-  }
-
   bool share_reflex_corner(int e, int f) const {
     return (system_.next(e) == f && system_.is_reflex(f)) || (system_.next(f) == e && system_.is_reflex(e));
   }
 
-  /// A penetrating corner that was not in contact before must lie in the block, and have come in through this edge: of all edges the corner could
-  /// touch the one it is least deep behind. Only in a notch does it touch both walls.
+  /// A penetrating corner touches the edge it came in through: no other edge that it could touch is nearer. Only in a notch does it touch both walls.
+  /// History decides nothing here: beside a four-block corner a corner is first behind the joint's face, then, as it slides on, behind the right one.
   bool entered_through(int v, const Vec2& p, int edge_block, int e, double gap) {
-    if (-gap <= tolerance::edge_end_m) return true;
-    if (!in_block(edge_block, p)) return false;
+    // What lies behind the edge must lie in the block, except for what drawings leave and what contacts that carry load have closed.
+    if (-gap > tolerance::deepest_initial_overlap_m && !previous_.was_closed(v, e) && !in_block(edge_block, p)) return false;
     bool nearest = true;
     for_each_vertex(edge_block, [&](int f) {
       if (f == e || share_reflex_corner(e, f)) return;
       const Edge other = edge_at(edge_block, f);
-      if (other.gap(p) > gap && opposite(other, p) && outside(v, other)) nearest = false;
+      const double distance = distance_to_segment(p, other.start, other.start + other.length * other.direction);
+      if (distance < -gap - tolerance::shortest_edge_m && outside(v, other)) nearest = false;
     });
     return nearest;
   }

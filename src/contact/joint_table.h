@@ -9,7 +9,7 @@ namespace openclose {
 
 class JointTable {
  public:
-  /// Throws InputError if two blocks could touch for whose materials the scene gives no joint.
+  /// Throws InputError as require_joints does.
   explicit JointTable(const Scene& scene);
 
   int index(int material_a, int material_b) const { return index_[material_a * material_count_ + material_b]; }

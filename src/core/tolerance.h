@@ -21,8 +21,9 @@ inline constexpr double straight_corner_rad = 1e-9;
 inline constexpr double parallel_full_rad = 5.0 * 3.14159265358979323846 / 180.0;
 inline constexpr double parallel_none_rad = 15.0 * 3.14159265358979323846 / 180.0;
 
-/// [m] Overlaps of edges shorter than this carry no contact: rounding of coordinates of 1e3 m, a thousandfold.
-inline constexpr double shortest_overlap_m = 1e-10;
+/// [m] Overlaps of edges shorter than this carry no contact. Hard contacts carry whatever their length is, so this lies above what rounding and the
+/// tolerance of the gap can make of edges that only meet end to end; it lies far below any joint that matters.
+inline constexpr double shortest_overlap_m = 1e-6;
 
 /// [m] A corner this far beyond the end of an edge still counts as opposite to it: corners that coincide in a drawing differ by rounding.
 inline constexpr double edge_end_m = 1e-6;

@@ -18,7 +18,7 @@ namespace {
 /// [-] Each outer pass reduces the error of the multipliers about by this factor; more would cost digits (rounding of the gap times the stiffness).
 constexpr double stiffness_over_inertia = 1e3;
 constexpr double stiffness_over_joint = 10.0;
-/// [-] Units in the last place that rounding may leave in the change of a gap.
+/// [-] Units in the last place that rounding may leave in a gap.
 constexpr double rounding_units = 4.0;
 constexpr int most_outer_passes = 40;
 
@@ -85,15 +85,15 @@ class Hard : public Enforcement<N> {
       if (o.forces.status == ContactStatus::sticking) error = std::max(error, std::abs(o.kinematics.slip_change));
       const double inertia_force = error * o.springs.normal / stiffness_over_inertia;
       const double tolerated = problem.method.residual_tolerance * newton_.force_scale();
-      const bool rounding = error <= rounding_units * std::numeric_limits<double>::epsilon() * moved(problem, solution, problem.contacts[c]);
+      const bool rounding = error <= rounding_units * std::numeric_limits<double>::epsilon() * coordinates(problem, solution, problem.contacts[c]);
       if (error > tolerance::hard_gap_m || (!problem.statics && inertia_force > tolerated && !rounding)) return false;
     }
     return true;
   }
 
-  /// [m] the displacements of which the gap's change is the small difference.
-  static double moved(const StepProblem<N>& problem, const StepSolution<N>& solution, const Contact& contact) {
-    double sum = 0.0;
+  /// [m] the coordinates and displacements of which a gap is the small difference; two contacts at one place differ by their rounding.
+  static double coordinates(const StepProblem<N>& problem, const StepSolution<N>& solution, const Contact& contact) {
+    double sum = problem.system.position(contact.vertex_block, contact.vertex).norm() + problem.system.position(contact.edge_block, contact.edge).norm();
     for (int b : {contact.vertex_block, contact.edge_block}) {
       sum += Motion<N>::displacement_bound(solution.of(problem.system, b), problem.system.block(b).radius);
     }

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <numeric>
+#include <set>
 
 #include "openclose/core/tolerance.h"
 
@@ -18,6 +21,8 @@ constexpr double static_slip_stiffness = 0.01;
 /// [-] A line search is good enough when the energy's slope has fallen to this part.
 constexpr double line_search_slope = 0.9;
 constexpr int line_search_steps = 8;
+/// [-] The residual may grow by this factor in a step of the exact tangent that reaches contact states not seen before.
+constexpr double longest_detour = 10.0;
 
 }  // namespace
 
@@ -187,17 +192,39 @@ double Newton<N>::line_search(const Eigen::VectorXd& d, const Eigen::VectorXd& s
 }
 
 template <int N>
-std::vector<ContactStatus> Newton<N>::statuses() const {
-  std::vector<ContactStatus> s;
-  for (const auto& o : outcome_) s.push_back(o.forces.status);
-  return s;
+std::vector<int> Newton<N>::branches() const {
+  std::vector<int> list;
+  for (const auto& o : outcome_) {
+    const bool sliding = o.forces.status == ContactStatus::sliding;
+    list.push_back(sliding && o.forces.shear < 0.0 ? -1 : static_cast<int>(o.forces.status));
+  }
+  return list;
 }
 
 template <int N>
-int Newton<N>::switched(const std::vector<ContactStatus>& before) const {
-  int n = 0;
-  for (std::size_t c = 0; c < before.size(); ++c) n += outcome_[c].forces.status != before[c];
-  return n;
+int Newton<N>::hold_reversed(const std::vector<int>& before, const std::vector<int>& after) {
+  int held = 0;
+  for (std::size_t c = 0; c < outcome_.size(); ++c) {
+    ContactOutcome<N>& o = outcome_[c];
+    const bool reversed = o.forces.status == ContactStatus::sliding && before[c] * after[c] < 0;
+    if (!reversed) continue;
+    ++held;
+    const double trial = o.springs.initial_shear - o.springs.shear * o.kinematics.slip_change;
+    const double change = problem_->end_weight * (trial - o.forces.shear);
+    const auto push = [&](int b, const Unknowns& shear) {
+      const auto& block = problem_->system.block(b);
+      if (block.equation < 0) return;
+      residual_.template segment<N>(N * block.equation) += change * shear;
+      if (block.rotation_locked) residual_[N * block.equation + Motion<N>::rotation_index] = 0.0;
+    };
+    push(problem_->contacts[c].vertex_block, o.kinematics.shear_vertex);
+    push(problem_->contacts[c].edge_block, o.kinematics.shear_edge);
+    const double normal = o.forces.normal;
+    o.forces = tangent_for_status(o.springs, strength_[c], ContactStatus::sticking, normal, trial);
+    o.forces.normal = normal;
+    o.forces.shear = trial;
+  }
+  return held;
 }
 
 template <int N>
@@ -227,9 +254,10 @@ void Newton<N>::solve(const StepProblem<N>& problem, const std::vector<ContactSp
   if (norm > 1.0) take_last_states();
 
   Tangent tangent = Tangent::exact;
+  std::set<std::vector<int>> visited;
   const int few = static_cast<int>(few_switches * static_cast<double>(outcome_.size()));
   for (int iteration = 0; iteration < problem.method.max_iterations && norm > 1.0; ++iteration) {
-    const std::vector<ContactStatus> before = statuses();
+    const std::vector<int> before = branches();
     const Eigen::VectorXd step = direction(d, tangent);
     ++solution.iterations;
     if (step.size() == 0) {
@@ -244,20 +272,21 @@ void Newton<N>::solve(const StepProblem<N>& problem, const std::vector<ContactSp
       evaluate(d + step);
     }
     const double next_norm = residual_norm();
-    const int switches = switched(before);
-    if (tangent == Tangent::exact && iteration > 0 && next_norm > norm) {
-      evaluate(d);  // worse than before: take the safe tangent from where we were
+    const std::vector<int> after = branches();
+    const auto switches = std::inner_product(before.begin(), before.end(), after.begin(), 0, std::plus<>(), std::not_equal_to<>());
+    // On a piecewise linear law the way to the right piece may lead uphill, but never twice over the same one.
+    const bool uphill = tangent == Tangent::exact && iteration > 0 && next_norm > norm;
+    if (uphill && !(next_norm <= longest_detour * norm && visited.insert(after).second)) {
+      evaluate(d);
       tangent = Tangent::symmetric;
       continue;
     }
     const bool halved = next_norm <= 0.5 * norm;
     d += alpha * step;
     norm = next_norm;
-    if (tangent == Tangent::exact) {
-      if (!halved && switches > few) tangent = Tangent::symmetric;
-    } else if (switches <= few) {
-      tangent = Tangent::exact;
-    }
+    const bool held = !halved && hold_reversed(before, after) > 0;
+    const bool exact_works = held || uphill || switches <= few || (tangent == Tangent::exact && halved);
+    tangent = exact_works ? Tangent::exact : Tangent::symmetric;
   }
   solution.converged = norm <= 1.0;
   if (!solution.converged) solution.reason = "Newton's method did not converge";

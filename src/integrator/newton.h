@@ -36,9 +36,12 @@ class Newton {
   void assemble(const Eigen::VectorXd& d, Tangent tangent);
   void add_contact_stiffness(std::size_t c, Tangent tangent);
   Eigen::VectorXd direction(const Eigen::VectorXd& d, Tangent tangent);
+  /// Contacts that would slide one way and then the other stick in between: they enter the next linear solve with the spring's own force. (Where the spring
+  /// is stiff the range of sticking is so narrow that the iteration would jump over it for ever.) Returns their number.
+  int hold_reversed(const std::vector<int>& before, const std::vector<int>& after);
   double line_search(const Eigen::VectorXd& d, const Eigen::VectorXd& step, double slope);
-  int switched(const std::vector<ContactStatus>& before) const;
-  std::vector<ContactStatus> statuses() const;
+  /// Which linear piece of its law every contact is on: its status, and for sliding the direction too.
+  std::vector<int> branches() const;
 
   const StepProblem<N>* problem_ = nullptr;
   const std::vector<ContactSprings>* springs_ = nullptr;

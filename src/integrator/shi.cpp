@@ -14,15 +14,16 @@
 namespace openclose {
 namespace {
 
-/// [-] Default penalty over the stiffest joint contact of the scene: the original takes about 50 E, and rigid blocks have no E.
+/// [-] Default penalty over the joint's stiffness: the original takes about 50 E, and rigid blocks have no E.
 constexpr double default_penalty_over_joint = 10.0;
 
 template <int N>
 class Shi : public Enforcement<N> {
  public:
   ContactSprings springs(const StepProblem<N>& problem, const Contact& contact) const override {
+    const double joint = problem.joints.joint(contact.joint).normal_stiffness;
     ContactSprings s;
-    s.normal = penalty(problem);
+    s.normal = problem.method.penalty.value_or(default_penalty_over_joint * joint) * contact.length;
     s.shear = problem.method.penalty_shear_ratio * s.normal;
     s.gap = contact.gap;
     s.initial_shear = -s.shear * contact.elastic_slip;
@@ -49,17 +50,6 @@ class Shi : public Enforcement<N> {
 
  private:
   using Unknowns = typename Motion<N>::Unknowns;
-
-  double penalty(const StepProblem<N>& problem) const {
-    if (problem.method.penalty) return *problem.method.penalty;
-    // Once and for all from the first contacts: a penalty that changed with the contacts would change stored energy.
-    if (default_penalty_ == 0.0) {
-      for (const Contact& c : problem.contacts) {
-        default_penalty_ = std::max(default_penalty_, default_penalty_over_joint * problem.joints.joint(c.joint).normal_stiffness * c.length);
-      }
-    }
-    return default_penalty_;
-  }
 
   void begin(const StepProblem<N>& problem) {
     const Unknowns still = Unknowns::Zero();
@@ -155,6 +145,8 @@ class Shi : public Enforcement<N> {
       o.kinematics.slip_change = path(contact.vertex_block, o.kinematics.shear_vertex) + path(contact.edge_block, o.kinematics.shear_edge);
       const ContactStatus before = o.forces.status;
       o.forces = next_forces(problem, o, strength_[c]);
+      // A contact locks again with the friction it has, not with what its spring held before it slid.
+      if (before == ContactStatus::sliding && o.forces.status == ContactStatus::sticking) o.springs.initial_shear = o.forces.shear;
       changed |= o.forces.status != before;
     }
     return changed;
@@ -190,7 +182,7 @@ class Shi : public Enforcement<N> {
     for (const ContactOutcome<N>& o : outcome_) {
       const double depth = o.forces.status == ContactStatus::open ? 0.0 : -(o.springs.gap + o.kinematics.gap_change);
       if (depth > problem.method.penetration_tolerance) {
-        solution.reason = fmt::format("penetration of {:.3g} m exceeds method.penetration_tolerance_m = {:.3g}; a larger method.penalty_n_per_m would reduce it",
+        solution.reason = fmt::format("penetration of {:.3g} m exceeds method.penetration_tolerance_m = {:.3g}; a larger method.penalty_pa_per_m would reduce it",
                                       depth, problem.method.penetration_tolerance);
         return;
       }
@@ -203,7 +195,6 @@ class Shi : public Enforcement<N> {
     }
   }
 
-  mutable double default_penalty_ = 0.0;
   std::vector<ContactOutcome<N>> outcome_;
   std::vector<ContactStrength> strength_;
   std::vector<double> applied_shear_;  ///< [N] right side of the last pass

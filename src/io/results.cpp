@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "openclose/scene/names.h"
 #include "openclose/version.h"
 
 namespace openclose {
@@ -18,20 +19,6 @@ const char* name_of(ContactStatus status) {
       return "sticking";
     case ContactStatus::sliding:
       return "sliding";
-  }
-  return "";
-}
-
-const char* name_of(Start start) {
-  switch (start) {
-    case Start::unloaded:
-      return "unloaded";
-    case Start::settled:
-      return "settled";
-    case Start::normal_balanced:
-      return "normal_balanced";
-    case Start::steady_sliding:
-      return "steady_sliding";
   }
   return "";
 }
@@ -145,8 +132,8 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
   j["overrides"] = summary.overrides;
   j["options"] = {{"contact", scene.method.contact},
                   {"theta", scene.method.theta},
-                  {"rotation", scene.method.rotation == RotationKind::exact ? "exact" : "linear"},
-                  {"start", name_of(scene.method.start)},
+                  {"rotation", word_for(rotation_words, scene.method.rotation)},
+                  {"start", word_for(start_words, scene.method.start)},
                   {"statics", scene.method.statics},
                   {"residual_tolerance", scene.method.residual_tolerance},
                   {"skip_search", scene.method.skip_search},
@@ -186,7 +173,7 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
                    {"factorisations", linear.factorisations},
                    {"symbolic", linear.symbolic},
                    {"symbolic_skipped", linear.symbolic_skipped}};
-  j["cpu_s"] = {{"detection", cpu.detection}, {"solution", cpu.solution}, {"bookkeeping", cpu.bookkeeping}};
+  j["stage_s"] = {{"detection", cpu.detection}, {"solution", cpu.solution}, {"bookkeeping", cpu.bookkeeping}};
   std::ofstream file = folder.open("summary.json");
   file << j.dump(2) << '\n';
   finish(file, "summary.json");

@@ -49,23 +49,6 @@ bool can_meet(const std::vector<Use>& uses, std::size_t a, std::size_t b) {
   return uses[a].blocks >= 1 && uses[b].blocks >= 1 && uses[a].free_blocks + uses[b].free_blocks >= 1;
 }
 
-std::vector<std::string> materials_without_joint(const Scene& scene) {
-  std::vector<Use> uses(scene.materials.size());
-  for (const BlockInput& block : scene.blocks) {
-    ++uses[block.material].blocks;
-    if (!block.fixed) ++uses[block.material].free_blocks;
-  }
-  std::vector<std::string> warnings;
-  for (std::size_t a = 0; a < uses.size(); ++a) {
-    for (std::size_t b = a; b < uses.size(); ++b) {
-      if (!can_meet(uses, a, b) || scene.joint(static_cast<int>(a), static_cast<int>(b)) != nullptr) continue;
-      warnings.push_back(fmt::format("{}: no [[joint]] for the materials \"{}\" and \"{}\": their blocks must never touch", scene.where.file,
-                                     scene.materials[a].name, scene.materials[b].name));
-    }
-  }
-  return warnings;
-}
-
 bool nothing_holds(const Scene& scene) {
   const bool any_fixed = std::any_of(scene.blocks.begin(), scene.blocks.end(), [](const BlockInput& block) { return block.fixed; });
   return !any_fixed && scene.supports.empty() && !scene.gravity.isZero(0.0);
@@ -73,13 +56,26 @@ bool nothing_holds(const Scene& scene) {
 
 }  // namespace
 
-std::vector<std::string> check_scene(const Scene& scene) {
-  require_no_overlap(scene.blocks);
-  std::vector<std::string> warnings = materials_without_joint(scene);
-  if (nothing_holds(scene)) {
-    warnings.insert(warnings.begin(), scene.where.file + ": nothing is fixed or supported under gravity: every block will fall");
+void require_joints(const Scene& scene) {
+  std::vector<Use> uses(scene.materials.size());
+  for (const BlockInput& block : scene.blocks) {
+    ++uses[block.material].blocks;
+    if (!block.fixed) ++uses[block.material].free_blocks;
   }
-  return warnings;
+  for (std::size_t a = 0; a < uses.size(); ++a) {
+    for (std::size_t b = a; b < uses.size(); ++b) {
+      if (!can_meet(uses, a, b) || scene.joint(static_cast<int>(a), static_cast<int>(b)) != nullptr) continue;
+      throw InputError(scene.where, "joint", fmt::format("none for the materials \"{}\" and \"{}\"", scene.materials[a].name, scene.materials[b].name),
+                       "a [[joint]] for every pair of materials whose blocks can touch");
+    }
+  }
+}
+
+std::vector<std::string> check_scene(const Scene& scene) {
+  require_joints(scene);
+  require_no_overlap(scene.blocks);
+  if (!nothing_holds(scene)) return {};
+  return {scene.where.file + ": nothing is fixed or supported under gravity: every block will fall"};
 }
 
 }  // namespace openclose

@@ -8,9 +8,12 @@
 
 namespace openclose {
 
-/// Throws InputError if two blocks overlap deeper than tolerance::deepest_initial_overlap_m (see overlap_depth).
-/// \return one line for everything that is allowed but hardly meant: nothing that holds the blocks against gravity; materials that meet without
-///         a joint between them
+/// Throws InputError if the scene gives no joint for two materials whose blocks can touch.
+void require_joints(const Scene& scene);
+
+/// Throws InputError for a missing joint (require_joints) and for two blocks that overlap deeper than tolerance::deepest_initial_overlap_m (see
+/// overlap_depth).
+/// \return one line for everything that is allowed but hardly meant: nothing that holds the blocks against gravity
 std::vector<std::string> check_scene(const Scene& scene);
 
 }  // namespace openclose

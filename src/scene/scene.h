@@ -89,7 +89,7 @@ struct MethodInput {
   double residual_tolerance = 1e-12;           ///< [-] unbalanced force left by Newton, as a fraction of the largest force in the system
   int max_iterations = 60;                     ///< per step, before the step is cut
   bool skip_search = true;                     ///< search candidates only once something has moved beyond the skin
-  std::optional<double> penalty;               ///< [N/m] shi: normal penalty of a contact; absent: 10 times the stiffest joint contact
+  std::optional<double> penalty;               ///< [Pa/m] shi: normal penalty, times the tributary length like any stiffness; absent: 10 times the joint's
   double penalty_shear_ratio = 0.4;            ///< [-] shi: shear penalty over normal penalty
   double penetration_tolerance = 1e-3;         ///< [m] shi: deeper contacts cut the step
   double closing_tolerance = 1e-9;             ///< [m] shi: an open contact closes beyond this penetration

@@ -127,7 +127,7 @@ void write_method(Text& text, const MethodInput& method) {
   text.line("residual_tolerance", method.residual_tolerance);
   text.line("max_iterations", method.max_iterations);
   text.line("skip_search", method.skip_search);
-  if (method.penalty) text.line("penalty_n_per_m", *method.penalty);
+  if (method.penalty) text.line("penalty_pa_per_m", *method.penalty);
   text.line("penalty_shear_ratio", method.penalty_shear_ratio);
   text.line("penetration_tolerance_m", method.penetration_tolerance);
   text.line("closing_tolerance_m", method.closing_tolerance);

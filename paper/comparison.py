@@ -1,0 +1,193 @@
+"""The comparison: one row for each quantity, with the paper, the reference and our three methods side by side."""
+
+import csv
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import incline
+import plane_failure
+from incline import Incline, Study
+from plane_failure import PlaneFailure
+
+METHODS = ("soft", "hard", "shi")
+COLUMNS = ("item", "quantity", "unit", "paper", "closed_form", *METHODS, *(f"deviation_{m}" for m in METHODS))
+
+Values = dict[str, float]
+
+
+@dataclass
+class Row:
+    """`closed_form` is the closed form or the reference ODE; a deviation is (ours - reference)/reference of what the quantity measures."""
+
+    item: str
+    quantity: str
+    unit: str
+    paper: float | str | None = None
+    closed_form: float | None = None
+    ours: Values = field(default_factory=dict)
+    deviation: Values = field(default_factory=dict)
+
+    def cells(self) -> list:
+        values = [self.ours.get(m) for m in METHODS] + [self.deviation.get(m) for m in METHODS]
+        return [self.item, self.quantity, self.unit, self.paper, self.closed_form, *values]
+
+
+def _relative(ours: Values, reference: float) -> Values:
+    return {m: v / reference - 1 for m, v in ours.items()} if reference else {}
+
+
+def build(slider: Incline, wedge: PlaneFailure, printed: dict) -> list[Row]:
+    """All rows, in the order of the paper."""
+    return [
+        *_incline_inputs(slider, printed["incline"]),
+        *_figure_3(slider),
+        *_figure_4(slider, printed["incline"]),
+        *_convergence(slider),
+        *_table_1(wedge, printed["plane_failure"]),
+        *_figure_6(wedge, printed["plane_failure"]),
+    ]
+
+
+def _input(item: str, quantity: str, unit: str, printed: float, scene: float) -> Row:
+    ours = {m: scene for m in METHODS}
+    return Row(item, quantity, unit, printed, None, ours, _relative(ours, printed))
+
+
+def _incline_inputs(slider: Incline, printed: dict) -> list[Row]:
+    i = slider.inputs
+    quantities = (
+        ("block length", "m", "block_length_m", i.length),
+        ("block height", "m", "block_height_m", i.height),
+        ("slope angle", "deg", "slope_angle_deg", i.slope_angle_deg),
+        ("normal stiffness kn", "Pa/m", "normal_stiffness_pa_per_m", i.normal_stiffness),
+        ("shear stiffness ks", "Pa/m", "shear_stiffness_pa_per_m", i.shear_stiffness),
+    )
+    return [_input("Fig. 2 inputs", name, unit, printed[key]["value"], value) for name, unit, key, value in quantities]
+
+
+def _figure_3(slider: Incline) -> list[Row]:
+    rows = []
+    end = slider.inputs.end_time
+    for angle in incline.ANGLES_DEG:
+        exact = slider.closed_form(angle)[end]
+        ours = {m: slider.steady(m, angle, incline.STEADY_STEPS_S[0])[end] for m in METHODS}
+        name = f"displacement at {end:g} s, phi = {angle} deg, dt = {incline.STEADY_STEPS_S[0]:g} s"
+        rows.append(Row("Fig. 3", name, "m", None, exact, ours, _relative(ours, exact)))
+    for dt in incline.STEADY_STEPS_S:
+        ours = {m: max(slider.largest_steady_error(m, a, dt) for a in incline.ANGLES_DEG) for m in METHODS}
+        name = f"largest error, t >= {incline.EARLIEST_S:g} s, five phi, dt = {dt:g} s"
+        rows.append(Row("Fig. 3", name, "-", None, 0.0, ours))
+    return rows
+
+
+def _percent(displacement: float, exact: float) -> float:
+    return 100 * (displacement / exact - 1)
+
+
+def _error_row(slider: Incline, start: str, angle: int, time: float, *, shi: str = incline.SHI_JOINT) -> Row:
+    """The reference is the ODE on the joint's springs; `hard` has no springs and answers to eq. (8) itself."""
+    exact, ode = slider.closed_form(angle)[time], slider.ode(start, angle)[time]
+    d = {m: slider.from_start(shi if m == "shi" else m, start, angle)[time] for m in METHODS}
+    ours = {m: _percent(d[m], exact) for m in METHODS}
+    deviation = {m: d[m] / (exact if m == "hard" else ode) - 1 for m in METHODS}
+    name = f"{incline.STARTS[start]} {start}: error at {time:g} s, phi = {angle} deg"
+    return Row("Fig. 4", name, "%", None, _percent(ode, exact), ours, deviation)
+
+
+def _default_penalty_row(slider: Incline, start: str, time: float) -> Row:
+    angle = incline.MAIN_ANGLE_DEG
+    ours = {"shi": _percent(slider.from_start("shi", start, angle)[time], slider.closed_form(angle)[time])}
+    return Row("Fig. 4", f"{incline.STARTS[start]} error at {time:g} s, phi = {angle} deg, shi's own penalty", "%", ours=ours)
+
+
+def _soft_shear_row(slider: Incline, time: float) -> Row:
+    angle = incline.MAIN_ANGLE_DEG
+    ours = {"shi": _percent(slider.from_start(incline.SHI_SOFT_SHEAR, "normal_balanced", angle)[time], slider.closed_form(angle)[time])}
+    return Row("Fig. 4", f"(b) error at {time:g} s, phi = {angle} deg, ks of shi 1/4", "%", ours=ours)
+
+
+def _claim_row(slider: Incline, start: str, printed: dict) -> Row:
+    end = slider.inputs.end_time
+    rows = [_error_row(slider, start, angle, end) for angle in incline.ANGLES_DEG]
+    soft, shi = (printed[f"largest_error_dda_{m}_percent"]["value"] for m in ("sc", "shi"))
+    ours = {m: max(abs(row.ours[m]) for row in rows) for m in METHODS}
+    reference = max(abs(row.closed_form) for row in rows)
+    return Row("Fig. 4", f"{incline.STARTS[start]} largest error of five phi at {end:g} s", "%", f"SC <{soft:g}, Shi <{shi:g}", reference, ours)
+
+
+def _figure_4(slider: Incline, printed: dict) -> list[Row]:
+    rows = [_error_row(slider, start, incline.MAIN_ANGLE_DEG, time) for start in incline.STARTS for time in incline.TIMES_S]
+    end = slider.inputs.end_time
+    others = [angle for angle in incline.ANGLES_DEG if angle != incline.MAIN_ANGLE_DEG]
+    rows += [_error_row(slider, start, angle, end) for start in ("unloaded", "normal_balanced") for angle in others]
+    rows += [_claim_row(slider, start, printed) for start in ("unloaded", "normal_balanced")]
+    rows += [_default_penalty_row(slider, start, time) for start in ("unloaded", "normal_balanced") for time in (incline.TIMES_S[0], end)]
+    rows.append(_soft_shear_row(slider, end))
+    return rows
+
+
+def _convergence(slider: Incline) -> list[Row]:
+    """Every step of the studies at the main angle with Shi's scheme; of the others the order alone."""
+    angle, sticking = incline.MAIN_ANGLE_DEG, incline.STICKING_ANGLE_DEG
+    rows = []
+    for start in ("unloaded", "normal_balanced"):
+        label = f"{incline.STARTS[start]} phi = {angle} deg"
+        both = {"soft": Study("soft", start, angle), "shi": Study(incline.SHI_JOINT, start, angle)}
+        for dt in incline.CONVERGENCE_STEPS_S:
+            ours = {m: slider.refinement_error(study, dt) for m, study in both.items()}
+            rows.append(Row("Fig. 4 convergence", f"{label}: distance from the ODE, dt = {dt:.3g} s", "m", None, 0.0, ours))
+        rows.append(_order_row(slider, both, f"{label}: observed order", 1.0))
+        rows.append(_order_row(slider, {"soft": Study("soft", start, angle, theta=0.5)}, f"{label}, trapezoid: observed order", 2.0))
+    both = {"soft": Study("soft", "unloaded", sticking), "shi": Study(incline.SHI_JOINT, "unloaded", sticking)}
+    rows.append(_order_row(slider, both, f"(a) phi = {sticking} deg: observed order", 1.0))
+    return rows
+
+
+def _order_row(slider: Incline, studies: dict[str, Study], quantity: str, theory: float) -> Row:
+    return Row("Fig. 4 convergence", quantity, "-", None, theory, {m: slider.observed_order(study) for m, study in studies.items()})
+
+
+def _table_1(wedge: PlaneFailure, printed: dict) -> list[Row]:
+    i = wedge.inputs
+    quantities = (
+        ("slope height", "m", "slope_height_m", i.height),
+        ("slope face angle", "deg", "face_angle_deg", i.face_angle_deg),
+        ("joint dip", "deg", "joint_angle_deg", i.joint_angle_deg),
+        ("unit weight", "N/m3", "unit_weight_n_per_m3", i.unit_weight),
+        ("joint friction angle", "deg", "friction_angle_deg", i.friction_angle_deg),
+        ("joint cohesion", "Pa", "cohesion_pa", i.cohesion),
+        ("tensile strength", "Pa", "tensile_strength_pa", i.tensile_strength),
+        ("normal stiffness kn", "Pa/m", "normal_stiffness_pa_per_m", i.normal_stiffness),
+        ("shear stiffness ks", "Pa/m", "shear_stiffness_pa_per_m", i.shear_stiffness),
+        ("time step", "s", "dt_s", i.dt),
+        ("steps to the displacement of Fig. 6", "-", "steps_to_measured_displacement", i.curve_time / i.dt),
+        ("gravity", "m/s2", "gravity_m_per_s2", i.gravity),
+    )
+    return [_input("Table 1", name, unit, printed[key]["value"], value) for name, unit, key, value in quantities]
+
+
+def _figure_6(wedge: PlaneFailure, printed: dict) -> list[Row]:
+    exact = wedge.closed_form
+    analytical, dda_sc = printed["factor_of_safety_analytical"]["value"], printed["factor_of_safety_dda_sc"]["value"]
+    rows = [Row("Fig. 6", "factor of safety, paper's analytical", "-", analytical, exact)]
+    ours = {m: wedge.factor_of_safety(m) for m in plane_failure.METHODS}
+    rows.append(Row("Fig. 6", "factor of safety, ductile cohesion", "-", dda_sc, exact, ours, _relative(ours, exact)))
+    failed = {m: wedge.bracket(m)[1] for m in plane_failure.METHODS}
+    rows.append(Row("Fig. 6", "smallest factor that fails", "-", None, exact, failed, _relative(failed, exact)))
+    for behaviour in plane_failure.BRITTLE:
+        lost = {"soft": wedge.brittle_factor_of_safety(behaviour)}
+        rows.append(Row("Fig. 6", f"factor of safety, cohesion {behaviour}", "-", dda_sc, None, lost))
+    return rows
+
+
+def write_csv(rows: list[Row], file: Path) -> None:
+    with open(file, "w", newline="", encoding="utf-8") as stream:
+        writer = csv.writer(stream, lineterminator="\n")
+        writer.writerow(COLUMNS)
+        for row in rows:
+            writer.writerow(["" if cell is None else repr(cell) if isinstance(cell, float) else cell for cell in row.cells()])
+
+
+def read_csv(file: Path) -> list[dict[str, str]]:
+    with open(file, newline="", encoding="utf-8") as stream:
+        return list(csv.DictReader(stream))

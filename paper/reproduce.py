@@ -1,0 +1,75 @@
+"""Reproduces examples 3.1 and 3.2 of the paper: runs everything, draws Figs 1-6, writes the comparison and the report.
+
+Exit status: 0 done, 1 a run failed, 2 wrong options or no matplotlib.
+"""
+
+import argparse
+import sys
+from pathlib import Path
+
+import comparison
+import tables
+from incline import Incline
+from plane_failure import PlaneFailure
+from printed import read_printed
+from runs import Openclose, Reference, RunFailed
+
+EXIT_RUN_FAILED = 1
+EXIT_CANNOT_START = 2
+
+
+def parse_arguments() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--openclose", type=Path, default=Path("build/release/openclose"), help="the solver (default: %(default)s)")
+    parser.add_argument("--reference", type=Path, default=Path("build/release/analytical/openclose-reference"),
+                        help="closed forms and reference ODE (default: %(default)s)")
+    parser.add_argument("--results", type=Path, default=Path("results/paper"), help="folder to write (default: %(default)s)")
+    parser.add_argument("--print-only", action="store_true", help="print the comparison of an earlier run, run nothing")
+    return parser.parse_args()
+
+
+def print_comparison(results: Path) -> None:
+    print(tables.comparison_text(comparison.read_csv(results / "comparison.csv")))
+    print(f"\nFigures, tables and text: {results / 'report.md'}; all digits: {results / 'comparison.csv'}")
+
+
+def reproduce(arguments: argparse.Namespace) -> None:
+    """The comparison is written last: where it is, everything is."""
+    import figures
+    import report
+
+    results = arguments.results
+    results.mkdir(parents=True, exist_ok=True)
+    (results / "comparison.csv").unlink(missing_ok=True)
+    openclose, reference = Openclose(arguments.openclose, results / "runs"), Reference(arguments.reference)
+    slider, wedge = Incline(openclose, reference), PlaneFailure(openclose, reference)
+    cases = [*slider.cases(), *wedge.cases()]
+    print(f"{len(cases)} runs of examples 3.1 and 3.2 ...", flush=True)
+    openclose.run_all(cases)
+    printed = read_printed()
+    figures.draw_all(slider, wedge, printed, results)
+    rows = comparison.build(slider, wedge, printed)
+    report.write(slider, wedge, rows, printed, results)
+    comparison.write_csv(rows, results / "comparison.csv")
+
+
+def main() -> int:
+    arguments = parse_arguments()
+    try:
+        if not arguments.print_only:
+            reproduce(arguments)
+        print_comparison(arguments.results)
+    except RunFailed as failure:
+        print(f"reproduce: {failure}", file=sys.stderr)
+        return EXIT_RUN_FAILED
+    except ModuleNotFoundError as missing:
+        print(f"reproduce: {sys.executable} has no module {missing.name} (Debian: python3-{missing.name})", file=sys.stderr)
+        return EXIT_CANNOT_START
+    except OSError as error:
+        print(f"reproduce: {error.filename}: {error.strerror}", file=sys.stderr)
+        return EXIT_CANNOT_START
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,55 @@
+"""Tables as text: the comparison on a terminal, and Markdown."""
+
+from collections.abc import Iterable
+
+import comparison
+
+_HEADINGS = ("quantity", "unit", "paper", "reference", "soft", "hard", "shi", "dev. soft", "dev. hard", "dev. shi")
+_LEFT_ALIGNED = 2
+
+
+def number(text: str, digits: int = 6) -> str:
+    """A cell of the comparison with few digits, fewer still where it is tiny; what is no number stays as it is."""
+    try:
+        value = float(text)
+    except ValueError:
+        return text
+    return f"{value:.{digits}g}" if value == 0 or abs(value) >= 1e-3 else f"{value:.{min(digits, 3) - 1}e}"
+
+
+def _line(cells: Iterable[str], widths: list[int]) -> str:
+    aligned = [c.ljust(w) if i < _LEFT_ALIGNED else c.rjust(w) for i, (c, w) in enumerate(zip(cells, widths))]
+    return "  ".join(aligned).rstrip()
+
+
+def _short(row: dict[str, str]) -> list[str]:
+    values = [number(row[c]) for c in ("paper", "closed_form", *comparison.METHODS)]
+    deviations = [number(row[f"deviation_{m}"], 2) for m in comparison.METHODS]
+    return [row["quantity"], row["unit"], *values, *deviations]
+
+
+def comparison_text(rows: list[dict[str, str]]) -> str:
+    """The comparison in aligned columns, a heading for each item."""
+    short = [_short(row) for row in rows]
+    widths = [max(len(cells[i]) for cells in (_HEADINGS, *short)) for i in range(len(_HEADINGS))]
+    heading = _line(_HEADINGS, widths)
+    lines = [heading, "-" * len(heading)]
+    item = None
+    for row, cells in zip(rows, short):
+        if row["item"] != item:
+            item = row["item"]
+            lines.append(item)
+        lines.append(_line(cells, widths))
+    return "\n".join(lines)
+
+
+def markdown(headings: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
+    """A table whose first column is text and whose others are right-aligned."""
+    headings = list(headings)
+    lines = ["| " + " | ".join(headings) + " |", "|---|" + "---:|" * (len(headings) - 1)]
+    lines += ["| " + " | ".join(cells) + " |" for cells in rows]
+    return "\n".join(lines)
+
+
+def comparison_markdown(rows: list[dict[str, str]]) -> str:
+    return markdown(("item", *_HEADINGS), ([row["item"], *_short(row)] for row in rows))

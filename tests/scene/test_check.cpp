@@ -1,0 +1,119 @@
+#include <chrono>
+#include <cmath>
+
+#include "openclose/scene/check.h"
+#include "scene_file.h"
+#include "support/catch.h"
+
+using namespace openclose;
+using Catch::Matchers::Contains;
+using openclose::test::block_on_base;
+using openclose::test::read_text;
+
+namespace {
+
+BlockInput block(const std::string& name, double x, double y, double width, double height) {
+  BlockInput input;
+  input.name = name;
+  input.vertices = {{x, y}, {x + width, y}, {x + width, y + height}, {x, y + height}};
+  input.where = {"scene.toml", 0};
+  return input;
+}
+
+/// A wall of unit bricks in running bond, each course shifted by half a brick.
+Scene wall(int courses, int length) {
+  Scene scene;
+  scene.where = {"scene.toml", 0};
+  scene.materials = {{"rock", 2700.0}};
+  scene.joints.resize(1);
+  for (int row = 0; row < courses; ++row) {
+    for (int column = 0; column < length; ++column) {
+      scene.blocks.push_back(block(std::to_string(row) + "/" + std::to_string(column), column + 0.5 * (row % 2), row, 1.0, 1.0));
+      scene.blocks.back().fixed = row == 0;
+    }
+  }
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("a sound scene has nothing to complain of", "[scene][check]") {
+  CHECK(check_scene(read_text(block_on_base)).empty());
+  CHECK(check_scene(wall(4, 4)).empty());
+}
+
+TEST_CASE("blocks that overlap at the start are refused", "[scene][check]") {
+  const auto depth = GENERATE(0.0011, 0.1, 0.5);
+  const std::string set = "block[1].vertices_m=[[0, " + std::to_string(-depth) + "], [1, 0], [1, 1], [0, 1]]";
+  const test::SceneFile file(block_on_base);
+  const Scene scene = read_scene(file.path(), {set});
+  CHECK_THROWS_AS(check_scene(scene), InputError);
+  CHECK_THROWS_WITH(check_scene(scene), Contains(file.path() + ":17: block: \"block\" overlaps \"base\" (line 11) by at least ") &&
+                                            Contains("accepted: overlaps of at most 0.001 m"));
+}
+
+TEST_CASE("overlaps of drawing accuracy are allowed", "[scene][check]") {
+  CHECK_NOTHROW(check_scene(read_text(block_on_base, {"block[1].vertices_m=[[0, -0.0009], [1, 0], [1, 1], [0, 1]]"})));
+}
+
+TEST_CASE("overlaps of every kind are found among many blocks", "[scene][check]") {
+  Scene scene = wall(10, 10);
+  SECTION("the same block twice") {
+    scene.blocks.push_back(block("twice", 5.0, 4.0, 1.0, 1.0));
+  }
+  SECTION("a small block inside one") {
+    scene.blocks.push_back(block("inside", 5.4, 4.4, 0.2, 0.2));
+  }
+  SECTION("a beam across all") {
+    scene.blocks.push_back(block("beam", -1.0, 4.4, 20.0, 0.2));
+  }
+  SECTION("a block around all") {
+    scene.blocks.push_back(block("around", -1.0, -1.0, 20.0, 20.0));
+  }
+  CHECK_THROWS_AS(check_scene(scene), InputError);
+  CHECK_THROWS_WITH(check_scene(scene), Contains(scene.blocks.back().name));
+}
+
+TEST_CASE("a thousand blocks are checked at once", "[scene][check]") {
+  const Scene scene = wall(20, 50);
+  const auto begin = std::chrono::steady_clock::now();
+  CHECK(check_scene(scene).empty());
+  CHECK(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() < 2.0);
+}
+
+TEST_CASE("nothing that holds the blocks is worth a warning", "[scene][check]") {
+  Scene scene = read_text(block_on_base);
+  scene.blocks[0].fixed = false;
+  const std::vector<std::string> warnings = check_scene(scene);
+  REQUIRE(warnings.size() == 1);
+  CHECK_THAT(warnings[0], Contains("nothing is fixed or supported under gravity: every block will fall"));
+  SECTION("unless there is a support") {
+    scene.supports.push_back({0, {0.0, -1.0}, {0.0, 1e9}});
+    CHECK(check_scene(scene).empty());
+  }
+  SECTION("or no gravity") {
+    scene.gravity = Vec2::Zero();
+    CHECK(check_scene(scene).empty());
+  }
+}
+
+TEST_CASE("materials that can meet need a joint", "[scene][check]") {
+  Scene scene = read_text(block_on_base);
+  scene.materials.push_back({"clay", 2000.0});
+  SECTION("not while no block is of that material") {
+    CHECK(check_scene(scene).empty());
+  }
+  SECTION("between two materials") {
+    scene.blocks[1].material = 1;
+    CHECK_THROWS_WITH(check_scene(scene), Contains("joint: none for the materials \"rock\" and \"clay\""));
+  }
+  SECTION("within one material, if it has two blocks") {
+    scene.joints.clear();
+    CHECK_THROWS_WITH(check_scene(scene), Contains("joint: none for the materials \"rock\" and \"rock\""));
+  }
+  SECTION("not among fixed blocks, which cannot touch each other") {
+    scene.joints.clear();
+    scene.blocks[1].fixed = true;
+    CHECK(check_scene(scene).empty());
+  }
+}

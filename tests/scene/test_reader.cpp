@@ -1,0 +1,129 @@
+#include <numbers>
+
+#include "openclose/scene/reader.h"
+#include "scene_file.h"
+#include "support/catch.h"
+
+using namespace openclose;
+using openclose::test::block_on_base;
+using openclose::test::read_text;
+using openclose::test::SceneFile;
+using openclose::test::with_line;
+
+TEST_CASE("a small scene gets the defaults of the structs", "[scene][reader]") {
+  const SceneFile file(block_on_base);
+  const Scene scene = read_scene(file.path());
+  CHECK(scene.where.file == file.path());
+  CHECK(scene.title.empty());
+  CHECK(scene.gravity == Vec2(0.0, -9.81));
+  REQUIRE(scene.materials.size() == 1);
+  CHECK(scene.materials[0].density == 2700.0);
+  REQUIRE(scene.joints.size() == 1);
+  CHECK(scene.joints[0].friction_angle == Approx(35.0 * std::numbers::pi / 180.0).epsilon(1e-15));
+  CHECK(scene.joints[0].cohesion == 0.0);
+  REQUIRE(scene.blocks.size() == 2);
+  CHECK(scene.blocks[0].name == "base");
+  CHECK(scene.blocks[0].fixed);
+  CHECK(scene.blocks[0].where.line == 11);
+  CHECK(scene.blocks[1].where.line == 17);
+  CHECK(scene.blocks[1].where.file == file.path());
+  CHECK_FALSE(scene.blocks[1].fixed);
+  CHECK(scene.blocks[1].vertices == std::vector<Vec2>{{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}});
+  CHECK(scene.method.contact == MethodInput{}.contact);
+  CHECK(scene.method.contact_where.file == file.path());
+  CHECK_FALSE(scene.method.penalty);
+  CHECK(scene.step.dt == 0.0);
+  CHECK(scene.end_time == 0.0);
+}
+
+TEST_CASE("every key reaches its field", "[scene][reader]") {
+  const Scene scene = read_text(
+      "title = 'all of it'\n"
+      "gravity_m_per_s2 = [1, -2.5]\n"
+      "[[material]]\nname = 'a'\ndensity_kg_per_m3 = 2e3\n"
+      "[[material]]\nname = 'b'\nunit_weight_n_per_m3 = 26926\n"
+      "[[joint]]\nmaterials = ['b', 'a']\nnormal_stiffness_pa_per_m = 1e9\nshear_stiffness_pa_per_m = 2e8\nfriction_angle_deg = 30\n"
+      "cohesion_pa = 5\ntensile_strength_pa = 6\ncohesion_behaviour = 'lost_on_slip'\n"
+      "[[block]]\nname = 'one'\nmaterial = 'b'\nvertices_m = [[0, 0], [1, 0], [0, 1]]\nrotation_locked = true\n"
+      "velocity_m_per_s = [1, 2]\nangular_velocity_rad_per_s = -3\n"
+      "[[support]]\nblock = 'one'\npoint_m = [0, 0]\nstiffness_n_per_m = [0, 7]\n"
+      "[[load]]\nblock = 'one'\npoint_m = [0.25, 0.25]\nforce_n = [-8, 9]\n"
+      "[[measured_point]]\nname = 'p'\nblock = 'one'\npoint_m = [1, 0]\n"
+      "[method]\ncontact = 'anything'\ntheta = 0.5\nrotation = 'linear'\nstart = 'steady_sliding'\nstatics = true\nresidual_tolerance = 1e-9\n"
+      "max_iterations = 10\nskip_search = false\npenalty_pa_per_m = 11\npenalty_shear_ratio = 0.5\npenetration_tolerance_m = 12\n"
+      "closing_tolerance_m = 0\nmax_open_close_iterations = 13.0\nstep_cut = 0.25\n"
+      "[step]\ndt_s = 0.01\nmax_displacement_m = 14\nsmallest_fraction = 1\n"
+      "[end]\ntime_s = 15\n[output]\nevery_s = 16\n"
+      "[settle]\nunbalanced_fraction = 1e-3\nfirst_dt_s = 17\nmax_steps = 18\nfailure_displacement_m = 19\n"
+      "[strength_reduction]\nwidth = 0.125\nupper_limit = 20\ncurve = [1, 1.5]\ncurve_time_s = 21\n");
+  CHECK(scene.title == "all of it");
+  CHECK(scene.gravity == Vec2(1.0, -2.5));
+  CHECK(scene.materials[1].density == Approx(26926.0 / std::sqrt(7.25)).epsilon(1e-15));
+  const JointProperties& joint = scene.joints.at(0);
+  CHECK(joint.materials == std::array{1, 0});
+  CHECK(joint.normal_stiffness == 1e9);
+  CHECK(joint.shear_stiffness == 2e8);
+  CHECK(joint.friction_angle == Approx(std::numbers::pi / 6.0).epsilon(1e-15));
+  CHECK(joint.cohesion == 5.0);
+  CHECK(joint.tensile_strength == 6.0);
+  CHECK(joint.cohesion_behaviour == CohesionBehaviour::lost_on_slip);
+  CHECK(scene.joint(0, 1) == &joint);
+  CHECK(scene.joint(1, 0) == &joint);
+  CHECK(scene.joint(0, 0) == nullptr);
+  const BlockInput& block = scene.blocks.at(0);
+  CHECK(block.material == 1);
+  CHECK(block.rotation_locked);
+  CHECK(block.velocity == Vec2(1.0, 2.0));
+  CHECK(block.angular_velocity == -3.0);
+  CHECK(scene.supports.at(0).point == Vec2(0.0, 0.0));
+  CHECK(scene.supports.at(0).stiffness == Vec2(0.0, 7.0));
+  CHECK(scene.loads.at(0).point == Vec2(0.25, 0.25));
+  CHECK(scene.loads.at(0).force == Vec2(-8.0, 9.0));
+  CHECK(scene.measured_points.at(0).name == "p");
+  CHECK(scene.measured_points.at(0).point == Vec2(1.0, 0.0));
+  const MethodInput& method = scene.method;
+  CHECK(method.contact == "anything");
+  CHECK(method.contact_where.line == 37);
+  CHECK(method.theta == 0.5);
+  CHECK(method.rotation == RotationKind::linear);
+  CHECK(method.start == Start::steady_sliding);
+  CHECK(method.statics);
+  CHECK(method.residual_tolerance == 1e-9);
+  CHECK(method.max_iterations == 10);
+  CHECK_FALSE(method.skip_search);
+  CHECK(method.penalty == 11.0);
+  CHECK(method.penalty_shear_ratio == 0.5);
+  CHECK(method.penetration_tolerance == 12.0);
+  CHECK(method.closing_tolerance == 0.0);
+  CHECK(method.max_open_close_iterations == 13);
+  CHECK(method.step_cut == 0.25);
+  CHECK(scene.step.dt == 0.01);
+  CHECK(scene.step.max_displacement == 14.0);
+  CHECK(scene.step.smallest_fraction == 1.0);
+  CHECK(scene.end_time == 15.0);
+  CHECK(scene.output_every == 16.0);
+  CHECK(scene.settle.unbalanced_fraction == 1e-3);
+  CHECK(scene.settle.first_dt == 17.0);
+  CHECK(scene.settle.max_steps == 18);
+  CHECK(scene.settle.failure_displacement == 19.0);
+  CHECK(scene.strength_reduction.width == 0.125);
+  CHECK(scene.strength_reduction.upper_limit == 20.0);
+  CHECK(scene.strength_reduction.curve == std::vector<double>{1.0, 1.5});
+  CHECK(scene.strength_reduction.curve_time == 21.0);
+}
+
+TEST_CASE("polygons are put in order silently", "[scene][reader]") {
+  const std::vector<Vec2> square{{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}};
+  const std::string vertices = GENERATE(as<std::string>{},                                                           //
+                                        "[[0, 0], [0, 1], [1, 1], [1, 0]]",                                          // clockwise
+                                        "[[0, 0], [1, 0], [1, 1], [0, 1], [0, 0]]",                                  // closed
+                                        "[[0, 0], [0, 0], [1, 0], [1, 1], [1, 1], [0, 1]]",                          // doubled
+                                        "[[0, 0], [0.3, 0], [0.5, 0], [1, 0], [1, 0.5], [1, 1], [0, 1], [0, 0.1]]",  // straight corners
+                                        "[[0, 0], [0, 0.1], [0, 1], [1, 1], [1, 0], [1, 0], [0.5, 0], [0, 0]]");     // all of it
+  CHECK(read_text(with_line(block_on_base, 20, "vertices_m = " + vertices)).blocks[1].vertices == square);
+}
+
+TEST_CASE("points on the rim of their block, to six decimals, belong to it", "[scene][reader]") {
+  const Scene scene = read_text(block_on_base + "[[load]]\nblock = 'block'\npoint_m = [1.0000009, 0.5]\nforce_n = [1, 0]\n");
+  CHECK(scene.loads.at(0).point == Vec2(1.0000009, 0.5));
+}

@@ -1,0 +1,303 @@
+// Each kind of bad input: an InputError, one line, with file, line, key, what was read and what is accepted.
+#include <filesystem>
+
+#include "scene_file.h"
+#include "support/catch.h"
+
+using namespace openclose;
+using Catch::Matchers::Contains;
+using openclose::test::block_on_base;
+using openclose::test::SceneFile;
+using openclose::test::with_line;
+
+namespace {
+
+/// The error with the file's name cut off: "LINE: KEY: READ; accepted: ..." or, for the file as a whole, "KEY: ...".
+std::string error_of(const std::string& text) {
+  const SceneFile file(text);
+  try {
+    read_scene(file.path());
+  } catch (const InputError& error) {
+    const std::string message = error.what();
+    REQUIRE(message.substr(0, file.path().size() + 1) == file.path() + ":");
+    REQUIRE(message.find('\n') == std::string::npos);
+    std::string rest = message.substr(file.path().size() + 1);
+    return rest.front() == ' ' ? rest.substr(1) : rest;
+  }
+  FAIL("no error for\n" << text);
+  return {};
+}
+
+/// The error when one line of the small scene is replaced.
+std::string error_with(int line, const std::string& replacement) {
+  return error_of(with_line(block_on_base, line, replacement));
+}
+
+std::string error_with_vertices(const std::string& vertices) {
+  return error_with(20, "vertices_m = " + vertices);
+}
+
+}  // namespace
+
+TEST_CASE("files that are none", "[scene][reader][errors]") {
+  SECTION("missing") {
+    CHECK_THROWS_WITH(read_scene("/nowhere/scene.toml"), "/nowhere/scene.toml: there is no such file; accepted: the path of a scene file");
+  }
+  SECTION("directory") {
+    const std::string directory = std::filesystem::temp_directory_path().string();
+    CHECK_THROWS_AS(read_scene(directory), InputError);
+    CHECK_THROWS_WITH(read_scene(directory), directory + ": this is not a regular file; accepted: the path of a scene file");
+  }
+  SECTION("empty path") {
+    CHECK_THROWS_AS(read_scene(""), InputError);
+  }
+}
+
+TEST_CASE("files without a scene", "[scene][reader][errors]") {
+  CHECK(error_of("") == "the file is empty; accepted: a scene with at least one [[material]] and one [[block]]");
+  CHECK_THAT(error_of("# nothing\n\n"), Contains("the file is empty"));
+  CHECK(error_of("title = 'nothing'\n") == "material: the scene has none; accepted: at least one [[material]]");
+  CHECK(error_of("[[material]]\nname = 'a'\ndensity_kg_per_m3 = 1\n") == "block: the scene has none; accepted: at least one [[block]]");
+  CHECK(error_of("material = []\nblock = []\n") == "material: the scene has none; accepted: at least one [[material]]");
+}
+
+TEST_CASE("text that is not TOML", "[scene][reader][errors]") {
+  CHECK_THAT(error_with(3, "density_kg_per_m3 2700"), Contains("3: \"") && Contains("accepted: TOML 1.0"));
+  CHECK_THAT(error_with(3, "density_kg_per_m3 = 1\ndensity_kg_per_m3 = 2"), Contains("4: ") && Contains("accepted: TOML 1.0"));
+  CHECK_THAT(error_of(std::string("\x7f"
+                                  "ELF\x02\x01\0\0\xff\xfe",
+                                  10)),
+             Contains("accepted: TOML 1.0"));
+}
+
+TEST_CASE("unknown keys", "[scene][reader][errors]") {
+  CHECK_THAT(error_with(15, "fixd = true"), Contains("15: block[0].fixd: this key is not known; accepted: fixed, "));
+  CHECK_THAT(error_with(11, "[[blok]]"), Contains("11: blok: this key is not known; accepted: block, "));
+  CHECK_THAT(error_of(block_on_base + "[method]\nthetta = 1\n"), Contains("23: method.thetta: this key is not known; accepted: theta, "));
+  CHECK_THAT(error_of(block_on_base + "[end]\nvertices = 1\n"), Contains("23: end.vertices: this key is not known; accepted: time_s"));
+  SECTION("a misspelt key goes before the one that is missing for it") {
+    CHECK_THAT(error_with(9, "friction_angel_deg = 35"),
+               Contains("9: joint[0].friction_angel_deg: this key is not known; accepted: friction_angle_deg, "));
+  }
+  SECTION("a key with a line break leaves the message on one line") {
+    CHECK_THAT(error_with(15, "\"a\\nb\" = 1"), Contains("15: block[0].a\\x0ab: "));
+  }
+}
+
+TEST_CASE("keys with another unit", "[scene][reader][errors]") {
+  CHECK(error_with(3, "density_g_per_cm3 = 2.7") == "3: material[0].density_g_per_cm3: this key has another unit; accepted: density_kg_per_m3");
+  CHECK(error_with(3, "density = 2.7") == "3: material[0].density: this key has another unit; accepted: density_kg_per_m3");
+  CHECK(error_with(7, "normal_stiffness_mpa_per_mm = 1") ==
+        "7: joint[0].normal_stiffness_mpa_per_mm: this key has another unit; accepted: normal_stiffness_pa_per_m");
+  CHECK(error_with(9, "friction_angle_rad = 1") == "9: joint[0].friction_angle_rad: this key has another unit; accepted: friction_angle_deg");
+  CHECK(error_of(block_on_base + "[step]\ndt_ms = 1\n") == "23: step.dt_ms: this key has another unit; accepted: dt_s");
+}
+
+TEST_CASE("missing keys", "[scene][reader][errors]") {
+  CHECK(error_with(2, "") == "1: material[0].name: this key is missing; accepted: a table with name");
+  CHECK(error_with(3, "") ==
+        "1: material[0]: neither density nor unit weight is given; accepted: exactly one of density_kg_per_m3, unit_weight_n_per_m3");
+  CHECK(error_with(6, "") == "5: joint[0].materials: this key is missing; accepted: a table with materials");
+  CHECK(error_with(7, "") == "5: joint[0].normal_stiffness_pa_per_m: this key is missing; accepted: a table with normal_stiffness_pa_per_m");
+  CHECK_THAT(error_with(8, ""), Contains("5: joint[0].shear_stiffness_pa_per_m: this key is missing"));
+  CHECK_THAT(error_with(9, ""), Contains("5: joint[0].friction_angle_deg: this key is missing"));
+  CHECK_THAT(error_with(18, ""), Contains("17: block[1].name: this key is missing"));
+  CHECK_THAT(error_with(19, ""), Contains("17: block[1].material: this key is missing"));
+  CHECK_THAT(error_with(20, ""), Contains("17: block[1].vertices_m: this key is missing"));
+  CHECK_THAT(error_of(block_on_base + "[[support]]\n"),
+             Contains("22: support[0].block: this key is missing; accepted: a table with block, point_m, stiffness_n_per_m"));
+  CHECK_THAT(error_of(block_on_base + "[[load]]\n"),
+             Contains("22: load[0].block: this key is missing; accepted: a table with block, point_m, force_n"));
+  CHECK_THAT(error_of(block_on_base + "[[measured_point]]\n"), Contains("22: measured_point[0].name: this key is missing"));
+}
+
+TEST_CASE("values of another type", "[scene][reader][errors]") {
+  CHECK(error_with(3, "density_kg_per_m3 = '2700'") == "3: material[0].density_kg_per_m3: \"2700\" is a string; accepted: a number > 0");
+  CHECK(error_with(3, "density_kg_per_m3 = true") == "3: material[0].density_kg_per_m3: true is a boolean; accepted: a number > 0");
+  CHECK(error_with(3, "density_kg_per_m3 = [1]") == "3: material[0].density_kg_per_m3: is an array of 1 values; accepted: a number > 0");
+  CHECK(error_with(3, "density_kg_per_m3 = {}") == "3: material[0].density_kg_per_m3: is a table; accepted: a number > 0");
+  CHECK(error_with(3, "density_kg_per_m3 = 1979-05-27") == "3: material[0].density_kg_per_m3: is a date or a time; accepted: a number > 0");
+  CHECK(error_with(2, "name = 5") == "2: material[0].name: 5 is a number; accepted: a text in quotes");
+  CHECK(error_with(15, "fixed = 1") == "15: block[0].fixed: 1 is a number; accepted: true or false");
+  CHECK(error_with(15, "fixed = 'true'") == "15: block[0].fixed: \"true\" is a string; accepted: true or false");
+  CHECK(error_with(15, "velocity_m_per_s = 1.5") == "15: block[0].velocity_m_per_s: 1.5 is a number; accepted: [x, y], each a finite number");
+  CHECK(error_with(15, "velocity_m_per_s = [1, 2, 3]") ==
+        "15: block[0].velocity_m_per_s: is an array of 3 values; accepted: [x, y], each a finite number");
+  CHECK(error_with(15, "velocity_m_per_s = [1, 'x']") == "15: block[0].velocity_m_per_s[1]: \"x\" is a string; accepted: a finite number");
+  CHECK(error_with_vertices("1") == "20: block[1].vertices_m: 1 is a number; accepted: an array");
+  CHECK_THAT(error_with_vertices("[[0, 0],\n [1, 0],\n [1]]"),
+             Contains("22: block[1].vertices_m[2]: is an array of 1 values; accepted: [x, y], each a number in ["));
+  CHECK(error_with(6, "materials = 'rock'") == "6: joint[0].materials: \"rock\" is a string; accepted: an array");
+  CHECK(error_of(block_on_base + "[method]\nmax_iterations = 1.5\n") ==
+        "23: method.max_iterations: 1.5 is not a whole number; accepted: a whole number in [1, 1000000000]");
+  CHECK(error_of(block_on_base + "[method]\nmax_iterations = 'many'\n") ==
+        "23: method.max_iterations: \"many\" is a string; accepted: a whole number in [1, 1000000000]");
+  CHECK(error_of(block_on_base + "[strength_reduction]\ncurve = [1, 'x']\n") ==
+        "23: strength_reduction.curve[1]: \"x\" is a string; accepted: a number > 0");
+}
+
+TEST_CASE("tables written as something else", "[scene][reader][errors]") {
+  CHECK(error_of("[material]\nname = 'rock'\n") == "1: material: is a table; accepted: an array of tables, each written [[material]]");
+  CHECK(error_of("block = [1]\n") == "1: block[0]: 1 is a number; accepted: an array of tables, each written [[block]]");
+  CHECK(error_of(block_on_base + "[[method]]\n") == "22: method: is an array of 1 values; accepted: a table, written [method]");
+}
+
+TEST_CASE("numbers that are none", "[scene][reader][errors]") {
+  CHECK(error_with(3, "density_kg_per_m3 = nan") == "3: material[0].density_kg_per_m3: nan is not a finite number; accepted: a number > 0");
+  CHECK(error_with(7, "normal_stiffness_pa_per_m = inf") ==
+        "7: joint[0].normal_stiffness_pa_per_m: inf is not a finite number; accepted: a number > 0");
+  CHECK_THAT(error_with_vertices("[[0, 0], [1, -inf], [1, 1]]"), Contains("20: block[1].vertices_m[1][1]: -inf is not a finite number"));
+  CHECK_THAT(error_of(block_on_base + "[end]\ntime_s = nan\n"), Contains("23: end.time_s: nan is not a finite number"));
+  CHECK_THAT(error_of(block_on_base + "[method]\nmax_iterations = inf\n"), Contains("23: method.max_iterations: inf is not a finite number"));
+  CHECK_THAT(error_of("gravity_m_per_s2 = [0, nan]\n" + block_on_base),
+             Contains("1: gravity_m_per_s2[1]: nan is not a finite number; accepted: a finite number"));
+}
+
+TEST_CASE("numbers out of range", "[scene][reader][errors]") {
+  CHECK(error_with(3, "density_kg_per_m3 = -1") == "3: material[0].density_kg_per_m3: -1 is out of range; accepted: a number > 0");
+  CHECK(error_with(3, "density_kg_per_m3 = 0") == "3: material[0].density_kg_per_m3: 0 is out of range; accepted: a number > 0");
+  CHECK(error_with(3, "unit_weight_n_per_m3 = -26000") == "3: material[0].unit_weight_n_per_m3: -26000 is out of range; accepted: a number > 0");
+  CHECK(error_with(7, "normal_stiffness_pa_per_m = 0") == "7: joint[0].normal_stiffness_pa_per_m: 0 is out of range; accepted: a number > 0");
+  CHECK(error_with(8, "shear_stiffness_pa_per_m = -1e9") ==
+        "8: joint[0].shear_stiffness_pa_per_m: -1000000000 is out of range; accepted: a number > 0");
+  CHECK(error_with(9, "friction_angle_deg = 90") == "9: joint[0].friction_angle_deg: 90 is out of range; accepted: a number in [0, 90)");
+  CHECK(error_with(9, "friction_angle_deg = -0.5") == "9: joint[0].friction_angle_deg: -0.5 is out of range; accepted: a number in [0, 90)");
+  CHECK(error_with(10, "cohesion_pa = -1") == "10: joint[0].cohesion_pa: -1 is out of range; accepted: a number >= 0");
+  CHECK(error_with(10, "tensile_strength_pa = -1") == "10: joint[0].tensile_strength_pa: -1 is out of range; accepted: a number >= 0");
+  CHECK_THAT(error_with_vertices("[[0, 0], [2e7, 0], [1, 1]]"),
+             Contains("20: block[1].vertices_m[1][0]: 20000000 is out of range; accepted: a number in [-"));
+}
+
+TEST_CASE("options out of range", "[scene][reader][errors]") {
+  struct Case {
+    std::string table, line, read, accepted;
+  };
+  const Case c = GENERATE(values<Case>({
+      {"method", "theta = 0.4", "0.4", "a number in [0.5, 1]"},
+      {"method", "theta = 1.01", "1.01", "a number in [0.5, 1]"},
+      {"method", "residual_tolerance = 1", "1", "a number in (0, 1)"},
+      {"method", "max_iterations = 0", "0", "a whole number in [1, 1000000000]"},
+      {"method", "max_iterations = 3000000000", "3000000000", "a whole number in [1, 1000000000]"},
+      {"method", "penalty_pa_per_m = 0", "0", "a number > 0"},
+      {"method", "penalty_shear_ratio = -1", "-1", "a number > 0"},
+      {"method", "penetration_tolerance_m = 0", "0", "a number > 0"},
+      {"method", "closing_tolerance_m = -1", "-1", "a number >= 0"},
+      {"method", "max_open_close_iterations = 0", "0", "a whole number in [1, 1000000000]"},
+      {"method", "step_cut = 1", "1", "a number in (0, 1)"},
+      {"step", "dt_s = 0", "0", "a number > 0"},
+      {"step", "dt_s = -0.1", "-0.1", "a number > 0"},
+      {"step", "max_displacement_m = 0", "0", "a number > 0"},
+      {"step", "smallest_fraction = 2", "2", "a number in (0, 1]"},
+      {"end", "time_s = -1", "-1", "a number >= 0"},
+      {"output", "every_s = -1", "-1", "a number >= 0"},
+      {"settle", "unbalanced_fraction = 0", "0", "a number in (0, 1)"},
+      {"settle", "first_dt_s = 0", "0", "a number > 0"},
+      {"settle", "max_steps = 0", "0", "a whole number in [1, 1000000000]"},
+      {"settle", "failure_displacement_m = 0", "0", "a number > 0"},
+      {"strength_reduction", "width = 0", "0", "a number > 0"},
+      {"strength_reduction", "upper_limit = 1", "1", "a number > 1"},
+      {"strength_reduction", "curve_time_s = 0", "0", "a number > 0"},
+  }));
+  const std::string key = c.table + "." + c.line.substr(0, c.line.find(' '));
+  CHECK(error_of(block_on_base + "[" + c.table + "]\n" + c.line + "\n") ==
+        "23: " + key + ": " + c.read + " is out of range; accepted: " + c.accepted);
+}
+
+TEST_CASE("a factor of the strength reduction curve out of range", "[scene][reader][errors]") {
+  CHECK(error_of(block_on_base + "[strength_reduction]\ncurve = [1, 0]\n") ==
+        "23: strength_reduction.curve[1]: 0 is out of range; accepted: a number > 0");
+}
+
+TEST_CASE("words that are not known", "[scene][reader][errors]") {
+  CHECK(error_with(10, "cohesion_behaviour = 'brittle'") ==
+        "10: joint[0].cohesion_behaviour: \"brittle\" is not known; accepted: \"ductile\", \"lost_on_slip\", \"lost_on_opening\"");
+  CHECK(error_of(block_on_base + "[method]\nrotation = 'exakt'\n") == "23: method.rotation: \"exakt\" is not known; accepted: \"exact\", \"linear\"");
+  CHECK_THAT(error_of(block_on_base + "[method]\nstart = 'sliding'\n"),
+             Contains("23: method.start: \"sliding\" is not known; accepted: ") && Contains("\"steady_sliding\""));
+  CHECK_THAT(error_of(block_on_base + "[method]\ncontact = ''\n"), Contains("23: method.contact: the name is empty; accepted: "));
+}
+
+TEST_CASE("density and unit weight", "[scene][reader][errors]") {
+  CHECK(error_with(3, "density_kg_per_m3 = 1\nunit_weight_n_per_m3 = 1") ==
+        "1: material[0]: both density and unit weight are given; accepted: exactly one of density_kg_per_m3, unit_weight_n_per_m3");
+  CHECK(error_of("gravity_m_per_s2 = [0, 0]\n" + with_line(block_on_base, 3, "unit_weight_n_per_m3 = 1")) ==
+        "4: material[0].unit_weight_n_per_m3: without gravity a unit weight gives no mass; accepted: density_kg_per_m3");
+}
+
+TEST_CASE("names that refer to nothing", "[scene][reader][errors]") {
+  CHECK(error_with(13, "material = 'rok'") == "13: block[0].material: there is no material \"rok\"; accepted: \"rock\"");
+  CHECK(error_with(6, "materials = ['rock', 'clay']") == "6: joint[0].materials[1]: there is no material \"clay\"; accepted: \"rock\"");
+  CHECK(error_with(6, "materials = ['rock']") == "6: joint[0].materials: there are 1 names; accepted: two names of materials");
+  CHECK(error_of(block_on_base + "[[load]]\nblock = 'blokc'\npoint_m = [0, 0]\nforce_n = [0, 0]\n") ==
+        "23: load[0].block: there is no block \"blokc\"; accepted: \"block\", \"base\"");
+}
+
+TEST_CASE("names that are not usable", "[scene][reader][errors]") {
+  CHECK_THAT(error_with(18, "name = ''"), Contains("18: block[1].name: the name is empty; accepted: a name of its own for every block"));
+  CHECK_THAT(error_with(18, "name = 'a,b'"), Contains("18: block[1].name: \"a,b\" cannot be written to a table of results; accepted: "));
+  CHECK_THAT(error_with(18, "name = \"a\\nb\""), Contains("18: block[1].name: \"a\\x0ab\" cannot be written to a table of results; accepted: "));
+}
+
+TEST_CASE("names given twice", "[scene][reader][errors]") {
+  CHECK_THAT(error_with(18, "name = 'base'"), Contains("18: block[1].name: \"base\" is already the name of the block of line 12; accepted: "));
+  CHECK_THAT(error_with(4, "[[material]]\nname = 'rock'\ndensity_kg_per_m3 = 1\n"),
+             Contains("5: material[1].name: \"rock\" is already the name of the material of line 2; accepted: "));
+  const std::string point = "[[measured_point]]\nname = 'p'\nblock = 'block'\npoint_m = [0, 0]\n";
+  CHECK_THAT(error_of(block_on_base + point + point),
+             Contains("27: measured_point[1].name: \"p\" is already the name of the measured point of line 23; accepted: "));
+}
+
+TEST_CASE("two joints for one pair of materials", "[scene][reader][errors]") {
+  const std::string second_material = "[[material]]\nname = 'clay'\ndensity_kg_per_m3 = 2000\n";
+  const std::string values = "normal_stiffness_pa_per_m = 1\nshear_stiffness_pa_per_m = 1\nfriction_angle_deg = 0\n";
+  const std::string text =
+      block_on_base + second_material + "[[joint]]\nmaterials = ['rock', 'clay']\n" + values + "[[joint]]\nmaterials = ['clay', 'rock']\n" + values;
+  CHECK(error_of(text) == "30: joint[2]: the joint of line 25 is for the same two materials; accepted: one [[joint]] for each pair of materials");
+}
+
+TEST_CASE("polygons with too few vertices", "[scene][reader][errors]") {
+  CHECK(error_with_vertices("[]") == "20: block[1].vertices_m: the polygon has 0 vertices; accepted: at least 3");
+  CHECK(error_with_vertices("[[0, 0], [1, 0]]") == "20: block[1].vertices_m: the polygon has 2 vertices; accepted: at least 3");
+}
+
+TEST_CASE("polygons without area", "[scene][reader][errors]") {
+  CHECK(error_with_vertices("[[0, 0], [1, 0], [2, 0]]") ==
+        "20: block[1].vertices_m: the polygon has an area of 0 m2 on a longest edge of 2 m; accepted: a block at least 1e-06 m wide (2 area / "
+        "longest edge)");
+  CHECK_THAT(error_with_vertices("[[1, 1], [1, 1], [1, 1]]"),
+             Contains("20: block[1].vertices_m: the polygon has an area of 0 m2 on a longest edge of 0 m"));
+  CHECK_THAT(error_with_vertices("[[0, 0], [1, 0], [0.5, 1e-7]]"), Contains("20: block[1].vertices_m: the polygon has an area of 5e-08 m2"));
+  CHECK_THAT(error_with_vertices("[[0, 0], [1, 0], [1, 1e-9], [0, 1e-9]]"), Contains("20: block[1].vertices_m: the polygon has an area of 1e-09 m2"));
+  CHECK_THAT(error_with_vertices("[[0, 0], [1, 1], [2, 2], [1, 1]]"), Contains("20: block[1].vertices_m: the polygon has an area of 0 m2"));
+  SECTION("a thin bent strip is not on a line and still a sliver") {
+    CHECK_THAT(error_with_vertices("[[0, 0], [1, 0], [1, 1], [0.9999999, 1], [0.9999999, 1e-7], [0, 1e-7]]"),
+               Contains("the polygon has an area of 2e-07 m2"));
+  }
+}
+
+TEST_CASE("polygons that meet themselves name the edges by the vertices of the file", "[scene][reader][errors]") {
+  const std::string accepted = "; accepted: a simple polygon; vertices are numbered from 0";
+  CHECK(error_with_vertices("[[0, 0], [1, 1], [1, 0], [0, 1]]") ==
+        "20: block[1].vertices_m: the polygon intersects or touches itself: edges [0]-[1] and [2]-[3]" + accepted);
+  CHECK(error_with_vertices("[[0, 0], [0, 0], [0.5, 0.5], [1, 1], [1, 0], [0, 1]]") ==
+        "20: block[1].vertices_m: the polygon intersects or touches itself: edges [0]-[3] and [4]-[5]" + accepted);
+  CHECK(error_with_vertices("[[0, 0], [4, 0], [4, 2], [2, 0], [0, 2]]") ==
+        "20: block[1].vertices_m: the polygon intersects or touches itself: edges [0]-[1] and [2]-[3]" + accepted);
+}
+
+TEST_CASE("points outside their block", "[scene][reader][errors]") {
+  const std::string accepted = "; accepted: a point of the block, to within 1e-06 m";
+  CHECK(error_of(block_on_base + "[[load]]\nblock = 'block'\nforce_n = [0, 0]\npoint_m = [0.5, 1.25]\n") ==
+        "25: load[0].point_m: (0.5, 1.25) lies 0.25 m outside the block \"block\"" + accepted);
+  CHECK(error_of(block_on_base + "[[support]]\nblock = 'block'\nstiffness_n_per_m = [1, 1]\npoint_m = [-3, 5]\n") ==
+        "25: support[0].point_m: (-3, 5) lies 5 m outside the block \"block\"" + accepted);
+  CHECK(error_of(block_on_base + "[[measured_point]]\nname = 'p'\nblock = 'block'\npoint_m = [1.0000011, 0.5]\n") ==
+        "25: measured_point[0].point_m: (1.0000011, 0.5) lies 1.1e-06 m outside the block \"block\"" + accepted);
+}
+
+TEST_CASE("supports without stiffness", "[scene][reader][errors]") {
+  CHECK(error_of(block_on_base + "[[support]]\nblock = 'block'\npoint_m = [0, 0]\nstiffness_n_per_m = [0, 0]\n") ==
+        "25: support[0].stiffness_n_per_m: both stiffnesses are 0; accepted: [kx, ky] of which one may be 0");
+  CHECK(error_of(block_on_base + "[[support]]\nblock = 'block'\npoint_m = [0, 0]\nstiffness_n_per_m = [1, -1]\n") ==
+        "25: support[0].stiffness_n_per_m[1]: -1 is out of range; accepted: a number >= 0");
+}

@@ -1,0 +1,203 @@
+#include <cmath>
+#include <random>
+
+#include "openclose/scene/angle.h"
+#include "openclose/scene/writer.h"
+#include "scene_file.h"
+#include "support/catch.h"
+
+using namespace openclose;
+using openclose::test::block_on_base;
+using openclose::test::read_text;
+
+namespace {
+
+void check_same(const JointProperties& a, const JointProperties& b) {
+  CHECK(a.materials == b.materials);
+  CHECK(a.normal_stiffness == b.normal_stiffness);
+  CHECK(a.shear_stiffness == b.shear_stiffness);
+  CHECK(a.friction_angle == b.friction_angle);
+  CHECK(a.cohesion == b.cohesion);
+  CHECK(a.tensile_strength == b.tensile_strength);
+  CHECK(a.cohesion_behaviour == b.cohesion_behaviour);
+}
+
+void check_same(const BlockInput& a, const BlockInput& b) {
+  CHECK(a.name == b.name);
+  CHECK(a.material == b.material);
+  CHECK(a.vertices == b.vertices);
+  CHECK(a.fixed == b.fixed);
+  CHECK(a.rotation_locked == b.rotation_locked);
+  CHECK(a.velocity == b.velocity);
+  CHECK(a.angular_velocity == b.angular_velocity);
+}
+
+void check_same(const MethodInput& a, const MethodInput& b) {
+  CHECK(a.contact == b.contact);
+  CHECK(a.theta == b.theta);
+  CHECK(a.rotation == b.rotation);
+  CHECK(a.start == b.start);
+  CHECK(a.statics == b.statics);
+  CHECK(a.residual_tolerance == b.residual_tolerance);
+  CHECK(a.max_iterations == b.max_iterations);
+  CHECK(a.skip_search == b.skip_search);
+  CHECK(a.penalty == b.penalty);
+  CHECK(a.penalty_shear_ratio == b.penalty_shear_ratio);
+  CHECK(a.penetration_tolerance == b.penetration_tolerance);
+  CHECK(a.closing_tolerance == b.closing_tolerance);
+  CHECK(a.max_open_close_iterations == b.max_open_close_iterations);
+  CHECK(a.step_cut == b.step_cut);
+}
+
+void check_same_points(const Scene& a, const Scene& b) {
+  REQUIRE(a.supports.size() == b.supports.size());
+  for (std::size_t i = 0; i < a.supports.size(); ++i) {
+    CHECK(a.supports[i].block == b.supports[i].block);
+    CHECK(a.supports[i].point == b.supports[i].point);
+    CHECK(a.supports[i].stiffness == b.supports[i].stiffness);
+  }
+  REQUIRE(a.loads.size() == b.loads.size());
+  for (std::size_t i = 0; i < a.loads.size(); ++i) {
+    CHECK(a.loads[i].block == b.loads[i].block);
+    CHECK(a.loads[i].point == b.loads[i].point);
+    CHECK(a.loads[i].force == b.loads[i].force);
+  }
+  REQUIRE(a.measured_points.size() == b.measured_points.size());
+  for (std::size_t i = 0; i < a.measured_points.size(); ++i) {
+    CHECK(a.measured_points[i].name == b.measured_points[i].name);
+    CHECK(a.measured_points[i].block == b.measured_points[i].block);
+    CHECK(a.measured_points[i].point == b.measured_points[i].point);
+  }
+}
+
+void check_same(const Scene& a, const Scene& b) {
+  CHECK(a.title == b.title);
+  CHECK(a.gravity == b.gravity);
+  REQUIRE(a.materials.size() == b.materials.size());
+  for (std::size_t i = 0; i < a.materials.size(); ++i) {
+    CHECK(a.materials[i].name == b.materials[i].name);
+    CHECK(a.materials[i].density == b.materials[i].density);
+  }
+  REQUIRE(a.joints.size() == b.joints.size());
+  for (std::size_t i = 0; i < a.joints.size(); ++i) check_same(a.joints[i], b.joints[i]);
+  REQUIRE(a.blocks.size() == b.blocks.size());
+  for (std::size_t i = 0; i < a.blocks.size(); ++i) check_same(a.blocks[i], b.blocks[i]);
+  check_same_points(a, b);
+  check_same(a.method, b.method);
+  CHECK(a.step.dt == b.step.dt);
+  CHECK(a.step.max_displacement == b.step.max_displacement);
+  CHECK(a.step.smallest_fraction == b.step.smallest_fraction);
+  CHECK(a.end_time == b.end_time);
+  CHECK(a.output_every == b.output_every);
+  CHECK(a.settle.unbalanced_fraction == b.settle.unbalanced_fraction);
+  CHECK(a.settle.first_dt == b.settle.first_dt);
+  CHECK(a.settle.max_steps == b.settle.max_steps);
+  CHECK(a.settle.failure_displacement == b.settle.failure_displacement);
+  CHECK(a.strength_reduction.width == b.strength_reduction.width);
+  CHECK(a.strength_reduction.upper_limit == b.strength_reduction.upper_limit);
+  CHECK(a.strength_reduction.curve == b.strength_reduction.curve);
+  CHECK(a.strength_reduction.curve_time == b.strength_reduction.curve_time);
+}
+
+/// Every field away from its default, numbers with all their bits used.
+Scene random_scene(unsigned seed) {
+  std::mt19937_64 generator(seed);
+  std::uniform_real_distribution<double> fraction(0.1, 0.9);
+  const auto number = [&] { return fraction(generator) * std::pow(10.0, std::floor(20.0 * fraction(generator)) - 10.0); };
+  const auto vector = [&] { return Vec2(-number(), number()); };
+
+  Scene scene;
+  scene.title = "back\\slash, \"quotes\",\ttab,\nline, \x01 and \xc3\xbc";
+  scene.gravity = vector();
+  scene.materials = {{"granite", number()}, {"a b = [c] #", number()}};
+  scene.joints.resize(2);
+  for (JointProperties& joint : scene.joints) {
+    joint.normal_stiffness = number();
+    joint.shear_stiffness = number();
+    joint.friction_angle = radians(90.0 * fraction(generator));
+    joint.cohesion = number();
+    joint.tensile_strength = number();
+    joint.cohesion_behaviour = CohesionBehaviour::lost_on_opening;
+  }
+  scene.joints[0].materials = {0, 0};
+  scene.joints[1].materials = {1, 0};
+  for (int i = 0; i < 5; ++i) {
+    BlockInput block;
+    const Vec2 corner(1e6 * fraction(generator), -1e3 * fraction(generator));
+    block.name = "block " + std::to_string(i);
+    block.material = i % 2;
+    block.vertices = {corner, corner + Vec2(fraction(generator), -0.05), corner + Vec2(1.0, fraction(generator)), corner + Vec2(0.01, 1.0)};
+    block.fixed = i == 0;
+    block.rotation_locked = i == 1;
+    block.velocity = vector();
+    block.angular_velocity = -number();
+    scene.supports.push_back({i, corner, {0.0, number()}});
+    scene.loads.push_back({i, corner, vector()});
+    scene.measured_points.push_back({"point " + std::to_string(i), i, corner});
+    scene.blocks.push_back(block);
+  }
+  scene.method.contact = "hard";
+  scene.method.theta = 0.5 + 0.5 * fraction(generator);
+  scene.method.rotation = RotationKind::linear;
+  scene.method.start = Start::steady_sliding;
+  scene.method.statics = true;
+  scene.method.residual_tolerance = fraction(generator);
+  scene.method.max_iterations = 123456;
+  scene.method.skip_search = false;
+  scene.method.penalty = number();
+  scene.method.penalty_shear_ratio = number();
+  scene.method.penetration_tolerance = number();
+  scene.method.closing_tolerance = number();
+  scene.method.max_open_close_iterations = 7;
+  scene.method.step_cut = fraction(generator);
+  scene.step = {number(), number(), fraction(generator)};
+  scene.end_time = number();
+  scene.output_every = number();
+  scene.settle = {fraction(generator), number(), 77, number()};
+  scene.strength_reduction = {number(), 1.0 + number(), {number(), number()}, number()};
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("a written scene reads back bit by bit", "[scene][writer]") {
+  const unsigned seed = GENERATE(range(0u, 50u));
+  const Scene scene = random_scene(seed);
+  check_same(read_text(write_scene(scene)), scene);
+}
+
+TEST_CASE("a scene of defaults reads back", "[scene][writer]") {
+  const Scene scene = read_text(block_on_base);
+  check_same(read_text(write_scene(scene)), scene);
+}
+
+TEST_CASE("what was read is written as a person would", "[scene][writer]") {
+  const std::string text = write_scene(read_text(block_on_base, {"title=slope"}));
+  const std::string expected =
+      "title = \"slope\"\n"
+      "gravity_m_per_s2 = [0, -9.81]\n"
+      "\n"
+      "[[material]]\n"
+      "name = \"rock\"\n"
+      "density_kg_per_m3 = 2700\n"
+      "\n"
+      "[[joint]]\n"
+      "materials = [\"rock\", \"rock\"]\n"
+      "normal_stiffness_pa_per_m = 1000000000\n"
+      "shear_stiffness_pa_per_m = 400000000\n"
+      "friction_angle_deg = 35\n"
+      "cohesion_behaviour = \"ductile\"\n"
+      "\n"
+      "[[block]]\n"
+      "name = \"base\"\n"
+      "material = \"rock\"\n"
+      "vertices_m = [[-1, -1], [2, -1], [2, 0], [-1, 0]]\n"
+      "fixed = true\n";
+  CHECK(text.substr(0, expected.size()) == expected);
+}
+
+TEST_CASE("a negative zero keeps its sign", "[scene][writer]") {
+  Scene scene = read_text(block_on_base);
+  scene.gravity = Vec2(-0.0, -1.0);
+  CHECK(std::signbit(read_text(write_scene(scene)).gravity.x()));
+}

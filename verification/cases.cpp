@@ -1,0 +1,36 @@
+#include "harness.h"
+
+namespace openclose::verification {
+
+void projectile(Report&);
+void mass_properties(Report&);
+void free_spin(Report&);
+void momentum(Report&);
+void incline(Report&);
+void static_hold(Report&);
+void cohesion_threshold(Report&);
+void stopping(Report&);
+void amplification(Report&);
+void small_vibration(Report&);
+void planar_wedge(Report&);
+void four_block_corner(Report&);
+
+const std::vector<Case>& cases() {
+  static const std::vector<Case> list = {
+      {"A1", "projectile", &projectile},
+      {"A2", "mass properties from the response to a load", &mass_properties},
+      {"A3", "free spin", &free_spin},
+      {"A4", "momentum of a free cluster", &momentum},
+      {"B1", "block on an incline", &incline},
+      {"B2", "static hold", &static_hold},
+      {"B3", "cohesion threshold", &cohesion_threshold},
+      {"B4", "initial velocity to a stop", &stopping},
+      {"D1", "amplification matrix of one block on a spring", &amplification},
+      {"D3", "small vibration of a block on two springs", &small_vibration},
+      {"E1", "planar wedge", &planar_wedge},
+      {"E6", "four blocks that meet in one corner", &four_block_corner},
+  };
+  return list;
+}
+
+}  // namespace openclose::verification

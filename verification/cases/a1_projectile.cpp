@@ -1,0 +1,33 @@
+// A1: a block thrown into the air. All schemes are exact for constant acceleration; what is left is the rounding of some hundred sums.
+#include <cmath>
+
+#include "harness.h"
+#include "openclose/analytical/projectile.h"
+#include "scenes.h"
+
+namespace openclose::verification {
+
+void projectile(Report& report) {
+  const analytical::Projectile thrown;
+  const double end = 2.0;
+  const auto expected = analytical::projectile_position(thrown, end);
+  for (const std::string& method : all_methods) {
+    for (const double dt : {0.1, 0.01}) {
+      Scene scene = empty_scene();
+      scene.method.contact = method;
+      scene.step = {dt, 10.0, 1e-6};
+      scene.end_time = end;
+      BlockInput block = free_block("stone", rectangle(0.0, 0.0, 1.0, 1.0));
+      block.velocity = thrown.speed * Vec2(std::cos(thrown.elevation), std::sin(thrown.elevation));
+      scene.blocks = {block};
+      RigidSimulation simulation = report.simulate(scene);
+      const auto samples = history(simulation);
+      const Vec2 moved = samples.empty() ? Vec2::Constant(not_measured()) : samples.back().motion.displacement;
+      const std::string source = "parabola; scheme exact, rounding of t/dt sums";
+      report.relative(text("x after 2 s, dt = {} s", dt), method, expected[0], moved.x(), 1e-13, "m", source);
+      report.relative(text("y after 2 s, dt = {} s", dt), method, expected[1], moved.y(), 1e-13, "m", source);
+    }
+  }
+}
+
+}  // namespace openclose::verification

@@ -1,0 +1,66 @@
+// B3: the smallest cohesion that holds a block on a plane steeper than its friction angle, bracketed by bisection, every trial from a settled start.
+#include <cmath>
+
+#include "harness.h"
+#include "openclose/analytical/cohesion_threshold.h"
+#include "scenes.h"
+
+namespace openclose::verification {
+namespace {
+
+bool holds(const Report& report, const analytical::BlockOnPlane& data, const std::string& method, CohesionBehaviour behaviour, double cohesion) {
+  Scene scene = block_on_plane(data);
+  scene.joints[0].cohesion = cohesion;
+  scene.joints[0].cohesion_behaviour = behaviour;
+  scene.method.contact = method;
+  scene.step.dt = 0.01;
+  use_joint_springs_as_penalty(scene, data);
+  RigidSimulation simulation = report.simulate(scene);
+  return settle(simulation).settled;
+}
+
+/// Largest cohesion [Pa] that does not hold, to `width`; NaN if the bracket does not hold above and fail below.
+double threshold(const Report& report, const analytical::BlockOnPlane& data, const std::string& method, CohesionBehaviour behaviour, double low, double high,
+                 double width) {
+  if (holds(report, data, method, behaviour, low) || !holds(report, data, method, behaviour, high)) return not_measured();
+  while (high - low > width) {
+    const double middle = 0.5 * (low + high);
+    (holds(report, data, method, behaviour, middle) ? high : low) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+}  // namespace
+
+void cohesion_threshold(Report& report) {
+  const analytical::BlockOnPlane data;
+  const double ductile = analytical::ductile_cohesion_threshold(data);
+  for (const std::string& method : all_methods) {
+    for (const auto behaviour : {CohesionBehaviour::ductile, CohesionBehaviour::lost_on_opening}) {
+      const double measured = threshold(report, data, method, behaviour, 0.9 * ductile, 1.1 * ductile, 1e-7 * ductile);
+      report.relative(behaviour == CohesionBehaviour::ductile ? "threshold, ductile" : "threshold, lost on opening", method, ductile, measured, 1e-6, "Pa",
+                      "c b = W (sin alpha - mu cos alpha); forces along the plane only, so no tilt enters");
+    }
+  }
+
+  const double brittle = analytical::brittle_cohesion_threshold(data);
+  double soft_error = not_measured();
+  for (const std::string method : {"soft", "shi"}) {
+    std::vector<double> compliance, errors;
+    for (const double factor : {1.0, 4.0, 16.0}) {
+      analytical::BlockOnPlane stiffer = data;
+      stiffer.normal_stiffness *= factor;
+      stiffer.shear_stiffness *= factor;
+      compliance.push_back(1.0 / stiffer.normal_stiffness);
+      const double measured = threshold(report, stiffer, method, CohesionBehaviour::lost_on_slip, 0.9 * brittle, 1.1 * brittle, 1e-8 * brittle);
+      errors.push_back(std::abs(measured / brittle - 1.0));
+      if (method == "soft" && factor == 1.0) soft_error = errors.back();
+    }
+    report.order("threshold, lost on slip, error over compliance", method, compliance, errors, 0.9, 1.1, "rigid limit; elastic tilt: order 1 in 1/kn");
+  }
+  const double measured = threshold(report, data, "hard", CohesionBehaviour::lost_on_slip, 0.9 * brittle, 1.1 * brittle, 1e-7 * brittle);
+  // How two rigid sticking corners share T is open; the first pass of `hard` shares it with springs ten times as stiff as the joint.
+  report.relative("threshold, lost on slip", "hard", brittle, measured, 0.1 * soft_error, "Pa", "equal shares of T; a tenth of the elastic tilt of soft");
+}
+
+}  // namespace openclose::verification

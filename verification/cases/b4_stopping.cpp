@@ -1,0 +1,153 @@
+// B4: a block thrown along a plane comes to a stop by friction.
+#include <cmath>
+
+#include "harness.h"
+#include "openclose/analytical/sliding_block_reference.h"
+#include "openclose/analytical/stopping_distance.h"
+#include "scenes.h"
+
+namespace openclose::verification {
+namespace {
+
+struct Throw {
+  const char* name;
+  analytical::BlockOnPlane data;
+  int direction;  ///< +1 downhill, -1 uphill
+};
+
+constexpr double speed = 5.0;  // [m/s]
+
+std::vector<Throw> throws() {
+  analytical::BlockOnPlane level, slope;
+  level.slope_angle = 0.0;
+  level.friction_angle = std::atan(0.5);
+  slope.slope_angle = 20.0 * analytical::degree;
+  slope.friction_angle = 30.0 * analytical::degree;
+  return {{"level", level, 1}, {"uphill", slope, -1}, {"downhill", slope, 1}};
+}
+
+Scene scene_of(const Throw& t, const std::string& method, double dt, double end) {
+  Scene scene = block_on_plane(t.data);
+  scene.method.contact = method;
+  scene.method.start = Start::normal_balanced;
+  scene.step.dt = dt;
+  scene.end_time = end;
+  scene.output_every = 0.05;
+  use_joint_springs_as_penalty(scene, t.data);
+  scene.blocks[1].velocity = t.direction * speed * Vec2(std::cos(t.data.slope_angle), -std::sin(t.data.slope_angle));
+  return scene;
+}
+
+/// Rigid contact stops where the closed form says: the step in which it stops is the only one without constant force, so the place is off by at most
+/// what the block would travel in it, r dt^2.
+void rigid(Report& report, const Throw& t) {
+  const auto stop = analytical::stopping(t.data, speed, t.direction);
+  for (const double dt : {1e-2, 1e-3}) {
+    RigidSimulation simulation = report.simulate(scene_of(t, "hard", dt, 0.05 * std::ceil(stop.time / 0.05 + 2.0)));
+    const auto samples = history(simulation);
+    const double travelled = samples.empty() ? not_measured() : t.direction * downhill(t.data, samples.back().motion.displacement);
+    report.near(std::string(t.name) + text(": distance, dt = {} s", dt), "hard", stop.distance, travelled, speed / stop.time * dt * dt, "m",
+                "v0^2/(2 r); tolerance r dt^2");
+  }
+}
+
+/// Springs, trapezoid: against the ODE, through the stop and the oscillation after it.
+void elastic(Report& report, const Throw& t) {
+  const double end = 0.05 * std::ceil(analytical::stopping(t.data, speed, t.direction).time / 0.05 + 1.0);
+  auto start = analytical::normal_balanced_start(t.data);
+  start.velocity_x = t.direction * speed;
+  analytical::SlidingBlockReference reference(t.data, start);
+  const double exact = reference.advance(end).x;
+  std::vector<double> steps, errors;
+  for (const double dt : {2e-4, 1e-4, 5e-5, 2.5e-5, 1.25e-5}) {
+    Scene scene = scene_of(t, "soft", dt, end);
+    scene.method.theta = 0.5;
+    RigidSimulation simulation = report.simulate(scene);
+    const auto samples = history(simulation);
+    steps.push_back(dt);
+    errors.push_back(samples.empty() ? not_measured() : std::abs(downhill(t.data, samples.back().motion.displacement) - exact));
+  }
+  report.order(std::string(t.name) + ": place after the stop, trapezoid", "soft", steps, errors, 1.6, 2.4, "SUNDIALS ODE; order 2");
+}
+
+/// Newmark (1/2, 1) damps the swing after the stop: the block comes to rest in its middle, d - mu W/(2 ks), off by at most what the step in which it
+/// stops may be, r dt^2.
+void rest(Report& report, const Throw& t, const std::string& method) {
+  const auto expected = analytical::rebound_after_stop(t.data, speed);
+  const auto stop = analytical::stopping(t.data, speed, t.direction);
+  for (const double dt : {1.6e-3, 4e-4}) {
+    // The swing falls as exp(-w^2 dt t/4): to 1e-9 of its amplitude.
+    const double damping = 4.0 * 20.0 / (std::pow(expected.frequency, 2) * dt);
+    Scene scene = scene_of(t, method, dt, std::ceil(1.1 + damping));
+    scene.output_every = 1.0;
+    scene.method.start = Start::steady_sliding;
+    scene.blocks[1].rotation_locked = true;
+    RigidSimulation simulation = report.simulate(scene);
+    const auto samples = history(simulation);
+    const double place = samples.empty() ? not_measured() : downhill(t.data, samples.back().motion.displacement);
+    report.near(text("level, rotation locked: place of rest, dt = {} s", dt), method, expected.centre, place, speed / stop.time * dt * dt, "m",
+                "d - mu W/(2 ks); tolerance r dt^2");
+  }
+}
+
+/// Level, rotation locked, from the steady state: the springs throw the block back, and it swings about d - mu W/(2 ks).
+void rebound(Report& report, const Throw& t) {
+  const auto expected = analytical::rebound_after_stop(t.data, speed);
+  std::vector<double> steps, errors;
+  for (const double dt : {1e-4, 5e-5, 2.5e-5}) {
+    Scene scene = scene_of(t, "soft", dt, 1.2);
+    scene.method.theta = 0.5;
+    scene.method.start = Start::steady_sliding;
+    scene.blocks[1].rotation_locked = true;
+    scene.output_every = dt;
+    RigidSimulation simulation = report.simulate(scene);
+    double low = 1e300, high = -1e300;
+    for (const Sample& s : history(simulation)) {
+      if (s.time < 1.05) continue;
+      low = std::min(low, s.motion.displacement.x());
+      high = std::max(high, s.motion.displacement.x());
+    }
+    steps.push_back(dt);
+    errors.push_back(std::abs(0.5 * (low + high) - expected.centre));
+    if (dt == 2.5e-5) {
+      // Sampled every (w dt): the crest is missed by at most (w dt)^2/8, the trapezoid keeps the amplitude.
+      const double phase = expected.frequency * dt;
+      report.relative("level, rotation locked: amplitude after the stop", "soft", expected.amplitude, 0.5 * (high - low), phase * phase, "m",
+                      "mu W/(2 ks); trapezoid keeps it, sampling misses (w dt)^2/8");
+    }
+  }
+  report.order("level, rotation locked: centre after the stop", "soft", steps, errors, 1.5, 2.5, "d - mu W/(2 ks); trapezoid, order 2");
+  report.leave_out("rebound after the stop", "hard", "rigid contacts do not swing");
+  report.leave_out("rebound after the stop", "shi", "Newmark (1/2, 1) damps the swing; the place of rest is checked instead");
+}
+
+void ledger(Report& report, const Throw& t) {
+  for (const std::string& method : all_methods) {
+    RigidSimulation simulation = report.simulate(scene_of(t, method, 1e-3, 1.5));
+    const bool done = !history(simulation).empty();
+    const EnergyLedger& l = simulation.ledger();
+    report.near(std::string(t.name) + ": energy ledger, imbalance over turnover", method, 0.0, done ? std::abs(l.imbalance()) / l.turnover : not_measured(), 1e-10,
+                "-", "work of the forces = change of kinetic energy");
+    const double kinetic = 0.5 * t.data.mass() * speed * speed;
+    // All but what springs and scheme take ends in friction; both are below the energy of the shear springs at their bound and of one step of sliding.
+    const double springs = std::pow(t.data.friction() * t.data.normal_weight(), 2) / (2.0 * t.data.shear_stiffness);
+    const double slack = 2.0 * springs + t.data.friction() * t.data.normal_weight() * speed * 1e-3;
+    if (t.data.slope_angle == 0.0) {
+      report.near("level: dissipated by friction", method, kinetic, l.friction, slack, "J", "m v0^2/2, less springs and one step");
+    }
+  }
+}
+
+}  // namespace
+
+void stopping(Report& report) {
+  for (const Throw& t : throws()) {
+    rigid(report, t);
+    elastic(report, t);
+    ledger(report, t);
+  }
+  for (const std::string method : {"soft", "shi"}) rest(report, throws().front(), method);
+  rebound(report, throws().front());
+}
+
+}  // namespace openclose::verification

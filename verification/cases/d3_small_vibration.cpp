@@ -1,0 +1,104 @@
+// D3: small vibration of a block that rests on its two corners: the tangent of the code, and a run in time.
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+#include "harness.h"
+#include "openclose/analytical/two_spring_block.h"
+#include "openclose/integrator/newton.h"
+#include "scenes.h"
+
+namespace openclose::verification {
+namespace {
+
+analytical::BlockOnPlane level_block() {
+  analytical::BlockOnPlane data;
+  data.slope_angle = 0.0;
+  data.friction_angle = 45.0 * analytical::degree;
+  return data;
+}
+
+struct Modes {
+  Eigen::Vector3d frequencies;  ///< [rad/s] ascending
+  Eigen::Matrix3d shapes;
+};
+
+/// Modes of M x'' + K x = 0 with the code's own tangent at rest.
+Modes modes_of(RigidSimulation& simulation) {
+  if (!settle(simulation).settled) return {Eigen::Vector3d::Constant(not_measured()), Eigen::Matrix3d::Constant(not_measured())};
+  const auto problem = simulation.problem(1e-3, false);
+  std::vector<ContactSprings> springs;
+  for (const Contact& c : problem.contacts) springs.push_back(simulation.enforcement().springs(problem, c));
+  Newton<unknowns> newton;
+  const Eigen::Matrix3d k = newton.stiffness(problem, springs);
+  const Eigen::Matrix3d m = simulation.system().block(1).mass.asDiagonal();
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix3d> solver(k, m);
+  return {solver.eigenvalues().cwiseMax(0.0).cwiseSqrt(), solver.eigenvectors()};
+}
+
+Scene scene_of(const std::string& method, double theta, double dt) {
+  Scene scene = block_on_plane(level_block());
+  scene.method.contact = method;
+  scene.method.theta = theta;
+  scene.step.dt = dt;
+  scene.settle.unbalanced_fraction = 1e-12;
+  use_joint_springs_as_penalty(scene, level_block());
+  return scene;
+}
+
+/// Share of the first displacement, along a mode, that is left after `steps` steps from rest.
+double share_after(const Report& report, const Scene& scene, int mode, int steps) {
+  RigidSimulation simulation = report.simulate(scene);
+  const Modes modes = modes_of(simulation);
+  if (modes.shapes.hasNaN()) return not_measured();
+  auto& system = simulation.system();
+  const Eigen::Vector3d rest = system.displacement(1), shape = modes.shapes.col(mode);
+  // Small against the closure of 5e-4 m, so that contacts stay closed and the change of geometry (amplitude over height) stays below the error.
+  const double amplitude = 1e-6 / shape.cwiseAbs().maxCoeff();
+  // The shear springs stretch with the corners.
+  const Eigen::Vector3d still = Eigen::Vector3d::Zero();
+  for (Contact& c : simulation.contacts()) {
+    const ContactKinematics<unknowns> k(system, c, still, still);
+    c.elastic_slip += amplitude * (c.vertex_block == 1 ? k.shear_vertex : k.shear_edge).dot(shape);
+  }
+  system.advance(1, amplitude * shape);
+  simulation.positions_changed();
+  simulation.restart_clock();
+  for (int i = 0; i < steps; ++i) {
+    if (!simulation.step(scene.step.dt, false).accepted) return not_measured();
+  }
+  const Eigen::Vector3d mass = system.block(1).mass;
+  return (system.displacement(1) - rest).dot(mass.cwiseProduct(shape)) / (amplitude * shape.dot(mass.cwiseProduct(shape)));
+}
+
+}  // namespace
+
+void small_vibration(Report& report) {
+  const auto sway = analytical::sway_rock_frequencies(level_block());
+  const std::array<double, 3> expected = {sway[0], analytical::bounce_frequency(level_block()), sway[1]};
+  const std::array<const char*, 3> names = {"lower sway-rock", "bounce", "upper sway-rock"};
+  RigidSimulation simulation = report.simulate(scene_of("soft", 1.0, 1e-3));
+  const Modes modes = modes_of(simulation);
+  for (int i = 0; i < 3; ++i) {
+    report.relative(std::string(names[i]) + ": eigenvalue of the tangent", "soft", expected[i], modes.frequencies[i], 1e-9, "rad/s",
+                    "K of two corner springs; lengths taken on the bisector change by angle^2/8");
+  }
+  for (int i = 0; i < 3; ++i) {
+    for (const std::string method : {"soft", "shi"}) {
+      for (const double theta : {1.0, 0.5}) {
+        if (method == "shi" && theta < 1.0) continue;
+        const double end = 2.0 / expected[i];
+        std::vector<double> steps, errors;
+        for (const int n : {40, 80, 160, 320}) {
+          steps.push_back(end / n);
+          errors.push_back(std::abs(share_after(report, scene_of(method, theta, end / n), i, n) - std::cos(2.0)));
+        }
+        const double order = theta == 0.5 ? 2.0 : 1.0;
+        report.order(std::string(names[i]) + text(": run in time, theta = {}", theta), method, steps, errors, order - 0.1, order + 0.1, "cos(w t)");
+      }
+    }
+  }
+  report.leave_out("eigenvalues of the tangent", "shi", "its matrix is assembled and solved in one go; the run in time covers its springs");
+  report.leave_out("small vibration", "hard", "rigid contacts do not vibrate");
+}
+
+}  // namespace openclose::verification

@@ -1,0 +1,106 @@
+#include "harness.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "openclose/integrator/registry.h"
+
+namespace openclose::verification {
+namespace {
+
+/// A step in which nothing moves and no contact carries anything, always "converged".
+class NullEnforcement : public Enforcement<unknowns> {
+ public:
+  explicit NullEnforcement(const MethodInput& method) : real_(make_enforcement<unknowns>(method)) {}
+  ContactSprings springs(const StepProblem<unknowns>& problem, const Contact& contact) const override { return real_->springs(problem, contact); }
+  StepSolution<unknowns> solve(const StepProblem<unknowns>& problem) override {
+    StepSolution<unknowns> solution;
+    solution.converged = true;
+    solution.d = Eigen::VectorXd::Zero(unknowns * problem.system.free_count());
+    const auto still = Motion<unknowns>::Unknowns::Zero().eval();
+    for (const Contact& c : problem.contacts) {
+      solution.contacts.push_back({real_->springs(problem, c), ContactForces{}, ContactKinematics<unknowns>(problem.system, c, still, still)});
+    }
+    return solution;
+  }
+  std::unique_ptr<TimeScheme<unknowns>> make_time_scheme(const MethodInput& method) const override { return real_->make_time_scheme(method); }
+  bool has_elastic_contacts() const override { return real_->has_elastic_contacts(); }
+  const LinearCounters& linear_counters() const override { return real_->linear_counters(); }
+
+ private:
+  std::unique_ptr<Enforcement<unknowns>> real_;
+};
+
+}  // namespace
+
+void Report::add(const std::string& quantity, const std::string& method, double expected, double measured, double error, double tolerance,
+                 const std::string& unit, const std::string& source) {
+  const Status status = error <= tolerance ? Status::pass : Status::fail;  // NaN fails
+  checks_.push_back({case_, quantity, method, expected, measured, unit, error, tolerance, status, source});
+}
+
+void Report::near(const std::string& quantity, const std::string& method, double expected, double measured, double tolerance, const std::string& unit,
+                  const std::string& source) {
+  add(quantity, method, expected, measured, std::abs(measured - expected), tolerance, unit, source);
+}
+
+void Report::relative(const std::string& quantity, const std::string& method, double expected, double measured, double tolerance,
+                      const std::string& unit, const std::string& source) {
+  add(quantity, method, expected, measured, std::abs(measured / expected - 1.0), tolerance, unit, source);
+}
+
+void Report::between(const std::string& quantity, const std::string& method, double low, double high, double measured, const std::string& unit,
+                     const std::string& source) {
+  const double middle = 0.5 * (low + high);
+  add(quantity, method, middle, measured, std::abs(measured - middle), 0.5 * (high - low), unit, source);
+}
+
+void Report::order(const std::string& quantity, const std::string& method, const std::vector<double>& sizes, const std::vector<double>& errors,
+                   double low, double high, const std::string& source) {
+  std::string row;
+  for (std::size_t i = 0; i < sizes.size(); ++i) row += fmt::format("{}{:.3g}: {:.2e}", i ? ", " : "", sizes[i], errors[i]);
+  between(quantity, method, low, high, log_slope(sizes, errors), "-", source + " (" + row + ")");
+}
+
+void Report::leave_out(const std::string& quantity, const std::string& method, const std::string& reason) {
+  const double none = not_measured();
+  checks_.push_back({case_, quantity, method, none, none, "", none, none, Status::left_out, reason});
+}
+
+RigidSimulation Report::simulate(const Scene& scene) const {
+  if (null_solver_) return RigidSimulation(scene, std::make_unique<NullEnforcement>(scene.method));
+  return RigidSimulation(scene);
+}
+
+double log_slope(const std::vector<double>& x, const std::vector<double>& y) {
+  double sx = 0.0, sy = 0.0, sxx = 0.0, sxy = 0.0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (!(y[i] > 0.0)) return not_measured();
+    const double lx = std::log(x[i]), ly = std::log(y[i]);
+    sx += lx;
+    sy += ly;
+    sxx += lx * lx;
+    sxy += lx * ly;
+  }
+  const auto n = static_cast<double>(x.size());
+  return (n * sxy - sx * sy) / (n * sxx - sx * sx);
+}
+
+std::vector<Sample> history(RigidSimulation& simulation) {
+  MeasuredPoints<unknowns> points(simulation);
+  std::vector<Sample> samples;
+  RunObserver<unknowns> observer;
+  observer.started = [&](const RigidSimulation&) { points.restart(); };
+  observer.output = [&](const RigidSimulation& s) { samples.push_back({s.time(), points.motions().front()}); };
+  if (!run(simulation, observer).converged) samples.clear();
+  return samples;
+}
+
+double not_measured() { return std::numeric_limits<double>::quiet_NaN(); }
+
+std::string text(const char* format, double value) { return fmt::format(fmt::runtime(format), value); }
+
+}  // namespace openclose::verification

@@ -1,0 +1,90 @@
+// What every verification case uses: checks with bounds from both sides, the methods a case runs with, and simulations that the whole regression can
+// run with a solver that does nothing, to show that no check passes without one.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "openclose/analysis/run.h"
+
+namespace openclose::verification {
+
+inline constexpr int unknowns = 3;
+using RigidSimulation = Simulation<unknowns>;
+
+enum class Status { pass, fail, left_out };
+
+struct Check {
+  std::string case_name;  ///< "B1"
+  std::string quantity;
+  std::string method;
+  double expected = 0.0;
+  double measured = 0.0;
+  std::string unit;
+  double error = 0.0;      ///< absolute or relative, as the source says
+  double tolerance = 0.0;
+  Status status = Status::fail;
+  std::string source;      ///< where expected value and tolerance come from; for a check left out, why
+};
+
+class Report {
+ public:
+  explicit Report(bool null_solver) : null_solver_(null_solver) {}
+
+  void begin_case(const std::string& name) { case_ = name; }
+  /// |measured - expected| <= tolerance.
+  void near(const std::string& quantity, const std::string& method, double expected, double measured, double tolerance, const std::string& unit,
+            const std::string& source);
+  /// |measured/expected - 1| <= tolerance.
+  void relative(const std::string& quantity, const std::string& method, double expected, double measured, double tolerance, const std::string& unit,
+                const std::string& source);
+  /// low <= measured <= high: expected is the middle, tolerance half the width.
+  void between(const std::string& quantity, const std::string& method, double low, double high, double measured, const std::string& unit,
+               const std::string& source);
+  /// Convergence: least-squares slope of log(error) over log(size), bounded from both sides.
+  void order(const std::string& quantity, const std::string& method, const std::vector<double>& sizes, const std::vector<double>& errors, double low,
+             double high, const std::string& source);
+  void leave_out(const std::string& quantity, const std::string& method, const std::string& reason);
+
+  /// A simulation with the scene's enforcement, or with one that does nothing.
+  RigidSimulation simulate(const Scene& scene) const;
+
+  const std::vector<Check>& checks() const { return checks_; }
+  bool null_solver() const { return null_solver_; }
+
+ private:
+  void add(const std::string& quantity, const std::string& method, double expected, double measured, double error, double tolerance,
+           const std::string& unit, const std::string& source);
+
+  bool null_solver_;
+  std::string case_;
+  std::vector<Check> checks_;
+};
+
+/// Least-squares slope of log(y) over log(x); NaN if any value is not positive.
+double log_slope(const std::vector<double>& x, const std::vector<double>& y);
+
+struct Case {
+  const char* name;
+  const char* title;
+  void (*run)(Report&);
+};
+const std::vector<Case>& cases();
+
+/// Runs to the scene's end and hands out the motion of the first measured point (or first free block) at the output times.
+/// Empty if the run does not get there.
+struct Sample {
+  double time;
+  PointMotion motion;
+};
+std::vector<Sample> history(RigidSimulation& simulation);
+
+/// NaN, for a measurement whose conditions were not met.
+double not_measured();
+
+std::string text(const char* format, double value);
+
+}  // namespace openclose::verification

@@ -1,0 +1,35 @@
+// Scenes that several cases share, built in memory.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "openclose/analytical/block_on_plane.h"
+#include "openclose/scene/scene.h"
+
+namespace openclose::verification {
+
+inline const std::array<std::string, 3> all_methods = {"soft", "hard", "shi"};
+
+/// One material "rock", gravity 9.81 downwards, joint without cohesion as the block's; `unloaded` start; no blocks yet.
+Scene empty_scene(const analytical::BlockOnPlane& data = {});
+
+std::vector<Vec2> rectangle(double x, double y, double width, double height);
+
+BlockInput free_block(const std::string& name, std::vector<Vec2> vertices);
+BlockInput fixed_block(const std::string& name, std::vector<Vec2> vertices);
+
+/// A fixed plane (as long as asked for downhill, 20 m uphill) and on it the block of `data`, whose lower left corner touches at the origin, falling
+/// to the right. Stiffness, friction and density from `data`.
+Scene block_on_plane(const analytical::BlockOnPlane& data, double length_downhill = 25.0);
+
+/// Displacement down the plane [m].
+double downhill(const analytical::BlockOnPlane& data, const Vec2& displacement);
+/// Displacement normal to it, away from it [m].
+double off_plane(const analytical::BlockOnPlane& data, const Vec2& displacement);
+
+/// `shi` with the joint's own springs as penalties, so that soft-contact references hold for it too.
+void use_joint_springs_as_penalty(Scene& scene, const analytical::BlockOnPlane& data);
+
+}  // namespace openclose::verification
