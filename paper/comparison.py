@@ -180,12 +180,19 @@ def _figure_6(wedge: PlaneFailure, printed: dict) -> list[Row]:
     return rows
 
 
+def as_text(rows: list[Row]) -> list[dict[str, str]]:
+    """Rows as read_csv gives them, numbers with all digits."""
+    def text(cell: object) -> str:
+        return "" if cell is None else repr(cell) if isinstance(cell, float) else str(cell)
+
+    return [{column: text(cell) for column, cell in zip(COLUMNS, row.cells())} for row in rows]
+
+
 def write_csv(rows: list[Row], file: Path) -> None:
     with open(file, "w", newline="", encoding="utf-8") as stream:
-        writer = csv.writer(stream, lineterminator="\n")
-        writer.writerow(COLUMNS)
-        for row in rows:
-            writer.writerow(["" if cell is None else repr(cell) if isinstance(cell, float) else cell for cell in row.cells()])
+        writer = csv.DictWriter(stream, COLUMNS, lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(as_text(rows))
 
 
 def read_csv(file: Path) -> list[dict[str, str]]:

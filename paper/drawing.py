@@ -25,6 +25,11 @@ def save(figure: plt.Figure, file: Path) -> None:
     plt.close(figure)
 
 
+def save_titled(figure: plt.Figure, axes: plt.Axes, title: str, file: Path) -> None:
+    axes.set_title(title, fontsize=10)
+    save(figure, file)
+
+
 def sketch(width: float, height: float) -> tuple[plt.Figure, plt.Axes]:
     """A canvas without axes, equal scales."""
     figure, axes = plt.subplots(figsize=(width, height), constrained_layout=True)

@@ -24,12 +24,7 @@ def figure_1(file: Path) -> None:
     label(axes, (4.6, 0.65), "shear slides when |T| reaches $c\\,L + N\\,\\tan\\varphi$", ha="left", color=METHOD_COLOUR["shi"])
     label(axes, (6.2, 4.2), "block A (its corner)")
     label(axes, (6.5, -1.1), "block B (its edge)")
-    save_titled(figure, axes, "Fig. 1  Contact in the soft approach: corner of one block, edge of another (drawn apart)", file)
-
-
-def save_titled(figure, axes, title: str, file: Path) -> None:
-    axes.set_title(title, fontsize=10)
-    drawing.save(figure, file)
+    drawing.save_titled(figure, axes, "Fig. 1  Contact in the soft approach: corner of one block, edge of another (drawn apart)", file)
 
 
 def figure_2(slider: Incline, file: Path) -> None:
@@ -52,7 +47,7 @@ def figure_2(slider: Incline, file: Path) -> None:
     label(axes, (5.4, -1.0), "measured: the centroid's\ndisplacement along the slope", ha="left")
     axes.set_xlim(-0.4, 9.4)
     axes.set_ylim(-5.4, 1.0)
-    save_titled(figure, axes, "Fig. 2  Block on an inclined surface (the incline goes on to the right)", file)
+    drawing.save_titled(figure, axes, "Fig. 2  Block on an inclined surface (the incline goes on to the right)", file)
 
 
 def _slope_angle(axes, slider: Incline) -> None:
@@ -80,12 +75,13 @@ def figure_5(wedge: PlaneFailure, file: Path) -> None:
     _joint_text(axes, i, toe, back)
     axes.set_xlim(-26, 130)
     axes.set_ylim(-24, 72)
-    save_titled(figure, axes, "Fig. 5  Plane failure of a slope: a wedge on a joint through the toe", file)
+    drawing.save_titled(figure, axes, "Fig. 5  Plane failure of a slope: a wedge on a joint through the toe", file)
 
 
 def _joint_text(axes, inputs, toe: Point, back: Point) -> None:
     length = math.dist(toe, back)
-    text = (f"joint, {length:.4g} m long:\n$\\varphi$ = {inputs.friction_angle_deg:g}°, c = {inputs.cohesion / 1e6:g} MPa, $\\sigma_t$ = {inputs.tensile_strength:g}\n"
+    text = (f"joint, {length:.4g} m long:\n"
+            f"$\\varphi$ = {inputs.friction_angle_deg:g}°, c = {inputs.cohesion / 1e6:g} MPa, $\\sigma_t$ = {inputs.tensile_strength:g}\n"
             f"$k_n$ = {inputs.normal_stiffness / 1e9:g} GPa/m, $k_s$ = {inputs.shear_stiffness / 1e9:g} GPa/m")
     on_joint = (toe[0] + 0.72 * (back[0] - toe[0]), toe[1] + 0.72 * (back[1] - toe[1]))
     axes.annotate(text, xy=on_joint, xytext=(92, 15), ha="center", va="center", color=JOINT, arrowprops={"arrowstyle": "-", "color": JOINT})

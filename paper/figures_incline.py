@@ -48,7 +48,7 @@ def _steady_errors(slider: Incline, axes: plt.Axes) -> None:
             errors = _largest_over_angles(slider, method, dt)
             axes.semilogy(*zip(*errors.items()), line, color=METHOD_COLOUR[method], label=f"{method}, dt = {dt:g} s")
     axes.axhline(1e-10, color=REFERENCE, linewidth=1)
-    axes.annotate("asked for: 1e-10", (2.2, 1e-10), xytext=(0, 4), textcoords="offset points")
+    axes.annotate("goal: 1e-10", (2.5, 1e-10), xytext=(0, 4), textcoords="offset points")
     axes.set_xlabel("time [s]")
     axes.set_ylabel("relative error |d / d(8) - 1| [-], largest of the five angles")
     axes.set_title("Error of Fig. 3: rounding only, at any step")
@@ -103,7 +103,7 @@ def _hard_error(slider: Incline, start: str) -> float:
 
 def _unloaded_errors(slider: Incline, axes: plt.Axes) -> None:
     mm = 1e-3
-    inset = axes.inset_axes((0.6, 0.12, 0.37, 0.24))
+    inset = axes.inset_axes((0.67, 0.12, 0.31, 0.2))
     ode = _error_in_time(slider, slider.ode("unloaded", incline.MAIN_ANGLE_DEG), mm)
     for method in ("shi", incline.SHI_JOINT, "soft"):
         curve = _error_in_time(slider, slider.from_start(method, "unloaded", incline.MAIN_ANGLE_DEG), mm)
@@ -114,7 +114,7 @@ def _unloaded_errors(slider: Incline, axes: plt.Axes) -> None:
     axes.plot([], [], " ", label=f"hard: below {_upper_power(_hard_error(slider, 'unloaded'))} m")
     inset.set_xlim(0, 0.5)
     inset.set_ylim(0, 0.55)
-    inset.set_title("the beginning, enlarged", fontsize=8.5)
+    inset.set_title("the beginning [s, mm]", fontsize=8.5)
     inset.tick_params(labelsize=8)
     axes.set_ylim(-0.3, 24)
     _error_axes(axes, "(a) gravity dropped on unloaded springs", "mm")
@@ -123,7 +123,8 @@ def _unloaded_errors(slider: Incline, axes: plt.Axes) -> None:
 
 def _balanced_errors(slider: Incline, axes: plt.Axes) -> None:
     phi, mm = incline.MAIN_ANGLE_DEG, 1e-3
-    axes.plot(*_error_in_time(slider, slider.ode("normal_balanced", phi), mm), color=REFERENCE, linewidth=1.2, label="reference ODE, the joint's springs")
+    ode = slider.ode("normal_balanced", phi)
+    axes.plot(*_error_in_time(slider, ode, mm), color=REFERENCE, linewidth=1.2, label="reference ODE, the joint's springs")
     locked = slider.ode("normal_balanced", phi, rotation_locked=True)
     axes.plot(*_error_in_time(slider, locked, mm), "--", color=REFERENCE, linewidth=1, label="the same, rotation locked: one unknown")
     _method_lines(slider, axes, "normal_balanced", ("soft", "hard", "shi", "shi_joint_springs"), mm)

@@ -63,17 +63,19 @@ def _near_failure(wedge: PlaneFailure, printed: dict, axes: plt.Axes) -> None:
     axes.set_xlim(*_ZOOM)
     axes.xaxis.set_major_locator(MultipleLocator(0.01))
     axes.set_yscale("log")
-    axes.set_ylim(1e-2, 1e8)
+    axes.set_ylim(1e-2, 1e7)
     _axis_names(axes, "Near failure, on a logarithmic scale")
     axes.legend(loc="upper left", fontsize=8.5)
 
 
 def _bisection(wedge: PlaneFailure, axes: plt.Axes) -> None:
     brackets = wedge.brackets("soft")
-    trials = range(len(wedge.trials("soft")) - len(wedge.inputs.curve) - len(brackets) + 1, len(wedge.trials("soft")) - len(wedge.inputs.curve) + 1)
+    last = sum(trial.stage != "curve" for trial in wedge.trials("soft"))
+    trials = range(last - len(brackets) + 1, last + 1)
     exact = wedge.closed_form
     axes.semilogy(trials, [abs(stable - exact) for stable, _ in brackets], "o-", color="#2ca02c", markersize=5, linewidth=1, label="stable end")
-    axes.semilogy(trials, [abs(failed - exact) for _, failed in brackets], "x-", color=METHOD_COLOUR["shi"], markersize=6, linewidth=1, label="failed end")
+    axes.semilogy(trials, [abs(failed - exact) for _, failed in brackets], "x-", color=METHOD_COLOUR["shi"], markersize=6, linewidth=1,
+                  label="failed end")
     axes.semilogy(trials, [failed - stable for stable, failed in brackets], "--", color=REFERENCE, linewidth=1, label="width of the bracket")
     axes.axhline(wedge.inputs.width, color="#888888", linewidth=1, linestyle=":", label=f"width asked for: {wedge.inputs.width:g}")
     axes.set_xlabel("trial number [-]")

@@ -30,7 +30,8 @@ def parse_arguments() -> argparse.Namespace:
 
 def print_comparison(results: Path) -> None:
     print(tables.comparison_text(comparison.read_csv(results / "comparison.csv")))
-    print(f"\nFigures, tables and text: {results / 'report.md'}; all digits: {results / 'comparison.csv'}")
+    print(f"\n{tables.NOTE}")
+    print(f"Figures, tables and text: {results / 'report.md'}; all digits: {results / 'comparison.csv'}")
 
 
 def reproduce(arguments: argparse.Namespace) -> None:
@@ -66,7 +67,7 @@ def main() -> int:
         print(f"reproduce: {sys.executable} has no module {missing.name} (Debian: python3-{missing.name})", file=sys.stderr)
         return EXIT_CANNOT_START
     except OSError as error:
-        print(f"reproduce: {error.filename}: {error.strerror}", file=sys.stderr)
+        print(f"reproduce: {error}", file=sys.stderr)
         return EXIT_CANNOT_START
     return 0
 
