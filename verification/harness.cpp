@@ -99,8 +99,12 @@ std::vector<Sample> history(RigidSimulation& simulation) {
   return samples;
 }
 
-double not_measured() { return std::numeric_limits<double>::quiet_NaN(); }
+double not_measured() {
+  return std::numeric_limits<double>::quiet_NaN();
+}
 
-std::string text(const char* format, double value) { return fmt::format(fmt::runtime(format), value); }
+std::string text(const char* format, double value) {
+  return fmt::format(fmt::runtime(format), value);
+}
 
 }  // namespace openclose::verification

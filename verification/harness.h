@@ -24,10 +24,10 @@ struct Check {
   double expected = 0.0;
   double measured = 0.0;
   std::string unit;
-  double error = 0.0;      ///< absolute or relative, as the source says
+  double error = 0.0;  ///< absolute or relative, as the source says
   double tolerance = 0.0;
   Status status = Status::fail;
-  std::string source;      ///< where expected value and tolerance come from; for a check left out, why
+  std::string source;  ///< where expected value and tolerance come from; for a check left out, why
 };
 
 class Report {

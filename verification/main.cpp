@@ -49,15 +49,16 @@ void print(const Check& c) {
   if (c.status == Status::left_out) {
     fmt::print("{:<4} {:<58} {:<6} left out: {}\n", c.case_name, c.quantity, c.method, c.source);
   } else {
-    fmt::print("{:<4} {:<58} {:<6} {:>14.8g} {:>14.8g} {:<6} {:>9.2e} {:>9.2e} {}\n", c.case_name, c.quantity, c.method, c.expected, c.measured, c.unit,
-               c.error, c.tolerance, name_of(c.status));
+    fmt::print("{:<4} {:<58} {:<6} {:>14.8g} {:>14.8g} {:<6} {:>9.2e} {:>9.2e} {}\n", c.case_name, c.quantity, c.method, c.expected, c.measured,
+               c.unit, c.error, c.tolerance, name_of(c.status));
   }
   std::fflush(stdout);
 }
 
 int run_all(const std::vector<std::string>& wanted, const std::string& folder, bool null_solver) {
   Report report(null_solver);
-  fmt::print("{:<4} {:<58} {:<6} {:>14} {:>14} {:<6} {:>9} {:>9} {}\n", "case", "quantity", "method", "expected", "measured", "unit", "error", "allowed", "");
+  fmt::print("{:<4} {:<58} {:<6} {:>14} {:>14} {:<6} {:>9} {:>9} {}\n", "case", "quantity", "method", "expected", "measured", "unit", "error",
+             "allowed", "");
   std::size_t printed = 0;
   for (const Case& c : cases()) {
     if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), c.name) == wanted.end()) continue;
@@ -65,7 +66,9 @@ int run_all(const std::vector<std::string>& wanted, const std::string& folder, b
     c.run(report);
     for (; printed < report.checks().size(); ++printed) print(report.checks()[printed]);
   }
-  const auto count = [&](Status s) { return std::count_if(report.checks().begin(), report.checks().end(), [&](const Check& c) { return c.status == s; }); };
+  const auto count = [&](Status s) {
+    return std::count_if(report.checks().begin(), report.checks().end(), [&](const Check& c) { return c.status == s; });
+  };
   const long passed = count(Status::pass), failed = count(Status::fail), left_out = count(Status::left_out);
   if (null_solver) {
     fmt::print("\nwith a solver that does nothing: {} checks red, {} still green, {} left out\n", failed, passed, left_out);

@@ -6,8 +6,12 @@ namespace openclose::verification {
 namespace {
 
 /// Frame of the plane: x downhill (to the right), y away from it.
-Vec2 along(const analytical::BlockOnPlane& data) { return {std::cos(data.slope_angle), -std::sin(data.slope_angle)}; }
-Vec2 away(const analytical::BlockOnPlane& data) { return {std::sin(data.slope_angle), std::cos(data.slope_angle)}; }
+Vec2 along(const analytical::BlockOnPlane& data) {
+  return {std::cos(data.slope_angle), -std::sin(data.slope_angle)};
+}
+Vec2 away(const analytical::BlockOnPlane& data) {
+  return {std::sin(data.slope_angle), std::cos(data.slope_angle)};
+}
 
 }  // namespace
 
@@ -54,8 +58,12 @@ Scene block_on_plane(const analytical::BlockOnPlane& data, double length_downhil
   return scene;
 }
 
-double downhill(const analytical::BlockOnPlane& data, const Vec2& displacement) { return along(data).dot(displacement); }
-double off_plane(const analytical::BlockOnPlane& data, const Vec2& displacement) { return away(data).dot(displacement); }
+double downhill(const analytical::BlockOnPlane& data, const Vec2& displacement) {
+  return along(data).dot(displacement);
+}
+double off_plane(const analytical::BlockOnPlane& data, const Vec2& displacement) {
+  return away(data).dot(displacement);
+}
 
 void use_joint_springs_as_penalty(Scene& scene, const analytical::BlockOnPlane& data) {
   scene.method.penalty = scene.joints[0].normal_stiffness;

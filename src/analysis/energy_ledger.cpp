@@ -5,7 +5,9 @@
 namespace openclose {
 namespace {
 
-double square(double x) { return x * x; }
+double square(double x) {
+  return x * x;
+}
 
 /// One contact of an elastic enforcement; paths are the products of the force directions at start and end with the work displacement.
 struct ContactPaths {
@@ -87,7 +89,8 @@ void add_step(EnergyLedger& ledger, const StepProblem<N>& problem, const StepSol
     const ContactOutcome<N>& end = solution.contacts[c];
     const Unknowns pv = work_displacement(contact.vertex_block), pe = work_displacement(contact.edge_block);
     const auto path = [&](const Unknowns& on_vertex, const Unknowns& on_edge) { return on_vertex.dot(pv) + on_edge.dot(pe); };
-    ContactPaths paths{path(end.kinematics.normal_vertex, end.kinematics.normal_edge), path(end.kinematics.shear_vertex, end.kinematics.shear_edge), 0.0, 0.0};
+    ContactPaths paths{path(end.kinematics.normal_vertex, end.kinematics.normal_edge), path(end.kinematics.shear_vertex, end.kinematics.shear_edge),
+                       0.0, 0.0};
     if (!elastic) {
       ledger.impact -= end.forces.normal * paths.normal_end;
       ledger.friction -= end.forces.shear * paths.shear_end;

@@ -47,9 +47,9 @@ struct RunResult {
 /// What a run tells while it goes on.
 template <int N>
 struct RunObserver {
-  std::function<void(const Simulation<N>&)> started;                  ///< the start state is reached, time is 0
-  std::function<void(const Simulation<N>&)> output;                   ///< at time 0 and at every output time
-  std::function<void(double fraction)> progress;                      ///< after every step
+  std::function<void(const Simulation<N>&)> started;  ///< the start state is reached, time is 0
+  std::function<void(const Simulation<N>&)> output;   ///< at time 0 and at every output time
+  std::function<void(double fraction)> progress;      ///< after every step
 };
 
 /// Brings the simulation into the scene's start state.

@@ -6,14 +6,14 @@
 namespace openclose {
 namespace {
 
-constexpr double growth = 10.0;       ///< [-] of the pseudo-time step after a success
+constexpr double growth = 10.0;         ///< [-] of the pseudo-time step after a success
 constexpr double largest_growth = 1e3;  ///< [-] of the first step in all: beyond, the inertia term no longer holds sliding blocks in place
-constexpr double cut = 0.3;           ///< [-] after a failure
+constexpr double cut = 0.3;             ///< [-] after a failure
 
 }  // namespace
 
 template <int N>
-SettleResult settle(Simulation<N>& simulation, const std::function<void()>& tick) {
+SettleResult settle(Simulation<N>& simulation) {
   const SettleInput& input = simulation.scene().settle;
   const auto& system = simulation.system();
   std::vector<typename Motion<N>::Unknowns> start;
@@ -23,7 +23,6 @@ SettleResult settle(Simulation<N>& simulation, const std::function<void()>& tick
   SettleResult result;
   double dt = input.first_dt;
   while (result.steps < input.max_steps) {
-    if (tick) tick();
     const StepResult step = simulation.step(dt, true);
     if (!step.accepted) {
       dt *= cut;
@@ -52,6 +51,6 @@ SettleResult settle(Simulation<N>& simulation, const std::function<void()>& tick
   return result;
 }
 
-template SettleResult settle<3>(Simulation<3>&, const std::function<void()>&);
+template SettleResult settle<3>(Simulation<3>&);
 
 }  // namespace openclose

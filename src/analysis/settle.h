@@ -2,7 +2,6 @@
 // weight.
 #pragma once
 
-#include <functional>
 #include <string>
 
 #include "openclose/analysis/simulation.h"
@@ -11,13 +10,13 @@ namespace openclose {
 
 struct SettleResult {
   bool settled = false;
-  std::string criterion;            ///< what decided: "unbalanced force", "displacement", "steps", or the reason of a step that failed
+  std::string criterion;  ///< what decided: "unbalanced force", "displacement", "steps", or the reason of a step that failed
   int steps = 0;
   double unbalanced_fraction = 1.0;  ///< [-] of Simulation::force_scale()
   double displacement = 0.0;         ///< [m] largest of any block on the way
 };
 
 template <int N>
-SettleResult settle(Simulation<N>& simulation, const std::function<void()>& tick = {});
+SettleResult settle(Simulation<N>& simulation);
 
 }  // namespace openclose

@@ -68,11 +68,12 @@ class StrengthReduction {
     while (result_.failed - result_.stable > input_.width) {
       attempt(0.5 * (result_.stable + result_.failed), "bisect");
       const double width = result_.failed - result_.stable;
-      if (progress_) progress_(std::min(1.0, std::log(first_width / width) / std::log(first_width / input_.width)));
+      share_done_ = std::min(1.0, std::log(first_width / width) / std::log(first_width / input_.width));
     }
   }
 
   void attempt(double srf, const char* stage) {
+    if (progress_) progress_(share_done_);
     simulation_.restore(result_.settled_state);
     simulation_.joints().reduce_strength(srf);
     const SettleResult settled = settle(simulation_);
@@ -110,6 +111,7 @@ class StrengthReduction {
   MeasuredPoints<N> points_;
   const StrengthReductionInput& input_;
   std::function<void(double)> progress_;
+  double share_done_ = 0.0;  ///< of the bisection
   FactorOfSafety<N> result_;
 };
 

@@ -1,5 +1,5 @@
-// Factor of safety by strength reduction: settle with full strength, then find the largest factor by which tan(phi), c and the tensile strength can be
-// divided so that the system still settles.
+// Factor of safety by strength reduction: settle with full strength, then find the largest factor by which tan(phi), c and the tensile strength can
+// be divided so that the system still settles.
 #pragma once
 
 #include <functional>
@@ -11,8 +11,8 @@
 namespace openclose {
 
 struct StrengthTrial {
-  double srf = 1.0;       ///< [-] strength reduction factor
-  std::string stage;      ///< bracket, bisect or curve
+  double srf = 1.0;   ///< [-] strength reduction factor
+  std::string stage;  ///< bracket, bisect or curve
   bool stable = false;
   std::string criterion;  ///< what decided, see SettleResult
   int steps = 0;

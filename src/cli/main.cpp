@@ -166,7 +166,8 @@ int check_command(const Options& options) {
 void add_options(CLI::App& app, Options& options, bool writes) {
   app.add_option("scene", options.scene_file, "scene file (TOML)")->required();
   const auto shorthand = [&app, &options](const std::string& flag, const std::string& key, const std::string& help) {
-    app.add_option_function<std::string>(flag, [&options, key](const std::string& value) { options.overrides.push_back(key + "=" + value); }, help);
+    app.add_option_function<std::string>(
+        flag, [&options, key](const std::string& value) { options.overrides.push_back(key + "=" + value); }, help);
   };
   shorthand("--contact", "method.contact", "contact enforcement: soft, hard or shi");
   shorthand("--start", "method.start", "start state: unloaded, settled, normal_balanced or steady_sliding");
@@ -182,7 +183,9 @@ void add_options(CLI::App& app, Options& options, bool writes) {
 }
 
 int main_checked(int argc, char** argv) {
-  CLI::App app{"Openclose: 2-D block systems of jointed rock and masonry. Exit status: 0 success, 1 not converged (state saved), 2 bad input (nothing written)."};
+  CLI::App app{
+      "Openclose: 2-D block systems of jointed rock and masonry. Exit status: 0 success, 1 not converged (state saved), 2 bad input (nothing "
+      "written)."};
   app.set_version_flag("--version", version);
   app.require_subcommand(1);
   Options options;

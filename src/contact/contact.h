@@ -12,7 +12,7 @@ struct Contact {
   int vertex_block = 0;
   int vertex = 0;
   int edge_block = 0;
-  int edge = 0;  ///< first vertex of the edge
+  int edge = 0;   ///< first vertex of the edge
   int joint = 0;  ///< index into the joint table
 
   // Geometry at the start of the step.
@@ -21,11 +21,11 @@ struct Contact {
 
   // History, as the last accepted step left it.
   ContactStatus status = ContactStatus::open;
-  bool bonded = true;           ///< cohesion and tensile strength are still there
-  double elastic_slip = 0.0;    ///< [m] stretch of the shear spring; shear force = -shear stiffness * elastic slip
-  double normal_force = 0.0;    ///< [N]
-  double shear_force = 0.0;     ///< [N]
-  double stored_energy = 0.0;   ///< [J] in both springs
+  bool bonded = true;          ///< cohesion and tensile strength are still there
+  double elastic_slip = 0.0;   ///< [m] stretch of the shear spring; shear force = -shear stiffness * elastic slip
+  double normal_force = 0.0;   ///< [N]
+  double shear_force = 0.0;    ///< [N]
+  double stored_energy = 0.0;  ///< [J] in both springs
 };
 
 }  // namespace openclose

@@ -119,7 +119,8 @@ class NarrowPhase {
         const double along = edge.along(p);
         if (along < -tolerance::edge_end_m || along > edge.length + tolerance::edge_end_m) return;
         const Vec2 ahead = system_.arm(system_.next(v)) - system_.arm(v), back = system_.arm(system_.previous(v)) - system_.arm(v);
-        const double weight = std::max(parallel_weight(-ahead.normalized().dot(edge.direction)), parallel_weight(back.normalized().dot(edge.direction)));
+        const double weight =
+            std::max(parallel_weight(-ahead.normalized().dot(edge.direction)), parallel_weight(back.normalized().dot(edge.direction)));
         if (weight == 1.0) return;
         const auto projection = [&](const Vec2& side) { return std::min(std::abs(side.dot(edge.direction)), edge.length); };
         add(vertex_block, v, edge_block, e, 0.5 * (1.0 - weight) * (projection(ahead) + projection(back)));

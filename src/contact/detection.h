@@ -24,7 +24,7 @@ struct DetectionCounters {
   long searches = 0;          ///< broad-phase searches made
   long searches_skipped = 0;  ///< steps that reused the candidates
   long narrow_phases = 0;
-  long transfers = 0;         ///< contacts that inherited their history from another vertex-edge pair
+  long transfers = 0;  ///< contacts that inherited their history from another vertex-edge pair
 };
 
 template <int N>

@@ -8,9 +8,13 @@ namespace openclose {
 using Vec2 = Eigen::Vector2d;
 
 /// The vector turned by +90 degrees (counter-clockwise).
-inline Vec2 perpendicular(const Vec2& v) { return {-v.y(), v.x()}; }
+inline Vec2 perpendicular(const Vec2& v) {
+  return {-v.y(), v.x()};
+}
 
 /// z component of the cross product a x b.
-inline double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
+inline double cross(const Vec2& a, const Vec2& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
 
 }  // namespace openclose

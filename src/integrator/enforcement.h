@@ -20,8 +20,8 @@ namespace openclose {
 template <int N>
 struct ContactOutcome {
   ContactSprings springs;
-  ContactForces forces;               ///< at the end of the step
-  ContactKinematics<N> kinematics;    ///< whose gradients carried these forces in the equation of motion
+  ContactForces forces;             ///< at the end of the step
+  ContactKinematics<N> kinematics;  ///< whose gradients carried these forces in the equation of motion
 };
 
 /// One step to be solved. Everything is as it stands at the start of the step.
@@ -58,9 +58,9 @@ struct StepProblem {
 template <int N>
 struct StepSolution {
   bool converged = false;
-  std::string reason;      ///< why not
-  int iterations = 0;      ///< linear solves
-  Eigen::VectorXd d;       ///< displacement of the step, N per free block
+  std::string reason;  ///< why not
+  int iterations = 0;  ///< linear solves
+  Eigen::VectorXd d;   ///< displacement of the step, N per free block
   std::vector<ContactOutcome<N>> contacts;
   std::vector<ContactOutcome<N>> start_contacts;  ///< forces that entered with weight 1 - theta; empty for theta = 1
 
@@ -81,10 +81,18 @@ class Enforcement {
   virtual ContactSprings springs(const StepProblem<N>& problem, const Contact& contact) const = 0;
   virtual StepSolution<N> solve(const StepProblem<N>& problem) = 0;
 
+  /// Throws InputError if the method asks for a theta that the enforcement has no use for.
   virtual std::unique_ptr<TimeScheme<N>> make_time_scheme(const MethodInput& method) const = 0;
-  virtual bool has_elastic_contacts() const { return true; }  ///< false: contacts store no energy and keep no penetration
+  virtual bool has_elastic_contacts() const { return true; }         ///< false: contacts store no energy and keep no penetration
   virtual double step_cut(const MethodInput&) const { return 0.5; }  ///< factor on a step that failed
   virtual const LinearCounters& linear_counters() const = 0;
 };
+
+/// For enforcements with a time scheme of their own: throws InputError unless theta has its default of 1.
+inline void require_default_theta(const MethodInput& method) {
+  if (method.theta == 1.0) return;
+  throw InputError(method.contact_where, "method.theta",
+                   std::to_string(method.theta) + " has no meaning for method.contact = \"" + method.contact + "\"", "1, or contact = \"soft\"");
+}
 
 }  // namespace openclose

@@ -1,9 +1,9 @@
 // `hard`: no penetration, by multipliers that are iterated to convergence within the step (method of multipliers with Newton inside).
 //
-// Each outer pass solves N = max(0, shift - k (gap - target)), T = clamp(initial shear - k s) and takes N, T as the next pass's shift and initial shear.
-// The passes converge whatever the stiffness k is (it only sets how fast), so the answer does not depend on the joint's stiffness: a closed contact
-// keeps its gap exactly, a sticking one its place. In motion k is a multiple of the inertia, in statics of the joint's stiffness, which then decides how
-// the first pass shares what rigid contacts leave undetermined.
+// Each outer pass solves N = max(0, shift - k (gap - target)), T = clamp(initial shear - k s) and takes N, T as the next pass's shift and initial
+// shear. The passes converge whatever the stiffness k is (it only sets how fast), so the answer does not depend on the joint's stiffness: a closed
+// contact keeps its gap exactly, a sticking one its place. In motion k is a multiple of the inertia, in statics of the joint's stiffness, which then
+// decides how the first pass shares what rigid contacts leave undetermined.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -46,9 +46,11 @@ class Hard : public Enforcement<N> {
     springs_.clear();
     for (const Contact& c : problem.contacts) springs_.push_back(springs(problem, c));
     StepSolution<N> solution;
-    // From the drift dt v: the stiff matrix costs digits of what is solved for, and these are better lost from the change of motion than from the motion.
+    // From the drift dt v: the stiff matrix costs digits of what is solved for, and these are better lost from the change of motion than from the
+    // motion.
     solution.d = Eigen::VectorXd::Zero(N * problem.system.free_count());
-    for (int b : problem.system.free_blocks()) solution.d.template segment<N>(N * problem.system.block(b).equation) = problem.dt * problem.velocity(b);
+    for (int b : problem.system.free_blocks())
+      solution.d.template segment<N>(N * problem.system.block(b).equation) = problem.dt * problem.velocity(b);
     for (int pass = 0; pass < most_outer_passes; ++pass) {
       newton_.solve(problem, springs_, solution);
       if (!solution.converged) return solution;
@@ -63,7 +65,10 @@ class Hard : public Enforcement<N> {
     return solution;
   }
 
-  std::unique_ptr<TimeScheme<N>> make_time_scheme(const MethodInput&) const override { return make_midstep_scheme<N>(); }
+  std::unique_ptr<TimeScheme<N>> make_time_scheme(const MethodInput& method) const override {
+    require_default_theta(method);
+    return make_midstep_scheme<N>();
+  }
   bool has_elastic_contacts() const override { return false; }
   const LinearCounters& linear_counters() const override { return newton_.linear_counters(); }
 
@@ -93,7 +98,8 @@ class Hard : public Enforcement<N> {
 
   /// [m] the coordinates and displacements of which a gap is the small difference; two contacts at one place differ by their rounding.
   static double coordinates(const StepProblem<N>& problem, const StepSolution<N>& solution, const Contact& contact) {
-    double sum = problem.system.position(contact.vertex_block, contact.vertex).norm() + problem.system.position(contact.edge_block, contact.edge).norm();
+    double sum =
+        problem.system.position(contact.vertex_block, contact.vertex).norm() + problem.system.position(contact.edge_block, contact.edge).norm();
     for (int b : {contact.vertex_block, contact.edge_block}) {
       sum += Motion<N>::displacement_bound(solution.of(problem.system, b), problem.system.block(b).radius);
     }

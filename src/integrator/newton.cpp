@@ -61,8 +61,8 @@ void Newton<N>::evaluate(const Eigen::VectorXd& d) {
     const ContactSprings& springs = (*springs_)[c];
     const ContactForces f = spring_slider(springs, strength_[c], kinematics.gap_change, kinematics.slip_change);
     if (f.status != ContactStatus::open) {
-      const double moved = Motion<N>::displacement_bound(dv, kinematics.vertex_arm.norm()) +
-                           Motion<N>::displacement_bound(de, kinematics.edge_arm.norm());
+      const double moved =
+          Motion<N>::displacement_bound(dv, kinematics.vertex_arm.norm()) + Motion<N>::displacement_bound(de, kinematics.edge_arm.norm());
       const double rounding = rounding_units * eps * ((springs.normal + springs.shear) * moved + std::abs(f.normal) + std::abs(f.shear));
       const auto push = [&](int b, const Unknowns& normal, const Unknowns& shear) {
         const int i = system.block(b).equation;
@@ -90,7 +90,8 @@ void Newton<N>::evaluate(const Eigen::VectorXd& d) {
     if (block.rotation_locked) r[Motion<N>::rotation_index] = 0.0;
     residual_.template segment<N>(at) = r;
     const Unknowns moved = problem_->inertia * block.mass.cwiseProduct(drift.cwiseAbs() + db.cwiseAbs());
-    rounding_[block.equation] += rounding_units * eps * (Motion<N>::largest_force(moved, block.radius) + Motion<N>::largest_force(external, block.radius));
+    rounding_[block.equation] +=
+        rounding_units * eps * (Motion<N>::largest_force(moved, block.radius) + Motion<N>::largest_force(external, block.radius));
     force_scale_ = std::max(force_scale_, Motion<N>::largest_force(external, block.radius));
   }
 }

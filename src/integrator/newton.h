@@ -1,7 +1,7 @@
 // Newton's method for one step with given contact springs.
 //
-// Two tangents: the exact one, non-symmetric where contacts slide, and a symmetric one (sticking springs only) with an energy line search, which makes
-// progress while many contacts still change state. Convergence means the residual alone: the contact states are functions of the displacement.
+// Two tangents: the exact one, non-symmetric where contacts slide, and a symmetric one (sticking springs only) with an energy line search, which
+// makes progress while many contacts still change state. Convergence means the residual alone: the contact states are functions of the displacement.
 #pragma once
 
 #include "openclose/integrator/enforcement.h"
@@ -36,8 +36,8 @@ class Newton {
   void assemble(const Eigen::VectorXd& d, Tangent tangent);
   void add_contact_stiffness(std::size_t c, Tangent tangent);
   Eigen::VectorXd direction(const Eigen::VectorXd& d, Tangent tangent);
-  /// Contacts that would slide one way and then the other stick in between: they enter the next linear solve with the spring's own force. (Where the spring
-  /// is stiff the range of sticking is so narrow that the iteration would jump over it for ever.) Returns their number.
+  /// Contacts that would slide one way and then the other stick in between: they enter the next linear solve with the spring's own force. (Where the
+  /// spring is stiff the range of sticking is so narrow that the iteration would jump over it for ever.) Returns their number.
   int hold_reversed(const std::vector<int>& before, const std::vector<int>& after);
   double line_search(const Eigen::VectorXd& d, const Eigen::VectorXd& step, double slope);
   /// Which linear piece of its law every contact is on: its status, and for sliding the direction too.
@@ -47,10 +47,10 @@ class Newton {
   const std::vector<ContactSprings>* springs_ = nullptr;
   std::vector<ContactOutcome<N>> outcome_;
   std::vector<ContactStrength> strength_;
-  Eigen::VectorXd force_;      ///< all forces at the trial position but inertia
+  Eigen::VectorXd force_;        ///< all forces at the trial position but inertia
   Eigen::VectorXd start_force_;  ///< the same at the start of the step, used if theta < 1
   Eigen::VectorXd residual_;
-  Eigen::VectorXd rounding_;   ///< [N] per free block: what rounding leaves in the residual
+  Eigen::VectorXd rounding_;  ///< [N] per free block: what rounding leaves in the residual
   double force_scale_ = 0.0;
   BlockMatrix<N> matrix_;
   std::unique_ptr<LinearSolver<N>> solver_;

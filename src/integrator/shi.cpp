@@ -2,8 +2,8 @@
 //
 // G.-H. Shi (1988, 1993), as the paper describes it. Every pass linearises the contacts at the start of the step, solves once, and lets each contact
 // change its state: open <-> closed by the sign of the normal spring, locked -> sliding when the shear spring exceeds the strength, sliding -> locked
-// when the slip runs against its friction. The pass is the last when no state changes; the friction of a sliding contact is then still the one of the pass
-// before. A step that does not settle, or that leaves a contact deeper than the penetration tolerance, is cut.
+// when the slip runs against its friction. The pass is the last when no state changes; the friction of a sliding contact is then still the one of the
+// pass before. A step that does not settle, or that leaves a contact deeper than the penetration tolerance, is cut.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -44,7 +44,10 @@ class Shi : public Enforcement<N> {
     return solution;
   }
 
-  std::unique_ptr<TimeScheme<N>> make_time_scheme(const MethodInput&) const override { return make_theta_scheme<N>(1.0); }
+  std::unique_ptr<TimeScheme<N>> make_time_scheme(const MethodInput& method) const override {
+    require_default_theta(method);
+    return make_theta_scheme<N>(1.0);
+  }
   double step_cut(const MethodInput& method) const override { return method.step_cut; }
   const LinearCounters& linear_counters() const override { return counters_; }
 
@@ -182,8 +185,9 @@ class Shi : public Enforcement<N> {
     for (const ContactOutcome<N>& o : outcome_) {
       const double depth = o.forces.status == ContactStatus::open ? 0.0 : -(o.springs.gap + o.kinematics.gap_change);
       if (depth > problem.method.penetration_tolerance) {
-        solution.reason = fmt::format("penetration of {:.3g} m exceeds method.penetration_tolerance_m = {:.3g}; a larger method.penalty_pa_per_m would reduce it",
-                                      depth, problem.method.penetration_tolerance);
+        solution.reason =
+            fmt::format("penetration of {:.3g} m exceeds method.penetration_tolerance_m = {:.3g}; a larger method.penalty_pa_per_m would reduce it",
+                        depth, problem.method.penetration_tolerance);
         return;
       }
     }

@@ -36,9 +36,17 @@ std::string field(const std::string& text) {
 
 /// The ledger's entries with their names, in the order of the files.
 std::vector<std::pair<const char*, double>> entries(const EnergyLedger& l) {
-  return {{"kinetic_j", l.kinetic},   {"gravity_j", l.gravity},           {"contact_springs_j", l.contact_springs}, {"support_springs_j", l.support_springs},
-          {"loads_j", l.loads},       {"friction_j", l.friction},         {"impact_j", l.impact},                   {"scheme_j", l.scheme},
-          {"redefinition_j", l.redefinition}, {"turnover_j", l.turnover}, {"imbalance_j", l.imbalance()}};
+  return {{"kinetic_j", l.kinetic},
+          {"gravity_j", l.gravity},
+          {"contact_springs_j", l.contact_springs},
+          {"support_springs_j", l.support_springs},
+          {"loads_j", l.loads},
+          {"friction_j", l.friction},
+          {"impact_j", l.impact},
+          {"scheme_j", l.scheme},
+          {"redefinition_j", l.redefinition},
+          {"turnover_j", l.turnover},
+          {"imbalance_j", l.imbalance()}};
 }
 
 }  // namespace

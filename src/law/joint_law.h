@@ -36,8 +36,8 @@ struct ContactSprings {
 
 struct ContactForces {
   ContactStatus status = ContactStatus::open;
-  double normal = 0.0;  ///< [N] N
-  double shear = 0.0;   ///< [N] T
+  double normal = 0.0;                                                  ///< [N] N
+  double shear = 0.0;                                                   ///< [N] T
   double normal_by_gap = 0.0, shear_by_gap = 0.0, shear_by_slip = 0.0;  ///< [N/m] dN/dg, dT/dg, dT/ds
 };
 

@@ -20,12 +20,12 @@ class BlockSystem {
   struct Block {
     int first_vertex = 0;
     int vertex_count = 0;
-    int equation = -1;                   ///< block row of the unknowns, -1 if fixed
+    int equation = -1;  ///< block row of the unknowns, -1 if fixed
     int material = 0;
-    double area = 0.0;                   ///< [m2]
-    double radius = 0.0;                 ///< [m] farthest vertex from the centroid
+    double area = 0.0;    ///< [m2]
+    double radius = 0.0;  ///< [m] farthest vertex from the centroid
     bool rotation_locked = false;
-    Unknowns mass = Unknowns::Zero();    ///< diagonal mass [kg, kg, kg m2]
+    Unknowns mass = Unknowns::Zero();        ///< diagonal mass [kg, kg, kg m2]
     Vec2 reference_centroid = Vec2::Zero();  ///< [m] relative to origin()
   };
 

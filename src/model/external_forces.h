@@ -23,10 +23,10 @@ class ExternalForces {
   Matrix stiffness(const BlockSystem<N>& system, int b, const Unknowns& d) const;
 
   struct PointForce {
-    int point = 0;                        ///< followed point of the system
-    Vec2 force = Vec2::Zero();            ///< [N] constant part
-    Vec2 stiffness = Vec2::Zero();        ///< [N/m] of springs in x and y
-    Vec2 anchor = Vec2::Zero();           ///< [m] where the springs are slack, relative to the system's origin
+    int point = 0;                  ///< followed point of the system
+    Vec2 force = Vec2::Zero();      ///< [N] constant part
+    Vec2 stiffness = Vec2::Zero();  ///< [N/m] of springs in x and y
+    Vec2 anchor = Vec2::Zero();     ///< [m] where the springs are slack, relative to the system's origin
   };
   const std::vector<PointForce>& loads() const { return loads_; }
   const std::vector<PointForce>& supports() const { return supports_; }

@@ -43,9 +43,7 @@ struct Motion<3> {
   }
 
   /// Diagonal of the mass matrix [kg, kg, kg m2] per metre of thickness.
-  static Unknowns mass(double density, double area, double polar_second_moment) {
-    return density * Unknowns(area, area, polar_second_moment);
-  }
+  static Unknowns mass(double density, double area, double polar_second_moment) { return density * Unknowns(area, area, polar_second_moment); }
 
   /// Each component as a force [N]: moments over the radius of the block [m].
   static double largest_force(const Unknowns& f, double radius) { return std::max(f.head<2>().norm(), std::abs(f[2]) / radius); }

@@ -16,7 +16,8 @@ struct Response {
 };
 
 /// Pushes the block once through the centroid's side at `point` with a force normal to the lever from `centroid`.
-Response push(const Report& report, const std::string& method, const std::vector<Vec2>& vertices, const Vec2& point, const Vec2& centroid, double inertia) {
+Response push(const Report& report, const std::string& method, const std::vector<Vec2>& vertices, const Vec2& point, const Vec2& centroid,
+              double inertia) {
   const double dt = 1.0, strength = 1e-5;
   Scene scene = empty_scene();
   scene.gravity = Vec2::Zero();
@@ -62,7 +63,8 @@ void mass_properties(Report& report) {
       // The centroid's own coordinates are only known to half a unit in the last place of 1e6 m, which is 6e-11 m, relative to the lever of 1.2 m.
       const double tolerance = offset > 0.0 ? 1e-10 : 1e-12;
       report.relative(text("mass, L-shape moved by {} m", offset), method, mass, r.mass, 1e-12, "kg/m", "three unit squares");
-      report.relative(text("moment of inertia, L-shape moved by {} m", offset), method, inertia, r.moment_of_inertia, tolerance, "kgm", "parallel axes");
+      report.relative(text("moment of inertia, L-shape moved by {} m", offset), method, inertia, r.moment_of_inertia, tolerance, "kgm",
+                      "parallel axes");
     }
   }
 }

@@ -41,8 +41,8 @@ void free_spin(Report& report) {
       if (kind == RotationKind::exact) {
         report.relative("area ratio after 10 rad, exact rotation", method, 1.0, measured, 1e-12, "-", "rotation keeps areas");
       } else {
-        report.relative("area ratio after 10 rad, linear rotation", method, analytical::linear_rotation_area_ratio(omega, dt, steps), measured, 1e-12, "-",
-                        "(1 + omega^2 dt^2)^n");
+        report.relative("area ratio after 10 rad, linear rotation", method, analytical::linear_rotation_area_ratio(omega, dt, steps), measured, 1e-12,
+                        "-", "(1 + omega^2 dt^2)^n");
       }
     }
   }

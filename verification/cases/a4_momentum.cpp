@@ -82,11 +82,13 @@ void momentum(Report& report) {
     }
     report.near("linear momentum, largest change in a step", method, 0.0, worst, 1e-13, "-", "action = reaction; relative to the sum of |m v|");
     if (method == "hard") {
-      report.leave_out("angular momentum, order in dt", method,
-                       "an impact takes one step; its part before the contact is a random fraction of dt, so the error of order dt does not fall smoothly");
+      report.leave_out(
+          "angular momentum, order in dt", method,
+          "an impact takes one step; its part before the contact is a random fraction of dt, so the error of order dt does not fall smoothly");
       for (std::size_t i = 0; i < steps.size(); ++i) {
         // Half the relative displacement of a step (at most 2.5 m/s dt) times the impulses exchanged (at most the sum of |m v| = 1.6e4 Ns).
-        report.near(text("angular momentum, dt = {} s", steps[i]), method, 0.0, errors[i], 0.5 * 2.5 * steps[i] * 1.6e4, "Nms", "dt/2 times approach speed times impulse");
+        report.near(text("angular momentum, dt = {} s", steps[i]), method, 0.0, errors[i], 0.5 * 2.5 * steps[i] * 1.6e4, "Nms",
+                    "dt/2 times approach speed times impulse");
       }
     } else {
       report.order("angular momentum, order in dt", method, steps, errors, 0.8, 1.2, "force at the end of the step: order 1");

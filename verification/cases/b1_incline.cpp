@@ -65,13 +65,14 @@ void transients(Report& report) {
     const char* name;
     double phi;
   };
-  for (const Study& study : {Study{Start::normal_balanced, "(b) relaxed shear springs", 10.0}, Study{Start::normal_balanced, "(b) relaxed shear springs", 20.0},
-                             Study{Start::normal_balanced, "(b) relaxed shear springs", 25.0}, Study{Start::unloaded, "(a) unloaded", 10.0},
-                             Study{Start::unloaded, "(a) unloaded", 20.0}, Study{Start::unloaded, "(a) unloaded", 25.0}}) {
+  for (const Study& study :
+       {Study{Start::normal_balanced, "(b) relaxed shear springs", 10.0}, Study{Start::normal_balanced, "(b) relaxed shear springs", 20.0},
+        Study{Start::normal_balanced, "(b) relaxed shear springs", 25.0}, Study{Start::unloaded, "(a) unloaded", 10.0},
+        Study{Start::unloaded, "(a) unloaded", 20.0}, Study{Start::unloaded, "(a) unloaded", 25.0}}) {
     analytical::BlockOnPlane data;
     data.friction_angle = study.phi * analytical::degree;
-    // Newmark (1/2, 1) damps the bounces of start (a) by exp(-w^2 dt t/4), the reference not at all: a tenth of a second shows the order at steps that
-    // are not yet too small, w^2 dt t/4 < 0.1.
+    // Newmark (1/2, 1) damps the bounces of start (a) by exp(-w^2 dt t/4), the reference not at all: a tenth of a second shows the order at steps
+    // that are not yet too small, w^2 dt t/4 < 0.1.
     const bool bounces = study.start == Start::unloaded;
     const double end = bounces ? 0.1 : 1.0, every = end / 20.0;
     std::vector<double> times, reference;
@@ -85,9 +86,10 @@ void transients(Report& report) {
       for (const double theta : {1.0, 0.5}) {
         if (method == "shi" && theta < 1.0) continue;
         if (method == "shi" && bounces && study.phi == 25.0) {
-          report.leave_out(name, method,
-                           "the reference sticks while the normal force rises in the first bounces; a sliding contact of shi carries mu N as long as it "
-                           "slips one way, so it converges on another motion, 0.3 mm away");
+          report.leave_out(
+              name, method,
+              "the reference sticks while the normal force rises in the first bounces; a sliding contact of shi carries mu N as long as it "
+              "slips one way, so it converges on another motion, 0.3 mm away");
           continue;
         }
         std::vector<double> steps, errors;
@@ -108,7 +110,8 @@ void transients(Report& report) {
       }
     }
     Scene scene = scene_of(data, "hard", study.start, 1e-3, 3.0);
-    report.near(name + ": no transient", "hard", 0.0, deviation(report, scene, data), 1e-10, "-", "eq. (8): rigid contacts have no springs to stretch");
+    report.near(name + ": no transient", "hard", 0.0, deviation(report, scene, data), 1e-10, "-",
+                "eq. (8): rigid contacts have no springs to stretch");
   }
 }
 

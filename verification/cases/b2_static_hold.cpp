@@ -78,8 +78,8 @@ void threshold(Report& report) {
     for (const double excess : {0.01, -0.01}) {
       analytical::BlockOnPlane data;
       data.friction_angle = data.slope_angle + excess * analytical::degree;
-      report.near(text("phi - alpha = {} deg: holds", excess), method, excess > 0.0 ? 1.0 : 0.0, holds(settle_on(report, data, method), data), 0.0, "-",
-                  "phi > alpha holds, phi < alpha slides");
+      report.near(text("phi - alpha = {} deg: holds", excess), method, excess > 0.0 ? 1.0 : 0.0, holds(settle_on(report, data, method), data), 0.0,
+                  "-", "phi > alpha holds, phi < alpha slides");
     }
   }
 }

@@ -20,8 +20,8 @@ bool holds(const Report& report, const analytical::BlockOnPlane& data, const std
 }
 
 /// Largest cohesion [Pa] that does not hold, to `width`; NaN if the bracket does not hold above and fail below.
-double threshold(const Report& report, const analytical::BlockOnPlane& data, const std::string& method, CohesionBehaviour behaviour, double low, double high,
-                 double width) {
+double threshold(const Report& report, const analytical::BlockOnPlane& data, const std::string& method, CohesionBehaviour behaviour, double low,
+                 double high, double width) {
   if (holds(report, data, method, behaviour, low) || !holds(report, data, method, behaviour, high)) return not_measured();
   while (high - low > width) {
     const double middle = 0.5 * (low + high);
@@ -38,8 +38,8 @@ void cohesion_threshold(Report& report) {
   for (const std::string& method : all_methods) {
     for (const auto behaviour : {CohesionBehaviour::ductile, CohesionBehaviour::lost_on_opening}) {
       const double measured = threshold(report, data, method, behaviour, 0.9 * ductile, 1.1 * ductile, 1e-7 * ductile);
-      report.relative(behaviour == CohesionBehaviour::ductile ? "threshold, ductile" : "threshold, lost on opening", method, ductile, measured, 1e-6, "Pa",
-                      "c b = W (sin alpha - mu cos alpha); forces along the plane only, so no tilt enters");
+      report.relative(behaviour == CohesionBehaviour::ductile ? "threshold, ductile" : "threshold, lost on opening", method, ductile, measured, 1e-6,
+                      "Pa", "c b = W (sin alpha - mu cos alpha); forces along the plane only, so no tilt enters");
     }
   }
 
@@ -56,11 +56,13 @@ void cohesion_threshold(Report& report) {
       errors.push_back(std::abs(measured / brittle - 1.0));
       if (method == "soft" && factor == 1.0) soft_error = errors.back();
     }
-    report.order("threshold, lost on slip, error over compliance", method, compliance, errors, 0.9, 1.1, "rigid limit; elastic tilt: order 1 in 1/kn");
+    report.order("threshold, lost on slip, error over compliance", method, compliance, errors, 0.9, 1.1,
+                 "rigid limit; elastic tilt: order 1 in 1/kn");
   }
   const double measured = threshold(report, data, "hard", CohesionBehaviour::lost_on_slip, 0.9 * brittle, 1.1 * brittle, 1e-7 * brittle);
   // How two rigid sticking corners share T is open; the first pass of `hard` shares it with springs ten times as stiff as the joint.
-  report.relative("threshold, lost on slip", "hard", brittle, measured, 0.1 * soft_error, "Pa", "equal shares of T; a tenth of the elastic tilt of soft");
+  report.relative("threshold, lost on slip", "hard", brittle, measured, 0.1 * soft_error, "Pa",
+                  "equal shares of T; a tenth of the elastic tilt of soft");
 }
 
 }  // namespace openclose::verification

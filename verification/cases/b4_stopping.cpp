@@ -126,10 +126,11 @@ void ledger(Report& report, const Throw& t) {
     RigidSimulation simulation = report.simulate(scene_of(t, method, 1e-3, 1.5));
     const bool done = !history(simulation).empty();
     const EnergyLedger& l = simulation.ledger();
-    report.near(std::string(t.name) + ": energy ledger, imbalance over turnover", method, 0.0, done ? std::abs(l.imbalance()) / l.turnover : not_measured(), 1e-10,
-                "-", "work of the forces = change of kinetic energy");
+    report.near(std::string(t.name) + ": energy ledger, imbalance over turnover", method, 0.0,
+                done ? std::abs(l.imbalance()) / l.turnover : not_measured(), 1e-10, "-", "work of the forces = change of kinetic energy");
     const double kinetic = 0.5 * t.data.mass() * speed * speed;
-    // All but what springs and scheme take ends in friction; both are below the energy of the shear springs at their bound and of one step of sliding.
+    // All but what springs and scheme take ends in friction; both are below the energy of the shear springs at their bound and of one step of
+    // sliding.
     const double springs = std::pow(t.data.friction() * t.data.normal_weight(), 2) / (2.0 * t.data.shear_stiffness);
     const double slack = 2.0 * springs + t.data.friction() * t.data.normal_weight() * speed * 1e-3;
     if (t.data.slope_angle == 0.0) {

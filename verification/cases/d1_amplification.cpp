@@ -67,8 +67,8 @@ void matrix(Report& report, const std::string& method, double theta, double phas
   const double radius = !moves ? not_measured() : discriminant < 0.0 ? std::sqrt(det) : std::abs(0.5 * trace) + std::sqrt(discriminant);
   report.near(name + ": spectral radius", method, analytical::spectral_radius(step), radius, 1e-9, "-", "(1 + W^2/2)^(-1/2) for theta = 1, W < 4");
   if (phase < 4.0) {
-    report.near(name + ": period over exact", method, analytical::period_ratio(step), phase / std::atan2(std::sqrt(-discriminant), 0.5 * trace), 1e-9, "-",
-                "argument of the eigenvalues");
+    report.near(name + ": period over exact", method, analytical::period_ratio(step), phase / std::atan2(std::sqrt(-discriminant), 0.5 * trace), 1e-9,
+                "-", "argument of the eigenvalues");
   }
 }
 

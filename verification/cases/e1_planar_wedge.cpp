@@ -50,8 +50,8 @@ void planar_wedge(Report& report) {
   for (const double factor : {1.0, 0.5}) {
     const Scene scene = scene_of("hard", factor);
     const Safety s = safety_of(report, scene);
-    report.near(text("factor of safety with {} times the joint stiffness", factor), "hard", expected, s.factor, scene.strength_reduction.width + 1e-5, "-",
-                "rigid contact does not know the stiffness");
+    report.near(text("factor of safety with {} times the joint stiffness", factor), "hard", expected, s.factor, scene.strength_reduction.width + 1e-5,
+                "-", "rigid contact does not know the stiffness");
     report.near(text("penetration with {} times the joint stiffness", factor), "hard", 0.0, s.penetration, 1e-11, "m", "tolerance of the gap");
   }
 }

@@ -1,5 +1,5 @@
-// E6, the mechanism behind it: two blocks slide as a slab over two fixed ones, and all four meet exactly in one corner. A contact between the diagonal
-// blocks would lock the slab; without one it slides as eq. (8) says.
+// E6, the mechanism behind it: two blocks slide as a slab over two fixed ones, and all four meet exactly in one corner. A contact between the
+// diagonal blocks would lock the slab; without one it slides as eq. (8) says.
 #include <cmath>
 
 #include "harness.h"
@@ -49,7 +49,8 @@ void four_block_corner(Report& report) {
   const double expected = analytical::sliding_displacement(data, 0.5);
   for (const double degrees : {90.0, 60.0, 120.0, 45.0, 135.0, 30.0, 150.0}) {
     const std::string name = text("slab over a joint at {} deg: ", degrees);
-    // The bounces of the unloaded start change the velocity for good, by a share of g/w with w^2 = (sum of kn)/m; a lock would not fade with stiffness.
+    // The bounces of the unloaded start change the velocity for good, by a share of g/w with w^2 = (sum of kn)/m; a lock would not fade with
+    // stiffness.
     for (const double factor : {4.0, 64.0}) {
       analytical::BlockOnPlane stiffer = data;
       stiffer.normal_stiffness *= factor;
@@ -61,8 +62,8 @@ void four_block_corner(Report& report) {
       }
     }
     const double dt = 1e-3;
-    report.near(name + "displacement", "hard", expected, slide(report, scene_of(data, degrees, "hard", dt), data),
-                0.5 / dt * tolerance::hard_gap_m, "m", "eq. (8); tolerance: what each step may leave in a contact");
+    report.near(name + "displacement", "hard", expected, slide(report, scene_of(data, degrees, "hard", dt), data), 0.5 / dt * tolerance::hard_gap_m,
+                "m", "eq. (8); tolerance: what each step may leave in a contact");
   }
 }
 
