@@ -1,0 +1,63 @@
+# The front door. Needs nothing but make; what else is missing, the targets install. Settings: JOBS=2 (processes), PYTHON=/path/to/python3.
+
+JOBS ?= $(shell nproc)
+export JOBS PYTHON
+
+BUILD := build/release
+OPENCLOSE := $(BUILD)/openclose
+REFERENCE := $(BUILD)/analytical/openclose-reference
+VERIFY := $(BUILD)/verification/openclose-verify
+PAPER_RESULTS := results/paper
+COMPARISON := $(PAPER_RESULTS)/comparison.csv
+NULL_SOLVER := results/verify-null-solver.txt
+
+.DEFAULT_GOAL := help
+.PHONY: help build test verify reproduce sanitize clean packages figure-packages
+
+help: ## print the targets
+	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(firstword $(MAKEFILE_LIST)) | while read -r target text; do printf '  make %-10s %s\n' "$$target" "$$text"; done
+
+build: packages ## install missing packages, configure and compile everything (build/release)
+	@scripts/build release
+
+test: packages ## build and run the unit tests
+	@scripts/build release openclose_tests
+	@ctest --preset release --parallel $(JOBS)
+
+# The null solver comes first, so that the count of the real checks is the last line.
+verify: build ## build, run the unit tests and the verification against closed forms (results/verify.csv); the exit status says pass or fail
+	ctest --preset release --parallel $(JOBS)
+	@mkdir -p results
+	$(VERIFY) --null-solver >$(NULL_SOLVER) || { grep ' pass$$' $(NULL_SOLVER); tail -n 2 $(NULL_SOLVER); exit 1; }
+	@tail -n 2 $(NULL_SOLVER) | head -n 1
+	$(VERIFY) --results results
+
+reproduce: figure-packages $(COMPARISON) ## build, run the paper's examples, draw the figures and print the comparison (results/paper)
+	$(if $(comparison_printed),,@python=$$(scripts/find-python) && "$$python" paper/reproduce.py --print-only --results $(PAPER_RESULTS))
+
+sanitize: packages ## build with the address and undefined-behaviour sanitizers (build/sanitize) and run the unit tests
+	@scripts/build sanitize openclose_tests
+	@ctest --preset sanitize --parallel $(JOBS)
+
+clean: ## remove what these targets have made; other results stay
+	rm -rf build $(PAPER_RESULTS) results/verify.csv $(NULL_SOLVER)
+
+packages:
+	@scripts/install-packages build
+
+figure-packages:
+	@scripts/install-packages build figures
+
+# make only has to know that something is newer; what to compile, CMake knows. A binary that comes out untouched leaves the comparison as it is.
+BUILD_FILES := CMakeLists.txt $(shell find cmake -type f)
+$(OPENCLOSE): $(BUILD_FILES) $(shell find src -type f) | figure-packages
+	@scripts/build release openclose
+
+# After the other, because two builds in one folder at a time get into each other's way.
+$(REFERENCE): $(BUILD_FILES) $(shell find analytical -type f) | figure-packages $(OPENCLOSE)
+	@scripts/build release openclose_reference
+
+# The script prints the comparison, so `reproduce` need not do it again.
+$(COMPARISON): $(OPENCLOSE) $(REFERENCE) $(shell find paper -type f -not -name '*.pyc')
+	$(eval comparison_printed := yes)
+	@python=$$(scripts/find-python) && "$$python" paper/reproduce.py --openclose $(OPENCLOSE) --reference $(REFERENCE) --results $(PAPER_RESULTS)

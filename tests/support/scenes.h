@@ -1,0 +1,121 @@
+// Small scenes that several test folders share, built in memory.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "openclose/scene/scene.h"
+
+namespace openclose::test {
+
+inline const std::array<std::string, 3> all_methods = {"soft", "hard", "shi"};
+inline constexpr double degree = std::numbers::pi / 180.0;
+
+inline std::vector<Vec2> rectangle(double x, double y, double width, double height) {
+  return {{x, y}, {x + width, y}, {x + width, y + height}, {x, y + height}};
+}
+
+/// The polygon turned by `angle` [rad] about the origin, then shifted.
+inline std::vector<Vec2> placed(std::vector<Vec2> polygon, double angle, const Vec2& shift = Vec2::Zero()) {
+  for (Vec2& v : polygon) v = Vec2(std::cos(angle) * v.x() - std::sin(angle) * v.y(), std::sin(angle) * v.x() + std::cos(angle) * v.y()) + shift;
+  return polygon;
+}
+
+inline BlockInput free_block(const std::string& name, std::vector<Vec2> vertices) {
+  BlockInput block;
+  block.name = name;
+  block.vertices = std::move(vertices);
+  block.where = {"scene.toml", 11};
+  return block;
+}
+
+inline BlockInput fixed_block(const std::string& name, std::vector<Vec2> vertices) {
+  BlockInput block = free_block(name, std::move(vertices));
+  block.fixed = true;
+  return block;
+}
+
+/// One material of 2500 kg/m3, a joint without cohesion, steps of 1 ms, start "unloaded"; no blocks.
+inline Scene empty_scene() {
+  Scene scene;
+  scene.where = {"scene.toml", 0};
+  scene.materials = {{"rock", 2500.0}};
+  JointProperties joint;
+  joint.normal_stiffness = 1e9;
+  joint.shear_stiffness = 4e8;
+  joint.friction_angle = 30.0 * degree;
+  scene.joints = {joint};
+  scene.method.contact_where = {"scene.toml", 7};
+  scene.method.start = Start::unloaded;
+  scene.step.dt = 1e-3;
+  return scene;
+}
+
+/// Gravity alone on one block of 2 m x 1 m (5000 kg), no contact within reach.
+inline Scene falling_block() {
+  Scene scene = empty_scene();
+  scene.blocks = {free_block("block", rectangle(0.0, 0.0, 2.0, 1.0))};
+  return scene;
+}
+
+/// The same block on a fixed base of 20 m: two contacts of 1 m tributary length.
+inline Scene block_on_base() {
+  Scene scene = empty_scene();
+  scene.blocks = {fixed_block("base", rectangle(-10.0, -1.0, 20.0, 1.0)), free_block("block", rectangle(0.0, 0.0, 2.0, 1.0))};
+  return scene;
+}
+
+inline constexpr double block_mass = 5000.0;           // [kg/m]
+inline constexpr double block_weight = 5000.0 * 9.81;  // [N/m]
+inline constexpr double block_edge = 2.0;              // [m] the block stands on
+
+/// The same, tilted by `slope` [rad] so that downhill is to the right.
+inline Scene block_on_incline(double slope) {
+  Scene scene = block_on_base();
+  for (BlockInput& block : scene.blocks) block.vertices = placed(block.vertices, -slope);
+  return scene;
+}
+
+inline Vec2 downhill(double slope) {
+  return {std::cos(slope), -std::sin(slope)};
+}
+inline Vec2 off_slope(double slope) {
+  return {std::sin(slope), std::cos(slope)};
+}
+
+/// A column of n of these blocks on the base, each shifted against the one below by 0.3 m, to and fro.
+inline Scene column_of_blocks(int n) {
+  Scene scene = empty_scene();
+  scene.blocks = {fixed_block("base", rectangle(-10.0, -1.0, 20.0, 1.0))};
+  for (int i = 0; i < n; ++i) scene.blocks.push_back(free_block("block " + std::to_string(i), rectangle(i % 2 == 0 ? 0.0 : 0.3, i, 2.0, 1.0)));
+  return scene;
+}
+
+/// Three blocks that fall on a base and on each other, spinning: contacts open, stick, slide and change their corners within half a second.
+inline Scene tumbling_blocks() {
+  Scene scene = empty_scene();
+  scene.blocks = {fixed_block("base", rectangle(-10.0, -1.0, 20.0, 1.0)), free_block("left", placed(rectangle(-0.5, -0.5, 1.0, 1.0), 0.3, {0.0, 0.9})),
+                  free_block("right", placed(rectangle(-0.4, -0.6, 0.8, 1.2), -0.5, {1.4, 1.1})),
+                  free_block("top", placed({{-0.6, -0.4}, {0.7, -0.4}, {0.0, 0.6}}, 0.2, {0.7, 2.2}))};
+  scene.blocks[1].velocity = {1.5, -1.0};
+  scene.blocks[1].angular_velocity = -2.0;
+  scene.blocks[2].velocity = {-1.0, -1.0};
+  scene.blocks[2].angular_velocity = 1.0;
+  scene.blocks[3].velocity = {0.0, -4.0};
+  scene.joints[0].normal_stiffness = 1e8;
+  scene.joints[0].shear_stiffness = 5e7;
+  return scene;
+}
+
+/// `shi` with the joint's own springs for penalties, so that it differs from `soft` in its way of solving only.
+inline void use_joint_springs_as_penalty(Scene& scene) {
+  scene.method.penalty = scene.joints[0].normal_stiffness;
+  scene.method.penalty_shear_ratio = scene.joints[0].shear_stiffness / scene.joints[0].normal_stiffness;
+  scene.method.penetration_tolerance = 1.0;
+}
+
+}  // namespace openclose::test
