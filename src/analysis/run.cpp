@@ -88,16 +88,19 @@ RunResult run(Simulation<N>& simulation, const RunObserver<N>& observer) {
   if (!result.converged) return result;
 
   const Scene& scene = simulation.scene();
+  // The last step is shorter where the end is no multiple of the step.
   const long steps = std::lround(std::ceil(scene.end_time / scene.step.dt * (1.0 - 1e-12)));
   const long every = std::max(1L, std::lround(scene.output_every / scene.step.dt));
   for (long i = 1; i <= steps; ++i) {
-    if (!simulation.advance(scene.step.dt)) {
+    const double begin = static_cast<double>(i - 1) * scene.step.dt;
+    const bool whole = begin + scene.step.dt <= scene.end_time * (1.0 + 1e-12);
+    if (!simulation.advance(whole ? scene.step.dt : scene.end_time - begin)) {
       result.converged = false;
       result.reason = simulation.reason();
       if (observer.output) observer.output(simulation);
       return result;
     }
-    simulation.set_time(static_cast<double>(i) * scene.step.dt);
+    simulation.set_time(whole ? static_cast<double>(i) * scene.step.dt : scene.end_time);
     if (observer.output && (i % every == 0 || i == steps)) observer.output(simulation);
     if (observer.progress) observer.progress(static_cast<double>(i) / static_cast<double>(steps));
   }
