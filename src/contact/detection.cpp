@@ -27,7 +27,10 @@ class ContactIndex {
  public:
   explicit ContactIndex(const std::vector<Contact>& contacts) : contacts_(contacts) {
     index_.reserve(contacts.size());
-    for (std::size_t i = 0; i < contacts.size(); ++i) index_.emplace(key(contacts[i].vertex, contacts[i].edge), i);
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      index_.emplace(key(contacts[i].vertex, contacts[i].edge), i);
+      if (contacts[i].status != ContactStatus::open) closed_of_[contacts[i].vertex].push_back(i);
+    }
   }
   /// Position in the list, or -1.
   std::ptrdiff_t find(int vertex, int edge) const {
@@ -38,11 +41,24 @@ class ContactIndex {
     const std::ptrdiff_t i = find(vertex, edge);
     return i >= 0 && contacts_[i].status != ContactStatus::open;
   }
+  /// [m] what the contacts of this vertex have closed.
+  double closure(int vertex) const {
+    double deepest = 0.0;
+    for_closed(vertex, [&](const Contact& c) { deepest = std::max(deepest, -c.gap); });
+    return deepest;
+  }
+  template <class F>
+  void for_closed(int vertex, F f) const {
+    const auto it = closed_of_.find(vertex);
+    if (it == closed_of_.end()) return;
+    for (std::size_t i : it->second) f(contacts_[i]);
+  }
 
  private:
   static std::uint64_t key(int vertex, int edge) { return (static_cast<std::uint64_t>(vertex) << 32) | static_cast<std::uint32_t>(edge); }
   const std::vector<Contact>& contacts_;
   std::unordered_map<std::uint64_t, std::size_t> index_;
+  std::unordered_map<int, std::vector<std::size_t>> closed_of_;
 };
 
 /// Narrow phase between the blocks of one pair. Collects contacts; a vertex-edge pair found twice gets the sum of the lengths.
@@ -118,6 +134,7 @@ class NarrowPhase {
         if (edge.gap(p) > reach_) return;
         const double along = edge.along(p);
         if (along < -tolerance::edge_end_m || along > edge.length + tolerance::edge_end_m) return;
+        if (edge.gap(p) > -tolerance::shortest_edge_m && passes_over(vertex_block, v, edge_block, e, along < 0.5 * edge.length)) return;
         const Vec2 ahead = system_.arm(system_.next(v)) - system_.arm(v), back = system_.arm(system_.previous(v)) - system_.arm(v);
         const double weight =
             std::max(parallel_weight(-ahead.normalized().dot(edge.direction)), parallel_weight(back.normalized().dot(edge.direction)));
@@ -150,6 +167,25 @@ class NarrowPhase {
     contact.length = length;
     contact.gap = gap;
     found_->push_back(contact);
+  }
+
+  /// [m] How far a corner may lie below an edge and still ride over its end; see tolerance::seam_height_m.
+  double seam(int v, int w) const {
+    return tolerance::seam_height_m + tolerance::seam_closures * std::max(previous_.closure(v), previous_.closure(w));
+  }
+
+  /// A corner in front of edge e does not run into it where corner and the edge's near end pass over each other: blocks that lie flush but for the
+  /// closures of their contacts must not catch on the seams between them.
+  bool passes_over(int vertex_block, int v, int edge_block, int e, bool near_start) const {
+    const int end = near_start ? e : system_.next(e);
+    if (system_.is_reflex(end)) return false;
+    const double height = seam(v, end);
+    // The corner rides on the other edge of that end ...
+    const Edge neighbour = edge_at(edge_block, near_start ? system_.previous(e) : system_.next(e));
+    if (outside(v, neighbour) && neighbour.gap(system_.position(vertex_block, v)) > -height) return true;
+    // ... or the end rides on one of the corner's edges: it lies behind neither.
+    const Vec2 q = system_.position(edge_block, end);
+    return edge_at(vertex_block, v).gap(q) > -height && edge_at(vertex_block, system_.previous(v)).gap(q) > -height;
   }
 
   /// Both sides of the corner leave the edge's half-plane: only then can the corner touch the edge from outside.

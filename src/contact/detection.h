@@ -9,6 +9,8 @@
 //     edge to a collinear one of the next block.
 // A vertex that faces e through both rules, or through both its edges, has one contact with the sum of the lengths.
 //
+// A lone corner that slides over the seam of two blocks is not stopped by the face of the next one (see tolerance::seam_height_m).
+//
 // At four-block corners the diagonal blocks have facing edges without overlap and no lone corner, hence no contact: they cannot lock.
 #pragma once
 

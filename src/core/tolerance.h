@@ -25,6 +25,11 @@ inline constexpr double parallel_none_rad = 15.0 * 3.14159265358979323846 / 180.
 /// tolerance of the gap can make of edges that only meet end to end; it lies far below any joint that matters.
 inline constexpr double shortest_overlap_m = 1e-6;
 
+/// [m] and [-] A corner rides over the end of an edge that stands up no higher before it than this plus this many times what its contacts have closed:
+/// two blocks whose faces were flush in the drawing differ by their closures under load. A real step of a millimetre is met once the corner is behind it.
+inline constexpr double seam_height_m = 1e-3;
+inline constexpr double seam_closures = 2.0;
+
 /// [m] A corner this far beyond the end of an edge still counts as opposite to it: corners that coincide in a drawing differ by rounding.
 inline constexpr double edge_end_m = 1e-6;
 
