@@ -98,7 +98,8 @@ inline Scene column_of_blocks(int n) {
 /// Three blocks that fall on a base and on each other, spinning: contacts open, stick, slide and change their corners within half a second.
 inline Scene tumbling_blocks() {
   Scene scene = empty_scene();
-  scene.blocks = {fixed_block("base", rectangle(-10.0, -1.0, 20.0, 1.0)), free_block("left", placed(rectangle(-0.5, -0.5, 1.0, 1.0), 0.3, {0.0, 0.9})),
+  scene.blocks = {fixed_block("base", rectangle(-10.0, -1.0, 20.0, 1.0)),
+                  free_block("left", placed(rectangle(-0.5, -0.5, 1.0, 1.0), 0.3, {0.0, 0.9})),
                   free_block("right", placed(rectangle(-0.4, -0.6, 0.8, 1.2), -0.5, {1.4, 1.1})),
                   free_block("top", placed({{-0.6, -0.4}, {0.7, -0.4}, {0.0, 0.6}}, 0.2, {0.7, 2.2}))};
   scene.blocks[1].velocity = {1.5, -1.0};
