@@ -8,7 +8,9 @@
 //   scheme    (theta - 1/2) [k (p1 - p0)^2 + k_s (u1 - u0)^2] + theta N1 g0+ - (1 - theta) N0 g1+    (for Shi's theta = 1 half k times the square)
 //             and what the finite rotation of a step leaves between the path of its forces and the change of gap and slip
 //   friction  -(theta T1 + (1 - theta) T0) (slip - change of u)
-// Hard contacts store nothing: minus their normal work is the loss of impacts, minus their shear work is friction.
+// The kinetic energy is that of the present velocities, so that motion which comes from elsewhere shows as an imbalance. With mid-step velocities
+// (`hard`) all entries stand at the middle of the last step. Hard contacts store nothing: minus their normal work is the loss of impacts, minus their
+// shear work is friction.
 #pragma once
 
 #include "openclose/integrator/enforcement.h"

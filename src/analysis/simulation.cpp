@@ -36,9 +36,9 @@ Simulation<N>::Simulation(const Scene& scene, std::unique_ptr<Enforcement<N>> en
       enforcement_(std::move(enforcement)),
       scheme_(enforcement_->make_time_scheme(scene.method)),
       // Two vertices may approach each other by the largest displacement each.
-      detector_(2.0 * scene.step.max_displacement, scene.method.skip_search) {
-  for (int b = 0; b < system_.block_count(); ++b) output_velocity_.push_back(system_.velocity(b));
-}
+      detector_(2.0 * scene.step.max_displacement, scene.method.skip_search),
+      output_velocity_(system_.state().velocity),
+      start_kinetic_energy_(system_.kinetic_energy()) {}
 
 template <int N>
 double Simulation<N>::stored_contact_energy() const {
@@ -169,6 +169,7 @@ void Simulation<N>::accept(const StepProblem<N>& problem, const StepSolution<N>&
   }
   for (int b : system_.free_blocks()) system_.advance(b, solution.of(system_, b));
   if (!problem.statics) scheme_->accept(problem.dt);
+  ledger_.kinetic = system_.kinetic_energy() - start_kinetic_energy_;
   time_ += problem.dt;
   ++step_counters_.steps;
   contacts_current_ = false;
@@ -213,26 +214,33 @@ bool Simulation<N>::advance(double dt) {
 }
 
 template <int N>
+void Simulation<N>::restart_scheme() {
+  // A new scheme starts from whole-step velocities.
+  for (int b : system_.free_blocks()) system_.set_velocity(b, output_velocity_[b]);
+  scheme_ = enforcement_->make_time_scheme(scene_.method);
+  start_kinetic_energy_ = system_.kinetic_energy() - ledger_.kinetic;
+}
+
+template <int N>
 void Simulation<N>::restart_clock() {
   time_ = 0.0;
   ledger_ = EnergyLedger();
   max_penetration_ = 0.0;
-  scheme_ = enforcement_->make_time_scheme(scene_.method);
+  restart_scheme();
 }
 
 template <int N>
 void Simulation<N>::restore_velocities() {
   const BlockSystem<N> initial(scene_);
-  for (int b = 0; b < system_.block_count(); ++b) {
-    system_.set_velocity(b, initial.velocity(b));
-    output_velocity_[b] = initial.velocity(b);
-  }
+  output_velocity_ = initial.state().velocity;
 }
 
 template <int N>
 typename Simulation<N>::Snapshot Simulation<N>::save() {
   contacts();
-  return {system_.state(), contacts_};
+  Snapshot snapshot{system_.state(), contacts_};
+  snapshot.blocks.velocity = output_velocity_;
+  return snapshot;
 }
 
 template <int N>
@@ -241,8 +249,8 @@ void Simulation<N>::restore(const Snapshot& snapshot) {
   contacts_ = snapshot.contacts;
   detector_.search(system_);
   contacts_current_ = true;
-  scheme_ = enforcement_->make_time_scheme(scene_.method);
-  for (int b = 0; b < system_.block_count(); ++b) output_velocity_[b] = system_.velocity(b);
+  output_velocity_ = snapshot.blocks.velocity;
+  restart_scheme();
 }
 
 template class Simulation<3>;

@@ -74,11 +74,14 @@ class Simulation {
 
   /// Declares the present moment the start: time 0, ledger empty. Positions, contacts and velocities stay.
   void restart_clock();
-  /// Gives the blocks the velocities of the scene (settling has stopped them).
+  /// Gives block b this velocity at time(); to be followed by restart_clock().
+  void set_velocity(int b, const Unknowns& velocity) { output_velocity_[b] = velocity; }
+  /// Gives the blocks the velocities of the scene (settling has stopped them); to be followed by restart_clock().
   void restore_velocities();
   /// The blocks have been moved by other means: contacts are searched anew, keeping their history.
   void positions_changed() { contacts_current_ = false; }
 
+  /// Positions, contacts and the velocities at time().
   struct Snapshot {
     typename BlockSystem<N>::State blocks;
     std::vector<Contact> contacts;
@@ -88,6 +91,7 @@ class Simulation {
 
  private:
   void detect();
+  void restart_scheme();
   bool moved_too_far(const StepSolution<N>& solution) const;
   double unbalanced_force(const StepProblem<N>& problem, const StepSolution<N>& solution) const;
   void accept(const StepProblem<N>& problem, const StepSolution<N>& solution);
@@ -107,6 +111,7 @@ class Simulation {
   double time_ = 0.0;
   std::string reason_;
   EnergyLedger ledger_;
+  double start_kinetic_energy_ = 0.0;  ///< [J]
   double max_penetration_ = 0.0;
   StepCounters step_counters_;
   StageTimes stage_times_;

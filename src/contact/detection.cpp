@@ -22,14 +22,17 @@ double parallel_weight(double cosine) {
   return (tolerance::parallel_none_rad - std::acos(cosine)) / (tolerance::parallel_none_rad - tolerance::parallel_full_rad);
 }
 
-/// Contacts by their vertex and edge.
+/// Contacts by tancestor vertex and edge.
 class ContactIndex {
  public:
   explicit ContactIndex(const std::vector<Contact>& contacts) : contacts_(contacts) {
     index_.reserve(contacts.size());
     for (std::size_t i = 0; i < contacts.size(); ++i) {
       index_.emplace(key(contacts[i].vertex, contacts[i].edge), i);
-      if (contacts[i].status != ContactStatus::open) closed_of_[contacts[i].vertex].push_back(i);
+      if (contacts[i].status == ContactStatus::open) continue;
+      closed_.emplace(contacts[i].vertex, i);
+      double& closure = closure_[contacts[i].vertex];
+      closure = std::max(closure, -contacts[i].gap);
     }
   }
   /// Position in the list, or -1.
@@ -43,22 +46,22 @@ class ContactIndex {
   }
   /// [m] what the contacts of this vertex have closed.
   double closure(int vertex) const {
-    double deepest = 0.0;
-    for_closed(vertex, [&](const Contact& c) { deepest = std::max(deepest, -c.gap); });
-    return deepest;
+    const auto it = closure_.find(vertex);
+    return it == closure_.end() ? 0.0 : it->second;
   }
+  bool closed(int vertex) const { return closure_.contains(vertex); }
   template <class F>
   void for_closed(int vertex, F f) const {
-    const auto it = closed_of_.find(vertex);
-    if (it == closed_of_.end()) return;
-    for (std::size_t i : it->second) f(contacts_[i]);
+    const auto [begin, end] = closed_.equal_range(vertex);
+    for (auto it = begin; it != end; ++it) f(contacts_[it->second]);
   }
 
  private:
   static std::uint64_t key(int vertex, int edge) { return (static_cast<std::uint64_t>(vertex) << 32) | static_cast<std::uint32_t>(edge); }
   const std::vector<Contact>& contacts_;
   std::unordered_map<std::uint64_t, std::size_t> index_;
-  std::unordered_map<int, std::vector<std::size_t>> closed_of_;
+  std::unordered_multimap<int, std::size_t> closed_;  ///< by vertex
+  std::unordered_map<int, double> closure_;           ///< [m] by vertex, of closed contacts
 };
 
 /// Narrow phase between the blocks of one pair. Collects contacts; a vertex-edge pair found twice gets the sum of the lengths.
@@ -110,15 +113,17 @@ class NarrowPhase {
     const double overlap = std::min(a_high, b_high) - std::max(a_low, b_low);
     if (overlap < tolerance::shortest_overlap_m) return;
     const double length = 0.5 * weight * overlap;
-    add_end(block_a, a_end, a, block_b, b, b, a_low >= b_low, length);
-    add_end(block_a, a, a, block_b, b_end, b, a_high <= b_high, length);
+    add_end(block_a, a_end, a, block_b, b, b, a_low >= b_low, std::abs(a_low - b_low), length);
+    add_end(block_a, a, a, block_b, b_end, b, a_high <= b_high, std::abs(a_high - b_high), length);
   }
 
-  /// One end of an overlap: vertex va of edge a on edge b, or vertex vb of edge b on edge a. A reflex vertex has material all around and touches
-  /// nothing; the other block's vertex, which lies in that notch, does.
-  void add_end(int block_a, int va, int a, int block_b, int vb, int b, bool a_is_inside, double length) {
-    const bool use_a = system_.is_reflex(vb) || (a_is_inside && !system_.is_reflex(va));
-    if (use_a) {
+  /// One end of an overlap: vertex va of edge a on edge b, or vertex vb of edge b on edge a; `beyond` [m] is how far the other one lies outside the
+  /// overlap. A reflex vertex has material all around and touches nothing: the other block's vertex stands in, if it leans into that notch's wall and
+  /// is not far off.
+  void add_end(int block_a, int va, int a, int block_b, int vb, int b, bool a_is_inside, double beyond, double length) {
+    const bool inside_is_reflex = system_.is_reflex(a_is_inside ? va : vb);
+    if (inside_is_reflex && beyond > seam(va, vb)) return;
+    if (a_is_inside != inside_is_reflex) {
       add(block_a, va, block_b, b, length);
     } else {
       add(block_b, vb, block_a, a, length);
@@ -133,8 +138,10 @@ class NarrowPhase {
         const Edge edge = edge_at(edge_block, e);
         if (edge.gap(p) > reach_) return;
         const double along = edge.along(p);
-        if (along < -tolerance::edge_end_m || along > edge.length + tolerance::edge_end_m) return;
-        if (edge.gap(p) > -tolerance::shortest_edge_m && passes_over(vertex_block, v, edge_block, e, along < 0.5 * edge.length)) return;
+        const bool near_start = along < 0.5 * edge.length;
+        const double beyond = near_start ? -along : along - edge.length;
+        if (beyond > 0.0 && beyond > end_margin(v, edge)) return;
+        if (edge.gap(p) > -tolerance::shortest_edge_m && passes_over(vertex_block, v, edge_block, e, near_start)) return;
         const Vec2 ahead = system_.arm(system_.next(v)) - system_.arm(v), back = system_.arm(system_.previous(v)) - system_.arm(v);
         const double weight =
             std::max(parallel_weight(-ahead.normalized().dot(edge.direction)), parallel_weight(back.normalized().dot(edge.direction)));
@@ -175,17 +182,33 @@ class NarrowPhase {
   }
 
   /// A corner in front of edge e does not run into it where corner and the edge's near end pass over each other: blocks that lie flush but for the
-  /// closures of their contacts must not catch on the seams between them.
+  /// closures of tancestor contacts must not catch on the seams between them. One of the two must be sliding on something already, and the edge must
+  /// turn away from what is slid on.
   bool passes_over(int vertex_block, int v, int edge_block, int e, bool near_start) const {
     const int end = near_start ? e : system_.next(e);
-    if (system_.is_reflex(end)) return false;
+    const bool slides = previous_.closed(v) || previous_.closed(end);
+    if (!slides || previous_.was_closed(v, e) || system_.is_reflex(end)) return false;
     const double height = seam(v, end);
+    const Vec2 p = system_.position(vertex_block, v), q = system_.position(edge_block, end);
     // The corner rides on the other edge of that end ...
     const Edge neighbour = edge_at(edge_block, near_start ? system_.previous(e) : system_.next(e));
-    if (outside(v, neighbour) && neighbour.gap(system_.position(vertex_block, v)) > -height) return true;
-    // ... or the end rides on one of the corner's edges: it lies behind neither.
-    const Vec2 q = system_.position(edge_block, end);
-    return edge_at(vertex_block, v).gap(q) > -height && edge_at(vertex_block, system_.previous(v)).gap(q) > -height;
+    if (turns_away(edge_at(edge_block, e), neighbour) && outside(v, neighbour) && neighbour.gap(p) > -height) return true;
+    // ... or the end rides on one of the corner's edges and lies behind neither.
+    const Edge ahead = edge_at(vertex_block, v), back = edge_at(vertex_block, system_.previous(v));
+    return (outside(end, ahead) || outside(end, back)) && ahead.gap(q) > -height && back.gap(q) > -height;
+  }
+
+  static bool turns_away(const Edge& a, const Edge& b) {
+    static const double bend = std::cos(tolerance::parallel_none_rad);
+    return std::abs(a.direction.dot(b.direction)) < bend;
+  }
+
+  /// [m] How far beyond an end of the edge a corner still counts as opposite to it: where the corner leans on something else there, a notch's other
+  /// wall or another block, by what its contacts have closed.
+  double end_margin(int v, const Edge& edge) const {
+    bool leans = false;
+    previous_.for_closed(v, [&](const Contact& c) { leans |= turns_away(edge_at(c.edge_block, c.edge), edge); });
+    return tolerance::edge_end_m + (leans ? tolerance::seam_closures * previous_.closure(v) : 0.0);
   }
 
   /// Both sides of the corner leave the edge's half-plane: only then can the corner touch the edge from outside.
@@ -241,13 +264,13 @@ void inherit(const Contact& from, Contact& to) {
 /// corner that lay on the edge has passed its end and the edge's own corner lies on the other block's edge instead.
 template <int N>
 bool continues(const BlockSystem<N>& system, const Contact& before, const Contact& now) {
-  if (now.vertex == before.vertex) {
-    const auto direction = [&](int e) { return (system.arm(system.next(e)) - system.arm(e)).normalized(); };
-    return direction(now.edge).dot(direction(before.edge)) > std::cos(tolerance::parallel_none_rad);
-  }
+  static const double aligned = std::cos(tolerance::parallel_none_rad);
+  const auto direction = [&](int e) { return (system.arm(system.next(e)) - system.arm(e)).normalized(); };
+  const double cosine = direction(now.edge).dot(direction(before.edge));
+  if (now.vertex == before.vertex) return cosine > aligned;
   const bool edge_end_took_over = now.vertex == before.edge || now.vertex == system.next(before.edge);
   const bool edge_belongs_to_corner = now.edge == before.vertex || system.next(now.edge) == before.vertex;
-  return edge_end_took_over && edge_belongs_to_corner;
+  return edge_end_took_over && edge_belongs_to_corner && cosine < -aligned;
 }
 
 }  // namespace
@@ -323,13 +346,15 @@ void Detector<N>::update(const BlockSystem<N>& system, const JointTable& joints,
     // Longest first: where a corner lies on the seam of two edges the one that carries it inherits.
     std::sort(born.begin(), born.end(), [&](std::size_t i, std::size_t j) { return found[i].length > found[j].length; });
     for (const std::size_t i : born) {
+      std::ptrdiff_t ancestor = -1;
       for (std::size_t k = 0; k < contacts.size(); ++k) {
         if (taken[k] || !continues(system, contacts[k], found[i])) continue;
-        inherit(contacts[k], found[i]);
-        taken[k] = 1;
-        ++counters_.transfers;
-        break;
+        if (ancestor < 0 || contacts[k].length > contacts[ancestor].length) ancestor = static_cast<std::ptrdiff_t>(k);
       }
+      if (ancestor < 0) continue;
+      inherit(contacts[ancestor], found[i]);
+      taken[ancestor] = 1;
+      ++counters_.transfers;
     }
   }
   contacts = std::move(found);

@@ -1,4 +1,5 @@
-// Gap and slip of a contact as functions of the unknowns of its two blocks, with exact first and second derivatives.
+// Gap and slip of a contact as functions of the unknowns of its two blocks, with exact first and second derivatives (for Shi's linear
+// rotation they are exact where the step starts).
 //
 // With p the vertex, e the first point of the edge, n its outward normal, t its direction: gap g = n . (p - e), slip s = t . (p - e), the edge
 // turning with its block. Their gradients are the generalised forces of unit forces n, t on the vertex's block and -n, -t on the edge's block, both

@@ -90,9 +90,10 @@ void Newton<N>::evaluate(const Eigen::VectorXd& d) {
     if (block.rotation_locked) r[Motion<N>::rotation_index] = 0.0;
     residual_.template segment<N>(at) = r;
     const Unknowns moved = problem_->inertia * block.mass.cwiseProduct(drift.cwiseAbs() + db.cwiseAbs());
+    const double magnitude = problem_->external.magnitude(system, b, db);
     rounding_[block.equation] +=
-        rounding_units * eps * (Motion<N>::largest_force(moved, block.radius) + Motion<N>::largest_force(external, block.radius));
-    force_scale_ = std::max(force_scale_, Motion<N>::largest_force(external, block.radius));
+        rounding_units * eps * (Motion<N>::largest_force(moved, block.radius) + magnitude + problem_->external.spring_scale(system, b));
+    force_scale_ = std::max(force_scale_, magnitude);
   }
 }
 
@@ -296,17 +297,14 @@ void Newton<N>::solve(const StepProblem<N>& problem, const std::vector<ContactSp
 
 template <int N>
 Eigen::MatrixXd Newton<N>::stiffness(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs) {
-  prepare(problem, springs);
+  StepProblem<N> static_problem = problem;
+  static_problem.inertia = 0.0;
+  static_problem.end_weight = 1.0;
+  prepare(static_problem, springs);
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(N * problem.system.free_count());
-  start_force_ = zero;
   evaluate(zero);
   assemble(zero, Tangent::exact);
-  Eigen::MatrixXd k = matrix_.dense();
-  for (int b : problem.system.free_blocks()) {
-    const auto& block = problem.system.block(b);
-    k.block<N, N>(N * block.equation, N * block.equation) -= (problem.inertia * block.mass).asDiagonal().toDenseMatrix();
-  }
-  return k;
+  return matrix_.dense();
 }
 
 template <int N>

@@ -16,7 +16,8 @@ class Newton {
   /// Solves for solution.d, starting from the value it has; fills its contacts. iterations is added to.
   void solve(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs, StepSolution<N>& solution);
 
-  /// Minus the derivative of all forces but inertia by the unknowns, at the start of the step, contacts in the status they have.
+  /// Minus the derivative of all forces but inertia by the unknowns, at the start of the step, contacts in the status they have. Rows and columns of
+  /// locked rotations are those of the unit matrix.
   Eigen::MatrixXd stiffness(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs);
 
   /// [N] forces of contacts, gravity, loads and supports at the present position.

@@ -33,8 +33,9 @@ class TimeScheme {
 template <int N>
 std::unique_ptr<TimeScheme<N>> make_theta_scheme(double theta);
 
-/// Velocities at mid-steps: v = d/dt, M (v_new - v_old) = h F with h = (dt + previous dt)/2, half a step at the start. Order 2 and exact for constant
-/// forces; a gap that is held has no velocity, where 2 d/dt - v would ring for ever. Used by `hard`.
+/// Velocities at mid-steps: v = d/dt, M (v_new - v_old) = h F with h = (dt + previous dt)/2, half a step at the start. Exact for constant forces, of
+/// order 1 for forces that change with the position, which are taken at the end of the step; a gap that is held has no velocity, where 2 d/dt - v
+/// would ring for ever. Used by `hard`.
 template <int N>
 std::unique_ptr<TimeScheme<N>> make_midstep_scheme();
 

@@ -8,7 +8,7 @@ namespace openclose {
 
 class OutputFolder {
  public:
-  /// Creates the folder if it is missing. Throws InputError if files cannot be written there.
+  /// Creates the folder if it is missing. Throws InputError if the files of a run cannot be written there.
   explicit OutputFolder(const std::string& path);
 
   /// A new file, replacing an old one of that name.

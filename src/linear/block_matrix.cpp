@@ -1,6 +1,7 @@
 #include "openclose/linear/block_matrix.h"
 
 #include <algorithm>
+#include <atomic>
 #include <stdexcept>
 
 namespace openclose {
@@ -24,7 +25,8 @@ void BlockMatrix<N>::set_pattern(int rows, const std::vector<std::pair<int, int>
   }
   for (int i = 0; i < rows; ++i) row_start_[i + 1] += row_start_[i];
   values_.assign(columns_.size(), Block::Zero());
-  ++pattern_version_;
+  static std::atomic<long> latest{0};  // over all matrices, so that a solver can tell them apart
+  pattern_version_ = ++latest;
 }
 
 template <int N>

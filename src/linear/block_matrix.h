@@ -18,7 +18,7 @@ class BlockMatrix {
 
   int rows() const { return static_cast<int>(row_start_.size()) - 1; }
   int unknowns() const { return N * rows(); }
-  long pattern_version() const { return pattern_version_; }  ///< changes with every new pattern
+  long pattern_version() const { return pattern_version_; }  ///< changes with every new pattern, differs between matrices
 
   void set_zero();
   /// Throws std::logic_error if the pair is not in the pattern.

@@ -18,7 +18,7 @@ template <int N>
 class LinearSolver {
  public:
   virtual ~LinearSolver() = default;
-  /// Factors the matrix; false if it is singular to working precision. The symbolic part is kept while the pattern stands.
+  /// Factors the matrix; false if a pivot is zero or not finite. The symbolic part is kept while the pattern stands.
   virtual bool factor(const BlockMatrix<N>& matrix) = 0;
   virtual Eigen::VectorXd solve(const Eigen::VectorXd& right_side) = 0;
   const LinearCounters& counters() const { return counters_; }

@@ -1,5 +1,7 @@
 #include "openclose/model/block_system.h"
 
+#include <algorithm>
+
 #include "openclose/geometry/polygon.h"
 
 namespace openclose {
@@ -8,7 +10,9 @@ template <int N>
 BlockSystem<N>::BlockSystem(const Scene& scene) : rotation_kind_(scene.method.rotation) {
   if (!scene.blocks.empty()) origin_ = scene.blocks.front().vertices.front();
   for (const BlockInput& input : scene.blocks) {
-    const PolygonProperties properties = polygon_properties(input.vertices);
+    Polygon polygon;  // near zero: differences of neighbouring coordinates are exact, their products are not
+    for (const Vec2& v : input.vertices) polygon.push_back(v - origin_);
+    const PolygonProperties properties = polygon_properties(polygon);
     Block block;
     block.first_vertex = static_cast<int>(reference_arm_.size());
     block.vertex_count = static_cast<int>(input.vertices.size());
@@ -16,7 +20,7 @@ BlockSystem<N>::BlockSystem(const Scene& scene) : rotation_kind_(scene.method.ro
     block.area = properties.area;
     block.rotation_locked = input.rotation_locked;
     block.mass = Motion<N>::mass(scene.materials[input.material].density, properties.area, properties.polar_second_moment);
-    block.reference_centroid = properties.centroid - origin_;
+    block.reference_centroid = properties.centroid;
     for (int i = 0; i < block.vertex_count; ++i) {
       // Differences of scene coordinates first: they are exact for neighbouring numbers.
       const Vec2 arm = (input.vertices[i] - origin_) - block.reference_centroid;

@@ -55,7 +55,8 @@ class BlockSystem {
   const Vec2& arm(int vertex) const { return state_.arm[vertex]; }
   Vec2 position(int b, int vertex) const { return centroid(b) + state_.arm[vertex]; }  ///< [m] relative to origin()
 
-  /// Follows the material point of block b that lies at `point` (scene coordinates, m) in the reference configuration; returns its number.
+  /// Follows the material point of block b that lies at `point` (scene coordinates, m) in the reference configuration; returns its number. To be
+  /// called before the block has moved, if its rotation is linear.
   int follow_point(int b, const Vec2& point);
   int point_block(int point) const { return points_[point].block; }
   const Vec2& point_arm(int point) const { return state_.point_arm[point]; }

@@ -47,6 +47,24 @@ typename ExternalForces<N>::Matrix ExternalForces<N>::stiffness(const BlockSyste
   return total;
 }
 
+template <int N>
+double ExternalForces<N>::magnitude(const BlockSystem<N>& system, int b, const Unknowns& d) const {
+  double total = weight(system, b).norm();
+  for_each_point_force(b, [&](const PointForce& f) {
+    const Vec2 moved = Motion<N>::displacement(d, system.point_arm(f.point), system.rotation_kind());
+    const Vec2 stretch = (system.point_position(f.point) - f.anchor) + moved;
+    total += f.force.norm() + f.stiffness.cwiseProduct(stretch).norm();
+  });
+  return total;
+}
+
+template <int N>
+double ExternalForces<N>::spring_scale(const BlockSystem<N>& system, int b) const {
+  double total = 0.0;
+  for_each_point_force(b, [&](const PointForce& f) { total += f.stiffness.maxCoeff() * (f.anchor.norm() + system.point_position(f.point).norm()); });
+  return total;
+}
+
 template class ExternalForces<3>;
 
 }  // namespace openclose

@@ -22,6 +22,11 @@ class ExternalForces {
   /// Minus the derivative of force() by d.
   Matrix stiffness(const BlockSystem<N>& system, int b, const Unknowns& d) const;
 
+  /// [N] sum of the magnitudes of these forces on block b, the scale of what rounding leaves of their sum, which may cancel.
+  double magnitude(const BlockSystem<N>& system, int b, const Unknowns& d) const;
+  /// [N] what the springs' forces change by when coordinates change by their own size: times the rounding unit, the noise of that force.
+  double spring_scale(const BlockSystem<N>& system, int b) const;
+
   struct PointForce {
     int point = 0;                  ///< followed point of the system
     Vec2 force = Vec2::Zero();      ///< [N] constant part

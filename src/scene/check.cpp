@@ -65,7 +65,8 @@ void require_joints(const Scene& scene) {
   for (std::size_t a = 0; a < uses.size(); ++a) {
     for (std::size_t b = a; b < uses.size(); ++b) {
       if (!can_meet(uses, a, b) || scene.joint(static_cast<int>(a), static_cast<int>(b)) != nullptr) continue;
-      throw InputError(scene.where, "joint", fmt::format("none for the materials \"{}\" and \"{}\"", scene.materials[a].name, scene.materials[b].name),
+      throw InputError(scene.where, "joint",
+                       fmt::format("none for the materials \"{}\" and \"{}\"", scene.materials[a].name, scene.materials[b].name),
                        "a [[joint]] for every pair of materials whose blocks can touch");
     }
   }

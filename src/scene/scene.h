@@ -16,7 +16,7 @@ struct Material {
   double density = 0.0;  ///< [kg/m3]
 };
 
-/// What happens to the cohesion (and the tensile strength) of a joint that has failed.
+/// What happens to the cohesion of a joint that has failed; its tensile strength is gone once it has opened, whatever this says.
 enum class CohesionBehaviour {
   ductile,          ///< kept for ever
   lost_on_opening,  ///< gone once the contact has opened

@@ -34,7 +34,7 @@ std::array<double, 2> follow(const Report& report, const Scene& scene, double di
   if (!settle(simulation).settled) return {not_measured(), not_measured()};
   const Vec2 rest = simulation.system().centroid(1);
   simulation.system().advance(1, {0.0, displacement, 0.0});
-  simulation.system().set_velocity(1, {0.0, velocity, 0.0});
+  simulation.set_velocity(1, {0.0, velocity, 0.0});
   simulation.positions_changed();
   simulation.restart_clock();
   for (int i = 0; i < steps; ++i) {

@@ -1,0 +1,187 @@
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "openclose/analysis/run.h"
+#include "support/catch.h"
+#include "support/scenes.h"
+
+using namespace openclose;
+using Catch::Matchers::Contains;
+using openclose::test::all_methods;
+
+namespace {
+
+std::vector<double> output_times(const Scene& scene) {
+  Simulation<3> simulation(scene);
+  std::vector<double> times;
+  RunObserver<3> observer;
+  observer.output = [&](const Simulation<3>& s) { times.push_back(s.time()); };
+  REQUIRE(run(simulation, observer).converged);
+  return times;
+}
+
+}  // namespace
+
+TEST_CASE("output comes at the start, at its interval and at the end", "[analysis][run]") {
+  Scene scene = test::falling_block();
+  scene.step.dt = 0.01;
+  scene.end_time = 0.1;
+  SECTION("every step") {
+    const auto times = output_times(scene);
+    REQUIRE(times.size() == 11);
+    for (int i = 0; i <= 10; ++i) CHECK(times[i] == i * 0.01);
+  }
+  SECTION("every third step") {
+    scene.output_every = 0.03;
+    const auto times = output_times(scene);
+    REQUIRE(times.size() == 5);
+    CHECK(times[1] == 3 * 0.01);
+    CHECK(times[4] == 10 * 0.01);
+  }
+  SECTION("a step that does not divide the end by rounding alone is not one more") {
+    scene.step.dt = 0.1;
+    scene.end_time = 0.3;
+    CHECK(output_times(scene).size() == 4);
+  }
+}
+
+TEST_CASE("the last step ends at the end time", "[analysis][run]") {
+  for (const std::string& method : all_methods) {
+    INFO(method);
+    Scene scene = test::falling_block();
+    scene.method.contact = method;
+    scene.step.dt = 0.03;
+    scene.step.max_displacement = 1.0;
+    scene.end_time = 0.1;
+    CHECK(output_times(scene) == std::vector<double>{0.0, 0.03, 0.06, 0.09, 0.1});
+    Simulation<3> simulation(scene);
+    REQUIRE(run<3>(simulation, {}).converged);
+    CHECK(simulation.system().displacement(0)[1] == Approx(-0.5 * 9.81 * 0.01).epsilon(1e-13));
+    CHECK(simulation.velocity(0)[1] == Approx(-0.981).epsilon(1e-13));
+  }
+}
+
+TEST_CASE("what a run tells while it goes on", "[analysis][run]") {
+  Scene scene = test::block_on_base();
+  scene.method.start = Start::settled;
+  scene.end_time = 0.01;
+  Simulation<3> simulation(scene);
+  std::vector<std::string> order;
+  std::vector<double> fractions;
+  RunObserver<3> observer;
+  observer.started = [&](const Simulation<3>& s) {
+    order.emplace_back("started");
+    CHECK(s.time() == 0.0);
+    CHECK(s.ledger().turnover == 0.0);
+    CHECK(s.system().displacement(1)[1] < 0.0);
+  };
+  observer.output = [&](const Simulation<3>&) { order.emplace_back("output"); };
+  observer.progress = [&](double f) { fractions.push_back(f); };
+  const RunResult result = run(simulation, observer);
+  CHECK(result.converged);
+  CHECK(result.reason.empty());
+  CHECK(result.settling.settled);
+  REQUIRE(order.size() == 12);
+  CHECK(order[0] == "started");
+  CHECK(order[1] == "output");
+  REQUIRE(fractions.size() == 10);
+  CHECK(fractions.front() == Approx(0.1));
+  CHECK(fractions.back() == 1.0);
+}
+
+TEST_CASE("a settled start that does not exist ends the run with its reason", "[analysis][run]") {
+  Scene scene = test::block_on_incline(40.0 * test::degree);
+  scene.method.start = Start::settled;
+  scene.settle.failure_displacement = 0.01;
+  scene.end_time = 1.0;
+  Simulation<3> simulation(scene);
+  int outputs = 0, steps = 0;
+  RunObserver<3> observer;
+  observer.output = [&](const Simulation<3>&) { ++outputs; };
+  observer.progress = [&](double) { ++steps; };
+  const RunResult result = run(simulation, observer);
+  CHECK_FALSE(result.converged);
+  CHECK(result.reason == "no static equilibrium to start from (displacement)");
+  CHECK(outputs == 1);
+  CHECK(steps == 0);
+}
+
+TEST_CASE("a run that gets stuck keeps what it has", "[analysis][run]") {
+  Scene scene = test::block_on_base();
+  scene.method.contact = "shi";
+  scene.blocks[1].vertices = test::rectangle(0.0, 0.001, 2.0, 1.0);
+  scene.method.max_open_close_iterations = 1;
+  scene.step.smallest_fraction = 0.5;
+  scene.end_time = 1.0;
+  Simulation<3> simulation(scene);
+  double last = -1.0;
+  RunObserver<3> observer;
+  observer.output = [&](const Simulation<3>& s) { last = s.time(); };
+  const RunResult result = run(simulation, observer);
+  CHECK_FALSE(result.converged);
+  CHECK(result.reason == "open-close iterations did not settle");
+  CHECK(last == simulation.time());
+  // It fell for sqrt(2 * 1 mm / g) = 14.3 ms.
+  CHECK(last == Approx(0.0143).margin(0.001));
+}
+
+TEST_CASE("settled blocks start with the velocities of the scene", "[analysis][run]") {
+  for (const std::string& method : all_methods) {
+    INFO(method);
+    Scene scene = test::block_on_base();
+    scene.method.contact = method;
+    scene.method.start = Start::settled;
+    scene.blocks[1].velocity = {0.5, 0.0};
+    Simulation<3> simulation(scene);
+    REQUIRE(prepare_start(simulation).converged);
+    CHECK(simulation.velocity(1) == Eigen::Vector3d(0.5, 0.0, 0.0));
+    CHECK(simulation.system().velocity(1) == Eigen::Vector3d(0.5, 0.0, 0.0));
+    CHECK(simulation.time() == 0.0);
+  }
+}
+
+TEST_CASE("without measured points the centroids of free blocks are", "[analysis][run]") {
+  Simulation<3> simulation(test::tumbling_blocks());
+  const MeasuredPoints<3> points(simulation);
+  for (int i = 0; i < 100; ++i) REQUIRE(simulation.advance(1e-3));
+  const auto motions = points.motions();
+  REQUIRE(motions.size() == 3);
+  const char* names[] = {"left", "right", "top"};
+  for (int i = 0; i < 3; ++i) {
+    CHECK(motions[i].name == names[i]);
+    const auto d = simulation.system().displacement(i + 1), v = simulation.velocity(i + 1);
+    CHECK((motions[i].displacement - d.head<2>()).norm() < 1e-14);
+    CHECK((motions[i].velocity - v.head<2>()).norm() < 1e-13);
+    CHECK(motions[i].rotation == d[2]);
+  }
+}
+
+TEST_CASE("a measured point goes round with its block", "[analysis][run]") {
+  Scene scene = test::empty_scene();
+  scene.gravity = {0.0, 0.0};
+  // Far from zero, so that a forgotten origin shows.
+  scene.blocks = {test::free_block("block", test::rectangle(100.0, 50.0, 2.0, 1.0))};
+  scene.blocks[0].angular_velocity = 0.5 * std::numbers::pi;
+  scene.blocks[0].velocity = {0.3, 0.0};
+  scene.measured_points = {{"corner", 0, {102.0, 51.0}}};
+  Simulation<3> simulation(scene);
+  MeasuredPoints<3> points(simulation);
+  for (int i = 0; i < 1000; ++i) REQUIRE(simulation.advance(1e-3));
+  // A quarter turn takes the arm (1, 0.5) to (-0.5, 1).
+  const PointMotion m = points.motions().at(0);
+  CHECK(m.name == "corner");
+  CHECK((m.displacement - Vec2(0.3 - 1.5, 0.5)).norm() < 1e-11);
+  CHECK(m.rotation == Approx(0.5 * std::numbers::pi).epsilon(1e-12));
+  CHECK((m.velocity - Vec2(0.3 - 0.5 * std::numbers::pi, -0.25 * std::numbers::pi)).norm() < 1e-11);
+  CHECK(points.largest_displacement() == Approx(std::hypot(1.2, 0.5)).epsilon(1e-11));
+
+  SECTION("and counts from where it was restarted") {
+    points.restart();
+    CHECK(points.largest_displacement() == 0.0);
+    for (int i = 0; i < 1000; ++i) REQUIRE(simulation.advance(1e-3));
+    CHECK((points.motions().at(0).displacement - Vec2(0.3 - 0.5, -1.5)).norm() < 1e-11);
+    CHECK(points.motions().at(0).rotation == Approx(0.5 * std::numbers::pi).epsilon(1e-12));
+  }
+}

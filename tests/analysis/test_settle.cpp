@@ -1,0 +1,165 @@
+#include <cmath>
+#include <string>
+
+#include "openclose/analysis/settle.h"
+#include "support/catch.h"
+#include "support/scenes.h"
+
+using namespace openclose;
+using openclose::test::all_methods;
+using openclose::test::block_weight;
+
+namespace {
+
+/// Force [N] of the contacts between two blocks on block b.
+Vec2 between(Simulation<3>& simulation, int a, int b) {
+  Vec2 sum = Vec2::Zero();
+  const Eigen::Vector3d still = Eigen::Vector3d::Zero();
+  for (const Contact& c : simulation.contacts()) {
+    const bool ours = (c.vertex_block == a && c.edge_block == b) || (c.vertex_block == b && c.edge_block == a);
+    if (!ours || c.status == ContactStatus::open) continue;
+    const ContactKinematics<3> k(simulation.system(), c, still, still);
+    sum += (c.vertex_block == b ? 1.0 : -1.0) * (c.normal_force * k.normal + c.shear_force * k.tangent);
+  }
+  return sum;
+}
+
+}  // namespace
+
+TEST_CASE("a block on a base sinks by W/(kn L)", "[analysis][settle]") {
+  for (const std::string& method : all_methods) {
+    INFO(method);
+    Scene scene = test::block_on_base();
+    scene.method.contact = method;
+    scene.blocks[1].velocity = {3.0, 0.0};
+    Simulation<3> simulation(scene);
+    const SettleResult result = settle(simulation);
+    CHECK(result.settled);
+    CHECK(result.criterion == "unbalanced force");
+    CHECK(result.unbalanced_fraction <= scene.settle.unbalanced_fraction);
+    CHECK(result.steps >= 1);
+    const double stiffness = method == "soft" ? 1e9 : 1e10;
+    const double sink = method == "hard" ? 0.0 : block_weight / (stiffness * test::block_edge);
+    CHECK(simulation.system().displacement(1)[1] == Approx(-sink).epsilon(2e-8).margin(1e-11));
+    CHECK(std::abs(simulation.system().displacement(1)[0]) < 1e-11);
+    CHECK(result.displacement == Approx(sink).epsilon(1e-7).margin(2e-11));
+    CHECK(between(simulation, 0, 1).y() == Approx(block_weight).epsilon(2e-8));
+    CHECK(simulation.velocity(1).isZero(0.0));
+  }
+}
+
+TEST_CASE("a stack carries its weights", "[analysis][settle]") {
+  for (const std::string& method : all_methods) {
+    INFO(method);
+    Scene scene = test::column_of_blocks(3);
+    scene.method.contact = method;
+    Simulation<3> simulation(scene);
+    const SettleResult result = settle(simulation);
+    CHECK(result.settled);
+    for (int i = 0; i < 3; ++i) {
+      const Vec2 sum = between(simulation, i, i + 1);
+      // Each block's forces are balanced to the fraction, and the column adds them up.
+      CHECK(sum.y() == Approx((3 - i) * block_weight).margin(3 * scene.settle.unbalanced_fraction * block_weight));
+      CHECK(std::abs(sum.x()) < 3 * scene.settle.unbalanced_fraction * block_weight);
+    }
+  }
+}
+
+TEST_CASE("a support carries a block with a sink of W/k", "[analysis][settle]") {
+  for (const std::string& method : all_methods) {
+    INFO(method);
+    Scene scene = test::falling_block();
+    scene.method.contact = method;
+    scene.supports = {{0, {1.0, 0.5}, {2e6, 5e6}}};
+    Simulation<3> simulation(scene);
+    REQUIRE(settle(simulation).settled);
+    CHECK(simulation.system().displacement(0)[1] == Approx(-block_weight / 5e6).epsilon(2e-8));
+    CHECK(simulation.system().displacement(0)[0] == 0.0);
+  }
+}
+
+TEST_CASE("a block that cannot stay fails by its displacement", "[analysis][settle]") {
+  for (const std::string& method : all_methods) {
+    INFO(method);
+    Scene scene = test::block_on_incline(40.0 * test::degree);
+    scene.method.contact = method;
+    scene.settle.failure_displacement = 0.05;
+    Simulation<3> simulation(scene);
+    const SettleResult result = settle(simulation);
+    CHECK_FALSE(result.settled);
+    CHECK(result.criterion == "displacement");
+    CHECK(result.displacement > 0.05);
+    CHECK(result.unbalanced_fraction > scene.settle.unbalanced_fraction);
+  }
+}
+
+TEST_CASE("an incline flatter than its friction holds, a steeper one does not", "[analysis][settle]") {
+  for (const std::string& method : all_methods) {
+    INFO(method);
+    for (const double slope : {29.9, 30.1}) {
+      Scene scene = test::block_on_incline(slope * test::degree);
+      scene.method.contact = method;
+      Simulation<3> simulation(scene);
+      CHECK(settle(simulation).settled == (slope < 30.0));
+    }
+  }
+}
+
+TEST_CASE("settling stops at its number of steps", "[analysis][settle]") {
+  Scene scene = test::block_on_base();
+  scene.settle.max_steps = 2;
+  scene.settle.first_dt = 1e-6;
+  scene.settle.unbalanced_fraction = 1e-14;
+  Simulation<3> simulation(scene);
+  const SettleResult result = settle(simulation);
+  CHECK_FALSE(result.settled);
+  CHECK(result.criterion == "steps");
+  CHECK(result.steps == 2);
+}
+
+TEST_CASE("settling says which step it could not take", "[analysis][settle]") {
+  Scene scene = test::block_on_base();
+  scene.method.max_iterations = 1;
+  scene.loads = {{1, {0.0, 1.0}, {1e5, 0.0}}};
+  scene.joints[0].friction_angle = 10.0 * test::degree;
+  Simulation<3> simulation(scene);
+  const SettleResult result = settle(simulation);
+  CHECK_FALSE(result.settled);
+  CHECK(result.criterion == "Newton's method did not converge");
+}
+
+TEST_CASE("the unbalanced force is below what was asked for", "[analysis][settle]") {
+  const double fraction = GENERATE(1e-3, 1e-6, 1e-10);
+  Scene scene = test::column_of_blocks(3);
+  scene.settle.unbalanced_fraction = fraction;
+  Simulation<3> simulation(scene);
+  const SettleResult result = settle(simulation);
+  REQUIRE(result.settled);
+  CHECK(result.unbalanced_fraction <= fraction);
+  // The sum of all forces on each block, from the contacts as they stand.
+  for (int i = 0; i < 3; ++i) {
+    const double below = between(simulation, i, i + 1).y(), above = i < 2 ? between(simulation, i + 1, i + 2).y() : 0.0;
+    CHECK(std::abs(below - above - block_weight) <= (fraction + 1e-12) * block_weight);
+  }
+}
+
+TEST_CASE("balance with cohesion that was lost in the same step is none", "[analysis][settle]") {
+  // The uphill corner, with the smaller normal force, slips at 10.0 kN of its 12.3 kN share. With its 3 kN of cohesion the joint carries
+  // 25.8 kN, without 22.8 kN, of 24.5 kN.
+  Scene scene = test::block_on_incline(30.0 * test::degree);
+  scene.joints[0].friction_angle = 25.0 * test::degree;
+  scene.joints[0].cohesion = 3000.0;
+  scene.settle.first_dt = 1e4;
+  scene.settle.failure_displacement = 0.05;
+  SECTION("ductile: the first step is in balance") {
+    Simulation<3> simulation(scene);
+    const SettleResult result = settle(simulation);
+    CHECK(result.settled);
+    CHECK(result.steps == 1);
+  }
+  SECTION("lost on slip") {
+    scene.joints[0].cohesion_behaviour = CohesionBehaviour::lost_on_slip;
+    Simulation<3> simulation(scene);
+    CHECK_FALSE(settle(simulation).settled);
+  }
+}

@@ -1,0 +1,198 @@
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "openclose/analysis/strength_reduction.h"
+#include "support/catch.h"
+#include "support/scenes.h"
+
+using namespace openclose;
+using openclose::test::all_methods;
+using openclose::test::block_weight;
+
+namespace {
+
+Scene slope_scene(const std::string& method, double slope_deg, double friction_deg, double cohesion) {
+  Scene scene = test::block_on_incline(slope_deg * test::degree);
+  scene.method.contact = method;
+  scene.joints[0].friction_angle = friction_deg * test::degree;
+  scene.joints[0].cohesion = cohesion;
+  scene.settle.failure_displacement = 0.05;
+  scene.strength_reduction.width = 1e-4;
+  return scene;
+}
+
+FactorOfSafety<3> factor(const Scene& scene) {
+  Simulation<3> simulation(scene);
+  return factor_of_safety<3>(simulation);
+}
+
+/// (tan phi cos a W + c L)/(W sin a)
+double closed_form(double slope_deg, double friction_deg, double cohesion) {
+  const double a = slope_deg * test::degree;
+  const double resisting = std::tan(friction_deg * test::degree) * std::cos(a) * block_weight + cohesion * test::block_edge;
+  return resisting / (block_weight * std::sin(a));
+}
+
+}  // namespace
+
+TEST_CASE("factor of safety of a block on an incline", "[analysis][strength_reduction]") {
+  struct Case {
+    double slope_deg, friction_deg, cohesion;
+  };
+  const Case c = GENERATE(values<Case>({{30.0, 40.0, 0.0}, {30.0, 35.0, 5000.0}, {35.0, 20.0, 12000.0}, {45.0, 0.0, 30000.0}}));
+  const double exact = closed_form(c.slope_deg, c.friction_deg, c.cohesion);
+  for (const std::string& method : all_methods) {
+    INFO(method << ", slope " << c.slope_deg << ", friction " << c.friction_deg << ", cohesion " << c.cohesion);
+    const auto safety = factor(slope_scene(method, c.slope_deg, c.friction_deg, c.cohesion));
+    REQUIRE(safety.found);
+    CHECK(safety.reason.empty());
+    CHECK(safety.failed - safety.stable <= 1e-4);
+    CHECK(safety.failed > safety.stable);
+    // Blocks that exceed the strength by less than the tolerated unbalanced force count as stable.
+    CHECK(safety.stable <= exact * (1.0 + 1e-6));
+    CHECK(safety.failed >= exact * (1.0 - 1e-6));
+    CHECK_FALSE(safety.criterion.empty());
+  }
+}
+
+TEST_CASE("scenes that fail with their own strength have a factor below 1", "[analysis][strength_reduction]") {
+  for (const std::string& method : all_methods) {
+    INFO(method);
+    const double exact = closed_form(40.0, 30.0, 2000.0);
+    REQUIRE(exact < 0.9);
+    const auto safety = factor(slope_scene(method, 40.0, 30.0, 2000.0));
+    REQUIRE(safety.found);
+    CHECK(safety.stable <= exact * (1.0 + 1e-6));
+    CHECK(safety.failed >= exact * (1.0 - 1e-6));
+    CHECK_FALSE(safety.trials.front().stable);
+    CHECK(safety.trials.front().srf == 1.0);
+  }
+}
+
+TEST_CASE("a scene that no reduction brings down", "[analysis][strength_reduction]") {
+  Scene scene = test::block_on_base();
+  scene.strength_reduction.upper_limit = 3.0;
+  const auto safety = factor(scene);
+  CHECK_FALSE(safety.found);
+  CHECK(safety.reason == "still stable at strength_reduction.upper_limit");
+  CHECK(safety.stable == 3.0);
+  CHECK(safety.failed == 0.0);
+  CHECK(safety.trials.back().srf == 3.0);
+  for (const StrengthTrial& t : safety.trials) {
+    CHECK(t.stable);
+    CHECK(t.stage == "bracket");
+  }
+}
+
+TEST_CASE("a scene that no strength holds", "[analysis][strength_reduction]") {
+  Scene scene = test::falling_block();
+  const auto safety = factor(scene);
+  CHECK_FALSE(safety.found);
+  CHECK(safety.reason.find("not stable even at a strength reduction factor of 0.001") == 0);
+  for (const StrengthTrial& t : safety.trials) CHECK_FALSE(t.stable);
+}
+
+TEST_CASE("every trial is on record", "[analysis][strength_reduction]") {
+  Scene scene = slope_scene("soft", 30.0, 40.0, 0.0);
+  scene.strength_reduction.curve = {1.1, 2.0};
+  const auto safety = factor(scene);
+  REQUIRE(safety.found);
+  const auto& trials = safety.trials;
+  CHECK(trials.front().srf == 1.0);
+  CHECK(trials.front().stage == "bracket");
+  CHECK(trials.front().displacement == 0.0);
+
+  double stable = 0.0, failed = 1e9;
+  int bisections = 0, curve_points = 0;
+  for (const StrengthTrial& t : trials) {
+    CHECK(t.steps >= 1);
+    CHECK_FALSE(t.criterion.empty());
+    CHECK(t.stable == (t.criterion == "unbalanced force"));
+    if (t.stage == "curve") {
+      ++curve_points;
+      CHECK(t.stable == (t.srf < safety.stable));
+      continue;
+    }
+    bisections += t.stage == "bisect" ? 1 : 0;
+    (t.stable ? stable : failed) = t.stable ? std::max(stable, t.srf) : std::min(failed, t.srf);
+  }
+  CHECK(stable == safety.stable);
+  CHECK(failed == safety.failed);
+  CHECK(bisections == std::ceil(std::log2((1.25 * 1.25 - 1.25) / 1e-4)));
+  CHECK(curve_points == 2);
+  CHECK(trials.back().srf == 2.0);
+  CHECK(trials.back().displacement > 0.04);
+  CHECK(safety.curve.empty());
+}
+
+TEST_CASE("the width of the bracket is the one asked for", "[analysis][strength_reduction]") {
+  const double width = GENERATE(1e-1, 1e-3, 1e-5);
+  Scene scene = slope_scene("soft", 30.0, 40.0, 0.0);
+  scene.strength_reduction.width = width;
+  const auto safety = factor(scene);
+  REQUIRE(safety.found);
+  CHECK(safety.failed - safety.stable <= width);
+  CHECK(safety.failed - safety.stable > 0.4 * width);
+}
+
+TEST_CASE("cohesion that is lost on slip or opening lowers the factor, never raises it", "[analysis][strength_reduction]") {
+  // A tall block tilts uphill-corner open before it slides: the brittle joint loses the bond there.
+  Scene scene = test::block_on_incline(30.0 * test::degree);
+  scene.blocks[1].vertices = test::placed(test::rectangle(0.0, 0.0, 1.0, 2.2), -30.0 * test::degree);
+  scene.joints[0].friction_angle = 25.0 * test::degree;
+  scene.joints[0].cohesion = 40000.0;
+  scene.joints[0].tensile_strength = 40000.0;
+  scene.settle.failure_displacement = 0.05;
+  const auto ductile = factor(scene);
+  scene.joints[0].cohesion_behaviour = CohesionBehaviour::lost_on_slip;
+  const auto brittle = factor(scene);
+  REQUIRE(ductile.found);
+  REQUIRE(brittle.found);
+  CHECK(brittle.stable < 0.99 * ductile.stable);
+}
+
+TEST_CASE("the curve in time: free sliding with the reduced strength", "[analysis][strength_reduction]") {
+  Scene scene = slope_scene("soft", 30.0, 40.0, 0.0);
+  const double srf = 2.0, time = 0.2;
+  scene.strength_reduction.curve = {1.1, srf};
+  scene.strength_reduction.curve_time = time;
+  scene.measured_points = {{"corner", 1, scene.blocks[1].vertices[2]}, {"foot", 1, scene.blocks[1].vertices[0]}};
+  const auto safety = factor(scene);
+  REQUIRE(safety.curve.size() == 4);
+  CHECK(safety.curve[0].point == "corner");
+  CHECK(safety.curve[1].point == "foot");
+  CHECK(safety.curve[0].srf == 1.1);
+  CHECK(safety.curve[2].srf == srf);
+  CHECK(safety.curve[0].displacement < 1e-5);
+  const double a = 30.0 * test::degree;
+  const double acceleration = 9.81 * (std::sin(a) - std::tan(40.0 * test::degree) / srf * std::cos(a));
+  // The shear springs unload at the beginning: some millimetres per 1e8 N/m are W/ks = 0.06 mm.
+  CHECK(safety.curve[2].displacement == Approx(0.5 * acceleration * time * time).margin(5e-4));
+}
+
+TEST_CASE("settled and failed states are kept", "[analysis][strength_reduction]") {
+  Scene scene = slope_scene("soft", 30.0, 40.0, 0.0);
+  Simulation<3> simulation(scene);
+  const auto safety = factor_of_safety<3>(simulation);
+  REQUIRE(safety.found);
+  simulation.restore(safety.settled_state);
+  const Vec2 settled = simulation.system().displacement(1).head<2>();
+  CHECK(settled.norm() < 1e-3);
+  simulation.restore(safety.failed_state);
+  CHECK((simulation.system().displacement(1).head<2>() - settled).dot(test::downhill(30.0 * test::degree)) > 0.04);
+}
+
+TEST_CASE("progress of the bisection never falls back", "[analysis][strength_reduction]") {
+  Simulation<3> simulation(slope_scene("soft", 30.0, 40.0, 0.0));
+  double last = 0.0;
+  int calls = 0;
+  factor_of_safety<3>(simulation, [&](double fraction) {
+    CHECK(fraction >= last);
+    CHECK(fraction <= 1.0);
+    last = fraction;
+    ++calls;
+  });
+  CHECK(calls > 5);
+  CHECK(last > 0.8);
+}

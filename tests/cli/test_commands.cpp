@@ -1,0 +1,204 @@
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <set>
+#include <string>
+
+#include "cli/command.h"
+#include "openclose/version.h"
+#include "support/catch.h"
+
+using Catch::Matchers::Contains;
+using Catch::Matchers::StartsWith;
+using openclose::test::block_on_base;
+using openclose::test::CommandResult;
+using openclose::test::fields_of;
+using openclose::test::lines_of;
+using openclose::test::text_of;
+using openclose::test::Workplace;
+
+namespace {
+
+nlohmann::json summary_in(const std::string& folder) {
+  return nlohmann::json::parse(text_of(folder + "/summary.json"));
+}
+
+std::set<std::string> entries(const std::string& folder) {
+  std::set<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) names.insert(entry.path().filename().string());
+  return names;
+}
+
+}  // namespace
+
+TEST_CASE("help and version", "[cli]") {
+  const Workplace place;
+  const CommandResult help = place.run("--help"), run_help = place.run("run --help"), version = place.run("--version");
+  for (const CommandResult* result : {&help, &run_help, &version}) {
+    CHECK(result->status == 0);
+    CHECK(result->errors.empty());
+  }
+  CHECK_THAT(help.out, Contains("run") && Contains("fos") && Contains("check") && Contains("Exit status"));
+  CHECK_THAT(run_help.out, Contains("--contact") && Contains("--dt") && Contains("--end") && Contains("--start") && Contains("--set") &&
+                               Contains("--output") && Contains("--quiet"));
+  CHECK(version.out == std::string(openclose::version) + "\n");
+}
+
+TEST_CASE("run writes its files and one line", "[cli]") {
+  const Workplace place;
+  const CommandResult result = place.run("run scene.toml -o out --dt 0.001 --end 0.01");
+  CHECK(result.status == 0);
+  CHECK(result.errors.empty());
+  CHECK_THAT(result.out, StartsWith("soft: 2 blocks, ") && Contains("written to out"));
+  CHECK(std::count(result.out.begin(), result.out.end(), '\n') == 1);
+  const std::string out = place.folder() / "out";
+  CHECK(entries(out) == std::set<std::string>{"history.csv", "energy.csv", "blocks.csv", "contacts.csv", "summary.json"});
+  CHECK(place.folder().entries() == std::set<std::string>{"scene.toml", "out"});
+
+  const auto history = lines_of(out + "/history.csv");
+  REQUIRE(history.size() == 1 + 11);
+  CHECK_THAT(history[1], StartsWith("0,block,0,0,0,0,0"));
+  CHECK(std::stod(history[11]) == 10 * 0.001);
+  CHECK(lines_of(out + "/energy.csv").size() == 1 + 11);
+  CHECK(lines_of(out + "/blocks.csv").size() == 1 + 3 * 8);
+
+  // Settled: W/(kn L) with W = 2700 * 9.81 on 1 m.
+  const auto contacts = lines_of(out + "/contacts.csv");
+  REQUIRE(contacts.size() == 3);
+  CHECK(std::stod(fields_of(contacts[1])[8]) == Approx(-2700.0 * 9.81 / 1e9).epsilon(1e-6));
+
+  const auto summary = summary_in(out);
+  CHECK(summary.at("version") == openclose::version);
+  CHECK(summary.at("command") == "run");
+  CHECK(summary.at("scene") == "scene.toml");
+  CHECK(summary.at("converged") == true);
+  CHECK(summary.at("reason") == "");
+  CHECK(summary.at("blocks") == 2);
+  CHECK(summary.at("free_blocks") == 1);
+  CHECK(summary.at("time_s") == 10 * 0.001);
+  CHECK(summary.at("max_penetration_m").get<double>() == Approx(2700.0 * 9.81 / 1e9).epsilon(1e-6));
+  for (const char* key : {"options", "counters", "stage_s", "overrides", "warnings", "settling"}) CHECK(summary.contains(key));
+}
+
+TEST_CASE("quiet runs say nothing", "[cli]") {
+  const Workplace place;
+  for (const std::string arguments : {"run scene.toml -o out --dt 0.001 --end 0.01 -q", "run scene.toml -o out --dt 0.001 --end 0.01 --quiet"}) {
+    const CommandResult result = place.run(arguments);
+    CHECK(result.status == 0);
+    CHECK(result.out.empty());
+    CHECK(result.errors.empty());
+  }
+}
+
+TEST_CASE("the output folder is named like the scene where none is given", "[cli]") {
+  const Workplace place;
+  CHECK(place.run("run ./scene.toml --dt 0.001 --end 0.002").status == 0);
+  CHECK(std::filesystem::is_regular_file(place.folder() / "results/scene/summary.json"));
+}
+
+TEST_CASE("a second run replaces the files of the first", "[cli]") {
+  const Workplace place;
+  CHECK(place.run("run scene.toml -o out --dt 0.001 --end 0.05").status == 0);
+  const auto longer = lines_of(place.folder() / "out/history.csv");
+  CHECK(place.run("run scene.toml -o out --dt 0.001 --end 0.01").status == 0);
+  CHECK(longer.size() == 52);
+  CHECK(lines_of(place.folder() / "out/history.csv").size() == 12);
+}
+
+TEST_CASE("the same run twice gives the same files bit for bit", "[cli]") {
+  const Workplace place(openclose::test::block_on_incline(40.0));
+  const std::string arguments = " --dt 0.001 --end 0.1 --start unloaded";
+  CHECK(place.run("run scene.toml -o a" + arguments).status == 0);
+  CHECK(place.run("run scene.toml -o b" + arguments).status == 0);
+  for (const char* file : {"history.csv", "energy.csv", "blocks.csv", "contacts.csv"}) {
+    CHECK(text_of(place.folder() / "a/" + file) == text_of(place.folder() / "b/" + file));
+  }
+}
+
+TEST_CASE("overrides change the scene and are on record", "[cli]") {
+  const Workplace place(block_on_base + "[method]\ncontact = 'hard'\n[step]\ndt_s = 0.1\n[end]\ntime_s = 9\n");
+  const CommandResult result = place.run(
+      "run scene.toml -o out --contact shi --dt 0.001 --end 0.004 --start unloaded --set method.penalty_pa_per_m=5e9 --set title=renamed "
+      "--set joint[0].friction_angle_deg=20");
+  CHECK(result.status == 0);
+  const auto summary = summary_in(place.folder() / "out");
+  CHECK(summary.at("options").at("contact") == "shi");
+  CHECK(summary.at("options").at("start") == "unloaded");
+  CHECK(summary.at("options").at("dt_s") == 0.001);
+  CHECK(summary.at("options").at("end_time_s") == 0.004);
+  CHECK(summary.at("title") == "renamed");
+  CHECK(summary.at("counters").at("steps") == 4);
+  CHECK(summary.at("overrides").size() == 7);
+  CHECK(text_of(place.folder() / "out/summary.json").find("joint[0].friction_angle_deg=20") != std::string::npos);
+}
+
+TEST_CASE("an overridden friction angle decides whether a block slides", "[cli]") {
+  const Workplace place(openclose::test::block_on_incline(30.0));
+  CHECK(place.run("run scene.toml -o out --dt 0.001 --end 0.01").status == 0);
+  const CommandResult result =
+      place.run("run scene.toml -o out --dt 0.001 --end 0.01 --set joint[0].friction_angle_deg=29 --set settle.failure_displacement_m=0.05");
+  CHECK(result.status == 1);
+}
+
+TEST_CASE("steady sliding through the whole command", "[cli]") {
+  const double slope = 30.0, phi = 20.0, degree = std::numbers::pi / 180.0;
+  const Workplace place(openclose::test::block_on_incline(slope));
+  for (const std::string method : {"soft", "hard", "shi"}) {
+    INFO(method);
+    const CommandResult result = place.run("run scene.toml -o out --dt 0.001 --end 0.3 --start steady_sliding --set output.every_s=0.1 --contact " +
+                                           method + " --set joint[0].friction_angle_deg=20");
+    CHECK(result.status == 0);
+    const auto history = lines_of(place.folder() / "out/history.csv");
+    REQUIRE(history.size() == 1 + 4);
+    const auto last = fields_of(history.back());
+    const double exact = 0.5 * 9.81 * (std::sin(slope * degree) - std::tan(phi * degree) * std::cos(slope * degree)) * 0.3 * 0.3;
+    CHECK(std::hypot(std::stod(last[2]), std::stod(last[3])) == Approx(exact).epsilon(1e-9));
+  }
+}
+
+TEST_CASE("factor of safety", "[cli]") {
+  const Workplace place(openclose::test::block_on_incline(30.0));
+  const double exact = std::tan(35.0 * std::numbers::pi / 180.0) / std::tan(30.0 * std::numbers::pi / 180.0);
+  const CommandResult result = place.run("fos scene.toml -o out --set settle.failure_displacement_m=0.05");
+  CHECK(result.status == 0);
+  CHECK(result.errors.empty());
+  CHECK_THAT(result.out, StartsWith("factor of safety 1.21") && Contains("soft"));
+  const std::string out = place.folder() / "out";
+  CHECK(entries(out) == std::set<std::string>{"blocks.csv", "contacts.csv", "summary.json", "trials.csv"});
+  const auto summary = summary_in(out);
+  CHECK(summary.at("command") == "fos");
+  CHECK(summary.at("converged") == true);
+  CHECK(summary.at("factor_of_safety").get<double>() == Approx(exact).margin(2e-4));
+  CHECK(summary.at("bracket").at(0) == summary.at("factor_of_safety"));
+  CHECK(summary.at("bracket").at(1).get<double>() > exact * (1.0 - 1e-5));
+  CHECK_FALSE(summary.at("criterion").get<std::string>().empty());
+  std::set<std::string> states;
+  for (const std::string& line : lines_of(out + "/blocks.csv")) states.insert(line.substr(0, line.find(',')));
+  CHECK(states == std::set<std::string>{"state", "initial", "settled", "failed"});
+  CHECK_THAT(text_of(out + "/trials.csv"), StartsWith("srf,stage,stable,criterion,steps,displacement_m\n1,bracket,1,"));
+}
+
+TEST_CASE("factor of safety with a curve", "[cli]") {
+  const Workplace place(openclose::test::block_on_incline(30.0));
+  const CommandResult result = place.run(
+      "fos scene.toml -o out --dt 0.001 --set settle.failure_displacement_m=0.05 --set 'strength_reduction.curve=[1.1, 1.5]' "
+      "--set strength_reduction.curve_time_s=0.1 --set strength_reduction.width=0.01");
+  CHECK(result.status == 0);
+  const auto curve = lines_of(place.folder() / "out/curve.csv");
+  REQUIRE(curve.size() == 3);
+  CHECK(curve[0] == "srf,point,displacement_m");
+  CHECK(fields_of(curve[1])[1] == "block");
+  CHECK(std::stod(fields_of(curve[1])[2]) < 1e-4);
+  CHECK(std::stod(fields_of(curve[2])[2]) > 1e-3);
+}
+
+TEST_CASE("check tells what it has read and writes nothing", "[cli]") {
+  const Workplace place;
+  const CommandResult result = place.run("check scene.toml --contact hard");
+  CHECK(result.status == 0);
+  CHECK(result.errors.empty());
+  CHECK_THAT(result.out, Contains("2 blocks, 1 of them free, 4 m2; 2 contacts") && Contains("method hard"));
+  CHECK(place.folder().entries() == std::set<std::string>{"scene.toml"});
+}

@@ -1,0 +1,80 @@
+// Analyses that end without a result: exit code 1, one line on standard error, state and reason saved.
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+
+#include "cli/command.h"
+#include "support/catch.h"
+
+using Catch::Matchers::Contains;
+using openclose::test::block_on_base;
+using openclose::test::CommandResult;
+using openclose::test::lines_of;
+using openclose::test::Workplace;
+
+namespace {
+
+nlohmann::json summary_of(const Workplace& place) {
+  return nlohmann::json::parse(openclose::test::text_of(place.folder() / "out/summary.json"));
+}
+
+void check_saved(const Workplace& place, const CommandResult& result, const std::string& reason) {
+  CHECK(result.status == 1);
+  CHECK(result.out.empty());
+  REQUIRE(result.errors.size() == 1);
+  CHECK_THAT(result.errors[0], Contains(reason) && Contains("state saved in out"));
+  const nlohmann::json summary = summary_of(place);
+  CHECK(summary.at("converged") == false);
+  CHECK_THAT(summary.at("reason").get<std::string>(), Contains(reason));
+}
+
+std::set<std::string> states_in(const std::string& path) {
+  std::set<std::string> states;
+  for (const std::string& line : lines_of(path)) states.insert(line.substr(0, line.find(',')));
+  states.erase("state");
+  return states;
+}
+
+}  // namespace
+
+TEST_CASE("no factor of safety below the upper limit", "[cli][not_converged]") {
+  const Workplace place;
+  check_saved(place, place.run("fos scene.toml -o out --set strength_reduction.upper_limit=3"), "still stable at strength_reduction.upper_limit");
+  const nlohmann::json summary = summary_of(place);
+  CHECK(summary.at("factor_of_safety").is_null());
+  CHECK(states_in(place.folder() / "out/blocks.csv") == std::set<std::string>{"initial", "settled"});
+  CHECK(lines_of(place.folder() / "out/trials.csv").size() > 3);
+}
+
+TEST_CASE("no factor of safety at any strength", "[cli][not_converged]") {
+  const Workplace place(openclose::test::block_on_incline(0.0));
+  const CommandResult result =
+      place.run("fos scene.toml -o out --set 'block[1].vertices_m=[[0, 5], [1, 5], [1, 6], [0, 6]]' --set settle.failure_displacement_m=0.1");
+  check_saved(place, result, "not stable even at a strength reduction factor of");
+  CHECK(states_in(place.folder() / "out/blocks.csv") == std::set<std::string>{"failed", "initial"});
+}
+
+TEST_CASE("no static equilibrium to start from", "[cli][not_converged]") {
+  const Workplace place(openclose::test::block_on_incline(40.0));
+  const CommandResult result = place.run("run scene.toml -o out --dt 0.001 --end 0.1 --start settled --set settle.failure_displacement_m=0.05");
+  check_saved(place, result, "no static equilibrium to start from (displacement)");
+  CHECK(states_in(place.folder() / "out/blocks.csv") == std::set<std::string>{"initial", "start", "final"});
+  CHECK(summary_of(place).at("settling").at("settled") == false);
+  CHECK(summary_of(place).at("time_s") == 0.0);
+}
+
+TEST_CASE("a run that gets stuck on its way", "[cli][not_converged]") {
+  const Workplace place;
+  const CommandResult result = place.run(
+      "run scene.toml -o out --dt 0.001 --end 1 --contact shi --start unloaded --set method.max_open_close_iterations=1 "
+      "--set 'block[1].vertices_m=[[0, 0.001], [1, 0.001], [1, 1], [0, 1]]' --set step.smallest_fraction=0.5");
+  check_saved(place, result, "open-close iterations did not settle");
+  const double time = summary_of(place).at("time_s");
+  CHECK(time > 0.005);
+  CHECK(time < 0.02);
+  const auto history = lines_of(place.folder() / "out/history.csv");
+  REQUIRE(history.size() > 5);
+  CHECK(std::stod(history.back()) == time);
+  CHECK(lines_of(place.folder() / "out/energy.csv").size() == history.size());
+  CHECK(states_in(place.folder() / "out/blocks.csv").count("final") == 1);
+}

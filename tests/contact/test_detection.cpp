@@ -1,0 +1,237 @@
+// Which vertices touch which edges, and nothing else.
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <tuple>
+
+#include "contacts.h"
+#include "openclose/contact/detection.h"
+#include "support/catch.h"
+
+using namespace openclose;
+using test::degree;
+using test::Detection;
+using test::fixed_block;
+using test::free_block;
+using test::placed;
+using test::rectangle;
+using test::scene_with;
+
+namespace {
+
+/// 4 m x 2 m with a notch of 1 m x 1 m in the middle of its top; the inner corners are vertices 4 and 5.
+const std::vector<Vec2> notched{{0.0, 0.0}, {4.0, 0.0}, {4.0, 2.0}, {2.5, 2.0}, {2.5, 1.0}, {1.5, 1.0}, {1.5, 2.0}, {0.0, 2.0}};
+
+/// All blocks turned about the origin and shifted.
+Scene turned(Scene scene, double angle, const Vec2& shift) {
+  for (BlockInput& block : scene.blocks) block.vertices = placed(block.vertices, angle, shift);
+  return scene;
+}
+
+double overlap_of(double low_a, double high_a, double low_b, double high_b) {
+  return std::max(0.0, std::min(high_a, high_b) - std::max(low_a, low_b));
+}
+
+}  // namespace
+
+TEST_CASE("a block on a wide base touches with both its corners, half its width each", "[contact][detection]") {
+  const double angle = GENERATE(0.0, 0.4, 2.0, -2.5);
+  const Vec2 shift = angle == 0.0 ? Vec2(0.0, 0.0) : Vec2(300.0, -200.0);
+  Detection d(
+      turned(scene_with({fixed_block("base", rectangle(-5.0, -1.0, 10.0, 1.0)), free_block("block", rectangle(0.0, 0.0, 2.0, 1.0))}), angle, shift));
+  REQUIRE(d.contacts.size() == 2);
+  for (const int corner : {4, 5}) {
+    const Contact* c = d.find(corner, 2);
+    REQUIRE(c != nullptr);
+    CHECK(c->vertex_block == 1);
+    CHECK(c->edge_block == 0);
+    CHECK(c->joint == 0);
+    CHECK(c->length == Approx(1.0).epsilon(1e-12));
+    // Rounding of coordinates of 360 m.
+    CHECK(std::abs(c->gap) <= 1e-12);
+  }
+}
+
+TEST_CASE("the order of the blocks does not matter", "[contact][detection]") {
+  Detection d(scene_with({free_block("block", rectangle(0.0, 0.0, 2.0, 1.0)), fixed_block("base", rectangle(-5.0, -1.0, 10.0, 1.0))}));
+  REQUIRE(d.contacts.size() == 2);
+  CHECK(d.length(0, 4 + 2) == Approx(1.0).epsilon(1e-14));
+  CHECK(d.length(1, 4 + 2) == Approx(1.0).epsilon(1e-14));
+}
+
+TEST_CASE("a block that hangs over touches with its corner and with the base's", "[contact][detection]") {
+  Detection d(scene_with({fixed_block("base", rectangle(-5.0, -1.0, 6.0, 1.0)), free_block("block", rectangle(0.5, 0.0, 1.0, 1.0))}));
+  REQUIRE(d.contacts.size() == 2);
+  CHECK(d.length(4, 2) == Approx(0.25).epsilon(1e-14));
+  const Contact* base_corner = d.find(2, 4);
+  REQUIRE(base_corner != nullptr);
+  CHECK(base_corner->length == Approx(0.25).epsilon(1e-14));
+  CHECK(base_corner->vertex_block == 0);
+  CHECK(base_corner->edge_block == 1);
+}
+
+TEST_CASE("a wide block on a narrow base touches with the base's corners only", "[contact][detection]") {
+  Detection d(scene_with({fixed_block("base", rectangle(0.5, -1.0, 1.0, 1.0)), free_block("block", rectangle(0.0, 0.0, 2.0, 1.0))}));
+  REQUIRE(d.contacts.size() == 2);
+  CHECK(d.length(2, 4) == Approx(0.5).epsilon(1e-14));
+  CHECK(d.length(3, 4) == Approx(0.5).epsilon(1e-14));
+}
+
+TEST_CASE("gaps are kept up to the reach, penetrations are negative", "[contact][detection]") {
+  const double gap = GENERATE(-1e-3, -1e-5, 1e-6, 0.0499, 0.0501);
+  Detection d(scene_with({fixed_block("base", rectangle(-5.0, -1.0, 10.0, 1.0)), free_block("block", rectangle(0.0, gap, 2.0, 1.0))}), 0.05);
+  if (gap > 0.05) {
+    CHECK(d.contacts.empty());
+  } else {
+    REQUIRE(d.contacts.size() == 2);
+    for (const Contact& c : d.contacts) CHECK(c.gap == Approx(gap).margin(1e-15));
+  }
+}
+
+TEST_CASE("fixed blocks have no contact with each other", "[contact][detection]") {
+  Detection d(scene_with({fixed_block("base", rectangle(-5.0, -1.0, 10.0, 1.0)), fixed_block("wall", rectangle(0.0, 0.0, 2.0, 1.0)),
+                          free_block("block", rectangle(2.0, 0.0, 1.0, 1.0))}));
+  CHECK(d.contacts.size() == 4);
+  for (const Contact& c : d.contacts) CHECK((c.vertex_block == 2 || c.edge_block == 2));
+}
+
+TEST_CASE("a distant block adds nothing", "[contact][detection]") {
+  Scene scene = scene_with({fixed_block("base", rectangle(-5.0, -1.0, 10.0, 1.0)), free_block("block", rectangle(0.0, 0.0, 2.0, 1.0))});
+  const std::size_t alone = Detection(scene).contacts.size();
+  scene.blocks.push_back(free_block("distant", rectangle(0.0, 1.4, 2.0, 1.0)));
+  CHECK(Detection(scene).contacts.size() == alone);
+  CHECK(Detection(scene).detector.candidate_pairs().size() == 1);
+  scene.blocks.back().vertices = rectangle(0.0, 1.04, 2.0, 1.0);
+  CHECK(Detection(scene).contacts.size() == alone + 2);
+}
+
+TEST_CASE("a block in a notch of its width stands on the floor between both walls", "[contact][detection]") {
+  const double height = GENERATE(0.5, 1.0, 1.7), angle = GENERATE(0.0, 0.9);
+  const bool block_first = GENERATE(false, true);
+  std::vector<BlockInput> blocks{fixed_block("base", notched), free_block("block", rectangle(1.5, 1.0, 1.0, height))};
+  if (block_first) std::swap(blocks[0], blocks[1]);
+  Detection d(turned(scene_with(blocks), angle, {0.0, 0.0}));
+  const int base = block_first ? 4 : 0, block = block_first ? 0 : 8;
+  const double wall = std::min(height, 1.0);
+  CHECK(d.contacts.size() == 6);
+  // Floor is the edge from 4, walls are those from 3 (right) and 5 (left).
+  CHECK(d.length(block + 0, base + 4) == Approx(0.5).epsilon(1e-12));
+  CHECK(d.length(block + 1, base + 4) == Approx(0.5).epsilon(1e-12));
+  CHECK(d.length(block + 1, base + 3) == Approx(0.5 * wall).epsilon(1e-12));
+  CHECK(d.length(block + 0, base + 5) == Approx(0.5 * wall).epsilon(1e-12));
+  CHECK(d.total_length() == Approx(1.0 + 2.0 * wall).epsilon(1e-12));
+  for (const Contact& c : d.contacts) {
+    CHECK_FALSE(d.system.is_reflex(c.vertex));
+    CHECK(std::abs(c.gap) <= 1e-14);
+  }
+}
+
+TEST_CASE("a block pressed into a notch keeps floor and walls", "[contact][detection]") {
+  const double deep = GENERATE(1e-7, 1e-5, 9e-4);
+  Detection d(scene_with({fixed_block("base", notched), free_block("block", rectangle(1.5 - deep, 1.0 - deep, 1.0 + 2.0 * deep, 0.5))}));
+  CHECK(d.contacts.size() == 6);
+  CHECK(d.length(8, 4) == Approx(0.5).epsilon(1e-2));
+  CHECK(d.length(9, 4) == Approx(0.5).epsilon(1e-2));
+  CHECK(d.length(9, 3) == Approx(0.25).epsilon(1e-2));
+  CHECK(d.length(8, 5) == Approx(0.25).epsilon(1e-2));
+  for (const Contact& c : d.contacts) CHECK(c.gap == Approx(-deep).epsilon(1e-6));
+}
+
+TEST_CASE("an L over a step rests on the step and against its side", "[contact][detection]") {
+  // The step's corner (vertex 2, at the origin) lies in the inner corner (vertex 3) of the L.
+  const std::vector<Vec2> l_shape{{0.0, -1.0}, {1.0, -1.0}, {1.0, 1.0}, {-2.0, 1.0}, {-2.0, 0.0}, {0.0, 0.0}};
+  Detection d(scene_with({fixed_block("step", rectangle(-5.0, -3.0, 5.0, 3.0)), free_block("block", l_shape)}));
+  CHECK(d.contacts.size() == 4);
+  const int arm_end = 4 + 4, foot = 4 + 0, under_arm = 4 + 4, side_of_foot = 4 + 5;
+  CHECK(d.length(arm_end, 2) == Approx(1.0).epsilon(1e-14));
+  CHECK(d.length(2, under_arm) == Approx(1.0).epsilon(1e-14));
+  CHECK(d.length(foot, 1) == Approx(0.5).epsilon(1e-14));
+  CHECK(d.length(2, side_of_foot) == Approx(0.5).epsilon(1e-14));
+  for (const Contact& c : d.contacts) CHECK_FALSE(d.system.is_reflex(c.vertex));
+}
+
+TEST_CASE("a hollow underside rests on its two ends, its blunt inner corner touches nothing", "[contact][detection]") {
+  Detection d(scene_with({fixed_block("base", rectangle(-10.0, -1.0, 20.0, 1.0)),
+                          free_block("block", {{-1.0, 0.0}, {0.0, 0.02}, {1.0, 0.0}, {1.0, 1.0}, {-1.0, 1.0}})}));
+  REQUIRE(d.system.is_reflex(5));
+  CHECK(d.contacts.size() == 2);
+  CHECK(d.length(4, 2) == Approx(0.5).epsilon(1e-3));
+  CHECK(d.length(6, 2) == Approx(0.5).epsilon(1e-3));
+}
+
+TEST_CASE("diagonal blocks of a four-block corner do not touch", "[contact][detection]") {
+  const double joint_angle = GENERATE(90.0, 60.0, 35.0) * degree, turn = GENERATE(0.0, 0.5, 2.0), disturbance = GENERATE(0.0, 1e-8, 1e-4);
+  const Vec2 u(1.0, 0.0), v(std::cos(joint_angle), std::sin(joint_angle));
+  Scene scene = test::empty_scene();
+  for (const double y : {-1.0, 0.0}) {
+    for (const double x : {-1.0, 0.0}) {
+      scene.blocks.push_back(free_block("block", {x * u + y * v, (x + 1.0) * u + y * v, (x + 1.0) * u + (y + 1.0) * v, x * u + (y + 1.0) * v}));
+    }
+  }
+  Detection d(turned(scene, turn, {10.0, 20.0}));
+  std::mt19937 generator(12);
+  std::uniform_real_distribution<double> number(-disturbance, disturbance);
+  for (int trial = 0; trial < 100; ++trial) {
+    const auto start = d.system.state();
+    for (int b = 0; b < 4; ++b) d.move(b, number(generator), number(generator), number(generator));
+    d.update();
+    double across = 0.0, neighbours = 0.0;
+    for (const Contact& c : d.contacts) (c.vertex_block + c.edge_block == 3 ? across : neighbours) += c.length;
+    // Corners that have moved past each other overlap by that much, on two pairs of edges of two pairs of blocks, and have no more length.
+    CHECK(across <= 4.0 * 4.0 * disturbance);
+    CHECK(neighbours == Approx(4.0).margin(1e-12 + 40.0 * disturbance));
+    d.system.restore(start);
+    if (disturbance == 0.0) break;
+  }
+}
+
+TEST_CASE("a corner above a thin slab is not in contact with its underside", "[contact][detection]") {
+  const double thickness = GENERATE(1e-2, 1e-3, 1e-4);
+  const double gap = GENERATE(1e-5, -1e-5, -6e-5);
+  Detection d(scene_with({fixed_block("slab", rectangle(-5.0, -thickness, 10.0, thickness)), free_block("block", rectangle(0.0, gap, 2.0, 1.0)),
+                          free_block("tip", placed(rectangle(0.0, 0.0, 1.0, 1.0), 45.0 * degree, {-2.0, gap}))}));
+  CHECK(d.contacts.size() == 3);
+  for (const Contact& c : d.contacts) {
+    CHECK(c.edge == 2);
+    CHECK(c.gap == Approx(gap).epsilon(1e-9));
+  }
+}
+
+TEST_CASE("corners touch only edges they come to from outside", "[contact][detection]") {
+  // Left block beside the right one: none of its corners touches top or bottom of the other, however near they are.
+  Detection d(scene_with({free_block("left", rectangle(0.0, 0.0, 1.0, 1.0)), free_block("right", rectangle(1.0, 0.0, 1.0, 1.0))}), 0.5);
+  REQUIRE(d.contacts.size() == 2);
+  for (const Contact& c : d.contacts) CHECK((c.edge == 1 || c.edge == 7));
+  CHECK(d.total_length() == Approx(1.0).epsilon(1e-14));
+}
+
+TEST_CASE("boxes at random places on a line touch over their overlap", "[contact][detection]") {
+  std::mt19937 generator(13);
+  std::uniform_real_distribution<double> place(-2.0, 2.0), width(0.1, 3.0);
+  int touching = 0;
+  for (int trial = 0; trial < 500; ++trial) {
+    const double xa = place(generator), wa = width(generator), xb = place(generator), wb = width(generator);
+    const double overlap = overlap_of(xa, xa + wa, xb, xb + wb);
+    const double angle = place(generator);
+    const std::vector<BlockInput> blocks{free_block("below", rectangle(xa, -1.0, wa, 1.0)), free_block("above", rectangle(xb, 0.0, wb, 1.0))};
+    Detection one(turned(scene_with({blocks[0], blocks[1]}), angle, {0.0, 0.0})),
+        other(turned(scene_with({blocks[1], blocks[0]}), angle, {0.0, 0.0}));
+    CHECK(one.total_length() == Approx(overlap).margin(1e-12));
+    REQUIRE(one.contacts.size() == other.contacts.size());
+    for (const Contact& c : one.contacts) CHECK(other.length((c.vertex + 4) % 8, (c.edge + 4) % 8) == Approx(c.length).margin(1e-12));
+    touching += one.contacts.size() == 2 ? 1 : 0;
+  }
+  CHECK(touching > 200);
+}
+
+TEST_CASE("joints are those of the two materials", "[contact][detection]") {
+  Scene scene = scene_with({fixed_block("base", rectangle(-5.0, -1.0, 10.0, 1.0)), free_block("block", rectangle(0.0, 0.0, 2.0, 1.0)),
+                            free_block("top", rectangle(0.0, 1.0, 2.0, 1.0))});
+  scene.materials.push_back({"lead", 11300.0});
+  scene.blocks[2].material = 1;
+  scene.joints.push_back(scene.joints[0]);
+  scene.joints[1].materials = {1, 0};
+  Detection d(scene);
+  REQUIRE(d.contacts.size() == 4);
+  for (const Contact& c : d.contacts) CHECK(c.joint == (std::max(c.vertex_block, c.edge_block) == 2 ? 1 : 0));
+}

@@ -1,0 +1,88 @@
+#include <cmath>
+#include <string>
+
+#include "openclose/analysis/run.h"
+#include "openclose/core/tolerance.h"
+#include "support/catch.h"
+#include "support/scenes.h"
+
+using namespace openclose;
+
+namespace {
+
+struct Outcome {
+  Vec2 displacement;
+  double rotation;
+  double penetration;
+};
+
+Outcome outcome(Scene scene, const std::string& method, double stiffness_factor) {
+  scene.method.contact = method;
+  scene.joints[0].normal_stiffness *= stiffness_factor;
+  Simulation<3> simulation(scene);
+  REQUIRE(run<3>(simulation, {}).converged);
+  const auto d = simulation.system().displacement(1);
+  return {d.head<2>(), d[2], simulation.max_penetration()};
+}
+
+/// A block that slides down with rotation free; steps so long that the joint's stiffness would show.
+Scene sliding() {
+  Scene scene = test::block_on_incline(30.0 * test::degree);
+  scene.joints[0].friction_angle = 15.0 * test::degree;
+  scene.step.dt = 1e-2;
+  scene.end_time = 0.5;
+  return scene;
+}
+
+Scene settling() {
+  Scene scene = test::block_on_base();
+  scene.method.start = Start::settled;
+  scene.end_time = 0.01;
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("hard is not soft with a larger number", "[integrator][hard]") {
+  const double factor = GENERATE(0.5, 10.0, 1000.0);
+  SECTION("sliding") {
+    const Outcome a = outcome(sliding(), "hard", 1.0), b = outcome(sliding(), "hard", factor);
+    // A closed gap and a sticking place may be off by hard_gap_m, in each of 50 steps.
+    CHECK((a.displacement - b.displacement).norm() < 50 * tolerance::hard_gap_m);
+    CHECK(std::abs(a.rotation - b.rotation) < 50 * tolerance::hard_gap_m);
+    CHECK(std::abs(a.penetration - b.penetration) < tolerance::hard_gap_m);
+    CHECK(a.displacement.norm() > 0.3);
+  }
+  SECTION("settled") {
+    const Outcome a = outcome(settling(), "hard", 1.0), b = outcome(settling(), "hard", factor);
+    CHECK(a.penetration < tolerance::hard_gap_m);
+    CHECK(b.penetration < tolerance::hard_gap_m);
+    CHECK((a.displacement - b.displacement).norm() < 2 * tolerance::hard_gap_m);
+  }
+}
+
+TEST_CASE("soft contacts close by what their stiffness says", "[integrator][soft]") {
+  const Outcome a = outcome(settling(), "soft", 1.0), b = outcome(settling(), "soft", 0.5);
+  const double closure = test::block_weight / (1e9 * test::block_edge);
+  CHECK(a.penetration == Approx(closure).epsilon(1e-7));
+  CHECK(b.penetration == Approx(2.0 * closure).epsilon(1e-7));
+}
+
+TEST_CASE("a hard block slides as a rigid one from the first step", "[integrator][hard]") {
+  const double slope = 30.0 * test::degree, mu = std::tan(15.0 * test::degree);
+  const Outcome o = outcome(sliding(), "hard", 1.0);
+  const double exact = 0.5 * 9.81 * (std::sin(slope) - mu * std::cos(slope)) * 0.5 * 0.5;
+  CHECK(o.displacement.dot(test::downhill(slope)) == Approx(exact).epsilon(1e-9));
+  CHECK(std::abs(o.displacement.dot(test::off_slope(slope))) < 50 * tolerance::hard_gap_m);
+}
+
+TEST_CASE("a hard block that falls stays where it lands", "[integrator][hard]") {
+  Scene scene = test::block_on_base();
+  scene.blocks[1].vertices = test::rectangle(0.0, 0.05, 2.0, 1.0);
+  scene.method.contact = "hard";
+  scene.end_time = 0.3;
+  Simulation<3> simulation(scene);
+  REQUIRE(run<3>(simulation, {}).converged);
+  CHECK(simulation.system().displacement(1)[1] == Approx(-0.05).margin(100 * tolerance::hard_gap_m));
+  CHECK(simulation.velocity(1).norm() < 1e-6);
+}

@@ -1,0 +1,172 @@
+#include <algorithm>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include "openclose/analysis/settle.h"
+#include "openclose/analysis/simulation.h"
+#include "openclose/integrator/newton.h"
+#include "support/catch.h"
+#include "support/scenes.h"
+
+using namespace openclose;
+
+namespace {
+
+constexpr double small_move = 1e-7;  // [m] far less than any penetration of a settled scene, so that no contact changes its state
+constexpr double large_move = 1e-5;  // [m] where no contact is closed: supports feel the rounding of whole coordinates, 1e-15 m
+constexpr double accuracy = 1e-8;    // [-] rounding of forces 1e-16 * 1e5 N / 1e-7 m over 1e9 N/m, and the square of a move: both below 1e-9
+
+/// A settled scene: blocks that all rest on each other, held and loaded off their centres.
+Scene settled_scene(int blocks) {
+  Scene scene = test::column_of_blocks(blocks);
+  scene.gravity = {1.0, -9.81};
+  const Vec2 corner = scene.blocks[1].vertices[3];
+  scene.supports = {{1, corner, {3e7, 5e7}}};
+  scene.loads = {{blocks, scene.blocks[blocks].vertices[2], {-2000.0, -5000.0}}};
+  return scene;
+}
+
+/// A step from the settled state. Contacts slide where `slides` says so: the law then does not ask how far.
+struct Probe {
+  explicit Probe(const Scene& scene) : simulation(scene) {
+    REQUIRE(settle(simulation).settled);
+    const StepProblem<3> problem = simulation.problem(1.0, false);
+    for (const Contact& c : problem.contacts) springs.push_back(simulation.enforcement().springs(problem, c));
+  }
+
+  int closed_contacts() const {
+    return static_cast<int>(std::count_if(springs.begin(), springs.end(), [](const ContactSprings& s) { return s.gap < -10.0 * small_move; }));
+  }
+
+  /// Every other contact, beginning with `first`, is pushed beyond its strength, in turn one way and the other; the rest sticks.
+  void mobilise(int first) {
+    double sign = 1.0;
+    for (std::size_t c = 0; c < springs.size(); ++c) {
+      const bool slides = static_cast<int>(c) % 2 == first;
+      const double normal = std::max(0.0, -springs[c].normal * springs[c].gap);
+      springs[c].initial_shear = sign * (slides ? 2.0 : 0.2) * normal * std::tan(simulation.scene().joints[0].friction_angle);
+      if (slides) sign = -sign;
+    }
+  }
+
+  /// Forces after the blocks have moved by d.
+  Eigen::VectorXd forces(const Eigen::VectorXd& d) {
+    const StepProblem<3> here = simulation.problem(1.0, false);
+    const auto of = [&](int b) -> Eigen::Vector3d {
+      const int i = here.system.block(b).equation;
+      return i < 0 ? Eigen::Vector3d::Zero().eval() : d.segment<3>(3 * i).eval();
+    };
+    std::vector<ContactSprings> moved_springs = springs;
+    for (std::size_t c = 0; c < springs.size(); ++c) {
+      const Contact& contact = here.contacts[c];
+      const ContactKinematics<3> k(here.system, contact, of(contact.vertex_block), of(contact.edge_block));
+      moved_springs[c].gap += k.gap_change;
+      moved_springs[c].initial_shear -= springs[c].shear * k.slip_change;
+    }
+    BlockSystem<3> moved = here.system;
+    for (int b : moved.free_blocks()) moved.advance(b, of(b));
+    const StepProblem<3> there{moved,       here.external, here.joints,  here.contacts, here.candidate_pairs, here.candidates_version,
+                               here.method, here.dt,       here.statics, here.inertia,  here.end_weight};
+    return newton.forces(there, moved_springs);
+  }
+
+  Eigen::MatrixXd stiffness() { return newton.stiffness(simulation.problem(1.0, false), springs); }
+
+  Simulation<3> simulation;
+  std::vector<ContactSprings> springs;
+  Newton<3> newton;
+};
+
+Eigen::VectorXd random_displacement(Eigen::Index size, double largest, std::mt19937& random) {
+  std::uniform_real_distribution<double> number(-largest, largest);
+  return Eigen::VectorXd::NullaryExpr(size, [&] { return number(random); });
+}
+
+/// Largest deviation of the stiffness from difference quotients of the forces, over its largest effect, in some random directions that leave the
+/// unknowns in `still` alone.
+double deviation(Probe& probe, double largest_move = small_move, const std::vector<int>& still = {}) {
+  std::mt19937 random(11);
+  const Eigen::MatrixXd k = probe.stiffness();
+  double worst = 0.0;
+  for (int i = 0; i < 20; ++i) {
+    Eigen::VectorXd d = random_displacement(k.rows(), largest_move, random);
+    for (int u : still) d[u] = 0.0;
+    Eigen::VectorXd difference = 0.5 * (probe.forces(d) - probe.forces(-d)) + k * d;
+    for (int u : still) difference[u] = 0.0;
+    worst = std::max(worst, difference.norm() / (k * d).norm());
+  }
+  return worst;
+}
+
+}  // namespace
+
+TEST_CASE("Newton's stiffness is minus the derivative of its forces", "[integrator][newton]") {
+  const int blocks = GENERATE(1, 2, 3, 4, 5);
+  Probe probe(settled_scene(blocks));
+  REQUIRE(probe.closed_contacts() >= 2 * blocks);
+  SECTION("all sticking") {
+    for (ContactSprings& s : probe.springs) s.initial_shear = 0.0;
+    CHECK(deviation(probe) < accuracy);
+    const Eigen::MatrixXd k = probe.stiffness();
+    CHECK((k - k.transpose()).norm() < accuracy * k.norm());
+  }
+  SECTION("sticking and sliding by turns") {
+    probe.mobilise(GENERATE(0, 1));
+    CHECK(deviation(probe) < accuracy);
+    const Eigen::MatrixXd k = probe.stiffness();
+    CHECK((k - k.transpose()).norm() > 1e-3 * k.norm());
+  }
+  SECTION("supports and loads alone, no contact closed") {
+    for (ContactSprings& s : probe.springs) s.gap = 1.0;
+    CHECK(deviation(probe, large_move) < accuracy);
+  }
+}
+
+TEST_CASE("Newton's stiffness after large rotations", "[integrator][newton]") {
+  Scene scene = test::tumbling_blocks();
+  scene.supports = {{1, scene.blocks[1].vertices[0], {3e7, 5e7}}};
+  scene.loads = {{2, scene.blocks[2].vertices[2], {-2000.0, -5000.0}}};
+  scene.settle.failure_displacement = 100.0;
+  Probe probe(scene);
+  REQUIRE(std::abs(probe.simulation.system().displacement(2)[2]) > 0.1);
+  probe.mobilise(GENERATE(0, 1));
+  CHECK(deviation(probe) < accuracy);
+}
+
+TEST_CASE("a locked rotation takes no part in the stiffness", "[integrator][newton]") {
+  Scene scene = settled_scene(3);
+  scene.blocks[2].rotation_locked = true;
+  Probe probe(scene);
+  probe.mobilise(0);
+  const int locked = 3 * 1 + 2;
+  CHECK(deviation(probe, small_move, {locked}) < accuracy);
+  const Eigen::MatrixXd k = probe.stiffness();
+  for (int i = 0; i < k.rows(); ++i) {
+    if (i == locked) continue;
+    CHECK(k(i, locked) == 0.0);
+    CHECK(k(locked, i) == 0.0);
+  }
+}
+
+TEST_CASE("the forces of a settled scene are in balance", "[integrator][newton]") {
+  Probe probe(settled_scene(GENERATE(1, 3, 5)));
+  const double weight = test::block_weight;
+  CHECK(probe.forces(Eigen::VectorXd::Zero(3 * probe.simulation.system().free_count())).cwiseAbs().maxCoeff() < 1e-7 * weight);
+  // Without its contacts the sum of the forces is weight, load and support.
+  for (ContactSprings& s : probe.springs) s.gap = 1.0;
+  const Eigen::VectorXd f = probe.forces(Eigen::VectorXd::Zero(3 * probe.simulation.system().free_count()));
+  CHECK(f.cwiseAbs().maxCoeff() > 0.5 * weight);
+}
+
+TEST_CASE("Newton counts its linear solves and says why it gives up", "[integrator][newton]") {
+  Scene scene = settled_scene(3);
+  scene.method.max_iterations = 1;
+  Simulation<3> simulation(scene);
+  const StepResult result = simulation.step(1.0, true);
+  CHECK_FALSE(result.accepted);
+  CHECK(result.reason == "Newton's method did not converge");
+  CHECK(simulation.step_counters().iterations == 1);
+  CHECK(simulation.step_counters().steps == 0);
+  CHECK(simulation.step_counters().cuts == 1);
+}

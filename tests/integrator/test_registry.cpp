@@ -1,0 +1,69 @@
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "openclose/core/error.h"
+#include "openclose/integrator/registry.h"
+#include "support/catch.h"
+#include "support/scenes.h"
+
+using namespace openclose;
+using Catch::Matchers::Contains;
+using openclose::test::all_methods;
+
+namespace {
+
+MethodInput method(const std::string& contact, double theta = 1.0) {
+  MethodInput input;
+  input.contact = contact;
+  input.contact_where = {"scene.toml", 7};
+  input.theta = theta;
+  return input;
+}
+
+}  // namespace
+
+TEST_CASE("every listed enforcement can be made by its name", "[integrator][registry]") {
+  std::vector<std::string> names;
+  for (const auto& entry : enforcements<3>()) {
+    names.emplace_back(entry.name);
+    CHECK_FALSE(std::string(entry.summary).empty());
+    CHECK(make_enforcement<3>(method(entry.name)) != nullptr);
+  }
+  CHECK(names.size() == all_methods.size());
+  for (const std::string& name : all_methods) CHECK(std::count(names.begin(), names.end(), name) == 1);
+}
+
+TEST_CASE("an unknown enforcement is refused with the list of known ones", "[integrator][registry]") {
+  CHECK_THROWS_AS(make_enforcement<3>(method("sotf")), InputError);
+  CHECK_THROWS_WITH(make_enforcement<3>(method("sotf")),
+                    Contains("scene.toml:7: method.contact: \"sotf\"") && Contains("\"soft\"") && Contains("\"hard\"") && Contains("\"shi\""));
+}
+
+TEST_CASE("names are compared whole", "[integrator][registry]") {
+  CHECK_THROWS_AS(make_enforcement<3>(method("")), InputError);
+  CHECK_THROWS_AS(make_enforcement<3>(method("Soft")), InputError);
+  CHECK_THROWS_AS(make_enforcement<3>(method("soft ")), InputError);
+}
+
+TEST_CASE("theta is soft's own: other enforcements refuse it", "[integrator][registry]") {
+  const double theta = GENERATE(0.5, 0.75, 0.999);
+  CHECK(make_enforcement<3>(method("soft"))->make_time_scheme(method("soft", theta))->end_weight() == theta);
+  for (const std::string name : {"hard", "shi"}) {
+    const auto enforcement = make_enforcement<3>(method(name));
+    CHECK_THROWS_AS(enforcement->make_time_scheme(method(name, theta)), InputError);
+    CHECK_THROWS_WITH(enforcement->make_time_scheme(method(name, theta)), Contains("scene.toml:7: method.theta: ") && Contains(name));
+    CHECK(enforcement->make_time_scheme(method(name))->end_weight() == 1.0);
+  }
+}
+
+TEST_CASE("only hard contacts store no energy", "[integrator][registry]") {
+  for (const std::string& name : all_methods) CHECK(make_enforcement<3>(method(name))->has_elastic_contacts() == (name != "hard"));
+}
+
+TEST_CASE("shi cuts its steps by the factor of the scene, the others halve them", "[integrator][registry]") {
+  MethodInput input = method("shi");
+  input.step_cut = 0.123;
+  CHECK(make_enforcement<3>(input)->step_cut(input) == 0.123);
+  for (const std::string name : {"soft", "hard"}) CHECK(make_enforcement<3>(method(name))->step_cut(input) == 0.5);
+}

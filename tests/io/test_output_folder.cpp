@@ -1,0 +1,63 @@
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+
+#include "io/files.h"
+#include "openclose/core/error.h"
+#include "openclose/io/output_folder.h"
+#include "support/catch.h"
+
+using namespace openclose;
+using Catch::Matchers::Contains;
+using openclose::test::TemporaryFolder;
+
+TEST_CASE("an output folder is made with all above it", "[io][output_folder]") {
+  const TemporaryFolder place;
+  const OutputFolder folder(place / "a/b/c");
+  CHECK(std::filesystem::is_directory(place / "a/b/c"));
+  CHECK(folder.path() == place / "a/b/c");
+}
+
+TEST_CASE("an existing output folder keeps its other files", "[io][output_folder]") {
+  const TemporaryFolder place;
+  place.write("mine.txt", "kept");
+  place.write("history.csv", "old and long");
+  const OutputFolder folder(place.path());
+  std::ofstream file = folder.open("history.csv");
+  file << "new";
+  finish(file, "history.csv");
+  CHECK(test::text_of(place / "history.csv") == "new");
+  CHECK(test::text_of(place / "mine.txt") == "kept");
+}
+
+TEST_CASE("output folders that cannot be are refused", "[io][output_folder]") {
+  const TemporaryFolder place;
+  place.write("file", "x");
+  SECTION("below a regular file") {
+    CHECK_THROWS_AS(OutputFolder(place / "file/out"), InputError);
+    CHECK_THROWS_WITH(OutputFolder(place / "file/out"), Contains(place / "file/out: cannot write to this output folder"));
+  }
+  SECTION("a regular file itself") {
+    CHECK_THROWS_AS(OutputFolder(place / "file"), InputError);
+  }
+  SECTION("where the system makes no folders") {
+    CHECK_THROWS_AS(OutputFolder("/proc/openclose"), InputError);
+  }
+  CHECK(test::text_of(place / "file") == "x");
+  CHECK(place.entries() == std::set<std::string>{"file"});
+}
+
+TEST_CASE("a file that cannot be opened", "[io][output_folder]") {
+  const TemporaryFolder place;
+  std::filesystem::create_directory(place / "energy.csv");
+  const OutputFolder folder(place.path());
+  CHECK_THROWS_AS(folder.open("energy.csv"), InputError);
+  CHECK_THROWS_WITH(folder.open("energy.csv"), Contains("energy.csv: cannot be written"));
+}
+
+TEST_CASE("a file that is not written to its end is an error", "[io][output_folder]") {
+  std::ofstream full("/dev/full");
+  REQUIRE(full.is_open());
+  full << "a row\n";
+  CHECK_THROWS_AS(finish(full, "history.csv"), std::runtime_error);
+}

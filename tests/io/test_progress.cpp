@@ -1,0 +1,94 @@
+#include <fcntl.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <string>
+#include <thread>
+
+#include "io/files.h"
+#include "openclose/io/progress.h"
+#include "support/catch.h"
+
+using namespace openclose;
+using Catch::Matchers::Contains;
+
+namespace {
+
+/// Standard error goes to another file descriptor as long as the object lives.
+class Redirected {
+ public:
+  explicit Redirected(int to) : kept_(dup(STDERR_FILENO)) { dup2(to, STDERR_FILENO); }
+  ~Redirected() {
+    dup2(kept_, STDERR_FILENO);
+    close(kept_);
+  }
+  Redirected(const Redirected&) = delete;
+  Redirected& operator=(const Redirected&) = delete;
+
+ private:
+  int kept_;
+};
+
+void work(std::chrono::milliseconds time, bool quiet) {
+  Progress progress("work", quiet);
+  progress.update(0.1);
+  std::this_thread::sleep_for(time);
+  progress.update(0.5);
+}
+
+constexpr std::chrono::milliseconds long_work{1100}, short_work{10};
+constexpr int handed_over_after_ms = 300;
+
+/// What appears on a terminal.
+std::string on_terminal(std::chrono::milliseconds time, bool quiet) {
+  const int master = posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK);
+  REQUIRE(master >= 0);
+  REQUIRE(grantpt(master) == 0);
+  REQUIRE(unlockpt(master) == 0);
+  const int terminal = open(ptsname(master), O_RDWR | O_NOCTTY);
+  REQUIRE(terminal >= 0);
+  {
+    const Redirected redirected(terminal);
+    work(time, quiet);
+  }
+  // The system hands over what was written in its own time.
+  std::string shown;
+  char buffer[4096];
+  pollfd wait{master, POLLIN, 0};
+  while (poll(&wait, 1, handed_over_after_ms) > 0) {
+    const ssize_t count = read(master, buffer, sizeof buffer);
+    if (count <= 0) break;
+    shown.append(buffer, static_cast<std::size_t>(count));
+  }
+  close(terminal);
+  close(master);
+  return shown;
+}
+
+}  // namespace
+
+TEST_CASE("long work shows its progress on a terminal and wipes it at the end", "[io][progress]") {
+  const std::string shown = on_terminal(long_work, false);
+  CHECK_THAT(shown, Contains("work [" + std::string(20, '#') + std::string(20, '.') + "]  50 %"));
+  CHECK_THAT(shown, !Contains("10 %") && Catch::Matchers::EndsWith("\r\033[K"));
+}
+
+TEST_CASE("short or quiet work shows nothing", "[io][progress]") {
+  CHECK(on_terminal(short_work, false).empty());
+  CHECK(on_terminal(long_work, true).empty());
+}
+
+TEST_CASE("progress is silent where standard error is no terminal", "[io][progress]") {
+  const test::TemporaryFolder place;
+  const std::string path = place.write("stderr.txt", "");
+  const int file = open(path.c_str(), O_WRONLY);
+  REQUIRE(file >= 0);
+  {
+    const Redirected redirected(file);
+    work(long_work, false);
+  }
+  close(file);
+  CHECK(test::text_of(path).empty());
+}

@@ -1,0 +1,265 @@
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "io/files.h"
+#include "openclose/io/results.h"
+#include "openclose/version.h"
+#include "support/catch.h"
+#include "support/scenes.h"
+
+using namespace openclose;
+using openclose::test::fields_of;
+using openclose::test::lines_of;
+using openclose::test::TemporaryFolder;
+
+namespace {
+
+/// Numbers that fewer digits would change.
+const std::vector<double> awkward = {0.1,
+                                     1.0 / 3.0,
+                                     -2.0 / 3.0 * 1e-300,
+                                     1.0 + std::numeric_limits<double>::epsilon(),
+                                     std::numeric_limits<double>::denorm_min(),
+                                     std::numeric_limits<double>::max(),
+                                     -0.0};
+
+bool same_bits(double a, double b) {
+  return std::memcmp(&a, &b, sizeof a) == 0;
+}
+
+double number(const std::string& text) {
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  REQUIRE(*end == '\0');
+  return value;
+}
+
+PointMotion motion(const std::string& name) {
+  PointMotion m;
+  m.name = name;
+  return m;
+}
+
+nlohmann::json summary_json(const TemporaryFolder& place) {
+  return nlohmann::json::parse(test::text_of(place / "summary.json"));
+}
+
+}  // namespace
+
+TEST_CASE("history.csv", "[io][results]") {
+  const TemporaryFolder place;
+  {
+    HistoryFile file(OutputFolder(place.path()));
+    for (double x : awkward) {
+      PointMotion m = motion("p");
+      m.displacement = {x, -x};
+      m.rotation = x;
+      m.velocity = {-x, x};
+      file.add(x, {m, motion("q")});
+    }
+    file.close();
+  }
+  const auto lines = lines_of(place / "history.csv");
+  REQUIRE(lines.size() == 1 + 2 * awkward.size());
+  CHECK(lines[0] == "time_s,point,displacement_x_m,displacement_y_m,rotation_rad,velocity_x_m_per_s,velocity_y_m_per_s");
+  for (std::size_t i = 0; i < awkward.size(); ++i) {
+    const double x = awkward[i];
+    const auto fields = fields_of(lines[1 + 2 * i]);
+    REQUIRE(fields.size() == 7);
+    CHECK(fields[1] == "p");
+    const double expected[] = {x, 0.0, x, -x, x, -x, x};
+    for (int k : {0, 2, 3, 4, 5, 6}) CHECK(same_bits(number(fields[k]), expected[k]));
+    CHECK(fields_of(lines[2 + 2 * i])[1] == "q");
+  }
+}
+
+TEST_CASE("names that would break a row are quoted", "[io][results]") {
+  const TemporaryFolder place;
+  HistoryFile file(OutputFolder(place.path()));
+  file.add(0.0, {motion("plain name"), motion("a,b"), motion("say \"x\""), motion("two\nlines")});
+  file.close();
+  const std::string text = test::text_of(place / "history.csv");
+  const std::string zeros = ",0,0,0,0,0\n";
+  const std::string header = lines_of(place / "history.csv")[0] + "\n";
+  CHECK(text == header + "0,plain name" + zeros + "0,\"a,b\"" + zeros + "0,\"say \"\"x\"\"\"" + zeros + "0,\"two\nlines\"" + zeros);
+}
+
+TEST_CASE("energy.csv ends with the imbalance", "[io][results]") {
+  const TemporaryFolder place;
+  EnergyLedger l;
+  l.kinetic = 1.0 / 3.0;
+  l.gravity = -2.0 / 3.0;
+  l.contact_springs = 0.1;
+  l.support_springs = 0.2;
+  l.loads = -0.3;
+  l.friction = 0.7;
+  l.impact = 1e-17;
+  l.scheme = 1e-3;
+  l.redefinition = -1e-5;
+  l.turnover = 12.0;
+  EnergyFile file(OutputFolder(place.path()));
+  file.add(0.25, l);
+  file.close();
+  const auto lines = lines_of(place / "energy.csv");
+  REQUIRE(lines.size() == 2);
+  CHECK(lines[0] ==
+        "time_s,kinetic_j,gravity_j,contact_springs_j,support_springs_j,loads_j,friction_j,impact_j,scheme_j,redefinition_j,turnover_j,imbalance_j");
+  const double expected[] = {0.25,       l.kinetic, l.gravity, l.contact_springs, l.support_springs, l.loads,
+                             l.friction, l.impact,  l.scheme,  l.redefinition,    l.turnover,        l.imbalance()};
+  const auto fields = fields_of(lines[1]);
+  REQUIRE(fields.size() == std::size(expected));
+  for (std::size_t i = 0; i < fields.size(); ++i) CHECK(same_bits(number(fields[i]), expected[i]));
+}
+
+TEST_CASE("blocks.csv holds the polygons of each state in scene coordinates", "[io][results]") {
+  const TemporaryFolder place;
+  Scene scene = test::empty_scene();
+  scene.blocks = {test::fixed_block("base, left", test::rectangle(95.0, 49.0, 10.0, 1.0)),
+                  test::free_block("block", test::rectangle(100.0, 50.0, 2.0, 1.0))};
+  Simulation<3> simulation(scene);
+  BlocksFile<3> file(OutputFolder(place.path()));
+  file.add("initial", simulation);
+  // A quarter turn about the centroid (101, 50.5), and 3 m up.
+  simulation.system().advance(1, {0.0, 3.0, 90.0 * test::degree});
+  file.add("final", simulation);
+  file.close();
+  const auto lines = lines_of(place / "blocks.csv");
+  REQUIRE(lines.size() == 1 + 2 * 8);
+  CHECK(lines[0] == "state,block,vertex,x_m,y_m");
+  CHECK(lines[1] == "initial,\"base, left\",0,95,49");
+  CHECK(lines[7] == "initial,block,2,102,51");
+  const auto fields = fields_of(lines[13]);
+  REQUIRE(fields.size() == 5);
+  CHECK(fields[0] == "final");
+  CHECK(fields[1] == "block");
+  CHECK(fields[2] == "0");
+  CHECK(number(fields[3]) == Approx(101.5).epsilon(1e-14));
+  CHECK(number(fields[4]) == Approx(52.5).epsilon(1e-14));
+}
+
+TEST_CASE("contacts.csv tells what every contact carries", "[io][results]") {
+  const TemporaryFolder place;
+  Simulation<3> simulation(test::block_on_base());
+  REQUIRE(settle(simulation).settled);
+  write_contacts(OutputFolder(place.path()), "final", simulation);
+  const auto lines = lines_of(place / "contacts.csv");
+  REQUIRE(lines.size() == 3);
+  CHECK(lines[0] == "state,block_a,block_b,x_m,y_m,normal_x,normal_y,length_m,gap_m,normal_force_n,shear_force_n,status");
+  std::set<double> places;
+  for (int i : {1, 2}) {
+    const auto fields = fields_of(lines[i]);
+    REQUIRE(fields.size() == 12);
+    CHECK(fields[0] == "final");
+    CHECK(fields[1] == "block");
+    CHECK(fields[2] == "base");
+    places.insert(number(fields[3]));
+    CHECK(number(fields[4]) == Approx(-test::block_weight / 2e9).epsilon(1e-7));
+    CHECK(number(fields[5]) == 0.0);
+    CHECK(number(fields[6]) == 1.0);
+    CHECK(number(fields[7]) == Approx(1.0).epsilon(1e-14));
+    CHECK(number(fields[8]) == Approx(-test::block_weight / 2e9).epsilon(1e-7));
+    CHECK(number(fields[9]) == Approx(0.5 * test::block_weight).epsilon(1e-7));
+    CHECK(std::abs(number(fields[10])) < 1e-7 * test::block_weight);
+    CHECK(fields[11] == "sticking");
+  }
+  REQUIRE(places.size() == 2);
+  CHECK(*places.begin() == Approx(0.0).margin(1e-12));
+  CHECK(*places.rbegin() == Approx(2.0).epsilon(1e-12));
+}
+
+TEST_CASE("trials.csv and curve.csv", "[io][results]") {
+  const TemporaryFolder place;
+  const OutputFolder folder(place.path());
+  write_trials(folder, {{1.0, "bracket", true, "unbalanced force", 3, 0.0}, {1.0 / 3.0, "bisect", false, "displacement", 17, 0.1}});
+  write_curve(folder, {{1.1, "crest, left", 1.0 / 3.0}});
+  CHECK(test::text_of(place / "trials.csv") ==
+        "srf,stage,stable,criterion,steps,displacement_m\n"
+        "1,bracket,1,unbalanced force,3,0\n"
+        "0.33333333333333331,bisect,0,displacement,17,0.10000000000000001\n");
+  CHECK(test::text_of(place / "curve.csv") ==
+        "srf,point,displacement_m\n"
+        "1.1000000000000001,\"crest, left\",0.33333333333333331\n");
+}
+
+TEST_CASE("summary.json of a run", "[io][results]") {
+  const TemporaryFolder place;
+  Scene scene = test::block_on_base();
+  scene.title = "A \"quoted\" title";
+  scene.method.start = Start::settled;
+  scene.end_time = 0.01;
+  Simulation<3> simulation(scene);
+  const RunResult result = run<3>(simulation, {});
+  Summary summary;
+  summary.command = "run";
+  summary.scene_file = "scenes/a.toml";
+  summary.overrides = {"method.theta=1"};
+  summary.warnings = {"one"};
+  summary.converged = result.converged;
+  summary.settling = result.settling;
+  summary.ledger.friction = 1.0 / 3.0;
+  summary.max_penetration = 0.1;
+  write_summary(OutputFolder(place.path()), summary, simulation);
+
+  const nlohmann::json j = summary_json(place);
+  CHECK(j.at("version") == version);
+  CHECK(j.at("command") == "run");
+  CHECK(j.at("scene") == "scenes/a.toml");
+  CHECK(j.at("title") == "A \"quoted\" title");
+  CHECK(j.at("overrides") == std::vector<std::string>{"method.theta=1"});
+  CHECK(j.at("warnings") == std::vector<std::string>{"one"});
+  CHECK(j.at("options").at("contact") == "soft");
+  CHECK(j.at("options").at("start") == "settled");
+  CHECK(j.at("options").at("theta") == 1.0);
+  CHECK(j.at("options").at("dt_s") == 1e-3);
+  CHECK(j.at("blocks") == 2);
+  CHECK(j.at("free_blocks") == 1);
+  CHECK(j.at("converged") == true);
+  CHECK(j.at("reason") == "");
+  CHECK(same_bits(j.at("time_s").get<double>(), 10 * 1e-3));
+  CHECK(same_bits(j.at("max_penetration_m").get<double>(), 0.1));
+  CHECK(j.at("counters").at("steps") == simulation.step_counters().steps);
+  CHECK(j.at("counters").at("steps").get<long>() >= 11);
+  CHECK(j.at("counters").at("iterations") == simulation.step_counters().iterations);
+  CHECK(j.at("counters").at("searches") == simulation.detection_counters().searches);
+  for (const char* stage : {"detection", "solution", "bookkeeping"}) CHECK(j.at("stage_s").at(stage).get<double>() > 0.0);
+  CHECK(same_bits(j.at("energy_ledger").at("friction_j").get<double>(), 1.0 / 3.0));
+  CHECK(j.at("energy_ledger").at("imbalance_j") == 1.0 / 3.0);
+  CHECK(j.at("energy_ledger").size() == 11);
+  CHECK(j.at("settling").at("settled") == true);
+  CHECK(j.at("settling").at("criterion") == "unbalanced force");
+  CHECK_FALSE(j.contains("factor_of_safety"));
+}
+
+TEST_CASE("summary.json of a factor of safety", "[io][results]") {
+  const TemporaryFolder place;
+  Simulation<3> simulation(test::block_on_base());
+  FactorOfSafety<3> safety;
+  safety.stable = 1.25;
+  safety.failed = 1.5;
+  safety.criterion = "displacement";
+  Summary summary;
+  summary.command = "fos";
+  summary.reason = "why";
+  SECTION("found") {
+    safety.found = summary.converged = true;
+    write_summary(OutputFolder(place.path()), summary, simulation, &safety);
+    const nlohmann::json j = summary_json(place);
+    CHECK(j.at("factor_of_safety") == 1.25);
+    CHECK(j.at("bracket") == std::vector<double>{1.25, 1.5});
+    CHECK(j.at("criterion") == "displacement");
+    CHECK(j.at("converged") == true);
+  }
+  SECTION("not found") {
+    write_summary(OutputFolder(place.path()), summary, simulation, &safety);
+    const nlohmann::json j = summary_json(place);
+    CHECK(j.at("factor_of_safety").is_null());
+    CHECK(j.at("converged") == false);
+    CHECK(j.at("reason") == "why");
+  }
+}

@@ -1,0 +1,266 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "openclose/core/tolerance.h"
+#include "openclose/law/joint_law.h"
+#include "support/catch.h"
+
+using namespace openclose;
+
+namespace {
+
+constexpr double rounding = 8.0 * std::numeric_limits<double>::epsilon();
+
+JointProperties joint_with(double friction, double cohesion, double tension, CohesionBehaviour behaviour = CohesionBehaviour::ductile) {
+  JointProperties joint;
+  joint.normal_stiffness = 1e9;
+  joint.shear_stiffness = 4e8;
+  joint.friction_angle = std::atan(friction);
+  joint.cohesion = cohesion;
+  joint.tensile_strength = tension;
+  joint.cohesion_behaviour = behaviour;
+  return joint;
+}
+
+Contact contact_of_length(double length, bool bonded = true) {
+  Contact contact;
+  contact.length = length;
+  contact.bonded = bonded;
+  return contact;
+}
+
+/// Friction [-], cohesion [N] and tension [N] of a contact of 1 m.
+ContactStrength strength_of(double friction, double cohesion = 0.0, double tension = 0.0) {
+  return ContactStrength(joint_with(friction, cohesion, tension), contact_of_length(1.0));
+}
+
+/// 1000 N/m normal, 400 N/m shear, closed by 1 m: 1000 N at rest.
+ContactSprings springs_under_load() {
+  ContactSprings springs;
+  springs.normal = 1000.0;
+  springs.shear = 400.0;
+  springs.gap = -1.0;
+  return springs;
+}
+
+}  // namespace
+
+TEST_CASE("strength is the joint's times the tributary length", "[law][strength]") {
+  const JointProperties joint = joint_with(0.7, 3e4, 2e4);
+  const ContactStrength strength(joint, contact_of_length(0.25));
+  CHECK(strength.friction == Approx(0.7).epsilon(rounding));
+  CHECK(strength.cohesion == Approx(7.5e3).epsilon(rounding));
+  CHECK(strength.tension == Approx(5e3).epsilon(rounding));
+}
+
+TEST_CASE("an open or slipped joint keeps only ductile cohesion, and no tension", "[law][strength]") {
+  const Contact broken = contact_of_length(0.5, false), bonded = contact_of_length(0.5);
+  const auto behaviour = GENERATE(CohesionBehaviour::ductile, CohesionBehaviour::lost_on_opening, CohesionBehaviour::lost_on_slip);
+  const JointProperties joint = joint_with(0.7, 3e4, 2e4, behaviour);
+  CHECK(ContactStrength(joint, bonded).cohesion == 1.5e4);
+  CHECK(ContactStrength(joint, bonded).tension == 1e4);
+  CHECK(ContactStrength(joint, broken).cohesion == (behaviour == CohesionBehaviour::ductile ? 1.5e4 : 0.0));
+  CHECK(ContactStrength(joint, broken).tension == 0.0);
+  CHECK(ContactStrength(joint, broken).friction == Approx(0.7).epsilon(rounding));
+}
+
+TEST_CASE("the bond survives what its behaviour allows", "[law][strength]") {
+  struct Case {
+    CohesionBehaviour behaviour;
+    ContactStatus status;
+    bool stays;
+  };
+  const std::array<Case, 9> table{{{CohesionBehaviour::ductile, ContactStatus::open, false},
+                                   {CohesionBehaviour::ductile, ContactStatus::sticking, true},
+                                   {CohesionBehaviour::ductile, ContactStatus::sliding, true},
+                                   {CohesionBehaviour::lost_on_opening, ContactStatus::open, false},
+                                   {CohesionBehaviour::lost_on_opening, ContactStatus::sticking, true},
+                                   {CohesionBehaviour::lost_on_opening, ContactStatus::sliding, true},
+                                   {CohesionBehaviour::lost_on_slip, ContactStatus::open, false},
+                                   {CohesionBehaviour::lost_on_slip, ContactStatus::sticking, true},
+                                   {CohesionBehaviour::lost_on_slip, ContactStatus::sliding, false}}};
+  for (const Case& c : table) {
+    const JointProperties joint = joint_with(0.5, 1e4, 1e4, c.behaviour);
+    CHECK(stays_bonded(joint, true, c.status) == c.stays);
+    // Nothing heals.
+    CHECK_FALSE(stays_bonded(joint, false, c.status));
+  }
+}
+
+TEST_CASE("without cohesion the shear strength is friction alone", "[law][shear_bound]") {
+  const ContactStrength strength = strength_of(0.6);
+  for (const double n : {0.0, 1e-9, 1.0, 1e6}) CHECK(strength.shear_bound(n).value == Approx(0.6 * n).epsilon(rounding));
+  CHECK(strength.shear_bound(5.0).slope == Approx(0.6).epsilon(rounding));
+}
+
+TEST_CASE("cohesion comes in over a ramp, the lower of two lines", "[law][shear_bound]") {
+  const double friction = GENERATE(0.0, 0.6), cohesion = GENERATE(0.0, 100.0, 3000.0), tension = GENERATE(0.0, 50.0, 1000.0);
+  const ContactStrength strength = strength_of(friction, cohesion, tension);
+  const double steep = friction + 1.0 / tolerance::cohesion_ramp;
+  const double scale = friction * 5000.0 + cohesion + steep * (5000.0 + tension);
+  for (double n = -tension; n <= 5000.0; n += 7.3) {
+    const double lower = std::max(0.0, std::min(friction * n + cohesion, steep * (n + tension)));
+    CHECK(std::abs(strength.shear_bound(n).value - lower) <= rounding * scale);
+  }
+  CHECK(strength.shear_bound(-tension).value <= rounding * scale);
+  CHECK(strength.shear_bound(1e6).value == Approx(friction * 1e6 + cohesion).epsilon(rounding));
+}
+
+TEST_CASE("the shear strength is continuous and its slope is its derivative", "[law][shear_bound]") {
+  const ContactStrength strength = strength_of(0.6, 800.0, 30.0);
+  const double steep = 0.6 + 1.0 / tolerance::cohesion_ramp;
+  const double kink = (800.0 - steep * 30.0) / (steep - 0.6);
+  // Along a line the difference quotient is exact but for rounding: values of 1e3 N over 1e-3 N.
+  const double h = 1e-3, quotient_rounding = 1e3 * rounding / h;
+  double before = strength.shear_bound(-30.0).value;
+  for (int i = 1; i <= 2000; ++i) {
+    const double n = -30.0 + 0.1 * i;
+    const auto bound = strength.shear_bound(n);
+    CHECK(std::abs(bound.value - before) <= steep * 0.1 * (1.0 + 1e-9));
+    if (std::abs(n - kink) > 2.0 * h) {
+      const double quotient = (strength.shear_bound(n + h).value - strength.shear_bound(n - h).value) / (2.0 * h);
+      CHECK(std::abs(bound.slope - quotient) <= quotient_rounding);
+    }
+    before = bound.value;
+  }
+  CHECK(strength.shear_bound(kink - 1.0).slope == Approx(steep).epsilon(rounding));
+  CHECK(strength.shear_bound(kink + 1.0).slope == Approx(0.6).epsilon(rounding));
+}
+
+TEST_CASE("the spring-slider sticks, slides and opens", "[law][spring_slider]") {
+  const ContactSprings springs = springs_under_load();
+  const ContactStrength strength = strength_of(0.5);
+  SECTION("sticking") {
+    const ContactForces f = spring_slider(springs, strength, -0.2, 0.3);
+    CHECK(f.status == ContactStatus::sticking);
+    CHECK(f.normal == Approx(1200.0).epsilon(rounding));
+    CHECK(f.shear == Approx(-120.0).epsilon(rounding));
+    CHECK(f.normal_by_gap == -1000.0);
+    CHECK(f.shear_by_gap == 0.0);
+    CHECK(f.shear_by_slip == -400.0);
+  }
+  SECTION("sliding either way, against the motion") {
+    const double way = GENERATE(-1.0, 1.0);
+    const ContactForces f = spring_slider(springs, strength, 0.2, 3.0 * way);
+    CHECK(f.status == ContactStatus::sliding);
+    CHECK(f.normal == Approx(800.0).epsilon(rounding));
+    CHECK(f.shear == Approx(-400.0 * way).epsilon(rounding));
+    CHECK(f.normal_by_gap == -1000.0);
+    CHECK(f.shear_by_gap == Approx(500.0 * way).epsilon(rounding));
+    CHECK(f.shear_by_slip == 0.0);
+  }
+  SECTION("open") {
+    const double opening = GENERATE(1.0, 1.5);
+    const ContactForces f = spring_slider(springs, strength, opening, 0.3);
+    CHECK(f.status == ContactStatus::open);
+    CHECK(f.normal == 0.0);
+    CHECK(f.shear == 0.0);
+    CHECK(f.normal_by_gap == 0.0);
+    CHECK(f.shear_by_gap == 0.0);
+    CHECK(f.shear_by_slip == 0.0);
+  }
+}
+
+TEST_CASE("target, shift and initial shear displace the springs", "[law][spring_slider]") {
+  ContactSprings springs = springs_under_load();
+  springs.target = -0.4;
+  springs.shift = 70.0;
+  springs.initial_shear = 90.0;
+  const ContactForces f = spring_slider(springs, strength_of(10.0), 0.1, 0.05);
+  CHECK(f.status == ContactStatus::sticking);
+  CHECK(f.normal == Approx(70.0 + 1000.0 * 0.5).epsilon(rounding));
+  CHECK(f.shear == Approx(90.0 - 400.0 * 0.05).epsilon(rounding));
+}
+
+TEST_CASE("the stuck shear force may be the strength itself, not more", "[law][spring_slider]") {
+  ContactSprings springs = springs_under_load();
+  const ContactStrength strength = strength_of(0.5);
+  springs.initial_shear = strength.shear_bound(1000.0).value;
+  CHECK(spring_slider(springs, strength, 0.0, 0.0).status == ContactStatus::sticking);
+  CHECK(spring_slider(springs, strength, 0.0, -1e-9).status == ContactStatus::sliding);
+  CHECK(spring_slider(springs, strength, 0.0, 1e-9).status == ContactStatus::sticking);
+}
+
+TEST_CASE("a contact with tensile strength pulls until the cut-off", "[law][spring_slider]") {
+  const ContactSprings springs = springs_under_load();
+  const ContactStrength strength = strength_of(0.5, 0.0, 250.0);
+  CHECK(spring_slider(springs, strength, 1.2, 0.0).normal == Approx(-200.0).epsilon(rounding * 10.0));
+  CHECK(spring_slider(springs, strength, 1.2, 0.0).status == ContactStatus::sticking);
+  CHECK(spring_slider(springs, strength, 1.249, 0.0).normal == Approx(-249.0).epsilon(rounding * 10.0));
+  CHECK(spring_slider(springs, strength, 1.251, 0.0).normal == 0.0);
+  CHECK(spring_slider(springs, strength, 1.251, 0.0).status == ContactStatus::open);
+  // Without it the same contact opens at zero.
+  CHECK(spring_slider(springs, strength_of(0.5), 1.2, 0.0).status == ContactStatus::open);
+}
+
+TEST_CASE("without tensile strength forces are continuous across open, stick and slip", "[law][spring_slider]") {
+  ContactSprings springs = springs_under_load();
+  springs.initial_shear = 35.0;
+  const ContactStrength strength = strength_of(0.6, GENERATE(0.0, 400.0));
+  std::mt19937 generator(9);
+  std::uniform_real_distribution<double> change(-2.0, 2.0), small(-1e-4, 1e-4);
+  const double steep = strength.friction + 1.0 / tolerance::cohesion_ramp;
+  std::array<int, 3> seen{};
+  int changed = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const double g = i % 2 == 0 ? 1.0 + small(generator) : change(generator), s = change(generator);
+    const double dg = small(generator), ds = small(generator);
+    const ContactForces f = spring_slider(springs, strength, g, s), near = spring_slider(springs, strength, g + dg, s + ds);
+    const double slack = 1e4 * rounding;
+    CHECK(std::abs(near.normal - f.normal) <= springs.normal * std::abs(dg) + slack);
+    CHECK(std::abs(near.shear - f.shear) <= springs.shear * std::abs(ds) + steep * springs.normal * std::abs(dg) + slack);
+    ++seen[static_cast<std::size_t>(f.status)];
+    changed += f.status != near.status ? 1 : 0;
+  }
+  CHECK(*std::min_element(seen.begin(), seen.end()) > 500);
+  CHECK(changed > 500);
+}
+
+TEST_CASE("derivatives of the spring-slider are its difference quotients", "[law][spring_slider]") {
+  ContactSprings springs = springs_under_load();
+  springs.initial_shear = -20.0;
+  const ContactStrength strength = strength_of(0.6, 400.0, GENERATE(0.0, 60.0));
+  std::mt19937 generator(10);
+  std::uniform_real_distribution<double> change(-2.0, 2.0), near_opening(0.9, 1.1);
+  // The law is made of straight pieces: the quotient is exact but for rounding (forces up to 1e4 N).
+  const double h = 1e-5, quotient_rounding = 1e4 * rounding / h;
+  std::array<int, 3> compared{};
+  int on_ramp = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const double g = i % 2 == 0 ? near_opening(generator) : change(generator), s = change(generator);
+    const ContactForces f = spring_slider(springs, strength, g, s);
+    const ContactForces g1 = spring_slider(springs, strength, g - h, s), g2 = spring_slider(springs, strength, g + h, s);
+    const ContactForces s1 = spring_slider(springs, strength, g, s - h), s2 = spring_slider(springs, strength, g, s + h);
+    const auto slope = [&](const ContactForces& at) { return strength.shear_bound(at.normal).slope; };
+    const bool kink = g1.status != f.status || g2.status != f.status || s1.status != f.status || s2.status != f.status || slope(g1) != slope(g2);
+    if (kink) continue;
+    CHECK(std::abs(f.normal_by_gap - (g2.normal - g1.normal) / (2.0 * h)) <= quotient_rounding);
+    CHECK(std::abs(f.shear_by_gap - (g2.shear - g1.shear) / (2.0 * h)) <= quotient_rounding);
+    CHECK(std::abs(f.shear_by_slip - (s2.shear - s1.shear) / (2.0 * h)) <= quotient_rounding);
+    ++compared[static_cast<std::size_t>(f.status)];
+    on_ramp += f.status == ContactStatus::sliding && slope(f) > 1.0 ? 1 : 0;
+  }
+  CHECK(*std::min_element(compared.begin(), compared.end()) > 200);
+  CHECK(on_ramp > 50);
+}
+
+TEST_CASE("the tangent of a status is the one the spring-slider has there", "[law][tangent_for_status]") {
+  const ContactSprings springs = springs_under_load();
+  const ContactStrength strength = strength_of(0.6, 400.0, 60.0);
+  std::mt19937 generator(11);
+  std::uniform_real_distribution<double> change(-2.0, 2.0);
+  std::array<int, 3> seen{};
+  for (int i = 0; i < 2000; ++i) {
+    const ContactForces f = spring_slider(springs, strength, change(generator), change(generator));
+    const ContactForces tangent = tangent_for_status(springs, strength, f.status, f.normal, f.shear);
+    CHECK(tangent.status == f.status);
+    CHECK(tangent.normal_by_gap == f.normal_by_gap);
+    CHECK(tangent.shear_by_gap == f.shear_by_gap);
+    CHECK(tangent.shear_by_slip == f.shear_by_slip);
+    ++seen[static_cast<std::size_t>(f.status)];
+  }
+  CHECK(*std::min_element(seen.begin(), seen.end()) > 100);
+}

@@ -1,0 +1,187 @@
+#include <limits>
+
+#include "openclose/linear/solver.h"
+#include "random_systems.h"
+#include "support/catch.h"
+
+using namespace openclose;
+using openclose::test::RandomSystems;
+
+namespace {
+
+using Solver = std::unique_ptr<LinearSolver<3>>;
+
+/// Largest residual over what rounding may leave: |A| |x| times machine precision times the number of unknowns (N. J. Higham, Accuracy and stability
+/// of numerical algorithms, 2002, theorem 9.3, with the growth of partial pivoting left to the factor 10).
+double residual_over_rounding(const BlockMatrix<3>& matrix, const Eigen::VectorXd& x, const Eigen::VectorXd& right_side) {
+  const Eigen::MatrixXd dense = matrix.dense();
+  const double scale = dense.cwiseAbs().rowwise().sum().maxCoeff() * x.cwiseAbs().maxCoeff();
+  const double rounding = 10.0 * static_cast<double>(x.size()) * std::numeric_limits<double>::epsilon() * scale;
+  return (dense * x - right_side).cwiseAbs().maxCoeff() / rounding;
+}
+
+/// Two blocks held to each other by a spring but to nothing else: any common translation goes through, to the last bit.
+BlockMatrix<3> floating_pair() {
+  BlockMatrix<3> matrix;
+  matrix.set_pattern(2, {{0, 1}});
+  const Eigen::Matrix3d k = Eigen::Vector3d(4.0, 2.0, 1.0).asDiagonal();
+  matrix.add(0, 0, k);
+  matrix.add(1, 1, k);
+  matrix.add(0, 1, -k);
+  matrix.add(1, 0, -k);
+  return matrix;
+}
+
+Solver make(const std::string& name) {
+  return name == "dense" ? make_dense_solver<3>() : make_sparse_solver<3>();
+}
+
+}  // namespace
+
+TEST_CASE("both solvers solve random systems to rounding and agree", "[linear][solver]") {
+  RandomSystems random(3);
+  // Strongly diagonal systems are well conditioned: both answers are right to rounding. The others are only solved to a residual of rounding.
+  const double dominance = GENERATE(2.0, 0.02);
+  for (int rows = 1; rows <= 60; ++rows) {
+    const auto pairs = random.couplings(rows, random.below(4 * rows));
+    BlockMatrix<3> matrix;
+    matrix.set_pattern(rows, pairs);
+    random.fill(matrix, pairs, dominance);
+    const Solver dense = make_dense_solver<3>(), sparse = make_sparse_solver<3>();
+    REQUIRE(dense->factor(matrix));
+    REQUIRE(sparse->factor(matrix));
+    const Eigen::VectorXd right_side = random.vector(matrix.unknowns());
+    const Eigen::VectorXd x = dense->solve(right_side), y = sparse->solve(right_side);
+    CHECK(residual_over_rounding(matrix, x, right_side) < 1.0);
+    CHECK(residual_over_rounding(matrix, y, right_side) < 1.0);
+    if (dominance > 1.0) CHECK((x - y).norm() <= 1e-13 * x.norm());
+  }
+}
+
+TEST_CASE("several right sides use one factorisation", "[linear][solver]") {
+  RandomSystems random(4);
+  const Solver solver = make(GENERATE("dense", "sparse"));
+  const auto pairs = random.couplings(12, 30);
+  BlockMatrix<3> matrix;
+  matrix.set_pattern(12, pairs);
+  random.fill(matrix, pairs, 1.0);
+  REQUIRE(solver->factor(matrix));
+  for (int i = 0; i < 5; ++i) {
+    const Eigen::VectorXd right_side = random.vector(36);
+    CHECK(residual_over_rounding(matrix, solver->solve(right_side), right_side) < 1.0);
+  }
+  CHECK(solver->counters().factorisations == 1);
+  CHECK(solver->counters().solves == 5);
+}
+
+TEST_CASE("symbolic work is done once for a pattern, numbers every time", "[linear][solver]") {
+  RandomSystems random(5);
+  const Solver solver = make_sparse_solver<3>();
+  BlockMatrix<3> matrix;
+  const auto check_solution = [&] {
+    REQUIRE(solver->factor(matrix));
+    const Eigen::VectorXd right_side = random.vector(matrix.unknowns());
+    CHECK(residual_over_rounding(matrix, solver->solve(right_side), right_side) < 1.0);
+  };
+
+  const std::vector<std::pair<int, int>> chain{{0, 1}, {1, 2}, {2, 3}}, star{{0, 1}, {0, 2}, {0, 3}}, longer{{0, 1}, {3, 4}};
+  matrix.set_pattern(4, chain);
+  for (int i = 0; i < 3; ++i) {
+    random.fill(matrix, chain, 1.0);
+    check_solution();
+  }
+  CHECK(solver->counters().symbolic == 1);
+  CHECK(solver->counters().symbolic_skipped == 2);
+
+  SECTION("another pattern of the same size and number of entries") {
+    matrix.set_pattern(4, star);
+    random.fill(matrix, star, 1.0);
+    check_solution();
+  }
+  SECTION("another size") {
+    matrix.set_pattern(5, longer);
+    random.fill(matrix, longer, 1.0);
+    check_solution();
+  }
+  CHECK(solver->counters().symbolic == 2);
+  CHECK(solver->counters().symbolic_skipped == 2);
+  CHECK(solver->counters().factorisations == 4);
+}
+
+TEST_CASE("zeros within the pattern may become numbers later", "[linear][solver]") {
+  RandomSystems random(6);
+  const Solver solver = make_sparse_solver<3>();
+  const std::vector<std::pair<int, int>> pairs{{0, 1}, {1, 2}};
+  BlockMatrix<3> matrix;
+  matrix.set_pattern(3, pairs);
+  for (int i = 0; i < 3; ++i) matrix.add(i, i, Eigen::Matrix3d::Identity());
+  const Eigen::VectorXd right_side = random.vector(9);
+  REQUIRE(solver->factor(matrix));
+  CHECK(solver->solve(right_side) == right_side);
+  random.fill(matrix, pairs, 1.0);
+  REQUIRE(solver->factor(matrix));
+  CHECK(residual_over_rounding(matrix, solver->solve(right_side), right_side) < 1.0);
+  CHECK(solver->counters().symbolic == 1);
+}
+
+TEST_CASE("a singular matrix is reported, and the solver works again afterwards", "[linear][solver]") {
+  const std::string name = GENERATE("dense", "sparse");
+  const Solver solver = make(name);
+  RandomSystems random(7);
+  BlockMatrix<3> matrix;
+  SECTION("no entries at all") {
+    matrix.set_pattern(2, {{0, 1}});
+    CHECK_FALSE(solver->factor(matrix));
+  }
+  SECTION("one unknown without stiffness") {
+    matrix.set_pattern(2, {{0, 1}});
+    matrix.add(0, 0, Eigen::Matrix3d::Identity());
+    matrix.add(1, 1, Eigen::Vector3d(1.0, 1.0, 0.0).asDiagonal().toDenseMatrix());
+    CHECK_FALSE(solver->factor(matrix));
+  }
+  SECTION("two blocks held by nothing but each other") {
+    matrix = floating_pair();
+    CHECK_FALSE(solver->factor(matrix));
+  }
+  matrix = floating_pair();
+  matrix.add(0, 0, Eigen::Matrix3d::Identity());
+  REQUIRE(solver->factor(matrix));
+  const Eigen::VectorXd right_side = random.vector(6);
+  CHECK(residual_over_rounding(matrix, solver->solve(right_side), right_side) < 1.0);
+}
+
+TEST_CASE("an eliminated unknown makes a floating system regular and keeps its right side", "[linear][solver]") {
+  const std::string name = GENERATE("dense", "sparse");
+  const Solver solver = make(name);
+  BlockMatrix<3> matrix = floating_pair();
+  for (int k = 0; k < 3; ++k) matrix.eliminate(0, k);
+  REQUIRE(solver->factor(matrix));
+  Eigen::VectorXd right_side(6), expected(6);
+  right_side << 5.0, 6.0, 7.0, 8.0, 8.0, 8.0;
+  expected << 5.0, 6.0, 7.0, 2.0, 4.0, 8.0;
+  CHECK(solver->solve(right_side) == expected);
+}
+
+TEST_CASE("numbers that are none do not pass for a factorisation", "[linear][solver]") {
+  const std::string name = GENERATE("dense", "sparse");
+  const Solver solver = make(name);
+  BlockMatrix<3> matrix = floating_pair();
+  matrix.add(0, 0, Eigen::Matrix3d::Constant(std::numeric_limits<double>::quiet_NaN()));
+  CHECK_FALSE(solver->factor(matrix));
+}
+
+TEST_CASE("small systems are solved densely, large ones sparsely, with the same answer", "[linear][solver]") {
+  RandomSystems random(8);
+  for (const int rows : {1, 8, 9, 40}) {
+    const auto pairs = random.couplings(rows, 2 * rows);
+    BlockMatrix<3> matrix;
+    matrix.set_pattern(rows, pairs);
+    random.fill(matrix, pairs, 1.0);
+    const Solver solver = make_solver<3>(rows);
+    REQUIRE(solver->factor(matrix));
+    const Eigen::VectorXd right_side = random.vector(matrix.unknowns());
+    CHECK(residual_over_rounding(matrix, solver->solve(right_side), right_side) < 1.0);
+    // Only the sparse one has symbolic work to do.
+    CHECK(solver->counters().symbolic == (rows <= 8 ? 0 : 1));
+  }
+}
