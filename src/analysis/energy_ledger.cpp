@@ -53,7 +53,10 @@ void add_step(EnergyLedger& ledger, const StepProblem<N>& problem, const StepSol
     const Unknowns d = solution.of(system, b), path = work_displacement(b), v0 = problem.velocity(b);
     const Unknowns v1 = problem.statics ? Unknowns(2.0 / dt * d) : scheme.next_velocity(dt, d, v0);
     const double before = 0.5 * v0.dot(mass.cwiseProduct(v0)), after = 0.5 * v1.dot(mass.cwiseProduct(v1));
-    if (problem.statics) ledger.scheme += after;
+    if (problem.statics) {
+      const Unknowns dropped = system.velocity(b);
+      ledger.scheme += after + 0.5 * dropped.dot(mass.cwiseProduct(dropped));
+    }
     const double weight_work = problem.external.weight(system, b).dot(path);
     ledger.gravity -= weight_work;
     ledger.turnover += std::abs(after - before) + std::abs(weight_work);

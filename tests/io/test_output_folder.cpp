@@ -47,12 +47,12 @@ TEST_CASE("output folders that cannot be are refused", "[io][output_folder]") {
   CHECK(place.entries() == std::set<std::string>{"file"});
 }
 
-TEST_CASE("a file that cannot be opened", "[io][output_folder]") {
+TEST_CASE("a folder in which a result could not be written is refused before anything is", "[io][output_folder]") {
   const TemporaryFolder place;
   std::filesystem::create_directory(place / "energy.csv");
-  const OutputFolder folder(place.path());
-  CHECK_THROWS_AS(folder.open("energy.csv"), InputError);
-  CHECK_THROWS_WITH(folder.open("energy.csv"), Contains("energy.csv: cannot be written"));
+  CHECK_THROWS_AS(OutputFolder(place.path()), InputError);
+  CHECK_THROWS_WITH(OutputFolder(place.path()), Contains("energy.csv: is there and cannot be written over"));
+  CHECK(place.entries() == std::set<std::string>{"energy.csv"});
 }
 
 TEST_CASE("a file that is not written to its end is an error", "[io][output_folder]") {
