@@ -33,7 +33,7 @@ verify: build ## build, run the unit tests and the verification against closed f
 	$(VERIFY) --results results
 
 reproduce: figure-packages $(COMPARISON) ## build, run the paper's examples, draw the figures and print the comparison (results/paper)
-	$(if $(comparison_printed),,@python=$$(scripts/find-python) && "$$python" paper/reproduce.py --print-only --results $(PAPER_RESULTS))
+	$(if $(comparison_printed),,@"$${PYTHON:-python3}" paper/reproduce.py --print-only --results $(PAPER_RESULTS))
 
 sanitize: packages ## build with the address and undefined-behaviour sanitizers (build/sanitize) and run the unit tests
 	@scripts/build sanitize openclose_tests
