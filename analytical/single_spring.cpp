@@ -23,6 +23,8 @@ Invariants invariants(const SpringStep& step) {
 
 }  // namespace
 
+double free_vibration(double frequency, double time) { return std::cos(frequency * time); }
+
 std::array<std::array<double, 2>, 2> amplification_matrix(const SpringStep& step) {
   const double half_square = step.phase() * step.phase() / 2;
   const double d = denominator(step);

@@ -21,6 +21,9 @@ struct SpringStep {
   double phase() const { return frequency * dt; }  // W [rad]
 };
 
+/// Exact motion of the mass from rest at unit displacement, cos(w t); frequency w [rad/s], time [s].
+double free_vibration(double frequency, double time);
+
 /// Row-major 2 x 2, acts on (u [m], v [m/s]).
 std::array<std::array<double, 2>, 2> amplification_matrix(const SpringStep& step);
 /// Largest modulus of its eigenvalues, on both sides of the bifurcation.

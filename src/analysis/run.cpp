@@ -65,7 +65,8 @@ RunResult prepare_start(Simulation<N>& simulation) {
     case Start::settled:
       result.settling = settle(simulation);
       result.converged = result.settling.settled;
-      if (!result.converged) result.reason = "no static equilibrium to start from (" + result.settling.criterion + ")";
+      if (!result.converged)
+        result.reason = "no static equilibrium to start from (" + result.settling.criterion + "); method.start = \"unloaded\" starts in motion";
       simulation.restore_velocities();
       break;
     case Start::normal_balanced:

@@ -6,8 +6,9 @@
 namespace openclose {
 namespace {
 
-constexpr double bracket_ratio = 1.25;    ///< [-] between the factors tried first
-constexpr double smallest_factor = 1e-3;  ///< [-] below which nothing is stable at any strength one could mean
+constexpr double bracket_ratio = 1.25;               ///< [-] between the factors tried first
+const std::string by_displacement = "displacement";  ///< see SettleResult::criterion
+constexpr double smallest_factor = 1e-3;             ///< [-] below which nothing is stable at any strength one could mean
 
 template <int N>
 class StrengthReduction {
@@ -17,7 +18,7 @@ class StrengthReduction {
 
   FactorOfSafety<N> run() {
     if (!settle_first()) {
-      result_.reason = "not stable even at a strength reduction factor of " + std::to_string(smallest_factor);
+      result_.reason = "not stable even at a strength reduction factor of 0.001 (" + result_.criterion + ")";
       return std::move(result_);
     }
     if (!bracket()) {
@@ -26,6 +27,10 @@ class StrengthReduction {
     }
     bisect();
     result_.found = true;
+    if (result_.criterion != by_displacement) {
+      result_.warnings.push_back("the smallest factor counted as failed did not settle (" + result_.criterion +
+                                 "), but no block moved beyond settle.failure_displacement_m");
+    }
     curve();
     return std::move(result_);
   }
@@ -66,7 +71,9 @@ class StrengthReduction {
   void bisect() {
     const double first_width = result_.failed - result_.stable;
     while (result_.failed - result_.stable > input_.width) {
-      attempt(0.5 * (result_.stable + result_.failed), "bisect");
+      const double middle = 0.5 * (result_.stable + result_.failed);
+      if (middle <= result_.stable || middle >= result_.failed) return;  // no number in between
+      attempt(middle, "bisect");
       const double width = result_.failed - result_.stable;
       share_done_ = std::min(1.0, std::log(first_width / width) / std::log(first_width / input_.width));
     }
@@ -89,6 +96,7 @@ class StrengthReduction {
 
   void curve() {
     for (double srf : input_.curve) {
+      if (progress_) progress_(share_done_);
       simulation_.restore(result_.settled_state);
       simulation_.joints().reduce_strength(srf);
       record(srf, "curve", settle(simulation_));
@@ -96,8 +104,11 @@ class StrengthReduction {
       simulation_.restore(result_.settled_state);
       const double dt = simulation_.scene().step.dt;
       const long steps = std::lround(*input_.curve_time / dt);
-      for (long i = 0; i < steps; ++i) {
-        if (!simulation_.advance(dt)) break;
+      bool arrived = true;
+      for (long i = 0; i < steps && arrived; ++i) arrived = simulation_.advance(dt);
+      if (!arrived) {
+        result_.warnings.push_back("no displacement for the curve at factor " + std::to_string(srf) + ": " + simulation_.reason());
+        continue;
       }
       for (const PointMotion& m : points_.motions()) result_.curve.push_back({srf, m.name, m.displacement.norm()});
     }

@@ -33,6 +33,7 @@ struct FactorOfSafety {
   double stable = 0.0;    ///< [-] the largest factor that settled: the factor of safety, to within failed - stable
   double failed = 0.0;    ///< [-] the smallest one that did not
   std::string criterion;  ///< what decided there
+  std::vector<std::string> warnings;
   std::vector<StrengthTrial> trials;
   std::vector<CurvePoint> curve;
   typename Simulation<N>::Snapshot settled_state;

@@ -42,6 +42,23 @@ OutputFolder output_folder(const Options& options) {
   return OutputFolder("results/" + std::filesystem::path(options.scene_file).stem().string());
 }
 
+/// Refuses what would take longer than anyone waits.
+void require_countable_steps(const Scene& scene, const std::string& key, double time) {
+  constexpr double most_steps = 1e9;
+  if (time / scene.step.dt <= most_steps) return;
+  throw InputError(scene.where, key, fmt::format("{:g} s in steps of {:g} s", time, scene.step.dt),
+                   fmt::format("at most {:g} steps of step.dt_s", most_steps));
+}
+
+/// Deepest closed contact now [m].
+double penetration_of(Simulation<unknowns>& simulation) {
+  double deepest = 0.0;
+  for (const Contact& c : simulation.contacts()) {
+    if (c.status != ContactStatus::open) deepest = std::max(deepest, -c.gap);
+  }
+  return deepest;
+}
+
 Summary summary_of(const std::string& command, const Options& options, const Loaded& loaded) {
   Summary summary;
   summary.command = command;
@@ -55,6 +72,7 @@ int run_command(const Options& options) {
   const Loaded loaded = load(options);
   if (loaded.scene.step.dt <= 0.0) throw InputError(loaded.scene.where, "step.dt_s", "missing", "a step in seconds, here or with --dt");
   if (loaded.scene.end_time <= 0.0) throw InputError(loaded.scene.where, "end.time_s", "missing", "an end time in seconds, here or with --end");
+  require_countable_steps(loaded.scene, "end.time_s", loaded.scene.end_time);
   Simulation<unknowns> simulation(loaded.scene);
   MeasuredPoints<unknowns> points(simulation);
   if (loaded.scene.method.start == Start::normal_balanced || loaded.scene.method.start == Start::steady_sliding) {
@@ -113,6 +131,7 @@ int fos_command(const Options& options) {
     throw InputError(loaded.scene.where, "step.dt_s", "missing", "a step in seconds: strength_reduction.curve_time_s asks for motion");
   }
   if (loaded.scene.step.dt <= 0.0) loaded.scene.step.dt = loaded.scene.settle.first_dt;
+  require_countable_steps(loaded.scene, "strength_reduction.curve_time_s", loaded.scene.strength_reduction.curve_time.value_or(0.0));
   Simulation<unknowns> simulation(loaded.scene);
   const OutputFolder folder = output_folder(options);
   BlocksFile<unknowns> blocks(folder);
@@ -123,9 +142,14 @@ int fos_command(const Options& options) {
     safety = factor_of_safety<unknowns>(simulation, [&](double fraction) { progress.update(fraction); });
   }
 
+  Summary summary = summary_of("fos", options, loaded);
+  summary.warnings.insert(summary.warnings.end(), safety.warnings.begin(), safety.warnings.end());
+  for (const std::string& warning : safety.warnings) fmt::print(stderr, "openclose: warning: {}\n", warning);
   if (safety.stable > 0.0) {
     simulation.restore(safety.settled_state);
     blocks.add("settled", simulation);
+    summary.max_penetration = penetration_of(simulation);
+    if (safety.failed == 0.0) write_contacts(folder, "settled", simulation);
   }
   if (safety.failed > 0.0) {
     simulation.restore(safety.failed_state);
@@ -135,10 +159,8 @@ int fos_command(const Options& options) {
   blocks.close();
   write_trials(folder, safety.trials);
   if (!safety.curve.empty()) write_curve(folder, safety.curve);
-  Summary summary = summary_of("fos", options, loaded);
   summary.converged = safety.found;
   summary.reason = safety.reason;
-  summary.max_penetration = simulation.max_penetration();
   write_summary(folder, summary, simulation, &safety);
 
   if (!safety.found) {

@@ -22,7 +22,7 @@ double parallel_weight(double cosine) {
   return (tolerance::parallel_none_rad - std::acos(cosine)) / (tolerance::parallel_none_rad - tolerance::parallel_full_rad);
 }
 
-/// Contacts by tancestor vertex and edge.
+/// Contacts by their vertex and edge.
 class ContactIndex {
  public:
   explicit ContactIndex(const std::vector<Contact>& contacts) : contacts_(contacts) {
@@ -182,7 +182,7 @@ class NarrowPhase {
   }
 
   /// A corner in front of edge e does not run into it where corner and the edge's near end pass over each other: blocks that lie flush but for the
-  /// closures of tancestor contacts must not catch on the seams between them. One of the two must be sliding on something already, and the edge must
+  /// closures of their contacts must not catch on the seams between them. One of the two must be sliding on something already, and the edge must
   /// turn away from what is slid on.
   bool passes_over(int vertex_block, int v, int edge_block, int e, bool near_start) const {
     const int end = near_start ? e : system_.next(e);

@@ -2,6 +2,8 @@
 // lists them.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <Eigen/Core>
 #include <memory>
 #include <string>
@@ -92,7 +94,7 @@ class Enforcement {
 inline void require_default_theta(const MethodInput& method) {
   if (method.theta == 1.0) return;
   throw InputError(method.contact_where, "method.theta",
-                   std::to_string(method.theta) + " has no meaning for method.contact = \"" + method.contact + "\"", "1, or contact = \"soft\"");
+                   fmt::format("{:g}", method.theta) + " has no meaning for method.contact = \"" + method.contact + "\"", "1, or contact = \"soft\"");
 }
 
 }  // namespace openclose

@@ -146,14 +146,23 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
                   {"residual_tolerance", scene.method.residual_tolerance},
                   {"skip_search", scene.method.skip_search},
                   {"dt_s", scene.step.dt},
+                  {"max_iterations", scene.method.max_iterations},
                   {"max_displacement_m", scene.step.max_displacement},
-                  {"end_time_s", scene.end_time}};
+                  {"smallest_fraction", scene.step.smallest_fraction},
+                  {"end_time_s", scene.end_time},
+                  {"every_s", scene.output_every},
+                  {"settle",
+                   {{"unbalanced_fraction", scene.settle.unbalanced_fraction},
+                    {"first_dt_s", scene.settle.first_dt},
+                    {"max_steps", scene.settle.max_steps},
+                    {"failure_displacement_m", scene.settle.failure_displacement}}},
+                  {"strength_reduction", {{"width", scene.strength_reduction.width}, {"upper_limit", scene.strength_reduction.upper_limit}}}};
   j["warnings"] = summary.warnings;
   j["blocks"] = simulation.system().block_count();
   j["free_blocks"] = simulation.system().free_count();
   j["converged"] = summary.converged;
   j["reason"] = summary.reason;
-  j["time_s"] = simulation.time();
+  if (!safety) j["time_s"] = simulation.time();
   if (summary.settling.steps > 0) {
     j["settling"] = {{"settled", summary.settling.settled},
                      {"criterion", summary.settling.criterion},

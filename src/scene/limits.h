@@ -32,5 +32,7 @@ struct Word {
   std::string_view text;
   Enum value;
 };
+template <typename Enum>
+Word(const char*, Enum) -> Word<Enum>;
 
 }  // namespace openclose

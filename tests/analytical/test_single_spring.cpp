@@ -92,3 +92,9 @@ TEST_CASE("single spring: limits in the step") {
   const double ratio = (period_ratio({0.5, 1.0, 0.2}) - 1) / (period_ratio({0.5, 1.0, 0.1}) - 1);
   CHECK(std::abs(ratio - 4) < 0.02);
 }
+
+TEST_CASE("free vibration turns round after half a period", "[analytical]") {
+  CHECK(free_vibration(4.0, 0.0) == 1.0);
+  CHECK(free_vibration(4.0, 0.25 * 3.14159265358979323846) == Approx(-1.0));
+  CHECK(free_vibration(3.0, 0.2) == Approx(1.0 - 0.36 / 2.0 + 0.1296 / 24.0 - 0.046656 / 720.0).epsilon(1e-6));
+}

@@ -10,7 +10,7 @@
 #include "openclose/version.h"
 #include "support/catch.h"
 
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using Catch::Matchers::StartsWith;
 using openclose::test::block_on_base;
 using openclose::test::CommandResult;
@@ -40,9 +40,9 @@ TEST_CASE("help and version", "[cli]") {
     CHECK(result->status == 0);
     CHECK(result->errors.empty());
   }
-  CHECK_THAT(help.out, Contains("run") && Contains("fos") && Contains("check") && Contains("Exit status"));
-  CHECK_THAT(run_help.out, Contains("--contact") && Contains("--dt") && Contains("--end") && Contains("--start") && Contains("--set") &&
-                               Contains("--output") && Contains("--quiet"));
+  CHECK_THAT(help.out, ContainsSubstring("run") && ContainsSubstring("fos") && ContainsSubstring("check") && ContainsSubstring("Exit status"));
+  CHECK_THAT(run_help.out, ContainsSubstring("--contact") && ContainsSubstring("--dt") && ContainsSubstring("--end") && ContainsSubstring("--start") && ContainsSubstring("--set") &&
+                               ContainsSubstring("--output") && ContainsSubstring("--quiet"));
   CHECK(version.out == std::string(openclose::version) + "\n");
 }
 
@@ -51,7 +51,7 @@ TEST_CASE("run writes its files and one line", "[cli]") {
   const CommandResult result = place.run("run scene.toml -o out --dt 0.001 --end 0.01");
   CHECK(result.status == 0);
   CHECK(result.errors.empty());
-  CHECK_THAT(result.out, StartsWith("soft: 2 blocks, ") && Contains("written to out"));
+  CHECK_THAT(result.out, StartsWith("soft: 2 blocks, ") && ContainsSubstring("written to out"));
   CHECK(std::count(result.out.begin(), result.out.end(), '\n') == 1);
   const std::string out = place.folder() / "out";
   CHECK(entries(out) == std::set<std::string>{"history.csv", "energy.csv", "blocks.csv", "contacts.csv", "summary.json"});
@@ -164,7 +164,7 @@ TEST_CASE("factor of safety", "[cli]") {
   const CommandResult result = place.run("fos scene.toml -o out --set settle.failure_displacement_m=0.05");
   CHECK(result.status == 0);
   CHECK(result.errors.empty());
-  CHECK_THAT(result.out, StartsWith("factor of safety 1.21") && Contains("soft"));
+  CHECK_THAT(result.out, StartsWith("factor of safety 1.21") && ContainsSubstring("soft"));
   const std::string out = place.folder() / "out";
   CHECK(entries(out) == std::set<std::string>{"blocks.csv", "contacts.csv", "summary.json", "trials.csv"});
   const auto summary = summary_in(out);
@@ -199,6 +199,6 @@ TEST_CASE("check tells what it has read and writes nothing", "[cli]") {
   const CommandResult result = place.run("check scene.toml --contact hard");
   CHECK(result.status == 0);
   CHECK(result.errors.empty());
-  CHECK_THAT(result.out, Contains("2 blocks, 1 of them free, 4 m2; 2 contacts") && Contains("method hard"));
+  CHECK_THAT(result.out, ContainsSubstring("2 blocks, 1 of them free, 4 m2; 2 contacts") && ContainsSubstring("method hard"));
   CHECK(place.folder().entries() == std::set<std::string>{"scene.toml"});
 }

@@ -6,7 +6,7 @@
 #include "cli/command.h"
 #include "support/catch.h"
 
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using openclose::test::block_on_base;
 using openclose::test::CommandResult;
 using openclose::test::lines_of;
@@ -22,10 +22,10 @@ void check_saved(const Workplace& place, const CommandResult& result, const std:
   CHECK(result.status == 1);
   CHECK(result.out.empty());
   REQUIRE(result.errors.size() == 1);
-  CHECK_THAT(result.errors[0], Contains(reason) && Contains("state saved in out"));
+  CHECK_THAT(result.errors[0], ContainsSubstring(reason) && ContainsSubstring("state saved in out"));
   const nlohmann::json summary = summary_of(place);
   CHECK(summary.at("converged") == false);
-  CHECK_THAT(summary.at("reason").get<std::string>(), Contains(reason));
+  CHECK_THAT(summary.at("reason").get<std::string>(), ContainsSubstring(reason));
 }
 
 std::set<std::string> states_in(const std::string& path) {

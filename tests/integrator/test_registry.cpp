@@ -8,7 +8,7 @@
 #include "support/scenes.h"
 
 using namespace openclose;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using openclose::test::all_methods;
 
 namespace {
@@ -37,7 +37,7 @@ TEST_CASE("every listed enforcement can be made by its name", "[integrator][regi
 TEST_CASE("an unknown enforcement is refused with the list of known ones", "[integrator][registry]") {
   CHECK_THROWS_AS(make_enforcement<3>(method("sotf")), InputError);
   CHECK_THROWS_WITH(make_enforcement<3>(method("sotf")),
-                    Contains("scene.toml:7: method.contact: \"sotf\"") && Contains("\"soft\"") && Contains("\"hard\"") && Contains("\"shi\""));
+                    ContainsSubstring("scene.toml:7: method.contact: \"sotf\"") && ContainsSubstring("\"soft\"") && ContainsSubstring("\"hard\"") && ContainsSubstring("\"shi\""));
 }
 
 TEST_CASE("names are compared whole", "[integrator][registry]") {
@@ -52,7 +52,7 @@ TEST_CASE("theta is soft's own: other enforcements refuse it", "[integrator][reg
   for (const std::string name : {"hard", "shi"}) {
     const auto enforcement = make_enforcement<3>(method(name));
     CHECK_THROWS_AS(enforcement->make_time_scheme(method(name, theta)), InputError);
-    CHECK_THROWS_WITH(enforcement->make_time_scheme(method(name, theta)), Contains("scene.toml:7: method.theta: ") && Contains(name));
+    CHECK_THROWS_WITH(enforcement->make_time_scheme(method(name, theta)), ContainsSubstring("scene.toml:7: method.theta: ") && ContainsSubstring(name));
     CHECK(enforcement->make_time_scheme(method(name))->end_weight() == 1.0);
   }
 }

@@ -8,7 +8,7 @@
 #include "support/catch.h"
 
 using namespace openclose;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 using openclose::test::TemporaryFolder;
 
 TEST_CASE("an output folder is made with all above it", "[io][output_folder]") {
@@ -35,7 +35,7 @@ TEST_CASE("output folders that cannot be are refused", "[io][output_folder]") {
   place.write("file", "x");
   SECTION("below a regular file") {
     CHECK_THROWS_AS(OutputFolder(place / "file/out"), InputError);
-    CHECK_THROWS_WITH(OutputFolder(place / "file/out"), Contains(place / "file/out: cannot write to this output folder"));
+    CHECK_THROWS_WITH(OutputFolder(place / "file/out"), ContainsSubstring(place / "file/out: cannot write to this output folder"));
   }
   SECTION("a regular file itself") {
     CHECK_THROWS_AS(OutputFolder(place / "file"), InputError);
@@ -51,7 +51,7 @@ TEST_CASE("a folder in which a result could not be written is refused before any
   const TemporaryFolder place;
   std::filesystem::create_directory(place / "energy.csv");
   CHECK_THROWS_AS(OutputFolder(place.path()), InputError);
-  CHECK_THROWS_WITH(OutputFolder(place.path()), Contains("energy.csv: is there and cannot be written over"));
+  CHECK_THROWS_WITH(OutputFolder(place.path()), ContainsSubstring("energy.csv: is there and cannot be written over"));
   CHECK(place.entries() == std::set<std::string>{"energy.csv"});
 }
 

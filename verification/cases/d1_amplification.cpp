@@ -79,7 +79,7 @@ void order(Report& report, const std::string& method, double theta) {
   for (const int n : {40, 80, 160, 320}) {
     const auto s = follow(report, scene_of(method, theta, end / n), amplitude, 0.0, n);
     steps.push_back(end / n);
-    errors.push_back(std::abs(s[0] - amplitude * std::cos(w * end)) / amplitude);
+    errors.push_back(std::abs(s[0] - amplitude * analytical::free_vibration(w, end)) / amplitude);
   }
   const double expected = theta == 0.5 ? 2.0 : 1.0;
   report.order(text("order on the free vibration, theta = {}", theta), method, steps, errors, expected - 0.1, expected + 0.1, "cos(w t)");

@@ -4,6 +4,7 @@
 
 #include "harness.h"
 #include "openclose/analytical/incline.h"
+#include "openclose/analytical/two_spring_block.h"
 #include "openclose/core/tolerance.h"
 #include "scenes.h"
 
@@ -55,7 +56,7 @@ void four_block_corner(Report& report) {
       analytical::BlockOnPlane stiffer = data;
       stiffer.normal_stiffness *= factor;
       stiffer.shear_stiffness *= factor;
-      const double w = std::sqrt(2.0 * stiffer.normal_stiffness / stiffer.mass());
+      const double w = analytical::bounce_frequency(stiffer);
       for (const std::string method : {"soft", "shi"}) {
         report.near(name + text("displacement, {} kn", factor), method, expected, slide(report, scene_of(stiffer, degrees, method, 1e-4), stiffer),
                     data.gravity / w * 0.5, "m", "eq. (8); tolerance g t/w of the transient");
