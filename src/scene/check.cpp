@@ -65,7 +65,8 @@ void require_joints(const Scene& scene) {
   for (std::size_t a = 0; a < uses.size(); ++a) {
     for (std::size_t b = a; b < uses.size(); ++b) {
       if (!can_meet(uses, a, b) || scene.joint(static_cast<int>(a), static_cast<int>(b)) != nullptr) continue;
-      throw InputError(scene.where, "joint", fmt::format("none for the materials \"{}\" and \"{}\"", scene.materials[a].name, scene.materials[b].name),
+      throw InputError(scene.where, "joint",
+                       fmt::format("none for the materials \"{}\" and \"{}\"", scene.materials[a].name, scene.materials[b].name),
                        "a [[joint]] for every pair of materials whose blocks can touch");
     }
   }
@@ -74,8 +75,10 @@ void require_joints(const Scene& scene) {
 std::vector<std::string> check_scene(const Scene& scene) {
   require_joints(scene);
   require_no_overlap(scene.blocks);
-  if (!nothing_holds(scene)) return {};
-  return {scene.where.file + ": nothing is fixed or supported under gravity: every block will fall"};
+  std::vector<std::string> warnings;
+  if (scene.cutting) warnings = scene.cutting->warnings;
+  if (nothing_holds(scene)) warnings.push_back(scene.where.file + ": nothing is fixed or supported under gravity: every block will fall");
+  return warnings;
 }
 
 }  // namespace openclose
