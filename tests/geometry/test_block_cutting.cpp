@@ -1,6 +1,6 @@
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <ctime>
 #include <numbers>
 #include <random>
 
@@ -442,10 +442,14 @@ TEST_CASE("fifty thousand blocks in two seconds", "[geometry][cutting]") {
     const std::vector<Segment> of_set = traces(set, domain.outer, 10000).value();
     for (const Segment& segment : of_set) all.push_back({segment, 0});
   }
-  const auto begin = std::chrono::steady_clock::now();
+  const std::clock_t begin = std::clock();
   const Cutting cutting = cut_blocks(domain, all, 1);
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const double seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
   CHECK(cutting.blocks.size() > 50000);
   CHECK(total_area(cutting.blocks) == Approx(domain.area()).epsilon(1e-12).margin(0.0));
+#ifdef __SANITIZE_ADDRESS__
+  CHECK(seconds < 20.0);
+#else
   CHECK(seconds < 2.0);
+#endif
 }
