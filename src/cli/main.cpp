@@ -2,14 +2,17 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 
 #include "openclose/analysis/strength_reduction.h"
+#include "openclose/io/drawing.h"
 #include "openclose/io/progress.h"
 #include "openclose/io/results.h"
 #include "openclose/scene/check.h"
 #include "openclose/scene/reader.h"
+#include "openclose/scene/writer.h"
 #include "openclose/version.h"
 
 namespace openclose {
@@ -21,6 +24,8 @@ constexpr int unknowns = 3;
 struct Options {
   std::string scene_file;
   std::string folder;
+  std::string blocks_file;
+  std::string drawing_file;
   std::vector<std::string> overrides;
   bool quiet = false;
 };
@@ -184,8 +189,36 @@ int check_command(const Options& options) {
   return exit_success;
 }
 
+int cut_command(const Options& options) {
+  const Loaded loaded = load(options);
+  if (!loaded.scene.cutting) throw InputError(loaded.scene.where, "domain", "the scene has none", "a scene with a [domain] to cut");
+  const CuttingSummary& cutting = *loaded.scene.cutting;
+  const std::filesystem::path stem = std::filesystem::path(options.scene_file).stem();
+  const std::string file = options.blocks_file.empty() ? "results/" + stem.string() + "/blocks.toml" : options.blocks_file;
+  const std::string drawing = options.drawing_file.empty() ? std::filesystem::path(file).replace_extension(".svg").string() : options.drawing_file;
+  for (const std::string& written : {file, drawing}) {
+    std::error_code unknown;
+    if (std::filesystem::equivalent(written, options.scene_file, unknown)) {
+      throw InputError({written, 0}, "", "this is the scene that is being cut", "another file to write to");
+    }
+  }
+  write_file(file, write_scene(loaded.scene));
+  write_file(drawing, svg_drawing(loaded.scene));
+  if (options.quiet) return exit_success;
+  const auto fixed = std::count_if(loaded.scene.blocks.begin(), loaded.scene.blocks.end(), [](const BlockInput& block) { return block.fixed; });
+  fmt::print("{}: {} blocks cut by {} traces, {:.9g} m2 (domain {:.9g} m2), smallest {:.3g} m2; {} of {} blocks fixed\n", options.scene_file,
+             cutting.blocks, cutting.traces, cutting.area, cutting.domain_area, cutting.smallest_block, fixed, loaded.scene.blocks.size());
+  fmt::print("{} slivers merged ({:.3g} m2), {} dangling ends dropped; written to {} and {}\n", cutting.slivers_merged, cutting.slivers_area,
+             cutting.dangling_ends, file, drawing);
+  return exit_success;
+}
+
+void add_quiet(CLI::App& app, Options& options) {
+  app.add_flag("-q,--quiet", options.quiet, "print nothing but warnings and errors");
+}
+
 /// The options that scene commands share; the named ones are short for --set.
-void add_options(CLI::App& app, Options& options, bool writes) {
+void add_options(CLI::App& app, Options& options, bool writes_folder) {
   app.add_option("scene", options.scene_file, "scene file (TOML)")->required();
   const auto shorthand = [&app, &options](const std::string& flag, const std::string& key, const std::string& help) {
     app.add_option_function<std::string>(
@@ -199,9 +232,9 @@ void add_options(CLI::App& app, Options& options, bool writes) {
          "--set", [&options](const std::vector<std::string>& v) { options.overrides.insert(options.overrides.end(), v.begin(), v.end()); },
          "KEY=VALUE: overrides any key of the scene, e.g. joint[0].friction_angle_deg=20")
       ->allow_extra_args(false);
-  if (!writes) return;
+  if (!writes_folder) return;
   app.add_option("-o,--output", options.folder, "output folder (default: results/<name of the scene>)");
-  app.add_flag("-q,--quiet", options.quiet, "print nothing but warnings and errors");
+  add_quiet(app, options);
 }
 
 int main_checked(int argc, char** argv) {
@@ -212,14 +245,19 @@ int main_checked(int argc, char** argv) {
   app.require_subcommand(1);
   Options options;
   int (*command)(const Options&) = nullptr;
-  const auto subcommand = [&](const char* name, const char* help, bool writes, int (*f)(const Options&)) {
+  const auto subcommand = [&](const char* name, const char* help, bool writes_folder, int (*f)(const Options&)) {
     CLI::App* sub = app.add_subcommand(name, help);
-    add_options(*sub, options, writes);
+    add_options(*sub, options, writes_folder);
     sub->callback([&command, f] { command = f; });
+    return sub;
   };
   subcommand("run", "follow the blocks in time", true, &run_command);
   subcommand("fos", "factor of safety by strength reduction", true, &fos_command);
   subcommand("check", "read and check a scene, write nothing", false, &check_command);
+  CLI::App* cut = subcommand("cut", "cut the domain of a scene into blocks, write them as a scene and draw them", false, &cut_command);
+  cut->add_option("-o,--output", options.blocks_file, "scene file to write (default: results/<name of the scene>/blocks.toml)");
+  cut->add_option("--svg", options.drawing_file, "drawing to write (default: beside the scene file, .svg)");
+  add_quiet(*cut, options);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& e) {

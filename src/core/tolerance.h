@@ -9,6 +9,20 @@ inline constexpr double shortest_edge_m = 1e-8;
 /// [m] Width (2 area / longest edge) below which a polygon is a sliver that carries no usable mass or normal.
 inline constexpr double thinnest_block_m = 1e-6;
 
+/// [m] Width (2 area / longest edge) below which a block that the joints cut out is united with a neighbour, unless the scene says otherwise: joints
+/// drawn to the millimetre that should meet in a point leave triangles of that size between them.
+inline constexpr double sliver_width_m = 1e-3;
+
+/// [m] The least width that can be asked for instead: a block four times as wide as a sliver cannot lie within thinnest_block_m of a line.
+inline constexpr double least_sliver_width_m = 4.0 * thinnest_block_m;
+
+/// [m] A joint that ends this near to another joint or to the boundary of the domain ends on it, unless the scene says otherwise: drawings are
+/// rounded to millimetres.
+inline constexpr double joint_end_reach_m = 1e-3;
+
+/// [m] A block touches a line if it lies this near to it: points copied from vertices are written with six decimals.
+inline constexpr double touching_m = 1e-6;
+
 /// [m] Depth to which blocks may overlap in the file: drawings are rounded to millimetres, joint closures under load are of that size.
 inline constexpr double deepest_initial_overlap_m = 1e-3;
 

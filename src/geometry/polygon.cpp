@@ -51,15 +51,6 @@ bool on_opposite_sides(const Vec2& a, const Vec2& b, const Vec2& p, const Vec2& 
   return (cross(b - a, p - a) > 0.0) != (cross(b - a, q - a) > 0.0);
 }
 
-/// Near misses are left to the distances of the end points, which are the only places where rounding could decide the signs wrongly.
-bool segments_meet(const Vec2& a, const Vec2& b, const Vec2& p, const Vec2& q) {
-  if (!Box::around(a, b).inflated(tolerance::shortest_edge_m).overlaps(Box::around(p, q))) return false;
-  if (on_opposite_sides(a, b, p, q) && on_opposite_sides(p, q, a, b)) return true;
-  const double gap =
-      std::min({distance_to_segment(a, p, q), distance_to_segment(b, p, q), distance_to_segment(p, a, b), distance_to_segment(q, a, b)});
-  return gap < tolerance::shortest_edge_m;
-}
-
 bool folded(const Vec2& before, const Vec2& corner, const Vec2& after) {
   return std::min(distance_to_segment(before, corner, after), distance_to_segment(after, before, corner)) < tolerance::shortest_edge_m;
 }
@@ -114,6 +105,15 @@ std::vector<int> corners(const Polygon& polygon) {
     kept = std::move(fewer);
   }
   return kept;
+}
+
+/// Near misses are left to the distances of the end points, which are the only places where rounding could decide the signs wrongly.
+bool segments_meet(const Vec2& a, const Vec2& b, const Vec2& p, const Vec2& q) {
+  if (!Box::around(a, b).inflated(tolerance::shortest_edge_m).overlaps(Box::around(p, q))) return false;
+  if (on_opposite_sides(a, b, p, q) && on_opposite_sides(p, q, a, b)) return true;
+  const double gap =
+      std::min({distance_to_segment(a, p, q), distance_to_segment(b, p, q), distance_to_segment(p, a, b), distance_to_segment(q, a, b)});
+  return gap < tolerance::shortest_edge_m;
 }
 
 std::optional<std::pair<int, int>> first_self_intersection(const Polygon& polygon) {

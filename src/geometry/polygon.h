@@ -41,6 +41,9 @@ Polygon reversed(const Polygon& polygon);
 /// than three. Applied to its own result it drops nothing.
 std::vector<int> corners(const Polygon& polygon);
 
+/// Whether two segments cross, overlap, touch or come closer than tolerance::shortest_edge_m.
+bool segments_meet(const Vec2& a, const Vec2& b, const Vec2& p, const Vec2& q);
+
 /// The first two edges (lower index first) that meet where they should not: edges without a common vertex that cross, overlap, touch or come
 /// closer than tolerance::shortest_edge_m, or neighbours of which one is folded back on the other. None: the polygon is simple.
 /// Expects a polygon without repeated vertices (see corners).

@@ -30,6 +30,14 @@ std::ofstream OutputFolder::open(const std::string& name) const {
   return file;
 }
 
+void write_file(const std::string& path, const std::string& text) {
+  const std::filesystem::path place(path);
+  const OutputFolder folder(place.has_parent_path() ? place.parent_path().string() : ".");
+  std::ofstream file = folder.open(place.filename().string());
+  file << text;
+  finish(file, path);
+}
+
 void finish(std::ofstream& file, const std::string& name) {
   file.close();
   if (!file) throw std::runtime_error("writing " + name + " failed: is the disk full?");

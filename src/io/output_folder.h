@@ -19,6 +19,9 @@ class OutputFolder {
   std::string path_;
 };
 
+/// Writes a whole file of its own, with the folders it needs. Throws InputError if it cannot be made.
+void write_file(const std::string& path, const std::string& text);
+
 /// Closes a file after its last line; throws std::runtime_error if anything of it was not written (a full disk, say).
 void finish(std::ofstream& file, const std::string& name);
 

@@ -75,8 +75,10 @@ void require_joints(const Scene& scene) {
 std::vector<std::string> check_scene(const Scene& scene) {
   require_joints(scene);
   require_no_overlap(scene.blocks);
-  if (!nothing_holds(scene)) return {};
-  return {scene.where.file + ": nothing is fixed or supported under gravity: every block will fall"};
+  std::vector<std::string> warnings;
+  if (scene.cutting) warnings = scene.cutting->warnings;
+  if (nothing_holds(scene)) warnings.push_back(scene.where.file + ": nothing is fixed or supported under gravity: every block will fall");
+  return warnings;
 }
 
 }  // namespace openclose

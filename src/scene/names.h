@@ -4,6 +4,7 @@
 #include <array>
 #include <string_view>
 
+#include "openclose/scene/domain.h"
 #include "openclose/scene/limits.h"
 #include "openclose/scene/scene.h"
 
@@ -13,6 +14,11 @@ inline constexpr std::array cohesion_behaviour_words{
     Word{"ductile", CohesionBehaviour::ductile},
     Word{"lost_on_opening", CohesionBehaviour::lost_on_opening},
     Word{"lost_on_slip", CohesionBehaviour::lost_on_slip},
+};
+
+inline constexpr std::array enclosed_joints_words{
+    Word{"refuse", EnclosedJoints::refuse},
+    Word{"drop", EnclosedJoints::drop},
 };
 
 inline constexpr std::array rotation_words{

@@ -16,9 +16,9 @@ bool is_flat(const Polygon& polygon) {
   return std::all_of(polygon.begin(), polygon.end(), on_line);
 }
 
-[[noreturn]] void fail_sliver(const Value& value, double area, double longest) {
+[[noreturn]] void fail_sliver(const Value& value, double area, double longest, const std::string& noun) {
   value.fail(fmt::format("the polygon has an area of {:.3g} m2 on a longest edge of {:.3g} m", area, longest),
-             fmt::format("a block at least {} m wide (2 area / longest edge)", tolerance::thinnest_block_m));
+             fmt::format("a {} at least {} m wide (2 area / longest edge)", noun, tolerance::thinnest_block_m));
 }
 
 std::string edge_name(const std::vector<int>& vertices, int edge) {
@@ -27,9 +27,9 @@ std::string edge_name(const std::vector<int>& vertices, int edge) {
 
 }  // namespace
 
-Polygon outline(const Value& value, const Polygon& written) {
+Polygon outline(const Value& value, const Polygon& written, const std::string& noun) {
   if (written.size() < 3) value.fail(fmt::format("the polygon has {} vertices", written.size()), "at least 3");
-  if (is_flat(written)) fail_sliver(value, std::abs(signed_area(written)), longest_edge(written));
+  if (is_flat(written)) fail_sliver(value, std::abs(signed_area(written)), longest_edge(written), noun);
 
   const std::vector<int> kept = corners(written);
   Polygon polygon;
@@ -41,7 +41,7 @@ Polygon outline(const Value& value, const Polygon& written) {
   }
   const double area = signed_area(polygon);
   const double longest = longest_edge(polygon);
-  if (2.0 * std::abs(area) / longest < tolerance::thinnest_block_m) fail_sliver(value, std::abs(area), longest);
+  if (2.0 * std::abs(area) / longest < tolerance::thinnest_block_m) fail_sliver(value, std::abs(area), longest, noun);
   return area > 0.0 ? polygon : reversed(polygon);
 }
 

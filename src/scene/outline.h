@@ -13,7 +13,8 @@ inline constexpr Range coordinate{-tolerance::farthest_coordinate_m, tolerance::
 /// edges that meet, and for slivers thinner than tolerance::thinnest_block_m.
 /// \param value    where the vertices stand
 /// \param written  the vertices as they were read
-Polygon outline(const Value& value, const Polygon& written);
+/// \param noun     what the polygon is meant for, in the error about slivers
+Polygon outline(const Value& value, const Polygon& written, const std::string& noun = "block");
 
 /// Throws InputError if the point is outside the polygon by more than tolerance::farthest_point_outside_block_m.
 void require_inside(const Value& value, const Vec2& point, const Polygon& polygon, const std::string& block_name);

@@ -8,7 +8,9 @@
 #include <iterator>
 #include <map>
 
+#include "openclose/geometry/box.h"
 #include "openclose/scene/angle.h"
+#include "openclose/scene/domain.h"
 #include "openclose/scene/names.h"
 #include "openclose/scene/outline.h"
 #include "openclose/scene/override.h"
@@ -33,7 +35,8 @@ toml::table parse(const std::string& path) {
   const std::string text = read_text(path);
   try {
     toml::table document = toml::parse(text, path);
-    if (document.empty()) throw_input_error({path, 0}, "", "the file is empty", "a scene with at least one [[material]] and one [[block]]");
+    if (document.empty())
+      throw_input_error({path, 0}, "", "the file is empty", "a scene with at least one [[material]] and one [[block]] or a [domain]");
     return document;
   } catch (const toml::parse_error& error) {
     throw_input_error({path, static_cast<int>(error.source().begin.line)}, "", in_quotes(error.description()), "TOML 1.0");
@@ -111,42 +114,78 @@ BlockInput read_block(Table table, const NameList& material_names, NameList& blo
   return block;
 }
 
-void require_inside(const Table& table, const Vec2& point, const BlockInput& block) {
-  require_inside(table.at("point_m"), point, block.vertices, block.name);
+/// The only block that contains the point.
+int block_at(const Value& value, const Vec2& point, const std::vector<BlockInput>& blocks) {
+  std::vector<int> found;
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    if (!Box::around(blocks[b].vertices).inflated(tolerance::farthest_point_outside_block_m).contains(point)) continue;
+    if (contains(blocks[b].vertices, point) || distance_to_boundary(blocks[b].vertices, point) <= tolerance::farthest_point_outside_block_m) {
+      found.push_back(static_cast<int>(b));
+    }
+  }
+  const std::string accepted = "a point inside a block, or on the boundary of one that the key block names";
+  const std::string where = fmt::format("({}, {})", point.x(), point.y());
+  if (found.empty()) value.fail(where + " lies in no block", accepted);
+  if (found.size() > 1) {
+    value.fail(fmt::format("{} lies where {} and {} meet", where, in_quotes(blocks[found[0]].name), in_quotes(blocks[found[1]].name)), accepted);
+  }
+  return found.front();
 }
+
+/// Reads the keys block and point_m. Without the first, which blocks cut out of a domain have no use for, the point tells the block.
+class PointOfBlock {
+ public:
+  PointOfBlock(Table& table, int& block, Vec2& point, const NameList& block_names) : table_(table), block_(block), point_(point) {
+    named_ = table.optional("block", block, block_names);
+    table.required("point_m", point);
+  }
+
+  /// To be called after Table::finish().
+  void check(const Scene& scene) {
+    const Value value = table_.at("point_m");
+    if (named_) {
+      require_inside(value, point_, scene.blocks[block_].vertices, scene.blocks[block_].name);
+    } else {
+      block_ = block_at(value, point_, scene.blocks);
+    }
+  }
+
+ private:
+  Table& table_;
+  int& block_;
+  Vec2& point_;
+  bool named_ = false;
+};
 
 Support read_support(Table table, const Scene& scene, const NameList& block_names) {
   Support support;
-  table.required("block", support.block, block_names);
-  table.required("point_m", support.point);
+  PointOfBlock place(table, support.block, support.point, block_names);
   table.required("stiffness_n_per_m", support.stiffness, not_negative);
   table.finish();
 
   if (support.stiffness.isZero(0.0)) table.at("stiffness_n_per_m").fail("both stiffnesses are 0", "[kx, ky] of which one may be 0");
-  require_inside(table, support.point, scene.blocks[support.block]);
+  place.check(scene);
   return support;
 }
 
 Load read_load(Table table, const Scene& scene, const NameList& block_names) {
   Load load;
-  table.required("block", load.block, block_names);
-  table.required("point_m", load.point);
+  PointOfBlock place(table, load.block, load.point, block_names);
   table.required("force_n", load.force);
   table.finish();
 
-  require_inside(table, load.point, scene.blocks[load.block]);
+  place.check(scene);
   return load;
 }
 
 MeasuredPoint read_measured_point(Table table, const Scene& scene, const NameList& block_names, NameList& point_names) {
   MeasuredPoint measured;
   table.required("name", measured.name);
-  table.required("block", measured.block, block_names);
-  table.required("point_m", measured.point);
+  PointOfBlock place(table, measured.block, measured.point, block_names);
   table.finish();
 
   point_names.add(table.at("name"), measured.name);
-  require_inside(table, measured.point, scene.blocks[measured.block]);
+  place.check(scene);
   return measured;
 }
 
@@ -211,7 +250,8 @@ StrengthReductionInput read_strength_reduction(Table table) {
 }
 
 void require_some(const std::vector<Table>& tables, const SourceLocation& where, const std::string& key) {
-  if (tables.empty()) throw_input_error(where, key, "the scene has none", fmt::format("at least one [[{}]]", key));
+  if (tables.empty())
+    throw_input_error(where, key, "the scene has none", fmt::format("at least one [[{}]]{}", key, key == "block" ? " or a [domain]" : ""));
 }
 
 Scene interpret(const toml::table& document, const std::string& file) {
@@ -223,6 +263,8 @@ Scene interpret(const toml::table& document, const std::string& file) {
   const std::vector<Table> materials = root.tables("material");
   const std::vector<Table> joints = root.tables("joint");
   const std::vector<Table> blocks = root.tables("block");
+  const CuttingTables cutting{root.table("domain"), root.tables("joint_set"), root.tables("joint_line"), root.tables("region")};
+  const std::vector<Table> fixed_lines = root.tables("fixed_line");
   const std::vector<Table> supports = root.tables("support");
   const std::vector<Table> loads = root.tables("load");
   const std::vector<Table> measured_points = root.tables("measured_point");
@@ -234,7 +276,7 @@ Scene interpret(const toml::table& document, const std::string& file) {
   const Table strength_reduction = root.table("strength_reduction");
   root.finish();
   require_some(materials, scene.where, "material");
-  require_some(blocks, scene.where, "block");
+  if (!cutting.domain.is_there()) require_some(blocks, scene.where, "block");
 
   NameList material_names("material");
   NameList block_names("block");
@@ -242,6 +284,8 @@ Scene interpret(const toml::table& document, const std::string& file) {
   for (const Table& table : materials) scene.materials.push_back(read_material(table, scene.gravity, material_names));
   scene.joints = read_joints(joints, material_names);
   for (const Table& table : blocks) scene.blocks.push_back(read_block(table, material_names, block_names));
+  cut_domain(cutting, material_names, block_names, scene);
+  fix_blocks(fixed_lines, scene);
   for (const Table& table : supports) scene.supports.push_back(read_support(table, scene, block_names));
   for (const Table& table : loads) scene.loads.push_back(read_load(table, scene, block_names));
   for (const Table& table : measured_points) scene.measured_points.push_back(read_measured_point(table, scene, block_names, point_names));

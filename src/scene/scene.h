@@ -118,13 +118,28 @@ struct StrengthReductionInput {
   std::optional<double> curve_time;       ///< [s] physical time of a dynamic run at each of them; absent: settled displacement only
 };
 
+/// What the joints made of a domain.
+struct CuttingSummary {
+  int blocks = 0;
+  double area = 0.0;            ///< [m2] of these blocks
+  double domain_area = 0.0;     ///< [m2]
+  double smallest_block = 0.0;  ///< [m2]
+  int traces = 0;
+  int dangling_ends = 0;  ///< trace ends cut back to their last meeting with another trace or the boundary
+  int slivers_merged = 0;
+  double slivers_area = 0.0;  ///< [m2]
+  int enclosed_groups = 0;    ///< of joints within one block, dropped
+  std::vector<std::string> warnings;
+};
+
 struct Scene {
   SourceLocation where;
   std::string title;
   Vec2 gravity{0.0, -9.81};  ///< [m/s2]
   std::vector<Material> materials;
   std::vector<JointProperties> joints;
-  std::vector<BlockInput> blocks;
+  std::vector<BlockInput> blocks;         ///< those written as they are, then those cut out of the domain
+  std::optional<CuttingSummary> cutting;  ///< if there is a domain
   std::vector<Support> supports;
   std::vector<Load> loads;
   std::vector<MeasuredPoint> measured_points;

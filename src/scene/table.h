@@ -141,6 +141,10 @@ class Table {
   /// To be called when everything has been asked for.
   void finish() const;
 
+  /// Whether the file has this table, with or without keys.
+  bool is_there() const { return node_ != nullptr; }
+  bool has(const std::string& key) const { return find(key).has_value(); }
+
   /// A value that is known to be there, for errors about its meaning.
   Value at(const std::string& key) const { return find(key).value(); }
 

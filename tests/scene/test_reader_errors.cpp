@@ -54,10 +54,10 @@ TEST_CASE("files that are none", "[scene][reader][errors]") {
 }
 
 TEST_CASE("files without a scene", "[scene][reader][errors]") {
-  CHECK(error_of("") == "the file is empty; accepted: a scene with at least one [[material]] and one [[block]]");
+  CHECK(error_of("") == "the file is empty; accepted: a scene with at least one [[material]] and one [[block]] or a [domain]");
   CHECK_THAT(error_of("# nothing\n\n"), ContainsSubstring("the file is empty"));
   CHECK(error_of("title = 'nothing'\n") == "material: the scene has none; accepted: at least one [[material]]");
-  CHECK(error_of("[[material]]\nname = 'a'\ndensity_kg_per_m3 = 1\n") == "block: the scene has none; accepted: at least one [[block]]");
+  CHECK(error_of("[[material]]\nname = 'a'\ndensity_kg_per_m3 = 1\n") == "block: the scene has none; accepted: at least one [[block]] or a [domain]");
   CHECK(error_of("material = []\nblock = []\n") == "material: the scene has none; accepted: at least one [[material]]");
 }
 
@@ -105,9 +105,9 @@ TEST_CASE("missing keys", "[scene][reader][errors]") {
   CHECK_THAT(error_with(19, ""), ContainsSubstring("17: block[1].material: this key is missing"));
   CHECK_THAT(error_with(20, ""), ContainsSubstring("17: block[1].vertices_m: this key is missing"));
   CHECK_THAT(error_of(block_on_base + "[[support]]\n"),
-             ContainsSubstring("22: support[0].block: this key is missing; accepted: a table with block, point_m, stiffness_n_per_m"));
+             ContainsSubstring("22: support[0].point_m: this key is missing; accepted: a table with point_m, stiffness_n_per_m"));
   CHECK_THAT(error_of(block_on_base + "[[load]]\n"),
-             ContainsSubstring("22: load[0].block: this key is missing; accepted: a table with block, point_m, force_n"));
+             ContainsSubstring("22: load[0].point_m: this key is missing; accepted: a table with point_m, force_n"));
   CHECK_THAT(error_of(block_on_base + "[[measured_point]]\n"), ContainsSubstring("22: measured_point[0].name: this key is missing"));
 }
 

@@ -1,0 +1,437 @@
+#include "openclose/geometry/block_cutting.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <set>
+#include <stdexcept>
+#include <tuple>
+
+#include "openclose/geometry/arrangement.h"
+#include "openclose/geometry/plane_graph.h"
+
+namespace openclose {
+namespace {
+
+/// [m] Blocks at heights closer than this count as level when they are put in order.
+constexpr double level = 1e-6;
+/// [-] Blocks add up to the domain but for rounding; more than this is a fault of the program.
+constexpr double area_rounding = 1e-7;
+
+/// Numbers of the rings of the domain among the sources, which are joints from 0 up.
+int source_of_ring(int ring) {
+  return -1 - ring;
+}
+bool is_ring(int source) {
+  return source < 0;
+}
+int ring_of_source(int source) {
+  return -1 - source;
+}
+
+bool before(const Vec2& a, const Vec2& b) {
+  return std::pair(a.x(), a.y()) < std::pair(b.x(), b.y());
+}
+
+void make_canonical(std::vector<JointTrace>& traces) {
+  for (JointTrace& trace : traces) {
+    if (before(trace.segment.to, trace.segment.from)) std::swap(trace.segment.from, trace.segment.to);
+  }
+  const auto key = [](const JointTrace& trace) {
+    const auto& [from, to] = trace.segment;
+    return std::tuple(from.x(), from.y(), to.x(), to.y(), trace.joint);
+  };
+  std::sort(traces.begin(), traces.end(), [&](const JointTrace& a, const JointTrace& b) { return key(a) < key(b); });
+}
+
+std::vector<const Polygon*> rings_of(const PolygonWithHoles& domain) {
+  std::vector<const Polygon*> rings{&domain.outer};
+  for (const Polygon& hole : domain.holes) rings.push_back(&hole);
+  return rings;
+}
+
+std::vector<SourceSegment> sources_of(const PolygonWithHoles& domain, const std::vector<JointTrace>& traces, double reach) {
+  std::vector<SourceSegment> sources;
+  const std::vector<const Polygon*> rings = rings_of(domain);
+  for (std::size_t r = 0; r < rings.size(); ++r) {
+    const Polygon& ring = *rings[r];
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      const Vec2& next = ring[i + 1 < ring.size() ? i + 1 : 0];
+      // The domain is on the left of the outer boundary and on the right of a hole's.
+      sources.push_back({r == 0 ? Segment{ring[i], next} : Segment{next, ring[i]}, source_of_ring(static_cast<int>(r)), true});
+    }
+  }
+  for (const JointTrace& trace : traces) sources.push_back({trace.segment, trace.joint, false});
+  // A stub at each end makes it reach what it misses; the trace itself stays as it was given, to the last bit.
+  const Box box = Box::around(domain.outer).inflated(reach);
+  for (const JointTrace& trace : traces) {
+    const auto& [from, to] = trace.segment;
+    const Vec2 more = reach * (to - from).normalized();
+    if (reach > 0.0 && box.contains(from)) sources.push_back({{from - more, from}, trace.joint, false});
+    if (reach > 0.0 && box.contains(to)) sources.push_back({{to, to + more}, trace.joint, false});
+  }
+  return sources;
+}
+
+/// Sets of things that belong together.
+class Groups {
+ public:
+  explicit Groups(int count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
+  int of(int i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  void unite(int a, int b) {
+    a = of(a);
+    b = of(b);
+    parent_[std::max(a, b)] = std::min(a, b);
+  }
+
+ private:
+  std::vector<int> parent_;
+};
+
+/// The blocks as they are found: nodes and edges of the arrangement, of which fewer and fewer are left.
+class Cut {
+ public:
+  Cut(const PolygonWithHoles& domain, Arrangement arrangement, const CuttingLimits& limits, int joint_count)
+      : domain_(domain), limits_(limits), nodes_(std::move(arrangement.nodes)) {
+    result_.uses.resize(joint_count);
+    collect_edges(arrangement.pieces);
+  }
+
+  Cutting blocks() {
+    drop_outside();
+    note_overlaps();
+    count_dangling_ends();
+    drop_what_bounds_nothing();
+    if (!result_.loose_holes.empty()) return std::move(result_);
+    note_uses();
+    trace();
+    merge_slivers();
+    if (static_cast<int>(faces_.size()) > limits_.max_blocks) {
+      result_.too_many = true;
+      return std::move(result_);
+    }
+    collect_blocks();
+    return std::move(result_);
+  }
+
+ private:
+  struct Edge {
+    int from = 0;
+    int to = 0;
+    bool boundary = false;   ///< the domain is on the left only
+    std::size_t owners = 0;  ///< the first of them
+    std::size_t owners_end = 0;
+  };
+
+  void collect_edges(std::vector<Piece>& pieces) {
+    const auto key = [](const Piece& p) { return std::tuple(std::min(p.from, p.to), std::max(p.from, p.to), p.source); };
+    std::sort(pieces.begin(), pieces.end(), [&](const Piece& a, const Piece& b) { return key(a) < key(b); });
+    for (const Piece& piece : pieces) {
+      const auto [low, high] = std::minmax(piece.from, piece.to);
+      const bool known = !edges_.empty() && std::minmax(edges_.back().from, edges_.back().to) == std::pair<const int&, const int&>(low, high);
+      // Rings come first among the owners and give the edge its direction.
+      if (!known) edges_.push_back({piece.from, piece.to, is_ring(piece.source), owners_.size(), owners_.size()});
+      if (owners_.size() == edges_.back().owners || owners_.back() != piece.source) owners_.push_back(piece.source);
+      edges_.back().owners_end = owners_.size();
+    }
+  }
+
+  template <typename Drop>
+  void drop_edges(const Drop& drop) {
+    std::size_t kept = 0;
+    for (std::size_t e = 0; e < edges_.size(); ++e) {
+      if (!drop(static_cast<int>(e))) edges_[kept++] = edges_[e];
+    }
+    edges_.resize(kept);
+  }
+
+  double length(const Edge& edge) const { return (nodes_[edge.to] - nodes_[edge.from]).norm(); }
+
+  std::vector<bool> boundary_nodes() const {
+    std::vector<bool> on_boundary(nodes_.size(), false);
+    for (const Edge& edge : edges_) {
+      if (edge.boundary) on_boundary[edge.from] = on_boundary[edge.to] = true;
+    }
+    return on_boundary;
+  }
+
+  /// Joints that hang together without passing the boundary are all inside or all outside: one of them, the longest, decides.
+  void drop_outside() {
+    const std::vector<bool> on_boundary = boundary_nodes();
+    const int edge_count = static_cast<int>(edges_.size());
+    Groups groups(edge_count);
+    std::vector<int> edge_at(nodes_.size(), -1);
+    for (int e = 0; e < edge_count; ++e) {
+      for (const int node : {edges_[e].from, edges_[e].to}) {
+        if (edges_[e].boundary || on_boundary[node]) continue;
+        if (edge_at[node] >= 0) groups.unite(e, edge_at[node]);
+        edge_at[node] = e;
+      }
+    }
+    std::vector<int> longest(edge_count, -1);
+    for (int e = 0; e < edge_count; ++e) {
+      int& candidate = longest[groups.of(e)];
+      if (candidate < 0 || length(edges_[e]) > length(edges_[candidate])) candidate = e;
+    }
+    std::vector<bool> inside(edge_count, true);
+    for (int e = 0; e < edge_count; ++e) {
+      if (longest[e] < 0 || edges_[e].boundary) continue;
+      const Edge& edge = edges_[longest[e]];
+      inside[e] = domain_.contains(0.5 * (nodes_[edge.from] + nodes_[edge.to]));
+    }
+    drop_edges([&](int e) { return !inside[groups.of(e)]; });
+    note(&JointUse::in_domain);
+  }
+
+  void note(bool JointUse::*what) {
+    for (const Edge& edge : edges_) {
+      for (std::size_t o = edge.owners; o < edge.owners_end; ++o) {
+        if (!is_ring(owners_[o])) result_.uses[owners_[o]].*what = true;
+      }
+    }
+  }
+  void note_uses() { note(&JointUse::bounds_block); }
+
+  void note_overlaps() {
+    std::set<std::pair<int, int>> pairs;
+    for (const Edge& edge : edges_) {
+      if (edge.boundary || length(edge) <= 2.0 * limits_.end_reach + tolerance::shortest_edge_m) continue;
+      for (std::size_t a = edge.owners; a < edge.owners_end; ++a) {
+        for (std::size_t b = a + 1; b < edge.owners_end; ++b) pairs.emplace(owners_[a], owners_[b]);
+      }
+    }
+    result_.overlaps.assign(pairs.begin(), pairs.end());
+  }
+
+  /// What is left of the stub at an end that met what it was meant to is as long as the reach, or twice that if it fell short; longer ends dangle.
+  void count_dangling_ends() {
+    std::vector<std::array<int, 2>> edges_at(nodes_.size(), {-1, -1});
+    std::vector<int> degree(nodes_.size(), 0);
+    for (int e = 0; e < static_cast<int>(edges_.size()); ++e) {
+      for (const int node : {edges_[e].from, edges_[e].to}) {
+        if (degree[node] < 2) edges_at[node][degree[node]] = e;
+        ++degree[node];
+      }
+    }
+    for (int end = 0; end < static_cast<int>(nodes_.size()); ++end) {
+      if (degree[end] != 1) continue;
+      int node = end;
+      int edge = edges_at[end][0];
+      double loose = 0.0;
+      while (true) {
+        loose += length(edges_[edge]);
+        node = edges_[edge].from == node ? edges_[edge].to : edges_[edge].from;
+        if (degree[node] != 2) break;
+        edge = edges_at[node][0] == edge ? edges_at[node][1] : edges_at[node][0];
+      }
+      if (loose > 2.0 * limits_.end_reach + 2.0 * tolerance::shortest_edge_m) ++result_.dangling_ends;
+    }
+  }
+
+  std::vector<GraphEdge> graph() const {
+    std::vector<GraphEdge> graph;
+    graph.reserve(edges_.size());
+    for (const Edge& edge : edges_) graph.emplace_back(edge.from, edge.to);
+    return graph;
+  }
+
+  bool has_ring(const Edge& edge, int ring) const {
+    return std::find(owners_.begin() + edge.owners, owners_.begin() + edge.owners_end, source_of_ring(ring)) != owners_.begin() + edge.owners_end;
+  }
+
+  /// Only what lies on closed paths with the outer boundary is left: of such a graph every face is a simple polygon.
+  void drop_what_bounds_nothing() {
+    const std::vector<int> component = biconnected_components(static_cast<int>(nodes_.size()), graph());
+    std::map<int, int> edges_in;
+    for (const int c : component) ++edges_in[c];
+    const auto outer = std::find_if(edges_.begin(), edges_.end(), [&](const Edge& edge) { return has_ring(edge, 0); });
+    const int kept = component[outer - edges_.begin()];
+
+    std::set<int> seen;
+    std::set<int> loose;
+    for (std::size_t e = 0; e < edges_.size(); ++e) {
+      if (component[e] == kept || edges_in[component[e]] == 1) continue;
+      if (edges_[e].boundary) {
+        loose.insert(ring_of_source(owners_[edges_[e].owners]) - 1);
+      } else if (seen.insert(component[e]).second) {
+        result_.enclosed.push_back(0.5 * (nodes_[edges_[e].from] + nodes_[edges_[e].to]));
+      }
+    }
+    result_.loose_holes.assign(loose.begin(), loose.end());
+    drop_edges([&](int e) { return component[e] != kept; });
+  }
+
+  struct Face {
+    std::vector<int> cycle;  ///< half-edges
+    Polygon polygon;         ///< corners only, beginning with the lowest (leftmost of several)
+    double area = 0.0;       ///< [m2]
+    double width = 0.0;      ///< [m]
+  };
+
+  Face make_face(std::vector<int> cycle, const std::vector<GraphEdge>& graph) const {
+    Face face;
+    Polygon all;
+    for (const int h : cycle) all.push_back(nodes_[half_edge_from(graph, h)]);
+    for (const int i : corners(all)) face.polygon.push_back(all[i]);
+    if (!face.polygon.empty()) {
+      const auto lower = [](const Vec2& a, const Vec2& b) { return std::pair(a.y(), a.x()) < std::pair(b.y(), b.x()); };
+      std::rotate(face.polygon.begin(), std::min_element(face.polygon.begin(), face.polygon.end(), lower), face.polygon.end());
+    }
+    face.area = face.polygon.size() < 3 ? 0.0 : signed_area(face.polygon);
+    face.width = face.polygon.size() < 3 ? 0.0 : 2.0 * face.area / longest_edge(face.polygon);
+    face.cycle = std::move(cycle);
+    return face;
+  }
+
+  /// Faces inside the domain: those outside have the boundary the wrong way round.
+  void trace() {
+    const std::vector<GraphEdge> edges = graph();
+    Faces traced = trace_faces(nodes_, edges);
+    std::set<int> used;
+    for (const auto& [a, b] : edges) {
+      used.insert(a);
+      used.insert(b);
+    }
+    // Euler's formula for a connected plane graph.
+    if (traced.cycles.size() + used.size() != edges.size() + 2)
+      throw std::logic_error("the joints cut the domain into faces that do not fit together");
+    faces_.clear();
+    face_of_.assign(traced.face_of.size(), -1);
+    for (std::vector<int>& cycle : traced.cycles) {
+      if (std::any_of(cycle.begin(), cycle.end(), [&](int h) { return h % 2 == 1 && edges_[h / 2].boundary; })) continue;
+      for (const int h : cycle) face_of_[h] = static_cast<int>(faces_.size());
+      faces_.push_back(make_face(std::move(cycle), edges));
+    }
+  }
+
+  bool is_sliver(const Face& face) const { return face.width < limits_.sliver_width || face.area < limits_.sliver_area; }
+
+  /// The neighbour a sliver goes to and the half-edges between them; -1 if there is none.
+  int host(int sliver, std::vector<int>& common, const std::vector<bool>& taken) const {
+    const std::vector<int>& cycle = faces_[sliver].cycle;
+    const int n = static_cast<int>(cycle.size());
+    const auto neighbour = [&](int i) { return face_of_[cycle[(i + n) % n] ^ 1]; };
+    std::map<int, std::pair<double, int>> shared;  // length and number of separate stretches
+    for (int i = 0; i < n; ++i) {
+      const int other = neighbour(i);
+      if (other < 0 || other == sliver || taken[other]) continue;
+      shared[other].first += length(edges_[cycle[i] / 2]);
+      if (neighbour(i - 1) != other) ++shared[other].second;
+    }
+    int best = -1;
+    for (const auto& [other, contact] : shared) {
+      if (contact.second == 1 && (best < 0 || contact.first > shared[best].first)) best = other;
+    }
+    common.clear();
+    for (int i = 0; i < n; ++i) {
+      if (best >= 0 && neighbour(i) == best) common.push_back(cycle[i]);
+    }
+    return best;
+  }
+
+  void merge_slivers() {
+    for (bool any = true; any;) {
+      any = false;
+      result_.slivers_left = 0;
+      std::vector<bool> taken(faces_.size(), false);
+      std::vector<bool> grown(faces_.size(), false);
+      std::vector<bool> dropped(edges_.size(), false);
+      std::vector<int> common;
+      for (int f = 0; f < static_cast<int>(faces_.size()); ++f) {
+        if (!is_sliver(faces_[f])) continue;
+        ++result_.slivers_left;
+        if (grown[f]) continue;
+        const int to = host(f, common, taken);
+        if (to < 0) continue;
+        taken[f] = grown[to] = any = true;
+        for (const int h : common) dropped[h / 2] = true;
+        ++result_.slivers_merged;
+        result_.slivers_area += faces_[f].area;
+      }
+      if (!any) return;
+      drop_edges([&](int e) { return dropped[e]; });
+      drop_what_bounds_nothing();
+      trace();
+    }
+  }
+
+  void collect_blocks() {
+    double sum = 0.0;
+    std::vector<std::tuple<double, double, int>> order;
+    for (int f = 0; f < static_cast<int>(faces_.size()); ++f) {
+      const Vec2 centroid = polygon_properties(faces_[f].polygon).centroid;
+      order.emplace_back(std::round(centroid.y() / level), centroid.x(), f);
+      sum += faces_[f].area;
+    }
+    if (std::abs(sum - domain_.area()) > area_rounding * domain_.area()) throw std::logic_error("the blocks do not add up to the domain");
+    std::sort(order.begin(), order.end());
+    for (const auto& [y, x, f] : order) result_.blocks.push_back(std::move(faces_[f].polygon));
+  }
+
+  const PolygonWithHoles& domain_;
+  const CuttingLimits& limits_;
+  std::vector<Vec2> nodes_;
+  std::vector<Edge> edges_;
+  std::vector<int> owners_;  ///< sources of all edges, one edge after the other
+  std::vector<Face> faces_;
+  std::vector<int> face_of_;  ///< of half-edges; -1 outside the domain
+  Cutting result_;
+};
+
+bool rings_meet(const Polygon& a, const Polygon& b) {
+  if (!Box::around(a).inflated(tolerance::shortest_edge_m).overlaps(Box::around(b))) return false;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      if (segments_meet(a[i], a[(i + 1) % a.size()], b[j], b[(j + 1) % b.size()])) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+bool PolygonWithHoles::contains(const Vec2& point) const {
+  const auto in_hole = [&](const Polygon& hole) { return openclose::contains(hole, point); };
+  return openclose::contains(outer, point) && std::none_of(holes.begin(), holes.end(), in_hole);
+}
+
+double PolygonWithHoles::area() const {
+  double area = signed_area(outer);
+  for (const Polygon& hole : holes) area -= signed_area(hole);
+  return area;
+}
+
+std::optional<RingFault> first_ring_fault(const PolygonWithHoles& domain) {
+  const std::vector<const Polygon*> rings = rings_of(domain);
+  for (int r = 1; r < static_cast<int>(rings.size()); ++r) {
+    for (int other = 0; other < r; ++other) {
+      if (rings_meet(*rings[r], *rings[other])) return RingFault{RingFault::Kind::meets, r, other};
+      if (other == 0 && !contains(*rings[0], rings[r]->front())) return RingFault{RingFault::Kind::outside, r, 0};
+      if (other > 0 && (contains(*rings[other], rings[r]->front()) || contains(*rings[r], rings[other]->front()))) {
+        return RingFault{RingFault::Kind::nested, r, other};
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+Cutting cut_blocks(const PolygonWithHoles& domain, std::vector<JointTrace> traces, int joint_count, const CuttingLimits& limits) {
+  make_canonical(traces);
+  // A crossing of two traces makes a block more, but for one that each trace may have in vain; a few comparisons lead to a crossing.
+  constexpr std::size_t comparisons = 32;
+  const std::size_t limit = comparisons * (static_cast<std::size_t>(limits.max_blocks) + traces.size() + domain.outer.size() + 1000);
+  std::optional<Arrangement> arrangement = arrange(sources_of(domain, traces, limits.end_reach), limit);
+  if (!arrangement) {
+    Cutting refused;
+    refused.too_many = true;
+    return refused;
+  }
+  return Cut(domain, std::move(*arrangement), limits, joint_count).blocks();
+}
+
+}  // namespace openclose

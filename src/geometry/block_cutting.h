@@ -1,0 +1,80 @@
+// Cuts a domain into blocks along joint traces.
+//
+// The blocks are simple polygons, convex or not, counter-clockwise, without repeated vertices and straight corners. Where blocks meet in a corner
+// they have the same vertex, bit for bit: every point is computed once (see arrangement.h). Traces are sorted and turned into one direction first,
+// so that the blocks do not depend, to the last bit, on the order or direction in which the joints are given.
+//
+// What a trace does beyond its last meeting with another trace or the boundary bounds no block; it is cut back (a dangling end). Joints that enclose
+// something but hang on the rest by fewer than two points would leave a block with a hole, which a simple polygon cannot be: they are dropped, and
+// counted, for the caller to accept or to refuse.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "openclose/core/tolerance.h"
+#include "openclose/geometry/polygon.h"
+#include "openclose/geometry/segment.h"
+
+namespace openclose {
+
+/// A simple polygon less simple polygons inside it, all counter-clockwise, none touching another.
+struct PolygonWithHoles {
+  Polygon outer;
+  std::vector<Polygon> holes;
+
+  bool contains(const Vec2& point) const;
+  double area() const;  ///< [m2]
+};
+
+/// What is wrong with a domain: the first of its rings (0: the outer one, k: hole k - 1) that meets the one before it in the pair, lies outside
+/// the outer one, or inside another hole.
+struct RingFault {
+  enum class Kind { meets, outside, nested } kind = Kind::meets;
+  int ring = 0;
+  int other = 0;
+};
+std::optional<RingFault> first_ring_fault(const PolygonWithHoles& domain);
+
+/// A joint trace and the number of the joint (set or line) it belongs to.
+struct JointTrace {
+  Segment segment;
+  int joint = 0;  ///< from 0
+};
+
+struct CuttingLimits {
+  /// [m] A trace end this near to another trace or to the boundary reaches it.
+  double end_reach = tolerance::joint_end_reach_m;
+  /// [m], [m2] Blocks of less width (2 area / longest edge) or less area are slivers: each is united with the neighbour it has the longest common
+  /// edge with (summed up if they meet along several straight edges in a row; a neighbour that meets it in separate places is not taken).
+  double sliver_width = tolerance::sliver_width_m;
+  double sliver_area = 0.0;
+  int max_blocks = 1'000'000;
+};
+
+/// What became of a joint.
+struct JointUse {
+  bool in_domain = false;     ///< some of it is inside the domain or on its boundary
+  bool bounds_block = false;  ///< some of it is an edge of a block
+};
+
+struct Cutting {
+  std::vector<Polygon> blocks;  ///< by height of the centroid, then from left to right; each begins with its lowest vertex
+  int slivers_merged = 0;
+  double slivers_area = 0.0;                  ///< [m2] of those merged
+  int slivers_left = 0;                       ///< that no neighbour could take
+  int dangling_ends = 0;                      ///< trace ends inside the domain, longer than the reach, that were cut back
+  std::vector<Vec2> enclosed;                 ///< [m] a point on each group of joints dropped because it lies within one block
+  std::vector<int> loose_holes;               ///< holes of the domain that the joints do not connect to its outer boundary; no blocks then
+  std::vector<JointUse> uses;                 ///< by joint
+  std::vector<std::pair<int, int>> overlaps;  ///< pairs of joints that run along each other somewhere inside the domain
+  bool too_many = false;                      ///< more than max_blocks, or so many crossings that there would be; no blocks then
+};
+
+/// \param domain      without faults (first_ring_fault)
+/// \param joint_count  joints are numbered below it
+Cutting cut_blocks(const PolygonWithHoles& domain, std::vector<JointTrace> traces, int joint_count, const CuttingLimits& limits = {});
+
+}  // namespace openclose

@@ -1,0 +1,288 @@
+#include "openclose/scene/domain.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "openclose/geometry/touch.h"
+#include "openclose/scene/angle.h"
+#include "openclose/scene/names.h"
+#include "openclose/scene/outline.h"
+
+namespace openclose {
+namespace {
+
+constexpr Range part{.low = 0.0, .high = 1.0, .low_included = true};
+
+struct DomainInput {
+  PolygonWithHoles shape;
+  int material = 0;
+  EnclosedJoints enclosed = EnclosedJoints::refuse;
+  CuttingLimits limits;
+};
+
+struct Region {
+  Polygon outline;
+  int material = 0;
+};
+
+DomainInput read_domain(Table& table, const NameList& material_names) {
+  DomainInput domain;
+  Polygon outer;
+  std::vector<Polygon> holes;
+  table.required("vertices_m", outer, coordinate);
+  table.optional("holes_m", holes, coordinate);
+  table.required("material", domain.material, material_names);
+  table.optional("sliver_width_m", domain.limits.sliver_width, Range{.low = tolerance::least_sliver_width_m, .low_included = true});
+  table.optional("sliver_area_m2", domain.limits.sliver_area, not_negative);
+  table.optional("joint_end_reach_m", domain.limits.end_reach, not_negative);
+  table.optional("enclosed_joints", domain.enclosed, enclosed_joints_words);
+  table.optional("max_blocks", domain.limits.max_blocks, count);
+  table.finish();
+
+  domain.shape.outer = outline(table.at("vertices_m"), outer, "domain");
+  for (std::size_t i = 0; i < holes.size(); ++i) domain.shape.holes.push_back(outline(table.at("holes_m").element(i), holes[i], "hole"));
+  if (const auto fault = first_ring_fault(domain.shape)) {
+    const Value hole = table.at("holes_m").element(fault->ring - 1);
+    const std::string other = fault->other == 0 ? "the domain's boundary" : fmt::format("hole [{}]", fault->other - 1);
+    const std::string accepted = "holes inside the domain that touch neither its boundary nor each other";
+    switch (fault->kind) {
+      case RingFault::Kind::meets:
+        hole.fail("the hole meets " + other, accepted);
+      case RingFault::Kind::outside:
+        hole.fail("the hole lies outside the domain", accepted);
+      case RingFault::Kind::nested:
+        hole.fail("the hole lies inside or around " + other, accepted);
+    }
+  }
+  return domain;
+}
+
+void read_traces_of(Table& table, JointSet& set) {
+  std::optional<double> gap;
+  std::optional<double> persistence;
+  table.optional("trace_length_m", set.trace_length, positive);
+  table.optional("gap_m", gap, not_negative);
+  table.optional("persistence", persistence, Range{.low = 0.0, .high = 1.0, .high_included = true});
+  table.optional("stagger", set.stagger, part);
+  table.optional("trace_scatter", set.trace_scatter, part);
+  table.finish();
+
+  if (set.trace_length && gap.has_value() == persistence.has_value()) {
+    table.fail(gap ? "both gap and persistence are given" : "neither gap nor persistence is given", "exactly one of gap_m, persistence");
+  }
+  for (const char* key : {"gap_m", "persistence", "stagger", "trace_scatter"}) {
+    if (!set.trace_length && table.has(key)) table.fail(fmt::format("{} is given for joints that run through", key), "trace_length_m with it");
+  }
+  if (!set.trace_length) return;
+  // Persistence is the part of a joint's length that is open.
+  set.gap = gap ? *gap : *set.trace_length * (1.0 / *persistence - 1.0);
+}
+
+JointSet read_joint_set(Table table) {
+  JointSet set;
+  double dip_deg = 0.0;
+  double dip_scatter_deg = 0.0;
+  int seed = 1;
+  Polygon region;
+  table.required("dip_deg", dip_deg, Range{.low = -180.0, .high = 180.0, .low_included = true, .high_included = true});
+  table.required("spacing_m", set.spacing, positive);
+  table.required("origin_m", set.origin, coordinate);
+  table.optional("dip_scatter_deg", dip_scatter_deg, Range{.low = 0.0, .high = 45.0, .low_included = true});
+  table.optional("spacing_scatter", set.spacing_scatter, part);
+  table.optional("seed", seed, Range{.low = 0.0, .high = 1e9, .low_included = true, .high_included = true});
+  const bool bounded = table.optional("region_m", region, coordinate);
+  read_traces_of(table, set);
+
+  set.dip = radians(dip_deg);
+  set.dip_scatter = radians(dip_scatter_deg);
+  set.seed = static_cast<std::uint64_t>(seed);
+  if (bounded) set.region = outline(table.at("region_m"), region, "region");
+  return set;
+}
+
+Segment read_segment(Table& table) {
+  Segment line;
+  table.required("from_m", line.from, coordinate);
+  table.required("to_m", line.to, coordinate);
+  table.finish();
+  if (line.length() < tolerance::shortest_edge_m) table.fail("the line has no length", "two points from_m and to_m apart from each other");
+  return line;
+}
+
+Region read_region(Table table, const NameList& material_names) {
+  Region region;
+  Polygon written;
+  table.required("vertices_m", written, coordinate);
+  table.required("material", region.material, material_names);
+  table.finish();
+  region.outline = outline(table.at("vertices_m"), written, "region");
+  return region;
+}
+
+std::string place(const Vec2& point) {
+  return fmt::format("({:.6g}, {:.6g})", point.x(), point.y());
+}
+
+/// The joints of a scene: the sets, then the lines.
+class Joints {
+ public:
+  Joints(const CuttingTables& tables, const DomainInput& domain) : tables_(tables), domain_(domain) {
+    for (std::size_t i = 0; i < tables.joint_sets.size(); ++i) add_set(static_cast<int>(i));
+    for (const Table& table : tables.joint_lines) {
+      Table line = table;
+      traces_.push_back({read_segment(line), count_++});
+    }
+  }
+
+  const std::vector<JointTrace>& traces() const { return traces_; }
+  int count() const { return count_; }
+
+  const Table& table(int joint) const {
+    const int sets = static_cast<int>(tables_.joint_sets.size());
+    return joint < sets ? tables_.joint_sets[joint] : tables_.joint_lines[joint - sets];
+  }
+  bool is_set(int joint) const { return joint < static_cast<int>(tables_.joint_sets.size()); }
+
+ private:
+  void add_set(int index) {
+    const Table& table = tables_.joint_sets[index];
+    const auto of_set = openclose::traces(read_joint_set(table), domain_.shape.outer, domain_.limits.max_blocks);
+    if (!of_set) {
+      table.fail(fmt::format("the set has more than {} traces in the domain, or its origin lies as many of them away", domain_.limits.max_blocks),
+                 "a wider spacing, longer traces, a nearer origin, or a higher domain.max_blocks");
+    }
+    for (const Segment& segment : *of_set) traces_.push_back({segment, count_});
+    ++count_;
+  }
+
+  const CuttingTables& tables_;
+  const DomainInput& domain_;
+  std::vector<JointTrace> traces_;
+  int count_ = 0;
+};
+
+void refuse_faults(const Cutting& cutting, const Joints& joints, const DomainInput& domain, const Table& table) {
+  if (cutting.too_many) {
+    table.fail(fmt::format("the joints cut the domain into more than {} blocks", domain.limits.max_blocks),
+               "fewer joints, or a higher domain.max_blocks");
+  }
+  for (int j = 0; j < joints.count(); ++j) {
+    if (!cutting.uses[j].in_domain) {
+      joints.table(j).fail(joints.is_set(j) ? "no trace of the set is in the domain" : "the line is outside the domain",
+                           "joints that meet the domain");
+    }
+  }
+  for (const auto& [a, b] : cutting.overlaps) {
+    if (!joints.is_set(a) || !joints.is_set(b)) continue;
+    joints.table(b).fail(fmt::format("the set is parallel to the one of {} and shares joints with it", place_name(joints.table(a).where())),
+                         "sets of different dips, or parallel ones whose joints lie between each other");
+  }
+  if (!cutting.loose_holes.empty()) {
+    table.at("holes_m")
+        .element(cutting.loose_holes.front())
+        .fail("the joints do not connect the hole to the domain's boundary, so that a block would have a hole",
+              "joints that reach every hole in two places or more");
+  }
+  if (!cutting.enclosed.empty() && domain.enclosed == EnclosedJoints::refuse) {
+    table.fail(fmt::format("{} group(s) of joints, one near {}, enclose a block within another one, which would have a hole", cutting.enclosed.size(),
+                           place(cutting.enclosed.front())),
+               "joints that connect them to others in two places or more, or domain.enclosed_joints = \"drop\" to leave them out");
+  }
+  const bool none_used = std::none_of(cutting.uses.begin(), cutting.uses.end(), [](const JointUse& use) { return use.bounds_block; });
+  if (joints.count() > 0 && (none_used || cutting.blocks.size() < 2)) {
+    table.fail("the joints cut no block out of the domain", "joints that cross the domain or each other, or none at all");
+  }
+  for (int j = 0; j < joints.count(); ++j) {
+    if (joints.is_set(j) && !cutting.uses[j].bounds_block) {
+      joints.table(j).fail("the set bounds no block: all its traces end loose inside one",
+                           "traces that reach the boundary or other joints at both ends");
+    }
+  }
+}
+
+std::vector<std::string> warnings_of(const Cutting& cutting, const Joints& joints, const Table& table) {
+  std::vector<std::string> warnings;
+  const std::string file = table.where().file;
+  for (int j = 0; j < joints.count(); ++j) {
+    if (cutting.uses[j].bounds_block) continue;
+    warnings.push_back(fmt::format("{}: {}: the line ends loose inside one block and bounds none", file, place_name(joints.table(j).where())));
+  }
+  if (!cutting.enclosed.empty())
+    warnings.push_back(fmt::format("{}: {} group(s) of joints enclosed in one block left out", file, cutting.enclosed.size()));
+  if (cutting.slivers_left > 0) warnings.push_back(fmt::format("{}: {} sliver(s) that no neighbour could take are left", file, cutting.slivers_left));
+  return warnings;
+}
+
+CuttingSummary summary_of(const Cutting& cutting, const Joints& joints, const DomainInput& domain, const Table& table) {
+  CuttingSummary summary;
+  summary.blocks = static_cast<int>(cutting.blocks.size());
+  summary.smallest_block = INFINITY;
+  for (const Polygon& block : cutting.blocks) {
+    const double area = signed_area(block);
+    summary.area += area;
+    summary.smallest_block = std::min(summary.smallest_block, area);
+  }
+  summary.domain_area = domain.shape.area();
+  summary.traces = static_cast<int>(joints.traces().size());
+  summary.dangling_ends = cutting.dangling_ends;
+  summary.slivers_merged = cutting.slivers_merged;
+  summary.slivers_area = cutting.slivers_area;
+  summary.enclosed_groups = static_cast<int>(cutting.enclosed.size());
+  summary.warnings = warnings_of(cutting, joints, table);
+  return summary;
+}
+
+int material_at(const Vec2& centroid, const std::vector<Region>& regions, int otherwise) {
+  for (auto region = regions.rbegin(); region != regions.rend(); ++region) {
+    if (contains(region->outline, centroid)) return region->material;
+  }
+  return otherwise;
+}
+
+}  // namespace
+
+void cut_domain(const CuttingTables& tables, const NameList& material_names, NameList& block_names, Scene& scene) {
+  if (!tables.domain.is_there()) {
+    for (const auto* list : {&tables.joint_sets, &tables.joint_lines, &tables.regions}) {
+      if (!list->empty()) list->front().fail("there is no domain to cut", "a scene with a [domain]");
+    }
+    return;
+  }
+  Table table = tables.domain;
+  const DomainInput domain = read_domain(table, material_names);
+  std::vector<Region> regions;
+  for (const Table& region : tables.regions) regions.push_back(read_region(region, material_names));
+  const Joints joints(tables, domain);
+  const Cutting cutting = cut_blocks(domain.shape, joints.traces(), joints.count(), domain.limits);
+  refuse_faults(cutting, joints, domain, table);
+
+  const int digits = std::max(4, static_cast<int>(std::to_string(cutting.blocks.size()).size()));
+  int number = 0;
+  for (const Polygon& polygon : cutting.blocks) {
+    BlockInput block;
+    block.name = fmt::format("b{:0{}}", ++number, digits);
+    block.material = material_at(polygon_properties(polygon).centroid, regions, domain.material);
+    block.vertices = polygon;
+    block.where = table.where();
+    block_names.add(table.at("vertices_m"), block.name);
+    scene.blocks.push_back(std::move(block));
+  }
+  scene.cutting = summary_of(cutting, joints, domain, table);
+}
+
+void fix_blocks(const std::vector<Table>& fixed_lines, Scene& scene) {
+  for (const Table& written : fixed_lines) {
+    Table table = written;
+    const Segment line = read_segment(table);
+    bool any = false;
+    for (BlockInput& block : scene.blocks) {
+      if (common_length(line, block.vertices) < tolerance::shortest_overlap_m) continue;
+      block.fixed = any = true;
+    }
+    if (!any) table.fail("no block touches the line", "a line along edges of blocks, or through blocks");
+  }
+}
+
+}  // namespace openclose

@@ -1,0 +1,190 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "openclose/geometry/joint_set.h"
+#include "support/catch.h"
+
+using namespace openclose;
+using std::numbers::pi;
+
+namespace {
+
+const Polygon square{{0.0, 0.0}, {10.0, 0.0}, {10.0, 10.0}, {0.0, 10.0}};
+
+JointSet set_of(double dip_deg, double spacing) {
+  JointSet set;
+  set.dip = dip_deg * pi / 180.0;
+  set.spacing = spacing;
+  return set;
+}
+
+double mean_length(const std::vector<Segment>& segments) {
+  double sum = 0.0;
+  for (const Segment& segment : segments) sum += segment.length();
+  return sum / static_cast<double>(segments.size());
+}
+
+}  // namespace
+
+TEST_CASE("directions are exact at right angles", "[geometry][joint_set]") {
+  CHECK(direction(0.0) == Vec2(1.0, 0.0));
+  CHECK(direction(pi / 2.0) == Vec2(0.0, 1.0));
+  CHECK(direction(-pi / 2.0) == Vec2(0.0, -1.0));
+  CHECK(direction(pi) == Vec2(-1.0, 0.0));
+  CHECK(direction(1e-9).y() == Approx(1e-9));
+}
+
+TEST_CASE("a positive dip rises to the right", "[geometry][joint_set]") {
+  const std::vector<Segment> up = *traces(set_of(30.0, 1.0), square, 1000);
+  const std::vector<Segment> down = *traces(set_of(-30.0, 1.0), square, 1000);
+  const auto slope = [](const Segment& segment) { return (segment.to - segment.from).y() / (segment.to - segment.from).x(); };
+  CHECK(slope(up[3]) == Approx(std::tan(pi / 6.0)));
+  CHECK(slope(down[3]) == Approx(-std::tan(pi / 6.0)));
+}
+
+TEST_CASE("joints run through the domain at their spacing, one through the origin", "[geometry][joint_set]") {
+  JointSet set = set_of(0.0, 2.0);
+  set.origin = {-77.0, 105.0};
+  const std::vector<Segment> joints = *traces(set, square, 1000);
+  REQUIRE(joints.size() == 5);
+  for (int i = 0; i < 5; ++i) {
+    CHECK(joints[i].from.y() == 1.0 + 2.0 * i);
+    CHECK(std::min(joints[i].from.x(), joints[i].to.x()) < 0.0);
+    CHECK(std::max(joints[i].from.x(), joints[i].to.x()) > 10.0);
+  }
+}
+
+TEST_CASE("a dip and its opposite are the same joints", "[geometry][joint_set]") {
+  CHECK(traces(set_of(35.0, 1.5), square, 1000)->size() == traces(set_of(-145.0, 1.5), square, 1000)->size());
+}
+
+TEST_CASE("traces and gaps", "[geometry][joint_set]") {
+  JointSet set = set_of(0.0, 1.0);
+  set.origin = {0.0, 0.5};
+  set.trace_length = 2.0;
+  set.gap = 1.0;
+  SECTION("begin at the origin") {
+    const std::vector<Segment> all = *traces(set, square, 1000);
+    const auto first = std::find_if(all.begin(), all.end(), [](const Segment& s) { return s.from == Vec2(3.0, 0.5); });
+    REQUIRE(first != all.end());
+    CHECK(first->to == Vec2(5.0, 0.5));
+  }
+  SECTION("are shifted from joint to joint") {
+    set.stagger = 0.5;
+    const std::vector<Segment> all = *traces(set, square, 1000);
+    const auto at = [&](const Vec2& from) { return std::any_of(all.begin(), all.end(), [&](const Segment& s) { return s.from == from; }); };
+    CHECK(at({3.0, 0.5}));
+    CHECK(at({4.5, 1.5}));
+    CHECK(at({3.0, 2.5}));
+  }
+  SECTION("scatter by as much as they are told to") {
+    set.trace_scatter = 0.5;
+    set.spacing = 0.05;
+    const std::vector<Segment> all = *traces(set, square, 100000);
+    double longest = 0.0;
+    for (const Segment& segment : all) longest = std::max(longest, segment.length());
+    CHECK(longest <= 3.0);
+    CHECK(longest > 2.9);
+  }
+}
+
+TEST_CASE("a region bounds its joints", "[geometry][joint_set]") {
+  JointSet set = set_of(0.0, 1.0);
+  set.origin = {0.0, 0.5};
+  // A notch in the region's top parts the upper joints.
+  set.region = {{2.0, 2.0}, {8.0, 2.0}, {8.0, 6.0}, {6.0, 6.0}, {6.0, 4.0}, {4.0, 4.0}, {4.0, 6.0}, {2.0, 6.0}};
+  const std::vector<Segment> all = *traces(set, square, 1000);
+  CHECK(all.size() == 6);
+  CHECK(mean_length(all) == Approx((2 * 6.0 + 4 * 2.0) / 6.0));
+}
+
+TEST_CASE("scatter is the same everywhere", "[geometry][joint_set]") {
+  SECTION("the generator's numbers do not change") {
+    CHECK(uniform(1, 0, 0, 0) == uniform(1, 0, 0, 0));
+    CHECK(uniform(1, 0, 0, 0) != uniform(2, 0, 0, 0));
+    CHECK(uniform(1, 0, 0, 0) != uniform(1, 1, 0, 0));
+    CHECK(uniform(1, 0, 0, 0) != uniform(1, 0, 1, 0));
+    CHECK(uniform(1, 0, 0, 0) != uniform(1, 0, 0, 1));
+    CHECK(uniform(1, 0, 0, 0) == 0x1.8a06577767b92p-1);
+    CHECK(uniform(12345, -7, 3, 99) == 0x1.abe016f1bcde8p-1);
+  }
+  SECTION("they are uniform between -1 and 1") {
+    double sum = 0.0;
+    double squares = 0.0;
+    const int count = 100000;
+    for (int i = 0; i < count; ++i) {
+      const double number = uniform(1, i - 1000, 2, 0);
+      REQUIRE(number >= -1.0);
+      REQUIRE(number < 1.0);
+      sum += number;
+      squares += number * number;
+    }
+    // Standard errors: 1/sqrt(3 n) and sqrt(4/45/n).
+    CHECK(std::abs(sum / count) < 4.0 / std::sqrt(3.0 * count));
+    CHECK(squares / count == Approx(1.0 / 3.0).margin(4.0 * std::sqrt(4.0 / 45.0 / count)));
+  }
+  SECTION("a joint does not depend on the domain") {
+    JointSet set = set_of(20.0, 0.7);
+    set.spacing_scatter = 0.5;
+    set.dip_scatter = 0.1;
+    const Polygon larger{{-30.0, -30.0}, {10.0, -30.0}, {10.0, 10.0}, {-30.0, 10.0}};
+    const std::vector<Segment> few = *traces(set, square, 1000);
+    const std::vector<Segment> many = *traces(set, larger, 1000);
+    for (const Segment& segment : few) {
+      const auto on_line = [&](const Segment& other) {
+        return distance_to_segment(segment.from, other.from, other.to) < 0.3 &&
+               std::abs(cross((segment.to - segment.from).normalized(), (other.to - other.from).normalized())) < 1e-12;
+      };
+      CHECK(std::any_of(many.begin(), many.end(), on_line));
+    }
+  }
+}
+
+TEST_CASE("scattered spacings and dips stay within their bounds", "[geometry][joint_set]") {
+  JointSet set = set_of(0.0, 0.1);
+  SECTION("spacing") {
+    set.spacing_scatter = 0.3;
+    std::vector<double> heights;
+    const std::vector<Segment> all = *traces(set, square, 1000);
+    for (const Segment& segment : all) heights.push_back(segment.from.y());
+    std::sort(heights.begin(), heights.end());
+    double smallest = 1.0;
+    double largest = 0.0;
+    for (std::size_t i = 0; i + 1 < heights.size(); ++i) {
+      smallest = std::min(smallest, heights[i + 1] - heights[i]);
+      largest = std::max(largest, heights[i + 1] - heights[i]);
+    }
+    CHECK(smallest >= 0.07 - 1e-12);
+    CHECK(smallest < 0.075);
+    CHECK(largest <= 0.13 + 1e-12);
+    CHECK(largest > 0.125);
+  }
+  SECTION("dip") {
+    set.dip_scatter = 0.05;
+    double steepest = 0.0;
+    const std::vector<Segment> all = *traces(set, square, 1000);
+    for (const Segment& segment : all) {
+      const Vec2 along = segment.to - segment.from;
+      steepest = std::max(steepest, std::abs(std::atan2(along.y(), along.x())));
+    }
+    CHECK(steepest <= 0.05);
+    CHECK(steepest > 0.045);
+  }
+}
+
+TEST_CASE("sets with too many traces are not made", "[geometry][joint_set]") {
+  CHECK_FALSE(traces(set_of(30.0, 1e-9), square, 1000));
+  CHECK(traces(set_of(0.0, 1.0), square, 12));
+  CHECK_FALSE(traces(set_of(0.0, 1.0), square, 5));
+  JointSet set = set_of(30.0, 1.0);
+  SECTION("short traces") {
+    set.trace_length = 1e-9;
+    CHECK_FALSE(traces(set, square, 1000));
+  }
+  SECTION("scatter from an origin far away") {
+    set.spacing_scatter = 0.1;
+    set.origin = {1e7, -1e7};
+    CHECK_FALSE(traces(set, square, 1000));
+  }
+}
