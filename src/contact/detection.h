@@ -9,6 +9,10 @@
 //     edge to a collinear one of the next block.
 // A vertex that faces e through both rules, or through both its edges, has one contact with the sum of the lengths.
 //
+// Where it is not continuous: a lone corner within edge_end of the seam of two collinear edges has a contact with both; it loses its length where it
+// leaves the end of an edge that nothing continues; and a raised, open corner loses its length at parallel_none. Energy held there goes into the
+// ledger's redefinition.
+//
 // A lone corner that slides over the seam of two blocks is not stopped by the face of the next one (see tolerance::seam_height_m).
 //
 // At four-block corners the diagonal blocks have facing edges without overlap and no lone corner, hence no contact: they cannot lock.
