@@ -2,13 +2,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace openclose {
 namespace {
 
-constexpr double growth = 10.0;         ///< [-] of the pseudo-time step after a success
+constexpr double fastest_growth = 10.0;  ///< [-] of the pseudo-time step after a success
+constexpr double growth_after_cut = 1.5;  ///< [-] the first time; squared with each further success
 constexpr double largest_growth = 1e3;  ///< [-] of the first step in all: beyond, the inertia term no longer holds sliding blocks in place
 constexpr double cut = 0.3;             ///< [-] after a failure
+constexpr double part_of_limit = 0.8;   ///< [-] of the largest displacement of a step, to be aimed at
+
+/// From rest a failing block moves with the square of the step: the factor on a step that moved so far which makes full use of the limit.
+double factor_to_limit(double limit, double moved) {
+  return moved > 0.0 ? std::sqrt(part_of_limit * limit / moved) : std::numeric_limits<double>::infinity();
+}
 
 }  // namespace
 
@@ -21,11 +29,13 @@ SettleResult settle(Simulation<N>& simulation) {
   simulation.system().stop();
 
   SettleResult result;
-  double dt = input.first_dt;
+  double dt = input.first_dt, growth = fastest_growth;
+  const double limit = simulation.scene().step.max_displacement;
   while (result.steps < input.max_steps) {
     const StepResult step = simulation.step(dt, true);
     if (!step.accepted) {
-      dt *= cut;
+      dt *= step.moved > limit ? std::min(factor_to_limit(limit, step.moved), 1.0) : cut;
+      growth = growth_after_cut;
       result.criterion = step.reason;
       if (dt < simulation.scene().step.smallest_fraction * input.first_dt) return result;
       continue;
@@ -45,7 +55,8 @@ SettleResult settle(Simulation<N>& simulation) {
       result.criterion = "displacement";
       return result;
     }
-    dt = std::min(dt * growth, largest_growth * input.first_dt);
+    dt = std::min(dt * std::min(growth, factor_to_limit(limit, step.moved)), largest_growth * input.first_dt);
+    growth = std::min(growth * growth, fastest_growth);
   }
   result.criterion = "steps";
   return result;

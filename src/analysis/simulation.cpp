@@ -92,17 +92,17 @@ StepProblem<N> Simulation<N>::problem(double dt, bool statics) {
 }
 
 template <int N>
-bool Simulation<N>::moved_too_far(const StepSolution<N>& solution) const {
-  const double limit = scene_.step.max_displacement;
+double Simulation<N>::largest_move(const StepSolution<N>& solution) const {
+  double largest = 0.0;
   for (int b : system_.free_blocks()) {
     const auto& block = system_.block(b);
     const Unknowns d = solution.of(system_, b);
-    if (Motion<N>::displacement_bound(d, block.radius) <= limit) continue;
+    if (Motion<N>::displacement_bound(d, block.radius) <= largest) continue;
     for (int v = block.first_vertex; v < block.first_vertex + block.vertex_count; ++v) {
-      if (Motion<N>::displacement(d, system_.arm(v), system_.rotation_kind()).norm() > limit) return true;
+      largest = std::max(largest, Motion<N>::displacement(d, system_.arm(v), system_.rotation_kind()).norm());
     }
   }
-  return false;
+  return largest;
 }
 
 template <int N>
@@ -115,7 +115,8 @@ StepResult Simulation<N>::step(double dt, bool statics) {
     solution = enforcement_->solve(p);
   }
   step_counters_.iterations += solution.iterations;
-  const bool too_far = solution.converged && moved_too_far(solution);
+  if (solution.converged) result.moved = largest_move(solution);
+  const bool too_far = result.moved > scene_.step.max_displacement;
   if (!solution.converged || too_far) {
     result.reason = too_far ? "a block moved farther in one step than step.max_displacement_m" : solution.reason;
     ++step_counters_.cuts;

@@ -28,6 +28,7 @@ struct StepResult {
   bool accepted = false;
   std::string reason;
   double unbalanced_force = 0.0;  ///< [N] largest sum of forces without inertia on a block; static steps only
+  double moved = 0.0;             ///< [m] farthest way of a vertex, of refused steps too; 0 if nothing was solved
   bool lost_strength = false;     ///< a contact has lost its cohesion or tensile strength at the end of the step
 };
 
@@ -92,7 +93,7 @@ class Simulation {
  private:
   void detect();
   void restart_scheme();
-  bool moved_too_far(const StepSolution<N>& solution) const;
+  double largest_move(const StepSolution<N>& solution) const;
   double unbalanced_force(const StepProblem<N>& problem, const StepSolution<N>& solution) const;
   void accept(const StepProblem<N>& problem, const StepSolution<N>& solution);
   void accept_contacts(const StepSolution<N>& solution);

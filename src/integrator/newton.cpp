@@ -21,8 +21,20 @@ constexpr double static_slip_stiffness = 0.01;
 /// [-] A line search is good enough when the energy's slope has fallen to this part.
 constexpr double line_search_slope = 0.9;
 constexpr int line_search_steps = 8;
-/// [-] The residual may grow by this factor in a step of the exact tangent that reaches contact states not seen before.
+/// Sliding contacts are on this branch of their law or, the other way, on minus it.
+constexpr int sliding_branch = static_cast<int>(ContactStatus::sliding);
+/// [-] The residual may grow to this multiple of the smallest one so far in a step of the exact tangent that reaches contact states not seen before,
+/// if no more contacts than these change (or few_switches of all).
 constexpr double longest_detour = 10.0;
+constexpr int end_game = 16;
+/// [-] Backtracking along the exact step: decrease of the residual asked for, as a part of what the linear model promises, and the shortest part of
+/// the step worth taking (6 halvings; below, the symmetric tangent gets on better).
+constexpr double sufficient_decrease = 0.1;
+constexpr double shortest_backtrack = 0.01;
+
+int differences(const std::vector<int>& a, const std::vector<int>& b) {
+  return std::inner_product(a.begin(), a.end(), b.begin(), 0, std::plus<>(), std::not_equal_to<>());
+}
 
 }  // namespace
 
@@ -194,11 +206,20 @@ double Newton<N>::line_search(const Eigen::VectorXd& d, const Eigen::VectorXd& s
 }
 
 template <int N>
+double Newton<N>::backtrack(const Eigen::VectorXd& d, const Eigen::VectorXd& step, double norm) {
+  for (double alpha = 0.5; alpha > shortest_backtrack; alpha *= 0.5) {
+    evaluate(d + alpha * step);
+    if (residual_norm() <= (1.0 - sufficient_decrease * alpha) * norm) return alpha;
+  }
+  return 0.0;
+}
+
+template <int N>
 std::vector<int> Newton<N>::branches() const {
   std::vector<int> list;
   for (const auto& o : outcome_) {
-    const bool sliding = o.forces.status == ContactStatus::sliding;
-    list.push_back(sliding && o.forces.shear < 0.0 ? -1 : static_cast<int>(o.forces.status));
+    const bool backward = o.forces.status == ContactStatus::sliding && o.forces.shear < 0.0;
+    list.push_back(backward ? -sliding_branch : static_cast<int>(o.forces.status));
   }
   return list;
 }
@@ -208,7 +229,7 @@ int Newton<N>::hold_reversed(const std::vector<int>& before, const std::vector<i
   int held = 0;
   for (std::size_t c = 0; c < outcome_.size(); ++c) {
     ContactOutcome<N>& o = outcome_[c];
-    const bool reversed = o.forces.status == ContactStatus::sliding && before[c] * after[c] < 0;
+    const bool reversed = std::abs(before[c]) == sliding_branch && before[c] == -after[c];
     if (!reversed) continue;
     ++held;
     const double trial = o.springs.initial_shear - o.springs.shear * o.kinematics.slip_change;
@@ -257,6 +278,7 @@ void Newton<N>::solve(const StepProblem<N>& problem, const std::vector<ContactSp
 
   Tangent tangent = Tangent::exact;
   std::set<std::vector<int>> visited;
+  double best = norm;
   const int few = static_cast<int>(few_switches * static_cast<double>(outcome_.size()));
   for (int iteration = 0; iteration < problem.method.max_iterations && norm > 1.0; ++iteration) {
     const std::vector<int> before = branches();
@@ -273,15 +295,23 @@ void Newton<N>::solve(const StepProblem<N>& problem, const std::vector<ContactSp
     } else {
       evaluate(d + step);
     }
-    const double next_norm = residual_norm();
-    const std::vector<int> after = branches();
-    const auto switches = std::inner_product(before.begin(), before.end(), after.begin(), 0, std::plus<>(), std::not_equal_to<>());
-    // On a piecewise linear law the way to the right piece may lead uphill, but never twice over the same one.
+    double next_norm = residual_norm();
+    std::vector<int> after = branches();
+    int switches = differences(before, after);
+    // On a piecewise linear law the way to the right piece may lead uphill, but not while many contacts change, and never twice over the same piece.
+    best = std::min(best, norm);
     const bool uphill = tangent == Tangent::exact && iteration > 0 && next_norm > norm;
-    if (uphill && !(next_norm <= longest_detour * norm && visited.insert(after).second)) {
-      evaluate(d);
-      tangent = Tangent::symmetric;
-      continue;
+    const bool detour = switches <= std::max(few, end_game) && next_norm <= longest_detour * best;
+    if (uphill && !(detour && visited.insert(after).second)) {
+      alpha = backtrack(d, step, norm);
+      if (alpha == 0.0) {
+        evaluate(d);
+        tangent = Tangent::symmetric;
+        continue;
+      }
+      next_norm = residual_norm();
+      after = branches();
+      switches = differences(before, after);
     }
     const bool halved = next_norm <= 0.5 * norm;
     d += alpha * step;

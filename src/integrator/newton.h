@@ -1,7 +1,7 @@
 // Newton's method for one step with given contact springs.
 //
-// Two tangents: the exact one, non-symmetric where contacts slide, and a symmetric one (sticking springs only) with an energy line search, which
-// makes progress while many contacts still change state. Convergence means the residual alone: the contact states are functions of the displacement.
+// Two tangents: the exact one, non-symmetric where contacts slide, with backtracking on the residual, and where that finds no descent a symmetric one
+// (sticking springs only) with an energy line search, which makes progress while many contacts still change state. Convergence means the residual alone: the contact states are functions of the displacement.
 #pragma once
 
 #include "openclose/integrator/enforcement.h"
@@ -41,6 +41,8 @@ class Newton {
   /// spring is stiff the range of sticking is so narrow that the iteration would jump over it for ever.) Returns their number.
   int hold_reversed(const std::vector<int>& before, const std::vector<int>& after);
   double line_search(const Eigen::VectorXd& d, const Eigen::VectorXd& step, double slope);
+  /// Part of the exact step along which the residual falls as it should; 0 if none. Leaves the forces there.
+  double backtrack(const Eigen::VectorXd& d, const Eigen::VectorXd& step, double norm);
   /// Which linear piece of its law every contact is on: its status, and for sliding the direction too.
   std::vector<int> branches() const;
 
