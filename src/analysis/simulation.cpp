@@ -22,6 +22,9 @@ class Stopwatch {
   Clock::time_point start_ = Clock::now();
 };
 
+/// [-] of the largest displacement of a step, to be aimed at where steps have to be shorter.
+constexpr double part_of_limit = 0.9;
+
 }  // namespace
 
 template <int N>
@@ -88,6 +91,7 @@ StepProblem<N> Simulation<N>::problem(double dt, bool statics) {
   p.statics = statics;
   p.inertia = statics ? 2.0 / (dt * dt) : scheme_->inertia(dt);
   p.end_weight = statics ? 1.0 : scheme_->end_weight();
+  p.failed_attempts = failed_attempts_;
   return p;
 }
 
@@ -120,6 +124,7 @@ StepResult Simulation<N>::step(double dt, bool statics) {
   if (!solution.converged || too_far) {
     result.reason = too_far ? "a block moved farther in one step than step.max_displacement_m" : solution.reason;
     ++step_counters_.cuts;
+    ++failed_attempts_;
     return result;
   }
   const Stopwatch watch(stage_times_.bookkeeping);
@@ -173,6 +178,8 @@ void Simulation<N>::accept(const StepProblem<N>& problem, const StepSolution<N>&
   ledger_.kinetic = system_.kinetic_energy() - start_kinetic_energy_;
   time_ += problem.dt;
   ++step_counters_.steps;
+  if (solution.compliant) ++step_counters_.compliant;
+  failed_attempts_ = 0;
   contacts_current_ = false;
 }
 
@@ -196,10 +203,14 @@ template <int N>
 bool Simulation<N>::advance(double dt) {
   double remaining = dt, trial = dt;
   const double smallest = scene_.step.smallest_fraction * dt;
+  const double limit = part_of_limit * scene_.step.max_displacement;
   while (remaining > 0.0) {
     trial = std::min(trial, remaining);
+    // Blocks that move on as they did must not exceed the largest displacement.
+    if (last_speed_ * trial > scene_.step.max_displacement) trial = std::max(limit / last_speed_, smallest);
     const StepResult result = step(trial, scene_.method.statics);
     if (result.accepted) {
+      last_speed_ = result.moved / trial;
       // A rest below rounding is no step.
       remaining = remaining - trial > 1e-12 * dt ? remaining - trial : 0.0;
       trial *= 2.0;
@@ -251,6 +262,8 @@ void Simulation<N>::restore(const Snapshot& snapshot) {
   detector_.search(system_);
   contacts_current_ = true;
   output_velocity_ = snapshot.blocks.velocity;
+  failed_attempts_ = 0;
+  last_speed_ = 0.0;
   restart_scheme();
 }
 

@@ -15,6 +15,7 @@ struct StepCounters {
   long steps = 0;
   long cuts = 0;        ///< attempts thrown away
   long iterations = 0;  ///< linear solves, thrown-away attempts included
+  long compliant = 0;   ///< steps of `hard` whose multipliers did not converge: taken with springs
 };
 
 /// Wall time [s] of the stages; one thread.
@@ -115,6 +116,8 @@ class Simulation {
   double start_kinetic_energy_ = 0.0;  ///< [J]
   double max_penetration_ = 0.0;
   StepCounters step_counters_;
+  int failed_attempts_ = 0;   ///< since the last step that was accepted
+  double last_speed_ = 0.0;   ///< [m/s] largest displacement of the last step over its duration
   StageTimes stage_times_;
 };
 

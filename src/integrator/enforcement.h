@@ -40,6 +40,7 @@ struct StepProblem {
   bool statics = false;     ///< velocities count as zero
   double inertia = 0.0;     ///< [1/s2] see time_scheme.h
   double end_weight = 1.0;  ///< theta
+  int failed_attempts = 0;  ///< at steps from here
 
   typename Motion<N>::Unknowns velocity(int b) const {
     if (statics) return Motion<N>::Unknowns::Zero();
@@ -60,7 +61,8 @@ struct StepProblem {
 template <int N>
 struct StepSolution {
   bool converged = false;
-  std::string reason;  ///< why not
+  bool compliant = false;  ///< `hard`: taken with springs, see hard.cpp
+  std::string reason;      ///< why not converged
   int iterations = 0;  ///< linear solves
   Eigen::VectorXd d;   ///< displacement of the step, N per free block
   std::vector<ContactOutcome<N>> contacts;

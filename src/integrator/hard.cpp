@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "openclose/core/tolerance.h"
 #include "openclose/integrator/newton.h"
@@ -16,13 +17,21 @@
 namespace openclose {
 namespace {
 
-/// [-] Each outer pass reduces the error of the multipliers about by this factor; more would cost digits (rounding of the gap times the stiffness).
-/// Where Newton gets lost among the contact states, the softer ones take more passes, each of them easier.
+/// [-] Stiffness of the springs inside, in motion over the inertia. Each outer pass reduces the error of the multipliers about by this factor; more would
+/// cost digits (rounding of the gap times the stiffness). Where Newton gets lost among the contact states, the softer ones take more passes, each of
+/// them easier.
 constexpr std::array stiffness_over_inertia = {1e3, 30.0, 1.0};
+/// [-] The same over the joint's stiffness, in statics: no softer one, since the tilt of the first pass decides how redundant contacts share forces.
 constexpr double stiffness_over_joint = 10.0;
 /// [-] Units in the last place that rounding may leave in a gap.
 constexpr double rounding_units = 4.0;
 constexpr int most_outer_passes = 100;
+/// After so many failed attempts at a step it is taken with springs instead: it is in balance, but penetrates by what its forces compress them.
+constexpr int attempts_before_compliance = 2;
+/// [-] Redundant contacts whose targets exclude each other by what earlier steps tolerated leave an error that no pass reduces: a pass that keeps more
+/// than this part of the error ends the iteration if what is left is below this multiple of what is tolerated.
+constexpr double slow_convergence = 0.5;
+constexpr double incompatible_gaps = 100.0;
 
 template <int N>
 class Hard : public Enforcement<N> {
@@ -32,12 +41,20 @@ class Hard : public Enforcement<N> {
   }
 
   StepSolution<N> solve(const StepProblem<N>& problem) override {
-    StepSolution<N> solution;
+    StepSolution<N> solution, compliant;
+    double tried = -1.0;
     for (const double ratio : stiffness_over_inertia) {
-      solve(problem, ratio, solution);
-      if (solution.converged) break;
+      set_springs(problem, ratio);
+      const double total = std::accumulate(springs_.begin(), springs_.end(), 0.0, [](double sum, const ContactSprings& s) { return sum + s.normal; });
+      if (total == tried) continue;  // in statics the joint's stiffness may decide
+      tried = total;
+      solve(problem, ratio, solution, compliant);
+      if (solution.converged) return solution;
     }
-    return solution;
+    if (problem.statics || problem.failed_attempts < attempts_before_compliance || !compliant.converged) return solution;
+    compliant.iterations = solution.iterations;
+    compliant.compliant = true;
+    return compliant;
   }
 
   std::unique_ptr<TimeScheme<N>> make_time_scheme(const MethodInput& method) const override {
@@ -55,11 +72,10 @@ class Hard : public Enforcement<N> {
       if (problem.system.block(b).equation >= 0) mass = std::max(mass, problem.system.block(b).mass[0]);
     }
     const double from_inertia = ratio * problem.inertia * mass;
-    const double normal_from_joint = stiffness_over_joint * joint.normal_stiffness * contact.length;
-    const double shear_from_joint = stiffness_over_joint * joint.shear_stiffness * contact.length;
+    const double from_joint = problem.statics ? stiffness_over_joint * contact.length : 0.0;
     ContactSprings s;
-    s.normal = problem.statics ? std::max(from_inertia, normal_from_joint) : from_inertia;
-    s.shear = problem.statics ? std::max(from_inertia, shear_from_joint) : from_inertia;
+    s.normal = std::max(from_inertia, from_joint * joint.normal_stiffness);
+    s.shear = std::max(from_inertia, from_joint * joint.shear_stiffness);
     s.gap = contact.gap;
     s.target = target_gap(problem, contact);
     s.shift = contact.normal_force;
@@ -67,17 +83,27 @@ class Hard : public Enforcement<N> {
     return s;
   }
 
-  void solve(const StepProblem<N>& problem, double ratio, StepSolution<N>& solution) {
+  void set_springs(const StepProblem<N>& problem, double ratio) {
     springs_.clear();
     for (const Contact& c : problem.contacts) springs_.push_back(springs(problem, c, ratio));
+  }
+
+  /// \param compliant  the first pass that converged with the springs it had, in case that no multipliers do
+  void solve(const StepProblem<N>& problem, double ratio, StepSolution<N>& solution, StepSolution<N>& compliant) {
     // From the drift dt v: the stiff matrix costs digits of what is solved for, and these are better lost from the change of motion than from the
     // motion.
     solution.d = Eigen::VectorXd::Zero(N * problem.system.free_count());
     for (int b : problem.system.free_blocks())
       solution.d.template segment<N>(N * problem.system.block(b).equation) = problem.dt * problem.velocity(b);
+    double last_error = std::numeric_limits<double>::infinity();
     for (int pass = 0; pass < most_outer_passes; ++pass) {
-      newton_.solve(problem, springs_, solution);
-      if (!solution.converged || constraints_hold(problem, ratio, solution)) return;
+      newton_.solve(problem, springs_, solution, pass == 0 ? FirstTangent::last_step : FirstTangent::present);
+      if (!solution.converged) return;
+      if (!compliant.converged) compliant = solution;
+      const double error = constraint_error(problem, ratio, solution);
+      const bool stagnates = error > slow_convergence * last_error;
+      if (error <= 1.0 || (stagnates && error <= incompatible_gaps)) return;
+      last_error = error;
       for (std::size_t c = 0; c < springs_.size(); ++c) {
         springs_[c].shift = solution.contacts[c].forces.normal;
         springs_[c].initial_shear = solution.contacts[c].forces.shear;
@@ -95,19 +121,22 @@ class Hard : public Enforcement<N> {
     return std::min(0.0, contact.gap + tolerance::hard_recovery_m_per_s * problem.dt);
   }
 
-  /// Gaps of closed contacts at their targets, sticking ones in place, both in metres and as the error of inertia force they leave.
-  bool constraints_hold(const StepProblem<N>& problem, double ratio, const StepSolution<N>& solution) const {
+  /// Largest error over what is tolerated: gaps of closed contacts at their targets, sticking ones in place, both in metres and as the error of
+  /// inertia force they leave.
+  double constraint_error(const StepProblem<N>& problem, double ratio, const StepSolution<N>& solution) const {
+    double worst = 0.0;
     for (std::size_t c = 0; c < springs_.size(); ++c) {
       const ContactOutcome<N>& o = solution.contacts[c];
       if (o.forces.status == ContactStatus::open) continue;
       double error = std::abs((o.springs.gap - o.springs.target) + o.kinematics.gap_change);
       if (o.forces.status == ContactStatus::sticking) error = std::max(error, std::abs(o.kinematics.slip_change));
-      const double inertia_force = error * o.springs.normal / ratio;
-      const double tolerated = problem.method.residual_tolerance * newton_.force_scale();
+      worst = std::max(worst, error / tolerance::hard_gap_m);
+      if (problem.statics) continue;
       const bool rounding = error <= rounding_units * std::numeric_limits<double>::epsilon() * coordinates(problem, solution, problem.contacts[c]);
-      if (error > tolerance::hard_gap_m || (!problem.statics && inertia_force > tolerated && !rounding)) return false;
+      const double tolerated = problem.method.residual_tolerance * newton_.force_scale();
+      if (!rounding) worst = std::max(worst, error * o.springs.normal / ratio / tolerated);
     }
-    return true;
+    return worst;
   }
 
   /// [m] the coordinates and displacements of which a gap is the small difference; two contacts at one place differ by their rounding.

@@ -5,7 +5,6 @@
 #include <functional>
 #include <limits>
 #include <numeric>
-#include <set>
 
 #include "openclose/core/tolerance.h"
 
@@ -23,14 +22,12 @@ constexpr double line_search_slope = 0.9;
 constexpr int line_search_steps = 8;
 /// Sliding contacts are on this branch of their law or, the other way, on minus it.
 constexpr int sliding_branch = static_cast<int>(ContactStatus::sliding);
-/// [-] The residual may grow to this multiple of the smallest one so far in a step of the exact tangent that reaches contact states not seen before,
-/// if no more contacts than these change (or few_switches of all).
-constexpr double longest_detour = 10.0;
-constexpr int end_game = 16;
 /// [-] Backtracking along the exact step: decrease of the residual asked for, as a part of what the linear model promises, and the shortest part of
 /// the step worth taking (6 halvings; below, the symmetric tangent gets on better).
 constexpr double sufficient_decrease = 0.1;
 constexpr double shortest_backtrack = 0.01;
+/// After so many refusals of the exact step without gain the symmetric steps in between get shorter, so that the two do not go round in a circle.
+constexpr int patience = 1;
 
 int differences(const std::vector<int>& a, const std::vector<int>& b) {
   return std::inner_product(a.begin(), a.end(), b.begin(), 0, std::plus<>(), std::not_equal_to<>());
@@ -265,7 +262,7 @@ void Newton<N>::take_last_states() {
 }
 
 template <int N>
-void Newton<N>::solve(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs, StepSolution<N>& solution) {
+void Newton<N>::solve(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs, StepSolution<N>& solution, FirstTangent first) {
   prepare(problem, springs);
   Eigen::VectorXd& d = solution.d;
   if (problem.end_weight < 1.0) {
@@ -274,10 +271,10 @@ void Newton<N>::solve(const StepProblem<N>& problem, const std::vector<ContactSp
   }
   evaluate(d);
   double norm = residual_norm();
-  if (norm > 1.0) take_last_states();
+  if (norm > 1.0 && first == FirstTangent::last_step) take_last_states();
 
   Tangent tangent = Tangent::exact;
-  std::set<std::vector<int>> visited;
+  int refusals = 0;  // of the exact step since the residual was at its smallest
   double best = norm;
   const int few = static_cast<int>(few_switches * static_cast<double>(outcome_.size()));
   for (int iteration = 0; iteration < problem.method.max_iterations && norm > 1.0; ++iteration) {
@@ -291,33 +288,33 @@ void Newton<N>::solve(const StepProblem<N>& problem, const std::vector<ContactSp
     const double slope = residual_.dot(step);
     double alpha = 1.0;
     if (tangent == Tangent::symmetric && slope > 0.0) {
-      alpha = line_search(d, step, slope);
+      alpha = line_search(d, step, slope) / static_cast<double>(std::max(1, refusals - patience));
+      if (refusals > patience + 1) evaluate(d + alpha * step);
     } else {
       evaluate(d + step);
     }
     double next_norm = residual_norm();
     std::vector<int> after = branches();
     int switches = differences(before, after);
-    // On a piecewise linear law the way to the right piece may lead uphill, but not while many contacts change, and never twice over the same piece.
-    best = std::min(best, norm);
-    const bool uphill = tangent == Tangent::exact && iteration > 0 && next_norm > norm;
-    const bool detour = switches <= std::max(few, end_game) && next_norm <= longest_detour * best;
-    if (uphill && !(detour && visited.insert(after).second)) {
+    if (tangent == Tangent::exact && iteration > 0 && next_norm > norm) {
       alpha = backtrack(d, step, norm);
       if (alpha == 0.0) {
         evaluate(d);
         tangent = Tangent::symmetric;
+        ++refusals;
         continue;
       }
       next_norm = residual_norm();
       after = branches();
       switches = differences(before, after);
     }
+    if (next_norm < best) refusals = 0;
+    best = std::min(best, next_norm);
     const bool halved = next_norm <= 0.5 * norm;
     d += alpha * step;
     norm = next_norm;
     const bool held = !halved && hold_reversed(before, after) > 0;
-    const bool exact_works = held || uphill || switches <= few || (tangent == Tangent::exact && halved);
+    const bool exact_works = held || switches <= few || (tangent == Tangent::exact && halved);
     tangent = exact_works ? Tangent::exact : Tangent::symmetric;
   }
   solution.converged = norm <= 1.0;

@@ -8,13 +8,20 @@
 
 namespace openclose {
 
+/// Which contact states the first tangent is made of.
+enum class FirstTangent {
+  last_step,  ///< those of the last step: contacts in their old places do what they did
+  present,    ///< those of the displacement that the iteration starts from
+};
+
 template <int N>
 class Newton {
  public:
   using Unknowns = typename Motion<N>::Unknowns;
 
   /// Solves for solution.d, starting from the value it has; fills its contacts. iterations is added to.
-  void solve(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs, StepSolution<N>& solution);
+  void solve(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs, StepSolution<N>& solution,
+             FirstTangent first = FirstTangent::last_step);
 
   /// Minus the derivative of all forces but inertia by the unknowns, at the start of the step, contacts in the status they have. Rows and columns of
   /// locked rotations are those of the unit matrix.

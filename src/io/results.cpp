@@ -182,6 +182,7 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
   j["max_penetration_m"] = summary.max_penetration;
   j["counters"] = {{"steps", steps.steps},
                    {"steps_cut", steps.cuts},
+                   {"compliant_steps", steps.compliant},
                    {"iterations", steps.iterations},
                    {"searches", detection.searches},
                    {"searches_skipped", detection.searches_skipped},
