@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 
 namespace openclose::analytical {
@@ -234,35 +235,84 @@ class Search {
 constexpr double memory_of_normal_force = 0.4;  // [-] share of the normal forces of the repetition before the last
 constexpr double fading = 0.6;                  // [-] of the dependence on n, from one repetition to the next
 constexpr double faded = 1e-3;                  // [-] below which it is zero
+constexpr double bracket_ratio_nearby = 1.01;   // between the factors tried first in a repetition
+constexpr double slowest_slip = 1e-6;           // [m/s] where the fastest vertex has 1 m/s; above the tolerance of the program
 constexpr int most_repetitions = 100;
 constexpr int repetitions_that_agree = 3;
 
-/// Repeats with strengths that depend less and less on the present normal forces.
-LimitState with_zero_dilatancy(const RigidBlockAssembly& assembly, Search& search, const LimitAnalysisOptions& options, LimitState state) {
-  const std::vector<Envelope> coulomb = coulomb_envelopes(assembly);
-  std::vector<Envelope> envelopes = coulomb;
-  std::vector<double> normal(coulomb.size());
-  double dependence = 1;
-  int agreeing = 0;
-  for (int repetition = 1; repetition <= most_repetitions; ++repetition) {
-    dependence = dependence > faded ? dependence * fading : 0;
-    for (std::size_t p = 0; p < coulomb.size(); ++p) {
-      const double last = state.forces[p / 2][p % 2].normal;
-      normal[p] = repetition == 1 ? last : memory_of_normal_force * normal[p] + (1 - memory_of_normal_force) * last;
-      envelopes[p].slope = dependence * coulomb[p].slope;
-      envelopes[p].constant = std::max(0.0, coulomb[p].constant + (1 - dependence) * coulomb[p].slope * normal[p]);
-    }
-    LimitState next = search.run(envelopes, state.factor, 1.01);
-    if (!next.found) return next;
-    agreeing = dependence == 0 && std::abs(next.factor - state.factor) <= 2 * options.width ? agreeing + 1 : 0;
-    state = std::move(next);
-    state.repetitions = repetition;
-    if (agreeing == repetitions_that_agree) return state;
+double excess_over(const RigidBlockAssembly& assembly, const std::vector<Envelope>& coulomb, const LimitState& state) {
+  double worst = 0, heaviest = 0;
+  for (const RigidBlock& block : assembly.blocks) heaviest = std::max(heaviest, block.fixed ? 0 : block.load.head<2>().norm());
+  for (std::size_t p = 0; p < coulomb.size(); ++p) {
+    const EndForce& force = state.forces[p / 2][p % 2];
+    worst = std::max(worst, std::abs(force.shear) - (coulomb[p].constant + coulomb[p].slope * force.normal) / state.factor);
   }
-  state.found = false;
-  state.reason = "the repetitions of zero dilatancy do not converge";
-  return state;
+  return worst / heaviest;
 }
+
+/// Repeats with strengths that depend less and less on the present normal forces, at every end that slips in the mechanism of any repetition. The
+/// others keep their own strength: where blocks stand, forces are not determined, and those of one repetition say nothing about the next.
+class ConstantVolume {
+ public:
+  ConstantVolume(const RigidBlockAssembly& assembly, Search& search, const LimitAnalysisOptions& options)
+      : assembly_(assembly),
+        search_(search),
+        options_(options),
+        coulomb_(coulomb_envelopes(assembly)),
+        envelopes_(coulomb_),
+        normal_(coulomb_.size()) {}
+
+  /// \param state  with the strengths as they are
+  LimitState run(LimitState state) {
+    double dependence = 1;
+    int agreeing = 0;
+    for (int repetition = 1; repetition <= most_repetitions; ++repetition) {
+      dependence = dependence > faded ? dependence * fading : 0;
+      const bool same_ends = !take_up(state, dependence);
+      LimitState next = search_.run(envelopes_, state.factor, bracket_ratio_nearby);
+      if (!next.found) return next;
+      next.excess = excess_over(assembly_, coulomb_, next);
+      const bool agrees =
+          dependence == 0 && same_ends && next.excess <= options_.excess && std::abs(next.factor - state.factor) <= 2 * options_.width;
+      agreeing = agrees ? agreeing + 1 : 0;
+      state = std::move(next);
+      state.repetitions = repetition;
+      if (agreeing == repetitions_that_agree) return state;
+    }
+    state.found = false;
+    state.reason = "the repetitions of zero dilatancy do not converge";
+    return state;
+  }
+
+ private:
+  /// True if an end slips that has not slipped before.
+  bool take_up(const LimitState& state, double dependence) {
+    bool another = false;
+    for (std::size_t p = 0; p < coulomb_.size(); ++p) {
+      const double present = state.forces[p / 2][p % 2].normal;
+      if (!normal_[p] && slips(assembly_.interfaces[p / 2], p % 2, state)) {
+        another = true;
+        normal_[p] = present;
+      }
+      if (!normal_[p]) continue;
+      normal_[p] = memory_of_normal_force * *normal_[p] + (1 - memory_of_normal_force) * present;
+      envelopes_[p].slope = dependence * coulomb_[p].slope;
+      envelopes_[p].constant = std::max(0.0, coulomb_[p].constant + (1 - dependence) * coulomb_[p].slope * *normal_[p]);
+    }
+    return another;
+  }
+
+  bool slips(const Interface& i, std::size_t end, const LimitState& state) const {
+    const auto velocity = [&](int block) { return velocity_at(assembly_.blocks[block], state.mechanism[block], i.ends[end]); };
+    return std::abs((velocity(i.a) - velocity(i.b)).dot(i.tangent())) > slowest_slip;
+  }
+
+  const RigidBlockAssembly& assembly_;
+  Search& search_;
+  const LimitAnalysisOptions& options_;
+  std::vector<Envelope> coulomb_, envelopes_;
+  std::vector<std::optional<double>> normal_;  // [N] n' of each end that has slipped
+};
 
 }  // namespace
 
@@ -271,7 +321,7 @@ LimitState limit_analysis(const RigidBlockAssembly& assembly, const LimitAnalysi
   Search search(program, options);
   LimitState state = search.run(coulomb_envelopes(assembly), 1.0, bracket_ratio);
   if (!options.zero_dilatancy || !state.found) return state;
-  return with_zero_dilatancy(assembly, search, options, std::move(state));
+  return ConstantVolume(assembly, search, options).run(std::move(state));
 }
 
 CriticalFriction critical_friction(RigidBlockAssembly assembly, const LimitAnalysisOptions& options) {

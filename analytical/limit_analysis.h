@@ -8,9 +8,10 @@
 // work).
 //
 // Sliding opens the interfaces then at the friction angle (associated flow), which no real joint does: the factor is an upper bound of the one with
-// sliding at constant volume. For this, zero_dilatancy repeats the analysis with strengths that do not depend on n, c L/2 + n' tan(phi), n' being the
-// normal forces of the repetition before, until the factor stands (Gilbert, Casapulla & Ahmed, Comput. Struct. 84, 2006); there the dependence on n
-// fades out from repetition to repetition, so that the forces can follow.
+// sliding at constant volume. For this, zero_dilatancy repeats the analysis with strengths that do not depend on n, c L/2 + n' tan(phi), wherever an
+// interface slips, n' being the normal force of the repetition before, until factor and forces stand (Gilbert, Casapulla & Ahmed, Comput. Struct. 84,
+// 2006, who do so everywhere). There the dependence on n fades out from repetition to repetition, so that the forces can follow. What comes out is one
+// such state; without dilatancy it need not be the only one.
 //
 // Valid for blocks that meet along edges. Forces on corners that touch edges at an angle are not part of it.
 #pragma once
@@ -25,6 +26,7 @@ namespace openclose::analytical {
 
 struct LimitAnalysisOptions {
   double width = 1e-5;          // [-] of the bracket of F
+  double excess = 1e-4;         // [-] see LimitState; larger ones ask for another repetition
   double upper_limit = 1000;    // [-] stable beyond: no factor
   bool zero_dilatancy = false;  // sliding at constant volume
 };
@@ -47,7 +49,8 @@ struct LimitState {
   std::vector<std::array<EndForce, 2>> forces;  // at `factor`, for each interface and end
   std::vector<BlockVelocity> mechanism;         // at `failed`, for each block; the fastest vertex has 1 m/s
   int repetitions = 0;                          // of zero dilatancy
-  int programs = 0;                             // linear programs solved
+  double excess = 0;  // [-] of the shear forces over the strength that belongs to n itself, in weights of the heaviest block
+  int programs = 0;   // linear programs solved
 };
 
 /// \throws std::invalid_argument if no block is free, or a free one has no weight; std::runtime_error if a program is not solved

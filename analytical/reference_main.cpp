@@ -170,6 +170,7 @@ void print_limit(const LimitOptions& o) {
   row("interfaces", static_cast<double>(assembly.interfaces.size()));
   row("linear_programs", state.programs);
   row("repetitions", state.repetitions);
+  row("excess", state.excess);
   if (!o.mechanism.empty()) write_mechanism(o.mechanism, assembly, state);
 }
 
