@@ -123,10 +123,12 @@ class NarrowPhase {
   void add_end(int block_a, int va, int a, int block_b, int vb, int b, bool a_is_inside, double beyond, double length) {
     const bool inside_is_reflex = system_.is_reflex(a_is_inside ? va : vb);
     if (inside_is_reflex && beyond > seam(va, vb)) return;
+    // The two corners take turns: a joint that has closed under one of them is closed for the other.
+    const bool closed = previous_.was_closed(va, b) || previous_.was_closed(vb, a);
     if (a_is_inside != inside_is_reflex) {
-      add(block_a, va, block_b, b, length);
+      add(block_a, va, block_b, b, length, closed);
     } else {
-      add(block_b, vb, block_a, a, length);
+      add(block_b, vb, block_a, a, length, closed);
     }
   }
 
@@ -147,12 +149,14 @@ class NarrowPhase {
             std::max(parallel_weight(-ahead.normalized().dot(edge.direction)), parallel_weight(back.normalized().dot(edge.direction)));
         if (weight == 1.0) return;
         const auto projection = [&](const Vec2& side) { return std::min(std::abs(side.dot(edge.direction)), edge.length); };
-        add(vertex_block, v, edge_block, e, 0.5 * (1.0 - weight) * (projection(ahead) + projection(back)));
+        const double length = 0.5 * (1.0 - weight) * (projection(ahead) + projection(back));
+        add(vertex_block, v, edge_block, e, length, previous_.was_closed(v, e));
       });
     });
   }
 
-  void add(int vertex_block, int v, int edge_block, int e, double length) {
+  /// \param closed  whether this place was in contact already
+  void add(int vertex_block, int v, int edge_block, int e, double length, bool closed) {
     if (system_.is_reflex(v)) return;
     for (std::size_t i = first_; i < found_->size(); ++i) {
       Contact& known = (*found_)[i];
@@ -165,7 +169,7 @@ class NarrowPhase {
     const Vec2 p = system_.position(vertex_block, v);
     const double gap = edge.gap(p);
     if (gap > reach_ || !outside(v, edge)) return;
-    if (gap < 0.0 && !entered_through(v, p, edge_block, e, gap)) return;
+    if (gap < 0.0 && !entered_through(v, p, edge_block, e, gap, closed)) return;
     Contact contact;
     contact.vertex_block = vertex_block;
     contact.vertex = v;
@@ -224,9 +228,9 @@ class NarrowPhase {
 
   /// A penetrating corner touches the edge it came in through: no other edge that it could touch is nearer. Only in a notch does it touch both walls.
   /// History decides nothing here: beside a four-block corner a corner is first behind the joint's face, then, as it slides on, behind the right one.
-  bool entered_through(int v, const Vec2& p, int edge_block, int e, double gap) {
+  bool entered_through(int v, const Vec2& p, int edge_block, int e, double gap, bool closed) {
     // What lies behind the edge must lie in the block, except for what drawings leave and what contacts that carry load have closed.
-    if (-gap > tolerance::deepest_initial_overlap_m && !previous_.was_closed(v, e) && !in_block(edge_block, p)) return false;
+    if (-gap > tolerance::deepest_initial_overlap_m && !closed && !in_block(edge_block, p)) return false;
     bool nearest = true;
     for_each_vertex(edge_block, [&](int f) {
       if (f == e || share_reflex_corner(e, f)) return;

@@ -87,7 +87,7 @@ std::unique_ptr<LinearSolver<N>> make_sparse_solver() {
 
 template <int N>
 std::unique_ptr<LinearSolver<N>> make_solver(int blocks) {
-  return blocks <= largest_dense_system_blocks ? make_dense_solver<N>() : make_sparse_solver<N>();
+  return blocks <= largest_dense_system_blocks ? make_dense_solver<N>() : make_block_solver<N>();
 }
 
 template std::unique_ptr<LinearSolver<3>> make_dense_solver<3>();

@@ -12,6 +12,7 @@ struct LinearCounters {
   long symbolic_skipped = 0;  ///< factorisations on a known pattern
   long factorisations = 0;
   long solves = 0;
+  long plain = 0;  ///< factorisations that the block solver had to give to the plain one
 };
 
 template <int N>
@@ -31,9 +32,13 @@ class LinearSolver {
 template <int N>
 std::unique_ptr<LinearSolver<N>> make_dense_solver();
 
-/// Eigen's sparse LU with column ordering: the plain reference for larger systems.
+/// Eigen's sparse LU with column ordering and exchange of rows: the plain reference for larger systems.
 template <int N>
 std::unique_ptr<LinearSolver<N>> make_sparse_solver();
+
+/// LU of the blocks, without exchange between them, in an order of little fill; goes over to the plain one where a pivot has lost its digits.
+template <int N>
+std::unique_ptr<LinearSolver<N>> make_block_solver();
 
 /// The solver for a system of this many blocks.
 template <int N>
