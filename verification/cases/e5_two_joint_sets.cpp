@@ -1,5 +1,5 @@
 // E5: the paper's example 3.4, 482 blocks, with cohesion that stays and cohesion that is lost.
-#include <algorithm>
+#include <string>
 
 #include "harness.h"
 #include "openclose/scene/reader.h"
@@ -36,7 +36,7 @@ void two_joint_sets(Report& report) {
       const double factor = strength_reduction_factor(report, scene);
       const std::string quantity = std::string("cohesion ") + b.name + ": factor of safety";
       report.between(quantity, method, b.low - code_to_code, b.high + code_to_code, factor, "-", "an explicit distinct-element code");
-      report.near(quantity + " above the limit analysis", method, 0.0, std::max(0.0, factor - limit.factor), above_limit, "-", "limit analysis");
+      report.near(quantity + " above the limit analysis", method, 0.0, exceedance(factor, limit.factor), above_limit, "-", "limit analysis");
     }
   }
 }

@@ -1,5 +1,4 @@
 // E6: the smallest friction angle at which slopes of two joint sets stand without cohesion, by strength reduction and by limit analysis.
-#include <algorithm>
 #include <cmath>
 
 #include "harness.h"
@@ -15,7 +14,8 @@ struct Slope {
   const char* file;
   const char* name;
   /// What slides on planes does so with the normal forces that equilibrium gives. Between columns that turn together equilibrium leaves them open:
-  /// limit analysis chooses those that hold best, springs choose others, and without dilatancy both are right.
+  /// limit analysis chooses those that hold best, springs choose others (with ks/kn from 0.1 to 10 the columns here fall at 21.7 to 21.3 degrees, the
+  /// limit is 21.0), and without dilatancy all are right.
   bool forces_determined;
 };
 constexpr Slope slopes[] = {{"slope_face_50_joints_5_50", "face 50, joints 5 and 50 deg", true},
@@ -42,9 +42,7 @@ void critical_friction(Report& report) {
       if (slope.forces_determined) {
         report.near(name + ": critical friction angle", method, expected, angle, tolerance_deg, "deg", "limit analysis");
       } else {
-        // NaN stays NaN: max() would turn a factor that was not found into a pass.
-        const double below = angle < expected ? expected - angle : 0.0 * angle;
-        report.near(name + ": critical friction angle below the limit", method, 0.0, below, tolerance_deg, "deg",
+        report.near(name + ": critical friction angle below the limit", method, 0.0, exceedance(expected, angle), tolerance_deg, "deg",
                     "limit analysis: " + text("{:.4g} deg", expected));
       }
     }
