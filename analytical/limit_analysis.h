@@ -9,9 +9,9 @@
 //
 // Sliding opens the interfaces then at the friction angle (associated flow), which no real joint does: the factor is an upper bound of the one with
 // sliding at constant volume. For this, zero_dilatancy repeats the analysis with strengths that do not depend on n, c L/2 + n' tan(phi), wherever an
-// interface slips, n' being the normal force of the repetition before, until factor and forces stand (Gilbert, Casapulla & Ahmed, Comput. Struct. 84,
-// 2006, who do so everywhere). There the dependence on n fades out from repetition to repetition, so that the forces can follow. What comes out is one
-// such state; without dilatancy it need not be the only one.
+// interface slips, n' being the normal force of the repetition before, until factor and forces stand (Gilbert, Casapulla & Ahmed, Comput. Struct.
+// 84, 2006, who do so everywhere). There the dependence on n fades out from repetition to repetition, so that the forces can follow. What comes out
+// is one such state; without dilatancy it need not be the only one.
 //
 // Valid for blocks that meet along edges. Forces on corners that touch edges at an angle are not part of it.
 #pragma once
