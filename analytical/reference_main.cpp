@@ -1,13 +1,16 @@
-// openclose-reference: the reference solutions as CSV on stdout, for figures. Exit 0, or 2 with one message for bad options.
+// openclose-reference: the reference solutions as CSV on stdout, for figures. Exit 0, or 2 with one message for bad options or input.
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
 #include <exception>
+#include <fstream>
 #include <iostream>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
 #include "openclose/analytical/incline.h"
+#include "openclose/analytical/limit_analysis.h"
 #include "openclose/analytical/planar_wedge.h"
 #include "openclose/analytical/sliding_block_reference.h"
 
@@ -34,6 +37,14 @@ struct WedgeOptions {
   double plane_deg = 35;
   double friction_deg = 40;
   PlanarWedge wedge;
+};
+
+struct LimitOptions {
+  std::string blocks;
+  std::optional<double> friction_deg, cohesion;
+  bool critical_friction = false;
+  std::string mechanism;  // file
+  LimitAnalysisOptions analysis;
 };
 
 CLI::App* add_incline(CLI::App& app, InclineOptions& o) {
@@ -63,6 +74,19 @@ CLI::App* add_wedge(CLI::App& app, WedgeOptions& o) {
   command->add_option("--cohesion", o.wedge.cohesion, "Pa")->capture_default_str();
   command->add_option("--phi-deg", o.friction_deg, "friction angle")->capture_default_str();
   command->add_option("--unit-weight", o.wedge.unit_weight, "N/m3")->capture_default_str();
+  return command;
+}
+
+CLI::App* add_limit(CLI::App& app, LimitOptions& o) {
+  CLI::App* command =
+      app.add_subcommand("limit-analysis", "factor of safety of rigid blocks: the largest for which equilibrium within the strength exists");
+  command->add_option("blocks", o.blocks, "file of blocks that `openclose cut` wrote")->required();
+  command->add_option("--friction-angle-deg", o.friction_deg, "instead of every joint's own")->check(CLI::Range(0.0, 89.999));
+  command->add_option("--cohesion-pa", o.cohesion, "instead of every joint's own")->check(CLI::NonNegativeNumber);
+  command->add_flag("--zero-dilatancy", o.analysis.zero_dilatancy, "slide at constant volume instead of opening at the friction angle");
+  command->add_flag("--critical-friction", o.critical_friction, "the smallest friction angle that stands without cohesion and tensile strength");
+  command->add_option("--mechanism", o.mechanism, "file for the velocities at failure, CSV");
+  command->add_option("--width", o.analysis.width, "of the bracket of the factor")->check(CLI::Range(1e-8, 1.0))->capture_default_str();
   return command;
 }
 
@@ -109,6 +133,47 @@ void print_wedge(WedgeOptions o) {
   row("crest_y_m", vertices[2][1]);
 }
 
+void write_mechanism(const std::string& path, const RigidBlockAssembly& assembly, const LimitState& state) {
+  std::ofstream file(path);
+  file.precision(17);
+  file << "block,vertex,x_m,y_m,velocity_x_m_per_s,velocity_y_m_per_s\n";
+  for (std::size_t b = 0; b < state.mechanism.size(); ++b) {
+    const RigidBlock& block = assembly.blocks[b];
+    for (std::size_t i = 0; i < block.vertices.size(); ++i) {
+      const Point& vertex = block.vertices[i];
+      const Point velocity = velocity_at(block, state.mechanism[b], vertex);
+      file << block.name << ',' << i << ',' << vertex.x() << ',' << vertex.y() << ',' << velocity.x() << ',' << velocity.y() << '\n';
+    }
+  }
+  if (!file) throw std::runtime_error("cannot write " + path);
+}
+
+void print_limit(const LimitOptions& o) {
+  RigidBlockAssembly assembly = read_rigid_blocks(o.blocks);
+  for (Interface& i : assembly.interfaces) {
+    if (o.friction_deg) i.strength.friction = std::tan(*o.friction_deg * degree);
+    if (o.cohesion) i.strength.cohesion = *o.cohesion;
+  }
+  CriticalFriction critical;
+  if (o.critical_friction) critical = critical_friction(assembly, o.analysis);
+  const LimitState state = o.critical_friction ? critical.state : limit_analysis(assembly, o.analysis);
+  if (!state.found) throw std::runtime_error(state.reason);
+  std::puts("quantity,value");
+  const auto row = [](const char* quantity, double value) { std::printf("%s,%.17g\n", quantity, value); };
+  if (o.critical_friction) {
+    row("critical_friction_angle_deg", critical.angle / degree);
+  } else {
+    row("factor_of_safety", state.factor);
+    row("smallest_failed_factor", state.failed);
+  }
+  row("blocks", static_cast<double>(assembly.blocks.size()));
+  row("interfaces", static_cast<double>(assembly.interfaces.size()));
+  row("linear_programs", state.programs);
+  row("repetitions", state.repetitions);
+  row("excess", state.excess);
+  if (!o.mechanism.empty()) write_mechanism(o.mechanism, assembly, state);
+}
+
 int complain(const char* message) {
   std::cerr << "openclose-reference: " << message << '\n';
   return exit_bad_options;
@@ -121,14 +186,18 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   InclineOptions incline_options;
   WedgeOptions wedge_options;
+  LimitOptions limit_options;
   const CLI::App* incline = add_incline(app, incline_options);
-  add_wedge(app, wedge_options);
+  const CLI::App* wedge = add_wedge(app, wedge_options);
+  add_limit(app, limit_options);
   try {
     app.parse(argc, argv);
     if (incline->parsed()) {
       print_incline(incline_options);
-    } else {
+    } else if (wedge->parsed()) {
       print_wedge(wedge_options);
+    } else {
+      print_limit(limit_options);
     }
   } catch (const CLI::ParseError& error) {
     return error.get_exit_code() == 0 ? app.exit(error) : complain(error.what());

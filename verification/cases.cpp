@@ -13,7 +13,10 @@ void stopping(Report&);
 void amplification(Report&);
 void small_vibration(Report&);
 void planar_wedge(Report&);
+void parallel_planes(Report&);
+void two_joint_sets(Report&);
 void four_block_corner(Report&);
+void critical_friction(Report&);
 
 const std::vector<Case>& cases() {
   static const std::vector<Case> list = {
@@ -28,7 +31,10 @@ const std::vector<Case>& cases() {
       {"D1", "amplification matrix of one block on a spring", &amplification},
       {"D3", "small vibration of a block on two springs", &small_vibration},
       {"E1", "planar wedge", &planar_wedge},
+      {"E3", "plane failure on parallel joints", &parallel_planes},
+      {"E5", "slope with two joint sets", &two_joint_sets},
       {"E6", "four blocks that meet in one corner", &four_block_corner},
+      {"E6", "critical friction angle of jointed slopes", &critical_friction},
   };
   return list;
 }

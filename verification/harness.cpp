@@ -103,6 +103,10 @@ double not_measured() {
   return std::numeric_limits<double>::quiet_NaN();
 }
 
+double exceedance(double measured, double bound) {
+  return measured <= bound ? 0.0 : measured - bound;
+}
+
 std::string text(const char* format, double value) {
   return fmt::format(fmt::runtime(format), value);
 }

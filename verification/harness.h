@@ -85,6 +85,9 @@ std::vector<Sample> history(RigidSimulation& simulation);
 /// NaN, for a measurement whose conditions were not met.
 double not_measured();
 
+/// By how much a measurement exceeds a bound: 0 up to it, and NaN for NaN, which max() would turn into 0.
+double exceedance(double measured, double bound);
+
 std::string text(const char* format, double value);
 
 }  // namespace openclose::verification

@@ -2,6 +2,9 @@
 
 #include <cmath>
 
+#include "openclose/analysis/strength_reduction.h"
+#include "openclose/scene/writer.h"
+
 namespace openclose::verification {
 namespace {
 
@@ -69,6 +72,16 @@ void use_joint_springs_as_penalty(Scene& scene, const analytical::BlockOnPlane& 
   scene.method.penalty = scene.joints[0].normal_stiffness;
   scene.method.penalty_shear_ratio = data.shear_stiffness / data.normal_stiffness;
   scene.method.penetration_tolerance = 1.0;
+}
+
+double strength_reduction_factor(const Report& report, const Scene& scene) {
+  RigidSimulation simulation = report.simulate(scene);
+  const auto result = factor_of_safety<unknowns>(simulation);
+  return result.found ? result.stable : not_measured();
+}
+
+analytical::LimitState limit_state(const Scene& scene) {
+  return analytical::limit_analysis(analytical::parse_rigid_blocks(write_scene(scene)));
 }
 
 }  // namespace openclose::verification

@@ -5,12 +5,16 @@
 #include <string>
 #include <vector>
 
+#include "harness.h"
 #include "openclose/analytical/block_on_plane.h"
+#include "openclose/analytical/limit_analysis.h"
 #include "openclose/scene/scene.h"
 
 namespace openclose::verification {
 
 inline const std::array<std::string, 3> all_methods = {"soft", "hard", "shi"};
+/// Those that find factors of safety of slopes with many blocks.
+inline const std::array<std::string, 2> slope_methods = {"soft", "hard"};
 
 /// One material "rock", gravity 9.81 downwards, joint without cohesion as the block's; `unloaded` start; no blocks yet.
 Scene empty_scene(const analytical::BlockOnPlane& data = {});
@@ -31,5 +35,11 @@ double off_plane(const analytical::BlockOnPlane& data, const Vec2& displacement)
 
 /// `shi` with the joint's own springs as penalties, so that soft-contact references hold for it too.
 void use_joint_springs_as_penalty(Scene& scene, const analytical::BlockOnPlane& data);
+
+/// The factor of safety by strength reduction; NaN if none was found.
+double strength_reduction_factor(const Report& report, const Scene& scene);
+
+/// Limit analysis of a scene's blocks, handed over as the text of their file.
+analytical::LimitState limit_state(const Scene& scene);
 
 }  // namespace openclose::verification
