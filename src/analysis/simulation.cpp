@@ -184,9 +184,9 @@ void Simulation<N>::accept_contacts(const StepSolution<N>& solution) {
     c.status = o.forces.status;
     c.normal_force = o.forces.normal;
     c.shear_force = o.forces.shear;
-    c.elastic_slip = -o.forces.shear / o.springs.shear;
+    c.elastic_slip = -o.forces.elastic_shear / o.springs.shear;
     c.gap = o.springs.gap + o.kinematics.gap_change;
-    c.stored_energy = enforcement_->has_elastic_contacts() ? stored_energy(o.springs, o.forces.normal, o.forces.shear) : 0.0;
+    c.stored_energy = enforcement_->has_elastic_contacts() ? stored_energy(o.springs, o.forces.elastic_normal, o.forces.elastic_shear) : 0.0;
     if (c.status != ContactStatus::open) max_penetration_ = std::max(max_penetration_, -c.gap);
   }
 }

@@ -90,6 +90,17 @@ class Enforcement {
   virtual const LinearCounters& linear_counters() const = 0;
 };
 
+/// Gives the springs the joint's dashpots for this step. They resist the mean velocity d/dt of the step with their whole force: what enters the
+/// equation of motion with weight theta is divided by it, and the force at the start is the springs' alone. Pseudo-time has no velocities.
+template <int N>
+void add_dashpots(const StepProblem<N>& problem, const Contact& contact, ContactSprings& springs) {
+  const JointProperties& joint = problem.joints.joint(contact.joint);
+  if (joint.damping_ratio == 0.0 || problem.statics) return;
+  const ContactDashpots dashpots(joint, contact.length, problem.system.reduced_mass(contact.vertex_block, contact.edge_block));
+  springs.normal_damping = dashpots.normal / (problem.end_weight * problem.dt);
+  springs.shear_damping = dashpots.shear / (problem.end_weight * problem.dt);
+}
+
 /// For enforcements with a time scheme of their own: throws InputError unless theta has its default of 1.
 inline void require_default_theta(const MethodInput& method) {
   if (method.theta == 1.0) return;

@@ -16,6 +16,7 @@ class Soft : public Enforcement<N> {
     s.gap = contact.gap;
     // The memory is the stretch of the spring, not its force: when the tributary length changes, strength and force change alike.
     s.initial_shear = -s.shear * contact.elastic_slip;
+    add_dashpots(problem, contact, s);
     return s;
   }
 

@@ -21,19 +21,33 @@ ContactStrength::ShearBound ContactStrength::shear_bound(double n) const {
   return {std::max(0.0, full), full > 0.0 ? friction : 0.0};
 }
 
+ContactDashpots::ContactDashpots(const JointProperties& joint, double length, double reduced_mass)
+    : normal(2.0 * joint.damping_ratio * std::sqrt(joint.normal_stiffness * length * reduced_mass)),
+      shear(2.0 * joint.damping_ratio * std::sqrt(joint.shear_stiffness * length * reduced_mass)) {}
+
+double viscous_normal(const ContactSprings& springs, const ContactStrength& strength, double gap_change) {
+  const double opening = springs.target + (springs.shift + strength.tension) / springs.normal;
+  return -springs.normal_damping * (std::max(0.0, springs.gap - opening) + gap_change);
+}
+
 ContactForces spring_slider(const ContactSprings& springs, const ContactStrength& strength, double gap_change, double slip_change) {
   ContactForces f;
   const double n = springs.shift - springs.normal * ((springs.gap - springs.target) + gap_change);
   const bool open = strength.tension > 0.0 ? n < -strength.tension : n <= 0.0;
   if (open) return f;
-  f.normal = n;
-  f.normal_by_gap = -springs.normal;
-  const double trial = springs.initial_shear - springs.shear * slip_change;
-  const auto bound = strength.shear_bound(n);
+  const double with_dashpot = n + viscous_normal(springs, strength, gap_change);
+  const bool carries = with_dashpot > -strength.tension || springs.normal_damping == 0.0;
+  f.elastic_normal = n;
+  f.normal = carries ? with_dashpot : -strength.tension;
+  f.normal_by_gap = carries ? -(springs.normal + springs.normal_damping) : 0.0;
+  const double elastic_trial = springs.initial_shear - springs.shear * slip_change;
+  const double trial = elastic_trial - springs.shear_damping * slip_change;
+  const auto bound = strength.shear_bound(f.normal);
+  f.elastic_shear = std::clamp(elastic_trial, -bound.value, bound.value);
   if (std::abs(trial) <= bound.value) {
     f.status = ContactStatus::sticking;
     f.shear = trial;
-    f.shear_by_slip = -springs.shear;
+    f.shear_by_slip = -(springs.shear + springs.shear_damping);
   } else {
     f.status = ContactStatus::sliding;
     f.shear = std::copysign(bound.value, trial);
@@ -46,9 +60,9 @@ ContactForces tangent_for_status(const ContactSprings& springs, const ContactStr
   ContactForces f;
   f.status = status;
   if (status == ContactStatus::open) return f;
-  f.normal_by_gap = -springs.normal;
+  f.normal_by_gap = -(springs.normal + springs.normal_damping);
   if (status == ContactStatus::sticking) {
-    f.shear_by_slip = -springs.shear;
+    f.shear_by_slip = -(springs.shear + springs.shear_damping);
   } else {
     f.shear_by_gap = std::copysign(strength.shear_bound(normal).slope, shear) * f.normal_by_gap;
   }

@@ -1,5 +1,10 @@
 // What a joint can carry (strength) and how its springs get there (spring-slider). The springs' stiffness and rest position are chosen by the
-// enforcement: real joint stiffness for `soft`, a penalty for `shi`, a penalty shifted by a multiplier for `hard`.
+// enforcement: real joint stiffness for `soft` and `dem`, a penalty for `shi`, a penalty shifted by a multiplier for `hard`.
+//
+// Contact damping: dashpots parallel to the springs, c = 2 xi sqrt(k L m*), k the joint's own stiffness (not a penalty), L the tributary length and
+// m* = m1 m2/(m1 + m2) of the two blocks. One block on one contact then has the damping ratio xi; on n equal contacts that share its stiffness
+// sqrt(n) xi. Over a step the dashpots resist the change of gap and slip divided by the time; they never pull beyond the tensile strength, and
+// friction is bounded by the whole normal force. Rigid contacts have no springs and impacts without rebound: damping has no meaning for `hard`.
 #pragma once
 
 #include "openclose/contact/contact.h"
@@ -32,16 +37,33 @@ struct ContactSprings {
   double target = 0.0;         ///< [m]
   double shift = 0.0;          ///< [N]
   double initial_shear = 0.0;  ///< [N]
+  // Dashpots over the time in which gap and slip change.
+  double normal_damping = 0.0;  ///< [N/m]
+  double shear_damping = 0.0;   ///< [N/m]
 };
 
 struct ContactForces {
   ContactStatus status = ContactStatus::open;
   double normal = 0.0;                                                  ///< [N] N
   double shear = 0.0;                                                   ///< [N] T
+  double elastic_normal = 0.0;                                          ///< [N] part of N in the spring, the rest being the dashpot's
+  double elastic_shear = 0.0;                                           ///< [N]
   double normal_by_gap = 0.0, shear_by_gap = 0.0, shear_by_slip = 0.0;  ///< [N/m] dN/dg, dT/dg, dT/ds
 };
 
-/// Forces when gap and slip have changed by these amounts [m] since the start of the step.
+/// Dashpots of a contact [N s/m].
+struct ContactDashpots {
+  double normal = 0.0, shear = 0.0;
+  ContactDashpots(const JointProperties& joint, double length, double reduced_mass);
+};
+
+/// [N] of the normal dashpot, unbounded, when the gap has changed so much. It works as long as the spring does: -c (min(g1, g_o) - min(g0, g_o))/dt
+/// for gaps g1 below the opening g_o, at which the spring pulls with the tensile strength.
+double viscous_normal(const ContactSprings& springs, const ContactStrength& strength, double gap_change);
+
+/// Forces when gap and slip have changed by these amounts [m] since the start of the step. The elastic shear force is the contact's memory: the
+/// spring slips with the friction, the dashpot does not count in it. A contact is open when its spring is; while the dashpot outweighs the spring it
+/// carries nothing but is not open.
 ContactForces spring_slider(const ContactSprings& springs, const ContactStrength& strength, double gap_change, double slip_change);
 
 /// Derivatives the springs would have in a given status; used before the first iteration, which starts from the states of the last step.

@@ -73,6 +73,7 @@ JointProperties read_joint(Table table, const NameList& material_names) {
   table.optional("cohesion_pa", joint.cohesion, not_negative);
   table.optional("tensile_strength_pa", joint.tensile_strength, not_negative);
   table.optional("cohesion_behaviour", joint.cohesion_behaviour, cohesion_behaviour_words);
+  table.optional("damping_ratio", joint.damping_ratio, not_negative);
   table.finish();
 
   if (materials.size() != 2) table.at("materials").fail(fmt::format("there are {} names", materials.size()), "two names of materials");

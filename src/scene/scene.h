@@ -32,6 +32,7 @@ struct JointProperties {
   double cohesion = 0.0;           ///< [Pa]
   double tensile_strength = 0.0;   ///< [Pa]
   CohesionBehaviour cohesion_behaviour = CohesionBehaviour::ductile;
+  double damping_ratio = 0.0;  ///< [-] of dashpots parallel to the springs, see law/joint_law.h
 };
 
 struct BlockInput {

@@ -80,6 +80,7 @@ void write_joints(Text& text, const Scene& scene) {
     text.line_unless(0.0, "cohesion_pa", joint.cohesion);
     text.line_unless(0.0, "tensile_strength_pa", joint.tensile_strength);
     text.line("cohesion_behaviour", word_for(cohesion_behaviour_words, joint.cohesion_behaviour));
+    text.line_unless(0.0, "damping_ratio", joint.damping_ratio);
   }
 }
 
