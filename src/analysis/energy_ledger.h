@@ -26,13 +26,14 @@ struct EnergyLedger {
   double loads = 0.0;            ///< minus the work of point loads
   double friction = 0.0;         ///< dissipated
   double contact_damping = 0.0;  ///< dissipated by the joints' dashpots
+  double mass_damping = 0.0;     ///< dissipated by damping of the blocks' motion (`dem`)
   double impact = 0.0;           ///< dissipated by hard contacts that close
   double scheme = 0.0;           ///< dissipated by the time integration
   double redefinition = 0.0;     ///< released where contacts change their tributary length, their gap's linearisation, or end while loaded
   double turnover = 0.0;         ///< sum of the absolute changes of kinetic, gravity and loads: what an imbalance is compared with
 
   double imbalance() const {
-    return kinetic + gravity + contact_springs + support_springs + loads + friction + contact_damping + impact + scheme + redefinition;
+    return kinetic + gravity + contact_springs + support_springs + loads + friction + contact_damping + mass_damping + impact + scheme + redefinition;
   }
 };
 

@@ -14,6 +14,7 @@ constexpr double cut = 0.3;             ///< [-] after a failure
 
 template <int N>
 SettleResult settle(Simulation<N>& simulation) {
+  if (simulation.is_explicit()) return settle_explicitly(simulation);
   const SettleInput& input = simulation.scene().settle;
   const auto& system = simulation.system();
   std::vector<typename Motion<N>::Unknowns> start;

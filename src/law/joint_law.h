@@ -7,7 +7,11 @@
 // friction is bounded by the whole normal force. Rigid contacts have no springs and impacts without rebound: damping has no meaning for `hard`.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include "openclose/contact/contact.h"
+#include "openclose/core/tolerance.h"
 #include "openclose/scene/scene.h"
 
 namespace openclose {
@@ -20,10 +24,16 @@ struct ContactStrength {
 
   ContactStrength(const JointProperties& joint, const Contact& contact);
 
+  void break_bond(const JointProperties& joint);
+
   struct ShearBound {
     double value;  ///< [N]
     double slope;  ///< [-] derivative by the normal force
   };
+  double largest_shear(double n) const {
+    const double ramp = (friction + 1.0 / tolerance::cohesion_ramp) * (n + tension);
+    return std::max(0.0, std::min(friction * n + cohesion, ramp));
+  }
   /// Largest shear force at normal force n >= -tension. The cohesion comes in over a ramp, min(mu n + C, (mu + 1/eps)(n + tension)) with
   /// eps = tolerance::cohesion_ramp, because a jump from C to 0 at opening leaves steps without any solution.
   ShearBound shear_bound(double n) const;
@@ -42,12 +52,36 @@ struct ContactSprings {
   double shear_damping = 0.0;   ///< [N/m]
 };
 
-struct ContactForces {
+struct CarriedForces {
   ContactStatus status = ContactStatus::open;
-  double normal = 0.0;                                                  ///< [N] N
-  double shear = 0.0;                                                   ///< [N] T
-  double elastic_normal = 0.0;                                          ///< [N] part of N in the spring, the rest being the dashpot's
-  double elastic_shear = 0.0;                                           ///< [N]
+  double normal = 0.0;          ///< [N] N
+  double shear = 0.0;           ///< [N] T
+  double elastic_normal = 0.0;  ///< [N] part of N in the spring, the rest being the dashpot's
+  double elastic_shear = 0.0;   ///< [N]
+};
+
+/// What springs and dashpots would carry if nothing bounded them [N].
+struct ForceTrials {
+  double elastic_normal, viscous_normal;
+  double elastic_shear, viscous_shear;
+};
+
+/// The joint law: what a contact carries of the trials. The elastic shear force is the contact's memory: the spring slips with the friction, the
+/// dashpot does not count in it. A contact is open when its spring is; while the dashpot outweighs the spring it carries nothing but is not open.
+inline CarriedForces carry(const ContactStrength& strength, const ForceTrials& trial) {
+  CarriedForces f;
+  const bool open = strength.tension > 0.0 ? trial.elastic_normal < -strength.tension : trial.elastic_normal <= 0.0;
+  if (open) return f;
+  f.elastic_normal = trial.elastic_normal;
+  f.normal = std::max(-strength.tension, trial.elastic_normal + trial.viscous_normal);
+  const double bound = strength.largest_shear(f.normal), shear = trial.elastic_shear + trial.viscous_shear;
+  f.elastic_shear = std::clamp(trial.elastic_shear, -bound, bound);
+  f.shear = std::clamp(shear, -bound, bound);
+  f.status = std::abs(shear) <= bound ? ContactStatus::sticking : ContactStatus::sliding;
+  return f;
+}
+
+struct ContactForces : CarriedForces {
   double normal_by_gap = 0.0, shear_by_gap = 0.0, shear_by_slip = 0.0;  ///< [N/m] dN/dg, dT/dg, dT/ds
 };
 
@@ -61,13 +95,14 @@ struct ContactDashpots {
 /// for gaps g1 below the opening g_o, at which the spring pulls with the tensile strength.
 double viscous_normal(const ContactSprings& springs, const ContactStrength& strength, double gap_change);
 
-/// Forces when gap and slip have changed by these amounts [m] since the start of the step. The elastic shear force is the contact's memory: the
-/// spring slips with the friction, the dashpot does not count in it. A contact is open when its spring is; while the dashpot outweighs the spring it
-/// carries nothing but is not open.
+/// Forces when gap and slip have changed by these amounts [m] since the start of the step.
 ContactForces spring_slider(const ContactSprings& springs, const ContactStrength& strength, double gap_change, double slip_change);
 
 /// Derivatives the springs would have in a given status; used before the first iteration, which starts from the states of the last step.
 ContactForces tangent_for_status(const ContactSprings& springs, const ContactStrength& strength, ContactStatus status, double normal, double shear);
+
+/// Whether a contact has tensile strength, or cohesion that is not ductile.
+bool can_lose_strength(const JointProperties& joint, bool bonded);
 
 /// Whether cohesion and tensile strength survive a step that ended in this status.
 bool stays_bonded(const JointProperties& joint, bool bonded, ContactStatus status);
