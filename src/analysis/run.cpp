@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "openclose/analysis/start.h"
 
@@ -32,7 +33,7 @@ void MeasuredPoints<N>::restart() {
 
 template <int N>
 std::vector<PointMotion> MeasuredPoints<N>::motions() const {
-  const auto& system = simulation_.system();
+  const auto& system = std::as_const(simulation_).system();
   std::vector<PointMotion> list;
   for (const Point& p : points_) {
     const int b = system.point_block(p.number);

@@ -22,6 +22,7 @@ double factor_to_limit(double limit, double moved) {
 
 template <int N>
 SettleResult settle(Simulation<N>& simulation) {
+  if (simulation.is_explicit()) return settle_explicitly(simulation);
   const SettleInput& input = simulation.scene().settle;
   const auto& system = simulation.system();
   std::vector<typename Motion<N>::Unknowns> start;

@@ -1,5 +1,5 @@
 // Static equilibrium by continuation: pseudo-time steps from rest, longer and longer, until the unbalanced force is below a stated fraction of the
-// weight.
+// weight. Explicit methods damp their motion instead.
 #pragma once
 
 #include <string>
@@ -18,5 +18,10 @@ struct SettleResult {
 
 template <int N>
 SettleResult settle(Simulation<N>& simulation);
+
+/// What settle() does for explicit methods: steps at the longest stable length with damping of the motion (`local`, unless the scene asks for
+/// `automatic`), from rest until the same fraction is reached. What friction holds in the end depends on the way there, as always in this method.
+template <int N>
+SettleResult settle_explicitly(Simulation<N>& simulation);
 
 }  // namespace openclose

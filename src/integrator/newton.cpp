@@ -72,7 +72,8 @@ void Newton<N>::evaluate(const Eigen::VectorXd& d) {
     if (f.status != ContactStatus::open) {
       const double moved =
           Motion<N>::displacement_bound(dv, kinematics.vertex_arm.norm()) + Motion<N>::displacement_bound(de, kinematics.edge_arm.norm());
-      const double rounding = rounding_units * eps * ((springs.normal + springs.shear) * moved + std::abs(f.normal) + std::abs(f.shear));
+      const double stiffness = springs.normal + springs.normal_damping + springs.shear + springs.shear_damping;
+      const double rounding = rounding_units * eps * (stiffness * moved + std::abs(f.normal) + std::abs(f.shear));
       const auto push = [&](int b, const Unknowns& normal, const Unknowns& shear) {
         const int i = system.block(b).equation;
         if (i < 0) return;
@@ -229,7 +230,7 @@ int Newton<N>::hold_reversed(const std::vector<int>& before, const std::vector<i
     const bool reversed = std::abs(before[c]) == sliding_branch && before[c] == -after[c];
     if (!reversed) continue;
     ++held;
-    const double trial = o.springs.initial_shear - o.springs.shear * o.kinematics.slip_change;
+    const double trial = o.springs.initial_shear - (o.springs.shear + o.springs.shear_damping) * o.kinematics.slip_change;
     const double change = problem_->end_weight * (trial - o.forces.shear);
     const auto push = [&](int b, const Unknowns& shear) {
       const auto& block = problem_->system.block(b);
@@ -239,10 +240,12 @@ int Newton<N>::hold_reversed(const std::vector<int>& before, const std::vector<i
     };
     push(problem_->contacts[c].vertex_block, o.kinematics.shear_vertex);
     push(problem_->contacts[c].edge_block, o.kinematics.shear_edge);
-    const double normal = o.forces.normal;
-    o.forces = tangent_for_status(o.springs, strength_[c], ContactStatus::sticking, normal, trial);
-    o.forces.normal = normal;
+    const ContactForces now = o.forces;
+    o.forces = tangent_for_status(o.springs, strength_[c], ContactStatus::sticking, now.normal, trial);
+    o.forces.normal = now.normal;
     o.forces.shear = trial;
+    o.forces.elastic_normal = now.elastic_normal;
+    o.forces.elastic_shear = now.elastic_shear;
   }
   return held;
 }
@@ -258,6 +261,8 @@ void Newton<N>::take_last_states() {
     f = tangent_for_status(springs, strength_[c], touching ? ContactStatus::sticking : contact.status, contact.normal_force, contact.shear_force);
     f.normal = now.normal;
     f.shear = now.shear;
+    f.elastic_normal = now.elastic_normal;
+    f.elastic_shear = now.elastic_shear;
   }
 }
 

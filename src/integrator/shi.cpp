@@ -3,7 +3,8 @@
 // G.-H. Shi (1988, 1993), as the paper describes it. Every pass linearises the contacts at the start of the step, solves once, and lets each contact
 // change its state: open <-> closed by the sign of the normal spring, locked -> sliding when the shear spring exceeds the strength, sliding -> locked
 // when the slip runs against its friction. The pass is the last when no state changes; the friction of a sliding contact is then still the one of the
-// pass before. A step that does not settle, or that leaves a contact deeper than the penetration tolerance, is cut.
+// pass before. A step that does not settle, or that leaves a contact deeper than the penetration tolerance, is cut. With contact damping the sign
+// that opens and closes is that of spring and dashpot together.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -27,6 +28,7 @@ class Shi : public Enforcement<N> {
     s.shear = problem.method.penalty_shear_ratio * s.normal;
     s.gap = contact.gap;
     s.initial_shear = -s.shear * contact.elastic_slip;
+    add_dashpots(problem, contact, s);
     return s;
   }
 
@@ -111,8 +113,8 @@ class Shi : public Enforcement<N> {
     const ContactOutcome<N>& o = outcome_[c];
     if (o.forces.status == ContactStatus::open) return;
     const bool locked = o.forces.status == ContactStatus::sticking;
-    const double kn = o.springs.normal, ks = locked ? o.springs.shear : 0.0;
-    const double normal = -kn * o.springs.gap;
+    const double kn = o.springs.normal + o.springs.normal_damping, ks = locked ? o.springs.shear + o.springs.shear_damping : 0.0;
+    const double normal = -o.springs.normal * o.springs.gap + viscous_normal(o.springs, strength_[c], 0.0);
     const double shear = locked ? o.springs.initial_shear : o.forces.shear;
     applied_shear_[c] = shear;
     const ContactKinematics<N>& k = o.kinematics;
@@ -157,27 +159,30 @@ class Shi : public Enforcement<N> {
 
   static ContactForces next_forces(const StepProblem<N>& problem, const ContactOutcome<N>& o, const ContactStrength& strength) {
     const double gap = o.springs.gap + o.kinematics.gap_change;
-    const double normal = -o.springs.normal * gap;
+    const double elastic = -o.springs.normal * gap, normal = elastic + viscous_normal(o.springs, strength, o.kinematics.gap_change);
+    const double elastic_trial = o.springs.initial_shear - o.springs.shear * o.kinematics.slip_change;
+    const double trial = elastic_trial - o.springs.shear_damping * o.kinematics.slip_change;
+    const bool opens = normal < -strength.tension || (strength.tension == 0.0 && normal <= 0.0);
     ContactForces f;
+    if (opens || (o.forces.status == ContactStatus::open && gap >= -problem.method.closing_tolerance)) return f;
+    f.normal = normal;
+    f.elastic_normal = elastic;
     if (o.forces.status == ContactStatus::open) {
-      if (gap >= -problem.method.closing_tolerance) return f;
       f.status = ContactStatus::sticking;
-      f.normal = normal;
-      f.shear = o.springs.initial_shear - o.springs.shear * o.kinematics.slip_change;
+      f.shear = trial;
+      f.elastic_shear = elastic_trial;
       return f;
     }
-    if (normal < -strength.tension || (strength.tension == 0.0 && normal <= 0.0)) return f;
-    f.normal = normal;
     const double bound = strength.shear_bound(normal).value;
     if (o.forces.status == ContactStatus::sticking) {
-      const double trial = o.springs.initial_shear - o.springs.shear * o.kinematics.slip_change;
       f.status = std::abs(trial) > bound ? ContactStatus::sliding : ContactStatus::sticking;
-      f.shear = f.status == ContactStatus::sliding ? std::copysign(bound, trial) : trial;
+      f.shear = std::clamp(trial, -bound, bound);
+      f.elastic_shear = std::clamp(elastic_trial, -bound, bound);
       return f;
     }
     const bool runs_against_friction = o.forces.shear * o.kinematics.slip_change > 0.0;
     f.status = runs_against_friction ? ContactStatus::sticking : ContactStatus::sliding;
-    f.shear = std::copysign(bound, o.forces.shear);
+    f.shear = f.elastic_shear = std::copysign(bound, o.forces.shear);
     return f;
   }
 
@@ -195,7 +200,8 @@ class Shi : public Enforcement<N> {
     solution.contacts = outcome_;
     // What a sliding contact carried in this step is the friction of the pass before.
     for (std::size_t c = 0; c < outcome_.size(); ++c) {
-      if (outcome_[c].forces.status == ContactStatus::sliding) solution.contacts[c].forces.shear = applied_shear_[c];
+      ContactForces& f = solution.contacts[c].forces;
+      if (f.status == ContactStatus::sliding) f.shear = f.elastic_shear = applied_shear_[c];
     }
   }
 

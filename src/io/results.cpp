@@ -42,6 +42,8 @@ std::vector<std::pair<const char*, double>> entries(const EnergyLedger& l) {
           {"support_springs_j", l.support_springs},
           {"loads_j", l.loads},
           {"friction_j", l.friction},
+          {"contact_damping_j", l.contact_damping},
+          {"mass_damping_j", l.mass_damping},
           {"impact_j", l.impact},
           {"scheme_j", l.scheme},
           {"redefinition_j", l.redefinition},

@@ -21,6 +21,12 @@ inline constexpr std::array enclosed_joints_words{
     Word{"drop", EnclosedJoints::drop},
 };
 
+inline constexpr std::array mass_damping_words{
+    Word{"none", MassDamping::none},
+    Word{"local", MassDamping::local},
+    Word{"automatic", MassDamping::automatic},
+};
+
 inline constexpr std::array rotation_words{
     Word{"exact", RotationKind::exact},
     Word{"linear", RotationKind::linear},

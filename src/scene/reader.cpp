@@ -73,6 +73,7 @@ JointProperties read_joint(Table table, const NameList& material_names) {
   table.optional("cohesion_pa", joint.cohesion, not_negative);
   table.optional("tensile_strength_pa", joint.tensile_strength, not_negative);
   table.optional("cohesion_behaviour", joint.cohesion_behaviour, cohesion_behaviour_words);
+  table.optional("damping_ratio", joint.damping_ratio, not_negative);
   table.finish();
 
   if (materials.size() != 2) table.at("materials").fail(fmt::format("there are {} names", materials.size()), "two names of materials");
@@ -206,6 +207,9 @@ MethodInput read_method(Table table, const SourceLocation& scene_where) {
   table.optional("closing_tolerance_m", method.closing_tolerance, not_negative);
   table.optional("max_open_close_iterations", method.max_open_close_iterations, count);
   table.optional("step_cut", method.step_cut, between_0_and_1);
+  table.optional("step_fraction", method.step_fraction, between_0_and_1);
+  table.optional("damping", method.damping, mass_damping_words);
+  table.optional("local_damping", method.local_damping, between_0_and_1);
   table.finish();
 
   if (contact_given) method.contact_where = table.at("contact").where();
@@ -234,6 +238,7 @@ SettleInput read_settle(Table table) {
   table.optional("unbalanced_fraction", settle.unbalanced_fraction, between_0_and_1);
   table.optional("first_dt_s", settle.first_dt, positive);
   table.optional("max_steps", settle.max_steps, count);
+  table.optional("max_explicit_steps", settle.max_explicit_steps, count);
   table.optional("failure_displacement_m", settle.failure_displacement, positive);
   table.finish();
   return settle;

@@ -43,7 +43,7 @@ TEST_CASE("every key reaches its field", "[scene][reader]") {
       "[[material]]\nname = 'a'\ndensity_kg_per_m3 = 2e3\n"
       "[[material]]\nname = 'b'\nunit_weight_n_per_m3 = 26926\n"
       "[[joint]]\nmaterials = ['b', 'a']\nnormal_stiffness_pa_per_m = 1e9\nshear_stiffness_pa_per_m = 2e8\nfriction_angle_deg = 30\n"
-      "cohesion_pa = 5\ntensile_strength_pa = 6\ncohesion_behaviour = 'lost_on_slip'\n"
+      "cohesion_pa = 5\ntensile_strength_pa = 6\ncohesion_behaviour = 'lost_on_slip'\ndamping_ratio = 0.1\n"
       "[[block]]\nname = 'one'\nmaterial = 'b'\nvertices_m = [[0, 0], [1, 0], [0, 1]]\nrotation_locked = true\n"
       "velocity_m_per_s = [1, 2]\nangular_velocity_rad_per_s = -3\n"
       "[[support]]\nblock = 'one'\npoint_m = [0, 0]\nstiffness_n_per_m = [0, 7]\n"
@@ -67,6 +67,7 @@ TEST_CASE("every key reaches its field", "[scene][reader]") {
   CHECK(joint.cohesion == 5.0);
   CHECK(joint.tensile_strength == 6.0);
   CHECK(joint.cohesion_behaviour == CohesionBehaviour::lost_on_slip);
+  CHECK(joint.damping_ratio == 0.1);
   CHECK(scene.joint(0, 1) == &joint);
   CHECK(scene.joint(1, 0) == &joint);
   CHECK(scene.joint(0, 0) == nullptr);
@@ -83,7 +84,7 @@ TEST_CASE("every key reaches its field", "[scene][reader]") {
   CHECK(scene.measured_points.at(0).point == Vec2(1.0, 0.0));
   const MethodInput& method = scene.method;
   CHECK(method.contact == "anything");
-  CHECK(method.contact_where.line == 37);
+  CHECK(method.contact_where.line == 38);
   CHECK(method.theta == 0.5);
   CHECK(method.rotation == RotationKind::linear);
   CHECK(method.start == Start::steady_sliding);

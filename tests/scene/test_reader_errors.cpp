@@ -163,6 +163,7 @@ TEST_CASE("numbers out of range", "[scene][reader][errors]") {
   CHECK(error_with(9, "friction_angle_deg = 90") == "9: joint[0].friction_angle_deg: 90 is out of range; accepted: a number in [0, 90)");
   CHECK(error_with(9, "friction_angle_deg = -0.5") == "9: joint[0].friction_angle_deg: -0.5 is out of range; accepted: a number in [0, 90)");
   CHECK(error_with(10, "cohesion_pa = -1") == "10: joint[0].cohesion_pa: -1 is out of range; accepted: a number >= 0");
+  CHECK(error_with(10, "damping_ratio = -1") == "10: joint[0].damping_ratio: -1 is out of range; accepted: a number >= 0");
   CHECK(error_with(10, "tensile_strength_pa = -1") == "10: joint[0].tensile_strength_pa: -1 is out of range; accepted: a number >= 0");
   CHECK_THAT(error_with_vertices("[[0, 0], [2e7, 0], [1, 1]]"),
              ContainsSubstring("20: block[1].vertices_m[1][0]: 20000000 is out of range; accepted: a number in [-"));

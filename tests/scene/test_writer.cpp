@@ -20,6 +20,7 @@ void check_same(const JointProperties& a, const JointProperties& b) {
   CHECK(a.cohesion == b.cohesion);
   CHECK(a.tensile_strength == b.tensile_strength);
   CHECK(a.cohesion_behaviour == b.cohesion_behaviour);
+  CHECK(a.damping_ratio == b.damping_ratio);
 }
 
 void check_same(const BlockInput& a, const BlockInput& b) {
@@ -118,6 +119,7 @@ Scene random_scene(unsigned seed) {
     joint.cohesion = number();
     joint.tensile_strength = number();
     joint.cohesion_behaviour = CohesionBehaviour::lost_on_opening;
+    joint.damping_ratio = number();
   }
   scene.joints[0].materials = {0, 0};
   scene.joints[1].materials = {1, 0};
