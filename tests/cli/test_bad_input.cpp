@@ -228,12 +228,14 @@ TEST_CASE("missing step or end", "[cli][bad_input]") {
 }
 
 TEST_CASE("options of a run that mean nothing", "[cli][bad_input]") {
-  CHECK_THAT(refusal_of_scene(block_on_base, " --set run.strength_reduction_factor=0"), ContainsSubstring("run.strength_reduction_factor: 0 is out of range"));
+  CHECK_THAT(refusal_of_scene(block_on_base, " --set run.strength_reduction_factor=0"),
+             ContainsSubstring("run.strength_reduction_factor: 0 is out of range"));
   CHECK_THAT(refusal_of_scene(block_on_base, " --set end.displacement_m=-1"), ContainsSubstring("end.displacement_m: -1 is out of range"));
   CHECK_THAT(refusal_of_scene(block_on_base, " --set output.milestones_m=[2,1]"), ContainsSubstring("output.milestones_m[1]: 1 follows 2"));
   CHECK_THAT(refusal_of_scene(block_on_base, " --set output.snapshots_s=[-1]"), ContainsSubstring("output.snapshots_s[0]: -1 is out of range"));
   CHECK_THAT(refusal_of_scene(block_on_base, " --set settle.criterion=force"), ContainsSubstring("settle.criterion: \"force\" is not known"));
-  CHECK_THAT(refusal_of_scene(block_on_base, " --set settle.relative_displacement=1"), ContainsSubstring("settle.relative_displacement: 1 is out of range"));
+  CHECK_THAT(refusal_of_scene(block_on_base, " --set settle.relative_displacement=1"),
+             ContainsSubstring("settle.relative_displacement: 1 is out of range"));
 }
 
 TEST_CASE("more steps than anyone waits for", "[cli][bad_input]") {
