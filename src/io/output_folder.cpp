@@ -15,7 +15,7 @@ OutputFolder::OutputFolder(const std::string& path) : path_(path) {
   const bool usable = !error && std::filesystem::is_directory(path) && access(path.c_str(), W_OK | X_OK) == 0;
   if (!usable)
     throw InputError({path, 0}, "", "cannot write to this output folder", "-o with a folder that exists or can be made, and may be written to");
-  for (const char* name : {"history.csv", "energy.csv", "blocks.csv", "contacts.csv", "trials.csv", "curve.csv", "summary.json"}) {
+  for (const char* name : {"history.csv", "energy.csv", "blocks.csv", "contacts.csv", "trials.csv", "curve.csv", "milestones.csv", "summary.json"}) {
     const std::string file = path + "/" + name;
     if (!std::filesystem::exists(file)) continue;
     if (std::filesystem::is_regular_file(file) && access(file.c_str(), W_OK) == 0) continue;
