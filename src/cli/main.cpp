@@ -202,8 +202,10 @@ int cut_command(const Options& options) {
       throw InputError({written, 0}, "", "this is the scene that is being cut", "another file to write to");
     }
   }
-  write_file(file, write_scene(loaded.scene));
-  write_file(drawing, svg_drawing(loaded.scene));
+  if (std::filesystem::weakly_canonical(file) == std::filesystem::weakly_canonical(drawing)) {
+    throw InputError({file, 0}, "", "the scene and its drawing cannot be the same file", "another name with --svg");
+  }
+  write_files({{file, write_scene(loaded.scene)}, {drawing, svg_drawing(loaded.scene)}});
   if (options.quiet) return exit_success;
   const auto fixed = std::count_if(loaded.scene.blocks.begin(), loaded.scene.blocks.end(), [](const BlockInput& block) { return block.fixed; });
   fmt::print("{}: {} blocks cut by {} traces, {:.9g} m2 (domain {:.9g} m2), smallest {:.3g} m2; {} of {} blocks fixed\n", options.scene_file,

@@ -437,8 +437,8 @@ PolygonWithHoles moved(PolygonWithHoles domain, const Vec2& by) {
 
 Cutting cut_near_origin(const PolygonWithHoles& domain, std::vector<JointTrace> traces, int joint_count, const CuttingLimits& limits) {
   make_canonical(traces);
-  // A crossing of two traces in the domain makes a block more, but for one that each trace may have in vain. Twice as many are let pass, since slivers
-  // go. Crossings beside the domain and comparisons in vain make no block, hence many more of these.
+  // A crossing of two traces in the domain makes a block more, but for one that each trace may have in vain. Twice as many are let pass, since
+  // slivers go. Crossings beside the domain and comparisons in vain make no block, hence many more of these.
   constexpr std::size_t comparisons = 32;
   const std::size_t most = static_cast<std::size_t>(limits.max_blocks);
   const ArrangementLimits growth{comparisons * (most + traces.size() + domain.outer.size() + 1000), 2 * most + traces.size(),

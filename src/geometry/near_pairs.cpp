@@ -91,9 +91,7 @@ class Search {
   }
 
   /// Farther than the margin, whatever rounding does to it.
-  bool apart(int i, int j) const {
-    return beside(segments_[i], segments_[j], 2.0 * margin_) || beside(segments_[j], segments_[i], 2.0 * margin_);
-  }
+  bool apart(int i, int j) const { return beside(segments_[i], segments_[j], 2.0 * margin_) || beside(segments_[j], segments_[i], 2.0 * margin_); }
 
   const std::vector<Segment>& segments_;
   double margin_;

@@ -25,6 +25,7 @@ struct DomainInput {
 struct Region {
   Polygon outline;
   int material = 0;
+  bool any_block = false;  ///< has its centroid inside
 };
 
 DomainInput read_domain(Table& table, const NameList& material_names) {
@@ -234,11 +235,21 @@ CuttingSummary summary_of(const Cutting& cutting, const Joints& joints, const Do
   return summary;
 }
 
-int material_at(const Vec2& centroid, const std::vector<Region>& regions, int otherwise) {
-  for (auto region = regions.rbegin(); region != regions.rend(); ++region) {
-    if (contains(region->outline, centroid)) return region->material;
+/// Of the last region around the centroid; notes every region that has it inside.
+int material_at(const Vec2& centroid, std::vector<Region>& regions, int otherwise) {
+  int material = otherwise;
+  for (Region& region : regions) {
+    if (!contains(region.outline, centroid)) continue;
+    region.any_block = true;
+    material = region.material;
   }
-  return otherwise;
+  return material;
+}
+
+void refuse_empty_regions(const std::vector<Region>& regions, const std::vector<Table>& tables) {
+  for (std::size_t i = 0; i < regions.size(); ++i) {
+    if (!regions[i].any_block) tables[i].fail("no block of the domain has its centroid in the region", "a polygon around the centroids of blocks");
+  }
 }
 
 }  // namespace
@@ -269,6 +280,7 @@ void cut_domain(const CuttingTables& tables, const NameList& material_names, Nam
     block_names.add(table.at("vertices_m"), block.name);
     scene.blocks.push_back(std::move(block));
   }
+  refuse_empty_regions(regions, tables.regions);
   scene.cutting = summary_of(cutting, joints, domain, table);
 }
 
