@@ -202,7 +202,8 @@ int cut_command(const Options& options) {
       throw InputError({written, 0}, "", "this is the scene that is being cut", "another file to write to");
     }
   }
-  if (std::filesystem::weakly_canonical(file) == std::filesystem::weakly_canonical(drawing)) {
+  const auto place_of = [](const std::string& path) { return std::filesystem::weakly_canonical(std::filesystem::absolute(path)); };
+  if (place_of(file) == place_of(drawing)) {
     throw InputError({file, 0}, "", "the scene and its drawing cannot be the same file", "another name with --svg");
   }
   write_files({{file, write_scene(loaded.scene)}, {drawing, svg_drawing(loaded.scene)}});

@@ -13,6 +13,9 @@
 namespace openclose {
 namespace {
 
+/// A limit that still fits into memory.
+constexpr double most_blocks = 1e7;
+
 constexpr Range part{.low = 0.0, .high = 1.0, .low_included = true};
 
 struct DomainInput {
@@ -39,7 +42,7 @@ DomainInput read_domain(Table& table, const NameList& material_names) {
   table.optional("sliver_area_m2", domain.limits.sliver_area, not_negative);
   table.optional("joint_end_reach_m", domain.limits.end_reach, not_negative);
   table.optional("enclosed_joints", domain.enclosed, enclosed_joints_words);
-  table.optional("max_blocks", domain.limits.max_blocks, count);
+  table.optional("max_blocks", domain.limits.max_blocks, Range{.low = 1.0, .high = most_blocks, .low_included = true, .high_included = true});
   table.finish();
 
   domain.shape.outer = outline(table.at("vertices_m"), outer, "domain");
