@@ -243,7 +243,7 @@ TEST_CASE("joint sets on a national grid give the blocks they give at the origin
     for (const double dip_deg : {20.0, 75.0}) {
       JointSet set;
       set.dip = dip_deg * pi / 180.0;
-      set.spacing = 0.7;
+      set.spacing = 0.25;
       set.origin = shift + Vec2(5.0, 6.0);
       problem.add(set);
     }
@@ -253,7 +253,7 @@ TEST_CASE("joint sets on a national grid give the blocks they give at the origin
   const std::vector<Polygon> here = blocks_at(Vec2::Zero());
   const std::vector<Polygon> there = blocks_at(shift);
   REQUIRE(there.size() == here.size());
-  REQUIRE(here.size() > 700);
+  REQUIRE(here.size() > 5000);
   // Coordinates of 5e6 m are rounded to 9.3e-10 m; the ends of two joints, which cross at 55 degrees, and the corner itself are.
   const double rounding = 6.0 * 0x1p-30;
   for (std::size_t b = 0; b < here.size(); ++b) {
@@ -264,18 +264,23 @@ TEST_CASE("joint sets on a national grid give the blocks they give at the origin
 }
 
 TEST_CASE("so many crossings are refused before they are built", "[geometry][cutting]") {
-  // Every line of one fan crosses every one of the other: a hundred times the limit.
+  // Every line of one fan crosses every one of the other: twenty times the limit.
   Problem problem{{{{0.0, 0.0}, {4.0, 0.0}, {4.0, 4.0}, {0.0, 4.0}}, {}}, {}, 0};
   Generator generator(3);
-  for (int i = 0; i < 3000; ++i) {
+  for (int i = 0; i < 1000; ++i) {
     const auto height = [&] { return uniform_in(generator, 0.5, 3.5); };
     problem.add({{-1.0, height()}, {5.0, height()}});
     problem.add({{height(), -1.0}, {height(), 5.0}});
   }
   CuttingLimits limits;
-  limits.max_blocks = 100000;
+  limits.max_blocks = 50000;
   const std::clock_t begin = std::clock();
   CHECK(cut_blocks(problem.domain, problem.traces, problem.joints, limits).too_many);
-  // The nine million crossings themselves take half a minute.
-  CHECK(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC < 5.0);
+  const double seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+  // To build the million crossings takes 4 s.
+#ifdef __SANITIZE_ADDRESS__
+  CHECK(seconds < 20.0);
+#else
+  CHECK(seconds < 2.0);
+#endif
 }
