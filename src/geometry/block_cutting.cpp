@@ -330,21 +330,43 @@ class Cut {
 
   bool is_sliver(const Face& face) const { return face.width < limits_.sliver_width || face.area < limits_.sliver_area; }
 
+  int node_at(int half_edge) const { return half_edge % 2 == 0 ? edges_[half_edge / 2].from : edges_[half_edge / 2].to; }
+
+  std::vector<int> nodes_of(int face) const {
+    std::vector<int> nodes;
+    for (const int h : faces_[face].cycle) nodes.push_back(node_at(h));
+    std::sort(nodes.begin(), nodes.end());
+    return nodes;
+  }
+
+  int common_nodes(int face, int other) const {
+    const std::vector<int> nodes = nodes_of(face);
+    const std::vector<int>& cycle = faces_[other].cycle;
+    return static_cast<int>(
+        std::count_if(cycle.begin(), cycle.end(), [&](int h) { return std::binary_search(nodes.begin(), nodes.end(), node_at(h)); }));
+  }
+
   /// The neighbour a sliver goes to and the half-edges between them; -1 if there is none.
   int host(int sliver, std::vector<int>& common, const std::vector<bool>& taken) const {
     const std::vector<int>& cycle = faces_[sliver].cycle;
     const int n = static_cast<int>(cycle.size());
     const auto neighbour = [&](int i) { return face_of_[cycle[(i + n) % n] ^ 1]; };
-    std::map<int, std::pair<double, int>> shared;  // length and number of separate stretches
+    struct Contact {
+      double length = 0.0;
+      int edges = 0;
+    };
+    std::map<int, Contact> shared;
     for (int i = 0; i < n; ++i) {
       const int other = neighbour(i);
       if (other < 0 || other == sliver || taken[other]) continue;
-      shared[other].first += length(edges_[cycle[i] / 2]);
-      if (neighbour(i - 1) != other) ++shared[other].second;
+      shared[other].length += length(edges_[cycle[i] / 2]);
+      ++shared[other].edges;
     }
     int best = -1;
     for (const auto& [other, contact] : shared) {
-      if (contact.second == 1 && (best < 0 || contact.first > shared[best].first)) best = other;
+      if (best >= 0 && contact.length <= shared[best].length) continue;
+      // Edges in one row have one node more; any other node is a second place, and what lies between the two would be surrounded.
+      if (common_nodes(sliver, other) == contact.edges + 1) best = other;
     }
     common.clear();
     for (int i = 0; i < n; ++i) {
@@ -361,12 +383,21 @@ class Cut {
       std::vector<bool> grown(faces_.size(), false);
       std::vector<bool> dropped(edges_.size(), false);
       std::vector<int> common;
+      std::set<std::pair<int, int>> given;  // to a face: nodes of slivers in this pass
       for (int f = 0; f < static_cast<int>(faces_.size()); ++f) {
         if (!is_sliver(faces_[f])) continue;
         ++result_.slivers_left;
         if (grown[f]) continue;
         const int to = host(f, common, taken);
         if (to < 0) continue;
+        const std::vector<int> nodes = nodes_of(f);
+        // Two slivers that touch each other can surround a hole or a block together with their neighbour: the second waits for what the first makes
+        // of it.
+        if (std::any_of(nodes.begin(), nodes.end(), [&](int node) { return given.count({to, node}) > 0; })) {
+          any = true;
+          continue;
+        }
+        for (const int node : nodes) given.emplace(to, node);
         taken[f] = grown[to] = any = true;
         for (const int h : common) dropped[h / 2] = true;
         ++result_.slivers_merged;

@@ -55,7 +55,8 @@ struct CuttingLimits {
   /// [m] A trace end this near to another trace or to the boundary reaches it.
   double end_reach = tolerance::joint_end_reach_m;
   /// [m], [m2] Blocks of less width (2 area / longest edge) or less area are slivers: each is united with the neighbour it has the longest common
-  /// edge with (summed up if they meet along several straight edges in a row; a neighbour that meets it in separate places is not taken).
+  /// edge with (summed up if they meet along several straight edges in a row; a neighbour that meets it in separate places, be it a
+  /// corner, is not taken).
   double sliver_width = tolerance::sliver_width_m;
   double sliver_area = 0.0;
   int max_blocks = 1'000'000;
