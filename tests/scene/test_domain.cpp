@@ -1,5 +1,5 @@
 #include <algorithm>
-#include <chrono>
+#include <ctime>
 #include <map>
 
 #include "openclose/scene/check.h"
@@ -254,7 +254,7 @@ TEST_CASE("more blocks than the limit", "[scene][domain][errors]") {
   CHECK(error_of(square_domain, {"domain.max_blocks=7"}) ==
         "13: domain: the joints cut the domain into more than 7 blocks; accepted: fewer joints, or a higher domain.max_blocks");
   SECTION("found out at once") {
-    const auto begin = std::chrono::steady_clock::now();
+    const std::clock_t begin = std::clock();
     CHECK_THAT(error_with(19, "spacing_m = 1e-9"), ContainsSubstring("17: joint_set[0]: the set has more than 1000000 traces in the domain"));
     CHECK_THAT(error_of(test::with_line(test::with_line(square_domain, 26, "dip_scatter_deg = 30"), 24, "spacing_m = 1e-3"),
                         {"joint_set[0].spacing_m=1e-3", "joint_set[0].dip_scatter_deg=30"}),
@@ -268,7 +268,7 @@ TEST_CASE("more blocks than the limit", "[scene][domain][errors]") {
     CHECK_THAT(
         error_of(test::with_line(test::with_line(square_domain, 19, "spacing_m = 1e-5"), 24, "spacing_m = 1e-5"), {"domain.max_blocks=500000"}),
         ContainsSubstring("13: domain: the joints cut the domain into more than 500000 blocks"));
-    CHECK(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() < 20.0);
+    CHECK(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC < 20.0);
   }
 }
 
