@@ -228,8 +228,11 @@ int cut_command(const Options& options) {
       throw InputError({written, 0}, "", "this is the scene that is being cut", "another file to write to");
     }
   }
-  write_file(file, write_scene(loaded.scene));
-  write_file(drawing, svg_drawing(loaded.scene));
+  const auto place_of = [](const std::string& path) { return std::filesystem::weakly_canonical(std::filesystem::absolute(path)); };
+  if (place_of(file) == place_of(drawing)) {
+    throw InputError({file, 0}, "", "the scene and its drawing cannot be the same file", "another name with --svg");
+  }
+  write_files({{file, write_scene(loaded.scene)}, {drawing, svg_drawing(loaded.scene)}});
   if (options.quiet) return exit_success;
   const auto fixed = std::count_if(loaded.scene.blocks.begin(), loaded.scene.blocks.end(), [](const BlockInput& block) { return block.fixed; });
   fmt::print("{}: {} blocks cut by {} traces, {:.9g} m2 (domain {:.9g} m2), smallest {:.3g} m2; {} of {} blocks fixed\n", options.scene_file,
