@@ -10,7 +10,7 @@
 
 namespace openclose::verification {
 
-inline const std::array<std::string, 3> all_methods = {"soft", "hard", "shi"};
+inline const std::array<std::string, 4> all_methods = {"soft", "hard", "shi", "dem"};
 
 /// One material "rock", gravity 9.81 downwards, joint without cohesion as the block's; `unloaded` start; no blocks yet.
 Scene empty_scene(const analytical::BlockOnPlane& data = {});

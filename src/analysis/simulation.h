@@ -57,6 +57,8 @@ class Simulation {
   double longest_stable_step(MassDamping damping);
   /// One step of the loop with this damping of the motion, for settling.
   StepResult explicit_step(double h, MassDamping damping);
+  /// [N] Largest sum of forces on a block now; explicit methods only.
+  double unbalanced_force();
   /// Names the present time, so that a long run's clock does not collect rounding.
   void set_time(double time) { time_ = time; }
 

@@ -115,6 +115,8 @@ void CentralDifference<N>::load_contacts(const StepProblem<N>& problem) {
     damped_ |= joint.damping_ratio > 0.0;
     const Place at = place(link);
     carry_now(link, at);
+    // What the list has moved apart is open before anything moves.
+    if (link.gap > link.strength.tension / link.normal_stiffness) link.status = ContactStatus::open;
     push(link, at);
     links_.push_back(link);
   }
@@ -212,7 +214,7 @@ bool CentralDifference<N>::move(double h, double span, double limit, MassDamping
     next.turn = m.turns * (keep * v.turn + span * (damped(f.turn, v.turn) * m.per_moment)) * per_viscous;
     // (a + b)^2 <= 2 (a^2 + b^2) for the speed of the centroid and of the farthest point around it.
     fastest = std::max(fastest, next.x * next.x + next.y * next.y + square(next.turn * m.radius));
-    unbalanced = std::max(unbalanced, std::max(f.x * f.x + f.y * f.y, square(m.turns * f.turn / m.radius)));
+    unbalanced = std::max(unbalanced, force_squared(i));
   }
   const double farthest = h * std::sqrt(2.0 * fastest);
   if (!(farthest <= limit)) {
@@ -336,6 +338,10 @@ void CentralDifference<N>::lose_strength(Link& link, const Place& at) {
   link.bonded = link.breakable = false;
   link.strength.break_bond(joint);
   carry_now(link, at);
+  if (at.gap <= 0.0 || link.status == ContactStatus::open) return;
+  // It slipped while it was pulling: nothing pulls any more.
+  link.status = ContactStatus::open;
+  energies_.redefinition += 0.5 * link.normal_stiffness * square(at.gap);
 }
 
 template <int N>
@@ -344,8 +350,21 @@ bool CentralDifference<N>::moved_beyond_skin() const {
 }
 
 template <int N>
-double CentralDifference<N>::unbalanced_force() const {
+double CentralDifference<N>::last_unbalanced_force() const {
   return std::sqrt(unbalanced_);
+}
+
+template <int N>
+double CentralDifference<N>::unbalanced_force() const {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < inertia_.size(); ++i) largest = std::max(largest, force_squared(i));
+  return std::sqrt(largest);
+}
+
+template <int N>
+double CentralDifference<N>::force_squared(std::size_t i) const {
+  const Rate& f = forces_[i];
+  return std::max(f.x * f.x + f.y * f.y, square(inertia_[i].turns * f.turn / inertia_[i].radius));
 }
 
 template <int N>

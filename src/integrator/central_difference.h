@@ -26,7 +26,7 @@ namespace openclose {
 /// Where energy went in the steps since the last question [J]; signs and meaning as in analysis/energy_ledger.h.
 struct ExplicitEnergies {
   double gravity = 0.0, loads = 0.0, support_springs = 0.0;
-  double friction = 0.0, contact_damping = 0.0, mass_damping = 0.0, scheme = 0.0;
+  double friction = 0.0, contact_damping = 0.0, mass_damping = 0.0, scheme = 0.0, redefinition = 0.0;
   double turnover = 0.0;
 };
 
@@ -48,7 +48,8 @@ class CentralDifference {
 
   bool moved_beyond_skin() const;
   double critical_step() const { return critical_step_; }  ///< [s] of the contacts that may close before the next load
-  double unbalanced_force() const;                         ///< [N] largest force on a block when the last step began
+  double last_unbalanced_force() const;                    ///< [N] largest force on a block when the last step began
+  double unbalanced_force() const;                         ///< [N] now; a pass over the blocks
   bool lost_strength() const { return lost_strength_; }    ///< a contact has lost cohesion or tensile strength in the last step
   double max_penetration() const { return max_penetration_; }  ///< [m] since the load
 
@@ -116,6 +117,7 @@ class CentralDifference {
   void add_point_forces(bool step);
   template <bool damped>
   void follow_links();
+  double force_squared(std::size_t i) const;  ///< [N2] on a block, a moment counting at the block's radius
   void adapt(double taken, double kinetic_change, double h);
 
   std::vector<Pose> poses_;  ///< per free block, and a last one for all that are fixed

@@ -119,8 +119,8 @@ struct SettleInput {
   double unbalanced_fraction = 1e-8;  ///< [-] largest unbalanced force over the weight of the heaviest free block
   double first_dt = 1.0;              ///< [s] first pseudo-time step; grows tenfold while steps succeed
   int max_steps = 200;
-  int max_explicit_steps = 1000000;   ///< dem: instead of max_steps
   double failure_displacement = 1.0;  ///< [m] a block that moved farther is failing
+  int max_explicit_steps = 1000000;   ///< dem: instead of max_steps
 };
 
 struct StrengthReductionInput {
