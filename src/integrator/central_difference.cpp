@@ -18,6 +18,9 @@ constexpr double power_ratio = 0.5;
 constexpr double adaptation = 1.1;
 constexpr double first_viscous = 0.01;
 
+/// [-] Of the skin: with less of it used up the list is kept and the way counted anew from there.
+constexpr double renew_fraction = 0.5;
+
 double square(double x) {
   return x * x;
 }
@@ -345,8 +348,15 @@ void CentralDifference<N>::lose_strength(Link& link, const Place& at) {
 }
 
 template <int N>
-bool CentralDifference<N>::moved_beyond_skin() const {
-  return moved_ > tolerance::contact_skin_m;
+bool CentralDifference<N>::moved_beyond_skin() {
+  if (moved_ <= tolerance::contact_skin_m) return false;
+  // The way may have been longer than where it has led to.
+  double farthest = 0.0;
+  for (std::size_t i = 0; i < inertia_.size(); ++i) {
+    farthest = std::max(farthest, std::hypot(poses_[i].x, poses_[i].y) + inertia_[i].radius * std::abs(rates_[i].angle));
+  }
+  moved_ = 2.0 * farthest;
+  return moved_ > renew_fraction * tolerance::contact_skin_m;
 }
 
 template <int N>

@@ -9,8 +9,8 @@
 //       gap = gap_0 + (n - n_0) . w_0 + n . D,   slip = (t - t_0) . w_0 + t . D,   D = u_v - u_e + (R_v - 1) r_v
 //     (r_v arm of the corner, w_0 from the edge's centroid to the corner, both at the load), free of cancellation and exact whatever the rotation;
 //   - contacts too far apart to close before the next load are not looked at.
-// moved_beyond_skin() tells, from the largest speed alone, when blocks may have moved tolerance::contact_skin_m against each other since the load: then
-// the list is to be renewed.
+// moved_beyond_skin() tells when blocks may have moved tolerance::contact_skin_m against each other since the load: then the list is to be renewed. It
+// adds up the largest speed of each step, and looks at the blocks only when that sum has reached the skin.
 //
 // Damping of the motion: `local` (Cundall, 1987, as in UDEC) adds -alpha |F| sign(v) to every component of the unbalanced force F, which takes nothing
 // from steady motion. `automatic` (Cundall, 1982, as in UDEC's adaptive global damping) adds -beta M v, beta rising or falling from step to step by
@@ -46,7 +46,7 @@ class CentralDifference {
   /// Brings gaps, forces and energies to the new positions. To be called after every move().
   void follow_contacts();
 
-  bool moved_beyond_skin() const;
+  bool moved_beyond_skin();
   double critical_step() const { return critical_step_; }  ///< [s] of the contacts that may close before the next load
   double last_unbalanced_force() const;                    ///< [N] largest force on a block when the last step began
   double unbalanced_force() const;                         ///< [N] now; a pass over the blocks

@@ -33,7 +33,10 @@ int main() {
   scene.joints[0].damping_ratio = 0.1;
   scene.blocks[6].velocity = {1e-3, 0.0};
   Simulation<3> simulation(scene);
-  bool good = simulation.advance(scene.step.dt);
+  bool good = settle(simulation).settled;
+  simulation.restore_velocities();
+  simulation.restart_clock();
+  good = simulation.advance(scene.step.dt) && good;
   const DetectionCounters before = simulation.detection_counters();
   const long loads = simulation.step_counters().loads, steps = simulation.step_counters().steps, start = allocations;
   for (int i = 0; i < 20; ++i) good = simulation.advance(scene.step.dt) && good;
