@@ -190,7 +190,11 @@ bool Simulation<N>::moved_too_far(const StepSolution<N>& solution) const {
 
 template <int N>
 StepResult Simulation<N>::step(double dt, bool statics) {
-  if (loop_ && !statics) return explicit_step(dt, scene_.method.damping);
+  if (loop_ && !statics) {
+    const StepResult taken = explicit_step(dt, scene_.method.damping);
+    collect();
+    return taken;
+  }
   StepResult result;
   const StepProblem<N> p = problem(dt, statics);
   StepSolution<N> solution;
@@ -351,10 +355,11 @@ bool Simulation<N>::advance_explicitly(double dt) {
     part *= enforcement_->step_cut(scene_.method);
     if (part * longest < smallest) {
       reason_ = result.reason;
-      return false;
+      break;
     }
   }
-  return true;
+  collect();
+  return remaining == 0.0;
 }
 
 template <int N>
