@@ -12,9 +12,9 @@
 
 namespace openclose::verification {
 
-inline const std::array<std::string, 3> all_methods = {"soft", "hard", "shi"};
+inline const std::array<std::string, 4> all_methods = {"soft", "hard", "shi", "dem"};
 /// Those that find factors of safety of slopes with many blocks.
-inline const std::array<std::string, 2> slope_methods = {"soft", "hard"};
+inline const std::array<std::string, 3> slope_methods = {"soft", "hard", "dem"};
 
 /// One material "rock", gravity 9.81 downwards, joint without cohesion as the block's; `unloaded` start; no blocks yet.
 Scene empty_scene(const analytical::BlockOnPlane& data = {});

@@ -6,7 +6,7 @@
 namespace openclose {
 namespace {
 
-constexpr double cut = 0.5;            ///< [-] on a step that moves a block too far
+constexpr double cut = 0.5;              ///< [-] on a step that moves a block too far
 constexpr int displacement_every = 100;  ///< steps between two looks at the displacement, which costs as much as a step
 
 /// Displacement of the farthest block since this was made.
@@ -55,7 +55,9 @@ SettleResult settle_explicitly(Simulation<N>& simulation, const SettleProgress& 
     ++result.steps;
     result.criterion = "steps";
     result.unbalanced_fraction = step.unbalanced_force / scale;
-    // Forces that were in balance with cohesion that is gone now are to be balanced anew.
+    // A block may swing through its place of rest: what counts is the state after the step. Forces that were in balance with cohesion that is gone now
+    // are to be balanced anew.
+    if (result.unbalanced_fraction <= input.unbalanced_fraction) result.unbalanced_fraction = simulation.unbalanced_force() / scale;
     result.settled = result.unbalanced_fraction <= input.unbalanced_fraction && !step.lost_strength;
     if (result.settled || result.steps % displacement_every == 0) {
       result.displacement = std::max(result.displacement, travel.largest());

@@ -64,6 +64,7 @@ void Simulation<N>::collect() const {
   ledger_.contact_damping += e.contact_damping;
   ledger_.mass_damping += e.mass_damping;
   ledger_.scheme += e.scheme;
+  ledger_.redefinition += e.redefinition;
   ledger_.turnover += e.turnover;
   ledger_.kinetic = system_.kinetic_energy() - start_kinetic_energy_;
 }
@@ -193,7 +194,11 @@ double Simulation<N>::largest_move(const StepSolution<N>& solution) const {
 
 template <int N>
 StepResult Simulation<N>::step(double dt, bool statics) {
-  if (loop_ && !statics) return explicit_step(dt, scene_.method.damping);
+  if (loop_ && !statics) {
+    const StepResult taken = explicit_step(dt, scene_.method.damping);
+    collect();
+    return taken;
+  }
   StepResult result;
   const StepProblem<N> p = problem(dt, statics);
   StepSolution<N> solution;
@@ -321,42 +326,48 @@ StepResult Simulation<N>::explicit_step(double h, MassDamping damping) {
   ++step_counters_.steps;
   step_counters_.longest_step = std::max(step_counters_.longest_step, h);
   result.accepted = true;
-  result.unbalanced_force = loop_->unbalanced_force();
+  result.unbalanced_force = loop_->last_unbalanced_force();
   result.lost_strength = loop_->lost_strength();
   if (loop_->moved_beyond_skin()) positions_changed();
   return result;
 }
 
 template <int N>
+double Simulation<N>::unbalanced_force() {
+  load_loop();
+  return loop_->unbalanced_force();
+}
+
+template <int N>
 bool Simulation<N>::advance_explicitly(double dt) {
   const double smallest = scene_.step.smallest_fraction * dt;
-  double remaining = dt, longest = longest_stable_step(scene_.method.damping);
-  long steps = 0;  // equal ones, of the remaining time
-  for (double part = 1.0; remaining > 0.0;) {
-    const double stable = longest_stable_step(scene_.method.damping);
-    if (steps == 0 || stable != longest) {
-      longest = stable;
+  double remaining = dt, longest = 0.0, part = 1.0;
+  for (long steps = 0; remaining > 0.0;) {  // equal ones, of the remaining time
+    const double now = part * std::min(longest_stable_step(scene_.method.damping), dt);
+    if (steps == 0 || now != longest) {
+      longest = now;
       // A quotient that is whole but for rounding stays whole.
-      steps = std::max(1L, std::lround(std::ceil(remaining / (part * stable) * (1.0 - 1e-12))));
+      steps = std::max(1L, std::lround(std::ceil(remaining / longest * (1.0 - 1e-12))));
     }
     const double h = remaining / static_cast<double>(steps);
-    const StepResult result = [&] {
+    StepResult result;
+    {
       const Stopwatch watch(stage_times_.solution);
-      return explicit_step(h, scene_.method.damping);
-    }();
+      result = explicit_step(h, scene_.method.damping);
+    }
     if (result.accepted) {
       remaining = --steps > 0 ? remaining - h : 0.0;
       part = std::min(1.0, 2.0 * part);
       continue;
     }
-    part = std::min(1.0, h / stable) * enforcement_->step_cut(scene_.method);
-    steps = 0;
-    if (h * enforcement_->step_cut(scene_.method) < smallest) {
+    part *= enforcement_->step_cut(scene_.method);
+    if (part * longest < smallest) {
       reason_ = result.reason;
-      return false;
+      break;
     }
   }
-  return true;
+  collect();
+  return remaining == 0.0;
 }
 
 template <int N>

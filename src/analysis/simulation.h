@@ -14,10 +14,10 @@ namespace openclose {
 
 struct StepCounters {
   long steps = 0;
-  long cuts = 0;        ///< attempts thrown away
-  long iterations = 0;  ///< linear solves, thrown-away attempts included
-  long compliant = 0;   ///< steps of `hard` whose multipliers did not converge: taken with springs
-  long loads = 0;       ///< times the explicit loop took over the state anew
+  long cuts = 0;                        ///< attempts thrown away
+  long iterations = 0;                  ///< linear solves, thrown-away attempts included
+  long compliant = 0;                   ///< steps of `hard` whose multipliers did not converge: taken with springs
+  long loads = 0;                       ///< times the explicit loop took over the state anew
   double smallest_critical_step = 0.0;  ///< [s] of explicit steps, 0 if there were none
   double longest_step = 0.0;            ///< [s] of explicit steps
 };
@@ -57,8 +57,11 @@ class Simulation {
   /// [s] step_fraction of it: the longest step that advance() takes. Local damping, which adds its share to forces that slow a block down, has the
   /// critical step of springs stiffer by that share.
   double longest_stable_step(MassDamping damping);
-  /// One step of the loop with this damping of the motion, for settling.
+  /// One step of the loop with this damping of the motion, for settling. The state stays in the loop: references to it that were taken before do not
+  /// follow, asking again does.
   StepResult explicit_step(double h, MassDamping damping);
+  /// [N] Largest sum of forces on a block now; explicit methods only.
+  double unbalanced_force();
   /// Names the present time, so that a long run's clock does not collect rounding.
   void set_time(double time) { time_ = time; }
 

@@ -212,6 +212,10 @@ int check_command(const Options& options) {
   for (const auto& block : simulation.system().blocks()) area += block.area;
   fmt::print("{}: {} blocks, {} of them free, {:.6g} m2; {} contacts within reach at the start; method {}\n", options.scene_file,
              simulation.system().block_count(), simulation.system().free_count(), area, simulation.contacts().size(), loaded.scene.method.contact);
+  if (simulation.is_explicit()) {
+    fmt::print("critical step {:.6g} s; the longest step taken is {:.6g} s\n", simulation.critical_step(),
+               simulation.longest_stable_step(loaded.scene.method.damping));
+  }
   return exit_success;
 }
 

@@ -18,6 +18,9 @@ constexpr double power_ratio = 0.5;
 constexpr double adaptation = 1.1;
 constexpr double first_viscous = 0.01;
 
+/// [-] Of the skin: with less of it used up the list is kept and the way counted anew from there.
+constexpr double renew_fraction = 0.5;
+
 double square(double x) {
   return x * x;
 }
@@ -115,6 +118,8 @@ void CentralDifference<N>::load_contacts(const StepProblem<N>& problem) {
     damped_ |= joint.damping_ratio > 0.0;
     const Place at = place(link);
     carry_now(link, at);
+    // What the list has moved apart is open before anything moves.
+    if (link.gap > link.strength.tension / link.normal_stiffness) link.status = ContactStatus::open;
     push(link, at);
     links_.push_back(link);
   }
@@ -212,7 +217,7 @@ bool CentralDifference<N>::move(double h, double span, double limit, MassDamping
     next.turn = m.turns * (keep * v.turn + span * (damped(f.turn, v.turn) * m.per_moment)) * per_viscous;
     // (a + b)^2 <= 2 (a^2 + b^2) for the speed of the centroid and of the farthest point around it.
     fastest = std::max(fastest, next.x * next.x + next.y * next.y + square(next.turn * m.radius));
-    unbalanced = std::max(unbalanced, std::max(f.x * f.x + f.y * f.y, square(m.turns * f.turn / m.radius)));
+    unbalanced = std::max(unbalanced, force_squared(i));
   }
   const double farthest = h * std::sqrt(2.0 * fastest);
   if (!(farthest <= limit)) {
@@ -336,16 +341,40 @@ void CentralDifference<N>::lose_strength(Link& link, const Place& at) {
   link.bonded = link.breakable = false;
   link.strength.break_bond(joint);
   carry_now(link, at);
+  if (at.gap <= 0.0 || link.status == ContactStatus::open) return;
+  // It slipped while it was pulling: nothing pulls any more.
+  link.status = ContactStatus::open;
+  energies_.redefinition += 0.5 * link.normal_stiffness * square(at.gap);
 }
 
 template <int N>
-bool CentralDifference<N>::moved_beyond_skin() const {
-  return moved_ > tolerance::contact_skin_m;
+bool CentralDifference<N>::moved_beyond_skin() {
+  if (moved_ <= tolerance::contact_skin_m) return false;
+  // The way may have been longer than where it has led to.
+  double farthest = 0.0;
+  for (std::size_t i = 0; i < inertia_.size(); ++i) {
+    farthest = std::max(farthest, std::hypot(poses_[i].x, poses_[i].y) + inertia_[i].radius * std::abs(rates_[i].angle));
+  }
+  moved_ = 2.0 * farthest;
+  return moved_ > renew_fraction * tolerance::contact_skin_m;
+}
+
+template <int N>
+double CentralDifference<N>::last_unbalanced_force() const {
+  return std::sqrt(unbalanced_);
 }
 
 template <int N>
 double CentralDifference<N>::unbalanced_force() const {
-  return std::sqrt(unbalanced_);
+  double largest = 0.0;
+  for (std::size_t i = 0; i < inertia_.size(); ++i) largest = std::max(largest, force_squared(i));
+  return std::sqrt(largest);
+}
+
+template <int N>
+double CentralDifference<N>::force_squared(std::size_t i) const {
+  const Rate& f = forces_[i];
+  return std::max(f.x * f.x + f.y * f.y, square(inertia_[i].turns * f.turn / inertia_[i].radius));
 }
 
 template <int N>

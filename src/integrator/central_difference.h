@@ -2,19 +2,20 @@
 //
 //   v(t + h/2) = v(t - h/2) + h a(t),  M a = F(x(t)) + damping force,  x(t + h) = x(t) + h v(t + h/2)
 //
-// A step is two passes, over the blocks (motion) and over the contacts (forces). It searches nothing, allocates nothing and copies no state: it works on
-// arrays of its own, which load() takes from the block system and store_*() give back when somebody asks. Between two loads
-//   - a block is what has changed since the load: displacement, cosine - 1 and sine of its rotation (once a block, not a contact), in one line of cache;
+// A step is two passes, over the blocks (motion) and over the contacts (forces). It searches nothing, allocates nothing and copies no state: it works
+// on arrays of its own, which load() takes from the block system and store_*() give back when somebody asks. Between two loads
+//   - a block is what has changed since the load: displacement, cosine - 1 and sine of its rotation (once a block, not a contact), in one line of
+//   cache;
 //   - a contact is one record with all its constants, in the order of the list; gap and slip follow from
 //       gap = gap_0 + (n - n_0) . w_0 + n . D,   slip = (t - t_0) . w_0 + t . D,   D = u_v - u_e + (R_v - 1) r_v
 //     (r_v arm of the corner, w_0 from the edge's centroid to the corner, both at the load), free of cancellation and exact whatever the rotation;
 //   - contacts too far apart to close before the next load are not looked at.
-// moved_beyond_skin() tells, from the largest speed alone, when blocks may have moved tolerance::contact_skin_m against each other since the load: then
-// the list is to be renewed.
+// moved_beyond_skin() tells when blocks may have moved tolerance::contact_skin_m against each other since the load: then the list is to be renewed.
+// It adds up the largest speed of each step, and looks at the blocks only when that sum has reached the skin.
 //
-// Damping of the motion: `local` (Cundall, 1987, as in UDEC) adds -alpha |F| sign(v) to every component of the unbalanced force F, which takes nothing
-// from steady motion. `automatic` (Cundall, 1982, as in UDEC's adaptive global damping) adds -beta M v, beta rising or falling from step to step by
-// a constant factor so that the power it takes is half the rate at which the kinetic energy changes.
+// Damping of the motion: `local` (Cundall, 1987, as in UDEC) adds -alpha |F| sign(v) to every component of the unbalanced force F, which takes
+// nothing from steady motion. `automatic` (Cundall, 1982, as in UDEC's adaptive global damping) adds -beta M v, beta rising or falling from step to
+// step by a constant factor so that the power it takes is half the rate at which the kinetic energy changes.
 #pragma once
 
 #include <vector>
@@ -26,7 +27,7 @@ namespace openclose {
 /// Where energy went in the steps since the last question [J]; signs and meaning as in analysis/energy_ledger.h.
 struct ExplicitEnergies {
   double gravity = 0.0, loads = 0.0, support_springs = 0.0;
-  double friction = 0.0, contact_damping = 0.0, mass_damping = 0.0, scheme = 0.0;
+  double friction = 0.0, contact_damping = 0.0, mass_damping = 0.0, scheme = 0.0, redefinition = 0.0;
   double turnover = 0.0;
 };
 
@@ -40,16 +41,17 @@ class CentralDifference {
   /// Takes over blocks, velocities of the middle of the last step, contacts with their history, and the forces they carry now.
   void load(const StepProblem<N>& problem);
 
-  /// Moves the blocks by a step of h; `span` is the time between the middles of the last and this step. False, and nothing has changed, if a block would
-  /// move by more than `limit` [m].
+  /// Moves the blocks by a step of h; `span` is the time between the middles of the last and this step. False, and nothing has changed, if a block
+  /// would move by more than `limit` [m].
   bool move(double h, double span, double limit, MassDamping damping, double local_damping);
   /// Brings gaps, forces and energies to the new positions. To be called after every move().
   void follow_contacts();
 
-  bool moved_beyond_skin() const;
-  double critical_step() const { return critical_step_; }  ///< [s] of the contacts that may close before the next load
-  double unbalanced_force() const;                         ///< [N] largest force on a block when the last step began
-  bool lost_strength() const { return lost_strength_; }    ///< a contact has lost cohesion or tensile strength in the last step
+  bool moved_beyond_skin();
+  double critical_step() const { return critical_step_; }      ///< [s] of the contacts that may close before the next load
+  double last_unbalanced_force() const;                        ///< [N] largest force on a block when the last step began
+  double unbalanced_force() const;                             ///< [N] now; a pass over the blocks
+  bool lost_strength() const { return lost_strength_; }        ///< a contact has lost cohesion or tensile strength in the last step
   double max_penetration() const { return max_penetration_; }  ///< [m] since the load
 
   /// Moves the blocks of the system to where they are now, with the velocities of the middle of the last step.
@@ -107,15 +109,17 @@ class CentralDifference {
   void load_blocks(const StepProblem<N>& problem);
   void load_contacts(const StepProblem<N>& problem);
   void load_points(const StepProblem<N>& problem);
-  Place place(const Link& link) const;
+  // In the innermost loop; as calls they cost more than what they do.
+  [[gnu::always_inline]] inline Place place(const Link& link) const;
+  [[gnu::always_inline]] inline void push(const Link& link, const Place& at);
   ForceTrials trials(const Link& link, const Place& at, double elastic_shear) const;
   void carry_now(Link& link, const Place& at);
   void lose_strength(Link& link, const Place& at);
-  void push(const Link& link, const Place& at);
   void begin_forces();
   void add_point_forces(bool step);
   template <bool damped>
   void follow_links();
+  double force_squared(std::size_t i) const;  ///< [N2] on a block, a moment counting at the block's radius
   void adapt(double taken, double kinetic_change, double h);
 
   std::vector<Pose> poses_;  ///< per free block, and a last one for all that are fixed

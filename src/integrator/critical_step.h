@@ -6,8 +6,9 @@
 // They come from a bound of Gershgorin's kind, by blocks: what a contact stores, k (x_1 + x_2)^2/2 with x_i the parts of its two blocks in the closure,
 // is at most the sum of k (1 + m_1/m_2) x_1^2/2 and k (1 + m_2/m_1) x_2^2/2, so that no eigenvalue exceeds the largest one of a single block with its
 // contacts stiffened so (not at all against a fixed block). The factor makes it exact for two blocks on one spring, and for blocks on fixed ones.
-// Power iteration was the other choice: it comes nearer (the bound's step is 5-15 % below 2/w_max in jointed slopes), but from the unsafe side, and at
-// tens of passes over the contacts, which the run pays again whenever they change; the bound takes one.
+// Power iteration was the other choice: it comes nearer, but from the unsafe side (6 passes: 5 % too long), and takes some fifty passes over the
+// contacts, which the run pays again whenever they change; the bound takes one. Measured on the paper's examples 3.3 and 3.4: 0.93 and 0.94 of 2/w_max
+// (0.00238 of 0.00256 s, 0.000814 of 0.000863 s), and never more than it.
 #pragma once
 
 #include "openclose/integrator/enforcement.h"

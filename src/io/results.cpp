@@ -36,19 +36,11 @@ std::string field(const std::string& text) {
 
 /// The ledger's entries with their names, in the order of the files.
 std::vector<std::pair<const char*, double>> entries(const EnergyLedger& l) {
-  return {{"kinetic_j", l.kinetic},
-          {"gravity_j", l.gravity},
-          {"contact_springs_j", l.contact_springs},
-          {"support_springs_j", l.support_springs},
-          {"loads_j", l.loads},
-          {"friction_j", l.friction},
-          {"contact_damping_j", l.contact_damping},
-          {"mass_damping_j", l.mass_damping},
-          {"impact_j", l.impact},
-          {"scheme_j", l.scheme},
-          {"redefinition_j", l.redefinition},
-          {"turnover_j", l.turnover},
-          {"imbalance_j", l.imbalance()}};
+  return {
+      {"kinetic_j", l.kinetic},      {"gravity_j", l.gravity},   {"contact_springs_j", l.contact_springs}, {"support_springs_j", l.support_springs},
+      {"loads_j", l.loads},          {"friction_j", l.friction}, {"contact_damping_j", l.contact_damping}, {"mass_damping_j", l.mass_damping},
+      {"impact_j", l.impact},        {"scheme_j", l.scheme},     {"redefinition_j", l.redefinition},       {"turnover_j", l.turnover},
+      {"imbalance_j", l.imbalance()}};
 }
 
 }  // namespace
@@ -189,6 +181,9 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
                   {"statics", scene.method.statics},
                   {"residual_tolerance", scene.method.residual_tolerance},
                   {"skip_search", scene.method.skip_search},
+                  {"step_fraction", scene.method.step_fraction},
+                  {"damping", word_for(mass_damping_words, scene.method.damping)},
+                  {"local_damping", scene.method.local_damping},
                   {"dt_s", scene.step.dt},
                   {"max_iterations", scene.method.max_iterations},
                   {"max_displacement_m", scene.step.max_displacement},
@@ -202,6 +197,7 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
                     {"unbalanced_fraction", scene.settle.unbalanced_fraction},
                     {"first_dt_s", scene.settle.first_dt},
                     {"max_steps", scene.settle.max_steps},
+                    {"max_explicit_steps", scene.settle.max_explicit_steps},
                     {"failure_displacement_m", scene.settle.failure_displacement},
                     {"relative_displacement", scene.settle.relative_displacement},
                     {"steady_steps", scene.settle.steady_steps},
@@ -238,6 +234,9 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
                    {"factorisations", linear.factorisations},
                    {"symbolic", linear.symbolic},
                    {"symbolic_skipped", linear.symbolic_skipped}};
+  if (simulation.is_explicit()) {
+    j["explicit"] = {{"critical_step_s", steps.smallest_critical_step}, {"longest_step_s", steps.longest_step}, {"state_loads", steps.loads}};
+  }
   j["stage_s"] = {{"detection", cpu.detection}, {"solution", cpu.solution}, {"bookkeeping", cpu.bookkeeping}};
   std::ofstream file = folder.open("summary.json");
   file << j.dump(2) << '\n';

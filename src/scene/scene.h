@@ -125,12 +125,12 @@ struct SettleInput {
   double unbalanced_fraction = 1e-8;  ///< [-] largest unbalanced force over the weight of the heaviest free block
   double first_dt = 1.0;              ///< [s] first pseudo-time step; grows tenfold while steps succeed
   int max_steps = 200;
-  int max_explicit_steps = 1000000;   ///< dem: instead of max_steps
   double failure_displacement = 1.0;  ///< [m] a block that moved farther is failing
   SettleCriterion criterion = SettleCriterion::unbalanced_force;
   double relative_displacement = 1e-5;  ///< [-] paper: of a step, over half the height of the model
   int steady_steps = 100;               ///< paper: steps in a row that must stay below
   int max_time_steps = 10000;           ///< paper: of step.dt, for the first settling
+  int max_explicit_steps = 1000000;   ///< dem: instead of max_steps
 };
 
 struct StrengthReductionInput {

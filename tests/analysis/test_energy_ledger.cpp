@@ -15,6 +15,11 @@ namespace {
 
 constexpr double g = 9.81;
 
+/// Velocities at mid-steps: the books are closed half a step before the end.
+bool closes_at_midstep(const std::string& method) {
+  return method == "hard" || method == "dem";
+}
+
 double relative_imbalance(const EnergyLedger& l) {
   return std::abs(l.imbalance()) / l.turnover;
 }
@@ -51,12 +56,11 @@ TEST_CASE("ledger of a fall", "[analysis][energy]") {
     advance(simulation, 200);
     const double t = 0.2, fall = 0.5 * g * t * t;
     const EnergyLedger& l = simulation.ledger();
-    if (method != "hard") {
+    if (!closes_at_midstep(method)) {
       CHECK(l.gravity == Approx(-block_weight * fall).epsilon(1e-12));
       CHECK(l.kinetic == Approx(block_weight * fall).epsilon(1e-12));
       CHECK(l.turnover == Approx(2.0 * block_weight * fall).epsilon(1e-12));
     } else {
-      // Velocities at mid-steps: the books are closed half a step before the end.
       const double v = g * (t - 0.5 * scene.step.dt);
       CHECK(l.kinetic == Approx(0.5 * test::block_mass * v * v).epsilon(1e-12));
       CHECK(l.gravity == Approx(-0.5 * test::block_mass * v * v).epsilon(1e-12));
@@ -80,8 +84,14 @@ TEST_CASE("ledger of a support: W^2/2k stored, as much lost on the way to rest",
     const double stored = 0.5 * block_weight * block_weight / k;
     // The sink is right to the fraction of the weight that settling leaves, 1e-8.
     CHECK(l.support_springs == Approx(stored).epsilon(3e-8));
-    CHECK(l.gravity == Approx(-2.0 * stored).epsilon(3e-8));
-    CHECK(l.scheme == Approx(stored).epsilon(3e-8));
+    if (method == "dem") {
+      // The first half step from rest lacks a quarter of the path of its first step.
+      CHECK(l.gravity == Approx(-stored - l.mass_damping).epsilon(3e-8));
+      CHECK(l.mass_damping > 0.5 * stored);
+    } else {
+      CHECK(l.gravity == Approx(-2.0 * stored).epsilon(3e-8));
+      CHECK(l.scheme == Approx(stored).epsilon(3e-8));
+    }
     CHECK(l.kinetic == 0.0);
     CHECK(relative_imbalance(l) < 1e-14);
   }
@@ -137,12 +147,14 @@ TEST_CASE("ledger of sliding: mu N s", "[analysis][energy]") {
     const auto start = simulation.system().displacement(1);
     advance(simulation, 300);
     Eigen::Vector3d moved = simulation.system().displacement(1) - start;
-    // Hard contacts' books are closed half a step early, with the path up to there.
-    if (method == "hard") moved -= 0.5 * scene.step.dt * 0.5 * (simulation.velocity(1) + simulation.system().velocity(1));
+    const double whole_path = moved.head<2>().dot(test::downhill(slope));
+    // The path up to where the books are closed.
+    if (closes_at_midstep(method)) moved -= 0.5 * scene.step.dt * 0.5 * (simulation.velocity(1) + simulation.system().velocity(1));
     const double s = moved.head<2>().dot(test::downhill(slope));
     const EnergyLedger& l = simulation.ledger();
     CHECK(s > 0.05);
-    CHECK(l.friction == Approx(std::tan(phi) * block_weight * std::cos(slope) * s).epsilon(1e-8));
+    // What soft contacts dissipate goes with their slip, up to the end of the step.
+    CHECK(l.friction == Approx(std::tan(phi) * block_weight * std::cos(slope) * (method == "dem" ? whole_path : s)).epsilon(1e-8));
     CHECK(l.gravity == Approx(-block_weight * std::sin(slope) * s).epsilon(1e-8));
     CHECK(std::abs(l.impact) < 1e-8 * l.turnover);
     CHECK(relative_imbalance(l) < 1e-10);

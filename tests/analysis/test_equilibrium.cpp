@@ -34,7 +34,7 @@ TEST_CASE("the criterion by default is that of settle()", "[analysis][equilibriu
 }
 
 TEST_CASE("the paper's criterion ends where the block rests", "[analysis][equilibrium]") {
-  for (const std::string& method : all_methods) {
+  for (const std::string method : {"soft", "hard", "shi"}) {
     INFO(method);
     Scene scene = paper_scene();
     scene.method.contact = method;
@@ -112,7 +112,7 @@ TEST_CASE("a step that cannot be taken ends the paper's settling with its reason
 
 TEST_CASE("factor of safety by the paper's criterion", "[analysis][equilibrium]") {
   const double slope = 30.0 * test::degree, exact = std::tan(40.0 * test::degree) / std::tan(slope);
-  for (const std::string& method : all_methods) {
+  for (const std::string method : {"soft", "hard", "shi"}) {
     INFO(method);
     Scene scene = test::block_on_incline(slope);
     scene.method.contact = method;

@@ -36,8 +36,9 @@ TEST_CASE("every listed enforcement can be made by its name", "[integrator][regi
 
 TEST_CASE("an unknown enforcement is refused with the list of known ones", "[integrator][registry]") {
   CHECK_THROWS_AS(make_enforcement<3>(method("sotf")), InputError);
-  CHECK_THROWS_WITH(make_enforcement<3>(method("sotf")),
-                    ContainsSubstring("scene.toml:7: method.contact: \"sotf\"") && ContainsSubstring("\"soft\"") && ContainsSubstring("\"hard\"") && ContainsSubstring("\"shi\""));
+  CHECK_THROWS_WITH(make_enforcement<3>(method("sotf")), ContainsSubstring("scene.toml:7: method.contact: \"sotf\"") &&
+                                                             ContainsSubstring("\"soft\"") && ContainsSubstring("\"hard\"") &&
+                                                             ContainsSubstring("\"shi\""));
 }
 
 TEST_CASE("names are compared whole", "[integrator][registry]") {
@@ -52,7 +53,8 @@ TEST_CASE("theta is soft's own: other enforcements refuse it", "[integrator][reg
   for (const std::string name : {"hard", "shi"}) {
     const auto enforcement = make_enforcement<3>(method(name));
     CHECK_THROWS_AS(enforcement->make_time_scheme(method(name, theta)), InputError);
-    CHECK_THROWS_WITH(enforcement->make_time_scheme(method(name, theta)), ContainsSubstring("scene.toml:7: method.theta: ") && ContainsSubstring(name));
+    CHECK_THROWS_WITH(enforcement->make_time_scheme(method(name, theta)),
+                      ContainsSubstring("scene.toml:7: method.theta: ") && ContainsSubstring(name));
     CHECK(enforcement->make_time_scheme(method(name))->end_weight() == 1.0);
   }
 }
@@ -66,4 +68,8 @@ TEST_CASE("shi cuts its steps by the factor of the scene, the others halve them"
   input.step_cut = 0.123;
   CHECK(make_enforcement<3>(input)->step_cut(input) == 0.123);
   for (const std::string name : {"soft", "hard"}) CHECK(make_enforcement<3>(method(name))->step_cut(input) == 0.5);
+}
+
+TEST_CASE("only dem is explicit", "[integrator][registry]") {
+  for (const std::string& name : all_methods) CHECK(make_enforcement<3>(method(name))->is_explicit() == (name == "dem"));
 }

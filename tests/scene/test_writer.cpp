@@ -48,6 +48,9 @@ void check_same(const MethodInput& a, const MethodInput& b) {
   CHECK(a.closing_tolerance == b.closing_tolerance);
   CHECK(a.max_open_close_iterations == b.max_open_close_iterations);
   CHECK(a.step_cut == b.step_cut);
+  CHECK(a.step_fraction == b.step_fraction);
+  CHECK(a.damping == b.damping);
+  CHECK(a.local_damping == b.local_damping);
 }
 
 void check_same_points(const Scene& a, const Scene& b) {
@@ -97,6 +100,7 @@ void check_same(const Scene& a, const Scene& b) {
   CHECK(a.settle.unbalanced_fraction == b.settle.unbalanced_fraction);
   CHECK(a.settle.first_dt == b.settle.first_dt);
   CHECK(a.settle.max_steps == b.settle.max_steps);
+  CHECK(a.settle.max_explicit_steps == b.settle.max_explicit_steps);
   CHECK(a.settle.failure_displacement == b.settle.failure_displacement);
   CHECK(a.settle.criterion == b.settle.criterion);
   CHECK(a.settle.relative_displacement == b.settle.relative_displacement);
@@ -160,6 +164,9 @@ Scene random_scene(unsigned seed) {
   scene.method.closing_tolerance = number();
   scene.method.max_open_close_iterations = 7;
   scene.method.step_cut = fraction(generator);
+  scene.method.step_fraction = fraction(generator);
+  scene.method.damping = MassDamping::local;
+  scene.method.local_damping = fraction(generator);
   scene.step = {number(), number(), fraction(generator)};
   scene.end_time = number();
   scene.output_every = number();
@@ -168,7 +175,7 @@ Scene random_scene(unsigned seed) {
   const double first = number();
   scene.milestones = {first, 2.0 * first};
   scene.snapshot_times = {0.0, first};
-  scene.settle = {fraction(generator), number(), 77, number(), SettleCriterion::paper, fraction(generator), 78, 79};
+  scene.settle = {fraction(generator), number(), 77, number(), SettleCriterion::paper, fraction(generator), 78, 79, 80};
   scene.strength_reduction = {number(), 1.0 + number(), {number(), number()}, number()};
   return scene;
 }

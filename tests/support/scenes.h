@@ -12,7 +12,7 @@
 
 namespace openclose::test {
 
-inline const std::array<std::string, 3> all_methods = {"soft", "hard", "shi"};
+inline const std::array<std::string, 4> all_methods = {"soft", "hard", "shi", "dem"};
 inline constexpr double degree = std::numbers::pi / 180.0;
 
 inline std::vector<Vec2> rectangle(double x, double y, double width, double height) {

@@ -27,6 +27,10 @@ void free_spin(Report& report) {
   const int steps = 100;
   for (const std::string& method : all_methods) {
     for (const RotationKind kind : {RotationKind::exact, RotationKind::linear}) {
+      if (method == "dem" && kind == RotationKind::linear) {
+        report.leave_out("area ratio after 10 rad, linear rotation", method, "Shi's rotation; the explicit method has the exact one only");
+        continue;
+      }
       Scene scene = empty_scene();
       scene.gravity = Vec2::Zero();
       scene.method.contact = method;

@@ -48,7 +48,7 @@ void corner_forces(Report& report) {
   analytical::BlockOnPlane data;
   data.friction_angle = 40.0 * analytical::degree;
   const auto expected = analytical::holding_corner_forces(data);
-  for (const std::string method : {"soft", "shi"}) {
+  for (const std::string method : {"soft", "shi", "dem"}) {
     std::vector<double> compliance, lower, upper;
     for (const double factor : {1.0, 4.0, 16.0}) {
       analytical::BlockOnPlane stiffer = data;
@@ -102,7 +102,9 @@ void drift(Report& report) {
       if (s.time >= 1.0) worst = std::max(worst, (s.motion.displacement - samples[1].motion.displacement).norm());
     }
     const bool carried = !samples.empty() && holds(forces_of(simulation, true), data) == 1.0;
-    report.near("drift over 1e5 steps", method, 0.0, carried ? worst : not_measured(), 1e-12, "m", "static equilibrium");
+    // The explicit method has nothing that damps the vibration with which the last of the unbalanced force is worked off.
+    const double vibration = method == "dem" ? 2.0 * scene.settle.unbalanced_fraction * data.weight() / (2.0 * data.normal_stiffness) : 0.0;
+    report.near("drift over 1e5 steps", method, 0.0, carried ? worst : not_measured(), 1e-12 + vibration, "m", "static equilibrium");
   }
 }
 

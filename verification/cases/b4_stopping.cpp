@@ -117,6 +117,7 @@ void rebound(Report& report, const Throw& t) {
     }
   }
   report.order("level, rotation locked: centre after the stop", "soft", steps, errors, 1.5, 2.5, "d - mu W/(2 ks); trapezoid, order 2");
+  report.leave_out("rebound after the stop", "dem", "its order is checked on the same motion in case B1");
   report.leave_out("rebound after the stop", "hard", "rigid contacts do not swing");
   report.leave_out("rebound after the stop", "shi", "Newmark (1/2, 1) damps the swing; the place of rest is checked instead");
 }

@@ -57,7 +57,7 @@ void four_block_corner(Report& report) {
       stiffer.normal_stiffness *= factor;
       stiffer.shear_stiffness *= factor;
       const double w = analytical::bounce_frequency(stiffer);
-      for (const std::string method : {"soft", "shi"}) {
+      for (const std::string method : {"soft", "shi", "dem"}) {
         report.near(name + text("displacement, {} kn", factor), method, expected, slide(report, scene_of(stiffer, degrees, method, 1e-4), stiffer),
                     data.gravity / w * 0.5, "m", "eq. (8); tolerance g t/w of the transient");
       }

@@ -1,0 +1,260 @@
+// The explicit loop against the same steps taken plainly, one by one, and what it does between two detections.
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "openclose/analysis/run.h"
+#include "openclose/integrator/registry.h"
+#include "support/catch.h"
+#include "support/scenes.h"
+
+using namespace openclose;
+
+namespace {
+
+Scene explicit_scene(Scene scene, double dt) {
+  scene.method.contact = "dem";
+  scene.step.dt = dt;
+  return scene;
+}
+
+Scene tumbling() {
+  return explicit_scene(test::tumbling_blocks(), 5e-4);
+}
+
+Scene sliding() {
+  Scene scene = explicit_scene(test::block_on_incline(35.0 * test::degree), 2e-4);
+  scene.joints[0].friction_angle = 20.0 * test::degree;
+  return scene;
+}
+
+/// On its own edge, with a load beside the centroid, a support, cohesion that goes and tension that breaks.
+Scene breaking() {
+  Scene scene = explicit_scene(test::block_on_base(), 2e-4);
+  scene.joints[0].cohesion = 4e4;
+  scene.joints[0].tensile_strength = 1e4;
+  scene.joints[0].cohesion_behaviour = CohesionBehaviour::lost_on_slip;
+  scene.loads = {{1, {1.5, 1.0}, {1e5, 2e4}}};
+  scene.supports = {{1, {0.0, 0.5}, {3e5, 1e5}}};
+  return scene;
+}
+
+Scene rocking_column() {
+  Scene scene = explicit_scene(test::column_of_blocks(3), 2e-4);
+  scene.blocks[3].velocity = {0.05, 0.0};
+  return scene;
+}
+
+Scene locked() {
+  Scene scene = explicit_scene(test::block_on_base(), 2e-4);
+  scene.blocks[1].rotation_locked = true;
+  scene.blocks[1].velocity = {0.3, -0.1};
+  return scene;
+}
+
+Simulation<3> plain(const Scene& scene) {
+  return Simulation<3>(scene, make_dem<3>());
+}
+
+/// Largest difference of positions [m] and of whole-step velocities times 1 s.
+double difference(const Simulation<3>& a, const Simulation<3>& b) {
+  double largest = 0.0;
+  for (int i : a.system().free_blocks()) {
+    largest = std::max(largest, (a.system().displacement(i) - b.system().displacement(i)).cwiseAbs().maxCoeff());
+    largest = std::max(largest, (a.velocity(i) - b.velocity(i)).cwiseAbs().maxCoeff());
+  }
+  return largest;
+}
+
+/// What becomes of a change of gravity in its last digits: the measure of what rounding may do.
+double rounding_of(const Scene& scene, int steps) {
+  Scene changed = scene;
+  changed.gravity *= 1.0 + 1e-15;
+  Simulation<3> a = plain(scene), b = plain(changed);
+  double largest = 0.0;
+  for (int i = 0; i < steps; ++i) {
+    a.step(scene.step.dt, false);
+    b.step(scene.step.dt, false);
+    largest = std::max(largest, difference(a, std::as_const(b)));
+  }
+  return largest;
+}
+
+double difference(const EnergyLedger& a, const EnergyLedger& b) {
+  double largest = 0.0;
+  for (const auto entry :
+       {&EnergyLedger::kinetic, &EnergyLedger::gravity, &EnergyLedger::contact_springs, &EnergyLedger::support_springs, &EnergyLedger::loads,
+        &EnergyLedger::friction, &EnergyLedger::contact_damping, &EnergyLedger::scheme, &EnergyLedger::redefinition, &EnergyLedger::turnover}) {
+    largest = std::max(largest, std::abs(a.*entry - b.*entry));
+  }
+  return largest / b.turnover;
+}
+
+}  // namespace
+
+TEST_CASE("the loop moves blocks as the plain steps do, contacts renewed in every step", "[analysis][explicit]") {
+  struct Case {
+    const char* name;
+    Scene scene;
+    int steps;
+  };
+  const Case c = GENERATE(values<Case>({{"sliding", sliding(), 5000},
+                                        {"breaking", breaking(), 5000},
+                                        {"rocking", rocking_column(), 5000},
+                                        {"locked", locked(), 5000},
+                                        {"tumbling", tumbling(), 600}}));
+  const double damping_ratio = GENERATE(0.0, 0.2);
+  INFO(c.name << ", damping ratio " << damping_ratio);
+  Scene scene = c.scene;
+  scene.joints[0].damping_ratio = damping_ratio;
+  Simulation<3> loop(scene), reference = plain(scene);
+  for (int i = 0; i < c.steps; ++i) {
+    REQUIRE(loop.step(scene.step.dt, false).accepted);
+    loop.positions_changed();
+    REQUIRE(reference.step(scene.step.dt, false).accepted);
+  }
+  // Gaps are rounded in every step, gravity only once; contacts that rattle or collide multiply both.
+  // A gap rounded by 1e-15 m changes a velocity by w^2 dt 1e-15 m = 1e-13 m/s, at random in 5000 steps; collisions multiply it.
+  const double rounding = 100.0 * rounding_of(scene, c.steps) + (std::string(c.name) == "tumbling" ? 1e-9 : 1e-11);
+  INFO("rounding " << rounding);
+  CHECK(rounding < 1e-4);
+  CHECK(difference(loop, std::as_const(reference)) < rounding);
+  CHECK(difference(loop.ledger(), reference.ledger()) < 1e4 * rounding);
+  CHECK(loop.max_penetration() == Approx(reference.max_penetration()).epsilon(1e-6));
+  // The scenes do what their names say.
+  CHECK(loop.system().displacement(1).cwiseAbs().maxCoeff() > 1e-5);
+}
+
+TEST_CASE("left alone the loop keeps to the plain steps where lengths do not change", "[analysis][explicit]") {
+  Scene scene = GENERATE(sliding(), locked());
+  scene.joints[0].damping_ratio = GENERATE(0.0, 0.2);
+  Simulation<3> loop(scene), reference = plain(scene);
+  for (int i = 0; i < 5000; ++i) {
+    REQUIRE(loop.step(scene.step.dt, false).accepted);
+    REQUIRE(reference.step(scene.step.dt, false).accepted);
+  }
+  CHECK(loop.step_counters().loads < 5000);
+  CHECK(difference(loop, std::as_const(reference)) < 100.0 * rounding_of(scene, 5000) + 1e-11);
+}
+
+TEST_CASE("what was asked for once follows the run", "[analysis][explicit]") {
+  Scene scene = explicit_scene(test::falling_block(), 1e-2);
+  Simulation<3> simulation(scene);
+  const auto& system = simulation.system();
+  REQUIRE(simulation.advance(scene.step.dt));
+  CHECK(system.displacement(0)[1] < 0.0);
+  const double before = system.displacement(0)[1];
+  REQUIRE(simulation.step(scene.step.dt, false).accepted);
+  CHECK(system.displacement(0)[1] < before);
+}
+
+TEST_CASE("looking at a run does not change it", "[analysis][explicit]") {
+  const Scene scene = rocking_column();
+  Simulation<3> alone(scene), watched(scene);
+  for (int i = 0; i < 300; ++i) {
+    REQUIRE(alone.advance(scene.step.dt));
+    REQUIRE(watched.advance(scene.step.dt));
+    std::as_const(watched).system();
+    watched.velocity(1);
+    watched.ledger();
+  }
+  // Displacements are added up in more parts.
+  CHECK(difference(alone, watched) < 1e-12);
+  CHECK(alone.step_counters().loads == watched.step_counters().loads);
+}
+
+TEST_CASE("the explicit ledger closes, with damping of the motion too", "[analysis][explicit][energy]") {
+  Scene scene = GENERATE(tumbling(), breaking(), sliding());
+  scene.method.damping = GENERATE(MassDamping::none, MassDamping::local, MassDamping::automatic);
+  scene.joints[0].damping_ratio = GENERATE(0.0, 0.3);
+  Simulation<3> simulation(scene);
+  for (int i = 0; i < 1000; ++i) REQUIRE(simulation.advance(scene.step.dt));
+  const EnergyLedger& l = simulation.ledger();
+  CHECK(std::abs(l.imbalance()) < 1e-10 * l.turnover);
+  CHECK((l.mass_damping > 1e-4 * l.turnover) == (scene.method.damping != MassDamping::none));
+}
+
+TEST_CASE("settling explicitly finds the closure under the weight", "[analysis][explicit][settle]") {
+  Scene scene = explicit_scene(test::column_of_blocks(4), 1e-3);
+  scene.method.damping = GENERATE(MassDamping::none, MassDamping::local, MassDamping::automatic);
+  Simulation<3> simulation(scene);
+  const SettleResult settled = settle(simulation);
+  REQUIRE(settled.settled);
+  CHECK(settled.unbalanced_fraction <= scene.settle.unbalanced_fraction);
+  // Forces balance to 1e-8 of the weight of one block, closures with them.
+  double carried = 0.0;
+  for (const Contact& c : simulation.contacts()) carried += c.edge_block == 0 || c.vertex_block == 0 ? c.normal_force : 0.0;
+  CHECK(carried == Approx(4.0 * test::block_weight).epsilon(1e-7));
+  CHECK(simulation.system().kinetic_energy() == 0.0);
+  const EnergyLedger& l = simulation.ledger();
+  CHECK(std::abs(l.imbalance()) < 1e-10 * l.turnover);
+}
+
+TEST_CASE("what cannot be held fails by displacement, what takes too long by steps", "[analysis][explicit][settle]") {
+  Scene scene = sliding();
+  scene.settle.failure_displacement = 0.3;
+  Simulation<3> slides(scene);
+  const SettleResult failed = settle(slides);
+  CHECK_FALSE(failed.settled);
+  CHECK(failed.criterion == "displacement");
+  scene.settle.max_explicit_steps = 10;
+  Simulation<3> slow(scene);
+  const SettleResult steps = settle(slow);
+  CHECK_FALSE(steps.settled);
+  CHECK(steps.criterion == "steps");
+  CHECK(steps.steps == 10);
+}
+
+TEST_CASE("an interval is divided into equal steps below the critical one", "[analysis][explicit]") {
+  Scene scene = explicit_scene(test::block_on_base(), 1e-1);
+  Simulation<3> simulation(scene);
+  const double longest = 0.9 * simulation.critical_step();
+  REQUIRE(simulation.advance(scene.step.dt));
+  const auto steps = static_cast<long>(std::ceil(scene.step.dt / longest));
+  CHECK(simulation.step_counters().steps == steps);
+  CHECK(simulation.step_counters().longest_step == Approx(scene.step.dt / static_cast<double>(steps)).epsilon(1e-10));
+  CHECK(simulation.time() == Approx(scene.step.dt).epsilon(1e-12));
+  // A shorter interval is one step.
+  REQUIRE(simulation.advance(0.5 * longest));
+  CHECK(simulation.step_counters().steps == steps + 1);
+}
+
+TEST_CASE("a step that moves a block too far is taken in parts and leaves no trace", "[analysis][explicit]") {
+  Scene scene = explicit_scene(test::falling_block(), 1.0);
+  scene.blocks[0].velocity = {1.0, 0.0};
+  Simulation<3> simulation(scene);
+  REQUIRE(simulation.advance(1.0));
+  CHECK(simulation.step_counters().cuts > 0);
+  CHECK(simulation.system().displacement(0)[0] == Approx(1.0).epsilon(1e-12));
+  CHECK(simulation.system().displacement(0)[1] == Approx(-0.5 * 9.81).epsilon(1e-12));
+  CHECK(std::abs(simulation.ledger().imbalance()) < 1e-12 * simulation.ledger().turnover);
+}
+
+TEST_CASE("a state that was saved goes on as the original", "[analysis][explicit]") {
+  const Scene scene = rocking_column();
+  Simulation<3> first(scene);
+  for (int i = 0; i < 200; ++i) REQUIRE(first.advance(scene.step.dt));
+  const auto saved = first.save();
+  first.restore(saved);
+  for (int i = 0; i < 200; ++i) REQUIRE(first.advance(scene.step.dt));
+  Simulation<3> second(scene);
+  second.restore(saved);
+  for (int i = 0; i < 200; ++i) REQUIRE(second.advance(scene.step.dt));
+  CHECK(difference(first, second) == 0.0);
+}
+
+TEST_CASE("dem refuses what has no meaning for it", "[analysis][explicit]") {
+  Scene scene = explicit_scene(test::block_on_base(), 1e-3);
+  SECTION("statics") {
+    scene.method.statics = true;
+    CHECK_THROWS_WITH(Simulation<3>(scene), Catch::Matchers::ContainsSubstring("method.statics"));
+  }
+  SECTION("linear rotation") {
+    scene.method.rotation = RotationKind::linear;
+    CHECK_THROWS_WITH(Simulation<3>(scene), Catch::Matchers::ContainsSubstring("method.rotation"));
+  }
+  SECTION("theta") {
+    scene.method.theta = 0.5;
+    CHECK_THROWS_WITH(Simulation<3>(scene), Catch::Matchers::ContainsSubstring("method.theta"));
+  }
+}

@@ -1,0 +1,75 @@
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+#include "openclose/analysis/run.h"
+#include "openclose/core/tolerance.h"
+#include "openclose/integrator/critical_step.h"
+#include "openclose/integrator/newton.h"
+#include "support/catch.h"
+#include "support/scenes.h"
+
+using namespace openclose;
+
+namespace {
+
+/// 2/w_max of the tangent itself, contacts closed and sticking.
+double exact_step(Simulation<3>& simulation) {
+  StepProblem<3> problem = simulation.problem(1e-3, false);
+  problem.statics = true;  // no dashpots
+  std::vector<ContactSprings> springs;
+  for (const Contact& c : problem.contacts) springs.push_back(simulation.enforcement().springs(problem, c));
+  Newton<3> newton;
+  const Eigen::MatrixXd k = newton.stiffness(problem, springs);
+  Eigen::VectorXd mass(k.rows());
+  for (int b : problem.system.free_blocks()) mass.segment<3>(3 * problem.system.block(b).equation) = problem.system.block(b).mass;
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(0.5 * (k + k.transpose()), mass.asDiagonal().toDenseMatrix());
+  return 2.0 / std::sqrt(solver.eigenvalues().maxCoeff());
+}
+
+Scene pressed(Scene scene) {
+  scene.method.contact = "dem";
+  scene.joints[0].friction_angle = 80.0 * test::degree;
+  return scene;
+}
+
+double bound_of(Simulation<3>& simulation) {
+  return critical_step(simulation.problem(1e-3, false), tolerance::contact_skin_m);
+}
+
+}  // namespace
+
+TEST_CASE("the bound is the critical step of one block on a fixed base", "[integrator][critical_step]") {
+  Simulation<3> simulation(pressed(test::block_on_base()));
+  REQUIRE(settle(simulation).settled);
+  // Geometric stiffness, which the bound leaves out: 5e4 N * 0.5 m beside 2e9 N m.
+  CHECK(bound_of(simulation) == Approx(exact_step(simulation)).epsilon(2e-5));
+}
+
+TEST_CASE("in a column the bound lies below the critical step, not far", "[integrator][critical_step]") {
+  Scene scene = pressed(test::column_of_blocks(GENERATE(2, 3, 8)));
+  Simulation<3> simulation(scene);
+  REQUIRE(settle(simulation).settled);
+  const double exact = exact_step(simulation), bound = bound_of(simulation);
+  CHECK(bound <= exact);
+  CHECK(bound >= 0.8 * exact);
+}
+
+TEST_CASE("dashpots shorten the critical step: 2 (sqrt(1 + xi^2) - xi)/w for one mass on one contact", "[integrator][critical_step]") {
+  Scene scene = pressed(test::block_on_base());
+  scene.blocks[1].vertices = {{0.0, 0.0}, {1.0, 1.0}, {0.0, 2.0}, {-1.0, 1.0}};
+  scene.blocks[1].rotation_locked = true;
+  Simulation<3> plain(scene);
+  const double xi = GENERATE(0.1, 1.0, 3.0);
+  scene.joints[0].damping_ratio = xi;
+  Simulation<3> damped(scene);
+  CHECK(bound_of(damped) == Approx(bound_of(plain) * (std::sqrt(1.0 + xi * xi) - xi)).epsilon(1e-12));
+}
+
+TEST_CASE("contacts out of reach do not count, supports do", "[integrator][critical_step]") {
+  Scene scene = test::falling_block();
+  Simulation<3> falling(scene);
+  CHECK(std::isinf(bound_of(falling)));
+  scene.supports = {{0, {1.0, 0.5}, {0.0, 2e6}}};
+  Simulation<3> held(scene);
+  CHECK(bound_of(held) == Approx(2.0 / std::sqrt(2e6 / test::block_mass)).epsilon(1e-12));
+}
