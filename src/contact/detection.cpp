@@ -25,14 +25,14 @@ double parallel_weight(double cosine) {
 /// Contacts by their vertex and edge.
 class ContactIndex {
  public:
-  explicit ContactIndex(const std::vector<Contact>& contacts) : contacts_(contacts) {
+  template <int N>
+  ContactIndex(const BlockSystem<N>& system, const std::vector<Contact>& contacts) : contacts_(contacts) {
     index_.reserve(contacts.size());
     for (std::size_t i = 0; i < contacts.size(); ++i) {
       index_.emplace(key(contacts[i].vertex, contacts[i].edge), i);
       if (contacts[i].status == ContactStatus::open) continue;
-      closed_.emplace(contacts[i].vertex, i);
-      double& closure = closure_[contacts[i].vertex];
-      closure = std::max(closure, -contacts[i].gap);
+      const int edge = contacts[i].edge;
+      for (const int corner : {contacts[i].vertex, edge, system.next(edge)}) closed_.emplace(corner, i);
     }
   }
   /// Position in the list, or -1.
@@ -44,12 +44,11 @@ class ContactIndex {
     const std::ptrdiff_t i = find(vertex, edge);
     return i >= 0 && contacts_[i].status != ContactStatus::open;
   }
-  /// [m] what the contacts of this vertex have closed.
-  double closure(int vertex) const {
-    const auto it = closure_.find(vertex);
-    return it == closure_.end() ? 0.0 : it->second;
-  }
-  bool closed(int vertex) const { return closure_.contains(vertex); }
+  /// [m] length over which the contact is closed.
+  double closed_length(int vertex, int edge) const { return was_closed(vertex, edge) ? contacts_[find(vertex, edge)].length : 0.0; }
+  /// Whether this vertex or one of its two edges is in contact.
+  bool closed(int vertex) const { return closed_.contains(vertex); }
+  /// Closed contacts of this vertex and those on its two edges.
   template <class F>
   void for_closed(int vertex, F f) const {
     const auto [begin, end] = closed_.equal_range(vertex);
@@ -60,8 +59,7 @@ class ContactIndex {
   static std::uint64_t key(int vertex, int edge) { return (static_cast<std::uint64_t>(vertex) << 32) | static_cast<std::uint32_t>(edge); }
   const std::vector<Contact>& contacts_;
   std::unordered_map<std::uint64_t, std::size_t> index_;
-  std::unordered_multimap<int, std::size_t> closed_;  ///< by vertex
-  std::unordered_map<int, double> closure_;           ///< [m] by vertex, of closed contacts
+  std::unordered_multimap<int, std::size_t> closed_;  ///< closed contacts by their vertex and by the ends of their edge
 };
 
 /// Narrow phase between the blocks of one pair. Collects contacts; a vertex-edge pair found twice gets the sum of the lengths.
@@ -122,7 +120,8 @@ class NarrowPhase {
   /// is not far off.
   void add_end(int block_a, int va, int a, int block_b, int vb, int b, bool a_is_inside, double beyond, double length) {
     const bool inside_is_reflex = system_.is_reflex(a_is_inside ? va : vb);
-    if (inside_is_reflex && beyond > seam(va, vb)) return;
+    const double seam = tolerance::seam_height_m + tolerance::seam_closures * std::max(closure(va), closure(vb));
+    if (inside_is_reflex && beyond > seam) return;
     // The two corners take turns: a joint that has closed under one of them is closed for the other.
     const bool closed = previous_.was_closed(va, b) || previous_.was_closed(vb, a);
     if (a_is_inside != inside_is_reflex) {
@@ -140,19 +139,22 @@ class NarrowPhase {
         const Edge edge = edge_at(edge_block, e);
         if (edge.gap(p) > reach_) return;
         const double along = edge.along(p);
-        const bool near_start = along < 0.5 * edge.length;
-        const double beyond = near_start ? -along : along - edge.length;
+        const double beyond = std::max(-along, along - edge.length);
         if (beyond > 0.0 && beyond > end_margin(v, edge)) return;
-        if (edge.gap(p) > -tolerance::shortest_edge_m && passes_over(vertex_block, v, edge_block, e, near_start)) return;
+        const double weight = lone_weight(v, edge);
+        if (weight == 0.0 || passes_over(vertex_block, v, edge_block, e)) return;
         const Vec2 ahead = system_.arm(system_.next(v)) - system_.arm(v), back = system_.arm(system_.previous(v)) - system_.arm(v);
-        const double weight =
-            std::max(parallel_weight(-ahead.normalized().dot(edge.direction)), parallel_weight(back.normalized().dot(edge.direction)));
-        if (weight == 1.0) return;
         const auto projection = [&](const Vec2& side) { return std::min(std::abs(side.dot(edge.direction)), edge.length); };
-        const double length = 0.5 * (1.0 - weight) * (projection(ahead) + projection(back));
-        add(vertex_block, v, edge_block, e, length, previous_.was_closed(v, e));
+        add(vertex_block, v, edge_block, e, 0.5 * weight * (projection(ahead) + projection(back)), previous_.was_closed(v, e));
       });
     });
+  }
+
+  /// 1 - w_v of the header: 0 where one side of the corner faces the edge or points into its half-plane.
+  double lone_weight(int v, const Edge& edge) const {
+    if (!stands_on(v, edge)) return 0.0;
+    const Vec2 ahead = system_.arm(system_.next(v)) - system_.arm(v), back = system_.arm(system_.previous(v)) - system_.arm(v);
+    return 1.0 - std::max(parallel_weight(-ahead.normalized().dot(edge.direction)), parallel_weight(back.normalized().dot(edge.direction)));
   }
 
   /// \param closed  whether this place was in contact already
@@ -180,26 +182,44 @@ class NarrowPhase {
     found_->push_back(contact);
   }
 
-  /// [m] How far a corner may lie below an edge and still ride over its end; see tolerance::seam_height_m.
-  double seam(int v, int w) const {
-    return tolerance::seam_height_m + tolerance::seam_closures * std::max(previous_.closure(v), previous_.closure(w));
+  /// [m] What the contacts of a corner have closed.
+  double closure(int v) const {
+    double largest = 0.0;
+    previous_.for_closed(v, [&](const Contact& c) { largest = std::max(largest, c.vertex == v ? -c.gap : 0.0); });
+    return largest;
+  }
+  /// [m] How far the closures of its contacts, those on its two edges included, have moved a corner along the normal of `edge`.
+  double closure_across(int v, const Edge& edge) const {
+    double largest = 0.0;
+    previous_.for_closed(v, [&](const Contact& c) {
+      const double cosine = edge.direction.dot(edge_at(c.edge_block, c.edge).direction);
+      largest = std::max(largest, -c.gap * std::abs(cosine));
+    });
+    return largest;
   }
 
-  /// A corner in front of edge e does not run into it where corner and the edge's near end pass over each other: blocks that lie flush but for the
-  /// closures of their contacts must not catch on the seams between them. One of the two must be sliding on something already, and the edge must
-  /// turn away from what is slid on.
-  bool passes_over(int vertex_block, int v, int edge_block, int e, bool near_start) const {
+  /// Two corners that meet separate the blocks along any one of up to four edges, theirs at v and at the end of e: as long as one that turns away
+  /// from e does, v does not run into e. Blocks that lie flush but for the closures of their contacts must not catch on the seams between them: a
+  /// corner that slides on something keeps its way if what it slides on is lower than the seam's height. Where corners coincide and nothing has
+  /// closed yet, the motion decides. An overlap no longer than a seam is high is no closed contact.
+  bool passes_over(int vertex_block, int v, int edge_block, int e) const {
+    const Edge edge = edge_at(edge_block, e);
+    const Vec2 p = system_.position(vertex_block, v);
+    const bool near_start = edge.along(p) < 0.5 * edge.length;
     const int end = near_start ? e : system_.next(e);
+    if (previous_.closed_length(v, e) > tolerance::seam_height_m || system_.is_reflex(end)) return false;
+    const Vec2 q = system_.position(edge_block, end);
     const bool slides = previous_.closed(v) || previous_.closed(end);
-    if (!slides || previous_.was_closed(v, e) || system_.is_reflex(end)) return false;
-    const double height = seam(v, end);
-    const Vec2 p = system_.position(vertex_block, v), q = system_.position(edge_block, end);
-    // The corner rides on the other edge of that end ...
-    const Edge neighbour = edge_at(edge_block, near_start ? system_.previous(e) : system_.next(e));
-    if (turns_away(edge_at(edge_block, e), neighbour) && outside(v, neighbour) && neighbour.gap(p) > -height) return true;
-    // ... or the end rides on one of the corner's edges and lies behind neither.
-    const Edge ahead = edge_at(vertex_block, v), back = edge_at(vertex_block, system_.previous(v));
-    return (outside(end, ahead) || outside(end, back)) && ahead.gap(q) > -height && back.gap(q) > -height;
+    if (!slides && (p - q).norm() > tolerance::edge_end_m) return false;
+    const bool in_front = edge.gap(p) > -tolerance::shortest_edge_m;
+    const double step = slides && in_front ? tolerance::seam_height_m : tolerance::edge_end_m;
+    const auto separates = [&](int corner, const Vec2& position, const Edge& other) {
+      if (!turns_away(edge, other) || !stands_on(corner, other)) return false;
+      const double closure = std::max(closure_across(v, other), closure_across(end, other));
+      return other.gap(position) > -step - tolerance::seam_closures * closure;
+    };
+    return separates(v, p, edge_at(edge_block, near_start ? system_.previous(e) : system_.next(e))) || separates(end, q, edge_at(vertex_block, v)) ||
+           separates(end, q, edge_at(vertex_block, system_.previous(v)));
   }
 
   static bool turns_away(const Edge& a, const Edge& b) {
@@ -211,13 +231,16 @@ class NarrowPhase {
   /// wall or another block, by what its contacts have closed.
   double end_margin(int v, const Edge& edge) const {
     bool leans = false;
-    previous_.for_closed(v, [&](const Contact& c) { leans |= turns_away(edge_at(c.edge_block, c.edge), edge); });
-    return tolerance::edge_end_m + (leans ? tolerance::seam_closures * previous_.closure(v) : 0.0);
+    previous_.for_closed(v, [&](const Contact& c) { leans |= c.vertex == v && turns_away(edge_at(c.edge_block, c.edge), edge); });
+    return tolerance::edge_end_m + (leans ? tolerance::seam_closures * closure(v) : 0.0);
   }
 
-  /// Both sides of the corner leave the edge's half-plane: only then can the corner touch the edge from outside.
-  bool outside(int v, const Edge& edge) const {
-    static const double tilt = std::sin(tolerance::parallel_none_rad);
+  /// Both sides of the corner leave the edge's half-plane: only then can the corner touch the edge from outside. Overlaps of facing edges fade out
+  /// until parallel_none.
+  bool outside(int v, const Edge& edge) const { return leaves(v, edge, std::sin(tolerance::parallel_none_rad)); }
+  /// The same for a lone corner: its sides point in no farther than edges that face each other fully.
+  bool stands_on(int v, const Edge& edge) const { return leaves(v, edge, std::sin(tolerance::parallel_full_rad)); }
+  bool leaves(int v, const Edge& edge, double tilt) const {
     const Vec2 ahead = system_.arm(system_.next(v)) - system_.arm(v), back = system_.arm(system_.previous(v)) - system_.arm(v);
     return edge.normal().dot(ahead.normalized()) >= -tilt && edge.normal().dot(back.normalized()) >= -tilt;
   }
@@ -325,7 +348,7 @@ void Detector<N>::update(const BlockSystem<N>& system, const JointTable& joints,
   ++counters_.narrow_phases;
   std::vector<Contact> found;
   found.reserve(contacts.size() + 8);
-  const ContactIndex previous(contacts);
+  const ContactIndex previous(system, contacts);
   NarrowPhase<N> narrow(system, reach_, previous);
   for (const auto& [a, b] : pairs_) {
     const std::size_t begin = found.size();

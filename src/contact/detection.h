@@ -4,16 +4,25 @@
 // another miss being antiparallel, and w = 1 for theta <= parallel_full, 0 for theta >= parallel_none, linear between.
 //   - Facing edges: the overlap o of a and e, projected on the bisector of their directions, makes a contact at each of its two ends, with w o/2.
 //     Two blocks that slide off each other lose length, stiffness and cohesion continuously to zero.
-//   - Lone corner: vertex v opposite to e gets (1 - w_v) times half the projections on e of its own two edges (none counted longer than e), where
-//     w_v is the larger w of its two edges against e. It depends on the directions only, so it does not change where a corner crosses from one
-//     edge to a collinear one of the next block.
+//   - Lone corner: vertex v opposite to e, of which neither edge points into e's half-plane, gets (1 - w_v) times half the projections on e of its
+//     own two edges (none counted longer than e), where w_v is the larger w of its two edges against e. It depends on the directions only, so it
+//     does not change where a corner crosses from one edge to a collinear one of the next block. An edge that points in by up to parallel_full has
+//     w_v = 1: what turns in farther fades out before it is refused.
 // A vertex that faces e through both rules, or through both its edges, has one contact with the sum of the lengths.
 //
-// Where it is not continuous: a lone corner within edge_end of the seam of two collinear edges has a contact with both; it loses its length where it
-// leaves the end of an edge that nothing continues; and a raised, open corner loses its length at parallel_none. Energy held there goes into the
-// ledger's redefinition.
+// Corner against corner: where v comes to an end q of e, two convex blocks are apart as soon as one line separates them, which is one of up to four
+// edges: the two of q with v outside, the two of v with q outside (both sides of the corner leave the edge's half-plane; else it is no candidate). A
+// contact with each of them would lock the blocks. So v has no lone contact with e while another one of the four, more than parallel_none from e in
+// direction, separates
+//   - to within edge_end, where v and q coincide: nothing is in contact yet and the motion decides which edge it will be,
+//   - to within edge_end and what the closures of contacts at v, q and their edges make of it (seam_closures), where one of them slides on something,
+//   - and, while v is still in front of e, to within seam_height more: blocks that are flush in the drawing do not catch on each other's faces.
+// So a block whose front corner stands on a joint slides on, three blocks and air or four blocks around the corner. A contact that has closed over
+// more than seam_height stays until its corner is nearer to another edge; at a reflex q both walls hold.
 //
-// A lone corner that slides over the seam of two blocks is not stopped by the face of the next one (see tolerance::seam_height_m).
+// Where it is not continuous: a lone corner within edge_end of the seam of two collinear edges has a contact with both; it loses its length where it
+// leaves the end of an edge that nothing continues; and at a corner the contact passes from one edge to the next with its gap, not with its
+// direction. Energy held there goes into the ledger's redefinition.
 //
 // At four-block corners the diagonal blocks have facing edges without overlap and no lone corner, hence no contact: they cannot lock.
 #pragma once
