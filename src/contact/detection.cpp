@@ -259,7 +259,7 @@ class NarrowPhase {
       if (f == e || share_reflex_corner(e, f)) return;
       const Edge other = edge_at(edge_block, f);
       const double distance = distance_to_segment(p, other.start, other.start + other.length * other.direction);
-      if (distance < -gap - tolerance::shortest_edge_m && outside(v, other)) nearest = false;
+      if (distance < -gap - tolerance::shortest_edge_m && stands_on(v, other)) nearest = false;
     });
     return nearest;
   }
