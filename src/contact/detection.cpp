@@ -238,8 +238,8 @@ class NarrowPhase {
   /// Both sides of the corner leave the edge's half-plane: only then can the corner touch the edge from outside. Overlaps of facing edges fade out
   /// until parallel_none.
   bool outside(int v, const Edge& edge) const { return leaves(v, edge, std::sin(tolerance::parallel_none_rad)); }
-  /// The same for a lone corner: its sides point in no farther than edges that face each other fully.
-  bool stands_on(int v, const Edge& edge) const { return leaves(v, edge, std::sin(tolerance::parallel_full_rad)); }
+  /// The same for a lone corner.
+  bool stands_on(int v, const Edge& edge) const { return leaves(v, edge, std::sin(tolerance::flush_tilt_rad)); }
   bool leaves(int v, const Edge& edge, double tilt) const {
     const Vec2 ahead = system_.arm(system_.next(v)) - system_.arm(v), back = system_.arm(system_.previous(v)) - system_.arm(v);
     return edge.normal().dot(ahead.normalized()) >= -tilt && edge.normal().dot(back.normalized()) >= -tilt;

@@ -7,13 +7,13 @@
 //   - Lone corner: vertex v opposite to e, of which neither edge points into e's half-plane, gets (1 - w_v) times half the projections on e of its
 //     own two edges (none counted longer than e), where w_v is the larger w of its two edges against e. It depends on the directions only, so it
 //     does not change where a corner crosses from one edge to a collinear one of the next block. An edge that points in by up to parallel_full has
-//     w_v = 1: what turns in farther fades out before it is refused.
+//     w_v = 1 anyhow, so that nothing jumps where it turns in.
 // A vertex that faces e through both rules, or through both its edges, has one contact with the sum of the lengths.
 //
 // Corner against corner: where v comes to an end q of e, two convex blocks are apart as soon as one line separates them, which is one of up to four
-// edges: the two of q with v outside, the two of v with q outside (both sides of the corner leave the edge's half-plane; else it is no candidate). A
-// contact with each of them would lock the blocks. So v has no lone contact with e while another one of the four, more than parallel_none from e in
-// direction, separates
+// edges: the two of q with v outside, the two of v with q outside (both sides of the corner leave the edge's half-plane, to flush_tilt; else it is no
+// candidate). A contact with each of them would lock the blocks. So v has no lone contact with e while another one of the four, more than
+// parallel_none from e in direction, separates
 //   - to within edge_end, where v and q coincide: nothing is in contact yet and the motion decides which edge it will be,
 //   - to within edge_end and what the closures of contacts at v, q and their edges make of it (seam_closures), where one of them slides on something,
 //   - and, while v is still in front of e, to within seam_height more: blocks that are flush in the drawing do not catch on each other's faces.
