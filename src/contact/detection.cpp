@@ -254,12 +254,15 @@ class NarrowPhase {
   bool entered_through(int v, const Vec2& p, int edge_block, int e, double gap, bool closed) {
     // What lies behind the edge must lie in the block, except for what drawings leave and what contacts that carry load have closed.
     if (-gap > tolerance::deepest_initial_overlap_m && !closed && !in_block(edge_block, p)) return false;
+    const Edge edge = edge_at(edge_block, e);
     bool nearest = true;
     for_each_vertex(edge_block, [&](int f) {
       if (f == e || share_reflex_corner(e, f)) return;
       const Edge other = edge_at(edge_block, f);
       const double distance = distance_to_segment(p, other.start, other.start + other.length * other.direction);
-      if (distance < -gap - tolerance::shortest_edge_m && stands_on(v, other)) nearest = false;
+      // Of edges that hardly differ in direction the corner is on the one it faces: a needle's tip, closed by a little, is nearer to the next one.
+      const bool could_touch = turns_away(edge, other) ? outside(v, other) : stands_on(v, other);
+      if (could_touch && distance < -gap - tolerance::shortest_edge_m) nearest = false;
     });
     return nearest;
   }
