@@ -260,8 +260,10 @@ class NarrowPhase {
       if (f == e || share_reflex_corner(e, f)) return;
       const Edge other = edge_at(edge_block, f);
       const double distance = distance_to_segment(p, other.start, other.start + other.length * other.direction);
-      // Of edges that hardly differ in direction the corner is on the one it faces: a needle's tip, closed by a little, is nearer to the next one.
-      const bool could_touch = turns_away(edge, other) ? outside(v, other) : stands_on(v, other);
+      // At a needle's tip, closed by a little, the edge that is faced need not be the nearest one.
+      static const double needle = std::cos(2.0 * tolerance::parallel_none_rad);
+      const bool at_needle = std::abs(edge.direction.dot(other.direction)) > needle;
+      const bool could_touch = at_needle ? stands_on(v, other) : outside(v, other);
       if (could_touch && distance < -gap - tolerance::shortest_edge_m) nearest = false;
     });
     return nearest;
