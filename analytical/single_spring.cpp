@@ -23,7 +23,17 @@ Invariants invariants(const SpringStep& step) {
 
 }  // namespace
 
-double free_vibration(double frequency, double time) { return std::cos(frequency * time); }
+double free_vibration(double frequency, double time) {
+  return std::cos(frequency * time);
+}
+
+double damped_vibration(double frequency, double damping_ratio, double time) {
+  const double decay = damping_ratio * frequency;
+  const double square = frequency * frequency - decay * decay;
+  if (square > 0) return std::exp(-decay * time) * std::sin(std::sqrt(square) * time) / std::sqrt(square);
+  if (square == 0) return std::exp(-decay * time) * time;
+  return std::exp(-decay * time) * std::sinh(std::sqrt(-square) * time) / std::sqrt(-square);
+}
 
 std::array<std::array<double, 2>, 2> amplification_matrix(const SpringStep& step) {
   const double half_square = step.phase() * step.phase() / 2;

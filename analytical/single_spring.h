@@ -24,6 +24,10 @@ struct SpringStep {
 /// Exact motion of the mass from rest at unit displacement, cos(w t); frequency w [rad/s], time [s].
 double free_vibration(double frequency, double time);
 
+/// The same mass with a dashpot of damping ratio xi beside the spring, u'' + 2 xi w u' + w^2 u = 0, from u = 0 with velocity 1: an oscillation for
+/// xi < 1, exp(-xi w t) sin(w_d t)/w_d with w_d = w sqrt(1 - xi^2); t exp(-w t) for xi = 1; two decaying exponentials beyond. xi >= 0.
+double damped_vibration(double frequency, double damping_ratio, double time);
+
 /// Row-major 2 x 2, acts on (u [m], v [m/s]).
 std::array<std::array<double, 2>, 2> amplification_matrix(const SpringStep& step);
 /// Largest modulus of its eigenvalues, on both sides of the bifurcation.

@@ -11,6 +11,7 @@ void static_hold(Report&);
 void cohesion_threshold(Report&);
 void stopping(Report&);
 void amplification(Report&);
+void contact_damping(Report&);
 void small_vibration(Report&);
 void planar_wedge(Report&);
 void parallel_planes(Report&);
@@ -30,6 +31,7 @@ const std::vector<Case>& cases() {
       {"B3", "cohesion threshold", &cohesion_threshold},
       {"B4", "initial velocity to a stop", &stopping},
       {"D1", "amplification matrix of one block on a spring", &amplification},
+      {"D1c", "contact damping of one block on one contact", &contact_damping},
       {"D3", "small vibration of a block on two springs", &small_vibration},
       {"E1", "planar wedge", &planar_wedge},
       {"E3", "plane failure on parallel joints", &parallel_planes},

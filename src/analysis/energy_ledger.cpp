@@ -21,13 +21,19 @@ void add_elastic_contact(EnergyLedger& ledger, const Contact& contact, const Con
   const ContactSprings& k = end.springs;
   const double gap_change = end.kinematics.gap_change, slip = end.kinematics.slip_change;
   const double n0 = start.normal, n1 = end.forces.normal, t0 = start.shear, t1 = end.forces.shear;
-  const double p0 = n0 / k.normal, p1 = n1 / k.normal, u0 = contact.elastic_slip, u1 = -t1 / k.shear;
+  const double p0 = start.elastic_normal / k.normal, p1 = end.forces.elastic_normal / k.normal;
+  const double u0 = contact.elastic_slip, u1 = -end.forces.elastic_shear / k.shear;
   const double opening0 = k.gap + p0, opening1 = k.gap + gap_change + p1;
 
   ledger.contact_springs += 0.5 * k.normal * (p1 * p1 - p0 * p0) + 0.5 * k.shear * (u1 * u1 - u0 * u0);
   ledger.scheme += (theta - 0.5) * (k.normal * square(p1 - p0) + k.shear * square(u1 - u0)) + theta * n1 * opening0 - (1.0 - theta) * n0 * opening1;
   ledger.scheme -= theta * (n1 * (paths.normal_end - gap_change) + t1 * (paths.shear_end - slip)) +
                    (1.0 - theta) * (n0 * (paths.normal_start - gap_change) + t0 * (paths.shear_start - slip));
+  // Where the strength has gone since the last step the spring lets go before it starts.
+  ledger.scheme -= (1.0 - theta) * (start.elastic_shear + k.shear * u0) * (u1 - u0);
+  const double viscous_normal = theta * (n1 - end.forces.elastic_normal) + (1.0 - theta) * (n0 - start.elastic_normal);
+  const double viscous_shear = theta * (t1 - end.forces.elastic_shear) + (1.0 - theta) * (t0 - start.elastic_shear);
+  ledger.contact_damping += viscous_normal * (p1 - p0) - viscous_shear * (u1 - u0);
   ledger.friction -= (theta * t1 + (1.0 - theta) * t0) * (slip - (u1 - u0));
 }
 

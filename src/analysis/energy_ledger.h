@@ -2,9 +2,10 @@
 // difference of the others, so that the imbalance can fail.
 //
 // With the work displacement of the time scheme the change of kinetic energy of a step is exactly the work of the forces in its equation of motion.
-// For a contact with springs k, compression p = N/k, gap g = g+ - p (g+ the free opening), stretch u = -T/k of the shear spring and weights theta at
-// the end, 1 - theta at the start of the step, minus its work is the sum of
+// For a contact with springs k that carry the elastic parts of N and T, compression p = N_el/k, gap g = g+ - p (g+ the free opening), stretch
+// u = -T_el/k of the shear spring and weights theta at the end, 1 - theta at the start of the step, minus its work is the sum of
 //   springs   k (p1^2 - p0^2)/2 + k_s (u1^2 - u0^2)/2
+//   damping   theta [(N1 - N1_el) (p1 - p0) - (T1 - T1_el) (u1 - u0)] + (1 - theta) [the same with the forces at the start]
 //   scheme    (theta - 1/2) [k (p1 - p0)^2 + k_s (u1 - u0)^2] + theta N1 g0+ - (1 - theta) N0 g1+    (for Shi's theta = 1 half k times the square)
 //             and what the finite rotation of a step leaves between the path of its forces and the change of gap and slip
 //   friction  -(theta T1 + (1 - theta) T0) (slip - change of u)
@@ -24,12 +25,16 @@ struct EnergyLedger {
   double support_springs = 0.0;  ///< change of stored energy: work at the fixed points
   double loads = 0.0;            ///< minus the work of point loads
   double friction = 0.0;         ///< dissipated
+  double contact_damping = 0.0;  ///< dissipated by the joints' dashpots
+  double mass_damping = 0.0;     ///< dissipated by damping of the blocks' motion (`dem`)
   double impact = 0.0;           ///< dissipated by hard contacts that close
   double scheme = 0.0;           ///< dissipated by the time integration
   double redefinition = 0.0;     ///< released where contacts change their tributary length, their gap's linearisation, or end while loaded
   double turnover = 0.0;         ///< sum of the absolute changes of kinetic, gravity and loads: what an imbalance is compared with
 
-  double imbalance() const { return kinetic + gravity + contact_springs + support_springs + loads + friction + impact + scheme + redefinition; }
+  double imbalance() const {
+    return kinetic + gravity + contact_springs + support_springs + loads + friction + contact_damping + mass_damping + impact + scheme + redefinition;
+  }
 };
 
 /// Adds an accepted step. `system` still holds the state at its start; `elastic` is Enforcement::has_elastic_contacts().

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 
 #include "openclose/integrator/registry.h"
 
@@ -28,7 +29,9 @@ constexpr double part_of_limit = 0.9;
 }  // namespace
 
 template <int N>
-Simulation<N>::Simulation(const Scene& scene) : Simulation(scene, make_enforcement<N>(scene.method)) {}
+Simulation<N>::Simulation(const Scene& scene) : Simulation(scene, make_enforcement<N>(scene.method)) {
+  if (enforcement_->is_explicit()) loop_ = std::make_unique<CentralDifference<N>>();
+}
 
 template <int N>
 Simulation<N>::Simulation(const Scene& scene, std::unique_ptr<Enforcement<N>> enforcement)
@@ -44,7 +47,84 @@ Simulation<N>::Simulation(const Scene& scene, std::unique_ptr<Enforcement<N>> en
       start_kinetic_energy_(system_.kinetic_energy()) {}
 
 template <int N>
+void Simulation<N>::collect() const {
+  if (!loop_is_ahead_) return;
+  loop_is_ahead_ = false;
+  loop_->store_blocks(system_);
+  for (int b : system_.free_blocks()) output_velocity_[b] = loop_->velocity_at_end(system_.block(b).equation);
+  const double before = stored_contact_energy();
+  loop_->store_contacts(contacts_);
+  max_penetration_ = std::max(max_penetration_, loop_->max_penetration());
+  const ExplicitEnergies e = loop_->take_energies();
+  ledger_.contact_springs += stored_contact_energy() - before;
+  ledger_.gravity += e.gravity;
+  ledger_.loads += e.loads;
+  ledger_.support_springs += e.support_springs;
+  ledger_.friction += e.friction;
+  ledger_.contact_damping += e.contact_damping;
+  ledger_.mass_damping += e.mass_damping;
+  ledger_.scheme += e.scheme;
+  ledger_.turnover += e.turnover;
+  ledger_.kinetic = system_.kinetic_energy() - start_kinetic_energy_;
+}
+
+template <int N>
+void Simulation<N>::take_back() {
+  collect();
+  loop_is_loaded_ = false;
+}
+
+template <int N>
+BlockSystem<N>& Simulation<N>::system() {
+  take_back();
+  return system_;
+}
+
+template <int N>
+const BlockSystem<N>& Simulation<N>::system() const {
+  collect();
+  return system_;
+}
+
+template <int N>
+JointTable& Simulation<N>::joints() {
+  take_back();
+  return joints_;
+}
+
+template <int N>
+typename Simulation<N>::Unknowns Simulation<N>::velocity(int b) const {
+  collect();
+  return output_velocity_[b];
+}
+
+template <int N>
+const EnergyLedger& Simulation<N>::ledger() const {
+  collect();
+  return ledger_;
+}
+
+template <int N>
+double Simulation<N>::max_penetration() const {
+  collect();
+  return max_penetration_;
+}
+
+template <int N>
+void Simulation<N>::set_velocity(int b, const Unknowns& velocity) {
+  take_back();
+  output_velocity_[b] = velocity;
+}
+
+template <int N>
+void Simulation<N>::positions_changed() {
+  take_back();
+  contacts_current_ = false;
+}
+
+template <int N>
 double Simulation<N>::stored_contact_energy() const {
+  collect();
   double energy = 0.0;
   for (const Contact& c : contacts_) energy += c.stored_energy;
   return energy;
@@ -52,6 +132,7 @@ double Simulation<N>::stored_contact_energy() const {
 
 template <int N>
 double Simulation<N>::force_scale() const {
+  collect();
   double scale = 0.0;
   for (int b : system_.free_blocks()) scale = std::max(scale, external_.weight(system_, b).norm());
   if (scale > 0.0) return scale;
@@ -79,6 +160,7 @@ void Simulation<N>::detect() {
 
 template <int N>
 std::vector<Contact>& Simulation<N>::contacts() {
+  take_back();
   if (!contacts_current_) detect();
   return contacts_;
 }
@@ -86,7 +168,7 @@ std::vector<Contact>& Simulation<N>::contacts() {
 template <int N>
 StepProblem<N> Simulation<N>::problem(double dt, bool statics) {
   contacts();
-  StepProblem<N> p{system_, external_, joints_, contacts_, detector_.candidate_pairs(), detector_.pairs_version(), scene_.method};
+  StepProblem<N> p{system_, external_, joints_, contacts_, scene_.method};
   p.dt = dt;
   p.statics = statics;
   p.inertia = statics ? 2.0 / (dt * dt) : scheme_->inertia(dt);
@@ -111,6 +193,7 @@ double Simulation<N>::largest_move(const StepSolution<N>& solution) const {
 
 template <int N>
 StepResult Simulation<N>::step(double dt, bool statics) {
+  if (loop_ && !statics) return explicit_step(dt, scene_.method.damping);
   StepResult result;
   const StepProblem<N> p = problem(dt, statics);
   StepSolution<N> solution;
@@ -157,8 +240,7 @@ bool Simulation<N>::loses_strength(const StepSolution<N>& solution) const {
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     const Contact& c = contacts_[i];
     const JointProperties& joint = joints_.joint(c.joint);
-    const bool has_any = joint.tensile_strength > 0.0 || (joint.cohesion > 0.0 && joint.cohesion_behaviour != CohesionBehaviour::ductile);
-    if (has_any && c.bonded && !stays_bonded(joint, c.bonded, solution.contacts[i].forces.status)) return true;
+    if (can_lose_strength(joint, c.bonded) && !stays_bonded(joint, c.bonded, solution.contacts[i].forces.status)) return true;
   }
   return false;
 }
@@ -192,15 +274,94 @@ void Simulation<N>::accept_contacts(const StepSolution<N>& solution) {
     c.status = o.forces.status;
     c.normal_force = o.forces.normal;
     c.shear_force = o.forces.shear;
-    c.elastic_slip = -o.forces.shear / o.springs.shear;
+    c.elastic_slip = -o.forces.elastic_shear / o.springs.shear;
     c.gap = o.springs.gap + o.kinematics.gap_change;
-    c.stored_energy = enforcement_->has_elastic_contacts() ? stored_energy(o.springs, o.forces.normal, o.forces.shear) : 0.0;
+    c.stored_energy = enforcement_->has_elastic_contacts() ? stored_energy(o.springs, o.forces.elastic_normal, o.forces.elastic_shear) : 0.0;
     if (c.status != ContactStatus::open) max_penetration_ = std::max(max_penetration_, -c.gap);
   }
 }
 
 template <int N>
+void Simulation<N>::load_loop() {
+  if (loop_is_loaded_) return;
+  const StepProblem<N> p = problem(scene_.step.dt, false);
+  loop_->load(p);
+  loop_is_loaded_ = true;
+  ++step_counters_.loads;
+  double& smallest = step_counters_.smallest_critical_step;
+  smallest = smallest > 0.0 ? std::min(smallest, loop_->critical_step()) : loop_->critical_step();
+}
+
+template <int N>
+double Simulation<N>::critical_step() {
+  load_loop();
+  return loop_->critical_step();
+}
+
+template <int N>
+double Simulation<N>::longest_stable_step(MassDamping damping) {
+  const double added = damping == MassDamping::local ? scene_.method.local_damping : 0.0;
+  return scene_.method.step_fraction * critical_step() / std::sqrt(1.0 + added);
+}
+
+template <int N>
+StepResult Simulation<N>::explicit_step(double h, MassDamping damping) {
+  load_loop();
+  StepResult result;
+  const double span = 1.0 / (h * scheme_->inertia(h));
+  if (!loop_->move(h, span, scene_.step.max_displacement, damping, scene_.method.local_damping)) {
+    result.reason = "a block moved farther in one step than step.max_displacement_m";
+    ++step_counters_.cuts;
+    return result;
+  }
+  loop_->follow_contacts();
+  loop_is_ahead_ = true;
+  scheme_->accept(h);
+  time_ += h;
+  ++step_counters_.steps;
+  step_counters_.longest_step = std::max(step_counters_.longest_step, h);
+  result.accepted = true;
+  result.unbalanced_force = loop_->unbalanced_force();
+  result.lost_strength = loop_->lost_strength();
+  if (loop_->moved_beyond_skin()) positions_changed();
+  return result;
+}
+
+template <int N>
+bool Simulation<N>::advance_explicitly(double dt) {
+  const double smallest = scene_.step.smallest_fraction * dt;
+  double remaining = dt, longest = longest_stable_step(scene_.method.damping);
+  long steps = 0;  // equal ones, of the remaining time
+  for (double part = 1.0; remaining > 0.0;) {
+    const double stable = longest_stable_step(scene_.method.damping);
+    if (steps == 0 || stable != longest) {
+      longest = stable;
+      // A quotient that is whole but for rounding stays whole.
+      steps = std::max(1L, std::lround(std::ceil(remaining / (part * stable) * (1.0 - 1e-12))));
+    }
+    const double h = remaining / static_cast<double>(steps);
+    const StepResult result = [&] {
+      const Stopwatch watch(stage_times_.solution);
+      return explicit_step(h, scene_.method.damping);
+    }();
+    if (result.accepted) {
+      remaining = --steps > 0 ? remaining - h : 0.0;
+      part = std::min(1.0, 2.0 * part);
+      continue;
+    }
+    part = std::min(1.0, h / stable) * enforcement_->step_cut(scene_.method);
+    steps = 0;
+    if (h * enforcement_->step_cut(scene_.method) < smallest) {
+      reason_ = result.reason;
+      return false;
+    }
+  }
+  return true;
+}
+
+template <int N>
 bool Simulation<N>::advance(double dt) {
+  if (loop_) return advance_explicitly(dt);
   double remaining = dt, trial = dt;
   const double smallest = scene_.step.smallest_fraction * dt;
   const double limit = part_of_limit * scene_.step.max_displacement;
@@ -227,6 +388,7 @@ bool Simulation<N>::advance(double dt) {
 
 template <int N>
 void Simulation<N>::restart_scheme() {
+  take_back();
   // A new scheme starts from whole-step velocities.
   for (int b : system_.free_blocks()) system_.set_velocity(b, output_velocity_[b]);
   scheme_ = enforcement_->make_time_scheme(scene_.method);
@@ -234,7 +396,19 @@ void Simulation<N>::restart_scheme() {
 }
 
 template <int N>
+void Simulation<N>::come_to_rest() {
+  take_back();
+  const double dropped = system_.kinetic_energy();
+  ledger_.scheme += dropped;
+  ledger_.kinetic -= dropped;
+  system_.stop();
+  output_velocity_ = system_.state().velocity;
+  restart_scheme();
+}
+
+template <int N>
 void Simulation<N>::restart_clock() {
+  take_back();
   time_ = 0.0;
   ledger_ = EnergyLedger();
   max_penetration_ = 0.0;
@@ -243,6 +417,7 @@ void Simulation<N>::restart_clock() {
 
 template <int N>
 void Simulation<N>::restore_velocities() {
+  take_back();
   const BlockSystem<N> initial(scene_);
   output_velocity_ = initial.state().velocity;
 }
@@ -257,6 +432,7 @@ typename Simulation<N>::Snapshot Simulation<N>::save() {
 
 template <int N>
 void Simulation<N>::restore(const Snapshot& snapshot) {
+  take_back();
   system_.restore(snapshot.blocks);
   contacts_ = snapshot.contacts;
   detector_.search(system_);

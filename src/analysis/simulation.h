@@ -7,6 +7,7 @@
 
 #include "openclose/analysis/energy_ledger.h"
 #include "openclose/contact/detection.h"
+#include "openclose/integrator/central_difference.h"
 #include "openclose/integrator/enforcement.h"
 
 namespace openclose {
@@ -16,6 +17,9 @@ struct StepCounters {
   long cuts = 0;        ///< attempts thrown away
   long iterations = 0;  ///< linear solves, thrown-away attempts included
   long compliant = 0;   ///< steps of `hard` whose multipliers did not converge: taken with springs
+  long loads = 0;       ///< times the explicit loop took over the state anew
+  double smallest_critical_step = 0.0;  ///< [s] of explicit steps, 0 if there were none
+  double longest_step = 0.0;            ///< [s] of explicit steps
 };
 
 /// Wall time [s] of the stages; one thread.
@@ -28,7 +32,7 @@ struct StageTimes {
 struct StepResult {
   bool accepted = false;
   std::string reason;
-  double unbalanced_force = 0.0;  ///< [N] largest sum of forces without inertia on a block; static steps only
+  double unbalanced_force = 0.0;  ///< [N] largest sum of forces without inertia on a block; static and explicit steps only
   double moved = 0.0;             ///< [m] farthest way of a vertex, of refused steps too; 0 if nothing was solved
   bool lost_strength = false;     ///< a contact has lost its cohesion or tensile strength at the end of the step
 };
@@ -38,24 +42,32 @@ class Simulation {
  public:
   using Unknowns = typename Motion<N>::Unknowns;
 
-  /// Throws InputError for an unknown enforcement or a missing joint.
+  /// Throws InputError for an unknown enforcement or a missing joint. Explicit methods run in the loop of CentralDifference.
   explicit Simulation(const Scene& scene);
-  /// With an enforcement of the caller's own.
+  /// With an enforcement of the caller's own, which solves every step itself, also if it is explicit.
   Simulation(const Scene& scene, std::unique_ptr<Enforcement<N>> enforcement);
 
-  /// One attempt at a step.
+  /// One attempt at a step. Explicit methods do not look whether dt is below the critical step; they have no static steps.
   StepResult step(double dt, bool statics);
   /// Advances by exactly dt, in smaller steps where one does not converge or moves too far; false, with reason(), if that gets nowhere.
   bool advance(double dt);
+  bool is_explicit() const { return loop_ != nullptr; }
+  /// [s] Of the present contacts; explicit methods only.
+  double critical_step();
+  /// [s] step_fraction of it: the longest step that advance() takes. Local damping, which adds its share to forces that slow a block down, has the
+  /// critical step of springs stiffer by that share.
+  double longest_stable_step(MassDamping damping);
+  /// One step of the loop with this damping of the motion, for settling.
+  StepResult explicit_step(double h, MassDamping damping);
   /// Names the present time, so that a long run's clock does not collect rounding.
   void set_time(double time) { time_ = time; }
 
   double time() const { return time_; }
   const std::string& reason() const { return reason_; }
   const Scene& scene() const { return scene_; }
-  BlockSystem<N>& system() { return system_; }
-  const BlockSystem<N>& system() const { return system_; }
-  JointTable& joints() { return joints_; }
+  BlockSystem<N>& system();
+  const BlockSystem<N>& system() const;
+  JointTable& joints();
   const ExternalForces<N>& external() const { return external_; }
   /// Contacts of the present positions. Reference valid until the next step.
   std::vector<Contact>& contacts();
@@ -64,24 +76,26 @@ class Simulation {
   StepProblem<N> problem(double dt, bool statics);
 
   /// Velocity of block b at time() (the system's own may be half a step behind, see time_scheme.h).
-  Unknowns velocity(int b) const { return output_velocity_[b]; }
+  Unknowns velocity(int b) const;
   double stored_contact_energy() const;
   double force_scale() const;  ///< [N] weight of the heaviest free block, or the largest load or contact force if there is no gravity
 
-  const EnergyLedger& ledger() const { return ledger_; }
-  double max_penetration() const { return max_penetration_; }
+  const EnergyLedger& ledger() const;
+  double max_penetration() const;
   const StepCounters& step_counters() const { return step_counters_; }
   const DetectionCounters& detection_counters() const { return detector_.counters(); }
   const StageTimes& stage_times() const { return stage_times_; }
 
+  /// Takes the blocks' velocities away; the kinetic energy goes to the ledger's scheme, as in static steps.
+  void come_to_rest();
   /// Declares the present moment the start: time 0, ledger empty. Positions, contacts and velocities stay.
   void restart_clock();
   /// Gives block b this velocity at time(); to be followed by restart_clock().
-  void set_velocity(int b, const Unknowns& velocity) { output_velocity_[b] = velocity; }
+  void set_velocity(int b, const Unknowns& velocity);
   /// Gives the blocks the velocities of the scene (settling has stopped them); to be followed by restart_clock().
   void restore_velocities();
   /// The blocks have been moved by other means: contacts are searched anew, keeping their history.
-  void positions_changed() { contacts_current_ = false; }
+  void positions_changed();
 
   /// Positions, contacts and the velocities at time().
   struct Snapshot {
@@ -99,22 +113,32 @@ class Simulation {
   void accept(const StepProblem<N>& problem, const StepSolution<N>& solution);
   void accept_contacts(const StepSolution<N>& solution);
   bool loses_strength(const StepSolution<N>& solution) const;
+  bool advance_explicitly(double dt);
+  void load_loop();
+  /// Takes back what the loop has done since; it goes on from its own arrays.
+  void collect() const;
+  /// The same, and the loop takes over anew before its next step, because the caller may change what it works on.
+  void take_back();
 
   Scene scene_;
-  BlockSystem<N> system_;
+  // While the explicit loop runs it holds the state; what stands here is brought up to date by whoever asks for it.
+  mutable BlockSystem<N> system_;
   ExternalForces<N> external_;
   JointTable joints_;
   std::unique_ptr<Enforcement<N>> enforcement_;
   std::unique_ptr<TimeScheme<N>> scheme_;
   Detector<N> detector_;
-  std::vector<Contact> contacts_;
+  mutable std::vector<Contact> contacts_;
   bool contacts_current_ = false;
-  std::vector<Unknowns> output_velocity_;
+  mutable std::vector<Unknowns> output_velocity_;
+  std::unique_ptr<CentralDifference<N>> loop_;  ///< null for implicit methods
+  mutable bool loop_is_ahead_ = false;          ///< of system_ and contacts_
+  bool loop_is_loaded_ = false;
   double time_ = 0.0;
   std::string reason_;
-  EnergyLedger ledger_;
+  mutable EnergyLedger ledger_;
   double start_kinetic_energy_ = 0.0;  ///< [J]
-  double max_penetration_ = 0.0;
+  mutable double max_penetration_ = 0.0;
   StepCounters step_counters_;
   int failed_attempts_ = 0;   ///< since the last step that was accepted
   double last_speed_ = 0.0;   ///< [m/s] largest displacement of the last step over its duration

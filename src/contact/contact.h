@@ -22,8 +22,8 @@ struct Contact {
   // History, as the last accepted step left it.
   ContactStatus status = ContactStatus::open;
   bool bonded = true;          ///< cohesion and tensile strength are still there
-  double elastic_slip = 0.0;   ///< [m] stretch of the shear spring; shear force = -shear stiffness * elastic slip
-  double normal_force = 0.0;   ///< [N]
+  double elastic_slip = 0.0;   ///< [m] stretch of the shear spring; the spring's part of the shear force is -shear stiffness * elastic slip
+  double normal_force = 0.0;   ///< [N] spring and dashpot
   double shear_force = 0.0;    ///< [N]
   double stored_energy = 0.0;  ///< [J] in both springs
 };

@@ -33,8 +33,6 @@ struct StepProblem {
   const ExternalForces<N>& external;
   const JointTable& joints;
   const std::vector<Contact>& contacts;
-  const std::vector<std::pair<int, int>>& candidate_pairs;  ///< blocks that may touch: the pattern of the matrix
-  long candidates_version = 0;
   const MethodInput& method;
   double dt = 0.0;          ///< [s]
   bool statics = false;     ///< velocities count as zero
@@ -45,16 +43,6 @@ struct StepProblem {
   typename Motion<N>::Unknowns velocity(int b) const {
     if (statics) return Motion<N>::Unknowns::Zero();
     return system.velocity(b);
-  }
-
-  /// Pairs of block rows that candidate contacts couple.
-  std::vector<std::pair<int, int>> couplings() const {
-    std::vector<std::pair<int, int>> rows;
-    for (const auto& [a, b] : candidate_pairs) {
-      const int i = system.block(a).equation, j = system.block(b).equation;
-      if (i >= 0 && j >= 0) rows.emplace_back(i, j);
-    }
-    return rows;
   }
 };
 
@@ -88,9 +76,35 @@ class Enforcement {
   /// Throws InputError if the method asks for a theta that the enforcement has no use for.
   virtual std::unique_ptr<TimeScheme<N>> make_time_scheme(const MethodInput& method) const = 0;
   virtual bool has_elastic_contacts() const { return true; }         ///< false: contacts store no energy and keep no penetration
+  /// true: steps need no equations to be solved but must stay below the critical one; Simulation takes them by CentralDifference.
+  virtual bool is_explicit() const { return false; }
   virtual double step_cut(const MethodInput&) const { return 0.5; }  ///< factor on a step that failed
   virtual const LinearCounters& linear_counters() const = 0;
 };
+
+/// Springs of the joint's own stiffness. The memory is the stretch of the spring, not its force: when the tributary length changes, strength and force
+/// change alike.
+template <int N>
+ContactSprings joint_springs(const StepProblem<N>& problem, const Contact& contact) {
+  const JointProperties& joint = problem.joints.joint(contact.joint);
+  ContactSprings s;
+  s.normal = joint.normal_stiffness * contact.length;
+  s.shear = joint.shear_stiffness * contact.length;
+  s.gap = contact.gap;
+  s.initial_shear = -s.shear * contact.elastic_slip;
+  return s;
+}
+
+/// Gives the springs the joint's dashpots for this step. They resist the mean velocity d/dt of the step with their whole force: what enters the
+/// equation of motion with weight theta is divided by it, and the force at the start is the springs' alone. Pseudo-time has no velocities.
+template <int N>
+void add_dashpots(const StepProblem<N>& problem, const Contact& contact, ContactSprings& springs) {
+  const JointProperties& joint = problem.joints.joint(contact.joint);
+  if (joint.damping_ratio == 0.0 || problem.statics) return;
+  const ContactDashpots dashpots(joint, contact.length, problem.system.reduced_mass(contact.vertex_block, contact.edge_block));
+  springs.normal_damping = dashpots.normal / (problem.end_weight * problem.dt);
+  springs.shear_damping = dashpots.shear / (problem.end_weight * problem.dt);
+}
 
 /// For enforcements with a time scheme of their own: throws InputError unless theta has its default of 1.
 inline void require_default_theta(const MethodInput& method) {

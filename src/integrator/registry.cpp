@@ -10,6 +10,7 @@ const std::vector<EnforcementEntry<N>>& enforcements() {
       {"soft", "springs of the joint's own stiffness (the paper's DDA-SC)", &make_soft<N>},
       {"hard", "no penetration, multipliers converged in every step", &make_hard<N>},
       {"shi", "penalty springs with open-close iterations (the paper's DDA-Shi)", &make_shi<N>},
+      {"dem", "explicit: central difference with the joint's own springs (the paper's UDEC)", &make_dem<N>},
   };
   return list;
 }

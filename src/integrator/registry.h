@@ -14,6 +14,8 @@ template <int N>
 std::unique_ptr<Enforcement<N>> make_hard();
 template <int N>
 std::unique_ptr<Enforcement<N>> make_shi();
+template <int N>
+std::unique_ptr<Enforcement<N>> make_dem();
 
 template <int N>
 struct EnforcementEntry {

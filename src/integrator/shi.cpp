@@ -3,13 +3,15 @@
 // G.-H. Shi (1988, 1993), as the paper describes it. Every pass linearises the contacts at the start of the step, solves once, and lets each contact
 // change its state: open <-> closed by the sign of the normal spring, locked -> sliding when the shear spring exceeds the strength, sliding -> locked
 // when the slip runs against its friction. The pass is the last when no state changes; the friction of a sliding contact is then still the one of the
-// pass before. A step that does not settle, or that leaves a contact deeper than the penetration tolerance, is cut.
+// pass before. A step that does not settle, or that leaves a contact deeper than the penetration tolerance, is cut. With contact damping the sign
+// that opens and closes is that of spring and dashpot together.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "openclose/integrator/registry.h"
+#include "openclose/integrator/tangent_system.h"
 
 namespace openclose {
 namespace {
@@ -27,6 +29,7 @@ class Shi : public Enforcement<N> {
     s.shear = problem.method.penalty_shear_ratio * s.normal;
     s.gap = contact.gap;
     s.initial_shear = -s.shear * contact.elastic_slip;
+    add_dashpots(problem, contact, s);
     return s;
   }
 
@@ -49,7 +52,7 @@ class Shi : public Enforcement<N> {
     return make_theta_scheme<N>(1.0);
   }
   double step_cut(const MethodInput& method) const override { return method.step_cut; }
-  const LinearCounters& linear_counters() const override { return counters_; }
+  const LinearCounters& linear_counters() const override { return tangent_.counters(); }
 
  private:
   using Unknowns = typename Motion<N>::Unknowns;
@@ -68,23 +71,19 @@ class Shi : public Enforcement<N> {
       outcome_.push_back(o);
       applied_shear_.push_back(0.0);
     }
-    if (candidates_version_ != problem.candidates_version || !solver_) {
-      matrix_.set_pattern(problem.system.free_count(), problem.couplings());
-      if (!solver_) solver_ = make_solver<N>(problem.system.free_count());
-      candidates_version_ = problem.candidates_version;
-    }
+    tangent_.fit(problem);
   }
 
   bool solve_once(const StepProblem<N>& problem, StepSolution<N>& solution) {
     const BlockSystem<N>& system = problem.system;
-    matrix_.set_zero();
+    tangent_.matrix().set_zero();
     Eigen::VectorXd right = Eigen::VectorXd::Zero(N * system.free_count());
     const Unknowns still = Unknowns::Zero();
     for (int b : system.free_blocks()) {
       const auto& block = system.block(b);
       typename Motion<N>::Matrix diagonal = problem.external.stiffness(system, b, still);
       diagonal += (problem.inertia * block.mass).asDiagonal();
-      matrix_.add(block.equation, block.equation, diagonal);
+      tangent_.matrix().add(block.equation, block.equation, diagonal);
       right.template segment<N>(N * block.equation) =
           problem.inertia * problem.dt * block.mass.cwiseProduct(problem.velocity(b)) + problem.external.force(system, b, still);
     }
@@ -92,13 +91,12 @@ class Shi : public Enforcement<N> {
     for (int b : system.free_blocks()) {
       const auto& block = system.block(b);
       if (!block.rotation_locked) continue;
-      matrix_.eliminate(block.equation, Motion<N>::rotation_index);
+      tangent_.matrix().eliminate(block.equation, Motion<N>::rotation_index);
       right[N * block.equation + Motion<N>::rotation_index] = 0.0;
     }
     ++solution.iterations;
-    const bool regular = solver_->factor(matrix_);
-    if (regular) solution.d = solver_->solve(right);
-    counters_ = solver_->counters();
+    const bool regular = tangent_.solver().factor(tangent_.matrix());
+    if (regular) solution.d = tangent_.solver().solve(right);
     if (!regular || !solution.d.allFinite()) {
       solution.reason = "singular matrix";
       return false;
@@ -111,8 +109,8 @@ class Shi : public Enforcement<N> {
     const ContactOutcome<N>& o = outcome_[c];
     if (o.forces.status == ContactStatus::open) return;
     const bool locked = o.forces.status == ContactStatus::sticking;
-    const double kn = o.springs.normal, ks = locked ? o.springs.shear : 0.0;
-    const double normal = -kn * o.springs.gap;
+    const double kn = o.springs.normal + o.springs.normal_damping, ks = locked ? o.springs.shear + o.springs.shear_damping : 0.0;
+    const double normal = -o.springs.normal * o.springs.gap + viscous_normal(o.springs, strength_[c], 0.0);
     const double shear = locked ? o.springs.initial_shear : o.forces.shear;
     applied_shear_[c] = shear;
     const ContactKinematics<N>& k = o.kinematics;
@@ -121,16 +119,16 @@ class Shi : public Enforcement<N> {
       return typename Motion<N>::Matrix(kn * n1 * n2.transpose() + ks * t1 * t2.transpose());
     };
     if (i >= 0) {
-      matrix_.add(i, i, block(k.normal_vertex, k.shear_vertex, k.normal_vertex, k.shear_vertex));
+      tangent_.matrix().add(i, i, block(k.normal_vertex, k.shear_vertex, k.normal_vertex, k.shear_vertex));
       right.template segment<N>(N * i) += normal * k.normal_vertex + shear * k.shear_vertex;
     }
     if (j >= 0) {
-      matrix_.add(j, j, block(k.normal_edge, k.shear_edge, k.normal_edge, k.shear_edge));
+      tangent_.matrix().add(j, j, block(k.normal_edge, k.shear_edge, k.normal_edge, k.shear_edge));
       right.template segment<N>(N * j) += normal * k.normal_edge + shear * k.shear_edge;
     }
     if (i >= 0 && j >= 0) {
-      matrix_.add(i, j, block(k.normal_vertex, k.shear_vertex, k.normal_edge, k.shear_edge));
-      matrix_.add(j, i, block(k.normal_edge, k.shear_edge, k.normal_vertex, k.shear_vertex));
+      tangent_.matrix().add(i, j, block(k.normal_vertex, k.shear_vertex, k.normal_edge, k.shear_edge));
+      tangent_.matrix().add(j, i, block(k.normal_edge, k.shear_edge, k.normal_vertex, k.shear_vertex));
     }
   }
 
@@ -157,27 +155,30 @@ class Shi : public Enforcement<N> {
 
   static ContactForces next_forces(const StepProblem<N>& problem, const ContactOutcome<N>& o, const ContactStrength& strength) {
     const double gap = o.springs.gap + o.kinematics.gap_change;
-    const double normal = -o.springs.normal * gap;
+    const double elastic = -o.springs.normal * gap, normal = elastic + viscous_normal(o.springs, strength, o.kinematics.gap_change);
+    const double elastic_trial = o.springs.initial_shear - o.springs.shear * o.kinematics.slip_change;
+    const double trial = elastic_trial - o.springs.shear_damping * o.kinematics.slip_change;
+    const bool opens = normal < -strength.tension || (strength.tension == 0.0 && normal <= 0.0);
     ContactForces f;
+    if (opens || (o.forces.status == ContactStatus::open && gap >= -problem.method.closing_tolerance)) return f;
+    f.normal = normal;
+    f.elastic_normal = elastic;
     if (o.forces.status == ContactStatus::open) {
-      if (gap >= -problem.method.closing_tolerance) return f;
       f.status = ContactStatus::sticking;
-      f.normal = normal;
-      f.shear = o.springs.initial_shear - o.springs.shear * o.kinematics.slip_change;
+      f.shear = trial;
+      f.elastic_shear = elastic_trial;
       return f;
     }
-    if (normal < -strength.tension || (strength.tension == 0.0 && normal <= 0.0)) return f;
-    f.normal = normal;
     const double bound = strength.shear_bound(normal).value;
     if (o.forces.status == ContactStatus::sticking) {
-      const double trial = o.springs.initial_shear - o.springs.shear * o.kinematics.slip_change;
       f.status = std::abs(trial) > bound ? ContactStatus::sliding : ContactStatus::sticking;
-      f.shear = f.status == ContactStatus::sliding ? std::copysign(bound, trial) : trial;
+      f.shear = std::clamp(trial, -bound, bound);
+      f.elastic_shear = std::clamp(elastic_trial, -bound, bound);
       return f;
     }
     const bool runs_against_friction = o.forces.shear * o.kinematics.slip_change > 0.0;
     f.status = runs_against_friction ? ContactStatus::sticking : ContactStatus::sliding;
-    f.shear = std::copysign(bound, o.forces.shear);
+    f.shear = f.elastic_shear = std::copysign(bound, o.forces.shear);
     return f;
   }
 
@@ -195,17 +196,15 @@ class Shi : public Enforcement<N> {
     solution.contacts = outcome_;
     // What a sliding contact carried in this step is the friction of the pass before.
     for (std::size_t c = 0; c < outcome_.size(); ++c) {
-      if (outcome_[c].forces.status == ContactStatus::sliding) solution.contacts[c].forces.shear = applied_shear_[c];
+      ContactForces& f = solution.contacts[c].forces;
+      if (f.status == ContactStatus::sliding) f.shear = f.elastic_shear = applied_shear_[c];
     }
   }
 
   std::vector<ContactOutcome<N>> outcome_;
   std::vector<ContactStrength> strength_;
   std::vector<double> applied_shear_;  ///< [N] right side of the last pass
-  BlockMatrix<N> matrix_;
-  std::unique_ptr<LinearSolver<N>> solver_;
-  LinearCounters counters_;
-  long candidates_version_ = -1;
+  TangentSystem<N> tangent_;
 };
 
 }  // namespace

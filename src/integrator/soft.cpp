@@ -9,13 +9,8 @@ template <int N>
 class Soft : public Enforcement<N> {
  public:
   ContactSprings springs(const StepProblem<N>& problem, const Contact& contact) const override {
-    const JointProperties& joint = problem.joints.joint(contact.joint);
-    ContactSprings s;
-    s.normal = joint.normal_stiffness * contact.length;
-    s.shear = joint.shear_stiffness * contact.length;
-    s.gap = contact.gap;
-    // The memory is the stretch of the spring, not its force: when the tributary length changes, strength and force change alike.
-    s.initial_shear = -s.shear * contact.elastic_slip;
+    ContactSprings s = joint_springs(problem, contact);
+    add_dashpots(problem, contact, s);
     return s;
   }
 

@@ -23,9 +23,10 @@ template <int N>
 class MidstepScheme : public TimeScheme<N> {
  public:
   using Unknowns = typename TimeScheme<N>::Unknowns;
+  explicit MidstepScheme(double end_weight) : end_weight_(end_weight) {}
 
   double inertia(double dt) const override { return 1.0 / (dt * span(dt)); }
-  double end_weight() const override { return 1.0; }
+  double end_weight() const override { return end_weight_; }
   Unknowns next_velocity(double dt, const Unknowns& d, const Unknowns&) const override { return d / dt; }
   Unknowns work_displacement(double dt, const Unknowns& d, const Unknowns& v) const override { return 0.5 * span(dt) * (d / dt + v); }
   Unknowns velocity_at_end(double dt, const Unknowns& d, const Unknowns& v) const override {
@@ -36,6 +37,7 @@ class MidstepScheme : public TimeScheme<N> {
 
  private:
   double span(double dt) const { return 0.5 * (dt + previous_dt_); }
+  double end_weight_;
   double previous_dt_ = 0.0;
 };
 
@@ -48,10 +50,16 @@ std::unique_ptr<TimeScheme<N>> make_theta_scheme(double theta) {
 
 template <int N>
 std::unique_ptr<TimeScheme<N>> make_midstep_scheme() {
-  return std::make_unique<MidstepScheme<N>>();
+  return std::make_unique<MidstepScheme<N>>(1.0);
+}
+
+template <int N>
+std::unique_ptr<TimeScheme<N>> make_central_difference_scheme() {
+  return std::make_unique<MidstepScheme<N>>(0.0);
 }
 
 template std::unique_ptr<TimeScheme<3>> make_theta_scheme<3>(double);
 template std::unique_ptr<TimeScheme<3>> make_midstep_scheme<3>();
+template std::unique_ptr<TimeScheme<3>> make_central_difference_scheme<3>();
 
 }  // namespace openclose

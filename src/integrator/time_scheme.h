@@ -39,4 +39,9 @@ std::unique_ptr<TimeScheme<N>> make_theta_scheme(double theta);
 template <int N>
 std::unique_ptr<TimeScheme<N>> make_midstep_scheme();
 
+/// Central difference: the same velocities at mid-steps, with the forces at the start of the step. Explicit, of order 2 (order 1 in what dashpots do,
+/// whose velocity is half a step old). Used by `dem`.
+template <int N>
+std::unique_ptr<TimeScheme<N>> make_central_difference_scheme();
+
 }  // namespace openclose

@@ -1,10 +1,5 @@
 #include "openclose/law/joint_law.h"
 
-#include <algorithm>
-#include <cmath>
-
-#include "openclose/core/tolerance.h"
-
 namespace openclose {
 
 ContactStrength::ContactStrength(const JointProperties& joint, const Contact& contact) : friction(std::tan(joint.friction_angle)) {
@@ -13,31 +8,40 @@ ContactStrength::ContactStrength(const JointProperties& joint, const Contact& co
   tension = contact.bonded ? joint.tensile_strength * contact.length : 0.0;
 }
 
+void ContactStrength::break_bond(const JointProperties& joint) {
+  if (joint.cohesion_behaviour != CohesionBehaviour::ductile) cohesion = 0.0;
+  tension = 0.0;
+}
+
 ContactStrength::ShearBound ContactStrength::shear_bound(double n) const {
-  const double full = friction * n + cohesion;
-  const double steep = friction + 1.0 / tolerance::cohesion_ramp;
-  const double ramp = steep * (n + tension);
-  if (ramp < full) return {std::max(0.0, ramp), ramp > 0.0 ? steep : 0.0};
-  return {std::max(0.0, full), full > 0.0 ? friction : 0.0};
+  const double value = largest_shear(n), steep = friction + 1.0 / tolerance::cohesion_ramp;
+  const bool on_ramp = steep * (n + tension) < friction * n + cohesion;
+  return {value, value > 0.0 ? (on_ramp ? steep : friction) : 0.0};
+}
+
+ContactDashpots::ContactDashpots(const JointProperties& joint, double length, double reduced_mass)
+    : normal(2.0 * joint.damping_ratio * std::sqrt(joint.normal_stiffness * length * reduced_mass)),
+      shear(2.0 * joint.damping_ratio * std::sqrt(joint.shear_stiffness * length * reduced_mass)) {}
+
+double viscous_normal(const ContactSprings& springs, const ContactStrength& strength, double gap_change) {
+  const double opening = springs.target + (springs.shift + strength.tension) / springs.normal;
+  return -springs.normal_damping * (std::max(0.0, springs.gap - opening) + gap_change);
 }
 
 ContactForces spring_slider(const ContactSprings& springs, const ContactStrength& strength, double gap_change, double slip_change) {
-  ContactForces f;
-  const double n = springs.shift - springs.normal * ((springs.gap - springs.target) + gap_change);
-  const bool open = strength.tension > 0.0 ? n < -strength.tension : n <= 0.0;
-  if (open) return f;
-  f.normal = n;
-  f.normal_by_gap = -springs.normal;
-  const double trial = springs.initial_shear - springs.shear * slip_change;
-  const auto bound = strength.shear_bound(n);
-  if (std::abs(trial) <= bound.value) {
-    f.status = ContactStatus::sticking;
-    f.shear = trial;
-    f.shear_by_slip = -springs.shear;
+  ForceTrials trial;
+  trial.elastic_normal = springs.shift - springs.normal * ((springs.gap - springs.target) + gap_change);
+  trial.viscous_normal = viscous_normal(springs, strength, gap_change);
+  trial.elastic_shear = springs.initial_shear - springs.shear * slip_change;
+  trial.viscous_shear = -springs.shear_damping * slip_change;
+  ContactForces f{carry(strength, trial)};
+  if (f.status == ContactStatus::open) return f;
+  const bool dashpot_outweighs = springs.normal_damping > 0.0 && f.normal <= -strength.tension;
+  f.normal_by_gap = dashpot_outweighs ? 0.0 : -(springs.normal + springs.normal_damping);
+  if (f.status == ContactStatus::sticking) {
+    f.shear_by_slip = -(springs.shear + springs.shear_damping);
   } else {
-    f.status = ContactStatus::sliding;
-    f.shear = std::copysign(bound.value, trial);
-    f.shear_by_gap = std::copysign(bound.slope, trial) * f.normal_by_gap;
+    f.shear_by_gap = std::copysign(strength.shear_bound(f.normal).slope, trial.elastic_shear + trial.viscous_shear) * f.normal_by_gap;
   }
   return f;
 }
@@ -46,13 +50,17 @@ ContactForces tangent_for_status(const ContactSprings& springs, const ContactStr
   ContactForces f;
   f.status = status;
   if (status == ContactStatus::open) return f;
-  f.normal_by_gap = -springs.normal;
+  f.normal_by_gap = -(springs.normal + springs.normal_damping);
   if (status == ContactStatus::sticking) {
-    f.shear_by_slip = -springs.shear;
+    f.shear_by_slip = -(springs.shear + springs.shear_damping);
   } else {
     f.shear_by_gap = std::copysign(strength.shear_bound(normal).slope, shear) * f.normal_by_gap;
   }
   return f;
+}
+
+bool can_lose_strength(const JointProperties& joint, bool bonded) {
+  return bonded && (joint.tensile_strength > 0.0 || (joint.cohesion > 0.0 && joint.cohesion_behaviour != CohesionBehaviour::ductile));
 }
 
 bool stays_bonded(const JointProperties& joint, bool bonded, ContactStatus status) {

@@ -1,8 +1,17 @@
 // What a joint can carry (strength) and how its springs get there (spring-slider). The springs' stiffness and rest position are chosen by the
-// enforcement: real joint stiffness for `soft`, a penalty for `shi`, a penalty shifted by a multiplier for `hard`.
+// enforcement: real joint stiffness for `soft` and `dem`, a penalty for `shi`, a penalty shifted by a multiplier for `hard`.
+//
+// Contact damping: dashpots parallel to the springs, c = 2 xi sqrt(k L m*), k the joint's own stiffness (not a penalty), L the tributary length and
+// m* = m1 m2/(m1 + m2) of the two blocks. One block on one contact then has the damping ratio xi; on n equal contacts that share its stiffness
+// sqrt(n) xi. Over a step the dashpots resist the change of gap and slip divided by the time; they never pull beyond the tensile strength, and
+// friction is bounded by the whole normal force. Rigid contacts have no springs and impacts without rebound: damping has no meaning for `hard`.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include "openclose/contact/contact.h"
+#include "openclose/core/tolerance.h"
 #include "openclose/scene/scene.h"
 
 namespace openclose {
@@ -15,10 +24,16 @@ struct ContactStrength {
 
   ContactStrength(const JointProperties& joint, const Contact& contact);
 
+  void break_bond(const JointProperties& joint);
+
   struct ShearBound {
     double value;  ///< [N]
     double slope;  ///< [-] derivative by the normal force
   };
+  double largest_shear(double n) const {
+    const double ramp = (friction + 1.0 / tolerance::cohesion_ramp) * (n + tension);
+    return std::max(0.0, std::min(friction * n + cohesion, ramp));
+  }
   /// Largest shear force at normal force n >= -tension. The cohesion comes in over a ramp, min(mu n + C, (mu + 1/eps)(n + tension)) with
   /// eps = tolerance::cohesion_ramp, because a jump from C to 0 at opening leaves steps without any solution.
   ShearBound shear_bound(double n) const;
@@ -32,20 +47,62 @@ struct ContactSprings {
   double target = 0.0;         ///< [m]
   double shift = 0.0;          ///< [N]
   double initial_shear = 0.0;  ///< [N]
+  // Dashpots over the time in which gap and slip change.
+  double normal_damping = 0.0;  ///< [N/m]
+  double shear_damping = 0.0;   ///< [N/m]
 };
 
-struct ContactForces {
+struct CarriedForces {
   ContactStatus status = ContactStatus::open;
-  double normal = 0.0;                                                  ///< [N] N
-  double shear = 0.0;                                                   ///< [N] T
+  double normal = 0.0;          ///< [N] N
+  double shear = 0.0;           ///< [N] T
+  double elastic_normal = 0.0;  ///< [N] part of N in the spring, the rest being the dashpot's
+  double elastic_shear = 0.0;   ///< [N]
+};
+
+/// What springs and dashpots would carry if nothing bounded them [N].
+struct ForceTrials {
+  double elastic_normal, viscous_normal;
+  double elastic_shear, viscous_shear;
+};
+
+/// The joint law: what a contact carries of the trials. The elastic shear force is the contact's memory: the spring slips with the friction, the
+/// dashpot does not count in it. A contact is open when its spring is; while the dashpot outweighs the spring it carries nothing but is not open.
+inline CarriedForces carry(const ContactStrength& strength, const ForceTrials& trial) {
+  CarriedForces f;
+  const bool open = strength.tension > 0.0 ? trial.elastic_normal < -strength.tension : trial.elastic_normal <= 0.0;
+  if (open) return f;
+  f.elastic_normal = trial.elastic_normal;
+  f.normal = std::max(-strength.tension, trial.elastic_normal + trial.viscous_normal);
+  const double bound = strength.largest_shear(f.normal), shear = trial.elastic_shear + trial.viscous_shear;
+  f.elastic_shear = std::clamp(trial.elastic_shear, -bound, bound);
+  f.shear = std::clamp(shear, -bound, bound);
+  f.status = std::abs(shear) <= bound ? ContactStatus::sticking : ContactStatus::sliding;
+  return f;
+}
+
+struct ContactForces : CarriedForces {
   double normal_by_gap = 0.0, shear_by_gap = 0.0, shear_by_slip = 0.0;  ///< [N/m] dN/dg, dT/dg, dT/ds
 };
+
+/// Dashpots of a contact [N s/m].
+struct ContactDashpots {
+  double normal = 0.0, shear = 0.0;
+  ContactDashpots(const JointProperties& joint, double length, double reduced_mass);
+};
+
+/// [N] of the normal dashpot, unbounded, when the gap has changed so much. It works as long as the spring does: -c (min(g1, g_o) - min(g0, g_o))/dt
+/// for gaps g1 below the opening g_o, at which the spring pulls with the tensile strength.
+double viscous_normal(const ContactSprings& springs, const ContactStrength& strength, double gap_change);
 
 /// Forces when gap and slip have changed by these amounts [m] since the start of the step.
 ContactForces spring_slider(const ContactSprings& springs, const ContactStrength& strength, double gap_change, double slip_change);
 
 /// Derivatives the springs would have in a given status; used before the first iteration, which starts from the states of the last step.
 ContactForces tangent_for_status(const ContactSprings& springs, const ContactStrength& strength, ContactStatus status, double normal, double shear);
+
+/// Whether a contact has tensile strength, or cohesion that is not ductile.
+bool can_lose_strength(const JointProperties& joint, bool bonded);
 
 /// Whether cohesion and tensile strength survive a step that ended in this status.
 bool stays_bonded(const JointProperties& joint, bool bonded, ContactStatus status);

@@ -87,6 +87,15 @@ double BlockSystem<N>::kinetic_energy() const {
   return energy;
 }
 
+template <int N>
+double BlockSystem<N>::reduced_mass(int a, int b) const {
+  double inverse = 0.0;
+  for (const int i : {a, b}) {
+    if (blocks_[i].equation >= 0) inverse += 1.0 / blocks_[i].mass[0];
+  }
+  return 1.0 / inverse;
+}
+
 template class BlockSystem<3>;
 
 }  // namespace openclose

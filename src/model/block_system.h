@@ -74,6 +74,8 @@ class BlockSystem {
   void advance(int b, const Unknowns& d);
 
   double kinetic_energy() const;  ///< [J] per metre of thickness
+  /// [kg] m_a m_b/(m_a + m_b), a fixed block counting as infinitely heavy; one of the two is free.
+  double reduced_mass(int a, int b) const;
 
  private:
   std::vector<Block> blocks_;

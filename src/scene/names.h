@@ -21,9 +21,20 @@ inline constexpr std::array enclosed_joints_words{
     Word{"drop", EnclosedJoints::drop},
 };
 
+inline constexpr std::array mass_damping_words{
+    Word{"none", MassDamping::none},
+    Word{"local", MassDamping::local},
+    Word{"automatic", MassDamping::automatic},
+};
+
 inline constexpr std::array rotation_words{
     Word{"exact", RotationKind::exact},
     Word{"linear", RotationKind::linear},
+};
+
+inline constexpr std::array settle_criterion_words{
+    Word{"unbalanced_force", SettleCriterion::unbalanced_force},
+    Word{"paper", SettleCriterion::paper},
 };
 
 inline constexpr std::array start_words{

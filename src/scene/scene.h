@@ -32,6 +32,7 @@ struct JointProperties {
   double cohesion = 0.0;           ///< [Pa]
   double tensile_strength = 0.0;   ///< [Pa]
   CohesionBehaviour cohesion_behaviour = CohesionBehaviour::ductile;
+  double damping_ratio = 0.0;  ///< [-] of dashpots parallel to the springs, see law/joint_law.h
 };
 
 struct BlockInput {
@@ -78,9 +79,16 @@ enum class RotationKind {
   linear,  ///< Shi's first-order rotation, which makes spinning blocks grow
 };
 
+/// Damping of the blocks' motion, for `dem`.
+enum class MassDamping {
+  none,
+  local,      ///< against the motion, in proportion to the unbalanced force
+  automatic,  ///< viscous, its coefficient following what the kinetic energy does
+};
+
 /// How contacts are enforced and steps are taken.
 struct MethodInput {
-  std::string contact = "soft";                ///< name in the registry of enforcements (analysis looks it up): soft, hard, shi
+  std::string contact = "soft";                ///< name in the registry of enforcements (analysis looks it up): soft, hard, shi, dem
   SourceLocation contact_where;                ///< for the error of an unknown name
   double theta = 1.0;                          ///< [-] 1: Newmark (1/2, 1), Shi's; 1/2: trapezoid (Newmark (1/4, 1/2))
   RotationKind rotation = RotationKind::exact;
@@ -95,6 +103,9 @@ struct MethodInput {
   double closing_tolerance = 1e-9;             ///< [m] shi: an open contact closes beyond this penetration
   int max_open_close_iterations = 6;           ///< shi: per step, before the step is cut
   double step_cut = 0.3;                       ///< [-] shi: factor on the step when open-close does not settle
+  double step_fraction = 0.9;                  ///< [-] dem: longest step over the critical one
+  MassDamping damping = MassDamping::none;     ///< dem: of the motion; settling takes `local` instead of `none`
+  double local_damping = 0.8;                  ///< [-] dem: of the unbalanced force
 };
 
 struct StepInput {
@@ -103,12 +114,23 @@ struct StepInput {
   double smallest_fraction = 1e-6;  ///< [-] of dt, below which cutting is given up
 };
 
+/// What tells that a scene has settled.
+enum class SettleCriterion {
+  unbalanced_force,  ///< static steps until forces are in balance
+  paper,             ///< the reference paper's: steps in time until blocks move little in a step
+};
+
 /// Static settling: when it is done, and when it has failed.
 struct SettleInput {
   double unbalanced_fraction = 1e-8;  ///< [-] largest unbalanced force over the weight of the heaviest free block
   double first_dt = 1.0;              ///< [s] first pseudo-time step; grows tenfold while steps succeed
   int max_steps = 200;
+  int max_explicit_steps = 1000000;   ///< dem: instead of max_steps
   double failure_displacement = 1.0;  ///< [m] a block that moved farther is failing
+  SettleCriterion criterion = SettleCriterion::unbalanced_force;
+  double relative_displacement = 1e-5;  ///< [-] paper: of a step, over half the height of the model
+  int steady_steps = 100;               ///< paper: steps in a row that must stay below
+  int max_time_steps = 10000;           ///< paper: of step.dt, for the first settling
 };
 
 struct StrengthReductionInput {
@@ -145,8 +167,12 @@ struct Scene {
   std::vector<MeasuredPoint> measured_points;
   MethodInput method;
   StepInput step;
-  double end_time = 0.0;        ///< [s]
-  double output_every = 0.0;    ///< [s] interval of the history rows; 0: every step
+  double run_strength_reduction_factor = 1.0;  ///< [-] on the strength of the joints in the motion, see RunResult
+  double end_time = 0.0;                       ///< [s]
+  std::optional<double> end_displacement;      ///< [m] of any measured point; ends the run before its time
+  double output_every = 0.0;                   ///< [s] interval of the history rows; 0: every step
+  std::vector<double> milestones;              ///< [m] displacements of the first measured point to be timed, increasing
+  std::vector<double> snapshot_times;          ///< [s] at which the blocks are drawn, increasing
   SettleInput settle;
   StrengthReductionInput strength_reduction;
 

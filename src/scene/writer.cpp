@@ -80,6 +80,7 @@ void write_joints(Text& text, const Scene& scene) {
     text.line_unless(0.0, "cohesion_pa", joint.cohesion);
     text.line_unless(0.0, "tensile_strength_pa", joint.tensile_strength);
     text.line("cohesion_behaviour", word_for(cohesion_behaviour_words, joint.cohesion_behaviour));
+    text.line_unless(0.0, "damping_ratio", joint.damping_ratio);
   }
 }
 
@@ -133,6 +134,9 @@ void write_method(Text& text, const MethodInput& method) {
   text.line("closing_tolerance_m", method.closing_tolerance);
   text.line("max_open_close_iterations", method.max_open_close_iterations);
   text.line("step_cut", method.step_cut);
+  text.line("step_fraction", method.step_fraction);
+  text.line("damping", word_for(mass_damping_words, method.damping));
+  text.line("local_damping", method.local_damping);
 }
 
 void write_run(Text& text, const Scene& scene) {
@@ -140,18 +144,28 @@ void write_run(Text& text, const Scene& scene) {
   text.line_unless(0.0, "dt_s", scene.step.dt);
   text.line("max_displacement_m", scene.step.max_displacement);
   text.line("smallest_fraction", scene.step.smallest_fraction);
+  text.header("[run]");
+  text.line("strength_reduction_factor", scene.run_strength_reduction_factor);
   text.header("[end]");
   text.line("time_s", scene.end_time);
+  if (scene.end_displacement) text.line("displacement_m", *scene.end_displacement);
   text.header("[output]");
   text.line("every_s", scene.output_every);
+  text.line("milestones_m", scene.milestones);
+  text.line("snapshots_s", scene.snapshot_times);
 }
 
 void write_statics(Text& text, const SettleInput& settle, const StrengthReductionInput& reduction) {
   text.header("[settle]");
+  text.line("criterion", word_for(settle_criterion_words, settle.criterion));
   text.line("unbalanced_fraction", settle.unbalanced_fraction);
   text.line("first_dt_s", settle.first_dt);
   text.line("max_steps", settle.max_steps);
+  text.line("max_explicit_steps", settle.max_explicit_steps);
   text.line("failure_displacement_m", settle.failure_displacement);
+  text.line("relative_displacement", settle.relative_displacement);
+  text.line("steady_steps", settle.steady_steps);
+  text.line("max_time_steps", settle.max_time_steps);
   text.header("[strength_reduction]");
   text.line("width", reduction.width);
   text.line("upper_limit", reduction.upper_limit);

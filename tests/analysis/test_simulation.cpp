@@ -22,8 +22,8 @@ void append(std::vector<double>& list, const Contact& c) {
 }
 
 void append(std::vector<double>& list, const EnergyLedger& l) {
-  list.insert(list.end(),
-              {l.kinetic, l.gravity, l.contact_springs, l.support_springs, l.loads, l.friction, l.impact, l.scheme, l.redefinition, l.turnover});
+  list.insert(list.end(), {l.kinetic, l.gravity, l.contact_springs, l.support_springs, l.loads, l.friction, l.contact_damping, l.impact, l.scheme,
+                           l.redefinition, l.turnover});
 }
 
 /// Everything that a step may change, as numbers to be compared bit for bit.

@@ -98,3 +98,29 @@ TEST_CASE("free vibration turns round after half a period", "[analytical]") {
   CHECK(free_vibration(4.0, 0.25 * 3.14159265358979323846) == Approx(-1.0));
   CHECK(free_vibration(3.0, 0.2) == Approx(1.0 - 0.36 / 2.0 + 0.1296 / 24.0 - 0.046656 / 720.0).epsilon(1e-6));
 }
+
+TEST_CASE("damped vibration: against steps of the fourth order", "[analytical]") {
+  for (const double ratio : {0.0, 0.1, 0.7, 1.0, 1.5, 4.0}) {
+    const double w = 3.0, end = 2.0;
+    const int n = 4000;
+    const double h = end / n;
+    const auto acceleration = [&](double u, double v) { return -2.0 * ratio * w * v - w * w * u; };
+    double u = 0.0, v = 1.0;
+    for (int i = 0; i < n; ++i) {
+      const double u1 = v, v1 = acceleration(u, v);
+      const double u2 = v + 0.5 * h * v1, v2 = acceleration(u + 0.5 * h * u1, v + 0.5 * h * v1);
+      const double u3 = v + 0.5 * h * v2, v3 = acceleration(u + 0.5 * h * u2, v + 0.5 * h * v2);
+      const double u4 = v + h * v3, v4 = acceleration(u + h * u3, v + h * v3);
+      u += h / 6.0 * (u1 + 2.0 * u2 + 2.0 * u3 + u4);
+      v += h / 6.0 * (v1 + 2.0 * v2 + 2.0 * v3 + v4);
+    }
+    // Of the fastest exponent, 24/s, a step of 0.5 ms leaves (24 h)^4 / 120 of each value.
+    CHECK(std::abs(damped_vibration(w, ratio, end) - u) < std::pow(8.0 * w * h, 4) / 120.0);
+  }
+}
+
+TEST_CASE("damped vibration: logarithmic decrement", "[analytical]") {
+  const double ratio = 0.2, w = 5.0, period = 2.0 * 3.14159265358979323846 / (w * std::sqrt(1.0 - ratio * ratio));
+  const double decrement = std::log(damped_vibration(w, ratio, 0.1) / damped_vibration(w, ratio, 0.1 + period));
+  CHECK(decrement == Approx(2.0 * 3.14159265358979323846 * ratio / std::sqrt(1.0 - ratio * ratio)).epsilon(1e-12));
+}

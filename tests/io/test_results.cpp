@@ -99,6 +99,7 @@ TEST_CASE("energy.csv ends with the imbalance", "[io][results]") {
   l.support_springs = 0.2;
   l.loads = -0.3;
   l.friction = 0.7;
+  l.contact_damping = 0.4;
   l.impact = 1e-17;
   l.scheme = 1e-3;
   l.redefinition = -1e-5;
@@ -109,9 +110,10 @@ TEST_CASE("energy.csv ends with the imbalance", "[io][results]") {
   const auto lines = lines_of(place / "energy.csv");
   REQUIRE(lines.size() == 2);
   CHECK(lines[0] ==
-        "time_s,kinetic_j,gravity_j,contact_springs_j,support_springs_j,loads_j,friction_j,impact_j,scheme_j,redefinition_j,turnover_j,imbalance_j");
-  const double expected[] = {0.25,       l.kinetic, l.gravity, l.contact_springs, l.support_springs, l.loads,
-                             l.friction, l.impact,  l.scheme,  l.redefinition,    l.turnover,        l.imbalance()};
+        "time_s,kinetic_j,gravity_j,contact_springs_j,support_springs_j,loads_j,friction_j,contact_damping_j,impact_j,scheme_j,redefinition_j,"
+        "turnover_j,imbalance_j");
+  const double expected[] = {0.25,     l.kinetic, l.gravity,      l.contact_springs, l.support_springs, l.loads, l.friction, l.contact_damping,
+                             l.impact, l.scheme,  l.redefinition, l.turnover,        l.imbalance()};
   const auto fields = fields_of(lines[1]);
   REQUIRE(fields.size() == std::size(expected));
   for (std::size_t i = 0; i < fields.size(); ++i) CHECK(same_bits(number(fields[i]), expected[i]));
@@ -187,6 +189,60 @@ TEST_CASE("trials.csv and curve.csv", "[io][results]") {
         "1.1000000000000001,\"crest, left\",0.33333333333333331\n");
 }
 
+TEST_CASE("milestones: the missing ones have a reason in place of times", "[io][results]") {
+  const TemporaryFolder place;
+  const OutputFolder folder(place.path());
+  const std::vector<Milestone> milestones = {{10.0, 1.0 / 3.0, 0.5, 0.75, ""}, {40.0, std::nullopt, 0.0, 0.0, "stopped, early"}};
+  write_milestones(folder, milestones);
+  CHECK(test::text_of(place / "milestones.csv") ==
+        "displacement_m,time_s,cpu_s,cpu_of_program_s,reason\n"
+        "10,0.33333333333333331,0.5,0.75,\n"
+        "40,,,,\"stopped, early\"\n");
+
+  Simulation<3> simulation(test::block_on_base());
+  Summary summary;
+  summary.milestones = milestones;
+  summary.ended_by = "end.displacement_m";
+  summary.cpu_of_start = 0.25;
+  summary.cpu_of_motion = 0.6;
+  write_summary(folder, summary, simulation);
+  const nlohmann::json j = summary_json(place);
+  REQUIRE(j.at("milestones").size() == 2);
+  const nlohmann::json &reached = j.at("milestones")[0], &missing = j.at("milestones")[1];
+  CHECK(reached.at("displacement_m") == 10.0);
+  CHECK(same_bits(reached.at("time_s").get<double>(), 1.0 / 3.0));
+  CHECK(reached.at("cpu_s") == 0.5);
+  CHECK(reached.at("cpu_of_program_s") == 0.75);
+  CHECK(missing.at("displacement_m") == 40.0);
+  for (const char* key : {"time_s", "cpu_s", "cpu_of_program_s"}) CHECK(missing.at(key).is_null());
+  CHECK(missing.at("reason") == "stopped, early");
+  CHECK(j.at("ended_by") == "end.displacement_m");
+  CHECK(j.at("cpu_s").at("start") == 0.25);
+  CHECK(j.at("cpu_s").at("motion") == 0.6);
+  CHECK(j.at("options").at("end_displacement_m").is_null());
+}
+
+TEST_CASE("summary.json of a start by the paper's criterion", "[io][results]") {
+  const TemporaryFolder place;
+  Scene scene = test::block_on_base();
+  scene.settle.criterion = SettleCriterion::paper;
+  scene.end_displacement = 2.0;
+  scene.run_strength_reduction_factor = 1.5;
+  Simulation<3> simulation(scene);
+  Summary summary;
+  summary.settling.steps = 7;
+  summary.settling.criterion = "steps";
+  summary.settling.relative_displacement = 1e-3;
+  write_summary(OutputFolder(place.path()), summary, simulation);
+  const nlohmann::json j = summary_json(place);
+  CHECK(j.at("settling").at("relative_displacement") == 1e-3);
+  CHECK_FALSE(j.at("settling").contains("unbalanced_fraction"));
+  CHECK(j.at("options").at("settle").at("criterion") == "paper");
+  CHECK(j.at("options").at("settle").at("relative_displacement") == 1e-5);
+  CHECK(j.at("options").at("end_displacement_m") == 2.0);
+  CHECK(j.at("options").at("run_strength_reduction_factor") == 1.5);
+}
+
 TEST_CASE("summary.json of a run", "[io][results]") {
   const TemporaryFolder place;
   Scene scene = test::block_on_base();
@@ -230,7 +286,7 @@ TEST_CASE("summary.json of a run", "[io][results]") {
   for (const char* stage : {"detection", "solution", "bookkeeping"}) CHECK(j.at("stage_s").at(stage).get<double>() > 0.0);
   CHECK(same_bits(j.at("energy_ledger").at("friction_j").get<double>(), 1.0 / 3.0));
   CHECK(j.at("energy_ledger").at("imbalance_j") == 1.0 / 3.0);
-  CHECK(j.at("energy_ledger").size() == 11);
+  CHECK(j.at("energy_ledger").size() == 12);
   CHECK(j.at("settling").at("settled") == true);
   CHECK(j.at("settling").at("criterion") == "unbalanced force");
   CHECK_FALSE(j.contains("factor_of_safety"));

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <tuple>
 
 #include "openclose/core/tolerance.h"
 #include "openclose/law/joint_law.h"
@@ -263,4 +264,98 @@ TEST_CASE("the tangent of a status is the one the spring-slider has there", "[la
     ++seen[static_cast<std::size_t>(f.status)];
   }
   CHECK(*std::min_element(seen.begin(), seen.end()) > 100);
+}
+
+namespace {
+
+ContactSprings damped_springs() {
+  ContactSprings springs = springs_under_load();
+  springs.normal_damping = 700.0;
+  springs.shear_damping = 300.0;
+  return springs;
+}
+
+}  // namespace
+
+TEST_CASE("dashpots have the critical damping of one mass on the joint's spring times the ratio", "[law][damping]") {
+  JointProperties joint = joint_with(0.5, 0.0, 0.0);
+  joint.damping_ratio = 0.3;
+  const ContactDashpots c(joint, 0.25, 900.0);
+  CHECK(c.normal == Approx(0.6 * std::sqrt(1e9 * 0.25 * 900.0)).epsilon(rounding));
+  CHECK(c.shear == Approx(0.6 * std::sqrt(4e8 * 0.25 * 900.0)).epsilon(rounding));
+}
+
+TEST_CASE("dashpots resist while the contact is closed", "[law][damping]") {
+  const ContactSprings springs = damped_springs();
+  const ContactStrength strength = strength_of(0.5);
+  SECTION("closing further and sticking") {
+    const ContactForces f = spring_slider(springs, strength, -0.2, 0.3);
+    CHECK(f.elastic_normal == Approx(1200.0).epsilon(rounding));
+    CHECK(f.normal == Approx(1200.0 + 140.0).epsilon(rounding));
+    CHECK(f.elastic_shear == Approx(-120.0).epsilon(rounding));
+    CHECK(f.shear == Approx(-120.0 - 90.0).epsilon(rounding));
+  }
+  SECTION("friction is bounded by the whole normal force, the memory keeps the spring's part") {
+    const ContactForces f = spring_slider(springs, strength, -0.2, 1.2);
+    CHECK(f.status == ContactStatus::sliding);
+    CHECK(f.shear == Approx(-0.5 * 1340.0).epsilon(rounding));
+    CHECK(f.elastic_shear == Approx(-480.0).epsilon(rounding));
+    CHECK(spring_slider(springs, strength, -0.2, 3.0).elastic_shear == Approx(-0.5 * 1340.0).epsilon(rounding));
+  }
+  SECTION("only from where the faces touch") {
+    ContactSprings open = damped_springs();
+    open.gap = 0.4;
+    const ContactForces f = spring_slider(open, strength, -0.6, 0.0);
+    CHECK(f.normal == Approx(200.0 + 0.2 * 700.0).epsilon(10.0 * rounding));
+    CHECK(spring_slider(open, strength, -0.3, 0.0).normal == 0.0);
+  }
+  SECTION("without pulling: unloaded too fast a contact carries nothing, yet is not open") {
+    const ContactForces f = spring_slider(springs, strength, 0.9, 0.1);
+    CHECK(f.normal == 0.0);
+    CHECK(f.shear == 0.0);
+    CHECK(f.elastic_normal == Approx(100.0).epsilon(10.0 * rounding));
+    CHECK(f.elastic_shear == 0.0);
+    CHECK(f.status != ContactStatus::open);
+    CHECK(f.normal_by_gap == 0.0);
+  }
+  SECTION("down to the tensile strength") {
+    const ContactStrength tough = strength_of(0.5, 0.0, 250.0);
+    CHECK(spring_slider(springs, tough, 1.2, 0.0).normal == -250.0);
+    CHECK(spring_slider(springs, tough, 1.2, 0.0).elastic_normal == Approx(-200.0).epsilon(10.0 * rounding));
+  }
+}
+
+TEST_CASE("damped forces are continuous, and their derivatives are their difference quotients", "[law][damping]") {
+  ContactSprings springs = damped_springs();
+  springs.initial_shear = -20.0;
+  springs.gap = GENERATE(-1.0, 0.3);
+  const double tension = GENERATE(0.0, 60.0);
+  const ContactStrength strength = strength_of(0.6, 400.0, tension);
+  std::mt19937 generator(12);
+  std::uniform_real_distribution<double> change(-2.0, 2.0), small(-1e-4, 1e-4);
+  const double h = 1e-5, quotient_rounding = 2e4 * rounding / h;
+  const double steep = strength.friction + 1.0 / tolerance::cohesion_ramp, stiffness = springs.normal + springs.normal_damping;
+  int compared = 0, carrying_nothing = 0;
+  for (int i = 0; i < 8000; ++i) {
+    const double g = change(generator), s = change(generator), dg = small(generator), ds = small(generator);
+    const ContactForces f = spring_slider(springs, strength, g, s), near = spring_slider(springs, strength, g + dg, s + ds);
+    if (tension == 0.0) {
+      const double slack = 1e4 * rounding, shear_slope = springs.shear + springs.shear_damping;
+      CHECK(std::abs(near.normal - f.normal) <= stiffness * std::abs(dg) + slack);
+      CHECK(std::abs(near.shear - f.shear) <= shear_slope * std::abs(ds) + steep * stiffness * std::abs(dg) + slack);
+      CHECK(std::abs(near.elastic_shear - f.elastic_shear) <= springs.shear * std::abs(ds) + steep * stiffness * std::abs(dg) + slack);
+    }
+    const ContactForces g1 = spring_slider(springs, strength, g - h, s), g2 = spring_slider(springs, strength, g + h, s);
+    const ContactForces s1 = spring_slider(springs, strength, g, s - h), s2 = spring_slider(springs, strength, g, s + h);
+    const auto piece = [&](const ContactForces& at) { return std::tuple(at.status, at.normal_by_gap, strength.shear_bound(at.normal).slope); };
+    const bool kink = piece(g1) != piece(f) || piece(g2) != piece(f) || piece(s1) != piece(f) || piece(s2) != piece(f);
+    if (kink) continue;
+    CHECK(std::abs(f.normal_by_gap - (g2.normal - g1.normal) / (2.0 * h)) <= quotient_rounding);
+    CHECK(std::abs(f.shear_by_gap - (g2.shear - g1.shear) / (2.0 * h)) <= quotient_rounding);
+    CHECK(std::abs(f.shear_by_slip - (s2.shear - s1.shear) / (2.0 * h)) <= quotient_rounding);
+    ++compared;
+    carrying_nothing += f.status != ContactStatus::open && f.normal == -tension ? 1 : 0;
+  }
+  CHECK(compared > 4000);
+  if (springs.gap < 0.0) CHECK(carrying_nothing > 100);
 }

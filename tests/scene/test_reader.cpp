@@ -34,6 +34,12 @@ TEST_CASE("a small scene gets the defaults of the structs", "[scene][reader]") {
   CHECK_FALSE(scene.method.penalty);
   CHECK(scene.step.dt == 0.0);
   CHECK(scene.end_time == 0.0);
+  CHECK_FALSE(scene.end_displacement);
+  CHECK(scene.run_strength_reduction_factor == 1.0);
+  CHECK(scene.milestones.empty());
+  CHECK(scene.snapshot_times.empty());
+  CHECK(scene.settle.criterion == SettleCriterion::unbalanced_force);
+  CHECK(scene.settle.relative_displacement == 1e-5);
 }
 
 TEST_CASE("every key reaches its field", "[scene][reader]") {
@@ -43,7 +49,7 @@ TEST_CASE("every key reaches its field", "[scene][reader]") {
       "[[material]]\nname = 'a'\ndensity_kg_per_m3 = 2e3\n"
       "[[material]]\nname = 'b'\nunit_weight_n_per_m3 = 26926\n"
       "[[joint]]\nmaterials = ['b', 'a']\nnormal_stiffness_pa_per_m = 1e9\nshear_stiffness_pa_per_m = 2e8\nfriction_angle_deg = 30\n"
-      "cohesion_pa = 5\ntensile_strength_pa = 6\ncohesion_behaviour = 'lost_on_slip'\n"
+      "cohesion_pa = 5\ntensile_strength_pa = 6\ncohesion_behaviour = 'lost_on_slip'\ndamping_ratio = 0.1\n"
       "[[block]]\nname = 'one'\nmaterial = 'b'\nvertices_m = [[0, 0], [1, 0], [0, 1]]\nrotation_locked = true\n"
       "velocity_m_per_s = [1, 2]\nangular_velocity_rad_per_s = -3\n"
       "[[support]]\nblock = 'one'\npoint_m = [0, 0]\nstiffness_n_per_m = [0, 7]\n"
@@ -53,8 +59,10 @@ TEST_CASE("every key reaches its field", "[scene][reader]") {
       "max_iterations = 10\nskip_search = false\npenalty_pa_per_m = 11\npenalty_shear_ratio = 0.5\npenetration_tolerance_m = 12\n"
       "closing_tolerance_m = 0\nmax_open_close_iterations = 13.0\nstep_cut = 0.25\n"
       "[step]\ndt_s = 0.01\nmax_displacement_m = 14\nsmallest_fraction = 1\n"
-      "[end]\ntime_s = 15\n[output]\nevery_s = 16\n"
+      "[run]\nstrength_reduction_factor = 1.5\n"
+      "[end]\ntime_s = 15\ndisplacement_m = 40\n[output]\nevery_s = 16\nmilestones_m = [10, 20.5]\nsnapshots_s = [0, 1.522]\n"
       "[settle]\nunbalanced_fraction = 1e-3\nfirst_dt_s = 17\nmax_steps = 18\nfailure_displacement_m = 19\n"
+      "criterion = 'paper'\nrelative_displacement = 1e-6\nsteady_steps = 22\nmax_time_steps = 23\n"
       "[strength_reduction]\nwidth = 0.125\nupper_limit = 20\ncurve = [1, 1.5]\ncurve_time_s = 21\n");
   CHECK(scene.title == "all of it");
   CHECK(scene.gravity == Vec2(1.0, -2.5));
@@ -67,6 +75,7 @@ TEST_CASE("every key reaches its field", "[scene][reader]") {
   CHECK(joint.cohesion == 5.0);
   CHECK(joint.tensile_strength == 6.0);
   CHECK(joint.cohesion_behaviour == CohesionBehaviour::lost_on_slip);
+  CHECK(joint.damping_ratio == 0.1);
   CHECK(scene.joint(0, 1) == &joint);
   CHECK(scene.joint(1, 0) == &joint);
   CHECK(scene.joint(0, 0) == nullptr);
@@ -83,7 +92,7 @@ TEST_CASE("every key reaches its field", "[scene][reader]") {
   CHECK(scene.measured_points.at(0).point == Vec2(1.0, 0.0));
   const MethodInput& method = scene.method;
   CHECK(method.contact == "anything");
-  CHECK(method.contact_where.line == 37);
+  CHECK(method.contact_where.line == 38);
   CHECK(method.theta == 0.5);
   CHECK(method.rotation == RotationKind::linear);
   CHECK(method.start == Start::steady_sliding);
@@ -102,10 +111,18 @@ TEST_CASE("every key reaches its field", "[scene][reader]") {
   CHECK(scene.step.smallest_fraction == 1.0);
   CHECK(scene.end_time == 15.0);
   CHECK(scene.output_every == 16.0);
+  CHECK(scene.run_strength_reduction_factor == 1.5);
+  CHECK(scene.end_displacement == 40.0);
+  CHECK(scene.milestones == std::vector<double>{10.0, 20.5});
+  CHECK(scene.snapshot_times == std::vector<double>{0.0, 1.522});
   CHECK(scene.settle.unbalanced_fraction == 1e-3);
   CHECK(scene.settle.first_dt == 17.0);
   CHECK(scene.settle.max_steps == 18);
   CHECK(scene.settle.failure_displacement == 19.0);
+  CHECK(scene.settle.criterion == SettleCriterion::paper);
+  CHECK(scene.settle.relative_displacement == 1e-6);
+  CHECK(scene.settle.steady_steps == 22);
+  CHECK(scene.settle.max_time_steps == 23);
   CHECK(scene.strength_reduction.width == 0.125);
   CHECK(scene.strength_reduction.upper_limit == 20.0);
   CHECK(scene.strength_reduction.curve == std::vector<double>{1.0, 1.5});

@@ -1,0 +1,77 @@
+#include <algorithm>
+#include <utility>
+
+#include "openclose/analysis/settle.h"
+
+namespace openclose {
+namespace {
+
+constexpr double cut = 0.5;            ///< [-] on a step that moves a block too far
+constexpr int displacement_every = 100;  ///< steps between two looks at the displacement, which costs as much as a step
+
+/// Displacement of the farthest block since this was made.
+template <int N>
+class Travel {
+ public:
+  explicit Travel(const Simulation<N>& simulation) : simulation_(simulation), start_(simulation.system().state().displacement) {}
+  double largest() const {
+    const BlockSystem<N>& system = simulation_.system();
+    double largest = 0.0;
+    for (int b : system.free_blocks()) {
+      largest = std::max(largest, Motion<N>::displacement_bound(system.displacement(b) - start_[b], system.block(b).radius));
+    }
+    return largest;
+  }
+
+ private:
+  const Simulation<N>& simulation_;
+  std::vector<typename Motion<N>::Unknowns> start_;
+};
+
+}  // namespace
+
+template <int N>
+SettleResult settle_explicitly(Simulation<N>& simulation, const SettleProgress& progress) {
+  const SettleInput& input = simulation.scene().settle;
+  const MassDamping asked = simulation.scene().method.damping;
+  const MassDamping damping = asked == MassDamping::none ? MassDamping::local : asked;
+  simulation.come_to_rest();
+  const Travel<N> travel(simulation);
+  const double scale = simulation.force_scale();
+
+  SettleResult result;
+  result.criterion = "steps";
+  for (double part = 1.0; result.steps < input.max_explicit_steps;) {
+    // Without contacts and supports nothing bounds the step but the way it may go.
+    const double h = part * std::min(simulation.longest_stable_step(damping), input.first_dt);
+    const StepResult step = simulation.explicit_step(h, damping);
+    if (!step.accepted) {
+      part *= cut;
+      result.criterion = step.reason;
+      if (part < simulation.scene().step.smallest_fraction) break;
+      continue;
+    }
+    part = std::min(1.0, part / cut);
+    ++result.steps;
+    result.criterion = "steps";
+    result.unbalanced_fraction = step.unbalanced_force / scale;
+    // Forces that were in balance with cohesion that is gone now are to be balanced anew.
+    result.settled = result.unbalanced_fraction <= input.unbalanced_fraction && !step.lost_strength;
+    if (result.settled || result.steps % displacement_every == 0) {
+      result.displacement = std::max(result.displacement, travel.largest());
+      if (progress) progress(settled_share(result.unbalanced_fraction, input.unbalanced_fraction));
+    }
+    if (result.settled) result.criterion = "unbalanced force";
+    if (result.settled) break;
+    if (result.displacement > input.failure_displacement) {
+      result.criterion = "displacement";
+      break;
+    }
+  }
+  simulation.come_to_rest();
+  return result;
+}
+
+template SettleResult settle_explicitly<3>(Simulation<3>&, const SettleProgress&);
+
+}  // namespace openclose

@@ -1,0 +1,395 @@
+#include "openclose/integrator/central_difference.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "openclose/core/tolerance.h"
+#include "openclose/integrator/critical_step.h"
+
+namespace openclose {
+namespace {
+
+/// [rad] Up to here the series below are exact to rounding: the first terms left out are angle^9/9! and angle^8/8!.
+constexpr double small_angle = 0.01;
+/// [-] Automatic damping: power taken over the rate of change of kinetic energy, as in UDEC.
+constexpr double power_ratio = 0.5;
+/// [-] Factor on its coefficient from one step to the next, and the value it starts from times the step. A hundredfold change takes 47 steps, a fraction
+/// of the slowest vibration of any system of many blocks.
+constexpr double adaptation = 1.1;
+constexpr double first_viscous = 0.01;
+
+double square(double x) {
+  return x * x;
+}
+
+double sign(double x) {
+  return x > 0.0 ? 1.0 : (x < 0.0 ? -1.0 : 0.0);
+}
+
+}  // namespace
+
+template <int N>
+void CentralDifference<N>::load(const StepProblem<N>& problem) {
+  joints_ = &problem.joints;
+  load_blocks(problem);
+  load_points(problem);
+  load_contacts(problem);
+  moved_ = max_penetration_ = 0.0;
+}
+
+template <int N>
+void CentralDifference<N>::load_blocks(const StepProblem<N>& problem) {
+  const BlockSystem<N>& system = problem.system;
+  const std::size_t n = system.free_blocks().size();
+  poses_.assign(n + 1, Pose());
+  stored_.assign(n, Pose());
+  stored_angle_.assign(n, 0.0);
+  rates_.assign(n + 1, Rate());
+  previous_rates_.assign(n + 1, Rate());
+  forces_.assign(n + 1, Rate());
+  inertia_.clear();
+  blocks_ = system.free_blocks();
+  for (int b : blocks_) {
+    const auto& block = system.block(b);
+    const Unknowns v = system.velocity(b), weight = problem.external.weight(system, b);
+    rates_[block.equation] = {v[0], v[1], v[2], 0.0};
+    inertia_.push_back({block.mass[0], block.mass[2], 1.0 / block.mass[0], 1.0 / block.mass[2], block.rotation_locked ? 0.0 : 1.0, weight[0], weight[1],
+                        block.radius});
+  }
+}
+
+template <int N>
+void CentralDifference<N>::load_points(const StepProblem<N>& problem) {
+  points_.clear();
+  const BlockSystem<N>& system = problem.system;
+  const auto add = [&](const auto& list, bool is_load) {
+    for (const auto& f : list) {
+      const int slot = system.block(system.point_block(f.point)).equation;
+      if (slot < 0) continue;
+      PointForce p;
+      p.slot = slot;
+      p.is_load = is_load;
+      p.arm = system.point_arm(f.point);
+      p.force = f.force;
+      p.stiffness = f.stiffness;
+      p.stretch = system.point_position(f.point) - f.anchor;
+      points_.push_back(p);
+    }
+  };
+  add(problem.external.loads(), true);
+  add(problem.external.supports(), false);
+}
+
+template <int N>
+void CentralDifference<N>::load_contacts(const StepProblem<N>& problem) {
+  const BlockSystem<N>& system = problem.system;
+  const int fixed_slot = system.free_count();
+  const auto slot = [&](int b) { return system.block(b).equation >= 0 ? system.block(b).equation : fixed_slot; };
+  links_.clear();
+  far_.clear();
+  damped_ = false;
+  begin_forces();
+  add_point_forces(false);
+  // Until the next load blocks approach each other by the skin and by the step with which they leave it, whose length and speed are about the last ones.
+  double fastest = 0.0;
+  for (std::size_t i = 0; i < inertia_.size(); ++i) {
+    fastest = std::max(fastest, std::hypot(rates_[i].x, rates_[i].y) + inertia_[i].radius * std::abs(rates_[i].turn));
+  }
+  const double approach = tolerance::contact_skin_m + 2.0 * h_ * fastest;
+  critical_step_ = openclose::critical_step(problem, approach);
+  for (std::size_t i = 0; i < problem.contacts.size(); ++i) {
+    const Contact& c = problem.contacts[i];
+    const JointProperties& joint = problem.joints.joint(c.joint);
+    const ContactDashpots dashpots(joint, c.length, system.reduced_mass(c.vertex_block, c.edge_block));
+    const Vec2 arm = system.arm(c.vertex), across = system.position(c.vertex_block, c.vertex) - system.centroid(c.edge_block);
+    const Vec2 normal = -perpendicular((system.arm(system.next(c.edge)) - system.arm(c.edge)).normalized());
+    Link link{slot(c.vertex_block), slot(c.edge_block), arm.x(), arm.y(), across.x(), across.y(), normal.x(), normal.y(),
+              joint.normal_stiffness * c.length, joint.shear_stiffness * c.length, 1.0 / (joint.shear_stiffness * c.length), dashpots.normal,
+              dashpots.shear, c.gap, ContactStrength(joint, c), c.gap, 0.0, c.elastic_slip, 0.0, 0.0, 0.0, 0.0, c.status, c.bonded,
+              can_lose_strength(joint, c.bonded), c.joint, static_cast<int>(i)};
+    const bool at_rest = c.status == ContactStatus::open && c.elastic_slip == 0.0;
+    if (at_rest && !may_close(link.strength, link.normal_stiffness, c.gap, approach)) {
+      far_.push_back(link);
+      continue;
+    }
+    damped_ |= joint.damping_ratio > 0.0;
+    const Place at = place(link);
+    carry_now(link, at);
+    push(link, at);
+    links_.push_back(link);
+  }
+}
+
+template <int N>
+typename CentralDifference<N>::Place CentralDifference<N>::place(const Link& link) const {
+  const Pose& v = poses_[link.vertex_slot];
+  const Pose& e = poses_[link.edge_slot];
+  const double turned_x = v.cos_minus_1 * link.arm_x - v.sin * link.arm_y, turned_y = v.cos_minus_1 * link.arm_y + v.sin * link.arm_x;
+  const double dx = v.x - e.x + turned_x, dy = v.y - e.y + turned_y;
+  const double change_x = e.cos_minus_1 * link.normal_x - e.sin * link.normal_y, change_y = e.cos_minus_1 * link.normal_y + e.sin * link.normal_x;
+  const double nx = link.normal_x + change_x, ny = link.normal_y + change_y;
+  return {link.loaded_gap + (change_x * link.across_x + change_y * link.across_y + (nx * dx + ny * dy)),
+          change_x * link.across_y - change_y * link.across_x + (nx * dy - ny * dx),
+          nx,
+          ny,
+          link.arm_x + turned_x,
+          link.arm_y + turned_y,
+          link.across_x + dx,
+          link.across_y + dy};
+}
+
+template <int N>
+ForceTrials CentralDifference<N>::trials(const Link& link, const Place& at, double elastic_shear) const {
+  const Rate& v = rates_[link.vertex_slot];
+  const Rate& e = rates_[link.edge_slot];
+  const double x = (v.x - v.turn * at.arm_y) - (e.x - e.turn * at.across_y), y = (v.y + v.turn * at.arm_x) - (e.y + e.turn * at.across_x);
+  return {-link.normal_stiffness * at.gap, -link.normal_dashpot * (at.normal_x * x + at.normal_y * y), elastic_shear,
+          -link.shear_dashpot * (at.normal_x * y - at.normal_y * x)};
+}
+
+/// The forces with which the next step starts, from the memory of the contact; the memory stays.
+template <int N>
+void CentralDifference<N>::carry_now(Link& link, const Place& at) {
+  const CarriedForces f = carry(link.strength, trials(link, at, -link.shear_stiffness * link.stretch));
+  link.normal = f.normal;
+  link.shear = f.shear;
+  link.elastic_normal = f.elastic_normal;
+  link.viscous_shear = f.shear - f.elastic_shear;
+}
+
+template <int N>
+void CentralDifference<N>::push(const Link& link, const Place& at) {
+  const double x = link.normal * at.normal_x - link.shear * at.normal_y, y = link.normal * at.normal_y + link.shear * at.normal_x;
+  Rate& v = forces_[link.vertex_slot];
+  v.x += x;
+  v.y += y;
+  v.turn += at.arm_x * y - at.arm_y * x;
+  Rate& e = forces_[link.edge_slot];
+  e.x -= x;
+  e.y -= y;
+  e.turn -= at.across_x * y - at.across_y * x;
+}
+
+template <int N>
+void CentralDifference<N>::begin_forces() {
+  for (std::size_t i = 0; i < inertia_.size(); ++i) forces_[i] = {inertia_[i].weight_x, inertia_[i].weight_y, 0.0, 0.0};
+}
+
+template <int N>
+void CentralDifference<N>::add_point_forces(bool step) {
+  for (PointForce& p : points_) {
+    const Pose& pose = poses_[p.slot];
+    const Vec2 turned = pose.cos_minus_1 * p.arm + pose.sin * perpendicular(p.arm), moved = Vec2(pose.x, pose.y) + turned;
+    const Vec2 stretch = p.stretch + moved, force = p.force - p.stiffness.cwiseProduct(stretch), arm = p.arm + turned;
+    forces_[p.slot].x += force.x();
+    forces_[p.slot].y += force.y();
+    forces_[p.slot].turn += cross(arm, force);
+    if (!step) continue;
+    const double energy = 0.5 * p.stiffness.dot((stretch + p.stretch).cwiseProduct(moved)) - p.force.dot(moved), change = energy - p.energy;
+    (p.is_load ? energies_.loads : energies_.support_springs) += change;
+    energies_.scheme -= change;
+    energies_.turnover += std::abs(p.force.dot(moved - p.moved));
+    p.energy = energy;
+    p.moved = moved;
+  }
+}
+
+template <int N>
+bool CentralDifference<N>::move(double h, double span, double limit, MassDamping damping, double local_damping) {
+  const std::size_t n = inertia_.size();
+  const double alpha = damping == MassDamping::local ? local_damping : 0.0;
+  if (damping != MassDamping::automatic) viscous_ = 0.0;
+  if (damping == MassDamping::automatic && viscous_ == 0.0) viscous_ = first_viscous / h;
+  const double keep = 1.0 - 0.5 * viscous_ * span, per_viscous = 1.0 / (1.0 + 0.5 * viscous_ * span);
+  const auto damped = [alpha](double force, double velocity) { return force - alpha * std::abs(force) * sign(velocity); };
+  double fastest = 0.0, unbalanced = 0.0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Inertia& m = inertia_[i];
+    const Rate &f = forces_[i], &v = rates_[i];
+    Rate& next = previous_rates_[i];
+    next.x = (keep * v.x + span * (damped(f.x, v.x) * m.per_mass)) * per_viscous;
+    next.y = (keep * v.y + span * (damped(f.y, v.y) * m.per_mass)) * per_viscous;
+    next.turn = m.turns * (keep * v.turn + span * (damped(f.turn, v.turn) * m.per_moment)) * per_viscous;
+    // (a + b)^2 <= 2 (a^2 + b^2) for the speed of the centroid and of the farthest point around it.
+    fastest = std::max(fastest, next.x * next.x + next.y * next.y + square(next.turn * m.radius));
+    unbalanced = std::max(unbalanced, std::max(f.x * f.x + f.y * f.y, square(m.turns * f.turn / m.radius)));
+  }
+  const double farthest = h * std::sqrt(2.0 * fastest);
+  if (!(farthest <= limit)) {
+    previous_rates_ = rates_;
+    return false;
+  }
+  // Two blocks that move against each other.
+  moved_ += 2.0 * farthest;
+  unbalanced_ = unbalanced;
+
+  ExplicitEnergies sum;
+  double kinetic_change = 0.0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Inertia& m = inertia_[i];
+    const Rate &f = forces_[i], &v = rates_[i];
+    Rate& next = previous_rates_[i];
+    const double mean_x = 0.5 * (v.x + next.x), mean_y = 0.5 * (v.y + next.y), mean_turn = 0.5 * (v.turn + next.turn);
+    const double gravity = span * (m.weight_x * mean_x + m.weight_y * mean_y);
+    const double work = span * (f.x * mean_x + f.y * mean_y + f.turn * mean_turn);
+    const double kinetic = m.mass * ((next.x - v.x) * mean_x + (next.y - v.y) * mean_y) + m.moment * (next.turn - v.turn) * mean_turn;
+    if (alpha > 0.0) {
+      sum.mass_damping += span * alpha * (std::abs(f.x) * sign(v.x) * mean_x + std::abs(f.y) * sign(v.y) * mean_y + std::abs(f.turn) * sign(v.turn) * mean_turn);
+    } else if (viscous_ > 0.0) {
+      sum.mass_damping += span * viscous_ * (m.mass * (mean_x * mean_x + mean_y * mean_y) + m.moment * mean_turn * mean_turn);
+    }
+    sum.gravity -= gravity;
+    sum.scheme -= work - gravity;
+    sum.turnover += std::abs(kinetic) + std::abs(gravity);
+    kinetic_change += kinetic;
+    Pose& pose = poses_[i];
+    pose.x += h * next.x;
+    pose.y += h * next.y;
+    next.angle = v.angle + h * next.turn;
+    const double a = next.angle, q = a * a;
+    if (std::abs(a) < small_angle) {
+      pose.sin = a * (1.0 - q / 6.0 * (1.0 - q / 20.0 * (1.0 - q / 42.0)));
+      pose.cos_minus_1 = -0.5 * q * (1.0 - q / 12.0 * (1.0 - q / 30.0));
+    } else {
+      pose.sin = std::sin(a);
+      pose.cos_minus_1 = -2.0 * square(std::sin(0.5 * a));
+    }
+  }
+  energies_.gravity += sum.gravity;
+  energies_.scheme += sum.scheme;
+  energies_.mass_damping += sum.mass_damping;
+  energies_.turnover += sum.turnover;
+  if (viscous_ > 0.0) adapt(sum.mass_damping, kinetic_change, h);
+  rates_.swap(previous_rates_);
+  h_ = h;
+  span_ = span;
+  return true;
+}
+
+template <int N>
+void CentralDifference<N>::adapt(double taken, double kinetic_change, double h) {
+  viscous_ *= taken < power_ratio * std::abs(kinetic_change) ? adaptation : 1.0 / adaptation;
+  // Critical damping of the fastest motion a step can follow, and a trace from which it can grow again.
+  viscous_ = std::clamp(viscous_, 1e-3 * first_viscous / h, 1.0 / h);
+}
+
+template <int N>
+void CentralDifference<N>::follow_contacts() {
+  begin_forces();
+  add_point_forces(true);
+  lost_strength_ = false;
+  if (damped_) {
+    follow_links<true>();
+  } else {
+    follow_links<false>();
+  }
+}
+
+template <int N>
+template <bool damped>
+void CentralDifference<N>::follow_links() {
+  double friction = 0.0, damping = 0.0, scheme = 0.0, deepest = max_penetration_;
+  for (Link& link : links_) {
+    const Place at = place(link);
+    const double gap_change = at.gap - link.gap, slip = at.slip - link.slip;
+    const double memory = -link.shear_stiffness * (link.stretch + slip);
+    CarriedForces f;
+    if constexpr (damped) {
+      f = carry(link.strength, trials(link, at, memory));
+    } else {
+      f = carry(link.strength, {-link.normal_stiffness * at.gap, 0.0, memory, 0.0});
+    }
+    // The step's forces were those at its start; see the ledger for the formulas, with theta = 0.
+    const double stretch = -f.elastic_shear * link.per_shear_stiffness;
+    const double stretched = stretch - link.stretch, opening = f.status == ContactStatus::open ? at.gap : 0.0;
+    const double closing = -gap_change + (opening - (link.status == ContactStatus::open ? link.gap : 0.0));
+    scheme += link.normal * gap_change + link.shear * slip - link.normal * opening -
+              0.5 * (link.normal_stiffness * closing * closing + link.shear_stiffness * stretched * stretched) -
+              (link.shear - link.viscous_shear + link.shear_stiffness * link.stretch) * stretched;
+    friction -= link.shear * (slip - stretched);
+    if constexpr (damped) damping += (link.normal - link.elastic_normal) * closing - link.viscous_shear * stretched;
+    link.gap = at.gap;
+    link.slip = at.slip;
+    link.stretch = stretch;
+    link.status = f.status;
+    link.normal = f.normal;
+    link.shear = f.shear;
+    if constexpr (damped) {
+      link.elastic_normal = f.elastic_normal;
+      link.viscous_shear = f.shear - f.elastic_shear;
+    }
+    if (f.status != ContactStatus::open) deepest = std::max(deepest, -at.gap);
+    if (link.breakable) lose_strength(link, at);
+    push(link, at);
+  }
+  energies_.friction += friction;
+  energies_.contact_damping += damping;
+  energies_.scheme += scheme;
+  max_penetration_ = deepest;
+}
+
+template <int N>
+void CentralDifference<N>::lose_strength(Link& link, const Place& at) {
+  const JointProperties& joint = joints_->joint(link.joint);
+  if (stays_bonded(joint, true, link.status)) return;
+  lost_strength_ = true;
+  link.bonded = link.breakable = false;
+  link.strength.break_bond(joint);
+  carry_now(link, at);
+}
+
+template <int N>
+bool CentralDifference<N>::moved_beyond_skin() const {
+  return moved_ > tolerance::contact_skin_m;
+}
+
+template <int N>
+double CentralDifference<N>::unbalanced_force() const {
+  return std::sqrt(unbalanced_);
+}
+
+template <int N>
+typename CentralDifference<N>::Unknowns CentralDifference<N>::velocity_at_end(int equation) const {
+  const Rate &v = rates_[equation], &before = previous_rates_[equation];
+  const double ahead = 0.5 * h_ / span_;
+  return {v.x + ahead * (v.x - before.x), v.y + ahead * (v.y - before.y), v.turn + ahead * (v.turn - before.turn)};
+}
+
+template <int N>
+void CentralDifference<N>::store_blocks(BlockSystem<N>& system) {
+  for (std::size_t i = 0; i < blocks_.size(); ++i) {
+    const Pose& pose = poses_[i];
+    const Rate& v = rates_[i];
+    system.advance(blocks_[i], {pose.x - stored_[i].x, pose.y - stored_[i].y, v.angle - stored_angle_[i]});
+    system.set_velocity(blocks_[i], {v.x, v.y, v.turn});
+    stored_[i] = pose;
+    stored_angle_[i] = v.angle;
+  }
+}
+
+template <int N>
+void CentralDifference<N>::store_contacts(std::vector<Contact>& contacts) const {
+  for (const Link& link : links_) {
+    Contact& c = contacts[link.contact];
+    const bool open = link.status == ContactStatus::open;
+    c.gap = link.gap;
+    c.status = link.status;
+    c.bonded = link.bonded;
+    c.elastic_slip = link.stretch;
+    c.normal_force = link.normal;
+    c.shear_force = link.shear;
+    c.stored_energy = open ? 0.0 : 0.5 * (link.normal_stiffness * link.gap * link.gap + link.shear_stiffness * link.stretch * link.stretch);
+  }
+  for (const Link& link : far_) contacts[link.contact].gap = place(link).gap;
+}
+
+template <int N>
+ExplicitEnergies CentralDifference<N>::take_energies() {
+  const ExplicitEnergies taken = energies_;
+  energies_ = ExplicitEnergies();
+  return taken;
+}
+
+template class CentralDifference<3>;
+
+}  // namespace openclose

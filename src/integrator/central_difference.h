@@ -1,0 +1,139 @@
+// The explicit method's loop: central difference over rigid blocks on the joint's own springs, the same steps as dem.cpp takes one by one.
+//
+//   v(t + h/2) = v(t - h/2) + h a(t),  M a = F(x(t)) + damping force,  x(t + h) = x(t) + h v(t + h/2)
+//
+// A step is two passes, over the blocks (motion) and over the contacts (forces). It searches nothing, allocates nothing and copies no state: it works on
+// arrays of its own, which load() takes from the block system and store_*() give back when somebody asks. Between two loads
+//   - a block is what has changed since the load: displacement, cosine - 1 and sine of its rotation (once a block, not a contact), in one line of cache;
+//   - a contact is one record with all its constants, in the order of the list; gap and slip follow from
+//       gap = gap_0 + (n - n_0) . w_0 + n . D,   slip = (t - t_0) . w_0 + t . D,   D = u_v - u_e + (R_v - 1) r_v
+//     (r_v arm of the corner, w_0 from the edge's centroid to the corner, both at the load), free of cancellation and exact whatever the rotation;
+//   - contacts too far apart to close before the next load are not looked at.
+// moved_beyond_skin() tells, from the largest speed alone, when blocks may have moved tolerance::contact_skin_m against each other since the load: then
+// the list is to be renewed.
+//
+// Damping of the motion: `local` (Cundall, 1987, as in UDEC) adds -alpha |F| sign(v) to every component of the unbalanced force F, which takes nothing
+// from steady motion. `automatic` (Cundall, 1982, as in UDEC's adaptive global damping) adds -beta M v, beta rising or falling from step to step by
+// a constant factor so that the power it takes is half the rate at which the kinetic energy changes.
+#pragma once
+
+#include <vector>
+
+#include "openclose/integrator/enforcement.h"
+
+namespace openclose {
+
+/// Where energy went in the steps since the last question [J]; signs and meaning as in analysis/energy_ledger.h.
+struct ExplicitEnergies {
+  double gravity = 0.0, loads = 0.0, support_springs = 0.0;
+  double friction = 0.0, contact_damping = 0.0, mass_damping = 0.0, scheme = 0.0;
+  double turnover = 0.0;
+};
+
+template <int N>
+class CentralDifference {
+  static_assert(N == 3, "the arrays are laid out for rigid blocks");
+
+ public:
+  using Unknowns = typename Motion<N>::Unknowns;
+
+  /// Takes over blocks, velocities of the middle of the last step, contacts with their history, and the forces they carry now.
+  void load(const StepProblem<N>& problem);
+
+  /// Moves the blocks by a step of h; `span` is the time between the middles of the last and this step. False, and nothing has changed, if a block would
+  /// move by more than `limit` [m].
+  bool move(double h, double span, double limit, MassDamping damping, double local_damping);
+  /// Brings gaps, forces and energies to the new positions. To be called after every move().
+  void follow_contacts();
+
+  bool moved_beyond_skin() const;
+  double critical_step() const { return critical_step_; }  ///< [s] of the contacts that may close before the next load
+  double unbalanced_force() const;                         ///< [N] largest force on a block when the last step began
+  bool lost_strength() const { return lost_strength_; }    ///< a contact has lost cohesion or tensile strength in the last step
+  double max_penetration() const { return max_penetration_; }  ///< [m] since the load
+
+  /// Moves the blocks of the system to where they are now, with the velocities of the middle of the last step.
+  void store_blocks(BlockSystem<N>& system);
+  /// Whole-step velocity of a free block; call only after a step.
+  Unknowns velocity_at_end(int equation) const;
+  /// Geometry and history of the contacts that were loaded, in the same order.
+  void store_contacts(std::vector<Contact>& contacts) const;
+  ExplicitEnergies take_energies();
+
+ private:
+  struct alignas(32) Pose {
+    double x = 0.0, y = 0.0;  ///< [m] displacement since the load
+    double cos_minus_1 = 0.0, sin = 0.0;
+  };
+  struct alignas(32) Rate {
+    double x = 0.0, y = 0.0, turn = 0.0;  ///< velocity [m/s, m/s, rad/s], or force [N, N, N m]
+    double angle = 0.0;                   ///< [rad] since the load; of velocities only
+  };
+  struct Inertia {
+    double mass, moment;          ///< [kg], [kg m2]
+    double per_mass, per_moment;  ///< their inverses
+    double turns;                 ///< 0 if the rotation is locked, else 1
+    double weight_x, weight_y;    ///< [N]
+    double radius;                ///< [m]
+  };
+  struct Link {
+    int vertex_slot, edge_slot;
+    double arm_x, arm_y;        ///< [m] corner from its centroid, at the load
+    double across_x, across_y;  ///< [m] corner from the edge's centroid, at the load
+    double normal_x, normal_y;  ///< at the load
+    double normal_stiffness, shear_stiffness, per_shear_stiffness;
+    double normal_dashpot, shear_dashpot;
+    double loaded_gap;
+    ContactStrength strength;
+    // History, at the present position.
+    double gap, slip, stretch;  ///< slip since the load, stretch of the shear spring
+    double normal, shear, elastic_normal, viscous_shear;
+    ContactStatus status;
+    bool bonded, breakable;
+    int joint, contact;  ///< in the table, in the list
+  };
+  struct PointForce {
+    int slot;
+    bool is_load;
+    Vec2 arm, force, stiffness, stretch;  ///< at the load
+    double energy = 0.0;                  ///< [J] stored minus work, since the load
+    Vec2 moved = Vec2::Zero();            ///< since the load
+  };
+  struct Place {
+    double gap, slip;
+    double normal_x, normal_y, arm_x, arm_y, across_x, across_y;
+  };
+
+  void load_blocks(const StepProblem<N>& problem);
+  void load_contacts(const StepProblem<N>& problem);
+  void load_points(const StepProblem<N>& problem);
+  Place place(const Link& link) const;
+  ForceTrials trials(const Link& link, const Place& at, double elastic_shear) const;
+  void carry_now(Link& link, const Place& at);
+  void lose_strength(Link& link, const Place& at);
+  void push(const Link& link, const Place& at);
+  void begin_forces();
+  void add_point_forces(bool step);
+  template <bool damped>
+  void follow_links();
+  void adapt(double taken, double kinetic_change, double h);
+
+  std::vector<Pose> poses_;  ///< per free block, and a last one for all that are fixed
+  std::vector<Rate> rates_, previous_rates_, forces_;
+  std::vector<Inertia> inertia_;
+  std::vector<int> blocks_;  ///< of the system, per free block
+  std::vector<Pose> stored_;
+  std::vector<double> stored_angle_;
+  std::vector<Link> links_;
+  std::vector<Link> far_;
+  std::vector<PointForce> points_;
+  const JointTable* joints_ = nullptr;
+  ExplicitEnergies energies_;
+  bool damped_ = false, lost_strength_ = false;
+  double critical_step_ = 0.0, moved_ = 0.0, unbalanced_ = 0.0, max_penetration_ = 0.0;
+  double h_ = 0.0, span_ = 0.0, viscous_ = 0.0;
+};
+
+extern template class CentralDifference<3>;
+
+}  // namespace openclose

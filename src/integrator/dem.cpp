@@ -1,0 +1,93 @@
+// `dem`, one step of the explicit method written plainly: the forces where the step starts move the blocks, then the contacts follow.
+//
+// This is the reference that the loop of central_difference.h is tested against; Simulation takes that one.
+#include "openclose/integrator/registry.h"
+
+namespace openclose {
+namespace {
+
+template <int N>
+class Dem : public Enforcement<N> {
+ public:
+  using Unknowns = typename Motion<N>::Unknowns;
+
+  ContactSprings springs(const StepProblem<N>& problem, const Contact& contact) const override { return joint_springs(problem, contact); }
+
+  StepSolution<N> solve(const StepProblem<N>& problem) override {
+    const BlockSystem<N>& system = problem.system;
+    StepSolution<N> solution;
+    solution.d = Eigen::VectorXd::Zero(N * system.free_count());
+    if (problem.statics) {
+      solution.reason = "method.contact = \"dem\" has no static steps";
+      return solution;
+    }
+    const Unknowns still = Unknowns::Zero();
+    Eigen::VectorXd force = Eigen::VectorXd::Zero(N * system.free_count());
+    for (const Contact& c : problem.contacts) {
+      const auto velocity = [&](int b) { return problem.velocity(b); };
+      const ContactOutcome<N> o = outcome(problem, c, [&](int) { return still; }, velocity);
+      add(force, system.block(c.vertex_block).equation, o.forces.normal * o.kinematics.normal_vertex + o.forces.shear * o.kinematics.shear_vertex);
+      add(force, system.block(c.edge_block).equation, o.forces.normal * o.kinematics.normal_edge + o.forces.shear * o.kinematics.shear_edge);
+      solution.start_contacts.push_back(o);
+    }
+    for (int b : system.free_blocks()) {
+      const auto& block = system.block(b);
+      const Unknowns total = force.template segment<N>(N * block.equation) + problem.external.force(system, b, still);
+      Unknowns d = problem.dt * problem.velocity(b) + total.cwiseQuotient(problem.inertia * block.mass);
+      if (block.rotation_locked) d[Motion<N>::rotation_index] = 0.0;
+      solution.d.template segment<N>(N * block.equation) = d;
+    }
+    const auto displacement = [&](int b) { return solution.of(system, b); };
+    const auto velocity = [&](int b) { return Unknowns(solution.of(system, b) / problem.dt); };
+    for (const Contact& c : problem.contacts) solution.contacts.push_back(outcome(problem, c, displacement, velocity));
+    solution.converged = true;
+    return solution;
+  }
+
+  std::unique_ptr<TimeScheme<N>> make_time_scheme(const MethodInput& method) const override {
+    require_default_theta(method);
+    const auto refuse = [&](const char* key, const char* value) {
+      throw InputError(method.contact_where, key, std::string(value) + " has no meaning for method.contact = \"dem\"", "the default");
+    };
+    if (method.statics) refuse("method.statics", "true");
+    if (method.rotation != RotationKind::exact) refuse("method.rotation", "\"linear\"");
+    return make_central_difference_scheme<N>();
+  }
+  bool is_explicit() const override { return true; }
+  const LinearCounters& linear_counters() const override { return counters_; }
+
+ private:
+  /// Springs and dashpots of a contact after the blocks have moved, with the velocities of the middle of the last step.
+  template <class Displacement, class Velocity>
+  ContactOutcome<N> outcome(const StepProblem<N>& problem, const Contact& contact, const Displacement& d, const Velocity& v) const {
+    const int a = contact.vertex_block, b = contact.edge_block;
+    const JointProperties& joint = problem.joints.joint(contact.joint);
+    const ContactDashpots dashpots(joint, contact.length, problem.system.reduced_mass(a, b));
+    ContactOutcome<N> o{springs(problem, contact), {}, ContactKinematics<N>(problem.system, contact, d(a), d(b))};
+    const ContactKinematics<N>& k = o.kinematics;
+    ForceTrials trial;
+    trial.elastic_normal = -o.springs.normal * (o.springs.gap + k.gap_change);
+    trial.viscous_normal = -dashpots.normal * (k.normal_vertex.dot(v(a)) + k.normal_edge.dot(v(b)));
+    trial.elastic_shear = o.springs.initial_shear - o.springs.shear * k.slip_change;
+    trial.viscous_shear = -dashpots.shear * (k.shear_vertex.dot(v(a)) + k.shear_edge.dot(v(b)));
+    o.forces = ContactForces{carry(ContactStrength(joint, contact), trial)};
+    return o;
+  }
+
+  static void add(Eigen::VectorXd& force, int equation, const Unknowns& f) {
+    if (equation >= 0) force.template segment<N>(N * equation) += f;
+  }
+
+  LinearCounters counters_;
+};
+
+}  // namespace
+
+template <int N>
+std::unique_ptr<Enforcement<N>> make_dem() {
+  return std::make_unique<Dem<N>>();
+}
+
+template std::unique_ptr<Enforcement<3>> make_dem<3>();
+
+}  // namespace openclose
