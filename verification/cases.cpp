@@ -17,6 +17,7 @@ void planar_wedge(Report&);
 void parallel_planes(Report&);
 void two_joint_sets(Report&);
 void four_block_corner(Report&);
+void corner_over_joint(Report&);
 void critical_friction(Report&);
 
 const std::vector<Case>& cases() {
@@ -36,6 +37,7 @@ const std::vector<Case>& cases() {
       {"E3", "plane failure on parallel joints", &parallel_planes},
       {"E5", "slope with two joint sets", &two_joint_sets},
       {"E6", "four blocks that meet in one corner", &four_block_corner},
+      {"E6", "a corner that stands on a joint", &corner_over_joint},
       {"E6", "critical friction angle of jointed slopes", &critical_friction},
   };
   return list;

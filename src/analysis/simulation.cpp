@@ -42,7 +42,7 @@ Simulation<N>::Simulation(const Scene& scene, std::unique_ptr<Enforcement<N>> en
       enforcement_(std::move(enforcement)),
       scheme_(enforcement_->make_time_scheme(scene.method)),
       // Two vertices may approach each other by the largest displacement each.
-      detector_(2.0 * scene.step.max_displacement, scene.method.skip_search),
+      detector_(2.0 * scene.step.max_displacement, {scene.method.skip_search, scene.method.skip_narrow_phase && enforcement_->follows_gaps()}),
       output_velocity_(system_.state().velocity),
       start_kinetic_energy_(system_.kinetic_energy()) {}
 
@@ -120,6 +120,7 @@ void Simulation<N>::set_velocity(int b, const Unknowns& velocity) {
 template <int N>
 void Simulation<N>::positions_changed() {
   take_back();
+  detector_.forget();
   contacts_current_ = false;
 }
 
@@ -146,9 +147,8 @@ template <int N>
 void Simulation<N>::detect() {
   const Stopwatch watch(stage_times_.detection);
   const double before = stored_contact_energy();
-  detector_.update(system_, joints_, contacts_);
   contacts_current_ = true;
-  if (!enforcement_->has_elastic_contacts()) return;
+  if (!detector_.update(system_, joints_, contacts_) || !enforcement_->has_elastic_contacts()) return;
   const StepProblem<N> p = problem(scene_.step.dt, false);
   for (Contact& c : contacts_) {
     const ContactSprings springs = enforcement_->springs(p, c);
@@ -328,7 +328,10 @@ StepResult Simulation<N>::explicit_step(double h, MassDamping damping) {
   result.accepted = true;
   result.unbalanced_force = loop_->last_unbalanced_force();
   result.lost_strength = loop_->lost_strength();
-  if (loop_->moved_beyond_skin()) positions_changed();
+  if (loop_->moved_beyond_skin()) {
+    take_back();
+    contacts_current_ = false;
+  }
   return result;
 }
 
@@ -446,7 +449,7 @@ void Simulation<N>::restore(const Snapshot& snapshot) {
   take_back();
   system_.restore(snapshot.blocks);
   contacts_ = snapshot.contacts;
-  detector_.search(system_);
+  detector_.forget();
   contacts_current_ = true;
   output_velocity_ = snapshot.blocks.velocity;
   failed_attempts_ = 0;

@@ -1,10 +1,9 @@
 #include "openclose/contact/detection.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <cstdint>
 #include <numeric>
-#include <unordered_map>
 
 #include "openclose/core/tolerance.h"
 #include "openclose/geometry/box.h"
@@ -22,46 +21,55 @@ double parallel_weight(double cosine) {
   return (tolerance::parallel_none_rad - std::acos(cosine)) / (tolerance::parallel_none_rad - tolerance::parallel_full_rad);
 }
 
-/// Contacts by their vertex and edge.
+/// The contacts as they were, by pair and by corner.
 class ContactIndex {
  public:
-  explicit ContactIndex(const std::vector<Contact>& contacts) : contacts_(contacts) {
-    index_.reserve(contacts.size());
+  template <int N>
+  ContactIndex(const BlockSystem<N>& system, const std::vector<Contact>& contacts) : contacts_(contacts) {
     for (std::size_t i = 0; i < contacts.size(); ++i) {
-      index_.emplace(key(contacts[i].vertex, contacts[i].edge), i);
       if (contacts[i].status == ContactStatus::open) continue;
-      closed_.emplace(contacts[i].vertex, i);
-      double& closure = closure_[contacts[i].vertex];
-      closure = std::max(closure, -contacts[i].gap);
+      const int edge = contacts[i].edge;
+      for (const int corner : {contacts[i].vertex, edge, system.next(edge)}) closed_.emplace_back(corner, i);
     }
+    std::sort(closed_.begin(), closed_.end());
   }
-  /// Position in the list, or -1.
+
+  /// Looks at the contacts [begin, end) of one pair of blocks.
+  void select(std::size_t begin, std::size_t end) {
+    begin_ = begin;
+    end_ = end;
+  }
+  /// Position in the list, or -1; of the selected pair.
   std::ptrdiff_t find(int vertex, int edge) const {
-    const auto it = index_.find(key(vertex, edge));
-    return it == index_.end() ? -1 : static_cast<std::ptrdiff_t>(it->second);
+    for (std::size_t i = begin_; i < end_; ++i) {
+      if (contacts_[i].vertex == vertex && contacts_[i].edge == edge) return static_cast<std::ptrdiff_t>(i);
+    }
+    return -1;
   }
   bool was_closed(int vertex, int edge) const {
     const std::ptrdiff_t i = find(vertex, edge);
     return i >= 0 && contacts_[i].status != ContactStatus::open;
   }
-  /// [m] what the contacts of this vertex have closed.
-  double closure(int vertex) const {
-    const auto it = closure_.find(vertex);
-    return it == closure_.end() ? 0.0 : it->second;
+  /// [m] length over which the contact is closed.
+  double closed_length(int vertex, int edge) const { return was_closed(vertex, edge) ? contacts_[find(vertex, edge)].length : 0.0; }
+  /// Whether this vertex or one of its two edges is in contact, with any block.
+  bool closed(int vertex) const {
+    const auto it = first_of(vertex);
+    return it != closed_.end() && it->first == vertex;
   }
-  bool closed(int vertex) const { return closure_.contains(vertex); }
+  /// Closed contacts of this vertex and those on its two edges.
   template <class F>
   void for_closed(int vertex, F f) const {
-    const auto [begin, end] = closed_.equal_range(vertex);
-    for (auto it = begin; it != end; ++it) f(contacts_[it->second]);
+    for (auto it = first_of(vertex); it != closed_.end() && it->first == vertex; ++it) f(contacts_[it->second]);
   }
 
  private:
-  static std::uint64_t key(int vertex, int edge) { return (static_cast<std::uint64_t>(vertex) << 32) | static_cast<std::uint32_t>(edge); }
+  using Entry = std::pair<int, std::size_t>;
+  std::vector<Entry>::const_iterator first_of(int vertex) const { return std::lower_bound(closed_.begin(), closed_.end(), Entry(vertex, 0)); }
+
   const std::vector<Contact>& contacts_;
-  std::unordered_map<std::uint64_t, std::size_t> index_;
-  std::unordered_multimap<int, std::size_t> closed_;  ///< by vertex
-  std::unordered_map<int, double> closure_;           ///< [m] by vertex, of closed contacts
+  std::size_t begin_ = 0, end_ = 0;
+  std::vector<Entry> closed_;  ///< closed contacts by their vertex and by the ends of their edge, sorted
 };
 
 /// Narrow phase between the blocks of one pair. Collects contacts; a vertex-edge pair found twice gets the sum of the lengths.
@@ -73,9 +81,17 @@ class NarrowPhase {
   void run(int block_a, int block_b, std::vector<Contact>& found) {
     found_ = &found;
     first_ = found.size();
-    for_each_vertex(block_a, [&](int a) { for_each_vertex(block_b, [&](int b) { facing_edges(block_a, a, block_b, b); }); });
-    lone_corners(block_a, block_b);
-    lone_corners(block_b, block_a);
+    sides_[0].fill(*this, block_a);
+    sides_[1].fill(*this, block_b);
+    // Only what lies in the box of both blocks, with the reach, can touch.
+    const Box room = sides_[0].box.inflated(reach_).common(sides_[1].box.inflated(reach_));
+    if (room.empty()) return;
+    for_each_vertex(block_a, [&](int a) {
+      if (!box_of(edge_at(block_a, a)).overlaps(room)) return;
+      for_each_vertex(block_b, [&](int b) { facing_edges(block_a, a, block_b, b); });
+    });
+    lone_corners(block_a, block_b, room);
+    lone_corners(block_b, block_a, room);
   }
 
  private:
@@ -93,7 +109,34 @@ class NarrowPhase {
     for (int v = b.first_vertex; v < b.first_vertex + b.vertex_count; ++v) f(v);
   }
 
+  /// The edges of one of the two blocks.
+  struct Sides {
+    int block = -1, first = 0;
+    std::vector<Edge> edges;
+    Box box;
+
+    void fill(const NarrowPhase& phase, int of_block) {
+      block = of_block;
+      first = phase.system_.block(block).first_vertex;
+      edges.clear();
+      phase.for_each_vertex(block, [&](int v) {
+        edges.push_back(phase.measured_edge(block, v));
+        const Box own = box_of(edges.back());
+        box = v == first ? own : Box{box.low.cwiseMin(own.low), box.high.cwiseMax(own.high)};
+      });
+    }
+  };
+
+  static Box box_of(const Edge& edge) { return Box::around(edge.start, edge.start + edge.length * edge.direction); }
+
   Edge edge_at(int block, int e) const {
+    for (const Sides& side : sides_) {
+      if (side.block == block) return side.edges[e - side.first];
+    }
+    return measured_edge(block, e);
+  }
+
+  Edge measured_edge(int block, int e) const {
     const Vec2 start = system_.position(block, e);
     const Vec2 span = system_.arm(system_.next(e)) - system_.arm(e);
     const double length = span.norm();
@@ -122,7 +165,8 @@ class NarrowPhase {
   /// is not far off.
   void add_end(int block_a, int va, int a, int block_b, int vb, int b, bool a_is_inside, double beyond, double length) {
     const bool inside_is_reflex = system_.is_reflex(a_is_inside ? va : vb);
-    if (inside_is_reflex && beyond > seam(va, vb)) return;
+    const double seam = tolerance::seam_height_m + tolerance::seam_closures * std::max(closure(va), closure(vb));
+    if (inside_is_reflex && beyond > seam) return;
     // The two corners take turns: a joint that has closed under one of them is closed for the other.
     const bool closed = previous_.was_closed(va, b) || previous_.was_closed(vb, a);
     if (a_is_inside != inside_is_reflex) {
@@ -132,27 +176,31 @@ class NarrowPhase {
     }
   }
 
-  void lone_corners(int vertex_block, int edge_block) {
+  void lone_corners(int vertex_block, int edge_block, const Box& room) {
     for_each_vertex(vertex_block, [&](int v) {
       if (system_.is_reflex(v)) return;
       const Vec2 p = system_.position(vertex_block, v);
+      if (!room.contains(p)) return;
       for_each_vertex(edge_block, [&](int e) {
         const Edge edge = edge_at(edge_block, e);
         if (edge.gap(p) > reach_) return;
         const double along = edge.along(p);
-        const bool near_start = along < 0.5 * edge.length;
-        const double beyond = near_start ? -along : along - edge.length;
+        const double beyond = std::max(-along, along - edge.length);
         if (beyond > 0.0 && beyond > end_margin(v, edge)) return;
-        if (edge.gap(p) > -tolerance::shortest_edge_m && passes_over(vertex_block, v, edge_block, e, near_start)) return;
+        const double weight = lone_weight(v, edge);
+        if (weight == 0.0 || passes_over(vertex_block, v, edge_block, e)) return;
         const Vec2 ahead = system_.arm(system_.next(v)) - system_.arm(v), back = system_.arm(system_.previous(v)) - system_.arm(v);
-        const double weight =
-            std::max(parallel_weight(-ahead.normalized().dot(edge.direction)), parallel_weight(back.normalized().dot(edge.direction)));
-        if (weight == 1.0) return;
         const auto projection = [&](const Vec2& side) { return std::min(std::abs(side.dot(edge.direction)), edge.length); };
-        const double length = 0.5 * (1.0 - weight) * (projection(ahead) + projection(back));
-        add(vertex_block, v, edge_block, e, length, previous_.was_closed(v, e));
+        add(vertex_block, v, edge_block, e, 0.5 * weight * (projection(ahead) + projection(back)), previous_.was_closed(v, e));
       });
     });
+  }
+
+  /// 1 - w_v of the header: 0 where one side of the corner faces the edge or points into its half-plane.
+  double lone_weight(int v, const Edge& edge) const {
+    if (!stands_on(v, edge)) return 0.0;
+    const Vec2 ahead = system_.arm(system_.next(v)) - system_.arm(v), back = system_.arm(system_.previous(v)) - system_.arm(v);
+    return 1.0 - std::max(parallel_weight(-ahead.normalized().dot(edge.direction)), parallel_weight(back.normalized().dot(edge.direction)));
   }
 
   /// \param closed  whether this place was in contact already
@@ -180,26 +228,44 @@ class NarrowPhase {
     found_->push_back(contact);
   }
 
-  /// [m] How far a corner may lie below an edge and still ride over its end; see tolerance::seam_height_m.
-  double seam(int v, int w) const {
-    return tolerance::seam_height_m + tolerance::seam_closures * std::max(previous_.closure(v), previous_.closure(w));
+  /// [m] What the contacts of a corner have closed.
+  double closure(int v) const {
+    double largest = 0.0;
+    previous_.for_closed(v, [&](const Contact& c) { largest = std::max(largest, c.vertex == v ? -c.gap : 0.0); });
+    return largest;
+  }
+  /// [m] How far the closures of its contacts, those on its two edges included, have moved a corner along the normal of `edge`.
+  double closure_across(int v, const Edge& edge) const {
+    double largest = 0.0;
+    previous_.for_closed(v, [&](const Contact& c) {
+      const double cosine = edge.direction.dot(edge_at(c.edge_block, c.edge).direction);
+      largest = std::max(largest, -c.gap * std::abs(cosine));
+    });
+    return largest;
   }
 
-  /// A corner in front of edge e does not run into it where corner and the edge's near end pass over each other: blocks that lie flush but for the
-  /// closures of their contacts must not catch on the seams between them. One of the two must be sliding on something already, and the edge must
-  /// turn away from what is slid on.
-  bool passes_over(int vertex_block, int v, int edge_block, int e, bool near_start) const {
+  /// Two corners that meet separate the blocks along any one of up to four edges, theirs at v and at the end of e: as long as one that turns away
+  /// from e does, v does not run into e. Blocks that lie flush but for the closures of their contacts must not catch on the seams between them: a
+  /// corner that slides on something keeps its way if what it slides on is lower than the seam's height. Where corners coincide and nothing has
+  /// closed yet, the motion decides. An overlap no longer than a seam is high is no closed contact.
+  bool passes_over(int vertex_block, int v, int edge_block, int e) const {
+    const Edge edge = edge_at(edge_block, e);
+    const Vec2 p = system_.position(vertex_block, v);
+    const bool near_start = edge.along(p) < 0.5 * edge.length;
     const int end = near_start ? e : system_.next(e);
+    if (previous_.closed_length(v, e) > tolerance::seam_height_m || system_.is_reflex(end)) return false;
+    const Vec2 q = system_.position(edge_block, end);
     const bool slides = previous_.closed(v) || previous_.closed(end);
-    if (!slides || previous_.was_closed(v, e) || system_.is_reflex(end)) return false;
-    const double height = seam(v, end);
-    const Vec2 p = system_.position(vertex_block, v), q = system_.position(edge_block, end);
-    // The corner rides on the other edge of that end ...
-    const Edge neighbour = edge_at(edge_block, near_start ? system_.previous(e) : system_.next(e));
-    if (turns_away(edge_at(edge_block, e), neighbour) && outside(v, neighbour) && neighbour.gap(p) > -height) return true;
-    // ... or the end rides on one of the corner's edges and lies behind neither.
-    const Edge ahead = edge_at(vertex_block, v), back = edge_at(vertex_block, system_.previous(v));
-    return (outside(end, ahead) || outside(end, back)) && ahead.gap(q) > -height && back.gap(q) > -height;
+    if (!slides && (p - q).norm() > tolerance::edge_end_m) return false;
+    const bool in_front = edge.gap(p) > -tolerance::shortest_edge_m;
+    const double step = slides && in_front ? tolerance::seam_height_m : tolerance::edge_end_m;
+    const auto separates = [&](int corner, const Vec2& position, const Edge& other) {
+      if (!turns_away(edge, other) || !stands_on(corner, other)) return false;
+      const double closure = std::max(closure_across(v, other), closure_across(end, other));
+      return other.gap(position) > -step - tolerance::seam_closures * closure;
+    };
+    return separates(v, p, edge_at(edge_block, near_start ? system_.previous(e) : system_.next(e))) || separates(end, q, edge_at(vertex_block, v)) ||
+           separates(end, q, edge_at(vertex_block, system_.previous(v)));
   }
 
   static bool turns_away(const Edge& a, const Edge& b) {
@@ -211,13 +277,16 @@ class NarrowPhase {
   /// wall or another block, by what its contacts have closed.
   double end_margin(int v, const Edge& edge) const {
     bool leans = false;
-    previous_.for_closed(v, [&](const Contact& c) { leans |= turns_away(edge_at(c.edge_block, c.edge), edge); });
-    return tolerance::edge_end_m + (leans ? tolerance::seam_closures * previous_.closure(v) : 0.0);
+    previous_.for_closed(v, [&](const Contact& c) { leans |= c.vertex == v && turns_away(edge_at(c.edge_block, c.edge), edge); });
+    return tolerance::edge_end_m + (leans ? tolerance::seam_closures * closure(v) : 0.0);
   }
 
-  /// Both sides of the corner leave the edge's half-plane: only then can the corner touch the edge from outside.
-  bool outside(int v, const Edge& edge) const {
-    static const double tilt = std::sin(tolerance::parallel_none_rad);
+  /// Both sides of the corner leave the edge's half-plane: only then can the corner touch the edge from outside. Overlaps of facing edges fade out
+  /// until parallel_none.
+  bool outside(int v, const Edge& edge) const { return leaves(v, edge, std::sin(tolerance::parallel_none_rad)); }
+  /// The same for a lone corner.
+  bool stands_on(int v, const Edge& edge) const { return leaves(v, edge, std::sin(tolerance::flush_tilt_rad)); }
+  bool leaves(int v, const Edge& edge, double tilt) const {
     const Vec2 ahead = system_.arm(system_.next(v)) - system_.arm(v), back = system_.arm(system_.previous(v)) - system_.arm(v);
     return edge.normal().dot(ahead.normalized()) >= -tilt && edge.normal().dot(back.normalized()) >= -tilt;
   }
@@ -231,12 +300,17 @@ class NarrowPhase {
   bool entered_through(int v, const Vec2& p, int edge_block, int e, double gap, bool closed) {
     // What lies behind the edge must lie in the block, except for what drawings leave and what contacts that carry load have closed.
     if (-gap > tolerance::deepest_initial_overlap_m && !closed && !in_block(edge_block, p)) return false;
+    const Edge edge = edge_at(edge_block, e);
     bool nearest = true;
     for_each_vertex(edge_block, [&](int f) {
       if (f == e || share_reflex_corner(e, f)) return;
       const Edge other = edge_at(edge_block, f);
       const double distance = distance_to_segment(p, other.start, other.start + other.length * other.direction);
-      if (distance < -gap - tolerance::shortest_edge_m && outside(v, other)) nearest = false;
+      // At a needle's tip, closed by a little, the edge that is faced need not be the nearest one.
+      static const double needle = std::cos(2.0 * tolerance::parallel_none_rad);
+      const bool at_needle = std::abs(edge.direction.dot(other.direction)) > needle;
+      const bool could_touch = at_needle ? stands_on(v, other) : outside(v, other);
+      if (could_touch && distance < -gap - tolerance::shortest_edge_m) nearest = false;
     });
     return nearest;
   }
@@ -250,6 +324,7 @@ class NarrowPhase {
   const BlockSystem<N>& system_;
   double reach_;
   const ContactIndex& previous_;
+  std::array<Sides, 2> sides_;
   std::vector<Contact>* found_ = nullptr;
   std::size_t first_ = 0;
   Polygon polygon_;
@@ -280,7 +355,7 @@ bool continues(const BlockSystem<N>& system, const Contact& before, const Contac
 }  // namespace
 
 template <int N>
-bool Detector<N>::moved_beyond_skin(const BlockSystem<N>& system) const {
+bool Detector<N>::moved_beyond_search_skin(const BlockSystem<N>& system) const {
   for (int b : system.free_blocks()) {
     const double moved = Motion<N>::displacement_bound(system.displacement(b) - searched_at_[b], system.block(b).radius);
     if (moved > 0.5 * tolerance::search_skin_m) return true;
@@ -293,17 +368,20 @@ void Detector<N>::search(const BlockSystem<N>& system) {
   ++counters_.searches;
   std::vector<Box> boxes;
   std::vector<Vec2> positions;
-  searched_at_.assign(system.block_count(), BlockSystem<N>::Unknowns::Zero());
+  searched_at_.assign(system.block_count(), Unknowns::Zero());
+  const double room = reach_ + skips_.contact_skin + tolerance::search_skin_m;
   for (int b = 0; b < system.block_count(); ++b) {
     const auto& block = system.block(b);
     searched_at_[b] = system.displacement(b);
     positions.clear();
     for (int v = block.first_vertex; v < block.first_vertex + block.vertex_count; ++v) positions.push_back(system.position(b, v));
-    boxes.push_back(Box::around(positions).inflated(0.5 * (reach_ + tolerance::search_skin_m)));
+    boxes.push_back(Box::around(positions).inflated(0.5 * room));
   }
   std::vector<int> order(boxes.size());
   std::iota(order.begin(), order.end(), 0);
   std::sort(order.begin(), order.end(), [&](int i, int j) { return std::pair(boxes[i].low.x(), i) < std::pair(boxes[j].low.x(), j); });
+  const std::vector<std::pair<int, int>> old_pairs = std::move(pairs_);
+  const std::vector<PairState> old_states = std::move(states_);
   pairs_.clear();
   for (std::size_t i = 0; i < order.size(); ++i) {
     for (std::size_t j = i + 1; j < order.size() && boxes[order[j]].low.x() <= boxes[order[i]].high.x(); ++j) {
@@ -313,56 +391,149 @@ void Detector<N>::search(const BlockSystem<N>& system) {
     }
   }
   std::sort(pairs_.begin(), pairs_.end());
+  states_.assign(pairs_.size(), PairState());
+  for (std::size_t i = 0, old = 0; i < pairs_.size(); ++i) {
+    while (old < old_pairs.size() && old_pairs[old] < pairs_[i]) ++old;
+    if (old < old_pairs.size() && old_pairs[old] == pairs_[i]) states_[i] = old_states[old];
+  }
+}
+
+/// [m] Bound of how far points where two blocks can touch have moved against each other since the pair's contacts were found. With u the
+/// displacements of the centroids and R the rotations since then, c the way between the centroids then and r the arm of the point from the centroid
+/// of block 1, u_1 - u_2 - (R_2 - 1) c + (R_1 - R_2) r; r is not longer than the radius of block 1, the smaller one, and the reach.
+template <int N>
+double Detector<N>::moved(const BlockSystem<N>& system, std::size_t pair) const {
+  auto [one, two] = pairs_[pair];
+  Unknowns d_1 = system.displacement(one) - states_[pair].first, d_2 = system.displacement(two) - states_[pair].second;
+  if (system.block(one).radius > system.block(two).radius) {
+    std::swap(one, two);
+    std::swap(d_1, d_2);
+  }
+  const double turn_1 = Motion<N>::rotation(d_1), turn_2 = Motion<N>::rotation(d_2);
+  Vec2 shift = Motion<N>::translation(d_1) - Motion<N>::translation(d_2);
+  if (turn_2 != 0.0) {
+    const Vec2 way = system.centroid(one) - system.centroid(two) - shift;
+    shift -= Motion<N>::turned_by(turn_2, way, RotationKind::exact);
+  }
+  return shift.norm() + (system.block(one).radius + reach_ + skips_.contact_skin) * std::abs(turn_1 - turn_2);
 }
 
 template <int N>
-void Detector<N>::update(const BlockSystem<N>& system, const JointTable& joints, std::vector<Contact>& contacts) {
-  if (first_ || !skip_search_ || moved_beyond_skin(system)) {
+bool Detector<N>::mark_due_pairs(const BlockSystem<N>& system, bool all) {
+  constexpr double companion_part = 0.1;  // of the skin
+  due_.assign(pairs_.size(), all ? Due::yes : Due::no);
+  if (all) return true;
+  in_due_pair_.assign(system.block_count(), 0);
+  bool any = false;
+  for (std::size_t i = 0; i < pairs_.size(); ++i) {
+    const double way = states_[i].known ? moved(system, i) : 2.0 * skips_.contact_skin + 1.0;
+    if (way > companion_part * skips_.contact_skin) due_[i] = Due::moved;
+    if (way <= skips_.contact_skin) continue;
+    due_[i] = Due::yes;
+    in_due_pair_[pairs_[i].first] = in_due_pair_[pairs_[i].second] = any = true;
+  }
+  if (!any) return false;
+  for (std::size_t i = 0; i < pairs_.size(); ++i) {
+    const auto [a, b] = pairs_[i];
+    if (due_[i] == Due::moved && (in_due_pair_[a] || in_due_pair_[b])) due_[i] = Due::yes;
+  }
+  return true;
+}
+
+/// Contacts that are new inherit from those of the same corner that are gone.
+template <int N>
+void Detector<N>::pass_on_history(const BlockSystem<N>& system, std::vector<Contact>& before) {
+  if (born_.empty() || gone_.empty()) return;
+  gone_by_vertex_.clear();
+  gone_by_edge_.clear();
+  for (const std::size_t k : gone_) {
+    gone_by_vertex_.emplace_back(before[k].vertex, k);
+    gone_by_edge_.emplace_back(before[k].edge, k);
+  }
+  std::sort(gone_by_vertex_.begin(), gone_by_vertex_.end());
+  std::sort(gone_by_edge_.begin(), gone_by_edge_.end());
+  // Longest first: where a corner lies on the seam of two edges the one that carries it inherits.
+  std::sort(born_.begin(), born_.end(),
+            [&](std::size_t i, std::size_t j) { return found_[i].length != found_[j].length ? found_[i].length > found_[j].length : i < j; });
+  constexpr double taken = -1.0;  // in place of a length
+  for (const std::size_t i : born_) {
+    std::ptrdiff_t ancestor = -1;
+    const auto consider = [&](const std::vector<std::pair<int, std::size_t>>& gone, int key) {
+      for (auto it = std::lower_bound(gone.begin(), gone.end(), std::pair<int, std::size_t>(key, 0)); it != gone.end() && it->first == key; ++it) {
+        const std::size_t k = it->second;
+        if (before[k].length == taken || !continues(system, before[k], found_[i])) continue;
+        const auto rank = [&](std::size_t m) { return std::pair(-before[m].length, m); };
+        if (ancestor < 0 || rank(k) < rank(ancestor)) ancestor = static_cast<std::ptrdiff_t>(k);
+      }
+    };
+    consider(gone_by_vertex_, found_[i].vertex);
+    consider(gone_by_edge_, found_[i].vertex);
+    consider(gone_by_edge_, system.previous(found_[i].vertex));
+    if (ancestor < 0) continue;
+    inherit(before[ancestor], found_[i]);
+    before[ancestor].length = taken;
+    ++counters_.transfers;
+  }
+}
+
+template <int N>
+bool Detector<N>::update(const BlockSystem<N>& system, const JointTable& joints, std::vector<Contact>& contacts) {
+  const bool all = forgotten_ || !skips_.search || !skips_.narrow_phase;
+  const bool searches = forgotten_ || !skips_.search || moved_beyond_search_skin(system);
+  forgotten_ = false;
+  if (searches) {
     search(system);
   } else {
     ++counters_.searches_skipped;
   }
-  ++counters_.narrow_phases;
-  std::vector<Contact> found;
-  found.reserve(contacts.size() + 8);
-  const ContactIndex previous(contacts);
-  NarrowPhase<N> narrow(system, reach_, previous);
-  for (const auto& [a, b] : pairs_) {
-    const std::size_t begin = found.size();
-    narrow.run(a, b, found);
+  if (!mark_due_pairs(system, all) && !searches) {
+    counters_.narrow_phases_skipped += static_cast<long>(pairs_.size());
+    return false;
+  }
+  found_.clear();
+  born_.clear();
+  gone_.clear();
+  ContactIndex previous(system, contacts);
+  NarrowPhase<N> narrow(system, reach_ + skips_.contact_skin, previous);
+  const auto pair_of = [](const Contact& c) { return std::pair<int, int>(std::minmax(c.vertex_block, c.edge_block)); };
+  std::size_t old = 0;  // contacts are in the order of their pairs
+  for (std::size_t i = 0; i < pairs_.size(); ++i) {
+    const auto [a, b] = pairs_[i];
+    for (; old < contacts.size() && pair_of(contacts[old]) < pairs_[i]; ++old) gone_.push_back(old);
+    const std::size_t old_begin = old, begin = found_.size();
+    while (old < contacts.size() && pair_of(contacts[old]) == pairs_[i]) ++old;
+    if (due_[i] != Due::yes) {
+      ++counters_.narrow_phases_skipped;
+      found_.insert(found_.end(), contacts.begin() + old_begin, contacts.begin() + old);
+      continue;
+    }
+    ++counters_.narrow_phases;
+    states_[i] = {system.displacement(a), system.displacement(b), true};
+    previous.select(old_begin, old);
+    narrow.run(a, b, found_);
     const int joint = joints.index(system.block(a).material, system.block(b).material);
-    for (std::size_t i = begin; i < found.size(); ++i) found[i].joint = joint;
-  }
-
-  std::vector<char> taken(contacts.size(), 0);
-  std::vector<std::size_t> born;
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    const std::ptrdiff_t old = previous.find(found[i].vertex, found[i].edge);
-    if (old >= 0) {
-      inherit(contacts[old], found[i]);
-      taken[old] = 1;
-    } else {
-      found[i].bonded = first_ && found[i].gap <= tolerance::deepest_initial_overlap_m;
-      born.push_back(i);
-    }
-  }
-  if (!first_) {
-    // Longest first: where a corner lies on the seam of two edges the one that carries it inherits.
-    std::sort(born.begin(), born.end(), [&](std::size_t i, std::size_t j) { return found[i].length > found[j].length; });
-    for (const std::size_t i : born) {
-      std::ptrdiff_t ancestor = -1;
-      for (std::size_t k = 0; k < contacts.size(); ++k) {
-        if (taken[k] || !continues(system, contacts[k], found[i])) continue;
-        if (ancestor < 0 || contacts[k].length > contacts[ancestor].length) ancestor = static_cast<std::ptrdiff_t>(k);
+    lives_on_.assign(old - old_begin, 0);
+    for (std::size_t k = begin; k < found_.size(); ++k) {
+      Contact& c = found_[k];
+      c.joint = joint;
+      const std::ptrdiff_t known = previous.find(c.vertex, c.edge);
+      if (known >= 0) {
+        inherit(contacts[known], c);
+        lives_on_[known - old_begin] = 1;
+      } else {
+        c.bonded = first_ && c.gap <= tolerance::deepest_initial_overlap_m;
+        born_.push_back(k);
       }
-      if (ancestor < 0) continue;
-      inherit(contacts[ancestor], found[i]);
-      taken[ancestor] = 1;
-      ++counters_.transfers;
+    }
+    for (std::size_t k = old_begin; k < old; ++k) {
+      if (!lives_on_[k - old_begin]) gone_.push_back(k);
     }
   }
-  contacts = std::move(found);
+  for (; old < contacts.size(); ++old) gone_.push_back(old);
+  if (!first_) pass_on_history(system, contacts);
+  contacts.swap(found_);
   first_ = false;
+  return true;
 }
 
 template class Detector<3>;

@@ -4,61 +4,109 @@
 // another miss being antiparallel, and w = 1 for theta <= parallel_full, 0 for theta >= parallel_none, linear between.
 //   - Facing edges: the overlap o of a and e, projected on the bisector of their directions, makes a contact at each of its two ends, with w o/2.
 //     Two blocks that slide off each other lose length, stiffness and cohesion continuously to zero.
-//   - Lone corner: vertex v opposite to e gets (1 - w_v) times half the projections on e of its own two edges (none counted longer than e), where
-//     w_v is the larger w of its two edges against e. It depends on the directions only, so it does not change where a corner crosses from one
-//     edge to a collinear one of the next block.
+//   - Lone corner: vertex v opposite to e, of which neither edge points into e's half-plane, gets (1 - w_v) times half the projections on e of its
+//     own two edges (none counted longer than e), where w_v is the larger w of its two edges against e. It depends on the directions only, so it
+//     does not change where a corner crosses from one edge to a collinear one of the next block. An edge that points in by up to parallel_full has
+//     w_v = 1 anyhow, so that nothing jumps where it turns in.
 // A vertex that faces e through both rules, or through both its edges, has one contact with the sum of the lengths.
 //
-// Where it is not continuous: a lone corner within edge_end of the seam of two collinear edges has a contact with both; it loses its length where it
-// leaves the end of an edge that nothing continues; and a raised, open corner loses its length at parallel_none. Energy held there goes into the
-// ledger's redefinition.
+// Corner against corner: where v comes to an end q of e, two convex blocks are apart as soon as one line separates them, which is one of up to four
+// edges: the two of q with v outside, the two of v with q outside (both sides of the corner leave the edge's half-plane, to flush_tilt; else it is no
+// candidate). A contact with each of them would lock the blocks. So v has no lone contact with e while another one of the four, more than
+// parallel_none from e in direction, separates
+//   - to within edge_end, where v and q coincide: nothing is in contact yet and the motion decides which edge it will be,
+//   - to within edge_end and what the closures of contacts at v, q and their edges make of it (seam_closures), where one of them slides on something,
+//   - and, while v is still in front of e, to within seam_height more: blocks that are flush in the drawing do not catch on each other's faces.
+// So a block whose front corner stands on a joint slides on, three blocks and air or four blocks around the corner. A contact that has closed over
+// more than seam_height stays until its corner is nearer to another edge; at a reflex q both walls hold.
 //
-// A lone corner that slides over the seam of two blocks is not stopped by the face of the next one (see tolerance::seam_height_m).
+// Where it is not continuous: a lone corner within edge_end of the seam of two collinear edges has a contact with both; it loses its length where it
+// leaves the end of an edge that nothing continues; and at a corner the contact passes from one edge to the next with its gap, not with its
+// direction. Energy held there goes into the ledger's redefinition.
 //
 // At four-block corners the diagonal blocks have facing edges without overlap and no lone corner, hence no contact: they cannot lock.
+//
+// What is not done again: candidate pairs are searched anew only when a block has moved beyond search_skin; a pair's contacts are found anew only
+// when a point of one of its blocks near the other may have moved by contact_skin relative to it since they last were, or a tenth of it where a pair
+// that shares a block is due (so that what one loses and another gains is found at once and history can pass between them). Blocks that move together
+// are not redone. Contacts of other pairs stay as they are; their gaps are the caller's to carry on. Contacts are kept to reach + contact_skin, so
+// that none comes within reach unseen; a corner that comes over the end of an edge is found at most contact_skin late, and lengths are off by less
+// than it.
 #pragma once
 
 #include <vector>
 
 #include "openclose/contact/contact.h"
 #include "openclose/contact/joint_table.h"
+#include "openclose/core/tolerance.h"
 #include "openclose/model/block_system.h"
 
 namespace openclose {
 
+/// What may be left as it is, and how far blocks may move before it is not; see above.
+struct DetectionSkips {
+  bool search = true;                               ///< false: everything is redone in every step
+  bool narrow_phase = true;                         ///< false: all candidate pairs are redone in every step
+  double contact_skin = tolerance::contact_skin_m;  ///< [m]
+};
+
 struct DetectionCounters {
-  long searches = 0;          ///< broad-phase searches made
-  long searches_skipped = 0;  ///< steps that reused the candidates
-  long narrow_phases = 0;
-  long transfers = 0;  ///< contacts that inherited their history from another vertex-edge pair
+  long searches = 0;               ///< broad-phase searches made
+  long searches_skipped = 0;       ///< steps that reused the candidates
+  long narrow_phases = 0;          ///< pairs whose contacts were found anew, over all steps
+  long narrow_phases_skipped = 0;  ///< pairs whose contacts stayed as they were
+  long transfers = 0;              ///< contacts that inherited their history from another vertex-edge pair
 };
 
 template <int N>
 class Detector {
  public:
   /// \param reach [m] open contacts are kept up to this gap: at least what two vertices can approach each other within a step
-  Detector(double reach, bool skip_search) : reach_(reach), skip_search_(skip_search) {}
+  explicit Detector(double reach, const DetectionSkips& skips = {}) : reach_(reach), skips_(skips) {}
 
-  /// Contacts of the present positions. `contacts` brings the history of the last step and is replaced. Only what touches in the very first call is
-  /// bonded: those joints exist in the rock; surfaces that meet later have no cohesion unless it is ductile.
-  void update(const BlockSystem<N>& system, const JointTable& joints, std::vector<Contact>& contacts);
+  /// Contacts of the present positions; false if the list stays as it is. `contacts` brings the history of the last step and is renewed where needed.
+  /// Only what touches in the very first call is bonded: those joints exist in the rock; surfaces that meet later have no cohesion unless it is
+  /// ductile.
+  bool update(const BlockSystem<N>& system, const JointTable& joints, std::vector<Contact>& contacts);
 
   /// Pairs of blocks whose boxes, with reach and skin, overlap, at least one of them free; renewed only when something moved beyond the skin.
   const std::vector<std::pair<int, int>>& candidate_pairs() const { return pairs_; }
   const DetectionCounters& counters() const { return counters_; }
 
-  /// Renews the candidate pairs.
-  void search(const BlockSystem<N>& system);
+  /// Blocks or contacts were changed by others: the next update() searches and finds everything anew.
+  void forget() { forgotten_ = true; }
 
  private:
-  bool moved_beyond_skin(const BlockSystem<N>& system) const;
+  using Unknowns = typename BlockSystem<N>::Unknowns;
+  /// A pair when its contacts were last found.
+  struct PairState {
+    Unknowns first, second;  ///< displacements of its blocks
+    bool known = false;
+  };
+  enum class Due : unsigned char { no, moved, yes };
+
+  bool moved_beyond_search_skin(const BlockSystem<N>& system) const;
+  void search(const BlockSystem<N>& system);
+  double moved(const BlockSystem<N>& system, std::size_t pair) const;
+  bool mark_due_pairs(const BlockSystem<N>& system, bool all);
+  void pass_on_history(const BlockSystem<N>& system, std::vector<Contact>& before);
 
   double reach_;
-  bool skip_search_;
+  DetectionSkips skips_;
   bool first_ = true;
+  bool forgotten_ = true;
   std::vector<std::pair<int, int>> pairs_;
-  std::vector<typename BlockSystem<N>::Unknowns> searched_at_;
+  std::vector<PairState> states_;  ///< of the pairs
+  std::vector<Unknowns> searched_at_;
   DetectionCounters counters_;
+
+  // Working memory of update().
+  std::vector<Due> due_;           ///< of the pairs
+  std::vector<char> in_due_pair_;  ///< of the blocks
+  std::vector<Contact> found_;
+  std::vector<char> lives_on_;            ///< old contacts of a pair
+  std::vector<std::size_t> born_, gone_;  ///< positions in the new and in the old list
+  std::vector<std::pair<int, std::size_t>> gone_by_vertex_, gone_by_edge_;
 };
 
 extern template class Detector<3>;

@@ -35,6 +35,10 @@ inline constexpr double straight_corner_rad = 1e-9;
 inline constexpr double parallel_full_rad = 5.0 * 3.14159265358979323846 / 180.0;
 inline constexpr double parallel_none_rad = 15.0 * 3.14159265358979323846 / 180.0;
 
+/// [rad] A side of a corner that points into an edge's half-plane by no more than this still leaves it: faces that are flush in the drawing turn by
+/// their closures. The tip of a needle between a face and a joint is sharper only in slivers.
+inline constexpr double flush_tilt_rad = 1.0 * 3.14159265358979323846 / 180.0;
+
 /// [m] Overlaps of edges shorter than this carry no contact. Hard contacts carry whatever their length is, so this lies above what rounding and the
 /// tolerance of the gap can make of edges that only meet end to end; it lies far below any joint that matters.
 inline constexpr double shortest_overlap_m = 1e-6;

@@ -75,6 +75,7 @@ class Enforcement {
 
   /// Throws InputError if the method asks for a theta that the enforcement has no use for.
   virtual std::unique_ptr<TimeScheme<N>> make_time_scheme(const MethodInput& method) const = 0;
+  virtual bool follows_gaps() const { return true; }                 ///< false: the gap at a step's end is not exactly that of the positions
   virtual bool has_elastic_contacts() const { return true; }         ///< false: contacts store no energy and keep no penetration
   /// true: steps need no equations to be solved but must stay below the critical one; Simulation takes them by CentralDifference.
   virtual bool is_explicit() const { return false; }

@@ -51,6 +51,7 @@ class Shi : public Enforcement<N> {
     require_default_theta(method);
     return make_theta_scheme<N>(1.0);
   }
+  bool follows_gaps() const override { return false; }  // they add up first-order changes
   double step_cut(const MethodInput& method) const override { return method.step_cut; }
   const LinearCounters& linear_counters() const override { return tangent_.counters(); }
 

@@ -7,7 +7,6 @@
 #include "support/scenes.h"
 
 using namespace openclose;
-using openclose::test::all_methods;
 using openclose::test::block_weight;
 
 namespace {

@@ -18,7 +18,9 @@ inline Scene scene_with(std::vector<BlockInput> blocks) {
 /// A scene under detection. Vertices are numbered through all blocks; edge 2 of a rectangle is its top, run through from right to left.
 class Detection {
  public:
-  explicit Detection(const Scene& scene, double reach = 0.05, bool skip_search = true) : system(scene), joints(scene), detector(reach, skip_search) {
+  /// Unless asked for, all pairs are redone in every update: what is tested is the geometry.
+  explicit Detection(const Scene& scene, double reach = 0.05, const DetectionSkips& skips = {true, false, 0.0})
+      : system(scene), joints(scene), detector(reach, skips) {
     update();
   }
 

@@ -185,6 +185,78 @@ TEST_CASE("diagonal blocks of a four-block corner do not touch", "[contact][dete
   }
 }
 
+namespace {
+
+/// A block (blocks' vertices 8 to 11, front corner 9) on a plane of two fixed ones (vertices 0 to 3, 4 to 7) whose joint comes up under its front
+/// corner at the origin; angles from the plane, uphill. The wall of the joint is edge 4 of the lower block, `drop` is the angle by which the top of
+/// that block (edge 7) lies below the plane.
+Detection corner_over_joint(double joint, double front, double drop) {
+  const double lean = 1.0 / std::tan(joint), front_lean = 1.0 / std::tan(front);
+  return Detection(scene_with({fixed_block("up", {{-8.0, 0.0}, {-8.0, -1.0}, {-lean, -1.0}, {0.0, 0.0}}),
+                               fixed_block("down", {{0.0, 0.0}, {-lean, -1.0}, {8.0, -8.0}, {8.0, -8.0 * std::tan(drop)}}),
+                               free_block("block", {{-2.0, 0.0}, {0.0, 0.0}, {front_lean, 1.0}, {-2.0, 1.0}})}));
+}
+
+}  // namespace
+
+TEST_CASE("a block whose front corner stands on a joint is held neither by its wall nor at its front", "[contact][detection]") {
+  const double joint = GENERATE(45.0, 60.0, 90.0, 110.0, 135.0) * degree, front = GENERATE(70.0, 90.0, 105.0) * degree;
+  const double drop = GENERATE(-20.0, -8.0, 0.0, 8.0, 20.0, 40.0) * degree, closure = GENERATE(0.0, 1e-4);
+  Detection d = corner_over_joint(joint, front, drop);
+  double slid = 0.0;
+  const auto require_free = [&] {
+    for (const Contact& c : d.contacts) {
+      if (c.vertex_block == 0 || c.edge_block == 0) continue;
+      CAPTURE(joint / degree, front / degree, drop / degree, closure, c.vertex, c.edge, c.length);
+      // Where joint and front face each other they overlap by what they have slid, and have no more length.
+      CHECK(((c.vertex == 9 && c.edge == 7) || (c.vertex == 4 && c.edge == 8) || c.length <= closure + slid));
+    }
+  };
+  require_free();
+  d.move(2, 0.0, -closure);
+  for (Contact& c : d.contacts) c.gap -= closure;
+  for (int step = 0; step < 100; ++step) {
+    for (Contact& c : d.contacts) c.status = c.gap <= 1e-12 ? ContactStatus::sliding : ContactStatus::open;
+    d.update();
+    require_free();
+    // Down the plane, or up the top of the lower block where that rises.
+    const double slip = closure == 0.0 ? 1e-3 : 0.1 * closure, rise = std::max(0.0, -std::tan(drop));
+    d.move(2, slip, slip * rise);
+    slid += slip;
+  }
+}
+
+TEST_CASE("a step is no seam: the corner is met by its face", "[contact][detection]") {
+  const double step = GENERATE(1.1e-3, 0.01, 0.3), deep = GENERATE(0.0, 1e-5);
+  Detection d(scene_with({fixed_block("floor", rectangle(-5.0, -1.0, 5.0, 1.0)), fixed_block("step", rectangle(0.0, -1.0, 5.0, 1.0 + step)),
+                          free_block("block", placed(rectangle(-1.0, 0.0, 1.0, 1.0), 30.0 * degree, {-0.2, 0.5}))}));
+  for (Contact& c : d.contacts) c.status = ContactStatus::sliding;
+  const Vec2 corner = d.system.position(2, 9), foot = d.system.position(1, 4);
+  d.move(2, foot.x() - corner.x() + deep, foot.y() + 1.0 - corner.y());
+  d.update();
+  REQUIRE(d.find(9, 7) != nullptr);
+  CHECK(d.find(9, 7)->gap == Approx(-deep).margin(1e-12));
+}
+
+TEST_CASE("a corner that stands on another one stays there, one that falls on it is caught", "[contact][detection]") {
+  // Tilted so far that only the corner touches.
+  const double tilt = 20.0 * degree;
+  Detection d(scene_with(
+      {fixed_block("pillar", rectangle(-1.0, -1.0, 1.0, 1.0)), free_block("block", placed(rectangle(-1.0, 0.0, 1.0, 2.0), -tilt, {-1e-3, 0.0}))}));
+  REQUIRE(d.find(5, 2) != nullptr);
+  SECTION("standing") {
+    d.find(5, 2)->status = ContactStatus::sticking;
+    d.move(1, 1e-3, 0.0);
+    d.update();
+    CHECK(d.find(5, 2) != nullptr);
+  }
+  SECTION("falling") {
+    d.move(1, 1e-3, -2e-5);
+    d.update();
+    CHECK_FALSE(d.contacts.empty());
+  }
+}
+
 TEST_CASE("a corner above a thin slab is not in contact with its underside", "[contact][detection]") {
   const double thickness = GENERATE(1e-2, 1e-3, 1e-4);
   const double gap = GENERATE(1e-5, -1e-5, -6e-5);

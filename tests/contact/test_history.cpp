@@ -185,3 +185,26 @@ TEST_CASE("a deep contact that carries load is kept", "[contact][history]") {
   for (Contact& c : d.contacts) c.status = ContactStatus::open;
   CHECK(d.update().empty());
 }
+
+TEST_CASE("pairs that are redone at different times still pass history on", "[contact][history]") {
+  // The block's corner (8) crosses the seam between the tops of the left (2) and the right block (6).
+  Detection d(scene_with({fixed_block("left", rectangle(-5.0, -1.0, 5.0, 1.0)), free_block("right", rectangle(0.0, -1.0, 5.0, 1.0)),
+                          free_block("block", placed(rectangle(0.0, 0.0, 1.0, 1.0), 45.0 * degree, {-1.0e-3, 0.0}))}),
+              0.05, {});
+  REQUIRE(d.find(8, 2) != nullptr);
+  load(*d.find(8, 2));
+  const double part = 0.6 * tolerance::contact_skin_m;
+  d.move(2, part, 0.0);
+  d.update();
+  // The right block goes and comes back, so that what the left one has to do with the block is half done and what the right one has is not.
+  for (const double way : {3.0, -3.0}) {
+    d.move(1, way * part, 0.0);
+    d.update();
+  }
+  for (int step = 0; step < 3; ++step) {
+    d.move(2, part, 0.0);
+    d.update();
+  }
+  CHECK(d.find(8, 2) == nullptr);
+  check_loaded(d.find(8, 4 + 2));
+}

@@ -42,6 +42,7 @@ void check_same(const MethodInput& a, const MethodInput& b) {
   CHECK(a.residual_tolerance == b.residual_tolerance);
   CHECK(a.max_iterations == b.max_iterations);
   CHECK(a.skip_search == b.skip_search);
+  CHECK(a.skip_narrow_phase == b.skip_narrow_phase);
   CHECK(a.penalty == b.penalty);
   CHECK(a.penalty_shear_ratio == b.penalty_shear_ratio);
   CHECK(a.penetration_tolerance == b.penetration_tolerance);
@@ -158,6 +159,7 @@ Scene random_scene(unsigned seed) {
   scene.method.residual_tolerance = fraction(generator);
   scene.method.max_iterations = 123456;
   scene.method.skip_search = false;
+  scene.method.skip_narrow_phase = false;
   scene.method.penalty = number();
   scene.method.penalty_shear_ratio = number();
   scene.method.penetration_tolerance = number();

@@ -18,11 +18,11 @@ struct Slope {
   /// limit is 21.0), and without dilatancy all are right.
   bool forces_determined;
 };
-constexpr Slope slopes[] = {{"slope_face_50_joints_5_50", "face 50, joints 5 and 50 deg", true},
-                            {"slope_face_55_joints_0_55", "face 55, joints 0 and 55 deg", true},
-                            {"slope_face_60_joints_20_m70", "face 60, joints 20 and -70 deg", true},
-                            {"slope_face_70_joints_20_m60", "face 70, joints 20 and -60 deg", true},
-                            {"slope_face_60_columns_m70", "face 60, columns at -70 deg", false}};
+constexpr Slope slopes[] = {
+    {"slope_face_70_joints_0_m70", "face 70, joints 0 and -70 deg", true},   {"slope_face_50_joints_5_50", "face 50, joints 5 and 50 deg", true},
+    {"slope_face_55_joints_0_55", "face 55, joints 0 and 55 deg", true},     {"slope_face_60_joints_20_m70", "face 60, joints 20 and -70 deg", true},
+    {"slope_face_70_joints_20_m60", "face 70, joints 20 and -60 deg", true}, {"slope_face_60_joints_5_55", "face 60, joints 5 and 55 deg", true},
+    {"slope_face_60_columns_m70", "face 60, columns at -70 deg", false}};
 constexpr double tolerance_deg = 0.1;  // displacement before failure turns blocks by up to 0.07 deg, the rest is the bracket and closure
 
 double degrees(double radians) {
