@@ -13,8 +13,9 @@ METHODS = ("soft", "hard", "dem", "shi")
 BEHAVIOURS = ("ductile", "lost_on_opening", "lost_on_slip")
 MODELS = ("wedge", "toe", "shifted")
 
-FOS_CPU_LIMIT_S = 20
-POST_FAILURE_CPU_LIMIT_S = 40
+# What a search and a run after failure may cost; one that is stopped stays in the tables with this reason.
+FOS_CPU_LIMIT_S = 15
+POST_FAILURE_CPU_LIMIT_S = 30
 
 # Shi's scheme takes the friction of the pass before, so it needs the paper's step; dem divides the step that is asked for into stable ones.
 POST_FAILURE_STEP_S = {"soft": 0.01, "hard": 0.01, "dem": 0.01, "shi": 0.001}
@@ -79,15 +80,15 @@ class Fos:
     """A strength reduction: the factor and what is known of it, or the reason why there is none."""
 
     value: float | None
-    bracket: tuple[float, float] | None
     reason: str
+    warning: str
 
 
 def _fos(openclose: Openclose, case: Case) -> Fos:
     summary = openclose.summary(case)
     if not summary.get("factor_of_safety"):
-        return Fos(None, None, summary["reason"])
-    return Fos(summary["factor_of_safety"], tuple(summary["bracket"]), "")
+        return Fos(None, summary["reason"], "")
+    return Fos(summary["factor_of_safety"], "", "; ".join(summary["warnings"]))
 
 
 class CutBlocks:

@@ -4,7 +4,7 @@ from collections.abc import Iterable
 
 import comparison
 
-_HEADINGS = ("quantity", "unit", "paper", "reference", "soft", "hard", "shi", "dev. soft", "dev. hard", "dev. shi")
+_HEADINGS = ("quantity", "unit", "paper", "reference", *comparison.METHODS, *(f"dev. {m}" for m in comparison.METHODS))
 _LEFT_ALIGNED = 2
 NOTE = (
     "reference: closed form; in Fig. 4 the event-resolved ODE on the joint's springs. dev.: (ours - reference)/reference of the quantity, of the\n"
