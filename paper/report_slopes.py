@@ -74,11 +74,19 @@ def _jointed_fields(jointed: JointedSlope, printed: dict) -> dict[str, str]:
         "jointed_notes": "\n".join(f"(1) {method}: {warning}." for method, warning in warned.items()),
         "jointed_blocks": str(len(jointed.cut.blocks)),
         "jointed_unknowns": str(jointed.unknowns),
+        **{f"jointed_{side}": f"{length:.0f}" for side, length in zip(("bench", "below", "top"), jointed.size())},
+        "jointed_opening": _opening_text(jointed),
         "jointed_dem": _g(paper["dem"]["factor_of_safety"]),
         "jointed_soft": _g(paper["soft"]["factor_of_safety"]),
         "jointed_shi": _g(paper["shi"]["factor_of_safety"]),
         "jointed_limit": f"{jointed.limit('ductile'):.3f}",
         "jointed_limit_frictional": f"{jointed.limit('lost_on_slip'):.3f}",
+        "rules_soft": _fos_cell(jointed.paper_factor_of_safety("soft"), 3),
+        "rules_dem": _fos_cell(jointed.paper_factor_of_safety("dem"), 3),
+        "rules_width": _g(slopes.PAPER_RULES_WIDTH),
+        "rules_displacement": _g(printed["jointed_slope"]["relative_max_displacement_m"]["value"]),
+        "rules_force": _g(printed["jointed_slope"]["unbalanced_force_limit_n"]["value"] / 1e3),
+        "rules_steps": _g(printed["jointed_slope"]["unbalanced_force_steps"]["value"], 6),
         "jointed_width": _g(jointed.inputs.width),
         "jointed_failure": _g(jointed.inputs.failure_displacement),
         "jointed_tight_width": _g(slopes.TIGHT_WIDTH),
@@ -86,6 +94,18 @@ def _jointed_fields(jointed: JointedSlope, printed: dict) -> dict[str, str]:
         "jointed_tight": _fos_cell(tight),
         "jointed_short": _fos_cell(ours),
     }
+
+
+def _opening_text(jointed: JointedSlope) -> str:
+    """Says so if a method finds the frictional factor already where cohesion is lost on opening."""
+    frictional, cohesive = jointed.limit("lost_on_slip"), jointed.limit("ductile")
+    factors = {m: jointed.factor_of_safety(m, "lost_on_opening") for m in METHODS}
+    low = [m for m, f in factors.items() if f.value and not f.warning and abs(f.value - frictional) < abs(f.value - cohesive)]
+    if not low:
+        return ""
+    methods = " and ".join(f"`{m}`" for m in low)
+    return (f"Near the lower limit, too, lies {methods} where cohesion is lost on opening only: on the way to rest contacts open for a moment, and what "
+            "they lose is gone.")
 
 
 def _after_failure_fields(jointed: JointedSlope, printed: dict) -> dict[str, str]:

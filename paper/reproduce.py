@@ -46,12 +46,12 @@ def reproduce(arguments: argparse.Namespace) -> None:
     results.mkdir(parents=True, exist_ok=True)
     (results / "comparison.csv").unlink(missing_ok=True)
     openclose, reference = Openclose(arguments.openclose, results / "runs"), Reference(arguments.reference)
+    printed = read_printed()
     slider, wedge = Incline(openclose, reference), PlaneFailure(openclose, reference)
-    planar, jointed = PlanarSlope(openclose, reference), JointedSlope(openclose, reference)
+    planar, jointed = PlanarSlope(openclose, reference), JointedSlope(openclose, reference, printed)
     cases = [*jointed.cases(), *planar.cases(), *slider.cases(), *wedge.cases()]
     print(f"{len(cases)} runs of examples 3.1 to 3.4 ...", flush=True)
     openclose.run_all(cases)
-    printed = read_printed()
     figures.draw_all(slider, wedge, planar, jointed, printed, results)
     rows = [*comparison.build(slider, wedge, printed), *comparison_slopes.build(planar, jointed, printed)]
     report.write(slider, wedge, rows, printed, report_slopes.fields(planar, jointed, rows, printed), results)

@@ -20,6 +20,10 @@ POST_FAILURE_CPU_LIMIT_S = 30
 # Shi's scheme takes the friction of the pass before, so it needs the paper's step; dem divides the step that is asked for into stable ones.
 POST_FAILURE_STEP_S = {"soft": 0.01, "hard": 0.01, "dem": 0.01, "shi": 0.001}
 STARTS = {"settled": "from the settled state", "unloaded": "cold: gravity dropped on unloaded springs"}
+# Whose own rules for equilibrium the paper gives: DDA-SC's relative displacement and UDEC's unbalanced force.
+PAPER_RULES = ("soft", "dem")
+PAPER_RULES_WIDTH = 0.02
+
 MOVED_M = 0.1  # blocks that moved less take no part in the mechanism
 
 # The tight search that shows what the short one costs in accuracy.
@@ -133,10 +137,6 @@ class CutBlocks:
         return self._openclose.folder_of(self.case) / "mechanism.csv"
 
 
-def area(polygon: list[tuple[float, float]]) -> float:
-    return 0.5 * sum(a[0] * b[1] - b[0] * a[1] for a, b in zip(polygon, polygon[1:] + polygon[:1]))
-
-
 class PlanarSlope:
     """Example 3.3: parallel joints in three sizes of model."""
 
@@ -193,15 +193,17 @@ class JointedSlope:
     SCENE = _SCENES / "example_3_4.toml"
     POST_FAILURE = _SCENES / "example_3_4_post_failure.toml"
 
-    def __init__(self, openclose: Openclose, reference: Reference):
+    def __init__(self, openclose: Openclose, reference: Reference, printed: dict):
         self._openclose = openclose
+        self._printed = printed["jointed_slope"]
         self.inputs = read_inputs(self.SCENE)
         self.post_failure_inputs = read_inputs(self.POST_FAILURE)
         self.cut = CutBlocks("3.4", self.SCENE, openclose, reference)
 
     def cases(self) -> list[Case]:
         """The longest first, so that no process idles at the end."""
-        return [self.cut.case, *(self._post_failure(m, start) for m in METHODS for start in STARTS), *self._reductions(), self._tight()]
+        rules = [self._by_paper_rules(m) for m in PAPER_RULES]
+        return [self.cut.case, *rules, *(self._post_failure(m, start) for m in METHODS for start in STARTS), *self._reductions(), self._tight()]
 
     def _reductions(self) -> list[Case]:
         return [self._reduction(method, behaviour) for method in METHODS for behaviour in BEHAVIOURS]
@@ -215,9 +217,18 @@ class JointedSlope:
         """Of `soft` with ductile cohesion, by a narrow bracket and a long way."""
         return _fos(self._openclose, self._tight())
 
+    def paper_factor_of_safety(self, method: str) -> Fos:
+        """By the paper's own rules for equilibrium, cohesion lost on slip."""
+        return _fos(self._openclose, self._by_paper_rules(method))
+
     def limit(self, behaviour: str) -> float:
         """[-] limit analysis; cohesion that is lost on slip is gone everywhere in the end"""
         return self.cut.limit(0.0 if behaviour == "lost_on_slip" else None)
+
+    def size(self) -> tuple[float, float, float]:
+        """[m] bench before the toe, rock below it, top behind the crest"""
+        corners = tomllib.loads(self.SCENE.read_text(encoding="utf-8"))["domain"]["vertices_m"]
+        return -corners[0][0], -corners[0][1], corners[2][0] - corners[3][0]
 
     @property
     def unknowns(self) -> int:
@@ -259,6 +270,22 @@ class JointedSlope:
     def _reduction(self, method: str, behaviour: str) -> Case:
         settings = (("method.contact", method), ("joint[0].cohesion_behaviour", behaviour))
         return Case(f"3.4-{method}-{behaviour}", "fos", self.SCENE, settings, FOS_CPU_LIMIT_S)
+
+    def _by_paper_rules(self, method: str) -> Case:
+        settings = [("method.contact", method), ("joint[0].cohesion_behaviour", "lost_on_slip"), ("strength_reduction.width", PAPER_RULES_WIDTH)]
+        if method == "dem":
+            fraction = self._printed["unbalanced_force_limit_n"]["value"] / self._heaviest_block()
+            settings += [("method.damping", "automatic"), ("settle.unbalanced_fraction", fraction),
+                         ("settle.max_explicit_steps", self._printed["unbalanced_force_steps"]["value"])]
+        else:
+            settings += [("settle.criterion", "paper"), ("settle.relative_displacement", self._printed["relative_max_displacement_m"]["value"]),
+                         ("step.dt_s", self._printed["dt_s"]["value"])]
+        return Case(f"3.4-{method}-paper-rules", "fos", self.SCENE, tuple(settings), POST_FAILURE_CPU_LIMIT_S)
+
+    def _heaviest_block(self) -> float:
+        """[N/m] weight of the heaviest whole block: one spacing of each joint set"""
+        sine = math.sin(math.radians(self.inputs.dips_deg[1] - self.inputs.dips_deg[0]))
+        return self.inputs.spacings[0] * self.inputs.spacings[1] / sine * self.inputs.unit_weight
 
     def _tight(self) -> Case:
         settings = (("method.contact", "soft"), ("strength_reduction.width", TIGHT_WIDTH),
