@@ -96,13 +96,19 @@ def _run_times(jointed: JointedSlope, printed: dict) -> list[Row]:
     rows = [Row("Table 4", "CPU time to the steady state", "s", _minutes(printed, "steady_minutes"), None, steady)]
     for start, name in slopes.STARTS.items():
         for distance in printed["milestones_m"]["value"]:
-            ours = {m: c for m in METHODS if (c := jointed.cpu_at(m, start, distance)) is not None}
-            rows.append(Row("Table 4", f"CPU time to {distance} m, {name}", "s", None, None, ours))
+            rows.append(Row("Table 4", f"CPU time to {distance} m, {name}", "s", None, None, cpu_at(jointed, start, distance)))
     rows.append(Row("Table 4", "CPU time to the steady state over dem's", "-", ratio_text(printed, steady_ratio), None, over_dem(steady)))
     for start, name in slopes.STARTS.items():
         rows.append(Row("Table 4", f"CPU time after failure over dem's, mean of the distances, {name}", "-", ratio_text(printed, post_failure_ratio), None,
                         over_dem(mean_cpu(jointed, printed, start))))
+        if (common := jointed.common_distance(start)) is not None:
+            rows.append(Row("Table 4", f"CPU time after failure over dem's, at {common:g} m, {name}", "-", None, None, over_dem(cpu_at(jointed, start, common))))
     return rows
+
+
+def cpu_at(jointed: JointedSlope, start: str, distance: float) -> Values:
+    """[s] of the methods that came so far"""
+    return {m: c for m in METHODS if (c := jointed.cpu_at(m, start, distance)) is not None}
 
 
 def _minutes(printed: dict, key: str) -> str:

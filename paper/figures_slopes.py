@@ -12,7 +12,7 @@ from drawing import INK, METHOD_COLOUR, METHOD_MARKER, ROCK, plt
 from slopes import METHODS, JointedSlope, Milestone, PlanarSlope, Polygons
 
 _EXAGGERATION = 10  # of the displacements in Fig. 7
-_MECHANISM_STATE = "moved 10 m"
+_MECHANISM_STATES = ("moved 10 m", "moved 5 m", "moved 2 m", "moved 1 m")  # of each method the first that it came to
 _FIG_8_STATES = ("start", "moved 1 m", "moved 10 m", "moved 40 m")
 _VIEW = (-75, 420, -65, 275)  # [m] the part of the slope of example 3.4 that takes part
 
@@ -114,20 +114,20 @@ def figure_9(jointed: JointedSlope, file: Path) -> None:
     for axes, method in zip(panels.flat, ("soft", "dem", "hard")):
         _view(axes)
         paper = {"soft": ", the paper's DDA-SC", "dem": ", the paper's UDEC"}.get(method, "")
-        if not jointed.blocks(method, start, _MECHANISM_STATE):
+        state = next((s for s in _MECHANISM_STATES if jointed.blocks(method, start, s)), None)
+        if state is None:
             _draw_blocks(axes, jointed.cut.outlines, jointed.cut.fixed)
             _block_axes(axes, f"{method}{paper}: not reached ({jointed.reason(method, start)})")
             continue
-        _method_mechanism(jointed, method, start, figure, axes)
-        _block_axes(axes, f"{method}{paper}: toe block {_MECHANISM_STATE}")
+        _method_mechanism(jointed, method, start, state, figure, axes)
+        _block_axes(axes, f"{method}{paper}: toe block {state}")
     _limit_mechanism(jointed, figure, panels[1, 1])
     figure.suptitle("Fig. 9  Failure mechanisms")
     drawing.save(figure, file)
 
 
-def _method_mechanism(jointed: JointedSlope, method: str, start: str, figure: plt.Figure, axes: plt.Axes) -> None:
-    polygons = jointed.blocks(method, start, _MECHANISM_STATE)
-    motions = jointed.motions(method, start, _MECHANISM_STATE)
+def _method_mechanism(jointed: JointedSlope, method: str, start: str, state: str, figure: plt.Figure, axes: plt.Axes) -> None:
+    polygons, motions = jointed.blocks(method, start, state), jointed.motions(method, start, state)
     colours = ScalarMappable(Normalize(0, max(m.distance for m in motions.values())), "viridis")
     _draw_coloured(axes, polygons, jointed.cut.fixed, {name: m.distance for name, m in motions.items()}, colours)
     moving = [m for m in motions.values() if m.distance > slopes.MOVED_M]
@@ -190,8 +190,8 @@ def _run_time_ratios(jointed: JointedSlope, printed: dict, axes: plt.Axes) -> No
     """Over dem, and over UDEC, at the paper's distances."""
     distances = printed["milestones_m"]["value"]
     for method in METHODS:
-        pairs = [(d, jointed.cpu_at(method, "settled", d), jointed.cpu_at("dem", "settled", d)) for d in distances]
-        known = [(d, a / b) for d, a, b in pairs if a is not None and b is not None]
+        explicit = {m.displacement: m.cpu for m in jointed.milestones("dem", "settled")}
+        known = [(m.displacement, m.cpu / explicit[m.displacement]) for m in jointed.milestones(method, "settled") if m.displacement in explicit]
         if known and method != "dem":
             axes.plot(*zip(*known), METHOD_MARKER[method] + "-", color=METHOD_COLOUR[method], label=f"{method} / dem, settled")
         if method in ("soft", "shi"):
@@ -199,6 +199,7 @@ def _run_time_ratios(jointed: JointedSlope, printed: dict, axes: plt.Axes) -> No
             axes.plot(distances, over, METHOD_MARKER[method] + ":", color=METHOD_COLOUR[method], markerfacecolor="none",
                       label=f"paper: {printed[method]['name']} / {printed['dem']['name']}")
     axes.set_yscale("log")
+    axes.set_xlim(left=0)
     axes.set_xlabel("displacement of the toe block's centroid [m]")
     axes.set_ylabel("ratio of CPU times [-]")
     axes.set_title("Ratios between methods")

@@ -142,6 +142,9 @@ def _table_4(jointed: JointedSlope, paper: dict) -> str:
         line("CPU to the steady state", lambda m: _seconds(jointed.steady_cpu(m)), lambda p: f"{p['steady_minutes']:g} min"),
     ]
     for start, name in slopes.STARTS.items():
+        common = jointed.common_distance(start)
+        if common is not None and common not in paper["milestones_m"]["value"]:
+            lines.append(line(f"CPU to {common:g} m, {name}", lambda m, s=start, d=common: _seconds(jointed.cpu_at(m, s, d)), lambda p: ""))
         for k, distance in enumerate(paper["milestones_m"]["value"]):
             lines.append(line(f"CPU to {distance} m, {name}", lambda m, s=start, d=distance: _seconds(jointed.cpu_at(m, s, d)),
                               lambda p, k=k: f"{p['post_failure_minutes'][k]:g} min"))
@@ -181,6 +184,9 @@ def _ratios(jointed: JointedSlope, paper: dict) -> str:
     for start, name in slopes.STARTS.items():
         after = comparison_slopes.over_dem(comparison_slopes.mean_cpu(jointed, paper, start))
         lines.append([f"after failure, mean of the distances, {name}", *cells(after, comparison_slopes.post_failure_ratio)])
+        if (common := jointed.common_distance(start)) is not None:
+            ours = comparison_slopes.over_dem(comparison_slopes.cpu_at(jointed, start, common))
+            lines.append([f"after failure, at {common:g} m, {name}", *(f"{ours[m]:.3g}" if m in ours else "-" for m in METHODS), "", "", ""])
     headings = ("CPU time over dem's, over UDEC's", *METHODS, *(f"paper: {paper[m]['name']}" for m in _PAPER_METHODS))
     return tables.markdown(headings, lines)
 

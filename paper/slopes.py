@@ -14,8 +14,10 @@ BEHAVIOURS = ("ductile", "lost_on_opening", "lost_on_slip")
 MODELS = ("wedge", "toe", "shifted")
 
 # What a search and a run after failure may cost; one that is stopped stays in the tables with this reason.
-FOS_CPU_LIMIT_S = 15
-POST_FAILURE_CPU_LIMIT_S = 30
+FOS_CPU_LIMIT_S = {"soft": 15, "hard": 15, "dem": 15, "shi": 5}
+POST_FAILURE_CPU_LIMIT_S = 20
+# How far the toe block is followed; where that is less than in the scene, the whole way would cost more than all other runs together.
+POST_FAILURE_END_M = {"soft": 40.0, "hard": 40.0, "dem": 1.0, "shi": 1.0}
 
 # Shi's scheme takes the friction of the pass before, so it needs the paper's step; dem divides the step that is asked for into stable ones.
 POST_FAILURE_STEP_S = {"soft": 0.01, "hard": 0.01, "dem": 0.01, "shi": 0.001}
@@ -53,6 +55,7 @@ class Inputs:
     failure_displacement: float | None
     width: float | None
     strength_reduction_factor: float | None
+    end_displacement: float | None
 
 
 def read_inputs(scene_file: Path) -> Inputs:
@@ -76,6 +79,7 @@ def read_inputs(scene_file: Path) -> Inputs:
         failure_displacement=scene.get("settle", {}).get("failure_displacement_m"),
         width=scene.get("strength_reduction", {}).get("width"),
         strength_reduction_factor=scene.get("run", {}).get("strength_reduction_factor"),
+        end_displacement=scene.get("end", {}).get("displacement_m"),
     )
 
 
@@ -175,7 +179,7 @@ class PlanarSlope:
         return _SCENES / f"example_3_3_{model}.toml"
 
     def _case(self, model: str, method: str) -> Case:
-        return Case(f"3.3-{model}-{method}", "fos", self._scene(model), (("method.contact", method),), FOS_CPU_LIMIT_S)
+        return Case(f"3.3-{model}-{method}", "fos", self._scene(model), (("method.contact", method),), FOS_CPU_LIMIT_S[method])
 
 
 @dataclass(frozen=True)
@@ -254,7 +258,15 @@ class JointedSlope:
     def reason(self, method: str, start: str) -> str:
         """Why a run did not come to the displacement asked for; empty if it did."""
         summary = self.summary(method, start)
-        return "" if summary.get("ended_by") == "end.displacement_m" else summary["reason"] or f"ended by {summary['ended_by']}"
+        if summary.get("ended_by") != "end.displacement_m":
+            return summary["reason"] or f"ended by {summary['ended_by']}"
+        short = POST_FAILURE_END_M[method] < self.post_failure_inputs.end_displacement
+        return f"followed to {POST_FAILURE_END_M[method]:g} m only, for its run time" if short else ""
+
+    def common_distance(self, start: str) -> float | None:
+        """[m] the farthest milestone that every method came to that came anywhere"""
+        ways = [{m.displacement for m in self.milestones(method, start)} for method in METHODS]
+        return max(set.intersection(*(way for way in ways if way)), default=None)
 
     @cache
     def blocks(self, method: str, start: str, state: str) -> Polygons:
@@ -269,7 +281,7 @@ class JointedSlope:
 
     def _reduction(self, method: str, behaviour: str) -> Case:
         settings = (("method.contact", method), ("joint[0].cohesion_behaviour", behaviour))
-        return Case(f"3.4-{method}-{behaviour}", "fos", self.SCENE, settings, FOS_CPU_LIMIT_S)
+        return Case(f"3.4-{method}-{behaviour}", "fos", self.SCENE, settings, FOS_CPU_LIMIT_S[method])
 
     def _by_paper_rules(self, method: str) -> Case:
         settings = [("method.contact", method), ("joint[0].cohesion_behaviour", "lost_on_slip"), ("strength_reduction.width", PAPER_RULES_WIDTH)]
@@ -290,10 +302,11 @@ class JointedSlope:
     def _tight(self) -> Case:
         settings = (("method.contact", "soft"), ("strength_reduction.width", TIGHT_WIDTH),
                     ("settle.failure_displacement_m", TIGHT_FAILURE_DISPLACEMENT_M))
-        return Case("3.4-soft-tight", "fos", self.SCENE, settings, FOS_CPU_LIMIT_S)
+        return Case("3.4-soft-tight", "fos", self.SCENE, settings, FOS_CPU_LIMIT_S["soft"])
 
     def _post_failure(self, method: str, start: str) -> Case:
-        settings = (("method.contact", method), ("method.start", start), ("step.dt_s", POST_FAILURE_STEP_S[method]))
+        settings = (("method.contact", method), ("method.start", start), ("step.dt_s", POST_FAILURE_STEP_S[method]),
+                    ("end.displacement_m", POST_FAILURE_END_M[method]))
         return Case(f"3.4-after-failure-{method}-{start}", "run", self.POST_FAILURE, settings, POST_FAILURE_CPU_LIMIT_S)
 
 
