@@ -24,7 +24,8 @@ def build(planar: PlanarSlope, jointed: JointedSlope, printed: dict) -> list[Row
 
 
 def known(factors: dict[str, Fos]) -> Values:
-    return {method: fos.value for method, fos in factors.items() if fos.value is not None}
+    """Those that were found without a warning; the report has the others with their reasons."""
+    return {method: fos.value for method, fos in factors.items() if fos.value is not None and not fos.warning}
 
 
 def _inputs(item: str, i: Inputs, printed: dict, joints: tuple[tuple[str, str, float], ...]) -> list[Row]:

@@ -46,13 +46,13 @@ def _draw_coloured(axes: plt.Axes, polygons: Polygons, fixed: set[str], values: 
 
 
 def figure_7(planar: PlanarSlope, file: Path) -> None:
-    figure, panels = plt.subplots(1, 3, figsize=(18, 5.8), constrained_layout=True)
+    figure, panels = plt.subplots(1, 3, figsize=(18, 6.0), constrained_layout=True)
     cut = planar.cut["toe"]
     _draw_blocks(panels[0], cut.outlines, cut.fixed)
     i = planar.inputs
     panels[0].annotate(f"{len(cut.blocks)} blocks\njoints at {i.dips_deg[0]:g}°, every {i.spacings[0]:g} m\nface at {i.face_angle_deg:.3g}°",
                        (0.03, 0.95), xycoords="axes fraction", va="top")
-    _block_axes(panels[0], f"Fig. 7  Geometry: joint through the toe, back wall {planar.back_wall('toe'):.0f} m behind the crest (grey: fixed)")
+    _block_axes(panels[0], f"Fig. 7  Geometry: joint through the toe,\nback wall {planar.back_wall('toe'):.0f} m behind the crest; grey: fixed")
     for axes, model in zip(panels[1:], ("toe", "shifted")):
         _planar_mechanism(planar, model, figure, axes)
     drawing.save(figure, file)
@@ -69,7 +69,7 @@ def _planar_mechanism(planar: PlanarSlope, model: str, figure: plt.Figure, axes:
     figure.colorbar(colours, ax=axes, label="displacement when failure was found [m]", shrink=0.8)
     factor = planar.factor_of_safety(model, "soft").value
     lowest = {"toe": "joint through the toe", "shifted": "lowest joint above the toe"}[model]
-    _block_axes(axes, f"Mechanism, {lowest} (soft, FOS {factor:.4f}; displacements x {_EXAGGERATION})")
+    _block_axes(axes, f"Mechanism, {lowest}\n(soft, FOS {factor:.4f}; displacements x {_EXAGGERATION})")
 
 
 def figure_8(jointed: JointedSlope, printed: dict, file: Path) -> None:
