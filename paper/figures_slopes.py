@@ -12,7 +12,7 @@ from drawing import INK, METHOD_COLOUR, METHOD_MARKER, ROCK, plt
 from slopes import METHODS, JointedSlope, Milestone, PlanarSlope, Polygons
 
 _EXAGGERATION = 10  # of the displacements in Fig. 7
-_MECHANISM_STATES = ("moved 10 m", "moved 5 m", "moved 2 m", "moved 1 m")  # of each method the first that it came to
+_MECHANISM_STATES = ("moved 10 m", "moved 5 m", "moved 2 m", "moved 1 m", "moved 0.5 m")  # of each method the first that it came to
 _FIG_8_STATES = ("start", "moved 1 m", "moved 10 m", "moved 40 m")
 _VIEW = (-75, 420, -65, 275)  # [m] the part of the slope of example 3.4 that takes part
 

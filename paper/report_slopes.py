@@ -83,6 +83,8 @@ def _jointed_fields(jointed: JointedSlope, printed: dict) -> dict[str, str]:
         "jointed_limit_frictional": f"{jointed.limit('lost_on_slip'):.3f}",
         "rules_soft": _fos_cell(jointed.paper_factor_of_safety("soft"), 3),
         "rules_dem": _fos_cell(jointed.paper_factor_of_safety("dem"), 3),
+        "rules_velocity": _g(jointed.rules_velocity(), 2),
+        "rules_upper": _g(slopes.PAPER_RULES_UPPER_LIMIT),
         "rules_width": _g(slopes.PAPER_RULES_WIDTH),
         "rules_displacement": _g(printed["jointed_slope"]["relative_max_displacement_m"]["value"]),
         "rules_force": _g(printed["jointed_slope"]["unbalanced_force_limit_n"]["value"] / 1e3),
