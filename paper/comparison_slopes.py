@@ -47,7 +47,8 @@ def _inputs(item: str, i: Inputs, printed: dict, joints: tuple[tuple[str, str, f
 
 def _unit_of(key: str) -> str:
     """The unit that the name of a key ends in."""
-    for ending, unit in (("_pa_per_m", "Pa/m"), ("_n_per_m3", "N/m3"), ("_m_per_s2", "m/s2"), ("_deg", "deg"), ("_pa", "Pa"), ("_s", "s"), ("_m", "m")):
+    units = (("_pa_per_m", "Pa/m"), ("_n_per_m3", "N/m3"), ("_m_per_s2", "m/s2"), ("_deg", "deg"), ("_pa", "Pa"), ("_s", "s"), ("_m", "m"))
+    for ending, unit in units:
         if key.endswith(ending):
             return unit
     return "-"
@@ -87,8 +88,8 @@ def _factors(jointed: JointedSlope, printed: dict) -> list[Row]:
         rows.append(Row("Table 4", f"factor of safety, cohesion {behaviour}", "-", _of_methods(printed, "factor_of_safety"), limit, ours,
                         relative(ours, limit)))
     tight = jointed.tight_factor_of_safety().value
-    rows.append(Row("Table 4", f"the same, ductile, bracket {slopes.TIGHT_WIDTH:g}, failed beyond {slopes.TIGHT_FAILURE_DISPLACEMENT_M:g} m", "-", None,
-                    jointed.limit("ductile"), {"soft": tight} if tight else {}))
+    name = f"the same, ductile, bracket {slopes.TIGHT_WIDTH:g}, failed beyond {slopes.TIGHT_FAILURE_DISPLACEMENT_M:g} m"
+    rows.append(Row("Table 4", name, "-", None, jointed.limit("ductile"), {"soft": tight} if tight else {}))
     return rows
 
 
@@ -100,10 +101,10 @@ def _run_times(jointed: JointedSlope, printed: dict) -> list[Row]:
             rows.append(Row("Table 4", f"CPU time to {distance} m, {name}", "s", None, None, cpu_at(jointed, start, distance)))
     rows.append(Row("Table 4", "CPU time to the steady state over dem's", "-", ratio_text(printed, steady_ratio), None, over_dem(steady)))
     for start, name in slopes.STARTS.items():
-        rows.append(Row("Table 4", f"CPU time after failure over dem's, mean of the distances, {name}", "-", ratio_text(printed, post_failure_ratio), None,
-                        over_dem(mean_cpu(jointed, printed, start))))
+        theirs, quantity = ratio_text(printed, post_failure_ratio), "CPU time after failure over dem's"
+        rows.append(Row("Table 4", f"{quantity}, mean of the distances, {name}", "-", theirs, None, over_dem(mean_cpu(jointed, printed, start))))
         if (common := jointed.common_distance(start)) is not None:
-            rows.append(Row("Table 4", f"CPU time after failure over dem's, at {common:g} m, {name}", "-", None, None, over_dem(cpu_at(jointed, start, common))))
+            rows.append(Row("Table 4", f"{quantity}, at {common:g} m, {name}", "-", None, None, over_dem(cpu_at(jointed, start, common))))
     return rows
 
 

@@ -64,8 +64,7 @@ def _planar_fields(planar: PlanarSlope, printed: dict) -> dict[str, str]:
 
 
 def _jointed_fields(jointed: JointedSlope, printed: dict) -> dict[str, str]:
-    lines = [(behaviour.replace("_", " "), f"{jointed.limit(behaviour):.3f}", *(_fos_cell(jointed.factor_of_safety(m, behaviour), 3) for m in METHODS))
-             for behaviour in BEHAVIOURS]
+    lines = [(b.replace("_", " "), f"{jointed.limit(b):.3f}", *(_fos_cell(jointed.factor_of_safety(m, b), 3) for m in METHODS)) for b in BEHAVIOURS]
     paper = printed["table_4"]
     warned = {m: w for m in METHODS for b in BEHAVIOURS if (w := jointed.factor_of_safety(m, b).warning)}
     tight, ours = jointed.tight_factor_of_safety(), jointed.factor_of_safety("soft", "ductile")
@@ -106,8 +105,8 @@ def _opening_text(jointed: JointedSlope) -> str:
     if not low:
         return ""
     methods = " and ".join(f"`{m}`" for m in low)
-    return (f"Near the lower limit, too, lies {methods} where cohesion is lost on opening only: on the way to rest contacts open for a moment, and what "
-            "they lose is gone.")
+    return (f"Near the lower limit, too, lies {methods} where cohesion is lost on opening only: on the way to rest contacts open for a moment, "
+            "and what they lose is gone.")
 
 
 def _after_failure_fields(jointed: JointedSlope, printed: dict) -> dict[str, str]:
@@ -173,8 +172,8 @@ def _mechanism_text(jointed: JointedSlope) -> str:
     above = sorted(abs(m.rotation_deg) for m in moving if m.start[1] > layer)
     if not toe or not above:
         return "no block moved"
-    return (f"the {len(toe)} moving blocks of the layer at the toe turn by up to {max(toe):.0f} deg; of the {len(above)} above, which slide, half turn by "
-            f"less than {above[len(above) // 2]:.1f} deg")
+    return (f"the {len(toe)} moving blocks of the layer at the toe turn by up to {max(toe):.0f} deg; of the {len(above)} above, which slide, "
+            f"half turn by less than {above[len(above) // 2]:.1f} deg")
 
 
 def _ratios(jointed: JointedSlope, paper: dict) -> str:
