@@ -118,6 +118,8 @@ def _after_failure_fields(jointed: JointedSlope, printed: dict) -> dict[str, str
         "after_ratio": _g(inputs.strength_reduction_factor / law, 3),
         "after_damping": _g(inputs.damping_ratio),
         "after_steps": ", ".join(f"{m} {_g(dt)} s" for m, dt in slopes.POST_FAILURE_STEP_S.items() if m != "dem"),
+        "paper_dda_dt": _g(printed["jointed_slope"]["dt_s"]["value"]),
+        "paper_udec_dt": _g(printed["jointed_slope"]["udec_dt_s"]["value"]),
         "after_table": _table_4(jointed, paper),
         "after_ratios": _ratios(jointed, paper),
         "after_energy": _energy(jointed),
