@@ -17,7 +17,7 @@ MODELS = ("wedge", "toe", "shifted")
 FOS_CPU_LIMIT_S = {"soft": 15, "hard": 15, "dem": 15, "shi": 5}
 POST_FAILURE_CPU_LIMIT_S = 20
 # How far the toe block is followed; where that is less than in the scene, the whole way would cost more than all other runs together.
-POST_FAILURE_END_M = {"soft": 40.0, "hard": 0.5, "dem": 1.0, "shi": 0.5}
+POST_FAILURE_END_M = {"soft": 40.0, "hard": 2.0, "dem": 1.0, "shi": 0.5}
 
 # Shi's scheme takes the friction of the pass before, so it needs the paper's step; dem divides the step that is asked for into stable ones.
 POST_FAILURE_STEP_S = {"soft": 0.01, "hard": 0.01, "dem": 0.01, "shi": 0.001}
