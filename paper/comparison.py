@@ -1,4 +1,4 @@
-"""The comparison: one row for each quantity, with the paper, the reference and our three methods side by side."""
+"""The comparison: one row for each quantity, with the paper, the reference and our methods side by side."""
 
 import csv
 from dataclasses import dataclass, field
@@ -9,7 +9,7 @@ import plane_failure
 from incline import Incline, Study
 from plane_failure import PlaneFailure
 
-METHODS = ("soft", "hard", "shi")
+METHODS = ("soft", "hard", "shi", "dem")
 COLUMNS = ("item", "quantity", "unit", "paper", "closed_form", *METHODS, *(f"deviation_{m}" for m in METHODS))
 
 Values = dict[str, float]
@@ -32,12 +32,12 @@ class Row:
         return [self.item, self.quantity, self.unit, self.paper, self.closed_form, *values]
 
 
-def _relative(ours: Values, reference: float) -> Values:
+def relative(ours: Values, reference: float) -> Values:
     return {m: v / reference - 1 for m, v in ours.items()} if reference else {}
 
 
 def build(slider: Incline, wedge: PlaneFailure, printed: dict) -> list[Row]:
-    """All rows, in the order of the paper."""
+    """All rows of examples 3.1 and 3.2, in the order of the paper."""
     return [
         *_incline_inputs(slider, printed["incline"]),
         *_figure_3(slider),
@@ -48,9 +48,9 @@ def build(slider: Incline, wedge: PlaneFailure, printed: dict) -> list[Row]:
     ]
 
 
-def _input(item: str, quantity: str, unit: str, printed: float, scene: float) -> Row:
-    ours = {m: scene for m in METHODS}
-    return Row(item, quantity, unit, printed, None, ours, _relative(ours, printed))
+def input_row(item: str, quantity: str, unit: str, printed: float, scene: float, methods: tuple[str, ...]) -> Row:
+    ours = {m: scene for m in methods}
+    return Row(item, quantity, unit, printed, None, ours, relative(ours, printed))
 
 
 def _incline_inputs(slider: Incline, printed: dict) -> list[Row]:
@@ -62,7 +62,7 @@ def _incline_inputs(slider: Incline, printed: dict) -> list[Row]:
         ("normal stiffness kn", "Pa/m", "normal_stiffness_pa_per_m", i.normal_stiffness),
         ("shear stiffness ks", "Pa/m", "shear_stiffness_pa_per_m", i.shear_stiffness),
     )
-    return [_input("Fig. 2 inputs", name, unit, printed[key]["value"], value) for name, unit, key, value in quantities]
+    return [input_row("Fig. 2 inputs", name, unit, printed[key]["value"], value, incline.METHODS) for name, unit, key, value in quantities]
 
 
 def _figure_3(slider: Incline) -> list[Row]:
@@ -70,11 +70,11 @@ def _figure_3(slider: Incline) -> list[Row]:
     end = slider.inputs.end_time
     for angle in incline.ANGLES_DEG:
         exact = slider.closed_form(angle)[end]
-        ours = {m: slider.steady(m, angle, incline.STEADY_STEPS_S[0])[end] for m in METHODS}
+        ours = {m: slider.steady(m, angle, incline.STEADY_STEPS_S[0])[end] for m in incline.METHODS}
         name = f"displacement at {end:g} s, phi = {angle} deg, dt = {incline.STEADY_STEPS_S[0]:g} s"
-        rows.append(Row("Fig. 3", name, "m", None, exact, ours, _relative(ours, exact)))
+        rows.append(Row("Fig. 3", name, "m", None, exact, ours, relative(ours, exact)))
     for dt in incline.STEADY_STEPS_S:
-        ours = {m: max(slider.largest_steady_error(m, a, dt) for a in incline.ANGLES_DEG) for m in METHODS}
+        ours = {m: max(slider.largest_steady_error(m, a, dt) for a in incline.ANGLES_DEG) for m in incline.METHODS}
         name = f"largest error, t >= {incline.EARLIEST_S:g} s, five phi, dt = {dt:g} s"
         rows.append(Row("Fig. 3", name, "-", None, 0.0, ours))
     return rows
@@ -87,9 +87,9 @@ def _percent(displacement: float, exact: float) -> float:
 def _error_row(slider: Incline, start: str, angle: int, time: float, *, shi: str = incline.SHI_JOINT) -> Row:
     """The reference is the ODE on the joint's springs; `hard` has no springs and answers to eq. (8) itself."""
     exact, ode = slider.closed_form(angle)[time], slider.ode(start, angle)[time]
-    d = {m: slider.from_start(shi if m == "shi" else m, start, angle)[time] for m in METHODS}
-    ours = {m: _percent(d[m], exact) for m in METHODS}
-    deviation = {m: d[m] / (exact if m == "hard" else ode) - 1 for m in METHODS}
+    d = {m: slider.from_start(shi if m == "shi" else m, start, angle)[time] for m in incline.METHODS}
+    ours = {m: _percent(d[m], exact) for m in incline.METHODS}
+    deviation = {m: d[m] / (exact if m == "hard" else ode) - 1 for m in incline.METHODS}
     name = f"{incline.STARTS[start]} {start}: error at {time:g} s, phi = {angle} deg"
     return Row("Fig. 4", name, "%", None, _percent(ode, exact), ours, deviation)
 
@@ -110,7 +110,7 @@ def _claim_row(slider: Incline, start: str, printed: dict) -> Row:
     end = slider.inputs.end_time
     rows = [_error_row(slider, start, angle, end) for angle in incline.ANGLES_DEG]
     soft, shi = (printed[f"largest_error_dda_{m}_percent"]["value"] for m in ("sc", "shi"))
-    ours = {m: max(abs(row.ours[m]) for row in rows) for m in METHODS}
+    ours = {m: max(abs(row.ours[m]) for row in rows) for m in incline.METHODS}
     reference = max(abs(row.closed_form) for row in rows)
     return Row("Fig. 4", f"{incline.STARTS[start]} largest error of five phi at {end:g} s", "%", f"SC <{soft:g}, Shi <{shi:g}", reference, ours)
 
@@ -163,7 +163,7 @@ def _table_1(wedge: PlaneFailure, printed: dict) -> list[Row]:
         ("steps to the displacement of Fig. 6", "-", "steps_to_measured_displacement", i.curve_time / i.dt),
         ("gravity", "m/s2", "gravity_m_per_s2", i.gravity),
     )
-    return [_input("Table 1", name, unit, printed[key]["value"], value) for name, unit, key, value in quantities]
+    return [input_row("Table 1", name, unit, printed[key]["value"], value, plane_failure.METHODS) for name, unit, key, value in quantities]
 
 
 def _figure_6(wedge: PlaneFailure, printed: dict) -> list[Row]:
@@ -171,9 +171,9 @@ def _figure_6(wedge: PlaneFailure, printed: dict) -> list[Row]:
     analytical, dda_sc = printed["factor_of_safety_analytical"]["value"], printed["factor_of_safety_dda_sc"]["value"]
     rows = [Row("Fig. 6", "factor of safety, paper's analytical", "-", analytical, exact)]
     ours = {m: wedge.factor_of_safety(m) for m in plane_failure.METHODS}
-    rows.append(Row("Fig. 6", "factor of safety, ductile cohesion", "-", dda_sc, exact, ours, _relative(ours, exact)))
+    rows.append(Row("Fig. 6", "factor of safety, ductile cohesion", "-", dda_sc, exact, ours, relative(ours, exact)))
     failed = {m: wedge.bracket(m)[1] for m in plane_failure.METHODS}
-    rows.append(Row("Fig. 6", "smallest factor that fails", "-", None, exact, failed, _relative(failed, exact)))
+    rows.append(Row("Fig. 6", "smallest factor that fails", "-", None, exact, failed, relative(failed, exact)))
     for behaviour in plane_failure.BRITTLE:
         lost = {"soft": wedge.brittle_factor_of_safety(behaviour)}
         rows.append(Row("Fig. 6", f"factor of safety, cohesion {behaviour}", "-", dda_sc, None, lost))

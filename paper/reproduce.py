@@ -1,4 +1,4 @@
-"""Reproduces examples 3.1 and 3.2 of the paper: runs everything, draws Figs 1-6, writes the comparison and the report.
+"""Reproduces the paper: runs everything, draws Figs 1-10, writes the comparison and the report.
 
 Exit status: 0 done, 1 a run failed, 2 wrong options or no matplotlib.
 """
@@ -8,11 +8,13 @@ import sys
 from pathlib import Path
 
 import comparison
+import comparison_slopes
 import tables
 from incline import Incline
 from plane_failure import PlaneFailure
 from printed import read_printed
 from runs import Openclose, Reference, RunFailed
+from slopes import JointedSlope, PlanarSlope
 
 EXIT_RUN_FAILED = 1
 EXIT_CANNOT_START = 2
@@ -38,19 +40,21 @@ def reproduce(arguments: argparse.Namespace) -> None:
     """The comparison is written last: where it is, everything is."""
     import figures
     import report
+    import report_slopes
 
     results = arguments.results
     results.mkdir(parents=True, exist_ok=True)
     (results / "comparison.csv").unlink(missing_ok=True)
     openclose, reference = Openclose(arguments.openclose, results / "runs"), Reference(arguments.reference)
-    slider, wedge = Incline(openclose, reference), PlaneFailure(openclose, reference)
-    cases = [*slider.cases(), *wedge.cases()]
-    print(f"{len(cases)} runs of examples 3.1 and 3.2 ...", flush=True)
-    openclose.run_all(cases)
     printed = read_printed()
-    figures.draw_all(slider, wedge, printed, results)
-    rows = comparison.build(slider, wedge, printed)
-    report.write(slider, wedge, rows, printed, results)
+    slider, wedge = Incline(openclose, reference), PlaneFailure(openclose, reference)
+    planar, jointed = PlanarSlope(openclose, reference), JointedSlope(openclose, reference, printed)
+    cases = [*jointed.cases(), *planar.cases(), *slider.cases(), *wedge.cases()]
+    print(f"{len(cases)} runs of examples 3.1 to 3.4 ...", flush=True)
+    openclose.run_all(cases)
+    figures.draw_all(slider, wedge, planar, jointed, printed, results)
+    rows = [*comparison.build(slider, wedge, printed), *comparison_slopes.build(planar, jointed, printed)]
+    report.write(slider, wedge, rows, printed, report_slopes.fields(planar, jointed, rows, printed), results)
     comparison.write_csv(rows, results / "comparison.csv")
 
 

@@ -1,0 +1,207 @@
+"""The fields of report_template.md for examples 3.3 and 3.4. Every number comes from the runs, the references or printed.toml."""
+
+import comparison_slopes
+import slopes
+import tables
+from comparison import Row
+from comparison_slopes import MODEL_NAMES, PRINTED_OF_MODEL
+from slopes import BEHAVIOURS, METHODS, Fos, JointedSlope, PlanarSlope
+
+_PRINTED_NAMES = {"closed_form": "closed form", "dda_sc": "DDA-SC", "udec": "UDEC"}
+_PAPER_METHODS = ("dem", "soft", "shi")
+
+
+def fields(planar: PlanarSlope, jointed: JointedSlope, rows: list[Row], printed: dict) -> dict[str, str]:
+    return {
+        "table_2": _inputs("Table 2", rows),
+        "table_3": _inputs("Table 3", rows),
+        **_planar_fields(planar, printed),
+        **_jointed_fields(jointed, printed),
+        **_after_failure_fields(jointed, printed),
+    }
+
+
+def _g(value: float, digits: int = 4) -> str:
+    return f"{value:.{digits}g}"
+
+
+def _inputs(item: str, rows: list[Row]) -> str:
+    lines = ((f"{r.quantity} [{r.unit}]", _g(r.paper, 6), _g(r.ours["soft"], 6)) for r in rows if r.item == item)
+    return tables.markdown(("input", "paper", "ours"), lines)
+
+
+def _fos_cell(fos: Fos, digits: int = 4) -> str:
+    if fos.value is None:
+        return f"none: {fos.reason}"
+    return f"{fos.value:.{digits}f}{' (1)' if fos.warning else ''}"
+
+
+def _planar_fields(planar: PlanarSlope, printed: dict) -> dict[str, str]:
+    paper = printed["planar_slope"]
+    lines = []
+    for model, name in MODEL_NAMES.items():
+        cut, key = planar.cut[model], PRINTED_OF_MODEL[model]
+        value = paper[f"factor_of_safety_{key}"]["value"]
+        lines.append((f"{name}; wall {planar.back_wall(model):.0f} m behind the crest", str(len(cut.blocks)), f"{_PRINTED_NAMES[key]} {value:g}",
+                      f"{planar.closed_form():.4f}" if model == "wedge" else "", f"{cut.limit():.4f}",
+                      *(_fos_cell(planar.factor_of_safety(model, m)) for m in METHODS)))
+    other_weight = printed["plane_failure"]["unit_weight_n_per_m3"]["value"]
+    return {
+        "planar_table": tables.markdown(("model", "blocks", "explains the paper's", "closed form", "limit analysis", *METHODS), lines),
+        "planar_blocks": str(paper["blocks"]["value"]),
+        "planar_printed": _g(paper["factor_of_safety_closed_form"]["value"], 5),
+        "planar_closed": f"{planar.closed_form():.5f}",
+        "planar_other_weight": _g(other_weight / 1e6),
+        "planar_weight": _g(planar.inputs.unit_weight / 1e6),
+        "planar_closed_other": f"{planar.closed_form(other_weight):.4f}",
+        "planar_udec": _g(paper["factor_of_safety_udec"]["value"]),
+        "planar_dda_sc": _g(paper["factor_of_safety_dda_sc"]["value"]),
+        "planar_toe_limit": f"{planar.cut['toe'].limit():.4f}",
+        "planar_shifted_limit": f"{planar.cut['shifted'].limit():.4f}",
+        "planar_toe_wall": f"{planar.back_wall('toe'):.0f}",
+        "planar_shifted_wall": f"{planar.back_wall('shifted'):.0f}",
+    }
+
+
+def _jointed_fields(jointed: JointedSlope, printed: dict) -> dict[str, str]:
+    lines = [(b.replace("_", " "), f"{jointed.limit(b):.3f}", *(_fos_cell(jointed.factor_of_safety(m, b), 3) for m in METHODS)) for b in BEHAVIOURS]
+    paper = printed["table_4"]
+    warned = {m: w for m in METHODS for b in BEHAVIOURS if (w := jointed.factor_of_safety(m, b).warning)}
+    tight, ours = jointed.tight_factor_of_safety(), jointed.factor_of_safety("soft", "ductile")
+    return {
+        "jointed_table": tables.markdown(("cohesion", "limit analysis", *METHODS), lines),
+        "jointed_notes": "\n".join(f"(1) {method}: {warning}." for method, warning in warned.items()),
+        "jointed_blocks": str(len(jointed.cut.blocks)),
+        "jointed_unknowns": str(jointed.unknowns),
+        **{f"jointed_{side}": f"{length:.0f}" for side, length in zip(("bench", "below", "top"), jointed.size())},
+        "jointed_opening": _opening_text(jointed),
+        "jointed_dem": _g(paper["dem"]["factor_of_safety"]),
+        "jointed_soft": _g(paper["soft"]["factor_of_safety"]),
+        "jointed_shi": _g(paper["shi"]["factor_of_safety"]),
+        "jointed_limit": f"{jointed.limit('ductile'):.3f}",
+        "jointed_limit_frictional": f"{jointed.limit('lost_on_slip'):.3f}",
+        "rules_soft": _fos_cell(jointed.paper_factor_of_safety("soft"), 3),
+        "rules_dem": _fos_cell(jointed.paper_factor_of_safety("dem"), 3),
+        "rules_velocity": _g(jointed.rules_velocity(), 2),
+        "rules_upper": _g(slopes.PAPER_RULES_UPPER_LIMIT),
+        "rules_width": _g(slopes.PAPER_RULES_WIDTH),
+        "rules_displacement": _g(printed["jointed_slope"]["relative_max_displacement_m"]["value"]),
+        "rules_force": _g(printed["jointed_slope"]["unbalanced_force_limit_n"]["value"] / 1e3),
+        "rules_steps": _g(printed["jointed_slope"]["unbalanced_force_steps"]["value"], 6),
+        "jointed_width": _g(jointed.inputs.width),
+        "jointed_failure": _g(jointed.inputs.failure_displacement),
+        "jointed_tight_width": _g(slopes.TIGHT_WIDTH),
+        "jointed_tight_failure": _g(slopes.TIGHT_FAILURE_DISPLACEMENT_M),
+        "jointed_tight": _fos_cell(tight),
+        "jointed_short": _fos_cell(ours),
+    }
+
+
+def _opening_text(jointed: JointedSlope) -> str:
+    """Says so if a method finds the frictional factor already where cohesion is lost on opening."""
+    frictional, cohesive = jointed.limit("lost_on_slip"), jointed.limit("ductile")
+    factors = {m: jointed.factor_of_safety(m, "lost_on_opening") for m in METHODS}
+    low = [m for m, f in factors.items() if f.value and not f.warning and abs(f.value - frictional) < abs(f.value - cohesive)]
+    if not low:
+        return ""
+    methods = " and ".join(f"`{m}`" for m in low)
+    return (f"Near the lower limit, too, lies {methods} where cohesion is lost on opening only: on the way to rest contacts open for a moment, "
+            "and what they lose is gone.")
+
+
+def _after_failure_fields(jointed: JointedSlope, printed: dict) -> dict[str, str]:
+    inputs, paper = jointed.post_failure_inputs, printed["table_4"]
+    law = jointed.factor_of_safety("soft", "lost_on_slip").value
+    return {
+        "after_srf": _g(inputs.strength_reduction_factor),
+        "after_law": _g(law, 4),
+        "after_ratio": _g(inputs.strength_reduction_factor / law, 3),
+        "after_damping": _g(inputs.damping_ratio),
+        "after_steps": ", ".join(f"{m} {_g(dt)} s" for m, dt in slopes.POST_FAILURE_STEP_S.items() if m != "dem"),
+        "paper_dda_dt": _g(printed["jointed_slope"]["dt_s"]["value"]),
+        "paper_udec_dt": _g(printed["jointed_slope"]["udec_dt_s"]["value"]),
+        "after_table": _table_4(jointed, paper),
+        "after_ratios": _ratios(jointed, paper),
+        "after_energy": _energy(jointed),
+        "after_limit": str(slopes.POST_FAILURE_CPU_LIMIT_S),
+        "mechanism": _mechanism_text(jointed),
+    }
+
+
+def _seconds(value: float | None, missing: str = "not reached") -> str:
+    return missing if value is None else f"{_g(value, 3)} s"
+
+
+def _table_4(jointed: JointedSlope, paper: dict) -> str:
+    def line(name: str, ours, theirs) -> list[str]:
+        return [name, *(ours(m) for m in METHODS), *(theirs(paper[m]) for m in _PAPER_METHODS)]
+
+    lines = [
+        line("blocks", lambda m: str(len(jointed.cut.blocks)), lambda p: str(p["blocks"])),
+        line("degrees of freedom", lambda m: str(jointed.unknowns), lambda p: str(p["unknowns"])),
+        line("mechanism", lambda m: _mechanism(jointed, m), lambda p: p["mechanism"]),
+        *(line(f"factor of safety, cohesion {b.replace('_', ' ')}", lambda m, b=b: _fos_cell(jointed.factor_of_safety(m, b), 3),
+               lambda p: f"{p['factor_of_safety']:g}") for b in BEHAVIOURS),
+        line("CPU to the steady state", lambda m: _seconds(jointed.steady_cpu(m)), lambda p: f"{p['steady_minutes']:g} min"),
+    ]
+    for start, name in slopes.STARTS.items():
+        common = jointed.common_distance(start)
+        if common is not None and common not in paper["milestones_m"]["value"]:
+            lines.append(line(f"CPU to {common:g} m, {name}", lambda m, s=start, d=common: _seconds(jointed.cpu_at(m, s, d)), lambda p: ""))
+        for k, distance in enumerate(paper["milestones_m"]["value"]):
+            lines.append(line(f"CPU to {distance} m, {name}", lambda m, s=start, d=distance: _seconds(jointed.cpu_at(m, s, d)),
+                              lambda p, k=k: f"{p['post_failure_minutes'][k]:g} min"))
+        lines.append(line(f"why not all, {name}", lambda m, s=start: jointed.reason(m, s), lambda p: ""))
+    headings = ("", *METHODS, *(f"paper: {paper[m]['name']}" for m in _PAPER_METHODS))
+    return tables.markdown(headings, lines)
+
+
+def _mechanism(jointed: JointedSlope, method: str) -> str:
+    """The farthest way and the largest turn of a block in the last state."""
+    state = "final"
+    if not jointed.blocks(method, "settled", state):
+        return jointed.reason(method, "settled")
+    motions = jointed.motions(method, "settled", state).values()
+    return f"sliding by up to {max(m.distance for m in motions):.0f} m, rotation by up to {max(abs(m.rotation_deg) for m in motions):.0f} deg"
+
+
+def _mechanism_text(jointed: JointedSlope) -> str:
+    """Of `soft`: turn of the layer of blocks at the toe and of those above."""
+    motions = jointed.motions("soft", "settled", "final").values()
+    layer = jointed.inputs.spacings[0]
+    moving = [m for m in motions if m.distance > slopes.MOVED_M]
+    toe = [abs(m.rotation_deg) for m in moving if 0 < m.start[1] < layer]
+    above = sorted(abs(m.rotation_deg) for m in moving if m.start[1] > layer)
+    if not toe or not above:
+        return "no block moved"
+    return (f"the {len(toe)} moving blocks of the layer at the toe turn by up to {max(toe):.0f} deg; of the {len(above)} above, which slide, "
+            f"half turn by less than {above[len(above) // 2]:.1f} deg")
+
+
+def _ratios(jointed: JointedSlope, paper: dict) -> str:
+    def cells(ours: dict[str, float], theirs) -> list[str]:
+        return [*(f"{ours[m]:.3g}" if m in ours else "-" for m in METHODS), *(f"{theirs(paper, m):.3g}" for m in _PAPER_METHODS)]
+
+    steady = {m: s for m in METHODS if (s := jointed.steady_cpu(m)) is not None}
+    lines = [["steady state", *cells(comparison_slopes.over_dem(steady), comparison_slopes.steady_ratio)]]
+    for start, name in slopes.STARTS.items():
+        after = comparison_slopes.over_dem(comparison_slopes.mean_cpu(jointed, paper, start))
+        lines.append([f"after failure, mean of the distances, {name}", *cells(after, comparison_slopes.post_failure_ratio)])
+        if (common := jointed.common_distance(start)) is not None:
+            ours = comparison_slopes.over_dem(comparison_slopes.cpu_at(jointed, start, common))
+            lines.append([f"after failure, at {common:g} m, {name}", *(f"{ours[m]:.3g}" if m in ours else "-" for m in METHODS), "", "", ""])
+    headings = ("CPU time over dem's, over UDEC's", *METHODS, *(f"paper: {paper[m]['name']}" for m in _PAPER_METHODS))
+    return tables.markdown(headings, lines)
+
+
+def _energy(jointed: JointedSlope) -> str:
+    lines = []
+    for method in METHODS:
+        for start in slopes.STARTS:
+            summary = jointed.summary(method, start)
+            if "energy_ledger" not in summary:
+                lines.append([f"{method}, {start}", summary["reason"], "", "", ""])
+                continue
+            lines.append([f"{method}, {start}", f"{summary['time_s']:.3g} s", f"{summary['energy_ledger']['turnover_j']:.3g}",
+                          f"{comparison_slopes.imbalance(summary):.1e}", f"{summary['max_penetration_m'] * 1e3:.3g}"])
+    return tables.markdown(("run", "motion lasted", "energy turned over [J]", "imbalance over it [-]", "deepest penetration [mm]"), lines)
