@@ -244,6 +244,13 @@ class NarrowPhase {
     return largest;
   }
 
+  /// Whether a corner, or one of its two edges, is in contact with something parallel to `edge`.
+  bool slides_along(int v, const Edge& edge) const {
+    bool parallel = false;
+    previous_.for_closed(v, [&](const Contact& c) { parallel |= !turns_away(edge_at(c.edge_block, c.edge), edge); });
+    return parallel;
+  }
+
   /// Two corners that meet separate the blocks along any one of up to four edges, theirs at v and at the end of e: as long as one that turns away
   /// from e does, v does not run into e. Blocks that lie flush but for the closures of their contacts must not catch on the seams between them: a
   /// corner that slides on something keeps its way if what it slides on is lower than the seam's height. Where corners coincide and nothing has
@@ -258,9 +265,9 @@ class NarrowPhase {
     const bool slides = previous_.closed(v) || previous_.closed(end);
     if (!slides && (p - q).norm() > tolerance::edge_end_m) return false;
     const bool in_front = edge.gap(p) > -tolerance::shortest_edge_m;
-    const double step = slides && in_front ? tolerance::seam_height_m : tolerance::edge_end_m;
     const auto separates = [&](int corner, const Vec2& position, const Edge& other) {
       if (!turns_away(edge, other) || !stands_on(corner, other)) return false;
+      const double step = in_front && (slides_along(v, other) || slides_along(end, other)) ? tolerance::seam_height_m : tolerance::edge_end_m;
       const double closure = std::max(closure_across(v, other), closure_across(end, other));
       return other.gap(position) > -step - tolerance::seam_closures * closure;
     };

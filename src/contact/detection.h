@@ -16,7 +16,8 @@
 // parallel_none from e in direction, separates
 //   - to within edge_end, where v and q coincide: nothing is in contact yet and the motion decides which edge it will be,
 //   - to within edge_end and what the closures of contacts at v, q and their edges make of it (seam_closures), where one of them slides on something,
-//   - and, while v is still in front of e, to within seam_height more: blocks that are flush in the drawing do not catch on each other's faces.
+//   - and, while v is still in front of e and v or q slides along that line, to within seam_height: blocks that are flush in the drawing do not catch
+//     on each other's faces.
 // So a block whose front corner stands on a joint slides on, three blocks and air or four blocks around the corner. A contact that has closed over
 // more than seam_height stays until its corner is nearer to another edge; at a reflex q both walls hold.
 //
