@@ -193,6 +193,9 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
                    {"factorisations", linear.factorisations},
                    {"symbolic", linear.symbolic},
                    {"symbolic_skipped", linear.symbolic_skipped}};
+  if (simulation.is_explicit()) {
+    j["explicit_steps"] = {{"smallest_critical_step_s", steps.smallest_critical_step}, {"longest_step_s", steps.longest_step}};
+  }
   j["stage_s"] = {{"detection", cpu.detection}, {"solution", cpu.solution}, {"bookkeeping", cpu.bookkeeping}};
   std::ofstream file = folder.open("summary.json");
   file << j.dump(2) << '\n';
