@@ -1,19 +1,32 @@
 #include "openclose/analysis/run.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <ctime>
+#include <optional>
 #include <utility>
 
+#include "openclose/analysis/equilibrium.h"
 #include "openclose/analysis/start.h"
 
 namespace openclose {
+namespace {
+
+/// CPU time [s] of this process since it began.
+double process_cpu_time() {
+  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+}
+
+}  // namespace
 
 template <int N>
 MeasuredPoints<N>::MeasuredPoints(Simulation<N>& simulation) : simulation_(simulation) {
   const Scene& scene = simulation.scene();
   auto& system = simulation.system();
   const auto follow = [&](const std::string& name, int block, const Vec2& position) {
-    points_.push_back({name, system.follow_point(block, position), Vec2::Zero(), {}});
+    points_.push_back({name, system.follow_point(block, position), Vec2::Zero(), Motion<N>::Unknowns::Zero()});
   };
   for (const MeasuredPoint& p : scene.measured_points) follow(p.name, p.block, p.point);
   if (points_.empty()) {
@@ -32,6 +45,13 @@ void MeasuredPoints<N>::restart() {
 }
 
 template <int N>
+Vec2 MeasuredPoints<N>::displacement(const Point& point) const {
+  const auto& system = simulation_.system();
+  const auto moved = (system.displacement(system.point_block(point.number)) - point.start_displacement).eval();
+  return Motion<N>::translation(moved) + (system.point_arm(point.number) - point.start_arm);
+}
+
+template <int N>
 std::vector<PointMotion> MeasuredPoints<N>::motions() const {
   const auto& system = std::as_const(simulation_).system();
   std::vector<PointMotion> list;
@@ -41,7 +61,7 @@ std::vector<PointMotion> MeasuredPoints<N>::motions() const {
     const auto velocity = simulation_.velocity(b);
     PointMotion m;
     m.name = p.name;
-    m.displacement = Motion<N>::translation(moved) + (system.point_arm(p.number) - p.start_arm);
+    m.displacement = displacement(p);
     m.rotation = Motion<N>::rotation(moved);
     m.velocity = Motion<N>::translation(velocity) + Motion<N>::rotation(velocity) * perpendicular(system.point_arm(p.number));
     list.push_back(m);
@@ -52,23 +72,28 @@ std::vector<PointMotion> MeasuredPoints<N>::motions() const {
 template <int N>
 double MeasuredPoints<N>::largest_displacement() const {
   double largest = 0.0;
-  for (const PointMotion& m : motions()) largest = std::max(largest, m.displacement.norm());
+  for (const Point& p : points_) largest = std::max(largest, displacement(p).norm());
   return largest;
 }
 
 template <int N>
-RunResult prepare_start(Simulation<N>& simulation) {
+RunResult prepare_start(Simulation<N>& simulation, const SettleProgress& progress) {
+  const double begin = process_cpu_time();
   RunResult result;
   result.converged = true;
-  switch (simulation.scene().method.start) {
+  const Start start = simulation.scene().method.start;
+  const auto reduce_strength = [&] { simulation.joints().reduce_strength(simulation.scene().run_strength_reduction_factor); };
+  if (start != Start::settled) reduce_strength();
+  switch (start) {
     case Start::unloaded:
       break;
     case Start::settled:
-      result.settling = settle(simulation);
+      result.settling = make_equilibrium_search(simulation)->settle_first(progress);
       result.converged = result.settling.settled;
       if (!result.converged)
         result.reason = "no static equilibrium to start from (" + result.settling.criterion + "); method.start = \"unloaded\" starts in motion";
       simulation.restore_velocities();
+      reduce_strength();
       break;
     case Start::normal_balanced:
       balance_normal_forces(simulation, false);
@@ -79,38 +104,123 @@ RunResult prepare_start(Simulation<N>& simulation) {
   }
   simulation.contacts();
   simulation.restart_clock();
+  result.cpu_of_start = process_cpu_time() - begin;
   return result;
 }
 
+namespace {
+
+/// The motion from time 0 to what ends it.
+template <int N>
+class MotionInTime {
+ public:
+  MotionInTime(Simulation<N>& simulation, const RunObserver<N>& observer, RunResult& result)
+      : simulation_(simulation), observer_(observer), scene_(simulation.scene()), result_(result), cpu_at_start_(process_cpu_time()) {
+    if (scene_.end_displacement || !scene_.milestones.empty()) points_.emplace(simulation);
+    // The last step is shorter where the end is no multiple of the step.
+    steps_ = std::lround(std::ceil(scene_.end_time / scene_.step.dt * (1.0 - 1e-12)));
+  }
+
+  void follow() {
+    const long every = std::max(1L, std::lround(scene_.output_every / scene_.step.dt));
+    take_snapshots(0);
+    for (long i = 1; i <= steps_; ++i) {
+      if (!simulation_.advance(whole(i) ? scene_.step.dt : scene_.end_time - static_cast<double>(i - 1) * scene_.step.dt)) {
+        result_.converged = false;
+        result_.reason = simulation_.reason();
+        if (observer_.output) observer_.output(simulation_);
+        return;
+      }
+      simulation_.set_time(time_after(i));
+      take_milestones(i);
+      take_snapshots(i);
+      const bool moved_enough = scene_.end_displacement && points_->largest_displacement() >= *scene_.end_displacement;
+      if (moved_enough) result_.ended_by = "end.displacement_m";
+      if (observer_.output && (i % every == 0 || i == steps_ || moved_enough)) observer_.output(simulation_);
+      if (observer_.progress) observer_.progress(share_done(i));
+      if (moved_enough) return;
+    }
+    result_.ended_by = "end.time_s";
+  }
+
+  /// Says what has been asked for and did not come.
+  void finish() {
+    result_.cpu_of_motion = process_cpu_time() - cpu_at_start_;
+    const std::string ending = fmt::format("the run ended at t = {:.6g} s", simulation_.time());
+    while (result_.milestones.size() < scene_.milestones.size()) {
+      Milestone missing;
+      missing.displacement = scene_.milestones[result_.milestones.size()];
+      missing.reason = fmt::format("{} with the first measured point moved by {:.6g} m", ending, points_->first_displacement());
+      result_.warnings.push_back(fmt::format("milestone {} m not reached: {}", missing.displacement, missing.reason));
+      result_.milestones.push_back(missing);
+    }
+    for (; snapshots_taken_ < scene_.snapshot_times.size(); ++snapshots_taken_)
+      result_.warnings.push_back(fmt::format("no snapshot at t = {} s: {}", scene_.snapshot_times[snapshots_taken_], ending));
+    if (scene_.end_displacement && result_.ended_by == "end.time_s") {
+      result_.warnings.push_back(fmt::format("{}, before any measured point had moved {} m: farthest {:.6g} m", ending, *scene_.end_displacement,
+                                             points_->largest_displacement()));
+    }
+  }
+
+ private:
+  bool whole(long step) const { return static_cast<double>(step - 1) * scene_.step.dt + scene_.step.dt <= scene_.end_time * (1.0 + 1e-12); }
+  double time_after(long step) const { return step == 0 || whole(step) ? static_cast<double>(step) * scene_.step.dt : scene_.end_time; }
+
+  double share_done(long step) const {
+    const double by_time = static_cast<double>(step) / static_cast<double>(steps_);
+    return scene_.end_displacement ? std::clamp(points_->largest_displacement() / *scene_.end_displacement, by_time, 1.0) : by_time;
+  }
+
+  void take_milestones(long step) {
+    if (result_.milestones.size() == scene_.milestones.size()) return;
+    const double moved = points_->first_displacement();
+    while (result_.milestones.size() < scene_.milestones.size() && moved >= scene_.milestones[result_.milestones.size()]) {
+      Milestone reached;
+      reached.displacement = scene_.milestones[result_.milestones.size()];
+      const double share = (reached.displacement - moved_before_) / (moved - moved_before_);
+      reached.time = time_after(step - 1) + share * (time_after(step) - time_after(step - 1));
+      reached.cpu_of_program = process_cpu_time();
+      reached.cpu_of_motion = reached.cpu_of_program - cpu_at_start_;
+      result_.milestones.push_back(reached);
+      if (observer_.snapshot) observer_.snapshot(fmt::format("moved {} m", reached.displacement), simulation_);
+    }
+    moved_before_ = moved;
+  }
+
+  /// A snapshot is taken after the step that ends nearest to its time.
+  void take_snapshots(long step) {
+    const double latest = step == steps_ ? scene_.end_time * (1.0 + 1e-12) : 0.5 * (time_after(step) + time_after(step + 1));
+    for (; snapshots_taken_ < scene_.snapshot_times.size() && scene_.snapshot_times[snapshots_taken_] <= latest; ++snapshots_taken_) {
+      if (observer_.snapshot) observer_.snapshot(fmt::format("t={}", scene_.snapshot_times[snapshots_taken_]), simulation_);
+    }
+  }
+
+  Simulation<N>& simulation_;
+  const RunObserver<N>& observer_;
+  const Scene& scene_;
+  RunResult& result_;
+  double cpu_at_start_;                      ///< [s]
+  std::optional<MeasuredPoints<N>> points_;  ///< if anything depends on them
+  long steps_ = 0;
+  double moved_before_ = 0.0;  ///< [m] by the first point, before the step
+  std::size_t snapshots_taken_ = 0;
+};
+
+}  // namespace
+
 template <int N>
 RunResult run(Simulation<N>& simulation, const RunObserver<N>& observer) {
-  RunResult result = prepare_start(simulation);
+  RunResult result = prepare_start(simulation, observer.settling);
   if (observer.started) observer.started(simulation);
   if (observer.output) observer.output(simulation);
-  if (!result.converged) return result;
-
-  const Scene& scene = simulation.scene();
-  // The last step is shorter where the end is no multiple of the step.
-  const long steps = std::lround(std::ceil(scene.end_time / scene.step.dt * (1.0 - 1e-12)));
-  const long every = std::max(1L, std::lround(scene.output_every / scene.step.dt));
-  for (long i = 1; i <= steps; ++i) {
-    const double begin = static_cast<double>(i - 1) * scene.step.dt;
-    const bool whole = begin + scene.step.dt <= scene.end_time * (1.0 + 1e-12);
-    if (!simulation.advance(whole ? scene.step.dt : scene.end_time - begin)) {
-      result.converged = false;
-      result.reason = simulation.reason();
-      if (observer.output) observer.output(simulation);
-      return result;
-    }
-    simulation.set_time(whole ? static_cast<double>(i) * scene.step.dt : scene.end_time);
-    if (observer.output && (i % every == 0 || i == steps)) observer.output(simulation);
-    if (observer.progress) observer.progress(static_cast<double>(i) / static_cast<double>(steps));
-  }
+  MotionInTime<N> motion(simulation, observer, result);
+  if (result.converged) motion.follow();
+  motion.finish();
   return result;
 }
 
 template class MeasuredPoints<3>;
-template RunResult prepare_start<3>(Simulation<3>&);
+template RunResult prepare_start<3>(Simulation<3>&, const SettleProgress&);
 template RunResult run<3>(Simulation<3>&, const RunObserver<3>&);
 
 }  // namespace openclose

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "openclose/analysis/settle.h"
 #include "openclose/analysis/simulation.h"
@@ -25,7 +27,8 @@ class MeasuredPoints {
   /// Displacements count from here.
   void restart();
   std::vector<PointMotion> motions() const;
-  double largest_displacement() const;  ///< [m]
+  double first_displacement() const { return points_.empty() ? 0.0 : displacement(points_.front()).norm(); }  ///< [m] of the first point
+  double largest_displacement() const;                                                                        ///< [m]
 
  private:
   struct Point {
@@ -34,27 +37,47 @@ class MeasuredPoints {
     Vec2 start_arm;
     typename Motion<N>::Unknowns start_displacement;
   };
+  Vec2 displacement(const Point& point) const;
+
   Simulation<N>& simulation_;
   std::vector<Point> points_;
 };
 
+/// When the first measured point had moved so far.
+struct Milestone {
+  double displacement = 0.0;    ///< [m]
+  std::optional<double> time;   ///< [s] interpolated linearly within the step; none if it did not get there
+  double cpu_of_motion = 0.0;   ///< [s] of the process since time 0, at the end of that step
+  double cpu_of_program = 0.0;  ///< [s] of the process since it began
+  std::string reason;           ///< why there is no time
+};
+
+/// Strength is reduced by Scene::run_strength_reduction_factor for the motion. What is settled first is so with full strength; the other starts are
+/// made with the strength of the motion: `steady_sliding` is to go on as it starts, `normal_balanced` knows no strength.
 struct RunResult {
   bool converged = false;
   std::string reason;
-  SettleResult settling;  ///< if the start was `settled`
+  std::string ended_by;               ///< key that ended it: end.time_s or end.displacement_m; empty if it did not converge
+  std::vector<std::string> warnings;  ///< what was asked for and did not come
+  std::vector<Milestone> milestones;
+  SettleResult settling;       ///< if the start was `settled`
+  double cpu_of_start = 0.0;   ///< [s] of the process, until time 0
+  double cpu_of_motion = 0.0;  ///< [s] since, output included
 };
 
 /// What a run tells while it goes on.
 template <int N>
 struct RunObserver {
-  std::function<void(const Simulation<N>&)> started;  ///< the start state is reached, time is 0
-  std::function<void(const Simulation<N>&)> output;   ///< at time 0 and at every output time
-  std::function<void(double fraction)> progress;      ///< after every step
+  std::function<void(const Simulation<N>&)> started;                             ///< the start state is reached, time is 0
+  std::function<void(const Simulation<N>&)> output;                              ///< at time 0 and at every output time
+  std::function<void(const std::string& state, const Simulation<N>&)> snapshot;  ///< at the snapshot times ("t=1.5") and milestones ("moved 10 m")
+  std::function<void(double fraction)> progress;                                 ///< after every step
+  SettleProgress settling;                                                       ///< while it settles
 };
 
 /// Brings the simulation into the scene's start state.
 template <int N>
-RunResult prepare_start(Simulation<N>& simulation);
+RunResult prepare_start(Simulation<N>& simulation, const SettleProgress& progress = {});
 
 template <int N>
 RunResult run(Simulation<N>& simulation, const RunObserver<N>& observer);

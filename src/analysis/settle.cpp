@@ -20,9 +20,13 @@ double factor_to_limit(double limit, double moved) {
 
 }  // namespace
 
+double settled_share(double now, double wanted) {
+  return now > 0.0 ? std::clamp(std::log(now) / std::log(wanted), 0.0, 1.0) : 1.0;
+}
+
 template <int N>
-SettleResult settle(Simulation<N>& simulation) {
-  if (simulation.is_explicit()) return settle_explicitly(simulation);
+SettleResult settle(Simulation<N>& simulation, const SettleProgress& progress) {
+  if (simulation.is_explicit()) return settle_explicitly(simulation, progress);
   const SettleInput& input = simulation.scene().settle;
   const auto& system = simulation.system();
   std::vector<typename Motion<N>::Unknowns> start;
@@ -43,6 +47,7 @@ SettleResult settle(Simulation<N>& simulation) {
     }
     ++result.steps;
     result.unbalanced_fraction = step.unbalanced_force / simulation.force_scale();
+    if (progress) progress(settled_share(result.unbalanced_fraction, input.unbalanced_fraction));
     for (int b : system.free_blocks()) {
       result.displacement = std::max(result.displacement, Motion<N>::displacement_bound(system.displacement(b) - start[b], system.block(b).radius));
     }
@@ -63,6 +68,6 @@ SettleResult settle(Simulation<N>& simulation) {
   return result;
 }
 
-template SettleResult settle<3>(Simulation<3>&);
+template SettleResult settle<3>(Simulation<3>&, const SettleProgress&);
 
 }  // namespace openclose

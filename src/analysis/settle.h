@@ -2,6 +2,8 @@
 // weight. Explicit methods damp their motion instead.
 #pragma once
 
+#include <functional>
+#include <optional>
 #include <string>
 
 #include "openclose/analysis/simulation.h"
@@ -14,14 +16,21 @@ struct SettleResult {
   int steps = 0;
   double unbalanced_fraction = 1.0;  ///< [-] of Simulation::force_scale()
   double displacement = 0.0;         ///< [m] largest of any block on the way
+  std::optional<double> relative_displacement;  ///< [-] of the last step, see equilibrium.h; steps in time only, which know no unbalanced fraction
 };
 
+/// Told after every step which share of the way is behind; it may fall back.
+using SettleProgress = std::function<void(double fraction)>;
+
 template <int N>
-SettleResult settle(Simulation<N>& simulation);
+SettleResult settle(Simulation<N>& simulation, const SettleProgress& progress = {});
+
+/// The share [-] of the way down to `wanted` on a logarithmic scale, 0 where `now` is 1 or more.
+double settled_share(double now, double wanted);
 
 /// What settle() does for explicit methods: steps at the longest stable length with damping of the motion (`local`, unless the scene asks for
 /// `automatic`), from rest until the same fraction is reached. What friction holds in the end depends on the way there, as always in this method.
 template <int N>
-SettleResult settle_explicitly(Simulation<N>& simulation);
+SettleResult settle_explicitly(Simulation<N>& simulation, const SettleProgress& progress);
 
 }  // namespace openclose

@@ -31,7 +31,7 @@ class Travel {
 }  // namespace
 
 template <int N>
-SettleResult settle_explicitly(Simulation<N>& simulation) {
+SettleResult settle_explicitly(Simulation<N>& simulation, const SettleProgress& progress) {
   const SettleInput& input = simulation.scene().settle;
   const MassDamping asked = simulation.scene().method.damping;
   const MassDamping damping = asked == MassDamping::none ? MassDamping::local : asked;
@@ -57,7 +57,10 @@ SettleResult settle_explicitly(Simulation<N>& simulation) {
     result.unbalanced_fraction = step.unbalanced_force / scale;
     // Forces that were in balance with cohesion that is gone now are to be balanced anew.
     result.settled = result.unbalanced_fraction <= input.unbalanced_fraction && !step.lost_strength;
-    if (result.settled || result.steps % displacement_every == 0) result.displacement = std::max(result.displacement, travel.largest());
+    if (result.settled || result.steps % displacement_every == 0) {
+      result.displacement = std::max(result.displacement, travel.largest());
+      if (progress) progress(settled_share(result.unbalanced_fraction, input.unbalanced_fraction));
+    }
     if (result.settled) result.criterion = "unbalanced force";
     if (result.settled) break;
     if (result.displacement > input.failure_displacement) {
@@ -69,6 +72,6 @@ SettleResult settle_explicitly(Simulation<N>& simulation) {
   return result;
 }
 
-template SettleResult settle_explicitly<3>(Simulation<3>&);
+template SettleResult settle_explicitly<3>(Simulation<3>&, const SettleProgress&);
 
 }  // namespace openclose

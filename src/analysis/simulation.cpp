@@ -168,7 +168,7 @@ std::vector<Contact>& Simulation<N>::contacts() {
 template <int N>
 StepProblem<N> Simulation<N>::problem(double dt, bool statics) {
   contacts();
-  StepProblem<N> p{system_, external_, joints_, contacts_, detector_.candidate_pairs(), detector_.pairs_version(), scene_.method};
+  StepProblem<N> p{system_, external_, joints_, contacts_, scene_.method};
   p.dt = dt;
   p.statics = statics;
   p.inertia = statics ? 2.0 / (dt * dt) : scheme_->inertia(dt);

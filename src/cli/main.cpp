@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
+#include <optional>
 
 #include "openclose/analysis/spectrum.h"
 #include "openclose/analysis/strength_reduction.h"
@@ -37,10 +38,14 @@ struct Loaded {
   std::vector<std::string> warnings;
 };
 
+void print_warnings(const std::vector<std::string>& warnings) {
+  for (const std::string& warning : warnings) fmt::print(stderr, "openclose: warning: {}\n", warning);
+}
+
 Loaded load(const Options& options) {
   Loaded loaded{read_scene(options.scene_file, options.overrides), {}};
   loaded.warnings = check_scene(loaded.scene);
-  for (const std::string& warning : loaded.warnings) fmt::print(stderr, "openclose: warning: {}\n", warning);
+  print_warnings(loaded.warnings);
   return loaded;
 }
 
@@ -93,29 +98,41 @@ int run_command(const Options& options) {
   EnergyFile energy(folder);
   BlocksFile<unknowns> blocks(folder);
   blocks.add("initial", simulation);
-  Progress progress("run", options.quiet);
+  std::optional<Progress> progress;
+  progress.emplace("settle", options.quiet);
 
   RunObserver<unknowns> observer;
   observer.started = [&](const Simulation<unknowns>& s) {
     points.restart();
     blocks.add("start", s);
+    progress.emplace("run", options.quiet);
   };
+  observer.settling = [&](double fraction) { progress->update(fraction); };
+  observer.snapshot = [&](const std::string& state, const Simulation<unknowns>& s) { blocks.add(state, s); };
   observer.output = [&](const Simulation<unknowns>& s) {
     history.add(s.time(), points.motions());
     energy.add(s.time(), s.ledger());
   };
-  observer.progress = [&](double fraction) { progress.update(fraction); };
+  observer.progress = [&](double fraction) { progress->update(fraction); };
   const RunResult result = run(simulation, observer);
+  progress.reset();
+  print_warnings(result.warnings);
 
   blocks.add("final", simulation);
   history.close();
   energy.close();
   blocks.close();
   write_contacts(folder, "final", simulation);
+  if (!result.milestones.empty()) write_milestones(folder, result.milestones);
   Summary summary = summary_of("run", options, loaded);
+  summary.warnings.insert(summary.warnings.end(), result.warnings.begin(), result.warnings.end());
   summary.converged = result.converged;
   summary.reason = result.reason;
   summary.settling = result.settling;
+  summary.ended_by = result.ended_by;
+  summary.milestones = result.milestones;
+  summary.cpu_of_start = result.cpu_of_start;
+  summary.cpu_of_motion = result.cpu_of_motion;
   summary.ledger = simulation.ledger();
   summary.max_penetration = simulation.max_penetration();
   write_summary(folder, summary, simulation);
@@ -125,17 +142,26 @@ int run_command(const Options& options) {
     return exit_not_converged;
   }
   if (!options.quiet) {
-    fmt::print("{}: {} blocks, {} steps to t = {:.6g} s, deepest penetration {:.3g} m, energy imbalance {:.2g} of {:.3g} J; written to {}\n",
+    fmt::print("{}: {} blocks, {} steps to t = {:.6g} s{}, deepest penetration {:.3g} m, energy imbalance {:.2g} of {:.3g} J; written to {}\n",
                loaded.scene.method.contact, simulation.system().block_count(), simulation.step_counters().steps, simulation.time(),
-               simulation.max_penetration(), simulation.ledger().imbalance(), simulation.ledger().turnover, folder.path());
+               result.ended_by == "end.displacement_m" ? " (end.displacement_m)" : "", simulation.max_penetration(), simulation.ledger().imbalance(),
+               simulation.ledger().turnover, folder.path());
   }
   return exit_success;
 }
 
 int fos_command(const Options& options) {
   Loaded loaded = load(options);
-  if (loaded.scene.strength_reduction.curve_time && loaded.scene.step.dt <= 0.0) {
-    throw InputError(loaded.scene.where, "step.dt_s", "missing", "a step in seconds: strength_reduction.curve_time_s asks for motion");
+  if (loaded.scene.run_strength_reduction_factor != 1.0) {
+    loaded.warnings.push_back(loaded.scene.where.file + ": run.strength_reduction_factor is for run; fos starts from the full strength");
+    print_warnings({loaded.warnings.back()});
+  }
+  if (loaded.scene.step.dt <= 0.0) {
+    const bool paper = loaded.scene.settle.criterion == SettleCriterion::paper;
+    if (loaded.scene.strength_reduction.curve_time || paper) {
+      throw InputError(loaded.scene.where, "step.dt_s", "missing",
+                       fmt::format("a step in seconds: {} asks for motion", paper ? "settle.criterion" : "strength_reduction.curve_time_s"));
+    }
   }
   if (loaded.scene.step.dt <= 0.0) loaded.scene.step.dt = loaded.scene.settle.first_dt;
   require_countable_steps(loaded.scene, "strength_reduction.curve_time_s", loaded.scene.strength_reduction.curve_time.value_or(0.0));
@@ -151,7 +177,7 @@ int fos_command(const Options& options) {
 
   Summary summary = summary_of("fos", options, loaded);
   summary.warnings.insert(summary.warnings.end(), safety.warnings.begin(), safety.warnings.end());
-  for (const std::string& warning : safety.warnings) fmt::print(stderr, "openclose: warning: {}\n", warning);
+  print_warnings(safety.warnings);
   if (safety.stable > 0.0) {
     simulation.restore(safety.settled_state);
     blocks.add("settled", simulation);
@@ -214,8 +240,11 @@ int cut_command(const Options& options) {
       throw InputError({written, 0}, "", "this is the scene that is being cut", "another file to write to");
     }
   }
-  write_file(file, write_scene(loaded.scene));
-  write_file(drawing, svg_drawing(loaded.scene));
+  const auto place_of = [](const std::string& path) { return std::filesystem::weakly_canonical(std::filesystem::absolute(path)); };
+  if (place_of(file) == place_of(drawing)) {
+    throw InputError({file, 0}, "", "the scene and its drawing cannot be the same file", "another name with --svg");
+  }
+  write_files({{file, write_scene(loaded.scene)}, {drawing, svg_drawing(loaded.scene)}});
   if (options.quiet) return exit_success;
   const auto fixed = std::count_if(loaded.scene.blocks.begin(), loaded.scene.blocks.end(), [](const BlockInput& block) { return block.fixed; });
   fmt::print("{}: {} blocks cut by {} traces, {:.9g} m2 (domain {:.9g} m2), smallest {:.3g} m2; {} of {} blocks fixed\n", options.scene_file,
@@ -265,7 +294,10 @@ int main_checked(int argc, char** argv) {
   };
   subcommand("run", "follow the blocks in time", true, &run_command);
   subcommand("fos", "factor of safety by strength reduction", true, &fos_command);
-  CLI::App* check = subcommand("check", "read and check a scene, write nothing but what --spectrum asks for", false, &check_command);
+  CLI::App* check = subcommand(
+      "check",
+      "read and check a scene, write nothing but --spectrum; whether it settles, or has the start that it asks for, only run and fos find out", false,
+      &check_command);
   check->add_option("--spectrum", options.spectrum_file,
                     "CSV file to write: frequencies of the contacts' springs, critical step 2/w_max, condition number of a step's matrix");
   CLI::App* cut = subcommand("cut", "cut the domain of a scene into blocks, write them as a scene and draw them", false, &cut_command);

@@ -45,7 +45,6 @@ class Detector {
 
   /// Pairs of blocks whose boxes, with reach and skin, overlap, at least one of them free; renewed only when something moved beyond the skin.
   const std::vector<std::pair<int, int>>& candidate_pairs() const { return pairs_; }
-  long pairs_version() const { return counters_.searches; }
   const DetectionCounters& counters() const { return counters_; }
 
   /// Renews the candidate pairs.

@@ -102,7 +102,7 @@ std::pair<int, int> ends(const Piece& piece) {
 
 class Cutter {
  public:
-  explicit Cutter(const std::vector<SourceSegment>& segments) {
+  Cutter(const std::vector<SourceSegment>& segments, const ArrangementLimits& limits) : limits_(limits) {
     nodes_.reserve(2 * segments.size());
     // Rigid ones first: their ends stay where they are, and later ones give way.
     for (const bool rigid : {true, false}) {
@@ -116,13 +116,13 @@ class Cutter {
     }
   }
 
-  /// \return whether anything was cut; none if there was too much to compare
-  std::optional<bool> pass(std::size_t limit) {
+  /// \return whether anything was cut; none beyond the limits
+  std::optional<bool> pass() {
     collect_edges();
     std::vector<Segment> segments;
     segments.reserve(edges_.size());
     for (const Edge& edge : edges_) segments.push_back({nodes_[edge.low], nodes_[edge.high]});
-    const auto pairs = near_pairs(segments, piece_reach, limit);
+    const auto pairs = near_pairs(segments, piece_reach, limits_.pairs);
     if (!pairs) return std::nullopt;
 
     cuts_.clear();
@@ -130,6 +130,7 @@ class Cutter {
     for (const bool rigid : {true, false}) {
       for (const auto& [i, j] : *pairs) {
         if ((edges_[i].rigid || edges_[j].rigid) == rigid) meet(i, j);
+        if (crossings_ > limits_.crossings) return std::nullopt;
       }
     }
     if (cuts_.empty()) return false;
@@ -202,7 +203,10 @@ class Cutter {
     const Vec2 crossing = b.rigid && !a.rigid ? Vec2(q + fraction_across * across) : Vec2(p + fraction * along);
     if (distance(crossing, a) > crossing_accuracy || distance(crossing, b) > crossing_accuracy) return;
     int node = nodes_.nearest_to(crossing);
-    if (node == NodeSet::none || !shortens(node, a) || !shortens(node, b)) node = nodes_.add(crossing);
+    if (node == NodeSet::none || !shortens(node, a) || !shortens(node, b)) {
+      node = nodes_.add(crossing);
+      if (limits_.counted(crossing)) ++crossings_;
+    }
     cut(i, node);
     cut(j, node);
   }
@@ -246,6 +250,8 @@ class Cutter {
     target.push_back({last, piece.to, piece.source, piece.rigid});
   }
 
+  const ArrangementLimits& limits_;
+  std::size_t crossings_ = 0;  ///< that count
   NodeSet nodes_;
   std::vector<bool> settled_;              ///< nodes of rigid pieces; may be shorter than the nodes
   std::vector<Piece> pieces_;              ///< sorted by their ends while edges_ is in use
@@ -255,10 +261,10 @@ class Cutter {
 
 }  // namespace
 
-std::optional<Arrangement> arrange(const std::vector<SourceSegment>& segments, std::size_t limit) {
-  Cutter cutter(segments);
+std::optional<Arrangement> arrange(const std::vector<SourceSegment>& segments, const ArrangementLimits& limits) {
+  Cutter cutter(segments, limits);
   for (int pass = 0; pass < most_passes; ++pass) {
-    const std::optional<bool> changed = cutter.pass(limit);
+    const std::optional<bool> changed = cutter.pass();
     if (!changed) return std::nullopt;
     if (!*changed) return cutter.take();
   }

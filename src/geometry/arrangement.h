@@ -1,6 +1,7 @@
 // Segments cut at each other: the points where they meet, and the pieces between these points.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -29,6 +30,13 @@ struct Arrangement {
   std::vector<Piece> pieces;  ///< sources that run along each other give the same piece, once for each source
 };
 
+/// What an arrangement may grow to.
+struct ArrangementLimits {
+  std::size_t pairs = 0;                     ///< of segments to be compared
+  std::size_t crossings = 0;                 ///< that count
+  std::function<bool(const Vec2&)> counted;  ///< whether a crossing at this place does
+};
+
 /// Cuts all segments at each other. The pieces of the result meet in common nodes only.
 ///
 /// Every node is computed once: from the ends of the segments, or from two whole segments that cross. Nodes closer together than twice
@@ -37,7 +45,7 @@ struct Arrangement {
 /// changes (once, unless nodes were that close).
 ///
 /// The segments are taken in the order given, so that the same list gives the same bits; a caller who wants them independent of the order sorts.
-/// Segments shorter than tolerance::shortest_edge_m vanish. None: more than `limit` pairs of segments to be compared.
-std::optional<Arrangement> arrange(const std::vector<SourceSegment>& segments, std::size_t limit);
+/// Segments shorter than tolerance::shortest_edge_m vanish. None: it would grow beyond the limits; found out without building it.
+std::optional<Arrangement> arrange(const std::vector<SourceSegment>& segments, const ArrangementLimits& limits);
 
 }  // namespace openclose

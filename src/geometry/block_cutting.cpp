@@ -46,21 +46,44 @@ void make_canonical(std::vector<JointTrace>& traces) {
   std::sort(traces.begin(), traces.end(), [&](const JointTrace& a, const JointTrace& b) { return key(a) < key(b); });
 }
 
+int lowest_vertex(const Polygon& polygon) {
+  const auto lower = [](const Vec2& a, const Vec2& b) { return std::pair(a.y(), a.x()) < std::pair(b.y(), b.x()); };
+  return static_cast<int>(std::min_element(polygon.begin(), polygon.end(), lower) - polygon.begin());
+}
+
+/// The same polygon, beginning with the lowest vertex (leftmost of several).
+Polygon from_lowest(Polygon polygon) {
+  if (!polygon.empty()) std::rotate(polygon.begin(), polygon.begin() + lowest_vertex(polygon), polygon.end());
+  return polygon;
+}
+
+Polygon corners_only(const Polygon& polygon) {
+  Polygon kept;
+  for (const int i : corners(polygon)) kept.push_back(polygon[i]);
+  return kept;
+}
+
 std::vector<const Polygon*> rings_of(const PolygonWithHoles& domain) {
   std::vector<const Polygon*> rings{&domain.outer};
   for (const Polygon& hole : domain.holes) rings.push_back(&hole);
   return rings;
 }
 
+/// With their numbers, in an order that depends neither on that of the holes nor on which vertex of a ring is written first.
+std::vector<std::pair<int, Polygon>> rings_in_order(const PolygonWithHoles& domain) {
+  std::vector<std::pair<int, Polygon>> rings{{0, from_lowest(domain.outer)}};
+  for (const Polygon& hole : domain.holes) rings.emplace_back(static_cast<int>(rings.size()), from_lowest(hole));
+  std::sort(rings.begin() + 1, rings.end(), [](const auto& a, const auto& b) { return before(a.second.front(), b.second.front()); });
+  return rings;
+}
+
 std::vector<SourceSegment> sources_of(const PolygonWithHoles& domain, const std::vector<JointTrace>& traces, double reach) {
   std::vector<SourceSegment> sources;
-  const std::vector<const Polygon*> rings = rings_of(domain);
-  for (std::size_t r = 0; r < rings.size(); ++r) {
-    const Polygon& ring = *rings[r];
+  for (const auto& [number, ring] : rings_in_order(domain)) {
     for (std::size_t i = 0; i < ring.size(); ++i) {
       const Vec2& next = ring[i + 1 < ring.size() ? i + 1 : 0];
       // The domain is on the left of the outer boundary and on the right of a hole's.
-      sources.push_back({r == 0 ? Segment{ring[i], next} : Segment{next, ring[i]}, source_of_ring(static_cast<int>(r)), true});
+      sources.push_back({number == 0 ? Segment{ring[i], next} : Segment{next, ring[i]}, source_of_ring(number), true});
     }
   }
   for (const JointTrace& trace : traces) sources.push_back({trace.segment, trace.joint, false});
@@ -277,11 +300,7 @@ class Cut {
     Face face;
     Polygon all;
     for (const int h : cycle) all.push_back(nodes_[half_edge_from(graph, h)]);
-    for (const int i : corners(all)) face.polygon.push_back(all[i]);
-    if (!face.polygon.empty()) {
-      const auto lower = [](const Vec2& a, const Vec2& b) { return std::pair(a.y(), a.x()) < std::pair(b.y(), b.x()); };
-      std::rotate(face.polygon.begin(), std::min_element(face.polygon.begin(), face.polygon.end(), lower), face.polygon.end());
-    }
+    face.polygon = from_lowest(corners_only(all));
     face.area = face.polygon.size() < 3 ? 0.0 : signed_area(face.polygon);
     face.width = face.polygon.size() < 3 ? 0.0 : 2.0 * face.area / longest_edge(face.polygon);
     face.cycle = std::move(cycle);
@@ -311,21 +330,43 @@ class Cut {
 
   bool is_sliver(const Face& face) const { return face.width < limits_.sliver_width || face.area < limits_.sliver_area; }
 
+  int node_at(int half_edge) const { return half_edge % 2 == 0 ? edges_[half_edge / 2].from : edges_[half_edge / 2].to; }
+
+  std::vector<int> nodes_of(int face) const {
+    std::vector<int> nodes;
+    for (const int h : faces_[face].cycle) nodes.push_back(node_at(h));
+    std::sort(nodes.begin(), nodes.end());
+    return nodes;
+  }
+
+  int common_nodes(int face, int other) const {
+    const std::vector<int> nodes = nodes_of(face);
+    const std::vector<int>& cycle = faces_[other].cycle;
+    return static_cast<int>(
+        std::count_if(cycle.begin(), cycle.end(), [&](int h) { return std::binary_search(nodes.begin(), nodes.end(), node_at(h)); }));
+  }
+
   /// The neighbour a sliver goes to and the half-edges between them; -1 if there is none.
   int host(int sliver, std::vector<int>& common, const std::vector<bool>& taken) const {
     const std::vector<int>& cycle = faces_[sliver].cycle;
     const int n = static_cast<int>(cycle.size());
     const auto neighbour = [&](int i) { return face_of_[cycle[(i + n) % n] ^ 1]; };
-    std::map<int, std::pair<double, int>> shared;  // length and number of separate stretches
+    struct Contact {
+      double length = 0.0;
+      int edges = 0;
+    };
+    std::map<int, Contact> shared;
     for (int i = 0; i < n; ++i) {
       const int other = neighbour(i);
       if (other < 0 || other == sliver || taken[other]) continue;
-      shared[other].first += length(edges_[cycle[i] / 2]);
-      if (neighbour(i - 1) != other) ++shared[other].second;
+      shared[other].length += length(edges_[cycle[i] / 2]);
+      ++shared[other].edges;
     }
     int best = -1;
     for (const auto& [other, contact] : shared) {
-      if (contact.second == 1 && (best < 0 || contact.first > shared[best].first)) best = other;
+      if (best >= 0 && contact.length <= shared[best].length) continue;
+      // Edges in one row have one node more; any other node is a second place, and what lies between the two would be surrounded.
+      if (common_nodes(sliver, other) == contact.edges + 1) best = other;
     }
     common.clear();
     for (int i = 0; i < n; ++i) {
@@ -342,12 +383,21 @@ class Cut {
       std::vector<bool> grown(faces_.size(), false);
       std::vector<bool> dropped(edges_.size(), false);
       std::vector<int> common;
+      std::set<std::pair<int, int>> given;  // to a face: nodes of slivers in this pass
       for (int f = 0; f < static_cast<int>(faces_.size()); ++f) {
         if (!is_sliver(faces_[f])) continue;
         ++result_.slivers_left;
         if (grown[f]) continue;
         const int to = host(f, common, taken);
         if (to < 0) continue;
+        const std::vector<int> nodes = nodes_of(f);
+        // Two slivers that touch each other can surround a hole or a block together with their neighbour: the second waits for what the first makes
+        // of it.
+        if (std::any_of(nodes.begin(), nodes.end(), [&](int node) { return given.count({to, node}) > 0; })) {
+          any = true;
+          continue;
+        }
+        for (const int node : nodes) given.emplace(to, node);
         taken[f] = grown[to] = any = true;
         for (const int h : common) dropped[h / 2] = true;
         ++result_.slivers_merged;
@@ -393,6 +443,46 @@ bool rings_meet(const Polygon& a, const Polygon& b) {
   return false;
 }
 
+/// A place near a domain that lies far from the origin, else the origin itself. What is taken from the coordinates there has so few digits that no
+/// vertex of the domain loses any, there and back: multiples of a power of two above the domain's size, and none of a coordinate that is not at least
+/// as far away. The cutting then has all digits for crossings and angles, and only the corners of the blocks are rounded to what is left of them.
+Vec2 local_origin(const Polygon& outer) {
+  const Box box = Box::around(outer);
+  const double grid = std::exp2(std::ceil(std::log2((box.high - box.low).maxCoeff())));
+  const auto near = [&](double low, double high) {
+    return std::min(std::abs(low), std::abs(high)) < 2.0 * grid || low * high < 0.0 ? 0.0 : grid * std::round(0.5 * (low + high) / grid);
+  };
+  return {near(box.low.x(), box.high.x()), near(box.low.y(), box.high.y())};
+}
+
+Polygon moved(Polygon polygon, const Vec2& by) {
+  for (Vec2& vertex : polygon) vertex += by;
+  return polygon;
+}
+
+PolygonWithHoles moved(PolygonWithHoles domain, const Vec2& by) {
+  domain.outer = moved(std::move(domain.outer), by);
+  for (Polygon& hole : domain.holes) hole = moved(std::move(hole), by);
+  return domain;
+}
+
+Cutting cut_near_origin(const PolygonWithHoles& domain, std::vector<JointTrace> traces, int joint_count, const CuttingLimits& limits) {
+  make_canonical(traces);
+  // A crossing of two traces in the domain makes a block more, but for one that each trace may have in vain. Twice as many are let pass, since
+  // slivers go. Crossings beside the domain and comparisons in vain make no block, hence many more of these.
+  constexpr std::size_t comparisons = 32;
+  const std::size_t most = static_cast<std::size_t>(limits.max_blocks);
+  const ArrangementLimits growth{comparisons * (most + traces.size() + domain.outer.size() + 1000), 2 * most + traces.size(),
+                                 [&](const Vec2& crossing) { return domain.contains(crossing); }};
+  std::optional<Arrangement> arrangement = arrange(sources_of(domain, traces, limits.end_reach), growth);
+  if (!arrangement) {
+    Cutting refused;
+    refused.too_many = true;
+    return refused;
+  }
+  return Cut(domain, std::move(*arrangement), limits, joint_count).blocks();
+}
+
 }  // namespace
 
 bool PolygonWithHoles::contains(const Vec2& point) const {
@@ -421,17 +511,14 @@ std::optional<RingFault> first_ring_fault(const PolygonWithHoles& domain) {
 }
 
 Cutting cut_blocks(const PolygonWithHoles& domain, std::vector<JointTrace> traces, int joint_count, const CuttingLimits& limits) {
-  make_canonical(traces);
-  // A crossing of two traces makes a block more, but for one that each trace may have in vain; a few comparisons lead to a crossing.
-  constexpr std::size_t comparisons = 32;
-  const std::size_t limit = comparisons * (static_cast<std::size_t>(limits.max_blocks) + traces.size() + domain.outer.size() + 1000);
-  std::optional<Arrangement> arrangement = arrange(sources_of(domain, traces, limits.end_reach), limit);
-  if (!arrangement) {
-    Cutting refused;
-    refused.too_many = true;
-    return refused;
-  }
-  return Cut(domain, std::move(*arrangement), limits, joint_count).blocks();
+  const Vec2 origin = local_origin(domain.outer);
+  if (origin.isZero(0.0)) return cut_near_origin(domain, std::move(traces), joint_count, limits);
+  for (JointTrace& trace : traces) trace.segment = {trace.segment.from - origin, trace.segment.to - origin};
+  Cutting cutting = cut_near_origin(moved(domain, -origin), std::move(traces), joint_count, limits);
+  // Rounding can straighten what was hardly a corner.
+  for (Polygon& block : cutting.blocks) block = from_lowest(corners_only(moved(std::move(block), origin)));
+  for (Vec2& point : cutting.enclosed) point += origin;
+  return cutting;
 }
 
 }  // namespace openclose

@@ -1,8 +1,15 @@
 // Cuts a domain into blocks along joint traces.
 //
 // The blocks are simple polygons, convex or not, counter-clockwise, without repeated vertices and straight corners. Where blocks meet in a corner
-// they have the same vertex, bit for bit: every point is computed once (see arrangement.h). Traces are sorted and turned into one direction first,
-// so that the blocks do not depend, to the last bit, on the order or direction in which the joints are given.
+// they have the same vertex, bit for bit: every point is computed once (see arrangement.h). Where a joint ends on another one, the
+// blocks at its end have a vertex there and the block on the other side has none: the vertex lies on the long edge of that one, to the rounding of
+// its coordinates. Traces are sorted and turned into one direction first, and rings begin with their lowest vertex, so that the blocks do not depend,
+// to the last bit, on the order or direction in which the joints are given, nor on how the domain's vertices and holes are numbered.
+//
+// The blocks' areas add up to the domain's to 1e-12 of it, plus the length of their edges times the rounding of the coordinates (far from the origin
+// the cutting is done about a point near the domain, so that only the finished corners are rounded). Where joints or their ends come within 2e-8 m of
+// each other without meeting, their nodes are united (arrangement.h), and a line bent by less than tolerance::straight_corner_rad there counts as
+// straight: a vertex may then lie 2e-8 m beside its neighbour's edge, and areas miss that times the length of the edge.
 //
 // What a trace does beyond its last meeting with another trace or the boundary bounds no block; it is cut back (a dangling end). Joints that enclose
 // something but hang on the rest by fewer than two points would leave a block with a hole, which a simple polygon cannot be: they are dropped, and
@@ -48,7 +55,8 @@ struct CuttingLimits {
   /// [m] A trace end this near to another trace or to the boundary reaches it.
   double end_reach = tolerance::joint_end_reach_m;
   /// [m], [m2] Blocks of less width (2 area / longest edge) or less area are slivers: each is united with the neighbour it has the longest common
-  /// edge with (summed up if they meet along several straight edges in a row; a neighbour that meets it in separate places is not taken).
+  /// edge with (summed up if they meet along several straight edges in a row; a neighbour that meets it in separate places, be it a
+  /// corner, is not taken).
   double sliver_width = tolerance::sliver_width_m;
   double sliver_area = 0.0;
   int max_blocks = 1'000'000;
@@ -70,7 +78,7 @@ struct Cutting {
   std::vector<int> loose_holes;               ///< holes of the domain that the joints do not connect to its outer boundary; no blocks then
   std::vector<JointUse> uses;                 ///< by joint
   std::vector<std::pair<int, int>> overlaps;  ///< pairs of joints that run along each other somewhere inside the domain
-  bool too_many = false;                      ///< more than max_blocks, or so many crossings that there would be; no blocks then
+  bool too_many = false;                      ///< more than max_blocks, or crossings for twice as many; no blocks then
 };
 
 /// \param domain      without faults (first_ring_fault)

@@ -151,6 +151,7 @@ class Tracer {
     };
     double place = start;
     for (std::int64_t i = 0; place < part.to; ++i) {
+      if (too_far()) return false;
       const double end = place + varied(*set_.trace_length, trace_ahead, i);
       add_within(foot, along, {place, end}, part);
       place = end + varied(set_.gap, gap_ahead, i);
@@ -158,6 +159,7 @@ class Tracer {
     }
     place = start;
     for (std::int64_t i = 0; place > part.from; ++i) {
+      if (too_far()) return false;
       const double end = place - varied(set_.gap, gap_behind, i);
       place = end - varied(*set_.trace_length, trace_behind, i);
       add_within(foot, along, {place, end}, part);
@@ -165,6 +167,9 @@ class Tracer {
     }
     return true;
   }
+
+  /// Counts the lengths summed up between the origin and the domain.
+  bool too_far() { return static_cast<double>(++summed_) > far * static_cast<double>(limit_); }
 
   void add_within(const Vec2& foot, const Vec2& along, const Interval& trace, const Interval& part) {
     const Interval common{std::max(trace.from, part.from), std::min(trace.to, part.to)};
@@ -181,6 +186,7 @@ class Tracer {
 
   const JointSet& set_;
   std::size_t limit_;
+  std::size_t summed_ = 0;
   Box box_;
   Vec2 along_;
   Vec2 normal_;

@@ -20,6 +20,14 @@ bool crosses(const Segment& segment, const Box& cell) {
   return std::abs(normal.dot(0.5 * (cell.low + cell.high) - segment.from)) <= normal.cwiseAbs().dot(half);
 }
 
+/// Whether both ends of a segment lie on the same side of the other's line, farther than the distance.
+bool beside(const Segment& segment, const Segment& other, double distance) {
+  const Vec2 along = other.to - other.from;
+  const double from = cross(along, segment.from - other.from);
+  const double to = cross(along, segment.to - other.from);
+  return (from > 0.0) == (to > 0.0) && std::min(std::abs(from), std::abs(to)) > distance * along.norm();
+}
+
 class Search {
  public:
   Search(const std::vector<Segment>& segments, double margin, std::size_t limit) : segments_(segments), margin_(margin), limit_(limit) {
@@ -73,16 +81,22 @@ class Search {
     for (std::size_t i = 0; i < members.size(); ++i) {
       const Box reach = boxes_[members[i]].inflated(margin_);
       for (std::size_t j = i + 1; j < members.size(); ++j) {
-        if (reach.overlaps(boxes_[members[j]])) pairs_.emplace_back(members[i], members[j]);
+        if (!reach.overlaps(boxes_[members[j]])) continue;
+        ++compared_;
+        if (!apart(members[i], members[j])) pairs_.emplace_back(members[i], members[j]);
       }
-      if (pairs_.size() > limit_) return false;
+      if (compared_ > limit_) return false;
     }
     return true;
   }
 
+  /// Farther than the margin, whatever rounding does to it.
+  bool apart(int i, int j) const { return beside(segments_[i], segments_[j], 2.0 * margin_) || beside(segments_[j], segments_[i], 2.0 * margin_); }
+
   const std::vector<Segment>& segments_;
   double margin_;
   std::size_t limit_;
+  std::size_t compared_ = 0;
   std::vector<Box> boxes_;
   std::vector<std::pair<int, int>> pairs_;
 };

@@ -33,8 +33,6 @@ struct StepProblem {
   const ExternalForces<N>& external;
   const JointTable& joints;
   const std::vector<Contact>& contacts;
-  const std::vector<std::pair<int, int>>& candidate_pairs;  ///< blocks that may touch: the pattern of the matrix
-  long candidates_version = 0;
   const MethodInput& method;
   double dt = 0.0;          ///< [s]
   bool statics = false;     ///< velocities count as zero
@@ -45,16 +43,6 @@ struct StepProblem {
   typename Motion<N>::Unknowns velocity(int b) const {
     if (statics) return Motion<N>::Unknowns::Zero();
     return system.velocity(b);
-  }
-
-  /// Pairs of block rows that candidate contacts couple.
-  std::vector<std::pair<int, int>> couplings() const {
-    std::vector<std::pair<int, int>> rows;
-    for (const auto& [a, b] : candidate_pairs) {
-      const int i = system.block(a).equation, j = system.block(b).equation;
-      if (i >= 0 && j >= 0) rows.emplace_back(i, j);
-    }
-    return rows;
   }
 };
 

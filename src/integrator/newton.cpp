@@ -41,11 +41,7 @@ void Newton<N>::prepare(const StepProblem<N>& problem, const std::vector<Contact
   springs_ = &springs;
   strength_.clear();
   for (const Contact& c : problem.contacts) strength_.emplace_back(problem.joints.joint(c.joint), c);
-  if (candidates_version_ != problem.candidates_version || !solver_) {
-    matrix_.set_pattern(problem.system.free_count(), problem.couplings());
-    if (!solver_) solver_ = make_solver<N>(problem.system.free_count());
-    candidates_version_ = problem.candidates_version;
-  }
+  tangent_.fit(problem);
 }
 
 template <int N>
@@ -137,45 +133,43 @@ void Newton<N>::add_contact_stiffness(std::size_t c, Tangent tangent) {
   const auto block = [&](const Unknowns& n1, const Unknowns& t1, const Unknowns& n2, const Unknowns& t2) {
     return typename Motion<N>::Matrix(nn * n1 * n2.transpose() + tn * t1 * n2.transpose() + tt * t1 * t2.transpose());
   };
-  if (i >= 0) matrix_.add(i, i, block(k.normal_vertex, k.shear_vertex, k.normal_vertex, k.shear_vertex));
-  if (j >= 0) matrix_.add(j, j, block(k.normal_edge, k.shear_edge, k.normal_edge, k.shear_edge));
+  if (i >= 0) tangent_.matrix().add(i, i, block(k.normal_vertex, k.shear_vertex, k.normal_vertex, k.shear_vertex));
+  if (j >= 0) tangent_.matrix().add(j, j, block(k.normal_edge, k.shear_edge, k.normal_edge, k.shear_edge));
   if (i >= 0 && j >= 0) {
-    matrix_.add(i, j, block(k.normal_vertex, k.shear_vertex, k.normal_edge, k.shear_edge));
-    matrix_.add(j, i, block(k.normal_edge, k.shear_edge, k.normal_vertex, k.shear_vertex));
+    tangent_.matrix().add(i, j, block(k.normal_vertex, k.shear_vertex, k.normal_edge, k.shear_edge));
+    tangent_.matrix().add(j, i, block(k.normal_edge, k.shear_edge, k.normal_vertex, k.shear_vertex));
   }
   if (!exact) return;  // the geometric part can make the symmetric tangent indefinite
   const auto h = k.hessian(theta * (f.normal * k.normal + f.shear * k.tangent));
-  if (i >= 0) matrix_.add(i, i, -h.vertex_vertex);
-  if (j >= 0) matrix_.add(j, j, -h.edge_edge);
+  if (i >= 0) tangent_.matrix().add(i, i, -h.vertex_vertex);
+  if (j >= 0) tangent_.matrix().add(j, j, -h.edge_edge);
   if (i >= 0 && j >= 0) {
-    matrix_.add(i, j, -h.vertex_edge);
-    matrix_.add(j, i, -h.vertex_edge.transpose());
+    tangent_.matrix().add(i, j, -h.vertex_edge);
+    tangent_.matrix().add(j, i, -h.vertex_edge.transpose());
   }
 }
 
 template <int N>
 void Newton<N>::assemble(const Eigen::VectorXd& d, Tangent tangent) {
   const BlockSystem<N>& system = problem_->system;
-  matrix_.set_zero();
+  tangent_.matrix().set_zero();
   for (std::size_t c = 0; c < outcome_.size(); ++c) add_contact_stiffness(c, tangent);
   for (int b : system.free_blocks()) {
     const auto& block = system.block(b);
     typename Motion<N>::Matrix diagonal = problem_->end_weight * problem_->external.stiffness(system, b, d.template segment<N>(N * block.equation));
     diagonal += (problem_->inertia * block.mass).asDiagonal();
-    matrix_.add(block.equation, block.equation, diagonal);
+    tangent_.matrix().add(block.equation, block.equation, diagonal);
   }
   for (int b : system.free_blocks()) {
-    if (system.block(b).rotation_locked) matrix_.eliminate(system.block(b).equation, Motion<N>::rotation_index);
+    if (system.block(b).rotation_locked) tangent_.matrix().eliminate(system.block(b).equation, Motion<N>::rotation_index);
   }
 }
 
 template <int N>
 Eigen::VectorXd Newton<N>::direction(const Eigen::VectorXd& d, Tangent tangent) {
   assemble(d, tangent);
-  const bool regular = solver_->factor(matrix_);
   Eigen::VectorXd step;
-  if (regular) step = solver_->solve(residual_);
-  linear_counters_ = solver_->counters();
+  if (tangent_.solver().factor(tangent_.matrix())) step = tangent_.solver().solve(residual_);
   return step;
 }
 
@@ -336,7 +330,7 @@ Eigen::MatrixXd Newton<N>::stiffness(const StepProblem<N>& problem, const std::v
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(N * problem.system.free_count());
   evaluate(zero);
   assemble(zero, Tangent::exact);
-  return matrix_.dense();
+  return tangent_.matrix().dense();
 }
 
 template <int N>

@@ -4,7 +4,7 @@
 // (sticking springs only) with an energy line search, which makes progress while many contacts still change state. Convergence means the residual alone: the contact states are functions of the displacement.
 #pragma once
 
-#include "openclose/integrator/enforcement.h"
+#include "openclose/integrator/tangent_system.h"
 
 namespace openclose {
 
@@ -31,7 +31,7 @@ class Newton {
   Eigen::VectorXd forces(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs);
 
   double force_scale() const { return force_scale_; }  ///< [N] largest single force in the last evaluation
-  const LinearCounters& linear_counters() const { return linear_counters_; }
+  const LinearCounters& linear_counters() const { return tangent_.counters(); }
 
  private:
   enum class Tangent { exact, symmetric };
@@ -62,10 +62,7 @@ class Newton {
   Eigen::VectorXd residual_;
   Eigen::VectorXd rounding_;  ///< [N] per free block: what rounding leaves in the residual
   double force_scale_ = 0.0;
-  BlockMatrix<N> matrix_;
-  std::unique_ptr<LinearSolver<N>> solver_;
-  LinearCounters linear_counters_;
-  long candidates_version_ = -1;
+  TangentSystem<N> tangent_;
 };
 
 extern template class Newton<3>;

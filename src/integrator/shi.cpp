@@ -11,6 +11,7 @@
 #include <cmath>
 
 #include "openclose/integrator/registry.h"
+#include "openclose/integrator/tangent_system.h"
 
 namespace openclose {
 namespace {
@@ -51,7 +52,7 @@ class Shi : public Enforcement<N> {
     return make_theta_scheme<N>(1.0);
   }
   double step_cut(const MethodInput& method) const override { return method.step_cut; }
-  const LinearCounters& linear_counters() const override { return counters_; }
+  const LinearCounters& linear_counters() const override { return tangent_.counters(); }
 
  private:
   using Unknowns = typename Motion<N>::Unknowns;
@@ -70,23 +71,19 @@ class Shi : public Enforcement<N> {
       outcome_.push_back(o);
       applied_shear_.push_back(0.0);
     }
-    if (candidates_version_ != problem.candidates_version || !solver_) {
-      matrix_.set_pattern(problem.system.free_count(), problem.couplings());
-      if (!solver_) solver_ = make_solver<N>(problem.system.free_count());
-      candidates_version_ = problem.candidates_version;
-    }
+    tangent_.fit(problem);
   }
 
   bool solve_once(const StepProblem<N>& problem, StepSolution<N>& solution) {
     const BlockSystem<N>& system = problem.system;
-    matrix_.set_zero();
+    tangent_.matrix().set_zero();
     Eigen::VectorXd right = Eigen::VectorXd::Zero(N * system.free_count());
     const Unknowns still = Unknowns::Zero();
     for (int b : system.free_blocks()) {
       const auto& block = system.block(b);
       typename Motion<N>::Matrix diagonal = problem.external.stiffness(system, b, still);
       diagonal += (problem.inertia * block.mass).asDiagonal();
-      matrix_.add(block.equation, block.equation, diagonal);
+      tangent_.matrix().add(block.equation, block.equation, diagonal);
       right.template segment<N>(N * block.equation) =
           problem.inertia * problem.dt * block.mass.cwiseProduct(problem.velocity(b)) + problem.external.force(system, b, still);
     }
@@ -94,13 +91,12 @@ class Shi : public Enforcement<N> {
     for (int b : system.free_blocks()) {
       const auto& block = system.block(b);
       if (!block.rotation_locked) continue;
-      matrix_.eliminate(block.equation, Motion<N>::rotation_index);
+      tangent_.matrix().eliminate(block.equation, Motion<N>::rotation_index);
       right[N * block.equation + Motion<N>::rotation_index] = 0.0;
     }
     ++solution.iterations;
-    const bool regular = solver_->factor(matrix_);
-    if (regular) solution.d = solver_->solve(right);
-    counters_ = solver_->counters();
+    const bool regular = tangent_.solver().factor(tangent_.matrix());
+    if (regular) solution.d = tangent_.solver().solve(right);
     if (!regular || !solution.d.allFinite()) {
       solution.reason = "singular matrix";
       return false;
@@ -123,16 +119,16 @@ class Shi : public Enforcement<N> {
       return typename Motion<N>::Matrix(kn * n1 * n2.transpose() + ks * t1 * t2.transpose());
     };
     if (i >= 0) {
-      matrix_.add(i, i, block(k.normal_vertex, k.shear_vertex, k.normal_vertex, k.shear_vertex));
+      tangent_.matrix().add(i, i, block(k.normal_vertex, k.shear_vertex, k.normal_vertex, k.shear_vertex));
       right.template segment<N>(N * i) += normal * k.normal_vertex + shear * k.shear_vertex;
     }
     if (j >= 0) {
-      matrix_.add(j, j, block(k.normal_edge, k.shear_edge, k.normal_edge, k.shear_edge));
+      tangent_.matrix().add(j, j, block(k.normal_edge, k.shear_edge, k.normal_edge, k.shear_edge));
       right.template segment<N>(N * j) += normal * k.normal_edge + shear * k.shear_edge;
     }
     if (i >= 0 && j >= 0) {
-      matrix_.add(i, j, block(k.normal_vertex, k.shear_vertex, k.normal_edge, k.shear_edge));
-      matrix_.add(j, i, block(k.normal_edge, k.shear_edge, k.normal_vertex, k.shear_vertex));
+      tangent_.matrix().add(i, j, block(k.normal_vertex, k.shear_vertex, k.normal_edge, k.shear_edge));
+      tangent_.matrix().add(j, i, block(k.normal_edge, k.shear_edge, k.normal_vertex, k.shear_vertex));
     }
   }
 
@@ -208,10 +204,7 @@ class Shi : public Enforcement<N> {
   std::vector<ContactOutcome<N>> outcome_;
   std::vector<ContactStrength> strength_;
   std::vector<double> applied_shear_;  ///< [N] right side of the last pass
-  BlockMatrix<N> matrix_;
-  std::unique_ptr<LinearSolver<N>> solver_;
-  LinearCounters counters_;
-  long candidates_version_ = -1;
+  TangentSystem<N> tangent_;
 };
 
 }  // namespace

@@ -16,8 +16,11 @@ namespace {
 constexpr double longer_side = 1200.0;
 constexpr double margin = 30.0;
 constexpr double scale_room = 50.0;
+constexpr double title_room = 30.0;
+constexpr double line_height = 22.0;
 
 constexpr std::array fills = {"#e8dcc3", "#c9d8c5", "#c7d3e3", "#e3c9c5", "#d9cde3", "#e0e0d0"};
+constexpr const char* fixed_fill = "#a5a096";
 
 std::string escaped(const std::string& text) {
   std::string result;
@@ -58,38 +61,57 @@ class Drawing {
     }
     const Vec2 size = box_.high - box_.low;
     scale_ = (longer_side - 2.0 * margin) / size.maxCoeff();
-    const Vec2 page = scale_ * size + Vec2(2.0 * margin, 2.0 * margin + scale_room);
+    top_ = margin + title_room;
+    const double legend = line_height * static_cast<double>(scene.materials.size() + 1);
+    const Vec2 page = scale_ * size + Vec2(2.0 * margin, top_ + scale_room + legend + margin);
     print("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" viewBox=\"0 0 {0:.0f} {1:.0f}\">\n", page.x(), page.y());
     print(
-        "<defs><pattern id=\"fixed\" width=\"8\" height=\"8\" patternUnits=\"userSpaceOnUse\" patternTransform=\"rotate(45)\">"
-        "<line x1=\"0\" y1=\"0\" x2=\"0\" y2=\"8\" stroke=\"#555\" stroke-width=\"1.2\"/></pattern></defs>\n"
+        "<defs><pattern id=\"fixed\" width=\"7\" height=\"7\" patternUnits=\"userSpaceOnUse\">"
+        "<circle cx=\"3.5\" cy=\"3.5\" r=\"1.1\" fill=\"#444\"/></pattern></defs>\n"
         "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n");
+    write(margin, margin + 0.4 * title_room, fmt::format("{} ({} blocks)", scene.title.empty() ? "Blocks" : scene.title, scene.blocks.size()));
   }
 
   void add(const BlockInput& block) {
     std::string points;
     for (const Vec2& vertex : block.vertices) {
       fmt::format_to(std::back_inserter(points), "{:.2f},{:.2f} ", margin + scale_ * (vertex.x() - box_.low.x()),
-                     margin + scale_ * (box_.high.y() - vertex.y()));
+                     top_ + scale_ * (box_.high.y() - vertex.y()));
     }
     points.pop_back();
     const char* fill = fills[block.material % fills.size()];
     print("<polygon points=\"{}\" fill=\"{}\" stroke=\"#333\" stroke-width=\"0.6\"{}><title>{}</title></polygon>\n", points,
-          block.fixed ? "#b5b0a6" : fill, " stroke-linejoin=\"round\"", escaped(block.name));
+          block.fixed ? fixed_fill : fill, " stroke-linejoin=\"round\"", escaped(block.name));
     if (block.fixed) print("<polygon points=\"{}\" fill=\"url(#fixed)\" pointer-events=\"none\"/>\n", points);
   }
 
-  std::string finish() {
+  std::string finish(const Scene& scene) {
     const double length = round_length(0.25 * (box_.high.x() - box_.low.x()));
-    const double y = margin + scale_ * (box_.high.y() - box_.low.y()) + 0.5 * scale_room;
+    double y = top_ + scale_ * (box_.high.y() - box_.low.y()) + 0.5 * scale_room;
     print("<path d=\"M{0:.2f},{2:.2f} v8 H{1:.2f} v-8\" fill=\"none\" stroke=\"black\"/>\n", margin, margin + scale_ * length, y);
-    print("<text x=\"{:.2f}\" y=\"{:.2f}\" font-family=\"sans-serif\" font-size=\"14\">{:g} m</text>\n", margin + scale_ * length + 8.0, y + 9.0,
-          length);
+    write(margin + scale_ * length + 8.0, y + 9.0, fmt::format("{:g} m", length));
+    y += 0.5 * scale_room;
+    for (std::size_t m = 0; m < scene.materials.size(); ++m, y += line_height) add_swatch(y, fills[m % fills.size()], scene.materials[m].name);
+    const bool any_fixed = std::any_of(scene.blocks.begin(), scene.blocks.end(), [](const BlockInput& block) { return block.fixed; });
+    if (any_fixed) {
+      add_swatch(y, fixed_fill, "fixed");
+      add_swatch(y, "url(#fixed)", "");
+    }
     text_ += "</svg>\n";
     return std::move(text_);
   }
 
  private:
+  void add_swatch(double y, const char* fill, const std::string& text) {
+    print("<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"28\" height=\"16\" fill=\"{}\" stroke=\"#333\" stroke-width=\"0.6\"/>\n", margin, y, fill);
+    write(margin + 36.0, y + 13.0, text);
+  }
+
+  void write(double x, double y, const std::string& text) {
+    if (text.empty()) return;
+    print("<text x=\"{:.2f}\" y=\"{:.2f}\" font-family=\"sans-serif\" font-size=\"14\">{}</text>\n", x, y, escaped(text));
+  }
+
   template <typename... Arguments>
   void print(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
     fmt::format_to(std::back_inserter(text_), format, std::forward<Arguments>(arguments)...);
@@ -97,6 +119,7 @@ class Drawing {
 
   Box box_;
   double scale_ = 1.0;  ///< [px/m]
+  double top_ = 0.0;    ///< [px]
   std::string text_;
 };
 
@@ -105,7 +128,7 @@ class Drawing {
 std::string svg_drawing(const Scene& scene) {
   Drawing drawing(scene);
   for (const BlockInput& block : scene.blocks) drawing.add(block);
-  return drawing.finish();
+  return drawing.finish(scene);
 }
 
 }  // namespace openclose

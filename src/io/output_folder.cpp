@@ -8,6 +8,54 @@
 #include "openclose/core/error.h"
 
 namespace openclose {
+namespace {
+
+[[noreturn]] void fail_unwritable(const std::string& path) {
+  throw InputError({path, 0}, "", "cannot be written", "a file in a folder that exists or can be made, and may be written to");
+}
+
+void require_replaceable(const std::string& path) {
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status)) return;
+  if (std::filesystem::is_regular_file(status) && access(path.c_str(), W_OK) == 0) return;
+  throw InputError({path, 0}, "", "is there and cannot be written over", "the name of a new file, or of one that may be replaced");
+}
+
+/// Takes away what was begun and not finished: files that have not got their names yet, and folders made for them that are empty.
+class Unfinished {
+ public:
+  Unfinished() = default;
+  Unfinished(const Unfinished&) = delete;
+  Unfinished& operator=(const Unfinished&) = delete;
+  ~Unfinished() {
+    std::error_code ignored;
+    for (auto path = paths_.rbegin(); path != paths_.rend(); ++path) std::filesystem::remove(*path, ignored);
+  }
+
+  std::string add(const std::string& path) {
+    paths_.push_back(path);
+    return path;
+  }
+
+  void make_folders(const std::string& file) {
+    std::vector<std::filesystem::path> missing;
+    std::error_code error;
+    for (std::filesystem::path folder = std::filesystem::path(file).parent_path(); !folder.empty() && !std::filesystem::exists(folder, error);
+         folder = folder.parent_path()) {
+      missing.push_back(folder);
+    }
+    for (auto folder = missing.rbegin(); folder != missing.rend(); ++folder) {
+      if (!std::filesystem::create_directory(*folder, error) && error) fail_unwritable(file);
+      paths_.push_back(*folder);
+    }
+  }
+
+ private:
+  std::vector<std::filesystem::path> paths_;
+};
+
+}  // namespace
 
 OutputFolder::OutputFolder(const std::string& path) : path_(path) {
   std::error_code error;
@@ -15,7 +63,7 @@ OutputFolder::OutputFolder(const std::string& path) : path_(path) {
   const bool usable = !error && std::filesystem::is_directory(path) && access(path.c_str(), W_OK | X_OK) == 0;
   if (!usable)
     throw InputError({path, 0}, "", "cannot write to this output folder", "-o with a folder that exists or can be made, and may be written to");
-  for (const char* name : {"history.csv", "energy.csv", "blocks.csv", "contacts.csv", "trials.csv", "curve.csv", "summary.json"}) {
+  for (const char* name : {"history.csv", "energy.csv", "blocks.csv", "contacts.csv", "trials.csv", "curve.csv", "milestones.csv", "summary.json"}) {
     const std::string file = path + "/" + name;
     if (!std::filesystem::exists(file)) continue;
     if (std::filesystem::is_regular_file(file) && access(file.c_str(), W_OK) == 0) continue;
@@ -30,12 +78,18 @@ std::ofstream OutputFolder::open(const std::string& name) const {
   return file;
 }
 
-void write_file(const std::string& path, const std::string& text) {
-  const std::filesystem::path place(path);
-  const OutputFolder folder(place.has_parent_path() ? place.parent_path().string() : ".");
-  std::ofstream file = folder.open(place.filename().string());
-  file << text;
-  finish(file, path);
+void write_files(const std::vector<TextFile>& files) {
+  Unfinished unfinished;
+  for (const TextFile& file : files) {
+    require_replaceable(file.path);
+    unfinished.make_folders(file.path);
+    const std::string part = unfinished.add(file.path + ".part");
+    std::ofstream stream(part);
+    if (!stream) fail_unwritable(file.path);
+    stream << file.text;
+    finish(stream, part);
+  }
+  for (const TextFile& file : files) std::filesystem::rename(file.path + ".part", file.path);
 }
 
 void finish(std::ofstream& file, const std::string& name) {

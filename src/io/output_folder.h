@@ -3,6 +3,7 @@
 
 #include <fstream>
 #include <string>
+#include <vector>
 
 namespace openclose {
 
@@ -19,8 +20,14 @@ class OutputFolder {
   std::string path_;
 };
 
-/// Writes a whole file of its own, with the folders it needs. Throws InputError if it cannot be made.
-void write_file(const std::string& path, const std::string& text);
+struct TextFile {
+  std::string path;
+  std::string text;
+};
+
+/// Writes whole files, with the folders they need: all of them, or none and no folder. Old ones are replaced only when all new ones are complete;
+/// until then these have ".part" after their names. Throws InputError if a file cannot be made, std::runtime_error if the disk is full.
+void write_files(const std::vector<TextFile>& files);
 
 /// Closes a file after its last line; throws std::runtime_error if anything of it was not written (a full disk, say).
 void finish(std::ofstream& file, const std::string& name);

@@ -125,6 +125,48 @@ void write_curve(const OutputFolder& folder, const std::vector<CurvePoint>& curv
   finish(file, "curve.csv");
 }
 
+void write_milestones(const OutputFolder& folder, const std::vector<Milestone>& milestones) {
+  std::ofstream file = folder.open("milestones.csv");
+  file << "displacement_m,time_s,cpu_s,cpu_of_program_s,reason\n";
+  for (const Milestone& m : milestones) {
+    if (m.time) {
+      fmt::print(file, "{:.17g},{:.17g},{:.17g},{:.17g},\n", m.displacement, *m.time, m.cpu_of_motion, m.cpu_of_program);
+    } else {
+      fmt::print(file, "{:.17g},,,,{}\n", m.displacement, field(m.reason));
+    }
+  }
+  finish(file, "milestones.csv");
+}
+
+namespace {
+
+nlohmann::ordered_json milestones_json(const std::vector<Milestone>& milestones) {
+  using nlohmann::ordered_json;
+  ordered_json list = ordered_json::array();
+  const ordered_json none;
+  for (const Milestone& m : milestones) {
+    list.push_back({{"displacement_m", m.displacement},
+                    {"time_s", m.time ? ordered_json(*m.time) : none},
+                    {"cpu_s", m.time ? ordered_json(m.cpu_of_motion) : none},
+                    {"cpu_of_program_s", m.time ? ordered_json(m.cpu_of_program) : none},
+                    {"reason", m.reason}});
+  }
+  return list;
+}
+
+nlohmann::ordered_json settling_json(const SettleResult& settling) {
+  nlohmann::ordered_json j = {{"settled", settling.settled}, {"criterion", settling.criterion}, {"steps", settling.steps}};
+  if (settling.relative_displacement) {
+    j["relative_displacement"] = *settling.relative_displacement;
+  } else {
+    j["unbalanced_fraction"] = settling.unbalanced_fraction;
+  }
+  j["displacement_m"] = settling.displacement;
+  return j;
+}
+
+}  // namespace
+
 template <int N>
 void write_summary(const OutputFolder& folder, const Summary& summary, const Simulation<N>& simulation, const FactorOfSafety<N>* safety) {
   using nlohmann::ordered_json;
@@ -151,13 +193,19 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
                   {"max_iterations", scene.method.max_iterations},
                   {"max_displacement_m", scene.step.max_displacement},
                   {"smallest_fraction", scene.step.smallest_fraction},
+                  {"run_strength_reduction_factor", scene.run_strength_reduction_factor},
                   {"end_time_s", scene.end_time},
+                  {"end_displacement_m", scene.end_displacement ? ordered_json(*scene.end_displacement) : ordered_json(nullptr)},
                   {"every_s", scene.output_every},
                   {"settle",
-                   {{"unbalanced_fraction", scene.settle.unbalanced_fraction},
+                   {{"criterion", word_for(settle_criterion_words, scene.settle.criterion)},
+                    {"unbalanced_fraction", scene.settle.unbalanced_fraction},
                     {"first_dt_s", scene.settle.first_dt},
                     {"max_steps", scene.settle.max_steps},
-                    {"failure_displacement_m", scene.settle.failure_displacement}}},
+                    {"failure_displacement_m", scene.settle.failure_displacement},
+                    {"relative_displacement", scene.settle.relative_displacement},
+                    {"steady_steps", scene.settle.steady_steps},
+                    {"max_time_steps", scene.settle.max_time_steps}}},
                   {"strength_reduction", {{"width", scene.strength_reduction.width}, {"upper_limit", scene.strength_reduction.upper_limit}}}};
   j["warnings"] = summary.warnings;
   j["blocks"] = simulation.system().block_count();
@@ -165,13 +213,7 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
   j["converged"] = summary.converged;
   j["reason"] = summary.reason;
   if (!safety) j["time_s"] = simulation.time();
-  if (summary.settling.steps > 0) {
-    j["settling"] = {{"settled", summary.settling.settled},
-                     {"criterion", summary.settling.criterion},
-                     {"steps", summary.settling.steps},
-                     {"unbalanced_fraction", summary.settling.unbalanced_fraction},
-                     {"displacement_m", summary.settling.displacement}};
-  }
+  if (summary.settling.steps > 0) j["settling"] = settling_json(summary.settling);
   if (safety) {
     j["factor_of_safety"] = safety->found ? ordered_json(safety->stable) : ordered_json(nullptr);
     j["bracket"] = {safety->stable, safety->failed};
@@ -180,6 +222,9 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
     ordered_json ledger;
     for (const auto& [name, value] : entries(summary.ledger)) ledger[name] = value;
     j["energy_ledger"] = ledger;
+    j["ended_by"] = summary.ended_by;
+    j["milestones"] = milestones_json(summary.milestones);
+    j["cpu_s"] = {{"start", summary.cpu_of_start}, {"motion", summary.cpu_of_motion}};
   }
   j["max_penetration_m"] = summary.max_penetration;
   j["counters"] = {{"steps", steps.steps},

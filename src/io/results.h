@@ -52,6 +52,9 @@ void write_contacts(const OutputFolder& folder, const std::string& state, Simula
 void write_trials(const OutputFolder& folder, const std::vector<StrengthTrial>& trials);
 void write_curve(const OutputFolder& folder, const std::vector<CurvePoint>& curve);
 
+/// milestones.csv, if the scene asks for any: of one that was not reached time and CPU times are empty.
+void write_milestones(const OutputFolder& folder, const std::vector<Milestone>& milestones);
+
 /// What summary.json says besides the simulation itself.
 struct Summary {
   std::string command;
@@ -63,6 +66,10 @@ struct Summary {
   double max_penetration = 0.0;  ///< [m]
   EnergyLedger ledger;
   SettleResult settling;
+  std::string ended_by;               ///< see RunResult
+  std::vector<Milestone> milestones;  ///< see RunResult
+  double cpu_of_start = 0.0;          ///< [s]
+  double cpu_of_motion = 0.0;         ///< [s]
 };
 
 template <int N>

@@ -35,11 +35,17 @@ void BlockMatrix<N>::set_zero() {
 }
 
 template <int N>
-int BlockMatrix<N>::slot(int row, int column) const {
+int BlockMatrix<N>::find(int row, int column) const {
   const auto begin = columns_.begin() + row_start_[row], end = columns_.begin() + row_start_[row + 1];
   const auto it = std::lower_bound(begin, end, column);
-  if (it == end || *it != column) throw std::logic_error("BlockMatrix: entry outside the pattern");
-  return static_cast<int>(it - columns_.begin());
+  return it == end || *it != column ? -1 : static_cast<int>(it - columns_.begin());
+}
+
+template <int N>
+int BlockMatrix<N>::slot(int row, int column) const {
+  const int s = find(row, column);
+  if (s < 0) throw std::logic_error("BlockMatrix: entry outside the pattern");
+  return s;
 }
 
 template <int N>

@@ -20,6 +20,8 @@ class BlockMatrix {
   int unknowns() const { return N * rows(); }
   long pattern_version() const { return pattern_version_; }  ///< changes with every new pattern, differs between matrices
 
+  bool contains(int row, int column) const { return find(row, column) >= 0; }
+
   void set_zero();
   /// Throws std::logic_error if the pair is not in the pattern.
   void add(int row, int column, const Block& value) { values_[slot(row, column)] += value; }
@@ -36,6 +38,7 @@ class BlockMatrix {
   Eigen::MatrixXd dense() const;
 
  private:
+  int find(int row, int column) const;  ///< -1 if not in the pattern
   int slot(int row, int column) const;
 
   long pattern_version_ = 0;

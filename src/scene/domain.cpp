@@ -13,6 +13,9 @@
 namespace openclose {
 namespace {
 
+/// A limit that still fits into memory.
+constexpr double most_blocks = 1e7;
+
 constexpr Range part{.low = 0.0, .high = 1.0, .low_included = true};
 
 struct DomainInput {
@@ -25,6 +28,7 @@ struct DomainInput {
 struct Region {
   Polygon outline;
   int material = 0;
+  bool any_block = false;  ///< has its centroid inside
 };
 
 DomainInput read_domain(Table& table, const NameList& material_names) {
@@ -38,7 +42,7 @@ DomainInput read_domain(Table& table, const NameList& material_names) {
   table.optional("sliver_area_m2", domain.limits.sliver_area, not_negative);
   table.optional("joint_end_reach_m", domain.limits.end_reach, not_negative);
   table.optional("enclosed_joints", domain.enclosed, enclosed_joints_words);
-  table.optional("max_blocks", domain.limits.max_blocks, count);
+  table.optional("max_blocks", domain.limits.max_blocks, Range{.low = 1.0, .high = most_blocks, .low_included = true, .high_included = true});
   table.finish();
 
   domain.shape.outer = outline(table.at("vertices_m"), outer, "domain");
@@ -234,11 +238,21 @@ CuttingSummary summary_of(const Cutting& cutting, const Joints& joints, const Do
   return summary;
 }
 
-int material_at(const Vec2& centroid, const std::vector<Region>& regions, int otherwise) {
-  for (auto region = regions.rbegin(); region != regions.rend(); ++region) {
-    if (contains(region->outline, centroid)) return region->material;
+/// Of the last region around the centroid; notes every region that has it inside.
+int material_at(const Vec2& centroid, std::vector<Region>& regions, int otherwise) {
+  int material = otherwise;
+  for (Region& region : regions) {
+    if (!contains(region.outline, centroid)) continue;
+    region.any_block = true;
+    material = region.material;
   }
-  return otherwise;
+  return material;
+}
+
+void refuse_empty_regions(const std::vector<Region>& regions, const std::vector<Table>& tables) {
+  for (std::size_t i = 0; i < regions.size(); ++i) {
+    if (!regions[i].any_block) tables[i].fail("no block of the domain has its centroid in the region", "a polygon around the centroids of blocks");
+  }
 }
 
 }  // namespace
@@ -269,6 +283,7 @@ void cut_domain(const CuttingTables& tables, const NameList& material_names, Nam
     block_names.add(table.at("vertices_m"), block.name);
     scene.blocks.push_back(std::move(block));
   }
+  refuse_empty_regions(regions, tables.regions);
   scene.cutting = summary_of(cutting, joints, domain, table);
 }
 

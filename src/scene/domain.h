@@ -29,7 +29,8 @@ struct CuttingTables {
 /// joints and regions). Blocks are named b0001, b0002 ... by height of the centroid, then from left to right, so that their names do not depend on
 /// the order of the joints; the material is that of the last [[region]] that contains the centroid, or else the domain's.
 /// Throws InputError, for what is written and for what comes of it: a joint that misses the domain, a set that bounds no block, sets that run along
-/// each other, no blocks or too many of them, blocks that would have holes.
+/// each other, no blocks or too many of them, blocks that would have holes, a region without
+/// blocks.
 void cut_domain(const CuttingTables& tables, const NameList& material_names, NameList& block_names, Scene& scene);
 
 /// Fixes every block, cut or written, that touches one of these lines over more than a point (tolerance::touching_m,

@@ -32,6 +32,11 @@ inline constexpr std::array rotation_words{
     Word{"linear", RotationKind::linear},
 };
 
+inline constexpr std::array settle_criterion_words{
+    Word{"unbalanced_force", SettleCriterion::unbalanced_force},
+    Word{"paper", SettleCriterion::paper},
+};
+
 inline constexpr std::array start_words{
     Word{"unloaded", Start::unloaded},
     Word{"settled", Start::settled},

@@ -226,20 +226,45 @@ StepInput read_step(Table table) {
   return step;
 }
 
-double read_single(Table table, const std::string& key) {
-  double value = 0.0;
-  table.optional(key, value, not_negative);
+void read_run(Table table, Scene& scene) {
+  table.optional("strength_reduction_factor", scene.run_strength_reduction_factor, positive);
   table.finish();
-  return value;
+}
+
+void read_end(Table table, Scene& scene) {
+  table.optional("time_s", scene.end_time, not_negative);
+  table.optional("displacement_m", scene.end_displacement, positive);
+  table.finish();
+}
+
+/// What is met one after the other in a run is also written so: it names its rows and states.
+void require_increasing(const Value& value, const std::vector<double>& list) {
+  for (std::size_t i = 1; i < list.size(); ++i) {
+    if (list[i] <= list[i - 1]) value.element(i).fail(fmt::format("{} follows {}", list[i], list[i - 1]), "numbers that increase");
+  }
+}
+
+void read_output(Table table, Scene& scene) {
+  table.optional("every_s", scene.output_every, not_negative);
+  const bool has_milestones = table.optional("milestones_m", scene.milestones, positive);
+  const bool has_snapshots = table.optional("snapshots_s", scene.snapshot_times, not_negative);
+  table.finish();
+
+  if (has_milestones) require_increasing(table.at("milestones_m"), scene.milestones);
+  if (has_snapshots) require_increasing(table.at("snapshots_s"), scene.snapshot_times);
 }
 
 SettleInput read_settle(Table table) {
   SettleInput settle;
+  table.optional("criterion", settle.criterion, settle_criterion_words);
   table.optional("unbalanced_fraction", settle.unbalanced_fraction, between_0_and_1);
   table.optional("first_dt_s", settle.first_dt, positive);
   table.optional("max_steps", settle.max_steps, count);
   table.optional("max_explicit_steps", settle.max_explicit_steps, count);
   table.optional("failure_displacement_m", settle.failure_displacement, positive);
+  table.optional("relative_displacement", settle.relative_displacement, between_0_and_1);
+  table.optional("steady_steps", settle.steady_steps, count);
+  table.optional("max_time_steps", settle.max_time_steps, count);
   table.finish();
   return settle;
 }
@@ -275,6 +300,7 @@ Scene interpret(const toml::table& document, const std::string& file) {
   const std::vector<Table> measured_points = root.tables("measured_point");
   const Table method = root.table("method");
   const Table step = root.table("step");
+  const Table run = root.table("run");
   const Table end = root.table("end");
   const Table output = root.table("output");
   const Table settle = root.table("settle");
@@ -296,8 +322,9 @@ Scene interpret(const toml::table& document, const std::string& file) {
   for (const Table& table : measured_points) scene.measured_points.push_back(read_measured_point(table, scene, block_names, point_names));
   scene.method = read_method(method, scene.where);
   scene.step = read_step(step);
-  scene.end_time = read_single(end, "time_s");
-  scene.output_every = read_single(output, "every_s");
+  read_run(run, scene);
+  read_end(end, scene);
+  read_output(output, scene);
   scene.settle = read_settle(settle);
   scene.strength_reduction = read_strength_reduction(strength_reduction);
   return scene;

@@ -114,6 +114,12 @@ struct StepInput {
   double smallest_fraction = 1e-6;  ///< [-] of dt, below which cutting is given up
 };
 
+/// What tells that a scene has settled.
+enum class SettleCriterion {
+  unbalanced_force,  ///< static steps until forces are in balance
+  paper,             ///< the reference paper's: steps in time until blocks move little in a step
+};
+
 /// Static settling: when it is done, and when it has failed.
 struct SettleInput {
   double unbalanced_fraction = 1e-8;  ///< [-] largest unbalanced force over the weight of the heaviest free block
@@ -121,6 +127,10 @@ struct SettleInput {
   int max_steps = 200;
   int max_explicit_steps = 1000000;   ///< dem: instead of max_steps
   double failure_displacement = 1.0;  ///< [m] a block that moved farther is failing
+  SettleCriterion criterion = SettleCriterion::unbalanced_force;
+  double relative_displacement = 1e-5;  ///< [-] paper: of a step, over half the height of the model
+  int steady_steps = 100;               ///< paper: steps in a row that must stay below
+  int max_time_steps = 10000;           ///< paper: of step.dt, for the first settling
 };
 
 struct StrengthReductionInput {
@@ -157,8 +167,12 @@ struct Scene {
   std::vector<MeasuredPoint> measured_points;
   MethodInput method;
   StepInput step;
-  double end_time = 0.0;        ///< [s]
-  double output_every = 0.0;    ///< [s] interval of the history rows; 0: every step
+  double run_strength_reduction_factor = 1.0;  ///< [-] on the strength of the joints in the motion, see RunResult
+  double end_time = 0.0;                       ///< [s]
+  std::optional<double> end_displacement;      ///< [m] of any measured point; ends the run before its time
+  double output_every = 0.0;                   ///< [s] interval of the history rows; 0: every step
+  std::vector<double> milestones;              ///< [m] displacements of the first measured point to be timed, increasing
+  std::vector<double> snapshot_times;          ///< [s] at which the blocks are drawn, increasing
   SettleInput settle;
   StrengthReductionInput strength_reduction;
 

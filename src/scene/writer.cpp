@@ -144,19 +144,28 @@ void write_run(Text& text, const Scene& scene) {
   text.line_unless(0.0, "dt_s", scene.step.dt);
   text.line("max_displacement_m", scene.step.max_displacement);
   text.line("smallest_fraction", scene.step.smallest_fraction);
+  text.header("[run]");
+  text.line("strength_reduction_factor", scene.run_strength_reduction_factor);
   text.header("[end]");
   text.line("time_s", scene.end_time);
+  if (scene.end_displacement) text.line("displacement_m", *scene.end_displacement);
   text.header("[output]");
   text.line("every_s", scene.output_every);
+  text.line("milestones_m", scene.milestones);
+  text.line("snapshots_s", scene.snapshot_times);
 }
 
 void write_statics(Text& text, const SettleInput& settle, const StrengthReductionInput& reduction) {
   text.header("[settle]");
+  text.line("criterion", word_for(settle_criterion_words, settle.criterion));
   text.line("unbalanced_fraction", settle.unbalanced_fraction);
   text.line("first_dt_s", settle.first_dt);
   text.line("max_steps", settle.max_steps);
   text.line("max_explicit_steps", settle.max_explicit_steps);
   text.line("failure_displacement_m", settle.failure_displacement);
+  text.line("relative_displacement", settle.relative_displacement);
+  text.line("steady_steps", settle.steady_steps);
+  text.line("max_time_steps", settle.max_time_steps);
   text.header("[strength_reduction]");
   text.line("width", reduction.width);
   text.line("upper_limit", reduction.upper_limit);

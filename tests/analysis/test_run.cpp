@@ -185,3 +185,167 @@ TEST_CASE("a measured point goes round with its block", "[analysis][run]") {
     CHECK(points.motions().at(0).rotation == Approx(0.5 * std::numbers::pi).epsilon(1e-12));
   }
 }
+
+namespace {
+
+constexpr double slope = 20.0 * test::degree;
+
+/// Holds with its own friction of 30 degrees, slides with half of it.
+Scene reduced_slider(Start start) {
+  Scene scene = test::block_on_incline(slope);
+  scene.method.start = start;
+  scene.run_strength_reduction_factor = 2.0;
+  scene.end_time = 0.4;
+  return scene;
+}
+
+double sliding_distance(double time) {
+  return 0.5 * 9.81 * (std::sin(slope) - 0.5 * std::tan(30.0 * test::degree) * std::cos(slope)) * time * time;
+}
+
+}  // namespace
+
+TEST_CASE("a run with reduced strength settles with the full one and slides with the reduced one", "[analysis][run]") {
+  for (const std::string method : {"soft", "hard"}) {
+    INFO(method);
+    Scene scene = reduced_slider(Start::settled);
+    scene.method.contact = method;
+    Simulation<3> simulation(scene);
+    MeasuredPoints<3> points(simulation);
+    RunObserver<3> observer;
+    observer.started = [&](const Simulation<3>& s) {
+      points.restart();
+      CHECK(s.ledger().turnover == 0.0);
+    };
+    const RunResult result = run(simulation, observer);
+    REQUIRE(result.converged);
+    CHECK(result.settling.settled);
+    // The shear springs that held the block let go in the first hundredth of a second: W sin(slope)/ks is less than 0.1 mm.
+    CHECK(points.largest_displacement() == Approx(sliding_distance(0.4)).margin(5e-4));
+    CHECK(std::abs(simulation.ledger().imbalance()) < 1e-6 * simulation.ledger().turnover);
+  }
+}
+
+TEST_CASE("starts that do not settle have the reduced strength from the beginning", "[analysis][run]") {
+  const Start start = GENERATE(Start::unloaded, Start::normal_balanced, Start::steady_sliding, Start::settled);
+  Simulation<3> simulation(reduced_slider(start));
+  REQUIRE(prepare_start(simulation).converged);
+  CHECK(simulation.joints().joint(0).friction_angle == Approx(std::atan(0.5 * std::tan(30.0 * test::degree))).epsilon(1e-15));
+}
+
+TEST_CASE("steady sliding goes on as it starts with reduced strength, too", "[analysis][run]") {
+  Simulation<3> simulation(reduced_slider(Start::steady_sliding));
+  MeasuredPoints<3> points(simulation);
+  RunObserver<3> observer;
+  observer.started = [&](const Simulation<3>&) { points.restart(); };
+  REQUIRE(run(simulation, observer).converged);
+  CHECK(points.largest_displacement() == Approx(sliding_distance(0.4)).epsilon(1e-9));
+}
+
+TEST_CASE("a run ends by displacement or by time and says which", "[analysis][run]") {
+  Scene scene = test::falling_block();
+  scene.end_displacement = 1.0;
+  const double fall = std::sqrt(2.0 / 9.81);
+  SECTION("far enough") {
+    scene.end_time = 10.0;
+    scene.output_every = 0.1;
+    Simulation<3> simulation(scene);
+    double last_output = 0.0, last_share = 0.0;
+    RunObserver<3> observer;
+    observer.output = [&](const Simulation<3>& s) { last_output = s.time(); };
+    observer.progress = [&](double share) { last_share = share; };
+    const RunResult result = run(simulation, observer);
+    CHECK(result.converged);
+    CHECK(result.ended_by == "end.displacement_m");
+    CHECK(result.warnings.empty());
+    CHECK(simulation.time() >= fall);
+    CHECK(simulation.time() < fall + scene.step.dt);
+    CHECK(last_output == simulation.time());
+    CHECK(last_share == 1.0);
+  }
+  SECTION("not before its time") {
+    scene.end_time = 0.4;
+    Simulation<3> simulation(scene);
+    const RunResult result = run<3>(simulation, {});
+    CHECK(result.converged);
+    CHECK(result.ended_by == "end.time_s");
+    REQUIRE(result.warnings.size() == 1);
+    CHECK_THAT(result.warnings[0], ContainsSubstring("the run ended at t = 0.4 s, before any measured point had moved 1 m: farthest 0.7848 m"));
+  }
+}
+
+TEST_CASE("milestones are timed within the step", "[analysis][run]") {
+  Scene scene = test::falling_block();
+  scene.milestones = {0.1, 0.1001, 0.5, 2.0};
+  scene.end_time = 0.5;
+  Simulation<3> simulation(scene);
+  std::vector<std::string> states;
+  RunObserver<3> observer;
+  observer.snapshot = [&](const std::string& state, const Simulation<3>&) { states.push_back(state); };
+  const RunResult result = run(simulation, observer);
+  REQUIRE(result.milestones.size() == 4);
+  double cpu = 0.0;
+  for (int i = 0; i < 3; ++i) {
+    const Milestone& m = result.milestones[i];
+    CHECK(m.displacement == scene.milestones[i]);
+    const double exact = std::sqrt(2.0 * m.displacement / 9.81);
+    // Constant acceleration is integrated exactly; a chord of the parabola lies g dt^2/8 at most beside it.
+    REQUIRE(m.time);
+    CHECK(*m.time == Approx(exact).margin(scene.step.dt * scene.step.dt / (8.0 * exact) * 1.01));
+    CHECK(m.reason.empty());
+    CHECK(m.cpu_of_motion >= cpu);
+    CHECK(m.cpu_of_program >= m.cpu_of_motion);
+    cpu = m.cpu_of_motion;
+  }
+  CHECK(result.cpu_of_motion >= cpu);
+  CHECK_FALSE(result.milestones[3].time);
+  CHECK(result.milestones[3].reason == "the run ended at t = 0.5 s with the first measured point moved by 1.22625 m");
+  CHECK(result.warnings == std::vector<std::string>{"milestone 2 m not reached: " + result.milestones[3].reason});
+  CHECK(states == std::vector<std::string>{"moved 0.1 m", "moved 0.1001 m", "moved 0.5 m"});
+}
+
+TEST_CASE("snapshots are taken after the nearest step", "[analysis][run]") {
+  Scene scene = test::falling_block();
+  scene.step.dt = 0.03;
+  scene.step.max_displacement = 1.0;
+  scene.end_time = 0.1;
+  scene.snapshot_times = {0.0, 0.044, 0.046, 0.0949, 0.1, 0.11};
+  Simulation<3> simulation(scene);
+  std::vector<std::pair<std::string, double>> taken;
+  RunObserver<3> observer;
+  observer.snapshot = [&](const std::string& state, const Simulation<3>& s) { taken.emplace_back(state, s.time()); };
+  const RunResult result = run(simulation, observer);
+  const std::vector<std::pair<std::string, double>> expected{{"t=0", 0.0}, {"t=0.044", 0.03}, {"t=0.046", 0.06}, {"t=0.0949", 0.09}, {"t=0.1", 0.1}};
+  CHECK(taken == expected);
+  CHECK(result.warnings == std::vector<std::string>{"no snapshot at t = 0.11 s: the run ended at t = 0.1 s"});
+}
+
+TEST_CASE("a run that does not start has no milestones and says so", "[analysis][run]") {
+  Scene scene = test::block_on_incline(40.0 * test::degree);
+  scene.method.start = Start::settled;
+  scene.settle.failure_displacement = 0.01;
+  scene.end_time = 1.0;
+  scene.milestones = {1.0};
+  scene.snapshot_times = {0.5};
+  Simulation<3> simulation(scene);
+  const RunResult result = run<3>(simulation, {});
+  CHECK_FALSE(result.converged);
+  CHECK(result.ended_by.empty());
+  REQUIRE(result.milestones.size() == 1);
+  CHECK_FALSE(result.milestones[0].time);
+  CHECK_FALSE(result.milestones[0].reason.empty());
+  CHECK(result.warnings.size() == 2);
+}
+
+TEST_CASE("settling tells how far it is", "[analysis][run]") {
+  Scene scene = test::column_of_blocks(3);
+  scene.method.start = Start::settled;
+  scene.settle.criterion = GENERATE(SettleCriterion::unbalanced_force, SettleCriterion::paper);
+  Simulation<3> simulation(scene);
+  std::vector<double> shares;
+  const RunResult result = prepare_start(simulation, [&](double share) { shares.push_back(share); });
+  REQUIRE(result.converged);
+  CHECK(static_cast<int>(shares.size()) == result.settling.steps);
+  for (double share : shares) CHECK((share >= 0.0 && share <= 1.0));
+  CHECK(shares.back() == 1.0);
+}

@@ -222,6 +222,20 @@ TEST_CASE("missing step or end", "[cli][bad_input]") {
   CHECK_THAT(refusal(place, "run scene.toml -o out --end 1"), ContainsSubstring("scene.toml: step.dt_s: missing") && ContainsSubstring("--dt"));
   CHECK_THAT(refusal(place, "run scene.toml -o out --dt 0.1"), ContainsSubstring("scene.toml: end.time_s: missing") && ContainsSubstring("--end"));
   CHECK_THAT(refusal(place, "fos scene.toml -o out --set strength_reduction.curve_time_s=1"), ContainsSubstring("scene.toml: step.dt_s: missing"));
+  CHECK_THAT(refusal(place, "fos scene.toml -o out --set settle.criterion=paper"),
+             ContainsSubstring("scene.toml: step.dt_s: missing") && ContainsSubstring("settle.criterion asks for motion"));
+  CHECK_THAT(refusal(place, "run scene.toml -o out --dt 0.1 --set end.displacement_m=1"), ContainsSubstring("scene.toml: end.time_s: missing"));
+}
+
+TEST_CASE("options of a run that mean nothing", "[cli][bad_input]") {
+  CHECK_THAT(refusal_of_scene(block_on_base, " --set run.strength_reduction_factor=0"),
+             ContainsSubstring("run.strength_reduction_factor: 0 is out of range"));
+  CHECK_THAT(refusal_of_scene(block_on_base, " --set end.displacement_m=-1"), ContainsSubstring("end.displacement_m: -1 is out of range"));
+  CHECK_THAT(refusal_of_scene(block_on_base, " --set output.milestones_m=[2,1]"), ContainsSubstring("output.milestones_m[1]: 1 follows 2"));
+  CHECK_THAT(refusal_of_scene(block_on_base, " --set output.snapshots_s=[-1]"), ContainsSubstring("output.snapshots_s[0]: -1 is out of range"));
+  CHECK_THAT(refusal_of_scene(block_on_base, " --set settle.criterion=force"), ContainsSubstring("settle.criterion: \"force\" is not known"));
+  CHECK_THAT(refusal_of_scene(block_on_base, " --set settle.relative_displacement=1"),
+             ContainsSubstring("settle.relative_displacement: 1 is out of range"));
 }
 
 TEST_CASE("more steps than anyone waits for", "[cli][bad_input]") {

@@ -217,3 +217,74 @@ TEST_CASE("check tells what it has read and writes nothing", "[cli]") {
   CHECK_THAT(result.out, ContainsSubstring("2 blocks, 1 of them free, 4 m2; 2 contacts") && ContainsSubstring("method hard"));
   CHECK(place.folder().entries() == std::set<std::string>{"scene.toml"});
 }
+
+TEST_CASE("a failing slope: reduced strength, milestones, snapshots, end by displacement", "[cli]") {
+  const Workplace place(openclose::test::block_on_incline(30.0));
+  const std::string arguments =
+      " --dt 0.001 --end 9 --set run.strength_reduction_factor=2 --set end.displacement_m=0.3 --set 'output.milestones_m=[0.1, 0.2]' "
+      "--set 'output.snapshots_s=[0, 0.25]' --set output.every_s=0.1";
+  const CommandResult result = place.run("run scene.toml -o out" + arguments);
+  CHECK(result.status == 0);
+  CHECK(result.errors.empty());
+  CHECK_THAT(result.out, ContainsSubstring("(end.displacement_m)"));
+  const std::string out = place.folder() / "out";
+  std::set<std::string> states;
+  for (const std::string& line : lines_of(out + "/blocks.csv")) states.insert(fields_of(line)[0]);
+  CHECK(states == std::set<std::string>{"state", "initial", "start", "t=0", "moved 0.1 m", "moved 0.2 m", "t=0.25", "final"});
+
+  const auto summary = summary_in(out);
+  CHECK(summary.at("converged") == true);
+  CHECK(summary.at("ended_by") == "end.displacement_m");
+  CHECK(summary.at("settling").at("settled") == true);
+  CHECK(summary.at("warnings").empty());
+  REQUIRE(summary.at("milestones").size() == 2);
+  const double degree = std::numbers::pi / 180.0;
+  const double acceleration = 9.81 * (std::sin(30.0 * degree) - 0.5 * std::tan(35.0 * degree) * std::cos(30.0 * degree));
+  // The springs let go of less than 0.1 mm at the beginning, which is dt = d(d)/v here.
+  const double time = summary.at("milestones")[0].at("time_s");
+  CHECK(time == Approx(std::sqrt(0.2 / acceleration)).margin(5e-4 / std::sqrt(0.2 * acceleration)));
+  const auto milestones = lines_of(out + "/milestones.csv");
+  REQUIRE(milestones.size() == 3);
+  CHECK(std::stod(fields_of(milestones[1])[1]) == time);
+  const auto history = lines_of(out + "/history.csv");
+  CHECK(std::stod(fields_of(history.back())[0]) == summary.at("time_s"));
+
+  // CPU times differ from run to run and stand in summary.json and milestones.csv only.
+  CHECK(place.run("run scene.toml -o again" + arguments).status == 0);
+  for (const char* file : {"history.csv", "energy.csv", "blocks.csv", "contacts.csv"}) {
+    CHECK(text_of(place.folder() / "out/" + file) == text_of(place.folder() / "again/" + file));
+  }
+}
+
+TEST_CASE("what was asked for and did not come is worth a warning", "[cli]") {
+  const Workplace place;
+  const CommandResult result = place.run(
+      "run scene.toml -o out --dt 0.001 --end 0.01 --set end.displacement_m=1 --set output.milestones_m=[2] --set output.snapshots_s=[3]");
+  CHECK(result.status == 0);
+  REQUIRE(result.errors.size() == 3);
+  CHECK_THAT(result.errors[0], StartsWith("openclose: warning: milestone 2 m not reached: the run ended at t = 0.01 s"));
+  CHECK_THAT(result.errors[1], StartsWith("openclose: warning: no snapshot at t = 3 s"));
+  CHECK_THAT(result.errors[2], ContainsSubstring("before any measured point had moved 1 m"));
+  const auto summary = summary_in(place.folder() / "out");
+  CHECK(summary.at("ended_by") == "end.time_s");
+  CHECK(summary.at("warnings").size() == 3);
+  CHECK(summary.at("milestones")[0].at("time_s").is_null());
+}
+
+TEST_CASE("factor of safety by the paper's criterion", "[cli]") {
+  const Workplace place(openclose::test::block_on_incline(30.0));
+  const CommandResult result = place.run(
+      "fos scene.toml -o out --dt 0.001 --set settle.criterion=paper --set settle.relative_displacement=1e-8 --set run.strength_reduction_factor=2");
+  CHECK(result.status == 0);
+  REQUIRE(result.errors.size() == 1);
+  CHECK_THAT(result.errors[0], ContainsSubstring("run.strength_reduction_factor is for run"));
+  CHECK_THAT(result.out, StartsWith("factor of safety 1.21"));
+  CHECK(summary_in(place.folder() / "out").at("criterion") == "steps");
+  CHECK_THAT(text_of(place.folder() / "out/trials.csv"), ContainsSubstring("\n1,bracket,1,relative displacement,"));
+}
+
+TEST_CASE("help of check says what it does not do", "[cli]") {
+  const CommandResult result = Workplace().run("check --help");
+  CHECK(result.status == 0);
+  CHECK_THAT(result.out, ContainsSubstring("whether it settles"));
+}

@@ -97,10 +97,10 @@ TEST_CASE("candidates are pairs with a free block, lower number first, in order"
                           free_block("distant", rectangle(20.0, 0.0, 1.0, 1.0))}));
   const std::vector<std::pair<int, int>> expected{{0, 1}, {0, 2}, {1, 2}, {1, 3}};
   CHECK(d.detector.candidate_pairs() == expected);
-  const long version = d.detector.pairs_version();
+  const long version = d.detector.counters().searches;
   d.update();
-  CHECK(d.detector.pairs_version() == version);
+  CHECK(d.detector.counters().searches == version);
   d.move(4, 1.0, 0.0);
   d.update();
-  CHECK(d.detector.pairs_version() != version);
+  CHECK(d.detector.counters().searches != version);
 }

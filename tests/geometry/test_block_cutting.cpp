@@ -367,6 +367,20 @@ TEST_CASE("slivers go to the neighbour with the longest common edge", "[geometry
   }
 }
 
+TEST_CASE("slivers around a hole do not fill it", "[geometry][cutting]") {
+  // Two wedges and the rest of the domain meet around the hole: with both wedges gone to the rest only one joint would lead to it.
+  const PolygonWithHoles domain{rectangle(0.0, 0.0, 4.0, 4.0), {rectangle(2.0, 2.0, 2.001, 2.001)}};
+  CuttingLimits limits;
+  limits.sliver_width = 0.1;
+  const Vec2 middle(2.0005, 2.0005);
+  const Cutting cutting = cut(domain, {{middle, {2.05, 5.0}}, {middle, {2.0005, 5.0}}, {middle, {1.95, 5.0}}}, limits);
+  CHECK(cutting.loose_holes.empty());
+  check_sound(cutting, domain);
+  CHECK(cutting.slivers_merged == 1);
+  CHECK(cutting.slivers_left == 1);
+  CHECK(cutting.blocks.size() == 2);
+}
+
 TEST_CASE("random joints: areas, vertices, overlaps", "[geometry][cutting]") {
   std::mt19937_64 generator(17);
   const PolygonWithHoles domain{{{0.0, 0.0}, {10.0, 0.0}, {10.0, 6.0}, {6.0, 6.0}, {5.0, 9.0}, {4.0, 5.0}, {0.0, 7.0}}, {}};

@@ -66,8 +66,7 @@ struct Probe {
     }
     BlockSystem<3> moved = here.system;
     for (int b : moved.free_blocks()) moved.advance(b, of(b));
-    const StepProblem<3> there{moved,       here.external, here.joints,  here.contacts, here.candidate_pairs, here.candidates_version,
-                               here.method, here.dt,       here.statics, here.inertia,  here.end_weight};
+    const StepProblem<3> there{moved, here.external, here.joints, here.contacts, here.method, here.dt, here.statics, here.inertia, here.end_weight};
     return newton.forces(there, moved_springs);
   }
 

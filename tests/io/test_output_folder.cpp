@@ -30,6 +30,28 @@ TEST_CASE("an existing output folder keeps its other files", "[io][output_folder
   CHECK(test::text_of(place / "mine.txt") == "kept");
 }
 
+TEST_CASE("files are written together or not at all", "[io][output_folder]") {
+  const TemporaryFolder place;
+  place.write("file", "x");
+  SECTION("with the folders they need") {
+    write_files({{place / "a/b/one", "1"}, {place / "a/two", "2"}, {place / "file", "3"}});
+    CHECK(test::text_of(place / "a/b/one") == "1");
+    CHECK(test::text_of(place / "a/two") == "2");
+    CHECK(test::text_of(place / "file") == "3");
+    CHECK_FALSE(std::filesystem::exists(place / "a/two.part"));
+  }
+  SECTION("none, and no folder, if one cannot be made") {
+    CHECK_THROWS_AS(write_files({{place / "a/b/one", "1"}, {place / "file", "2"}, {place / "file/below", "3"}}), InputError);
+    CHECK(place.entries() == std::set<std::string>{"file"});
+    CHECK(test::text_of(place / "file") == "x");
+  }
+  SECTION("a folder is not written over") {
+    std::filesystem::create_directory(place / "folder");
+    CHECK_THROWS_WITH(write_files({{place / "one", "1"}, {place / "folder", "2"}}), ContainsSubstring("folder: is there and cannot be written over"));
+    CHECK(place.entries() == std::set<std::string>{"file", "folder"});
+  }
+}
+
 TEST_CASE("output folders that cannot be are refused", "[io][output_folder]") {
   const TemporaryFolder place;
   place.write("file", "x");

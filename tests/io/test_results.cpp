@@ -189,6 +189,60 @@ TEST_CASE("trials.csv and curve.csv", "[io][results]") {
         "1.1000000000000001,\"crest, left\",0.33333333333333331\n");
 }
 
+TEST_CASE("milestones: the missing ones have a reason in place of times", "[io][results]") {
+  const TemporaryFolder place;
+  const OutputFolder folder(place.path());
+  const std::vector<Milestone> milestones = {{10.0, 1.0 / 3.0, 0.5, 0.75, ""}, {40.0, std::nullopt, 0.0, 0.0, "stopped, early"}};
+  write_milestones(folder, milestones);
+  CHECK(test::text_of(place / "milestones.csv") ==
+        "displacement_m,time_s,cpu_s,cpu_of_program_s,reason\n"
+        "10,0.33333333333333331,0.5,0.75,\n"
+        "40,,,,\"stopped, early\"\n");
+
+  Simulation<3> simulation(test::block_on_base());
+  Summary summary;
+  summary.milestones = milestones;
+  summary.ended_by = "end.displacement_m";
+  summary.cpu_of_start = 0.25;
+  summary.cpu_of_motion = 0.6;
+  write_summary(folder, summary, simulation);
+  const nlohmann::json j = summary_json(place);
+  REQUIRE(j.at("milestones").size() == 2);
+  const nlohmann::json &reached = j.at("milestones")[0], &missing = j.at("milestones")[1];
+  CHECK(reached.at("displacement_m") == 10.0);
+  CHECK(same_bits(reached.at("time_s").get<double>(), 1.0 / 3.0));
+  CHECK(reached.at("cpu_s") == 0.5);
+  CHECK(reached.at("cpu_of_program_s") == 0.75);
+  CHECK(missing.at("displacement_m") == 40.0);
+  for (const char* key : {"time_s", "cpu_s", "cpu_of_program_s"}) CHECK(missing.at(key).is_null());
+  CHECK(missing.at("reason") == "stopped, early");
+  CHECK(j.at("ended_by") == "end.displacement_m");
+  CHECK(j.at("cpu_s").at("start") == 0.25);
+  CHECK(j.at("cpu_s").at("motion") == 0.6);
+  CHECK(j.at("options").at("end_displacement_m").is_null());
+}
+
+TEST_CASE("summary.json of a start by the paper's criterion", "[io][results]") {
+  const TemporaryFolder place;
+  Scene scene = test::block_on_base();
+  scene.settle.criterion = SettleCriterion::paper;
+  scene.end_displacement = 2.0;
+  scene.run_strength_reduction_factor = 1.5;
+  Simulation<3> simulation(scene);
+  Summary summary;
+  summary.settling.steps = 7;
+  summary.settling.criterion = "steps";
+  summary.settling.relative_displacement = 1e-3;
+  write_summary(OutputFolder(place.path()), summary, simulation);
+  const nlohmann::json j = summary_json(place);
+  CHECK(j.at("settling").at("relative_displacement") == 1e-3);
+  CHECK_FALSE(j.at("settling").contains("unbalanced_fraction"));
+  CHECK(j.at("options").at("settle").at("criterion") == "paper");
+  CHECK(j.at("options").at("settle").at("relative_displacement") == 1e-5);
+  CHECK(j.at("options").at("end_displacement_m") == 2.0);
+  CHECK(j.at("options").at("run_strength_reduction_factor") == 1.5);
+}
+
 TEST_CASE("summary.json of a run", "[io][results]") {
   const TemporaryFolder place;
   Scene scene = test::block_on_base();

@@ -34,6 +34,12 @@ TEST_CASE("a small scene gets the defaults of the structs", "[scene][reader]") {
   CHECK_FALSE(scene.method.penalty);
   CHECK(scene.step.dt == 0.0);
   CHECK(scene.end_time == 0.0);
+  CHECK_FALSE(scene.end_displacement);
+  CHECK(scene.run_strength_reduction_factor == 1.0);
+  CHECK(scene.milestones.empty());
+  CHECK(scene.snapshot_times.empty());
+  CHECK(scene.settle.criterion == SettleCriterion::unbalanced_force);
+  CHECK(scene.settle.relative_displacement == 1e-5);
 }
 
 TEST_CASE("every key reaches its field", "[scene][reader]") {
@@ -53,8 +59,10 @@ TEST_CASE("every key reaches its field", "[scene][reader]") {
       "max_iterations = 10\nskip_search = false\npenalty_pa_per_m = 11\npenalty_shear_ratio = 0.5\npenetration_tolerance_m = 12\n"
       "closing_tolerance_m = 0\nmax_open_close_iterations = 13.0\nstep_cut = 0.25\n"
       "[step]\ndt_s = 0.01\nmax_displacement_m = 14\nsmallest_fraction = 1\n"
-      "[end]\ntime_s = 15\n[output]\nevery_s = 16\n"
+      "[run]\nstrength_reduction_factor = 1.5\n"
+      "[end]\ntime_s = 15\ndisplacement_m = 40\n[output]\nevery_s = 16\nmilestones_m = [10, 20.5]\nsnapshots_s = [0, 1.522]\n"
       "[settle]\nunbalanced_fraction = 1e-3\nfirst_dt_s = 17\nmax_steps = 18\nfailure_displacement_m = 19\n"
+      "criterion = 'paper'\nrelative_displacement = 1e-6\nsteady_steps = 22\nmax_time_steps = 23\n"
       "[strength_reduction]\nwidth = 0.125\nupper_limit = 20\ncurve = [1, 1.5]\ncurve_time_s = 21\n");
   CHECK(scene.title == "all of it");
   CHECK(scene.gravity == Vec2(1.0, -2.5));
@@ -103,10 +111,18 @@ TEST_CASE("every key reaches its field", "[scene][reader]") {
   CHECK(scene.step.smallest_fraction == 1.0);
   CHECK(scene.end_time == 15.0);
   CHECK(scene.output_every == 16.0);
+  CHECK(scene.run_strength_reduction_factor == 1.5);
+  CHECK(scene.end_displacement == 40.0);
+  CHECK(scene.milestones == std::vector<double>{10.0, 20.5});
+  CHECK(scene.snapshot_times == std::vector<double>{0.0, 1.522});
   CHECK(scene.settle.unbalanced_fraction == 1e-3);
   CHECK(scene.settle.first_dt == 17.0);
   CHECK(scene.settle.max_steps == 18);
   CHECK(scene.settle.failure_displacement == 19.0);
+  CHECK(scene.settle.criterion == SettleCriterion::paper);
+  CHECK(scene.settle.relative_displacement == 1e-6);
+  CHECK(scene.settle.steady_steps == 22);
+  CHECK(scene.settle.max_time_steps == 23);
   CHECK(scene.strength_reduction.width == 0.125);
   CHECK(scene.strength_reduction.upper_limit == 20.0);
   CHECK(scene.strength_reduction.curve == std::vector<double>{1.0, 1.5});

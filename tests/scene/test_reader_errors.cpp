@@ -191,6 +191,16 @@ TEST_CASE("options out of range", "[scene][reader][errors]") {
       {"step", "smallest_fraction = 2", "2", "a number in (0, 1]"},
       {"end", "time_s = -1", "-1", "a number >= 0"},
       {"output", "every_s = -1", "-1", "a number >= 0"},
+      {"end", "displacement_m = 0", "0", "a number > 0"},
+      {"end", "displacement_m = -1", "-1", "a number > 0"},
+      {"run", "strength_reduction_factor = 0", "0", "a number > 0"},
+      {"run", "strength_reduction_factor = -1.2", "-1.2", "a number > 0"},
+      {"settle", "relative_displacement = 0", "0", "a number in (0, 1)"},
+      {"settle", "relative_displacement = 1", "1", "a number in (0, 1)"},
+      {"settle", "steady_steps = 0", "0", "a whole number in [1, 1000000000]"},
+      {"settle", "steady_steps = -1", "-1", "a whole number in [1, 1000000000]"},
+      {"settle", "max_time_steps = 0", "0", "a whole number in [1, 1000000000]"},
+      {"settle", "max_time_steps = 2e9", "2000000000", "a whole number in [1, 1000000000]"},
       {"settle", "unbalanced_fraction = 0", "0", "a number in (0, 1)"},
       {"settle", "first_dt_s = 0", "0", "a number > 0"},
       {"settle", "max_steps = 0", "0", "a whole number in [1, 1000000000]"},
@@ -207,6 +217,30 @@ TEST_CASE("options out of range", "[scene][reader][errors]") {
 TEST_CASE("a factor of the strength reduction curve out of range", "[scene][reader][errors]") {
   CHECK(error_of(block_on_base + "[strength_reduction]\ncurve = [1, 0]\n") ==
         "23: strength_reduction.curve[1]: 0 is out of range; accepted: a number > 0");
+}
+
+TEST_CASE("lists of what comes one after the other in a run", "[scene][reader][errors]") {
+  const auto error = [](const std::string& line) { return error_of(block_on_base + "[output]\n" + line + "\n"); };
+  CHECK(error("milestones_m = 10") == "23: output.milestones_m: 10 is a number; accepted: an array");
+  CHECK(error("milestones_m = [0, 10]") == "23: output.milestones_m[0]: 0 is out of range; accepted: a number > 0");
+  CHECK(error("milestones_m = [10, 30, 20]") == "23: output.milestones_m[2]: 20 follows 30; accepted: numbers that increase");
+  CHECK(error("milestones_s = [10]") == "23: output.milestones_s: this key has another unit; accepted: milestones_m");
+  CHECK(error("snapshots_s = [-1]") == "23: output.snapshots_s[0]: -1 is out of range; accepted: a number >= 0");
+  CHECK(error("snapshots_s = [1, 1]") == "23: output.snapshots_s[1]: 1 follows 1; accepted: numbers that increase");
+  CHECK(error("snapshots_s = [1, 'late']") == "23: output.snapshots_s[1]: \"late\" is a string; accepted: a number >= 0");
+}
+
+TEST_CASE("types and units of the options of a run", "[scene][reader][errors]") {
+  CHECK(error_of(block_on_base + "[run]\nstrength_reduction_factor = 'much'\n") ==
+        "23: run.strength_reduction_factor: \"much\" is a string; accepted: a number > 0");
+  CHECK(error_of(block_on_base + "[end]\ndisplacement_mm = 1\n") == "23: end.displacement_mm: this key has another unit; accepted: displacement_m");
+  CHECK(error_of(block_on_base + "[settle]\ncriterion = 1\n") == "23: settle.criterion: 1 is a number; accepted: a text in quotes");
+  CHECK(error_of(block_on_base + "[settle]\ncriterion = ''\n") ==
+        "23: settle.criterion: \"\" is not known; accepted: \"paper\", \"unbalanced_force\"");
+  CHECK_THAT(error_of(block_on_base + "[settle]\ncriterion = 'papers'\n"), ContainsSubstring("\"papers\" is not known; accepted: \"paper\""));
+  CHECK_THAT(error_of(block_on_base + "[settle]\nrelative_displacement = true\n"), ContainsSubstring("true is a boolean; accepted: a number in (0, 1)"));
+  CHECK_THAT(error_of(block_on_base + "[settle]\nsteady_steps = 1.5\n"), ContainsSubstring("1.5 is not a whole number"));
+  CHECK_THAT(error_of(block_on_base + "[settle]\nmax_time_steps = 'all'\n"), ContainsSubstring("\"all\" is a string"));
 }
 
 TEST_CASE("words that are not known", "[scene][reader][errors]") {

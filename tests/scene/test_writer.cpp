@@ -90,10 +90,18 @@ void check_same(const Scene& a, const Scene& b) {
   CHECK(a.step.smallest_fraction == b.step.smallest_fraction);
   CHECK(a.end_time == b.end_time);
   CHECK(a.output_every == b.output_every);
+  CHECK(a.run_strength_reduction_factor == b.run_strength_reduction_factor);
+  CHECK(a.end_displacement == b.end_displacement);
+  CHECK(a.milestones == b.milestones);
+  CHECK(a.snapshot_times == b.snapshot_times);
   CHECK(a.settle.unbalanced_fraction == b.settle.unbalanced_fraction);
   CHECK(a.settle.first_dt == b.settle.first_dt);
   CHECK(a.settle.max_steps == b.settle.max_steps);
   CHECK(a.settle.failure_displacement == b.settle.failure_displacement);
+  CHECK(a.settle.criterion == b.settle.criterion);
+  CHECK(a.settle.relative_displacement == b.settle.relative_displacement);
+  CHECK(a.settle.steady_steps == b.settle.steady_steps);
+  CHECK(a.settle.max_time_steps == b.settle.max_time_steps);
   CHECK(a.strength_reduction.width == b.strength_reduction.width);
   CHECK(a.strength_reduction.upper_limit == b.strength_reduction.upper_limit);
   CHECK(a.strength_reduction.curve == b.strength_reduction.curve);
@@ -155,7 +163,12 @@ Scene random_scene(unsigned seed) {
   scene.step = {number(), number(), fraction(generator)};
   scene.end_time = number();
   scene.output_every = number();
-  scene.settle = {fraction(generator), number(), 77, number()};
+  scene.run_strength_reduction_factor = number();
+  scene.end_displacement = number();
+  const double first = number();
+  scene.milestones = {first, 2.0 * first};
+  scene.snapshot_times = {0.0, first};
+  scene.settle = {fraction(generator), number(), 77, number(), SettleCriterion::paper, fraction(generator), 78, 79};
   scene.strength_reduction = {number(), 1.0 + number(), {number(), number()}, number()};
   return scene;
 }

@@ -1,0 +1,105 @@
+#include "openclose/analysis/equilibrium.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace openclose {
+namespace {
+
+template <int N>
+class ByUnbalancedForce : public EquilibriumSearch<N> {
+ public:
+  explicit ByUnbalancedForce(Simulation<N>& simulation) : simulation_(simulation) {}
+  SettleResult settle_first(const SettleProgress& progress) override { return settle(simulation_, progress); }
+  SettleResult settle_trial(const SettleProgress& progress) override { return settle(simulation_, progress); }
+
+ private:
+  Simulation<N>& simulation_;
+};
+
+/// Half the height [m] of all blocks together.
+template <int N>
+double half_height(const BlockSystem<N>& system) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (int b = 0; b < system.block_count(); ++b) {
+    const auto& block = system.block(b);
+    for (int v = block.first_vertex; v < block.first_vertex + block.vertex_count; ++v) {
+      low = std::min(low, system.position(b, v).y());
+      high = std::max(high, system.position(b, v).y());
+    }
+  }
+  return 0.5 * (high - low);
+}
+
+template <int N>
+class ByRelativeDisplacement : public EquilibriumSearch<N> {
+ public:
+  explicit ByRelativeDisplacement(Simulation<N>& simulation)
+      : simulation_(simulation), input_(simulation.scene().settle), half_height_(half_height(simulation.system())) {}
+
+  SettleResult settle_first(const SettleProgress& progress) override {
+    for (int b : simulation_.system().free_blocks()) simulation_.set_velocity(b, Motion<N>::Unknowns::Zero());
+    simulation_.restart_clock();
+    const SettleResult result = follow(input_.max_time_steps, true, progress);
+    first_steps_ = result.steps;
+    return result;
+  }
+  SettleResult settle_trial(const SettleProgress& progress) override { return follow(2 * first_steps_, false, progress); }
+
+ private:
+  using Displacements = std::vector<typename Motion<N>::Unknowns>;
+
+  double farthest(const Displacements& from) const {
+    const auto& system = simulation_.system();
+    double largest = 0.0;
+    for (int b : system.free_blocks()) {
+      largest = std::max(largest, Motion<N>::displacement_bound(system.displacement(b) - from[b], system.block(b).radius));
+    }
+    return largest;
+  }
+
+  SettleResult follow(int most_steps, bool stop_when_steady, const SettleProgress& progress) {
+    const Displacements start = simulation_.system().state().displacement;
+    SettleResult result;
+    int steady = 0;
+    while (result.steps < most_steps && !(stop_when_steady && steady >= input_.steady_steps)) {
+      const Displacements before = simulation_.system().state().displacement;
+      if (!simulation_.advance(simulation_.scene().step.dt)) {
+        result.criterion = simulation_.reason();
+        return result;
+      }
+      ++result.steps;
+      result.relative_displacement = farthest(before) / half_height_;
+      result.displacement = std::max(result.displacement, farthest(start));
+      steady = *result.relative_displacement < input_.relative_displacement ? steady + 1 : 0;
+      if (progress)
+        progress(stop_when_steady ? settled_share(*result.relative_displacement, input_.relative_displacement)
+                                  : static_cast<double>(result.steps) / most_steps);
+    }
+    result.settled = steady >= input_.steady_steps;
+    result.criterion = result.settled ? "relative displacement" : "steps";
+    return result;
+  }
+
+  Simulation<N>& simulation_;
+  const SettleInput& input_;
+  double half_height_;   ///< [m]
+  int first_steps_ = 0;  ///< that the first settling took
+};
+
+}  // namespace
+
+template <int N>
+std::unique_ptr<EquilibriumSearch<N>> make_equilibrium_search(Simulation<N>& simulation) {
+  switch (simulation.scene().settle.criterion) {
+    case SettleCriterion::unbalanced_force:
+      return std::make_unique<ByUnbalancedForce<N>>(simulation);
+    case SettleCriterion::paper:
+      return std::make_unique<ByRelativeDisplacement<N>>(simulation);
+  }
+  return nullptr;
+}
+
+template std::unique_ptr<EquilibriumSearch<3>> make_equilibrium_search<3>(Simulation<3>&);
+
+}  // namespace openclose

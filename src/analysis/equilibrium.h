@@ -1,0 +1,36 @@
+// The search for equilibrium that a scene asks for with settle.criterion: the one place where it is chosen. A criterion is a class in equilibrium.cpp
+// and a line in make_equilibrium_search().
+//
+// `unbalanced_force`: settle().
+//
+// `paper`, after section 3.4 of the reference paper: steps of step.dt in time, in which the motion is damped by the scheme and by friction only. The
+// relative displacement of a step is the way of the farthest point of a block in it over half the height of the model (Shi's); the state is steady
+// once it has stayed below settle.relative_displacement for settle.steady_steps steps in a row. One step alone tells nothing: a step from rest is
+// g dt^2/2 long at most, whatever comes later, and swinging blocks stand still at their turning points. The first settling counts its steps. A trial
+// with reduced strength goes on from the state that this left, velocities included, for twice that number of steps; it has failed if its last ones
+// are not steady. It is watched to its end, because a slope that begins to fail moves slowly at first.
+//
+// Steps from rest (statics) would make no sense here: with the paper's step of 1 ms none is longer than g dt^2/2 = 5e-6 m, failing or not.
+#pragma once
+
+#include <memory>
+
+#include "openclose/analysis/settle.h"
+
+namespace openclose {
+
+template <int N>
+class EquilibriumSearch {
+ public:
+  virtual ~EquilibriumSearch() = default;
+  /// From the state the scene starts in; what this needed may be the measure of the trials.
+  virtual SettleResult settle_first(const SettleProgress& progress) = 0;
+  /// From a state in which settle_first() succeeded, with another strength of the joints.
+  virtual SettleResult settle_trial(const SettleProgress& progress) = 0;
+};
+
+/// The simulation must outlive the search.
+template <int N>
+std::unique_ptr<EquilibriumSearch<N>> make_equilibrium_search(Simulation<N>& simulation);
+
+}  // namespace openclose

@@ -1,0 +1,29 @@
+// The matrix of a step and its solver. The pattern has the pairs of blocks in contact, open ones included; it stands while no new pair comes up, so that
+// the symbolic work of the solver is seldom done.
+#pragma once
+
+#include "openclose/integrator/enforcement.h"
+
+namespace openclose {
+
+template <int N>
+class TangentSystem {
+ public:
+  /// Makes room for the contacts of this step.
+  void fit(const StepProblem<N>& problem);
+
+  BlockMatrix<N>& matrix() { return matrix_; }
+  LinearSolver<N>& solver() { return *solver_; }
+  const LinearCounters& counters() const { return solver_ ? solver_->counters() : nothing_done_; }
+
+ private:
+  bool has_room(const StepProblem<N>& problem) const;
+
+  BlockMatrix<N> matrix_;
+  std::unique_ptr<LinearSolver<N>> solver_;
+  LinearCounters nothing_done_;
+};
+
+extern template class TangentSystem<3>;
+
+}  // namespace openclose

@@ -1,0 +1,136 @@
+#include <cmath>
+#include <string>
+
+#include "openclose/analysis/equilibrium.h"
+#include "openclose/analysis/strength_reduction.h"
+#include "support/catch.h"
+#include "support/scenes.h"
+
+using namespace openclose;
+using openclose::test::all_methods;
+using openclose::test::block_weight;
+
+namespace {
+
+constexpr double half_height = 1.0;  // [m] of block_on_base, from -1 to 1
+
+Scene paper_scene() {
+  Scene scene = test::block_on_base();
+  scene.settle.criterion = SettleCriterion::paper;
+  scene.settle.relative_displacement = 1e-9;
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("the criterion by default is that of settle()", "[analysis][equilibrium]") {
+  Simulation<3> a(test::column_of_blocks(3)), b(test::column_of_blocks(3));
+  const SettleResult direct = settle(a), chosen = make_equilibrium_search(b)->settle_first({});
+  CHECK(chosen.settled);
+  CHECK(chosen.criterion == "unbalanced force");
+  CHECK(chosen.steps == direct.steps);
+  CHECK(chosen.unbalanced_fraction == direct.unbalanced_fraction);
+  CHECK_FALSE(chosen.relative_displacement);
+}
+
+TEST_CASE("the paper's criterion ends where the block rests", "[analysis][equilibrium]") {
+  for (const std::string& method : all_methods) {
+    INFO(method);
+    Scene scene = paper_scene();
+    scene.method.contact = method;
+    scene.blocks[1].velocity = {3.0, 0.0};  // equilibrium knows no velocity of the scene
+    Simulation<3> simulation(scene);
+    const SettleResult result = make_equilibrium_search(simulation)->settle_first({});
+    REQUIRE(result.settled);
+    CHECK(result.criterion == "relative displacement");
+    CHECK(result.steps >= scene.settle.steady_steps);
+    REQUIRE(result.relative_displacement);
+    CHECK(*result.relative_displacement < scene.settle.relative_displacement);
+    // A free swing at w moves v dt in a step and is v/w away from rest.
+    const double stiffness = method == "soft" ? 1e9 : 1e10;
+    const double sink = method == "hard" ? 0.0 : block_weight / (stiffness * test::block_edge);
+    const double w = std::sqrt(1e9 * test::block_edge / test::block_mass);
+    const double margin = scene.settle.relative_displacement * half_height / (scene.step.dt * w);
+    CHECK(simulation.system().displacement(1)[1] == Approx(-sink).margin(margin + 1e-11));
+    CHECK(std::abs(simulation.system().displacement(1)[0]) < 1e-9);
+  }
+}
+
+TEST_CASE("a single short step is not steadiness", "[analysis][equilibrium]") {
+  // The first step from rest is g dt^2/2 = 4.9e-6 m on half a height of 1 m: below the limit while the block falls.
+  Scene scene = test::falling_block();
+  scene.blocks.push_back(test::fixed_block("base", test::rectangle(0.0, -11.0, 2.0, 1.0)));
+  scene.settle.criterion = SettleCriterion::paper;
+  scene.settle.relative_displacement = 1e-6;  // half the height is 6 m
+  scene.settle.max_time_steps = 300;
+  Simulation<3> simulation(scene);
+  const SettleResult result = make_equilibrium_search(simulation)->settle_first({});
+  CHECK_FALSE(result.settled);
+  CHECK(result.criterion == "steps");
+  CHECK(result.steps == 300);
+  // After n steps of free fall the last one is g dt^2 (n - 1/2) long.
+  CHECK(*result.relative_displacement == Approx(9.81 * 1e-6 * 299.5 / 6.0).epsilon(1e-10));
+}
+
+TEST_CASE("a trial goes on for twice the steps of the first settling", "[analysis][equilibrium]") {
+  Scene scene = test::block_on_incline(20.0 * test::degree);
+  scene.settle.criterion = SettleCriterion::paper;
+  scene.settle.relative_displacement = 1e-8;
+  Simulation<3> simulation(scene);
+  const auto search = make_equilibrium_search(simulation);
+  const SettleResult first = search->settle_first({});
+  REQUIRE(first.settled);
+  SECTION("stable") {
+    simulation.joints().reduce_strength(1.2);
+    const SettleResult trial = search->settle_trial({});
+    CHECK(trial.settled);
+    CHECK(trial.steps == 2 * first.steps);
+  }
+  SECTION("failing") {
+    simulation.joints().reduce_strength(2.0);
+    const SettleResult trial = search->settle_trial({});
+    CHECK_FALSE(trial.settled);
+    CHECK(trial.criterion == "steps");
+    CHECK(trial.steps == 2 * first.steps);
+    const double time = trial.steps * scene.step.dt, slope = 20.0 * test::degree;
+    const double acceleration = 9.81 * (std::sin(slope) - 0.5 * std::tan(30.0 * test::degree) * std::cos(slope));
+    CHECK(trial.displacement == Approx(0.5 * acceleration * time * time).margin(5e-4));
+  }
+}
+
+TEST_CASE("a step that cannot be taken ends the paper's settling with its reason", "[analysis][equilibrium]") {
+  Scene scene = paper_scene();
+  scene.method.contact = "shi";
+  scene.blocks[1].vertices = test::rectangle(0.0, 0.001, 2.0, 1.0);
+  scene.method.max_open_close_iterations = 1;
+  scene.step.smallest_fraction = 0.5;
+  Simulation<3> simulation(scene);
+  const SettleResult result = make_equilibrium_search(simulation)->settle_first({});
+  CHECK_FALSE(result.settled);
+  CHECK(result.criterion == "open-close iterations did not settle");
+}
+
+TEST_CASE("factor of safety by the paper's criterion", "[analysis][equilibrium]") {
+  const double slope = 30.0 * test::degree, exact = std::tan(40.0 * test::degree) / std::tan(slope);
+  for (const std::string& method : all_methods) {
+    INFO(method);
+    Scene scene = test::block_on_incline(slope);
+    scene.method.contact = method;
+    scene.joints[0].friction_angle = 40.0 * test::degree;
+    scene.settle.criterion = SettleCriterion::paper;
+    scene.settle.relative_displacement = 1e-8;
+    Simulation<3> simulation(scene);
+    const auto safety = factor_of_safety<3>(simulation);
+    REQUIRE(safety.found);
+    CHECK(safety.warnings.empty());
+    CHECK(safety.criterion == "steps");
+    // Half the height of the scene: a base 20 m long and 1 m thick below a block.
+    const double height = 20.0 * std::sin(slope) + std::cos(slope);
+    const double slow = scene.settle.relative_displacement * 0.5 * height / scene.step.dt;
+    // What accelerates by less than `slow` within a trial is taken for steady; what swings at w with `slow` adds m w slow to the forces.
+    const double time = 2.0 * safety.trials.front().steps * scene.step.dt;
+    const double swing = std::sqrt((method == "shi" ? 10.0 : 1.0) * 1e9 * test::block_edge / test::block_mass);
+    CHECK(safety.stable <= exact * (1.0 + 1.1 * slow / (time * 9.81 * std::sin(slope))));
+    CHECK(safety.failed >= exact * (1.0 - swing * slow / (9.81 * std::sin(slope))));
+  }
+}
