@@ -12,8 +12,8 @@ _TEMPLATE = Path(__file__).parent / "report_template.md"
 _MM = 1e-3
 
 
-def write(slider: Incline, wedge: PlaneFailure, rows: list[comparison.Row], printed: dict, folder: Path) -> None:
-    """Writes report.md and table1.md."""
+def write(slider: Incline, wedge: PlaneFailure, rows: list[comparison.Row], printed: dict, more: dict[str, str], folder: Path) -> None:
+    """Writes report.md and table1.md; `more` are fields of the template that others fill."""
     table_1 = _table_1(rows)
     fields = {
         **_incline_fields(slider, printed["incline"]),
@@ -22,6 +22,7 @@ def write(slider: Incline, wedge: PlaneFailure, rows: list[comparison.Row], prin
         **_convergence_fields(slider),
         **_plane_failure_fields(wedge, printed["plane_failure"]),
         **_curve_fields(wedge, printed["plane_failure"]),
+        **more,
         "table_1": table_1,
         "note": tables.NOTE.replace("\n", " "),
         "comparison_table": tables.comparison_markdown(comparison.as_text(rows)),

@@ -7,6 +7,7 @@ import argparse
 import sys
 from pathlib import Path
 
+import claims
 import comparison
 import tables
 from incline import Incline
@@ -37,20 +38,24 @@ def print_comparison(results: Path) -> None:
 def reproduce(arguments: argparse.Namespace) -> None:
     """The comparison is written last: where it is, everything is."""
     import figures
+    import figures_claims
     import report
+    import report_claims
 
     results = arguments.results
     results.mkdir(parents=True, exist_ok=True)
     (results / "comparison.csv").unlink(missing_ok=True)
     openclose, reference = Openclose(arguments.openclose, results / "runs"), Reference(arguments.reference)
     slider, wedge = Incline(openclose, reference), PlaneFailure(openclose, reference)
-    cases = [*slider.cases(), *wedge.cases()]
-    print(f"{len(cases)} runs of examples 3.1 and 3.2 ...", flush=True)
+    claimed = claims.Claims(openclose, slider)
+    cases = [*claimed.cases(), *slider.cases(), *wedge.cases()]
+    print(f"{len(cases)} runs of the examples and the claims ...", flush=True)
     openclose.run_all(cases)
     printed = read_printed()
     figures.draw_all(slider, wedge, printed, results)
-    rows = comparison.build(slider, wedge, printed)
-    report.write(slider, wedge, rows, printed, results)
+    figures_claims.draw(claimed, printed["claims"], results)
+    rows = [*comparison.build(slider, wedge, printed), *report_claims.rows(claimed, printed["claims"])]
+    report.write(slider, wedge, rows, printed, {"claims": report_claims.text(claimed, printed["claims"])}, results)
     comparison.write_csv(rows, results / "comparison.csv")
 
 

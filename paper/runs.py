@@ -3,12 +3,16 @@
 import csv
 import io
 import json
+import resource
+import shutil
+import signal
 import subprocess
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
 PARALLEL_PROCESSES = 2
+DONE, NOT_CONVERGED = 0, 1
 
 
 class RunFailed(Exception):
@@ -17,20 +21,31 @@ class RunFailed(Exception):
 
 @dataclass(frozen=True)
 class Case:
-    """One call of `openclose`: `command` is run or fos, `settings` are --set KEY=VALUE pairs, `name` is that of its folder."""
+    """One call of `openclose`: `command` is run, fos, cut or check, `settings` are --set KEY=VALUE pairs, `name` is that of its folder.
+
+    A case with a `cpu_limit_s` may fail: by not converging, or by being stopped there. Its summary holds the reason.
+    """
 
     name: str
     command: str
     scene: Path
-    settings: tuple[tuple[str, object], ...]
+    settings: tuple[tuple[str, object], ...] = ()
+    cpu_limit_s: int | None = None
+
+
+def _run_process(arguments: list[str], cpu_limit_s: int | None = None) -> subprocess.CompletedProcess:
+    def limit() -> None:
+        resource.setrlimit(resource.RLIMIT_CPU, (cpu_limit_s, cpu_limit_s + 1))
+
+    try:
+        return subprocess.run(arguments, capture_output=True, text=True, check=False, preexec_fn=limit if cpu_limit_s else None)
+    except OSError as error:
+        raise RunFailed(f"cannot run {arguments[0]}: {error.strerror}") from error
 
 
 def _call(arguments: list[str]) -> str:
-    try:
-        done = subprocess.run(arguments, capture_output=True, text=True, check=False)
-    except OSError as error:
-        raise RunFailed(f"cannot run {arguments[0]}: {error.strerror}") from error
-    if done.returncode != 0:
+    done = _run_process(arguments)
+    if done.returncode != DONE:
         raise RunFailed(f"exit status {done.returncode} from: {' '.join(arguments)}\n{done.stderr.strip()}")
     return done.stdout
 
@@ -57,18 +72,42 @@ class Openclose:
                 raise
 
     def table(self, case: Case, file: str) -> list[dict[str, str]]:
-        """Rows of a CSV file that the case has written."""
+        """Rows of a CSV file that the case has written; none if it was stopped before."""
+        if case.cpu_limit_s is not None and self.summary(case).get("stopped"):
+            return []
         with open(self.folder_of(case) / file, newline="", encoding="utf-8") as stream:
             return list(csv.DictReader(stream))
 
     def summary(self, case: Case) -> dict:
         return json.loads((self.folder_of(case) / "summary.json").read_text(encoding="utf-8"))
 
+    def blocks_file(self, case: Case) -> Path:
+        """What a case of `cut` has written."""
+        return self.folder_of(case) / "blocks.toml"
+
     def _run(self, case: Case) -> None:
-        arguments = [str(self._executable), case.command, str(case.scene), "--quiet", "-o", str(self.folder_of(case))]
+        output = self.blocks_file(case) if case.command == "cut" else self.folder_of(case)
+        options = ["--spectrum", str(output / "spectrum.csv")] if case.command == "check" else ["--quiet", "-o", str(output)]
+        arguments = [str(self._executable), case.command, str(case.scene), *options]
         for key, value in case.settings:
             arguments += ["--set", f"{key}={value}"]
-        _call(arguments)
+        if case.command == "cut":
+            output.parent.mkdir(parents=True, exist_ok=True)
+        if case.cpu_limit_s is None:
+            _call(arguments)
+        else:
+            self._run_limited(case, arguments)
+
+    def _run_limited(self, case: Case, arguments: list[str]) -> None:
+        folder = self.folder_of(case)
+        shutil.rmtree(folder, ignore_errors=True)
+        done = _run_process(arguments, case.cpu_limit_s)
+        if done.returncode in (-signal.SIGXCPU, -signal.SIGKILL):
+            stopped = {"converged": False, "stopped": True, "reason": f"stopped after {case.cpu_limit_s} s of CPU time"}
+            folder.mkdir(parents=True, exist_ok=True)
+            (folder / "summary.json").write_text(json.dumps(stopped), encoding="utf-8")
+        elif done.returncode not in (DONE, NOT_CONVERGED):
+            raise RunFailed(f"exit status {done.returncode} from: {' '.join(arguments)}\n{done.stderr.strip()}")
 
 
 class Reference:
