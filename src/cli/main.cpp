@@ -212,8 +212,8 @@ void write_spectrum(Simulation<unknowns>& simulation, const std::string& file) {
   if (scene.step.dt <= 0.0)
     throw InputError(scene.where, "step.dt_s", "missing", "a step in seconds, here or with --dt: --spectrum asks for its matrix");
   const Spectrum s = spectrum(simulation, scene.step.dt);
-  write_file(file, fmt::format("lowest_rad_per_s,highest_rad_per_s,critical_step_s,condition_number\n{:.17g},{:.17g},{:.17g},{:.17g}\n", s.lowest,
-                               s.highest, 2.0 / s.highest, s.condition));
+  write_files({{file, fmt::format("lowest_rad_per_s,highest_rad_per_s,critical_step_s,condition_number\n{:.17g},{:.17g},{:.17g},{:.17g}\n", s.lowest,
+                                  s.highest, 2.0 / s.highest, s.condition)}});
 }
 
 int check_command(const Options& options) {
