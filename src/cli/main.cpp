@@ -209,6 +209,9 @@ int fos_command(const Options& options) {
 
 void write_spectrum(Simulation<unknowns>& simulation, const std::string& file) {
   const Scene& scene = simulation.scene();
+  std::error_code unknown;
+  if (std::filesystem::equivalent(file, scene.where.file, unknown))
+    throw InputError({file, 0}, "", "this is the scene that is being checked", "another file to write to");
   if (scene.step.dt <= 0.0)
     throw InputError(scene.where, "step.dt_s", "missing", "a step in seconds, here or with --dt: --spectrum asks for its matrix");
   const Spectrum s = spectrum(simulation, scene.step.dt);
