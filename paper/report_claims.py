@@ -42,7 +42,7 @@ def _sizes(tested: Claims, printed: dict) -> dict[str, str]:
     largest_below = max(c.blocks for c in shi if c.blocks <= bound)
     below, above = _growth([c for c in shi if c.blocks <= largest_below]), _growth([c for c in shi if c.blocks >= largest_below])
     ratios = [a.solves / b.solves for a, b in zip(shi, soft)]
-    sharp = f"the rise {'is steeper' if above > below else 'is not steeper'} above {bound} blocks (^{_g(below, 2)} up to {largest_below}, ^{_g(above, 2)} beyond)"
+    sharp = f"the rise {'is' if above > below else 'is not'} steeper above {bound} blocks (^{_g(below, 2)} up to {largest_below}, ^{_g(above, 2)} beyond)"
     return {
         "size_table": tables.markdown(("blocks", "free", "shi: solves", "shi: cuts", "shi: CPU [s]", "soft: solves", "soft: CPU [s]"), table),
         "size_exponent": _g(grows, 2),
@@ -80,13 +80,13 @@ def _tolerances(tested: Claims) -> dict[str, str]:
     small = bool(stuck) and bool(fine) and max(stuck) < min(fine)
     return {
         "penetration_table": tables.markdown(("tolerance [m]", "3.4: part of the time reached", "3.4: solves per step", "3.1 finished"), table),
-        "closing_table": tables.markdown(("tolerance [m]", "3.4: part of the time reached", "3.4: solves per step", "3.1: displacement", "3.1: normal forces"),
-                                         closing_table),
+        "closing_table": tables.markdown(("tolerance [m]", "3.4: part of the time reached", "3.4: solves per step", "3.1: displacement",
+                                          "3.1: normal forces"), closing_table),
         "coarse_blocks": str(slope[depths[-1]].blocks),
         "deepest": _g(slope[depths[-1]].penetration),
-        "verdict_2a": _verdict(small, f"up to {max(stuck):g} m the run gets stuck, from {min(fine):g} m on it makes no difference which tolerance is taken"
-                               if small else ""),
-        "verdict_2b": _verdict(bool(wrong), f"of the closing tolerance: from {min(wrong):g} m on the displacement is off by more than 1 %" if wrong else ""),
+        "verdict_2a": _verdict(small, f"up to {max(stuck):g} m the run gets stuck, from {min(fine):g} m on the tolerance does not act" if small else ""),
+        "verdict_2b": _verdict(bool(wrong), f"of the closing tolerance: from {min(wrong):g} m on the displacement is off by more than 1 %"
+                               if wrong else ""),
         "zero_closing": "does not get to the end" if not zero.finished else "gets to the end",
     }
 
@@ -187,7 +187,8 @@ def _explicit(tested: Claims, printed: dict) -> dict[str, str]:
     table = ([s, *(f"{1e3 * v:.3f}" for v in (e.exact, e.bound, e.two_body, claims.UDEC_FRACTION * e.two_body)), _g(e.smallest_area, 4)]
              for s, e in found.items())
     return {
-        "explicit_table": tables.markdown(("scene", "2/w_max [ms]", "bound of dem [ms]", "two-body [ms]", "a tenth of it [ms]", "smallest block [m2]"), table),
+        "explicit_table": tables.markdown(("scene", "2/w_max [ms]", "bound of dem [ms]", "two-body [ms]", "a tenth of it [ms]", "smallest block [m2]"),
+                                          table),
         "printed_2": f"{1e3 * two:g}",
         "printed_3": f"{1e3 * three:g}",
         "mass_ratio": _g((three / two) ** 2 * stiffer),

@@ -206,6 +206,8 @@ TEST_CASE("check writes the spectrum that it is asked for", "[cli]") {
   CHECK(refused.status == 2);
   REQUIRE(refused.errors.size() == 1);
   CHECK_THAT(refused.errors[0], ContainsSubstring("method.contact"));
+  CHECK(place.run("check scene.toml --spectrum scene.toml --dt 0.001").status == 2);
+  CHECK(place.run("check scene.toml").status == 0);
   CHECK(place.folder().entries() == std::set<std::string>{"scene.toml", "spectrum.csv"});
 }
 
