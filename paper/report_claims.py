@@ -209,5 +209,5 @@ def _explicit_rows(tested: Claims, printed: dict) -> list[Row]:
     for scene in claims.EXPLICIT_SCENES:
         e = tested.explicit(scene)
         paper = printed[f"explicit_step_table_{3 if scene == 'example_3_4' else 2}_s"]["value"]
-        found.append(Row("Claim 6", f"{scene}: explicit step; reference: 2/w_max", "s", paper, e.exact))
+        found.append(Row("Claim 6", f"{scene}: explicit step; reference: 2/w_max", "s", paper, e.exact, {"dem": e.bound}, {"dem": e.bound / e.exact - 1}))
     return found
