@@ -7,6 +7,7 @@ import argparse
 import sys
 from pathlib import Path
 
+import claims
 import comparison
 import comparison_slopes
 import tables
@@ -39,7 +40,9 @@ def print_comparison(results: Path) -> None:
 def reproduce(arguments: argparse.Namespace) -> None:
     """The comparison is written last: where it is, everything is."""
     import figures
+    import figures_claims
     import report
+    import report_claims
     import report_slopes
 
     results = arguments.results
@@ -49,12 +52,15 @@ def reproduce(arguments: argparse.Namespace) -> None:
     printed = read_printed()
     slider, wedge = Incline(openclose, reference), PlaneFailure(openclose, reference)
     planar, jointed = PlanarSlope(openclose, reference), JointedSlope(openclose, reference, printed)
-    cases = [*jointed.cases(), *planar.cases(), *slider.cases(), *wedge.cases()]
-    print(f"{len(cases)} runs of examples 3.1 to 3.4 ...", flush=True)
+    claimed = claims.Claims(openclose, slider)
+    cases = [*jointed.cases(), *planar.cases(), *claimed.cases(), *slider.cases(), *wedge.cases()]
+    print(f"{len(cases)} runs of the examples and the claims ...", flush=True)
     openclose.run_all(cases)
     figures.draw_all(slider, wedge, planar, jointed, printed, results)
-    rows = [*comparison.build(slider, wedge, printed), *comparison_slopes.build(planar, jointed, printed)]
-    report.write(slider, wedge, rows, printed, report_slopes.fields(planar, jointed, rows, printed), results)
+    figures_claims.draw(claimed, printed["claims"], results)
+    rows = [*comparison.build(slider, wedge, printed), *comparison_slopes.build(planar, jointed, printed), *report_claims.rows(claimed, printed["claims"])]
+    more = {**report_slopes.fields(planar, jointed, rows, printed), "claims": report_claims.text(claimed, printed["claims"])}
+    report.write(slider, wedge, rows, printed, more, results)
     comparison.write_csv(rows, results / "comparison.csv")
 
 

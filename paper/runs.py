@@ -21,7 +21,7 @@ class RunFailed(Exception):
 
 @dataclass(frozen=True)
 class Case:
-    """One call of `openclose`: `command` is run, fos or cut, `settings` are --set KEY=VALUE pairs, `name` is that of its folder.
+    """One call of `openclose`: `command` is run, fos, cut or check, `settings` are --set KEY=VALUE pairs, `name` is that of its folder.
 
     A case with a `cpu_limit_s` may fail: by not converging, or by being stopped there. Its summary holds the reason.
     """
@@ -87,7 +87,8 @@ class Openclose:
 
     def _run(self, case: Case) -> None:
         output = self.blocks_file(case) if case.command == "cut" else self.folder_of(case)
-        arguments = [str(self._executable), case.command, str(case.scene), "--quiet", "-o", str(output)]
+        options = ["--spectrum", str(output / "spectrum.csv")] if case.command == "check" else ["--quiet", "-o", str(output)]
+        arguments = [str(self._executable), case.command, str(case.scene), *options]
         for key, value in case.settings:
             arguments += ["--set", f"{key}={value}"]
         if case.command == "cut":

@@ -7,6 +7,7 @@
 #include <iostream>
 #include <optional>
 
+#include "openclose/analysis/spectrum.h"
 #include "openclose/analysis/strength_reduction.h"
 #include "openclose/io/drawing.h"
 #include "openclose/io/progress.h"
@@ -27,6 +28,7 @@ struct Options {
   std::string folder;
   std::string blocks_file;
   std::string drawing_file;
+  std::string spectrum_file;
   std::vector<std::string> overrides;
   bool quiet = false;
 };
@@ -205,6 +207,18 @@ int fos_command(const Options& options) {
   return exit_success;
 }
 
+void write_spectrum(Simulation<unknowns>& simulation, const std::string& file) {
+  const Scene& scene = simulation.scene();
+  std::error_code unknown;
+  if (std::filesystem::equivalent(file, scene.where.file, unknown))
+    throw InputError({file, 0}, "", "this is the scene that is being checked", "another file to write to");
+  if (scene.step.dt <= 0.0)
+    throw InputError(scene.where, "step.dt_s", "missing", "a step in seconds, here or with --dt: --spectrum asks for its matrix");
+  const Spectrum s = spectrum(simulation, scene.step.dt);
+  write_files({{file, fmt::format("lowest_rad_per_s,highest_rad_per_s,critical_step_s,condition_number\n{:.17g},{:.17g},{:.17g},{:.17g}\n", s.lowest,
+                                  s.highest, 2.0 / s.highest, s.condition)}});
+}
+
 int check_command(const Options& options) {
   const Loaded loaded = load(options);
   Simulation<unknowns> simulation(loaded.scene);
@@ -216,6 +230,7 @@ int check_command(const Options& options) {
     fmt::print("critical step {:.6g} s; the longest step taken is {:.6g} s\n", simulation.critical_step(),
                simulation.longest_stable_step(loaded.scene.method.damping));
   }
+  if (!options.spectrum_file.empty()) write_spectrum(simulation, options.spectrum_file);
   return exit_success;
 }
 
@@ -286,8 +301,12 @@ int main_checked(int argc, char** argv) {
   };
   subcommand("run", "follow the blocks in time", true, &run_command);
   subcommand("fos", "factor of safety by strength reduction", true, &fos_command);
-  subcommand("check", "read and check a scene, write nothing; whether it settles, or has the start that it asks for, only run and fos find out",
-             false, &check_command);
+  CLI::App* check = subcommand(
+      "check",
+      "read and check a scene, write nothing but --spectrum; whether it settles, or has the start that it asks for, only run and fos find out", false,
+      &check_command);
+  check->add_option("--spectrum", options.spectrum_file,
+                    "CSV file to write: frequencies of the contacts' springs, critical step 2/w_max, condition number of a step's matrix");
   CLI::App* cut = subcommand("cut", "cut the domain of a scene into blocks, write them as a scene and draw them", false, &cut_command);
   cut->add_option("-o,--output", options.blocks_file, "scene file to write (default: results/<name of the scene>/blocks.toml)");
   cut->add_option("--svg", options.drawing_file, "drawing to write (default: beside the scene file, .svg)");

@@ -194,6 +194,23 @@ TEST_CASE("factor of safety with a curve", "[cli]") {
   CHECK(std::stod(fields_of(curve[2])[2]) > 1e-3);
 }
 
+TEST_CASE("check writes the spectrum that it is asked for", "[cli]") {
+  const Workplace place;
+  CHECK(place.run("check scene.toml --spectrum spectrum.csv --dt 0.001").status == 0);
+  const auto lines = lines_of(place.folder() / "spectrum.csv");
+  REQUIRE(lines.size() == 2);
+  CHECK(lines[0] == "lowest_rad_per_s,highest_rad_per_s,critical_step_s,condition_number");
+  const auto fields = fields_of(lines[1]);
+  CHECK(std::stod(fields[1]) * std::stod(fields[2]) == Approx(2.0));
+  const CommandResult refused = place.run("check scene.toml --spectrum other.csv --dt 0.001 --contact hard");
+  CHECK(refused.status == 2);
+  REQUIRE(refused.errors.size() == 1);
+  CHECK_THAT(refused.errors[0], ContainsSubstring("method.contact"));
+  CHECK(place.run("check scene.toml --spectrum scene.toml --dt 0.001").status == 2);
+  CHECK(place.run("check scene.toml").status == 0);
+  CHECK(place.folder().entries() == std::set<std::string>{"scene.toml", "spectrum.csv"});
+}
+
 TEST_CASE("check tells what it has read and writes nothing", "[cli]") {
   const Workplace place;
   const CommandResult result = place.run("check scene.toml --contact hard");
