@@ -265,8 +265,9 @@ void Simulation<N>::accept(const StepProblem<N>& problem, const StepSolution<N>&
   ledger_.kinetic = system_.kinetic_energy() - start_kinetic_energy_;
   time_ += problem.dt;
   ++step_counters_.steps;
+  // Where multipliers have just failed, the next step need not fail again before it may be compliant: cuts would outrun the growth of the step.
   if (solution.compliant) ++step_counters_.compliant;
-  failed_attempts_ = 0;
+  if (!solution.compliant) failed_attempts_ = 0;
   contacts_current_ = false;
 }
 
