@@ -120,6 +120,8 @@ void CentralDifference<N>::load_contacts(const StepProblem<N>& problem) {
     carry_now(link, at);
     // What the list has moved apart is open before anything moves.
     if (link.gap > link.strength.tension / link.normal_stiffness) link.status = ContactStatus::open;
+    // What is found closed carries from now on, as the ledger of its renewal says.
+    if (link.status == ContactStatus::open && link.normal > 0.0) link.status = ContactStatus::sticking;
     push(link, at);
     links_.push_back(link);
   }
