@@ -64,8 +64,10 @@ void add_step(EnergyLedger& ledger, const StepProblem<N>& problem, const StepSol
       ledger.scheme += after + 0.5 * dropped.dot(mass.cwiseProduct(dropped));
     }
     const double weight_work = problem.external.weight(system, b).dot(path);
+    const double base_work = problem.external.base_force(system, b).dot(path);
     ledger.gravity -= weight_work;
-    ledger.turnover += std::abs(after - before) + std::abs(weight_work);
+    ledger.base_motion -= base_work;
+    ledger.turnover += std::abs(after - before) + std::abs(weight_work) + std::abs(base_work);
   }
 
   const auto add_point_forces = [&](const auto& forces, double& account) {

@@ -22,6 +22,7 @@ namespace openclose {
 struct EnergyLedger {
   double kinetic = 0.0;          ///< change
   double gravity = 0.0;          ///< change of potential energy
+  double base_motion = 0.0;      ///< minus the work of the body forces -m a of a moving base, in the coordinates that move with it
   double contact_springs = 0.0;  ///< change of stored energy
   double support_springs = 0.0;  ///< change of stored energy: work at the fixed points
   double loads = 0.0;            ///< minus the work of point loads
@@ -31,10 +32,11 @@ struct EnergyLedger {
   double impact = 0.0;           ///< dissipated by hard contacts that close
   double scheme = 0.0;           ///< dissipated by the time integration
   double redefinition = 0.0;     ///< released where contacts change their tributary length, their gap's linearisation, or end while loaded
-  double turnover = 0.0;         ///< sum of the absolute changes of kinetic, gravity and loads: what an imbalance is compared with
+  double turnover = 0.0;         ///< sum of the absolute changes of kinetic, gravity, base motion and loads: what an imbalance is compared with
 
   double imbalance() const {
-    return kinetic + gravity + contact_springs + support_springs + loads + friction + contact_damping + mass_damping + impact + scheme + redefinition;
+    return kinetic + gravity + base_motion + contact_springs + support_springs + loads + friction + contact_damping + mass_damping + impact + scheme +
+           redefinition;
   }
 };
 

@@ -58,6 +58,7 @@ void Simulation<N>::collect() const {
   const ExplicitEnergies e = loop_->take_energies();
   ledger_.contact_springs += stored_contact_energy() - before;
   ledger_.gravity += e.gravity;
+  ledger_.base_motion += e.base_motion;
   ledger_.loads += e.loads;
   ledger_.support_springs += e.support_springs;
   ledger_.friction += e.friction;
@@ -167,8 +168,19 @@ std::vector<Contact>& Simulation<N>::contacts() {
 }
 
 template <int N>
+void Simulation<N>::move_base(double dt, bool statics) {
+  const TimeSpan span = scheme_->span_of_velocities(dt);
+  if (base_moves_ && !statics) {
+    external_.move_base(time_ + span.from, time_ + span.to);
+  } else {
+    external_.hold_base();
+  }
+}
+
+template <int N>
 StepProblem<N> Simulation<N>::problem(double dt, bool statics) {
   contacts();
+  move_base(dt, statics);
   StepProblem<N> p{system_, external_, joints_, contacts_, scene_.method};
   p.dt = dt;
   p.statics = statics;
@@ -315,7 +327,8 @@ StepResult Simulation<N>::explicit_step(double h, MassDamping damping) {
   load_loop();
   StepResult result;
   const double span = 1.0 / (h * scheme_->inertia(h));
-  if (!loop_->move(h, span, scene_.step.max_displacement, damping, scene_.method.local_damping)) {
+  move_base(h, false);
+  if (!loop_->move(h, span, external_.base_acceleration(), scene_.step.max_displacement, damping, scene_.method.local_damping)) {
     result.reason = "a block moved farther in one step than step.max_displacement_m";
     ++step_counters_.cuts;
     return result;

@@ -91,6 +91,8 @@ class Simulation {
 
   /// Takes the blocks' velocities away; the kinetic energy goes to the ledger's scheme, as in static steps.
   void come_to_rest();
+  /// From now on the base moves as the scene says, counted from time 0. Static steps know nothing of it.
+  void start_base_motion() { base_moves_ = true; }
   /// Declares the present moment the start: time 0, ledger empty. Positions, contacts and velocities stay.
   void restart_clock();
   /// Gives block b this velocity at time(); to be followed by restart_clock().
@@ -111,6 +113,8 @@ class Simulation {
  private:
   void detect();
   void restart_scheme();
+  /// Gives the external forces what the base does in the next step.
+  void move_base(double dt, bool statics);
   double largest_move(const StepSolution<N>& solution) const;
   double unbalanced_force(const StepProblem<N>& problem, const StepSolution<N>& solution) const;
   void accept(const StepProblem<N>& problem, const StepSolution<N>& solution);
@@ -137,6 +141,7 @@ class Simulation {
   std::unique_ptr<CentralDifference<N>> loop_;  ///< null for implicit methods
   mutable bool loop_is_ahead_ = false;          ///< of system_ and contacts_
   bool loop_is_loaded_ = false;
+  bool base_moves_ = false;
   double time_ = 0.0;
   std::string reason_;
   mutable EnergyLedger ledger_;

@@ -156,6 +156,10 @@ int fos_command(const Options& options) {
     loaded.warnings.push_back(loaded.scene.where.file + ": run.strength_reduction_factor is for run; fos starts from the full strength");
     print_warnings({loaded.warnings.back()});
   }
+  if (loaded.scene.base_motion) {
+    loaded.warnings.push_back(loaded.scene.where.file + ": base_motion is for run; fos asks for static equilibrium on a base at rest");
+    print_warnings({loaded.warnings.back()});
+  }
   if (loaded.scene.step.dt <= 0.0) {
     const bool paper = loaded.scene.settle.criterion == SettleCriterion::paper;
     if (loaded.scene.strength_reduction.curve_time || paper) {

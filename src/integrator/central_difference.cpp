@@ -202,7 +202,7 @@ void CentralDifference<N>::add_point_forces(bool step) {
 }
 
 template <int N>
-bool CentralDifference<N>::move(double h, double span, double limit, MassDamping damping, double local_damping) {
+bool CentralDifference<N>::move(double h, double span, const Vec2& base, double limit, MassDamping damping, double local_damping) {
   const std::size_t n = inertia_.size();
   const double alpha = damping == MassDamping::local ? local_damping : 0.0;
   if (damping != MassDamping::automatic) viscous_ = 0.0;
@@ -214,8 +214,8 @@ bool CentralDifference<N>::move(double h, double span, double limit, MassDamping
     const Inertia& m = inertia_[i];
     const Rate &f = forces_[i], &v = rates_[i];
     Rate& next = previous_rates_[i];
-    next.x = (keep * v.x + span * (damped(f.x, v.x) * m.per_mass)) * per_viscous;
-    next.y = (keep * v.y + span * (damped(f.y, v.y) * m.per_mass)) * per_viscous;
+    next.x = (keep * v.x + span * (damped(f.x - m.mass * base.x(), v.x) * m.per_mass)) * per_viscous;
+    next.y = (keep * v.y + span * (damped(f.y - m.mass * base.y(), v.y) * m.per_mass)) * per_viscous;
     next.turn = m.turns * (keep * v.turn + span * (damped(f.turn, v.turn) * m.per_moment)) * per_viscous;
     // (a + b)^2 <= 2 (a^2 + b^2) for the speed of the centroid and of the farthest point around it.
     fastest = std::max(fastest, next.x * next.x + next.y * next.y + square(next.turn * m.radius));
@@ -234,10 +234,12 @@ bool CentralDifference<N>::move(double h, double span, double limit, MassDamping
   double kinetic_change = 0.0;
   for (std::size_t i = 0; i < n; ++i) {
     const Inertia& m = inertia_[i];
-    const Rate &f = forces_[i], &v = rates_[i];
+    const Rate &force = forces_[i], &v = rates_[i];
+    const Rate f{force.x - m.mass * base.x(), force.y - m.mass * base.y(), force.turn, 0.0};
     Rate& next = previous_rates_[i];
     const double mean_x = 0.5 * (v.x + next.x), mean_y = 0.5 * (v.y + next.y), mean_turn = 0.5 * (v.turn + next.turn);
     const double gravity = span * (m.weight_x * mean_x + m.weight_y * mean_y);
+    const double by_base = -span * m.mass * (base.x() * mean_x + base.y() * mean_y);
     const double work = span * (f.x * mean_x + f.y * mean_y + f.turn * mean_turn);
     const double kinetic = m.mass * ((next.x - v.x) * mean_x + (next.y - v.y) * mean_y) + m.moment * (next.turn - v.turn) * mean_turn;
     if (alpha > 0.0) {
@@ -246,8 +248,9 @@ bool CentralDifference<N>::move(double h, double span, double limit, MassDamping
       sum.mass_damping += span * viscous_ * (m.mass * (mean_x * mean_x + mean_y * mean_y) + m.moment * mean_turn * mean_turn);
     }
     sum.gravity -= gravity;
-    sum.scheme -= work - gravity;
-    sum.turnover += std::abs(kinetic) + std::abs(gravity);
+    sum.base_motion -= by_base;
+    sum.scheme -= work - gravity - by_base;
+    sum.turnover += std::abs(kinetic) + std::abs(gravity) + std::abs(by_base);
     kinetic_change += kinetic;
     Pose& pose = poses_[i];
     pose.x += h * next.x;
@@ -263,6 +266,7 @@ bool CentralDifference<N>::move(double h, double span, double limit, MassDamping
     }
   }
   energies_.gravity += sum.gravity;
+  energies_.base_motion += sum.base_motion;
   energies_.scheme += sum.scheme;
   energies_.mass_damping += sum.mass_damping;
   energies_.turnover += sum.turnover;

@@ -26,7 +26,7 @@ namespace openclose {
 
 /// Where energy went in the steps since the last question [J]; signs and meaning as in analysis/energy_ledger.h.
 struct ExplicitEnergies {
-  double gravity = 0.0, loads = 0.0, support_springs = 0.0;
+  double gravity = 0.0, base_motion = 0.0, loads = 0.0, support_springs = 0.0;
   double friction = 0.0, contact_damping = 0.0, mass_damping = 0.0, scheme = 0.0, redefinition = 0.0;
   double turnover = 0.0;
 };
@@ -41,9 +41,9 @@ class CentralDifference {
   /// Takes over blocks, velocities of the middle of the last step, contacts with their history, and the forces they carry now.
   void load(const StepProblem<N>& problem);
 
-  /// Moves the blocks by a step of h; `span` is the time between the middles of the last and this step. False, and nothing has changed, if a block
-  /// would move by more than `limit` [m].
-  bool move(double h, double span, double limit, MassDamping damping, double local_damping);
+  /// Moves the blocks by a step of h; `span` is the time between the middles of the last and this step, `base` the mean acceleration of the base over
+  /// it [m/s2]. False, and nothing has changed, if a block would move by more than `limit` [m].
+  bool move(double h, double span, const Vec2& base, double limit, MassDamping damping, double local_damping);
   /// Brings gaps, forces and energies to the new positions. To be called after every move().
   void follow_contacts();
 

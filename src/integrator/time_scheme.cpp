@@ -28,6 +28,7 @@ class MidstepScheme : public TimeScheme<N> {
   double inertia(double dt) const override { return 1.0 / (dt * span(dt)); }
   double end_weight() const override { return end_weight_; }
   Unknowns next_velocity(double dt, const Unknowns& d, const Unknowns&) const override { return d / dt; }
+  TimeSpan span_of_velocities(double dt) const override { return {-0.5 * previous_dt_, 0.5 * dt}; }
   Unknowns work_displacement(double dt, const Unknowns& d, const Unknowns& v) const override { return 0.5 * span(dt) * (d / dt + v); }
   Unknowns velocity_at_end(double dt, const Unknowns& d, const Unknowns& v) const override {
     const Unknowns acceleration = (d / dt - v) / span(dt);

@@ -11,6 +11,11 @@
 
 namespace openclose {
 
+/// A piece of time, counted from the start of a step [s].
+struct TimeSpan {
+  double from, to;
+};
+
 template <int N>
 class TimeScheme {
  public:
@@ -21,6 +26,8 @@ class TimeScheme {
   virtual double end_weight() const = 0;        ///< theta [-]
   /// Velocity after a step that was really taken with dt and moved by d.
   virtual Unknowns next_velocity(double dt, const Unknowns& d, const Unknowns& v) const = 0;
+  /// The time between the velocities at the start and after a step of dt: over it the forces of the step act.
+  virtual TimeSpan span_of_velocities(double dt) const { return {0.0, dt}; }
   /// Displacement whose product with the forces of the step is exactly the change of kinetic energy.
   virtual Unknowns work_displacement(double dt, const Unknowns& d, const Unknowns& v) const = 0;
   /// Velocity at the end of the step, for output.

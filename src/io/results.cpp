@@ -36,11 +36,20 @@ std::string field(const std::string& text) {
 
 /// The ledger's entries with their names, in the order of the files.
 std::vector<std::pair<const char*, double>> entries(const EnergyLedger& l) {
-  return {
-      {"kinetic_j", l.kinetic},      {"gravity_j", l.gravity},   {"contact_springs_j", l.contact_springs}, {"support_springs_j", l.support_springs},
-      {"loads_j", l.loads},          {"friction_j", l.friction}, {"contact_damping_j", l.contact_damping}, {"mass_damping_j", l.mass_damping},
-      {"impact_j", l.impact},        {"scheme_j", l.scheme},     {"redefinition_j", l.redefinition},       {"turnover_j", l.turnover},
-      {"imbalance_j", l.imbalance()}};
+  return {{"kinetic_j", l.kinetic},
+          {"gravity_j", l.gravity},
+          {"base_motion_j", l.base_motion},
+          {"contact_springs_j", l.contact_springs},
+          {"support_springs_j", l.support_springs},
+          {"loads_j", l.loads},
+          {"friction_j", l.friction},
+          {"contact_damping_j", l.contact_damping},
+          {"mass_damping_j", l.mass_damping},
+          {"impact_j", l.impact},
+          {"scheme_j", l.scheme},
+          {"redefinition_j", l.redefinition},
+          {"turnover_j", l.turnover},
+          {"imbalance_j", l.imbalance()}};
 }
 
 }  // namespace
@@ -189,6 +198,7 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
                   {"max_iterations", scene.method.max_iterations},
                   {"max_displacement_m", scene.step.max_displacement},
                   {"smallest_fraction", scene.step.smallest_fraction},
+                  {"base_motion", scene.base_motion ? ordered_json(word_for(base_motion_words, scene.base_motion->kind)) : ordered_json(nullptr)},
                   {"run_strength_reduction_factor", scene.run_strength_reduction_factor},
                   {"end_time_s", scene.end_time},
                   {"end_displacement_m", scene.end_displacement ? ordered_json(*scene.end_displacement) : ordered_json(nullptr)},

@@ -4,7 +4,7 @@ namespace openclose {
 
 template <int N>
 ExternalForces<N>::ExternalForces(const Scene& scene, BlockSystem<N>& system)
-    : gravity_(scene.gravity), loads_of_(scene.blocks.size()), supports_of_(scene.blocks.size()) {
+    : gravity_(scene.gravity), base_motion_(scene.base_motion), loads_of_(scene.blocks.size()), supports_of_(scene.blocks.size()) {
   for (const Load& load : scene.loads) {
     loads_of_[load.block].push_back(static_cast<int>(loads_.size()));
     loads_.push_back({system.follow_point(load.block, load.point), load.force, Vec2::Zero(), Vec2::Zero()});
@@ -22,8 +22,13 @@ typename ExternalForces<N>::Unknowns ExternalForces<N>::weight(const BlockSystem
 }
 
 template <int N>
+typename ExternalForces<N>::Unknowns ExternalForces<N>::base_force(const BlockSystem<N>& system, int b) const {
+  return Motion<N>::gradient(Vec2::Zero(), -system.block(b).mass[0] * base_acceleration_);
+}
+
+template <int N>
 typename ExternalForces<N>::Unknowns ExternalForces<N>::force(const BlockSystem<N>& system, int b, const Unknowns& d) const {
-  Unknowns total = weight(system, b);
+  Unknowns total = weight(system, b) + base_force(system, b);
   for_each_point_force(b, [&](const PointForce& f) {
     const Vec2 moved = Motion<N>::displacement(d, system.point_arm(f.point), system.rotation_kind());
     const Vec2 stretch = (system.point_position(f.point) - f.anchor) + moved;
@@ -49,7 +54,7 @@ typename ExternalForces<N>::Matrix ExternalForces<N>::stiffness(const BlockSyste
 
 template <int N>
 double ExternalForces<N>::magnitude(const BlockSystem<N>& system, int b, const Unknowns& d) const {
-  double total = weight(system, b).norm();
+  double total = weight(system, b).norm() + base_force(system, b).norm();
   for_each_point_force(b, [&](const PointForce& f) {
     const Vec2 moved = Motion<N>::displacement(d, system.point_arm(f.point), system.rotation_kind());
     const Vec2 stretch = (system.point_position(f.point) - f.anchor) + moved;

@@ -1,8 +1,9 @@
-// Forces on blocks that do not come from contacts: gravity, constant forces at points, springs that hold points.
+// Forces on blocks that do not come from contacts: gravity, the motion of the base, constant forces at points, springs that hold points.
 #pragma once
 
 #include <vector>
 
+#include "openclose/model/base_motion.h"
 #include "openclose/model/block_system.h"
 
 namespace openclose {
@@ -16,8 +17,15 @@ class ExternalForces {
   /// Makes `system` follow the points of the scene's loads and supports.
   ExternalForces(const Scene& scene, BlockSystem<N>& system);
 
-  Unknowns weight(const BlockSystem<N>& system, int b) const;  ///< [N]
-  /// Forces of gravity, loads and supports on block b after it has moved by d from the system's present state.
+  /// The forces of the next step are those of a base that moves as it does between these times [s]: what they give the blocks is exactly the change of
+  /// the base's velocity.
+  void move_base(double from, double to) { base_acceleration_ = base_motion_.mean_acceleration(from, to); }
+  void hold_base() { base_acceleration_.setZero(); }
+  const Vec2& base_acceleration() const { return base_acceleration_; }  ///< [m/s2] mean over these times
+
+  Unknowns weight(const BlockSystem<N>& system, int b) const;      ///< [N]
+  Unknowns base_force(const BlockSystem<N>& system, int b) const;  ///< [N] minus mass times acceleration of the base
+  /// Forces of gravity, base, loads and supports on block b after it has moved by d from the system's present state.
   Unknowns force(const BlockSystem<N>& system, int b, const Unknowns& d) const;
   /// Minus the derivative of force() by d.
   Matrix stiffness(const BlockSystem<N>& system, int b, const Unknowns& d) const;
@@ -45,6 +53,8 @@ class ExternalForces {
   }
 
   Vec2 gravity_;
+  BaseMotion base_motion_;
+  Vec2 base_acceleration_ = Vec2::Zero();
   std::vector<PointForce> loads_, supports_;
   std::vector<std::vector<int>> loads_of_, supports_of_;
 };

@@ -10,6 +10,12 @@
 
 namespace openclose {
 
+inline constexpr std::array base_motion_words{
+    Word{"pulses", BaseMotionKind::pulses},
+    Word{"harmonic", BaseMotionKind::harmonic},
+    Word{"record", BaseMotionKind::record},
+};
+
 inline constexpr std::array cohesion_behaviour_words{
     Word{"ductile", CohesionBehaviour::ductile},
     Word{"lost_on_opening", CohesionBehaviour::lost_on_opening},

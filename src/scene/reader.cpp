@@ -10,6 +10,7 @@
 
 #include "openclose/geometry/box.h"
 #include "openclose/scene/angle.h"
+#include "openclose/scene/base_motion.h"
 #include "openclose/scene/domain.h"
 #include "openclose/scene/names.h"
 #include "openclose/scene/outline.h"
@@ -299,6 +300,7 @@ Scene interpret(const toml::table& document, const std::string& file) {
   const std::vector<Table> supports = root.tables("support");
   const std::vector<Table> loads = root.tables("load");
   const std::vector<Table> measured_points = root.tables("measured_point");
+  const Table base_motion = root.table("base_motion");
   const Table method = root.table("method");
   const Table step = root.table("step");
   const Table run = root.table("run");
@@ -322,6 +324,10 @@ Scene interpret(const toml::table& document, const std::string& file) {
   for (const Table& table : loads) scene.loads.push_back(read_load(table, scene, block_names));
   for (const Table& table : measured_points) scene.measured_points.push_back(read_measured_point(table, scene, block_names, point_names));
   scene.method = read_method(method, scene.where);
+  if (base_motion.is_there()) {
+    scene.base_motion = read_base_motion(base_motion, file);
+    if (scene.method.statics) base_motion.fail("steps that start from rest know no motion of the base", "no [base_motion], or method.statics = false");
+  }
   scene.step = read_step(step);
   read_run(run, scene);
   read_end(end, scene);

@@ -8,6 +8,7 @@
 
 #include "openclose/core/error.h"
 #include "openclose/core/vector.h"
+#include "openclose/scene/acceleration_record.h"
 
 namespace openclose {
 
@@ -64,6 +65,30 @@ struct MeasuredPoint {
   std::string name;
   int block = 0;
   Vec2 point = Vec2::Zero();  ///< [m]
+};
+
+enum class BaseMotionKind {
+  pulses,    ///< rectangular ones; where they overlap they add up
+  harmonic,  ///< amplitude sin(2 pi frequency t + phase) from time 0 on
+  record,    ///< linear between its times, one for each direction
+};
+
+struct BasePulse {
+  double start = 0.0;                 ///< [s]
+  double duration = 0.0;              ///< [s]
+  Vec2 acceleration = Vec2::Zero();  ///< [m/s2]
+};
+
+/// Acceleration of the ground during the motion, from time 0 on. Only what belongs to the kind is used.
+struct BaseMotionInput {
+  BaseMotionKind kind = BaseMotionKind::pulses;
+  double factor = 1.0;  ///< [-] on all accelerations
+  std::vector<BasePulse> pulses;
+  Vec2 amplitude = Vec2::Zero();  ///< [m/s2]
+  double frequency = 0.0;         ///< [Hz]
+  double phase = 0.0;             ///< [rad]
+  AccelerationRecord horizontal;  ///< positive to the right; empty: none
+  AccelerationRecord vertical;    ///< positive upwards; empty: none
 };
 
 /// How a run starts.
@@ -166,6 +191,7 @@ struct Scene {
   std::vector<Support> supports;
   std::vector<Load> loads;
   std::vector<MeasuredPoint> measured_points;
+  std::optional<BaseMotionInput> base_motion;
   MethodInput method;
   StepInput step;
   double run_strength_reduction_factor = 1.0;  ///< [-] on the strength of the joints in the motion, see RunResult

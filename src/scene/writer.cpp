@@ -118,6 +118,37 @@ void write_points(Text& text, const Scene& scene) {
   }
 }
 
+void write_record(Text& text, const std::string& direction, const AccelerationRecord& record) {
+  if (record.times.empty()) return;
+  text.line(direction + "_time_s", record.times);
+  text.line(direction + "_m_per_s2", record.accelerations);
+}
+
+void write_base_motion(Text& text, const BaseMotionInput& motion) {
+  text.header("[base_motion]");
+  text.line("kind", word_for(base_motion_words, motion.kind));
+  text.line("factor", motion.factor);
+  switch (motion.kind) {
+    case BaseMotionKind::pulses:
+      for (const BasePulse& pulse : motion.pulses) {
+        text.header("[[base_motion.pulse]]");
+        text.line("start_s", pulse.start);
+        text.line("duration_s", pulse.duration);
+        text.line("acceleration_m_per_s2", pulse.acceleration);
+      }
+      break;
+    case BaseMotionKind::harmonic:
+      text.line("amplitude_m_per_s2", motion.amplitude);
+      text.line("frequency_hz", motion.frequency);
+      text.line("phase_deg", degrees(motion.phase));
+      break;
+    case BaseMotionKind::record:
+      write_record(text, "horizontal", motion.horizontal);
+      write_record(text, "vertical", motion.vertical);
+      break;
+  }
+}
+
 void write_method(Text& text, const MethodInput& method) {
   text.header("[method]");
   text.line("contact", std::string_view(method.contact));
@@ -184,6 +215,7 @@ std::string write_scene(const Scene& scene) {
   write_joints(text, scene);
   write_blocks(text, scene);
   write_points(text, scene);
+  if (scene.base_motion) write_base_motion(text, *scene.base_motion);
   write_method(text, scene.method);
   write_run(text, scene);
   write_statics(text, scene.settle, scene.strength_reduction);

@@ -23,7 +23,7 @@ void append(std::vector<double>& list, const Contact& c) {
 }
 
 void append(std::vector<double>& list, const EnergyLedger& l) {
-  list.insert(list.end(), {l.kinetic, l.gravity, l.contact_springs, l.support_springs, l.loads, l.friction, l.contact_damping, l.mass_damping, l.impact, l.scheme,
+  list.insert(list.end(), {l.kinetic, l.gravity, l.base_motion, l.contact_springs, l.support_springs, l.loads, l.friction, l.contact_damping, l.mass_damping, l.impact, l.scheme,
                            l.redefinition, l.turnover});
 }
 

@@ -95,6 +95,7 @@ TEST_CASE("energy.csv ends with the imbalance", "[io][results]") {
   EnergyLedger l;
   l.kinetic = 1.0 / 3.0;
   l.gravity = -2.0 / 3.0;
+  l.base_motion = -0.15;
   l.contact_springs = 0.1;
   l.support_springs = 0.2;
   l.loads = -0.3;
@@ -111,9 +112,9 @@ TEST_CASE("energy.csv ends with the imbalance", "[io][results]") {
   const auto lines = lines_of(place / "energy.csv");
   REQUIRE(lines.size() == 2);
   CHECK(lines[0] ==
-        "time_s,kinetic_j,gravity_j,contact_springs_j,support_springs_j,loads_j,friction_j,contact_damping_j,mass_damping_j,impact_j,scheme_j,redefinition_j,"
-        "turnover_j,imbalance_j");
-  const double expected[] = {0.25,     l.kinetic, l.gravity,      l.contact_springs, l.support_springs, l.loads, l.friction, l.contact_damping, l.mass_damping,
+        "time_s,kinetic_j,gravity_j,base_motion_j,contact_springs_j,support_springs_j,loads_j,friction_j,contact_damping_j,mass_damping_j,impact_j,scheme_j,"
+        "redefinition_j,turnover_j,imbalance_j");
+  const double expected[] = {0.25,     l.kinetic, l.gravity,      l.base_motion, l.contact_springs, l.support_springs, l.loads, l.friction, l.contact_damping, l.mass_damping,
                              l.impact, l.scheme,  l.redefinition, l.turnover,        l.imbalance()};
   const auto fields = fields_of(lines[1]);
   REQUIRE(fields.size() == std::size(expected));
@@ -287,7 +288,7 @@ TEST_CASE("summary.json of a run", "[io][results]") {
   for (const char* stage : {"detection", "solution", "bookkeeping"}) CHECK(j.at("stage_s").at(stage).get<double>() > 0.0);
   CHECK(same_bits(j.at("energy_ledger").at("friction_j").get<double>(), 1.0 / 3.0));
   CHECK(j.at("energy_ledger").at("imbalance_j") == 1.0 / 3.0);
-  CHECK(j.at("energy_ledger").size() == 13);
+  CHECK(j.at("energy_ledger").size() == 14);
   CHECK(j.at("settling").at("settled") == true);
   CHECK(j.at("settling").at("criterion") == "unbalanced force");
   CHECK_FALSE(j.contains("factor_of_safety"));
