@@ -1,158 +1,174 @@
 #include "openclose/contact/detection.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
 
 #include "openclose/core/tolerance.h"
-#include "openclose/geometry/box.h"
 #include "openclose/geometry/polygon.h"
 
 namespace openclose {
 namespace {
 
+const double cosine_full = std::cos(tolerance::parallel_full_rad);
+const double cosine_none = std::cos(tolerance::parallel_none_rad), sine_none = std::sin(tolerance::parallel_none_rad);
+const double cosine_needle = std::cos(2.0 * tolerance::parallel_none_rad);
+const double sine_flush = std::sin(tolerance::flush_tilt_rad);
+
 /// How far two edges may count as facing each other; see the header.
 double parallel_weight(double cosine) {
-  static const double full = std::cos(tolerance::parallel_full_rad);
-  static const double none = std::cos(tolerance::parallel_none_rad);
-  if (cosine >= full) return 1.0;
-  if (cosine <= none) return 0.0;
+  if (cosine >= cosine_full) return 1.0;
+  if (cosine <= cosine_none) return 0.0;
   return (tolerance::parallel_none_rad - std::acos(cosine)) / (tolerance::parallel_none_rad - tolerance::parallel_full_rad);
 }
 
-/// The contacts as they were, by pair and by corner.
-class ContactIndex {
- public:
-  template <int N>
-  ContactIndex(const BlockSystem<N>& system, const std::vector<Contact>& contacts) : contacts_(contacts) {
-    for (std::size_t i = 0; i < contacts.size(); ++i) {
-      if (contacts[i].status == ContactStatus::open) continue;
-      const int edge = contacts[i].edge;
-      for (const int corner : {contacts[i].vertex, edge, system.next(edge)}) closed_.emplace_back(corner, i);
-    }
-    std::sort(closed_.begin(), closed_.end());
-  }
+}  // namespace
 
-  /// Looks at the contacts [begin, end) of one pair of blocks.
-  void select(std::size_t begin, std::size_t end) {
-    begin_ = begin;
-    end_ = end;
-  }
-  /// Position in the list, or -1; of the selected pair.
-  std::ptrdiff_t find(int vertex, int edge) const {
-    for (std::size_t i = begin_; i < end_; ++i) {
-      if (contacts_[i].vertex == vertex && contacts_[i].edge == edge) return static_cast<std::ptrdiff_t>(i);
-    }
-    return -1;
-  }
-  bool was_closed(int vertex, int edge) const {
-    const std::ptrdiff_t i = find(vertex, edge);
-    return i >= 0 && contacts_[i].status != ContactStatus::open;
-  }
-  /// [m] length over which the contact is closed.
-  double closed_length(int vertex, int edge) const { return was_closed(vertex, edge) ? contacts_[find(vertex, edge)].length : 0.0; }
-  /// Whether this vertex or one of its two edges is in contact, with any block.
-  bool closed(int vertex) const {
-    const auto it = first_of(vertex);
-    return it != closed_.end() && it->first == vertex;
-  }
-  /// Closed contacts of this vertex and those on its two edges.
-  template <class F>
-  void for_closed(int vertex, F f) const {
-    for (auto it = first_of(vertex); it != closed_.end() && it->first == vertex; ++it) f(contacts_[it->second]);
-  }
-
- private:
-  using Entry = std::pair<int, std::size_t>;
-  std::vector<Entry>::const_iterator first_of(int vertex) const { return std::lower_bound(closed_.begin(), closed_.end(), Entry(vertex, 0)); }
-
-  const std::vector<Contact>& contacts_;
-  std::size_t begin_ = 0, end_ = 0;
-  std::vector<Entry> closed_;  ///< closed contacts by their vertex and by the ends of their edge, sorted
-};
-
-/// Narrow phase between the blocks of one pair. Collects contacts; a vertex-edge pair found twice gets the sum of the lengths.
+/// Places of the blocks' corners and edges, measured when they are first asked for after begin().
 template <int N>
-class NarrowPhase {
+class Detector<N>::Shapes {
  public:
-  NarrowPhase(const BlockSystem<N>& system, double reach, const ContactIndex& previous) : system_(system), reach_(reach), previous_(previous) {}
-
-  void run(int block_a, int block_b, std::vector<Contact>& found) {
-    found_ = &found;
-    first_ = found.size();
-    sides_[0].fill(*this, block_a);
-    sides_[1].fill(*this, block_b);
-    // Only what lies in the box of both blocks, with the reach, can touch.
-    const Box room = sides_[0].box.inflated(reach_).common(sides_[1].box.inflated(reach_));
-    if (room.empty()) return;
-    for_each_vertex(block_a, [&](int a) {
-      if (!box_of(edge_at(block_a, a)).overlaps(room)) return;
-      for_each_vertex(block_b, [&](int b) { facing_edges(block_a, a, block_b, b); });
-    });
-    lone_corners(block_a, block_b, room);
-    lone_corners(block_b, block_a, room);
-  }
-
- private:
+  /// A corner and the edge that begins there.
   struct Edge {
     Vec2 start, direction;
     double length;
     Vec2 normal() const { return {direction.y(), -direction.x()}; }  ///< outward
     double gap(const Vec2& p) const { return normal().dot(p - start); }
     double along(const Vec2& p) const { return direction.dot(p - start); }
+    Vec2 end() const { return start + length * direction; }
+    Box box() const { return Box::around(start, end()); }
   };
 
+  void begin(const BlockSystem<N>& system) {
+    system_ = &system;
+    measured_.assign(system.block_count(), 0);
+    boxes_.resize(system.block_count());
+    edges_.resize(system.state().arm.size());
+  }
+  const Edge& edge(int block, int e) {
+    if (!measured_[block]) measure(block);
+    return edges_[e];
+  }
+  /// Of a block that has been measured.
+  const Edge& edge(int e) const { return edges_[e]; }
+  const Box& box(int block) {
+    if (!measured_[block]) measure(block);
+    return boxes_[block];
+  }
+
+ private:
+  void measure(int b) {
+    measured_[b] = 1;
+    const auto& block = system_->block(b);
+    Box& box = boxes_[b];
+    for (int v = block.first_vertex; v < block.first_vertex + block.vertex_count; ++v) {
+      const Vec2 span = system_->arm(system_->next(v)) - system_->arm(v);
+      const double length = span.norm();
+      edges_[v] = {system_->position(b, v), span / length, length};
+      const Box own = edges_[v].box();
+      box = v == block.first_vertex ? own : Box{box.low.cwiseMin(own.low), box.high.cwiseMax(own.high)};
+    }
+  }
+
+  const BlockSystem<N>* system_ = nullptr;
+  std::vector<char> measured_;  ///< of the blocks
+  std::vector<Box> boxes_;
+  std::vector<Edge> edges_;  ///< by the vertex they begin at
+};
+
+/// The contacts as they were, by pair and by corner.
+template <int N>
+class Detector<N>::ContactIndex {
+ public:
+  void build(const BlockSystem<N>& system, const std::vector<Contact>& contacts) {
+    contacts_ = &contacts;
+    first_.assign(system.state().arm.size(), -1);
+    entries_.clear();
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      if (contacts[i].status == ContactStatus::open) continue;
+      const int edge = contacts[i].edge;
+      for (const int corner : {contacts[i].vertex, edge, system.next(edge)}) {
+        entries_.push_back({static_cast<int>(i), first_[corner]});
+        first_[corner] = static_cast<int>(entries_.size()) - 1;
+      }
+    }
+  }
+
+  /// Looks at the contacts of one pair of blocks.
+  void select(const Range& range) { range_ = range; }
+  /// Position in the list, or -1; of the selected pair.
+  int find(int vertex, int edge) const {
+    for (int i = range_.begin; i < range_.end; ++i) {
+      if ((*contacts_)[i].vertex == vertex && (*contacts_)[i].edge == edge) return i;
+    }
+    return -1;
+  }
+  bool was_closed(int vertex, int edge) const {
+    const int i = find(vertex, edge);
+    return i >= 0 && (*contacts_)[i].status != ContactStatus::open;
+  }
+  /// [m] length over which the contact is closed.
+  double closed_length(int vertex, int edge) const { return was_closed(vertex, edge) ? (*contacts_)[find(vertex, edge)].length : 0.0; }
+  /// Whether this vertex or one of its two edges is in contact, with any block.
+  bool closed(int vertex) const { return first_[vertex] >= 0; }
+  /// Closed contacts of this vertex and those on its two edges.
+  template <class F>
+  void for_closed(int vertex, F f) const {
+    for (int i = first_[vertex]; i >= 0; i = entries_[i].next) f((*contacts_)[entries_[i].contact]);
+  }
+
+ private:
+  struct Entry {
+    int contact, next;
+  };
+  const std::vector<Contact>* contacts_ = nullptr;
+  Range range_;
+  std::vector<int> first_;      ///< per vertex, in entries_; -1 without any
+  std::vector<Entry> entries_;  ///< closed contacts of one vertex, of the ends of their edges too, chained
+};
+
+/// Narrow phase between the blocks of one pair. Collects contacts; a vertex-edge pair found twice gets the sum of the lengths.
+template <int N>
+class Detector<N>::NarrowPhase {
+ public:
+  using Edge = typename Shapes::Edge;
+
+  NarrowPhase(const BlockSystem<N>& system, double reach, Shapes& shapes, const ContactIndex& previous)
+      : system_(system), reach_(reach), shapes_(shapes), previous_(previous) {}
+
+  void run(int block_a, int block_b, std::vector<Contact>& found) {
+    found_ = &found;
+    first_ = found.size();
+    // Only what lies in the box of both blocks, with the reach, can touch.
+    const Box room = shapes_.box(block_a).inflated(reach_).common(shapes_.box(block_b).inflated(reach_));
+    if (room.empty()) return;
+    for_each_vertex(block_a, [&](int a) {
+      const Edge& edge = shapes_.edge(a);
+      if (!edge.box().overlaps(room)) return;
+      for_each_vertex(block_b, [&](int b) {
+        const double cosine = -edge.direction.dot(shapes_.edge(b).direction);
+        if (cosine > cosine_none) facing_edges(block_a, a, block_b, b, parallel_weight(cosine));
+      });
+    });
+    lone_corners(block_a, block_b, room);
+    lone_corners(block_b, block_a, room);
+  }
+
+ private:
   template <class F>
   void for_each_vertex(int block, F f) const {
     const auto& b = system_.block(block);
     for (int v = b.first_vertex; v < b.first_vertex + b.vertex_count; ++v) f(v);
   }
 
-  /// The edges of one of the two blocks.
-  struct Sides {
-    int block = -1, first = 0;
-    std::vector<Edge> edges;
-    Box box;
-
-    void fill(const NarrowPhase& phase, int of_block) {
-      block = of_block;
-      first = phase.system_.block(block).first_vertex;
-      edges.clear();
-      phase.for_each_vertex(block, [&](int v) {
-        edges.push_back(phase.measured_edge(block, v));
-        const Box own = box_of(edges.back());
-        box = v == first ? own : Box{box.low.cwiseMin(own.low), box.high.cwiseMax(own.high)};
-      });
-    }
-  };
-
-  static Box box_of(const Edge& edge) { return Box::around(edge.start, edge.start + edge.length * edge.direction); }
-
-  Edge edge_at(int block, int e) const {
-    for (const Sides& side : sides_) {
-      if (side.block == block) return side.edges[e - side.first];
-    }
-    return measured_edge(block, e);
-  }
-
-  Edge measured_edge(int block, int e) const {
-    const Vec2 start = system_.position(block, e);
-    const Vec2 span = system_.arm(system_.next(e)) - system_.arm(e);
-    const double length = span.norm();
-    return {start, span / length, length};
-  }
-
-  void facing_edges(int block_a, int a, int block_b, int b) {
-    const Edge edge_a = edge_at(block_a, a), edge_b = edge_at(block_b, b);
-    const double weight = parallel_weight(-edge_a.direction.dot(edge_b.direction));
-    if (weight == 0.0) return;
+  void facing_edges(int block_a, int a, int block_b, int b, double weight) {
+    const Edge &edge_a = shapes_.edge(a), &edge_b = shapes_.edge(b);
     // Along the bisector u edge b runs forward and edge a backward, so that the overlap is [max of starts, min of ends].
     const Vec2 u = (edge_b.direction - edge_a.direction).normalized();
     const int a_end = system_.next(a), b_end = system_.next(b);
-    const auto along = [&](int block, int v) { return u.dot(system_.position(block, v) - edge_b.start); };
-    const double a_low = along(block_a, a_end), a_high = along(block_a, a);
-    const double b_low = along(block_b, b), b_high = along(block_b, b_end);
+    const auto along = [&](int v) { return u.dot(shapes_.edge(v).start - edge_b.start); };
+    const double a_low = along(a_end), a_high = along(a);
+    const double b_low = along(b), b_high = along(b_end);
     const double overlap = std::min(a_high, b_high) - std::max(a_low, b_low);
     if (overlap < tolerance::shortest_overlap_m) return;
     const double length = 0.5 * weight * overlap;
@@ -165,10 +181,9 @@ class NarrowPhase {
   /// is not far off.
   void add_end(int block_a, int va, int a, int block_b, int vb, int b, bool a_is_inside, double beyond, double length) {
     const bool inside_is_reflex = system_.is_reflex(a_is_inside ? va : vb);
-    const double seam = tolerance::seam_height_m + tolerance::seam_closures * std::max(closure(va), closure(vb));
-    if (inside_is_reflex && beyond > seam) return;
+    if (inside_is_reflex && beyond > tolerance::seam_height_m + tolerance::seam_closures * std::max(closure(va), closure(vb))) return;
     // The two corners take turns: a joint that has closed under one of them is closed for the other.
-    const bool closed = previous_.was_closed(va, b) || previous_.was_closed(vb, a);
+    const auto closed = [&] { return previous_.was_closed(va, b) || previous_.was_closed(vb, a); };
     if (a_is_inside != inside_is_reflex) {
       add(block_a, va, block_b, b, length, closed);
     } else {
@@ -179,32 +194,34 @@ class NarrowPhase {
   void lone_corners(int vertex_block, int edge_block, const Box& room) {
     for_each_vertex(vertex_block, [&](int v) {
       if (system_.is_reflex(v)) return;
-      const Vec2 p = system_.position(vertex_block, v);
+      const Vec2& p = shapes_.edge(v).start;
       if (!room.contains(p)) return;
       for_each_vertex(edge_block, [&](int e) {
-        const Edge edge = edge_at(edge_block, e);
-        if (edge.gap(p) > reach_) return;
+        const Edge& edge = shapes_.edge(e);
+        if (edge.gap(p) > reach_ || !stands_on(v, edge)) return;
         const double along = edge.along(p);
         const double beyond = std::max(-along, along - edge.length);
         if (beyond > 0.0 && beyond > end_margin(v, edge)) return;
         const double weight = lone_weight(v, edge);
-        if (weight == 0.0 || passes_over(vertex_block, v, edge_block, e)) return;
+        if (weight == 0.0 || passes_over(v, edge_block, e)) return;
         const Vec2 ahead = system_.arm(system_.next(v)) - system_.arm(v), back = system_.arm(system_.previous(v)) - system_.arm(v);
         const auto projection = [&](const Vec2& side) { return std::min(std::abs(side.dot(edge.direction)), edge.length); };
-        add(vertex_block, v, edge_block, e, 0.5 * weight * (projection(ahead) + projection(back)), previous_.was_closed(v, e));
+        add(vertex_block, v, edge_block, e, 0.5 * weight * (projection(ahead) + projection(back)), [&] { return previous_.was_closed(v, e); });
       });
     });
   }
 
-  /// 1 - w_v of the header: 0 where one side of the corner faces the edge or points into its half-plane.
+  const Vec2& ahead(int v) const { return shapes_.edge(v).direction; }
+  Vec2 back(int v) const { return -shapes_.edge(system_.previous(v)).direction; }
+
+  /// 1 - w_v of the header, of a corner that stands on the edge.
   double lone_weight(int v, const Edge& edge) const {
-    if (!stands_on(v, edge)) return 0.0;
-    const Vec2 ahead = system_.arm(system_.next(v)) - system_.arm(v), back = system_.arm(system_.previous(v)) - system_.arm(v);
-    return 1.0 - std::max(parallel_weight(-ahead.normalized().dot(edge.direction)), parallel_weight(back.normalized().dot(edge.direction)));
+    return 1.0 - std::max(parallel_weight(-ahead(v).dot(edge.direction)), parallel_weight(back(v).dot(edge.direction)));
   }
 
-  /// \param closed  whether this place was in contact already
-  void add(int vertex_block, int v, int edge_block, int e, double length, bool closed) {
+  /// \param closed  tells whether this place was in contact already
+  template <class Closed>
+  void add(int vertex_block, int v, int edge_block, int e, double length, const Closed& closed) {
     if (system_.is_reflex(v)) return;
     for (std::size_t i = first_; i < found_->size(); ++i) {
       Contact& known = (*found_)[i];
@@ -213,11 +230,11 @@ class NarrowPhase {
         return;
       }
     }
-    const Edge edge = edge_at(edge_block, e);
-    const Vec2 p = system_.position(vertex_block, v);
+    const Edge& edge = shapes_.edge(e);
+    const Vec2& p = shapes_.edge(v).start;
     const double gap = edge.gap(p);
     if (gap > reach_ || !outside(v, edge)) return;
-    if (gap < 0.0 && !entered_through(v, p, edge_block, e, gap, closed)) return;
+    if (gap < 0.0 && !entered_through(v, edge_block, e, gap, closed)) return;
     Contact contact;
     contact.vertex_block = vertex_block;
     contact.vertex = v;
@@ -238,7 +255,7 @@ class NarrowPhase {
   double closure_across(int v, const Edge& edge) const {
     double largest = 0.0;
     previous_.for_closed(v, [&](const Contact& c) {
-      const double cosine = edge.direction.dot(edge_at(c.edge_block, c.edge).direction);
+      const double cosine = edge.direction.dot(shapes_.edge(c.edge_block, c.edge).direction);
       largest = std::max(largest, -c.gap * std::abs(cosine));
     });
     return largest;
@@ -247,7 +264,7 @@ class NarrowPhase {
   /// Whether a corner, or one of its two edges, is in contact with something parallel to `edge`.
   bool slides_along(int v, const Edge& edge) const {
     bool parallel = false;
-    previous_.for_closed(v, [&](const Contact& c) { parallel |= !turns_away(edge_at(c.edge_block, c.edge), edge); });
+    previous_.for_closed(v, [&](const Contact& c) { parallel |= !turns_away(shapes_.edge(c.edge_block, c.edge), edge); });
     return parallel;
   }
 
@@ -255,15 +272,16 @@ class NarrowPhase {
   /// from e does, v does not run into e. Blocks that lie flush but for the closures of their contacts must not catch on the seams between them: a
   /// corner that slides on something keeps its way if what it slides on is lower than the seam's height. Where corners coincide and nothing has
   /// closed yet, the motion decides. An overlap no longer than a seam is high is no closed contact.
-  bool passes_over(int vertex_block, int v, int edge_block, int e) const {
-    const Edge edge = edge_at(edge_block, e);
-    const Vec2 p = system_.position(vertex_block, v);
+  bool passes_over(int v, int edge_block, int e) const {
+    const Edge& edge = shapes_.edge(edge_block, e);
+    const Vec2& p = shapes_.edge(v).start;
     const bool near_start = edge.along(p) < 0.5 * edge.length;
     const int end = near_start ? e : system_.next(e);
-    if (previous_.closed_length(v, e) > tolerance::seam_height_m || system_.is_reflex(end)) return false;
-    const Vec2 q = system_.position(edge_block, end);
+    if (system_.is_reflex(end)) return false;
+    const Vec2& q = shapes_.edge(end).start;
     const bool slides = previous_.closed(v) || previous_.closed(end);
     if (!slides && (p - q).norm() > tolerance::edge_end_m) return false;
+    if (previous_.closed_length(v, e) > tolerance::seam_height_m) return false;
     const bool in_front = edge.gap(p) > -tolerance::shortest_edge_m;
     const auto separates = [&](int corner, const Vec2& position, const Edge& other) {
       if (!turns_away(edge, other) || !stands_on(corner, other)) return false;
@@ -271,32 +289,26 @@ class NarrowPhase {
       const double closure = std::max(closure_across(v, other), closure_across(end, other));
       return other.gap(position) > -step - tolerance::seam_closures * closure;
     };
-    return separates(v, p, edge_at(edge_block, near_start ? system_.previous(e) : system_.next(e))) || separates(end, q, edge_at(vertex_block, v)) ||
-           separates(end, q, edge_at(vertex_block, system_.previous(v)));
+    return separates(v, p, shapes_.edge(near_start ? system_.previous(e) : system_.next(e))) || separates(end, q, shapes_.edge(v)) ||
+           separates(end, q, shapes_.edge(system_.previous(v)));
   }
 
-  static bool turns_away(const Edge& a, const Edge& b) {
-    static const double bend = std::cos(tolerance::parallel_none_rad);
-    return std::abs(a.direction.dot(b.direction)) < bend;
-  }
+  static bool turns_away(const Edge& a, const Edge& b) { return std::abs(a.direction.dot(b.direction)) < cosine_none; }
 
   /// [m] How far beyond an end of the edge a corner still counts as opposite to it: where the corner leans on something else there, a notch's other
   /// wall or another block, by what its contacts have closed.
   double end_margin(int v, const Edge& edge) const {
     bool leans = false;
-    previous_.for_closed(v, [&](const Contact& c) { leans |= c.vertex == v && turns_away(edge_at(c.edge_block, c.edge), edge); });
+    previous_.for_closed(v, [&](const Contact& c) { leans |= c.vertex == v && turns_away(shapes_.edge(c.edge_block, c.edge), edge); });
     return tolerance::edge_end_m + (leans ? tolerance::seam_closures * closure(v) : 0.0);
   }
 
   /// Both sides of the corner leave the edge's half-plane: only then can the corner touch the edge from outside. Overlaps of facing edges fade out
   /// until parallel_none.
-  bool outside(int v, const Edge& edge) const { return leaves(v, edge, std::sin(tolerance::parallel_none_rad)); }
+  bool outside(int v, const Edge& edge) const { return leaves(v, edge, sine_none); }
   /// The same for a lone corner.
-  bool stands_on(int v, const Edge& edge) const { return leaves(v, edge, std::sin(tolerance::flush_tilt_rad)); }
-  bool leaves(int v, const Edge& edge, double tilt) const {
-    const Vec2 ahead = system_.arm(system_.next(v)) - system_.arm(v), back = system_.arm(system_.previous(v)) - system_.arm(v);
-    return edge.normal().dot(ahead.normalized()) >= -tilt && edge.normal().dot(back.normalized()) >= -tilt;
-  }
+  bool stands_on(int v, const Edge& edge) const { return leaves(v, edge, sine_flush); }
+  bool leaves(int v, const Edge& edge, double tilt) const { return edge.normal().dot(ahead(v)) >= -tilt && edge.normal().dot(back(v)) >= -tilt; }
 
   bool share_reflex_corner(int e, int f) const {
     return (system_.next(e) == f && system_.is_reflex(f)) || (system_.next(f) == e && system_.is_reflex(e));
@@ -304,38 +316,42 @@ class NarrowPhase {
 
   /// A penetrating corner touches the edge it came in through: no other edge that it could touch is nearer. Only in a notch does it touch both walls.
   /// History decides nothing here: beside a four-block corner a corner is first behind the joint's face, then, as it slides on, behind the right one.
-  bool entered_through(int v, const Vec2& p, int edge_block, int e, double gap, bool closed) {
+  template <class Closed>
+  bool entered_through(int v, int edge_block, int e, double gap, const Closed& closed) {
+    const Vec2& p = shapes_.edge(v).start;
     // What lies behind the edge must lie in the block, except for what drawings leave and what contacts that carry load have closed.
-    if (-gap > tolerance::deepest_initial_overlap_m && !closed && !in_block(edge_block, p)) return false;
-    const Edge edge = edge_at(edge_block, e);
-    bool nearest = true;
-    for_each_vertex(edge_block, [&](int f) {
-      if (f == e || share_reflex_corner(e, f)) return;
-      const Edge other = edge_at(edge_block, f);
-      const double distance = distance_to_segment(p, other.start, other.start + other.length * other.direction);
+    if (-gap > tolerance::deepest_initial_overlap_m && !in_block(edge_block, p) && !closed()) return false;
+    const Edge& edge = shapes_.edge(e);
+    const auto& block = system_.block(edge_block);
+    for (int f = block.first_vertex; f < block.first_vertex + block.vertex_count; ++f) {
+      const Edge& other = shapes_.edge(f);
+      // An edge is no nearer than the line on which it lies.
+      if (f == e || std::abs(other.gap(p)) > -gap || share_reflex_corner(e, f)) continue;
+      if (distance_to_segment(p, other.start, other.end()) >= -gap - tolerance::shortest_edge_m) continue;
       // At a needle's tip, closed by a little, the edge that is faced need not be the nearest one.
-      static const double needle = std::cos(2.0 * tolerance::parallel_none_rad);
-      const bool at_needle = std::abs(edge.direction.dot(other.direction)) > needle;
-      const bool could_touch = at_needle ? stands_on(v, other) : outside(v, other);
-      if (could_touch && distance < -gap - tolerance::shortest_edge_m) nearest = false;
-    });
-    return nearest;
+      const bool at_needle = std::abs(edge.direction.dot(other.direction)) > cosine_needle;
+      if (at_needle ? stands_on(v, other) : outside(v, other)) return false;
+    }
+    return true;
   }
 
   bool in_block(int block, const Vec2& p) {
+    if (!shapes_.box(block).inflated(2.0 * tolerance::edge_end_m).contains(p)) return false;
     polygon_.clear();
-    for_each_vertex(block, [&](int v) { polygon_.push_back(system_.position(block, v)); });
+    for_each_vertex(block, [&](int v) { polygon_.push_back(shapes_.edge(v).start); });
     return contains(polygon_, p) || distance_to_boundary(polygon_, p) <= tolerance::edge_end_m;
   }
 
   const BlockSystem<N>& system_;
   double reach_;
+  Shapes& shapes_;
   const ContactIndex& previous_;
-  std::array<Sides, 2> sides_;
   std::vector<Contact>* found_ = nullptr;
   std::size_t first_ = 0;
   Polygon polygon_;
 };
+
+namespace {
 
 void inherit(const Contact& from, Contact& to) {
   to.status = from.status;
@@ -346,20 +362,37 @@ void inherit(const Contact& from, Contact& to) {
   to.stored_energy = from.stored_energy;
 }
 
+/// (R(angle) - 1) r; for most angles, which are small, without sines: what the series leave out is below rounding.
+Vec2 turned_little_by(double angle, const Vec2& r) {
+  constexpr double small = 0.01;  // [rad]; angle^9/9! and angle^8/8! are left out
+  if (std::abs(angle) >= small) return Motion<3>::turned_by(angle, r, RotationKind::exact);
+  const double q = angle * angle;
+  return angle * (1.0 - q / 6.0 * (1.0 - q / 20.0 * (1.0 - q / 42.0))) * perpendicular(r) - 0.5 * q * (1.0 - q / 12.0 * (1.0 - q / 30.0)) * r;
+}
+
 /// Whether `now` continues `before` under another name: the same corner has gone on to a nearly collinear edge, or, at the end of an overlap, the
 /// corner that lay on the edge has passed its end and the edge's own corner lies on the other block's edge instead.
 template <int N>
 bool continues(const BlockSystem<N>& system, const Contact& before, const Contact& now) {
-  static const double aligned = std::cos(tolerance::parallel_none_rad);
   const auto direction = [&](int e) { return (system.arm(system.next(e)) - system.arm(e)).normalized(); };
   const double cosine = direction(now.edge).dot(direction(before.edge));
-  if (now.vertex == before.vertex) return cosine > aligned;
+  if (now.vertex == before.vertex) return cosine > cosine_none;
   const bool edge_end_took_over = now.vertex == before.edge || now.vertex == system.next(before.edge);
   const bool edge_belongs_to_corner = now.edge == before.vertex || system.next(now.edge) == before.vertex;
-  return edge_end_took_over && edge_belongs_to_corner && cosine < -aligned;
+  return edge_end_took_over && edge_belongs_to_corner && cosine < -cosine_none;
 }
 
 }  // namespace
+
+template <int N>
+Detector<N>::Detector(double reach, const DetectionSkips& skips)
+    : reach_(reach), skips_(skips), shapes_(std::make_unique<Shapes>()), index_(std::make_unique<ContactIndex>()) {}
+
+template <int N>
+Detector<N>::Detector(Detector&&) noexcept = default;
+
+template <int N>
+Detector<N>::~Detector() = default;
 
 template <int N>
 bool Detector<N>::moved_beyond_search_skin(const BlockSystem<N>& system) const {
@@ -370,34 +403,83 @@ bool Detector<N>::moved_beyond_search_skin(const BlockSystem<N>& system) const {
   return false;
 }
 
+/// Pairs of boxes that overlap, by sweeping along x within strips of y that are as high as the middling box: in a plane full of blocks each strip
+/// holds few at a time, so that the work grows with the number of blocks, and a block that is larger than others is only in more strips.
+template <int N>
+void Detector<N>::find_pairs(const BlockSystem<N>& system, const std::vector<Box>& boxes) {
+  pairs_.clear();
+  const int n = static_cast<int>(boxes.size());
+  if (n < 2) return;
+  std::vector<double> heights;
+  double bottom = boxes[0].low.y(), top = boxes[0].high.y();
+  for (const Box& box : boxes) {
+    heights.push_back(box.high.y() - box.low.y());
+    bottom = std::min(bottom, box.low.y());
+    top = std::max(top, box.high.y());
+  }
+  std::nth_element(heights.begin(), heights.begin() + n / 2, heights.end());
+  const double strip_height = std::max(heights[n / 2], (top - bottom) / n);
+  const auto strip = [&](double y) { return static_cast<int>((y - bottom) / strip_height); };
+  const int strips = strip(top) + 1;
+
+  // Blocks by strip, in each from left to right.
+  std::vector<int> from_left(n), begins(strips + 1, 0);
+  std::iota(from_left.begin(), from_left.end(), 0);
+  std::sort(from_left.begin(), from_left.end(), [&](int i, int j) { return std::pair(boxes[i].low.x(), i) < std::pair(boxes[j].low.x(), j); });
+  for (const Box& box : boxes) {
+    for (int k = strip(box.low.y()); k <= strip(box.high.y()); ++k) ++begins[k + 1];
+  }
+  std::partial_sum(begins.begin(), begins.end(), begins.begin());
+  std::vector<int> members(begins.back()), next(begins.begin(), begins.end() - 1);
+  for (const int b : from_left) {
+    for (int k = strip(boxes[b].low.y()); k <= strip(boxes[b].high.y()); ++k) members[next[k]++] = b;
+  }
+
+  std::vector<int> counts(n + 1, 0);  // of pairs by their lower number
+  for (int k = 0; k < strips; ++k) {
+    for (int i = begins[k]; i < begins[k + 1]; ++i) {
+      const Box& box = boxes[members[i]];
+      for (int j = i + 1; j < begins[k + 1] && boxes[members[j]].low.x() <= box.high.x(); ++j) {
+        const auto [a, b] = std::minmax(members[i], members[j]);
+        const bool someone_moves = system.block(a).equation >= 0 || system.block(b).equation >= 0;
+        if (!someone_moves || !box.overlaps(boxes[members[j]])) continue;
+        // Where both begin, and nowhere else.
+        if (strip(std::max(box.low.y(), boxes[members[j]].low.y())) != k) continue;
+        pairs_.emplace_back(a, b);
+        ++counts[a + 1];
+      }
+    }
+  }
+
+  // In order: into their places by the lower number, then sorted among the few that share it.
+  std::partial_sum(counts.begin(), counts.end(), counts.begin());
+  std::vector<std::pair<int, int>> ordered(pairs_.size());
+  std::vector<int> places(counts.begin(), counts.end() - 1);
+  for (const auto& pair : pairs_) ordered[places[pair.first]++] = pair;
+  for (int b = 0; b < n; ++b) std::sort(ordered.begin() + counts[b], ordered.begin() + counts[b + 1]);
+  pairs_.swap(ordered);
+}
+
 template <int N>
 void Detector<N>::search(const BlockSystem<N>& system) {
   ++counters_.searches;
   std::vector<Box> boxes;
-  std::vector<Vec2> positions;
-  searched_at_.assign(system.block_count(), Unknowns::Zero());
+  boxes.reserve(system.block_count());
+  searched_at_.resize(system.block_count());
   const double room = reach_ + skips_.contact_skin + tolerance::search_skin_m;
   for (int b = 0; b < system.block_count(); ++b) {
     const auto& block = system.block(b);
     searched_at_[b] = system.displacement(b);
-    positions.clear();
-    for (int v = block.first_vertex; v < block.first_vertex + block.vertex_count; ++v) positions.push_back(system.position(b, v));
-    boxes.push_back(Box::around(positions).inflated(0.5 * room));
+    Box box{system.arm(block.first_vertex), system.arm(block.first_vertex)};
+    for (int v = block.first_vertex + 1; v < block.first_vertex + block.vertex_count; ++v) {
+      box.low = box.low.cwiseMin(system.arm(v));
+      box.high = box.high.cwiseMax(system.arm(v));
+    }
+    boxes.push_back(Box{system.centroid(b) + box.low, system.centroid(b) + box.high}.inflated(0.5 * room));
   }
-  std::vector<int> order(boxes.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&](int i, int j) { return std::pair(boxes[i].low.x(), i) < std::pair(boxes[j].low.x(), j); });
   const std::vector<std::pair<int, int>> old_pairs = std::move(pairs_);
   const std::vector<PairState> old_states = std::move(states_);
-  pairs_.clear();
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    for (std::size_t j = i + 1; j < order.size() && boxes[order[j]].low.x() <= boxes[order[i]].high.x(); ++j) {
-      const int a = std::min(order[i], order[j]), b = std::max(order[i], order[j]);
-      const bool someone_moves = system.block(a).equation >= 0 || system.block(b).equation >= 0;
-      if (someone_moves && boxes[a].overlaps(boxes[b])) pairs_.emplace_back(a, b);
-    }
-  }
-  std::sort(pairs_.begin(), pairs_.end());
+  find_pairs(system, boxes);
   states_.assign(pairs_.size(), PairState());
   for (std::size_t i = 0, old = 0; i < pairs_.size(); ++i) {
     while (old < old_pairs.size() && old_pairs[old] < pairs_[i]) ++old;
@@ -405,45 +487,72 @@ void Detector<N>::search(const BlockSystem<N>& system) {
   }
 }
 
-/// [m] Bound of how far points where two blocks can touch have moved against each other since the pair's contacts were found. With u the
-/// displacements of the centroids and R the rotations since then, c the way between the centroids then and r the arm of the point from the centroid
-/// of block 1, u_1 - u_2 - (R_2 - 1) c + (R_1 - R_2) r; r is not longer than the radius of block 1, the smaller one, and the reach.
+/// Finds the contacts of each pair in the list, which is in the order of the pairs; those whose blocks are no pair any more are gone.
 template <int N>
-double Detector<N>::moved(const BlockSystem<N>& system, std::size_t pair) const {
-  auto [one, two] = pairs_[pair];
-  Unknowns d_1 = system.displacement(one) - states_[pair].first, d_2 = system.displacement(two) - states_[pair].second;
-  if (system.block(one).radius > system.block(two).radius) {
-    std::swap(one, two);
-    std::swap(d_1, d_2);
+void Detector<N>::locate(const std::vector<Contact>& contacts) {
+  const auto pair_of = [](const Contact& c) { return std::pair<int, int>(std::minmax(c.vertex_block, c.edge_block)); };
+  ranges_.resize(pairs_.size());
+  const int count = static_cast<int>(contacts.size());
+  int at = 0;
+  for (std::size_t i = 0; i < pairs_.size(); ++i) {
+    for (; at < count && pair_of(contacts[at]) < pairs_[i]; ++at) gone_.push_back(at);
+    ranges_[i].begin = at;
+    while (at < count && pair_of(contacts[at]) == pairs_[i]) ++at;
+    ranges_[i].end = at;
   }
-  const double turn_1 = Motion<N>::rotation(d_1), turn_2 = Motion<N>::rotation(d_2);
-  Vec2 shift = Motion<N>::translation(d_1) - Motion<N>::translation(d_2);
-  if (turn_2 != 0.0) {
-    const Vec2 way = system.centroid(one) - system.centroid(two) - shift;
-    shift -= Motion<N>::turned_by(turn_2, way, RotationKind::exact);
-  }
-  return shift.norm() + (system.block(one).radius + reach_ + skips_.contact_skin) * std::abs(turn_1 - turn_2);
+  for (; at < count; ++at) gone_.push_back(at);
+}
+
+template <int N>
+typename Detector<N>::Place Detector<N>::place(const BlockSystem<N>& system, int b) {
+  const Vec2 centroid = system.centroid(b);
+  return {centroid.x(), centroid.y(), Motion<N>::rotation(system.displacement(b)), system.block(b).radius};
+}
+
+/// How far points where two blocks can touch may have moved against each other since the pair's contacts were found. With u the displacements of
+/// the centroids and R the rotations since then, c the way between the centroids then and r the arm of the point from the centroid of block 1,
+/// u_1 - u_2 - (R_2 - 1) c + (R_1 - R_2) r; r is not longer than the radius of block 1, the smaller one, and the reach.
+template <int N>
+typename Detector<N>::Due Detector<N>::due(const PairState& then, const Place& first, const Place& second) const {
+  constexpr double companion_part = 0.1;  // of the skin
+  if (!then.known) return Due::yes;
+  const bool swapped = first.radius > second.radius;
+  const Place &one = swapped ? second : first, &two = swapped ? first : second;
+  const Pose &one_then = swapped ? then.second : then.first, &two_then = swapped ? then.first : then.second;
+  const double turn_1 = one.turn - one_then.turn, turn_2 = two.turn - two_then.turn;
+  Vec2 shift(one.x - one_then.x - (two.x - two_then.x), one.y - one_then.y - (two.y - two_then.y));
+  const Vec2 way(one_then.x - two_then.x, one_then.y - two_then.y);
+  shift -= turned_little_by(turn_2, way);
+  const double by_turn = (one.radius + reach_ + skips_.contact_skin) * std::abs(turn_1 - turn_2), squared = shift.squaredNorm();
+  const auto beyond = [&](double limit) { return by_turn > limit || squared > (limit - by_turn) * (limit - by_turn); };
+  if (beyond(skips_.contact_skin)) return Due::yes;
+  return beyond(companion_part * skips_.contact_skin) ? Due::moved : Due::no;
 }
 
 template <int N>
 bool Detector<N>::mark_due_pairs(const BlockSystem<N>& system, bool all) {
-  constexpr double companion_part = 0.1;  // of the skin
-  due_.assign(pairs_.size(), all ? Due::yes : Due::no);
-  if (all) return true;
+  places_.resize(system.block_count());
+  for (int b = 0; b < system.block_count(); ++b) places_[b] = place(system, b);
+  due_pairs_.clear();
+  moved_pairs_.clear();
+  if (all) {
+    due_pairs_.resize(pairs_.size());
+    std::iota(due_pairs_.begin(), due_pairs_.end(), 0);
+    return true;
+  }
+  for (std::size_t i = 0; i < pairs_.size(); ++i) {
+    const Due due = this->due(states_[i], places_[pairs_[i].first], places_[pairs_[i].second]);
+    if (due == Due::yes) due_pairs_.push_back(static_cast<int>(i));
+    if (due == Due::moved) moved_pairs_.push_back(static_cast<int>(i));
+  }
+  if (due_pairs_.empty() || moved_pairs_.empty()) return !due_pairs_.empty();
   in_due_pair_.assign(system.block_count(), 0);
-  bool any = false;
-  for (std::size_t i = 0; i < pairs_.size(); ++i) {
-    const double way = states_[i].known ? moved(system, i) : 2.0 * skips_.contact_skin + 1.0;
-    if (way > companion_part * skips_.contact_skin) due_[i] = Due::moved;
-    if (way <= skips_.contact_skin) continue;
-    due_[i] = Due::yes;
-    in_due_pair_[pairs_[i].first] = in_due_pair_[pairs_[i].second] = any = true;
+  for (const int i : due_pairs_) in_due_pair_[pairs_[i].first] = in_due_pair_[pairs_[i].second] = 1;
+  const std::size_t alone = due_pairs_.size();
+  for (const int i : moved_pairs_) {
+    if (in_due_pair_[pairs_[i].first] || in_due_pair_[pairs_[i].second]) due_pairs_.push_back(i);
   }
-  if (!any) return false;
-  for (std::size_t i = 0; i < pairs_.size(); ++i) {
-    const auto [a, b] = pairs_[i];
-    if (due_[i] == Due::moved && (in_due_pair_[a] || in_due_pair_[b])) due_[i] = Due::yes;
-  }
+  std::inplace_merge(due_pairs_.begin(), due_pairs_.begin() + static_cast<std::ptrdiff_t>(alone), due_pairs_.end());
   return true;
 }
 
@@ -453,7 +562,7 @@ void Detector<N>::pass_on_history(const BlockSystem<N>& system, std::vector<Cont
   if (born_.empty() || gone_.empty()) return;
   gone_by_vertex_.clear();
   gone_by_edge_.clear();
-  for (const std::size_t k : gone_) {
+  for (const int k : gone_) {
     gone_by_vertex_.emplace_back(before[k].vertex, k);
     gone_by_edge_.emplace_back(before[k].edge, k);
   }
@@ -464,13 +573,13 @@ void Detector<N>::pass_on_history(const BlockSystem<N>& system, std::vector<Cont
             [&](std::size_t i, std::size_t j) { return found_[i].length != found_[j].length ? found_[i].length > found_[j].length : i < j; });
   constexpr double taken = -1.0;  // in place of a length
   for (const std::size_t i : born_) {
-    std::ptrdiff_t ancestor = -1;
-    const auto consider = [&](const std::vector<std::pair<int, std::size_t>>& gone, int key) {
-      for (auto it = std::lower_bound(gone.begin(), gone.end(), std::pair<int, std::size_t>(key, 0)); it != gone.end() && it->first == key; ++it) {
-        const std::size_t k = it->second;
+    int ancestor = -1;
+    const auto consider = [&](const std::vector<std::pair<int, int>>& gone, int key) {
+      for (auto it = std::lower_bound(gone.begin(), gone.end(), std::pair(key, 0)); it != gone.end() && it->first == key; ++it) {
+        const int k = it->second;
         if (before[k].length == taken || !continues(system, before[k], found_[i])) continue;
-        const auto rank = [&](std::size_t m) { return std::pair(-before[m].length, m); };
-        if (ancestor < 0 || rank(k) < rank(ancestor)) ancestor = static_cast<std::ptrdiff_t>(k);
+        const auto rank = [&](int m) { return std::pair(-before[m].length, m); };
+        if (ancestor < 0 || rank(k) < rank(ancestor)) ancestor = k;
       }
     };
     consider(gone_by_vertex_, found_[i].vertex);
@@ -483,13 +592,72 @@ void Detector<N>::pass_on_history(const BlockSystem<N>& system, std::vector<Cont
   }
 }
 
+/// Finds the contacts of a pair anew, with the history of those that live on.
+template <int N>
+void Detector<N>::redo(const JointTable& joints, const BlockSystem<N>& system, int pair, NarrowPhase& narrow, const std::vector<Contact>& before) {
+  const auto [a, b] = pairs_[pair];
+  states_[pair] = {{places_[a].x, places_[a].y, places_[a].turn}, {places_[b].x, places_[b].y, places_[b].turn}, true};
+  const Range old = ranges_[pair];
+  const std::size_t begin = found_.size();
+  index_->select(old);
+  narrow.run(a, b, found_);
+  lives_on_.assign(old.end - old.begin, 0);
+  for (std::size_t k = begin; k < found_.size(); ++k) {
+    Contact& c = found_[k];
+    c.joint = joints.index(system.block(a).material, system.block(b).material);
+    const int known = index_->find(c.vertex, c.edge);
+    if (known >= 0) {
+      inherit(before[known], c);
+      lives_on_[known - old.begin] = 1;
+    } else {
+      c.bonded = first_ && c.gap <= tolerance::deepest_initial_overlap_m;
+      born_.push_back(k);
+    }
+  }
+  for (int k = old.begin; k < old.end; ++k) {
+    if (!lives_on_[k - old.begin]) gone_.push_back(k);
+  }
+  if (old.begin != old.end || begin != found_.size()) {
+    changes_.push_back({pair, old, {static_cast<int>(begin), static_cast<int>(found_.size())}});
+  }
+}
+
+/// Puts what was found in place of what was there.
+template <int N>
+void Detector<N>::put_in_place(std::vector<Contact>& contacts, bool orphans) {
+  const auto at = [](auto& list, int i) { return list.begin() + i; };
+  const auto same_number = [](const DetectionChange& c) { return c.before.size() == c.after.size(); };
+  if (!orphans && std::all_of(changes_.begin(), changes_.end(), same_number)) {
+    for (DetectionChange& change : changes_) {
+      std::copy(at(found_, change.after.begin), at(found_, change.after.end), at(contacts, change.before.begin));
+      change.after = change.before;
+    }
+    return;
+  }
+  spare_.clear();
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < pairs_.size(); ++i) {
+    const bool changed = next < changes_.size() && changes_[next].pair == static_cast<int>(i);
+    const Range from = changed ? changes_[next].after : ranges_[i];
+    const std::vector<Contact>& list = changed ? found_ : contacts;
+    ranges_[i].begin = static_cast<int>(spare_.size());
+    spare_.insert(spare_.end(), at(list, from.begin), at(list, from.end));
+    ranges_[i].end = static_cast<int>(spare_.size());
+    if (changed) changes_[next++].after = ranges_[i];
+  }
+  contacts.swap(spare_);
+}
+
 template <int N>
 bool Detector<N>::update(const BlockSystem<N>& system, const JointTable& joints, std::vector<Contact>& contacts) {
   const bool all = forgotten_ || !skips_.search || !skips_.narrow_phase;
   const bool searches = forgotten_ || !skips_.search || moved_beyond_search_skin(system);
   forgotten_ = false;
+  born_.clear();
+  gone_.clear();
   if (searches) {
     search(system);
+    locate(contacts);
   } else {
     ++counters_.searches_skipped;
   }
@@ -497,48 +665,18 @@ bool Detector<N>::update(const BlockSystem<N>& system, const JointTable& joints,
     counters_.narrow_phases_skipped += static_cast<long>(pairs_.size());
     return false;
   }
+  counters_.narrow_phases += static_cast<long>(due_pairs_.size());
+  counters_.narrow_phases_skipped += static_cast<long>(pairs_.size() - due_pairs_.size());
+  const bool orphans = !gone_.empty();
   found_.clear();
-  born_.clear();
-  gone_.clear();
-  ContactIndex previous(system, contacts);
-  NarrowPhase<N> narrow(system, reach_ + skips_.contact_skin, previous);
-  const auto pair_of = [](const Contact& c) { return std::pair<int, int>(std::minmax(c.vertex_block, c.edge_block)); };
-  std::size_t old = 0;  // contacts are in the order of their pairs
-  for (std::size_t i = 0; i < pairs_.size(); ++i) {
-    const auto [a, b] = pairs_[i];
-    for (; old < contacts.size() && pair_of(contacts[old]) < pairs_[i]; ++old) gone_.push_back(old);
-    const std::size_t old_begin = old, begin = found_.size();
-    while (old < contacts.size() && pair_of(contacts[old]) == pairs_[i]) ++old;
-    if (due_[i] != Due::yes) {
-      ++counters_.narrow_phases_skipped;
-      found_.insert(found_.end(), contacts.begin() + old_begin, contacts.begin() + old);
-      continue;
-    }
-    ++counters_.narrow_phases;
-    states_[i] = {system.displacement(a), system.displacement(b), true};
-    previous.select(old_begin, old);
-    narrow.run(a, b, found_);
-    const int joint = joints.index(system.block(a).material, system.block(b).material);
-    lives_on_.assign(old - old_begin, 0);
-    for (std::size_t k = begin; k < found_.size(); ++k) {
-      Contact& c = found_[k];
-      c.joint = joint;
-      const std::ptrdiff_t known = previous.find(c.vertex, c.edge);
-      if (known >= 0) {
-        inherit(contacts[known], c);
-        lives_on_[known - old_begin] = 1;
-      } else {
-        c.bonded = first_ && c.gap <= tolerance::deepest_initial_overlap_m;
-        born_.push_back(k);
-      }
-    }
-    for (std::size_t k = old_begin; k < old; ++k) {
-      if (!lives_on_[k - old_begin]) gone_.push_back(k);
-    }
-  }
-  for (; old < contacts.size(); ++old) gone_.push_back(old);
+  changes_.clear();
+  shapes_->begin(system);
+  index_->build(system, contacts);
+  NarrowPhase narrow(system, reach_ + skips_.contact_skin, *shapes_, *index_);
+  for (const int pair : due_pairs_) redo(joints, system, pair, narrow, contacts);
   if (!first_) pass_on_history(system, contacts);
-  contacts.swap(found_);
+  put_in_place(contacts, orphans);
+  searched_ = searches;
   first_ = false;
   return true;
 }

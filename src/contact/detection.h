@@ -35,11 +35,14 @@
 // than it.
 #pragma once
 
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "openclose/contact/contact.h"
 #include "openclose/contact/joint_table.h"
 #include "openclose/core/tolerance.h"
+#include "openclose/geometry/box.h"
 #include "openclose/model/block_system.h"
 
 namespace openclose {
@@ -59,16 +62,36 @@ struct DetectionCounters {
   long transfers = 0;              ///< contacts that inherited their history from another vertex-edge pair
 };
 
+/// Positions [begin, end) in a list of contacts.
+struct ContactRange {
+  int begin = 0, end = 0;
+  int size() const { return end - begin; }
+};
+
+/// The contacts of a pair of blocks were found anew: those at `before` in the list as it was are now those at `after`.
+struct DetectionChange {
+  int pair;  ///< of the candidates
+  ContactRange before, after;
+};
+
 template <int N>
 class Detector {
  public:
   /// \param reach [m] open contacts are kept up to this gap: at least what two vertices can approach each other within a step
-  explicit Detector(double reach, const DetectionSkips& skips = {}) : reach_(reach), skips_(skips) {}
+  explicit Detector(double reach, const DetectionSkips& skips = {});
+  Detector(Detector&&) noexcept;
+  ~Detector();
 
-  /// Contacts of the present positions; false if the list stays as it is. `contacts` brings the history of the last step and is renewed where needed.
+  /// Contacts of the present positions; false if the list stays as it is. `contacts` is the list as it came from the last call, with the history of
+  /// the last step, and is renewed where needed; whoever adds to it or takes from it calls forget() first.
   /// Only what touches in the very first call is bonded: those joints exist in the rock; surfaces that meet later have no cohesion unless it is
   /// ductile.
   bool update(const BlockSystem<N>& system, const JointTable& joints, std::vector<Contact>& contacts);
+
+  /// What the last update() that was true has renewed, in the order of the list, pairs without contacts before and after left out. After a search
+  /// contacts may also have gone whose blocks are no pair any more.
+  const std::vector<DetectionChange>& changes() const { return changes_; }
+  bool searched() const { return searched_; }  ///< the last update() that was true
 
   /// Pairs of blocks whose boxes, with reach and skin, overlap, at least one of them free; renewed only when something moved beyond the skin.
   const std::vector<std::pair<int, int>>& candidate_pairs() const { return pairs_; }
@@ -79,18 +102,33 @@ class Detector {
 
  private:
   using Unknowns = typename BlockSystem<N>::Unknowns;
+  using Range = ContactRange;
+  class Shapes;
+  class ContactIndex;
+  class NarrowPhase;
+  struct Pose {
+    double x, y, turn;  ///< [m, m, rad] of a centroid
+  };
+  struct Place : Pose {
+    double radius;  ///< [m]
+  };
   /// A pair when its contacts were last found.
   struct PairState {
-    Unknowns first, second;  ///< displacements of its blocks
+    Pose first, second;
     bool known = false;
   };
   enum class Due : unsigned char { no, moved, yes };
 
   bool moved_beyond_search_skin(const BlockSystem<N>& system) const;
   void search(const BlockSystem<N>& system);
-  double moved(const BlockSystem<N>& system, std::size_t pair) const;
+  void find_pairs(const BlockSystem<N>& system, const std::vector<Box>& boxes);
+  void locate(const std::vector<Contact>& contacts);
+  static Place place(const BlockSystem<N>& system, int b);
+  Due due(const PairState& then, const Place& first, const Place& second) const;
   bool mark_due_pairs(const BlockSystem<N>& system, bool all);
+  void redo(const JointTable& joints, const BlockSystem<N>& system, int pair, NarrowPhase& narrow, const std::vector<Contact>& before);
   void pass_on_history(const BlockSystem<N>& system, std::vector<Contact>& before);
+  void put_in_place(std::vector<Contact>& contacts, bool orphans);
 
   double reach_;
   DetectionSkips skips_;
@@ -98,16 +136,23 @@ class Detector {
   bool forgotten_ = true;
   std::vector<std::pair<int, int>> pairs_;
   std::vector<PairState> states_;  ///< of the pairs
+  std::vector<Range> ranges_;      ///< of the pairs, in the list as the last update() left it
   std::vector<Unknowns> searched_at_;
+  std::vector<DetectionChange> changes_;
+  bool searched_ = false;
   DetectionCounters counters_;
 
   // Working memory of update().
-  std::vector<Due> due_;           ///< of the pairs
-  std::vector<char> in_due_pair_;  ///< of the blocks
-  std::vector<Contact> found_;
-  std::vector<char> lives_on_;            ///< old contacts of a pair
-  std::vector<std::size_t> born_, gone_;  ///< positions in the new and in the old list
-  std::vector<std::pair<int, std::size_t>> gone_by_vertex_, gone_by_edge_;
+  std::unique_ptr<Shapes> shapes_;
+  std::unique_ptr<ContactIndex> index_;
+  std::vector<Place> places_;                 ///< of the blocks
+  std::vector<int> due_pairs_, moved_pairs_;  ///< in order
+  std::vector<char> in_due_pair_;             ///< of the blocks
+  std::vector<Contact> found_, spare_;        ///< of the pairs that are due; the list before the last
+  std::vector<char> lives_on_;                ///< old contacts of a pair
+  std::vector<std::size_t> born_;             ///< positions among those that were found
+  std::vector<int> gone_;                     ///< positions in the old list
+  std::vector<std::pair<int, int>> gone_by_vertex_, gone_by_edge_;
 };
 
 extern template class Detector<3>;

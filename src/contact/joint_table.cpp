@@ -9,9 +9,9 @@ namespace openclose {
 JointTable::JointTable(const Scene& scene)
     : material_count_(static_cast<int>(scene.materials.size())),
       index_(scene.materials.size() * scene.materials.size(), -1),
-      joints_(scene.joints),
       unreduced_(scene.joints) {
   require_joints(scene);
+  for (const JointProperties& joint : scene.joints) joints_.push_back({joint, std::tan(joint.friction_angle)});
   for (std::size_t j = 0; j < joints_.size(); ++j) {
     const auto [a, b] = joints_[j].materials;
     index_[a * material_count_ + b] = index_[b * material_count_ + a] = static_cast<int>(j);
@@ -21,6 +21,7 @@ JointTable::JointTable(const Scene& scene)
 void JointTable::reduce_strength(double factor) {
   for (std::size_t j = 0; j < joints_.size(); ++j) {
     joints_[j].friction_angle = std::atan(std::tan(unreduced_[j].friction_angle) / factor);
+    joints_[j].friction = std::tan(joints_[j].friction_angle);
     joints_[j].cohesion = unreduced_[j].cohesion / factor;
     joints_[j].tensile_strength = unreduced_[j].tensile_strength / factor;
   }

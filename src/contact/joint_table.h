@@ -7,13 +7,18 @@
 
 namespace openclose {
 
+/// A joint with what is derived from it once, not in every contact and step.
+struct TabulatedJoint : JointProperties {
+  double friction = 0.0;  ///< [-] tan(friction angle)
+};
+
 class JointTable {
  public:
   /// Throws InputError as require_joints does.
   explicit JointTable(const Scene& scene);
 
   int index(int material_a, int material_b) const { return index_[material_a * material_count_ + material_b]; }
-  const JointProperties& joint(int i) const { return joints_[i]; }
+  const TabulatedJoint& joint(int i) const { return joints_[i]; }
 
   /// Divides tan(friction angle), cohesion and tensile strength of every joint, as the scene gave them, by the strength reduction factor.
   void reduce_strength(double factor);
@@ -21,7 +26,7 @@ class JointTable {
  private:
   int material_count_ = 0;
   std::vector<int> index_;
-  std::vector<JointProperties> joints_;
+  std::vector<TabulatedJoint> joints_;
   std::vector<JointProperties> unreduced_;
 };
 

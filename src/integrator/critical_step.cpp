@@ -38,7 +38,7 @@ double critical_step(const StepProblem<N>& problem, double approach) {
   for (int b : system.free_blocks()) stiffness[system.block(b).equation] = problem.external.stiffness(system, b, still);
   bool damped = false;
   for (const Contact& c : problem.contacts) {
-    const JointProperties& joint = problem.joints.joint(c.joint);
+    const TabulatedJoint& joint = problem.joints.joint(c.joint);
     if (!may_close(ContactStrength(joint, c), joint.normal_stiffness * c.length, c.gap, approach)) continue;
     const ContactKinematics<N> k(system, c, still, still);
     const ContactDashpots dashpots(joint, c.length, system.reduced_mass(c.vertex_block, c.edge_block));

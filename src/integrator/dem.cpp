@@ -61,7 +61,7 @@ class Dem : public Enforcement<N> {
   template <class Displacement, class Velocity>
   ContactOutcome<N> outcome(const StepProblem<N>& problem, const Contact& contact, const Displacement& d, const Velocity& v) const {
     const int a = contact.vertex_block, b = contact.edge_block;
-    const JointProperties& joint = problem.joints.joint(contact.joint);
+    const TabulatedJoint& joint = problem.joints.joint(contact.joint);
     const ContactDashpots dashpots(joint, contact.length, problem.system.reduced_mass(a, b));
     ContactOutcome<N> o{springs(problem, contact), {}, ContactKinematics<N>(problem.system, contact, d(a), d(b))};
     const ContactKinematics<N>& k = o.kinematics;

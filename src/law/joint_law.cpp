@@ -2,7 +2,7 @@
 
 namespace openclose {
 
-ContactStrength::ContactStrength(const JointProperties& joint, const Contact& contact) : friction(std::tan(joint.friction_angle)) {
+ContactStrength::ContactStrength(const JointProperties& joint, double tangent, const Contact& contact) : friction(tangent) {
   const bool intact = contact.bonded || joint.cohesion_behaviour == CohesionBehaviour::ductile;
   cohesion = intact ? joint.cohesion * contact.length : 0.0;
   tension = contact.bonded ? joint.tensile_strength * contact.length : 0.0;

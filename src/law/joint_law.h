@@ -11,6 +11,7 @@
 #include <cmath>
 
 #include "openclose/contact/contact.h"
+#include "openclose/contact/joint_table.h"
 #include "openclose/core/tolerance.h"
 #include "openclose/scene/scene.h"
 
@@ -22,7 +23,9 @@ struct ContactStrength {
   double cohesion = 0.0;  ///< [N] cohesion times tributary length, 0 once lost
   double tension = 0.0;   ///< [N] tensile strength times tributary length, 0 once lost
 
-  ContactStrength(const JointProperties& joint, const Contact& contact);
+  ContactStrength(const JointProperties& joint, const Contact& contact) : ContactStrength(joint, std::tan(joint.friction_angle), contact) {}
+  /// The same without a tangent for every contact.
+  ContactStrength(const TabulatedJoint& joint, const Contact& contact) : ContactStrength(joint, joint.friction, contact) {}
 
   void break_bond(const JointProperties& joint);
 
@@ -37,6 +40,9 @@ struct ContactStrength {
   /// Largest shear force at normal force n >= -tension. The cohesion comes in over a ramp, min(mu n + C, (mu + 1/eps)(n + tension)) with
   /// eps = tolerance::cohesion_ramp, because a jump from C to 0 at opening leaves steps without any solution.
   ShearBound shear_bound(double n) const;
+
+ private:
+  ContactStrength(const JointProperties& joint, double tangent, const Contact& contact);
 };
 
 /// Springs of one contact during one step. The normal force is shift - stiffness (gap - target), the shear force starts from initial_shear.

@@ -44,14 +44,17 @@ BlockSystem<N>::BlockSystem(const Scene& scene) : rotation_kind_(scene.method.ro
     state_.velocity.push_back(velocity);
   }
   state_.arm = reference_arm_;
+  first_point_.assign(blocks_.size(), -1);
 }
 
 template <int N>
 int BlockSystem<N>::follow_point(int b, const Vec2& point) {
   const Vec2 arm = (point - origin_) - blocks_[b].reference_centroid;
-  points_.push_back({b, arm});
+  const int number = static_cast<int>(points_.size());
+  points_.push_back({b, arm, first_point_[b]});
+  first_point_[b] = number;
   state_.point_arm.push_back(arm + Motion<N>::turned_by(Motion<N>::rotation(state_.displacement[b]), arm, rotation_kind_));
-  return static_cast<int>(points_.size()) - 1;
+  return number;
 }
 
 template <int N>
@@ -60,24 +63,18 @@ void BlockSystem<N>::stop() {
 }
 
 template <int N>
-Vec2 BlockSystem<N>::turned_arm(const Vec2& reference, const Vec2& current, double total_angle, double angle) const {
-  // Exact rotation starts from the reference each time, so that rounding does not deform the block; Shi's linear one adds to what it had.
-  if (rotation_kind_ == RotationKind::exact) return reference + Motion<N>::turned_by(total_angle, reference, rotation_kind_);
-  return current + Motion<N>::turned_by(angle, current, rotation_kind_);
-}
-
-template <int N>
 void BlockSystem<N>::advance(int b, const Unknowns& d) {
   state_.displacement[b] += d;
   const Block& block = blocks_[b];
-  const double angle = Motion<N>::rotation(d);
-  const double total = Motion<N>::rotation(state_.displacement[b]);
-  for (int v = block.first_vertex; v < block.first_vertex + block.vertex_count; ++v) {
-    state_.arm[v] = turned_arm(reference_arm_[v], state_.arm[v], total, angle);
-  }
-  for (std::size_t i = 0; i < points_.size(); ++i) {
-    if (points_[i].block == b) state_.point_arm[i] = turned_arm(points_[i].reference_arm, state_.point_arm[i], total, angle);
-  }
+  // Exact rotation starts from the reference each time, so that rounding does not deform the block; Shi's linear one adds to what it had.
+  const bool exact = rotation_kind_ == RotationKind::exact;
+  const typename Motion<N>::Turn turn(Motion<N>::rotation(exact ? state_.displacement[b] : d), rotation_kind_);
+  const auto turned = [&](const Vec2& reference, const Vec2& current) -> Vec2 {
+    const Vec2& from = exact ? reference : current;
+    return from + turn.of(from);
+  };
+  for (int v = block.first_vertex; v < block.first_vertex + block.vertex_count; ++v) state_.arm[v] = turned(reference_arm_[v], state_.arm[v]);
+  for (int i = first_point_[b]; i >= 0; i = points_[i].next_of_block) state_.point_arm[i] = turned(points_[i].reference_arm, state_.point_arm[i]);
 }
 
 template <int N>

@@ -85,11 +85,12 @@ class BlockSystem {
   struct Point {
     int block = 0;
     Vec2 reference_arm = Vec2::Zero();
+    int next_of_block = -1;
   };
-  Vec2 turned_arm(const Vec2& reference, const Vec2& current, double total_angle, double angle) const;
 
   std::vector<Vec2> reference_arm_;
   std::vector<Point> points_;
+  std::vector<int> first_point_;  ///< per block, -1 without any
   Vec2 origin_ = Vec2::Zero();
   RotationKind rotation_kind_ = RotationKind::exact;
   State state_;

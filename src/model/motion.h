@@ -23,12 +23,17 @@ struct Motion<3> {
   static Vec2 translation(const Unknowns& d) { return d.head<2>(); }
   static double rotation(const Unknowns& d) { return d[2]; }
 
-  /// (R(angle) - I) r without cancellation for small angles; Shi's linear rotation keeps the first-order term only.
-  static Vec2 turned_by(double angle, const Vec2& r, RotationKind kind) {
-    if (kind == RotationKind::linear) return angle * perpendicular(r);
-    const double half = std::sin(0.5 * angle);
-    return std::sin(angle) * perpendicular(r) - (2.0 * half * half) * r;
-  }
+  /// R(angle) - I without cancellation for small angles; Shi's linear rotation keeps the first-order term only.
+  struct Turn {
+    double sine, versine;
+    Turn(double angle, RotationKind kind) {
+      const double half = kind == RotationKind::linear ? 0.0 : std::sin(0.5 * angle);
+      sine = kind == RotationKind::linear ? angle : std::sin(angle);
+      versine = 2.0 * half * half;
+    }
+    Vec2 of(const Vec2& r) const { return sine * perpendicular(r) - versine * r; }
+  };
+  static Vec2 turned_by(double angle, const Vec2& r, RotationKind kind) { return Turn(angle, kind).of(r); }
 
   /// Displacement [m] of the point at r [m] from the centroid when the block moves by d.
   static Vec2 displacement(const Unknowns& d, const Vec2& r, RotationKind kind) { return translation(d) + turned_by(rotation(d), r, kind); }
