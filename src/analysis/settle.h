@@ -14,8 +14,8 @@ struct SettleResult {
   bool settled = false;
   std::string criterion;  ///< what decided: "unbalanced force", "displacement", "steps", or the reason of a step that failed
   int steps = 0;
-  double unbalanced_fraction = 1.0;  ///< [-] of Simulation::force_scale()
-  double displacement = 0.0;         ///< [m] largest of any block on the way
+  double unbalanced_fraction = 1.0;             ///< [-] of Simulation::force_scale()
+  double displacement = 0.0;                    ///< [m] largest of any block on the way
   std::optional<double> relative_displacement;  ///< [-] of the last step, see equilibrium.h; steps in time only, which know no unbalanced fraction
 };
 
@@ -28,9 +28,16 @@ SettleResult settle(Simulation<N>& simulation, const SettleProgress& progress = 
 /// The share [-] of the way down to `wanted` on a logarithmic scale, 0 where `now` is 1 or more.
 double settled_share(double now, double wanted);
 
+/// When an explicit search for equilibrium has arrived and when it is given up.
+struct RestLimits {
+  double unbalanced_force;      ///< [N] largest on a block that counts as rest
+  int max_steps;                ///< of the explicit loop
+  double failure_displacement;  ///< [m] a block that moved farther is failing
+};
+
 /// What settle() does for explicit methods: steps at the longest stable length with damping of the motion (`local`, unless the scene asks for
-/// `automatic`), from rest until the same fraction is reached. What friction holds in the end depends on the way there, as always in this method.
+/// `automatic`), from rest. What friction holds in the end depends on the way there, as always in this method.
 template <int N>
-SettleResult settle_explicitly(Simulation<N>& simulation, const SettleProgress& progress);
+SettleResult settle_explicitly(Simulation<N>& simulation, const RestLimits& limits, const SettleProgress& progress);
 
 }  // namespace openclose

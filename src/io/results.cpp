@@ -212,7 +212,8 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
                     {"failure_displacement_m", scene.settle.failure_displacement},
                     {"relative_displacement", scene.settle.relative_displacement},
                     {"steady_steps", scene.settle.steady_steps},
-                    {"max_time_steps", scene.settle.max_time_steps}}},
+                    {"max_time_steps", scene.settle.max_time_steps},
+                    {"unbalanced_force_n", scene.settle.unbalanced_force}}},
                   {"strength_reduction", {{"width", scene.strength_reduction.width}, {"upper_limit", scene.strength_reduction.upper_limit}}}};
   j["warnings"] = summary.warnings;
   j["blocks"] = simulation.system().block_count();

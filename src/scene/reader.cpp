@@ -267,6 +267,7 @@ SettleInput read_settle(Table table) {
   table.optional("relative_displacement", settle.relative_displacement, between_0_and_1);
   table.optional("steady_steps", settle.steady_steps, count);
   table.optional("max_time_steps", settle.max_time_steps, count);
+  table.optional("unbalanced_force_n", settle.unbalanced_force, positive);
   table.finish();
   return settle;
 }

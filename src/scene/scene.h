@@ -143,7 +143,7 @@ struct StepInput {
 /// What tells that a scene has settled.
 enum class SettleCriterion {
   unbalanced_force,  ///< static steps until forces are in balance
-  paper,             ///< the reference paper's: steps in time until blocks move little in a step
+  paper,             ///< the reference paper's: steps in time until blocks move little in a step; dem: until a force in newtons is left
 };
 
 /// Static settling: when it is done, and when it has failed.
@@ -155,8 +155,9 @@ struct SettleInput {
   SettleCriterion criterion = SettleCriterion::unbalanced_force;
   double relative_displacement = 1e-5;  ///< [-] paper: of a step, over half the height of the model
   int steady_steps = 100;               ///< paper: steps in a row that must stay below
-  int max_time_steps = 10000;           ///< paper: of step.dt, for the first settling
-  int max_explicit_steps = 1000000;   ///< dem: instead of max_steps
+  int max_time_steps = 10000;           ///< paper: of step.dt, for the first settling; dem: explicit ones, for each settling
+  double unbalanced_force = 1e3;        ///< [N] paper, dem: that may be left on a block
+  int max_explicit_steps = 1000000;     ///< dem: instead of max_steps
 };
 
 struct StrengthReductionInput {

@@ -198,6 +198,7 @@ void write_statics(Text& text, const SettleInput& settle, const StrengthReductio
   text.line("relative_displacement", settle.relative_displacement);
   text.line("steady_steps", settle.steady_steps);
   text.line("max_time_steps", settle.max_time_steps);
+  text.line("unbalanced_force_n", settle.unbalanced_force);
   text.header("[strength_reduction]");
   text.line("width", reduction.width);
   text.line("upper_limit", reduction.upper_limit);

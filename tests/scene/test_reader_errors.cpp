@@ -204,6 +204,8 @@ TEST_CASE("options out of range", "[scene][reader][errors]") {
       {"settle", "steady_steps = -1", "-1", "a whole number in [1, 1000000000]"},
       {"settle", "max_time_steps = 0", "0", "a whole number in [1, 1000000000]"},
       {"settle", "max_time_steps = 2e9", "2000000000", "a whole number in [1, 1000000000]"},
+      {"settle", "unbalanced_force_n = 0", "0", "a number > 0"},
+      {"settle", "unbalanced_force_n = -1", "-1", "a number > 0"},
       {"settle", "unbalanced_fraction = 0", "0", "a number in (0, 1)"},
       {"settle", "first_dt_s = 0", "0", "a number > 0"},
       {"settle", "max_steps = 0", "0", "a whole number in [1, 1000000000]"},
