@@ -94,7 +94,7 @@ class ByForceInTime : public EquilibriumSearch<N> {
   SettleResult settle_first(const SettleProgress& progress) override { return settle_trial(progress); }
   SettleResult settle_trial(const SettleProgress& progress) override {
     const SettleInput& input = simulation_.scene().settle;
-    return settle_explicitly(simulation_, {input.unbalanced_force, input.max_time_steps, std::numeric_limits<double>::infinity()}, progress);
+    return settle_explicitly(simulation_, {input.unbalanced_force, input.max_time_steps, std::numeric_limits<double>::infinity(), false}, progress);
   }
 
  private:

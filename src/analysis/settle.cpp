@@ -29,7 +29,7 @@ SettleResult settle(Simulation<N>& simulation, const SettleProgress& progress) {
   const SettleInput& input = simulation.scene().settle;
   if (simulation.is_explicit()) {
     const double force = input.unbalanced_fraction * simulation.force_scale();
-    return settle_explicitly(simulation, {force, input.max_explicit_steps, input.failure_displacement}, progress);
+    return settle_explicitly(simulation, {force, input.max_explicit_steps, input.failure_displacement, input.keep_bonds}, progress);
   }
   const auto& system = simulation.system();
   std::vector<typename Motion<N>::Unknowns> start;

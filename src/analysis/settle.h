@@ -33,10 +33,15 @@ struct RestLimits {
   double unbalanced_force;      ///< [N] largest on a block that counts as rest
   int max_steps;                ///< of the explicit loop
   double failure_displacement;  ///< [m] a block that moved farther is failing
+  bool keep_bonds;              ///< contacts lose strength at rest only, see below
 };
 
 /// What settle() does for explicit methods: steps at the longest stable length with damping of the motion (`local`, unless the scene asks for
 /// `automatic`), from rest. What friction holds in the end depends on the way there, as always in this method.
+///
+/// That way is no motion of the slope: waves that the sudden change sends through it open contacts for a moment which equilibrium keeps closed. With
+/// `keep_bonds` it is gone with all bonds (what users of distinct-element codes know as "elastic first"). At rest, contacts that are open (or, where
+/// the joint says so, slide) lose what they have to lose, and what this leaves settles again, now losing on the way, too.
 template <int N>
 SettleResult settle_explicitly(Simulation<N>& simulation, const RestLimits& limits, const SettleProgress& progress);
 

@@ -28,10 +28,8 @@ class Travel {
   std::vector<typename Motion<N>::Unknowns> start_;
 };
 
-}  // namespace
-
 template <int N>
-SettleResult settle_explicitly(Simulation<N>& simulation, const RestLimits& limits, const SettleProgress& progress) {
+SettleResult seek_rest(Simulation<N>& simulation, const RestLimits& limits, const SettleProgress& progress) {
   const MassDamping asked = simulation.scene().method.damping;
   const MassDamping damping = asked == MassDamping::none ? MassDamping::local : asked;
   simulation.come_to_rest();
@@ -70,6 +68,24 @@ SettleResult settle_explicitly(Simulation<N>& simulation, const RestLimits& limi
     }
   }
   simulation.come_to_rest();
+  return result;
+}
+
+}  // namespace
+
+template <int N>
+SettleResult settle_explicitly(Simulation<N>& simulation, const RestLimits& limits, const SettleProgress& progress) {
+  if (!limits.keep_bonds) return seek_rest(simulation, limits, progress);
+  simulation.keep_bonds(true);
+  const SettleResult kept = seek_rest(simulation, limits, progress);
+  simulation.keep_bonds(false);
+  if (!kept.settled) return kept;
+  simulation.judge_bonds();
+  RestLimits rest = limits;
+  rest.max_steps -= kept.steps;
+  SettleResult result = seek_rest(simulation, rest, progress);
+  result.steps += kept.steps;
+  result.displacement = std::max(result.displacement, kept.displacement);
   return result;
 }
 

@@ -39,6 +39,7 @@ struct StepProblem {
   double inertia = 0.0;     ///< [1/s2] see time_scheme.h
   double end_weight = 1.0;  ///< theta
   int failed_attempts = 0;  ///< at steps from here
+  bool keep_bonds = false;  ///< explicit methods: contacts lose no strength
 
   typename Motion<N>::Unknowns velocity(int b) const {
     if (statics) return Motion<N>::Unknowns::Zero();

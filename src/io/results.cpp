@@ -209,6 +209,7 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
                     {"first_dt_s", scene.settle.first_dt},
                     {"max_steps", scene.settle.max_steps},
                     {"max_explicit_steps", scene.settle.max_explicit_steps},
+                    {"keep_bonds", scene.settle.keep_bonds},
                     {"failure_displacement_m", scene.settle.failure_displacement},
                     {"relative_displacement", scene.settle.relative_displacement},
                     {"steady_steps", scene.settle.steady_steps},

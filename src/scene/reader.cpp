@@ -263,6 +263,7 @@ SettleInput read_settle(Table table) {
   table.optional("first_dt_s", settle.first_dt, positive);
   table.optional("max_steps", settle.max_steps, count);
   table.optional("max_explicit_steps", settle.max_explicit_steps, count);
+  table.optional("keep_bonds", settle.keep_bonds);
   table.optional("failure_displacement_m", settle.failure_displacement, positive);
   table.optional("relative_displacement", settle.relative_displacement, between_0_and_1);
   table.optional("steady_steps", settle.steady_steps, count);

@@ -158,6 +158,7 @@ struct SettleInput {
   int max_time_steps = 10000;           ///< paper: of step.dt, for the first settling; dem: explicit ones, for each settling
   double unbalanced_force = 1e3;        ///< [N] paper, dem: that may be left on a block
   int max_explicit_steps = 1000000;     ///< dem: instead of max_steps
+  bool keep_bonds = true;               ///< dem: joints lose strength only at rest, not on the way there
 };
 
 struct StrengthReductionInput {

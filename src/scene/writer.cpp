@@ -194,6 +194,7 @@ void write_statics(Text& text, const SettleInput& settle, const StrengthReductio
   text.line("first_dt_s", settle.first_dt);
   text.line("max_steps", settle.max_steps);
   text.line("max_explicit_steps", settle.max_explicit_steps);
+  text.line("keep_bonds", settle.keep_bonds);
   text.line("failure_displacement_m", settle.failure_displacement);
   text.line("relative_displacement", settle.relative_displacement);
   text.line("steady_steps", settle.steady_steps);

@@ -41,6 +41,7 @@ TEST_CASE("a small scene gets the defaults of the structs", "[scene][reader]") {
   CHECK(scene.settle.criterion == SettleCriterion::unbalanced_force);
   CHECK(scene.settle.relative_displacement == 1e-5);
   CHECK(scene.settle.unbalanced_force == 1e3);
+  CHECK(scene.settle.keep_bonds);
 }
 
 TEST_CASE("every key reaches its field", "[scene][reader]") {
@@ -63,7 +64,7 @@ TEST_CASE("every key reaches its field", "[scene][reader]") {
       "[run]\nstrength_reduction_factor = 1.5\n"
       "[end]\ntime_s = 15\ndisplacement_m = 40\n[output]\nevery_s = 16\nmilestones_m = [10, 20.5]\nsnapshots_s = [0, 1.522]\n"
       "[settle]\nunbalanced_fraction = 1e-3\nfirst_dt_s = 17\nmax_steps = 18\nfailure_displacement_m = 19\n"
-      "criterion = 'paper'\nrelative_displacement = 1e-6\nsteady_steps = 22\nmax_time_steps = 23\nunbalanced_force_n = 24\n"
+      "criterion = 'paper'\nrelative_displacement = 1e-6\nsteady_steps = 22\nmax_time_steps = 23\nunbalanced_force_n = 24\nkeep_bonds = false\n"
       "[strength_reduction]\nwidth = 0.125\nupper_limit = 20\ncurve = [1, 1.5]\ncurve_time_s = 21\n");
   CHECK(scene.title == "all of it");
   CHECK(scene.gravity == Vec2(1.0, -2.5));
@@ -129,6 +130,7 @@ TEST_CASE("every key reaches its field", "[scene][reader]") {
   CHECK(scene.settle.steady_steps == 22);
   CHECK(scene.settle.max_time_steps == 23);
   CHECK(scene.settle.unbalanced_force == 24.0);
+  CHECK_FALSE(scene.settle.keep_bonds);
   CHECK(scene.strength_reduction.width == 0.125);
   CHECK(scene.strength_reduction.upper_limit == 20.0);
   CHECK(scene.strength_reduction.curve == std::vector<double>{1.0, 1.5});

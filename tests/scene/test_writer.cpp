@@ -107,6 +107,7 @@ void check_same(const Scene& a, const Scene& b) {
   CHECK(a.settle.relative_displacement == b.settle.relative_displacement);
   CHECK(a.settle.steady_steps == b.settle.steady_steps);
   CHECK(a.settle.max_time_steps == b.settle.max_time_steps);
+  CHECK(a.settle.keep_bonds == b.settle.keep_bonds);
   CHECK(a.settle.unbalanced_force == b.settle.unbalanced_force);
   CHECK(a.strength_reduction.width == b.strength_reduction.width);
   CHECK(a.strength_reduction.upper_limit == b.strength_reduction.upper_limit);
