@@ -29,6 +29,11 @@ constexpr double shortest_backtrack = 0.01;
 /// After so many refusals of the exact step without gain the symmetric steps in between get shorter, so that the two do not go round in a circle.
 constexpr int patience = 1;
 
+/// Open at the end of the step, a contact may have carried a force on the way.
+bool carries(const ContactForces& f) {
+  return f.status != ContactStatus::open || f.normal != 0.0 || f.normal_by_gap != 0.0;
+}
+
 int differences(const std::vector<int>& a, const std::vector<int>& b) {
   return std::inner_product(a.begin(), a.end(), b.begin(), 0, std::plus<>(), std::not_equal_to<>());
 }
@@ -57,15 +62,24 @@ void Newton<N>::evaluate(const Eigen::VectorXd& d) {
   rounding_.setZero(system.free_count());
   force_scale_ = 0.0;
 
+  const bool averages = problem_->averages_path();
   outcome_.clear();
   outcome_.reserve(problem_->contacts.size());
+  paths_.clear();
   for (std::size_t c = 0; c < problem_->contacts.size(); ++c) {
     const Contact& contact = problem_->contacts[c];
     const Unknowns dv = of(contact.vertex_block), de = of(contact.edge_block);
     ContactKinematics<N> kinematics(system, contact, dv, de);
     const ContactSprings& springs = (*springs_)[c];
-    const ContactForces f = spring_slider(springs, strength_[c], kinematics.gap_change, kinematics.slip_change);
-    if (f.status != ContactStatus::open) {
+    ContactForces f;
+    if (averages) {
+      const PathAverage path = path_average(springs, strength_[c], kinematics.gap_change, kinematics.slip_change, springs.dissipation);
+      f = path.mean;
+      paths_.push_back({path, MeanKinematics<N>(system, contact, kinematics)});
+    } else {
+      f = spring_slider(springs, strength_[c], kinematics.gap_change, kinematics.slip_change);
+    }
+    if (carries(f)) {
       const double moved =
           Motion<N>::displacement_bound(dv, kinematics.vertex_arm.norm()) + Motion<N>::displacement_bound(de, kinematics.edge_arm.norm());
       const double stiffness = springs.normal + springs.normal_damping + springs.shear + springs.shear_damping;
@@ -76,8 +90,14 @@ void Newton<N>::evaluate(const Eigen::VectorXd& d) {
         force_.template segment<N>(N * i) += f.normal * normal + f.shear * shear;
         rounding_[i] += rounding;
       };
-      push(contact.vertex_block, kinematics.normal_vertex, kinematics.shear_vertex);
-      push(contact.edge_block, kinematics.normal_edge, kinematics.shear_edge);
+      if (averages) {
+        const MeanKinematics<N>& mean = paths_.back().kinematics;
+        push(contact.vertex_block, mean.normal_vertex, mean.shear_vertex);
+        push(contact.edge_block, mean.normal_edge, mean.shear_edge);
+      } else {
+        push(contact.vertex_block, kinematics.normal_vertex, kinematics.shear_vertex);
+        push(contact.edge_block, kinematics.normal_edge, kinematics.shear_edge);
+      }
       force_scale_ = std::max({force_scale_, std::abs(f.normal), std::abs(f.shear)});
     }
     outcome_.push_back({springs, f, kinematics});
@@ -88,9 +108,9 @@ void Newton<N>::evaluate(const Eigen::VectorXd& d) {
     const auto& block = system.block(b);
     const int at = N * block.equation;
     const Unknowns db = of(b);
-    const Unknowns external = problem_->external.force(system, b, db);
+    const Unknowns external = averages ? problem_->external.mean_force(system, b, db) : problem_->external.force(system, b, db);
     force_.template segment<N>(at) += external;
-    const Unknowns drift = problem_->dt * problem_->velocity(b);
+    const Unknowns drift = problem_->drift(b);
     Unknowns r = problem_->inertia * block.mass.cwiseProduct(drift - db) + theta * force_.template segment<N>(at);
     if (theta < 1.0) r += (1.0 - theta) * start_force_.template segment<N>(at);
     if (block.rotation_locked) r[Motion<N>::rotation_index] = 0.0;
@@ -120,7 +140,7 @@ template <int N>
 void Newton<N>::add_contact_stiffness(std::size_t c, Tangent tangent) {
   const Contact& contact = problem_->contacts[c];
   const ContactOutcome<N>& o = outcome_[c];
-  if (o.forces.status == ContactStatus::open) return;
+  if (!carries(o.forces)) return;
   const ContactKinematics<N>& k = o.kinematics;
   const ContactForces& f = o.forces;
   const bool exact = tangent == Tangent::exact;
@@ -130,6 +150,10 @@ void Newton<N>::add_contact_stiffness(std::size_t c, Tangent tangent) {
   if (!exact && problem_->statics && f.status == ContactStatus::sliding) tt = static_slip_stiffness * o.springs.shear;
 
   const int i = problem_->system.block(contact.vertex_block).equation, j = problem_->system.block(contact.edge_block).equation;
+  if (exact && !paths_.empty()) {
+    add_path_stiffness(c, i, j);
+    return;
+  }
   const auto block = [&](const Unknowns& n1, const Unknowns& t1, const Unknowns& n2, const Unknowns& t2) {
     return typename Motion<N>::Matrix(nn * n1 * n2.transpose() + tn * t1 * n2.transpose() + tt * t1 * t2.transpose());
   };
@@ -150,13 +174,46 @@ void Newton<N>::add_contact_stiffness(std::size_t c, Tangent tangent) {
 }
 
 template <int N>
+void Newton<N>::add_path_stiffness(std::size_t c, int i, int j) {
+  const ContactForces& f = outcome_[c].forces;
+  const ContactKinematics<N>& end = outcome_[c].kinematics;
+  const MeanKinematics<N>& mean = paths_[c].kinematics;
+  const auto geometric = mean.derivative(end, f.normal, f.shear);
+  // Forces act in the mean geometry, gap and slip change in that at the end.
+  const auto block = [&](const Unknowns& normal, const Unknowns& shear, const Unknowns& gap, const Unknowns& slip, const auto& turning) {
+    return typename Motion<N>::Matrix(-(f.normal_by_gap * normal + f.shear_by_gap * shear) * gap.transpose() -
+                                      f.shear_by_slip * shear * slip.transpose() - turning);
+  };
+  if (i >= 0)
+    tangent_.matrix().add(i, i, block(mean.normal_vertex, mean.shear_vertex, end.normal_vertex, end.shear_vertex, geometric.vertex_vertex));
+  if (j >= 0) tangent_.matrix().add(j, j, block(mean.normal_edge, mean.shear_edge, end.normal_edge, end.shear_edge, geometric.edge_edge));
+  if (i >= 0 && j >= 0) {
+    tangent_.matrix().add(i, j, block(mean.normal_vertex, mean.shear_vertex, end.normal_edge, end.shear_edge, geometric.vertex_edge));
+    tangent_.matrix().add(j, i, block(mean.normal_edge, mean.shear_edge, end.normal_vertex, end.shear_vertex, geometric.edge_vertex));
+  }
+}
+
+template <int N>
+ContactSprings Newton<N>::seen_springs(std::size_t c) const {
+  ContactSprings springs = (*springs_)[c];
+  if (problem_->averages_path()) {
+    springs.normal *= 0.5;
+    springs.shear *= 0.5;
+  }
+  return springs;
+}
+
+template <int N>
 void Newton<N>::assemble(const Eigen::VectorXd& d, Tangent tangent) {
   const BlockSystem<N>& system = problem_->system;
   tangent_.matrix().set_zero();
   for (std::size_t c = 0; c < outcome_.size(); ++c) add_contact_stiffness(c, tangent);
   for (int b : system.free_blocks()) {
     const auto& block = system.block(b);
-    typename Motion<N>::Matrix diagonal = problem_->end_weight * problem_->external.stiffness(system, b, d.template segment<N>(N * block.equation));
+    const Unknowns db = d.template segment<N>(N * block.equation);
+    typename Motion<N>::Matrix diagonal =
+        problem_->averages_path() ? problem_->external.mean_stiffness(system, b, db)
+                                  : typename Motion<N>::Matrix(problem_->end_weight * problem_->external.stiffness(system, b, db));
     diagonal += (problem_->inertia * block.mass).asDiagonal();
     tangent_.matrix().add(block.equation, block.equation, diagonal);
   }
@@ -224,7 +281,8 @@ int Newton<N>::hold_reversed(const std::vector<int>& before, const std::vector<i
     const bool reversed = std::abs(before[c]) == sliding_branch && before[c] == -after[c];
     if (!reversed) continue;
     ++held;
-    const double trial = o.springs.initial_shear - (o.springs.shear + o.springs.shear_damping) * o.kinematics.slip_change;
+    const ContactSprings springs = seen_springs(c);
+    const double trial = springs.initial_shear - (springs.shear + springs.shear_damping) * o.kinematics.slip_change;
     const double change = problem_->end_weight * (trial - o.forces.shear);
     const auto push = [&](int b, const Unknowns& shear) {
       const auto& block = problem_->system.block(b);
@@ -232,10 +290,10 @@ int Newton<N>::hold_reversed(const std::vector<int>& before, const std::vector<i
       residual_.template segment<N>(N * block.equation) += change * shear;
       if (block.rotation_locked) residual_[N * block.equation + Motion<N>::rotation_index] = 0.0;
     };
-    push(problem_->contacts[c].vertex_block, o.kinematics.shear_vertex);
-    push(problem_->contacts[c].edge_block, o.kinematics.shear_edge);
+    push(problem_->contacts[c].vertex_block, paths_.empty() ? o.kinematics.shear_vertex : paths_[c].kinematics.shear_vertex);
+    push(problem_->contacts[c].edge_block, paths_.empty() ? o.kinematics.shear_edge : paths_[c].kinematics.shear_edge);
     const ContactForces now = o.forces;
-    o.forces = tangent_for_status(o.springs, strength_[c], ContactStatus::sticking, now.normal, trial);
+    o.forces = tangent_for_status(springs, strength_[c], ContactStatus::sticking, now.normal, trial);
     o.forces.normal = now.normal;
     o.forces.shear = trial;
     o.forces.elastic_normal = now.elastic_normal;
@@ -248,7 +306,7 @@ template <int N>
 void Newton<N>::take_last_states() {
   for (std::size_t c = 0; c < outcome_.size(); ++c) {
     const Contact& contact = problem_->contacts[c];
-    const ContactSprings& springs = (*springs_)[c];
+    const ContactSprings springs = seen_springs(c);
     const bool touching = contact.status == ContactStatus::open && springs.gap <= 0.0;
     ContactForces& f = outcome_[c].forces;
     const ContactForces now = f;
@@ -319,6 +377,8 @@ void Newton<N>::solve(const StepProblem<N>& problem, const std::vector<ContactSp
   solution.converged = norm <= 1.0;
   if (!solution.converged) solution.reason = "Newton's method did not converge";
   solution.contacts = outcome_;
+  solution.paths = paths_;
+  for (std::size_t c = 0; c < paths_.size(); ++c) static_cast<CarriedForces&>(solution.contacts[c].forces) = paths_[c].average.end;
 }
 
 template <int N>
@@ -326,6 +386,7 @@ Eigen::MatrixXd Newton<N>::stiffness(const StepProblem<N>& problem, const std::v
   StepProblem<N> static_problem = problem;
   static_problem.inertia = 0.0;
   static_problem.end_weight = 1.0;
+  static_problem.scheme = nullptr;
   prepare(static_problem, springs);
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(N * problem.system.free_count());
   evaluate(zero);

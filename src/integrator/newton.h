@@ -43,7 +43,10 @@ class Newton {
   double residual_norm() const;  ///< largest residual of a block over what is tolerated: converged at 1
   void assemble(const Eigen::VectorXd& d, Tangent tangent);
   void add_contact_stiffness(std::size_t c, Tangent tangent);
+  void add_path_stiffness(std::size_t c, int vertex_equation, int edge_equation);
   Eigen::VectorXd direction(const Eigen::VectorXd& d, Tangent tangent);
+  /// What a step sees of the springs of contact c while it stays closed: half of them, if it averages over its path.
+  ContactSprings seen_springs(std::size_t c) const;
   /// Contacts that would slide one way and then the other stick in between: they enter the next linear solve with the spring's own force. (Where the
   /// spring is stiff the range of sticking is so narrow that the iteration would jump over it for ever.) Returns their number.
   int hold_reversed(const std::vector<int>& before, const std::vector<int>& after);
@@ -56,6 +59,7 @@ class Newton {
   const StepProblem<N>* problem_ = nullptr;
   const std::vector<ContactSprings>* springs_ = nullptr;
   std::vector<ContactOutcome<N>> outcome_;
+  std::vector<PathOutcome<N>> paths_;  ///< for schemes that average over the path: outcome_ then has the mean forces
   std::vector<ContactStrength> strength_;
   Eigen::VectorXd force_;        ///< all forces at the trial position but inertia
   Eigen::VectorXd start_force_;  ///< the same at the start of the step, used if theta < 1
