@@ -8,7 +8,7 @@ namespace {
 
 constexpr double order = 3.0;  ///< of the local error
 constexpr double integral = 0.7 / order, proportional = 0.4 / order;
-constexpr double safety = 0.8;  ///< [-] aims at half the tolerance, so that few steps are refused
+constexpr double aim = 0.5;  ///< [-] of the tolerance, so that few steps are refused
 constexpr double fastest_growth = 5.0, strongest_cut = 0.2, weakest_cut = 0.9;
 /// [-] of the tolerance: smaller errors tell no more than that the step may grow as fast as it can.
 constexpr double smallest_error = 1e-4;
@@ -21,7 +21,7 @@ double StepControl::step(double longest) const {
 
 void StepControl::accepted(double taken, double error) {
   const double e = std::max(error, smallest_error * tolerance_);
-  const double factor = safety * std::pow(tolerance_ / e, integral) * std::pow(last_error_ / tolerance_, proportional);
+  const double factor = std::pow(aim * tolerance_ / e, integral) * std::pow(last_error_ / (aim * tolerance_), proportional);
   last_error_ = e;
   const double next = taken * std::clamp(factor, strongest_cut, fastest_growth);
   // A step that ended early, at an output time, says nothing against the length that was meant.
@@ -29,7 +29,7 @@ void StepControl::accepted(double taken, double error) {
 }
 
 void StepControl::refused(double tried, double error) {
-  step_ = tried * std::clamp(safety * std::pow(tolerance_ / error, 1.0 / order), strongest_cut, weakest_cut);
+  step_ = tried * std::clamp(std::pow(aim * tolerance_ / error, 1.0 / order), strongest_cut, weakest_cut);
 }
 
 }  // namespace openclose

@@ -7,7 +7,7 @@ namespace openclose {
 class StepControl {
  public:
   /// \param tolerance [m] of the local error of a step
-  explicit StepControl(double tolerance) : tolerance_(tolerance), last_error_(tolerance) {}
+  explicit StepControl(double tolerance) : tolerance_(tolerance), last_error_(0.5 * tolerance) {}
 
   double tolerance() const { return tolerance_; }
   /// [s] of the next step, at most `longest`; that one at first.

@@ -11,9 +11,9 @@ TEST_CASE("step control: the longest step first, then what the error allows", "[
   StepControl control(1e-4);
   CHECK(control.step(0.1) == 0.1);
   control.refused(0.1, 8e-4);
-  CHECK(control.step(0.1) == Approx(0.1 * 0.8 * 0.5));
-  control.accepted(0.04, 1e-5);
-  CHECK(control.step(0.1) > 0.04);
+  CHECK(control.step(0.1) == Approx(0.1 * std::cbrt(1.0 / 16.0)));
+  control.accepted(0.039, 1e-5);
+  CHECK(control.step(0.1) > 0.039);
   CHECK(control.step(0.02) == 0.02);
 }
 
