@@ -12,6 +12,8 @@ void cohesion_threshold(Report&);
 void stopping(Report&);
 void amplification(Report&);
 void contact_damping(Report&);
+void second_order_integrators(Report&);
+void conserving_bounces(Report&);
 void small_vibration(Report&);
 void planar_wedge(Report&);
 void parallel_planes(Report&);
@@ -32,6 +34,8 @@ const std::vector<Case>& cases() {
       {"B4", "initial velocity to a stop", &stopping},
       {"D1", "amplification matrix of one block on a spring", &amplification},
       {"D1c", "contact damping of one block on one contact", &contact_damping},
+      {"D1i", "amplification by the integrators of second order", &second_order_integrators},
+      {"D2i", "bounces with path-averaged forces", &conserving_bounces},
       {"D3", "small vibration of a block on two springs", &small_vibration},
       {"E1", "planar wedge", &planar_wedge},
       {"E3", "plane failure on parallel joints", &parallel_planes},
