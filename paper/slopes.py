@@ -47,7 +47,7 @@ RULE_METHODS = ("soft", "shi", "dem")
 PAPER_RULES = (("soft", "relative"), ("shi", "relative"), ("shi", "length"), ("dem", "force"))
 PAPER_RULES_WIDTH = 0.05
 PAPER_RULES_UPPER_LIMIT = 2.2  # beyond it, their factor says nothing about the slope
-PAPER_RULES_CPU_LIMIT_S = {"soft": 60, "shi": 200, "dem": 30}
+PAPER_RULES_CPU_LIMIT_S = {"soft": 60, "shi": 200, "dem": 90}
 
 MOVED_M = 0.1  # blocks that moved less take no part in the mechanism
 
