@@ -117,7 +117,15 @@ def _steps_to_paper_steady(jointed: JointedSlope, method: str) -> str:
 def _after_failure_fields(jointed: JointedSlope, printed: dict) -> dict[str, str]:
     inputs, paper = jointed.post_failure_inputs, printed["table_4"]
     law = jointed.factor_of_safety("soft", "lost_on_slip").value
+    after = comparison_slopes.over_dem(comparison_slopes.mean_cpu(jointed, paper, "settled"))
+    steady = comparison_slopes.over_dem(comparison_slopes.paper_steady(jointed))
     return {
+        "ratio_steady_paper": _proportion([comparison_slopes.steady_ratio(paper, m) for m in _PAPER_METHODS]),
+        "ratio_after_paper": _proportion([comparison_slopes.post_failure_ratio(paper, m) for m in _PAPER_METHODS]),
+        "ratio_steady_ours": _proportion([steady.get(m) for m in _PAPER_METHODS]),
+        "ratio_after_ours": _proportion([after.get(f) for f in ("dem", slopes.PAPER_STEP, "shi")]),
+        "ratio_after_soft": _g(after["soft"], 2) if "soft" in after else "more than all",
+        "after_soft_dt": _g(slopes.FOLLOWERS["soft"].dt),
         "after_srf": _g(inputs.strength_reduction_factor),
         "after_law": _g(law, 4),
         "after_ratio": _g(inputs.strength_reduction_factor / law, 3),
@@ -132,6 +140,10 @@ def _after_failure_fields(jointed: JointedSlope, printed: dict) -> dict[str, str
         "after_limit": str(slopes.POST_FAILURE_CPU_LIMIT_S),
         "mechanism": _mechanism_text(jointed),
     }
+
+
+def _proportion(values: list[float | None]) -> str:
+    return " : ".join("-" if v is None else _g(v, 3) for v in values)
 
 
 def _seconds(value: float | None, missing: str = "not reached") -> str:
