@@ -100,7 +100,8 @@ def _run_times(jointed: JointedSlope, printed: dict) -> list[Row]:
         for distance in printed["milestones_m"]["value"]:
             rows.append(Row("Table 4", f"CPU time to {distance} m, {name}", "s", None, None, cpu_at(jointed, start, distance)))
     rows.append(Row("Table 4", "CPU time to the steady state over dem's", "-", ratio_text(printed, steady_ratio), None, over_dem(steady)))
-    rows.append(Row("Table 4", "the same by the paper's rule and step", "-", ratio_text(printed, steady_ratio), None, over_dem(paper_steady(jointed))))
+    by_rule = over_dem(paper_steady(jointed))
+    rows.append(Row("Table 4", "the same by the paper's rule and step", "-", ratio_text(printed, steady_ratio), None, by_rule))
     for start, name in slopes.STARTS.items():
         theirs, ratios = ratio_text(printed, post_failure_ratio), over_dem(mean_cpu(jointed, printed, start))
         rows.append(Row("Table 4", f"CPU time after failure over dem's, mean of the distances, {name}", "-", theirs, None, ratios))

@@ -40,7 +40,8 @@ def _draw_blocks(axes: plt.Axes, polygons: Polygons, fixed: set[str]) -> None:
     axes.autoscale_view()
 
 
-def _draw_coloured(axes: plt.Axes, polygons: Polygons, fixed: set[str], values: dict[str, float], colours: ScalarMappable, least: float = 0.0) -> None:
+def _draw_coloured(axes: plt.Axes, polygons: Polygons, fixed: set[str], values: dict[str, float], colours: ScalarMappable,
+                   least: float = 0.0) -> None:
     """Blocks with a smaller value than `least` are white, so that their joints can be seen."""
     faces = [ROCK if name in fixed else "#ffffff" if abs(values[name]) < least else colours.to_rgba(values[name]) for name in polygons]
     axes.add_collection(PolyCollection(list(polygons.values()), facecolors=faces, edgecolors=INK, linewidths=0.4))
@@ -128,7 +129,8 @@ def figure_9(jointed: JointedSlope, file: Path) -> None:
     panels[2, 1].axis("off")
     inputs = jointed.post_failure_inputs
     panels[2, 1].text(0.05, 0.6, f"Methods: strength over {inputs.strength_reduction_factor:g}, cohesion lost on slip.\n"
-                      f"White: moved less than {slopes.MOVED_M:g} m; grey: fixed.\nArrows: displacement, scaled in each picture.", va="top", fontsize=11)
+                      f"White: moved less than {slopes.MOVED_M:g} m; grey: fixed.\nArrows: displacement, scaled in each picture.",
+                      va="top", fontsize=11)
     figure.suptitle("Fig. 9  Failure mechanisms")
     drawing.save(figure, file)
 

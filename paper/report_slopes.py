@@ -104,9 +104,13 @@ def _rules(jointed: JointedSlope, printed: dict) -> str:
     """Factors of safety by the paper's own rules."""
     meanings = {"relative": "relative displacement as printed", "length": "displacement read as a length", "force": "unbalanced force"}
     paper = printed["table_4"]
-    lines = [(f"{method}: {meanings[reading]}", _fos_cell(jointed.paper_factor_of_safety(method, reading), 3),
+    lines = [(f"{method}: {meanings[reading]}", _bracket_cell(jointed.paper_factor_of_safety(method, reading)),
               f"{paper[method]['name']} {paper[method]['factor_of_safety']:g}") for method, reading in slopes.PAPER_RULES]
-    return tables.markdown(("rule", "ours", "paper"), lines)
+    return tables.markdown(("rule", "ours: stable, failed", "paper"), lines)
+
+
+def _bracket_cell(fos: Fos) -> str:
+    return _fos_cell(fos) if fos.value is None else f"{fos.value:.3f}, {fos.failed:.3f}"
 
 
 def _steps_to_paper_steady(jointed: JointedSlope, method: str) -> str:

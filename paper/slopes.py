@@ -41,8 +41,8 @@ FOLLOWERS = {
 }
 STARTS = {"settled": "from the settled state", "unloaded": "cold: gravity dropped on unloaded springs"}
 
-# Whose own rules for equilibrium the paper gives: DDA's relative displacement, which its tables print as a length, and UDEC's unbalanced force. By the
-# length soft takes so many steps to its first steady state that a search would cost more than all other runs together.
+# Whose own rules for equilibrium the paper gives: DDA's relative displacement, which its tables print as a length, and UDEC's unbalanced force.
+# By the length soft takes so many steps to its first steady state that a search would cost more than all other runs together.
 RULE_METHODS = ("soft", "shi", "dem")
 PAPER_RULES = (("soft", "relative"), ("shi", "relative"), ("shi", "length"), ("dem", "force"))
 PAPER_RULES_WIDTH = 0.05
@@ -96,13 +96,14 @@ class Fos:
     value: float | None
     reason: str
     warning: str
+    failed: float | None = None  # the other end of the bracket
 
 
 def _fos(openclose: Openclose, case: Case) -> Fos:
     summary = openclose.summary(case)
     if not summary.get("factor_of_safety"):
         return Fos(None, summary["reason"], "")
-    return Fos(summary["factor_of_safety"], "", "; ".join(summary["warnings"]))
+    return Fos(summary["factor_of_safety"], "", "; ".join(summary["warnings"]), summary["bracket"][1])
 
 
 class CutBlocks:
