@@ -36,6 +36,15 @@ double off_plane(const analytical::BlockOnPlane& data, const Vec2& displacement)
 /// `shi` with the joint's own springs as penalties, so that soft-contact references hold for it too.
 void use_joint_springs_as_penalty(Scene& scene, const analytical::BlockOnPlane& data);
 
+/// The energy ledger of a run: what it leaves unexplained over its turnover, to the level that rounding of a run of many steps leaves. `done`: the
+/// run got to its end.
+void check_ledger(Report& report, const std::string& name, const std::string& method, const RigidSimulation& simulation, bool done);
+
+/// Displacements [m] downhill at the output times, of which there must be as many as asked for; else NaN.
+std::vector<double> downhill_history(RigidSimulation& simulation, const analytical::BlockOnPlane& data, std::size_t count);
+/// Largest difference of two lists.
+double largest_difference(const std::vector<double>& a, const std::vector<double>& b);
+
 /// The factor of safety by strength reduction; NaN if none was found.
 double strength_reduction_factor(const Report& report, const Scene& scene);
 

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <stdexcept>
+#include <string>
 
 #include "openclose/analytical/ground_motion.h"
 #include "support/catch.h"
@@ -39,4 +41,28 @@ TEST_CASE("the synthetic record", "[ground_motion]") {
   // It goes on long enough to shake: a third of it above a twentieth of the peak.
   CHECK(std::count_if(a.begin(), a.end(), [](double x) { return std::abs(x) > 0.15; }) > 333);
   CHECK_THROWS_AS(synthetic_record(0, 1.0, 1.0, 0.01), std::invalid_argument);
+}
+
+TEST_CASE("the records beside the verification scenes are those of the generator", "[ground_motion]") {
+  struct Shipped {
+    const char* file;
+    unsigned seed;
+    double peak;
+  };
+  for (const Shipped& s : {Shipped{"synthetic_record.csv", 1, 5.0}, Shipped{"synthetic_record_vertical.csv", 2, 2.5}}) {
+    const auto expected = synthetic_record(s.seed, s.peak, 5.0, 0.01);
+    std::ifstream file(std::string(OPENCLOSE_VERIFICATION_SCENES "/") + s.file);
+    std::string line;
+    std::getline(file, line);
+    std::getline(file, line);
+    REQUIRE(line == "time_s,acceleration_m_per_s2");
+    std::size_t i = 0;
+    for (; std::getline(file, line); ++i) {
+      REQUIRE(i < expected.size());
+      const std::size_t comma = line.find(',');
+      CHECK(std::stod(line.substr(0, comma)) == Approx(0.01 * static_cast<double>(i)).margin(1e-12));
+      CHECK(std::stod(line.substr(comma + 1)) == Approx(expected[i]).margin(0.5001e-6));
+    }
+    CHECK(i == expected.size());
+  }
 }
