@@ -74,6 +74,15 @@ void use_joint_springs_as_penalty(Scene& scene, const analytical::BlockOnPlane& 
   scene.method.penetration_tolerance = 1.0;
 }
 
+void set_scheme(Scene& scene, const ElasticScheme& scheme) {
+  scene.method.contact = scheme.contact;
+  scene.method.theta = scheme.theta;
+}
+
+std::string with_theta(const std::string& quantity, const ElasticScheme& scheme) {
+  return quantity + text(", theta = {}", scheme.theta);
+}
+
 void check_ledger(Report& report, const std::string& name, const std::string& method, const RigidSimulation& simulation, bool done) {
   const EnergyLedger& l = simulation.ledger();
   report.near(name + ": energy ledger, imbalance over turnover", method, 0.0, done ? std::abs(l.imbalance()) / l.turnover : not_measured(), 1e-10,

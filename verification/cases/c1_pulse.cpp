@@ -77,22 +77,17 @@ void elastic(Report& report) {
   constexpr double end = 0.8;
   analytical::SlidingBlockReference reference(data, analytical::normal_balanced_start(data));
   const double exact = reference.follow(analytical::rectangular_pulse(-pulse, duration), {end}).back().x;
-  struct Scheme {
-    const char* method;
-    double theta;
-    double order;
-  };
-  for (const Scheme& s : {Scheme{"soft", 1.0, 1.0}, Scheme{"soft", 0.5, 2.0}, Scheme{"shi", 1.0, 1.0}, Scheme{"dem", 1.0, 2.0}}) {
+  for (const ElasticScheme& s : elastic_schemes) {
     std::vector<double> steps, errors;
     for (const double n : {1600.0, 3200.0, 6400.0, 12800.0, 25600.0}) {
-      Scene scene = scene_of(s.method, data, end / n, end);
-      scene.method.theta = s.theta;
+      Scene scene = scene_of(s.contact, data, end / n, end);
+      set_scheme(scene, s);
       steps.push_back(end / n);
       errors.push_back(std::abs(place(report, scene, data) - exact));
     }
     // The place of a change between sticking and sliding within its step is a random factor of a second-order error.
     const double slack = s.order == 2.0 ? 0.4 : 0.2;
-    report.order(text("place in mid-slip, theta = {}", s.theta), s.method, steps, errors, s.order - slack, s.order + slack,
+    report.order(with_theta("place in mid-slip", s), s.contact, steps, errors, s.order - slack, s.order + slack,
                  "SUNDIALS ODE on the shaken plane; order of the scheme");
   }
 }

@@ -96,16 +96,11 @@ void elastic(Report& report) {
   constexpr double end = 0.25;
   analytical::SlidingBlockReference reference(data, analytical::normal_balanced_start(data));
   const double exact = reference.follow(analytical::harmonic_motion(-amplitude, frequency, 1.0), {end}).back().x;
-  struct Scheme {
-    const char* method;
-    double theta;
-    double order;
-  };
-  for (const Scheme& s : {Scheme{"soft", 1.0, 1.0}, Scheme{"soft", 0.5, 2.0}, Scheme{"shi", 1.0, 1.0}, Scheme{"dem", 1.0, 2.0}}) {
+  for (const ElasticScheme& s : elastic_schemes) {
     std::vector<double> steps, errors;
     for (const double n : {1000.0, 2000.0, 4000.0, 8000.0, 16000.0}) {
-      Scene scene = scene_of(s.method, data, end / n, end);
-      scene.method.theta = s.theta;
+      Scene scene = scene_of(s.contact, data, end / n, end);
+      set_scheme(scene, s);
       scene.method.start = Start::normal_balanced;
       scene.output_every = end;
       RigidSimulation simulation = report.simulate(scene);
@@ -113,7 +108,7 @@ void elastic(Report& report) {
       errors.push_back(std::abs(downhill_history(simulation, data, 2).back() - exact));
     }
     const double slack = s.order == 2.0 ? 0.4 : 0.2;
-    report.order(text("place in mid-slip, theta = {}", s.theta), s.method, steps, errors, s.order - slack, s.order + slack,
+    report.order(with_theta("place in mid-slip", s), s.contact, steps, errors, s.order - slack, s.order + slack,
                  "SUNDIALS ODE on the shaken plane; order of the scheme");
   }
 }

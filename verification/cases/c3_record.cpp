@@ -72,27 +72,22 @@ void elastic(Report& report) {
   analytical::SlidingBlockReference reference(data, analytical::normal_balanced_start(data));
   std::vector<double> exact;
   for (const auto& s : reference.follow(ground(), output_times(whole))) exact.push_back(s.x);
-  struct Scheme {
-    const char* method;
-    double theta;
-    double order;
-    double first_dt;
-    double end;
-  };
   // Newmark (1/2, 1) damps the swings between two slips by exp(-w^2 dt t/4), the reference not at all: the first second, with its slips and stops,
   // shows its order at steps for which that is little.
-  for (const Scheme& s : {Scheme{"soft", 1.0, 1.0, 4e-5, 1.0}, Scheme{"soft", 0.5, 2.0, 1e-3, whole}, Scheme{"dem", 1.0, 2.0, 1e-3, whole}}) {
+  for (const ElasticScheme& s : elastic_schemes) {
+    if (std::string(s.contact) == "shi") continue;  // see below
+    const double end = s.order == 1.0 ? 1.0 : whole, first_dt = s.order == 1.0 ? 4e-5 : 1e-3;
     std::vector<double> steps, errors;
     for (const double refinement : {1.0, 2.0, 4.0, 8.0}) {
-      Scene scene = scene_of(s.method, s.first_dt / refinement, s.end);
-      scene.method.theta = s.theta;
+      Scene scene = scene_of(s.contact, first_dt / refinement, end);
+      set_scheme(scene, s);
       scene.method.start = Start::normal_balanced;
       steps.push_back(scene.step.dt);
       errors.push_back(largest_difference(places(report, scene), exact));
     }
     const double slack = s.order == 2.0 ? 0.4 : 0.2;
-    report.order(text("largest distance from the ODE over {} s", s.end) + text(", theta = {}", s.theta), s.method, steps, errors, s.order - slack,
-                 s.order + slack, "SUNDIALS ODE on the shaken plane; order of the scheme");
+    report.order(with_theta(text("largest distance from the ODE over {} s", end), s), s.contact, steps, errors, s.order - slack, s.order + slack,
+                 "SUNDIALS ODE on the shaken plane; order of the scheme");
   }
 }
 
