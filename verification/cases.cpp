@@ -10,9 +10,15 @@ void incline(Report&);
 void static_hold(Report&);
 void cohesion_threshold(Report&);
 void stopping(Report&);
+void pulse_under_block(Report&);
+void shaken_incline(Report&);
+void recorded_motion(Report&);
 void amplification(Report&);
 void contact_damping(Report&);
+void bounce(Report&);
 void small_vibration(Report&);
+void collisions(Report&);
+void rocking_block(Report&);
 void planar_wedge(Report&);
 void parallel_planes(Report&);
 void two_joint_sets(Report&);
@@ -30,9 +36,15 @@ const std::vector<Case>& cases() {
       {"B2", "static hold", &static_hold},
       {"B3", "cohesion threshold", &cohesion_threshold},
       {"B4", "initial velocity to a stop", &stopping},
+      {"C1", "block on a base with a rectangular pulse", &pulse_under_block},
+      {"C2", "block on an incline under harmonic shaking", &shaken_incline},
+      {"C3", "block on an incline under a record", &recorded_motion},
       {"D1", "amplification matrix of one block on a spring", &amplification},
       {"D1c", "contact damping of one block on one contact", &contact_damping},
+      {"D2", "bounce on a contact", &bounce},
       {"D3", "small vibration of a block on two springs", &small_vibration},
+      {"D4", "collisions", &collisions},
+      {"D5", "rocking block", &rocking_block},
       {"E1", "planar wedge", &planar_wedge},
       {"E3", "plane failure on parallel joints", &parallel_planes},
       {"E5", "slope with two joint sets", &two_joint_sets},

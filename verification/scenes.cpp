@@ -74,6 +74,38 @@ void use_joint_springs_as_penalty(Scene& scene, const analytical::BlockOnPlane& 
   scene.method.penetration_tolerance = 1.0;
 }
 
+void set_scheme(Scene& scene, const ElasticScheme& scheme) {
+  scene.method.contact = scheme.contact;
+  scene.method.theta = scheme.theta;
+}
+
+std::string with_theta(const std::string& quantity, const ElasticScheme& scheme) {
+  return quantity + text(", theta = {}", scheme.theta);
+}
+
+void check_ledger(Report& report, const std::string& name, const std::string& method, const RigidSimulation& simulation, bool done) {
+  const EnergyLedger& l = simulation.ledger();
+  report.near(name + ": energy ledger, imbalance over turnover", method, 0.0, done ? std::abs(l.imbalance()) / l.turnover : not_measured(), 1e-10,
+              "-", "work of the forces = change of kinetic energy");
+}
+
+std::vector<double> downhill_history(RigidSimulation& simulation, const analytical::BlockOnPlane& data, std::size_t count) {
+  std::vector<double> list;
+  for (const Sample& s : history(simulation)) list.push_back(downhill(data, s.motion.displacement));
+  if (list.size() != count) list.assign(count, not_measured());
+  return list;
+}
+
+double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const double difference = std::abs(a[i] - b.at(i));
+    if (!(difference <= largest)) largest = difference;  // NaN stays
+    if (std::isnan(difference)) break;
+  }
+  return largest;
+}
+
 double strength_reduction_factor(const Report& report, const Scene& scene) {
   RigidSimulation simulation = report.simulate(scene);
   const auto result = factor_of_safety<unknowns>(simulation);
