@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,14 @@ double off_plane(const analytical::BlockOnPlane& data, const Vec2& displacement)
 
 /// `shi` with the joint's own springs as penalties, so that soft-contact references hold for it too.
 void use_joint_springs_as_penalty(Scene& scene, const analytical::BlockOnPlane& data);
+
+/// Whether the scene's blocks come to rest: 1 if they do and the fixed blocks carry their weight, 0 if one moves beyond settle.failure_displacement;
+/// NaN for any other end.
+double stands(const Report& report, const Scene& scene);
+
+/// Where `holds` (1 or 0) changes between a value at which it does not and one at which it does, either of which may be the larger, to `width`; NaN
+/// if it does not change so or is NaN on the way.
+double threshold(double fails, double holds, double width, const std::function<double(double)>& stands);
 
 /// The factor of safety by strength reduction; NaN if none was found.
 double strength_reduction_factor(const Report& report, const Scene& scene);
