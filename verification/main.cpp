@@ -1,5 +1,5 @@
-// Runs the verification cases, prints a table, writes verify.csv and verify_series.csv (the points of the convergence rows). Exit status 0 if every
-// check passed; with --null-solver, if every check failed.
+// Runs the verification cases, prints a table, writes verify.csv, verify_series.csv (the points of the convergence rows) and verify_cases.csv (what
+// the cases are). Exit status 0 if every check passed; with --null-solver, if every check failed.
 #include <fmt/format.h>
 #include <fmt/ostream.h>
 
@@ -52,6 +52,13 @@ void write_series(const std::string& path, const std::vector<SeriesPoint>& serie
   for (const SeriesPoint& p : series) {
     fmt::print(file, "{},{},{},{},{:.17g},{:.17g}\n", p.case_name, quoted(p.quantity), p.method, p.size_name, p.size, p.error);
   }
+  if (!file) throw std::runtime_error("cannot write " + path);
+}
+
+void write_cases(const std::string& path) {
+  std::ofstream file(path);
+  file << "case,title\n";
+  for (const Case& c : cases()) fmt::print(file, "{},{}\n", c.name, quoted(c.title));
   if (!file) throw std::runtime_error("cannot write " + path);
 }
 
@@ -125,6 +132,7 @@ int run_all(const Options& options) {
   std::filesystem::create_directories(options.folder);
   write_checks(options.folder + "/verify.csv", checks);
   write_series(options.folder + "/verify_series.csv", report.series());
+  write_cases(options.folder + "/verify_cases.csv");
   fmt::print("\n{} left out, with their reasons; all rows in {}/verify.csv\n{} passed, {} failed\n", totals.left_out, options.folder, totals.passed,
              totals.failed);
   return totals.failed == 0 && totals.passed > 0 ? 0 : 1;
@@ -136,7 +144,7 @@ int run_all(const Options& options) {
 int main(int argc, char** argv) {
   CLI::App app{"Verification of Openclose against closed forms and reference solutions"};
   openclose::verification::Options options;
-  app.add_option("--results", options.folder, "folder of verify.csv and verify_series.csv");
+  app.add_option("--results", options.folder, "folder of verify.csv, verify_series.csv and verify_cases.csv");
   app.add_option("cases", options.wanted, "names of cases, e.g. B1 E1 (default: all)");
   auto* null_solver =
       app.add_flag("--null-solver", options.null_solver, "replace the solver by one that does nothing and expect every check to fail");
