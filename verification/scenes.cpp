@@ -107,6 +107,36 @@ double largest_difference(const std::vector<double>& a, const std::vector<double
   return largest;
 }
 
+double stands(const Report& report, const Scene& scene) {
+  RigidSimulation simulation = report.simulate(scene);
+  const SettleResult result = settle(simulation);
+  if (result.criterion == "displacement") return 0.0;
+  if (!result.settled) return not_measured();
+  const BlockSystem<unknowns>& system = simulation.system();
+  Vec2 weight = Vec2::Zero(), carried = Vec2::Zero();
+  for (const int b : system.free_blocks()) weight += simulation.external().weight(system, b).head<2>();
+  for (const Contact& c : simulation.contacts()) {
+    if (c.status == ContactStatus::open) continue;
+    const Eigen::Vector3d still = Eigen::Vector3d::Zero();
+    const ContactKinematics<unknowns> k(system, c, still, still);
+    const Vec2 on_vertex = c.normal_force * k.normal_vertex.head<2>() + c.shear_force * k.shear_vertex.head<2>();
+    if (system.block(c.edge_block).equation < 0) carried += on_vertex;
+    if (system.block(c.vertex_block).equation < 0) carried -= on_vertex;
+  }
+  constexpr double balance = 1e-3;  // [-] far above what settling leaves, far below what a solver that does nothing gives
+  return (weight + carried).norm() <= balance * weight.norm() ? 1.0 : not_measured();
+}
+
+double threshold(double fails, double holds, double width, const std::function<double(double)>& stands) {
+  if (stands(fails) != 0.0 || stands(holds) != 1.0) return not_measured();
+  while (std::abs(holds - fails) > width) {
+    const double middle = 0.5 * (fails + holds), result = stands(middle);
+    if (std::isnan(result)) return not_measured();
+    (result == 1.0 ? holds : fails) = middle;
+  }
+  return 0.5 * (fails + holds);
+}
+
 double strength_reduction_factor(const Report& report, const Scene& scene) {
   RigidSimulation simulation = report.simulate(scene);
   const auto result = factor_of_safety<unknowns>(simulation);

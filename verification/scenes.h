@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -57,6 +58,13 @@ void check_ledger(Report& report, const std::string& name, const std::string& me
 std::vector<double> downhill_history(RigidSimulation& simulation, const analytical::BlockOnPlane& data, std::size_t count);
 /// Largest difference of two lists.
 double largest_difference(const std::vector<double>& a, const std::vector<double>& b);
+/// Whether the scene's blocks come to rest: 1 if they do and the fixed blocks carry their weight, 0 if one moves beyond settle.failure_displacement;
+/// NaN for any other end.
+double stands(const Report& report, const Scene& scene);
+
+/// Where `holds` (1 or 0) changes between a value at which it does not and one at which it does, either of which may be the larger, to `width`; NaN
+/// if it does not change so or is NaN on the way.
+double threshold(double fails, double holds, double width, const std::function<double(double)>& stands);
 
 /// The factor of safety by strength reduction; NaN if none was found.
 double strength_reduction_factor(const Report& report, const Scene& scene);
