@@ -46,7 +46,7 @@ class Soft : public Enforcement<N> {
  private:
   StepSolution<N> attempt(const StepProblem<N>& problem) {
     StepSolution<N> solution;
-    solution.d = Eigen::VectorXd::Zero(N * problem.system.free_count());
+    solution.d = drift(problem);
     newton_.solve(problem, springs_, solution);
     return solution;
   }
