@@ -20,6 +20,11 @@ struct StepCounters {
   long loads = 0;                       ///< times the explicit loop took over the state anew
   double smallest_critical_step = 0.0;  ///< [s] of explicit steps, 0 if there were none
   double longest_step = 0.0;            ///< [s] of explicit steps
+
+  void exchange(Archive& archive) {
+    auto& [a, b, c, d, e, f, g] = *this;
+    archive(a, b, c, d, e, f, g);
+  }
 };
 
 /// Wall time [s] of the stages; one thread.
@@ -113,6 +118,10 @@ class Simulation {
   };
   Snapshot save();
   void restore(const Snapshot& snapshot);
+
+  /// Everything that the next steps depend on and all that has been counted, so that another simulation of the same scene goes on bit for bit; unlike
+  /// save() it leaves everything as it is. The wall times of the stages are not in it.
+  void exchange(Archive& archive);
 
  private:
   void detect();

@@ -425,6 +425,13 @@ ExplicitEnergies CentralDifference<N>::take_energies() {
   return taken;
 }
 
+template <int N>
+void CentralDifference<N>::exchange(Archive& archive, const JointTable& joints) {
+  joints_ = &joints;
+  archive(poses_, rates_, previous_rates_, forces_, inertia_, blocks_, stored_, stored_angle_, links_, far_, points_, energies_, damped_, lost_strength_,
+          critical_step_, moved_, unbalanced_, max_penetration_, h_, span_, viscous_);
+}
+
 template class CentralDifference<3>;
 
 }  // namespace openclose

@@ -29,6 +29,11 @@ struct ExplicitEnergies {
   double gravity = 0.0, base_motion = 0.0, loads = 0.0, support_springs = 0.0;
   double friction = 0.0, contact_damping = 0.0, mass_damping = 0.0, scheme = 0.0, redefinition = 0.0;
   double turnover = 0.0;
+
+  void exchange(Archive& archive) {
+    auto& [a, b, c, d, e, f, g, h, i, j] = *this;
+    archive(a, b, c, d, e, f, g, h, i, j);
+  }
 };
 
 template <int N>
@@ -62,14 +67,27 @@ class CentralDifference {
   void store_contacts(std::vector<Contact>& contacts) const;
   ExplicitEnergies take_energies();
 
+  /// All of it; the joints are those that load() was given.
+  void exchange(Archive& archive, const JointTable& joints);
+
  private:
   struct alignas(32) Pose {
     double x = 0.0, y = 0.0;  ///< [m] displacement since the load
     double cos_minus_1 = 0.0, sin = 0.0;
+
+    void exchange(Archive& archive) {
+      auto& [a, b, c, d] = *this;
+      archive(a, b, c, d);
+    }
   };
   struct alignas(32) Rate {
     double x = 0.0, y = 0.0, turn = 0.0;  ///< velocity [m/s, m/s, rad/s], or force [N, N, N m]
     double angle = 0.0;                   ///< [rad] since the load; of velocities only
+
+    void exchange(Archive& archive) {
+      auto& [a, b, c, d] = *this;
+      archive(a, b, c, d);
+    }
   };
   struct Inertia {
     double mass, moment;          ///< [kg], [kg m2]
@@ -77,6 +95,11 @@ class CentralDifference {
     double turns;                 ///< 0 if the rotation is locked, else 1
     double weight_x, weight_y;    ///< [N]
     double radius;                ///< [m]
+
+    void exchange(Archive& archive) {
+      auto& [a, b, c, d, e, f, g, h] = *this;
+      archive(a, b, c, d, e, f, g, h);
+    }
   };
   struct Link {
     int vertex_slot, edge_slot;
@@ -93,6 +116,11 @@ class CentralDifference {
     ContactStatus status;
     bool bonded, breakable;
     int joint, contact;  ///< in the table, in the list
+
+    void exchange(Archive& archive) {
+      auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, w, x, y, z, aa] = *this;
+      archive(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, w, x, y, z, aa);
+    }
   };
   struct PointForce {
     int slot;
@@ -100,6 +128,11 @@ class CentralDifference {
     Vec2 arm, force, stiffness, stretch;  ///< at the load
     double energy = 0.0;                  ///< [J] stored minus work, since the load
     Vec2 moved = Vec2::Zero();            ///< since the load
+
+    void exchange(Archive& archive) {
+      auto& [a, b, c, d, e, f, g, h] = *this;
+      archive(a, b, c, d, e, f, g, h);
+    }
   };
   struct Place {
     double gap, slip;

@@ -30,8 +30,23 @@ void TangentSystem<N>::fit(const StepProblem<N>& problem) {
   if (has_room(problem)) return;
   std::vector<std::pair<int, int>> couplings;
   for_each_coupling(problem, [&](int i, int j) { couplings.emplace_back(i, j); });
-  matrix_.set_pattern(problem.system.free_count(), couplings);
-  if (!solver_) solver_ = make_solver<N>(problem.system.free_count());
+  set_pattern(problem.system.free_count(), couplings);
+}
+
+template <int N>
+void TangentSystem<N>::set_pattern(int rows, const std::vector<std::pair<int, int>>& couplings) {
+  matrix_.set_pattern(rows, couplings);
+  if (!solver_) solver_ = make_solver<N>(rows);
+}
+
+template <int N>
+void TangentSystem<N>::exchange(Archive& archive) {
+  int rows = solver_ ? matrix_.rows() : 0;
+  auto couplings = matrix_.couplings();
+  archive(rows, couplings);
+  if (rows == 0) return;
+  if (archive.reading()) set_pattern(rows, couplings);
+  solver_->exchange(archive);
 }
 
 template class TangentSystem<3>;

@@ -14,10 +14,13 @@ class TangentSystem {
 
   BlockMatrix<N>& matrix() { return matrix_; }
   LinearSolver<N>& solver() { return *solver_; }
+  /// The pattern, which decides in which order the solver eliminates and so how it rounds; the symbolic work is done again after reading.
+  void exchange(Archive& archive);
   const LinearCounters& counters() const { return solver_ ? solver_->counters() : nothing_done_; }
 
  private:
   bool has_room(const StepProblem<N>& problem) const;
+  void set_pattern(int rows, const std::vector<std::pair<int, int>>& couplings);
 
   BlockMatrix<N> matrix_;
   std::unique_ptr<LinearSolver<N>> solver_;
