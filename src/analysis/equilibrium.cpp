@@ -40,7 +40,7 @@ class ByRelativeDisplacement : public EquilibriumSearch<N> {
   SettleResult settle_first(const SettleProgress& progress) override {
     for (int b : simulation_.system().free_blocks()) simulation_.set_velocity(b, Motion<N>::Unknowns::Zero());
     simulation_.restart_clock();
-    const SettleResult result = follow(input_.max_time_steps, true, progress);
+    SettleResult result = follow(input_.max_time_steps, true, progress);
     first_steps_ = result.steps;
     return result;
   }

@@ -77,7 +77,7 @@ template <int N>
 SettleResult settle_explicitly(Simulation<N>& simulation, const RestLimits& limits, const SettleProgress& progress) {
   if (!limits.keep_bonds) return seek_rest(simulation, limits, progress);
   simulation.keep_bonds(true);
-  const SettleResult kept = seek_rest(simulation, limits, progress);
+  SettleResult kept = seek_rest(simulation, limits, progress);
   simulation.keep_bonds(false);
   if (!kept.settled) return kept;
   simulation.judge_bonds();

@@ -208,7 +208,7 @@ double Simulation<N>::largest_move(const StepSolution<N>& solution) const {
 template <int N>
 StepResult Simulation<N>::step(double dt, bool statics) {
   if (loop_ && !statics) {
-    const StepResult taken = explicit_step(dt, scene_.method.damping);
+    StepResult taken = explicit_step(dt, scene_.method.damping);
     collect();
     return taken;
   }
