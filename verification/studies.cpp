@@ -46,7 +46,7 @@ const std::vector<Scheme>& schemes() {
   return list;
 }
 
-std::vector<Scheme> elastic_schemes() {
+std::vector<Scheme> spring_schemes() {
   std::vector<Scheme> list;
   for (const Scheme& s : schemes()) {
     if (s.contact != "hard") list.push_back(s);

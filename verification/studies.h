@@ -20,7 +20,7 @@ struct Scheme {
 };
 const std::vector<Scheme>& schemes();
 /// Those on the springs of the joint, for which references with springs hold.
-std::vector<Scheme> elastic_schemes();
+std::vector<Scheme> spring_schemes();
 /// Gives the scene the scheme; `shi` gets the joint's springs for penalties.
 void use(const Scheme& scheme, Scene& scene);
 

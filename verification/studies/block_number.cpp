@@ -36,7 +36,7 @@ Scene column(const Scheme& scheme, int n, double base_factor) {
 
 void block_number(Studies& studies) {
   const double weight_over_stiffness = 2700.0 * 9.81 / modulus;  // [1/m]
-  for (const Scheme& scheme : elastic_schemes()) {
+  for (const Scheme& scheme : spring_schemes()) {
     if (scheme.theta < 1.0) continue;  // the same static steps
     for (const bool half_joint : {false, true}) {
       const double order = half_joint ? 2.0 : 1.0;

@@ -31,7 +31,7 @@ void bounce(Studies& studies) {
   constexpr double end = 2.5;  // [s] in flight after the third bounce
   constexpr int drops = 12;
   constexpr double lowest = 1.0, spacing = 3e-3;  // [m] some steps of flight between one and the next
-  for (const Scheme& scheme : elastic_schemes()) {
+  for (const Scheme& scheme : spring_schemes()) {
     const bool second = scheme.smooth_order == 2.0;
     // Newmark (1/2, 1) takes w^2 dt t_c/2 of the energy in each contact of t_c = 23 ms: 0.6 % of all in three at 1e-5 s.
     const Expectation expected{scheme.smooth_order - (second ? 0.4 : 0.2), scheme.smooth_order + (second ? 0.4 : 0.2), second ? 1e-3 : 2e-5, 1e-9,

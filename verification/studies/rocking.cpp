@@ -38,7 +38,7 @@ void rocking(Studies& studies) {
   const double smooth_motion_only = reference.events().empty() ? 0.0 : not_measured();
   const double w = std::sqrt(4.0 * data.normal_stiffness / data.mass());  // of the corner: about a quarter of the mass moves with it
 
-  for (const Scheme& scheme : elastic_schemes()) {
+  for (const Scheme& scheme : spring_schemes()) {
     // The tributary length is the overlap on the bisector of the faces, tilt^2/8 less than that of the reference, and so the closures: fitted are
     // errors ten times as large.
     const Expectation expected{scheme.smooth_order - 0.15, scheme.smooth_order + 0.15, 0.1 / w, 10.0 * 2.0 * tilt * tilt / 8.0 * closure, scheme.why};

@@ -19,7 +19,7 @@ void sliding_starts(Studies& studies) {
     const double end = bounces ? 0.1 : 1.0;
     const auto state = bounces ? analytical::unloaded_start() : analytical::normal_balanced_start(data);
     const double exact = analytical::SlidingBlockReference(data, state).advance(end).x;
-    for (const Scheme& scheme : elastic_schemes()) {
+    for (const Scheme& scheme : spring_schemes()) {
       const bool second = scheme.smooth_order == 2.0;
       const double spread = second ? 0.5 : 0.2, first = second ? 5e-4 : (bounces ? 2.5e-5 : 2.5e-4);
       const Expectation expected{scheme.smooth_order - spread, scheme.smooth_order + spread, first, 1e-13,

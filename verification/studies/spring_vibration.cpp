@@ -12,7 +12,7 @@ void spring_vibration(Studies& studies) {
   data.slope_angle = 0.0;
   const double w = analytical::bounce_frequency(data), end = 2.0 / w;
   constexpr double amplitude = 1.5e-4;  // [m] a third of the static closure: the contacts stay closed
-  for (const Scheme& scheme : elastic_schemes()) {
+  for (const Scheme& scheme : spring_schemes()) {
     // Rounding of gaps of 5e-4 m in coordinates of metres, 1e-15 m over the amplitude, times the steps.
     const Expectation expected{scheme.smooth_order - 0.1, scheme.smooth_order + 0.1, 0.1 / w, 1e-8, scheme.why};
     studies.in_time(scheme.name, halved(end / 10.0, 7), expected, [&](double dt) {

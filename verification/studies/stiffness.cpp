@@ -62,7 +62,7 @@ void lead(Studies& studies, const Scheme& scheme) {
 }  // namespace
 
 void stiffness(Studies& studies) {
-  for (const Scheme& scheme : elastic_schemes()) {
+  for (const Scheme& scheme : spring_schemes()) {
     closure(studies, scheme);
     lead(studies, scheme);
   }

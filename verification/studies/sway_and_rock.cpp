@@ -17,7 +17,7 @@ void sway_and_rock(Studies& studies) {
     constexpr double amplitude = 1e-6;  // [m] of the sway
     // (2 ks - w^2 m) x + ks h r = 0.
     const Eigen::Vector3d shape(1.0, 0.0, (w * w * data.mass() - 2.0 * data.shear_stiffness) / (data.shear_stiffness * data.height));
-    for (const Scheme& scheme : elastic_schemes()) {
+    for (const Scheme& scheme : spring_schemes()) {
       const Expectation expected{scheme.smooth_order - 0.1, scheme.smooth_order + 0.1, 0.1 / w, 4e-6, scheme.why};
       studies.in_time(scheme.name + text(", w = {:.4g} rad/s", w), halved(end / 10.0, 6), expected, [&](double dt) {
         Scene scene = block_on_plane(data);
