@@ -2,9 +2,9 @@
 // another guise, and the results are carried back.
 //
 // Tolerances: a perturbation of relative size e at the start grows with every impact and every contact that takes over; that growth G is measured in
-// the case itself by moving one block by `nudge`, and what rounding of coordinates of size L does to a run is bounded by G times eps L times the number
-// of roundings that may add up, `roundings` (a dozen a step in 300 steps that go the same way). Where scaling is by powers of two, and where nothing that
-// is computed changes, the bits agree.
+// the case itself by moving one block by `nudge`, and what rounding of coordinates of size L does to a run is bounded by G times eps L times the
+// number of roundings that may add up, `roundings` (a dozen a step in 300 steps that go the same way). Where scaling is by powers of two, and where
+// nothing that is computed changes, the bits agree.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -24,10 +24,8 @@ Scene tumbling(const std::string& method) {
   Scene scene = empty_scene();
   scene.joints[0].normal_stiffness = 1e8;
   scene.joints[0].shear_stiffness = 5e7;
-  scene.blocks = {fixed_block("base", rectangle(-10.0, -1.0, 20.0, 1.0)),
-                  free_block("left", {{-0.7, 0.3}, {0.4, 0.5}, {0.2, 1.4}, {-0.6, 1.3}}),
-                  free_block("right", {{1.0, 0.4}, {1.8, 0.6}, {1.7, 1.6}, {0.9, 1.3}}),
-                  free_block("top", {{0.2, 1.8}, {1.3, 2.0}, {0.7, 2.8}})};
+  scene.blocks = {fixed_block("base", rectangle(-10.0, -1.0, 20.0, 1.0)), free_block("left", {{-0.7, 0.3}, {0.4, 0.5}, {0.2, 1.4}, {-0.6, 1.3}}),
+                  free_block("right", {{1.0, 0.4}, {1.8, 0.6}, {1.7, 1.6}, {0.9, 1.3}}), free_block("top", {{0.2, 1.8}, {1.3, 2.0}, {0.7, 2.8}})};
   scene.blocks[1].velocity = {1.5, -1.0};
   scene.blocks[1].angular_velocity = -2.0;
   scene.blocks[2].velocity = {-1.0, -1.0};
@@ -80,7 +78,7 @@ void invariance_of(Report& report, const std::string& method) {
   const std::string why = text("growth of a perturbation {:.3g}, measured", growth) + ", times eps times coordinates times roundings";
   const auto rounding = [&](double coordinates) { return std::max(growth, 1.0) * eps * coordinates * roundings; };
 
-  // Lengths 2, masses 8 (density times 2, per thickness), times 4: stiffness per length, forces and thresholds in m do not scale: none may act.
+  // Lengths and times stay, because thresholds have them for units.
   Scene units = scene;
   units.materials[0].density *= 4.0;
   units.joints[0].normal_stiffness *= 4.0;
@@ -97,11 +95,13 @@ void invariance_of(Report& report, const std::string& method) {
     b.angular_velocity *= -1.0;
   }
   report.near("I2 mirrored", method, 0.0,
-              difference(plain, motion(report, mirrored), [](const Eigen::Vector3d& d) { return Eigen::Vector3d(-d[0], d[1], -d[2]); }), rounding(10.0),
-              "m, rad", why);
+              difference(plain, motion(report, mirrored), [](const Eigen::Vector3d& d) { return Eigen::Vector3d(-d[0], d[1], -d[2]); }),
+              rounding(10.0), "m, rad", why);
 
   const double angle = 0.7391;
-  const auto turn = [](const Vec2& v, double a) { return Vec2(std::cos(a) * v.x() - std::sin(a) * v.y(), std::sin(a) * v.x() + std::cos(a) * v.y()); };
+  const auto turn = [](const Vec2& v, double a) {
+    return Vec2(std::cos(a) * v.x() - std::sin(a) * v.y(), std::sin(a) * v.x() + std::cos(a) * v.y());
+  };
   Scene turned = scene;
   move_vertices(turned, [&](const Vec2& v) { return turn(v, angle); });
   turned.gravity = turn(turned.gravity, angle);
@@ -118,8 +118,8 @@ void invariance_of(Report& report, const std::string& method) {
   Scene moved = scene;
   move_vertices(moved, [](const Vec2& v) { return Vec2(v.x() + far, v.y() - far); });
   // The vertices are rounded once, when they are written there; the motion is computed relative to the first of them.
-  report.near("I4 moved by 1e6 m", method, 0.0, difference(plain, motion(report, moved), same), std::max(growth, 1.0) * eps * far * 12.0 + rounding(10.0),
-              "m, rad", why + "; the 12 free vertices are rounded once at 1e6 m");
+  report.near("I4 moved by 1e6 m", method, 0.0, difference(plain, motion(report, moved), same),
+              std::max(growth, 1.0) * eps * far * 12.0 + rounding(10.0), "m, rad", why + "; the 12 free vertices are rounded once at 1e6 m");
 
   Scene renumbered = scene;
   std::swap(renumbered.blocks[1], renumbered.blocks[3]);
@@ -132,9 +132,9 @@ void invariance_of(Report& report, const std::string& method) {
   report.near("I7 a far block that touches nothing", method, 0.0, difference(plain, motion(report, with_stranger), same),
               method == "dem" ? 0.0 : rounding(10.0), "m, rad",
               method == "dem" ? "explicit: bit for bit"
-                              : why + "; not bit for bit: Newton stops by the largest residual of all blocks, one more iteration may be taken");
+                              : why + "; one matrix for all blocks, whose elimination may exchange rows in another order, and one residual");
 
-  // Stopped at every tenth of the way, and continued by another simulation.
+  // Stopped in the middle of the first impacts, and continued by another simulation.
   RigidSimulation whole = report.simulate(scene), first = report.simulate(scene);
   bool going = true;
   for (int i = 0; i < 100; ++i) going = going && whole.advance(dt) && first.advance(dt);
@@ -165,7 +165,8 @@ void moving_frame(Report& report, const std::string& method) {
   for (int b = 1; b <= 3; ++b) moving.blocks[b].velocity += speed;
   const auto back = [&](const Eigen::Vector3d& d) { return Eigen::Vector3d(d[0] - end * speed.x(), d[1] - end * speed.y(), d[2]); };
   report.near("I5 in a frame that moves at 3.6 m/s", method, 0.0, difference(plain, motion(report, moving), back),
-              std::max(growth, 1.0) * eps * 10.0 * roundings, "m, rad", text("growth {:.3g}, measured, times eps times coordinates times roundings", growth));
+              std::max(growth, 1.0) * eps * 10.0 * roundings, "m, rad",
+              text("growth {:.3g}, measured, times eps times coordinates times roundings", growth));
 }
 
 }  // namespace
