@@ -1,10 +1,10 @@
 // LU factorisation of a block matrix without exchange of blocks, on the fill that the pattern leaves after an approximate minimum degree ordering of
 // the block graph (P. R. Amestoy, T. A. Davis, I. S. Duff 1996; Eigen's implementation).
 //
-// Row by row (Duff, Erisman, Reid, Direct methods for sparse matrices, 2017, chapter 10): row i of the matrix is spread out over a work row, the rows
-// above are subtracted in ascending order, and what is left is gathered as row i of L and U. The pattern is symmetric, so that L has the transposed
-// pattern of U. The diagonal blocks are inverted; nothing is exchanged between blocks, which is safe while each block is held by its own inertia and
-// contacts: where a pivot has lost its digits, the factorisation is given to the plain solver, which exchanges rows.
+// Row by row (Duff, Erisman, Reid, Direct methods for sparse matrices, 2017, chapter 10): row i of the matrix is laid into the slots of row i of L
+// and U, and the rows above are subtracted from it in ascending order. The pattern is symmetric, so that L has the transposed pattern of U. The
+// diagonal blocks are inverted; nothing is exchanged between blocks, which is safe while each block is held by its own inertia and contacts: where a
+// pivot has lost its digits, the factorisation is given to the plain solver, which exchanges rows.
 #include <Eigen/LU>
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseCore>
@@ -20,8 +20,8 @@
 namespace openclose {
 namespace {
 
-/// [-] A diagonal block whose norm has shrunk by more than this, or whose determinant is smaller than this times the product of its columns' norms, has
-/// lost more digits than a Newton step can do without.
+/// [-] A diagonal block whose norm has shrunk by more than this, or whose determinant is smaller than this times the product of its columns' norms,
+/// has lost more digits than a Newton step can do without.
 constexpr double smallest_pivot = 1e-11;
 
 /// Rows of blocks are padded to four numbers, one register of four. The padding of products is that of their right factor; nobody reads it.
@@ -94,9 +94,9 @@ template <int N>
 
 /// The function for the registers of this processor.
 template <int N>
-auto choose_subtraction() {
+auto choose_subtraction([[maybe_unused]] bool wide_registers) {
 #ifdef OPENCLOSE_HAS_WIDE_REGISTERS
-  if (__builtin_cpu_supports("avx2")) return &subtract_with_wide_registers<N>;
+  if (wide_registers && __builtin_cpu_supports("avx2")) return &subtract_with_wide_registers<N>;
 #endif
   return &subtract_with_any_registers<N>;
 }
@@ -104,6 +104,8 @@ auto choose_subtraction() {
 template <int N>
 class BlockLuSolver : public LinearSolver<N> {
  public:
+  explicit BlockLuSolver(bool wide_registers) : subtract_rows_above_(choose_subtraction<N>(wide_registers)) {}
+
   bool factor(const BlockMatrix<N>& matrix) override {
     if (version_ != matrix.pattern_version()) {
       analyse(matrix);
@@ -272,13 +274,13 @@ class BlockLuSolver : public LinearSolver<N> {
   }
 
   long version_ = -1;
-  std::vector<int> order_, place_;     ///< row of the matrix at a place in the factor, and back
+  std::vector<int> order_, place_;  ///< row of the matrix at a place in the factor, and back
   std::vector<int> row_start_, diagonal_, column_;
-  std::vector<int> target_;            ///< slot in the factor of the matrix's entries, in the order in which elimination meets them
-  std::vector<int> working_place_;     ///< slot of a column in the row under work
-  std::vector<PaddedBlock<N>> value_;  ///< L, inverted diagonal, U
-  std::vector<PaddedVector> solution_; ///< a block row each, in the factor's order
-  void (*subtract_rows_above_)(const Elimination<N>&, int) = choose_subtraction<N>();
+  std::vector<int> target_;             ///< slot in the factor of the matrix's entries, in the order in which elimination meets them
+  std::vector<int> working_place_;      ///< slot of a column in the row under work
+  std::vector<PaddedBlock<N>> value_;   ///< L, inverted diagonal, U
+  std::vector<PaddedVector> solution_;  ///< a block row each, in the factor's order
+  void (*subtract_rows_above_)(const Elimination<N>&, int);
   bool use_plain_ = false;
   std::unique_ptr<LinearSolver<N>> plain_;
 };
@@ -286,10 +288,10 @@ class BlockLuSolver : public LinearSolver<N> {
 }  // namespace
 
 template <int N>
-std::unique_ptr<LinearSolver<N>> make_block_solver() {
-  return std::make_unique<BlockLuSolver<N>>();
+std::unique_ptr<LinearSolver<N>> make_block_solver(bool wide_registers) {
+  return std::make_unique<BlockLuSolver<N>>(wide_registers);
 }
 
-template std::unique_ptr<LinearSolver<3>> make_block_solver<3>();
+template std::unique_ptr<LinearSolver<3>> make_block_solver<3>(bool);
 
 }  // namespace openclose
