@@ -67,14 +67,24 @@ struct ContactPose {
   double slip_change = 0.0;   ///< [m]
 
   ContactPose() = default;
-  ContactPose(const ContactStart<N>& start, const BlockMove<N>& vertex, const BlockMove<N>& edge) {
-    const Vec2 normal_change = edge.edge_sine * perpendicular(start.normal) - edge.edge_versine * start.normal;
-    const Vec2 move = vertex.displacement(start.vertex_arm), apart = move - edge.displacement(start.end_arm);
-    normal = start.normal + normal_change;
-    gap_change = normal_change.dot(start.lever) + normal.dot(apart);
-    slip_change = perpendicular(normal_change).dot(start.lever) + tangent().dot(apart);
-    vertex_arm = start.vertex_arm + (move - vertex.translation);
-    edge_arm = (start.end_arm + start.lever) + (move - edge.translation);
+  ContactPose(const ContactStart<N>& start, const BlockMove<N>& vertex, const BlockMove<N>& edge) { set(start, vertex, edge); }
+
+  /// In single numbers: vectors of two cost more in shuffling than they save.
+  void set(const ContactStart<N>& start, const BlockMove<N>& vertex, const BlockMove<N>& edge) {
+    const double n0x = start.normal.x(), n0y = start.normal.y(), lx = start.lever.x(), ly = start.lever.y();
+    const double ax = start.vertex_arm.x(), ay = start.vertex_arm.y(), ex = start.end_arm.x(), ey = start.end_arm.y();
+    const double dnx = -edge.edge_sine * n0y - edge.edge_versine * n0x, dny = edge.edge_sine * n0x - edge.edge_versine * n0y;
+    const double nx = n0x + dnx, ny = n0y + dny;
+    const double turn_x = -vertex.sine * ay - vertex.versine * ax, turn_y = vertex.sine * ax - vertex.versine * ay;
+    // p against the centroid of the edge's block, then against e.
+    const double shift_x = (vertex.translation.x() - edge.translation.x()) + turn_x,
+                 shift_y = (vertex.translation.y() - edge.translation.y()) + turn_y;
+    const double apart_x = shift_x + (edge.sine * ey + edge.versine * ex), apart_y = shift_y - (edge.sine * ex - edge.versine * ey);
+    gap_change = (dnx * lx + dny * ly) + (nx * apart_x + ny * apart_y);
+    slip_change = (dnx * ly - dny * lx) + (nx * apart_y - ny * apart_x);
+    normal = {nx, ny};
+    vertex_arm = {ax + turn_x, ay + turn_y};
+    edge_arm = {(ex + lx) + shift_x, (ey + ly) + shift_y};
   }
   Vec2 tangent() const { return perpendicular(normal); }
 };

@@ -56,9 +56,10 @@ void Newton<N>::prepare(const StepProblem<N>& problem, const std::vector<Contact
   blocks_.clear();
   for (int b : system.free_blocks()) {
     const auto& block = system.block(b);
-    const Unknowns weight = problem.external.weight(system, b);
-    blocks_.push_back({b, problem.external.has_point_forces(b), block.rotation_locked, block.radius, problem.inertia * block.mass, weight,
-                       problem.dt * problem.velocity(b), weight.norm(), problem.external.spring_scale(system, b)});
+    const Unknowns still = Unknowns::Zero();
+    blocks_.push_back({b, problem.external.has_point_forces(b), block.rotation_locked, block.radius, problem.inertia * block.mass,
+                       problem.external.force(system, b, still), problem.dt * problem.velocity(b), problem.external.magnitude(system, b, still),
+                       problem.external.spring_scale(system, b)});
   }
   trials_.resize(contacts_.size());
   branches_.resize(contacts_.size());
@@ -67,35 +68,39 @@ void Newton<N>::prepare(const StepProblem<N>& problem, const std::vector<Contact
 }
 
 template <int N>
-typename Newton<N>::ContactTrial Newton<N>::evaluate_contact(std::size_t c) const {
+inline void Newton<N>::evaluate_contact(std::size_t c) {
   const StepContact& contact = contacts_[c];
-  ContactTrial trial;
-  trial.pose = ContactPose<N>(contact.start, moves_[contact.vertex_block], moves_[contact.edge_block]);
+  ContactTrial& trial = trials_[c];
+  trial.pose.set(contact.start, moves_[contact.vertex_block], moves_[contact.edge_block]);
   trial.forces = spring_slider((*springs_)[c], contact.strength, trial.pose.gap_change, trial.pose.slip_change);
-  return trial;
 }
 
 template <int N>
 void Newton<N>::evaluate_contacts() {
+  double force_scale = force_scale_;
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
-    const StepContact& contact = contacts_[c];
-    ContactTrial& trial = trials_[c];
-    trial = evaluate_contact(c);
-    const ContactForces& f = trial.forces;
+    evaluate_contact(c);
+    const ContactForces& f = trials_[c].forces;
     branches_[c] = branch(f);
     if (f.status == ContactStatus::open) continue;
+    const StepContact& contact = contacts_[c];
+    const ContactPose<N>& pose = trials_[c].pose;
     const ContactSprings& springs = (*springs_)[c];
+    const double normal = std::abs(f.normal), shear = std::abs(f.shear);
     const double moved = moves_[contact.vertex_block].bound(contact.vertex_reach) + moves_[contact.edge_block].bound(contact.edge_reach);
     const double stiffness = springs.normal + springs.normal_damping + springs.shear + springs.shear_damping;
-    const double largest = std::max(std::abs(f.normal), std::abs(f.shear));
-    const double rounding = rounding_of_sums * (stiffness * moved + std::abs(f.normal) + std::abs(f.shear));
-    const Vec2 force = f.normal * trial.pose.normal + f.shear * trial.pose.tangent();
-    force_.template segment<N>(N * contact.vertex_row) += Motion<N>::gradient(trial.pose.vertex_arm, force);
-    force_.template segment<N>(N * contact.edge_row) -= Motion<N>::gradient(trial.pose.edge_arm, force);
+    const double rounding = rounding_of_sums * (stiffness * moved + normal + shear);
+    const Vec2 force(f.normal * pose.normal.x() - f.shear * pose.normal.y(), f.normal * pose.normal.y() + f.shear * pose.normal.x());
+    double* on_vertex = force_.data() + N * contact.vertex_row;
+    double* on_edge = force_.data() + N * contact.edge_row;
+    const Unknowns push = Motion<N>::gradient(pose.vertex_arm, force), back = Motion<N>::gradient(pose.edge_arm, force);
+    for (int k = 0; k < N; ++k) on_vertex[k] += push[k];
+    for (int k = 0; k < N; ++k) on_edge[k] -= back[k];
     rounding_[contact.vertex_row] += rounding;
     rounding_[contact.edge_row] += rounding;
-    force_scale_ = std::max(force_scale_, largest);
+    force_scale = std::max({force_scale, normal, shear});
   }
+  force_scale_ = force_scale;
 }
 
 template <int N>
@@ -111,7 +116,7 @@ void Newton<N>::evaluate_blocks(const Eigen::VectorXd& d) {
       force_.template segment<N>(at) += problem_->external.force(system, block.block, db);
       magnitude = problem_->external.magnitude(system, block.block, db);
     } else {
-      force_.template segment<N>(at) += block.weight;
+      force_.template segment<N>(at) += block.force;
     }
     Unknowns r = block.inertia.cwiseProduct(block.drift - db) + theta * force_.template segment<N>(at);
     if (theta < 1.0) r += (1.0 - theta) * start_force_.template segment<N>(at);

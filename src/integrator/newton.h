@@ -49,8 +49,8 @@ class Newton {
     int block = 0;
     bool has_point_forces = false, rotation_locked = false;
     double radius = 0.0;
-    Unknowns inertia, weight, drift;       ///< inertia: mass over time squared; drift: displacement without forces
-    double magnitude = 0.0;                ///< [N] of the weight
+    Unknowns inertia, force, drift;        ///< mass over time squared; all but contacts' at the start; displacement without forces
+    double magnitude = 0.0;                ///< [N] of these forces
     double rounding_of_coordinates = 0.0;  ///< [N]
   };
   /// A contact at the trial displacement: where it is, what it carries, and the derivatives.
@@ -64,7 +64,7 @@ class Newton {
   void evaluate_contacts();
   void evaluate_blocks(const Eigen::VectorXd& d);
   /// One contact at the trial positions of its blocks. The forces act along its pose's normal and tangent, at its pose's arms.
-  ContactTrial evaluate_contact(std::size_t c) const;
+  void evaluate_contact(std::size_t c);
   /// Replaces the derivatives of a contact by those of a status.
   void take_status(std::size_t c, ContactStatus status, double normal, double shear);
   /// Derivatives for the first tangent: states of the last step; corners that only touch count as sticking.
