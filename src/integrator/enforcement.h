@@ -84,6 +84,14 @@ class Enforcement {
   virtual const LinearCounters& linear_counters() const = 0;
 };
 
+/// Displacements of a step without forces, dt v: zero in statics. N per free block.
+template <int N>
+Eigen::VectorXd drift(const StepProblem<N>& problem) {
+  Eigen::VectorXd d(N * problem.system.free_count());
+  for (int b : problem.system.free_blocks()) d.template segment<N>(N * problem.system.block(b).equation) = problem.dt * problem.velocity(b);
+  return d;
+}
+
 /// Springs of the joint's own stiffness. The memory is the stretch of the spring, not its force: when the tributary length changes, strength and force
 /// change alike.
 template <int N>

@@ -246,48 +246,49 @@ double Newton<N>::backtrack(const Eigen::VectorXd& d, const Eigen::VectorXd& ste
 }
 
 template <int N>
+void Newton<N>::replace_forces(std::size_t c, const ContactForces& forces) {
+  ContactTrial& trial = trials_[c];
+  const ContactPose<N>& pose = trial.pose;
+  const double normal = problem_->end_weight * (forces.normal - trial.forces.normal),
+               shear = problem_->end_weight * (forces.shear - trial.forces.shear);
+  const Vec2 change = normal * pose.normal + shear * pose.tangent();
+  const auto push = [&](int row, const Unknowns& by) {
+    if (row == static_cast<int>(blocks_.size())) return;
+    residual_.template segment<N>(N * row) += by;
+    if (blocks_[row].rotation_locked) residual_[N * row + Motion<N>::rotation_index] = 0.0;
+  };
+  push(contacts_[c].vertex_row, Motion<N>::gradient(pose.vertex_arm, change));
+  push(contacts_[c].edge_row, -Motion<N>::gradient(pose.edge_arm, change));
+  trial.forces = forces;
+  branches_[c] = branch(forces);
+}
+
+template <int N>
 int Newton<N>::hold_reversed() {
   int held = 0;
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const bool reversed = std::abs(branches_before_[c]) == sliding_branch && branches_before_[c] == -branches_[c];
     if (!reversed) continue;
     ++held;
-    const StepContact& contact = contacts_[c];
     const ContactSprings& springs = (*springs_)[c];
-    const ContactPose<N>& pose = trials_[c].pose;
-    ContactForces& f = trials_[c].forces;
-    const double trial = springs.initial_shear - (springs.shear + springs.shear_damping) * pose.slip_change;
-    const Vec2 change = problem_->end_weight * (trial - f.shear) * pose.tangent();
-    const auto push = [&](int row, const Unknowns& by) {
-      if (row == static_cast<int>(blocks_.size())) return;
-      residual_.template segment<N>(N * row) += by;
-      if (blocks_[row].rotation_locked) residual_[N * row + Motion<N>::rotation_index] = 0.0;
-    };
-    push(contact.vertex_row, Motion<N>::gradient(pose.vertex_arm, change));
-    push(contact.edge_row, -Motion<N>::gradient(pose.edge_arm, change));
-    take_status(c, ContactStatus::sticking, f.normal, trial);
-    f.shear = trial;
+    const ContactForces& f = trials_[c].forces;
+    ContactForces stuck = tangent_for_status(springs, contacts_[c].strength, ContactStatus::sticking, f.normal, f.shear);
+    stuck.normal = f.normal;
+    stuck.shear = springs.initial_shear - (springs.shear + springs.shear_damping) * trials_[c].pose.slip_change;
+    replace_forces(c, stuck);
   }
   return held;
-}
-
-template <int N>
-void Newton<N>::take_status(std::size_t c, ContactStatus status, double normal, double shear) {
-  ContactForces& f = trials_[c].forces;
-  const ContactForces derivatives = tangent_for_status((*springs_)[c], contacts_[c].strength, status, normal, shear);
-  f.status = status;
-  branches_[c] = branch(f);
-  f.normal_by_gap = derivatives.normal_by_gap;
-  f.shear_by_gap = derivatives.shear_by_gap;
-  f.shear_by_slip = derivatives.shear_by_slip;
 }
 
 template <int N>
 void Newton<N>::take_last_states() {
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const Contact& contact = problem_->contacts[c];
-    const bool touching = contact.status == ContactStatus::open && (*springs_)[c].gap <= 0.0;
-    take_status(c, touching ? ContactStatus::sticking : contact.status, contact.normal_force, contact.shear_force);
+    const ContactSprings& springs = (*springs_)[c];
+    const ContactPose<N>& pose = trials_[c].pose;
+    const bool touching = contact.status == ContactStatus::open && springs.gap <= 0.0;
+    replace_forces(c, prolonged(springs, contacts_[c].strength, touching ? ContactStatus::sticking : contact.status, contact.normal_force,
+                                contact.shear_force, pose.gap_change, pose.slip_change));
   }
 }
 

@@ -47,6 +47,7 @@ void check_same(const MethodInput& a, const MethodInput& b) {
   CHECK(a.penalty_shear_ratio == b.penalty_shear_ratio);
   CHECK(a.penetration_tolerance == b.penetration_tolerance);
   CHECK(a.closing_tolerance == b.closing_tolerance);
+  CHECK(a.gap_tolerance == b.gap_tolerance);
   CHECK(a.max_open_close_iterations == b.max_open_close_iterations);
   CHECK(a.step_cut == b.step_cut);
   CHECK(a.step_fraction == b.step_fraction);
@@ -166,6 +167,7 @@ Scene random_scene(unsigned seed) {
   scene.method.penalty_shear_ratio = number();
   scene.method.penetration_tolerance = number();
   scene.method.closing_tolerance = number();
+  scene.method.gap_tolerance = number();
   scene.method.max_open_close_iterations = 7;
   scene.method.step_cut = fraction(generator);
   scene.method.step_fraction = fraction(generator);
