@@ -651,7 +651,7 @@ void Detector<N>::put_in_place(std::vector<Contact>& contacts, bool orphans) {
 template <int N>
 bool Detector<N>::update(const BlockSystem<N>& system, const JointTable& joints, std::vector<Contact>& contacts) {
   const bool all = forgotten_ || !skips_.search || !skips_.narrow_phase;
-  const bool searches = forgotten_ || !skips_.search || moved_beyond_search_skin(system);
+  const bool searches = needs_search(system);
   forgotten_ = false;
   born_.clear();
   gone_.clear();
@@ -676,7 +676,6 @@ bool Detector<N>::update(const BlockSystem<N>& system, const JointTable& joints,
   for (const int pair : due_pairs_) redo(joints, system, pair, narrow, contacts);
   if (!first_) pass_on_history(system, contacts);
   put_in_place(contacts, orphans);
-  searched_ = searches;
   first_ = false;
   return true;
 }
