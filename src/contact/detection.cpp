@@ -336,9 +336,16 @@ class Detector<N>::NarrowPhase {
   }
 
   bool in_block(int block, const Vec2& p) {
-    if (!shapes_.box(block).inflated(2.0 * tolerance::edge_end_m).contains(p)) return false;
+    constexpr double margin = 2.0 * tolerance::edge_end_m;  // what is decided so is the same by the distance below
+    if (!shapes_.box(block).inflated(margin).contains(p)) return false;
+    bool convex = true, outside = false;
     polygon_.clear();
-    for_each_vertex(block, [&](int v) { polygon_.push_back(shapes_.edge(v).start); });
+    for_each_vertex(block, [&](int v) {
+      convex &= !system_.is_reflex(v);
+      outside |= shapes_.edge(v).gap(p) > margin;
+      polygon_.push_back(shapes_.edge(v).start);
+    });
+    if (convex && outside) return false;
     return contains(polygon_, p) || distance_to_boundary(polygon_, p) <= tolerance::edge_end_m;
   }
 

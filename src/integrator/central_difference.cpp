@@ -534,8 +534,8 @@ bool CentralDifference<N>::moved_beyond_skin() {
   double farthest = 0.0;
   for (std::size_t i = 0; i < inertia_.size(); ++i) {
     const Way& from = kept_at_[i];
-    farthest =
-        std::max(farthest, std::hypot(poses_[i].x - from.x, poses_[i].y - from.y) + inertia_[i].radius * std::abs(rates_[i].angle - from.angle));
+    farthest = std::max(farthest, std::sqrt(square(poses_[i].x - from.x) + square(poses_[i].y - from.y)) +
+                                      inertia_[i].radius * std::abs(rates_[i].angle - from.angle));
   }
   moved_ = 2.0 * farthest;
   return moved_ > renew_fraction * tolerance::contact_skin_m;
