@@ -196,8 +196,8 @@ void CentralDifference<N>::add_link(const StepProblem<N>& problem, int contact) 
   carry_now(link, at);
   // What the list has moved apart is open before anything moves.
   if (link.gap > link.strength.tension / link.normal_stiffness) link.status = ContactStatus::open;
-  // What is found closed carries from now on, as the ledger of its renewal says.
-  if (link.status == ContactStatus::open && link.normal > 0.0) link.status = ContactStatus::sticking;
+  // What is found closed carries from now on, as the ledger of its renewal says, even where its dashpot outweighs the spring.
+  if (link.status == ContactStatus::open && link.elastic_normal != 0.0) link.status = ContactStatus::sticking;
   push(link, at);
 
   const auto share = [&](int b, int other) {

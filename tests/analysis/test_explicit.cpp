@@ -245,6 +245,18 @@ TEST_CASE("the ledger closes where a contact is closed when it is found", "[anal
   CHECK(found_closed > 0);
 }
 
+TEST_CASE("the ledger closes where a contact is found closed and its dashpot outweighs the spring", "[analysis][explicit][energy]") {
+  Scene scene = explicit_scene(test::block_on_base(), 1e-4);
+  for (Vec2& v : scene.blocks[1].vertices) v.y() -= 5e-4;
+  scene.blocks[1].velocity = {0.0, 0.1};
+  scene.joints[0].damping_ratio = GENERATE(0.1, 5.0);
+  Simulation<3> simulation(scene);
+  for (int i = 0; i < 100; ++i) REQUIRE(simulation.advance(scene.step.dt));
+  const EnergyLedger& l = simulation.ledger();
+  CHECK(l.redefinition < -1e-3 * l.turnover);  // what the drawing has stored
+  CHECK(std::abs(l.imbalance()) < 1e-10 * l.turnover);
+}
+
 TEST_CASE("what was asked for once follows the run", "[analysis][explicit]") {
   Scene scene = explicit_scene(test::falling_block(), 1e-2);
   Simulation<3> simulation(scene);
