@@ -80,12 +80,16 @@ struct ForceTrials {
   double elastic_shear, viscous_shear;
 };
 
+/// Whether the normal spring carries nothing.
+inline bool is_open(const ContactStrength& strength, double elastic_normal) {
+  return strength.tension > 0.0 ? elastic_normal < -strength.tension : elastic_normal <= 0.0;
+}
+
 /// The joint law: what a contact carries of the trials. The elastic shear force is the contact's memory: the spring slips with the friction, the
 /// dashpot does not count in it. A contact is open when its spring is; while the dashpot outweighs the spring it carries nothing but is not open.
 inline CarriedForces carry(const ContactStrength& strength, const ForceTrials& trial) {
   CarriedForces f;
-  const bool open = strength.tension > 0.0 ? trial.elastic_normal < -strength.tension : trial.elastic_normal <= 0.0;
-  if (open) return f;
+  if (is_open(strength, trial.elastic_normal)) return f;
   f.elastic_normal = trial.elastic_normal;
   f.normal = std::max(-strength.tension, trial.elastic_normal + trial.viscous_normal);
   const double bound = strength.largest_shear(f.normal), shear = trial.elastic_shear + trial.viscous_shear;
@@ -102,6 +106,7 @@ struct ContactForces : CarriedForces {
 /// Dashpots of a contact [N s/m].
 struct ContactDashpots {
   double normal = 0.0, shear = 0.0;
+  ContactDashpots() = default;
   ContactDashpots(const JointProperties& joint, double length, double reduced_mass);
 };
 
