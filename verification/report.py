@@ -72,7 +72,12 @@ class Series(dict):
         return self.get((row.case, row.quantity, row.method), [])
 
 
-SIZES = {"dt_s": "dt [s]", "compliance_m2_per_n": "1/kn of a corner [m²/N]", "compliance_m_per_pa": "1/kn of the joint [m/Pa]"}
+SIZES = {
+    "dt_s": "dt [s]",
+    "compliance_m2_per_n": "1/kn of a corner [m²/N]",
+    "stiffness_n_per_m2": "k of a corner [N/m²]",
+    "compliance_m_per_pa": "1/kn of the joint [m/Pa]",
+}
 
 
 def panels(count: int, height: float = 2.6):
