@@ -30,6 +30,9 @@ void set_scheme(Scene& scene, const ElasticScheme& scheme);
 /// "..., theta = 0.5", as a name of a check.
 std::string with_theta(const std::string& quantity, const ElasticScheme& scheme);
 
+/// [m] of `hard`: closed forms know rigid contacts.
+inline constexpr double gap_tolerance = 1e-11;
+
 /// One material "rock", gravity 9.81 downwards, joint without cohesion as the block's; `unloaded` start; no blocks yet.
 Scene empty_scene(const analytical::BlockOnPlane& data = {});
 

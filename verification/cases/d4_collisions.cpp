@@ -4,6 +4,7 @@
 
 #include "harness.h"
 #include "openclose/analytical/collisions.h"
+#include "openclose/core/tolerance.h"
 #include "scenes.h"
 
 namespace openclose::verification {
@@ -122,8 +123,8 @@ void plastic(Report& report) {
     for (const double dt : {1e-3, 3e-4}) {
       const Outcome o = follow(report, hard, pair, dt, static_cast<int>(0.1 / dt));
       const std::string name = text("masses 1:{}", second / 2500.0) + text(", dt = {} s", dt);
-      report.near(name + ": common velocity", "hard", 0.0, largest_difference(o.velocities, exact.velocities), MethodInput().gap_tolerance / dt,
-                  "m/s", "momentum over mass; tolerance of the gap over dt");
+      report.near(name + ": common velocity", "hard", 0.0, largest_difference(o.velocities, exact.velocities), gap_tolerance / dt, "m/s",
+                  "momentum over mass; tolerance of the gap over dt");
       report.relative(name + ": energy of the impact", "hard", 0.5 * reduced * closing * closing, o.impact, 1e-10, "J",
                       "m* v^2/2 of the closing speed");
     }
@@ -135,9 +136,9 @@ void plastic(Report& report) {
     const auto exact = analytical::plastic_row(row, count * dt);
     const std::string name = text("row of five, dt = {} s", dt);
     const double places = largest_difference(o.displacements, exact.displacements);
-    report.near(name + ": places", "hard", 0.0, places, 10.0 * MethodInput().gap_tolerance, "m",
+    report.near(name + ": places", "hard", 0.0, places, 10.0 * gap_tolerance, "m",
                 "event by event; no error but the tolerance of five gaps twice");
-    report.near(name + ": common velocity", "hard", 0.0, largest_difference(o.velocities, exact.velocities), MethodInput().gap_tolerance / dt, "m/s",
+    report.near(name + ": common velocity", "hard", 0.0, largest_difference(o.velocities, exact.velocities), gap_tolerance / dt, "m/s",
                 "momentum over mass; tolerance of the gap over dt");
     report.near(name + ": momentum", "hard", 0.0, places < 1e-3 ? std::abs(o.momentum) : not_measured(), 1e-12, "-",
                 "action = reaction; over the sum of |m v|");
