@@ -30,7 +30,7 @@ Scene empty_scene(const analytical::BlockOnPlane& data) {
   joint.friction_angle = data.friction_angle;
   scene.joints = {joint};
   scene.method.start = Start::unloaded;
-  scene.method.gap_tolerance = gap_tolerance;
+  scene.method.gap_tolerance = 0.01 * gap_tolerance;
   scene.step.max_displacement = 1.0;
   return scene;
 }

@@ -30,7 +30,7 @@ void set_scheme(Scene& scene, const ElasticScheme& scheme);
 /// "..., theta = 0.5", as a name of a check.
 std::string with_theta(const std::string& quantity, const ElasticScheme& scheme);
 
-/// [m] of `hard`: closed forms know rigid contacts.
+/// [m] That closed forms allow `hard`; scenes ask for a hundredth of it, because contacts whose gaps exclude each other may keep a multiple of what is asked.
 inline constexpr double gap_tolerance = 1e-11;
 
 /// One material "rock", gravity 9.81 downwards, joint without cohesion as the block's; `unloaded` start; no blocks yet.
