@@ -207,6 +207,7 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
                   {"residual_tolerance", scene.method.residual_tolerance},
                   {"skip_search", scene.method.skip_search},
                   {"skip_narrow_phase", scene.method.skip_narrow_phase},
+                  {"skip_reload", scene.method.skip_reload},
                   {"step_fraction", scene.method.step_fraction},
                   {"damping", word_for(mass_damping_words, scene.method.damping)},
                   {"local_damping", scene.method.local_damping},
@@ -265,7 +266,10 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
                    {"symbolic", linear.symbolic},
                    {"symbolic_skipped", linear.symbolic_skipped}};
   if (simulation.is_explicit()) {
-    j["explicit"] = {{"critical_step_s", steps.smallest_critical_step}, {"longest_step_s", steps.longest_step}, {"state_loads", steps.loads}};
+    j["explicit"] = {{"critical_step_s", steps.smallest_critical_step},
+                     {"longest_step_s", steps.longest_step},
+                     {"state_loads", steps.loads},
+                     {"state_loads_skipped", steps.loads_skipped}};
   }
   j["stage_s"] = {{"detection", cpu.detection}, {"solution", cpu.solution}, {"bookkeeping", cpu.bookkeeping}};
   std::ofstream file = folder.open("summary.json");

@@ -203,6 +203,7 @@ MethodInput read_method(Table table, const SourceLocation& scene_where) {
   table.optional("max_iterations", method.max_iterations, count);
   table.optional("skip_search", method.skip_search);
   table.optional("skip_narrow_phase", method.skip_narrow_phase);
+  table.optional("skip_reload", method.skip_reload);
   table.optional("gap_tolerance_m", method.gap_tolerance, positive);
   table.optional("penalty_pa_per_m", method.penalty, positive);
   table.optional("penalty_shear_ratio", method.penalty_shear_ratio, positive);

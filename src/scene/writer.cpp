@@ -160,6 +160,7 @@ void write_method(Text& text, const MethodInput& method) {
   text.line("max_iterations", method.max_iterations);
   text.line("skip_search", method.skip_search);
   text.line("skip_narrow_phase", method.skip_narrow_phase);
+  text.line("skip_reload", method.skip_reload);
   text.line("gap_tolerance_m", method.gap_tolerance);
   if (method.penalty) text.line("penalty_pa_per_m", *method.penalty);
   text.line("penalty_shear_ratio", method.penalty_shear_ratio);
