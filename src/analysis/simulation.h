@@ -21,8 +21,14 @@ struct StepCounters {
   long compliant = 0;                   ///< steps of `hard` whose multipliers did not converge: taken with springs
   long dissipative = 0;                 ///< steps of path_average that found a solution only with dissipation
   long loads = 0;                       ///< times the explicit loop took over the state anew
+  long loads_skipped = 0;               ///< times it took over only contacts that were found anew
   double smallest_critical_step = 0.0;  ///< [s] of explicit steps, 0 if there were none
   double longest_step = 0.0;            ///< [s] of explicit steps
+
+  void exchange(Archive& archive) {
+    auto& [a, b, c, d, e, f, g, h, i, j] = *this;
+    archive(a, b, c, d, e, f, g, h, i, j);
+  }
 };
 
 /// Wall time [s] of the stages; one thread.
@@ -119,6 +125,10 @@ class Simulation {
   Snapshot save();
   void restore(const Snapshot& snapshot);
 
+  /// Everything that the next steps depend on and all that has been counted, so that another simulation of the same scene goes on bit for bit; unlike
+  /// save() it leaves everything as it is. The wall times of the stages are not in it.
+  void exchange(Archive& archive);
+
  private:
   void detect();
   void restart_scheme();
@@ -136,6 +146,9 @@ class Simulation {
   bool loses_strength(const StepSolution<N>& solution) const;
   bool advance_explicitly(double dt);
   void load_loop();
+  bool renew_loop();
+  StepProblem<N> present_problem(double dt, bool statics) const;
+  void store_energy(const StepProblem<N>& problem, Contact& contact) const;
   /// Takes back what the loop has done since; it goes on from its own arrays.
   void collect() const;
   /// The same, and the loop takes over anew before its next step, because the caller may change what it works on.
@@ -160,7 +173,8 @@ class Simulation {
   double time_ = 0.0;
   std::string reason_;
   mutable EnergyLedger ledger_;
-  double start_kinetic_energy_ = 0.0;  ///< [J]
+  double start_kinetic_energy_ = 0.0;              ///< [J]
+  mutable double collected_contact_energy_ = 0.0;  ///< [J] stored when the loop was last collected from or loaded
   mutable double max_penetration_ = 0.0;
   StepCounters step_counters_;
   int failed_attempts_ = 0;  ///< since the last step that was accepted

@@ -2,6 +2,8 @@
 // that go with the third power of the step.
 #pragma once
 
+#include "openclose/core/archive.h"
+
 namespace openclose {
 
 class StepControl {
@@ -18,6 +20,8 @@ class StepControl {
   void refused(double tried, double error);
   /// A step was refused for other reasons, and this length is next.
   void shorten(double next) { step_ = next; }
+
+  void exchange(Archive& archive) { archive(last_error_, step_); }
 
  private:
   double tolerance_;

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "openclose/contact/joint_table.h"
-#include "openclose/contact/mean_kinematics.h"
+#include "openclose/contact/mean_pose.h"
 #include "openclose/integrator/time_scheme.h"
 #include "openclose/law/path_average.h"
 #include "openclose/linear/solver.h"
@@ -58,7 +58,7 @@ struct StepProblem {
 template <int N>
 struct PathOutcome {
   PathAverage average;
-  MeanKinematics<N> kinematics;
+  ContactKinematics<N> kinematics;  ///< of the mean pose: whose gradients carried the forces
 };
 
 template <int N>
@@ -99,6 +99,8 @@ class Enforcement {
   virtual bool is_explicit() const { return false; }
   virtual double step_cut(const MethodInput&) const { return 0.5; }  ///< factor on a step that failed
   virtual const LinearCounters& linear_counters() const = 0;
+  /// Hands over what it keeps from step to step and what would change a result, be it in the last bit.
+  virtual void exchange(Archive&) {}
 };
 
 /// Displacements of a step without forces, dt v: zero in statics. N per free block.

@@ -1,5 +1,5 @@
 // Path-averaged contact forces: u1 = u0 + dt (v0 + v1)/2, M (v1 - v0) = dt F with the mean F of the forces along the straight path of the step, in
-// the mean geometry (law/path_average.h, contact/mean_kinematics.h). The work of F is then what springs store and friction takes, and the angular
+// the mean geometry (law/path_average.h, contact/mean_pose.h). The work of F is then what springs store and friction takes, and the angular
 // momentum stays. Order 2, also over impacts and where contacts begin to slide.
 #include "openclose/integrator/integrators.h"
 

@@ -52,6 +52,7 @@ class TimeScheme {
   /// The step with this dt counts: record(b, dt, d, v) for every free block, then accept(dt).
   virtual void record(int, double, const Unknowns&, const Unknowns&) {}
   virtual void accept(double) {}
+  virtual void exchange(Archive&) {}  ///< what it remembers of earlier steps
 };
 
 /// u1 = u0 + dt (v0 + v1)/2, M (v1 - v0) = dt [theta F1 + (1 - theta) F0]. theta = 1: Newmark (1/2, 1), Shi's, order 1; theta = 1/2: trapezoid,
@@ -80,6 +81,7 @@ class BlockMemory {
     if (b >= static_cast<int>(values_.size())) values_.resize(b + 1, Unknowns::Zero());
     values_[b] = value;
   }
+  void exchange(Archive& archive) { archive(values_); }
 
  private:
   std::vector<Unknowns> values_;

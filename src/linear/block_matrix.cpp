@@ -24,9 +24,22 @@ void BlockMatrix<N>::set_pattern(int rows, const std::vector<std::pair<int, int>
     columns_.push_back(j);
   }
   for (int i = 0; i < rows; ++i) row_start_[i + 1] += row_start_[i];
+  diagonal_.resize(rows);
+  for (int i = 0; i < rows; ++i) diagonal_[i] = find(i, i);
   values_.assign(columns_.size(), Block::Zero());
   static std::atomic<long> latest{0};  // over all matrices, so that a solver can tell them apart
   pattern_version_ = ++latest;
+}
+
+template <int N>
+std::vector<std::pair<int, int>> BlockMatrix<N>::couplings() const {
+  std::vector<std::pair<int, int>> pairs;
+  for (int i = 0; i < rows(); ++i) {
+    for (int s = row_start_[i]; s < row_start_[i + 1]; ++s) {
+      if (columns_[s] > i) pairs.emplace_back(i, columns_[s]);
+    }
+  }
+  return pairs;
 }
 
 template <int N>

@@ -18,9 +18,12 @@ class BlockMatrix {
 
   int rows() const { return static_cast<int>(row_start_.size()) - 1; }
   int unknowns() const { return N * rows(); }
+  std::vector<std::pair<int, int>> couplings() const;  ///< with which set_pattern() makes this pattern
   long pattern_version() const { return pattern_version_; }  ///< changes with every new pattern, differs between matrices
 
   bool contains(int row, int column) const { return find(row, column) >= 0; }
+  int find(int row, int column) const;                    ///< slot of the pair, -1 if not in the pattern
+  int diagonal(int row) const { return diagonal_[row]; }  ///< slot
 
   void set_zero();
   /// Throws std::logic_error if the pair is not in the pattern.
@@ -33,17 +36,18 @@ class BlockMatrix {
   int row_start(int row) const { return row_start_[row]; }
   int column(int slot) const { return columns_[slot]; }
   const Block& value(int slot) const { return values_[slot]; }
+  Block& value(int slot) { return values_[slot]; }  ///< slots stand as long as the pattern
 
   Eigen::VectorXd multiply(const Eigen::VectorXd& x) const;
   Eigen::MatrixXd dense() const;
 
  private:
-  int find(int row, int column) const;  ///< -1 if not in the pattern
   int slot(int row, int column) const;
 
   long pattern_version_ = 0;
   std::vector<int> row_start_{0};
   std::vector<int> columns_;
+  std::vector<int> diagonal_;
   std::vector<Block, Eigen::aligned_allocator<Block>> values_;
 };
 

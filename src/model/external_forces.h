@@ -21,6 +21,7 @@ class ExternalForces {
   /// the base's velocity.
   void move_base(double from, double to) { base_acceleration_ = base_motion_.mean_acceleration(from, to); }
   void hold_base() { base_acceleration_.setZero(); }
+  void exchange(Archive& archive) { archive(base_acceleration_); }
   const Vec2& base_acceleration() const { return base_acceleration_; }  ///< [m/s2] mean over these times
 
   Unknowns weight(const BlockSystem<N>& system, int b) const;      ///< [N]
@@ -47,6 +48,7 @@ class ExternalForces {
     Vec2 stiffness = Vec2::Zero();  ///< [N/m] of springs in x and y
     Vec2 anchor = Vec2::Zero();     ///< [m] where the springs are slack, relative to the system's origin
   };
+  bool has_point_forces(int b) const { return !loads_of_[b].empty() || !supports_of_[b].empty(); }  ///< false: force() does not depend on d
   const std::vector<PointForce>& loads() const { return loads_; }
   const std::vector<PointForce>& supports() const { return supports_; }
   const Vec2& gravity() const { return gravity_; }

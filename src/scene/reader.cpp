@@ -206,6 +206,7 @@ MethodInput read_method(Table table, const SourceLocation& scene_where) {
   table.optional("max_iterations", method.max_iterations, count);
   table.optional("skip_search", method.skip_search);
   table.optional("skip_narrow_phase", method.skip_narrow_phase);
+  table.optional("skip_reload", method.skip_reload);
   table.optional("gap_tolerance_m", method.gap_tolerance, positive);
   table.optional("penalty_pa_per_m", method.penalty, positive);
   table.optional("penalty_shear_ratio", method.penalty_shear_ratio, positive);
@@ -254,6 +255,7 @@ void require_increasing(const Value& value, const std::vector<double>& list) {
 
 void read_output(Table table, Scene& scene) {
   table.optional("every_s", scene.output_every, not_negative);
+  table.optional("checkpoint_every_s", scene.checkpoint_every, not_negative);
   const bool has_milestones = table.optional("milestones_m", scene.milestones, positive);
   const bool has_snapshots = table.optional("snapshots_s", scene.snapshot_times, not_negative);
   table.finish();

@@ -128,6 +128,7 @@ struct MethodInput {
   int max_iterations = 60;                     ///< per step, before the step is cut
   bool skip_search = true;                     ///< search candidates only once something has moved beyond the skin
   bool skip_narrow_phase = true;               ///< find the contacts of two blocks anew only once they have moved against each other beyond the skin
+  bool skip_reload = true;                     ///< dem: exchange only the contacts that were found anew, and leave the others in the loop
   double gap_tolerance = 3e-7;                 ///< [m] hard: a closed contact may differ from its target gap, a sticking one from its place, by this much
   std::optional<double> penalty;               ///< [Pa/m] shi: normal penalty, times the tributary length like any stiffness; absent: 10 times the joint's
   double penalty_shear_ratio = 0.4;            ///< [-] shi: shear penalty over normal penalty
@@ -208,6 +209,7 @@ struct Scene {
   double end_time = 0.0;                       ///< [s]
   std::optional<double> end_displacement;      ///< [m] of any measured point; ends the run before its time
   double output_every = 0.0;                   ///< [s] interval of the history rows; 0: every step
+  double checkpoint_every = 0.0;               ///< [s] interval of the checkpoints; 0: none, not even at the end
   std::vector<double> milestones;              ///< [m] displacements of the first measured point to be timed, increasing
   std::vector<double> snapshot_times;          ///< [s] at which the blocks are drawn, increasing
   SettleInput settle;

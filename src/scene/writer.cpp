@@ -163,6 +163,7 @@ void write_method(Text& text, const MethodInput& method) {
   text.line("max_iterations", method.max_iterations);
   text.line("skip_search", method.skip_search);
   text.line("skip_narrow_phase", method.skip_narrow_phase);
+  text.line("skip_reload", method.skip_reload);
   text.line("gap_tolerance_m", method.gap_tolerance);
   if (method.penalty) text.line("penalty_pa_per_m", *method.penalty);
   text.line("penalty_shear_ratio", method.penalty_shear_ratio);
@@ -189,6 +190,7 @@ void write_run(Text& text, const Scene& scene) {
   if (scene.end_displacement) text.line("displacement_m", *scene.end_displacement);
   text.header("[output]");
   text.line("every_s", scene.output_every);
+  text.line("checkpoint_every_s", scene.checkpoint_every);
   text.line("milestones_m", scene.milestones);
   text.line("snapshots_s", scene.snapshot_times);
 }

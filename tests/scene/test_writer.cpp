@@ -46,6 +46,7 @@ void check_same(const MethodInput& a, const MethodInput& b) {
   CHECK(a.max_iterations == b.max_iterations);
   CHECK(a.skip_search == b.skip_search);
   CHECK(a.skip_narrow_phase == b.skip_narrow_phase);
+  CHECK(a.skip_reload == b.skip_reload);
   CHECK(a.penalty == b.penalty);
   CHECK(a.penalty_shear_ratio == b.penalty_shear_ratio);
   CHECK(a.penetration_tolerance == b.penetration_tolerance);
@@ -100,6 +101,7 @@ void check_same(const Scene& a, const Scene& b) {
   CHECK(a.step.error_tolerance == b.step.error_tolerance);
   CHECK(a.end_time == b.end_time);
   CHECK(a.output_every == b.output_every);
+  CHECK(a.checkpoint_every == b.checkpoint_every);
   CHECK(a.run_strength_reduction_factor == b.run_strength_reduction_factor);
   CHECK(a.end_displacement == b.end_displacement);
   CHECK(a.milestones == b.milestones);
@@ -171,6 +173,7 @@ Scene random_scene(unsigned seed) {
   scene.method.max_iterations = 123456;
   scene.method.skip_search = false;
   scene.method.skip_narrow_phase = false;
+  scene.method.skip_reload = false;
   scene.method.penalty = number();
   scene.method.penalty_shear_ratio = number();
   scene.method.penetration_tolerance = number();
@@ -184,6 +187,7 @@ Scene random_scene(unsigned seed) {
   scene.step = {number(), number(), fraction(generator), true, number()};
   scene.end_time = number();
   scene.output_every = number();
+  scene.checkpoint_every = number();
   scene.run_strength_reduction_factor = number();
   scene.end_displacement = number();
   const double first = number();

@@ -2,7 +2,7 @@
 #include <limits>
 #include <random>
 
-#include "openclose/contact/mean_kinematics.h"
+#include "openclose/contact/mean_pose.h"
 #include "support/catch.h"
 #include "support/scenes.h"
 
@@ -12,8 +12,7 @@ namespace {
 
 using System = BlockSystem<3>;
 using End = ContactKinematics<3>;
-using Mean = MeanKinematics<3>;
-using Unknowns = Mean::Unknowns;
+using Unknowns = End::Unknowns;
 using Six = Eigen::Matrix<double, 6, 1>;
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
@@ -43,7 +42,17 @@ class Pair {
   System system_;
 };
 
-Six pushed(const Mean& k, double normal, double shear) {
+struct Poses {
+  ContactPose<3> end, mean;
+};
+
+Poses poses(const System& system, const Contact& contact, const Unknowns& dv, const Unknowns& de) {
+  const ContactStart<3> start(system, contact);
+  const ContactPose<3> end(start, BlockMove<3>(dv, RotationKind::exact), BlockMove<3>(de, RotationKind::exact));
+  return {end, mean_pose(start, end)};
+}
+
+Six pushed(const End& k, double normal, double shear) {
   Six all;
   all << normal * k.normal_vertex + shear * k.shear_vertex, normal * k.normal_edge + shear * k.shear_edge;
   return all;
@@ -51,21 +60,21 @@ Six pushed(const Mean& k, double normal, double shear) {
 
 }  // namespace
 
-TEST_CASE("mean kinematics: without motion those of the contact", "[contact][mean_kinematics]") {
+TEST_CASE("mean pose: without motion those of the contact", "[contact][mean_pose]") {
   Pair pair(1);
   const End end(pair.system(), pair.contact, Unknowns::Zero(), Unknowns::Zero());
-  const Mean mean(pair.system(), pair.contact, end);
+  const End mean(poses(pair.system(), pair.contact, Unknowns::Zero(), Unknowns::Zero()).mean);
   CHECK((mean.normal_vertex - end.normal_vertex).norm() <= 20.0 * epsilon);
   CHECK((mean.normal_edge - end.normal_edge).norm() <= 20.0 * epsilon);
   CHECK((mean.shear_vertex - end.shear_vertex).norm() <= 20.0 * epsilon);
   CHECK((mean.shear_edge - end.shear_edge).norm() <= 20.0 * epsilon);
 }
 
-TEST_CASE("mean kinematics: the impulse of a contact changes no angular momentum", "[contact][mean_kinematics]") {
+TEST_CASE("mean pose: the impulse of a contact changes no angular momentum", "[contact][mean_pose]") {
   for (unsigned seed = 0; seed < 200; ++seed) {
     Pair pair(seed);
     const Unknowns dv = pair.unknowns(0.5), de = pair.unknowns(0.5);
-    const Mean mean(pair.system(), pair.contact, End(pair.system(), pair.contact, dv, de));
+    const End mean(poses(pair.system(), pair.contact, dv, de).mean);
     const Six push = pushed(mean, pair.number(1.0), pair.number(1.0));
     CHECK((push.segment<2>(0) + push.segment<2>(3)).norm() == 0.0);
     // With v0 + v1 = 2 d/dt the centroids' momentum has its moment about the mean of the places before and after.
@@ -75,14 +84,14 @@ TEST_CASE("mean kinematics: the impulse of a contact changes no angular momentum
   }
 }
 
-TEST_CASE("mean kinematics: work is force times gap and slip, to third order in the rotations", "[contact][mean_kinematics]") {
+TEST_CASE("mean pose: work is force times gap and slip, to third order in the rotations", "[contact][mean_pose]") {
   double worst_ratio = 0.0;
   for (unsigned seed = 0; seed < 200; ++seed) {
     Pair pair(seed);
     const Unknowns dv = pair.unknowns(0.1), de = pair.unknowns(0.1);
     const auto rest = [&](double scale) {
-      const End end(pair.system(), pair.contact, scale * dv, scale * de);
-      const Mean mean(pair.system(), pair.contact, end);
+      const Poses p = poses(pair.system(), pair.contact, scale * dv, scale * de);
+      const End end(pair.system(), pair.contact, scale * dv, scale * de), mean(p.mean);
       return std::abs(mean.normal_vertex.dot(scale * dv) + mean.normal_edge.dot(scale * de) - end.gap_change) +
              std::abs(mean.shear_vertex.dot(scale * dv) + mean.shear_edge.dot(scale * de) - end.slip_change);
     };
@@ -94,11 +103,11 @@ TEST_CASE("mean kinematics: work is force times gap and slip, to third order in 
   Pair pair(7);
   const Unknowns dv(0.3, -0.2, 0.0), de(-0.1, 0.4, 0.0);
   const End end(pair.system(), pair.contact, dv, de);
-  const Mean mean(pair.system(), pair.contact, end);
+  const End mean(poses(pair.system(), pair.contact, dv, de).mean);
   CHECK(std::abs(mean.normal_vertex.dot(dv) + mean.normal_edge.dot(de) - end.gap_change) <= 10.0 * epsilon);
 }
 
-TEST_CASE("mean kinematics: derivatives are difference quotients", "[contact][mean_kinematics]") {
+TEST_CASE("mean pose: derivatives are difference quotients", "[contact][mean_pose]") {
   constexpr double h = 6e-6, quotient_error = 20.0 * (h * h + 4.0 * epsilon / h);
   for (unsigned seed = 0; seed < 200; ++seed) {
     Pair pair(seed);
@@ -107,15 +116,22 @@ TEST_CASE("mean kinematics: derivatives are difference quotients", "[contact][me
     const auto push_at = [&](int k, double by) {
       Unknowns v = dv, e = de;
       (k < 3 ? v[k] : e[k - 3]) += by;
-      return pushed(Mean(pair.system(), pair.contact, End(pair.system(), pair.contact, v, e)), normal, shear);
+      return pushed(End(poses(pair.system(), pair.contact, v, e).mean), normal, shear);
     };
-    const End end(pair.system(), pair.contact, dv, de);
-    const auto d = Mean(pair.system(), pair.contact, end).derivative(end, normal, shear);
+    const Poses p = poses(pair.system(), pair.contact, dv, de);
+    ContactStiffness<3> k{0.0, 0.0, 0.0, 0.0, p.mean.vertex_arm, p.mean.edge_arm, p.end.vertex_arm, p.end.edge_arm};
+    k.turning = 0.5 * (normal * p.end.normal + shear * p.end.tangent());
+    k.on_arms = 0.5 * (normal * p.mean.normal + shear * p.mean.tangent());
+    Eigen::Matrix3d vertex_vertex = Eigen::Matrix3d::Zero(), vertex_edge = vertex_vertex, edge_vertex = vertex_vertex, edge_edge = vertex_vertex;
+    k.add_to_vertex(vertex_vertex);
+    k.add_to_vertex_edge(vertex_edge);
+    k.add_to_edge_vertex(edge_vertex);
+    k.add_to_edge(edge_edge);
     Eigen::Matrix<double, 6, 6> all;
-    all << d.vertex_vertex, d.vertex_edge, d.edge_vertex, d.edge_edge;
-    for (int k = 0; k < 6; ++k) {
-      const Six quotient = (push_at(k, h) - push_at(k, -h)) / (2.0 * h);
-      CHECK((all.col(k) - quotient).cwiseAbs().maxCoeff() <= quotient_error);
+    all << vertex_vertex, vertex_edge, edge_vertex, edge_edge;
+    for (int u = 0; u < 6; ++u) {
+      const Six quotient = (push_at(u, h) - push_at(u, -h)) / (2.0 * h);
+      CHECK((all.col(u) + quotient).cwiseAbs().maxCoeff() <= quotient_error);
     }
   }
 }
