@@ -175,9 +175,22 @@ void invariant(Report& report) {
   report.leave_out("x + mu y from the unloaded start", "shi", "friction is the force of the pass before, so T = mu N holds to order dt only");
 }
 
+/// Through the bounces of the unloaded start, sticking and slipping.
+void ledgers(Report& report) {
+  for (const Scheme& scheme : schemes()) {
+    const analytical::BlockOnPlane data;
+    Scene scene = scene_of(data, scheme.contact, Start::unloaded, 1e-3, 1.0);
+    set_scheme(scene, scheme);
+    use_joint_springs_as_penalty(scene, data);
+    RigidSimulation simulation = report.simulate(scene);
+    check_ledger(report, with_variant("(a) unloaded, phi = 20 deg", scheme), scheme.contact, simulation, !history(simulation).empty());
+  }
+}
+
 }  // namespace
 
 void incline(Report& report) {
+  ledgers(report);
   steady(report);
   transients(report);
   locked(report);
