@@ -31,7 +31,7 @@ void TangentSystem<N>::fit(const StepProblem<N>& problem) {
   std::vector<std::pair<int, int>> couplings;
   for_each_coupling(problem, [&](int i, int j) { couplings.emplace_back(i, j); });
   matrix_.set_pattern(problem.system.free_count(), couplings);
-  if (!solver_) solver_ = make_solver<N>(problem.system.free_count());
+  if (!solver_) solver_ = make_solver<N>(problem.system.free_count(), problem.method.linear_solver);
 }
 
 template class TangentSystem<3>;

@@ -20,6 +20,7 @@ class BlockMatrix {
   int unknowns() const { return N * rows(); }
   long pattern_version() const { return pattern_version_; }  ///< changes with every new pattern, differs between matrices
 
+  int find(int row, int column) const;  ///< slot of an entry, -1 if it is not in the pattern
   bool contains(int row, int column) const { return find(row, column) >= 0; }
 
   void set_zero();
@@ -38,7 +39,6 @@ class BlockMatrix {
   Eigen::MatrixXd dense() const;
 
  private:
-  int find(int row, int column) const;  ///< -1 if not in the pattern
   int slot(int row, int column) const;
 
   long pattern_version_ = 0;
