@@ -29,6 +29,10 @@ namespace {
 constexpr double solve_slowness = 8.0;
 /// A factor is renewed for the next matrix once the iterations with it, over what one solve takes anyway, have cost this part of a factorisation.
 constexpr double patience = 1.0;
+/// Where contacts change state by the thousand no factor serves twice: after a try in vain so many matrices are factored at once before the next,
+/// twice as many after each further one, up to the most.
+constexpr int first_pause = 1;
+constexpr int longest_pause = 8;
 /// [-] Rounding errors of this many units in the last place may meet in one residual.
 constexpr double rounding_units = 16.0;
 /// With the factor of the matrix itself GMRES only makes up for lost digits of small pivots.
@@ -44,7 +48,8 @@ class LaggedSolver : public LinearSolver<N> {
     use_plain_ = false;
     const bool usable = has_factor_ && factored_rows_ == matrix.rows();
     exact_ = false;
-    if (lag_ && usable && spent_ < patience * budget()) return true;
+    if (lag_ && usable && spent_ < patience * budget() && left_to_pause_ == 0) return true;
+    left_to_pause_ = std::max(0, left_to_pause_ - 1);
     return refactor();
   }
 
@@ -54,9 +59,12 @@ class LaggedSolver : public LinearSolver<N> {
     if (!exact_) {
       if (std::optional<Eigen::VectorXd> x = iterate(right_side, static_cast<int>(budget()))) {
         ++this->counters_.factors_kept;
+        pause_ = first_pause;
         return *x;
       }
       ++this->counters_.krylov_given_up;
+      left_to_pause_ = pause_;
+      pause_ = std::min(2 * pause_, longest_pause);
       if (!refactor()) return {};
       if (use_plain_) return plain_->solve(right_side);
     }
@@ -127,7 +135,8 @@ class LaggedSolver : public LinearSolver<N> {
   bool has_factor_ = false;
   bool exact_ = false;  ///< the factor is that of the present matrix
   int factored_rows_ = 0;
-  double spent_ = 0.0;  ///< iterations with the factor
+  double spent_ = 0.0;                           ///< iterations with the factor
+  int pause_ = first_pause, left_to_pause_ = 0;  ///< matrices
   bool use_plain_ = false;
   std::unique_ptr<LinearSolver<N>> plain_;
 };

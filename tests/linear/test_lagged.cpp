@@ -100,6 +100,25 @@ TEST_CASE("a factor that no longer serves is renewed", "[linear][lagged]") {
   CHECK(solver->counters().factors_kept == 0);
 }
 
+TEST_CASE("where no factor serves twice, tries become rare, and come back", "[linear][lagged]") {
+  RandomSystems random(26);
+  const auto solver = make_multifrontal_solver<3>(Refactor::when_needed);
+  const Eigen::VectorXd right_side = random.vector(grid(30, 30).unknowns());
+  const auto solve = [&](double spread) {
+    BlockMatrix<3> matrix = grid(30, 30);
+    for (int i = 0; i < matrix.rows(); ++i) matrix.add(i, i, std::pow(10.0, spread * random.number()) * Eigen::Matrix3d::Identity());
+    REQUIRE(solver->factor(matrix));
+    CHECK(relative_residual(matrix, solver->solve(right_side), right_side) < full_reduction);
+  };
+  for (int i = 0; i < 40; ++i) solve(3.0);
+  // After pauses of 1, 2, 4, 8, 8, ... matrices: tries at the 2nd, 4th, 7th, 12th, 21st, 30th and 39th.
+  CHECK(solver->counters().krylov_given_up == 7);
+  CHECK(solver->counters().factorisations == 40);
+  for (int i = 0; i < 20; ++i) solve(1e-6);
+  CHECK(solver->counters().factors_kept > 5);
+  CHECK(solver->counters().krylov_given_up <= 8);
+}
+
 TEST_CASE("a matrix that has become singular has no solution, also with the factor of an earlier one", "[linear][lagged]") {
   const auto solver = make_multifrontal_solver<3>(Refactor::when_needed);
   const BlockMatrix<3> regular = grid(4, 4);
