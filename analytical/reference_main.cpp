@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "openclose/analytical/ground_motion.h"
 #include "openclose/analytical/incline.h"
 #include "openclose/analytical/limit_analysis.h"
 #include "openclose/analytical/planar_wedge.h"
@@ -37,6 +38,13 @@ struct WedgeOptions {
   double plane_deg = 35;
   double friction_deg = 40;
   PlanarWedge wedge;
+};
+
+struct RecordOptions {
+  unsigned seed = 1;
+  double peak = 5;
+  double duration = 5;
+  double dt = 0.01;
 };
 
 struct LimitOptions {
@@ -174,6 +182,24 @@ void print_limit(const LimitOptions& o) {
   if (!o.mechanism.empty()) write_mechanism(o.mechanism, assembly, state);
 }
 
+CLI::App* add_record(CLI::App& app, RecordOptions& o) {
+  CLI::App* command =
+      app.add_subcommand("synthetic-record", "an acceleration record that a seed makes (analytical/ground_motion.h), as a file for [base_motion]");
+  command->add_option("--seed", o.seed, "of its generator")->check(CLI::Range(1U, 2147483646U))->capture_default_str();
+  command->add_option("--peak", o.peak, "m/s2")->check(CLI::PositiveNumber)->capture_default_str();
+  command->add_option("--duration", o.duration, "s")->check(CLI::PositiveNumber)->capture_default_str();
+  command->add_option("--every", o.dt, "s")->check(CLI::PositiveNumber)->capture_default_str();
+  return command;
+}
+
+void print_record(const RecordOptions& o) {
+  if (o.duration / o.dt > most_rows) throw std::runtime_error("more than 1e7 rows");
+  std::printf("# openclose-reference synthetic-record --seed %u --peak %g --duration %g --every %g\n", o.seed, o.peak, o.duration, o.dt);
+  std::puts("time_s,acceleration_m_per_s2");
+  const std::vector<double> record = synthetic_record(o.seed, o.peak, o.duration, o.dt);
+  for (std::size_t i = 0; i < record.size(); ++i) std::printf("%.10g,%.6f\n", o.dt * static_cast<double>(i), record[i]);
+}
+
 int complain(const char* message) {
   std::cerr << "openclose-reference: " << message << '\n';
   return exit_bad_options;
@@ -187,15 +213,19 @@ int main(int argc, char** argv) {
   InclineOptions incline_options;
   WedgeOptions wedge_options;
   LimitOptions limit_options;
+  RecordOptions record_options;
   const CLI::App* incline = add_incline(app, incline_options);
   const CLI::App* wedge = add_wedge(app, wedge_options);
   add_limit(app, limit_options);
+  const CLI::App* record = add_record(app, record_options);
   try {
     app.parse(argc, argv);
     if (incline->parsed()) {
       print_incline(incline_options);
     } else if (wedge->parsed()) {
       print_wedge(wedge_options);
+    } else if (record->parsed()) {
+      print_record(record_options);
     } else {
       print_limit(limit_options);
     }

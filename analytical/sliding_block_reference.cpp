@@ -64,6 +64,7 @@ class SlidingBlockReference::Integration {
   Integration& operator=(const Integration&) = delete;
 
   void advance(double time);
+  void shake(const GroundPiece& piece);
   double energy() const;
   double normal_force(int corner) const { return normal_force(state_, corner); }
   double tangential_force(int corner) const { return tangential_force(state_, corner); }
@@ -83,6 +84,7 @@ class SlidingBlockReference::Integration {
   double friction_margin(const SlidingBlockState& s, int corner) const;
   void corner_accelerations(const SlidingBlockState& s, int corner, double& slip, double& gap) const;
 
+  void take_first_modes();
   ContactMode first_mode(int corner) const;
   ContactMode closing_mode(int corner, double slip_rate, double gap_rate) const;
   ContactMode mode_at_bound(int corner) const;
@@ -100,7 +102,9 @@ class SlidingBlockReference::Integration {
   ReferenceOptions options_;
   double friction_;
 
-  // The equations do not know the time: CVODE counts it from its last start, so that the tiny first steps are not lost beside it.
+  std::function<std::array<double, 2>(double)> ground_;  // empty: at rest
+
+  // CVODE counts time from its last start, so that the tiny first steps are not lost beside it.
   double session_start_ = 0;
   SUNContext context_ = nullptr;
   N_Vector y_ = nullptr;
@@ -152,6 +156,13 @@ Acceleration SlidingBlockReference::Integration::acceleration(const SlidingBlock
   double force_x = block_.weight() * std::sin(block_.slope_angle);
   double force_y = -block_.normal_weight();
   double moment = 0;
+  if (ground_) {
+    // Downhill is (cos, -sin), away from the plane (sin, cos).
+    const auto [horizontal, vertical] = ground_(s.time);
+    const double sine = std::sin(block_.slope_angle), cosine = std::cos(block_.slope_angle);
+    force_x -= block_.mass() * (horizontal * cosine - vertical * sine);
+    force_y -= block_.mass() * (horizontal * sine + vertical * cosine);
+  }
   for (int i = 0; i < corners; ++i) {
     const CornerMotion m = motion(s, i);
     const double normal = normal_force(s, i);
@@ -185,7 +196,7 @@ double SlidingBlockReference::Integration::friction_margin(const SlidingBlockSta
 
 int SlidingBlockReference::Integration::rates_callback(realtype elapsed, N_Vector y, N_Vector rates, void* self) {
   const auto& integration = *static_cast<const Integration*>(self);
-  const SlidingBlockState s = integration.unpack(elapsed, N_VGetArrayPointer(y));
+  const SlidingBlockState s = integration.unpack(integration.session_start_ + elapsed, N_VGetArrayPointer(y));
   const Acceleration a = integration.acceleration(s);
   double* r = N_VGetArrayPointer(rates);
   r[pos_x] = s.velocity_x;
@@ -210,7 +221,7 @@ int SlidingBlockReference::Integration::rates_callback(realtype elapsed, N_Vecto
 
 int SlidingBlockReference::Integration::roots_callback(realtype elapsed, N_Vector y, realtype* values, void* self) {
   const auto& integration = *static_cast<const Integration*>(self);
-  const SlidingBlockState s = integration.unpack(elapsed, N_VGetArrayPointer(y));
+  const SlidingBlockState s = integration.unpack(integration.session_start_ + elapsed, N_VGetArrayPointer(y));
   for (int i = 0; i < corners; ++i) {
     values[gap_root(i)] = integration.motion(s, i).gap;
     double& condition = values[friction_root(i)];
@@ -307,11 +318,15 @@ SlidingBlockReference::Integration::Integration(const BlockOnPlane& block, const
   if (!(options.relative_tolerance > 0 && options.relative_tolerance < 1)) throw std::invalid_argument("the tolerance must be in (0, 1)");
   if (!(options.steps_per_period > 0)) throw std::invalid_argument("the steps per period must be positive");
   if (options.rotation_locked) state_.angular_velocity = 0;
+  take_first_modes();
+  open_session();
+}
+
+void SlidingBlockReference::Integration::take_first_modes() {
   for (int i = 0; i < corners; ++i) state_.modes[i] = motion(state_, i).gap > 0 ? ContactMode::open : ContactMode::stick;
   const std::array<ContactMode, corners> modes = {first_mode(0), first_mode(1)};
   state_.modes = modes;
   for (int i = 0; i < corners; ++i) slave_shear(i);
-  open_session();
 }
 
 SlidingBlockReference::Integration::~Integration() {
@@ -396,6 +411,13 @@ void SlidingBlockReference::Integration::restart() {
   set_root_directions();
 }
 
+void SlidingBlockReference::Integration::shake(const GroundPiece& piece) {
+  ground_ = piece.acceleration;
+  // Corners that just touch go by the accelerations.
+  if (state_.time == 0) take_first_modes();
+  restart();
+}
+
 void SlidingBlockReference::Integration::advance(double time) {
   if (!(time >= state_.time)) throw std::invalid_argument("the reference cannot go back in time");
   // CVODE cannot start towards a time within rounding of the present one.
@@ -469,6 +491,18 @@ std::vector<SlidingBlockState> SlidingBlockReference::states_at(const std::vecto
   std::vector<SlidingBlockState> states;
   states.reserve(times.size());
   for (const double time : times) states.push_back(advance(time));
+  return states;
+}
+
+std::vector<SlidingBlockState> SlidingBlockReference::follow(const GroundMotion& ground, const std::vector<double>& times) {
+  std::vector<SlidingBlockState> states;
+  if (times.empty()) return states;
+  for (const GroundPiece& piece : without_gaps(ground, times.back())) {
+    integration_->shake(piece);
+    while (states.size() < times.size() && times[states.size()] <= piece.to) states.push_back(advance(times[states.size()]));
+    if (states.size() == times.size()) break;
+    advance(piece.to);
+  }
   return states;
 }
 

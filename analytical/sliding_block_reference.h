@@ -11,7 +11,8 @@
 // Integrated by SUNDIALS CVODE (variable-order Adams), which also finds the events: gap through zero, |ks u| = mu N from below, plastic slip rate
 // through zero from above. Forces are continuous at every event; the integrator is restarted there. A corner that closes sticks if ks |s'| < mu kn
 // |g'| (both grow from zero), else slips; a corner at its bound with zero rates is decided by the next derivatives. Range: any friction angle below
-// 90 degrees and any motion in which only the two lower corners can touch the plane.
+// 90 degrees and any motion in which only the two lower corners can touch the plane. On a plane that is shaken (follow()) coordinates move with it
+// and the block feels minus its mass times the acceleration of the ground.
 #pragma once
 
 #include <array>
@@ -19,6 +20,7 @@
 #include <vector>
 
 #include "openclose/analytical/block_on_plane.h"
+#include "openclose/analytical/ground_motion.h"
 
 namespace openclose::analytical {
 
@@ -72,11 +74,13 @@ class SlidingBlockReference {
   const SlidingBlockState& advance(double time);
   /// The states at the given times [s], ascending, none before the present one.
   std::vector<SlidingBlockState> states_at(const std::vector<double>& times);
+  /// The same on a plane that is shaken: at rest before the motion, between its pieces and after it. For a reference that starts at time 0.
+  std::vector<SlidingBlockState> follow(const GroundMotion& ground, const std::vector<double>& times);
 
   const SlidingBlockState& state() const;
   const std::vector<ContactEvent>& events() const;
 
-  /// Kinetic energy + springs + potential of the weight + work of friction [J/m]: constant.
+  /// Kinetic energy + springs + potential of the weight + work of friction [J/m]: constant while the ground is at rest.
   double energy() const;
   /// Normal and tangential force on the block at a corner [N]; the tangential one positive downhill.
   double normal_force(int corner) const;

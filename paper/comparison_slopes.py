@@ -100,17 +100,28 @@ def _run_times(jointed: JointedSlope, printed: dict) -> list[Row]:
         for distance in printed["milestones_m"]["value"]:
             rows.append(Row("Table 4", f"CPU time to {distance} m, {name}", "s", None, None, cpu_at(jointed, start, distance)))
     rows.append(Row("Table 4", "CPU time to the steady state over dem's", "-", ratio_text(printed, steady_ratio), None, over_dem(steady)))
+    by_rule = over_dem(paper_steady(jointed))
+    rows.append(Row("Table 4", "the same by the paper's rule and step", "-", ratio_text(printed, steady_ratio), None, by_rule))
     for start, name in slopes.STARTS.items():
-        theirs, quantity = ratio_text(printed, post_failure_ratio), "CPU time after failure over dem's"
-        rows.append(Row("Table 4", f"{quantity}, mean of the distances, {name}", "-", theirs, None, over_dem(mean_cpu(jointed, printed, start))))
-        if (common := jointed.common_distance(start)) is not None:
-            rows.append(Row("Table 4", f"{quantity}, at {common:g} m, {name}", "-", None, None, over_dem(cpu_at(jointed, start, common))))
+        theirs, ratios = ratio_text(printed, post_failure_ratio), over_dem(mean_cpu(jointed, printed, start))
+        rows.append(Row("Table 4", f"CPU time after failure over dem's, mean of the distances, {name}", "-", theirs, None, ratios))
+        rows.append(Row("Table 4", "the same with the paper's step", "-", theirs, None, by_method(ratios, ("dem", slopes.PAPER_STEP, "shi"))))
     return rows
 
 
+def by_method(values: Values, followers: tuple[str, ...]) -> Values:
+    """The values of these runs under the names of their methods."""
+    return {slopes.FOLLOWERS[f].method: values[f] for f in followers if f in values}
+
+
+def paper_steady(jointed: JointedSlope) -> Values:
+    """[s] CPU time to the paper's steady state"""
+    return {m: found[0] for m in slopes.RULE_METHODS if (found := jointed.paper_steady(m)) is not None}
+
+
 def cpu_at(jointed: JointedSlope, start: str, distance: float) -> Values:
-    """[s] of the methods that came so far"""
-    return {m: c for m in METHODS if (c := jointed.cpu_at(m, start, distance)) is not None}
+    """[s] of the runs that came so far"""
+    return {f: c for f in slopes.FOLLOWERS if (c := jointed.cpu_at(f, start, distance)) is not None}
 
 
 def _minutes(printed: dict, key: str) -> str:
@@ -131,9 +142,9 @@ def ratio_text(printed: dict, ratio) -> str:
 
 
 def mean_cpu(jointed: JointedSlope, printed: dict, start: str) -> Values:
-    """[s] mean over the paper's distances, of the methods that came to all of them"""
+    """[s] mean over the paper's distances, of the runs that came to all of them"""
     distances = printed["milestones_m"]["value"]
-    times = {m: [jointed.cpu_at(m, start, d) for d in distances] for m in METHODS}
+    times = {f: [jointed.cpu_at(f, start, d) for d in distances] for f in slopes.FOLLOWERS}
     return {m: sum(t) / len(t) for m, t in times.items() if None not in t}
 
 

@@ -10,9 +10,10 @@ import matplotlib.pyplot as plt  # noqa: E402  (the backend comes first)
 
 DPI = 130
 ROCK, BLOCK, JOINT, INK = "#d9d2c5", "#a9bcd0", "#b03a2e", "#222222"
-METHOD_COLOUR = {"soft": "#1f77b4", "hard": "#2ca02c", "shi": "#d62728", "dem": "#9467bd", "shi_joint_springs": "#ff7f0e"}
+METHOD_COLOUR = {"soft": "#1f77b4", "soft_paper_step": "#17becf", "hard": "#2ca02c", "shi": "#d62728", "dem": "#9467bd",
+                 "shi_joint_springs": "#ff7f0e"}
 METHOD_LABEL = {"soft": "soft", "hard": "hard", "shi": "shi, its own penalty", "shi_joint_springs": "shi, the joint's springs"}
-METHOD_MARKER = {"soft": "o", "hard": "s", "shi": "^", "dem": "D", "shi_joint_springs": "v"}
+METHOD_MARKER = {"soft": "o", "hard": "s", "shi": "^", "dem": "D", "soft_paper_step": "P", "shi_joint_springs": "v"}
 REFERENCE = "#000000"
 
 plt.rcParams.update({"font.size": 9.5, "axes.grid": True, "grid.alpha": 0.3, "axes.axisbelow": True, "legend.framealpha": 0.95})

@@ -5,6 +5,7 @@ import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 
+from jointed_rock import JointedRock
 from runs import Case, Openclose, Reference, outlines
 
 SCENE = Path(__file__).parent / "scenes" / "example_3_2.toml"
@@ -13,20 +14,12 @@ BRITTLE = ("lost_on_opening", "lost_on_slip")
 
 
 @dataclass(frozen=True)
-class Inputs:
+class Inputs(JointedRock):
     """What the scene file says, height and angles measured on its polygons."""
 
     height: float
     face_angle_deg: float
     joint_angle_deg: float
-    unit_weight: float
-    gravity: float
-    friction_angle_deg: float
-    cohesion: float
-    tensile_strength: float
-    normal_stiffness: float
-    shear_stiffness: float
-    dt: float
     curve: tuple[float, ...]
     curve_time: float
     width: float
@@ -37,23 +30,16 @@ class Inputs:
 def read_inputs() -> Inputs:
     scene = tomllib.loads(SCENE.read_text(encoding="utf-8"))
     toe, back, crest = next(b["vertices_m"] for b in scene["block"] if b["name"] == "wedge")
-    joint, settle, reduction = scene["joint"][0], scene["settle"], scene["strength_reduction"]
+    settle, reduction = scene["settle"], scene["strength_reduction"]
 
     def dip(point: list[float]) -> float:
         return math.degrees(math.atan2(point[1] - toe[1], point[0] - toe[0]))
 
     return Inputs(
+        **vars(JointedRock.of(scene)),
         height=crest[1] - toe[1],
         face_angle_deg=dip(crest),
         joint_angle_deg=dip(back),
-        unit_weight=scene["material"][0]["unit_weight_n_per_m3"],
-        gravity=math.hypot(*scene["gravity_m_per_s2"]),
-        friction_angle_deg=joint["friction_angle_deg"],
-        cohesion=joint["cohesion_pa"],
-        tensile_strength=joint["tensile_strength_pa"],
-        normal_stiffness=joint["normal_stiffness_pa_per_m"],
-        shear_stiffness=joint["shear_stiffness_pa_per_m"],
-        dt=scene["step"]["dt_s"],
         curve=tuple(reduction["curve"]),
         curve_time=reduction["curve_time_s"],
         width=reduction["width"],

@@ -74,14 +74,17 @@ def _jointed_fields(jointed: JointedSlope, printed: dict) -> dict[str, str]:
         "jointed_blocks": str(len(jointed.cut.blocks)),
         "jointed_unknowns": str(jointed.unknowns),
         **{f"jointed_{side}": f"{length:.0f}" for side, length in zip(("bench", "below", "top"), jointed.size())},
-        "jointed_opening": _opening_text(jointed),
+        "opening_kept": _fos_cell(jointed.factor_of_safety("dem", "lost_on_opening"), 3),
+        "opening_broken": _fos_cell(jointed.breaking_factor_of_safety(), 3),
+        "shi_settle_steps": str(slopes.SHI_SETTLE_STEPS),
         "jointed_dem": _g(paper["dem"]["factor_of_safety"]),
         "jointed_soft": _g(paper["soft"]["factor_of_safety"]),
         "jointed_shi": _g(paper["shi"]["factor_of_safety"]),
         "jointed_limit": f"{jointed.limit('ductile'):.3f}",
         "jointed_limit_frictional": f"{jointed.limit('lost_on_slip'):.3f}",
-        "rules_soft": _fos_cell(jointed.paper_factor_of_safety("soft"), 3),
-        "rules_dem": _fos_cell(jointed.paper_factor_of_safety("dem"), 3),
+        "rules_table": _rules(jointed, printed),
+        **{f"rules_steps_{m}": _steps_to_paper_steady(jointed, m) for m in slopes.RULE_METHODS},
+        "rules_length": _g(printed["jointed_slope"]["relative_max_displacement_m"]["value"] * 1e3),
         "rules_velocity": _g(jointed.rules_velocity(), 2),
         "rules_upper": _g(slopes.PAPER_RULES_UPPER_LIMIT),
         "rules_width": _g(slopes.PAPER_RULES_WIDTH),
@@ -97,27 +100,42 @@ def _jointed_fields(jointed: JointedSlope, printed: dict) -> dict[str, str]:
     }
 
 
-def _opening_text(jointed: JointedSlope) -> str:
-    """Says so if a method finds the frictional factor already where cohesion is lost on opening."""
-    frictional, cohesive = jointed.limit("lost_on_slip"), jointed.limit("ductile")
-    factors = {m: jointed.factor_of_safety(m, "lost_on_opening") for m in METHODS}
-    low = [m for m, f in factors.items() if f.value and not f.warning and abs(f.value - frictional) < abs(f.value - cohesive)]
-    if not low:
-        return ""
-    methods = " and ".join(f"`{m}`" for m in low)
-    return (f"Near the lower limit, too, lies {methods} where cohesion is lost on opening only: on the way to rest contacts open for a moment, "
-            "and what they lose is gone.")
+def _rules(jointed: JointedSlope, printed: dict) -> str:
+    """Factors of safety by the paper's own rules."""
+    meanings = {"relative": "relative displacement as printed", "length": "displacement read as a length", "force": "unbalanced force"}
+    paper = printed["table_4"]
+    lines = [(f"{method}: {meanings[reading]}", _bracket_cell(jointed.paper_factor_of_safety(method, reading)),
+              f"{paper[method]['name']} {paper[method]['factor_of_safety']:g}") for method, reading in slopes.PAPER_RULES]
+    return tables.markdown(("rule", "ours: stable, failed", "paper"), lines)
+
+
+def _bracket_cell(fos: Fos) -> str:
+    return _fos_cell(fos) if fos.value is None else f"{fos.value:.3f}, {fos.failed:.3f}"
+
+
+def _steps_to_paper_steady(jointed: JointedSlope, method: str) -> str:
+    found = jointed.paper_steady(method)
+    return str(found[1]) if found else "too many"
 
 
 def _after_failure_fields(jointed: JointedSlope, printed: dict) -> dict[str, str]:
     inputs, paper = jointed.post_failure_inputs, printed["table_4"]
     law = jointed.factor_of_safety("soft", "lost_on_slip").value
+    after = comparison_slopes.over_dem(comparison_slopes.mean_cpu(jointed, paper, "settled"))
+    steady = comparison_slopes.over_dem(comparison_slopes.paper_steady(jointed))
     return {
+        "ratio_steady_paper": _proportion([comparison_slopes.steady_ratio(paper, m) for m in _PAPER_METHODS]),
+        "ratio_after_paper": _proportion([comparison_slopes.post_failure_ratio(paper, m) for m in _PAPER_METHODS]),
+        "ratio_steady_ours": _proportion([steady.get(m) for m in _PAPER_METHODS]),
+        "ratio_after_ours": _proportion([after.get(f) for f in ("dem", slopes.PAPER_STEP, "shi")]),
+        "ratio_after_soft": _g(after["soft"], 2) if "soft" in after else "more than all",
+        "after_soft_dt": _g(slopes.FOLLOWERS["soft"].dt),
         "after_srf": _g(inputs.strength_reduction_factor),
         "after_law": _g(law, 4),
         "after_ratio": _g(inputs.strength_reduction_factor / law, 3),
         "after_damping": _g(inputs.damping_ratio),
-        "after_steps": ", ".join(f"{m} {_g(dt)} s" for m, dt in slopes.POST_FAILURE_STEP_S.items() if m != "dem"),
+        "after_steps": ", ".join(f"`{run.method}` {_g(run.dt)} s" for run in slopes.FOLLOWERS.values() if run.method != "dem"),
+        "after_critical": f"{_g(jointed.critical_step() * 1e3, 3)} ms" if jointed.critical_step() else "not reached",
         "paper_dda_dt": _g(printed["jointed_slope"]["dt_s"]["value"]),
         "paper_udec_dt": _g(printed["jointed_slope"]["udec_dt_s"]["value"]),
         "after_table": _table_4(jointed, paper),
@@ -128,32 +146,48 @@ def _after_failure_fields(jointed: JointedSlope, printed: dict) -> dict[str, str
     }
 
 
+def _proportion(values: list[float | None]) -> str:
+    return " : ".join("-" if v is None else _g(v, 3) for v in values)
+
+
 def _seconds(value: float | None, missing: str = "not reached") -> str:
     return missing if value is None else f"{_g(value, 3)} s"
 
 
 def _table_4(jointed: JointedSlope, paper: dict) -> str:
     def line(name: str, ours, theirs) -> list[str]:
-        return [name, *(ours(m) for m in METHODS), *(theirs(paper[m]) for m in _PAPER_METHODS)]
+        return [name, *(ours(f) for f in slopes.FOLLOWERS), *(theirs(paper[m]) for m in _PAPER_METHODS)]
+
+    def of_method(value, other: str = "as soft"):
+        """A cell that does not depend on the step after failure."""
+        return lambda follower: value(follower) if follower in METHODS else other
 
     lines = [
-        line("blocks", lambda m: str(len(jointed.cut.blocks)), lambda p: str(p["blocks"])),
-        line("degrees of freedom", lambda m: str(jointed.unknowns), lambda p: str(p["unknowns"])),
-        line("mechanism", lambda m: _mechanism(jointed, m), lambda p: p["mechanism"]),
-        *(line(f"factor of safety, cohesion {b.replace('_', ' ')}", lambda m, b=b: _fos_cell(jointed.factor_of_safety(m, b), 3),
+        line("blocks", lambda f: str(len(jointed.cut.blocks)), lambda p: str(p["blocks"])),
+        line("degrees of freedom", lambda f: str(jointed.unknowns), lambda p: str(p["unknowns"])),
+        line("mechanism", lambda f: _mechanism(jointed, f), lambda p: p["mechanism"]),
+        *(line(f"factor of safety, cohesion {b.replace('_', ' ')}", of_method(lambda m, b=b: _fos_cell(jointed.factor_of_safety(m, b), 3)),
                lambda p: f"{p['factor_of_safety']:g}") for b in BEHAVIOURS),
-        line("CPU to the steady state", lambda m: _seconds(jointed.steady_cpu(m)), lambda p: f"{p['steady_minutes']:g} min"),
+        line("CPU to the steady state", of_method(lambda m: _seconds(jointed.steady_cpu(m))), lambda p: f"{p['steady_minutes']:g} min"),
+        line("the same by the paper's rule and step", lambda f: _paper_steady(jointed, f), lambda p: f"{p['steady_minutes']:g} min"),
     ]
     for start, name in slopes.STARTS.items():
-        common = jointed.common_distance(start)
-        if common is not None and common not in paper["milestones_m"]["value"]:
-            lines.append(line(f"CPU to {common:g} m, {name}", lambda m, s=start, d=common: _seconds(jointed.cpu_at(m, s, d)), lambda p: ""))
         for k, distance in enumerate(paper["milestones_m"]["value"]):
-            lines.append(line(f"CPU to {distance} m, {name}", lambda m, s=start, d=distance: _seconds(jointed.cpu_at(m, s, d)),
+            lines.append(line(f"CPU to {distance} m, {name}", lambda f, s=start, d=distance: _seconds(jointed.cpu_at(f, s, d)),
                               lambda p, k=k: f"{p['post_failure_minutes'][k]:g} min"))
-        lines.append(line(f"why not all, {name}", lambda m, s=start: jointed.reason(m, s), lambda p: ""))
-    headings = ("", *METHODS, *(f"paper: {paper[m]['name']}" for m in _PAPER_METHODS))
+        if any(jointed.reason(f, start) for f in slopes.FOLLOWERS):
+            lines.append(line(f"why not all, {name}", lambda f, s=start: jointed.reason(f, s), lambda p: ""))
+    headings = ("", *(run.name for run in slopes.FOLLOWERS.values()), *(f"paper: {paper[m]['name']}" for m in _PAPER_METHODS))
     return tables.markdown(headings, lines)
+
+
+def _paper_steady(jointed: JointedSlope, follower: str) -> str:
+    """Only runs with the paper's step have it."""
+    run = slopes.FOLLOWERS[follower]
+    if follower not in (slopes.PAPER_STEP, "dem", "shi"):
+        return ""
+    found = jointed.paper_steady(run.method)
+    return f"{_seconds(found[0])}, {found[1]} steps" if found else "not reached"
 
 
 def _mechanism(jointed: JointedSlope, method: str) -> str:
@@ -180,28 +214,36 @@ def _mechanism_text(jointed: JointedSlope) -> str:
 
 def _ratios(jointed: JointedSlope, paper: dict) -> str:
     def cells(ours: dict[str, float], theirs) -> list[str]:
-        return [*(f"{ours[m]:.3g}" if m in ours else "-" for m in METHODS), *(f"{theirs(paper, m):.3g}" for m in _PAPER_METHODS)]
+        return [*(f"{ours[f]:.3g}" if f in ours else "-" for f in slopes.FOLLOWERS), *(f"{theirs(paper, m):.3g}" for m in _PAPER_METHODS)]
 
     steady = {m: s for m in METHODS if (s := jointed.steady_cpu(m)) is not None}
-    lines = [["steady state", *cells(comparison_slopes.over_dem(steady), comparison_slopes.steady_ratio)]]
+    by_rule = comparison_slopes.over_dem(comparison_slopes.paper_steady(jointed))
+    if "soft" in by_rule:
+        by_rule[slopes.PAPER_STEP] = by_rule.pop("soft")
+    lines = [
+        ["steady state", *cells(comparison_slopes.over_dem(steady), comparison_slopes.steady_ratio)],
+        ["steady state, the paper's rule and step", *cells(by_rule, comparison_slopes.steady_ratio)],
+    ]
     for start, name in slopes.STARTS.items():
         after = comparison_slopes.over_dem(comparison_slopes.mean_cpu(jointed, paper, start))
         lines.append([f"after failure, mean of the distances, {name}", *cells(after, comparison_slopes.post_failure_ratio)])
-        if (common := jointed.common_distance(start)) is not None:
+        common = jointed.common_distance(start)
+        if common is not None and common < max(paper["milestones_m"]["value"]):
             ours = comparison_slopes.over_dem(comparison_slopes.cpu_at(jointed, start, common))
-            lines.append([f"after failure, at {common:g} m, {name}", *(f"{ours[m]:.3g}" if m in ours else "-" for m in METHODS), "", "", ""])
-    headings = ("CPU time over dem's, over UDEC's", *METHODS, *(f"paper: {paper[m]['name']}" for m in _PAPER_METHODS))
+            lines.append([f"after failure, at {common:g} m, {name}", *(f"{ours[f]:.3g}" if f in ours else "-" for f in slopes.FOLLOWERS), "", "", ""])
+    names = (run.name for run in slopes.FOLLOWERS.values())
+    headings = ("CPU time over dem's, over UDEC's", *names, *(f"paper: {paper[m]['name']}" for m in _PAPER_METHODS))
     return tables.markdown(headings, lines)
 
 
 def _energy(jointed: JointedSlope) -> str:
     lines = []
-    for method in METHODS:
+    for follower, run in slopes.FOLLOWERS.items():
         for start in slopes.STARTS:
-            summary = jointed.summary(method, start)
+            summary = jointed.summary(follower, start)
             if "energy_ledger" not in summary:
-                lines.append([f"{method}, {start}", summary["reason"], "", "", ""])
+                lines.append([f"{run.name}, {start}", summary["reason"], "", "", ""])
                 continue
-            lines.append([f"{method}, {start}", f"{summary['time_s']:.3g} s", f"{summary['energy_ledger']['turnover_j']:.3g}",
+            lines.append([f"{run.name}, {start}", f"{summary['time_s']:.3g} s", f"{summary['energy_ledger']['turnover_j']:.3g}",
                           f"{comparison_slopes.imbalance(summary):.1e}", f"{summary['max_penetration_m'] * 1e3:.3g}"])
     return tables.markdown(("run", "motion lasted", "energy turned over [J]", "imbalance over it [-]", "deepest penetration [mm]"), lines)

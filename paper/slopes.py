@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from functools import cache, cached_property
 from pathlib import Path
 
+from jointed_rock import JointedRock
 from runs import Case, Openclose, Reference, outlines
 
 _SCENES = Path(__file__).parent / "scenes"
@@ -14,18 +15,39 @@ BEHAVIOURS = ("ductile", "lost_on_opening", "lost_on_slip")
 MODELS = ("wedge", "toe", "shifted")
 
 # What a search and a run after failure may cost; one that is stopped stays in the tables with this reason.
-FOS_CPU_LIMIT_S = {"soft": 15, "hard": 15, "dem": 15, "shi": 5}
+FOS_CPU_LIMIT_S = {"soft": 15, "hard": 15, "dem": 15, "shi": 30}
 POST_FAILURE_CPU_LIMIT_S = 150
-# How far the toe block is followed; where that is less than in the scene, the whole way would cost more than all other runs together.
-POST_FAILURE_END_M = {"soft": 40.0, "hard": 40.0, "dem": 40.0, "shi": 40.0}
+# The friction of shi is that of the pass before: static steps converge on rest only linearly, the more slowly the nearer to failure.
+SHI_SETTLE_STEPS = 400
 
-# Shi's scheme takes the friction of the pass before, so it needs the paper's step; dem divides the step that is asked for into stable ones.
-POST_FAILURE_STEP_S = {"soft": 0.01, "hard": 0.01, "dem": 0.01, "shi": 0.001}
+
+@dataclass(frozen=True)
+class Follower:
+    """How the slope is followed after failure; dem divides the step that is asked for into stable ones."""
+
+    method: str
+    dt: float
+    name: str
+
+
+# Shi's scheme takes the friction of the pass before, so it needs the paper's step.
+PAPER_STEP = "soft_paper_step"
+FOLLOWERS = {
+    "soft": Follower("soft", 0.01, "soft, 10 ms"),
+    PAPER_STEP: Follower("soft", 0.001, "soft, 1 ms"),
+    "hard": Follower("hard", 0.01, "hard, 10 ms"),
+    "dem": Follower("dem", 0.01, "dem, critical step"),
+    "shi": Follower("shi", 0.001, "shi, 1 ms"),
+}
 STARTS = {"settled": "from the settled state", "unloaded": "cold: gravity dropped on unloaded springs"}
-# Whose own rules for equilibrium the paper gives: DDA-SC's relative displacement and UDEC's unbalanced force.
-PAPER_RULES = ("soft", "dem")
-PAPER_RULES_WIDTH = 0.02
-PAPER_RULES_UPPER_LIMIT = 3.0  # beyond it, their factor says nothing about the slope
+
+# Whose own rules for equilibrium the paper gives: DDA's relative displacement, which its tables print as a length, and UDEC's unbalanced force.
+# By the length soft takes so many steps to its first steady state that a search would cost more than all other runs together.
+RULE_METHODS = ("soft", "shi", "dem")
+PAPER_RULES = (("soft", "relative"), ("shi", "relative"), ("shi", "length"), ("dem", "force"))
+PAPER_RULES_WIDTH = 0.05
+PAPER_RULES_UPPER_LIMIT = 2.2  # beyond it, their factor says nothing about the slope
+PAPER_RULES_CPU_LIMIT_S = {"soft": 60, "shi": 200, "dem": 90}
 
 MOVED_M = 0.1  # blocks that moved less take no part in the mechanism
 
@@ -37,50 +59,33 @@ Polygons = dict[str, list[tuple[float, float]]]
 
 
 @dataclass(frozen=True)
-class Inputs:
+class Inputs(JointedRock):
     """What a scene file with a domain says."""
 
     height: float
     face_angle_deg: float
     dips_deg: tuple[float, ...]
     spacings: tuple[float, ...]
-    unit_weight: float
-    gravity: float
-    friction_angle_deg: float
-    cohesion: float
-    tensile_strength: float
-    normal_stiffness: float
-    shear_stiffness: float
     damping_ratio: float
-    dt: float
     failure_displacement: float | None
     width: float | None
     strength_reduction_factor: float | None
-    end_displacement: float | None
 
 
 def read_inputs(scene_file: Path) -> Inputs:
     scene = tomllib.loads(scene_file.read_text(encoding="utf-8"))
-    corners, joint, sets = scene["domain"]["vertices_m"], scene["joint"][0], scene["joint_set"]
+    corners, sets = scene["domain"]["vertices_m"], scene["joint_set"]
     toe, crest = [0.0, 0.0], corners[3]
     return Inputs(
+        **vars(JointedRock.of(scene)),
         height=crest[1] - toe[1],
         face_angle_deg=math.degrees(math.atan2(crest[1] - toe[1], crest[0] - toe[0])),
         dips_deg=tuple(s["dip_deg"] for s in sets),
         spacings=tuple(s["spacing_m"] for s in sets),
-        unit_weight=scene["material"][0]["unit_weight_n_per_m3"],
-        gravity=math.hypot(*scene["gravity_m_per_s2"]),
-        friction_angle_deg=joint["friction_angle_deg"],
-        cohesion=joint["cohesion_pa"],
-        tensile_strength=joint["tensile_strength_pa"],
-        normal_stiffness=joint["normal_stiffness_pa_per_m"],
-        shear_stiffness=joint["shear_stiffness_pa_per_m"],
-        damping_ratio=joint.get("damping_ratio", 0.0),
-        dt=scene["step"]["dt_s"],
+        damping_ratio=scene["joint"][0].get("damping_ratio", 0.0),
         failure_displacement=scene.get("settle", {}).get("failure_displacement_m"),
         width=scene.get("strength_reduction", {}).get("width"),
         strength_reduction_factor=scene.get("run", {}).get("strength_reduction_factor"),
-        end_displacement=scene.get("end", {}).get("displacement_m"),
     )
 
 
@@ -91,13 +96,14 @@ class Fos:
     value: float | None
     reason: str
     warning: str
+    failed: float | None = None  # the other end of the bracket
 
 
 def _fos(openclose: Openclose, case: Case) -> Fos:
     summary = openclose.summary(case)
     if not summary.get("factor_of_safety"):
         return Fos(None, summary["reason"], "")
-    return Fos(summary["factor_of_safety"], "", "; ".join(summary["warnings"]))
+    return Fos(summary["factor_of_safety"], "", "; ".join(summary["warnings"]), summary["bracket"][1])
 
 
 class CutBlocks:
@@ -207,8 +213,10 @@ class JointedSlope:
 
     def cases(self) -> list[Case]:
         """The longest first, so that no process idles at the end."""
-        rules = [self._by_paper_rules(m) for m in PAPER_RULES]
-        return [self.cut.case, *rules, *(self._post_failure(m, start) for m in METHODS for start in STARTS), *self._reductions(), self._tight()]
+        after = [self._post_failure(f, start) for f in FOLLOWERS for start in STARTS]
+        rules = [self._by_paper_rules(method, reading) for method, reading in PAPER_RULES]
+        steady = [self._steady_by_paper_rule(m) for m in RULE_METHODS]
+        return [self.cut.case, *rules, *steady, *after, *self._reductions(), self._breaking_on_the_way(), self._tight()]
 
     def _reductions(self) -> list[Case]:
         return [self._reduction(method, behaviour) for method in METHODS for behaviour in BEHAVIOURS]
@@ -222,9 +230,13 @@ class JointedSlope:
         """Of `soft` with ductile cohesion, by a narrow bracket and a long way."""
         return _fos(self._openclose, self._tight())
 
-    def paper_factor_of_safety(self, method: str) -> Fos:
-        """By the paper's own rules for equilibrium, cohesion lost on slip."""
-        return _fos(self._openclose, self._by_paper_rules(method))
+    def breaking_factor_of_safety(self) -> Fos:
+        """Of `dem` with cohesion lost on opening, also in the waves on the way to rest."""
+        return _fos(self._openclose, self._breaking_on_the_way())
+
+    def paper_factor_of_safety(self, method: str, reading: str) -> Fos:
+        """By the paper's own rules for equilibrium, cohesion lost on slip; one of PAPER_RULES."""
+        return _fos(self._openclose, self._by_paper_rules(method, reading))
 
     def limit(self, behaviour: str) -> float:
         """[-] limit analysis; cohesion that is lost on slip is gone everywhere in the end"""
@@ -242,31 +254,41 @@ class JointedSlope:
 
     # -- after failure --
 
-    def summary(self, method: str, start: str) -> dict:
-        return self._openclose.summary(self._post_failure(method, start))
+    def summary(self, follower: str, start: str) -> dict:
+        return self._openclose.summary(self._post_failure(follower, start))
 
     def steady_cpu(self, method: str) -> float | None:
         """[s] from unloaded springs to static equilibrium"""
         return self.summary(method, "settled").get("cpu_s", {}).get("start")
 
-    def milestones(self, method: str, start: str) -> list[Milestone]:
-        rows = self._openclose.table(self._post_failure(method, start), "milestones.csv")
+    def paper_steady(self, method: str) -> tuple[float, int] | None:
+        """CPU seconds and steps from unloaded springs to the paper's steady state, its limit read as a length; none if it is not reached"""
+        summary = self._openclose.summary(self._steady_by_paper_rule(method))
+        if not summary.get("converged"):
+            return None
+        return summary["cpu_s"]["start"], summary["settling"]["steps"]
+
+    def critical_step(self) -> float | None:
+        """[s] the shortest that dem had to keep to after failure"""
+        return self.summary("dem", "settled").get("explicit", {}).get("critical_step_s")
+
+    def milestones(self, follower: str, start: str) -> list[Milestone]:
+        rows = self._openclose.table(self._post_failure(follower, start), "milestones.csv")
         return [Milestone(float(r["displacement_m"]), float(r["time_s"]), float(r["cpu_s"])) for r in rows if not r["reason"]]
 
-    def cpu_at(self, method: str, start: str, displacement: float) -> float | None:
-        return next((m.cpu for m in self.milestones(method, start) if m.displacement == displacement), None)
+    def cpu_at(self, follower: str, start: str, displacement: float) -> float | None:
+        return next((m.cpu for m in self.milestones(follower, start) if m.displacement == displacement), None)
 
-    def reason(self, method: str, start: str) -> str:
+    def reason(self, follower: str, start: str) -> str:
         """Why a run did not come to the displacement asked for; empty if it did."""
-        summary = self.summary(method, start)
-        if summary.get("ended_by") != "end.displacement_m":
-            return summary["reason"] or f"ended by {summary['ended_by']}"
-        short = POST_FAILURE_END_M[method] < self.post_failure_inputs.end_displacement
-        return f"followed to {POST_FAILURE_END_M[method]:g} m only, for its run time" if short else ""
+        summary = self.summary(follower, start)
+        if summary.get("ended_by") == "end.displacement_m":
+            return ""
+        return summary["reason"] or f"ended by {summary['ended_by']}"
 
     def common_distance(self, start: str) -> float | None:
-        """[m] the farthest milestone that every method came to that came anywhere"""
-        ways = [{m.displacement for m in self.milestones(method, start)} for method in METHODS]
+        """[m] the farthest milestone that every run came to that came anywhere"""
+        ways = [{m.displacement for m in self.milestones(follower, start)} for follower in FOLLOWERS]
         return max(set.intersection(*(way for way in ways if way)), default=None)
 
     @cache
@@ -281,41 +303,56 @@ class JointedSlope:
     # -- cases --
 
     def _reduction(self, method: str, behaviour: str) -> Case:
-        settings = (("method.contact", method), ("joint[0].cohesion_behaviour", behaviour))
-        return Case(f"3.4-{method}-{behaviour}", "fos", self.SCENE, settings, FOS_CPU_LIMIT_S[method])
+        settings = [("method.contact", method), ("joint[0].cohesion_behaviour", behaviour)]
+        if method == "shi":
+            settings.append(("settle.max_steps", SHI_SETTLE_STEPS))
+        return Case(f"3.4-{method}-{behaviour}", "fos", self.SCENE, tuple(settings), FOS_CPU_LIMIT_S[method])
 
-    def _by_paper_rules(self, method: str) -> Case:
-        settings = [("method.contact", method), ("joint[0].cohesion_behaviour", "lost_on_slip"), ("strength_reduction.width", PAPER_RULES_WIDTH),
-                    ("strength_reduction.upper_limit", PAPER_RULES_UPPER_LIMIT)]
+    def _breaking_on_the_way(self) -> Case:
+        settings = (("method.contact", "dem"), ("joint[0].cohesion_behaviour", "lost_on_opening"), ("settle.keep_bonds", "false"))
+        return Case("3.4-dem-lost_on_opening-on-the-way", "fos", self.SCENE, settings, FOS_CPU_LIMIT_S["dem"])
+
+    def _paper_rules(self, method: str, reading: str) -> tuple[tuple[str, object], ...]:
+        """Settings of the paper's criterion; cohesion lost on slip."""
+        settings = [("method.contact", method), ("joint[0].cohesion_behaviour", "lost_on_slip"), ("settle.criterion", "paper")]
         if method == "dem":
-            fraction = self._printed["unbalanced_force_limit_n"]["value"] / self._heaviest_block()
-            settings += [("method.damping", "automatic"), ("settle.unbalanced_fraction", fraction),
-                         ("settle.max_explicit_steps", self._printed["unbalanced_force_steps"]["value"])]
+            settings += [("method.damping", "automatic"), ("settle.unbalanced_force_n", self._printed["unbalanced_force_limit_n"]["value"]),
+                         ("settle.max_time_steps", self._printed["unbalanced_force_steps"]["value"])]
         else:
-            settings += [("settle.criterion", "paper"), ("settle.relative_displacement", self._printed["relative_max_displacement_m"]["value"]),
+            limit = self._printed["relative_max_displacement_m"]["value"]
+            settings += [("settle.relative_displacement", limit if reading == "relative" else limit / self._half_height()),
                          ("step.dt_s", self._printed["dt_s"]["value"])]
-        return Case(f"3.4-{method}-paper-rules", "fos", self.SCENE, tuple(settings), FOS_CPU_LIMIT_S["dem"])
+        return tuple(settings)
+
+    def _by_paper_rules(self, method: str, reading: str) -> Case:
+        search = (("strength_reduction.width", PAPER_RULES_WIDTH), ("strength_reduction.upper_limit", PAPER_RULES_UPPER_LIMIT))
+        settings = (*self._paper_rules(method, reading), *search)
+        return Case(f"3.4-{method}-paper-rules-{reading}", "fos", self.SCENE, settings, PAPER_RULES_CPU_LIMIT_S[method])
+
+    def _steady_by_paper_rule(self, method: str) -> Case:
+        """Settles by the paper's rule, the limit read as a length, and stops after one step."""
+        dt = self._printed["dt_s"]["value"]
+        settings = (*self._paper_rules(method, "length"), ("end.time_s", dt))
+        return Case(f"3.4-{method}-paper-steady", "run", self.SCENE, settings, PAPER_RULES_CPU_LIMIT_S[method])
 
     def rules_velocity(self) -> float:
         """[m/s] that the paper's limit on the relative displacement of a step lets pass as steady: Shi's measure is half the height of the model"""
-        _, below, _ = self.size()
-        half_height = 0.5 * (self.inputs.height + below)
-        return self._printed["relative_max_displacement_m"]["value"] * half_height / self._printed["dt_s"]["value"]
+        return self._printed["relative_max_displacement_m"]["value"] * self._half_height() / self._printed["dt_s"]["value"]
 
-    def _heaviest_block(self) -> float:
-        """[N/m] weight of the heaviest whole block: one spacing of each joint set"""
-        sine = math.sin(math.radians(self.inputs.dips_deg[1] - self.inputs.dips_deg[0]))
-        return self.inputs.spacings[0] * self.inputs.spacings[1] / sine * self.inputs.unit_weight
+    def _half_height(self) -> float:
+        """[m] of the model"""
+        _, below, _ = self.size()
+        return 0.5 * (self.inputs.height + below)
 
     def _tight(self) -> Case:
         settings = (("method.contact", "soft"), ("strength_reduction.width", TIGHT_WIDTH),
                     ("settle.failure_displacement_m", TIGHT_FAILURE_DISPLACEMENT_M))
         return Case("3.4-soft-tight", "fos", self.SCENE, settings, FOS_CPU_LIMIT_S["soft"])
 
-    def _post_failure(self, method: str, start: str) -> Case:
-        settings = (("method.contact", method), ("method.start", start), ("step.dt_s", POST_FAILURE_STEP_S[method]),
-                    ("end.displacement_m", POST_FAILURE_END_M[method]))
-        return Case(f"3.4-after-failure-{method}-{start}", "run", self.POST_FAILURE, settings, POST_FAILURE_CPU_LIMIT_S)
+    def _post_failure(self, follower: str, start: str) -> Case:
+        run = FOLLOWERS[follower]
+        settings = (("method.contact", run.method), ("method.start", start), ("step.dt_s", run.dt))
+        return Case(f"3.4-after-failure-{follower}-{start}", "run", self.POST_FAILURE, settings, POST_FAILURE_CPU_LIMIT_S)
 
 
 @dataclass(frozen=True)

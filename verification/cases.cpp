@@ -10,15 +10,27 @@ void incline(Report&);
 void static_hold(Report&);
 void cohesion_threshold(Report&);
 void stopping(Report&);
+void pulse_under_block(Report&);
+void shaken_incline(Report&);
+void recorded_motion(Report&);
+void toppling_chart(Report&);
 void amplification(Report&);
 void contact_damping(Report&);
+void bounce(Report&);
 void small_vibration(Report&);
+void collisions(Report&);
+void rocking_block(Report&);
 void planar_wedge(Report&);
 void parallel_planes(Report&);
+void goodman_bray(Report&);
 void two_joint_sets(Report&);
 void four_block_corner(Report&);
 void corner_over_joint(Report&);
 void critical_friction(Report&);
+void arch(Report&);
+void overhang(Report&);
+void column(Report&);
+void tilt(Report&);
 
 const std::vector<Case>& cases() {
   static const std::vector<Case> list = {
@@ -30,15 +42,27 @@ const std::vector<Case>& cases() {
       {"B2", "static hold", &static_hold},
       {"B3", "cohesion threshold", &cohesion_threshold},
       {"B4", "initial velocity to a stop", &stopping},
+      {"C1", "block on a base with a rectangular pulse", &pulse_under_block},
+      {"C2", "block on an incline under harmonic shaking", &shaken_incline},
+      {"C3", "block on an incline under a record", &recorded_motion},
+      {"B5", "sliding and toppling of a block on a plane", &toppling_chart},
       {"D1", "amplification matrix of one block on a spring", &amplification},
       {"D1c", "contact damping of one block on one contact", &contact_damping},
+      {"D2", "bounce on a contact", &bounce},
       {"D3", "small vibration of a block on two springs", &small_vibration},
+      {"D4", "collisions", &collisions},
+      {"D5", "rocking block", &rocking_block},
       {"E1", "planar wedge", &planar_wedge},
       {"E3", "plane failure on parallel joints", &parallel_planes},
+      {"E4", "toppling columns of Goodman and Bray", &goodman_bray},
       {"E5", "slope with two joint sets", &two_joint_sets},
       {"E6", "four blocks that meet in one corner", &four_block_corner},
       {"E6", "a corner that stands on a joint", &corner_over_joint},
       {"E6", "critical friction angle of jointed slopes", &critical_friction},
+      {"F1", "smallest thickness of an arch", &arch},
+      {"F2", "overhang of a stack", &overhang},
+      {"F3", "forces and modes of a column", &column},
+      {"F4", "a column tips", &tilt},
   };
   return list;
 }

@@ -59,10 +59,14 @@ void Report::between(const std::string& quantity, const std::string& method, dou
 }
 
 void Report::order(const std::string& quantity, const std::string& method, const std::vector<double>& sizes, const std::vector<double>& errors,
-                   double low, double high, const std::string& source) {
-  std::string row;
-  for (std::size_t i = 0; i < sizes.size(); ++i) row += fmt::format("{}{:.3g}: {:.2e}", i ? ", " : "", sizes[i], errors[i]);
-  between(quantity, method, low, high, log_slope(sizes, errors), "-", source + " (" + row + ")");
+                   double low, double high, const std::string& source, const std::string& size_name) {
+  std::string row, ratios;
+  for (std::size_t i = 0; i < sizes.size(); ++i) {
+    series_.push_back({case_, quantity, method, size_name, sizes[i], errors[i]});
+    row += fmt::format("{}{:.3g}: {:.2e}", i ? ", " : "", sizes[i], errors[i]);
+    if (i > 0) ratios += fmt::format("{}{:.3g}", i > 1 ? ", " : "", errors[i - 1] / errors[i]);
+  }
+  between(quantity, method, low, high, log_slope(sizes, errors), "-", fmt::format("{} ({}; ratios {})", source, row, ratios));
 }
 
 void Report::leave_out(const std::string& quantity, const std::string& method, const std::string& reason) {

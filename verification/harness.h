@@ -12,6 +12,9 @@
 
 namespace openclose::verification {
 
+/// Size of a series whose springs grow stiffer: 1/kn of one corner and metre of thickness.
+inline constexpr const char* compliance_name = "compliance_m2_per_n";
+
 inline constexpr int unknowns = 3;
 using RigidSimulation = Simulation<unknowns>;
 
@@ -30,6 +33,16 @@ struct Check {
   std::string source;  ///< where expected value and tolerance come from; for a check left out, why
 };
 
+/// One point of a convergence series.
+struct SeriesPoint {
+  std::string case_name;
+  std::string quantity;
+  std::string method;
+  std::string size_name;  ///< with its unit, "dt_s"
+  double size = 0.0;
+  double error = 0.0;
+};
+
 class Report {
  public:
   explicit Report(bool null_solver) : null_solver_(null_solver) {}
@@ -44,15 +57,17 @@ class Report {
   /// low <= measured <= high: expected is the middle, tolerance half the width.
   void between(const std::string& quantity, const std::string& method, double low, double high, double measured, const std::string& unit,
                const std::string& source);
-  /// Convergence: least-squares slope of log(error) over log(size), bounded from both sides.
+  /// Convergence: least-squares slope of log(error) over log(size), bounded from both sides. The errors and their ratios from one refinement to the
+  /// next go into the row's source, the points into series().
   void order(const std::string& quantity, const std::string& method, const std::vector<double>& sizes, const std::vector<double>& errors, double low,
-             double high, const std::string& source);
+             double high, const std::string& source, const std::string& size_name = "dt_s");
   void leave_out(const std::string& quantity, const std::string& method, const std::string& reason);
 
   /// A simulation with the scene's enforcement, or with one that does nothing.
   RigidSimulation simulate(const Scene& scene) const;
 
   const std::vector<Check>& checks() const { return checks_; }
+  const std::vector<SeriesPoint>& series() const { return series_; }
   bool null_solver() const { return null_solver_; }
 
  private:
@@ -62,6 +77,7 @@ class Report {
   bool null_solver_;
   std::string case_;
   std::vector<Check> checks_;
+  std::vector<SeriesPoint> series_;
 };
 
 /// Least-squares slope of log(y) over log(x); NaN if any value is not positive.

@@ -30,6 +30,7 @@ Scene empty_scene(const analytical::BlockOnPlane& data) {
   joint.friction_angle = data.friction_angle;
   scene.joints = {joint};
   scene.method.start = Start::unloaded;
+  scene.method.gap_tolerance = 0.01 * gap_tolerance;
   scene.step.max_displacement = 1.0;
   return scene;
 }
@@ -72,6 +73,68 @@ void use_joint_springs_as_penalty(Scene& scene, const analytical::BlockOnPlane& 
   scene.method.penalty = scene.joints[0].normal_stiffness;
   scene.method.penalty_shear_ratio = data.shear_stiffness / data.normal_stiffness;
   scene.method.penetration_tolerance = 1.0;
+}
+
+void set_scheme(Scene& scene, const ElasticScheme& scheme) {
+  scene.method.contact = scheme.contact;
+  scene.method.theta = scheme.theta;
+}
+
+std::string with_theta(const std::string& quantity, const ElasticScheme& scheme) {
+  return quantity + text(", theta = {}", scheme.theta);
+}
+
+void check_ledger(Report& report, const std::string& name, const std::string& method, const RigidSimulation& simulation, bool done) {
+  const EnergyLedger& l = simulation.ledger();
+  report.near(name + ": energy ledger, imbalance over turnover", method, 0.0, done ? std::abs(l.imbalance()) / l.turnover : not_measured(), 1e-10,
+              "-", "work of the forces = change of kinetic energy");
+}
+
+std::vector<double> downhill_history(RigidSimulation& simulation, const analytical::BlockOnPlane& data, std::size_t count) {
+  std::vector<double> list;
+  for (const Sample& s : history(simulation)) list.push_back(downhill(data, s.motion.displacement));
+  if (list.size() != count) list.assign(count, not_measured());
+  return list;
+}
+
+double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const double difference = std::abs(a[i] - b.at(i));
+    if (!(difference <= largest)) largest = difference;  // NaN stays
+    if (std::isnan(difference)) break;
+  }
+  return largest;
+}
+
+double stands(const Report& report, const Scene& scene) {
+  RigidSimulation simulation = report.simulate(scene);
+  const SettleResult result = settle(simulation);
+  if (result.criterion == "displacement") return 0.0;
+  if (!result.settled) return not_measured();
+  const BlockSystem<unknowns>& system = simulation.system();
+  Vec2 weight = Vec2::Zero(), carried = Vec2::Zero();
+  for (const int b : system.free_blocks()) weight += simulation.external().weight(system, b).head<2>();
+  for (const Contact& c : simulation.contacts()) {
+    if (c.status == ContactStatus::open) continue;
+    const Eigen::Vector3d still = Eigen::Vector3d::Zero();
+    const ContactKinematics<unknowns> k(system, c, still, still);
+    const Vec2 on_vertex = c.normal_force * k.normal_vertex.head<2>() + c.shear_force * k.shear_vertex.head<2>();
+    if (system.block(c.edge_block).equation < 0) carried += on_vertex;
+    if (system.block(c.vertex_block).equation < 0) carried -= on_vertex;
+  }
+  constexpr double balance = 1e-3;  // [-] far above what settling leaves, far below what a solver that does nothing gives
+  return (weight + carried).norm() <= balance * weight.norm() ? 1.0 : not_measured();
+}
+
+double threshold(double fails, double holds, double width, const std::function<double(double)>& stands) {
+  if (stands(fails) != 0.0 || stands(holds) != 1.0) return not_measured();
+  while (std::abs(holds - fails) > width) {
+    const double middle = 0.5 * (fails + holds), result = stands(middle);
+    if (std::isnan(result)) return not_measured();
+    (result == 1.0 ? holds : fails) = middle;
+  }
+  return 0.5 * (fails + holds);
 }
 
 double strength_reduction_factor(const Report& report, const Scene& scene) {

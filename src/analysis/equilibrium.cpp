@@ -40,7 +40,7 @@ class ByRelativeDisplacement : public EquilibriumSearch<N> {
   SettleResult settle_first(const SettleProgress& progress) override {
     for (int b : simulation_.system().free_blocks()) simulation_.set_velocity(b, Motion<N>::Unknowns::Zero());
     simulation_.restart_clock();
-    const SettleResult result = follow(input_.max_time_steps, true, progress);
+    SettleResult result = follow(input_.max_time_steps, true, progress);
     first_steps_ = result.steps;
     return result;
   }
@@ -87,6 +87,20 @@ class ByRelativeDisplacement : public EquilibriumSearch<N> {
   int first_steps_ = 0;  ///< that the first settling took
 };
 
+template <int N>
+class ByForceInTime : public EquilibriumSearch<N> {
+ public:
+  explicit ByForceInTime(Simulation<N>& simulation) : simulation_(simulation) {}
+  SettleResult settle_first(const SettleProgress& progress) override { return settle_trial(progress); }
+  SettleResult settle_trial(const SettleProgress& progress) override {
+    const SettleInput& input = simulation_.scene().settle;
+    return settle_explicitly(simulation_, {input.unbalanced_force, input.max_time_steps, std::numeric_limits<double>::infinity(), false}, progress);
+  }
+
+ private:
+  Simulation<N>& simulation_;
+};
+
 }  // namespace
 
 template <int N>
@@ -95,6 +109,7 @@ std::unique_ptr<EquilibriumSearch<N>> make_equilibrium_search(Simulation<N>& sim
     case SettleCriterion::unbalanced_force:
       return std::make_unique<ByUnbalancedForce<N>>(simulation);
     case SettleCriterion::paper:
+      if (simulation.is_explicit()) return std::make_unique<ByForceInTime<N>>(simulation);
       return std::make_unique<ByRelativeDisplacement<N>>(simulation);
   }
   return nullptr;

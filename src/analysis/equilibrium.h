@@ -10,6 +10,10 @@
 // with reduced strength goes on from the state that this left, velocities included, for twice that number of steps; it has failed if its last ones
 // are not steady. It is watched to its end, because a slope that begins to fail moves slowly at first.
 //
+// `paper` with an explicit method is what the same section says of UDEC: settled once the largest unbalanced force is below
+// settle.unbalanced_force_n, failed when settle.max_time_steps explicit steps have not brought it there, however far blocks have moved. Every
+// settling has as many, and joints lose on the way what they have to lose.
+//
 // Steps from rest (statics) would make no sense here: with the paper's step of 1 ms none is longer than g dt^2/2 = 5e-6 m, failing or not.
 #pragma once
 

@@ -7,11 +7,11 @@
 namespace openclose {
 namespace {
 
-constexpr double fastest_growth = 10.0;  ///< [-] of the pseudo-time step after a success
+constexpr double fastest_growth = 10.0;   ///< [-] of the pseudo-time step after a success
 constexpr double growth_after_cut = 1.5;  ///< [-] the first time; squared with each further success
-constexpr double largest_growth = 1e3;  ///< [-] of the first step in all: beyond, the inertia term no longer holds sliding blocks in place
-constexpr double cut = 0.3;             ///< [-] after a failure
-constexpr double part_of_limit = 0.8;   ///< [-] of the largest displacement of a step, to be aimed at
+constexpr double largest_growth = 1e3;    ///< [-] of the first step in all: beyond, the inertia term no longer holds sliding blocks in place
+constexpr double cut = 0.3;               ///< [-] after a failure
+constexpr double part_of_limit = 0.8;     ///< [-] of the largest displacement of a step, to be aimed at
 
 /// From rest a failing block moves with the square of the step: the factor on a step that moved so far which makes full use of the limit.
 double factor_to_limit(double limit, double moved) {
@@ -26,8 +26,11 @@ double settled_share(double now, double wanted) {
 
 template <int N>
 SettleResult settle(Simulation<N>& simulation, const SettleProgress& progress) {
-  if (simulation.is_explicit()) return settle_explicitly(simulation, progress);
   const SettleInput& input = simulation.scene().settle;
+  if (simulation.is_explicit()) {
+    const double force = input.unbalanced_fraction * simulation.force_scale();
+    return settle_explicitly(simulation, {force, input.max_explicit_steps, input.failure_displacement, input.keep_bonds}, progress);
+  }
   const auto& system = simulation.system();
   std::vector<typename Motion<N>::Unknowns> start;
   for (int b = 0; b < system.block_count(); ++b) start.push_back(system.displacement(b));

@@ -14,8 +14,8 @@ struct SettleResult {
   bool settled = false;
   std::string criterion;  ///< what decided: "unbalanced force", "displacement", "steps", or the reason of a step that failed
   int steps = 0;
-  double unbalanced_fraction = 1.0;  ///< [-] of Simulation::force_scale()
-  double displacement = 0.0;         ///< [m] largest of any block on the way
+  double unbalanced_fraction = 1.0;             ///< [-] of Simulation::force_scale()
+  double displacement = 0.0;                    ///< [m] largest of any block on the way
   std::optional<double> relative_displacement;  ///< [-] of the last step, see equilibrium.h; steps in time only, which know no unbalanced fraction
 };
 
@@ -28,9 +28,21 @@ SettleResult settle(Simulation<N>& simulation, const SettleProgress& progress = 
 /// The share [-] of the way down to `wanted` on a logarithmic scale, 0 where `now` is 1 or more.
 double settled_share(double now, double wanted);
 
+/// When an explicit search for equilibrium has arrived and when it is given up.
+struct RestLimits {
+  double unbalanced_force;      ///< [N] largest on a block that counts as rest
+  int max_steps;                ///< of the explicit loop
+  double failure_displacement;  ///< [m] a block that moved farther is failing
+  bool keep_bonds;              ///< contacts lose strength at rest only, see below
+};
+
 /// What settle() does for explicit methods: steps at the longest stable length with damping of the motion (`local`, unless the scene asks for
-/// `automatic`), from rest until the same fraction is reached. What friction holds in the end depends on the way there, as always in this method.
+/// `automatic`), from rest. What friction holds in the end depends on the way there, as always in this method.
+///
+/// That way is no motion of the slope: waves that the sudden change sends through it open contacts for a moment which equilibrium keeps closed. With
+/// `keep_bonds` it is gone with all bonds (what users of distinct-element codes know as "elastic first"). At rest, contacts that are open (or, where
+/// the joint says so, slide) lose what they have to lose, and what this leaves settles again, now losing on the way, too.
 template <int N>
-SettleResult settle_explicitly(Simulation<N>& simulation, const SettleProgress& progress);
+SettleResult settle_explicitly(Simulation<N>& simulation, const RestLimits& limits, const SettleProgress& progress);
 
 }  // namespace openclose

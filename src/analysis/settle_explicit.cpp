@@ -28,22 +28,19 @@ class Travel {
   std::vector<typename Motion<N>::Unknowns> start_;
 };
 
-}  // namespace
-
 template <int N>
-SettleResult settle_explicitly(Simulation<N>& simulation, const SettleProgress& progress) {
-  const SettleInput& input = simulation.scene().settle;
+SettleResult seek_rest(Simulation<N>& simulation, const RestLimits& limits, const SettleProgress& progress) {
   const MassDamping asked = simulation.scene().method.damping;
   const MassDamping damping = asked == MassDamping::none ? MassDamping::local : asked;
   simulation.come_to_rest();
   const Travel<N> travel(simulation);
-  const double scale = simulation.force_scale();
+  const double scale = simulation.force_scale(), wanted = limits.unbalanced_force / scale;
 
   SettleResult result;
   result.criterion = "steps";
-  for (double part = 1.0; result.steps < input.max_explicit_steps;) {
+  for (double part = 1.0; result.steps < limits.max_steps;) {
     // Without contacts and supports nothing bounds the step but the way it may go.
-    const double h = part * std::min(simulation.longest_stable_step(damping), input.first_dt);
+    const double h = part * std::min(simulation.longest_stable_step(damping), simulation.scene().settle.first_dt);
     const StepResult step = simulation.explicit_step(h, damping);
     if (!step.accepted) {
       part *= cut;
@@ -55,17 +52,17 @@ SettleResult settle_explicitly(Simulation<N>& simulation, const SettleProgress& 
     ++result.steps;
     result.criterion = "steps";
     result.unbalanced_fraction = step.unbalanced_force / scale;
-    // A block may swing through its place of rest: what counts is the state after the step. Forces that were in balance with cohesion that is gone now
-    // are to be balanced anew.
-    if (result.unbalanced_fraction <= input.unbalanced_fraction) result.unbalanced_fraction = simulation.unbalanced_force() / scale;
-    result.settled = result.unbalanced_fraction <= input.unbalanced_fraction && !step.lost_strength;
+    // A block may swing through its place of rest: what counts is the state after the step. Forces that were in balance with cohesion that is gone
+    // now are to be balanced anew.
+    if (result.unbalanced_fraction <= wanted) result.unbalanced_fraction = simulation.unbalanced_force() / scale;
+    result.settled = result.unbalanced_fraction <= wanted && !step.lost_strength;
     if (result.settled || result.steps % displacement_every == 0) {
       result.displacement = std::max(result.displacement, travel.largest());
-      if (progress) progress(settled_share(result.unbalanced_fraction, input.unbalanced_fraction));
+      if (progress) progress(settled_share(result.unbalanced_fraction, wanted));
     }
     if (result.settled) result.criterion = "unbalanced force";
     if (result.settled) break;
-    if (result.displacement > input.failure_displacement) {
+    if (result.displacement > limits.failure_displacement) {
       result.criterion = "displacement";
       break;
     }
@@ -74,6 +71,24 @@ SettleResult settle_explicitly(Simulation<N>& simulation, const SettleProgress& 
   return result;
 }
 
-template SettleResult settle_explicitly<3>(Simulation<3>&, const SettleProgress&);
+}  // namespace
+
+template <int N>
+SettleResult settle_explicitly(Simulation<N>& simulation, const RestLimits& limits, const SettleProgress& progress) {
+  if (!limits.keep_bonds) return seek_rest(simulation, limits, progress);
+  simulation.keep_bonds(true);
+  SettleResult kept = seek_rest(simulation, limits, progress);
+  simulation.keep_bonds(false);
+  if (!kept.settled) return kept;
+  simulation.judge_bonds();
+  RestLimits rest = limits;
+  rest.max_steps -= kept.steps;
+  SettleResult result = seek_rest(simulation, rest, progress);
+  result.steps += kept.steps;
+  result.displacement = std::max(result.displacement, kept.displacement);
+  return result;
+}
+
+template SettleResult settle_explicitly<3>(Simulation<3>&, const RestLimits&, const SettleProgress&);
 
 }  // namespace openclose

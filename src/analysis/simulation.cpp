@@ -187,6 +187,7 @@ StepProblem<N> Simulation<N>::problem(double dt, bool statics) {
   p.inertia = statics ? 2.0 / (dt * dt) : scheme_->inertia(dt);
   p.end_weight = statics ? 1.0 : scheme_->end_weight();
   p.failed_attempts = failed_attempts_;
+  p.keep_bonds = keep_bonds_;
   return p;
 }
 
@@ -207,7 +208,7 @@ double Simulation<N>::largest_move(const StepSolution<N>& solution) const {
 template <int N>
 StepResult Simulation<N>::step(double dt, bool statics) {
   if (loop_ && !statics) {
-    const StepResult taken = explicit_step(dt, scene_.method.damping);
+    StepResult taken = explicit_step(dt, scene_.method.damping);
     collect();
     return taken;
   }
@@ -347,6 +348,17 @@ StepResult Simulation<N>::explicit_step(double h, MassDamping damping) {
     contacts_current_ = false;
   }
   return result;
+}
+
+template <int N>
+void Simulation<N>::keep_bonds(bool keep) {
+  take_back();
+  keep_bonds_ = keep;
+}
+
+template <int N>
+void Simulation<N>::judge_bonds() {
+  for (Contact& c : contacts()) c.bonded = stays_bonded(joints_.joint(c.joint), c.bonded, c.status);
 }
 
 template <int N>

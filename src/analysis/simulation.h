@@ -60,6 +60,10 @@ class Simulation {
   /// One step of the loop with this damping of the motion, for settling. The state stays in the loop: references to it that were taken before do not
   /// follow, asking again does.
   StepResult explicit_step(double h, MassDamping damping);
+  /// From now on contacts lose neither cohesion nor tensile strength; explicit methods only.
+  void keep_bonds(bool keep);
+  /// Takes from every contact what its present status does not leave it.
+  void judge_bonds();
   /// [N] Largest sum of forces on a block now; explicit methods only.
   double unbalanced_force();
   /// Names the present time, so that a long run's clock does not collect rounding.
@@ -142,14 +146,15 @@ class Simulation {
   mutable bool loop_is_ahead_ = false;          ///< of system_ and contacts_
   bool loop_is_loaded_ = false;
   bool base_moves_ = false;
+  bool keep_bonds_ = false;
   double time_ = 0.0;
   std::string reason_;
   mutable EnergyLedger ledger_;
   double start_kinetic_energy_ = 0.0;  ///< [J]
   mutable double max_penetration_ = 0.0;
   StepCounters step_counters_;
-  int failed_attempts_ = 0;   ///< since the last step that was accepted
-  double last_speed_ = 0.0;   ///< [m/s] largest displacement of the last step over its duration
+  int failed_attempts_ = 0;  ///< since the last step that was accepted
+  double last_speed_ = 0.0;  ///< [m/s] largest displacement of the last step over its duration
   StageTimes stage_times_;
 };
 

@@ -62,9 +62,6 @@ inline constexpr double contact_skin_m = 1e-3;
 /// solution on either side and makes contact states cycle; 0.1 changed 8 s of slope failure by 0.1 %).
 inline constexpr double cohesion_ramp = 0.1;
 
-/// [m] `hard`: a closed contact may differ from its target gap by this much.
-inline constexpr double hard_gap_m = 1e-11;
-
 /// [m/s] `hard`: speed at which a penetration found at closing is pushed out.
 inline constexpr double hard_recovery_m_per_s = 0.1;
 

@@ -109,7 +109,7 @@ void CentralDifference<N>::load_contacts(const StepProblem<N>& problem) {
     Link link{slot(c.vertex_block), slot(c.edge_block), arm.x(), arm.y(), across.x(), across.y(), normal.x(), normal.y(),
               joint.normal_stiffness * c.length, joint.shear_stiffness * c.length, 1.0 / (joint.shear_stiffness * c.length), dashpots.normal,
               dashpots.shear, c.gap, ContactStrength(joint, c), c.gap, 0.0, c.elastic_slip, 0.0, 0.0, 0.0, 0.0, c.status, c.bonded,
-              can_lose_strength(joint, c.bonded), c.joint, static_cast<int>(i)};
+              !problem.keep_bonds && can_lose_strength(joint, c.bonded), c.joint, static_cast<int>(i)};
     const bool at_rest = c.status == ContactStatus::open && c.elastic_slip == 0.0;
     if (at_rest && !may_close(link.strength, link.normal_stiffness, c.gap, approach)) {
       far_.push_back(link);

@@ -39,6 +39,7 @@ struct StepProblem {
   double inertia = 0.0;     ///< [1/s2] see time_scheme.h
   double end_weight = 1.0;  ///< theta
   int failed_attempts = 0;  ///< at steps from here
+  bool keep_bonds = false;  ///< explicit methods: contacts lose no strength
 
   typename Motion<N>::Unknowns velocity(int b) const {
     if (statics) return Motion<N>::Unknowns::Zero();
@@ -82,6 +83,14 @@ class Enforcement {
   virtual double step_cut(const MethodInput&) const { return 0.5; }  ///< factor on a step that failed
   virtual const LinearCounters& linear_counters() const = 0;
 };
+
+/// Displacements of a step without forces, dt v: zero in statics. N per free block.
+template <int N>
+Eigen::VectorXd drift(const StepProblem<N>& problem) {
+  Eigen::VectorXd d(N * problem.system.free_count());
+  for (int b : problem.system.free_blocks()) d.template segment<N>(N * problem.system.block(b).equation) = problem.dt * problem.velocity(b);
+  return d;
+}
 
 /// Springs of the joint's own stiffness. The memory is the stretch of the spring, not its force: when the tributary length changes, strength and force
 /// change alike.

@@ -217,29 +217,32 @@ std::vector<int> Newton<N>::branches() const {
 }
 
 template <int N>
+void Newton<N>::replace_forces(std::size_t c, const ContactForces& forces) {
+  ContactOutcome<N>& o = outcome_[c];
+  const double normal = problem_->end_weight * (forces.normal - o.forces.normal), shear = problem_->end_weight * (forces.shear - o.forces.shear);
+  const auto push = [&](int b, const Unknowns& by_normal, const Unknowns& by_shear) {
+    const auto& block = problem_->system.block(b);
+    if (block.equation < 0) return;
+    residual_.template segment<N>(N * block.equation) += normal * by_normal + shear * by_shear;
+    if (block.rotation_locked) residual_[N * block.equation + Motion<N>::rotation_index] = 0.0;
+  };
+  push(problem_->contacts[c].vertex_block, o.kinematics.normal_vertex, o.kinematics.shear_vertex);
+  push(problem_->contacts[c].edge_block, o.kinematics.normal_edge, o.kinematics.shear_edge);
+  o.forces = forces;
+}
+
+template <int N>
 int Newton<N>::hold_reversed(const std::vector<int>& before, const std::vector<int>& after) {
   int held = 0;
   for (std::size_t c = 0; c < outcome_.size(); ++c) {
-    ContactOutcome<N>& o = outcome_[c];
+    const ContactOutcome<N>& o = outcome_[c];
     const bool reversed = std::abs(before[c]) == sliding_branch && before[c] == -after[c];
     if (!reversed) continue;
     ++held;
-    const double trial = o.springs.initial_shear - (o.springs.shear + o.springs.shear_damping) * o.kinematics.slip_change;
-    const double change = problem_->end_weight * (trial - o.forces.shear);
-    const auto push = [&](int b, const Unknowns& shear) {
-      const auto& block = problem_->system.block(b);
-      if (block.equation < 0) return;
-      residual_.template segment<N>(N * block.equation) += change * shear;
-      if (block.rotation_locked) residual_[N * block.equation + Motion<N>::rotation_index] = 0.0;
-    };
-    push(problem_->contacts[c].vertex_block, o.kinematics.shear_vertex);
-    push(problem_->contacts[c].edge_block, o.kinematics.shear_edge);
-    const ContactForces now = o.forces;
-    o.forces = tangent_for_status(o.springs, strength_[c], ContactStatus::sticking, now.normal, trial);
-    o.forces.normal = now.normal;
-    o.forces.shear = trial;
-    o.forces.elastic_normal = now.elastic_normal;
-    o.forces.elastic_shear = now.elastic_shear;
+    ContactForces stuck = tangent_for_status(o.springs, strength_[c], ContactStatus::sticking, o.forces.normal, o.forces.shear);
+    stuck.normal = o.forces.normal;
+    stuck.shear = o.springs.initial_shear - (o.springs.shear + o.springs.shear_damping) * o.kinematics.slip_change;
+    replace_forces(c, stuck);
   }
   return held;
 }
@@ -248,15 +251,10 @@ template <int N>
 void Newton<N>::take_last_states() {
   for (std::size_t c = 0; c < outcome_.size(); ++c) {
     const Contact& contact = problem_->contacts[c];
-    const ContactSprings& springs = (*springs_)[c];
-    const bool touching = contact.status == ContactStatus::open && springs.gap <= 0.0;
-    ContactForces& f = outcome_[c].forces;
-    const ContactForces now = f;
-    f = tangent_for_status(springs, strength_[c], touching ? ContactStatus::sticking : contact.status, contact.normal_force, contact.shear_force);
-    f.normal = now.normal;
-    f.shear = now.shear;
-    f.elastic_normal = now.elastic_normal;
-    f.elastic_shear = now.elastic_shear;
+    const ContactOutcome<N>& o = outcome_[c];
+    const bool touching = contact.status == ContactStatus::open && o.springs.gap <= 0.0;
+    replace_forces(c, prolonged(o.springs, strength_[c], touching ? ContactStatus::sticking : contact.status, contact.normal_force,
+                                contact.shear_force, o.kinematics.gap_change, o.kinematics.slip_change));
   }
 }
 

@@ -38,8 +38,11 @@ class Newton {
 
   void prepare(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs);
   void evaluate(const Eigen::VectorXd& d);
-  /// Derivatives for the first tangent: states of the last step; corners that only touch count as sticking.
+  /// Forces and derivatives for the first iteration: the laws' linear pieces of the last step, wherever the iteration starts from, so that a step in
+  /// which no contact changes its state needs one solve. Corners that only touch count as sticking.
   void take_last_states();
+  /// Contact c carries these forces in the next linear solve.
+  void replace_forces(std::size_t c, const ContactForces& forces);
   double residual_norm() const;  ///< largest residual of a block over what is tolerated: converged at 1
   void assemble(const Eigen::VectorXd& d, Tangent tangent);
   void add_contact_stiffness(std::size_t c, Tangent tangent);

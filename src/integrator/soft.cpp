@@ -18,7 +18,7 @@ class Soft : public Enforcement<N> {
     springs_.clear();
     for (const Contact& c : problem.contacts) springs_.push_back(springs(problem, c));
     StepSolution<N> solution;
-    solution.d = Eigen::VectorXd::Zero(N * problem.system.free_count());
+    solution.d = drift(problem);
     newton_.solve(problem, springs_, solution);
     return solution;
   }

@@ -210,10 +210,12 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
                     {"first_dt_s", scene.settle.first_dt},
                     {"max_steps", scene.settle.max_steps},
                     {"max_explicit_steps", scene.settle.max_explicit_steps},
+                    {"keep_bonds", scene.settle.keep_bonds},
                     {"failure_displacement_m", scene.settle.failure_displacement},
                     {"relative_displacement", scene.settle.relative_displacement},
                     {"steady_steps", scene.settle.steady_steps},
-                    {"max_time_steps", scene.settle.max_time_steps}}},
+                    {"max_time_steps", scene.settle.max_time_steps},
+                    {"unbalanced_force_n", scene.settle.unbalanced_force}}},
                   {"strength_reduction", {{"width", scene.strength_reduction.width}, {"upper_limit", scene.strength_reduction.upper_limit}}}};
   j["warnings"] = summary.warnings;
   j["blocks"] = simulation.system().block_count();

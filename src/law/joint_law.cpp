@@ -59,6 +59,22 @@ ContactForces tangent_for_status(const ContactSprings& springs, const ContactStr
   return f;
 }
 
+ContactForces prolonged(const ContactSprings& springs, const ContactStrength& strength, ContactStatus status, double normal, double shear,
+                        double gap_change, double slip_change) {
+  ContactForces f = tangent_for_status(springs, strength, status, normal, shear);
+  if (status == ContactStatus::open) return f;
+  f.elastic_normal = springs.shift - springs.normal * ((springs.gap - springs.target) + gap_change);
+  f.normal = f.elastic_normal + viscous_normal(springs, strength, gap_change);
+  f.elastic_shear = springs.initial_shear - springs.shear * slip_change;
+  if (status == ContactStatus::sticking) {
+    f.shear = f.elastic_shear - springs.shear_damping * slip_change;
+  } else {
+    const ContactStrength::ShearBound bound = strength.shear_bound(normal);
+    f.shear = std::copysign(1.0, shear) * (bound.value + bound.slope * (f.normal - normal));
+  }
+  return f;
+}
+
 bool can_lose_strength(const JointProperties& joint, bool bonded) {
   return bonded && (joint.tensile_strength > 0.0 || (joint.cohesion > 0.0 && joint.cohesion_behaviour != CohesionBehaviour::ductile));
 }

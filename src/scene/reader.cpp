@@ -204,6 +204,7 @@ MethodInput read_method(Table table, const SourceLocation& scene_where) {
   table.optional("linear_solver", method.linear_solver, linear_solver_words);
   table.optional("skip_search", method.skip_search);
   table.optional("skip_narrow_phase", method.skip_narrow_phase);
+  table.optional("gap_tolerance_m", method.gap_tolerance, positive);
   table.optional("penalty_pa_per_m", method.penalty, positive);
   table.optional("penalty_shear_ratio", method.penalty_shear_ratio, positive);
   table.optional("penetration_tolerance_m", method.penetration_tolerance, positive);
@@ -264,10 +265,12 @@ SettleInput read_settle(Table table) {
   table.optional("first_dt_s", settle.first_dt, positive);
   table.optional("max_steps", settle.max_steps, count);
   table.optional("max_explicit_steps", settle.max_explicit_steps, count);
+  table.optional("keep_bonds", settle.keep_bonds);
   table.optional("failure_displacement_m", settle.failure_displacement, positive);
   table.optional("relative_displacement", settle.relative_displacement, between_0_and_1);
   table.optional("steady_steps", settle.steady_steps, count);
   table.optional("max_time_steps", settle.max_time_steps, count);
+  table.optional("unbalanced_force_n", settle.unbalanced_force, positive);
   table.finish();
   return settle;
 }

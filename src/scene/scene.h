@@ -132,6 +132,7 @@ struct MethodInput {
   LinearSolverKind linear_solver = LinearSolverKind::automatic;
   bool skip_search = true;                     ///< search candidates only once something has moved beyond the skin
   bool skip_narrow_phase = true;               ///< find the contacts of two blocks anew only once they have moved against each other beyond the skin
+  double gap_tolerance = 3e-7;                 ///< [m] hard: a closed contact may differ from its target gap, a sticking one from its place, by this much
   std::optional<double> penalty;               ///< [Pa/m] shi: normal penalty, times the tributary length like any stiffness; absent: 10 times the joint's
   double penalty_shear_ratio = 0.4;            ///< [-] shi: shear penalty over normal penalty
   double penetration_tolerance = 1e-3;         ///< [m] shi: deeper contacts cut the step
@@ -152,7 +153,7 @@ struct StepInput {
 /// What tells that a scene has settled.
 enum class SettleCriterion {
   unbalanced_force,  ///< static steps until forces are in balance
-  paper,             ///< the reference paper's: steps in time until blocks move little in a step
+  paper,             ///< the reference paper's: steps in time until blocks move little in a step; dem: until a force in newtons is left
 };
 
 /// Static settling: when it is done, and when it has failed.
@@ -164,8 +165,10 @@ struct SettleInput {
   SettleCriterion criterion = SettleCriterion::unbalanced_force;
   double relative_displacement = 1e-5;  ///< [-] paper: of a step, over half the height of the model
   int steady_steps = 100;               ///< paper: steps in a row that must stay below
-  int max_time_steps = 10000;           ///< paper: of step.dt, for the first settling
-  int max_explicit_steps = 1000000;   ///< dem: instead of max_steps
+  int max_time_steps = 10000;           ///< paper: of step.dt, for the first settling; dem: explicit ones, for each settling
+  double unbalanced_force = 1e3;        ///< [N] paper, dem: that may be left on a block
+  int max_explicit_steps = 1000000;     ///< dem: instead of max_steps
+  bool keep_bonds = true;               ///< dem: joints lose strength only at rest, not on the way there
 };
 
 struct StrengthReductionInput {

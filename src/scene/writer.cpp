@@ -161,6 +161,7 @@ void write_method(Text& text, const MethodInput& method) {
   text.line("linear_solver", word_for(linear_solver_words, method.linear_solver));
   text.line("skip_search", method.skip_search);
   text.line("skip_narrow_phase", method.skip_narrow_phase);
+  text.line("gap_tolerance_m", method.gap_tolerance);
   if (method.penalty) text.line("penalty_pa_per_m", *method.penalty);
   text.line("penalty_shear_ratio", method.penalty_shear_ratio);
   text.line("penetration_tolerance_m", method.penetration_tolerance);
@@ -195,10 +196,12 @@ void write_statics(Text& text, const SettleInput& settle, const StrengthReductio
   text.line("first_dt_s", settle.first_dt);
   text.line("max_steps", settle.max_steps);
   text.line("max_explicit_steps", settle.max_explicit_steps);
+  text.line("keep_bonds", settle.keep_bonds);
   text.line("failure_displacement_m", settle.failure_displacement);
   text.line("relative_displacement", settle.relative_displacement);
   text.line("steady_steps", settle.steady_steps);
   text.line("max_time_steps", settle.max_time_steps);
+  text.line("unbalanced_force_n", settle.unbalanced_force);
   text.header("[strength_reduction]");
   text.line("width", reduction.width);
   text.line("upper_limit", reduction.upper_limit);

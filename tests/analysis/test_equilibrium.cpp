@@ -109,6 +109,30 @@ TEST_CASE("a step that cannot be taken ends the paper's settling with its reason
   CHECK(result.criterion == "open-close iterations did not settle");
 }
 
+TEST_CASE("of an explicit method the paper's criterion is a force within a number of steps", "[analysis][equilibrium][explicit]") {
+  Scene scene = test::block_on_incline(20.0 * test::degree);
+  scene.method.contact = "dem";
+  scene.settle.criterion = SettleCriterion::paper;
+  scene.settle.unbalanced_force = GENERATE(1e3, 10.0);
+  scene.settle.max_time_steps = 2000;
+  scene.settle.failure_displacement = 1e-3;  // of the other criterion
+  Simulation<3> simulation(scene);
+  const auto search = make_equilibrium_search(simulation);
+  const SettleResult first = search->settle_first({});
+  REQUIRE(first.settled);
+  CHECK(first.criterion == "unbalanced force");
+  const double left = simulation.unbalanced_force();
+  CHECK(left <= scene.settle.unbalanced_force);
+  // It stops there: damping takes the force down by less than a hundredth in the last steps.
+  CHECK(left > 1e-2 * scene.settle.unbalanced_force);
+  simulation.joints().reduce_strength(2.0);
+  const SettleResult trial = search->settle_trial({});
+  CHECK_FALSE(trial.settled);
+  CHECK(trial.criterion == "steps");
+  CHECK(trial.steps == scene.settle.max_time_steps);
+  CHECK(trial.displacement > scene.settle.failure_displacement);
+}
+
 TEST_CASE("factor of safety by the paper's criterion", "[analysis][equilibrium]") {
   const double slope = 30.0 * test::degree, exact = std::tan(40.0 * test::degree) / std::tan(slope);
   for (const std::string method : {"soft", "hard", "shi"}) {

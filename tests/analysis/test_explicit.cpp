@@ -193,6 +193,39 @@ TEST_CASE("settling explicitly finds the closure under the weight", "[analysis][
   CHECK(std::abs(l.imbalance()) < 1e-10 * l.turnover);
 }
 
+TEST_CASE("brittle joints lose at rest what they cannot keep there, not on the way", "[analysis][explicit][settle]") {
+  // A column whose weight comes on slack springs is thrown up once; its top block, pushed by more than friction holds, needs its cohesion.
+  Scene scene = explicit_scene(test::column_of_blocks(4), 1e-3);
+  scene.method.damping = MassDamping::automatic;
+  scene.joints[0].friction_angle = 30.0 * test::degree;
+  scene.joints[0].cohesion = 0.5 * test::block_weight / test::block_edge;
+  scene.joints[0].cohesion_behaviour = GENERATE(CohesionBehaviour::lost_on_opening, CohesionBehaviour::lost_on_slip);
+  scene.loads = {{4, {1.0, 3.5}, {0.8 * test::block_weight, 0.0}}};
+  scene.settle.failure_displacement = 0.1;
+  scene.settle.keep_bonds = GENERATE(true, false);
+  Simulation<3> simulation(scene);
+  const SettleResult result = settle(simulation);
+  INFO("bonds kept: " << scene.settle.keep_bonds << ", " << result.criterion);
+  CHECK(result.settled == scene.settle.keep_bonds);
+}
+
+TEST_CASE("a contact that is open at rest has lost its bond", "[analysis][explicit][settle]") {
+  // A block 2 m wide and 1 m high, pushed at its top by more than its weight, stands on its far corner; a spring keeps it from turning over.
+  Scene scene = explicit_scene(test::block_on_base(), 1e-3);
+  scene.joints[0].cohesion = 1e6;
+  scene.joints[0].cohesion_behaviour = CohesionBehaviour::lost_on_opening;
+  scene.supports = {{1, {0.0, 1.0}, {0.0, 1e6}}};
+  scene.loads = {{1, {0.0, 1.0}, {1.2 * test::block_weight, 0.0}}};
+  Simulation<3> simulation(scene);
+  REQUIRE(settle(simulation).settled);
+  int open = 0;
+  for (const Contact& c : simulation.contacts()) {
+    CHECK(c.bonded == (c.status != ContactStatus::open));
+    open += c.status == ContactStatus::open;
+  }
+  CHECK(open == 1);
+}
+
 TEST_CASE("what cannot be held fails by displacement, what takes too long by steps", "[analysis][explicit][settle]") {
   Scene scene = sliding();
   scene.settle.failure_displacement = 0.3;

@@ -2,6 +2,7 @@
 #include <stdexcept>
 
 #include "openclose/analytical/block_on_plane.h"
+#include "openclose/analytical/goodman_bray.h"
 #include "openclose/analytical/limit_analysis.h"
 #include "openclose/analytical/planar_wedge.h"
 #include "support/catch.h"
@@ -36,29 +37,6 @@ RigidBlockAssembly block_on_incline(double b, double h, double slope, const Inte
   const Point gravity(9.81 * std::sin(slope), -9.81 * std::cos(slope));
   return assemble({block_of({{-9, -1}, {9, -1}, {9, 0}, {-9, 0}}, 2500, gravity, true), block_of({{0, 0}, {b, 0}, {b, h}, {0, h}}, 2500, gravity)},
                   strength);
-}
-
-/// Toppling columns of Goodman & Bray (1976) in the frame of their stepped base, which rises to the right at 30 degrees: block k from the toe stands
-/// on a step of height (k-1) b, its top is a1 above that of its lower neighbour, above the tenth a2 below.
-RigidBlockAssembly goodman_bray(double friction) {
-  constexpr double width = 10, a1 = 5, a2 = 5, b = 1, slope = 30 * degree;
-  constexpr int count = 16, crest = 10;
-  const Point gravity(-10 * std::sin(slope), -10 * std::cos(slope));
-  std::vector<RigidBlock> blocks;
-  std::vector<Point> base;
-  double top = 0;
-  for (int k = 0; k < count; ++k) {
-    top += k < crest ? a1 : -a2;
-    const double x = k * width, bottom = k * b;
-    // The first top is a1 above the step before the toe, so that the heights are k (a1 - b).
-    const double roof = top - b;
-    blocks.push_back(block_of({{x, bottom}, {x + width, bottom}, {x + width, roof}, {x, roof}}, 2500, gravity));
-    base.insert(base.end(), {{x, bottom}, {x + width, bottom}});
-  }
-  std::vector<Point> rock = {{0, -20}, {count * width, -20}};
-  rock.insert(rock.end(), base.rbegin(), base.rend());
-  blocks.push_back(block_of(rock, 2500, gravity, true));
-  return assemble(std::move(blocks), {friction, 0, 0});
 }
 
 /// Force and moment about its centroid that each free block is short of, the largest over its weight.
@@ -213,7 +191,7 @@ TEST_CASE("limit analysis: planar wedge") {
 
 TEST_CASE("limit analysis: toppling columns of Goodman and Bray") {
   // Their recursion assumes where the forces between the columns act and finds tan(phi) = 0.78554; free to choose, the columns stand at less.
-  const RigidBlockAssembly assembly = goodman_bray(1);
+  const RigidBlockAssembly assembly = assembly_of(GoodmanBray(), 1);
   const CriticalFriction associated = critical_friction(assembly);
   check_bounds(assembly, associated.state);
   CHECK(std::abs(associated.angle / degree - 33.41) < 0.005);
@@ -224,12 +202,12 @@ TEST_CASE("limit analysis: toppling columns of Goodman and Bray") {
   CHECK(non_associated.found);
   CHECK(std::abs(non_associated.angle / degree - 35.3) < 0.05);
   // Factor and angle are two ways to say the same.
-  const LimitState state = limit_analysis(goodman_bray(std::tan(38 * degree)));
+  const LimitState state = limit_analysis(assembly_of(GoodmanBray(), std::tan(38 * degree)));
   CHECK(std::abs(state.factor * std::tan(associated.angle) / std::tan(38 * degree) - 1) < 2e-5);
 }
 
 TEST_CASE("limit analysis: at constant volume the forces are within the strength and sliding does not open") {
-  const RigidBlockAssembly assembly = goodman_bray(1);
+  const RigidBlockAssembly assembly = assembly_of(GoodmanBray(), 1);
   LimitAnalysisOptions options;
   options.zero_dilatancy = true;
   const LimitState state = limit_analysis(assembly, options);

@@ -7,13 +7,7 @@
 #include "support/catch.h"
 
 using namespace openclose;
-using test::degree;
-using test::Detection;
-using test::fixed_block;
-using test::free_block;
-using test::placed;
-using test::rectangle;
-using test::scene_with;
+using namespace openclose::test;
 
 namespace {
 

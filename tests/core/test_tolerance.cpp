@@ -21,7 +21,6 @@ TEST_CASE("the shortest edge stands above the rounding of the farthest coordinat
 }
 
 TEST_CASE("lengths that must be told apart are ordered", "[core][tolerance]") {
-  CHECK(tolerance::hard_gap_m < tolerance::shortest_overlap_m);
   CHECK(tolerance::shortest_edge_m < tolerance::edge_end_m);
   CHECK(tolerance::shortest_edge_m < tolerance::shortest_overlap_m);
   CHECK(tolerance::edge_end_m < tolerance::deepest_initial_overlap_m);

@@ -241,6 +241,8 @@ TEST_CASE("summary.json of a start by the paper's criterion", "[io][results]") {
   CHECK_FALSE(j.at("settling").contains("unbalanced_fraction"));
   CHECK(j.at("options").at("settle").at("criterion") == "paper");
   CHECK(j.at("options").at("settle").at("relative_displacement") == 1e-5);
+  CHECK(j.at("options").at("settle").at("unbalanced_force_n") == 1e3);
+  CHECK(j.at("options").at("settle").at("keep_bonds") == true);
   CHECK(j.at("options").at("end_displacement_m") == 2.0);
   CHECK(j.at("options").at("run_strength_reduction_factor") == 1.5);
 }

@@ -266,6 +266,31 @@ TEST_CASE("the tangent of a status is the one the spring-slider has there", "[la
   CHECK(*std::min_element(seen.begin(), seen.end()) > 100);
 }
 
+TEST_CASE("a prolonged law is straight, and the law itself where its status holds", "[law][prolonged]") {
+  const ContactSprings springs = springs_under_load();
+  const ContactStrength strength = strength_of(0.6, 400.0, 60.0);
+  std::mt19937 generator(12);
+  std::uniform_real_distribution<double> change(-2.0, 2.0);
+  int pulling = 0, beyond_strength = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const double gap = change(generator), slip = change(generator);
+    const ContactForces f = spring_slider(springs, strength, gap, slip);
+    const auto same = [&](double g, double s) { return prolonged(springs, strength, f.status, f.normal, f.shear, g, s); };
+    const ContactForces here = same(gap, slip);
+    CHECK(here.normal == Approx(f.normal).margin(1e-9));
+    CHECK(here.shear == Approx(f.shear).margin(1e-9));
+    const double dg = change(generator), ds = change(generator);
+    const ContactForces there = same(gap + dg, slip + ds);
+    CHECK(there.normal == Approx(f.normal + f.normal_by_gap * dg).margin(1e-9));
+    CHECK(there.shear == Approx(f.shear + f.shear_by_gap * dg + f.shear_by_slip * ds).margin(1e-9));
+    CHECK(there.normal_by_gap == f.normal_by_gap);
+    pulling += f.status == ContactStatus::sliding && there.normal < -60.0 ? 1 : 0;
+    beyond_strength += f.status == ContactStatus::sticking && std::abs(there.shear) > strength.largest_shear(there.normal) ? 1 : 0;
+  }
+  CHECK(pulling > 20);
+  CHECK(beyond_strength > 50);
+}
+
 namespace {
 
 ContactSprings damped_springs() {

@@ -40,6 +40,8 @@ TEST_CASE("a small scene gets the defaults of the structs", "[scene][reader]") {
   CHECK(scene.snapshot_times.empty());
   CHECK(scene.settle.criterion == SettleCriterion::unbalanced_force);
   CHECK(scene.settle.relative_displacement == 1e-5);
+  CHECK(scene.settle.unbalanced_force == 1e3);
+  CHECK(scene.settle.keep_bonds);
 }
 
 TEST_CASE("every key reaches its field", "[scene][reader]") {
@@ -57,12 +59,12 @@ TEST_CASE("every key reaches its field", "[scene][reader]") {
       "[[measured_point]]\nname = 'p'\nblock = 'one'\npoint_m = [1, 0]\n"
       "[method]\ncontact = 'anything'\ntheta = 0.5\nrotation = 'linear'\nstart = 'steady_sliding'\nstatics = true\nresidual_tolerance = 1e-9\n"
       "max_iterations = 10\nlinear_solver = 'direct'\nskip_search = false\nskip_narrow_phase = false\npenalty_pa_per_m = 11\npenalty_shear_ratio = 0.5\npenetration_tolerance_m = 12\n"
-      "closing_tolerance_m = 0\nmax_open_close_iterations = 13.0\nstep_cut = 0.25\nstep_fraction = 0.5\ndamping = 'automatic'\nlocal_damping = 0.6\n"
+      "gap_tolerance_m = 2e-9\nclosing_tolerance_m = 0\nmax_open_close_iterations = 13.0\nstep_cut = 0.25\nstep_fraction = 0.5\ndamping = 'automatic'\nlocal_damping = 0.6\n"
       "[step]\ndt_s = 0.01\nmax_displacement_m = 14\nsmallest_fraction = 1\n"
       "[run]\nstrength_reduction_factor = 1.5\n"
       "[end]\ntime_s = 15\ndisplacement_m = 40\n[output]\nevery_s = 16\nmilestones_m = [10, 20.5]\nsnapshots_s = [0, 1.522]\n"
       "[settle]\nunbalanced_fraction = 1e-3\nfirst_dt_s = 17\nmax_steps = 18\nfailure_displacement_m = 19\n"
-      "criterion = 'paper'\nrelative_displacement = 1e-6\nsteady_steps = 22\nmax_time_steps = 23\n"
+      "criterion = 'paper'\nrelative_displacement = 1e-6\nsteady_steps = 22\nmax_time_steps = 23\nunbalanced_force_n = 24\nkeep_bonds = false\n"
       "[strength_reduction]\nwidth = 0.125\nupper_limit = 20\ncurve = [1, 1.5]\ncurve_time_s = 21\n");
   CHECK(scene.title == "all of it");
   CHECK(scene.gravity == Vec2(1.0, -2.5));
@@ -106,6 +108,7 @@ TEST_CASE("every key reaches its field", "[scene][reader]") {
   CHECK(method.penalty_shear_ratio == 0.5);
   CHECK(method.penetration_tolerance == 12.0);
   CHECK(method.closing_tolerance == 0.0);
+  CHECK(method.gap_tolerance == 2e-9);
   CHECK(method.max_open_close_iterations == 13);
   CHECK(method.step_cut == 0.25);
   CHECK(method.step_fraction == 0.5);
@@ -128,6 +131,8 @@ TEST_CASE("every key reaches its field", "[scene][reader]") {
   CHECK(scene.settle.relative_displacement == 1e-6);
   CHECK(scene.settle.steady_steps == 22);
   CHECK(scene.settle.max_time_steps == 23);
+  CHECK(scene.settle.unbalanced_force == 24.0);
+  CHECK_FALSE(scene.settle.keep_bonds);
   CHECK(scene.strength_reduction.width == 0.125);
   CHECK(scene.strength_reduction.upper_limit == 20.0);
   CHECK(scene.strength_reduction.curve == std::vector<double>{1.0, 1.5});

@@ -48,6 +48,7 @@ void check_same(const MethodInput& a, const MethodInput& b) {
   CHECK(a.penalty_shear_ratio == b.penalty_shear_ratio);
   CHECK(a.penetration_tolerance == b.penetration_tolerance);
   CHECK(a.closing_tolerance == b.closing_tolerance);
+  CHECK(a.gap_tolerance == b.gap_tolerance);
   CHECK(a.max_open_close_iterations == b.max_open_close_iterations);
   CHECK(a.step_cut == b.step_cut);
   CHECK(a.step_fraction == b.step_fraction);
@@ -108,6 +109,8 @@ void check_same(const Scene& a, const Scene& b) {
   CHECK(a.settle.relative_displacement == b.settle.relative_displacement);
   CHECK(a.settle.steady_steps == b.settle.steady_steps);
   CHECK(a.settle.max_time_steps == b.settle.max_time_steps);
+  CHECK(a.settle.keep_bonds == b.settle.keep_bonds);
+  CHECK(a.settle.unbalanced_force == b.settle.unbalanced_force);
   CHECK(a.strength_reduction.width == b.strength_reduction.width);
   CHECK(a.strength_reduction.upper_limit == b.strength_reduction.upper_limit);
   CHECK(a.strength_reduction.curve == b.strength_reduction.curve);
@@ -166,6 +169,7 @@ Scene random_scene(unsigned seed) {
   scene.method.penalty_shear_ratio = number();
   scene.method.penetration_tolerance = number();
   scene.method.closing_tolerance = number();
+  scene.method.gap_tolerance = number();
   scene.method.max_open_close_iterations = 7;
   scene.method.step_cut = fraction(generator);
   scene.method.step_fraction = fraction(generator);

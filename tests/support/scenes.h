@@ -39,6 +39,9 @@ inline BlockInput fixed_block(const std::string& name, std::vector<Vec2> vertice
   return block;
 }
 
+/// [m] of `hard`: so tight that rigid contacts can be told from stiff ones.
+inline constexpr double gap_tolerance = 1e-11;
+
 /// One material of 2500 kg/m3, a joint without cohesion, steps of 1 ms, start "unloaded"; no blocks.
 inline Scene empty_scene() {
   Scene scene;
@@ -51,6 +54,7 @@ inline Scene empty_scene() {
   scene.joints = {joint};
   scene.method.contact_where = {"scene.toml", 7};
   scene.method.start = Start::unloaded;
+  scene.method.gap_tolerance = gap_tolerance;
   scene.step.dt = 1e-3;
   return scene;
 }

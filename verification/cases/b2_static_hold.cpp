@@ -59,8 +59,10 @@ void corner_forces(Report& report) {
       lower.push_back(std::abs(hold.lower / expected.lower - 1.0));
       upper.push_back(std::abs(hold.upper / expected.upper - 1.0));
     }
-    report.order("force of the lower corner, error over compliance", method, compliance, lower, 0.95, 1.05, "elastic tilt: order 1 in 1/kn");
-    report.order("force of the upper corner, error over compliance", method, compliance, upper, 0.95, 1.05, "elastic tilt: order 1 in 1/kn");
+    report.order("force of the lower corner, error over compliance", method, compliance, lower, 0.95, 1.05, "elastic tilt: order 1 in 1/kn",
+                 compliance_name);
+    report.order("force of the upper corner, error over compliance", method, compliance, upper, 0.95, 1.05, "elastic tilt: order 1 in 1/kn",
+                 compliance_name);
   }
   const Hold hold = settle_on(report, data, "hard");
   report.relative("force of the lower corner", "hard", expected.lower, hold.lower, 1e-8, "N", "rigid block; settled to 1e-8 of the weight");

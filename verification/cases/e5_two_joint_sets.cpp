@@ -34,11 +34,6 @@ void two_joint_sets(Report& report) {
     for (const std::string& method : slope_methods) {
       scene.method.contact = method;
       const double factor = strength_reduction_factor(report, scene);
-      if (method == "dem" && b.behaviour == CohesionBehaviour::lost_on_opening) {
-        report.leave_out(std::string("cohesion ") + b.name + ": factor of safety", method,
-                         text("fails: {:.4g}, since contacts open for a moment on the way to rest and lose the cohesion that equilibrium needs", factor));
-        continue;
-      }
       const std::string quantity = std::string("cohesion ") + b.name + ": factor of safety";
       report.between(quantity, method, b.low - code_to_code, b.high + code_to_code, factor, "-", "an explicit distinct-element code");
       report.near(quantity + " above the limit analysis", method, 0.0, exceedance(factor, limit.factor), above_limit, "-", "limit analysis");

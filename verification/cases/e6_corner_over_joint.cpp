@@ -52,7 +52,7 @@ void corner_over_joint(Report& report) {
       report.near(name, "soft", expected, slide(report, scene, data), transient, "m", "eq. (8); tolerance g t/w of the transient");
       scene.method.contact = "hard";
       scene.step.dt = 1e-3;
-      report.near(name, "hard", expected, slide(report, scene, data), duration / scene.step.dt * tolerance::hard_gap_m, "m",
+      report.near(name, "hard", expected, slide(report, scene, data), duration / scene.step.dt * scene.method.gap_tolerance, "m",
                   "eq. (8); tolerance: what each step may leave in a contact");
     }
   }

@@ -1,0 +1,195 @@
+// D2: a block falls on its contact springs and bounces: contact time, depth, period, and what each scheme makes of the energy.
+#include <cmath>
+
+#include "harness.h"
+#include "openclose/analytical/bounce.h"
+#include "openclose/analytical/single_spring.h"
+#include "scenes.h"
+
+namespace openclose::verification {
+namespace {
+
+analytical::BlockOnPlane level_block() {
+  analytical::BlockOnPlane data;
+  data.slope_angle = 0.0;
+  return data;
+}
+
+analytical::Bounce drop_of_a_metre() {
+  const analytical::BlockOnPlane data = level_block();
+  return {1.0, std::sqrt(2.0 * data.normal_stiffness / data.mass()), data.gravity};
+}
+
+/// The block at a moment of the exact motion.
+Scene scene_of(const ElasticScheme& scheme, double time, double dt) {
+  const auto [height, velocity] = drop_of_a_metre().at(time);
+  Scene scene = block_on_plane(level_block());
+  for (Vec2& v : scene.blocks[1].vertices) v.y() += height;
+  scene.blocks[1].velocity = {0.0, velocity};
+  scene.blocks[1].rotation_locked = true;
+  set_scheme(scene, scheme);
+  scene.step.dt = dt;
+  use_joint_springs_as_penalty(scene, level_block());
+  return scene;
+}
+
+struct State {
+  double height, velocity;
+};
+State state_of(RigidSimulation& simulation) {
+  return {simulation.system().position(1, simulation.system().block(1).first_vertex).y(), simulation.velocity(1)[1]};
+}
+bool advance(RigidSimulation& simulation, int steps) {
+  for (int i = 0; i < steps; ++i) {
+    if (!simulation.advance(simulation.scene().step.dt)) return false;
+  }
+  return true;
+}
+
+/// What a bounce was, from the state a while after it: off the spring the block flies.
+struct Flight {
+  double place, speed, contact, period, depth;
+};
+
+/// Steps that divide the contact time, from two contact times before the touch to two after the end: both fall on steps, so that the order of the
+/// scheme shows undisturbed by where in a step the force sets in.
+Flight aligned_bounce(const Report& report, const ElasticScheme& scheme, int steps_of_contact) {
+  const analytical::Bounce b = drop_of_a_metre();
+  const double contact = b.contact_time(), before = 2.0 * contact, now = 5.0 * contact;
+  RigidSimulation simulation = report.simulate(scene_of(scheme, b.fall_time() - before, contact / steps_of_contact));
+  const bool done = advance(simulation, 5 * steps_of_contact);
+  const State s = state_of(simulation);
+  if (!done || !(s.velocity > 0.0)) return {not_measured(), not_measured(), not_measured(), not_measured(), not_measured()};
+  const double speed = std::sqrt(s.velocity * s.velocity + 2.0 * b.gravity * s.height);
+  const double off = now - (speed - s.velocity) / b.gravity, back = now + (speed + s.velocity) / b.gravity;
+  return {s.height, speed, off - before, back - before, simulation.max_penetration()};
+}
+
+void orders(Report& report, const ElasticScheme& scheme) {
+  const analytical::Bounce b = drop_of_a_metre();
+  const double exact_place = b.at(b.fall_time() + 3.0 * b.contact_time())[0];
+  std::vector<double> coarse, fine, place, speed, contact, period, depth;
+  for (const int n : {20, 40, 80, 160}) {
+    const Flight f = aligned_bounce(report, scheme, n);
+    coarse.push_back(b.contact_time() / n);
+    speed.push_back(std::abs(f.speed - b.impact_speed()));
+    depth.push_back(std::abs(f.depth - b.depth()));
+  }
+  for (const int n : {1280, 2560, 5120, 10240}) {
+    const Flight f = aligned_bounce(report, scheme, n);
+    fine.push_back(b.contact_time() / n);
+    place.push_back(std::abs(f.place - exact_place));
+    contact.push_back(std::abs(f.contact - b.contact_time()));
+    period.push_back(std::abs(f.period - b.period()));
+  }
+  const auto row = [&](const char* name, const std::vector<double>& steps, const std::vector<double>& errors, double low, double high,
+                       const char* source) { report.order(with_theta(name, scheme), scheme.contact, steps, errors, low, high, source); };
+  const double o = scheme.order;
+  row("place after a bounce", fine, place, o - 0.2, o + 0.2, "closed form; order of the scheme");
+  row("period", fine, period, o - 0.2, o + 0.2, "closed form; order of the scheme");
+  if (o == 1.0) {
+    row("contact time", fine, contact, 0.9, 2.1, "closed form; the phase of D1 is of order 2, to which the weight adds g/(w v0) of order 1");
+    row("speed off the spring", coarse, speed, 0.9, 1.1, "closed form; spectral radius of D1: order 1");
+    row("depth", coarse, depth, 0.9, 1.1, "closed form; order 1");
+  } else {
+    row("contact time", fine, contact, 1.9, 2.1, "closed form; order 2");
+    row("speed off the spring", coarse, speed, 2.8, 3.2, "closed form; on the spring no energy is lost, ends on steps leave order 3");
+    const bool trapezoid = scheme.theta == 0.5;
+    row("depth", coarse, depth, trapezoid ? 3.8 : 1.9, trapezoid ? 4.2 : 2.1,
+        trapezoid ? "closed form; the amplitude is kept, the phase of order 2 counts with its square" : "closed form; order 2");
+  }
+}
+
+/// The theta family leaves the spring as the matrices of D1 say, step by step.
+void matrices(Report& report, const ElasticScheme& scheme) {
+  const analytical::Bounce b = drop_of_a_metre();
+  for (const int n : {10, 40}) {
+    const double dt = b.contact_time() / n;
+    const auto expected = analytical::stepped_rebound(b, scheme.theta, dt);
+    RigidSimulation simulation = report.simulate(scene_of(scheme, b.fall_time() - n * dt, dt));
+    const State s = advance(simulation, n + expected.steps) ? state_of(simulation) : State{not_measured(), not_measured()};
+    const std::string name = with_theta("off the spring, contact time / dt = " + text("{}", n), scheme);
+    report.relative(name + ": velocity", scheme.contact, expected.velocity, s.velocity, 1e-10, "m/s", "matrix of D1 until y > 0; rounding of gaps");
+    report.near(name + ": height", scheme.contact, expected.height, s.height, 1e-12, "m", "matrix of D1 until y > 0; rounding of coordinates");
+  }
+}
+
+double energy(RigidSimulation& simulation) {
+  const State s = state_of(simulation);
+  return 0.5 * s.velocity * s.velocity + drop_of_a_metre().gravity * s.height;
+}
+
+/// Newmark (1/2, 1) keeps rho^2 of the energy in each step on the spring, whose number is the contact time over dt to one step; the energy of place
+/// at the touch, g^2/w^2, is not part of what decays: (g/(w v0))^2, and couples to it by g/(w v0).
+void decay(Report& report, const ElasticScheme& scheme) {
+  const analytical::Bounce b = drop_of_a_metre();
+  const int n = 200, bounces = 5;
+  const double dt = b.contact_time() / n;
+  RigidSimulation simulation = report.simulate(scene_of(scheme, 0.0, dt));
+  const double before = energy(simulation);
+  const bool done = advance(simulation, static_cast<int>((b.fall_time() + (bounces - 0.5) * b.period()) / dt));
+  const double kept = done ? std::log(energy(simulation) / before) : not_measured();
+  const double expected = 2.0 * n * bounces * std::log(analytical::spectral_radius({scheme.theta, b.frequency, dt}));
+  report.relative(with_theta("log of the energy kept after 5 bounces", scheme), scheme.contact, expected, kept,
+                  1.0 / n + 2.0 * b.gravity / (b.frequency * b.impact_speed()), "-", "spectral radius of D1; one step a contact, and g/(w v0)");
+}
+
+/// Where in their steps contacts begin and end is random: a touch costs, an end brings K v0^2 dt^2 f (1 - f)/2 with the part f of the step, f in (0,
+/// 1). The sum over many bounces is a random walk of steps of second order. Several heights for a mean.
+void drift(Report& report, const ElasticScheme& scheme) {
+  const analytical::Bounce b = drop_of_a_metre();
+  std::vector<double> steps, drifts;
+  for (const double dt : {2e-3, 1e-3, 5e-4, 2.5e-4}) {
+    double sum = 0.0;
+    constexpr int heights = 8, bounces = 12;
+    for (int i = 0; i < heights; ++i) {
+      RigidSimulation simulation = report.simulate(scene_of(scheme, 0.05 * i, dt));
+      const double before = energy(simulation);
+      const bool done = advance(simulation, static_cast<int>((bounces * b.period()) / dt));
+      sum += done && simulation.max_penetration() > 0.0 ? std::pow(energy(simulation) / before - 1.0, 2) : not_measured();
+    }
+    steps.push_back(dt);
+    drifts.push_back(std::sqrt(sum / heights));
+  }
+  report.order(with_theta("energy after 12 bounces, root mean square of 8 starts", scheme), scheme.contact, steps, drifts, 1.5, 2.5,
+               "order 2; the size of a random walk is known to a quarter from 8 of them, the slope over three halvings to 0.2");
+}
+
+/// Rigid contact does not rebound. Of the way of mid-step velocities the first half step lacks g dt^2/8.
+void plastic(Report& report) {
+  const analytical::Bounce b = drop_of_a_metre();
+  std::vector<double> steps, errors;
+  const double weight = level_block().weight();
+  for (const double dt : {4e-3, 2e-3, 1e-3}) {
+    RigidSimulation simulation = report.simulate(scene_of({"hard", 1.0, 2.0}, 0.0, dt));
+    const bool done = advance(simulation, static_cast<int>(std::ceil((b.fall_time() + 0.05) / dt)));
+    const double lost = done ? simulation.ledger().impact : not_measured();
+    report.relative(text("energy of the impact, dt = {} s", dt), "hard", weight * (b.drop - b.gravity * dt * dt / 8.0), lost, 1e-10, "J",
+                    "all that was fallen, W (H - g dt^2/8)");
+    steps.push_back(dt);
+    errors.push_back(std::abs(lost - weight * b.drop));
+    const State s = state_of(simulation);
+    report.near(text("velocity after the impact over the one before, dt = {} s", dt), "hard", 0.0,
+                done && simulation.ledger().impact > 0.0 ? std::abs(s.velocity) / b.impact_speed() : not_measured(), 1e-11, "-", "restitution 0");
+  }
+  report.order("energy of the impact", "hard", steps, errors, 1.99, 2.01, "W H; order 2");
+  report.leave_out("contact time, depth, period, drift", "hard", "rigid contacts do not rebound");
+}
+
+}  // namespace
+
+void bounce(Report& report) {
+  for (const ElasticScheme& scheme : elastic_schemes) {
+    orders(report, scheme);
+    if (scheme.order == 1.0) decay(report, scheme);
+    if (scheme.order == 2.0) drift(report, scheme);
+    if (std::string(scheme.contact) != "dem") matrices(report, scheme);
+    RigidSimulation simulation = report.simulate(scene_of(scheme, 0.0, 1e-3));
+    const bool done = advance(simulation, 3000);
+    check_ledger(report, with_theta("three bounces", scheme), scheme.contact, simulation, done);
+  }
+  report.leave_out("off the spring", "dem", "not of the theta family; its order is checked");
+  plastic(report);
+}
+
+}  // namespace openclose::verification
