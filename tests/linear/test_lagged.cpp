@@ -38,6 +38,22 @@ TEST_CASE("a grid of blocks is solved alike by every solver", "[linear][lagged]"
   }
 }
 
+TEST_CASE("fronts exchange rows that would be zero pivots, and need no help", "[linear][lagged]") {
+  BlockMatrix<3> matrix;
+  matrix.set_pattern(2, {{0, 1}});
+  Eigen::Matrix3d turn;
+  turn << 0, 0, 2, 3, 0, 0, 0, 5, 0;
+  matrix.add(0, 0, turn);
+  matrix.add(1, 1, turn);
+  matrix.add(0, 1, 0.5 * Eigen::Matrix3d::Identity());
+  const auto solver = make_multifrontal_solver<3>(Refactor::always);
+  REQUIRE(solver->factor(matrix));
+  const Eigen::VectorXd right_side = Eigen::VectorXd::LinSpaced(6, 1.0, 6.0);
+  CHECK(relative_residual(matrix, solver->solve(right_side), right_side) < 1e-15);
+  CHECK(solver->counters().krylov_iterations == 0);
+  CHECK(solver->counters().plain == 0);
+}
+
 TEST_CASE("a factor serves for matrices like its own, to the same residual", "[linear][lagged]") {
   RandomSystems random(22);
   const auto solver = make_multifrontal_solver<3>(Refactor::when_needed);
