@@ -7,6 +7,7 @@ from pathlib import Path
 import incline
 import plane_failure
 from incline import Incline, Study
+from jointed_rock import JointedRock
 from plane_failure import PlaneFailure
 
 METHODS = ("soft", "hard", "shi", "dem")
@@ -51,6 +52,33 @@ def build(slider: Incline, wedge: PlaneFailure, printed: dict) -> list[Row]:
 def input_row(item: str, quantity: str, unit: str, printed: float, scene: float, methods: tuple[str, ...]) -> Row:
     ours = {m: scene for m in methods}
     return Row(item, quantity, unit, printed, None, ours, relative(ours, printed))
+
+
+def jointed_rock(i: JointedRock) -> tuple[tuple[str, str, float], ...]:
+    """Name, key of printed.toml and value of what the slopes have in common."""
+    return (
+        ("unit weight", "unit_weight_n_per_m3", i.unit_weight),
+        ("joint friction angle", "friction_angle_deg", i.friction_angle_deg),
+        ("joint cohesion", "cohesion_pa", i.cohesion),
+        ("tensile strength", "tensile_strength_pa", i.tensile_strength),
+        ("normal stiffness kn", "normal_stiffness_pa_per_m", i.normal_stiffness),
+        ("shear stiffness ks", "shear_stiffness_pa_per_m", i.shear_stiffness),
+        ("time step", "dt_s", i.dt),
+        ("gravity", "gravity_m_per_s2", i.gravity),
+    )
+
+
+def rock_inputs(item: str, quantities: tuple[tuple[str, str, float], ...], printed: dict, methods: tuple[str, ...]) -> list[Row]:
+    return [input_row(item, name, _unit_of(key), printed[key]["value"], value, methods) for name, key, value in quantities]
+
+
+def _unit_of(key: str) -> str:
+    """The unit that the name of a key ends in."""
+    units = (("_pa_per_m", "Pa/m"), ("_n_per_m3", "N/m3"), ("_m_per_s2", "m/s2"), ("_deg", "deg"), ("_pa", "Pa"), ("_s", "s"), ("_m", "m"))
+    for ending, unit in units:
+        if key.endswith(ending):
+            return unit
+    return "-"
 
 
 def _incline_inputs(slider: Incline, printed: dict) -> list[Row]:
@@ -149,21 +177,10 @@ def _order_row(slider: Incline, studies: dict[str, Study], quantity: str, theory
 
 def _table_1(wedge: PlaneFailure, printed: dict) -> list[Row]:
     i = wedge.inputs
-    quantities = (
-        ("slope height", "m", "slope_height_m", i.height),
-        ("slope face angle", "deg", "face_angle_deg", i.face_angle_deg),
-        ("joint dip", "deg", "joint_angle_deg", i.joint_angle_deg),
-        ("unit weight", "N/m3", "unit_weight_n_per_m3", i.unit_weight),
-        ("joint friction angle", "deg", "friction_angle_deg", i.friction_angle_deg),
-        ("joint cohesion", "Pa", "cohesion_pa", i.cohesion),
-        ("tensile strength", "Pa", "tensile_strength_pa", i.tensile_strength),
-        ("normal stiffness kn", "Pa/m", "normal_stiffness_pa_per_m", i.normal_stiffness),
-        ("shear stiffness ks", "Pa/m", "shear_stiffness_pa_per_m", i.shear_stiffness),
-        ("time step", "s", "dt_s", i.dt),
-        ("steps to the displacement of Fig. 6", "-", "steps_to_measured_displacement", i.curve_time / i.dt),
-        ("gravity", "m/s2", "gravity_m_per_s2", i.gravity),
-    )
-    return [input_row("Table 1", name, unit, printed[key]["value"], value, plane_failure.METHODS) for name, unit, key, value in quantities]
+    shape = (("slope height", "slope_height_m", i.height), ("slope face angle", "face_angle_deg", i.face_angle_deg),
+             ("joint dip", "joint_angle_deg", i.joint_angle_deg))
+    steps = (("steps to the displacement of Fig. 6", "steps_to_measured_displacement", i.curve_time / i.dt),)
+    return rock_inputs("Table 1", (*shape, *jointed_rock(i), *steps), printed, plane_failure.METHODS)
 
 
 def _figure_6(wedge: PlaneFailure, printed: dict) -> list[Row]:

@@ -1,7 +1,7 @@
 """Rows of the comparison for examples 3.3 and 3.4: Tables 2 to 4 and the factors of safety."""
 
 import slopes
-from comparison import Row, Values, input_row, relative
+from comparison import Row, Values, jointed_rock, relative, rock_inputs
 from slopes import BEHAVIOURS, METHODS, Fos, Inputs, JointedSlope, PlanarSlope
 
 # Which printed number each model of example 3.3 explains.
@@ -29,29 +29,8 @@ def known(factors: dict[str, Fos]) -> Values:
 
 
 def _inputs(item: str, i: Inputs, printed: dict, joints: tuple[tuple[str, str, float], ...]) -> list[Row]:
-    quantities = (
-        ("slope height", "slope_height_m", i.height),
-        ("slope face angle", "face_angle_deg", i.face_angle_deg),
-        *joints,
-        ("unit weight", "unit_weight_n_per_m3", i.unit_weight),
-        ("joint friction angle", "friction_angle_deg", i.friction_angle_deg),
-        ("joint cohesion", "cohesion_pa", i.cohesion),
-        ("tensile strength", "tensile_strength_pa", i.tensile_strength),
-        ("normal stiffness kn", "normal_stiffness_pa_per_m", i.normal_stiffness),
-        ("shear stiffness ks", "shear_stiffness_pa_per_m", i.shear_stiffness),
-        ("time step", "dt_s", i.dt),
-        ("gravity", "gravity_m_per_s2", i.gravity),
-    )
-    return [input_row(item, name, _unit_of(key), printed[key]["value"], value, METHODS) for name, key, value in quantities]
-
-
-def _unit_of(key: str) -> str:
-    """The unit that the name of a key ends in."""
-    units = (("_pa_per_m", "Pa/m"), ("_n_per_m3", "N/m3"), ("_m_per_s2", "m/s2"), ("_deg", "deg"), ("_pa", "Pa"), ("_s", "s"), ("_m", "m"))
-    for ending, unit in units:
-        if key.endswith(ending):
-            return unit
-    return "-"
+    shape = (("slope height", "slope_height_m", i.height), ("slope face angle", "face_angle_deg", i.face_angle_deg), *joints)
+    return rock_inputs(item, (*shape, *jointed_rock(i)), printed, METHODS)
 
 
 def _planar(planar: PlanarSlope, printed: dict) -> list[Row]:

@@ -12,8 +12,9 @@
 
 namespace openclose::verification {
 
-/// Size of a series whose springs grow stiffer: 1/kn of one corner and metre of thickness.
+/// Sizes of series whose springs grow stiffer: 1/kn or k of one corner and metre of thickness.
 inline constexpr const char* compliance_name = "compliance_m2_per_n";
+inline constexpr const char* stiffness_name = "stiffness_n_per_m2";
 
 inline constexpr int unknowns = 3;
 using RigidSimulation = Simulation<unknowns>;

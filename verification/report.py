@@ -72,7 +72,12 @@ class Series(dict):
         return self.get((row.case, row.quantity, row.method), [])
 
 
-SIZES = {"dt_s": "dt [s]", "compliance_m2_per_n": "1/kn of a corner [m²/N]", "compliance_m_per_pa": "1/kn of the joint [m/Pa]"}
+SIZES = {
+    "dt_s": "dt [s]",
+    "compliance_m2_per_n": "1/kn of a corner [m²/N]",
+    "stiffness_n_per_m2": "k of a corner [N/m²]",
+    "compliance_m_per_pa": "1/kn of the joint [m/Pa]",
+}
 
 
 def panels(count: int, height: float = 2.6):
@@ -158,7 +163,7 @@ def draw_values(rows: list[Row], file: Path) -> None:
         ax.set_ylabel(f"measured [{unit}]", fontsize=8)
         if ax.get_xscale() == "linear":
             ax.ticklabel_format(useOffset=False)
-            ax.xaxis.set_major_locator(MaxNLocator(5))
+            ax.xaxis.set_major_locator(MaxNLocator(3))
         ax.tick_params(labelsize=7)
         ax.legend(fontsize=7, loc="lower right")
     ax = axes[-1]
@@ -170,6 +175,7 @@ def draw_values(rows: list[Row], file: Path) -> None:
         ax.semilogy([i for i, _ in mine], share, markersize=4, label=method, **OPEN, **style(method))
     ax.axhline(1.0, color="k", linestyle="--", linewidth=1)
     ax.set_ylim(floor * 3e-4, 5)  # room for the legend
+    ax.set_xlim(0.5, len(line) + 0.5)
     ax.xaxis.set_major_locator(MaxNLocator(integer=True))
     ax.set_xlabel("line of the table", fontsize=8)
     ax.set_ylabel("error over what is allowed", fontsize=8)

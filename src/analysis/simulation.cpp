@@ -52,11 +52,13 @@ void Simulation<N>::collect() const {
   loop_is_ahead_ = false;
   loop_->store_blocks(system_);
   for (int b : system_.free_blocks()) output_velocity_[b] = loop_->velocity_at_end(system_.block(b).equation);
-  const double before = stored_contact_energy();
   loop_->store_contacts(contacts_);
+  loop_->store_far_gaps(system_, contacts_);
   max_penetration_ = std::max(max_penetration_, loop_->max_penetration());
   const ExplicitEnergies e = loop_->take_energies();
-  ledger_.contact_springs += stored_contact_energy() - before;
+  const double stored = stored_contact_energy();
+  ledger_.contact_springs += stored - collected_contact_energy_;
+  collected_contact_energy_ = stored;
   ledger_.gravity += e.gravity;
   ledger_.base_motion += e.base_motion;
   ledger_.loads += e.loads;
@@ -150,14 +152,17 @@ void Simulation<N>::detect() {
   const double before = stored_contact_energy();
   contacts_current_ = true;
   if (!detector_.update(system_, joints_, contacts_) || !enforcement_->has_elastic_contacts()) return;
-  const StepProblem<N> p = problem(scene_.step.dt, false);
-  for (Contact& c : contacts_) {
-    const ContactSprings springs = enforcement_->springs(p, c);
-    const ContactForces f = spring_slider(springs, ContactStrength(joints_.joint(c.joint), c), 0.0, 0.0);
-    c.stored_energy = stored_energy(springs, f.normal, springs.initial_shear);
-  }
+  const StepProblem<N> p = present_problem(scene_.step.dt, false);
+  for (Contact& c : contacts_) store_energy(p, c);
   ledger_.redefinition -= stored_contact_energy() - before;
   ledger_.contact_springs += stored_contact_energy() - before;
+}
+
+template <int N>
+void Simulation<N>::store_energy(const StepProblem<N>& problem, Contact& contact) const {
+  const ContactSprings springs = enforcement_->springs(problem, contact);
+  const ContactForces f = spring_slider(springs, ContactStrength(joints_.joint(contact.joint), contact), 0.0, 0.0);
+  contact.stored_energy = stored_energy(springs, f.normal, springs.initial_shear);
 }
 
 template <int N>
@@ -181,6 +186,11 @@ template <int N>
 StepProblem<N> Simulation<N>::problem(double dt, bool statics) {
   contacts();
   move_base(dt, statics);
+  return present_problem(dt, statics);
+}
+
+template <int N>
+StepProblem<N> Simulation<N>::present_problem(double dt, bool statics) const {
   StepProblem<N> p{system_, external_, joints_, contacts_, scene_.method};
   p.dt = dt;
   p.statics = statics;
@@ -302,13 +312,41 @@ void Simulation<N>::accept_contacts(const StepSolution<N>& solution) {
 
 template <int N>
 void Simulation<N>::load_loop() {
-  if (loop_is_loaded_) return;
-  const StepProblem<N> p = problem(scene_.step.dt, false);
-  loop_->load(p);
-  loop_is_loaded_ = true;
-  ++step_counters_.loads;
+  if (loop_is_loaded_ && contacts_current_) return;
+  if (!loop_is_loaded_ || !renew_loop()) {
+    const StepProblem<N> p = problem(scene_.step.dt, false);
+    loop_->load(p);
+    collected_contact_energy_ = stored_contact_energy();
+    loop_is_loaded_ = true;
+    ++step_counters_.loads;
+  }
   double& smallest = step_counters_.smallest_critical_step;
   smallest = smallest > 0.0 ? std::min(smallest, loop_->critical_step()) : loop_->critical_step();
+}
+
+/// Renews the list of contacts under the running loop; false if the loop is to take over everything anew.
+template <int N>
+bool Simulation<N>::renew_loop() {
+  if (!scene_.method.skip_reload || !loop_->can_renew()) return false;
+  loop_->store_blocks(system_);
+  if (detector_.needs_search(system_)) return false;
+  {
+    const Stopwatch watch(stage_times_.detection);
+    loop_->store_contacts(contacts_);
+    contacts_current_ = true;
+    if (!detector_.update(system_, joints_, contacts_)) {
+      loop_->keep();
+      return true;
+    }
+  }
+  const StepProblem<N> p = present_problem(scene_.step.dt, false);
+  for (const DetectionChange& change : detector_.changes()) {
+    for (int i = change.after.begin; i < change.after.end; ++i) store_energy(p, contacts_[i]);
+  }
+  loop_->renew(p, detector_.changes());
+  loop_is_ahead_ = true;  // its energies are
+  ++step_counters_.loads_skipped;
+  return true;
 }
 
 template <int N>
@@ -343,10 +381,7 @@ StepResult Simulation<N>::explicit_step(double h, MassDamping damping) {
   result.accepted = true;
   result.unbalanced_force = loop_->last_unbalanced_force();
   result.lost_strength = loop_->lost_strength();
-  if (loop_->moved_beyond_skin()) {
-    take_back();
-    contacts_current_ = false;
-  }
+  if (loop_->moved_beyond_skin()) contacts_current_ = false;
   return result;
 }
 

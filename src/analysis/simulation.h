@@ -18,6 +18,7 @@ struct StepCounters {
   long iterations = 0;                  ///< linear solves, thrown-away attempts included
   long compliant = 0;                   ///< steps of `hard` whose multipliers did not converge: taken with springs
   long loads = 0;                       ///< times the explicit loop took over the state anew
+  long loads_skipped = 0;               ///< times it took over only contacts that were found anew
   double smallest_critical_step = 0.0;  ///< [s] of explicit steps, 0 if there were none
   double longest_step = 0.0;            ///< [s] of explicit steps
 };
@@ -126,6 +127,9 @@ class Simulation {
   bool loses_strength(const StepSolution<N>& solution) const;
   bool advance_explicitly(double dt);
   void load_loop();
+  bool renew_loop();
+  StepProblem<N> present_problem(double dt, bool statics) const;
+  void store_energy(const StepProblem<N>& problem, Contact& contact) const;
   /// Takes back what the loop has done since; it goes on from its own arrays.
   void collect() const;
   /// The same, and the loop takes over anew before its next step, because the caller may change what it works on.
@@ -150,7 +154,8 @@ class Simulation {
   double time_ = 0.0;
   std::string reason_;
   mutable EnergyLedger ledger_;
-  double start_kinetic_energy_ = 0.0;  ///< [J]
+  double start_kinetic_energy_ = 0.0;              ///< [J]
+  mutable double collected_contact_energy_ = 0.0;  ///< [J] stored when the loop was last collected from or loaded
   mutable double max_penetration_ = 0.0;
   StepCounters step_counters_;
   int failed_attempts_ = 0;  ///< since the last step that was accepted

@@ -336,9 +336,16 @@ class Detector<N>::NarrowPhase {
   }
 
   bool in_block(int block, const Vec2& p) {
-    if (!shapes_.box(block).inflated(2.0 * tolerance::edge_end_m).contains(p)) return false;
+    constexpr double margin = 2.0 * tolerance::edge_end_m;  // what is decided so is the same by the distance below
+    if (!shapes_.box(block).inflated(margin).contains(p)) return false;
+    bool convex = true, outside = false;
     polygon_.clear();
-    for_each_vertex(block, [&](int v) { polygon_.push_back(shapes_.edge(v).start); });
+    for_each_vertex(block, [&](int v) {
+      convex &= !system_.is_reflex(v);
+      outside |= shapes_.edge(v).gap(p) > margin;
+      polygon_.push_back(shapes_.edge(v).start);
+    });
+    if (convex && outside) return false;
     return contains(polygon_, p) || distance_to_boundary(polygon_, p) <= tolerance::edge_end_m;
   }
 
@@ -651,7 +658,7 @@ void Detector<N>::put_in_place(std::vector<Contact>& contacts, bool orphans) {
 template <int N>
 bool Detector<N>::update(const BlockSystem<N>& system, const JointTable& joints, std::vector<Contact>& contacts) {
   const bool all = forgotten_ || !skips_.search || !skips_.narrow_phase;
-  const bool searches = forgotten_ || !skips_.search || moved_beyond_search_skin(system);
+  const bool searches = needs_search(system);
   forgotten_ = false;
   born_.clear();
   gone_.clear();
@@ -676,7 +683,6 @@ bool Detector<N>::update(const BlockSystem<N>& system, const JointTable& joints,
   for (const int pair : due_pairs_) redo(joints, system, pair, narrow, contacts);
   if (!first_) pass_on_history(system, contacts);
   put_in_place(contacts, orphans);
-  searched_ = searches;
   first_ = false;
   return true;
 }

@@ -88,10 +88,11 @@ class Detector {
   /// ductile.
   bool update(const BlockSystem<N>& system, const JointTable& joints, std::vector<Contact>& contacts);
 
-  /// What the last update() that was true has renewed, in the order of the list, pairs without contacts before and after left out. After a search
-  /// contacts may also have gone whose blocks are no pair any more.
+  /// What the last update() that was true has renewed, in the order of the list, pairs without contacts before and after left out. Where it has
+  /// searched, contacts may also have gone whose blocks are no pair any more.
   const std::vector<DetectionChange>& changes() const { return changes_; }
-  bool searched() const { return searched_; }  ///< the last update() that was true
+  /// Whether the next update() searches for pairs.
+  bool needs_search(const BlockSystem<N>& system) const { return forgotten_ || !skips_.search || moved_beyond_search_skin(system); }
 
   /// Pairs of blocks whose boxes, with reach and skin, overlap, at least one of them free; renewed only when something moved beyond the skin.
   const std::vector<std::pair<int, int>>& candidate_pairs() const { return pairs_; }
@@ -139,7 +140,6 @@ class Detector {
   std::vector<Range> ranges_;      ///< of the pairs, in the list as the last update() left it
   std::vector<Unknowns> searched_at_;
   std::vector<DetectionChange> changes_;
-  bool searched_ = false;
   DetectionCounters counters_;
 
   // Working memory of update().

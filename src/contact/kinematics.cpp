@@ -1,36 +1,24 @@
 #include "openclose/contact/kinematics.h"
 
-#include <cmath>
-
 namespace openclose {
 
 template <int N>
-ContactKinematics<N>::ContactKinematics(const BlockSystem<N>& system, const Contact& contact, const Unknowns& d_vertex, const Unknowns& d_edge) {
-  const RotationKind kind = system.rotation_kind();
-  const Vec2& arm_p = system.arm(contact.vertex);
-  const Vec2& arm_e = system.arm(contact.edge);
-  const Vec2 p = system.centroid(contact.vertex_block) + arm_p;
-  const Vec2 e = system.centroid(contact.edge_block) + arm_e;
-  const Vec2 tangent_0 = (system.arm(system.next(contact.edge)) - arm_e).normalized();
-  const Vec2 normal_0 = -perpendicular(tangent_0);
+ContactKinematics<N>::ContactKinematics(const BlockSystem<N>& system, const Contact& contact, const Unknowns& d_vertex, const Unknowns& d_edge)
+    : ContactKinematics(ContactPose<N>(ContactStart<N>(system, contact), BlockMove<N>(d_vertex, system.rotation_kind()),
+                                       BlockMove<N>(d_edge, system.rotation_kind()))) {}
 
-  const Vec2 move_p = Motion<N>::displacement(d_vertex, arm_p, kind);
-  const Vec2 move_e = Motion<N>::displacement(d_edge, arm_e, kind);
-  // A linearly rotated edge also grows; its direction turns by the arc tangent.
-  const double turn = kind == RotationKind::exact ? Motion<N>::rotation(d_edge) : std::atan(Motion<N>::rotation(d_edge));
-  const Vec2 normal_change = Motion<N>::turned_by(turn, normal_0, RotationKind::exact);
-  normal = normal_0 + normal_change;
-  tangent = perpendicular(normal);
-  gap_change = normal_change.dot(p - e) + normal.dot(move_p - move_e);
-  slip_change = perpendicular(normal_change).dot(p - e) + tangent.dot(move_p - move_e);
-
-  vertex_arm = arm_p + Motion<N>::turned_by(Motion<N>::rotation(d_vertex), arm_p, kind);
-  edge_arm = (p - system.centroid(contact.edge_block)) + (move_p - Motion<N>::translation(d_edge));
-  normal_vertex = Motion<N>::gradient(vertex_arm, normal);
-  normal_edge = -Motion<N>::gradient(edge_arm, normal);
-  shear_vertex = Motion<N>::gradient(vertex_arm, tangent);
-  shear_edge = -Motion<N>::gradient(edge_arm, tangent);
-}
+template <int N>
+ContactKinematics<N>::ContactKinematics(const ContactPose<N>& pose)
+    : normal(pose.normal),
+      tangent(pose.tangent()),
+      vertex_arm(pose.vertex_arm),
+      edge_arm(pose.edge_arm),
+      gap_change(pose.gap_change),
+      slip_change(pose.slip_change),
+      normal_vertex(Motion<N>::gradient(vertex_arm, normal)),
+      normal_edge(-Motion<N>::gradient(edge_arm, normal)),
+      shear_vertex(Motion<N>::gradient(vertex_arm, tangent)),
+      shear_edge(-Motion<N>::gradient(edge_arm, tangent)) {}
 
 template <int N>
 typename ContactKinematics<N>::Hessian ContactKinematics<N>::hessian(const Vec2& m) const {

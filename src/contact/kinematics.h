@@ -6,10 +6,126 @@
 // at p: action and reaction share one line, so that contacts never change the angular momentum.
 #pragma once
 
+#include <cmath>
+
 #include "openclose/contact/contact.h"
 #include "openclose/model/block_system.h"
 
 namespace openclose {
+
+/// Motion of one block within a step, its sines computed once for all its contacts.
+template <int N>
+struct BlockMove {
+  Vec2 translation = Vec2::Zero();  ///< [m]
+  double way = 0.0;                 ///< [m] its length
+  double turn = 0.0;                ///< [rad] magnitude of the rotation
+  double sine = 0.0;                ///< of the rotation
+  double versine = 0.0;             ///< 1 - cosine, free of cancellation
+  double edge_sine = 0.0;           ///< of the angle by which the edges' directions turn
+  double edge_versine = 0.0;
+
+  BlockMove() = default;  ///< no motion
+  BlockMove(const typename Motion<N>::Unknowns& d, RotationKind kind) : translation(Motion<N>::translation(d)), way(translation.norm()) {
+    const double angle = Motion<N>::rotation(d);
+    turn = std::abs(angle);
+    // A linearly rotated edge also grows; its direction turns by the arc tangent.
+    const double half_turn = 0.5 * (kind == RotationKind::exact ? angle : std::atan(angle)), half = std::sin(half_turn);
+    edge_sine = 2.0 * half * std::cos(half_turn);
+    edge_versine = 2.0 * half * half;
+    sine = kind == RotationKind::exact ? edge_sine : angle;
+    versine = kind == RotationKind::exact ? edge_versine : 0.0;
+  }
+
+  /// [m] no point of the block that lies within `reach` of the centroid moves farther than this.
+  double bound(double reach) const { return way + reach * turn; }
+
+  Vec2 displacement(const Vec2& arm) const { return translation + (sine * perpendicular(arm) - versine * arm); }
+};
+
+/// A contact at the start of a step.
+template <int N>
+struct ContactStart {
+  Vec2 normal;
+  Vec2 vertex_arm;  ///< [m] from the centroid of the vertex's block to p
+  Vec2 end_arm;     ///< [m] from the centroid of the edge's block to e
+  Vec2 lever;       ///< [m] from e to p
+
+  ContactStart(const BlockSystem<N>& system, const Contact& contact)
+      : vertex_arm(system.arm(contact.vertex)),
+        end_arm(system.arm(contact.edge)),
+        lever((system.centroid(contact.vertex_block) + vertex_arm) - (system.centroid(contact.edge_block) + end_arm)) {
+    normal = -perpendicular((system.arm(system.next(contact.edge)) - end_arm).normalized());
+  }
+};
+
+/// A contact at a trial position.
+template <int N>
+struct ContactPose {
+  Vec2 normal;
+  Vec2 vertex_arm, edge_arm;  ///< [m] from the centroids of the two blocks to p
+  double gap_change = 0.0;    ///< [m] since the start of the step, free of cancellation
+  double slip_change = 0.0;   ///< [m]
+
+  ContactPose() = default;
+  ContactPose(const ContactStart<N>& start, const BlockMove<N>& vertex, const BlockMove<N>& edge) { set(start, vertex, edge); }
+
+  /// In single numbers: vectors of two cost more in shuffling than they save.
+  void set(const ContactStart<N>& start, const BlockMove<N>& vertex, const BlockMove<N>& edge) {
+    const double n0x = start.normal.x(), n0y = start.normal.y(), lx = start.lever.x(), ly = start.lever.y();
+    const double ax = start.vertex_arm.x(), ay = start.vertex_arm.y(), ex = start.end_arm.x(), ey = start.end_arm.y();
+    const double dnx = -edge.edge_sine * n0y - edge.edge_versine * n0x, dny = edge.edge_sine * n0x - edge.edge_versine * n0y;
+    const double nx = n0x + dnx, ny = n0y + dny;
+    const double turn_x = -vertex.sine * ay - vertex.versine * ax, turn_y = vertex.sine * ax - vertex.versine * ay;
+    // p against the centroid of the edge's block, then against e.
+    const double shift_x = (vertex.translation.x() - edge.translation.x()) + turn_x,
+                 shift_y = (vertex.translation.y() - edge.translation.y()) + turn_y;
+    const double apart_x = shift_x + (edge.sine * ey + edge.versine * ex), apart_y = shift_y - (edge.sine * ex - edge.versine * ey);
+    gap_change = (dnx * lx + dny * ly) + (nx * apart_x + ny * apart_y);
+    slip_change = (dnx * ly - dny * lx) + (nx * apart_y - ny * apart_x);
+    normal = {nx, ny};
+    vertex_arm = {ax + turn_x, ay + turn_y};
+    edge_arm = {(ex + lx) + shift_x, (ey + ly) + shift_y};
+  }
+  Vec2 tangent() const { return perpendicular(normal); }
+};
+
+/// Stiffness of a contact: the four blocks of minus the derivative of the generalised forces by the unknowns. The force f acts at p on the vertex's
+/// block and -f on the edge's, at these arms; `by_shift` is minus its derivative by the displacement of p against the edge's block, `turning` the
+/// part of it that turns with that block (for second derivatives; zero leaves them out).
+template <int N>
+struct ContactStiffness;
+
+template <>
+struct ContactStiffness<3> {
+  using Block = Motion<3>::Matrix;
+  double shift_xx, shift_xy, shift_yx, shift_yy;  ///< [N/m]
+  Vec2 vertex_arm, edge_arm;                      ///< [m]
+  Vec2 turning;                                   ///< [N]
+
+  void add_to_vertex(Block& k) const { add(k, 1.0, vertex_arm, vertex_arm, turning.dot(vertex_arm), Vec2::Zero(), Vec2::Zero()); }
+  void add_to_edge(Block& k) const {
+    const Vec2 turned = perpendicular(turning);
+    add(k, 1.0, edge_arm, edge_arm, turning.dot(edge_arm), turned, turned);
+  }
+  void add_to_vertex_edge(Block& k) const { add(k, -1.0, vertex_arm, edge_arm, -turning.dot(vertex_arm), -perpendicular(turning), Vec2::Zero()); }
+  void add_to_edge_vertex(Block& k) const { add(k, -1.0, edge_arm, vertex_arm, -turning.dot(vertex_arm), Vec2::Zero(), -perpendicular(turning)); }
+
+ private:
+  /// sign J(force_arm)' shift J(path_arm), J(r) = [1, perpendicular(r)], and the second derivatives: corner, rotation column, rotation row.
+  void add(Block& k, double sign, const Vec2& force_arm, const Vec2& path_arm, double corner, const Vec2& column, const Vec2& row) const {
+    const double column_x = shift_xy * path_arm.x() - shift_xx * path_arm.y(), column_y = shift_yy * path_arm.x() - shift_yx * path_arm.y();
+    const double row_x = shift_yx * force_arm.x() - shift_xx * force_arm.y(), row_y = shift_yy * force_arm.x() - shift_xy * force_arm.y();
+    k(0, 0) += sign * shift_xx;
+    k(1, 0) += sign * shift_yx;
+    k(2, 0) += sign * row_x + row.x();
+    k(0, 1) += sign * shift_xy;
+    k(1, 1) += sign * shift_yy;
+    k(2, 1) += sign * row_y + row.y();
+    k(0, 2) += sign * column_x + column.x();
+    k(1, 2) += sign * column_y + column.y();
+    k(2, 2) += sign * (force_arm.x() * column_y - force_arm.y() * column_x) + corner;
+  }
+};
 
 template <int N>
 struct ContactKinematics {
@@ -25,6 +141,7 @@ struct ContactKinematics {
 
   /// Kinematics after the two blocks have moved by d_vertex, d_edge from the system's present state.
   ContactKinematics(const BlockSystem<N>& system, const Contact& contact, const Unknowns& d_vertex, const Unknowns& d_edge);
+  explicit ContactKinematics(const ContactPose<N>& pose);
 
   /// Second derivatives of m . (p - e), m turning with the edge's block: blocks (vertex, vertex), (vertex, edge), (edge, edge).
   struct Hessian {

@@ -282,7 +282,7 @@ class Cut {
       if (edges_[e].boundary) {
         loose.insert(ring_of_source(owners_[edges_[e].owners]) - 1);
       } else if (seen.insert(component[e]).second) {
-        result_.enclosed.push_back(0.5 * (nodes_[edges_[e].from] + nodes_[edges_[e].to]));
+        result_.enclosed.emplace_back(0.5 * (nodes_[edges_[e].from] + nodes_[edges_[e].to]));
       }
     }
     result_.loose_holes.assign(loose.begin(), loose.end());

@@ -198,7 +198,7 @@ class Tracer {
 Vec2 direction(double angle) {
   // Twice the rounding of pi.
   constexpr double zero = 3e-16;
-  const Vec2 unit(std::cos(angle), std::sin(angle));
+  Vec2 unit(std::cos(angle), std::sin(angle));
   if (std::abs(unit.x()) < zero) return {0.0, unit.y() > 0.0 ? 1.0 : -1.0};
   if (std::abs(unit.y()) < zero) return {unit.x() > 0.0 ? 1.0 : -1.0, 0.0};
   return unit;

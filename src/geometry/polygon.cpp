@@ -58,7 +58,7 @@ bool folded(const Vec2& before, const Vec2& corner, const Vec2& after) {
 }  // namespace
 
 PolygonProperties polygon_properties(const Polygon& polygon) {
-  const Vec2 origin = polygon.front();
+  const Vec2& origin = polygon.front();
   double twice_area = 0.0;
   Vec2 moment = Vec2::Zero();
   for (int i = 0; i < size_of(polygon); ++i) {

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "openclose/core/tolerance.h"
-#include "openclose/integrator/critical_step.h"
 
 namespace openclose {
 namespace {
@@ -13,13 +12,15 @@ namespace {
 constexpr double small_angle = 0.01;
 /// [-] Automatic damping: power taken over the rate of change of kinetic energy, as in UDEC.
 constexpr double power_ratio = 0.5;
-/// [-] Factor on its coefficient from one step to the next, and the value it starts from times the step. A hundredfold change takes 47 steps, a fraction
-/// of the slowest vibration of any system of many blocks.
+/// [-] Factor on its coefficient from one step to the next, and the value it starts from times the step. A hundredfold change takes 47 steps, a
+/// fraction of the slowest vibration of any system of many blocks.
 constexpr double adaptation = 1.1;
 constexpr double first_viscous = 0.01;
 
 /// [-] Of the skin: with less of it used up the list is kept and the way counted anew from there.
 constexpr double renew_fraction = 0.5;
+/// [-] Contacts are left out as too far apart until blocks are this much faster than when that was decided.
+constexpr double more_speed = 1.5;
 
 double square(double x) {
   return x * x;
@@ -37,7 +38,38 @@ void CentralDifference<N>::load(const StepProblem<N>& problem) {
   load_blocks(problem);
   load_points(problem);
   load_contacts(problem);
-  moved_ = max_penetration_ = 0.0;
+  max_penetration_ = 0.0;
+  keep();
+}
+
+template <int N>
+bool CentralDifference<N>::can_renew() const {
+  return needed_approach(1.0) <= approach_;
+}
+
+template <int N>
+void CentralDifference<N>::renew(const StepProblem<N>& problem, const std::vector<DetectionChange>& changes) {
+  for (const DetectionChange& change : changes) {
+    for (int i = change.before.begin; i < change.before.end; ++i) {
+      if (link_of_[i] >= 0) take_link(link_of_[i]);
+    }
+  }
+  renumber(changes);
+  for (const DetectionChange& change : changes) {
+    for (int i = change.after.begin; i < change.after.end; ++i) {
+      energies_.redefinition -= problem.contacts[i].stored_energy;
+      add_link(problem, i);
+    }
+  }
+  close_holes();
+  keep();
+}
+
+template <int N>
+void CentralDifference<N>::keep() {
+  moved_ = 0.0;
+  kept_at_.resize(inertia_.size());
+  for (std::size_t i = 0; i < inertia_.size(); ++i) kept_at_[i] = {poses_[i].x, poses_[i].y, rates_[i].angle};
 }
 
 template <int N>
@@ -45,19 +77,20 @@ void CentralDifference<N>::load_blocks(const StepProblem<N>& problem) {
   const BlockSystem<N>& system = problem.system;
   const std::size_t n = system.free_blocks().size();
   poses_.assign(n + 1, Pose());
-  stored_.assign(n, Pose());
-  stored_angle_.assign(n, 0.0);
   rates_.assign(n + 1, Rate());
   previous_rates_.assign(n + 1, Rate());
+  next_rates_.assign(n + 1, Rate());
   forces_.assign(n + 1, Rate());
   inertia_.clear();
+  loaded_at_.clear();
   blocks_ = system.free_blocks();
   for (int b : blocks_) {
     const auto& block = system.block(b);
     const Unknowns v = system.velocity(b), weight = problem.external.weight(system, b);
     rates_[block.equation] = {v[0], v[1], v[2], 0.0};
-    inertia_.push_back({block.mass[0], block.mass[2], 1.0 / block.mass[0], 1.0 / block.mass[2], block.rotation_locked ? 0.0 : 1.0, weight[0], weight[1],
-                        block.radius});
+    loaded_at_.push_back(system.displacement(b));
+    inertia_.push_back({block.mass[0], block.mass[2], 1.0 / block.mass[0], 1.0 / block.mass[2], block.rotation_locked ? 0.0 : 1.0, weight[0],
+                        weight[1], block.radius});
   }
 }
 
@@ -85,46 +118,184 @@ void CentralDifference<N>::load_points(const StepProblem<N>& problem) {
 
 template <int N>
 void CentralDifference<N>::load_contacts(const StepProblem<N>& problem) {
-  const BlockSystem<N>& system = problem.system;
-  const int fixed_slot = system.free_count();
-  const auto slot = [&](int b) { return system.block(b).equation >= 0 ? system.block(b).equation : fixed_slot; };
   links_.clear();
-  far_.clear();
+  rest_.clear();
+  holes_.clear();
+  link_of_.assign(problem.contacts.size(), -1);
   damped_ = false;
   begin_forces();
   add_point_forces(false);
-  // Until the next load blocks approach each other by the skin and by the step with which they leave it, whose length and speed are about the last ones.
+  approach_ = needed_approach(more_speed);
+  critical_step_.begin(problem);
+  for (std::size_t i = 0; i < problem.contacts.size(); ++i) add_link(problem, static_cast<int>(i));
+}
+
+/// [m] By which blocks may approach each other before their contacts are renewed: by the skin when their pair is last passed over, by the skin until
+/// the pairs are looked at again, and by the step with which they leave it, whose length and speed are about the last ones.
+template <int N>
+double CentralDifference<N>::needed_approach(double more_speed) const {
   double fastest = 0.0;
   for (std::size_t i = 0; i < inertia_.size(); ++i) {
-    fastest = std::max(fastest, std::hypot(rates_[i].x, rates_[i].y) + inertia_[i].radius * std::abs(rates_[i].turn));
+    fastest = std::max(fastest, square(rates_[i].x) + square(rates_[i].y) + square(inertia_[i].radius * rates_[i].turn));
   }
-  const double approach = tolerance::contact_skin_m + 2.0 * h_ * fastest;
-  critical_step_ = openclose::critical_step(problem, approach);
-  for (std::size_t i = 0; i < problem.contacts.size(); ++i) {
-    const Contact& c = problem.contacts[i];
-    const JointProperties& joint = problem.joints.joint(c.joint);
-    const ContactDashpots dashpots(joint, c.length, system.reduced_mass(c.vertex_block, c.edge_block));
-    const Vec2 arm = system.arm(c.vertex), across = system.position(c.vertex_block, c.vertex) - system.centroid(c.edge_block);
-    const Vec2 normal = -perpendicular((system.arm(system.next(c.edge)) - system.arm(c.edge)).normalized());
-    Link link{slot(c.vertex_block), slot(c.edge_block), arm.x(), arm.y(), across.x(), across.y(), normal.x(), normal.y(),
-              joint.normal_stiffness * c.length, joint.shear_stiffness * c.length, 1.0 / (joint.shear_stiffness * c.length), dashpots.normal,
-              dashpots.shear, c.gap, ContactStrength(joint, c), c.gap, 0.0, c.elastic_slip, 0.0, 0.0, 0.0, 0.0, c.status, c.bonded,
-              !problem.keep_bonds && can_lose_strength(joint, c.bonded), c.joint, static_cast<int>(i)};
-    const bool at_rest = c.status == ContactStatus::open && c.elastic_slip == 0.0;
-    if (at_rest && !may_close(link.strength, link.normal_stiffness, c.gap, approach)) {
-      far_.push_back(link);
-      continue;
-    }
-    damped_ |= joint.damping_ratio > 0.0;
-    const Place at = place(link);
-    carry_now(link, at);
-    // What the list has moved apart is open before anything moves.
-    if (link.gap > link.strength.tension / link.normal_stiffness) link.status = ContactStatus::open;
-    // What is found closed carries from now on, as the ledger of its renewal says.
-    if (link.status == ContactStatus::open && link.normal > 0.0) link.status = ContactStatus::sticking;
-    push(link, at);
+  return 2.0 * tolerance::contact_skin_m + 2.0 * more_speed * h_ * std::sqrt(2.0 * fastest);
+}
+
+/// Takes a contact over, unless it is too far apart.
+template <int N>
+void CentralDifference<N>::add_link(const StepProblem<N>& problem, int contact) {
+  const BlockSystem<N>& system = problem.system;
+  const Contact& c = problem.contacts[contact];
+  const TabulatedJoint& joint = problem.joints.joint(c.joint);
+  const ContactStrength strength(joint, c);
+  const double normal_stiffness = joint.normal_stiffness * c.length, shear_stiffness = joint.shear_stiffness * c.length;
+  const bool at_rest = c.status == ContactStatus::open && c.elastic_slip == 0.0;
+  link_of_[contact] = -1;
+  if (at_rest && !may_close(strength, normal_stiffness, c.gap, approach_)) return;
+
+  const auto slot = [&](int b) { return system.block(b).equation >= 0 ? system.block(b).equation : system.free_count(); };
+  const int at_vertex = slot(c.vertex_block), at_edge = slot(c.edge_block);
+  const Pose &v = poses_[at_vertex], &e = poses_[at_edge];
+  const auto turned_back = [](const Pose& pose, const Vec2& r) -> Vec2 { return r + (pose.cos_minus_1 * r - pose.sin * perpendicular(r)); };
+  const Vec2 arm_now = system.arm(c.vertex), arm = turned_back(v, arm_now);
+  const Vec2 normal_now = -perpendicular((system.arm(system.next(c.edge)) - system.arm(c.edge)).normalized()), normal = turned_back(e, normal_now);
+  const Vec2 across_now = system.position(c.vertex_block, c.vertex) - system.centroid(c.edge_block);
+  const Vec2 across = across_now - (arm_now - arm) - Vec2(v.x - e.x, v.y - e.y);
+  const ContactDashpots dashpots =
+      joint.damping_ratio > 0.0 ? ContactDashpots(joint, c.length, system.reduced_mass(c.vertex_block, c.edge_block)) : ContactDashpots();
+  damped_ |= joint.damping_ratio > 0.0;
+  Link link{at_vertex,
+            at_edge,
+            arm.x(),
+            arm.y(),
+            across.x(),
+            across.y(),
+            normal.x(),
+            normal.y(),
+            normal_stiffness,
+            shear_stiffness,
+            1.0 / shear_stiffness,
+            dashpots.normal,
+            dashpots.shear,
+            0.0,
+            strength,
+            c.gap,
+            0.0,
+            c.elastic_slip,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            c.status,
+            c.bonded,
+            !problem.keep_bonds && can_lose_strength(joint, c.bonded)};
+  Place at = place(link);
+  link.loaded_gap = c.gap - at.gap;
+  at.gap = c.gap;
+  link.slip = at.slip;
+  carry_now(link, at);
+  // What the list has moved apart is open before anything moves.
+  if (link.gap > link.strength.tension / link.normal_stiffness) link.status = ContactStatus::open;
+  // What is found closed carries from now on, as the ledger of its renewal says, even where its dashpot outweighs the spring.
+  if (link.status == ContactStatus::open && link.elastic_normal != 0.0) link.status = ContactStatus::sticking;
+  push(link, at);
+
+  const auto share = [&](int b, int other) {
+    const bool free = system.block(b).equation >= 0 && system.block(other).equation >= 0;
+    return free ? 1.0 + system.block(b).mass[0] / system.block(other).mass[0] : 1.0;
+  };
+  const Vec2 normal_at_vertex = turned_back(v, normal_now), edge_arm = turned_back(e, across_now);
+  const LinkRest rest{c.joint,
+                      contact,
+                      normal_at_vertex.x(),
+                      normal_at_vertex.y(),
+                      edge_arm.x(),
+                      edge_arm.y(),
+                      share(c.vertex_block, c.edge_block),
+                      share(c.edge_block, c.vertex_block)};
+  add_parts(link, rest, 1.0);
+  if (holes_.empty()) {
+    link_of_[contact] = static_cast<int>(links_.size());
     links_.push_back(link);
+    rest_.push_back(rest);
+  } else {
+    link_of_[contact] = holes_.back();
+    links_[holes_.back()] = link;
+    rest_[holes_.back()] = rest;
+    holes_.pop_back();
   }
+}
+
+template <int N>
+void CentralDifference<N>::add_parts(const Link& link, const LinkRest& rest, double sign) {
+  const int fixed_slot = static_cast<int>(inertia_.size());
+  const auto part = [&](int slot, double share, const Vec2& normal, const Vec2& arm) {
+    if (slot == fixed_slot) return;
+    critical_step_.add({slot, share, normal, arm, link.normal_stiffness, link.shear_stiffness, link.normal_dashpot, link.shear_dashpot}, sign);
+  };
+  part(link.vertex_slot, rest.vertex_share, {rest.normal_x, rest.normal_y}, {link.arm_x, link.arm_y});
+  part(link.edge_slot, rest.edge_share, {link.normal_x, link.normal_y}, {rest.edge_arm_x, rest.edge_arm_y});
+}
+
+/// Takes a contact, with its force and energy, out of the sums; its place is free.
+template <int N>
+void CentralDifference<N>::take_link(int slot) {
+  Link& link = links_[slot];
+  energies_.redefinition += stored_energy(link);
+  add_parts(link, rest_[slot], -1.0);
+  const Place at = place(link);
+  link.normal = -link.normal;
+  link.shear = -link.shear;
+  push(link, at);
+  holes_.push_back(slot);
+}
+
+template <int N>
+void CentralDifference<N>::renumber(const std::vector<DetectionChange>& changes) {
+  const bool moved = std::any_of(changes.begin(), changes.end(),
+                                 [](const DetectionChange& c) { return c.before.begin != c.after.begin || c.before.end != c.after.end; });
+  if (!moved) return;
+  renumbered_.clear();
+  int done = 0;
+  const auto carry_on_to = [&](int end) { renumbered_.insert(renumbered_.end(), link_of_.begin() + done, link_of_.begin() + end); };
+  for (const DetectionChange& change : changes) {
+    carry_on_to(change.before.begin);
+    renumbered_.resize(renumbered_.size() + change.after.size(), -1);
+    done = change.before.end;
+  }
+  carry_on_to(static_cast<int>(link_of_.size()));
+  link_of_.swap(renumbered_);
+  for (std::size_t i = 0; i < link_of_.size(); ++i) {
+    if (link_of_[i] >= 0) rest_[link_of_[i]].contact = static_cast<int>(i);
+  }
+}
+
+/// The last links go where places are free.
+template <int N>
+void CentralDifference<N>::close_holes() {
+  std::sort(holes_.begin(), holes_.end());
+  while (!holes_.empty()) {
+    const int last = static_cast<int>(links_.size()) - 1;
+    if (holes_.back() != last) {
+      // The highest place that is free lies below the last link: the lowest takes it.
+      const int hole = holes_.front();
+      links_[hole] = links_[last];
+      rest_[hole] = rest_[last];
+      link_of_[rest_[hole].contact] = hole;
+      holes_.erase(holes_.begin());
+    } else {
+      holes_.pop_back();
+    }
+    links_.pop_back();
+    rest_.pop_back();
+  }
+}
+
+/// [J] In the springs of a contact; the shear spring of one that has just opened lets go in the next step.
+template <int N>
+double CentralDifference<N>::stored_energy(const Link& link) {
+  const double closure = link.status == ContactStatus::open ? 0.0 : link.gap;
+  return 0.5 * (link.normal_stiffness * closure * closure + link.shear_stiffness * link.stretch * link.stretch);
 }
 
 template <int N>
@@ -213,7 +384,7 @@ bool CentralDifference<N>::move(double h, double span, const Vec2& base, double 
   for (std::size_t i = 0; i < n; ++i) {
     const Inertia& m = inertia_[i];
     const Rate &f = forces_[i], &v = rates_[i];
-    Rate& next = previous_rates_[i];
+    Rate& next = next_rates_[i];
     next.x = (keep * v.x + span * (damped(f.x - m.mass * base.x(), v.x) * m.per_mass)) * per_viscous;
     next.y = (keep * v.y + span * (damped(f.y - m.mass * base.y(), v.y) * m.per_mass)) * per_viscous;
     next.turn = m.turns * (keep * v.turn + span * (damped(f.turn, v.turn) * m.per_moment)) * per_viscous;
@@ -222,10 +393,7 @@ bool CentralDifference<N>::move(double h, double span, const Vec2& base, double 
     unbalanced = std::max(unbalanced, force_squared(i));
   }
   const double farthest = h * std::sqrt(2.0 * fastest);
-  if (!(farthest <= limit)) {
-    previous_rates_ = rates_;
-    return false;
-  }
+  if (!(farthest <= limit)) return false;
   // Two blocks that move against each other.
   moved_ += 2.0 * farthest;
   unbalanced_ = unbalanced;
@@ -236,14 +404,15 @@ bool CentralDifference<N>::move(double h, double span, const Vec2& base, double 
     const Inertia& m = inertia_[i];
     const Rate &force = forces_[i], &v = rates_[i];
     const Rate f{force.x - m.mass * base.x(), force.y - m.mass * base.y(), force.turn, 0.0};
-    Rate& next = previous_rates_[i];
+    Rate& next = next_rates_[i];
     const double mean_x = 0.5 * (v.x + next.x), mean_y = 0.5 * (v.y + next.y), mean_turn = 0.5 * (v.turn + next.turn);
     const double gravity = span * (m.weight_x * mean_x + m.weight_y * mean_y);
     const double by_base = -span * m.mass * (base.x() * mean_x + base.y() * mean_y);
     const double work = span * (f.x * mean_x + f.y * mean_y + f.turn * mean_turn);
     const double kinetic = m.mass * ((next.x - v.x) * mean_x + (next.y - v.y) * mean_y) + m.moment * (next.turn - v.turn) * mean_turn;
     if (alpha > 0.0) {
-      sum.mass_damping += span * alpha * (std::abs(f.x) * sign(v.x) * mean_x + std::abs(f.y) * sign(v.y) * mean_y + std::abs(f.turn) * sign(v.turn) * mean_turn);
+      sum.mass_damping +=
+          span * alpha * (std::abs(f.x) * sign(v.x) * mean_x + std::abs(f.y) * sign(v.y) * mean_y + std::abs(f.turn) * sign(v.turn) * mean_turn);
     } else if (viscous_ > 0.0) {
       sum.mass_damping += span * viscous_ * (m.mass * (mean_x * mean_x + mean_y * mean_y) + m.moment * mean_turn * mean_turn);
     }
@@ -271,7 +440,8 @@ bool CentralDifference<N>::move(double h, double span, const Vec2& base, double 
   energies_.mass_damping += sum.mass_damping;
   energies_.turnover += sum.turnover;
   if (viscous_ > 0.0) adapt(sum.mass_damping, kinetic_change, h);
-  rates_.swap(previous_rates_);
+  previous_rates_.swap(rates_);
+  rates_.swap(next_rates_);
   h_ = h;
   span_ = span;
   return true;
@@ -302,6 +472,11 @@ void CentralDifference<N>::follow_links() {
   double friction = 0.0, damping = 0.0, scheme = 0.0, deepest = max_penetration_;
   for (Link& link : links_) {
     const Place at = place(link);
+    if (rests(link) && is_open(link.strength, -link.normal_stiffness * at.gap)) {
+      link.gap = at.gap;
+      link.slip = at.slip;
+      continue;
+    }
     const double gap_change = at.gap - link.gap, slip = at.slip - link.slip;
     const double memory = -link.shear_stiffness * (link.stretch + slip);
     CarriedForces f;
@@ -330,7 +505,7 @@ void CentralDifference<N>::follow_links() {
       link.viscous_shear = f.shear - f.elastic_shear;
     }
     if (f.status != ContactStatus::open) deepest = std::max(deepest, -at.gap);
-    if (link.breakable) lose_strength(link, at);
+    if (link.breakable) lose_strength(link, joints_->joint(rest_[&link - links_.data()].joint), at);
     push(link, at);
   }
   energies_.friction += friction;
@@ -340,8 +515,7 @@ void CentralDifference<N>::follow_links() {
 }
 
 template <int N>
-void CentralDifference<N>::lose_strength(Link& link, const Place& at) {
-  const JointProperties& joint = joints_->joint(link.joint);
+void CentralDifference<N>::lose_strength(Link& link, const JointProperties& joint, const Place& at) {
   if (stays_bonded(joint, true, link.status)) return;
   lost_strength_ = true;
   link.bonded = link.breakable = false;
@@ -359,7 +533,9 @@ bool CentralDifference<N>::moved_beyond_skin() {
   // The way may have been longer than where it has led to.
   double farthest = 0.0;
   for (std::size_t i = 0; i < inertia_.size(); ++i) {
-    farthest = std::max(farthest, std::hypot(poses_[i].x, poses_[i].y) + inertia_[i].radius * std::abs(rates_[i].angle));
+    const Way& from = kept_at_[i];
+    farthest = std::max(farthest, std::sqrt(square(poses_[i].x - from.x) + square(poses_[i].y - from.y)) +
+                                      inertia_[i].radius * std::abs(rates_[i].angle - from.angle));
   }
   moved_ = 2.0 * farthest;
   return moved_ > renew_fraction * tolerance::contact_skin_m;
@@ -391,31 +567,38 @@ typename CentralDifference<N>::Unknowns CentralDifference<N>::velocity_at_end(in
 }
 
 template <int N>
-void CentralDifference<N>::store_blocks(BlockSystem<N>& system) {
+void CentralDifference<N>::store_blocks(BlockSystem<N>& system) const {
   for (std::size_t i = 0; i < blocks_.size(); ++i) {
     const Pose& pose = poses_[i];
     const Rate& v = rates_[i];
-    system.advance(blocks_[i], {pose.x - stored_[i].x, pose.y - stored_[i].y, v.angle - stored_angle_[i]});
+    system.move_to(blocks_[i], loaded_at_[i] + Unknowns(pose.x, pose.y, v.angle));
     system.set_velocity(blocks_[i], {v.x, v.y, v.turn});
-    stored_[i] = pose;
-    stored_angle_[i] = v.angle;
   }
 }
 
 template <int N>
 void CentralDifference<N>::store_contacts(std::vector<Contact>& contacts) const {
-  for (const Link& link : links_) {
-    Contact& c = contacts[link.contact];
-    const bool open = link.status == ContactStatus::open;
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    const Link& link = links_[i];
+    Contact& c = contacts[rest_[i].contact];
     c.gap = link.gap;
     c.status = link.status;
     c.bonded = link.bonded;
     c.elastic_slip = link.stretch;
     c.normal_force = link.normal;
     c.shear_force = link.shear;
-    c.stored_energy = open ? 0.0 : 0.5 * (link.normal_stiffness * link.gap * link.gap + link.shear_stiffness * link.stretch * link.stretch);
+    c.stored_energy = stored_energy(link);
   }
-  for (const Link& link : far_) contacts[link.contact].gap = place(link).gap;
+}
+
+template <int N>
+void CentralDifference<N>::store_far_gaps(const BlockSystem<N>& system, std::vector<Contact>& contacts) const {
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    if (link_of_[i] >= 0) continue;
+    Contact& c = contacts[i];
+    const Vec2 normal = -perpendicular((system.arm(system.next(c.edge)) - system.arm(c.edge)).normalized());
+    c.gap = normal.dot(system.position(c.vertex_block, c.vertex) - system.position(c.edge_block, c.edge));
+  }
 }
 
 template <int N>

@@ -9,9 +9,13 @@
 //   - a contact is one record with all its constants, in the order of the list; gap and slip follow from
 //       gap = gap_0 + (n - n_0) . w_0 + n . D,   slip = (t - t_0) . w_0 + t . D,   D = u_v - u_e + (R_v - 1) r_v
 //     (r_v arm of the corner, w_0 from the edge's centroid to the corner, both at the load), free of cancellation and exact whatever the rotation;
-//   - contacts too far apart to close before the next load are not looked at.
-// moved_beyond_skin() tells when blocks may have moved tolerance::contact_skin_m against each other since the load: then the list is to be renewed.
-// It adds up the largest speed of each step, and looks at the blocks only when that sum has reached the skin.
+//   - contacts too far apart to close before they are renewed are not looked at.
+// moved_beyond_skin() tells when blocks may have moved tolerance::contact_skin_m against each other since the list was last looked through: then it
+// is to be renewed. It adds up the largest speed of each step, and looks at the blocks only when that sum has reached the skin.
+//
+// When some pairs of blocks have got their contacts anew, renew() exchanges those and leaves the others as they are. What is loaded then is laid down
+// as it would have been at the last load: the block's turn and way since then are taken off again, so that one pose serves all contacts of a block.
+// The bound of the critical step follows contact by contact.
 //
 // Damping of the motion: `local` (Cundall, 1987, as in UDEC) adds -alpha |F| sign(v) to every component of the unbalanced force F, which takes
 // nothing from steady motion. `automatic` (Cundall, 1982, as in UDEC's adaptive global damping) adds -beta M v, beta rising or falling from step to
@@ -20,6 +24,8 @@
 
 #include <vector>
 
+#include "openclose/contact/detection.h"
+#include "openclose/integrator/critical_step.h"
 #include "openclose/integrator/enforcement.h"
 
 namespace openclose {
@@ -40,6 +46,13 @@ class CentralDifference {
 
   /// Takes over blocks, velocities of the middle of the last step, contacts with their history, and the forces they carry now.
   void load(const StepProblem<N>& problem);
+  /// False if blocks have become so fast that contacts might close which were left out as too far apart: then all is to be loaded anew.
+  bool can_renew() const;
+  /// Exchanges contacts: those that stood at `before` in the list are gone, those at `after` have come, the others carry on. The positions of the
+  /// system are those of the loop.
+  void renew(const StepProblem<N>& problem, const std::vector<DetectionChange>& changes);
+  /// The list of contacts stays as it is, for another way of the skin.
+  void keep();
 
   /// Moves the blocks by a step of h; `span` is the time between the middles of the last and this step, `base` the mean acceleration of the base over
   /// it [m/s2]. False, and nothing has changed, if a block would move by more than `limit` [m].
@@ -48,18 +61,20 @@ class CentralDifference {
   void follow_contacts();
 
   bool moved_beyond_skin();
-  double critical_step() const { return critical_step_; }      ///< [s] of the contacts that may close before the next load
+  double critical_step() { return critical_step_.step(); }     ///< [s] of the contacts that may close before they are renewed
   double last_unbalanced_force() const;                        ///< [N] largest force on a block when the last step began
   double unbalanced_force() const;                             ///< [N] now; a pass over the blocks
   bool lost_strength() const { return lost_strength_; }        ///< a contact has lost cohesion or tensile strength in the last step
   double max_penetration() const { return max_penetration_; }  ///< [m] since the load
 
   /// Moves the blocks of the system to where they are now, with the velocities of the middle of the last step.
-  void store_blocks(BlockSystem<N>& system);
+  void store_blocks(BlockSystem<N>& system) const;
   /// Whole-step velocity of a free block; call only after a step.
   Unknowns velocity_at_end(int equation) const;
-  /// Geometry and history of the contacts that were loaded, in the same order.
+  /// Gap and history of the contacts, in the order of the list; of those that are too far apart nothing changes but the gap, see store_far_gaps().
   void store_contacts(std::vector<Contact>& contacts) const;
+  /// Gaps of the contacts that were left out, at the positions of the system.
+  void store_far_gaps(const BlockSystem<N>& system, std::vector<Contact>& contacts) const;
   ExplicitEnergies take_energies();
 
  private:
@@ -78,7 +93,7 @@ class CentralDifference {
     double weight_x, weight_y;    ///< [N]
     double radius;                ///< [m]
   };
-  struct Link {
+  struct alignas(64) Link {
     int vertex_slot, edge_slot;
     double arm_x, arm_y;        ///< [m] corner from its centroid, at the load
     double across_x, across_y;  ///< [m] corner from the edge's centroid, at the load
@@ -92,7 +107,13 @@ class CentralDifference {
     double normal, shear, elastic_normal, viscous_shear;
     ContactStatus status;
     bool bonded, breakable;
-    int joint, contact;  ///< in the table, in the list
+  };
+  /// What a step does not need of a contact.
+  struct LinkRest {
+    int joint, contact;               ///< in the table, in the list
+    double normal_x, normal_y;        ///< in the frame of the corner's block
+    double edge_arm_x, edge_arm_y;    ///< [m] from the edge's centroid to the corner, in the frame of the edge's block
+    double vertex_share, edge_share;  ///< see critical_step.h
   };
   struct PointForce {
     int slot;
@@ -109,12 +130,21 @@ class CentralDifference {
   void load_blocks(const StepProblem<N>& problem);
   void load_contacts(const StepProblem<N>& problem);
   void load_points(const StepProblem<N>& problem);
+  double needed_approach(double more_speed) const;
+  void add_link(const StepProblem<N>& problem, int contact);
+  void take_link(int slot);
+  void add_parts(const Link& link, const LinkRest& rest, double sign);
+  void renumber(const std::vector<DetectionChange>& changes);
+  void close_holes();
   // In the innermost loop; as calls they cost more than what they do.
   [[gnu::always_inline]] inline Place place(const Link& link) const;
   [[gnu::always_inline]] inline void push(const Link& link, const Place& at);
-  ForceTrials trials(const Link& link, const Place& at, double elastic_shear) const;
+  [[gnu::always_inline]] inline ForceTrials trials(const Link& link, const Place& at, double elastic_shear) const;
   void carry_now(Link& link, const Place& at);
-  void lose_strength(Link& link, const Place& at);
+  void lose_strength(Link& link, const JointProperties& joint, const Place& at);
+  static double stored_energy(const Link& link);
+  /// Whether nothing but gap and slip of a contact changes in a step that leaves it open.
+  static bool rests(const Link& link) { return link.status == ContactStatus::open && link.stretch == 0.0 && !link.breakable; }
   void begin_forces();
   void add_point_forces(bool step);
   template <bool damped>
@@ -123,18 +153,24 @@ class CentralDifference {
   void adapt(double taken, double kinetic_change, double h);
 
   std::vector<Pose> poses_;  ///< per free block, and a last one for all that are fixed
-  std::vector<Rate> rates_, previous_rates_, forces_;
+  std::vector<Rate> rates_, previous_rates_, next_rates_, forces_;
   std::vector<Inertia> inertia_;
-  std::vector<int> blocks_;  ///< of the system, per free block
-  std::vector<Pose> stored_;
-  std::vector<double> stored_angle_;
+  std::vector<int> blocks_;          ///< of the system, per free block
+  std::vector<Unknowns> loaded_at_;  ///< displacement of the free blocks at the load
   std::vector<Link> links_;
-  std::vector<Link> far_;
+  std::vector<LinkRest> rest_;  ///< of the links
+  std::vector<int> link_of_;    ///< per contact of the list; -1: too far apart
+  std::vector<int> holes_, renumbered_;
+  struct Way {
+    double x, y, angle;
+  };
+  std::vector<Way> kept_at_;  ///< since the load, where the list was last found to be good
   std::vector<PointForce> points_;
   const JointTable* joints_ = nullptr;
   ExplicitEnergies energies_;
   bool damped_ = false, lost_strength_ = false;
-  double critical_step_ = 0.0, moved_ = 0.0, unbalanced_ = 0.0, max_penetration_ = 0.0;
+  CriticalStepBound<N> critical_step_;
+  double approach_ = 0.0, moved_ = 0.0, unbalanced_ = 0.0, max_penetration_ = 0.0;
   double h_ = 0.0, span_ = 0.0, viscous_ = 0.0;
 };
 

@@ -13,6 +13,7 @@ namespace {
 
 /// [-] Rounding errors of this many units in the last place may meet in one residual: a dozen products and sums per contact.
 constexpr double rounding_units = 16.0;
+constexpr double rounding_of_sums = rounding_units * std::numeric_limits<double>::epsilon();
 /// [-] Share of contacts that may change state in an iteration with the exact tangent still being the better one.
 constexpr double few_switches = 0.02;
 /// [-] Part of the shear stiffness that sliding contacts keep in the symmetric tangent of statics, where nothing else would hold them.
@@ -29,87 +30,125 @@ constexpr double shortest_backtrack = 0.01;
 /// After so many refusals of the exact step without gain the symmetric steps in between get shorter, so that the two do not go round in a circle.
 constexpr int patience = 1;
 
-int differences(const std::vector<int>& a, const std::vector<int>& b) {
+int differences(const std::vector<signed char>& a, const std::vector<signed char>& b) {
   return std::inner_product(a.begin(), a.end(), b.begin(), 0, std::plus<>(), std::not_equal_to<>());
+}
+
+signed char branch(const ContactForces& f) {
+  const bool backward = f.status == ContactStatus::sliding && f.shear < 0.0;
+  return static_cast<signed char>(backward ? -sliding_branch : static_cast<int>(f.status));
 }
 
 }  // namespace
 
 template <int N>
 void Newton<N>::prepare(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs) {
+  const BlockSystem<N>& system = problem.system;
   problem_ = &problem;
   springs_ = &springs;
-  strength_.clear();
-  for (const Contact& c : problem.contacts) strength_.emplace_back(problem.joints.joint(c.joint), c);
+  contacts_.clear();
+  const auto row = [&](int b) { return system.block(b).equation < 0 ? system.free_count() : system.block(b).equation; };
+  for (const Contact& c : problem.contacts) {
+    const ContactStart<N> start(system, c);
+    contacts_.push_back({start, ContactStrength(problem.joints.joint(c.joint), c), start.vertex_arm.norm(), (start.end_arm + start.lever).norm(),
+                         c.vertex_block, c.edge_block, row(c.vertex_block), row(c.edge_block)});
+  }
+  blocks_.clear();
+  for (int b : system.free_blocks()) {
+    const auto& block = system.block(b);
+    const Unknowns still = Unknowns::Zero();
+    blocks_.push_back({b, problem.external.has_point_forces(b), block.rotation_locked, block.radius, problem.inertia * block.mass,
+                       problem.external.force(system, b, still), problem.dt * problem.velocity(b), problem.external.magnitude(system, b, still),
+                       problem.external.spring_scale(system, b)});
+  }
+  trials_.resize(contacts_.size());
+  branches_.resize(contacts_.size());
+  moves_.assign(system.block_count(), BlockMove<N>());
   tangent_.fit(problem);
 }
 
 template <int N>
-void Newton<N>::evaluate(const Eigen::VectorXd& d) {
-  const BlockSystem<N>& system = problem_->system;
-  constexpr double eps = std::numeric_limits<double>::epsilon();
-  const auto of = [&](int b) -> Unknowns {
-    const int i = system.block(b).equation;
-    return i < 0 ? Unknowns(Unknowns::Zero()) : Unknowns(d.template segment<N>(N * i));
-  };
-  force_.setZero(N * system.free_count());
-  residual_.resize(N * system.free_count());
-  rounding_.setZero(system.free_count());
-  force_scale_ = 0.0;
+inline void Newton<N>::evaluate_contact(std::size_t c) {
+  const StepContact& contact = contacts_[c];
+  ContactTrial& trial = trials_[c];
+  trial.pose.set(contact.start, moves_[contact.vertex_block], moves_[contact.edge_block]);
+  trial.forces = spring_slider((*springs_)[c], contact.strength, trial.pose.gap_change, trial.pose.slip_change);
+}
 
-  outcome_.clear();
-  outcome_.reserve(problem_->contacts.size());
-  for (std::size_t c = 0; c < problem_->contacts.size(); ++c) {
-    const Contact& contact = problem_->contacts[c];
-    const Unknowns dv = of(contact.vertex_block), de = of(contact.edge_block);
-    ContactKinematics<N> kinematics(system, contact, dv, de);
+template <int N>
+void Newton<N>::evaluate_contacts() {
+  double force_scale = force_scale_;
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    evaluate_contact(c);
+    const ContactForces& f = trials_[c].forces;
+    branches_[c] = branch(f);
+    if (f.status == ContactStatus::open) continue;
+    const StepContact& contact = contacts_[c];
+    const ContactPose<N>& pose = trials_[c].pose;
     const ContactSprings& springs = (*springs_)[c];
-    const ContactForces f = spring_slider(springs, strength_[c], kinematics.gap_change, kinematics.slip_change);
-    if (f.status != ContactStatus::open) {
-      const double moved =
-          Motion<N>::displacement_bound(dv, kinematics.vertex_arm.norm()) + Motion<N>::displacement_bound(de, kinematics.edge_arm.norm());
-      const double stiffness = springs.normal + springs.normal_damping + springs.shear + springs.shear_damping;
-      const double rounding = rounding_units * eps * (stiffness * moved + std::abs(f.normal) + std::abs(f.shear));
-      const auto push = [&](int b, const Unknowns& normal, const Unknowns& shear) {
-        const int i = system.block(b).equation;
-        if (i < 0) return;
-        force_.template segment<N>(N * i) += f.normal * normal + f.shear * shear;
-        rounding_[i] += rounding;
-      };
-      push(contact.vertex_block, kinematics.normal_vertex, kinematics.shear_vertex);
-      push(contact.edge_block, kinematics.normal_edge, kinematics.shear_edge);
-      force_scale_ = std::max({force_scale_, std::abs(f.normal), std::abs(f.shear)});
-    }
-    outcome_.push_back({springs, f, kinematics});
+    const double normal = std::abs(f.normal), shear = std::abs(f.shear);
+    const double moved = moves_[contact.vertex_block].bound(contact.vertex_reach) + moves_[contact.edge_block].bound(contact.edge_reach);
+    const double stiffness = springs.normal + springs.normal_damping + springs.shear + springs.shear_damping;
+    const double rounding = rounding_of_sums * (stiffness * moved + normal + shear);
+    const Vec2 force(f.normal * pose.normal.x() - f.shear * pose.normal.y(), f.normal * pose.normal.y() + f.shear * pose.normal.x());
+    double* on_vertex = force_.data() + N * contact.vertex_row;
+    double* on_edge = force_.data() + N * contact.edge_row;
+    const Unknowns push = Motion<N>::gradient(pose.vertex_arm, force), back = Motion<N>::gradient(pose.edge_arm, force);
+    for (int k = 0; k < N; ++k) on_vertex[k] += push[k];
+    for (int k = 0; k < N; ++k) on_edge[k] -= back[k];
+    rounding_[contact.vertex_row] += rounding;
+    rounding_[contact.edge_row] += rounding;
+    force_scale = std::max({force_scale, normal, shear});
   }
+  force_scale_ = force_scale;
+}
 
+template <int N>
+void Newton<N>::evaluate_blocks(const Eigen::VectorXd& d) {
+  const BlockSystem<N>& system = problem_->system;
   const double theta = problem_->end_weight;
-  for (int b : system.free_blocks()) {
-    const auto& block = system.block(b);
-    const int at = N * block.equation;
-    const Unknowns db = of(b);
-    const Unknowns external = problem_->external.force(system, b, db);
-    force_.template segment<N>(at) += external;
-    const Unknowns drift = problem_->dt * problem_->velocity(b);
-    Unknowns r = problem_->inertia * block.mass.cwiseProduct(drift - db) + theta * force_.template segment<N>(at);
+  for (std::size_t i = 0; i < blocks_.size(); ++i) {
+    const StepBlock& block = blocks_[i];
+    const int at = N * static_cast<int>(i);
+    const Unknowns db = d.template segment<N>(at);
+    double magnitude = block.magnitude;
+    if (block.has_point_forces) {
+      force_.template segment<N>(at) += problem_->external.force(system, block.block, db);
+      magnitude = problem_->external.magnitude(system, block.block, db);
+    } else {
+      force_.template segment<N>(at) += block.force;
+    }
+    Unknowns r = block.inertia.cwiseProduct(block.drift - db) + theta * force_.template segment<N>(at);
     if (theta < 1.0) r += (1.0 - theta) * start_force_.template segment<N>(at);
     if (block.rotation_locked) r[Motion<N>::rotation_index] = 0.0;
     residual_.template segment<N>(at) = r;
-    const Unknowns moved = problem_->inertia * block.mass.cwiseProduct(drift.cwiseAbs() + db.cwiseAbs());
-    const double magnitude = problem_->external.magnitude(system, b, db);
-    rounding_[block.equation] +=
-        rounding_units * eps * (Motion<N>::largest_force(moved, block.radius) + magnitude + problem_->external.spring_scale(system, b));
+    const Unknowns moved = block.inertia.cwiseProduct(block.drift.cwiseAbs() + db.cwiseAbs());
+    rounding_[static_cast<int>(i)] += rounding_of_sums * (Motion<N>::largest_force(moved, block.radius) + magnitude + block.rounding_of_coordinates);
     force_scale_ = std::max(force_scale_, magnitude);
   }
 }
 
 template <int N>
+void Newton<N>::evaluate(const Eigen::VectorXd& d) {
+  const BlockSystem<N>& system = problem_->system;
+  for (std::size_t i = 0; i < blocks_.size(); ++i) {
+    moves_[blocks_[i].block] = BlockMove<N>(d.template segment<N>(N * static_cast<int>(i)), system.rotation_kind());
+  }
+  force_.setZero(N * (system.free_count() + 1));
+  residual_.resize(N * system.free_count());
+  rounding_.setZero(system.free_count() + 1);
+  force_scale_ = 0.0;
+  evaluate_contacts();
+  evaluate_blocks(d);
+}
+
+template <int N>
 double Newton<N>::residual_norm() const {
   double worst = 0.0;
-  for (int b : problem_->system.free_blocks()) {
-    const auto& block = problem_->system.block(b);
-    const double tolerated = problem_->method.residual_tolerance * force_scale_ + rounding_[block.equation];
-    const double r = Motion<N>::largest_force(residual_.template segment<N>(N * block.equation), block.radius);
+  for (std::size_t i = 0; i < blocks_.size(); ++i) {
+    const int at = static_cast<int>(i);
+    const double tolerated = problem_->method.residual_tolerance * force_scale_ + rounding_[at];
+    const double r = Motion<N>::largest_force(residual_.template segment<N>(N * at), blocks_[i].radius);
     if (!(r <= std::numeric_limits<double>::max())) return std::numeric_limits<double>::infinity();
     if (r > 0.0) worst = std::max(worst, r / tolerated);
   }
@@ -118,50 +157,50 @@ double Newton<N>::residual_norm() const {
 
 template <int N>
 void Newton<N>::add_contact_stiffness(std::size_t c, Tangent tangent) {
-  const Contact& contact = problem_->contacts[c];
-  const ContactOutcome<N>& o = outcome_[c];
-  if (o.forces.status == ContactStatus::open) return;
-  const ContactKinematics<N>& k = o.kinematics;
-  const ContactForces& f = o.forces;
+  const ContactForces& f = trials_[c].forces;
+  if (f.status == ContactStatus::open) return;
   const bool exact = tangent == Tangent::exact;
   const double theta = problem_->end_weight;
   const double nn = -theta * f.normal_by_gap, tn = exact ? -theta * f.shear_by_gap : 0.0;
   double tt = -theta * f.shear_by_slip;
-  if (!exact && problem_->statics && f.status == ContactStatus::sliding) tt = static_slip_stiffness * o.springs.shear;
+  if (!exact && problem_->statics && f.status == ContactStatus::sliding) tt = static_slip_stiffness * (*springs_)[c].shear;
 
-  const int i = problem_->system.block(contact.vertex_block).equation, j = problem_->system.block(contact.edge_block).equation;
-  const auto block = [&](const Unknowns& n1, const Unknowns& t1, const Unknowns& n2, const Unknowns& t2) {
-    return typename Motion<N>::Matrix(nn * n1 * n2.transpose() + tn * t1 * n2.transpose() + tt * t1 * t2.transpose());
-  };
-  if (i >= 0) tangent_.matrix().add(i, i, block(k.normal_vertex, k.shear_vertex, k.normal_vertex, k.shear_vertex));
-  if (j >= 0) tangent_.matrix().add(j, j, block(k.normal_edge, k.shear_edge, k.normal_edge, k.shear_edge));
-  if (i >= 0 && j >= 0) {
-    tangent_.matrix().add(i, j, block(k.normal_vertex, k.shear_vertex, k.normal_edge, k.shear_edge));
-    tangent_.matrix().add(j, i, block(k.normal_edge, k.shear_edge, k.normal_vertex, k.shear_vertex));
-  }
-  if (!exact) return;  // the geometric part can make the symmetric tangent indefinite
-  const auto h = k.hessian(theta * (f.normal * k.normal + f.shear * k.tangent));
-  if (i >= 0) tangent_.matrix().add(i, i, -h.vertex_vertex);
-  if (j >= 0) tangent_.matrix().add(j, j, -h.edge_edge);
-  if (i >= 0 && j >= 0) {
-    tangent_.matrix().add(i, j, -h.vertex_edge);
-    tangent_.matrix().add(j, i, -h.vertex_edge.transpose());
-  }
+  const ContactPose<N>& pose = trials_[c].pose;
+  const Vec2 n = pose.normal, t = pose.tangent(), by_gap = nn * n + tn * t;
+  ContactStiffness<N> k;
+  k.shift_xx = by_gap.x() * n.x() + tt * t.x() * t.x();
+  k.shift_xy = by_gap.x() * n.y() + tt * t.x() * t.y();
+  k.shift_yx = by_gap.y() * n.x() + tt * t.y() * t.x();
+  k.shift_yy = by_gap.y() * n.y() + tt * t.y() * t.y();
+  k.vertex_arm = pose.vertex_arm;
+  k.edge_arm = pose.edge_arm;
+  // The geometric part can make the symmetric tangent indefinite.
+  k.turning = exact ? Vec2(theta * (f.normal * n + f.shear * t)) : Vec2(Vec2::Zero());
+
+  const ContactSlots& slots = tangent_.slots(c);
+  BlockMatrix<N>& matrix = tangent_.matrix();
+  if (slots.vertex >= 0) k.add_to_vertex(matrix.value(slots.vertex));
+  if (slots.edge >= 0) k.add_to_edge(matrix.value(slots.edge));
+  if (slots.vertex_edge < 0) return;
+  k.add_to_vertex_edge(matrix.value(slots.vertex_edge));
+  k.add_to_edge_vertex(matrix.value(slots.edge_vertex));
 }
 
 template <int N>
 void Newton<N>::assemble(const Eigen::VectorXd& d, Tangent tangent) {
-  const BlockSystem<N>& system = problem_->system;
-  tangent_.matrix().set_zero();
-  for (std::size_t c = 0; c < outcome_.size(); ++c) add_contact_stiffness(c, tangent);
-  for (int b : system.free_blocks()) {
-    const auto& block = system.block(b);
-    typename Motion<N>::Matrix diagonal = problem_->end_weight * problem_->external.stiffness(system, b, d.template segment<N>(N * block.equation));
-    diagonal += (problem_->inertia * block.mass).asDiagonal();
-    tangent_.matrix().add(block.equation, block.equation, diagonal);
+  BlockMatrix<N>& matrix = tangent_.matrix();
+  matrix.set_zero();
+  for (std::size_t c = 0; c < contacts_.size(); ++c) add_contact_stiffness(c, tangent);
+  for (std::size_t i = 0; i < blocks_.size(); ++i) {
+    const StepBlock& block = blocks_[i];
+    const int row = static_cast<int>(i);
+    auto& diagonal = matrix.value(matrix.diagonal(row));
+    diagonal.diagonal() += block.inertia;
+    if (!block.has_point_forces) continue;
+    diagonal += problem_->end_weight * problem_->external.stiffness(problem_->system, block.block, d.template segment<N>(N * row));
   }
-  for (int b : system.free_blocks()) {
-    if (system.block(b).rotation_locked) tangent_.matrix().eliminate(system.block(b).equation, Motion<N>::rotation_index);
+  for (std::size_t i = 0; i < blocks_.size(); ++i) {
+    if (blocks_[i].rotation_locked) matrix.eliminate(static_cast<int>(i), Motion<N>::rotation_index);
   }
 }
 
@@ -177,13 +216,13 @@ template <int N>
 double Newton<N>::line_search(const Eigen::VectorXd& d, const Eigen::VectorXd& step, double slope) {
   // Root of the energy's slope along the step by regula falsi; the slope falls along the step because the symmetric tangent is positive definite.
   double low = 0.0, slope_low = slope, high = 1.0;
-  evaluate(d + step);
+  evaluate(trial_ = d + step);
   double slope_high = residual_.dot(step);
   if (std::abs(slope_high) <= line_search_slope * std::abs(slope) || slope_high > 0.0) return high;
   double alpha = high;
   for (int i = 0; i < line_search_steps; ++i) {
     alpha = low + (high - low) * std::clamp(slope_low / (slope_low - slope_high), 0.1, 0.9);
-    evaluate(d + alpha * step);
+    evaluate(trial_ = d + alpha * step);
     const double s = residual_.dot(step);
     if (std::abs(s) <= line_search_slope * std::abs(slope)) break;
     if (s > 0.0) {
@@ -200,48 +239,42 @@ double Newton<N>::line_search(const Eigen::VectorXd& d, const Eigen::VectorXd& s
 template <int N>
 double Newton<N>::backtrack(const Eigen::VectorXd& d, const Eigen::VectorXd& step, double norm) {
   for (double alpha = 0.5; alpha > shortest_backtrack; alpha *= 0.5) {
-    evaluate(d + alpha * step);
+    evaluate(trial_ = d + alpha * step);
     if (residual_norm() <= (1.0 - sufficient_decrease * alpha) * norm) return alpha;
   }
   return 0.0;
 }
 
 template <int N>
-std::vector<int> Newton<N>::branches() const {
-  std::vector<int> list;
-  for (const auto& o : outcome_) {
-    const bool backward = o.forces.status == ContactStatus::sliding && o.forces.shear < 0.0;
-    list.push_back(backward ? -sliding_branch : static_cast<int>(o.forces.status));
-  }
-  return list;
-}
-
-template <int N>
 void Newton<N>::replace_forces(std::size_t c, const ContactForces& forces) {
-  ContactOutcome<N>& o = outcome_[c];
-  const double normal = problem_->end_weight * (forces.normal - o.forces.normal), shear = problem_->end_weight * (forces.shear - o.forces.shear);
-  const auto push = [&](int b, const Unknowns& by_normal, const Unknowns& by_shear) {
-    const auto& block = problem_->system.block(b);
-    if (block.equation < 0) return;
-    residual_.template segment<N>(N * block.equation) += normal * by_normal + shear * by_shear;
-    if (block.rotation_locked) residual_[N * block.equation + Motion<N>::rotation_index] = 0.0;
+  ContactTrial& trial = trials_[c];
+  const ContactPose<N>& pose = trial.pose;
+  const double normal = problem_->end_weight * (forces.normal - trial.forces.normal),
+               shear = problem_->end_weight * (forces.shear - trial.forces.shear);
+  const Vec2 change = normal * pose.normal + shear * pose.tangent();
+  const auto push = [&](int row, const Unknowns& by) {
+    if (row == static_cast<int>(blocks_.size())) return;
+    residual_.template segment<N>(N * row) += by;
+    if (blocks_[row].rotation_locked) residual_[N * row + Motion<N>::rotation_index] = 0.0;
   };
-  push(problem_->contacts[c].vertex_block, o.kinematics.normal_vertex, o.kinematics.shear_vertex);
-  push(problem_->contacts[c].edge_block, o.kinematics.normal_edge, o.kinematics.shear_edge);
-  o.forces = forces;
+  push(contacts_[c].vertex_row, Motion<N>::gradient(pose.vertex_arm, change));
+  push(contacts_[c].edge_row, -Motion<N>::gradient(pose.edge_arm, change));
+  trial.forces = forces;
+  branches_[c] = branch(forces);
 }
 
 template <int N>
-int Newton<N>::hold_reversed(const std::vector<int>& before, const std::vector<int>& after) {
+int Newton<N>::hold_reversed() {
   int held = 0;
-  for (std::size_t c = 0; c < outcome_.size(); ++c) {
-    const ContactOutcome<N>& o = outcome_[c];
-    const bool reversed = std::abs(before[c]) == sliding_branch && before[c] == -after[c];
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    const bool reversed = std::abs(branches_before_[c]) == sliding_branch && branches_before_[c] == -branches_[c];
     if (!reversed) continue;
     ++held;
-    ContactForces stuck = tangent_for_status(o.springs, strength_[c], ContactStatus::sticking, o.forces.normal, o.forces.shear);
-    stuck.normal = o.forces.normal;
-    stuck.shear = o.springs.initial_shear - (o.springs.shear + o.springs.shear_damping) * o.kinematics.slip_change;
+    const ContactSprings& springs = (*springs_)[c];
+    const ContactForces& f = trials_[c].forces;
+    ContactForces stuck = tangent_for_status(springs, contacts_[c].strength, ContactStatus::sticking, f.normal, f.shear);
+    stuck.normal = f.normal;
+    stuck.shear = springs.initial_shear - (springs.shear + springs.shear_damping) * trials_[c].pose.slip_change;
     replace_forces(c, stuck);
   }
   return held;
@@ -249,13 +282,21 @@ int Newton<N>::hold_reversed(const std::vector<int>& before, const std::vector<i
 
 template <int N>
 void Newton<N>::take_last_states() {
-  for (std::size_t c = 0; c < outcome_.size(); ++c) {
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const Contact& contact = problem_->contacts[c];
-    const ContactOutcome<N>& o = outcome_[c];
-    const bool touching = contact.status == ContactStatus::open && o.springs.gap <= 0.0;
-    replace_forces(c, prolonged(o.springs, strength_[c], touching ? ContactStatus::sticking : contact.status, contact.normal_force,
-                                contact.shear_force, o.kinematics.gap_change, o.kinematics.slip_change));
+    const ContactSprings& springs = (*springs_)[c];
+    const ContactPose<N>& pose = trials_[c].pose;
+    const bool touching = contact.status == ContactStatus::open && springs.gap <= 0.0;
+    replace_forces(c, prolonged(springs, contacts_[c].strength, touching ? ContactStatus::sticking : contact.status, contact.normal_force,
+                                contact.shear_force, pose.gap_change, pose.slip_change));
   }
+}
+
+template <int N>
+void Newton<N>::report_contacts(std::vector<ContactOutcome<N>>& contacts) const {
+  contacts.clear();
+  contacts.reserve(trials_.size());
+  for (std::size_t c = 0; c < trials_.size(); ++c) contacts.push_back({(*springs_)[c], trials_[c].forces, ContactKinematics<N>(trials_[c].pose)});
 }
 
 template <int N>
@@ -264,7 +305,7 @@ void Newton<N>::solve(const StepProblem<N>& problem, const std::vector<ContactSp
   Eigen::VectorXd& d = solution.d;
   if (problem.end_weight < 1.0) {
     start_force_ = forces(problem, springs);
-    solution.start_contacts = outcome_;
+    report_contacts(solution.start_contacts);
   }
   evaluate(d);
   double norm = residual_norm();
@@ -273,9 +314,9 @@ void Newton<N>::solve(const StepProblem<N>& problem, const std::vector<ContactSp
   Tangent tangent = Tangent::exact;
   int refusals = 0;  // of the exact step since the residual was at its smallest
   double best = norm;
-  const int few = static_cast<int>(few_switches * static_cast<double>(outcome_.size()));
+  const int few = static_cast<int>(few_switches * static_cast<double>(contacts_.size()));
   for (int iteration = 0; iteration < problem.method.max_iterations && norm > 1.0; ++iteration) {
-    const std::vector<int> before = branches();
+    branches_before_ = branches_;
     const Eigen::VectorXd step = direction(d, tangent);
     ++solution.iterations;
     if (step.size() == 0) {
@@ -286,13 +327,12 @@ void Newton<N>::solve(const StepProblem<N>& problem, const std::vector<ContactSp
     double alpha = 1.0;
     if (tangent == Tangent::symmetric && slope > 0.0) {
       alpha = line_search(d, step, slope) / static_cast<double>(std::max(1, refusals - patience));
-      if (refusals > patience + 1) evaluate(d + alpha * step);
+      if (refusals > patience + 1) evaluate(trial_ = d + alpha * step);
     } else {
-      evaluate(d + step);
+      evaluate(trial_ = d + step);
     }
     double next_norm = residual_norm();
-    std::vector<int> after = branches();
-    int switches = differences(before, after);
+    int switches = differences(branches_before_, branches_);
     if (tangent == Tangent::exact && iteration > 0 && next_norm > norm) {
       alpha = backtrack(d, step, norm);
       if (alpha == 0.0) {
@@ -302,21 +342,20 @@ void Newton<N>::solve(const StepProblem<N>& problem, const std::vector<ContactSp
         continue;
       }
       next_norm = residual_norm();
-      after = branches();
-      switches = differences(before, after);
+      switches = differences(branches_before_, branches_);
     }
     if (next_norm < best) refusals = 0;
     best = std::min(best, next_norm);
     const bool halved = next_norm <= 0.5 * norm;
     d += alpha * step;
     norm = next_norm;
-    const bool held = !halved && hold_reversed(before, after) > 0;
+    const bool held = !halved && hold_reversed() > 0;
     const bool exact_works = held || switches <= few || (tangent == Tangent::exact && halved);
     tangent = exact_works ? Tangent::exact : Tangent::symmetric;
   }
   solution.converged = norm <= 1.0;
   if (!solution.converged) solution.reason = "Newton's method did not converge";
-  solution.contacts = outcome_;
+  report_contacts(solution.contacts);
 }
 
 template <int N>
@@ -335,9 +374,8 @@ template <int N>
 Eigen::VectorXd Newton<N>::forces(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs) {
   prepare(problem, springs);
   start_force_.setZero(N * problem.system.free_count());
-  const Eigen::VectorXd still = start_force_;
-  evaluate(still);
-  return force_;
+  evaluate(Eigen::VectorXd::Zero(N * problem.system.free_count()));
+  return force_.head(N * problem.system.free_count());
 }
 
 template class Newton<3>;

@@ -1,7 +1,8 @@
 // Newton's method for one step with given contact springs.
 //
 // Two tangents: the exact one, non-symmetric where contacts slide, with backtracking on the residual, and where that finds no descent a symmetric one
-// (sticking springs only) with an energy line search, which makes progress while many contacts still change state. Convergence means the residual alone: the contact states are functions of the displacement.
+// (sticking springs only) with an energy line search, which makes progress while many contacts still change state. Convergence means the residual
+// alone: the contact states are functions of the displacement.
 #pragma once
 
 #include "openclose/integrator/tangent_system.h"
@@ -36,8 +37,34 @@ class Newton {
  private:
   enum class Tangent { exact, symmetric };
 
+  /// What an evaluation needs of a contact and its blocks, made once a step.
+  struct StepContact {
+    ContactStart<N> start;
+    ContactStrength strength;
+    double vertex_reach, edge_reach;  ///< [m] from the centroids to the contact
+    int vertex_block, edge_block;
+    int vertex_row, edge_row;  ///< block rows; of fixed blocks the row after the last one, which nobody reads
+  };
+  struct StepBlock {
+    int block = 0;
+    bool has_point_forces = false, rotation_locked = false;
+    double radius = 0.0;
+    Unknowns inertia, force, drift;        ///< mass over time squared; all but contacts' at the start; displacement without forces
+    double magnitude = 0.0;                ///< [N] of these forces
+    double rounding_of_coordinates = 0.0;  ///< [N]
+  };
+  /// A contact at the trial displacement: where it is, what it carries, and the derivatives.
+  struct ContactTrial {
+    ContactPose<N> pose;
+    ContactForces forces;
+  };
+
   void prepare(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs);
   void evaluate(const Eigen::VectorXd& d);
+  void evaluate_contacts();
+  void evaluate_blocks(const Eigen::VectorXd& d);
+  /// One contact at the trial positions of its blocks. The forces act along its pose's normal and tangent, at its pose's arms.
+  void evaluate_contact(std::size_t c);
   /// Forces and derivatives for the first iteration: the laws' linear pieces of the last step, wherever the iteration starts from, so that a step in
   /// which no contact changes its state needs one solve. Corners that only touch count as sticking.
   void take_last_states();
@@ -49,19 +76,25 @@ class Newton {
   Eigen::VectorXd direction(const Eigen::VectorXd& d, Tangent tangent);
   /// Contacts that would slide one way and then the other stick in between: they enter the next linear solve with the spring's own force. (Where the
   /// spring is stiff the range of sticking is so narrow that the iteration would jump over it for ever.) Returns their number.
-  int hold_reversed(const std::vector<int>& before, const std::vector<int>& after);
+  int hold_reversed();
   double line_search(const Eigen::VectorXd& d, const Eigen::VectorXd& step, double slope);
   /// Part of the exact step along which the residual falls as it should; 0 if none. Leaves the forces there.
   double backtrack(const Eigen::VectorXd& d, const Eigen::VectorXd& step, double norm);
-  /// Which linear piece of its law every contact is on: its status, and for sliding the direction too.
-  std::vector<int> branches() const;
+  /// All contacts as others want them.
+  void report_contacts(std::vector<ContactOutcome<N>>& contacts) const;
 
   const StepProblem<N>* problem_ = nullptr;
   const std::vector<ContactSprings>* springs_ = nullptr;
-  std::vector<ContactOutcome<N>> outcome_;
-  std::vector<ContactStrength> strength_;
-  Eigen::VectorXd force_;        ///< all forces at the trial position but inertia
-  Eigen::VectorXd start_force_;  ///< the same at the start of the step, used if theta < 1
+  std::vector<StepContact> contacts_;
+  std::vector<StepBlock> blocks_;    ///< the free ones, by their equations
+  std::vector<BlockMove<N>> moves_;  ///< of all blocks, at the trial displacement
+  std::vector<ContactTrial> trials_;
+  using Branch = signed char;
+  std::vector<Branch> branches_;         ///< linear piece of its law that every contact is on: its status, minus it when sliding backward
+  std::vector<Branch> branches_before_;  ///< of the iteration
+  Eigen::VectorXd trial_;                ///< displacement
+  Eigen::VectorXd force_;                ///< all forces at the trial position but inertia; a row more for the fixed blocks
+  Eigen::VectorXd start_force_;          ///< the same at the start of the step, used if theta < 1
   Eigen::VectorXd residual_;
   Eigen::VectorXd rounding_;  ///< [N] per free block: what rounding leaves in the residual
   double force_scale_ = 0.0;

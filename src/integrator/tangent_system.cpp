@@ -1,37 +1,40 @@
 #include "openclose/integrator/tangent_system.h"
 
 namespace openclose {
-namespace {
-
-/// Calls f(i, j) for the block rows that contacts couple, once for contacts of one pair that follow one another.
-template <int N, class F>
-void for_each_coupling(const StepProblem<N>& problem, F f) {
-  std::pair<int, int> last{-1, -1};
-  for (const Contact& c : problem.contacts) {
-    const std::pair pair{problem.system.block(c.vertex_block).equation, problem.system.block(c.edge_block).equation};
-    if (pair.first < 0 || pair.second < 0 || pair == last) continue;
-    f(pair.first, pair.second);
-    last = pair;
-  }
-}
-
-}  // namespace
 
 template <int N>
-bool TangentSystem<N>::has_room(const StepProblem<N>& problem) const {
-  if (!solver_ || matrix_.rows() != problem.system.free_count()) return false;
-  bool room = true;
-  for_each_coupling(problem, [&](int i, int j) { room = room && matrix_.contains(i, j); });
-  return room;
+bool TangentSystem<N>::find_slots(const StepProblem<N>& problem) {
+  slots_.clear();
+  std::pair<int, int> last{-1, -1};
+  ContactSlots slots;
+  for (const Contact& c : problem.contacts) {
+    const int i = problem.system.block(c.vertex_block).equation, j = problem.system.block(c.edge_block).equation;
+    if (const std::pair pair{i, j}; pair != last) {  // contacts of one pair mostly follow one another
+      last = pair;
+      slots = {i < 0 ? -1 : matrix_.diagonal(i), j < 0 ? -1 : matrix_.diagonal(j), -1, -1};
+      if (i >= 0 && j >= 0) {
+        slots.vertex_edge = matrix_.find(i, j);
+        slots.edge_vertex = matrix_.find(j, i);
+        if (slots.vertex_edge < 0) return false;
+      }
+    }
+    slots_.push_back(slots);
+  }
+  return true;
 }
 
 template <int N>
 void TangentSystem<N>::fit(const StepProblem<N>& problem) {
-  if (has_room(problem)) return;
+  const int rows = problem.system.free_count();
+  if (solver_ && matrix_.rows() == rows && find_slots(problem)) return;
   std::vector<std::pair<int, int>> couplings;
-  for_each_coupling(problem, [&](int i, int j) { couplings.emplace_back(i, j); });
-  matrix_.set_pattern(problem.system.free_count(), couplings);
-  if (!solver_) solver_ = make_solver<N>(problem.system.free_count(), problem.method.linear_solver);
+  for (const Contact& c : problem.contacts) {
+    const int i = problem.system.block(c.vertex_block).equation, j = problem.system.block(c.edge_block).equation;
+    if (i >= 0 && j >= 0) couplings.emplace_back(i, j);
+  }
+  matrix_.set_pattern(rows, couplings);
+  find_slots(problem);
+  if (!solver_) solver_ = make_solver<N>(rows, problem.method.linear_solver);
 }
 
 template class TangentSystem<3>;

@@ -1,25 +1,34 @@
-// The matrix of a step and its solver. The pattern has the pairs of blocks in contact, open ones included; it stands while no new pair comes up, so that
-// the symbolic work of the solver is seldom done.
+// The matrix of a step and its solver. The pattern has the pairs of blocks in contact, open ones included; it stands while no new pair comes up, so
+// that the symbolic work of the solver is seldom done.
 #pragma once
 
 #include "openclose/integrator/enforcement.h"
 
 namespace openclose {
 
+/// Slots of the matrix that a contact's stiffness goes to; -1 where a block is fixed.
+struct ContactSlots {
+  int vertex = -1, edge = -1;
+  int vertex_edge = -1, edge_vertex = -1;
+};
+
 template <int N>
 class TangentSystem {
  public:
-  /// Makes room for the contacts of this step.
+  /// Makes room for the contacts of this step and finds their slots.
   void fit(const StepProblem<N>& problem);
 
+  const ContactSlots& slots(std::size_t contact) const { return slots_[contact]; }
   BlockMatrix<N>& matrix() { return matrix_; }
   LinearSolver<N>& solver() { return *solver_; }
   const LinearCounters& counters() const { return solver_ ? solver_->counters() : nothing_done_; }
 
  private:
-  bool has_room(const StepProblem<N>& problem) const;
+  /// False if a pair of blocks has none.
+  bool find_slots(const StepProblem<N>& problem);
 
   BlockMatrix<N> matrix_;
+  std::vector<ContactSlots> slots_;  ///< of the step's contacts
   std::unique_ptr<LinearSolver<N>> solver_;
   LinearCounters nothing_done_;
 };

@@ -34,7 +34,7 @@ class Unfinished {
   }
 
   std::string add(const std::string& path) {
-    paths_.push_back(path);
+    paths_.emplace_back(path);
     return path;
   }
 

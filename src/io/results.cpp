@@ -192,6 +192,7 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
                   {"linear_solver", word_for(linear_solver_words, scene.method.linear_solver)},
                   {"skip_search", scene.method.skip_search},
                   {"skip_narrow_phase", scene.method.skip_narrow_phase},
+                  {"skip_reload", scene.method.skip_reload},
                   {"step_fraction", scene.method.step_fraction},
                   {"damping", word_for(mass_damping_words, scene.method.damping)},
                   {"local_damping", scene.method.local_damping},
@@ -254,7 +255,10 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
                    {"krylov_iterations", linear.krylov_iterations},
                    {"krylov_given_up", linear.krylov_given_up}};
   if (simulation.is_explicit()) {
-    j["explicit"] = {{"critical_step_s", steps.smallest_critical_step}, {"longest_step_s", steps.longest_step}, {"state_loads", steps.loads}};
+    j["explicit"] = {{"critical_step_s", steps.smallest_critical_step},
+                     {"longest_step_s", steps.longest_step},
+                     {"state_loads", steps.loads},
+                     {"state_loads_skipped", steps.loads_skipped}};
   }
   j["stage_s"] = {{"detection", cpu.detection}, {"solution", cpu.solution}, {"bookkeeping", cpu.bookkeeping}};
   std::ofstream file = folder.open("summary.json");

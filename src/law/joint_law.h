@@ -39,10 +39,18 @@ struct ContactStrength {
   }
   /// Largest shear force at normal force n >= -tension. The cohesion comes in over a ramp, min(mu n + C, (mu + 1/eps)(n + tension)) with
   /// eps = tolerance::cohesion_ramp, because a jump from C to 0 at opening leaves steps without any solution.
-  ShearBound shear_bound(double n) const;
+  ShearBound shear_bound(double n) const {
+    const double value = largest_shear(n), steep = friction + 1.0 / tolerance::cohesion_ramp;
+    const bool on_ramp = steep * (n + tension) < friction * n + cohesion;
+    return {value, value > 0.0 ? (on_ramp ? steep : friction) : 0.0};
+  }
 
  private:
-  ContactStrength(const JointProperties& joint, double tangent, const Contact& contact);
+  ContactStrength(const JointProperties& joint, double tangent, const Contact& contact) : friction(tangent) {
+    const bool intact = contact.bonded || joint.cohesion_behaviour == CohesionBehaviour::ductile;
+    cohesion = intact ? joint.cohesion * contact.length : 0.0;
+    tension = contact.bonded ? joint.tensile_strength * contact.length : 0.0;
+  }
 };
 
 /// Springs of one contact during one step. The normal force is shift - stiffness (gap - target), the shear force starts from initial_shear.
@@ -72,12 +80,16 @@ struct ForceTrials {
   double elastic_shear, viscous_shear;
 };
 
+/// Whether the normal spring carries nothing.
+inline bool is_open(const ContactStrength& strength, double elastic_normal) {
+  return strength.tension > 0.0 ? elastic_normal < -strength.tension : elastic_normal <= 0.0;
+}
+
 /// The joint law: what a contact carries of the trials. The elastic shear force is the contact's memory: the spring slips with the friction, the
 /// dashpot does not count in it. A contact is open when its spring is; while the dashpot outweighs the spring it carries nothing but is not open.
 inline CarriedForces carry(const ContactStrength& strength, const ForceTrials& trial) {
   CarriedForces f;
-  const bool open = strength.tension > 0.0 ? trial.elastic_normal < -strength.tension : trial.elastic_normal <= 0.0;
-  if (open) return f;
+  if (is_open(strength, trial.elastic_normal)) return f;
   f.elastic_normal = trial.elastic_normal;
   f.normal = std::max(-strength.tension, trial.elastic_normal + trial.viscous_normal);
   const double bound = strength.largest_shear(f.normal), shear = trial.elastic_shear + trial.viscous_shear;
@@ -94,15 +106,36 @@ struct ContactForces : CarriedForces {
 /// Dashpots of a contact [N s/m].
 struct ContactDashpots {
   double normal = 0.0, shear = 0.0;
+  ContactDashpots() = default;
   ContactDashpots(const JointProperties& joint, double length, double reduced_mass);
 };
 
 /// [N] of the normal dashpot, unbounded, when the gap has changed so much. It works as long as the spring does: -c (min(g1, g_o) - min(g0, g_o))/dt
 /// for gaps g1 below the opening g_o, at which the spring pulls with the tensile strength.
-double viscous_normal(const ContactSprings& springs, const ContactStrength& strength, double gap_change);
+inline double viscous_normal(const ContactSprings& springs, const ContactStrength& strength, double gap_change) {
+  if (springs.normal_damping == 0.0) return 0.0;
+  const double opening = springs.target + (springs.shift + strength.tension) / springs.normal;
+  return -springs.normal_damping * (std::max(0.0, springs.gap - opening) + gap_change);
+}
 
 /// Forces when gap and slip have changed by these amounts [m] since the start of the step.
-ContactForces spring_slider(const ContactSprings& springs, const ContactStrength& strength, double gap_change, double slip_change);
+inline ContactForces spring_slider(const ContactSprings& springs, const ContactStrength& strength, double gap_change, double slip_change) {
+  ForceTrials trial;
+  trial.elastic_normal = springs.shift - springs.normal * ((springs.gap - springs.target) + gap_change);
+  trial.viscous_normal = viscous_normal(springs, strength, gap_change);
+  trial.elastic_shear = springs.initial_shear - springs.shear * slip_change;
+  trial.viscous_shear = -springs.shear_damping * slip_change;
+  ContactForces f{carry(strength, trial)};
+  if (f.status == ContactStatus::open) return f;
+  const bool dashpot_outweighs = springs.normal_damping > 0.0 && f.normal <= -strength.tension;
+  f.normal_by_gap = dashpot_outweighs ? 0.0 : -(springs.normal + springs.normal_damping);
+  if (f.status == ContactStatus::sticking) {
+    f.shear_by_slip = -(springs.shear + springs.shear_damping);
+  } else {
+    f.shear_by_gap = std::copysign(strength.shear_bound(f.normal).slope, trial.elastic_shear + trial.viscous_shear) * f.normal_by_gap;
+  }
+  return f;
+}
 
 /// Derivatives the springs would have in a given status; used before the first iteration, which starts from the states of the last step.
 ContactForces tangent_for_status(const ContactSprings& springs, const ContactStrength& strength, ContactStatus status, double normal, double shear);

@@ -1,10 +1,10 @@
 // LU factorisation of a block matrix without exchange of blocks, on the fill that the pattern leaves after an approximate minimum degree ordering of
 // the block graph (P. R. Amestoy, T. A. Davis, I. S. Duff 1996; Eigen's implementation).
 //
-// Row by row (Duff, Erisman, Reid, Direct methods for sparse matrices, 2017, chapter 10): row i of the matrix is spread out over a work row, the rows
-// above are subtracted in ascending order, and what is left is gathered as row i of L and U. The pattern is symmetric, so that L has the transposed
-// pattern of U. The diagonal blocks are inverted; nothing is exchanged between blocks, which is safe while each block is held by its own inertia and
-// contacts: where a pivot has lost its digits, the factorisation is given to the plain solver, which exchanges rows.
+// Row by row (Duff, Erisman, Reid, Direct methods for sparse matrices, 2017, chapter 10): row i of the matrix is laid into the slots of row i of L
+// and U, and the rows above are subtracted from it in ascending order. The pattern is symmetric, so that L has the transposed pattern of U. The
+// diagonal blocks are inverted; nothing is exchanged between blocks, which is safe while each block is held by its own inertia and contacts: where a
+// pivot has lost its digits, the factorisation is given to the plain solver, which exchanges rows.
 #include <Eigen/LU>
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseCore>
@@ -13,16 +13,99 @@
 
 #include "openclose/linear/solver.h"
 
+#if defined(__x86_64__) && defined(__GNUC__)
+#define OPENCLOSE_HAS_WIDE_REGISTERS
+#endif
+
 namespace openclose {
 namespace {
 
-/// [-] A diagonal block whose norm has shrunk by more than this, or whose determinant is smaller than this times the product of its columns' norms, has
-/// lost more digits than a Newton step can do without.
+/// [-] A diagonal block whose norm has shrunk by more than this, or whose determinant is smaller than this times the product of its columns' norms,
+/// has lost more digits than a Newton step can do without.
 constexpr double smallest_pivot = 1e-11;
+
+/// Rows of blocks are padded to four numbers, one register of four. The padding of products is that of their right factor; nobody reads it.
+constexpr int lanes = 4;
+constexpr int alignment = lanes * sizeof(double);  // said in full: left to itself it depends on the instructions that a function may use
+typedef double Lanes __attribute__((vector_size(alignment), aligned(alignment)));
+
+/// N x N, row by row.
+template <int N>
+struct alignas(alignment) PaddedBlock {
+  static_assert(N <= lanes);
+  Lanes row[N];
+};
+
+struct alignas(alignment) PaddedVector {
+  Lanes entries;
+};
+
+/// A row of blocks from which others are to be subtracted, and what is needed to find them.
+template <int N>
+struct Elimination {
+  const int* row_start;
+  const int* diagonal;
+  const int* column;
+  PaddedBlock<N>* value;
+  int* place;  ///< working memory: slot of a column in the row under work
+};
+
+/// Subtracts from row i what the rows above it contribute. Each number is computed by the same operations in the same order however wide the
+/// registers are, so that results do not depend on the processor.
+template <int N>
+[[gnu::always_inline]] inline void subtract_rows_above(const Elimination<N>& e, int i) {
+  for (int s = e.row_start[i]; s < e.row_start[i + 1]; ++s) e.place[e.column[s]] = s;
+  for (int s = e.row_start[i]; s < e.diagonal[i]; ++s) {
+    const int k = e.column[s];
+    const PaddedBlock<N> above = e.value[s], inverse = e.value[e.diagonal[k]];
+    PaddedBlock<N> factor;
+    for (int r = 0; r < N; ++r) {
+      factor.row[r] = above.row[r][0] * inverse.row[0];
+      for (int c = 1; c < N; ++c) factor.row[r] += above.row[r][c] * inverse.row[c];
+    }
+    e.value[s] = factor;
+    double f[N][N];
+    for (int r = 0; r < N; ++r) {
+      for (int c = 0; c < N; ++c) f[r][c] = factor.row[r][c];
+    }
+    for (int u = e.diagonal[k] + 1; u < e.row_start[k + 1]; ++u) {
+      const PaddedBlock<N>& right = e.value[u];
+      PaddedBlock<N>& target = e.value[e.place[e.column[u]]];
+      for (int r = 0; r < N; ++r) {
+        Lanes sum = f[r][0] * right.row[0];
+        for (int c = 1; c < N; ++c) sum += f[r][c] * right.row[c];
+        target.row[r] -= sum;
+      }
+    }
+  }
+}
+
+template <int N>
+void subtract_with_any_registers(const Elimination<N>& e, int i) {
+  subtract_rows_above(e, i);
+}
+
+#ifdef OPENCLOSE_HAS_WIDE_REGISTERS
+template <int N>
+[[gnu::target("avx2")]] void subtract_with_wide_registers(const Elimination<N>& e, int i) {
+  subtract_rows_above(e, i);
+}
+#endif
+
+/// The function for the registers of this processor.
+template <int N>
+auto choose_subtraction([[maybe_unused]] bool wide_registers) {
+#ifdef OPENCLOSE_HAS_WIDE_REGISTERS
+  if (wide_registers && __builtin_cpu_supports("avx2")) return &subtract_with_wide_registers<N>;
+#endif
+  return &subtract_with_any_registers<N>;
+}
 
 template <int N>
 class BlockLuSolver : public LinearSolver<N> {
  public:
+  explicit BlockLuSolver(bool wide_registers) : subtract_rows_above_(choose_subtraction<N>(wide_registers)) {}
+
   bool factor(const BlockMatrix<N>& matrix) override {
     if (version_ != matrix.pattern_version()) {
       analyse(matrix);
@@ -41,23 +124,42 @@ class BlockLuSolver : public LinearSolver<N> {
     ++this->counters_.solves;
     if (use_plain_) return plain_->solve(right_side);
     const int rows = static_cast<int>(row_start_.size()) - 1;
-    Eigen::VectorXd y(right_side.size()), x(right_side.size());
     for (int i = 0; i < rows; ++i) {
-      auto sum = right_side.segment<N>(N * order_[i]).eval();
-      for (int s = row_start_[i]; s < diagonal_[i]; ++s) sum.noalias() -= value_[s] * y.segment<N>(N * column_[s]);
-      y.segment<N>(N * i) = sum;
+      double sum[N];
+      for (int k = 0; k < N; ++k) sum[k] = right_side[N * order_[i] + k];
+      subtract_product(row_start_[i], diagonal_[i], sum);
+      for (int k = 0; k < N; ++k) solution_[i].entries[k] = sum[k];
     }
+    Eigen::VectorXd x(right_side.size());
     for (int i = rows - 1; i >= 0; --i) {
-      auto sum = y.segment<N>(N * i).eval();
-      for (int s = diagonal_[i] + 1; s < row_start_[i + 1]; ++s) sum.noalias() -= value_[s] * y.segment<N>(N * column_[s]);
-      y.segment<N>(N * i) = value_[diagonal_[i]] * sum;
+      double sum[N];
+      for (int k = 0; k < N; ++k) sum[k] = solution_[i].entries[k];
+      subtract_product(diagonal_[i] + 1, row_start_[i + 1], sum);
+      const PaddedBlock<N>& inverse = value_[diagonal_[i]];
+      for (int k = 0; k < N; ++k) {
+        double entry = inverse.row[k][0] * sum[0];
+        for (int c = 1; c < N; ++c) entry += inverse.row[k][c] * sum[c];
+        solution_[i].entries[k] = entry;
+        x[N * order_[i] + k] = entry;
+      }
     }
-    for (int i = 0; i < rows; ++i) x.segment<N>(N * order_[i]) = y.segment<N>(N * i);
     return x;
   }
 
  private:
   using Block = typename BlockMatrix<N>::Block;
+
+  /// Subtracts the sum over the slots of value times solution.
+  void subtract_product(int begin, int end, double* sum) const {
+    Lanes products[N]{};
+    for (int s = begin; s < end; ++s) {
+      const Lanes& x = solution_[column_[s]].entries;
+      for (int r = 0; r < N; ++r) products[r] += value_[s].row[r] * x;
+    }
+    for (int r = 0; r < N; ++r) {
+      for (int c = 0; c < N; ++c) sum[r] -= products[r][c];
+    }
+  }
 
   void analyse(const BlockMatrix<N>& matrix) {
     ++this->counters_.symbolic;
@@ -83,11 +185,11 @@ class BlockLuSolver : public LinearSolver<N> {
     }
     lay_out(upper);
 
-    source_.clear();
+    target_.clear();
     for (int i = 0; i < rows; ++i) {
-      for (int s = matrix.row_start(order_[i]); s < matrix.row_start(order_[i] + 1); ++s) source_.push_back(place_[matrix.column(s)]);
+      for (int s = row_start_[i]; s < row_start_[i + 1]; ++s) working_place_[column_[s]] = s;
+      for (int s = matrix.row_start(order_[i]); s < matrix.row_start(order_[i] + 1); ++s) target_.push_back(working_place_[place_[matrix.column(s)]]);
     }
-    work_.resize(rows);
   }
 
   void order_rows(const BlockMatrix<N>& matrix) {
@@ -122,41 +224,63 @@ class BlockLuSolver : public LinearSolver<N> {
       row_start_.push_back(static_cast<int>(column_.size()));
     }
     value_.resize(column_.size());
+    solution_.resize(rows);
+    working_place_.resize(rows);
   }
 
   /// False if a pivot has lost its digits.
   bool eliminate(const BlockMatrix<N>& matrix) {
     const int rows = matrix.rows();
+    const Elimination<N> elimination{row_start_.data(), diagonal_.data(), column_.data(), value_.data(), working_place_.data()};
     std::size_t next = 0;
     for (int i = 0; i < rows; ++i) {
-      for (int s = row_start_[i]; s < row_start_[i + 1]; ++s) work_[column_[s]].setZero();
-      const int original = order_[i];
-      for (int s = matrix.row_start(original); s < matrix.row_start(original + 1); ++s) work_[source_[next++]] = matrix.value(s);
-      const double size = work_[i].norm();
-      for (int s = row_start_[i]; s < diagonal_[i]; ++s) {
-        const int k = column_[s];
-        value_[s].noalias() = work_[k] * value_[diagonal_[k]];
-        for (int u = diagonal_[k] + 1; u < row_start_[k + 1]; ++u) work_[column_[u]].noalias() -= value_[s] * value_[u];
-      }
-      if (!invert(work_[i], size, value_[diagonal_[i]])) return false;
-      for (int s = diagonal_[i] + 1; s < row_start_[i + 1]; ++s) value_[s] = work_[column_[s]];
+      std::fill(value_.begin() + row_start_[i], value_.begin() + row_start_[i + 1], PaddedBlock<N>{});
+      for (int s = matrix.row_start(order_[i]); s < matrix.row_start(order_[i] + 1); ++s) pad(matrix.value(s), value_[target_[next++]]);
+      PaddedBlock<N>& pivot = value_[diagonal_[i]];
+      const double size = square_norm(pivot);
+      subtract_rows_above_(elimination, i);
+      if (!invert(pivot, size)) return false;
     }
     return true;
   }
 
-  static bool invert(const Block& pivot, double original_size, Block& inverse) {
-    const double columns = pivot.colwise().norm().prod(), determinant = std::abs(pivot.determinant());
-    if (!(pivot.norm() > smallest_pivot * original_size) || !(determinant > smallest_pivot * columns)) return false;
-    inverse = pivot.inverse();
-    return inverse.allFinite();
+  static void pad(const Block& block, PaddedBlock<N>& padded) {
+    for (int r = 0; r < N; ++r) {
+      for (int c = 0; c < N; ++c) padded.row[r][c] = block(r, c);
+    }
+  }
+
+  static double square_norm(const PaddedBlock<N>& block) {
+    Lanes sum = block.row[0] * block.row[0];
+    for (int r = 1; r < N; ++r) sum += block.row[r] * block.row[r];
+    double total = sum[0];
+    for (int c = 1; c < N; ++c) total += sum[c];
+    return total;
+  }
+
+  /// Replaces the pivot by its inverse; false if it has none worth the name.
+  /// \param original_size  square of the block's norm before the elimination
+  static bool invert(PaddedBlock<N>& pivot, double original_size) {
+    constexpr double square = smallest_pivot * smallest_pivot;
+    Block block;
+    for (int r = 0; r < N; ++r) {
+      for (int c = 0; c < N; ++c) block(r, c) = pivot.row[r][c];
+    }
+    const double columns = block.colwise().squaredNorm().prod(), determinant = block.determinant();
+    if (!(block.squaredNorm() > square * original_size) || !(determinant * determinant > square * columns)) return false;
+    block = block.inverse().eval();
+    pad(block, pivot);
+    return block.allFinite();
   }
 
   long version_ = -1;
-  std::vector<int> order_, place_;     ///< row of the matrix at a place in the factor, and back
+  std::vector<int> order_, place_;  ///< row of the matrix at a place in the factor, and back
   std::vector<int> row_start_, diagonal_, column_;
-  std::vector<int> source_;            ///< column in the factor of the matrix's entries, in the order in which elimination meets them
-  std::vector<Block> value_;           ///< L, inverted diagonal, U
-  std::vector<Block> work_;            ///< one row
+  std::vector<int> target_;             ///< slot in the factor of the matrix's entries, in the order in which elimination meets them
+  std::vector<int> working_place_;      ///< slot of a column in the row under work
+  std::vector<PaddedBlock<N>> value_;   ///< L, inverted diagonal, U
+  std::vector<PaddedVector> solution_;  ///< a block row each, in the factor's order
+  void (*subtract_rows_above_)(const Elimination<N>&, int);
   bool use_plain_ = false;
   std::unique_ptr<LinearSolver<N>> plain_;
 };
@@ -164,10 +288,10 @@ class BlockLuSolver : public LinearSolver<N> {
 }  // namespace
 
 template <int N>
-std::unique_ptr<LinearSolver<N>> make_block_solver() {
-  return std::make_unique<BlockLuSolver<N>>();
+std::unique_ptr<LinearSolver<N>> make_block_solver(bool wide_registers) {
+  return std::make_unique<BlockLuSolver<N>>(wide_registers);
 }
 
-template std::unique_ptr<LinearSolver<3>> make_block_solver<3>();
+template std::unique_ptr<LinearSolver<3>> make_block_solver<3>(bool);
 
 }  // namespace openclose

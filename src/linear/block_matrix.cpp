@@ -24,6 +24,8 @@ void BlockMatrix<N>::set_pattern(int rows, const std::vector<std::pair<int, int>
     columns_.push_back(j);
   }
   for (int i = 0; i < rows; ++i) row_start_[i + 1] += row_start_[i];
+  diagonal_.resize(rows);
+  for (int i = 0; i < rows; ++i) diagonal_[i] = find(i, i);
   values_.assign(columns_.size(), Block::Zero());
   static std::atomic<long> latest{0};  // over all matrices, so that a solver can tell them apart
   pattern_version_ = ++latest;

@@ -20,8 +20,9 @@ class BlockMatrix {
   int unknowns() const { return N * rows(); }
   long pattern_version() const { return pattern_version_; }  ///< changes with every new pattern, differs between matrices
 
-  int find(int row, int column) const;  ///< slot of an entry, -1 if it is not in the pattern
   bool contains(int row, int column) const { return find(row, column) >= 0; }
+  int find(int row, int column) const;                    ///< slot of the pair, -1 if not in the pattern
+  int diagonal(int row) const { return diagonal_[row]; }  ///< slot
 
   void set_zero();
   /// Throws std::logic_error if the pair is not in the pattern.
@@ -34,6 +35,7 @@ class BlockMatrix {
   int row_start(int row) const { return row_start_[row]; }
   int column(int slot) const { return columns_[slot]; }
   const Block& value(int slot) const { return values_[slot]; }
+  Block& value(int slot) { return values_[slot]; }  ///< slots stand as long as the pattern
 
   Eigen::VectorXd multiply(const Eigen::VectorXd& x) const;
   Eigen::MatrixXd dense() const;
@@ -44,6 +46,7 @@ class BlockMatrix {
   long pattern_version_ = 0;
   std::vector<int> row_start_{0};
   std::vector<int> columns_;
+  std::vector<int> diagonal_;
   std::vector<Block, Eigen::aligned_allocator<Block>> values_;
 };
 

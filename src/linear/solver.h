@@ -46,8 +46,9 @@ template <int N>
 std::unique_ptr<LinearSolver<N>> make_sparse_solver();
 
 /// LU of the blocks, without exchange between them, in an order of little fill; goes over to the plain one where a pivot has lost its digits.
+/// \param wide_registers  false: only the instructions that every processor has, for comparison; the bits of the answer are the same
 template <int N>
-std::unique_ptr<LinearSolver<N>> make_block_solver();
+std::unique_ptr<LinearSolver<N>> make_block_solver(bool wide_registers = true);
 
 /// When the multifrontal solver factors.
 enum class Refactor {

@@ -78,6 +78,13 @@ void BlockSystem<N>::advance(int b, const Unknowns& d) {
 }
 
 template <int N>
+void BlockSystem<N>::move_to(int b, const Unknowns& displacement) {
+  state_.displacement[b] = displacement;
+  const Unknowns no_more = Unknowns::Zero();
+  advance(b, no_more);
+}
+
+template <int N>
 double BlockSystem<N>::kinetic_energy() const {
   double energy = 0.0;
   for (int b : free_blocks_) energy += 0.5 * state_.velocity[b].dot(blocks_[b].mass.cwiseProduct(state_.velocity[b]));

@@ -72,6 +72,8 @@ class BlockSystem {
 
   /// Moves block b by d.
   void advance(int b, const Unknowns& d);
+  /// Moves block b to where it has this displacement; with exact rotation only.
+  void move_to(int b, const Unknowns& displacement);
 
   double kinetic_energy() const;  ///< [J] per metre of thickness
   /// [kg] m_a m_b/(m_a + m_b), a fixed block counting as infinitely heavy; one of the two is free.

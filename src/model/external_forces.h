@@ -41,6 +41,7 @@ class ExternalForces {
     Vec2 stiffness = Vec2::Zero();  ///< [N/m] of springs in x and y
     Vec2 anchor = Vec2::Zero();     ///< [m] where the springs are slack, relative to the system's origin
   };
+  bool has_point_forces(int b) const { return !loads_of_[b].empty() || !supports_of_[b].empty(); }  ///< false: force() does not depend on d
   const std::vector<PointForce>& loads() const { return loads_; }
   const std::vector<PointForce>& supports() const { return supports_; }
   const Vec2& gravity() const { return gravity_; }

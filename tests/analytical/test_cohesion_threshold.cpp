@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "blocks.h"
 #include "openclose/analytical/cohesion_threshold.h"
 #include "openclose/analytical/static_hold.h"
 #include "support/catch.h"
@@ -7,12 +8,6 @@
 using namespace openclose::analytical;
 
 namespace {
-
-BlockOnPlane block_with_friction(double degrees) {
-  BlockOnPlane block;
-  block.friction_angle = degrees * degree;
-  return block;
-}
 
 // Plays the slow loading through: corners share the pull until one slips and falls back to friction; the other then carries the rest.
 bool brittle_contact_holds(const BlockOnPlane& block, double cohesion) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "blocks.h"
 #include "openclose/analytical/incline.h"
 #include "openclose/analytical/static_hold.h"
 #include "support/catch.h"
@@ -11,12 +12,6 @@
 using namespace openclose::analytical;
 
 namespace {
-
-BlockOnPlane block_with_friction(double degrees) {
-  BlockOnPlane block;
-  block.friction_angle = degrees * degree;
-  return block;
-}
 
 struct TiltProblem {
   BlockOnPlane block;

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "blocks.h"
 #include "openclose/analytical/incline.h"
 #include "openclose/analytical/sliding_block_reference.h"
 #include "openclose/analytical/stopping_distance.h"
@@ -14,13 +15,6 @@
 using namespace openclose::analytical;
 
 namespace {
-
-BlockOnPlane block_on(double slope_deg, double friction_deg) {
-  BlockOnPlane block;
-  block.slope_angle = slope_deg * degree;
-  block.friction_angle = friction_deg * degree;
-  return block;
-}
 
 double displacement(const BlockOnPlane& block, const SlidingBlockState& start, double time, const ReferenceOptions& options = {}) {
   SlidingBlockReference reference(block, start, options);

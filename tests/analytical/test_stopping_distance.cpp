@@ -1,21 +1,11 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "blocks.h"
 #include "openclose/analytical/stopping_distance.h"
 #include "support/catch.h"
 
 using namespace openclose::analytical;
-
-namespace {
-
-BlockOnPlane block_on(double slope_deg, double friction_deg) {
-  BlockOnPlane block;
-  block.slope_angle = slope_deg * degree;
-  block.friction_angle = friction_deg * degree;
-  return block;
-}
-
-}  // namespace
 
 TEST_CASE("stopping distance: values of case B4") {
   BlockOnPlane level;

@@ -262,3 +262,8 @@ TEST_CASE("bad options", "[cli][bad_input]") {
   CHECK_THAT(refusal(place, "run scene.toml -o out --end 1 --dt"), ContainsSubstring("--dt"));
   CHECK_THAT(refusal(place, "run scene.toml other.toml -o out" + steps), ContainsSubstring("other.toml"));
 }
+
+TEST_CASE("a record that is not there", "[cli][bad_input]") {
+  CHECK_THAT(refusal_of_scene(block_on_base + "[base_motion]\nkind = 'record'\nhorizontal_file = 'nowhere.AT2'\n"),
+             ContainsSubstring("nowhere.AT2: there is no such file"));
+}

@@ -285,6 +285,19 @@ TEST_CASE("factor of safety by the paper's criterion", "[cli]") {
   CHECK_THAT(text_of(place.folder() / "out/trials.csv"), ContainsSubstring("\n1,bracket,1,relative displacement,"));
 }
 
+TEST_CASE("a moving base: its energy is written, and fos says that it is not for it", "[cli]") {
+  const Workplace place(openclose::test::block_on_base +
+                        "[base_motion]\nkind = 'harmonic'\namplitude_m_per_s2 = [9, 0]\nfrequency_hz = 5\n[[measured_point]]\nname = 'p'\nblock = "
+                        "'block'\npoint_m = [0, 0]\n");
+  CHECK(place.run("run scene.toml -o out --dt 0.001 --end 0.05").status == 0);
+  const auto summary = summary_in(place.folder() / "out");
+  CHECK(summary.at("options").at("base_motion") == "harmonic");
+  CHECK(std::abs(summary.at("energy_ledger").at("base_motion_j").get<double>()) > 1.0);
+  const CommandResult fos = place.run("fos scene.toml -o fos");
+  REQUIRE(!fos.errors.empty());
+  CHECK_THAT(fos.errors[0], ContainsSubstring("base_motion is for run"));
+}
+
 TEST_CASE("help of check says what it does not do", "[cli]") {
   const CommandResult result = Workplace().run("check --help");
   CHECK(result.status == 0);

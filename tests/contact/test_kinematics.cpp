@@ -213,3 +213,32 @@ TEST_CASE("the two blocks get equal and opposite forces on one line", "[contact]
     CHECK((centre_vertex + k.vertex_arm - (centre_edge + k.edge_arm)).norm() <= 50.0 * epsilon);
   }
 }
+
+TEST_CASE("the four blocks of a contact's stiffness are those of its gradients and its hessian", "[contact][kinematics]") {
+  for (unsigned seed = 0; seed < 300; ++seed) {
+    RandomPose pose(seed, RotationKind::exact);
+    const System system = pose.system();
+    const Contact contact = pose.contact();
+    const Unknowns d_vertex = pose.step_of(system, contact.vertex_block, 1.0), d_edge = pose.step_of(system, contact.edge_block, 1.0);
+    const Kinematics at(system, contact, d_vertex, d_edge);
+    const double nn = pose.number(1.0), tn = pose.number(1.0), tt = pose.number(1.0);
+    const Eigen::Matrix2d shift = (nn * at.normal + tn * at.tangent) * at.normal.transpose() + tt * at.tangent * at.tangent.transpose();
+    const Vec2 turning(pose.number(1.0), pose.number(1.0));
+    const ContactStiffness<3> k{shift(0, 0), shift(0, 1), shift(1, 0), shift(1, 1), at.vertex_arm, at.edge_arm, turning};
+    const auto block = [&](const Unknowns& n1, const Unknowns& t1, const Unknowns& n2, const Unknowns& t2) -> Eigen::Matrix3d {
+      return (nn * n1 + tn * t1) * n2.transpose() + tt * t1 * t2.transpose();
+    };
+    const auto h = at.hessian(turning);
+    const auto check = [&](auto add, const Eigen::Matrix3d& expected) {
+      Eigen::Matrix3d sum = Eigen::Matrix3d::Ones();
+      add(sum);
+      // Sums of a dozen products of arms of up to 20 m.
+      CHECK((sum - Eigen::Matrix3d::Ones() - expected).norm() <= 20.0 * 400.0 * epsilon);
+    };
+    const Unknowns &nv = at.normal_vertex, &ne = at.normal_edge, &tv = at.shear_vertex, &te = at.shear_edge;
+    check([&](Eigen::Matrix3d& m) { k.add_to_vertex(m); }, block(nv, tv, nv, tv) - h.vertex_vertex);
+    check([&](Eigen::Matrix3d& m) { k.add_to_edge(m); }, block(ne, te, ne, te) - h.edge_edge);
+    check([&](Eigen::Matrix3d& m) { k.add_to_vertex_edge(m); }, block(nv, tv, ne, te) - h.vertex_edge);
+    check([&](Eigen::Matrix3d& m) { k.add_to_edge_vertex(m); }, block(ne, te, nv, tv) - h.vertex_edge.transpose());
+  }
+}

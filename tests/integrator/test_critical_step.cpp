@@ -73,3 +73,46 @@ TEST_CASE("contacts out of reach do not count, supports do", "[integrator][criti
   Simulation<3> held(scene);
   CHECK(bound_of(held) == Approx(2.0 / std::sqrt(2e6 / test::block_mass)).epsilon(1e-12));
 }
+
+TEST_CASE("the bound kept contact by contact is the one of all contacts", "[integrator][critical_step]") {
+  Scene scene = pressed(test::column_of_blocks(4));
+  scene.joints[0].damping_ratio = GENERATE(0.0, 0.3);
+  scene.blocks[2].rotation_locked = GENERATE(false, true);
+  scene.supports = {{1, {0.0, 1.0}, {3e6, 1e6}}};
+  Simulation<3> simulation(scene);
+  REQUIRE(simulation.advance(1e-3));
+  StepProblem<3> problem = simulation.problem(1e-3, false);
+  REQUIRE(problem.contacts.size() >= 4);
+  CriticalStepBound<3> bound;
+  bound.begin(problem);
+  const auto put = [&](const Contact& c, double sign) {
+    const JointProperties& joint = problem.joints.joint(c.joint);
+    const Motion<3>::Unknowns still = Motion<3>::Unknowns::Zero();
+    const ContactKinematics<3> k(problem.system, c, still, still);
+    const ContactDashpots dashpots(joint, c.length, problem.system.reduced_mass(c.vertex_block, c.edge_block));
+    const auto part = [&](int block, int other, const Vec2& arm) {
+      const auto &b = problem.system.block(block), &o = problem.system.block(other);
+      if (b.equation < 0) return;
+      // In a frame of the block's own; the one with the support keeps the support's.
+      const Motion<3>::Turn frame(0.1 * (block - 1), RotationKind::exact);
+      bound.add({b.equation, o.equation < 0 ? 1.0 : 1.0 + b.mass[0] / o.mass[0], k.normal + frame.of(k.normal), arm + frame.of(arm),
+                 joint.normal_stiffness * c.length, joint.shear_stiffness * c.length, dashpots.normal, dashpots.shear},
+                sign);
+    };
+    part(c.vertex_block, c.edge_block, k.vertex_arm);
+    part(c.edge_block, c.vertex_block, k.edge_arm);
+  };
+  // One by one, then without the stiffest ones again, which takes the last digits of what is left with it.
+  std::vector<Contact> some;
+  const StepProblem<3> few{problem.system, problem.external, problem.joints, some, problem.method};
+  for (const Contact& c : problem.contacts) {
+    put(c, 1.0);
+    some.push_back(c);
+    CHECK(bound.step() == Approx(critical_step(few, 1.0)).epsilon(1e-9));
+  }
+  while (!some.empty()) {
+    put(some.back(), -1.0);
+    some.pop_back();
+    if (!some.empty()) CHECK(bound.step() == Approx(critical_step(few, 1.0)).epsilon(1e-6));
+  }
+}

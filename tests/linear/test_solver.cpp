@@ -68,6 +68,21 @@ TEST_CASE("all solvers solve random systems to rounding and agree", "[linear][so
   }
 }
 
+TEST_CASE("the block solver's answer has the same bits with narrow and with wide registers", "[linear][solver]") {
+  RandomSystems random(9);
+  const Solver wide = make_block_solver<3>(true), narrow = make_block_solver<3>(false);
+  for (int rows = 1; rows <= 60; ++rows) {
+    const auto pairs = random.couplings(rows, 2 * rows);
+    BlockMatrix<3> matrix;
+    matrix.set_pattern(rows, pairs);
+    random.fill(matrix, pairs, 0.5);
+    const Eigen::VectorXd right_side = random.vector(matrix.unknowns());
+    REQUIRE(wide->factor(matrix));
+    REQUIRE(narrow->factor(matrix));
+    CHECK(wide->solve(right_side) == narrow->solve(right_side));
+  }
+}
+
 TEST_CASE("several right sides use one factorisation", "[linear][solver]") {
   RandomSystems random(4);
   const Solver solver = make(GENERATE("dense", "sparse", "block", "multifrontal", "lagged"));

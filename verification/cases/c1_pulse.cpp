@@ -109,7 +109,7 @@ void stiffness(Report& report) {
     errors.push_back(std::abs(place(report, scene, data) - rigid_place));
   }
   report.order("distance from the rigid block over the stiffness", "soft", stiffnesses, errors, -0.6, -0.4,
-               "speed won on slack springs, mu g/w: order -1/2");
+               "speed won on slack springs, mu g/w: order -1/2", stiffness_name);
 }
 
 }  // namespace

@@ -87,7 +87,7 @@ void stiffness(Report& report) {
     errors.push_back(std::abs(places[2] - places[1] - cycle.distance));
   }
   report.order("one cycle, distance from the rigid block over the stiffness", "soft", stiffnesses, errors, -1.3, -0.7,
-               "order -1; the swing after the stop, of the same order, is met at a random phase");
+               "order -1; the swing after the stop, of the same order, is met at a random phase", stiffness_name);
 }
 
 /// Springs against the ODE on the shaken plane, from relaxed shear springs.

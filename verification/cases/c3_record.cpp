@@ -24,6 +24,7 @@ analytical::BlockOnPlane data_of_scene() {
 Scene scene_of(const std::string& method, double dt, double end) {
   Scene scene = read_scene(OPENCLOSE_VERIFICATION_SCENES "/shaken_block.toml");
   scene.method.contact = method;
+  scene.method.gap_tolerance = empty_scene().method.gap_tolerance;  // as those built in memory
   scene.step.dt = dt;
   scene.end_time = end;
   scene.output_every = every;
