@@ -7,12 +7,13 @@ BUILD := build/release
 OPENCLOSE := $(BUILD)/openclose
 REFERENCE := $(BUILD)/analytical/openclose-reference
 VERIFY := $(BUILD)/verification/openclose-verify
+CONVERGENCE := $(BUILD)/verification/openclose-convergence
 PAPER_RESULTS := results/paper
 COMPARISON := $(PAPER_RESULTS)/comparison.csv
 NULL_SOLVER := results/verify-null-solver.txt
 
 .DEFAULT_GOAL := help
-.PHONY: help build test verify reproduce sanitize clean packages figure-packages
+.PHONY: help build test verify reproduce convergence sanitize clean packages figure-packages
 
 help: ## print the targets
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(firstword $(MAKEFILE_LIST)) | while read -r target text; do printf '  make %-10s %s\n' "$$target" "$$text"; done
@@ -38,12 +39,17 @@ verify: build ## build, run the unit tests and the verification against closed f
 reproduce: figure-packages $(COMPARISON) ## build, run the paper's examples, draw the figures and print the comparison (results/paper)
 	$(if $(comparison_printed),,@"$${PYTHON:-python3}" paper/reproduce.py --print-only --results $(PAPER_RESULTS))
 
+# Drawn even where an order is out of its bounds: the picture shows why.
+convergence: build figure-packages ## measure the orders of convergence against theory (results/convergence.csv) and draw them; the exit status says pass or fail
+	@$(CONVERGENCE) --results results; status=$$?; \
+	  python=$$(scripts/find-python) && "$$python" verification/draw_convergence.py results/convergence.csv results/convergence || exit 2; exit $$status
+
 sanitize: packages ## build with the address and undefined-behaviour sanitizers (build/sanitize) and run the unit tests
 	@scripts/build sanitize openclose_tests
 	@ctest --preset sanitize --parallel $(JOBS)
 
 clean: ## remove what these targets have made; other results stay
-	rm -rf build $(PAPER_RESULTS) results/verify.csv results/verify_series.csv results/verify_cases.csv results/verification results/verification.md $(NULL_SOLVER)
+	rm -rf build $(PAPER_RESULTS) results/verify.csv results/verify_series.csv results/verify_cases.csv results/verification results/verification.md $(NULL_SOLVER) results/convergence results/convergence.csv
 
 packages:
 	@scripts/install-packages build

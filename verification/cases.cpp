@@ -31,6 +31,7 @@ void arch(Report&);
 void overhang(Report&);
 void column(Report&);
 void tilt(Report&);
+void invariance(Report&);
 
 const std::vector<Case>& cases() {
   static const std::vector<Case> list = {
@@ -63,6 +64,7 @@ const std::vector<Case>& cases() {
       {"F2", "overhang of a stack", &overhang},
       {"F3", "forces and modes of a column", &column},
       {"F4", "a column tips", &tilt},
+      {"I", "invariance: units, mirror, turn, place, frame, order, strangers, restart", &invariance},
   };
   return list;
 }

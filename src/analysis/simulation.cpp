@@ -518,6 +518,18 @@ void Simulation<N>::restore(const Snapshot& snapshot) {
   restart_scheme();
 }
 
+template <int N>
+void Simulation<N>::exchange(Archive& archive) {
+  archive(system_, external_, joints_, base_moves_, keep_bonds_, detector_, contacts_, contacts_current_, output_velocity_, time_, reason_, ledger_,
+          start_kinetic_energy_, collected_contact_energy_, max_penetration_, step_counters_, failed_attempts_, last_speed_);
+  scheme_->exchange(archive);
+  enforcement_->exchange(archive);
+  if (loop_) {
+    loop_->exchange(archive, joints_);
+    archive(loop_is_ahead_, loop_is_loaded_);
+  }
+}
+
 template class Simulation<3>;
 
 }  // namespace openclose

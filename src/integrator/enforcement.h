@@ -82,6 +82,8 @@ class Enforcement {
   virtual bool is_explicit() const { return false; }
   virtual double step_cut(const MethodInput&) const { return 0.5; }  ///< factor on a step that failed
   virtual const LinearCounters& linear_counters() const = 0;
+  /// Hands over what it keeps from step to step and what would change a result, be it in the last bit.
+  virtual void exchange(Archive&) {}
 };
 
 /// Displacements of a step without forces, dt v: zero in statics. N per free block.

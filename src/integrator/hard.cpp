@@ -68,6 +68,7 @@ class Hard : public Enforcement<N> {
   }
   bool has_elastic_contacts() const override { return false; }
   const LinearCounters& linear_counters() const override { return newton_.linear_counters(); }
+  void exchange(Archive& archive) override { newton_.exchange(archive); }
 
  private:
   static ContactSprings springs(const StepProblem<N>& problem, const Contact& contact, double ratio) {

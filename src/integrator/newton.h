@@ -32,6 +32,7 @@ class Newton {
   Eigen::VectorXd forces(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs);
 
   double force_scale() const { return force_scale_; }  ///< [N] largest single force in the last evaluation
+  void exchange(Archive& archive) { tangent_.exchange(archive); }
   const LinearCounters& linear_counters() const { return tangent_.counters(); }
 
  private:

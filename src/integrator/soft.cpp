@@ -25,6 +25,7 @@ class Soft : public Enforcement<N> {
 
   std::unique_ptr<TimeScheme<N>> make_time_scheme(const MethodInput& method) const override { return make_theta_scheme<N>(method.theta); }
   const LinearCounters& linear_counters() const override { return newton_.linear_counters(); }
+  void exchange(Archive& archive) override { newton_.exchange(archive); }
 
  private:
   Newton<N> newton_;

@@ -35,6 +35,7 @@ class MidstepScheme : public TimeScheme<N> {
     return d / dt + 0.5 * dt * acceleration;
   }
   void accept(double dt) override { previous_dt_ = dt; }
+  void exchange(Archive& archive) override { archive(previous_dt_); }
 
  private:
   double span(double dt) const { return 0.5 * (dt + previous_dt_); }

@@ -33,6 +33,7 @@ class TimeScheme {
   /// Velocity at the end of the step, for output.
   virtual Unknowns velocity_at_end(double dt, const Unknowns& d, const Unknowns& v) const = 0;
   virtual void accept(double) {}  ///< the step with this dt counts
+  virtual void exchange(Archive&) {}  ///< what it remembers of earlier steps
 };
 
 /// u1 = u0 + dt (v0 + v1)/2, M (v1 - v0) = dt [theta F1 + (1 - theta) F0]. theta = 1: Newmark (1/2, 1), Shi's, order 1; theta = 1/2: trapezoid,

@@ -52,11 +52,32 @@ std::vector<std::pair<const char*, double>> entries(const EnergyLedger& l) {
           {"imbalance_j", l.imbalance()}};
 }
 
+std::string energy_columns() {
+  std::string columns = "time_s";
+  for (const auto& entry : entries({})) columns += fmt::format(",{}", entry.first);
+  return columns;
+}
+
 }  // namespace
 
-HistoryFile::HistoryFile(const OutputFolder& folder) : file_(folder.open("history.csv")) {
-  file_ << "time_s,point,displacement_x_m,displacement_y_m,rotation_rad,velocity_x_m_per_s,velocity_y_m_per_s\n";
+RunTable::RunTable(const OutputFolder& folder, const std::string& name, const std::string& columns, const RestartPoint* restart) : name_(name) {
+  if (restart) {
+    for (const auto& [table, length] : restart->checkpoint.tables) {
+      if (table == name) file_ = folder.open(name, table_beside(restart->checkpoint_file, name), length);
+    }
+    return;
+  }
+  file_ = folder.open(name);
+  file_ << columns << '\n';
 }
+
+std::pair<std::string, std::uint64_t> RunTable::written() {
+  file_.flush();
+  return {name_, static_cast<std::uint64_t>(file_.tellp())};
+}
+
+HistoryFile::HistoryFile(const OutputFolder& folder, const RestartPoint* restart)
+    : RunTable(folder, "history.csv", "time_s,point,displacement_x_m,displacement_y_m,rotation_rad,velocity_x_m_per_s,velocity_y_m_per_s", restart) {}
 
 void HistoryFile::add(double time, const std::vector<PointMotion>& motions) {
   for (const PointMotion& m : motions) {
@@ -65,11 +86,7 @@ void HistoryFile::add(double time, const std::vector<PointMotion>& motions) {
   }
 }
 
-EnergyFile::EnergyFile(const OutputFolder& folder) : file_(folder.open("energy.csv")) {
-  file_ << "time_s";
-  for (const auto& entry : entries({})) file_ << ',' << entry.first;
-  file_ << '\n';
-}
+EnergyFile::EnergyFile(const OutputFolder& folder, const RestartPoint* restart) : RunTable(folder, "energy.csv", energy_columns(), restart) {}
 
 void EnergyFile::add(double time, const EnergyLedger& ledger) {
   fmt::print(file_, "{:.17g}", time);
@@ -78,9 +95,8 @@ void EnergyFile::add(double time, const EnergyLedger& ledger) {
 }
 
 template <int N>
-BlocksFile<N>::BlocksFile(const OutputFolder& folder) : file_(folder.open("blocks.csv")) {
-  file_ << "state,block,vertex,x_m,y_m\n";
-}
+BlocksFile<N>::BlocksFile(const OutputFolder& folder, const RestartPoint* restart)
+    : RunTable(folder, "blocks.csv", "state,block,vertex,x_m,y_m", restart) {}
 
 template <int N>
 void BlocksFile<N>::add(const std::string& state, const Simulation<N>& simulation) {

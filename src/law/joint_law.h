@@ -23,11 +23,16 @@ struct ContactStrength {
   double cohesion = 0.0;  ///< [N] cohesion times tributary length, 0 once lost
   double tension = 0.0;   ///< [N] tensile strength times tributary length, 0 once lost
 
+  ContactStrength() = default;
   ContactStrength(const JointProperties& joint, const Contact& contact) : ContactStrength(joint, std::tan(joint.friction_angle), contact) {}
   /// The same without a tangent for every contact.
   ContactStrength(const TabulatedJoint& joint, const Contact& contact) : ContactStrength(joint, joint.friction, contact) {}
 
   void break_bond(const JointProperties& joint);
+  void exchange(Archive& archive) {
+    auto& [a, b, c] = *this;
+    archive(a, b, c);
+  }
 
   struct ShearBound {
     double value;  ///< [N]

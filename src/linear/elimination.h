@@ -7,6 +7,8 @@
 
 #include <vector>
 
+#include "openclose/core/archive.h"
+
 namespace openclose {
 
 /// The neighbours of each row of a symmetric pattern, without the row itself: those of row i are neighbour[start[i]] to neighbour[start[i + 1] - 1].
@@ -24,6 +26,11 @@ struct Elimination {
   std::vector<int> parent;      ///< -1 for a root
   std::vector<int> rest_start;  ///< where in `rest` the list of a supernode begins; one entry more
   std::vector<int> rest;        ///< places after the supernode's own that it couples, ascending
+
+  void exchange(Archive& archive) {
+    auto& [a, b, c, d, e, f] = *this;
+    archive(a, b, c, d, e, f);
+  }
 
   int supernodes() const { return static_cast<int>(parent.size()); }
   int own(int s) const { return first[s + 1] - first[s]; }

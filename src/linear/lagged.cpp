@@ -72,6 +72,11 @@ class LaggedSolver : public LinearSolver<N> {
     return factor_plainly() ? plain_->solve(right_side) : Eigen::VectorXd();
   }
 
+  void exchange(Archive& archive) override {
+    LinearSolver<N>::exchange(archive);
+    archive(lu_, has_factor_, factored_rows_, spent_, pause_, left_to_pause_);
+  }
+
  private:
   double budget() const { return std::max(2.0, lu_.factor_work() / (solve_slowness * lu_.solve_work())); }
 

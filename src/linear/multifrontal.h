@@ -20,6 +20,9 @@ class MultifrontalLu {
   /// With the last matrix that was factored, whatever the pattern of later ones is.
   Eigen::VectorXd solve(const Eigen::VectorXd& right_side) const;
 
+  /// What solve() needs; the next analyse() starts anew.
+  void exchange(Archive& archive) { archive(plan_, value_at_, value_, exchange_, factor_work_); }
+
   double factor_work() const { return factor_work_; }                       ///< multiplications of a factorisation
   double solve_work() const { return static_cast<double>(value_.size()); }  ///< and of a solve
 

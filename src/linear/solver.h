@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "openclose/core/archive.h"
 #include "openclose/linear/block_matrix.h"
 #include "openclose/scene/scene.h"
 
@@ -20,6 +21,11 @@ struct LinearCounters {
   long factors_kept = 0;       ///< matrices solved with the factor of an earlier one
   long krylov_iterations = 0;  ///< of GMRES
   long krylov_given_up = 0;    ///< solves with an earlier factor that were given up for a new one
+
+  void exchange(Archive& archive) {
+    auto& [a, b, c, d, e, f, g, h] = *this;
+    archive(a, b, c, d, e, f, g, h);
+  }
 };
 
 template <int N>
@@ -32,6 +38,8 @@ class LinearSolver {
   /// Nothing (size 0) if the matrix turns out to be singular only here.
   virtual Eigen::VectorXd solve(const Eigen::VectorXd& right_side) = 0;
   const LinearCounters& counters() const { return counters_; }
+  /// What the next solves depend on; the symbolic work is done again after reading.
+  virtual void exchange(Archive& archive) { archive(counters_); }
 
  protected:
   LinearCounters counters_;

@@ -21,6 +21,7 @@ class ExternalForces {
   /// the base's velocity.
   void move_base(double from, double to) { base_acceleration_ = base_motion_.mean_acceleration(from, to); }
   void hold_base() { base_acceleration_.setZero(); }
+  void exchange(Archive& archive) { archive(base_acceleration_); }
   const Vec2& base_acceleration() const { return base_acceleration_; }  ///< [m/s2] mean over these times
 
   Unknowns weight(const BlockSystem<N>& system, int b) const;      ///< [N]

@@ -251,6 +251,7 @@ void require_increasing(const Value& value, const std::vector<double>& list) {
 
 void read_output(Table table, Scene& scene) {
   table.optional("every_s", scene.output_every, not_negative);
+  table.optional("checkpoint_every_s", scene.checkpoint_every, not_negative);
   const bool has_milestones = table.optional("milestones_m", scene.milestones, positive);
   const bool has_snapshots = table.optional("snapshots_s", scene.snapshot_times, not_negative);
   table.finish();

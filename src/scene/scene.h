@@ -211,6 +211,7 @@ struct Scene {
   double end_time = 0.0;                       ///< [s]
   std::optional<double> end_displacement;      ///< [m] of any measured point; ends the run before its time
   double output_every = 0.0;                   ///< [s] interval of the history rows; 0: every step
+  double checkpoint_every = 0.0;               ///< [s] interval of the checkpoints; 0: none, not even at the end
   std::vector<double> milestones;              ///< [m] displacements of the first measured point to be timed, increasing
   std::vector<double> snapshot_times;          ///< [s] at which the blocks are drawn, increasing
   SettleInput settle;

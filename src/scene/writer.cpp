@@ -186,6 +186,7 @@ void write_run(Text& text, const Scene& scene) {
   if (scene.end_displacement) text.line("displacement_m", *scene.end_displacement);
   text.header("[output]");
   text.line("every_s", scene.output_every);
+  text.line("checkpoint_every_s", scene.checkpoint_every);
   text.line("milestones_m", scene.milestones);
   text.line("snapshots_s", scene.snapshot_times);
 }

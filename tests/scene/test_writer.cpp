@@ -97,6 +97,7 @@ void check_same(const Scene& a, const Scene& b) {
   CHECK(a.step.smallest_fraction == b.step.smallest_fraction);
   CHECK(a.end_time == b.end_time);
   CHECK(a.output_every == b.output_every);
+  CHECK(a.checkpoint_every == b.checkpoint_every);
   CHECK(a.run_strength_reduction_factor == b.run_strength_reduction_factor);
   CHECK(a.end_displacement == b.end_displacement);
   CHECK(a.milestones == b.milestones);
@@ -180,6 +181,7 @@ Scene random_scene(unsigned seed) {
   scene.step = {number(), number(), fraction(generator)};
   scene.end_time = number();
   scene.output_every = number();
+  scene.checkpoint_every = number();
   scene.run_strength_reduction_factor = number();
   scene.end_displacement = number();
   const double first = number();
