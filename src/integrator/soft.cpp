@@ -6,7 +6,7 @@ namespace openclose {
 namespace {
 
 template <int N>
-class Soft : public Enforcement<N> {
+class Soft final : public Enforcement<N> {
  public:
   ContactSprings springs(const StepProblem<N>& problem, const Contact& contact) const override {
     ContactSprings s = joint_springs(problem, contact);
@@ -15,8 +15,8 @@ class Soft : public Enforcement<N> {
   }
 
   StepSolution<N> solve(const StepProblem<N>& problem) override {
-    springs_.clear();
-    for (const Contact& c : problem.contacts) springs_.push_back(springs(problem, c));
+    springs_.resize(problem.contacts.size());
+    for (std::size_t c = 0; c < springs_.size(); ++c) springs_[c] = springs(problem, problem.contacts[c]);
     StepSolution<N> solution;
     solution.d = drift(problem);
     newton_.solve(problem, springs_, solution);
