@@ -449,8 +449,8 @@ bool Simulation<N>::advance(double dt) {
   const double limit = part_of_limit * scene_.step.max_displacement;
   while (remaining > 0.0) {
     trial = std::min(trial, remaining);
-    // Blocks that move on as they did must not exceed the largest displacement.
-    if (last_speed_ * trial > scene_.step.max_displacement) trial = std::max(limit / last_speed_, smallest);
+    // Blocks that move on as they did must not exceed the largest displacement; equal parts of what remains cost least and suit every scheme.
+    if (last_speed_ * trial > scene_.step.max_displacement) trial = std::max(remaining / std::ceil(last_speed_ * remaining / limit), smallest);
     const StepResult result = step(trial, scene_.method.statics);
     if (result.accepted) {
       last_speed_ = result.moved / trial;
