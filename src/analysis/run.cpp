@@ -53,7 +53,7 @@ Vec2 MeasuredPoints<N>::displacement(const Point& point) const {
 
 template <int N>
 std::vector<PointMotion> MeasuredPoints<N>::motions() const {
-  const auto& system = std::as_const(simulation_).system();
+  const auto& system = simulation_.system();
   std::vector<PointMotion> list;
   for (const Point& p : points_) {
     const int b = system.point_block(p.number);

@@ -295,6 +295,7 @@ void add_options(CLI::App& app, Options& options, bool writes_folder) {
   };
   shorthand("--contact", "method.contact", "contact enforcement: soft, hard or shi");
   shorthand("--start", "method.start", "start state: unloaded, settled, normal_balanced or steady_sliding");
+  shorthand("--integrator", "method.integrator", "time integrator of soft: shi, theta, generalized_alpha, tr_bdf2 or path_average");
   shorthand("--dt", "step.dt_s", "time step [s]");
   shorthand("--end", "end.time_s", "end time [s]");
   app.add_option_function<std::vector<std::string>>(

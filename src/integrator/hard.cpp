@@ -63,7 +63,7 @@ class Hard final : public Enforcement<N> {
   }
 
   std::unique_ptr<TimeScheme<N>> make_time_scheme(const MethodInput& method) const override {
-    require_default_theta(method);
+    refuse_integrators(method);
     return make_midstep_scheme<N>();
   }
   bool has_elastic_contacts() const override { return false; }

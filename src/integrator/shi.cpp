@@ -48,7 +48,7 @@ class Shi : public Enforcement<N> {
   }
 
   std::unique_ptr<TimeScheme<N>> make_time_scheme(const MethodInput& method) const override {
-    require_default_theta(method);
+    refuse_integrators(method);
     return make_theta_scheme<N>(1.0);
   }
   bool follows_gaps() const override { return false; }  // they add up first-order changes

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "openclose/integrator/integrators.h"
 #include "openclose/scene/names.h"
 #include "openclose/version.h"
 
@@ -21,6 +22,10 @@ const char* name_of(ContactStatus status) {
       return "sliding";
   }
   return "";
+}
+
+nlohmann::ordered_json optional_json(const std::optional<double>& value) {
+  return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
 }
 
 /// A text field: quoted if it holds what would break the row.
@@ -200,7 +205,10 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
   j["title"] = scene.title;
   j["overrides"] = summary.overrides;
   j["options"] = {{"contact", scene.method.contact},
-                  {"theta", scene.method.theta},
+                  {"integrator", scene.method.contact == "soft" ? ordered_json(integrator_name(scene.method)) : ordered_json(nullptr)},
+                  {"theta", optional_json(scene.method.theta)},
+                  {"rho_inf", optional_json(scene.method.rho_inf)},
+                  {"dissipation", optional_json(scene.method.dissipation)},
                   {"rotation", word_for(rotation_words, scene.method.rotation)},
                   {"start", word_for(start_words, scene.method.start)},
                   {"statics", scene.method.statics},
@@ -216,6 +224,8 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
                   {"max_displacement_m", scene.step.max_displacement},
                   {"smallest_fraction", scene.step.smallest_fraction},
                   {"base_motion", scene.base_motion ? ordered_json(word_for(base_motion_words, scene.base_motion->kind)) : ordered_json(nullptr)},
+                  {"adaptive", scene.step.adaptive},
+                  {"error_tolerance_m", scene.step.error_tolerance},
                   {"run_strength_reduction_factor", scene.run_strength_reduction_factor},
                   {"end_time_s", scene.end_time},
                   {"end_displacement_m", scene.end_displacement ? ordered_json(*scene.end_displacement) : ordered_json(nullptr)},
@@ -255,7 +265,9 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
   j["max_penetration_m"] = summary.max_penetration;
   j["counters"] = {{"steps", steps.steps},
                    {"steps_cut", steps.cuts},
+                   {"error_cuts", steps.error_cuts},
                    {"compliant_steps", steps.compliant},
+                   {"dissipative_steps", steps.dissipative},
                    {"iterations", steps.iterations},
                    {"searches", detection.searches},
                    {"searches_skipped", detection.searches_skipped},

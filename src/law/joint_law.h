@@ -69,6 +69,7 @@ struct ContactSprings {
   // Dashpots over the time in which gap and slip change.
   double normal_damping = 0.0;  ///< [N/m]
   double shear_damping = 0.0;   ///< [N/m]
+  double dissipation = 0.0;     ///< [-] see path_average.h
 };
 
 struct CarriedForces {

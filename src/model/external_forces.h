@@ -31,6 +31,12 @@ class ExternalForces {
   /// Minus the derivative of force() by d.
   Matrix stiffness(const BlockSystem<N>& system, int b, const Unknowns& d) const;
 
+  /// The mean of such forces over a step to d, along a straight path and in the mean geometry: their work is the product with d, exactly for translations
+  /// and to the third order in the rotation.
+  Unknowns mean_force(const BlockSystem<N>& system, int b, const Unknowns& d) const;
+  /// Minus the derivative of mean_force() by d.
+  Matrix mean_stiffness(const BlockSystem<N>& system, int b, const Unknowns& d) const;
+
   /// [N] sum of the magnitudes of these forces on block b, the scale of what rounding leaves of their sum, which may cancel.
   double magnitude(const BlockSystem<N>& system, int b, const Unknowns& d) const;
   /// [N] what the springs' forces change by when coordinates change by their own size: times the rounding unit, the noise of that force.

@@ -196,6 +196,9 @@ MethodInput read_method(Table table, const SourceLocation& scene_where) {
   method.contact_where = scene_where;
   const bool contact_given = table.optional("contact", method.contact);
   table.optional("theta", method.theta, Range{.low = 0.5, .high = 1.0, .low_included = true, .high_included = true});
+  table.optional("integrator", method.integrator);
+  table.optional("rho_inf", method.rho_inf, Range{.low = 0.0, .high = 1.0, .low_included = true, .high_included = true});
+  table.optional("dissipation", method.dissipation, Range{.low = 0.0, .high = 1.0, .low_included = true, .high_included = true});
   table.optional("rotation", method.rotation, rotation_words);
   table.optional("start", method.start, start_words);
   table.optional("statics", method.statics);
@@ -226,6 +229,8 @@ StepInput read_step(Table table) {
   table.optional("dt_s", step.dt, positive);
   table.optional("max_displacement_m", step.max_displacement, positive);
   table.optional("smallest_fraction", step.smallest_fraction, Range{.low = 0.0, .high = 1.0, .high_included = true});
+  table.optional("adaptive", step.adaptive);
+  table.optional("error_tolerance_m", step.error_tolerance, positive);
   table.finish();
   return step;
 }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "openclose/analysis/run.h"
+#include "openclose/integrator/integrators.h"
 #include "support/catch.h"
 #include "support/scenes.h"
 
@@ -78,6 +79,19 @@ TEST_CASE("a saved simulation goes on bit for bit", "[analysis][checkpoint]") {
       check_goes_on(prepared(test::tumbling_blocks(), method), at, at + 100);
       check_goes_on(prepared(hit_column(), method), at, at + 60);
       check_goes_on(prepared(test::block_on_incline(35.0 * test::degree), method), at, at + 60);  // below the skin of the contacts
+    }
+  }
+}
+
+TEST_CASE("a saved simulation goes on bit for bit with every integrator, in adaptive steps too", "[analysis][checkpoint]") {
+  for (const auto& entry : integrators<3>()) {
+    for (const bool adaptive : {false, true}) {
+      INFO(entry.name << (adaptive ? ", adaptive" : ""));
+      Scene scene = prepared(test::tumbling_blocks(), "soft");
+      scene.method.integrator = entry.name;
+      scene.step.adaptive = adaptive;
+      scene.step.error_tolerance = 1e-6;
+      for (const int at : {1, 60}) check_goes_on(scene, at, at + 60);
     }
   }
 }
