@@ -4,22 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <optional>
 #include <utility>
 
 #include "openclose/analysis/equilibrium.h"
 #include "openclose/analysis/start.h"
+#include "openclose/core/process.h"
 
 namespace openclose {
-namespace {
-
-/// CPU time [s] of this process since it began.
-double process_cpu_time() {
-  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
-}
-
-}  // namespace
 
 template <int N>
 MeasuredPoints<N>::MeasuredPoints(Simulation<N>& simulation) : simulation_(simulation) {
@@ -53,7 +45,7 @@ Vec2 MeasuredPoints<N>::displacement(const Point& point) const {
 
 template <int N>
 std::vector<PointMotion> MeasuredPoints<N>::motions() const {
-  const auto& system = std::as_const(simulation_).system();
+  const auto& system = simulation_.system();
   std::vector<PointMotion> list;
   for (const Point& p : points_) {
     const int b = system.point_block(p.number);

@@ -43,7 +43,7 @@ class MeasuredPoints {
   };
   Vec2 displacement(const Point& point) const;
 
-  Simulation<N>& simulation_;
+  const Simulation<N>& simulation_;  // const: the explicit loop goes on after it has been asked
   std::vector<Point> points_;
 };
 

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "openclose/core/process.h"
 #include "openclose/integrator/integrators.h"
 #include "openclose/scene/names.h"
 #include "openclose/version.h"
@@ -254,6 +255,7 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
     j["factor_of_safety"] = safety->found ? ordered_json(safety->stable) : ordered_json(nullptr);
     j["bracket"] = {safety->stable, safety->failed};
     j["criterion"] = safety->criterion;
+    j["cpu_s"] = {{"search", summary.cpu_of_search}};
   } else {
     ordered_json ledger;
     for (const auto& [name, value] : entries(summary.ledger)) ledger[name] = value;
@@ -263,6 +265,7 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
     j["cpu_s"] = {{"start", summary.cpu_of_start}, {"motion", summary.cpu_of_motion}};
   }
   j["max_penetration_m"] = summary.max_penetration;
+  j["peak_memory_bytes"] = peak_memory();
   j["counters"] = {{"steps", steps.steps},
                    {"steps_cut", steps.cuts},
                    {"error_cuts", steps.error_cuts},
