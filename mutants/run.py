@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 """Plants the faults of faults.toml one by one in copies of the source tree and reports which check notices each.
 
-    mutants/run.py [--jobs N] [--results DIR] [ID...]     all faults, or the named ones
-    mutants/run.py --check-list                           only whether every fault still fits the source
+    mutants/run.py [--jobs N] [--results DIR] [--unit-tests-only] [ID...]     all faults, or the named ones
+    mutants/run.py --check-list                                               only whether every fault still fits the source
 
-Every worker has a copy of the tree with a build of its own under build/mutants. A fault is tried on the unit tests of its own folder, then on those of
-the folders after it in the order of the data, then of those before it, then on the verification cases, one group after the other until one is red;
-only what they need is built. Writes mutants.csv and mutants.md. What ends a check by an exception that no test expects, by a signal or by its time
-limit, and is noticed by no other check, has not been caught by an assertion: it is listed as such.
+Every worker has a copy of the tree with a build of its own under build/mutants. A fault is tried on the unit tests of its own folder, then on those
+of the folders after it in the order of the data, then of those before it, then on the verification cases, one group after the other until one is red;
+only what they need is built. Writes mutants.csv and mutants.md; named faults replace their rows there and leave the others. A fault that only ends
+checks by an exception that no test expects, by a signal or by their time limit has not been caught by an assertion: it is listed as such.
 
 Exit status: 0 if every fault was caught, 1 if one was not, 2 if the list does not fit the source or the source without a fault is red.
 """
@@ -193,7 +193,7 @@ class Worker:
             return Outcome("time-out", "verification")
         return Outcome() if run.returncode == 0 else Outcome("crash", f"verification: {group}", text)
 
-    def try_fault(self, fault):
+    def try_fault(self, fault, verify):
         """\\return the row of the table."""
         begin = time.monotonic()
         path = self.tree / fault["file"]
@@ -201,7 +201,7 @@ class Worker:
         first = Outcome()
         path.write_text(original.replace(fault["original"], fault["replacement"]))
         try:
-            for check in checks_for(folder_of(fault)):
+            for check in checks_for(folder_of(fault), verify):
                 outcome = self.run(check)
                 if first.kind is None:
                     first = outcome
@@ -210,15 +210,28 @@ class Worker:
                     break
         finally:
             path.write_text(original)
-        row = {key: fault[key] for key in ("id", "file", "description")}
-        row |= {"folder": folder_of(fault), "caught_by": first.by, "kind": first.kind or "survived", "seconds": f"{time.monotonic() - begin:.1f}"}
+        row = described(fault) | {"caught_by": first.by, "kind": first.kind or "survived", "seconds": f"{time.monotonic() - begin:.1f}"}
         return row
 
 
-def checks_for(folder):
+def described(fault):
+    return {"id": fault["id"], "folder": folder_of(fault), "file": fault["file"], "description": fault["description"]}
+
+
+def checks_for(folder, verify):
     order = folders()
     at = order.index(folder)
-    return order[at:] + order[:at] + ["verification"]
+    return order[at:] + order[:at] + (["verification"] if verify else [])
+
+
+def earlier_rows(path, faults):
+    """What an earlier run has found for faults that are still the same."""
+    if not path.is_file():
+        return {}
+    with open(path, newline="") as stream:
+        rows = [row for row in csv.DictReader(stream) if list(row) == COLUMNS]
+    known = [described(fault) for fault in faults]
+    return {row["id"]: row for row in rows if {key: row[key] for key in ("id", "folder", "file", "description")} in known}
 
 
 def write_csv(path, rows):
@@ -228,11 +241,12 @@ def write_csv(path, rows):
         writer.writerows(rows)
 
 
-def write_page(path, rows, seconds):
+def write_page(path, rows):
     not_caught = [row for row in rows if row["kind"] not in CAUGHT]
     by_kind = {kind: sum(row["kind"] == kind for row in rows) for kind in dict.fromkeys([*CAUGHT, *(row["kind"] for row in rows)])}
     lines = ["# Planted faults", "",
-             f"{len(rows)} faults of one line each, tried in {seconds / 60.0:.0f} minutes: {len(rows) - len(not_caught)} caught "
+             f"{len(rows)} faults of one line each, {sum(float(row['seconds']) for row in rows) / 60.0:.0f} minutes of builds and checks: "
+             f"{len(rows) - len(not_caught)} caught "
              f"({', '.join(f'{count} by {kind}' for kind, count in by_kind.items() if kind in CAUGHT)}), {len(not_caught)} not.", "",
              "| folder | faults | caught | by the folder's own tests |", "|---|---|---|---|"]
     for folder in folders():
@@ -250,46 +264,49 @@ def write_page(path, rows, seconds):
     path.write_text("\n".join(lines) + "\n")
 
 
-def baseline(worker):
+def baseline(worker, verify):
     """The limits of time; the source without a fault must be green."""
-    for check in folders() + ["verification"]:
+    for check in checks_for(folders()[0], verify):
         outcome = worker.run(check)
         if outcome.kind:
             raise ListError(f"without any fault {outcome.by} is red: {outcome.kind}\n{outcome.text[-3000:]}")
 
 
-def study(faults, jobs, results):
-    begin = time.monotonic()
-    workers = [Worker(number) for number in range(jobs)]
+def study(faults, wanted, options):
+    workers = [Worker(number) for number in range(options.jobs)]
     for worker in workers:
         worker.prepare()
+    verify = not options.unit_tests_only
     print("builds and checks the source without a fault", flush=True)
-    baseline(workers[0])
+    baseline(workers[0], verify)
     for worker in workers[1:]:
         worker.limits = dict(workers[0].limits)
-    free, rows, lock = list(workers), {}, threading.Lock()
-    results.mkdir(parents=True, exist_ok=True)
+    options.results.mkdir(parents=True, exist_ok=True)
+    table = options.results / "mutants.csv"
+    rows = earlier_rows(table, faults) if len(wanted) < len(faults) else {}
+    free, done, lock = list(workers), [], threading.Lock()
 
     def try_one(fault):
         with lock:
             worker = free.pop()
         try:
-            row = worker.try_fault(fault)
+            row = worker.try_fault(fault, verify)
         finally:
             with lock:
                 free.append(worker)
         with lock:
             rows[row["id"]] = row
-            print(f"{len(rows):3}/{len(faults)} {row['id']:<14} {row['kind']:<12} {row['seconds']:>6} s  {row['caught_by']}", flush=True)
-            write_csv(results / "mutants.csv", [rows[f["id"]] for f in faults if f["id"] in rows])
+            done.append(row)
+            print(f"{len(done):3}/{len(wanted)} {row['id']:<14} {row['kind']:<12} {row['seconds']:>6} s  {row['caught_by']}", flush=True)
+            ordered = [rows[f["id"]] for f in faults if f["id"] in rows]
+            write_csv(table, ordered)
+            write_page(options.results / "mutants.md", ordered)
 
-    with ThreadPoolExecutor(jobs) as pool:
-        list(pool.map(try_one, faults))
-    ordered = [rows[fault["id"]] for fault in faults]
-    write_page(results / "mutants.md", ordered, time.monotonic() - begin)
-    missed = [row for row in ordered if row["kind"] not in CAUGHT]
-    print(f"{len(ordered) - len(missed)} of {len(ordered)} faults caught; {results}/mutants.csv, {results}/mutants.md")
-    return 1 if missed else 0
+    with ThreadPoolExecutor(options.jobs) as pool:
+        list(pool.map(try_one, wanted))
+    caught = sum(row["kind"] in CAUGHT for row in done)
+    print(f"{caught} of {len(done)} faults caught; {table}, {options.results / 'mutants.md'}")
+    return 0 if caught == len(done) else 1
 
 
 def main():
@@ -297,6 +314,7 @@ def main():
     parser.add_argument("ids", nargs="*", metavar="ID", help="faults to try (default: all)")
     parser.add_argument("--jobs", type=int, default=2, help="workers, each with a build of its own (default: 2)")
     parser.add_argument("--results", type=Path, default=ROOT / "results", help="folder of mutants.csv and mutants.md")
+    parser.add_argument("--unit-tests-only", action="store_true", help="leave out the verification cases, with which some faults then survive")
     parser.add_argument("--check-list", action="store_true", help="only check that every fault fits the source")
     options = parser.parse_args()
     try:
@@ -307,7 +325,7 @@ def main():
         if options.check_list:
             print(f"{len(faults)} faults fit the source")
             return 0
-        return study([f for f in faults if not options.ids or f["id"] in options.ids], options.jobs, options.results)
+        return study(faults, [f for f in faults if not options.ids or f["id"] in options.ids], options)
     except (ListError, tomllib.TOMLDecodeError) as error:
         print(f"mutants: {error}", file=sys.stderr)
         return 2
