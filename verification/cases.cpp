@@ -16,6 +16,8 @@ void recorded_motion(Report&);
 void toppling_chart(Report&);
 void amplification(Report&);
 void contact_damping(Report&);
+void second_order_integrators(Report&);
+void conserving_bounces(Report&);
 void bounce(Report&);
 void small_vibration(Report&);
 void collisions(Report&);
@@ -31,6 +33,7 @@ void arch(Report&);
 void overhang(Report&);
 void column(Report&);
 void tilt(Report&);
+void invariance(Report&);
 
 const std::vector<Case>& cases() {
   static const std::vector<Case> list = {
@@ -48,6 +51,8 @@ const std::vector<Case>& cases() {
       {"B5", "sliding and toppling of a block on a plane", &toppling_chart},
       {"D1", "amplification matrix of one block on a spring", &amplification},
       {"D1c", "contact damping of one block on one contact", &contact_damping},
+      {"D1i", "amplification by the integrators of second order", &second_order_integrators},
+      {"D2i", "bounces with path-averaged forces", &conserving_bounces},
       {"D2", "bounce on a contact", &bounce},
       {"D3", "small vibration of a block on two springs", &small_vibration},
       {"D4", "collisions", &collisions},
@@ -63,6 +68,7 @@ const std::vector<Case>& cases() {
       {"F2", "overhang of a stack", &overhang},
       {"F3", "forces and modes of a column", &column},
       {"F4", "a column tips", &tilt},
+      {"I", "invariance: units, mirror, turn, place, frame, order, strangers, restart", &invariance},
   };
   return list;
 }

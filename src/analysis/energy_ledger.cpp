@@ -37,6 +37,20 @@ void add_elastic_contact(EnergyLedger& ledger, const Contact& contact, const Con
   ledger.friction -= (theta * t1 + (1.0 - theta) * t0) * (slip - (u1 - u0));
 }
 
+/// Forces averaged over the path; what rotations leave between the ways of these forces and the changes of gap and slip.
+template <int N>
+void add_averaged_contact(EnergyLedger& ledger, const Contact& contact, const PathAverage& path, double normal_rest, double shear_rest,
+                          const ContactOutcome<N>& end) {
+  const PathEnergies& e = path.energies;
+  const double stored = stored_energy(end.springs, path.end.elastic_normal, path.end.elastic_shear);
+  ledger.contact_springs += stored - contact.stored_energy;
+  // What a spring had before strength was taken from it, or the contact changed, and has not now.
+  ledger.redefinition += contact.stored_energy - (stored - e.springs) + e.rupture;
+  ledger.friction += e.friction;
+  ledger.contact_damping += e.damping;
+  ledger.scheme += e.scheme - path.mean.normal * normal_rest - path.mean.shear * shear_rest;
+}
+
 }  // namespace
 
 double stored_energy(const ContactSprings& springs, double normal, double shear) {
@@ -51,18 +65,19 @@ void add_step(EnergyLedger& ledger, const StepProblem<N>& problem, const StepSol
   // A static step starts from rest, whatever the scheme, and drops its kinetic energy at the end.
   const auto work_displacement = [&](int b) -> Unknowns {
     const Unknowns d = solution.of(system, b);
-    return problem.statics ? d : scheme.work_displacement(dt, d, system.velocity(b));
+    return problem.statics ? d : scheme.work_displacement(b, dt, d, system.velocity(b));
   };
 
   for (int b : system.free_blocks()) {
     const auto& mass = system.block(b).mass;
     const Unknowns d = solution.of(system, b), path = work_displacement(b), v0 = problem.velocity(b);
-    const Unknowns v1 = problem.statics ? Unknowns(2.0 / dt * d) : scheme.next_velocity(dt, d, v0);
+    const Unknowns v1 = problem.statics ? Unknowns(2.0 / dt * d) : scheme.next_velocity(b, dt, d, v0);
     const double before = 0.5 * v0.dot(mass.cwiseProduct(v0)), after = 0.5 * v1.dot(mass.cwiseProduct(v1));
     if (problem.statics) {
       const Unknowns dropped = system.velocity(b);
       ledger.scheme += after + 0.5 * dropped.dot(mass.cwiseProduct(dropped));
     }
+    if (!problem.statics) ledger.scheme -= scheme.own_work(b, dt, d, v0, mass);
     const double weight_work = problem.external.weight(system, b).dot(path);
     const double base_work = problem.external.base_force(system, b).dot(path);
     ledger.gravity -= weight_work;
@@ -79,7 +94,8 @@ void add_step(EnergyLedger& ledger, const StepProblem<N>& problem, const StepSol
       const Vec2 moved = Motion<N>::displacement(d, arm0, system.rotation_kind());
       const Vec2 arm1 = arm0 + moved - Motion<N>::translation(d);
       const Vec2 x0 = system.point_position(f.point) - f.anchor, x1 = x0 + moved;
-      const double work = theta * Motion<N>::gradient(arm1, f.force - f.stiffness.cwiseProduct(x1)).dot(path) +
+      const double work = problem.averages_path() ? Motion<N>::gradient(0.5 * (arm0 + arm1), f.force - 0.5 * f.stiffness.cwiseProduct(x0 + x1)).dot(path) :
+                          theta * Motion<N>::gradient(arm1, f.force - f.stiffness.cwiseProduct(x1)).dot(path) +
                           (1.0 - theta) * Motion<N>::gradient(arm0, f.force - f.stiffness.cwiseProduct(x0)).dot(path);
       const double stored = 0.5 * f.stiffness.dot(x1.cwiseAbs2() - x0.cwiseAbs2());
       const double by_load = f.force.dot(moved);
@@ -96,6 +112,13 @@ void add_step(EnergyLedger& ledger, const StepProblem<N>& problem, const StepSol
     const ContactOutcome<N>& end = solution.contacts[c];
     const Unknowns pv = work_displacement(contact.vertex_block), pe = work_displacement(contact.edge_block);
     const auto path = [&](const Unknowns& on_vertex, const Unknowns& on_edge) { return on_vertex.dot(pv) + on_edge.dot(pe); };
+    if (!solution.paths.empty()) {
+      const PathOutcome<N>& mean = solution.paths[c];
+      const auto& k = mean.kinematics;
+      add_averaged_contact(ledger, contact, mean.average, path(k.normal_vertex, k.normal_edge) - end.kinematics.gap_change,
+                           path(k.shear_vertex, k.shear_edge) - end.kinematics.slip_change, end);
+      continue;
+    }
     ContactPaths paths{path(end.kinematics.normal_vertex, end.kinematics.normal_edge), path(end.kinematics.shear_vertex, end.kinematics.shear_edge),
                        0.0, 0.0};
     if (!elastic) {

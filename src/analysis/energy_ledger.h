@@ -34,6 +34,11 @@ struct EnergyLedger {
   double redefinition = 0.0;     ///< released where contacts change their tributary length, their gap's linearisation, or end while loaded
   double turnover = 0.0;         ///< sum of the absolute changes of kinetic, gravity, base motion and loads: what an imbalance is compared with
 
+  void exchange(Archive& archive) {
+    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m] = *this;
+    archive(a, b, c, d, e, f, g, h, i, j, k, l, m);
+  }
+
   double imbalance() const {
     return kinetic + gravity + base_motion + contact_springs + support_springs + loads + friction + contact_damping + mass_damping + impact + scheme +
            redefinition;

@@ -4,22 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <optional>
 #include <utility>
 
 #include "openclose/analysis/equilibrium.h"
 #include "openclose/analysis/start.h"
+#include "openclose/core/process.h"
 
 namespace openclose {
-namespace {
-
-/// CPU time [s] of this process since it began.
-double process_cpu_time() {
-  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
-}
-
-}  // namespace
 
 template <int N>
 MeasuredPoints<N>::MeasuredPoints(Simulation<N>& simulation) : simulation_(simulation) {
@@ -53,7 +45,7 @@ Vec2 MeasuredPoints<N>::displacement(const Point& point) const {
 
 template <int N>
 std::vector<PointMotion> MeasuredPoints<N>::motions() const {
-  const auto& system = std::as_const(simulation_).system();
+  const auto& system = simulation_.system();
   std::vector<PointMotion> list;
   for (const Point& p : points_) {
     const int b = system.point_block(p.number);
@@ -122,26 +114,48 @@ class MotionInTime {
     steps_ = std::lround(std::ceil(scene_.end_time / scene_.step.dt * (1.0 - 1e-12)));
   }
 
+  void begin() { take_snapshots(0); }
+
   void follow() {
-    const long every = std::max(1L, std::lround(scene_.output_every / scene_.step.dt));
-    take_snapshots(0);
-    for (long i = 1; i <= steps_; ++i) {
-      if (!simulation_.advance(whole(i) ? scene_.step.dt : scene_.end_time - static_cast<double>(i - 1) * scene_.step.dt)) {
+    const long every = steps_in(scene_.output_every), checkpoint_every = steps_in(scene_.checkpoint_every);
+    for (long i = done_ + 1; i <= steps_; ++i) {
+      if (!simulation_.advance(length(i))) {
         result_.converged = false;
         result_.reason = simulation_.reason();
+        take_checkpoint();
         if (observer_.output) observer_.output(simulation_);
         return;
       }
       simulation_.set_time(time_after(i));
+      if (whole(i)) done_ = i;
       take_milestones(i);
       take_snapshots(i);
-      const bool moved_enough = scene_.end_displacement && points_->largest_displacement() >= *scene_.end_displacement;
-      if (moved_enough) result_.ended_by = "end.displacement_m";
-      if (observer_.output && (i % every == 0 || i == steps_ || moved_enough)) observer_.output(simulation_);
+      const bool there = moved_enough();
+      if (there) result_.ended_by = "end.displacement_m";
+      const bool last = there || i == steps_, regular = i % every == 0;
+      if (observer_.output && regular) observer_.output(simulation_);
+      // Before the row that is only there because the run ends.
+      if (last || i % checkpoint_every == 0) take_checkpoint();
+      if (observer_.output && last && !regular) observer_.output(simulation_);
       if (observer_.progress) observer_.progress(share_done(i));
-      if (moved_enough) return;
+      if (there) return;
     }
     result_.ended_by = "end.time_s";
+  }
+
+  /// Whether a run that goes on has nothing left to do.
+  bool is_over() {
+    if (moved_enough()) {
+      result_.ended_by = "end.displacement_m";
+    } else if (simulation_.time() >= scene_.end_time) {
+      result_.ended_by = "end.time_s";
+    }
+    return !result_.ended_by.empty();
+  }
+
+  void exchange(Archive& archive) {
+    archive(done_, moved_before_, snapshots_taken_, result_.settling, result_.milestones);
+    if (points_) archive(*points_);
   }
 
   /// Says what has been asked for and did not come.
@@ -164,6 +178,23 @@ class MotionInTime {
   }
 
  private:
+  bool moved_enough() const { return scene_.end_displacement && points_->largest_displacement() >= *scene_.end_displacement; }
+
+  long steps_in(double interval) const { return std::max(1L, std::lround(interval / scene_.step.dt)); }
+
+  void take_checkpoint() {
+    if (scene_.checkpoint_every == 0.0 || !observer_.checkpoint) return;
+    Archive state;
+    state(simulation_, *this);
+    observer_.checkpoint(state, simulation_);
+  }
+
+  /// [s] of this step, less what a run that ended within it has behind it.
+  double length(long step) const {
+    const double begun = simulation_.time() - time_after(step - 1);
+    return (whole(step) ? scene_.step.dt : scene_.end_time - static_cast<double>(step - 1) * scene_.step.dt) - begun;
+  }
+
   bool whole(long step) const { return static_cast<double>(step - 1) * scene_.step.dt + scene_.step.dt <= scene_.end_time * (1.0 + 1e-12); }
   double time_after(long step) const { return step == 0 || whole(step) ? static_cast<double>(step) * scene_.step.dt : scene_.end_time; }
 
@@ -203,6 +234,7 @@ class MotionInTime {
   double cpu_at_start_;                      ///< [s]
   std::optional<MeasuredPoints<N>> points_;  ///< if anything depends on them
   long steps_ = 0;
+  long done_ = 0;              ///< whole steps
   double moved_before_ = 0.0;  ///< [m] by the first point, before the step
   std::size_t snapshots_taken_ = 0;
 };
@@ -215,7 +247,22 @@ RunResult run(Simulation<N>& simulation, const RunObserver<N>& observer) {
   if (observer.started) observer.started(simulation);
   if (observer.output) observer.output(simulation);
   MotionInTime<N> motion(simulation, observer, result);
-  if (result.converged) motion.follow();
+  if (result.converged) {
+    motion.begin();
+    motion.follow();
+  }
+  motion.finish();
+  return result;
+}
+
+template <int N>
+RunResult resume(Simulation<N>& simulation, const RunObserver<N>& observer, Archive& state, const std::function<void()>& resumed) {
+  RunResult result;
+  result.converged = true;
+  MotionInTime<N> motion(simulation, observer, result);
+  state(simulation, motion);
+  if (resumed) resumed();
+  if (!motion.is_over()) motion.follow();
   motion.finish();
   return result;
 }
@@ -223,5 +270,6 @@ RunResult run(Simulation<N>& simulation, const RunObserver<N>& observer) {
 template class MeasuredPoints<3>;
 template RunResult prepare_start<3>(Simulation<3>&, const SettleProgress&);
 template RunResult run<3>(Simulation<3>&, const RunObserver<3>&);
+template RunResult resume<3>(Simulation<3>&, const RunObserver<3>&, Archive&, const std::function<void()>&);
 
 }  // namespace openclose

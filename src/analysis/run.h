@@ -27,6 +27,10 @@ class MeasuredPoints {
   /// Displacements count from here.
   void restart();
   std::vector<PointMotion> motions() const;
+  /// From where displacements count; the points themselves are the scene's.
+  void exchange(Archive& archive) {
+    for (Point& p : points_) archive(p.start_arm, p.start_displacement);
+  }
   double first_displacement() const { return points_.empty() ? 0.0 : displacement(points_.front()).norm(); }  ///< [m] of the first point
   double largest_displacement() const;                                                                        ///< [m]
 
@@ -39,7 +43,7 @@ class MeasuredPoints {
   };
   Vec2 displacement(const Point& point) const;
 
-  Simulation<N>& simulation_;
+  const Simulation<N>& simulation_;  // const: the explicit loop goes on after it has been asked
   std::vector<Point> points_;
 };
 
@@ -50,6 +54,11 @@ struct Milestone {
   double cpu_of_motion = 0.0;   ///< [s] of the process since time 0, at the end of that step
   double cpu_of_program = 0.0;  ///< [s] of the process since it began
   std::string reason;           ///< why there is no time
+
+  void exchange(Archive& archive) {
+    auto& [a, b, c, d, e] = *this;
+    archive(a, b, c, d, e);
+  }
 };
 
 /// Strength is reduced by Scene::run_strength_reduction_factor for the motion. What is settled first is so with full strength; the other starts are
@@ -73,6 +82,9 @@ struct RunObserver {
   std::function<void(const std::string& state, const Simulation<N>&)> snapshot;  ///< at the snapshot times ("t=1.5") and milestones ("moved 10 m")
   std::function<void(double fraction)> progress;                                 ///< after every step
   SettleProgress settling;                                                       ///< while it settles
+  /// A checkpoint is due (every Scene::checkpoint_every, at the end, and where a step does not converge): `state` holds the whole run, and whatever
+  /// the observer adds to it.
+  std::function<void(Archive& state, const Simulation<N>&)> checkpoint;
 };
 
 /// Brings the simulation into the scene's start state.
@@ -81,5 +93,12 @@ RunResult prepare_start(Simulation<N>& simulation, const SettleProgress& progres
 
 template <int N>
 RunResult run(Simulation<N>& simulation, const RunObserver<N>& observer);
+
+/// Goes on, bit for bit, from what a checkpoint of the same scene holds, in a simulation that has not been used. The scene may have another end_time
+/// (not before the state's), output_every and checkpoint_every, and another step.smallest_fraction and method.max_iterations, to get over a step that
+/// did not converge. `state` is left where the observer's own part begins; `resumed` is called then, before the first step. Throws
+/// std::runtime_error if the state does not fit the scene.
+template <int N>
+RunResult resume(Simulation<N>& simulation, const RunObserver<N>& observer, Archive& state, const std::function<void()>& resumed = {});
 
 }  // namespace openclose

@@ -17,6 +17,11 @@ struct SettleResult {
   double unbalanced_fraction = 1.0;             ///< [-] of Simulation::force_scale()
   double displacement = 0.0;                    ///< [m] largest of any block on the way
   std::optional<double> relative_displacement;  ///< [-] of the last step, see equilibrium.h; steps in time only, which know no unbalanced fraction
+
+  void exchange(Archive& archive) {
+    auto& [a, b, c, d, e, f] = *this;
+    archive(a, b, c, d, e, f);
+  }
 };
 
 /// Told after every step which share of the way is behind; it may fall back.

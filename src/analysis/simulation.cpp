@@ -44,7 +44,11 @@ Simulation<N>::Simulation(const Scene& scene, std::unique_ptr<Enforcement<N>> en
       // Two vertices may approach each other by the largest displacement each.
       detector_(2.0 * scene.step.max_displacement, {scene.method.skip_search, scene.method.skip_narrow_phase && enforcement_->follows_gaps()}),
       output_velocity_(system_.state().velocity),
-      start_kinetic_energy_(system_.kinetic_energy()) {}
+      start_kinetic_energy_(system_.kinetic_energy()),
+      control_(scene.step.error_tolerance) {
+  if (scene.step.adaptive && !enforcement_->takes_adaptive_steps())
+    throw InputError(scene.where, "step.adaptive", "true has no meaning for method.contact = \"" + scene.method.contact + "\"", "contact = \"soft\"");
+}
 
 template <int N>
 void Simulation<N>::collect() const {
@@ -198,7 +202,72 @@ StepProblem<N> Simulation<N>::present_problem(double dt, bool statics) const {
   p.end_weight = statics ? 1.0 : scheme_->end_weight();
   p.failed_attempts = failed_attempts_;
   p.keep_bonds = keep_bonds_;
+  if (statics) return p;
+  p.scheme = scheme_.get();
+  if (scheme_->wants_accelerations()) {
+    const Eigen::VectorXd force = forces_now(p);
+    for (int b : system_.free_blocks()) {
+      const auto& block = system_.block(b);
+      scheme_->start(b, force.segment<N>(N * block.equation).cwiseQuotient(block.mass));
+    }
+  }
   return p;
+}
+
+template <int N>
+Eigen::VectorXd Simulation<N>::forces_now(const StepProblem<N>& problem) const {
+  Eigen::VectorXd force(N * system_.free_count());
+  for (int b : system_.free_blocks()) force.segment<N>(N * system_.block(b).equation) = external_.force(system_, b, Unknowns::Zero());
+  const auto push = [&](int b, const Unknowns& f) {
+    const int i = system_.block(b).equation;
+    if (i >= 0) force.segment<N>(N * i) += f;
+  };
+  for (const Contact& c : contacts_) {
+    const ContactForces f = spring_slider(enforcement_->springs(problem, c), ContactStrength(joints_.joint(c.joint), c), 0.0, 0.0);
+    if (f.status == ContactStatus::open) continue;
+    const ContactKinematics<N> k(system_, c, Unknowns::Zero(), Unknowns::Zero());
+    push(c.vertex_block, f.normal * k.normal_vertex + f.shear * k.shear_vertex);
+    push(c.edge_block, f.normal * k.normal_edge + f.shear * k.shear_edge);
+  }
+  for (int b : system_.free_blocks()) {
+    if (system_.block(b).rotation_locked) force[N * system_.block(b).equation + Motion<N>::rotation_index] = 0.0;
+  }
+  return force;
+}
+
+template <int N>
+double Simulation<N>::local_error(const StepProblem<N>& problem, const StepSolution<N>& solution) const {
+  Eigen::VectorXd change(N * system_.free_count());
+  for (int b : system_.free_blocks()) {
+    const Unknowns d = solution.of(system_, b);
+    change.segment<N>(N * system_.block(b).equation) = external_.force(system_, b, d) - external_.force(system_, b, Unknowns::Zero());
+  }
+  const auto push = [&](int b, const Unknowns& f) {
+    const int i = system_.block(b).equation;
+    if (i >= 0) change.segment<N>(N * i) += f;
+  };
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    const Contact& c = contacts_[i];
+    const ContactForces& f = solution.contacts[i].forces;
+    const ContactKinematics<N>& k = solution.contacts[i].kinematics;
+    if (f.status != ContactStatus::open) {
+      push(c.vertex_block, f.normal * k.normal_vertex + f.shear * k.shear_vertex);
+      push(c.edge_block, f.normal * k.normal_edge + f.shear * k.shear_edge);
+    }
+    if (c.status != ContactStatus::open) {
+      const ContactKinematics<N> before(system_, c, Unknowns::Zero(), Unknowns::Zero());
+      push(c.vertex_block, -c.normal_force * before.normal_vertex - c.shear_force * before.shear_vertex);
+      push(c.edge_block, -c.normal_force * before.normal_edge - c.shear_force * before.shear_edge);
+    }
+  }
+  double largest = 0.0;
+  for (int b : system_.free_blocks()) {
+    const auto& block = system_.block(b);
+    Unknowns error = problem.dt * problem.dt / 12.0 * change.segment<N>(N * block.equation).cwiseQuotient(block.mass);
+    if (block.rotation_locked) error[Motion<N>::rotation_index] = 0.0;
+    largest = std::max(largest, Motion<N>::displacement_bound(error, block.radius));
+  }
+  return largest;
 }
 
 template <int N>
@@ -232,6 +301,16 @@ StepResult Simulation<N>::step(double dt, bool statics) {
   step_counters_.iterations += solution.iterations;
   if (solution.converged) result.moved = largest_move(solution);
   const bool too_far = result.moved > scene_.step.max_displacement;
+  if (solution.converged && !too_far && !statics && scene_.step.adaptive) {
+    result.error = local_error(p, solution);
+    result.too_wrong = !(result.error <= control_.tolerance());
+    if (result.too_wrong) {
+      result.reason = "the local error of a step stays above step.error_tolerance_m";
+      ++step_counters_.cuts;
+      ++step_counters_.error_cuts;
+      return result;
+    }
+  }
   if (!solution.converged || too_far) {
     result.reason = too_far ? "a block moved farther in one step than step.max_displacement_m" : solution.reason;
     ++step_counters_.cuts;
@@ -280,8 +359,9 @@ void Simulation<N>::accept(const StepProblem<N>& problem, const StepSolution<N>&
   for (int b : system_.free_blocks()) {
     const Unknowns d = solution.of(system_, b), v = problem.velocity(b);
     const bool statics = problem.statics;
-    output_velocity_[b] = statics ? Unknowns(Unknowns::Zero()) : scheme_->velocity_at_end(problem.dt, d, v);
-    system_.set_velocity(b, statics ? Unknowns(Unknowns::Zero()) : scheme_->next_velocity(problem.dt, d, v));
+    output_velocity_[b] = statics ? Unknowns(Unknowns::Zero()) : scheme_->velocity_at_end(b, problem.dt, d, v);
+    system_.set_velocity(b, statics ? Unknowns(Unknowns::Zero()) : scheme_->next_velocity(b, problem.dt, d, v));
+    if (!statics) scheme_->record(b, problem.dt, d, v);
   }
   for (int b : system_.free_blocks()) system_.advance(b, solution.of(system_, b));
   if (!problem.statics) scheme_->accept(problem.dt);
@@ -290,6 +370,7 @@ void Simulation<N>::accept(const StepProblem<N>& problem, const StepSolution<N>&
   ++step_counters_.steps;
   // Where multipliers have just failed, the next step need not fail again before it may be compliant: cuts would outrun the growth of the step.
   if (solution.compliant) ++step_counters_.compliant;
+  if (solution.dissipative) ++step_counters_.dissipative;
   if (!solution.compliant) failed_attempts_ = 0;
   contacts_current_ = false;
 }
@@ -437,22 +518,33 @@ bool Simulation<N>::advance_explicitly(double dt) {
 template <int N>
 bool Simulation<N>::advance(double dt) {
   if (loop_) return advance_explicitly(dt);
-  double remaining = dt, trial = dt;
+  const bool adaptive = scene_.step.adaptive && !scene_.method.statics;
+  double remaining = dt, trial = adaptive ? control_.step(dt) : dt;
   const double smallest = scene_.step.smallest_fraction * dt;
   const double limit = part_of_limit * scene_.step.max_displacement;
   while (remaining > 0.0) {
     trial = std::min(trial, remaining);
     // Blocks that move on as they did must not exceed the largest displacement.
     if (last_speed_ * trial > scene_.step.max_displacement) trial = std::max(limit / last_speed_, smallest);
-    const StepResult result = step(trial, scene_.method.statics);
+    const double now = scene_.method.statics ? trial : scheme_->stage(trial);
+    const StepResult result = step(now, scene_.method.statics);
     if (result.accepted) {
-      last_speed_ = result.moved / trial;
+      last_speed_ = result.moved / now;
       // A rest below rounding is no step.
-      remaining = remaining - trial > 1e-12 * dt ? remaining - trial : 0.0;
-      trial *= 2.0;
+      remaining = remaining - now > 1e-12 * dt ? remaining - now : 0.0;
+      if (scheme_->is_within_step()) continue;
+      if (adaptive) control_.accepted(trial, result.error);
+      trial = adaptive ? control_.step(dt) : 2.0 * trial;
       continue;
     }
-    trial *= enforcement_->step_cut(scene_.method);
+    scheme_->abandon_step();
+    if (result.too_wrong) {
+      control_.refused(trial, result.error);
+      trial = control_.step(dt);
+    } else {
+      trial *= enforcement_->step_cut(scene_.method);
+      if (adaptive) control_.shorten(trial);
+    }
     if (trial < smallest) {
       reason_ = result.reason;
       return false;
@@ -516,6 +608,18 @@ void Simulation<N>::restore(const Snapshot& snapshot) {
   failed_attempts_ = 0;
   last_speed_ = 0.0;
   restart_scheme();
+}
+
+template <int N>
+void Simulation<N>::exchange(Archive& archive) {
+  archive(system_, external_, joints_, base_moves_, keep_bonds_, detector_, contacts_, contacts_current_, output_velocity_, time_, reason_, ledger_,
+          start_kinetic_energy_, collected_contact_energy_, max_penetration_, step_counters_, failed_attempts_, last_speed_, control_);
+  scheme_->exchange(archive);
+  enforcement_->exchange(archive);
+  if (loop_) {
+    loop_->exchange(archive, joints_);
+    archive(loop_is_ahead_, loop_is_loaded_);
+  }
 }
 
 template class Simulation<3>;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "openclose/analysis/energy_ledger.h"
+#include "openclose/analysis/step_control.h"
 #include "openclose/contact/detection.h"
 #include "openclose/integrator/central_difference.h"
 #include "openclose/integrator/enforcement.h"
@@ -15,12 +16,19 @@ namespace openclose {
 struct StepCounters {
   long steps = 0;
   long cuts = 0;                        ///< attempts thrown away
+  long error_cuts = 0;                  ///< of these: because of step.error_tolerance_m
   long iterations = 0;                  ///< linear solves, thrown-away attempts included
   long compliant = 0;                   ///< steps of `hard` whose multipliers did not converge: taken with springs
+  long dissipative = 0;                 ///< steps of path_average that found a solution only with dissipation
   long loads = 0;                       ///< times the explicit loop took over the state anew
   long loads_skipped = 0;               ///< times it took over only contacts that were found anew
   double smallest_critical_step = 0.0;  ///< [s] of explicit steps, 0 if there were none
   double longest_step = 0.0;            ///< [s] of explicit steps
+
+  void exchange(Archive& archive) {
+    auto& [a, b, c, d, e, f, g, h, i, j] = *this;
+    archive(a, b, c, d, e, f, g, h, i, j);
+  }
 };
 
 /// Wall time [s] of the stages; one thread.
@@ -35,6 +43,8 @@ struct StepResult {
   std::string reason;
   double unbalanced_force = 0.0;  ///< [N] largest sum of forces without inertia on a block; static and explicit steps only
   double moved = 0.0;             ///< [m] farthest way of a vertex, of refused steps too; 0 if nothing was solved
+  double error = 0.0;             ///< [m] local error, see local_error(); only if the scene asks for adaptive steps
+  bool too_wrong = false;         ///< refused because of it
   bool lost_strength = false;     ///< a contact has lost its cohesion or tensile strength at the end of the step
 };
 
@@ -48,7 +58,7 @@ class Simulation {
   /// With an enforcement of the caller's own, which solves every step itself, also if it is explicit.
   Simulation(const Scene& scene, std::unique_ptr<Enforcement<N>> enforcement);
 
-  /// One attempt at a step. Explicit methods do not look whether dt is below the critical step; they have no static steps.
+  /// One attempt at a step, or at the next stage of one where the integrator has several; advance() puts them together. Explicit methods do not look whether dt is below the critical step; they have no static steps.
   StepResult step(double dt, bool statics);
   /// Advances by exactly dt, in smaller steps where one does not converge or moves too far; false, with reason(), if that gets nowhere.
   bool advance(double dt);
@@ -115,11 +125,20 @@ class Simulation {
   Snapshot save();
   void restore(const Snapshot& snapshot);
 
+  /// Everything that the next steps depend on and all that has been counted, so that another simulation of the same scene goes on bit for bit; unlike
+  /// save() it leaves everything as it is. The wall times of the stages are not in it.
+  void exchange(Archive& archive);
+
  private:
   void detect();
   void restart_scheme();
   /// Gives the external forces what the base does in the next step.
   void move_base(double dt, bool statics);
+  /// [m] What the trapezoid leaves out in a step with these end forces, dt^2 (a1 - a0)/12, as a displacement of any vertex. a0 are the accelerations by the
+  /// forces that the last step ended with.
+  double local_error(const StepProblem<N>& problem, const StepSolution<N>& solution) const;
+  /// [N] Sum of the forces on every free block as it stands, without dashpots.
+  Eigen::VectorXd forces_now(const StepProblem<N>& problem) const;
   double largest_move(const StepSolution<N>& solution) const;
   double unbalanced_force(const StepProblem<N>& problem, const StepSolution<N>& solution) const;
   void accept(const StepProblem<N>& problem, const StepSolution<N>& solution);
@@ -160,6 +179,7 @@ class Simulation {
   StepCounters step_counters_;
   int failed_attempts_ = 0;  ///< since the last step that was accepted
   double last_speed_ = 0.0;  ///< [m/s] largest displacement of the last step over its duration
+  StepControl control_;
   StageTimes stage_times_;
 };
 

@@ -9,6 +9,8 @@
 
 #include "openclose/analysis/spectrum.h"
 #include "openclose/analysis/strength_reduction.h"
+#include "openclose/core/process.h"
+#include "openclose/io/checkpoint.h"
 #include "openclose/io/drawing.h"
 #include "openclose/io/progress.h"
 #include "openclose/io/results.h"
@@ -29,6 +31,7 @@ struct Options {
   std::string blocks_file;
   std::string drawing_file;
   std::string spectrum_file;
+  std::string restart_file;
   std::vector<std::string> overrides;
   bool quiet = false;
 };
@@ -85,21 +88,25 @@ int run_command(const Options& options) {
   if (loaded.scene.step.dt <= 0.0) throw InputError(loaded.scene.where, "step.dt_s", "missing", "a step in seconds, here or with --dt");
   if (loaded.scene.end_time <= 0.0) throw InputError(loaded.scene.where, "end.time_s", "missing", "an end time in seconds, here or with --end");
   require_countable_steps(loaded.scene, "end.time_s", loaded.scene.end_time);
+  std::optional<RestartPoint> restart;
+  if (!options.restart_file.empty()) restart = {options.restart_file, read_checkpoint(options.restart_file, loaded.scene)};
   Simulation<unknowns> simulation(loaded.scene);
   MeasuredPoints<unknowns> points(simulation);
-  if (loaded.scene.method.start == Start::normal_balanced || loaded.scene.method.start == Start::steady_sliding) {
-    // These starts can be refused: find out on a copy, before any file is written.
+  const bool start_can_be_refused = loaded.scene.method.start == Start::normal_balanced || loaded.scene.method.start == Start::steady_sliding;
+  if (start_can_be_refused && !restart) {
+    // Find out on a copy, before any file is written.
     Simulation<unknowns> trial(loaded.scene);
     prepare_start(trial);
   }
 
   const OutputFolder folder = output_folder(options);
-  HistoryFile history(folder);
-  EnergyFile energy(folder);
-  BlocksFile<unknowns> blocks(folder);
-  blocks.add("initial", simulation);
+  const RestartPoint* goes_on_from = restart ? &*restart : nullptr;
+  HistoryFile history(folder, goes_on_from);
+  EnergyFile energy(folder, goes_on_from);
+  BlocksFile<unknowns> blocks(folder, goes_on_from);
+  if (!restart) blocks.add("initial", simulation);
   std::optional<Progress> progress;
-  progress.emplace("settle", options.quiet);
+  progress.emplace(restart ? "run" : "settle", options.quiet);
 
   RunObserver<unknowns> observer;
   observer.started = [&](const Simulation<unknowns>& s) {
@@ -114,7 +121,18 @@ int run_command(const Options& options) {
     energy.add(s.time(), s.ledger());
   };
   observer.progress = [&](double fraction) { progress->update(fraction); };
-  const RunResult result = run(simulation, observer);
+  observer.checkpoint = [&](Archive& state, const Simulation<unknowns>& s) {
+    state(points);
+    write_checkpoint(folder.path() + "/" + checkpoint_name, s.scene(),
+                     {s.time(), {history.written(), energy.written(), blocks.written()}, state.bytes()});
+  };
+  RunResult result;
+  if (restart) {
+    Archive state(restart->checkpoint.state);
+    result = resume<unknowns>(simulation, observer, state, [&] { state(points); });
+  } else {
+    result = run(simulation, observer);
+  }
   progress.reset();
   print_warnings(result.warnings);
 
@@ -174,12 +192,16 @@ int fos_command(const Options& options) {
   BlocksFile<unknowns> blocks(folder);
   blocks.add("initial", simulation);
   FactorOfSafety<unknowns> safety;
+  double cpu_of_search = 0.0;
   {
     Progress progress("strength reduction", options.quiet);
+    const double begin = process_cpu_time();
     safety = factor_of_safety<unknowns>(simulation, [&](double fraction) { progress.update(fraction); });
+    cpu_of_search = process_cpu_time() - begin;
   }
 
   Summary summary = summary_of("fos", options, loaded);
+  summary.cpu_of_search = cpu_of_search;
   summary.warnings.insert(summary.warnings.end(), safety.warnings.begin(), safety.warnings.end());
   print_warnings(safety.warnings);
   if (safety.stable > 0.0) {
@@ -278,6 +300,7 @@ void add_options(CLI::App& app, Options& options, bool writes_folder) {
   };
   shorthand("--contact", "method.contact", "contact enforcement: soft, hard or shi");
   shorthand("--start", "method.start", "start state: unloaded, settled, normal_balanced or steady_sliding");
+  shorthand("--integrator", "method.integrator", "time integrator of soft: shi, theta, generalized_alpha, tr_bdf2 or path_average");
   shorthand("--dt", "step.dt_s", "time step [s]");
   shorthand("--end", "end.time_s", "end time [s]");
   app.add_option_function<std::vector<std::string>>(
@@ -303,7 +326,9 @@ int main_checked(int argc, char** argv) {
     sub->callback([&command, f] { command = f; });
     return sub;
   };
-  subcommand("run", "follow the blocks in time", true, &run_command);
+  CLI::App* run = subcommand("run", "follow the blocks in time", true, &run_command);
+  run->add_option("--restart", options.restart_file,
+                  "go on from this checkpoint.bin of an earlier run of the scene (see output.checkpoint_every_s), continuing the tables beside it");
   subcommand("fos", "factor of safety by strength reduction", true, &fos_command);
   CLI::App* check = subcommand(
       "check",

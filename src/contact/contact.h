@@ -1,6 +1,8 @@
 // A contact: one vertex of a block against one edge of another, with its history.
 #pragma once
 
+#include "openclose/core/archive.h"
+
 namespace openclose {
 
 enum class ContactStatus : unsigned char { open, sticking, sliding };
@@ -26,6 +28,11 @@ struct Contact {
   double normal_force = 0.0;   ///< [N] spring and dashpot
   double shear_force = 0.0;    ///< [N]
   double stored_energy = 0.0;  ///< [J] in both springs
+
+  void exchange(Archive& archive) {
+    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m] = *this;
+    archive(a, b, c, d, e, f, g, h, i, j, k, l, m);
+  }
 };
 
 }  // namespace openclose

@@ -60,12 +60,22 @@ struct DetectionCounters {
   long narrow_phases = 0;          ///< pairs whose contacts were found anew, over all steps
   long narrow_phases_skipped = 0;  ///< pairs whose contacts stayed as they were
   long transfers = 0;              ///< contacts that inherited their history from another vertex-edge pair
+
+  void exchange(Archive& archive) {
+    auto& [a, b, c, d, e] = *this;
+    archive(a, b, c, d, e);
+  }
 };
 
 /// Positions [begin, end) in a list of contacts.
 struct ContactRange {
   int begin = 0, end = 0;
   int size() const { return end - begin; }
+
+  void exchange(Archive& archive) {
+    auto& [a, b] = *this;
+    archive(a, b);
+  }
 };
 
 /// The contacts of a pair of blocks were found anew: those at `before` in the list as it was are now those at `after`.
@@ -100,6 +110,8 @@ class Detector {
 
   /// Blocks or contacts were changed by others: the next update() searches and finds everything anew.
   void forget() { forgotten_ = true; }
+  /// What decides when something is found anew.
+  void exchange(Archive& archive) { archive(first_, forgotten_, pairs_, states_, ranges_, searched_at_, counters_); }
 
  private:
   using Unknowns = typename BlockSystem<N>::Unknowns;
@@ -109,6 +121,11 @@ class Detector {
   class NarrowPhase;
   struct Pose {
     double x, y, turn;  ///< [m, m, rad] of a centroid
+
+    void exchange(Archive& archive) {
+      auto& [a, b, c] = *this;
+      archive(a, b, c);
+    }
   };
   struct Place : Pose {
     double radius;  ///< [m]
@@ -117,6 +134,11 @@ class Detector {
   struct PairState {
     Pose first, second;
     bool known = false;
+
+    void exchange(Archive& archive) {
+      auto& [a, b, c] = *this;
+      archive(a, b, c);
+    }
   };
   enum class Due : unsigned char { no, moved, yes };
 

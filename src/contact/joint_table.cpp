@@ -19,12 +19,18 @@ JointTable::JointTable(const Scene& scene)
 }
 
 void JointTable::reduce_strength(double factor) {
+  reduction_ = factor;
   for (std::size_t j = 0; j < joints_.size(); ++j) {
     joints_[j].friction_angle = std::atan(std::tan(unreduced_[j].friction_angle) / factor);
     joints_[j].friction = std::tan(joints_[j].friction_angle);
     joints_[j].cohesion = unreduced_[j].cohesion / factor;
     joints_[j].tensile_strength = unreduced_[j].tensile_strength / factor;
   }
+}
+
+void JointTable::exchange(Archive& archive) {
+  archive(reduction_);
+  if (archive.reading() && reduction_) reduce_strength(*reduction_);
 }
 
 }  // namespace openclose

@@ -1,8 +1,10 @@
 // Joint properties by material pair, ready for look-up by two integers.
 #pragma once
 
+#include <optional>
 #include <vector>
 
+#include "openclose/core/archive.h"
 #include "openclose/scene/scene.h"
 
 namespace openclose {
@@ -22,12 +24,14 @@ class JointTable {
 
   /// Divides tan(friction angle), cohesion and tensile strength of every joint, as the scene gave them, by the strength reduction factor.
   void reduce_strength(double factor);
+  void exchange(Archive& archive);
 
  private:
   int material_count_ = 0;
   std::vector<int> index_;
   std::vector<TabulatedJoint> joints_;
   std::vector<JointProperties> unreduced_;
+  std::optional<double> reduction_;  ///< by reduce_strength(), if it was called
 };
 
 }  // namespace openclose

@@ -90,7 +90,7 @@ struct ContactPose {
 };
 
 /// Stiffness of a contact: the four blocks of minus the derivative of the generalised forces by the unknowns. The force f acts at p on the vertex's
-/// block and -f on the edge's, at these arms; `by_shift` is minus its derivative by the displacement of p against the edge's block, `turning` the
+/// block and -f on the edge's, at its arms; `by_shift` is minus its derivative by the displacement of p against the edge's block, `turning` the
 /// part of it that turns with that block (for second derivatives; zero leaves them out).
 template <int N>
 struct ContactStiffness;
@@ -99,16 +99,21 @@ template <>
 struct ContactStiffness<3> {
   using Block = Motion<3>::Matrix;
   double shift_xx, shift_xy, shift_yx, shift_yy;  ///< [N/m]
-  Vec2 vertex_arm, edge_arm;                      ///< [m]
-  Vec2 turning;                                   ///< [N]
+  Vec2 force_vertex_arm, force_edge_arm;          ///< [m] where the force acts
+  Vec2 vertex_arm, edge_arm;                      ///< [m] of the contact's motion: the same, unless the force is a mean over a path
+  Vec2 turning = Vec2::Zero();                    ///< [N]
+  Vec2 on_arms = Vec2::Zero();                    ///< [N] the part of the force whose arms follow the motion; zero with `turning`
 
-  void add_to_vertex(Block& k) const { add(k, 1.0, vertex_arm, vertex_arm, turning.dot(vertex_arm), Vec2::Zero(), Vec2::Zero()); }
+  void add_to_vertex(Block& k) const { add(k, 1.0, force_vertex_arm, vertex_arm, on_arms.dot(vertex_arm), Vec2::Zero(), Vec2::Zero()); }
   void add_to_edge(Block& k) const {
-    const Vec2 turned = perpendicular(turning);
-    add(k, 1.0, edge_arm, edge_arm, turning.dot(edge_arm), turned, turned);
+    add(k, 1.0, force_edge_arm, edge_arm, turning.dot(force_edge_arm), perpendicular(turning), perpendicular(on_arms));
   }
-  void add_to_vertex_edge(Block& k) const { add(k, -1.0, vertex_arm, edge_arm, -turning.dot(vertex_arm), -perpendicular(turning), Vec2::Zero()); }
-  void add_to_edge_vertex(Block& k) const { add(k, -1.0, edge_arm, vertex_arm, -turning.dot(vertex_arm), Vec2::Zero(), -perpendicular(turning)); }
+  void add_to_vertex_edge(Block& k) const {
+    add(k, -1.0, force_vertex_arm, edge_arm, -turning.dot(force_vertex_arm), -perpendicular(turning), Vec2::Zero());
+  }
+  void add_to_edge_vertex(Block& k) const {
+    add(k, -1.0, force_edge_arm, vertex_arm, -on_arms.dot(vertex_arm), Vec2::Zero(), -perpendicular(on_arms));
+  }
 
  private:
   /// sign J(force_arm)' shift J(path_arm), J(r) = [1, perpendicular(r)], and the second derivatives: corner, rotation column, rotation row.

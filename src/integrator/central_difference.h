@@ -35,6 +35,11 @@ struct ExplicitEnergies {
   double gravity = 0.0, base_motion = 0.0, loads = 0.0, support_springs = 0.0;
   double friction = 0.0, contact_damping = 0.0, mass_damping = 0.0, scheme = 0.0, redefinition = 0.0;
   double turnover = 0.0;
+
+  void exchange(Archive& archive) {
+    auto& [a, b, c, d, e, f, g, h, i, j] = *this;
+    archive(a, b, c, d, e, f, g, h, i, j);
+  }
 };
 
 template <int N>
@@ -77,14 +82,27 @@ class CentralDifference {
   void store_far_gaps(const BlockSystem<N>& system, std::vector<Contact>& contacts) const;
   ExplicitEnergies take_energies();
 
+  /// All of it; the joints are those that load() was given.
+  void exchange(Archive& archive, const JointTable& joints);
+
  private:
   struct alignas(32) Pose {
     double x = 0.0, y = 0.0;  ///< [m] displacement since the load
     double cos_minus_1 = 0.0, sin = 0.0;
+
+    void exchange(Archive& archive) {
+      auto& [a, b, c, d] = *this;
+      archive(a, b, c, d);
+    }
   };
   struct alignas(32) Rate {
     double x = 0.0, y = 0.0, turn = 0.0;  ///< velocity [m/s, m/s, rad/s], or force [N, N, N m]
     double angle = 0.0;                   ///< [rad] since the load; of velocities only
+
+    void exchange(Archive& archive) {
+      auto& [a, b, c, d] = *this;
+      archive(a, b, c, d);
+    }
   };
   struct Inertia {
     double mass, moment;          ///< [kg], [kg m2]
@@ -92,6 +110,11 @@ class CentralDifference {
     double turns;                 ///< 0 if the rotation is locked, else 1
     double weight_x, weight_y;    ///< [N]
     double radius;                ///< [m]
+
+    void exchange(Archive& archive) {
+      auto& [a, b, c, d, e, f, g, h] = *this;
+      archive(a, b, c, d, e, f, g, h);
+    }
   };
   struct alignas(64) Link {
     int vertex_slot, edge_slot;
@@ -107,6 +130,11 @@ class CentralDifference {
     double normal, shear, elastic_normal, viscous_shear;
     ContactStatus status;
     bool bonded, breakable;
+
+    void exchange(Archive& archive) {
+      auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, w, x, y] = *this;
+      archive(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, w, x, y);
+    }
   };
   /// What a step does not need of a contact.
   struct LinkRest {
@@ -114,6 +142,11 @@ class CentralDifference {
     double normal_x, normal_y;        ///< in the frame of the corner's block
     double edge_arm_x, edge_arm_y;    ///< [m] from the edge's centroid to the corner, in the frame of the edge's block
     double vertex_share, edge_share;  ///< see critical_step.h
+
+    void exchange(Archive& archive) {
+      auto& [a, b, c, d, e, f, g, h] = *this;
+      archive(a, b, c, d, e, f, g, h);
+    }
   };
   struct PointForce {
     int slot;
@@ -121,6 +154,11 @@ class CentralDifference {
     Vec2 arm, force, stiffness, stretch;  ///< at the load
     double energy = 0.0;                  ///< [J] stored minus work, since the load
     Vec2 moved = Vec2::Zero();            ///< since the load
+
+    void exchange(Archive& archive) {
+      auto& [a, b, c, d, e, f, g, h] = *this;
+      archive(a, b, c, d, e, f, g, h);
+    }
   };
   struct Place {
     double gap, slip;
@@ -163,6 +201,11 @@ class CentralDifference {
   std::vector<int> holes_, renumbered_;
   struct Way {
     double x, y, angle;
+
+    void exchange(Archive& archive) {
+      auto& [a, b, c] = *this;
+      archive(a, b, c);
+    }
   };
   std::vector<Way> kept_at_;  ///< since the load, where the list was last found to be good
   std::vector<PointForce> points_;

@@ -49,6 +49,7 @@ class CriticalStepBound {
   /// Puts a contact's part on its block, or takes it away again with sign = -1.
   void add(const StiffnessPart& part, double sign = 1.0);
   double step();  ///< [s], infinite if nothing holds any block
+  void exchange(Archive& archive) { archive(scales_, stiffness_, damping_, damped_); }
 
  private:
   /// Of one block, symmetric, for unknowns scaled by the root of the mass; the largest eigenvalue is found when it is asked for.
@@ -57,9 +58,19 @@ class CriticalStepBound {
     double largest = -1.0;  ///< [1/s2] or [1/s]; negative: not known
     double bound() const;   ///< of the largest eigenvalue: the largest sum of a row
     double largest_eigenvalue() const;
+
+    void exchange(Archive& archive) {
+      auto& [a, b, c, d, e, f, g] = *this;
+      archive(a, b, c, d, e, f, g);
+    }
   };
   struct Scale {
     double mass, moment, lever;  ///< 1/m, 1/I, 1/sqrt(m I); the last two 0 if the rotation is locked
+
+    void exchange(Archive& archive) {
+      auto& [a, b, c] = *this;
+      archive(a, b, c);
+    }
   };
   static void add(Matrix& matrix, const Scale& scale, const StiffnessPart& part, double normal, double shear);
   static double largest(std::vector<Matrix>& matrices);

@@ -45,7 +45,7 @@ class Dem : public Enforcement<N> {
   }
 
   std::unique_ptr<TimeScheme<N>> make_time_scheme(const MethodInput& method) const override {
-    require_default_theta(method);
+    refuse_integrators(method);
     const auto refuse = [&](const char* key, const char* value) {
       throw InputError(method.contact_where, key, std::string(value) + " has no meaning for method.contact = \"dem\"", "the default");
     };

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "openclose/contact/joint_table.h"
-#include "openclose/contact/kinematics.h"
+#include "openclose/contact/mean_pose.h"
 #include "openclose/integrator/time_scheme.h"
-#include "openclose/law/joint_law.h"
+#include "openclose/law/path_average.h"
 #include "openclose/linear/solver.h"
 #include "openclose/model/external_forces.h"
 
@@ -40,22 +40,38 @@ struct StepProblem {
   double end_weight = 1.0;  ///< theta
   int failed_attempts = 0;  ///< at steps from here
   bool keep_bonds = false;  ///< explicit methods: contacts lose no strength
+  const TimeScheme<N>* scheme = nullptr;  ///< null: every step starts from rest
 
+  bool averages_path() const { return scheme && scheme->averages_path(); }
+  /// Displacement of block b if there were no forces.
+  typename Motion<N>::Unknowns drift(int b) const {
+    const auto v = velocity(b);
+    return scheme ? scheme->drift(b, dt, v) : typename Motion<N>::Unknowns(dt * v);
+  }
   typename Motion<N>::Unknowns velocity(int b) const {
     if (statics) return Motion<N>::Unknowns::Zero();
     return system.velocity(b);
   }
 };
 
+/// What one contact carried on the average of a step, for schemes that average over its path.
+template <int N>
+struct PathOutcome {
+  PathAverage average;
+  ContactKinematics<N> kinematics;  ///< of the mean pose: whose gradients carried the forces
+};
+
 template <int N>
 struct StepSolution {
   bool converged = false;
   bool compliant = false;  ///< `hard`: taken with springs, see hard.cpp
+  bool dissipative = false;  ///< path_average: taken with more dissipation than asked for, see soft.cpp
   std::string reason;      ///< why not converged
   int iterations = 0;  ///< linear solves
   Eigen::VectorXd d;   ///< displacement of the step, N per free block
   std::vector<ContactOutcome<N>> contacts;
   std::vector<ContactOutcome<N>> start_contacts;  ///< forces that entered with weight 1 - theta; empty for theta = 1
+  std::vector<PathOutcome<N>> paths;              ///< mean forces that entered instead of those at the end; empty for other schemes
 
   /// Displacement of block b: zero if fixed.
   typename Motion<N>::Unknowns of(const BlockSystem<N>& system, int b) const {
@@ -78,10 +94,13 @@ class Enforcement {
   virtual std::unique_ptr<TimeScheme<N>> make_time_scheme(const MethodInput& method) const = 0;
   virtual bool follows_gaps() const { return true; }                 ///< false: the gap at a step's end is not exactly that of the positions
   virtual bool has_elastic_contacts() const { return true; }         ///< false: contacts store no energy and keep no penetration
+  virtual bool takes_adaptive_steps() const { return false; }        ///< true: step.adaptive has a meaning
   /// true: steps need no equations to be solved but must stay below the critical one; Simulation takes them by CentralDifference.
   virtual bool is_explicit() const { return false; }
   virtual double step_cut(const MethodInput&) const { return 0.5; }  ///< factor on a step that failed
   virtual const LinearCounters& linear_counters() const = 0;
+  /// Hands over what it keeps from step to step and what would change a result, be it in the last bit.
+  virtual void exchange(Archive&) {}
 };
 
 /// Displacements of a step without forces, dt v: zero in statics. N per free block.
@@ -116,11 +135,15 @@ void add_dashpots(const StepProblem<N>& problem, const Contact& contact, Contact
   springs.shear_damping = dashpots.shear / (problem.end_weight * problem.dt);
 }
 
-/// For enforcements with a time scheme of their own: throws InputError unless theta has its default of 1.
-inline void require_default_theta(const MethodInput& method) {
-  if (method.theta == 1.0) return;
-  throw InputError(method.contact_where, "method.theta",
-                   fmt::format("{:g}", method.theta) + " has no meaning for method.contact = \"" + method.contact + "\"", "1, or contact = \"soft\"");
+/// For enforcements with a time scheme of their own: throws InputError if the scene chooses one.
+inline void refuse_integrators(const MethodInput& method) {
+  const auto refuse = [&](bool given, const char* key) {
+    if (given) throw InputError(method.contact_where, key, "has no meaning for method.contact = \"" + method.contact + "\"", "contact = \"soft\"");
+  };
+  refuse(method.integrator.has_value(), "method.integrator");
+  refuse(method.theta.value_or(1.0) != 1.0, "method.theta");
+  refuse(method.rho_inf.has_value(), "method.rho_inf");
+  refuse(method.dissipation.has_value(), "method.dissipation");
 }
 
 }  // namespace openclose

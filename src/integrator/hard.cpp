@@ -63,11 +63,12 @@ class Hard : public Enforcement<N> {
   }
 
   std::unique_ptr<TimeScheme<N>> make_time_scheme(const MethodInput& method) const override {
-    require_default_theta(method);
+    refuse_integrators(method);
     return make_midstep_scheme<N>();
   }
   bool has_elastic_contacts() const override { return false; }
   const LinearCounters& linear_counters() const override { return newton_.linear_counters(); }
+  void exchange(Archive& archive) override { newton_.exchange(archive); }
 
  private:
   static ContactSprings springs(const StepProblem<N>& problem, const Contact& contact, double ratio) {

@@ -30,6 +30,11 @@ constexpr double shortest_backtrack = 0.01;
 /// After so many refusals of the exact step without gain the symmetric steps in between get shorter, so that the two do not go round in a circle.
 constexpr int patience = 1;
 
+/// Open at the end of the step, a contact may have carried a force on the way.
+bool carries(const ContactForces& f) {
+  return f.status != ContactStatus::open || f.normal != 0.0 || f.normal_by_gap != 0.0;
+}
+
 int differences(const std::vector<signed char>& a, const std::vector<signed char>& b) {
   return std::inner_product(a.begin(), a.end(), b.begin(), 0, std::plus<>(), std::not_equal_to<>());
 }
@@ -58,33 +63,43 @@ void Newton<N>::prepare(const StepProblem<N>& problem, const std::vector<Contact
     const auto& block = system.block(b);
     const Unknowns still = Unknowns::Zero();
     blocks_.push_back({b, problem.external.has_point_forces(b), block.rotation_locked, block.radius, problem.inertia * block.mass,
-                       problem.external.force(system, b, still), problem.dt * problem.velocity(b), problem.external.magnitude(system, b, still),
+                       problem.external.force(system, b, still), problem.drift(b), problem.external.magnitude(system, b, still),
                        problem.external.spring_scale(system, b)});
   }
   trials_.resize(contacts_.size());
+  paths_.resize(problem.averages_path() ? contacts_.size() : 0);
   branches_.resize(contacts_.size());
   moves_.assign(system.block_count(), BlockMove<N>());
   tangent_.fit(problem);
 }
 
 template <int N>
+template <bool averages>
 inline void Newton<N>::evaluate_contact(std::size_t c) {
   const StepContact& contact = contacts_[c];
   ContactTrial& trial = trials_[c];
   trial.pose.set(contact.start, moves_[contact.vertex_block], moves_[contact.edge_block]);
-  trial.forces = spring_slider((*springs_)[c], contact.strength, trial.pose.gap_change, trial.pose.slip_change);
+  const ContactSprings& springs = (*springs_)[c];
+  if constexpr (averages) {
+    paths_[c] = {path_average(springs, contact.strength, trial.pose.gap_change, trial.pose.slip_change, springs.dissipation),
+                 mean_pose(contact.start, trial.pose)};
+    trial.forces = paths_[c].average.mean;
+  } else {
+    trial.forces = spring_slider(springs, contact.strength, trial.pose.gap_change, trial.pose.slip_change);
+  }
 }
 
 template <int N>
+template <bool averages>
 void Newton<N>::evaluate_contacts() {
   double force_scale = force_scale_;
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
-    evaluate_contact(c);
+    evaluate_contact<averages>(c);
     const ContactForces& f = trials_[c].forces;
     branches_[c] = branch(f);
-    if (f.status == ContactStatus::open) continue;
+    if (averages ? !carries(f) : f.status == ContactStatus::open) continue;
     const StepContact& contact = contacts_[c];
-    const ContactPose<N>& pose = trials_[c].pose;
+    const ContactPose<N>& pose = averages ? paths_[c].pose : trials_[c].pose;
     const ContactSprings& springs = (*springs_)[c];
     const double normal = std::abs(f.normal), shear = std::abs(f.shear);
     const double moved = moves_[contact.vertex_block].bound(contact.vertex_reach) + moves_[contact.edge_block].bound(contact.edge_reach);
@@ -113,7 +128,8 @@ void Newton<N>::evaluate_blocks(const Eigen::VectorXd& d) {
     const Unknowns db = d.template segment<N>(at);
     double magnitude = block.magnitude;
     if (block.has_point_forces) {
-      force_.template segment<N>(at) += problem_->external.force(system, block.block, db);
+      force_.template segment<N>(at) +=
+          paths_.empty() ? problem_->external.force(system, block.block, db) : problem_->external.mean_force(system, block.block, db);
       magnitude = problem_->external.magnitude(system, block.block, db);
     } else {
       force_.template segment<N>(at) += block.force;
@@ -138,7 +154,11 @@ void Newton<N>::evaluate(const Eigen::VectorXd& d) {
   residual_.resize(N * system.free_count());
   rounding_.setZero(system.free_count() + 1);
   force_scale_ = 0.0;
-  evaluate_contacts();
+  if (paths_.empty()) {
+    evaluate_contacts<false>();
+  } else {
+    evaluate_contacts<true>();
+  }
   evaluate_blocks(d);
 }
 
@@ -158,24 +178,32 @@ double Newton<N>::residual_norm() const {
 template <int N>
 void Newton<N>::add_contact_stiffness(std::size_t c, Tangent tangent) {
   const ContactForces& f = trials_[c].forces;
-  if (f.status == ContactStatus::open) return;
+  if (!carries(f)) return;
   const bool exact = tangent == Tangent::exact;
   const double theta = problem_->end_weight;
   const double nn = -theta * f.normal_by_gap, tn = exact ? -theta * f.shear_by_gap : 0.0;
   double tt = -theta * f.shear_by_slip;
   if (!exact && problem_->statics && f.status == ContactStatus::sliding) tt = static_slip_stiffness * (*springs_)[c].shear;
 
+  // Forces act in force_pose(), gap and slip change with the pose at the end. In the symmetric tangent both are the same.
   const ContactPose<N>& pose = trials_[c].pose;
-  const Vec2 n = pose.normal, t = pose.tangent(), by_gap = nn * n + tn * t;
+  const ContactPose<N>& acting = exact ? force_pose(c) : pose;
+  const Vec2 n = pose.normal, t = pose.tangent(), by_gap = nn * acting.normal + tn * acting.tangent(), by_slip = tt * acting.tangent();
   ContactStiffness<N> k;
-  k.shift_xx = by_gap.x() * n.x() + tt * t.x() * t.x();
-  k.shift_xy = by_gap.x() * n.y() + tt * t.x() * t.y();
-  k.shift_yx = by_gap.y() * n.x() + tt * t.y() * t.x();
-  k.shift_yy = by_gap.y() * n.y() + tt * t.y() * t.y();
+  k.shift_xx = by_gap.x() * n.x() + by_slip.x() * t.x();
+  k.shift_xy = by_gap.x() * n.y() + by_slip.x() * t.y();
+  k.shift_yx = by_gap.y() * n.x() + by_slip.y() * t.x();
+  k.shift_yy = by_gap.y() * n.y() + by_slip.y() * t.y();
+  k.force_vertex_arm = acting.vertex_arm;
+  k.force_edge_arm = acting.edge_arm;
   k.vertex_arm = pose.vertex_arm;
   k.edge_arm = pose.edge_arm;
-  // The geometric part can make the symmetric tangent indefinite.
-  k.turning = exact ? Vec2(theta * (f.normal * n + f.shear * t)) : Vec2(Vec2::Zero());
+  // The geometric part can make the symmetric tangent indefinite. Means over a path change by half of what its end does.
+  if (exact) {
+    const double share = paths_.empty() ? theta : 0.5;
+    k.turning = share * (f.normal * n + f.shear * t);
+    k.on_arms = share * (f.normal * acting.normal + f.shear * acting.tangent());
+  }
 
   const ContactSlots& slots = tangent_.slots(c);
   BlockMatrix<N>& matrix = tangent_.matrix();
@@ -197,7 +225,12 @@ void Newton<N>::assemble(const Eigen::VectorXd& d, Tangent tangent) {
     auto& diagonal = matrix.value(matrix.diagonal(row));
     diagonal.diagonal() += block.inertia;
     if (!block.has_point_forces) continue;
-    diagonal += problem_->end_weight * problem_->external.stiffness(problem_->system, block.block, d.template segment<N>(N * row));
+    const Unknowns db = d.template segment<N>(N * row);
+    if (paths_.empty()) {
+      diagonal += problem_->end_weight * problem_->external.stiffness(problem_->system, block.block, db);
+    } else {
+      diagonal += problem_->external.mean_stiffness(problem_->system, block.block, db);
+    }
   }
   for (std::size_t i = 0; i < blocks_.size(); ++i) {
     if (blocks_[i].rotation_locked) matrix.eliminate(static_cast<int>(i), Motion<N>::rotation_index);
@@ -246,9 +279,21 @@ double Newton<N>::backtrack(const Eigen::VectorXd& d, const Eigen::VectorXd& ste
 }
 
 template <int N>
+ContactSprings Newton<N>::seen_springs(std::size_t c) const {
+  ContactSprings springs = (*springs_)[c];
+  if (!paths_.empty()) {
+    // The same force at the start of the step.
+    springs.shift -= 0.5 * springs.normal * (springs.gap - springs.target);
+    springs.normal *= 0.5;
+    springs.shear *= 0.5;
+  }
+  return springs;
+}
+
+template <int N>
 void Newton<N>::replace_forces(std::size_t c, const ContactForces& forces) {
   ContactTrial& trial = trials_[c];
-  const ContactPose<N>& pose = trial.pose;
+  const ContactPose<N>& pose = force_pose(c);
   const double normal = problem_->end_weight * (forces.normal - trial.forces.normal),
                shear = problem_->end_weight * (forces.shear - trial.forces.shear);
   const Vec2 change = normal * pose.normal + shear * pose.tangent();
@@ -270,7 +315,7 @@ int Newton<N>::hold_reversed() {
     const bool reversed = std::abs(branches_before_[c]) == sliding_branch && branches_before_[c] == -branches_[c];
     if (!reversed) continue;
     ++held;
-    const ContactSprings& springs = (*springs_)[c];
+    const ContactSprings springs = seen_springs(c);
     const ContactForces& f = trials_[c].forces;
     ContactForces stuck = tangent_for_status(springs, contacts_[c].strength, ContactStatus::sticking, f.normal, f.shear);
     stuck.normal = f.normal;
@@ -284,7 +329,7 @@ template <int N>
 void Newton<N>::take_last_states() {
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const Contact& contact = problem_->contacts[c];
-    const ContactSprings& springs = (*springs_)[c];
+    const ContactSprings springs = seen_springs(c);
     const ContactPose<N>& pose = trials_[c].pose;
     const bool touching = contact.status == ContactStatus::open && springs.gap <= 0.0;
     replace_forces(c, prolonged(springs, contacts_[c].strength, touching ? ContactStatus::sticking : contact.status, contact.normal_force,
@@ -297,6 +342,14 @@ void Newton<N>::report_contacts(std::vector<ContactOutcome<N>>& contacts) const 
   contacts.clear();
   contacts.reserve(trials_.size());
   for (std::size_t c = 0; c < trials_.size(); ++c) contacts.push_back({(*springs_)[c], trials_[c].forces, ContactKinematics<N>(trials_[c].pose)});
+}
+
+template <int N>
+void Newton<N>::report_paths(StepSolution<N>& solution) const {
+  for (std::size_t c = 0; c < paths_.size(); ++c) {
+    solution.paths.push_back({paths_[c].average, ContactKinematics<N>(paths_[c].pose)});
+    static_cast<CarriedForces&>(solution.contacts[c].forces) = paths_[c].average.end;
+  }
 }
 
 template <int N>
@@ -356,6 +409,7 @@ void Newton<N>::solve(const StepProblem<N>& problem, const std::vector<ContactSp
   solution.converged = norm <= 1.0;
   if (!solution.converged) solution.reason = "Newton's method did not converge";
   report_contacts(solution.contacts);
+  report_paths(solution);
 }
 
 template <int N>
@@ -363,6 +417,7 @@ Eigen::MatrixXd Newton<N>::stiffness(const StepProblem<N>& problem, const std::v
   StepProblem<N> static_problem = problem;
   static_problem.inertia = 0.0;
   static_problem.end_weight = 1.0;
+  static_problem.scheme = nullptr;
   prepare(static_problem, springs);
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(N * problem.system.free_count());
   evaluate(zero);

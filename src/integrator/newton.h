@@ -32,6 +32,7 @@ class Newton {
   Eigen::VectorXd forces(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs);
 
   double force_scale() const { return force_scale_; }  ///< [N] largest single force in the last evaluation
+  void exchange(Archive& archive) { tangent_.exchange(archive); }
   const LinearCounters& linear_counters() const { return tangent_.counters(); }
 
  private:
@@ -58,13 +59,23 @@ class Newton {
     ContactPose<N> pose;
     ContactForces forces;
   };
+  /// For schemes that average over the path of the step: trials_ then has the mean forces, which act in the mean pose.
+  struct PathTrial {
+    PathAverage average;
+    ContactPose<N> pose;
+  };
 
   void prepare(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs);
   void evaluate(const Eigen::VectorXd& d);
+  template <bool averages>
   void evaluate_contacts();
   void evaluate_blocks(const Eigen::VectorXd& d);
-  /// One contact at the trial positions of its blocks. The forces act along its pose's normal and tangent, at its pose's arms.
+  /// One contact at the trial positions of its blocks. The forces act along force_pose()'s normal and tangent, at its arms.
+  template <bool averages>
   void evaluate_contact(std::size_t c);
+  const ContactPose<N>& force_pose(std::size_t c) const { return paths_.empty() ? trials_[c].pose : paths_[c].pose; }
+  /// What a step sees of the springs of contact c while it stays closed: half of them, if it averages over its path.
+  ContactSprings seen_springs(std::size_t c) const;
   /// Forces and derivatives for the first iteration: the laws' linear pieces of the last step, wherever the iteration starts from, so that a step in
   /// which no contact changes its state needs one solve. Corners that only touch count as sticking.
   void take_last_states();
@@ -82,6 +93,7 @@ class Newton {
   double backtrack(const Eigen::VectorXd& d, const Eigen::VectorXd& step, double norm);
   /// All contacts as others want them.
   void report_contacts(std::vector<ContactOutcome<N>>& contacts) const;
+  void report_paths(StepSolution<N>& solution) const;
 
   const StepProblem<N>* problem_ = nullptr;
   const std::vector<ContactSprings>* springs_ = nullptr;
@@ -89,6 +101,7 @@ class Newton {
   std::vector<StepBlock> blocks_;    ///< the free ones, by their equations
   std::vector<BlockMove<N>> moves_;  ///< of all blocks, at the trial displacement
   std::vector<ContactTrial> trials_;
+  std::vector<PathTrial> paths_;  ///< empty for schemes that do not average
   using Branch = signed char;
   std::vector<Branch> branches_;         ///< linear piece of its law that every contact is on: its status, minus it when sliding backward
   std::vector<Branch> branches_before_;  ///< of the iteration

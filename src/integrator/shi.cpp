@@ -48,12 +48,13 @@ class Shi : public Enforcement<N> {
   }
 
   std::unique_ptr<TimeScheme<N>> make_time_scheme(const MethodInput& method) const override {
-    require_default_theta(method);
+    refuse_integrators(method);
     return make_theta_scheme<N>(1.0);
   }
   bool follows_gaps() const override { return false; }  // they add up first-order changes
   double step_cut(const MethodInput& method) const override { return method.step_cut; }
   const LinearCounters& linear_counters() const override { return tangent_.counters(); }
+  void exchange(Archive& archive) override { tangent_.exchange(archive); }
 
  private:
   using Unknowns = typename Motion<N>::Unknowns;

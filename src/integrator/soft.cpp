@@ -1,9 +1,16 @@
 // `soft`, the paper's DDA-SC: the springs are the joint's own stiffness; penetration is the joint's closure and is not constrained.
+#include <algorithm>
+#include <cmath>
+
+#include "openclose/integrator/integrators.h"
 #include "openclose/integrator/newton.h"
 #include "openclose/integrator/registry.h"
 
 namespace openclose {
 namespace {
+
+/// [-] path_average: largest dissipation of a contact, and that of a step which has no solution without.
+constexpr double largest_dissipation = 0.1;
 
 template <int N>
 class Soft : public Enforcement<N> {
@@ -11,22 +18,40 @@ class Soft : public Enforcement<N> {
   ContactSprings springs(const StepProblem<N>& problem, const Contact& contact) const override {
     ContactSprings s = joint_springs(problem, contact);
     add_dashpots(problem, contact, s);
+    if (problem.averages_path() && problem.method.dissipation) {
+      // In proportion to the step, so that it takes nothing from the order.
+      const double frequency = std::sqrt(s.normal / problem.system.reduced_mass(contact.vertex_block, contact.edge_block));
+      s.dissipation = std::min(largest_dissipation, *problem.method.dissipation * frequency * problem.dt);
+    }
     return s;
   }
 
   StepSolution<N> solve(const StepProblem<N>& problem) override {
     springs_.clear();
     for (const Contact& c : problem.contacts) springs_.push_back(springs(problem, c));
+    StepSolution<N> solution = attempt(problem);
+    if (solution.converged || !problem.averages_path()) return solution;
+    for (ContactSprings& s : springs_) s.dissipation = largest_dissipation;
+    const int wasted = solution.iterations;
+    solution = attempt(problem);
+    solution.iterations += wasted;
+    solution.dissipative = true;
+    return solution;
+  }
+
+  bool takes_adaptive_steps() const override { return true; }
+  std::unique_ptr<TimeScheme<N>> make_time_scheme(const MethodInput& method) const override { return make_integrator<N>(method); }
+  const LinearCounters& linear_counters() const override { return newton_.linear_counters(); }
+  void exchange(Archive& archive) override { newton_.exchange(archive); }
+
+ private:
+  StepSolution<N> attempt(const StepProblem<N>& problem) {
     StepSolution<N> solution;
     solution.d = drift(problem);
     newton_.solve(problem, springs_, solution);
     return solution;
   }
 
-  std::unique_ptr<TimeScheme<N>> make_time_scheme(const MethodInput& method) const override { return make_theta_scheme<N>(method.theta); }
-  const LinearCounters& linear_counters() const override { return newton_.linear_counters(); }
-
- private:
   Newton<N> newton_;
   std::vector<ContactSprings> springs_;
 };

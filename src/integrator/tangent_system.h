@@ -21,11 +21,14 @@ class TangentSystem {
   const ContactSlots& slots(std::size_t contact) const { return slots_[contact]; }
   BlockMatrix<N>& matrix() { return matrix_; }
   LinearSolver<N>& solver() { return *solver_; }
+  /// The pattern, which decides in which order the solver eliminates and so how it rounds; the symbolic work is done again after reading.
+  void exchange(Archive& archive);
   const LinearCounters& counters() const { return solver_ ? solver_->counters() : nothing_done_; }
 
  private:
   /// False if a pair of blocks has none.
   bool find_slots(const StepProblem<N>& problem);
+  void set_pattern(int rows, const std::vector<std::pair<int, int>>& couplings);
 
   BlockMatrix<N> matrix_;
   std::vector<ContactSlots> slots_;  ///< of the step's contacts

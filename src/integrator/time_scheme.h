@@ -1,11 +1,13 @@
-// How displacement and velocity follow from the forces over a step. Every scheme solves
+// How displacement and velocity follow from the forces over a step, or over one stage of a step. Every scheme solves
 //
-//   inertia M (dt v - d) + theta F(d) + (1 - theta) F(0) = 0
+//   inertia M (drift - d) + theta F(d) + (1 - theta) F(0) = 0
 //
-// for the displacement d of the step, M being the mass, v the velocity at its start.
+// for the displacement d of the step, M being the mass; drift is where the block would go without forces. Schemes that average over the path of the
+// step put the mean force of the path in place of F(d), with theta = 1. integrators.h lists those to choose from.
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "openclose/model/block_system.h"
 
@@ -24,15 +26,33 @@ class TimeScheme {
 
   virtual double inertia(double dt) const = 0;  ///< [1/s2]
   virtual double end_weight() const = 0;        ///< theta [-]
-  /// Velocity after a step that was really taken with dt and moved by d.
-  virtual Unknowns next_velocity(double dt, const Unknowns& d, const Unknowns& v) const = 0;
-  /// The time between the velocities at the start and after a step of dt: over it the forces of the step act.
+  virtual bool averages_path() const { return false; }
+  /// Displacement of block b without forces; v is the velocity at the start.
+  virtual Unknowns drift(int, double dt, const Unknowns& v) const { return dt * v; }
+  /// Velocity of block b after a step that was really taken with dt and moved by d.
+  virtual Unknowns next_velocity(int b, double dt, const Unknowns& d, const Unknowns& v) const = 0;
+  /// The time over which the forces of a step of dt act: from the velocities at its start to those after it, or about where its equation of motion holds.
   virtual TimeSpan span_of_velocities(double dt) const { return {0.0, dt}; }
-  /// Displacement whose product with the forces of the step is exactly the change of kinetic energy.
-  virtual Unknowns work_displacement(double dt, const Unknowns& d, const Unknowns& v) const = 0;
+  /// Displacement whose product with the forces of the step is the change of kinetic energy, up to own_work().
+  virtual Unknowns work_displacement(int b, double dt, const Unknowns& d, const Unknowns& v) const = 0;
+  /// [J] Change of kinetic energy beyond the work of the forces, for masses M: what accelerations remembered from before add.
+  virtual double own_work(int, double, const Unknowns&, const Unknowns&, const Unknowns& /*mass*/) const { return 0.0; }
   /// Velocity at the end of the step, for output.
-  virtual Unknowns velocity_at_end(double dt, const Unknowns& d, const Unknowns& v) const = 0;
-  virtual void accept(double) {}  ///< the step with this dt counts
+  virtual Unknowns velocity_at_end(int b, double dt, const Unknowns& d, const Unknowns& v) const = 0;
+
+  /// Accelerations at the start are wanted, by start(b, a), before the first step.
+  virtual bool wants_accelerations() const { return false; }
+  virtual void start(int, const Unknowns&) {}
+
+  /// Duration of the next stage of a step that should take dt; the last stage of a step that has begun has no choice.
+  virtual double stage(double dt) const { return dt; }
+  virtual bool is_within_step() const { return false; }  ///< a stage is to follow
+  virtual void abandon_step() {}                         ///< the next stage begins a step
+
+  /// The step with this dt counts: record(b, dt, d, v) for every free block, then accept(dt).
+  virtual void record(int, double, const Unknowns&, const Unknowns&) {}
+  virtual void accept(double) {}
+  virtual void exchange(Archive&) {}  ///< what it remembers of earlier steps
 };
 
 /// u1 = u0 + dt (v0 + v1)/2, M (v1 - v0) = dt [theta F1 + (1 - theta) F0]. theta = 1: Newmark (1/2, 1), Shi's, order 1; theta = 1/2: trapezoid,
@@ -50,5 +70,21 @@ std::unique_ptr<TimeScheme<N>> make_midstep_scheme();
 /// whose velocity is half a step old). Used by `dem`.
 template <int N>
 std::unique_ptr<TimeScheme<N>> make_central_difference_scheme();
+
+/// What a scheme remembers of every block; zero until it was set.
+template <int N>
+class BlockMemory {
+ public:
+  using Unknowns = typename Motion<N>::Unknowns;
+  Unknowns of(int b) const { return b < static_cast<int>(values_.size()) ? values_[b] : Unknowns(Unknowns::Zero()); }
+  void set(int b, const Unknowns& value) {
+    if (b >= static_cast<int>(values_.size())) values_.resize(b + 1, Unknowns::Zero());
+    values_[b] = value;
+  }
+  void exchange(Archive& archive) { archive(values_); }
+
+ private:
+  std::vector<Unknowns> values_;
+};
 
 }  // namespace openclose

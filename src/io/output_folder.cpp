@@ -63,7 +63,8 @@ OutputFolder::OutputFolder(const std::string& path) : path_(path) {
   const bool usable = !error && std::filesystem::is_directory(path) && access(path.c_str(), W_OK | X_OK) == 0;
   if (!usable)
     throw InputError({path, 0}, "", "cannot write to this output folder", "-o with a folder that exists or can be made, and may be written to");
-  for (const char* name : {"history.csv", "energy.csv", "blocks.csv", "contacts.csv", "trials.csv", "curve.csv", "milestones.csv", "summary.json"}) {
+  for (const char* name : {"history.csv", "energy.csv", "blocks.csv", "contacts.csv", "trials.csv", "curve.csv", "milestones.csv", "summary.json",
+                           checkpoint_name}) {
     const std::string file = path + "/" + name;
     if (!std::filesystem::exists(file)) continue;
     if (std::filesystem::is_regular_file(file) && access(file.c_str(), W_OK) == 0) continue;
@@ -75,6 +76,16 @@ std::ofstream OutputFolder::open(const std::string& name) const {
   const std::string full = path_ + "/" + name;
   std::ofstream file(full);
   if (!file) throw InputError({full, 0}, "", "cannot be written", "an output folder in which files can be made");
+  return file;
+}
+
+std::ofstream OutputFolder::open(const std::string& name, const std::string& head, std::uintmax_t length) const {
+  const std::string full = path_ + "/" + name;
+  std::error_code error, differs;
+  if (!std::filesystem::equivalent(head, full, differs)) std::filesystem::copy_file(head, full, std::filesystem::copy_options::overwrite_existing, error);
+  if (!error) std::filesystem::resize_file(full, length, error);
+  std::ofstream file(full, std::ios::app);
+  if (error || !file) throw InputError({full, 0}, "", "cannot be written", "an output folder in which files can be made");
   return file;
 }
 

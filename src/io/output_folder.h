@@ -1,11 +1,14 @@
 // The folder a run writes to. Made, and tried, before anything is computed, so that a run is never lost to a folder that cannot be written.
 #pragma once
 
+#include <cstdint>
 #include <fstream>
 #include <string>
 #include <vector>
 
 namespace openclose {
+
+inline constexpr const char* checkpoint_name = "checkpoint.bin";
 
 class OutputFolder {
  public:
@@ -14,6 +17,8 @@ class OutputFolder {
 
   /// A new file, replacing an old one of that name.
   std::ofstream open(const std::string& name) const;
+  /// The same, but beginning with the first `length` bytes of the file `head`, which may be this one.
+  std::ofstream open(const std::string& name, const std::string& head, std::uintmax_t length) const;
   const std::string& path() const { return path_; }
 
  private:

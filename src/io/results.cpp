@@ -5,6 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "openclose/core/process.h"
+#include "openclose/integrator/integrators.h"
 #include "openclose/scene/names.h"
 #include "openclose/version.h"
 
@@ -21,6 +23,10 @@ const char* name_of(ContactStatus status) {
       return "sliding";
   }
   return "";
+}
+
+nlohmann::ordered_json optional_json(const std::optional<double>& value) {
+  return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
 }
 
 /// A text field: quoted if it holds what would break the row.
@@ -52,11 +58,32 @@ std::vector<std::pair<const char*, double>> entries(const EnergyLedger& l) {
           {"imbalance_j", l.imbalance()}};
 }
 
+std::string energy_columns() {
+  std::string columns = "time_s";
+  for (const auto& entry : entries({})) columns += fmt::format(",{}", entry.first);
+  return columns;
+}
+
 }  // namespace
 
-HistoryFile::HistoryFile(const OutputFolder& folder) : file_(folder.open("history.csv")) {
-  file_ << "time_s,point,displacement_x_m,displacement_y_m,rotation_rad,velocity_x_m_per_s,velocity_y_m_per_s\n";
+RunTable::RunTable(const OutputFolder& folder, const std::string& name, const std::string& columns, const RestartPoint* restart) : name_(name) {
+  if (restart) {
+    for (const auto& [table, length] : restart->checkpoint.tables) {
+      if (table == name) file_ = folder.open(name, table_beside(restart->checkpoint_file, name), length);
+    }
+    return;
+  }
+  file_ = folder.open(name);
+  file_ << columns << '\n';
 }
+
+std::pair<std::string, std::uint64_t> RunTable::written() {
+  file_.flush();
+  return {name_, static_cast<std::uint64_t>(file_.tellp())};
+}
+
+HistoryFile::HistoryFile(const OutputFolder& folder, const RestartPoint* restart)
+    : RunTable(folder, "history.csv", "time_s,point,displacement_x_m,displacement_y_m,rotation_rad,velocity_x_m_per_s,velocity_y_m_per_s", restart) {}
 
 void HistoryFile::add(double time, const std::vector<PointMotion>& motions) {
   for (const PointMotion& m : motions) {
@@ -65,11 +92,7 @@ void HistoryFile::add(double time, const std::vector<PointMotion>& motions) {
   }
 }
 
-EnergyFile::EnergyFile(const OutputFolder& folder) : file_(folder.open("energy.csv")) {
-  file_ << "time_s";
-  for (const auto& entry : entries({})) file_ << ',' << entry.first;
-  file_ << '\n';
-}
+EnergyFile::EnergyFile(const OutputFolder& folder, const RestartPoint* restart) : RunTable(folder, "energy.csv", energy_columns(), restart) {}
 
 void EnergyFile::add(double time, const EnergyLedger& ledger) {
   fmt::print(file_, "{:.17g}", time);
@@ -78,9 +101,8 @@ void EnergyFile::add(double time, const EnergyLedger& ledger) {
 }
 
 template <int N>
-BlocksFile<N>::BlocksFile(const OutputFolder& folder) : file_(folder.open("blocks.csv")) {
-  file_ << "state,block,vertex,x_m,y_m\n";
-}
+BlocksFile<N>::BlocksFile(const OutputFolder& folder, const RestartPoint* restart)
+    : RunTable(folder, "blocks.csv", "state,block,vertex,x_m,y_m", restart) {}
 
 template <int N>
 void BlocksFile<N>::add(const std::string& state, const Simulation<N>& simulation) {
@@ -184,7 +206,10 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
   j["title"] = scene.title;
   j["overrides"] = summary.overrides;
   j["options"] = {{"contact", scene.method.contact},
-                  {"theta", scene.method.theta},
+                  {"integrator", scene.method.contact == "soft" ? ordered_json(integrator_name(scene.method)) : ordered_json(nullptr)},
+                  {"theta", optional_json(scene.method.theta)},
+                  {"rho_inf", optional_json(scene.method.rho_inf)},
+                  {"dissipation", optional_json(scene.method.dissipation)},
                   {"rotation", word_for(rotation_words, scene.method.rotation)},
                   {"start", word_for(start_words, scene.method.start)},
                   {"statics", scene.method.statics},
@@ -200,6 +225,8 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
                   {"max_displacement_m", scene.step.max_displacement},
                   {"smallest_fraction", scene.step.smallest_fraction},
                   {"base_motion", scene.base_motion ? ordered_json(word_for(base_motion_words, scene.base_motion->kind)) : ordered_json(nullptr)},
+                  {"adaptive", scene.step.adaptive},
+                  {"error_tolerance_m", scene.step.error_tolerance},
                   {"run_strength_reduction_factor", scene.run_strength_reduction_factor},
                   {"end_time_s", scene.end_time},
                   {"end_displacement_m", scene.end_displacement ? ordered_json(*scene.end_displacement) : ordered_json(nullptr)},
@@ -228,6 +255,7 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
     j["factor_of_safety"] = safety->found ? ordered_json(safety->stable) : ordered_json(nullptr);
     j["bracket"] = {safety->stable, safety->failed};
     j["criterion"] = safety->criterion;
+    j["cpu_s"] = {{"search", summary.cpu_of_search}};
   } else {
     ordered_json ledger;
     for (const auto& [name, value] : entries(summary.ledger)) ledger[name] = value;
@@ -237,9 +265,12 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
     j["cpu_s"] = {{"start", summary.cpu_of_start}, {"motion", summary.cpu_of_motion}};
   }
   j["max_penetration_m"] = summary.max_penetration;
+  j["peak_memory_bytes"] = peak_memory();
   j["counters"] = {{"steps", steps.steps},
                    {"steps_cut", steps.cuts},
+                   {"error_cuts", steps.error_cuts},
                    {"compliant_steps", steps.compliant},
+                   {"dissipative_steps", steps.dissipative},
                    {"iterations", steps.iterations},
                    {"searches", detection.searches},
                    {"searches_skipped", detection.searches_skipped},

@@ -6,42 +6,53 @@
 #include <vector>
 
 #include "openclose/analysis/strength_reduction.h"
+#include "openclose/io/checkpoint.h"
 #include "openclose/io/output_folder.h"
 
 namespace openclose {
 
-/// history.csv: motion of the measured points.
-class HistoryFile {
+/// The run that a run goes on from; its tables are continued.
+struct RestartPoint {
+  std::string checkpoint_file;
+  Checkpoint checkpoint;
+};
+
+/// A table that grows while a run goes on.
+class RunTable {
  public:
-  explicit HistoryFile(const OutputFolder& folder);
-  void add(double time, const std::vector<PointMotion>& motions);
-  void close() { finish(file_, "history.csv"); }
+  void close() { finish(file_, name_); }
+  /// Name and length [bytes] of what has reached the disk: everything so far.
+  std::pair<std::string, std::uint64_t> written();
+
+ protected:
+  /// With these column names, or with what the table had when the run it goes on from was saved.
+  RunTable(const OutputFolder& folder, const std::string& name, const std::string& columns, const RestartPoint* restart);
+  std::ofstream file_;
 
  private:
-  std::ofstream file_;
+  std::string name_;
+};
+
+/// history.csv: motion of the measured points.
+class HistoryFile : public RunTable {
+ public:
+  explicit HistoryFile(const OutputFolder& folder, const RestartPoint* restart = nullptr);
+  void add(double time, const std::vector<PointMotion>& motions);
 };
 
 /// energy.csv: the ledger.
-class EnergyFile {
+class EnergyFile : public RunTable {
  public:
-  explicit EnergyFile(const OutputFolder& folder);
+  explicit EnergyFile(const OutputFolder& folder, const RestartPoint* restart = nullptr);
   void add(double time, const EnergyLedger& ledger);
-  void close() { finish(file_, "energy.csv"); }
-
- private:
-  std::ofstream file_;
 };
 
 /// blocks.csv: the polygons of all blocks in named states.
 template <int N>
-class BlocksFile {
+class BlocksFile : public RunTable {
  public:
-  explicit BlocksFile(const OutputFolder& folder);
+  explicit BlocksFile(const OutputFolder& folder, const RestartPoint* restart = nullptr);
   void add(const std::string& state, const Simulation<N>& simulation);
-  void close() { finish(file_, "blocks.csv"); }
-
- private:
-  std::ofstream file_;
 };
 
 /// contacts.csv: every contact at the end.
@@ -70,6 +81,7 @@ struct Summary {
   std::vector<Milestone> milestones;  ///< see RunResult
   double cpu_of_start = 0.0;          ///< [s]
   double cpu_of_motion = 0.0;         ///< [s]
+  double cpu_of_search = 0.0;         ///< [s] of a factor of safety, settling included
 };
 
 template <int N>

@@ -23,11 +23,16 @@ struct ContactStrength {
   double cohesion = 0.0;  ///< [N] cohesion times tributary length, 0 once lost
   double tension = 0.0;   ///< [N] tensile strength times tributary length, 0 once lost
 
+  ContactStrength() = default;
   ContactStrength(const JointProperties& joint, const Contact& contact) : ContactStrength(joint, std::tan(joint.friction_angle), contact) {}
   /// The same without a tangent for every contact.
   ContactStrength(const TabulatedJoint& joint, const Contact& contact) : ContactStrength(joint, joint.friction, contact) {}
 
   void break_bond(const JointProperties& joint);
+  void exchange(Archive& archive) {
+    auto& [a, b, c] = *this;
+    archive(a, b, c);
+  }
 
   struct ShearBound {
     double value;  ///< [N]
@@ -64,6 +69,7 @@ struct ContactSprings {
   // Dashpots over the time in which gap and slip change.
   double normal_damping = 0.0;  ///< [N/m]
   double shear_damping = 0.0;   ///< [N/m]
+  double dissipation = 0.0;     ///< [-] see path_average.h
 };
 
 struct CarriedForces {

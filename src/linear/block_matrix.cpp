@@ -32,6 +32,17 @@ void BlockMatrix<N>::set_pattern(int rows, const std::vector<std::pair<int, int>
 }
 
 template <int N>
+std::vector<std::pair<int, int>> BlockMatrix<N>::couplings() const {
+  std::vector<std::pair<int, int>> pairs;
+  for (int i = 0; i < rows(); ++i) {
+    for (int s = row_start_[i]; s < row_start_[i + 1]; ++s) {
+      if (columns_[s] > i) pairs.emplace_back(i, columns_[s]);
+    }
+  }
+  return pairs;
+}
+
+template <int N>
 void BlockMatrix<N>::set_zero() {
   for (Block& v : values_) v.setZero();
 }

@@ -18,6 +18,7 @@ class BlockMatrix {
 
   int rows() const { return static_cast<int>(row_start_.size()) - 1; }
   int unknowns() const { return N * rows(); }
+  std::vector<std::pair<int, int>> couplings() const;  ///< with which set_pattern() makes this pattern
   long pattern_version() const { return pattern_version_; }  ///< changes with every new pattern, differs between matrices
 
   bool contains(int row, int column) const { return find(row, column) >= 0; }

@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "openclose/core/archive.h"
 #include "openclose/linear/block_matrix.h"
 
 namespace openclose {
@@ -13,6 +14,11 @@ struct LinearCounters {
   long factorisations = 0;
   long solves = 0;
   long plain = 0;  ///< factorisations that the block solver had to give to the plain one
+
+  void exchange(Archive& archive) {
+    auto& [a, b, c, d, e] = *this;
+    archive(a, b, c, d, e);
+  }
 };
 
 template <int N>
@@ -23,6 +29,7 @@ class LinearSolver {
   virtual bool factor(const BlockMatrix<N>& matrix) = 0;
   virtual Eigen::VectorXd solve(const Eigen::VectorXd& right_side) = 0;
   const LinearCounters& counters() const { return counters_; }
+  void exchange(Archive& archive) { archive(counters_); }
 
  protected:
   LinearCounters counters_;

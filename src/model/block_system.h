@@ -7,6 +7,7 @@
 
 #include <vector>
 
+#include "openclose/core/archive.h"
 #include "openclose/model/motion.h"
 #include "openclose/scene/scene.h"
 
@@ -35,6 +36,11 @@ class BlockSystem {
     std::vector<Unknowns> velocity;      ///< per block; zero for fixed blocks
     std::vector<Vec2> arm;               ///< [m] centroid to vertex, per vertex
     std::vector<Vec2> point_arm;         ///< [m] centroid to material point, per point
+
+    void exchange(Archive& archive) {
+      auto& [a, b, c, d] = *this;
+      archive(a, b, c, d);
+    }
   };
 
   explicit BlockSystem(const Scene& scene);
@@ -64,6 +70,7 @@ class BlockSystem {
 
   const State& state() const { return state_; }
   void restore(const State& state) { state_ = state; }
+  void exchange(Archive& archive) { archive(state_); }
 
   const Unknowns& displacement(int b) const { return state_.displacement[b]; }
   const Unknowns& velocity(int b) const { return state_.velocity[b]; }

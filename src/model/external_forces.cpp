@@ -53,6 +53,34 @@ typename ExternalForces<N>::Matrix ExternalForces<N>::stiffness(const BlockSyste
 }
 
 template <int N>
+typename ExternalForces<N>::Unknowns ExternalForces<N>::mean_force(const BlockSystem<N>& system, int b, const Unknowns& d) const {
+  Unknowns total = weight(system, b) + base_force(system, b);
+  for_each_point_force(b, [&](const PointForce& f) {
+    const Vec2 moved = Motion<N>::displacement(d, system.point_arm(f.point), system.rotation_kind());
+    const Vec2 stretch = (system.point_position(f.point) - f.anchor) + 0.5 * moved;
+    const Vec2 arm = system.point_arm(f.point) + 0.5 * (moved - Motion<N>::translation(d));
+    total += Motion<N>::gradient(arm, f.force - f.stiffness.cwiseProduct(stretch));
+  });
+  return total;
+}
+
+template <int N>
+typename ExternalForces<N>::Matrix ExternalForces<N>::mean_stiffness(const BlockSystem<N>& system, int b, const Unknowns& d) const {
+  Matrix total = Matrix::Zero();
+  for_each_point_force(b, [&](const PointForce& f) {
+    const Vec2 moved = Motion<N>::displacement(d, system.point_arm(f.point), system.rotation_kind());
+    const Vec2 stretch = (system.point_position(f.point) - f.anchor) + 0.5 * moved;
+    const Vec2 turned = moved - Motion<N>::translation(d);
+    const Vec2 end_arm = system.point_arm(f.point) + turned, arm = system.point_arm(f.point) + 0.5 * turned;
+    const Unknowns gx = Motion<N>::gradient(end_arm, {1.0, 0.0}), gy = Motion<N>::gradient(end_arm, {0.0, 1.0});
+    total += 0.5 * f.stiffness.x() * Motion<N>::gradient(arm, {1.0, 0.0}) * gx.transpose();
+    total += 0.5 * f.stiffness.y() * Motion<N>::gradient(arm, {0.0, 1.0}) * gy.transpose();
+    total -= 0.5 * Motion<N>::hessian(end_arm, f.force - f.stiffness.cwiseProduct(stretch));
+  });
+  return total;
+}
+
+template <int N>
 double ExternalForces<N>::magnitude(const BlockSystem<N>& system, int b, const Unknowns& d) const {
   double total = weight(system, b).norm() + base_force(system, b).norm();
   for_each_point_force(b, [&](const PointForce& f) {

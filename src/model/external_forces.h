@@ -21,6 +21,7 @@ class ExternalForces {
   /// the base's velocity.
   void move_base(double from, double to) { base_acceleration_ = base_motion_.mean_acceleration(from, to); }
   void hold_base() { base_acceleration_.setZero(); }
+  void exchange(Archive& archive) { archive(base_acceleration_); }
   const Vec2& base_acceleration() const { return base_acceleration_; }  ///< [m/s2] mean over these times
 
   Unknowns weight(const BlockSystem<N>& system, int b) const;      ///< [N]
@@ -29,6 +30,12 @@ class ExternalForces {
   Unknowns force(const BlockSystem<N>& system, int b, const Unknowns& d) const;
   /// Minus the derivative of force() by d.
   Matrix stiffness(const BlockSystem<N>& system, int b, const Unknowns& d) const;
+
+  /// The mean of such forces over a step to d, along a straight path and in the mean geometry: their work is the product with d, exactly for translations
+  /// and to the third order in the rotation.
+  Unknowns mean_force(const BlockSystem<N>& system, int b, const Unknowns& d) const;
+  /// Minus the derivative of mean_force() by d.
+  Matrix mean_stiffness(const BlockSystem<N>& system, int b, const Unknowns& d) const;
 
   /// [N] sum of the magnitudes of these forces on block b, the scale of what rounding leaves of their sum, which may cancel.
   double magnitude(const BlockSystem<N>& system, int b, const Unknowns& d) const;

@@ -196,6 +196,9 @@ MethodInput read_method(Table table, const SourceLocation& scene_where) {
   method.contact_where = scene_where;
   const bool contact_given = table.optional("contact", method.contact);
   table.optional("theta", method.theta, Range{.low = 0.5, .high = 1.0, .low_included = true, .high_included = true});
+  table.optional("integrator", method.integrator);
+  table.optional("rho_inf", method.rho_inf, Range{.low = 0.0, .high = 1.0, .low_included = true, .high_included = true});
+  table.optional("dissipation", method.dissipation, Range{.low = 0.0, .high = 1.0, .low_included = true, .high_included = true});
   table.optional("rotation", method.rotation, rotation_words);
   table.optional("start", method.start, start_words);
   table.optional("statics", method.statics);
@@ -226,6 +229,8 @@ StepInput read_step(Table table) {
   table.optional("dt_s", step.dt, positive);
   table.optional("max_displacement_m", step.max_displacement, positive);
   table.optional("smallest_fraction", step.smallest_fraction, Range{.low = 0.0, .high = 1.0, .high_included = true});
+  table.optional("adaptive", step.adaptive);
+  table.optional("error_tolerance_m", step.error_tolerance, positive);
   table.finish();
   return step;
 }
@@ -250,6 +255,7 @@ void require_increasing(const Value& value, const std::vector<double>& list) {
 
 void read_output(Table table, Scene& scene) {
   table.optional("every_s", scene.output_every, not_negative);
+  table.optional("checkpoint_every_s", scene.checkpoint_every, not_negative);
   const bool has_milestones = table.optional("milestones_m", scene.milestones, positive);
   const bool has_snapshots = table.optional("snapshots_s", scene.snapshot_times, not_negative);
   table.finish();

@@ -111,11 +111,16 @@ enum class MassDamping {
   automatic,  ///< viscous, its coefficient following what the kinetic energy does
 };
 
+inline constexpr double default_rho_inf = 0.5;  ///< [-] of MethodInput::rho_inf
+
 /// How contacts are enforced and steps are taken.
 struct MethodInput {
   std::string contact = "soft";                ///< name in the registry of enforcements (analysis looks it up): soft, hard, shi, dem
   SourceLocation contact_where;                ///< for the error of an unknown name
-  double theta = 1.0;                          ///< [-] 1: Newmark (1/2, 1), Shi's; 1/2: trapezoid (Newmark (1/4, 1/2))
+  std::optional<std::string> integrator;       ///< soft: name in the list of integrators (analysis looks it up); absent: theta if there is one, else the default
+  std::optional<double> theta;                 ///< [-] theta: 1: Newmark (1/2, 1), Shi's; 1/2: trapezoid (Newmark (1/4, 1/2))
+  std::optional<double> rho_inf;               ///< [-] generalized_alpha: spectral radius at infinite frequency; absent: default_rho_inf
+  std::optional<double> dissipation;           ///< [-] path_average: see Soft; absent: none
   RotationKind rotation = RotationKind::exact;
   Start start = Start::settled;
   bool statics = false;                        ///< dynamic coefficient 0: every step starts from rest
@@ -140,6 +145,8 @@ struct StepInput {
   double dt = 0.0;                  ///< [s]
   double max_displacement = 0.1;    ///< [m] of any vertex in one step; a step that would move more is cut
   double smallest_fraction = 1e-6;  ///< [-] of dt, below which cutting is given up
+  bool adaptive = false;            ///< steps up to dt as long as error_tolerance allows
+  double error_tolerance = 1e-4;    ///< [m] adaptive: local error of a step, of any vertex
 };
 
 /// What tells that a scene has settled.
@@ -202,6 +209,7 @@ struct Scene {
   double end_time = 0.0;                       ///< [s]
   std::optional<double> end_displacement;      ///< [m] of any measured point; ends the run before its time
   double output_every = 0.0;                   ///< [s] interval of the history rows; 0: every step
+  double checkpoint_every = 0.0;               ///< [s] interval of the checkpoints; 0: none, not even at the end
   std::vector<double> milestones;              ///< [m] displacements of the first measured point to be timed, increasing
   std::vector<double> snapshot_times;          ///< [s] at which the blocks are drawn, increasing
   SettleInput settle;

@@ -152,7 +152,10 @@ void write_base_motion(Text& text, const BaseMotionInput& motion) {
 void write_method(Text& text, const MethodInput& method) {
   text.header("[method]");
   text.line("contact", std::string_view(method.contact));
-  text.line("theta", method.theta);
+  if (method.integrator) text.line("integrator", std::string_view(*method.integrator));
+  if (method.theta) text.line("theta", *method.theta);
+  if (method.rho_inf) text.line("rho_inf", *method.rho_inf);
+  if (method.dissipation) text.line("dissipation", *method.dissipation);
   text.line("rotation", word_for(rotation_words, method.rotation));
   text.line("start", word_for(start_words, method.start));
   text.line("statics", method.statics);
@@ -178,6 +181,8 @@ void write_run(Text& text, const Scene& scene) {
   text.line_unless(0.0, "dt_s", scene.step.dt);
   text.line("max_displacement_m", scene.step.max_displacement);
   text.line("smallest_fraction", scene.step.smallest_fraction);
+  text.line("adaptive", scene.step.adaptive);
+  text.line("error_tolerance_m", scene.step.error_tolerance);
   text.header("[run]");
   text.line("strength_reduction_factor", scene.run_strength_reduction_factor);
   text.header("[end]");
@@ -185,6 +190,7 @@ void write_run(Text& text, const Scene& scene) {
   if (scene.end_displacement) text.line("displacement_m", *scene.end_displacement);
   text.header("[output]");
   text.line("every_s", scene.output_every);
+  text.line("checkpoint_every_s", scene.checkpoint_every);
   text.line("milestones_m", scene.milestones);
   text.line("snapshots_s", scene.snapshot_times);
 }

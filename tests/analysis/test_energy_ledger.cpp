@@ -107,7 +107,7 @@ TEST_CASE("ledger of a vibration on a support: the scheme takes (theta - 1/2) k 
   for (int i = 0; i < 300; ++i) {
     advance(simulation, 1);
     const double y = simulation.system().displacement(0)[1];
-    lost += (scene.method.theta - 0.5) * k * (y - before) * (y - before);
+    lost += (*scene.method.theta - 0.5) * k * (y - before) * (y - before);
     before = y;
   }
   const EnergyLedger& l = simulation.ledger();

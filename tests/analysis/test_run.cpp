@@ -304,6 +304,20 @@ TEST_CASE("milestones are timed within the step", "[analysis][run]") {
   CHECK(states == std::vector<std::string>{"moved 0.1 m", "moved 0.1001 m", "moved 0.5 m"});
 }
 
+TEST_CASE("an end by displacement does not stop the explicit loop in every step", "[analysis][run]") {
+  Scene scene = test::block_on_incline(40.0 * test::degree);
+  scene.method.contact = "dem";
+  scene.measured_points = {{"corner", 1, scene.blocks[1].vertices[0]}};
+  scene.milestones = {0.01, 0.02};
+  scene.end_displacement = 0.04;
+  scene.output_every = 0.05;
+  scene.end_time = 5.0;
+  Simulation<3> simulation(scene);
+  REQUIRE(run<3>(simulation, {}).ended_by == "end.displacement_m");
+  CHECK(simulation.step_counters().steps > 100);
+  CHECK(simulation.step_counters().loads < 10);
+}
+
 TEST_CASE("snapshots are taken after the nearest step", "[analysis][run]") {
   Scene scene = test::falling_block();
   scene.step.dt = 0.03;

@@ -35,7 +35,7 @@ double oscillator_error(Scheme& scheme, int n) {
   for (int i = 0; i < n; ++i) {
     const double k = scheme.inertia(dt);
     const double d = (k * dt * v[0] - w * w * x) / (k + theta * w * w);
-    v = scheme.next_velocity(dt, Unknowns(d, 0.0, 0.0), v);
+    v = scheme.next_velocity(0, dt, Unknowns(d, 0.0, 0.0), v);
     scheme.accept(dt);
     x += d;
   }
@@ -51,8 +51,8 @@ TEST_CASE("constant forces are integrated exactly whatever the steps", "[integra
   double t = 0.0;
   for (const double dt : uneven_steps) {
     const Unknowns d = displacement(*scheme, dt, v, a);
-    const Unknowns at_end = scheme->velocity_at_end(dt, d, v);
-    v = scheme->next_velocity(dt, d, v);
+    const Unknowns at_end = scheme->velocity_at_end(0, dt, d, v);
+    v = scheme->next_velocity(0, dt, d, v);
     scheme->accept(dt);
     x += d;
     t += dt;
@@ -65,18 +65,18 @@ TEST_CASE("constant forces are integrated exactly whatever the steps", "[integra
 TEST_CASE("the velocity after a step belongs to the step really taken", "[integrator][time_scheme]") {
   const auto theta = make_theta_scheme<3>(0.7);
   const Unknowns v(1.0, 2.0, 3.0), d(0.01, 0.02, -0.01);
-  CHECK(theta->next_velocity(0.1, d, v) == Unknowns(2.0 / 0.1 * d - v));
-  CHECK(theta->next_velocity(0.05, d, v) == Unknowns(2.0 / 0.05 * d - v));
+  CHECK(theta->next_velocity(0, 0.1, d, v) == Unknowns(2.0 / 0.1 * d - v));
+  CHECK(theta->next_velocity(0, 0.05, d, v) == Unknowns(2.0 / 0.05 * d - v));
   const auto midstep = make_midstep_scheme<3>();
   midstep->accept(0.1);
-  CHECK(midstep->next_velocity(0.05, d, v) == Unknowns(d / 0.05));
+  CHECK(midstep->next_velocity(0, 0.05, d, v) == Unknowns(d / 0.05));
 }
 
 TEST_CASE("a step that is thrown away leaves no trace in the scheme", "[integrator][time_scheme]") {
   const auto scheme = make_midstep_scheme<3>();
   CHECK(scheme->inertia(0.2) == Approx(2.0 / (0.2 * 0.2)).epsilon(1e-15));
   scheme->accept(0.1);
-  scheme->next_velocity(5.0, Unknowns::Ones(), Unknowns::Ones());
+  scheme->next_velocity(0, 5.0, Unknowns::Ones(), Unknowns::Ones());
   CHECK(scheme->inertia(0.2) == Approx(1.0 / (0.2 * 0.15)).epsilon(1e-15));
 }
 
@@ -89,7 +89,7 @@ TEST_CASE("forces times work displacement is the change of kinetic energy", "[in
   for (const double dt : uneven_steps) {
     const Unknowns force = 10.0 * vector();
     const Unknowns d = displacement(*scheme, dt, v, force);
-    const Unknowns path = scheme->work_displacement(dt, d, v), next = scheme->next_velocity(dt, d, v);
+    const Unknowns path = scheme->work_displacement(0, dt, d, v), next = scheme->next_velocity(0, dt, d, v);
     const double turnover = force.cwiseProduct(path).cwiseAbs().sum() + v.squaredNorm() + next.squaredNorm();
     CHECK(std::abs(0.5 * (next.squaredNorm() - v.squaredNorm()) - force.dot(path)) < 1e-13 * turnover);
     v = next;
@@ -115,7 +115,7 @@ TEST_CASE("the trapezoid keeps the energy of an oscillator, Newmark (1/2, 1) los
   for (int i = 0; i < 50; ++i) {
     const double k = scheme->inertia(dt);
     const double d = (k * dt * v[0] - w * w * x) / (k + theta * w * w);
-    v = scheme->next_velocity(dt, Unknowns(d, 0.0, 0.0), v);
+    v = scheme->next_velocity(0, dt, Unknowns(d, 0.0, 0.0), v);
     x += d;
     lost += (theta - 0.5) * w * w * d * d;
   }

@@ -127,6 +127,39 @@ TEST_CASE("forces are minus the gradient of the energy, stiffness is its second 
   }
 }
 
+TEST_CASE("the mean force does the work of the way, its stiffness is its difference quotient", "[model][external_forces]") {
+  Scene scene = one_block();
+  scene.gravity = {0.3, -1.0};
+  scene.materials[0].density = 1.0;
+  scene.loads = {{1, {0.3, 0.9}, {2.0, -1.5}}, {1, {1.8, 0.1}, {-0.5, 1.0}}};
+  scene.supports = {{1, {0.0, 0.0}, {3.0, 0.0}}, {1, {2.0, 1.0}, {1.0, 2.0}}};
+  System system(scene);
+  const Forces forces(scene, system);
+  std::mt19937 generator(5);
+  std::uniform_real_distribution<double> number(-1.0, 1.0);
+  const auto unknowns = [&] { return Unknowns(number(generator), number(generator), number(generator)); };
+  const double h = 6e-6, quotient_error = 50.0 * (h * h + 4.0 * epsilon / h);
+  for (int trial = 0; trial < 100; ++trial) {
+    system.advance(1, 0.3 * unknowns());
+    CHECK((forces.mean_force(system, 1, Unknowns::Zero()) - forces.force(system, 1, Unknowns::Zero())).norm() <= 100.0 * epsilon);
+    const Unknowns d = unknowns();
+    for (int k = 0; k < 3; ++k) {
+      Unknowns up = d, down = d;
+      up[k] += h;
+      down[k] -= h;
+      const Unknowns column = (forces.mean_force(system, 1, up) - forces.mean_force(system, 1, down)) / (2.0 * h);
+      CHECK((forces.mean_stiffness(system, 1, d).col(k) + column).cwiseAbs().maxCoeff() <= quotient_error);
+    }
+    const auto rest = [&](const Unknowns& way) {
+      return std::abs(forces.mean_force(system, 1, way).dot(way) + energy_after(scene, system, forces, way) - energy(scene, system, forces));
+    };
+    const Unknowns straight(d[0], d[1], 0.0);
+    CHECK(rest(straight) <= 200.0 * epsilon);
+    // Third order in the rotation, times some 20 N m.
+    CHECK(rest(Unknowns(0.0, 0.0, 0.01)) <= 20.0 * 1e-6);
+  }
+}
+
 TEST_CASE("a trial displacement and an accepted one give the same force", "[model][external_forces]") {
   Scene scene = one_block();
   scene.method.rotation = GENERATE(RotationKind::exact, RotationKind::linear);

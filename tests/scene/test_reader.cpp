@@ -57,12 +57,12 @@ TEST_CASE("every key reaches its field", "[scene][reader]") {
       "[[support]]\nblock = 'one'\npoint_m = [0, 0]\nstiffness_n_per_m = [0, 7]\n"
       "[[load]]\nblock = 'one'\npoint_m = [0.25, 0.25]\nforce_n = [-8, 9]\n"
       "[[measured_point]]\nname = 'p'\nblock = 'one'\npoint_m = [1, 0]\n"
-      "[method]\ncontact = 'anything'\ntheta = 0.5\nrotation = 'linear'\nstart = 'steady_sliding'\nstatics = true\nresidual_tolerance = 1e-9\n"
+      "[method]\ncontact = 'anything'\ntheta = 0.5\nintegrator = 'any'\nrho_inf = 0.25\ndissipation = 0.01\nrotation = 'linear'\nstart = 'steady_sliding'\nstatics = true\nresidual_tolerance = 1e-9\n"
       "max_iterations = 10\nskip_search = false\nskip_narrow_phase = false\nskip_reload = false\npenalty_pa_per_m = 11\npenalty_shear_ratio = 0.5\npenetration_tolerance_m = 12\n"
       "gap_tolerance_m = 2e-9\nclosing_tolerance_m = 0\nmax_open_close_iterations = 13.0\nstep_cut = 0.25\nstep_fraction = 0.5\ndamping = 'automatic'\nlocal_damping = 0.6\n"
-      "[step]\ndt_s = 0.01\nmax_displacement_m = 14\nsmallest_fraction = 1\n"
+      "[step]\ndt_s = 0.01\nmax_displacement_m = 14\nsmallest_fraction = 1\nadaptive = true\nerror_tolerance_m = 1e-3\n"
       "[run]\nstrength_reduction_factor = 1.5\n"
-      "[end]\ntime_s = 15\ndisplacement_m = 40\n[output]\nevery_s = 16\nmilestones_m = [10, 20.5]\nsnapshots_s = [0, 1.522]\n"
+      "[end]\ntime_s = 15\ndisplacement_m = 40\n[output]\nevery_s = 16\ncheckpoint_every_s = 24\nmilestones_m = [10, 20.5]\nsnapshots_s = [0, 1.522]\n"
       "[settle]\nunbalanced_fraction = 1e-3\nfirst_dt_s = 17\nmax_steps = 18\nfailure_displacement_m = 19\n"
       "criterion = 'paper'\nrelative_displacement = 1e-6\nsteady_steps = 22\nmax_time_steps = 23\nunbalanced_force_n = 24\nkeep_bonds = false\n"
       "[strength_reduction]\nwidth = 0.125\nupper_limit = 20\ncurve = [1, 1.5]\ncurve_time_s = 21\n");
@@ -96,6 +96,9 @@ TEST_CASE("every key reaches its field", "[scene][reader]") {
   CHECK(method.contact == "anything");
   CHECK(method.contact_where.line == 38);
   CHECK(method.theta == 0.5);
+  CHECK(method.integrator == "any");
+  CHECK(method.rho_inf == 0.25);
+  CHECK(method.dissipation == 0.01);
   CHECK(method.rotation == RotationKind::linear);
   CHECK(method.start == Start::steady_sliding);
   CHECK(method.statics);
@@ -117,8 +120,11 @@ TEST_CASE("every key reaches its field", "[scene][reader]") {
   CHECK(scene.step.dt == 0.01);
   CHECK(scene.step.max_displacement == 14.0);
   CHECK(scene.step.smallest_fraction == 1.0);
+  CHECK(scene.step.adaptive);
+  CHECK(scene.step.error_tolerance == 1e-3);
   CHECK(scene.end_time == 15.0);
   CHECK(scene.output_every == 16.0);
+  CHECK(scene.checkpoint_every == 24.0);
   CHECK(scene.run_strength_reduction_factor == 1.5);
   CHECK(scene.end_displacement == 40.0);
   CHECK(scene.milestones == std::vector<double>{10.0, 20.5});

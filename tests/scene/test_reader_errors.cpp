@@ -176,6 +176,8 @@ TEST_CASE("options out of range", "[scene][reader][errors]") {
   const Case c = GENERATE(values<Case>({
       {"method", "theta = 0.4", "0.4", "a number in [0.5, 1]"},
       {"method", "theta = 1.01", "1.01", "a number in [0.5, 1]"},
+      {"method", "rho_inf = 1.5", "1.5", "a number in [0, 1]"},
+      {"method", "dissipation = -0.1", "-0.1", "a number in [0, 1]"},
       {"method", "residual_tolerance = 1", "1", "a number in (0, 1)"},
       {"method", "max_iterations = 0", "0", "a whole number in [1, 1000000000]"},
       {"method", "max_iterations = 3000000000", "3000000000", "a whole number in [1, 1000000000]"},
@@ -192,6 +194,7 @@ TEST_CASE("options out of range", "[scene][reader][errors]") {
       {"step", "dt_s = 0", "0", "a number > 0"},
       {"step", "dt_s = -0.1", "-0.1", "a number > 0"},
       {"step", "max_displacement_m = 0", "0", "a number > 0"},
+      {"step", "error_tolerance_m = 0", "0", "a number > 0"},
       {"step", "smallest_fraction = 2", "2", "a number in (0, 1]"},
       {"end", "time_s = -1", "-1", "a number >= 0"},
       {"output", "every_s = -1", "-1", "a number >= 0"},

@@ -35,7 +35,10 @@ void check_same(const BlockInput& a, const BlockInput& b) {
 
 void check_same(const MethodInput& a, const MethodInput& b) {
   CHECK(a.contact == b.contact);
+  CHECK(a.integrator == b.integrator);
   CHECK(a.theta == b.theta);
+  CHECK(a.rho_inf == b.rho_inf);
+  CHECK(a.dissipation == b.dissipation);
   CHECK(a.rotation == b.rotation);
   CHECK(a.start == b.start);
   CHECK(a.statics == b.statics);
@@ -94,8 +97,11 @@ void check_same(const Scene& a, const Scene& b) {
   CHECK(a.step.dt == b.step.dt);
   CHECK(a.step.max_displacement == b.step.max_displacement);
   CHECK(a.step.smallest_fraction == b.step.smallest_fraction);
+  CHECK(a.step.adaptive == b.step.adaptive);
+  CHECK(a.step.error_tolerance == b.step.error_tolerance);
   CHECK(a.end_time == b.end_time);
   CHECK(a.output_every == b.output_every);
+  CHECK(a.checkpoint_every == b.checkpoint_every);
   CHECK(a.run_strength_reduction_factor == b.run_strength_reduction_factor);
   CHECK(a.end_displacement == b.end_displacement);
   CHECK(a.milestones == b.milestones);
@@ -156,7 +162,10 @@ Scene random_scene(unsigned seed) {
     scene.blocks.push_back(block);
   }
   scene.method.contact = "hard";
+  scene.method.integrator = "theta";
   scene.method.theta = 0.5 + 0.5 * fraction(generator);
+  scene.method.rho_inf = fraction(generator);
+  scene.method.dissipation = fraction(generator);
   scene.method.rotation = RotationKind::linear;
   scene.method.start = Start::steady_sliding;
   scene.method.statics = true;
@@ -175,9 +184,10 @@ Scene random_scene(unsigned seed) {
   scene.method.step_fraction = fraction(generator);
   scene.method.damping = MassDamping::local;
   scene.method.local_damping = fraction(generator);
-  scene.step = {number(), number(), fraction(generator)};
+  scene.step = {number(), number(), fraction(generator), true, number()};
   scene.end_time = number();
   scene.output_every = number();
+  scene.checkpoint_every = number();
   scene.run_strength_reduction_factor = number();
   scene.end_displacement = number();
   const double first = number();

@@ -1,0 +1,108 @@
+// State to bytes and back, bit for bit. One function serves both directions, so that what is written and what is read cannot differ:
+//
+//   void exchange(Archive& archive) { archive(first_, second_); }
+//
+// A struct whose members are all public binds each of them by name there (auto& [a, b] = *this): a member that is added later then does not compile
+// until it is in the archive too. The bytes are those of this processor; io/checkpoint.h makes a file of them that says so.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace openclose {
+
+class Archive {
+ public:
+  /// Collects what it is given.
+  Archive() = default;
+  /// Gives back what another one has collected. Throws std::runtime_error, then or while it is read, if there is less than is asked for.
+  explicit Archive(std::string bytes) : reading_(true), bytes_(std::move(bytes)) {}
+
+  bool reading() const { return reading_; }
+  const std::string& bytes() const { return bytes_; }
+  bool at_end() const { return at_ == bytes_.size(); }
+
+  template <class... T>
+  void operator()(T&... values) {
+    (exchange(values), ...);
+  }
+
+ private:
+  template <class T>
+  static constexpr bool is_plain = std::is_arithmetic_v<T> || std::is_enum_v<T>;
+
+  void raw(void* data, std::size_t size) {
+    if (!reading_) {
+      bytes_.append(static_cast<const char*>(data), size);
+      return;
+    }
+    if (size > bytes_.size() - at_) throw std::runtime_error("the saved state is shorter than what it should hold");
+    std::memcpy(data, bytes_.data() + at_, size);
+    at_ += size;
+  }
+
+  /// Number of elements; each takes a byte at least, so that a wrong one cannot ask for more memory than there is.
+  std::size_t length(std::size_t of_written) {
+    std::uint64_t n = of_written;
+    raw(&n, sizeof n);
+    if (reading_ && n > bytes_.size() - at_) throw std::runtime_error("the saved state is shorter than what it should hold");
+    return n;
+  }
+
+  template <class T>
+  void exchange(T& value) {
+    if constexpr (is_plain<T>) {
+      raw(&value, sizeof value);
+    } else if constexpr (requires {
+                           typename T::Scalar;
+                           value.derived();
+                         }) {  // matrices and vectors of Eigen
+      if constexpr (T::SizeAtCompileTime < 0) value.resize(static_cast<Eigen::Index>(length(value.size())));
+      raw(value.data(), sizeof(typename T::Scalar) * value.size());
+    } else {
+      value.exchange(*this);
+    }
+  }
+
+  void exchange(std::string& text) {
+    text.resize(length(text.size()));
+    raw(text.data(), text.size());
+  }
+
+  template <class T, class A>
+  void exchange(std::vector<T, A>& list) {
+    list.resize(length(list.size()));
+    if constexpr (is_plain<T>) {
+      raw(list.data(), sizeof(T) * list.size());
+    } else {
+      for (T& value : list) exchange(value);
+    }
+  }
+
+  template <class A, class B>
+  void exchange(std::pair<A, B>& pair) {
+    exchange(pair.first);
+    exchange(pair.second);
+  }
+
+  template <class T>
+  void exchange(std::optional<T>& value) {
+    bool there = value.has_value();
+    raw(&there, sizeof there);
+    if (reading_) value = there ? std::optional<T>(T()) : std::nullopt;
+    if (there) exchange(*value);
+  }
+
+  bool reading_ = false;
+  std::string bytes_;
+  std::size_t at_ = 0;
+};
+
+}  // namespace openclose

@@ -1,0 +1,48 @@
+// The time integrators a scene can choose for `soft` by method.integrator. A new one is a source file like path_average.cpp, a declaration here and a
+// line in integrators.cpp.
+//
+//   shi                Newmark (1/2, 1): forces at the end of the step. Order 1, dissipative.
+//   theta              end forces with weight method.theta. 1/2 is the trapezoid, order 2; more is of order 1 and dissipates.
+//   generalized_alpha  Chung and Hulbert 1993, by the spectral radius at infinite frequency, method.rho_inf. Order 2.
+//   tr_bdf2            Bank et al. 1985: trapezoid over (2 - sqrt(2)) dt, then BDF2. Two solutions a step with the same ratio of inertia to
+//   stiffness. Order 2,
+//                      infinitely fast vibrations are gone after one step.
+//   path_average       contact forces averaged over the path of the step, see law/path_average.h. Order 2, conserves energy, linear and angular
+//   momentum.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "openclose/integrator/time_scheme.h"
+
+namespace openclose {
+
+/// What `soft` steps with if the scene does not say.
+inline constexpr const char* default_integrator = "shi";
+
+template <int N>
+std::unique_ptr<TimeScheme<N>> make_generalized_alpha(double rho_inf);
+template <int N>
+std::unique_ptr<TimeScheme<N>> make_tr_bdf2();
+template <int N>
+std::unique_ptr<TimeScheme<N>> make_path_average();
+
+template <int N>
+struct IntegratorEntry {
+  const char* name;
+  const char* summary;
+  std::unique_ptr<TimeScheme<N>> (*make)(const MethodInput&);
+};
+
+template <int N>
+const std::vector<IntegratorEntry<N>>& integrators();
+
+/// method.integrator; where it is absent "theta" if there is a method.theta, else the default.
+std::string integrator_name(const MethodInput& method);
+
+/// Throws InputError for an unknown name and for parameters of another integrator.
+template <int N>
+std::unique_ptr<TimeScheme<N>> make_integrator(const MethodInput& method);
+
+}  // namespace openclose

@@ -1,0 +1,137 @@
+#include "openclose/io/checkpoint.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+
+#include "openclose/core/error.h"
+#include "openclose/io/output_folder.h"
+#include "openclose/scene/writer.h"
+#include "openclose/version.h"
+
+namespace openclose {
+namespace {
+
+/// To be raised with every change of what any exchange() hands over.
+constexpr int format = 1;
+/// Reads differently where the order of bytes is another one.
+constexpr std::uint32_t byte_order = 0x01020304;
+
+std::string heading() {
+  return fmt::format("openclose checkpoint, format {}, version {}\n", format, version);
+}
+
+/// The text of a scene without what may change between checkpoint and restart.
+std::string fixed_part(Scene scene) {
+  const Scene defaults;
+  scene.title.clear();
+  scene.end_time = defaults.end_time;
+  scene.output_every = defaults.output_every;
+  scene.checkpoint_every = defaults.checkpoint_every;
+  scene.step.smallest_fraction = defaults.step.smallest_fraction;
+  scene.method.max_iterations = defaults.method.max_iterations;
+  return write_scene(scene);
+}
+
+/// Fowler, Noll, Vo, 1a, 64 bits: against disks and half copies, not against people.
+std::uint64_t check_sum(const char* data, std::size_t size) {
+  std::uint64_t sum = 14695981039346656037ull;
+  for (std::size_t i = 0; i < size; ++i) sum = (sum ^ static_cast<unsigned char>(data[i])) * 1099511628211ull;
+  return sum;
+}
+
+[[noreturn]] void refuse(const std::string& path, const std::string& what, const std::string& accepted) {
+  throw InputError({path, 0}, "", what, accepted);
+}
+
+std::string read_bytes(const std::string& path) {
+  const std::string accepted = "the path of a checkpoint.bin that a run has written";
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) refuse(path, "there is no such file", accepted);
+  if (!std::filesystem::is_regular_file(path, error)) refuse(path, "this is not a regular file", accepted);
+  std::ifstream stream(path, std::ios::binary);
+  std::string bytes{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  if (!stream) refuse(path, "the file cannot be read", accepted);
+  return bytes;
+}
+
+/// What stands between the heading and the check sum.
+std::string body_of(const std::string& path) {
+  std::string bytes = read_bytes(path);
+  const std::string expected = heading(), found = bytes.substr(0, bytes.find('\n') + 1);
+  if (found != expected) {
+    const bool other = found.rfind("openclose checkpoint, ", 0) == 0;
+    refuse(path, other ? "it was written by another version: " + found.substr(0, found.size() - 1) : "this is no checkpoint",
+           expected.substr(0, expected.size() - 1));
+  }
+  std::uint64_t sum = 0;
+  const bool whole = bytes.size() >= expected.size() + sizeof sum;
+  if (whole) std::memcpy(&sum, bytes.data() + bytes.size() - sizeof sum, sizeof sum);
+  if (!whole || sum != check_sum(bytes.data(), bytes.size() - sizeof sum)) refuse(path, "the checkpoint is damaged", "a whole one");
+  return bytes.substr(expected.size(), bytes.size() - expected.size() - sizeof sum);
+}
+
+/// Names the first line in which the scenes differ.
+void require_same_scene(const std::string& path, const std::string& saved, const Scene& scene) {
+  const std::string given = fixed_part(scene);
+  if (saved == given) return;
+  std::istringstream a(saved), b(given);
+  std::string in_saved, in_given;
+  do {
+    in_saved.clear();
+    in_given.clear();
+    std::getline(a, in_saved);
+    std::getline(b, in_given);
+  } while (in_saved == in_given && (a || b));
+  refuse(
+      path, fmt::format("it belongs to another scene: there \"{}\", here \"{}\"", in_saved, in_given),
+      "the same scene, other in no more than end.time_s, output.every_s, output.checkpoint_every_s, step.smallest_fraction, method.max_iterations");
+}
+
+void require_tables(const std::string& path, const Checkpoint& checkpoint) {
+  for (const auto& [name, length] : checkpoint.tables) {
+    std::error_code error;
+    const std::string table = table_beside(path, name);
+    const std::uintmax_t there = std::filesystem::file_size(table, error);
+    if (error || there < length)
+      refuse(table, fmt::format("the run goes on behind the first {} bytes of this table", length), "the tables of the run, beside its checkpoint");
+  }
+}
+
+}  // namespace
+
+void write_checkpoint(const std::string& path, const Scene& scene, Checkpoint checkpoint) {
+  Archive body;
+  std::uint32_t order = byte_order;
+  std::string text = fixed_part(scene);
+  body(order, text, checkpoint);
+  std::string bytes = heading() + body.bytes();
+  const std::uint64_t sum = check_sum(bytes.data(), bytes.size());
+  bytes.append(reinterpret_cast<const char*>(&sum), sizeof sum);
+  write_files({{path, bytes}});
+}
+
+Checkpoint read_checkpoint(const std::string& path, const Scene& scene) {
+  Archive body(body_of(path));
+  std::uint32_t order = 0;
+  std::string text;
+  Checkpoint checkpoint;
+  body(order);
+  if (order != byte_order) refuse(path, "it was written by a processor with another order of bytes", "a checkpoint of this machine");
+  body(text, checkpoint);
+  require_same_scene(path, text, scene);
+  if (scene.end_time < checkpoint.time)
+    throw InputError(scene.where, "end.time_s",
+                     fmt::format("{:g} s lies before the checkpoint, which stands at {:g} s", scene.end_time, checkpoint.time), "a later time");
+  require_tables(path, checkpoint);
+  return checkpoint;
+}
+
+std::string table_beside(const std::string& checkpoint_path, const std::string& table) {
+  return (std::filesystem::path(checkpoint_path).parent_path() / table).string();
+}
+
+}  // namespace openclose

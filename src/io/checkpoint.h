@@ -1,0 +1,40 @@
+// checkpoint.bin: a run as it stood at one moment, so that `openclose run --restart` goes on as if it had never stopped.
+//
+// A line that names format and version, the order of the bytes, the scene as text, the time, how long the tables of the run were, the state
+// (analysis/run.h) and a check sum over all of it. Numbers stand as they are in memory. The file takes the place of an older one only when it is
+// complete.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "openclose/core/archive.h"
+#include "openclose/scene/scene.h"
+
+namespace openclose {
+
+struct Checkpoint {
+  double time = 0.0;                                          ///< [s] of the run
+  std::vector<std::pair<std::string, std::uint64_t>> tables;  ///< names, and lengths [bytes] at that time
+  std::string state;                                          ///< bytes of an Archive
+
+  void exchange(Archive& archive) {
+    auto& [a, b, c] = *this;
+    archive(a, b, c);
+  }
+};
+
+/// Throws InputError if the file cannot be made, std::runtime_error if the disk is full.
+void write_checkpoint(const std::string& path, const Scene& scene, Checkpoint checkpoint);
+
+/// Throws InputError if there is no such file, if it is damaged or of another version of the program or another scene (other in more than
+/// end.time_s, output.every_s, output.checkpoint_every_s, step.smallest_fraction and method.max_iterations), if the scene ends before it, or if one
+/// of the tables that were there when it was written is no longer beside it, or shorter.
+Checkpoint read_checkpoint(const std::string& path, const Scene& scene);
+
+/// The file of a table that lay beside this checkpoint.
+std::string table_beside(const std::string& checkpoint_path, const std::string& table);
+
+}  // namespace openclose

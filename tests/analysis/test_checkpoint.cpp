@@ -1,0 +1,210 @@
+// A simulation that goes on from a saved state does the same as one that has never stopped, in every bit.
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "openclose/analysis/run.h"
+#include "openclose/integrator/integrators.h"
+#include "support/catch.h"
+#include "support/scenes.h"
+
+using namespace openclose;
+using openclose::test::all_methods;
+
+namespace {
+
+std::string state_of(Simulation<3>& simulation) {
+  Archive archive;
+  archive(simulation);
+  return archive.bytes();
+}
+
+/// A column that is hit from above: more blocks than the dense solver takes, so that the pattern decides the order of elimination.
+Scene hit_column() {
+  Scene scene = test::column_of_blocks(10);
+  scene.blocks.push_back(test::free_block("stone", test::placed(test::rectangle(-0.5, -0.5, 1.0, 1.0), 0.4, {-0.7, 11.0})));
+  scene.blocks.back().velocity = {3.0, -6.0};
+  scene.joints[0].cohesion = 1e4;
+  scene.joints[0].tensile_strength = 1e3;
+  scene.joints[0].cohesion_behaviour = CohesionBehaviour::lost_on_slip;
+  scene.joints[0].damping_ratio = 0.1;
+  scene.supports = {{2, {0.5, 1.5}, {1e6, 0.0}}};
+  scene.loads = {{1, {0.5, 0.5}, {1e3, 0.0}}};
+  return scene;
+}
+
+Scene prepared(Scene scene, const std::string& method) {
+  scene.method.contact = method;
+  scene.step.dt = 1e-3;
+  scene.step.max_displacement = 6e-3;  // shorter than the fastest steps
+  scene.method.penetration_tolerance = 0.1;
+  return scene;
+}
+
+/// Leaves at the end of the step `at` in the one simulation and goes on in the other. Whether the states agree from there on.
+void check_goes_on(const Scene& scene, int at, int to) {
+  Simulation<3> first(scene), second(scene);
+  for (int i = 0; i < at; ++i) REQUIRE(first.advance(scene.step.dt));
+  Archive saved;
+  saved(first);
+  Archive archive(saved.bytes());
+  archive(second);
+  CHECK(archive.at_end());
+  CHECK(state_of(second) == saved.bytes());
+  for (int i = at; i < to; ++i) {
+    REQUIRE(first.advance(scene.step.dt));
+    REQUIRE(second.advance(scene.step.dt));
+    // As constants: others are taken to change what they ask for, and the explicit loop begins anew.
+    CHECK(std::as_const(second).system().displacement(1) == std::as_const(first).system().displacement(1));
+  }
+  CHECK(second.ledger().imbalance() == first.ledger().imbalance());
+  CHECK(second.step_counters().iterations == first.step_counters().iterations);
+  for (int b = 0; b < first.system().block_count(); ++b) {
+    CHECK(second.system().displacement(b) == first.system().displacement(b));
+    CHECK(second.velocity(b) == first.velocity(b));
+  }
+  REQUIRE(second.contacts().size() == first.contacts().size());
+  for (std::size_t i = 0; i < first.contacts().size(); ++i) {
+    CHECK(second.contacts()[i].shear_force == first.contacts()[i].shear_force);
+    CHECK(second.contacts()[i].elastic_slip == first.contacts()[i].elastic_slip);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("a saved simulation goes on bit for bit", "[analysis][checkpoint]") {
+  for (const std::string& method : all_methods) {
+    for (const int at : {0, 1, 60, 137, 250}) {
+      INFO(method << " after step " << at);
+      check_goes_on(prepared(test::tumbling_blocks(), method), at, at + 100);
+      check_goes_on(prepared(hit_column(), method), at, at + 60);
+      check_goes_on(prepared(test::block_on_incline(35.0 * test::degree), method), at, at + 60);  // below the skin of the contacts
+    }
+  }
+}
+
+TEST_CASE("a saved simulation goes on bit for bit with every integrator, in adaptive steps too", "[analysis][checkpoint]") {
+  for (const auto& entry : integrators<3>()) {
+    for (const bool adaptive : {false, true}) {
+      INFO(entry.name << (adaptive ? ", adaptive" : ""));
+      Scene scene = prepared(test::tumbling_blocks(), "soft");
+      scene.method.integrator = entry.name;
+      scene.step.adaptive = adaptive;
+      scene.step.error_tolerance = 1e-6;
+      for (const int at : {1, 60}) check_goes_on(scene, at, at + 60);
+    }
+  }
+}
+
+TEST_CASE("saving leaves a simulation as it is", "[analysis][checkpoint]") {
+  for (const std::string& method : all_methods) {
+    INFO(method);
+    const Scene scene = prepared(test::tumbling_blocks(), method);
+    Simulation<3> watched(scene), alone(scene);
+    for (int i = 0; i < 200; ++i) {
+      REQUIRE(watched.advance(scene.step.dt));
+      REQUIRE(alone.advance(scene.step.dt));
+      state_of(watched);
+    }
+    CHECK(state_of(watched) == state_of(alone));
+  }
+}
+
+TEST_CASE("a run goes on from each of its checkpoints", "[analysis][checkpoint]") {
+  for (const std::string& method : all_methods) {
+    INFO(method);
+    Scene scene = prepared(test::block_on_incline(20.0 * test::degree), method);
+    scene.method.start = Start::settled;
+    scene.run_strength_reduction_factor = 2.0;
+    scene.end_time = 0.35;
+    scene.output_every = 0.01;
+    scene.checkpoint_every = 0.07;
+    scene.milestones = {0.003, 0.02};
+    scene.snapshot_times = {0.1, 0.2};
+    scene.base_motion.emplace();
+    scene.base_motion->kind = BaseMotionKind::harmonic;
+    scene.base_motion->amplitude = {1.0, 0.5};
+    scene.base_motion->frequency = 5.0;
+
+    Simulation<3> whole(scene);
+    std::vector<std::string> checkpoints, snapshots;
+    std::vector<double> rows;
+    RunObserver<3> observer;
+    observer.output = [&](const Simulation<3>& s) { rows.push_back(s.time()); };
+    observer.snapshot = [&](const std::string& name, const Simulation<3>&) { snapshots.push_back(name); };
+    observer.checkpoint = [&](Archive& state, const Simulation<3>&) { checkpoints.push_back(state.bytes()); };
+    const RunResult result = run(whole, observer);
+    REQUIRE(result.converged);
+    REQUIRE(result.milestones.size() == 2);
+    REQUIRE(snapshots.size() == 4);
+    REQUIRE(checkpoints.size() == 5);  // the last one at the end
+
+    for (std::size_t c = 0; c < checkpoints.size(); ++c) {
+      Simulation<3> rest(scene);
+      RunObserver<3> other;
+      std::vector<double> later_rows;
+      std::string last;
+      other.output = [&](const Simulation<3>& s) { later_rows.push_back(s.time()); };
+      other.checkpoint = [&](Archive& state, const Simulation<3>&) { last = state.bytes(); };
+      Archive state(checkpoints[c]);
+      bool told = false;
+      const RunResult resumed = resume<3>(rest, other, state, [&] { told = true; });
+      CHECK(told);
+      CHECK(resumed.converged);
+      CHECK(resumed.ended_by == "end.time_s");
+      CHECK(rest.time() == whole.time());
+      CHECK(later_rows == std::vector<double>(rows.end() - 7 * (4 - static_cast<long>(c)), rows.end()));
+      CHECK(rest.system().displacement(1) == whole.system().displacement(1));
+      CHECK(rest.ledger().friction == whole.ledger().friction);
+      CHECK(resumed.settling.steps == result.settling.steps);
+      REQUIRE(resumed.milestones.size() == 2);
+      for (int i : {0, 1}) CHECK(resumed.milestones[i].time == result.milestones[i].time);
+      CHECK(resumed.warnings.empty());
+    }
+  }
+}
+
+TEST_CASE("checkpoints come on request only", "[analysis][checkpoint]") {
+  Scene scene = prepared(test::falling_block(), "soft");
+  scene.end_time = 0.01;
+  int count = 0;
+  RunObserver<3> observer;
+  observer.checkpoint = [&](Archive&, const Simulation<3>&) { ++count; };
+  Simulation<3> simulation(scene);
+  REQUIRE(run(simulation, observer).converged);
+  CHECK(count == 0);
+}
+
+TEST_CASE("a run that ended within a step, or did not converge, goes on where it stood", "[analysis][checkpoint]") {
+  Scene scene = prepared(test::falling_block(), "soft");
+  scene.step.dt = 0.01;
+  scene.step.max_displacement = 1.0;
+  scene.end_time = 0.035;
+  scene.checkpoint_every = 1.0;
+  std::string saved;
+  RunObserver<3> observer;
+  observer.checkpoint = [&](Archive& state, const Simulation<3>&) { saved = state.bytes(); };
+  double to = 0.1;
+  SECTION("ended") {
+    Simulation<3> first(scene);
+    REQUIRE(run(first, observer).converged);
+  }
+  SECTION("not converged") {
+    // From rest by 1.7 mm a step at most: it gets stuck where 9.81 m/s2 would make it more.
+    scene.end_time = 0.1;
+    scene.step.max_displacement = 1.7e-3;
+    scene.step.smallest_fraction = 1.0;
+    Simulation<3> first(scene);
+    REQUIRE_FALSE(run(first, observer).converged);
+    REQUIRE(first.time() < 0.03);
+    scene.step.smallest_fraction = 1e-6;
+    to = 0.05;
+  }
+  scene.end_time = to;
+  Simulation<3> second(scene);
+  Archive state(saved);
+  const RunResult result = resume<3>(second, {}, state);
+  CHECK(result.converged);
+  CHECK(second.time() == to);
+  CHECK(second.system().displacement(0)[1] == Approx(-0.5 * 9.81 * to * to).epsilon(1e-13));
+}

@@ -1,0 +1,79 @@
+#include <cmath>
+
+#include "openclose/analysis/simulation.h"
+#include "openclose/analysis/step_control.h"
+#include "support/catch.h"
+#include "support/scenes.h"
+
+using namespace openclose;
+
+TEST_CASE("step control: the longest step first, then what the error allows", "[analysis][step_control]") {
+  StepControl control(1e-4);
+  CHECK(control.step(0.1) == 0.1);
+  control.refused(0.1, 8e-4);
+  CHECK(control.step(0.1) == Approx(0.1 * std::cbrt(1.0 / 16.0)));
+  control.accepted(0.039, 1e-5);
+  CHECK(control.step(0.1) > 0.039);
+  CHECK(control.step(0.02) == 0.02);
+}
+
+TEST_CASE("step control: finds the step that has half the error asked for", "[analysis][step_control]") {
+  StepControl control(1e-4);
+  for (int i = 0; i < 40; ++i) {
+    const double dt = control.step(1.0), error = 3.0 * dt * dt * dt;
+    if (error > control.tolerance()) {
+      control.refused(dt, error);
+    } else {
+      control.accepted(dt, error);
+    }
+  }
+  const double dt = control.step(1.0);
+  CHECK(3.0 * dt * dt * dt > 0.3e-4);
+  CHECK(3.0 * dt * dt * dt < 1e-4);
+}
+
+TEST_CASE("step control: a step cut short by an output time does not shorten the next", "[analysis][step_control]") {
+  StepControl control(1e-4);
+  control.accepted(0.1, 0.5e-4);
+  const double meant = control.step(1.0);
+  control.accepted(1e-6, 1e-12);
+  CHECK(control.step(1.0) >= meant);
+}
+
+TEST_CASE("adaptive steps: the error goes with the tolerance, and falls are taken in long steps", "[analysis][step_control]") {
+  Scene scene = test::block_on_base();
+  scene.method.integrator = "path_average";
+  scene.step.dt = 0.05;
+  scene.step.adaptive = true;
+  scene.gravity = {0.0, -9.81};
+  // Dropped, so that it bounces; the reference has steps far below the period of the contacts.
+  const auto height = [&](double tolerance, bool adaptive, double dt, long* steps) {
+    Scene trial = scene;
+    trial.step.error_tolerance = tolerance;
+    trial.step.adaptive = adaptive;
+    Simulation<3> simulation(trial);
+    simulation.system().advance(1, {0.0, 0.05, 0.0});
+    simulation.positions_changed();
+    simulation.restart_clock();
+    for (int i = 0; i < std::lround(0.4 / dt); ++i) REQUIRE(simulation.advance(dt));
+    if (steps) *steps = simulation.step_counters().steps;
+    return simulation.system().centroid(1).y();
+  };
+  const double exact = height(1.0, false, 1e-5, nullptr);
+  long coarse_steps = 0, fine_steps = 0;
+  const double coarse = std::abs(height(1e-6, true, 0.05, &coarse_steps) - exact);
+  const double fine = std::abs(height(1e-8, true, 0.05, &fine_steps) - exact);
+  CHECK(fine < 0.3 * coarse);
+  CHECK(fine < 2e-4);
+  CHECK(fine_steps < 4000);
+  CHECK(coarse_steps < fine_steps);
+}
+
+TEST_CASE("adaptive steps are for soft", "[analysis][step_control]") {
+  Scene scene = test::block_on_base();
+  scene.step.adaptive = true;
+  for (const char* contact : {"hard", "shi", "dem"}) {
+    scene.method.contact = contact;
+    CHECK_THROWS_AS(Simulation<3>(scene), InputError);
+  }
+}

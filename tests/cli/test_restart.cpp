@@ -1,0 +1,74 @@
+// `run --restart`: the tables of a run that stopped and went on are those of one that never stopped, byte for byte.
+#include <filesystem>
+#include <string>
+
+#include "cli/command.h"
+#include "support/catch.h"
+
+using Catch::Matchers::ContainsSubstring;
+using openclose::test::CommandResult;
+using openclose::test::text_of;
+using openclose::test::Workplace;
+
+namespace {
+
+constexpr const char* motion = " --dt 0.001 --start unloaded --set output.every_s=0.003 --set output.snapshots_s=[0.02,0.1]";
+
+void check_same_tables(const Workplace& place, const std::string& a, const std::string& b) {
+  for (const char* table : {"history.csv", "energy.csv", "blocks.csv", "contacts.csv"}) {
+    INFO(table);
+    const std::string text = text_of(place.folder() / (a + "/" + table));
+    CHECK(text.size() > 100);
+    CHECK(text == text_of(place.folder() / (b + "/" + table)));
+  }
+}
+
+}  // namespace
+
+TEST_CASE("a run that was stopped goes on as if it had not been", "[cli][restart]") {
+  for (const std::string method : {"soft", "hard", "shi", "dem"}) {
+    INFO(method);
+    const Workplace place(openclose::test::block_on_incline(35.0));
+    const std::string common = "run scene.toml --contact " + method + motion;
+    REQUIRE(place.run(common + " --end 0.15 -o whole").status == 0);
+    REQUIRE(place.run(common + " --end 0.07 -o parts --set output.checkpoint_every_s=0.05").status == 0);
+    const std::string history = text_of(place.folder() / "parts/history.csv");
+
+    const CommandResult elsewhere = place.run(common + " --end 0.15 -o elsewhere --restart parts/checkpoint.bin");
+    CHECK(elsewhere.status == 0);
+    CHECK(elsewhere.errors.empty());
+    check_same_tables(place, "whole", "elsewhere");
+    CHECK(text_of(place.folder() / "parts/history.csv") == history);
+
+    CHECK(place.run(common + " --end 0.15 -o parts --restart parts/checkpoint.bin").status == 0);
+    check_same_tables(place, "whole", "parts");
+  }
+}
+
+TEST_CASE("a killed run goes on from its last checkpoint", "[cli][restart]") {
+  const Workplace place(openclose::test::block_on_incline(35.0));
+  const std::string common = std::string("run scene.toml") + motion + " --end 0.15 --set output.checkpoint_every_s=0.04";
+  REQUIRE(place.run(common + " -o whole").status == 0);
+  // The state of the disk some rows after a checkpoint: longer tables, an unfinished line.
+  REQUIRE(place.run(std::string("run scene.toml") + motion + " --end 0.04 --set output.checkpoint_every_s=0.04 -o killed").status == 0);
+  std::ofstream(place.folder() / "killed/history.csv", std::ios::app) << "0.0429,block,1.2";
+  CHECK(place.run(common + " -o killed --restart killed/checkpoint.bin").status == 0);
+  check_same_tables(place, "whole", "killed");
+}
+
+TEST_CASE("a restart that cannot be writes nothing", "[cli][restart]") {
+  const Workplace place(openclose::test::block_on_incline(35.0));
+  const std::string common = std::string("run scene.toml") + motion;
+  REQUIRE(place.run(common + " --end 0.05 -o out --set output.checkpoint_every_s=1").status == 0);
+  const auto refused = [&](const std::string& arguments, const std::string& reason) {
+    const CommandResult result = place.run(arguments + " -o other");
+    CHECK(result.status == 2);
+    REQUIRE(result.errors.size() == 1);
+    CHECK_THAT(result.errors[0], ContainsSubstring(reason));
+    CHECK_FALSE(std::filesystem::exists(place.folder() / "other"));
+  };
+  refused(common + " --end 0.1 --contact hard --restart out/checkpoint.bin", "it belongs to another scene");
+  refused(common + " --end 0.02 --restart out/checkpoint.bin", "lies before the checkpoint");
+  refused(common + " --end 0.1 --restart out/history.csv", "this is no checkpoint");
+  refused(common + " --end 0.1 --restart nothing.bin", "there is no such file");
+}

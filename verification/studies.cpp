@@ -1,0 +1,130 @@
+#include "studies.h"
+
+#include <gsl/gsl_cdf.h>
+#include <gsl/gsl_fit.h>
+
+#include <cmath>
+#include <ctime>
+
+#include "scenes.h"
+
+namespace openclose::verification {
+
+void spring_vibration(Studies&);
+void sway_and_rock(Studies&);
+void support_springs(Studies&);
+void rocking(Studies&);
+void bounce(Studies&);
+void sliding_starts(Studies&);
+void stopping_block(Studies&);
+void stiffness(Studies&);
+void block_number(Studies&);
+
+const std::vector<Study>& studies() {
+  static const std::vector<Study> list = {
+      {"spring", "vertical vibration on contact springs (D1)", &spring_vibration},
+      {"sway_rock", "sway and rock on contact springs (D3)", &sway_and_rock},
+      {"support", "a block between support springs", &support_springs},
+      {"rocking", "a block that rocks about one corner, before impact", &rocking},
+      {"bounce", "three bounces on contact springs (D2)", &bounce},
+      {"incline", "starts with a transient on an incline, stick and slip (B1)", &sliding_starts},
+      {"stop", "initial velocity to a stop (B4)", &stopping_block},
+      {"stiffness", "from soft to hard: what contact springs change", &stiffness},
+      {"blocks", "a column of more and more blocks", &block_number},
+  };
+  return list;
+}
+
+const std::vector<Scheme>& schemes() {
+  static const std::vector<Scheme> list = {
+      {"soft", "soft", 1.0, 1.0, "Newmark (1/2, 1): order 1"},
+      {"soft trapezoid", "soft", 0.5, 2.0, "trapezoid: order 2"},
+      {"shi", "shi", 1.0, 1.0, "Newmark (1/2, 1): order 1"},
+      {"dem", "dem", 1.0, 2.0, "central difference: order 2"},
+      {"hard", "hard", 1.0, 1.0, "mid-step velocities, forces at the end of the step: order 1"},
+  };
+  return list;
+}
+
+std::vector<Scheme> spring_schemes() {
+  std::vector<Scheme> list;
+  for (const Scheme& s : schemes()) {
+    if (s.contact != "hard") list.push_back(s);
+  }
+  return list;
+}
+
+void use(const Scheme& scheme, Scene& scene) {
+  scene.method.contact = scheme.contact;
+  scene.method.theta = scheme.theta;
+  scene.method.penalty = scene.joints[0].normal_stiffness;
+  scene.method.penalty_shear_ratio = scene.joints[0].shear_stiffness / scene.joints[0].normal_stiffness;
+  scene.method.penetration_tolerance = 1.0;
+}
+
+Fit fit_order(const std::vector<Sized>& points) {
+  std::vector<double> x, y;
+  for (const Sized& p : points) {
+    x.push_back(std::log(p.size));
+    y.push_back(std::log(p.error));
+  }
+  const std::size_t n = points.size();
+  if (n < 3) return {not_measured(), not_measured()};
+  double offset = 0.0, slope = 0.0, c00 = 0.0, c01 = 0.0, c11 = 0.0, squares = 0.0;
+  gsl_fit_linear(x.data(), 1, y.data(), 1, n, &offset, &slope, &c00, &c01, &c11, &squares);
+  return {slope, gsl_cdf_tdist_Pinv(0.975, static_cast<double>(n) - 2.0) * std::sqrt(c11)};
+}
+
+void Studies::measure(const std::string& method, const std::string& abscissa, const std::vector<double>& sizes, const Expectation& expected,
+                      const std::function<double(double)>& error, const std::function<double(double)>& dt) {
+  Series s{study_, method, abscissa, {}, expected};
+  std::vector<Sized> fitted;
+  for (const double size : sizes) {
+    const std::clock_t begin = std::clock();
+    const double e = error(size);
+    s.points.push_back({size, dt(size), e, static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC});
+    // An error that could not be measured belongs to the fit and spoils it.
+    if (s.in_fit(s.points.back()) || std::isnan(e)) fitted.push_back(s.points.back());
+  }
+  const Fit fit = fit_order(fitted);
+  s.order = fit.order;
+  s.band = fit.band;
+  s.ok = s.order >= expected.low && s.order <= expected.high;  // NaN fails
+  series_.push_back(s);
+}
+
+void Studies::in_time(const std::string& method, const std::vector<double>& steps, const Expectation& expected,
+                      const std::function<double(double)>& error) {
+  measure(method, "dt_s", steps, expected, error, [](double dt) { return dt; });
+}
+
+bool follow(RigidSimulation& simulation, double dt, double end) {
+  constexpr double rounding = 1e-9;  // [-] of a step
+  const auto whole = static_cast<long>(std::floor(end / dt * (1.0 + 1e-14) + rounding));
+  for (long i = 0; i < whole; ++i) {
+    if (!simulation.advance(dt)) return false;
+  }
+  const double rest = end - static_cast<double>(whole) * dt;
+  return rest <= rounding * dt || simulation.advance(rest);
+}
+
+Eigen::Vector3d push_and_follow(const Studies& studies, Scene scene, int b, const Eigen::Vector3d& velocity, double dt, double end) {
+  const Eigen::Vector3d none = Eigen::Vector3d::Constant(not_measured());
+  scene.step.dt = dt;
+  scene.settle.unbalanced_fraction = 1e-12;
+  RigidSimulation simulation = studies.simulate(scene);
+  if (!settle(simulation).settled) return none;
+  const Eigen::Vector3d rest = simulation.system().displacement(b);
+  simulation.set_velocity(b, velocity);
+  simulation.restart_clock();
+  if (!follow(simulation, dt, end)) return none;
+  return simulation.system().displacement(b) - rest;
+}
+
+std::vector<double> halved(double first, int count, double ratio) {
+  std::vector<double> list;
+  for (double size = first; static_cast<int>(list.size()) < count; size /= ratio) list.push_back(size);
+  return list;
+}
+
+}  // namespace openclose::verification
