@@ -170,6 +170,24 @@ TEST_CASE("advance covers its time exactly when steps are cut", "[analysis][simu
   }
 }
 
+TEST_CASE("a step that would go too far is divided into equal parts", "[analysis][simulation]") {
+  for (const std::string method : {"soft", "hard"}) {
+    INFO(method);
+    Scene scene = test::column_of_blocks(4);
+    scene.method.contact = method;
+    scene.blocks[4].velocity = {0.4, 0.0};
+    scene.step.max_displacement = 4e-3;
+    Simulation<3> divided(scene), halves(scene);
+    for (Simulation<3>* simulation : {&divided, &halves}) REQUIRE(simulation->advance(1e-3));  // to know the speed
+    REQUIRE(divided.advance(0.013));
+    for (int i = 0; i < 2; ++i) REQUIRE(halves.advance(0.0065));
+    CHECK(divided.step_counters().steps == 3);
+    CHECK(divided.step_counters().cuts == 0);
+    CHECK(divided.system().displacement(4) == halves.system().displacement(4));
+    CHECK(divided.system().displacement(4).x() > 4e-3);
+  }
+}
+
 TEST_CASE("advance gives up when cutting does not help and says why", "[analysis][simulation]") {
   Scene scene = test::block_on_base();
   scene.method.contact = "shi";
@@ -248,6 +266,19 @@ TEST_CASE("saving and restoring repeats a trajectory", "[analysis][simulation]")
     CHECK(simulation.system().state().displacement == first.displacement);
     CHECK(simulation.system().state().velocity == first.velocity);
   }
+}
+
+TEST_CASE("a restored state is followed with the step that is asked for, not with that of the motion before", "[analysis][simulation]") {
+  Scene scene = test::falling_block();
+  scene.step.max_displacement = 0.1;
+  Simulation<3> simulation(scene);
+  const auto at_rest = simulation.save();
+  REQUIRE(simulation.advance(1.0));
+  // Now at 9.8 m/s, which allows 0.01 s; from rest it is 0.14 s.
+  simulation.restore(at_rest);
+  const long before = simulation.step_counters().steps;
+  REQUIRE(simulation.advance(0.1));
+  CHECK(simulation.step_counters().steps == before + 1);
 }
 
 TEST_CASE("restarting the clock empties the books and nothing else", "[analysis][simulation]") {

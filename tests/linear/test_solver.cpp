@@ -1,4 +1,5 @@
 #include <limits>
+#include <tuple>
 
 #include "openclose/linear/solver.h"
 #include "random_systems.h"
@@ -32,8 +33,36 @@ BlockMatrix<3> floating_pair() {
   return matrix;
 }
 
+/// Regular, in any order of its rows, but its first pivot is as good as singular without being small.
+BlockMatrix<3> nearly_singular_diagonal() {
+  BlockMatrix<3> matrix;
+  matrix.set_pattern(2, {{0, 1}});
+  Eigen::Matrix3d k = Eigen::Matrix3d::Identity();
+  k.topLeftCorner<2, 2>() << 1.0, 1.0, 1.0, 1.0 + 1e-13;
+  matrix.add(0, 0, k);
+  matrix.add(1, 1, k);
+  matrix.add(0, 1, Eigen::Matrix3d::Identity());
+  matrix.add(1, 0, -Eigen::Matrix3d::Identity());
+  return matrix;
+}
+
+/// Regular, in any order of its rows, but elimination of the first one leaves 2e-13 of the others' diagonals.
+BlockMatrix<3> cancelling_diagonal() {
+  BlockMatrix<3> matrix;
+  matrix.set_pattern(3, {{0, 1}, {0, 2}, {1, 2}});
+  const Eigen::Matrix3d unit = Eigen::Matrix3d::Identity();
+  for (int i = 0; i < 3; ++i) matrix.add(i, i, (1.0 + 1e-13) * unit);
+  for (const auto& [i, j, factor] : {std::tuple{0, 1, 1.0}, {0, 2, 1.0}, {1, 2, 2.0}}) {
+    matrix.add(i, j, factor * unit);
+    matrix.add(j, i, 1.0 / factor * unit);
+  }
+  return matrix;
+}
+
 Solver make(const std::string& name) {
   if (name == "dense") return make_dense_solver<3>();
+  if (name == "multifrontal") return make_multifrontal_solver<3>(Refactor::always);
+  if (name == "lagged") return make_multifrontal_solver<3>(Refactor::when_needed);
   return name == "block" ? make_block_solver<3>() : make_sparse_solver<3>();
 }
 
@@ -48,18 +77,21 @@ TEST_CASE("all solvers solve random systems to rounding and agree", "[linear][so
     BlockMatrix<3> matrix;
     matrix.set_pattern(rows, pairs);
     random.fill(matrix, pairs, dominance);
-    const Solver dense = make_dense_solver<3>(), sparse = make("sparse"), block = make("block");
+    const Solver dense = make_dense_solver<3>(), sparse = make("sparse"), block = make("block"), fronts = make("multifrontal");
     REQUIRE(dense->factor(matrix));
     REQUIRE(sparse->factor(matrix));
     REQUIRE(block->factor(matrix));
+    REQUIRE(fronts->factor(matrix));
     const Eigen::VectorXd right_side = random.vector(matrix.unknowns());
-    const Eigen::VectorXd x = dense->solve(right_side), y = sparse->solve(right_side), z = block->solve(right_side);
+    const Eigen::VectorXd x = dense->solve(right_side), y = sparse->solve(right_side), z = block->solve(right_side), w = fronts->solve(right_side);
     CHECK(residual_over_rounding(matrix, x, right_side) < 1.0);
     CHECK(residual_over_rounding(matrix, y, right_side) < 1.0);
+    CHECK(residual_over_rounding(matrix, w, right_side) < 1.0);
     if (dominance <= 1.0) continue;
     CHECK(residual_over_rounding(matrix, z, right_side) < 1.0);
     CHECK((x - y).norm() <= 1e-13 * x.norm());
     CHECK((x - z).norm() <= 1e-13 * x.norm());
+    CHECK((x - w).norm() <= 1e-13 * x.norm());
   }
 }
 
@@ -80,7 +112,7 @@ TEST_CASE("the block solver's answer has the same bits with narrow and with wide
 
 TEST_CASE("several right sides use one factorisation", "[linear][solver]") {
   RandomSystems random(4);
-  const Solver solver = make(GENERATE("dense", "sparse", "block"));
+  const Solver solver = make(GENERATE("dense", "sparse", "block", "multifrontal", "lagged"));
   const auto pairs = random.couplings(12, 30);
   BlockMatrix<3> matrix;
   matrix.set_pattern(12, pairs);
@@ -96,7 +128,7 @@ TEST_CASE("several right sides use one factorisation", "[linear][solver]") {
 
 TEST_CASE("symbolic work is done once for a pattern, numbers every time", "[linear][solver]") {
   RandomSystems random(5);
-  const Solver solver = make(GENERATE("sparse", "block"));
+  const Solver solver = make(GENERATE("sparse", "block", "multifrontal"));
   BlockMatrix<3> matrix;
   const auto check_solution = [&] {
     REQUIRE(solver->factor(matrix));
@@ -130,7 +162,7 @@ TEST_CASE("symbolic work is done once for a pattern, numbers every time", "[line
 
 TEST_CASE("zeros within the pattern may become numbers later", "[linear][solver]") {
   RandomSystems random(6);
-  const Solver solver = make(GENERATE("sparse", "block"));
+  const Solver solver = make(GENERATE("sparse", "block", "multifrontal"));
   const std::vector<std::pair<int, int>> pairs{{0, 1}, {1, 2}};
   BlockMatrix<3> matrix;
   matrix.set_pattern(3, pairs);
@@ -145,7 +177,7 @@ TEST_CASE("zeros within the pattern may become numbers later", "[linear][solver]
 }
 
 TEST_CASE("a singular matrix is reported, and the solver works again afterwards", "[linear][solver]") {
-  const std::string name = GENERATE("dense", "sparse", "block");
+  const std::string name = GENERATE("dense", "sparse", "block", "multifrontal", "lagged");
   const Solver solver = make(name);
   RandomSystems random(7);
   BlockMatrix<3> matrix;
@@ -170,8 +202,28 @@ TEST_CASE("a singular matrix is reported, and the solver works again afterwards"
   CHECK(residual_over_rounding(matrix, solver->solve(right_side), right_side) < 1.0);
 }
 
+TEST_CASE("a pivot that has lost its digits goes to the solver that exchanges rows, and is counted", "[linear][solver]") {
+  for (const bool before_elimination : {true, false}) {
+    INFO((before_elimination ? "nearly singular diagonal" : "cancelling diagonal"));
+    const BlockMatrix<3> matrix = before_elimination ? nearly_singular_diagonal() : cancelling_diagonal();
+    const Eigen::VectorXd right_side = RandomSystems(7).vector(matrix.unknowns());
+    const Solver solver = make("block");
+    REQUIRE(solver->factor(matrix));
+    CHECK(residual_over_rounding(matrix, solver->solve(right_side), right_side) < 1.0);
+    CHECK(solver->counters().plain == 1);
+  }
+  RandomSystems systems(8);
+  BlockMatrix<3> sound;
+  const auto pairs = systems.couplings(12, 20);
+  sound.set_pattern(12, pairs);
+  systems.fill(sound, pairs, 1.0);
+  const Solver solver = make("block");
+  REQUIRE(solver->factor(sound));
+  CHECK(solver->counters().plain == 0);
+}
+
 TEST_CASE("an eliminated unknown makes a floating system regular and keeps its right side", "[linear][solver]") {
-  const std::string name = GENERATE("dense", "sparse", "block");
+  const std::string name = GENERATE("dense", "sparse", "block", "multifrontal", "lagged");
   const Solver solver = make(name);
   BlockMatrix<3> matrix = floating_pair();
   for (int k = 0; k < 3; ++k) matrix.eliminate(0, k);
@@ -183,7 +235,7 @@ TEST_CASE("an eliminated unknown makes a floating system regular and keeps its r
 }
 
 TEST_CASE("numbers that are none do not pass for a factorisation", "[linear][solver]") {
-  const std::string name = GENERATE("dense", "sparse", "block");
+  const std::string name = GENERATE("dense", "sparse", "block", "multifrontal", "lagged");
   const Solver solver = make(name);
   BlockMatrix<3> matrix = floating_pair();
   matrix.add(0, 0, Eigen::Matrix3d::Constant(std::numeric_limits<double>::quiet_NaN()));
