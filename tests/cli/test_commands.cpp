@@ -44,6 +44,7 @@ TEST_CASE("help and version", "[cli]") {
   CHECK_THAT(help.out, ContainsSubstring("run") && ContainsSubstring("fos") && ContainsSubstring("check") && ContainsSubstring("Exit status"));
   CHECK_THAT(run_help.out, ContainsSubstring("--contact") && ContainsSubstring("--dt") && ContainsSubstring("--end") && ContainsSubstring("--start") && ContainsSubstring("--set") &&
                                ContainsSubstring("--output") && ContainsSubstring("--quiet"));
+  for (const char* name : {"soft", "hard", "shi", "dem", "path_average"}) CHECK_THAT(run_help.out, ContainsSubstring(std::string(name) + " ("));
   CHECK(version.out == std::string(openclose::version) + "\n");
 }
 
