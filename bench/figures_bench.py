@@ -6,6 +6,7 @@ from pathlib import Path
 import failure
 import matplotlib.pyplot as plt
 import motion
+import peers
 import scaling
 import skips
 import statics
@@ -14,7 +15,8 @@ from drawing import METHOD_COLOUR, METHOD_MARKER, save
 from measure import Bench, Row
 from winner import LARGEST_ERROR
 
-SMALLEST_ERROR = 1e-9  # drawn there: rounding
+SMALLEST_ERROR = 1e-9  # smaller ones, rounding, are drawn there
+SMALLEST_SHOWN = 1e-4  # of a critical angle: finer than the brackets
 LEGEND_INCHES = 0.7  # below the panels
 COLOUR = {**METHOD_COLOUR, "soft shi": "#1f77b4", "soft theta 1/2": "#17becf", "soft generalized_alpha": "#e377c2", "soft tr_bdf2": "#bcbd22",
           "soft path_average": "#8c564b", "soft path_average adaptive": "#ff7f0e", "soft, 10 ms": "#8c564b"}
@@ -127,7 +129,26 @@ def _fig_10(bench: Bench, file: Path, printed: dict) -> bool:
     return True
 
 
-def draw(bench: Bench, printed: dict, folder: Path) -> list[tuple[str, str]]:
+def _peers(found: peers.Findings | None, file: Path) -> bool:
+    if found is None:
+        return False
+    known = [c for c in found.compared if c.row.error is not None and c.per_second]
+    figure, axes = plt.subplots(figsize=(7, 4.4), constrained_layout=True)
+    for c in known:
+        axes.plot(max(c.row.error, SMALLEST_SHOWN), c.per_second, marker="s" if c.settings else "o", color="#d62728" if c.settings else "#1f77b4")
+    for c in known:
+        axes.annotate(c.name, (max(c.row.error, SMALLEST_SHOWN), c.per_second), xytext=(8, -4), textcoords="offset points", fontsize=8)
+    axes.axvline(LARGEST_ERROR, color="#222222", linestyle="--", linewidth=1)
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.margins(x=0.25, y=0.1)
+    axes.set_xlabel("error of the critical coefficient of friction [-]; right of the dashed line nothing wins")
+    axes.set_ylabel("CPU time of a simulated second [s]")
+    save(figure, file)
+    return True
+
+
+def draw(bench: Bench, found: dict, printed: dict, folder: Path) -> list[tuple[str, str]]:
     """(section, file) of the figures that there are data for."""
     figures = [
         (motion.STUDY, "motion.png", lambda file: _panels(bench, motion.STUDY, file)),
@@ -137,5 +158,6 @@ def draw(bench: Bench, printed: dict, folder: Path) -> list[tuple[str, str]]:
         (scaling.SETTLING, "size.png", lambda file: _by_size(bench, file)),
         ("stages", "stages.png", lambda file: _stages(bench, file)),
         (table_4.STUDY, "fig_10.png", lambda file: _fig_10(bench, file, printed)),
+        (peers.STUDY, "other_engines.png", lambda file: _peers(found.get("peers"), file)),
     ]
     return [(section, name) for section, name, make in figures if make(folder / name)]
