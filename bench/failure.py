@@ -108,8 +108,8 @@ def run(bench: Bench) -> Findings | None:
             return _distance(arrival, fine)
 
         return Trial(STUDY, SCENE, follower.method.name, cases[0], "motion",
-                     f"time at which the toe block has moved 10, 20, 30, 40 m, mean of {len(starts)} starts, largest of the four against {REFERENCE.name} "
-                     f"with {1e3 * finest:g} ms", error, value if follower.key == "step.dt_s" else None, tuple(cases))
+                     f"time at which the toe block has moved 10, 20, 30, 40 m, mean of {len(starts)} starts, largest of the four against "
+                     f"{REFERENCE.name} with {1e3 * finest:g} ms", error, value if follower.key == "step.dt_s" else None, tuple(cases))
 
     bench.measure([trial(f, value) for f in FOLLOWERS for value in (f.steps[:QUICK_FOLLOWER_STEPS] if bench.quick else f.steps)])
     for blocks in LARGE.get(bench.mode, ()):
