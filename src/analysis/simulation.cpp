@@ -153,13 +153,20 @@ double Simulation<N>::force_scale() const {
 template <int N>
 void Simulation<N>::detect() {
   const Stopwatch watch(stage_times_.detection);
-  const double before = stored_contact_energy();
+  const bool elastic = enforcement_->has_elastic_contacts();
+  const double before = elastic ? stored_contact_energy() : 0.0;
   contacts_current_ = true;
-  if (!detector_.update(system_, joints_, contacts_) || !enforcement_->has_elastic_contacts()) return;
+  if (!detector_.update(system_, joints_, contacts_) || !elastic) return;
   const StepProblem<N> p = present_problem(scene_.step.dt, false);
-  for (Contact& c : contacts_) store_energy(p, c);
-  ledger_.redefinition -= stored_contact_energy() - before;
-  ledger_.contact_springs += stored_contact_energy() - before;
+  for (const DetectionChange& change : detector_.changes()) {
+    for (int i = change.after.begin; i < change.after.end; ++i) store_energy(p, contacts_[i]);
+  }
+  for (Contact& c : contacts_) {
+    if (!c.bonded && c.normal_force < 0.0) store_energy(p, c);  // it lost its strength while it was pulling
+  }
+  const double change = stored_contact_energy() - before;
+  ledger_.redefinition -= change;
+  ledger_.contact_springs += change;
 }
 
 template <int N>
@@ -524,8 +531,8 @@ bool Simulation<N>::advance(double dt) {
   const double limit = part_of_limit * scene_.step.max_displacement;
   while (remaining > 0.0) {
     trial = std::min(trial, remaining);
-    // Blocks that move on as they did must not exceed the largest displacement.
-    if (last_speed_ * trial > scene_.step.max_displacement) trial = std::max(limit / last_speed_, smallest);
+    // Blocks that move on as they did must not exceed the largest displacement; equal parts of what remains cost least and suit every scheme.
+    if (last_speed_ * trial > scene_.step.max_displacement) trial = std::max(remaining / std::ceil(last_speed_ * remaining / limit), smallest);
     const double now = scene_.method.statics ? trial : scheme_->stage(trial);
     const StepResult result = step(now, scene_.method.statics);
     if (result.accepted) {

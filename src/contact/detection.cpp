@@ -523,14 +523,12 @@ template <int N>
 typename Detector<N>::Due Detector<N>::due(const PairState& then, const Place& first, const Place& second) const {
   constexpr double companion_part = 0.1;  // of the skin
   if (!then.known) return Due::yes;
-  const bool swapped = first.radius > second.radius;
-  const Place &one = swapped ? second : first, &two = swapped ? first : second;
-  const Pose &one_then = swapped ? then.second : then.first, &two_then = swapped ? then.first : then.second;
-  const double turn_1 = one.turn - one_then.turn, turn_2 = two.turn - two_then.turn;
-  Vec2 shift(one.x - one_then.x - (two.x - two_then.x), one.y - one_then.y - (two.y - two_then.y));
-  const Vec2 way(one_then.x - two_then.x, one_then.y - two_then.y);
-  shift -= turned_little_by(turn_2, way);
-  const double by_turn = (one.radius + reach_ + skips_.contact_skin) * std::abs(turn_1 - turn_2), squared = shift.squaredNorm();
+  // Which one is the larger is as good as random: chosen from a list, without a branch. Exchanging the blocks turns the sign of the shift only.
+  const double turns[] = {first.turn - then.first.turn, second.turn - then.second.turn};
+  const double turn_of_larger = turns[first.radius > second.radius ? 0 : 1], radius = std::min(first.radius, second.radius);
+  Vec2 shift(first.x - then.first.x - (second.x - then.second.x), first.y - then.first.y - (second.y - then.second.y));
+  shift -= turned_little_by(turn_of_larger, {then.first.x - then.second.x, then.first.y - then.second.y});
+  const double by_turn = (radius + reach_ + skips_.contact_skin) * std::abs(turns[0] - turns[1]), squared = shift.squaredNorm();
   const auto beyond = [&](double limit) { return by_turn > limit || squared > (limit - by_turn) * (limit - by_turn); };
   if (beyond(skips_.contact_skin)) return Due::yes;
   return beyond(companion_part * skips_.contact_skin) ? Due::moved : Due::no;

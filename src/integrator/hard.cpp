@@ -39,7 +39,7 @@ constexpr double slow_convergence = 0.5;
 constexpr double incompatible_gaps = 100.0;
 
 template <int N>
-class Hard : public Enforcement<N> {
+class Hard final : public Enforcement<N> {
  public:
   ContactSprings springs(const StepProblem<N>& problem, const Contact& contact) const override {
     return springs(problem, contact, stiffness_over_inertia.front());
@@ -90,8 +90,8 @@ class Hard : public Enforcement<N> {
   }
 
   void set_springs(const StepProblem<N>& problem, double ratio) {
-    springs_.clear();
-    for (const Contact& c : problem.contacts) springs_.push_back(springs(problem, c, ratio));
+    springs_.resize(problem.contacts.size());
+    for (std::size_t c = 0; c < springs_.size(); ++c) springs_[c] = springs(problem, problem.contacts[c], ratio);
   }
 
   /// \param compliant  the first pass that converged with the springs it had, in case that no multipliers do

@@ -13,7 +13,7 @@ namespace {
 constexpr double largest_dissipation = 0.1;
 
 template <int N>
-class Soft : public Enforcement<N> {
+class Soft final : public Enforcement<N> {
  public:
   ContactSprings springs(const StepProblem<N>& problem, const Contact& contact) const override {
     ContactSprings s = joint_springs(problem, contact);
@@ -27,8 +27,8 @@ class Soft : public Enforcement<N> {
   }
 
   StepSolution<N> solve(const StepProblem<N>& problem) override {
-    springs_.clear();
-    for (const Contact& c : problem.contacts) springs_.push_back(springs(problem, c));
+    springs_.resize(problem.contacts.size());
+    for (std::size_t c = 0; c < springs_.size(); ++c) springs_[c] = springs(problem, problem.contacts[c]);
     StepSolution<N> solution = attempt(problem);
     if (solution.converged || !problem.averages_path()) return solution;
     for (ContactSprings& s : springs_) s.dissipation = largest_dissipation;

@@ -214,6 +214,7 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
                   {"start", word_for(start_words, scene.method.start)},
                   {"statics", scene.method.statics},
                   {"residual_tolerance", scene.method.residual_tolerance},
+                  {"linear_solver", word_for(linear_solver_words, scene.method.linear_solver)},
                   {"skip_search", scene.method.skip_search},
                   {"skip_narrow_phase", scene.method.skip_narrow_phase},
                   {"skip_reload", scene.method.skip_reload},
@@ -279,7 +280,11 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
                    {"history_transfers", detection.transfers},
                    {"factorisations", linear.factorisations},
                    {"symbolic", linear.symbolic},
-                   {"symbolic_skipped", linear.symbolic_skipped}};
+                   {"symbolic_skipped", linear.symbolic_skipped},
+                   {"plain_factorisations", linear.plain},
+                   {"factors_kept", linear.factors_kept},
+                   {"krylov_iterations", linear.krylov_iterations},
+                   {"krylov_given_up", linear.krylov_given_up}};
   if (simulation.is_explicit()) {
     j["explicit"] = {{"critical_step_s", steps.smallest_critical_step},
                      {"longest_step_s", steps.longest_step},

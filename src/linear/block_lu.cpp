@@ -40,71 +40,220 @@ struct alignas(alignment) PaddedVector {
   Lanes entries;
 };
 
-/// A row of blocks from which others are to be subtracted, and what is needed to find them.
+/// L, inverted diagonal and U on their pattern, and the way there from the matrix.
 template <int N>
-struct Elimination {
-  const int* row_start;
-  const int* diagonal;
-  const int* column;
-  PaddedBlock<N>* value;
-  int* place;  ///< working memory: slot of a column in the row under work
+struct Factor {
+  std::vector<int> order;  ///< row of the matrix at a place in the factor
+  std::vector<int> row_start, diagonal, column;
+  std::vector<char> same_as_next;  ///< of rows: to the right of the next diagonal this row of U has the next one's pattern
+  std::vector<int> target;         ///< slot in the factor of the matrix's entries, in the order in which elimination meets them
+  std::vector<int> working_place;  ///< slot of a column in the row under work
+  std::vector<PaddedBlock<N>> value;
+  std::vector<PaddedVector> solution;  ///< a block row each, in the factor's order
+
+  int rows() const { return static_cast<int>(diagonal.size()); }
 };
 
-/// Subtracts from row i what the rows above it contribute. Each number is computed by the same operations in the same order however wide the
-/// registers are, so that results do not depend on the processor.
+// What follows is compiled once for every processor and once for wide registers. Each number is computed by the same operations in the same order,
+// so that results do not depend on the processor.
+#define OPENCLOSE_KERNEL [[gnu::always_inline]] inline
+
 template <int N>
-[[gnu::always_inline]] inline void subtract_rows_above(const Elimination<N>& e, int i) {
-  for (int s = e.row_start[i]; s < e.row_start[i + 1]; ++s) e.place[e.column[s]] = s;
-  for (int s = e.row_start[i]; s < e.diagonal[i]; ++s) {
-    const int k = e.column[s];
-    const PaddedBlock<N> above = e.value[s], inverse = e.value[e.diagonal[k]];
-    PaddedBlock<N> factor;
+OPENCLOSE_KERNEL PaddedBlock<N> product(const PaddedBlock<N>& left, const PaddedBlock<N>& right) {
+  PaddedBlock<N> result;
+  for (int r = 0; r < N; ++r) {
+    result.row[r] = left.row[r][0] * right.row[0];
+    for (int c = 1; c < N; ++c) result.row[r] += left.row[r][c] * right.row[c];
+  }
+  return result;
+}
+
+/// The entries of a block one by one, as they multiply the rows of another.
+template <int N>
+struct Multipliers {
+  double entry[N][N];
+  OPENCLOSE_KERNEL explicit Multipliers(const PaddedBlock<N>& block) {
     for (int r = 0; r < N; ++r) {
-      factor.row[r] = above.row[r][0] * inverse.row[0];
-      for (int c = 1; c < N; ++c) factor.row[r] += above.row[r][c] * inverse.row[c];
+      for (int c = 0; c < N; ++c) entry[r][c] = block.row[r][c];
     }
-    e.value[s] = factor;
-    double f[N][N];
+  }
+  OPENCLOSE_KERNEL void subtract_row_of_product(int r, const PaddedBlock<N>& right, Lanes& target) const {
+    Lanes sum = entry[r][0] * right.row[0];
+    for (int c = 1; c < N; ++c) sum += entry[r][c] * right.row[c];
+    target -= sum;
+  }
+};
+
+template <int N>
+OPENCLOSE_KERNEL void subtract_row(Factor<N>& f, int s, int k) {
+  f.value[s] = product(f.value[s], f.value[f.diagonal[k]]);
+  const Multipliers<N> left(f.value[s]);
+  for (int u = f.diagonal[k] + 1; u < f.row_start[k + 1]; ++u) {
+    const PaddedBlock<N>& right = f.value[u];
+    PaddedBlock<N>& target = f.value[f.working_place[f.column[u]]];
+    for (int r = 0; r < N; ++r) left.subtract_row_of_product(r, right, target.row[r]);
+  }
+}
+
+/// Rows k and k + 1 of one pattern: every block of the row under work is fetched once for both.
+template <int N>
+OPENCLOSE_KERNEL void subtract_two_rows(Factor<N>& f, int s, int k) {
+  PaddedBlock<N>* const value = f.value.data();
+  const int* const place = f.working_place.data();
+  const int* const column = f.column.data();
+  const int first = f.diagonal[k] + 2, second = f.diagonal[k + 1] + 1, count = f.row_start[k + 1] - first;
+  value[s] = product(value[s], value[first - 2]);
+  const Multipliers<N> left(value[s]);
+  for (int r = 0; r < N; ++r) left.subtract_row_of_product(r, value[first - 1], value[s + 1].row[r]);
+  value[s + 1] = product(value[s + 1], value[second - 1]);
+  const Multipliers<N> next_left(value[s + 1]);
+  for (int u = 0; u < count; ++u) {
+    const PaddedBlock<N>&right = value[first + u], &next_right = value[second + u];
+    PaddedBlock<N>& target = value[place[column[second + u]]];
     for (int r = 0; r < N; ++r) {
-      for (int c = 0; c < N; ++c) f[r][c] = factor.row[r][c];
+      Lanes row = target.row[r];
+      left.subtract_row_of_product(r, right, row);
+      next_left.subtract_row_of_product(r, next_right, row);
+      target.row[r] = row;
     }
-    for (int u = e.diagonal[k] + 1; u < e.row_start[k + 1]; ++u) {
-      const PaddedBlock<N>& right = e.value[u];
-      PaddedBlock<N>& target = e.value[e.place[e.column[u]]];
-      for (int r = 0; r < N; ++r) {
-        Lanes sum = f[r][0] * right.row[0];
-        for (int c = 1; c < N; ++c) sum += f[r][c] * right.row[c];
-        target.row[r] -= sum;
-      }
+  }
+}
+
+/// Subtracts from row i what the rows above it contribute.
+template <int N>
+OPENCLOSE_KERNEL void subtract_rows_above(Factor<N>& f, int i) {
+  for (int s = f.row_start[i]; s < f.row_start[i + 1]; ++s) f.working_place[f.column[s]] = s;
+  for (int s = f.row_start[i]; s < f.diagonal[i]; ++s) {
+    const int k = f.column[s];
+    if (f.same_as_next[k] && s + 1 < f.diagonal[i]) {
+      subtract_two_rows(f, s++, k);
+    } else {
+      subtract_row(f, s, k);
     }
   }
 }
 
 template <int N>
-void subtract_with_any_registers(const Elimination<N>& e, int i) {
-  subtract_rows_above(e, i);
+OPENCLOSE_KERNEL void pad(const typename BlockMatrix<N>::Block& block, PaddedBlock<N>& padded) {
+  for (int r = 0; r < N; ++r) {
+    for (int c = 0; c < N; ++c) padded.row[r][c] = block(r, c);
+  }
+}
+
+template <int N>
+OPENCLOSE_KERNEL double square_norm(const PaddedBlock<N>& block) {
+  Lanes sum = block.row[0] * block.row[0];
+  for (int r = 1; r < N; ++r) sum += block.row[r] * block.row[r];
+  double total = sum[0];
+  for (int c = 1; c < N; ++c) total += sum[c];
+  return total;
+}
+
+/// Replaces the pivot by its inverse; false if it has none worth the name.
+/// \param original_size  square of the block's norm before the elimination
+template <int N>
+bool invert(PaddedBlock<N>& pivot, double original_size) {
+  constexpr double square = smallest_pivot * smallest_pivot;
+  typename BlockMatrix<N>::Block block;
+  for (int r = 0; r < N; ++r) {
+    for (int c = 0; c < N; ++c) block(r, c) = pivot.row[r][c];
+  }
+  const double columns = block.colwise().squaredNorm().prod(), determinant = block.determinant();
+  if (!(block.squaredNorm() > square * original_size) || !(determinant * determinant > square * columns)) return false;
+  block = block.inverse().eval();
+  pad<N>(block, pivot);
+  return block.allFinite();
+}
+
+/// False if a pivot has lost its digits.
+template <int N>
+OPENCLOSE_KERNEL bool eliminate(const BlockMatrix<N>& matrix, Factor<N>& f) {
+  std::size_t next = 0;
+  for (int i = 0; i < f.rows(); ++i) {
+    std::fill(f.value.begin() + f.row_start[i], f.value.begin() + f.row_start[i + 1], PaddedBlock<N>{});
+    for (int s = matrix.row_start(f.order[i]); s < matrix.row_start(f.order[i] + 1); ++s) pad<N>(matrix.value(s), f.value[f.target[next++]]);
+    PaddedBlock<N>& pivot = f.value[f.diagonal[i]];
+    const double size = square_norm(pivot);
+    subtract_rows_above(f, i);
+    if (!invert(pivot, size)) return false;
+  }
+  return true;
+}
+
+/// Subtracts the sum over the slots of value times solution.
+template <int N>
+OPENCLOSE_KERNEL void subtract_product(const Factor<N>& f, int begin, int end, double* sum) {
+  Lanes products[N]{};
+  for (int s = begin; s < end; ++s) {
+    const Lanes& x = f.solution[f.column[s]].entries;
+    for (int r = 0; r < N; ++r) products[r] += f.value[s].row[r] * x;
+  }
+  for (int r = 0; r < N; ++r) {
+    for (int c = 0; c < N; ++c) sum[r] -= products[r][c];
+  }
+}
+
+template <int N>
+OPENCLOSE_KERNEL void substitute(Factor<N>& f, const double* right_side, double* x) {
+  for (int i = 0; i < f.rows(); ++i) {
+    double sum[N];
+    for (int k = 0; k < N; ++k) sum[k] = right_side[N * f.order[i] + k];
+    subtract_product(f, f.row_start[i], f.diagonal[i], sum);
+    for (int k = 0; k < N; ++k) f.solution[i].entries[k] = sum[k];
+  }
+  for (int i = f.rows() - 1; i >= 0; --i) {
+    double sum[N];
+    for (int k = 0; k < N; ++k) sum[k] = f.solution[i].entries[k];
+    subtract_product(f, f.diagonal[i] + 1, f.row_start[i + 1], sum);
+    const PaddedBlock<N>& inverse = f.value[f.diagonal[i]];
+    for (int k = 0; k < N; ++k) {
+      double entry = inverse.row[k][0] * sum[0];
+      for (int c = 1; c < N; ++c) entry += inverse.row[k][c] * sum[c];
+      f.solution[i].entries[k] = entry;
+      x[N * f.order[i] + k] = entry;
+    }
+  }
+}
+
+/// The functions for the registers of a processor.
+template <int N>
+struct Kernels {
+  bool (*eliminate)(const BlockMatrix<N>&, Factor<N>&);
+  void (*substitute)(Factor<N>&, const double*, double*);
+};
+
+template <int N>
+bool eliminate_with_any_registers(const BlockMatrix<N>& matrix, Factor<N>& f) {
+  return eliminate(matrix, f);
+}
+template <int N>
+void substitute_with_any_registers(Factor<N>& f, const double* right_side, double* x) {
+  substitute(f, right_side, x);
 }
 
 #ifdef OPENCLOSE_HAS_WIDE_REGISTERS
 template <int N>
-[[gnu::target("avx2")]] void subtract_with_wide_registers(const Elimination<N>& e, int i) {
-  subtract_rows_above(e, i);
+[[gnu::target("avx2")]] bool eliminate_with_wide_registers(const BlockMatrix<N>& matrix, Factor<N>& f) {
+  return eliminate(matrix, f);
+}
+template <int N>
+[[gnu::target("avx2")]] void substitute_with_wide_registers(Factor<N>& f, const double* right_side, double* x) {
+  substitute(f, right_side, x);
 }
 #endif
 
-/// The function for the registers of this processor.
 template <int N>
-auto choose_subtraction([[maybe_unused]] bool wide_registers) {
+Kernels<N> choose_kernels([[maybe_unused]] bool wide_registers) {
 #ifdef OPENCLOSE_HAS_WIDE_REGISTERS
-  if (wide_registers && __builtin_cpu_supports("avx2")) return &subtract_with_wide_registers<N>;
+  if (wide_registers && __builtin_cpu_supports("avx2")) return {&eliminate_with_wide_registers<N>, &substitute_with_wide_registers<N>};
 #endif
-  return &subtract_with_any_registers<N>;
+  return {&eliminate_with_any_registers<N>, &substitute_with_any_registers<N>};
 }
 
 template <int N>
 class BlockLuSolver : public LinearSolver<N> {
  public:
-  explicit BlockLuSolver(bool wide_registers) : subtract_rows_above_(choose_subtraction<N>(wide_registers)) {}
+  explicit BlockLuSolver(bool wide_registers) : kernels_(choose_kernels<N>(wide_registers)) {}
 
   bool factor(const BlockMatrix<N>& matrix) override {
     if (version_ != matrix.pattern_version()) {
@@ -113,7 +262,7 @@ class BlockLuSolver : public LinearSolver<N> {
       ++this->counters_.symbolic_skipped;
     }
     ++this->counters_.factorisations;
-    use_plain_ = !eliminate(matrix);
+    use_plain_ = !kernels_.eliminate(matrix, factor_);
     if (!use_plain_) return true;
     ++this->counters_.plain;
     if (!plain_) plain_ = make_sparse_solver<N>();
@@ -123,44 +272,12 @@ class BlockLuSolver : public LinearSolver<N> {
   Eigen::VectorXd solve(const Eigen::VectorXd& right_side) override {
     ++this->counters_.solves;
     if (use_plain_) return plain_->solve(right_side);
-    const int rows = static_cast<int>(row_start_.size()) - 1;
-    for (int i = 0; i < rows; ++i) {
-      double sum[N];
-      for (int k = 0; k < N; ++k) sum[k] = right_side[N * order_[i] + k];
-      subtract_product(row_start_[i], diagonal_[i], sum);
-      for (int k = 0; k < N; ++k) solution_[i].entries[k] = sum[k];
-    }
     Eigen::VectorXd x(right_side.size());
-    for (int i = rows - 1; i >= 0; --i) {
-      double sum[N];
-      for (int k = 0; k < N; ++k) sum[k] = solution_[i].entries[k];
-      subtract_product(diagonal_[i] + 1, row_start_[i + 1], sum);
-      const PaddedBlock<N>& inverse = value_[diagonal_[i]];
-      for (int k = 0; k < N; ++k) {
-        double entry = inverse.row[k][0] * sum[0];
-        for (int c = 1; c < N; ++c) entry += inverse.row[k][c] * sum[c];
-        solution_[i].entries[k] = entry;
-        x[N * order_[i] + k] = entry;
-      }
-    }
+    kernels_.substitute(factor_, right_side.data(), x.data());
     return x;
   }
 
  private:
-  using Block = typename BlockMatrix<N>::Block;
-
-  /// Subtracts the sum over the slots of value times solution.
-  void subtract_product(int begin, int end, double* sum) const {
-    Lanes products[N]{};
-    for (int s = begin; s < end; ++s) {
-      const Lanes& x = solution_[column_[s]].entries;
-      for (int r = 0; r < N; ++r) products[r] += value_[s].row[r] * x;
-    }
-    for (int r = 0; r < N; ++r) {
-      for (int c = 0; c < N; ++c) sum[r] -= products[r][c];
-    }
-  }
-
   void analyse(const BlockMatrix<N>& matrix) {
     ++this->counters_.symbolic;
     version_ = matrix.pattern_version();
@@ -178,17 +295,18 @@ class BlockLuSolver : public LinearSolver<N> {
         seen[j] = i;
         row.push_back(j);
       };
-      for (int s = matrix.row_start(order_[i]); s < matrix.row_start(order_[i] + 1); ++s) take(place_[matrix.column(s)]);
+      for (int s = matrix.row_start(factor_.order[i]); s < matrix.row_start(factor_.order[i] + 1); ++s) take(place_[matrix.column(s)]);
       for (int child : children[i]) std::for_each(upper[child].begin(), upper[child].end(), take);
       std::sort(row.begin(), row.end());
       if (!row.empty()) children[row.front()].push_back(i);
     }
     lay_out(upper);
 
-    target_.clear();
+    factor_.target.clear();
     for (int i = 0; i < rows; ++i) {
-      for (int s = row_start_[i]; s < row_start_[i + 1]; ++s) working_place_[column_[s]] = s;
-      for (int s = matrix.row_start(order_[i]); s < matrix.row_start(order_[i] + 1); ++s) target_.push_back(working_place_[place_[matrix.column(s)]]);
+      for (int s = factor_.row_start[i]; s < factor_.row_start[i + 1]; ++s) factor_.working_place[factor_.column[s]] = s;
+      for (int s = matrix.row_start(factor_.order[i]); s < matrix.row_start(factor_.order[i] + 1); ++s)
+        factor_.target.push_back(factor_.working_place[place_[matrix.column(s)]]);
     }
   }
 
@@ -201,9 +319,9 @@ class BlockLuSolver : public LinearSolver<N> {
     graph.setFromTriplets(entries.begin(), entries.end());
     Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> permutation;
     Eigen::AMDOrdering<int>()(graph, permutation);
-    order_.assign(permutation.indices().data(), permutation.indices().data() + matrix.rows());
+    factor_.order.assign(permutation.indices().data(), permutation.indices().data() + matrix.rows());
     place_.resize(matrix.rows());
-    for (int i = 0; i < matrix.rows(); ++i) place_[order_[i]] = i;
+    for (int i = 0; i < matrix.rows(); ++i) place_[factor_.order[i]] = i;
   }
 
   /// Rows of L, diagonal and U one after another in one array.
@@ -213,74 +331,27 @@ class BlockLuSolver : public LinearSolver<N> {
     for (int i = 0; i < rows; ++i) {
       for (int j : upper[i]) lower[j].push_back(i);
     }
-    row_start_.assign(1, 0);
-    diagonal_.clear();
-    column_.clear();
+    factor_.row_start.assign(1, 0);
+    factor_.diagonal.clear();
+    factor_.column.clear();
+    factor_.same_as_next.clear();
     for (int i = 0; i < rows; ++i) {
-      column_.insert(column_.end(), lower[i].begin(), lower[i].end());
-      diagonal_.push_back(static_cast<int>(column_.size()));
-      column_.push_back(i);
-      column_.insert(column_.end(), upper[i].begin(), upper[i].end());
-      row_start_.push_back(static_cast<int>(column_.size()));
+      factor_.column.insert(factor_.column.end(), lower[i].begin(), lower[i].end());
+      factor_.diagonal.push_back(static_cast<int>(factor_.column.size()));
+      factor_.column.push_back(i);
+      factor_.column.insert(factor_.column.end(), upper[i].begin(), upper[i].end());
+      factor_.row_start.push_back(static_cast<int>(factor_.column.size()));
+      factor_.same_as_next.push_back(!upper[i].empty() && upper[i].front() == i + 1 && upper[i].size() == upper[i + 1].size() + 1);
     }
-    value_.resize(column_.size());
-    solution_.resize(rows);
-    working_place_.resize(rows);
-  }
-
-  /// False if a pivot has lost its digits.
-  bool eliminate(const BlockMatrix<N>& matrix) {
-    const int rows = matrix.rows();
-    const Elimination<N> elimination{row_start_.data(), diagonal_.data(), column_.data(), value_.data(), working_place_.data()};
-    std::size_t next = 0;
-    for (int i = 0; i < rows; ++i) {
-      std::fill(value_.begin() + row_start_[i], value_.begin() + row_start_[i + 1], PaddedBlock<N>{});
-      for (int s = matrix.row_start(order_[i]); s < matrix.row_start(order_[i] + 1); ++s) pad(matrix.value(s), value_[target_[next++]]);
-      PaddedBlock<N>& pivot = value_[diagonal_[i]];
-      const double size = square_norm(pivot);
-      subtract_rows_above_(elimination, i);
-      if (!invert(pivot, size)) return false;
-    }
-    return true;
-  }
-
-  static void pad(const Block& block, PaddedBlock<N>& padded) {
-    for (int r = 0; r < N; ++r) {
-      for (int c = 0; c < N; ++c) padded.row[r][c] = block(r, c);
-    }
-  }
-
-  static double square_norm(const PaddedBlock<N>& block) {
-    Lanes sum = block.row[0] * block.row[0];
-    for (int r = 1; r < N; ++r) sum += block.row[r] * block.row[r];
-    double total = sum[0];
-    for (int c = 1; c < N; ++c) total += sum[c];
-    return total;
-  }
-
-  /// Replaces the pivot by its inverse; false if it has none worth the name.
-  /// \param original_size  square of the block's norm before the elimination
-  static bool invert(PaddedBlock<N>& pivot, double original_size) {
-    constexpr double square = smallest_pivot * smallest_pivot;
-    Block block;
-    for (int r = 0; r < N; ++r) {
-      for (int c = 0; c < N; ++c) block(r, c) = pivot.row[r][c];
-    }
-    const double columns = block.colwise().squaredNorm().prod(), determinant = block.determinant();
-    if (!(block.squaredNorm() > square * original_size) || !(determinant * determinant > square * columns)) return false;
-    block = block.inverse().eval();
-    pad(block, pivot);
-    return block.allFinite();
+    factor_.value.resize(factor_.column.size());
+    factor_.solution.resize(rows);
+    factor_.working_place.resize(rows);
   }
 
   long version_ = -1;
-  std::vector<int> order_, place_;  ///< row of the matrix at a place in the factor, and back
-  std::vector<int> row_start_, diagonal_, column_;
-  std::vector<int> target_;             ///< slot in the factor of the matrix's entries, in the order in which elimination meets them
-  std::vector<int> working_place_;      ///< slot of a column in the row under work
-  std::vector<PaddedBlock<N>> value_;   ///< L, inverted diagonal, U
-  std::vector<PaddedVector> solution_;  ///< a block row each, in the factor's order
-  void (*subtract_rows_above_)(const Elimination<N>&, int);
+  Kernels<N> kernels_;
+  Factor<N> factor_;
+  std::vector<int> place_;  ///< in the factor, of a row of the matrix
   bool use_plain_ = false;
   std::unique_ptr<LinearSolver<N>> plain_;
 };

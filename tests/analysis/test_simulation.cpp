@@ -170,6 +170,24 @@ TEST_CASE("advance covers its time exactly when steps are cut", "[analysis][simu
   }
 }
 
+TEST_CASE("a step that would go too far is divided into equal parts", "[analysis][simulation]") {
+  for (const std::string method : {"soft", "hard"}) {
+    INFO(method);
+    Scene scene = test::column_of_blocks(4);
+    scene.method.contact = method;
+    scene.blocks[4].velocity = {0.4, 0.0};
+    scene.step.max_displacement = 4e-3;
+    Simulation<3> divided(scene), halves(scene);
+    for (Simulation<3>* simulation : {&divided, &halves}) REQUIRE(simulation->advance(1e-3));  // to know the speed
+    REQUIRE(divided.advance(0.013));
+    for (int i = 0; i < 2; ++i) REQUIRE(halves.advance(0.0065));
+    CHECK(divided.step_counters().steps == 3);
+    CHECK(divided.step_counters().cuts == 0);
+    CHECK(divided.system().displacement(4) == halves.system().displacement(4));
+    CHECK(divided.system().displacement(4).x() > 4e-3);
+  }
+}
+
 TEST_CASE("advance gives up when cutting does not help and says why", "[analysis][simulation]") {
   Scene scene = test::block_on_base();
   scene.method.contact = "shi";
