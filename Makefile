@@ -15,7 +15,7 @@ COMPARISON := $(PAPER_RESULTS)/comparison.csv
 NULL_SOLVER := results/verify-null-solver.txt
 
 .DEFAULT_GOAL := help
-.PHONY: help build test verify reproduce convergence bench bench-peers sanitize clean packages figure-packages bench-packages peer-packages
+.PHONY: help build test verify reproduce convergence bench bench-peers sanitize mutants clean packages figure-packages bench-packages peer-packages
 
 help: ## print the targets
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(firstword $(MAKEFILE_LIST)) | while read -r target text; do printf '  make %-11s %s\n' "$$target" "$$text"; done
@@ -59,9 +59,13 @@ sanitize: packages ## build with the address and undefined-behaviour sanitizers 
 	@scripts/build sanitize openclose_tests
 	@ctest --preset sanitize --parallel $(JOBS)
 
+mutants: packages ## plant the faults of mutants/faults.toml one by one and report which check notices each (results/mutants.md); takes half an hour
+	"$${PYTHON:-python3}" mutants/run.py --results results
+
 clean: ## remove what these targets have made; other results stay
 	rm -rf build $(PAPER_RESULTS) results/verify.csv results/verify_series.csv results/verify_cases.csv results/verification results/verification.md $(NULL_SOLVER) results/convergence results/convergence.csv
 	rm -rf results/bench results/bench.csv results/bench.md results/bench_machine.json
+	rm -f results/mutants.csv results/mutants.md
 
 packages:
 	@scripts/install-packages build
