@@ -1,6 +1,7 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <ctime>
 #include <vector>
 
 #include "openclose/core/process.h"
@@ -23,6 +24,14 @@ TEST_CASE("the clock of the process is fine also under a limit of CPU time", "[c
     last = now;
   }
   CHECK(differences > 100);
+}
+
+TEST_CASE("CPU time is in seconds", "[core][process]") {
+  const double begin = process_cpu_time();
+  const std::clock_t from = std::clock();
+  while (std::clock() - from < CLOCKS_PER_SEC / 10) continue;
+  // Ticks of the other clock are milliseconds, and this is the only thread.
+  CHECK(process_cpu_time() - begin == Approx(0.1).margin(0.03));
 }
 
 TEST_CASE("peak memory counts what was there and is gone", "[core][process]") {
