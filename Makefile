@@ -1,4 +1,5 @@
-# The front door. Needs nothing but make; what else is missing, the targets install. Settings: JOBS=2 (processes), PYTHON=/path/to/python3.
+# The front door. Needs nothing but make; what else is missing, the targets install. Settings: JOBS=2 (processes), PYTHON=/path/to/python3,
+# BENCH=quick (fewer sizes, steps and repeats of make bench).
 
 JOBS ?= $(shell nproc)
 export JOBS PYTHON
@@ -9,14 +10,15 @@ REFERENCE := $(BUILD)/analytical/openclose-reference
 VERIFY := $(BUILD)/verification/openclose-verify
 CONVERGENCE := $(BUILD)/verification/openclose-convergence
 PAPER_RESULTS := results/paper
+BENCH_OPTIONS = $(if $(filter quick,$(BENCH)),--quick)
 COMPARISON := $(PAPER_RESULTS)/comparison.csv
 NULL_SOLVER := results/verify-null-solver.txt
 
 .DEFAULT_GOAL := help
-.PHONY: help build test verify reproduce convergence sanitize clean packages figure-packages
+.PHONY: help build test verify reproduce convergence bench bench-peers sanitize clean packages figure-packages bench-packages peer-packages
 
 help: ## print the targets
-	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(firstword $(MAKEFILE_LIST)) | while read -r target text; do printf '  make %-10s %s\n' "$$target" "$$text"; done
+	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(firstword $(MAKEFILE_LIST)) | while read -r target text; do printf '  make %-11s %s\n' "$$target" "$$text"; done
 
 build: packages ## install missing packages, configure and compile everything (build/release)
 	@scripts/build release
@@ -44,18 +46,34 @@ convergence: build figure-packages ## measure the orders of convergence against 
 	@$(CONVERGENCE) --results results; status=$$?; \
 	  python=$$(scripts/find-python) && "$$python" verification/draw_convergence.py results/convergence.csv results/convergence || exit 2; exit $$status
 
+# Always anew: a time is of today. The test is of the rule that nothing wins with a large error.
+bench: bench-packages ## run time beside error, cost by size, what skips save (results/bench.md); a quarter of an hour, BENCH=quick: a few minutes
+	@OPTIONS=-DOPENCLOSE_BENCH=ON scripts/build release openclose openclose_reference openclose_bench
+	@python=$$(scripts/find-python) && "$$python" -m unittest -q bench/test_winner.py && "$$python" bench/bench.py $(BENCH_OPTIONS) --micro $(BUILD)/bench/openclose-bench
+
+bench-peers: peer-packages ## the same with Box2D and Chipmunk on the slope of example 3.4
+	@OPTIONS='-DOPENCLOSE_BENCH=ON -DOPENCLOSE_BENCH_PEERS=ON' scripts/build release openclose openclose_reference openclose_bench openclose_peers
+	@python=$$(scripts/find-python) && "$$python" bench/bench.py $(BENCH_OPTIONS) --micro $(BUILD)/bench/openclose-bench --peers $(BUILD)/bench
+
 sanitize: packages ## build with the address and undefined-behaviour sanitizers (build/sanitize) and run the unit tests
 	@scripts/build sanitize openclose_tests
 	@ctest --preset sanitize --parallel $(JOBS)
 
 clean: ## remove what these targets have made; other results stay
 	rm -rf build $(PAPER_RESULTS) results/verify.csv results/verify_series.csv results/verify_cases.csv results/verification results/verification.md $(NULL_SOLVER) results/convergence results/convergence.csv
+	rm -rf results/bench results/bench.csv results/bench.md results/bench_machine.json
 
 packages:
 	@scripts/install-packages build
 
 figure-packages:
 	@scripts/install-packages build figures
+
+bench-packages:
+	@scripts/install-packages build figures bench
+
+peer-packages:
+	@scripts/install-packages build figures bench peers
 
 # make only has to know that something is newer; what to compile, CMake knows. A binary that comes out untouched leaves the comparison as it is.
 BUILD_FILES := CMakeLists.txt $(shell find cmake -type f)

@@ -8,11 +8,15 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
+#include "openclose/analytical/bounce.h"
 #include "openclose/analytical/ground_motion.h"
 #include "openclose/analytical/incline.h"
 #include "openclose/analytical/limit_analysis.h"
+#include "openclose/analytical/newmark_block.h"
 #include "openclose/analytical/planar_wedge.h"
+#include "openclose/analytical/rocking_block.h"
 #include "openclose/analytical/sliding_block_reference.h"
 
 namespace {
@@ -47,6 +51,34 @@ struct RecordOptions {
   double dt = 0.01;
 };
 
+struct BounceOptions {
+  double drop = 1;                // [m]
+  double joint_stiffness = 50e6;  // [Pa/m] over the base
+  double end = 2;
+  double every = 0.01;
+  BlockOnPlane block;
+};
+
+struct RockingOptions {
+  double angle_deg = 0.5;
+  double friction_deg = 60;
+  double joint_stiffness = 200e6;  // [Pa/m] over the base
+  double end = 0.35;
+  double every = 0.01;
+  RockingBlock block;
+};
+
+struct ShakenOptions {
+  double slope_deg = 20;
+  double friction_deg = 25;
+  double joint_stiffness = 50e6;  // [Pa/m] over the base
+  double amplitude = 2.943;       // [m/s2]
+  double frequency = 2;           // [Hz]
+  double end = 1;
+  double every = 0.01;
+  BlockOnPlane block;
+};
+
 struct LimitOptions {
   std::string blocks;
   std::optional<double> friction_deg, cohesion;
@@ -71,6 +103,53 @@ CLI::App* add_incline(CLI::App& app, InclineOptions& o) {
   command->add_option("--gravity", o.block.gravity, "m/s2")->capture_default_str();
   command->add_option("--end", o.end, "last time, s")->check(CLI::NonNegativeNumber)->capture_default_str();
   command->add_option("--every", o.every, "time between rows, s")->check(CLI::PositiveNumber)->capture_default_str();
+  return command;
+}
+
+void add_times(CLI::App* command, double& end, double& every) {
+  command->add_option("--end", end, "last time, s")->check(CLI::NonNegativeNumber)->capture_default_str();
+  command->add_option("--every", every, "time between rows, s")->check(CLI::PositiveNumber)->capture_default_str();
+}
+
+void add_block(CLI::App* command, BlockOnPlane& block, double& joint_stiffness) {
+  command->add_option("--density", block.density, "kg/m3")->capture_default_str();
+  command->add_option("--stiffness", joint_stiffness, "normal and shear stiffness of the joint, Pa/m; each corner takes half of the base")
+      ->capture_default_str();
+  command->add_option("--width", block.width, "along the plane, m")->capture_default_str();
+  command->add_option("--height", block.height, "m")->capture_default_str();
+  command->add_option("--gravity", block.gravity, "m/s2")->capture_default_str();
+}
+
+CLI::App* add_bounce(CLI::App& app, BounceOptions& o) {
+  CLI::App* command = app.add_subcommand("bounce", "block that falls flat on the springs of its two lower corners and bounces");
+  command->add_option("--drop", o.drop, "height of the fall, m")->check(CLI::PositiveNumber)->capture_default_str();
+  add_block(command, o.block, o.joint_stiffness);
+  add_times(command, o.end, o.every);
+  return command;
+}
+
+CLI::App* add_rocking(CLI::App& app, RockingOptions& o) {
+  CLI::App* command =
+      app.add_subcommand("rocking", "tall block let go on one corner: on two corner springs (event-resolved), beside Housner's rigid block");
+  command->add_option("--angle-deg", o.angle_deg, "at the release")->check(CLI::PositiveNumber)->capture_default_str();
+  command->add_option("--phi-deg", o.friction_deg, "friction angle, springs only")->capture_default_str();
+  command->add_option("--stiffness", o.joint_stiffness, "normal and shear stiffness of the joint, Pa/m; each corner takes half of the base")
+      ->capture_default_str();
+  add_times(command, o.end, o.every);
+  return command;
+}
+
+CLI::App* add_shaken(CLI::App& app, ShakenOptions& o) {
+  CLI::App* command = app.add_subcommand(
+      "shaken-incline", "block on a plane that is shaken harmonically: on two corner springs (event-resolved), beside Newmark's rigid block");
+  command->add_option("--alpha-deg", o.slope_deg, "slope angle")->capture_default_str();
+  command->add_option("--phi-deg", o.friction_deg, "friction angle")->capture_default_str();
+  command->add_option("--amplitude", o.amplitude, "of the ground's acceleration, m/s2, at first uphill")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command->add_option("--frequency", o.frequency, "Hz")->check(CLI::PositiveNumber)->capture_default_str();
+  add_block(command, o.block, o.joint_stiffness);
+  add_times(command, o.end, o.every);
   return command;
 }
 
@@ -104,22 +183,84 @@ SlidingBlockState start_state(const InclineOptions& o) {
   return steady_sliding_start(o.block, 0.0, o.rotation_locked);
 }
 
+/// [s] 0, every, 2 every, ... \throws std::invalid_argument for too many
+std::vector<double> row_times(double end, double every) {
+  if (!(end / every < most_rows)) throw std::invalid_argument("--end over --every asks for more than 1e7 rows");
+  // The slack keeps the last row where end/every falls just short of a whole number in binary.
+  const long rows = std::lround(std::floor(end / every * (1 + 1e-12)));
+  std::vector<double> times;
+  for (long i = 0; i <= rows; ++i) times.push_back(static_cast<double>(i) * every);
+  return times;
+}
+
+void print_rows(const std::vector<double>& times, const std::vector<double>& springs, const std::vector<double>& rigid) {
+  for (std::size_t i = 0; i < times.size(); ++i) std::printf("%.17g,%.17g,%.17g\n", times[i], springs[i], rigid[i]);
+}
+
 void print_incline(InclineOptions o) {
   o.block.slope_angle = o.slope_deg * degree;
   o.block.friction_angle = o.friction_deg * degree;
   o.block.normal_stiffness = o.block.shear_stiffness = o.joint_stiffness * o.block.width / 2;
   require_valid(o.block);
-  if (!(o.end / o.every < most_rows)) throw std::invalid_argument("--end over --every asks for more than 1e7 rows");
   ReferenceOptions options;
   options.rotation_locked = o.rotation_locked;
   SlidingBlockReference reference(o.block, start_state(o), options);
-  // The slack keeps the last row where end/every falls just short of a whole number in binary.
-  const long rows = std::lround(std::floor(o.end / o.every * (1 + 1e-12)));
   std::puts("time_s,displacement_m,rigid_displacement_m");
-  for (long i = 0; i <= rows; ++i) {
-    const double time = static_cast<double>(i) * o.every;
+  for (const double time : row_times(o.end, o.every)) {
     std::printf("%.17g,%.17g,%.17g\n", time, reference.advance(time).x, sliding_displacement(o.block, time));
   }
+}
+
+void print_bounce(BounceOptions o) {
+  o.block.slope_angle = 0;
+  o.block.normal_stiffness = o.block.shear_stiffness = o.joint_stiffness * o.block.width / 2;
+  require_valid(o.block);
+  const Bounce bounce{o.drop, std::sqrt(2 * o.block.normal_stiffness / o.block.mass()), o.block.gravity};
+  std::puts("time_s,height_m,velocity_m_per_s");
+  for (const double time : row_times(o.end, o.every)) {
+    const auto [height, velocity] = bounce.at(time);
+    std::printf("%.17g,%.17g,%.17g\n", time, height, velocity);
+  }
+}
+
+void print_rocking(const RockingOptions& o) {
+  const double angle = o.angle_deg * degree;
+  BlockOnPlane block;
+  block.width = o.block.width;
+  block.height = o.block.height;
+  block.gravity = o.block.gravity;
+  block.slope_angle = 0;
+  block.friction_angle = o.friction_deg * degree;
+  block.normal_stiffness = block.shear_stiffness = o.joint_stiffness * block.width / 2;
+  require_valid(block);
+  // On its left corner, which carries the weight.
+  SlidingBlockState start;
+  start.rotation = angle;
+  start.y = block.width / 2 * std::sin(angle) - block.height * std::pow(std::sin(angle / 2), 2) - block.weight() / block.normal_stiffness;
+  SlidingBlockReference reference(block, start);
+  const std::vector<double> times = row_times(o.end, o.every);
+  std::vector<double> springs, rigid;
+  for (const double time : times) {
+    springs.push_back(reference.advance(time).rotation);
+    rigid.push_back(rocking_angle(o.block, angle, time));
+  }
+  std::puts("time_s,rotation_rad,rigid_rotation_rad");
+  print_rows(times, springs, rigid);
+}
+
+void print_shaken(ShakenOptions o) {
+  o.block.slope_angle = o.slope_deg * degree;
+  o.block.friction_angle = o.friction_deg * degree;
+  o.block.normal_stiffness = o.block.shear_stiffness = o.joint_stiffness * o.block.width / 2;
+  require_valid(o.block);
+  const std::vector<double> times = row_times(o.end, o.every);
+  const GroundMotion ground = harmonic_motion(-o.amplitude, o.frequency, o.end + 1 / o.frequency);
+  SlidingBlockReference reference(o.block, normal_balanced_start(o.block));
+  std::vector<double> springs, rigid;
+  for (const SlidingBlockState& s : reference.follow(ground, times)) springs.push_back(s.x);
+  for (const NewmarkState& s : newmark_block(o.block, ground, times).states) rigid.push_back(s.x);
+  std::puts("time_s,displacement_m,rigid_displacement_m");
+  print_rows(times, springs, rigid);
 }
 
 void print_wedge(WedgeOptions o) {
@@ -211,10 +352,16 @@ int main(int argc, char** argv) {
   CLI::App app{"Reference solutions as CSV on stdout"};
   app.require_subcommand(1);
   InclineOptions incline_options;
+  BounceOptions bounce_options;
+  RockingOptions rocking_options;
+  ShakenOptions shaken_options;
   WedgeOptions wedge_options;
   LimitOptions limit_options;
   RecordOptions record_options;
   const CLI::App* incline = add_incline(app, incline_options);
+  const CLI::App* bounce = add_bounce(app, bounce_options);
+  const CLI::App* rocking = add_rocking(app, rocking_options);
+  const CLI::App* shaken = add_shaken(app, shaken_options);
   const CLI::App* wedge = add_wedge(app, wedge_options);
   add_limit(app, limit_options);
   const CLI::App* record = add_record(app, record_options);
@@ -222,6 +369,12 @@ int main(int argc, char** argv) {
     app.parse(argc, argv);
     if (incline->parsed()) {
       print_incline(incline_options);
+    } else if (bounce->parsed()) {
+      print_bounce(bounce_options);
+    } else if (rocking->parsed()) {
+      print_rocking(rocking_options);
+    } else if (shaken->parsed()) {
+      print_shaken(shaken_options);
     } else if (wedge->parsed()) {
       print_wedge(wedge_options);
     } else if (record->parsed()) {

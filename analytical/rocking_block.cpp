@@ -79,6 +79,18 @@ double angle_after_impact(const RockingBlock& block, double angle) {
   return block.critical_angle() - 2 * std::asin(std::sqrt(left / 2) / block.frequency());
 }
 
+double rocking_angle(const RockingBlock& block, double angle, double time) {
+  double side = 1, quarter = rocking_quarter_period(block, angle);
+  if (time <= quarter) return rocking_fall(block, angle, time).angle;
+  for (double since = time - quarter;; since -= 2 * quarter) {
+    side = -side;
+    angle = angle_after_impact(block, angle);
+    quarter = rocking_quarter_period(block, angle);
+    // Up and down again are the same fall, backwards and forwards.
+    if (since <= 2 * quarter) return side * rocking_fall(block, angle, std::abs(since - quarter)).angle;
+  }
+}
+
 bool overturns(const RockingBlock& block, double acceleration, double duration) {
   if (!(acceleration > block.gravity * std::tan(block.critical_angle()))) return false;  // it does not even rise
   EventOde ode = equations(block, acceleration, 1e-13);

@@ -33,6 +33,8 @@ double small_angle_quarter_period(const RockingBlock& block, double angle);
 double rocking_impact_speed(const RockingBlock& block, double angle);
 /// [rad] By energy: how far it goes on the other side after that impact.
 double angle_after_impact(const RockingBlock& block, double angle);
+/// [rad] The angle at a time [s] after the release from rest at `angle`, impacts included; negative: leaning to the other side.
+double rocking_angle(const RockingBlock& block, double angle, double time);
 
 /// Whether a rectangular pulse of the base, a > g tan(alpha_b) for a duration, turns the block over: CVODE for the time of the pulse; after it the
 /// block falls if it moves on beyond alpha_b, that is if its kinetic energy reaches the barrier. An impact comes too late to matter: it takes energy.

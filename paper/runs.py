@@ -60,10 +60,24 @@ class Openclose:
     def folder_of(self, case: Case) -> Path:
         return self._folder / case.name
 
+    def run(self, case: Case) -> None:
+        """Runs one case, over what an earlier run of it has left."""
+        output = self.blocks_file(case) if case.command == "cut" else self.folder_of(case)
+        options = ["--spectrum", str(output / "spectrum.csv")] if case.command == "check" else ["--quiet", "-o", str(output)]
+        arguments = [str(self._executable), case.command, str(case.scene), *options]
+        for key, value in case.settings:
+            arguments += ["--set", f"{key}={value}"]
+        if case.command == "cut":
+            output.parent.mkdir(parents=True, exist_ok=True)
+        if case.cpu_limit_s is None:
+            _call(arguments)
+        else:
+            self._run_limited(case, arguments)
+
     def run_all(self, cases: list[Case]) -> None:
         """Runs all cases, two at a time; raises RunFailed for the first that fails."""
         with ThreadPoolExecutor(PARALLEL_PROCESSES) as pool:
-            jobs = [pool.submit(self._run, case) for case in cases]
+            jobs = [pool.submit(self.run, case) for case in cases]
             try:
                 for job in jobs:
                     job.result()
@@ -84,19 +98,6 @@ class Openclose:
     def blocks_file(self, case: Case) -> Path:
         """What a case of `cut` has written."""
         return self.folder_of(case) / "blocks.toml"
-
-    def _run(self, case: Case) -> None:
-        output = self.blocks_file(case) if case.command == "cut" else self.folder_of(case)
-        options = ["--spectrum", str(output / "spectrum.csv")] if case.command == "check" else ["--quiet", "-o", str(output)]
-        arguments = [str(self._executable), case.command, str(case.scene), *options]
-        for key, value in case.settings:
-            arguments += ["--set", f"{key}={value}"]
-        if case.command == "cut":
-            output.parent.mkdir(parents=True, exist_ok=True)
-        if case.cpu_limit_s is None:
-            _call(arguments)
-        else:
-            self._run_limited(case, arguments)
 
     def _run_limited(self, case: Case, arguments: list[str]) -> None:
         folder = self.folder_of(case)

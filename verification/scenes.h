@@ -14,8 +14,6 @@
 namespace openclose::verification {
 
 inline const std::array<std::string, 4> all_methods = {"soft", "hard", "shi", "dem"};
-/// Those that find factors of safety of slopes with many blocks.
-inline const std::array<std::string, 3> slope_methods = {"soft", "hard", "dem"};
 
 /// A way of stepping contacts with springs: what `method.contact` and `method.theta` are to be, and its order in dt.
 struct ElasticScheme {

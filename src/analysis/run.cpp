@@ -4,22 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <optional>
 #include <utility>
 
 #include "openclose/analysis/equilibrium.h"
 #include "openclose/analysis/start.h"
+#include "openclose/core/process.h"
 
 namespace openclose {
-namespace {
-
-/// CPU time [s] of this process since it began.
-double process_cpu_time() {
-  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
-}
-
-}  // namespace
 
 template <int N>
 MeasuredPoints<N>::MeasuredPoints(Simulation<N>& simulation) : simulation_(simulation) {

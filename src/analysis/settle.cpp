@@ -11,7 +11,10 @@ constexpr double fastest_growth = 10.0;   ///< [-] of the pseudo-time step after
 constexpr double growth_after_cut = 1.5;  ///< [-] the first time; squared with each further success
 constexpr double largest_growth = 1e3;    ///< [-] of the first step in all: beyond, the inertia term no longer holds sliding blocks in place
 constexpr double cut = 0.3;               ///< [-] after a failure
-constexpr double part_of_limit = 0.8;     ///< [-] of the largest displacement of a step, to be aimed at
+/// [-] After a step that moved too far, at once: a displacement to which the iteration has run away (1e65 m have been seen) tells nothing of the
+/// step.
+constexpr double deepest_cut = 1e-2;
+constexpr double part_of_limit = 0.8;  ///< [-] of the largest displacement of a step, to be aimed at
 
 /// From rest a failing block moves with the square of the step: the factor on a step that moved so far which makes full use of the limit.
 double factor_to_limit(double limit, double moved) {
@@ -42,7 +45,7 @@ SettleResult settle(Simulation<N>& simulation, const SettleProgress& progress) {
   while (result.steps < input.max_steps) {
     const StepResult step = simulation.step(dt, true);
     if (!step.accepted) {
-      dt *= step.moved > limit ? std::min(factor_to_limit(limit, step.moved), 1.0) : cut;
+      dt *= step.moved > limit ? std::clamp(factor_to_limit(limit, step.moved), deepest_cut, 1.0) : cut;
       growth = growth_after_cut;
       result.criterion = step.reason;
       if (dt < simulation.scene().step.smallest_fraction * input.first_dt) return result;

@@ -9,6 +9,7 @@
 
 #include "openclose/analysis/spectrum.h"
 #include "openclose/analysis/strength_reduction.h"
+#include "openclose/core/process.h"
 #include "openclose/io/checkpoint.h"
 #include "openclose/io/drawing.h"
 #include "openclose/io/progress.h"
@@ -191,12 +192,16 @@ int fos_command(const Options& options) {
   BlocksFile<unknowns> blocks(folder);
   blocks.add("initial", simulation);
   FactorOfSafety<unknowns> safety;
+  double cpu_of_search = 0.0;
   {
     Progress progress("strength reduction", options.quiet);
+    const double begin = process_cpu_time();
     safety = factor_of_safety<unknowns>(simulation, [&](double fraction) { progress.update(fraction); });
+    cpu_of_search = process_cpu_time() - begin;
   }
 
   Summary summary = summary_of("fos", options, loaded);
+  summary.cpu_of_search = cpu_of_search;
   summary.warnings.insert(summary.warnings.end(), safety.warnings.begin(), safety.warnings.end());
   print_warnings(safety.warnings);
   if (safety.stable > 0.0) {

@@ -30,6 +30,7 @@ void TangentSystem<N>::fit(const StepProblem<N>& problem) {
     const int i = problem.system.block(c.vertex_block).equation, j = problem.system.block(c.edge_block).equation;
     if (i >= 0 && j >= 0) couplings.emplace_back(i, j);
   }
+  kind_ = problem.method.linear_solver;
   set_pattern(rows, couplings);
   find_slots(problem);
 }
@@ -38,14 +39,14 @@ template <int N>
 void TangentSystem<N>::set_pattern(int rows, const std::vector<std::pair<int, int>>& couplings) {
   matrix_.set_pattern(rows, couplings);
   slots_.clear();
-  if (!solver_) solver_ = make_solver<N>(rows);
+  if (!solver_) solver_ = make_solver<N>(rows, kind_);
 }
 
 template <int N>
 void TangentSystem<N>::exchange(Archive& archive) {
   int rows = solver_ ? matrix_.rows() : 0;
   auto couplings = matrix_.couplings();
-  archive(rows, couplings);
+  archive(rows, couplings, kind_);
   if (rows == 0) return;
   if (archive.reading()) set_pattern(rows, couplings);
   solver_->exchange(archive);

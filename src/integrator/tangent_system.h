@@ -33,6 +33,7 @@ class TangentSystem {
 
   BlockMatrix<N> matrix_;
   std::vector<ContactSlots> slots_;  ///< of the step's contacts
+  LinearSolverKind kind_ = LinearSolverKind::automatic;
   std::unique_ptr<LinearSolver<N>> solver_;
   LinearCounters nothing_done_;
 };

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "openclose/core/process.h"
 #include "openclose/integrator/integrators.h"
 #include "openclose/scene/names.h"
 #include "openclose/version.h"
@@ -213,6 +214,7 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
                   {"start", word_for(start_words, scene.method.start)},
                   {"statics", scene.method.statics},
                   {"residual_tolerance", scene.method.residual_tolerance},
+                  {"linear_solver", word_for(linear_solver_words, scene.method.linear_solver)},
                   {"skip_search", scene.method.skip_search},
                   {"skip_narrow_phase", scene.method.skip_narrow_phase},
                   {"skip_reload", scene.method.skip_reload},
@@ -254,6 +256,7 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
     j["factor_of_safety"] = safety->found ? ordered_json(safety->stable) : ordered_json(nullptr);
     j["bracket"] = {safety->stable, safety->failed};
     j["criterion"] = safety->criterion;
+    j["cpu_s"] = {{"search", summary.cpu_of_search}};
   } else {
     ordered_json ledger;
     for (const auto& [name, value] : entries(summary.ledger)) ledger[name] = value;
@@ -263,6 +266,7 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
     j["cpu_s"] = {{"start", summary.cpu_of_start}, {"motion", summary.cpu_of_motion}};
   }
   j["max_penetration_m"] = summary.max_penetration;
+  j["peak_memory_bytes"] = peak_memory();
   j["counters"] = {{"steps", steps.steps},
                    {"steps_cut", steps.cuts},
                    {"error_cuts", steps.error_cuts},
@@ -276,7 +280,11 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
                    {"history_transfers", detection.transfers},
                    {"factorisations", linear.factorisations},
                    {"symbolic", linear.symbolic},
-                   {"symbolic_skipped", linear.symbolic_skipped}};
+                   {"symbolic_skipped", linear.symbolic_skipped},
+                   {"plain_factorisations", linear.plain},
+                   {"factors_kept", linear.factors_kept},
+                   {"krylov_iterations", linear.krylov_iterations},
+                   {"krylov_given_up", linear.krylov_given_up}};
   if (simulation.is_explicit()) {
     j["explicit"] = {{"critical_step_s", steps.smallest_critical_step},
                      {"longest_step_s", steps.longest_step},

@@ -81,6 +81,7 @@ struct Summary {
   std::vector<Milestone> milestones;  ///< see RunResult
   double cpu_of_start = 0.0;          ///< [s]
   double cpu_of_motion = 0.0;         ///< [s]
+  double cpu_of_search = 0.0;         ///< [s] of a factor of safety, settling included
 };
 
 template <int N>

@@ -9,6 +9,9 @@ namespace {
 /// Up to here dense LU beats the bookkeeping of a sparse one (3 unknowns a block: 24 x 24 takes about 6 us either way).
 constexpr int largest_dense_system_blocks = 8;
 
+/// Up to here row by row beats fronts, and a factor is so cheap that each matrix gets its own (lagged.cpp has the measurements).
+constexpr int largest_row_by_row_system_blocks = 3000;
+
 template <int N>
 class DenseSolver : public LinearSolver<N> {
  public:
@@ -86,12 +89,16 @@ std::unique_ptr<LinearSolver<N>> make_sparse_solver() {
 }
 
 template <int N>
-std::unique_ptr<LinearSolver<N>> make_solver(int blocks) {
-  return blocks <= largest_dense_system_blocks ? make_dense_solver<N>() : make_block_solver<N>();
+std::unique_ptr<LinearSolver<N>> make_solver(int blocks, LinearSolverKind kind) {
+  if (kind == LinearSolverKind::plain) return make_sparse_solver<N>();
+  if (kind == LinearSolverKind::iterative) return make_multifrontal_solver<N>(Refactor::when_needed);
+  if (blocks <= largest_dense_system_blocks) return make_dense_solver<N>();
+  if (blocks <= largest_row_by_row_system_blocks) return make_block_solver<N>();
+  return make_multifrontal_solver<N>(kind == LinearSolverKind::direct ? Refactor::always : Refactor::when_needed);
 }
 
 template std::unique_ptr<LinearSolver<3>> make_dense_solver<3>();
 template std::unique_ptr<LinearSolver<3>> make_sparse_solver<3>();
-template std::unique_ptr<LinearSolver<3>> make_solver<3>(int);
+template std::unique_ptr<LinearSolver<3>> make_solver<3>(int, LinearSolverKind);
 
 }  // namespace openclose

@@ -27,6 +27,13 @@ inline constexpr std::array enclosed_joints_words{
     Word{"drop", EnclosedJoints::drop},
 };
 
+inline constexpr std::array linear_solver_words{
+    Word{"automatic", LinearSolverKind::automatic},
+    Word{"direct", LinearSolverKind::direct},
+    Word{"iterative", LinearSolverKind::iterative},
+    Word{"plain", LinearSolverKind::plain},
+};
+
 inline constexpr std::array mass_damping_words{
     Word{"none", MassDamping::none},
     Word{"local", MassDamping::local},

@@ -111,6 +111,14 @@ enum class MassDamping {
   automatic,  ///< viscous, its coefficient following what the kinetic energy does
 };
 
+/// How the linear equations of a step are solved.
+enum class LinearSolverKind {
+  automatic,  ///< directly, and for many blocks iteratively
+  direct,     ///< every matrix is factored
+  iterative,  ///< with the factor of an earlier matrix as preconditioner
+  plain,      ///< by the library's sparse LU, to compare with
+};
+
 inline constexpr double default_rho_inf = 0.5;  ///< [-] of MethodInput::rho_inf
 
 /// How contacts are enforced and steps are taken.
@@ -126,6 +134,7 @@ struct MethodInput {
   bool statics = false;                        ///< dynamic coefficient 0: every step starts from rest
   double residual_tolerance = 1e-12;           ///< [-] unbalanced force left by Newton, as a fraction of the largest force in the system
   int max_iterations = 60;                     ///< per step, before the step is cut
+  LinearSolverKind linear_solver = LinearSolverKind::automatic;
   bool skip_search = true;                     ///< search candidates only once something has moved beyond the skin
   bool skip_narrow_phase = true;               ///< find the contacts of two blocks anew only once they have moved against each other beyond the skin
   bool skip_reload = true;                     ///< dem: exchange only the contacts that were found anew, and leave the others in the loop

@@ -161,6 +161,7 @@ void write_method(Text& text, const MethodInput& method) {
   text.line("statics", method.statics);
   text.line("residual_tolerance", method.residual_tolerance);
   text.line("max_iterations", method.max_iterations);
+  text.line("linear_solver", word_for(linear_solver_words, method.linear_solver));
   text.line("skip_search", method.skip_search);
   text.line("skip_narrow_phase", method.skip_narrow_phase);
   text.line("skip_reload", method.skip_reload);

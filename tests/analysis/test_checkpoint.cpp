@@ -72,6 +72,15 @@ void check_goes_on(const Scene& scene, int at, int to) {
 
 }  // namespace
 
+TEST_CASE("the factor that an iterative solver keeps is saved too", "[analysis][checkpoint]") {
+  Scene scene = prepared(hit_column(), "soft");
+  scene.method.linear_solver = LinearSolverKind::iterative;
+  for (const int at : {0, 1, 60, 137}) {
+    INFO("after step " << at);
+    check_goes_on(scene, at, at + 60);
+  }
+}
+
 TEST_CASE("a saved simulation goes on bit for bit", "[analysis][checkpoint]") {
   for (const std::string& method : all_methods) {
     for (const int at : {0, 1, 60, 137, 250}) {

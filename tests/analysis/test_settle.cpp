@@ -2,6 +2,7 @@
 #include <string>
 
 #include "openclose/analysis/settle.h"
+#include "openclose/integrator/registry.h"
 #include "support/catch.h"
 #include "support/scenes.h"
 
@@ -23,6 +24,24 @@ Vec2 between(Simulation<3>& simulation, int a, int b) {
   }
   return sum;
 }
+
+/// `soft`, whose second step is a displacement that no force explains.
+class RunsAwayOnce : public Enforcement<3> {
+ public:
+  explicit RunsAwayOnce(const MethodInput& method) : real_(make_enforcement<3>(method)) {}
+  ContactSprings springs(const StepProblem<3>& problem, const Contact& contact) const override { return real_->springs(problem, contact); }
+  StepSolution<3> solve(const StepProblem<3>& problem) override {
+    StepSolution<3> solution = real_->solve(problem);
+    if (++solved_ == 2) solution.d.setConstant(1e65);
+    return solution;
+  }
+  std::unique_ptr<TimeScheme<3>> make_time_scheme(const MethodInput& method) const override { return real_->make_time_scheme(method); }
+  const LinearCounters& linear_counters() const override { return real_->linear_counters(); }
+
+ private:
+  std::unique_ptr<Enforcement<3>> real_;
+  int solved_ = 0;
+};
 
 }  // namespace
 
@@ -126,6 +145,15 @@ TEST_CASE("settling says which step it could not take", "[analysis][settle]") {
   const SettleResult result = settle(simulation);
   CHECK_FALSE(result.settled);
   CHECK(result.criterion == "Newton's method did not converge");
+}
+
+TEST_CASE("an iteration that has run away once does not end the settling", "[analysis][settle]") {
+  const Scene scene = test::column_of_blocks(3);
+  Simulation<3> simulation(scene, std::make_unique<RunsAwayOnce>(scene.method));
+  const SettleResult result = settle(simulation);
+  CHECK(simulation.step_counters().cuts == 1);
+  CHECK(result.settled);
+  CHECK(result.criterion == "unbalanced force");
 }
 
 TEST_CASE("the unbalanced force is below what was asked for", "[analysis][settle]") {

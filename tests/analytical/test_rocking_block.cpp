@@ -46,6 +46,24 @@ TEST_CASE("rocking: ODE against energy and against a tighter tolerance", "[rocki
   CHECK_THROWS_AS(rocking_quarter_period(RockingBlock{}, 0.0), std::invalid_argument);
 }
 
+TEST_CASE("rocking with impacts: upright at each of them, farthest between, half-periods shrink", "[rocking]") {
+  const RockingBlock block;
+  const double start = 0.5 * block.critical_angle(), first = rocking_quarter_period(block, start);
+  CHECK(rocking_angle(block, start, 0.3 * first) == Approx(rocking_fall(block, start, 0.3 * first).angle).epsilon(1e-10));
+  double impact = first, angle = start, side = 1;
+  for (int i = 0; i < 3; ++i) {
+    CHECK(rocking_angle(block, start, impact) == Approx(0.0).margin(1e-10));
+    angle = angle_after_impact(block, angle);
+    side = -side;
+    const double quarter = rocking_quarter_period(block, angle);
+    CHECK(rocking_angle(block, start, impact + quarter) == Approx(side * angle).epsilon(1e-10));
+    // The speed just after the impact, from two angles near it.
+    const double h = 1e-4, speed = rocking_angle(block, start, impact + h) / h;
+    CHECK(side * speed == Approx(rocking_impact_speed(block, angle)).epsilon(1e-3));
+    impact += 2 * quarter;
+  }
+}
+
 TEST_CASE("overturning by a pulse: limits of long and short pulses", "[rocking]") {
   const RockingBlock block;
   const double yield = block.gravity * std::tan(block.critical_angle());

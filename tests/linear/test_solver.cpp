@@ -34,6 +34,8 @@ BlockMatrix<3> floating_pair() {
 
 Solver make(const std::string& name) {
   if (name == "dense") return make_dense_solver<3>();
+  if (name == "multifrontal") return make_multifrontal_solver<3>(Refactor::always);
+  if (name == "lagged") return make_multifrontal_solver<3>(Refactor::when_needed);
   return name == "block" ? make_block_solver<3>() : make_sparse_solver<3>();
 }
 
@@ -48,18 +50,21 @@ TEST_CASE("all solvers solve random systems to rounding and agree", "[linear][so
     BlockMatrix<3> matrix;
     matrix.set_pattern(rows, pairs);
     random.fill(matrix, pairs, dominance);
-    const Solver dense = make_dense_solver<3>(), sparse = make("sparse"), block = make("block");
+    const Solver dense = make_dense_solver<3>(), sparse = make("sparse"), block = make("block"), fronts = make("multifrontal");
     REQUIRE(dense->factor(matrix));
     REQUIRE(sparse->factor(matrix));
     REQUIRE(block->factor(matrix));
+    REQUIRE(fronts->factor(matrix));
     const Eigen::VectorXd right_side = random.vector(matrix.unknowns());
-    const Eigen::VectorXd x = dense->solve(right_side), y = sparse->solve(right_side), z = block->solve(right_side);
+    const Eigen::VectorXd x = dense->solve(right_side), y = sparse->solve(right_side), z = block->solve(right_side), w = fronts->solve(right_side);
     CHECK(residual_over_rounding(matrix, x, right_side) < 1.0);
     CHECK(residual_over_rounding(matrix, y, right_side) < 1.0);
+    CHECK(residual_over_rounding(matrix, w, right_side) < 1.0);
     if (dominance <= 1.0) continue;
     CHECK(residual_over_rounding(matrix, z, right_side) < 1.0);
     CHECK((x - y).norm() <= 1e-13 * x.norm());
     CHECK((x - z).norm() <= 1e-13 * x.norm());
+    CHECK((x - w).norm() <= 1e-13 * x.norm());
   }
 }
 
@@ -80,7 +85,7 @@ TEST_CASE("the block solver's answer has the same bits with narrow and with wide
 
 TEST_CASE("several right sides use one factorisation", "[linear][solver]") {
   RandomSystems random(4);
-  const Solver solver = make(GENERATE("dense", "sparse", "block"));
+  const Solver solver = make(GENERATE("dense", "sparse", "block", "multifrontal", "lagged"));
   const auto pairs = random.couplings(12, 30);
   BlockMatrix<3> matrix;
   matrix.set_pattern(12, pairs);
@@ -96,7 +101,7 @@ TEST_CASE("several right sides use one factorisation", "[linear][solver]") {
 
 TEST_CASE("symbolic work is done once for a pattern, numbers every time", "[linear][solver]") {
   RandomSystems random(5);
-  const Solver solver = make(GENERATE("sparse", "block"));
+  const Solver solver = make(GENERATE("sparse", "block", "multifrontal"));
   BlockMatrix<3> matrix;
   const auto check_solution = [&] {
     REQUIRE(solver->factor(matrix));
@@ -130,7 +135,7 @@ TEST_CASE("symbolic work is done once for a pattern, numbers every time", "[line
 
 TEST_CASE("zeros within the pattern may become numbers later", "[linear][solver]") {
   RandomSystems random(6);
-  const Solver solver = make(GENERATE("sparse", "block"));
+  const Solver solver = make(GENERATE("sparse", "block", "multifrontal"));
   const std::vector<std::pair<int, int>> pairs{{0, 1}, {1, 2}};
   BlockMatrix<3> matrix;
   matrix.set_pattern(3, pairs);
@@ -145,7 +150,7 @@ TEST_CASE("zeros within the pattern may become numbers later", "[linear][solver]
 }
 
 TEST_CASE("a singular matrix is reported, and the solver works again afterwards", "[linear][solver]") {
-  const std::string name = GENERATE("dense", "sparse", "block");
+  const std::string name = GENERATE("dense", "sparse", "block", "multifrontal", "lagged");
   const Solver solver = make(name);
   RandomSystems random(7);
   BlockMatrix<3> matrix;
@@ -171,7 +176,7 @@ TEST_CASE("a singular matrix is reported, and the solver works again afterwards"
 }
 
 TEST_CASE("an eliminated unknown makes a floating system regular and keeps its right side", "[linear][solver]") {
-  const std::string name = GENERATE("dense", "sparse", "block");
+  const std::string name = GENERATE("dense", "sparse", "block", "multifrontal", "lagged");
   const Solver solver = make(name);
   BlockMatrix<3> matrix = floating_pair();
   for (int k = 0; k < 3; ++k) matrix.eliminate(0, k);
@@ -183,7 +188,7 @@ TEST_CASE("an eliminated unknown makes a floating system regular and keeps its r
 }
 
 TEST_CASE("numbers that are none do not pass for a factorisation", "[linear][solver]") {
-  const std::string name = GENERATE("dense", "sparse", "block");
+  const std::string name = GENERATE("dense", "sparse", "block", "multifrontal", "lagged");
   const Solver solver = make(name);
   BlockMatrix<3> matrix = floating_pair();
   matrix.add(0, 0, Eigen::Matrix3d::Constant(std::numeric_limits<double>::quiet_NaN()));

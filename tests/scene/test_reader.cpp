@@ -145,6 +145,11 @@ TEST_CASE("every key reaches its field", "[scene][reader]") {
   CHECK(scene.strength_reduction.curve_time == 21.0);
 }
 
+TEST_CASE("the linear solver is chosen by its word", "[scene][reader]") {
+  CHECK(read_text(block_on_base).method.linear_solver == LinearSolverKind::automatic);
+  CHECK(read_text(std::string(block_on_base) + "[method]\nlinear_solver = 'direct'\n").method.linear_solver == LinearSolverKind::direct);
+}
+
 TEST_CASE("polygons are put in order silently", "[scene][reader]") {
   const std::vector<Vec2> square{{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}};
   const std::string vertices = GENERATE(as<std::string>{},                                                           //

@@ -33,7 +33,7 @@ void parallel_planes(Report& report) {
     Scene scene = read_scene(std::string(OPENCLOSE_PAPER_SCENES "/example_3_3_") + model.file + ".toml");
     const analytical::LimitState limit = limit_state(scene);
     const double tolerance = scene.strength_reduction.width + tilt;
-    for (const std::string& method : slope_methods) {
+    for (const std::string& method : all_methods) {
       scene.method.contact = method;
       const double factor = strength_reduction_factor(report, scene);
       report.near(std::string(model.name) + ": factor of safety", method, limit.factor, factor, tolerance, "-",

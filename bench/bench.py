@@ -1,0 +1,104 @@
+"""Benchmarks: run time beside error, cost by size, what skips save, other programs. Writes bench.csv, bench_machine.json, bench/ and bench.md.
+
+Exit status: 0 done, 1 a run failed, 2 wrong options or no matplotlib.
+"""
+
+import argparse
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parent.parent / "paper"))
+
+import failure  # noqa: E402  (the path comes first)
+import machine  # noqa: E402
+import motion  # noqa: E402
+import scaling  # noqa: E402
+import skips  # noqa: E402
+import statics  # noqa: E402
+import table_4  # noqa: E402
+from measure import Bench, write_csv  # noqa: E402
+from printed import read_printed  # noqa: E402
+from runs import Openclose, Reference, RunFailed  # noqa: E402
+
+EXIT_RUN_FAILED = 1
+EXIT_CANNOT_START = 2
+STUDIES = ("motion", "statics", "failure", "scaling", "skips", "table_4", "micro")
+
+
+def parse_arguments() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--openclose", type=Path, default=Path("build/release/openclose"), help="the solver (default: %(default)s)")
+    parser.add_argument("--reference", type=Path, default=Path("build/release/analytical/openclose-reference"),
+                        help="closed forms and reference ODE (default: %(default)s)")
+    parser.add_argument("--micro", type=Path, help="the micro-benchmarks, openclose-bench")
+    parser.add_argument("--peers", type=Path, help="folder of the programs of other engines")
+    parser.add_argument("--results", type=Path, default=Path("results"), help="folder to write (default: %(default)s)")
+    parser.add_argument("--quick", action="store_true", help="fewer sizes, steps and repeats")
+    parser.add_argument("--only", nargs="+", choices=STUDIES, default=STUDIES, help="these studies alone (default: all)")
+    return parser.parse_args()
+
+
+def commit() -> str:
+    done = subprocess.run(["git", "describe", "--always", "--dirty"], capture_output=True, text=True, check=False, cwd=Path(__file__).parent)
+    return done.stdout.strip()
+
+
+def run_studies(arguments: argparse.Namespace, bench: Bench, reference: Reference) -> dict:
+    """What the studies found besides their rows."""
+    found: dict = {}
+    studies = {
+        "motion": lambda: motion.run(bench, reference),
+        "statics": lambda: statics.run(bench, reference),
+        "failure": lambda: failure.run(bench),
+        "scaling": lambda: scaling.run(bench),
+        "skips": lambda: skips.run(bench),
+        "table_4": lambda: table_4.run(bench),
+    }
+    for name, study in studies.items():
+        if name in arguments.only:
+            begin = time.monotonic()
+            print(f"{name} ...", flush=True)
+            found[name] = study()
+            print(f"  {time.monotonic() - begin:.0f} s", flush=True)
+    return found
+
+
+def run(arguments: argparse.Namespace) -> None:
+    """The page is written last: where it is, everything is."""
+    import figures_bench
+    import page
+
+    folder = arguments.results / "bench"
+    folder.mkdir(parents=True, exist_ok=True)
+    openclose, reference = Openclose(arguments.openclose, folder / "runs"), Reference(arguments.reference)
+    description = machine.describe(arguments.openclose, commit(), "quick" if arguments.quick else "full")
+    bench = Bench(openclose, arguments.quick)
+    found = run_studies(arguments, bench, reference)
+    write_csv(bench.rows, arguments.results / "bench.csv")
+    machine.write(description, arguments.results / "bench_machine.json")
+    printed = read_printed()
+    figures = figures_bench.draw(bench, printed, folder)
+    page.write(bench, found, printed, description, figures, arguments.results / "bench.md")
+    print(f"{len(bench.rows)} rows: {arguments.results / 'bench.csv'}; read {arguments.results / 'bench.md'}")
+
+
+def main() -> int:
+    arguments = parse_arguments()
+    try:
+        run(arguments)
+    except RunFailed as failed:
+        print(f"bench: {failed}", file=sys.stderr)
+        return EXIT_RUN_FAILED
+    except ModuleNotFoundError as missing:
+        print(f"bench: {sys.executable} has no module {missing.name} (Debian: python3-{missing.name})", file=sys.stderr)
+        return EXIT_CANNOT_START
+    except OSError as error:
+        print(f"bench: {error}", file=sys.stderr)
+        return EXIT_CANNOT_START
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,39 @@
+"""The ways to solve a scene that are compared, each a name and its settings."""
+
+from dataclasses import dataclass
+
+Settings = tuple[tuple[str, object], ...]
+
+
+@dataclass(frozen=True)
+class Method:
+    name: str
+    settings: Settings
+    rigid: bool = False     # contacts that do not give: another reference
+    adaptive: bool = False  # chooses its steps by a tolerance
+
+
+def _soft(integrator: str, *more: tuple[str, object]) -> Settings:
+    return (("method.contact", "soft"), ("method.integrator", integrator), *more)
+
+
+SOFT_SHI = Method("soft shi", _soft("shi"))
+SOFT_PATH_AVERAGE = Method("soft path_average", _soft("path_average"))
+INTEGRATORS = (
+    SOFT_SHI,
+    Method("soft theta 1/2", _soft("theta", ("method.theta", 0.5))),
+    Method("soft generalized_alpha", _soft("generalized_alpha")),
+    Method("soft tr_bdf2", _soft("tr_bdf2")),
+    SOFT_PATH_AVERAGE,
+)
+ADAPTIVE = Method("soft path_average adaptive", (*SOFT_PATH_AVERAGE.settings, ("step.adaptive", "true")), adaptive=True)
+SOFT = Method("soft", (("method.contact", "soft"),))
+HARD = Method("hard", (("method.contact", "hard"),), rigid=True)
+SHI = Method("shi", (("method.contact", "shi"),))
+DEM = Method("dem", (("method.contact", "dem"),))
+
+
+def on_joint_springs(stiffness_pa_per_m: float) -> Method:
+    """shi with the joint's springs for its penalty, so that it has the reference of the others, and room for them to give."""
+    return Method("shi", (*SHI.settings, ("method.penalty_pa_per_m", stiffness_pa_per_m), ("method.penalty_shear_ratio", 1.0),
+                          ("method.penetration_tolerance_m", 1.0)))

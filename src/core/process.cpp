@@ -1,0 +1,29 @@
+#include "openclose/core/process.h"
+
+#include <time.h>
+
+#include <fstream>
+#include <string>
+
+namespace openclose {
+
+// Of the thread, which is the only one: the clock of the process only ticks every few milliseconds where a limit on its CPU time is set.
+double process_cpu_time() {
+  constexpr double nanosecond = 1e-9;
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + nanosecond * static_cast<double>(now.tv_nsec);
+}
+
+// Not getrusage: its maximum goes back to before the program was loaded and has the memory of who started it.
+long peak_memory() {
+  constexpr long bytes_per_unit = 1024;
+  std::ifstream status("/proc/self/status");
+  for (std::string word; status >> word;) {
+    long value = 0;
+    if (word == "VmHWM:" && status >> value) return bytes_per_unit * value;
+  }
+  return 0;
+}
+
+}  // namespace openclose
