@@ -10,6 +10,8 @@
 #include "openclose/analysis/spectrum.h"
 #include "openclose/analysis/strength_reduction.h"
 #include "openclose/core/process.h"
+#include "openclose/integrator/integrators.h"
+#include "openclose/integrator/registry.h"
 #include "openclose/io/checkpoint.h"
 #include "openclose/io/drawing.h"
 #include "openclose/io/progress.h"
@@ -291,6 +293,14 @@ void add_quiet(CLI::App& app, Options& options) {
   app.add_flag("-q,--quiet", options.quiet, "print nothing but warnings and errors");
 }
 
+/// "soft (springs ...), hard (...)" from the entries of a registry.
+template <typename Entries>
+std::string listed(const Entries& entries) {
+  std::string list;
+  for (const auto& entry : entries) list += fmt::format("{}{} ({})", list.empty() ? "" : ", ", entry.name, entry.summary);
+  return list;
+}
+
 /// The options that scene commands share; the named ones are short for --set.
 void add_options(CLI::App& app, Options& options, bool writes_folder) {
   app.add_option("scene", options.scene_file, "scene file (TOML)")->required();
@@ -298,9 +308,9 @@ void add_options(CLI::App& app, Options& options, bool writes_folder) {
     app.add_option_function<std::string>(
         flag, [&options, key](const std::string& value) { options.overrides.push_back(key + "=" + value); }, help);
   };
-  shorthand("--contact", "method.contact", "contact enforcement: soft, hard or shi");
+  shorthand("--contact", "method.contact", "contact enforcement: " + listed(enforcements<unknowns>()));
   shorthand("--start", "method.start", "start state: unloaded, settled, normal_balanced or steady_sliding");
-  shorthand("--integrator", "method.integrator", "time integrator of soft: shi, theta, generalized_alpha, tr_bdf2 or path_average");
+  shorthand("--integrator", "method.integrator", "time integrator of soft: " + listed(integrators<unknowns>()));
   shorthand("--dt", "step.dt_s", "time step [s]");
   shorthand("--end", "end.time_s", "end time [s]");
   app.add_option_function<std::vector<std::string>>(

@@ -279,6 +279,7 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
                    {"narrow_phases_skipped", detection.narrow_phases_skipped},
                    {"history_transfers", detection.transfers},
                    {"factorisations", linear.factorisations},
+                   {"plain_factorisations", linear.plain},
                    {"symbolic", linear.symbolic},
                    {"symbolic_skipped", linear.symbolic_skipped},
                    {"plain_factorisations", linear.plain},

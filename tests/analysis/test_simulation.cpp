@@ -268,6 +268,19 @@ TEST_CASE("saving and restoring repeats a trajectory", "[analysis][simulation]")
   }
 }
 
+TEST_CASE("a restored state is followed with the step that is asked for, not with that of the motion before", "[analysis][simulation]") {
+  Scene scene = test::falling_block();
+  scene.step.max_displacement = 0.1;
+  Simulation<3> simulation(scene);
+  const auto at_rest = simulation.save();
+  REQUIRE(simulation.advance(1.0));
+  // Now at 9.8 m/s, which allows 0.01 s; from rest it is 0.14 s.
+  simulation.restore(at_rest);
+  const long before = simulation.step_counters().steps;
+  REQUIRE(simulation.advance(0.1));
+  CHECK(simulation.step_counters().steps == before + 1);
+}
+
 TEST_CASE("restarting the clock empties the books and nothing else", "[analysis][simulation]") {
   Simulation<3> simulation(tumbling("soft"));
   for (int i = 0; i < 200; ++i) REQUIRE(simulation.advance(2e-3));

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <set>
@@ -43,6 +44,7 @@ TEST_CASE("help and version", "[cli]") {
   CHECK_THAT(help.out, ContainsSubstring("run") && ContainsSubstring("fos") && ContainsSubstring("check") && ContainsSubstring("Exit status"));
   CHECK_THAT(run_help.out, ContainsSubstring("--contact") && ContainsSubstring("--dt") && ContainsSubstring("--end") && ContainsSubstring("--start") && ContainsSubstring("--set") &&
                                ContainsSubstring("--output") && ContainsSubstring("--quiet"));
+  for (const char* name : {"soft", "hard", "shi", "dem", "path_average"}) CHECK_THAT(run_help.out, ContainsSubstring(std::string(name) + " ("));
   CHECK(version.out == std::string(openclose::version) + "\n");
 }
 
@@ -178,6 +180,30 @@ TEST_CASE("factor of safety", "[cli]") {
   for (const std::string& line : lines_of(out + "/blocks.csv")) states.insert(line.substr(0, line.find(',')));
   CHECK(states == std::set<std::string>{"state", "initial", "settled", "failed"});
   CHECK_THAT(text_of(out + "/trials.csv"), StartsWith("srf,stage,stable,criterion,steps,displacement_m\n1,bracket,1,"));
+}
+
+TEST_CASE("factor of safety: the settled state penetrates by what its contacts carry, the failed one has moved", "[cli]") {
+  const double slope = 30.0 * std::numbers::pi / 180.0;
+  const Workplace place(openclose::test::block_on_incline(30.0));
+  REQUIRE(place.run("fos scene.toml -o out --set settle.failure_displacement_m=0.05 --set strength_reduction.width=0.01").status == 0);
+  const std::string out = place.folder() / "out";
+  const auto summary = summary_in(out);
+  REQUIRE(summary.at("criterion") == "displacement");
+
+  // The block is 2 m long and 1 m high; its weight, 0.5 m above its two contacts of 1 m each, leans on the lower one.
+  const double weight = 2700.0 * 9.81 * 2.0, lower = 0.5 * weight * std::cos(slope) * (1.0 + 0.5 * std::tan(slope));
+  // The block tilts by 1e-5, which turns the forces by as much.
+  CHECK(summary.at("max_penetration_m").get<double>() == Approx(lower / 1e9).epsilon(1e-4));
+
+  std::map<std::string, std::pair<double, double>> corner;
+  for (const std::string& line : lines_of(out + "/blocks.csv")) {
+    const auto fields = fields_of(line);
+    if (fields[1] == "block" && fields[2] == "0") corner[fields[0]] = {std::stod(fields[3]), std::stod(fields[4])};
+  }
+  const double along = (corner.at("failed").first - corner.at("settled").first) * std::cos(slope) -
+                       (corner.at("failed").second - corner.at("settled").second) * std::sin(slope);
+  // What counts as displacement is that of the farthest point, which the tilt moves by 1e-5 m more.
+  CHECK(along > 0.05 - 1e-4);
 }
 
 TEST_CASE("factor of safety with a curve", "[cli]") {

@@ -2,6 +2,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
@@ -295,6 +296,45 @@ TEST_CASE("summary.json of a run", "[io][results]") {
   CHECK(j.at("settling").at("settled") == true);
   CHECK(j.at("settling").at("criterion") == "unbalanced force");
   CHECK_FALSE(j.contains("factor_of_safety"));
+}
+
+TEST_CASE("summary.json has counters under their own names", "[io][results]") {
+  const TemporaryFolder place;
+  Scene scene = test::tumbling_blocks();
+  scene.method.contact = "soft";
+  scene.step.dt = 1e-2;
+  scene.step.max_displacement = 0.02;  // some steps are cut
+  Simulation<3> simulation(scene);
+  for (int i = 0; i < 100; ++i) REQUIRE(simulation.advance(scene.step.dt));
+  write_summary(OutputFolder(place.path()), Summary(), simulation);
+  const StepCounters& steps = simulation.step_counters();
+  const DetectionCounters& detection = simulation.detection_counters();
+  const LinearCounters& linear = simulation.enforcement().linear_counters();
+  const std::map<std::string, long> expected = {{"steps", steps.steps},
+                                                {"steps_cut", steps.cuts},
+                                                {"error_cuts", steps.error_cuts},
+                                                {"compliant_steps", steps.compliant},
+                                                {"dissipative_steps", steps.dissipative},
+                                                {"iterations", steps.iterations},
+                                                {"searches", detection.searches},
+                                                {"searches_skipped", detection.searches_skipped},
+                                                {"narrow_phases", detection.narrow_phases},
+                                                {"narrow_phases_skipped", detection.narrow_phases_skipped},
+                                                {"history_transfers", detection.transfers},
+                                                {"factorisations", linear.factorisations},
+                                                {"plain_factorisations", linear.plain},
+                                                {"symbolic", linear.symbolic},
+                                                {"symbolic_skipped", linear.symbolic_skipped}};
+  const nlohmann::json counters = summary_json(place).at("counters");
+  for (const auto& [name, value] : expected) {
+    INFO(name);
+    CHECK(counters.at(name) == value);
+  }
+  // Counters that are 0 could be any of those.
+  for (const char* name : {"steps", "steps_cut", "iterations", "searches", "searches_skipped", "narrow_phases", "narrow_phases_skipped"}) {
+    INFO(name);
+    CHECK(expected.at(name) > 0);
+  }
 }
 
 TEST_CASE("summary.json of a factor of safety", "[io][results]") {

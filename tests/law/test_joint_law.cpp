@@ -343,6 +343,13 @@ TEST_CASE("dashpots resist while the contact is closed", "[law][damping]") {
     CHECK(f.status != ContactStatus::open);
     CHECK(f.normal_by_gap == 0.0);
   }
+  SECTION("as long as the spring pulls") {
+    ContactSprings pulling = damped_springs();
+    pulling.gap = 0.1;
+    const ContactForces f = spring_slider(pulling, strength_of(0.5, 0.0, 250.0), 0.05, 0.0);
+    CHECK(f.elastic_normal == Approx(-150.0).epsilon(10.0 * rounding));
+    CHECK(f.normal == Approx(-150.0 - 0.05 * 700.0).epsilon(10.0 * rounding));
+  }
   SECTION("down to the tensile strength") {
     const ContactStrength tough = strength_of(0.5, 0.0, 250.0);
     CHECK(spring_slider(springs, tough, 1.2, 0.0).normal == -250.0);

@@ -1,4 +1,5 @@
 #include <limits>
+#include <tuple>
 
 #include "openclose/linear/solver.h"
 #include "random_systems.h"
@@ -29,6 +30,32 @@ BlockMatrix<3> floating_pair() {
   matrix.add(1, 1, k);
   matrix.add(0, 1, -k);
   matrix.add(1, 0, -k);
+  return matrix;
+}
+
+/// Regular, in any order of its rows, but its first pivot is as good as singular without being small.
+BlockMatrix<3> nearly_singular_diagonal() {
+  BlockMatrix<3> matrix;
+  matrix.set_pattern(2, {{0, 1}});
+  Eigen::Matrix3d k = Eigen::Matrix3d::Identity();
+  k.topLeftCorner<2, 2>() << 1.0, 1.0, 1.0, 1.0 + 1e-13;
+  matrix.add(0, 0, k);
+  matrix.add(1, 1, k);
+  matrix.add(0, 1, Eigen::Matrix3d::Identity());
+  matrix.add(1, 0, -Eigen::Matrix3d::Identity());
+  return matrix;
+}
+
+/// Regular, in any order of its rows, but elimination of the first one leaves 2e-13 of the others' diagonals.
+BlockMatrix<3> cancelling_diagonal() {
+  BlockMatrix<3> matrix;
+  matrix.set_pattern(3, {{0, 1}, {0, 2}, {1, 2}});
+  const Eigen::Matrix3d unit = Eigen::Matrix3d::Identity();
+  for (int i = 0; i < 3; ++i) matrix.add(i, i, (1.0 + 1e-13) * unit);
+  for (const auto& [i, j, factor] : {std::tuple{0, 1, 1.0}, {0, 2, 1.0}, {1, 2, 2.0}}) {
+    matrix.add(i, j, factor * unit);
+    matrix.add(j, i, 1.0 / factor * unit);
+  }
   return matrix;
 }
 
@@ -173,6 +200,26 @@ TEST_CASE("a singular matrix is reported, and the solver works again afterwards"
   REQUIRE(solver->factor(matrix));
   const Eigen::VectorXd right_side = random.vector(6);
   CHECK(residual_over_rounding(matrix, solver->solve(right_side), right_side) < 1.0);
+}
+
+TEST_CASE("a pivot that has lost its digits goes to the solver that exchanges rows, and is counted", "[linear][solver]") {
+  for (const bool before_elimination : {true, false}) {
+    INFO((before_elimination ? "nearly singular diagonal" : "cancelling diagonal"));
+    const BlockMatrix<3> matrix = before_elimination ? nearly_singular_diagonal() : cancelling_diagonal();
+    const Eigen::VectorXd right_side = RandomSystems(7).vector(matrix.unknowns());
+    const Solver solver = make("block");
+    REQUIRE(solver->factor(matrix));
+    CHECK(residual_over_rounding(matrix, solver->solve(right_side), right_side) < 1.0);
+    CHECK(solver->counters().plain == 1);
+  }
+  RandomSystems systems(8);
+  BlockMatrix<3> sound;
+  const auto pairs = systems.couplings(12, 20);
+  sound.set_pattern(12, pairs);
+  systems.fill(sound, pairs, 1.0);
+  const Solver solver = make("block");
+  REQUIRE(solver->factor(sound));
+  CHECK(solver->counters().plain == 0);
 }
 
 TEST_CASE("an eliminated unknown makes a floating system regular and keeps its right side", "[linear][solver]") {

@@ -26,6 +26,7 @@ void projectile(Report& report) {
       const std::string source = "parabola; scheme exact, rounding of t/dt sums";
       report.relative(text("x after 2 s, dt = {} s", dt), method, expected[0], moved.x(), 1e-13, "m", source);
       report.relative(text("y after 2 s, dt = {} s", dt), method, expected[1], moved.y(), 1e-13, "m", source);
+      check_ledger(report, text("flight, dt = {} s", dt), method, simulation, !samples.empty());
     }
   }
 }

@@ -90,6 +90,9 @@ void momentum(Report& report) {
       steps.push_back(dt);
       errors.push_back(d.angular);
     }
+    RigidSimulation collision = report.simulate(cluster(method, steps.front()));
+    const bool done = !history(collision).empty();
+    check_ledger(report, "collision", method, collision, done);
     report.near("linear momentum, largest change in a step", method, 0.0, worst, 1e-13, "-", "action = reaction; relative to the sum of |m v|");
     if (method == "hard") {
       report.leave_out(

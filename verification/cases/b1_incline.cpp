@@ -175,6 +175,17 @@ void invariant(Report& report) {
   report.leave_out("x + mu y from the unloaded start", "shi", "friction is the force of the pass before, so T = mu N holds to order dt only");
 }
 
+/// A start with bounces, sticking and sliding.
+void ledgers(Report& report) {
+  analytical::BlockOnPlane data;
+  data.friction_angle = 25.0 * analytical::degree;
+  for (const std::string& method : all_methods) {
+    RigidSimulation simulation = report.simulate(scene_of(data, method, Start::unloaded, 1e-3, 1.0));
+    const bool done = !history(simulation).empty();
+    check_ledger(report, "(a) unloaded, phi = 25 deg", method, simulation, done);
+  }
+}
+
 }  // namespace
 
 void incline(Report& report) {
@@ -182,6 +193,7 @@ void incline(Report& report) {
   transients(report);
   locked(report);
   invariant(report);
+  ledgers(report);
 }
 
 }  // namespace openclose::verification

@@ -39,32 +39,43 @@ double frequency(bool along) {
 }
 
 /// Displacement along or normal to the base, some steps after a push out of the settled state.
-double follow(const Report& report, const Scene& scene, bool along, double velocity, int steps) {
-  RigidSimulation simulation = report.simulate(scene);
+double follow(RigidSimulation& simulation, bool along, double velocity, int steps) {
   if (!settle(simulation).settled) return not_measured();
   const Vec2 rest = simulation.system().centroid(1);
   simulation.set_velocity(1, along ? Eigen::Vector3d(velocity, 0.0, 0.0) : Eigen::Vector3d(0.0, -velocity, 0.0));
   simulation.restart_clock();
   for (int i = 0; i < steps; ++i) {
-    if (!simulation.step(scene.step.dt, false).accepted) return not_measured();
+    if (!simulation.step(simulation.scene().step.dt, false).accepted) return not_measured();
   }
   const Vec2 moved = simulation.system().centroid(1) - rest;
   return along ? moved.x() : -moved.y();
 }
 
+/// [m/s] For a tenth of the closure under the weight: the contact stays closed and sticks.
+double push(bool along) {
+  return 0.1 * 9.81 / (frequency(false) * frequency(false)) * frequency(along);
+}
+
 void order(Report& report, const std::string& method, double theta, double ratio, bool along) {
-  const double w = frequency(along), end = 2.0 / w;
-  // A tenth of the closure under the weight: the contact stays closed and sticks.
-  const double velocity = 0.1 * 9.81 / (frequency(false) * frequency(false)) * w;
+  const double w = frequency(along), end = 2.0 / w, velocity = push(along);
   std::vector<double> steps, errors;
   for (const int n : {80, 160, 320, 640}) {
     steps.push_back(end / n);
     const double exact = velocity * analytical::damped_vibration(w, ratio, end);
-    errors.push_back(std::abs(follow(report, scene_of(method, theta, ratio, end / n), along, velocity, n) - exact) / velocity * w);
+    RigidSimulation simulation = report.simulate(scene_of(method, theta, ratio, end / n));
+    errors.push_back(std::abs(follow(simulation, along, velocity, n) - exact) / velocity * w);
   }
   const double expected = theta == 0.5 ? 2.0 : 1.0;
   const std::string name = text("order, damping ratio {}", ratio) + (along ? ", shear" : ", normal") + text(", theta = {}", theta);
   report.order(name, method, steps, errors, expected - 0.1, expected + 0.1, "damped oscillator, m* = mass of the block on a fixed base");
+}
+
+void ledger(Report& report, const std::string& method, double theta, bool along) {
+  constexpr double ratio = 0.1;
+  constexpr int steps = 200;
+  RigidSimulation simulation = report.simulate(scene_of(method, theta, ratio, 10.0 / frequency(along) / steps));
+  const bool done = !std::isnan(follow(simulation, along, push(along), steps));
+  check_ledger(report, std::string("damping ratio 0.1, ") + (along ? "shear" : "normal") + text(", theta = {}", theta), method, simulation, done);
 }
 
 }  // namespace
@@ -77,6 +88,11 @@ void contact_damping(Report& report) {
       // The velocity of its dashpots is half a step old.
       order(report, "dem", 1.0, ratio, along);
     }
+  }
+  for (const bool along : {false, true}) {
+    for (const double theta : {1.0, 0.5}) ledger(report, "soft", theta, along);
+    ledger(report, "shi", 1.0, along);
+    ledger(report, "dem", 1.0, along);
   }
   report.leave_out("contact damping", "hard", "rigid contacts have no springs and impacts without rebound");
 }

@@ -172,6 +172,9 @@ void plastic(Report& report) {
     report.near(text("velocity after the impact over the one before, dt = {} s", dt), "hard", 0.0,
                 done && simulation.ledger().impact > 0.0 ? std::abs(s.velocity) / b.impact_speed() : not_measured(), 1e-11, "-", "restitution 0");
   }
+  RigidSimulation simulation = report.simulate(scene_of({"hard", 1.0, 2.0}, 0.0, 1e-3));
+  const bool done = advance(simulation, 500);
+  check_ledger(report, "fall and impact", "hard", simulation, done);
   report.order("energy of the impact", "hard", steps, errors, 1.99, 2.01, "W H; order 2");
   report.leave_out("contact time, depth, period, drift", "hard", "rigid contacts do not rebound");
 }

@@ -1,0 +1,335 @@
+#!/usr/bin/env python3
+"""Plants the faults of faults.toml one by one in copies of the source tree and reports which check notices each.
+
+    mutants/run.py [--jobs N] [--results DIR] [--unit-tests-only] [ID...]     all faults, or the named ones
+    mutants/run.py --check-list                                               only whether every fault still fits the source
+
+Every worker has a copy of the tree with a build of its own under build/mutants. A fault is tried on the unit tests of its own folder, then on those
+of the folders after it in the order of the data, then of those before it, then on the verification cases, one group after the other until one is red;
+only what they need is built. Writes mutants.csv and mutants.md; named faults replace their rows there and leave the others. A fault that only ends
+checks by an exception that no test expects, by a signal or by their time limit has not been caught by an assertion: it is listed as such.
+
+Exit status: 0 if every fault was caught, 1 if one was not, 2 if the list does not fit the source or the source without a fault is red.
+"""
+
+import argparse
+import csv
+import os
+import re
+import shutil
+import subprocess
+import sys
+import threading
+import time
+import xml.etree.ElementTree as xml
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+try:
+    import tomllib
+except ImportError:
+    sys.exit("mutants: Python 3.11 or later is needed, which reads TOML")
+
+ROOT = Path(__file__).resolve().parent.parent
+FAULTS = Path(__file__).resolve().parent / "faults.toml"
+COPIED = ["CMakeLists.txt", "CMakePresets.json", "analytical", "cmake", "mutants", "paper", "scripts", "src", "tests", "verification"]
+COLUMNS = ["id", "folder", "file", "description", "caught_by", "kind", "seconds"]
+CAUGHT = ("unit test", "verification")
+# A check may take this many times as long as without a fault, and so much more: others use the machine, too.
+TIME_FACTOR, TIME_MARGIN_S = 10.0, 60.0
+FEWEST_PER_FOLDER = 4
+
+
+class ListError(Exception):
+    pass
+
+
+def folders():
+    """The folders of src/ in the order of the data."""
+    return re.findall(r"^add_subdirectory\((\w+)\)", (ROOT / "src/CMakeLists.txt").read_text(), re.M)
+
+
+def folder_of(fault):
+    return Path(fault["file"]).parts[1]
+
+
+def read_faults():
+    with open(FAULTS, "rb") as stream:
+        faults = tomllib.load(stream)["fault"]
+    for fault in faults:
+        name = fault.get("id", "a fault without id")
+        if sorted(fault) != ["description", "file", "id", "original", "replacement"]:
+            raise ListError(f"{name}: the keys are {', '.join(sorted(fault))}; needed: description, file, id, original, replacement")
+        if [other["id"] for other in faults].count(name) != 1:
+            raise ListError(f"{name}: the id is there twice")
+        if "\n" in fault["original"] + fault["replacement"] or fault["original"] == fault["replacement"]:
+            raise ListError(f"{name}: a fault changes one line")
+        if not re.fullmatch(r"src/\w+/[\w.]+", fault["file"]) or not (ROOT / fault["file"]).is_file():
+            raise ListError(f"{name}: there is no source {fault['file']}")
+        found = (ROOT / fault["file"]).read_text().count(fault["original"])
+        if found != 1:
+            raise ListError(f"{name}: the original text is found {found} times in {fault['file']}; it must be there once: {fault['original']}")
+    for folder in folders():
+        count = sum(folder_of(fault) == folder for fault in faults)
+        if count < FEWEST_PER_FOLDER:
+            raise ListError(f"src/{folder} has {count} faults; at least {FEWEST_PER_FOLDER} are needed")
+    return faults
+
+
+class Outcome:
+    """Of one check: kind is None where it is green."""
+
+    def __init__(self, kind=None, by="", text=""):
+        self.kind, self.by, self.text = kind, by, text
+
+
+class Worker:
+    """A copy of the tree, its build, and what checks take there without a fault."""
+
+    def __init__(self, number):
+        self.tree = ROOT / "build/mutants" / str(number)
+        self.limits = {}
+        self.environment = dict(os.environ)
+        for name in ("MAKEFLAGS", "MFLAGS", "MAKELEVEL"):
+            self.environment.pop(name, None)
+        if shutil.which("ccache"):
+            # All copies look alike to the cache.
+            self.environment |= {"CMAKE_CXX_COMPILER_LAUNCHER": "ccache", "CCACHE_BASEDIR": str(self.tree), "CCACHE_NOHASHDIR": "1"}
+
+    def prepare(self):
+        self.tree.mkdir(parents=True, exist_ok=True)
+        for name in COPIED:
+            source, target = ROOT / name, self.tree / name
+            # Files that are the same keep their time, so that what an earlier study has built stays up to date.
+            if source.is_dir():
+                wanted = {p.relative_to(source) for p in source.rglob("*") if p.is_file() and "__pycache__" not in p.parts}
+                for path in target.rglob("*") if target.is_dir() else []:
+                    if path.is_file() and path.relative_to(target) not in wanted:
+                        path.unlink()
+                for path in sorted(wanted):
+                    self.copy(source / path, target / path)
+            else:
+                self.copy(source, target)
+
+    @staticmethod
+    def copy(source, target):
+        content = source.read_bytes()
+        if target.is_file() and target.read_bytes() == content:
+            return
+        target.parent.mkdir(parents=True, exist_ok=True)
+        target.write_bytes(content)
+        shutil.copymode(source, target)
+
+    def build(self, target):
+        run = subprocess.run(["scripts/build", "release", target], cwd=self.tree, env=self.environment, capture_output=True, text=True)
+        return run.returncode == 0, run.stdout + run.stderr
+
+    def command(self, check):
+        if check == "verification":
+            return "openclose-verify", ["build/release/verification/openclose-verify", "--results", "build/verification-results"]
+        return f"test_{check}", [f"build/release/tests/{check}/test_{check}", "--reporter", "junit", "--out", f"build/{check}.xml"]
+
+    def run(self, check):
+        """Builds what a check needs and runs it."""
+        target, command = self.command(check)
+        built, text = self.build(target)
+        if not built:
+            return Outcome("does not compile", target, text)
+        begin = time.monotonic()
+        outcome = self.run_verification(command) if check == "verification" else self.run_tests(check, command)
+        if check not in self.limits and outcome.kind is None:
+            self.limits[check] = TIME_FACTOR * (time.monotonic() - begin) + TIME_MARGIN_S
+        return outcome
+
+    def run_tests(self, check, command):
+        report = self.tree / "build" / f"{check}.xml"
+        report.unlink(missing_ok=True)
+        try:
+            run = subprocess.run(command, cwd=self.tree, env=self.environment, capture_output=True, text=True, timeout=self.limits.get(check))
+        except subprocess.TimeoutExpired:
+            return Outcome("time-out", f"tests/{check}")
+        if run.returncode == 0:
+            return Outcome()
+        failures, errors = self.red_tests(report)
+        if failures:
+            return Outcome("unit test", f"tests/{check}: {failures[0]}")
+        return Outcome("crash", f"tests/{check}: {errors[0]}" if errors else f"tests/{check}", run.stdout + run.stderr)
+
+    @staticmethod
+    def red_tests(report):
+        """Names of the test cases in which an assertion failed, and of those that something unexpected ended."""
+        try:
+            cases = xml.parse(report).getroot().iter("testcase")
+        except (OSError, xml.ParseError):
+            return [], []
+        red = {"failure": [], "error": []}
+        for case in cases:
+            for kind, names in red.items():
+                if case.find(kind) is not None:
+                    names.append(case.get("name"))
+        return red["failure"], red["error"]
+
+    def run_verification(self, command):
+        """Ends with the first row that is red."""
+        run = subprocess.Popen(command, cwd=self.tree, env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        late = threading.Event()
+        timer = threading.Timer(self.limits.get("verification", 3600.0), lambda: (late.set(), run.kill()))
+        timer.start()
+        group = text = ""
+        try:
+            for line in run.stdout:
+                text += line
+                if re.match(r"\S", line):
+                    group = line.split()[0]
+                if line.endswith(" FAIL\n"):
+                    run.kill()
+                    return Outcome("verification", f"{group}: {re.split(r'  +', line.strip())[0]}")
+            run.wait()
+        finally:
+            timer.cancel()
+            run.stdout.close()
+            run.wait()
+        if late.is_set():
+            return Outcome("time-out", "verification")
+        return Outcome() if run.returncode == 0 else Outcome("crash", f"verification: {group}", text)
+
+    def try_fault(self, fault, verify):
+        """\\return the row of the table."""
+        begin = time.monotonic()
+        path = self.tree / fault["file"]
+        original = path.read_text()
+        first = Outcome()
+        path.write_text(original.replace(fault["original"], fault["replacement"]))
+        try:
+            for check in checks_for(folder_of(fault), verify):
+                outcome = self.run(check)
+                if first.kind is None:
+                    first = outcome
+                if outcome.kind in CAUGHT or outcome.kind == "does not compile":
+                    first = outcome
+                    break
+        finally:
+            path.write_text(original)
+        row = described(fault) | {"caught_by": first.by, "kind": first.kind or "survived", "seconds": f"{time.monotonic() - begin:.1f}"}
+        return row
+
+
+def described(fault):
+    return {"id": fault["id"], "folder": folder_of(fault), "file": fault["file"], "description": fault["description"]}
+
+
+def checks_for(folder, verify):
+    order = folders()
+    at = order.index(folder)
+    return order[at:] + order[:at] + (["verification"] if verify else [])
+
+
+def earlier_rows(path, faults):
+    """What an earlier run has found for faults that are still the same."""
+    if not path.is_file():
+        return {}
+    with open(path, newline="") as stream:
+        rows = [row for row in csv.DictReader(stream) if list(row) == COLUMNS]
+    known = [described(fault) for fault in faults]
+    return {row["id"]: row for row in rows if {key: row[key] for key in ("id", "folder", "file", "description")} in known}
+
+
+def write_csv(path, rows):
+    with open(path, "w", newline="") as stream:
+        writer = csv.DictWriter(stream, COLUMNS, lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rows)
+
+
+def write_page(path, rows):
+    not_caught = [row for row in rows if row["kind"] not in CAUGHT]
+    by_kind = {kind: sum(row["kind"] == kind for row in rows) for kind in dict.fromkeys([*CAUGHT, *(row["kind"] for row in rows)])}
+    lines = ["# Planted faults", "",
+             f"{len(rows)} faults of one line each, {sum(float(row['seconds']) for row in rows) / 60.0:.0f} minutes of builds and checks: "
+             f"{len(rows) - len(not_caught)} caught "
+             f"({', '.join(f'{count} by {kind}' for kind, count in by_kind.items() if kind in CAUGHT)}), {len(not_caught)} not.", "",
+             "| folder | faults | caught | by the folder's own tests |", "|---|---|---|---|"]
+    for folder in folders():
+        own = [row for row in rows if row["folder"] == folder]
+        caught = [row for row in own if row["kind"] in CAUGHT]
+        near = [row for row in caught if row["caught_by"].startswith(f"tests/{folder}:")]
+        if own:
+            lines.append(f"| {folder} | {len(own)} | {len(caught)} | {len(near)} |")
+    lines += ["", "## Not caught", ""]
+    lines += [f"- {row['id']} ({row['file']}): {row['description']}; {row['kind']}" + (f", {row['caught_by']}" if row["caught_by"] else "")
+              for row in not_caught] or ["None."]
+    lines += ["", "## Caught", "", "| fault | file | what it does | first check that is red |", "|---|---|---|---|"]
+    lines += [f"| {row['id']} | {row['file']} | {row['description'].replace('|', '/')} | {row['caught_by'].replace('|', '/')} |"
+              for row in rows if row["kind"] in CAUGHT]
+    path.write_text("\n".join(lines) + "\n")
+
+
+def baseline(worker, verify):
+    """The limits of time; the source without a fault must be green."""
+    for check in checks_for(folders()[0], verify):
+        outcome = worker.run(check)
+        if outcome.kind:
+            raise ListError(f"without any fault {outcome.by} is red: {outcome.kind}\n{outcome.text[-3000:]}")
+
+
+def study(faults, wanted, options):
+    workers = [Worker(number) for number in range(options.jobs)]
+    for worker in workers:
+        worker.prepare()
+    verify = not options.unit_tests_only
+    print("builds and checks the source without a fault", flush=True)
+    baseline(workers[0], verify)
+    for worker in workers[1:]:
+        worker.limits = dict(workers[0].limits)
+    options.results.mkdir(parents=True, exist_ok=True)
+    table = options.results / "mutants.csv"
+    rows = earlier_rows(table, faults) if len(wanted) < len(faults) else {}
+    free, done, lock = list(workers), [], threading.Lock()
+
+    def try_one(fault):
+        with lock:
+            worker = free.pop()
+        try:
+            row = worker.try_fault(fault, verify)
+        finally:
+            with lock:
+                free.append(worker)
+        with lock:
+            rows[row["id"]] = row
+            done.append(row)
+            print(f"{len(done):3}/{len(wanted)} {row['id']:<14} {row['kind']:<12} {row['seconds']:>6} s  {row['caught_by']}", flush=True)
+            ordered = [rows[f["id"]] for f in faults if f["id"] in rows]
+            write_csv(table, ordered)
+            write_page(options.results / "mutants.md", ordered)
+
+    with ThreadPoolExecutor(options.jobs) as pool:
+        list(pool.map(try_one, wanted))
+    caught = sum(row["kind"] in CAUGHT for row in done)
+    print(f"{caught} of {len(done)} faults caught; {table}, {options.results / 'mutants.md'}")
+    return 0 if caught == len(done) else 1
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("ids", nargs="*", metavar="ID", help="faults to try (default: all)")
+    parser.add_argument("--jobs", type=int, default=2, help="workers, each with a build of its own (default: 2)")
+    parser.add_argument("--results", type=Path, default=ROOT / "results", help="folder of mutants.csv and mutants.md")
+    parser.add_argument("--unit-tests-only", action="store_true", help="leave out the verification cases, with which some faults then survive")
+    parser.add_argument("--check-list", action="store_true", help="only check that every fault fits the source")
+    options = parser.parse_args()
+    try:
+        faults = read_faults()
+        unknown = set(options.ids) - {fault["id"] for fault in faults}
+        if unknown:
+            raise ListError(f"there is no fault {', '.join(sorted(unknown))}")
+        if options.check_list:
+            print(f"{len(faults)} faults fit the source")
+            return 0
+        return study(faults, [f for f in faults if not options.ids or f["id"] in options.ids], options)
+    except (ListError, tomllib.TOMLDecodeError) as error:
+        print(f"mutants: {error}", file=sys.stderr)
+        return 2
+
+
+if __name__ == "__main__":
+    sys.exit(main())
