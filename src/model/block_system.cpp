@@ -36,7 +36,6 @@ BlockSystem<N>::BlockSystem(const Scene& scene) : rotation_kind_(scene.method.ro
     Unknowns velocity = Unknowns::Zero();
     if (!input.fixed) {
       block.equation = free_count();
-      block.mobility = 1.0 / block.mass[0];
       free_blocks_.push_back(b);
       velocity << input.velocity, input.angular_velocity;
     }
@@ -94,7 +93,11 @@ double BlockSystem<N>::kinetic_energy() const {
 
 template <int N>
 double BlockSystem<N>::reduced_mass(int a, int b) const {
-  return 1.0 / (blocks_[a].mobility + blocks_[b].mobility);
+  double inverse = 0.0;
+  for (const int i : {a, b}) {
+    if (blocks_[i].equation >= 0) inverse += 1.0 / blocks_[i].mass[0];
+  }
+  return 1.0 / inverse;
 }
 
 template class BlockSystem<3>;

@@ -27,7 +27,6 @@ class BlockSystem {
     double radius = 0.0;  ///< [m] farthest vertex from the centroid
     bool rotation_locked = false;
     Unknowns mass = Unknowns::Zero();        ///< diagonal mass [kg, kg, kg m2]
-    double mobility = 0.0;                   ///< [1/kg] one over the mass, 0 if fixed
     Vec2 reference_centroid = Vec2::Zero();  ///< [m] relative to origin()
   };
 
