@@ -1,5 +1,5 @@
 # The front door. Needs nothing but make; what else is missing, the targets install. Settings: JOBS=2 (processes), PYTHON=/path/to/python3,
-# BENCH=quick (fewer sizes, steps and repeats of make bench).
+# BENCH=quick (make bench with fewer sizes, steps and repeats) or long (with more).
 
 JOBS ?= $(shell nproc)
 export JOBS PYTHON
@@ -10,7 +10,7 @@ REFERENCE := $(BUILD)/analytical/openclose-reference
 VERIFY := $(BUILD)/verification/openclose-verify
 CONVERGENCE := $(BUILD)/verification/openclose-convergence
 PAPER_RESULTS := results/paper
-BENCH_OPTIONS = $(if $(filter quick,$(BENCH)),--quick)
+BENCH ?= full
 COMPARISON := $(PAPER_RESULTS)/comparison.csv
 NULL_SOLVER := results/verify-null-solver.txt
 
@@ -49,11 +49,11 @@ convergence: build figure-packages ## measure the orders of convergence against 
 # Always anew: a time is of today. The test is of the rule that nothing wins with a large error.
 bench: bench-packages ## run time beside error, cost by size, what skips save (results/bench.md); a quarter of an hour, BENCH=quick: a few minutes
 	@OPTIONS=-DOPENCLOSE_BENCH=ON scripts/build release openclose openclose_reference openclose_bench
-	@python=$$(scripts/find-python) && "$$python" -m unittest -q bench/test_winner.py && "$$python" bench/bench.py $(BENCH_OPTIONS) --micro $(BUILD)/bench/openclose-bench
+	@python=$$(scripts/find-python) && "$$python" -m unittest -q bench/test_winner.py && "$$python" bench/bench.py --mode $(BENCH) --micro $(BUILD)/bench/openclose-bench
 
 bench-peers: peer-packages ## the same with Box2D and Chipmunk on the slope of example 3.4
 	@OPTIONS='-DOPENCLOSE_BENCH=ON -DOPENCLOSE_BENCH_PEERS=ON' scripts/build release openclose openclose_reference openclose_bench openclose_peers
-	@python=$$(scripts/find-python) && "$$python" bench/bench.py $(BENCH_OPTIONS) --micro $(BUILD)/bench/openclose-bench --peers $(BUILD)/bench
+	@python=$$(scripts/find-python) && "$$python" bench/bench.py --mode $(BENCH) --micro $(BUILD)/bench/openclose-bench --peers $(BUILD)/bench/openclose-peers
 
 sanitize: packages ## build with the address and undefined-behaviour sanitizers (build/sanitize) and run the unit tests
 	@scripts/build sanitize openclose_tests

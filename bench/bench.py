@@ -13,18 +13,20 @@ sys.path.insert(0, str(Path(__file__).parent.parent / "paper"))
 
 import failure  # noqa: E402  (the path comes first)
 import machine  # noqa: E402
+import micro  # noqa: E402
 import motion  # noqa: E402
+import peers  # noqa: E402
 import scaling  # noqa: E402
 import skips  # noqa: E402
 import statics  # noqa: E402
 import table_4  # noqa: E402
-from measure import Bench, write_csv  # noqa: E402
+from measure import MODES, Bench, write_csv  # noqa: E402
 from printed import read_printed  # noqa: E402
 from runs import Openclose, Reference, RunFailed  # noqa: E402
 
 EXIT_RUN_FAILED = 1
 EXIT_CANNOT_START = 2
-STUDIES = ("motion", "statics", "failure", "scaling", "skips", "table_4", "micro")
+STUDIES = ("motion", "statics", "failure", "scaling", "skips", "table_4", "micro", "peers")
 
 
 def parse_arguments() -> argparse.Namespace:
@@ -33,9 +35,9 @@ def parse_arguments() -> argparse.Namespace:
     parser.add_argument("--reference", type=Path, default=Path("build/release/analytical/openclose-reference"),
                         help="closed forms and reference ODE (default: %(default)s)")
     parser.add_argument("--micro", type=Path, help="the micro-benchmarks, openclose-bench")
-    parser.add_argument("--peers", type=Path, help="folder of the programs of other engines")
+    parser.add_argument("--peers", type=Path, help="the program that runs other engines, openclose-peers")
     parser.add_argument("--results", type=Path, default=Path("results"), help="folder to write (default: %(default)s)")
-    parser.add_argument("--quick", action="store_true", help="fewer sizes, steps and repeats")
+    parser.add_argument("--mode", choices=MODES, default="full", help="quick: fewer sizes, steps and repeats; long: 10,000 blocks after failure, too")
     parser.add_argument("--only", nargs="+", choices=STUDIES, default=STUDIES, help="these studies alone (default: all)")
     return parser.parse_args()
 
@@ -56,6 +58,10 @@ def run_studies(arguments: argparse.Namespace, bench: Bench, reference: Referenc
         "skips": lambda: skips.run(bench),
         "table_4": lambda: table_4.run(bench),
     }
+    if arguments.micro:
+        studies["micro"] = lambda: micro.run(arguments.micro, bench.quick, arguments.results / "bench" / "micro.json")
+    if arguments.peers:
+        studies["peers"] = lambda: peers.run(bench, reference, arguments.peers)
     for name, study in studies.items():
         if name in arguments.only:
             begin = time.monotonic()
@@ -73,13 +79,13 @@ def run(arguments: argparse.Namespace) -> None:
     folder = arguments.results / "bench"
     folder.mkdir(parents=True, exist_ok=True)
     openclose, reference = Openclose(arguments.openclose, folder / "runs"), Reference(arguments.reference)
-    description = machine.describe(arguments.openclose, commit(), "quick" if arguments.quick else "full")
-    bench = Bench(openclose, arguments.quick)
+    description = machine.describe(arguments.openclose, commit(), arguments.mode)
+    bench = Bench(openclose, arguments.mode)
     found = run_studies(arguments, bench, reference)
     write_csv(bench.rows, arguments.results / "bench.csv")
     machine.write(description, arguments.results / "bench_machine.json")
     printed = read_printed()
-    figures = figures_bench.draw(bench, printed, folder)
+    figures = figures_bench.draw(bench, found, printed, folder)
     page.write(bench, found, printed, description, figures, arguments.results / "bench.md")
     print(f"{len(bench.rows)} rows: {arguments.results / 'bench.csv'}; read {arguments.results / 'bench.md'}")
 

@@ -6,6 +6,7 @@ from pathlib import Path
 import failure
 import matplotlib.pyplot as plt
 import motion
+import peers
 import scaling
 import skips
 import statics
@@ -14,7 +15,8 @@ from drawing import METHOD_COLOUR, METHOD_MARKER, save
 from measure import Bench, Row
 from winner import LARGEST_ERROR
 
-SMALLEST_ERROR = 1e-9  # drawn there: rounding
+SMALLEST_ERROR = 1e-9  # smaller ones, rounding, are drawn there
+SMALLEST_SHOWN = 1e-4  # of a critical angle: finer than the brackets
 LEGEND_INCHES = 0.7  # below the panels
 COLOUR = {**METHOD_COLOUR, "soft shi": "#1f77b4", "soft theta 1/2": "#17becf", "soft generalized_alpha": "#e377c2", "soft tr_bdf2": "#bcbd22",
           "soft path_average": "#8c564b", "soft path_average adaptive": "#ff7f0e", "soft, 10 ms": "#8c564b"}
@@ -29,8 +31,8 @@ def _methods(rows: list[Row]) -> list[str]:
 def _spread(axes: plt.Axes, rows: list[Row], x: Callable[[Row], float], y: Callable[[Row], float], method: str) -> None:
     low = [y(r) * (1 - r.cpu_min_s / r.cpu_s) if r.cpu_s else 0.0 for r in rows]
     high = [y(r) * (r.cpu_max_s / r.cpu_s - 1) if r.cpu_s else 0.0 for r in rows]
-    axes.errorbar([x(r) for r in rows], [y(r) for r in rows], yerr=[low, high], color=COLOUR.get(method), marker=MARKER.get(method, "o"), markersize=5,
-                  linewidth=1.1, capsize=2, label=method)
+    axes.errorbar([x(r) for r in rows], [y(r) for r in rows], yerr=[low, high], color=COLOUR.get(method), marker=MARKER.get(method, "o"),
+                  markersize=5, linewidth=1.1, capsize=2, label=method)
 
 
 def _work_precision(axes: plt.Axes, rows: list[Row], title: str) -> None:
@@ -118,7 +120,8 @@ def _fig_10(bench: Bench, file: Path, printed: dict) -> bool:
             axes.plot(*zip(*points), color=COLOUR.get(method), marker=MARKER.get(method, "o"), label=f"{method}, here")
         points = [(d, paper[method]) for d, (_, _, paper) in zip(distances, found) if paper.get(method)]
         if points:
-            axes.plot(*zip(*points), color=COLOUR.get(method), linestyle="--", marker=MARKER.get(method, "o"), markerfacecolor="none", label=f"{method}, paper")
+            axes.plot(*zip(*points), color=COLOUR.get(method), linestyle="--", marker=MARKER.get(method, "o"), markerfacecolor="none",
+                      label=f"{method}, paper")
     axes.set_yscale("log")
     axes.set_xlabel("way of the toe block [m]")
     axes.set_ylabel("time over that of soft with 1 ms [-]")
@@ -127,7 +130,29 @@ def _fig_10(bench: Bench, file: Path, printed: dict) -> bool:
     return True
 
 
-def draw(bench: Bench, printed: dict, folder: Path) -> list[tuple[str, str]]:
+def _peers(found: peers.Findings | None, file: Path) -> bool:
+    if found is None:
+        return False
+    known = [c for c in found.compared if c.row.error is not None and c.per_second]
+    figure, axes = plt.subplots(figsize=(7, 4.4), constrained_layout=True)
+    for title, theirs, marker, colour in (("Openclose", False, "o", "#1f77b4"), ("other engines", True, "s", "#d62728")):
+        points = [(max(c.row.error, SMALLEST_SHOWN), c.per_second) for c in known if bool(c.settings) == theirs]
+        if points:
+            axes.plot(*zip(*points), linestyle="", marker=marker, color=colour, label=title)
+    for c in known:
+        axes.annotate(c.name, (max(c.row.error, SMALLEST_SHOWN), c.per_second), xytext=(8, -4), textcoords="offset points", fontsize=8)
+    axes.axvline(LARGEST_ERROR, color="#222222", linestyle="--", linewidth=1)
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.margins(x=0.25, y=0.1)
+    axes.legend(loc="lower left")
+    axes.set_xlabel("error of the critical coefficient of friction [-]; right of the dashed line nothing wins")
+    axes.set_ylabel("CPU time of a simulated second [s]")
+    save(figure, file)
+    return True
+
+
+def draw(bench: Bench, found: dict, printed: dict, folder: Path) -> list[tuple[str, str]]:
     """(section, file) of the figures that there are data for."""
     figures = [
         (motion.STUDY, "motion.png", lambda file: _panels(bench, motion.STUDY, file)),
@@ -137,5 +162,6 @@ def draw(bench: Bench, printed: dict, folder: Path) -> list[tuple[str, str]]:
         (scaling.SETTLING, "size.png", lambda file: _by_size(bench, file)),
         ("stages", "stages.png", lambda file: _stages(bench, file)),
         (table_4.STUDY, "fig_10.png", lambda file: _fig_10(bench, file, printed)),
+        (peers.STUDY, "other_engines.png", lambda file: _peers(found.get("peers"), file)),
     ]
     return [(section, name) for section, name, make in figures if make(folder / name)]

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from runs import Case, Openclose, RunFailed
 
+MODES = ("quick", "full", "long")
 CPU_LIMIT_S = 120
 # Repeats by what the first run took: the spread of long runs is small, and the whole is to end.
 REPEATS = ((1.0, 5), (10.0, 3), (float("inf"), 1))
@@ -27,6 +28,7 @@ class Trial:
     error_of: str
     error: Callable[[Case], float | None]
     dt: float | None = None
+    starts: tuple[Case, ...] = ()  # instead of repeats of the case: the same from slightly different starts, the case itself first
     steps_before: int = 0       # of settling, which are not part of the cost
     iterations_before: int = 0
 
@@ -61,11 +63,15 @@ def closed_contacts(openclose: Openclose, case: Case) -> int:
 class Bench:
     """Keeps the rows of all studies and how often to repeat."""
 
-    def __init__(self, openclose: Openclose, quick: bool):
+    def __init__(self, openclose: Openclose, mode: str):
         self.openclose = openclose
-        self.quick = quick
+        self.mode = mode  # one of MODES
         self.rows: list[Row] = []
         self._summaries: dict[str, list[dict]] = {}
+
+    @property
+    def quick(self) -> bool:
+        return self.mode == "quick"
 
     def measure(self, trials: list[Trial]) -> list[Row]:
         """Round after round through all trials, so that what slows the machine down for a while slows them all down."""
@@ -73,17 +79,15 @@ class Bench:
             return []
         print(f"  {trials[0].study}: {len(trials)} runs, repeated", flush=True)
         runs: dict[str, list[dict]] = {trial.case.name: [] for trial in trials}
-        errors: dict[str, float | None] = {}
         for turn in range(max(count for _, count in REPEATS)):
             for trial in trials:
                 done = runs[trial.case.name]
-                if turn and len(done) >= self._repeats(self._cpu(trial, done[0])):
+                if turn and len(done) >= self._repeats(trial, done[0]):
                     continue
-                done.append(self.run(trial.case))
-                if turn == 0 and not _reason(done[0]):
-                    errors[trial.case.name] = trial.error(trial.case)
+                done.append(self.run(trial.starts[turn] if trial.starts else trial.case))
                 if sys.stderr.isatty():
                     print(f"\r  round {turn + 1}: {trial.method:40}", end="", file=sys.stderr)
+        errors = {t.case.name: t.error(t.case) for t in trials if not any(_reason(run) for run in runs[t.case.name])}
         rows = [self._row(trial, runs[trial.case.name], errors.get(trial.case.name)) for trial in trials]
         self._summaries |= runs
         self.rows += rows
@@ -108,10 +112,13 @@ class Bench:
     def of(self, study: str, scene: str | None = None) -> list[Row]:
         return [row for row in self.rows if row.study == study and scene in (None, row.scene)]
 
-    def _repeats(self, cpu: float | None) -> int:
+    def _repeats(self, trial: Trial, first: dict) -> int:
         """A run that failed is not tried again."""
+        cpu = self._cpu(trial, first)
         if cpu is None:
             return 1
+        if trial.starts:
+            return len(trial.starts)
         count = next(count for limit, count in REPEATS if cpu <= limit)
         return min(count, QUICK_REPEATS) if self.quick else count
 
@@ -121,7 +128,7 @@ class Bench:
 
     def _row(self, trial: Trial, runs: list[dict], error: float | None) -> Row:
         first = runs[0]
-        reason = _reason(first)
+        reason = next((found for run in runs if (found := _reason(run))), "")
         counters = first.get("counters", {})
         cpu = [] if reason else [run["cpu_s"][trial.cost] for run in runs]
         steps = counters.get("steps")

@@ -68,16 +68,18 @@ def scenes(reference: Reference) -> list[Scene]:
               (("method.start", "normal_balanced"), ("joint[0].friction_angle_deg", incline.MAIN_ANGLE_DEG), ("step.max_displacement_m", 1.0)),
               0.02, sliding_every, inputs.normal_stiffness, _along(inputs.slope_angle_deg),
               lambda: table("incline", slide, "displacement_m"), lambda: table("incline", slide, "rigid_displacement_m"), way,
-              "place along the slope, largest in 3 s, over the way"),
+              "place along the slope, largest in 3 s, over the way; of hard against rigid contact"),
         Scene("D2 bounce", _SCENES / "bounce.toml", _SCENES / "bounce.toml", (), 8e-3, bounce_every, 50e6,
               lambda row: float(row["displacement_y_m"]), lambda: table("bounce", bounce, "height_m", -1.0), None, 1.0,
               "height, largest in 2 s, over the fall", "rigid contacts do not rebound"),
         Scene("D5 rocking", _SCENES / "rocking.toml", _SCENES / "rocking_rigid.toml", (), 5e-3, rocking_every, 200e6,
               lambda row: float(row["rotation_rad"]), lambda: table("rocking", rocking, "rotation_rad", -lean),
-              lambda: table("rocking", rocking, "rigid_rotation_rad", -lean), lean, "angle, largest in 0.35 s, over that of the release"),
+              lambda: table("rocking", rocking, "rigid_rotation_rad", -lean), lean,
+              "angle, largest in 0.35 s, over that of the release; of hard against Housner's block"),
         Scene("C2 harmonic incline", _SCENES / "shaken_incline.toml", _SCENES / "shaken_incline.toml", (), 1.25e-2, shaken_every, 50e6,
               _along(SLOPE_DEG), lambda: table("shaken-incline", shaken, "displacement_m"),
-              lambda: table("shaken-incline", shaken, "rigid_displacement_m"), slip, "place along the slope, largest in 1 s, over the slip"),
+              lambda: table("shaken-incline", shaken, "rigid_displacement_m"), slip,
+              "place along the slope, largest in 1 s, over the slip; of hard against Newmark's block"),
     ]
 
 
@@ -97,7 +99,8 @@ def _trial(bench: Bench, scene: Scene, method: Method, exact: Path_, dt: float, 
     name = f"{scene.name}-{method.name}-{dt if tolerance is None else tolerance:g}"
     if tolerance is not None:
         settings.append(("step.error_tolerance_m", tolerance))
-    case = Case(f"motion-{name}".replace(" ", "_").replace("/", "_"), "run", scene.rigid_file if method.rigid else scene.file, tuple(settings), CPU_LIMIT_S)
+    file = scene.rigid_file if method.rigid else scene.file
+    case = Case(f"motion-{name}".replace(" ", "_").replace("/", "_"), "run", file, tuple(settings), CPU_LIMIT_S)
     return Trial(STUDY, scene.name, method.name, case, "motion", scene.error_of, _error(bench, scene, exact), None if method.adaptive else dt)
 
 

@@ -3,7 +3,9 @@
 from pathlib import Path
 
 import failure
+import micro
 import motion
+import peers
 import scaling
 import skips
 import statics
@@ -40,7 +42,8 @@ def _winners(bench: Bench, study: str) -> str:
             w = verdict.winner
             others = ", ".join(f"{name} {number(ratio)}{' (spreads overlap)' if name in verdict.tied else ''}" for name, ratio in
                                sorted(verdict.ratios.items(), key=lambda item: item[1]))
-            lines.append([scene, number(error), f"**{w.method}**", number(w.dt_s), f"{number(1e3 * w.cpu_s)} ({_spread(w)})", number(w.error), others])
+            lines.append([scene, number(error), f"**{w.method}**", number(w.dt_s), f"{number(1e3 * w.cpu_s)} ({_spread(w)})", number(w.error),
+                          others])
     return _table(["scene", "error at most", "winner", "dt [s]", "CPU [ms]", "its error", "the others, over the winner"], lines)
 
 
@@ -69,7 +72,8 @@ def _comparison(bench: Bench, study: str) -> str:
 
 
 def _all_runs(bench: Bench, study: str) -> str:
-    return "\n" + _rows(bench.of(study), ["scene", "method", "dt [s]", "steps", "iterations", "CPU [ms]", "spread", "error", "deepest [m]"], lambda r: [
+    head = ["scene", "method", "dt [s]", "steps", "iterations", "CPU [ms]", "spread", "error", "deepest [m]"]
+    return "\n" + _rows(bench.of(study), head, lambda r: [
         r.scene, r.method, number(r.dt_s), str(r.steps), str(r.iterations), number(1e3 * r.cpu_s), _spread(r), number(r.error),
         number(r.max_penetration_m)])
 
@@ -120,15 +124,47 @@ def _table_4(bench: Bench, printed: dict) -> str:
             + _table(["", *names], lines) + _failed(bench, table_4.STUDY))
 
 
-def _failure(bench: Bench, findings) -> str:
+def _failure(bench: Bench, findings: failure.Findings | None) -> str:
     text = ""
     if findings:
-        text = (f"The reference and the same with twice its step differ by {100 * findings.converged:.2g} % of the times (mean of the starts), starts that "
-                f"differ by {failure.PERTURBATION:g} in strength by up to {100 * findings.reference.spread:.2g} %: where that is more than the step's "
-                "error, the motion is chaotic and a single run tells its times no better than that.\n\n")
-        text += _table(["method", "step [s], dem: fraction", "10 m [s]", "20 m", "30 m", "40 m", "half the spread of the starts"],
-                       [[m, number(v), *(f"{t:.4f}" for t in a.times), f"{100 * a.spread:.2g} %"] for (m, v), a in findings.spreads.items()]) + "\n"
+        text = (f"The reference and the same with twice its step differ by {100 * findings.converged:.2g} % of the times. Starts that differ by "
+                f"{failure.PERTURBATION:g} in strength spread its times by {100 * findings.reference.spread:.2g} %, those of the other runs as the "
+                "table says: a run is no surer than that, and where it is much more than the step's error the motion is chaotic. Times are means "
+                "over the starts.\n\n")
+        text += _table(["method", "step [s]; dem: part of the critical", "10 m [s]", "20 m", "30 m", "40 m", "half the spread of the starts"],
+                       [[m, number(v), *(f"{t:.4f}" for t in a.times), f"{100 * a.spread:.2g} %"] for (m, v), a in findings.arrivals.items()]) + "\n"
     return text + _comparison(bench, failure.STUDY)
+
+
+def _peers(findings: peers.Findings) -> str:
+    volume = findings.constant_volume_deg
+    text = (f"Slope of example 3.4 without cohesion, gravity dropped on it, {peers.ANGLE_DEG:.2f} degrees of friction, {peers.END_S:g} s. The angle "
+            f"at which it just stands is {findings.exact_deg:.2f} degrees by limit analysis with sliding at the friction angle"
+            f"{f', {volume:.2f} at constant volume' if volume else ''}; the engines are asked by bisection to {peers.WIDTH_DEG:g} degrees whether "
+            f"any block moves {peers.STANDS_M:g} m, ours by strength reduction. Penetration is what each program's own contacts tell. `dem` counts "
+            "its own steps.\n\n")
+    lines = [[c.name, number(c.row.dt_s), f"{number(1e3 * c.step)} ({_spread(c.row)})" if c.step else "-", number(c.per_second),
+              number(1e6 * c.iteration) if c.iteration else "-", number(c.critical_deg, 4),
+              "-" if c.row.error is None else f"{100 * c.row.error:.2g} %", number(c.row.max_penetration_m), c.row.reason] for c in findings.compared]
+    head = ["", "dt [s]", "a step [ms]", "a simulated second [s]", "a Newton iteration [us]", "critical angle [degrees]", "its error (tan)",
+            "deepest penetration [m]", "reason"]
+    return (text + _table(head, lines) + "\n" + "\n".join(f"- {c.name}: {c.settings}" for c in findings.compared if c.settings) + "\n")
+
+
+def _micro(timed: list[micro.Timed]) -> str:
+    sizes = list(dict.fromkeys(t.blocks for t in timed))
+    names = list(dict.fromkeys(t.name for t in timed))
+    of = {(t.name, t.blocks): t for t in timed}
+
+    def cell(t: micro.Timed | None) -> str:
+        if t is None:
+            return "-"
+        return f"{number(1e6 * t.cpu)} ({100 * t.variation:.0f} %)" + (f", {t.iterations} iterations" if t.iterations else "")
+
+    return ("Microseconds of CPU time, median of repeats in random order (standard deviation); the slope of example 3.4 half a second into failure. "
+            "`residual` is the forces of all contacts and blocks at a position, `assembly` the contacts' derivatives into the matrix, `factor` and "
+            "`solve` the block solver for up to 3,000 blocks, `step_of_soft` a whole step from its start with the solver that the program takes.\n\n"
+            + _table(["", *(f"{n:,} blocks" for n in sizes)], [[name, *(cell(of.get((name, n))) for n in sizes)] for name in names]))
 
 
 def write(bench: Bench, found: dict, printed: dict, description: dict, figures: list[tuple[str, str]], file: Path) -> None:
@@ -142,10 +178,11 @@ def write(bench: Bench, found: dict, printed: dict, description: dict, figures: 
 
     d = description
     head = (f"# Benchmarks\n\n{d['version']} ({d['commit']}), {d['compiler']}, {d['build_type']}{', tuned' if d['tuned'] else ''}; {d['processor']}, "
-            f"{d['processors']} processors, load {d['load_average_at_start']:.1f} at the start; {d['system']}. One thread, CPU time, medians of repeats "
-            f"made in turn ({d['mode']}). Every row: `bench.csv`. Nothing with an error above {100 * LARGEST_ERROR:g} % wins.\n")
+            f"{d['processors']} processors, load {d['load_average_at_start']:.1f} at the start; {d['system']}. One thread, CPU time, medians of "
+            f"repeats made in turn ({d['mode']}). Every row: `bench.csv`. Nothing with an error above {100 * LARGEST_ERROR:g} % wins.\n")
     goals = targets.measured(bench, found)
-    text = head + "\n## Asked and measured\n\n" + _table(["what", "asked", "measured", "kept"], [[t.what, t.asked, t.measured, t.verdict] for t in goals])
+    text = head + "\n## Asked and measured\n\n"
+    text += _table(["what", "asked", "measured", "kept"], [[t.what, t.asked, t.measured, t.verdict] for t in goals])
     text += section("Single blocks in motion", motion.STUDY, lambda: _comparison(bench, motion.STUDY))
     text += section("Static equilibrium from nothing", statics.EQUILIBRIUM,
                     lambda: _comparison(bench, statics.EQUILIBRIUM) + _all_runs(bench, statics.EQUILIBRIUM))
@@ -156,4 +193,8 @@ def write(bench: Bench, found: dict, printed: dict, description: dict, figures: 
     if bench.of(skips.STUDY):
         text += "\n## Time by stage\n\n" + _stages(bench) + (f"\n![Time by stage](bench/{drawn['stages']})\n" if "stages" in drawn else "")
     text += section("Table 4 and Fig. 10", table_4.STUDY, lambda: _table_4(bench, printed))
+    if found.get("micro"):
+        text += "\n## Parts of a step\n\n" + _micro(found["micro"])
+    if found.get("peers"):
+        text += "\n## Other engines\n\n" + _peers(found["peers"]) + "\n![Other engines](bench/other_engines.png)\n"
     file.write_text(text, encoding="utf-8")

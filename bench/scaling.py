@@ -45,8 +45,9 @@ def run(bench: Bench) -> None:
         stopped |= {row.method for row in settled if row.reason}
         before = {row.method: row for row in settled if not row.reason}
         # The one step that follows settling there is one of the steps here.
-        bench.measure([Trial(MOTION, name, m.name, _move(m, blocks), "motion", "", lambda _: None, DT_S, before[m.name].steps - 1,
-                             before[m.name].iterations) for m in methods if m.name in before])
+        bench.measure([Trial(MOTION, name, m.name, _move(m, blocks), "motion", "", lambda _: None, DT_S,
+                             steps_before=before[m.name].steps - 1, iterations_before=before[m.name].iterations)
+                       for m in methods if m.name in before])
 
 
 @dataclass(frozen=True)

@@ -17,6 +17,7 @@ METHODS = (SOFT, HARD, SHI, DEM)
 # What is left unbalanced, over the weight of the heaviest block; the converged state has less than all of them.
 FRACTIONS = (1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8)
 CONVERGED_FRACTION = 1e-10
+ERROR_OF = f"place of any vertex against the method's own converged state (unbalanced {CONVERGED_FRACTION:g}), over the settlement of soft"
 WIDTH = 0.005
 TIGHT = (("strength_reduction.width", 1e-4), ("settle.failure_displacement_m", 1.0))
 EXTRA: dict[str, Settings] = {"shi": (("settle.max_steps", SHI_SETTLE_STEPS),)}
@@ -61,8 +62,7 @@ def _equilibrium(bench: Bench, scene: str) -> None:
             continue
         state = _settlement(bench, converged)
         scale = _largest(state) if scale is None else scale
-        trials += [Trial(EQUILIBRIUM, scene, method.name, settling(scene, method, f), "start", "place of any vertex against the method's own converged "
-                         f"state (unbalanced {CONVERGED_FRACTION:g}), over the settlement of soft", _distance_from(bench, state, scale))
+        trials += [Trial(EQUILIBRIUM, scene, method.name, settling(scene, method, f), "start", ERROR_OF, _distance_from(bench, state, scale))
                    for f in FRACTIONS]
     bench.measure(trials)
 

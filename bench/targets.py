@@ -2,10 +2,12 @@
 
 from dataclasses import dataclass
 
+import failure
+import peers
 import scaling
 import statics
 from measure import Bench, Row
-from winner import fastest
+from winner import LARGEST_ERROR, fastest
 
 LARGEST_PENETRATION_M = 1e-6
 
@@ -34,6 +36,10 @@ def _at_most(what: str, value: float | None, asked: float, unit: str = "", note:
     return Target(what, f"<= {asked:g}{unit}", "-" if value is None else f"{value:.3g}{unit}{note}", None if value is None else value <= asked)
 
 
+def _note(implicit: Row, explicit: Row) -> str:
+    return f" ({implicit.method} {1e3 * implicit.cpu_s:.3g} ms, error {implicit.error:.1g}; dem {1e3 * explicit.cpu_s:.3g} ms, {explicit.error:.1g})"
+
+
 def _against_dem(bench: Bench, study: str, scene: str, what: str, asked: float) -> Target:
     """The fastest implicit run that may win over the fastest explicit one that may."""
     rows = bench.of(study, scene)
@@ -42,14 +48,29 @@ def _against_dem(bench: Bench, study: str, scene: str, what: str, asked: float) 
         return _at_least(what, None, asked)
     if explicit is None:
         failed = next((r for r in rows if r.method == "dem" and r.cpu_s and r.error is not None), None)
-        target = _at_least(what, failed.cpu_s / implicit.cpu_s if failed else None, asked, f"; dem's error {failed.error:.2g} is no match" if failed else "")
-        return target
-    return _at_least(what, explicit.cpu_s / implicit.cpu_s, asked,
-                     f" ({implicit.method} {1e3 * implicit.cpu_s:.3g} ms, error {implicit.error:.1g}; dem {1e3 * explicit.cpu_s:.3g} ms, {explicit.error:.1g})")
+        if failed is None:
+            return _at_least(what, None, asked)
+        return _at_least(what, failed.cpu_s / implicit.cpu_s, asked, f"; dem's error {failed.error:.2g} is no match")
+    return _at_least(what, explicit.cpu_s / implicit.cpu_s, asked, _note(implicit, explicit))
 
 
-def _failure(bench: Bench) -> Target:
-    return _against_dem(bench, "failure", "3.4 in failure", "40 m after failure, 482 blocks: dem over implicit", 1.0)
+def _failure(bench: Bench, scene: str, what: str, floor: float) -> Target:
+    """At equal error: the fastest run of dem that may win, over the fastest implicit one with no larger error. Errors below `floor`, what the
+    reference is sure of, are equal."""
+    rows = bench.of(failure.STUDY, scene)
+    explicit = _of(rows, "dem")
+    if explicit is None:
+        return _at_least(what, None, 1.0)
+    implicit = fastest([r for r in rows if r.method != "dem"], max(explicit.error, floor))
+    if implicit is None:
+        return Target(what, ">= 1 x", f"no implicit run has dem's error, {explicit.error:.1g}", False)
+    return _at_least(what, explicit.cpu_s / implicit.cpu_s, 1.0, _note(implicit, explicit))
+
+
+def _failures(bench: Bench, findings: failure.Findings | None) -> list[Target]:
+    floor = findings.converged if findings else 0.0
+    found = [_failure(bench, failure.SCENE, "40 m after failure at equal error, 482 blocks: dem over implicit", floor)]
+    return found + [_failure(bench, failure.large_scene(n), f"the same, {n:,} blocks", floor) for n in failure.LARGE["long"]]
 
 
 def _hard(bench: Bench) -> list[Target]:
@@ -68,15 +89,40 @@ def _sizes(bench: Bench) -> list[Target]:
     fits = {(f.method, f.what): f.value for f in scaling.fits(bench)}
     settled = [r for r in bench.of(scaling.SETTLING) if r.method == "soft"]
     largest = next((r for r in settled if r.scene == "3.4 of 100000"), None)
-    memory = max((r.peak_memory_bytes / r.blocks for r in settled if not r.reason and r.blocks >= 1000), default=None)
     found = [_at_most("soft: exponent of a step of motion, 500 to 50,000 blocks", fits.get(("soft", "a step of motion")), 1.2),
              _at_most("soft: exponent of settling, 500 to 50,000 blocks", fits.get(("soft", "settling")), 1.2)]
     if largest is None:
         found.append(Target("100,000 blocks settle", "yes", "-", None))
     else:
         found.append(Target("100,000 blocks settle", "yes", largest.reason or f"{largest.blocks:,} in {largest.cpu_s:.3g} s", not largest.reason))
-    found.append(_at_most("soft: memory in all, most of the sizes from 1,000 blocks", None if memory is None else memory / 1e3, 12, " kB a block"))
-    return found
+    return [*found, _memory(bench, "soft", "memory in all: soft", 12.0), _memory(bench, "dem", "memory without the factor: dem, which has none", 2.0)]
+
+
+def _memory(bench: Bench, method: str, what: str, asked_kb: float) -> Target:
+    """Of the process while it settles the largest slope that it settles, program and input included."""
+    rows = [r for r in bench.of(scaling.SETTLING) if r.method == method and not r.reason]
+    if not rows:
+        return _at_most(what, None, asked_kb, " kB a block")
+    row = max(rows, key=lambda r: r.blocks)
+    return _at_most(what, row.peak_memory_bytes / row.blocks / 1e3, asked_kb, " kB a block", f" ({row.blocks:,} blocks)")
+
+
+def _peers(findings: peers.Findings | None) -> list[Target]:
+    what = ("a Newton iteration of soft (residual, assembly, factor, solve) over a step of Box2D",
+            "a simulated second: Box2D over ours, with ours right in the "
+            f"critical friction angle to {100 * LARGEST_ERROR:g} %")
+    if findings is None:
+        return [Target(what[0], "<= 1/18", "- (make bench-peers)", None), Target(what[1], ">= 5 x", "- (make bench-peers)", None)]
+    box2d = next(c for c in findings.compared if c.name.startswith("Box2D"))
+    ours = [c for c in findings.compared if not c.name.startswith(("Box2D", "Chipmunk"))]
+    iteration = min((c.iteration for c in ours if c.iteration and c.name.startswith("soft")), default=None)
+    best = fastest([c.row for c in ours])
+    found = [Target(what[0], "<= 1/18", "-", None) if iteration is None else
+             Target(what[0], "<= 1/18", f"1/{box2d.step / iteration:.3g}", box2d.step / iteration >= 18)]
+    if best is None:
+        return [*found, Target(what[1], ">= 5 x", "none of ours has the critical angle", False)]
+    return [*found, _at_least(what[1], box2d.row.cpu_s / best.cpu_s, 5.0, f" ({best.method}, its error {best.error:.1g}, that of Box2D "
+                              f"{'unknown' if box2d.row.error is None else f'{box2d.row.error:.1g}'})")]
 
 
 def measured(bench: Bench, found: dict) -> list[Target]:
@@ -84,7 +130,8 @@ def measured(bench: Bench, found: dict) -> list[Target]:
         _against_dem(bench, statics.EQUILIBRIUM, "3.3", "3.3, static equilibrium from nothing: dem over implicit", 20),
         _against_dem(bench, statics.EQUILIBRIUM, "3.4", "3.4, static equilibrium from nothing: dem over implicit", 20),
         _against_dem(bench, statics.REDUCTION, "3.4", "3.4, strength reduction to 0.005: dem over implicit", 20),
-        _failure(bench),
+        *_failures(bench, found.get("failure")),
         *_hard(bench),
         *_sizes(bench),
+        *_peers(found.get("peers")),
     ]

@@ -10,7 +10,7 @@ ERRORS = (1e-2, 1e-3, 1e-4)
 
 @dataclass(frozen=True)
 class Verdict:
-    """The fastest of a comparison at an error, and by how much each other method that gets there is slower (its own fastest run over the winner's)."""
+    """The fastest of a comparison at an error, and how much slower each other method is that gets there (its own fastest run over the winner's)."""
 
     error: float
     winner: Row | None

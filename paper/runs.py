@@ -43,7 +43,7 @@ def _run_process(arguments: list[str], cpu_limit_s: int | None = None) -> subpro
         raise RunFailed(f"cannot run {arguments[0]}: {error.strerror}") from error
 
 
-def _call(arguments: list[str]) -> str:
+def call(arguments: list[str]) -> str:
     done = _run_process(arguments)
     if done.returncode != DONE:
         raise RunFailed(f"exit status {done.returncode} from: {' '.join(arguments)}\n{done.stderr.strip()}")
@@ -70,7 +70,7 @@ class Openclose:
         if case.command == "cut":
             output.parent.mkdir(parents=True, exist_ok=True)
         if case.cpu_limit_s is None:
-            _call(arguments)
+            call(arguments)
         else:
             self._run_limited(case, arguments)
 
@@ -122,7 +122,7 @@ class Reference:
         arguments = [str(self._executable), command, *flags]
         for key, value in options.items():
             arguments += [f"--{key}", str(value)]
-        return list(csv.DictReader(io.StringIO(_call(arguments))))
+        return list(csv.DictReader(io.StringIO(call(arguments))))
 
 
 def outlines(rows: list[dict[str, str]], state: str) -> dict[str, list[tuple[float, float]]]:

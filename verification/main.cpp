@@ -144,7 +144,8 @@ int run_all(const Options& options) {
 int main(int argc, char** argv) {
   CLI::App app{"Verification of Openclose against closed forms and reference solutions"};
   openclose::verification::Options options;
-  app.add_option("--results", options.folder, "folder of verify.csv, verify_series.csv and verify_cases.csv");
+  app.add_option("--results", options.folder, "folder of verify.csv, verify_series.csv and verify_cases.csv, which then hold the cases of this run")
+      ->capture_default_str();
   app.add_option("cases", options.wanted, "names of cases, e.g. B1 E1 (default: all)");
   auto* null_solver =
       app.add_flag("--null-solver", options.null_solver, "replace the solver by one that does nothing and expect every check to fail");

@@ -1,6 +1,7 @@
 #include "openclose/analysis/energy_ledger.h"
 
 #include <cmath>
+#include <vector>
 
 namespace openclose {
 namespace {
@@ -63,14 +64,15 @@ void add_step(EnergyLedger& ledger, const StepProblem<N>& problem, const StepSol
   const BlockSystem<N>& system = problem.system;
   const double dt = problem.dt, theta = problem.end_weight;
   // A static step starts from rest, whatever the scheme, and drops its kinetic energy at the end.
-  const auto work_displacement = [&](int b) -> Unknowns {
+  std::vector<Unknowns> work_displacement(system.block_count());
+  for (int b = 0; b < system.block_count(); ++b) {
     const Unknowns d = solution.of(system, b);
-    return problem.statics ? d : scheme.work_displacement(b, dt, d, system.velocity(b));
-  };
+    work_displacement[b] = problem.statics ? d : scheme.work_displacement(b, dt, d, system.velocity(b));
+  }
 
   for (int b : system.free_blocks()) {
     const auto& mass = system.block(b).mass;
-    const Unknowns d = solution.of(system, b), path = work_displacement(b), v0 = problem.velocity(b);
+    const Unknowns d = solution.of(system, b), path = work_displacement[b], v0 = problem.velocity(b);
     const Unknowns v1 = problem.statics ? Unknowns(2.0 / dt * d) : scheme.next_velocity(b, dt, d, v0);
     const double before = 0.5 * v0.dot(mass.cwiseProduct(v0)), after = 0.5 * v1.dot(mass.cwiseProduct(v1));
     if (problem.statics) {
@@ -89,7 +91,7 @@ void add_step(EnergyLedger& ledger, const StepProblem<N>& problem, const StepSol
     for (const auto& f : forces) {
       const int b = system.point_block(f.point);
       if (system.block(b).equation < 0) continue;
-      const Unknowns d = solution.of(system, b), path = work_displacement(b);
+      const Unknowns d = solution.of(system, b), path = work_displacement[b];
       const Vec2 arm0 = system.point_arm(f.point);
       const Vec2 moved = Motion<N>::displacement(d, arm0, system.rotation_kind());
       const Vec2 arm1 = arm0 + moved - Motion<N>::translation(d);
@@ -110,7 +112,7 @@ void add_step(EnergyLedger& ledger, const StepProblem<N>& problem, const StepSol
   for (std::size_t c = 0; c < problem.contacts.size(); ++c) {
     const Contact& contact = problem.contacts[c];
     const ContactOutcome<N>& end = solution.contacts[c];
-    const Unknowns pv = work_displacement(contact.vertex_block), pe = work_displacement(contact.edge_block);
+    const Unknowns &pv = work_displacement[contact.vertex_block], &pe = work_displacement[contact.edge_block];
     const auto path = [&](const Unknowns& on_vertex, const Unknowns& on_edge) { return on_vertex.dot(pv) + on_edge.dot(pe); };
     if (!solution.paths.empty()) {
       const PathOutcome<N>& mean = solution.paths[c];

@@ -39,6 +39,12 @@ int differences(const std::vector<signed char>& a, const std::vector<signed char
   return std::inner_product(a.begin(), a.end(), b.begin(), 0, std::plus<>(), std::not_equal_to<>());
 }
 
+/// Whether the forces are already on the linear piece of their law that holds in this status; sliding has several.
+bool is_on_piece(const ContactForces& f, ContactStatus status) {
+  if (f.status != status) return false;
+  return status == ContactStatus::open || (status == ContactStatus::sticking && f.normal_by_gap != 0.0);
+}
+
 signed char branch(const ContactForces& f) {
   const bool backward = f.status == ContactStatus::sliding && f.shear < 0.0;
   return static_cast<signed char>(backward ? -sliding_branch : static_cast<int>(f.status));
@@ -332,8 +338,9 @@ void Newton<N>::take_last_states() {
     const ContactSprings springs = seen_springs(c);
     const ContactPose<N>& pose = trials_[c].pose;
     const bool touching = contact.status == ContactStatus::open && springs.gap <= 0.0;
-    replace_forces(c, prolonged(springs, contacts_[c].strength, touching ? ContactStatus::sticking : contact.status, contact.normal_force,
-                                contact.shear_force, pose.gap_change, pose.slip_change));
+    const ContactStatus status = touching ? ContactStatus::sticking : contact.status;
+    if (paths_.empty() && is_on_piece(trials_[c].forces, status)) continue;
+    replace_forces(c, prolonged(springs, contacts_[c].strength, status, contact.normal_force, contact.shear_force, pose.gap_change, pose.slip_change));
   }
 }
 

@@ -4,21 +4,19 @@ namespace openclose {
 
 template <int N>
 bool TangentSystem<N>::find_slots(const StepProblem<N>& problem) {
-  slots_.clear();
-  std::pair<int, int> last{-1, -1};
-  ContactSlots slots;
-  for (const Contact& c : problem.contacts) {
-    const int i = problem.system.block(c.vertex_block).equation, j = problem.system.block(c.edge_block).equation;
-    if (const std::pair pair{i, j}; pair != last) {  // contacts of one pair mostly follow one another
-      last = pair;
-      slots = {i < 0 ? -1 : matrix_.diagonal(i), j < 0 ? -1 : matrix_.diagonal(j), -1, -1};
-      if (i >= 0 && j >= 0) {
-        slots.vertex_edge = matrix_.find(i, j);
-        slots.edge_vertex = matrix_.find(j, i);
-        if (slots.vertex_edge < 0) return false;
-      }
-    }
-    slots_.push_back(slots);
+  const std::size_t known = slots_.size();
+  slots_.resize(problem.contacts.size());
+  for (std::size_t c = 0; c < slots_.size(); ++c) {
+    ContactSlots& slots = slots_[c];
+    const int i = problem.system.block(problem.contacts[c].vertex_block).equation, j = problem.system.block(problem.contacts[c].edge_block).equation;
+    if (c < known && slots.vertex_row == i && slots.edge_row == j) continue;  // most contacts have their places of the last step
+    slots = {i, j, i < 0 ? -1 : matrix_.diagonal(i), j < 0 ? -1 : matrix_.diagonal(j), -1, -1};
+    if (i < 0 || j < 0) continue;
+    slots.vertex_edge = matrix_.find(i, j);
+    slots.edge_vertex = matrix_.find(j, i);
+    if (slots.vertex_edge >= 0) continue;
+    slots_.clear();
+    return false;
   }
   return true;
 }
@@ -40,6 +38,7 @@ void TangentSystem<N>::fit(const StepProblem<N>& problem) {
 template <int N>
 void TangentSystem<N>::set_pattern(int rows, const std::vector<std::pair<int, int>>& couplings) {
   matrix_.set_pattern(rows, couplings);
+  slots_.clear();
   if (!solver_) solver_ = make_solver<N>(rows, kind_);
 }
 

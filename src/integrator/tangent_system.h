@@ -8,6 +8,7 @@ namespace openclose {
 
 /// Slots of the matrix that a contact's stiffness goes to; -1 where a block is fixed.
 struct ContactSlots {
+  int vertex_row = -1, edge_row = -1;
   int vertex = -1, edge = -1;
   int vertex_edge = -1, edge_vertex = -1;
 };

@@ -9,7 +9,8 @@ void ContactStrength::break_bond(const JointProperties& joint) {
 
 ContactDashpots::ContactDashpots(const JointProperties& joint, double length, double reduced_mass)
     : normal(2.0 * joint.damping_ratio * std::sqrt(joint.normal_stiffness * length * reduced_mass)),
-      shear(2.0 * joint.damping_ratio * std::sqrt(joint.shear_stiffness * length * reduced_mass)) {}
+      shear(joint.shear_stiffness == joint.normal_stiffness ? normal
+                                                            : 2.0 * joint.damping_ratio * std::sqrt(joint.shear_stiffness * length * reduced_mass)) {}
 
 ContactForces tangent_for_status(const ContactSprings& springs, const ContactStrength& strength, ContactStatus status, double normal, double shear) {
   ContactForces f;

@@ -29,8 +29,7 @@ Scene scene_of(const std::string& method, double theta, double dt) {
 }
 
 /// Displacement from equilibrium and velocity after some steps from given ones.
-std::array<double, 2> follow(const Report& report, const Scene& scene, double displacement, double velocity, int steps) {
-  RigidSimulation simulation = report.simulate(scene);
+std::array<double, 2> follow(RigidSimulation& simulation, double displacement, double velocity, int steps) {
   if (!settle(simulation).settled) return {not_measured(), not_measured()};
   const Vec2 rest = simulation.system().centroid(1);
   simulation.system().advance(1, {0.0, displacement, 0.0});
@@ -38,9 +37,14 @@ std::array<double, 2> follow(const Report& report, const Scene& scene, double di
   simulation.positions_changed();
   simulation.restart_clock();
   for (int i = 0; i < steps; ++i) {
-    if (!simulation.step(scene.step.dt, false).accepted) return {not_measured(), not_measured()};
+    if (!simulation.step(simulation.scene().step.dt, false).accepted) return {not_measured(), not_measured()};
   }
   return {simulation.system().centroid(1).y() - rest.y(), simulation.velocity(1)[1]};
+}
+
+std::array<double, 2> follow(const Report& report, const Scene& scene, double displacement, double velocity, int steps) {
+  RigidSimulation simulation = report.simulate(scene);
+  return follow(simulation, displacement, velocity, steps);
 }
 
 void matrix(Report& report, const std::string& method, double theta, double phase) {
@@ -85,6 +89,14 @@ void order(Report& report, const std::string& method, double theta) {
   report.order(text("order on the free vibration, theta = {}", theta), method, steps, errors, expected - 0.1, expected + 0.1, "cos(w t)");
 }
 
+void ledger(Report& report, const ElasticScheme& scheme) {
+  const double w = analytical::bounce_frequency(level_block());
+  constexpr int steps = 100;
+  RigidSimulation simulation = report.simulate(scene_of(scheme.contact, scheme.theta, 0.1 / w));
+  const bool done = !std::isnan(follow(simulation, amplitude, amplitude * w, steps)[0]);
+  check_ledger(report, with_theta("free vibration", scheme), scheme.contact, simulation, done);
+}
+
 }  // namespace
 
 void amplification(Report& report) {
@@ -95,6 +107,7 @@ void amplification(Report& report) {
   for (const double theta : {0.5, 0.6}) matrix(report, "soft", theta, 0.5);
   for (const double theta : {1.0, 0.6, 0.5}) order(report, "soft", theta);
   order(report, "shi", 1.0);
+  for (const ElasticScheme& scheme : elastic_schemes) ledger(report, scheme);
   report.leave_out("amplification matrix", "dem", "not of the theta family; its order and its critical step are checked in D1c and D3");
   report.leave_out("amplification matrix", "hard", "rigid contacts do not vibrate");
 }

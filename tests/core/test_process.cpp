@@ -1,0 +1,47 @@
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <ctime>
+#include <vector>
+
+#include "openclose/core/process.h"
+#include "support/catch.h"
+
+using namespace openclose;
+
+TEST_CASE("the clock of the process is fine also under a limit of CPU time", "[core][process]") {
+  // With a limit the kernel's clock of the process moves by ticks of milliseconds.
+  rlimit limit{};
+  getrlimit(RLIMIT_CPU, &limit);
+  limit.rlim_cur = 3600;
+  REQUIRE(setrlimit(RLIMIT_CPU, &limit) == 0);
+  int differences = 0;
+  double last = process_cpu_time();
+  const double begin = last;
+  while (last - begin < 0.02) {
+    const double now = process_cpu_time();
+    differences += now > last;
+    last = now;
+  }
+  CHECK(differences > 100);
+}
+
+TEST_CASE("CPU time is in seconds", "[core][process]") {
+  const double begin = process_cpu_time();
+  const std::clock_t from = std::clock();
+  while (std::clock() - from < CLOCKS_PER_SEC / 10) continue;
+  // Ticks of the other clock are milliseconds, and this is the only thread.
+  CHECK(process_cpu_time() - begin == Approx(0.1).margin(0.03));
+}
+
+TEST_CASE("peak memory counts what was there and is gone", "[core][process]") {
+  const long before = peak_memory();
+  if (before == 0) return;  // no /proc here
+  constexpr std::size_t bytes = 64u << 20;
+  {
+    const std::vector<char> block(bytes, 1);
+    CHECK(std::count(block.begin(), block.end(), 1) == static_cast<long>(bytes));
+  }
+  CHECK(peak_memory() - before > static_cast<long>(bytes) * 9 / 10);
+  CHECK(peak_memory() - before < static_cast<long>(bytes) * 12 / 10);
+}
