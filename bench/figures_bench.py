@@ -113,7 +113,7 @@ def _fig_10(bench: Bench, file: Path, printed: dict) -> bool:
         return False
     distances = printed["table_4"]["milestones_m"]["value"]
     found = table_4.rows(bench, printed)[1:]
-    figure, axes = plt.subplots(figsize=(7, 4.6), constrained_layout=True)
+    figure, axes = plt.subplots(figsize=(8.4, 4.6), constrained_layout=True)
     for method in found[0][1]:
         points = [(d, ours[method]) for d, (_, ours, _) in zip(distances, found) if ours[method]]
         if points:
@@ -125,7 +125,7 @@ def _fig_10(bench: Bench, file: Path, printed: dict) -> bool:
     axes.set_yscale("log")
     axes.set_xlabel("way of the toe block [m]")
     axes.set_ylabel("time over that of soft with 1 ms [-]")
-    axes.legend(fontsize=8)
+    axes.legend(fontsize=8, loc="center left", bbox_to_anchor=(1.01, 0.5))
     save(figure, file)
     return True
 

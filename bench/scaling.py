@@ -13,8 +13,8 @@ SETTLING, MOTION = "settling by size", "motion by size"
 # Blocks to be had from these factors on both joint spacings: 4 times as many for half.
 SPACING_FACTORS = {100: 2.5, 500: 0.98, 1000: 0.676, 2000: 0.48, 5000: 0.298, 10000: 0.206, 20000: 0.146, 50000: 0.0918, 100000: 0.0648}
 QUICK_SIZES = (100, 500, 2000, 5000)
-LARGEST = {"soft": 100000, "hard": 10000, "shi": 2000, "dem": 10000}
-LIMIT_S = 240
+LARGEST = {"soft": 100000, "hard": 10000, "shi": 1000, "dem": 10000}
+LIMIT_S = 100
 DT_S, STEPS = 0.01, 20
 FRACTION = 1e-8
 FIT_RANGE = (500, 50000)
