@@ -1,6 +1,7 @@
 #include "scenes.h"
 
 #include <cmath>
+#include <stdexcept>
 
 #include "openclose/analysis/strength_reduction.h"
 #include "openclose/scene/writer.h"
@@ -75,13 +76,46 @@ void use_joint_springs_as_penalty(Scene& scene, const analytical::BlockOnPlane& 
   scene.method.penetration_tolerance = 1.0;
 }
 
-void set_scheme(Scene& scene, const ElasticScheme& scheme) {
-  scene.method.contact = scheme.contact;
-  scene.method.theta = scheme.theta;
+const std::vector<Scheme>& schemes() {
+  static const std::vector<Scheme> list = {
+      {"soft", "", "shi", 1.0, 1.0, false, "Newmark (1/2, 1): order 1"},
+      {"soft", "theta 0.6", "theta", 0.6, 1.0, false, "end forces with weight 0.6: order 1"},
+      {"soft", "trapezoid", "theta", 0.5, 2.0, false, "trapezoid: order 2"},
+      {"soft", "generalized_alpha", "generalized_alpha", std::nullopt, 2.0, false, "generalised alpha: order 2"},
+      {"soft", "tr_bdf2", "tr_bdf2", std::nullopt, 2.0, false, "trapezoid and BDF2: order 2"},
+      {"soft", "path_average", "path_average", std::nullopt, 2.0, true, "forces averaged over the path: order 2"},
+      {"shi", "", "", 1.0, 1.0, false, "Newmark (1/2, 1): order 1"},
+      {"dem", "", "", std::nullopt, 2.0, false, "central difference: order 2"},
+      {"hard", "", "", std::nullopt, 1.0, false, "mid-step velocities, forces at the end of the step: order 1"},
+  };
+  return list;
 }
 
-std::string with_theta(const std::string& quantity, const ElasticScheme& scheme) {
-  return quantity + text(", theta = {}", scheme.theta);
+std::vector<Scheme> spring_schemes() {
+  std::vector<Scheme> list;
+  for (const Scheme& s : schemes()) {
+    if (s.contact != "hard") list.push_back(s);
+  }
+  return list;
+}
+
+const Scheme& scheme_named(const std::string& name) {
+  for (const Scheme& s : schemes()) {
+    if (s.name() == name) return s;
+  }
+  throw std::logic_error("no scheme is called " + name);
+}
+
+void set_scheme(Scene& scene, const Scheme& scheme) {
+  scene.method.contact = scheme.contact;
+  scene.method.integrator.reset();
+  scene.method.theta.reset();
+  if (!scheme.integrator.empty()) scene.method.integrator = scheme.integrator;
+  if (scheme.integrator == "theta") scene.method.theta = scheme.weight;
+}
+
+std::string with_variant(const std::string& quantity, const Scheme& scheme) {
+  return scheme.variant.empty() ? quantity : quantity + ", " + scheme.variant;
 }
 
 void check_ledger(Report& report, const std::string& name, const std::string& method, const RigidSimulation& simulation, bool done) {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,21 +16,33 @@ namespace openclose::verification {
 
 inline const std::array<std::string, 4> all_methods = {"soft", "hard", "shi", "dem"};
 
-/// A way of stepping contacts with springs: what `method.contact` and `method.theta` are to be, and its order in dt.
-struct ElasticScheme {
-  const char* contact;
-  double theta;
-  double order;
+/// A contact method with its time integration.
+struct Scheme {
+  std::string contact;
+  std::string variant;           ///< what rows add to the name of the method; empty for what it does by itself
+  std::string integrator;        ///< of `soft`; empty: the method has its own
+  std::optional<double> weight;  ///< [-] on the forces at the end of the step, in the theta family
+  double order = 0.0;            ///< on smooth motion, from theory
+  bool conserves = false;        ///< keeps the energy of springs at any step
+  std::string why;               ///< the order
+  std::string name() const { return contact + (variant.empty() ? "" : " " + variant); }
 };
-/// All of them: a new one is a line here, and every case that follows springs in time runs with it.
-inline constexpr std::array elastic_schemes = {ElasticScheme{"soft", 1.0, 1.0}, ElasticScheme{"soft", 0.5, 2.0}, ElasticScheme{"shi", 1.0, 1.0},
-                                               ElasticScheme{"dem", 1.0, 2.0}};
-void set_scheme(Scene& scene, const ElasticScheme& scheme);
-/// "..., theta = 0.5", as a name of a check.
-std::string with_theta(const std::string& quantity, const ElasticScheme& scheme);
+/// All of them: a new one is a line there, and every case and every study that follows motion in time runs with it.
+const std::vector<Scheme>& schemes();
+/// Those on the springs of the joint, for which references with springs hold.
+std::vector<Scheme> spring_schemes();
+const Scheme& scheme_named(const std::string& name);
+void set_scheme(Scene& scene, const Scheme& scheme);
+/// "..., trapezoid", as a name of a check.
+std::string with_variant(const std::string& quantity, const Scheme& scheme);
 
-/// [m] That closed forms allow `hard`; scenes ask for a hundredth of it, because contacts whose gaps exclude each other may keep a multiple of what is asked.
+/// [m] That closed forms allow `hard`; scenes ask for a hundredth of it, because contacts whose gaps exclude each other may keep a multiple of what
+/// is asked.
 inline constexpr double gap_tolerance = 1e-11;
+
+/// [-] Residuals stay below 1e-12 of the largest force. Over a contact that goes like a sine their impulse is at most pi/2 times that part of the
+/// impulse exchanged, which is at most twice the momentum: what they may add to velocities that are kept exactly, over the first velocity.
+inline constexpr double residual_share = 4e-12;
 
 /// One material "rock", gravity 9.81 downwards, joint without cohesion as the block's; `unloaded` start; no blocks yet.
 Scene empty_scene(const analytical::BlockOnPlane& data = {});

@@ -6,8 +6,6 @@
 #include <cmath>
 #include <ctime>
 
-#include "scenes.h"
-
 namespace openclose::verification {
 
 void spring_vibration(Studies&);
@@ -35,28 +33,8 @@ const std::vector<Study>& studies() {
   return list;
 }
 
-const std::vector<Scheme>& schemes() {
-  static const std::vector<Scheme> list = {
-      {"soft", "soft", 1.0, 1.0, "Newmark (1/2, 1): order 1"},
-      {"soft trapezoid", "soft", 0.5, 2.0, "trapezoid: order 2"},
-      {"shi", "shi", 1.0, 1.0, "Newmark (1/2, 1): order 1"},
-      {"dem", "dem", 1.0, 2.0, "central difference: order 2"},
-      {"hard", "hard", 1.0, 1.0, "mid-step velocities, forces at the end of the step: order 1"},
-  };
-  return list;
-}
-
-std::vector<Scheme> spring_schemes() {
-  std::vector<Scheme> list;
-  for (const Scheme& s : schemes()) {
-    if (s.contact != "hard") list.push_back(s);
-  }
-  return list;
-}
-
 void use(const Scheme& scheme, Scene& scene) {
-  scene.method.contact = scheme.contact;
-  scene.method.theta = scheme.theta;
+  set_scheme(scene, scheme);
   scene.method.penalty = scene.joints[0].normal_stiffness;
   scene.method.penalty_shear_ratio = scene.joints[0].shear_stiffness / scene.joints[0].normal_stiffness;
   scene.method.penetration_tolerance = 1.0;

@@ -1,5 +1,6 @@
 // Convergence studies: errors against a size (time step, 1/kn, 1/number of blocks), the order fitted over the asymptotic range with its confidence
-// band, and bounds of that order from theory. A study is a file in studies/ and a line in studies.cpp; a way to integrate is a line in schemes().
+// band, and bounds of that order from theory. A study is a file in studies/ and a line in studies.cpp; a way to integrate is a line in schemes() of
+// scenes.cpp.
 #pragma once
 
 #include <functional>
@@ -7,20 +8,10 @@
 #include <vector>
 
 #include "harness.h"
+#include "scenes.h"
 
 namespace openclose::verification {
 
-/// A contact method with its time integration.
-struct Scheme {
-  std::string name;
-  std::string contact;
-  double theta;         ///< [-] of `soft`
-  double smooth_order;  ///< on smooth motion, from theory
-  std::string why;
-};
-const std::vector<Scheme>& schemes();
-/// Those on the springs of the joint, for which references with springs hold.
-std::vector<Scheme> spring_schemes();
 /// Gives the scene the scheme; `shi` gets the joint's springs for penalties.
 void use(const Scheme& scheme, Scene& scene);
 

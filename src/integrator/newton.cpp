@@ -135,7 +135,7 @@ void Newton<N>::evaluate_blocks(const Eigen::VectorXd& d) {
     double magnitude = block.magnitude;
     if (block.has_point_forces) {
       force_.template segment<N>(at) +=
-          paths_.empty() ? problem_->external.force(system, block.block, db) : problem_->external.mean_force(system, block.block, db);
+          problem_->averages_path() ? problem_->external.mean_force(system, block.block, db) : problem_->external.force(system, block.block, db);
       magnitude = problem_->external.magnitude(system, block.block, db);
     } else {
       force_.template segment<N>(at) += block.force;
@@ -232,10 +232,10 @@ void Newton<N>::assemble(const Eigen::VectorXd& d, Tangent tangent) {
     diagonal.diagonal() += block.inertia;
     if (!block.has_point_forces) continue;
     const Unknowns db = d.template segment<N>(N * row);
-    if (paths_.empty()) {
-      diagonal += problem_->end_weight * problem_->external.stiffness(problem_->system, block.block, db);
-    } else {
+    if (problem_->averages_path()) {
       diagonal += problem_->external.mean_stiffness(problem_->system, block.block, db);
+    } else {
+      diagonal += problem_->end_weight * problem_->external.stiffness(problem_->system, block.block, db);
     }
   }
   for (std::size_t i = 0; i < blocks_.size(); ++i) {

@@ -234,3 +234,19 @@ TEST_CASE("integrators: the dissipation of a path average is in proportion to th
     }
   }
 }
+
+TEST_CASE("path averages keep the energy of a support's springs where there is no contact at all", "[integrator][integrators]") {
+  Scene scene = test::empty_scene();
+  scene.gravity = {0.0, 0.0};
+  scene.method.integrator = "path_average";
+  scene.blocks = {test::free_block("block", test::rectangle(0.0, 0.0, 2.0, 1.0))};
+  scene.supports = {{0, {1.0, 0.5}, {5e5, 1e6}}};
+  scene.blocks[0].velocity = {1.0, 0.5};
+  Simulation<3> simulation(scene);
+  const auto kinetic = [&] { return 0.5 * simulation.system().velocity(0).cwiseAbs2().dot(simulation.system().block(0).mass); };
+  const double before = kinetic();
+  for (int i = 0; i < 100; ++i) REQUIRE(simulation.advance(0.02));
+  const Vec2 moved = simulation.system().displacement(0).head<2>();
+  CHECK(kinetic() + 0.5 * Vec2(5e5, 1e6).dot(moved.cwiseAbs2()) == Approx(before).epsilon(1e-10));
+  CHECK(std::abs(simulation.ledger().scheme) < 1e-9 * before);
+}

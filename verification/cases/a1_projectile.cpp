@@ -26,6 +26,9 @@ void projectile(Report& report) {
       const std::string source = "parabola; scheme exact, rounding of t/dt sums";
       report.relative(text("x after 2 s, dt = {} s", dt), method, expected[0], moved.x(), 1e-13, "m", source);
       report.relative(text("y after 2 s, dt = {} s", dt), method, expected[1], moved.y(), 1e-13, "m", source);
+      const double horizontal = samples.empty() || moved.x() == 0.0 ? not_measured() : samples.back().motion.velocity.x();
+      report.relative(text("horizontal velocity after 2 s, dt = {} s", dt), method, block.velocity.x(), horizontal, 1e-13, "m/s",
+                      "nothing acts that way: momentum is conserved; rounding of t/dt sums");
       check_ledger(report, text("flight, dt = {} s", dt), method, simulation, !samples.empty());
     }
   }

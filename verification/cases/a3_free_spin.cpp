@@ -1,4 +1,6 @@
 // A3: a block that spins freely for one second. Exact rotation keeps its area; Shi's linear one makes it grow by (1 + omega^2 dt^2)^n.
+#include <cmath>
+
 #include "harness.h"
 #include "openclose/analytical/linear_rotation.h"
 #include "openclose/geometry/polygon.h"
@@ -18,6 +20,15 @@ double area_ratio(RigidSimulation& simulation, double angle) {
   if (history(simulation).empty()) return not_measured();
   const double turned = Motion<unknowns>::rotation(simulation.system().displacement(0));
   return std::abs(turned - angle) < 1e-9 ? current() / before : not_measured();
+}
+
+/// Nothing acts: the kinetic energy stays, and with it the ledger's only entry, which has no turnover to be compared with.
+void check_kinetic_energy(Report& report, RotationKind kind, const std::string& method, const RigidSimulation& simulation, double area) {
+  const auto& system = simulation.system();
+  const double spun = 0.5 * system.velocity(0).cwiseAbs2().dot(system.block(0).mass);
+  report.near(std::string("energy ledger, imbalance over kinetic energy, ") + (kind == RotationKind::exact ? "exact" : "linear") + " rotation",
+              method, 0.0, std::isnan(area) ? not_measured() : std::abs(simulation.ledger().imbalance()) / spun, 1e-13, "-",
+              "nothing acts; rounding of 100 steps");
 }
 
 }  // namespace
@@ -48,6 +59,7 @@ void free_spin(Report& report) {
         report.relative("area ratio after 10 rad, linear rotation", method, analytical::linear_rotation_area_ratio(omega, dt, steps), measured, 1e-12,
                         "-", "(1 + omega^2 dt^2)^n");
       }
+      check_kinetic_energy(report, kind, method, simulation, measured);
     }
   }
 }

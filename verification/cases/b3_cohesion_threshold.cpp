@@ -56,8 +56,8 @@ void cohesion_threshold(Report& report) {
       errors.push_back(std::abs(measured / brittle - 1.0));
       if (method == "soft" && factor == 1.0) soft_error = errors.back();
     }
-    report.order("threshold, lost on slip, error over compliance", method, compliance, errors, 0.9, 1.1,
-                 "rigid limit; elastic tilt: order 1 in 1/kn", compliance_name);
+    report.order("threshold, lost on slip, error over compliance", method, compliance, errors, 0.9, 1.1, "rigid limit; elastic tilt: order 1 in 1/kn",
+                 compliance_name);
   }
   report.leave_out("threshold, lost on slip", "dem",
                    "settling starts from slack springs in motion, whose overshoot breaks the bond below its static strength");

@@ -77,7 +77,7 @@ void elastic(Report& report) {
   constexpr double end = 0.8;
   analytical::SlidingBlockReference reference(data, analytical::normal_balanced_start(data));
   const double exact = reference.follow(analytical::rectangular_pulse(-pulse, duration), {end}).back().x;
-  for (const ElasticScheme& s : elastic_schemes) {
+  for (const Scheme& s : spring_schemes()) {
     std::vector<double> steps, errors;
     for (const double n : {1600.0, 3200.0, 6400.0, 12800.0, 25600.0}) {
       Scene scene = scene_of(s.contact, data, end / n, end);
@@ -85,10 +85,15 @@ void elastic(Report& report) {
       steps.push_back(end / n);
       errors.push_back(std::abs(place(report, scene, data) - exact));
     }
+    // Where the equation of motion does not hold for the mean of the step, the base's acceleration is that of a span beyond the end of the step, and
+    // of the jump at the end of the pulse a part of a step is met too early: a velocity of order dt.
+    const bool anticipates = s.integrator == "generalized_alpha" || s.integrator == "tr_bdf2";
+    const double order = anticipates ? 1.0 : s.order;
     // The place of a change between sticking and sliding within its step is a random factor of a second-order error.
-    const double slack = s.order == 2.0 ? 0.4 : 0.2;
-    report.order(with_theta("place in mid-slip", s), s.contact, steps, errors, s.order - slack, s.order + slack,
-                 "SUNDIALS ODE on the shaken plane; order of the scheme");
+    const double slack = order == 2.0 ? 0.4 : 0.2;
+    report.order(with_variant("place in mid-slip", s), s.contact, steps, errors, order - slack, order + slack,
+                 anticipates ? "SUNDIALS ODE on the shaken plane; order 1 at the jump that ends the pulse"
+                             : "SUNDIALS ODE on the shaken plane; order of the scheme");
   }
 }
 

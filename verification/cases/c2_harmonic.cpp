@@ -96,7 +96,7 @@ void elastic(Report& report) {
   constexpr double end = 0.25;
   analytical::SlidingBlockReference reference(data, analytical::normal_balanced_start(data));
   const double exact = reference.follow(analytical::harmonic_motion(-amplitude, frequency, 1.0), {end}).back().x;
-  for (const ElasticScheme& s : elastic_schemes) {
+  for (const Scheme& s : spring_schemes()) {
     std::vector<double> steps, errors;
     for (const double n : {1000.0, 2000.0, 4000.0, 8000.0, 16000.0}) {
       Scene scene = scene_of(s.contact, data, end / n, end);
@@ -108,7 +108,7 @@ void elastic(Report& report) {
       errors.push_back(std::abs(downhill_history(simulation, data, 2).back() - exact));
     }
     const double slack = s.order == 2.0 ? 0.4 : 0.2;
-    report.order(with_theta("place in mid-slip", s), s.contact, steps, errors, s.order - slack, s.order + slack,
+    report.order(with_variant("place in mid-slip", s), s.contact, steps, errors, s.order - slack, s.order + slack,
                  "SUNDIALS ODE on the shaken plane; order of the scheme");
   }
 }

@@ -75,8 +75,8 @@ void elastic(Report& report) {
   for (const auto& s : reference.follow(ground(), output_times(whole))) exact.push_back(s.x);
   // Newmark (1/2, 1) damps the swings between two slips by exp(-w^2 dt t/4), the reference not at all: the first second, with its slips and stops,
   // shows its order at steps for which that is little.
-  for (const ElasticScheme& s : elastic_schemes) {
-    if (std::string(s.contact) == "shi") continue;  // see below
+  for (const Scheme& s : spring_schemes()) {
+    if (s.contact == "shi") continue;  // see below
     const double end = s.order == 1.0 ? 1.0 : whole, first_dt = s.order == 1.0 ? 4e-5 : 1e-3;
     std::vector<double> steps, errors;
     for (const double refinement : {1.0, 2.0, 4.0, 8.0}) {
@@ -87,7 +87,7 @@ void elastic(Report& report) {
       errors.push_back(largest_difference(places(report, scene), exact));
     }
     const double slack = s.order == 2.0 ? 0.4 : 0.2;
-    report.order(with_theta(text("largest distance from the ODE over {} s", end), s), s.contact, steps, errors, s.order - slack, s.order + slack,
+    report.order(with_variant(text("largest distance from the ODE over {} s", end), s), s.contact, steps, errors, s.order - slack, s.order + slack,
                  "SUNDIALS ODE on the shaken plane; order of the scheme");
   }
 }

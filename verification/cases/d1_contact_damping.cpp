@@ -14,7 +14,7 @@ constexpr double stiffness = 2e8;             // [Pa/m] normal; shear half of it
 const double length = side / std::sqrt(2.0);  // [m] tributary: half the projections of both sides
 constexpr double density = 2500.0;            // [kg/m3]
 
-Scene scene_of(const std::string& method, double theta, double ratio, double dt) {
+Scene scene_of(const Scheme& scheme, double ratio, double dt) {
   Scene scene = empty_scene();
   scene.materials[0].density = density;
   scene.joints[0].normal_stiffness = stiffness;
@@ -24,8 +24,7 @@ Scene scene_of(const std::string& method, double theta, double ratio, double dt)
   scene.blocks = {fixed_block("base", rectangle(-5.0, -1.0, 10.0, 1.0)),
                   free_block("block", {{0.0, 0.0}, {length, length}, {0.0, 2.0 * length}, {-length, length}})};
   scene.blocks[1].rotation_locked = true;
-  scene.method.contact = method;
-  scene.method.theta = theta;
+  set_scheme(scene, scheme);
   scene.method.penalty = stiffness;
   scene.method.penalty_shear_ratio = 0.5;
   scene.method.penetration_tolerance = 1.0;
@@ -45,37 +44,36 @@ double follow(RigidSimulation& simulation, bool along, double velocity, int step
   simulation.set_velocity(1, along ? Eigen::Vector3d(velocity, 0.0, 0.0) : Eigen::Vector3d(0.0, -velocity, 0.0));
   simulation.restart_clock();
   for (int i = 0; i < steps; ++i) {
-    if (!simulation.step(simulation.scene().step.dt, false).accepted) return not_measured();
+    if (!simulation.advance(simulation.scene().step.dt)) return not_measured();
   }
   const Vec2 moved = simulation.system().centroid(1) - rest;
   return along ? moved.x() : -moved.y();
 }
 
-/// [m/s] For a tenth of the closure under the weight: the contact stays closed and sticks.
-double push(bool along) {
-  return 0.1 * 9.81 / (frequency(false) * frequency(false)) * frequency(along);
+/// Where the dashpots' velocity does not belong to the moment of the other forces.
+bool has_late_dashpots(const Scheme& scheme) {
+  return scheme.contact == "dem" || scheme.integrator == "generalized_alpha" || scheme.integrator == "tr_bdf2";
 }
 
-void order(Report& report, const std::string& method, double theta, double ratio, bool along) {
-  const double w = frequency(along), end = 2.0 / w, velocity = push(along);
+void damping(Report& report, const Scheme& scheme, double ratio, bool along) {
+  const double w = frequency(along), end = 2.0 / w;
+  // A tenth of the closure under the weight: the contact stays closed and sticks.
+  const double velocity = 0.1 * 9.81 / (frequency(false) * frequency(false)) * w;
+  const std::string name = text("damping ratio {}", ratio) + (along ? ", shear" : ", normal");
   std::vector<double> steps, errors;
-  for (const int n : {80, 160, 320, 640}) {
+  // What late dashpots add is of order 1 and grows with their ratio; where that is small, the smooth error of order 2 may have the same size and the
+  // other sign, as that of generalised alpha has at 73 steps of ratio 0.1. Sixteen times as many show the order.
+  const int refined = scheme.integrator == "generalized_alpha" && ratio < 1.0 ? 16 : 1;
+  for (const int n : {80 * refined, 160 * refined, 320 * refined, 640 * refined}) {
     steps.push_back(end / n);
     const double exact = velocity * analytical::damped_vibration(w, ratio, end);
-    RigidSimulation simulation = report.simulate(scene_of(method, theta, ratio, end / n));
+    RigidSimulation simulation = report.simulate(scene_of(scheme, ratio, end / n));
     errors.push_back(std::abs(follow(simulation, along, velocity, n) - exact) / velocity * w);
+    if (n == 80 * refined) check_ledger(report, with_variant(name, scheme), scheme.contact, simulation, !std::isnan(errors.back()));
   }
-  const double expected = theta == 0.5 ? 2.0 : 1.0;
-  const std::string name = text("order, damping ratio {}", ratio) + (along ? ", shear" : ", normal") + text(", theta = {}", theta);
-  report.order(name, method, steps, errors, expected - 0.1, expected + 0.1, "damped oscillator, m* = mass of the block on a fixed base");
-}
-
-void ledger(Report& report, const std::string& method, double theta, bool along) {
-  constexpr double ratio = 0.1;
-  constexpr int steps = 200;
-  RigidSimulation simulation = report.simulate(scene_of(method, theta, ratio, 10.0 / frequency(along) / steps));
-  const bool done = !std::isnan(follow(simulation, along, push(along), steps));
-  check_ledger(report, std::string("damping ratio 0.1, ") + (along ? "shear" : "normal") + text(", theta = {}", theta), method, simulation, done);
+  const double expected = has_late_dashpots(scheme) ? 1.0 : scheme.order;
+  report.order(with_variant("order, " + name, scheme), scheme.contact, steps, errors, expected - 0.1, expected + 0.1,
+               "damped oscillator, m* = mass of the block on a fixed base");
 }
 
 }  // namespace
@@ -83,16 +81,8 @@ void ledger(Report& report, const std::string& method, double theta, bool along)
 void contact_damping(Report& report) {
   for (const double ratio : {0.1, 1.0, 2.0}) {
     for (const bool along : {false, true}) {
-      for (const double theta : {1.0, 0.5}) order(report, "soft", theta, ratio, along);
-      order(report, "shi", 1.0, ratio, along);
-      // The velocity of its dashpots is half a step old.
-      order(report, "dem", 1.0, ratio, along);
+      for (const Scheme& scheme : spring_schemes()) damping(report, scheme, ratio, along);
     }
-  }
-  for (const bool along : {false, true}) {
-    for (const double theta : {1.0, 0.5}) ledger(report, "soft", theta, along);
-    ledger(report, "shi", 1.0, along);
-    ledger(report, "dem", 1.0, along);
   }
   report.leave_out("contact damping", "hard", "rigid contacts have no springs and impacts without rebound");
 }

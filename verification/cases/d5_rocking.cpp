@@ -99,7 +99,7 @@ class OnSprings {
   }
 
   /// [rad] Largest error of the rotation.
-  double error(const Report& report, const ElasticScheme& scheme, double dt) const {
+  double error(const Report& report, const Scheme& scheme, double dt) const {
     Scene scene = leaning(scheme.contact, angle, dt, closure());
     set_scheme(scene, scheme);
     RigidSimulation simulation = report.simulate(scene);
@@ -122,7 +122,7 @@ class OnSprings {
 
 void elastic(Report& report) {
   const OnSprings before_impact(0.09), two_impacts(0.35);
-  for (const ElasticScheme& s : elastic_schemes) {
+  for (const Scheme& s : spring_schemes()) {
     std::vector<double> steps, before, after;
     const double first = s.order == 1.0 ? 5e-5 : 1e-3;
     for (const double refinement : {1.0, 2.0, 4.0, 8.0, 16.0}) {
@@ -130,15 +130,15 @@ void elastic(Report& report) {
       before.push_back(before_impact.error(report, s, steps.back()));
       after.push_back(two_impacts.error(report, s, steps.back()));
     }
-    report.order(with_theta("rocking on springs, one corner", s), s.contact, steps, before, s.order - 0.2, s.order + 0.2,
+    report.order(with_variant("rocking on springs, one corner", s), s.contact, steps, before, s.order - 0.2, s.order + 0.2,
                  "SUNDIALS ODE of two springs; order of the scheme");
-    if (std::string(s.contact) == "shi") {
+    if (s.contact == "shi") {
       report.leave_out(
           "rocking on springs through two impacts", s.contact,
           "a corner that closes by little has little friction in that step and may slide; it then carries mu N as long as it slips one way, where "
           "the reference sticks while N rises: right or 2e-4 rad off, from step size to step size");
     } else {
-      report.order(with_theta("rocking on springs through two impacts", s), s.contact, steps, after, s.order == 2.0 ? 1.5 : 0.8,
+      report.order(with_variant("rocking on springs through two impacts", s), s.contact, steps, after, s.order == 2.0 ? 1.5 : 0.8,
                    s.order == 2.0 ? 2.4 : 1.2,
                    s.order == 2.0 ? "SUNDIALS ODE of two springs; order 2, and of order 1 what a corner slips in the step in which it closes"
                                   : "SUNDIALS ODE of two springs; order 1");
@@ -148,7 +148,7 @@ void elastic(Report& report) {
     RigidSimulation simulation = report.simulate(scene);
     bool done = true;
     for (int i = 0; i < 1000 && done; ++i) done = simulation.advance(1e-3);
-    check_ledger(report, with_theta("rocking on springs", s), s.contact, simulation, done);
+    check_ledger(report, with_variant("rocking on springs", s), s.contact, simulation, done);
   }
 }
 

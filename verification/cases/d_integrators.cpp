@@ -95,9 +95,9 @@ constexpr double drop = 1.0;  // [m]
 constexpr double contact_time = 0.02332507, depth = 0.03308370, period = 0.92637235;
 
 struct Bounces {
-  double contact = not_measured(), depth = not_measured();    ///< of the first
-  double velocity = not_measured();  ///< at the end
-  double energy_drift = not_measured();                       ///< at the end, over that of the drop
+  double contact = not_measured(), depth = not_measured();  ///< of the first
+  double velocity = not_measured();                         ///< at the end
+  double energy_drift = not_measured();                     ///< at the end, over that of the drop
 };
 
 Bounces bounce(const Report& report, double dt, double end) {

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "openclose/analytical/sliding_block_reference.h"
-#include "scenes.h"
 #include "studies.h"
 
 namespace openclose::verification {
@@ -20,11 +19,11 @@ void sliding_starts(Studies& studies) {
     const auto state = bounces ? analytical::unloaded_start() : analytical::normal_balanced_start(data);
     const double exact = analytical::SlidingBlockReference(data, state).advance(end).x;
     for (const Scheme& scheme : spring_schemes()) {
-      const bool second = scheme.smooth_order == 2.0;
+      const bool second = scheme.order == 2.0;
       const double spread = second ? 0.5 : 0.2, first = second ? 5e-4 : (bounces ? 2.5e-5 : 2.5e-4);
-      const Expectation expected{scheme.smooth_order - spread, scheme.smooth_order + spread, first, 1e-13,
+      const Expectation expected{scheme.order - spread, scheme.order + spread, first, 1e-13,
                                  scheme.why + ", kept across stick and slip because friction is continuous there"};
-      studies.in_time(scheme.name + (bounces ? ", start (a)" : ", start (b)"), halved(first, 21, std::pow(2.0, 0.25)), expected, [&](double dt) {
+      studies.in_time(scheme.name() + (bounces ? ", start (a)" : ", start (b)"), halved(first, 21, std::pow(2.0, 0.25)), expected, [&](double dt) {
         Scene scene = block_on_plane(data);
         use(scheme, scene);
         scene.method.start = start;

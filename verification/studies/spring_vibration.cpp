@@ -2,7 +2,6 @@
 #include <cmath>
 
 #include "openclose/analytical/two_spring_block.h"
-#include "scenes.h"
 #include "studies.h"
 
 namespace openclose::verification {
@@ -14,8 +13,8 @@ void spring_vibration(Studies& studies) {
   constexpr double amplitude = 1.5e-4;  // [m] a third of the static closure: the contacts stay closed
   for (const Scheme& scheme : spring_schemes()) {
     // Rounding of gaps of 5e-4 m in coordinates of metres, 1e-15 m over the amplitude, times the steps.
-    const Expectation expected{scheme.smooth_order - 0.1, scheme.smooth_order + 0.1, 0.1 / w, 1e-8, scheme.why};
-    studies.in_time(scheme.name, halved(end / 10.0, 7), expected, [&](double dt) {
+    const Expectation expected{scheme.order - 0.1, scheme.order + 0.1, 0.1 / w, 1e-8, scheme.why};
+    studies.in_time(scheme.name(), halved(end / 10.0, 7), expected, [&](double dt) {
       Scene scene = block_on_plane(data);
       use(scheme, scene);
       const Eigen::Vector3d moved = push_and_follow(studies, scene, 1, {0.0, amplitude * w, 0.0}, dt, end);

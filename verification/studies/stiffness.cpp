@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "openclose/analytical/incline.h"
-#include "scenes.h"
 #include "studies.h"
 
 namespace openclose::verification {
@@ -21,7 +20,7 @@ analytical::BlockOnPlane block_with(double softness, double slope_angle) {
 void closure(Studies& studies, const Scheme& scheme) {
   const Expectation expected{0.99, 1.01, 1e-7, 1e-12, "closure at rest W/(2 kn): order 1"};
   studies.measure(
-      scheme.name + ", closure at rest", "1/kn [m/N]", halved(1e-7, 6, 4.0), expected,
+      scheme.name() + ", closure at rest", "1/kn [m/N]", halved(1e-7, 6, 4.0), expected,
       [&](double softness) {
         const analytical::BlockOnPlane data = block_with(softness, 0.0);
         Scene scene = block_on_plane(data);
@@ -43,7 +42,7 @@ void lead(Studies& studies, const Scheme& scheme) {
   };
   const Expectation expected{0.4, 0.6, 1e-7, 1e-12, "lead over eq. (8) like a velocity of 1/w: order 1/2"};
   studies.measure(
-      scheme.name + ", lead over eq. (8)", "1/kn [m/N]", halved(1e-7, 5, 4.0), expected,
+      scheme.name() + ", lead over eq. (8)", "1/kn [m/N]", halved(1e-7, 5, 4.0), expected,
       [&](double softness) {
         const analytical::BlockOnPlane data = block_with(softness, 30.0 * analytical::degree);
         Scene scene = block_on_plane(data);

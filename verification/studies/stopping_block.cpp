@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "openclose/analytical/stopping_distance.h"
-#include "scenes.h"
 #include "studies.h"
 
 namespace openclose::verification {
@@ -23,7 +22,7 @@ void stopping_block(Studies& studies) {
   for (const Scheme& scheme : schemes()) {
     const bool rigid = scheme.contact == "hard";
     const double exact = rigid ? stop.distance : swing.centre + swing.amplitude * std::cos(swing.frequency * after);
-    const double order = rigid ? 2.0 : scheme.smooth_order;
+    const double order = rigid ? 2.0 : scheme.order;
     const std::string why =
         rigid ? "place off by a fixed fraction of r dt^2" : scheme.why + ", kept at the stop because friction is continuous there";
     for (const double fraction : {0.25, 0.5}) {
@@ -31,7 +30,7 @@ void stopping_block(Studies& studies) {
       for (const double n : {500.0, 1000.0, 2000.0, 4000.0, 8000.0, 16000.0}) steps.push_back(stop.time / (n + fraction));
       // Rounding of a way of 2.5 m in as many steps.
       const Expectation expected{order - 0.2, order + 0.2, 0.1 / swing.frequency, 1e-12, why};
-      studies.in_time(scheme.name + text(", f = {}", fraction), steps, expected, [&](double dt) {
+      studies.in_time(scheme.name() + text(", f = {}", fraction), steps, expected, [&](double dt) {
         Scene scene = block_on_plane(data);
         use(scheme, scene);
         scene.method.start = Start::steady_sliding;

@@ -1,7 +1,6 @@
 // Smooth and without any contact, so that rigid contacts have an order too: a block hung in the springs of a support, along a Lissajous figure.
 #include <cmath>
 
-#include "scenes.h"
 #include "studies.h"
 
 namespace openclose::verification {
@@ -10,8 +9,8 @@ void support_springs(Studies& studies) {
   constexpr double amplitude = 0.01, end = 0.2;  // [m], [s]
   const Vec2 frequency(10.0, 15.0);              // [rad/s]
   for (const Scheme& scheme : schemes()) {
-    const Expectation expected{scheme.smooth_order - 0.1, scheme.smooth_order + 0.1, 0.1 / frequency.y(), 1e-11, scheme.why};
-    studies.in_time(scheme.name, halved(end / 10.0, 7), expected, [&](double dt) {
+    const Expectation expected{scheme.order - 0.1, scheme.order + 0.1, 0.1 / frequency.y(), 1e-11, scheme.why};
+    studies.in_time(scheme.name(), halved(end / 10.0, 7), expected, [&](double dt) {
       Scene scene = empty_scene();
       scene.blocks = {free_block("block", rectangle(0.0, 0.0, 2.0, 1.0))};
       const double mass = scene.materials[0].density * 2.0;

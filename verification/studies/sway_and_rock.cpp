@@ -2,7 +2,6 @@
 #include <cmath>
 
 #include "openclose/analytical/two_spring_block.h"
-#include "scenes.h"
 #include "studies.h"
 
 namespace openclose::verification {
@@ -18,8 +17,8 @@ void sway_and_rock(Studies& studies) {
     // (2 ks - w^2 m) x + ks h r = 0.
     const Eigen::Vector3d shape(1.0, 0.0, (w * w * data.mass() - 2.0 * data.shear_stiffness) / (data.shear_stiffness * data.height));
     for (const Scheme& scheme : spring_schemes()) {
-      const Expectation expected{scheme.smooth_order - 0.1, scheme.smooth_order + 0.1, 0.1 / w, 4e-6, scheme.why};
-      studies.in_time(scheme.name + text(", w = {:.4g} rad/s", w), halved(end / 10.0, 6), expected, [&](double dt) {
+      const Expectation expected{scheme.order - 0.1, scheme.order + 0.1, 0.1 / w, 4e-6, scheme.why};
+      studies.in_time(scheme.name() + text(", w = {:.4g} rad/s", w), halved(end / 10.0, 6), expected, [&](double dt) {
         Scene scene = block_on_plane(data);
         use(scheme, scene);
         const Eigen::Vector3d moved = push_and_follow(studies, scene, 1, amplitude * w * shape, dt, end);
