@@ -58,8 +58,9 @@ def read_faults():
         faults = tomllib.load(stream)["fault"]
     for fault in faults:
         name = fault.get("id", "a fault without id")
-        if sorted(fault) != ["description", "file", "id", "original", "replacement"]:
-            raise ListError(f"{name}: the keys are {', '.join(sorted(fault))}; needed: description, file, id, original, replacement")
+        if sorted(set(fault) - {"note"}) != ["description", "file", "id", "original", "replacement"]:
+            raise ListError(f"{name}: the keys are {', '.join(sorted(fault))}; needed: description, file, id, original, replacement, "
+                            "and a note where it is known why the fault survives")
         if [other["id"] for other in faults].count(name) != 1:
             raise ListError(f"{name}: the id is there twice")
         if "\n" in fault["original"] + fault["replacement"] or fault["original"] == fault["replacement"]:
@@ -241,7 +242,7 @@ def write_csv(path, rows):
         writer.writerows(rows)
 
 
-def write_page(path, rows):
+def write_page(path, rows, notes):
     not_caught = [row for row in rows if row["kind"] not in CAUGHT]
     by_kind = {kind: sum(row["kind"] == kind for row in rows) for kind in dict.fromkeys([*CAUGHT, *(row["kind"] for row in rows)])}
     lines = ["# Planted faults", "",
@@ -257,6 +258,7 @@ def write_page(path, rows):
             lines.append(f"| {folder} | {len(own)} | {len(caught)} | {len(near)} |")
     lines += ["", "## Not caught", ""]
     lines += [f"- {row['id']} ({row['file']}): {row['description']}; {row['kind']}" + (f", {row['caught_by']}" if row["caught_by"] else "")
+              + (f". {notes[row['id']]}" if row["id"] in notes else "")
               for row in not_caught] or ["None."]
     lines += ["", "## Caught", "", "| fault | file | what it does | first check that is red |", "|---|---|---|---|"]
     lines += [f"| {row['id']} | {row['file']} | {row['description'].replace('|', '/')} | {row['caught_by'].replace('|', '/')} |"
@@ -300,7 +302,7 @@ def study(faults, wanted, options):
             print(f"{len(done):3}/{len(wanted)} {row['id']:<14} {row['kind']:<12} {row['seconds']:>6} s  {row['caught_by']}", flush=True)
             ordered = [rows[f["id"]] for f in faults if f["id"] in rows]
             write_csv(table, ordered)
-            write_page(options.results / "mutants.md", ordered)
+            write_page(options.results / "mutants.md", ordered, {f["id"]: f["note"] for f in faults if "note" in f})
 
     with ThreadPoolExecutor(options.jobs) as pool:
         list(pool.map(try_one, wanted))

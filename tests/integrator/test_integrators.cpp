@@ -217,6 +217,24 @@ TEST_CASE("integrators: a step in stages that is cut goes on as a new step", "[i
   CHECK(simulation.velocity(0)[1] == Approx(-9.81 * 0.3).epsilon(1e-12));
 }
 
+TEST_CASE("integrators: the dissipation of a path average is in proportion to the step and the contact's frequency, up to a tenth",
+          "[integrator][integrators]") {
+  Scene scene = test::block_on_base();
+  scene.method.integrator = "path_average";
+  scene.method.dissipation = 0.2;
+  Simulation<3> simulation(scene);
+  // 1 m of 1e9 Pa/m under each corner of 5000 kg.
+  const double frequency = std::sqrt(1e9 / 5000.0);
+  for (const double dt : {1e-5, 1e-4, 1e-2}) {
+    INFO(dt);
+    const StepProblem<3> problem = simulation.problem(dt, false);
+    REQUIRE(problem.contacts.size() == 2);
+    for (const Contact& c : problem.contacts) {
+      CHECK(simulation.enforcement().springs(problem, c).dissipation == Approx(std::min(0.1, 0.2 * frequency * dt)).epsilon(1e-12));
+    }
+  }
+}
+
 TEST_CASE("path averages keep the energy of a support's springs where there is no contact at all", "[integrator][integrators]") {
   Scene scene = test::empty_scene();
   scene.gravity = {0.0, 0.0};
