@@ -39,6 +39,7 @@ class Archive {
   static constexpr bool is_plain = std::is_arithmetic_v<T> || std::is_enum_v<T>;
 
   void raw(void* data, std::size_t size) {
+    if (size == 0) return;  // what is empty may have no address
     if (!reading_) {
       bytes_.append(static_cast<const char*>(data), size);
       return;
