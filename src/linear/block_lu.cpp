@@ -310,18 +310,49 @@ class BlockLuSolver : public LinearSolver<N> {
     }
   }
 
+  /// The connected parts of the pattern one after another, each ordered for itself: none of its numbers depends on what else is in the system.
   void order_rows(const BlockMatrix<N>& matrix) {
-    std::vector<Eigen::Triplet<double>> entries;
-    for (int i = 0; i < matrix.rows(); ++i) {
-      for (int s = matrix.row_start(i); s < matrix.row_start(i + 1); ++s) entries.emplace_back(i, matrix.column(s), 1.0);
+    const int rows = matrix.rows();
+    factor_.order.clear();
+    place_.assign(rows, unplaced);
+    for (int first = 0; first < rows; ++first) {
+      if (place_[first] == unplaced) order_part(matrix, connected_rows(matrix, first));
     }
-    Eigen::SparseMatrix<double> graph(matrix.rows(), matrix.rows());
+    for (int i = 0; i < rows; ++i) place_[factor_.order[i]] = i;
+  }
+
+  /// In ascending order; their places become those in the list.
+  std::vector<int> connected_rows(const BlockMatrix<N>& matrix, int first) {
+    std::vector<int> part = {first};
+    place_[first] = 0;
+    for (std::size_t next = 0; next < part.size(); ++next) {
+      for (int s = matrix.row_start(part[next]); s < matrix.row_start(part[next] + 1); ++s) {
+        const int neighbour = matrix.column(s);
+        if (place_[neighbour] != unplaced) continue;
+        place_[neighbour] = 0;
+        part.push_back(neighbour);
+      }
+    }
+    std::sort(part.begin(), part.end());
+    for (std::size_t i = 0; i < part.size(); ++i) place_[part[i]] = static_cast<int>(i);
+    return part;
+  }
+
+  void order_part(const BlockMatrix<N>& matrix, const std::vector<int>& part) {
+    const int rows = static_cast<int>(part.size());
+    if (rows <= 2) {  // no order fills more than another
+      factor_.order.insert(factor_.order.end(), part.begin(), part.end());
+      return;
+    }
+    std::vector<Eigen::Triplet<double>> entries;
+    for (int i = 0; i < rows; ++i) {
+      for (int s = matrix.row_start(part[i]); s < matrix.row_start(part[i] + 1); ++s) entries.emplace_back(i, place_[matrix.column(s)], 1.0);
+    }
+    Eigen::SparseMatrix<double> graph(rows, rows);
     graph.setFromTriplets(entries.begin(), entries.end());
     Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> permutation;
     Eigen::AMDOrdering<int>()(graph, permutation);
-    factor_.order.assign(permutation.indices().data(), permutation.indices().data() + matrix.rows());
-    place_.resize(matrix.rows());
-    for (int i = 0; i < matrix.rows(); ++i) place_[factor_.order[i]] = i;
+    for (int i = 0; i < rows; ++i) factor_.order.push_back(part[permutation.indices()[i]]);
   }
 
   /// Rows of L, diagonal and U one after another in one array.
@@ -348,6 +379,7 @@ class BlockLuSolver : public LinearSolver<N> {
     factor_.working_place.resize(rows);
   }
 
+  static constexpr int unplaced = -1;
   long version_ = -1;
   Kernels<N> kernels_;
   Factor<N> factor_;

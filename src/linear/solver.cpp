@@ -6,9 +6,6 @@
 namespace openclose {
 namespace {
 
-/// Up to here dense LU beats the bookkeeping of a sparse one (3 unknowns a block: 24 x 24 takes about 6 us either way).
-constexpr int largest_dense_system_blocks = 8;
-
 /// Up to here row by row beats fronts, and a factor is so cheap that each matrix gets its own (lagged.cpp has the measurements).
 constexpr int largest_row_by_row_system_blocks = 3000;
 
@@ -92,7 +89,6 @@ template <int N>
 std::unique_ptr<LinearSolver<N>> make_solver(int blocks, LinearSolverKind kind) {
   if (kind == LinearSolverKind::plain) return make_sparse_solver<N>();
   if (kind == LinearSolverKind::iterative) return make_multifrontal_solver<N>(Refactor::when_needed);
-  if (blocks <= largest_dense_system_blocks) return make_dense_solver<N>();
   if (blocks <= largest_row_by_row_system_blocks) return make_block_solver<N>();
   return make_multifrontal_solver<N>(kind == LinearSolverKind::direct ? Refactor::always : Refactor::when_needed);
 }
