@@ -49,7 +49,7 @@ convergence: build figure-packages ## measure the orders of convergence against 
 # Always anew: a time is of today. The test is of the rule that nothing wins with a large error.
 bench: bench-packages ## run time beside error, cost by size, what skips save (results/bench.md); a quarter of an hour, BENCH=quick: a few minutes
 	@OPTIONS=-DOPENCLOSE_BENCH=ON scripts/build release openclose openclose_reference openclose_bench
-	@python=$$(scripts/find-python) && "$$python" -m unittest -q bench/test_winner.py && "$$python" bench/bench.py --mode $(BENCH) --micro $(BUILD)/bench/openclose-bench
+	@python=$$(scripts/find-python) && "$$python" -m unittest discover -q -s bench && "$$python" bench/bench.py --mode $(BENCH) --micro $(BUILD)/bench/openclose-bench
 
 bench-peers: peer-packages ## the same with Box2D and Chipmunk on the slope of example 3.4
 	@OPTIONS='-DOPENCLOSE_BENCH=ON -DOPENCLOSE_BENCH_PEERS=ON' scripts/build release openclose openclose_reference openclose_bench openclose_peers
