@@ -40,8 +40,8 @@ void write_checks(const std::string& path, const std::vector<Check>& checks) {
   std::ofstream file(path);
   file << "case,quantity,method,expected,measured,unit,error,tolerance,status,source\n";
   for (const Check& c : checks) {
-    fmt::print(file, "{},{},{},{:.17g},{:.17g},{},{:.6g},{:.6g},{},{}\n", c.case_name, quoted(c.quantity), c.method, c.expected, c.measured, c.unit,
-               c.error, c.tolerance, c.status == Status::fail ? "fail" : name_of(c.status), quoted(c.source));
+    fmt::print(file, "{},{},{},{:.17g},{:.17g},{},{:.6g},{:.6g},{},{}\n", c.case_name, quoted(c.quantity), c.method, c.expected, c.measured,
+               quoted(c.unit), c.error, c.tolerance, c.status == Status::fail ? "fail" : name_of(c.status), quoted(c.source));
   }
   if (!file) throw std::runtime_error("cannot write " + path);
 }
