@@ -268,7 +268,8 @@ TEST_CASE("more blocks than the limit", "[scene][domain][errors]") {
     CHECK_THAT(
         error_of(test::with_line(test::with_line(square_domain, 19, "spacing_m = 1e-5"), 24, "spacing_m = 1e-5"), {"domain.max_blocks=500000"}),
         ContainsSubstring("13: domain: the joints cut the domain into more than 500000 blocks"));
-    CHECK(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC < 20.0);
+    // Cut to the end they would take hours, or all memory; a build with sanitizers takes half a minute for the refusals.
+    CHECK(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC < 300.0);
   }
 }
 
