@@ -1,8 +1,8 @@
-// `hard`: no penetration, by multipliers that are iterated to convergence within the step (method of multipliers with Newton inside).
+// `hard`: no penetration beyond method.gap_tolerance_m, by multipliers that are iterated within the step (method of multipliers with Newton inside).
 //
 // Each outer pass solves N = max(0, shift - k (gap - target)), T = clamp(initial shear - k s) and takes N, T as the next pass's shift and initial
 // shear. The passes converge whatever the stiffness k is (it only sets how fast), so the answer does not depend on the joint's stiffness: a closed
-// contact keeps its gap exactly, a sticking one its place. In motion k is a multiple of the inertia, in statics of the joint's stiffness, which then
+// contact keeps its gap, a sticking one its place, to the tolerance. In motion k is a multiple of the inertia, in statics of the joint's stiffness, which then
 // decides how the first pass shares what rigid contacts leave undetermined.
 #include <algorithm>
 #include <array>

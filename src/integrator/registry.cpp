@@ -8,7 +8,7 @@ template <int N>
 const std::vector<EnforcementEntry<N>>& enforcements() {
   static const std::vector<EnforcementEntry<N>> list = {
       {"soft", "springs of the joint's own stiffness (the paper's DDA-SC)", &make_soft<N>},
-      {"hard", "no penetration, multipliers converged in every step", &make_hard<N>},
+      {"hard", "no penetration beyond a tolerance, multipliers iterated in every step", &make_hard<N>},
       {"shi", "penalty springs with open-close iterations (the paper's DDA-Shi)", &make_shi<N>},
       {"dem", "explicit: central difference with the joint's own springs (the paper's UDEC)", &make_dem<N>},
   };
