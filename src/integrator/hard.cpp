@@ -34,9 +34,10 @@ constexpr int most_outer_passes = 100;
 /// After so many failed attempts at a step it is taken with springs instead: it is in balance, but penetrates by what its forces compress them.
 constexpr int attempts_before_compliance = 2;
 /// [-] Redundant contacts whose targets exclude each other by what earlier steps tolerated leave an error that no pass reduces: a pass that keeps
-/// more than this part of the error ends the iteration if what is left is below this multiple of what is tolerated.
+/// more than this part of the error ends the iteration if what is left is below this multiple of what is tolerated. In statics, whose tolerance is
+/// far below that of motion, gaps that motion has left may exclude each other by more.
 constexpr double slow_convergence = 0.5;
-constexpr double incompatible_gaps = 100.0;
+constexpr double incompatible_gaps = 3.0, incompatible_static_gaps = 100.0;
 
 template <int N>
 class Hard final : public Enforcement<N> {
@@ -106,7 +107,7 @@ class Hard final : public Enforcement<N> {
       if (!compliant.converged) compliant = solution;
       const double error = constraint_error(problem, solution);
       const bool stagnates = error > slow_convergence * last_error;
-      if (error <= 1.0 || (stagnates && error <= incompatible_gaps)) return;
+      if (error <= 1.0 || (stagnates && error <= (problem.statics ? incompatible_static_gaps : incompatible_gaps))) return;
       last_error = error;
       for (std::size_t c = 0; c < springs_.size(); ++c) {
         springs_[c].shift = solution.contacts[c].forces.normal;
