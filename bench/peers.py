@@ -16,7 +16,7 @@ SCENE = "3.4 without cohesion, in failure"
 ENGINES = ("box2d", "chipmunk")
 DT_S, END_S, REPEATS = 0.01, 5.0, 3
 ANGLE_DEG = math.degrees(math.atan(math.tan(math.radians(40.0)) / 2.11))  # of example_3_4_post_failure.toml
-OURS = ((SOFT_SHI, 0.01), (SOFT_PATH_AVERAGE, 0.01), (SOFT_PATH_AVERAGE, 0.02), (HARD, 0.01), (DEM, 0.01))
+OURS = ((SOFT_SHI, 0.01), (SOFT_SHI, 0.02), (SOFT_PATH_AVERAGE, 0.01), (SOFT_PATH_AVERAGE, 0.02), (HARD, 0.01), (HARD, 0.02), (DEM, 0.01))
 LIMIT_S = 120
 
 # A slope stands if no block has moved this far in this time; the bracket of the angle.

@@ -75,7 +75,7 @@ def fits(bench: Bench) -> list[Fit]:
     for method in LARGEST:
         found += [fit(SETTLING, method, "settling", lambda r: r.cpu_s), fit(MOTION, method, "a step of motion", per_step)]
         if method != "dem":
-            found.append(fit(MOTION, method, "an iteration of motion", per_iteration))
+            found += [fit(SETTLING, method, "an iteration of settling", per_iteration), fit(MOTION, method, "an iteration of motion", per_iteration)]
         found.append(fit(SETTLING, method, "memory", lambda r: r.peak_memory_bytes))
     return found
 

@@ -7,7 +7,7 @@ import peers
 import scaling
 import statics
 from measure import Bench, Row
-from winner import LARGEST_ERROR, fastest
+from winner import LARGEST_ERROR, fastest, may_win
 
 LARGEST_PENETRATION_M = 1e-6
 
@@ -74,8 +74,11 @@ def _failures(bench: Bench, findings: failure.Findings | None) -> list[Target]:
 
 
 def _hard(bench: Bench) -> list[Target]:
-    """By settling and motion of the same slope."""
+    """By settling, strength reduction and motion of the same slope."""
+    reductions = {r.method: r for r in bench.of(statics.REDUCTION, "3.4") if may_win(r)}
     found = []
+    if "hard" in reductions and "soft" in reductions:
+        found.append(_at_most("strength reduction of 3.4: hard over soft in time", reductions["hard"].cpu_s / reductions["soft"].cpu_s, 1.2, " x"))
     for study in (scaling.SETTLING, scaling.MOTION):
         rows = {r.method: r for r in bench.of(study, "3.4 of 500") if not r.reason}
         if "hard" in rows and "soft" in rows:
@@ -89,8 +92,8 @@ def _sizes(bench: Bench) -> list[Target]:
     fits = {(f.method, f.what): f.value for f in scaling.fits(bench)}
     settled = [r for r in bench.of(scaling.SETTLING) if r.method == "soft"]
     largest = next((r for r in settled if r.scene == "3.4 of 100000"), None)
-    found = [_at_most("soft: exponent of a step of motion, 500 to 50,000 blocks", fits.get(("soft", "a step of motion")), 1.2),
-             _at_most("soft: exponent of settling, 500 to 50,000 blocks", fits.get(("soft", "settling")), 1.2)]
+    found = [_at_most(f"soft: exponent of {what}, 500 to 50,000 blocks", fits.get(("soft", what)), 1.2)
+             for what in ("an iteration of motion", "an iteration of settling")]
     if largest is None:
         found.append(Target("100,000 blocks settle", "yes", "-", None))
     else:
