@@ -22,7 +22,7 @@ class NullEnforcement : public Enforcement<unknowns> {
     solution.d = Eigen::VectorXd::Zero(unknowns * problem.system.free_count());
     const auto still = Motion<unknowns>::Unknowns::Zero().eval();
     for (const Contact& c : problem.contacts) {
-      solution.contacts.push_back({real_->springs(problem, c), ContactForces{}, ContactKinematics<unknowns>(problem.system, c, still, still)});
+      solution.contacts.push_back({real_->springs(problem, c), CarriedForces{}, ContactKinematics<unknowns>(problem.system, c, still, still).pose()});
     }
     return solution;
   }

@@ -17,25 +17,39 @@ struct ContactPaths {
 };
 
 template <int N>
-void add_elastic_contact(EnergyLedger& ledger, const Contact& contact, const ContactOutcome<N>& end, const ContactForces& start,
+void add_elastic_contact(EnergyLedger& ledger, const Contact& contact, const ContactOutcome<N>& end, const CarriedForces& start,
                          const ContactPaths& paths, double theta) {
-  const ContactSprings& k = end.springs;
-  const double gap_change = end.kinematics.gap_change, slip = end.kinematics.slip_change;
+  const double kn = end.normal_stiffness, ks = end.shear_stiffness;
+  const double gap_change = end.pose.gap_change, slip = end.pose.slip_change;
   const double n0 = start.normal, n1 = end.forces.normal, t0 = start.shear, t1 = end.forces.shear;
-  const double p0 = start.elastic_normal / k.normal, p1 = end.forces.elastic_normal / k.normal;
-  const double u0 = contact.elastic_slip, u1 = -end.forces.elastic_shear / k.shear;
-  const double opening0 = k.gap + p0, opening1 = k.gap + gap_change + p1;
+  const double p0 = start.elastic_normal / kn, p1 = end.forces.elastic_normal / kn;
+  const double u0 = contact.elastic_slip, u1 = -end.forces.elastic_shear / ks;
+  const double opening0 = end.gap + p0, opening1 = end.gap + gap_change + p1;
 
-  ledger.contact_springs += 0.5 * k.normal * (p1 * p1 - p0 * p0) + 0.5 * k.shear * (u1 * u1 - u0 * u0);
-  ledger.scheme += (theta - 0.5) * (k.normal * square(p1 - p0) + k.shear * square(u1 - u0)) + theta * n1 * opening0 - (1.0 - theta) * n0 * opening1;
+  ledger.contact_springs += 0.5 * kn * (p1 * p1 - p0 * p0) + 0.5 * ks * (u1 * u1 - u0 * u0);
+  ledger.scheme += (theta - 0.5) * (kn * square(p1 - p0) + ks * square(u1 - u0)) + theta * n1 * opening0 - (1.0 - theta) * n0 * opening1;
   ledger.scheme -= theta * (n1 * (paths.normal_end - gap_change) + t1 * (paths.shear_end - slip)) +
                    (1.0 - theta) * (n0 * (paths.normal_start - gap_change) + t0 * (paths.shear_start - slip));
   // Where the strength has gone since the last step the spring lets go before it starts.
-  ledger.scheme -= (1.0 - theta) * (start.elastic_shear + k.shear * u0) * (u1 - u0);
+  ledger.scheme -= (1.0 - theta) * (start.elastic_shear + ks * u0) * (u1 - u0);
   const double viscous_normal = theta * (n1 - end.forces.elastic_normal) + (1.0 - theta) * (n0 - start.elastic_normal);
   const double viscous_shear = theta * (t1 - end.forces.elastic_shear) + (1.0 - theta) * (t0 - start.elastic_shear);
   ledger.contact_damping += viscous_normal * (p1 - p0) - viscous_shear * (u1 - u0);
   ledger.friction -= (theta * t1 + (1.0 - theta) * t0) * (slip - (u1 - u0));
+}
+
+/// [N] All that a step with the forces at its end needs of those at its start.
+template <int N>
+double elastic_normal_at_start(const Contact& contact, const TabulatedJoint& joint, const ContactOutcome<N>& end) {
+  const double elastic = -end.normal_stiffness * end.gap;
+  return is_open(ContactStrength(joint, contact), elastic) ? 0.0 : elastic;
+}
+
+/// Open before and after, nothing stored: every entry would be zero.
+template <int N>
+bool rests_open(const Contact& contact, const ContactOutcome<N>& end) {
+  return end.forces.status == ContactStatus::open && contact.status == ContactStatus::open && !contact.bonded && end.gap > 0.0 &&
+         contact.elastic_slip == 0.0 && contact.stored_energy == 0.0;
 }
 
 /// Forces averaged over the path; what rotations leave between the ways of these forces and the changes of gap and slip.
@@ -43,7 +57,7 @@ template <int N>
 void add_averaged_contact(EnergyLedger& ledger, const Contact& contact, const PathAverage& path, double normal_rest, double shear_rest,
                           const ContactOutcome<N>& end) {
   const PathEnergies& e = path.energies;
-  const double stored = stored_energy(end.springs, path.end.elastic_normal, path.end.elastic_shear);
+  const double stored = stored_energy(end.normal_stiffness, end.shear_stiffness, path.end.elastic_normal, path.end.elastic_shear);
   ledger.contact_springs += stored - contact.stored_energy;
   // What a spring had before strength was taken from it, or the contact changed, and has not now.
   ledger.redefinition += contact.stored_energy - (stored - e.springs) + e.rupture;
@@ -54,8 +68,8 @@ void add_averaged_contact(EnergyLedger& ledger, const Contact& contact, const Pa
 
 }  // namespace
 
-double stored_energy(const ContactSprings& springs, double normal, double shear) {
-  return 0.5 * (normal * normal / springs.normal + shear * shear / springs.shear);
+double stored_energy(double normal_stiffness, double shear_stiffness, double normal, double shear) {
+  return 0.5 * (normal * normal / normal_stiffness + shear * shear / shear_stiffness);
 }
 
 template <int N>
@@ -113,27 +127,27 @@ void add_step(EnergyLedger& ledger, const StepProblem<N>& problem, const StepSol
     const Contact& contact = problem.contacts[c];
     const ContactOutcome<N>& end = solution.contacts[c];
     const Unknowns &pv = work_displacement[contact.vertex_block], &pe = work_displacement[contact.edge_block];
-    const auto path = [&](const Unknowns& on_vertex, const Unknowns& on_edge) { return on_vertex.dot(pv) + on_edge.dot(pe); };
     if (!solution.paths.empty()) {
       const PathOutcome<N>& mean = solution.paths[c];
-      const auto& k = mean.kinematics;
-      add_averaged_contact(ledger, contact, mean.average, path(k.normal_vertex, k.normal_edge) - end.kinematics.gap_change,
-                           path(k.shear_vertex, k.shear_edge) - end.kinematics.slip_change, end);
+      add_averaged_contact(ledger, contact, mean.average, mean.pose.normal_way(pv, pe) - end.pose.gap_change,
+                           mean.pose.shear_way(pv, pe) - end.pose.slip_change, end);
       continue;
     }
-    ContactPaths paths{path(end.kinematics.normal_vertex, end.kinematics.normal_edge), path(end.kinematics.shear_vertex, end.kinematics.shear_edge),
-                       0.0, 0.0};
+    if (rests_open(contact, end)) continue;
+    ContactPaths paths{end.pose.normal_way(pv, pe), end.pose.shear_way(pv, pe), 0.0, 0.0};
     if (!elastic) {
       ledger.impact -= end.forces.normal * paths.normal_end;
       ledger.friction -= end.forces.shear * paths.shear_end;
       continue;
     }
-    ContactForces start = spring_slider(end.springs, ContactStrength(problem.joints.joint(contact.joint), contact), 0.0, 0.0);
-    if (!solution.start_contacts.empty()) {
+    CarriedForces start;
+    if (theta == 1.0) {
+      start.elastic_normal = elastic_normal_at_start(contact, problem.joints.joint(contact.joint), end);
+    } else {
       const ContactOutcome<N>& s = solution.start_contacts[c];
       start = s.forces;
-      paths.normal_start = path(s.kinematics.normal_vertex, s.kinematics.normal_edge);
-      paths.shear_start = path(s.kinematics.shear_vertex, s.kinematics.shear_edge);
+      paths.normal_start = s.pose.normal_way(pv, pe);
+      paths.shear_start = s.pose.shear_way(pv, pe);
     }
     add_elastic_contact(ledger, contact, end, start, paths, theta);
   }

@@ -50,6 +50,6 @@ template <int N>
 void add_step(EnergyLedger& ledger, const StepProblem<N>& problem, const StepSolution<N>& solution, const TimeScheme<N>& scheme, bool elastic);
 
 /// Energy stored in the springs of a contact carrying these forces [J].
-double stored_energy(const ContactSprings& springs, double normal, double shear);
+double stored_energy(double normal_stiffness, double shear_stiffness, double normal, double shear);
 
 }  // namespace openclose

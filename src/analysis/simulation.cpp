@@ -173,7 +173,7 @@ template <int N>
 void Simulation<N>::store_energy(const StepProblem<N>& problem, Contact& contact) const {
   const ContactSprings springs = enforcement_->springs(problem, contact);
   const ContactForces f = spring_slider(springs, ContactStrength(joints_.joint(contact.joint), contact), 0.0, 0.0);
-  contact.stored_energy = stored_energy(springs, f.normal, springs.initial_shear);
+  contact.stored_energy = stored_energy(springs.normal, springs.shear, f.normal, springs.initial_shear);
 }
 
 template <int N>
@@ -255,9 +255,9 @@ double Simulation<N>::local_error(const StepProblem<N>& problem, const StepSolut
   };
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     const Contact& c = contacts_[i];
-    const ContactForces& f = solution.contacts[i].forces;
-    const ContactKinematics<N>& k = solution.contacts[i].kinematics;
+    const CarriedForces& f = solution.contacts[i].forces;
     if (f.status != ContactStatus::open) {
+      const ContactKinematics<N> k(solution.contacts[i].pose);
       push(c.vertex_block, f.normal * k.normal_vertex + f.shear * k.shear_vertex);
       push(c.edge_block, f.normal * k.normal_edge + f.shear * k.shear_edge);
     }
@@ -341,7 +341,7 @@ double Simulation<N>::unbalanced_force(const StepProblem<N>& problem, const Step
   }
   // Where friction lags behind the normal force, equilibrium with the old friction is none yet.
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
-    const ContactForces& f = solution.contacts[i].forces;
+    const CarriedForces& f = solution.contacts[i].forces;
     if (f.status != ContactStatus::sliding) continue;
     const double bound = ContactStrength(joints_.joint(contacts_[i].joint), contacts_[i]).shear_bound(f.normal).value;
     largest = std::max(largest, std::abs(bound - std::abs(f.shear)));
@@ -384,6 +384,7 @@ void Simulation<N>::accept(const StepProblem<N>& problem, const StepSolution<N>&
 
 template <int N>
 void Simulation<N>::accept_contacts(const StepSolution<N>& solution) {
+  const bool elastic = enforcement_->has_elastic_contacts();
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     Contact& c = contacts_[i];
     const ContactOutcome<N>& o = solution.contacts[i];
@@ -391,9 +392,10 @@ void Simulation<N>::accept_contacts(const StepSolution<N>& solution) {
     c.status = o.forces.status;
     c.normal_force = o.forces.normal;
     c.shear_force = o.forces.shear;
-    c.elastic_slip = -o.forces.elastic_shear / o.springs.shear;
-    c.gap = o.springs.gap + o.kinematics.gap_change;
-    c.stored_energy = enforcement_->has_elastic_contacts() ? stored_energy(o.springs, o.forces.elastic_normal, o.forces.elastic_shear) : 0.0;
+    c.elastic_slip = -o.forces.elastic_shear / o.shear_stiffness;
+    c.gap = o.gap + o.pose.gap_change;
+    c.stored_energy =
+        elastic ? stored_energy(o.normal_stiffness, o.shear_stiffness, o.forces.elastic_normal, o.forces.elastic_shear) : 0.0;
     if (c.status != ContactStatus::open) max_penetration_ = std::max(max_penetration_, -c.gap);
   }
 }

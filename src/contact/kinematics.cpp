@@ -21,6 +21,17 @@ ContactKinematics<N>::ContactKinematics(const ContactPose<N>& pose)
       shear_edge(-Motion<N>::gradient(edge_arm, tangent)) {}
 
 template <int N>
+ContactPose<N> ContactKinematics<N>::pose() const {
+  ContactPose<N> p;
+  p.normal = normal;
+  p.vertex_arm = vertex_arm;
+  p.edge_arm = edge_arm;
+  p.gap_change = gap_change;
+  p.slip_change = slip_change;
+  return p;
+}
+
+template <int N>
 typename ContactKinematics<N>::Hessian ContactKinematics<N>::hessian(const Vec2& m) const {
   // m . (p - e) depends on the rotation of the edge's block through m and through the lever of p: see the derivation of ContactKinematics.
   Hessian h{Motion<N>::hessian(vertex_arm, m), Matrix::Zero(), Motion<N>::hessian(edge_arm, m)};

@@ -61,8 +61,8 @@ struct ContactStart {
 /// A contact at a trial position.
 template <int N>
 struct ContactPose {
-  Vec2 normal;
-  Vec2 vertex_arm, edge_arm;  ///< [m] from the centroids of the two blocks to p
+  Vec2 normal = Vec2::Zero();
+  Vec2 vertex_arm = Vec2::Zero(), edge_arm = Vec2::Zero();  ///< [m] from the centroids of the two blocks to p
   double gap_change = 0.0;    ///< [m] since the start of the step, free of cancellation
   double slip_change = 0.0;   ///< [m]
 
@@ -87,6 +87,19 @@ struct ContactPose {
     edge_arm = {(ex + lx) + shift_x, (ey + ly) + shift_y};
   }
   Vec2 tangent() const { return perpendicular(normal); }
+
+  /// [J/N] Work of unit forces along normal and tangent when the blocks of vertex and edge move by these: the products with the gradients of gap and slip.
+  double normal_way(const typename Motion<N>::Unknowns& vertex, const typename Motion<N>::Unknowns& edge) const {
+    return way(normal, vertex, edge);
+  }
+  double shear_way(const typename Motion<N>::Unknowns& vertex, const typename Motion<N>::Unknowns& edge) const {
+    return way(tangent(), vertex, edge);
+  }
+
+ private:
+  double way(const Vec2& direction, const typename Motion<N>::Unknowns& vertex, const typename Motion<N>::Unknowns& edge) const {
+    return Motion<N>::gradient(vertex_arm, direction).dot(vertex) - Motion<N>::gradient(edge_arm, direction).dot(edge);
+  }
 };
 
 /// Stiffness of a contact: the four blocks of minus the derivative of the generalised forces by the unknowns. The force f acts at p on the vertex's
@@ -147,6 +160,7 @@ struct ContactKinematics {
   /// Kinematics after the two blocks have moved by d_vertex, d_edge from the system's present state.
   ContactKinematics(const BlockSystem<N>& system, const Contact& contact, const Unknowns& d_vertex, const Unknowns& d_edge);
   explicit ContactKinematics(const ContactPose<N>& pose);
+  ContactPose<N> pose() const;
 
   /// Second derivatives of m . (p - e), m turning with the edge's block: blocks (vertex, vertex), (vertex, edge), (edge, edge).
   struct Hessian {

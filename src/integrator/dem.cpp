@@ -26,8 +26,9 @@ class Dem : public Enforcement<N> {
     for (const Contact& c : problem.contacts) {
       const auto velocity = [&](int b) { return problem.velocity(b); };
       const ContactOutcome<N> o = outcome(problem, c, [&](int) { return still; }, velocity);
-      add(force, system.block(c.vertex_block).equation, o.forces.normal * o.kinematics.normal_vertex + o.forces.shear * o.kinematics.shear_vertex);
-      add(force, system.block(c.edge_block).equation, o.forces.normal * o.kinematics.normal_edge + o.forces.shear * o.kinematics.shear_edge);
+      const ContactKinematics<N> k(o.pose);
+      add(force, system.block(c.vertex_block).equation, o.forces.normal * k.normal_vertex + o.forces.shear * k.shear_vertex);
+      add(force, system.block(c.edge_block).equation, o.forces.normal * k.normal_edge + o.forces.shear * k.shear_edge);
       solution.start_contacts.push_back(o);
     }
     for (int b : system.free_blocks()) {
@@ -63,15 +64,14 @@ class Dem : public Enforcement<N> {
     const int a = contact.vertex_block, b = contact.edge_block;
     const TabulatedJoint& joint = problem.joints.joint(contact.joint);
     const ContactDashpots dashpots(joint, contact.length, problem.system.reduced_mass(a, b));
-    ContactOutcome<N> o{springs(problem, contact), {}, ContactKinematics<N>(problem.system, contact, d(a), d(b))};
-    const ContactKinematics<N>& k = o.kinematics;
+    const ContactSprings s = springs(problem, contact);
+    const ContactKinematics<N> k(problem.system, contact, d(a), d(b));
     ForceTrials trial;
-    trial.elastic_normal = -o.springs.normal * (o.springs.gap + k.gap_change);
+    trial.elastic_normal = -s.normal * (s.gap + k.gap_change);
     trial.viscous_normal = -dashpots.normal * (k.normal_vertex.dot(v(a)) + k.normal_edge.dot(v(b)));
-    trial.elastic_shear = o.springs.initial_shear - o.springs.shear * k.slip_change;
+    trial.elastic_shear = s.initial_shear - s.shear * k.slip_change;
     trial.viscous_shear = -dashpots.shear * (k.shear_vertex.dot(v(a)) + k.shear_edge.dot(v(b)));
-    o.forces = ContactForces{carry(ContactStrength(joint, contact), trial)};
-    return o;
+    return {s, carry(ContactStrength(joint, contact), trial), k.pose()};
   }
 
   static void add(Eigen::VectorXd& force, int equation, const Unknowns& f) {

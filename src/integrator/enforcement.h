@@ -18,12 +18,17 @@
 
 namespace openclose {
 
-/// What one contact did in a step.
+/// What one contact did in a step: what the energy ledger and the contact's history need of it, and no more, since there is one for every contact.
 template <int N>
 struct ContactOutcome {
-  ContactSprings springs;
-  ContactForces forces;             ///< at the end of the step
-  ContactKinematics<N> kinematics;  ///< whose gradients carried these forces in the equation of motion
+  double normal_stiffness = 0.0, shear_stiffness = 0.0;  ///< [N/m] of its springs
+  double gap = 0.0;                                      ///< [m] at the start of the step
+  CarriedForces forces;                                  ///< at the end of the step
+  ContactPose<N> pose;                                   ///< whose gradients carried these forces in the equation of motion
+
+  ContactOutcome() = default;
+  ContactOutcome(const ContactSprings& springs, const CarriedForces& carried, const ContactPose<N>& at)
+      : normal_stiffness(springs.normal), shear_stiffness(springs.shear), gap(springs.gap), forces(carried), pose(at) {}
 };
 
 /// One step to be solved. Everything is as it stands at the start of the step.
@@ -58,7 +63,7 @@ struct StepProblem {
 template <int N>
 struct PathOutcome {
   PathAverage average;
-  ContactKinematics<N> kinematics;  ///< of the mean pose: whose gradients carried the forces
+  ContactPose<N> pose;  ///< the mean one, whose gradients carried the forces
 };
 
 template <int N>

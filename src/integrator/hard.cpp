@@ -134,8 +134,8 @@ class Hard final : public Enforcement<N> {
     for (std::size_t c = 0; c < springs_.size(); ++c) {
       const ContactOutcome<N>& o = solution.contacts[c];
       if (o.forces.status == ContactStatus::open) continue;
-      double error = std::abs((o.springs.gap - o.springs.target) + o.kinematics.gap_change);
-      if (o.forces.status == ContactStatus::sticking) error = std::max(error, std::abs(o.kinematics.slip_change));
+      double error = std::abs((springs_[c].gap - springs_[c].target) + o.pose.gap_change);
+      if (o.forces.status == ContactStatus::sticking) error = std::max(error, std::abs(o.pose.slip_change));
       const double rounding = rounding_units * std::numeric_limits<double>::epsilon() * coordinates(problem, solution, problem.contacts[c]);
       worst = std::max(worst, error / std::max(tolerated, rounding));
     }

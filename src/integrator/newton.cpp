@@ -348,14 +348,14 @@ template <int N>
 void Newton<N>::report_contacts(std::vector<ContactOutcome<N>>& contacts) const {
   contacts.clear();
   contacts.reserve(trials_.size());
-  for (std::size_t c = 0; c < trials_.size(); ++c) contacts.push_back({(*springs_)[c], trials_[c].forces, ContactKinematics<N>(trials_[c].pose)});
+  for (std::size_t c = 0; c < trials_.size(); ++c) contacts.emplace_back((*springs_)[c], trials_[c].forces, trials_[c].pose);
 }
 
 template <int N>
 void Newton<N>::report_paths(StepSolution<N>& solution) const {
   for (std::size_t c = 0; c < paths_.size(); ++c) {
-    solution.paths.push_back({paths_[c].average, ContactKinematics<N>(paths_[c].pose)});
-    static_cast<CarriedForces&>(solution.contacts[c].forces) = paths_[c].average.end;
+    solution.paths.push_back({paths_[c].average, paths_[c].pose});
+    solution.contacts[c].forces = paths_[c].average.end;
   }
 }
 

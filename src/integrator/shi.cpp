@@ -59,6 +59,13 @@ class Shi : public Enforcement<N> {
  private:
   using Unknowns = typename Motion<N>::Unknowns;
 
+  /// A contact in the geometry of the start of the step; its changes of gap and slip are linear in the displacement.
+  struct LinearContact {
+    ContactSprings springs;
+    CarriedForces forces;
+    ContactKinematics<N> kinematics;
+  };
+
   void begin(const StepProblem<N>& problem) {
     const Unknowns still = Unknowns::Zero();
     outcome_.clear();
@@ -66,7 +73,7 @@ class Shi : public Enforcement<N> {
     applied_shear_.clear();
     for (const Contact& c : problem.contacts) {
       strength_.emplace_back(problem.joints.joint(c.joint), c);
-      ContactOutcome<N> o{springs(problem, c), {}, ContactKinematics<N>(problem.system, c, still, still)};
+      LinearContact o{springs(problem, c), {}, ContactKinematics<N>(problem.system, c, still, still)};
       o.forces.status = c.status == ContactStatus::open && c.gap < -problem.method.closing_tolerance ? ContactStatus::sticking : c.status;
       o.forces.normal = c.normal_force;
       o.forces.shear = std::copysign(strength_.back().shear_bound(c.normal_force).value, c.shear_force);
@@ -108,7 +115,7 @@ class Shi : public Enforcement<N> {
 
   void add_contact(const StepProblem<N>& problem, std::size_t c, Eigen::VectorXd& right) {
     const Contact& contact = problem.contacts[c];
-    const ContactOutcome<N>& o = outcome_[c];
+    const LinearContact& o = outcome_[c];
     if (o.forces.status == ContactStatus::open) return;
     const bool locked = o.forces.status == ContactStatus::sticking;
     const double kn = o.springs.normal + o.springs.normal_damping, ks = locked ? o.springs.shear + o.springs.shear_damping : 0.0;
@@ -139,7 +146,7 @@ class Shi : public Enforcement<N> {
     bool changed = false;
     for (std::size_t c = 0; c < outcome_.size(); ++c) {
       const Contact& contact = problem.contacts[c];
-      ContactOutcome<N>& o = outcome_[c];
+      LinearContact& o = outcome_[c];
       const auto path = [&](int b, const Unknowns& gradient) {
         const int i = problem.system.block(b).equation;
         return i < 0 ? 0.0 : gradient.dot(d.template segment<N>(N * i));
@@ -155,13 +162,13 @@ class Shi : public Enforcement<N> {
     return changed;
   }
 
-  static ContactForces next_forces(const StepProblem<N>& problem, const ContactOutcome<N>& o, const ContactStrength& strength) {
+  static CarriedForces next_forces(const StepProblem<N>& problem, const LinearContact& o, const ContactStrength& strength) {
     const double gap = o.springs.gap + o.kinematics.gap_change;
     const double elastic = -o.springs.normal * gap, normal = elastic + viscous_normal(o.springs, strength, o.kinematics.gap_change);
     const double elastic_trial = o.springs.initial_shear - o.springs.shear * o.kinematics.slip_change;
     const double trial = elastic_trial - o.springs.shear_damping * o.kinematics.slip_change;
     const bool opens = normal < -strength.tension || (strength.tension == 0.0 && normal <= 0.0);
-    ContactForces f;
+    CarriedForces f;
     if (opens || (o.forces.status == ContactStatus::open && gap >= -problem.method.closing_tolerance)) return f;
     f.normal = normal;
     f.elastic_normal = elastic;
@@ -185,7 +192,7 @@ class Shi : public Enforcement<N> {
   }
 
   void finish(const StepProblem<N>& problem, StepSolution<N>& solution) {
-    for (const ContactOutcome<N>& o : outcome_) {
+    for (const LinearContact& o : outcome_) {
       const double depth = o.forces.status == ContactStatus::open ? 0.0 : -(o.springs.gap + o.kinematics.gap_change);
       if (depth > problem.method.penetration_tolerance) {
         solution.reason =
@@ -195,15 +202,16 @@ class Shi : public Enforcement<N> {
       }
     }
     solution.converged = true;
-    solution.contacts = outcome_;
-    // What a sliding contact carried in this step is the friction of the pass before.
     for (std::size_t c = 0; c < outcome_.size(); ++c) {
-      ContactForces& f = solution.contacts[c].forces;
+      const ContactKinematics<N>& k = outcome_[c].kinematics;
+      solution.contacts.emplace_back(outcome_[c].springs, outcome_[c].forces, k.pose());
+      // What a sliding contact carried in this step is the friction of the pass before.
+      CarriedForces& f = solution.contacts[c].forces;
       if (f.status == ContactStatus::sliding) f.shear = f.elastic_shear = applied_shear_[c];
     }
   }
 
-  std::vector<ContactOutcome<N>> outcome_;
+  std::vector<LinearContact> outcome_;
   std::vector<ContactStrength> strength_;
   std::vector<double> applied_shear_;  ///< [N] right side of the last pass
   TangentSystem<N> tangent_;
