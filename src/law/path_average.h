@@ -34,4 +34,8 @@ struct PathAverage {
 /// The springs' dashpots count as c/dt, dt being the duration of the whole path.
 PathAverage path_average(const ContactSprings& springs, const ContactStrength& strength, double gap_change, double slip_change, double dissipation);
 
+/// The same without the short ways for contacts that are open or stick all the while, number for number.
+PathAverage path_average_by_pieces(const ContactSprings& springs, const ContactStrength& strength, double gap_change, double slip_change,
+                                   double dissipation);
+
 }  // namespace openclose

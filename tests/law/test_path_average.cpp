@@ -3,6 +3,7 @@
 #include <map>
 #include <random>
 #include <string>
+#include <vector>
 
 #include "openclose/law/path_average.h"
 #include "support/catch.h"
@@ -133,6 +134,27 @@ TEST_CASE("path average: derivatives are those of difference quotients, whatever
     CAPTURE(kind);
     CHECK(compared[kind] > 20);
   }
+}
+
+TEST_CASE("path average: the short ways give the same numbers as the pieces", "[law][path]") {
+  std::mt19937 generator(6);
+  std::map<std::string, int> compared;
+  for (int i = 0; i < paths; ++i) {
+    const Path p = random_path(generator);
+    const PathAverage a = average(p), b = path_average_by_pieces(p.springs, p.strength, p.gap_change, p.slip_change, 0.0);
+    CAPTURE(i, what_happens(p), p.gap_change, p.slip_change);
+    const auto numbers = [](const PathAverage& x) {
+      return std::vector<double>{x.mean.normal, x.mean.shear, x.mean.elastic_normal, x.mean.elastic_shear, x.mean.normal_by_gap, x.mean.shear_by_gap,
+                                 x.mean.shear_by_slip, x.end.normal, x.end.shear, x.end.elastic_normal, x.end.elastic_shear, x.energies.springs,
+                                 x.energies.friction, x.energies.damping, x.energies.rupture, x.energies.scheme};
+    };
+    CHECK(numbers(a) == numbers(b));
+    CHECK(a.mean.status == b.mean.status);
+    CHECK(a.end.status == b.end.status);
+    ++compared[what_happens(p)];
+  }
+  CHECK(compared["closed and sticks"] > 100);
+  CHECK(compared["open"] > 100);
 }
 
 TEST_CASE("path average: work is what is stored, rubbed, damped and let go", "[law][path]") {
