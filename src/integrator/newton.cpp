@@ -337,7 +337,7 @@ void Newton<N>::take_last_states() {
     const Contact& contact = problem_->contacts[c];
     const ContactSprings springs = seen_springs(c);
     const ContactPose<N>& pose = trials_[c].pose;
-    const bool touching = contact.status == ContactStatus::open && springs.gap <= 0.0;
+    const bool touching = contact.status == ContactStatus::open && springs.gap <= 0.0 && springs.shift >= 0.0;
     const ContactStatus status = touching ? ContactStatus::sticking : contact.status;
     if (paths_.empty() && is_on_piece(trials_[c].forces, status)) continue;
     replace_forces(c, prolonged(springs, contacts_[c].strength, status, contact.normal_force, contact.shear_force, pose.gap_change, pose.slip_change));

@@ -77,7 +77,8 @@ class Newton {
   /// What a step sees of the springs of contact c while it stays closed: half of them, if it averages over its path.
   ContactSprings seen_springs(std::size_t c) const;
   /// Forces and derivatives for the first iteration: the laws' linear pieces of the last step, wherever the iteration starts from, so that a step in
-  /// which no contact changes its state needs one solve. Corners that only touch count as sticking.
+  /// which no contact changes its state needs one solve. Corners that only touch count as sticking, unless their
+  /// springs are known to hang loose.
   void take_last_states();
   /// Contact c carries these forces in the next linear solve.
   void replace_forces(std::size_t c, const ContactForces& forces);
