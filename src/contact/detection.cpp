@@ -80,19 +80,21 @@ class Detector<N>::Shapes {
 template <int N>
 class Detector<N>::ContactIndex {
  public:
-  void build(const BlockSystem<N>& system, const std::vector<Contact>& contacts) {
+  void build(const BlockSystem<N>& system, const std::vector<Contact>& contacts, const std::vector<Contact>& resting) {
     contacts_ = &contacts;
-    first_.assign(system.state().arm.size(), -1);
-    entries_.clear();
-    for (std::size_t i = 0; i < contacts.size(); ++i) {
-      if (contacts[i].status == ContactStatus::open) continue;
-      const int edge = contacts[i].edge;
-      for (const int corner : {contacts[i].vertex, edge, system.next(edge)}) {
-        entries_.push_back({static_cast<int>(i), first_[corner]});
-        first_[corner] = static_cast<int>(entries_.size()) - 1;
-      }
+    if (!knows_resting_) {
+      entries_.clear();
+      resting_first_.assign(system.state().arm.size(), -1);
+      add(system, resting, resting_first_);
+      resting_entries_ = entries_.size();
+      knows_resting_ = true;
     }
+    first_ = resting_first_;
+    entries_.resize(resting_entries_);
+    add(system, contacts, first_);
   }
+  /// Other contacts are at rest than before.
+  void forget_resting() { knows_resting_ = false; }
 
   /// Looks at the contacts of one pair of blocks.
   void select(const Range& range) { range_ = range; }
@@ -114,17 +116,32 @@ class Detector<N>::ContactIndex {
   /// Closed contacts of this vertex and those on its two edges.
   template <class F>
   void for_closed(int vertex, F f) const {
-    for (int i = first_[vertex]; i >= 0; i = entries_[i].next) f((*contacts_)[entries_[i].contact]);
+    for (int i = first_[vertex]; i >= 0; i = entries_[i].next) f(*entries_[i].contact);
   }
 
  private:
   struct Entry {
-    int contact, next;
+    const Contact* contact = nullptr;
+    int next = -1;
   };
+
+  void add(const BlockSystem<N>& system, const std::vector<Contact>& contacts, std::vector<int>& first) {
+    for (const Contact& contact : contacts) {
+      if (contact.status == ContactStatus::open) continue;
+      for (const int corner : {contact.vertex, contact.edge, system.next(contact.edge)}) {
+        entries_.push_back({&contact, first[corner]});
+        first[corner] = static_cast<int>(entries_.size()) - 1;
+      }
+    }
+  }
+
   const std::vector<Contact>* contacts_ = nullptr;
   Range range_;
   std::vector<int> first_;      ///< per vertex, in entries_; -1 without any
   std::vector<Entry> entries_;  ///< closed contacts of one vertex, of the ends of their edges too, chained
+  bool knows_resting_ = false;
+  std::vector<int> resting_first_;   ///< of contacts at rest alone, which stand first among the entries
+  std::size_t resting_entries_ = 0;  ///< number of these
 };
 
 /// Narrow phase between the blocks of one pair. Collects contacts; a vertex-edge pair found twice gets the sum of the lengths.
@@ -471,6 +488,7 @@ void Detector<N>::find_pairs(const BlockSystem<N>& system, const std::vector<Box
 template <int N>
 void Detector<N>::search(const BlockSystem<N>& system) {
   ++counters_.searches;
+  woken_ = false;
   std::vector<Box> boxes;
   boxes.reserve(system.block_count());
   searched_at_.resize(system.block_count());
@@ -536,9 +554,15 @@ typename Detector<N>::Due Detector<N>::due(const PairState& then, const Place& f
 }
 
 template <int N>
-bool Detector<N>::mark_due_pairs(const BlockSystem<N>& system, bool all) {
+void Detector<N>::find_places(const BlockSystem<N>& system) {
   places_.resize(system.block_count());
   for (int b = 0; b < system.block_count(); ++b) places_[b] = place(system, b);
+}
+
+template <int N>
+bool Detector<N>::mark_due_pairs(const BlockSystem<N>& system, bool all) {
+  if (all || places_.empty()) find_places(system);
+  for (int b : system.free_blocks()) places_[b] = place(system, b);
   due_pairs_.clear();
   moved_pairs_.clear();
   if (all) {
@@ -655,6 +679,49 @@ void Detector<N>::put_in_place(std::vector<Contact>& contacts, bool orphans) {
 }
 
 template <int N>
+void Detector<N>::divide(const BlockSystem<N>& system, std::vector<Contact>& contacts) {
+  const auto pairs = std::move(pairs_);
+  const auto states = std::move(states_);
+  const auto ranges = std::move(ranges_);
+  const auto list = std::move(contacts);
+  const Resting resting = std::move(resting_);
+  pairs_.clear();
+  states_.clear();
+  ranges_.clear();
+  contacts.clear();
+  resting_ = Resting();
+  const auto give = [&](const std::pair<int, int>& pair, const PairState& state, const Range& range, const std::vector<Contact>& from) {
+    const bool moves = system.block(pair.first).equation >= 0 || system.block(pair.second).equation >= 0;
+    std::vector<Contact>& to = moves ? contacts : resting_.contacts;
+    (moves ? pairs_ : resting_.pairs).push_back(pair);
+    (moves ? states_ : resting_.states).push_back(state);
+    const int begin = static_cast<int>(to.size());
+    to.insert(to.end(), from.begin() + range.begin, from.begin() + range.end);
+    (moves ? ranges_ : resting_.ranges).push_back({begin, static_cast<int>(to.size())});
+  };
+  for (std::size_t i = 0, k = 0; i < pairs.size() || k < resting.pairs.size();) {
+    if (k == resting.pairs.size() || (i < pairs.size() && pairs[i] < resting.pairs[k])) {
+      give(pairs[i], states[i], ranges[i], list);
+      ++i;
+    } else {
+      woken_ |= system.block(resting.pairs[k].first).equation >= 0 || system.block(resting.pairs[k].second).equation >= 0;
+      give(resting.pairs[k], resting.states[k], resting.ranges[k], resting.contacts);
+      ++k;
+    }
+  }
+  index_->forget_resting();
+  find_places(system);
+}
+
+template <int N>
+void Detector<N>::exchange(Archive& archive) {
+  archive(first_, forgotten_, woken_, pairs_, states_, ranges_, resting_, searched_at_, counters_);
+  if (!archive.reading()) return;
+  index_->forget_resting();
+  places_.clear();
+}
+
+template <int N>
 bool Detector<N>::update(const BlockSystem<N>& system, const JointTable& joints, std::vector<Contact>& contacts) {
   const bool all = forgotten_ || !skips_.search || !skips_.narrow_phase;
   const bool searches = needs_search(system);
@@ -677,7 +744,7 @@ bool Detector<N>::update(const BlockSystem<N>& system, const JointTable& joints,
   found_.clear();
   changes_.clear();
   shapes_->begin(system);
-  index_->build(system, contacts);
+  index_->build(system, contacts, resting_.contacts);
   NarrowPhase narrow(system, reach_ + skips_.contact_skin, *shapes_, *index_);
   for (const int pair : due_pairs_) redo(joints, system, pair, narrow, contacts);
   if (!first_) pass_on_history(system, contacts);
