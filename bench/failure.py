@@ -11,6 +11,8 @@ from scaling import spacings
 from slopes import JointedSlope
 
 STUDY, SCENE = "failure", "3.4 in failure"
+# The same with blocks at rest left alone.
+RESTING_SCENE, RESTING = "3.4 in failure, blocks at rest left alone", (("method.skip_resting", "true"),)
 DISTANCES_M = (10.0, 20.0, 30.0, 40.0)
 LIMIT_S = 250
 # The strength is divided by the scene's factor times 1 + k of this, for a number of starts: what these differ by tells how much one run says.
@@ -97,21 +99,23 @@ def run(bench: Bench) -> Findings | None:
         return None
     findings = Findings(fine, _distance(coarse, fine), {})
 
-    def trial(follower: Follower, value: float) -> Trial:
-        cases = [_case(follower.method, follower.key, value, k) for k in starts]
+    def trial(follower: Follower, value: float, scene: str = SCENE, name: str = "", more: Settings = ()) -> Trial:
+        cases = [_case(follower.method, follower.key, value, k, name, more) for k in starts]
 
         def error(_: Case) -> float | None:
             arrival = _arrival(bench, cases)
             if arrival is None:
                 return None
-            findings.arrivals[follower.method.name, value] = arrival
+            if scene == SCENE:
+                findings.arrivals[follower.method.name, value] = arrival
             return _distance(arrival, fine)
 
-        return Trial(STUDY, SCENE, follower.method.name, cases[0], "motion",
+        return Trial(STUDY, scene, follower.method.name, cases[0], "motion",
                      f"time at which the toe block has moved 10, 20, 30, 40 m, mean of {len(starts)} starts, largest of the four against "
                      f"{REFERENCE.name} with {1e3 * finest:g} ms", error, value if follower.key == "step.dt_s" else None, tuple(cases))
 
-    bench.measure([trial(f, value) for f in FOLLOWERS for value in (f.steps[:QUICK_FOLLOWER_STEPS] if bench.quick else f.steps)])
+    judged = [(f, value) for f in FOLLOWERS for value in (f.steps[:QUICK_FOLLOWER_STEPS] if bench.quick else f.steps)]
+    bench.measure([trial(*run) for run in judged] + [trial(*run, RESTING_SCENE, "-resting", RESTING) for run in judged])
     for blocks in LARGE.get(bench.mode, ()):
         _large(bench, blocks)
     return findings

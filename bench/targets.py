@@ -70,6 +70,7 @@ def _failure(bench: Bench, scene: str, what: str, floor: float) -> Target:
 def _failures(bench: Bench, findings: failure.Findings | None) -> list[Target]:
     floor = findings.converged if findings else 0.0
     found = [_failure(bench, failure.SCENE, "40 m after failure at equal error, 482 blocks: dem over implicit", floor)]
+    found.append(_failure(bench, failure.RESTING_SCENE, "the same with blocks at rest left alone", floor))
     return found + [_failure(bench, failure.large_scene(n), f"the same, {n:,} blocks", floor) for n in failure.LARGE["long"]]
 
 
