@@ -285,7 +285,8 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
                    {"plain_factorisations", linear.plain},
                    {"factors_kept", linear.factors_kept},
                    {"krylov_iterations", linear.krylov_iterations},
-                   {"krylov_given_up", linear.krylov_given_up}};
+                   {"krylov_given_up", linear.krylov_given_up},
+                   {"incomplete_factorisations", linear.incomplete}};
   if (simulation.is_explicit()) {
     j["explicit"] = {{"critical_step_s", steps.smallest_critical_step},
                      {"longest_step_s", steps.longest_step},

@@ -115,7 +115,7 @@ enum class MassDamping {
 enum class LinearSolverKind {
   automatic,  ///< directly, and for many blocks iteratively
   direct,     ///< every matrix is factored
-  iterative,  ///< with the factor of an earlier matrix as preconditioner
+  iterative,  ///< with an incomplete factor, or that of an earlier matrix, as preconditioner
   plain,      ///< by the library's sparse LU, to compare with
 };
 
