@@ -67,6 +67,8 @@ SettleResult settle(Simulation<N>& simulation, const SettleProgress& progress) {
       result.criterion = "displacement";
       return result;
     }
+    // A balance that a loss of strength has upset gives no reason for longer steps.
+    if (result.unbalanced_fraction <= input.unbalanced_fraction) continue;
     dt = std::min(dt * std::min(growth, factor_to_limit(limit, step.moved)), largest_growth * input.first_dt);
     growth = std::min(growth * growth, fastest_growth);
   }

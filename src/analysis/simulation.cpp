@@ -393,6 +393,7 @@ void Simulation<N>::accept_contacts(const StepSolution<N>& solution) {
     c.normal_force = o.forces.normal;
     c.shear_force = o.forces.shear;
     c.elastic_slip = -o.forces.elastic_shear / o.shear_stiffness;
+    c.slack = o.slack;
     c.gap = o.gap + o.pose.gap_change;
     c.stored_energy =
         elastic ? stored_energy(o.normal_stiffness, o.shear_stiffness, o.forces.elastic_normal, o.forces.elastic_shear) : 0.0;

@@ -28,10 +28,11 @@ struct Contact {
   double normal_force = 0.0;   ///< [N] spring and dashpot
   double shear_force = 0.0;    ///< [N]
   double stored_energy = 0.0;  ///< [J] in both springs
+  double slack = 0.0;          ///< [m] `hard` at rest: by how much an open contact would have parted, see hard.cpp
 
   void exchange(Archive& archive) {
-    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m] = *this;
-    archive(a, b, c, d, e, f, g, h, i, j, k, l, m);
+    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n] = *this;
+    archive(a, b, c, d, e, f, g, h, i, j, k, l, m, n);
   }
 };
 

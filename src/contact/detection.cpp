@@ -367,6 +367,7 @@ void inherit(const Contact& from, Contact& to) {
   to.normal_force = from.normal_force;
   to.shear_force = from.shear_force;
   to.stored_energy = from.stored_energy;
+  to.slack = from.slack;
 }
 
 /// (R(angle) - 1) r; for most angles, which are small, without sines: what the series leave out is below rounding.

@@ -50,6 +50,7 @@ struct ContactStart {
   Vec2 end_arm;     ///< [m] from the centroid of the edge's block to e
   Vec2 lever;       ///< [m] from e to p
 
+  ContactStart() = default;
   ContactStart(const BlockSystem<N>& system, const Contact& contact)
       : vertex_arm(system.arm(contact.vertex)),
         end_arm(system.arm(contact.edge)),

@@ -23,6 +23,7 @@ template <int N>
 struct ContactOutcome {
   double normal_stiffness = 0.0, shear_stiffness = 0.0;  ///< [N/m] of its springs
   double gap = 0.0;                                      ///< [m] at the start of the step
+  double slack = 0.0;                                    ///< [m] see Contact
   CarriedForces forces;                                  ///< at the end of the step
   ContactPose<N> pose;                                   ///< whose gradients carried these forces in the equation of motion
 

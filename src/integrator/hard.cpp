@@ -2,8 +2,14 @@
 //
 // Each outer pass solves N = max(0, shift - k (gap - target)), T = clamp(initial shear - k s) and takes N, T as the next pass's shift and initial
 // shear. The passes converge whatever the stiffness k is (it only sets how fast), so the answer does not depend on the joint's stiffness: a closed
-// contact keeps its gap, a sticking one its place, to the tolerance. In motion k is a multiple of the inertia, in statics of the joint's stiffness, which then
-// decides how the first pass shares what rigid contacts leave undetermined.
+// contact keeps its gap, a sticking one its place, to the tolerance. In motion k is a multiple of the inertia, in statics the joint's own stiffness,
+// which then decides how rigid contacts share what they leave undetermined.
+//
+// In statics the blocks go back to their places with every pass, and what springs have stretched, slipped or parted is remembered instead, not only
+// what they carry: the next pass starts from N - k gap and T - k s as they are, below zero where a contact is open and beyond its strength where it
+// slides. With the forces alone every contact that slides would stand between sliding and sticking, and every open one between open and closed, and
+// Newton's method would have to find out for each of them again. So the passes are the steps that `soft` would take to its rest, with one difference:
+// the forces act on the blocks where they were. How far open contacts have parted in this way (their slack) is kept for the next step.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -21,8 +27,6 @@ namespace {
 /// first is as high as Newton takes without more iterations (40 m of a failing slope: 2900, with 1000 3900, with 100 more passes); where it gets lost
 /// among the contact states, the softer ones take more passes, each of them easier.
 constexpr std::array stiffness_over_inertia = {300.0, 30.0, 1.0};
-/// [-] The same over the joint's stiffness, in statics: no softer one, since the tilt of the first pass decides how redundant contacts share forces.
-constexpr double stiffness_over_joint = 10.0;
 /// [m] The tolerance of statics: what passes leave there is a share of the forces themselves, on which hangs what joints lose their strength, and
 /// there is no inertia to carry the rest.
 constexpr double static_gap = 1e-11;
@@ -38,6 +42,9 @@ constexpr int attempts_before_compliance = 2;
 /// far below that of motion, gaps that motion has left may exclude each other by more.
 constexpr double slow_convergence = 0.5;
 constexpr double incompatible_gaps = 3.0, incompatible_static_gaps = 100.0;
+/// [-] Statics: blocks that go farther than this part of their way in the last pass are moving, and the next pass starts where they are. Those that
+/// come to rest leave about a thousandth from pass to pass, moving ones all of it.
+constexpr double going_on = 0.5;
 
 template <int N>
 class Hard final : public Enforcement<N> {
@@ -55,7 +62,9 @@ class Hard final : public Enforcement<N> {
       if (total == tried) continue;  // in statics the joint's stiffness may decide
       tried = total;
       solve(problem, solution, compliant);
-      if (solution.converged) return solution;
+      if (!solution.converged) continue;
+      if (problem.statics) note_slack(solution);
+      return solution;
     }
     if (problem.statics || problem.failed_attempts < attempts_before_compliance || !compliant.converged) return solution;
     compliant.iterations = solution.iterations;
@@ -79,13 +88,13 @@ class Hard final : public Enforcement<N> {
       if (problem.system.block(b).equation >= 0) mass = std::max(mass, problem.system.block(b).mass[0]);
     }
     const double from_inertia = ratio * problem.inertia * mass;
-    const double from_joint = problem.statics ? stiffness_over_joint * contact.length : 0.0;
+    const double from_joint = problem.statics ? 1.0 * contact.length : 0.0;
     ContactSprings s;
     s.normal = std::max(from_inertia, from_joint * joint.normal_stiffness);
     s.shear = std::max(from_inertia, from_joint * joint.shear_stiffness);
     s.gap = contact.gap;
     s.target = target_gap(problem, contact);
-    s.shift = contact.normal_force;
+    s.shift = problem.statics && contact.status == ContactStatus::open ? -s.normal * contact.slack : contact.normal_force;
     s.initial_shear = contact.shear_force;
     return s;
   }
@@ -100,22 +109,69 @@ class Hard final : public Enforcement<N> {
     // From the drift dt v: the stiff matrix costs digits of what is solved for, and these are better lost from the change of motion than from the
     // motion.
     solution.d = drift(problem);
+    Eigen::VectorXd first;                                      // where the first pass of statics has brought the blocks
+    double last_way = std::numeric_limits<double>::infinity();  // [m] of the farthest block in the last pass
     double last_error = std::numeric_limits<double>::infinity();
     for (int pass = 0; pass < most_outer_passes; ++pass) {
       newton_.solve(problem, springs_, solution, pass == 0 ? FirstTangent::last_step : FirstTangent::present);
       if (!solution.converged) return;
-      if (!compliant.converged) compliant = solution;
+      if (!problem.statics && !compliant.converged) compliant = solution;
       const double error = constraint_error(problem, solution);
       const bool stagnates = error > slow_convergence * last_error;
       if (error <= 1.0 || (stagnates && error <= (problem.statics ? incompatible_static_gaps : incompatible_gaps))) return;
       last_error = error;
-      for (std::size_t c = 0; c < springs_.size(); ++c) {
-        springs_[c].shift = solution.contacts[c].forces.normal;
-        springs_[c].initial_shear = solution.contacts[c].forces.shear;
-      }
+      for (std::size_t c = 0; c < springs_.size(); ++c) carry_on(problem, solution.contacts[c], springs_[c]);
+      if (!problem.statics) continue;
+      const double way = solution.d.template lpNorm<Eigen::Infinity>();
+      const bool comes_to_rest = way < going_on * last_way;
+      last_way = way;
+      if (pass == 0) first = solution.d;
+      if (pass == 1 && comes_to_rest) straighten(problem, solution, first);
+      if (comes_to_rest) solution.d.setZero();
     }
     solution.converged = false;
     solution.reason = "the multipliers of hard contacts did not converge";
+  }
+
+  /// What the springs of the next pass start from.
+  static void carry_on(const StepProblem<N>& problem, const ContactOutcome<N>& outcome, ContactSprings& s) {
+    const bool open = outcome.forces.status == ContactStatus::open;
+    if (!problem.statics) {
+      s.shift = outcome.forces.normal;
+      s.initial_shear = outcome.forces.shear;
+    } else if (open) {
+      // A gap that was there before is one on every pass; only what has come to it is remembered.
+      const double parted = outcome.pose.gap_change + std::min(0.0, s.gap - s.target);
+      s.shift = std::min(0.0, s.shift - s.normal * parted);
+      s.initial_shear = 0.0;
+    } else {
+      s.shift = outcome.forces.normal;
+      s.initial_shear -= s.shear * outcome.pose.slip_change;
+    }
+  }
+
+  /// Takes from what closed contacts remember of the first pass that they turned on its way. What rigid contacts leave undetermined is then shared as
+  /// springs do whose changes of gap and slip are linear in the motion of the blocks, which is the same however stiff they are.
+  void straighten(const StepProblem<N>& problem, const StepSolution<N>& solution, const Eigen::VectorXd& first) {
+    StepSolution<N> turned;
+    turned.d = first;
+    const RotationKind kind = problem.system.rotation_kind();
+    for (std::size_t c = 0; c < springs_.size(); ++c) {
+      if (solution.contacts[c].forces.status == ContactStatus::open) continue;
+      const Contact& contact = problem.contacts[c];
+      const auto of_vertex = turned.of(problem.system, contact.vertex_block), of_edge = turned.of(problem.system, contact.edge_block);
+      const ContactStart<N> start(problem.system, contact);
+      const ContactPose<N> before(start, {}, {}), after(start, BlockMove<N>(of_vertex, kind), BlockMove<N>(of_edge, kind));
+      springs_[c].shift += springs_[c].normal * (after.gap_change - before.normal_way(of_vertex, of_edge));
+      springs_[c].initial_shear += springs_[c].shear * (after.slip_change - before.shear_way(of_vertex, of_edge));
+    }
+  }
+
+  void note_slack(StepSolution<N>& solution) const {
+    for (std::size_t c = 0; c < springs_.size(); ++c) {
+      if (solution.contacts[c].forces.status == ContactStatus::open)
+        solution.contacts[c].slack = std::max(0.0, -springs_[c].shift / springs_[c].normal);
+    }
   }
 
   /// In motion a closed contact keeps the gap it has, so that standing still is always consistent, unless earlier steps have left more than they
@@ -127,15 +183,23 @@ class Hard final : public Enforcement<N> {
     return std::min(level, contact.gap + tolerance::hard_recovery_m_per_s * problem.dt);
   }
 
-  /// Largest error over what is tolerated: closed contacts off their target gaps, sticking ones off their places.
+  /// Largest error over what is tolerated: closed contacts off their target gaps, sticking ones off their places. Where more than forces is
+  /// remembered also open ones that penetrate and sliding ones that go against their friction.
   double constraint_error(const StepProblem<N>& problem, const StepSolution<N>& solution) const {
     const double tolerated = problem.statics ? std::min(static_gap, problem.method.gap_tolerance) : problem.method.gap_tolerance;
     double worst = 0.0;
     for (std::size_t c = 0; c < springs_.size(); ++c) {
       const ContactOutcome<N>& o = solution.contacts[c];
-      if (o.forces.status == ContactStatus::open) continue;
-      double error = std::abs((springs_[c].gap - springs_[c].target) + o.pose.gap_change);
-      if (o.forces.status == ContactStatus::sticking) error = std::max(error, std::abs(o.pose.slip_change));
+      const double off_target = (springs_[c].gap - springs_[c].target) + o.pose.gap_change;
+      double error;
+      if (o.forces.status == ContactStatus::open) {
+        error = -off_target;
+      } else {
+        const double slip =
+            o.forces.status == ContactStatus::sticking ? std::abs(o.pose.slip_change) : std::copysign(1.0, o.forces.shear) * o.pose.slip_change;
+        error = std::max(std::abs(off_target), slip);
+      }
+      if (error <= 0.0) continue;
       const double rounding = rounding_units * std::numeric_limits<double>::epsilon() * coordinates(problem, solution, problem.contacts[c]);
       worst = std::max(worst, error / std::max(tolerated, rounding));
     }

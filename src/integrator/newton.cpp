@@ -21,8 +21,6 @@ constexpr double static_slip_stiffness = 0.01;
 /// [-] A line search is good enough when the energy's slope has fallen to this part.
 constexpr double line_search_slope = 0.9;
 constexpr int line_search_steps = 8;
-/// Sliding contacts are on this branch of their law or, the other way, on minus it.
-constexpr int sliding_branch = static_cast<int>(ContactStatus::sliding);
 /// [-] Backtracking along the exact step: decrease of the residual asked for, as a part of what the linear model promises, and the shortest part of
 /// the step worth taking (6 halvings; below, the symmetric tangent gets on better).
 constexpr double sufficient_decrease = 0.1;
@@ -39,19 +37,14 @@ bool carries(const ContactForces& f) {
   return f.status != ContactStatus::open || f.normal != 0.0 || f.normal_by_gap != 0.0;
 }
 
-int differences(const std::vector<signed char>& a, const std::vector<signed char>& b) {
+int differences(const std::vector<Branch>& a, const std::vector<Branch>& b) {
   return std::inner_product(a.begin(), a.end(), b.begin(), 0, std::plus<>(), std::not_equal_to<>());
 }
 
 /// Whether the forces are already on the linear piece of their law that holds in this status; sliding has several.
-bool is_on_piece(const ContactForces& f, ContactStatus status) {
-  if (f.status != status) return false;
-  return status == ContactStatus::open || (status == ContactStatus::sticking && f.normal_by_gap != 0.0);
-}
-
-signed char branch(const ContactForces& f) {
-  const bool backward = f.status == ContactStatus::sliding && f.shear < 0.0;
-  return static_cast<signed char>(backward ? -sliding_branch : static_cast<int>(f.status));
+bool is_on_piece(ContactStatus now, double normal_by_gap, ContactStatus wanted) {
+  if (now != wanted) return false;
+  return now == ContactStatus::open || (now == ContactStatus::sticking && normal_by_gap != 0.0);
 }
 
 }  // namespace
@@ -61,12 +54,20 @@ void Newton<N>::prepare(const StepProblem<N>& problem, const std::vector<Contact
   const BlockSystem<N>& system = problem.system;
   problem_ = &problem;
   springs_ = &springs;
-  contacts_.clear();
-  const auto row = [&](int b) { return system.block(b).equation < 0 ? system.free_count() : system.block(b).equation; };
-  for (const Contact& c : problem.contacts) {
-    const ContactStart<N> start(system, c);
-    contacts_.push_back({start, ContactStrength(problem.joints.joint(c.joint), c), start.vertex_arm.norm(), (start.end_arm + start.lever).norm(),
-                         c.vertex_block, c.edge_block, row(c.vertex_block), row(c.edge_block)});
+  contact_count_ = problem.contacts.size();
+  contacts_.resize((contact_count_ + batch_size - 1) / batch_size);
+  if (!contacts_.empty()) contacts_.back() = ContactBatch();
+  const auto row = [&](int b) { return b < system.block_count() && system.block(b).equation >= 0 ? system.block(b).equation : system.free_count(); };
+  for (std::size_t c = 0; c < batch_size * contacts_.size(); ++c) {
+    ContactBatch& batch = contacts_[c / batch_size];
+    const bool is_one = c < contact_count_;
+    batch.vertex_block[lane(c)] = is_one ? problem.contacts[c].vertex_block : system.block_count();
+    batch.edge_block[lane(c)] = is_one ? problem.contacts[c].edge_block : system.block_count();
+    batch.vertex_row[lane(c)] = row(batch.vertex_block[lane(c)]);
+    batch.edge_row[lane(c)] = row(batch.edge_block[lane(c)]);
+    if (!is_one) continue;
+    const Contact& contact = problem.contacts[c];
+    batch.set(lane(c), ContactStart<N>(system, contact), springs[c], ContactStrength(problem.joints.joint(contact.joint), contact));
   }
   blocks_.clear();
   for (int b : system.free_blocks()) {
@@ -77,52 +78,41 @@ void Newton<N>::prepare(const StepProblem<N>& problem, const std::vector<Contact
                        problem.external.spring_scale(system, b)});
   }
   trials_.resize(contacts_.size());
-  paths_.resize(problem.averages_path() ? contacts_.size() : 0);
-  branches_.resize(contacts_.size());
-  moves_.assign(system.block_count(), BlockMove<N>());
+  paths_.resize(problem.averages_path() ? contact_count_ : 0);
+  branches_.assign(batch_size * contacts_.size(), 0);
+  moves_.assign(system.block_count() + 1, BlockMove<N>());
   tangent_.fit(problem);
 }
 
 template <int N>
-template <bool averages>
-inline void Newton<N>::evaluate_contact(std::size_t c) {
-  const StepContact& contact = contacts_[c];
-  ContactTrial& trial = trials_[c];
-  trial.pose.set(contact.start, moves_[contact.vertex_block], moves_[contact.edge_block]);
-  const ContactSprings& springs = (*springs_)[c];
-  if constexpr (averages) {
-    paths_[c] = {path_average(springs, contact.strength, trial.pose.gap_change, trial.pose.slip_change, springs.dissipation),
-                 mean_pose(contact.start, trial.pose)};
-    trial.forces = paths_[c].average.mean;
-  } else {
-    trial.forces = spring_slider(springs, contact.strength, trial.pose.gap_change, trial.pose.slip_change);
-  }
-}
-
-template <int N>
-template <bool averages>
-void Newton<N>::evaluate_contacts() {
+void Newton<N>::evaluate_averaged_contacts() {
   double force_scale = force_scale_;
-  for (std::size_t c = 0; c < contacts_.size(); ++c) {
-    evaluate_contact<averages>(c);
-    const ContactForces& f = trials_[c].forces;
-    branches_[c] = branch(f);
-    if (averages ? !carries(f) : f.status == ContactStatus::open) continue;
-    const StepContact& contact = contacts_[c];
-    const ContactPose<N>& pose = averages ? paths_[c].pose : trials_[c].pose;
+  for (std::size_t c = 0; c < contact_count_; ++c) {
+    const ContactBatch& batch = start(c);
+    const int k = lane(c);
+    const ContactStart<N> from = batch.start(k);
+    const BlockMove<N>&vertex = moves_[batch.vertex_block[k]], &edge = moves_[batch.edge_block[k]];
+    const ContactPose<N> at(from, vertex, edge);
     const ContactSprings& springs = (*springs_)[c];
+    paths_[c] = {path_average(springs, batch.strength(k), at.gap_change, at.slip_change, springs.dissipation), mean_pose(from, at)};
+    const ContactForces& f = paths_[c].average.mean;
+    trial(c).set_pose(k, at);
+    trial(c).set_forces(k, f);
+    branches_[c] = branch(f);
+    if (!carries(f)) continue;
+    const ContactPose<N>& pose = paths_[c].pose;
     const double normal = std::abs(f.normal), shear = std::abs(f.shear);
-    const double moved = moves_[contact.vertex_block].bound(contact.vertex_reach) + moves_[contact.edge_block].bound(contact.edge_reach);
+    const double moved = vertex.bound(batch.vertex_reach[k]) + edge.bound(batch.edge_reach[k]);
     const double stiffness = springs.normal + springs.normal_damping + springs.shear + springs.shear_damping;
     const double rounding = rounding_of_sums * (stiffness * moved + normal + shear);
     const Vec2 force(f.normal * pose.normal.x() - f.shear * pose.normal.y(), f.normal * pose.normal.y() + f.shear * pose.normal.x());
-    double* on_vertex = force_.data() + N * contact.vertex_row;
-    double* on_edge = force_.data() + N * contact.edge_row;
+    Lanes& on_vertex = rows_[batch.vertex_row[k]].sums;
+    Lanes& on_edge = rows_[batch.edge_row[k]].sums;
     const Unknowns push = Motion<N>::gradient(pose.vertex_arm, force), back = Motion<N>::gradient(pose.edge_arm, force);
-    for (int k = 0; k < N; ++k) on_vertex[k] += push[k];
-    for (int k = 0; k < N; ++k) on_edge[k] -= back[k];
-    rounding_[contact.vertex_row] += rounding;
-    rounding_[contact.edge_row] += rounding;
+    for (int i = 0; i < N; ++i) on_vertex[i] += push[i];
+    for (int i = 0; i < N; ++i) on_edge[i] -= back[i];
+    on_vertex[N] += rounding;
+    on_edge[N] += rounding;
     force_scale = std::max({force_scale, normal, shear});
   }
   force_scale_ = force_scale;
@@ -136,20 +126,22 @@ void Newton<N>::evaluate_blocks(const Eigen::VectorXd& d) {
     const StepBlock& block = blocks_[i];
     const int at = N * static_cast<int>(i);
     const Unknowns db = d.template segment<N>(at);
+    Lanes& sums = rows_[i].sums;
+    Unknowns force(sums[0], sums[1], sums[2]);
     double magnitude = block.magnitude;
     if (block.has_point_forces) {
-      force_.template segment<N>(at) +=
-          problem_->averages_path() ? problem_->external.mean_force(system, block.block, db) : problem_->external.force(system, block.block, db);
+      force += problem_->averages_path() ? problem_->external.mean_force(system, block.block, db) : problem_->external.force(system, block.block, db);
       magnitude = problem_->external.magnitude(system, block.block, db);
     } else {
-      force_.template segment<N>(at) += block.force;
+      force += block.force;
     }
-    Unknowns r = block.inertia.cwiseProduct(block.drift - db) + theta * force_.template segment<N>(at);
+    Unknowns r = block.inertia.cwiseProduct(block.drift - db) + theta * force;
     if (theta < 1.0) r += (1.0 - theta) * start_force_.template segment<N>(at);
     if (block.rotation_locked) r[Motion<N>::rotation_index] = 0.0;
     residual_.template segment<N>(at) = r;
     const Unknowns moved = block.inertia.cwiseProduct(block.drift.cwiseAbs() + db.cwiseAbs());
-    rounding_[static_cast<int>(i)] += rounding_of_sums * (Motion<N>::largest_force(moved, block.radius) + magnitude + block.rounding_of_coordinates);
+    sums = Lanes{force[0], force[1], force[2], sums[N]};
+    sums[N] += rounding_of_sums * (Motion<N>::largest_force(moved, block.radius) + magnitude + block.rounding_of_coordinates);
     force_scale_ = std::max(force_scale_, magnitude);
   }
 }
@@ -160,14 +152,13 @@ void Newton<N>::evaluate(const Eigen::VectorXd& d) {
   for (std::size_t i = 0; i < blocks_.size(); ++i) {
     moves_[blocks_[i].block] = BlockMove<N>(d.template segment<N>(N * static_cast<int>(i)), system.rotation_kind());
   }
-  force_.setZero(N * (system.free_count() + 1));
+  rows_.assign(system.free_count() + 1, ForceRow());
   residual_.resize(N * system.free_count());
-  rounding_.setZero(system.free_count() + 1);
   force_scale_ = 0.0;
   if (paths_.empty()) {
-    evaluate_contacts<false>();
+    force_scale_ = kernels_.evaluate(contacts_, moves_.data(), rounding_of_sums, trials_, branches_, rows_);
   } else {
-    evaluate_contacts<true>();
+    evaluate_averaged_contacts();
   }
   evaluate_blocks(d);
 }
@@ -177,7 +168,7 @@ double Newton<N>::residual_norm() const {
   double worst = 0.0;
   for (std::size_t i = 0; i < blocks_.size(); ++i) {
     const int at = static_cast<int>(i);
-    const double tolerated = problem_->method.residual_tolerance * force_scale_ + rounding_[at];
+    const double tolerated = problem_->method.residual_tolerance * force_scale_ + rows_[i].sums[N];
     const double r = Motion<N>::largest_force(residual_.template segment<N>(N * at), blocks_[i].radius);
     if (!(r <= std::numeric_limits<double>::max())) return std::numeric_limits<double>::infinity();
     if (r > 0.0) worst = std::max(worst, r / tolerated);
@@ -186,18 +177,17 @@ double Newton<N>::residual_norm() const {
 }
 
 template <int N>
-void Newton<N>::add_contact_stiffness(std::size_t c, Tangent tangent) {
-  const ContactForces& f = trials_[c].forces;
+void Newton<N>::add_averaged_stiffness(std::size_t c, Tangent tangent) {
+  const ContactForces f = forces(c);
   if (!carries(f)) return;
   const bool exact = tangent == Tangent::exact;
   const double theta = problem_->end_weight;
   const double nn = -theta * f.normal_by_gap, tn = exact ? -theta * f.shear_by_gap : 0.0;
-  double tt = -theta * f.shear_by_slip;
-  if (!exact && problem_->statics && f.status == ContactStatus::sliding) tt = static_slip_stiffness * (*springs_)[c].shear;
+  const double tt = -theta * f.shear_by_slip;
 
-  // Forces act in force_pose(), gap and slip change with the pose at the end. In the symmetric tangent both are the same.
-  const ContactPose<N>& pose = trials_[c].pose;
-  const ContactPose<N>& acting = exact ? force_pose(c) : pose;
+  // Forces act in the mean pose, gap and slip change with the pose at the end. In the symmetric tangent both are the same.
+  const ContactPose<N> pose = trial(c).pose(lane(c));
+  const ContactPose<N>& acting = exact ? paths_[c].pose : pose;
   const Vec2 n = pose.normal, t = pose.tangent(), by_gap = nn * acting.normal + tn * acting.tangent(), by_slip = tt * acting.tangent();
   ContactStiffness<N> k;
   k.shift_xx = by_gap.x() * n.x() + by_slip.x() * t.x();
@@ -210,12 +200,11 @@ void Newton<N>::add_contact_stiffness(std::size_t c, Tangent tangent) {
   k.edge_arm = pose.edge_arm;
   // The geometric part can make the symmetric tangent indefinite. Means over a path change by half of what its end does.
   if (exact) {
-    const double share = paths_.empty() ? theta : 0.5;
-    k.turning = share * (f.normal * n + f.shear * t);
-    k.on_arms = share * (f.normal * acting.normal + f.shear * acting.tangent());
+    k.turning = 0.5 * (f.normal * n + f.shear * t);
+    k.on_arms = 0.5 * (f.normal * acting.normal + f.shear * acting.tangent());
   }
 
-  const ContactSlots& slots = tangent_.slots(c);
+  const ContactSlots& slots = tangent_.slots()[c];
   BlockMatrix<N>& matrix = tangent_.matrix();
   if (slots.vertex >= 0) k.add_to_vertex(matrix.value(slots.vertex));
   if (slots.edge >= 0) k.add_to_edge(matrix.value(slots.edge));
@@ -228,7 +217,12 @@ template <int N>
 void Newton<N>::assemble(const Eigen::VectorXd& d, Tangent tangent) {
   BlockMatrix<N>& matrix = tangent_.matrix();
   matrix.set_zero();
-  for (std::size_t c = 0; c < contacts_.size(); ++c) add_contact_stiffness(c, tangent);
+  if (paths_.empty()) {
+    const BatchTangent asked{tangent == Tangent::exact, problem_->end_weight, problem_->statics ? static_slip_stiffness : 0.0};
+    kernels_.add_stiffness(contacts_, trials_, branches_, asked, tangent_.slots(), matrix);
+  } else {
+    for (std::size_t c = 0; c < contact_count_; ++c) add_averaged_stiffness(c, tangent);
+  }
   for (std::size_t i = 0; i < blocks_.size(); ++i) {
     const StepBlock& block = blocks_[i];
     const int row = static_cast<int>(i);
@@ -302,34 +296,34 @@ ContactSprings Newton<N>::seen_springs(std::size_t c) const {
 
 template <int N>
 void Newton<N>::replace_forces(std::size_t c, const ContactForces& forces) {
-  ContactTrial& trial = trials_[c];
-  const ContactPose<N>& pose = force_pose(c);
-  const double normal = problem_->end_weight * (forces.normal - trial.forces.normal),
-               shear = problem_->end_weight * (forces.shear - trial.forces.shear);
+  TrialBatch& batch = trial(c);
+  const int k = lane(c);
+  const ContactPose<N> pose = force_pose(c);
+  const double normal = problem_->end_weight * (forces.normal - batch.normal[k]), shear = problem_->end_weight * (forces.shear - batch.shear[k]);
   const Vec2 change = normal * pose.normal + shear * pose.tangent();
   const auto push = [&](int row, const Unknowns& by) {
     if (row == static_cast<int>(blocks_.size())) return;
     residual_.template segment<N>(N * row) += by;
     if (blocks_[row].rotation_locked) residual_[N * row + Motion<N>::rotation_index] = 0.0;
   };
-  push(contacts_[c].vertex_row, Motion<N>::gradient(pose.vertex_arm, change));
-  push(contacts_[c].edge_row, -Motion<N>::gradient(pose.edge_arm, change));
-  trial.forces = forces;
+  push(start(c).vertex_row[k], Motion<N>::gradient(pose.vertex_arm, change));
+  push(start(c).edge_row[k], -Motion<N>::gradient(pose.edge_arm, change));
+  batch.set_forces(k, forces);
   branches_[c] = branch(forces);
 }
 
 template <int N>
 int Newton<N>::hold_reversed() {
   int held = 0;
-  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+  for (std::size_t c = 0; c < contact_count_; ++c) {
     const bool reversed = std::abs(branches_before_[c]) == sliding_branch && branches_before_[c] == -branches_[c];
     if (!reversed) continue;
     ++held;
     const ContactSprings springs = seen_springs(c);
-    const ContactForces& f = trials_[c].forces;
-    ContactForces stuck = tangent_for_status(springs, contacts_[c].strength, ContactStatus::sticking, f.normal, f.shear);
+    const ContactForces f = forces(c);
+    ContactForces stuck = tangent_for_status(springs, start(c).strength(lane(c)), ContactStatus::sticking, f.normal, f.shear);
     stuck.normal = f.normal;
-    stuck.shear = springs.initial_shear - (springs.shear + springs.shear_damping) * trials_[c].pose.slip_change;
+    stuck.shear = springs.initial_shear - (springs.shear + springs.shear_damping) * trial(c).slip_change[lane(c)];
     replace_forces(c, stuck);
   }
   return held;
@@ -337,23 +331,23 @@ int Newton<N>::hold_reversed() {
 
 template <int N>
 void Newton<N>::take_last_states() {
-  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+  for (std::size_t c = 0; c < contact_count_; ++c) {
     const Contact& contact = problem_->contacts[c];
-    const ContactSprings springs = seen_springs(c);
-    const ContactPose<N>& pose = trials_[c].pose;
-    const bool touching = contact.status == ContactStatus::open && springs.gap <= 0.0;
-    const ContactStatus status = touching ? ContactStatus::sticking : contact.status;
-    if (paths_.empty() && is_on_piece(trials_[c].forces, status)) continue;
-    replace_forces(c,
-                   prolonged(springs, contacts_[c].strength, status, contact.normal_force, contact.shear_force, pose.gap_change, pose.slip_change));
+    const bool touching = contact.status == ContactStatus::open && (*springs_)[c].gap <= 0.0 && (*springs_)[c].shift >= 0.0;
+    const ContactStatus last = touching ? ContactStatus::sticking : contact.status;
+    const TrialBatch& now = trial(c);
+    const int k = lane(c);
+    if (paths_.empty() && is_on_piece(status(branches_[c]), now.normal_by_gap[k], last)) continue;
+    replace_forces(
+        c, prolonged(seen_springs(c), start(c).strength(k), last, contact.normal_force, contact.shear_force, now.gap_change[k], now.slip_change[k]));
   }
 }
 
 template <int N>
 void Newton<N>::report_contacts(std::vector<ContactOutcome<N>>& contacts) const {
   contacts.clear();
-  contacts.reserve(trials_.size());
-  for (std::size_t c = 0; c < trials_.size(); ++c) contacts.emplace_back((*springs_)[c], trials_[c].forces, trials_[c].pose);
+  contacts.reserve(contact_count_);
+  for (std::size_t c = 0; c < contact_count_; ++c) contacts.emplace_back((*springs_)[c], forces(c), trial(c).pose(lane(c)));
 }
 
 template <int N>
@@ -379,7 +373,7 @@ void Newton<N>::solve(const StepProblem<N>& problem, const std::vector<ContactSp
   Tangent tangent = Tangent::exact;
   int refusals = 0;  // of the exact step since the residual was at its smallest
   double best = norm;
-  const int few = static_cast<int>(few_switches * static_cast<double>(contacts_.size()));
+  const int few = static_cast<int>(few_switches * static_cast<double>(contact_count_));
   for (int iteration = 0; iteration < problem.method.max_iterations && norm > 1.0; ++iteration) {
     branches_before_ = branches_;
     const Eigen::VectorXd step = direction(d, tangent);
@@ -442,7 +436,9 @@ Eigen::VectorXd Newton<N>::forces(const StepProblem<N>& problem, const std::vect
   prepare(problem, springs);
   start_force_.setZero(N * problem.system.free_count());
   evaluate(Eigen::VectorXd::Zero(N * problem.system.free_count()));
-  return force_.head(N * problem.system.free_count());
+  Eigen::VectorXd sums(N * problem.system.free_count());
+  for (int i = 0; i < problem.system.free_count(); ++i) sums.template segment<N>(N * i) << rows_[i].sums[0], rows_[i].sums[1], rows_[i].sums[2];
+  return sums;
 }
 
 template class Newton<3>;

@@ -5,6 +5,7 @@
 // alone: the contact states are functions of the displacement.
 #pragma once
 
+#include "openclose/integrator/contact_batch.h"
 #include "openclose/integrator/tangent_system.h"
 
 namespace openclose {
@@ -17,6 +18,8 @@ enum class FirstTangent {
 
 template <int N>
 class Newton {
+  static_assert(N == 3, "contacts are laid out in batches for rigid blocks");
+
  public:
   using Unknowns = typename Motion<N>::Unknowns;
 
@@ -38,14 +41,6 @@ class Newton {
  private:
   enum class Tangent { exact, symmetric };
 
-  /// What an evaluation needs of a contact and its blocks, made once a step.
-  struct StepContact {
-    ContactStart<N> start;
-    ContactStrength strength;
-    double vertex_reach, edge_reach;  ///< [m] from the centroids to the contact
-    int vertex_block, edge_block;
-    int vertex_row, edge_row;  ///< block rows; of fixed blocks the row after the last one, which nobody reads
-  };
   struct StepBlock {
     int block = 0;
     bool has_point_forces = false, rotation_locked = false;
@@ -53,11 +48,6 @@ class Newton {
     Unknowns inertia, force, drift;        ///< mass over time squared; all but contacts' at the start; displacement without forces
     double magnitude = 0.0;                ///< [N] of these forces
     double rounding_of_coordinates = 0.0;  ///< [N]
-  };
-  /// A contact at the trial displacement: where it is, what it carries, and the derivatives.
-  struct ContactTrial {
-    ContactPose<N> pose;
-    ContactForces forces;
   };
   /// For schemes that average over the path of the step: trials_ then has the mean forces, which act in the mean pose.
   struct PathTrial {
@@ -67,23 +57,28 @@ class Newton {
 
   void prepare(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs);
   void evaluate(const Eigen::VectorXd& d);
-  template <bool averages>
-  void evaluate_contacts();
+  /// The same contact by contact, for schemes that average over the path.
+  void evaluate_averaged_contacts();
   void evaluate_blocks(const Eigen::VectorXd& d);
-  /// One contact at the trial positions of its blocks. The forces act along force_pose()'s normal and tangent, at its arms.
-  template <bool averages>
-  void evaluate_contact(std::size_t c);
-  const ContactPose<N>& force_pose(std::size_t c) const { return paths_.empty() ? trials_[c].pose : paths_[c].pose; }
+  // Contact c is one of the lanes of its batch.
+  static int lane(std::size_t c) { return static_cast<int>(c % batch_size); }
+  const ContactBatch& start(std::size_t c) const { return contacts_[c / batch_size]; }
+  TrialBatch& trial(std::size_t c) { return trials_[c / batch_size]; }
+  const TrialBatch& trial(std::size_t c) const { return trials_[c / batch_size]; }
+  ContactForces forces(std::size_t c) const { return trial(c).forces(lane(c), branches_[c]); }
+  /// The forces act along its normal and tangent, at its arms.
+  ContactPose<N> force_pose(std::size_t c) const { return paths_.empty() ? trial(c).pose(lane(c)) : paths_[c].pose; }
   /// What a step sees of the springs of contact c while it stays closed: half of them, if it averages over its path.
   ContactSprings seen_springs(std::size_t c) const;
   /// Forces and derivatives for the first iteration: the laws' linear pieces of the last step, wherever the iteration starts from, so that a step in
-  /// which no contact changes its state needs one solve. Corners that only touch count as sticking.
+  /// which no contact changes its state needs one solve. Corners that only touch count as sticking, unless their
+  /// springs are known to hang loose.
   void take_last_states();
   /// Contact c carries these forces in the next linear solve.
   void replace_forces(std::size_t c, const ContactForces& forces);
   double residual_norm() const;  ///< largest residual of a block over what is tolerated: converged at 1
   void assemble(const Eigen::VectorXd& d, Tangent tangent);
-  void add_contact_stiffness(std::size_t c, Tangent tangent);
+  void add_averaged_stiffness(std::size_t c, Tangent tangent);
   Eigen::VectorXd direction(const Eigen::VectorXd& d, Tangent tangent);
   /// Contacts that would slide one way and then the other stick in between: they enter the next linear solve with the spring's own force. (Where the
   /// spring is stiff the range of sticking is so narrow that the iteration would jump over it for ever.) Returns their number.
@@ -97,19 +92,19 @@ class Newton {
 
   const StepProblem<N>* problem_ = nullptr;
   const std::vector<ContactSprings>* springs_ = nullptr;
-  std::vector<StepContact> contacts_;
+  BatchKernels kernels_;
+  std::size_t contact_count_ = 0;
+  std::vector<ContactBatch> contacts_;
   std::vector<StepBlock> blocks_;    ///< the free ones, by their equations
-  std::vector<BlockMove<N>> moves_;  ///< of all blocks, at the trial displacement
-  std::vector<ContactTrial> trials_;
+  std::vector<BlockMove<N>> moves_;  ///< of all blocks, at the trial displacement; a last one that stays
+  std::vector<TrialBatch> trials_;
   std::vector<PathTrial> paths_;  ///< empty for schemes that do not average
-  using Branch = signed char;
-  std::vector<Branch> branches_;         ///< linear piece of its law that every contact is on: its status, minus it when sliding backward
+  std::vector<Branch> branches_;  ///< of the contacts
   std::vector<Branch> branches_before_;  ///< of the iteration
   Eigen::VectorXd trial_;                ///< displacement
-  Eigen::VectorXd force_;                ///< all forces at the trial position but inertia; a row more for the fixed blocks
+  std::vector<ForceRow> rows_;           ///< all forces at the trial position but inertia; a row more for the fixed blocks
   Eigen::VectorXd start_force_;          ///< the same at the start of the step, used if theta < 1
   Eigen::VectorXd residual_;
-  Eigen::VectorXd rounding_;  ///< [N] per free block: what rounding leaves in the residual
   double force_scale_ = 0.0;
   TangentSystem<N> tangent_;
 };

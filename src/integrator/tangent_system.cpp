@@ -1,12 +1,15 @@
 #include "openclose/integrator/tangent_system.h"
 
+#include <algorithm>
+
 namespace openclose {
 
 template <int N>
 bool TangentSystem<N>::find_slots(const StepProblem<N>& problem) {
-  const std::size_t known = slots_.size();
-  slots_.resize(problem.contacts.size());
-  for (std::size_t c = 0; c < slots_.size(); ++c) {
+  const std::size_t known = slots_.size(), count = problem.contacts.size();
+  slots_.resize((count + batch_size - 1) / batch_size * batch_size);
+  std::fill(slots_.begin() + static_cast<std::ptrdiff_t>(count), slots_.end(), ContactSlots());
+  for (std::size_t c = 0; c < count; ++c) {
     ContactSlots& slots = slots_[c];
     const int i = problem.system.block(problem.contacts[c].vertex_block).equation, j = problem.system.block(problem.contacts[c].edge_block).equation;
     if (c < known && slots.vertex_row == i && slots.edge_row == j) continue;  // most contacts have their places of the last step

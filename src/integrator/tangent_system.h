@@ -2,16 +2,10 @@
 // that the symbolic work of the solver is seldom done.
 #pragma once
 
+#include "openclose/integrator/contact_batch.h"
 #include "openclose/integrator/enforcement.h"
 
 namespace openclose {
-
-/// Slots of the matrix that a contact's stiffness goes to; -1 where a block is fixed.
-struct ContactSlots {
-  int vertex_row = -1, edge_row = -1;
-  int vertex = -1, edge = -1;
-  int vertex_edge = -1, edge_vertex = -1;
-};
 
 template <int N>
 class TangentSystem {
@@ -19,7 +13,8 @@ class TangentSystem {
   /// Makes room for the contacts of this step and finds their slots.
   void fit(const StepProblem<N>& problem);
 
-  const ContactSlots& slots(std::size_t contact) const { return slots_[contact]; }
+  /// Of the contacts in order, and of nothing up to the end of the last batch.
+  const std::vector<ContactSlots>& slots() const { return slots_; }
   BlockMatrix<N>& matrix() { return matrix_; }
   LinearSolver<N>& solver() { return *solver_; }
   /// The pattern, which decides in which order the solver eliminates and so how it rounds; the symbolic work is done again after reading.
@@ -32,7 +27,7 @@ class TangentSystem {
   void set_pattern(int rows, const std::vector<std::pair<int, int>>& couplings);
 
   BlockMatrix<N> matrix_;
-  std::vector<ContactSlots> slots_;  ///< of the step's contacts
+  std::vector<ContactSlots> slots_;
   LinearSolverKind kind_ = LinearSolverKind::automatic;
   std::unique_ptr<LinearSolver<N>> solver_;
   LinearCounters nothing_done_;

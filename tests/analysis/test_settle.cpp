@@ -191,3 +191,19 @@ TEST_CASE("balance with cohesion that was lost in the same step is none", "[anal
     CHECK_FALSE(settle(simulation).settled);
   }
 }
+
+TEST_CASE("steps do not grow while each of them finds a balance", "[analysis][settle]") {
+  // The upper corner of a tall block carries less than its share of the weight but would take half of what goes along the slope: it slips, loses its
+  // cohesion, and the lower one holds the block.
+  const double slope = 35.0 * test::degree, weight = 2500.0 * 1.2 * 9.81;
+  Scene scene = test::block_on_incline(slope);
+  scene.blocks[1].vertices = test::placed(test::rectangle(0.0, 0.0, 1.0, 1.2), -slope);
+  scene.method.contact = "hard";
+  scene.joints[0].cohesion = 0.4 * weight;
+  scene.joints[0].cohesion_behaviour = CohesionBehaviour::lost_on_slip;
+  Simulation<3> simulation(scene);
+  const SettleResult result = settle(simulation);
+  REQUIRE(result.settled);
+  REQUIRE(result.steps > 1);
+  CHECK(simulation.time() == result.steps * scene.settle.first_dt);
+}

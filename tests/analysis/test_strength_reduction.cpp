@@ -3,6 +3,7 @@
 #include <string>
 
 #include "openclose/analysis/strength_reduction.h"
+#include "openclose/scene/reader.h"
 #include "support/catch.h"
 #include "support/scenes.h"
 
@@ -195,4 +196,24 @@ TEST_CASE("progress of the bisection never falls back", "[analysis][strength_red
   });
   CHECK(calls > 5);
   CHECK(last > 0.8);
+}
+
+TEST_CASE("hard finds the factor of a slope with no more solves than soft", "[analysis][strength_reduction][hard]") {
+  const auto behaviour = GENERATE(CohesionBehaviour::ductile, CohesionBehaviour::lost_on_slip);
+  Scene scene = read_scene(std::string(OPENCLOSE_PAPER_SCENES) + "/example_3_4.toml");
+  scene.joints[0].cohesion_behaviour = behaviour;
+  // As near to failure as makes one trial more on either side.
+  scene.strength_reduction.width = 0.02;
+  std::vector<FactorOfSafety<3>> found;
+  std::vector<long> solves;
+  for (const std::string method : {"soft", "hard"}) {
+    scene.method.contact = method;
+    Simulation<3> simulation(scene);
+    found.push_back(factor_of_safety<3>(simulation));
+    solves.push_back(simulation.step_counters().iterations);
+    if (method == "hard") CHECK(simulation.max_penetration() < scene.method.gap_tolerance);
+  }
+  INFO("soft " << solves[0] << " solves, hard " << solves[1]);
+  CHECK(found[1].stable == Approx(found[0].stable).margin(scene.strength_reduction.width));
+  CHECK(static_cast<double>(solves[1]) <= 1.2 * static_cast<double>(solves[0]));
 }

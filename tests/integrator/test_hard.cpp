@@ -2,6 +2,7 @@
 #include <string>
 
 #include "openclose/analysis/run.h"
+#include "openclose/analysis/settle.h"
 #include "openclose/core/tolerance.h"
 #include "support/catch.h"
 #include "support/scenes.h"
@@ -77,6 +78,29 @@ TEST_CASE("hard contacts keep to the tolerance that is asked for", "[integrator]
   }
   CHECK(solves[0] > solves[1]);
   CHECK(solves[1] > solves[2]);
+}
+
+TEST_CASE("how rigid contacts share forces does not depend on the stiffness", "[integrator][hard]") {
+  // A leaning column: the two corners in each of its joints could share what goes along it in many ways.
+  Scene scene = test::column_of_blocks(3);
+  for (BlockInput& block : scene.blocks) block.vertices = test::placed(block.vertices, -15.0 * test::degree);
+  scene.method.contact = "hard";
+  std::vector<std::vector<double>> forces;
+  for (const double factor : {1.0, 0.1, 10.0}) {
+    Scene other = scene;
+    other.joints[0].normal_stiffness *= factor;
+    other.joints[0].shear_stiffness *= factor;
+    Simulation<3> simulation(other);
+    REQUIRE(settle(simulation).settled);
+    forces.emplace_back();
+    for (const Contact& c : simulation.contacts()) forces.back().insert(forces.back().end(), {c.normal_force, c.shear_force});
+  }
+  // The second pass has gone a ten-thousandth of the way of the first, of which turning by 1e-4 rad has a share.
+  const double sharing = 1e-7;
+  for (const auto& other : {forces[1], forces[2]}) {
+    REQUIRE(other.size() == forces[0].size());
+    for (std::size_t i = 0; i < other.size(); ++i) CHECK(other[i] == Approx(forces[0][i]).margin(sharing * test::block_weight));
+  }
 }
 
 TEST_CASE("soft contacts close by what their stiffness says", "[integrator][soft]") {

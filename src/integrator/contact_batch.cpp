@@ -1,0 +1,353 @@
+#include "openclose/integrator/contact_batch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "openclose/core/tolerance.h"
+
+#if defined(__x86_64__) && defined(__GNUC__)
+#define OPENCLOSE_HAS_WIDE_REGISTERS
+#endif
+
+namespace openclose {
+namespace {
+
+using Mask = decltype(Lanes{} < Lanes{});
+using Branches = Branch __attribute__((vector_size(batch_size)));
+constexpr int entries = 9;  ///< of a block of the matrix, column by column
+
+#define OPENCLOSE_KERNEL [[gnu::always_inline]] inline
+
+OPENCLOSE_KERNEL Lanes all(double x) {
+  return Lanes{x, x, x, x};
+}
+OPENCLOSE_KERNEL Lanes load(const double* from) {
+  Lanes x;
+  std::memcpy(&x, from, sizeof x);
+  return x;
+}
+OPENCLOSE_KERNEL Lanes magnitude(Lanes x) {
+  return x < 0.0 ? -x : x;
+}
+/// As std::max and std::min.
+OPENCLOSE_KERNEL Lanes larger(Lanes a, Lanes b) {
+  return a < b ? b : a;
+}
+OPENCLOSE_KERNEL Lanes smaller(Lanes a, Lanes b) {
+  return b < a ? b : a;
+}
+OPENCLOSE_KERNEL Lanes clamped(Lanes x, Lanes bound) {
+  return x < -bound ? -bound : (bound < x ? bound : x);
+}
+OPENCLOSE_KERNEL bool any(Mask m) {
+  return (m[0] | m[1] | m[2] | m[3]) != 0;
+}
+
+OPENCLOSE_KERNEL void transpose(Lanes& a, Lanes& b, Lanes& c, Lanes& d) {
+  const Lanes ab_even = __builtin_shufflevector(a, b, 0, 4, 2, 6), ab_odd = __builtin_shufflevector(a, b, 1, 5, 3, 7);
+  const Lanes cd_even = __builtin_shufflevector(c, d, 0, 4, 2, 6), cd_odd = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+  a = __builtin_shufflevector(ab_even, cd_even, 0, 1, 4, 5);
+  b = __builtin_shufflevector(ab_odd, cd_odd, 0, 1, 4, 5);
+  c = __builtin_shufflevector(ab_even, cd_even, 2, 3, 6, 7);
+  d = __builtin_shufflevector(ab_odd, cd_odd, 2, 3, 6, 7);
+}
+
+/// Of four blocks.
+struct Moves {
+  Lanes x, y, way, turn;
+  Lanes sine, versine, edge_sine, edge_versine;
+
+  OPENCLOSE_KERNEL Moves(const BlockMove<3>* moves, const int* block) {
+    Lanes* const first[] = {&x, &y, &way, &turn};
+    Lanes* const second[] = {&sine, &versine, &edge_sine, &edge_versine};
+    for (int k = 0; k < batch_size; ++k) {
+      const double* const move = moves[block[k]].translation.data();
+      *first[k] = load(move);
+      *second[k] = load(move + batch_size);
+    }
+    transpose(x, y, way, turn);
+    transpose(sine, versine, edge_sine, edge_versine);
+  }
+};
+static_assert(sizeof(BlockMove<3>) == 2 * sizeof(Lanes), "its members are loaded in their order");
+
+OPENCLOSE_KERNEL void find_pose(const ContactBatch& c, const Moves& vertex, const Moves& edge, TrialBatch& trial) {
+  const Lanes dnx = -edge.edge_sine * c.normal_y - edge.edge_versine * c.normal_x, dny = edge.edge_sine * c.normal_x - edge.edge_versine * c.normal_y;
+  const Lanes nx = c.normal_x + dnx, ny = c.normal_y + dny;
+  const Lanes turn_x = -vertex.sine * c.vertex_arm_y - vertex.versine * c.vertex_arm_x,
+              turn_y = vertex.sine * c.vertex_arm_x - vertex.versine * c.vertex_arm_y;
+  const Lanes shift_x = (vertex.x - edge.x) + turn_x, shift_y = (vertex.y - edge.y) + turn_y;
+  const Lanes apart_x = shift_x + (edge.sine * c.end_arm_y + edge.versine * c.end_arm_x),
+              apart_y = shift_y - (edge.sine * c.end_arm_x - edge.versine * c.end_arm_y);
+  trial.gap_change = (dnx * c.lever_x + dny * c.lever_y) + (nx * apart_x + ny * apart_y);
+  trial.slip_change = (dnx * c.lever_y - dny * c.lever_x) + (nx * apart_y - ny * apart_x);
+  trial.normal_x = nx;
+  trial.normal_y = ny;
+  trial.vertex_arm_x = c.vertex_arm_x + turn_x;
+  trial.vertex_arm_y = c.vertex_arm_y + turn_y;
+  trial.edge_arm_x = (c.end_arm_x + c.lever_x) + shift_x;
+  trial.edge_arm_y = (c.end_arm_y + c.lever_y) + shift_y;
+}
+
+/// The joint law; returns which contacts are closed.
+OPENCLOSE_KERNEL Mask find_forces(const ContactBatch& c, TrialBatch& trial, Branch* branches) {
+  const Lanes zero{};
+  const Lanes elastic_normal = c.shift - c.normal * (c.gap_off_target + trial.gap_change);
+  const Lanes viscous_normal = -c.normal_damping * (c.parted + trial.gap_change);
+  const Lanes elastic_shear = c.initial_shear - c.shear * trial.slip_change, shear = elastic_shear + -c.shear_damping * trial.slip_change;
+  const Mask open = c.tension > 0.0 ? elastic_normal < -c.tension : elastic_normal <= 0.0;
+  const Mask closed = ~open;
+
+  const Lanes normal = larger(-c.tension, elastic_normal + viscous_normal);
+  const Lanes steep = c.friction + 1.0 / tolerance::cohesion_ramp;
+  const Lanes on_ramp = steep * (normal + c.tension), on_slope = c.friction * normal + c.cohesion;
+  const Lanes bound = larger(zero, smaller(on_slope, on_ramp));
+  const Lanes carried_shear = clamped(shear, bound);
+  const Mask sticking = closed & (magnitude(shear) <= bound), sliding = closed & ~sticking;
+
+  const Mask dashpot_outweighs = (c.normal_damping > 0.0) & (normal <= -c.tension);
+  const Lanes normal_by_gap = dashpot_outweighs ? zero : -(c.normal + c.normal_damping);
+  const Lanes slope = bound > 0.0 ? (on_ramp < on_slope ? steep : c.friction) : zero;
+  const Mask signed_slope = (Mask)slope | ((Mask)shear & (Mask)-zero);
+  trial.normal = closed ? normal : zero;
+  trial.shear = closed ? carried_shear : zero;
+  trial.elastic_normal = closed ? elastic_normal : zero;
+  trial.elastic_shear = closed ? clamped(elastic_shear, bound) : zero;
+  trial.normal_by_gap = closed ? normal_by_gap : zero;
+  trial.shear_by_gap = sliding ? (Lanes)signed_slope * normal_by_gap : zero;
+  trial.shear_by_slip = sticking ? -(c.shear + c.shear_damping) : zero;
+
+  // A comparison is -1 where it holds.
+  const Mask backward = sliding & (carried_shear < 0.0);
+  const Branches now = __builtin_convertvector(-sticking - 2 * sliding + 4 * backward, Branches);
+  std::memcpy(branches, &now, sizeof now);
+  return closed;
+}
+
+/// Adds the forces of four contacts to their blocks, one contact after the other.
+OPENCLOSE_KERNEL void push(const ContactBatch& c, const TrialBatch& trial, Lanes rounding, ForceRow* rows) {
+  const Lanes x = trial.normal * trial.normal_x - trial.shear * trial.normal_y, y = trial.normal * trial.normal_y + trial.shear * trial.normal_x;
+  const Lanes on_vertex = trial.vertex_arm_x * y - trial.vertex_arm_y * x, on_edge = trial.edge_arm_x * y - trial.edge_arm_y * x;
+  Lanes forward[] = {x, y, on_vertex, rounding}, back[] = {-x, -y, -on_edge, rounding};
+  transpose(forward[0], forward[1], forward[2], forward[3]);
+  transpose(back[0], back[1], back[2], back[3]);
+  for (int k = 0; k < batch_size; ++k) {
+    rows[c.vertex_row[k]].sums += forward[k];
+    rows[c.edge_row[k]].sums += back[k];
+  }
+}
+
+OPENCLOSE_KERNEL double evaluate(const ContactBatch* contacts, std::size_t count, const BlockMove<3>* moves, double rounding_of_sums,
+                                 TrialBatch* trials, Branch* branches, ForceRow* rows) {
+  Lanes largest{};
+  for (std::size_t i = 0; i < count; ++i) {
+    const ContactBatch& c = contacts[i];
+    TrialBatch& trial = trials[i];
+    const Moves vertex(moves, c.vertex_block), edge(moves, c.edge_block);
+    find_pose(c, vertex, edge, trial);
+    const Mask closed = find_forces(c, trial, branches + batch_size * i);
+    if (!any(closed)) continue;
+    const Lanes normal = magnitude(trial.normal), shear = magnitude(trial.shear);
+    const Lanes moved = (vertex.way + c.vertex_reach * vertex.turn) + (edge.way + c.edge_reach * edge.turn);
+    const Lanes stiffness = c.normal + c.normal_damping + c.shear + c.shear_damping;
+    const Lanes rounding = closed ? rounding_of_sums * (stiffness * moved + normal + shear) : Lanes{};
+    push(c, trial, rounding, rows);
+    largest = larger(largest, larger(normal, shear));
+  }
+  return std::max({largest[0], largest[1], largest[2], largest[3]});
+}
+
+/// What one block of the matrix gets of four contacts, its entries column by column: for each contact in one piece once they are transposed.
+struct Entries {
+  Lanes first[batch_size], second[batch_size], last;
+
+  OPENCLOSE_KERNEL void add_to(double* block, int lane) const {
+    const Lanes a = load(block) + first[lane], b = load(block + batch_size) + second[lane];
+    std::memcpy(block, &a, sizeof a);
+    std::memcpy(block + batch_size, &b, sizeof b);
+    block[entries - 1] += last[lane];
+  }
+};
+
+/// As ContactStiffness.
+struct Stiffness {
+  Lanes xx, xy, yx, yy;
+
+  OPENCLOSE_KERNEL void find(Entries& found, double sign, Lanes force_x, Lanes force_y, Lanes path_x, Lanes path_y, Lanes corner, Lanes column_x,
+                             Lanes column_y, Lanes row_x, Lanes row_y) const {
+    const Lanes by_turn_x = xy * path_x - xx * path_y, by_turn_y = yy * path_x - yx * path_y;
+    const Lanes moment_x = yx * force_x - xx * force_y, moment_y = yy * force_x - xy * force_y;
+    found = {{sign * xx, sign * yx, sign * moment_x + row_x, sign * xy},
+             {sign * yy, sign * moment_y + row_y, sign * by_turn_x + column_x, sign * by_turn_y + column_y},
+             sign * (force_x * by_turn_y - force_y * by_turn_x) + corner};
+    transpose(found.first[0], found.first[1], found.first[2], found.first[3]);
+    transpose(found.second[0], found.second[1], found.second[2], found.second[3]);
+  }
+};
+
+OPENCLOSE_KERNEL void add_stiffness(const ContactBatch* contacts, const TrialBatch* trials, std::size_t count, const Branch* branches,
+                                    const BatchTangent& tangent, const ContactSlots* slots, double* values) {
+  const Lanes zero{}, theta = all(tangent.end_weight);
+  double nowhere[entries] = {};
+  const auto block = [&](int slot) { return slot >= 0 ? values + entries * slot : nowhere; };
+  for (std::size_t i = 0; i < count; ++i, branches += batch_size, slots += batch_size) {
+    if ((branches[0] | branches[1] | branches[2] | branches[3]) == 0) continue;
+    const TrialBatch& at = trials[i];
+    const Lanes nn = -theta * at.normal_by_gap, tn = tangent.exact ? -theta * at.shear_by_gap : zero;
+    Lanes tt = -theta * at.shear_by_slip;
+    if (!tangent.exact && tangent.static_slip_stiffness > 0.0) {
+      for (int k = 0; k < batch_size; ++k) {
+        if (status(branches[k]) == ContactStatus::sliding) tt[k] = tangent.static_slip_stiffness * contacts[i].shear[k];
+      }
+    }
+    const Lanes nx = at.normal_x, ny = at.normal_y, tx = -ny, ty = nx;
+    const Lanes by_gap_x = nn * nx + tn * tx, by_gap_y = nn * ny + tn * ty, by_slip_x = tt * tx, by_slip_y = tt * ty;
+    const Stiffness k{by_gap_x * nx + by_slip_x * tx, by_gap_x * ny + by_slip_x * ty, by_gap_y * nx + by_slip_y * tx, by_gap_y * ny + by_slip_y * ty};
+    Lanes turning_x = zero, turning_y = zero;
+    if (tangent.exact) {
+      turning_x = theta * (at.normal * nx + at.shear * tx);
+      turning_y = theta * (at.normal * ny + at.shear * ty);
+    }
+    const Lanes vx = at.vertex_arm_x, vy = at.vertex_arm_y, ex = at.edge_arm_x, ey = at.edge_arm_y;
+    const Lanes along_vertex = turning_x * vx + turning_y * vy, along_edge = turning_x * ex + turning_y * ey;
+    Entries vertex, edge, vertex_edge, edge_vertex;
+    k.find(vertex, 1.0, vx, vy, vx, vy, along_vertex, zero, zero, zero, zero);
+    k.find(edge, 1.0, ex, ey, ex, ey, along_edge, -turning_y, turning_x, -turning_y, turning_x);
+    k.find(vertex_edge, -1.0, vx, vy, ex, ey, -along_vertex, turning_y, -turning_x, zero, zero);
+    k.find(edge_vertex, -1.0, ex, ey, vx, vy, -along_vertex, zero, zero, turning_y, -turning_x);
+    for (int lane = 0; lane < batch_size; ++lane) {
+      vertex.add_to(block(slots[lane].vertex), lane);
+      edge.add_to(block(slots[lane].edge), lane);
+      vertex_edge.add_to(block(slots[lane].vertex_edge), lane);
+      edge_vertex.add_to(block(slots[lane].edge_vertex), lane);
+    }
+  }
+}
+
+double evaluate_with_any_registers(const ContactBatch* contacts, std::size_t count, const BlockMove<3>* moves, double rounding_of_sums,
+                                   TrialBatch* trials, Branch* branches, ForceRow* rows) {
+  return evaluate(contacts, count, moves, rounding_of_sums, trials, branches, rows);
+}
+void add_stiffness_with_any_registers(const ContactBatch* contacts, const TrialBatch* trials, std::size_t count, const Branch* branches,
+                                      const BatchTangent& tangent, const ContactSlots* slots, double* values) {
+  add_stiffness(contacts, trials, count, branches, tangent, slots, values);
+}
+
+#ifdef OPENCLOSE_HAS_WIDE_REGISTERS
+[[gnu::target("avx2")]] double evaluate_with_wide_registers(const ContactBatch* contacts, std::size_t count, const BlockMove<3>* moves,
+                                                            double rounding_of_sums, TrialBatch* trials, Branch* branches, ForceRow* rows) {
+  return evaluate(contacts, count, moves, rounding_of_sums, trials, branches, rows);
+}
+[[gnu::target("avx2")]] void add_stiffness_with_wide_registers(const ContactBatch* contacts, const TrialBatch* trials, std::size_t count,
+                                                               const Branch* branches, const BatchTangent& tangent, const ContactSlots* slots,
+                                                               double* values) {
+  add_stiffness(contacts, trials, count, branches, tangent, slots, values);
+}
+#endif
+
+}  // namespace
+
+BatchKernels::BatchKernels([[maybe_unused]] bool wide_registers)
+    : evaluate_(&evaluate_with_any_registers), add_stiffness_(&add_stiffness_with_any_registers) {
+#ifdef OPENCLOSE_HAS_WIDE_REGISTERS
+  if (!wide_registers || !__builtin_cpu_supports("avx2")) return;
+  evaluate_ = &evaluate_with_wide_registers;
+  add_stiffness_ = &add_stiffness_with_wide_registers;
+#endif
+}
+
+void BatchKernels::add_stiffness(const std::vector<ContactBatch>& contacts, const std::vector<TrialBatch>& trials,
+                                 const std::vector<Branch>& branches, const BatchTangent& tangent, const std::vector<ContactSlots>& slots,
+                                 BlockMatrix<3>& matrix) const {
+  if (matrix.rows() == 0) return;
+  add_stiffness_(contacts.data(), trials.data(), trials.size(), branches.data(), tangent, slots.data(), matrix.value(0).data());
+}
+
+void ContactBatch::set(int lane, const ContactStart<3>& at, const ContactSprings& springs, const ContactStrength& strength) {
+  normal_x[lane] = at.normal.x();
+  normal_y[lane] = at.normal.y();
+  lever_x[lane] = at.lever.x();
+  lever_y[lane] = at.lever.y();
+  vertex_arm_x[lane] = at.vertex_arm.x();
+  vertex_arm_y[lane] = at.vertex_arm.y();
+  end_arm_x[lane] = at.end_arm.x();
+  end_arm_y[lane] = at.end_arm.y();
+  vertex_reach[lane] = at.vertex_arm.norm();
+  edge_reach[lane] = (at.end_arm + at.lever).norm();
+  normal[lane] = springs.normal;
+  shear[lane] = springs.shear;
+  gap_off_target[lane] = springs.gap - springs.target;
+  shift[lane] = springs.shift;
+  initial_shear[lane] = springs.initial_shear;
+  normal_damping[lane] = springs.normal_damping;
+  shear_damping[lane] = springs.shear_damping;
+  const double opening = springs.target + (springs.shift + strength.tension) / springs.normal;
+  parted[lane] = springs.normal_damping == 0.0 ? 0.0 : std::max(0.0, springs.gap - opening);
+  friction[lane] = strength.friction;
+  cohesion[lane] = strength.cohesion;
+  tension[lane] = strength.tension;
+}
+
+ContactStart<3> ContactBatch::start(int lane) const {
+  ContactStart<3> s;
+  s.normal = {normal_x[lane], normal_y[lane]};
+  s.vertex_arm = {vertex_arm_x[lane], vertex_arm_y[lane]};
+  s.end_arm = {end_arm_x[lane], end_arm_y[lane]};
+  s.lever = {lever_x[lane], lever_y[lane]};
+  return s;
+}
+
+ContactStrength ContactBatch::strength(int lane) const {
+  ContactStrength s;
+  s.friction = friction[lane];
+  s.cohesion = cohesion[lane];
+  s.tension = tension[lane];
+  return s;
+}
+
+ContactPose<3> TrialBatch::pose(int lane) const {
+  ContactPose<3> p;
+  p.normal = {normal_x[lane], normal_y[lane]};
+  p.vertex_arm = {vertex_arm_x[lane], vertex_arm_y[lane]};
+  p.edge_arm = {edge_arm_x[lane], edge_arm_y[lane]};
+  p.gap_change = gap_change[lane];
+  p.slip_change = slip_change[lane];
+  return p;
+}
+
+void TrialBatch::set_pose(int lane, const ContactPose<3>& pose) {
+  normal_x[lane] = pose.normal.x();
+  normal_y[lane] = pose.normal.y();
+  vertex_arm_x[lane] = pose.vertex_arm.x();
+  vertex_arm_y[lane] = pose.vertex_arm.y();
+  edge_arm_x[lane] = pose.edge_arm.x();
+  edge_arm_y[lane] = pose.edge_arm.y();
+  gap_change[lane] = pose.gap_change;
+  slip_change[lane] = pose.slip_change;
+}
+
+ContactForces TrialBatch::forces(int lane, Branch branch) const {
+  ContactForces f;
+  f.status = status(branch);
+  f.normal = normal[lane];
+  f.shear = shear[lane];
+  f.elastic_normal = elastic_normal[lane];
+  f.elastic_shear = elastic_shear[lane];
+  f.normal_by_gap = normal_by_gap[lane];
+  f.shear_by_gap = shear_by_gap[lane];
+  f.shear_by_slip = shear_by_slip[lane];
+  return f;
+}
+
+void TrialBatch::set_forces(int lane, const ContactForces& f) {
+  normal[lane] = f.normal;
+  shear[lane] = f.shear;
+  elastic_normal[lane] = f.elastic_normal;
+  elastic_shear[lane] = f.elastic_shear;
+  normal_by_gap[lane] = f.normal_by_gap;
+  shear_by_gap[lane] = f.shear_by_gap;
+  shear_by_slip[lane] = f.shear_by_slip;
+}
+
+}  // namespace openclose

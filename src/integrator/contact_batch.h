@@ -1,0 +1,100 @@
+// The contacts of a step four at a time: where they are at a trial displacement, what they carry there, and their stiffness.
+//
+// The formulas are those of ContactPose, spring_slider() and ContactStiffness, operation by operation, so that every number is the same to the last
+// bit; forces and stiffness are added up contact by contact in the order of the list. The kernels are compiled once for every processor and once for
+// wide registers, with the same results.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "openclose/contact/kinematics.h"
+#include "openclose/law/joint_law.h"
+#include "openclose/linear/block_matrix.h"
+
+namespace openclose {
+
+inline constexpr int batch_size = 4;
+/// One number of each of the four contacts.
+typedef double Lanes __attribute__((vector_size(batch_size * sizeof(double)), aligned(batch_size * sizeof(double))));
+
+/// The piece of its law that a contact is on: its status, minus it when sliding backward.
+using Branch = signed char;
+/// Sliding contacts are on this branch or, the other way, on minus it.
+inline constexpr Branch sliding_branch = static_cast<Branch>(ContactStatus::sliding);
+inline Branch branch(const CarriedForces& f) {
+  const bool backward = f.status == ContactStatus::sliding && f.shear < 0.0;
+  return static_cast<Branch>(backward ? -sliding_branch : static_cast<int>(f.status));
+}
+inline ContactStatus status(Branch b) {
+  return static_cast<ContactStatus>(b < 0 ? -b : b);
+}
+
+/// Four contacts at the start of a step. What is not set() carries nothing and adds nothing.
+struct ContactBatch {
+  Lanes normal_x{}, normal_y{}, lever_x{}, lever_y{}, vertex_arm_x{}, vertex_arm_y{}, end_arm_x{}, end_arm_y{};  // as in ContactStart
+  Lanes vertex_reach{}, edge_reach{};  ///< [m] from the centroids to the contact
+  // As in ContactSprings and ContactStrength; parted [m] is by how much the gap is wider than where the spring opens, in viscous_normal().
+  Lanes normal{}, shear{}, gap_off_target{}, shift{}, initial_shear{}, normal_damping{}, shear_damping{}, parted{};
+  Lanes friction{}, cohesion{}, tension{};
+  int vertex_block[batch_size] = {}, edge_block[batch_size] = {};
+  int vertex_row[batch_size] = {}, edge_row[batch_size] = {};  ///< of ForceRow; that of fixed blocks nobody reads
+
+  void set(int lane, const ContactStart<3>& at, const ContactSprings& springs, const ContactStrength& strength);
+  ContactStart<3> start(int lane) const;
+  ContactStrength strength(int lane) const;
+};
+
+/// The same contacts at the trial displacement, and the derivatives of their forces.
+struct TrialBatch {
+  Lanes normal_x{}, normal_y{}, vertex_arm_x{}, vertex_arm_y{}, edge_arm_x{}, edge_arm_y{}, gap_change{}, slip_change{};  // as in ContactPose
+  Lanes normal{}, shear{}, elastic_normal{}, elastic_shear{}, normal_by_gap{}, shear_by_gap{}, shear_by_slip{};           // as in ContactForces
+
+  ContactPose<3> pose(int lane) const;
+  void set_pose(int lane, const ContactPose<3>& pose);
+  /// \param branch  which has the status
+  ContactForces forces(int lane, Branch branch) const;
+  void set_forces(int lane, const ContactForces& forces);
+};
+
+/// Sum of the contact forces on a block: force [N, N], moment [N m], and [N] what rounding leaves in it.
+struct ForceRow {
+  Lanes sums{};
+};
+
+/// Slots of the matrix that a contact's stiffness goes to; -1 where a block is fixed.
+struct ContactSlots {
+  int vertex_row = -1, edge_row = -1;
+  int vertex = -1, edge = -1;
+  int vertex_edge = -1, edge_vertex = -1;
+};
+
+/// Which tangent is added up.
+struct BatchTangent {
+  bool exact;                    ///< with the slip's and the geometric terms, which are not symmetric
+  double end_weight;             ///< [-] theta
+  double static_slip_stiffness;  ///< [-] part of the shear stiffness that sliding contacts keep in the other tangent
+};
+
+class BatchKernels {
+ public:
+  /// \param wide_registers  to be used where the processor has them
+  explicit BatchKernels(bool wide_registers = true);
+
+  /// Fills trials and branches; adds to the rows. Returns [N] the largest force.
+  /// \param moves  of all blocks
+  /// \param rounding_of_sums  [-] of the forces and changes of force of a contact
+  double evaluate(const std::vector<ContactBatch>& contacts, const BlockMove<3>* moves, double rounding_of_sums, std::vector<TrialBatch>& trials,
+                  std::vector<Branch>& branches, std::vector<ForceRow>& rows) const {
+    return evaluate_(contacts.data(), contacts.size(), moves, rounding_of_sums, trials.data(), branches.data(), rows.data());
+  }
+  /// Adds the stiffness of all contacts to the matrix. There are slots for every place of a batch.
+  void add_stiffness(const std::vector<ContactBatch>& contacts, const std::vector<TrialBatch>& trials, const std::vector<Branch>& branches,
+                     const BatchTangent& tangent, const std::vector<ContactSlots>& slots, BlockMatrix<3>& matrix) const;
+
+ private:
+  double (*evaluate_)(const ContactBatch*, std::size_t, const BlockMove<3>*, double, TrialBatch*, Branch*, ForceRow*);
+  void (*add_stiffness_)(const ContactBatch*, const TrialBatch*, std::size_t, const Branch*, const BatchTangent&, const ContactSlots*, double*);
+};
+
+}  // namespace openclose

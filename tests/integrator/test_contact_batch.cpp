@@ -1,0 +1,200 @@
+// Contacts four at a time against the same contacts one by one, for every processor and for wide registers: the same to the last bit.
+#include <random>
+#include <vector>
+
+#include "openclose/integrator/contact_batch.h"
+#include "support/catch.h"
+
+using namespace openclose;
+
+namespace {
+
+constexpr int block_count = 12, free_count = 9;  // the last ones are fixed
+constexpr double rounding_of_sums = 16.0 * 2.2e-16;
+
+/// Contacts in every state: open and closed, bonded or not, with dashpots that outweigh the spring or not, sliding both ways, on the cohesion's ramp.
+struct RandomContacts {
+  explicit RandomContacts(unsigned seed, std::size_t count) : random(seed), moves(block_count + 1) {
+    for (int b = 0; b < free_count; ++b) {
+      moves[b] = BlockMove<3>({number(1e-3), number(1e-3), number(1e-3)}, seed % 2 == 0 ? RotationKind::exact : RotationKind::linear);
+    }
+    for (std::size_t c = 0; c < count; ++c) {
+      ContactStart<3> at;
+      const double angle = number(3.0);
+      at.normal = {std::cos(angle), std::sin(angle)};
+      at.vertex_arm = {number(5.0), number(5.0)};
+      at.end_arm = {number(5.0), number(5.0)};
+      at.lever = number(5.0) * perpendicular(at.normal) + number(1e-3) * at.normal;
+      starts.push_back(at);
+      ContactSprings s;
+      s.normal = 1e9 * (2.0 + number(1.0));
+      s.shear = 1e9 * (2.0 + number(1.0));
+      s.gap = number(3e-3);
+      s.target = chance(0.3) ? number(1e-3) : 0.0;
+      s.shift = chance(0.3) ? number(1e6) : 0.0;
+      s.initial_shear = number(3e6);
+      if (chance(0.5)) s.normal_damping = 3e9 * std::abs(number(1.0));
+      if (chance(0.5)) s.shear_damping = 3e9 * std::abs(number(1.0));
+      springs.push_back(s);
+      ContactStrength strength;
+      strength.friction = chance(0.1) ? 0.0 : std::abs(number(1.0));
+      if (chance(0.5)) strength.cohesion = std::abs(number(3e6));
+      if (chance(0.3)) strength.tension = std::abs(number(2e6));
+      strengths.push_back(strength);
+      const int a = index(block_count);
+      vertex_blocks.push_back(a);
+      edge_blocks.push_back((a + 1 + index(block_count - 1)) % block_count);
+    }
+  }
+
+  std::vector<ContactBatch> batches() const {
+    std::vector<ContactBatch> list((starts.size() + batch_size - 1) / batch_size);
+    for (std::size_t c = 0; c < batch_size * list.size(); ++c) {
+      ContactBatch& batch = list[c / batch_size];
+      const int lane = static_cast<int>(c % batch_size);
+      const bool is_one = c < starts.size();
+      batch.vertex_block[lane] = is_one ? vertex_blocks[c] : block_count;
+      batch.edge_block[lane] = is_one ? edge_blocks[c] : block_count;
+      batch.vertex_row[lane] = std::min(batch.vertex_block[lane], free_count);
+      batch.edge_row[lane] = std::min(batch.edge_block[lane], free_count);
+      if (is_one) batch.set(lane, starts[c], springs[c], strengths[c]);
+    }
+    return list;
+  }
+
+  double number(double largest) { return std::uniform_real_distribution<double>(-largest, largest)(random); }
+  int index(int end) { return std::uniform_int_distribution<int>(0, end - 1)(random); }
+  bool chance(double probability) { return std::bernoulli_distribution(probability)(random); }
+
+  std::mt19937 random;
+  std::vector<BlockMove<3>> moves;
+  std::vector<ContactStart<3>> starts;
+  std::vector<ContactSprings> springs;
+  std::vector<ContactStrength> strengths;
+  std::vector<int> vertex_blocks, edge_blocks;
+};
+
+struct Evaluated {
+  Evaluated(const RandomContacts& contacts, const BatchKernels& kernels)
+      : batches(contacts.batches()), trials(batches.size()), branches(batch_size * batches.size(), 77), rows(free_count + 1) {
+    largest = kernels.evaluate(batches, contacts.moves.data(), rounding_of_sums, trials, branches, rows);
+  }
+  std::vector<ContactBatch> batches;
+  std::vector<TrialBatch> trials;
+  std::vector<Branch> branches;
+  std::vector<ForceRow> rows;
+  double largest;
+};
+
+/// How many differ, whatever the sign of zero.
+int differences(const ContactPose<3>& a, const ContactPose<3>& b) {
+  return (a.normal != b.normal) + (a.vertex_arm != b.vertex_arm) + (a.edge_arm != b.edge_arm) + (a.gap_change != b.gap_change) +
+         (a.slip_change != b.slip_change);
+}
+int differences(const ContactForces& a, const ContactForces& b) {
+  return (a.status != b.status) + (a.normal != b.normal) + (a.shear != b.shear) + (a.elastic_normal != b.elastic_normal) +
+         (a.elastic_shear != b.elastic_shear) + (a.normal_by_gap != b.normal_by_gap) + (a.shear_by_gap != b.shear_by_gap) +
+         (a.shear_by_slip != b.shear_by_slip);
+}
+
+}  // namespace
+
+TEST_CASE("four contacts at a time are where each is and carry what each carries", "[integrator][batch]") {
+  const std::size_t count = GENERATE(0, 1, 3, 4, 401);
+  const unsigned seed = GENERATE(1, 2);
+  const bool wide = GENERATE(false, true);
+  const RandomContacts contacts(seed, count);
+  const Evaluated all(contacts, BatchKernels(wide));
+  std::vector<Eigen::Vector4d> sums(free_count + 1, Eigen::Vector4d::Zero());
+  double largest = 0.0;
+  int wrong = 0, of_status[3] = {}, outweighed = 0, backward = 0;
+  for (std::size_t c = 0; c < count; ++c) {
+    const int lane = static_cast<int>(c % batch_size), a = contacts.vertex_blocks[c], b = contacts.edge_blocks[c];
+    const ContactSprings& s = contacts.springs[c];
+    const ContactPose<3> pose(contacts.starts[c], contacts.moves[a], contacts.moves[b]);
+    const ContactForces f = spring_slider(s, contacts.strengths[c], pose.gap_change, pose.slip_change);
+    const TrialBatch& trial = all.trials[c / batch_size];
+    wrong += differences(trial.pose(lane), pose) + differences(trial.forces(lane, all.branches[c]), f) + (all.branches[c] != branch(f));
+    ++of_status[static_cast<int>(f.status)];
+    outweighed += f.status != ContactStatus::open && f.normal_by_gap == 0.0;
+    backward += all.branches[c] == -sliding_branch;
+    if (f.status == ContactStatus::open) continue;
+    const double moved = contacts.moves[a].bound(contacts.starts[c].vertex_arm.norm()) +
+                         contacts.moves[b].bound((contacts.starts[c].end_arm + contacts.starts[c].lever).norm());
+    const double rounding =
+        rounding_of_sums * ((s.normal + s.normal_damping + s.shear + s.shear_damping) * moved + std::abs(f.normal) + std::abs(f.shear));
+    const Vec2 force(f.normal * pose.normal.x() - f.shear * pose.normal.y(), f.normal * pose.normal.y() + f.shear * pose.normal.x());
+    Eigen::Vector4d on_vertex, on_edge;
+    on_vertex << Motion<3>::gradient(pose.vertex_arm, force), rounding;
+    on_edge << -Motion<3>::gradient(pose.edge_arm, force), rounding;
+    sums[std::min(a, free_count)] += on_vertex;
+    sums[std::min(b, free_count)] += on_edge;
+    largest = std::max({largest, std::abs(f.normal), std::abs(f.shear)});
+  }
+  CHECK(wrong == 0);
+  for (std::size_t c = count; c < all.branches.size(); ++c) CHECK(all.branches[c] == 0);
+  for (int row = 0; row <= free_count; ++row) {
+    for (int i = 0; i < 4; ++i) CHECK(all.rows[row].sums[i] == sums[row][i]);
+  }
+  CHECK(all.largest == largest);
+  if (count < 100) return;
+  for (const int number : of_status) CHECK(number > 20);
+  CHECK(outweighed > 5);
+  CHECK(backward > 20);
+}
+
+TEST_CASE("the stiffness of four contacts at a time is that of each", "[integrator][batch]") {
+  const std::size_t count = GENERATE(5, 401);
+  const unsigned seed = GENERATE(1, 2);
+  const bool wide = GENERATE(false, true), exact = GENERATE(false, true);
+  const double end_weight = GENERATE(1.0, 0.6);
+  const RandomContacts contacts(seed, count);
+  const BatchKernels kernels(wide);
+  const Evaluated all(contacts, kernels);
+  const BatchTangent tangent{exact, end_weight, exact ? 0.0 : GENERATE(0.0, 0.01)};
+
+  std::vector<std::pair<int, int>> couplings;
+  for (int i = 0; i < free_count; ++i) {
+    for (int j = 0; j < i; ++j) couplings.emplace_back(i, j);
+  }
+  BlockMatrix<3> matrix, expected;
+  matrix.set_pattern(free_count, couplings);
+  expected.set_pattern(free_count, couplings);
+  std::vector<ContactSlots> slots(all.branches.size());
+  for (std::size_t c = 0; c < count; ++c) {
+    const int a = contacts.vertex_blocks[c], b = contacts.edge_blocks[c];
+    if (a < free_count) slots[c].vertex = matrix.diagonal(a);
+    if (b < free_count) slots[c].edge = matrix.diagonal(b);
+    if (a < free_count && b < free_count) {
+      slots[c].vertex_edge = matrix.find(a, b);
+      slots[c].edge_vertex = matrix.find(b, a);
+    }
+  }
+  kernels.add_stiffness(all.batches, all.trials, all.branches, tangent, slots, matrix);
+
+  for (std::size_t c = 0; c < count; ++c) {
+    const ContactPose<3> pose(contacts.starts[c], contacts.moves[contacts.vertex_blocks[c]], contacts.moves[contacts.edge_blocks[c]]);
+    const ContactForces f = spring_slider(contacts.springs[c], contacts.strengths[c], pose.gap_change, pose.slip_change);
+    if (f.status == ContactStatus::open) continue;
+    const double nn = -end_weight * f.normal_by_gap, tn = exact ? -end_weight * f.shear_by_gap : 0.0;
+    double tt = -end_weight * f.shear_by_slip;
+    if (f.status == ContactStatus::sliding && tangent.static_slip_stiffness > 0.0) tt = tangent.static_slip_stiffness * contacts.springs[c].shear;
+    const Vec2 n = pose.normal, t = pose.tangent(), by_gap = nn * n + tn * t, by_slip = tt * t;
+    ContactStiffness<3> k;
+    k.shift_xx = by_gap.x() * n.x() + by_slip.x() * t.x();
+    k.shift_xy = by_gap.x() * n.y() + by_slip.x() * t.y();
+    k.shift_yx = by_gap.y() * n.x() + by_slip.y() * t.x();
+    k.shift_yy = by_gap.y() * n.y() + by_slip.y() * t.y();
+    k.force_vertex_arm = k.vertex_arm = pose.vertex_arm;
+    k.force_edge_arm = k.edge_arm = pose.edge_arm;
+    if (exact) k.turning = k.on_arms = end_weight * (f.normal * n + f.shear * t);
+    if (slots[c].vertex >= 0) k.add_to_vertex(expected.value(slots[c].vertex));
+    if (slots[c].edge >= 0) k.add_to_edge(expected.value(slots[c].edge));
+    if (slots[c].vertex_edge < 0) continue;
+    k.add_to_vertex_edge(expected.value(slots[c].vertex_edge));
+    k.add_to_edge_vertex(expected.value(slots[c].edge_vertex));
+  }
+  INFO("exact " << exact << " wide " << wide << " count " << count << " theta " << end_weight << " slip " << tangent.static_slip_stiffness);
+  CHECK((matrix.dense() - expected.dense()).cwiseAbs().maxCoeff() == 0.0);
+  CHECK((count < 100 || matrix.dense().cwiseAbs().maxCoeff() > 1e9));
+}
