@@ -25,6 +25,10 @@ constexpr int line_search_steps = 8;
 /// the step worth taking (6 halvings; below, the symmetric tangent gets on better).
 constexpr double sufficient_decrease = 0.1;
 constexpr double shortest_backtrack = 0.01;
+/// [-] Of the residual by an iterative linear solver. What is left of it falls to the next iteration, which starts with more than that: from the
+/// contacts that change state, or from the turning of the others. Iterations of all steps of a slope of 1,773 free blocks: 411 with 1e-12, 418 with
+/// 1e-6, 420 with 1e-5, 432 with 1e-4.
+constexpr double linear_reduction = 1e-5;
 /// After so many refusals of the exact step without gain the symmetric steps in between get shorter, so that the two do not go round in a circle.
 constexpr int patience = 1;
 
@@ -241,7 +245,7 @@ template <int N>
 Eigen::VectorXd Newton<N>::direction(const Eigen::VectorXd& d, Tangent tangent) {
   assemble(d, tangent);
   Eigen::VectorXd step;
-  if (tangent_.solver().factor(tangent_.matrix())) step = tangent_.solver().solve(residual_);
+  if (tangent_.solver().factor(tangent_.matrix())) step = tangent_.solver().solve(residual_, linear_reduction);
   return step;
 }
 

@@ -217,6 +217,7 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
                   {"linear_solver", word_for(linear_solver_words, scene.method.linear_solver)},
                   {"skip_search", scene.method.skip_search},
                   {"skip_narrow_phase", scene.method.skip_narrow_phase},
+                  {"skip_looks", scene.method.skip_looks},
                   {"skip_reload", scene.method.skip_reload},
                   {"skip_resting", scene.method.skip_resting},
                   {"step_fraction", scene.method.step_fraction},
@@ -280,6 +281,8 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
                    {"searches_skipped", detection.searches_skipped},
                    {"narrow_phases", detection.narrow_phases},
                    {"narrow_phases_skipped", detection.narrow_phases_skipped},
+                   {"looks", detection.looks},
+                   {"looks_skipped", detection.looks_skipped},
                    {"history_transfers", detection.transfers},
                    {"block_steps", steps.block_steps},
                    {"block_steps_skipped", steps.block_steps_skipped},
@@ -293,7 +296,8 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
                    {"plain_factorisations", linear.plain},
                    {"factors_kept", linear.factors_kept},
                    {"krylov_iterations", linear.krylov_iterations},
-                   {"krylov_given_up", linear.krylov_given_up}};
+                   {"krylov_given_up", linear.krylov_given_up},
+                   {"incomplete_factorisations", linear.incomplete}};
   if (simulation.is_explicit()) {
     j["explicit"] = {{"critical_step_s", steps.smallest_critical_step},
                      {"longest_step_s", steps.longest_step},

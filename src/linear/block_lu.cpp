@@ -269,9 +269,9 @@ class BlockLuSolver : public LinearSolver<N> {
     return plain_->factor(matrix);
   }
 
-  Eigen::VectorXd solve(const Eigen::VectorXd& right_side) override {
+  Eigen::VectorXd solve(const Eigen::VectorXd& right_side, double reduction) override {
     ++this->counters_.solves;
-    if (use_plain_) return plain_->solve(right_side);
+    if (use_plain_) return plain_->solve(right_side, reduction);
     Eigen::VectorXd x(right_side.size());
     kernels_.substitute(factor_, right_side.data(), x.data());
     return x;

@@ -1,19 +1,21 @@
 #include "openclose/linear/krylov.h"
 
 #include <Eigen/Jacobi>
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
 namespace openclose {
 namespace {
 
-/// After so many iterations the residuals tell how fast they fall.
+/// After so many iterations, and this part of those allowed, the residuals tell how fast they fall.
 constexpr int iterations_to_judge = 3;
+constexpr double part_to_judge = 0.3;
 /// [-] The residual may be this much larger than the rotations say, from rounding; beyond, the basis has lost its meaning.
 constexpr double rounding_excess = 2.0;
 
 bool too_slow(double start, double now, double wanted, int iterations, int most_iterations) {
-  if (iterations < iterations_to_judge) return false;
+  if (iterations < std::max<double>(iterations_to_judge, part_to_judge * most_iterations)) return false;
   if (!(now < start)) return true;
   return iterations * std::log(start / wanted) > most_iterations * std::log(start / now);
 }

@@ -1,6 +1,6 @@
-// The solver of large systems: a multifrontal factor of an earlier matrix as preconditioner of GMRES for the present one. A factorisation costs as
-// much as many solves (about 15 at 40,000 blocks), while from one Newton iteration or step to the next few contacts change: a factor serves until
-// GMRES takes too long with it.
+// The solver of large systems at rest: a multifrontal factor of an earlier matrix as preconditioner of GMRES for the present one. A factorisation
+// costs as much as many solves (about 15 at 40,000 blocks), while from one Newton iteration or step to the next few contacts change: a factor serves
+// until GMRES takes too long with it.
 //
 // Milliseconds of CPU time, first iteration of settling a slope with two joint sets (one core, SSE2):
 //
@@ -16,11 +16,11 @@
 //
 // Nested dissection by METIS instead of minimum degree: the same work at 8,000 and 40,000 blocks and 0.6 of it at 85,000, but five to eight times as
 // long to order, for every new pattern.
-#include <limits>
+#include <algorithm>
 #include <optional>
 
-#include "openclose/linear/krylov.h"
 #include "openclose/linear/multifrontal.h"
+#include "openclose/linear/refinement.h"
 #include "openclose/linear/solver.h"
 
 namespace openclose {
@@ -35,15 +35,13 @@ constexpr double patience = 1.0;
 /// twice as many after each further one, up to the most.
 constexpr int first_pause = 1;
 constexpr int longest_pause = 8;
-/// [-] Rounding errors of this many units in the last place may meet in one residual.
-constexpr double rounding_units = 16.0;
 /// With the factor of the matrix itself GMRES only makes up for lost digits of small pivots.
 constexpr int refinements = 8;
 
 template <int N>
 class LaggedSolver : public LinearSolver<N> {
  public:
-  LaggedSolver(Refactor refactor, double reduction) : lag_(refactor == Refactor::when_needed), reduction_(reduction) {}
+  explicit LaggedSolver(Refactor refactor) : lag_(refactor == Refactor::when_needed) {}
 
   bool factor(const BlockMatrix<N>& matrix) override {
     matrix_ = &matrix;
@@ -55,11 +53,11 @@ class LaggedSolver : public LinearSolver<N> {
     return refactor();
   }
 
-  Eigen::VectorXd solve(const Eigen::VectorXd& right_side) override {
+  Eigen::VectorXd solve(const Eigen::VectorXd& right_side, double reduction) override {
     ++this->counters_.solves;
-    if (use_plain_) return plain_->solve(right_side);
+    if (use_plain_) return plain_->solve(right_side, reduction);
     if (!exact_) {
-      if (std::optional<Eigen::VectorXd> x = iterate(right_side, static_cast<int>(budget()))) {
+      if (std::optional<Eigen::VectorXd> x = iterate(right_side, reduction, static_cast<int>(budget()))) {
         ++this->counters_.factors_kept;
         pause_ = first_pause;
         return *x;
@@ -68,10 +66,10 @@ class LaggedSolver : public LinearSolver<N> {
       left_to_pause_ = pause_;
       pause_ = std::min(2 * pause_, longest_pause);
       if (!refactor()) return {};
-      if (use_plain_) return plain_->solve(right_side);
+      if (use_plain_) return plain_->solve(right_side, reduction);
     }
-    if (std::optional<Eigen::VectorXd> x = iterate(right_side, refinements)) return *x;
-    return factor_plainly() ? plain_->solve(right_side) : Eigen::VectorXd();
+    if (std::optional<Eigen::VectorXd> x = iterate(right_side, reduction, refinements)) return *x;
+    return factor_plainly() ? plain_->solve(right_side, reduction) : Eigen::VectorXd();
   }
 
   void exchange(Archive& archive) override {
@@ -104,39 +102,14 @@ class LaggedSolver : public LinearSolver<N> {
   }
 
   /// Nothing if the residual is not brought down.
-  std::optional<Eigen::VectorXd> iterate(const Eigen::VectorXd& right_side, int most_iterations) {
-    const double size = right_side.norm();
-    Eigen::VectorXd x = lu_.solve(right_side);
-    if (!x.allFinite()) return {};
-    Eigen::VectorXd residual = right_side - matrix_->multiply(x);
-    if (!exact_ && residual.norm() > size) {  // worse than nothing
-      x.setZero();
-      residual = right_side;
-    }
-    const double wanted = std::max(reduction_ * size, rounding(x));
-    const KrylovResult result = gmres([this](const Eigen::VectorXd& v) { return matrix_->multiply(v); },
-                                      [this](const Eigen::VectorXd& v) { return lu_.solve(v); }, residual, x, wanted, most_iterations);
+  std::optional<Eigen::VectorXd> iterate(const Eigen::VectorXd& right_side, double reduction, int most_iterations) {
+    Refined result = refine(*matrix_, lu_, right_side, reduction, most_iterations);
     this->counters_.krylov_iterations += result.iterations;
     if (!exact_) spent_ += result.iterations;
-    if (!result.converged) return {};
-    return x;
-  }
-
-  /// What rounding leaves in the residual: units in the last place of the products in it.
-  double rounding(const Eigen::VectorXd& x) const {
-    double sum = 0.0;
-    for (int i = 0; i < matrix_->rows(); ++i) {
-      double row = 0.0;
-      for (int s = matrix_->row_start(i); s < matrix_->row_start(i + 1); ++s) {
-        row += matrix_->value(s).norm() * x.segment<N>(N * matrix_->column(s)).norm();
-      }
-      sum += row * row;
-    }
-    return rounding_units * std::numeric_limits<double>::epsilon() * std::sqrt(sum);
+    return std::move(result.x);
   }
 
   bool lag_;
-  double reduction_;
   const BlockMatrix<N>* matrix_ = nullptr;
   MultifrontalLu<N> lu_;
   bool has_factor_ = false;
@@ -151,10 +124,10 @@ class LaggedSolver : public LinearSolver<N> {
 }  // namespace
 
 template <int N>
-std::unique_ptr<LinearSolver<N>> make_multifrontal_solver(Refactor refactor, double reduction) {
-  return std::make_unique<LaggedSolver<N>>(refactor, reduction);
+std::unique_ptr<LinearSolver<N>> make_multifrontal_solver(Refactor refactor) {
+  return std::make_unique<LaggedSolver<N>>(refactor);
 }
 
-template std::unique_ptr<LinearSolver<3>> make_multifrontal_solver<3>(Refactor, double);
+template std::unique_ptr<LinearSolver<3>> make_multifrontal_solver<3>(Refactor);
 
 }  // namespace openclose

@@ -20,11 +20,19 @@ struct LinearCounters {
   long plain = 0;              ///< factorisations that the solver had to give to the plain one
   long factors_kept = 0;       ///< matrices solved with the factor of an earlier one
   long krylov_iterations = 0;  ///< of GMRES
-  long krylov_given_up = 0;    ///< solves with an earlier factor that were given up for a new one
+  long krylov_given_up = 0;    ///< solves with an earlier factor or an incomplete one that were given up for a new one
+  long incomplete = 0;         ///< incomplete factorisations, not counted in `factorisations`
+
+  LinearCounters& operator+=(const LinearCounters& other) {
+    auto& [a, b, c, d, e, f, g, h, i] = *this;
+    const auto& [a2, b2, c2, d2, e2, f2, g2, h2, i2] = other;
+    a += a2, b += b2, c += c2, d += d2, e += e2, f += f2, g += g2, h += h2, i += i2;
+    return *this;
+  }
 
   void exchange(Archive& archive) {
-    auto& [a, b, c, d, e, f, g, h] = *this;
-    archive(a, b, c, d, e, f, g, h);
+    auto& [a, b, c, d, e, f, g, h, i] = *this;
+    archive(a, b, c, d, e, f, g, h, i);
   }
 };
 
@@ -36,7 +44,9 @@ class LinearSolver {
   /// stands. The matrix must stay as it is until the last solve() with it.
   virtual bool factor(const BlockMatrix<N>& matrix) = 0;
   /// Nothing (size 0) if the matrix turns out to be singular only here.
-  virtual Eigen::VectorXd solve(const Eigen::VectorXd& right_side) = 0;
+  /// \param reduction  [-] of the Euclidean norm of the residual over that of the right side, at least; factors of the matrix itself do not ask
+  virtual Eigen::VectorXd solve(const Eigen::VectorXd& right_side, double reduction) = 0;
+  Eigen::VectorXd solve(const Eigen::VectorXd& right_side) { return solve(right_side, full_reduction); }
   const LinearCounters& counters() const { return counters_; }
   /// What the next solves depend on; the symbolic work is done again after reading.
   virtual void exchange(Archive& archive) { archive(counters_); }
@@ -65,9 +75,13 @@ enum class Refactor {
 };
 
 /// Multifrontal LU of supernodes, refined by GMRES: for large systems.
-/// \param reduction  [-] of the Euclidean norm of the residual, in a solve
 template <int N>
-std::unique_ptr<LinearSolver<N>> make_multifrontal_solver(Refactor refactor, double reduction = full_reduction);
+std::unique_ptr<LinearSolver<N>> make_multifrontal_solver(Refactor refactor);
+
+/// GMRES with an incomplete factor of each matrix; those that this does not serve, and small ones, go to `direct`.
+/// \param smallest_system  [-] block rows
+template <int N>
+std::unique_ptr<LinearSolver<N>> make_incomplete_solver(std::unique_ptr<LinearSolver<N>> direct, int smallest_system);
 
 /// The solver for a system of this many blocks.
 template <int N>

@@ -115,7 +115,7 @@ enum class MassDamping {
 enum class LinearSolverKind {
   automatic,  ///< directly, and for many blocks iteratively
   direct,     ///< every matrix is factored
-  iterative,  ///< with the factor of an earlier matrix as preconditioner
+  iterative,  ///< with an incomplete factor, or that of an earlier matrix, as preconditioner
   plain,      ///< by the library's sparse LU, to compare with
 };
 
@@ -137,6 +137,7 @@ struct MethodInput {
   LinearSolverKind linear_solver = LinearSolverKind::automatic;
   bool skip_search = true;                     ///< search candidates only once something has moved beyond the skin
   bool skip_narrow_phase = true;               ///< find the contacts of two blocks anew only once they have moved against each other beyond the skin
+  bool skip_looks = true;                      ///< see DetectionSkips
   bool skip_reload = true;                     ///< dem: exchange only the contacts that were found anew, and leave the others in the loop
   bool skip_resting = false;                   ///< leave blocks alone that are at rest, see RestInput
   double gap_tolerance = 3e-7;                 ///< [m] hard: a closed contact may differ from its target gap, a sticking one from its place, by this much

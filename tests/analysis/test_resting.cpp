@@ -81,13 +81,14 @@ TEST_CASE("what moves over blocks at rest moves as over others", "[analysis][res
       run.go(0.5);
       CHECK(run.resting() == (skips ? 9 : 0));
       run.go(0.3);
+      const bool follows = method == "soft";  // with the others it hops by microns, or the column with it
       // By now it is on the first column, whose uppermost block is not left alone as long as it slides there.
       for (int i = 0; i < 100; ++i) {
         run.go(0.01);
         CHECK_FALSE(run.system().is_at_rest(slider));
-        if (method != "dem") CHECK_FALSE(run.system().is_at_rest(3));  // there it hops by microns
+        if (follows) CHECK_FALSE(run.system().is_at_rest(3));
       }
-      if (method != "dem") CHECK(run.system().is_at_rest(9) == skips);
+      if (follows) CHECK(run.system().is_at_rest(9) == skips);
       run.go(0.9);
       way[skips] = run.way(slider).x();
       below[skips] = run.way(3).norm();

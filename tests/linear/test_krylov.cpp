@@ -61,7 +61,7 @@ TEST_CASE("GMRES gives up early where it is too slow and leaves x alone", "[line
   Eigen::VectorXd x = Eigen::VectorXd::Zero(n), residual = b;
   const KrylovResult result = gmres(product(shift), same, residual, x, 1e-6, 20);
   CHECK_FALSE(result.converged);
-  CHECK(result.iterations <= 3);
+  CHECK(result.iterations <= 6);  // three tenths of those allowed
   CHECK(x.isZero(0.0));
   CHECK(residual == b);
 }

@@ -1,0 +1,171 @@
+#include "grids.h"
+#include "openclose/linear/incomplete.h"
+#include "openclose/linear/solver.h"
+#include "random_systems.h"
+#include "support/catch.h"
+
+using namespace openclose;
+using openclose::test::grid;
+using openclose::test::RandomSystems;
+
+namespace {
+
+/// [-] What single precision leaves of a solve with a matrix of moderate condition.
+constexpr double single_precision = 1e-5;
+
+double relative_residual(const BlockMatrix<3>& matrix, const Eigen::VectorXd& x, const Eigen::VectorXd& right_side) {
+  REQUIRE(x.size() == right_side.size());
+  return (matrix.multiply(x) - right_side).norm() / right_side.norm();
+}
+
+/// Held by inertia as much as by the neighbours.
+BlockMatrix<3> moving(BlockMatrix<3> matrix, double inertia = 1.0) {
+  for (int i = 0; i < matrix.rows(); ++i) matrix.add(i, i, inertia * Eigen::Matrix3d::Identity());
+  return matrix;
+}
+
+auto make_solver_for_all_sizes() {
+  return make_incomplete_solver<3>(make_block_solver<3>(), 0);
+}
+
+}  // namespace
+
+TEST_CASE("an incomplete factor without anything to drop is the factor", "[linear][incomplete]") {
+  RandomSystems random(41);
+  // Trees have no fill in the order from their ends; neither have two that do not touch.
+  const std::vector<std::vector<std::pair<int, int>>> forests = {{}, {{0, 1}, {1, 2}, {2, 3}, {3, 4}}, {{0, 3}, {3, 5}, {3, 1}, {2, 4}}};
+  for (const auto& pairs : forests) {
+    BlockMatrix<3> matrix;
+    matrix.set_pattern(6, pairs);
+    random.fill(matrix, pairs, 1.5);
+    IncompleteLu<3> lu;
+    CHECK(lu.analyse(matrix));
+    CHECK_FALSE(lu.analyse(matrix));
+    CHECK(lu.stored_blocks() == 6 + 2 * pairs.size());
+    REQUIRE(lu.factor(matrix));
+    const Eigen::VectorXd right_side = random.vector(matrix.unknowns());
+    CHECK(relative_residual(matrix, lu.solve(right_side), right_side) < single_precision);
+  }
+}
+
+TEST_CASE("fill of low level is kept", "[linear][incomplete]") {
+  RandomSystems random(42);
+  // The fill of a ring has levels 1, 2, 3 and so on, three fewer than it has rows: all of it is kept with five of them, not with six.
+  for (const int rows : {5, 6}) {
+    std::vector<std::pair<int, int>> ring;
+    for (int i = 0; i < rows; ++i) ring.emplace_back(i, (i + 1) % rows);
+    BlockMatrix<3> matrix;
+    matrix.set_pattern(rows, ring);
+    random.fill(matrix, ring, 0.6);
+    IncompleteLu<3> lu;
+    lu.analyse(matrix);
+    CHECK(lu.stored_blocks() == static_cast<std::size_t>(rows + 2 * (rows + 2)));
+    REQUIRE(lu.factor(matrix));
+    const Eigen::VectorXd right_side = random.vector(matrix.unknowns());
+    CHECK((relative_residual(matrix, lu.solve(right_side), right_side) < single_precision) == (rows == 5));
+  }
+  // A grid fills more than that.
+  const BlockMatrix<3> matrix = moving(grid(20, 20));
+  IncompleteLu<3> lu;
+  lu.analyse(matrix);
+  REQUIRE(lu.factor(matrix));
+  const Eigen::VectorXd right_side = random.vector(matrix.unknowns());
+  const double left = relative_residual(matrix, lu.solve(right_side), right_side);
+  CHECK(left < 0.1);
+  CHECK(left > single_precision);
+}
+
+TEST_CASE("an incomplete factor does not ask for the unit of the right side", "[linear][incomplete]") {
+  const BlockMatrix<3> matrix = moving(grid(5, 5));
+  IncompleteLu<3> lu;
+  lu.analyse(matrix);
+  REQUIRE(lu.factor(matrix));
+  const Eigen::VectorXd right_side = Eigen::VectorXd::LinSpaced(matrix.unknowns(), -1.0, 2.0), x = lu.solve(right_side);
+  CHECK((lu.solve(1e60 * right_side) - 1e60 * x).norm() <= 1e-6 * 1e60 * x.norm());
+  CHECK(lu.solve(Eigen::VectorXd::Zero(matrix.unknowns())).norm() == 0.0);
+}
+
+TEST_CASE("a system in motion is solved with an incomplete factor, to the residual asked for", "[linear][incomplete]") {
+  RandomSystems random(43);
+  for (const int sliding_every : {0, 7}) {
+    const BlockMatrix<3> matrix = moving(grid(60, 50, sliding_every));
+    const Eigen::VectorXd right_side = random.vector(matrix.unknowns());
+    const auto plain = make_sparse_solver<3>();
+    REQUIRE(plain->factor(matrix));
+    const Eigen::VectorXd expected = plain->solve(right_side);
+    const auto solver = make_solver_for_all_sizes();
+    REQUIRE(solver->factor(matrix));
+    CHECK((solver->solve(right_side) - expected).norm() < 1e-10 * expected.norm());
+    const double left = relative_residual(matrix, solver->solve(right_side, 1e-3), right_side);
+    CHECK(left <= 1e-3);
+    CHECK(left > 1e-9);
+    CHECK(solver->counters().incomplete == 1);
+    CHECK(solver->counters().solves == 2);
+    CHECK(solver->counters().factorisations == 0);
+    REQUIRE(solver->factor(matrix));
+    CHECK(solver->counters().symbolic == 1);
+    CHECK(solver->counters().symbolic_skipped == 1);
+  }
+}
+
+TEST_CASE("small systems and those that inertia does not hold are factored", "[linear][incomplete]") {
+  RandomSystems random(44);
+  BlockMatrix<3> matrix = grid(60, 50);
+  const Eigen::VectorXd right_side = random.vector(matrix.unknowns());
+  const auto direct = make_block_solver<3>();
+  REQUIRE(direct->factor(matrix));
+  const Eigen::VectorXd expected = direct->solve(right_side);
+
+  const auto larger = make_incomplete_solver<3>(make_block_solver<3>(), matrix.rows() + 1);
+  REQUIRE(larger->factor(matrix));
+  CHECK(larger->solve(right_side) == expected);
+  CHECK(larger->counters().incomplete == 0);
+  CHECK(larger->counters().factorisations == 1);
+
+  const auto solver = make_solver_for_all_sizes();
+  const auto solve = [&](const BlockMatrix<3>& m) {
+    REQUIRE(solver->factor(m));
+    return solver->solve(right_side);
+  };
+  for (int i = 0; i < 11; ++i) CHECK(solve(matrix) == expected);
+  // After pauses of 1, 2 and 4 matrices: tries at the 1st, 3rd, 6th and 11th.
+  CHECK(solver->counters().krylov_given_up == 4);
+  CHECK(solver->counters().incomplete == 4);
+  CHECK(solver->counters().factorisations == 11);
+  // Once it moves, the pause of 8 is the last.
+  const BlockMatrix<3> in_motion = moving(matrix);
+  for (int i = 0; i < 12; ++i) CHECK(relative_residual(in_motion, solve(in_motion), right_side) <= 1.001 * full_reduction);
+  CHECK(solver->counters().incomplete == 8);
+  CHECK(solver->counters().krylov_given_up == 4);
+}
+
+TEST_CASE("a singular matrix has no solution, also after an incomplete factor", "[linear][incomplete]") {
+  BlockMatrix<3> matrix = grid(4, 4);
+  matrix.set_zero();
+  const auto solver = make_solver_for_all_sizes();
+  CHECK_FALSE(solver->factor(matrix));
+}
+
+TEST_CASE("a solver that was written and read goes on to the same bits", "[linear][incomplete]") {
+  RandomSystems random(45);
+  const BlockMatrix<3> still = grid(30, 30), in_motion = moving(still);
+  const Eigen::VectorXd right_side = random.vector(still.unknowns());
+  const auto first = make_solver_for_all_sizes();
+  for (int i = 0; i < 3; ++i) {
+    REQUIRE(first->factor(still));
+    first->solve(right_side);
+  }
+  Archive written;
+  first->exchange(written);
+  Archive bytes(written.bytes());
+  const auto second = make_solver_for_all_sizes();
+  second->exchange(bytes);
+  CHECK(bytes.at_end());
+  for (int i = 0; i < 6; ++i) {
+    REQUIRE(first->factor(in_motion));
+    REQUIRE(second->factor(in_motion));
+    CHECK(first->solve(right_side) == second->solve(right_side));
+    CHECK(first->counters().incomplete == second->counters().incomplete);
+    CHECK(first->counters().factorisations == second->counters().factorisations);
+  }
+}
