@@ -41,7 +41,7 @@ class IncompleteSolver : public LinearSolver<N> {
 
   Eigen::VectorXd solve(const Eigen::VectorXd& right_side, double reduction) override {
     if (!use_direct_) {
-      Refined result = refine(*matrix_, incomplete_, right_side, reduction, most_iterations());
+      Refined result = refine(*matrix_, incomplete_, right_side, start(right_side, reduction), reduction, most_iterations());
       own_.krylov_iterations += result.iterations;
       if (result.x) {
         ++own_.solves;
@@ -64,6 +64,11 @@ class IncompleteSolver : public LinearSolver<N> {
 
  private:
   int most_iterations() const { return static_cast<int>(std::ceil(iterations_of_a_factorisation * std::sqrt(matrix_->rows()))); }
+
+  /// GMRES starts from nothing, or, to know what rounding leaves of the residual, from something of the size of the solution.
+  Eigen::VectorXd start(const Eigen::VectorXd& right_side, double reduction) const {
+    return reduction < above_rounding ? incomplete_.solve(right_side) : Eigen::VectorXd();
+  }
 
   bool give_up() {
     ++own_.krylov_given_up;
