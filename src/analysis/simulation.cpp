@@ -42,7 +42,7 @@ Simulation<N>::Simulation(const Scene& scene, std::unique_ptr<Enforcement<N>> en
       enforcement_(std::move(enforcement)),
       scheme_(enforcement_->make_time_scheme(scene.method)),
       // Two vertices may approach each other by the largest displacement each.
-      detector_(2.0 * scene.step.max_displacement, {scene.method.skip_search, scene.method.skip_narrow_phase && enforcement_->follows_gaps()}),
+      detector_(2.0 * scene.step.max_displacement, {scene.method.skip_search, scene.method.skip_narrow_phase && enforcement_->follows_gaps(), scene.method.skip_looks}),
       output_velocity_(system_.state().velocity),
       start_kinetic_energy_(system_.kinetic_energy()),
       control_(scene.step.error_tolerance) {

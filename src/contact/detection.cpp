@@ -1,7 +1,10 @@
 #include "openclose/contact/detection.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <limits>
+#include <numbers>
 #include <numeric>
 
 #include "openclose/core/tolerance.h"
@@ -20,6 +23,18 @@ double parallel_weight(double cosine) {
   if (cosine >= cosine_full) return 1.0;
   if (cosine <= cosine_none) return 0.0;
   return (tolerance::parallel_none_rad - std::acos(cosine)) / (tolerance::parallel_none_rad - tolerance::parallel_full_rad);
+}
+
+/// A set of numbers, a bit each, and the numbers in ascending order; the set is empty then.
+constexpr int bits = 64;
+void mark(std::vector<std::uint64_t>& set, int number) {
+  set[number / bits] |= std::uint64_t{1} << (number % bits);
+}
+void take_marked(std::vector<std::uint64_t>& set, std::vector<int>& numbers) {
+  numbers.clear();
+  for (std::size_t k = 0; k < set.size(); ++k) {
+    for (; set[k] != 0; set[k] &= set[k] - 1) numbers.push_back(static_cast<int>(bits * k) + std::countr_zero(set[k]));
+  }
 }
 
 }  // namespace
@@ -76,19 +91,23 @@ class Detector<N>::Shapes {
   std::vector<Edge> edges_;  ///< by the vertex they begin at
 };
 
-/// The contacts as they were, by pair and by corner.
+/// The contacts as they were, by pair and by corner: all those of the blocks whose pairs are due.
 template <int N>
 class Detector<N>::ContactIndex {
  public:
-  void build(const BlockSystem<N>& system, const std::vector<Contact>& contacts) {
+  void begin(const BlockSystem<N>& system, const std::vector<Contact>& contacts) {
+    system_ = &system;
     contacts_ = &contacts;
     first_.assign(system.state().arm.size(), -1);
     entries_.clear();
-    for (std::size_t i = 0; i < contacts.size(); ++i) {
-      if (contacts[i].status == ContactStatus::open) continue;
-      const int edge = contacts[i].edge;
-      for (const int corner : {contacts[i].vertex, edge, system.next(edge)}) {
-        entries_.push_back({static_cast<int>(i), first_[corner]});
+  }
+  /// The contacts of one pair of blocks, in ascending order.
+  void add(const Range& range) {
+    for (int i = range.begin; i < range.end; ++i) {
+      const Contact& c = (*contacts_)[i];
+      if (c.status == ContactStatus::open) continue;
+      for (const int corner : {c.vertex, c.edge, system_->next(c.edge)}) {
+        entries_.push_back({i, first_[corner]});
         first_[corner] = static_cast<int>(entries_.size()) - 1;
       }
     }
@@ -121,6 +140,7 @@ class Detector<N>::ContactIndex {
   struct Entry {
     int contact, next;
   };
+  const BlockSystem<N>* system_ = nullptr;
   const std::vector<Contact>* contacts_ = nullptr;
   Range range_;
   std::vector<int> first_;      ///< per vertex, in entries_; -1 without any
@@ -489,10 +509,25 @@ void Detector<N>::search(const BlockSystem<N>& system) {
   const std::vector<PairState> old_states = std::move(states_);
   find_pairs(system, boxes);
   states_.assign(pairs_.size(), PairState());
+  for (int b = static_cast<int>(places_.size()); b < system.block_count(); ++b) places_.push_back(place(system, b));
+  ways_.resize(places_.size());
   for (std::size_t i = 0, old = 0; i < pairs_.size(); ++i) {
     while (old < old_pairs.size() && old_pairs[old] < pairs_[i]) ++old;
-    if (old < old_pairs.size() && old_pairs[old] == pairs_[i]) states_[i] = old_states[old];
+    if (old < old_pairs.size() && old_pairs[old] == pairs_[i]) {
+      states_[i] = old_states[old];
+      continue;
+    }
+    // A rotation moves a block's own points where it touches the other, and all of a larger one's surroundings. The boxes of a pair overlap, so that
+    // its centroids are never farther apart than this.
+    const auto [a, b] = pairs_[i];
+    const double farthest = std::numbers::sqrt2 * (places_[a].radius + places_[b].radius + room + 2.0 * tolerance::search_skin_m);
+    const double arm = farthest + std::min(places_[a].radius, places_[b].radius) + reach_ + skips_.contact_skin;
+    for (Way* way : {&ways_[a], &ways_[b]}) {
+      way->arm = std::max(way->arm, arm);
+      way->look_at = way->gone;
+    }
   }
+  list_pairs_of_blocks(system.block_count());
 }
 
 /// Finds the contacts of each pair in the list, which is in the order of the pairs; those whose blocks are no pair any more are gone.
@@ -517,49 +552,136 @@ typename Detector<N>::Place Detector<N>::place(const BlockSystem<N>& system, int
   return {centroid.x(), centroid.y(), Motion<N>::rotation(system.displacement(b)), system.block(b).radius};
 }
 
-/// How far points where two blocks can touch may have moved against each other since the pair's contacts were found. With u the displacements of
+/// [m] How far points where two blocks can touch may have moved against each other since the pair's contacts were found. With u the displacements of
 /// the centroids and R the rotations since then, c the way between the centroids then and r the arm of the point from the centroid of block 1,
 /// u_1 - u_2 - (R_2 - 1) c + (R_1 - R_2) r; r is not longer than the radius of block 1, the smaller one, and the reach.
 template <int N>
-typename Detector<N>::Due Detector<N>::due(const PairState& then, const Place& first, const Place& second) const {
-  constexpr double companion_part = 0.1;  // of the skin
-  if (!then.known) return Due::yes;
+double Detector<N>::relative_way(const PairState& then, const Place& first, const Place& second) const {
   // Which one is the larger is as good as random: chosen from a list, without a branch. Exchanging the blocks turns the sign of the shift only.
   const double turns[] = {first.turn - then.first.turn, second.turn - then.second.turn};
   const double turn_of_larger = turns[first.radius > second.radius ? 0 : 1], radius = std::min(first.radius, second.radius);
   Vec2 shift(first.x - then.first.x - (second.x - then.second.x), first.y - then.first.y - (second.y - then.second.y));
   shift -= turned_little_by(turn_of_larger, {then.first.x - then.second.x, then.first.y - then.second.y});
-  const double by_turn = (radius + reach_ + skips_.contact_skin) * std::abs(turns[0] - turns[1]), squared = shift.squaredNorm();
-  const auto beyond = [&](double limit) { return by_turn > limit || squared > (limit - by_turn) * (limit - by_turn); };
-  if (beyond(skips_.contact_skin)) return Due::yes;
-  return beyond(companion_part * skips_.contact_skin) ? Due::moved : Due::no;
+  return (radius + reach_ + skips_.contact_skin) * std::abs(turns[0] - turns[1]) + shift.norm();
+}
+
+template <int N>
+typename Detector<N>::Due Detector<N>::due(double way) const {
+  constexpr double companion_part = 0.1;  // of the skin
+  if (!(way <= skips_.contact_skin)) return Due::yes;
+  return way > companion_part * skips_.contact_skin ? Due::moved : Due::no;
+}
+
+template <int N>
+void Detector<N>::list_pairs_of_blocks(int blocks) {
+  pairs_of_start_.assign(blocks + 1, 0);
+  pairs_of_.resize(2 * pairs_.size());
+  for (const auto& [a, b] : pairs_) {
+    ++pairs_of_start_[a];
+    ++pairs_of_start_[b];
+  }
+  std::partial_sum(pairs_of_start_.begin(), pairs_of_start_.end(), pairs_of_start_.begin());
+  for (int i = static_cast<int>(pairs_.size()) - 1; i >= 0; --i) {  // from the ends, so that each block's pairs come in order
+    pairs_of_[--pairs_of_start_[pairs_[i].first]] = i;
+    pairs_of_[--pairs_of_start_[pairs_[i].second]] = i;
+  }
+}
+
+/// Adds up the ways of the blocks and finds those whose pairs are to be looked at.
+template <int N>
+void Detector<N>::follow_blocks(const BlockSystem<N>& system, bool all) {
+  restless_.clear();
+  is_restless_.assign(system.block_count(), 0);
+  for (int b = 0; b < system.block_count(); ++b) {
+    const Place now = place(system, b), &before = places_[b];
+    Way& way = ways_[b];
+    if (now.x != before.x || now.y != before.y || now.turn != before.turn) {
+      way.gone += Vec2(now.x - before.x, now.y - before.y).norm() + way.arm * std::abs(now.turn - before.turn);
+      places_[b] = now;
+    }
+    if (!all && way.gone < way.look_at) continue;
+    restless_.push_back(b);
+    is_restless_[b] = 1;
+    way.look_at = std::numeric_limits<double>::infinity();
+  }
+}
+
+/// Once each.
+template <int N>
+template <class F>
+void Detector<N>::for_pairs_of(const std::vector<int>& blocks, const std::vector<char>& is_among_them, F f) const {
+  for (const int b : blocks) {
+    for (int k = pairs_of_start_[b]; k < pairs_of_start_[b + 1]; ++k) {
+      const auto& [first, second] = pairs_[pairs_of_[k]];
+      if (b == first || !is_among_them[first]) f(pairs_of_[k]);
+    }
+  }
+}
+
+/// A pair in which something has moved by `way` is not due before its blocks have gone what is left of the skin.
+template <int N>
+void Detector<N>::look_again_before(int pair, double way) {
+  const double left = skips_.contact_skin - tolerance::rounding_of_ways_m - way;
+  for (const int b : {pairs_[pair].first, pairs_[pair].second}) ways_[b].look_at = std::min(ways_[b].look_at, ways_[b].gone + 0.5 * left);
 }
 
 template <int N>
 bool Detector<N>::mark_due_pairs(const BlockSystem<N>& system, bool all) {
-  places_.resize(system.block_count());
-  for (int b = 0; b < system.block_count(); ++b) places_[b] = place(system, b);
+  follow_blocks(system, all || !skips_.looks);
   due_pairs_.clear();
-  moved_pairs_.clear();
   if (all) {
     due_pairs_.resize(pairs_.size());
     std::iota(due_pairs_.begin(), due_pairs_.end(), 0);
     return true;
   }
-  for (std::size_t i = 0; i < pairs_.size(); ++i) {
-    const Due due = this->due(states_[i], places_[pairs_[i].first], places_[pairs_[i].second]);
-    if (due == Due::yes) due_pairs_.push_back(static_cast<int>(i));
-    if (due == Due::moved) moved_pairs_.push_back(static_cast<int>(i));
-  }
-  if (due_pairs_.empty() || moved_pairs_.empty()) return !due_pairs_.empty();
-  in_due_pair_.assign(system.block_count(), 0);
-  for (const int i : due_pairs_) in_due_pair_[pairs_[i].first] = in_due_pair_[pairs_[i].second] = 1;
-  const std::size_t alone = due_pairs_.size();
-  for (const int i : moved_pairs_) {
-    if (in_due_pair_[pairs_[i].first] || in_due_pair_[pairs_[i].second]) due_pairs_.push_back(i);
-  }
-  std::inplace_merge(due_pairs_.begin(), due_pairs_.begin() + static_cast<std::ptrdiff_t>(alone), due_pairs_.end());
+  const auto way = [&](int pair) {
+    const PairState& then = states_[pair];
+    return then.known ? relative_way(then, places_[pairs_[pair].first], places_[pairs_[pair].second]) : std::numeric_limits<double>::infinity();
+  };
+  marks_.resize(pairs_.size() / bits + 1);
+  long looks = 0;
+  for_pairs_of(restless_, is_restless_, [&](int pair) {
+    ++looks;
+    const double gone = way(pair);
+    if (due(gone) == Due::yes) {
+      mark(marks_, pair);
+    } else {
+      look_again_before(pair, gone);
+    }
+  });
+  counters_.looks += looks;
+  counters_.looks_skipped += static_cast<long>(pairs_.size()) - looks;
+  take_marked(marks_, due_pairs_);
+  if (due_pairs_.empty()) return false;
+  find_blocks_of_due_pairs();
+  for (const int pair : due_pairs_) mark(marks_, pair);
+  for_pairs_of(in_due_pairs_, in_due_pair_, [&](int pair) {
+    if (due(way(pair)) == Due::moved) mark(marks_, pair);
+  });
+  take_marked(marks_, due_pairs_);
   return true;
+}
+
+template <int N>
+void Detector<N>::find_blocks_of_due_pairs() {
+  in_due_pair_.assign(places_.size(), 0);
+  in_due_pairs_.clear();
+  for (const int i : due_pairs_) {
+    for (const int b : {pairs_[i].first, pairs_[i].second}) {
+      if (!in_due_pair_[b]) in_due_pairs_.push_back(b);
+      in_due_pair_[b] = 1;
+    }
+  }
+}
+
+/// Those that share a block with a pair that is due, and these.
+template <int N>
+const std::vector<int>& Detector<N>::pairs_around_due_ones() {
+  find_blocks_of_due_pairs();
+  marks_.resize(pairs_.size() / bits + 1);
+  for_pairs_of(in_due_pairs_, in_due_pair_, [&](int pair) { mark(marks_, pair); });
+  take_marked(marks_, around_due_);
+  return around_due_;
 }
 
 /// Contacts that are new inherit from those of the same corner that are gone.
@@ -603,6 +725,7 @@ template <int N>
 void Detector<N>::redo(const JointTable& joints, const BlockSystem<N>& system, int pair, NarrowPhase& narrow, const std::vector<Contact>& before) {
   const auto [a, b] = pairs_[pair];
   states_[pair] = {{places_[a].x, places_[a].y, places_[a].turn}, {places_[b].x, places_[b].y, places_[b].turn}, true};
+  look_again_before(pair, 0.0);
   const Range old = ranges_[pair];
   const std::size_t begin = found_.size();
   index_->select(old);
@@ -677,7 +800,8 @@ bool Detector<N>::update(const BlockSystem<N>& system, const JointTable& joints,
   found_.clear();
   changes_.clear();
   shapes_->begin(system);
-  index_->build(system, contacts);
+  index_->begin(system, contacts);
+  for (const int pair : pairs_around_due_ones()) index_->add(ranges_[pair]);
   NarrowPhase narrow(system, reach_ + skips_.contact_skin, *shapes_, *index_);
   for (const int pair : due_pairs_) redo(joints, system, pair, narrow, contacts);
   if (!first_) pass_on_history(system, contacts);

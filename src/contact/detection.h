@@ -27,6 +27,10 @@
 //
 // At four-block corners the diagonal blocks have facing edges without overlap and no lone corner, hence no contact: they cannot lock.
 //
+// Which pairs are looked at: each block adds up a bound on its way, with what its turning does where it can touch others. A pair in which something
+// may still move by s before it is due cannot become so while each of its blocks goes less than s/2; so only the pairs of blocks that have gone as
+// far as one of their pairs allows are looked at.
+//
 // What is not done again: candidate pairs are searched anew only when a block has moved beyond search_skin; a pair's contacts are found anew only
 // when a point of one of its blocks near the other may have moved by contact_skin relative to it since they last were, or a tenth of it where a pair
 // that shares a block is due (so that what one loses and another gains is found at once and history can pass between them). Blocks that move together
@@ -35,6 +39,7 @@
 // than it.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -51,6 +56,7 @@ namespace openclose {
 struct DetectionSkips {
   bool search = true;                               ///< false: everything is redone in every step
   bool narrow_phase = true;                         ///< false: all candidate pairs are redone in every step
+  bool looks = true;                                ///< false: all pairs are looked at in every step, whether or not they may be due
   double contact_skin = tolerance::contact_skin_m;  ///< [m]
 };
 
@@ -59,11 +65,13 @@ struct DetectionCounters {
   long searches_skipped = 0;       ///< steps that reused the candidates
   long narrow_phases = 0;          ///< pairs whose contacts were found anew, over all steps
   long narrow_phases_skipped = 0;  ///< pairs whose contacts stayed as they were
+  long looks = 0;                  ///< pairs whose motion was looked at, over all steps
+  long looks_skipped = 0;          ///< pairs whose blocks had not gone far enough for that
   long transfers = 0;              ///< contacts that inherited their history from another vertex-edge pair
 
   void exchange(Archive& archive) {
-    auto& [a, b, c, d, e] = *this;
-    archive(a, b, c, d, e);
+    auto& [a, b, c, d, e, f, g] = *this;
+    archive(a, b, c, d, e, f, g);
   }
 };
 
@@ -111,7 +119,9 @@ class Detector {
   /// Blocks or contacts were changed by others: the next update() searches and finds everything anew.
   void forget() { forgotten_ = true; }
   /// What decides when something is found anew.
-  void exchange(Archive& archive) { archive(first_, forgotten_, pairs_, states_, ranges_, searched_at_, counters_); }
+  void exchange(Archive& archive) {
+    archive(first_, forgotten_, pairs_, states_, ranges_, searched_at_, counters_, places_, ways_, pairs_of_start_, pairs_of_);
+  }
 
  private:
   using Unknowns = typename BlockSystem<N>::Unknowns;
@@ -129,6 +139,22 @@ class Detector {
   };
   struct Place : Pose {
     double radius;  ///< [m]
+
+    void exchange(Archive& archive) {
+      Pose::exchange(archive);
+      archive(radius);
+    }
+  };
+  /// How far a block has gone, see above.
+  struct Way {
+    double arm = 0.0;      ///< [m] by which a rotation counts
+    double gone = 0.0;     ///< [m]
+    double look_at = 0.0;  ///< [m] with `gone` below it no pair of the block can be due
+
+    void exchange(Archive& archive) {
+      auto& [a, b, c] = *this;
+      archive(a, b, c);
+    }
   };
   /// A pair when its contacts were last found.
   struct PairState {
@@ -147,8 +173,16 @@ class Detector {
   void find_pairs(const BlockSystem<N>& system, const std::vector<Box>& boxes);
   void locate(const std::vector<Contact>& contacts);
   static Place place(const BlockSystem<N>& system, int b);
-  Due due(const PairState& then, const Place& first, const Place& second) const;
+  double relative_way(const PairState& then, const Place& first, const Place& second) const;
+  Due due(double way) const;
+  void list_pairs_of_blocks(int blocks);
+  void follow_blocks(const BlockSystem<N>& system, bool all);
+  template <class F>
+  void for_pairs_of(const std::vector<int>& blocks, const std::vector<char>& is_among_them, F f) const;
+  void look_again_before(int pair, double way);
   bool mark_due_pairs(const BlockSystem<N>& system, bool all);
+  void find_blocks_of_due_pairs();
+  const std::vector<int>& pairs_around_due_ones();
   void redo(const JointTable& joints, const BlockSystem<N>& system, int pair, NarrowPhase& narrow, const std::vector<Contact>& before);
   void pass_on_history(const BlockSystem<N>& system, std::vector<Contact>& before);
   void put_in_place(std::vector<Contact>& contacts, bool orphans);
@@ -161,19 +195,23 @@ class Detector {
   std::vector<PairState> states_;  ///< of the pairs
   std::vector<Range> ranges_;      ///< of the pairs, in the list as the last update() left it
   std::vector<Unknowns> searched_at_;
+  std::vector<Place> places_;                   ///< of the blocks in the last update()
+  std::vector<Way> ways_;                       ///< of the blocks
+  std::vector<int> pairs_of_start_, pairs_of_;  ///< of the blocks: pairs_of_[pairs_of_start_[b]] to before that of b + 1
   std::vector<DetectionChange> changes_;
   DetectionCounters counters_;
 
   // Working memory of update().
   std::unique_ptr<Shapes> shapes_;
   std::unique_ptr<ContactIndex> index_;
-  std::vector<Place> places_;                 ///< of the blocks
-  std::vector<int> due_pairs_, moved_pairs_;  ///< in order
-  std::vector<char> in_due_pair_;             ///< of the blocks
-  std::vector<Contact> found_, spare_;        ///< of the pairs that are due; the list before the last
-  std::vector<char> lives_on_;                ///< old contacts of a pair
-  std::vector<std::size_t> born_;             ///< positions among those that were found
-  std::vector<int> gone_;                     ///< positions in the old list
+  std::vector<int> restless_, in_due_pairs_;  ///< blocks: whose pairs are looked at; of pairs that are due
+  std::vector<char> is_restless_, in_due_pair_;
+  std::vector<int> due_pairs_, around_due_;  ///< in order
+  std::vector<std::uint64_t> marks_;         ///< a bit a pair
+  std::vector<Contact> found_, spare_;       ///< of the pairs that are due; the list before the last
+  std::vector<char> lives_on_;               ///< old contacts of a pair
+  std::vector<std::size_t> born_;            ///< positions among those that were found
+  std::vector<int> gone_;                    ///< positions in the old list
   std::vector<std::pair<int, int>> gone_by_vertex_, gone_by_edge_;
 };
 

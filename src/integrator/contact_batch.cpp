@@ -192,7 +192,7 @@ OPENCLOSE_KERNEL void add_stiffness(const ContactBatch* contacts, const TrialBat
   double nowhere[entries] = {};
   const auto block = [&](int slot) { return slot >= 0 ? values + entries * slot : nowhere; };
   for (std::size_t i = 0; i < count; ++i, branches += batch_size, slots += batch_size) {
-    if ((branches[0] | branches[1] | branches[2] | branches[3]) == 0) continue;
+    if (!tangent.holds_open && (branches[0] | branches[1] | branches[2] | branches[3]) == 0) continue;
     const TrialBatch& at = trials[i];
     const Lanes nn = -theta * at.normal_by_gap, tn = tangent.exact ? -theta * at.shear_by_gap : zero;
     Lanes tt = -theta * at.shear_by_slip;

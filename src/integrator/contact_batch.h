@@ -74,6 +74,7 @@ struct BatchTangent {
   bool exact;                    ///< with the slip's and the geometric terms, which are not symmetric
   double end_weight;             ///< [-] theta
   double static_slip_stiffness;  ///< [-] part of the shear stiffness that sliding contacts keep in the other tangent
+  bool holds_open;               ///< open contacts may have a stiffness, too
 };
 
 class BatchKernels {

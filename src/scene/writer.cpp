@@ -164,6 +164,7 @@ void write_method(Text& text, const MethodInput& method) {
   text.line("linear_solver", word_for(linear_solver_words, method.linear_solver));
   text.line("skip_search", method.skip_search);
   text.line("skip_narrow_phase", method.skip_narrow_phase);
+  text.line("skip_looks", method.skip_looks);
   text.line("skip_reload", method.skip_reload);
   text.line("gap_tolerance_m", method.gap_tolerance);
   if (method.penalty) text.line("penalty_pa_per_m", *method.penalty);

@@ -19,7 +19,7 @@ inline Scene scene_with(std::vector<BlockInput> blocks) {
 class Detection {
  public:
   /// Unless asked for, all pairs are redone in every update: what is tested is the geometry.
-  explicit Detection(const Scene& scene, double reach = 0.05, const DetectionSkips& skips = {true, false, 0.0})
+  explicit Detection(const Scene& scene, double reach = 0.05, const DetectionSkips& skips = {true, false, true, 0.0})
       : system(scene), joints(scene), detector(reach, skips) {
     update();
   }

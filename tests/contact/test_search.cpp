@@ -36,7 +36,7 @@ Scene rough_floor() {
 TEST_CASE("skipping searches changes nothing while blocks move far", "[contact][search]") {
   const Scene scene = rough_floor();
   const double reach = GENERATE(0.01, 0.2);
-  Detection skipping(scene, reach), searching(scene, reach, {false, true, 0.0});
+  Detection skipping(scene, reach), searching(scene, reach, {false, true, true, 0.0});
   std::mt19937 generator(14);
   std::uniform_real_distribution<double> drift(0.0, 0.02), bounce(-0.01, 0.01), turn(-0.03, 0.03);
   long contacts = 0, changes = 0;
@@ -101,7 +101,7 @@ TEST_CASE("candidates are pairs with a free block, lower number first, in order"
 
 TEST_CASE("with a skin of zero, leaving pairs as they are changes nothing", "[contact][search]") {
   const Scene scene = rough_floor();
-  Detection skipping(scene, 0.1, {true, true, 0.0}), redoing(scene, 0.1);
+  Detection skipping(scene, 0.1, {true, true, true, 0.0}), redoing(scene, 0.1);
   std::mt19937 generator(15);
   std::uniform_real_distribution<double> drift(0.0, 0.02), bounce(-0.01, 0.01), turn(-0.03, 0.03);
   for (int step = 0; step < 900; ++step) {
@@ -184,4 +184,38 @@ TEST_CASE("nothing comes within reach unseen", "[contact][search]") {
     d.move(1, 0.0, -0.00037);
     d.update();
   }
+}
+
+TEST_CASE("looking only at pairs whose blocks have gone far enough finds the same ones due", "[contact][search]") {
+  // Blocks that rest, that creep, that run and that turn about each other; every now and then one jumps.
+  const double creep = GENERATE(1e-5, 3e-4), skin = GENERATE(1e-3, 1e-2);
+  const Scene scene = rough_floor();
+  Detection looking(scene, 0.1, {true, true, true, skin}), plain(scene, 0.1, {true, true, false, skin});
+  std::mt19937 generator(16);
+  std::uniform_real_distribution<double> number(-1.0, 1.0);
+  for (int step = 0; step < 4000; ++step) {
+    const auto move = [&](int b, double x, double y, double turn) {
+      looking.move(b, x, y, turn);
+      plain.move(b, x, y, turn);
+    };
+    const double way = creep * number(generator), turn = 0.3 * creep * number(generator);
+    move(12, way, 0.1 * way, 0.0);
+    if (step % 3 == 0) move(13, creep, creep * number(generator), turn);
+    if (step % 500 > 450) {
+      // Block 14 goes round with block 13 as if they were one.
+      const Vec2 apart = looking.system.centroid(14) - looking.system.centroid(13);
+      const Vec2 with = Motion<3>::turned_by(creep, apart, RotationKind::exact);
+      move(13, 0.0, 0.0, creep);
+      move(14, with.x(), with.y(), creep);
+    }
+    if (step % 700 == 699) move(14, 0.1 * number(generator), 0.0, 0.1);
+    require_same(looking.update(), plain.update());
+    REQUIRE(looking.detector.counters().narrow_phases == plain.detector.counters().narrow_phases);
+    for (std::size_t i = 0; i < plain.contacts.size(); ++i) looking.contacts[i].elastic_slip = plain.contacts[i].elastic_slip = step;
+  }
+  const DetectionCounters &few = looking.detector.counters(), &all = plain.detector.counters();
+  CHECK(all.looks_skipped == 0);
+  CHECK(few.looks + few.looks_skipped == all.looks);
+  CHECK((few.looks < all.looks / 3 || creep > 1e-4));
+  CHECK(all.narrow_phases > 20);
 }

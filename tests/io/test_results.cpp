@@ -320,6 +320,8 @@ TEST_CASE("summary.json has counters under their own names", "[io][results]") {
                                                 {"searches_skipped", detection.searches_skipped},
                                                 {"narrow_phases", detection.narrow_phases},
                                                 {"narrow_phases_skipped", detection.narrow_phases_skipped},
+                                                {"looks", detection.looks},
+                                                {"looks_skipped", detection.looks_skipped},
                                                 {"history_transfers", detection.transfers},
                                                 {"factorisations", linear.factorisations},
                                                 {"plain_factorisations", linear.plain},

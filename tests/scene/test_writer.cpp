@@ -47,6 +47,7 @@ void check_same(const MethodInput& a, const MethodInput& b) {
   CHECK(a.linear_solver == b.linear_solver);
   CHECK(a.skip_search == b.skip_search);
   CHECK(a.skip_narrow_phase == b.skip_narrow_phase);
+  CHECK(a.skip_looks == b.skip_looks);
   CHECK(a.skip_reload == b.skip_reload);
   CHECK(a.penalty == b.penalty);
   CHECK(a.penalty_shear_ratio == b.penalty_shear_ratio);
@@ -175,6 +176,7 @@ Scene random_scene(unsigned seed) {
   scene.method.linear_solver = LinearSolverKind::iterative;
   scene.method.skip_search = false;
   scene.method.skip_narrow_phase = false;
+  scene.method.skip_looks = false;
   scene.method.skip_reload = false;
   scene.method.penalty = number();
   scene.method.penalty_shear_ratio = number();
