@@ -34,6 +34,8 @@ constexpr double rounding_units = 4.0;
 /// [-] Part of the tolerance by which closed contacts may stay apart from zero; what earlier steps have left beyond it is pushed back.
 constexpr double kept_penetration = 0.5;
 constexpr int most_outer_passes = 100;
+/// Motion: passes that keep more of the error than slow_convergence; more of them lead nowhere.
+constexpr int most_slow_passes = 6;
 /// After so many failed attempts at a step it is taken with springs instead: it is in balance, but penetrates by what its forces compress them.
 constexpr int attempts_before_compliance = 2;
 /// [-] Redundant contacts whose targets exclude each other by what earlier steps tolerated leave an error that no pass reduces: a pass that keeps
@@ -105,6 +107,7 @@ class Hard final : public Enforcement<N> {
     // From the drift dt v: the stiff matrix costs digits of what is solved for, and these are better lost from the change of motion than from the
     // motion.
     solution.d = drift(problem);
+    int slow_passes = 0;
     Eigen::VectorXd first;                                      // where the first pass of statics has brought the blocks
     double last_way = std::numeric_limits<double>::infinity();  // [m] of the farthest block in the last pass
     double last_error = std::numeric_limits<double>::infinity();
@@ -118,6 +121,10 @@ class Hard final : public Enforcement<N> {
       if (error <= 1.0) return;
       if (error > slow_convergence * last_error && error <= (problem.statics ? incompatible_static_gaps : incompatible_gaps)) return;
       if (moves_on && error * tolerated(problem) <= std::min(problem.method.gap_tolerance, part_of_way * way)) return;
+      if (!problem.statics && error > slow_convergence * last_error) {
+        if (++slow_passes == 1) keep_deep_gaps(problem);
+        if (slow_passes > most_slow_passes) break;
+      }
       for (std::size_t c = 0; c < springs_.size(); ++c) carry_on(problem, solution.contacts[c], springs_[c]);
       if (pass == 0) first = solution.d;
       if (pass == 1 && problem.statics && !moves_on) straighten(problem, solution, first);
@@ -167,6 +174,14 @@ class Hard final : public Enforcement<N> {
     for (std::size_t c = 0; c < springs_.size(); ++c) {
       if (solution.contacts[c].forces.status == ContactStatus::open)
         solution.contacts[c].slack = std::max(0.0, -springs_[c].shift / springs_[c].normal);
+    }
+  }
+
+  /// Closed contacts that penetrate by more than passes can leave, as after a compliant step, keep their gaps from now on.
+  void keep_deep_gaps(const StepProblem<N>& problem) {
+    for (std::size_t c = 0; c < springs_.size(); ++c) {
+      const bool deep = springs_[c].gap < -incompatible_gaps * problem.method.gap_tolerance;
+      if (deep && problem.contacts[c].status != ContactStatus::open) springs_[c].target = springs_[c].gap;
     }
   }
 
