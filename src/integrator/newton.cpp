@@ -33,7 +33,8 @@ constexpr double linear_reduction = 1e-5;
 constexpr int patience = 1;
 /// [-] A static step of which the line search takes less is begun again with held contacts.
 constexpr double shortest_common_step = 1e-3;
-/// [-] Held contacts keep this part of their hold from iteration to iteration, so that what they let go at a time is about twice what they have tried.
+/// [-] Held contacts keep this part of their hold from iteration to iteration, so that what they let go at a time is about twice what they have
+/// tried.
 constexpr double hold_decay = 0.5;
 /// [-] A smaller part of the springs holds nothing.
 constexpr double weakest_hold = 1e-4;
@@ -42,6 +43,10 @@ constexpr double residual_of_full_hold = 1e-2;
 /// Each cut of a static step brings blocks nearer to free fall, where contacts carry nearly nothing and change their states most. So these iterations
 /// go on for longer than others: a slope of 10,000 blocks settles with 64 of them.
 constexpr int most_holding_iterations = 150;
+/// [-] Part of the largest force at the start of the step that may count as balanced. The forces of a trial that has run away, of which rounding and
+/// the tolerance are parts, would excuse any residual. Forces may grow by 1e9 in a step before the usual tolerance of 1e-12 comes here.
+constexpr double loosest_balance = 1e-3;
+constexpr double largest_force_growth = 1e9;  ///< [-] the same margin for a tolerance that the scene makes coarser
 
 /// Open at the end of the step, a contact may have carried a force on the way.
 bool carries(const ContactForces& f) {
@@ -87,6 +92,14 @@ void Newton<N>::prepare(const StepProblem<N>& problem, const std::vector<Contact
     blocks_.push_back({b, problem.external.has_point_forces(b), block.rotation_locked, block.radius, problem.inertia * block.mass,
                        problem.external.force(system, b, still), problem.drift(b), problem.external.magnitude(system, b, still),
                        problem.external.spring_scale(system, b)});
+  }
+  start_scale_ = 0.0;
+  for (const StepBlock& block : blocks_) {
+    start_scale_ = std::max({start_scale_, block.magnitude, Motion<N>::largest_force(block.inertia.cwiseProduct(block.drift), block.radius)});
+  }
+  for (std::size_t c = 0; c < contact_count_; ++c) {
+    const ContactSprings& s = springs[c];
+    start_scale_ = std::max({start_scale_, s.shift - s.normal * (s.gap - s.target), std::abs(s.initial_shear)});
   }
   trials_.resize(contacts_.size());
   paths_.resize(problem.averages_path() ? contact_count_ : 0);
@@ -177,12 +190,15 @@ void Newton<N>::evaluate(const Eigen::VectorXd& d) {
 template <int N>
 double Newton<N>::residual_norm() const {
   double worst = 0.0;
+  const double loosest = std::max(loosest_balance, largest_force_growth * problem_->method.residual_tolerance) * start_scale_;
   for (std::size_t i = 0; i < blocks_.size(); ++i) {
     const int at = static_cast<int>(i);
     const double tolerated = problem_->method.residual_tolerance * force_scale_ + rows_[i].sums[N];
     const double r = Motion<N>::largest_force(residual_.template segment<N>(N * at), blocks_[i].radius);
     if (!(r <= std::numeric_limits<double>::max())) return std::numeric_limits<double>::infinity();
-    if (r > 0.0) worst = std::max(worst, r / tolerated);
+    if (r == 0.0) continue;
+    if (tolerated > loosest) return std::numeric_limits<double>::infinity();
+    worst = std::max(worst, r / tolerated);
   }
   return worst;
 }
