@@ -808,7 +808,7 @@ bool Detector<N>::update(const BlockSystem<N>& system, const JointTable& joints,
   for (const int pair : due_pairs_) redo(joints, system, pair, narrow, contacts);
   if (!first_) pass_on_history(system, contacts);
   put_in_place(contacts, orphans);
-  if (due_pairs_.size() == pairs_.size()) found_ = {};  // later ones are few
+  if (due_pairs_.size() == pairs_.size()) std::vector<Contact>().swap(found_);  // later ones are few
   first_ = false;
   return true;
 }
