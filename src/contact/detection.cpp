@@ -780,7 +780,9 @@ void Detector<N>::put_in_place(std::vector<Contact>& contacts, bool orphans) {
     }
     return;
   }
+  const auto growth = [](int sum, const DetectionChange& c) { return sum + c.after.size() - c.before.size(); };
   spare_.clear();
+  spare_.reserve(std::accumulate(changes_.begin(), changes_.end(), static_cast<int>(contacts.size()), growth));
   std::size_t next = 0;
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
     const bool changed = next < changes_.size() && changes_[next].pair == static_cast<int>(i);
@@ -869,6 +871,7 @@ bool Detector<N>::update(const BlockSystem<N>& system, const JointTable& joints,
   for (const int pair : due_pairs_) redo(joints, system, pair, narrow, contacts);
   if (!first_) pass_on_history(system, contacts);
   put_in_place(contacts, orphans);
+  if (due_pairs_.size() == pairs_.size()) std::vector<Contact>().swap(found_);  // later ones are few
   first_ = false;
   return true;
 }

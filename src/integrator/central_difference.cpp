@@ -4,9 +4,12 @@
 #include <cmath>
 
 #include "openclose/core/tolerance.h"
+#include "openclose/integrator/lane_operations.h"
 
 namespace openclose {
 namespace {
+
+using namespace lanes;
 
 /// [rad] Up to here the series below are exact to rounding: the first terms left out are angle^9/9! and angle^8/8!.
 constexpr double small_angle = 0.01;
@@ -122,7 +125,9 @@ void CentralDifference<N>::load_points(const StepProblem<N>& problem) {
 template <int N>
 void CentralDifference<N>::load_contacts(const StepProblem<N>& problem) {
   links_.clear();
+  links_.reserve(problem.contacts.size());
   rest_.clear();
+  rest_.reserve(problem.contacts.size());
   holes_.clear();
   link_of_.assign(problem.contacts.size(), -1);
   damped_ = false;
@@ -167,31 +172,31 @@ void CentralDifference<N>::add_link(const StepProblem<N>& problem, int contact) 
   const ContactDashpots dashpots =
       joint.damping_ratio > 0.0 ? ContactDashpots(joint, c.length, system.reduced_mass(c.vertex_block, c.edge_block)) : ContactDashpots();
   damped_ |= joint.damping_ratio > 0.0;
-  Link link{at_vertex,
-            at_edge,
-            arm.x(),
-            arm.y(),
-            across.x(),
-            across.y(),
-            normal.x(),
-            normal.y(),
-            normal_stiffness,
-            shear_stiffness,
-            1.0 / shear_stiffness,
-            dashpots.normal,
-            dashpots.shear,
-            0.0,
-            strength,
-            c.gap,
-            0.0,
-            c.elastic_slip,
-            0.0,
-            0.0,
-            0.0,
-            0.0,
-            c.status,
-            c.bonded,
-            !problem.keep_bonds && can_lose_strength(joint, c.bonded)};
+  Link link{.arm_x = arm.x(),
+            .arm_y = arm.y(),
+            .across_x = across.x(),
+            .across_y = across.y(),
+            .normal_x = normal.x(),
+            .normal_y = normal.y(),
+            .loaded_gap = 0.0,
+            .normal_stiffness = normal_stiffness,
+            .shear_stiffness = shear_stiffness,
+            .per_shear_stiffness = 1.0 / shear_stiffness,
+            .normal_dashpot = dashpots.normal,
+            .shear_dashpot = dashpots.shear,
+            .strength = strength,
+            .gap = c.gap,
+            .slip = 0.0,
+            .stretch = c.elastic_slip,
+            .normal = 0.0,
+            .shear = 0.0,
+            .elastic_normal = 0.0,
+            .viscous_shear = 0.0,
+            .vertex_slot = at_vertex,
+            .edge_slot = at_edge,
+            .status = c.status,
+            .bonded = c.bonded,
+            .breakable = !problem.keep_bonds && can_lose_strength(joint, c.bonded)};
   Place at = place(link);
   link.loaded_gap = c.gap - at.gap;
   at.gap = c.gap;
@@ -472,50 +477,199 @@ void CentralDifference<N>::follow_contacts() {
 
 template <int N>
 template <bool damped>
-void CentralDifference<N>::follow_links() {
-  double friction = 0.0, damping = 0.0, scheme = 0.0, deepest = max_penetration_;
-  for (Link& link : links_) {
-    const Place at = place(link);
-    if (rests(link) && is_open(link.strength, -link.normal_stiffness * at.gap)) {
-      link.gap = at.gap;
-      link.slip = at.slip;
-      continue;
-    }
-    const double gap_change = at.gap - link.gap, slip = at.slip - link.slip;
-    const double memory = -link.shear_stiffness * (link.stretch + slip);
-    CarriedForces f;
-    if constexpr (damped) {
-      f = carry(link.strength, trials(link, at, memory));
-    } else {
-      f = carry(link.strength, {-link.normal_stiffness * at.gap, 0.0, memory, 0.0});
-    }
-    // The step's forces were those at its start; see the ledger for the formulas, with theta = 0.
-    const double stretch = -f.elastic_shear * link.per_shear_stiffness;
-    const double stretched = stretch - link.stretch, opening = f.status == ContactStatus::open ? at.gap : 0.0;
-    const double closing = -gap_change + (opening - (link.status == ContactStatus::open ? link.gap : 0.0));
-    scheme += link.normal * gap_change + link.shear * slip - link.normal * opening -
-              0.5 * (link.normal_stiffness * closing * closing + link.shear_stiffness * stretched * stretched) -
-              (link.shear - link.viscous_shear + link.shear_stiffness * link.stretch) * stretched;
-    friction -= link.shear * (slip - stretched);
-    if constexpr (damped) damping += (link.normal - link.elastic_normal) * closing - link.viscous_shear * stretched;
+void CentralDifference<N>::follow_link(Link& link, LinkSums& sums) {
+  const Place at = place(link);
+  if (rests(link) && openclose::is_open(link.strength, -link.normal_stiffness * at.gap)) {
     link.gap = at.gap;
     link.slip = at.slip;
-    link.stretch = stretch;
-    link.status = f.status;
-    link.normal = f.normal;
-    link.shear = f.shear;
-    if constexpr (damped) {
-      link.elastic_normal = f.elastic_normal;
-      link.viscous_shear = f.shear - f.elastic_shear;
-    }
-    if (f.status != ContactStatus::open) deepest = std::max(deepest, -at.gap);
-    if (link.breakable) lose_strength(link, joints_->joint(rest_[&link - links_.data()].joint), at);
-    push(link, at);
+    return;
   }
-  energies_.friction += friction;
-  energies_.contact_damping += damping;
-  energies_.scheme += scheme;
-  max_penetration_ = deepest;
+  const double gap_change = at.gap - link.gap, slip = at.slip - link.slip;
+  const double memory = -link.shear_stiffness * (link.stretch + slip);
+  CarriedForces f;
+  if constexpr (damped) {
+    f = carry(link.strength, trials(link, at, memory));
+  } else {
+    f = carry(link.strength, {-link.normal_stiffness * at.gap, 0.0, memory, 0.0});
+  }
+  // The step's forces were those at its start; see the ledger for the formulas, with theta = 0.
+  const double stretch = -f.elastic_shear * link.per_shear_stiffness;
+  const double stretched = stretch - link.stretch, opening = f.status == ContactStatus::open ? at.gap : 0.0;
+  const double closing = -gap_change + (opening - (link.status == ContactStatus::open ? link.gap : 0.0));
+  sums.scheme += link.normal * gap_change + link.shear * slip - link.normal * opening -
+                 0.5 * (link.normal_stiffness * closing * closing + link.shear_stiffness * stretched * stretched) -
+                 (link.shear - link.viscous_shear + link.shear_stiffness * link.stretch) * stretched;
+  sums.friction -= link.shear * (slip - stretched);
+  if constexpr (damped) sums.damping += (link.normal - link.elastic_normal) * closing - link.viscous_shear * stretched;
+  link.gap = at.gap;
+  link.slip = at.slip;
+  link.stretch = stretch;
+  link.status = f.status;
+  link.normal = f.normal;
+  link.shear = f.shear;
+  if constexpr (damped) {
+    link.elastic_normal = f.elastic_normal;
+    link.viscous_shear = f.shear - f.elastic_shear;
+  }
+  if (f.status != ContactStatus::open) sums.deepest = std::max(sums.deepest, -at.gap);
+  if (link.breakable) lose_strength(link, joints_->joint(rest_[&link - links_.data()].joint), at);
+  push(link, at);
+}
+
+template <int N>
+template <bool damped>
+bool CentralDifference<N>::follow_four(Link* links, LinkSums& sums) {
+  const Lanes zero{};
+  const auto fetch = [](const double*(&from)[batch_size], Lanes& a, Lanes& b, Lanes& c, Lanes& d) {
+    a = lanes::load(from[0]);
+    b = lanes::load(from[1]);
+    c = lanes::load(from[2]);
+    d = lanes::load(from[3]);
+    transpose(a, b, c, d);
+  };
+  const auto fetch_links = [&](double Link::*first, Lanes& a, Lanes& b, Lanes& c, Lanes& d) {
+    const double* from[] = {&(links[0].*first), &(links[1].*first), &(links[2].*first), &(links[3].*first)};
+    fetch(from, a, b, c, d);
+  };
+  const auto fetch_blocks = [&](const auto& list, auto first, int Link::*slot, Lanes& a, Lanes& b, Lanes& c, Lanes& d) {
+    const double* from[] = {&(list[links[0].*slot].*first), &(list[links[1].*slot].*first), &(list[links[2].*slot].*first),
+                            &(list[links[3].*slot].*first)};
+    fetch(from, a, b, c, d);
+  };
+  Lanes arm_x, arm_y, across_x, across_y, normal_x, normal_y, loaded_gap, kn, ks, per_ks, normal_dashpot, shear_dashpot;
+  fetch_links(&Link::arm_x, arm_x, arm_y, across_x, across_y);
+  fetch_links(&Link::normal_x, normal_x, normal_y, loaded_gap, kn);
+  fetch_links(&Link::shear_stiffness, ks, per_ks, normal_dashpot, shear_dashpot);
+  Lanes vx, vy, v_cos_minus_1, v_sin, ex, ey, e_cos_minus_1, e_sin;
+  fetch_blocks(poses_, &Pose::x, &Link::vertex_slot, vx, vy, v_cos_minus_1, v_sin);
+  fetch_blocks(poses_, &Pose::x, &Link::edge_slot, ex, ey, e_cos_minus_1, e_sin);
+
+  // As place().
+  const Lanes turned_x = v_cos_minus_1 * arm_x - v_sin * arm_y, turned_y = v_cos_minus_1 * arm_y + v_sin * arm_x;
+  const Lanes dx = vx - ex + turned_x, dy = vy - ey + turned_y;
+  const Lanes change_x = e_cos_minus_1 * normal_x - e_sin * normal_y, change_y = e_cos_minus_1 * normal_y + e_sin * normal_x;
+  const Lanes nx = normal_x + change_x, ny = normal_y + change_y;
+  const Lanes gap = loaded_gap + (change_x * across_x + change_y * across_y + (nx * dx + ny * dy));
+  const Lanes all_slip = change_x * across_y - change_y * across_x + (nx * dy - ny * dx);
+  const Lanes now_arm_x = arm_x + turned_x, now_arm_y = arm_y + turned_y, now_across_x = across_x + dx, now_across_y = across_y + dy;
+
+  Lanes friction, cohesion, tension, gap_before, slip_before, stretch_before, normal_before, shear_before;
+  const double* strength[] = {&links[0].strength.friction, &links[1].strength.friction, &links[2].strength.friction, &links[3].strength.friction};
+  fetch(strength, friction, cohesion, tension, gap_before);
+  fetch_links(&Link::slip, slip_before, stretch_before, normal_before, shear_before);
+  const Lanes elastic_normal_before{links[0].elastic_normal, links[1].elastic_normal, links[2].elastic_normal, links[3].elastic_normal};
+  const Lanes viscous_shear_before{links[0].viscous_shear, links[1].viscous_shear, links[2].viscous_shear, links[3].viscous_shear};
+  Mask was_open{}, breakable{};
+  for (int k = 0; k < batch_size; ++k) {
+    was_open[k] = links[k].status == ContactStatus::open ? -1 : 0;
+    breakable[k] = links[k].breakable ? -1 : 0;
+  }
+
+  // As trials() and carry().
+  const Lanes gap_change = gap - gap_before, slip = all_slip - slip_before;
+  const Lanes elastic_normal = -kn * gap, memory = -ks * (stretch_before + slip);
+  Lanes viscous_normal = zero, viscous_shear = zero;
+  if constexpr (damped) {
+    Lanes v_rate_x, v_rate_y, v_turn, e_rate_x, e_rate_y, e_turn, angle;
+    fetch_blocks(rates_, &Rate::x, &Link::vertex_slot, v_rate_x, v_rate_y, v_turn, angle);
+    fetch_blocks(rates_, &Rate::x, &Link::edge_slot, e_rate_x, e_rate_y, e_turn, angle);
+    const Lanes x = (v_rate_x - v_turn * now_arm_y) - (e_rate_x - e_turn * now_across_y),
+                y = (v_rate_y + v_turn * now_arm_x) - (e_rate_y + e_turn * now_across_x);
+    viscous_normal = -normal_dashpot * (nx * x + ny * y);
+    viscous_shear = -shear_dashpot * (nx * y - ny * x);
+  }
+  const Mask closed = ~lanes::is_open(tension, elastic_normal);
+  const Lanes unbounded_normal = larger(-tension, elastic_normal + viscous_normal), unbounded_shear = memory + viscous_shear;
+  const Lanes bound = ShearBound(friction, cohesion, tension, unbounded_normal).value;
+  const Mask sticking = closed & (magnitude(unbounded_shear) <= bound);
+  if (any(breakable & ~sticking)) return false;
+  const Lanes normal = closed ? unbounded_normal : zero, shear = closed ? clamped(unbounded_shear, bound) : zero;
+  const Lanes elastic_shear = closed ? clamped(memory, bound) : zero;
+
+  // The step's forces were those at its start; see follow_link().
+  const Lanes stretch = -elastic_shear * per_ks;
+  const Lanes stretched = stretch - stretch_before, opening = closed ? zero : gap;
+  const Lanes closing = -gap_change + (opening - (was_open ? gap_before : zero));
+  const Lanes scheme = normal_before * gap_change + shear_before * slip - normal_before * opening -
+                       0.5 * (kn * closing * closing + ks * stretched * stretched) -
+                       (shear_before - viscous_shear_before + ks * stretch_before) * stretched;
+  const Lanes rubbed = shear_before * (slip - stretched);
+  const Lanes depth = closed ? -gap : zero;
+  for (int k = 0; k < batch_size; ++k) {
+    sums.scheme += scheme[k];
+    sums.friction -= rubbed[k];
+    sums.deepest = std::max(sums.deepest, depth[k]);
+  }
+  if constexpr (damped) {
+    const Lanes damping = (normal_before - elastic_normal_before) * closing - viscous_shear_before * stretched;
+    const Lanes kept_normal = closed ? elastic_normal : zero, kept_shear = shear - elastic_shear;
+    for (int k = 0; k < batch_size; ++k) {
+      sums.damping += damping[k];
+      links[k].elastic_normal = kept_normal[k];
+      links[k].viscous_shear = kept_shear[k];
+    }
+  }
+
+  const Lanes x = normal * nx - shear * ny, y = normal * ny + shear * nx;
+  const Lanes on_vertex = now_arm_x * y - now_arm_y * x, on_edge = now_across_x * y - now_across_y * x;
+  Lanes history[] = {all_slip, stretch, normal, shear}, forward[] = {x, y, on_vertex, zero}, back[] = {x, y, on_edge, zero};
+  transpose(history[0], history[1], history[2], history[3]);
+  transpose(forward[0], forward[1], forward[2], forward[3]);
+  transpose(back[0], back[1], back[2], back[3]);
+  for (int k = 0; k < batch_size; ++k) {
+    Link& link = links[k];
+    link.gap = gap[k];
+    store(&link.slip, history[k]);
+    link.status = !closed[k] ? ContactStatus::open : (sticking[k] ? ContactStatus::sticking : ContactStatus::sliding);
+    double* const v = &forces_[link.vertex_slot].x;
+    store(v, lanes::load(v) + forward[k]);
+    double* const e = &forces_[link.edge_slot].x;
+    store(e, lanes::load(e) - back[k]);
+  }
+  return true;
+}
+
+template <int N>
+template <bool damped>
+void CentralDifference<N>::follow_all(LinkSums& sums) {
+  const std::size_t fours = fours_ ? links_.size() / batch_size * batch_size : 0;
+  for (std::size_t i = 0; i < links_.size(); i += batch_size) {
+    if (i < fours && follow_four<damped>(&links_[i], sums)) continue;
+    for (std::size_t k = i; k < std::min(i + batch_size, links_.size()); ++k) follow_link<damped>(links_[k], sums);
+  }
+}
+
+template <int N>
+template <bool damped>
+void CentralDifference<N>::follow_with_any_registers(LinkSums& sums) {
+  follow_all<damped>(sums);
+}
+
+#ifdef OPENCLOSE_HAS_WIDE_REGISTERS
+template <int N>
+template <bool damped>
+[[gnu::target("avx2")]] void CentralDifference<N>::follow_with_wide_registers(LinkSums& sums) {
+  follow_all<damped>(sums);
+}
+#endif
+
+template <int N>
+template <bool damped>
+void CentralDifference<N>::follow_links() {
+  LinkSums sums{0.0, 0.0, 0.0, max_penetration_};
+#ifdef OPENCLOSE_HAS_WIDE_REGISTERS
+  if (wide_registers_) {
+    follow_with_wide_registers<damped>(sums);
+  } else {
+    follow_with_any_registers<damped>(sums);
+  }
+#else
+  follow_with_any_registers<damped>(sums);
+#endif
+  energies_.friction += sums.friction;
+  energies_.contact_damping += sums.damping;
+  energies_.scheme += sums.scheme;
+  max_penetration_ = sums.deepest;
 }
 
 template <int N>

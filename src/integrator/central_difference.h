@@ -27,6 +27,7 @@
 #include "openclose/contact/detection.h"
 #include "openclose/integrator/critical_step.h"
 #include "openclose/integrator/enforcement.h"
+#include "openclose/integrator/lanes.h"
 
 namespace openclose {
 
@@ -48,6 +49,9 @@ class CentralDifference {
 
  public:
   using Unknowns = typename Motion<N>::Unknowns;
+
+  /// \param fours, wide_registers  false: links one by one, in the registers that every processor has; the results are the same to the last bit
+  explicit CentralDifference(bool fours = true, bool wide_registers = true) : fours_(fours), wide_registers_(wide_registers && has_wide_registers()) {}
 
   /// Takes over blocks, velocities of the middle of the last step, contacts with their history, and the forces they carry now.
   void load(const StepProblem<N>& problem);
@@ -119,18 +123,19 @@ class CentralDifference {
       archive(a, b, c, d, e, f, g, h);
     }
   };
+  /// In the order in which four links are fetched, four numbers of each at a time.
   struct alignas(64) Link {
-    int vertex_slot, edge_slot;
     double arm_x, arm_y;        ///< [m] corner from its centroid, at the load
     double across_x, across_y;  ///< [m] corner from the edge's centroid, at the load
     double normal_x, normal_y;  ///< at the load
+    double loaded_gap;
     double normal_stiffness, shear_stiffness, per_shear_stiffness;
     double normal_dashpot, shear_dashpot;
-    double loaded_gap;
     ContactStrength strength;
     // History, at the present position.
     double gap, slip, stretch;  ///< slip since the load, stretch of the shear spring
     double normal, shear, elastic_normal, viscous_shear;
+    int vertex_slot, edge_slot;
     ContactStatus status;
     bool bonded, breakable;
 
@@ -188,8 +193,23 @@ class CentralDifference {
   static bool rests(const Link& link) { return link.status == ContactStatus::open && link.stretch == 0.0 && !link.breakable; }
   void begin_forces();
   void add_point_forces(bool step);
+  /// Sums of what the links of a step take, and the deepest of them.
+  struct LinkSums {
+    double friction, damping, scheme, deepest;
+  };
+  template <bool damped>
+  [[gnu::always_inline]] inline void follow_link(Link& link, LinkSums& sums);
+  /// The same for four links, to the last bit; false, and nothing has changed, if one of them may lose its strength.
+  template <bool damped>
+  [[gnu::always_inline]] inline bool follow_four(Link* links, LinkSums& sums);
+  template <bool damped>
+  [[gnu::always_inline]] inline void follow_all(LinkSums& sums);
   template <bool damped>
   void follow_links();
+  template <bool damped>
+  void follow_with_any_registers(LinkSums& sums);
+  template <bool damped>
+  void follow_with_wide_registers(LinkSums& sums);
   double force_squared(std::size_t i) const;  ///< [N2] on a block, a moment counting at the block's radius
   void adapt(double taken, double kinetic_change, double h);
 
@@ -216,6 +236,7 @@ class CentralDifference {
   const JointTable* joints_ = nullptr;
   ExplicitEnergies energies_;
   bool damped_ = false, lost_strength_ = false;
+  bool fours_, wide_registers_;
   CriticalStepBound<N> critical_step_;
   double approach_ = 0.0, moved_ = 0.0, unbalanced_ = 0.0, max_penetration_ = 0.0;
   double h_ = 0.0, span_ = 0.0, viscous_ = 0.0;

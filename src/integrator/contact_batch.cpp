@@ -1,57 +1,17 @@
 #include "openclose/integrator/contact_batch.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 
 #include "openclose/core/tolerance.h"
-
-#if defined(__x86_64__) && defined(__GNUC__)
-#define OPENCLOSE_HAS_WIDE_REGISTERS
-#endif
+#include "openclose/integrator/lane_operations.h"
 
 namespace openclose {
 namespace {
 
-using Mask = decltype(Lanes{} < Lanes{});
+using namespace lanes;
 using Branches = Branch __attribute__((vector_size(batch_size)));
 constexpr int entries = 9;  ///< of a block of the matrix, column by column
-
-#define OPENCLOSE_KERNEL [[gnu::always_inline]] inline
-
-OPENCLOSE_KERNEL Lanes all(double x) {
-  return Lanes{x, x, x, x};
-}
-OPENCLOSE_KERNEL Lanes load(const double* from) {
-  Lanes x;
-  std::memcpy(&x, from, sizeof x);
-  return x;
-}
-OPENCLOSE_KERNEL Lanes magnitude(Lanes x) {
-  return x < 0.0 ? -x : x;
-}
-/// As std::max and std::min.
-OPENCLOSE_KERNEL Lanes larger(Lanes a, Lanes b) {
-  return a < b ? b : a;
-}
-OPENCLOSE_KERNEL Lanes smaller(Lanes a, Lanes b) {
-  return b < a ? b : a;
-}
-OPENCLOSE_KERNEL Lanes clamped(Lanes x, Lanes bound) {
-  return x < -bound ? -bound : (bound < x ? bound : x);
-}
-OPENCLOSE_KERNEL bool any(Mask m) {
-  return (m[0] | m[1] | m[2] | m[3]) != 0;
-}
-
-OPENCLOSE_KERNEL void transpose(Lanes& a, Lanes& b, Lanes& c, Lanes& d) {
-  const Lanes ab_even = __builtin_shufflevector(a, b, 0, 4, 2, 6), ab_odd = __builtin_shufflevector(a, b, 1, 5, 3, 7);
-  const Lanes cd_even = __builtin_shufflevector(c, d, 0, 4, 2, 6), cd_odd = __builtin_shufflevector(c, d, 1, 5, 3, 7);
-  a = __builtin_shufflevector(ab_even, cd_even, 0, 1, 4, 5);
-  b = __builtin_shufflevector(ab_odd, cd_odd, 0, 1, 4, 5);
-  c = __builtin_shufflevector(ab_even, cd_even, 2, 3, 6, 7);
-  d = __builtin_shufflevector(ab_odd, cd_odd, 2, 3, 6, 7);
-}
 
 /// Of four blocks.
 struct Moves {
@@ -96,19 +56,16 @@ OPENCLOSE_KERNEL Mask find_forces(const ContactBatch& c, TrialBatch& trial, Bran
   const Lanes elastic_normal = c.shift - c.normal * (c.gap_off_target + trial.gap_change);
   const Lanes viscous_normal = -c.normal_damping * (c.parted + trial.gap_change);
   const Lanes elastic_shear = c.initial_shear - c.shear * trial.slip_change, shear = elastic_shear + -c.shear_damping * trial.slip_change;
-  const Mask open = c.tension > 0.0 ? elastic_normal < -c.tension : elastic_normal <= 0.0;
-  const Mask closed = ~open;
+  const Mask closed = ~is_open(c.tension, elastic_normal);
 
   const Lanes normal = larger(-c.tension, elastic_normal + viscous_normal);
-  const Lanes steep = c.friction + 1.0 / tolerance::cohesion_ramp;
-  const Lanes on_ramp = steep * (normal + c.tension), on_slope = c.friction * normal + c.cohesion;
-  const Lanes bound = larger(zero, smaller(on_slope, on_ramp));
-  const Lanes carried_shear = clamped(shear, bound);
+  const ShearBound limit(c.friction, c.cohesion, c.tension, normal);
+  const Lanes bound = limit.value, carried_shear = clamped(shear, bound);
   const Mask sticking = closed & (magnitude(shear) <= bound), sliding = closed & ~sticking;
 
   const Mask dashpot_outweighs = (c.normal_damping > 0.0) & (normal <= -c.tension);
   const Lanes normal_by_gap = dashpot_outweighs ? zero : -(c.normal + c.normal_damping);
-  const Lanes slope = bound > 0.0 ? (on_ramp < on_slope ? steep : c.friction) : zero;
+  const Lanes slope = bound > 0.0 ? (limit.on_ramp < limit.on_slope ? limit.steep : c.friction) : zero;
   const Mask signed_slope = (Mask)slope | ((Mask)shear & (Mask)-zero);
   trial.normal = closed ? normal : zero;
   trial.shear = closed ? carried_shear : zero;
@@ -192,7 +149,7 @@ OPENCLOSE_KERNEL void add_stiffness(const ContactBatch* contacts, const TrialBat
   double nowhere[entries] = {};
   const auto block = [&](int slot) { return slot >= 0 ? values + entries * slot : nowhere; };
   for (std::size_t i = 0; i < count; ++i, branches += batch_size, slots += batch_size) {
-    if ((branches[0] | branches[1] | branches[2] | branches[3]) == 0) continue;
+    if (!tangent.holds_open && (branches[0] | branches[1] | branches[2] | branches[3]) == 0) continue;
     const TrialBatch& at = trials[i];
     const Lanes nn = -theta * at.normal_by_gap, tn = tangent.exact ? -theta * at.shear_by_gap : zero;
     Lanes tt = -theta * at.shear_by_slip;

@@ -9,14 +9,11 @@
 #include <vector>
 
 #include "openclose/contact/kinematics.h"
+#include "openclose/integrator/lanes.h"
 #include "openclose/law/joint_law.h"
 #include "openclose/linear/block_matrix.h"
 
 namespace openclose {
-
-inline constexpr int batch_size = 4;
-/// One number of each of the four contacts.
-typedef double Lanes __attribute__((vector_size(batch_size * sizeof(double)), aligned(batch_size * sizeof(double))));
 
 /// The piece of its law that a contact is on: its status, minus it when sliding backward.
 using Branch = signed char;
@@ -74,6 +71,7 @@ struct BatchTangent {
   bool exact;                    ///< with the slip's and the geometric terms, which are not symmetric
   double end_weight;             ///< [-] theta
   double static_slip_stiffness;  ///< [-] part of the shear stiffness that sliding contacts keep in the other tangent
+  bool holds_open;               ///< open contacts may have a stiffness, too
 };
 
 class BatchKernels {

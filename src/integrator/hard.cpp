@@ -14,7 +14,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "openclose/core/tolerance.h"
 #include "openclose/integrator/newton.h"
@@ -35,6 +34,8 @@ constexpr double rounding_units = 4.0;
 /// [-] Part of the tolerance by which closed contacts may stay apart from zero; what earlier steps have left beyond it is pushed back.
 constexpr double kept_penetration = 0.5;
 constexpr int most_outer_passes = 100;
+/// Motion: passes that keep more of the error than slow_convergence; more of them lead nowhere.
+constexpr int most_slow_passes = 6;
 /// After so many failed attempts at a step it is taken with springs instead: it is in balance, but penetrates by what its forces compress them.
 constexpr int attempts_before_compliance = 2;
 /// [-] Redundant contacts whose targets exclude each other by what earlier steps tolerated leave an error that no pass reduces: a pass that keeps
@@ -42,9 +43,10 @@ constexpr int attempts_before_compliance = 2;
 /// far below that of motion, gaps that motion has left may exclude each other by more.
 constexpr double slow_convergence = 0.5;
 constexpr double incompatible_gaps = 3.0, incompatible_static_gaps = 100.0;
-/// [-] Statics: blocks that go farther than this part of their way in the last pass are moving, and the next pass starts where they are. Those that
-/// come to rest leave about a thousandth from pass to pass, moving ones all of it.
-constexpr double going_on = 0.5;
+/// [-] Statics: blocks that go farther than this part of their way in the last pass move on, and the next pass starts where they are; those that come
+/// to rest leave about a thousandth from pass to pass. A step in which they move on is not the last one, and need not be more exact than motion is,
+/// nor than this part of its way.
+constexpr double going_on = 0.5, part_of_way = 0.01;
 
 template <int N>
 class Hard final : public Enforcement<N> {
@@ -55,18 +57,14 @@ class Hard final : public Enforcement<N> {
 
   StepSolution<N> solve(const StepProblem<N>& problem) override {
     StepSolution<N> solution, compliant;
-    double tried = -1.0;
     for (const double ratio : stiffness_over_inertia) {
       set_springs(problem, ratio);
-      const double total = std::accumulate(springs_.begin(), springs_.end(), 0.0, [](double sum, const ContactSprings& s) { return sum + s.normal; });
-      if (total == tried) continue;  // in statics the joint's stiffness may decide
-      tried = total;
       solve(problem, solution, compliant);
-      if (!solution.converged) continue;
-      if (problem.statics) note_slack(solution);
-      return solution;
+      if (problem.statics && solution.converged) note_slack(solution);
+      // In statics softer springs would not be those of the joint; shorter steps help more.
+      if (problem.statics || solution.converged) return solution;
     }
-    if (problem.statics || problem.failed_attempts < attempts_before_compliance || !compliant.converged) return solution;
+    if (problem.failed_attempts < attempts_before_compliance || !compliant.converged) return solution;
     compliant.iterations = solution.iterations;
     compliant.compliant = true;
     return compliant;
@@ -88,7 +86,7 @@ class Hard final : public Enforcement<N> {
       if (problem.system.block(b).equation >= 0) mass = std::max(mass, problem.system.block(b).mass[0]);
     }
     const double from_inertia = ratio * problem.inertia * mass;
-    const double from_joint = problem.statics ? 1.0 * contact.length : 0.0;
+    const double from_joint = problem.statics ? contact.length : 0.0;
     ContactSprings s;
     s.normal = std::max(from_inertia, from_joint * joint.normal_stiffness);
     s.shear = std::max(from_inertia, from_joint * joint.shear_stiffness);
@@ -109,6 +107,7 @@ class Hard final : public Enforcement<N> {
     // From the drift dt v: the stiff matrix costs digits of what is solved for, and these are better lost from the change of motion than from the
     // motion.
     solution.d = drift(problem);
+    int slow_passes = 0;
     Eigen::VectorXd first;                                      // where the first pass of statics has brought the blocks
     double last_way = std::numeric_limits<double>::infinity();  // [m] of the farthest block in the last pass
     double last_error = std::numeric_limits<double>::infinity();
@@ -117,17 +116,21 @@ class Hard final : public Enforcement<N> {
       if (!solution.converged) return;
       if (!problem.statics && !compliant.converged) compliant = solution;
       const double error = constraint_error(problem, solution);
-      const bool stagnates = error > slow_convergence * last_error;
-      if (error <= 1.0 || (stagnates && error <= (problem.statics ? incompatible_static_gaps : incompatible_gaps))) return;
-      last_error = error;
-      for (std::size_t c = 0; c < springs_.size(); ++c) carry_on(problem, solution.contacts[c], springs_[c]);
-      if (!problem.statics) continue;
       const double way = solution.d.template lpNorm<Eigen::Infinity>();
-      const bool comes_to_rest = way < going_on * last_way;
-      last_way = way;
+      const bool moves_on = problem.statics && way >= going_on * last_way;
+      if (error <= 1.0) return;
+      if (error > slow_convergence * last_error && error <= (problem.statics ? incompatible_static_gaps : incompatible_gaps)) return;
+      if (moves_on && error * tolerated(problem) <= std::min(problem.method.gap_tolerance, part_of_way * way)) return;
+      if (!problem.statics && error > slow_convergence * last_error) {
+        if (++slow_passes == 1) keep_deep_gaps(problem);
+        if (slow_passes > most_slow_passes) break;
+      }
+      for (std::size_t c = 0; c < springs_.size(); ++c) carry_on(problem, solution.contacts[c], springs_[c]);
       if (pass == 0) first = solution.d;
-      if (pass == 1 && comes_to_rest) straighten(problem, solution, first);
-      if (comes_to_rest) solution.d.setZero();
+      if (pass == 1 && problem.statics && !moves_on) straighten(problem, solution, first);
+      if (problem.statics && !moves_on) solution.d.setZero();
+      last_error = error;
+      last_way = way;
     }
     solution.converged = false;
     solution.reason = "the multipliers of hard contacts did not converge";
@@ -174,6 +177,14 @@ class Hard final : public Enforcement<N> {
     }
   }
 
+  /// Closed contacts that penetrate by more than passes can leave, as after a compliant step, keep their gaps from now on.
+  void keep_deep_gaps(const StepProblem<N>& problem) {
+    for (std::size_t c = 0; c < springs_.size(); ++c) {
+      const bool deep = springs_[c].gap < -incompatible_gaps * problem.method.gap_tolerance;
+      if (deep && problem.contacts[c].status != ContactStatus::open) springs_[c].target = springs_[c].gap;
+    }
+  }
+
   /// In motion a closed contact keeps the gap it has, so that standing still is always consistent, unless earlier steps have left more than they
   /// should; an open one closes to zero, and a penetration found on closing is pushed out slowly. In statics every contact goes back to zero gap.
   static double target_gap(const StepProblem<N>& problem, const Contact& contact) {
@@ -183,10 +194,14 @@ class Hard final : public Enforcement<N> {
     return std::min(level, contact.gap + tolerance::hard_recovery_m_per_s * problem.dt);
   }
 
+  /// [m]
+  static double tolerated(const StepProblem<N>& problem) {
+    return problem.statics ? std::min(static_gap, problem.method.gap_tolerance) : problem.method.gap_tolerance;
+  }
+
   /// Largest error over what is tolerated: closed contacts off their target gaps, sticking ones off their places. Where more than forces is
   /// remembered also open ones that penetrate and sliding ones that go against their friction.
   double constraint_error(const StepProblem<N>& problem, const StepSolution<N>& solution) const {
-    const double tolerated = problem.statics ? std::min(static_gap, problem.method.gap_tolerance) : problem.method.gap_tolerance;
     double worst = 0.0;
     for (std::size_t c = 0; c < springs_.size(); ++c) {
       const ContactOutcome<N>& o = solution.contacts[c];
@@ -201,7 +216,7 @@ class Hard final : public Enforcement<N> {
       }
       if (error <= 0.0) continue;
       const double rounding = rounding_units * std::numeric_limits<double>::epsilon() * coordinates(problem, solution, problem.contacts[c]);
-      worst = std::max(worst, error / std::max(tolerated, rounding));
+      worst = std::max(worst, error / std::max(tolerated(problem), rounding));
     }
     return worst;
   }

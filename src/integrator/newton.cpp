@@ -31,6 +31,22 @@ constexpr double shortest_backtrack = 0.01;
 constexpr double linear_reduction = 1e-5;
 /// After so many refusals of the exact step without gain the symmetric steps in between get shorter, so that the two do not go round in a circle.
 constexpr int patience = 1;
+/// [-] A static step of which the line search takes less is begun again with held contacts.
+constexpr double shortest_common_step = 1e-3;
+/// [-] Held contacts keep this part of their hold from iteration to iteration, so that what they let go at a time is about twice what they have
+/// tried.
+constexpr double hold_decay = 0.5;
+/// [-] A smaller part of the springs holds nothing.
+constexpr double weakest_hold = 1e-4;
+/// [-] Residual, over the largest force, from which on contacts are held with all of their springs; below in proportion, so that the end is Newton's.
+constexpr double residual_of_full_hold = 1e-2;
+/// Each cut of a static step brings blocks nearer to free fall, where contacts carry nearly nothing and change their states most. So these iterations
+/// go on for longer than others: a slope of 10,000 blocks settles with 64 of them.
+constexpr int most_holding_iterations = 150;
+/// [-] Part of the largest force at the start of the step that may count as balanced. The forces of a trial that has run away, of which rounding and
+/// the tolerance are parts, would excuse any residual. Forces may grow by 1e9 in a step before the usual tolerance of 1e-12 comes here.
+constexpr double loosest_balance = 1e-3;
+constexpr double largest_force_growth = 1e9;  ///< [-] the same margin for a tolerance that the scene makes coarser
 
 /// Open at the end of the step, a contact may have carried a force on the way.
 bool carries(const ContactForces& f) {
@@ -76,6 +92,14 @@ void Newton<N>::prepare(const StepProblem<N>& problem, const std::vector<Contact
     blocks_.push_back({b, problem.external.has_point_forces(b), block.rotation_locked, block.radius, problem.inertia * block.mass,
                        problem.external.force(system, b, still), problem.drift(b), problem.external.magnitude(system, b, still),
                        problem.external.spring_scale(system, b)});
+  }
+  start_scale_ = 0.0;
+  for (const StepBlock& block : blocks_) {
+    start_scale_ = std::max({start_scale_, block.magnitude, Motion<N>::largest_force(block.inertia.cwiseProduct(block.drift), block.radius)});
+  }
+  for (std::size_t c = 0; c < contact_count_; ++c) {
+    const ContactSprings& s = springs[c];
+    start_scale_ = std::max({start_scale_, s.shift - s.normal * (s.gap - s.target), std::abs(s.initial_shear)});
   }
   trials_.resize(contacts_.size());
   paths_.resize(problem.averages_path() ? contact_count_ : 0);
@@ -166,12 +190,15 @@ void Newton<N>::evaluate(const Eigen::VectorXd& d) {
 template <int N>
 double Newton<N>::residual_norm() const {
   double worst = 0.0;
+  const double loosest = std::max(loosest_balance, largest_force_growth * problem_->method.residual_tolerance) * start_scale_;
   for (std::size_t i = 0; i < blocks_.size(); ++i) {
     const int at = static_cast<int>(i);
     const double tolerated = problem_->method.residual_tolerance * force_scale_ + rows_[i].sums[N];
     const double r = Motion<N>::largest_force(residual_.template segment<N>(N * at), blocks_[i].radius);
     if (!(r <= std::numeric_limits<double>::max())) return std::numeric_limits<double>::infinity();
-    if (r > 0.0) worst = std::max(worst, r / tolerated);
+    if (r == 0.0) continue;
+    if (tolerated > loosest) return std::numeric_limits<double>::infinity();
+    worst = std::max(worst, r / tolerated);
   }
   return worst;
 }
@@ -218,7 +245,7 @@ void Newton<N>::assemble(const Eigen::VectorXd& d, Tangent tangent) {
   BlockMatrix<N>& matrix = tangent_.matrix();
   matrix.set_zero();
   if (paths_.empty()) {
-    const BatchTangent asked{tangent == Tangent::exact, problem_->end_weight, problem_->statics ? static_slip_stiffness : 0.0};
+    const BatchTangent asked{tangent == Tangent::exact, problem_->end_weight, problem_->statics ? static_slip_stiffness : 0.0, !holds_.empty()};
     kernels_.add_stiffness(contacts_, trials_, branches_, asked, tangent_.slots(), matrix);
   } else {
     for (std::size_t c = 0; c < contact_count_; ++c) add_averaged_stiffness(c, tangent);
@@ -359,17 +386,56 @@ void Newton<N>::report_paths(StepSolution<N>& solution) const {
 }
 
 template <int N>
-void Newton<N>::solve(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs, StepSolution<N>& solution, FirstTangent first) {
-  prepare(problem, springs);
-  Eigen::VectorXd& d = solution.d;
-  if (problem.end_weight < 1.0) {
-    start_force_ = forces(problem, springs);
-    report_contacts(solution.start_contacts);
+void Newton<N>::hold_changed(double norm) {
+  const double residual = norm * problem_->method.residual_tolerance;
+  const double fullest = std::min(1.0, residual / residual_of_full_hold);
+  for (std::size_t c = 0; c < holds_.size(); ++c) {
+    double& hold = holds_[c];
+    hold = std::min(branches_[c] != branches_before_[c] ? 1.0 : hold_decay * hold, fullest);
+    if (hold < weakest_hold) hold = 0.0;
   }
-  evaluate(d);
-  double norm = residual_norm();
-  if (norm > 1.0 && first == FirstTangent::last_step) take_last_states();
+}
 
+template <int N>
+void Newton<N>::hold_contacts(bool friction_lags) {
+  for (std::size_t c = 0; c < contact_count_; ++c) {
+    if (holds_[c] == 0.0 || status(branches_[c]) == ContactStatus::sticking) continue;
+    const ContactBatch& contact = contacts_[c / batch_size];
+    TrialBatch& trial = trials_[c / batch_size];
+    const int k = lane(c);
+    trial.shear_by_slip[k] -= holds_[c] * contact.shear[k];
+    if (status(branches_[c]) == ContactStatus::open) trial.normal_by_gap[k] -= holds_[c] * contact.normal[k];
+    if (friction_lags) trial.shear_by_gap[k] = 0.0;
+  }
+}
+
+template <int N>
+typename Newton<N>::Outcome Newton<N>::iterate_holding(StepSolution<N>& solution, double& norm) {
+  Eigen::VectorXd& d = solution.d;
+  holds_.assign(contact_count_, 0.0);
+  Outcome outcome = Outcome::ended;
+  for (int iteration = 0; iteration < most_holding_iterations && norm > 1.0 && std::isfinite(norm); ++iteration) {
+    branches_before_ = branches_;
+    // With the coupling, loose blocks fall from one side to the other; without it, single contacts go round between open and sliding.
+    hold_contacts(iteration % 2 == 1);
+    const Eigen::VectorXd step = direction(d, Tangent::exact);
+    ++solution.iterations;
+    if (step.size() == 0) {
+      outcome = Outcome::singular;
+      break;
+    }
+    d += step;
+    evaluate(d);
+    norm = residual_norm();
+    hold_changed(norm);
+  }
+  holds_.clear();
+  return outcome;
+}
+
+template <int N>
+typename Newton<N>::Outcome Newton<N>::iterate(const StepProblem<N>& problem, StepSolution<N>& solution, double& norm) {
+  Eigen::VectorXd& d = solution.d;
   Tangent tangent = Tangent::exact;
   int refusals = 0;  // of the exact step since the residual was at its smallest
   double best = norm;
@@ -378,14 +444,12 @@ void Newton<N>::solve(const StepProblem<N>& problem, const std::vector<ContactSp
     branches_before_ = branches_;
     const Eigen::VectorXd step = direction(d, tangent);
     ++solution.iterations;
-    if (step.size() == 0) {
-      solution.reason = "singular matrix";
-      return;
-    }
+    if (step.size() == 0) return Outcome::singular;
     const double slope = residual_.dot(step);
     double alpha = 1.0;
     if (tangent == Tangent::symmetric && slope > 0.0) {
       alpha = line_search(d, step, slope) / static_cast<double>(std::max(1, refusals - patience));
+      if (problem.statics && alpha < shortest_common_step) return Outcome::no_common_step;
       if (refusals > patience + 1) evaluate(trial_ = d + alpha * step);
     } else {
       evaluate(trial_ = d + step);
@@ -412,7 +476,37 @@ void Newton<N>::solve(const StepProblem<N>& problem, const std::vector<ContactSp
     const bool exact_works = held || switches <= few || (tangent == Tangent::exact && halved);
     tangent = exact_works ? Tangent::exact : Tangent::symmetric;
   }
+  return Outcome::ended;
+}
+
+template <int N>
+double Newton<N>::begin(const Eigen::VectorXd& d, FirstTangent first) {
+  evaluate(d);
+  const double norm = residual_norm();
+  if (norm > 1.0 && first == FirstTangent::last_step) take_last_states();
+  return norm;
+}
+
+template <int N>
+void Newton<N>::solve(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs, StepSolution<N>& solution, FirstTangent first) {
+  prepare(problem, springs);
+  if (problem.end_weight < 1.0) {
+    start_force_ = forces(problem, springs);
+    report_contacts(solution.start_contacts);
+  }
+  const Eigen::VectorXd start = solution.d;
+  double norm = begin(start, first);
+  Outcome outcome = iterate(problem, solution, norm);
+  if (outcome == Outcome::no_common_step) {
+    solution.d = start;
+    norm = begin(start, first);
+    outcome = iterate_holding(solution, norm);
+  }
   solution.converged = norm <= 1.0;
+  if (outcome == Outcome::singular) {
+    solution.reason = "singular matrix";
+    return;
+  }
   if (!solution.converged) solution.reason = "Newton's method did not converge";
   report_contacts(solution.contacts);
   report_paths(solution);

@@ -3,6 +3,11 @@
 // Two tangents: the exact one, non-symmetric where contacts slide, with backtracking on the residual, and where that finds no descent a symmetric one
 // (sticking springs only) with an energy line search, which makes progress while many contacts still change state. Convergence means the residual
 // alone: the contact states are functions of the displacement.
+//
+// Where a static step has thousands of loose contacts, a few of them make any common length of the step uselessly short. It is then begun again with
+// another tangent and whole steps: contacts that have just opened or slid are held by their springs in it, and let go while they stay as they are,
+// each for itself. With all of them held the iteration is the one of initial stresses (O. C. Zienkiewicz, S. Valliappan and I. P. King, 1969), which
+// is slow and steady; with none it is Newton's. The residual knows nothing of this, and so neither does the solution.
 #pragma once
 
 #include "openclose/integrator/contact_batch.h"
@@ -40,6 +45,7 @@ class Newton {
 
  private:
   enum class Tangent { exact, symmetric };
+  enum class Outcome { ended, singular, no_common_step };
 
   struct StepBlock {
     int block = 0;
@@ -55,6 +61,16 @@ class Newton {
     ContactPose<N> pose;
   };
 
+  /// Evaluates at the displacement to start from and returns its residual_norm().
+  double begin(const Eigen::VectorXd& d, FirstTangent first);
+  /// Iterates from solution.d until norm, its residual_norm(), is 1 or less.
+  Outcome iterate(const StepProblem<N>& problem, StepSolution<N>& solution, double& norm);
+  /// The same by whole steps with tangents that hold contacts which have changed their state.
+  Outcome iterate_holding(StepSolution<N>& solution, double& norm);
+  /// The next linear solve holds contacts by holds_. With friction that lags it leaves out for them that friction follows the normal force.
+  void hold_contacts(bool friction_lags);
+  /// Adapts holds_ to what an iteration has changed.
+  void hold_changed(double norm);
   void prepare(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs);
   void evaluate(const Eigen::VectorXd& d);
   /// The same contact by contact, for schemes that average over the path.
@@ -76,7 +92,7 @@ class Newton {
   void take_last_states();
   /// Contact c carries these forces in the next linear solve.
   void replace_forces(std::size_t c, const ContactForces& forces);
-  double residual_norm() const;  ///< largest residual of a block over what is tolerated: converged at 1
+  double residual_norm() const;  ///< largest residual of a block over what is tolerated: converged at 1; infinite where that tells nothing
   void assemble(const Eigen::VectorXd& d, Tangent tangent);
   void add_averaged_stiffness(std::size_t c, Tangent tangent);
   Eigen::VectorXd direction(const Eigen::VectorXd& d, Tangent tangent);
@@ -98,14 +114,16 @@ class Newton {
   std::vector<StepBlock> blocks_;    ///< the free ones, by their equations
   std::vector<BlockMove<N>> moves_;  ///< of all blocks, at the trial displacement; a last one that stays
   std::vector<TrialBatch> trials_;
-  std::vector<PathTrial> paths_;  ///< empty for schemes that do not average
-  std::vector<Branch> branches_;  ///< of the contacts
+  std::vector<PathTrial> paths_;         ///< empty for schemes that do not average
+  std::vector<Branch> branches_;         ///< of the contacts
   std::vector<Branch> branches_before_;  ///< of the iteration
+  std::vector<double> holds_;            ///< [-] part of its springs that an open or sliding contact has in the tangent; else empty
   Eigen::VectorXd trial_;                ///< displacement
   std::vector<ForceRow> rows_;           ///< all forces at the trial position but inertia; a row more for the fixed blocks
   Eigen::VectorXd start_force_;          ///< the same at the start of the step, used if theta < 1
   Eigen::VectorXd residual_;
   double force_scale_ = 0.0;
+  double start_scale_ = 0.0;  ///< [N] largest single force at the start of the step, that of the inertia included
   TangentSystem<N> tangent_;
 };
 

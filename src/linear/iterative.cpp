@@ -14,7 +14,8 @@ namespace {
 /// [-] Times the root of the number of block rows: iterations that take as long as a factorisation row by row, whose work grows with the power 1.5 of
 /// that number (measured 0.31, 0.30 and 0.35 at 1,773, 4,568 and 9,745 rows). Beyond, the direct solver is quicker.
 constexpr double iterations_of_a_factorisation = 0.3;
-/// After a try in vain so many matrices are factored at once before the next, twice as many after each further one, up to the most.
+/// After a try in vain so many matrices are factored at once before the next, twice as many after each further one, up to the most. Half as many
+/// again after a success, and the first number after one at half the price.
 constexpr int first_pause = 1;
 constexpr int longest_pause = 64;
 
@@ -41,11 +42,11 @@ class IncompleteSolver : public LinearSolver<N> {
 
   Eigen::VectorXd solve(const Eigen::VectorXd& right_side, double reduction) override {
     if (!use_direct_) {
-      Refined result = refine(*matrix_, incomplete_, right_side, reduction, most_iterations());
+      Refined result = refine(*matrix_, incomplete_, right_side, start(right_side, reduction), reduction, most_iterations());
       own_.krylov_iterations += result.iterations;
       if (result.x) {
         ++own_.solves;
-        pause_ = std::max(first_pause, pause_ / 2);
+        pause_ = 2 * result.iterations <= most_iterations() ? first_pause : std::max(first_pause, pause_ / 2);
         count(true);
         return std::move(*result.x);
       }
@@ -64,6 +65,11 @@ class IncompleteSolver : public LinearSolver<N> {
 
  private:
   int most_iterations() const { return static_cast<int>(std::ceil(iterations_of_a_factorisation * std::sqrt(matrix_->rows()))); }
+
+  /// GMRES starts from nothing, or, to know what rounding leaves of the residual, from something of the size of the solution.
+  Eigen::VectorXd start(const Eigen::VectorXd& right_side, double reduction) const {
+    return reduction < above_rounding ? incomplete_.solve(right_side) : Eigen::VectorXd();
+  }
 
   bool give_up() {
     ++own_.krylov_given_up;

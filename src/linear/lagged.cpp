@@ -103,7 +103,7 @@ class LaggedSolver : public LinearSolver<N> {
 
   /// Nothing if the residual is not brought down.
   std::optional<Eigen::VectorXd> iterate(const Eigen::VectorXd& right_side, double reduction, int most_iterations) {
-    Refined result = refine(*matrix_, lu_, right_side, reduction, most_iterations);
+    Refined result = refine(*matrix_, lu_, right_side, lu_.solve(right_side), reduction, most_iterations);
     this->counters_.krylov_iterations += result.iterations;
     if (!exact_) spent_ += result.iterations;
     return std::move(result.x);

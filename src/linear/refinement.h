@@ -1,9 +1,11 @@
 // Solving with a factor that is not quite that of the matrix: GMRES with the factor as preconditioner, down to a stated residual.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "openclose/linear/block_matrix.h"
 #include "openclose/linear/krylov.h"
@@ -30,17 +32,25 @@ struct Refined {
   int iterations = 0;
 };
 
+/// [-] Rounding leaves less than this in a residual as long as the matrix is not singular to half of all digits.
+inline constexpr double above_rounding = 1e-8;
+
 /// \param factor     has solve(), about the inverse of the matrix
+/// \param x          what to start from; of size 0: nothing
 /// \param reduction  [-] of the Euclidean norm of the residual; rounding errors of the product of matrix and solution always pass
 template <int N, class Factor>
-Refined refine(const BlockMatrix<N>& matrix, const Factor& factor, const Eigen::VectorXd& right_side, double reduction, int most_iterations) {
-  const double size = right_side.norm();
-  Eigen::VectorXd x = factor.solve(right_side);
+Refined refine(const BlockMatrix<N>& matrix, const Factor& factor, const Eigen::VectorXd& right_side, Eigen::VectorXd x, double reduction,
+               int most_iterations) {
   if (!x.allFinite()) return {};
-  Eigen::VectorXd residual = right_side - matrix.multiply(x);
-  const double wanted = std::max(reduction * size, rounding_of_residual(matrix, x));
-  if (residual.norm() > size) {  // worse than nothing
-    x.setZero();
+  const double size = right_side.norm();
+  double wanted = reduction * size;
+  Eigen::VectorXd residual = right_side;
+  if (x.size() > 0) {
+    residual -= matrix.multiply(x);
+    if (reduction < above_rounding) wanted = std::max(wanted, rounding_of_residual(matrix, x));
+  }
+  if (x.size() == 0 || residual.norm() > size) {  // worse than nothing
+    x.setZero(right_side.size());
     residual = right_side;
   }
   const KrylovResult result = gmres([&](const Eigen::VectorXd& v) { return matrix.multiply(v); },

@@ -151,7 +151,12 @@ TEST_CASE("the stiffness of four contacts at a time is that of each", "[integrat
   const RandomContacts contacts(seed, count);
   const BatchKernels kernels(wide);
   const Evaluated all(contacts, kernels);
-  const BatchTangent tangent{exact, end_weight, exact ? 0.0 : GENERATE(0.0, 0.01)};
+  const BatchTangent tangent{exact, end_weight, exact ? 0.0 : GENERATE(0.0, 0.01), GENERATE(false, true)};
+  const double held = 5e8;  // [N/m] of open contacts, where they may have a stiffness
+  std::vector<TrialBatch> trials = all.trials;
+  for (std::size_t c = 0; c < count; ++c) {
+    if (tangent.holds_open && status(all.branches[c]) == ContactStatus::open) trials[c / batch_size].normal_by_gap[c % batch_size] = -held;
+  }
 
   std::vector<std::pair<int, int>> couplings;
   for (int i = 0; i < free_count; ++i) {
@@ -170,12 +175,15 @@ TEST_CASE("the stiffness of four contacts at a time is that of each", "[integrat
       slots[c].edge_vertex = matrix.find(b, a);
     }
   }
-  kernels.add_stiffness(all.batches, all.trials, all.branches, tangent, slots, matrix);
+  kernels.add_stiffness(all.batches, trials, all.branches, tangent, slots, matrix);
 
   for (std::size_t c = 0; c < count; ++c) {
     const ContactPose<3> pose(contacts.starts[c], contacts.moves[contacts.vertex_blocks[c]], contacts.moves[contacts.edge_blocks[c]]);
-    const ContactForces f = spring_slider(contacts.springs[c], contacts.strengths[c], pose.gap_change, pose.slip_change);
-    if (f.status == ContactStatus::open) continue;
+    ContactForces f = spring_slider(contacts.springs[c], contacts.strengths[c], pose.gap_change, pose.slip_change);
+    if (f.status == ContactStatus::open) {
+      if (!tangent.holds_open) continue;
+      f.normal_by_gap = -held;
+    }
     const double nn = -end_weight * f.normal_by_gap, tn = exact ? -end_weight * f.shear_by_gap : 0.0;
     double tt = -end_weight * f.shear_by_slip;
     if (f.status == ContactStatus::sliding && tangent.static_slip_stiffness > 0.0) tt = tangent.static_slip_stiffness * contacts.springs[c].shear;

@@ -103,6 +103,32 @@ TEST_CASE("how rigid contacts share forces does not depend on the stiffness", "[
   }
 }
 
+TEST_CASE("the slack of a rigid contact at rest is the gap that springs would leave", "[integrator][hard]") {
+  // A plank whose weight lies near the end of its support tilts on springs and parts from the other one.
+  Scene scene = test::empty_scene();
+  scene.blocks = {test::fixed_block("left", test::rectangle(0.0, -1.0, 1.0, 1.0)), test::fixed_block("right", test::rectangle(1.5, -1.0, 0.5, 1.0)),
+                  test::free_block("plank", test::rectangle(-2.2, 0.0, 4.6, 0.5))};
+  std::vector<std::vector<Contact>> contacts;
+  for (const std::string method : {"soft", "hard"}) {
+    scene.method.contact = method;
+    Simulation<3> simulation(scene);
+    REQUIRE(settle(simulation).settled);
+    contacts.push_back(simulation.contacts());
+  }
+  const auto &soft = contacts[0], &hard = contacts[1];
+  REQUIRE(soft.size() == hard.size());
+  int parted = 0;
+  for (std::size_t i = 0; i < soft.size(); ++i) {
+    CHECK(hard[i].status == soft[i].status);
+    if (soft[i].status != ContactStatus::open) continue;
+    ++parted;
+    CHECK(std::abs(hard[i].gap) < test::gap_tolerance);
+    // To the square of the tilt.
+    CHECK(hard[i].slack == Approx(soft[i].gap).epsilon(1e-3));
+  }
+  CHECK(parted == 2);
+}
+
 TEST_CASE("soft contacts close by what their stiffness says", "[integrator][soft]") {
   const Outcome a = outcome(settling(), "soft", 1.0), b = outcome(settling(), "soft", 0.5);
   const double closure = test::block_weight / (1e9 * test::block_edge);

@@ -158,6 +158,16 @@ TEST_CASE("the forces of a settled scene are in balance", "[integrator][newton]"
   CHECK(f.cwiseAbs().maxCoeff() > 0.5 * weight);
 }
 
+TEST_CASE("a displacement that has run away is no solution, however much its rounding excuses", "[integrator][newton]") {
+  Probe probe(test::column_of_blocks(3));
+  StepProblem<3> problem = probe.simulation.problem(1e6, true);  // so long that inertia is below the rounding of the springs
+  StepSolution<3> solution;
+  solution.d = Eigen::VectorXd::Zero(3 * problem.system.free_count());
+  for (int b : problem.system.free_blocks()) solution.d[3 * problem.system.block(b).equation] = 1e30;
+  probe.newton.solve(problem, probe.springs, solution, FirstTangent::present);
+  CHECK((!solution.converged || solution.d.cwiseAbs().maxCoeff() < 1.0));
+}
+
 TEST_CASE("Newton counts its linear solves and says why it gives up", "[integrator][newton]") {
   Scene scene = settled_scene(3);
   scene.method.max_iterations = 1;

@@ -1,0 +1,65 @@
+// What kernels do with four numbers at a time. For source files that are compiled without the warning about how vectors are passed (-Wno-psabi): all
+// of this is inlined.
+#pragma once
+
+#include <cstring>
+
+#include "openclose/core/tolerance.h"
+#include "openclose/integrator/lanes.h"
+
+namespace openclose::lanes {
+
+using Mask = decltype(Lanes{} < Lanes{});
+
+OPENCLOSE_KERNEL Lanes all(double x) {
+  return Lanes{x, x, x, x};
+}
+OPENCLOSE_KERNEL Lanes load(const double* from) {
+  Lanes x;
+  std::memcpy(&x, from, sizeof x);
+  return x;
+}
+OPENCLOSE_KERNEL void store(double* to, Lanes x) {
+  std::memcpy(to, &x, sizeof x);
+}
+OPENCLOSE_KERNEL Lanes magnitude(Lanes x) {
+  return x < 0.0 ? -x : x;
+}
+/// As std::max, std::min and std::clamp.
+OPENCLOSE_KERNEL Lanes larger(Lanes a, Lanes b) {
+  return a < b ? b : a;
+}
+OPENCLOSE_KERNEL Lanes smaller(Lanes a, Lanes b) {
+  return b < a ? b : a;
+}
+OPENCLOSE_KERNEL Lanes clamped(Lanes x, Lanes bound) {
+  return x < -bound ? -bound : (bound < x ? bound : x);
+}
+OPENCLOSE_KERNEL bool any(Mask m) {
+  return (m[0] | m[1] | m[2] | m[3]) != 0;
+}
+
+OPENCLOSE_KERNEL void transpose(Lanes& a, Lanes& b, Lanes& c, Lanes& d) {
+  const Lanes ab_even = __builtin_shufflevector(a, b, 0, 4, 2, 6), ab_odd = __builtin_shufflevector(a, b, 1, 5, 3, 7);
+  const Lanes cd_even = __builtin_shufflevector(c, d, 0, 4, 2, 6), cd_odd = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+  a = __builtin_shufflevector(ab_even, cd_even, 0, 1, 4, 5);
+  b = __builtin_shufflevector(ab_odd, cd_odd, 0, 1, 4, 5);
+  c = __builtin_shufflevector(ab_even, cd_even, 2, 3, 6, 7);
+  d = __builtin_shufflevector(ab_odd, cd_odd, 2, 3, 6, 7);
+}
+
+/// As openclose::is_open().
+OPENCLOSE_KERNEL Mask is_open(Lanes tension, Lanes elastic_normal) {
+  return tension > 0.0 ? elastic_normal < -tension : elastic_normal <= 0.0;
+}
+/// As ContactStrength::shear_bound().
+struct ShearBound {
+  Lanes steep, on_ramp, on_slope, value;
+  OPENCLOSE_KERNEL ShearBound(Lanes friction, Lanes cohesion, Lanes tension, Lanes normal)
+      : steep(friction + 1.0 / tolerance::cohesion_ramp),
+        on_ramp(steep * (normal + tension)),
+        on_slope(friction * normal + cohesion),
+        value(larger(Lanes{}, smaller(on_slope, on_ramp))) {}
+};
+
+}  // namespace openclose::lanes
