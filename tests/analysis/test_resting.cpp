@@ -80,10 +80,10 @@ TEST_CASE("what moves over blocks at rest moves as over others", "[analysis][res
       Follower run(scene);
       run.go(0.5);
       CHECK(run.resting() == (skips ? 9 : 0));
-      run.go(0.3);
+      run.go(0.5);
       const bool follows = method == "soft";  // with the others it hops by microns, or the column with it
       // By now it is on the first column, whose uppermost block is not left alone as long as it slides there.
-      for (int i = 0; i < 100; ++i) {
+      for (int i = 0; i < 80; ++i) {
         run.go(0.01);
         CHECK_FALSE(run.system().is_at_rest(slider));
         if (follows) CHECK_FALSE(run.system().is_at_rest(3));
