@@ -5,7 +5,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from measure import Bench, Trial
-from methods import DEM, HARD, SHI, SOFT_PATH_AVERAGE, SOFT_SHI, Method, Settings
+from methods import ADAPTIVE, DEM, HARD, SHI, SOFT_PATH_AVERAGE, SOFT_SHI, Method, Settings, resting
 from runs import Case
 from scaling import spacings
 from slopes import JointedSlope
@@ -26,19 +26,27 @@ LARGE = {"full": (2000,), "long": (2000, 10000)}
 LARGE_REFERENCE_STEP_S, LARGE_STEP_S = 5e-3, 2e-2
 
 
+DT_S = "step.dt_s"
+
+
 @dataclass(frozen=True)
 class Follower:
     method: Method
-    steps: tuple[float, ...]  # [s]
-    key: str = "step.dt_s"    # dem is refined by the fraction of its critical step
+    values: tuple[float, ...]  # of what refines its steps, those of quick runs first
+    key: str = DT_S            # or the part of dem's critical step, or the tolerance of adaptive ones
 
 
+STEPS_S = (0.02, 0.01, 0.05, 0.03, 0.005, 0.003)
+TOLERANCES_M = (1e-4, 3e-5, 1e-3, 1e-5)
+FRACTIONS = (0.9, 0.45, 0.225)
 FOLLOWERS = (
-    Follower(SOFT_SHI, (0.02, 0.01, 0.05, 0.03, 0.005, 0.003)),
-    Follower(SOFT_PATH_AVERAGE, (0.02, 0.01, 0.05, 0.03, 0.005, 0.003)),
-    Follower(HARD, (0.02, 0.01, 0.05, 0.03, 0.005, 0.003)),
+    *(Follower(method, STEPS_S) for method in (SOFT_SHI, SOFT_PATH_AVERAGE, HARD)),
+    *(Follower(method, TOLERANCES_M, "step.error_tolerance_m") for method in ADAPTIVE),
     Follower(SHI, (0.005, 0.01, 0.002)),
-    Follower(DEM, (0.9, 0.45, 0.225), "method.step_fraction"),
+    Follower(DEM, FRACTIONS, "method.step_fraction"),
+    *(Follower(resting(method), STEPS_S) for method in (SOFT_SHI, SOFT_PATH_AVERAGE, HARD)),
+    *(Follower(resting(method), TOLERANCES_M, "step.error_tolerance_m") for method in ADAPTIVE),
+    Follower(resting(DEM), FRACTIONS, "method.step_fraction"),
 )
 QUICK_FOLLOWER_STEPS = 2
 
@@ -52,7 +60,7 @@ class Arrival:
 
 
 def _case(method: Method, key: str, value: float, start: int = 0, name: str = "", more: Settings = ()) -> Case:
-    settings = [*method.settings, ("step.dt_s", 0.01), (key, value), ("run.strength_reduction_factor", FACTOR * (1 + PERTURBATION * start)),
+    settings = [*method.settings, (DT_S, 0.01), (key, value), ("run.strength_reduction_factor", FACTOR * (1 + PERTURBATION * start)),
                 ("output.every_s", 1.0), ("output.milestones_m", list(DISTANCES_M)), *more]
     return Case(f"failure-{method.name}-{value:g}-{start}{name}".replace(" ", "_"), "run", JointedSlope.POST_FAILURE, tuple(settings), LIMIT_S)
 
@@ -87,7 +95,7 @@ def run(bench: Bench) -> Findings | None:
     starts = range(QUICK_STARTS if bench.quick else STARTS)
     references = []
     for dt in QUICK_REFERENCE_STEPS_S if bench.quick else REFERENCE_STEPS_S:
-        cases = [_case(REFERENCE, "step.dt_s", dt, k) for k in starts]
+        cases = [_case(REFERENCE, DT_S, dt, k) for k in starts]
         for case in cases:
             bench.run(case)
         references.append((dt, _arrival(bench, cases)))
@@ -109,9 +117,9 @@ def run(bench: Bench) -> Findings | None:
 
         return Trial(STUDY, SCENE, follower.method.name, cases[0], "motion",
                      f"time at which the toe block has moved 10, 20, 30, 40 m, mean of {len(starts)} starts, largest of the four against "
-                     f"{REFERENCE.name} with {1e3 * finest:g} ms", error, value if follower.key == "step.dt_s" else None, tuple(cases))
+                     f"{REFERENCE.name} with {1e3 * finest:g} ms", error, value if follower.key == DT_S else None, tuple(cases))
 
-    bench.measure([trial(f, value) for f in FOLLOWERS for value in (f.steps[:QUICK_FOLLOWER_STEPS] if bench.quick else f.steps)])
+    bench.measure([trial(f, value) for f in FOLLOWERS for value in (f.values[:QUICK_FOLLOWER_STEPS] if bench.quick else f.values)])
     for blocks in LARGE.get(bench.mode, ()):
         _large(bench, blocks)
     return findings
@@ -123,7 +131,7 @@ def large_scene(blocks: int) -> str:
 
 def _large(bench: Bench, blocks: int) -> None:
     name, more = f"-of-{blocks}", spacings(blocks)
-    reference = _case(REFERENCE, "step.dt_s", LARGE_REFERENCE_STEP_S, 0, name, more)
+    reference = _case(REFERENCE, DT_S, LARGE_REFERENCE_STEP_S, 0, name, more)
     bench.run(reference)
     fine = _arrival(bench, [reference])
     if fine is None:
@@ -137,7 +145,8 @@ def _large(bench: Bench, blocks: int) -> None:
 
         return of
 
-    cases = [(m.name, _case(m, "step.dt_s", LARGE_STEP_S, 0, name, more)) for m in (SOFT_SHI, SOFT_PATH_AVERAGE, HARD, DEM)]
+    compared = (SOFT_SHI, SOFT_PATH_AVERAGE, HARD, DEM)
+    cases = [(m.name, _case(m, DT_S, LARGE_STEP_S, 0, name, more)) for m in (*compared, *(resting(m) for m in compared))]
     bench.measure([Trial(STUDY, large_scene(blocks), method, case, "motion", "time at which the toe block has moved 10, 20, 30, 40 m, largest of the "
                          f"four against {REFERENCE.name} with {1e3 * LARGE_REFERENCE_STEP_S:g} ms", error_against(case), LARGE_STEP_S)
                    for method, case in cases])

@@ -13,15 +13,16 @@ import statics
 import table_4
 from drawing import METHOD_COLOUR, METHOD_MARKER, save
 from measure import Bench, Row
+from methods import RESTING
 from winner import LARGEST_ERROR
 
 SMALLEST_ERROR = 1e-9  # smaller ones, rounding, are drawn there
 SMALLEST_SHOWN = 1e-4  # of a critical angle: finer than the brackets
 LEGEND_INCHES = 0.7  # below the panels
 COLOUR = {**METHOD_COLOUR, "soft shi": "#1f77b4", "soft theta 1/2": "#17becf", "soft generalized_alpha": "#e377c2", "soft tr_bdf2": "#bcbd22",
-          "soft path_average": "#8c564b", "soft path_average adaptive": "#ff7f0e", "soft, 10 ms": "#8c564b"}
+          "soft path_average": "#8c564b", "soft path_average adaptive": "#ff7f0e", "soft shi adaptive": "#000080", "soft, 10 ms": "#8c564b"}
 MARKER = {**METHOD_MARKER, "soft shi": "o", "soft theta 1/2": "P", "soft generalized_alpha": "X", "soft tr_bdf2": "v", "soft path_average": "*",
-          "soft path_average adaptive": "<"}
+          "soft path_average adaptive": "<", "soft shi adaptive": ">"}
 
 
 def _methods(rows: list[Row]) -> list[str]:
@@ -31,8 +32,9 @@ def _methods(rows: list[Row]) -> list[str]:
 def _spread(axes: plt.Axes, rows: list[Row], x: Callable[[Row], float], y: Callable[[Row], float], method: str) -> None:
     low = [y(r) * (1 - r.cpu_min_s / r.cpu_s) if r.cpu_s else 0.0 for r in rows]
     high = [y(r) * (r.cpu_max_s / r.cpu_s - 1) if r.cpu_s else 0.0 for r in rows]
-    axes.errorbar([x(r) for r in rows], [y(r) for r in rows], yerr=[low, high], color=COLOUR.get(method), marker=MARKER.get(method, "o"),
-                  markersize=5, linewidth=1.1, capsize=2, label=method)
+    plain = method.removesuffix(RESTING)
+    axes.errorbar([x(r) for r in rows], [y(r) for r in rows], yerr=[low, high], color=COLOUR.get(plain), marker=MARKER.get(plain, "o"), markersize=5,
+                  linewidth=1.1, linestyle="-" if plain == method else ":", capsize=2, label=method)
 
 
 def _work_precision(axes: plt.Axes, rows: list[Row], title: str) -> None:

@@ -1,6 +1,6 @@
 """The ways to solve a scene that are compared, each a name and its settings."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 Settings = tuple[tuple[str, object], ...]
 
@@ -26,11 +26,19 @@ INTEGRATORS = (
     Method("soft tr_bdf2", _soft("tr_bdf2")),
     SOFT_PATH_AVERAGE,
 )
-ADAPTIVE = Method("soft path_average adaptive", (*SOFT_PATH_AVERAGE.settings, ("step.adaptive", "true")), adaptive=True)
+ADAPTIVE = tuple(Method(f"{method.name} adaptive", (*method.settings, ("step.adaptive", "true")), adaptive=True)
+                 for method in (SOFT_SHI, SOFT_PATH_AVERAGE))
 SOFT = Method("soft", (("method.contact", "soft"),))
 HARD = Method("hard", (("method.contact", "hard"),), rigid=True)
 SHI = Method("shi", (("method.contact", "shi"),))
 DEM = Method("dem", (("method.contact", "dem"),))
+
+RESTING = ", resting"
+
+
+def resting(method: Method) -> Method:
+    """The same with blocks at rest left alone."""
+    return replace(method, name=method.name + RESTING, settings=(*method.settings, ("method.skip_resting", "true")))
 
 
 def on_joint_springs(stiffness_pa_per_m: float) -> Method:
