@@ -5,12 +5,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from measure import Bench, Trial
-from methods import ADAPTIVE, DEM, HARD, SHI, SOFT_PATH_AVERAGE, SOFT_SHI, Method, Settings, resting
+from methods import ADAPTIVE, DEM, HARD, SHI, SOFT_PATH_AVERAGE, SOFT_SHI, Method, Settings
 from runs import Case
 from scaling import spacings
 from slopes import JointedSlope
 
 STUDY, SCENE = "failure", "3.4 in failure"
+# The same with blocks at rest left alone.
+RESTING_SCENE, RESTING = "3.4 in failure, blocks at rest left alone", (("method.skip_resting", "true"),)
 DISTANCES_M = (10.0, 20.0, 30.0, 40.0)
 LIMIT_S = 250
 # The strength is divided by the scene's factor times 1 + k of this, for a number of starts: what these differ by tells how much one run says.
@@ -23,8 +25,7 @@ REFERENCE_STEPS_S = (2e-3, 1e-3)
 QUICK_REFERENCE_STEPS_S = (4e-3, 2e-3)
 # More blocks: one start, and a reference that is as fine as time allows.
 LARGE = {"full": (2000,), "long": (2000, 10000)}
-LARGE_REFERENCE_STEP_S, LARGE_STEP_S = 5e-3, 2e-2
-
+LARGE_REFERENCE_STEP_S = 5e-3
 
 DT_S = "step.dt_s"
 
@@ -44,11 +45,13 @@ FOLLOWERS = (
     *(Follower(method, TOLERANCES_M, "step.error_tolerance_m") for method in ADAPTIVE),
     Follower(SHI, (0.005, 0.01, 0.002)),
     Follower(DEM, FRACTIONS, "method.step_fraction"),
-    *(Follower(resting(method), STEPS_S) for method in (SOFT_SHI, SOFT_PATH_AVERAGE, HARD)),
-    *(Follower(resting(method), TOLERANCES_M, "step.error_tolerance_m") for method in ADAPTIVE),
-    Follower(resting(DEM), FRACTIONS, "method.step_fraction"),
 )
 QUICK_FOLLOWER_STEPS = 2
+LARGE_FOLLOWERS = (
+    *(Follower(method, (0.02,)) for method in (SOFT_SHI, SOFT_PATH_AVERAGE, HARD)),
+    Follower(ADAPTIVE[0], (1e-4, 3e-5), "step.error_tolerance_m"),
+    Follower(DEM, (0.9,), "method.step_fraction"),
+)
 
 
 @dataclass(frozen=True)
@@ -105,28 +108,30 @@ def run(bench: Bench) -> Findings | None:
         return None
     findings = Findings(fine, _distance(coarse, fine), {})
 
-    def trial(follower: Follower, value: float) -> Trial:
-        cases = [_case(follower.method, follower.key, value, k) for k in starts]
+    def trial(follower: Follower, value: float, scene: str = SCENE, name: str = "", more: Settings = ()) -> Trial:
+        cases = [_case(follower.method, follower.key, value, k, name, more) for k in starts]
 
         def error(_: Case) -> float | None:
             arrival = _arrival(bench, cases)
             if arrival is None:
                 return None
-            findings.arrivals[follower.method.name, value] = arrival
+            if scene == SCENE:
+                findings.arrivals[follower.method.name, value] = arrival
             return _distance(arrival, fine)
 
-        return Trial(STUDY, SCENE, follower.method.name, cases[0], "motion",
+        return Trial(STUDY, scene, follower.method.name, cases[0], "motion",
                      f"time at which the toe block has moved 10, 20, 30, 40 m, mean of {len(starts)} starts, largest of the four against "
                      f"{REFERENCE.name} with {1e3 * finest:g} ms", error, value if follower.key == DT_S else None, tuple(cases))
 
-    bench.measure([trial(f, value) for f in FOLLOWERS for value in (f.values[:QUICK_FOLLOWER_STEPS] if bench.quick else f.values)])
+    judged = [(f, value) for f in FOLLOWERS for value in (f.values[:QUICK_FOLLOWER_STEPS] if bench.quick else f.values)]
+    bench.measure([trial(*run) for run in judged] + [trial(*run, RESTING_SCENE, "-resting", RESTING) for run in judged])
     for blocks in LARGE.get(bench.mode, ()):
         _large(bench, blocks)
     return findings
 
 
 def large_scene(blocks: int) -> str:
-    return f"{SCENE}, {blocks:,} blocks"
+    return f"{RESTING_SCENE}, {blocks:,} blocks"
 
 
 def _large(bench: Bench, blocks: int) -> None:
@@ -145,8 +150,11 @@ def _large(bench: Bench, blocks: int) -> None:
 
         return of
 
-    compared = (SOFT_SHI, SOFT_PATH_AVERAGE, HARD, DEM)
-    cases = [(m.name, _case(m, DT_S, LARGE_STEP_S, 0, name, more)) for m in (*compared, *(resting(m) for m in compared))]
-    bench.measure([Trial(STUDY, large_scene(blocks), method, case, "motion", "time at which the toe block has moved 10, 20, 30, 40 m, largest of the "
-                         f"four against {REFERENCE.name} with {1e3 * LARGE_REFERENCE_STEP_S:g} ms", error_against(case), LARGE_STEP_S)
-                   for method, case in cases])
+    trials = []
+    for follower in LARGE_FOLLOWERS:
+        for value in follower.values:
+            case = _case(follower.method, follower.key, value, 0, name, (*more, *RESTING))
+            trials.append(Trial(STUDY, large_scene(blocks), follower.method.name, case, "motion", "time at which the toe block has moved 10, 20, 30, "
+                                f"40 m, largest of the four against {REFERENCE.name} with {1e3 * LARGE_REFERENCE_STEP_S:g} ms and no block left alone",
+                                error_against(case), value if follower.key == DT_S else None))
+    bench.measure(trials)

@@ -13,7 +13,6 @@ import statics
 import table_4
 from drawing import METHOD_COLOUR, METHOD_MARKER, save
 from measure import Bench, Row
-from methods import RESTING
 from winner import LARGEST_ERROR
 
 SMALLEST_ERROR = 1e-9  # smaller ones, rounding, are drawn there
@@ -32,9 +31,8 @@ def _methods(rows: list[Row]) -> list[str]:
 def _spread(axes: plt.Axes, rows: list[Row], x: Callable[[Row], float], y: Callable[[Row], float], method: str) -> None:
     low = [y(r) * (1 - r.cpu_min_s / r.cpu_s) if r.cpu_s else 0.0 for r in rows]
     high = [y(r) * (r.cpu_max_s / r.cpu_s - 1) if r.cpu_s else 0.0 for r in rows]
-    plain = method.removesuffix(RESTING)
-    axes.errorbar([x(r) for r in rows], [y(r) for r in rows], yerr=[low, high], color=COLOUR.get(plain), marker=MARKER.get(plain, "o"), markersize=5,
-                  linewidth=1.1, linestyle="-" if plain == method else ":", capsize=2, label=method)
+    axes.errorbar([x(r) for r in rows], [y(r) for r in rows], yerr=[low, high], color=COLOUR.get(method), marker=MARKER.get(method, "o"),
+                  markersize=5, linewidth=1.1, capsize=2, label=method)
 
 
 def _work_precision(axes: plt.Axes, rows: list[Row], title: str) -> None:

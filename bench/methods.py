@@ -1,6 +1,6 @@
 """The ways to solve a scene that are compared, each a name and its settings."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 Settings = tuple[tuple[str, object], ...]
 
@@ -32,13 +32,6 @@ SOFT = Method("soft", (("method.contact", "soft"),))
 HARD = Method("hard", (("method.contact", "hard"),), rigid=True)
 SHI = Method("shi", (("method.contact", "shi"),))
 DEM = Method("dem", (("method.contact", "dem"),))
-
-RESTING = ", resting"
-
-
-def resting(method: Method) -> Method:
-    """The same with blocks at rest left alone."""
-    return replace(method, name=method.name + RESTING, settings=(*method.settings, ("method.skip_resting", "true")))
 
 
 def on_joint_springs(stiffness_pa_per_m: float) -> Method:

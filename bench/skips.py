@@ -10,12 +10,13 @@ END_S, LIMIT_S = 4.0, 100
 STEP_S = {"soft": 0.01, "hard": 0.01, "shi": 0.001, "dem": 0.01}
 QUICK_END_S = 1.0
 ALL = "all skips on"
+SWITCHED_ON = ("skip_resting",)  # that a scene has to ask for
 
 
 def _case(bench: Bench, method: Method, off: tuple[str, ...]) -> Case:
     end = QUICK_END_S if bench.quick else END_S
     settings = (*method.settings, ("step.dt_s", STEP_S[method.name]), ("end.time_s", end), ("output.every_s", end), ("output.milestones_m", []),
-                *((f"method.{key}", "false") for key in off))
+                *((f"method.{key}", "false" if key in off else "true") for key in dict.fromkeys((*SWITCHED_ON, *off))))
     return Case(f"skips-{method.name}-{'-'.join(off) or 'on'}", "run", JointedSlope.POST_FAILURE, settings, LIMIT_S)
 
 

@@ -7,7 +7,6 @@ import peers
 import scaling
 import statics
 from measure import Bench, Row
-from methods import DEM, resting
 from winner import LARGEST_ERROR, fastest, may_win
 
 LARGEST_PENETRATION_M = 1e-6
@@ -38,8 +37,7 @@ def _at_most(what: str, value: float | None, asked: float, unit: str = "", note:
 
 
 def _note(implicit: Row, explicit: Row) -> str:
-    return (f" ({implicit.method} {1e3 * implicit.cpu_s:.3g} ms, error {implicit.error:.1g}; {explicit.method} {1e3 * explicit.cpu_s:.3g} ms, "
-            f"{explicit.error:.1g})")
+    return f" ({implicit.method} {1e3 * implicit.cpu_s:.3g} ms, error {implicit.error:.1g}; dem {1e3 * explicit.cpu_s:.3g} ms, {explicit.error:.1g})"
 
 
 def _against_dem(bench: Bench, study: str, scene: str, what: str, asked: float) -> Target:
@@ -60,11 +58,10 @@ def _failure(bench: Bench, scene: str, what: str, floor: float) -> Target:
     """At equal error: the fastest run of dem that may win, over the fastest implicit one with no larger error. Errors below `floor`, what the
     reference is sure of, are equal."""
     rows = bench.of(failure.STUDY, scene)
-    explicit_methods = (DEM.name, resting(DEM).name)
-    explicit = fastest([r for r in rows if r.method in explicit_methods])
+    explicit = _of(rows, "dem")
     if explicit is None:
         return _at_least(what, None, 1.0)
-    implicit = fastest([r for r in rows if r.method not in explicit_methods], max(explicit.error, floor))
+    implicit = fastest([r for r in rows if r.method != "dem"], max(explicit.error, floor))
     if implicit is None:
         return Target(what, ">= 1 x", f"no implicit run has dem's error, {explicit.error:.1g}", False)
     return _at_least(what, explicit.cpu_s / implicit.cpu_s, 1.0, _note(implicit, explicit))
@@ -73,6 +70,7 @@ def _failure(bench: Bench, scene: str, what: str, floor: float) -> Target:
 def _failures(bench: Bench, findings: failure.Findings | None) -> list[Target]:
     floor = findings.converged if findings else 0.0
     found = [_failure(bench, failure.SCENE, "40 m after failure at equal error, 482 blocks: dem over implicit", floor)]
+    found.append(_failure(bench, failure.RESTING_SCENE, "the same with blocks at rest left alone", floor))
     return found + [_failure(bench, failure.large_scene(n), f"the same, {n:,} blocks", floor) for n in failure.LARGE["long"]]
 
 

@@ -97,6 +97,7 @@ RunResult prepare_start(Simulation<N>& simulation, const SettleProgress& progres
   simulation.contacts();
   simulation.restart_clock();
   simulation.start_base_motion();
+  simulation.allow_resting();
   result.cpu_of_start = process_cpu_time() - begin;
   return result;
 }

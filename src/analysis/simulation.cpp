@@ -44,6 +44,7 @@ Simulation<N>::Simulation(const Scene& scene, std::unique_ptr<Enforcement<N>> en
       // Two vertices may approach each other by the largest displacement each.
       detector_(2.0 * scene.step.max_displacement, {scene.method.skip_search, scene.method.skip_narrow_phase && enforcement_->follows_gaps(), scene.method.skip_looks}),
       output_velocity_(system_.state().velocity),
+      resting_(scene.rest, system_),
       start_kinetic_energy_(system_.kinetic_energy()),
       control_(scene.step.error_tolerance) {
   if (scene.step.adaptive && !enforcement_->takes_adaptive_steps())
@@ -60,7 +61,7 @@ void Simulation<N>::collect() const {
   loop_->store_far_gaps(system_, contacts_);
   max_penetration_ = std::max(max_penetration_, loop_->max_penetration());
   const ExplicitEnergies e = loop_->take_energies();
-  const double stored = stored_contact_energy();
+  const double stored = moving_contact_energy();
   ledger_.contact_springs += stored - collected_contact_energy_;
   collected_contact_energy_ = stored;
   ledger_.gravity += e.gravity;
@@ -77,9 +78,87 @@ void Simulation<N>::collect() const {
 }
 
 template <int N>
-void Simulation<N>::take_back() {
+void Simulation<N>::unload_loop() {
   collect();
   loop_is_loaded_ = false;
+}
+
+template <int N>
+void Simulation<N>::take_back() {
+  unload_loop();
+  wake(std::vector<int>(system_.resting_blocks()));
+}
+
+template <int N>
+void Simulation<N>::rest_after(double dt) {
+  if (!may_rest_) return;
+  if (external_.base_acceleration().isZero(0.0)) {
+    resting_.follow(system_, output_velocity_, dt);
+  } else {
+    resting_.disturb(system_);
+  }
+  const std::vector<int> quiet = resting_.quiet_blocks(system_, contacts_);
+  if (quiet.empty()) return;
+  unload_loop();
+  const double before = system_.kinetic_energy();
+  system_.put_to_rest(quiet);
+  const double dropped = before - system_.kinetic_energy();
+  ledger_.scheme += dropped;
+  ledger_.kinetic -= dropped;
+  for (const int b : quiet) {
+    output_velocity_[b].setZero();
+    scheme_->forget(b);
+  }
+  resting_.keep_forces(system_, quiet, contacts_, detector_.resting_contacts());
+  step_counters_.put_to_rest += static_cast<long>(quiet.size());
+  divide();
+}
+
+template <int N>
+void Simulation<N>::wake(const std::vector<int>& blocks) {
+  if (blocks.empty()) return;
+  unload_loop();
+  system_.wake(blocks);
+  contacts_current_ = false;
+  divide();
+}
+
+template <int N>
+void Simulation<N>::divide() {
+  detector_.divide(system_, contacts_);
+  resting_.divide(system_, detector_.resting_contacts());
+}
+
+template <int N>
+bool Simulation<N>::wake_in_haste(const StepSolution<N>& solution, double dt) {
+  if (system_.resting_blocks().empty()) return false;
+  std::vector<Unknowns>& pushes = resting_.pushes(system_);
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    const int a = contacts_[i].vertex_block, b = contacts_[i].edge_block;
+    const ContactOutcome<N>& o = solution.contacts[i];
+    if (o.forces.status == ContactStatus::open || !(system_.is_at_rest(a) || system_.is_at_rest(b))) continue;
+    const Vec2 force = o.forces.normal * o.pose.normal + o.forces.shear * o.pose.tangent();
+    if (system_.is_at_rest(a)) pushes[system_.rest_number(a)] += Motion<N>::gradient(o.pose.vertex_arm, force);
+    if (system_.is_at_rest(b)) pushes[system_.rest_number(b)] -= Motion<N>::gradient(o.pose.edge_arm, force);
+  }
+  resting_.judge(system_, dt);
+  return wake_by_forces(Resting<N>::Urgency::in_haste);
+}
+
+template <int N>
+bool Simulation<N>::wake_by_forces(typename Resting<N>::Urgency urgency) {
+  if (system_.resting_blocks().empty()) return false;
+  const std::vector<int> woken = resting_.woken(system_, contacts_, detector_.resting_contacts(), urgency);
+  if (urgency == Resting<N>::Urgency::any) resting_.accept(system_);
+  step_counters_.woken += static_cast<long>(woken.size());
+  wake(woken);
+  return !woken.empty();
+}
+
+template <int N>
+void Simulation<N>::count_moves() {
+  step_counters_.block_steps += system_.free_count();
+  step_counters_.block_steps_skipped += static_cast<long>(system_.resting_blocks().size());
 }
 
 template <int N>
@@ -133,6 +212,13 @@ void Simulation<N>::positions_changed() {
 
 template <int N>
 double Simulation<N>::stored_contact_energy() const {
+  double energy = moving_contact_energy();
+  for (const Contact& c : detector_.resting_contacts()) energy += c.stored_energy;
+  return energy;
+}
+
+template <int N>
+double Simulation<N>::moving_contact_energy() const {
   collect();
   double energy = 0.0;
   for (const Contact& c : contacts_) energy += c.stored_energy;
@@ -154,7 +240,7 @@ template <int N>
 void Simulation<N>::detect() {
   const Stopwatch watch(stage_times_.detection);
   const bool elastic = enforcement_->has_elastic_contacts();
-  const double before = elastic ? stored_contact_energy() : 0.0;
+  const double before = elastic ? moving_contact_energy() : 0.0;
   contacts_current_ = true;
   if (!detector_.update(system_, joints_, contacts_) || !elastic) return;
   const StepProblem<N> p = present_problem(scene_.step.dt, false);
@@ -164,7 +250,7 @@ void Simulation<N>::detect() {
   for (Contact& c : contacts_) {
     if (!c.bonded && c.normal_force < 0.0) store_energy(p, c);  // it lost its strength while it was pulling
   }
-  const double change = stored_contact_energy() - before;
+  const double change = moving_contact_energy() - before;
   ledger_.redefinition -= change;
   ledger_.contact_springs += change;
 }
@@ -179,6 +265,12 @@ void Simulation<N>::store_energy(const StepProblem<N>& problem, Contact& contact
 template <int N>
 std::vector<Contact>& Simulation<N>::contacts() {
   take_back();
+  return moving_contacts();
+}
+
+template <int N>
+std::vector<Contact>& Simulation<N>::moving_contacts() {
+  unload_loop();
   if (!contacts_current_) detect();
   return contacts_;
 }
@@ -191,12 +283,13 @@ void Simulation<N>::move_base(double dt, bool statics) {
   } else {
     external_.hold_base();
   }
+  if (!external_.base_acceleration().isZero(0.0)) wake(std::vector<int>(system_.resting_blocks()));
 }
 
 template <int N>
 StepProblem<N> Simulation<N>::problem(double dt, bool statics) {
-  contacts();
   move_base(dt, statics);
+  moving_contacts();
   return present_problem(dt, statics);
 }
 
@@ -299,6 +392,7 @@ StepResult Simulation<N>::step(double dt, bool statics) {
     return taken;
   }
   StepResult result;
+  if (statics) take_back();
   const StepProblem<N> p = problem(dt, statics);
   StepSolution<N> solution;
   {
@@ -306,6 +400,10 @@ StepResult Simulation<N>::step(double dt, bool statics) {
     solution = enforcement_->solve(p);
   }
   step_counters_.iterations += solution.iterations;
+  if (solution.converged && wake_in_haste(solution, dt)) {
+    ++step_counters_.repeated_to_wake;
+    return step(dt, statics);
+  }
   if (solution.converged) result.moved = largest_move(solution);
   const bool too_far = result.moved > scene_.step.max_displacement;
   if (solution.converged && !too_far && !statics && scene_.step.adaptive) {
@@ -329,6 +427,7 @@ StepResult Simulation<N>::step(double dt, bool statics) {
   result.lost_strength = loses_strength(solution);
   accept(p, solution);
   result.accepted = true;
+  wake_by_forces(Resting<N>::Urgency::any);
   return result;
 }
 
@@ -375,6 +474,7 @@ void Simulation<N>::accept(const StepProblem<N>& problem, const StepSolution<N>&
   ledger_.kinetic = system_.kinetic_energy() - start_kinetic_energy_;
   time_ += problem.dt;
   ++step_counters_.steps;
+  count_moves();
   // Where multipliers have just failed, the next step need not fail again before it may be compliant: cuts would outrun the growth of the step.
   if (solution.compliant) ++step_counters_.compliant;
   if (solution.dissipative) ++step_counters_.dissipative;
@@ -405,9 +505,9 @@ template <int N>
 void Simulation<N>::load_loop() {
   if (loop_is_loaded_ && contacts_current_) return;
   if (!loop_is_loaded_ || !renew_loop()) {
-    const StepProblem<N> p = problem(scene_.step.dt, false);
-    loop_->load(p);
-    collected_contact_energy_ = stored_contact_energy();
+    moving_contacts();
+    loop_->load(present_problem(scene_.step.dt, false));
+    collected_contact_energy_ = moving_contact_energy();
     loop_is_loaded_ = true;
     ++step_counters_.loads;
   }
@@ -454,10 +554,10 @@ double Simulation<N>::longest_stable_step(MassDamping damping) {
 
 template <int N>
 StepResult Simulation<N>::explicit_step(double h, MassDamping damping) {
+  move_base(h, false);
   load_loop();
   StepResult result;
   const double span = 1.0 / (h * scheme_->inertia(h));
-  move_base(h, false);
   if (!loop_->move(h, span, external_.base_acceleration(), scene_.step.max_displacement, damping, scene_.method.local_damping)) {
     result.reason = "a block moved farther in one step than step.max_displacement_m";
     ++step_counters_.cuts;
@@ -473,6 +573,12 @@ StepResult Simulation<N>::explicit_step(double h, MassDamping damping) {
   result.unbalanced_force = loop_->last_unbalanced_force();
   result.lost_strength = loop_->lost_strength();
   if (loop_->moved_beyond_skin()) contacts_current_ = false;
+  count_moves();
+  if (!system_.resting_blocks().empty()) {
+    loop_->rest_forces(resting_.pushes(system_));
+    resting_.judge(system_, h);
+    wake_by_forces(Resting<N>::Urgency::any);
+  }
   return result;
 }
 
@@ -522,6 +628,7 @@ bool Simulation<N>::advance_explicitly(double dt) {
     }
   }
   collect();
+  rest_after(dt);
   return remaining == 0.0;
 }
 
@@ -560,6 +667,7 @@ bool Simulation<N>::advance(double dt) {
       return false;
     }
   }
+  rest_after(dt);
   return true;
 }
 
@@ -622,7 +730,7 @@ void Simulation<N>::restore(const Snapshot& snapshot) {
 
 template <int N>
 void Simulation<N>::exchange(Archive& archive) {
-  archive(system_, external_, joints_, base_moves_, keep_bonds_, detector_, contacts_, contacts_current_, output_velocity_, time_, reason_, ledger_,
+  archive(system_, resting_, may_rest_, external_, joints_, base_moves_, keep_bonds_, detector_, contacts_, contacts_current_, output_velocity_, time_, reason_, ledger_,
           start_kinetic_energy_, collected_contact_energy_, max_penetration_, step_counters_, failed_attempts_, last_speed_, control_);
   scheme_->exchange(archive);
   enforcement_->exchange(archive);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "openclose/analysis/energy_ledger.h"
+#include "openclose/analysis/resting.h"
 #include "openclose/analysis/step_control.h"
 #include "openclose/contact/detection.h"
 #include "openclose/integrator/central_difference.h"
@@ -22,12 +23,17 @@ struct StepCounters {
   long dissipative = 0;                 ///< steps of path_average that found a solution only with dissipation
   long loads = 0;                       ///< times the explicit loop took over the state anew
   long loads_skipped = 0;               ///< times it took over only contacts that were found anew
+  long block_steps = 0;                 ///< moves of a block in all steps
+  long block_steps_skipped = 0;         ///< not made because the block was at rest
+  long put_to_rest = 0;                 ///< blocks that were put to rest
+  long woken = 0;                       ///< blocks that were woken
+  long repeated_to_wake = 0;            ///< steps that were done again because they woke blocks
   double smallest_critical_step = 0.0;  ///< [s] of explicit steps, 0 if there were none
   double longest_step = 0.0;            ///< [s] of explicit steps
 
   void exchange(Archive& archive) {
-    auto& [a, b, c, d, e, f, g, h, i, j] = *this;
-    archive(a, b, c, d, e, f, g, h, i, j);
+    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o] = *this;
+    archive(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o);
   }
 };
 
@@ -108,6 +114,9 @@ class Simulation {
   void come_to_rest();
   /// From now on the base moves as the scene says, counted from time 0. Static steps know nothing of it.
   void start_base_motion() { base_moves_ = true; }
+  /// From now on blocks may be put to rest, if the scene wants it, until somebody else changes something: who asks for a reference to blocks, joints or
+  /// contacts that is no constant, or changes velocities, wakes all blocks.
+  void allow_resting() { may_rest_ = scene_.method.skip_resting && !scene_.method.statics; }
   /// Declares the present moment the start: time 0, ledger empty. Positions, contacts and velocities stay.
   void restart_clock();
   /// Gives block b this velocity at time(); to be followed by restart_clock().
@@ -151,8 +160,21 @@ class Simulation {
   void store_energy(const StepProblem<N>& problem, Contact& contact) const;
   /// Takes back what the loop has done since; it goes on from its own arrays.
   void collect() const;
-  /// The same, and the loop takes over anew before its next step, because the caller may change what it works on.
+  /// The same, and the loop takes over anew before its next step.
+  void unload_loop();
+  /// The same, and no block is at rest any more, because the caller may change what the steps work on.
   void take_back();
+  /// Of the blocks that move.
+  std::vector<Contact>& moving_contacts();
+  double moving_contact_energy() const;
+  /// Follows how quiet the blocks are and puts some to rest.
+  void rest_after(double dt);
+  void wake(const std::vector<int>& blocks);
+  /// Judges what a step of dt does to the blocks at rest; true if some have been woken and it is to be done again.
+  bool wake_in_haste(const StepSolution<N>& solution, double dt);
+  bool wake_by_forces(typename Resting<N>::Urgency urgency);
+  void divide();
+  void count_moves();
 
   Scene scene_;
   // While the explicit loop runs it holds the state; what stands here is brought up to date by whoever asks for it.
@@ -168,6 +190,8 @@ class Simulation {
   std::unique_ptr<CentralDifference<N>> loop_;  ///< null for implicit methods
   mutable bool loop_is_ahead_ = false;          ///< of system_ and contacts_
   bool loop_is_loaded_ = false;
+  Resting<N> resting_;
+  bool may_rest_ = false;
   bool base_moves_ = false;
   bool keep_bonds_ = false;
   double time_ = 0.0;

@@ -95,23 +95,26 @@ class Detector<N>::Shapes {
 template <int N>
 class Detector<N>::ContactIndex {
  public:
-  void begin(const BlockSystem<N>& system, const std::vector<Contact>& contacts) {
+  void begin(const BlockSystem<N>& system, const std::vector<Contact>& contacts, const std::vector<Contact>& resting) {
     system_ = &system;
     contacts_ = &contacts;
-    first_.assign(system.state().arm.size(), -1);
-    entries_.clear();
+    if (!knows_resting_) {
+      first_.assign(system.state().arm.size(), -1);
+      entries_.clear();
+      for (const Contact& c : resting) add(c);
+      resting_first_ = first_;
+      resting_entries_ = entries_.size();
+      knows_resting_ = true;
+    }
+    first_ = resting_first_;
+    entries_.resize(resting_entries_);
   }
   /// The contacts of one pair of blocks, in ascending order.
   void add(const Range& range) {
-    for (int i = range.begin; i < range.end; ++i) {
-      const Contact& c = (*contacts_)[i];
-      if (c.status == ContactStatus::open) continue;
-      for (const int corner : {c.vertex, c.edge, system_->next(c.edge)}) {
-        entries_.push_back({i, first_[corner]});
-        first_[corner] = static_cast<int>(entries_.size()) - 1;
-      }
-    }
+    for (int i = range.begin; i < range.end; ++i) add((*contacts_)[i]);
   }
+  /// Other contacts are at rest than before.
+  void forget_resting() { knows_resting_ = false; }
 
   /// Looks at the contacts of one pair of blocks.
   void select(const Range& range) { range_ = range; }
@@ -133,18 +136,31 @@ class Detector<N>::ContactIndex {
   /// Closed contacts of this vertex and those on its two edges.
   template <class F>
   void for_closed(int vertex, F f) const {
-    for (int i = first_[vertex]; i >= 0; i = entries_[i].next) f((*contacts_)[entries_[i].contact]);
+    for (int i = first_[vertex]; i >= 0; i = entries_[i].next) f(*entries_[i].contact);
   }
 
  private:
   struct Entry {
-    int contact, next;
+    const Contact* contact = nullptr;
+    int next = -1;
   };
+
+  void add(const Contact& contact) {
+    if (contact.status == ContactStatus::open) return;
+    for (const int corner : {contact.vertex, contact.edge, system_->next(contact.edge)}) {
+      entries_.push_back({&contact, first_[corner]});
+      first_[corner] = static_cast<int>(entries_.size()) - 1;
+    }
+  }
+
   const BlockSystem<N>* system_ = nullptr;
   const std::vector<Contact>* contacts_ = nullptr;
   Range range_;
   std::vector<int> first_;      ///< per vertex, in entries_; -1 without any
   std::vector<Entry> entries_;  ///< closed contacts of one vertex, of the ends of their edges too, chained
+  bool knows_resting_ = false;
+  std::vector<int> resting_first_;   ///< of contacts at rest alone, which stand first among the entries
+  std::size_t resting_entries_ = 0;  ///< number of these
 };
 
 /// Narrow phase between the blocks of one pair. Collects contacts; a vertex-edge pair found twice gets the sum of the lengths.
@@ -491,6 +507,7 @@ void Detector<N>::find_pairs(const BlockSystem<N>& system, const std::vector<Box
 template <int N>
 void Detector<N>::search(const BlockSystem<N>& system) {
   ++counters_.searches;
+  divided_ = false;
   std::vector<Box> boxes;
   boxes.reserve(system.block_count());
   searched_at_.resize(system.block_count());
@@ -780,6 +797,52 @@ void Detector<N>::put_in_place(std::vector<Contact>& contacts, bool orphans) {
 }
 
 template <int N>
+void Detector<N>::divide(const BlockSystem<N>& system, std::vector<Contact>& contacts) {
+  const auto pairs = std::move(pairs_);
+  const auto states = std::move(states_);
+  const auto ranges = std::move(ranges_);
+  const auto list = std::move(contacts);
+  const Resting resting = std::move(resting_);
+  pairs_.clear();
+  states_.clear();
+  ranges_.clear();
+  contacts.clear();
+  resting_ = Resting();
+  const auto give = [&](const std::pair<int, int>& pair, const PairState& state, const Range& range, const std::vector<Contact>& from) {
+    const bool moves = system.block(pair.first).equation >= 0 || system.block(pair.second).equation >= 0;
+    std::vector<Contact>& to = moves ? contacts : resting_.contacts;
+    (moves ? pairs_ : resting_.pairs).push_back(pair);
+    (moves ? states_ : resting_.states).push_back(state);
+    const int begin = static_cast<int>(to.size());
+    to.insert(to.end(), from.begin() + range.begin, from.begin() + range.end);
+    (moves ? ranges_ : resting_.ranges).push_back({begin, static_cast<int>(to.size())});
+  };
+  for (std::size_t i = 0, k = 0; i < pairs.size() || k < resting.pairs.size();) {
+    if (k == resting.pairs.size() || (i < pairs.size() && pairs[i] < resting.pairs[k])) {
+      give(pairs[i], states[i], ranges[i], list);
+      ++i;
+    } else {
+      const auto [first, second] = resting.pairs[k];
+      if (system.block(first).equation >= 0 || system.block(second).equation >= 0) {
+        // When to look at this pair has not been followed.
+        for (const int b : {first, second}) ways_[b].look_at = ways_[b].gone;
+      }
+      give(resting.pairs[k], resting.states[k], resting.ranges[k], resting.contacts);
+      ++k;
+    }
+  }
+  list_pairs_of_blocks(system.block_count());
+  index_->forget_resting();
+  divided_ = true;
+}
+
+template <int N>
+void Detector<N>::exchange(Archive& archive) {
+  archive(first_, forgotten_, divided_, pairs_, states_, ranges_, resting_, searched_at_, counters_, places_, ways_, pairs_of_start_, pairs_of_);
+  if (archive.reading()) index_->forget_resting();
+}
+
+template <int N>
 bool Detector<N>::update(const BlockSystem<N>& system, const JointTable& joints, std::vector<Contact>& contacts) {
   const bool all = forgotten_ || !skips_.search || !skips_.narrow_phase;
   const bool searches = needs_search(system);
@@ -802,7 +865,7 @@ bool Detector<N>::update(const BlockSystem<N>& system, const JointTable& joints,
   found_.clear();
   changes_.clear();
   shapes_->begin(system);
-  index_->begin(system, contacts);
+  index_->begin(system, contacts, resting_.contacts);
   for (const int pair : pairs_around_due_ones()) index_->add(ranges_[pair]);
   NarrowPhase narrow(system, reach_ + skips_.contact_skin, *shapes_, *index_);
   for (const int pair : due_pairs_) redo(joints, system, pair, narrow, contacts);

@@ -37,6 +37,9 @@
 // are not redone. Contacts of other pairs stay as they are; their gaps are the caller's to carry on. Contacts are kept to reach + contact_skin, so
 // that none comes within reach unseen; a corner that comes over the end of an edge is found at most contact_skin late, and lengths are off by less
 // than it.
+//
+// Blocks at rest (BlockSystem::is_at_rest) move as little as fixed ones do: pairs of which neither block moves are set aside with their contacts by
+// divide(), are not looked at in a step, and come back as they were when one of the two is woken.
 #pragma once
 
 #include <cstdint>
@@ -106,11 +109,17 @@ class Detector {
   /// ductile.
   bool update(const BlockSystem<N>& system, const JointTable& joints, std::vector<Contact>& contacts);
 
+  /// Which blocks are at rest has changed. From now on `contacts`, the list as the last update() left it, has those of pairs of which a block moves;
+  /// the others are kept here.
+  void divide(const BlockSystem<N>& system, std::vector<Contact>& contacts);
+  /// Between blocks of which neither moves, one at least being at rest.
+  const std::vector<Contact>& resting_contacts() const { return resting_.contacts; }
+
   /// What the last update() that was true has renewed, in the order of the list, pairs without contacts before and after left out. Where it has
   /// searched, contacts may also have gone whose blocks are no pair any more.
   const std::vector<DetectionChange>& changes() const { return changes_; }
   /// Whether the next update() searches for pairs.
-  bool needs_search(const BlockSystem<N>& system) const { return forgotten_ || !skips_.search || moved_beyond_search_skin(system); }
+  bool needs_search(const BlockSystem<N>& system) const { return forgotten_ || divided_ || !skips_.search || moved_beyond_search_skin(system); }
 
   /// Pairs of blocks whose boxes, with reach and skin, overlap, at least one of them free; renewed only when something moved beyond the skin.
   const std::vector<std::pair<int, int>>& candidate_pairs() const { return pairs_; }
@@ -119,9 +128,7 @@ class Detector {
   /// Blocks or contacts were changed by others: the next update() searches and finds everything anew.
   void forget() { forgotten_ = true; }
   /// What decides when something is found anew.
-  void exchange(Archive& archive) {
-    archive(first_, forgotten_, pairs_, states_, ranges_, searched_at_, counters_, places_, ways_, pairs_of_start_, pairs_of_);
-  }
+  void exchange(Archive& archive);
 
  private:
   using Unknowns = typename BlockSystem<N>::Unknowns;
@@ -167,6 +174,18 @@ class Detector {
     }
   };
   enum class Due : unsigned char { no, moved, yes };
+  /// Pairs that are set aside.
+  struct Resting {
+    std::vector<std::pair<int, int>> pairs;
+    std::vector<PairState> states;
+    std::vector<Range> ranges;  ///< in these contacts
+    std::vector<Contact> contacts;
+
+    void exchange(Archive& archive) {
+      auto& [a, b, c, d] = *this;
+      archive(a, b, c, d);
+    }
+  };
 
   bool moved_beyond_search_skin(const BlockSystem<N>& system) const;
   void search(const BlockSystem<N>& system);
@@ -191,9 +210,11 @@ class Detector {
   DetectionSkips skips_;
   bool first_ = true;
   bool forgotten_ = true;
+  bool divided_ = false;  ///< since the last search, which did not look for pairs of blocks at rest
   std::vector<std::pair<int, int>> pairs_;
   std::vector<PairState> states_;  ///< of the pairs
   std::vector<Range> ranges_;      ///< of the pairs, in the list as the last update() left it
+  Resting resting_;
   std::vector<Unknowns> searched_at_;
   std::vector<Place> places_;                   ///< of the blocks in the last update()
   std::vector<Way> ways_;                       ///< of the blocks

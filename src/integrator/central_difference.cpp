@@ -79,11 +79,14 @@ template <int N>
 void CentralDifference<N>::load_blocks(const StepProblem<N>& problem) {
   const BlockSystem<N>& system = problem.system;
   const std::size_t n = system.free_blocks().size();
-  poses_.assign(n + 1, Pose());
-  rates_.assign(n + 1, Rate());
-  previous_rates_.assign(n + 1, Rate());
-  next_rates_.assign(n + 1, Rate());
-  forces_.assign(n + 1, Rate());
+  const std::size_t slots = n + 1 + system.resting_blocks().size();
+  poses_.assign(slots, Pose());
+  rates_.assign(slots, Rate());
+  previous_rates_.assign(slots, Rate());
+  next_rates_.assign(slots, Rate());
+  forces_.assign(slots, Rate());
+  rest_slot_.assign(system.block_count(), static_cast<int>(n));
+  for (std::size_t i = 0; i < system.resting_blocks().size(); ++i) rest_slot_[system.resting_blocks()[i]] = static_cast<int>(n + 1 + i);
   inertia_.clear();
   loaded_at_.clear();
   blocks_ = system.free_blocks();
@@ -158,7 +161,7 @@ void CentralDifference<N>::add_link(const StepProblem<N>& problem, int contact) 
   link_of_[contact] = -1;
   if (at_rest && !may_close(strength, normal_stiffness, c.gap, approach_)) return;
 
-  const auto slot = [&](int b) { return system.block(b).equation >= 0 ? system.block(b).equation : system.free_count(); };
+  const auto slot = [&](int b) { return system.block(b).equation >= 0 ? system.block(b).equation : rest_slot_[b]; };
   const int at_vertex = slot(c.vertex_block), at_edge = slot(c.edge_block);
   const Pose &v = poses_[at_vertex], &e = poses_[at_edge];
   const auto turned_back = [](const Pose& pose, const Vec2& r) -> Vec2 { return r + (pose.cos_minus_1 * r - pose.sin * perpendicular(r)); };
@@ -235,7 +238,7 @@ template <int N>
 void CentralDifference<N>::add_parts(const Link& link, const LinkRest& rest, double sign) {
   const int fixed_slot = static_cast<int>(inertia_.size());
   const auto part = [&](int slot, double share, const Vec2& normal, const Vec2& arm) {
-    if (slot == fixed_slot) return;
+    if (slot >= fixed_slot) return;
     critical_step_.add({slot, share, normal, arm, link.normal_stiffness, link.shear_stiffness, link.normal_dashpot, link.shear_dashpot}, sign);
   };
   part(link.vertex_slot, rest.vertex_share, {rest.normal_x, rest.normal_y}, {link.arm_x, link.arm_y});
@@ -356,6 +359,7 @@ void CentralDifference<N>::push(const Link& link, const Place& at) {
 template <int N>
 void CentralDifference<N>::begin_forces() {
   for (std::size_t i = 0; i < inertia_.size(); ++i) forces_[i] = {inertia_[i].weight_x, inertia_[i].weight_y, 0.0, 0.0};
+  std::fill(forces_.begin() + static_cast<std::ptrdiff_t>(inertia_.size()), forces_.end(), Rate());
 }
 
 template <int N>
@@ -721,6 +725,12 @@ typename CentralDifference<N>::Unknowns CentralDifference<N>::velocity_at_end(in
 }
 
 template <int N>
+void CentralDifference<N>::rest_forces(std::vector<Unknowns>& forces) const {
+  const std::size_t first = inertia_.size() + 1;
+  for (std::size_t i = 0; i < forces.size(); ++i) forces[i] = {forces_[first + i].x, forces_[first + i].y, forces_[first + i].turn};
+}
+
+template <int N>
 void CentralDifference<N>::store_blocks(BlockSystem<N>& system) const {
   for (std::size_t i = 0; i < blocks_.size(); ++i) {
     const Pose& pose = poses_[i];
@@ -765,7 +775,7 @@ ExplicitEnergies CentralDifference<N>::take_energies() {
 template <int N>
 void CentralDifference<N>::exchange(Archive& archive, const JointTable& joints) {
   joints_ = &joints;
-  archive(poses_, rates_, previous_rates_, next_rates_, forces_, inertia_, blocks_, loaded_at_, links_, rest_, link_of_, holes_, kept_at_, points_,
+  archive(poses_, rates_, previous_rates_, next_rates_, forces_, inertia_, blocks_, rest_slot_, loaded_at_, links_, rest_, link_of_, holes_, kept_at_, points_,
           energies_, damped_, lost_strength_, critical_step_, approach_, moved_, unbalanced_, max_penetration_, h_, span_, viscous_);
 }
 

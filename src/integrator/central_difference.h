@@ -76,6 +76,9 @@ class CentralDifference {
   bool lost_strength() const { return lost_strength_; }        ///< a contact has lost cohesion or tensile strength in the last step
   double max_penetration() const { return max_penetration_; }  ///< [m] since the load
 
+  /// [N, N m] What the contacts do to each of the blocks that were at rest at the load, in the system's order.
+  void rest_forces(std::vector<Unknowns>& forces) const;
+
   /// Moves the blocks of the system to where they are now, with the velocities of the middle of the last step.
   void store_blocks(BlockSystem<N>& system) const;
   /// Whole-step velocity of a free block; call only after a step.
@@ -210,10 +213,11 @@ class CentralDifference {
   double force_squared(std::size_t i) const;  ///< [N2] on a block, a moment counting at the block's radius
   void adapt(double taken, double kinetic_change, double h);
 
-  std::vector<Pose> poses_;  ///< per free block, and a last one for all that are fixed
+  std::vector<Pose> poses_;  ///< per free block, one for all that are fixed, and then per block at rest
   std::vector<Rate> rates_, previous_rates_, next_rates_, forces_;
   std::vector<Inertia> inertia_;
   std::vector<int> blocks_;          ///< of the system, per free block
+  std::vector<int> rest_slot_;       ///< per block of the system; of others than those at rest the one of fixed blocks
   std::vector<Unknowns> loaded_at_;  ///< displacement of the free blocks at the load
   std::vector<Link> links_;
   std::vector<LinkRest> rest_;  ///< of the links

@@ -39,6 +39,7 @@ class GeneralizedAlpha : public TimeScheme<N> {
     acceleration_.set(b, a);
     started_ = true;
   }
+  void forget(int b) override { acceleration_.set(b, Unknowns::Zero()); }
   void exchange(Archive& archive) override { archive(started_, acceleration_); }
   void record(int b, double dt, const Unknowns& d, const Unknowns& v) override { acceleration_.set(b, next_acceleration(b, dt, d, v)); }
 

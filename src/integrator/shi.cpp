@@ -106,7 +106,7 @@ class Shi : public Enforcement<N> {
     ++solution.iterations;
     const bool regular = tangent_.solver().factor(tangent_.matrix());
     if (regular) solution.d = tangent_.solver().solve(right);
-    if (!regular || solution.d.size() == 0 || !solution.d.allFinite()) {
+    if (!regular || solution.d.size() != right.size() || !solution.d.allFinite()) {
       solution.reason = "singular matrix";
       return false;
     }

@@ -52,6 +52,8 @@ class TimeScheme {
   /// The step with this dt counts: record(b, dt, d, v) for every free block, then accept(dt).
   virtual void record(int, double, const Unknowns&, const Unknowns&) {}
   virtual void accept(double) {}
+  /// Block b has been put to rest.
+  virtual void forget(int) {}
   virtual void exchange(Archive&) {}  ///< what it remembers of earlier steps
 };
 

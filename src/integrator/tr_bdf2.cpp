@@ -50,6 +50,10 @@ class TrBdf2 : public TimeScheme<N> {
   double stage(double dt) const override { return second_ ? first_dt_ * (1.0 - g) / g : g * dt; }
   bool is_within_step() const override { return second_; }
   void abandon_step() override { second_ = false; }
+  void forget(int b) override {
+    first_d_.set(b, Unknowns::Zero());
+    first_v_.set(b, Unknowns::Zero());
+  }
   void exchange(Archive& archive) override { archive(second_, first_dt_, first_d_, first_v_); }
   void record(int b, double, const Unknowns& d, const Unknowns& v) override {
     if (second_) return;

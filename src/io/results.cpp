@@ -219,6 +219,7 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
                   {"skip_narrow_phase", scene.method.skip_narrow_phase},
                   {"skip_looks", scene.method.skip_looks},
                   {"skip_reload", scene.method.skip_reload},
+                  {"skip_resting", scene.method.skip_resting},
                   {"step_fraction", scene.method.step_fraction},
                   {"damping", word_for(mass_damping_words, scene.method.damping)},
                   {"local_damping", scene.method.local_damping},
@@ -229,6 +230,8 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
                   {"base_motion", scene.base_motion ? ordered_json(word_for(base_motion_words, scene.base_motion->kind)) : ordered_json(nullptr)},
                   {"adaptive", scene.step.adaptive},
                   {"error_tolerance_m", scene.step.error_tolerance},
+                  {"rest",
+                   {{"time_s", scene.rest.time}, {"displacement_m", scene.rest.displacement}, {"acceleration_m_per_s2", scene.rest.acceleration}}},
                   {"run_strength_reduction_factor", scene.run_strength_reduction_factor},
                   {"end_time_s", scene.end_time},
                   {"end_displacement_m", scene.end_displacement ? ordered_json(*scene.end_displacement) : ordered_json(nullptr)},
@@ -248,7 +251,7 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
                   {"strength_reduction", {{"width", scene.strength_reduction.width}, {"upper_limit", scene.strength_reduction.upper_limit}}}};
   j["warnings"] = summary.warnings;
   j["blocks"] = simulation.system().block_count();
-  j["free_blocks"] = simulation.system().free_count();
+  j["free_blocks"] = simulation.system().free_count() + static_cast<int>(simulation.system().resting_blocks().size());
   j["converged"] = summary.converged;
   j["reason"] = summary.reason;
   if (!safety) j["time_s"] = simulation.time();
@@ -281,6 +284,11 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
                    {"looks", detection.looks},
                    {"looks_skipped", detection.looks_skipped},
                    {"history_transfers", detection.transfers},
+                   {"block_steps", steps.block_steps},
+                   {"block_steps_skipped", steps.block_steps_skipped},
+                   {"put_to_rest", steps.put_to_rest},
+                   {"woken", steps.woken},
+                   {"steps_repeated_to_wake", steps.repeated_to_wake},
                    {"factorisations", linear.factorisations},
                    {"plain_factorisations", linear.plain},
                    {"symbolic", linear.symbolic},

@@ -63,6 +63,44 @@ void BlockSystem<N>::stop() {
 }
 
 template <int N>
+void BlockSystem<N>::number(const std::vector<char>& is_free) {
+  free_blocks_.clear();
+  resting_blocks_.clear();
+  for (int b = 0; b < block_count(); ++b) {
+    if (blocks_[b].equation == fixed) continue;
+    blocks_[b].equation = is_free[b] ? free_count() : fixed - 1 - static_cast<int>(resting_blocks_.size());
+    (is_free[b] ? free_blocks_ : resting_blocks_).push_back(b);
+  }
+}
+
+template <int N>
+void BlockSystem<N>::put_to_rest(const std::vector<int>& blocks) {
+  std::vector<char> is_free(blocks_.size(), 0);
+  for (const int b : free_blocks_) is_free[b] = 1;
+  for (const int b : blocks) {
+    is_free[b] = 0;
+    state_.velocity[b].setZero();
+  }
+  number(is_free);
+}
+
+template <int N>
+void BlockSystem<N>::wake(const std::vector<int>& blocks) {
+  std::vector<char> is_free(blocks_.size(), 0);
+  for (const int b : free_blocks_) is_free[b] = 1;
+  for (const int b : blocks) is_free[b] = 1;
+  number(is_free);
+}
+
+template <int N>
+void BlockSystem<N>::exchange(Archive& archive) {
+  std::vector<char> is_free(blocks_.size(), 0);
+  for (const int b : free_blocks_) is_free[b] = 1;
+  archive(state_, is_free);
+  number(is_free);
+}
+
+template <int N>
 void BlockSystem<N>::advance(int b, const Unknowns& d) {
   state_.displacement[b] += d;
   const Block& block = blocks_[b];
@@ -95,7 +133,7 @@ template <int N>
 double BlockSystem<N>::reduced_mass(int a, int b) const {
   double inverse = 0.0;
   for (const int i : {a, b}) {
-    if (blocks_[i].equation >= 0) inverse += 1.0 / blocks_[i].mass[0];
+    if (blocks_[i].equation != fixed) inverse += 1.0 / blocks_[i].mass[0];
   }
   return 1.0 / inverse;
 }

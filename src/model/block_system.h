@@ -2,7 +2,7 @@
 //
 // Blocks and vertices live in flat arrays; vertex v of a block is followed counter-clockwise by next(v), and edge v runs from vertex v to next(v).
 // Coordinates are taken relative to origin(), the first vertex of the scene, so that a model far from zero loses no digits while it moves.
-// Fixed blocks have no unknowns (equation = -1).
+// Fixed blocks have no unknowns (negative equation), nor have blocks that are at rest for the time being: steps leave them where they are.
 #pragma once
 
 #include <vector>
@@ -18,10 +18,12 @@ class BlockSystem {
  public:
   using Unknowns = typename Motion<N>::Unknowns;
 
+  static constexpr int fixed = -1;  ///< in place of an equation; blocks at rest have what lies below
+
   struct Block {
     int first_vertex = 0;
     int vertex_count = 0;
-    int equation = -1;  ///< block row of the unknowns, -1 if fixed
+    int equation = fixed;  ///< block row of the unknowns, negative without any
     int material = 0;
     double area = 0.0;    ///< [m2]
     double radius = 0.0;  ///< [m] farthest vertex from the centroid
@@ -49,7 +51,10 @@ class BlockSystem {
   const Block& block(int b) const { return blocks_[b]; }
   int block_count() const { return static_cast<int>(blocks_.size()); }
   int free_count() const { return static_cast<int>(free_blocks_.size()); }
-  const std::vector<int>& free_blocks() const { return free_blocks_; }  ///< in the order of their equations
+  const std::vector<int>& free_blocks() const { return free_blocks_; }        ///< those with unknowns, in the order of their equations
+  const std::vector<int>& resting_blocks() const { return resting_blocks_; }  ///< neither fixed nor with unknowns
+  bool is_at_rest(int b) const { return blocks_[b].equation < fixed; }
+  int rest_number(int b) const { return fixed - 1 - blocks_[b].equation; }  ///< of a block at rest: its place among them
   const Vec2& origin() const { return origin_; }
   RotationKind rotation_kind() const { return rotation_kind_; }
 
@@ -70,12 +75,17 @@ class BlockSystem {
 
   const State& state() const { return state_; }
   void restore(const State& state) { state_ = state; }
-  void exchange(Archive& archive) { archive(state_); }
+  void exchange(Archive& archive);
 
   const Unknowns& displacement(int b) const { return state_.displacement[b]; }
   const Unknowns& velocity(int b) const { return state_.velocity[b]; }
   void set_velocity(int b, const Unknowns& v) { state_.velocity[b] = v; }
   void stop();  ///< all velocities to zero
+
+  /// Takes the velocities and the unknowns of these blocks away.
+  void put_to_rest(const std::vector<int>& blocks);
+  /// Gives these blocks their unknowns back.
+  void wake(const std::vector<int>& blocks);
 
   /// Moves block b by d.
   void advance(int b, const Unknowns& d);
@@ -83,12 +93,15 @@ class BlockSystem {
   void move_to(int b, const Unknowns& displacement);
 
   double kinetic_energy() const;  ///< [J] per metre of thickness
-  /// [kg] m_a m_b/(m_a + m_b), a fixed block counting as infinitely heavy; one of the two is free.
+  /// [kg] m_a m_b/(m_a + m_b), a fixed block counting as infinitely heavy; one of the two is not fixed.
   double reduced_mass(int a, int b) const;
 
  private:
+  /// Equations in the order of the blocks; those of which is_free tells no get none.
+  void number(const std::vector<char>& is_free);
+
   std::vector<Block> blocks_;
-  std::vector<int> free_blocks_;
+  std::vector<int> free_blocks_, resting_blocks_;
   std::vector<int> next_, previous_;
   std::vector<char> reflex_;
   struct Point {

@@ -209,6 +209,7 @@ MethodInput read_method(Table table, const SourceLocation& scene_where) {
   table.optional("skip_narrow_phase", method.skip_narrow_phase);
   table.optional("skip_looks", method.skip_looks);
   table.optional("skip_reload", method.skip_reload);
+  table.optional("skip_resting", method.skip_resting);
   table.optional("gap_tolerance_m", method.gap_tolerance, positive);
   table.optional("penalty_pa_per_m", method.penalty, positive);
   table.optional("penalty_shear_ratio", method.penalty_shear_ratio, positive);
@@ -235,6 +236,15 @@ StepInput read_step(Table table) {
   table.optional("error_tolerance_m", step.error_tolerance, positive);
   table.finish();
   return step;
+}
+
+RestInput read_rest(Table table) {
+  RestInput rest;
+  table.optional("time_s", rest.time, positive);
+  table.optional("displacement_m", rest.displacement, positive);
+  table.optional("acceleration_m_per_s2", rest.acceleration, positive);
+  table.finish();
+  return rest;
 }
 
 void read_run(Table table, Scene& scene) {
@@ -315,6 +325,7 @@ Scene interpret(const toml::table& document, const std::string& file) {
   const Table base_motion = root.table("base_motion");
   const Table method = root.table("method");
   const Table step = root.table("step");
+  const Table rest = root.table("rest");
   const Table run = root.table("run");
   const Table end = root.table("end");
   const Table output = root.table("output");
@@ -341,6 +352,7 @@ Scene interpret(const toml::table& document, const std::string& file) {
     if (scene.method.statics) base_motion.fail("steps that start from rest know no motion of the base", "no [base_motion], or method.statics = false");
   }
   scene.step = read_step(step);
+  scene.rest = read_rest(rest);
   read_run(run, scene);
   read_end(end, scene);
   read_output(output, scene);

@@ -166,6 +166,7 @@ void write_method(Text& text, const MethodInput& method) {
   text.line("skip_narrow_phase", method.skip_narrow_phase);
   text.line("skip_looks", method.skip_looks);
   text.line("skip_reload", method.skip_reload);
+  text.line("skip_resting", method.skip_resting);
   text.line("gap_tolerance_m", method.gap_tolerance);
   if (method.penalty) text.line("penalty_pa_per_m", *method.penalty);
   text.line("penalty_shear_ratio", method.penalty_shear_ratio);
@@ -185,6 +186,10 @@ void write_run(Text& text, const Scene& scene) {
   text.line("smallest_fraction", scene.step.smallest_fraction);
   text.line("adaptive", scene.step.adaptive);
   text.line("error_tolerance_m", scene.step.error_tolerance);
+  text.header("[rest]");
+  text.line("time_s", scene.rest.time);
+  text.line("displacement_m", scene.rest.displacement);
+  text.line("acceleration_m_per_s2", scene.rest.acceleration);
   text.header("[run]");
   text.line("strength_reduction_factor", scene.run_strength_reduction_factor);
   text.header("[end]");

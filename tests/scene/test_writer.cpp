@@ -49,6 +49,7 @@ void check_same(const MethodInput& a, const MethodInput& b) {
   CHECK(a.skip_narrow_phase == b.skip_narrow_phase);
   CHECK(a.skip_looks == b.skip_looks);
   CHECK(a.skip_reload == b.skip_reload);
+  CHECK(a.skip_resting == b.skip_resting);
   CHECK(a.penalty == b.penalty);
   CHECK(a.penalty_shear_ratio == b.penalty_shear_ratio);
   CHECK(a.penetration_tolerance == b.penetration_tolerance);
@@ -101,6 +102,9 @@ void check_same(const Scene& a, const Scene& b) {
   CHECK(a.step.smallest_fraction == b.step.smallest_fraction);
   CHECK(a.step.adaptive == b.step.adaptive);
   CHECK(a.step.error_tolerance == b.step.error_tolerance);
+  CHECK(a.rest.time == b.rest.time);
+  CHECK(a.rest.displacement == b.rest.displacement);
+  CHECK(a.rest.acceleration == b.rest.acceleration);
   CHECK(a.end_time == b.end_time);
   CHECK(a.output_every == b.output_every);
   CHECK(a.checkpoint_every == b.checkpoint_every);
@@ -178,6 +182,7 @@ Scene random_scene(unsigned seed) {
   scene.method.skip_narrow_phase = false;
   scene.method.skip_looks = false;
   scene.method.skip_reload = false;
+  scene.method.skip_resting = true;
   scene.method.penalty = number();
   scene.method.penalty_shear_ratio = number();
   scene.method.penetration_tolerance = number();
@@ -189,6 +194,7 @@ Scene random_scene(unsigned seed) {
   scene.method.damping = MassDamping::local;
   scene.method.local_damping = fraction(generator);
   scene.step = {number(), number(), fraction(generator), true, number()};
+  scene.rest = {number(), number(), number()};
   scene.end_time = number();
   scene.output_every = number();
   scene.checkpoint_every = number();

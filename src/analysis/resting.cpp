@@ -1,0 +1,155 @@
+#include "openclose/analysis/resting.h"
+
+#include <cmath>
+
+namespace openclose {
+namespace {
+
+/// [-] A step is done again when it changes the mean of the forces on a block at rest by this many times what wakes it: below, what the block misses
+/// in one step is of the size of what it may miss anyhow, and repeating costs a whole step.
+constexpr double haste = 3.0;
+
+/// Adds, or takes away with sign -1, what contacts do to blocks at rest.
+template <int N>
+void add_forces(const BlockSystem<N>& system, const std::vector<Contact>& contacts, double sign,
+                std::vector<typename Motion<N>::Unknowns>& per_block) {
+  for (const Contact& c : contacts) {
+    if (c.status == ContactStatus::open || !(system.is_at_rest(c.vertex_block) || system.is_at_rest(c.edge_block))) continue;
+    const ContactPose<N> pose(ContactStart<N>(system, c), {}, {});
+    const Vec2 force = sign * (c.normal_force * pose.normal + c.shear_force * pose.tangent());
+    per_block[c.vertex_block] += Motion<N>::gradient(pose.vertex_arm, force);
+    per_block[c.edge_block] -= Motion<N>::gradient(pose.edge_arm, force);
+  }
+}
+
+}  // namespace
+
+template <int N>
+Resting<N>::Resting(const RestInput& input, const BlockSystem<N>& system)
+    : input_(input),
+      anchor_(system.block_count(), Unknowns::Zero()),
+      velocity_(system.block_count(), Unknowns::Zero()),
+      quiet_(system.block_count(), 0.0),
+      held_(system.block_count(), Unknowns::Zero()),
+      change_(system.block_count(), Unknowns::Zero()) {}
+
+template <int N>
+void Resting<N>::follow(const BlockSystem<N>& system, const std::vector<Unknowns>& velocities, double dt) {
+  since_ += dt;
+  for (const int b : system.free_blocks()) {
+    const double radius = system.block(b).radius;
+    const Unknowns moved = system.displacement(b) - anchor_[b], faster = velocities[b] - velocity_[b];
+    velocity_[b] = velocities[b];
+    const bool quiet = Motion<N>::displacement_bound(moved, radius) <= input_.displacement &&
+                       Motion<N>::displacement_bound(faster, radius) <= input_.acceleration * dt;
+    quiet_[b] = quiet ? quiet_[b] + dt : 0.0;
+    if (!quiet) anchor_[b] = system.displacement(b);
+  }
+}
+
+template <int N>
+void Resting<N>::disturb(const BlockSystem<N>& system) {
+  for (const int b : system.free_blocks()) quiet_[b] = 0.0;
+}
+
+template <int N>
+std::vector<int> Resting<N>::quiet_blocks(const BlockSystem<N>& system, const std::vector<Contact>& contacts) {
+  std::vector<int> list;
+  if (since_ < input_.time) return list;
+  const auto is_quiet = [&](int b) { return system.block(b).equation < 0 || quiet_[b] >= input_.time; };
+  std::vector<char> touches(system.block_count(), 0), is_disturbed(system.block_count(), 0);
+  for (const Contact& c : contacts) {
+    if (c.status == ContactStatus::open) continue;
+    touches[c.vertex_block] = touches[c.edge_block] = 1;
+    if (!is_quiet(c.edge_block)) is_disturbed[c.vertex_block] = 1;
+    if (!is_quiet(c.vertex_block)) is_disturbed[c.edge_block] = 1;
+  }
+  for (const int b : system.free_blocks()) {
+    if (is_quiet(b) && touches[b] && !is_disturbed[b]) list.push_back(b);
+  }
+  if (!list.empty()) since_ = 0.0;
+  return list;
+}
+
+template <int N>
+void Resting<N>::keep_forces(const BlockSystem<N>& system, const std::vector<int>& blocks, const std::vector<Contact>& contacts,
+                             const std::vector<Contact>& resting_contacts) {
+  std::vector<Unknowns> forces(system.block_count(), Unknowns::Zero());
+  add_forces(system, contacts, 1.0, forces);
+  add_forces(system, resting_contacts, 1.0, forces);
+  for (const int b : blocks) {
+    held_[b] = forces[b];
+    change_[b].setZero();
+    // Once it is woken it has to be quiet anew.
+    quiet_[b] = 0.0;
+    velocity_[b].setZero();
+  }
+}
+
+template <int N>
+void Resting<N>::divide(const BlockSystem<N>& system, const std::vector<Contact>& resting_contacts) {
+  std::vector<Unknowns> forces = held_;
+  add_forces(system, resting_contacts, -1.0, forces);
+  awaited_.clear();
+  for (const int b : system.resting_blocks()) awaited_.push_back(forces[b]);
+}
+
+template <int N>
+std::vector<typename Resting<N>::Unknowns>& Resting<N>::pushes(const BlockSystem<N>& system) {
+  pushes_.assign(system.resting_blocks().size(), Unknowns::Zero());
+  return pushes_;
+}
+
+template <int N>
+void Resting<N>::judge(const BlockSystem<N>& system, double dt) {
+  const double share = -std::expm1(-dt / input_.time);
+  judged_.resize(pushes_.size());
+  for (std::size_t i = 0; i < pushes_.size(); ++i) {
+    const Unknowns& before = change_[system.resting_blocks()[i]];
+    judged_[i] = before + share * ((pushes_[i] - awaited_[i]) - before);
+  }
+}
+
+template <int N>
+std::vector<int> Resting<N>::woken(const BlockSystem<N>& system, const std::vector<Contact>& contacts, const std::vector<Contact>& resting_contacts,
+                                   Urgency urgency) {
+  const double limit = input_.acceleration * (urgency == Urgency::in_haste ? haste : 1.0);
+  std::vector<int> list;
+  for (std::size_t i = 0; i < judged_.size(); ++i) {
+    const int b = system.resting_blocks()[i];
+    const auto& block = system.block(b);
+    Unknowns change = judged_[i];
+    if (block.rotation_locked) change[Motion<N>::rotation_index] = 0.0;
+    if (Motion<N>::largest_force(change, block.radius) > limit * block.mass[0]) list.push_back(b);
+  }
+  if (list.empty()) return list;
+
+  std::vector<int> layer(system.block_count(), 0);
+  for (const int b : list) layer[b] = 1;
+  const auto spread = [&](int k, const std::vector<Contact>& touching) {
+    for (const Contact& c : touching) {
+      if (c.status == ContactStatus::open) continue;
+      for (const auto& [from, to] : {std::pair(c.vertex_block, c.edge_block), std::pair(c.edge_block, c.vertex_block)}) {
+        if (layer[from] != k || layer[to] != 0 || !system.is_at_rest(to)) continue;
+        layer[to] = k + 1;
+        list.push_back(to);
+      }
+    }
+  };
+  for (int k = 1; k <= layers_; ++k) {
+    spread(k, contacts);
+    spread(k, resting_contacts);
+  }
+  layers_ *= 2;
+  return list;
+}
+
+template <int N>
+void Resting<N>::accept(const BlockSystem<N>& system) {
+  layers_ = 1;
+  for (std::size_t i = 0; i < judged_.size(); ++i) change_[system.resting_blocks()[i]] = judged_[i];
+}
+
+template class Resting<3>;
+
+}  // namespace openclose
