@@ -5,13 +5,15 @@
 #include <fstream>
 #include <string>
 
+#include "openclose/core/parallel.h"
+
 namespace openclose {
 
-// Of the thread, which is the only one: the clock of the process only ticks every few milliseconds where a limit on its CPU time is set.
+// Of the thread while it is the only one: the clock of the process only ticks every few milliseconds where a limit on its CPU time is set.
 double process_cpu_time() {
   constexpr double nanosecond = 1e-9;
   timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  clock_gettime(has_used_threads() ? CLOCK_PROCESS_CPUTIME_ID : CLOCK_THREAD_CPUTIME_ID, &now);
   return static_cast<double>(now.tv_sec) + nanosecond * static_cast<double>(now.tv_nsec);
 }
 

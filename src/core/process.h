@@ -3,7 +3,7 @@
 
 namespace openclose {
 
-/// [s] CPU time since the process began; of the thread that asks, where there are several.
+/// [s] CPU time since the process began, of all its threads once for_each_part() has used several; before, of the thread that asks.
 double process_cpu_time();
 /// [bytes] Largest resident memory since the program was loaded; 0 where /proc does not tell.
 long peak_memory();

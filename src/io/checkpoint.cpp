@@ -33,6 +33,7 @@ std::string fixed_part(Scene scene) {
   scene.checkpoint_every = defaults.checkpoint_every;
   scene.step.smallest_fraction = defaults.step.smallest_fraction;
   scene.method.max_iterations = defaults.method.max_iterations;
+  scene.method.threads = defaults.method.threads;
   return write_scene(scene);
 }
 
@@ -88,7 +89,8 @@ void require_same_scene(const std::string& path, const std::string& saved, const
   } while (in_saved == in_given && (a || b));
   refuse(
       path, fmt::format("it belongs to another scene: there \"{}\", here \"{}\"", in_saved, in_given),
-      "the same scene, other in no more than end.time_s, output.every_s, output.checkpoint_every_s, step.smallest_fraction, method.max_iterations");
+      "the same scene, other in no more than end.time_s, output.every_s, output.checkpoint_every_s, step.smallest_fraction, method.max_iterations, "
+      "method.threads");
 }
 
 void require_tables(const std::string& path, const Checkpoint& checkpoint) {

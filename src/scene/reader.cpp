@@ -8,6 +8,7 @@
 #include <iterator>
 #include <map>
 
+#include "openclose/core/parallel.h"
 #include "openclose/geometry/box.h"
 #include "openclose/scene/angle.h"
 #include "openclose/scene/base_motion.h"
@@ -210,6 +211,7 @@ MethodInput read_method(Table table, const SourceLocation& scene_where) {
   table.optional("skip_looks", method.skip_looks);
   table.optional("skip_reload", method.skip_reload);
   table.optional("skip_resting", method.skip_resting);
+  table.optional("threads", method.threads, Range{.low = 1.0, .high = most_threads, .low_included = true, .high_included = true});
   table.optional("gap_tolerance_m", method.gap_tolerance, positive);
   table.optional("penalty_pa_per_m", method.penalty, positive);
   table.optional("penalty_shear_ratio", method.penalty_shear_ratio, positive);

@@ -54,6 +54,7 @@ TEST_CASE("a checkpoint comes back", "[io][checkpoint]") {
   scene.checkpoint_every = 0.25;
   scene.step.smallest_fraction = 1e-3;
   scene.method.max_iterations = 7;
+  scene.method.threads = 2;
   const Checkpoint read = read_checkpoint(saved.path, scene);
   CHECK(read.time == 1.5);
   CHECK(read.tables == a_checkpoint().tables);

@@ -180,6 +180,8 @@ TEST_CASE("options out of range", "[scene][reader][errors]") {
       {"method", "dissipation = -0.1", "-0.1", "a number in [0, 1]"},
       {"method", "residual_tolerance = 1", "1", "a number in (0, 1)"},
       {"method", "max_iterations = 0", "0", "a whole number in [1, 1000000000]"},
+      {"method", "threads = 0", "0", "a whole number in [1, 8]"},
+      {"method", "threads = 9", "9", "a whole number in [1, 8]"},
       {"method", "max_iterations = 3000000000", "3000000000", "a whole number in [1, 1000000000]"},
       {"method", "penalty_pa_per_m = 0", "0", "a number > 0"},
       {"method", "penalty_shear_ratio = -1", "-1", "a number > 0"},

@@ -50,6 +50,7 @@ void check_same(const MethodInput& a, const MethodInput& b) {
   CHECK(a.skip_looks == b.skip_looks);
   CHECK(a.skip_reload == b.skip_reload);
   CHECK(a.skip_resting == b.skip_resting);
+  CHECK(a.threads == b.threads);
   CHECK(a.penalty == b.penalty);
   CHECK(a.penalty_shear_ratio == b.penalty_shear_ratio);
   CHECK(a.penetration_tolerance == b.penetration_tolerance);
@@ -183,6 +184,7 @@ Scene random_scene(unsigned seed) {
   scene.method.skip_looks = false;
   scene.method.skip_reload = false;
   scene.method.skip_resting = true;
+  scene.method.threads = 3;
   scene.method.penalty = number();
   scene.method.penalty_shear_ratio = number();
   scene.method.penetration_tolerance = number();

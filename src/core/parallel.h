@@ -1,0 +1,30 @@
+// Work in parts that do not depend on each other, shared among threads (OpenMP).
+//
+// Results must not depend on the number of threads: how work is divided, and the order in which the parts' results are put together, is for the
+// caller to decide from the work alone.
+#pragma once
+
+#include <functional>
+
+namespace openclose {
+
+/// More threads than this have nothing to do: the work is divided into about as many parts.
+inline constexpr int most_threads = 8;
+
+/// What is shared, for the counters.
+enum class SharedWork {
+  factorisation,  ///< subtrees and rows of a factor
+  substitution,   ///< of the same
+  product,        ///< matrix times vector
+  links,          ///< contacts of the explicit loop
+};
+inline constexpr int kinds_of_shared_work = 4;
+
+/// Calls work(i) for i from 0 to parts - 1, on `threads` threads at a time; in this order if that is 1. The work must not throw.
+void for_each_part(SharedWork kind, int threads, int parts, const std::function<void(int)>& work);
+
+/// How often this process has called upon more than one thread.
+long times_shared(SharedWork kind);
+bool has_used_threads();
+
+}  // namespace openclose
