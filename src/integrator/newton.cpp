@@ -472,7 +472,7 @@ typename Newton<N>::Outcome Newton<N>::iterate(const StepProblem<N>& problem, St
     const bool halved = next_norm <= 0.5 * norm;
     d += alpha * step;
     norm = next_norm;
-    const bool held = !halved && hold_reversed() > 0;
+    const bool held = norm > 1.0 && !halved && hold_reversed() > 0;  // a solution keeps the forces of the law
     const bool exact_works = held || switches <= few || (tangent == Tangent::exact && halved);
     tangent = exact_works ? Tangent::exact : Tangent::symmetric;
   }
