@@ -63,7 +63,8 @@ struct StepProblem {
 /// What one contact carried on the average of a step, for schemes that average over its path.
 template <int N>
 struct PathOutcome {
-  PathAverage average;
+  double normal = 0.0, shear = 0.0;  ///< [N]
+  PathEnergies energies;
   ContactPose<N> pose;  ///< the mean one, whose gradients carried the forces
 };
 
