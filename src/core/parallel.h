@@ -1,4 +1,7 @@
-// Work in parts that do not depend on each other, shared among threads (OpenMP).
+// Work in parts that do not depend on each other, shared among threads.
+//
+// Not by OpenMP: there every thread of a team must arrive at the end of a loop, even one that the system has not let run meanwhile. On a machine with
+// other work that made two threads four times as slow as one. Here a helper which comes late finds nothing left to do.
 //
 // Results must not depend on the number of threads: how work is divided, and the order in which the parts' results are put together, is for the
 // caller to decide from the work alone.
@@ -20,7 +23,8 @@ enum class SharedWork {
 };
 inline constexpr int kinds_of_shared_work = 4;
 
-/// Calls work(i) for i from 0 to parts - 1, on `threads` threads at a time; in this order if that is 1. The work must not throw.
+/// Calls work(i) for i from 0 to parts - 1, on `threads` threads at a time; in this order if that is 1. The work must
+/// neither throw nor call this again, and only one thread of the program may call it at a time.
 void for_each_part(SharedWork kind, int threads, int parts, const std::function<void(int)>& work);
 
 /// How often this process has called upon more than one thread.

@@ -26,6 +26,13 @@ bool TangentSystem<N>::find_slots(const StepProblem<N>& problem) {
 
 template <int N>
 void TangentSystem<N>::fit(const StepProblem<N>& problem) {
+  fit_pattern(problem);
+  matrix_.use_threads(problem.method.threads);
+  solver_->use_threads(problem.method.threads);
+}
+
+template <int N>
+void TangentSystem<N>::fit_pattern(const StepProblem<N>& problem) {
   const int rows = problem.system.free_count();
   if (solver_ && matrix_.rows() == rows && find_slots(problem)) return;
   std::vector<std::pair<int, int>> couplings;

@@ -22,6 +22,7 @@ class TangentSystem {
   const LinearCounters& counters() const { return solver_ ? solver_->counters() : nothing_done_; }
 
  private:
+  void fit_pattern(const StepProblem<N>& problem);
   /// False if a pair of blocks has none.
   bool find_slots(const StepProblem<N>& problem);
   void set_pattern(int rows, const std::vector<std::pair<int, int>>& couplings);

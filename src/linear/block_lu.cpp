@@ -5,12 +5,19 @@
 // and U, and the rows above are subtracted from it in ascending order. The pattern is symmetric, so that L has the transposed pattern of U. The
 // diagonal blocks are inverted; nothing is exchanged between blocks, which is safe while each block is held by its own inertia and contacts: where a
 // pivot has lost its digits, the factorisation is given to the plain solver, which exchanges rows.
+//
+// The rows above that row i subtracts lie below it in the elimination tree (J. W. H. Liu, The role of elimination trees in sparse factorization, SIAM
+// J. Matrix Anal. Appl. 11 (1990)). Large systems are therefore cut into subtrees, which do not depend on each other, and the rows where these meet,
+// the top. A row of the top subtracts those of the subtrees first and then, panel by panel, those of the top; with one panel done, the rows of all
+// later ones can subtract it at the same time. The cut depends on the pattern alone, so that the number of threads changes no digit.
 #include <Eigen/LU>
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseCore>
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
+#include "openclose/core/parallel.h"
 #include "openclose/linear/solver.h"
 
 #if defined(__x86_64__) && defined(__GNUC__)
@@ -23,6 +30,15 @@ namespace {
 /// [-] A diagonal block whose norm has shrunk by more than this, or whose determinant is smaller than this times the product of its columns' norms,
 /// has lost more digits than a Newton step can do without.
 constexpr double smallest_pivot = 1e-11;
+
+/// [-] Rows from which on the work is cut into parts. Below, a part takes less than the few microseconds it takes to hand it over.
+constexpr int smallest_shared_system = 1000;
+/// The work of a subtree is at most the whole over this, which leaves parts to choose from for as many threads as there may be.
+constexpr double subtrees_of_equal_work = 2.0 * most_threads;
+constexpr int subtree_parts = 2 * most_threads;
+/// [-] Rows of the top that are eliminated one after the other before the others go on: a part of the work small against the rest, and large against
+/// a call upon the threads.
+constexpr int panel_rows = 32;
 
 /// Rows of blocks are padded to four numbers, one register of four. The padding of products is that of their right factor; nobody reads it.
 constexpr int lanes = 4;
@@ -47,7 +63,11 @@ struct Factor {
   std::vector<int> row_start, diagonal, column;
   std::vector<char> same_as_next;  ///< of rows: to the right of the next diagonal this row of U has the next one's pattern
   std::vector<int> target;         ///< slot in the factor of the matrix's entries, in the order in which elimination meets them
-  std::vector<int> working_place;  ///< slot of a column in the row under work
+  std::vector<int> target_start;   ///< where in `target` a row begins
+  std::vector<double> size;        ///< of rows: square of the pivot's norm before the elimination
+  std::vector<int> panel;          ///< of rows: 0 in a subtree; of the top from 1 on
+  std::vector<std::vector<int>> subtrees;  ///< rows of one or several subtrees each; all rows of a small system
+  std::vector<std::vector<int>> panels;    ///< rows of the top
   std::vector<PaddedBlock<N>> value;
   std::vector<PaddedVector> solution;  ///< a block row each, in the factor's order
 
@@ -85,21 +105,20 @@ struct Multipliers {
 };
 
 template <int N>
-OPENCLOSE_KERNEL void subtract_row(Factor<N>& f, int s, int k) {
+OPENCLOSE_KERNEL void subtract_row(Factor<N>& f, int s, int k, const int* place) {
   f.value[s] = product(f.value[s], f.value[f.diagonal[k]]);
   const Multipliers<N> left(f.value[s]);
   for (int u = f.diagonal[k] + 1; u < f.row_start[k + 1]; ++u) {
     const PaddedBlock<N>& right = f.value[u];
-    PaddedBlock<N>& target = f.value[f.working_place[f.column[u]]];
+    PaddedBlock<N>& target = f.value[place[f.column[u]]];
     for (int r = 0; r < N; ++r) left.subtract_row_of_product(r, right, target.row[r]);
   }
 }
 
 /// Rows k and k + 1 of one pattern: every block of the row under work is fetched once for both.
 template <int N>
-OPENCLOSE_KERNEL void subtract_two_rows(Factor<N>& f, int s, int k) {
+OPENCLOSE_KERNEL void subtract_two_rows(Factor<N>& f, int s, int k, const int* place) {
   PaddedBlock<N>* const value = f.value.data();
-  const int* const place = f.working_place.data();
   const int* const column = f.column.data();
   const int first = f.diagonal[k] + 2, second = f.diagonal[k + 1] + 1, count = f.row_start[k + 1] - first;
   value[s] = product(value[s], value[first - 2]);
@@ -119,16 +138,18 @@ OPENCLOSE_KERNEL void subtract_two_rows(Factor<N>& f, int s, int k) {
   }
 }
 
-/// Subtracts from row i what the rows above it contribute.
+/// Subtracts from row i what the rows of a panel above it contribute.
+/// \param place  room for the slot of each column in the row
 template <int N>
-OPENCLOSE_KERNEL void subtract_rows_above(Factor<N>& f, int i) {
-  for (int s = f.row_start[i]; s < f.row_start[i + 1]; ++s) f.working_place[f.column[s]] = s;
+OPENCLOSE_KERNEL void subtract_panel(Factor<N>& f, int i, int panel, int* place) {
+  for (int s = f.row_start[i]; s < f.row_start[i + 1]; ++s) place[f.column[s]] = s;
   for (int s = f.row_start[i]; s < f.diagonal[i]; ++s) {
     const int k = f.column[s];
-    if (f.same_as_next[k] && s + 1 < f.diagonal[i]) {
-      subtract_two_rows(f, s++, k);
+    if (f.panel[k] != panel) continue;
+    if (f.same_as_next[k] && s + 1 < f.diagonal[i] && f.panel[k + 1] == panel) {
+      subtract_two_rows(f, s++, k, place);
     } else {
-      subtract_row(f, s, k);
+      subtract_row(f, s, k, place);
     }
   }
 }
@@ -165,17 +186,31 @@ bool invert(PaddedBlock<N>& pivot, double original_size) {
   return block.allFinite();
 }
 
-/// False if a pivot has lost its digits.
+/// Lays row i of the matrix into its slots.
 template <int N>
-OPENCLOSE_KERNEL bool eliminate(const BlockMatrix<N>& matrix, Factor<N>& f) {
-  std::size_t next = 0;
-  for (int i = 0; i < f.rows(); ++i) {
-    std::fill(f.value.begin() + f.row_start[i], f.value.begin() + f.row_start[i + 1], PaddedBlock<N>{});
-    for (int s = matrix.row_start(f.order[i]); s < matrix.row_start(f.order[i] + 1); ++s) pad<N>(matrix.value(s), f.value[f.target[next++]]);
-    PaddedBlock<N>& pivot = f.value[f.diagonal[i]];
-    const double size = square_norm(pivot);
-    subtract_rows_above(f, i);
-    if (!invert(pivot, size)) return false;
+OPENCLOSE_KERNEL void lay_row(const BlockMatrix<N>& matrix, Factor<N>& f, int i) {
+  std::fill(f.value.begin() + f.row_start[i], f.value.begin() + f.row_start[i + 1], PaddedBlock<N>{});
+  int next = f.target_start[i];
+  for (int s = matrix.row_start(f.order[i]); s < matrix.row_start(f.order[i] + 1); ++s) pad<N>(matrix.value(s), f.value[f.target[next++]]);
+  f.size[i] = square_norm(f.value[f.diagonal[i]]);
+}
+
+/// Subtracts a panel from rows of later ones.
+template <int N>
+OPENCLOSE_KERNEL void advance(const BlockMatrix<N>& matrix, Factor<N>& f, const std::vector<int>& rows, int panel, int* place) {
+  for (int i : rows) {
+    if (panel == 0) lay_row(matrix, f, i);
+    subtract_panel(f, i, panel, place);
+  }
+}
+
+/// Ends the elimination of rows of a panel, which have subtracted all before it. False if a pivot has lost its digits.
+template <int N>
+OPENCLOSE_KERNEL bool eliminate(const BlockMatrix<N>& matrix, Factor<N>& f, const std::vector<int>& rows, int panel, int* place) {
+  for (int i : rows) {
+    if (panel == 0) lay_row(matrix, f, i);
+    subtract_panel(f, i, panel, place);
+    if (!invert(f.value[f.diagonal[i]], f.size[i])) return false;
   }
   return true;
 }
@@ -194,14 +229,19 @@ OPENCLOSE_KERNEL void subtract_product(const Factor<N>& f, int begin, int end, d
 }
 
 template <int N>
-OPENCLOSE_KERNEL void substitute(Factor<N>& f, const double* right_side, double* x) {
-  for (int i = 0; i < f.rows(); ++i) {
+OPENCLOSE_KERNEL void substitute_forward(Factor<N>& f, const std::vector<int>& rows, const double* right_side) {
+  for (int i : rows) {
     double sum[N];
     for (int k = 0; k < N; ++k) sum[k] = right_side[N * f.order[i] + k];
     subtract_product(f, f.row_start[i], f.diagonal[i], sum);
     for (int k = 0; k < N; ++k) f.solution[i].entries[k] = sum[k];
   }
-  for (int i = f.rows() - 1; i >= 0; --i) {
+}
+
+template <int N>
+OPENCLOSE_KERNEL void substitute_back(Factor<N>& f, const std::vector<int>& rows, double* x) {
+  for (auto row = rows.rbegin(); row != rows.rend(); ++row) {
+    const int i = *row;
     double sum[N];
     for (int k = 0; k < N; ++k) sum[k] = f.solution[i].entries[k];
     subtract_product(f, f.diagonal[i] + 1, f.row_start[i + 1], sum);
@@ -218,36 +258,46 @@ OPENCLOSE_KERNEL void substitute(Factor<N>& f, const double* right_side, double*
 /// The functions for the registers of a processor.
 template <int N>
 struct Kernels {
-  bool (*eliminate)(const BlockMatrix<N>&, Factor<N>&);
-  void (*substitute)(Factor<N>&, const double*, double*);
+  void (*advance)(const BlockMatrix<N>&, Factor<N>&, const std::vector<int>&, int, int*);
+  bool (*eliminate)(const BlockMatrix<N>&, Factor<N>&, const std::vector<int>&, int, int*);
+  void (*substitute_forward)(Factor<N>&, const std::vector<int>&, const double*);
+  void (*substitute_back)(Factor<N>&, const std::vector<int>&, double*);
 };
 
-template <int N>
-bool eliminate_with_any_registers(const BlockMatrix<N>& matrix, Factor<N>& f) {
-  return eliminate(matrix, f);
-}
-template <int N>
-void substitute_with_any_registers(Factor<N>& f, const double* right_side, double* x) {
-  substitute(f, right_side, x);
-}
+#define OPENCLOSE_KERNELS_WITH(registers, target)                                                                                            \
+  template <int N>                                                                                                                           \
+  target void advance_with_##registers(const BlockMatrix<N>& matrix, Factor<N>& f, const std::vector<int>& rows, int panel, int* place) {    \
+    advance(matrix, f, rows, panel, place);                                                                                                  \
+  }                                                                                                                                          \
+  template <int N>                                                                                                                           \
+  target bool eliminate_with_##registers(const BlockMatrix<N>& matrix, Factor<N>& f, const std::vector<int>& rows, int panel, int* place) {  \
+    return eliminate(matrix, f, rows, panel, place);                                                                                         \
+  }                                                                                                                                          \
+  template <int N>                                                                                                                           \
+  target void substitute_forward_with_##registers(Factor<N>& f, const std::vector<int>& rows, const double* right_side) {                    \
+    substitute_forward(f, rows, right_side);                                                                                                 \
+  }                                                                                                                                          \
+  template <int N>                                                                                                                           \
+  target void substitute_back_with_##registers(Factor<N>& f, const std::vector<int>& rows, double* x) {                                      \
+    substitute_back(f, rows, x);                                                                                                             \
+  }                                                                                                                                          \
+  template <int N>                                                                                                                           \
+  Kernels<N> kernels_with_##registers() {                                                                                                    \
+    return {&advance_with_##registers<N>, &eliminate_with_##registers<N>, &substitute_forward_with_##registers<N>,                           \
+            &substitute_back_with_##registers<N>};                                                                                           \
+  }
 
+OPENCLOSE_KERNELS_WITH(any_registers, )
 #ifdef OPENCLOSE_HAS_WIDE_REGISTERS
-template <int N>
-[[gnu::target("avx2")]] bool eliminate_with_wide_registers(const BlockMatrix<N>& matrix, Factor<N>& f) {
-  return eliminate(matrix, f);
-}
-template <int N>
-[[gnu::target("avx2")]] void substitute_with_wide_registers(Factor<N>& f, const double* right_side, double* x) {
-  substitute(f, right_side, x);
-}
+OPENCLOSE_KERNELS_WITH(wide_registers, [[gnu::target("avx2")]])
 #endif
 
 template <int N>
 Kernels<N> choose_kernels([[maybe_unused]] bool wide_registers) {
 #ifdef OPENCLOSE_HAS_WIDE_REGISTERS
-  if (wide_registers && __builtin_cpu_supports("avx2")) return {&eliminate_with_wide_registers<N>, &substitute_with_wide_registers<N>};
+  if (wide_registers && __builtin_cpu_supports("avx2")) return kernels_with_wide_registers<N>();
 #endif
-  return {&eliminate_with_any_registers<N>, &substitute_with_any_registers<N>};
+  return kernels_with_any_registers<N>();
 }
 
 template <int N>
@@ -262,7 +312,7 @@ class BlockLuSolver : public LinearSolver<N> {
       ++this->counters_.symbolic_skipped;
     }
     ++this->counters_.factorisations;
-    use_plain_ = !kernels_.eliminate(matrix, factor_);
+    use_plain_ = !eliminate(matrix);
     if (!use_plain_) return true;
     ++this->counters_.plain;
     if (!plain_) plain_ = make_sparse_solver<N>();
@@ -273,11 +323,37 @@ class BlockLuSolver : public LinearSolver<N> {
     ++this->counters_.solves;
     if (use_plain_) return plain_->solve(right_side, reduction);
     Eigen::VectorXd x(right_side.size());
-    kernels_.substitute(factor_, right_side.data(), x.data());
+    substitute(right_side.data(), x.data());
     return x;
   }
 
  private:
+  /// False if a pivot has lost its digits.
+  bool eliminate(const BlockMatrix<N>& matrix) {
+    const int subtrees = static_cast<int>(factor_.subtrees.size()), panels = static_cast<int>(factor_.panels.size());
+    std::atomic<bool> done = true;
+    for_each_part(SharedWork::factorisation, this->threads_, subtrees, [&](int part) {
+      if (!kernels_.eliminate(matrix, factor_, factor_.subtrees[part], 0, working_place_[part].data())) done = false;
+    });
+    for (int panel = 0; panel <= panels && done; ++panel) {
+      if (panel > 0) done = kernels_.eliminate(matrix, factor_, factor_.panels[panel - 1], panel, working_place_[0].data());
+      for_each_part(SharedWork::factorisation, this->threads_, panels - panel, [&](int later) {
+        kernels_.advance(matrix, factor_, factor_.panels[panel + later], panel, working_place_[later].data());
+      });
+    }
+    return done;
+  }
+
+  void substitute(const double* right_side, double* x) {
+    const int subtrees = static_cast<int>(factor_.subtrees.size());
+    for_each_part(SharedWork::substitution, this->threads_, subtrees, [&](int part) {
+      kernels_.substitute_forward(factor_, factor_.subtrees[part], right_side);
+    });
+    for (const std::vector<int>& panel : factor_.panels) kernels_.substitute_forward(factor_, panel, right_side);
+    for (auto panel = factor_.panels.rbegin(); panel != factor_.panels.rend(); ++panel) kernels_.substitute_back(factor_, *panel, x);
+    for_each_part(SharedWork::substitution, this->threads_, subtrees, [&](int part) { kernels_.substitute_back(factor_, factor_.subtrees[part], x); });
+  }
+
   void analyse(const BlockMatrix<N>& matrix) {
     ++this->counters_.symbolic;
     version_ = matrix.pattern_version();
@@ -301,12 +377,16 @@ class BlockLuSolver : public LinearSolver<N> {
       if (!row.empty()) children[row.front()].push_back(i);
     }
     lay_out(upper);
+    cut_into_subtrees();
 
     factor_.target.clear();
+    factor_.target_start.clear();
+    std::vector<int> place(rows);
     for (int i = 0; i < rows; ++i) {
-      for (int s = factor_.row_start[i]; s < factor_.row_start[i + 1]; ++s) factor_.working_place[factor_.column[s]] = s;
+      for (int s = factor_.row_start[i]; s < factor_.row_start[i + 1]; ++s) place[factor_.column[s]] = s;
+      factor_.target_start.push_back(static_cast<int>(factor_.target.size()));
       for (int s = matrix.row_start(factor_.order[i]); s < matrix.row_start(factor_.order[i] + 1); ++s)
-        factor_.target.push_back(factor_.working_place[place_[matrix.column(s)]]);
+        factor_.target.push_back(place[place_[matrix.column(s)]]);
     }
   }
 
@@ -376,13 +456,76 @@ class BlockLuSolver : public LinearSolver<N> {
     }
     factor_.value.resize(factor_.column.size());
     factor_.solution.resize(rows);
-    factor_.working_place.resize(rows);
+    factor_.size.resize(rows);
   }
 
-  static constexpr int unplaced = -1;
+  /// The row that is the first to subtract row i; -1 for a root.
+  int parent(int i) const {
+    const int next = factor_.diagonal[i] + 1;
+    return next < factor_.row_start[i + 1] ? factor_.column[next] : -1;
+  }
+
+  /// Products of blocks in the elimination of row i and all below it in the tree.
+  std::vector<double> work_of_subtrees() const {
+    const int rows = factor_.rows();
+    std::vector<double> work(rows, 0.0);
+    for (int i = 0; i < rows; ++i) {
+      for (int s = factor_.row_start[i]; s < factor_.diagonal[i]; ++s) work[i] += factor_.row_start[factor_.column[s] + 1] - factor_.diagonal[factor_.column[s]];
+      work[i] += 1.0;
+      if (parent(i) >= 0) work[parent(i)] += work[i];
+    }
+    return work;
+  }
+
+  void cut_into_subtrees() {
+    const int rows = factor_.rows();
+    factor_.panel.assign(rows, 0);
+    factor_.panels.clear();
+    factor_.subtrees.assign(1, {});
+    std::vector<int> part_of(rows, 0);
+    if (rows >= smallest_shared_system) part_of = share_out_subtrees();
+    for (int i = 0, top = 0; i < rows; ++i) {
+      if (part_of[i] != in_top) {
+        factor_.subtrees[part_of[i]].push_back(i);
+        continue;
+      }
+      if (top % panel_rows == 0) factor_.panels.emplace_back();
+      factor_.panels.back().push_back(i);
+      factor_.panel[i] = 1 + top++ / panel_rows;
+    }
+    working_place_.assign(std::max(factor_.subtrees.size(), factor_.panels.size()), std::vector<int>(rows));
+  }
+
+  /// The part of each row; large subtrees are dealt out first, each to the part with the least work.
+  std::vector<int> share_out_subtrees() {
+    const int rows = factor_.rows();
+    const std::vector<double> work = work_of_subtrees();
+    double whole = 0.0;
+    for (int i = 0; i < rows; ++i) whole += parent(i) < 0 ? work[i] : 0.0;
+    const double most = whole / subtrees_of_equal_work;
+    std::vector<int> part_of(rows, in_top), roots;
+    for (int i = 0; i < rows; ++i) {
+      if (work[i] <= most && (parent(i) < 0 || work[parent(i)] > most)) roots.push_back(i);
+    }
+    std::stable_sort(roots.begin(), roots.end(), [&](int a, int b) { return work[a] > work[b]; });
+    factor_.subtrees.assign(subtree_parts, {});
+    std::vector<double> given(subtree_parts, 0.0);
+    for (int root : roots) {
+      const auto least = std::min_element(given.begin(), given.end());
+      *least += work[root];
+      part_of[root] = static_cast<int>(least - given.begin());
+    }
+    for (int i = rows - 1; i >= 0; --i) {
+      if (work[i] <= most && parent(i) >= 0 && work[parent(i)] <= most) part_of[i] = part_of[parent(i)];
+    }
+    return part_of;
+  }
+
+  static constexpr int unplaced = -1, in_top = -1;
   long version_ = -1;
   Kernels<N> kernels_;
   Factor<N> factor_;
+  std::vector<std::vector<int>> working_place_;  ///< for each part: slot of a column in the row under work
   std::vector<int> place_;  ///< in the factor, of a row of the matrix
   bool use_plain_ = false;
   std::unique_ptr<LinearSolver<N>> plain_;

@@ -38,13 +38,17 @@ class BlockMatrix {
   const Block& value(int slot) const { return values_[slot]; }
   Block& value(int slot) { return values_[slot]; }  ///< slots stand as long as the pattern
 
+  void use_threads(int threads) { threads_ = threads; }  ///< for products; they are the same to the last bit
   Eigen::VectorXd multiply(const Eigen::VectorXd& x) const;
   Eigen::MatrixXd dense() const;
 
  private:
   int slot(int row, int column) const;
 
+  void multiply_rows(int first, int end, const Eigen::VectorXd& x, Eigen::VectorXd& y) const;
+
   long pattern_version_ = 0;
+  int threads_ = 1;
   std::vector<int> row_start_{0};
   std::vector<int> columns_;
   std::vector<int> diagonal_;

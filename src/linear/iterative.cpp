@@ -57,6 +57,8 @@ class IncompleteSolver : public LinearSolver<N> {
     return x;
   }
 
+  void use_threads(int threads) override { direct_->use_threads(threads); }
+
   void exchange(Archive& archive) override {
     LinearSolver<N>::exchange(archive);
     direct_->exchange(archive);

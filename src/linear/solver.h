@@ -48,11 +48,14 @@ class LinearSolver {
   virtual Eigen::VectorXd solve(const Eigen::VectorXd& right_side, double reduction) = 0;
   Eigen::VectorXd solve(const Eigen::VectorXd& right_side) { return solve(right_side, full_reduction); }
   const LinearCounters& counters() const { return counters_; }
+  /// That share the work where it is worth it; the results are the same to the last bit.
+  virtual void use_threads(int threads) { threads_ = threads; }
   /// What the next solves depend on; the symbolic work is done again after reading.
   virtual void exchange(Archive& archive) { archive(counters_); }
 
  protected:
   LinearCounters counters_;
+  int threads_ = 1;
 };
 
 /// Dense LU with partial pivoting: cheapest for a handful of blocks.
