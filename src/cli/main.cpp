@@ -9,6 +9,7 @@
 
 #include "openclose/analysis/spectrum.h"
 #include "openclose/analysis/strength_reduction.h"
+#include "openclose/core/parallel.h"
 #include "openclose/core/process.h"
 #include "openclose/integrator/integrators.h"
 #include "openclose/integrator/registry.h"
@@ -311,6 +312,8 @@ void add_options(CLI::App& app, Options& options, bool writes_folder) {
   shorthand("--contact", "method.contact", "contact enforcement: " + listed(enforcements<unknowns>()));
   shorthand("--start", "method.start", "start state: unloaded, settled, normal_balanced or steady_sliding");
   shorthand("--integrator", "method.integrator", "time integrator of soft: " + listed(integrators<unknowns>()));
+  shorthand("--threads", "method.threads",
+            fmt::format("threads that share the work of large systems, 1 to {}; the results are the same to the last bit", most_threads));
   shorthand("--dt", "step.dt_s", "time step [s]");
   shorthand("--end", "end.time_s", "end time [s]");
   app.add_option_function<std::vector<std::string>>(

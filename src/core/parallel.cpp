@@ -9,8 +9,8 @@
 namespace openclose {
 namespace {
 
-/// Looks for work, some tenth of a millisecond on an idle processor, before a helper sleeps: the next call mostly comes sooner, and waking takes longer
-/// than most parts. Each look leaves the processor to whoever else wants it.
+/// Looks for work, some tenth of a millisecond on an idle processor, before a helper sleeps: the next call mostly comes sooner, and waking takes
+/// longer than most parts. Each look leaves the processor to whoever else wants it.
 constexpr int looks_before_sleep = 300;
 
 std::array<std::atomic<long>, kinds_of_shared_work> shared{};

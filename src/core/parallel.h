@@ -19,9 +19,8 @@ enum class SharedWork {
   factorisation,  ///< subtrees and rows of a factor
   substitution,   ///< of the same
   product,        ///< matrix times vector
-  links,          ///< contacts of the explicit loop
 };
-inline constexpr int kinds_of_shared_work = 4;
+inline constexpr int kinds_of_shared_work = 3;
 
 /// Calls work(i) for i from 0 to parts - 1, on `threads` threads at a time; in this order if that is 1. The work must
 /// neither throw nor call this again, and only one thread of the program may call it at a time.

@@ -2,12 +2,18 @@
 
 #include <time.h>
 
+#include <chrono>
 #include <fstream>
 #include <string>
 
 #include "openclose/core/parallel.h"
 
 namespace openclose {
+namespace {
+
+const auto program_start = std::chrono::steady_clock::now();
+
+}  // namespace
 
 // Of the thread while it is the only one: the clock of the process only ticks every few milliseconds where a limit on its CPU time is set.
 double process_cpu_time() {
@@ -15,6 +21,10 @@ double process_cpu_time() {
   timespec now{};
   clock_gettime(has_used_threads() ? CLOCK_PROCESS_CPUTIME_ID : CLOCK_THREAD_CPUTIME_ID, &now);
   return static_cast<double>(now.tv_sec) + nanosecond * static_cast<double>(now.tv_nsec);
+}
+
+double wall_time() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - program_start).count();
 }
 
 // Not getrusage: its maximum goes back to before the program was loaded and has the memory of who started it.

@@ -5,6 +5,8 @@ namespace openclose {
 
 /// [s] CPU time since the process began, of all its threads once for_each_part() has used several; before, of the thread that asks.
 double process_cpu_time();
+/// [s] Time since the program was started.
+double wall_time();
 /// [bytes] Largest resident memory since the program was loaded; 0 where /proc does not tell.
 long peak_memory();
 

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "openclose/core/parallel.h"
 #include "openclose/core/process.h"
 #include "openclose/integrator/integrators.h"
 #include "openclose/scene/names.h"
@@ -220,6 +221,7 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
                   {"skip_looks", scene.method.skip_looks},
                   {"skip_reload", scene.method.skip_reload},
                   {"skip_resting", scene.method.skip_resting},
+                  {"threads", scene.method.threads},
                   {"step_fraction", scene.method.step_fraction},
                   {"damping", word_for(mass_damping_words, scene.method.damping)},
                   {"local_damping", scene.method.local_damping},
@@ -269,6 +271,7 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
     j["milestones"] = milestones_json(summary.milestones);
     j["cpu_s"] = {{"start", summary.cpu_of_start}, {"motion", summary.cpu_of_motion}};
   }
+  j["wall_s"] = wall_time();
   j["max_penetration_m"] = summary.max_penetration;
   j["peak_memory_bytes"] = peak_memory();
   j["counters"] = {{"steps", steps.steps},
@@ -298,6 +301,9 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
                    {"krylov_iterations", linear.krylov_iterations},
                    {"krylov_given_up", linear.krylov_given_up},
                    {"incomplete_factorisations", linear.incomplete}};
+  j["work_shared"] = {{"factorisations", times_shared(SharedWork::factorisation)},
+                      {"substitutions", times_shared(SharedWork::substitution)},
+                      {"products", times_shared(SharedWork::product)}};
   if (simulation.is_explicit()) {
     j["explicit"] = {{"critical_step_s", steps.smallest_critical_step},
                      {"longest_step_s", steps.longest_step},

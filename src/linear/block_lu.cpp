@@ -61,11 +61,11 @@ template <int N>
 struct Factor {
   std::vector<int> order;  ///< row of the matrix at a place in the factor
   std::vector<int> row_start, diagonal, column;
-  std::vector<char> same_as_next;  ///< of rows: to the right of the next diagonal this row of U has the next one's pattern
-  std::vector<int> target;         ///< slot in the factor of the matrix's entries, in the order in which elimination meets them
-  std::vector<int> target_start;   ///< where in `target` a row begins
-  std::vector<double> size;        ///< of rows: square of the pivot's norm before the elimination
-  std::vector<int> panel;          ///< of rows: 0 in a subtree; of the top from 1 on
+  std::vector<char> same_as_next;          ///< of rows: to the right of the next diagonal this row of U has the next one's pattern
+  std::vector<int> target;                 ///< slot in the factor of the matrix's entries, in the order in which elimination meets them
+  std::vector<int> target_start;           ///< where in `target` a row begins
+  std::vector<double> size;                ///< of rows: square of the pivot's norm before the elimination
+  std::vector<int> panel;                  ///< of rows: 0 in a subtree; of the top from 1 on
   std::vector<std::vector<int>> subtrees;  ///< rows of one or several subtrees each; all rows of a small system
   std::vector<std::vector<int>> panels;    ///< rows of the top
   std::vector<PaddedBlock<N>> value;
@@ -264,27 +264,27 @@ struct Kernels {
   void (*substitute_back)(Factor<N>&, const std::vector<int>&, double*);
 };
 
-#define OPENCLOSE_KERNELS_WITH(registers, target)                                                                                            \
-  template <int N>                                                                                                                           \
-  target void advance_with_##registers(const BlockMatrix<N>& matrix, Factor<N>& f, const std::vector<int>& rows, int panel, int* place) {    \
-    advance(matrix, f, rows, panel, place);                                                                                                  \
-  }                                                                                                                                          \
-  template <int N>                                                                                                                           \
-  target bool eliminate_with_##registers(const BlockMatrix<N>& matrix, Factor<N>& f, const std::vector<int>& rows, int panel, int* place) {  \
-    return eliminate(matrix, f, rows, panel, place);                                                                                         \
-  }                                                                                                                                          \
-  template <int N>                                                                                                                           \
-  target void substitute_forward_with_##registers(Factor<N>& f, const std::vector<int>& rows, const double* right_side) {                    \
-    substitute_forward(f, rows, right_side);                                                                                                 \
-  }                                                                                                                                          \
-  template <int N>                                                                                                                           \
-  target void substitute_back_with_##registers(Factor<N>& f, const std::vector<int>& rows, double* x) {                                      \
-    substitute_back(f, rows, x);                                                                                                             \
-  }                                                                                                                                          \
-  template <int N>                                                                                                                           \
-  Kernels<N> kernels_with_##registers() {                                                                                                    \
-    return {&advance_with_##registers<N>, &eliminate_with_##registers<N>, &substitute_forward_with_##registers<N>,                           \
-            &substitute_back_with_##registers<N>};                                                                                           \
+#define OPENCLOSE_KERNELS_WITH(registers, target)                                                                                           \
+  template <int N>                                                                                                                          \
+  target void advance_with_##registers(const BlockMatrix<N>& matrix, Factor<N>& f, const std::vector<int>& rows, int panel, int* place) {   \
+    advance(matrix, f, rows, panel, place);                                                                                                 \
+  }                                                                                                                                         \
+  template <int N>                                                                                                                          \
+  target bool eliminate_with_##registers(const BlockMatrix<N>& matrix, Factor<N>& f, const std::vector<int>& rows, int panel, int* place) { \
+    return eliminate(matrix, f, rows, panel, place);                                                                                        \
+  }                                                                                                                                         \
+  template <int N>                                                                                                                          \
+  target void substitute_forward_with_##registers(Factor<N>& f, const std::vector<int>& rows, const double* right_side) {                   \
+    substitute_forward(f, rows, right_side);                                                                                                \
+  }                                                                                                                                         \
+  template <int N>                                                                                                                          \
+  target void substitute_back_with_##registers(Factor<N>& f, const std::vector<int>& rows, double* x) {                                     \
+    substitute_back(f, rows, x);                                                                                                            \
+  }                                                                                                                                         \
+  template <int N>                                                                                                                          \
+  Kernels<N> kernels_with_##registers() {                                                                                                   \
+    return {&advance_with_##registers<N>, &eliminate_with_##registers<N>, &substitute_forward_with_##registers<N>,                          \
+            &substitute_back_with_##registers<N>};                                                                                          \
   }
 
 OPENCLOSE_KERNELS_WITH(any_registers, )
@@ -337,21 +337,20 @@ class BlockLuSolver : public LinearSolver<N> {
     });
     for (int panel = 0; panel <= panels && done; ++panel) {
       if (panel > 0) done = kernels_.eliminate(matrix, factor_, factor_.panels[panel - 1], panel, working_place_[0].data());
-      for_each_part(SharedWork::factorisation, this->threads_, panels - panel, [&](int later) {
-        kernels_.advance(matrix, factor_, factor_.panels[panel + later], panel, working_place_[later].data());
-      });
+      for_each_part(SharedWork::factorisation, this->threads_, panels - panel,
+                    [&](int later) { kernels_.advance(matrix, factor_, factor_.panels[panel + later], panel, working_place_[later].data()); });
     }
     return done;
   }
 
   void substitute(const double* right_side, double* x) {
     const int subtrees = static_cast<int>(factor_.subtrees.size());
-    for_each_part(SharedWork::substitution, this->threads_, subtrees, [&](int part) {
-      kernels_.substitute_forward(factor_, factor_.subtrees[part], right_side);
-    });
+    for_each_part(SharedWork::substitution, this->threads_, subtrees,
+                  [&](int part) { kernels_.substitute_forward(factor_, factor_.subtrees[part], right_side); });
     for (const std::vector<int>& panel : factor_.panels) kernels_.substitute_forward(factor_, panel, right_side);
     for (auto panel = factor_.panels.rbegin(); panel != factor_.panels.rend(); ++panel) kernels_.substitute_back(factor_, *panel, x);
-    for_each_part(SharedWork::substitution, this->threads_, subtrees, [&](int part) { kernels_.substitute_back(factor_, factor_.subtrees[part], x); });
+    for_each_part(SharedWork::substitution, this->threads_, subtrees,
+                  [&](int part) { kernels_.substitute_back(factor_, factor_.subtrees[part], x); });
   }
 
   void analyse(const BlockMatrix<N>& matrix) {
@@ -470,7 +469,8 @@ class BlockLuSolver : public LinearSolver<N> {
     const int rows = factor_.rows();
     std::vector<double> work(rows, 0.0);
     for (int i = 0; i < rows; ++i) {
-      for (int s = factor_.row_start[i]; s < factor_.diagonal[i]; ++s) work[i] += factor_.row_start[factor_.column[s] + 1] - factor_.diagonal[factor_.column[s]];
+      for (int s = factor_.row_start[i]; s < factor_.diagonal[i]; ++s)
+        work[i] += factor_.row_start[factor_.column[s] + 1] - factor_.diagonal[factor_.column[s]];
       work[i] += 1.0;
       if (parent(i) >= 0) work[parent(i)] += work[i];
     }
@@ -526,7 +526,7 @@ class BlockLuSolver : public LinearSolver<N> {
   Kernels<N> kernels_;
   Factor<N> factor_;
   std::vector<std::vector<int>> working_place_;  ///< for each part: slot of a column in the row under work
-  std::vector<int> place_;  ///< in the factor, of a row of the matrix
+  std::vector<int> place_;                       ///< in the factor, of a row of the matrix
   bool use_plain_ = false;
   std::unique_ptr<LinearSolver<N>> plain_;
 };

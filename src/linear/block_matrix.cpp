@@ -82,9 +82,8 @@ template <int N>
 Eigen::VectorXd BlockMatrix<N>::multiply(const Eigen::VectorXd& x) const {
   Eigen::VectorXd y = Eigen::VectorXd::Zero(unknowns());
   const int parts = std::max(1, rows() / rows_of_a_part);
-  for_each_part(SharedWork::product, threads_, parts, [&](int part) {
-    multiply_rows(part * rows_of_a_part, part + 1 < parts ? (part + 1) * rows_of_a_part : rows(), x, y);
-  });
+  for_each_part(SharedWork::product, threads_, parts,
+                [&](int part) { multiply_rows(part * rows_of_a_part, part + 1 < parts ? (part + 1) * rows_of_a_part : rows(), x, y); });
   return y;
 }
 

@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "openclose/analysis/settle.h"
+#include "openclose/core/parallel.h"
 #include "support/catch.h"
 #include "support/scenes.h"
 
@@ -57,6 +58,49 @@ TEST_CASE("the linear solver does not show in the answer", "[analysis][linear]")
       // Unbalanced forces of 1e-12 of the largest one, on springs of 1e9 N/m, and what friction makes of them in 80 ms.
       for (std::size_t i = 0; i < u.size(); ++i) REQUIRE(std::abs(u[i] - expected[i]) < 1e-9);
       CHECK((counters.incomplete > 0) == (kind == LinearSolverKind::iterative));
+    }
+  }
+}
+
+TEST_CASE("several threads do what one does, bit for bit, also after a restart", "[analysis][linear][parallel]") {
+  const auto state_of = [](Simulation<3>& simulation) {
+    Archive archive;
+    archive(simulation);
+    return archive.bytes();
+  };
+  for (const std::string contact : {"soft", "hard", "shi"}) {
+    INFO(contact);
+    Scene scene = wall(25, 42);
+    scene.method.contact = contact;
+    scene.method.linear_solver = LinearSolverKind::iterative;
+    scene.step.dt = 2e-3;
+    std::vector<std::string> states;  // after two steps and four
+    for (int threads = 1; threads <= 3; ++threads) {
+      scene.method.threads = threads;
+      const long factored = times_shared(SharedWork::factorisation), solved = times_shared(SharedWork::substitution);
+      const long multiplied = times_shared(SharedWork::product);
+      Simulation<3> simulation(scene);
+      std::vector<std::string> now;
+      for (int i = 1; i <= 4; ++i) {
+        REQUIRE(simulation.advance(scene.step.dt));
+        if (i % 2 == 0) now.push_back(state_of(simulation));
+      }
+      CHECK(simulation.system().displacement(simulation.system().block_count() - 1).norm() > 1e-3);
+      if (threads == 1) {
+        states = now;
+        continue;
+      }
+      CHECK(now == states);
+      CHECK(times_shared(SharedWork::product) > multiplied);
+      CHECK((times_shared(SharedWork::factorisation) > factored) == (times_shared(SharedWork::substitution) > solved));
+      // What one thread has begun several end.
+      Simulation<3> later(scene);
+      Archive archive(states[0]);
+      archive(later);
+      const long before = times_shared(SharedWork::product);
+      for (int i = 0; i < 2; ++i) REQUIRE(later.advance(scene.step.dt));
+      CHECK(state_of(later) == states[1]);
+      CHECK(times_shared(SharedWork::product) > before);
     }
   }
 }

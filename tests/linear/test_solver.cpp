@@ -1,6 +1,7 @@
 #include <limits>
 #include <tuple>
 
+#include "openclose/core/parallel.h"
 #include "openclose/linear/solver.h"
 #include "random_systems.h"
 #include "support/catch.h"
@@ -107,6 +108,33 @@ TEST_CASE("the block solver's answer has the same bits with narrow and with wide
     REQUIRE(wide->factor(matrix));
     REQUIRE(narrow->factor(matrix));
     CHECK(wide->solve(right_side) == narrow->solve(right_side));
+  }
+}
+
+TEST_CASE("factors, answers and products have the same bits with one thread and with several", "[linear][solver][parallel]") {
+  RandomSystems random(10);
+  constexpr int rows = 1500;  // large enough to be shared
+  const auto pairs = random.couplings(rows, rows + rows / 5);
+  BlockMatrix<3> matrix;
+  matrix.set_pattern(rows, pairs);
+  random.fill(matrix, pairs, 1.5);
+  const Eigen::VectorXd right_side = random.vector(matrix.unknowns());
+  const Solver one = make("block");
+  REQUIRE(one->factor(matrix));
+  const Eigen::VectorXd x = one->solve(right_side), product = matrix.multiply(right_side);
+  CHECK(residual_over_rounding(matrix, x, right_side) < 1.0);
+  for (int threads = 2; threads <= most_threads; ++threads) {
+    const long factored = times_shared(SharedWork::factorisation), solved = times_shared(SharedWork::substitution);
+    const long multiplied = times_shared(SharedWork::product);
+    const Solver several = make("block");
+    several->use_threads(threads);
+    REQUIRE(several->factor(matrix));
+    CHECK(several->solve(right_side) == x);
+    matrix.use_threads(threads);
+    CHECK(matrix.multiply(right_side) == product);
+    CHECK(times_shared(SharedWork::factorisation) > factored + 1);  // the subtrees, and the top
+    CHECK(times_shared(SharedWork::substitution) == solved + 2);
+    CHECK(times_shared(SharedWork::product) == multiplied + 1);
   }
 }
 
