@@ -26,17 +26,17 @@ class Soft final : public Enforcement<N> {
     return s;
   }
 
-  StepSolution<N> solve(const StepProblem<N>& problem) override {
+  void solve(const StepProblem<N>& problem, StepSolution<N>& solution) override {
     springs_.resize(problem.contacts.size());
     for (std::size_t c = 0; c < springs_.size(); ++c) springs_[c] = springs(problem, problem.contacts[c]);
-    StepSolution<N> solution = attempt(problem);
-    if (solution.converged || !problem.averages_path()) return solution;
+    attempt(problem, solution);
+    if (solution.converged || !problem.averages_path()) return;
     for (ContactSprings& s : springs_) s.dissipation = largest_dissipation;
     const int wasted = solution.iterations;
-    solution = attempt(problem);
+    solution.clear();
+    attempt(problem, solution);
     solution.iterations += wasted;
     solution.dissipative = true;
-    return solution;
   }
 
   bool takes_adaptive_steps() const override { return true; }
@@ -45,11 +45,9 @@ class Soft final : public Enforcement<N> {
   void exchange(Archive& archive) override { newton_.exchange(archive); }
 
  private:
-  StepSolution<N> attempt(const StepProblem<N>& problem) {
-    StepSolution<N> solution;
+  void attempt(const StepProblem<N>& problem, StepSolution<N>& solution) {
     solution.d = drift(problem);
     newton_.solve(problem, springs_, solution);
-    return solution;
   }
 
   Newton<N> newton_;
