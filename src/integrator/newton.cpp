@@ -29,6 +29,8 @@ constexpr double shortest_backtrack = 0.01;
 /// contacts that change state, or from the turning of the others. Iterations of all steps of a slope of 1,773 free blocks: 411 with 1e-12, 418 with
 /// 1e-6, 420 with 1e-5, 432 with 1e-4.
 constexpr double linear_reduction = 1e-5;
+/// [-] The same with held contacts: single loose blocks, whose residual is a small part of the whole, need their digits, too.
+constexpr double held_linear_reduction = 1e-12;
 /// After so many refusals of the exact step without gain the symmetric steps in between get shorter, so that the two do not go round in a circle.
 constexpr int patience = 1;
 /// [-] A static step of which the line search takes less is begun again with held contacts.
@@ -189,7 +191,7 @@ template <int N>
 Eigen::VectorXd Newton<N>::direction(const Eigen::VectorXd& d, Tangent tangent) {
   assemble(d, tangent);
   Eigen::VectorXd step;
-  if (tangent_.solver().factor(tangent_.matrix())) step = tangent_.solver().solve(residual_, linear_reduction);
+  if (tangent_.solver().factor(tangent_.matrix())) step = tangent_.solver().solve(residual_, holds_.empty() ? linear_reduction : held_linear_reduction);
   return step;
 }
 
