@@ -5,6 +5,7 @@
 #include "openclose/integrator/integrators.h"
 #include "openclose/integrator/newton.h"
 #include "openclose/integrator/registry.h"
+#include "openclose/integrator/spring_list.h"
 
 namespace openclose {
 namespace {
@@ -27,11 +28,10 @@ class Soft final : public Enforcement<N> {
   }
 
   void solve(const StepProblem<N>& problem, StepSolution<N>& solution) override {
-    springs_.resize(problem.contacts.size());
-    for (std::size_t c = 0; c < springs_.size(); ++c) springs_[c] = springs(problem, problem.contacts[c]);
+    springs_.renew(problem, [&](const Contact& contact) { return springs(problem, contact); });
     attempt(problem, solution);
     if (solution.converged || !problem.averages_path()) return;
-    for (ContactSprings& s : springs_) s.dissipation = largest_dissipation;
+    springs_.set_dissipation(largest_dissipation);
     const int wasted = solution.iterations;
     solution.clear();
     attempt(problem, solution);
@@ -47,11 +47,11 @@ class Soft final : public Enforcement<N> {
  private:
   void attempt(const StepProblem<N>& problem, StepSolution<N>& solution) {
     solution.d = drift(problem);
-    newton_.solve(problem, springs_, solution);
+    newton_.solve(problem, springs_.springs(), solution);
   }
 
   Newton<N> newton_;
-  std::vector<ContactSprings> springs_;
+  SpringList<N> springs_;
 };
 
 }  // namespace
