@@ -80,6 +80,16 @@ struct StepSolution {
   std::vector<ContactOutcome<N>> start_contacts;  ///< forces that entered with weight 1 - theta; empty for theta = 1
   std::vector<PathOutcome<N>> paths;              ///< mean forces that entered instead of those at the end; empty for other schemes
 
+  /// Empty again, with its memory for the next step.
+  void clear() {
+    converged = compliant = dissipative = false;
+    reason.clear();
+    iterations = 0;
+    contacts.clear();
+    start_contacts.clear();
+    paths.clear();
+  }
+
   /// Displacement of block b: zero if fixed.
   typename Motion<N>::Unknowns of(const BlockSystem<N>& system, int b) const {
     const int equation = system.block(b).equation;
@@ -95,7 +105,8 @@ class Enforcement {
 
   /// Springs of a contact at the start of a step.
   virtual ContactSprings springs(const StepProblem<N>& problem, const Contact& contact) const = 0;
-  virtual StepSolution<N> solve(const StepProblem<N>& problem) = 0;
+  /// Fills an empty solution.
+  virtual void solve(const StepProblem<N>& problem, StepSolution<N>& solution) = 0;
 
   /// Throws InputError if the method asks for a theta that the enforcement has no use for.
   virtual std::unique_ptr<TimeScheme<N>> make_time_scheme(const MethodInput& method) const = 0;

@@ -298,12 +298,11 @@ void Newton<N>::report_contacts(std::vector<ContactOutcome<N>>& contacts) const 
 
 template <int N>
 void Newton<N>::report_paths(StepSolution<N>& solution) const {
-  solution.paths.resize(averages_path() ? contact_count_ : 0);
-  for (std::size_t c = 0; c < solution.paths.size(); ++c) {
+  for (std::size_t c = 0; c < contact_count_; ++c) {
     const ContactPose<N>& pose = solution.contacts[c].pose;
     const ContactSprings& springs = (*springs_)[c];
     const PathAverage path = path_average(springs, start(c).strength(lane(c)), pose.gap_change, pose.slip_change, springs.dissipation);
-    solution.paths[c] = {path.mean.normal, path.mean.shear, path.energies, force_pose(c)};
+    solution.paths.push_back({path.mean.normal, path.mean.shear, path.energies, force_pose(c)});
     solution.contacts[c].forces = path.end;
   }
 }
@@ -432,7 +431,8 @@ void Newton<N>::solve(const StepProblem<N>& problem, const std::vector<ContactSp
   }
   if (!solution.converged) solution.reason = "Newton's method did not converge";
   report_contacts(solution.contacts);
-  report_paths(solution);
+  solution.paths.clear();
+  if (averages_path()) report_paths(solution);
 }
 
 template <int N>
