@@ -113,8 +113,13 @@ TEST_CASE("the block solver's answer has the same bits with narrow and with wide
 
 TEST_CASE("factors, answers and products have the same bits with one thread and with several", "[linear][solver][parallel]") {
   RandomSystems random(10);
-  constexpr int rows = 1500;  // large enough to be shared
-  const auto pairs = random.couplings(rows, rows + rows / 5);
+  // A grid large enough to be shared, whose elimination tree has large subtrees.
+  constexpr int side = 40, rows = side * side;
+  std::vector<std::pair<int, int>> pairs;
+  for (int i = 0; i < rows; ++i) {
+    if (i % side + 1 < side) pairs.emplace_back(i, i + 1);
+    if (i + side < rows) pairs.emplace_back(i, i + side);
+  }
   BlockMatrix<3> matrix;
   matrix.set_pattern(rows, pairs);
   random.fill(matrix, pairs, 1.5);
