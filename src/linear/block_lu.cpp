@@ -389,7 +389,8 @@ class BlockLuSolver : public LinearSolver<N> {
     }
   }
 
-  /// The connected parts of the pattern one after another, each ordered for itself: none of its numbers depends on what else is in the system.
+  /// The connected parts of the pattern one after another, each ordered for itself: in what is not cut into subtrees none of its numbers depends on
+  /// what else is in the system.
   void order_rows(const BlockMatrix<N>& matrix) {
     const int rows = matrix.rows();
     factor_.order.clear();
