@@ -272,7 +272,7 @@ template <int N>
 Eigen::VectorXd Newton<N>::direction(const Eigen::VectorXd& d, Tangent tangent) {
   assemble(d, tangent);
   Eigen::VectorXd step;
-  if (tangent_.solver().factor(tangent_.matrix())) step = tangent_.solver().solve(residual_, linear_reduction);
+  if (tangent_.factor()) step = tangent_.solver().solve(residual_, linear_reduction);
   return step;
 }
 
