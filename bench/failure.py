@@ -5,7 +5,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from measure import Bench, Trial
-from methods import DEM, HARD, SHI, SOFT_PATH_AVERAGE, SOFT_SHI, Method, Settings
+from methods import ADAPTIVE, DEM, HARD, SHI, SOFT_PATH_AVERAGE, SOFT_SHI, Method, Settings
 from runs import Case
 from scaling import spacings
 from slopes import JointedSlope
@@ -25,24 +25,33 @@ REFERENCE_STEPS_S = (2e-3, 1e-3)
 QUICK_REFERENCE_STEPS_S = (4e-3, 2e-3)
 # More blocks: one start, and a reference that is as fine as time allows.
 LARGE = {"full": (2000,), "long": (2000, 10000)}
-LARGE_REFERENCE_STEP_S, LARGE_STEP_S = 5e-3, 2e-2
+LARGE_REFERENCE_STEP_S = 5e-3
+
+DT_S = "step.dt_s"
 
 
 @dataclass(frozen=True)
 class Follower:
     method: Method
-    steps: tuple[float, ...]  # [s]
-    key: str = "step.dt_s"    # dem is refined by the fraction of its critical step
+    values: tuple[float, ...]  # of what refines its steps, those of quick runs first
+    key: str = DT_S            # or the part of dem's critical step, or the tolerance of adaptive ones
 
 
+STEPS_S = (0.02, 0.01, 0.05, 0.03, 0.005, 0.003)
+TOLERANCES_M = (1e-4, 3e-5, 1e-3, 1e-5)
+FRACTIONS = (0.9, 0.45, 0.225)
 FOLLOWERS = (
-    Follower(SOFT_SHI, (0.02, 0.01, 0.05, 0.03, 0.005, 0.003)),
-    Follower(SOFT_PATH_AVERAGE, (0.02, 0.01, 0.05, 0.03, 0.005, 0.003)),
-    Follower(HARD, (0.02, 0.01, 0.05, 0.03, 0.005, 0.003)),
+    *(Follower(method, STEPS_S) for method in (SOFT_SHI, SOFT_PATH_AVERAGE, HARD)),
+    *(Follower(method, TOLERANCES_M, "step.error_tolerance_m") for method in ADAPTIVE),
     Follower(SHI, (0.005, 0.01, 0.002)),
-    Follower(DEM, (0.9, 0.45, 0.225), "method.step_fraction"),
+    Follower(DEM, FRACTIONS, "method.step_fraction"),
 )
 QUICK_FOLLOWER_STEPS = 2
+LARGE_FOLLOWERS = (
+    *(Follower(method, (0.02,)) for method in (SOFT_SHI, SOFT_PATH_AVERAGE, HARD)),
+    Follower(ADAPTIVE[0], (1e-4, 3e-5), "step.error_tolerance_m"),
+    Follower(DEM, (0.9,), "method.step_fraction"),
+)
 
 
 @dataclass(frozen=True)
@@ -54,7 +63,7 @@ class Arrival:
 
 
 def _case(method: Method, key: str, value: float, start: int = 0, name: str = "", more: Settings = ()) -> Case:
-    settings = [*method.settings, ("step.dt_s", 0.01), (key, value), ("run.strength_reduction_factor", FACTOR * (1 + PERTURBATION * start)),
+    settings = [*method.settings, (DT_S, 0.01), (key, value), ("run.strength_reduction_factor", FACTOR * (1 + PERTURBATION * start)),
                 ("output.every_s", 1.0), ("output.milestones_m", list(DISTANCES_M)), *more]
     return Case(f"failure-{method.name}-{value:g}-{start}{name}".replace(" ", "_"), "run", JointedSlope.POST_FAILURE, tuple(settings), LIMIT_S)
 
@@ -89,7 +98,7 @@ def run(bench: Bench) -> Findings | None:
     starts = range(QUICK_STARTS if bench.quick else STARTS)
     references = []
     for dt in QUICK_REFERENCE_STEPS_S if bench.quick else REFERENCE_STEPS_S:
-        cases = [_case(REFERENCE, "step.dt_s", dt, k) for k in starts]
+        cases = [_case(REFERENCE, DT_S, dt, k) for k in starts]
         for case in cases:
             bench.run(case)
         references.append((dt, _arrival(bench, cases)))
@@ -112,9 +121,9 @@ def run(bench: Bench) -> Findings | None:
 
         return Trial(STUDY, scene, follower.method.name, cases[0], "motion",
                      f"time at which the toe block has moved 10, 20, 30, 40 m, mean of {len(starts)} starts, largest of the four against "
-                     f"{REFERENCE.name} with {1e3 * finest:g} ms", error, value if follower.key == "step.dt_s" else None, tuple(cases))
+                     f"{REFERENCE.name} with {1e3 * finest:g} ms", error, value if follower.key == DT_S else None, tuple(cases))
 
-    judged = [(f, value) for f in FOLLOWERS for value in (f.steps[:QUICK_FOLLOWER_STEPS] if bench.quick else f.steps)]
+    judged = [(f, value) for f in FOLLOWERS for value in (f.values[:QUICK_FOLLOWER_STEPS] if bench.quick else f.values)]
     bench.measure([trial(*run) for run in judged] + [trial(*run, RESTING_SCENE, "-resting", RESTING) for run in judged])
     for blocks in LARGE.get(bench.mode, ()):
         _large(bench, blocks)
@@ -122,12 +131,12 @@ def run(bench: Bench) -> Findings | None:
 
 
 def large_scene(blocks: int) -> str:
-    return f"{SCENE}, {blocks:,} blocks"
+    return f"{RESTING_SCENE}, {blocks:,} blocks"
 
 
 def _large(bench: Bench, blocks: int) -> None:
     name, more = f"-of-{blocks}", spacings(blocks)
-    reference = _case(REFERENCE, "step.dt_s", LARGE_REFERENCE_STEP_S, 0, name, more)
+    reference = _case(REFERENCE, DT_S, LARGE_REFERENCE_STEP_S, 0, name, more)
     bench.run(reference)
     fine = _arrival(bench, [reference])
     if fine is None:
@@ -141,7 +150,11 @@ def _large(bench: Bench, blocks: int) -> None:
 
         return of
 
-    cases = [(m.name, _case(m, "step.dt_s", LARGE_STEP_S, 0, name, more)) for m in (SOFT_SHI, SOFT_PATH_AVERAGE, HARD, DEM)]
-    bench.measure([Trial(STUDY, large_scene(blocks), method, case, "motion", "time at which the toe block has moved 10, 20, 30, 40 m, largest of the "
-                         f"four against {REFERENCE.name} with {1e3 * LARGE_REFERENCE_STEP_S:g} ms", error_against(case), LARGE_STEP_S)
-                   for method, case in cases])
+    trials = []
+    for follower in LARGE_FOLLOWERS:
+        for value in follower.values:
+            case = _case(follower.method, follower.key, value, 0, name, (*more, *RESTING))
+            trials.append(Trial(STUDY, large_scene(blocks), follower.method.name, case, "motion", "time at which the toe block has moved 10, 20, 30, "
+                                f"40 m, largest of the four against {REFERENCE.name} with {1e3 * LARGE_REFERENCE_STEP_S:g} ms and no block left alone",
+                                error_against(case), value if follower.key == DT_S else None))
+    bench.measure(trials)

@@ -19,9 +19,9 @@ SMALLEST_ERROR = 1e-9  # smaller ones, rounding, are drawn there
 SMALLEST_SHOWN = 1e-4  # of a critical angle: finer than the brackets
 LEGEND_INCHES = 0.7  # below the panels
 COLOUR = {**METHOD_COLOUR, "soft shi": "#1f77b4", "soft theta 1/2": "#17becf", "soft generalized_alpha": "#e377c2", "soft tr_bdf2": "#bcbd22",
-          "soft path_average": "#8c564b", "soft path_average adaptive": "#ff7f0e", "soft, 10 ms": "#8c564b"}
+          "soft path_average": "#8c564b", "soft path_average adaptive": "#ff7f0e", "soft shi adaptive": "#000080", "soft, 10 ms": "#8c564b"}
 MARKER = {**METHOD_MARKER, "soft shi": "o", "soft theta 1/2": "P", "soft generalized_alpha": "X", "soft tr_bdf2": "v", "soft path_average": "*",
-          "soft path_average adaptive": "<"}
+          "soft path_average adaptive": "<", "soft shi adaptive": ">"}
 
 
 def _methods(rows: list[Row]) -> list[str]:

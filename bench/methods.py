@@ -26,7 +26,8 @@ INTEGRATORS = (
     Method("soft tr_bdf2", _soft("tr_bdf2")),
     SOFT_PATH_AVERAGE,
 )
-ADAPTIVE = Method("soft path_average adaptive", (*SOFT_PATH_AVERAGE.settings, ("step.adaptive", "true")), adaptive=True)
+ADAPTIVE = tuple(Method(f"{method.name} adaptive", (*method.settings, ("step.adaptive", "true")), adaptive=True)
+                 for method in (SOFT_SHI, SOFT_PATH_AVERAGE))
 SOFT = Method("soft", (("method.contact", "soft"),))
 HARD = Method("hard", (("method.contact", "hard"),), rigid=True)
 SHI = Method("shi", (("method.contact", "shi"),))

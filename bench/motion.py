@@ -114,5 +114,5 @@ def run(bench: Bench, reference: Reference) -> None:
                 bench.leave_out(STUDY, scene.name, method.name, scene.no_rigid)
                 continue
             trials += [_trial(bench, scene, method, exact, scene.longest_step / 2**k, None) for k in range(STEPS)]
-        trials += [_trial(bench, scene, ADAPTIVE, elastic, scene.every, tolerance) for tolerance in TOLERANCES_M]
+        trials += [_trial(bench, scene, method, elastic, scene.every, tolerance) for method in ADAPTIVE for tolerance in TOLERANCES_M]
         bench.measure(trials)

@@ -47,6 +47,18 @@ def _winners(bench: Bench, study: str) -> str:
     return _table(["scene", "error at most", "winner", "dt [s]", "CPU [ms]", "its error", "the others, over the winner"], lines)
 
 
+def _integrators(bench: Bench) -> str:
+    """The ways of `soft` among themselves: which gets to an error in the least time, scene by scene."""
+    lines = []
+    for study in (motion.STUDY, failure.STUDY):
+        for scene in dict.fromkeys(row.scene for row in bench.of(study)):
+            rows = [row for row in bench.of(study, scene) if row.method.startswith("soft")]
+            winners = [judge(rows, error).winner for error in ERRORS]
+            lines.append([scene, *(w.method.removeprefix("soft ") if w else "nobody" for w in winners)])
+    return ("The quickest way of `soft` to an error; the default is `shi`.\n\n"
+            + _table(["scene", *(f"error at most {number(error)}" for error in ERRORS)], lines))
+
+
 def _failed(bench: Bench, study: str) -> str:
     failed: dict[tuple[str, str, str], int] = {}
     for row in bench.of(study):
@@ -131,7 +143,8 @@ def _failure(bench: Bench, findings: failure.Findings | None) -> str:
                 f"{failure.PERTURBATION:g} in strength spread its times by {100 * findings.reference.spread:.2g} %, those of the other runs as the "
                 "table says: a run is no surer than that, and where it is much more than the step's error the motion is chaotic. Times are means "
                 "over the starts.\n\n")
-        text += _table(["method", "step [s]; dem: part of the critical", "10 m [s]", "20 m", "30 m", "40 m", "half the spread of the starts"],
+        text += _table(["method", "step [s]; dem: part of the critical; adaptive: tolerance [m]",
+                        "10 m [s]", "20 m", "30 m", "40 m", "half the spread of the starts"],
                        [[m, number(v), *(f"{t:.4f}" for t in a.times), f"{100 * a.spread:.2g} %"] for (m, v), a in findings.arrivals.items()]) + "\n"
     return text + _comparison(bench, failure.STUDY)
 
@@ -188,6 +201,8 @@ def write(bench: Bench, found: dict, printed: dict, description: dict, figures: 
                     lambda: _comparison(bench, statics.EQUILIBRIUM) + _all_runs(bench, statics.EQUILIBRIUM))
     text += section("Strength reduction", statics.REDUCTION, lambda: _comparison(bench, statics.REDUCTION) + _all_runs(bench, statics.REDUCTION))
     text += section("After failure", failure.STUDY, lambda: _failure(bench, found.get("failure")) + _all_runs(bench, failure.STUDY))
+    if bench.of(motion.STUDY) or bench.of(failure.STUDY):
+        text += "\n## Which integrator\n\n" + _integrators(bench)
     text += section("By size", scaling.SETTLING, lambda: _sizes(bench))
     text += section("What the skips save", skips.STUDY, lambda: _skips(bench))
     if bench.of(skips.STUDY):

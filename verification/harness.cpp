@@ -16,15 +16,13 @@ class NullEnforcement : public Enforcement<unknowns> {
  public:
   explicit NullEnforcement(const MethodInput& method) : real_(make_enforcement<unknowns>(method)) {}
   ContactSprings springs(const StepProblem<unknowns>& problem, const Contact& contact) const override { return real_->springs(problem, contact); }
-  StepSolution<unknowns> solve(const StepProblem<unknowns>& problem) override {
-    StepSolution<unknowns> solution;
+  void solve(const StepProblem<unknowns>& problem, StepSolution<unknowns>& solution) override {
     solution.converged = true;
     solution.d = Eigen::VectorXd::Zero(unknowns * problem.system.free_count());
     const auto still = Motion<unknowns>::Unknowns::Zero().eval();
     for (const Contact& c : problem.contacts) {
       solution.contacts.push_back({real_->springs(problem, c), CarriedForces{}, ContactKinematics<unknowns>(problem.system, c, still, still).pose()});
     }
-    return solution;
   }
   bool takes_adaptive_steps() const override { return real_->takes_adaptive_steps(); }
   std::unique_ptr<TimeScheme<unknowns>> make_time_scheme(const MethodInput& method) const override { return real_->make_time_scheme(method); }

@@ -54,16 +54,16 @@ bool rests_open(const Contact& contact, const ContactOutcome<N>& end) {
 
 /// Forces averaged over the path; what rotations leave between the ways of these forces and the changes of gap and slip.
 template <int N>
-void add_averaged_contact(EnergyLedger& ledger, const Contact& contact, const PathAverage& path, double normal_rest, double shear_rest,
+void add_averaged_contact(EnergyLedger& ledger, const Contact& contact, const PathOutcome<N>& path, double normal_rest, double shear_rest,
                           const ContactOutcome<N>& end) {
   const PathEnergies& e = path.energies;
-  const double stored = stored_energy(end.normal_stiffness, end.shear_stiffness, path.end.elastic_normal, path.end.elastic_shear);
+  const double stored = stored_energy(end.normal_stiffness, end.shear_stiffness, end.forces.elastic_normal, end.forces.elastic_shear);
   ledger.contact_springs += stored - contact.stored_energy;
   // What a spring had before strength was taken from it, or the contact changed, and has not now.
   ledger.redefinition += contact.stored_energy - (stored - e.springs) + e.rupture;
   ledger.friction += e.friction;
   ledger.contact_damping += e.damping;
-  ledger.scheme += e.scheme - path.mean.normal * normal_rest - path.mean.shear * shear_rest;
+  ledger.scheme += e.scheme - path.normal * normal_rest - path.shear * shear_rest;
 }
 
 }  // namespace
@@ -129,7 +129,7 @@ void add_step(EnergyLedger& ledger, const StepProblem<N>& problem, const StepSol
     const Unknowns &pv = work_displacement[contact.vertex_block], &pe = work_displacement[contact.edge_block];
     if (!solution.paths.empty()) {
       const PathOutcome<N>& mean = solution.paths[c];
-      add_averaged_contact(ledger, contact, mean.average, mean.pose.normal_way(pv, pe) - end.pose.gap_change,
+      add_averaged_contact(ledger, contact, mean, mean.pose.normal_way(pv, pe) - end.pose.gap_change,
                            mean.pose.shear_way(pv, pe) - end.pose.slip_change, end);
       continue;
     }

@@ -394,10 +394,11 @@ StepResult Simulation<N>::step(double dt, bool statics) {
   StepResult result;
   if (statics) take_back();
   const StepProblem<N> p = problem(dt, statics);
-  StepSolution<N> solution;
+  StepSolution<N>& solution = solution_;
   {
     const Stopwatch watch(stage_times_.solution);
-    solution = enforcement_->solve(p);
+    solution.clear();
+    enforcement_->solve(p, solution);
   }
   step_counters_.iterations += solution.iterations;
   if (solution.converged && wake_in_haste(solution, dt)) {

@@ -183,6 +183,7 @@ class Simulation {
   JointTable joints_;
   std::unique_ptr<Enforcement<N>> enforcement_;
   std::unique_ptr<TimeScheme<N>> scheme_;
+  StepSolution<N> solution_;  ///< of the last step; a member for its memory
   Detector<N> detector_;
   mutable std::vector<Contact> contacts_;
   bool contacts_current_ = false;

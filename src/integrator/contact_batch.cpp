@@ -5,6 +5,7 @@
 
 #include "openclose/core/tolerance.h"
 #include "openclose/integrator/lane_operations.h"
+#include "openclose/law/path_average.h"
 
 namespace openclose {
 namespace {
@@ -82,10 +83,78 @@ OPENCLOSE_KERNEL Mask find_forces(const ContactBatch& c, TrialBatch& trial, Bran
   return closed;
 }
 
+/// The normal force at which the shear bound changes its slope.
+OPENCLOSE_KERNEL Lanes kink_of_bound(const ContactBatch& c) {
+  const Lanes lowest = c.friction * c.tension;
+  const Lanes on_ramp = (c.cohesion - lowest) * tolerance::cohesion_ramp - c.tension;
+  return c.cohesion > lowest ? on_ramp : (c.friction > 0.0 ? -c.cohesion / c.friction : -c.tension);
+}
+
+/// The means of path_average() in place of the forces of the joint law; returns which contacts carry something on the way.
+OPENCLOSE_KERNEL Mask find_mean_forces(const ContactBatch& c, TrialBatch& trial, Branch* branches) {
+  const Lanes zero{};
+  const Lanes start = c.shift - c.normal * c.gap_off_target, end = start - c.normal * trial.gap_change;
+  const Mask starts_closed = start + c.tension > 0.0, ends_closed = end + c.tension > 0.0;
+  const Lanes viscous = c.normal_damping * trial.gap_change, first = start - viscous, last = end - viscous;
+  const Lanes kink = kink_of_bound(c);
+  const Lanes bound_0 = ShearBound(c.friction, c.cohesion, c.tension, first).value,
+              bound_1 = ShearBound(c.friction, c.cohesion, c.tension, last).value;
+  const Lanes shear_0 = c.initial_shear, shear_1 = shear_0 - c.shear * trial.slip_change;
+  const Lanes viscous_shear = -c.shear_damping * trial.slip_change, total_0 = shear_0 + viscous_shear, total_1 = shear_1 + viscous_shear;
+  const Mask no_kink = (first > -c.tension) & (last > -c.tension) & ~((kink - first) * (kink - last) < 0.0);
+  const Mask within =
+      (magnitude(shear_0) <= bound_0) & (magnitude(shear_1) <= bound_1) & (magnitude(total_0) <= bound_0) & (magnitude(total_1) <= bound_1);
+  const Mask sticks = starts_closed & ends_closed & (c.dissipation == 0.0) & no_kink & within;
+
+  trial.normal = sticks ? 0.5 * (first + last) : zero;
+  trial.shear = sticks ? 0.5 * (total_0 + total_1) : zero;
+  trial.elastic_normal = sticks ? 0.5 * (start + end) : zero;
+  trial.elastic_shear = sticks ? 0.5 * (shear_0 + shear_1) : zero;
+  trial.normal_by_gap = sticks ? 0.5 * (-c.normal_damping + (-c.normal - c.normal_damping)) : zero;
+  trial.shear_by_gap = zero;
+  trial.shear_by_slip = sticks ? 0.5 * (-c.shear_damping + (-c.shear - c.shear_damping)) : zero;
+  const Branches now = __builtin_convertvector(-sticks, Branches);
+  std::memcpy(branches, &now, sizeof now);
+
+  Mask carries = sticks;
+  const Mask others = (starts_closed | ends_closed) & ~sticks;
+  if (!any(others)) return carries;
+  for (int k = 0; k < batch_size; ++k) {
+    if (others[k] == 0) continue;
+    const ContactForces mean = path_average_by_pieces(c.springs(k), c.strength(k), trial.gap_change[k], trial.slip_change[k], c.dissipation[k]).mean;
+    trial.set_forces(k, mean);
+    branches[k] = branch(mean);
+    // Open at the end of the step, it may have carried a force on the way.
+    carries[k] = mean.status != ContactStatus::open || mean.normal != 0.0 || mean.normal_by_gap != 0.0 ? -1 : 0;
+  }
+  return carries;
+}
+
+/// Where the forces of four contacts act.
+struct ActingPose {
+  Lanes normal_x, normal_y, vertex_arm_x, vertex_arm_y, edge_arm_x, edge_arm_y;
+
+  OPENCLOSE_KERNEL explicit ActingPose(const TrialBatch& t)
+      : normal_x(t.normal_x),
+        normal_y(t.normal_y),
+        vertex_arm_x(t.vertex_arm_x),
+        vertex_arm_y(t.vertex_arm_y),
+        edge_arm_x(t.edge_arm_x),
+        edge_arm_y(t.edge_arm_y) {}
+  /// As mean_pose().
+  OPENCLOSE_KERNEL ActingPose(const ContactBatch& c, const TrialBatch& t)
+      : normal_x(0.5 * (c.normal_x + t.normal_x)),
+        normal_y(0.5 * (c.normal_y + t.normal_y)),
+        vertex_arm_x(0.5 * (c.vertex_arm_x + t.vertex_arm_x)),
+        vertex_arm_y(0.5 * (c.vertex_arm_y + t.vertex_arm_y)),
+        edge_arm_x(0.5 * ((c.end_arm_x + c.lever_x) + t.edge_arm_x)),
+        edge_arm_y(0.5 * ((c.end_arm_y + c.lever_y) + t.edge_arm_y)) {}
+};
+
 /// Adds the forces of four contacts to their blocks, one contact after the other.
-OPENCLOSE_KERNEL void push(const ContactBatch& c, const TrialBatch& trial, Lanes rounding, ForceRow* rows) {
-  const Lanes x = trial.normal * trial.normal_x - trial.shear * trial.normal_y, y = trial.normal * trial.normal_y + trial.shear * trial.normal_x;
-  const Lanes on_vertex = trial.vertex_arm_x * y - trial.vertex_arm_y * x, on_edge = trial.edge_arm_x * y - trial.edge_arm_y * x;
+OPENCLOSE_KERNEL void push(const ContactBatch& c, const TrialBatch& trial, const ActingPose& at, Lanes rounding, ForceRow* rows) {
+  const Lanes x = trial.normal * at.normal_x - trial.shear * at.normal_y, y = trial.normal * at.normal_y + trial.shear * at.normal_x;
+  const Lanes on_vertex = at.vertex_arm_x * y - at.vertex_arm_y * x, on_edge = at.edge_arm_x * y - at.edge_arm_y * x;
   Lanes forward[] = {x, y, on_vertex, rounding}, back[] = {-x, -y, -on_edge, rounding};
   transpose(forward[0], forward[1], forward[2], forward[3]);
   transpose(back[0], back[1], back[2], back[3]);
@@ -95,6 +164,7 @@ OPENCLOSE_KERNEL void push(const ContactBatch& c, const TrialBatch& trial, Lanes
   }
 }
 
+template <StepForces forces>
 OPENCLOSE_KERNEL double evaluate(const ContactBatch* contacts, std::size_t count, const BlockMove<3>* moves, double rounding_of_sums,
                                  TrialBatch* trials, Branch* branches, ForceRow* rows) {
   Lanes largest{};
@@ -103,13 +173,14 @@ OPENCLOSE_KERNEL double evaluate(const ContactBatch* contacts, std::size_t count
     TrialBatch& trial = trials[i];
     const Moves vertex(moves, c.vertex_block), edge(moves, c.edge_block);
     find_pose(c, vertex, edge, trial);
-    const Mask closed = find_forces(c, trial, branches + batch_size * i);
-    if (!any(closed)) continue;
+    constexpr bool averaged = forces == StepForces::averaged;
+    const Mask carries = averaged ? find_mean_forces(c, trial, branches + batch_size * i) : find_forces(c, trial, branches + batch_size * i);
+    if (!any(carries)) continue;
     const Lanes normal = magnitude(trial.normal), shear = magnitude(trial.shear);
     const Lanes moved = (vertex.way + c.vertex_reach * vertex.turn) + (edge.way + c.edge_reach * edge.turn);
     const Lanes stiffness = c.normal + c.normal_damping + c.shear + c.shear_damping;
-    const Lanes rounding = closed ? rounding_of_sums * (stiffness * moved + normal + shear) : Lanes{};
-    push(c, trial, rounding, rows);
+    const Lanes rounding = carries ? rounding_of_sums * (stiffness * moved + normal + shear) : Lanes{};
+    push(c, trial, averaged ? ActingPose(c, trial) : ActingPose(trial), rounding, rows);
     largest = larger(largest, larger(normal, shear));
   }
   return std::max({largest[0], largest[1], largest[2], largest[3]});
@@ -143,14 +214,23 @@ struct Stiffness {
   }
 };
 
+/// Whether the linear equations know nothing of these contacts.
+OPENCLOSE_KERNEL bool adds_nothing(const TrialBatch& at, const Branch* branches, bool open_ones_too) {
+  if ((branches[0] | branches[1] | branches[2] | branches[3]) != 0) return false;
+  return !open_ones_too || !any((at.normal != 0.0) | (at.normal_by_gap != 0.0) | (at.shear_by_slip != 0.0));
+}
+
+/// \param averaged  forces act in the mean pose, gap and slip change with the pose at the end
+template <bool averaged>
 OPENCLOSE_KERNEL void add_stiffness(const ContactBatch* contacts, const TrialBatch* trials, std::size_t count, const Branch* branches,
                                     const BatchTangent& tangent, const ContactSlots* slots, double* values) {
   const Lanes zero{}, theta = all(tangent.end_weight);
   double nowhere[entries] = {};
   const auto block = [&](int slot) { return slot >= 0 ? values + entries * slot : nowhere; };
   for (std::size_t i = 0; i < count; ++i, branches += batch_size, slots += batch_size) {
-    if (!tangent.holds_open && (branches[0] | branches[1] | branches[2] | branches[3]) == 0) continue;
     const TrialBatch& at = trials[i];
+    if (adds_nothing(at, branches, tangent.open_ones_too)) continue;
+    const ActingPose acting = averaged ? ActingPose(contacts[i], at) : ActingPose(at);
     const Lanes nn = -theta * at.normal_by_gap, tn = tangent.exact ? -theta * at.shear_by_gap : zero;
     Lanes tt = -theta * at.shear_by_slip;
     if (!tangent.exact && tangent.static_slip_stiffness > 0.0) {
@@ -159,20 +239,28 @@ OPENCLOSE_KERNEL void add_stiffness(const ContactBatch* contacts, const TrialBat
       }
     }
     const Lanes nx = at.normal_x, ny = at.normal_y, tx = -ny, ty = nx;
-    const Lanes by_gap_x = nn * nx + tn * tx, by_gap_y = nn * ny + tn * ty, by_slip_x = tt * tx, by_slip_y = tt * ty;
+    const Lanes force_nx = acting.normal_x, force_ny = acting.normal_y, force_tx = -force_ny, force_ty = force_nx;
+    const Lanes by_gap_x = nn * force_nx + tn * force_tx, by_gap_y = nn * force_ny + tn * force_ty, by_slip_x = tt * force_tx,
+                by_slip_y = tt * force_ty;
     const Stiffness k{by_gap_x * nx + by_slip_x * tx, by_gap_x * ny + by_slip_x * ty, by_gap_y * nx + by_slip_y * tx, by_gap_y * ny + by_slip_y * ty};
-    Lanes turning_x = zero, turning_y = zero;
+    // As in ContactStiffness. Means over a path change by half of what its end does.
+    Lanes turning_x = zero, turning_y = zero, on_arms_x = zero, on_arms_y = zero;
     if (tangent.exact) {
-      turning_x = theta * (at.normal * nx + at.shear * tx);
-      turning_y = theta * (at.normal * ny + at.shear * ty);
+      const Lanes share = averaged ? all(0.5) : theta;
+      turning_x = share * (at.normal * nx + at.shear * tx);
+      turning_y = share * (at.normal * ny + at.shear * ty);
+      on_arms_x = averaged ? share * (at.normal * force_nx + at.shear * force_tx) : turning_x;
+      on_arms_y = averaged ? share * (at.normal * force_ny + at.shear * force_ty) : turning_y;
     }
     const Lanes vx = at.vertex_arm_x, vy = at.vertex_arm_y, ex = at.edge_arm_x, ey = at.edge_arm_y;
-    const Lanes along_vertex = turning_x * vx + turning_y * vy, along_edge = turning_x * ex + turning_y * ey;
+    const Lanes force_vx = acting.vertex_arm_x, force_vy = acting.vertex_arm_y, force_ex = acting.edge_arm_x, force_ey = acting.edge_arm_y;
+    const Lanes turning_at_vertex = turning_x * force_vx + turning_y * force_vy, turning_at_edge = turning_x * force_ex + turning_y * force_ey;
+    const Lanes along_vertex = on_arms_x * vx + on_arms_y * vy;
     Entries vertex, edge, vertex_edge, edge_vertex;
-    k.find(vertex, 1.0, vx, vy, vx, vy, along_vertex, zero, zero, zero, zero);
-    k.find(edge, 1.0, ex, ey, ex, ey, along_edge, -turning_y, turning_x, -turning_y, turning_x);
-    k.find(vertex_edge, -1.0, vx, vy, ex, ey, -along_vertex, turning_y, -turning_x, zero, zero);
-    k.find(edge_vertex, -1.0, ex, ey, vx, vy, -along_vertex, zero, zero, turning_y, -turning_x);
+    k.find(vertex, 1.0, force_vx, force_vy, vx, vy, along_vertex, zero, zero, zero, zero);
+    k.find(edge, 1.0, force_ex, force_ey, ex, ey, turning_at_edge, -turning_y, turning_x, -on_arms_y, on_arms_x);
+    k.find(vertex_edge, -1.0, force_vx, force_vy, ex, ey, -turning_at_vertex, turning_y, -turning_x, zero, zero);
+    k.find(edge_vertex, -1.0, force_ex, force_ey, vx, vy, -along_vertex, zero, zero, on_arms_y, -on_arms_x);
     for (int lane = 0; lane < batch_size; ++lane) {
       vertex.add_to(block(slots[lane].vertex), lane);
       edge.add_to(block(slots[lane].edge), lane);
@@ -182,24 +270,37 @@ OPENCLOSE_KERNEL void add_stiffness(const ContactBatch* contacts, const TrialBat
   }
 }
 
-double evaluate_with_any_registers(const ContactBatch* contacts, std::size_t count, const BlockMove<3>* moves, double rounding_of_sums,
-                                   TrialBatch* trials, Branch* branches, ForceRow* rows) {
-  return evaluate(contacts, count, moves, rounding_of_sums, trials, branches, rows);
+OPENCLOSE_KERNEL double evaluate_either(StepForces forces, const ContactBatch* contacts, std::size_t count, const BlockMove<3>* moves,
+                                        double rounding_of_sums, TrialBatch* trials, Branch* branches, ForceRow* rows) {
+  if (forces == StepForces::averaged) return evaluate<StepForces::averaged>(contacts, count, moves, rounding_of_sums, trials, branches, rows);
+  return evaluate<StepForces::at_end>(contacts, count, moves, rounding_of_sums, trials, branches, rows);
+}
+OPENCLOSE_KERNEL void add_either_stiffness(const ContactBatch* contacts, const TrialBatch* trials, std::size_t count, const Branch* branches,
+                                           const BatchTangent& tangent, const ContactSlots* slots, double* values) {
+  // The symmetric tangent of means over a path knows one pose.
+  if (tangent.exact && tangent.forces == StepForces::averaged) return add_stiffness<true>(contacts, trials, count, branches, tangent, slots, values);
+  add_stiffness<false>(contacts, trials, count, branches, tangent, slots, values);
+}
+
+double evaluate_with_any_registers(StepForces forces, const ContactBatch* contacts, std::size_t count, const BlockMove<3>* moves,
+                                   double rounding_of_sums, TrialBatch* trials, Branch* branches, ForceRow* rows) {
+  return evaluate_either(forces, contacts, count, moves, rounding_of_sums, trials, branches, rows);
 }
 void add_stiffness_with_any_registers(const ContactBatch* contacts, const TrialBatch* trials, std::size_t count, const Branch* branches,
                                       const BatchTangent& tangent, const ContactSlots* slots, double* values) {
-  add_stiffness(contacts, trials, count, branches, tangent, slots, values);
+  add_either_stiffness(contacts, trials, count, branches, tangent, slots, values);
 }
 
 #ifdef OPENCLOSE_HAS_WIDE_REGISTERS
-[[gnu::target("avx2")]] double evaluate_with_wide_registers(const ContactBatch* contacts, std::size_t count, const BlockMove<3>* moves,
-                                                            double rounding_of_sums, TrialBatch* trials, Branch* branches, ForceRow* rows) {
-  return evaluate(contacts, count, moves, rounding_of_sums, trials, branches, rows);
+[[gnu::target("avx2")]] double evaluate_with_wide_registers(StepForces forces, const ContactBatch* contacts, std::size_t count,
+                                                            const BlockMove<3>* moves, double rounding_of_sums, TrialBatch* trials, Branch* branches,
+                                                            ForceRow* rows) {
+  return evaluate_either(forces, contacts, count, moves, rounding_of_sums, trials, branches, rows);
 }
 [[gnu::target("avx2")]] void add_stiffness_with_wide_registers(const ContactBatch* contacts, const TrialBatch* trials, std::size_t count,
                                                                const Branch* branches, const BatchTangent& tangent, const ContactSlots* slots,
                                                                double* values) {
-  add_stiffness(contacts, trials, count, branches, tangent, slots, values);
+  add_either_stiffness(contacts, trials, count, branches, tangent, slots, values);
 }
 #endif
 
@@ -244,6 +345,7 @@ void ContactBatch::set(int lane, const ContactStart<3>& at, const ContactSprings
   friction[lane] = strength.friction;
   cohesion[lane] = strength.cohesion;
   tension[lane] = strength.tension;
+  dissipation[lane] = springs.dissipation;
 }
 
 ContactStart<3> ContactBatch::start(int lane) const {
@@ -260,6 +362,19 @@ ContactStrength ContactBatch::strength(int lane) const {
   s.friction = friction[lane];
   s.cohesion = cohesion[lane];
   s.tension = tension[lane];
+  return s;
+}
+
+ContactSprings ContactBatch::springs(int lane) const {
+  ContactSprings s;
+  s.normal = normal[lane];
+  s.shear = shear[lane];
+  s.gap = gap_off_target[lane];
+  s.shift = shift[lane];
+  s.initial_shear = initial_shear[lane];
+  s.normal_damping = normal_damping[lane];
+  s.shear_damping = shear_damping[lane];
+  s.dissipation = dissipation[lane];
   return s;
 }
 

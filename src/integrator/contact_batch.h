@@ -3,6 +3,9 @@
 // The formulas are those of ContactPose, spring_slider() and ContactStiffness, operation by operation, so that every number is the same to the last
 // bit; forces and stiffness are added up contact by contact in the order of the list. The kernels are compiled once for every processor and once for
 // wide registers, with the same results.
+//
+// Schemes that average over the path of the step have the mean forces of path_average() instead, which act in the mean_pose(). Contacts that are open
+// or stick all the way are taken four at a time, the others one by one.
 #pragma once
 
 #include <cstddef>
@@ -27,6 +30,12 @@ inline ContactStatus status(Branch b) {
   return static_cast<ContactStatus>(b < 0 ? -b : b);
 }
 
+/// Which forces enter the equation of motion.
+enum class StepForces {
+  at_end,    ///< those at the end of the step
+  averaged,  ///< means over its path, see path_average.h
+};
+
 /// Four contacts at the start of a step. What is not set() carries nothing and adds nothing.
 struct ContactBatch {
   Lanes normal_x{}, normal_y{}, lever_x{}, lever_y{}, vertex_arm_x{}, vertex_arm_y{}, end_arm_x{}, end_arm_y{};  // as in ContactStart
@@ -34,15 +43,18 @@ struct ContactBatch {
   // As in ContactSprings and ContactStrength; parted [m] is by how much the gap is wider than where the spring opens, in viscous_normal().
   Lanes normal{}, shear{}, gap_off_target{}, shift{}, initial_shear{}, normal_damping{}, shear_damping{}, parted{};
   Lanes friction{}, cohesion{}, tension{};
+  Lanes dissipation{};  ///< of path_average()
   int vertex_block[batch_size] = {}, edge_block[batch_size] = {};
   int vertex_row[batch_size] = {}, edge_row[batch_size] = {};  ///< of ForceRow; that of fixed blocks nobody reads
 
   void set(int lane, const ContactStart<3>& at, const ContactSprings& springs, const ContactStrength& strength);
   ContactStart<3> start(int lane) const;
   ContactStrength strength(int lane) const;
+  /// Those that were set, with the gap counted from their target.
+  ContactSprings springs(int lane) const;
 };
 
-/// The same contacts at the trial displacement, and the derivatives of their forces.
+/// The same contacts at the trial displacement, their forces or means of them, and the derivatives of these.
 struct TrialBatch {
   Lanes normal_x{}, normal_y{}, vertex_arm_x{}, vertex_arm_y{}, edge_arm_x{}, edge_arm_y{}, gap_change{}, slip_change{};  // as in ContactPose
   Lanes normal{}, shear{}, elastic_normal{}, elastic_shear{}, normal_by_gap{}, shear_by_gap{}, shear_by_slip{};           // as in ContactForces
@@ -68,10 +80,11 @@ struct ContactSlots {
 
 /// Which tangent is added up.
 struct BatchTangent {
+  StepForces forces;
   bool exact;                    ///< with the slip's and the geometric terms, which are not symmetric
   double end_weight;             ///< [-] theta
   double static_slip_stiffness;  ///< [-] part of the shear stiffness that sliding contacts keep in the other tangent
-  bool holds_open;               ///< open contacts may have a stiffness, too
+  bool open_ones_too;            ///< contacts that are open at the end of the step may have a stiffness, too
 };
 
 class BatchKernels {
@@ -82,16 +95,16 @@ class BatchKernels {
   /// Fills trials and branches; adds to the rows. Returns [N] the largest force.
   /// \param moves  of all blocks
   /// \param rounding_of_sums  [-] of the forces and changes of force of a contact
-  double evaluate(const std::vector<ContactBatch>& contacts, const BlockMove<3>* moves, double rounding_of_sums, std::vector<TrialBatch>& trials,
-                  std::vector<Branch>& branches, std::vector<ForceRow>& rows) const {
-    return evaluate_(contacts.data(), contacts.size(), moves, rounding_of_sums, trials.data(), branches.data(), rows.data());
+  double evaluate(StepForces forces, const std::vector<ContactBatch>& contacts, const BlockMove<3>* moves, double rounding_of_sums,
+                  std::vector<TrialBatch>& trials, std::vector<Branch>& branches, std::vector<ForceRow>& rows) const {
+    return evaluate_(forces, contacts.data(), contacts.size(), moves, rounding_of_sums, trials.data(), branches.data(), rows.data());
   }
   /// Adds the stiffness of all contacts to the matrix. There are slots for every place of a batch.
   void add_stiffness(const std::vector<ContactBatch>& contacts, const std::vector<TrialBatch>& trials, const std::vector<Branch>& branches,
                      const BatchTangent& tangent, const std::vector<ContactSlots>& slots, BlockMatrix<3>& matrix) const;
 
  private:
-  double (*evaluate_)(const ContactBatch*, std::size_t, const BlockMove<3>*, double, TrialBatch*, Branch*, ForceRow*);
+  double (*evaluate_)(StepForces, const ContactBatch*, std::size_t, const BlockMove<3>*, double, TrialBatch*, Branch*, ForceRow*);
   void (*add_stiffness_)(const ContactBatch*, const TrialBatch*, std::size_t, const Branch*, const BatchTangent&, const ContactSlots*, double*);
 };
 

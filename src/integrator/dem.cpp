@@ -13,13 +13,12 @@ class Dem : public Enforcement<N> {
 
   ContactSprings springs(const StepProblem<N>& problem, const Contact& contact) const override { return joint_springs(problem, contact); }
 
-  StepSolution<N> solve(const StepProblem<N>& problem) override {
+  void solve(const StepProblem<N>& problem, StepSolution<N>& solution) override {
     const BlockSystem<N>& system = problem.system;
-    StepSolution<N> solution;
     solution.d = Eigen::VectorXd::Zero(N * system.free_count());
     if (problem.statics) {
       solution.reason = "method.contact = \"dem\" has no static steps";
-      return solution;
+      return;
     }
     const Unknowns still = Unknowns::Zero();
     Eigen::VectorXd force = Eigen::VectorXd::Zero(N * system.free_count());
@@ -42,7 +41,6 @@ class Dem : public Enforcement<N> {
     const auto velocity = [&](int b) { return Unknowns(solution.of(system, b) / problem.dt); };
     for (const Contact& c : problem.contacts) solution.contacts.push_back(outcome(problem, c, displacement, velocity));
     solution.converged = true;
-    return solution;
   }
 
   std::unique_ptr<TimeScheme<N>> make_time_scheme(const MethodInput& method) const override {

@@ -63,7 +63,8 @@ struct StepProblem {
 /// What one contact carried on the average of a step, for schemes that average over its path.
 template <int N>
 struct PathOutcome {
-  PathAverage average;
+  double normal = 0.0, shear = 0.0;  ///< [N]
+  PathEnergies energies;
   ContactPose<N> pose;  ///< the mean one, whose gradients carried the forces
 };
 
@@ -78,6 +79,16 @@ struct StepSolution {
   std::vector<ContactOutcome<N>> contacts;
   std::vector<ContactOutcome<N>> start_contacts;  ///< forces that entered with weight 1 - theta; empty for theta = 1
   std::vector<PathOutcome<N>> paths;              ///< mean forces that entered instead of those at the end; empty for other schemes
+
+  /// Empty again, with its memory for the next step.
+  void clear() {
+    converged = compliant = dissipative = false;
+    reason.clear();
+    iterations = 0;
+    contacts.clear();
+    start_contacts.clear();
+    paths.clear();
+  }
 
   /// Displacement of block b: zero if fixed.
   typename Motion<N>::Unknowns of(const BlockSystem<N>& system, int b) const {
@@ -94,7 +105,8 @@ class Enforcement {
 
   /// Springs of a contact at the start of a step.
   virtual ContactSprings springs(const StepProblem<N>& problem, const Contact& contact) const = 0;
-  virtual StepSolution<N> solve(const StepProblem<N>& problem) = 0;
+  /// Fills an empty solution.
+  virtual void solve(const StepProblem<N>& problem, StepSolution<N>& solution) = 0;
 
   /// Throws InputError if the method asks for a theta that the enforcement has no use for.
   virtual std::unique_ptr<TimeScheme<N>> make_time_scheme(const MethodInput& method) const = 0;

@@ -55,19 +55,19 @@ class Hard final : public Enforcement<N> {
     return springs(problem, contact, stiffness_over_inertia.front());
   }
 
-  StepSolution<N> solve(const StepProblem<N>& problem) override {
-    StepSolution<N> solution, compliant;
+  void solve(const StepProblem<N>& problem, StepSolution<N>& solution) override {
+    compliant_.clear();
     for (const double ratio : stiffness_over_inertia) {
       set_springs(problem, ratio);
-      solve(problem, solution, compliant);
+      pass_until_held(problem, solution);
       if (problem.statics && solution.converged) note_slack(solution);
       // In statics softer springs would not be those of the joint; shorter steps help more.
-      if (problem.statics || solution.converged) return solution;
+      if (problem.statics || solution.converged) return;
     }
-    if (problem.failed_attempts < attempts_before_compliance || !compliant.converged) return solution;
-    compliant.iterations = solution.iterations;
-    compliant.compliant = true;
-    return compliant;
+    if (problem.failed_attempts < attempts_before_compliance || !compliant_.converged) return;
+    compliant_.iterations = solution.iterations;
+    compliant_.compliant = true;
+    std::swap(solution, compliant_);
   }
 
   std::unique_ptr<TimeScheme<N>> make_time_scheme(const MethodInput& method) const override {
@@ -102,8 +102,8 @@ class Hard final : public Enforcement<N> {
     for (std::size_t c = 0; c < springs_.size(); ++c) springs_[c] = springs(problem, problem.contacts[c], ratio);
   }
 
-  /// \param compliant  the first pass that converged with the springs it had, in case that no multipliers do
-  void solve(const StepProblem<N>& problem, StepSolution<N>& solution, StepSolution<N>& compliant) {
+  /// Passes until the contacts are held, and keeps the first that converged with the springs it had, in case that no multipliers do.
+  void pass_until_held(const StepProblem<N>& problem, StepSolution<N>& solution) {
     // From the drift dt v: the stiff matrix costs digits of what is solved for, and these are better lost from the change of motion than from the
     // motion.
     solution.d = drift(problem);
@@ -114,13 +114,13 @@ class Hard final : public Enforcement<N> {
     for (int pass = 0; pass < most_outer_passes; ++pass) {
       newton_.solve(problem, springs_, solution, pass == 0 ? FirstTangent::last_step : FirstTangent::present);
       if (!solution.converged) return;
-      if (!problem.statics && !compliant.converged) compliant = solution;
       const double error = constraint_error(problem, solution);
       const double way = solution.d.template lpNorm<Eigen::Infinity>();
       const bool moves_on = problem.statics && way >= going_on * last_way;
       if (error <= 1.0) return;
       if (error > slow_convergence * last_error && error <= (problem.statics ? incompatible_static_gaps : incompatible_gaps)) return;
       if (moves_on && error * tolerated(problem) <= std::min(problem.method.gap_tolerance, part_of_way * way)) return;
+      if (!problem.statics && !compliant_.converged) compliant_ = solution;
       if (!problem.statics && error > slow_convergence * last_error) {
         if (++slow_passes == 1) keep_deep_gaps(problem);
         if (slow_passes > most_slow_passes) break;
@@ -233,6 +233,7 @@ class Hard final : public Enforcement<N> {
 
   Newton<N> newton_;
   std::vector<ContactSprings> springs_;
+  StepSolution<N> compliant_;  ///< of this step
 };
 
 }  // namespace

@@ -29,6 +29,8 @@ constexpr double shortest_backtrack = 0.01;
 /// contacts that change state, or from the turning of the others. Iterations of all steps of a slope of 1,773 free blocks: 411 with 1e-12, 418 with
 /// 1e-6, 420 with 1e-5, 432 with 1e-4.
 constexpr double linear_reduction = 1e-5;
+/// [-] The same with held contacts: single loose blocks, whose residual is a small part of the whole, need their digits, too.
+constexpr double held_linear_reduction = 1e-12;
 /// After so many refusals of the exact step without gain the symmetric steps in between get shorter, so that the two do not go round in a circle.
 constexpr int patience = 1;
 /// [-] A static step of which the line search takes less is begun again with held contacts.
@@ -47,11 +49,6 @@ constexpr int most_holding_iterations = 150;
 /// the tolerance are parts, would excuse any residual. Forces may grow by 1e9 in a step before the usual tolerance of 1e-12 comes here.
 constexpr double loosest_balance = 1e-3;
 constexpr double largest_force_growth = 1e9;  ///< [-] the same margin for a tolerance that the scene makes coarser
-
-/// Open at the end of the step, a contact may have carried a force on the way.
-bool carries(const ContactForces& f) {
-  return f.status != ContactStatus::open || f.normal != 0.0 || f.normal_by_gap != 0.0;
-}
 
 int differences(const std::vector<Branch>& a, const std::vector<Branch>& b) {
   return std::inner_product(a.begin(), a.end(), b.begin(), 0, std::plus<>(), std::not_equal_to<>());
@@ -102,44 +99,10 @@ void Newton<N>::prepare(const StepProblem<N>& problem, const std::vector<Contact
     start_scale_ = std::max({start_scale_, s.shift - s.normal * (s.gap - s.target), std::abs(s.initial_shear)});
   }
   trials_.resize(contacts_.size());
-  paths_.resize(problem.averages_path() ? contact_count_ : 0);
+  step_forces_ = problem.averages_path() ? StepForces::averaged : StepForces::at_end;
   branches_.assign(batch_size * contacts_.size(), 0);
   moves_.assign(system.block_count() + 1, BlockMove<N>());
   tangent_.fit(problem);
-}
-
-template <int N>
-void Newton<N>::evaluate_averaged_contacts() {
-  double force_scale = force_scale_;
-  for (std::size_t c = 0; c < contact_count_; ++c) {
-    const ContactBatch& batch = start(c);
-    const int k = lane(c);
-    const ContactStart<N> from = batch.start(k);
-    const BlockMove<N>&vertex = moves_[batch.vertex_block[k]], &edge = moves_[batch.edge_block[k]];
-    const ContactPose<N> at(from, vertex, edge);
-    const ContactSprings& springs = (*springs_)[c];
-    paths_[c] = {path_average(springs, batch.strength(k), at.gap_change, at.slip_change, springs.dissipation), mean_pose(from, at)};
-    const ContactForces& f = paths_[c].average.mean;
-    trial(c).set_pose(k, at);
-    trial(c).set_forces(k, f);
-    branches_[c] = branch(f);
-    if (!carries(f)) continue;
-    const ContactPose<N>& pose = paths_[c].pose;
-    const double normal = std::abs(f.normal), shear = std::abs(f.shear);
-    const double moved = vertex.bound(batch.vertex_reach[k]) + edge.bound(batch.edge_reach[k]);
-    const double stiffness = springs.normal + springs.normal_damping + springs.shear + springs.shear_damping;
-    const double rounding = rounding_of_sums * (stiffness * moved + normal + shear);
-    const Vec2 force(f.normal * pose.normal.x() - f.shear * pose.normal.y(), f.normal * pose.normal.y() + f.shear * pose.normal.x());
-    Lanes& on_vertex = rows_[batch.vertex_row[k]].sums;
-    Lanes& on_edge = rows_[batch.edge_row[k]].sums;
-    const Unknowns push = Motion<N>::gradient(pose.vertex_arm, force), back = Motion<N>::gradient(pose.edge_arm, force);
-    for (int i = 0; i < N; ++i) on_vertex[i] += push[i];
-    for (int i = 0; i < N; ++i) on_edge[i] -= back[i];
-    on_vertex[N] += rounding;
-    on_edge[N] += rounding;
-    force_scale = std::max({force_scale, normal, shear});
-  }
-  force_scale_ = force_scale;
 }
 
 template <int N>
@@ -154,7 +117,7 @@ void Newton<N>::evaluate_blocks(const Eigen::VectorXd& d) {
     Unknowns force(sums[0], sums[1], sums[2]);
     double magnitude = block.magnitude;
     if (block.has_point_forces) {
-      force += problem_->averages_path() ? problem_->external.mean_force(system, block.block, db) : problem_->external.force(system, block.block, db);
+      force += averages_path() ? problem_->external.mean_force(system, block.block, db) : problem_->external.force(system, block.block, db);
       magnitude = problem_->external.magnitude(system, block.block, db);
     } else {
       force += block.force;
@@ -178,12 +141,7 @@ void Newton<N>::evaluate(const Eigen::VectorXd& d) {
   }
   rows_.assign(system.free_count() + 1, ForceRow());
   residual_.resize(N * system.free_count());
-  force_scale_ = 0.0;
-  if (paths_.empty()) {
-    force_scale_ = kernels_.evaluate(contacts_, moves_.data(), rounding_of_sums, trials_, branches_, rows_);
-  } else {
-    evaluate_averaged_contacts();
-  }
+  force_scale_ = kernels_.evaluate(step_forces_, contacts_, moves_.data(), rounding_of_sums, trials_, branches_, rows_);
   evaluate_blocks(d);
 }
 
@@ -204,52 +162,13 @@ double Newton<N>::residual_norm() const {
 }
 
 template <int N>
-void Newton<N>::add_averaged_stiffness(std::size_t c, Tangent tangent) {
-  const ContactForces f = forces(c);
-  if (!carries(f)) return;
-  const bool exact = tangent == Tangent::exact;
-  const double theta = problem_->end_weight;
-  const double nn = -theta * f.normal_by_gap, tn = exact ? -theta * f.shear_by_gap : 0.0;
-  const double tt = -theta * f.shear_by_slip;
-
-  // Forces act in the mean pose, gap and slip change with the pose at the end. In the symmetric tangent both are the same.
-  const ContactPose<N> pose = trial(c).pose(lane(c));
-  const ContactPose<N>& acting = exact ? paths_[c].pose : pose;
-  const Vec2 n = pose.normal, t = pose.tangent(), by_gap = nn * acting.normal + tn * acting.tangent(), by_slip = tt * acting.tangent();
-  ContactStiffness<N> k;
-  k.shift_xx = by_gap.x() * n.x() + by_slip.x() * t.x();
-  k.shift_xy = by_gap.x() * n.y() + by_slip.x() * t.y();
-  k.shift_yx = by_gap.y() * n.x() + by_slip.y() * t.x();
-  k.shift_yy = by_gap.y() * n.y() + by_slip.y() * t.y();
-  k.force_vertex_arm = acting.vertex_arm;
-  k.force_edge_arm = acting.edge_arm;
-  k.vertex_arm = pose.vertex_arm;
-  k.edge_arm = pose.edge_arm;
-  // The geometric part can make the symmetric tangent indefinite. Means over a path change by half of what its end does.
-  if (exact) {
-    k.turning = 0.5 * (f.normal * n + f.shear * t);
-    k.on_arms = 0.5 * (f.normal * acting.normal + f.shear * acting.tangent());
-  }
-
-  const ContactSlots& slots = tangent_.slots()[c];
-  BlockMatrix<N>& matrix = tangent_.matrix();
-  if (slots.vertex >= 0) k.add_to_vertex(matrix.value(slots.vertex));
-  if (slots.edge >= 0) k.add_to_edge(matrix.value(slots.edge));
-  if (slots.vertex_edge < 0) return;
-  k.add_to_vertex_edge(matrix.value(slots.vertex_edge));
-  k.add_to_edge_vertex(matrix.value(slots.edge_vertex));
-}
-
-template <int N>
 void Newton<N>::assemble(const Eigen::VectorXd& d, Tangent tangent) {
   BlockMatrix<N>& matrix = tangent_.matrix();
   matrix.set_zero();
-  if (paths_.empty()) {
-    const BatchTangent asked{tangent == Tangent::exact, problem_->end_weight, problem_->statics ? static_slip_stiffness : 0.0, !holds_.empty()};
-    kernels_.add_stiffness(contacts_, trials_, branches_, asked, tangent_.slots(), matrix);
-  } else {
-    for (std::size_t c = 0; c < contact_count_; ++c) add_averaged_stiffness(c, tangent);
-  }
+  const bool open_ones_too = averages_path() || !holds_.empty();
+  const BatchTangent asked{step_forces_, tangent == Tangent::exact, problem_->end_weight, problem_->statics ? static_slip_stiffness : 0.0,
+                           open_ones_too};
+  kernels_.add_stiffness(contacts_, trials_, branches_, asked, tangent_.slots(), matrix);
   for (std::size_t i = 0; i < blocks_.size(); ++i) {
     const StepBlock& block = blocks_[i];
     const int row = static_cast<int>(i);
@@ -257,7 +176,7 @@ void Newton<N>::assemble(const Eigen::VectorXd& d, Tangent tangent) {
     diagonal.diagonal() += block.inertia;
     if (!block.has_point_forces) continue;
     const Unknowns db = d.template segment<N>(N * row);
-    if (problem_->averages_path()) {
+    if (averages_path()) {
       diagonal += problem_->external.mean_stiffness(problem_->system, block.block, db);
     } else {
       diagonal += problem_->end_weight * problem_->external.stiffness(problem_->system, block.block, db);
@@ -272,7 +191,7 @@ template <int N>
 Eigen::VectorXd Newton<N>::direction(const Eigen::VectorXd& d, Tangent tangent) {
   assemble(d, tangent);
   Eigen::VectorXd step;
-  if (tangent_.factor()) step = tangent_.solver().solve(residual_, linear_reduction);
+  if (tangent_.factor()) step = tangent_.solver().solve(residual_, holds_.empty() ? linear_reduction : held_linear_reduction);
   return step;
 }
 
@@ -312,7 +231,7 @@ double Newton<N>::backtrack(const Eigen::VectorXd& d, const Eigen::VectorXd& ste
 template <int N>
 ContactSprings Newton<N>::seen_springs(std::size_t c) const {
   ContactSprings springs = (*springs_)[c];
-  if (!paths_.empty()) {
+  if (averages_path()) {
     // The same force at the start of the step.
     springs.shift -= 0.5 * springs.normal * (springs.gap - springs.target);
     springs.normal *= 0.5;
@@ -364,7 +283,7 @@ void Newton<N>::take_last_states() {
     const ContactStatus last = touching ? ContactStatus::sticking : contact.status;
     const TrialBatch& now = trial(c);
     const int k = lane(c);
-    if (paths_.empty() && is_on_piece(status(branches_[c]), now.normal_by_gap[k], last)) continue;
+    if (!averages_path() && is_on_piece(status(branches_[c]), now.normal_by_gap[k], last)) continue;
     replace_forces(
         c, prolonged(seen_springs(c), start(c).strength(k), last, contact.normal_force, contact.shear_force, now.gap_change[k], now.slip_change[k]));
   }
@@ -379,9 +298,12 @@ void Newton<N>::report_contacts(std::vector<ContactOutcome<N>>& contacts) const 
 
 template <int N>
 void Newton<N>::report_paths(StepSolution<N>& solution) const {
-  for (std::size_t c = 0; c < paths_.size(); ++c) {
-    solution.paths.push_back({paths_[c].average, paths_[c].pose});
-    solution.contacts[c].forces = paths_[c].average.end;
+  for (std::size_t c = 0; c < contact_count_; ++c) {
+    const ContactPose<N>& pose = solution.contacts[c].pose;
+    const ContactSprings& springs = (*springs_)[c];
+    const PathAverage path = path_average(springs, start(c).strength(lane(c)), pose.gap_change, pose.slip_change, springs.dissipation);
+    solution.paths.push_back({path.mean.normal, path.mean.shear, path.energies, force_pose(c)});
+    solution.contacts[c].forces = path.end;
   }
 }
 
@@ -472,7 +394,7 @@ typename Newton<N>::Outcome Newton<N>::iterate(const StepProblem<N>& problem, St
     const bool halved = next_norm <= 0.5 * norm;
     d += alpha * step;
     norm = next_norm;
-    const bool held = !halved && hold_reversed() > 0;
+    const bool held = norm > 1.0 && !halved && hold_reversed() > 0;  // a solution keeps the forces of the law
     const bool exact_works = held || switches <= few || (tangent == Tangent::exact && halved);
     tangent = exact_works ? Tangent::exact : Tangent::symmetric;
   }
@@ -509,7 +431,8 @@ void Newton<N>::solve(const StepProblem<N>& problem, const std::vector<ContactSp
   }
   if (!solution.converged) solution.reason = "Newton's method did not converge";
   report_contacts(solution.contacts);
-  report_paths(solution);
+  solution.paths.clear();
+  if (averages_path()) report_paths(solution);
 }
 
 template <int N>

@@ -55,11 +55,6 @@ class Newton {
     double magnitude = 0.0;                ///< [N] of these forces
     double rounding_of_coordinates = 0.0;  ///< [N]
   };
-  /// For schemes that average over the path of the step: trials_ then has the mean forces, which act in the mean pose.
-  struct PathTrial {
-    PathAverage average;
-    ContactPose<N> pose;
-  };
 
   /// Evaluates at the displacement to start from and returns its residual_norm().
   double begin(const Eigen::VectorXd& d, FirstTangent first);
@@ -73,8 +68,6 @@ class Newton {
   void hold_changed(double norm);
   void prepare(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs);
   void evaluate(const Eigen::VectorXd& d);
-  /// The same contact by contact, for schemes that average over the path.
-  void evaluate_averaged_contacts();
   void evaluate_blocks(const Eigen::VectorXd& d);
   // Contact c is one of the lanes of its batch.
   static int lane(std::size_t c) { return static_cast<int>(c % batch_size); }
@@ -83,7 +76,11 @@ class Newton {
   const TrialBatch& trial(std::size_t c) const { return trials_[c / batch_size]; }
   ContactForces forces(std::size_t c) const { return trial(c).forces(lane(c), branches_[c]); }
   /// The forces act along its normal and tangent, at its arms.
-  ContactPose<N> force_pose(std::size_t c) const { return paths_.empty() ? trial(c).pose(lane(c)) : paths_[c].pose; }
+  ContactPose<N> force_pose(std::size_t c) const {
+    const ContactPose<N> at = trial(c).pose(lane(c));
+    return averages_path() ? mean_pose(start(c).start(lane(c)), at) : at;
+  }
+  bool averages_path() const { return step_forces_ == StepForces::averaged; }
   /// What a step sees of the springs of contact c while it stays closed: half of them, if it averages over its path.
   ContactSprings seen_springs(std::size_t c) const;
   /// Forces and derivatives for the first iteration: the laws' linear pieces of the last step, wherever the iteration starts from, so that a step in
@@ -94,7 +91,6 @@ class Newton {
   void replace_forces(std::size_t c, const ContactForces& forces);
   double residual_norm() const;  ///< largest residual of a block over what is tolerated: converged at 1; infinite where that tells nothing
   void assemble(const Eigen::VectorXd& d, Tangent tangent);
-  void add_averaged_stiffness(std::size_t c, Tangent tangent);
   Eigen::VectorXd direction(const Eigen::VectorXd& d, Tangent tangent);
   /// Contacts that would slide one way and then the other stick in between: they enter the next linear solve with the spring's own force. (Where the
   /// spring is stiff the range of sticking is so narrow that the iteration would jump over it for ever.) Returns their number.
@@ -111,10 +107,10 @@ class Newton {
   BatchKernels kernels_;
   std::size_t contact_count_ = 0;
   std::vector<ContactBatch> contacts_;
-  std::vector<StepBlock> blocks_;    ///< the free ones, by their equations
-  std::vector<BlockMove<N>> moves_;  ///< of all blocks, at the trial displacement; a last one that stays
+  std::vector<StepBlock> blocks_;                ///< the free ones, by their equations
+  std::vector<BlockMove<N>> moves_;              ///< of all blocks, at the trial displacement; a last one that stays
+  StepForces step_forces_ = StepForces::at_end;  ///< what trials_ has
   std::vector<TrialBatch> trials_;
-  std::vector<PathTrial> paths_;         ///< empty for schemes that do not average
   std::vector<Branch> branches_;         ///< of the contacts
   std::vector<Branch> branches_before_;  ///< of the iteration
   std::vector<double> holds_;            ///< [-] part of its springs that an open or sliding contact has in the tangent; else empty

@@ -33,18 +33,16 @@ class Shi : public Enforcement<N> {
     return s;
   }
 
-  StepSolution<N> solve(const StepProblem<N>& problem) override {
+  void solve(const StepProblem<N>& problem, StepSolution<N>& solution) override {
     begin(problem);
-    StepSolution<N> solution;
     for (int pass = 0; pass < problem.method.max_open_close_iterations; ++pass) {
-      if (!solve_once(problem, solution)) return solution;
+      if (!solve_once(problem, solution)) return;
       if (!change_states(problem, solution.d)) {
         finish(problem, solution);
-        return solution;
+        return;
       }
     }
     solution.reason = "open-close iterations did not settle";
-    return solution;
   }
 
   std::unique_ptr<TimeScheme<N>> make_time_scheme(const MethodInput& method) const override {

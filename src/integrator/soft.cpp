@@ -5,6 +5,7 @@
 #include "openclose/integrator/integrators.h"
 #include "openclose/integrator/newton.h"
 #include "openclose/integrator/registry.h"
+#include "openclose/integrator/spring_list.h"
 
 namespace openclose {
 namespace {
@@ -26,17 +27,16 @@ class Soft final : public Enforcement<N> {
     return s;
   }
 
-  StepSolution<N> solve(const StepProblem<N>& problem) override {
-    springs_.resize(problem.contacts.size());
-    for (std::size_t c = 0; c < springs_.size(); ++c) springs_[c] = springs(problem, problem.contacts[c]);
-    StepSolution<N> solution = attempt(problem);
-    if (solution.converged || !problem.averages_path()) return solution;
-    for (ContactSprings& s : springs_) s.dissipation = largest_dissipation;
+  void solve(const StepProblem<N>& problem, StepSolution<N>& solution) override {
+    springs_.renew(problem, [&](const Contact& contact) { return springs(problem, contact); });
+    attempt(problem, solution);
+    if (solution.converged || !problem.averages_path()) return;
+    springs_.set_dissipation(largest_dissipation);
     const int wasted = solution.iterations;
-    solution = attempt(problem);
+    solution.clear();
+    attempt(problem, solution);
     solution.iterations += wasted;
     solution.dissipative = true;
-    return solution;
   }
 
   bool takes_adaptive_steps() const override { return true; }
@@ -45,15 +45,13 @@ class Soft final : public Enforcement<N> {
   void exchange(Archive& archive) override { newton_.exchange(archive); }
 
  private:
-  StepSolution<N> attempt(const StepProblem<N>& problem) {
-    StepSolution<N> solution;
+  void attempt(const StepProblem<N>& problem, StepSolution<N>& solution) {
     solution.d = drift(problem);
-    newton_.solve(problem, springs_, solution);
-    return solution;
+    newton_.solve(problem, springs_.springs(), solution);
   }
 
   Newton<N> newton_;
-  std::vector<ContactSprings> springs_;
+  SpringList<N> springs_;
 };
 
 }  // namespace

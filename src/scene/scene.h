@@ -163,7 +163,7 @@ struct StepInput {
 
 /// When a block is at rest in a motion, and when it is not any more; the rule is in analysis/resting.h. A tenth of a second is some periods of blocks
 /// on joints (300 rad/s in the paper's example 3.4), 3 % of gravity what impacts elsewhere send through a slope; there skipping changes the times at which
-/// the failing mass has gone 10 to 40 m by 0.04 % at most, a hundredth of a millimetre in displacements changes nothing more.
+/// the failing mass has gone 10 to 40 m by 0.04 % at most. A tenth of a millimetre in a tenth of a second is creep that may be left out.
 struct RestInput {
   double time = 0.1;           ///< [s] for which it and those it touches have been quiet; fading of the change of forces
   double displacement = 1e-4;  ///< [m] of any point in that time

@@ -31,10 +31,9 @@ class RunsAwayOnce : public Enforcement<3> {
  public:
   explicit RunsAwayOnce(const MethodInput& method) : real_(make_enforcement<3>(method)) {}
   ContactSprings springs(const StepProblem<3>& problem, const Contact& contact) const override { return real_->springs(problem, contact); }
-  StepSolution<3> solve(const StepProblem<3>& problem) override {
-    StepSolution<3> solution = real_->solve(problem);
+  void solve(const StepProblem<3>& problem, StepSolution<3>& solution) override {
+    real_->solve(problem, solution);
     if (++solved_ == 2) solution.d.setConstant(1e65);
-    return solution;
   }
   std::unique_ptr<TimeScheme<3>> make_time_scheme(const MethodInput& method) const override { return real_->make_time_scheme(method); }
   const LinearCounters& linear_counters() const override { return real_->linear_counters(); }

@@ -168,6 +168,36 @@ TEST_CASE("a displacement that has run away is no solution, however much its rou
   CHECK((!solution.converged || solution.d.cwiseAbs().maxCoeff() < 1.0));
 }
 
+TEST_CASE("a solution carries the forces of the law, also where its last iteration has reversed the slip", "[integrator][newton]") {
+  Scene scene = test::column_of_blocks(1);
+  constexpr double friction = 0.01;
+  scene.joints[0].friction_angle = std::atan(friction);
+  scene.blocks[1].rotation_locked = true;
+  Probe probe(scene);
+  // Friction B slows the block from one side and then from the other: residuals 3 B and 2 B, of which the second is tolerated.
+  MethodInput method = scene.method;
+  method.residual_tolerance = 2.5 * friction;
+  const StepProblem<3> present = probe.simulation.problem(0.01, false);
+  const StepProblem<3> problem{present.system, present.external, present.joints, present.contacts, method, present.dt, false, present.inertia};
+  const int block = present.system.free_blocks().front();
+  const double inertia = problem.inertia * problem.system.block(block).mass[0];
+  StepSolution<3> solution;
+  solution.d = -2.0 * friction * test::block_weight / inertia * Eigen::Vector3d::UnitX();
+  probe.newton.solve(problem, probe.springs, solution, FirstTangent::present);
+  REQUIRE(solution.converged);
+  REQUIRE(solution.iterations == 1);
+  for (std::size_t c = 0; c < probe.springs.size(); ++c) {
+    const ContactOutcome<3>& o = solution.contacts[c];
+    const ContactStrength strength(problem.joints.joint(problem.contacts[c].joint), problem.contacts[c]);
+    const ContactForces law = spring_slider(probe.springs[c], strength, o.pose.gap_change, o.pose.slip_change);
+    CHECK(law.status == ContactStatus::sliding);
+    CHECK(o.forces.status == law.status);
+    CHECK(o.forces.shear == law.shear);
+    CHECK(o.forces.elastic_shear == law.elastic_shear);
+    CHECK(o.forces.elastic_normal == law.elastic_normal);
+  }
+}
+
 TEST_CASE("Newton counts its linear solves and says why it gives up", "[integrator][newton]") {
   Scene scene = settled_scene(3);
   scene.method.max_iterations = 1;
