@@ -33,6 +33,7 @@ void TangentSystem<N>::fit(const StepProblem<N>& problem) {
 
 template <int N>
 void TangentSystem<N>::fit_pattern(const StepProblem<N>& problem) {
+  skip_symbolic_ = problem.method.skip_symbolic;
   const int rows = problem.system.free_count();
   if (solver_ && matrix_.rows() == rows && find_slots(problem)) return;
   std::vector<std::pair<int, int>> couplings;
@@ -50,6 +51,12 @@ void TangentSystem<N>::set_pattern(int rows, const std::vector<std::pair<int, in
   matrix_.set_pattern(rows, couplings);
   slots_.clear();
   if (!solver_) solver_ = make_solver<N>(rows, kind_);
+}
+
+template <int N>
+bool TangentSystem<N>::factor() {
+  if (!skip_symbolic_) matrix_.renew_version();
+  return solver_->factor(matrix_);
 }
 
 template <int N>
