@@ -1,5 +1,8 @@
 #include "openclose/core/parallel.h"
 
+#include <pthread.h>
+#include <time.h>
+
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -14,6 +17,13 @@ namespace {
 constexpr int looks_before_sleep = 300;
 
 std::array<std::atomic<long>, kinds_of_shared_work> shared{};
+
+double time_of(clockid_t clock) {
+  constexpr double nanosecond = 1e-9;
+  timespec now{};
+  clock_gettime(clock, &now);
+  return static_cast<double>(now.tv_sec) + nanosecond * static_cast<double>(now.tv_nsec);
+}
 
 /// The caller and its helpers take one part after the other from the same pile, so that the caller never waits for a helper which has not begun.
 class Team {
@@ -35,6 +45,15 @@ class Team {
     while (take_part()) {
     }
     while (finished_ < parts) std::this_thread::yield();
+  }
+
+  double cpu_time() {
+    double sum = 0.0;
+    for (std::thread& helper : helpers_) {
+      clockid_t clock{};
+      if (pthread_getcpuclockid(helper.native_handle(), &clock) == 0) sum += time_of(clock);
+    }
+    return sum;
   }
 
  private:
@@ -72,6 +91,11 @@ class Team {
   int parts_ = 0;
 };
 
+Team& team() {
+  static Team helpers;
+  return helpers;
+}
+
 }  // namespace
 
 void for_each_part(SharedWork kind, int threads, int parts, const std::function<void(int)>& work) {
@@ -79,17 +103,20 @@ void for_each_part(SharedWork kind, int threads, int parts, const std::function<
     for (int i = 0; i < parts; ++i) work(i);
     return;
   }
-  static Team team;
   ++shared[static_cast<std::size_t>(kind)];
-  team.share(threads, parts, work);
+  team().share(threads, parts, work);
 }
 
 long times_shared(SharedWork kind) {
   return shared[static_cast<std::size_t>(kind)];
 }
 
-bool has_used_threads() {
-  return std::any_of(shared.begin(), shared.end(), [](const std::atomic<long>& times) { return times > 0; });
+double thread_cpu_time() {
+  return time_of(CLOCK_THREAD_CPUTIME_ID);
+}
+
+double helpers_cpu_time() {
+  return team().cpu_time();
 }
 
 }  // namespace openclose

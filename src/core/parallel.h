@@ -28,6 +28,8 @@ void for_each_part(SharedWork kind, int threads, int parts, const std::function<
 
 /// How often this process has called upon more than one thread.
 long times_shared(SharedWork kind);
-bool has_used_threads();
+/// [s] CPU time of the thread that asks, and of all those that have helped it in for_each_part().
+double thread_cpu_time();
+double helpers_cpu_time();
 
 }  // namespace openclose

@@ -1,7 +1,5 @@
 #include "openclose/core/process.h"
 
-#include <time.h>
-
 #include <chrono>
 #include <fstream>
 #include <string>
@@ -15,12 +13,9 @@ const auto program_start = std::chrono::steady_clock::now();
 
 }  // namespace
 
-// Of the thread while it is the only one: the clock of the process only ticks every few milliseconds where a limit on its CPU time is set.
+// Of the threads one by one: the clock of the process only ticks every few milliseconds where a limit on its CPU time is set.
 double process_cpu_time() {
-  constexpr double nanosecond = 1e-9;
-  timespec now{};
-  clock_gettime(has_used_threads() ? CLOCK_PROCESS_CPUTIME_ID : CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + nanosecond * static_cast<double>(now.tv_nsec);
+  return thread_cpu_time() + helpers_cpu_time();
 }
 
 double wall_time() {

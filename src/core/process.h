@@ -3,7 +3,7 @@
 
 namespace openclose {
 
-/// [s] CPU time since the process began, of all its threads once for_each_part() has used several; before, of the thread that asks.
+/// [s] CPU time since the process began, of the thread that asks and of the helpers of for_each_part().
 double process_cpu_time();
 /// [s] Time since the program was started.
 double wall_time();
