@@ -187,7 +187,7 @@ template <int N>
 Eigen::VectorXd Newton<N>::direction(const Eigen::VectorXd& d, Tangent tangent) {
   assemble(d, tangent);
   Eigen::VectorXd step;
-  if (tangent_.solver().factor(tangent_.matrix())) step = tangent_.solver().solve(residual_, holds_.empty() ? linear_reduction : held_linear_reduction);
+  if (tangent_.factor()) step = tangent_.solver().solve(residual_, holds_.empty() ? linear_reduction : held_linear_reduction);
   return step;
 }
 
