@@ -21,21 +21,33 @@ void add_elastic_contact(EnergyLedger& ledger, const Contact& contact, const Con
                          const ContactPaths& paths, double theta) {
   const double kn = end.normal_stiffness, ks = end.shear_stiffness;
   const double gap_change = end.pose.gap_change, slip = end.pose.slip_change;
-  const double n0 = start.normal, n1 = end.forces.normal, t0 = start.shear, t1 = end.forces.shear;
+  const double n1 = end.forces.normal, t1 = end.forces.shear;
   const double p0 = start.elastic_normal / kn, p1 = end.forces.elastic_normal / kn;
   const double u0 = contact.elastic_slip, u1 = -end.forces.elastic_shear / ks;
-  const double opening0 = end.gap + p0, opening1 = end.gap + gap_change + p1;
+  const double opening0 = end.gap + p0;
+
+  double by_springs = (theta - 0.5) * (kn * square(p1 - p0) + ks * square(u1 - u0)) + theta * n1 * opening0;
+  double by_rotation = theta * (n1 * (paths.normal_end - gap_change) + t1 * (paths.shear_end - slip));
+  double viscous_normal = theta * (n1 - end.forces.elastic_normal), viscous_shear = theta * (t1 - end.forces.elastic_shear);
+  double shear = theta * t1;
+  double let_go = 0.0;
+  if (theta < 1.0) {
+    const double weight = 1.0 - theta, n0 = start.normal, t0 = start.shear, opening1 = end.gap + gap_change + p1;
+    by_springs -= weight * n0 * opening1;
+    by_rotation += weight * (n0 * (paths.normal_start - gap_change) + t0 * (paths.shear_start - slip));
+    viscous_normal += weight * (n0 - start.elastic_normal);
+    viscous_shear += weight * (t0 - start.elastic_shear);
+    shear += weight * t0;
+    // Where the strength has gone since the last step the spring lets go before it starts.
+    let_go = weight * (start.elastic_shear + ks * u0) * (u1 - u0);
+  }
 
   ledger.contact_springs += 0.5 * kn * (p1 * p1 - p0 * p0) + 0.5 * ks * (u1 * u1 - u0 * u0);
-  ledger.scheme += (theta - 0.5) * (kn * square(p1 - p0) + ks * square(u1 - u0)) + theta * n1 * opening0 - (1.0 - theta) * n0 * opening1;
-  ledger.scheme -= theta * (n1 * (paths.normal_end - gap_change) + t1 * (paths.shear_end - slip)) +
-                   (1.0 - theta) * (n0 * (paths.normal_start - gap_change) + t0 * (paths.shear_start - slip));
-  // Where the strength has gone since the last step the spring lets go before it starts.
-  ledger.scheme -= (1.0 - theta) * (start.elastic_shear + ks * u0) * (u1 - u0);
-  const double viscous_normal = theta * (n1 - end.forces.elastic_normal) + (1.0 - theta) * (n0 - start.elastic_normal);
-  const double viscous_shear = theta * (t1 - end.forces.elastic_shear) + (1.0 - theta) * (t0 - start.elastic_shear);
+  ledger.scheme += by_springs;
+  ledger.scheme -= by_rotation;
+  ledger.scheme -= let_go;
   ledger.contact_damping += viscous_normal * (p1 - p0) - viscous_shear * (u1 - u0);
-  ledger.friction -= (theta * t1 + (1.0 - theta) * t0) * (slip - (u1 - u0));
+  ledger.friction -= shear * (slip - (u1 - u0));
 }
 
 /// [N] All that a step with the forces at its end needs of those at its start.

@@ -441,8 +441,10 @@ Detector<N>::~Detector() = default;
 template <int N>
 bool Detector<N>::moved_beyond_search_skin(const BlockSystem<N>& system) const {
   for (int b : system.free_blocks()) {
-    const double moved = Motion<N>::displacement_bound(system.displacement(b) - searched_at_[b], system.block(b).radius);
-    if (moved > 0.5 * tolerance::search_skin_m) return true;
+    for (const auto& then : {searched_at_[b], searched_moving_at_[b]}) {
+      const double moved = Motion<N>::displacement_bound(system.displacement(b) - then, system.block(b).radius);
+      if (moved > 0.5 * tolerance::search_skin_m) return true;
+    }
   }
   return false;
 }
@@ -507,14 +509,15 @@ void Detector<N>::find_pairs(const BlockSystem<N>& system, const std::vector<Box
 template <int N>
 void Detector<N>::search(const BlockSystem<N>& system) {
   ++counters_.searches;
-  divided_ = false;
   std::vector<Box> boxes;
   boxes.reserve(system.block_count());
   searched_at_.resize(system.block_count());
+  searched_moving_at_.resize(system.block_count());
   const double room = reach_ + skips_.contact_skin + tolerance::search_skin_m;
   for (int b = 0; b < system.block_count(); ++b) {
     const auto& block = system.block(b);
     searched_at_[b] = system.displacement(b);
+    if (!system.is_at_rest(b)) searched_moving_at_[b] = system.displacement(b);
     Box box{system.arm(block.first_vertex), system.arm(block.first_vertex)};
     for (int v = block.first_vertex + 1; v < block.first_vertex + block.vertex_count; ++v) {
       box.low = box.low.cwiseMin(system.arm(v));
@@ -797,48 +800,80 @@ void Detector<N>::put_in_place(std::vector<Contact>& contacts, bool orphans) {
 }
 
 template <int N>
-void Detector<N>::divide(const BlockSystem<N>& system, std::vector<Contact>& contacts) {
-  const auto pairs = std::move(pairs_);
-  const auto states = std::move(states_);
-  const auto ranges = std::move(ranges_);
-  const auto list = std::move(contacts);
-  const Resting resting = std::move(resting_);
-  pairs_.clear();
-  states_.clear();
-  ranges_.clear();
-  contacts.clear();
-  resting_ = Resting();
-  const auto give = [&](const std::pair<int, int>& pair, const PairState& state, const Range& range, const std::vector<Contact>& from) {
-    const bool moves = system.block(pair.first).equation >= 0 || system.block(pair.second).equation >= 0;
-    std::vector<Contact>& to = moves ? contacts : resting_.contacts;
-    (moves ? pairs_ : resting_.pairs).push_back(pair);
-    (moves ? states_ : resting_.states).push_back(state);
-    const int begin = static_cast<int>(to.size());
-    to.insert(to.end(), from.begin() + range.begin, from.begin() + range.end);
-    (moves ? ranges_ : resting_.ranges).push_back({begin, static_cast<int>(to.size())});
-  };
-  for (std::size_t i = 0, k = 0; i < pairs.size() || k < resting.pairs.size();) {
-    if (k == resting.pairs.size() || (i < pairs.size() && pairs[i] < resting.pairs[k])) {
-      give(pairs[i], states[i], ranges[i], list);
-      ++i;
-    } else {
-      const auto [first, second] = resting.pairs[k];
-      if (system.block(first).equation >= 0 || system.block(second).equation >= 0) {
-        // When to look at this pair has not been followed.
-        for (const int b : {first, second}) ways_[b].look_at = ways_[b].gone;
-      }
-      give(resting.pairs[k], resting.states[k], resting.ranges[k], resting.contacts);
-      ++k;
-    }
+void Detector<N>::PairList::reserve(std::size_t pair_count, std::size_t contact_count) {
+  pairs.reserve(pair_count);
+  states.reserve(pair_count);
+  ranges.reserve(pair_count);
+  contacts.reserve(contact_count);
+}
+
+template <int N>
+void Detector<N>::PairList::add(const std::pair<int, int>& pair, const PairState& state, const Range& range, const std::vector<Contact>& range_of) {
+  const int begin = static_cast<int>(contacts.size());
+  pairs.push_back(pair);
+  states.push_back(state);
+  ranges.push_back({begin, begin + range.size()});
+  contacts.insert(contacts.end(), range_of.begin() + range.begin, range_of.begin() + range.end);
+}
+
+template <int N>
+template <class F>
+void Detector<N>::PairList::remove_if(F leaves) {
+  std::size_t kept = 0;
+  int end = 0;
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    if (leaves(pairs[k])) continue;
+    const Range from = ranges[k], to{end, end + from.size()};
+    if (from.begin != to.begin) std::copy(contacts.begin() + from.begin, contacts.begin() + from.end, contacts.begin() + to.begin);
+    pairs[kept] = pairs[k];
+    states[kept] = states[k];
+    ranges[kept++] = to;
+    end = to.end;
   }
+  pairs.resize(kept);
+  states.resize(kept);
+  ranges.resize(kept);
+  contacts.resize(end);
+}
+
+template <int N>
+void Detector<N>::divide(const BlockSystem<N>& system, std::vector<Contact>& contacts) {
+  const auto moves = [&](const std::pair<int, int>& pair) {
+    return system.block(pair.first).equation >= 0 || system.block(pair.second).equation >= 0;
+  };
+  std::vector<int> woken;
+  std::size_t more = 0;  // contacts
+  for (std::size_t k = 0; k < resting_.pairs.size(); ++k) {
+    if (!moves(resting_.pairs[k])) continue;
+    woken.push_back(static_cast<int>(k));
+    more += resting_.ranges[k].size();
+    // When to look at this pair has not been followed.
+    for (const int b : {resting_.pairs[k].first, resting_.pairs[k].second}) ways_[b].look_at = ways_[b].gone;
+  }
+  std::sort(woken.begin(), woken.end(), [&](int i, int j) { return resting_.pairs[i] < resting_.pairs[j]; });
+
+  // Those that move stay in order.
+  PairList moving;
+  moving.reserve(pairs_.size() + woken.size(), contacts.size() + more);
+  auto next = woken.begin();
+  for (std::size_t i = 0; i <= pairs_.size(); ++i) {
+    for (; next != woken.end() && (i == pairs_.size() || resting_.pairs[*next] < pairs_[i]); ++next)
+      moving.add(resting_.pairs[*next], resting_.states[*next], resting_.ranges[*next], resting_.contacts);
+    if (i < pairs_.size()) (moves(pairs_[i]) ? moving : resting_).add(pairs_[i], states_[i], ranges_[i], contacts);
+  }
+  if (!woken.empty()) resting_.remove_if(moves);
+  pairs_.swap(moving.pairs);
+  states_.swap(moving.states);
+  ranges_.swap(moving.ranges);
+  contacts.swap(moving.contacts);
   list_pairs_of_blocks(system.block_count());
   index_->forget_resting();
-  divided_ = true;
 }
 
 template <int N>
 void Detector<N>::exchange(Archive& archive) {
-  archive(first_, forgotten_, divided_, pairs_, states_, ranges_, resting_, searched_at_, counters_, places_, ways_, pairs_of_start_, pairs_of_);
+  archive(first_, forgotten_, pairs_, states_, ranges_, resting_, searched_at_, searched_moving_at_, counters_, places_, ways_, pairs_of_start_,
+          pairs_of_);
   if (archive.reading()) index_->forget_resting();
 }
 

@@ -39,7 +39,8 @@
 // than it.
 //
 // Blocks at rest (BlockSystem::is_at_rest) move as little as fixed ones do: pairs of which neither block moves are set aside with their contacts by
-// divide(), are not looked at in a step, and come back as they were when one of the two is woken.
+// divide(), are not looked at in a step, and come back as they were when one of the two is woken. A search leaves them out; they stay complete as
+// long as neither block has gone farther than the skin allows from where it was when it was last searched for with all others.
 #pragma once
 
 #include <cstdint>
@@ -119,7 +120,7 @@ class Detector {
   /// searched, contacts may also have gone whose blocks are no pair any more.
   const std::vector<DetectionChange>& changes() const { return changes_; }
   /// Whether the next update() searches for pairs.
-  bool needs_search(const BlockSystem<N>& system) const { return forgotten_ || divided_ || !skips_.search || moved_beyond_search_skin(system); }
+  bool needs_search(const BlockSystem<N>& system) const { return forgotten_ || !skips_.search || moved_beyond_search_skin(system); }
 
   /// Pairs of blocks whose boxes, with reach and skin, overlap, at least one of them free; renewed only when something moved beyond the skin.
   const std::vector<std::pair<int, int>>& candidate_pairs() const { return pairs_; }
@@ -174,12 +175,17 @@ class Detector {
     }
   };
   enum class Due : unsigned char { no, moved, yes };
-  /// Pairs that are set aside.
-  struct Resting {
+  /// Pairs with their contacts.
+  struct PairList {
     std::vector<std::pair<int, int>> pairs;
     std::vector<PairState> states;
     std::vector<Range> ranges;  ///< in these contacts
     std::vector<Contact> contacts;
+
+    void reserve(std::size_t pair_count, std::size_t contact_count);
+    void add(const std::pair<int, int>& pair, const PairState& state, const Range& range, const std::vector<Contact>& range_of);
+    template <class F>
+    void remove_if(F leaves);
 
     void exchange(Archive& archive) {
       auto& [a, b, c, d] = *this;
@@ -210,12 +216,12 @@ class Detector {
   DetectionSkips skips_;
   bool first_ = true;
   bool forgotten_ = true;
-  bool divided_ = false;  ///< since the last search, which did not look for pairs of blocks at rest
   std::vector<std::pair<int, int>> pairs_;
-  std::vector<PairState> states_;  ///< of the pairs
-  std::vector<Range> ranges_;      ///< of the pairs, in the list as the last update() left it
-  Resting resting_;
-  std::vector<Unknowns> searched_at_;
+  std::vector<PairState> states_;               ///< of the pairs
+  std::vector<Range> ranges_;                   ///< of the pairs, in the list as the last update() left it
+  PairList resting_;                            ///< set aside, in any order
+  std::vector<Unknowns> searched_at_;           ///< displacements of the blocks in the last search
+  std::vector<Unknowns> searched_moving_at_;    ///< in the last one before which they were not at rest
   std::vector<Place> places_;                   ///< of the blocks in the last update()
   std::vector<Way> ways_;                       ///< of the blocks
   std::vector<int> pairs_of_start_, pairs_of_;  ///< of the blocks: pairs_of_[pairs_of_start_[b]] to before that of b + 1

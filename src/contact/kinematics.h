@@ -42,6 +42,20 @@ struct BlockMove {
   Vec2 displacement(const Vec2& arm) const { return translation + (sine * perpendicular(arm) - versine * arm); }
 };
 
+/// Where a contact is, as the system has it.
+template <int N>
+struct ContactPlace {
+  Vec2 vertex_arm, end_arm, lever;  ///< [m] as in ContactStart
+  Vec2 edge;                        ///< [m] from e to the edge's other end
+
+  ContactPlace() = default;
+  ContactPlace(const BlockSystem<N>& system, const Contact& contact)
+      : vertex_arm(system.arm(contact.vertex)),
+        end_arm(system.arm(contact.edge)),
+        lever((system.centroid(contact.vertex_block) + vertex_arm) - (system.centroid(contact.edge_block) + end_arm)),
+        edge(system.arm(system.next(contact.edge)) - end_arm) {}
+};
+
 /// A contact at the start of a step.
 template <int N>
 struct ContactStart {
@@ -51,12 +65,9 @@ struct ContactStart {
   Vec2 lever;       ///< [m] from e to p
 
   ContactStart() = default;
-  ContactStart(const BlockSystem<N>& system, const Contact& contact)
-      : vertex_arm(system.arm(contact.vertex)),
-        end_arm(system.arm(contact.edge)),
-        lever((system.centroid(contact.vertex_block) + vertex_arm) - (system.centroid(contact.edge_block) + end_arm)) {
-    normal = -perpendicular((system.arm(system.next(contact.edge)) - end_arm).normalized());
-  }
+  explicit ContactStart(const ContactPlace<N>& at)
+      : normal(-perpendicular(at.edge.normalized())), vertex_arm(at.vertex_arm), end_arm(at.end_arm), lever(at.lever) {}
+  ContactStart(const BlockSystem<N>& system, const Contact& contact) : ContactStart(ContactPlace<N>(system, contact)) {}
 };
 
 /// A contact at a trial position.

@@ -33,6 +33,26 @@ struct Moves {
 };
 static_assert(sizeof(BlockMove<3>) == 2 * sizeof(Lanes), "its members are loaded in their order");
 
+OPENCLOSE_KERNEL Lanes length(Lanes x, Lanes y) {
+  return square_root(x * x + y * y);
+}
+
+/// As ContactStart.
+OPENCLOSE_KERNEL double begin(ContactBatch* contacts, std::size_t count) {
+  Lanes largest{};
+  for (std::size_t i = 0; i < count; ++i) {
+    ContactBatch& c = contacts[i];
+    const Lanes edge_x = c.normal_x, edge_y = c.normal_y, edge = length(edge_x, edge_y);
+    // Places without a contact have no edge.
+    c.normal_x = edge > 0.0 ? edge_y / edge : Lanes{};
+    c.normal_y = edge > 0.0 ? -(edge_x / edge) : Lanes{};
+    c.vertex_reach = length(c.vertex_arm_x, c.vertex_arm_y);
+    c.edge_reach = length(c.end_arm_x + c.lever_x, c.end_arm_y + c.lever_y);
+    largest = larger(largest, larger(c.shift - c.normal * c.gap_off_target, magnitude(c.initial_shear)));
+  }
+  return std::max({largest[0], largest[1], largest[2], largest[3]});
+}
+
 OPENCLOSE_KERNEL void find_pose(const ContactBatch& c, const Moves& vertex, const Moves& edge, TrialBatch& trial) {
   const Lanes dnx = -edge.edge_sine * c.normal_y - edge.edge_versine * c.normal_x, dny = edge.edge_sine * c.normal_x - edge.edge_versine * c.normal_y;
   const Lanes nx = c.normal_x + dnx, ny = c.normal_y + dny;
@@ -282,6 +302,9 @@ OPENCLOSE_KERNEL void add_either_stiffness(const ContactBatch* contacts, const T
   add_stiffness<false>(contacts, trials, count, branches, tangent, slots, values);
 }
 
+double begin_with_any_registers(ContactBatch* contacts, std::size_t count) {
+  return begin(contacts, count);
+}
 double evaluate_with_any_registers(StepForces forces, const ContactBatch* contacts, std::size_t count, const BlockMove<3>* moves,
                                    double rounding_of_sums, TrialBatch* trials, Branch* branches, ForceRow* rows) {
   return evaluate_either(forces, contacts, count, moves, rounding_of_sums, trials, branches, rows);
@@ -292,6 +315,9 @@ void add_stiffness_with_any_registers(const ContactBatch* contacts, const TrialB
 }
 
 #ifdef OPENCLOSE_HAS_WIDE_REGISTERS
+[[gnu::target("avx2")]] double begin_with_wide_registers(ContactBatch* contacts, std::size_t count) {
+  return begin(contacts, count);
+}
 [[gnu::target("avx2")]] double evaluate_with_wide_registers(StepForces forces, const ContactBatch* contacts, std::size_t count,
                                                             const BlockMove<3>* moves, double rounding_of_sums, TrialBatch* trials, Branch* branches,
                                                             ForceRow* rows) {
@@ -307,9 +333,10 @@ void add_stiffness_with_any_registers(const ContactBatch* contacts, const TrialB
 }  // namespace
 
 BatchKernels::BatchKernels([[maybe_unused]] bool wide_registers)
-    : evaluate_(&evaluate_with_any_registers), add_stiffness_(&add_stiffness_with_any_registers) {
+    : begin_(&begin_with_any_registers), evaluate_(&evaluate_with_any_registers), add_stiffness_(&add_stiffness_with_any_registers) {
 #ifdef OPENCLOSE_HAS_WIDE_REGISTERS
   if (!wide_registers || !__builtin_cpu_supports("avx2")) return;
+  begin_ = &begin_with_wide_registers;
   evaluate_ = &evaluate_with_wide_registers;
   add_stiffness_ = &add_stiffness_with_wide_registers;
 #endif
@@ -320,32 +347,6 @@ void BatchKernels::add_stiffness(const std::vector<ContactBatch>& contacts, cons
                                  BlockMatrix<3>& matrix) const {
   if (matrix.rows() == 0) return;
   add_stiffness_(contacts.data(), trials.data(), trials.size(), branches.data(), tangent, slots.data(), matrix.value(0).data());
-}
-
-void ContactBatch::set(int lane, const ContactStart<3>& at, const ContactSprings& springs, const ContactStrength& strength) {
-  normal_x[lane] = at.normal.x();
-  normal_y[lane] = at.normal.y();
-  lever_x[lane] = at.lever.x();
-  lever_y[lane] = at.lever.y();
-  vertex_arm_x[lane] = at.vertex_arm.x();
-  vertex_arm_y[lane] = at.vertex_arm.y();
-  end_arm_x[lane] = at.end_arm.x();
-  end_arm_y[lane] = at.end_arm.y();
-  vertex_reach[lane] = at.vertex_arm.norm();
-  edge_reach[lane] = (at.end_arm + at.lever).norm();
-  normal[lane] = springs.normal;
-  shear[lane] = springs.shear;
-  gap_off_target[lane] = springs.gap - springs.target;
-  shift[lane] = springs.shift;
-  initial_shear[lane] = springs.initial_shear;
-  normal_damping[lane] = springs.normal_damping;
-  shear_damping[lane] = springs.shear_damping;
-  const double opening = springs.target + (springs.shift + strength.tension) / springs.normal;
-  parted[lane] = springs.normal_damping == 0.0 ? 0.0 : std::max(0.0, springs.gap - opening);
-  friction[lane] = strength.friction;
-  cohesion[lane] = strength.cohesion;
-  tension[lane] = strength.tension;
-  dissipation[lane] = springs.dissipation;
 }
 
 ContactStart<3> ContactBatch::start(int lane) const {

@@ -8,6 +8,7 @@
 // or stick all the way are taken four at a time, the others one by one.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -36,7 +37,7 @@ enum class StepForces {
   averaged,  ///< means over its path, see path_average.h
 };
 
-/// Four contacts at the start of a step. What is not set() carries nothing and adds nothing.
+/// Four contacts at the start of a step: set() one by one, then BatchKernels::begin(). What is not set carries nothing and adds nothing.
 struct ContactBatch {
   Lanes normal_x{}, normal_y{}, lever_x{}, lever_y{}, vertex_arm_x{}, vertex_arm_y{}, end_arm_x{}, end_arm_y{};  // as in ContactStart
   Lanes vertex_reach{}, edge_reach{};  ///< [m] from the centroids to the contact
@@ -47,12 +48,40 @@ struct ContactBatch {
   int vertex_block[batch_size] = {}, edge_block[batch_size] = {};
   int vertex_row[batch_size] = {}, edge_row[batch_size] = {};  ///< of ForceRow; that of fixed blocks nobody reads
 
-  void set(int lane, const ContactStart<3>& at, const ContactSprings& springs, const ContactStrength& strength);
+  void set(int lane, const ContactPlace<3>& at, const ContactSprings& springs, const ContactStrength& strength);
   ContactStart<3> start(int lane) const;
   ContactStrength strength(int lane) const;
   /// Those that were set, with the gap counted from their target.
   ContactSprings springs(int lane) const;
 };
+
+inline void ContactBatch::set(int lane, const ContactPlace<3>& at, const ContactSprings& springs, const ContactStrength& strength) {
+  // The edge, until its normal is known.
+  normal_x[lane] = at.edge.x();
+  normal_y[lane] = at.edge.y();
+  lever_x[lane] = at.lever.x();
+  lever_y[lane] = at.lever.y();
+  vertex_arm_x[lane] = at.vertex_arm.x();
+  vertex_arm_y[lane] = at.vertex_arm.y();
+  end_arm_x[lane] = at.end_arm.x();
+  end_arm_y[lane] = at.end_arm.y();
+  normal[lane] = springs.normal;
+  shear[lane] = springs.shear;
+  gap_off_target[lane] = springs.gap - springs.target;
+  shift[lane] = springs.shift;
+  initial_shear[lane] = springs.initial_shear;
+  normal_damping[lane] = springs.normal_damping;
+  shear_damping[lane] = springs.shear_damping;
+  parted[lane] = 0.0;
+  if (springs.normal_damping != 0.0) {
+    const double opening = springs.target + (springs.shift + strength.tension) / springs.normal;
+    parted[lane] = std::max(0.0, springs.gap - opening);
+  }
+  friction[lane] = strength.friction;
+  cohesion[lane] = strength.cohesion;
+  tension[lane] = strength.tension;
+  dissipation[lane] = springs.dissipation;
+}
 
 /// The same contacts at the trial displacement, their forces or means of them, and the derivatives of these.
 struct TrialBatch {
@@ -92,6 +121,9 @@ class BatchKernels {
   /// \param wide_registers  to be used where the processor has them
   explicit BatchKernels(bool wide_registers = true);
 
+  /// Works out, of contacts that have just been set, what is the same operations for all: their normals and reaches. Returns [N] the largest force of
+  /// a spring at the start of the step, pulling ones not counted.
+  double begin(std::vector<ContactBatch>& contacts) const { return begin_(contacts.data(), contacts.size()); }
   /// Fills trials and branches; adds to the rows. Returns [N] the largest force.
   /// \param moves  of all blocks
   /// \param rounding_of_sums  [-] of the forces and changes of force of a contact
@@ -104,6 +136,7 @@ class BatchKernels {
                      const BatchTangent& tangent, const std::vector<ContactSlots>& slots, BlockMatrix<3>& matrix) const;
 
  private:
+  double (*begin_)(ContactBatch*, std::size_t);
   double (*evaluate_)(StepForces, const ContactBatch*, std::size_t, const BlockMove<3>*, double, TrialBatch*, Branch*, ForceRow*);
   void (*add_stiffness_)(const ContactBatch*, const TrialBatch*, std::size_t, const Branch*, const BatchTangent&, const ContactSlots*, double*);
 };

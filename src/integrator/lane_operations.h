@@ -2,6 +2,7 @@
 // of this is inlined.
 #pragma once
 
+#include <cmath>
 #include <cstring>
 
 #include "openclose/core/tolerance.h"
@@ -24,6 +25,12 @@ OPENCLOSE_KERNEL void store(double* to, Lanes x) {
 }
 OPENCLOSE_KERNEL Lanes magnitude(Lanes x) {
   return x < 0.0 ? -x : x;
+}
+/// In files that are compiled with -fno-math-errno one operation.
+OPENCLOSE_KERNEL Lanes square_root(Lanes x) {
+  Lanes root;
+  for (int k = 0; k < batch_size; ++k) root[k] = std::sqrt(x[k]);
+  return root;
 }
 /// As std::max, std::min and std::clamp.
 OPENCLOSE_KERNEL Lanes larger(Lanes a, Lanes b) {

@@ -80,7 +80,7 @@ void Newton<N>::prepare(const StepProblem<N>& problem, const std::vector<Contact
     batch.edge_row[lane(c)] = row(batch.edge_block[lane(c)]);
     if (!is_one) continue;
     const Contact& contact = problem.contacts[c];
-    batch.set(lane(c), ContactStart<N>(system, contact), springs[c], ContactStrength(problem.joints.joint(contact.joint), contact));
+    batch.set(lane(c), ContactPlace<N>(system, contact), springs[c], ContactStrength(problem.joints.joint(contact.joint), contact));
   }
   blocks_.clear();
   for (int b : system.free_blocks()) {
@@ -90,13 +90,9 @@ void Newton<N>::prepare(const StepProblem<N>& problem, const std::vector<Contact
                        problem.external.force(system, b, still), problem.drift(b), problem.external.magnitude(system, b, still),
                        problem.external.spring_scale(system, b)});
   }
-  start_scale_ = 0.0;
+  start_scale_ = kernels_.begin(contacts_);
   for (const StepBlock& block : blocks_) {
     start_scale_ = std::max({start_scale_, block.magnitude, Motion<N>::largest_force(block.inertia.cwiseProduct(block.drift), block.radius)});
-  }
-  for (std::size_t c = 0; c < contact_count_; ++c) {
-    const ContactSprings& s = springs[c];
-    start_scale_ = std::max({start_scale_, s.shift - s.normal * (s.gap - s.target), std::abs(s.initial_shear)});
   }
   trials_.resize(contacts_.size());
   step_forces_ = problem.averages_path() ? StepForces::averaged : StepForces::at_end;
@@ -191,7 +187,7 @@ template <int N>
 Eigen::VectorXd Newton<N>::direction(const Eigen::VectorXd& d, Tangent tangent) {
   assemble(d, tangent);
   Eigen::VectorXd step;
-  if (tangent_.solver().factor(tangent_.matrix())) step = tangent_.solver().solve(residual_, holds_.empty() ? linear_reduction : held_linear_reduction);
+  if (tangent_.factor()) step = tangent_.solver().solve(residual_, holds_.empty() ? linear_reduction : held_linear_reduction);
   return step;
 }
 

@@ -102,7 +102,7 @@ class Shi : public Enforcement<N> {
       right[N * block.equation + Motion<N>::rotation_index] = 0.0;
     }
     ++solution.iterations;
-    const bool regular = tangent_.solver().factor(tangent_.matrix());
+    const bool regular = tangent_.factor();
     if (regular) solution.d = tangent_.solver().solve(right);
     if (!regular || solution.d.size() != right.size() || !solution.d.allFinite()) {
       solution.reason = "singular matrix";

@@ -26,6 +26,7 @@ bool TangentSystem<N>::find_slots(const StepProblem<N>& problem) {
 
 template <int N>
 void TangentSystem<N>::fit(const StepProblem<N>& problem) {
+  skip_symbolic_ = problem.method.skip_symbolic;
   const int rows = problem.system.free_count();
   if (solver_ && matrix_.rows() == rows && find_slots(problem)) return;
   std::vector<std::pair<int, int>> couplings;
@@ -43,6 +44,12 @@ void TangentSystem<N>::set_pattern(int rows, const std::vector<std::pair<int, in
   matrix_.set_pattern(rows, couplings);
   slots_.clear();
   if (!solver_) solver_ = make_solver<N>(rows, kind_);
+}
+
+template <int N>
+bool TangentSystem<N>::factor() {
+  if (!skip_symbolic_) matrix_.renew_version();
+  return solver_->factor(matrix_);
 }
 
 template <int N>

@@ -16,6 +16,9 @@ class TangentSystem {
   /// Of the contacts in order, and of nothing up to the end of the last batch.
   const std::vector<ContactSlots>& slots() const { return slots_; }
   BlockMatrix<N>& matrix() { return matrix_; }
+  /// False if the matrix is singular.
+  bool factor();
+  /// Of the last matrix that was factored.
   LinearSolver<N>& solver() { return *solver_; }
   /// The pattern, which decides in which order the solver eliminates and so how it rounds; the symbolic work is done again after reading.
   void exchange(Archive& archive);
@@ -29,6 +32,7 @@ class TangentSystem {
   BlockMatrix<N> matrix_;
   std::vector<ContactSlots> slots_;
   LinearSolverKind kind_ = LinearSolverKind::automatic;
+  bool skip_symbolic_ = true;
   std::unique_ptr<LinearSolver<N>> solver_;
   LinearCounters nothing_done_;
 };

@@ -4,7 +4,7 @@
 // Row by row (Duff, Erisman, Reid, Direct methods for sparse matrices, 2017, chapter 10): row i of the matrix is laid into the slots of row i of L
 // and U, and the rows above are subtracted from it in ascending order. The pattern is symmetric, so that L has the transposed pattern of U. The
 // diagonal blocks are inverted; nothing is exchanged between blocks, which is safe while each block is held by its own inertia and contacts: where a
-// pivot has lost its digits, the factorisation is given to the plain solver, which exchanges rows.
+// pivot has lost its digits, the matrix is given to the multifrontal solver, which exchanges rows within its fronts.
 #include <Eigen/LU>
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseCore>
@@ -262,22 +262,36 @@ class BlockLuSolver : public LinearSolver<N> {
       ++this->counters_.symbolic_skipped;
     }
     ++this->counters_.factorisations;
-    use_plain_ = !kernels_.eliminate(matrix, factor_);
-    if (!use_plain_) return true;
-    ++this->counters_.plain;
-    if (!plain_) plain_ = make_sparse_solver<N>();
-    return plain_->factor(matrix);
+    use_fronts_ = !kernels_.eliminate(matrix, factor_);
+    if (!use_fronts_) return true;
+    ++this->counters_.pivots_lost;
+    if (!fronts_) fronts_ = make_multifrontal_solver<N>(Refactor::always);
+    const bool regular = fronts_->factor(matrix);
+    count_help();
+    return regular;
   }
 
   Eigen::VectorXd solve(const Eigen::VectorXd& right_side, double reduction) override {
     ++this->counters_.solves;
-    if (use_plain_) return plain_->solve(right_side, reduction);
     Eigen::VectorXd x(right_side.size());
+    if (use_fronts_) {
+      x = fronts_->solve(right_side, reduction);
+      count_help();
+      return x;
+    }
     kernels_.substitute(factor_, right_side.data(), x.data());
     return x;
   }
 
  private:
+  /// The factorisation is counted already, what the fronts needed on top of it is not.
+  void count_help() {
+    const LinearCounters& help = fronts_->counters();
+    this->counters_.plain += help.plain - counted_.plain;
+    this->counters_.krylov_iterations += help.krylov_iterations - counted_.krylov_iterations;
+    counted_ = help;
+  }
+
   void analyse(const BlockMatrix<N>& matrix) {
     ++this->counters_.symbolic;
     version_ = matrix.pattern_version();
@@ -384,8 +398,9 @@ class BlockLuSolver : public LinearSolver<N> {
   Kernels<N> kernels_;
   Factor<N> factor_;
   std::vector<int> place_;  ///< in the factor, of a row of the matrix
-  bool use_plain_ = false;
-  std::unique_ptr<LinearSolver<N>> plain_;
+  bool use_fronts_ = false;
+  std::unique_ptr<LinearSolver<N>> fronts_;
+  LinearCounters counted_;  ///< of the fronts
 };
 
 }  // namespace

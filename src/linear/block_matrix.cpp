@@ -27,6 +27,11 @@ void BlockMatrix<N>::set_pattern(int rows, const std::vector<std::pair<int, int>
   diagonal_.resize(rows);
   for (int i = 0; i < rows; ++i) diagonal_[i] = find(i, i);
   values_.assign(columns_.size(), Block::Zero());
+  renew_version();
+}
+
+template <int N>
+void BlockMatrix<N>::renew_version() {
   static std::atomic<long> latest{0};  // over all matrices, so that a solver can tell them apart
   pattern_version_ = ++latest;
 }

@@ -18,8 +18,9 @@ class BlockMatrix {
 
   int rows() const { return static_cast<int>(row_start_.size()) - 1; }
   int unknowns() const { return N * rows(); }
-  std::vector<std::pair<int, int>> couplings() const;  ///< with which set_pattern() makes this pattern
+  std::vector<std::pair<int, int>> couplings() const;        ///< with which set_pattern() makes this pattern
   long pattern_version() const { return pattern_version_; }  ///< changes with every new pattern, differs between matrices
+  void renew_version();                                      ///< lets the pattern pass for a new one
 
   bool contains(int row, int column) const { return find(row, column) >= 0; }
   int find(int row, int column) const;                    ///< slot of the pair, -1 if not in the pattern

@@ -12,7 +12,7 @@
 //                  solve          0.03   0.26    3.8      24      57
 //                  bytes a block  1384   2018   3018    4072    4961
 //
-// Row by row has become two to three times as fast since, which is why it serves up to the limit in solver.cpp.
+// Row by row has become three times as fast since, which is why it serves up to the limit in solver.cpp.
 //
 // Nested dissection by METIS instead of minimum degree: the same work at 8,000 and 40,000 blocks and 0.6 of it at 85,000, but five to eight times as
 // long to order, for every new pattern.

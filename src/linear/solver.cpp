@@ -6,9 +6,11 @@
 namespace openclose {
 namespace {
 
-/// Up to here a factor of its own for each matrix, row by row. At 7565 free blocks an iteration of a slope whose contacts change state by the
-/// thousand takes 17 ms so and 34 ms with factors that are kept in vain; where few contacts change it is 28 against 18 ms.
-constexpr int largest_row_by_row_system_blocks = 10000;
+/// Up to here a factor of its own for each matrix, row by row, where GMRES does not serve: 42 against 78 ms by supernodes at 19,445 rows, 0.21
+/// against 0.33 s at 49,066, 0.71 against 1.0 s at 98,600, and solves in four fifths of the time. Keeping the latter for the next matrices does not
+/// make up for that: settling a slope of 20,100 blocks 19 of 1,807 factors served again. An iteration of its motion takes 25 ms so and 36 ms with
+/// kept factors.
+constexpr int largest_row_by_row_system_blocks = 100000;
 
 /// From here on GMRES with an incomplete factor is worth a try. A slope in motion at 10 ms, CPU time of all it does over that with a factor of each
 /// matrix: 1.0 with 397 free blocks, 0.74 with 1,773, 0.4 with 4,568.

@@ -17,22 +17,23 @@ struct LinearCounters {
   long symbolic_skipped = 0;  ///< factorisations on a known pattern
   long factorisations = 0;
   long solves = 0;
-  long plain = 0;              ///< factorisations that the solver had to give to the plain one
+  long pivots_lost = 0;        ///< factorisations row by row that were done again with exchange of rows
+  long plain = 0;              ///< matrices that only the plain solver could do
   long factors_kept = 0;       ///< matrices solved with the factor of an earlier one
   long krylov_iterations = 0;  ///< of GMRES
   long krylov_given_up = 0;    ///< solves with an earlier factor or an incomplete one that were given up for a new one
   long incomplete = 0;         ///< incomplete factorisations, not counted in `factorisations`
 
   LinearCounters& operator+=(const LinearCounters& other) {
-    auto& [a, b, c, d, e, f, g, h, i] = *this;
-    const auto& [a2, b2, c2, d2, e2, f2, g2, h2, i2] = other;
-    a += a2, b += b2, c += c2, d += d2, e += e2, f += f2, g += g2, h += h2, i += i2;
+    auto& [a, b, c, d, e, f, g, h, i, j] = *this;
+    const auto& [a2, b2, c2, d2, e2, f2, g2, h2, i2, j2] = other;
+    a += a2, b += b2, c += c2, d += d2, e += e2, f += f2, g += g2, h += h2, i += i2, j += j2;
     return *this;
   }
 
   void exchange(Archive& archive) {
-    auto& [a, b, c, d, e, f, g, h, i] = *this;
-    archive(a, b, c, d, e, f, g, h, i);
+    auto& [a, b, c, d, e, f, g, h, i, j] = *this;
+    archive(a, b, c, d, e, f, g, h, i, j);
   }
 };
 
@@ -63,7 +64,7 @@ std::unique_ptr<LinearSolver<N>> make_dense_solver();
 template <int N>
 std::unique_ptr<LinearSolver<N>> make_sparse_solver();
 
-/// LU of the blocks, without exchange between them, in an order of little fill; goes over to the plain one where a pivot has lost its digits.
+/// LU of the blocks, without exchange between them, in an order of little fill; goes over to the multifrontal one where a pivot has lost its digits.
 /// \param wide_registers  false: only the instructions that every processor has, for comparison; the bits of the answer are the same
 template <int N>
 std::unique_ptr<LinearSolver<N>> make_block_solver(bool wide_registers = true);

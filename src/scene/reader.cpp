@@ -209,6 +209,7 @@ MethodInput read_method(Table table, const SourceLocation& scene_where) {
   table.optional("skip_narrow_phase", method.skip_narrow_phase);
   table.optional("skip_looks", method.skip_looks);
   table.optional("skip_reload", method.skip_reload);
+  table.optional("skip_symbolic", method.skip_symbolic);
   table.optional("skip_resting", method.skip_resting);
   table.optional("gap_tolerance_m", method.gap_tolerance, positive);
   table.optional("penalty_pa_per_m", method.penalty, positive);

@@ -139,6 +139,7 @@ struct MethodInput {
   bool skip_narrow_phase = true;               ///< find the contacts of two blocks anew only once they have moved against each other beyond the skin
   bool skip_looks = true;                      ///< see DetectionSkips
   bool skip_reload = true;                     ///< dem: exchange only the contacts that were found anew, and leave the others in the loop
+  bool skip_symbolic = true;                   ///< plan a factorisation only once the pattern of the matrix has changed
   bool skip_resting = false;                   ///< leave blocks alone that are at rest, see RestInput
   double gap_tolerance = 3e-7;                 ///< [m] hard: a closed contact may differ from its target gap, a sticking one from its place, by this much
   std::optional<double> penalty;               ///< [Pa/m] shi: normal penalty, times the tributary length like any stiffness; absent: 10 times the joint's

@@ -1,4 +1,5 @@
 // Searching only when something has moved beyond the skin must not change what is found.
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -209,7 +210,7 @@ TEST_CASE("contacts of blocks at rest are set aside and come back as they were",
   for (std::size_t i = 0; i < 4; ++i) CHECK(d.contacts[i].normal_force == 1.0 + static_cast<double>(i));
 }
 
-TEST_CASE("blocks that are woken are searched for, since others have been meanwhile", "[contact][search]") {
+TEST_CASE("blocks that are woken are searched for once they have moved enough since they last were among all others", "[contact][search]") {
   constexpr double reach = 0.05, little = 0.36 * tolerance::search_skin_m;  // less than what asks for a search
   const double apart = reach + tolerance::contact_skin_m + 1.25 * tolerance::search_skin_m;
   Detection d(scene_with({free_block("left", rectangle(0.0, 0.0, 1.0, 1.0)), free_block("right", rectangle(1.0 + apart, 0.0, 1.0, 1.0)),
@@ -226,9 +227,42 @@ TEST_CASE("blocks that are woken are searched for, since others have been meanwh
   d.system.wake({0, 1});
   d.detector.divide(d.system, d.contacts);
   d.update();
+  CHECK(d.detector.counters().searches == 2);
   d.move(0, little, 0.0);
   d.move(1, -little, 0.0);
   CHECK(d.update().size() == 2);
+}
+
+TEST_CASE("whoever rests and wakes, in whatever order, every contact stays with its pair", "[contact][search]") {
+  constexpr int columns = 4, rows = 3, count = columns * rows;
+  Scene scene = scene_with({fixed_block("base", rectangle(-5.0, -1.0, 20.0, 1.0))});
+  for (int i = 0; i < count; ++i) scene.blocks.push_back(free_block("block", rectangle(i % columns, i / columns, 1.0, 1.0)));
+  Detection d(scene, 0.05, DetectionSkips{});
+  for (std::size_t i = 0; i < d.contacts.size(); ++i) d.contacts[i].normal_force = 1.0 + static_cast<double>(i);
+  const std::vector<Contact> all = d.contacts;
+  std::mt19937 generator(4);
+  for (int change = 0; change < 200; ++change) {
+    std::vector<int> rest, wake;
+    for (int b = 1; b <= count; ++b) {
+      if (generator() % 3 == 0) (d.system.is_at_rest(b) ? wake : rest).push_back(b);
+    }
+    d.system.put_to_rest(rest);
+    d.system.wake(wake);
+    d.detector.divide(d.system, d.contacts);
+    d.update();
+    std::vector<Contact> moving, resting = d.detector.resting_contacts();
+    for (const Contact& c : all) {
+      if (d.system.block(c.vertex_block).equation >= 0 || d.system.block(c.edge_block).equation >= 0) moving.push_back(c);
+    }
+    require_same(d.contacts, moving);
+    for (std::size_t i = 0; i < moving.size(); ++i) CHECK(d.contacts[i].normal_force == moving[i].normal_force);
+    REQUIRE(moving.size() + resting.size() == all.size());
+    std::sort(resting.begin(), resting.end(), [](const Contact& a, const Contact& b) { return a.normal_force < b.normal_force; });
+    for (const Contact& c : resting) {
+      CHECK(c.vertex == all[std::lround(c.normal_force) - 1].vertex);
+      CHECK_FALSE((d.system.block(c.vertex_block).equation >= 0 || d.system.block(c.edge_block).equation >= 0));
+    }
+  }
 }
 
 TEST_CASE("what blocks at rest have closed among themselves still counts for corners that come by", "[contact][search]") {

@@ -21,13 +21,14 @@ struct RandomContacts {
       moves[b] = BlockMove<3>({number(1e-3), number(1e-3), number(1e-3)}, seed % 2 == 0 ? RotationKind::exact : RotationKind::linear);
     }
     for (std::size_t c = 0; c < count; ++c) {
-      ContactStart<3> at;
+      ContactPlace<3> at;
       const double angle = number(3.0);
-      at.normal = {std::cos(angle), std::sin(angle)};
+      at.edge = (5.0 + number(4.0)) * Vec2(std::cos(angle), std::sin(angle));
       at.vertex_arm = {number(5.0), number(5.0)};
       at.end_arm = {number(5.0), number(5.0)};
-      at.lever = number(5.0) * perpendicular(at.normal) + number(1e-3) * at.normal;
-      starts.push_back(at);
+      at.lever = number(1.0) * at.edge + number(1e-3) * Vec2(-std::sin(angle), std::cos(angle));
+      places.push_back(at);
+      starts.emplace_back(at);
       ContactSprings s;
       s.normal = 1e9 * (2.0 + number(1.0));
       s.shear = 1e9 * (2.0 + number(1.0));
@@ -64,9 +65,15 @@ struct RandomContacts {
       batch.edge_block[lane] = is_one ? edge_blocks[c] : block_count;
       batch.vertex_row[lane] = std::min(batch.vertex_block[lane], free_count);
       batch.edge_row[lane] = std::min(batch.edge_block[lane], free_count);
-      if (is_one) batch.set(lane, starts[c], springs[c], strengths[c]);
+      if (is_one) batch.set(lane, places[c], springs[c], strengths[c]);
     }
     return list;
+  }
+  /// [N] of a spring before anything has moved.
+  double largest_start_force() const {
+    double largest = 0.0;
+    for (const ContactSprings& s : springs) largest = std::max({largest, s.shift - s.normal * (s.gap - s.target), std::abs(s.initial_shear)});
+    return largest;
   }
 
   double number(double largest) { return std::uniform_real_distribution<double>(-largest, largest)(random); }
@@ -75,6 +82,7 @@ struct RandomContacts {
 
   std::mt19937 random;
   std::vector<BlockMove<3>> moves;
+  std::vector<ContactPlace<3>> places;
   std::vector<ContactStart<3>> starts;
   std::vector<ContactSprings> springs;
   std::vector<ContactStrength> strengths;
@@ -84,13 +92,14 @@ struct RandomContacts {
 struct Evaluated {
   Evaluated(const RandomContacts& contacts, const BatchKernels& kernels, StepForces forces)
       : batches(contacts.batches()), trials(batches.size()), branches(batch_size * batches.size(), 77), rows(free_count + 1) {
+    largest_at_start = kernels.begin(batches);
     largest = kernels.evaluate(forces, batches, contacts.moves.data(), rounding_of_sums, trials, branches, rows);
   }
   std::vector<ContactBatch> batches;
   std::vector<TrialBatch> trials;
   std::vector<Branch> branches;
   std::vector<ForceRow> rows;
-  double largest;
+  double largest_at_start, largest;
 };
 
 /// One contact by itself.
@@ -164,6 +173,7 @@ TEST_CASE("four contacts at a time are where each is and carry what each carries
     for (int i = 0; i < 4; ++i) CHECK(all.rows[row].sums[i] == sums[row][i]);
   }
   CHECK(all.largest == largest);
+  CHECK(all.largest_at_start == contacts.largest_start_force());
   if (count < 100) return;
   for (const int number : of_status) CHECK(number > 20);
   CHECK(backward > 20);

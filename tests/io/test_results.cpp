@@ -324,6 +324,7 @@ TEST_CASE("summary.json has counters under their own names", "[io][results]") {
                                                 {"looks_skipped", detection.looks_skipped},
                                                 {"history_transfers", detection.transfers},
                                                 {"factorisations", linear.factorisations},
+                                                {"pivots_lost", linear.pivots_lost},
                                                 {"plain_factorisations", linear.plain},
                                                 {"symbolic", linear.symbolic},
                                                 {"symbolic_skipped", linear.symbolic_skipped}};
