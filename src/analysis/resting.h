@@ -8,9 +8,10 @@
 //
 // To wake: what all contacts together do to the block differs from what they did when it was put to rest, and the mean of this change, fading with
 // the time constant T, exceeds mass times a (moments count at the block's radius). Forces between two blocks at rest stay as they are. The block is
-// woken together with those at rest that it touches. A step that passes the limit several times over, an impact, is done again with these blocks, and
-// if that is not enough with twice as many layers of them, so that a push through a long chain takes few repetitions. Explicit steps start from the
-// forces: blocks are woken before the step in which an impact would move them.
+// woken together with those at rest that it touches, and with others that come close to the limit: few changes of many blocks cost less than many of
+// few. A step that passes the limit several times over, an impact, is done again with these blocks, and if that is not enough with twice as many
+// layers, counted through blocks that move, too, so that a push through a long chain takes few repetitions, wherever it rests. Explicit steps start
+// from the forces: blocks are woken before the step in which an impact would move them.
 //
 // What is left out: a resting block is denied a velocity of a T at most in what passes quickly, and an acceleration of a in what lasts; held by
 // springs k it would have moved by mass a/k under that. A block that creeps by less than d in T stands still.

@@ -242,14 +242,18 @@ void Newton<N>::replace_forces(std::size_t c, const ContactForces& forces) {
   const int k = lane(c);
   const ContactPose<N> pose = force_pose(c);
   const double normal = problem_->end_weight * (forces.normal - batch.normal[k]), shear = problem_->end_weight * (forces.shear - batch.shear[k]);
-  const Vec2 change = normal * pose.normal + shear * pose.tangent();
-  const auto push = [&](int row, const Unknowns& by) {
+  // In single numbers: what has just been stored number by number cannot be loaded in pairs at once.
+  const double x = normal * pose.normal.x() - shear * pose.normal.y(), y = normal * pose.normal.y() + shear * pose.normal.x();
+  const auto push = [&](int row, double sign, const Vec2& arm) {
     if (row == static_cast<int>(blocks_.size())) return;
-    residual_.template segment<N>(N * row) += by;
-    if (blocks_[row].rotation_locked) residual_[N * row + Motion<N>::rotation_index] = 0.0;
+    double* const residual = residual_.data() + static_cast<std::ptrdiff_t>(N) * row;
+    residual[0] += sign * x;
+    residual[1] += sign * y;
+    residual[2] += sign * (arm.x() * y - arm.y() * x);
+    if (blocks_[row].rotation_locked) residual[Motion<N>::rotation_index] = 0.0;
   };
-  push(start(c).vertex_row[k], Motion<N>::gradient(pose.vertex_arm, change));
-  push(start(c).edge_row[k], -Motion<N>::gradient(pose.edge_arm, change));
+  push(start(c).vertex_row[k], 1.0, pose.vertex_arm);
+  push(start(c).edge_row[k], -1.0, pose.edge_arm);
   batch.set_forces(k, forces);
   branches_[c] = branch(forces);
 }
@@ -409,7 +413,7 @@ template <int N>
 void Newton<N>::solve(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs, StepSolution<N>& solution, FirstTangent first) {
   prepare(problem, springs);
   if (problem.end_weight < 1.0) {
-    start_force_ = forces(problem, springs);
+    sum_start_forces();
     report_contacts(solution.start_contacts);
   }
   const Eigen::VectorXd start = solution.d;
@@ -447,11 +451,16 @@ Eigen::MatrixXd Newton<N>::stiffness(const StepProblem<N>& problem, const std::v
 template <int N>
 Eigen::VectorXd Newton<N>::forces(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs) {
   prepare(problem, springs);
-  start_force_.setZero(N * problem.system.free_count());
-  evaluate(Eigen::VectorXd::Zero(N * problem.system.free_count()));
-  Eigen::VectorXd sums(N * problem.system.free_count());
-  for (int i = 0; i < problem.system.free_count(); ++i) sums.template segment<N>(N * i) << rows_[i].sums[0], rows_[i].sums[1], rows_[i].sums[2];
-  return sums;
+  sum_start_forces();
+  return start_force_;
+}
+
+template <int N>
+void Newton<N>::sum_start_forces() {
+  const int blocks = problem_->system.free_count();
+  start_force_.setZero(N * blocks);
+  evaluate(Eigen::VectorXd::Zero(N * blocks));
+  for (int i = 0; i < blocks; ++i) start_force_.template segment<N>(N * i) << rows_[i].sums[0], rows_[i].sums[1], rows_[i].sums[2];
 }
 
 template class Newton<3>;

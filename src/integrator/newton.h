@@ -68,6 +68,8 @@ class Newton {
   void hold_changed(double norm);
   void prepare(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs);
   void evaluate(const Eigen::VectorXd& d);
+  /// Evaluates at the present position and keeps the forces.
+  void sum_start_forces();
   void evaluate_blocks(const Eigen::VectorXd& d);
   // Contact c is one of the lanes of its batch.
   static int lane(std::size_t c) { return static_cast<int>(c % batch_size); }

@@ -32,7 +32,9 @@ void TangentSystem<N>::fit(const StepProblem<N>& problem) {
   std::vector<std::pair<int, int>> couplings;
   for (const Contact& c : problem.contacts) {
     const int i = problem.system.block(c.vertex_block).equation, j = problem.system.block(c.edge_block).equation;
-    if (i >= 0 && j >= 0) couplings.emplace_back(i, j);
+    const std::pair<int, int> coupling = std::minmax(i, j);
+    if (coupling.first >= 0 && (couplings.empty() || couplings.back() != coupling))
+      couplings.push_back(coupling);  // a pair's contacts are neighbours
   }
   kind_ = problem.method.linear_solver;
   set_pattern(rows, couplings);

@@ -214,7 +214,8 @@ PathAverage path_average(const ContactSprings& springs, const ContactStrength& s
   if (!starts_closed && !ends_closed) return result;
   const bool simple = dissipation == 0.0 && starts_closed && ends_closed;
   if (simple && sticks_all_the_way(springs, strength, gap_change, slip_change, start, end, result)) return result;
-  return path_average_by_pieces(springs, strength, gap_change, slip_change, dissipation);
+  result = path_average_by_pieces(springs, strength, gap_change, slip_change, dissipation);  // one result in one place, not copied
+  return result;
 }
 
 PathAverage path_average_by_pieces(const ContactSprings& springs, const ContactStrength& strength, double gap_change, double slip_change,

@@ -2,28 +2,39 @@
 
 #include <algorithm>
 #include <atomic>
+#include <numeric>
 #include <stdexcept>
 
 namespace openclose {
 
 template <int N>
 void BlockMatrix<N>::set_pattern(int rows, const std::vector<std::pair<int, int>>& couplings) {
-  std::vector<std::pair<int, int>> entries;
-  entries.reserve(rows + 2 * couplings.size());
-  for (int i = 0; i < rows; ++i) entries.emplace_back(i, i);
+  // Rows one after another with room for repetitions, then each in order.
+  std::vector<int> begin(rows + 1, 0), end(rows);
+  const auto count = [&](int i) { ++begin[i + 1]; };
+  for (int i = 0; i < rows; ++i) count(i);
   for (const auto& [i, j] : couplings) {
-    entries.emplace_back(i, j);
-    entries.emplace_back(j, i);
+    count(i);
+    count(j);
   }
-  std::sort(entries.begin(), entries.end());
-  entries.erase(std::unique(entries.begin(), entries.end()), entries.end());
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  columns_.resize(begin[rows]);
+  std::copy(begin.begin(), begin.end() - 1, end.begin());
+  const auto put = [&](int i, int j) { columns_[end[i]++] = j; };
+  for (int i = 0; i < rows; ++i) put(i, i);
+  for (const auto& [i, j] : couplings) {
+    put(i, j);
+    put(j, i);
+  }
   row_start_.assign(rows + 1, 0);
-  columns_.clear();
-  for (const auto& [i, j] : entries) {
-    ++row_start_[i + 1];
-    columns_.push_back(j);
+  auto last = columns_.begin();
+  for (int i = 0; i < rows; ++i) {
+    const auto first = columns_.begin() + begin[i];
+    std::sort(first, columns_.begin() + end[i]);
+    last = std::copy(first, std::unique(first, columns_.begin() + end[i]), last);
+    row_start_[i + 1] = static_cast<int>(last - columns_.begin());
   }
-  for (int i = 0; i < rows; ++i) row_start_[i + 1] += row_start_[i];
+  columns_.erase(last, columns_.end());
   diagonal_.resize(rows);
   for (int i = 0; i < rows; ++i) diagonal_[i] = find(i, i);
   values_.assign(columns_.size(), Block::Zero());
