@@ -728,6 +728,7 @@ void Simulation<N>::restore(const Snapshot& snapshot) {
   system_.restore(snapshot.blocks);
   contacts_ = snapshot.contacts;
   detector_.forget();
+  may_rest_ = false;  // what is known of quiet blocks and their contacts is of another state
   contacts_current_ = true;
   output_velocity_ = snapshot.blocks.velocity;
   failed_attempts_ = 0;
