@@ -205,9 +205,10 @@ void step_of_soft(benchmark::State& state) {
   Slope& slope = Slope::of(state.range(0));
   const auto soft = make_soft<3>();
   const StepProblem<3> step = slope.problem();
-  StepSolution<3> solution = soft->solve(step);
+  StepSolution<3> solution;
+  soft->solve(step, solution);
   for (auto _ : state) {
-    solution = soft->solve(step);
+    soft->solve(step, solution);
     benchmark::DoNotOptimize(solution.d.data());
   }
   if (!solution.converged) throw std::runtime_error(solution.reason);

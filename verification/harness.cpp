@@ -23,6 +23,7 @@ class NullEnforcement : public Enforcement<unknowns> {
     for (const Contact& c : problem.contacts) {
       solution.contacts.push_back({real_->springs(problem, c), CarriedForces{}, ContactKinematics<unknowns>(problem.system, c, still, still).pose()});
     }
+    if (problem.end_weight < 1.0) solution.start_contacts = solution.contacts;
   }
   bool takes_adaptive_steps() const override { return real_->takes_adaptive_steps(); }
   std::unique_ptr<TimeScheme<unknowns>> make_time_scheme(const MethodInput& method) const override { return real_->make_time_scheme(method); }

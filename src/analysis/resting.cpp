@@ -1,5 +1,6 @@
 #include "openclose/analysis/resting.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace openclose {
@@ -147,7 +148,7 @@ std::vector<int> Resting<N>::woken(const BlockSystem<N>& system, const std::vect
     spread(k, contacts);
     spread(k, resting_contacts);
   }
-  layers_ *= 2;
+  layers_ = std::min(2 * layers_, system.block_count());
   return list;
 }
 

@@ -57,7 +57,7 @@ class Resting {
   /// The step that was judged counts.
   void accept(const BlockSystem<N>& system);
 
-  void exchange(Archive& archive) { archive(anchor_, velocity_, quiet_, since_, held_, change_, awaited_); }
+  void exchange(Archive& archive) { archive(anchor_, velocity_, quiet_, since_, held_, change_, awaited_, layers_); }
 
  private:
   RestInput input_;

@@ -276,14 +276,16 @@ std::vector<Contact>& Simulation<N>::moving_contacts() {
 }
 
 template <int N>
-void Simulation<N>::move_base(double dt, bool statics) {
+bool Simulation<N>::move_base(double dt, bool statics) {
   const TimeSpan span = scheme_->span_of_velocities(dt);
   if (base_moves_ && !statics) {
     external_.move_base(time_ + span.from, time_ + span.to);
   } else {
     external_.hold_base();
   }
-  if (!external_.base_acceleration().isZero(0.0)) wake(std::vector<int>(system_.resting_blocks()));
+  if (external_.base_acceleration().isZero(0.0) || system_.resting_blocks().empty()) return false;
+  wake(std::vector<int>(system_.resting_blocks()));
+  return true;
 }
 
 template <int N>
@@ -612,6 +614,10 @@ bool Simulation<N>::advance_explicitly(double dt) {
       steps = std::max(1L, std::lround(std::ceil(remaining / longest * (1.0 - 1e-12))));
     }
     const double h = remaining / static_cast<double>(steps);
+    if (!system_.resting_blocks().empty() && move_base(h, false)) {  // the step may be too long for those that it woke
+      steps = 0;
+      continue;
+    }
     StepResult result;
     {
       const Stopwatch watch(stage_times_.solution);
@@ -722,6 +728,7 @@ void Simulation<N>::restore(const Snapshot& snapshot) {
   system_.restore(snapshot.blocks);
   contacts_ = snapshot.contacts;
   detector_.forget();
+  may_rest_ = false;  // what is known of quiet blocks and their contacts is of another state
   contacts_current_ = true;
   output_velocity_ = snapshot.blocks.velocity;
   failed_attempts_ = 0;

@@ -142,7 +142,8 @@ class Simulation {
   void detect();
   void restart_scheme();
   /// Gives the external forces what the base does in the next step.
-  void move_base(double dt, bool statics);
+  /// True if blocks at rest were woken by it.
+  bool move_base(double dt, bool statics);
   /// [m] What the trapezoid leaves out in a step with these end forces, dt^2 (a1 - a0)/12, as a displacement of any vertex. a0 are the accelerations by the
   /// forces that the last step ended with.
   double local_error(const StepProblem<N>& problem, const StepSolution<N>& solution) const;

@@ -52,7 +52,13 @@ template <int N>
 void TangentSystem<N>::set_pattern(int rows, const std::vector<std::pair<int, int>>& couplings) {
   matrix_.set_pattern(rows, couplings);
   slots_.clear();
-  if (!solver_) solver_ = make_solver<N>(rows, kind_);
+  if (!solver_) choose_solver(rows);
+}
+
+template <int N>
+void TangentSystem<N>::choose_solver(int rows) {
+  solver_rows_ = rows;
+  solver_ = make_solver<N>(rows, kind_);
 }
 
 template <int N>
@@ -63,11 +69,14 @@ bool TangentSystem<N>::factor() {
 
 template <int N>
 void TangentSystem<N>::exchange(Archive& archive) {
-  int rows = solver_ ? matrix_.rows() : 0;
+  int rows = matrix_.rows();
   auto couplings = matrix_.couplings();
-  archive(rows, couplings, kind_);
-  if (rows == 0) return;
-  if (archive.reading()) set_pattern(rows, couplings);
+  archive(solver_rows_, rows, couplings, kind_);
+  if (solver_rows_ == no_solver) return;
+  if (archive.reading()) {
+    choose_solver(solver_rows_);
+    set_pattern(rows, couplings);
+  }
   solver_->exchange(archive);
 }
 

@@ -29,11 +29,14 @@ class TangentSystem {
   /// False if a pair of blocks has none.
   bool find_slots(const StepProblem<N>& problem);
   void set_pattern(int rows, const std::vector<std::pair<int, int>>& couplings);
+  void choose_solver(int rows);
 
   BlockMatrix<N> matrix_;
   std::vector<ContactSlots> slots_;
   LinearSolverKind kind_ = LinearSolverKind::automatic;
   bool skip_symbolic_ = true;
+  static constexpr int no_solver = -1;
+  int solver_rows_ = no_solver;  ///< of the first matrix, by which the solver was chosen: blocks may come to rest since
   std::unique_ptr<LinearSolver<N>> solver_;
   LinearCounters nothing_done_;
 };

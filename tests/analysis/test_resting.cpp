@@ -292,6 +292,24 @@ TEST_CASE("no block rests while the base shakes", "[analysis][resting]") {
   }
 }
 
+TEST_CASE("dem: a shaking base wakes blocks before the length of the step is chosen", "[analysis][resting]") {
+  // At rest there is nothing that would limit the step.
+  Scene scene = prepared(test::block_on_base(), "dem", true);
+  scene.step.dt = 0.05;
+  BaseMotionInput pulse;
+  pulse.kind = BaseMotionKind::pulses;
+  pulse.pulses = {{0.5, 0.3, {0.0, 3.0}}};
+  scene.base_motion = pulse;
+  Follower run(scene);
+  run.simulation.start_base_motion();
+  run.go(0.45);
+  REQUIRE(run.resting() == 1);
+  run.go(0.1);
+  CHECK(run.resting() == 0);
+  run.go(0.4);
+  CHECK(run.way(1).norm() < 1e-3);
+}
+
 TEST_CASE("no block rests in pseudo-time or before it may", "[analysis][resting]") {
   Scene scene = prepared(test::block_on_base(), "soft", true);
   Simulation<3> waits(scene);
