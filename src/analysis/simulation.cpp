@@ -42,7 +42,8 @@ Simulation<N>::Simulation(const Scene& scene, std::unique_ptr<Enforcement<N>> en
       enforcement_(std::move(enforcement)),
       scheme_(enforcement_->make_time_scheme(scene.method)),
       // Two vertices may approach each other by the largest displacement each.
-      detector_(2.0 * scene.step.max_displacement, {scene.method.skip_search, scene.method.skip_narrow_phase && enforcement_->follows_gaps(), scene.method.skip_looks}),
+      detector_(2.0 * scene.step.max_displacement,
+                {scene.method.skip_search, scene.method.skip_narrow_phase && enforcement_->follows_gaps(), scene.method.skip_looks}),
       output_velocity_(system_.state().velocity),
       resting_(scene.rest, system_),
       start_kinetic_energy_(system_.kinetic_energy()),
@@ -498,8 +499,7 @@ void Simulation<N>::accept_contacts(const StepSolution<N>& solution) {
     c.elastic_slip = -o.forces.elastic_shear / o.shear_stiffness;
     c.slack = o.slack;
     c.gap = o.gap + o.pose.gap_change;
-    c.stored_energy =
-        elastic ? stored_energy(o.normal_stiffness, o.shear_stiffness, o.forces.elastic_normal, o.forces.elastic_shear) : 0.0;
+    c.stored_energy = elastic ? stored_energy(o.normal_stiffness, o.shear_stiffness, o.forces.elastic_normal, o.forces.elastic_shear) : 0.0;
     if (c.status != ContactStatus::open) max_penetration_ = std::max(max_penetration_, -c.gap);
   }
 }
@@ -738,8 +738,9 @@ void Simulation<N>::restore(const Snapshot& snapshot) {
 
 template <int N>
 void Simulation<N>::exchange(Archive& archive) {
-  archive(system_, resting_, may_rest_, external_, joints_, base_moves_, keep_bonds_, detector_, contacts_, contacts_current_, output_velocity_, time_, reason_, ledger_,
-          start_kinetic_energy_, collected_contact_energy_, max_penetration_, step_counters_, failed_attempts_, last_speed_, control_);
+  archive(system_, resting_, may_rest_, external_, joints_, base_moves_, keep_bonds_, detector_, contacts_, contacts_current_, output_velocity_,
+          time_, reason_, ledger_, start_kinetic_energy_, collected_contact_energy_, max_penetration_, step_counters_, failed_attempts_, last_speed_,
+          control_);
   scheme_->exchange(archive);
   enforcement_->exchange(archive);
   if (loop_) {

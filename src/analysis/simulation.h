@@ -64,7 +64,8 @@ class Simulation {
   /// With an enforcement of the caller's own, which solves every step itself, also if it is explicit.
   Simulation(const Scene& scene, std::unique_ptr<Enforcement<N>> enforcement);
 
-  /// One attempt at a step, or at the next stage of one where the integrator has several; advance() puts them together. Explicit methods do not look whether dt is below the critical step; they have no static steps.
+  /// One attempt at a step, or at the next stage of one where the integrator has several; advance() puts them together. Explicit methods do not look
+  /// whether dt is below the critical step; they have no static steps.
   StepResult step(double dt, bool statics);
   /// Advances by exactly dt, in smaller steps where one does not converge or moves too far; false, with reason(), if that gets nowhere.
   bool advance(double dt);
@@ -114,8 +115,8 @@ class Simulation {
   void come_to_rest();
   /// From now on the base moves as the scene says, counted from time 0. Static steps know nothing of it.
   void start_base_motion() { base_moves_ = true; }
-  /// From now on blocks may be put to rest, if the scene wants it, until somebody else changes something: who asks for a reference to blocks, joints or
-  /// contacts that is no constant, or changes velocities, wakes all blocks.
+  /// From now on blocks may be put to rest, if the scene wants it, until somebody else changes something: who asks for a reference to blocks, joints
+  /// or contacts that is no constant, or changes velocities, wakes all blocks.
   void allow_resting() { may_rest_ = scene_.method.skip_resting && !scene_.method.statics; }
   /// Declares the present moment the start: time 0, ledger empty. Positions, contacts and velocities stay.
   void restart_clock();
@@ -144,8 +145,8 @@ class Simulation {
   /// Gives the external forces what the base does in the next step.
   /// True if blocks at rest were woken by it.
   bool move_base(double dt, bool statics);
-  /// [m] What the trapezoid leaves out in a step with these end forces, dt^2 (a1 - a0)/12, as a displacement of any vertex. a0 are the accelerations by the
-  /// forces that the last step ended with.
+  /// [m] What the trapezoid leaves out in a step with these end forces, dt^2 (a1 - a0)/12, as a displacement of any vertex. a0 are the accelerations
+  /// by the forces that the last step ended with.
   double local_error(const StepProblem<N>& problem, const StepSolution<N>& solution) const;
   /// [N] Sum of the forces on every free block as it stands, without dashpots.
   Eigen::VectorXd forces_now(const StepProblem<N>& problem) const;

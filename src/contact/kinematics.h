@@ -75,8 +75,8 @@ template <int N>
 struct ContactPose {
   Vec2 normal = Vec2::Zero();
   Vec2 vertex_arm = Vec2::Zero(), edge_arm = Vec2::Zero();  ///< [m] from the centroids of the two blocks to p
-  double gap_change = 0.0;    ///< [m] since the start of the step, free of cancellation
-  double slip_change = 0.0;   ///< [m]
+  double gap_change = 0.0;                                  ///< [m] since the start of the step, free of cancellation
+  double slip_change = 0.0;                                 ///< [m]
 
   ContactPose() = default;
   ContactPose(const ContactStart<N>& start, const BlockMove<N>& vertex, const BlockMove<N>& edge) { set(start, vertex, edge); }
@@ -100,10 +100,9 @@ struct ContactPose {
   }
   Vec2 tangent() const { return perpendicular(normal); }
 
-  /// [J/N] Work of unit forces along normal and tangent when the blocks of vertex and edge move by these: the products with the gradients of gap and slip.
-  double normal_way(const typename Motion<N>::Unknowns& vertex, const typename Motion<N>::Unknowns& edge) const {
-    return way(normal, vertex, edge);
-  }
+  /// [J/N] Work of unit forces along normal and tangent when the blocks of vertex and edge move by these: the products with the gradients of gap and
+  /// slip.
+  double normal_way(const typename Motion<N>::Unknowns& vertex, const typename Motion<N>::Unknowns& edge) const { return way(normal, vertex, edge); }
   double shear_way(const typename Motion<N>::Unknowns& vertex, const typename Motion<N>::Unknowns& edge) const {
     return way(tangent(), vertex, edge);
   }

@@ -43,8 +43,9 @@ inline constexpr double flush_tilt_rad = 1.0 * 3.14159265358979323846 / 180.0;
 /// tolerance of the gap can make of edges that only meet end to end; it lies far below any joint that matters.
 inline constexpr double shortest_overlap_m = 1e-6;
 
-/// [m] and [-] A corner rides over the end of an edge that stands up no higher before it than this plus this many times what its contacts have closed:
-/// two blocks whose faces were flush in the drawing differ by their closures under load. A real step of a millimetre is met once the corner is behind it.
+/// [m] and [-] A corner rides over the end of an edge that stands up no higher before it than this plus this many times what its contacts have
+/// closed: two blocks whose faces were flush in the drawing differ by their closures under load. A real step of a millimetre is met once the corner
+/// is behind it.
 inline constexpr double seam_height_m = 1e-3;
 inline constexpr double seam_closures = 2.0;
 

@@ -775,8 +775,8 @@ ExplicitEnergies CentralDifference<N>::take_energies() {
 template <int N>
 void CentralDifference<N>::exchange(Archive& archive, const JointTable& joints) {
   joints_ = &joints;
-  archive(poses_, rates_, previous_rates_, next_rates_, forces_, inertia_, blocks_, rest_slot_, loaded_at_, links_, rest_, link_of_, holes_, kept_at_, points_,
-          energies_, damped_, lost_strength_, critical_step_, approach_, moved_, unbalanced_, max_penetration_, h_, span_, viscous_);
+  archive(poses_, rates_, previous_rates_, next_rates_, forces_, inertia_, blocks_, rest_slot_, loaded_at_, links_, rest_, link_of_, holes_, kept_at_,
+          points_, energies_, damped_, lost_strength_, critical_step_, approach_, moved_, unbalanced_, max_penetration_, h_, span_, viscous_);
 }
 
 template class CentralDifference<3>;

@@ -51,7 +51,8 @@ class CentralDifference {
   using Unknowns = typename Motion<N>::Unknowns;
 
   /// \param fours, wide_registers  false: links one by one, in the registers that every processor has; the results are the same to the last bit
-  explicit CentralDifference(bool fours = true, bool wide_registers = true) : fours_(fours), wide_registers_(wide_registers && has_wide_registers()) {}
+  explicit CentralDifference(bool fours = true, bool wide_registers = true)
+      : fours_(fours), wide_registers_(wide_registers && has_wide_registers()) {}
 
   /// Takes over blocks, velocities of the middle of the last step, contacts with their history, and the forces they carry now.
   void load(const StepProblem<N>& problem);

@@ -24,7 +24,8 @@ class Dem : public Enforcement<N> {
     Eigen::VectorXd force = Eigen::VectorXd::Zero(N * system.free_count());
     for (const Contact& c : problem.contacts) {
       const auto velocity = [&](int b) { return problem.velocity(b); };
-      const ContactOutcome<N> o = outcome(problem, c, [&](int) { return still; }, velocity);
+      const ContactOutcome<N> o = outcome(
+          problem, c, [&](int) { return still; }, velocity);
       const ContactKinematics<N> k(o.pose);
       add(force, system.block(c.vertex_block).equation, o.forces.normal * k.normal_vertex + o.forces.shear * k.shear_vertex);
       add(force, system.block(c.edge_block).equation, o.forces.normal * k.normal_edge + o.forces.shear * k.shear_edge);

@@ -40,12 +40,12 @@ struct StepProblem {
   const JointTable& joints;
   const std::vector<Contact>& contacts;
   const MethodInput& method;
-  double dt = 0.0;          ///< [s]
-  bool statics = false;     ///< velocities count as zero
-  double inertia = 0.0;     ///< [1/s2] see time_scheme.h
-  double end_weight = 1.0;  ///< theta
-  int failed_attempts = 0;  ///< at steps from here
-  bool keep_bonds = false;  ///< explicit methods: contacts lose no strength
+  double dt = 0.0;                        ///< [s]
+  bool statics = false;                   ///< velocities count as zero
+  double inertia = 0.0;                   ///< [1/s2] see time_scheme.h
+  double end_weight = 1.0;                ///< theta
+  int failed_attempts = 0;                ///< at steps from here
+  bool keep_bonds = false;                ///< explicit methods: contacts lose no strength
   const TimeScheme<N>* scheme = nullptr;  ///< null: every step starts from rest
 
   bool averages_path() const { return scheme && scheme->averages_path(); }
@@ -71,11 +71,11 @@ struct PathOutcome {
 template <int N>
 struct StepSolution {
   bool converged = false;
-  bool compliant = false;  ///< `hard`: taken with springs, see hard.cpp
+  bool compliant = false;    ///< `hard`: taken with springs, see hard.cpp
   bool dissipative = false;  ///< path_average: taken with more dissipation than asked for, see soft.cpp
-  std::string reason;      ///< why not converged
-  int iterations = 0;  ///< linear solves
-  Eigen::VectorXd d;   ///< displacement of the step, N per free block
+  std::string reason;        ///< why not converged
+  int iterations = 0;        ///< linear solves
+  Eigen::VectorXd d;         ///< displacement of the step, N per free block
   std::vector<ContactOutcome<N>> contacts;
   std::vector<ContactOutcome<N>> start_contacts;  ///< forces that entered with weight 1 - theta; empty for theta = 1
   std::vector<PathOutcome<N>> paths;              ///< mean forces that entered instead of those at the end; empty for other schemes
@@ -110,9 +110,9 @@ class Enforcement {
 
   /// Throws InputError if the method asks for a theta that the enforcement has no use for.
   virtual std::unique_ptr<TimeScheme<N>> make_time_scheme(const MethodInput& method) const = 0;
-  virtual bool follows_gaps() const { return true; }                 ///< false: the gap at a step's end is not exactly that of the positions
-  virtual bool has_elastic_contacts() const { return true; }         ///< false: contacts store no energy and keep no penetration
-  virtual bool takes_adaptive_steps() const { return false; }        ///< true: step.adaptive has a meaning
+  virtual bool follows_gaps() const { return true; }           ///< false: the gap at a step's end is not exactly that of the positions
+  virtual bool has_elastic_contacts() const { return true; }   ///< false: contacts store no energy and keep no penetration
+  virtual bool takes_adaptive_steps() const { return false; }  ///< true: step.adaptive has a meaning
   /// true: steps need no equations to be solved but must stay below the critical one; Simulation takes them by CentralDifference.
   virtual bool is_explicit() const { return false; }
   virtual double step_cut(const MethodInput&) const { return 0.5; }  ///< factor on a step that failed
@@ -129,8 +129,8 @@ Eigen::VectorXd drift(const StepProblem<N>& problem) {
   return d;
 }
 
-/// Springs of the joint's own stiffness. The memory is the stretch of the spring, not its force: when the tributary length changes, strength and force
-/// change alike.
+/// Springs of the joint's own stiffness. The memory is the stretch of the spring, not its force: when the tributary length changes, strength and
+/// force change alike.
 template <int N>
 ContactSprings joint_springs(const StepProblem<N>& problem, const Contact& contact) {
   const JointProperties& joint = problem.joints.joint(contact.joint);

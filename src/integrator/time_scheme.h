@@ -31,7 +31,8 @@ class TimeScheme {
   virtual Unknowns drift(int, double dt, const Unknowns& v) const { return dt * v; }
   /// Velocity of block b after a step that was really taken with dt and moved by d.
   virtual Unknowns next_velocity(int b, double dt, const Unknowns& d, const Unknowns& v) const = 0;
-  /// The time over which the forces of a step of dt act: from the velocities at its start to those after it, or about where its equation of motion holds.
+  /// The time over which the forces of a step of dt act: from the velocities at its start to those after it, or about where its equation of motion
+  /// holds.
   virtual TimeSpan span_of_velocities(double dt) const { return {0.0, dt}; }
   /// Displacement whose product with the forces of the step is the change of kinetic energy, up to own_work().
   virtual Unknowns work_displacement(int b, double dt, const Unknowns& d, const Unknowns& v) const = 0;

@@ -180,8 +180,8 @@ class ClosedPart {
 /// Sticking all the way, the bound without a kink: what most contacts do in most steps, and linear. The same operations as on a single
 /// piece of the path, so that the numbers are the same. False if the contact does anything else.
 /// \param start, end  [N] of the normal spring, above -tension
-bool sticks_all_the_way(const ContactSprings& springs, const ContactStrength& strength, double gap_change, double slip_change, double start, double end,
-                        PathAverage& result) {
+bool sticks_all_the_way(const ContactSprings& springs, const ContactStrength& strength, double gap_change, double slip_change, double start,
+                        double end, PathAverage& result) {
   const double viscous = springs.normal_damping * gap_change, first = start - viscous, last = end - viscous;
   const double kink = kink_of_bound(strength);
   if (!(first > -strength.tension && last > -strength.tension) || (kink - first) * (kink - last) < 0.0) return false;
@@ -200,7 +200,8 @@ bool sticks_all_the_way(const ContactSprings& springs, const ContactStrength& st
   mean.elastic_shear = 0.5 * (shear_0 + shear_1);
   mean.normal_by_gap = 0.5 * (-springs.normal_damping + (-springs.normal - springs.normal_damping));
   mean.shear_by_slip = 0.5 * (-springs.shear_damping + (-springs.shear - springs.shear_damping));
-  result.energies.springs = stored(end, springs.normal) - stored(start, springs.normal) + stored(shear_1, springs.shear) - stored(shear_0, springs.shear);
+  result.energies.springs =
+      stored(end, springs.normal) - stored(start, springs.normal) + stored(shear_1, springs.shear) - stored(shear_0, springs.shear);
   result.energies.damping = -(mean.normal - mean.elastic_normal) * gap_change - (mean.shear - mean.elastic_shear) * slip_change;
   return true;
 }

@@ -352,7 +352,8 @@ Scene interpret(const toml::table& document, const std::string& file) {
   scene.method = read_method(method, scene.where);
   if (base_motion.is_there()) {
     scene.base_motion = read_base_motion(base_motion, file);
-    if (scene.method.statics) base_motion.fail("steps that start from rest know no motion of the base", "no [base_motion], or method.statics = false");
+    if (scene.method.statics)
+      base_motion.fail("steps that start from rest know no motion of the base", "no [base_motion], or method.statics = false");
   }
   scene.step = read_step(step);
   scene.rest = read_rest(rest);

@@ -50,8 +50,8 @@ struct BlockInput {
 /// A spring that holds one material point of a block at its initial place.
 struct Support {
   int block = 0;
-  Vec2 point = Vec2::Zero();       ///< [m]
-  Vec2 stiffness = Vec2::Zero();   ///< [N/m] in x and y; 0 leaves that direction free
+  Vec2 point = Vec2::Zero();      ///< [m]
+  Vec2 stiffness = Vec2::Zero();  ///< [N/m] in x and y; 0 leaves that direction free
 };
 
 /// A constant force at a material point of a block.
@@ -74,8 +74,8 @@ enum class BaseMotionKind {
 };
 
 struct BasePulse {
-  double start = 0.0;                 ///< [s]
-  double duration = 0.0;              ///< [s]
+  double start = 0.0;                ///< [s]
+  double duration = 0.0;             ///< [s]
   Vec2 acceleration = Vec2::Zero();  ///< [m/s2]
 };
 
@@ -123,35 +123,36 @@ inline constexpr double default_rho_inf = 0.5;  ///< [-] of MethodInput::rho_inf
 
 /// How contacts are enforced and steps are taken.
 struct MethodInput {
-  std::string contact = "soft";                ///< name in the registry of enforcements (analysis looks it up): soft, hard, shi, dem
-  SourceLocation contact_where;                ///< for the error of an unknown name
-  std::optional<std::string> integrator;       ///< soft: name in the list of integrators (analysis looks it up); absent: theta if there is one, else the default
-  std::optional<double> theta;                 ///< [-] theta: 1: Newmark (1/2, 1), Shi's; 1/2: trapezoid (Newmark (1/4, 1/2))
-  std::optional<double> rho_inf;               ///< [-] generalized_alpha: spectral radius at infinite frequency; absent: default_rho_inf
-  std::optional<double> dissipation;           ///< [-] path_average: see Soft; absent: none
+  std::string contact = "soft";  ///< name in the registry of enforcements (analysis looks it up): soft, hard, shi, dem
+  SourceLocation contact_where;  ///< for the error of an unknown name
+  std::optional<std::string>
+      integrator;                 ///< soft: name in the list of integrators (analysis looks it up); absent: theta if there is one, else the default
+  std::optional<double> theta;    ///< [-] theta: 1: Newmark (1/2, 1), Shi's; 1/2: trapezoid (Newmark (1/4, 1/2))
+  std::optional<double> rho_inf;  ///< [-] generalized_alpha: spectral radius at infinite frequency; absent: default_rho_inf
+  std::optional<double> dissipation;  ///< [-] path_average: see Soft; absent: none
   RotationKind rotation = RotationKind::exact;
   Start start = Start::settled;
-  bool statics = false;                        ///< dynamic coefficient 0: every step starts from rest
-  double residual_tolerance = 1e-12;           ///< [-] unbalanced force left by Newton, as a fraction of the largest force in the system
-  int max_iterations = 60;                     ///< per step, before the step is cut
+  bool statics = false;               ///< dynamic coefficient 0: every step starts from rest
+  double residual_tolerance = 1e-12;  ///< [-] unbalanced force left by Newton, as a fraction of the largest force in the system
+  int max_iterations = 60;            ///< per step, before the step is cut
   LinearSolverKind linear_solver = LinearSolverKind::automatic;
-  bool skip_search = true;                     ///< search candidates only once something has moved beyond the skin
-  bool skip_narrow_phase = true;               ///< find the contacts of two blocks anew only once they have moved against each other beyond the skin
-  bool skip_looks = true;                      ///< see DetectionSkips
-  bool skip_reload = true;                     ///< dem: exchange only the contacts that were found anew, and leave the others in the loop
-  int threads = 1;                             ///< that share the work; the results are the same to the last bit
-  bool skip_symbolic = true;                   ///< plan a factorisation only once the pattern of the matrix has changed
-  bool skip_resting = false;                   ///< leave blocks alone that are at rest, see RestInput
-  double gap_tolerance = 3e-7;                 ///< [m] hard: a closed contact may differ from its target gap, a sticking one from its place, by this much
-  std::optional<double> penalty;               ///< [Pa/m] shi: normal penalty, times the tributary length like any stiffness; absent: 10 times the joint's
-  double penalty_shear_ratio = 0.4;            ///< [-] shi: shear penalty over normal penalty
-  double penetration_tolerance = 1e-3;         ///< [m] shi: deeper contacts cut the step
-  double closing_tolerance = 1e-9;             ///< [m] shi: an open contact closes beyond this penetration
-  int max_open_close_iterations = 6;           ///< shi: per step, before the step is cut
-  double step_cut = 0.3;                       ///< [-] shi: factor on the step when open-close does not settle
-  double step_fraction = 0.9;                  ///< [-] dem: longest step over the critical one
-  MassDamping damping = MassDamping::none;     ///< dem: of the motion; settling takes `local` instead of `none`
-  double local_damping = 0.8;                  ///< [-] dem: of the unbalanced force
+  bool skip_search = true;              ///< search candidates only once something has moved beyond the skin
+  bool skip_narrow_phase = true;        ///< find the contacts of two blocks anew only once they have moved against each other beyond the skin
+  bool skip_looks = true;               ///< see DetectionSkips
+  bool skip_reload = true;              ///< dem: exchange only the contacts that were found anew, and leave the others in the loop
+  int threads = 1;                      ///< that share the work; the results are the same to the last bit
+  bool skip_symbolic = true;            ///< plan a factorisation only once the pattern of the matrix has changed
+  bool skip_resting = false;            ///< leave blocks alone that are at rest, see RestInput
+  double gap_tolerance = 3e-7;          ///< [m] hard: a closed contact may differ from its target gap, a sticking one from its place, by this much
+  std::optional<double> penalty;        ///< [Pa/m] shi: normal penalty, times the tributary length like any stiffness; absent: 10 times the joint's
+  double penalty_shear_ratio = 0.4;     ///< [-] shi: shear penalty over normal penalty
+  double penetration_tolerance = 1e-3;  ///< [m] shi: deeper contacts cut the step
+  double closing_tolerance = 1e-9;      ///< [m] shi: an open contact closes beyond this penetration
+  int max_open_close_iterations = 6;    ///< shi: per step, before the step is cut
+  double step_cut = 0.3;                ///< [-] shi: factor on the step when open-close does not settle
+  double step_fraction = 0.9;           ///< [-] dem: longest step over the critical one
+  MassDamping damping = MassDamping::none;  ///< dem: of the motion; settling takes `local` instead of `none`
+  double local_damping = 0.8;               ///< [-] dem: of the unbalanced force
 };
 
 struct StepInput {
@@ -163,8 +164,8 @@ struct StepInput {
 };
 
 /// When a block is at rest in a motion, and when it is not any more; the rule is in analysis/resting.h. A tenth of a second is some periods of blocks
-/// on joints (300 rad/s in the paper's example 3.4), 3 % of gravity what impacts elsewhere send through a slope; there skipping changes the times at which
-/// the failing mass has gone 10 to 40 m by 0.04 % at most. A tenth of a millimetre in a tenth of a second is creep that may be left out.
+/// on joints (300 rad/s in the paper's example 3.4), 3 % of gravity what impacts elsewhere send through a slope; there skipping changes the times at
+/// which the failing mass has gone 10 to 40 m by 0.04 % at most. A tenth of a millimetre in a tenth of a second is creep that may be left out.
 struct RestInput {
   double time = 0.1;           ///< [s] for which it and those it touches have been quiet; fading of the change of forces
   double displacement = 1e-4;  ///< [m] of any point in that time
@@ -193,10 +194,10 @@ struct SettleInput {
 };
 
 struct StrengthReductionInput {
-  double width = 1e-4;                    ///< [-] of the final bracket
-  double upper_limit = 100.0;             ///< [-] strength reduction factor beyond which the search stops
-  std::vector<double> curve;              ///< [-] further factors at which displacement is recorded
-  std::optional<double> curve_time;       ///< [s] physical time of a dynamic run at each of them; absent: settled displacement only
+  double width = 1e-4;               ///< [-] of the final bracket
+  double upper_limit = 100.0;        ///< [-] strength reduction factor beyond which the search stops
+  std::vector<double> curve;         ///< [-] further factors at which displacement is recorded
+  std::optional<double> curve_time;  ///< [s] physical time of a dynamic run at each of them; absent: settled displacement only
 };
 
 /// What the joints made of a domain.

@@ -113,10 +113,12 @@ TEST_CASE("energy.csv ends with the imbalance", "[io][results]") {
   const auto lines = lines_of(place / "energy.csv");
   REQUIRE(lines.size() == 2);
   CHECK(lines[0] ==
-        "time_s,kinetic_j,gravity_j,base_motion_j,contact_springs_j,support_springs_j,loads_j,friction_j,contact_damping_j,mass_damping_j,impact_j,scheme_j,"
+        "time_s,kinetic_j,gravity_j,base_motion_j,contact_springs_j,support_springs_j,loads_j,friction_j,contact_damping_j,mass_damping_j,impact_j,"
+        "scheme_j,"
         "redefinition_j,turnover_j,imbalance_j");
-  const double expected[] = {0.25,     l.kinetic, l.gravity,      l.base_motion, l.contact_springs, l.support_springs, l.loads, l.friction, l.contact_damping, l.mass_damping,
-                             l.impact, l.scheme,  l.redefinition, l.turnover,        l.imbalance()};
+  const double expected[] = {0.25,           l.kinetic,  l.gravity,         l.base_motion,  l.contact_springs, l.support_springs,
+                             l.loads,        l.friction, l.contact_damping, l.mass_damping, l.impact,          l.scheme,
+                             l.redefinition, l.turnover, l.imbalance()};
   const auto fields = fields_of(lines[1]);
   REQUIRE(fields.size() == std::size(expected));
   for (std::size_t i = 0; i < fields.size(); ++i) CHECK(same_bits(number(fields[i]), expected[i]));

@@ -144,9 +144,10 @@ TEST_CASE("path average: the short ways give the same numbers as the pieces", "[
     const PathAverage a = average(p), b = path_average_by_pieces(p.springs, p.strength, p.gap_change, p.slip_change, 0.0);
     CAPTURE(i, what_happens(p), p.gap_change, p.slip_change);
     const auto numbers = [](const PathAverage& x) {
-      return std::vector<double>{x.mean.normal, x.mean.shear, x.mean.elastic_normal, x.mean.elastic_shear, x.mean.normal_by_gap, x.mean.shear_by_gap,
-                                 x.mean.shear_by_slip, x.end.normal, x.end.shear, x.end.elastic_normal, x.end.elastic_shear, x.energies.springs,
-                                 x.energies.friction, x.energies.damping, x.energies.rupture, x.energies.scheme};
+      return std::vector<double>{x.mean.normal,        x.mean.shear,         x.mean.elastic_normal, x.mean.elastic_shear,
+                                 x.mean.normal_by_gap, x.mean.shear_by_gap,  x.mean.shear_by_slip,  x.end.normal,
+                                 x.end.shear,          x.end.elastic_normal, x.end.elastic_shear,   x.energies.springs,
+                                 x.energies.friction,  x.energies.damping,   x.energies.rupture,    x.energies.scheme};
     };
     CHECK(numbers(a) == numbers(b));
     CHECK(a.mean.status == b.mean.status);

@@ -148,7 +148,8 @@ TEST_CASE("numbers that are none", "[scene][reader][errors]") {
         "7: joint[0].normal_stiffness_pa_per_m: inf is not a finite number; accepted: a number > 0");
   CHECK_THAT(error_with_vertices("[[0, 0], [1, -inf], [1, 1]]"), ContainsSubstring("20: block[1].vertices_m[1][1]: -inf is not a finite number"));
   CHECK_THAT(error_of(block_on_base + "[end]\ntime_s = nan\n"), ContainsSubstring("23: end.time_s: nan is not a finite number"));
-  CHECK_THAT(error_of(block_on_base + "[method]\nmax_iterations = inf\n"), ContainsSubstring("23: method.max_iterations: inf is not a finite number"));
+  CHECK_THAT(error_of(block_on_base + "[method]\nmax_iterations = inf\n"),
+             ContainsSubstring("23: method.max_iterations: inf is not a finite number"));
   CHECK_THAT(error_of("gravity_m_per_s2 = [0, nan]\n" + block_on_base),
              ContainsSubstring("1: gravity_m_per_s2[1]: nan is not a finite number; accepted: a finite number"));
 }
@@ -249,7 +250,8 @@ TEST_CASE("types and units of the options of a run", "[scene][reader][errors]") 
   CHECK(error_of(block_on_base + "[settle]\ncriterion = ''\n") ==
         "23: settle.criterion: \"\" is not known; accepted: \"paper\", \"unbalanced_force\"");
   CHECK_THAT(error_of(block_on_base + "[settle]\ncriterion = 'papers'\n"), ContainsSubstring("\"papers\" is not known; accepted: \"paper\""));
-  CHECK_THAT(error_of(block_on_base + "[settle]\nrelative_displacement = true\n"), ContainsSubstring("true is a boolean; accepted: a number in (0, 1)"));
+  CHECK_THAT(error_of(block_on_base + "[settle]\nrelative_displacement = true\n"),
+             ContainsSubstring("true is a boolean; accepted: a number in (0, 1)"));
   CHECK_THAT(error_of(block_on_base + "[settle]\nsteady_steps = 1.5\n"), ContainsSubstring("1.5 is not a whole number"));
   CHECK_THAT(error_of(block_on_base + "[settle]\nmax_time_steps = 'all'\n"), ContainsSubstring("\"all\" is a string"));
 }
@@ -281,11 +283,13 @@ TEST_CASE("names that refer to nothing", "[scene][reader][errors]") {
 TEST_CASE("names that are not usable", "[scene][reader][errors]") {
   CHECK_THAT(error_with(18, "name = ''"), ContainsSubstring("18: block[1].name: the name is empty; accepted: a name of its own for every block"));
   CHECK_THAT(error_with(18, "name = 'a,b'"), ContainsSubstring("18: block[1].name: \"a,b\" cannot be written to a table of results; accepted: "));
-  CHECK_THAT(error_with(18, "name = \"a\\nb\""), ContainsSubstring("18: block[1].name: \"a\\x0ab\" cannot be written to a table of results; accepted: "));
+  CHECK_THAT(error_with(18, "name = \"a\\nb\""),
+             ContainsSubstring("18: block[1].name: \"a\\x0ab\" cannot be written to a table of results; accepted: "));
 }
 
 TEST_CASE("names given twice", "[scene][reader][errors]") {
-  CHECK_THAT(error_with(18, "name = 'base'"), ContainsSubstring("18: block[1].name: \"base\" is already the name of the block of line 12; accepted: "));
+  CHECK_THAT(error_with(18, "name = 'base'"),
+             ContainsSubstring("18: block[1].name: \"base\" is already the name of the block of line 12; accepted: "));
   CHECK_THAT(error_with(4, "[[material]]\nname = 'rock'\ndensity_kg_per_m3 = 1\n"),
              ContainsSubstring("5: material[1].name: \"rock\" is already the name of the material of line 2; accepted: "));
   const std::string point = "[[measured_point]]\nname = 'p'\nblock = 'block'\npoint_m = [0, 0]\n";
@@ -313,7 +317,8 @@ TEST_CASE("polygons without area", "[scene][reader][errors]") {
   CHECK_THAT(error_with_vertices("[[1, 1], [1, 1], [1, 1]]"),
              ContainsSubstring("20: block[1].vertices_m: the polygon has an area of 0 m2 on a longest edge of 0 m"));
   CHECK_THAT(error_with_vertices("[[0, 0], [1, 0], [0.5, 1e-7]]"), ContainsSubstring("20: block[1].vertices_m: the polygon has an area of 5e-08 m2"));
-  CHECK_THAT(error_with_vertices("[[0, 0], [1, 0], [1, 1e-9], [0, 1e-9]]"), ContainsSubstring("20: block[1].vertices_m: the polygon has an area of 1e-09 m2"));
+  CHECK_THAT(error_with_vertices("[[0, 0], [1, 0], [1, 1e-9], [0, 1e-9]]"),
+             ContainsSubstring("20: block[1].vertices_m: the polygon has an area of 1e-09 m2"));
   CHECK_THAT(error_with_vertices("[[0, 0], [1, 1], [2, 2], [1, 1]]"), ContainsSubstring("20: block[1].vertices_m: the polygon has an area of 0 m2"));
   SECTION("a thin bent strip is not on a line and still a sliver") {
     CHECK_THAT(error_with_vertices("[[0, 0], [1, 0], [1, 1], [0.9999999, 1], [0.9999999, 1e-7], [0, 1e-7]]"),
