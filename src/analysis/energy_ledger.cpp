@@ -50,7 +50,7 @@ void add_elastic_contact(EnergyLedger& ledger, const Contact& contact, const Con
   ledger.friction -= shear * (slip - (u1 - u0));
 }
 
-/// [N] All that a step with the forces at its end needs of those at its start.
+/// [N] All that a step with the forces at its end needs of those at its start. Of springs that rest at gap zero: those of `soft`, `shi` and `dem`.
 template <int N>
 double elastic_normal_at_start(const Contact& contact, const TabulatedJoint& joint, const ContactOutcome<N>& end) {
   const double elastic = -end.normal_stiffness * end.gap;

@@ -335,7 +335,7 @@ void add_stiffness_with_any_registers(const ContactBatch* contacts, const TrialB
 BatchKernels::BatchKernels([[maybe_unused]] bool wide_registers)
     : begin_(&begin_with_any_registers), evaluate_(&evaluate_with_any_registers), add_stiffness_(&add_stiffness_with_any_registers) {
 #ifdef OPENCLOSE_HAS_WIDE_REGISTERS
-  if (!wide_registers || !__builtin_cpu_supports("avx2")) return;
+  if (!wide_registers || !has_wide_registers()) return;
   begin_ = &begin_with_wide_registers;
   evaluate_ = &evaluate_with_wide_registers;
   add_stiffness_ = &add_stiffness_with_wide_registers;

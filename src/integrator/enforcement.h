@@ -77,7 +77,7 @@ struct StepSolution {
   int iterations = 0;        ///< linear solves
   Eigen::VectorXd d;         ///< displacement of the step, N per free block
   std::vector<ContactOutcome<N>> contacts;
-  std::vector<ContactOutcome<N>> start_contacts;  ///< forces that entered with weight 1 - theta; empty for theta = 1
+  std::vector<ContactOutcome<N>> start_contacts;  ///< forces that entered with weight 1 - theta: of every contact, or none for theta = 1
   std::vector<PathOutcome<N>> paths;              ///< mean forces that entered instead of those at the end; empty for other schemes
 
   /// Empty again, with its memory for the next step.
