@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <ranges>
 
 #include "openclose/core/tolerance.h"
 #include "openclose/geometry/polygon.h"
@@ -70,8 +71,28 @@ class Detector<N>::Shapes {
     if (!measured_[block]) measure(block);
     return boxes_[block];
   }
+  /// Whether two blocks lie on different sides of a line along an edge of one of them, the other one farther from it than `room` [m].
+  bool apart(int a, int b, double room) {
+    if (!measured_[a]) measure(a);
+    if (!measured_[b]) measure(b);
+    return parted_by_edge_of(a, b, room) || parted_by_edge_of(b, a, room);
+  }
 
  private:
+  auto vertices(int b) const {
+    const auto& block = system_->block(b);
+    return std::views::iota(block.first_vertex, block.first_vertex + block.vertex_count);
+  }
+  bool parted_by_edge_of(int a, int b, double room) const {
+    return std::ranges::any_of(vertices(a), [&](int e) {
+      const auto gap = [&](int v) { return edges_[e].gap(edges_[v].start); };
+      const auto is_beyond = [&](double distance) { return std::ranges::all_of(vertices(b), [&](int v) { return gap(v) > distance; }); };
+      if (!is_beyond(room)) return false;
+      double own = 0.0;  // what lies before an edge in a notch
+      for (const int v : vertices(a)) own = std::max(own, gap(v));
+      return own == 0.0 || is_beyond(room + own);
+    });
+  }
   void measure(int b) {
     measured_[b] = 1;
     const auto& block = system_->block(b);
@@ -449,10 +470,11 @@ bool Detector<N>::moved_beyond_search_skin(const BlockSystem<N>& system) const {
   return false;
 }
 
-/// Pairs of boxes that overlap, by sweeping along x within strips of y that are as high as the middling box: in a plane full of blocks each strip
-/// holds few at a time, so that the work grows with the number of blocks, and a block that is larger than others is only in more strips.
+/// Pairs of boxes that overlap, but for those of blocks that are more than `room` [m] apart: in a slope with an inclined joint set four out of five.
+/// By sweeping along x within strips of y that are as high as the middling box: in a plane full of blocks each strip holds few at a time, so that the
+/// work grows with the number of blocks, and a block that is larger than others is only in more strips.
 template <int N>
-void Detector<N>::find_pairs(const BlockSystem<N>& system, const std::vector<Box>& boxes) {
+void Detector<N>::find_pairs(const BlockSystem<N>& system, const std::vector<Box>& boxes, double room) {
   pairs_.clear();
   const int n = static_cast<int>(boxes.size());
   if (n < 2) return;
@@ -491,6 +513,7 @@ void Detector<N>::find_pairs(const BlockSystem<N>& system, const std::vector<Box
         if (!someone_moves || !box.overlaps(boxes[members[j]])) continue;
         // Where both begin, and nowhere else.
         if (strip(std::max(box.low.y(), boxes[members[j]].low.y())) != k) continue;
+        if (shapes_->apart(a, b, room)) continue;
         pairs_.emplace_back(a, b);
         ++counts[a + 1];
       }
@@ -509,6 +532,7 @@ void Detector<N>::find_pairs(const BlockSystem<N>& system, const std::vector<Box
 template <int N>
 void Detector<N>::search(const BlockSystem<N>& system) {
   ++counters_.searches;
+  shapes_->begin(system);
   std::vector<Box> boxes;
   boxes.reserve(system.block_count());
   searched_at_.resize(system.block_count());
@@ -527,7 +551,7 @@ void Detector<N>::search(const BlockSystem<N>& system) {
   }
   const std::vector<std::pair<int, int>> old_pairs = std::move(pairs_);
   const std::vector<PairState> old_states = std::move(states_);
-  find_pairs(system, boxes);
+  find_pairs(system, boxes, room);
   states_.assign(pairs_.size(), PairState());
   for (int b = static_cast<int>(places_.size()); b < system.block_count(); ++b) places_.push_back(place(system, b));
   ways_.resize(places_.size());
@@ -899,7 +923,7 @@ bool Detector<N>::update(const BlockSystem<N>& system, const JointTable& joints,
   const bool orphans = !gone_.empty();
   found_.clear();
   changes_.clear();
-  shapes_->begin(system);
+  if (!searches) shapes_->begin(system);
   index_->begin(system, contacts, resting_.contacts);
   for (const int pair : pairs_around_due_ones()) index_->add(ranges_[pair]);
   NarrowPhase narrow(system, reach_ + skips_.contact_skin, *shapes_, *index_);

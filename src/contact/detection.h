@@ -122,7 +122,8 @@ class Detector {
   /// Whether the next update() searches for pairs.
   bool needs_search(const BlockSystem<N>& system) const { return forgotten_ || !skips_.search || moved_beyond_search_skin(system); }
 
-  /// Pairs of blocks whose boxes, with reach and skin, overlap, at least one of them free; renewed only when something moved beyond the skin.
+  /// Pairs of blocks, at least one of them free, that may come within reach before something has moved beyond the skin: their boxes, with reach and
+  /// skin, overlap, and no line along an edge of one of them keeps them as far apart. Renewed only when something moved beyond the skin.
   const std::vector<std::pair<int, int>>& candidate_pairs() const { return pairs_; }
   const DetectionCounters& counters() const { return counters_; }
 
@@ -195,7 +196,7 @@ class Detector {
 
   bool moved_beyond_search_skin(const BlockSystem<N>& system) const;
   void search(const BlockSystem<N>& system);
-  void find_pairs(const BlockSystem<N>& system, const std::vector<Box>& boxes);
+  void find_pairs(const BlockSystem<N>& system, const std::vector<Box>& boxes, double room);
   void locate(const std::vector<Contact>& contacts);
   static Place place(const BlockSystem<N>& system, int b);
   double relative_way(const PairState& then, const Place& first, const Place& second) const;

@@ -1,10 +1,12 @@
 // Searching only when something has moved beyond the skin must not change what is found.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "contacts.h"
 #include "openclose/core/tolerance.h"
+#include "openclose/geometry/polygon.h"
 #include "support/catch.h"
 
 using namespace openclose;
@@ -84,6 +86,41 @@ TEST_CASE("rotation of a long block counts by the way of its ends", "[contact][s
   d.move(1, 0.0, 0.0, 0.05);
   CHECK_FALSE(d.update().empty());
   CHECK(d.detector.counters().searches == 2);
+}
+
+TEST_CASE("blocks that are kept apart by the joints between them are no candidates, though their boxes overlap", "[contact][search]") {
+  std::vector<BlockInput> blocks;
+  for (int i = 0; i < 6; ++i) blocks.push_back(free_block("slice", placed({{0.0, 0.0}, {1.0, 0.0}, {5.0, 4.0}, {4.0, 4.0}}, 0.0, {1.0 * i, 0.0})));
+  const Detection d(scene_with(blocks));
+  const std::vector<std::pair<int, int>> expected{{0, 1}, {1, 2}, {2, 3}, {3, 4}, {4, 5}};
+  CHECK(d.detector.candidate_pairs() == expected);
+}
+
+TEST_CASE("blocks that are no candidates are out of reach by the skins", "[contact][search]") {
+  const double reach = 0.05, contact_skin = 1e-3;
+  const Polygon l{{0.0, 0.0}, {2.0, 0.0}, {2.0, 0.5}, {0.5, 0.5}, {0.5, 1.5}, {0.0, 1.5}}, wedge{{0.0, 0.0}, {1.0, 0.0}, {0.2, 0.9}};
+  std::mt19937 generator(16);
+  std::uniform_real_distribution<double> place(0.0, 2.5), turn(-3.0, 3.0);
+  int candidates = 0, boxes_overlap = 0, others = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Polygon first = placed(l, turn(generator), {place(generator), place(generator)});
+    const Polygon second = placed(i % 2 == 0 ? l : wedge, turn(generator), {place(generator), place(generator)});
+    const Detection d(scene_with({free_block("first", first), free_block("second", second)}), reach, {true, true, true, contact_skin});
+    double distance = std::numeric_limits<double>::infinity();
+    for (const Vec2& p : first) distance = std::min(distance, contains(second, p) ? 0.0 : distance_to_boundary(second, p));
+    for (const Vec2& p : second) distance = std::min(distance, contains(first, p) ? 0.0 : distance_to_boundary(first, p));
+    const double room = reach + contact_skin + tolerance::search_skin_m;
+    const bool box = Box::around(first).inflated(0.5 * room).overlaps(Box::around(second).inflated(0.5 * room));
+    if (!d.detector.candidate_pairs().empty()) {
+      ++candidates;
+      continue;
+    }
+    CHECK(distance > room);
+    ++(box ? boxes_overlap : others);
+  }
+  CHECK(candidates > 500);
+  CHECK(boxes_overlap > 100);
+  CHECK(others > 100);
 }
 
 TEST_CASE("candidates are pairs with a free block, lower number first, in order", "[contact][search]") {
