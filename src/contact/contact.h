@@ -17,13 +17,15 @@ struct Contact {
   int edge = 0;   ///< first vertex of the edge
   int joint = 0;  ///< index into the joint table
 
+  // History, as the last accepted step left it; more of it below. Here because two more numbers of one byte cost nothing.
+  ContactStatus status = ContactStatus::open;
+  bool bonded = true;  ///< cohesion and tensile strength are still there
+
   // Geometry at the start of the step.
   double length = 0.0;  ///< [m] tributary length: stiffness, cohesion and tensile strength are per length
   double gap = 0.0;     ///< [m]
 
   // History, as the last accepted step left it.
-  ContactStatus status = ContactStatus::open;
-  bool bonded = true;          ///< cohesion and tensile strength are still there
   double elastic_slip = 0.0;   ///< [m] stretch of the shear spring; the spring's part of the shear force is -shear stiffness * elastic slip
   double normal_force = 0.0;   ///< [N] spring and dashpot
   double shear_force = 0.0;    ///< [N]

@@ -602,17 +602,17 @@ typename Detector<N>::Place Detector<N>::place(const BlockSystem<N>& system, int
 template <int N>
 double Detector<N>::relative_way(const PairState& then, const Place& first, const Place& second) const {
   // Which one is the larger is as good as random: chosen from a list, without a branch. Exchanging the blocks turns the sign of the shift only.
-  const double turns[] = {first.turn - then.first.turn, second.turn - then.second.turn};
+  const double turns[] = {first.turn - then.first_turn, second.turn - then.second_turn};
   const double turn_of_larger = turns[first.radius > second.radius ? 0 : 1], radius = std::min(first.radius, second.radius);
-  Vec2 shift(first.x - then.first.x - (second.x - then.second.x), first.y - then.first.y - (second.y - then.second.y));
-  shift -= turned_little_by(turn_of_larger, {then.first.x - then.second.x, then.first.y - then.second.y});
+  Vec2 shift(first.x - second.x - then.x, first.y - second.y - then.y);
+  shift -= turned_little_by(turn_of_larger, {then.x, then.y});
   return (radius + reach_ + skips_.contact_skin) * std::abs(turns[0] - turns[1]) + shift.norm();
 }
 
 template <int N>
 typename Detector<N>::Due Detector<N>::due(double way) const {
-  constexpr double companion_part = 0.1;  // of the skin
-  if (!(way <= skips_.contact_skin)) return Due::yes;
+  constexpr double companion_part = 0.1;               // of the skin
+  if (!(way <= skips_.contact_skin)) return Due::yes;  // also where nothing is known of the pair
   return way > companion_part * skips_.contact_skin ? Due::moved : Due::no;
 }
 
@@ -678,10 +678,7 @@ bool Detector<N>::mark_due_pairs(const BlockSystem<N>& system, bool all) {
     std::iota(due_pairs_.begin(), due_pairs_.end(), 0);
     return true;
   }
-  const auto way = [&](int pair) {
-    const PairState& then = states_[pair];
-    return then.known ? relative_way(then, places_[pairs_[pair].first], places_[pairs_[pair].second]) : std::numeric_limits<double>::infinity();
-  };
+  const auto way = [&](int pair) { return relative_way(states_[pair], places_[pairs_[pair].first], places_[pairs_[pair].second]); };
   marks_.resize(pairs_.size() / bits + 1);
   long looks = 0;
   for_pairs_of(restless_, is_restless_, [&](int pair) {
@@ -768,7 +765,7 @@ void Detector<N>::pass_on_history(const BlockSystem<N>& system, std::vector<Cont
 template <int N>
 void Detector<N>::redo(const JointTable& joints, const BlockSystem<N>& system, int pair, NarrowPhase& narrow, const std::vector<Contact>& before) {
   const auto [a, b] = pairs_[pair];
-  states_[pair] = {{places_[a].x, places_[a].y, places_[a].turn}, {places_[b].x, places_[b].y, places_[b].turn}, true};
+  states_[pair] = {places_[a].x - places_[b].x, places_[a].y - places_[b].y, places_[a].turn, places_[b].turn};
   look_again_before(pair, 0.0);
   const Range old = ranges_[pair];
   const std::size_t begin = found_.size();
@@ -795,32 +792,66 @@ void Detector<N>::redo(const JointTable& joints, const BlockSystem<N>& system, i
   }
 }
 
-/// Puts what was found in place of what was there.
+/// Where the contacts of pairs that are not due go; ranges_ are those of the new list from then on.
+template <int N>
+void Detector<N>::find_kept_runs() {
+  kept_.clear();
+  auto change = changes_.begin();
+  int end = 0;
+  for (std::size_t i = 0; i < pairs_.size(); ++i) {
+    const bool changed = change != changes_.end() && change->pair == static_cast<int>(i);
+    const Range old = ranges_[i];
+    const int size = changed ? change++->after.size() : old.size();
+    ranges_[i] = {end, end + size};
+    end += size;
+    if (changed || size == 0) continue;
+    const bool goes_on =
+        !kept_.empty() && kept_.back().from + kept_.back().size == old.begin && kept_.back().to + kept_.back().size == ranges_[i].begin;
+    if (goes_on) {
+      kept_.back().size += size;
+    } else {
+      kept_.push_back({old.begin, ranges_[i].begin, size});
+    }
+  }
+}
+
+/// Puts what was found in place of what was there. What stays is moved within the list: first what goes forward, from the front, then what goes back,
+/// from the end, so that nothing is written over that has still to be moved.
 template <int N>
 void Detector<N>::put_in_place(std::vector<Contact>& contacts, bool orphans) {
-  const auto at = [](auto& list, int i) { return list.begin() + i; };
+  const std::vector<Contact> found = std::move(found_);  // so that it is gone in the end
+  found_.clear();
+  const auto put = [&](const Range& from, const Range& to) {
+    std::copy(found.begin() + from.begin, found.begin() + from.end, contacts.begin() + to.begin);
+  };
   const auto same_number = [](const DetectionChange& c) { return c.before.size() == c.after.size(); };
   if (!orphans && std::all_of(changes_.begin(), changes_.end(), same_number)) {
     for (DetectionChange& change : changes_) {
-      std::copy(at(found_, change.after.begin), at(found_, change.after.end), at(contacts, change.before.begin));
+      put(change.after, change.before);
       change.after = change.before;
     }
     return;
   }
-  const auto growth = [](int sum, const DetectionChange& c) { return sum + c.after.size() - c.before.size(); };
-  spare_.clear();
-  spare_.reserve(std::accumulate(changes_.begin(), changes_.end(), static_cast<int>(contacts.size()), growth));
-  std::size_t next = 0;
-  for (std::size_t i = 0; i < pairs_.size(); ++i) {
-    const bool changed = next < changes_.size() && changes_[next].pair == static_cast<int>(i);
-    const Range from = changed ? changes_[next].after : ranges_[i];
-    const std::vector<Contact>& list = changed ? found_ : contacts;
-    ranges_[i].begin = static_cast<int>(spare_.size());
-    spare_.insert(spare_.end(), at(list, from.begin), at(list, from.end));
-    ranges_[i].end = static_cast<int>(spare_.size());
-    if (changed) changes_[next++].after = ranges_[i];
+  find_kept_runs();
+  const std::size_t count = ranges_.empty() ? 0 : ranges_.back().end;
+  if (kept_.empty()) {
+    if (contacts.capacity() < count) std::vector<Contact>().swap(contacts);  // before there is room for those that come
+    contacts = found;
+  } else {
+    constexpr std::size_t part_to_spare = 16;  // of the list: so that it need not move each time that a few contacts come
+    if (contacts.capacity() < count) contacts.reserve(count + count / part_to_spare);
+    if (contacts.size() < count) contacts.resize(count);
+    const auto at = [&](int i) { return contacts.begin() + i; };
+    for (const Run& run : kept_) {
+      if (run.to < run.from) std::copy(at(run.from), at(run.from + run.size), at(run.to));
+    }
+    for (auto run = kept_.rbegin(); run != kept_.rend(); ++run) {
+      if (run->to > run->from) std::copy_backward(at(run->from), at(run->from + run->size), at(run->to + run->size));
+    }
+    contacts.resize(count);
+    for (const DetectionChange& change : changes_) put(change.after, ranges_[change.pair]);
   }
-  contacts.swap(spare_);
+  for (DetectionChange& change : changes_) change.after = ranges_[change.pair];
 }
 
 template <int N>
@@ -921,7 +952,6 @@ bool Detector<N>::update(const BlockSystem<N>& system, const JointTable& joints,
   counters_.narrow_phases += static_cast<long>(due_pairs_.size());
   counters_.narrow_phases_skipped += static_cast<long>(pairs_.size() - due_pairs_.size());
   const bool orphans = !gone_.empty();
-  found_.clear();
   changes_.clear();
   if (!searches) shapes_->begin(system);
   index_->begin(system, contacts, resting_.contacts);
@@ -930,7 +960,6 @@ bool Detector<N>::update(const BlockSystem<N>& system, const JointTable& joints,
   for (const int pair : due_pairs_) redo(joints, system, pair, narrow, contacts);
   if (!first_) pass_on_history(system, contacts);
   put_in_place(contacts, orphans);
-  if (due_pairs_.size() == pairs_.size()) std::vector<Contact>().swap(found_);  // later ones are few
   first_ = false;
   return true;
 }

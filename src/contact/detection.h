@@ -44,6 +44,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -138,20 +139,13 @@ class Detector {
   class Shapes;
   class ContactIndex;
   class NarrowPhase;
-  struct Pose {
+  struct Place {
     double x, y, turn;  ///< [m, m, rad] of a centroid
+    double radius;      ///< [m]
 
     void exchange(Archive& archive) {
-      auto& [a, b, c] = *this;
-      archive(a, b, c);
-    }
-  };
-  struct Place : Pose {
-    double radius;  ///< [m]
-
-    void exchange(Archive& archive) {
-      Pose::exchange(archive);
-      archive(radius);
+      auto& [a, b, c, d] = *this;
+      archive(a, b, c, d);
     }
   };
   /// How far a block has gone, see above.
@@ -165,15 +159,20 @@ class Detector {
       archive(a, b, c);
     }
   };
-  /// A pair when its contacts were last found.
+  /// A pair when its contacts were last found; no numbers where they never were.
   struct PairState {
-    Pose first, second;
-    bool known = false;
+    static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+    double x = unknown, y = unknown;             ///< [m] of the first centroid from the second
+    double first_turn = 0.0, second_turn = 0.0;  ///< [rad]
 
     void exchange(Archive& archive) {
-      auto& [a, b, c] = *this;
-      archive(a, b, c);
+      auto& [a, b, c, d] = *this;
+      archive(a, b, c, d);
     }
+  };
+  /// Neighbours in the list that stay so.
+  struct Run {
+    int from, to, size;
   };
   enum class Due : unsigned char { no, moved, yes };
   /// Pairs with their contacts.
@@ -212,6 +211,7 @@ class Detector {
   void redo(const JointTable& joints, const BlockSystem<N>& system, int pair, NarrowPhase& narrow, const std::vector<Contact>& before);
   void pass_on_history(const BlockSystem<N>& system, std::vector<Contact>& before);
   void put_in_place(std::vector<Contact>& contacts, bool orphans);
+  void find_kept_runs();
 
   double reach_;
   DetectionSkips skips_;
@@ -236,7 +236,8 @@ class Detector {
   std::vector<char> is_restless_, in_due_pair_;
   std::vector<int> due_pairs_, around_due_;  ///< in order
   std::vector<std::uint64_t> marks_;         ///< a bit a pair
-  std::vector<Contact> found_, spare_;       ///< of the pairs that are due; the list before the last
+  std::vector<Contact> found_;               ///< of the pairs that are due
+  std::vector<Run> kept_;                    ///< contacts of other pairs, where the list is renewed
   std::vector<char> lives_on_;               ///< old contacts of a pair
   std::vector<std::size_t> born_;            ///< positions among those that were found
   std::vector<int> gone_;                    ///< positions in the old list

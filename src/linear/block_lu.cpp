@@ -468,6 +468,8 @@ class BlockLuSolver : public LinearSolver<N> {
       factor_.row_start.push_back(static_cast<int>(factor_.column.size()));
       factor_.same_as_next.push_back(!upper[i].empty() && upper[i].front() == i + 1 && upper[i].size() == upper[i + 1].size() + 1);
     }
+    if (factor_.value.capacity() < factor_.column.size())
+      std::vector<PaddedBlock<N>>().swap(factor_.value);  // else old and new one would be there at once
     factor_.value.resize(factor_.column.size());
     factor_.solution.resize(rows);
     factor_.size.resize(rows);
