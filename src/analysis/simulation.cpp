@@ -305,6 +305,7 @@ StepProblem<N> Simulation<N>::present_problem(double dt, bool statics) const {
   p.end_weight = statics ? 1.0 : scheme_->end_weight();
   p.failed_attempts = failed_attempts_;
   p.keep_bonds = keep_bonds_;
+  p.longest_displacement = scene_.step.max_displacement;
   if (statics) return p;
   p.scheme = scheme_.get();
   if (scheme_->wants_accelerations()) {
@@ -404,6 +405,7 @@ StepResult Simulation<N>::step(double dt, bool statics) {
     enforcement_->solve(p, solution);
   }
   step_counters_.iterations += solution.iterations;
+  step_counters_.relaxation_steps += solution.relaxation_steps;
   if (solution.converged && wake_in_haste(solution, dt)) {
     ++step_counters_.repeated_to_wake;
     return step(dt, statics);

@@ -19,6 +19,7 @@ struct StepCounters {
   long cuts = 0;                        ///< attempts thrown away
   long error_cuts = 0;                  ///< of these: because of step.error_tolerance_m
   long iterations = 0;                  ///< linear solves, thrown-away attempts included
+  long relaxation_steps = 0;            ///< evaluations of all forces in static steps that are relaxed, thrown-away attempts included
   long compliant = 0;                   ///< steps of `hard` whose multipliers did not converge: taken with springs
   long dissipative = 0;                 ///< steps of path_average that found a solution only with dissipation
   long loads = 0;                       ///< times the explicit loop took over the state anew
@@ -32,8 +33,8 @@ struct StepCounters {
   double longest_step = 0.0;            ///< [s] of explicit steps
 
   void exchange(Archive& archive) {
-    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o] = *this;
-    archive(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o);
+    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p] = *this;
+    archive(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p);
   }
 };
 

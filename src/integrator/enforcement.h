@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Core>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -40,13 +41,14 @@ struct StepProblem {
   const JointTable& joints;
   const std::vector<Contact>& contacts;
   const MethodInput& method;
-  double dt = 0.0;                        ///< [s]
-  bool statics = false;                   ///< velocities count as zero
-  double inertia = 0.0;                   ///< [1/s2] see time_scheme.h
-  double end_weight = 1.0;                ///< theta
-  int failed_attempts = 0;                ///< at steps from here
-  bool keep_bonds = false;                ///< explicit methods: contacts lose no strength
-  const TimeScheme<N>* scheme = nullptr;  ///< null: every step starts from rest
+  double dt = 0.0;                                                        ///< [s]
+  bool statics = false;                                                   ///< velocities count as zero
+  double inertia = 0.0;                                                   ///< [1/s2] see time_scheme.h
+  double end_weight = 1.0;                                                ///< theta
+  int failed_attempts = 0;                                                ///< at steps from here
+  bool keep_bonds = false;                                                ///< explicit methods: contacts lose no strength
+  double longest_displacement = std::numeric_limits<double>::infinity();  ///< [m] of a vertex; a step that moves one farther is refused
+  const TimeScheme<N>* scheme = nullptr;                                  ///< null: every step starts from rest
 
   bool averages_path() const { return scheme && scheme->averages_path(); }
   /// Displacement of block b if there were no forces.
@@ -75,6 +77,7 @@ struct StepSolution {
   bool dissipative = false;  ///< path_average: taken with more dissipation than asked for, see soft.cpp
   std::string reason;        ///< why not converged
   int iterations = 0;        ///< linear solves
+  int relaxation_steps = 0;  ///< evaluations of all forces instead, see Newton::relax()
   Eigen::VectorXd d;         ///< displacement of the step, N per free block
   std::vector<ContactOutcome<N>> contacts;
   std::vector<ContactOutcome<N>> start_contacts;  ///< forces that entered with weight 1 - theta: of every contact, or none for theta = 1
@@ -84,7 +87,7 @@ struct StepSolution {
   void clear() {
     converged = compliant = dissipative = false;
     reason.clear();
-    iterations = 0;
+    iterations = relaxation_steps = 0;
     contacts.clear();
     start_contacts.clear();
     paths.clear();

@@ -98,7 +98,6 @@ void Newton<N>::prepare(const StepProblem<N>& problem, const std::vector<Contact
   step_forces_ = problem.averages_path() ? StepForces::averaged : StepForces::at_end;
   branches_.assign(batch_size * contacts_.size(), 0);
   moves_.assign(system.block_count() + 1, BlockMove<N>());
-  tangent_.fit(problem);
 }
 
 template <int N>
@@ -412,6 +411,7 @@ double Newton<N>::begin(const Eigen::VectorXd& d, FirstTangent first) {
 template <int N>
 void Newton<N>::solve(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs, StepSolution<N>& solution, FirstTangent first) {
   prepare(problem, springs);
+  tangent_.fit(problem);
   if (problem.end_weight < 1.0) {
     sum_start_forces();
     report_contacts(solution.start_contacts);
@@ -442,6 +442,7 @@ Eigen::MatrixXd Newton<N>::stiffness(const StepProblem<N>& problem, const std::v
   static_problem.end_weight = 1.0;
   static_problem.scheme = nullptr;
   prepare(static_problem, springs);
+  tangent_.fit(static_problem);
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(N * problem.system.free_count());
   evaluate(zero);
   assemble(zero, Tangent::exact);

@@ -8,6 +8,12 @@
 // another tangent and whole steps: contacts that have just opened or slid are held by their springs in it, and let go while they stay as they are,
 // each for itself. With all of them held the iteration is the one of initial stresses (O. C. Zienkiewicz, S. Valliappan and I. P. King, 1969), which
 // is slow and steady; with none it is Newton's. The residual knows nothing of this, and so neither does the solution.
+//
+// Beyond that, factors cost more than everything else (n^1.5 operations, n log n numbers), and a slope of 50,000 blocks has so many loose contacts
+// that no tangent tells where they go. relax() then finds the balance without linear equations: every block follows the force on it, over the
+// stiffness of its own contacts, with Nesterov's momentum (Y. Nesterov, 1983), which starts anew when the forces turn against it (B. O'Donoghue and
+// E. Candes, 2015). Contacts slip on that way as they do in an explicit method, and keep their slip: friction that depended on the present place
+// alone would feed vibrations instead of damping them. Rest is what it is for Newton's method, the residual alone.
 #pragma once
 
 #include "openclose/integrator/contact_batch.h"
@@ -32,6 +38,9 @@ class Newton {
   void solve(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs, StepSolution<N>& solution,
              FirstTangent first = FirstTangent::last_step);
 
+  /// The same for a static step, by relaxation; relaxation_steps is added to instead. What friction holds in the end depends on the way there.
+  void relax(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs, StepSolution<N>& solution);
+
   /// Minus the derivative of all forces but inertia by the unknowns, at the start of the step, contacts in the status they have. Rows and columns of
   /// locked rotations are those of the unit matrix.
   Eigen::MatrixXd stiffness(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs);
@@ -44,6 +53,7 @@ class Newton {
   const LinearCounters& linear_counters() const { return tangent_.counters(); }
 
  private:
+  using Stiffness = Eigen::Matrix<double, N, N>;
   enum class Tangent { exact, symmetric };
   enum class Outcome { ended, singular, no_common_step };
 
@@ -66,6 +76,12 @@ class Newton {
   void hold_contacts(bool friction_lags);
   /// Adapts holds_ to what an iteration has changed.
   void hold_changed(double norm);
+  /// Of every free block: the inverse of its inertia and of the stiffness of everything that can touch it, as if that stuck and nothing else moved.
+  std::vector<Stiffness> own_flexibilities(const Eigen::VectorXd& d) const;
+  /// The springs of contacts that slide or are open slip to where they carry what these carry now.
+  void keep_slip();
+  /// Whether a block has gone so far that the step will be refused.
+  bool has_left(const Eigen::VectorXd& d) const;
   void prepare(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs);
   void evaluate(const Eigen::VectorXd& d);
   /// Evaluates at the present position and keeps the forces.

@@ -13,6 +13,14 @@ namespace {
 /// [-] path_average: largest dissipation of a contact, and that of a step which has no solution without.
 constexpr double largest_dissipation = 0.1;
 
+/// Free blocks from which on static steps are relaxed. The slope of example 3.4 with closer joints settles by Newton's method with 17,000 of them, in
+/// 0.4 of the time and with twice the memory, and with 43,000 by relaxation only.
+constexpr int many_blocks = 25000;
+
+bool relaxes(StaticSolver asked, int free_blocks) {
+  return asked == StaticSolver::relaxation || (asked == StaticSolver::automatic && free_blocks >= many_blocks);
+}
+
 template <int N>
 class Soft final : public Enforcement<N> {
  public:
@@ -47,7 +55,10 @@ class Soft final : public Enforcement<N> {
  private:
   void attempt(const StepProblem<N>& problem, StepSolution<N>& solution) {
     solution.d = drift(problem);
-    newton_.solve(problem, springs_.springs(), solution);
+    if (problem.statics && relaxes(problem.method.static_solver, problem.system.free_count()))
+      newton_.relax(problem, springs_.springs(), solution);
+    else
+      newton_.solve(problem, springs_.springs(), solution);
   }
 
   Newton<N> newton_;

@@ -50,6 +50,12 @@ inline constexpr std::array settle_criterion_words{
     Word{"paper", SettleCriterion::paper},
 };
 
+inline constexpr std::array static_solver_words{
+    Word{"automatic", StaticSolver::automatic},
+    Word{"newton", StaticSolver::newton},
+    Word{"relaxation", StaticSolver::relaxation},
+};
+
 inline constexpr std::array start_words{
     Word{"unloaded", Start::unloaded},
     Word{"settled", Start::settled},

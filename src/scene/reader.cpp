@@ -206,6 +206,7 @@ MethodInput read_method(Table table, const SourceLocation& scene_where) {
   table.optional("residual_tolerance", method.residual_tolerance, between_0_and_1);
   table.optional("max_iterations", method.max_iterations, count);
   table.optional("linear_solver", method.linear_solver, linear_solver_words);
+  table.optional("static_solver", method.static_solver, static_solver_words);
   table.optional("skip_search", method.skip_search);
   table.optional("skip_narrow_phase", method.skip_narrow_phase);
   table.optional("skip_looks", method.skip_looks);

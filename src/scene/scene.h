@@ -119,6 +119,13 @@ enum class LinearSolverKind {
   plain,      ///< by the library's sparse LU, to compare with
 };
 
+/// How `soft` finds the balance of a static step.
+enum class StaticSolver {
+  automatic,   ///< by Newton's method, and for many blocks by relaxation
+  newton,      ///< by linear equations
+  relaxation,  ///< every block follows the force on it, with momentum: no linear equations
+};
+
 inline constexpr double default_rho_inf = 0.5;  ///< [-] of MethodInput::rho_inf
 
 /// How contacts are enforced and steps are taken.
@@ -136,7 +143,8 @@ struct MethodInput {
   double residual_tolerance = 1e-12;  ///< [-] unbalanced force left by Newton, as a fraction of the largest force in the system
   int max_iterations = 60;            ///< per step, before the step is cut
   LinearSolverKind linear_solver = LinearSolverKind::automatic;
-  bool skip_search = true;              ///< search candidates only once something has moved beyond the skin
+  StaticSolver static_solver = StaticSolver::automatic;  ///< soft
+  bool skip_search = true;                               ///< search candidates only once something has moved beyond the skin
   bool skip_narrow_phase = true;        ///< find the contacts of two blocks anew only once they have moved against each other beyond the skin
   bool skip_looks = true;               ///< see DetectionSkips
   bool skip_reload = true;              ///< dem: exchange only the contacts that were found anew, and leave the others in the loop

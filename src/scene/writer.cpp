@@ -162,6 +162,7 @@ void write_method(Text& text, const MethodInput& method) {
   text.line("residual_tolerance", method.residual_tolerance);
   text.line("max_iterations", method.max_iterations);
   text.line("linear_solver", word_for(linear_solver_words, method.linear_solver));
+  text.line("static_solver", word_for(static_solver_words, method.static_solver));
   text.line("skip_search", method.skip_search);
   text.line("skip_narrow_phase", method.skip_narrow_phase);
   text.line("skip_looks", method.skip_looks);

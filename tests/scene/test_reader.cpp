@@ -162,6 +162,12 @@ TEST_CASE("the linear solver is chosen by its word", "[scene][reader]") {
   CHECK(read_text(std::string(block_on_base) + "[method]\nlinear_solver = 'direct'\n").method.linear_solver == LinearSolverKind::direct);
 }
 
+TEST_CASE("the solver of static steps is chosen by its word", "[scene][reader]") {
+  CHECK(read_text(block_on_base).method.static_solver == StaticSolver::automatic);
+  CHECK(read_text(std::string(block_on_base) + "[method]\nstatic_solver = 'relaxation'\n").method.static_solver == StaticSolver::relaxation);
+  CHECK(read_text(std::string(block_on_base) + "[method]\nstatic_solver = 'newton'\n").method.static_solver == StaticSolver::newton);
+}
+
 TEST_CASE("polygons are put in order silently", "[scene][reader]") {
   const std::vector<Vec2> square{{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}};
   const std::string vertices = GENERATE(as<std::string>{},                                                           //

@@ -45,6 +45,7 @@ void check_same(const MethodInput& a, const MethodInput& b) {
   CHECK(a.residual_tolerance == b.residual_tolerance);
   CHECK(a.max_iterations == b.max_iterations);
   CHECK(a.linear_solver == b.linear_solver);
+  CHECK(a.static_solver == b.static_solver);
   CHECK(a.skip_search == b.skip_search);
   CHECK(a.skip_narrow_phase == b.skip_narrow_phase);
   CHECK(a.skip_looks == b.skip_looks);
@@ -180,6 +181,7 @@ Scene random_scene(unsigned seed) {
   scene.method.residual_tolerance = fraction(generator);
   scene.method.max_iterations = 123456;
   scene.method.linear_solver = LinearSolverKind::iterative;
+  scene.method.static_solver = StaticSolver::relaxation;
   scene.method.skip_search = false;
   scene.method.skip_narrow_phase = false;
   scene.method.skip_looks = false;

@@ -1,0 +1,119 @@
+// Newton::relax(): a static step without linear equations.
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "openclose/integrator/newton.h"
+
+namespace openclose {
+namespace {
+
+/// [-] Of the way that a block's own springs allow it. (a - b)^2 <= 2 a^2 + 2 b^2: what springs between two blocks each store is at most twice what
+/// their parts on the diagonal do. So no eigenvalue of the stiffness over its diagonal blocks exceeds 2, and this is the longest step down a gradient
+/// after which momentum never makes it grow.
+constexpr double safe_step = 0.5;
+/// Five times what a slope of 50,000 blocks needs. What has no equilibrium ends here, if not by its displacement.
+constexpr int most_relaxation_steps = 100000;
+constexpr int steps_between_looks = 100;  ///< at the displacement
+/// [-] Of the longest displacement: momentum carries blocks a few hundredths beyond their place.
+constexpr double largest_overshoot = 1.1;
+
+/// Momentum of Nesterov's method: grows while it helps, begins anew when the forces oppose it.
+class Momentum {
+ public:
+  void restart() { age_ = 1.0; }
+  /// [-] Of the last way that is gone once more.
+  double next() {
+    const double last = age_;
+    age_ = 0.5 * (1.0 + std::sqrt(1.0 + 4.0 * last * last));
+    return (last - 1.0) / age_;
+  }
+
+ private:
+  double age_ = 1.0;
+};
+
+}  // namespace
+
+template <int N>
+std::vector<typename Newton<N>::Stiffness> Newton<N>::own_flexibilities(const Eigen::VectorXd& d) const {
+  std::vector<Stiffness> sums(blocks_.size() + 1, Stiffness::Zero());  // one more for the fixed blocks
+  const auto add = [](Stiffness& sum, const Vec2& direction, const Vec2& arm, double stiffness) {
+    const Unknowns gradient(direction.x(), direction.y(), arm.x() * direction.y() - arm.y() * direction.x());
+    sum += stiffness * gradient * gradient.transpose();
+  };
+  for (std::size_t c = 0; c < contact_count_; ++c) {
+    const ContactBatch& contact = start(c);
+    const int k = lane(c);
+    const ContactPose<N> pose = trial(c).pose(k);
+    const Vec2 tangent(-pose.normal.y(), pose.normal.x());
+    for (const auto& [row, arm] : {std::pair(contact.vertex_row[k], pose.vertex_arm), std::pair(contact.edge_row[k], pose.edge_arm)}) {
+      add(sums[row], pose.normal, arm, contact.normal[k]);
+      add(sums[row], tangent, arm, contact.shear[k]);
+    }
+  }
+  sums.pop_back();
+  for (std::size_t i = 0; i < blocks_.size(); ++i) {
+    const StepBlock& block = blocks_[i];
+    Stiffness& sum = sums[i];
+    sum.diagonal() += block.inertia;
+    if (block.has_point_forces) sum += problem_->external.stiffness(problem_->system, block.block, d.template segment<N>(N * static_cast<int>(i)));
+    sum = sum.inverse().eval();
+  }
+  return sums;
+}
+
+template <int N>
+void Newton<N>::keep_slip() {
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    ContactBatch& contact = contacts_[i];
+    const TrialBatch& now = trials_[i];
+    for (int k = 0; k < batch_size; ++k) {
+      const bool slid = branches_[batch_size * i + static_cast<std::size_t>(k)] != static_cast<Branch>(ContactStatus::sticking);
+      const double slack = now.elastic_shear[k] + contact.shear[k] * now.slip_change[k];
+      contact.initial_shear[k] = slid ? slack : contact.initial_shear[k];
+    }
+  }
+}
+
+template <int N>
+bool Newton<N>::has_left(const Eigen::VectorXd& d) const {
+  for (std::size_t i = 0; i < blocks_.size(); ++i) {
+    const double way = Motion<N>::displacement_bound(d.template segment<N>(N * static_cast<int>(i)), blocks_[i].radius);
+    if (!(way <= largest_overshoot * problem_->longest_displacement)) return true;
+  }
+  return false;
+}
+
+template <int N>
+void Newton<N>::relax(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs, StepSolution<N>& solution) {
+  prepare(problem, springs);
+  Eigen::VectorXd& d = solution.d;
+  evaluate(d);
+  const std::vector<Stiffness> flexibilities = own_flexibilities(d);
+  double norm = residual_norm();
+  Eigen::VectorXd place = d, next(d.size());
+  Momentum momentum;
+  int& steps = solution.relaxation_steps;
+  while (norm > 1.0 && steps < most_relaxation_steps && (steps % steps_between_looks != 0 || !has_left(d))) {
+    keep_slip();
+    for (std::size_t i = 0; i < blocks_.size(); ++i) {
+      const int at = N * static_cast<int>(i);
+      next.template segment<N>(at) = d.template segment<N>(at) + safe_step * (flexibilities[i] * residual_.template segment<N>(at));
+    }
+    if (residual_.dot(next - place) < 0.0) momentum.restart();
+    d = next + momentum.next() * (next - place);
+    place.swap(next);
+    evaluate(d);
+    norm = residual_norm();
+    ++steps;
+  }
+  solution.converged = norm <= 1.0;
+  if (!solution.converged) solution.reason = "relaxation did not come to rest";
+  report_contacts(solution.contacts);
+  solution.paths.clear();
+}
+
+template class Newton<3>;
+
+}  // namespace openclose
