@@ -18,6 +18,7 @@
 
 #include "openclose/integrator/contact_batch.h"
 #include "openclose/integrator/tangent_system.h"
+#include "openclose/integrator/two_level.h"
 
 namespace openclose {
 
@@ -53,7 +54,6 @@ class Newton {
   const LinearCounters& linear_counters() const { return tangent_.counters(); }
 
  private:
-  using Stiffness = Eigen::Matrix<double, N, N>;
   enum class Tangent { exact, symmetric };
   enum class Outcome { ended, singular, no_common_step };
 
@@ -76,8 +76,8 @@ class Newton {
   void hold_contacts(bool friction_lags);
   /// Adapts holds_ to what an iteration has changed.
   void hold_changed(double norm);
-  /// Of every free block: the inverse of its inertia and of the stiffness of everything that can touch it, as if that stuck and nothing else moved.
-  std::vector<Stiffness> own_flexibilities(const Eigen::VectorXd& d) const;
+  /// Of all free blocks with everything that can touch them, as if it stuck.
+  TwoLevelFlexibility flexibility(const Eigen::VectorXd& d) const;
   /// The springs of contacts that slide or are open slip to where they carry what these carry now.
   void keep_slip();
   /// Whether a block has gone so far that the step will be refused.

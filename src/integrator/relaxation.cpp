@@ -36,31 +36,34 @@ class Momentum {
 }  // namespace
 
 template <int N>
-std::vector<typename Newton<N>::Stiffness> Newton<N>::own_flexibilities(const Eigen::VectorXd& d) const {
-  std::vector<Stiffness> sums(blocks_.size() + 1, Stiffness::Zero());  // one more for the fixed blocks
-  const auto add = [](Stiffness& sum, const Vec2& direction, const Vec2& arm, double stiffness) {
-    const Unknowns gradient(direction.x(), direction.y(), arm.x() * direction.y() - arm.y() * direction.x());
-    sum += stiffness * gradient * gradient.transpose();
+TwoLevelFlexibility Newton<N>::flexibility(const Eigen::VectorXd& d) const {
+  const int rows = static_cast<int>(blocks_.size());
+  const auto row_of = [&](int row) { return row < rows ? row : -1; };
+  std::vector<Vec2> centroids;
+  for (const StepBlock& block : blocks_) centroids.push_back(problem_->system.centroid(block.block));
+  std::vector<std::pair<int, int>> couplings;
+  for (std::size_t c = 0; c < contact_count_; ++c) {
+    const std::pair<int, int> pair = std::minmax(row_of(start(c).vertex_row[lane(c)]), row_of(start(c).edge_row[lane(c)]));
+    if (pair.first >= 0 && (couplings.empty() || couplings.back() != pair)) couplings.push_back(pair);
+  }
+  TwoLevelFlexibility sum(centroids, couplings);
+  const auto gradient = [&](int row, const Vec2& direction, const Vec2& arm) {
+    const bool turns = row >= 0 && !blocks_[row].rotation_locked;
+    return Unknowns(direction.x(), direction.y(), turns ? arm.x() * direction.y() - arm.y() * direction.x() : 0.0);
   };
   for (std::size_t c = 0; c < contact_count_; ++c) {
-    const ContactBatch& contact = start(c);
-    const int k = lane(c);
+    const int k = lane(c), i = row_of(start(c).vertex_row[k]), j = row_of(start(c).edge_row[k]);
     const ContactPose<N> pose = trial(c).pose(k);
     const Vec2 tangent(-pose.normal.y(), pose.normal.x());
-    for (const auto& [row, arm] : {std::pair(contact.vertex_row[k], pose.vertex_arm), std::pair(contact.edge_row[k], pose.edge_arm)}) {
-      add(sums[row], pose.normal, arm, contact.normal[k]);
-      add(sums[row], tangent, arm, contact.shear[k]);
-    }
+    for (const auto& [stiffness, way] : {std::pair(start(c).normal[k], pose.normal), std::pair(start(c).shear[k], tangent)})
+      sum.add_spring(stiffness, i, gradient(i, way, pose.vertex_arm), j, -gradient(j, way, pose.edge_arm));
   }
-  sums.pop_back();
-  for (std::size_t i = 0; i < blocks_.size(); ++i) {
-    const StepBlock& block = blocks_[i];
-    Stiffness& sum = sums[i];
-    sum.diagonal() += block.inertia;
-    if (block.has_point_forces) sum += problem_->external.stiffness(problem_->system, block.block, d.template segment<N>(N * static_cast<int>(i)));
-    sum = sum.inverse().eval();
+  for (int i = 0; i < rows; ++i) {
+    Eigen::Matrix<double, N, N> own = blocks_[i].inertia.asDiagonal();
+    if (blocks_[i].has_point_forces) own += problem_->external.stiffness(problem_->system, blocks_[i].block, d.template segment<N>(N * i));
+    sum.add_own(i, own);
   }
-  return sums;
+  return sum;
 }
 
 template <int N>
@@ -90,17 +93,15 @@ void Newton<N>::relax(const StepProblem<N>& problem, const std::vector<ContactSp
   prepare(problem, springs);
   Eigen::VectorXd& d = solution.d;
   evaluate(d);
-  const std::vector<Stiffness> flexibilities = own_flexibilities(d);
+  TwoLevelFlexibility estimate = flexibility(d);
+  estimate.factor();
   double norm = residual_norm();
   Eigen::VectorXd place = d, next(d.size());
   Momentum momentum;
   int& steps = solution.relaxation_steps;
   while (norm > 1.0 && steps < most_relaxation_steps && (steps % steps_between_looks != 0 || !has_left(d))) {
     keep_slip();
-    for (std::size_t i = 0; i < blocks_.size(); ++i) {
-      const int at = N * static_cast<int>(i);
-      next.template segment<N>(at) = d.template segment<N>(at) + safe_step * (flexibilities[i] * residual_.template segment<N>(at));
-    }
+    next = d + (1.0 / TwoLevelFlexibility::largest_eigenvalue) * estimate.displacement(residual_);
     if (residual_.dot(next - place) < 0.0) momentum.restart();
     d = next + momentum.next() * (next - place);
     place.swap(next);

@@ -1,0 +1,105 @@
+#include "openclose/integrator/two_level.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace openclose {
+namespace {
+
+/// Blocks of a group: so many that the equations of the groups are few, and so few that a group is solved in less time than its forces take.
+constexpr int largest_group = 64;
+
+}  // namespace
+
+TwoLevelFlexibility::TwoLevelFlexibility(const std::vector<Vec2>& centroids, const std::vector<std::pair<int, int>>& couplings)
+    : group_(centroids.size()), arm_(centroids), within_solver_(make_block_solver<3>()), between_solver_(make_block_solver<3>()) {
+  std::vector<int> rows(centroids.size());
+  std::iota(rows.begin(), rows.end(), 0);
+  divide(rows.begin(), rows.end(), centroids);
+  std::vector<std::pair<int, int>> inside, across;
+  for (const auto& [i, j] : couplings) {
+    if (group_[i] == group_[j])
+      inside.emplace_back(i, j);
+    else
+      across.emplace_back(group_[i], group_[j]);
+  }
+  within_.set_pattern(static_cast<int>(centroids.size()), inside);
+  between_.set_pattern(groups_, across);
+}
+
+void TwoLevelFlexibility::divide(std::vector<int>::iterator first, std::vector<int>::iterator last, const std::vector<Vec2>& centroids) {
+  const auto count = last - first;
+  if (count == 0) return;
+  Vec2 low = centroids[*first], high = low, sum = Vec2::Zero();
+  for (auto row = first; row != last; ++row) {
+    low = low.cwiseMin(centroids[*row]);
+    high = high.cwiseMax(centroids[*row]);
+    sum += centroids[*row];
+  }
+  if (count <= largest_group) {
+    for (auto row = first; row != last; ++row) {
+      group_[*row] = groups_;
+      arm_[*row] = centroids[*row] - sum / static_cast<double>(count);
+    }
+    ++groups_;
+    return;
+  }
+  const int axis = (high - low).x() > (high - low).y() ? 0 : 1;
+  const auto middle = first + count / 2;
+  std::nth_element(first, middle, last, [&](int a, int b) { return std::pair(centroids[a][axis], a) < std::pair(centroids[b][axis], b); });
+  divide(first, middle, centroids);
+  divide(middle, last, centroids);
+}
+
+TwoLevelFlexibility::Unknowns TwoLevelFlexibility::on_group(int row, const Unknowns& force) const {
+  const Vec2& arm = arm_[row];
+  return {force.x(), force.y(), force.z() + arm.x() * force.y() - arm.y() * force.x()};
+}
+
+TwoLevelFlexibility::Unknowns TwoLevelFlexibility::of_block(int row, const Unknowns& motion) const {
+  const Vec2& arm = arm_[row];
+  return {motion.x() - motion.z() * arm.y(), motion.y() + motion.z() * arm.x(), motion.z()};
+}
+
+void TwoLevelFlexibility::add_own(int row, const Stiffness& stiffness) {
+  within_.add(row, row, stiffness);
+  Stiffness on_group_of_block, on_both;
+  for (int k = 0; k < 3; ++k) on_group_of_block.col(k) = on_group(row, stiffness.col(k));
+  for (int k = 0; k < 3; ++k) on_both.row(k) = on_group(row, on_group_of_block.row(k).transpose()).transpose();
+  between_.add(group_[row], group_[row], on_both);
+}
+
+void TwoLevelFlexibility::add_spring(double stiffness, int i, const Unknowns& first, int j, const Unknowns& second) {
+  const auto join = [&](BlockMatrix<3>& matrix, int row, const Unknowns& a, int column, const Unknowns& b) {
+    matrix.add(row, column, stiffness * a * b.transpose());
+    if (row != column) matrix.add(column, row, stiffness * b * a.transpose());
+  };
+  for (const auto& [row, gradient] : {std::pair(i, first), std::pair(j, second)}) {
+    if (row >= 0) join(within_, row, gradient, row, gradient);
+  }
+  const bool joins = i >= 0 && j >= 0;
+  if (joins && group_[i] == group_[j]) {
+    join(within_, i, first, j, second);  // a rigid group does not stretch it
+    return;
+  }
+  for (const auto& [row, gradient] : {std::pair(i, first), std::pair(j, second)}) {
+    if (row >= 0) join(between_, group_[row], on_group(row, gradient), group_[row], on_group(row, gradient));
+  }
+  if (joins) join(between_, group_[i], on_group(i, first), group_[j], on_group(j, second));
+}
+
+bool TwoLevelFlexibility::factor() {
+  return within_solver_->factor(within_) && between_solver_->factor(between_);
+}
+
+Eigen::VectorXd TwoLevelFlexibility::displacement(const Eigen::VectorXd& force) {
+  Eigen::VectorXd on_groups = Eigen::VectorXd::Zero(3 * groups_);
+  const int rows = within_.rows();
+  for (int i = 0; i < rows; ++i) on_groups.segment<3>(3 * group_[i]) += on_group(i, force.segment<3>(3 * i));
+  const Eigen::VectorXd of_groups = between_solver_->solve(on_groups);
+  Eigen::VectorXd sum = within_solver_->solve(force);
+  for (int i = 0; i < rows; ++i) sum.segment<3>(3 * i) += of_block(i, of_groups.segment<3>(3 * group_[i]));
+  return sum;
+}
+
+}  // namespace openclose
