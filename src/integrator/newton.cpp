@@ -277,9 +277,11 @@ int Newton<N>::hold_reversed() {
 
 template <int N>
 void Newton<N>::take_last_states() {
+  // Statics begins with the drawing, whose rounding is in the gaps; a motion knows which of its contacts are open.
+  const double touching_gap = problem_->statics ? tolerance::rounding_of_ways_m : 0.0;
   for (std::size_t c = 0; c < contact_count_; ++c) {
     const Contact& contact = problem_->contacts[c];
-    const bool touching = contact.status == ContactStatus::open && (*springs_)[c].gap <= 0.0 && (*springs_)[c].shift >= 0.0;
+    const bool touching = contact.status == ContactStatus::open && (*springs_)[c].gap <= touching_gap && (*springs_)[c].shift >= 0.0;
     const ContactStatus last = touching ? ContactStatus::sticking : contact.status;
     const TrialBatch& now = trial(c);
     const int k = lane(c);
