@@ -303,20 +303,15 @@ void Newton<N>::take_last_states() {
 }
 
 template <int N>
-void Newton<N>::report_contacts(std::vector<ContactOutcome<N>>& contacts) const {
-  contacts.clear();
-  contacts.reserve(contact_count_);
-  for (std::size_t c = 0; c < contact_count_; ++c) contacts.emplace_back((*springs_)[c], forces(c), trial(c).pose(lane(c)));
-}
-
-template <int N>
-void Newton<N>::report_paths(StepSolution<N>& solution) const {
+void Newton<N>::report_paths(StepSolution<N>& solution) {
   for (std::size_t c = 0; c < contact_count_; ++c) {
-    const ContactPose<N>& pose = solution.contacts[c].pose;
     const ContactSprings& springs = (*springs_)[c];
-    const PathAverage path = path_average(springs, start(c).strength(lane(c)), pose.gap_change, pose.slip_change, springs.dissipation);
+    TrialBatch& at = trial(c);
+    const int k = lane(c);
+    const PathAverage path = path_average(springs, start(c).strength(k), at.gap_change[k], at.slip_change[k], springs.dissipation);
     solution.paths.push_back({path.mean.normal, path.mean.shear, path.energies, force_pose(c)});
-    solution.contacts[c].forces = path.end;
+    at.set_carried(k, path.end);
+    branches_[c] = branch(path.end);
   }
 }
 
@@ -447,10 +442,11 @@ double Newton<N>::begin(const Eigen::VectorXd& d, FirstTangent first) {
 
 template <int N>
 void Newton<N>::solve(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs, StepSolution<N>& solution, FirstTangent first) {
+  solution.contacts.give_back(trials_, branches_);
   prepare(problem, springs);
   if (problem.end_weight < 1.0) {
     sum_start_forces();
-    report_contacts(solution.start_contacts);
+    solution.start_contacts.copy(trials_, branches_, springs);
   }
   const Eigen::VectorXd start = solution.d;
   double norm = begin(start, first);
@@ -477,9 +473,9 @@ void Newton<N>::solve(const StepProblem<N>& problem, const std::vector<ContactSp
     return;
   }
   if (!solution.converged) solution.reason = "Newton's method did not converge";
-  report_contacts(solution.contacts);
   solution.paths.clear();
   if (averages_path()) report_paths(solution);
+  solution.contacts.borrow(trials_, branches_, springs);
 }
 
 template <int N>

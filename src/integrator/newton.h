@@ -103,9 +103,8 @@ class Newton {
   double line_search(const Eigen::VectorXd& d, const Eigen::VectorXd& step, double slope);
   /// Part of the exact step along which the residual falls as it should; 0 if none. Leaves the forces there.
   double backtrack(const Eigen::VectorXd& d, const Eigen::VectorXd& step, double norm);
-  /// All contacts as others want them.
-  void report_contacts(std::vector<ContactOutcome<N>>& contacts) const;
-  void report_paths(StepSolution<N>& solution) const;
+  /// The means over the path go to the solution, the forces at its end take their place.
+  void report_paths(StepSolution<N>& solution);
 
   const StepProblem<N>* problem_ = nullptr;
   const std::vector<ContactSprings>* springs_ = nullptr;

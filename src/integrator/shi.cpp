@@ -202,10 +202,10 @@ class Shi : public Enforcement<N> {
     solution.converged = true;
     for (std::size_t c = 0; c < outcome_.size(); ++c) {
       const ContactKinematics<N>& k = outcome_[c].kinematics;
-      solution.contacts.emplace_back(outcome_[c].springs, outcome_[c].forces, k.pose());
       // What a sliding contact carried in this step is the friction of the pass before.
-      CarriedForces& f = solution.contacts[c].forces;
+      CarriedForces f = outcome_[c].forces;
       if (f.status == ContactStatus::sliding) f.shear = f.elastic_shear = applied_shear_[c];
+      solution.contacts.push_back({outcome_[c].springs, f, k.pose()});
     }
   }
 
