@@ -43,7 +43,7 @@ class Row:
     contacts: int | None
     dt_s: float | None
     steps: int | None
-    iterations: int | None
+    iterations: int | None  # of Newton's method, and steps of relaxation
     cpu_s: float | None
     error: float | None
     max_penetration_m: float | None
@@ -144,7 +144,7 @@ class Bench:
             contacts=closed_contacts(self.openclose, trial.case) if counters else None,
             dt_s=dt,
             steps=None if steps is None else steps - trial.steps_before,
-            iterations=None if steps is None else counters["iterations"] - trial.iterations_before,
+            iterations=None if steps is None else counters["iterations"] + counters["relaxation_steps"] - trial.iterations_before,
             cpu_s=statistics.median(cpu) if cpu else None,
             error=error,
             max_penetration_m=first.get("max_penetration_m"),

@@ -14,7 +14,10 @@ SETTLING, MOTION = "settling by size", "motion by size"
 SPACING_FACTORS = {100: 2.5, 500: 0.98, 1000: 0.676, 2000: 0.48, 5000: 0.298, 10000: 0.206, 20000: 0.146, 50000: 0.0918, 100000: 0.0648}
 QUICK_SIZES = (100, 500, 2000, 5000)
 LARGEST = {"soft": 100000, "hard": 10000, "shi": 1000, "dem": 10000}
-LIMIT_S = 100
+LIMIT_S = 300
+# Joints of the same stiffness per area make softer rock where they are closer: 50,000 blocks settle by 0.115 m. They do so all together, which is no
+# reason to cut a step.
+LARGEST_STEP: Settings = (("step.max_displacement_m", 1.0),)
 DT_S, STEPS = 0.01, 20
 FRACTION = 1e-8
 FIT_RANGE = (500, 50000)
@@ -26,11 +29,11 @@ def spacings(blocks: int) -> Settings:
 
 
 def _settle(method: Method, blocks: int) -> Case:
-    return settling(f"3.4-of-{blocks}", method, FRACTION, (*spacings(blocks), ("output.milestones_m", [])), JointedSlope.POST_FAILURE, LIMIT_S)
+    return settling(f"3.4-of-{blocks}", method, FRACTION, (*spacings(blocks), *LARGEST_STEP, ("output.milestones_m", [])), JointedSlope.POST_FAILURE, LIMIT_S)
 
 
 def _move(method: Method, blocks: int) -> Case:
-    settings = (*method.settings, *spacings(blocks), ("step.dt_s", DT_S), ("end.time_s", DT_S * STEPS), ("output.every_s", DT_S * STEPS),
+    settings = (*method.settings, *spacings(blocks), *LARGEST_STEP, ("step.dt_s", DT_S), ("end.time_s", DT_S * STEPS), ("output.every_s", DT_S * STEPS),
                 ("output.milestones_m", []))
     return Case(f"move-3.4-of-{blocks}-{method.name}", "run", JointedSlope.POST_FAILURE, settings, LIMIT_S)
 

@@ -10,9 +10,9 @@
 // is slow and steady; with none it is Newton's. The residual knows nothing of this, and so neither does the solution.
 //
 // Beyond that, factors cost more than everything else (n^1.5 operations, n log n numbers), and a slope of 50,000 blocks has so many loose contacts
-// that no tangent tells where they go. relax() then finds the balance without linear equations: every block follows the force on it, over the
-// stiffness of its own contacts, with Nesterov's momentum (Y. Nesterov, 1983), which starts anew when the forces turn against it (B. O'Donoghue and
-// E. Candes, 2015). Contacts slip on that way as they do in an explicit method, and keep their slip: friction that depended on the present place
+// that no tangent tells where they go. relax() then finds the balance without a tangent: blocks follow the forces on them as far as they would go if
+// all contacts stuck (two_level.h), with Nesterov's momentum (Y. Nesterov, 1983), which starts anew when the forces turn against it (B. O'Donoghue
+// and E. Candes, 2015). Contacts slip on that way as they do in an explicit method, and keep their slip: friction that depended on the present place
 // alone would feed vibrations instead of damping them. Rest is what it is for Newton's method, the residual alone.
 #pragma once
 
@@ -55,7 +55,7 @@ class Newton {
 
  private:
   enum class Tangent { exact, symmetric };
-  enum class Outcome { ended, singular, no_common_step };
+  enum class Outcome { ended, singular, cold_start, no_common_step };
 
   struct StepBlock {
     int block = 0;
@@ -69,14 +69,17 @@ class Newton {
   /// Evaluates at the displacement to start from and returns its residual_norm().
   double begin(const Eigen::VectorXd& d, FirstTangent first);
   /// Iterates from solution.d until norm, its residual_norm(), is 1 or less.
-  Outcome iterate(const StepProblem<N>& problem, StepSolution<N>& solution, double& norm);
+  Outcome iterate(const StepProblem<N>& problem, StepSolution<N>& solution, double& norm, bool may_start_cold);
+  /// Goes on, after the first iteration of a cold start, by whole steps with the exact tangent, in which what has just opened or begun to slide is
+  /// still held by a part of its springs. False if blocks come loose all the same.
+  bool iterate_from_cold(StepSolution<N>& solution, double& norm);
   /// The same by whole steps with tangents that hold contacts which have changed their state.
   Outcome iterate_holding(StepSolution<N>& solution, double& norm);
   /// The next linear solve holds contacts by holds_. With friction that lags it leaves out for them that friction follows the normal force.
   void hold_contacts(bool friction_lags);
   /// Adapts holds_ to what an iteration has changed.
   void hold_changed(double norm);
-  /// Of all free blocks with everything that can touch them, as if it stuck.
+  /// With everything that can touch each other, as if it stuck.
   TwoLevelFlexibility flexibility(const Eigen::VectorXd& d) const;
   /// The springs of contacts that slide or are open slip to where they carry what these carry now.
   void keep_slip();
@@ -116,9 +119,8 @@ class Newton {
   double line_search(const Eigen::VectorXd& d, const Eigen::VectorXd& step, double slope);
   /// Part of the exact step along which the residual falls as it should; 0 if none. Leaves the forces there.
   double backtrack(const Eigen::VectorXd& d, const Eigen::VectorXd& step, double norm);
-  /// All contacts as others want them.
-  void report_contacts(std::vector<ContactOutcome<N>>& contacts) const;
-  void report_paths(StepSolution<N>& solution) const;
+  /// The means over the path go to the solution, the forces at its end take their place.
+  void report_paths(StepSolution<N>& solution);
 
   const StepProblem<N>* problem_ = nullptr;
   const std::vector<ContactSprings>* springs_ = nullptr;

@@ -1,5 +1,4 @@
 // Newton::relax(): a static step without linear equations.
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -8,11 +7,9 @@
 namespace openclose {
 namespace {
 
-/// [-] Of the way that a block's own springs allow it. (a - b)^2 <= 2 a^2 + 2 b^2: what springs between two blocks each store is at most twice what
-/// their parts on the diagonal do. So no eigenvalue of the stiffness over its diagonal blocks exceeds 2, and this is the longest step down a gradient
-/// after which momentum never makes it grow.
-constexpr double safe_step = 0.5;
-/// Five times what a slope of 50,000 blocks needs. What has no equilibrium ends here, if not by its displacement.
+/// [-] Of the way that the estimate gives: the longest step after which momentum never makes a vibration grow.
+constexpr double safe_step = 1.0 / TwoLevelFlexibility::largest_eigenvalue;
+/// Ten times what a slope of 50,000 blocks needs. What has no equilibrium ends here, if not by its displacement.
 constexpr int most_relaxation_steps = 100000;
 constexpr int steps_between_looks = 100;  ///< at the displacement
 /// [-] Of the longest displacement: momentum carries blocks a few hundredths beyond their place.
@@ -90,18 +87,22 @@ bool Newton<N>::has_left(const Eigen::VectorXd& d) const {
 
 template <int N>
 void Newton<N>::relax(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs, StepSolution<N>& solution) {
+  solution.contacts.give_back(trials_, branches_);
   prepare(problem, springs);
   Eigen::VectorXd& d = solution.d;
   evaluate(d);
   TwoLevelFlexibility estimate = flexibility(d);
-  estimate.factor();
+  if (!estimate.factor()) {
+    solution.reason = "singular matrix";
+    return;
+  }
   double norm = residual_norm();
   Eigen::VectorXd place = d, next(d.size());
   Momentum momentum;
   int& steps = solution.relaxation_steps;
   while (norm > 1.0 && steps < most_relaxation_steps && (steps % steps_between_looks != 0 || !has_left(d))) {
     keep_slip();
-    next = d + (1.0 / TwoLevelFlexibility::largest_eigenvalue) * estimate.displacement(residual_);
+    next = d + safe_step * estimate.displacement(residual_);
     if (residual_.dot(next - place) < 0.0) momentum.restart();
     d = next + momentum.next() * (next - place);
     place.swap(next);
@@ -111,8 +112,8 @@ void Newton<N>::relax(const StepProblem<N>& problem, const std::vector<ContactSp
   }
   solution.converged = norm <= 1.0;
   if (!solution.converged) solution.reason = "relaxation did not come to rest";
-  report_contacts(solution.contacts);
   solution.paths.clear();
+  solution.contacts.borrow(trials_, branches_, springs);
 }
 
 template class Newton<3>;

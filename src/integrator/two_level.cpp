@@ -4,15 +4,12 @@
 #include <numeric>
 
 namespace openclose {
-namespace {
-
-/// Blocks of a group: so many that the equations of the groups are few, and so few that a group is solved in less time than its forces take.
-constexpr int largest_group = 64;
-
-}  // namespace
-
-TwoLevelFlexibility::TwoLevelFlexibility(const std::vector<Vec2>& centroids, const std::vector<std::pair<int, int>>& couplings)
-    : group_(centroids.size()), arm_(centroids), within_solver_(make_block_solver<3>()), between_solver_(make_block_solver<3>()) {
+TwoLevelFlexibility::TwoLevelFlexibility(const std::vector<Vec2>& centroids, const std::vector<std::pair<int, int>>& couplings, int largest_group)
+    : largest_group_(largest_group),
+      group_(centroids.size()),
+      arm_(centroids),
+      within_solver_(make_block_solver<3>(Factoring::whole)),
+      between_solver_(make_block_solver<3>(Factoring::whole)) {
   std::vector<int> rows(centroids.size());
   std::iota(rows.begin(), rows.end(), 0);
   divide(rows.begin(), rows.end(), centroids);
@@ -36,7 +33,7 @@ void TwoLevelFlexibility::divide(std::vector<int>::iterator first, std::vector<i
     high = high.cwiseMax(centroids[*row]);
     sum += centroids[*row];
   }
-  if (count <= largest_group) {
+  if (count <= largest_group_) {
     for (auto row = first; row != last; ++row) {
       group_[*row] = groups_;
       arm_[*row] = centroids[*row] - sum / static_cast<double>(count);

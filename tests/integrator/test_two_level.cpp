@@ -1,0 +1,102 @@
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+#include "openclose/integrator/two_level.h"
+#include "support/catch.h"
+
+using namespace openclose;
+
+namespace {
+
+/// Bricks of 2 m x 1 m, `width` of them in each of `height` courses on a fixed base, joined by springs of 1 N/m along and across two points of every
+/// joint.
+struct Wall {
+  Wall(int width, int height, int largest_group) : rows(width * height), stiffness(Eigen::MatrixXd::Zero(3 * rows, 3 * rows)) {
+    std::vector<Vec2> centroids;
+    std::vector<std::pair<int, int>> couplings;
+    const auto row = [&](int x, int y) { return y * width + x; };
+    for (int y = 0; y < height; ++y) {
+      for (int x = 0; x < width; ++x) {
+        centroids.emplace_back(2.0 * x, y);
+        if (x > 0) couplings.emplace_back(row(x - 1, y), row(x, y));
+        if (y > 0) couplings.emplace_back(row(x, y - 1), row(x, y));
+      }
+    }
+    flexibility = std::make_unique<TwoLevelFlexibility>(centroids, couplings, largest_group);
+    for (int y = 0; y < height; ++y) {
+      for (int x = 0; x < width; ++x) {
+        if (x > 0) join(row(x - 1, y), {1.0, 0.0}, row(x, y), {-1.0, 0.0}, {0.0, 0.5});
+        join(y > 0 ? row(x, y - 1) : -1, {0.0, 0.5}, row(x, y), {0.0, -0.5}, {1.0, 0.0});
+      }
+    }
+    REQUIRE(flexibility->factor());
+  }
+
+  /// Springs at both ends of a joint, given by its middle seen from either block and half its length.
+  void join(int i, const Vec2& from_i, int j, const Vec2& from_j, const Vec2& half) {
+    for (const double end : {-1.0, 1.0}) {
+      for (const Vec2& way : {Vec2(1.0, 0.0), Vec2(0.0, 1.0)}) {
+        const auto gradient = [&](const Vec2& arm) { return Eigen::Vector3d(way.x(), way.y(), arm.x() * way.y() - arm.y() * way.x()); };
+        const Eigen::Vector3d first = gradient(from_i + end * half), second = -gradient(from_j + end * half);
+        flexibility->add_spring(1.0, i, first, j, second);
+        Eigen::VectorXd whole = Eigen::VectorXd::Zero(3 * rows);
+        if (i >= 0) whole.segment<3>(3 * i) = first;
+        whole.segment<3>(3 * j) = second;
+        stiffness += whole * whole.transpose();
+      }
+    }
+  }
+
+  /// Of the estimate times the stiffness, in rising order.
+  Eigen::VectorXd eigenvalues() {
+    Eigen::MatrixXd estimate(3 * rows, 3 * rows);
+    for (int k = 0; k < 3 * rows; ++k) estimate.col(k) = flexibility->displacement(Eigen::VectorXd::Unit(3 * rows, k));
+    CHECK((estimate - estimate.transpose()).norm() < 1e-10 * estimate.norm());
+    const Eigen::MatrixXd root = stiffness.llt().matrixL();
+    return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(root.transpose() * estimate * root).eigenvalues();
+  }
+
+  int rows;
+  Eigen::MatrixXd stiffness;
+  std::unique_ptr<TwoLevelFlexibility> flexibility;
+};
+
+}  // namespace
+
+TEST_CASE("one group is solved exactly, and once more as a rigid body", "[integrator][two_level]") {
+  Wall wall(1, 1, 4);
+  const Eigen::Vector3d force(1.0, -2.0, 0.5);
+  CHECK((wall.flexibility->displacement(force) - 2.0 * wall.stiffness.inverse() * force).norm() < 1e-12);
+}
+
+TEST_CASE("no eigenvalue of the estimate times the stiffness is above 3", "[integrator][two_level]") {
+  for (const int group : {1, 4, 16, 1000}) {
+    INFO(group);
+    const Eigen::VectorXd found = Wall(8, 8, group).eigenvalues();
+    CHECK(found.maxCoeff() <= TwoLevelFlexibility::largest_eigenvalue);
+    CHECK(found.minCoeff() > 0.0);
+  }
+}
+
+TEST_CASE("rigid groups carry loads through systems of any size", "[integrator][two_level]") {
+  // A tower of n bricks: without them the smallest eigenvalue falls with 1/n^2.
+  const double small = Wall(1, 32, 4).eigenvalues().minCoeff(), large = Wall(1, 64, 4).eigenvalues().minCoeff();
+  CHECK(large > 0.9 * small);
+  // The motions that rigid groups can make are found by them alone: nothing is below what remains of those in between, (1/group)^2 of them.
+  CHECK(large > 1.0 / 16.0 / 4.0);
+}
+
+TEST_CASE("what is held by inertia alone follows it", "[integrator][two_level]") {
+  TwoLevelFlexibility flexibility({{0.0, 0.0}, {5.0, 0.0}, {9.0, 3.0}}, {}, 1);
+  for (int i = 0; i < 3; ++i) flexibility.add_own(i, Eigen::Vector3d(2.0, 2.0, 4.0).asDiagonal());
+  REQUIRE(flexibility.factor());
+  Eigen::VectorXd force(9);
+  force << 1, 2, 3, 4, 5, 6, 7, 8, 9;
+  for (int k = 0; k < 9; ++k) CHECK(flexibility.displacement(force)[k] == Approx(2.0 * force[k] / (k % 3 == 2 ? 4.0 : 2.0)));
+}
+
+TEST_CASE("a block that nothing holds is found out", "[integrator][two_level]") {
+  TwoLevelFlexibility flexibility({{0.0, 0.0}, {5.0, 0.0}}, {});
+  flexibility.add_own(0, Eigen::Matrix3d::Identity());
+  CHECK_FALSE(flexibility.factor());
+}
