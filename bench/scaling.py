@@ -29,12 +29,13 @@ def spacings(blocks: int) -> Settings:
 
 
 def _settle(method: Method, blocks: int) -> Case:
-    return settling(f"3.4-of-{blocks}", method, FRACTION, (*spacings(blocks), *LARGEST_STEP, ("output.milestones_m", [])), JointedSlope.POST_FAILURE, LIMIT_S)
+    settings = (*spacings(blocks), *LARGEST_STEP, ("output.milestones_m", []))
+    return settling(f"3.4-of-{blocks}", method, FRACTION, settings, JointedSlope.POST_FAILURE, LIMIT_S)
 
 
 def _move(method: Method, blocks: int) -> Case:
-    settings = (*method.settings, *spacings(blocks), *LARGEST_STEP, ("step.dt_s", DT_S), ("end.time_s", DT_S * STEPS), ("output.every_s", DT_S * STEPS),
-                ("output.milestones_m", []))
+    settings = (*method.settings, *spacings(blocks), *LARGEST_STEP, ("step.dt_s", DT_S), ("end.time_s", DT_S * STEPS),
+                ("output.every_s", DT_S * STEPS), ("output.milestones_m", []))
     return Case(f"move-3.4-of-{blocks}-{method.name}", "run", JointedSlope.POST_FAILURE, settings, LIMIT_S)
 
 
