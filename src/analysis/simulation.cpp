@@ -711,8 +711,7 @@ void Simulation<N>::restart_clock() {
 template <int N>
 void Simulation<N>::restore_velocities() {
   take_back();
-  const BlockSystem<N> initial(scene_);
-  output_velocity_ = initial.state().velocity;
+  for (std::size_t b = 0; b < scene_.blocks.size(); ++b) output_velocity_[b] = BlockSystem<N>::velocity_at_start(scene_.blocks[b]);
 }
 
 template <int N>

@@ -63,7 +63,8 @@ inline constexpr double contact_skin_m = 1e-3;
 /// solution on either side and makes contact states cycle; 0.1 changed 8 s of slope failure by 0.1 %).
 inline constexpr double cohesion_ramp = 0.1;
 
-/// [m] What rounding may leave in the ways of blocks against each other: coordinates of 1e7 m have it twice over (1e7 * 2^-52 = 2e-9 m).
+/// [m] What rounding may leave in the ways of blocks against each other, and in the gaps between blocks that touch in the drawing: coordinates of 1e7
+/// m have it twice over (1e7 * 2^-52 = 2e-9 m).
 inline constexpr double rounding_of_ways_m = 1e-8;
 
 /// [m/s] `hard`: speed at which a penetration found at closing is pushed out.

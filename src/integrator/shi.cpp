@@ -102,7 +102,7 @@ class Shi : public Enforcement<N> {
       right[N * block.equation + Motion<N>::rotation_index] = 0.0;
     }
     ++solution.iterations;
-    const bool regular = tangent_.factor();
+    const bool regular = tangent_.factor(0.0);
     if (regular) solution.d = tangent_.solver().solve(right);
     if (!regular || solution.d.size() != right.size() || !solution.d.allFinite()) {
       solution.reason = "singular matrix";

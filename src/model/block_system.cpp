@@ -33,18 +33,23 @@ BlockSystem<N>::BlockSystem(const Scene& scene) : rotation_kind_(scene.method.ro
       block.radius = std::max(block.radius, arm.norm());
     }
     const int b = block_count();
-    Unknowns velocity = Unknowns::Zero();
     if (!input.fixed) {
       block.equation = free_count();
       free_blocks_.push_back(b);
-      velocity << input.velocity, input.angular_velocity;
     }
     blocks_.push_back(block);
     state_.displacement.push_back(Unknowns::Zero());
-    state_.velocity.push_back(velocity);
+    state_.velocity.push_back(velocity_at_start(input));
   }
   state_.arm = reference_arm_;
   first_point_.assign(blocks_.size(), -1);
+}
+
+template <int N>
+typename BlockSystem<N>::Unknowns BlockSystem<N>::velocity_at_start(const BlockInput& input) {
+  Unknowns velocity = Unknowns::Zero();
+  if (!input.fixed) velocity << input.velocity, input.angular_velocity;
+  return velocity;
 }
 
 template <int N>

@@ -46,6 +46,8 @@ class BlockSystem {
   };
 
   explicit BlockSystem(const Scene& scene);
+  /// [m/s, m/s, rad/s] What the scene gives a block; zero for fixed ones.
+  static Unknowns velocity_at_start(const BlockInput& input);
 
   const std::vector<Block>& blocks() const { return blocks_; }
   const Block& block(int b) const { return blocks_[b]; }
