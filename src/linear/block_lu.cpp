@@ -446,13 +446,18 @@ class BlockLuSolver : public LinearSolver<N> {
 
   bool factor_analysed(double kept_change) {
     ++this->counters_.factorisations;
+    make_room();
     std::fill(factor_.stale.begin(), factor_.stale.end(), factoring_ == Factoring::whole || !has_factor_);
     this->counters_.rows += factor_.rows();
     this->counters_.rows_kept += kernels_.take_changes(*matrix_, factor_, kept_change);
     has_factor_ = eliminate();
     use_fronts_ = !has_factor_;
-    if (has_factor_) return true;
+    if (has_factor_) {
+      let_go_of_fronts();
+      return true;
+    }
     ++this->counters_.pivots_lost;
+    let_go_of_rows();
     if (!fronts_) fronts_ = make_multifrontal_solver<N>(Refactor::always);
     const bool regular = fronts_->factor(*matrix_);
     count_help();
@@ -564,6 +569,26 @@ class BlockLuSolver : public LinearSolver<N> {
     find_entries(matrix);
   }
 
+  // One of the two is there at a time: pivots are seldom lost, and fronts are as large as the rows.
+  void let_go_of_rows() {
+    std::vector<PaddedBlock<N>>().swap(factor_.value);
+    std::vector<PaddedBlock<N>>().swap(factor_.taken);
+  }
+  void let_go_of_fronts() {
+    fronts_.reset();
+    counted_ = LinearCounters();
+  }
+
+  /// For the numbers of the factor.
+  void make_room() {
+    const auto fit = [](std::vector<PaddedBlock<N>>& list, std::size_t size) {
+      if (list.capacity() < size) std::vector<PaddedBlock<N>>().swap(list);  // else the old one and the new one would be there at once
+      list.resize(size);
+    };
+    fit(factor_.value, factor_.column.size());
+    fit(factor_.taken, factor_.entries.size());
+  }
+
   void find_entries(const BlockMatrix<N>& matrix) {
     const int rows = matrix.rows();
     factor_.entries.clear();
@@ -582,7 +607,8 @@ class BlockLuSolver : public LinearSolver<N> {
       }
       factor_.entries_start.push_back(static_cast<int>(factor_.entries.size()));
     }
-    factor_.taken.assign(factor_.entries.size(), PaddedBlock<N>());
+    make_room();
+    std::fill(factor_.taken.begin(), factor_.taken.end(), PaddedBlock<N>());
     factor_.scale.assign(rows, PaddedVector());
     factor_.stale.assign(rows, true);
   }
@@ -653,9 +679,6 @@ class BlockLuSolver : public LinearSolver<N> {
       factor_.row_start.push_back(static_cast<int>(factor_.column.size()));
       factor_.same_as_next.push_back(!upper[i].empty() && upper[i].front() == i + 1 && upper[i].size() == upper[i + 1].size() + 1);
     }
-    if (factor_.value.capacity() < factor_.column.size())
-      std::vector<PaddedBlock<N>>().swap(factor_.value);  // else old and new one would be there at once
-    factor_.value.resize(factor_.column.size());
     factor_.solution.resize(rows);
     factor_.size.resize(rows);
   }
