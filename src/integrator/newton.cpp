@@ -49,6 +49,13 @@ constexpr double residual_of_full_hold = 1e-2;
 /// Each cut of a static step brings blocks nearer to free fall, where contacts carry nearly nothing and change their states most. So these iterations
 /// go on for longer than others: a slope of 10,000 blocks settles with 64 of them.
 constexpr int most_holding_iterations = 150;
+/// [-] A static step from blocks that nothing has loaded yet, in whose first iteration more than this part of the contacts open or slide, has a cold
+/// start: which ones will do so in the end is not known at all.
+constexpr double cold_start_switches = 0.1;
+/// [-] There, contacts that have just opened or begun to slide keep this part of their springs for one iteration.
+constexpr double hold_of_opened = 0.1, hold_of_slid = 0.3;
+/// After so many iterations a cold start that has not ended goes round in a circle with few contacts, which the line searches are for.
+constexpr int most_cold_iterations = 15;
 /// [-] Part of the largest force at the start of the step that may count as balanced. The forces of a trial that has run away, of which rounding and
 /// the tolerance are parts, would excuse any residual. Forces may grow by 1e9 in a step before the usual tolerance of 1e-12 comes here.
 constexpr double loosest_balance = 1e-3;
@@ -333,6 +340,28 @@ void Newton<N>::hold_contacts(bool friction_lags) {
 }
 
 template <int N>
+bool Newton<N>::iterate_from_cold(StepSolution<N>& solution, double& norm) {
+  Eigen::VectorXd& d = solution.d;
+  const double longest = d.template lpNorm<Eigen::Infinity>();
+  holds_.resize(contact_count_);
+  for (int iteration = 1; iteration < most_cold_iterations && norm > 1.0 && std::isfinite(norm); ++iteration) {
+    for (std::size_t c = 0; c < contact_count_; ++c) {
+      const bool has_changed = branches_[c] != branches_before_[c];
+      holds_[c] = !has_changed ? 0.0 : (status(branches_[c]) == ContactStatus::open ? hold_of_opened : hold_of_slid);
+    }
+    branches_before_ = branches_;
+    hold_contacts(false);
+    const Eigen::VectorXd step = direction(d, Tangent::exact);
+    ++solution.iterations;
+    const bool is_held = step.size() > 0 && step.template lpNorm<Eigen::Infinity>() <= longest;
+    if (is_held) evaluate(d += step);
+    norm = is_held ? residual_norm() : std::numeric_limits<double>::infinity();
+  }
+  holds_.clear();
+  return std::isfinite(norm);
+}
+
+template <int N>
 typename Newton<N>::Outcome Newton<N>::iterate_holding(StepSolution<N>& solution, double& norm) {
   Eigen::VectorXd& d = solution.d;
   holds_.assign(contact_count_, 0.0);
@@ -357,7 +386,7 @@ typename Newton<N>::Outcome Newton<N>::iterate_holding(StepSolution<N>& solution
 }
 
 template <int N>
-typename Newton<N>::Outcome Newton<N>::iterate(const StepProblem<N>& problem, StepSolution<N>& solution, double& norm) {
+typename Newton<N>::Outcome Newton<N>::iterate(const StepProblem<N>& problem, StepSolution<N>& solution, double& norm, bool may_start_cold) {
   Eigen::VectorXd& d = solution.d;
   Tangent tangent = Tangent::exact;
   int refusals = 0;  // of the exact step since the residual was at its smallest
@@ -395,6 +424,7 @@ typename Newton<N>::Outcome Newton<N>::iterate(const StepProblem<N>& problem, St
     const bool halved = next_norm <= 0.5 * norm;
     d += alpha * step;
     norm = next_norm;
+    if (may_start_cold && iteration == 0 && switches > cold_start_switches * static_cast<double>(contact_count_)) return Outcome::cold_start;
     const bool held = norm > 1.0 && !halved && hold_reversed() > 0;  // a solution keeps the forces of the law
     const bool exact_works = held || switches <= few || (tangent == Tangent::exact && halved);
     tangent = exact_works ? Tangent::exact : Tangent::symmetric;
@@ -420,7 +450,18 @@ void Newton<N>::solve(const StepProblem<N>& problem, const std::vector<ContactSp
   }
   const Eigen::VectorXd start = solution.d;
   double norm = begin(start, first);
-  Outcome outcome = iterate(problem, solution, norm);
+  const auto is_open = [](const Contact& contact) { return contact.status == ContactStatus::open; };
+  const bool may_start_cold = problem.statics && problem.method.max_iterations >= most_cold_iterations &&
+                              std::all_of(problem.contacts.begin(), problem.contacts.end(), is_open);
+  Outcome outcome = iterate(problem, solution, norm, may_start_cold);
+  if (outcome == Outcome::cold_start) {
+    outcome = iterate_from_cold(solution, norm) ? iterate(problem, solution, norm, false) : Outcome::no_common_step;
+    if (!(norm <= 1.0)) {
+      solution.d = start;
+      norm = begin(start, first);
+      outcome = iterate(problem, solution, norm, false);
+    }
+  }
   if (outcome == Outcome::no_common_step) {
     solution.d = start;
     norm = begin(start, first);

@@ -45,7 +45,7 @@ class Newton {
 
  private:
   enum class Tangent { exact, symmetric };
-  enum class Outcome { ended, singular, no_common_step };
+  enum class Outcome { ended, singular, cold_start, no_common_step };
 
   struct StepBlock {
     int block = 0;
@@ -59,7 +59,10 @@ class Newton {
   /// Evaluates at the displacement to start from and returns its residual_norm().
   double begin(const Eigen::VectorXd& d, FirstTangent first);
   /// Iterates from solution.d until norm, its residual_norm(), is 1 or less.
-  Outcome iterate(const StepProblem<N>& problem, StepSolution<N>& solution, double& norm);
+  Outcome iterate(const StepProblem<N>& problem, StepSolution<N>& solution, double& norm, bool may_start_cold);
+  /// Goes on, after the first iteration of a cold start, by whole steps with the exact tangent, in which what has just opened or begun to slide is
+  /// still held by a part of its springs. False if blocks come loose all the same.
+  bool iterate_from_cold(StepSolution<N>& solution, double& norm);
   /// The same by whole steps with tangents that hold contacts which have changed their state.
   Outcome iterate_holding(StepSolution<N>& solution, double& norm);
   /// The next linear solve holds contacts by holds_. With friction that lags it leaves out for them that friction follows the normal force.

@@ -62,6 +62,8 @@ constexpr int lanes = 4;
 constexpr int alignment = lanes * sizeof(double);  // said in full: left to itself it depends on the instructions that a function may use
 typedef double Lanes __attribute__((vector_size(alignment), aligned(alignment)));
 
+typedef double LooseLanes __attribute__((vector_size(alignment), aligned(sizeof(double)), may_alias));
+
 /// N x N, row by row.
 template <int N>
 struct alignas(alignment) PaddedBlock {
@@ -90,16 +92,16 @@ template <int N>
 struct Factor {
   std::vector<int> order;  ///< row of the matrix at a place in the factor
   std::vector<int> row_start, diagonal, column;
-  std::vector<char> same_as_next;          ///< of rows: to the right of the next diagonal this row of U has the next one's pattern
-  std::vector<Entry> entries;              ///< in the order in which elimination meets them
-  std::vector<int> entries_start;          ///< where in `entries` a row begins
-  std::vector<PaddedBlock<N>> taken;       ///< of the entries, from the matrix: the factor is that of these
-  std::vector<PaddedVector> scale;         ///< of rows: sizes of the diagonal entries in `taken`
-  std::vector<char> stale;                 ///< of rows: to be eliminated anew
-  std::vector<double> size;                ///< of rows: square of the pivot's norm before the elimination
-  std::vector<int> panel;                  ///< of rows: 0 in a subtree; of the top from 1 on
-  std::vector<std::vector<int>> subtrees;  ///< rows of one or several subtrees each; all rows of a small system
-  std::vector<std::vector<int>> panels;    ///< rows of the top
+  std::vector<char> same_as_next;                     ///< of rows: to the right of the next diagonal this row of U has the next one's pattern
+  std::vector<Entry> entries;                         ///< in the order in which elimination meets them
+  std::vector<int> entries_start;                     ///< where in `entries` a row begins
+  std::vector<typename BlockMatrix<N>::Block> taken;  ///< of the entries, from the matrix: the factor is that of these
+  std::vector<PaddedVector> scale;                    ///< of rows: sizes of the diagonal entries in `taken`
+  std::vector<char> stale;                            ///< of rows: to be eliminated anew
+  std::vector<double> size;                           ///< of rows: square of the pivot's norm before the elimination
+  std::vector<int> panel;                             ///< of rows: 0 in a subtree; of the top from 1 on
+  std::vector<std::vector<int>> subtrees;             ///< rows of one or several subtrees each; all rows of a small system
+  std::vector<std::vector<int>> panels;               ///< rows of the top
   std::vector<PaddedBlock<N>> value;
   std::vector<PaddedVector> solution;  ///< a block row each, in the factor's order
 
@@ -229,36 +231,44 @@ bool invert(PaddedBlock<N>& pivot, double original_size) {
   return block.allFinite();
 }
 
+OPENCLOSE_KERNEL Lanes load(const double* entries) {
+  return *reinterpret_cast<const LooseLanes*>(entries);
+}
+
 /// Whether no entry of row i has changed by more than `change` times the root of the diagonal entries of its row and column.
 template <int N>
 OPENCLOSE_KERNEL bool is_as_taken(const BlockMatrix<N>& matrix, const Factor<N>& f, int i, double change) {
-  const double square = change * change;
-  auto within = Lanes{} <= Lanes{};  // all of them
+  static_assert(N == 3, "the nine entries of a block, column by column, are two registers and one");
+  const Lanes s = change * change * f.scale[i].entries;
+  const Lanes rows[] = {{s[0], s[1], s[2], s[0]}, {s[1], s[2], s[0], s[1]}};
+  auto within = s <= s;
+  bool last_within = true;
   for (int e = f.entries_start[i]; e < f.entries_start[i + 1]; ++e) {
-    PaddedBlock<N> now{};
-    pad<N>(matrix.value(f.entries[e].slot), now);
-    const Lanes columns = square * f.scale[f.entries[e].column].entries;
-    for (int r = 0; r < N; ++r) {
-      const Lanes difference = now.row[r] - f.taken[e].row[r];
-      within &= difference * difference <= f.scale[i].entries[r] * columns;
+    const Lanes c = f.scale[f.entries[e].column].entries;
+    const Lanes columns[] = {{c[0], c[0], c[0], c[1]}, {c[1], c[1], c[2], c[2]}};
+    const double* const now = matrix.value(f.entries[e].slot).data();
+    const double* const taken = f.taken[e].data();
+    for (int part = 0; part < 2; ++part) {
+      const Lanes difference = load(now + lanes * part) - load(taken + lanes * part);
+      within &= difference * difference <= rows[part] * columns[part];
     }
+    const double last = now[N * N - 1] - taken[N * N - 1];
+    last_within = last_within && last * last <= s[N - 1] * c[N - 1];
   }
-  bool all = true;
-  for (int c = 0; c < N; ++c) all = all && within[c] != 0;
-  return all;
+  return last_within && within[0] && within[1] && within[2] && within[3];
 }
 
 template <int N>
 OPENCLOSE_KERNEL void note_scale(Factor<N>& f, int i) {
   for (int e = f.entries_start[i]; e < f.entries_start[i + 1]; ++e) {
     if (f.entries[e].column != i) continue;
-    for (int r = 0; r < N; ++r) f.scale[i].entries[r] = std::abs(f.taken[e].row[r][r]);
+    for (int r = 0; r < N; ++r) f.scale[i].entries[r] = std::abs(f.taken[e](r, r));
   }
 }
 
 template <int N>
 OPENCLOSE_KERNEL void take_row(const BlockMatrix<N>& matrix, Factor<N>& f, int i) {
-  for (int e = f.entries_start[i]; e < f.entries_start[i + 1]; ++e) pad<N>(matrix.value(f.entries[e].slot), f.taken[e]);
+  for (int e = f.entries_start[i]; e < f.entries_start[i + 1]; ++e) f.taken[e] = matrix.value(f.entries[e].slot);
   note_scale(f, i);
 }
 
@@ -283,7 +293,7 @@ OPENCLOSE_KERNEL int take_changes(const BlockMatrix<N>& matrix, Factor<N>& f, do
 template <int N>
 OPENCLOSE_KERNEL void lay_row(Factor<N>& f, int i) {
   std::fill(f.value.begin() + f.row_start[i], f.value.begin() + f.row_start[i + 1], PaddedBlock<N>{});
-  for (int e = f.entries_start[i]; e < f.entries_start[i + 1]; ++e) f.value[f.entries[e].target] = f.taken[e];
+  for (int e = f.entries_start[i]; e < f.entries_start[i + 1]; ++e) pad<N>(f.taken[e], f.value[f.entries[e].target]);
   f.size[i] = square_norm(f.value[f.diagonal[i]]);
 }
 
@@ -433,11 +443,7 @@ class BlockLuSolver : public LinearSolver<N> {
  private:
   /// What is stored is the matrix that it is the factor of.
   void exchange_factor(Archive& archive) {
-    for (PaddedBlock<N>& taken : factor_.taken) {
-      typename BlockMatrix<N>::Block block = unpadded(taken);
-      archive(block);
-      pad<N>(block, taken);
-    }
+    for (auto& block : factor_.taken) archive(block);
     if (!archive.reading()) return;
     for (int i = 0; i < factor_.rows(); ++i) note_scale(factor_, i);
     std::fill(factor_.stale.begin(), factor_.stale.end(), true);
@@ -570,10 +576,7 @@ class BlockLuSolver : public LinearSolver<N> {
   }
 
   // One of the two is there at a time: pivots are seldom lost, and fronts are as large as the rows.
-  void let_go_of_rows() {
-    std::vector<PaddedBlock<N>>().swap(factor_.value);
-    std::vector<PaddedBlock<N>>().swap(factor_.taken);
-  }
+  void let_go_of_rows() { std::vector<PaddedBlock<N>>().swap(factor_.value); }
   void let_go_of_fronts() {
     fronts_.reset();
     counted_ = LinearCounters();
@@ -581,12 +584,8 @@ class BlockLuSolver : public LinearSolver<N> {
 
   /// For the numbers of the factor.
   void make_room() {
-    const auto fit = [](std::vector<PaddedBlock<N>>& list, std::size_t size) {
-      if (list.capacity() < size) std::vector<PaddedBlock<N>>().swap(list);  // else the old one and the new one would be there at once
-      list.resize(size);
-    };
-    fit(factor_.value, factor_.column.size());
-    fit(factor_.taken, factor_.entries.size());
+    if (factor_.value.capacity() < factor_.column.size()) let_go_of_rows();  // else the old and the new ones would be there at once
+    factor_.value.resize(factor_.column.size());
   }
 
   void find_entries(const BlockMatrix<N>& matrix) {
@@ -608,7 +607,7 @@ class BlockLuSolver : public LinearSolver<N> {
       factor_.entries_start.push_back(static_cast<int>(factor_.entries.size()));
     }
     make_room();
-    std::fill(factor_.taken.begin(), factor_.taken.end(), PaddedBlock<N>());
+    factor_.taken.resize(factor_.entries.size());
     factor_.scale.assign(rows, PaddedVector());
     factor_.stale.assign(rows, true);
   }
