@@ -158,6 +158,17 @@ double Newton<N>::residual_norm() const {
 }
 
 template <int N>
+double Newton<N>::merit(double norm) const {
+  if (asked_merit_ == Merit::worst_block || problem_->statics || !std::isfinite(norm)) return norm;
+  double work = 0.0;  // [J]
+  for (std::size_t i = 0; i < blocks_.size(); ++i) {
+    const Unknowns residual = residual_.template segment<N>(N * static_cast<int>(i));
+    work += residual.dot(residual.cwiseQuotient(blocks_[i].inertia));
+  }
+  return std::sqrt(work);
+}
+
+template <int N>
 void Newton<N>::assemble(const Eigen::VectorXd& d, Tangent tangent) {
   BlockMatrix<N>& matrix = tangent_.matrix();
   matrix.set_zero();
@@ -216,10 +227,10 @@ double Newton<N>::line_search(const Eigen::VectorXd& d, const Eigen::VectorXd& s
 }
 
 template <int N>
-double Newton<N>::backtrack(const Eigen::VectorXd& d, const Eigen::VectorXd& step, double norm) {
+double Newton<N>::backtrack(const Eigen::VectorXd& d, const Eigen::VectorXd& step, double merit_before) {
   for (double alpha = 0.5; alpha > shortest_backtrack; alpha *= 0.5) {
     evaluate(trial_ = d + alpha * step);
-    if (residual_norm() <= (1.0 - sufficient_decrease * alpha) * norm) return alpha;
+    if (merit(residual_norm()) <= (1.0 - sufficient_decrease * alpha) * merit_before) return alpha;
   }
   return 0.0;
 }
@@ -276,18 +287,29 @@ int Newton<N>::hold_reversed() {
 }
 
 template <int N>
+void Newton<N>::take_state(std::size_t c, ContactStatus wanted, double normal, double shear) {
+  const TrialBatch& now = trial(c);
+  const int k = lane(c);
+  if (!averages_path() && is_on_piece(status(branches_[c]), now.normal_by_gap[k], wanted)) return;
+  replace_forces(c, prolonged(seen_springs(c), start(c).strength(k), wanted, normal, shear, now.gap_change[k], now.slip_change[k]));
+}
+
+template <int N>
 void Newton<N>::take_last_states() {
   // Statics begins with the drawing, whose rounding is in the gaps; a motion knows which of its contacts are open.
   const double touching_gap = problem_->statics ? tolerance::rounding_of_ways_m : 0.0;
   for (std::size_t c = 0; c < contact_count_; ++c) {
     const Contact& contact = problem_->contacts[c];
     const bool touching = contact.status == ContactStatus::open && (*springs_)[c].gap <= touching_gap && (*springs_)[c].shift >= 0.0;
-    const ContactStatus last = touching ? ContactStatus::sticking : contact.status;
-    const TrialBatch& now = trial(c);
-    const int k = lane(c);
-    if (!averages_path() && is_on_piece(status(branches_[c]), now.normal_by_gap[k], last)) continue;
-    replace_forces(
-        c, prolonged(seen_springs(c), start(c).strength(k), last, contact.normal_force, contact.shear_force, now.gap_change[k], now.slip_change[k]));
+    take_state(c, touching ? ContactStatus::sticking : contact.status, contact.normal_force, contact.shear_force);
+  }
+}
+
+template <int N>
+void Newton<N>::take_states_of(const StepSolution<N>& solution) {
+  for (std::size_t c = 0; c < contact_count_; ++c) {
+    const CarriedForces& forces = solution.contacts[c].forces;
+    take_state(c, forces.status, forces.normal, forces.shear);
   }
 }
 
@@ -362,7 +384,7 @@ typename Newton<N>::Outcome Newton<N>::iterate(const StepProblem<N>& problem, St
   Eigen::VectorXd& d = solution.d;
   Tangent tangent = Tangent::exact;
   int refusals = 0;  // of the exact step since the residual was at its smallest
-  double best = norm;
+  double value = merit(norm), best = value;
   const int few = static_cast<int>(few_switches * static_cast<double>(contact_count_));
   for (int iteration = 0; iteration < problem.method.max_iterations && norm > 1.0; ++iteration) {
     branches_before_ = branches_;
@@ -379,9 +401,10 @@ typename Newton<N>::Outcome Newton<N>::iterate(const StepProblem<N>& problem, St
       evaluate(trial_ = d + step);
     }
     double next_norm = residual_norm();
+    double next_value = merit(next_norm);
     int switches = differences(branches_before_, branches_);
-    if (tangent == Tangent::exact && iteration > 0 && next_norm > norm) {
-      alpha = backtrack(d, step, norm);
+    if (tangent == Tangent::exact && iteration > 0 && next_value > value) {
+      alpha = backtrack(d, step, value);
       if (alpha == 0.0) {
         evaluate(d);
         tangent = Tangent::symmetric;
@@ -389,13 +412,15 @@ typename Newton<N>::Outcome Newton<N>::iterate(const StepProblem<N>& problem, St
         continue;
       }
       next_norm = residual_norm();
+      next_value = merit(next_norm);
       switches = differences(branches_before_, branches_);
     }
-    if (next_norm < best) refusals = 0;
-    best = std::min(best, next_norm);
-    const bool halved = next_norm <= 0.5 * norm;
+    if (next_value < best) refusals = 0;
+    best = std::min(best, next_value);
+    const bool halved = next_value <= 0.5 * value;
     d += alpha * step;
     norm = next_norm;
+    value = next_value;
     const bool held = norm > 1.0 && !halved && hold_reversed() > 0;  // a solution keeps the forces of the law
     const bool exact_works = held || switches <= few || (tangent == Tangent::exact && halved);
     tangent = exact_works ? Tangent::exact : Tangent::symmetric;
@@ -404,10 +429,11 @@ typename Newton<N>::Outcome Newton<N>::iterate(const StepProblem<N>& problem, St
 }
 
 template <int N>
-double Newton<N>::begin(const Eigen::VectorXd& d, FirstTangent first) {
-  evaluate(d);
+double Newton<N>::begin(const StepSolution<N>& solution, FirstTangent first) {
+  evaluate(solution.d);
   const double norm = residual_norm();
   if (norm > 1.0 && first == FirstTangent::last_step) take_last_states();
+  if (norm > 1.0 && first == FirstTangent::last_solution) take_states_of(solution);
   return norm;
 }
 
@@ -419,11 +445,11 @@ void Newton<N>::solve(const StepProblem<N>& problem, const std::vector<ContactSp
     report_contacts(solution.start_contacts);
   }
   const Eigen::VectorXd start = solution.d;
-  double norm = begin(start, first);
+  double norm = begin(solution, first);
   Outcome outcome = iterate(problem, solution, norm);
   if (outcome == Outcome::no_common_step) {
     solution.d = start;
-    norm = begin(start, first);
+    norm = begin(solution, first);
     outcome = iterate_holding(solution, norm);
   }
   solution.converged = norm <= 1.0;

@@ -17,8 +17,15 @@ namespace openclose {
 
 /// Which contact states the first tangent is made of.
 enum class FirstTangent {
-  last_step,  ///< those of the last step: contacts in their old places do what they did
-  present,    ///< those of the displacement that the iteration starts from
+  last_step,      ///< those of the last step: contacts in their old places do what they did
+  last_solution,  ///< those of the contacts that the solution has: other springs hold them in the same state
+  present,        ///< those of the displacement that the iteration starts from
+};
+
+/// What a step of the iteration in motion must reduce. At rest it is always the first.
+enum class Merit {
+  worst_block,  ///< the largest residual of a block over what is tolerated
+  all_blocks,   ///< the work of all residuals on what inertia alone would let them move: a single block does not stop the others
 };
 
 template <int N>
@@ -27,6 +34,8 @@ class Newton {
 
  public:
   using Unknowns = typename Motion<N>::Unknowns;
+
+  explicit Newton(Merit merit = Merit::worst_block) : asked_merit_(merit) {}
 
   /// Solves for solution.d, starting from the value it has; fills its contacts. iterations is added to.
   void solve(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs, StepSolution<N>& solution,
@@ -56,8 +65,8 @@ class Newton {
     double rounding_of_coordinates = 0.0;  ///< [N]
   };
 
-  /// Evaluates at the displacement to start from and returns its residual_norm().
-  double begin(const Eigen::VectorXd& d, FirstTangent first);
+  /// Evaluates at the displacement of the solution to start from and returns its residual_norm().
+  double begin(const StepSolution<N>& solution, FirstTangent first);
   /// Iterates from solution.d until norm, its residual_norm(), is 1 or less.
   Outcome iterate(const StepProblem<N>& problem, StepSolution<N>& solution, double& norm);
   /// The same by whole steps with tangents that hold contacts which have changed their state.
@@ -91,6 +100,12 @@ class Newton {
   void take_last_states();
   /// Contact c carries these forces in the next linear solve.
   void replace_forces(std::size_t c, const ContactForces& forces);
+  /// Contact c carries in the next linear solve what it would in this status around these forces.
+  void take_state(std::size_t c, ContactStatus status, double normal, double shear);
+  /// The same of the contacts of a solution.
+  void take_states_of(const StepSolution<N>& solution);
+  /// What a step must reduce, with the residual_norm() that belongs to it.
+  double merit(double norm) const;
   double residual_norm() const;  ///< largest residual of a block over what is tolerated: converged at 1; infinite where that tells nothing
   void assemble(const Eigen::VectorXd& d, Tangent tangent);
   Eigen::VectorXd direction(const Eigen::VectorXd& d, Tangent tangent);
@@ -98,12 +113,13 @@ class Newton {
   /// spring is stiff the range of sticking is so narrow that the iteration would jump over it for ever.) Returns their number.
   int hold_reversed();
   double line_search(const Eigen::VectorXd& d, const Eigen::VectorXd& step, double slope);
-  /// Part of the exact step along which the residual falls as it should; 0 if none. Leaves the forces there.
-  double backtrack(const Eigen::VectorXd& d, const Eigen::VectorXd& step, double norm);
+  /// Part of the exact step along which the merit falls as it should; 0 if none. Leaves the forces there.
+  double backtrack(const Eigen::VectorXd& d, const Eigen::VectorXd& step, double merit_before);
   /// All contacts as others want them.
   void report_contacts(std::vector<ContactOutcome<N>>& contacts) const;
   void report_paths(StepSolution<N>& solution) const;
 
+  Merit asked_merit_;
   const StepProblem<N>* problem_ = nullptr;
   const std::vector<ContactSprings>* springs_ = nullptr;
   BatchKernels kernels_;
