@@ -168,7 +168,7 @@ void assembly(benchmark::State& state) {
 void factor(benchmark::State& state) {
   Slope& slope = Slope::of(state.range(0));
   const Equations equations(slope);
-  const auto solver = make_block_solver<3>();
+  const auto solver = make_block_solver<3>(Factoring::whole);
   if (!solver->factor(equations.matrix)) throw std::runtime_error("singular");
   for (auto _ : state) benchmark::DoNotOptimize(solver->factor(equations.matrix));
   say_size(state, slope);

@@ -24,7 +24,7 @@ void add_elastic_contact(EnergyLedger& ledger, const Contact& contact, const Con
   const double n1 = end.forces.normal, t1 = end.forces.shear;
   const double p0 = start.elastic_normal / kn, p1 = end.forces.elastic_normal / kn;
   const double u0 = contact.elastic_slip, u1 = -end.forces.elastic_shear / ks;
-  const double opening0 = end.gap + p0;
+  const double opening0 = contact.gap + p0;
 
   double by_springs = (theta - 0.5) * (kn * square(p1 - p0) + ks * square(u1 - u0)) + theta * n1 * opening0;
   double by_rotation = theta * (n1 * (paths.normal_end - gap_change) + t1 * (paths.shear_end - slip));
@@ -32,7 +32,7 @@ void add_elastic_contact(EnergyLedger& ledger, const Contact& contact, const Con
   double shear = theta * t1;
   double let_go = 0.0;
   if (theta < 1.0) {
-    const double weight = 1.0 - theta, n0 = start.normal, t0 = start.shear, opening1 = end.gap + gap_change + p1;
+    const double weight = 1.0 - theta, n0 = start.normal, t0 = start.shear, opening1 = contact.gap + gap_change + p1;
     by_springs -= weight * n0 * opening1;
     by_rotation += weight * (n0 * (paths.normal_start - gap_change) + t0 * (paths.shear_start - slip));
     viscous_normal += weight * (n0 - start.elastic_normal);
@@ -53,15 +53,14 @@ void add_elastic_contact(EnergyLedger& ledger, const Contact& contact, const Con
 /// [N] All that a step with the forces at its end needs of those at its start. Of springs that rest at gap zero: those of `soft`, `shi` and `dem`.
 template <int N>
 double elastic_normal_at_start(const Contact& contact, const TabulatedJoint& joint, const ContactOutcome<N>& end) {
-  const double elastic = -end.normal_stiffness * end.gap;
+  const double elastic = -end.normal_stiffness * contact.gap;
   return is_open(ContactStrength(joint, contact), elastic) ? 0.0 : elastic;
 }
 
 /// Open before and after, nothing stored: every entry would be zero.
-template <int N>
-bool rests_open(const Contact& contact, const ContactOutcome<N>& end) {
-  return end.forces.status == ContactStatus::open && contact.status == ContactStatus::open && !contact.bonded && end.gap > 0.0 &&
-         contact.elastic_slip == 0.0 && contact.stored_energy == 0.0;
+bool rests_open(const Contact& contact, ContactStatus end) {
+  return end == ContactStatus::open && contact.status == ContactStatus::open && !contact.bonded && contact.gap > 0.0 && contact.elastic_slip == 0.0 &&
+         contact.stored_energy == 0.0;
 }
 
 /// Forces averaged over the path; what rotations leave between the ways of these forces and the changes of gap and slip.
@@ -138,7 +137,8 @@ void add_step(EnergyLedger& ledger, const StepProblem<N>& problem, const StepSol
 
   for (std::size_t c = 0; c < problem.contacts.size(); ++c) {
     const Contact& contact = problem.contacts[c];
-    const ContactOutcome<N>& end = solution.contacts[c];
+    if (solution.paths.empty() && rests_open(contact, solution.contacts.status(c))) continue;
+    const ContactOutcome<N> end = solution.contacts[c];
     const Unknowns &pv = work_displacement[contact.vertex_block], &pe = work_displacement[contact.edge_block];
     if (!solution.paths.empty()) {
       const PathOutcome<N>& mean = solution.paths[c];
@@ -146,7 +146,6 @@ void add_step(EnergyLedger& ledger, const StepProblem<N>& problem, const StepSol
                            mean.pose.shear_way(pv, pe) - end.pose.slip_change, end);
       continue;
     }
-    if (rests_open(contact, end)) continue;
     ContactPaths paths{end.pose.normal_way(pv, pe), end.pose.shear_way(pv, pe), 0.0, 0.0};
     if (!elastic) {
       ledger.impact -= end.forces.normal * paths.normal_end;
@@ -157,10 +156,10 @@ void add_step(EnergyLedger& ledger, const StepProblem<N>& problem, const StepSol
     if (theta == 1.0) {
       start.elastic_normal = elastic_normal_at_start(contact, problem.joints.joint(contact.joint), end);
     } else {
-      const ContactOutcome<N>& s = solution.start_contacts[c];
-      start = s.forces;
-      paths.normal_start = s.pose.normal_way(pv, pe);
-      paths.shear_start = s.pose.shear_way(pv, pe);
+      const ContactPose<N> pose = solution.start_contacts.pose(c);
+      start = solution.start_contacts.forces(c);
+      paths.normal_start = pose.normal_way(pv, pe);
+      paths.shear_start = pose.shear_way(pv, pe);
     }
     add_elastic_contact(ledger, contact, end, start, paths, theta);
   }

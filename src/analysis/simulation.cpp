@@ -136,8 +136,8 @@ bool Simulation<N>::wake_in_haste(const StepSolution<N>& solution, double dt) {
   std::vector<Unknowns>& pushes = resting_.pushes(system_);
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     const int a = contacts_[i].vertex_block, b = contacts_[i].edge_block;
-    const ContactOutcome<N>& o = solution.contacts[i];
-    if (o.forces.status == ContactStatus::open || !(system_.is_at_rest(a) || system_.is_at_rest(b))) continue;
+    if (solution.contacts.status(i) == ContactStatus::open || !(system_.is_at_rest(a) || system_.is_at_rest(b))) continue;
+    const ContactOutcome<N> o = solution.contacts[i];
     const Vec2 force = o.forces.normal * o.pose.normal + o.forces.shear * o.pose.tangent();
     if (system_.is_at_rest(a)) pushes[system_.rest_number(a)] += Motion<N>::gradient(o.pose.vertex_arm, force);
     if (system_.is_at_rest(b)) pushes[system_.rest_number(b)] -= Motion<N>::gradient(o.pose.edge_arm, force);
@@ -351,9 +351,9 @@ double Simulation<N>::local_error(const StepProblem<N>& problem, const StepSolut
   };
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     const Contact& c = contacts_[i];
-    const CarriedForces& f = solution.contacts[i].forces;
+    const CarriedForces f = solution.contacts.forces(i);
     if (f.status != ContactStatus::open) {
-      const ContactKinematics<N> k(solution.contacts[i].pose);
+      const ContactKinematics<N> k(solution.contacts.pose(i));
       push(c.vertex_block, f.normal * k.normal_vertex + f.shear * k.shear_vertex);
       push(c.edge_block, f.normal * k.normal_edge + f.shear * k.shear_edge);
     }
@@ -444,7 +444,7 @@ double Simulation<N>::unbalanced_force(const StepProblem<N>& problem, const Step
   }
   // Where friction lags behind the normal force, equilibrium with the old friction is none yet.
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
-    const CarriedForces& f = solution.contacts[i].forces;
+    const CarriedForces f = solution.contacts.forces(i);
     if (f.status != ContactStatus::sliding) continue;
     const double bound = ContactStrength(joints_.joint(contacts_[i].joint), contacts_[i]).shear_bound(f.normal).value;
     largest = std::max(largest, std::abs(bound - std::abs(f.shear)));
@@ -457,7 +457,7 @@ bool Simulation<N>::loses_strength(const StepSolution<N>& solution) const {
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     const Contact& c = contacts_[i];
     const JointProperties& joint = joints_.joint(c.joint);
-    if (can_lose_strength(joint, c.bonded) && !stays_bonded(joint, c.bonded, solution.contacts[i].forces.status)) return true;
+    if (can_lose_strength(joint, c.bonded) && !stays_bonded(joint, c.bonded, solution.contacts.status(i))) return true;
   }
   return false;
 }
@@ -491,15 +491,16 @@ void Simulation<N>::accept_contacts(const StepSolution<N>& solution) {
   const bool elastic = enforcement_->has_elastic_contacts();
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     Contact& c = contacts_[i];
-    const ContactOutcome<N>& o = solution.contacts[i];
-    c.bonded = stays_bonded(joints_.joint(c.joint), c.bonded, o.forces.status);
-    c.status = o.forces.status;
-    c.normal_force = o.forces.normal;
-    c.shear_force = o.forces.shear;
-    c.elastic_slip = -o.forces.elastic_shear / o.shear_stiffness;
-    c.slack = o.slack;
-    c.gap = o.gap + o.pose.gap_change;
-    c.stored_energy = elastic ? stored_energy(o.normal_stiffness, o.shear_stiffness, o.forces.elastic_normal, o.forces.elastic_shear) : 0.0;
+    const CarriedForces f = solution.contacts.forces(i);
+    const double kn = solution.contacts.normal_stiffness(i), ks = solution.contacts.shear_stiffness(i);
+    c.bonded = stays_bonded(joints_.joint(c.joint), c.bonded, f.status);
+    c.status = f.status;
+    c.normal_force = f.normal;
+    c.shear_force = f.shear;
+    c.elastic_slip = -f.elastic_shear / ks;
+    c.slack = solution.contacts.slack(i);
+    c.gap += solution.contacts.gap_change(i);
+    c.stored_energy = elastic ? stored_energy(kn, ks, f.elastic_normal, f.elastic_shear) : 0.0;
     if (c.status != ContactStatus::open) max_penetration_ = std::max(max_penetration_, -c.gap);
   }
 }

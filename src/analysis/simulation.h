@@ -1,4 +1,5 @@
-// One scene in time: holds the block system and its contacts and takes steps. A step either succeeds as a whole or leaves no trace.
+// One scene in time: holds the block system and its contacts and takes steps. A step either succeeds as a whole or leaves no trace (but for what the
+// linear solver keeps, which shows in the answer as far as Newton's method tolerates).
 #pragma once
 
 #include <memory>

@@ -379,34 +379,8 @@ ContactSprings ContactBatch::springs(int lane) const {
   return s;
 }
 
-ContactPose<3> TrialBatch::pose(int lane) const {
-  ContactPose<3> p;
-  p.normal = {normal_x[lane], normal_y[lane]};
-  p.vertex_arm = {vertex_arm_x[lane], vertex_arm_y[lane]};
-  p.edge_arm = {edge_arm_x[lane], edge_arm_y[lane]};
-  p.gap_change = gap_change[lane];
-  p.slip_change = slip_change[lane];
-  return p;
-}
-
-void TrialBatch::set_pose(int lane, const ContactPose<3>& pose) {
-  normal_x[lane] = pose.normal.x();
-  normal_y[lane] = pose.normal.y();
-  vertex_arm_x[lane] = pose.vertex_arm.x();
-  vertex_arm_y[lane] = pose.vertex_arm.y();
-  edge_arm_x[lane] = pose.edge_arm.x();
-  edge_arm_y[lane] = pose.edge_arm.y();
-  gap_change[lane] = pose.gap_change;
-  slip_change[lane] = pose.slip_change;
-}
-
 ContactForces TrialBatch::forces(int lane, Branch branch) const {
-  ContactForces f;
-  f.status = status(branch);
-  f.normal = normal[lane];
-  f.shear = shear[lane];
-  f.elastic_normal = elastic_normal[lane];
-  f.elastic_shear = elastic_shear[lane];
+  ContactForces f{carried(lane, branch)};
   f.normal_by_gap = normal_by_gap[lane];
   f.shear_by_gap = shear_by_gap[lane];
   f.shear_by_slip = shear_by_slip[lane];
@@ -414,10 +388,7 @@ ContactForces TrialBatch::forces(int lane, Branch branch) const {
 }
 
 void TrialBatch::set_forces(int lane, const ContactForces& f) {
-  normal[lane] = f.normal;
-  shear[lane] = f.shear;
-  elastic_normal[lane] = f.elastic_normal;
-  elastic_shear[lane] = f.elastic_shear;
+  set_carried(lane, f);
   normal_by_gap[lane] = f.normal_by_gap;
   shear_by_gap[lane] = f.shear_by_gap;
   shear_by_slip[lane] = f.shear_by_slip;

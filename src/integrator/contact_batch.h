@@ -91,9 +91,41 @@ struct TrialBatch {
   ContactPose<3> pose(int lane) const;
   void set_pose(int lane, const ContactPose<3>& pose);
   /// \param branch  which has the status
+  CarriedForces carried(int lane, Branch branch) const {
+    return {status(branch), normal[lane], shear[lane], elastic_normal[lane], elastic_shear[lane]};
+  }
+  void set_carried(int lane, const CarriedForces& forces);
   ContactForces forces(int lane, Branch branch) const;
   void set_forces(int lane, const ContactForces& forces);
 };
+
+inline ContactPose<3> TrialBatch::pose(int lane) const {
+  ContactPose<3> p;
+  p.normal = {normal_x[lane], normal_y[lane]};
+  p.vertex_arm = {vertex_arm_x[lane], vertex_arm_y[lane]};
+  p.edge_arm = {edge_arm_x[lane], edge_arm_y[lane]};
+  p.gap_change = gap_change[lane];
+  p.slip_change = slip_change[lane];
+  return p;
+}
+
+inline void TrialBatch::set_pose(int lane, const ContactPose<3>& pose) {
+  normal_x[lane] = pose.normal.x();
+  normal_y[lane] = pose.normal.y();
+  vertex_arm_x[lane] = pose.vertex_arm.x();
+  vertex_arm_y[lane] = pose.vertex_arm.y();
+  edge_arm_x[lane] = pose.edge_arm.x();
+  edge_arm_y[lane] = pose.edge_arm.y();
+  gap_change[lane] = pose.gap_change;
+  slip_change[lane] = pose.slip_change;
+}
+
+inline void TrialBatch::set_carried(int lane, const CarriedForces& f) {
+  normal[lane] = f.normal;
+  shear[lane] = f.shear;
+  elastic_normal[lane] = f.elastic_normal;
+  elastic_shear[lane] = f.elastic_shear;
+}
 
 /// Sum of the contact forces on a block: force [N, N], moment [N m], and [N] what rounding leaves in it.
 struct ForceRow {

@@ -11,26 +11,13 @@
 
 #include "openclose/contact/joint_table.h"
 #include "openclose/contact/mean_pose.h"
+#include "openclose/integrator/contact_outcomes.h"
 #include "openclose/integrator/time_scheme.h"
 #include "openclose/law/path_average.h"
 #include "openclose/linear/solver.h"
 #include "openclose/model/external_forces.h"
 
 namespace openclose {
-
-/// What one contact did in a step: what the energy ledger and the contact's history need of it, and no more, since there is one for every contact.
-template <int N>
-struct ContactOutcome {
-  double normal_stiffness = 0.0, shear_stiffness = 0.0;  ///< [N/m] of its springs
-  double gap = 0.0;                                      ///< [m] at the start of the step
-  double slack = 0.0;                                    ///< [m] see Contact
-  CarriedForces forces;                                  ///< at the end of the step
-  ContactPose<N> pose;                                   ///< whose gradients carried these forces in the equation of motion
-
-  ContactOutcome() = default;
-  ContactOutcome(const ContactSprings& springs, const CarriedForces& carried, const ContactPose<N>& at)
-      : normal_stiffness(springs.normal), shear_stiffness(springs.shear), gap(springs.gap), forces(carried), pose(at) {}
-};
 
 /// One step to be solved. Everything is as it stands at the start of the step.
 template <int N>
@@ -76,9 +63,9 @@ struct StepSolution {
   std::string reason;        ///< why not converged
   int iterations = 0;        ///< linear solves
   Eigen::VectorXd d;         ///< displacement of the step, N per free block
-  std::vector<ContactOutcome<N>> contacts;
-  std::vector<ContactOutcome<N>> start_contacts;  ///< forces that entered with weight 1 - theta: of every contact, or none for theta = 1
-  std::vector<PathOutcome<N>> paths;              ///< mean forces that entered instead of those at the end; empty for other schemes
+  ContactOutcomes<N> contacts;
+  ContactOutcomes<N> start_contacts;  ///< forces that entered with weight 1 - theta: of every contact, or none for theta = 1
+  std::vector<PathOutcome<N>> paths;  ///< mean forces that entered instead of those at the end; empty for other schemes
 
   /// Empty again, with its memory for the next step.
   void clear() {

@@ -163,7 +163,7 @@ class Hard final : public Enforcement<N> {
     turned.d = first;
     const RotationKind kind = problem.system.rotation_kind();
     for (std::size_t c = 0; c < springs_.size(); ++c) {
-      if (solution.contacts[c].forces.status == ContactStatus::open) continue;
+      if (solution.contacts.status(c) == ContactStatus::open) continue;
       const Contact& contact = problem.contacts[c];
       const auto of_vertex = turned.of(problem.system, contact.vertex_block), of_edge = turned.of(problem.system, contact.edge_block);
       const ContactStart<N> start(problem.system, contact);
@@ -175,8 +175,7 @@ class Hard final : public Enforcement<N> {
 
   void note_slack(StepSolution<N>& solution) const {
     for (std::size_t c = 0; c < springs_.size(); ++c) {
-      if (solution.contacts[c].forces.status == ContactStatus::open)
-        solution.contacts[c].slack = std::max(0.0, -springs_[c].shift / springs_[c].normal);
+      if (solution.contacts.status(c) == ContactStatus::open) solution.contacts.set_slack(c, std::max(0.0, -springs_[c].shift / springs_[c].normal));
     }
   }
 

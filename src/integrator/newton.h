@@ -18,7 +18,7 @@ namespace openclose {
 /// Which contact states the first tangent is made of.
 enum class FirstTangent {
   last_step,      ///< those of the last step: contacts in their old places do what they did
-  last_solution,  ///< those of the contacts that the solution has: other springs hold them in the same state
+  last_solution,  ///< those of the contacts that the solution has, whose forces are what the springs start from
   present,        ///< those of the displacement that the iteration starts from
 };
 
@@ -54,7 +54,7 @@ class Newton {
 
  private:
   enum class Tangent { exact, symmetric };
-  enum class Outcome { ended, singular, no_common_step };
+  enum class Outcome { ended, singular, cold_start, no_common_step };
 
   struct StepBlock {
     int block = 0;
@@ -65,10 +65,13 @@ class Newton {
     double rounding_of_coordinates = 0.0;  ///< [N]
   };
 
-  /// Evaluates at the displacement of the solution to start from and returns its residual_norm().
-  double begin(const StepSolution<N>& solution, FirstTangent first);
+  /// Evaluates at the displacement to start from and returns its residual_norm().
+  double begin(const Eigen::VectorXd& d, FirstTangent first);
   /// Iterates from solution.d until norm, its residual_norm(), is 1 or less.
-  Outcome iterate(const StepProblem<N>& problem, StepSolution<N>& solution, double& norm);
+  Outcome iterate(const StepProblem<N>& problem, StepSolution<N>& solution, double& norm, bool may_start_cold);
+  /// Goes on, after the first iteration of a cold start, by whole steps with the exact tangent, in which what has just opened or begun to slide is
+  /// still held by a part of its springs. False if blocks come loose all the same.
+  bool iterate_from_cold(StepSolution<N>& solution, double& norm);
   /// The same by whole steps with tangents that hold contacts which have changed their state.
   Outcome iterate_holding(StepSolution<N>& solution, double& norm);
   /// The next linear solve holds contacts by holds_. With friction that lags it leaves out for them that friction follows the normal force.
@@ -102,8 +105,8 @@ class Newton {
   void replace_forces(std::size_t c, const ContactForces& forces);
   /// Contact c carries in the next linear solve what it would in this status around these forces.
   void take_state(std::size_t c, ContactStatus status, double normal, double shear);
-  /// The same of the contacts of a solution.
-  void take_states_of(const StepSolution<N>& solution);
+  /// The same of branches_before_, around the forces that the springs start from.
+  void take_states_before();
   /// What a step must reduce, with the residual_norm() that belongs to it.
   double merit(double norm) const;
   double residual_norm() const;  ///< largest residual of a block over what is tolerated: converged at 1; infinite where that tells nothing
@@ -115,9 +118,8 @@ class Newton {
   double line_search(const Eigen::VectorXd& d, const Eigen::VectorXd& step, double slope);
   /// Part of the exact step along which the merit falls as it should; 0 if none. Leaves the forces there.
   double backtrack(const Eigen::VectorXd& d, const Eigen::VectorXd& step, double merit_before);
-  /// All contacts as others want them.
-  void report_contacts(std::vector<ContactOutcome<N>>& contacts) const;
-  void report_paths(StepSolution<N>& solution) const;
+  /// The means over the path go to the solution, the forces at its end take their place.
+  void report_paths(StepSolution<N>& solution);
 
   Merit asked_merit_;
   const StepProblem<N>* problem_ = nullptr;

@@ -102,7 +102,7 @@ class Shi : public Enforcement<N> {
       right[N * block.equation + Motion<N>::rotation_index] = 0.0;
     }
     ++solution.iterations;
-    const bool regular = tangent_.factor();
+    const bool regular = tangent_.factor(0.0);
     if (regular) solution.d = tangent_.solver().solve(right);
     if (!regular || solution.d.size() != right.size() || !solution.d.allFinite()) {
       solution.reason = "singular matrix";
@@ -202,10 +202,10 @@ class Shi : public Enforcement<N> {
     solution.converged = true;
     for (std::size_t c = 0; c < outcome_.size(); ++c) {
       const ContactKinematics<N>& k = outcome_[c].kinematics;
-      solution.contacts.emplace_back(outcome_[c].springs, outcome_[c].forces, k.pose());
       // What a sliding contact carried in this step is the friction of the pass before.
-      CarriedForces& f = solution.contacts[c].forces;
+      CarriedForces f = outcome_[c].forces;
       if (f.status == ContactStatus::sliding) f.shear = f.elastic_shear = applied_shear_[c];
+      solution.contacts.push_back({outcome_[c].springs, f, k.pose()});
     }
   }
 

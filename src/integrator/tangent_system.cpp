@@ -44,6 +44,7 @@ void TangentSystem<N>::fit_pattern(const StepProblem<N>& problem) {
       couplings.push_back(coupling);  // a pair's contacts are neighbours
   }
   kind_ = problem.method.linear_solver;
+  factoring_ = problem.method.skip_factorisation ? Factoring::needed : Factoring::whole;
   set_pattern(rows, couplings);
   find_slots(problem);
 }
@@ -58,26 +59,26 @@ void TangentSystem<N>::set_pattern(int rows, const std::vector<std::pair<int, in
 template <int N>
 void TangentSystem<N>::choose_solver(int rows) {
   solver_rows_ = rows;
-  solver_ = make_solver<N>(rows, kind_);
+  solver_ = make_solver<N>(rows, kind_, factoring_);
 }
 
 template <int N>
-bool TangentSystem<N>::factor() {
+bool TangentSystem<N>::factor(double kept_change) {
   if (!skip_symbolic_) matrix_.renew_version();
-  return solver_->factor(matrix_);
+  return solver_->factor(matrix_, kept_change);
 }
 
 template <int N>
 void TangentSystem<N>::exchange(Archive& archive) {
   int rows = matrix_.rows();
   auto couplings = matrix_.couplings();
-  archive(solver_rows_, rows, couplings, kind_);
+  archive(solver_rows_, rows, couplings, kind_, factoring_);
   if (solver_rows_ == no_solver) return;
   if (archive.reading()) {
     choose_solver(solver_rows_);
     set_pattern(rows, couplings);
   }
-  solver_->exchange(archive);
+  solver_->exchange(archive, matrix_);
 }
 
 template class TangentSystem<3>;

@@ -17,7 +17,8 @@ class TangentSystem {
   const std::vector<ContactSlots>& slots() const { return slots_; }
   BlockMatrix<N>& matrix() { return matrix_; }
   /// False if the matrix is singular.
-  bool factor();
+  /// \param kept_change  [-] see LinearSolver::factor()
+  bool factor(double kept_change);
   /// Of the last matrix that was factored.
   LinearSolver<N>& solver() { return *solver_; }
   /// The pattern, which decides in which order the solver eliminates and so how it rounds; the symbolic work is done again after reading.
@@ -34,6 +35,7 @@ class TangentSystem {
   BlockMatrix<N> matrix_;
   std::vector<ContactSlots> slots_;
   LinearSolverKind kind_ = LinearSolverKind::automatic;
+  Factoring factoring_ = Factoring::needed;
   bool skip_symbolic_ = true;
   static constexpr int no_solver = -1;
   int solver_rows_ = no_solver;  ///< of the first matrix, by which the solver was chosen: blocks may come to rest since

@@ -10,15 +10,23 @@
 // J. Matrix Anal. Appl. 11 (1990)). Large systems are therefore cut into subtrees, which do not depend on each other, and the rows where these meet,
 // the top. A row of the top subtracts those of the subtrees first and then, panel by panel, those of the top; with one panel done, the rows of all
 // later ones can subtract it at the same time. The cut depends on the pattern alone, so that the number of threads changes no digit.
+//
+// From matrix to matrix most rows stay as they are but for the turning of blocks. A row of the factor whose own row of the matrix has changed by no
+// more than it may, and which subtracts only rows that are kept, is kept: the factor is always that of a matrix each of whose rows is as it was when
+// it was last taken. And weak couplings are left out of the factor (weak_couplings.h): what they carry is found by iteration, whose residual they
+// are.
 #include <Eigen/LU>
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 
 #include "openclose/core/parallel.h"
+#include "openclose/linear/elimination.h"
 #include "openclose/linear/solver.h"
+#include "openclose/linear/weak_couplings.h"
 
 #if defined(__x86_64__) && defined(__GNUC__)
 #define OPENCLOSE_HAS_WIDE_REGISTERS
@@ -40,10 +48,21 @@ constexpr int subtree_parts = 2 * most_threads;
 /// a call upon the threads.
 constexpr int panel_rows = 32;
 
+/// Iterations for the couplings left out, each of which leaves a part of the residual that is about their strength over the inertia of the blocks; in
+/// motion two are enough for 1e-7. Where more are needed, these couplings are no weak ones.
+constexpr int most_refinements = 6;
+/// [-] Of the residual, at least. An iteration takes a tenth of one of Newton's method, of which there are 13 % more with 1e-5 and 1 % more with
+/// this.
+constexpr double refined_reduction = 1e-7;
+/// [-] Where all digits are asked for, as those of a factor of the whole matrix.
+constexpr double refined_to_rounding = std::numeric_limits<double>::epsilon();
+
 /// Rows of blocks are padded to four numbers, one register of four. The padding of products is that of their right factor; nobody reads it.
 constexpr int lanes = 4;
 constexpr int alignment = lanes * sizeof(double);  // said in full: left to itself it depends on the instructions that a function may use
 typedef double Lanes __attribute__((vector_size(alignment), aligned(alignment)));
+
+typedef double LooseLanes __attribute__((vector_size(alignment), aligned(sizeof(double)), may_alias));
 
 /// N x N, row by row.
 template <int N>
@@ -56,22 +75,42 @@ struct alignas(alignment) PaddedVector {
   Lanes entries;
 };
 
+/// A block of the matrix that goes into the factor.
+struct Entry {
+  int slot;    ///< in the matrix
+  int target;  ///< slot in the factor
+  int column;  ///< in the factor
+};
+
+/// A block of the matrix that does not.
+struct LeftOut {
+  int slot, row, column;  ///< in the matrix
+};
+
 /// L, inverted diagonal and U on their pattern, and the way there from the matrix.
 template <int N>
 struct Factor {
   std::vector<int> order;  ///< row of the matrix at a place in the factor
   std::vector<int> row_start, diagonal, column;
-  std::vector<char> same_as_next;          ///< of rows: to the right of the next diagonal this row of U has the next one's pattern
-  std::vector<int> target;                 ///< slot in the factor of the matrix's entries, in the order in which elimination meets them
-  std::vector<int> target_start;           ///< where in `target` a row begins
-  std::vector<double> size;                ///< of rows: square of the pivot's norm before the elimination
-  std::vector<int> panel;                  ///< of rows: 0 in a subtree; of the top from 1 on
-  std::vector<std::vector<int>> subtrees;  ///< rows of one or several subtrees each; all rows of a small system
-  std::vector<std::vector<int>> panels;    ///< rows of the top
+  std::vector<char> same_as_next;                     ///< of rows: to the right of the next diagonal this row of U has the next one's pattern
+  std::vector<Entry> entries;                         ///< in the order in which elimination meets them
+  std::vector<int> entries_start;                     ///< where in `entries` a row begins
+  std::vector<typename BlockMatrix<N>::Block> taken;  ///< of the entries, from the matrix: the factor is that of these
+  std::vector<PaddedVector> scale;                    ///< of rows: sizes of the diagonal entries in `taken`
+  std::vector<char> stale;                            ///< of rows: to be eliminated anew
+  std::vector<double> size;                           ///< of rows: square of the pivot's norm before the elimination
+  std::vector<int> panel;                             ///< of rows: 0 in a subtree; of the top from 1 on
+  std::vector<std::vector<int>> subtrees;             ///< rows of one or several subtrees each; all rows of a small system
+  std::vector<std::vector<int>> panels;               ///< rows of the top
   std::vector<PaddedBlock<N>> value;
   std::vector<PaddedVector> solution;  ///< a block row each, in the factor's order
 
   int rows() const { return static_cast<int>(diagonal.size()); }
+  /// The row that is the first to subtract row i; -1 for a root.
+  int parent(int i) const {
+    const int next = diagonal[i] + 1;
+    return next < row_start[i + 1] ? column[next] : -1;
+  }
 };
 
 // What follows is compiled once for every processor and once for wide registers. Each number is computed by the same operations in the same order,
@@ -162,6 +201,15 @@ OPENCLOSE_KERNEL void pad(const typename BlockMatrix<N>::Block& block, PaddedBlo
 }
 
 template <int N>
+typename BlockMatrix<N>::Block unpadded(const PaddedBlock<N>& padded) {
+  typename BlockMatrix<N>::Block block;
+  for (int r = 0; r < N; ++r) {
+    for (int c = 0; c < N; ++c) block(r, c) = padded.row[r][c];
+  }
+  return block;
+}
+
+template <int N>
 OPENCLOSE_KERNEL double square_norm(const PaddedBlock<N>& block) {
   Lanes sum = block.row[0] * block.row[0];
   for (int r = 1; r < N; ++r) sum += block.row[r] * block.row[r];
@@ -175,10 +223,7 @@ OPENCLOSE_KERNEL double square_norm(const PaddedBlock<N>& block) {
 template <int N>
 bool invert(PaddedBlock<N>& pivot, double original_size) {
   constexpr double square = smallest_pivot * smallest_pivot;
-  typename BlockMatrix<N>::Block block;
-  for (int r = 0; r < N; ++r) {
-    for (int c = 0; c < N; ++c) block(r, c) = pivot.row[r][c];
-  }
+  typename BlockMatrix<N>::Block block = unpadded(pivot);
   const double columns = block.colwise().squaredNorm().prod(), determinant = block.determinant();
   if (!(block.squaredNorm() > square * original_size) || !(determinant * determinant > square * columns)) return false;
   block = block.inverse().eval();
@@ -186,29 +231,88 @@ bool invert(PaddedBlock<N>& pivot, double original_size) {
   return block.allFinite();
 }
 
+OPENCLOSE_KERNEL Lanes load(const double* entries) {
+  return *reinterpret_cast<const LooseLanes*>(entries);
+}
+
+/// Whether no entry of row i has changed by more than `change` times the root of the diagonal entries of its row and column.
+template <int N>
+OPENCLOSE_KERNEL bool is_as_taken(const BlockMatrix<N>& matrix, const Factor<N>& f, int i, double change) {
+  static_assert(N == 3, "the nine entries of a block, column by column, are two registers and one");
+  const Lanes s = change * change * f.scale[i].entries;
+  const Lanes rows[] = {{s[0], s[1], s[2], s[0]}, {s[1], s[2], s[0], s[1]}};
+  auto within = s <= s;
+  bool last_within = true;
+  for (int e = f.entries_start[i]; e < f.entries_start[i + 1]; ++e) {
+    const Lanes c = f.scale[f.entries[e].column].entries;
+    const Lanes columns[] = {{c[0], c[0], c[0], c[1]}, {c[1], c[1], c[2], c[2]}};
+    const double* const now = matrix.value(f.entries[e].slot).data();
+    const double* const taken = f.taken[e].data();
+    for (int part = 0; part < 2; ++part) {
+      const Lanes difference = load(now + lanes * part) - load(taken + lanes * part);
+      within &= difference * difference <= rows[part] * columns[part];
+    }
+    const double last = now[N * N - 1] - taken[N * N - 1];
+    last_within = last_within && last * last <= s[N - 1] * c[N - 1];
+  }
+  return last_within && within[0] && within[1] && within[2] && within[3];
+}
+
+template <int N>
+OPENCLOSE_KERNEL void note_scale(Factor<N>& f, int i) {
+  for (int e = f.entries_start[i]; e < f.entries_start[i + 1]; ++e) {
+    if (f.entries[e].column != i) continue;
+    for (int r = 0; r < N; ++r) f.scale[i].entries[r] = std::abs(f.taken[e](r, r));
+  }
+}
+
+template <int N>
+OPENCLOSE_KERNEL void take_row(const BlockMatrix<N>& matrix, Factor<N>& f, int i) {
+  for (int e = f.entries_start[i]; e < f.entries_start[i + 1]; ++e) f.taken[e] = matrix.value(f.entries[e].slot);
+  note_scale(f, i);
+}
+
+/// Takes the rows that are stale, because they or rows that they subtract have changed, from the matrix. The number of those that are not.
+template <int N>
+OPENCLOSE_KERNEL int take_changes(const BlockMatrix<N>& matrix, Factor<N>& f, double change) {
+  int kept = 0;
+  for (int i = 0; i < f.rows(); ++i) {
+    if (!f.stale[i] && is_as_taken(matrix, f, i, change)) {
+      ++kept;
+      continue;
+    }
+    f.stale[i] = true;
+    take_row(matrix, f, i);
+    const int parent = f.parent(i);
+    if (parent >= 0) f.stale[parent] = true;
+  }
+  return kept;
+}
+
 /// Lays row i of the matrix into its slots.
 template <int N>
-OPENCLOSE_KERNEL void lay_row(const BlockMatrix<N>& matrix, Factor<N>& f, int i) {
+OPENCLOSE_KERNEL void lay_row(Factor<N>& f, int i) {
   std::fill(f.value.begin() + f.row_start[i], f.value.begin() + f.row_start[i + 1], PaddedBlock<N>{});
-  int next = f.target_start[i];
-  for (int s = matrix.row_start(f.order[i]); s < matrix.row_start(f.order[i] + 1); ++s) pad<N>(matrix.value(s), f.value[f.target[next++]]);
+  for (int e = f.entries_start[i]; e < f.entries_start[i + 1]; ++e) pad<N>(f.taken[e], f.value[f.entries[e].target]);
   f.size[i] = square_norm(f.value[f.diagonal[i]]);
 }
 
-/// Subtracts a panel from rows of later ones.
+/// Subtracts a panel from stale rows of later ones.
 template <int N>
-OPENCLOSE_KERNEL void advance(const BlockMatrix<N>& matrix, Factor<N>& f, const std::vector<int>& rows, int panel, int* place) {
+OPENCLOSE_KERNEL void advance(Factor<N>& f, const std::vector<int>& rows, int panel, int* place) {
   for (int i : rows) {
-    if (panel == 0) lay_row(matrix, f, i);
+    if (!f.stale[i]) continue;
+    if (panel == 0) lay_row(f, i);
     subtract_panel(f, i, panel, place);
   }
 }
 
-/// Ends the elimination of rows of a panel, which have subtracted all before it. False if a pivot has lost its digits.
+/// Ends the elimination of stale rows of a panel, which have subtracted all before it. False if a pivot has lost its digits.
 template <int N>
-OPENCLOSE_KERNEL bool eliminate(const BlockMatrix<N>& matrix, Factor<N>& f, const std::vector<int>& rows, int panel, int* place) {
+OPENCLOSE_KERNEL bool eliminate(Factor<N>& f, const std::vector<int>& rows, int panel, int* place) {
   for (int i : rows) {
-    if (panel == 0) lay_row(matrix, f, i);
+    if (!f.stale[i]) continue;
+    if (panel == 0) lay_row(f, i);
     subtract_panel(f, i, panel, place);
     if (!invert(f.value[f.diagonal[i]], f.size[i])) return false;
   }
@@ -258,33 +362,38 @@ OPENCLOSE_KERNEL void substitute_back(Factor<N>& f, const std::vector<int>& rows
 /// The functions for the registers of a processor.
 template <int N>
 struct Kernels {
-  void (*advance)(const BlockMatrix<N>&, Factor<N>&, const std::vector<int>&, int, int*);
-  bool (*eliminate)(const BlockMatrix<N>&, Factor<N>&, const std::vector<int>&, int, int*);
+  int (*take_changes)(const BlockMatrix<N>&, Factor<N>&, double);
+  void (*advance)(Factor<N>&, const std::vector<int>&, int, int*);
+  bool (*eliminate)(Factor<N>&, const std::vector<int>&, int, int*);
   void (*substitute_forward)(Factor<N>&, const std::vector<int>&, const double*);
   void (*substitute_back)(Factor<N>&, const std::vector<int>&, double*);
 };
 
-#define OPENCLOSE_KERNELS_WITH(registers, target)                                                                                           \
-  template <int N>                                                                                                                          \
-  target void advance_with_##registers(const BlockMatrix<N>& matrix, Factor<N>& f, const std::vector<int>& rows, int panel, int* place) {   \
-    advance(matrix, f, rows, panel, place);                                                                                                 \
-  }                                                                                                                                         \
-  template <int N>                                                                                                                          \
-  target bool eliminate_with_##registers(const BlockMatrix<N>& matrix, Factor<N>& f, const std::vector<int>& rows, int panel, int* place) { \
-    return eliminate(matrix, f, rows, panel, place);                                                                                        \
-  }                                                                                                                                         \
-  template <int N>                                                                                                                          \
-  target void substitute_forward_with_##registers(Factor<N>& f, const std::vector<int>& rows, const double* right_side) {                   \
-    substitute_forward(f, rows, right_side);                                                                                                \
-  }                                                                                                                                         \
-  template <int N>                                                                                                                          \
-  target void substitute_back_with_##registers(Factor<N>& f, const std::vector<int>& rows, double* x) {                                     \
-    substitute_back(f, rows, x);                                                                                                            \
-  }                                                                                                                                         \
-  template <int N>                                                                                                                          \
-  Kernels<N> kernels_with_##registers() {                                                                                                   \
-    return {&advance_with_##registers<N>, &eliminate_with_##registers<N>, &substitute_forward_with_##registers<N>,                          \
-            &substitute_back_with_##registers<N>};                                                                                          \
+#define OPENCLOSE_KERNELS_WITH(registers, target)                                                                         \
+  template <int N>                                                                                                        \
+  target int take_changes_with_##registers(const BlockMatrix<N>& matrix, Factor<N>& f, double change) {                   \
+    return take_changes(matrix, f, change);                                                                               \
+  }                                                                                                                       \
+  template <int N>                                                                                                        \
+  target void advance_with_##registers(Factor<N>& f, const std::vector<int>& rows, int panel, int* place) {               \
+    advance(f, rows, panel, place);                                                                                       \
+  }                                                                                                                       \
+  template <int N>                                                                                                        \
+  target bool eliminate_with_##registers(Factor<N>& f, const std::vector<int>& rows, int panel, int* place) {             \
+    return eliminate(f, rows, panel, place);                                                                              \
+  }                                                                                                                       \
+  template <int N>                                                                                                        \
+  target void substitute_forward_with_##registers(Factor<N>& f, const std::vector<int>& rows, const double* right_side) { \
+    substitute_forward(f, rows, right_side);                                                                              \
+  }                                                                                                                       \
+  template <int N>                                                                                                        \
+  target void substitute_back_with_##registers(Factor<N>& f, const std::vector<int>& rows, double* x) {                   \
+    substitute_back(f, rows, x);                                                                                          \
+  }                                                                                                                       \
+  template <int N>                                                                                                        \
+  Kernels<N> kernels_with_##registers() {                                                                                 \
+    return {&take_changes_with_##registers<N>, &advance_with_##registers<N>, &eliminate_with_##registers<N>,              \
+            &substitute_forward_with_##registers<N>, &substitute_back_with_##registers<N>};                               \
   }
 
 OPENCLOSE_KERNELS_WITH(any_registers, )
@@ -303,26 +412,60 @@ Kernels<N> choose_kernels([[maybe_unused]] bool wide_registers) {
 template <int N>
 class BlockLuSolver : public LinearSolver<N> {
  public:
-  explicit BlockLuSolver(bool wide_registers) : kernels_(choose_kernels<N>(wide_registers)) {}
+  BlockLuSolver(Factoring factoring, bool wide_registers) : factoring_(factoring), kernels_(choose_kernels<N>(wide_registers)) {}
 
-  bool factor(const BlockMatrix<N>& matrix) override {
+  bool factor(const BlockMatrix<N>& matrix, double kept_change) override {
+    matrix_ = &matrix;
     if (version_ != matrix.pattern_version()) {
-      analyse(matrix);
+      analyse(factored_slots(matrix, factoring_));
     } else {
       ++this->counters_.symbolic_skipped;
     }
-    ++this->counters_.factorisations;
-    use_fronts_ = !eliminate(matrix);
-    if (!use_fronts_) return true;
-    ++this->counters_.pivots_lost;
-    if (!fronts_) fronts_ = make_multifrontal_solver<N>(Refactor::always);
-    const bool regular = fronts_->factor(matrix);
-    count_help();
-    return regular;
+    return factor_analysed(kept_change);
   }
 
   Eigen::VectorXd solve(const Eigen::VectorXd& right_side, double reduction) override {
     ++this->counters_.solves;
+    return solve_once(right_side, reduction);
+  }
+
+  void exchange(Archive& archive, const BlockMatrix<N>& matrix) override {
+    LinearSolver<N>::exchange(archive, matrix);
+    bool known = version_ == matrix.pattern_version(), has_factor = has_factor_;
+    std::vector<char> slots = slots_;
+    archive(known);
+    if (!known) return;
+    archive(slots, has_factor);
+    if (archive.reading()) plan(matrix, std::move(slots));
+    if (has_factor) exchange_factor(archive);
+  }
+
+ private:
+  /// What is stored is the matrix that it is the factor of.
+  void exchange_factor(Archive& archive) {
+    for (auto& block : factor_.taken) archive(block);
+    if (!archive.reading()) return;
+    for (int i = 0; i < factor_.rows(); ++i) note_scale(factor_, i);
+    std::fill(factor_.stale.begin(), factor_.stale.end(), true);
+    has_factor_ = eliminate();
+  }
+
+  bool factor_analysed(double kept_change) {
+    ++this->counters_.factorisations;
+    std::fill(factor_.stale.begin(), factor_.stale.end(), factoring_ == Factoring::whole || !has_factor_);
+    this->counters_.rows += factor_.rows();
+    this->counters_.rows_kept += kernels_.take_changes(*matrix_, factor_, kept_change);
+    has_factor_ = eliminate();
+    use_fronts_ = !has_factor_;
+    if (has_factor_) return true;
+    ++this->counters_.pivots_lost;
+    if (!fronts_) fronts_ = make_multifrontal_solver<N>(Refactor::always);
+    const bool regular = fronts_->factor(*matrix_);
+    count_help();
+    return regular;
+  }
+
+  Eigen::VectorXd solve_once(const Eigen::VectorXd& right_side, double reduction) {
     Eigen::VectorXd x(right_side.size());
     if (use_fronts_) {
       x = fronts_->solve(right_side, reduction);
@@ -330,21 +473,46 @@ class BlockLuSolver : public LinearSolver<N> {
       return x;
     }
     substitute(right_side.data(), x.data());
-    return x;
+    if (left_out_.empty() || refine(right_side.norm() * refined_to(reduction), x)) return x;
+    return take_in() ? solve_once(right_side, reduction) : Eigen::VectorXd();
   }
 
- private:
+  static double refined_to(double reduction) { return reduction > full_reduction ? std::min(reduction, refined_reduction) : refined_to_rounding; }
+
+  /// Brings the residual, which is what the couplings left out carry, down to `wanted`. False if that takes too long.
+  bool refine(double wanted, Eigen::VectorXd& x) {
+    Eigen::VectorXd step = x, residual(x.size());
+    for (int iteration = 0; iteration <= most_refinements; ++iteration) {
+      residual.setZero();
+      for (const LeftOut& e : left_out_) residual.template segment<N>(N * e.row) -= matrix_->value(e.slot) * step.template segment<N>(N * e.column);
+      if (residual.norm() <= wanted) return true;
+      ++this->counters_.refinements;
+      substitute(residual.data(), step.data());
+      x += step;
+    }
+    return false;
+  }
+
+  /// Factors anew with the couplings that have become strong, or, if there are none, with all. False if the matrix is singular.
+  bool take_in() {
+    ++this->counters_.couplings_taken_in;
+    std::vector<char> slots = factored_slots(*matrix_, factoring_);
+    if (slots == slots_) slots = factored_slots(*matrix_, Factoring::whole);
+    analyse(std::move(slots));
+    return factor_analysed(0.0);
+  }
+
   /// False if a pivot has lost its digits.
-  bool eliminate(const BlockMatrix<N>& matrix) {
+  bool eliminate() {
     const int subtrees = static_cast<int>(factor_.subtrees.size()), panels = static_cast<int>(factor_.panels.size());
     std::atomic<bool> done = true;
     for_each_part(SharedWork::factorisation, this->threads_, subtrees, [&](int part) {
-      if (!kernels_.eliminate(matrix, factor_, factor_.subtrees[part], 0, working_place_[part].data())) done = false;
+      if (!kernels_.eliminate(factor_, factor_.subtrees[part], 0, working_place_[part].data())) done = false;
     });
     for (int panel = 0; panel <= panels && done; ++panel) {
-      if (panel > 0) done = kernels_.eliminate(matrix, factor_, factor_.panels[panel - 1], panel, working_place_[0].data());
+      if (panel > 0) done = kernels_.eliminate(factor_, factor_.panels[panel - 1], panel, working_place_[0].data());
       for_each_part(SharedWork::factorisation, this->threads_, panels - panel,
-                    [&](int later) { kernels_.advance(matrix, factor_, factor_.panels[panel + later], panel, working_place_[later].data()); });
+                    [&](int later) { kernels_.advance(factor_, factor_.panels[panel + later], panel, working_place_[later].data()); });
     }
     return done;
   }
@@ -367,11 +535,19 @@ class BlockLuSolver : public LinearSolver<N> {
     counted_ = help;
   }
 
-  void analyse(const BlockMatrix<N>& matrix) {
+  /// \param slots  of the matrix: whether the factor gets them
+  void analyse(std::vector<char> slots) {
     ++this->counters_.symbolic;
+    plan(*matrix_, std::move(slots));
+  }
+
+  void plan(const BlockMatrix<N>& matrix, std::vector<char> slots) {
     version_ = matrix.pattern_version();
+    has_factor_ = false;
+    slots_ = std::move(slots);
     const int rows = matrix.rows();
-    order_rows(matrix);
+    const RowGraph graph = graph_of(matrix, slots_);
+    order_rows(graph);
 
     // Entries above the diagonal, row by row in the new order; each row hands its pattern down to the first row it meets.
     std::vector<std::vector<int>> upper(rows), children(rows);
@@ -384,44 +560,58 @@ class BlockLuSolver : public LinearSolver<N> {
         seen[j] = i;
         row.push_back(j);
       };
-      for (int s = matrix.row_start(factor_.order[i]); s < matrix.row_start(factor_.order[i] + 1); ++s) take(place_[matrix.column(s)]);
+      for (int k = graph.start[factor_.order[i]]; k < graph.start[factor_.order[i] + 1]; ++k) take(place_[graph.neighbour[k]]);
       for (int child : children[i]) std::for_each(upper[child].begin(), upper[child].end(), take);
       std::sort(row.begin(), row.end());
       if (!row.empty()) children[row.front()].push_back(i);
     }
     lay_out(upper);
     cut_into_subtrees();
+    find_entries(matrix);
+  }
 
-    factor_.target.clear();
-    factor_.target_start.clear();
+  void find_entries(const BlockMatrix<N>& matrix) {
+    const int rows = matrix.rows();
+    factor_.entries.clear();
+    factor_.entries_start.assign(1, 0);
+    left_out_.clear();
     std::vector<int> place(rows);
     for (int i = 0; i < rows; ++i) {
       for (int s = factor_.row_start[i]; s < factor_.row_start[i + 1]; ++s) place[factor_.column[s]] = s;
-      factor_.target_start.push_back(static_cast<int>(factor_.target.size()));
-      for (int s = matrix.row_start(factor_.order[i]); s < matrix.row_start(factor_.order[i] + 1); ++s)
-        factor_.target.push_back(place[place_[matrix.column(s)]]);
+      const int row = factor_.order[i];
+      for (int s = matrix.row_start(row); s < matrix.row_start(row + 1); ++s) {
+        if (slots_[s]) {
+          factor_.entries.push_back({s, place[place_[matrix.column(s)]], place_[matrix.column(s)]});
+        } else {
+          left_out_.push_back({s, row, matrix.column(s)});
+        }
+      }
+      factor_.entries_start.push_back(static_cast<int>(factor_.entries.size()));
     }
+    factor_.taken.resize(factor_.entries.size());
+    factor_.scale.assign(rows, PaddedVector());
+    factor_.stale.assign(rows, true);
   }
 
-  /// The connected parts of the pattern one after another, each ordered for itself: in what is not cut into subtrees none of its numbers depends on
+  /// The connected parts of the graph one after another, each ordered for itself: in what is not cut into subtrees none of its numbers depends on
   /// what else is in the system.
-  void order_rows(const BlockMatrix<N>& matrix) {
-    const int rows = matrix.rows();
+  void order_rows(const RowGraph& graph) {
+    const int rows = graph.rows();
     factor_.order.clear();
     place_.assign(rows, unplaced);
     for (int first = 0; first < rows; ++first) {
-      if (place_[first] == unplaced) order_part(matrix, connected_rows(matrix, first));
+      if (place_[first] == unplaced) order_part(graph, connected_rows(graph, first));
     }
     for (int i = 0; i < rows; ++i) place_[factor_.order[i]] = i;
   }
 
   /// In ascending order; their places become those in the list.
-  std::vector<int> connected_rows(const BlockMatrix<N>& matrix, int first) {
+  std::vector<int> connected_rows(const RowGraph& graph, int first) {
     std::vector<int> part = {first};
     place_[first] = 0;
     for (std::size_t next = 0; next < part.size(); ++next) {
-      for (int s = matrix.row_start(part[next]); s < matrix.row_start(part[next] + 1); ++s) {
-        const int neighbour = matrix.column(s);
+      for (int k = graph.start[part[next]]; k < graph.start[part[next] + 1]; ++k) {
+        const int neighbour = graph.neighbour[k];
         if (place_[neighbour] != unplaced) continue;
         place_[neighbour] = 0;
         part.push_back(neighbour);
@@ -432,7 +622,7 @@ class BlockLuSolver : public LinearSolver<N> {
     return part;
   }
 
-  void order_part(const BlockMatrix<N>& matrix, const std::vector<int>& part) {
+  void order_part(const RowGraph& graph, const std::vector<int>& part) {
     const int rows = static_cast<int>(part.size());
     if (rows <= 2) {  // no order fills more than another
       factor_.order.insert(factor_.order.end(), part.begin(), part.end());
@@ -440,12 +630,13 @@ class BlockLuSolver : public LinearSolver<N> {
     }
     std::vector<Eigen::Triplet<double>> entries;
     for (int i = 0; i < rows; ++i) {
-      for (int s = matrix.row_start(part[i]); s < matrix.row_start(part[i] + 1); ++s) entries.emplace_back(i, place_[matrix.column(s)], 1.0);
+      entries.emplace_back(i, i, 1.0);
+      for (int k = graph.start[part[i]]; k < graph.start[part[i] + 1]; ++k) entries.emplace_back(i, place_[graph.neighbour[k]], 1.0);
     }
-    Eigen::SparseMatrix<double> graph(rows, rows);
-    graph.setFromTriplets(entries.begin(), entries.end());
+    Eigen::SparseMatrix<double> pattern(rows, rows);
+    pattern.setFromTriplets(entries.begin(), entries.end());
     Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> permutation;
-    Eigen::AMDOrdering<int>()(graph, permutation);
+    Eigen::AMDOrdering<int>()(pattern, permutation);
     for (int i = 0; i < rows; ++i) factor_.order.push_back(part[permutation.indices()[i]]);
   }
 
@@ -475,12 +666,6 @@ class BlockLuSolver : public LinearSolver<N> {
     factor_.size.resize(rows);
   }
 
-  /// The row that is the first to subtract row i; -1 for a root.
-  int parent(int i) const {
-    const int next = factor_.diagonal[i] + 1;
-    return next < factor_.row_start[i + 1] ? factor_.column[next] : -1;
-  }
-
   /// Products of blocks in the elimination of row i and all below it in the tree.
   std::vector<double> work_of_subtrees() const {
     const int rows = factor_.rows();
@@ -489,7 +674,7 @@ class BlockLuSolver : public LinearSolver<N> {
       for (int s = factor_.row_start[i]; s < factor_.diagonal[i]; ++s)
         work[i] += factor_.row_start[factor_.column[s] + 1] - factor_.diagonal[factor_.column[s]];
       work[i] += 1.0;
-      if (parent(i) >= 0) work[parent(i)] += work[i];
+      if (factor_.parent(i) >= 0) work[factor_.parent(i)] += work[i];
     }
     return work;
   }
@@ -518,11 +703,11 @@ class BlockLuSolver : public LinearSolver<N> {
     const int rows = factor_.rows();
     const std::vector<double> work = work_of_subtrees();
     double whole = 0.0;
-    for (int i = 0; i < rows; ++i) whole += parent(i) < 0 ? work[i] : 0.0;
+    for (int i = 0; i < rows; ++i) whole += factor_.parent(i) < 0 ? work[i] : 0.0;
     const double most = whole / subtrees_of_equal_work;
     std::vector<int> part_of(rows, in_top), roots;
     for (int i = 0; i < rows; ++i) {
-      if (work[i] <= most && (parent(i) < 0 || work[parent(i)] > most)) roots.push_back(i);
+      if (work[i] <= most && (factor_.parent(i) < 0 || work[factor_.parent(i)] > most)) roots.push_back(i);
     }
     std::stable_sort(roots.begin(), roots.end(), [&](int a, int b) { return work[a] > work[b]; });
     factor_.subtrees.assign(subtree_parts, {});
@@ -533,15 +718,20 @@ class BlockLuSolver : public LinearSolver<N> {
       part_of[root] = static_cast<int>(least - given.begin());
     }
     for (int i = rows - 1; i >= 0; --i) {
-      if (work[i] <= most && parent(i) >= 0 && work[parent(i)] <= most) part_of[i] = part_of[parent(i)];
+      if (work[i] <= most && factor_.parent(i) >= 0 && work[factor_.parent(i)] <= most) part_of[i] = part_of[factor_.parent(i)];
     }
     return part_of;
   }
 
   static constexpr int unplaced = -1, in_top = -1;
+  Factoring factoring_;
+  const BlockMatrix<N>* matrix_ = nullptr;
   long version_ = -1;
   Kernels<N> kernels_;
   Factor<N> factor_;
+  bool has_factor_ = false;                      ///< of what it has taken
+  std::vector<char> slots_;                      ///< of the matrix: whether the factor has them
+  std::vector<LeftOut> left_out_;                ///< those that it has not
   std::vector<std::vector<int>> working_place_;  ///< for each part: slot of a column in the row under work
   std::vector<int> place_;                       ///< in the factor, of a row of the matrix
   bool use_fronts_ = false;
@@ -552,10 +742,10 @@ class BlockLuSolver : public LinearSolver<N> {
 }  // namespace
 
 template <int N>
-std::unique_ptr<LinearSolver<N>> make_block_solver(bool wide_registers) {
-  return std::make_unique<BlockLuSolver<N>>(wide_registers);
+std::unique_ptr<LinearSolver<N>> make_block_solver(Factoring factoring, bool wide_registers) {
+  return std::make_unique<BlockLuSolver<N>>(factoring, wide_registers);
 }
 
-template std::unique_ptr<LinearSolver<3>> make_block_solver<3>(bool);
+template std::unique_ptr<LinearSolver<3>> make_block_solver<3>(Factoring, bool);
 
 }  // namespace openclose

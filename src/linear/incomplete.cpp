@@ -18,10 +18,9 @@ namespace {
 constexpr int most_fill = 2;
 
 /// Places of the rows by reverse Cuthill-McKee: by distance from a row at the rim, the neighbours of each row by their number of neighbours.
-template <int N>
-std::vector<int> reverse_cuthill_mckee(const BlockMatrix<N>& matrix) {
-  const int rows = matrix.rows();
-  const auto degree = [&](int row) { return matrix.row_start(row + 1) - matrix.row_start(row); };
+std::vector<int> reverse_cuthill_mckee(const RowGraph& graph) {
+  const int rows = graph.rows();
+  const auto degree = [&](int row) { return graph.start[row + 1] - graph.start[row]; };
   std::vector<int> order, mark(rows, 0);
   int round = 0;
   /// Everything that hangs together with `first`, from there on; a row that is marked with this round is not taken.
@@ -32,8 +31,8 @@ std::vector<int> reverse_cuthill_mckee(const BlockMatrix<N>& matrix) {
     list.push_back(first);
     for (; next < list.size(); ++next) {
       const auto begin = static_cast<std::ptrdiff_t>(list.size());
-      for (int s = matrix.row_start(list[next]); s < matrix.row_start(list[next] + 1); ++s) {
-        const int neighbour = matrix.column(s);
+      for (int k = graph.start[list[next]], end = graph.start[list[next] + 1]; k < end; ++k) {
+        const int neighbour = graph.neighbour[k];
         if (mark[neighbour] == round) continue;
         mark[neighbour] = round;
         list.push_back(neighbour);
@@ -98,18 +97,38 @@ class RowPattern {
 template <int N>
 bool IncompleteLu<N>::analyse(const BlockMatrix<N>& matrix) {
   if (version_ == matrix.pattern_version()) return false;
+  plan(matrix, factored_slots(matrix, factoring_));
+  return true;
+}
+
+template <int N>
+void IncompleteLu<N>::exchange(Archive& archive, const BlockMatrix<N>& matrix) {
+  bool known = version_ == matrix.pattern_version();
+  std::vector<char> slots = slots_;
+  archive(known);
+  if (!known) return;
+  archive(slots);
+  if (archive.reading()) plan(matrix, std::move(slots));
+}
+
+template <int N>
+void IncompleteLu<N>::plan(const BlockMatrix<N>& matrix, std::vector<char> slots) {
+  slots_ = std::move(slots);
   const int rows = matrix.rows();
-  order_ = reverse_cuthill_mckee(matrix);
+  order_ = reverse_cuthill_mckee(graph_of(matrix, slots_));
   const std::vector<int> place = inverse(order_);
   row_start_.assign(1, 0);
   diagonal_.clear();
   column_.clear();
-  target_.clear();
+  entries_.clear();
+  entries_start_.assign(1, 0);
   working_slot_.assign(rows, -1);
   RowPattern pattern(rows);
   std::vector<std::vector<Fill>> right_of(rows);
   for (int i = 0; i < rows; ++i) {
-    for (int s = matrix.row_start(order_[i]); s < matrix.row_start(order_[i] + 1); ++s) pattern.put(place[matrix.column(s)], 0);
+    for (int s = matrix.row_start(order_[i]); s < matrix.row_start(order_[i] + 1); ++s) {
+      if (slots_[s]) pattern.put(place[matrix.column(s)], 0);
+    }
     while (!pattern.empty()) {
       const Fill entry = pattern.take_first();
       if (entry.column == i) diagonal_.push_back(static_cast<int>(column_.size()));
@@ -121,14 +140,16 @@ bool IncompleteLu<N>::analyse(const BlockMatrix<N>& matrix) {
       column_.push_back(entry.column);
     }
     pattern.clear();
-    for (int s = matrix.row_start(order_[i]); s < matrix.row_start(order_[i] + 1); ++s) target_.push_back(working_slot_[place[matrix.column(s)]]);
+    for (int s = matrix.row_start(order_[i]); s < matrix.row_start(order_[i] + 1); ++s) {
+      if (slots_[s]) entries_.push_back({s, working_slot_[place[matrix.column(s)]]});
+    }
+    entries_start_.push_back(static_cast<int>(entries_.size()));
     row_start_.push_back(static_cast<int>(column_.size()));
   }
   value_.resize(column_.size());
   solution_.resize(rows);
   working_slot_.assign(rows, -1);
   version_ = matrix.pattern_version();
-  return true;
 }
 
 template <int N>
@@ -187,9 +208,8 @@ void IncompleteLu<N>::subtract_rows_above(int i) {
 template <int N>
 bool IncompleteLu<N>::factor(const BlockMatrix<N>& matrix) {
   std::fill(value_.begin(), value_.end(), PaddedBlock{});
-  std::size_t next = 0;
   for (int i = 0; i < rows(); ++i) {
-    for (int s = matrix.row_start(order_[i]); s < matrix.row_start(order_[i] + 1); ++s) value_[target_[next++]] = padded(matrix.value(s));
+    for (int e = entries_start_[i]; e < entries_start_[i + 1]; ++e) value_[entries_[e].target] = padded(matrix.value(entries_[e].slot));
     subtract_rows_above(i);
     if (!invert(value_[diagonal_[i]])) return false;
   }

@@ -5,19 +5,25 @@
 
 #include <vector>
 
-#include "openclose/linear/block_matrix.h"
+#include "openclose/core/archive.h"
+#include "openclose/linear/weak_couplings.h"
 
 namespace openclose {
 
 template <int N>
 class IncompleteLu {
  public:
+  explicit IncompleteLu(Factoring factoring = Factoring::whole) : factoring_(factoring) {}
+
   /// Order and pattern; nothing is done where it is the one already known. True if it was new.
   bool analyse(const BlockMatrix<N>& matrix);
   /// Of the analysed pattern. False if a pivot is singular or not finite in single precision; there is no factor then.
   bool factor(const BlockMatrix<N>& matrix);
   /// About the inverse of the matrix times `right_side`, of which seven digits are read.
   Eigen::VectorXd solve(const Eigen::VectorXd& right_side) const;
+
+  /// Which couplings it has, which decides what solve() gives: the numbers are those of the next factor().
+  void exchange(Archive& archive, const BlockMatrix<N>& matrix);
 
   std::size_t stored_blocks() const { return value_.size(); }
 
@@ -40,10 +46,19 @@ class IncompleteLu {
 
   int rows() const { return static_cast<int>(diagonal_.size()); }
 
+  void plan(const BlockMatrix<N>& matrix, std::vector<char> slots);
+
+  Factoring factoring_;
   long version_ = -1;
-  std::vector<int> order_;  ///< row of the matrix at a place in the factor
+  std::vector<char> slots_;  ///< of the matrix: whether the factor has them
+  std::vector<int> order_;   ///< row of the matrix at a place in the factor
   std::vector<int> row_start_, diagonal_, column_;
-  std::vector<int> target_;  ///< slot in the factor of the matrix's entries, in the order in which elimination meets them
+  /// In the matrix and in the factor.
+  struct Entry {
+    int slot, target;
+  };
+  std::vector<Entry> entries_;  ///< in the order in which elimination meets them
+  std::vector<int> entries_start_;
   std::vector<PaddedBlock> value_;
   std::vector<int> working_slot_;        ///< of a column in the row under work; -1 where it has none
   mutable std::vector<Lanes> solution_;  ///< a block row each, in the factor's order

@@ -22,10 +22,12 @@ constexpr int longest_pause = 64;
 template <int N>
 class IncompleteSolver : public LinearSolver<N> {
  public:
-  IncompleteSolver(std::unique_ptr<LinearSolver<N>> direct, int smallest_system) : direct_(std::move(direct)), smallest_system_(smallest_system) {}
+  IncompleteSolver(std::unique_ptr<LinearSolver<N>> direct, int smallest_system, Factoring factoring)
+      : direct_(std::move(direct)), smallest_system_(smallest_system), incomplete_(factoring) {}
 
-  bool factor(const BlockMatrix<N>& matrix) override {
+  bool factor(const BlockMatrix<N>& matrix, double kept_change) override {
     matrix_ = &matrix;
+    kept_change_ = kept_change;
     use_direct_ = matrix.rows() < smallest_system_ || left_to_pause_ > 0;
     if (use_direct_) {
       left_to_pause_ = std::max(0, left_to_pause_ - 1);
@@ -59,9 +61,10 @@ class IncompleteSolver : public LinearSolver<N> {
 
   void use_threads(int threads) override { direct_->use_threads(threads); }
 
-  void exchange(Archive& archive) override {
-    LinearSolver<N>::exchange(archive);
-    direct_->exchange(archive);
+  void exchange(Archive& archive, const BlockMatrix<N>& matrix) override {
+    LinearSolver<N>::exchange(archive, matrix);
+    direct_->exchange(archive, matrix);
+    incomplete_.exchange(archive, matrix);
     archive(own_, pause_, left_to_pause_);
   }
 
@@ -81,7 +84,7 @@ class IncompleteSolver : public LinearSolver<N> {
     return factor_directly();
   }
 
-  bool factor_directly() { return count(direct_->factor(*matrix_)); }
+  bool factor_directly() { return count(direct_->factor(*matrix_, kept_change_)); }
 
   /// Passes on what it is given.
   bool count(bool done) {
@@ -93,6 +96,7 @@ class IncompleteSolver : public LinearSolver<N> {
   std::unique_ptr<LinearSolver<N>> direct_;
   int smallest_system_;
   const BlockMatrix<N>* matrix_ = nullptr;
+  double kept_change_ = 0.0;
   IncompleteLu<N> incomplete_;
   bool use_direct_ = false;
   int pause_ = first_pause, left_to_pause_ = 0;  ///< matrices
@@ -102,10 +106,10 @@ class IncompleteSolver : public LinearSolver<N> {
 }  // namespace
 
 template <int N>
-std::unique_ptr<LinearSolver<N>> make_incomplete_solver(std::unique_ptr<LinearSolver<N>> direct, int smallest_system) {
-  return std::make_unique<IncompleteSolver<N>>(std::move(direct), smallest_system);
+std::unique_ptr<LinearSolver<N>> make_incomplete_solver(std::unique_ptr<LinearSolver<N>> direct, int smallest_system, Factoring factoring) {
+  return std::make_unique<IncompleteSolver<N>>(std::move(direct), smallest_system, factoring);
 }
 
-template std::unique_ptr<LinearSolver<3>> make_incomplete_solver<3>(std::unique_ptr<LinearSolver<3>>, int);
+template std::unique_ptr<LinearSolver<3>> make_incomplete_solver<3>(std::unique_ptr<LinearSolver<3>>, int, Factoring);
 
 }  // namespace openclose

@@ -43,7 +43,7 @@ class LaggedSolver : public LinearSolver<N> {
  public:
   explicit LaggedSolver(Refactor refactor) : lag_(refactor == Refactor::when_needed) {}
 
-  bool factor(const BlockMatrix<N>& matrix) override {
+  bool factor(const BlockMatrix<N>& matrix, double) override {
     matrix_ = &matrix;
     use_plain_ = false;
     const bool usable = has_factor_ && factored_rows_ == matrix.rows();
@@ -72,8 +72,8 @@ class LaggedSolver : public LinearSolver<N> {
     return factor_plainly() ? plain_->solve(right_side, reduction) : Eigen::VectorXd();
   }
 
-  void exchange(Archive& archive) override {
-    LinearSolver<N>::exchange(archive);
+  void exchange(Archive& archive, const BlockMatrix<N>& matrix) override {
+    LinearSolver<N>::exchange(archive, matrix);
     archive(lu_, has_factor_, factored_rows_, spent_, pause_, left_to_pause_);
   }
 

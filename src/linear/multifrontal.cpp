@@ -5,6 +5,8 @@
 #include <Eigen/SparseCore>
 #include <algorithm>
 
+#include "openclose/linear/weak_couplings.h"
+
 namespace openclose {
 namespace {
 
@@ -12,18 +14,6 @@ using Dense = Eigen::Map<Eigen::MatrixXd>;
 using ConstDense = Eigen::Map<const Eigen::MatrixXd>;
 using Stride = Eigen::OuterStride<>;
 using Panel = Eigen::Map<Eigen::MatrixXd, 0, Stride>;
-
-template <int N>
-RowGraph graph_of(const BlockMatrix<N>& matrix) {
-  RowGraph graph;
-  for (int i = 0; i < matrix.rows(); ++i) {
-    for (int s = matrix.row_start(i); s < matrix.row_start(i + 1); ++s) {
-      if (matrix.column(s) != i) graph.neighbour.push_back(matrix.column(s));
-    }
-    graph.start.push_back(static_cast<int>(graph.neighbour.size()));
-  }
-  return graph;
-}
 
 std::vector<int> minimum_degree(const RowGraph& graph) {
   std::vector<Eigen::Triplet<double>> entries;
@@ -43,7 +33,7 @@ std::vector<int> minimum_degree(const RowGraph& graph) {
 template <int N>
 bool MultifrontalLu<N>::analyse(const BlockMatrix<N>& matrix) {
   if (version_ == matrix.pattern_version()) return false;
-  const RowGraph graph = graph_of(matrix);
+  const RowGraph graph = graph_of(matrix, factored_slots(matrix, Factoring::whole));
   plan_ = plan_elimination(graph, minimum_degree(graph));
   plan_sources(matrix);
   plan_children();

@@ -19,7 +19,7 @@ constexpr int smallest_iterative_system_blocks = 1500;
 template <int N>
 class DenseSolver : public LinearSolver<N> {
  public:
-  bool factor(const BlockMatrix<N>& matrix) override {
+  bool factor(const BlockMatrix<N>& matrix, double) override {
     ++this->counters_.factorisations;
     lu_.compute(matrix.dense());
     return lu_.matrixLU().diagonal().cwiseAbs().minCoeff() > 0.0 && lu_.matrixLU().allFinite();
@@ -36,7 +36,7 @@ class DenseSolver : public LinearSolver<N> {
 template <int N>
 class SparseSolver : public LinearSolver<N> {
  public:
-  bool factor(const BlockMatrix<N>& matrix) override {
+  bool factor(const BlockMatrix<N>& matrix, double) override {
     if (version_ != matrix.pattern_version() || scalar_.rows() != matrix.unknowns()) {
       build(matrix);
     } else {
@@ -93,17 +93,17 @@ std::unique_ptr<LinearSolver<N>> make_sparse_solver() {
 }
 
 template <int N>
-std::unique_ptr<LinearSolver<N>> make_solver(int blocks, LinearSolverKind kind) {
+std::unique_ptr<LinearSolver<N>> make_solver(int blocks, LinearSolverKind kind, Factoring factoring) {
   if (kind == LinearSolverKind::plain) return make_sparse_solver<N>();
   const bool row_by_row = kind != LinearSolverKind::iterative && blocks <= largest_row_by_row_system_blocks;
-  auto factoring =
-      row_by_row ? make_block_solver<N>() : make_multifrontal_solver<N>(kind == LinearSolverKind::direct ? Refactor::always : Refactor::when_needed);
-  if (kind == LinearSolverKind::direct) return factoring;
-  return make_incomplete_solver<N>(std::move(factoring), kind == LinearSolverKind::iterative ? 0 : smallest_iterative_system_blocks);
+  auto direct = row_by_row ? make_block_solver<N>(factoring)
+                           : make_multifrontal_solver<N>(kind == LinearSolverKind::direct ? Refactor::always : Refactor::when_needed);
+  if (kind == LinearSolverKind::direct) return direct;
+  return make_incomplete_solver<N>(std::move(direct), kind == LinearSolverKind::iterative ? 0 : smallest_iterative_system_blocks, factoring);
 }
 
 template std::unique_ptr<LinearSolver<3>> make_dense_solver<3>();
 template std::unique_ptr<LinearSolver<3>> make_sparse_solver<3>();
-template std::unique_ptr<LinearSolver<3>> make_solver<3>(int, LinearSolverKind);
+template std::unique_ptr<LinearSolver<3>> make_solver<3>(int, LinearSolverKind, Factoring);
 
 }  // namespace openclose

@@ -5,6 +5,7 @@
 
 #include "openclose/core/archive.h"
 #include "openclose/linear/block_matrix.h"
+#include "openclose/linear/weak_couplings.h"
 #include "openclose/scene/scene.h"
 
 namespace openclose {
@@ -17,23 +18,27 @@ struct LinearCounters {
   long symbolic_skipped = 0;  ///< factorisations on a known pattern
   long factorisations = 0;
   long solves = 0;
-  long pivots_lost = 0;        ///< factorisations row by row that were done again with exchange of rows
-  long plain = 0;              ///< matrices that only the plain solver could do
-  long factors_kept = 0;       ///< matrices solved with the factor of an earlier one
-  long krylov_iterations = 0;  ///< of GMRES
-  long krylov_given_up = 0;    ///< solves with an earlier factor or an incomplete one that were given up for a new one
-  long incomplete = 0;         ///< incomplete factorisations, not counted in `factorisations`
+  long pivots_lost = 0;         ///< factorisations row by row that were done again with exchange of rows
+  long plain = 0;               ///< matrices that only the plain solver could do
+  long factors_kept = 0;        ///< matrices solved with the factor of an earlier one
+  long krylov_iterations = 0;   ///< of GMRES
+  long krylov_given_up = 0;     ///< solves with an earlier factor or an incomplete one that were given up for a new one
+  long incomplete = 0;          ///< incomplete factorisations, not counted in `factorisations`
+  long rows = 0;                ///< block rows of all matrices that were to be factored row by row
+  long rows_kept = 0;           ///< of these: as they were in the factor before
+  long refinements = 0;         ///< solves for what weak couplings left of a residual, not counted in `solves`
+  long couplings_taken_in = 0;  ///< factorisations done again because weak couplings were too strong for that
 
   LinearCounters& operator+=(const LinearCounters& other) {
-    auto& [a, b, c, d, e, f, g, h, i, j] = *this;
-    const auto& [a2, b2, c2, d2, e2, f2, g2, h2, i2, j2] = other;
-    a += a2, b += b2, c += c2, d += d2, e += e2, f += f2, g += g2, h += h2, i += i2, j += j2;
+    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n] = *this;
+    const auto& [a2, b2, c2, d2, e2, f2, g2, h2, i2, j2, k2, l2, m2, n2] = other;
+    a += a2, b += b2, c += c2, d += d2, e += e2, f += f2, g += g2, h += h2, i += i2, j += j2, k += k2, l += l2, m += m2, n += n2;
     return *this;
   }
 
   void exchange(Archive& archive) {
-    auto& [a, b, c, d, e, f, g, h, i, j] = *this;
-    archive(a, b, c, d, e, f, g, h, i, j);
+    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n] = *this;
+    archive(a, b, c, d, e, f, g, h, i, j, k, l, m, n);
   }
 };
 
@@ -43,7 +48,10 @@ class LinearSolver {
   virtual ~LinearSolver() = default;
   /// Factors the matrix, or keeps what is to be known of it; false if a pivot is zero or not finite. The symbolic part is kept while the pattern
   /// stands. The matrix must stay as it is until the last solve() with it.
-  virtual bool factor(const BlockMatrix<N>& matrix) = 0;
+  /// \param kept_change  [-] what a solver has done for rows that have changed by no more it may keep: change of an entry over the root of the
+  ///                     diagonal entries of its row and column. The solution is then that of a matrix which differs by so much.
+  virtual bool factor(const BlockMatrix<N>& matrix, double kept_change) = 0;
+  bool factor(const BlockMatrix<N>& matrix) { return factor(matrix, 0.0); }
   /// Nothing (size 0) if the matrix turns out to be singular only here.
   /// \param reduction  [-] of the Euclidean norm of the residual over that of the right side, at least; factors of the matrix itself do not ask
   virtual Eigen::VectorXd solve(const Eigen::VectorXd& right_side, double reduction) = 0;
@@ -52,7 +60,8 @@ class LinearSolver {
   /// That share the work where it is worth it; the results are the same to the last bit.
   virtual void use_threads(int threads) { threads_ = threads; }
   /// What the next solves depend on; the symbolic work is done again after reading.
-  virtual void exchange(Archive& archive) { archive(counters_); }
+  /// \param matrix  with the pattern that it had when it was factored last, or a newer one; it stays where it is
+  virtual void exchange(Archive& archive, const BlockMatrix<N>& /*matrix*/) { archive(counters_); }
 
  protected:
   LinearCounters counters_;
@@ -70,7 +79,7 @@ std::unique_ptr<LinearSolver<N>> make_sparse_solver();
 /// LU of the blocks, without exchange between them, in an order of little fill; goes over to the multifrontal one where a pivot has lost its digits.
 /// \param wide_registers  false: only the instructions that every processor has, for comparison; the bits of the answer are the same
 template <int N>
-std::unique_ptr<LinearSolver<N>> make_block_solver(bool wide_registers = true);
+std::unique_ptr<LinearSolver<N>> make_block_solver(Factoring factoring = Factoring::needed, bool wide_registers = true);
 
 /// When the multifrontal solver factors.
 enum class Refactor {
@@ -85,10 +94,12 @@ std::unique_ptr<LinearSolver<N>> make_multifrontal_solver(Refactor refactor);
 /// GMRES with an incomplete factor of each matrix; those that this does not serve, and small ones, go to `direct`.
 /// \param smallest_system  [-] block rows
 template <int N>
-std::unique_ptr<LinearSolver<N>> make_incomplete_solver(std::unique_ptr<LinearSolver<N>> direct, int smallest_system);
+std::unique_ptr<LinearSolver<N>> make_incomplete_solver(std::unique_ptr<LinearSolver<N>> direct, int smallest_system,
+                                                        Factoring factoring = Factoring::needed);
 
 /// The solver for a system of this many blocks.
 template <int N>
-std::unique_ptr<LinearSolver<N>> make_solver(int blocks, LinearSolverKind kind = LinearSolverKind::automatic);
+std::unique_ptr<LinearSolver<N>> make_solver(int blocks, LinearSolverKind kind = LinearSolverKind::automatic,
+                                             Factoring factoring = Factoring::needed);
 
 }  // namespace openclose

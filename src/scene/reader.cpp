@@ -210,6 +210,7 @@ MethodInput read_method(Table table, const SourceLocation& scene_where) {
   table.optional("skip_narrow_phase", method.skip_narrow_phase);
   table.optional("skip_looks", method.skip_looks);
   table.optional("skip_reload", method.skip_reload);
+  table.optional("skip_factorisation", method.skip_factorisation);
   table.optional("skip_symbolic", method.skip_symbolic);
   table.optional("skip_resting", method.skip_resting);
   table.optional("threads", method.threads, Range{.low = 1.0, .high = most_threads, .low_included = true, .high_included = true});

@@ -141,6 +141,7 @@ struct MethodInput {
   bool skip_looks = true;               ///< see DetectionSkips
   bool skip_reload = true;              ///< dem: exchange only the contacts that were found anew, and leave the others in the loop
   int threads = 1;                      ///< that share the work; the results are the same to the last bit
+  bool skip_factorisation = true;       ///< factor only rows of the matrix that have changed, and no weak couplings
   bool skip_symbolic = true;            ///< plan a factorisation only once the pattern of the matrix has changed
   bool skip_resting = false;            ///< leave blocks alone that are at rest, see RestInput
   double gap_tolerance = 3e-7;          ///< [m] hard: a closed contact may differ from its target gap, a sticking one from its place, by this much

@@ -166,6 +166,7 @@ void write_method(Text& text, const MethodInput& method) {
   text.line("skip_narrow_phase", method.skip_narrow_phase);
   text.line("skip_looks", method.skip_looks);
   text.line("skip_reload", method.skip_reload);
+  text.line("skip_factorisation", method.skip_factorisation);
   text.line("skip_symbolic", method.skip_symbolic);
   text.line("skip_resting", method.skip_resting);
   text.line("threads", method.threads);

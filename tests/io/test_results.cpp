@@ -326,6 +326,10 @@ TEST_CASE("summary.json has counters under their own names", "[io][results]") {
                                                 {"looks_skipped", detection.looks_skipped},
                                                 {"history_transfers", detection.transfers},
                                                 {"factorisations", linear.factorisations},
+                                                {"rows", linear.rows},
+                                                {"rows_kept", linear.rows_kept},
+                                                {"refinements", linear.refinements},
+                                                {"couplings_taken_in", linear.couplings_taken_in},
                                                 {"pivots_lost", linear.pivots_lost},
                                                 {"plain_factorisations", linear.plain},
                                                 {"symbolic", linear.symbolic},
@@ -336,7 +340,8 @@ TEST_CASE("summary.json has counters under their own names", "[io][results]") {
     CHECK(counters.at(name) == value);
   }
   // Counters that are 0 could be any of those.
-  for (const char* name : {"steps", "steps_cut", "iterations", "searches", "searches_skipped", "narrow_phases", "narrow_phases_skipped"}) {
+  for (const char* name :
+       {"steps", "steps_cut", "iterations", "searches", "searches_skipped", "narrow_phases", "narrow_phases_skipped", "rows", "rows_kept"}) {
     INFO(name);
     CHECK(expected.at(name) > 0);
   }

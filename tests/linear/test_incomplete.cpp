@@ -156,10 +156,10 @@ TEST_CASE("a solver that was written and read goes on to the same bits", "[linea
     first->solve(right_side);
   }
   Archive written;
-  first->exchange(written);
+  first->exchange(written, still);
   Archive bytes(written.bytes());
   const auto second = make_solver_for_all_sizes();
-  second->exchange(bytes);
+  second->exchange(bytes, still);
   CHECK(bytes.at_end());
   for (int i = 0; i < 6; ++i) {
     REQUIRE(first->factor(in_motion));

@@ -99,7 +99,7 @@ TEST_CASE("all solvers solve random systems to rounding and agree", "[linear][so
 
 TEST_CASE("the block solver's answer has the same bits with narrow and with wide registers", "[linear][solver]") {
   RandomSystems random(9);
-  const Solver wide = make_block_solver<3>(true), narrow = make_block_solver<3>(false);
+  const Solver wide = make_block_solver<3>(Factoring::whole, true), narrow = make_block_solver<3>(Factoring::whole, false);
   for (int rows = 1; rows <= 60; ++rows) {
     const auto pairs = random.couplings(rows, 2 * rows);
     BlockMatrix<3> matrix;

@@ -1,0 +1,30 @@
+// Couplings that a factor can do without: blocks that touch at a corner share a contact of millimetres beside edges of metres. In a grid of joints
+// they are a third of all couplings and, with the fill that they bring, half of the work of a factorisation.
+#pragma once
+
+#include <vector>
+
+#include "openclose/linear/block_matrix.h"
+#include "openclose/linear/elimination.h"
+
+namespace openclose {
+
+/// What is factored of a matrix.
+enum class Factoring {
+  whole,   ///< everything
+  needed,  ///< rows that have changed, without weak couplings, for which the solution is refined
+};
+
+/// Of every slot whether the factor gets it. Without weak couplings: the diagonal, and those of which an entry of theirs or of the transposed one is
+/// large against the diagonal entries of its row and column, or which are zero, since nobody knows how strong they will be.
+template <int N>
+std::vector<char> factored_slots(const BlockMatrix<N>& matrix, Factoring factoring);
+
+/// The couplings of these slots.
+template <int N>
+RowGraph graph_of(const BlockMatrix<N>& matrix, const std::vector<char>& slots);
+
+extern template std::vector<char> factored_slots<3>(const BlockMatrix<3>&, Factoring);
+extern template RowGraph graph_of<3>(const BlockMatrix<3>&, const std::vector<char>&);
+
+}  // namespace openclose

@@ -1,0 +1,103 @@
+#include "openclose/integrator/contact_outcomes.h"
+#include "support/catch.h"
+
+using namespace openclose;
+
+namespace {
+
+/// Numbers that tell contact and member.
+ContactOutcome<3> outcome(int c) {
+  const double at = 100.0 * c;
+  ContactOutcome<3> o;
+  o.normal_stiffness = at + 1.0;
+  o.shear_stiffness = at + 2.0;
+  const ContactStatus status = c % 3 == 0 ? ContactStatus::open : (c % 3 == 1 ? ContactStatus::sticking : ContactStatus::sliding);
+  o.forces = {status, at + 3.0, c % 2 == 0 ? at + 4.0 : -at - 4.0, at + 5.0, at + 6.0};
+  o.pose.normal = {at + 7.0, at + 8.0};
+  o.pose.vertex_arm = {at + 9.0, at + 10.0};
+  o.pose.edge_arm = {at + 11.0, at + 12.0};
+  o.pose.gap_change = at + 13.0;
+  o.pose.slip_change = at + 14.0;
+  return o;
+}
+
+void check_same(const ContactOutcome<3>& a, const ContactOutcome<3>& b) {
+  CHECK(a.normal_stiffness == b.normal_stiffness);
+  CHECK(a.shear_stiffness == b.shear_stiffness);
+  CHECK(a.forces.status == b.forces.status);
+  CHECK(a.forces.normal == b.forces.normal);
+  CHECK(a.forces.shear == b.forces.shear);
+  CHECK(a.forces.elastic_normal == b.forces.elastic_normal);
+  CHECK(a.forces.elastic_shear == b.forces.elastic_shear);
+  CHECK(a.pose.normal == b.pose.normal);
+  CHECK(a.pose.vertex_arm == b.pose.vertex_arm);
+  CHECK(a.pose.edge_arm == b.pose.edge_arm);
+  CHECK(a.pose.gap_change == b.pose.gap_change);
+  CHECK(a.pose.slip_change == b.pose.slip_change);
+}
+
+constexpr int count = 2 * batch_size + 1;  // batches that are full and one that is not
+
+ContactOutcomes<3> some_outcomes() {
+  ContactOutcomes<3> outcomes;
+  for (int c = 0; c < count; ++c) outcomes.push_back(outcome(c));
+  return outcomes;
+}
+
+}  // namespace
+
+TEST_CASE("what contacts did comes back as it was put in, whole and in parts", "[integrator][outcomes]") {
+  ContactOutcomes<3> outcomes = some_outcomes();
+  for (int round = 0; round < 2; ++round) {
+    REQUIRE(outcomes.size() == count);
+    for (int c = 0; c < count; ++c) {
+      const ContactOutcome<3> expected = outcome(c);
+      check_same(outcomes[c], expected);
+      CHECK(outcomes.status(c) == expected.forces.status);
+      CHECK(outcomes.gap_change(c) == expected.pose.gap_change);
+      CHECK(outcomes.normal_stiffness(c) == expected.normal_stiffness);
+      CHECK(outcomes.shear_stiffness(c) == expected.shear_stiffness);
+      CHECK(outcomes.slack(c) == 0.0);
+    }
+    // Again in the same memory.
+    outcomes.clear();
+    CHECK(outcomes.empty());
+    for (int c = 0; c < count; ++c) outcomes.push_back(outcome(c));
+  }
+}
+
+TEST_CASE("slack belongs to its contact and to its step", "[integrator][outcomes]") {
+  ContactOutcomes<3> outcomes = some_outcomes();
+  outcomes.set_slack(0, 0.25);
+  CHECK(outcomes.slack(0) == 0.25);
+  CHECK(outcomes.slack(1) == 0.0);
+  outcomes.clear();
+  outcomes.push_back(outcome(0));
+  CHECK(outcomes.slack(0) == 0.0);
+}
+
+TEST_CASE("batches are lent with their springs and given back", "[integrator][outcomes]") {
+  std::vector<TrialBatch> trials(1);
+  std::vector<Branch> branches(batch_size, 0);
+  std::vector<ContactSprings> springs(2);
+  for (int c = 0; c < 2; ++c) {
+    const ContactOutcome<3> o = outcome(c);
+    trials[0].set_pose(c, o.pose);
+    trials[0].set_carried(c, o.forces);
+    branches[c] = branch(o.forces);
+    springs[c].normal = o.normal_stiffness;
+    springs[c].shear = o.shear_stiffness;
+  }
+  const TrialBatch* const where = trials.data();
+  ContactOutcomes<3> copy, outcomes;
+  copy.copy(trials, branches, springs);
+  outcomes.borrow(trials, branches, springs);
+  CHECK(trials.empty());
+  for (int c = 0; c < 2; ++c) {
+    check_same(outcomes[c], outcome(c));
+    check_same(copy[c], outcome(c));
+  }
+  outcomes.give_back(trials, branches);
+  CHECK(outcomes.empty());
+  CHECK(trials.data() == where);
+}
