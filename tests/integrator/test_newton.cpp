@@ -185,7 +185,7 @@ TEST_CASE("a solution carries the forces of the law, also where its last iterati
   solution.d = -2.0 * friction * test::block_weight / inertia * Eigen::Vector3d::UnitX();
   probe.newton.solve(problem, probe.springs, solution, FirstTangent::present);
   REQUIRE(solution.converged);
-  REQUIRE(solution.iterations == 1);
+  REQUIRE(solution.effort.iterations == 1);
   for (std::size_t c = 0; c < probe.springs.size(); ++c) {
     const ContactOutcome<3>& o = solution.contacts[c];
     const ContactStrength strength(problem.joints.joint(problem.contacts[c].joint), problem.contacts[c]);
@@ -218,10 +218,10 @@ TEST_CASE("contacts that another pass holds where they were begin it in the stat
   }
   const auto solves = [&](FirstTangent tangent) {
     StepSolution<3> solution = first;
-    solution.iterations = 0;
+    solution.effort.iterations = 0;
     probe.newton.solve(problem, probe.springs, solution, tangent);
     REQUIRE(solution.converged);
-    return solution.iterations;
+    return solution.effort.iterations;
   };
   CHECK(solves(FirstTangent::last_solution) <= 2);  // the second for the turning of the blocks
   CHECK(solves(FirstTangent::present) > solves(FirstTangent::last_solution));
