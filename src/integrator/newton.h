@@ -9,6 +9,10 @@
 // each for itself. With all of them held the iteration is the one of initial stresses (O. C. Zienkiewicz, S. Valliappan and I. P. King, 1969), which
 // is slow and steady; with none it is Newton's. The residual knows nothing of this, and so neither does the solution.
 //
+// In the motion of a large system a few contacts that change their states would make all blocks iterate. Between two iterations of the whole, the
+// parts around them are solved for themselves (the nonlinear elimination of P. J. Lanzkron, D. J. Rose and J. T. Wilkes, 1996), so that the number of
+// iterations of the whole does not grow with the system.
+//
 // Beyond that, factors cost more than everything else (n^1.5 operations, n log n numbers), and a slope of 50,000 blocks has so many loose contacts
 // that no tangent tells where they go. relax() then finds the balance without a tangent: blocks follow the forces on them as far as they would go if
 // all contacts stuck (two_level.h), with Nesterov's momentum (Y. Nesterov, 1983), which starts anew when the forces turn against it (B. O'Donoghue
@@ -16,7 +20,10 @@
 // alone would feed vibrations instead of damping them. Rest is what it is for Newton's method, the residual alone.
 #pragma once
 
+#include <memory>
+
 #include "openclose/integrator/contact_batch.h"
+#include "openclose/integrator/parts.h"
 #include "openclose/integrator/tangent_system.h"
 #include "openclose/integrator/two_level.h"
 
@@ -24,8 +31,15 @@ namespace openclose {
 
 /// Which contact states the first tangent is made of.
 enum class FirstTangent {
-  last_step,  ///< those of the last step: contacts in their old places do what they did
-  present,    ///< those of the displacement that the iteration starts from
+  last_step,      ///< those of the last step: contacts in their old places do what they did
+  last_solution,  ///< those of the contacts that the solution has, whose forces are what the springs start from
+  present,        ///< those of the displacement that the iteration starts from
+};
+
+/// What a step of the iteration in motion must reduce. At rest it is always the first.
+enum class Merit {
+  worst_block,  ///< the largest residual of a block over what is tolerated
+  all_blocks,   ///< the work of all residuals on what inertia alone would let them move: a single block does not stop the others
 };
 
 template <int N>
@@ -34,6 +48,8 @@ class Newton {
 
  public:
   using Unknowns = typename Motion<N>::Unknowns;
+
+  explicit Newton(Merit merit = Merit::worst_block) : asked_merit_(merit) {}
 
   /// Solves for solution.d, starting from the value it has; fills its contacts. iterations is added to.
   void solve(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs, StepSolution<N>& solution,
@@ -57,8 +73,15 @@ class Newton {
   enum class Tangent { exact, symmetric };
   enum class Outcome { ended, singular, cold_start, no_common_step };
 
+  /// What ends an iteration: a norm of the residual, or a number of linear solves.
+  struct Until {
+    double norm;
+    int iterations;
+  };
+
   struct StepBlock {
     int block = 0;
+    int move = 0;  ///< place in moves_
     bool has_point_forces = false, rotation_locked = false;
     double radius = 0.0;
     Unknowns inertia, force, drift;        ///< mass over time squared; all but contacts' at the start; displacement without forces
@@ -68,8 +91,13 @@ class Newton {
 
   /// Evaluates at the displacement to start from and returns its residual_norm().
   double begin(const Eigen::VectorXd& d, FirstTangent first);
-  /// Iterates from solution.d until norm, its residual_norm(), is 1 or less.
-  Outcome iterate(const StepProblem<N>& problem, StepSolution<N>& solution, double& norm, bool may_start_cold);
+  /// Iterates from solution.d until its residual_norm() is small enough.
+  Outcome iterate(const StepProblem<N>& problem, StepSolution<N>& solution, double& norm, Until until, bool may_start_cold);
+  /// Solves the parts around the largest residuals, each for itself, and moves on if the residual is smaller then. Returns its norm.
+  double solve_parts(StepSolution<N>& solution, double norm);
+  std::vector<Part> unbalanced_parts(double norm);
+  /// The equations of a part of another system, while all other blocks stay where they are there.
+  void take_part(const Newton& whole, const Part& part);
   /// Goes on, after the first iteration of a cold start, by whole steps with the exact tangent, in which what has just opened or begun to slide is
   /// still held by a part of its springs. False if blocks come loose all the same.
   bool iterate_from_cold(StepSolution<N>& solution, double& norm);
@@ -110,25 +138,33 @@ class Newton {
   void take_last_states();
   /// Contact c carries these forces in the next linear solve.
   void replace_forces(std::size_t c, const ContactForces& forces);
-  double residual_norm() const;  ///< largest residual of a block over what is tolerated: converged at 1; infinite where that tells nothing
+  /// Contact c carries in the next linear solve what it would in this status around these forces.
+  void take_state(std::size_t c, ContactStatus status, double normal, double shear);
+  /// The same of branches_before_, around the forces that the springs start from.
+  void take_states_before();
+  /// What a step must reduce, with the residual_norm() that belongs to it.
+  double merit(double norm) const;
+  double residual_norm() const;         ///< largest residual of a block over what is tolerated: converged at 1; infinite where that tells nothing
+  double residual_norm(int row) const;  ///< of one block
   void assemble(const Eigen::VectorXd& d, Tangent tangent);
   Eigen::VectorXd direction(const Eigen::VectorXd& d, Tangent tangent);
   /// Contacts that would slide one way and then the other stick in between: they enter the next linear solve with the spring's own force. (Where the
   /// spring is stiff the range of sticking is so narrow that the iteration would jump over it for ever.) Returns their number.
   int hold_reversed();
   double line_search(const Eigen::VectorXd& d, const Eigen::VectorXd& step, double slope);
-  /// Part of the exact step along which the residual falls as it should; 0 if none. Leaves the forces there.
-  double backtrack(const Eigen::VectorXd& d, const Eigen::VectorXd& step, double norm);
+  /// Part of the exact step along which the merit falls as it should; 0 if none. Leaves the forces there.
+  double backtrack(const Eigen::VectorXd& d, const Eigen::VectorXd& step, double merit_before);
   /// The means over the path go to the solution, the forces at its end take their place.
   void report_paths(StepSolution<N>& solution);
 
+  Merit asked_merit_;
   const StepProblem<N>* problem_ = nullptr;
   const std::vector<ContactSprings>* springs_ = nullptr;
   BatchKernels kernels_;
   std::size_t contact_count_ = 0;
   std::vector<ContactBatch> contacts_;
   std::vector<StepBlock> blocks_;                ///< the free ones, by their equations
-  std::vector<BlockMove<N>> moves_;              ///< of all blocks, at the trial displacement; a last one that stays
+  std::vector<BlockMove<N>> moves_;              ///< of all blocks, or those that a part sees, at the trial displacement; one that stays
   StepForces step_forces_ = StepForces::at_end;  ///< what trials_ has
   std::vector<TrialBatch> trials_;
   std::vector<Branch> branches_;         ///< of the contacts
@@ -141,6 +177,10 @@ class Newton {
   double force_scale_ = 0.0;
   double start_scale_ = 0.0;  ///< [N] largest single force at the start of the step, that of the inertia included
   TangentSystem<N> tangent_;
+  Neighbourhood neighbourhood_;   ///< of this step, once it is needed
+  std::unique_ptr<Newton> part_;  ///< takes one part after the other
+  bool is_part_ = false;
+  std::vector<ContactSprings> part_springs_;  ///< of a part: its own springs_
 };
 
 extern template class Newton<3>;

@@ -99,7 +99,7 @@ void Newton<N>::relax(const StepProblem<N>& problem, const std::vector<ContactSp
   double norm = residual_norm();
   Eigen::VectorXd place = d, next(d.size());
   Momentum momentum;
-  int& steps = solution.relaxation_steps;
+  int& steps = solution.effort.relaxation_steps;
   while (norm > 1.0 && steps < most_relaxation_steps && (steps % steps_between_looks != 0 || !has_left(d))) {
     keep_slip();
     next = d + safe_step * estimate.displacement(residual_);

@@ -318,6 +318,8 @@ TEST_CASE("summary.json has counters under their own names", "[io][results]") {
                                                 {"compliant_steps", steps.compliant},
                                                 {"dissipative_steps", steps.dissipative},
                                                 {"iterations", steps.iterations},
+                                                {"parts", steps.parts},
+                                                {"part_iterations", steps.part_iterations},
                                                 {"relaxation_steps", steps.relaxation_steps},
                                                 {"searches", detection.searches},
                                                 {"searches_skipped", detection.searches_skipped},
