@@ -13,8 +13,8 @@
 //
 // From matrix to matrix most rows stay as they are but for the turning of blocks. A row of the factor whose own row of the matrix has changed by no
 // more than it may, and which subtracts only rows that are kept, is kept: the factor is always that of a matrix each of whose rows is as it was when
-// it was last taken. And weak couplings are left out of the factor (weak_couplings.h): what they carry is found by iteration, whose residual they
-// are.
+// it was last taken. Putting rows last that change in nearly every matrix gains nothing: those that change now and then lie anywhere. And weak
+// couplings are left out of the factor (weak_couplings.h): what they carry is found by iteration, whose residual they are.
 #include <Eigen/LU>
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseCore>
