@@ -49,6 +49,8 @@ struct ContactBatch {
   int vertex_row[batch_size] = {}, edge_row[batch_size] = {};  ///< of ForceRow; that of fixed blocks nobody reads
 
   void set(int lane, const ContactPlace<3>& at, const ContactSprings& springs, const ContactStrength& strength);
+  /// All but the blocks and rows.
+  void copy(int lane, const ContactBatch& other, int from);
   ContactStart<3> start(int lane) const;
   ContactStrength strength(int lane) const;
   /// Those that were set, with the gap counted from their target.
@@ -81,6 +83,18 @@ inline void ContactBatch::set(int lane, const ContactPlace<3>& at, const Contact
   cohesion[lane] = strength.cohesion;
   tension[lane] = strength.tension;
   dissipation[lane] = springs.dissipation;
+}
+
+inline void ContactBatch::copy(int lane, const ContactBatch& other, int from) {
+  for (Lanes ContactBatch::*member :
+       {&ContactBatch::normal_x,       &ContactBatch::normal_y,     &ContactBatch::lever_x,       &ContactBatch::lever_y,
+        &ContactBatch::vertex_arm_x,   &ContactBatch::vertex_arm_y, &ContactBatch::end_arm_x,     &ContactBatch::end_arm_y,
+        &ContactBatch::vertex_reach,   &ContactBatch::edge_reach,   &ContactBatch::normal,        &ContactBatch::shear,
+        &ContactBatch::gap_off_target, &ContactBatch::shift,        &ContactBatch::initial_shear, &ContactBatch::normal_damping,
+        &ContactBatch::shear_damping,  &ContactBatch::parted,       &ContactBatch::friction,      &ContactBatch::cohesion,
+        &ContactBatch::tension,        &ContactBatch::dissipation}) {
+    (this->*member)[lane] = (other.*member)[from];
+  }
 }
 
 /// The same contacts at the trial displacement, their forces or means of them, and the derivatives of these.
