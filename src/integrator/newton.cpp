@@ -436,7 +436,7 @@ void Newton<N>::take_part(const Newton& whole, const Part& part) {
   springs_ = &part_springs_;
   trials_.resize(contacts_.size());
   branches_.assign(batch_size * contacts_.size(), 0);
-  tangent_.fit_part(rows, ends);
+  tangent_.fit_part(problem_->method, rows, ends);
 }
 
 template <int N>
