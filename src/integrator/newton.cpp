@@ -101,15 +101,27 @@ void Newton<N>::prepare(const StepProblem<N>& problem, const std::vector<Contact
                        problem.external.force(system, b, still), problem.drift(b), problem.external.magnitude(system, b, still),
                        problem.external.spring_scale(system, b)});
   }
-  start_scale_ = kernels_.begin(contacts_);
+  block_scale_ = 0.0;
   for (const StepBlock& block : blocks_) {
-    start_scale_ = std::max({start_scale_, block.magnitude, Motion<N>::largest_force(block.inertia.cwiseProduct(block.drift), block.radius)});
+    block_scale_ = std::max({block_scale_, block.magnitude, Motion<N>::largest_force(block.inertia.cwiseProduct(block.drift), block.radius)});
   }
+  start_scale_ = std::max(kernels_.begin(contacts_), block_scale_);
   trials_.resize(contacts_.size());
   step_forces_ = problem.averages_path() ? StepForces::averaged : StepForces::at_end;
   branches_.assign(batch_size * contacts_.size(), 0);
   moves_.assign(system.block_count() + 1, BlockMove<N>());
   tangent_.fit(problem);
+}
+
+template <int N>
+void Newton<N>::prepare_start(const std::vector<ContactSprings>& springs) {
+  springs_ = &springs;
+  start_scale_ = block_scale_;
+  for (std::size_t c = 0; c < contact_count_; ++c) {
+    const ContactSprings& s = springs[c];
+    contacts_[c / batch_size].set_start(lane(c), s);
+    start_scale_ = std::max({start_scale_, s.shift - s.normal * (s.gap - s.target), std::abs(s.initial_shear)});
+  }
 }
 
 template <int N>
@@ -444,9 +456,22 @@ template <int N>
 void Newton<N>::solve(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs, StepSolution<N>& solution, FirstTangent first) {
   solution.contacts.give_back(trials_, branches_);
   prepare(problem, springs);
+  solve_prepared(solution, first);
+}
+
+template <int N>
+void Newton<N>::solve_again(const std::vector<ContactSprings>& springs, StepSolution<N>& solution) {
+  solution.contacts.give_back(trials_, branches_);
+  prepare_start(springs);
+  solve_prepared(solution, FirstTangent::present);
+}
+
+template <int N>
+void Newton<N>::solve_prepared(StepSolution<N>& solution, FirstTangent first) {
+  const StepProblem<N>& problem = *problem_;
   if (problem.end_weight < 1.0) {
     sum_start_forces();
-    solution.start_contacts.copy(trials_, branches_, springs);
+    solution.start_contacts.copy(trials_, branches_, *springs_);
   }
   const Eigen::VectorXd start = solution.d;
   double norm = begin(start, first);
@@ -475,7 +500,7 @@ void Newton<N>::solve(const StepProblem<N>& problem, const std::vector<ContactSp
   if (!solution.converged) solution.reason = "Newton's method did not converge";
   solution.paths.clear();
   if (averages_path()) report_paths(solution);
-  solution.contacts.borrow(trials_, branches_, springs);
+  solution.contacts.borrow(trials_, branches_, *springs_);
 }
 
 template <int N>
