@@ -213,7 +213,7 @@ void step_of_soft(benchmark::State& state) {
   }
   if (!solution.converged) throw std::runtime_error(solution.reason);
   say_size(state, slope);
-  state.counters["newton_iterations"] = solution.iterations;
+  state.counters["newton_iterations"] = solution.effort.iterations;
 }
 
 void sizes(benchmark::internal::Benchmark* b) {

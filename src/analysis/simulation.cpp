@@ -403,7 +403,7 @@ StepResult Simulation<N>::step(double dt, bool statics) {
     solution.clear();
     enforcement_->solve(p, solution);
   }
-  step_counters_.iterations += solution.iterations;
+  step_counters_.add(solution.effort);
   if (solution.converged && wake_in_haste(solution, dt)) {
     ++step_counters_.repeated_to_wake;
     return step(dt, statics);

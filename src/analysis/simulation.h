@@ -19,7 +19,9 @@ struct StepCounters {
   long steps = 0;
   long cuts = 0;                        ///< attempts thrown away
   long error_cuts = 0;                  ///< of these: because of step.error_tolerance_m
-  long iterations = 0;                  ///< linear solves, thrown-away attempts included
+  long iterations = 0;                  ///< linear solves of the whole system, thrown-away attempts included
+  long parts = 0;                       ///< of the system, solved for themselves between these
+  long part_iterations = 0;             ///< linear solves of parts
   long compliant = 0;                   ///< steps of `hard` whose multipliers did not converge: taken with springs
   long dissipative = 0;                 ///< steps of path_average that found a solution only with dissipation
   long loads = 0;                       ///< times the explicit loop took over the state anew
@@ -32,9 +34,15 @@ struct StepCounters {
   double smallest_critical_step = 0.0;  ///< [s] of explicit steps, 0 if there were none
   double longest_step = 0.0;            ///< [s] of explicit steps
 
+  void add(const StepEffort& effort) {
+    iterations += effort.iterations;
+    parts += effort.parts;
+    part_iterations += effort.part_iterations;
+  }
+
   void exchange(Archive& archive) {
-    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o] = *this;
-    archive(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o);
+    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q] = *this;
+    archive(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q);
   }
 };
 

@@ -51,6 +51,8 @@ struct ContactBatch {
   void set(int lane, const ContactPlace<3>& at, const ContactSprings& springs, const ContactStrength& strength);
   /// The part of set() that follows from where the springs start: their gap, its target, and what they carry there.
   void set_start(int lane, const ContactSprings& springs);
+  /// All but the blocks and rows.
+  void copy(int lane, const ContactBatch& other, int from);
   ContactStart<3> start(int lane) const;
   ContactStrength strength(int lane) const;
   /// Those that were set, with the gap counted from their target.
@@ -86,6 +88,18 @@ inline void ContactBatch::set_start(int lane, const ContactSprings& springs) {
   if (springs.normal_damping != 0.0) {
     const double opening = springs.target + (springs.shift + tension[lane]) / springs.normal;
     parted[lane] = std::max(0.0, springs.gap - opening);
+  }
+}
+
+inline void ContactBatch::copy(int lane, const ContactBatch& other, int from) {
+  for (Lanes ContactBatch::*member :
+       {&ContactBatch::normal_x,       &ContactBatch::normal_y,     &ContactBatch::lever_x,       &ContactBatch::lever_y,
+        &ContactBatch::vertex_arm_x,   &ContactBatch::vertex_arm_y, &ContactBatch::end_arm_x,     &ContactBatch::end_arm_y,
+        &ContactBatch::vertex_reach,   &ContactBatch::edge_reach,   &ContactBatch::normal,        &ContactBatch::shear,
+        &ContactBatch::gap_off_target, &ContactBatch::shift,        &ContactBatch::initial_shear, &ContactBatch::normal_damping,
+        &ContactBatch::shear_damping,  &ContactBatch::parted,       &ContactBatch::friction,      &ContactBatch::cohesion,
+        &ContactBatch::tension,        &ContactBatch::dissipation}) {
+    (this->*member)[lane] = (other.*member)[from];
   }
 }
 

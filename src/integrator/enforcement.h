@@ -55,13 +55,25 @@ struct PathOutcome {
   ContactPose<N> pose;  ///< the mean one, whose gradients carried the forces
 };
 
+/// What a step has cost.
+struct StepEffort {
+  int iterations = 0;       ///< linear solves of the whole system
+  int parts = 0;            ///< of the system, solved for themselves in between
+  int part_iterations = 0;  ///< linear solves of parts
+
+  StepEffort& operator+=(const StepEffort& other) {
+    iterations += other.iterations, parts += other.parts, part_iterations += other.part_iterations;
+    return *this;
+  }
+};
+
 template <int N>
 struct StepSolution {
   bool converged = false;
   bool compliant = false;    ///< `hard`: taken with springs, see hard.cpp
   bool dissipative = false;  ///< path_average: taken with more dissipation than asked for, see soft.cpp
   std::string reason;        ///< why not converged
-  int iterations = 0;        ///< linear solves
+  StepEffort effort;
   Eigen::VectorXd d;         ///< displacement of the step, N per free block
   ContactOutcomes<N> contacts;
   ContactOutcomes<N> start_contacts;  ///< forces that entered with weight 1 - theta: of every contact, or none for theta = 1
@@ -71,7 +83,7 @@ struct StepSolution {
   void clear() {
     converged = compliant = dissipative = false;
     reason.clear();
-    iterations = 0;
+    effort = {};
     contacts.clear();
     start_contacts.clear();
     paths.clear();

@@ -65,7 +65,7 @@ class Hard final : public Enforcement<N> {
       if (problem.statics || solution.converged) return;
     }
     if (problem.failed_attempts < attempts_before_compliance || !compliant_.converged) return;
-    compliant_.iterations = solution.iterations;
+    compliant_.effort = solution.effort;
     compliant_.compliant = true;
     std::swap(solution, compliant_);
   }

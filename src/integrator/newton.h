@@ -8,9 +8,16 @@
 // another tangent and whole steps: contacts that have just opened or slid are held by their springs in it, and let go while they stay as they are,
 // each for itself. With all of them held the iteration is the one of initial stresses (O. C. Zienkiewicz, S. Valliappan and I. P. King, 1969), which
 // is slow and steady; with none it is Newton's. The residual knows nothing of this, and so neither does the solution.
+//
+// In the motion of a large system a few contacts that change their states would make all blocks iterate. Between two iterations of the whole, the
+// parts around them are solved for themselves (the nonlinear elimination of P. J. Lanzkron, D. J. Rose and J. T. Wilkes, 1996), so that the number of
+// iterations of the whole does not grow with the system.
 #pragma once
 
+#include <memory>
+
 #include "openclose/integrator/contact_batch.h"
+#include "openclose/integrator/parts.h"
 #include "openclose/integrator/tangent_system.h"
 
 namespace openclose {
@@ -50,8 +57,15 @@ class Newton {
   enum class Tangent { exact, symmetric };
   enum class Outcome { ended, singular, cold_start, no_common_step };
 
+  /// What ends an iteration: a norm of the residual, or a number of linear solves.
+  struct Until {
+    double norm;
+    int iterations;
+  };
+
   struct StepBlock {
     int block = 0;
+    int move = 0;  ///< place in moves_
     bool has_point_forces = false, rotation_locked = false;
     double radius = 0.0;
     Unknowns inertia, force, drift;        ///< mass over time squared; all but contacts' at the start; displacement without forces
@@ -61,8 +75,13 @@ class Newton {
 
   /// Evaluates at the displacement to start from and returns its residual_norm().
   double begin(const Eigen::VectorXd& d, FirstTangent first);
-  /// Iterates from solution.d until norm, its residual_norm(), is 1 or less.
-  Outcome iterate(const StepProblem<N>& problem, StepSolution<N>& solution, double& norm, bool may_start_cold);
+  /// Iterates from solution.d until its residual_norm() is small enough.
+  Outcome iterate(const StepProblem<N>& problem, StepSolution<N>& solution, double& norm, Until until, bool may_start_cold);
+  /// Solves the parts around the largest residuals, each for itself, and moves on if the residual is smaller then. Returns its norm.
+  double solve_parts(StepSolution<N>& solution, double norm);
+  std::vector<Part> unbalanced_parts(double norm);
+  /// The equations of a part of another system, while all other blocks stay where they are there.
+  void take_part(const Newton& whole, const Part& part);
   /// Goes on, after the first iteration of a cold start, by whole steps with the exact tangent, in which what has just opened or begun to slide is
   /// still held by a part of its springs. False if blocks come loose all the same.
   bool iterate_from_cold(StepSolution<N>& solution, double& norm);
@@ -100,7 +119,8 @@ class Newton {
   void take_last_states();
   /// Contact c carries these forces in the next linear solve.
   void replace_forces(std::size_t c, const ContactForces& forces);
-  double residual_norm() const;  ///< largest residual of a block over what is tolerated: converged at 1; infinite where that tells nothing
+  double residual_norm() const;         ///< largest residual of a block over what is tolerated: converged at 1; infinite where that tells nothing
+  double residual_norm(int row) const;  ///< of one block
   void assemble(const Eigen::VectorXd& d, Tangent tangent);
   Eigen::VectorXd direction(const Eigen::VectorXd& d, Tangent tangent);
   /// Contacts that would slide one way and then the other stick in between: they enter the next linear solve with the spring's own force. (Where the
@@ -118,7 +138,7 @@ class Newton {
   std::size_t contact_count_ = 0;
   std::vector<ContactBatch> contacts_;
   std::vector<StepBlock> blocks_;                ///< the free ones, by their equations
-  std::vector<BlockMove<N>> moves_;              ///< of all blocks, at the trial displacement; a last one that stays
+  std::vector<BlockMove<N>> moves_;              ///< of all blocks, or those that a part sees, at the trial displacement; one that stays
   StepForces step_forces_ = StepForces::at_end;  ///< what trials_ has
   std::vector<TrialBatch> trials_;
   std::vector<Branch> branches_;         ///< of the contacts
@@ -132,6 +152,10 @@ class Newton {
   double start_scale_ = 0.0;  ///< [N] largest single force at the start of the step, that of the inertia included
   double block_scale_ = 0.0;  ///< [N] the same of what acts on blocks without contacts
   TangentSystem<N> tangent_;
+  Neighbourhood neighbourhood_;   ///< of this step, once it is needed
+  std::unique_ptr<Newton> part_;  ///< takes one part after the other
+  bool is_part_ = false;
+  std::vector<ContactSprings> part_springs_;  ///< of a part: its own springs_
 };
 
 extern template class Newton<3>;

@@ -101,7 +101,7 @@ class Shi : public Enforcement<N> {
       tangent_.matrix().eliminate(block.equation, Motion<N>::rotation_index);
       right[N * block.equation + Motion<N>::rotation_index] = 0.0;
     }
-    ++solution.iterations;
+    ++solution.effort.iterations;
     const bool regular = tangent_.factor(0.0);
     if (regular) solution.d = tangent_.solver().solve(right);
     if (!regular || solution.d.size() != right.size() || !solution.d.allFinite()) {

@@ -32,10 +32,10 @@ class Soft final : public Enforcement<N> {
     attempt(problem, solution);
     if (solution.converged || !problem.averages_path()) return;
     springs_.set_dissipation(largest_dissipation);
-    const int wasted = solution.iterations;
+    const StepEffort wasted = solution.effort;
     solution.clear();
     attempt(problem, solution);
-    solution.iterations += wasted;
+    solution.effort += wasted;
     solution.dissipative = true;
   }
 

@@ -5,13 +5,14 @@
 namespace openclose {
 
 template <int N>
-bool TangentSystem<N>::find_slots(const StepProblem<N>& problem) {
-  const std::size_t known = slots_.size(), count = problem.contacts.size();
+template <class RowsOf>
+bool TangentSystem<N>::find_slots(std::size_t count, const RowsOf& rows_of) {
+  const std::size_t known = slots_.size();
   slots_.resize((count + batch_size - 1) / batch_size * batch_size);
   std::fill(slots_.begin() + static_cast<std::ptrdiff_t>(count), slots_.end(), ContactSlots());
   for (std::size_t c = 0; c < count; ++c) {
     ContactSlots& slots = slots_[c];
-    const int i = problem.system.block(problem.contacts[c].vertex_block).equation, j = problem.system.block(problem.contacts[c].edge_block).equation;
+    const auto [i, j] = rows_of(c);
     if (c < known && slots.vertex_row == i && slots.edge_row == j) continue;  // most contacts have their places of the last step
     slots = {i, j, i < 0 ? -1 : matrix_.diagonal(i), j < 0 ? -1 : matrix_.diagonal(j), -1, -1};
     if (i < 0 || j < 0) continue;
@@ -35,10 +36,13 @@ template <int N>
 void TangentSystem<N>::fit_pattern(const StepProblem<N>& problem) {
   skip_symbolic_ = problem.method.skip_symbolic;
   const int rows = problem.system.free_count();
-  if (solver_ && matrix_.rows() == rows && find_slots(problem)) return;
+  const auto rows_of = [&](std::size_t c) {
+    return std::pair(problem.system.block(problem.contacts[c].vertex_block).equation, problem.system.block(problem.contacts[c].edge_block).equation);
+  };
+  if (solver_ && matrix_.rows() == rows && find_slots(problem.contacts.size(), rows_of)) return;
   std::vector<std::pair<int, int>> couplings;
-  for (const Contact& c : problem.contacts) {
-    const int i = problem.system.block(c.vertex_block).equation, j = problem.system.block(c.edge_block).equation;
+  for (std::size_t c = 0; c < problem.contacts.size(); ++c) {
+    const auto [i, j] = rows_of(c);
     const std::pair<int, int> coupling = std::minmax(i, j);
     if (coupling.first >= 0 && (couplings.empty() || couplings.back() != coupling))
       couplings.push_back(coupling);  // a pair's contacts are neighbours
@@ -46,7 +50,19 @@ void TangentSystem<N>::fit_pattern(const StepProblem<N>& problem) {
   kind_ = problem.method.linear_solver;
   factoring_ = problem.method.skip_factorisation ? Factoring::needed : Factoring::whole;
   set_pattern(rows, couplings);
-  find_slots(problem);
+  find_slots(problem.contacts.size(), rows_of);
+}
+
+template <int N>
+void TangentSystem<N>::fit_part(int rows, const std::vector<std::pair<int, int>>& contacts) {
+  std::vector<std::pair<int, int>> couplings;
+  for (const auto& [i, j] : contacts) {
+    const std::pair<int, int> coupling = std::minmax(i, j);
+    if (coupling.first >= 0 && (couplings.empty() || couplings.back() != coupling)) couplings.push_back(coupling);
+  }
+  solver_ = nullptr;
+  set_pattern(rows, couplings);
+  find_slots(contacts.size(), [&](std::size_t c) { return contacts[c]; });
 }
 
 template <int N>

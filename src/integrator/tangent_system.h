@@ -13,6 +13,10 @@ class TangentSystem {
   /// Makes room for the contacts of this step and finds their slots.
   void fit(const StepProblem<N>& problem);
 
+  /// The same for a system of `rows` blocks that has nothing to do with the last one.
+  /// \param contacts  the rows of the blocks of each, -1 without
+  void fit_part(int rows, const std::vector<std::pair<int, int>>& contacts);
+
   /// Of the contacts in order, and of nothing up to the end of the last batch.
   const std::vector<ContactSlots>& slots() const { return slots_; }
   BlockMatrix<N>& matrix() { return matrix_; }
@@ -28,7 +32,9 @@ class TangentSystem {
  private:
   void fit_pattern(const StepProblem<N>& problem);
   /// False if a pair of blocks has none.
-  bool find_slots(const StepProblem<N>& problem);
+  /// \param rows_of  the rows of the blocks of a contact, -1 without
+  template <class RowsOf>
+  bool find_slots(std::size_t count, const RowsOf& rows_of);
   void set_pattern(int rows, const std::vector<std::pair<int, int>>& couplings);
   void choose_solver(int rows);
 

@@ -452,13 +452,18 @@ class BlockLuSolver : public LinearSolver<N> {
 
   bool factor_analysed(double kept_change) {
     ++this->counters_.factorisations;
+    make_room();
     std::fill(factor_.stale.begin(), factor_.stale.end(), factoring_ == Factoring::whole || !has_factor_);
     this->counters_.rows += factor_.rows();
     this->counters_.rows_kept += kernels_.take_changes(*matrix_, factor_, kept_change);
     has_factor_ = eliminate();
     use_fronts_ = !has_factor_;
-    if (has_factor_) return true;
+    if (has_factor_) {
+      let_go_of_fronts();
+      return true;
+    }
     ++this->counters_.pivots_lost;
+    let_go_of_rows();
     if (!fronts_) fronts_ = make_multifrontal_solver<N>(Refactor::always);
     const bool regular = fronts_->factor(*matrix_);
     count_help();
@@ -570,6 +575,19 @@ class BlockLuSolver : public LinearSolver<N> {
     find_entries(matrix);
   }
 
+  // One of the two is there at a time: pivots are seldom lost, and fronts are as large as the rows.
+  void let_go_of_rows() { std::vector<PaddedBlock<N>>().swap(factor_.value); }
+  void let_go_of_fronts() {
+    fronts_.reset();
+    counted_ = LinearCounters();
+  }
+
+  /// For the numbers of the factor.
+  void make_room() {
+    if (factor_.value.capacity() < factor_.column.size()) let_go_of_rows();  // else the old and the new ones would be there at once
+    factor_.value.resize(factor_.column.size());
+  }
+
   void find_entries(const BlockMatrix<N>& matrix) {
     const int rows = matrix.rows();
     factor_.entries.clear();
@@ -588,6 +606,7 @@ class BlockLuSolver : public LinearSolver<N> {
       }
       factor_.entries_start.push_back(static_cast<int>(factor_.entries.size()));
     }
+    make_room();
     factor_.taken.resize(factor_.entries.size());
     factor_.scale.assign(rows, PaddedVector());
     factor_.stale.assign(rows, true);
@@ -659,9 +678,6 @@ class BlockLuSolver : public LinearSolver<N> {
       factor_.row_start.push_back(static_cast<int>(factor_.column.size()));
       factor_.same_as_next.push_back(!upper[i].empty() && upper[i].front() == i + 1 && upper[i].size() == upper[i + 1].size() + 1);
     }
-    if (factor_.value.capacity() < factor_.column.size())
-      std::vector<PaddedBlock<N>>().swap(factor_.value);  // else old and new one would be there at once
-    factor_.value.resize(factor_.column.size());
     factor_.solution.resize(rows);
     factor_.size.resize(rows);
   }

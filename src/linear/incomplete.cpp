@@ -146,7 +146,6 @@ void IncompleteLu<N>::plan(const BlockMatrix<N>& matrix, std::vector<char> slots
     entries_start_.push_back(static_cast<int>(entries_.size()));
     row_start_.push_back(static_cast<int>(column_.size()));
   }
-  value_.resize(column_.size());
   solution_.resize(rows);
   working_slot_.assign(rows, -1);
   version_ = matrix.pattern_version();
@@ -207,7 +206,7 @@ void IncompleteLu<N>::subtract_rows_above(int i) {
 
 template <int N>
 bool IncompleteLu<N>::factor(const BlockMatrix<N>& matrix) {
-  std::fill(value_.begin(), value_.end(), PaddedBlock{});
+  value_.assign(column_.size(), PaddedBlock{});
   for (int i = 0; i < rows(); ++i) {
     for (int e = entries_start_[i]; e < entries_start_[i + 1]; ++e) value_[entries_[e].target] = padded(matrix.value(entries_[e].slot));
     subtract_rows_above(i);

@@ -25,7 +25,10 @@ class IncompleteLu {
   /// Which couplings it has, which decides what solve() gives: the numbers are those of the next factor().
   void exchange(Archive& archive, const BlockMatrix<N>& matrix);
 
-  std::size_t stored_blocks() const { return value_.size(); }
+  /// Gives back the memory of the factor until the next one.
+  void let_go() { std::vector<PaddedBlock>().swap(value_); }
+
+  std::size_t stored_blocks() const { return column_.size(); }
 
  private:
   static constexpr int lanes = 4;

@@ -81,6 +81,7 @@ class IncompleteSolver : public LinearSolver<N> {
     left_to_pause_ = pause_;
     pause_ = std::min(2 * pause_, longest_pause);
     use_direct_ = true;
+    incomplete_.let_go();
     return factor_directly();
   }
 

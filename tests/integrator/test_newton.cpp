@@ -218,7 +218,7 @@ TEST_CASE("a solution carries the forces of the law, also where its last iterati
   solution.d = -2.0 * friction * test::block_weight / inertia * Eigen::Vector3d::UnitX();
   probe.newton.solve(problem, probe.springs, solution, FirstTangent::present);
   REQUIRE(solution.converged);
-  REQUIRE(solution.iterations == 1);
+  REQUIRE(solution.effort.iterations == 1);
   for (std::size_t c = 0; c < probe.springs.size(); ++c) {
     const ContactOutcome<3>& o = solution.contacts[c];
     const ContactStrength strength(problem.joints.joint(problem.contacts[c].joint), problem.contacts[c]);

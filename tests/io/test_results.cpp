@@ -318,6 +318,8 @@ TEST_CASE("summary.json has counters under their own names", "[io][results]") {
                                                 {"compliant_steps", steps.compliant},
                                                 {"dissipative_steps", steps.dissipative},
                                                 {"iterations", steps.iterations},
+                                                {"parts", steps.parts},
+                                                {"part_iterations", steps.part_iterations},
                                                 {"searches", detection.searches},
                                                 {"searches_skipped", detection.searches_skipped},
                                                 {"narrow_phases", detection.narrow_phases},

@@ -116,6 +116,22 @@ inline Scene tumbling_blocks() {
   return scene;
 }
 
+/// A wall of 640 blocks of 2 m x 1 m in running bond on the base. Some of the blocks on top have got a stroke to the right and downwards.
+inline Scene struck_wall() {
+  constexpr int courses = 16, blocks = 40;
+  Scene scene = empty_scene();
+  scene.blocks = {fixed_block("base", rectangle(-1.0, -1.0, 2.0 * blocks + 3.0, 1.0))};
+  for (int course = 0; course < courses; ++course) {
+    for (int i = 0; i < blocks; ++i) {
+      const std::string name = "block " + std::to_string(course) + " " + std::to_string(i);
+      scene.blocks.push_back(free_block(name, rectangle(2.0 * i + course % 2, course, 2.0, 1.0)));
+      if (course == courses - 1 && i % 10 == 5) scene.blocks.back().velocity = {3.0, -1.0};
+    }
+  }
+  scene.step.dt = 5e-3;
+  return scene;
+}
+
 /// `shi` with the joint's own springs for penalties, so that it differs from `soft` in its way of solving only.
 inline void use_joint_springs_as_penalty(Scene& scene) {
   scene.method.penalty = scene.joints[0].normal_stiffness;

@@ -1,0 +1,61 @@
+#include "openclose/integrator/parts.h"
+
+#include <algorithm>
+
+namespace openclose {
+
+namespace {
+
+constexpr int outside = -1;  ///< of all rings
+
+}  // namespace
+
+std::vector<Part> Neighbourhood::parts(const std::vector<int>& seeds, int rings, int largest) const {
+  std::vector<int> ring(rows(), outside);
+  const std::vector<int> blocks = grow(seeds, rings, ring);
+  std::vector<Part> parts;
+  for (int first : blocks) {
+    if (ring[first] == outside) continue;
+    Part part = take(first, ring);
+    if (static_cast<int>(part.rows.size()) <= largest) parts.push_back(std::move(part));
+  }
+  std::stable_sort(parts.begin(), parts.end(), [](const Part& a, const Part& b) { return a.rows.size() < b.rows.size(); });
+  return parts;
+}
+
+std::vector<int> Neighbourhood::grow(const std::vector<int>& seeds, int rings, std::vector<int>& ring) const {
+  std::vector<int> blocks = seeds;
+  for (int row : seeds) ring[row] = 0;
+  for (std::size_t k = 0; k < blocks.size(); ++k) {
+    const int row = blocks[k];
+    if (ring[row] == rings) break;
+    for (int e = first_[row]; e < first_[row + 1]; ++e) {
+      const int other = ends_[e].other;
+      if (other >= rows() || ring[other] != outside) continue;
+      ring[other] = ring[row] + 1;
+      blocks.push_back(other);
+    }
+  }
+  return blocks;
+}
+
+Part Neighbourhood::take(int first, std::vector<int>& ring) const {
+  Part part{{first}, {}};
+  ring[first] = outside;
+  for (std::size_t k = 0; k < part.rows.size(); ++k) {
+    const int row = part.rows[k];
+    for (int e = first_[row]; e < first_[row + 1]; ++e) {
+      const auto& [contact, other] = ends_[e];
+      part.contacts.push_back(contact);
+      if (other >= rows() || ring[other] == outside) continue;
+      ring[other] = outside;
+      part.rows.push_back(other);
+    }
+  }
+  std::sort(part.rows.begin(), part.rows.end());
+  std::sort(part.contacts.begin(), part.contacts.end());
+  part.contacts.erase(std::unique(part.contacts.begin(), part.contacts.end()), part.contacts.end());
+  return part;
+}
+
+}  // namespace openclose
