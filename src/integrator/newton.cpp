@@ -214,6 +214,17 @@ double Newton<N>::residual_norm() const {
 }
 
 template <int N>
+double Newton<N>::merit(double norm) const {
+  if (asked_merit_ == Merit::worst_block || problem_->statics || !std::isfinite(norm)) return norm;
+  double work = 0.0;  // [J]
+  for (std::size_t i = 0; i < blocks_.size(); ++i) {
+    const Unknowns residual = residual_.template segment<N>(N * static_cast<int>(i));
+    work += residual.dot(residual.cwiseQuotient(blocks_[i].inertia));
+  }
+  return std::sqrt(work);
+}
+
+template <int N>
 void Newton<N>::assemble(const Eigen::VectorXd& d, Tangent tangent) {
   BlockMatrix<N>& matrix = tangent_.matrix();
   matrix.set_zero();
@@ -273,10 +284,10 @@ double Newton<N>::line_search(const Eigen::VectorXd& d, const Eigen::VectorXd& s
 }
 
 template <int N>
-double Newton<N>::backtrack(const Eigen::VectorXd& d, const Eigen::VectorXd& step, double norm) {
+double Newton<N>::backtrack(const Eigen::VectorXd& d, const Eigen::VectorXd& step, double merit_before) {
   for (double alpha = 0.5; alpha > shortest_backtrack; alpha *= 0.5) {
     evaluate(trial_ = d + alpha * step);
-    if (residual_norm() <= (1.0 - sufficient_decrease * alpha) * norm) return alpha;
+    if (merit(residual_norm()) <= (1.0 - sufficient_decrease * alpha) * merit_before) return alpha;
   }
   return 0.0;
 }
@@ -333,19 +344,27 @@ int Newton<N>::hold_reversed() {
 }
 
 template <int N>
+void Newton<N>::take_state(std::size_t c, ContactStatus wanted, double normal, double shear) {
+  const TrialBatch& now = trial(c);
+  const int k = lane(c);
+  if (!averages_path() && is_on_piece(status(branches_[c]), now.normal_by_gap[k], wanted)) return;
+  replace_forces(c, prolonged(seen_springs(c), start(c).strength(k), wanted, normal, shear, now.gap_change[k], now.slip_change[k]));
+}
+
+template <int N>
 void Newton<N>::take_last_states() {
   // Statics begins with the drawing, whose rounding is in the gaps; a motion knows which of its contacts are open.
   const double touching_gap = problem_->statics ? tolerance::rounding_of_ways_m : 0.0;
   for (std::size_t c = 0; c < contact_count_; ++c) {
     const Contact& contact = problem_->contacts[c];
     const bool touching = contact.status == ContactStatus::open && (*springs_)[c].gap <= touching_gap && (*springs_)[c].shift >= 0.0;
-    const ContactStatus last = touching ? ContactStatus::sticking : contact.status;
-    const TrialBatch& now = trial(c);
-    const int k = lane(c);
-    if (!averages_path() && is_on_piece(status(branches_[c]), now.normal_by_gap[k], last)) continue;
-    replace_forces(
-        c, prolonged(seen_springs(c), start(c).strength(k), last, contact.normal_force, contact.shear_force, now.gap_change[k], now.slip_change[k]));
+    take_state(c, touching ? ContactStatus::sticking : contact.status, contact.normal_force, contact.shear_force);
   }
+}
+
+template <int N>
+void Newton<N>::take_states_before() {
+  for (std::size_t c = 0; c < contact_count_; ++c) take_state(c, status(branches_before_[c]), (*springs_)[c].shift, (*springs_)[c].initial_shear);
 }
 
 template <int N>
@@ -434,7 +453,7 @@ void Newton<N>::take_part(const Newton& whole, const Part& part) {
   springs_ = &part_springs_;
   trials_.resize(contacts_.size());
   branches_.assign(batch_size * contacts_.size(), 0);
-  tangent_.fit_part(rows, ends);
+  tangent_.fit_part(problem_->method, rows, ends);
 }
 
 template <int N>
@@ -455,7 +474,7 @@ double Newton<N>::solve_parts(StepSolution<N>& solution, double norm) {
   const std::vector<Part> parts = unbalanced_parts(norm);
   if (parts.empty()) return norm;
   const Until until{std::max(1.0, linear_reduction * norm), problem_->method.max_iterations};
-  if (!part_) part_ = std::make_unique<Newton>();
+  if (!part_) part_ = std::make_unique<Newton>(asked_merit_);
   trial_ = solution.d;
   double work = 0.0;  // rows of all linear solves
   for (const Part& part : parts) {
@@ -533,7 +552,7 @@ typename Newton<N>::Outcome Newton<N>::iterate(const StepProblem<N>& problem, St
   Eigen::VectorXd& d = solution.d;
   Tangent tangent = Tangent::exact;
   int refusals = 0;  // of the exact step since the residual was at its smallest
-  double best = norm;
+  double value = merit(norm), best = value;
   const int few = static_cast<int>(few_switches * static_cast<double>(contact_count_));
   bool parts_help = problem.method.skip_balanced && !problem.statics && !is_part_ && static_cast<int>(blocks_.size()) >= smallest_system_with_parts;
   int switches = 0;
@@ -543,6 +562,8 @@ typename Newton<N>::Outcome Newton<N>::iterate(const StepProblem<N>& problem, St
       norm = solve_parts(solution, norm);
       parts_help = norm < whole_norm;
       if (parts_help) tangent = Tangent::exact;
+      value = merit(norm);
+      best = std::min(best, value);
       if (norm <= until.norm) break;
     }
     branches_before_ = branches_;
@@ -559,9 +580,10 @@ typename Newton<N>::Outcome Newton<N>::iterate(const StepProblem<N>& problem, St
       evaluate(trial_ = d + step);
     }
     double next_norm = residual_norm();
+    double next_value = merit(next_norm);
     switches = differences(branches_before_, branches_);
-    if (tangent == Tangent::exact && iteration > 0 && next_norm > norm) {
-      alpha = backtrack(d, step, norm);
+    if (tangent == Tangent::exact && iteration > 0 && next_value > value) {
+      alpha = backtrack(d, step, value);
       if (alpha == 0.0) {
         evaluate(d);
         tangent = Tangent::symmetric;
@@ -569,13 +591,15 @@ typename Newton<N>::Outcome Newton<N>::iterate(const StepProblem<N>& problem, St
         continue;
       }
       next_norm = residual_norm();
+      next_value = merit(next_norm);
       switches = differences(branches_before_, branches_);
     }
-    if (next_norm < best) refusals = 0;
-    best = std::min(best, next_norm);
-    const bool halved = next_norm <= 0.5 * norm;
+    if (next_value < best) refusals = 0;
+    best = std::min(best, next_value);
+    const bool halved = next_value <= 0.5 * value;
     d += alpha * step;
     norm = next_norm;
+    value = next_value;
     if (may_start_cold && iteration == 0 && switches > cold_start_switches * static_cast<double>(contact_count_)) return Outcome::cold_start;
     const bool held = norm > 1.0 && !halved && hold_reversed() > 0;  // a solution keeps the forces of the law
     const bool exact_works = held || switches <= few || (tangent == Tangent::exact && halved);
@@ -589,21 +613,24 @@ double Newton<N>::begin(const Eigen::VectorXd& d, FirstTangent first) {
   evaluate(d);
   const double norm = residual_norm();
   if (norm > 1.0 && first == FirstTangent::last_step) take_last_states();
+  if (norm > 1.0 && first == FirstTangent::last_solution) take_states_before();
   return norm;
 }
 
 template <int N>
 void Newton<N>::solve(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs, StepSolution<N>& solution, FirstTangent first) {
   solution.contacts.give_back(trials_, branches_);
+  branches_before_ = branches_;
   prepare(problem, springs);
   solve_prepared(solution, first);
 }
 
 template <int N>
-void Newton<N>::solve_again(const std::vector<ContactSprings>& springs, StepSolution<N>& solution) {
+void Newton<N>::solve_again(const std::vector<ContactSprings>& springs, StepSolution<N>& solution, FirstTangent first) {
   solution.contacts.give_back(trials_, branches_);
+  branches_before_ = branches_;
   prepare_start(springs);
-  solve_prepared(solution, FirstTangent::present);
+  solve_prepared(solution, first);
 }
 
 template <int N>
