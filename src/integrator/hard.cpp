@@ -114,9 +114,12 @@ class Hard final : public Enforcement<N> {
     double last_way = std::numeric_limits<double>::infinity();  // [m] of the farthest block in the last pass
     double last_error = std::numeric_limits<double>::infinity();
     for (int pass = 0; pass < most_outer_passes; ++pass) {
-      // In statics the blocks are back in their places, where contacts remember their state.
-      const FirstTangent later = problem.statics ? FirstTangent::present : FirstTangent::last_solution;
-      newton_.solve(problem, springs_, solution, pass == 0 ? FirstTangent::last_step : later);
+      if (pass == 0) {
+        newton_.solve(problem, springs_, solution);
+      } else {
+        // In statics the blocks are back in their places, where contacts remember their state.
+        newton_.solve_again(springs_, solution, problem.statics ? FirstTangent::present : FirstTangent::last_solution);
+      }
       if (!solution.converged) return;
       const double error = constraint_error(problem, solution);
       const double way = solution.d.template lpNorm<Eigen::Infinity>();

@@ -54,6 +54,8 @@ class Newton {
   /// Solves for solution.d, starting from the value it has; fills its contacts. iterations is added to.
   void solve(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs, StepSolution<N>& solution,
              FirstTangent first = FirstTangent::last_step);
+  /// The step of the last solve() again, with springs that differ only in what they carry at its start and in the gaps they keep.
+  void solve_again(const std::vector<ContactSprings>& springs, StepSolution<N>& solution, FirstTangent first);
 
   /// The same for a static step, by relaxation; relaxation_steps is added to instead. What friction holds in the end depends on the way there.
   void relax(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs, StepSolution<N>& solution);
@@ -114,6 +116,9 @@ class Newton {
   /// Whether a block has gone so far that the step will be refused.
   bool has_left(const Eigen::VectorXd& d) const;
   void prepare(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs);
+  /// The part of prepare() that solve_again() needs.
+  void prepare_start(const std::vector<ContactSprings>& springs);
+  void solve_prepared(StepSolution<N>& solution, FirstTangent first);
   void evaluate(const Eigen::VectorXd& d);
   /// Evaluates at the present position and keeps the forces.
   void sum_start_forces();
@@ -176,6 +181,7 @@ class Newton {
   Eigen::VectorXd residual_;
   double force_scale_ = 0.0;
   double start_scale_ = 0.0;  ///< [N] largest single force at the start of the step, that of the inertia included
+  double block_scale_ = 0.0;  ///< [N] the same of what acts on blocks without contacts
   TangentSystem<N> tangent_;
   Neighbourhood neighbourhood_;   ///< of this step, once it is needed
   std::unique_ptr<Newton> part_;  ///< takes one part after the other

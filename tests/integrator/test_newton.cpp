@@ -158,6 +158,40 @@ TEST_CASE("the forces of a settled scene are in balance", "[integrator][newton]"
   CHECK(f.cwiseAbs().maxCoeff() > 0.5 * weight);
 }
 
+TEST_CASE("solving a step again with springs that start differently is solving it anew with these", "[integrator][newton]") {
+  Probe probe(settled_scene(3));
+  const StepProblem<3> problem = probe.simulation.problem(0.01, GENERATE(false, true));
+  const Eigen::VectorXd start = Eigen::VectorXd::Zero(3 * problem.system.free_count());
+  for (ContactSprings& s : probe.springs) s.normal_damping = 0.01 * s.normal;
+  const FirstTangent first_tangent = GENERATE(FirstTangent::present, FirstTangent::last_solution);
+  const std::vector<ContactSprings> first = probe.springs;
+  probe.mobilise(0);
+  for (ContactSprings& s : probe.springs) {
+    s.target = 0.5 * s.gap;
+    s.shift = -2.0 * s.normal * s.gap;
+  }
+  const auto solved = [&](bool again) {
+    Newton<3> newton;
+    StepSolution<3> solution;
+    solution.d = start;
+    newton.solve(problem, first, solution);
+    REQUIRE(solution.converged);
+    solution.d = start;
+    if (again) {
+      newton.solve_again(probe.springs, solution, first_tangent);
+    } else {
+      newton.solve(problem, probe.springs, solution, first_tangent);
+    }
+    REQUIRE(solution.converged);
+    return std::pair(solution.d, newton.force_scale());
+  };
+  const auto [again, again_scale] = solved(true);
+  const auto [anew, anew_scale] = solved(false);
+  CHECK(again == anew);
+  CHECK(again_scale == anew_scale);
+  CHECK(anew.norm() > 1e-7);
+}
+
 TEST_CASE("a displacement that has run away is no solution, however much its rounding excuses", "[integrator][newton]") {
   Probe probe(test::column_of_blocks(3));
   StepProblem<3> problem = probe.simulation.problem(1e6, true);  // so long that inertia is below the rounding of the springs
