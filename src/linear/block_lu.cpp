@@ -434,6 +434,12 @@ class BlockLuSolver : public LinearSolver<N> {
     return solve_once(right_side, reduction);
   }
 
+  void let_go() override {
+    has_factor_ = use_fronts_ = false;
+    let_go_of_rows();
+    let_go_of_fronts();
+  }
+
   void exchange(Archive& archive, const BlockMatrix<N>& matrix) override {
     LinearSolver<N>::exchange(archive, matrix);
     bool known = version_ == matrix.pattern_version(), has_factor = has_factor_;
