@@ -177,7 +177,7 @@ void factor(benchmark::State& state) {
 void solve(benchmark::State& state) {
   Slope& slope = Slope::of(state.range(0));
   const Equations equations(slope);
-  const auto solver = make_block_solver<3>();
+  const auto solver = make_block_solver<3>(Factoring::whole);
   if (!solver->factor(equations.matrix)) throw std::runtime_error("singular");
   const Eigen::VectorXd right_side = Eigen::VectorXd::Ones(equations.matrix.unknowns());
   for (auto _ : state) benchmark::DoNotOptimize(solver->solve(right_side).data());

@@ -59,6 +59,7 @@ class Detector<N>::Shapes {
     system_ = &system;
     measured_.assign(system.block_count(), 0);
     boxes_.resize(system.block_count());
+    convex_.resize(system.block_count());
     edges_.resize(system.state().arm.size());
   }
   const Edge& edge(int block, int e) {
@@ -71,6 +72,8 @@ class Detector<N>::Shapes {
     if (!measured_[block]) measure(block);
     return boxes_[block];
   }
+  /// Of a block that has been measured.
+  bool is_convex(int block) const { return convex_[block] != 0; }
   /// Whether two blocks lie on different sides of a line along an edge of one of them, the other one farther from it than `room` [m].
   bool apart(int a, int b, double room) {
     if (!measured_[a]) measure(a);
@@ -97,7 +100,9 @@ class Detector<N>::Shapes {
     measured_[b] = 1;
     const auto& block = system_->block(b);
     Box& box = boxes_[b];
+    convex_[b] = 1;
     for (int v = block.first_vertex; v < block.first_vertex + block.vertex_count; ++v) {
+      if (system_->is_reflex(v)) convex_[b] = 0;
       const Vec2 span = system_->arm(system_->next(v)) - system_->arm(v);
       const double length = span.norm();
       edges_[v] = {system_->position(b, v), span / length, length};
@@ -109,6 +114,7 @@ class Detector<N>::Shapes {
   const BlockSystem<N>* system_ = nullptr;
   std::vector<char> measured_;  ///< of the blocks
   std::vector<Box> boxes_;
+  std::vector<char> convex_;
   std::vector<Edge> edges_;  ///< by the vertex they begin at
 };
 
@@ -258,13 +264,14 @@ class Detector<N>::NarrowPhase {
       if (system_.is_reflex(v)) return;
       const Vec2& p = shapes_.edge(v).start;
       if (!room.contains(p)) return;
+      const Sides sides = sides_of(v);
       for_each_vertex(edge_block, [&](int e) {
         const Edge& edge = shapes_.edge(e);
-        if (edge.gap(p) > reach_ || !stands_on(v, edge)) return;
+        if (edge.gap(p) > reach_ || !sides.leave(edge, sine_flush)) return;
         const double along = edge.along(p);
         const double beyond = std::max(-along, along - edge.length);
         if (beyond > 0.0 && beyond > end_margin(v, edge)) return;
-        const double weight = lone_weight(v, edge);
+        const double weight = sides.lone_weight(edge);
         if (weight == 0.0 || passes_over(v, edge_block, e)) return;
         const Vec2 ahead = system_.arm(system_.next(v)) - system_.arm(v), back = system_.arm(system_.previous(v)) - system_.arm(v);
         const auto projection = [&](const Vec2& side) { return std::min(std::abs(side.dot(edge.direction)), edge.length); };
@@ -273,13 +280,18 @@ class Detector<N>::NarrowPhase {
     });
   }
 
-  const Vec2& ahead(int v) const { return shapes_.edge(v).direction; }
-  Vec2 back(int v) const { return -shapes_.edge(system_.previous(v)).direction; }
+  /// Directions from a corner along its two edges.
+  struct Sides {
+    Vec2 ahead, back;
 
-  /// 1 - w_v of the header, of a corner that stands on the edge.
-  double lone_weight(int v, const Edge& edge) const {
-    return 1.0 - std::max(parallel_weight(-ahead(v).dot(edge.direction)), parallel_weight(back(v).dot(edge.direction)));
-  }
+    /// Both point out of the edge's half-plane, or into it by no more than the tilt.
+    bool leave(const Edge& edge, double tilt) const { return edge.normal().dot(ahead) >= -tilt && edge.normal().dot(back) >= -tilt; }
+    /// 1 - w_v of the header, of a corner that stands on the edge.
+    double lone_weight(const Edge& edge) const {
+      return 1.0 - std::max(parallel_weight(-ahead.dot(edge.direction)), parallel_weight(back.dot(edge.direction)));
+    }
+  };
+  Sides sides_of(int v) const { return {shapes_.edge(v).direction, -shapes_.edge(system_.previous(v)).direction}; }
 
   /// \param closed  tells whether this place was in contact already
   template <class Closed>
@@ -367,10 +379,9 @@ class Detector<N>::NarrowPhase {
 
   /// Both sides of the corner leave the edge's half-plane: only then can the corner touch the edge from outside. Overlaps of facing edges fade out
   /// until parallel_none.
-  bool outside(int v, const Edge& edge) const { return leaves(v, edge, sine_none); }
+  bool outside(int v, const Edge& edge) const { return sides_of(v).leave(edge, sine_none); }
   /// The same for a lone corner.
-  bool stands_on(int v, const Edge& edge) const { return leaves(v, edge, sine_flush); }
-  bool leaves(int v, const Edge& edge, double tilt) const { return edge.normal().dot(ahead(v)) >= -tilt && edge.normal().dot(back(v)) >= -tilt; }
+  bool stands_on(int v, const Edge& edge) const { return sides_of(v).leave(edge, sine_flush); }
 
   bool share_reflex_corner(int e, int f) const {
     return (system_.next(e) == f && system_.is_reflex(f)) || (system_.next(f) == e && system_.is_reflex(e));
@@ -400,14 +411,13 @@ class Detector<N>::NarrowPhase {
   bool in_block(int block, const Vec2& p) {
     constexpr double margin = 2.0 * tolerance::edge_end_m;  // what is decided so is the same by the distance below
     if (!shapes_.box(block).inflated(margin).contains(p)) return false;
-    bool convex = true, outside = false;
+    const bool convex = shapes_.is_convex(block);
     polygon_.clear();
-    for_each_vertex(block, [&](int v) {
-      convex &= !system_.is_reflex(v);
-      outside |= shapes_.edge(v).gap(p) > margin;
+    const auto& vertices = system_.block(block);
+    for (int v = vertices.first_vertex; v < vertices.first_vertex + vertices.vertex_count; ++v) {
+      if (convex && shapes_.edge(v).gap(p) > margin) return false;
       polygon_.push_back(shapes_.edge(v).start);
-    });
-    if (convex && outside) return false;
+    }
     return contains(polygon_, p) || distance_to_boundary(polygon_, p) <= tolerance::edge_end_m;
   }
 

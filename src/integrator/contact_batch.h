@@ -49,6 +49,8 @@ struct ContactBatch {
   int vertex_row[batch_size] = {}, edge_row[batch_size] = {};  ///< of ForceRow; that of fixed blocks nobody reads
 
   void set(int lane, const ContactPlace<3>& at, const ContactSprings& springs, const ContactStrength& strength);
+  /// The part of set() that follows from where the springs start: their gap, its target, and what they carry there.
+  void set_start(int lane, const ContactSprings& springs);
   /// All but the blocks and rows.
   void copy(int lane, const ContactBatch& other, int from);
   ContactStart<3> start(int lane) const;
@@ -69,20 +71,24 @@ inline void ContactBatch::set(int lane, const ContactPlace<3>& at, const Contact
   end_arm_y[lane] = at.end_arm.y();
   normal[lane] = springs.normal;
   shear[lane] = springs.shear;
-  gap_off_target[lane] = springs.gap - springs.target;
-  shift[lane] = springs.shift;
-  initial_shear[lane] = springs.initial_shear;
   normal_damping[lane] = springs.normal_damping;
   shear_damping[lane] = springs.shear_damping;
-  parted[lane] = 0.0;
-  if (springs.normal_damping != 0.0) {
-    const double opening = springs.target + (springs.shift + strength.tension) / springs.normal;
-    parted[lane] = std::max(0.0, springs.gap - opening);
-  }
   friction[lane] = strength.friction;
   cohesion[lane] = strength.cohesion;
   tension[lane] = strength.tension;
   dissipation[lane] = springs.dissipation;
+  set_start(lane, springs);
+}
+
+inline void ContactBatch::set_start(int lane, const ContactSprings& springs) {
+  gap_off_target[lane] = springs.gap - springs.target;
+  shift[lane] = springs.shift;
+  initial_shear[lane] = springs.initial_shear;
+  parted[lane] = 0.0;
+  if (springs.normal_damping != 0.0) {
+    const double opening = springs.target + (springs.shift + tension[lane]) / springs.normal;
+    parted[lane] = std::max(0.0, springs.gap - opening);
+  }
 }
 
 inline void ContactBatch::copy(int lane, const ContactBatch& other, int from) {

@@ -74,7 +74,7 @@ struct StepSolution {
   bool dissipative = false;  ///< path_average: taken with more dissipation than asked for, see soft.cpp
   std::string reason;        ///< why not converged
   StepEffort effort;
-  Eigen::VectorXd d;         ///< displacement of the step, N per free block
+  Eigen::VectorXd d;  ///< displacement of the step, N per free block
   ContactOutcomes<N> contacts;
   ContactOutcomes<N> start_contacts;  ///< forces that entered with weight 1 - theta: of every contact, or none for theta = 1
   std::vector<PathOutcome<N>> paths;  ///< mean forces that entered instead of those at the end; empty for other schemes

@@ -31,8 +31,10 @@ constexpr std::array stiffness_over_inertia = {300.0, 30.0, 1.0};
 constexpr double static_gap = 1e-11;
 /// [-] Units in the last place that rounding may leave in a gap.
 constexpr double rounding_units = 4.0;
-/// [-] Part of the tolerance by which closed contacts may stay apart from zero; what earlier steps have left beyond it is pushed back.
-constexpr double kept_penetration = 0.5;
+/// [-] Part of the tolerance by which closed contacts may stay apart from zero; what earlier steps have left beyond it is pushed back, by no more
+/// than another part in a step: redundant contacts that have different gaps then ask for motions that exclude each other by less than what is
+/// tolerated.
+constexpr double kept_penetration = 0.5, recovered_penetration = 0.5;
 constexpr int most_outer_passes = 100;
 /// Motion: passes that keep more of the error than slow_convergence; more of them lead nowhere.
 constexpr int most_slow_passes = 6;
@@ -112,7 +114,12 @@ class Hard final : public Enforcement<N> {
     double last_way = std::numeric_limits<double>::infinity();  // [m] of the farthest block in the last pass
     double last_error = std::numeric_limits<double>::infinity();
     for (int pass = 0; pass < most_outer_passes; ++pass) {
-      newton_.solve(problem, springs_, solution, pass == 0 ? FirstTangent::last_step : FirstTangent::present);
+      if (pass == 0) {
+        newton_.solve(problem, springs_, solution);
+      } else {
+        // In statics the blocks are back in their places, where contacts remember their state.
+        newton_.solve_again(springs_, solution, problem.statics ? FirstTangent::present : FirstTangent::last_solution);
+      }
       if (!solution.converged) return;
       const double error = constraint_error(problem, solution);
       const double way = solution.d.template lpNorm<Eigen::Infinity>();
@@ -122,8 +129,7 @@ class Hard final : public Enforcement<N> {
       if (moves_on && error * tolerated(problem) <= std::min(problem.method.gap_tolerance, part_of_way * way)) return;
       if (!problem.statics && !compliant_.converged) compliant_ = solution;
       if (!problem.statics && error > slow_convergence * last_error) {
-        if (++slow_passes == 1) keep_deep_gaps(problem);
-        if (slow_passes > most_slow_passes) break;
+        if (++slow_passes > most_slow_passes) break;
       }
       for (std::size_t c = 0; c < springs_.size(); ++c) carry_on(problem, solution.contacts[c], springs_[c]);
       if (pass == 0) first = solution.d;
@@ -176,21 +182,13 @@ class Hard final : public Enforcement<N> {
     }
   }
 
-  /// Closed contacts that penetrate by more than passes can leave, as after a compliant step, keep their gaps from now on.
-  void keep_deep_gaps(const StepProblem<N>& problem) {
-    for (std::size_t c = 0; c < springs_.size(); ++c) {
-      const bool deep = springs_[c].gap < -incompatible_gaps * problem.method.gap_tolerance;
-      if (deep && problem.contacts[c].status != ContactStatus::open) springs_[c].target = springs_[c].gap;
-    }
-  }
-
   /// In motion a closed contact keeps the gap it has, so that standing still is always consistent, unless earlier steps have left more than they
   /// should; an open one closes to zero, and a penetration found on closing is pushed out slowly. In statics every contact goes back to zero gap.
   static double target_gap(const StepProblem<N>& problem, const Contact& contact) {
     if (problem.statics) return 0.0;
     const double level = contact.status == ContactStatus::open ? 0.0 : -kept_penetration * problem.method.gap_tolerance;
-    if (contact.status != ContactStatus::open && contact.gap >= level) return contact.gap;
-    return std::min(level, contact.gap + tolerance::hard_recovery_m_per_s * problem.dt);
+    if (contact.status == ContactStatus::open) return std::min(level, contact.gap + tolerance::hard_recovery_m_per_s * problem.dt);
+    return contact.gap >= level ? contact.gap : std::min(level, contact.gap + recovered_penetration * problem.method.gap_tolerance);
   }
 
   /// [m]
@@ -230,7 +228,7 @@ class Hard final : public Enforcement<N> {
     return sum;
   }
 
-  Newton<N> newton_;
+  Newton<N> newton_{Merit::all_blocks};
   std::vector<ContactSprings> springs_;
   StepSolution<N> compliant_;  ///< of this step
 };

@@ -24,8 +24,15 @@ namespace openclose {
 
 /// Which contact states the first tangent is made of.
 enum class FirstTangent {
-  last_step,  ///< those of the last step: contacts in their old places do what they did
-  present,    ///< those of the displacement that the iteration starts from
+  last_step,      ///< those of the last step: contacts in their old places do what they did
+  last_solution,  ///< those of the contacts that the solution has, whose forces are what the springs start from
+  present,        ///< those of the displacement that the iteration starts from
+};
+
+/// What a step of the iteration in motion must reduce. At rest it is always the first.
+enum class Merit {
+  worst_block,  ///< the largest residual of a block over what is tolerated
+  all_blocks,   ///< the work of all residuals on what inertia alone would let them move: a single block does not stop the others
 };
 
 template <int N>
@@ -35,9 +42,13 @@ class Newton {
  public:
   using Unknowns = typename Motion<N>::Unknowns;
 
+  explicit Newton(Merit merit = Merit::worst_block) : asked_merit_(merit) {}
+
   /// Solves for solution.d, starting from the value it has; fills its contacts. iterations is added to.
   void solve(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs, StepSolution<N>& solution,
              FirstTangent first = FirstTangent::last_step);
+  /// The step of the last solve() again, with springs that differ only in what they carry at its start and in the gaps they keep.
+  void solve_again(const std::vector<ContactSprings>& springs, StepSolution<N>& solution, FirstTangent first);
 
   /// Minus the derivative of all forces but inertia by the unknowns, at the start of the step, contacts in the status they have. Rows and columns of
   /// locked rotations are those of the unit matrix.
@@ -89,6 +100,9 @@ class Newton {
   /// Adapts holds_ to what an iteration has changed.
   void hold_changed(double norm);
   void prepare(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs);
+  /// The part of prepare() that solve_again() needs.
+  void prepare_start(const std::vector<ContactSprings>& springs);
+  void solve_prepared(StepSolution<N>& solution, FirstTangent first);
   void evaluate(const Eigen::VectorXd& d);
   /// Evaluates at the present position and keeps the forces.
   void sum_start_forces();
@@ -113,6 +127,12 @@ class Newton {
   void take_last_states();
   /// Contact c carries these forces in the next linear solve.
   void replace_forces(std::size_t c, const ContactForces& forces);
+  /// Contact c carries in the next linear solve what it would in this status around these forces.
+  void take_state(std::size_t c, ContactStatus status, double normal, double shear);
+  /// The same of branches_before_, around the forces that the springs start from.
+  void take_states_before();
+  /// What a step must reduce, with the residual_norm() that belongs to it.
+  double merit(double norm) const;
   double residual_norm() const;         ///< largest residual of a block over what is tolerated: converged at 1; infinite where that tells nothing
   double residual_norm(int row) const;  ///< of one block
   void assemble(const Eigen::VectorXd& d, Tangent tangent);
@@ -121,11 +141,12 @@ class Newton {
   /// spring is stiff the range of sticking is so narrow that the iteration would jump over it for ever.) Returns their number.
   int hold_reversed();
   double line_search(const Eigen::VectorXd& d, const Eigen::VectorXd& step, double slope);
-  /// Part of the exact step along which the residual falls as it should; 0 if none. Leaves the forces there.
-  double backtrack(const Eigen::VectorXd& d, const Eigen::VectorXd& step, double norm);
+  /// Part of the exact step along which the merit falls as it should; 0 if none. Leaves the forces there.
+  double backtrack(const Eigen::VectorXd& d, const Eigen::VectorXd& step, double merit_before);
   /// The means over the path go to the solution, the forces at its end take their place.
   void report_paths(StepSolution<N>& solution);
 
+  Merit asked_merit_;
   const StepProblem<N>* problem_ = nullptr;
   const std::vector<ContactSprings>* springs_ = nullptr;
   BatchKernels kernels_;
@@ -144,6 +165,7 @@ class Newton {
   Eigen::VectorXd residual_;
   double force_scale_ = 0.0;
   double start_scale_ = 0.0;  ///< [N] largest single force at the start of the step, that of the inertia included
+  double block_scale_ = 0.0;  ///< [N] the same of what acts on blocks without contacts
   TangentSystem<N> tangent_;
   Neighbourhood neighbourhood_;   ///< of this step, once it is needed
   std::unique_ptr<Newton> part_;  ///< takes one part after the other

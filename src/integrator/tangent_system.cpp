@@ -48,18 +48,19 @@ void TangentSystem<N>::fit_pattern(const StepProblem<N>& problem) {
       couplings.push_back(coupling);  // a pair's contacts are neighbours
   }
   kind_ = problem.method.linear_solver;
-  factoring_ = problem.method.skip_factorisation ? Factoring::needed : Factoring::whole;
+  choose_factoring(problem.method);
   set_pattern(rows, couplings);
   find_slots(problem.contacts.size(), rows_of);
 }
 
 template <int N>
-void TangentSystem<N>::fit_part(int rows, const std::vector<std::pair<int, int>>& contacts) {
+void TangentSystem<N>::fit_part(const MethodInput& method, int rows, const std::vector<std::pair<int, int>>& contacts) {
   std::vector<std::pair<int, int>> couplings;
   for (const auto& [i, j] : contacts) {
     const std::pair<int, int> coupling = std::minmax(i, j);
     if (coupling.first >= 0 && (couplings.empty() || couplings.back() != coupling)) couplings.push_back(coupling);
   }
+  choose_factoring(method);
   solver_ = nullptr;
   set_pattern(rows, couplings);
   find_slots(contacts.size(), [&](std::size_t c) { return contacts[c]; });
@@ -70,6 +71,11 @@ void TangentSystem<N>::set_pattern(int rows, const std::vector<std::pair<int, in
   matrix_.set_pattern(rows, couplings);
   slots_.clear();
   if (!solver_) choose_solver(rows);
+}
+
+template <int N>
+void TangentSystem<N>::choose_factoring(const MethodInput& method) {
+  factoring_ = method.skip_factorisation ? Factoring::needed : Factoring::whole;
 }
 
 template <int N>

@@ -15,7 +15,7 @@ class TangentSystem {
 
   /// The same for a system of `rows` blocks that has nothing to do with the last one.
   /// \param contacts  the rows of the blocks of each, -1 without
-  void fit_part(int rows, const std::vector<std::pair<int, int>>& contacts);
+  void fit_part(const MethodInput& method, int rows, const std::vector<std::pair<int, int>>& contacts);
 
   /// Of the contacts in order, and of nothing up to the end of the last batch.
   const std::vector<ContactSlots>& slots() const { return slots_; }
@@ -36,6 +36,7 @@ class TangentSystem {
   template <class RowsOf>
   bool find_slots(std::size_t count, const RowsOf& rows_of);
   void set_pattern(int rows, const std::vector<std::pair<int, int>>& couplings);
+  void choose_factoring(const MethodInput& method);
   void choose_solver(int rows);
 
   BlockMatrix<N> matrix_;

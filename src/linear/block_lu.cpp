@@ -13,8 +13,8 @@
 //
 // From matrix to matrix most rows stay as they are but for the turning of blocks. A row of the factor whose own row of the matrix has changed by no
 // more than it may, and which subtracts only rows that are kept, is kept: the factor is always that of a matrix each of whose rows is as it was when
-// it was last taken. And weak couplings are left out of the factor (weak_couplings.h): what they carry is found by iteration, whose residual they
-// are.
+// it was last taken. Putting rows last that change in nearly every matrix gains nothing: those that change now and then lie anywhere. And weak
+// couplings are left out of the factor (weak_couplings.h): what they carry is found by iteration, whose residual they are.
 #include <Eigen/LU>
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseCore>
@@ -236,8 +236,10 @@ bool invert(PaddedBlock<N>& pivot, double original_size) {
   return block.allFinite();
 }
 
-OPENCLOSE_KERNEL Lanes load(const double* entries) {
-  return *reinterpret_cast<const LooseLanes*>(entries);
+/// Adds to `all` whether the four entries differ by no more than the root of what is allowed.
+OPENCLOSE_KERNEL void compare(const double* now, const double* taken, const Lanes& allowed_square, decltype(Lanes{} <= Lanes{}) & all) {
+  const Lanes difference = *reinterpret_cast<const LooseLanes*>(now) - *reinterpret_cast<const LooseLanes*>(taken);
+  all &= difference * difference <= allowed_square;
 }
 
 /// Whether no entry of row i has changed by more than `change` times the root of the diagonal entries of its row and column.
@@ -245,18 +247,16 @@ template <int N>
 OPENCLOSE_KERNEL bool is_as_taken(const BlockMatrix<N>& matrix, const Factor<N>& f, int i, double change) {
   static_assert(N == 3, "the nine entries of a block, column by column, are two registers and one");
   const Lanes s = change * change * f.scale[i].entries;
-  const Lanes rows[] = {{s[0], s[1], s[2], s[0]}, {s[1], s[2], s[0], s[1]}};
+  const Lanes first_rows = {s[0], s[1], s[2], s[0]}, next_rows = {s[1], s[2], s[0], s[1]};
   auto within = s <= s;
   bool last_within = true;
   for (int e = f.entries_start[i]; e < f.entries_start[i + 1]; ++e) {
     const Lanes c = f.scale[f.entries[e].column].entries;
-    const Lanes columns[] = {{c[0], c[0], c[0], c[1]}, {c[1], c[1], c[2], c[2]}};
+    const Lanes first_columns = {c[0], c[0], c[0], c[1]}, next_columns = {c[1], c[1], c[2], c[2]};
     const double* const now = matrix.value(f.entries[e].slot).data();
     const double* const taken = f.taken[e].data();
-    for (int part = 0; part < 2; ++part) {
-      const Lanes difference = load(now + lanes * part) - load(taken + lanes * part);
-      within &= difference * difference <= rows[part] * columns[part];
-    }
+    compare(now, taken, first_rows * first_columns, within);
+    compare(now + lanes, taken + lanes, next_rows * next_columns, within);
     const double last = now[N * N - 1] - taken[N * N - 1];
     last_within = last_within && last * last <= s[N - 1] * c[N - 1];
   }

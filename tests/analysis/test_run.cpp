@@ -365,17 +365,20 @@ TEST_CASE("settling tells how far it is", "[analysis][run]") {
   CHECK(shares.back() == 1.0);
 }
 
-TEST_CASE("steps of hard that had to be compliant do not spoil those after them", "[analysis][run][hard]") {
-  // Gravity comes at once on a slope whose strength is not enough, in steps so long that the first ones find no multipliers. What the springs of
-  // these leave between the blocks cannot be pushed out everywhere.
-  Scene scene = read_scene(std::string(OPENCLOSE_PAPER_SCENES) + "/example_3_4_post_failure.toml");
-  scene.method.contact = "hard";
-  scene.method.start = Start::unloaded;
-  scene.step.dt = 0.02;
-  scene.end_time = 0.5;
-  Simulation<3> simulation(scene);
-  REQUIRE(run<3>(simulation, {}).converged);
-  const StepCounters& counters = simulation.step_counters();
-  REQUIRE(counters.compliant > 0);
-  CHECK(2 * counters.compliant < counters.steps);
+TEST_CASE("hard takes a slope that gravity meets at once in long steps, none of them compliant", "[analysis][run][hard]") {
+  // Thousands of contacts change their states in the first steps.
+  const auto counters = [](const std::string& contact) {
+    Scene scene = read_scene(std::string(OPENCLOSE_PAPER_SCENES) + "/example_3_4_post_failure.toml");
+    scene.method.contact = contact;
+    scene.method.start = Start::unloaded;
+    scene.step.dt = 0.02;
+    scene.end_time = 0.5;
+    Simulation<3> simulation(scene);
+    REQUIRE(run<3>(simulation, {}).converged);
+    if (contact == "hard") CHECK(simulation.max_penetration() < 1.5 * scene.method.gap_tolerance);
+    return simulation.step_counters();
+  };
+  const StepCounters hard = counters("hard"), soft = counters("soft");
+  CHECK(hard.compliant == 0);
+  CHECK(hard.iterations < 2 * soft.iterations);  // an iteration of hard, without dashpots and with fewer contacts closed, is the cheaper one
 }

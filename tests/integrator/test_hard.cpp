@@ -129,6 +129,25 @@ TEST_CASE("the slack of a rigid contact at rest is the gap that springs would le
   CHECK(parted == 2);
 }
 
+TEST_CASE("a closed contact that penetrates is pushed out by no more than passes may miss", "[integrator][hard]") {
+  Scene scene = settling();
+  scene.method.contact = "hard";
+  Simulation<3> simulation(scene);
+  REQUIRE(settle(simulation).settled);
+  const StepProblem<3> problem = simulation.problem(scene.step.dt, false);
+  Contact contact = problem.contacts.front();
+  REQUIRE(contact.status != ContactStatus::open);
+  const auto push = [&](double gap) {
+    contact.gap = gap;
+    const ContactSprings springs = simulation.enforcement().springs(problem, contact);
+    return springs.target - springs.gap;
+  };
+  const double tolerance = scene.method.gap_tolerance;
+  CHECK(push(-0.4 * tolerance) == 0.0);
+  CHECK(push(-0.7 * tolerance) == Approx(0.2 * tolerance).epsilon(1e-9));  // back to what it may keep, half the tolerance
+  CHECK(push(-100.0 * tolerance) == Approx(0.5 * tolerance).epsilon(1e-9));
+}
+
 TEST_CASE("soft contacts close by what their stiffness says", "[integrator][soft]") {
   const Outcome a = outcome(settling(), "soft", 1.0), b = outcome(settling(), "soft", 0.5);
   const double closure = test::block_weight / (1e9 * test::block_edge);
