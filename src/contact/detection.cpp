@@ -140,6 +140,11 @@ class Detector<N>::ContactIndex {
   void add(const Range& range) {
     for (int i = range.begin; i < range.end; ++i) add((*contacts_)[i]);
   }
+  /// Gives back what the contacts that move have taken.
+  void let_go() {
+    entries_.resize(resting_entries_);
+    entries_.shrink_to_fit();
+  }
   /// Other contacts are at rest than before.
   void forget_resting() { knows_resting_ = false; }
 
@@ -970,6 +975,7 @@ bool Detector<N>::update(const BlockSystem<N>& system, const JointTable& joints,
   for (const int pair : due_pairs_) redo(joints, system, pair, narrow, contacts);
   if (!first_) pass_on_history(system, contacts);
   put_in_place(contacts, orphans);
+  if (due_pairs_.size() == pairs_.size()) index_->let_go();  // later ones are few
   first_ = false;
   return true;
 }

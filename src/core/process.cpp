@@ -6,6 +6,10 @@
 
 #include "openclose/core/parallel.h"
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
 namespace openclose {
 namespace {
 
@@ -31,6 +35,12 @@ long peak_memory() {
     if (word == "VmHWM:" && status >> value) return bytes_per_unit * value;
   }
   return 0;
+}
+
+void return_freed_memory() {
+#ifdef __GLIBC__
+  malloc_trim(0);
+#endif
 }
 
 }  // namespace openclose

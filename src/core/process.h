@@ -9,5 +9,7 @@ double process_cpu_time();
 double wall_time();
 /// [bytes] Largest resident memory since the program was loaded; 0 where /proc does not tell.
 long peak_memory();
+/// Gives what has been freed, and lies between memory in use, back to the system. Nothing where the C library has no way to.
+void return_freed_memory();
 
 }  // namespace openclose

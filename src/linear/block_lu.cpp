@@ -24,6 +24,7 @@
 #include <limits>
 
 #include "openclose/core/parallel.h"
+#include "openclose/core/process.h"
 #include "openclose/linear/elimination.h"
 #include "openclose/linear/solver.h"
 #include "openclose/linear/weak_couplings.h"
@@ -47,6 +48,10 @@ constexpr int subtree_parts = 2 * most_threads;
 /// [-] Rows of the top that are eliminated one after the other before the others go on: a part of the work small against the rest, and large against
 /// a call upon the threads.
 constexpr int panel_rows = 32;
+
+/// [bytes] Before room is made for a larger factor, freed memory goes back to the system. For smaller ones that costs more time than the memory is
+/// worth: 0.1 ms of finding it and touching it again.
+constexpr std::size_t largest_factor_beside_holes_bytes = 4u << 20;
 
 /// Iterations for the couplings left out, each of which leaves a part of the residual that is about their strength over the inertia of the blocks; in
 /// motion two are enough for 1e-7. Where more are needed, these couplings are no weak ones.
@@ -429,6 +434,12 @@ class BlockLuSolver : public LinearSolver<N> {
     return solve_once(right_side, reduction);
   }
 
+  void let_go() override {
+    has_factor_ = use_fronts_ = false;
+    let_go_of_rows();
+    let_go_of_fronts();
+  }
+
   void exchange(Archive& archive, const BlockMatrix<N>& matrix) override {
     LinearSolver<N>::exchange(archive, matrix);
     bool known = version_ == matrix.pattern_version(), has_factor = has_factor_;
@@ -584,7 +595,12 @@ class BlockLuSolver : public LinearSolver<N> {
 
   /// For the numbers of the factor.
   void make_room() {
-    if (factor_.value.capacity() < factor_.column.size()) let_go_of_rows();  // else the old and the new ones would be there at once
+    const std::size_t size = factor_.column.size();
+    if (factor_.value.capacity() < size) {
+      let_go_of_rows();  // else the old and the new ones would be there at once
+      // Ordering and pattern have left holes too small for the factor.
+      if (size * sizeof(PaddedBlock<N>) > largest_factor_beside_holes_bytes) return_freed_memory();
+    }
     factor_.value.resize(factor_.column.size());
   }
 

@@ -57,6 +57,8 @@ class LinearSolver {
   virtual Eigen::VectorXd solve(const Eigen::VectorXd& right_side, double reduction) = 0;
   Eigen::VectorXd solve(const Eigen::VectorXd& right_side) { return solve(right_side, full_reduction); }
   const LinearCounters& counters() const { return counters_; }
+  /// Gives back the memory of a factor that is not needed for a while; the next factor() starts anew. Not where later matrices are solved with it.
+  virtual void let_go() {}
   /// That share the work where it is worth it; the results are the same to the last bit.
   virtual void use_threads(int threads) { threads_ = threads; }
   /// What the next solves depend on; the symbolic work is done again after reading.

@@ -2,12 +2,29 @@
 
 #include <algorithm>
 #include <ctime>
+#include <fstream>
+#include <memory>
+#include <string>
 #include <vector>
 
 #include "openclose/core/process.h"
 #include "support/catch.h"
 
 using namespace openclose;
+
+namespace {
+
+/// [bytes] 0 where /proc does not tell.
+long resident_memory() {
+  std::ifstream status("/proc/self/status");
+  for (std::string word; status >> word;) {
+    long value = 0;
+    if (word == "VmRSS:" && status >> value) return 1024 * value;
+  }
+  return 0;
+}
+
+}  // namespace
 
 TEST_CASE("the clock of the process is fine also under a limit of CPU time", "[core][process]") {
   // With a limit the kernel's clock of the process moves by ticks of milliseconds.
@@ -45,3 +62,20 @@ TEST_CASE("peak memory counts what was there and is gone", "[core][process]") {
   CHECK(peak_memory() - before > static_cast<long>(bytes) * 9 / 10);
   CHECK(peak_memory() - before < static_cast<long>(bytes) * 12 / 10);
 }
+
+#ifdef __GLIBC__
+TEST_CASE("memory that was freed between what is in use goes back", "[core][process]") {
+  if (resident_memory() == 0) return;  // no /proc here
+  // Small enough to come from the heap, and every tenth stays, so that the heap cannot shrink.
+  constexpr std::size_t bytes = 64u << 10, count = 500, kept = 10;
+  std::vector<std::unique_ptr<std::vector<char>>> pieces;
+  for (std::size_t i = 0; i < count; ++i) pieces.push_back(std::make_unique<std::vector<char>>(bytes, 1));
+  for (std::size_t i = 0; i < count; ++i) {
+    if (i % kept != kept - 1) pieces[i].reset();
+  }
+  const long before = resident_memory();
+  return_freed_memory();
+  CHECK(before - resident_memory() > static_cast<long>(bytes * count) / 2);
+  CHECK(std::count(pieces[kept - 1]->begin(), pieces[kept - 1]->end(), 1) == static_cast<long>(bytes));
+}
+#endif

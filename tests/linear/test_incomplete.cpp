@@ -24,6 +24,21 @@ BlockMatrix<3> moving(BlockMatrix<3> matrix, double inertia = 1.0) {
   return matrix;
 }
 
+/// Tells what is asked of a block solver.
+class WatchedSolver : public LinearSolver<3> {
+ public:
+  bool factor(const BlockMatrix<3>& matrix, double kept_change) override { return real_->factor(matrix, kept_change); }
+  Eigen::VectorXd solve(const Eigen::VectorXd& right_side, double reduction) override { return real_->solve(right_side, reduction); }
+  void let_go() override {
+    ++times_let_go;
+    real_->let_go();
+  }
+  int times_let_go = 0;
+
+ private:
+  std::unique_ptr<LinearSolver<3>> real_ = make_block_solver<3>();
+};
+
 auto make_solver_for_all_sizes() {
   return make_incomplete_solver<3>(make_block_solver<3>(), 0);
 }
@@ -137,6 +152,52 @@ TEST_CASE("small systems and those that inertia does not hold are factored", "[l
   for (int i = 0; i < 12; ++i) CHECK(relative_residual(in_motion, solve(in_motion), right_side) <= 1.001 * full_reduction);
   CHECK(solver->counters().incomplete == 8);
   CHECK(solver->counters().krylov_given_up == 4);
+}
+
+TEST_CASE("a factor that was let go of is made again", "[linear][incomplete]") {
+  RandomSystems random(46);
+  const BlockMatrix<3> matrix = grid(60, 50);
+  const Eigen::VectorXd right_side = random.vector(matrix.unknowns());
+  const auto solver = make_block_solver<3>();
+  REQUIRE(solver->factor(matrix));
+  const Eigen::VectorXd expected = solver->solve(right_side);
+  for (int i = 0; i < 2; ++i) {
+    solver->let_go();
+    REQUIRE(solver->factor(matrix));
+    CHECK(solver->solve(right_side) == expected);
+  }
+  CHECK(solver->counters().symbolic == 1);
+  CHECK(solver->counters().rows_kept == 0);
+}
+
+TEST_CASE("a direct factor goes when it is not needed, after twice as long each time that it was needed again", "[linear][incomplete]") {
+  RandomSystems random(47);
+  const BlockMatrix<3> at_rest = grid(60, 50), in_motion = moving(at_rest);
+  const Eigen::VectorXd right_side = random.vector(at_rest.unknowns());
+  auto owned = std::make_unique<WatchedSolver>();
+  const WatchedSolver& direct = *owned;
+  const auto solver = make_incomplete_solver<3>(std::move(owned), 0);
+  const auto solve = [&](const BlockMatrix<3>& m) {
+    REQUIRE(solver->factor(m));
+    CHECK(relative_residual(m, solver->solve(right_side), right_side) <= 1.001 * full_reduction);
+  };
+  const auto solves_until_it_goes = [&] {
+    const int before = direct.times_let_go;
+    int solves = 0;
+    // In the pauses the direct solver is at work.
+    for (long tried = solver->counters().incomplete; direct.times_let_go == before && solves < 100; tried = solver->counters().incomplete) {
+      solve(in_motion);
+      solves += solver->counters().incomplete > tried ? 1 : 0;
+    }
+    return solves;
+  };
+  CHECK(solves_until_it_goes() == 4);
+  solve(in_motion);
+  CHECK(direct.times_let_go == 1);
+  solve(at_rest);
+  CHECK(solves_until_it_goes() == 8);
+  solve(at_rest);
+  CHECK(solves_until_it_goes() == 16);
 }
 
 TEST_CASE("a singular matrix has no solution, also after an incomplete factor", "[linear][incomplete]") {
