@@ -30,7 +30,7 @@ class Trial:
     dt: float | None = None
     starts: tuple[Case, ...] = ()  # instead of repeats of the case: the same from slightly different starts, the case itself first
     steps_before: int = 0       # of settling, which are not part of the cost
-    iterations_before: int = 0
+    iterations_before: float = 0
 
 
 @dataclass
@@ -43,7 +43,7 @@ class Row:
     contacts: int | None
     dt_s: float | None
     steps: int | None
-    iterations: int | None  # of Newton's method, and steps of relaxation
+    iterations: float | None  # of Newton's method, those of parts by the part of the rows that they have; and steps of relaxation
     cpu_s: float | None
     error: float | None
     max_penetration_m: float | None
@@ -144,7 +144,7 @@ class Bench:
             contacts=closed_contacts(self.openclose, trial.case) if counters else None,
             dt_s=dt,
             steps=None if steps is None else steps - trial.steps_before,
-            iterations=None if steps is None else counters["iterations"] + counters["relaxation_steps"] - trial.iterations_before,
+            iterations=None if steps is None else _iterations(first) - trial.iterations_before,
             cpu_s=statistics.median(cpu) if cpu else None,
             error=error,
             max_penetration_m=first.get("max_penetration_m"),
@@ -156,6 +156,11 @@ class Bench:
             error_of=trial.error_of,
             reason=reason,
         )
+
+
+def _iterations(summary: dict) -> float:
+    counters = summary["counters"]
+    return counters["iterations"] + counters["part_rows"] / summary["free_blocks"] + counters["relaxation_steps"]
 
 
 def _reason(summary: dict) -> str:

@@ -86,7 +86,7 @@ def _comparison(bench: Bench, study: str) -> str:
 def _all_runs(bench: Bench, study: str) -> str:
     head = ["scene", "method", "dt [s]", "steps", "iterations", "CPU [ms]", "spread", "error", "deepest [m]"]
     return "\n" + _rows(bench.of(study), head, lambda r: [
-        r.scene, r.method, number(r.dt_s), str(r.steps), str(r.iterations), number(1e3 * r.cpu_s), _spread(r), number(r.error),
+        r.scene, r.method, number(r.dt_s), str(r.steps), number(r.iterations), number(1e3 * r.cpu_s), _spread(r), number(r.error),
         number(r.max_penetration_m)])
 
 

@@ -22,6 +22,7 @@ struct StepCounters {
   long iterations = 0;                  ///< linear solves of the whole system, thrown-away attempts included
   long parts = 0;                       ///< of the system, solved for themselves between these
   long part_iterations = 0;             ///< linear solves of parts
+  long part_rows = 0;                   ///< block rows in these
   long relaxation_steps = 0;            ///< evaluations of all forces in static steps that are relaxed, thrown-away attempts included
   long compliant = 0;                   ///< steps of `hard` whose multipliers did not converge: taken with springs
   long dissipative = 0;                 ///< steps of path_average that found a solution only with dissipation
@@ -39,12 +40,13 @@ struct StepCounters {
     iterations += effort.iterations;
     parts += effort.parts;
     part_iterations += effort.part_iterations;
+    part_rows += effort.part_rows;
     relaxation_steps += effort.relaxation_steps;
   }
 
   void exchange(Archive& archive) {
-    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r] = *this;
-    archive(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r);
+    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s] = *this;
+    archive(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s);
   }
 };
 

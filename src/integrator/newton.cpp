@@ -475,7 +475,8 @@ double Newton<N>::solve_parts(StepSolution<N>& solution, double norm) {
   const Until until{std::max(1.0, linear_reduction * norm), problem_->method.max_iterations};
   if (!part_) part_ = std::make_unique<Newton>(asked_merit_);
   trial_ = solution.d;
-  double work = 0.0;  // rows of all linear solves
+  const long most_rows = static_cast<long>(work_on_parts * static_cast<double>(blocks_.size()));
+  long rows = 0;  // of all linear solves
   for (const Part& part : parts) {
     part_->take_part(*this, part);
     StepSolution<N> found;
@@ -486,9 +487,10 @@ double Newton<N>::solve_parts(StepSolution<N>& solution, double norm) {
     for (std::size_t i = 0; i < part.rows.size(); ++i) trial_.template segment<N>(N * part.rows[i]) = found.d.template segment<N>(N * i);
     ++solution.effort.parts;
     solution.effort.part_iterations += found.effort.iterations;
-    work += static_cast<double>(found.effort.iterations) * static_cast<double>(part.rows.size());
-    if (work > work_on_parts * static_cast<double>(blocks_.size())) break;
+    rows += static_cast<long>(found.effort.iterations) * static_cast<long>(part.rows.size());
+    if (rows > most_rows) break;
   }
+  solution.effort.part_rows += rows;
   evaluate(trial_);
   const double norm_with_parts = residual_norm();
   if (norm_with_parts < norm) {

@@ -286,6 +286,7 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
                    {"iterations", steps.iterations},
                    {"parts", steps.parts},
                    {"part_iterations", steps.part_iterations},
+                   {"part_rows", steps.part_rows},
                    {"relaxation_steps", steps.relaxation_steps},
                    {"searches", detection.searches},
                    {"searches_skipped", detection.searches_skipped},

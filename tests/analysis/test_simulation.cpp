@@ -241,6 +241,7 @@ TEST_CASE("iterating only where forces are far from balance changes no more than
     CHECK(all.step_counters().parts == 0);
     CHECK(skipping.step_counters().parts > 0);
     CHECK(skipping.step_counters().part_iterations >= skipping.step_counters().parts);
+    CHECK(skipping.step_counters().part_rows >= skipping.step_counters().part_iterations);
     CHECK(skipping.step_counters().iterations < all.step_counters().iterations);
   }
 }

@@ -320,6 +320,7 @@ TEST_CASE("summary.json has counters under their own names", "[io][results]") {
                                                 {"iterations", steps.iterations},
                                                 {"parts", steps.parts},
                                                 {"part_iterations", steps.part_iterations},
+                                                {"part_rows", steps.part_rows},
                                                 {"relaxation_steps", steps.relaxation_steps},
                                                 {"searches", detection.searches},
                                                 {"searches_skipped", detection.searches_skipped},
