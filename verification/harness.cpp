@@ -28,7 +28,7 @@ class NullEnforcement : public Enforcement<unknowns> {
   bool takes_adaptive_steps() const override { return real_->takes_adaptive_steps(); }
   std::unique_ptr<TimeScheme<unknowns>> make_time_scheme(const MethodInput& method) const override { return real_->make_time_scheme(method); }
   bool has_elastic_contacts() const override { return real_->has_elastic_contacts(); }
-  const LinearCounters& linear_counters() const override { return real_->linear_counters(); }
+  LinearCounters linear_counters() const override { return real_->linear_counters(); }
 
  private:
   std::unique_ptr<Enforcement<unknowns>> real_;

@@ -54,7 +54,7 @@ class Dem : public Enforcement<N> {
     return make_central_difference_scheme<N>();
   }
   bool is_explicit() const override { return true; }
-  const LinearCounters& linear_counters() const override { return counters_; }
+  LinearCounters linear_counters() const override { return counters_; }
 
  private:
   /// Springs and dashpots of a contact after the blocks have moved, with the velocities of the middle of the last step.

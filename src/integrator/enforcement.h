@@ -120,7 +120,7 @@ class Enforcement {
   /// true: steps need no equations to be solved but must stay below the critical one; Simulation takes them by CentralDifference.
   virtual bool is_explicit() const { return false; }
   virtual double step_cut(const MethodInput&) const { return 0.5; }  ///< factor on a step that failed
-  virtual const LinearCounters& linear_counters() const = 0;
+  virtual LinearCounters linear_counters() const = 0;
   /// Hands over what it keeps from step to step and what would change a result, be it in the last bit.
   virtual void exchange(Archive&) {}
 };
@@ -166,6 +166,7 @@ inline void refuse_integrators(const MethodInput& method) {
   refuse(method.theta.value_or(1.0) != 1.0, "method.theta");
   refuse(method.rho_inf.has_value(), "method.rho_inf");
   refuse(method.dissipation.has_value(), "method.dissipation");
+  refuse(method.static_solver != StaticSolver::automatic, "method.static_solver");
 }
 
 }  // namespace openclose

@@ -77,7 +77,7 @@ class Hard final : public Enforcement<N> {
     return make_midstep_scheme<N>();
   }
   bool has_elastic_contacts() const override { return false; }
-  const LinearCounters& linear_counters() const override { return newton_.linear_counters(); }
+  LinearCounters linear_counters() const override { return newton_.linear_counters(); }
   void exchange(Archive& archive) override { newton_.exchange(archive); }
 
  private:

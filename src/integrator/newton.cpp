@@ -485,6 +485,7 @@ double Newton<N>::solve_parts(StepSolution<N>& solution, double norm) {
     double norm_of_part = part_->residual_norm();
     part_->iterate(*problem_, found, norm_of_part, until, false);
     for (std::size_t i = 0; i < part.rows.size(); ++i) trial_.template segment<N>(N * part.rows[i]) = found.d.template segment<N>(N * i);
+    part_counters_ += part_->tangent_.counters();
     ++solution.effort.parts;
     solution.effort.part_iterations += found.effort.iterations;
     rows += static_cast<long>(found.effort.iterations) * static_cast<long>(part.rows.size());

@@ -51,13 +51,13 @@ class Newton {
 
   explicit Newton(Merit merit = Merit::worst_block) : asked_merit_(merit) {}
 
-  /// Solves for solution.d, starting from the value it has; fills its contacts. iterations is added to.
+  /// Solves for solution.d, starting from the value it has; fills its contacts. effort is added to.
   void solve(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs, StepSolution<N>& solution,
              FirstTangent first = FirstTangent::last_step);
   /// The step of the last solve() again, with springs that differ only in what they carry at its start and in the gaps they keep.
   void solve_again(const std::vector<ContactSprings>& springs, StepSolution<N>& solution, FirstTangent first);
 
-  /// The same for a static step, by relaxation; relaxation_steps is added to instead. What friction holds in the end depends on the way there.
+  /// The same for a static step, by relaxation. What friction holds in the end depends on the way there.
   void relax(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs, StepSolution<N>& solution);
 
   /// Minus the derivative of all forces but inertia by the unknowns, at the start of the step, contacts in the status they have. Rows and columns of
@@ -68,8 +68,12 @@ class Newton {
   Eigen::VectorXd forces(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs);
 
   double force_scale() const { return force_scale_; }  ///< [N] largest single force in the last evaluation
-  void exchange(Archive& archive) { tangent_.exchange(archive); }
-  const LinearCounters& linear_counters() const { return tangent_.counters(); }
+  void exchange(Archive& archive) {
+    tangent_.exchange(archive);
+    archive(part_counters_);
+  }
+  /// Those of parts included.
+  LinearCounters linear_counters() const { return LinearCounters(tangent_.counters()) += part_counters_; }
 
  private:
   enum class Tangent { exact, symmetric };
@@ -113,6 +117,8 @@ class Newton {
   TwoLevelFlexibility flexibility(const Eigen::VectorXd& d) const;
   /// The springs of contacts that slide or are open slip to where they carry what these carry now.
   void keep_slip();
+  /// Contacts that have slipped in the step as a whole have slid, for what loses its strength by that, though they stick on what they have kept.
+  void note_slip(const std::vector<ContactSprings>& springs);
   /// Whether a block has gone so far that the step will be refused.
   bool has_left(const Eigen::VectorXd& d) const;
   void prepare(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs);
@@ -185,6 +191,7 @@ class Newton {
   TangentSystem<N> tangent_;
   Neighbourhood neighbourhood_;   ///< of this step, once it is needed
   std::unique_ptr<Newton> part_;  ///< takes one part after the other
+  LinearCounters part_counters_;
   bool is_part_ = false;
   std::vector<ContactSprings> part_springs_;  ///< of a part: its own springs_
 };

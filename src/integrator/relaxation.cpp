@@ -77,6 +77,15 @@ void Newton<N>::keep_slip() {
 }
 
 template <int N>
+void Newton<N>::note_slip(const std::vector<ContactSprings>& springs) {
+  for (std::size_t c = 0; c < contact_count_; ++c) {
+    if (status(branches_[c]) != ContactStatus::sticking) continue;
+    const ContactForces law = spring_slider(springs[c], start(c).strength(lane(c)), trial(c).gap_change[lane(c)], trial(c).slip_change[lane(c)]);
+    if (law.status == ContactStatus::sliding) branches_[c] = branch(law);
+  }
+}
+
+template <int N>
 bool Newton<N>::has_left(const Eigen::VectorXd& d) const {
   for (std::size_t i = 0; i < blocks_.size(); ++i) {
     const double way = Motion<N>::displacement_bound(d.template segment<N>(N * static_cast<int>(i)), blocks_[i].radius);
@@ -112,6 +121,7 @@ void Newton<N>::relax(const StepProblem<N>& problem, const std::vector<ContactSp
   }
   solution.converged = norm <= 1.0;
   if (!solution.converged) solution.reason = "relaxation did not come to rest";
+  note_slip(springs);
   solution.paths.clear();
   solution.contacts.borrow(trials_, branches_, springs);
 }

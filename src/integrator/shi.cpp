@@ -51,7 +51,7 @@ class Shi : public Enforcement<N> {
   }
   bool follows_gaps() const override { return false; }  // they add up first-order changes
   double step_cut(const MethodInput& method) const override { return method.step_cut; }
-  const LinearCounters& linear_counters() const override { return tangent_.counters(); }
+  LinearCounters linear_counters() const override { return tangent_.counters(); }
   void exchange(Archive& archive) override { tangent_.exchange(archive); }
 
  private:

@@ -49,7 +49,7 @@ class Soft final : public Enforcement<N> {
 
   bool takes_adaptive_steps() const override { return true; }
   std::unique_ptr<TimeScheme<N>> make_time_scheme(const MethodInput& method) const override { return make_integrator<N>(method); }
-  const LinearCounters& linear_counters() const override { return newton_.linear_counters(); }
+  LinearCounters linear_counters() const override { return newton_.linear_counters(); }
   void exchange(Archive& archive) override { newton_.exchange(archive); }
 
  private:

@@ -60,6 +60,7 @@ void TangentSystem<N>::fit_part(const MethodInput& method, int rows, const std::
     const std::pair<int, int> coupling = std::minmax(i, j);
     if (coupling.first >= 0 && (couplings.empty() || couplings.back() != coupling)) couplings.push_back(coupling);
   }
+  kind_ = method.linear_solver;
   choose_factoring(method);
   solver_ = nullptr;
   set_pattern(rows, couplings);

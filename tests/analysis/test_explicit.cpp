@@ -402,6 +402,10 @@ TEST_CASE("dem refuses what has no meaning for it", "[analysis][explicit]") {
     scene.method.statics = true;
     CHECK_THROWS_WITH(Simulation<3>(scene), Catch::Matchers::ContainsSubstring("method.statics"));
   }
+  SECTION("relaxation") {
+    scene.method.static_solver = StaticSolver::relaxation;
+    CHECK_THROWS_WITH(Simulation<3>(scene), Catch::Matchers::ContainsSubstring("method.static_solver"));
+  }
   SECTION("linear rotation") {
     scene.method.rotation = RotationKind::linear;
     CHECK_THROWS_WITH(Simulation<3>(scene), Catch::Matchers::ContainsSubstring("method.rotation"));

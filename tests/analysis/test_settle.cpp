@@ -2,6 +2,7 @@
 #include <string>
 
 #include "openclose/analysis/settle.h"
+#include "openclose/analysis/strength_reduction.h"
 #include "openclose/integrator/registry.h"
 #include "openclose/scene/reader.h"
 #include "support/catch.h"
@@ -61,7 +62,7 @@ class RunsAwayOnce : public Enforcement<3> {
     if (++solved_ == 2) solution.d.setConstant(1e65);
   }
   std::unique_ptr<TimeScheme<3>> make_time_scheme(const MethodInput& method) const override { return real_->make_time_scheme(method); }
-  const LinearCounters& linear_counters() const override { return real_->linear_counters(); }
+  LinearCounters linear_counters() const override { return real_->linear_counters(); }
 
  private:
   std::unique_ptr<Enforcement<3>> real_;
@@ -272,6 +273,16 @@ TEST_CASE("relaxation finds the places of rest without linear equations", "[anal
       Simulation<3> simulation(relaxed(test::block_on_incline(slope * test::degree)));
       CHECK(settle(simulation).settled == (slope < 30.0));
     }
+  }
+  SECTION("a contact that slips on the way has lost its cohesion in the end") {
+    // Plane failure of a wedge whose two contacts share its weight unequally. Slip that was taken for granted would leave the upper one its bond
+    // up to the factor of a ductile cohesion, 1.326; the other statics find 1.262.
+    const std::vector<std::string> brittle = {"joint[0].cohesion_pa=20000", "joint[0].cohesion_behaviour='lost_on_slip'"};
+    const Scene scene = read_scene(std::string(OPENCLOSE_PAPER_SCENES) + "/example_3_2.toml", brittle);
+    Simulation<3> newton(scene), simulation(relaxed(scene));
+    const double expected = factor_of_safety<3>(newton).stable, found = factor_of_safety<3>(simulation).stable;
+    CHECK(found == Approx(expected).epsilon(2e-3));  // the wedge slips a little farther on the way to rest: 0.1 %
+    CHECK(found <= expected);
   }
   SECTION("a slope whose joints all hold, where nothing depends on the way") {
     Scene scene = slope(40.0, 10.0);
