@@ -49,7 +49,7 @@ FOLLOWERS = (
 QUICK_FOLLOWER_STEPS = 2
 LARGE_FOLLOWERS = (
     *(Follower(method, (0.02,)) for method in (SOFT_SHI, SOFT_PATH_AVERAGE, HARD)),
-    Follower(ADAPTIVE[0], (1e-4, 3e-5), "step.error_tolerance_m"),
+    Follower(ADAPTIVE[0], (3e-4, 1e-4), "step.error_tolerance_m"),
     Follower(DEM, (0.9,), "method.step_fraction"),
 )
 
