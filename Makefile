@@ -47,7 +47,7 @@ convergence: build figure-packages ## measure the orders of convergence against 
 	  python=$$(scripts/find-python) && "$$python" verification/draw_convergence.py results/convergence.csv results/convergence || exit 2; exit $$status
 
 # Always anew: a time is of today. The test is of the rule that nothing wins with a large error.
-bench: bench-packages ## run time beside error, cost by size, what skips save (results/bench.md); about twenty minutes, BENCH=quick: a few minutes
+bench: bench-packages ## run time beside error, cost by size, what skips save (results/bench.md); half an hour and more, BENCH=quick: a few minutes
 	@OPTIONS=-DOPENCLOSE_BENCH=ON scripts/build release openclose openclose_reference openclose_bench
 	@python=$$(scripts/find-python) && "$$python" -m unittest discover -q -s bench && "$$python" bench/bench.py --mode $(BENCH) --micro $(BUILD)/bench/openclose-bench
 

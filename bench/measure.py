@@ -43,7 +43,7 @@ class Row:
     contacts: int | None
     dt_s: float | None
     steps: int | None
-    iterations: float | None  # of Newton's method, those of parts by the part of the rows that they have; and steps of relaxation
+    iterations: float | None  # of Newton's method, those of parts by the part of the rows that they have; none where statics were relaxed
     cpu_s: float | None
     error: float | None
     max_penetration_m: float | None
@@ -160,7 +160,7 @@ class Bench:
 
 def _iterations(summary: dict) -> float:
     counters = summary["counters"]
-    return counters["iterations"] + counters["part_rows"] / summary["free_blocks"] + counters["relaxation_steps"]
+    return counters["iterations"] + counters["part_rows"] / summary["free_blocks"]
 
 
 def _reason(summary: dict) -> str:
