@@ -92,6 +92,7 @@ inline void ContactBatch::set_start(int lane, const ContactSprings& springs) {
 }
 
 inline void ContactBatch::copy(int lane, const ContactBatch& other, int from) {
+  static_assert(sizeof(ContactBatch) == 22 * sizeof(Lanes) + 4 * sizeof(vertex_block), "one line here for each member");
   for (Lanes ContactBatch::*member :
        {&ContactBatch::normal_x,       &ContactBatch::normal_y,     &ContactBatch::lever_x,       &ContactBatch::lever_y,
         &ContactBatch::vertex_arm_x,   &ContactBatch::vertex_arm_y, &ContactBatch::end_arm_x,     &ContactBatch::end_arm_y,

@@ -191,23 +191,25 @@ void Newton<N>::evaluate(const Eigen::VectorXd& d) {
 }
 
 template <int N>
-double Newton<N>::residual_norm(int row) const {
-  const double r = Motion<N>::largest_force(residual_.template segment<N>(N * row), blocks_[row].radius);
-  return r / (problem_->method.residual_tolerance * force_scale_ + rows_[row].sums[N]);
+double Newton<N>::tolerated(int row) const {
+  return problem_->method.residual_tolerance * force_scale_ + rows_[row].sums[N];
+}
+
+template <int N>
+double Newton<N>::unbalanced(int row) const {
+  return Motion<N>::largest_force(residual_.template segment<N>(N * row), blocks_[row].radius);
 }
 
 template <int N>
 double Newton<N>::residual_norm() const {
   double worst = 0.0;
   const double loosest = std::max(loosest_balance, largest_force_growth * problem_->method.residual_tolerance) * start_scale_;
-  for (std::size_t i = 0; i < blocks_.size(); ++i) {
-    const int at = static_cast<int>(i);
-    const double tolerated = problem_->method.residual_tolerance * force_scale_ + rows_[i].sums[N];
-    const double r = Motion<N>::largest_force(residual_.template segment<N>(N * at), blocks_[i].radius);
+  for (int row = 0; row < static_cast<int>(blocks_.size()); ++row) {
+    const double r = unbalanced(row);
     if (!(r <= std::numeric_limits<double>::max())) return std::numeric_limits<double>::infinity();
     if (r == 0.0) continue;
-    if (tolerated > loosest) return std::numeric_limits<double>::infinity();
-    worst = std::max(worst, r / tolerated);
+    if (tolerated(row) > loosest) return std::numeric_limits<double>::infinity();
+    worst = std::max(worst, r / tolerated(row));
   }
   return worst;
 }
@@ -463,7 +465,7 @@ std::vector<Part> Newton<N>::unbalanced_parts(double norm) {
   }
   std::vector<int> seeds;
   for (int row = 0; row < rows; ++row) {
-    if (residual_norm(row) > seed_residual * norm) seeds.push_back(row);
+    if (unbalanced(row) > seed_residual * norm * tolerated(row)) seeds.push_back(row);
   }
   return neighbourhood_.parts(seeds, rings_of_a_part, static_cast<int>(largest_part * rows));
 }

@@ -155,8 +155,9 @@ class Newton {
   void take_states_before();
   /// What a step must reduce, with the residual_norm() that belongs to it.
   double merit(double norm) const;
-  double residual_norm() const;         ///< largest residual of a block over what is tolerated: converged at 1; infinite where that tells nothing
-  double residual_norm(int row) const;  ///< of one block
+  double residual_norm() const;      ///< largest residual of a block over what is tolerated: converged at 1; infinite where that tells nothing
+  double unbalanced(int row) const;  ///< [N] residual of a block
+  double tolerated(int row) const;   ///< [N] of it
   void assemble(const Eigen::VectorXd& d, Tangent tangent);
   Eigen::VectorXd direction(const Eigen::VectorXd& d, Tangent tangent);
   /// Contacts that would slide one way and then the other stick in between: they enter the next linear solve with the spring's own force. (Where the

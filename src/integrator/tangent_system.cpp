@@ -40,31 +40,29 @@ void TangentSystem<N>::fit_pattern(const StepProblem<N>& problem) {
     return std::pair(problem.system.block(problem.contacts[c].vertex_block).equation, problem.system.block(problem.contacts[c].edge_block).equation);
   };
   if (solver_ && matrix_.rows() == rows && find_slots(problem.contacts.size(), rows_of)) return;
+  renew_pattern(problem.method, rows, problem.contacts.size(), rows_of);
+}
+
+template <int N>
+void TangentSystem<N>::fit_part(const MethodInput& method, int rows, const std::vector<std::pair<int, int>>& contacts) {
+  solver_ = nullptr;
+  renew_pattern(method, rows, contacts.size(), [&](std::size_t c) { return contacts[c]; });
+}
+
+template <int N>
+template <class RowsOf>
+void TangentSystem<N>::renew_pattern(const MethodInput& method, int rows, std::size_t count, const RowsOf& rows_of) {
   std::vector<std::pair<int, int>> couplings;
-  for (std::size_t c = 0; c < problem.contacts.size(); ++c) {
+  for (std::size_t c = 0; c < count; ++c) {
     const auto [i, j] = rows_of(c);
     const std::pair<int, int> coupling = std::minmax(i, j);
     if (coupling.first >= 0 && (couplings.empty() || couplings.back() != coupling))
       couplings.push_back(coupling);  // a pair's contacts are neighbours
   }
-  kind_ = problem.method.linear_solver;
-  choose_factoring(problem.method);
-  set_pattern(rows, couplings);
-  find_slots(problem.contacts.size(), rows_of);
-}
-
-template <int N>
-void TangentSystem<N>::fit_part(const MethodInput& method, int rows, const std::vector<std::pair<int, int>>& contacts) {
-  std::vector<std::pair<int, int>> couplings;
-  for (const auto& [i, j] : contacts) {
-    const std::pair<int, int> coupling = std::minmax(i, j);
-    if (coupling.first >= 0 && (couplings.empty() || couplings.back() != coupling)) couplings.push_back(coupling);
-  }
   kind_ = method.linear_solver;
-  choose_factoring(method);
-  solver_ = nullptr;
+  factoring_ = method.skip_factorisation ? Factoring::needed : Factoring::whole;
   set_pattern(rows, couplings);
-  find_slots(contacts.size(), [&](std::size_t c) { return contacts[c]; });
+  find_slots(count, rows_of);
 }
 
 template <int N>
@@ -72,11 +70,6 @@ void TangentSystem<N>::set_pattern(int rows, const std::vector<std::pair<int, in
   matrix_.set_pattern(rows, couplings);
   slots_.clear();
   if (!solver_) choose_solver(rows);
-}
-
-template <int N>
-void TangentSystem<N>::choose_factoring(const MethodInput& method) {
-  factoring_ = method.skip_factorisation ? Factoring::needed : Factoring::whole;
 }
 
 template <int N>

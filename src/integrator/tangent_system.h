@@ -35,8 +35,9 @@ class TangentSystem {
   /// \param rows_of  the rows of the blocks of a contact, -1 without
   template <class RowsOf>
   bool find_slots(std::size_t count, const RowsOf& rows_of);
+  template <class RowsOf>
+  void renew_pattern(const MethodInput& method, int rows, std::size_t count, const RowsOf& rows_of);
   void set_pattern(int rows, const std::vector<std::pair<int, int>>& couplings);
-  void choose_factoring(const MethodInput& method);
   void choose_solver(int rows);
 
   BlockMatrix<N> matrix_;
