@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 #include "openclose/integrator/registry.h"
 
@@ -29,27 +30,28 @@ constexpr double part_of_limit = 0.9;
 }  // namespace
 
 template <int N>
-Simulation<N>::Simulation(const Scene& scene) : Simulation(scene, make_enforcement<N>(scene.method)) {
+Simulation<N>::Simulation(Scene scene) : Simulation(std::move(scene), nullptr) {
   if (enforcement_->is_explicit()) loop_ = std::make_unique<CentralDifference<N>>();
 }
 
 template <int N>
-Simulation<N>::Simulation(const Scene& scene, std::unique_ptr<Enforcement<N>> enforcement)
-    : scene_(scene),
-      system_(scene),
-      external_(scene, system_),
-      joints_(scene),
-      enforcement_(std::move(enforcement)),
-      scheme_(enforcement_->make_time_scheme(scene.method)),
+Simulation<N>::Simulation(Scene scene, std::unique_ptr<Enforcement<N>> enforcement)
+    : scene_(std::move(scene)),
+      system_(scene_),
+      external_(scene_, system_),
+      joints_(scene_),
+      enforcement_(enforcement ? std::move(enforcement) : make_enforcement<N>(scene_.method)),
+      scheme_(enforcement_->make_time_scheme(scene_.method)),
       // Two vertices may approach each other by the largest displacement each.
-      detector_(2.0 * scene.step.max_displacement,
-                {scene.method.skip_search, scene.method.skip_narrow_phase && enforcement_->follows_gaps(), scene.method.skip_looks}),
+      detector_(2.0 * scene_.step.max_displacement,
+                {scene_.method.skip_search, scene_.method.skip_narrow_phase && enforcement_->follows_gaps(), scene_.method.skip_looks}),
       output_velocity_(system_.state().velocity),
-      resting_(scene.rest, system_),
+      resting_(scene_.rest, system_),
       start_kinetic_energy_(system_.kinetic_energy()),
-      control_(scene.step.error_tolerance) {
-  if (scene.step.adaptive && !enforcement_->takes_adaptive_steps())
-    throw InputError(scene.where, "step.adaptive", "true has no meaning for method.contact = \"" + scene.method.contact + "\"", "contact = \"soft\"");
+      control_(scene_.step.error_tolerance) {
+  if (scene_.step.adaptive && !enforcement_->takes_adaptive_steps())
+    throw InputError(scene_.where, "step.adaptive", "true has no meaning for method.contact = \"" + scene_.method.contact + "\"",
+                     "contact = \"soft\"");
 }
 
 template <int N>
