@@ -42,7 +42,10 @@ class IncompleteSolver : public LinearSolver<N> {
       ++own_.symbolic_skipped;
     }
     ++own_.incomplete;
-    return incomplete_.factor(matrix) ? count(true) : give_up();
+    if (!incomplete_.factor(matrix)) return give_up();
+    own_.rows += matrix.rows();
+    own_.rows_kept += incomplete_.rows_kept();
+    return count(true);
   }
 
   Eigen::VectorXd solve(const Eigen::VectorXd& right_side, double reduction) override {
