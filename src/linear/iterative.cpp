@@ -66,6 +66,7 @@ class IncompleteSolver : public LinearSolver<N> {
     return x;
   }
 
+  void let_rows_lag(bool lag) override { direct_->let_rows_lag(lag); }
   void use_threads(int threads) override { direct_->use_threads(threads); }
 
   void exchange(Archive& archive, const BlockMatrix<N>& matrix) override {
