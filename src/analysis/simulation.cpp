@@ -343,27 +343,30 @@ Eigen::VectorXd Simulation<N>::forces_now(const StepProblem<N>& problem) const {
 
 template <int N>
 double Simulation<N>::local_error(const StepProblem<N>& problem, const StepSolution<N>& solution) const {
-  Eigen::VectorXd change(N * system_.free_count());
+  Eigen::VectorXd change = Eigen::VectorXd::Zero(N * system_.free_count());
   for (int b : system_.free_blocks()) {
-    const Unknowns d = solution.of(system_, b);
-    change.segment<N>(N * system_.block(b).equation) = external_.force(system_, b, d) - external_.force(system_, b, Unknowns::Zero());
+    if (!external_.has_point_forces(b)) continue;  // the others do not change
+    change.segment<N>(N * system_.block(b).equation) =
+        external_.force(system_, b, solution.of(system_, b)) - external_.force(system_, b, Unknowns::Zero());
   }
-  const auto push = [&](int b, const Unknowns& f) {
+  const auto push = [&](int b, const Vec2& arm, const Vec2& force) {
     const int i = system_.block(b).equation;
-    if (i >= 0) change.segment<N>(N * i) += f;
+    if (i >= 0) change.segment<N>(N * i) += Motion<N>::gradient(arm, force);
   };
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     const Contact& c = contacts_[i];
-    const CarriedForces f = solution.contacts.forces(i);
-    if (f.status != ContactStatus::open) {
-      const ContactKinematics<N> k(solution.contacts.pose(i));
-      push(c.vertex_block, f.normal * k.normal_vertex + f.shear * k.shear_vertex);
-      push(c.edge_block, f.normal * k.normal_edge + f.shear * k.shear_edge);
+    if (solution.contacts.status(i) != ContactStatus::open) {
+      const ContactPose<N> at = solution.contacts.pose(i);
+      const CarriedForces f = solution.contacts.forces(i);
+      const Vec2 force = f.normal * at.normal + f.shear * at.tangent();
+      push(c.vertex_block, at.vertex_arm, force);
+      push(c.edge_block, at.edge_arm, -force);
     }
     if (c.status != ContactStatus::open) {
-      const ContactKinematics<N> before(system_, c, Unknowns::Zero(), Unknowns::Zero());
-      push(c.vertex_block, -c.normal_force * before.normal_vertex - c.shear_force * before.shear_vertex);
-      push(c.edge_block, -c.normal_force * before.normal_edge - c.shear_force * before.shear_edge);
+      const ContactStart<N> before(system_, c);
+      const Vec2 force = c.normal_force * before.normal + c.shear_force * perpendicular(before.normal);
+      push(c.vertex_block, before.vertex_arm, -force);
+      push(c.edge_block, before.end_arm + before.lever, force);
     }
   }
   double largest = 0.0;

@@ -30,6 +30,7 @@ void TangentSystem<N>::fit(const StepProblem<N>& problem) {
   fit_pattern(problem);
   matrix_.use_threads(problem.method.threads);
   solver_->use_threads(problem.method.threads);
+  solver_->let_rows_lag(!problem.statics);
 }
 
 template <int N>

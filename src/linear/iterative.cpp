@@ -40,7 +40,10 @@ class IncompleteSolver : public LinearSolver<N> {
     }
     ++own_.incomplete;
     direct_->let_go();  // several times as large as what takes its place
-    return incomplete_.factor(matrix) ? count(true) : give_up();
+    if (!incomplete_.factor(matrix)) return give_up();
+    own_.rows += matrix.rows();
+    own_.rows_kept += incomplete_.rows_kept();
+    return count(true);
   }
 
   Eigen::VectorXd solve(const Eigen::VectorXd& right_side, double reduction) override {
@@ -60,6 +63,7 @@ class IncompleteSolver : public LinearSolver<N> {
     return x;
   }
 
+  void let_rows_lag(bool lag) override { direct_->let_rows_lag(lag); }
   void use_threads(int threads) override { direct_->use_threads(threads); }
 
   void exchange(Archive& archive, const BlockMatrix<N>& matrix) override {

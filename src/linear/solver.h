@@ -24,7 +24,7 @@ struct LinearCounters {
   long krylov_iterations = 0;   ///< of GMRES
   long krylov_given_up = 0;     ///< solves with an earlier factor or an incomplete one that were given up for a new one
   long incomplete = 0;          ///< incomplete factorisations, not counted in `factorisations`
-  long rows = 0;                ///< block rows of all matrices that were to be factored row by row
+  long rows = 0;                ///< block rows of all matrices that were to be factored row by row, incomplete factors included
   long rows_kept = 0;           ///< of these: as they were in the factor before
   long refinements = 0;         ///< solves for what weak couplings left of a residual, not counted in `solves`
   long couplings_taken_in = 0;  ///< factorisations done again because weak couplings were too strong for that
@@ -59,6 +59,9 @@ class LinearSolver {
   const LinearCounters& counters() const { return counters_; }
   /// Gives back the memory of a factor that is not needed for a while; the next factor() starts anew. Not where later matrices are solved with it.
   virtual void let_go() {}
+  /// Whether more rows than factor() may keep can be kept by a solver that refines its solutions anyway, down to the residual of the whole matrix. Where
+  /// inertia holds every block this costs no further refinement; nothing lags unless this is called.
+  virtual void let_rows_lag(bool lag) { rows_may_lag_ = lag; }
   /// That share the work where it is worth it; the results are the same to the last bit.
   virtual void use_threads(int threads) { threads_ = threads; }
   /// What the next solves depend on; the symbolic work is done again after reading.
@@ -68,6 +71,7 @@ class LinearSolver {
  protected:
   LinearCounters counters_;
   int threads_ = 1;
+  bool rows_may_lag_ = false;
 };
 
 /// Dense LU with partial pivoting: cheapest for a handful of blocks.
