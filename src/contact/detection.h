@@ -212,6 +212,7 @@ class Detector {
   void pass_on_history(const BlockSystem<N>& system, std::vector<Contact>& before);
   void put_in_place(std::vector<Contact>& contacts, bool orphans);
   void find_kept_runs();
+  void let_go_of_working_memory();
 
   double reach_;
   DetectionSkips skips_;

@@ -481,19 +481,19 @@ double Newton<N>::solve_parts(StepSolution<N>& solution, double norm) {
   const std::vector<Part> parts = unbalanced_parts(norm);
   if (parts.empty()) return norm;
   const Until until{std::max(1.0, linear_reduction * norm), problem_->method.max_iterations};
-  if (!part_) part_ = std::make_unique<Newton>(asked_merit_);
+  Newton newton_of_part(asked_merit_);  // gone again when the whole is solved: a part may be a quarter of it
   trial_ = solution.d;
   const long most_rows = static_cast<long>(work_on_parts * static_cast<double>(blocks_.size()));
   long rows = 0;  // of all linear solves
   for (const Part& part : parts) {
-    part_->take_part(*this, part);
+    newton_of_part.take_part(*this, part);
     StepSolution<N> found;
     found.d = rows_of<N>(solution.d, part.rows);
-    part_->evaluate(found.d);
-    double norm_of_part = part_->residual_norm();
-    part_->iterate(*problem_, found, norm_of_part, until, false);
+    newton_of_part.evaluate(found.d);
+    double norm_of_part = newton_of_part.residual_norm();
+    newton_of_part.iterate(*problem_, found, norm_of_part, until, false);
     for (std::size_t i = 0; i < part.rows.size(); ++i) trial_.template segment<N>(N * part.rows[i]) = found.d.template segment<N>(N * i);
-    part_counters_ += part_->tangent_.counters();
+    part_counters_ += newton_of_part.tangent_.counters();
     ++solution.effort.parts;
     solution.effort.part_iterations += found.effort.iterations;
     rows += static_cast<long>(found.effort.iterations) * static_cast<long>(part.rows.size());

@@ -192,7 +192,6 @@ class Newton {
   double block_scale_ = 0.0;  ///< [N] the same of what acts on blocks without contacts
   TangentSystem<N> tangent_;
   Neighbourhood neighbourhood_;   ///< of this step, once it is needed
-  std::unique_ptr<Newton> part_;  ///< takes one part after the other
   LinearCounters part_counters_;
   bool is_part_ = false;
   std::vector<ContactSprings> part_springs_;  ///< of a part: its own springs_
