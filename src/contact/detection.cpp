@@ -60,6 +60,7 @@ class Detector<N>::Shapes {
     Box box() const { return Box::around(start, end()); }
   };
 
+  std::size_t bytes() const { return bytes_of(measured_, boxes_, convex_, edges_); }
   /// Gives its memory back until the next begin().
   void let_go() {
     std::vector<Box>().swap(boxes_);
@@ -155,6 +156,7 @@ class Detector<N>::ContactIndex {
     entries_.resize(resting_entries_);
     entries_.shrink_to_fit();
   }
+  std::size_t bytes() const { return bytes_of(first_, entries_, resting_first_); }
   /// Other contacts are at rest than before.
   void forget_resting() { knows_resting_ = false; }
 
@@ -863,9 +865,7 @@ void Detector<N>::put_in_place(std::vector<Contact>& contacts, bool orphans) {
     if (contacts.capacity() < count) std::vector<Contact>().swap(contacts);  // before there is room for those that come
     contacts = found;
   } else {
-    constexpr std::size_t part_to_spare = 16;  // of the list: so that it need not move each time that a few contacts come
-    if (contacts.capacity() < count) contacts.reserve(count + count / part_to_spare);
-    if (contacts.size() < count) contacts.resize(count);
+    if (contacts.size() < count) resize_closely(contacts, count);  // so that it need not move each time that a few contacts come
     const auto at = [&](int i) { return contacts.begin() + i; };
     for (const Run& run : kept_) {
       if (run.to < run.from) std::copy(at(run.from), at(run.from + run.size), at(run.to));
@@ -955,6 +955,16 @@ void Detector<N>::exchange(Archive& archive) {
   archive(first_, forgotten_, pairs_, states_, ranges_, resting_, searched_at_, searched_moving_at_, counters_, places_, ways_, pairs_of_start_,
           pairs_of_);
   if (archive.reading()) index_->forget_resting();
+}
+
+template <int N>
+Memory Detector<N>::memory() const {
+  Memory of;
+  of.blocks = bytes_of(searched_at_, searched_moving_at_, places_, ways_, pairs_of_start_, restless_, in_due_pairs_, is_restless_, in_due_pair_) +
+              shapes_->bytes();
+  of.contacts = bytes_of(pairs_, states_, ranges_, pairs_of_, changes_, due_pairs_, around_due_, marks_, found_, kept_, lives_on_, born_, gone_) +
+                bytes_of(gone_by_vertex_, gone_by_edge_, resting_.pairs, resting_.states, resting_.ranges, resting_.contacts) + index_->bytes();
+  return of;
 }
 
 template <int N>

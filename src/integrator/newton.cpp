@@ -111,7 +111,7 @@ void Newton<N>::prepare(const StepProblem<N>& problem, const std::vector<Contact
   problem_ = &problem;
   springs_ = &springs;
   contact_count_ = problem.contacts.size();
-  contacts_.resize((contact_count_ + batch_size - 1) / batch_size);
+  resize_closely(contacts_, (contact_count_ + batch_size - 1) / batch_size);
   if (!contacts_.empty()) contacts_.back() = ContactBatch();
   const auto row = [&](int b) { return b < system.block_count() && system.block(b).equation >= 0 ? system.block(b).equation : system.free_count(); };
   for (std::size_t c = 0; c < batch_size * contacts_.size(); ++c) {
@@ -126,6 +126,7 @@ void Newton<N>::prepare(const StepProblem<N>& problem, const std::vector<Contact
     batch.set(lane(c), ContactPlace<N>(system, contact), springs[c], ContactStrength(problem.joints.joint(contact.joint), contact));
   }
   blocks_.clear();
+  blocks_.reserve(system.free_count());
   for (int b : system.free_blocks()) {
     const auto& block = system.block(b);
     const Unknowns still = Unknowns::Zero();
@@ -138,7 +139,7 @@ void Newton<N>::prepare(const StepProblem<N>& problem, const std::vector<Contact
     block_scale_ = std::max({block_scale_, block.magnitude, Motion<N>::largest_force(block.inertia.cwiseProduct(block.drift), block.radius)});
   }
   start_scale_ = std::max(kernels_.begin(contacts_), block_scale_);
-  trials_.resize(contacts_.size());
+  resize_closely(trials_, contacts_.size());
   step_forces_ = problem.averages_path() ? StepForces::averaged : StepForces::at_end;
   branches_.assign(batch_size * contacts_.size(), 0);
   moves_.assign(system.block_count() + 1, BlockMove<N>());
@@ -262,7 +263,7 @@ Eigen::VectorXd Newton<N>::direction(const Eigen::VectorXd& d, Tangent tangent, 
   assemble(d, tangent);
   Eigen::VectorXd step;
   if (tangent_.factor(problem_->statics ? static_kept_change : kept_change))
-    step = tangent_.solver().solve(residual_, reduction);
+    step = tangent_.solve(residual_, reduction);
   return step;
 }
 
@@ -494,6 +495,7 @@ double Newton<N>::solve_parts(StepSolution<N>& solution, double norm) {
     newton_of_part.iterate(*problem_, found, norm_of_part, until, false);
     for (std::size_t i = 0; i < part.rows.size(); ++i) trial_.template segment<N>(N * part.rows[i]) = found.d.template segment<N>(N * i);
     part_counters_ += newton_of_part.tangent_.counters();
+    note_memory(newton_of_part.present_memory() + solution.memory());
     ++solution.effort.parts;
     solution.effort.part_iterations += found.effort.iterations;
     rows += static_cast<long>(found.effort.iterations) * static_cast<long>(part.rows.size());
@@ -673,6 +675,7 @@ void Newton<N>::solve_prepared(StepSolution<N>& solution, FirstTangent first) {
     norm = begin(start, first);
     outcome = iterate_holding(solution, norm);
   }
+  note_memory(solution.memory());
   solution.converged = norm <= 1.0;
   if (outcome == Outcome::singular) {
     solution.reason = "singular matrix";
@@ -682,6 +685,15 @@ void Newton<N>::solve_prepared(StepSolution<N>& solution, FirstTangent first) {
   solution.paths.clear();
   if (averages_path()) report_paths(solution);
   solution.contacts.borrow(trials_, branches_, *springs_);
+}
+
+template <int N>
+Memory Newton<N>::present_memory() const {
+  Memory of = tangent_.memory();
+  of.blocks += bytes_of(blocks_, moves_, rows_);
+  for (const Eigen::VectorXd* vector : {&trial_, &start_force_, &residual_}) of.blocks += sizeof(double) * static_cast<std::size_t>(vector->size());
+  of.contacts += bytes_of(contacts_, trials_, branches_, branches_before_, holds_, part_springs_) + neighbourhood_.bytes();
+  return of;
 }
 
 template <int N>

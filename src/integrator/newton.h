@@ -73,6 +73,8 @@ class Newton {
     archive(part_counters_);
   }
   /// Those of parts included.
+  /// The largest so far, factors of parts and of relaxation included; springs are their owner's.
+  const Memory& memory() const { return memory_; }
   LinearCounters linear_counters() const { return LinearCounters(tangent_.counters()) += part_counters_; }
 
  private:
@@ -169,6 +171,11 @@ class Newton {
   double backtrack(const Eigen::VectorXd& d, const Eigen::VectorXd& step, double merit_before);
   /// The means over the path go to the solution, the forces at its end take their place.
   void report_paths(StepSolution<N>& solution);
+  /// Of what there is now.
+  Memory present_memory() const;
+  /// Takes it into the account.
+  /// \param others  what is there beside it
+  void note_memory(const Memory& others = {}) { memory_.grow_to(present_memory() + others); }
 
   Merit asked_merit_;
   const StepProblem<N>* problem_ = nullptr;
@@ -193,6 +200,7 @@ class Newton {
   TangentSystem<N> tangent_;
   Neighbourhood neighbourhood_;   ///< of this step, once it is needed
   LinearCounters part_counters_;
+  Memory memory_;
   bool is_part_ = false;
   std::vector<ContactSprings> part_springs_;  ///< of a part: its own springs_
 };
