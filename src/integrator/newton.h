@@ -159,7 +159,8 @@ class Newton {
   double unbalanced(int row) const;  ///< [N] residual of a block
   double tolerated(int row) const;   ///< [N] of it
   void assemble(const Eigen::VectorXd& d, Tangent tangent);
-  Eigen::VectorXd direction(const Eigen::VectorXd& d, Tangent tangent);
+  /// \param norm  residual_norm()
+  Eigen::VectorXd direction(const Eigen::VectorXd& d, Tangent tangent, double norm);
   /// Contacts that would slide one way and then the other stick in between: they enter the next linear solve with the spring's own force. (Where the
   /// spring is stiff the range of sticking is so narrow that the iteration would jump over it for ever.) Returns their number.
   int hold_reversed();
