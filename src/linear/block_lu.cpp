@@ -656,6 +656,7 @@ class BlockLuSolver : public LinearSolver<N> {
   /// For the numbers of the factor.
   void make_room() {
     const std::size_t size = factor_.column.size();
+    if (fronts_) fronts_->let_go();
     if (factor_.value.capacity() < size) {
       let_go_of_rows();  // else the old and the new ones would be there at once
       // Ordering and pattern have left holes too small for the factor.

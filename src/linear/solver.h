@@ -25,7 +25,7 @@ struct LinearCounters {
   long krylov_iterations = 0;   ///< of GMRES
   long krylov_given_up = 0;     ///< solves with an earlier factor or an incomplete one that were given up for a new one
   long incomplete = 0;          ///< incomplete factorisations, not counted in `factorisations`
-  long rows = 0;                ///< block rows of all matrices that were to be factored row by row
+  long rows = 0;                ///< block rows of all matrices that were to be factored row by row, incomplete factors included
   long rows_kept = 0;           ///< of these: as they were in the factor before
   long refinements = 0;         ///< solves for what weak couplings left of a residual, not counted in `solves`
   long couplings_taken_in = 0;  ///< factorisations done again because weak couplings were too strong for that
