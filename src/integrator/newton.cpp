@@ -258,11 +258,11 @@ void Newton<N>::assemble(const Eigen::VectorXd& d, Tangent tangent) {
 }
 
 template <int N>
-Eigen::VectorXd Newton<N>::direction(const Eigen::VectorXd& d, Tangent tangent, double reduction) {
+Eigen::VectorXd Newton<N>::direction(const Eigen::VectorXd& d, Tangent tangent, double reduction, double enough) {
   assemble(d, tangent);
   Eigen::VectorXd step;
   if (tangent_.factor(problem_->statics ? static_kept_change : kept_change))
-    step = tangent_.solver().solve(residual_, reduction);
+    step = tangent_.solver().solve(residual_, reduction, enough);
   return step;
 }
 
@@ -579,7 +579,7 @@ typename Newton<N>::Outcome Newton<N>::iterate(const StepProblem<N>& problem, St
     branches_before_ = branches_;
     const bool expects_changes = !problem.statics && (iteration == 0 || switches > 0);
     const double least = expects_changes ? linear_reduction_of_changes : linear_reduction;
-    const Eigen::VectorXd step = direction(d, tangent, std::clamp(end_to_spare * until.norm / norm, least, loosest_reduction));
+    const Eigen::VectorXd step = direction(d, tangent, least, std::min(end_to_spare * until.norm / norm, loosest_reduction));
     ++solution.effort.iterations;
     if (step.size() == 0) return Outcome::singular;
     const double slope = residual_.dot(step);
