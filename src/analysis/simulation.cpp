@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 #include "openclose/integrator/registry.h"
 
@@ -29,27 +30,28 @@ constexpr double part_of_limit = 0.9;
 }  // namespace
 
 template <int N>
-Simulation<N>::Simulation(const Scene& scene) : Simulation(scene, make_enforcement<N>(scene.method)) {
+Simulation<N>::Simulation(Scene scene) : Simulation(std::move(scene), nullptr) {
   if (enforcement_->is_explicit()) loop_ = std::make_unique<CentralDifference<N>>();
 }
 
 template <int N>
-Simulation<N>::Simulation(const Scene& scene, std::unique_ptr<Enforcement<N>> enforcement)
-    : scene_(scene),
-      system_(scene),
-      external_(scene, system_),
-      joints_(scene),
-      enforcement_(std::move(enforcement)),
-      scheme_(enforcement_->make_time_scheme(scene.method)),
+Simulation<N>::Simulation(Scene scene, std::unique_ptr<Enforcement<N>> enforcement)
+    : scene_(std::move(scene)),
+      system_(scene_),
+      external_(scene_, system_),
+      joints_(scene_),
+      enforcement_(enforcement ? std::move(enforcement) : make_enforcement<N>(scene_.method)),
+      scheme_(enforcement_->make_time_scheme(scene_.method)),
       // Two vertices may approach each other by the largest displacement each.
-      detector_(2.0 * scene.step.max_displacement,
-                {scene.method.skip_search, scene.method.skip_narrow_phase && enforcement_->follows_gaps(), scene.method.skip_looks}),
+      detector_(2.0 * scene_.step.max_displacement,
+                {scene_.method.skip_search, scene_.method.skip_narrow_phase && enforcement_->follows_gaps(), scene_.method.skip_looks}),
       output_velocity_(system_.state().velocity),
-      resting_(scene.rest, system_),
+      resting_(scene_.rest, system_),
       start_kinetic_energy_(system_.kinetic_energy()),
-      control_(scene.step.error_tolerance) {
-  if (scene.step.adaptive && !enforcement_->takes_adaptive_steps())
-    throw InputError(scene.where, "step.adaptive", "true has no meaning for method.contact = \"" + scene.method.contact + "\"", "contact = \"soft\"");
+      control_(scene_.step.error_tolerance) {
+  if (scene_.step.adaptive && !enforcement_->takes_adaptive_steps())
+    throw InputError(scene_.where, "step.adaptive", "true has no meaning for method.contact = \"" + scene_.method.contact + "\"",
+                     "contact = \"soft\"");
 }
 
 template <int N>
@@ -341,27 +343,30 @@ Eigen::VectorXd Simulation<N>::forces_now(const StepProblem<N>& problem) const {
 
 template <int N>
 double Simulation<N>::local_error(const StepProblem<N>& problem, const StepSolution<N>& solution) const {
-  Eigen::VectorXd change(N * system_.free_count());
+  Eigen::VectorXd change = Eigen::VectorXd::Zero(N * system_.free_count());
   for (int b : system_.free_blocks()) {
-    const Unknowns d = solution.of(system_, b);
-    change.segment<N>(N * system_.block(b).equation) = external_.force(system_, b, d) - external_.force(system_, b, Unknowns::Zero());
+    if (!external_.has_point_forces(b)) continue;  // the others do not change
+    change.segment<N>(N * system_.block(b).equation) =
+        external_.force(system_, b, solution.of(system_, b)) - external_.force(system_, b, Unknowns::Zero());
   }
-  const auto push = [&](int b, const Unknowns& f) {
+  const auto push = [&](int b, const Vec2& arm, const Vec2& force) {
     const int i = system_.block(b).equation;
-    if (i >= 0) change.segment<N>(N * i) += f;
+    if (i >= 0) change.segment<N>(N * i) += Motion<N>::gradient(arm, force);
   };
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     const Contact& c = contacts_[i];
-    const CarriedForces f = solution.contacts.forces(i);
-    if (f.status != ContactStatus::open) {
-      const ContactKinematics<N> k(solution.contacts.pose(i));
-      push(c.vertex_block, f.normal * k.normal_vertex + f.shear * k.shear_vertex);
-      push(c.edge_block, f.normal * k.normal_edge + f.shear * k.shear_edge);
+    if (solution.contacts.status(i) != ContactStatus::open) {
+      const ContactPose<N> at = solution.contacts.pose(i);
+      const CarriedForces f = solution.contacts.forces(i);
+      const Vec2 force = f.normal * at.normal + f.shear * at.tangent();
+      push(c.vertex_block, at.vertex_arm, force);
+      push(c.edge_block, at.edge_arm, -force);
     }
     if (c.status != ContactStatus::open) {
-      const ContactKinematics<N> before(system_, c, Unknowns::Zero(), Unknowns::Zero());
-      push(c.vertex_block, -c.normal_force * before.normal_vertex - c.shear_force * before.shear_vertex);
-      push(c.edge_block, -c.normal_force * before.normal_edge - c.shear_force * before.shear_edge);
+      const ContactStart<N> before(system_, c);
+      const Vec2 force = c.normal_force * before.normal + c.shear_force * perpendicular(before.normal);
+      push(c.vertex_block, before.vertex_arm, -force);
+      push(c.edge_block, before.end_arm + before.lever, force);
     }
   }
   double largest = 0.0;

@@ -87,18 +87,19 @@ Summary summary_of(const std::string& command, const Options& options, const Loa
 }
 
 int run_command(const Options& options) {
-  const Loaded loaded = load(options);
+  Loaded loaded = load(options);
   if (loaded.scene.step.dt <= 0.0) throw InputError(loaded.scene.where, "step.dt_s", "missing", "a step in seconds, here or with --dt");
   if (loaded.scene.end_time <= 0.0) throw InputError(loaded.scene.where, "end.time_s", "missing", "an end time in seconds, here or with --end");
   require_countable_steps(loaded.scene, "end.time_s", loaded.scene.end_time);
   std::optional<RestartPoint> restart;
   if (!options.restart_file.empty()) restart = {options.restart_file, read_checkpoint(options.restart_file, loaded.scene)};
-  Simulation<unknowns> simulation(loaded.scene);
+  Simulation<unknowns> simulation(std::move(loaded.scene));
+  const Scene& scene = simulation.scene();
   MeasuredPoints<unknowns> points(simulation);
-  const bool start_can_be_refused = loaded.scene.method.start == Start::normal_balanced || loaded.scene.method.start == Start::steady_sliding;
+  const bool start_can_be_refused = scene.method.start == Start::normal_balanced || scene.method.start == Start::steady_sliding;
   if (start_can_be_refused && !restart) {
     // Find out on a copy, before any file is written.
-    Simulation<unknowns> trial(loaded.scene);
+    Simulation<unknowns> trial(scene);
     prepare_start(trial);
   }
 
@@ -164,7 +165,7 @@ int run_command(const Options& options) {
   }
   if (!options.quiet) {
     fmt::print("{}: {} blocks, {} steps to t = {:.6g} s{}, deepest penetration {:.3g} m, energy imbalance {:.2g} of {:.3g} J; written to {}\n",
-               loaded.scene.method.contact, simulation.system().block_count(), simulation.step_counters().steps, simulation.time(),
+               scene.method.contact, simulation.system().block_count(), simulation.step_counters().steps, simulation.time(),
                result.ended_by == "end.displacement_m" ? " (end.displacement_m)" : "", simulation.max_penetration(), simulation.ledger().imbalance(),
                simulation.ledger().turnover, folder.path());
   }
@@ -190,7 +191,7 @@ int fos_command(const Options& options) {
   }
   if (loaded.scene.step.dt <= 0.0) loaded.scene.step.dt = loaded.scene.settle.first_dt;
   require_countable_steps(loaded.scene, "strength_reduction.curve_time_s", loaded.scene.strength_reduction.curve_time.value_or(0.0));
-  Simulation<unknowns> simulation(loaded.scene);
+  Simulation<unknowns> simulation(std::move(loaded.scene));
   const OutputFolder folder = output_folder(options);
   BlocksFile<unknowns> blocks(folder);
   blocks.add("initial", simulation);
@@ -230,8 +231,8 @@ int fos_command(const Options& options) {
     return exit_not_converged;
   }
   if (!options.quiet) {
-    fmt::print("factor of safety {:.6g} ({}; stable at {:.6g}, failed at {:.6g} by {}); written to {}\n", safety.stable, loaded.scene.method.contact,
-               safety.stable, safety.failed, safety.criterion, folder.path());
+    fmt::print("factor of safety {:.6g} ({}; stable at {:.6g}, failed at {:.6g} by {}); written to {}\n", safety.stable,
+               simulation.scene().method.contact, safety.stable, safety.failed, safety.criterion, folder.path());
   }
   return exit_success;
 }
@@ -249,15 +250,15 @@ void write_spectrum(Simulation<unknowns>& simulation, const std::string& file) {
 }
 
 int check_command(const Options& options) {
-  const Loaded loaded = load(options);
-  Simulation<unknowns> simulation(loaded.scene);
+  Simulation<unknowns> simulation(load(options).scene);
   double area = 0.0;
   for (const auto& block : simulation.system().blocks()) area += block.area;
   fmt::print("{}: {} blocks, {} of them free, {:.6g} m2; {} contacts within reach at the start; method {}\n", options.scene_file,
-             simulation.system().block_count(), simulation.system().free_count(), area, simulation.contacts().size(), loaded.scene.method.contact);
+             simulation.system().block_count(), simulation.system().free_count(), area, simulation.contacts().size(),
+             simulation.scene().method.contact);
   if (simulation.is_explicit()) {
     fmt::print("critical step {:.6g} s; the longest step taken is {:.6g} s\n", simulation.critical_step(),
-               simulation.longest_stable_step(loaded.scene.method.damping));
+               simulation.longest_stable_step(simulation.scene().method.damping));
   }
   if (!options.spectrum_file.empty()) write_spectrum(simulation, options.spectrum_file);
   return exit_success;
@@ -368,6 +369,7 @@ int main_checked(int argc, char** argv) {
 }  // namespace openclose
 
 int main(int argc, char** argv) {
+  openclose::return_large_memory();
   try {
     return openclose::main_checked(argc, argv);
   } catch (const openclose::InputError& e) {

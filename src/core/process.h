@@ -9,6 +9,9 @@ double process_cpu_time();
 double wall_time();
 /// [bytes] Largest resident memory since the program was loaded; 0 where /proc does not tell.
 long peak_memory();
+/// From now on large pieces of memory go back to the system as soon as they are freed, instead of lying in holes that fit nothing else; to be called
+/// once, before much has been allocated. Nothing where the C library has no way to.
+void return_large_memory();
 /// Gives what has been freed, and lies between memory in use, back to the system. Nothing where the C library has no way to.
 void return_freed_memory();
 

@@ -66,10 +66,10 @@ class Hard final : public Enforcement<N> {
       // In statics softer springs would not be those of the joint; shorter steps help more.
       if (problem.statics || solution.converged) return;
     }
-    if (problem.failed_attempts < attempts_before_compliance || !compliant_.converged) return;
+    if (!compliant_.converged) return;
     compliant_.effort = solution.effort;
     compliant_.compliant = true;
-    std::swap(solution, compliant_);
+    solution = std::exchange(compliant_, {});
   }
 
   std::unique_ptr<TimeScheme<N>> make_time_scheme(const MethodInput& method) const override {
@@ -104,7 +104,10 @@ class Hard final : public Enforcement<N> {
     for (std::size_t c = 0; c < springs_.size(); ++c) springs_[c] = springs(problem, problem.contacts[c], ratio);
   }
 
-  /// Passes until the contacts are held, and keeps the first that converged with the springs it had, in case that no multipliers do.
+  static bool may_be_compliant(const StepProblem<N>& problem) { return !problem.statics && problem.failed_attempts >= attempts_before_compliance; }
+
+  /// Passes until the contacts are held. A step that may be compliant keeps the first that converged with the springs it had, in case that no
+  /// multipliers do.
   void pass_until_held(const StepProblem<N>& problem, StepSolution<N>& solution) {
     // From the drift dt v: the stiff matrix costs digits of what is solved for, and these are better lost from the change of motion than from the
     // motion.
@@ -127,7 +130,7 @@ class Hard final : public Enforcement<N> {
       if (error <= 1.0) return;
       if (error > slow_convergence * last_error && error <= (problem.statics ? incompatible_static_gaps : incompatible_gaps)) return;
       if (moves_on && error * tolerated(problem) <= std::min(problem.method.gap_tolerance, part_of_way * way)) return;
-      if (!problem.statics && !compliant_.converged) compliant_ = solution;
+      if (may_be_compliant(problem) && !compliant_.converged) compliant_ = solution;
       if (!problem.statics && error > slow_convergence * last_error) {
         if (++slow_passes > most_slow_passes) break;
       }
@@ -230,7 +233,7 @@ class Hard final : public Enforcement<N> {
 
   Newton<N> newton_{Merit::all_blocks};
   std::vector<ContactSprings> springs_;
-  StepSolution<N> compliant_;  ///< of this step
+  StepSolution<N> compliant_;  ///< of this step, if it may be
 };
 
 }  // namespace

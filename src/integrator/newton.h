@@ -163,7 +163,8 @@ class Newton {
   double unbalanced(int row) const;  ///< [N] residual of a block
   double tolerated(int row) const;   ///< [N] of it
   void assemble(const Eigen::VectorXd& d, Tangent tangent);
-  Eigen::VectorXd direction(const Eigen::VectorXd& d, Tangent tangent);
+  /// \param reduction, enough  [-] of the residual by a linear solver, see LinearSolver::solve()
+  Eigen::VectorXd direction(const Eigen::VectorXd& d, Tangent tangent, double reduction, double enough = 0.0);
   /// Contacts that would slide one way and then the other stick in between: they enter the next linear solve with the spring's own force. (Where the
   /// spring is stiff the range of sticking is so narrow that the iteration would jump over it for ever.) Returns their number.
   int hold_reversed();

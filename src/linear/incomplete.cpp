@@ -17,6 +17,19 @@ namespace {
 ///     49,066 blocks    47  253   38  202   18  101   15  114
 constexpr int most_fill = 2;
 
+/// [-] Entries of a row, and of the inverse of its pivot, may have changed by this part of the root of the diagonal entries of their row and column
+/// before the row is done again. 20 to 60 steps of a failing slope of 9,745 blocks do 0.34 of the rows again with 1e-3, 0.32 with 1e-2, 0.27 with
+/// 5e-2, 0.18 with 0.2; iterations grow by 0.0, 0.0, 0.4 and 9 %.
+constexpr float kept_change = 1e-2f;
+
+typedef double FourNumbers __attribute__((vector_size(4 * sizeof(double)), aligned(alignof(double))));
+typedef float FourEntries __attribute__((vector_size(4 * sizeof(float)), aligned(alignof(float))));
+
+/// Four consecutive entries of a block in single precision.
+FourEntries four(const double* entry) {
+  return __builtin_convertvector(*reinterpret_cast<const FourNumbers*>(entry), FourEntries);
+}
+
 /// Places of the rows by reverse Cuthill-McKee: by distance from a row at the rim, the neighbours of each row by their number of neighbours.
 std::vector<int> reverse_cuthill_mckee(const RowGraph& graph) {
   const int rows = graph.rows();
@@ -109,6 +122,10 @@ void IncompleteLu<N>::exchange(Archive& archive, const BlockMatrix<N>& matrix) {
   if (!known) return;
   archive(slots);
   if (archive.reading()) plan(matrix, std::move(slots));
+  archive(value_, taken_);
+  if (!archive.reading() || taken_.empty()) return;
+  scale_.resize(rows());
+  for (int row = 0; row < rows(); ++row) note_scale(row, matrix.diagonal(row));
 }
 
 template <int N>
@@ -148,6 +165,7 @@ void IncompleteLu<N>::plan(const BlockMatrix<N>& matrix, std::vector<char> slots
   }
   solution_.resize(rows);
   working_slot_.assign(rows, -1);
+  let_go();
   version_ = matrix.pattern_version();
 }
 
@@ -172,11 +190,10 @@ inline typename IncompleteLu<N>::PaddedBlock IncompleteLu<N>::product(const Padd
 
 template <int N>
 inline typename IncompleteLu<N>::PaddedBlock IncompleteLu<N>::padded(const typename BlockMatrix<N>::Block& block) {
-  PaddedBlock result{};
-  for (int c = 0; c < N; ++c) {
-    for (int r = 0; r < N; ++r) result.column[c][r] = static_cast<float>(block(r, c));
-  }
-  return result;
+  static_assert(N == 3, "the last column is read with an entry before it, to stay within the block");
+  const Lanes first = four(block.data()), second = four(block.data() + N), last = four(block.data() + 2 * N - 1), zero{};
+  return {{__builtin_shufflevector(first, zero, 0, 1, 2, 4), __builtin_shufflevector(second, zero, 0, 1, 2, 4),
+           __builtin_shufflevector(last, zero, 1, 2, 3, 4)}};
 }
 
 template <int N>
@@ -205,12 +222,82 @@ void IncompleteLu<N>::subtract_rows_above(int i) {
 }
 
 template <int N>
+bool IncompleteLu<N>::is_as_taken(const BlockMatrix<N>& matrix, int i) const {
+  static_assert(N == 3, "the nine entries of a block, column by column, are two registers and one");
+  const int row = order_[i];
+  const Lanes s = kept_change * kept_change * scale_[row];
+  const Lanes first_rows = {s[0], s[1], s[2], s[0]}, next_rows = {s[1], s[2], s[0], s[1]};
+  auto within = s <= s;
+  bool last_within = true;
+  for (int slot = matrix.row_start(row); slot < matrix.row_start(row + 1); ++slot) {
+    const double* const now = matrix.value(slot).data();
+    const float* const taken = taken_[slot].entry.data();
+    const Lanes c = scale_[matrix.column(slot)];
+    const Lanes first = four(now) - *reinterpret_cast<const FourEntries*>(taken),
+                next = four(now + lanes) - *reinterpret_cast<const FourEntries*>(taken + lanes);
+    const float last = static_cast<float>(now[N * N - 1]) - taken[N * N - 1];
+    within &= first * first <= first_rows * Lanes{c[0], c[0], c[0], c[1]};
+    within &= next * next <= next_rows * Lanes{c[1], c[1], c[2], c[2]};
+    last_within = last_within && last * last <= s[N - 1] * c[N - 1];
+  }
+  return last_within && within[0] && within[1] && within[2] && within[3];
+}
+
+template <int N>
+bool IncompleteLu<N>::subtracts_changed_row(int i) const {
+  return std::any_of(column_.begin() + row_start_[i], column_.begin() + diagonal_[i], [&](int k) { return changed_[k] != 0; });
+}
+
+template <int N>
+void IncompleteLu<N>::note_scale(int row, int diagonal) {
+  for (int k = 0; k < N; ++k) scale_[row][k] = std::abs(taken_[diagonal].entry[(N + 1) * k]);
+}
+
+template <int N>
+void IncompleteLu<N>::take_row(const BlockMatrix<N>& matrix, int i) {
+  const int row = order_[i];
+  for (int s = matrix.row_start(row); s < matrix.row_start(row + 1); ++s) {
+    for (int k = 0; k < N * N; ++k) taken_[s].entry[k] = static_cast<float>(matrix.value(s).data()[k]);
+  }
+  note_scale(row, matrix.diagonal(row));
+  std::fill(value_.begin() + row_start_[i], value_.begin() + row_start_[i + 1], PaddedBlock{});
+  for (int e = entries_start_[i]; e < entries_start_[i + 1]; ++e) value_[entries_[e].target] = padded(matrix.value(entries_[e].slot));
+}
+
+template <int N>
+bool IncompleteLu<N>::has_changed(int i, const PaddedBlock& inverse_before) const {
+  const Lanes s = scale_[order_[i]];
+  for (int c = 0; c < N; ++c) {
+    const Lanes difference = value_[diagonal_[i]].column[c] - inverse_before.column[c];
+    const Lanes change = difference * difference * s * s[c];
+    if (!(std::max({change[0], change[1], change[2]}) <= kept_change * kept_change)) return true;
+  }
+  return false;
+}
+
+template <int N>
 bool IncompleteLu<N>::factor(const BlockMatrix<N>& matrix) {
-  value_.assign(column_.size(), PaddedBlock{});
+  const bool anew = factoring_ == Factoring::whole || value_.empty();
+  if (anew) {
+    value_.assign(column_.size(), PaddedBlock{});
+    taken_.resize(slots_.size());
+    scale_.resize(rows());
+  }
+  changed_.assign(rows(), anew ? 1 : 0);
+  rows_kept_ = 0;
   for (int i = 0; i < rows(); ++i) {
-    for (int e = entries_start_[i]; e < entries_start_[i + 1]; ++e) value_[entries_[e].target] = padded(matrix.value(entries_[e].slot));
+    if (!anew && !subtracts_changed_row(i) && is_as_taken(matrix, i)) {
+      ++rows_kept_;
+      continue;
+    }
+    const PaddedBlock inverse_before = value_[diagonal_[i]];
+    take_row(matrix, i);
     subtract_rows_above(i);
-    if (!invert(value_[diagonal_[i]])) return false;
+    if (!invert(value_[diagonal_[i]])) {
+      value_.clear();
+      return false;
+    }
+    changed_[i] = anew || has_changed(i, inverse_before);
   }
   return true;
 }

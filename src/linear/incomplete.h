@@ -1,8 +1,12 @@
 // Incomplete LU factorisation of a block matrix as a preconditioner: fill is kept up to a level (Y. Saad, Iterative methods for sparse linear
 // systems, 2003, section 10.3.3), in single precision, rows in reverse Cuthill-McKee order (A. George, J. W. H. Liu, Computer solution of large
 // sparse positive definite systems, 1981, chapter 4), which makes what is dropped small.
+//
+// Within a step few rows of the matrix change by more than matters to a preconditioner. A row of the factor is kept while its row of the matrix is
+// about what it was when it was taken, and the pivots of the rows that it subtracts are about what they were.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "openclose/core/archive.h"
@@ -19,14 +23,18 @@ class IncompleteLu {
   bool analyse(const BlockMatrix<N>& matrix);
   /// Of the analysed pattern. False if a pivot is singular or not finite in single precision; there is no factor then.
   bool factor(const BlockMatrix<N>& matrix);
+  int rows_kept() const { return rows_kept_; }  ///< by the last factor(); none of a whole factor
   /// About the inverse of the matrix times `right_side`, of which seven digits are read.
   Eigen::VectorXd solve(const Eigen::VectorXd& right_side) const;
 
-  /// Which couplings it has, which decides what solve() gives: the numbers are those of the next factor().
+  /// Which couplings it has, which decides what solve() gives, and the factor, of which the next one keeps rows.
   void exchange(Archive& archive, const BlockMatrix<N>& matrix);
 
   /// Gives back the memory of the factor until the next one.
-  void let_go() { std::vector<PaddedBlock>().swap(value_); }
+  void let_go() {
+    std::vector<PaddedBlock>().swap(value_);
+    std::vector<TakenBlock>().swap(taken_);
+  }
 
   std::size_t stored_blocks() const { return column_.size(); }
 
@@ -37,12 +45,36 @@ class IncompleteLu {
   struct PaddedBlock {
     static_assert(N <= lanes);
     Lanes column[N];
+
+    void exchange(Archive& archive) {
+      for (Lanes& lane : column) {
+        for (int k = 0; k < N; ++k) {
+          float entry = lane[k];
+          archive(entry);
+          lane[k] = entry;
+        }
+      }
+    }
+  };
+  /// Of the matrix, column by column.
+  struct TakenBlock {
+    std::array<float, N * N> entry;
+
+    void exchange(Archive& archive) {
+      for (float& value : entry) archive(value);
+    }
   };
 
   static void subtract_product(const PaddedBlock& left, const PaddedBlock& right, PaddedBlock& target);
   static PaddedBlock product(const PaddedBlock& left, const PaddedBlock& right);
   static PaddedBlock padded(const typename BlockMatrix<N>::Block& block);
   static bool invert(PaddedBlock& pivot);
+  /// Whether row i of the factor is that of a row of the matrix which has hardly changed since.
+  bool is_as_taken(const BlockMatrix<N>& matrix, int i) const;
+  bool subtracts_changed_row(int i) const;
+  void take_row(const BlockMatrix<N>& matrix, int i);
+  void note_scale(int row, int diagonal);
+  bool has_changed(int i, const PaddedBlock& inverse_before) const;
   void subtract_rows_above(int i);
   /// What the slots times the solution so far leave of `sum`.
   Lanes reduced(Lanes sum, int begin, int end) const;
@@ -62,7 +94,11 @@ class IncompleteLu {
   };
   std::vector<Entry> entries_;  ///< in the order in which elimination meets them
   std::vector<int> entries_start_;
-  std::vector<PaddedBlock> value_;
+  std::vector<PaddedBlock> value_;  ///< none before the first factor() of a pattern
+  std::vector<TakenBlock> taken_;   ///< by slots of the matrix, row by row as it was when the row of the factor was worked out
+  std::vector<Lanes> scale_;        ///< diagonal entries of these rows, by rows of the matrix
+  std::vector<char> changed_;       ///< by places in the factor: whether the row is another one than in the factor before
+  int rows_kept_ = 0;
   std::vector<int> working_slot_;        ///< of a column in the row under work; -1 where it has none
   mutable std::vector<Lanes> solution_;  ///< a block row each, in the factor's order
 };

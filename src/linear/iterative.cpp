@@ -18,9 +18,6 @@ constexpr double iterations_of_a_factorisation = 0.3;
 /// again after a success, and the first number after one at half the price.
 constexpr int first_pause = 1;
 constexpr int longest_pause = 64;
-/// After so many solves without its help the direct solver lets go of its factor, which is several times as large as the incomplete one; after twice
-/// as many each time that it was needed again, since making room takes a part of a factorisation.
-constexpr int first_patience = 4;
 
 template <int N>
 class IncompleteSolver : public LinearSolver<N> {
@@ -42,23 +39,29 @@ class IncompleteSolver : public LinearSolver<N> {
       ++own_.symbolic_skipped;
     }
     ++own_.incomplete;
-    return incomplete_.factor(matrix) ? count(true) : give_up();
+    direct_->let_go();  // several times as large as what takes its place
+    if (!incomplete_.factor(matrix)) return give_up();
+    own_.rows += matrix.rows();
+    own_.rows_kept += incomplete_.rows_kept();
+    return count(true);
   }
 
-  Eigen::VectorXd solve(const Eigen::VectorXd& right_side, double reduction) override {
+  Eigen::VectorXd solve(const Eigen::VectorXd& right_side, double reduction) override { return solve(right_side, reduction, 0.0); }
+
+  Eigen::VectorXd solve(const Eigen::VectorXd& right_side, double asked, double enough) override {
+    const double reduction = std::max(asked, enough);
     if (!use_direct_) {
       Refined result = refine(*matrix_, incomplete_, right_side, start(right_side, reduction), reduction, most_iterations());
       own_.krylov_iterations += result.iterations;
       if (result.x) {
         ++own_.solves;
         pause_ = 2 * result.iterations <= most_iterations() ? first_pause : std::max(first_pause, pause_ / 2);
-        if (++without_direct_ == patience_) direct_->let_go();
         count(true);
         return std::move(*result.x);
       }
       if (!give_up()) return {};
     }
-    Eigen::VectorXd x = direct_->solve(right_side, reduction);
+    Eigen::VectorXd x = direct_->solve(right_side, asked, enough);
     count(true);
     return x;
   }
@@ -70,7 +73,7 @@ class IncompleteSolver : public LinearSolver<N> {
     LinearSolver<N>::exchange(archive, matrix);
     direct_->exchange(archive, matrix);
     incomplete_.exchange(archive, matrix);
-    archive(own_, pause_, left_to_pause_, patience_, without_direct_);
+    archive(own_, pause_, left_to_pause_);
   }
 
  private:
@@ -90,11 +93,7 @@ class IncompleteSolver : public LinearSolver<N> {
     return factor_directly();
   }
 
-  bool factor_directly() {
-    if (without_direct_ >= patience_) patience_ *= 2;
-    without_direct_ = 0;
-    return count(direct_->factor(*matrix_, kept_change_));
-  }
+  bool factor_directly() { return count(direct_->factor(*matrix_, kept_change_)); }
 
   /// Passes on what it is given.
   bool count(bool done) {
@@ -110,8 +109,6 @@ class IncompleteSolver : public LinearSolver<N> {
   IncompleteLu<N> incomplete_;
   bool use_direct_ = false;
   int pause_ = first_pause, left_to_pause_ = 0;  ///< matrices
-  int patience_ = first_patience;                ///< with a direct factor that is not needed
-  int without_direct_ = 0;                       ///< solves since the direct solver was needed
   LinearCounters own_;                           ///< without those of the direct solver
 };
 

@@ -72,6 +72,12 @@ class LaggedSolver : public LinearSolver<N> {
     return factor_plainly() ? plain_->solve(right_side, reduction) : Eigen::VectorXd();
   }
 
+  void let_go() override {
+    if (lag_) return;  // later matrices are solved with it
+    has_factor_ = exact_ = false;
+    lu_.let_go();
+  }
+
   void exchange(Archive& archive, const BlockMatrix<N>& matrix) override {
     LinearSolver<N>::exchange(archive, matrix);
     archive(lu_, has_factor_, factored_rows_, spent_, pause_, left_to_pause_);

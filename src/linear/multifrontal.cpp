@@ -152,6 +152,8 @@ bool MultifrontalLu<N>::factor(const BlockMatrix<N>& matrix) {
     Dense(left_.data() + at, r, r) = front.bottomRightCorner(r, r);
     waiting.push_back(s);
   }
+  std::vector<double>().swap(front_);
+  std::vector<double>().swap(left_);
   return true;
 }
 

@@ -20,6 +20,9 @@ class MultifrontalLu {
   /// With the last matrix that was factored, whatever the pattern of later ones is.
   Eigen::VectorXd solve(const Eigen::VectorXd& right_side) const;
 
+  /// Gives back the memory of the factor until the next one; order and layout stay.
+  void let_go() { std::vector<double>().swap(value_); }
+
   /// What solve() needs; the next analyse() starts anew.
   void exchange(Archive& archive) { archive(plan_, value_at_, value_, exchange_, factor_work_); }
 

@@ -78,4 +78,16 @@ TEST_CASE("memory that was freed between what is in use goes back", "[core][proc
   CHECK(before - resident_memory() > static_cast<long>(bytes * count) / 2);
   CHECK(std::count(pieces[kept - 1]->begin(), pieces[kept - 1]->end(), 1) == static_cast<long>(bytes));
 }
+
+TEST_CASE("large memory goes back as it is freed, also among what is in use", "[core][process]") {
+  if (resident_memory() == 0) return;  // no /proc here
+  return_large_memory();
+  constexpr std::size_t bytes = 2u << 20, count = 20;
+  { const std::vector<char> once(16u << 20, 1); }  // by which the library would learn to keep pieces of up to this size
+  std::vector<std::unique_ptr<std::vector<char>>> pieces;
+  for (std::size_t i = 0; i < count; ++i) pieces.push_back(std::make_unique<std::vector<char>>(bytes, 1));
+  const long before = resident_memory();
+  for (std::size_t i = 0; i < count; i += 2) pieces[i].reset();
+  CHECK(before - resident_memory() > static_cast<long>(bytes * count) * 4 / 10);
+}
 #endif

@@ -54,6 +54,23 @@ TEST_CASE("fronts exchange rows that would be zero pivots, and need no help", "[
   CHECK(solver->counters().plain == 0);
 }
 
+TEST_CASE("fronts that were let go of are made again, unless later matrices are solved with them", "[linear][lagged]") {
+  RandomSystems random(23);
+  const BlockMatrix<3> matrix = grid(60, 60);
+  const Eigen::VectorXd right_side = random.vector(matrix.unknowns());
+  for (const Refactor refactor : {Refactor::always, Refactor::when_needed}) {
+    const auto solver = make_multifrontal_solver<3>(refactor);
+    REQUIRE(solver->factor(matrix));
+    const Eigen::VectorXd expected = solver->solve(right_side);
+    solver->let_go();
+    REQUIRE(solver->factor(matrix));
+    const Eigen::VectorXd again = solver->solve(right_side);
+    CHECK((again - expected).norm() <= 1e-9 * expected.norm());
+    CHECK(solver->counters().symbolic == 1);
+    CHECK(solver->counters().factorisations == (refactor == Refactor::always ? 2 : 1));
+  }
+}
+
 TEST_CASE("a factor serves for matrices like its own, to the same residual", "[linear][lagged]") {
   RandomSystems random(22);
   const auto solver = make_multifrontal_solver<3>(Refactor::when_needed);
