@@ -25,6 +25,8 @@ constexpr double renewing_decrease = 0.1;
 /// [m] A block goes no farther than this in a step for which its own unbalanced force is to blame: less than joints close under load, so that what
 /// comes loose does not pass through what would stop it. Slopes of 20,100 blocks take as many steps with a tenth of it.
 constexpr double longest_lone_way = 1e-4;
+/// [-] Residual over the largest force at which what has slipped is known: contacts carry a hundredth of that force and more.
+constexpr double residual_of_slip = 1e-6;
 /// [-] Of the longest displacement: momentum carries blocks a few hundredths beyond their place.
 constexpr double largest_overshoot = 1.1;
 
@@ -48,18 +50,20 @@ class Momentum {
 class CountedContacts {
  public:
   CountedContacts(const std::vector<ContactSprings>& springs, const std::vector<Branch>& branches) : changed_(springs.size()), last_(branches) {
-    for (const ContactSprings& contact : springs) counted_.push_back(contact.gap <= near_gap);
-    count_closed(branches);
+    for (std::size_t c = 0; c < springs.size(); ++c) counted_.push_back(springs[c].gap <= near_gap || status(branches[c]) != ContactStatus::open);
   }
   /// After a step. True if one has closed that was not counted.
   bool follow(const std::vector<Branch>& branches) {
-    for (std::size_t c = 0; c < counted_.size(); ++c) {
-      if (branches[c] == last_[c]) continue;
+    bool are_more = false;
+    const auto end = branches.begin() + static_cast<std::ptrdiff_t>(counted_.size());
+    for (auto at = std::mismatch(branches.begin(), end, last_.begin()); at.first != end; at = std::mismatch(at.first, end, at.second)) {
+      const auto c = static_cast<std::size_t>(at.first - branches.begin());
       changed_[c] = true;
       ++changes_;
+      if (!counted_[c] && status(branches[c]) != ContactStatus::open) counted_[c] = are_more = true;
+      *at.second = *at.first;
     }
-    last_ = branches;
-    return count_closed(branches);
+    return are_more;
   }
   /// Leaves out those that are open and have been since the last call, if few have changed. True if there are any.
   bool leave_out() {
@@ -77,16 +81,6 @@ class CountedContacts {
   const std::vector<bool>& counted() const { return counted_; }
 
  private:
-  bool count_closed(const std::vector<Branch>& branches) {
-    bool are_more = false;
-    for (std::size_t c = 0; c < counted_.size(); ++c) {
-      if (counted_[c] || status(branches[c]) == ContactStatus::open) continue;
-      counted_[c] = true;
-      are_more = true;
-    }
-    return are_more;
-  }
-
   std::vector<bool> counted_, changed_;
   std::vector<Branch> last_;
   long changes_ = 0;
@@ -131,11 +125,14 @@ TwoLevelFlexibility Newton<N>::flexibility(const Eigen::VectorXd& d, const std::
 
 template <int N>
 void Newton<N>::keep_slip() {
+  constexpr auto sticking = static_cast<Branch>(ContactStatus::sticking);
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    const Branch* const branches = branches_.data() + batch_size * i;
+    if (std::all_of(branches, branches + batch_size, [](Branch b) { return b == sticking; })) continue;
     ContactBatch& contact = contacts_[i];
     const TrialBatch& now = trials_[i];
     for (int k = 0; k < batch_size; ++k) {
-      const bool slid = branches_[batch_size * i + static_cast<std::size_t>(k)] != static_cast<Branch>(ContactStatus::sticking);
+      const bool slid = branches[k] != sticking;
       const double slack = now.elastic_shear[k] + contact.shear[k] * now.slip_change[k];
       contact.initial_shear[k] = slid ? slack : contact.initial_shear[k];
     }
@@ -143,11 +140,35 @@ void Newton<N>::keep_slip() {
 }
 
 template <int N>
-void Newton<N>::note_slip(const std::vector<ContactSprings>& springs) {
+ContactForces Newton<N>::slipped_as_a_whole(std::size_t c) const {
+  return spring_slider((*springs_)[c], start(c).strength(lane(c)), trial(c).gap_change[lane(c)], trial(c).slip_change[lane(c)]);
+}
+
+template <int N>
+bool Newton<N>::break_slipped_bonds() {
+  bool any = false;
+  has_broken_.resize(contact_count_);
+  for (std::size_t c = 0; c < contact_count_; ++c) {
+    const Contact& contact = problem_->contacts[c];
+    const JointProperties& joint = problem_->joints.joint(contact.joint);
+    if (has_broken_[c] || !can_lose_strength(joint, contact.bonded) || stays_bonded(joint, contact.bonded, ContactStatus::sliding)) continue;
+    if (status(branches_[c]) == ContactStatus::open || slipped_as_a_whole(c).status != ContactStatus::sliding) continue;
+    has_broken_[c] = any = true;
+    ContactStrength strength = start(c).strength(lane(c));
+    strength.break_bond(joint);
+    contacts_[c / batch_size].cohesion[lane(c)] = strength.cohesion;
+    contacts_[c / batch_size].tension[lane(c)] = strength.tension;
+  }
+  return any;
+}
+
+template <int N>
+void Newton<N>::note_slip() {
   for (std::size_t c = 0; c < contact_count_; ++c) {
     if (status(branches_[c]) != ContactStatus::sticking) continue;
-    const ContactForces law = spring_slider(springs[c], start(c).strength(lane(c)), trial(c).gap_change[lane(c)], trial(c).slip_change[lane(c)]);
+    const ContactForces law = slipped_as_a_whole(c);
     if (law.status == ContactStatus::sliding) branches_[c] = branch(law);
+    if (has_broken_[c]) branches_[c] = trial(c).shear[lane(c)] < 0.0 ? static_cast<Branch>(-sliding_branch) : sliding_branch;
   }
 }
 
@@ -183,6 +204,8 @@ void Newton<N>::relax(const StepProblem<N>& problem, const std::vector<ContactSp
   bool is_regular = renew(std::numeric_limits<double>::infinity());
   Eigen::VectorXd place = d, next(d.size());
   Momentum momentum;
+  has_broken_.assign(contact_count_, false);
+  bool bonds_are_known = false;
   int& steps = solution.effort.relaxation_steps;
   while (is_regular && norm > 1.0 && steps < most_relaxation_steps && (steps % steps_between_looks != 0 || !has_left(d))) {
     keep_slip();
@@ -193,6 +216,12 @@ void Newton<N>::relax(const StepProblem<N>& problem, const std::vector<ContactSp
     evaluate(d);
     norm = residual_norm();
     ++steps;
+    const bool is_near = norm * problem.method.residual_tolerance <= residual_of_slip;
+    if (is_near && !bonds_are_known && break_slipped_bonds()) {
+      evaluate(d);
+      norm = residual_norm();
+    }
+    bonds_are_known = is_near;
     bool is_outdated = contacts.follow(branches_);
     if (steps % steps_between_estimates == 0) is_outdated |= contacts.leave_out() || (estimates > 1 && norm < renewing_decrease * norm_of_estimate);
     if (is_outdated) {
@@ -205,7 +234,7 @@ void Newton<N>::relax(const StepProblem<N>& problem, const std::vector<ContactSp
   }
   solution.converged = norm <= 1.0;
   if (!solution.converged) solution.reason = "relaxation did not come to rest";
-  note_slip(springs);
+  note_slip();
   solution.paths.clear();
   solution.contacts.borrow(trials_, branches_, springs);
 }

@@ -88,8 +88,8 @@ bool TangentSystem<N>::factor(double kept_change) {
 }
 
 template <int N>
-Eigen::VectorXd TangentSystem<N>::solve(const Eigen::VectorXd& right_side, double reduction) {
-  Eigen::VectorXd x = solver_->solve(right_side, reduction);
+Eigen::VectorXd TangentSystem<N>::solve(const Eigen::VectorXd& right_side, double reduction, double enough) {
+  Eigen::VectorXd x = solver_->solve(right_side, reduction, enough);
   solver_memory_.grow_to(solver_->memory());
   return x;
 }
