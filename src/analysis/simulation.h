@@ -24,6 +24,7 @@ struct StepCounters {
   long part_iterations = 0;             ///< linear solves of parts
   long part_rows = 0;                   ///< block rows in these
   long relaxation_steps = 0;            ///< evaluations of all forces in static steps that are relaxed, thrown-away attempts included
+  long relaxation_estimates = 0;        ///< of the stiffness of the whole system, made for these
   long compliant = 0;                   ///< steps of `hard` whose multipliers did not converge: taken with springs
   long dissipative = 0;                 ///< steps of path_average that found a solution only with dissipation
   long loads = 0;                       ///< times the explicit loop took over the state anew
@@ -42,11 +43,12 @@ struct StepCounters {
     part_iterations += effort.part_iterations;
     part_rows += effort.part_rows;
     relaxation_steps += effort.relaxation_steps;
+    relaxation_estimates += effort.estimates;
   }
 
   void exchange(Archive& archive) {
-    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s] = *this;
-    archive(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s);
+    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t] = *this;
+    archive(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t);
   }
 };
 

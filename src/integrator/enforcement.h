@@ -64,10 +64,11 @@ struct StepEffort {
   int part_iterations = 0;   ///< linear solves of parts
   long part_rows = 0;        ///< block rows in these
   int relaxation_steps = 0;  ///< evaluations of all forces instead, see Newton::relax()
+  int estimates = 0;         ///< of the way that forces move blocks, made for these
 
   StepEffort& operator+=(const StepEffort& other) {
     iterations += other.iterations, parts += other.parts, part_iterations += other.part_iterations;
-    part_rows += other.part_rows, relaxation_steps += other.relaxation_steps;
+    part_rows += other.part_rows, relaxation_steps += other.relaxation_steps, estimates += other.estimates;
     return *this;
   }
 };

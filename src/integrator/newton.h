@@ -15,7 +15,7 @@
 //
 // Beyond that, factors cost more than everything else (n^1.5 operations, n log n numbers), and a slope of 50,000 blocks has so many loose contacts
 // that no tangent tells where they go. relax() then finds the balance without a tangent: blocks follow the forces on them as far as they would go if
-// all contacts stuck (two_level.h), with Nesterov's momentum (Y. Nesterov, 1983), which starts anew when the forces turn against it (B. O'Donoghue
+// all closed contacts stuck (two_level.h), with Nesterov's momentum (Y. Nesterov, 1983), which starts anew when the forces turn against it (B. O'Donoghue
 // and E. Candes, 2015). Contacts slip on that way as they do in an explicit method, and keep their slip: friction that depended on the present place
 // alone would feed vibrations instead of damping them. Rest is what it is for Newton's method, the residual alone.
 #pragma once
@@ -113,8 +113,8 @@ class Newton {
   void hold_contacts(bool friction_lags);
   /// Adapts holds_ to what an iteration has changed.
   void hold_changed(double norm);
-  /// With everything that can touch each other, as if it stuck.
-  TwoLevelFlexibility flexibility(const Eigen::VectorXd& d) const;
+  /// With the contacts that count, as if they stuck, and with blocks held so that their own unbalanced force moves them no farther than a way [m].
+  TwoLevelFlexibility flexibility(const Eigen::VectorXd& d, const std::vector<bool>& counted, double longest_way) const;
   /// The springs of contacts that slide or are open slip to where they carry what these carry now.
   void keep_slip();
   /// Contacts that have slipped in the step as a whole have slid, for what loses its strength by that, though they stick on what they have kept.

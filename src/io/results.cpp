@@ -288,6 +288,7 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
                    {"part_iterations", steps.part_iterations},
                    {"part_rows", steps.part_rows},
                    {"relaxation_steps", steps.relaxation_steps},
+                   {"relaxation_estimates", steps.relaxation_estimates},
                    {"searches", detection.searches},
                    {"searches_skipped", detection.searches_skipped},
                    {"narrow_phases", detection.narrow_phases},

@@ -322,6 +322,7 @@ TEST_CASE("summary.json has counters under their own names", "[io][results]") {
                                                 {"part_iterations", steps.part_iterations},
                                                 {"part_rows", steps.part_rows},
                                                 {"relaxation_steps", steps.relaxation_steps},
+                                                {"relaxation_estimates", steps.relaxation_estimates},
                                                 {"searches", detection.searches},
                                                 {"searches_skipped", detection.searches_skipped},
                                                 {"narrow_phases", detection.narrow_phases},
