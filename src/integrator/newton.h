@@ -15,9 +15,9 @@
 //
 // Beyond that, factors cost more than everything else (n^1.5 operations, n log n numbers), and a slope of 50,000 blocks has so many loose contacts
 // that no tangent tells where they go. relax() then finds the balance without a tangent: blocks follow the forces on them as far as they would go if
-// all closed contacts stuck (two_level.h), with Nesterov's momentum (Y. Nesterov, 1983), which starts anew when the forces turn against it (B. O'Donoghue
-// and E. Candes, 2015). Contacts slip on that way as they do in an explicit method, and keep their slip: friction that depended on the present place
-// alone would feed vibrations instead of damping them. Rest is what it is for Newton's method, the residual alone.
+// all closed contacts stuck (two_level.h), with Nesterov's momentum (Y. Nesterov, 1983), which starts anew when the forces turn against it (B.
+// O'Donoghue and E. Candes, 2015). Contacts slip on that way as they do in an explicit method, and keep their slip: friction that depended on the
+// present place alone would feed vibrations instead of damping them. Rest is what it is for Newton's method, the residual alone.
 #pragma once
 
 #include <memory>
@@ -117,8 +117,12 @@ class Newton {
   TwoLevelFlexibility flexibility(const Eigen::VectorXd& d, const std::vector<bool>& counted, double longest_way) const;
   /// The springs of contacts that slide or are open slip to where they carry what these carry now.
   void keep_slip();
-  /// Contacts that have slipped in the step as a whole have slid, for what loses its strength by that, though they stick on what they have kept.
-  void note_slip(const std::vector<ContactSprings>& springs);
+  /// What the law says of contact c for its way since the start of the step.
+  ContactForces slipped_as_a_whole(std::size_t c) const;
+  /// Contacts that have slipped in the step as a whole and lose strength by that carry what they can without. True if there are any.
+  bool break_slipped_bonds();
+  /// Those have slid for what loses its strength by that, though they stick on what they have kept.
+  void note_slip();
   /// Whether a block has gone so far that the step will be refused.
   bool has_left(const Eigen::VectorXd& d) const;
   void prepare(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs);
@@ -182,6 +186,7 @@ class Newton {
   std::vector<TrialBatch> trials_;
   std::vector<Branch> branches_;         ///< of the contacts
   std::vector<Branch> branches_before_;  ///< of the iteration
+  std::vector<bool> has_broken_;         ///< contacts that have lost strength while they were relaxed
   std::vector<double> holds_;            ///< [-] part of its springs that an open or sliding contact has in the tangent; else empty
   Eigen::VectorXd trial_;                ///< displacement
   std::vector<ForceRow> rows_;           ///< all forces at the trial position but inertia; a row more for the fixed blocks

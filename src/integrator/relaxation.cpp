@@ -25,6 +25,8 @@ constexpr double renewing_decrease = 0.1;
 /// [m] A block goes no farther than this in a step for which its own unbalanced force is to blame: less than joints close under load, so that what
 /// comes loose does not pass through what would stop it. Slopes of 20,100 blocks take as many steps with a tenth of it.
 constexpr double longest_lone_way = 1e-4;
+/// [-] Residual over the largest force at which what has slipped is known: contacts carry a hundredth of that force and more.
+constexpr double residual_of_slip = 1e-6;
 /// [-] Of the longest displacement: momentum carries blocks a few hundredths beyond their place.
 constexpr double largest_overshoot = 1.1;
 
@@ -143,11 +145,35 @@ void Newton<N>::keep_slip() {
 }
 
 template <int N>
-void Newton<N>::note_slip(const std::vector<ContactSprings>& springs) {
+ContactForces Newton<N>::slipped_as_a_whole(std::size_t c) const {
+  return spring_slider((*springs_)[c], start(c).strength(lane(c)), trial(c).gap_change[lane(c)], trial(c).slip_change[lane(c)]);
+}
+
+template <int N>
+bool Newton<N>::break_slipped_bonds() {
+  bool any = false;
+  has_broken_.resize(contact_count_);
+  for (std::size_t c = 0; c < contact_count_; ++c) {
+    const Contact& contact = problem_->contacts[c];
+    const JointProperties& joint = problem_->joints.joint(contact.joint);
+    if (has_broken_[c] || !can_lose_strength(joint, contact.bonded) || stays_bonded(joint, contact.bonded, ContactStatus::sliding)) continue;
+    if (status(branches_[c]) == ContactStatus::open || slipped_as_a_whole(c).status != ContactStatus::sliding) continue;
+    has_broken_[c] = any = true;
+    ContactStrength strength = start(c).strength(lane(c));
+    strength.break_bond(joint);
+    contacts_[c / batch_size].cohesion[lane(c)] = strength.cohesion;
+    contacts_[c / batch_size].tension[lane(c)] = strength.tension;
+  }
+  return any;
+}
+
+template <int N>
+void Newton<N>::note_slip() {
   for (std::size_t c = 0; c < contact_count_; ++c) {
     if (status(branches_[c]) != ContactStatus::sticking) continue;
-    const ContactForces law = spring_slider(springs[c], start(c).strength(lane(c)), trial(c).gap_change[lane(c)], trial(c).slip_change[lane(c)]);
+    const ContactForces law = slipped_as_a_whole(c);
     if (law.status == ContactStatus::sliding) branches_[c] = branch(law);
+    if (has_broken_[c]) branches_[c] = trial(c).shear[lane(c)] < 0.0 ? static_cast<Branch>(-sliding_branch) : sliding_branch;
   }
 }
 
@@ -181,6 +207,8 @@ void Newton<N>::relax(const StepProblem<N>& problem, const std::vector<ContactSp
   bool is_regular = renew(std::numeric_limits<double>::infinity());
   Eigen::VectorXd place = d, next(d.size());
   Momentum momentum;
+  has_broken_.assign(contact_count_, false);
+  bool bonds_are_known = false;
   int& steps = solution.effort.relaxation_steps;
   while (is_regular && norm > 1.0 && steps < most_relaxation_steps && (steps % steps_between_looks != 0 || !has_left(d))) {
     keep_slip();
@@ -191,6 +219,12 @@ void Newton<N>::relax(const StepProblem<N>& problem, const std::vector<ContactSp
     evaluate(d);
     norm = residual_norm();
     ++steps;
+    const bool is_near = norm * problem.method.residual_tolerance <= residual_of_slip;
+    if (is_near && !bonds_are_known && break_slipped_bonds()) {
+      evaluate(d);
+      norm = residual_norm();
+    }
+    bonds_are_known = is_near;
     bool is_outdated = contacts.follow(branches_);
     if (steps % steps_between_estimates == 0) is_outdated |= contacts.leave_out() || (estimates > 1 && norm < renewing_decrease * norm_of_estimate);
     if (is_outdated) {
@@ -203,7 +237,7 @@ void Newton<N>::relax(const StepProblem<N>& problem, const std::vector<ContactSp
   }
   solution.converged = norm <= 1.0;
   if (!solution.converged) solution.reason = "relaxation did not come to rest";
-  note_slip(springs);
+  note_slip();
   solution.paths.clear();
   solution.contacts.borrow(trials_, branches_, springs);
 }

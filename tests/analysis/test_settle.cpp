@@ -324,7 +324,10 @@ TEST_CASE("a slope with thousands of loose contacts is relaxed without a cut", "
   CHECK(result.settled);
   CHECK(simulation.step_counters().cuts == 0);
   CHECK(worst_balance(simulation) < 1e-6 * simulation.force_scale());
-  // Of each of 3 steps about 450; where friction depends on the present place alone, vibrations live four times as long.
+  // Two steps to follow the load, one that loses no strength. Bonds that broke in the last moment of a step only would take one more.
+  CHECK(result.steps <= 4);
+  // Where friction depends on the present place alone, vibrations live four times as long. Contacts that are open would hold blocks in the estimate
+  // for 300 steps more.
   CHECK(simulation.step_counters().relaxation_steps < 1600);
   // Newton's method has it at 21.02 mm, dem at 20.98 mm: what friction holds depends on the way, by a few hundredths.
   CHECK(result.displacement == Approx(0.0210).epsilon(0.03));
