@@ -193,7 +193,7 @@ void Newton<N>::evaluate(const Eigen::VectorXd& d) {
   }
   rows_.assign(blocks_.size() + 1, ForceRow());
   residual_.resize(N * static_cast<Eigen::Index>(blocks_.size()));
-  force_scale_ = kernels_.evaluate(step_forces_, contacts_, moves_.data(), rounding_of_sums, trials_, branches_, rows_);
+  force_scale_ = kernels_.evaluate(step_forces_, ramp_, contacts_, moves_.data(), rounding_of_sums, trials_, branches_, rows_);
   evaluate_blocks(d);
 }
 
@@ -425,6 +425,7 @@ void Newton<N>::take_part(const Newton& whole, const Part& part) {
   problem_ = whole.problem_;
   step_forces_ = whole.step_forces_;
   start_scale_ = whole.start_scale_;
+  ramp_ = whole.ramp_;
   const int rows = static_cast<int>(part.rows.size());
   blocks_.clear();
   moves_.clear();
