@@ -113,17 +113,26 @@ void Newton<N>::prepare(const StepProblem<N>& problem, const std::vector<Contact
   contact_count_ = problem.contacts.size();
   resize_closely(contacts_, (contact_count_ + batch_size - 1) / batch_size);
   if (!contacts_.empty()) contacts_.back() = ContactBatch();
-  const auto row = [&](int b) { return b < system.block_count() && system.block(b).equation >= 0 ? system.block(b).equation : system.free_count(); };
+  places_.clear();
+  for (int b = 0; b < system.block_count(); ++b) {
+    const int equation = system.block(b).equation;
+    places_.push_back({system.centroid(b), equation >= 0 ? equation : system.free_count()});
+  }
+  places_.push_back({Vec2::Zero(), system.free_count()});
+  const int nobody = system.block_count();
   for (std::size_t c = 0; c < batch_size * contacts_.size(); ++c) {
     ContactBatch& batch = contacts_[c / batch_size];
+    const int k = lane(c);
     const bool is_one = c < contact_count_;
-    batch.vertex_block[lane(c)] = is_one ? problem.contacts[c].vertex_block : system.block_count();
-    batch.edge_block[lane(c)] = is_one ? problem.contacts[c].edge_block : system.block_count();
-    batch.vertex_row[lane(c)] = row(batch.vertex_block[lane(c)]);
-    batch.edge_row[lane(c)] = row(batch.edge_block[lane(c)]);
+    batch.vertex_block[k] = is_one ? problem.contacts[c].vertex_block : nobody;
+    batch.edge_block[k] = is_one ? problem.contacts[c].edge_block : nobody;
+    const BlockPlace &vertex = places_[batch.vertex_block[k]], &edge = places_[batch.edge_block[k]];
+    batch.vertex_row[k] = vertex.row;
+    batch.edge_row[k] = edge.row;
     if (!is_one) continue;
     const Contact& contact = problem.contacts[c];
-    batch.set(lane(c), ContactPlace<N>(system, contact), springs[c], ContactStrength(problem.joints.joint(contact.joint), contact));
+    batch.set(k, ContactPlace<N>(system, contact, vertex.centroid, edge.centroid), springs[c],
+              ContactStrength(problem.joints.joint(contact.joint), contact));
   }
   blocks_.clear();
   blocks_.reserve(system.free_count());

@@ -100,6 +100,12 @@ class Newton {
     double rounding_of_coordinates = 0.0;  ///< [N]
   };
 
+  /// What the contacts of a step need of a block.
+  struct BlockPlace {
+    Vec2 centroid;  ///< [m]
+    int row;        ///< that of fixed ones comes after all others
+  };
+
   /// Evaluates at the displacement to start from and returns its residual_norm().
   double begin(const Eigen::VectorXd& d, FirstTangent first);
   /// Iterates from solution.d until its residual_norm() is small enough.
@@ -194,6 +200,7 @@ class Newton {
   BatchKernels kernels_;
   std::size_t contact_count_ = 0;
   std::vector<ContactBatch> contacts_;
+  std::vector<BlockPlace> places_;               ///< of all blocks, and of nobody
   std::vector<StepBlock> blocks_;                ///< the free ones, by their equations
   std::vector<BlockMove<N>> moves_;              ///< of all blocks, or those that a part sees, at the trial displacement; one that stays
   StepForces step_forces_ = StepForces::at_end;  ///< what trials_ has
