@@ -308,7 +308,10 @@ StepProblem<N> Simulation<N>::present_problem(double dt, bool statics) const {
   p.failed_attempts = failed_attempts_;
   p.keep_bonds = keep_bonds_;
   p.longest_displacement = scene_.step.max_displacement;
-  if (statics) return p;
+  if (statics) {
+    if (enforcement_->has_elastic_contacts()) p.negligible_force = negligible_force_;  // elsewhere it would show in the places of the blocks
+    return p;
+  }
   p.scheme = scheme_.get();
   if (scheme_->wants_accelerations()) {
     const Eigen::VectorXd force = forces_now(p);
@@ -428,6 +431,7 @@ StepResult Simulation<N>::step(double dt, bool statics) {
   }
   if (!solution.converged || too_far) {
     result.reason = too_far ? "a block moved farther in one step than step.max_displacement_m" : solution.reason;
+    result.part = solution.part;
     ++step_counters_.cuts;
     ++failed_attempts_;
     return result;
@@ -443,7 +447,7 @@ StepResult Simulation<N>::step(double dt, bool statics) {
 
 template <int N>
 double Simulation<N>::unbalanced_force(const StepProblem<N>& problem, const StepSolution<N>& solution) const {
-  double largest = 0.0;
+  double largest = 0.0;  // of what inertia carries
   for (int b : system_.free_blocks()) {
     const Unknowns inertia_force = problem.inertia * system_.block(b).mass.cwiseProduct(solution.of(system_, b));
     largest = std::max(largest, Motion<N>::largest_force(inertia_force, system_.block(b).radius));
@@ -455,7 +459,7 @@ double Simulation<N>::unbalanced_force(const StepProblem<N>& problem, const Step
     const double bound = ContactStrength(joints_.joint(contacts_[i].joint), contacts_[i]).shear_bound(f.normal).value;
     largest = std::max(largest, std::abs(bound - std::abs(f.shear)));
   }
-  return largest;
+  return largest + solution.unbalanced;
 }
 
 template <int N>
@@ -487,6 +491,7 @@ void Simulation<N>::accept(const StepProblem<N>& problem, const StepSolution<N>&
   count_moves();
   // Where multipliers have just failed, the next step need not fail again before it may be compliant: cuts would outrun the growth of the step.
   if (solution.compliant) ++step_counters_.compliant;
+  if (solution.eased) ++step_counters_.eased;
   if (solution.dissipative) ++step_counters_.dissipative;
   if (!solution.compliant) failed_attempts_ = 0;
   contacts_current_ = false;
@@ -673,7 +678,7 @@ bool Simulation<N>::advance(double dt) {
       control_.refused(trial, result.error);
       trial = control_.step(dt);
     } else {
-      trial *= enforcement_->step_cut(scene_.method);
+      trial *= result.part > 0.0 ? result.part : enforcement_->step_cut(scene_.method);
       if (adaptive) control_.shorten(trial);
     }
     if (trial < smallest) {

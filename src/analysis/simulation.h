@@ -26,6 +26,7 @@ struct StepCounters {
   long relaxation_steps = 0;            ///< evaluations of all forces in static steps that are relaxed, thrown-away attempts included
   long relaxation_estimates = 0;        ///< of the stiffness of the whole system, made for these
   long compliant = 0;                   ///< steps of `hard` whose multipliers did not converge: taken with springs
+  long eased = 0;                       ///< steps of `hard` that were balanced with a longer ramp of the cohesion only
   long dissipative = 0;                 ///< steps of path_average that found a solution only with dissipation
   long loads = 0;                       ///< times the explicit loop took over the state anew
   long loads_skipped = 0;               ///< times it took over only contacts that were found anew
@@ -47,8 +48,8 @@ struct StepCounters {
   }
 
   void exchange(Archive& archive) {
-    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t] = *this;
-    archive(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t);
+    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u] = *this;
+    archive(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u);
   }
 };
 
@@ -66,6 +67,7 @@ struct StepResult {
   double moved = 0.0;             ///< [m] farthest way of a vertex, of refused steps too; 0 if nothing was solved
   double error = 0.0;             ///< [m] local error, see local_error(); only if the scene asks for adaptive steps
   bool too_wrong = false;         ///< refused because of it
+  double part = 0.0;              ///< [-] refused: of the step, a length that is likely to be accepted; 0 if that is not known
   bool lost_strength = false;     ///< a contact has lost its cohesion or tensile strength at the end of the step
 };
 
@@ -118,6 +120,8 @@ class Simulation {
   /// Velocity of block b at time() (the system's own may be half a step behind, see time_scheme.h).
   Unknowns velocity(int b) const;
   double stored_contact_energy() const;
+  /// [N] What static steps may leave unbalanced on a block for now; 0: the residual is solved for to the last, which rigid contacts do in any case.
+  void neglect(double force) { negligible_force_ = force; }
   double force_scale() const;  ///< [N] weight of the heaviest free block, or the largest load or contact force if there is no gravity
 
   const EnergyLedger& ledger() const;
@@ -219,8 +223,9 @@ class Simulation {
   mutable double collected_contact_energy_ = 0.0;  ///< [J] stored when the loop was last collected from or loaded
   mutable double max_penetration_ = 0.0;
   StepCounters step_counters_;
-  int failed_attempts_ = 0;  ///< since the last step that was accepted
-  double last_speed_ = 0.0;  ///< [m/s] largest displacement of the last step over its duration
+  double negligible_force_ = 0.0;  ///< [N]
+  int failed_attempts_ = 0;        ///< since the last step that was accepted
+  double last_speed_ = 0.0;        ///< [m/s] largest displacement of the last step over its duration
   StepControl control_;
   StageTimes stage_times_;
 };

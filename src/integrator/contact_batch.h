@@ -178,11 +178,12 @@ class BatchKernels {
   /// a spring at the start of the step, pulling ones not counted.
   double begin(std::vector<ContactBatch>& contacts) const { return begin_(contacts.data(), contacts.size()); }
   /// Fills trials and branches; adds to the rows. Returns [N] the largest force.
+  /// \param ramp   [-] see ContactStrength::shear_bound(); means have the usual one
   /// \param moves  of all blocks
   /// \param rounding_of_sums  [-] of the forces and changes of force of a contact
-  double evaluate(StepForces forces, const std::vector<ContactBatch>& contacts, const BlockMove<3>* moves, double rounding_of_sums,
+  double evaluate(StepForces forces, double ramp, const std::vector<ContactBatch>& contacts, const BlockMove<3>* moves, double rounding_of_sums,
                   std::vector<TrialBatch>& trials, std::vector<Branch>& branches, std::vector<ForceRow>& rows) const {
-    return evaluate_(forces, contacts.data(), contacts.size(), moves, rounding_of_sums, trials.data(), branches.data(), rows.data());
+    return evaluate_(forces, ramp, contacts.data(), contacts.size(), moves, rounding_of_sums, trials.data(), branches.data(), rows.data());
   }
   /// Adds the stiffness of all contacts to the matrix. There are slots for every place of a batch.
   void add_stiffness(const std::vector<ContactBatch>& contacts, const std::vector<TrialBatch>& trials, const std::vector<Branch>& branches,
@@ -190,7 +191,7 @@ class BatchKernels {
 
  private:
   double (*begin_)(ContactBatch*, std::size_t);
-  double (*evaluate_)(StepForces, const ContactBatch*, std::size_t, const BlockMove<3>*, double, TrialBatch*, Branch*, ForceRow*);
+  double (*evaluate_)(StepForces, double, const ContactBatch*, std::size_t, const BlockMove<3>*, double, TrialBatch*, Branch*, ForceRow*);
   void (*add_stiffness_)(const ContactBatch*, const TrialBatch*, std::size_t, const Branch*, const BatchTangent&, const ContactSlots*, double*);
 };
 

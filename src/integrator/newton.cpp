@@ -30,8 +30,8 @@ constexpr double shortest_backtrack = 0.01;
 /// contacts that change state, or from the turning of the others. Iterations of all steps of a slope of 1,773 free blocks: 411 with 1e-12, 418 with
 /// 1e-6, 420 with 1e-5, 432 with 1e-4.
 constexpr double linear_reduction = 1e-5;
-/// [-] The same in motion as long as contacts change their states, which leaves a larger residual than this. In failure, with end_to_spare: 0.94 of the
-/// instructions of 9,745 free blocks, 0.91 of those of 1,773, though iterations are 4 to 7 % more; with 1e-2 no less.
+/// [-] The same in motion as long as contacts change their states, which leaves a larger residual than this. In failure, with end_to_spare: 0.94 of
+/// the instructions of 9,745 free blocks, 0.91 of those of 1,773, though iterations are 4 to 7 % more; with 1e-2 no less.
 constexpr double linear_reduction_of_changes = 1e-3;
 /// [-] No residual is brought down farther than to this part of what ends the iteration.
 constexpr double end_to_spare = 0.3;
@@ -192,7 +192,7 @@ void Newton<N>::evaluate(const Eigen::VectorXd& d) {
   }
   rows_.assign(blocks_.size() + 1, ForceRow());
   residual_.resize(N * static_cast<Eigen::Index>(blocks_.size()));
-  force_scale_ = kernels_.evaluate(step_forces_, contacts_, moves_.data(), rounding_of_sums, trials_, branches_, rows_);
+  force_scale_ = kernels_.evaluate(step_forces_, ramp_, contacts_, moves_.data(), rounding_of_sums, trials_, branches_, rows_);
   evaluate_blocks(d);
 }
 
@@ -208,7 +208,7 @@ double Newton<N>::unbalanced(int row) const {
 
 template <int N>
 double Newton<N>::residual_norm() const {
-  double worst = 0.0;
+  double worst = 0.0, largest = 0.0;
   const double loosest = std::max(loosest_balance, largest_force_growth * problem_->method.residual_tolerance) * start_scale_;
   for (int row = 0; row < static_cast<int>(blocks_.size()); ++row) {
     const double r = unbalanced(row);
@@ -216,8 +216,16 @@ double Newton<N>::residual_norm() const {
     if (r == 0.0) continue;
     if (tolerated(row) > loosest) return std::numeric_limits<double>::infinity();
     worst = std::max(worst, r / tolerated(row));
+    largest = std::max(largest, r);
   }
-  return worst;
+  return largest <= problem_->negligible_force ? std::min(worst, 1.0) : worst;
+}
+
+template <int N>
+double Newton<N>::largest_unbalanced() const {
+  double largest = 0.0;
+  for (int row = 0; row < static_cast<int>(blocks_.size()); ++row) largest = std::max(largest, unbalanced(row));
+  return largest;
 }
 
 template <int N>
@@ -261,8 +269,7 @@ template <int N>
 Eigen::VectorXd Newton<N>::direction(const Eigen::VectorXd& d, Tangent tangent, double reduction, double enough) {
   assemble(d, tangent);
   Eigen::VectorXd step;
-  if (tangent_.factor(problem_->statics ? static_kept_change : kept_change))
-    step = tangent_.solver().solve(residual_, reduction, enough);
+  if (tangent_.factor(problem_->statics ? static_kept_change : kept_change)) step = tangent_.solver().solve(residual_, reduction, enough);
   return step;
 }
 
@@ -417,6 +424,7 @@ void Newton<N>::take_part(const Newton& whole, const Part& part) {
   problem_ = whole.problem_;
   step_forces_ = whole.step_forces_;
   start_scale_ = whole.start_scale_;
+  ramp_ = whole.ramp_;
   const int rows = static_cast<int>(part.rows.size());
   blocks_.clear();
   moves_.clear();
@@ -674,6 +682,7 @@ void Newton<N>::solve_prepared(StepSolution<N>& solution, FirstTangent first) {
     outcome = iterate_holding(solution, norm);
   }
   solution.converged = norm <= 1.0;
+  if (problem.statics) solution.unbalanced = largest_unbalanced();
   if (outcome == Outcome::singular) {
     solution.reason = "singular matrix";
     return;

@@ -57,6 +57,9 @@ class Newton {
   /// The step of the last solve() again, with springs that differ only in what they carry at its start and in the gaps they keep.
   void solve_again(const std::vector<ContactSprings>& springs, StepSolution<N>& solution, FirstTangent first);
 
+  /// [-] Part of the cohesion over which it comes in, in what is solved from now on: see ContactStrength::shear_bound().
+  void set_cohesion_ramp(double ramp) { ramp_ = ramp; }
+
   /// The same for a static step, by relaxation. What friction holds in the end depends on the way there.
   void relax(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs, StepSolution<N>& solution);
 
@@ -159,9 +162,12 @@ class Newton {
   void take_states_before();
   /// What a step must reduce, with the residual_norm() that belongs to it.
   double merit(double norm) const;
-  double residual_norm() const;      ///< largest residual of a block over what is tolerated: converged at 1; infinite where that tells nothing
+  /// Largest residual of a block over what is tolerated: converged at 1, which is also what negligible ones count for; infinite where that tells
+  /// nothing.
+  double residual_norm() const;
   double unbalanced(int row) const;  ///< [N] residual of a block
-  double tolerated(int row) const;   ///< [N] of it
+  double largest_unbalanced() const;
+  double tolerated(int row) const;  ///< [N] of it
   void assemble(const Eigen::VectorXd& d, Tangent tangent);
   /// \param reduction, enough  [-] of the residual by a linear solver, see LinearSolver::solve()
   Eigen::VectorXd direction(const Eigen::VectorXd& d, Tangent tangent, double reduction, double enough = 0.0);
@@ -175,6 +181,7 @@ class Newton {
   void report_paths(StepSolution<N>& solution);
 
   Merit asked_merit_;
+  double ramp_ = tolerance::cohesion_ramp;  ///< [-]
   const StepProblem<N>* problem_ = nullptr;
   const std::vector<ContactSprings>* springs_ = nullptr;
   BatchKernels kernels_;

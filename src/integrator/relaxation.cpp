@@ -231,6 +231,7 @@ void Newton<N>::relax(const StepProblem<N>& problem, const std::vector<ContactSp
     return;
   }
   solution.converged = norm <= 1.0;
+  solution.unbalanced = largest_unbalanced();
   if (!solution.converged) solution.reason = "relaxation did not come to rest";
   note_slip();
   solution.paths.clear();
