@@ -19,14 +19,17 @@ constexpr double part_of_limit = 0.8;  ///< [-] of the largest displacement of a
 /// [-] Of the unbalanced force that ends settling: what its steps may leave for themselves, so that the rest is for the inertia of the last one.
 constexpr double negligible_part = 0.5;
 
-/// While it lives.
+/// What a static step may leave unbalanced, while it lives.
 template <int N>
 class Neglect {
  public:
-  Neglect(Simulation<N>& simulation, double force) : simulation_(simulation) { simulation.neglect(force); }
+  explicit Neglect(Simulation<N>& simulation) : simulation_(simulation) {}
   ~Neglect() { simulation_.neglect(0.0); }
   Neglect(const Neglect&) = delete;
   Neglect& operator=(const Neglect&) = delete;
+
+  /// Before a step: the forces that it is a part of change.
+  void renew() { simulation_.neglect(negligible_part * simulation_.scene().settle.unbalanced_fraction * simulation_.force_scale()); }
 
  private:
   Simulation<N>& simulation_;
@@ -54,12 +57,13 @@ SettleResult settle(Simulation<N>& simulation, const SettleProgress& progress) {
   std::vector<typename Motion<N>::Unknowns> start;
   for (int b = 0; b < system.block_count(); ++b) start.push_back(system.displacement(b));
   simulation.system().stop();
-  const Neglect<N> neglect(simulation, negligible_part * input.unbalanced_fraction * simulation.force_scale());
+  Neglect<N> neglect(simulation);
 
   SettleResult result;
   double dt = input.first_dt, growth = fastest_growth;
   const double limit = simulation.scene().step.max_displacement;
   while (result.steps < input.max_steps) {
+    neglect.renew();
     const StepResult step = simulation.step(dt, true);
     if (!step.accepted) {
       dt *= step.moved > limit ? std::clamp(factor_to_limit(limit, step.moved), deepest_cut, 1.0) : cut;

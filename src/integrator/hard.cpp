@@ -159,6 +159,7 @@ class Hard final : public Enforcement<N> {
     // From the drift dt v: the stiff matrix costs digits of what is solved for, and these are better lost from the change of motion than from the
     // motion.
     solution.d = drift(problem);
+    solution.eased = false;
     int slow_passes = 0;
     Eigen::VectorXd first;                                      // where the first pass of statics has brought the blocks
     double last_way = std::numeric_limits<double>::infinity();  // [m] of the farthest block in the last pass

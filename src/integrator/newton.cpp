@@ -695,11 +695,7 @@ void Newton<N>::solve_prepared(StepSolution<N>& solution, FirstTangent first) {
   note_memory(solution.memory());
   solution.converged = norm <= 1.0;
   if (problem.statics) solution.unbalanced = largest_unbalanced();
-  if (outcome == Outcome::singular) {
-    solution.reason = "singular matrix";
-    return;
-  }
-  if (!solution.converged) solution.reason = "Newton's method did not converge";
+  if (!solution.converged) solution.reason = outcome == Outcome::singular ? "singular matrix" : "Newton's method did not converge";
   solution.paths.clear();
   if (averages_path()) report_paths(solution);
   solution.contacts.borrow(trials_, branches_, *springs_);

@@ -25,7 +25,8 @@ constexpr double renewing_decrease = 0.1;
 /// [m] A block goes no farther than this in a step for which its own unbalanced force is to blame: less than joints close under load, so that what
 /// comes loose does not pass through what would stop it. Slopes of 20,100 blocks take as many steps with a tenth of it.
 constexpr double longest_lone_way = 1e-4;
-/// [-] Residual over the largest force at which what has slipped is known: contacts that may slip carry a hundredth of that force.
+/// [-] Residual over the largest force at which what has slipped is known, if the relaxation does not end before: contacts that may slip carry a
+/// hundredth of that force.
 constexpr double residual_of_slip = 1e-6;
 /// [-] Of the longest displacement: momentum carries blocks a few hundredths beyond their place.
 constexpr double largest_overshoot = 1.1;
@@ -147,7 +148,6 @@ ContactForces Newton<N>::slipped_as_a_whole(std::size_t c) const {
 template <int N>
 bool Newton<N>::break_slipped_bonds() {
   bool any = false;
-  has_broken_.resize(contact_count_);
   for (std::size_t c = 0; c < contact_count_; ++c) {
     const Contact& contact = problem_->contacts[c];
     const JointProperties& joint = problem_->joints.joint(contact.joint);
@@ -216,7 +216,7 @@ void Newton<N>::relax(const StepProblem<N>& problem, const std::vector<ContactSp
     evaluate(d);
     norm = residual_norm();
     ++steps;
-    const bool is_near = norm * problem.method.residual_tolerance <= residual_of_slip;
+    const bool is_near = norm <= 1.0 || norm * problem.method.residual_tolerance <= residual_of_slip;
     if (is_near && !bonds_are_known && break_slipped_bonds()) {
       evaluate(d);
       norm = residual_norm();
@@ -224,9 +224,7 @@ void Newton<N>::relax(const StepProblem<N>& problem, const std::vector<ContactSp
     bonds_are_known = is_near;
     bool is_outdated = contacts.follow(branches_);
     if (steps % steps_between_estimates == 0) is_outdated |= contacts.leave_out() || (estimates > 1 && norm < renewing_decrease * norm_of_estimate);
-    if (is_outdated) {
-      is_regular = renew(longest_lone_way);
-    }
+    if (is_outdated) is_regular = renew(longest_lone_way);
   }
   if (!is_regular) {
     solution.reason = "singular matrix";
