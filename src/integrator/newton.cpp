@@ -30,8 +30,8 @@ constexpr double shortest_backtrack = 0.01;
 /// contacts that change state, or from the turning of the others. Iterations of all steps of a slope of 1,773 free blocks: 411 with 1e-12, 418 with
 /// 1e-6, 420 with 1e-5, 432 with 1e-4.
 constexpr double linear_reduction = 1e-5;
-/// [-] The same in motion as long as contacts change their states, which leaves a larger residual than this. In failure, with end_to_spare: 0.94 of the
-/// instructions of 9,745 free blocks, 0.91 of those of 1,773, though iterations are 4 to 7 % more; with 1e-2 no less.
+/// [-] The same in motion as long as contacts change their states, which leaves a larger residual than this. In failure, with end_to_spare: 0.94 of
+/// the instructions of 9,745 free blocks, 0.91 of those of 1,773, though iterations are 4 to 7 % more; with 1e-2 no less.
 constexpr double linear_reduction_of_changes = 1e-3;
 /// [-] No residual is brought down farther than to this part of what ends the iteration.
 constexpr double end_to_spare = 0.3;
@@ -261,8 +261,7 @@ template <int N>
 Eigen::VectorXd Newton<N>::direction(const Eigen::VectorXd& d, Tangent tangent, double reduction) {
   assemble(d, tangent);
   Eigen::VectorXd step;
-  if (tangent_.factor(problem_->statics ? static_kept_change : kept_change))
-    step = tangent_.solver().solve(residual_, reduction);
+  if (tangent_.factor(problem_->statics ? static_kept_change : kept_change)) step = tangent_.solver().solve(residual_, reduction);
   return step;
 }
 
