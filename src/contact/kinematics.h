@@ -29,9 +29,9 @@ struct BlockMove {
     const double angle = Motion<N>::rotation(d);
     turn = std::abs(angle);
     // A linearly rotated edge also grows; its direction turns by the arc tangent.
-    const double half_turn = 0.5 * (kind == RotationKind::exact ? angle : std::atan(angle)), half = std::sin(half_turn);
-    edge_sine = 2.0 * half * std::cos(half_turn);
-    edge_versine = 2.0 * half * half;
+    const SineCosine half(0.5 * (kind == RotationKind::exact ? angle : std::atan(angle)));
+    edge_sine = 2.0 * half.sine * half.cosine;
+    edge_versine = 2.0 * half.sine * half.sine;
     sine = kind == RotationKind::exact ? edge_sine : angle;
     versine = kind == RotationKind::exact ? edge_versine : 0.0;
   }

@@ -66,11 +66,12 @@ struct StepEffort {
   long part_batches = 0;    ///< of four contacts, evaluated because parts have moved
   long part_batches_skipped = 0;
   int relaxation_steps = 0;  ///< evaluations of all forces instead, see Newton::relax()
+  int estimates = 0;         ///< of the way that forces move blocks, made for these
 
   StepEffort& operator+=(const StepEffort& other) {
     iterations += other.iterations, parts += other.parts, part_iterations += other.part_iterations;
     part_rows += other.part_rows, part_batches += other.part_batches, part_batches_skipped += other.part_batches_skipped;
-    relaxation_steps += other.relaxation_steps;
+    relaxation_steps += other.relaxation_steps, estimates += other.estimates;
     return *this;
   }
 };

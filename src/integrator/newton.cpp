@@ -33,7 +33,8 @@ constexpr double linear_reduction = 1e-5;
 /// [-] The same in motion as long as contacts change their states, which leaves a larger residual than this. In failure, with what follows: 0.93 of
 /// the instructions of 9,745 free blocks, 0.91 of those of 1,773; with 1e-2 0.91 and 0.93.
 constexpr double linear_reduction_of_changes = 1e-3;
-/// [-] What ends the iteration is within reach of a solve with this reduction: it goes as far as that and no farther, to this part of it.
+/// [-] Where the end of the iteration is within reach of a solve with the first of these, it goes as far as that; no residual is brought down farther
+/// than to a part of what ends the iteration.
 constexpr double farthest_reduction = 1e-6, loosest_reduction = 0.1;
 constexpr double end_to_spare = 0.3;
 /// [-] The same with held contacts: single loose blocks, whose residual is a small part of the whole, need their digits, too.
@@ -85,11 +86,10 @@ constexpr double work_on_parts = 3.0;
 /// Below, the plan of a part's factorisation costs what it saves (387 rows: work 1.04 to 1.08, 850 rows: 0.82 to 0.94).
 constexpr int smallest_system_with_parts = 600;
 
-/// Of an iterative solver's residual, where the iteration is to end at this part of the residual that it has now.
+/// To be asked of an iterative solver, where the iteration ends with this part of the residual that it has now.
 double reduction_to(double end, bool expects_changes) {
-  const double needed = end_to_spare * end;
-  if (needed >= farthest_reduction) return std::min(needed, loosest_reduction);
-  return expects_changes ? linear_reduction_of_changes : linear_reduction;
+  const double usual = expects_changes ? linear_reduction_of_changes : linear_reduction;
+  return end >= farthest_reduction ? std::min(end, usual) : usual;
 }
 
 int differences(const std::vector<Branch>& a, const std::vector<Branch>& b) {
@@ -307,10 +307,10 @@ void Newton<N>::assemble(const Eigen::VectorXd& d, Tangent tangent) {
 }
 
 template <int N>
-Eigen::VectorXd Newton<N>::direction(const Eigen::VectorXd& d, Tangent tangent, double reduction) {
+Eigen::VectorXd Newton<N>::direction(const Eigen::VectorXd& d, Tangent tangent, double reduction, double enough) {
   assemble(d, tangent);
   Eigen::VectorXd step;
-  if (tangent_.factor(problem_->statics ? static_kept_change : kept_change)) step = tangent_.solver().solve(residual_, reduction);
+  if (tangent_.factor(problem_->statics ? static_kept_change : kept_change)) step = tangent_.solver().solve(residual_, reduction, enough);
   return step;
 }
 
@@ -629,7 +629,8 @@ typename Newton<N>::Outcome Newton<N>::iterate(const StepProblem<N>& problem, St
     }
     branches_before_ = branches_;
     const bool expects_changes = !problem.statics && (iteration == 0 || switches > 0);
-    const Eigen::VectorXd step = direction(d, tangent, reduction_to(until.norm / norm, expects_changes));
+    const double end = end_to_spare * until.norm / norm;
+    const Eigen::VectorXd step = direction(d, tangent, reduction_to(end, expects_changes), std::min(end, loosest_reduction));
     ++solution.effort.iterations;
     if (step.size() == 0) return Outcome::singular;
     const double slope = residual_.dot(step);

@@ -15,9 +15,9 @@
 //
 // Beyond that, factors cost more than everything else (n^1.5 operations, n log n numbers), and a slope of 50,000 blocks has so many loose contacts
 // that no tangent tells where they go. relax() then finds the balance without a tangent: blocks follow the forces on them as far as they would go if
-// all contacts stuck (two_level.h), with Nesterov's momentum (Y. Nesterov, 1983), which starts anew when the forces turn against it (B. O'Donoghue
-// and E. Candes, 2015). Contacts slip on that way as they do in an explicit method, and keep their slip: friction that depended on the present place
-// alone would feed vibrations instead of damping them. Rest is what it is for Newton's method, the residual alone.
+// all closed contacts stuck (two_level.h), with Nesterov's momentum (Y. Nesterov, 1983), which starts anew when the forces turn against it (B.
+// O'Donoghue and E. Candes, 2015). Contacts slip on that way as they do in an explicit method, and keep their slip: friction that depended on the
+// present place alone would feed vibrations instead of damping them. Rest is what it is for Newton's method, the residual alone.
 #pragma once
 
 #include <memory>
@@ -113,12 +113,16 @@ class Newton {
   void hold_contacts(bool friction_lags);
   /// Adapts holds_ to what an iteration has changed.
   void hold_changed(double norm);
-  /// With everything that can touch each other, as if it stuck.
-  TwoLevelFlexibility flexibility(const Eigen::VectorXd& d) const;
+  /// With the contacts that count, as if they stuck, and with blocks held so that their own unbalanced force moves them no farther than a way [m].
+  TwoLevelFlexibility flexibility(const Eigen::VectorXd& d, const std::vector<bool>& counted, double longest_way) const;
   /// The springs of contacts that slide or are open slip to where they carry what these carry now.
   void keep_slip();
-  /// Contacts that have slipped in the step as a whole have slid, for what loses its strength by that, though they stick on what they have kept.
-  void note_slip(const std::vector<ContactSprings>& springs);
+  /// What the law says of contact c for its way since the start of the step.
+  ContactForces slipped_as_a_whole(std::size_t c) const;
+  /// Contacts that have slipped in the step as a whole and lose strength by that carry what they can without. True if there are any.
+  bool break_slipped_bonds();
+  /// Those have slid for what loses its strength by that, though they stick on what they have kept.
+  void note_slip();
   /// Whether a block has gone so far that the step will be refused.
   bool has_left(const Eigen::VectorXd& d) const;
   void prepare(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs);
@@ -165,8 +169,8 @@ class Newton {
   double unbalanced(int row) const;  ///< [N] residual of a block
   double tolerated(int row) const;   ///< [N] of it
   void assemble(const Eigen::VectorXd& d, Tangent tangent);
-  /// \param reduction  [-] of the residual by an iterative linear solver
-  Eigen::VectorXd direction(const Eigen::VectorXd& d, Tangent tangent, double reduction);
+  /// \param reduction, enough  [-] of the residual by a linear solver, see LinearSolver::solve()
+  Eigen::VectorXd direction(const Eigen::VectorXd& d, Tangent tangent, double reduction, double enough = 0.0);
   /// Contacts that would slide one way and then the other stick in between: they enter the next linear solve with the spring's own force. (Where the
   /// spring is stiff the range of sticking is so narrow that the iteration would jump over it for ever.) Returns their number.
   int hold_reversed();
@@ -188,6 +192,7 @@ class Newton {
   std::vector<TrialBatch> trials_;
   std::vector<Branch> branches_;         ///< of the contacts
   std::vector<Branch> branches_before_;  ///< of the iteration
+  std::vector<bool> has_broken_;         ///< contacts that have lost strength while they were relaxed
   std::vector<double> holds_;            ///< [-] part of its springs that an open or sliding contact has in the tangent; else empty
   Eigen::VectorXd trial_;                ///< displacement
   std::vector<ForceRow> rows_;           ///< all forces at the trial position but inertia; a row more for the fixed blocks

@@ -1,6 +1,8 @@
 // Newton::relax(): a static step without linear equations.
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 
 #include "openclose/integrator/newton.h"
 
@@ -12,6 +14,19 @@ constexpr double safe_step = 1.0 / TwoLevelFlexibility::largest_eigenvalue;
 /// Ten times what a slope of 50,000 blocks needs. What has no equilibrium ends here, if not by its displacement.
 constexpr int most_relaxation_steps = 100000;
 constexpr int steps_between_looks = 100;  ///< at the displacement
+/// [m] At the start of the step contacts may be kept over gaps of twice the longest step. Closures are tenths of this.
+constexpr double near_gap = 1e-3;
+/// After so many steps the estimate may be renewed, which takes as long as ten of them.
+constexpr int steps_between_estimates = 50;
+/// [-] In that time, part of the contacts: while more of them change their states, all that may come back are counted.
+constexpr double few_changes = 1e-3;
+/// [-] The estimate is renewed when the residual has fallen to this part.
+constexpr double renewing_decrease = 0.1;
+/// [m] A block goes no farther than this in a step for which its own unbalanced force is to blame: less than joints close under load, so that what
+/// comes loose does not pass through what would stop it. Slopes of 20,100 blocks take as many steps with a tenth of it.
+constexpr double longest_lone_way = 1e-4;
+/// [-] Residual over the largest force at which what has slipped is known: contacts carry a hundredth of that force and more.
+constexpr double residual_of_slip = 1e-6;
 /// [-] Of the longest displacement: momentum carries blocks a few hundredths beyond their place.
 constexpr double largest_overshoot = 1.1;
 
@@ -30,16 +45,66 @@ class Momentum {
   double age_ = 1.0;
 };
 
+/// Which contacts have their springs in the estimate: all that are closed, so that its steps stay safe, and those that may close again. Without the
+/// open ones it is right about blocks that few contacts hold.
+class CountedContacts {
+ public:
+  CountedContacts(const std::vector<ContactSprings>& springs, const std::vector<Branch>& branches) : changed_(springs.size()), last_(branches) {
+    for (const ContactSprings& contact : springs) counted_.push_back(contact.gap <= near_gap);
+    count_closed(branches);
+  }
+  /// After a step. True if one has closed that was not counted.
+  bool follow(const std::vector<Branch>& branches) {
+    for (std::size_t c = 0; c < counted_.size(); ++c) {
+      if (branches[c] == last_[c]) continue;
+      changed_[c] = true;
+      ++changes_;
+    }
+    last_ = branches;
+    return count_closed(branches);
+  }
+  /// Leaves out those that are open and have been since the last call, if few have changed. True if there are any.
+  bool leave_out() {
+    bool are_fewer = false;
+    const bool is_quiet = static_cast<double>(changes_) <= few_changes * static_cast<double>(counted_.size());
+    for (std::size_t c = 0; is_quiet && c < counted_.size(); ++c) {
+      if (!counted_[c] || changed_[c] || status(last_[c]) != ContactStatus::open) continue;
+      counted_[c] = false;
+      are_fewer = true;
+    }
+    changed_.assign(changed_.size(), false);
+    changes_ = 0;
+    return are_fewer;
+  }
+  const std::vector<bool>& counted() const { return counted_; }
+
+ private:
+  bool count_closed(const std::vector<Branch>& branches) {
+    bool are_more = false;
+    for (std::size_t c = 0; c < counted_.size(); ++c) {
+      if (counted_[c] || status(branches[c]) == ContactStatus::open) continue;
+      counted_[c] = true;
+      are_more = true;
+    }
+    return are_more;
+  }
+
+  std::vector<bool> counted_, changed_;
+  std::vector<Branch> last_;
+  long changes_ = 0;
+};
+
 }  // namespace
 
 template <int N>
-TwoLevelFlexibility Newton<N>::flexibility(const Eigen::VectorXd& d) const {
+TwoLevelFlexibility Newton<N>::flexibility(const Eigen::VectorXd& d, const std::vector<bool>& counted, double longest_way) const {
   const int rows = static_cast<int>(blocks_.size());
   const auto row_of = [&](int row) { return row < rows ? row : -1; };
   std::vector<Vec2> centroids;
   for (const StepBlock& block : blocks_) centroids.push_back(problem_->system.centroid(block.block));
   std::vector<std::pair<int, int>> couplings;
   for (std::size_t c = 0; c < contact_count_; ++c) {
+    if (!counted[c]) continue;
     const std::pair<int, int> pair = std::minmax(row_of(start(c).vertex_row[lane(c)]), row_of(start(c).edge_row[lane(c)]));
     if (pair.first >= 0 && (couplings.empty() || couplings.back() != pair)) couplings.push_back(pair);
   }
@@ -49,6 +114,7 @@ TwoLevelFlexibility Newton<N>::flexibility(const Eigen::VectorXd& d) const {
     return Unknowns(direction.x(), direction.y(), turns ? arm.x() * direction.y() - arm.y() * direction.x() : 0.0);
   };
   for (std::size_t c = 0; c < contact_count_; ++c) {
+    if (!counted[c]) continue;
     const int k = lane(c), i = row_of(start(c).vertex_row[k]), j = row_of(start(c).edge_row[k]);
     const ContactPose<N> pose = trial(c).pose(k);
     const Vec2 tangent(-pose.normal.y(), pose.normal.x());
@@ -58,6 +124,8 @@ TwoLevelFlexibility Newton<N>::flexibility(const Eigen::VectorXd& d) const {
   for (int i = 0; i < rows; ++i) {
     Eigen::Matrix<double, N, N> own = blocks_[i].inertia.asDiagonal();
     if (blocks_[i].has_point_forces) own += problem_->external.stiffness(problem_->system, blocks_[i].block, d.template segment<N>(N * i));
+    const double hold = unbalanced(i) / longest_way, radius = blocks_[i].radius;
+    own.diagonal() += hold * Unknowns(1.0, 1.0, radius * radius);
     sum.add_own(i, own);
   }
   return sum;
@@ -77,11 +145,35 @@ void Newton<N>::keep_slip() {
 }
 
 template <int N>
-void Newton<N>::note_slip(const std::vector<ContactSprings>& springs) {
+ContactForces Newton<N>::slipped_as_a_whole(std::size_t c) const {
+  return spring_slider((*springs_)[c], start(c).strength(lane(c)), trial(c).gap_change[lane(c)], trial(c).slip_change[lane(c)]);
+}
+
+template <int N>
+bool Newton<N>::break_slipped_bonds() {
+  bool any = false;
+  has_broken_.resize(contact_count_);
+  for (std::size_t c = 0; c < contact_count_; ++c) {
+    const Contact& contact = problem_->contacts[c];
+    const JointProperties& joint = problem_->joints.joint(contact.joint);
+    if (has_broken_[c] || !can_lose_strength(joint, contact.bonded) || stays_bonded(joint, contact.bonded, ContactStatus::sliding)) continue;
+    if (status(branches_[c]) == ContactStatus::open || slipped_as_a_whole(c).status != ContactStatus::sliding) continue;
+    has_broken_[c] = any = true;
+    ContactStrength strength = start(c).strength(lane(c));
+    strength.break_bond(joint);
+    contacts_[c / batch_size].cohesion[lane(c)] = strength.cohesion;
+    contacts_[c / batch_size].tension[lane(c)] = strength.tension;
+  }
+  return any;
+}
+
+template <int N>
+void Newton<N>::note_slip() {
   for (std::size_t c = 0; c < contact_count_; ++c) {
     if (status(branches_[c]) != ContactStatus::sticking) continue;
-    const ContactForces law = spring_slider(springs[c], start(c).strength(lane(c)), trial(c).gap_change[lane(c)], trial(c).slip_change[lane(c)]);
+    const ContactForces law = slipped_as_a_whole(c);
     if (law.status == ContactStatus::sliding) branches_[c] = branch(law);
+    if (has_broken_[c]) branches_[c] = trial(c).shear[lane(c)] < 0.0 ? static_cast<Branch>(-sliding_branch) : sliding_branch;
   }
 }
 
@@ -100,28 +192,52 @@ void Newton<N>::relax(const StepProblem<N>& problem, const std::vector<ContactSp
   prepare(problem, springs);
   Eigen::VectorXd& d = solution.d;
   evaluate(d);
-  TwoLevelFlexibility estimate = flexibility(d);
-  if (!estimate.factor()) {
-    solution.reason = "singular matrix";
-    return;
-  }
-  double norm = residual_norm();
+  double norm = residual_norm(), norm_of_estimate = norm;
+  CountedContacts contacts(springs, branches_);
+  int& estimates = solution.effort.estimates;
+  std::optional<TwoLevelFlexibility> estimate;
+  const auto renew = [&](double longest_way) {
+    estimate.reset();  // before there is another
+    estimate.emplace(flexibility(d, contacts.counted(), longest_way));
+    norm_of_estimate = norm;
+    ++estimates;
+    return estimate->factor();
+  };
+  // At first, all that touch hold the blocks.
+  bool is_regular = renew(std::numeric_limits<double>::infinity());
   Eigen::VectorXd place = d, next(d.size());
   Momentum momentum;
+  has_broken_.assign(contact_count_, false);
+  bool bonds_are_known = false;
   int& steps = solution.effort.relaxation_steps;
-  while (norm > 1.0 && steps < most_relaxation_steps && (steps % steps_between_looks != 0 || !has_left(d))) {
+  while (is_regular && norm > 1.0 && steps < most_relaxation_steps && (steps % steps_between_looks != 0 || !has_left(d))) {
     keep_slip();
-    next = d + safe_step * estimate.displacement(residual_);
+    next = d + safe_step * estimate->displacement(residual_);
     if (residual_.dot(next - place) < 0.0) momentum.restart();
     d = next + momentum.next() * (next - place);
     place.swap(next);
     evaluate(d);
     norm = residual_norm();
     ++steps;
+    const bool is_near = norm * problem.method.residual_tolerance <= residual_of_slip;
+    if (is_near && !bonds_are_known && break_slipped_bonds()) {
+      evaluate(d);
+      norm = residual_norm();
+    }
+    bonds_are_known = is_near;
+    bool is_outdated = contacts.follow(branches_);
+    if (steps % steps_between_estimates == 0) is_outdated |= contacts.leave_out() || (estimates > 1 && norm < renewing_decrease * norm_of_estimate);
+    if (is_outdated) {
+      is_regular = renew(longest_lone_way);
+    }
+  }
+  if (!is_regular) {
+    solution.reason = "singular matrix";
+    return;
   }
   solution.converged = norm <= 1.0;
   if (!solution.converged) solution.reason = "relaxation did not come to rest";
-  note_slip(springs);
+  note_slip();
   solution.paths.clear();
   solution.contacts.borrow(trials_, branches_, springs);
 }

@@ -291,6 +291,7 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
                    {"part_batches", steps.part_batches},
                    {"part_batches_skipped", steps.part_batches_skipped},
                    {"relaxation_steps", steps.relaxation_steps},
+                   {"relaxation_estimates", steps.relaxation_estimates},
                    {"searches", detection.searches},
                    {"searches_skipped", detection.searches_skipped},
                    {"narrow_phases", detection.narrow_phases},

@@ -46,7 +46,10 @@ class IncompleteSolver : public LinearSolver<N> {
     return count(true);
   }
 
-  Eigen::VectorXd solve(const Eigen::VectorXd& right_side, double reduction) override {
+  Eigen::VectorXd solve(const Eigen::VectorXd& right_side, double reduction) override { return solve(right_side, reduction, 0.0); }
+
+  Eigen::VectorXd solve(const Eigen::VectorXd& right_side, double asked, double enough) override {
+    const double reduction = std::max(asked, enough);
     if (!use_direct_) {
       Refined result = refine(*matrix_, incomplete_, right_side, start(right_side, reduction), reduction, most_iterations());
       own_.krylov_iterations += result.iterations;
@@ -58,7 +61,7 @@ class IncompleteSolver : public LinearSolver<N> {
       }
       if (!give_up()) return {};
     }
-    Eigen::VectorXd x = direct_->solve(right_side, reduction);
+    Eigen::VectorXd x = direct_->solve(right_side, asked, enough);
     count(true);
     return x;
   }

@@ -1,6 +1,7 @@
 // Solvers for BlockMatrix behind one interface.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 
 #include "openclose/core/archive.h"
@@ -56,10 +57,14 @@ class LinearSolver {
   /// \param reduction  [-] of the Euclidean norm of the residual over that of the right side, at least; factors of the matrix itself do not ask
   virtual Eigen::VectorXd solve(const Eigen::VectorXd& right_side, double reduction) = 0;
   Eigen::VectorXd solve(const Eigen::VectorXd& right_side) { return solve(right_side, full_reduction); }
+  /// \param enough  [-] a residual below which nobody needs to go, also where it would cost little
+  virtual Eigen::VectorXd solve(const Eigen::VectorXd& right_side, double reduction, double enough) {
+    return solve(right_side, std::max(reduction, enough));
+  }
   const LinearCounters& counters() const { return counters_; }
   /// Gives back the memory of a factor that is not needed for a while; the next factor() starts anew. Not where later matrices are solved with it.
   virtual void let_go() {}
-  /// Whether more rows than factor() may keep can be kept by a solver that refines its solutions anyway, down to the residual of the whole matrix. Where
+  /// Whether a solver that refines its solutions anyway, down to the residual of the whole matrix, may keep more rows than factor() allows. Where
   /// inertia holds every block this costs no further refinement; nothing lags unless this is called.
   virtual void let_rows_lag(bool lag) { rows_may_lag_ = lag; }
   /// That share the work where it is worth it; the results are the same to the last bit.

@@ -285,6 +285,23 @@ TEST_CASE("relaxation finds the places of rest without linear equations", "[anal
     CHECK(found <= expected + scene.strength_reduction.width);
     CHECK(found > without_cohesion);
   }
+  SECTION("a pillar that is pushed over until it leans against a wall") {
+    // On its corner nothing but its inertia holds it back, and the wall is no support until it is there.
+    Scene scene = test::block_on_base();
+    scene.blocks[1] = test::free_block("pillar", test::rectangle(0.0, 0.0, 1.0, 4.0));
+    scene.blocks.push_back(test::fixed_block("wall", test::rectangle(1.2, 0.0, 1.0, 6.0)));
+    scene.loads = {{1, {0.5, 3.5}, {3e4, 0.0}}};
+    scene.step.max_displacement = 0.5;
+    Simulation<3> newton(scene), simulation(relaxed(scene));
+    REQUIRE(settle(newton).settled);
+    REQUIRE(settle(simulation).settled);
+    CHECK(simulation.step_counters().cuts == 0);
+    CHECK(simulation.step_counters().relaxation_estimates > simulation.step_counters().steps);
+    CHECK(simulation.step_counters().relaxation_steps < 1000);
+    // A lean of 0.2 m in 4 m, by either.
+    CHECK(simulation.system().displacement(1)[2] == Approx(-0.05).epsilon(0.01));
+    CHECK(simulation.system().displacement(1)[2] == Approx(newton.system().displacement(1)[2]).epsilon(1e-3));
+  }
   SECTION("a slope whose joints all hold, where nothing depends on the way") {
     Scene scene = slope(40.0, 10.0);
     scene.joints[0].cohesion = scene.joints[0].tensile_strength = 1e9;
@@ -307,8 +324,11 @@ TEST_CASE("a slope with thousands of loose contacts is relaxed without a cut", "
   CHECK(result.settled);
   CHECK(simulation.step_counters().cuts == 0);
   CHECK(worst_balance(simulation) < 1e-6 * simulation.force_scale());
-  // Of each of 3 steps about 450; where friction depends on the present place alone, vibrations live four times as long.
-  CHECK(simulation.step_counters().relaxation_steps < 2500);
+  // Two steps to follow the load, one that loses no strength. Bonds that broke in the last moment of a step only would take one more.
+  CHECK(result.steps <= 4);
+  // Where friction depends on the present place alone, vibrations live four times as long. Contacts that are open would hold blocks in the estimate
+  // for 300 steps more.
+  CHECK(simulation.step_counters().relaxation_steps < 1600);
   // Newton's method has it at 21.02 mm, dem at 20.98 mm: what friction holds depends on the way, by a few hundredths.
   CHECK(result.displacement == Approx(0.0210).epsilon(0.03));
   for (const Contact& c : simulation.contacts()) {

@@ -324,6 +324,7 @@ TEST_CASE("summary.json has counters under their own names", "[io][results]") {
                                                 {"part_batches", steps.part_batches},
                                                 {"part_batches_skipped", steps.part_batches_skipped},
                                                 {"relaxation_steps", steps.relaxation_steps},
+                                                {"relaxation_estimates", steps.relaxation_estimates},
                                                 {"searches", detection.searches},
                                                 {"searches_skipped", detection.searches_skipped},
                                                 {"narrow_phases", detection.narrow_phases},

@@ -29,6 +29,15 @@ class RandomMotion {
 
 }  // namespace
 
+TEST_CASE("sine and cosine are those of the library, by series and beyond", "[model][motion]") {
+  for (double angle = -0.05; angle < 0.05; angle += 1.23e-5) {
+    const SineCosine found(angle);
+    REQUIRE(std::abs(found.sine - std::sin(angle)) <= 2.0 * epsilon * std::abs(angle));
+    REQUIRE(std::abs(found.cosine - std::cos(angle)) <= epsilon);
+  }
+  for (const double angle : {0.0, 1e-9, 1e-300}) CHECK(SineCosine(angle).sine == angle);
+}
+
 TEST_CASE("exact rotation is that of the rotation matrix", "[model][motion]") {
   const Vec2 r(0.3, -1.2);
   for (double angle = -7.0; angle < 7.0; angle += 0.1) {
