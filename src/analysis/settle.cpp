@@ -16,6 +16,22 @@ constexpr double cut = 0.3;               ///< [-] after a failure
 constexpr double deepest_cut = 1e-2;
 constexpr double part_of_limit = 0.8;  ///< [-] of the largest displacement of a step, to be aimed at
 
+/// [-] Of the unbalanced force that ends settling: what its steps may leave for themselves, so that the rest is for the inertia of the last one.
+constexpr double negligible_part = 0.5;
+
+/// While it lives.
+template <int N>
+class Neglect {
+ public:
+  Neglect(Simulation<N>& simulation, double force) : simulation_(simulation) { simulation.neglect(force); }
+  ~Neglect() { simulation_.neglect(0.0); }
+  Neglect(const Neglect&) = delete;
+  Neglect& operator=(const Neglect&) = delete;
+
+ private:
+  Simulation<N>& simulation_;
+};
+
 /// From rest a failing block moves with the square of the step: the factor on a step that moved so far which makes full use of the limit.
 double factor_to_limit(double limit, double moved) {
   return moved > 0.0 ? std::sqrt(part_of_limit * limit / moved) : std::numeric_limits<double>::infinity();
@@ -38,6 +54,7 @@ SettleResult settle(Simulation<N>& simulation, const SettleProgress& progress) {
   std::vector<typename Motion<N>::Unknowns> start;
   for (int b = 0; b < system.block_count(); ++b) start.push_back(system.displacement(b));
   simulation.system().stop();
+  const Neglect<N> neglect(simulation, negligible_part * input.unbalanced_fraction * simulation.force_scale());
 
   SettleResult result;
   double dt = input.first_dt, growth = fastest_growth;

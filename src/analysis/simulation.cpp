@@ -308,7 +308,10 @@ StepProblem<N> Simulation<N>::present_problem(double dt, bool statics) const {
   p.failed_attempts = failed_attempts_;
   p.keep_bonds = keep_bonds_;
   p.longest_displacement = scene_.step.max_displacement;
-  if (statics) return p;
+  if (statics) {
+    if (enforcement_->has_elastic_contacts()) p.negligible_force = negligible_force_;  // elsewhere it would show in the places of the blocks
+    return p;
+  }
   p.scheme = scheme_.get();
   if (scheme_->wants_accelerations()) {
     const Eigen::VectorXd force = forces_now(p);
@@ -443,7 +446,7 @@ StepResult Simulation<N>::step(double dt, bool statics) {
 
 template <int N>
 double Simulation<N>::unbalanced_force(const StepProblem<N>& problem, const StepSolution<N>& solution) const {
-  double largest = 0.0;
+  double largest = 0.0;  // of what inertia carries
   for (int b : system_.free_blocks()) {
     const Unknowns inertia_force = problem.inertia * system_.block(b).mass.cwiseProduct(solution.of(system_, b));
     largest = std::max(largest, Motion<N>::largest_force(inertia_force, system_.block(b).radius));
@@ -455,7 +458,7 @@ double Simulation<N>::unbalanced_force(const StepProblem<N>& problem, const Step
     const double bound = ContactStrength(joints_.joint(contacts_[i].joint), contacts_[i]).shear_bound(f.normal).value;
     largest = std::max(largest, std::abs(bound - std::abs(f.shear)));
   }
-  return largest;
+  return largest + solution.unbalanced;
 }
 
 template <int N>

@@ -122,6 +122,8 @@ class Simulation {
   /// Velocity of block b at time() (the system's own may be half a step behind, see time_scheme.h).
   Unknowns velocity(int b) const;
   double stored_contact_energy() const;
+  /// [N] What static steps may leave unbalanced on a block for now; 0: the residual is solved for to the last, which rigid contacts do in any case.
+  void neglect(double force) { negligible_force_ = force; }
   double force_scale() const;  ///< [N] weight of the heaviest free block, or the largest load or contact force if there is no gravity
 
   const EnergyLedger& ledger() const;
@@ -223,8 +225,9 @@ class Simulation {
   mutable double collected_contact_energy_ = 0.0;  ///< [J] stored when the loop was last collected from or loaded
   mutable double max_penetration_ = 0.0;
   StepCounters step_counters_;
-  int failed_attempts_ = 0;  ///< since the last step that was accepted
-  double last_speed_ = 0.0;  ///< [m/s] largest displacement of the last step over its duration
+  double negligible_force_ = 0.0;  ///< [N]
+  int failed_attempts_ = 0;        ///< since the last step that was accepted
+  double last_speed_ = 0.0;        ///< [m/s] largest displacement of the last step over its duration
   StepControl control_;
   StageTimes stage_times_;
 };

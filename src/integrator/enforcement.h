@@ -34,6 +34,7 @@ struct StepProblem {
   double end_weight = 1.0;                                                ///< theta
   int failed_attempts = 0;                                                ///< at steps from here
   bool keep_bonds = false;                                                ///< explicit methods: contacts lose no strength
+  double negligible_force = 0.0;                                          ///< [N] what a static step may leave unbalanced on a block
   double longest_displacement = std::numeric_limits<double>::infinity();  ///< [m] of a vertex; a step that moves one farther is refused
   const TimeScheme<N>* scheme = nullptr;                                  ///< null: every step starts from rest
 
@@ -83,7 +84,8 @@ struct StepSolution {
   bool dissipative = false;  ///< path_average: taken with more dissipation than asked for, see soft.cpp
   std::string reason;        ///< why not converged
   StepEffort effort;
-  Eigen::VectorXd d;  ///< displacement of the step, N per free block
+  Eigen::VectorXd d;        ///< displacement of the step, N per free block
+  double unbalanced = 0.0;  ///< [N] largest residual of a block, if static
   ContactOutcomes<N> contacts;
   ContactOutcomes<N> start_contacts;  ///< forces that entered with weight 1 - theta: of every contact, or none for theta = 1
   std::vector<PathOutcome<N>> paths;  ///< mean forces that entered instead of those at the end; empty for other schemes
@@ -93,6 +95,7 @@ struct StepSolution {
     converged = compliant = dissipative = false;
     reason.clear();
     effort = {};
+    unbalanced = 0.0;
     contacts.clear();
     start_contacts.clear();
     paths.clear();

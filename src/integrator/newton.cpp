@@ -257,7 +257,7 @@ double Newton<N>::unbalanced(int row) const {
 
 template <int N>
 double Newton<N>::residual_norm() const {
-  double worst = 0.0;
+  double worst = 0.0, largest = 0.0;
   const double loosest = std::max(loosest_balance, largest_force_growth * problem_->method.residual_tolerance) * start_scale_;
   for (int row = 0; row < static_cast<int>(blocks_.size()); ++row) {
     const double r = unbalanced(row);
@@ -265,8 +265,16 @@ double Newton<N>::residual_norm() const {
     if (r == 0.0) continue;
     if (tolerated(row) > loosest) return std::numeric_limits<double>::infinity();
     worst = std::max(worst, r / tolerated(row));
+    largest = std::max(largest, r);
   }
-  return worst;
+  return largest <= problem_->negligible_force ? std::min(worst, 1.0) : worst;
+}
+
+template <int N>
+double Newton<N>::largest_unbalanced() const {
+  double largest = 0.0;
+  for (int row = 0; row < static_cast<int>(blocks_.size()); ++row) largest = std::max(largest, unbalanced(row));
+  return largest;
 }
 
 template <int N>
@@ -725,6 +733,7 @@ void Newton<N>::solve_prepared(StepSolution<N>& solution, FirstTangent first) {
     outcome = iterate_holding(solution, norm);
   }
   solution.converged = norm <= 1.0;
+  if (problem.statics) solution.unbalanced = largest_unbalanced();
   if (outcome == Outcome::singular) {
     solution.reason = "singular matrix";
     return;

@@ -165,9 +165,12 @@ class Newton {
   void take_states_before();
   /// What a step must reduce, with the residual_norm() that belongs to it.
   double merit(double norm) const;
-  double residual_norm() const;      ///< largest residual of a block over what is tolerated: converged at 1; infinite where that tells nothing
+  /// Largest residual of a block over what is tolerated: converged at 1, which is also what negligible ones count for; infinite where that tells
+  /// nothing.
+  double residual_norm() const;
   double unbalanced(int row) const;  ///< [N] residual of a block
-  double tolerated(int row) const;   ///< [N] of it
+  double largest_unbalanced() const;
+  double tolerated(int row) const;  ///< [N] of it
   void assemble(const Eigen::VectorXd& d, Tangent tangent);
   /// \param reduction, enough  [-] of the residual by a linear solver, see LinearSolver::solve()
   Eigen::VectorXd direction(const Eigen::VectorXd& d, Tangent tangent, double reduction, double enough = 0.0);

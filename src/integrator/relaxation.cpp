@@ -50,18 +50,20 @@ class Momentum {
 class CountedContacts {
  public:
   CountedContacts(const std::vector<ContactSprings>& springs, const std::vector<Branch>& branches) : changed_(springs.size()), last_(branches) {
-    for (const ContactSprings& contact : springs) counted_.push_back(contact.gap <= near_gap);
-    count_closed(branches);
+    for (std::size_t c = 0; c < springs.size(); ++c) counted_.push_back(springs[c].gap <= near_gap || status(branches[c]) != ContactStatus::open);
   }
   /// After a step. True if one has closed that was not counted.
   bool follow(const std::vector<Branch>& branches) {
-    for (std::size_t c = 0; c < counted_.size(); ++c) {
-      if (branches[c] == last_[c]) continue;
+    bool are_more = false;
+    const auto end = branches.begin() + static_cast<std::ptrdiff_t>(counted_.size());
+    for (auto at = std::mismatch(branches.begin(), end, last_.begin()); at.first != end; at = std::mismatch(at.first, end, at.second)) {
+      const auto c = static_cast<std::size_t>(at.first - branches.begin());
       changed_[c] = true;
       ++changes_;
+      if (!counted_[c] && status(branches[c]) != ContactStatus::open) counted_[c] = are_more = true;
+      *at.second = *at.first;
     }
-    last_ = branches;
-    return count_closed(branches);
+    return are_more;
   }
   /// Leaves out those that are open and have been since the last call, if few have changed. True if there are any.
   bool leave_out() {
@@ -79,16 +81,6 @@ class CountedContacts {
   const std::vector<bool>& counted() const { return counted_; }
 
  private:
-  bool count_closed(const std::vector<Branch>& branches) {
-    bool are_more = false;
-    for (std::size_t c = 0; c < counted_.size(); ++c) {
-      if (counted_[c] || status(branches[c]) == ContactStatus::open) continue;
-      counted_[c] = true;
-      are_more = true;
-    }
-    return are_more;
-  }
-
   std::vector<bool> counted_, changed_;
   std::vector<Branch> last_;
   long changes_ = 0;
@@ -133,11 +125,14 @@ TwoLevelFlexibility Newton<N>::flexibility(const Eigen::VectorXd& d, const std::
 
 template <int N>
 void Newton<N>::keep_slip() {
+  constexpr auto sticking = static_cast<Branch>(ContactStatus::sticking);
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    const Branch* const branches = branches_.data() + batch_size * i;
+    if (std::all_of(branches, branches + batch_size, [](Branch b) { return b == sticking; })) continue;
     ContactBatch& contact = contacts_[i];
     const TrialBatch& now = trials_[i];
     for (int k = 0; k < batch_size; ++k) {
-      const bool slid = branches_[batch_size * i + static_cast<std::size_t>(k)] != static_cast<Branch>(ContactStatus::sticking);
+      const bool slid = branches[k] != sticking;
       const double slack = now.elastic_shear[k] + contact.shear[k] * now.slip_change[k];
       contact.initial_shear[k] = slid ? slack : contact.initial_shear[k];
     }
@@ -236,6 +231,7 @@ void Newton<N>::relax(const StepProblem<N>& problem, const std::vector<ContactSp
     return;
   }
   solution.converged = norm <= 1.0;
+  solution.unbalanced = largest_unbalanced();
   if (!solution.converged) solution.reason = "relaxation did not come to rest";
   note_slip();
   solution.paths.clear();
