@@ -431,6 +431,7 @@ StepResult Simulation<N>::step(double dt, bool statics) {
   }
   if (!solution.converged || too_far) {
     result.reason = too_far ? "a block moved farther in one step than step.max_displacement_m" : solution.reason;
+    result.part = solution.part;
     ++step_counters_.cuts;
     ++failed_attempts_;
     return result;
@@ -490,6 +491,7 @@ void Simulation<N>::accept(const StepProblem<N>& problem, const StepSolution<N>&
   count_moves();
   // Where multipliers have just failed, the next step need not fail again before it may be compliant: cuts would outrun the growth of the step.
   if (solution.compliant) ++step_counters_.compliant;
+  if (solution.eased) ++step_counters_.eased;
   if (solution.dissipative) ++step_counters_.dissipative;
   if (!solution.compliant) failed_attempts_ = 0;
   contacts_current_ = false;
@@ -676,7 +678,7 @@ bool Simulation<N>::advance(double dt) {
       control_.refused(trial, result.error);
       trial = control_.step(dt);
     } else {
-      trial *= enforcement_->step_cut(scene_.method);
+      trial *= result.part > 0.0 ? result.part : enforcement_->step_cut(scene_.method);
       if (adaptive) control_.shorten(trial);
     }
     if (trial < smallest) {

@@ -28,6 +28,7 @@ struct StepCounters {
   long relaxation_steps = 0;            ///< evaluations of all forces in static steps that are relaxed, thrown-away attempts included
   long relaxation_estimates = 0;        ///< of the stiffness of the whole system, made for these
   long compliant = 0;                   ///< steps of `hard` whose multipliers did not converge: taken with springs
+  long eased = 0;                       ///< steps of `hard` that were balanced with a longer ramp of the cohesion only
   long dissipative = 0;                 ///< steps of path_average that found a solution only with dissipation
   long loads = 0;                       ///< times the explicit loop took over the state anew
   long loads_skipped = 0;               ///< times it took over only contacts that were found anew
@@ -51,8 +52,8 @@ struct StepCounters {
   }
 
   void exchange(Archive& archive) {
-    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v] = *this;
-    archive(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v);
+    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, w] = *this;
+    archive(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, w);
   }
 };
 
@@ -70,6 +71,7 @@ struct StepResult {
   double moved = 0.0;             ///< [m] farthest way of a vertex, of refused steps too; 0 if nothing was solved
   double error = 0.0;             ///< [m] local error, see local_error(); only if the scene asks for adaptive steps
   bool too_wrong = false;         ///< refused because of it
+  double part = 0.0;              ///< [-] refused: of the step, a length that is likely to be accepted; 0 if that is not known
   bool lost_strength = false;     ///< a contact has lost its cohesion or tensile strength at the end of the step
 };
 

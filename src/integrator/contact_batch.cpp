@@ -72,7 +72,7 @@ OPENCLOSE_KERNEL void find_pose(const ContactBatch& c, const Moves& vertex, cons
 }
 
 /// The joint law; returns which contacts are closed.
-OPENCLOSE_KERNEL Mask find_forces(const ContactBatch& c, TrialBatch& trial, Branch* branches) {
+OPENCLOSE_KERNEL Mask find_forces(const ContactBatch& c, double ramp, TrialBatch& trial, Branch* branches) {
   const Lanes zero{};
   const Lanes elastic_normal = c.shift - c.normal * (c.gap_off_target + trial.gap_change);
   const Lanes viscous_normal = -c.normal_damping * (c.parted + trial.gap_change);
@@ -80,7 +80,7 @@ OPENCLOSE_KERNEL Mask find_forces(const ContactBatch& c, TrialBatch& trial, Bran
   const Mask closed = ~is_open(c.tension, elastic_normal);
 
   const Lanes normal = larger(-c.tension, elastic_normal + viscous_normal);
-  const ShearBound limit(c.friction, c.cohesion, c.tension, normal);
+  const ShearBound limit(c.friction, c.cohesion, c.tension, normal, ramp);
   const Lanes bound = limit.value, carried_shear = clamped(shear, bound);
   const Mask sticking = closed & (magnitude(shear) <= bound), sliding = closed & ~sticking;
 
@@ -185,7 +185,7 @@ OPENCLOSE_KERNEL void push(const ContactBatch& c, const TrialBatch& trial, const
 }
 
 template <StepForces forces>
-OPENCLOSE_KERNEL double evaluate(const ContactBatch* contacts, std::size_t count, const BlockMove<3>* moves, double rounding_of_sums,
+OPENCLOSE_KERNEL double evaluate(double ramp, const ContactBatch* contacts, std::size_t count, const BlockMove<3>* moves, double rounding_of_sums,
                                  TrialBatch* trials, Branch* branches, ForceRow* rows) {
   Lanes largest{};
   for (std::size_t i = 0; i < count; ++i) {
@@ -194,7 +194,7 @@ OPENCLOSE_KERNEL double evaluate(const ContactBatch* contacts, std::size_t count
     const Moves vertex(moves, c.vertex_block), edge(moves, c.edge_block);
     find_pose(c, vertex, edge, trial);
     constexpr bool averaged = forces == StepForces::averaged;
-    const Mask carries = averaged ? find_mean_forces(c, trial, branches + batch_size * i) : find_forces(c, trial, branches + batch_size * i);
+    const Mask carries = averaged ? find_mean_forces(c, trial, branches + batch_size * i) : find_forces(c, ramp, trial, branches + batch_size * i);
     if (!any(carries)) continue;
     const Lanes normal = magnitude(trial.normal), shear = magnitude(trial.shear);
     const Lanes moved = (vertex.way + c.vertex_reach * vertex.turn) + (edge.way + c.edge_reach * edge.turn);
@@ -290,10 +290,10 @@ OPENCLOSE_KERNEL void add_stiffness(const ContactBatch* contacts, const TrialBat
   }
 }
 
-OPENCLOSE_KERNEL double evaluate_either(StepForces forces, const ContactBatch* contacts, std::size_t count, const BlockMove<3>* moves,
+OPENCLOSE_KERNEL double evaluate_either(StepForces forces, double ramp, const ContactBatch* contacts, std::size_t count, const BlockMove<3>* moves,
                                         double rounding_of_sums, TrialBatch* trials, Branch* branches, ForceRow* rows) {
-  if (forces == StepForces::averaged) return evaluate<StepForces::averaged>(contacts, count, moves, rounding_of_sums, trials, branches, rows);
-  return evaluate<StepForces::at_end>(contacts, count, moves, rounding_of_sums, trials, branches, rows);
+  if (forces == StepForces::averaged) return evaluate<StepForces::averaged>(ramp, contacts, count, moves, rounding_of_sums, trials, branches, rows);
+  return evaluate<StepForces::at_end>(ramp, contacts, count, moves, rounding_of_sums, trials, branches, rows);
 }
 OPENCLOSE_KERNEL void add_either_stiffness(const ContactBatch* contacts, const TrialBatch* trials, std::size_t count, const Branch* branches,
                                            const BatchTangent& tangent, const ContactSlots* slots, double* values) {
@@ -305,9 +305,9 @@ OPENCLOSE_KERNEL void add_either_stiffness(const ContactBatch* contacts, const T
 double begin_with_any_registers(ContactBatch* contacts, std::size_t count) {
   return begin(contacts, count);
 }
-double evaluate_with_any_registers(StepForces forces, const ContactBatch* contacts, std::size_t count, const BlockMove<3>* moves,
+double evaluate_with_any_registers(StepForces forces, double ramp, const ContactBatch* contacts, std::size_t count, const BlockMove<3>* moves,
                                    double rounding_of_sums, TrialBatch* trials, Branch* branches, ForceRow* rows) {
-  return evaluate_either(forces, contacts, count, moves, rounding_of_sums, trials, branches, rows);
+  return evaluate_either(forces, ramp, contacts, count, moves, rounding_of_sums, trials, branches, rows);
 }
 void add_stiffness_with_any_registers(const ContactBatch* contacts, const TrialBatch* trials, std::size_t count, const Branch* branches,
                                       const BatchTangent& tangent, const ContactSlots* slots, double* values) {
@@ -318,10 +318,10 @@ void add_stiffness_with_any_registers(const ContactBatch* contacts, const TrialB
 [[gnu::target("avx2")]] double begin_with_wide_registers(ContactBatch* contacts, std::size_t count) {
   return begin(contacts, count);
 }
-[[gnu::target("avx2")]] double evaluate_with_wide_registers(StepForces forces, const ContactBatch* contacts, std::size_t count,
+[[gnu::target("avx2")]] double evaluate_with_wide_registers(StepForces forces, double ramp, const ContactBatch* contacts, std::size_t count,
                                                             const BlockMove<3>* moves, double rounding_of_sums, TrialBatch* trials, Branch* branches,
                                                             ForceRow* rows) {
-  return evaluate_either(forces, contacts, count, moves, rounding_of_sums, trials, branches, rows);
+  return evaluate_either(forces, ramp, contacts, count, moves, rounding_of_sums, trials, branches, rows);
 }
 [[gnu::target("avx2")]] void add_stiffness_with_wide_registers(const ContactBatch* contacts, const TrialBatch* trials, std::size_t count,
                                                                const Branch* branches, const BatchTangent& tangent, const ContactSlots* slots,

@@ -178,16 +178,17 @@ class BatchKernels {
   /// a spring at the start of the step, pulling ones not counted.
   double begin(std::vector<ContactBatch>& contacts) const { return begin_(contacts.data(), contacts.size()); }
   /// Fills trials and branches; adds to the rows. Returns [N] the largest force.
+  /// \param ramp   [-] see ContactStrength::shear_bound(); means have the usual one
   /// \param moves  of all blocks
   /// \param rounding_of_sums  [-] of the forces and changes of force of a contact
-  double evaluate(StepForces forces, const std::vector<ContactBatch>& contacts, const BlockMove<3>* moves, double rounding_of_sums,
+  double evaluate(StepForces forces, double ramp, const std::vector<ContactBatch>& contacts, const BlockMove<3>* moves, double rounding_of_sums,
                   std::vector<TrialBatch>& trials, std::vector<Branch>& branches, std::vector<ForceRow>& rows) const {
-    return evaluate_(forces, contacts.data(), contacts.size(), moves, rounding_of_sums, trials.data(), branches.data(), rows.data());
+    return evaluate_(forces, ramp, contacts.data(), contacts.size(), moves, rounding_of_sums, trials.data(), branches.data(), rows.data());
   }
   /// The same of one batch.
-  void evaluate_one(StepForces forces, const std::vector<ContactBatch>& contacts, std::size_t batch, const BlockMove<3>* moves,
+  void evaluate_one(StepForces forces, double ramp, const std::vector<ContactBatch>& contacts, std::size_t batch, const BlockMove<3>* moves,
                     double rounding_of_sums, std::vector<TrialBatch>& trials, std::vector<Branch>& branches, std::vector<ForceRow>& rows) const {
-    evaluate_(forces, &contacts[batch], 1, moves, rounding_of_sums, &trials[batch], &branches[batch_size * batch], rows.data());
+    evaluate_(forces, ramp, &contacts[batch], 1, moves, rounding_of_sums, &trials[batch], &branches[batch_size * batch], rows.data());
   }
   /// [N] of all batches that were evaluated.
   static double largest_force(const std::vector<TrialBatch>& trials);
@@ -197,7 +198,7 @@ class BatchKernels {
 
  private:
   double (*begin_)(ContactBatch*, std::size_t);
-  double (*evaluate_)(StepForces, const ContactBatch*, std::size_t, const BlockMove<3>*, double, TrialBatch*, Branch*, ForceRow*);
+  double (*evaluate_)(StepForces, double, const ContactBatch*, std::size_t, const BlockMove<3>*, double, TrialBatch*, Branch*, ForceRow*);
   void (*add_stiffness_)(const ContactBatch*, const TrialBatch*, std::size_t, const Branch*, const BatchTangent&, const ContactSlots*, double*);
 };
 

@@ -81,8 +81,10 @@ template <int N>
 struct StepSolution {
   bool converged = false;
   bool compliant = false;    ///< `hard`: taken with springs, see hard.cpp
+  bool eased = false;        ///< `hard`: the cohesion came in over a longer ramp, see hard.cpp
   bool dissipative = false;  ///< path_average: taken with more dissipation than asked for, see soft.cpp
   std::string reason;        ///< why not converged
+  double part = 0.0;         ///< [-] not converged: of the step, a length that is likely to; 0 if that is not known
   StepEffort effort;
   Eigen::VectorXd d;        ///< displacement of the step, N per free block
   double unbalanced = 0.0;  ///< [N] largest residual of a block, if static
@@ -92,8 +94,9 @@ struct StepSolution {
 
   /// Empty again, with its memory for the next step.
   void clear() {
-    converged = compliant = dissipative = false;
+    converged = compliant = eased = dissipative = false;
     reason.clear();
+    part = 0.0;
     effort = {};
     unbalanced = 0.0;
     contacts.clear();

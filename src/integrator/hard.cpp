@@ -10,6 +10,13 @@
 // slides. With the forces alone every contact that slides would stand between sliding and sticking, and every open one between open and closed, and
 // Newton's method would have to find out for each of them again. So the passes are the steps that `soft` would take to its rest, with one difference:
 // the forces act on the blocks where they were. How far open contacts have parted in this way (their slack) is kept for the next step.
+//
+// Gravity that comes at once, or a strength that is gone at once, asks a motion's step for all multipliers anew, and two things fail. Newton's method
+// gets lost: where a contact that hardly carries turns its neighbours by its friction, which on the ramp of the cohesion is ten times its normal
+// force, it has several states of balance, and residuals have minima between them. There the step is solved with a longer ramp first, from which the
+// usual one is found. And the passes converge slowly: a column of n blocks yields n^2 times as much as one of them, so that springs that a block
+// hardly feels are soft for it. But what is missing from the multipliers moves the blocks by less than is tolerated in a step that is short enough,
+// and the next one goes on from there: such steps are cut to the length that the error tells, with softer springs that Newton's method takes.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -24,8 +31,13 @@ namespace {
 
 /// [-] Stiffness of the springs inside, in motion over the inertia. Each outer pass reduces the error of the multipliers about by this factor. The
 /// first is as high as Newton takes without more iterations (40 m of a failing slope: 2900, with 1000 3900, with 100 more passes); where it gets lost
-/// among the contact states, the softer ones take more passes, each of them easier.
+/// among the contact states, the softer ones are easier.
 constexpr std::array stiffness_over_inertia = {300.0, 30.0, 1.0};
+/// Steps that softer springs must have taken before stiffer ones are tried again, in which Newton's method may get lost anew.
+constexpr int steps_before_stiffer = 2;
+/// [-] Instead of tolerance::cohesion_ramp where Newton's method gets lost: friction and cohesion together never grow faster than about the normal
+/// force.
+constexpr double long_cohesion_ramp = 1.0;
 /// [m] The tolerance of statics: what passes leave there is a share of the forces themselves, on which hangs what joints lose their strength, and
 /// there is no inertia to carry the rest.
 constexpr double static_gap = 1e-11;
@@ -38,8 +50,12 @@ constexpr double kept_penetration = 0.5, recovered_penetration = 0.5;
 constexpr int most_outer_passes = 100;
 /// Motion: passes that keep more of the error than slow_convergence; more of them lead nowhere.
 constexpr int most_slow_passes = 6;
+/// [-] A step that needs more of them is repeated with the part of its length in which what multipliers lack would move the blocks by this part of
+/// what is tolerated, the error going with the square of the length; at most the longest part. What would take less than the shortest is no matter of
+/// its length: blocks that hit each other, whose impulse does not become less.
+constexpr double aimed_error = 0.8, shortest_part = 1.0 / 32.0, longest_part = 0.5;
 /// After so many failed attempts at a step it is taken with springs instead: it is in balance, but penetrates by what its forces compress them.
-constexpr int attempts_before_compliance = 2;
+constexpr int attempts_before_compliance = 3;
 /// [-] Redundant contacts whose targets exclude each other by what earlier steps tolerated leave an error that no pass reduces: a pass that keeps
 /// more than this part of the error ends the iteration if what is left is below this multiple of what is tolerated. In statics, whose tolerance is
 /// far below that of motion, gaps that motion has left may exclude each other by more.
@@ -58,15 +74,26 @@ class Hard final : public Enforcement<N> {
   }
 
   void solve(const StepProblem<N>& problem, StepSolution<N>& solution) override {
+    if (problem.statics) {
+      // Softer springs would not be those of the joint; shorter steps help more.
+      set_springs(problem, stiffness_over_inertia.front());
+      pass_until_held(problem, Cohesion::as_it_is, solution);
+      if (solution.converged) note_slack(solution);
+      return;
+    }
     compliant_.clear();
-    for (const double ratio : stiffness_over_inertia) {
-      set_springs(problem, ratio);
-      pass_until_held(problem, solution);
-      if (problem.statics && solution.converged) note_slack(solution);
-      // In statics softer springs would not be those of the joint; shorter steps help more.
-      if (problem.statics || solution.converged) return;
+    for (std::size_t level = level_; level < stiffness_over_inertia.size(); ++level) {
+      set_springs(problem, stiffness_over_inertia[level]);
+      pass_until_held(problem, level == 0 ? Cohesion::as_it_is : Cohesion::may_be_eased, solution);
+      if (solution.converged) return take_level(level);
+      if (solution.part > 0.0) {  // with softer springs the passes are even slower
+        level_ = level;
+        steps_at_level_ = 0;
+        break;
+      }
     }
     if (!compliant_.converged) return;
+    level_ = 0;  // what these springs leave is the less, the stiffer they are
     compliant_.effort = solution.effort;
     compliant_.compliant = true;
     solution = std::exchange(compliant_, {});
@@ -78,9 +105,24 @@ class Hard final : public Enforcement<N> {
   }
   bool has_elastic_contacts() const override { return false; }
   LinearCounters linear_counters() const override { return newton_.linear_counters(); }
-  void exchange(Archive& archive) override { newton_.exchange(archive); }
+  void exchange(Archive& archive) override {
+    newton_.exchange(archive);
+    archive(level_, steps_at_level_);
+  }
 
  private:
+  /// Whether the first pass may take the longer ramp.
+  enum class Cohesion { as_it_is, may_be_eased };
+
+  /// A step has been solved with these springs: which ones the next is to begin with.
+  void take_level(std::size_t level) {
+    steps_at_level_ = level == level_ ? steps_at_level_ + 1 : 1;
+    level_ = level;
+    if (level_ == 0 || steps_at_level_ < steps_before_stiffer) return;
+    --level_;
+    steps_at_level_ = 0;
+  }
+
   static ContactSprings springs(const StepProblem<N>& problem, const Contact& contact, double ratio) {
     const JointProperties& joint = problem.joints.joint(contact.joint);
     double mass = 0.0;
@@ -108,7 +150,7 @@ class Hard final : public Enforcement<N> {
 
   /// Passes until the contacts are held. A step that may be compliant keeps the first that converged with the springs it had, in case that no
   /// multipliers do.
-  void pass_until_held(const StepProblem<N>& problem, StepSolution<N>& solution) {
+  void pass_until_held(const StepProblem<N>& problem, Cohesion cohesion, StepSolution<N>& solution) {
     // From the drift dt v: the stiff matrix costs digits of what is solved for, and these are better lost from the change of motion than from the
     // motion.
     solution.d = drift(problem);
@@ -117,13 +159,11 @@ class Hard final : public Enforcement<N> {
     double last_way = std::numeric_limits<double>::infinity();  // [m] of the farthest block in the last pass
     double last_error = std::numeric_limits<double>::infinity();
     for (int pass = 0; pass < most_outer_passes; ++pass) {
-      if (pass == 0) {
-        newton_.solve(problem, springs_, solution);
-      } else {
-        // In statics the blocks are back in their places, where contacts remember their state.
-        newton_.solve_again(springs_, solution, problem.statics ? FirstTangent::present : FirstTangent::last_solution);
+      solve_pass(problem, pass, pass > 0 ? Cohesion::may_be_eased : cohesion, solution);
+      if (!solution.converged) {
+        if (pass > 0) solution.part = shorter(last_error);
+        return;
       }
-      if (!solution.converged) return;
       const double error = constraint_error(problem, solution);
       const double way = solution.d.template lpNorm<Eigen::Infinity>();
       const bool moves_on = problem.statics && way >= going_on * last_way;
@@ -132,7 +172,12 @@ class Hard final : public Enforcement<N> {
       if (moves_on && error * tolerated(problem) <= std::min(problem.method.gap_tolerance, part_of_way * way)) return;
       if (may_be_compliant(problem) && !compliant_.converged) compliant_ = solution;
       if (!problem.statics && error > slow_convergence * last_error) {
-        if (++slow_passes > most_slow_passes) break;
+        // So many times the last decrease is not enough.
+        const bool too_slow = error * std::pow(error / last_error, most_slow_passes) > incompatible_gaps;
+        if (++slow_passes > most_slow_passes || too_slow) {
+          solution.part = shorter(error);
+          break;
+        }
       }
       for (std::size_t c = 0; c < springs_.size(); ++c) carry_on(problem, solution.contacts[c], springs_[c]);
       if (pass == 0) first = solution.d;
@@ -143,6 +188,41 @@ class Hard final : public Enforcement<N> {
     }
     solution.converged = false;
     solution.reason = "the multipliers of hard contacts did not converge";
+  }
+
+  /// One pass. Where Newton's method gets lost with the cohesion as it is, and from a solution with the longer ramp, too, the latter stands for this
+  /// step.
+  void solve_pass(const StepProblem<N>& problem, int pass, Cohesion cohesion, StepSolution<N>& solution) {
+    const Eigen::VectorXd start = solution.d;
+    if (!solution.eased) {
+      if (pass == 0) {
+        newton_.solve(problem, springs_, solution);
+      } else {
+        // In statics the blocks are back in their places, where contacts remember their state.
+        newton_.solve_again(springs_, solution, problem.statics ? FirstTangent::present : FirstTangent::last_solution);
+      }
+      if (solution.converged || problem.statics || cohesion == Cohesion::as_it_is) return;
+    }
+    newton_.set_cohesion_ramp(long_cohesion_ramp);
+    solution.d = start;
+    newton_.solve_again(springs_, solution,
+                        solution.eased ? FirstTangent::last_solution
+                        : pass == 0    ? FirstTangent::last_step
+                                       : FirstTangent::present);
+    newton_.set_cohesion_ramp(tolerance::cohesion_ramp);
+    if (!solution.converged || solution.eased) return;
+    StepSolution<N> eased = solution;
+    newton_.solve_again(springs_, solution, FirstTangent::present);
+    if (solution.converged) return;
+    eased.effort = solution.effort;
+    eased.eased = true;
+    std::swap(solution, eased);
+  }
+
+  /// [-] Part of a step with this error that is likely to do.
+  static double shorter(double error) {
+    const double part = std::sqrt(aimed_error / error);
+    return part >= shortest_part ? std::min(part, longest_part) : longest_part;
   }
 
   /// What the springs of the next pass start from.
@@ -234,6 +314,8 @@ class Hard final : public Enforcement<N> {
   Newton<N> newton_{Merit::all_blocks};
   std::vector<ContactSprings> springs_;
   StepSolution<N> compliant_;  ///< of this step, if it may be
+  std::size_t level_ = 0;      ///< of stiffness_over_inertia: what the next step of a motion begins with
+  int steps_at_level_ = 0;     ///< that these springs have taken, one after the other
 };
 
 }  // namespace

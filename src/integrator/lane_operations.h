@@ -62,8 +62,8 @@ OPENCLOSE_KERNEL Mask is_open(Lanes tension, Lanes elastic_normal) {
 /// As ContactStrength::shear_bound().
 struct ShearBound {
   Lanes steep, on_ramp, on_slope, value;
-  OPENCLOSE_KERNEL ShearBound(Lanes friction, Lanes cohesion, Lanes tension, Lanes normal)
-      : steep(friction + 1.0 / tolerance::cohesion_ramp),
+  OPENCLOSE_KERNEL ShearBound(Lanes friction, Lanes cohesion, Lanes tension, Lanes normal, double ramp = tolerance::cohesion_ramp)
+      : steep(friction + 1.0 / ramp),
         on_ramp(steep * (normal + tension)),
         on_slope(friction * normal + cohesion),
         value(larger(Lanes{}, smaller(on_slope, on_ramp))) {}

@@ -211,7 +211,7 @@ void Newton<N>::evaluate(const Eigen::VectorXd& d) {
   for (int row = 0; row < rows; ++row) move_block(row, d);
   rows_.assign(blocks_.size() + 1, ForceRow());
   residual_.resize(N * static_cast<Eigen::Index>(blocks_.size()));
-  const double largest = kernels_.evaluate(step_forces_, contacts_, moves_.data(), rounding_of_sums, trials_, branches_, rows_);
+  const double largest = kernels_.evaluate(step_forces_, ramp_, contacts_, moves_.data(), rounding_of_sums, trials_, branches_, rows_);
   for (int row = 0; row < rows; ++row) evaluate_block(row, d);
   find_force_scale(largest, d);
   has_replaced_forces_ = false;
@@ -235,7 +235,7 @@ void Newton<N>::evaluate_moved(const std::vector<int>& moved, const Eigen::Vecto
   for (std::size_t batch = 0; batch < contacts_.size(); ++batch) {
     if (!is_due[batch]) continue;
     ++due;
-    kernels_.evaluate_one(step_forces_, contacts_, batch, moves_.data(), rounding_of_sums, trials_, branches_, sums_of_moved_);
+    kernels_.evaluate_one(step_forces_, ramp_, contacts_, batch, moves_.data(), rounding_of_sums, trials_, branches_, sums_of_moved_);
   }
   effort.part_batches += due;
   effort.part_batches_skipped += all - due;
@@ -475,6 +475,7 @@ void Newton<N>::take_part(const Newton& whole, const Part& part) {
   problem_ = whole.problem_;
   step_forces_ = whole.step_forces_;
   start_scale_ = whole.start_scale_;
+  ramp_ = whole.ramp_;
   const int rows = static_cast<int>(part.rows.size());
   blocks_.clear();
   moves_.clear();

@@ -57,6 +57,9 @@ class Newton {
   /// The step of the last solve() again, with springs that differ only in what they carry at its start and in the gaps they keep.
   void solve_again(const std::vector<ContactSprings>& springs, StepSolution<N>& solution, FirstTangent first);
 
+  /// [-] Part of the cohesion over which it comes in, in what is solved from now on: see ContactStrength::shear_bound().
+  void set_cohesion_ramp(double ramp) { ramp_ = ramp; }
+
   /// The same for a static step, by relaxation. What friction holds in the end depends on the way there.
   void relax(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs, StepSolution<N>& solution);
 
@@ -184,6 +187,7 @@ class Newton {
   void report_paths(StepSolution<N>& solution);
 
   Merit asked_merit_;
+  double ramp_ = tolerance::cohesion_ramp;  ///< [-]
   const StepProblem<N>* problem_ = nullptr;
   const std::vector<ContactSprings>* springs_ = nullptr;
   BatchKernels kernels_;

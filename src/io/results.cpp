@@ -283,6 +283,7 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
                    {"steps_cut", steps.cuts},
                    {"error_cuts", steps.error_cuts},
                    {"compliant_steps", steps.compliant},
+                   {"eased_steps", steps.eased},
                    {"dissipative_steps", steps.dissipative},
                    {"iterations", steps.iterations},
                    {"parts", steps.parts},

@@ -38,14 +38,14 @@ struct ContactStrength {
     double value;  ///< [N]
     double slope;  ///< [-] derivative by the normal force
   };
-  double largest_shear(double n) const {
-    const double ramp = (friction + 1.0 / tolerance::cohesion_ramp) * (n + tension);
-    return std::max(0.0, std::min(friction * n + cohesion, ramp));
+  double largest_shear(double n, double ramp = tolerance::cohesion_ramp) const {
+    return std::max(0.0, std::min(friction * n + cohesion, (friction + 1.0 / ramp) * (n + tension)));
   }
   /// Largest shear force at normal force n >= -tension. The cohesion comes in over a ramp, min(mu n + C, (mu + 1/eps)(n + tension)) with
   /// eps = tolerance::cohesion_ramp, because a jump from C to 0 at opening leaves steps without any solution.
-  ShearBound shear_bound(double n) const {
-    const double value = largest_shear(n), steep = friction + 1.0 / tolerance::cohesion_ramp;
+  /// \param ramp  [-] another eps
+  ShearBound shear_bound(double n, double ramp = tolerance::cohesion_ramp) const {
+    const double value = largest_shear(n, ramp), steep = friction + 1.0 / ramp;
     const bool on_ramp = steep * (n + tension) < friction * n + cohesion;
     return {value, value > 0.0 ? (on_ramp ? steep : friction) : 0.0};
   }
@@ -93,12 +93,13 @@ inline bool is_open(const ContactStrength& strength, double elastic_normal) {
 
 /// The joint law: what a contact carries of the trials. The elastic shear force is the contact's memory: the spring slips with the friction, the
 /// dashpot does not count in it. A contact is open when its spring is; while the dashpot outweighs the spring it carries nothing but is not open.
-inline CarriedForces carry(const ContactStrength& strength, const ForceTrials& trial) {
+/// \param ramp  [-] see ContactStrength::shear_bound()
+inline CarriedForces carry(const ContactStrength& strength, const ForceTrials& trial, double ramp = tolerance::cohesion_ramp) {
   CarriedForces f;
   if (is_open(strength, trial.elastic_normal)) return f;
   f.elastic_normal = trial.elastic_normal;
   f.normal = std::max(-strength.tension, trial.elastic_normal + trial.viscous_normal);
-  const double bound = strength.largest_shear(f.normal), shear = trial.elastic_shear + trial.viscous_shear;
+  const double bound = strength.largest_shear(f.normal, ramp), shear = trial.elastic_shear + trial.viscous_shear;
   f.elastic_shear = std::clamp(trial.elastic_shear, -bound, bound);
   f.shear = std::clamp(shear, -bound, bound);
   f.status = std::abs(shear) <= bound ? ContactStatus::sticking : ContactStatus::sliding;
@@ -125,20 +126,21 @@ inline double viscous_normal(const ContactSprings& springs, const ContactStrengt
 }
 
 /// Forces when gap and slip have changed by these amounts [m] since the start of the step.
-inline ContactForces spring_slider(const ContactSprings& springs, const ContactStrength& strength, double gap_change, double slip_change) {
+inline ContactForces spring_slider(const ContactSprings& springs, const ContactStrength& strength, double gap_change, double slip_change,
+                                   double ramp = tolerance::cohesion_ramp) {
   ForceTrials trial;
   trial.elastic_normal = springs.shift - springs.normal * ((springs.gap - springs.target) + gap_change);
   trial.viscous_normal = viscous_normal(springs, strength, gap_change);
   trial.elastic_shear = springs.initial_shear - springs.shear * slip_change;
   trial.viscous_shear = -springs.shear_damping * slip_change;
-  ContactForces f{carry(strength, trial)};
+  ContactForces f{carry(strength, trial, ramp)};
   if (f.status == ContactStatus::open) return f;
   const bool dashpot_outweighs = springs.normal_damping > 0.0 && f.normal <= -strength.tension;
   f.normal_by_gap = dashpot_outweighs ? 0.0 : -(springs.normal + springs.normal_damping);
   if (f.status == ContactStatus::sticking) {
     f.shear_by_slip = -(springs.shear + springs.shear_damping);
   } else {
-    f.shear_by_gap = std::copysign(strength.shear_bound(f.normal).slope, trial.elastic_shear + trial.viscous_shear) * f.normal_by_gap;
+    f.shear_by_gap = std::copysign(strength.shear_bound(f.normal, ramp).slope, trial.elastic_shear + trial.viscous_shear) * f.normal_by_gap;
   }
   return f;
 }

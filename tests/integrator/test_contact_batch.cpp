@@ -90,10 +90,10 @@ struct RandomContacts {
 };
 
 struct Evaluated {
-  Evaluated(const RandomContacts& contacts, const BatchKernels& kernels, StepForces forces)
+  Evaluated(const RandomContacts& contacts, const BatchKernels& kernels, StepForces forces, double ramp = tolerance::cohesion_ramp)
       : batches(contacts.batches()), trials(batches.size()), branches(batch_size * batches.size(), 77), rows(free_count + 1) {
     largest_at_start = kernels.begin(batches);
-    largest = kernels.evaluate(forces, batches, contacts.moves.data(), rounding_of_sums, trials, branches, rows);
+    largest = kernels.evaluate(forces, ramp, batches, contacts.moves.data(), rounding_of_sums, trials, branches, rows);
   }
   std::vector<ContactBatch> batches;
   std::vector<TrialBatch> trials;
@@ -104,13 +104,13 @@ struct Evaluated {
 
 /// One contact by itself.
 struct Single {
-  Single(const RandomContacts& contacts, std::size_t c, StepForces step_forces)
+  Single(const RandomContacts& contacts, std::size_t c, StepForces step_forces, double ramp = tolerance::cohesion_ramp)
       : pose(contacts.starts[c], contacts.moves[contacts.vertex_blocks[c]], contacts.moves[contacts.edge_blocks[c]]) {
     const ContactSprings& s = contacts.springs[c];
     const bool averaged = step_forces == StepForces::averaged;
     acting = averaged ? mean_pose(contacts.starts[c], pose) : pose;
     forces = averaged ? path_average(s, contacts.strengths[c], pose.gap_change, pose.slip_change, s.dissipation).mean
-                      : spring_slider(s, contacts.strengths[c], pose.gap_change, pose.slip_change);
+                      : spring_slider(s, contacts.strengths[c], pose.gap_change, pose.slip_change, ramp);
   }
   /// Open at the end of the step, it may have carried a force on the way.
   bool carries() const { return forces.status != ContactStatus::open || forces.normal != 0.0 || forces.normal_by_gap != 0.0; }
@@ -137,15 +137,16 @@ TEST_CASE("four contacts at a time are where each is and carry what each carries
   const unsigned seed = GENERATE(1, 2);
   const bool wide = GENERATE(false, true);
   const StepForces step_forces = GENERATE(StepForces::at_end, StepForces::averaged);
+  const double ramp = step_forces == StepForces::averaged ? tolerance::cohesion_ramp : GENERATE(tolerance::cohesion_ramp, 1.0);
   const RandomContacts contacts(seed, count);
-  const Evaluated all(contacts, BatchKernels(wide), step_forces);
+  const Evaluated all(contacts, BatchKernels(wide), step_forces, ramp);
   std::vector<Eigen::Vector4d> sums(free_count + 1, Eigen::Vector4d::Zero());
   double largest = 0.0;
   int wrong = 0, of_status[3] = {}, outweighed = 0, backward = 0, opened = 0;
   for (std::size_t c = 0; c < count; ++c) {
     const int lane = static_cast<int>(c % batch_size), a = contacts.vertex_blocks[c], b = contacts.edge_blocks[c];
     const ContactSprings& s = contacts.springs[c];
-    const Single one(contacts, c, step_forces);
+    const Single one(contacts, c, step_forces, ramp);
     const ContactForces& f = one.forces;
     const TrialBatch& trial = all.trials[c / batch_size];
     wrong += differences(trial.pose(lane), one.pose) + differences(trial.forces(lane, all.branches[c]), f) + (all.branches[c] != branch(f));

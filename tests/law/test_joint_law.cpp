@@ -100,14 +100,15 @@ TEST_CASE("without cohesion the shear strength is friction alone", "[law][shear_
 TEST_CASE("cohesion comes in over a ramp, the lower of two lines", "[law][shear_bound]") {
   const double friction = GENERATE(0.0, 0.6), cohesion = GENERATE(0.0, 100.0, 3000.0), tension = GENERATE(0.0, 50.0, 1000.0);
   const ContactStrength strength = strength_of(friction, cohesion, tension);
-  const double steep = friction + 1.0 / tolerance::cohesion_ramp;
+  const double ramp = GENERATE(tolerance::cohesion_ramp, 1.0), steep = friction + 1.0 / ramp;
   const double scale = friction * 5000.0 + cohesion + steep * (5000.0 + tension);
   for (double n = -tension; n <= 5000.0; n += 7.3) {
     const double lower = std::max(0.0, std::min(friction * n + cohesion, steep * (n + tension)));
-    CHECK(std::abs(strength.shear_bound(n).value - lower) <= rounding * scale);
+    CHECK(std::abs(strength.shear_bound(n, ramp).value - lower) <= rounding * scale);
+    if (ramp == tolerance::cohesion_ramp) CHECK(strength.shear_bound(n).value == strength.shear_bound(n, ramp).value);
   }
-  CHECK(strength.shear_bound(-tension).value <= rounding * scale);
-  CHECK(strength.shear_bound(1e6).value == Approx(friction * 1e6 + cohesion).epsilon(rounding));
+  CHECK(strength.shear_bound(-tension, ramp).value <= rounding * scale);
+  CHECK(strength.shear_bound(1e6, ramp).value == Approx(friction * 1e6 + cohesion).epsilon(rounding));
 }
 
 TEST_CASE("the shear strength is continuous and its slope is its derivative", "[law][shear_bound]") {
