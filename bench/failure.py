@@ -68,7 +68,8 @@ class Arrival:
 
 
 def _case(method: Method, key: str, value: float, start: int = 0, name: str = "", more: Settings = ()) -> Case:
-    settings = [*method.settings, *(ADAPTIVE_USUAL if method.adaptive else USUAL), (key, value), ("run.strength_reduction_factor", FACTOR * (1 + PERTURBATION * start)),
+    usual = ADAPTIVE_USUAL if method.adaptive else USUAL
+    settings = [*method.settings, *usual, (key, value), ("run.strength_reduction_factor", FACTOR * (1 + PERTURBATION * start)),
                 ("output.every_s", 1.0), ("output.milestones_m", list(DISTANCES_M)), *more]
     return Case(f"failure-{method.name}-{value:g}-{start}{name}".replace(" ", "_"), "run", JointedSlope.POST_FAILURE, tuple(settings), LIMIT_S)
 
