@@ -90,20 +90,24 @@ def _all_runs(bench: Bench, study: str) -> str:
         number(r.max_penetration_m)])
 
 
+def _per(whole: int | None, parts: int) -> str:
+    return "-" if whole is None else number(whole / parts)
+
+
 def _sizes(bench: Bench) -> str:
     lines = []
     moved = {(r.scene, r.method): r for r in bench.of(scaling.MOTION) if not r.reason}
     for r in bench.of(scaling.SETTLING):
         if r.reason:
-            lines.append([r.method, r.scene, "", "", r.reason, "", "", "", ""])
+            lines.append([r.method, r.scene, "", "", r.reason, "", "", "", "", ""])
             continue
         m = moved.get((r.scene, r.method))
         lines.append([r.method, f"{r.blocks:,}", f"{r.contacts:,}", str(r.steps), number(r.cpu_s), number(1e3 * m.cpu_s / m.steps) if m else "-",
                       number(1e3 * m.cpu_s / m.iterations) if m and m.iterations else "-", number(r.peak_memory_bytes / r.blocks),
-                      str(scaling.krylov_iterations(bench, r) or "-")])
+                      _per(scaling.memory_without_factor(bench, r), r.blocks), str(scaling.krylov_iterations(bench, r) or "-")])
     fits = [[f.method, f.what, number(f.value), str(f.sizes)] for f in scaling.fits(bench)]
     return (_table(["method", "blocks", "closed contacts", "steps of settling", "settling [s]", "a step of motion [ms]", "an iteration [ms]",
-                    "memory [bytes a block]", "Krylov iterations, settling"], lines)
+                    "memory [bytes a block]", "without the factor", "Krylov iterations, settling"], lines)
             + f"\nExponents of the number of blocks, from {scaling.FIT_RANGE[0]:,} to {scaling.FIT_RANGE[1]:,}:\n\n"
             + _table(["method", "of", "exponent", "sizes"], fits))
 

@@ -84,6 +84,12 @@ def fits(bench: Bench) -> list[Fit]:
     return found
 
 
+def memory_without_factor(bench: Bench, row: Row) -> int | None:
+    """Of the settling of a size [bytes]: program, blocks, contacts and matrix, each as large as it has been."""
+    method = next(m for m in (SOFT, HARD, SHI, DEM) if m.name == row.method)
+    return bench.summaries(_settle(method, int(row.scene.rsplit(" ", 1)[1])))[0].get("memory_bytes", {}).get("without_factor")
+
+
 def krylov_iterations(bench: Bench, row: Row) -> int | None:
     """Of the settling of a size."""
     method = next(m for m in (SOFT, HARD, SHI, DEM) if m.name == row.method)

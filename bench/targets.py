@@ -100,16 +100,18 @@ def _sizes(bench: Bench) -> list[Target]:
         found.append(Target("100,000 blocks settle", "yes", "-", None))
     else:
         found.append(Target("100,000 blocks settle", "yes", largest.reason or f"{largest.blocks:,} in {largest.cpu_s:.3g} s", not largest.reason))
-    return [*found, _memory(bench, "soft", "memory in all: soft", 12.0), _memory(bench, "dem", "memory without the factor: dem, which has none", 2.0)]
+    return [*found, _memory(bench, "soft", "memory in all: soft", 12.0), _memory(bench, "soft", "memory without the factor: soft", 2.0, scaling.memory_without_factor),
+            _memory(bench, "dem", "memory without the factor: dem, which has none", 2.0)]
 
 
-def _memory(bench: Bench, method: str, what: str, asked_kb: float) -> Target:
-    """Of the process while it settles the largest slope that it settles, program and input included."""
+def _memory(bench: Bench, method: str, what: str, asked_kb: float, bytes_of=lambda _, row: row.peak_memory_bytes) -> Target:
+    """While the largest slope that it settles settles, program and input included."""
     rows = [r for r in bench.of(scaling.SETTLING) if r.method == method and not r.reason]
     if not rows:
         return _at_most(what, None, asked_kb, " kB a block")
     row = max(rows, key=lambda r: r.blocks)
-    return _at_most(what, row.peak_memory_bytes / row.blocks / 1e3, asked_kb, " kB a block", f" ({row.blocks:,} blocks)")
+    found = bytes_of(bench, row)
+    return _at_most(what, None if found is None else found / row.blocks / 1e3, asked_kb, " kB a block", f" ({row.blocks:,} blocks)")
 
 
 def _iteration(method: str, times: float | None) -> Target:

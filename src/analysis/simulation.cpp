@@ -48,7 +48,8 @@ Simulation<N>::Simulation(Scene scene, std::unique_ptr<Enforcement<N>> enforceme
       output_velocity_(system_.state().velocity),
       resting_(scene_.rest, system_),
       start_kinetic_energy_(system_.kinetic_energy()),
-      control_(scene_.step.error_tolerance) {
+      control_(scene_.step.error_tolerance),
+      bytes_of_scene_(bytes_of_blocks(scene_)) {
   if (scene_.step.adaptive && !enforcement_->takes_adaptive_steps())
     throw InputError(scene_.where, "step.adaptive", "true has no meaning for method.contact = \"" + scene_.method.contact + "\"",
                      "contact = \"soft\"");
@@ -162,6 +163,15 @@ template <int N>
 void Simulation<N>::count_moves() {
   step_counters_.block_steps += system_.free_count();
   step_counters_.block_steps_skipped += static_cast<long>(system_.resting_blocks().size());
+}
+
+template <int N>
+void Simulation<N>::note_memory() {
+  Memory now = enforcement_->memory() + detector_.memory();
+  if (loop_) now += loop_->memory();
+  now.blocks += bytes_of_scene_ + system_.bytes() + bytes_of(output_velocity_);
+  now.contacts += bytes_of(contacts_);
+  memory_.grow_to(now);
 }
 
 template <int N>
@@ -413,6 +423,7 @@ StepResult Simulation<N>::step(double dt, bool statics) {
     enforcement_->solve(p, solution);
   }
   step_counters_.add(solution.effort);
+  note_memory();
   if (solution.converged && wake_in_haste(solution, dt)) {
     ++step_counters_.repeated_to_wake;
     return step(dt, statics);
@@ -525,6 +536,7 @@ void Simulation<N>::load_loop() {
     collected_contact_energy_ = moving_contact_energy();
     loop_is_loaded_ = true;
     ++step_counters_.loads;
+    note_memory();
   }
   double& smallest = step_counters_.smallest_critical_step;
   smallest = smallest > 0.0 ? std::min(smallest, loop_->critical_step()) : loop_->critical_step();

@@ -10,6 +10,7 @@
 #include "openclose/analysis/resting.h"
 #include "openclose/analysis/step_control.h"
 #include "openclose/contact/detection.h"
+#include "openclose/core/memory.h"
 #include "openclose/integrator/central_difference.h"
 #include "openclose/integrator/enforcement.h"
 
@@ -133,6 +134,8 @@ class Simulation {
   const StepCounters& step_counters() const { return step_counters_; }
   const DetectionCounters& detection_counters() const { return detector_.counters(); }
   const StageTimes& stage_times() const { return stage_times_; }
+  /// Of the arrays, each part as large as it has been after a step.
+  const Memory& memory() const { return memory_; }
 
   /// Takes the blocks' velocities away; the kinetic energy goes to the ledger's scheme, as in static steps.
   void come_to_rest();
@@ -200,6 +203,7 @@ class Simulation {
   bool wake_by_forces(typename Resting<N>::Urgency urgency);
   void divide();
   void count_moves();
+  void note_memory();
 
   Scene scene_;
   // While the explicit loop runs it holds the state; what stands here is brought up to date by whoever asks for it.
@@ -232,6 +236,8 @@ class Simulation {
   double last_speed_ = 0.0;        ///< [m/s] largest displacement of the last step over its duration
   StepControl control_;
   StageTimes stage_times_;
+  std::size_t bytes_of_scene_;
+  Memory memory_;
 };
 
 extern template class Simulation<3>;

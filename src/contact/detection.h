@@ -51,6 +51,7 @@
 
 #include "openclose/contact/contact.h"
 #include "openclose/contact/joint_table.h"
+#include "openclose/core/memory.h"
 #include "openclose/core/tolerance.h"
 #include "openclose/geometry/box.h"
 #include "openclose/model/block_system.h"
@@ -130,6 +131,8 @@ class Detector {
 
   /// Blocks or contacts were changed by others: the next update() searches and finds everything anew.
   void forget() { forgotten_ = true; }
+  /// Of candidates and contacts at rest, and of what an update has left of its working memory.
+  Memory memory() const;
   /// What decides when something is found anew.
   void exchange(Archive& archive);
 
@@ -212,6 +215,7 @@ class Detector {
   void pass_on_history(const BlockSystem<N>& system, std::vector<Contact>& before);
   void put_in_place(std::vector<Contact>& contacts, bool orphans);
   void find_kept_runs();
+  void let_go_of_working_memory();
 
   double reach_;
   DetectionSkips skips_;

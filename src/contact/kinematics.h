@@ -50,9 +50,12 @@ struct ContactPlace {
 
   ContactPlace() = default;
   ContactPlace(const BlockSystem<N>& system, const Contact& contact)
+      : ContactPlace(system, contact, system.centroid(contact.vertex_block), system.centroid(contact.edge_block)) {}
+  /// With the centroids of its two blocks.
+  ContactPlace(const BlockSystem<N>& system, const Contact& contact, const Vec2& vertex_centroid, const Vec2& edge_centroid)
       : vertex_arm(system.arm(contact.vertex)),
         end_arm(system.arm(contact.edge)),
-        lever((system.centroid(contact.vertex_block) + vertex_arm) - (system.centroid(contact.edge_block) + end_arm)),
+        lever((vertex_centroid + vertex_arm) - (edge_centroid + end_arm)),
         edge(system.arm(system.next(contact.edge)) - end_arm) {}
 };
 

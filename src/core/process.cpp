@@ -13,7 +13,19 @@
 namespace openclose {
 namespace {
 
+/// [bytes] Not getrusage, whose maximum goes back to before the program was loaded and has the memory of who started it.
+long status_of_process(const std::string& key) {
+  constexpr long bytes_per_unit = 1024;
+  std::ifstream status("/proc/self/status");
+  for (std::string word; status >> word;) {
+    long value = 0;
+    if (word == key && status >> value) return bytes_per_unit * value;
+  }
+  return 0;
+}
+
 const auto program_start = std::chrono::steady_clock::now();
+const long memory_at_start = status_of_process("VmRSS:");
 
 }  // namespace
 
@@ -26,15 +38,16 @@ double wall_time() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - program_start).count();
 }
 
-// Not getrusage: its maximum goes back to before the program was loaded and has the memory of who started it.
 long peak_memory() {
-  constexpr long bytes_per_unit = 1024;
-  std::ifstream status("/proc/self/status");
-  for (std::string word; status >> word;) {
-    long value = 0;
-    if (word == "VmHWM:" && status >> value) return bytes_per_unit * value;
-  }
-  return 0;
+  return status_of_process("VmHWM:");
+}
+
+long resident_memory() {
+  return status_of_process("VmRSS:");
+}
+
+long memory_of_program() {
+  return memory_at_start;
 }
 
 void return_large_memory() {

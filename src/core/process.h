@@ -9,6 +9,10 @@ double process_cpu_time();
 double wall_time();
 /// [bytes] Largest resident memory since the program was loaded; 0 where /proc does not tell.
 long peak_memory();
+/// [bytes] Resident memory now; 0 where /proc does not tell.
+long resident_memory();
+/// [bytes] The same when the program began: its code and libraries, as far as they were read.
+long memory_of_program();
 /// From now on large pieces of memory go back to the system as soon as they are freed, instead of lying in holes that fit nothing else; to be called
 /// once, before much has been allocated. Nothing where the C library has no way to.
 void return_large_memory();

@@ -779,6 +779,15 @@ void CentralDifference<N>::exchange(Archive& archive, const JointTable& joints) 
           points_, energies_, damped_, lost_strength_, critical_step_, approach_, moved_, unbalanced_, max_penetration_, h_, span_, viscous_);
 }
 
+template <int N>
+Memory CentralDifference<N>::memory() const {
+  Memory of;
+  of.blocks = bytes_of(poses_, rates_, previous_rates_, next_rates_, forces_, inertia_, blocks_, rest_slot_, loaded_at_, kept_at_, points_) +
+              critical_step_.bytes();
+  of.contacts = bytes_of(links_, rest_, link_of_, holes_, renumbered_);
+  return of;
+}
+
 template class CentralDifference<3>;
 
 }  // namespace openclose

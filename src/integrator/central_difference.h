@@ -90,6 +90,8 @@ class CentralDifference {
   void store_far_gaps(const BlockSystem<N>& system, std::vector<Contact>& contacts) const;
   ExplicitEnergies take_energies();
 
+  Memory memory() const;
+
   /// All of it; the joints are those that load() was given.
   void exchange(Archive& archive, const JointTable& joints);
 

@@ -50,6 +50,8 @@ class ContactOutcomes {
     slack_[c] = slack;
   }
 
+  std::size_t bytes() const { return bytes_of(trials_, branches_, stiffness_, slack_); }
+
   /// Empty again, with its memory for the next step.
   void clear() {
     stiffness_.clear();

@@ -50,6 +50,7 @@ class CriticalStepBound {
   void add(const StiffnessPart& part, double sign = 1.0);
   double step();  ///< [s], infinite if nothing holds any block
   void exchange(Archive& archive) { archive(scales_, stiffness_, damping_, damped_); }
+  std::size_t bytes() const { return bytes_of(scales_, stiffness_, damping_); }
 
  private:
   /// Of one block, symmetric, for unknowns scaled by the root of the mass; the largest eigenvalue is found when it is asked for.

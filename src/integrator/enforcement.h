@@ -12,6 +12,7 @@
 
 #include "openclose/contact/joint_table.h"
 #include "openclose/contact/mean_pose.h"
+#include "openclose/core/memory.h"
 #include "openclose/integrator/contact_outcomes.h"
 #include "openclose/integrator/time_scheme.h"
 #include "openclose/law/path_average.h"
@@ -103,6 +104,12 @@ struct StepSolution {
     start_contacts.clear();
     paths.clear();
   }
+  Memory memory() const {
+    Memory of;
+    of.blocks = sizeof(double) * static_cast<std::size_t>(d.size());
+    of.contacts = contacts.bytes() + start_contacts.bytes() + bytes_of(paths);
+    return of;
+  }
 
   /// Displacement of block b: zero if fixed.
   typename Motion<N>::Unknowns of(const BlockSystem<N>& system, int b) const {
@@ -131,6 +138,8 @@ class Enforcement {
   virtual bool is_explicit() const { return false; }
   virtual double step_cut(const MethodInput&) const { return 0.5; }  ///< factor on a step that failed
   virtual LinearCounters linear_counters() const = 0;
+  /// The largest so far, that of solutions included.
+  virtual Memory memory() const { return {}; }
   /// Hands over what it keeps from step to step and what would change a result, be it in the last bit.
   virtual void exchange(Archive&) {}
 };

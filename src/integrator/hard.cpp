@@ -105,6 +105,11 @@ class Hard final : public Enforcement<N> {
   }
   bool has_elastic_contacts() const override { return false; }
   LinearCounters linear_counters() const override { return newton_.linear_counters(); }
+  Memory memory() const override {
+    Memory of = newton_.memory() + compliant_.memory();
+    of.contacts += bytes_of(springs_);
+    return of;
+  }
   void exchange(Archive& archive) override {
     newton_.exchange(archive);
     archive(level_, steps_at_level_);

@@ -119,21 +119,31 @@ void Newton<N>::prepare(const StepProblem<N>& problem, const std::vector<Contact
   problem_ = &problem;
   springs_ = &springs;
   contact_count_ = problem.contacts.size();
-  contacts_.resize((contact_count_ + batch_size - 1) / batch_size);
+  resize_closely(contacts_, (contact_count_ + batch_size - 1) / batch_size);
   if (!contacts_.empty()) contacts_.back() = ContactBatch();
-  const auto row = [&](int b) { return b < system.block_count() && system.block(b).equation >= 0 ? system.block(b).equation : system.free_count(); };
+  places_.clear();
+  for (int b = 0; b < system.block_count(); ++b) {
+    const int equation = system.block(b).equation;
+    places_.push_back({system.centroid(b), equation >= 0 ? equation : system.free_count()});
+  }
+  places_.push_back({Vec2::Zero(), system.free_count()});
+  const int nobody = system.block_count();
   for (std::size_t c = 0; c < batch_size * contacts_.size(); ++c) {
     ContactBatch& batch = contacts_[c / batch_size];
+    const int k = lane(c);
     const bool is_one = c < contact_count_;
-    batch.vertex_block[lane(c)] = is_one ? problem.contacts[c].vertex_block : system.block_count();
-    batch.edge_block[lane(c)] = is_one ? problem.contacts[c].edge_block : system.block_count();
-    batch.vertex_row[lane(c)] = row(batch.vertex_block[lane(c)]);
-    batch.edge_row[lane(c)] = row(batch.edge_block[lane(c)]);
+    batch.vertex_block[k] = is_one ? problem.contacts[c].vertex_block : nobody;
+    batch.edge_block[k] = is_one ? problem.contacts[c].edge_block : nobody;
+    const BlockPlace &vertex = places_[batch.vertex_block[k]], &edge = places_[batch.edge_block[k]];
+    batch.vertex_row[k] = vertex.row;
+    batch.edge_row[k] = edge.row;
     if (!is_one) continue;
     const Contact& contact = problem.contacts[c];
-    batch.set(lane(c), ContactPlace<N>(system, contact), springs[c], ContactStrength(problem.joints.joint(contact.joint), contact));
+    batch.set(k, ContactPlace<N>(system, contact, vertex.centroid, edge.centroid), springs[c],
+              ContactStrength(problem.joints.joint(contact.joint), contact));
   }
   blocks_.clear();
+  blocks_.reserve(system.free_count());
   for (int b : system.free_blocks()) {
     const auto& block = system.block(b);
     const Unknowns still = Unknowns::Zero();
@@ -146,7 +156,7 @@ void Newton<N>::prepare(const StepProblem<N>& problem, const std::vector<Contact
     block_scale_ = std::max({block_scale_, block.magnitude, Motion<N>::largest_force(block.inertia.cwiseProduct(block.drift), block.radius)});
   }
   start_scale_ = std::max(kernels_.begin(contacts_), block_scale_);
-  trials_.resize(contacts_.size());
+  resize_closely(trials_, contacts_.size());
   step_forces_ = problem.averages_path() ? StepForces::averaged : StepForces::at_end;
   branches_.assign(batch_size * contacts_.size(), 0);
   moves_.assign(system.block_count() + 1, BlockMove<N>());
@@ -319,7 +329,7 @@ template <int N>
 Eigen::VectorXd Newton<N>::direction(const Eigen::VectorXd& d, Tangent tangent, double reduction, double enough) {
   assemble(d, tangent);
   Eigen::VectorXd step;
-  if (tangent_.factor(problem_->statics ? static_kept_change : kept_change)) step = tangent_.solver().solve(residual_, reduction, enough);
+  if (tangent_.factor(problem_->statics ? static_kept_change : kept_change)) step = tangent_.solve(residual_, reduction, enough);
   return step;
 }
 
@@ -540,21 +550,22 @@ double Newton<N>::solve_parts(StepSolution<N>& solution, double norm) {
   const std::vector<Part> parts = unbalanced_parts(norm);
   if (parts.empty()) return norm;
   const Until until{std::max(1.0, linear_reduction * norm), problem_->method.max_iterations};
-  if (!part_) part_ = std::make_unique<Newton>(asked_merit_);
+  Newton newton_of_part(asked_merit_);  // gone again when the whole is solved: a part may be a quarter of it
   trial_ = solution.d;
   std::vector<int> moved;
   const long most_rows = static_cast<long>(work_on_parts * static_cast<double>(blocks_.size()));
   long rows = 0;  // of all linear solves
   for (const Part& part : parts) {
-    part_->take_part(*this, part);
+    newton_of_part.take_part(*this, part);
     StepSolution<N> found;
     found.d = rows_of<N>(solution.d, part.rows);
-    part_->evaluate(found.d);
-    double norm_of_part = part_->residual_norm();
-    part_->iterate(*problem_, found, norm_of_part, until, false);
+    newton_of_part.evaluate(found.d);
+    double norm_of_part = newton_of_part.residual_norm();
+    newton_of_part.iterate(*problem_, found, norm_of_part, until, false);
     for (std::size_t i = 0; i < part.rows.size(); ++i) trial_.template segment<N>(N * part.rows[i]) = found.d.template segment<N>(N * i);
     moved.insert(moved.end(), part.rows.begin(), part.rows.end());
-    part_counters_ += part_->tangent_.counters();
+    part_counters_ += newton_of_part.tangent_.counters();
+    note_memory(newton_of_part.present_memory() + solution.memory());
     ++solution.effort.parts;
     solution.effort.part_iterations += found.effort.iterations;
     rows += static_cast<long>(found.effort.iterations) * static_cast<long>(part.rows.size());
@@ -736,6 +747,7 @@ void Newton<N>::solve_prepared(StepSolution<N>& solution, FirstTangent first) {
     norm = begin(start, first);
     outcome = iterate_holding(solution, norm);
   }
+  note_memory(solution.memory());
   solution.converged = norm <= 1.0;
   if (problem.statics) solution.unbalanced = largest_unbalanced();
   if (outcome == Outcome::singular) {
@@ -746,6 +758,15 @@ void Newton<N>::solve_prepared(StepSolution<N>& solution, FirstTangent first) {
   solution.paths.clear();
   if (averages_path()) report_paths(solution);
   solution.contacts.borrow(trials_, branches_, *springs_);
+}
+
+template <int N>
+Memory Newton<N>::present_memory() const {
+  Memory of = tangent_.memory();
+  of.blocks += bytes_of(blocks_, moves_, rows_);
+  for (const Eigen::VectorXd* vector : {&trial_, &start_force_, &residual_}) of.blocks += sizeof(double) * static_cast<std::size_t>(vector->size());
+  of.contacts += bytes_of(contacts_, trials_, branches_, branches_before_, holds_, part_springs_) + neighbourhood_.bytes();
+  return of;
 }
 
 template <int N>

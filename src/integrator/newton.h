@@ -76,6 +76,8 @@ class Newton {
     archive(part_counters_);
   }
   /// Those of parts included.
+  /// The largest so far, factors of parts and of relaxation included; springs are their owner's.
+  const Memory& memory() const { return memory_; }
   LinearCounters linear_counters() const { return LinearCounters(tangent_.counters()) += part_counters_; }
 
  private:
@@ -96,6 +98,12 @@ class Newton {
     Unknowns inertia, force, drift;        ///< mass over time squared; all but contacts' at the start; displacement without forces
     double magnitude = 0.0;                ///< [N] of these forces
     double rounding_of_coordinates = 0.0;  ///< [N]
+  };
+
+  /// What the contacts of a step need of a block.
+  struct BlockPlace {
+    Vec2 centroid;  ///< [m]
+    int row;        ///< that of fixed ones comes after all others
   };
 
   /// Evaluates at the displacement to start from and returns its residual_norm().
@@ -185,6 +193,11 @@ class Newton {
   double backtrack(const Eigen::VectorXd& d, const Eigen::VectorXd& step, double merit_before);
   /// The means over the path go to the solution, the forces at its end take their place.
   void report_paths(StepSolution<N>& solution);
+  /// Of what there is now.
+  Memory present_memory() const;
+  /// Takes it into the account.
+  /// \param others  what is there beside it
+  void note_memory(const Memory& others = {}) { memory_.grow_to(present_memory() + others); }
 
   Merit asked_merit_;
   double ramp_ = tolerance::cohesion_ramp;  ///< [-]
@@ -193,6 +206,7 @@ class Newton {
   BatchKernels kernels_;
   std::size_t contact_count_ = 0;
   std::vector<ContactBatch> contacts_;
+  std::vector<BlockPlace> places_;               ///< of all blocks, and of nobody
   std::vector<StepBlock> blocks_;                ///< the free ones, by their equations
   std::vector<BlockMove<N>> moves_;              ///< of all blocks, or those that a part sees, at the trial displacement; one that stays
   StepForces step_forces_ = StepForces::at_end;  ///< what trials_ has
@@ -211,9 +225,9 @@ class Newton {
   double start_scale_ = 0.0;  ///< [N] largest single force at the start of the step, that of the inertia included
   double block_scale_ = 0.0;  ///< [N] the same of what acts on blocks without contacts
   TangentSystem<N> tangent_;
-  Neighbourhood neighbourhood_;   ///< of this step, once it is needed
-  std::unique_ptr<Newton> part_;  ///< takes one part after the other
+  Neighbourhood neighbourhood_;  ///< of this step, once it is needed
   LinearCounters part_counters_;
+  Memory memory_;
   bool is_part_ = false;
   std::vector<ContactSprings> part_springs_;  ///< of a part: its own springs_
 };

@@ -4,6 +4,8 @@
 #include <utility>
 #include <vector>
 
+#include "openclose/core/memory.h"
+
 namespace openclose {
 
 struct Part {
@@ -20,6 +22,7 @@ class Neighbourhood {
   void clear() { first_.clear(); }
   /// Those it was built for, -1 for none.
   int rows() const { return static_cast<int>(first_.size()) - 1; }
+  std::size_t bytes() const { return bytes_of(first_, ends_); }
 
   /// The seeds and all blocks that are at most so many contacts away from one of them, in as many parts as no contact joins: the small ones first.
   /// \param seeds    rows, each once

@@ -196,7 +196,9 @@ void Newton<N>::relax(const StepProblem<N>& problem, const std::vector<ContactSp
     estimate.emplace(flexibility(d, contacts.counted(), longest_way));
     norm_of_estimate = norm;
     ++estimates;
-    return estimate->factor();
+    const bool is_regular = estimate->factor();
+    note_memory(estimate->memory() + solution.memory());
+    return is_regular;
   };
   // At first, all that touch hold the blocks.
   bool is_regular = renew(std::numeric_limits<double>::infinity());

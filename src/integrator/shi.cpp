@@ -39,6 +39,7 @@ class Shi : public Enforcement<N> {
       if (!solve_once(problem, solution)) return;
       if (!change_states(problem, solution.d)) {
         finish(problem, solution);
+        memory_of_solution_.grow_to(solution.memory());
         return;
       }
     }
@@ -52,6 +53,11 @@ class Shi : public Enforcement<N> {
   bool follows_gaps() const override { return false; }  // they add up first-order changes
   double step_cut(const MethodInput& method) const override { return method.step_cut; }
   LinearCounters linear_counters() const override { return tangent_.counters(); }
+  Memory memory() const override {
+    Memory of = tangent_.memory() + memory_of_solution_;
+    of.contacts += bytes_of(outcome_, strength_, applied_shear_);
+    return of;
+  }
   void exchange(Archive& archive) override { tangent_.exchange(archive); }
 
  private:
@@ -103,7 +109,7 @@ class Shi : public Enforcement<N> {
     }
     ++solution.effort.iterations;
     const bool regular = tangent_.factor(0.0);
-    if (regular) solution.d = tangent_.solver().solve(right);
+    if (regular) solution.d = tangent_.solve(right);
     if (!regular || solution.d.size() != right.size() || !solution.d.allFinite()) {
       solution.reason = "singular matrix";
       return false;
@@ -213,6 +219,7 @@ class Shi : public Enforcement<N> {
   std::vector<ContactStrength> strength_;
   std::vector<double> applied_shear_;  ///< [N] right side of the last pass
   TangentSystem<N> tangent_;
+  Memory memory_of_solution_;
 };
 
 }  // namespace

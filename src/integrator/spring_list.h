@@ -20,8 +20,8 @@ class SpringList {
     const Step step{problem.dt, problem.end_weight, problem.statics, problem.averages_path()};
     if (!(step == step_)) owners_.clear();
     step_ = step;
-    owners_.resize(problem.contacts.size());
-    springs_.resize(problem.contacts.size());
+    resize_closely(owners_, problem.contacts.size());
+    resize_closely(springs_, problem.contacts.size());
     for (std::size_t c = 0; c < springs_.size(); ++c) {
       const Contact& contact = problem.contacts[c];
       const Owner owner{contact.length, contact.joint, contact.vertex_block, contact.edge_block};
@@ -37,6 +37,7 @@ class SpringList {
   }
 
   const std::vector<ContactSprings>& springs() const { return springs_; }
+  std::size_t bytes() const { return bytes_of(owners_, springs_); }
   /// For this step.
   void set_dissipation(double dissipation) {
     for (ContactSprings& s : springs_) s.dissipation = dissipation;

@@ -8,7 +8,7 @@ template <int N>
 template <class RowsOf>
 bool TangentSystem<N>::find_slots(std::size_t count, const RowsOf& rows_of) {
   const std::size_t known = slots_.size();
-  slots_.resize((count + batch_size - 1) / batch_size * batch_size);
+  resize_closely(slots_, (count + batch_size - 1) / batch_size * batch_size);
   std::fill(slots_.begin() + static_cast<std::ptrdiff_t>(count), slots_.end(), ContactSlots());
   for (std::size_t c = 0; c < count; ++c) {
     ContactSlots& slots = slots_[c];
@@ -82,7 +82,24 @@ void TangentSystem<N>::choose_solver(int rows) {
 template <int N>
 bool TangentSystem<N>::factor(double kept_change) {
   if (!skip_symbolic_) matrix_.renew_version();
-  return solver_->factor(matrix_, kept_change);
+  const bool regular = solver_->factor(matrix_, kept_change);
+  solver_memory_.grow_to(solver_->memory());
+  return regular;
+}
+
+template <int N>
+Eigen::VectorXd TangentSystem<N>::solve(const Eigen::VectorXd& right_side, double reduction, double enough) {
+  Eigen::VectorXd x = solver_->solve(right_side, reduction, enough);
+  solver_memory_.grow_to(solver_->memory());
+  return x;
+}
+
+template <int N>
+Memory TangentSystem<N>::memory() const {
+  Memory of = solver_memory_;
+  of.matrix = matrix_.bytes();
+  of.contacts = bytes_of(slots_);
+  return of;
 }
 
 template <int N>

@@ -23,8 +23,11 @@ class TangentSystem {
   /// False if the matrix is singular.
   /// \param kept_change  [-] see LinearSolver::factor()
   bool factor(double kept_change);
-  /// Of the last matrix that was factored.
+  /// By the last matrix that was factored; size 0 if it turns out to be singular only here.
+  Eigen::VectorXd solve(const Eigen::VectorXd& right_side, double reduction = full_reduction, double enough = 0.0);
   LinearSolver<N>& solver() { return *solver_; }
+  /// Of what there is now, and of the largest factor since the solver was chosen.
+  Memory memory() const;
   /// The pattern, which decides in which order the solver eliminates and so how it rounds; the symbolic work is done again after reading.
   void exchange(Archive& archive);
   const LinearCounters& counters() const { return solver_ ? solver_->counters() : nothing_done_; }
@@ -48,6 +51,7 @@ class TangentSystem {
   static constexpr int no_solver = -1;
   int solver_rows_ = no_solver;  ///< of the first matrix, by which the solver was chosen: blocks may come to rest since
   std::unique_ptr<LinearSolver<N>> solver_;
+  Memory solver_memory_;  ///< the largest
   LinearCounters nothing_done_;
 };
 

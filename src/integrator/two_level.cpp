@@ -99,4 +99,12 @@ Eigen::VectorXd TwoLevelFlexibility::displacement(const Eigen::VectorXd& force) 
   return sum;
 }
 
+Memory TwoLevelFlexibility::memory() const {
+  Memory of;
+  of.blocks = bytes_of(group_, arm_);
+  of.matrix = within_.bytes() + between_.bytes();
+  for (const LinearSolver<3>* solver : {within_solver_.get(), between_solver_.get()}) of += solver ? solver->memory() : Memory();
+  return of;
+}
+
 }  // namespace openclose

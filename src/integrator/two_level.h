@@ -41,6 +41,7 @@ class TwoLevelFlexibility {
   bool factor();
   /// [m, rad] by forces [N, N m].
   Eigen::VectorXd displacement(const Eigen::VectorXd& force);
+  Memory memory() const;
 
  private:
   void divide(std::vector<int>::iterator first, std::vector<int>::iterator last, const std::vector<Vec2>& centroids);

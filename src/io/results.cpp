@@ -279,6 +279,15 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
   j["wall_s"] = wall_time();
   j["max_penetration_m"] = summary.max_penetration;
   j["peak_memory_bytes"] = peak_memory();
+  const Memory& memory = simulation.memory();
+  const std::size_t program = static_cast<std::size_t>(memory_of_program());
+  j["memory_bytes"] = {{"program", program},
+                       {"blocks", memory.blocks},
+                       {"contacts", memory.contacts},
+                       {"matrix", memory.matrix},
+                       {"factor", memory.factor},
+                       {"krylov", memory.krylov},
+                       {"without_factor", program + memory.without_factor()}};
   j["counters"] = {{"steps", steps.steps},
                    {"steps_cut", steps.cuts},
                    {"error_cuts", steps.error_cuts},

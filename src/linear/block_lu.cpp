@@ -118,6 +118,13 @@ struct Factor {
   std::vector<PaddedVector> solution;  ///< a block row each, in the factor's order
 
   int rows() const { return static_cast<int>(diagonal.size()); }
+  std::size_t bytes() const {
+    std::size_t lists = bytes_of(subtrees, panels);
+    for (const auto* parts : {&subtrees, &panels}) {
+      for (const std::vector<int>& part : *parts) lists += bytes_of(part);
+    }
+    return lists + bytes_of(order, row_start, diagonal, column, same_as_next, entries, entries_start, taken, scale, stale, size, panel, value, solution);
+  }
   /// The row that is the first to subtract row i; -1 for a root.
   int parent(int i) const {
     const int next = diagonal[i] + 1;
@@ -474,6 +481,13 @@ class BlockLuSolver : public LinearSolver<N> {
   Eigen::VectorXd solve(const Eigen::VectorXd& right_side, double reduction, double enough) override {
     ++this->counters_.solves;
     return solve_once(right_side, std::max(enough, refined_to(reduction)));
+  }
+
+  Memory memory() const override {
+    Memory of = fronts_ ? fronts_->memory() : Memory();
+    of.factor += factor_.bytes() + bytes_of(slots_, left_out_, working_place_, place_);
+    for (const std::vector<int>& place : working_place_) of.factor += bytes_of(place);
+    return of;
   }
 
   void let_go() override {

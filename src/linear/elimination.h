@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "openclose/core/archive.h"
+#include "openclose/core/memory.h"
 
 namespace openclose {
 
@@ -32,6 +33,7 @@ struct Elimination {
     archive(a, b, c, d, e, f);
   }
 
+  std::size_t bytes() const { return bytes_of(row_at, place_of, first, parent, rest_start, rest); }
   int supernodes() const { return static_cast<int>(parent.size()); }
   int own(int s) const { return first[s + 1] - first[s]; }
   int rest_size(int s) const { return rest_start[s + 1] - rest_start[s]; }

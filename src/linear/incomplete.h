@@ -36,6 +36,9 @@ class IncompleteLu {
     std::vector<PaddedBlock>().swap(taken_);
   }
 
+  std::size_t bytes() const {
+    return bytes_of(slots_, order_, row_start_, diagonal_, column_, entries_, entries_start_, value_, taken_, scale_, changed_, working_slot_, solution_);
+  }
   std::size_t stored_blocks() const { return column_.size(); }
 
  private:

@@ -53,6 +53,7 @@ class IncompleteSolver : public LinearSolver<N> {
     if (!use_direct_) {
       Refined result = refine(*matrix_, incomplete_, right_side, start(right_side, reduction), reduction, most_iterations());
       own_.krylov_iterations += result.iterations;
+      krylov_bytes_ = std::max(krylov_bytes_, bytes_of_basis(right_side, result.iterations));
       if (result.x) {
         ++own_.solves;
         pause_ = 2 * result.iterations <= most_iterations() ? first_pause : std::max(first_pause, pause_ / 2);
@@ -64,6 +65,13 @@ class IncompleteSolver : public LinearSolver<N> {
     Eigen::VectorXd x = direct_->solve(right_side, asked, enough);
     count(true);
     return x;
+  }
+
+  Memory memory() const override {
+    Memory of = direct_->memory();
+    of.factor += incomplete_.bytes();
+    of.krylov = std::max(of.krylov, krylov_bytes_);
+    return of;
   }
 
   void let_rows_lag(bool lag) override { direct_->let_rows_lag(lag); }
@@ -109,6 +117,7 @@ class IncompleteSolver : public LinearSolver<N> {
   IncompleteLu<N> incomplete_;
   bool use_direct_ = false;
   int pause_ = first_pause, left_to_pause_ = 0;  ///< matrices
+  std::size_t krylov_bytes_ = 0;
   LinearCounters own_;                           ///< without those of the direct solver
 };
 

@@ -14,6 +14,11 @@ struct KrylovResult {
   int iterations = 0;  ///< each is one product with the matrix and one with the preconditioner
 };
 
+/// [bytes] With right sides like this one: two vectors an iteration.
+inline std::size_t bytes_of_basis(const Eigen::VectorXd& right_side, int iterations) {
+  return 2 * sizeof(double) * static_cast<std::size_t>(iterations) * static_cast<std::size_t>(right_side.size());
+}
+
 using LinearMap = std::function<Eigen::VectorXd(const Eigen::VectorXd&)>;
 
 /// Adds to x what brings the residual down to `wanted`. Gives up after `most_iterations`, and as soon as the residual falls too slowly to get there.

@@ -72,6 +72,13 @@ class LaggedSolver : public LinearSolver<N> {
     return factor_plainly() ? plain_->solve(right_side, reduction) : Eigen::VectorXd();
   }
 
+  Memory memory() const override {
+    Memory of = plain_ ? plain_->memory() : Memory();
+    of.factor += lu_.bytes();
+    of.krylov = krylov_bytes_;
+    return of;
+  }
+
   void let_go() override {
     if (lag_) return;  // later matrices are solved with it
     has_factor_ = exact_ = false;
@@ -111,6 +118,7 @@ class LaggedSolver : public LinearSolver<N> {
   std::optional<Eigen::VectorXd> iterate(const Eigen::VectorXd& right_side, double reduction, int most_iterations) {
     Refined result = refine(*matrix_, lu_, right_side, lu_.solve(right_side), reduction, most_iterations);
     this->counters_.krylov_iterations += result.iterations;
+    krylov_bytes_ = std::max(krylov_bytes_, bytes_of_basis(right_side, result.iterations));
     if (!exact_) spent_ += result.iterations;
     return std::move(result.x);
   }
@@ -124,6 +132,7 @@ class LaggedSolver : public LinearSolver<N> {
   double spent_ = 0.0;                           ///< iterations with the factor
   int pause_ = first_pause, left_to_pause_ = 0;  ///< matrices
   bool use_plain_ = false;
+  std::size_t krylov_bytes_ = 0;
   std::unique_ptr<LinearSolver<N>> plain_;
 };
 

@@ -26,6 +26,9 @@ class MultifrontalLu {
   /// What solve() needs; the next analyse() starts anew.
   void exchange(Archive& archive) { archive(plan_, value_at_, value_, exchange_, factor_work_); }
 
+  std::size_t bytes() const {
+    return plan_.bytes() + bytes_of(source_start_, source_, in_parent_, children_, value_at_, value_, exchange_, front_, left_);
+  }
   double factor_work() const { return factor_work_; }                       ///< multiplications of a factorisation
   double solve_work() const { return static_cast<double>(value_.size()); }  ///< and of a solve
 

@@ -28,6 +28,11 @@ class DenseSolver : public LinearSolver<N> {
     ++this->counters_.solves;
     return lu_.solve(right_side);
   }
+  Memory memory() const override {
+    Memory of;
+    of.factor = sizeof(double) * static_cast<std::size_t>(lu_.matrixLU().size());
+    return of;
+  }
 
  private:
   Eigen::PartialPivLU<Eigen::MatrixXd> lu_;
@@ -54,6 +59,12 @@ class SparseSolver : public LinearSolver<N> {
   Eigen::VectorXd solve(const Eigen::VectorXd& right_side, double) override {
     ++this->counters_.solves;
     return lu_.solve(right_side);
+  }
+  Memory memory() const override {
+    constexpr std::size_t entry = sizeof(double) + sizeof(int);
+    Memory of;
+    of.factor = bytes_of(position_) + entry * static_cast<std::size_t>(scalar_.nonZeros() + (this->counters_.factorisations > 0 ? lu_.nnzL() + lu_.nnzU() : 0));
+    return of;
   }
 
  private:

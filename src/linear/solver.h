@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "openclose/core/archive.h"
+#include "openclose/core/memory.h"
 #include "openclose/linear/block_matrix.h"
 #include "openclose/linear/weak_couplings.h"
 #include "openclose/scene/scene.h"
@@ -62,6 +63,8 @@ class LinearSolver {
     return solve(right_side, std::max(reduction, enough));
   }
   const LinearCounters& counters() const { return counters_; }
+  /// Of the factors that there are now, and of the largest basis of GMRES so far.
+  virtual Memory memory() const { return {}; }
   /// Gives back the memory of a factor that is not needed for a while; the next factor() starts anew. Not where later matrices are solved with it.
   virtual void let_go() {}
   /// Whether a solver that refines its solutions anyway, down to the residual of the whole matrix, may keep more rows than factor() allows. Where

@@ -8,6 +8,7 @@ namespace openclose {
 
 template <int N>
 BlockSystem<N>::BlockSystem(const Scene& scene) : rotation_kind_(scene.method.rotation) {
+  blocks_.reserve(scene.blocks.size());
   if (!scene.blocks.empty()) origin_ = scene.blocks.front().vertices.front();
   for (const BlockInput& input : scene.blocks) {
     Polygon polygon;  // near zero: differences of neighbouring coordinates are exact, their products are not

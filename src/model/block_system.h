@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "openclose/core/archive.h"
+#include "openclose/core/memory.h"
 #include "openclose/model/motion.h"
 #include "openclose/scene/scene.h"
 
@@ -76,6 +77,10 @@ class BlockSystem {
   Vec2 point_position(int point) const { return centroid(points_[point].block) + state_.point_arm[point]; }  ///< [m] relative to origin()
 
   const State& state() const { return state_; }
+  std::size_t bytes() const {
+    return bytes_of(blocks_, free_blocks_, resting_blocks_, next_, previous_, reflex_, reference_arm_, points_, first_point_) +
+           bytes_of(state_.displacement, state_.velocity, state_.arm, state_.point_arm);
+  }
   void restore(const State& state) { state_ = state; }
   void exchange(Archive& archive);
 

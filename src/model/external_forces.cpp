@@ -4,13 +4,14 @@ namespace openclose {
 
 template <int N>
 ExternalForces<N>::ExternalForces(const Scene& scene, BlockSystem<N>& system)
-    : gravity_(scene.gravity), base_motion_(scene.base_motion), loads_of_(scene.blocks.size()), supports_of_(scene.blocks.size()) {
+    : gravity_(scene.gravity), base_motion_(scene.base_motion) {
+  if (!scene.loads.empty() || !scene.supports.empty()) of_blocks_.resize(scene.blocks.size());
   for (const Load& load : scene.loads) {
-    loads_of_[load.block].push_back(static_cast<int>(loads_.size()));
+    of_blocks_[load.block].loads.push_back(static_cast<int>(loads_.size()));
     loads_.push_back({system.follow_point(load.block, load.point), load.force, Vec2::Zero(), Vec2::Zero()});
   }
   for (const Support& support : scene.supports) {
-    supports_of_[support.block].push_back(static_cast<int>(supports_.size()));
+    of_blocks_[support.block].supports.push_back(static_cast<int>(supports_.size()));
     const int point = system.follow_point(support.block, support.point);
     supports_.push_back({point, Vec2::Zero(), support.stiffness, system.point_position(point)});
   }

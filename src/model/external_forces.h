@@ -48,7 +48,8 @@ class ExternalForces {
     Vec2 stiffness = Vec2::Zero();  ///< [N/m] of springs in x and y
     Vec2 anchor = Vec2::Zero();     ///< [m] where the springs are slack, relative to the system's origin
   };
-  bool has_point_forces(int b) const { return !loads_of_[b].empty() || !supports_of_[b].empty(); }  ///< false: force() does not depend on d
+  /// False: force() does not depend on d.
+  bool has_point_forces(int b) const { return !of_blocks_.empty() && !(of_blocks_[b].loads.empty() && of_blocks_[b].supports.empty()); }
   const std::vector<PointForce>& loads() const { return loads_; }
   const std::vector<PointForce>& supports() const { return supports_; }
   const Vec2& gravity() const { return gravity_; }
@@ -56,15 +57,20 @@ class ExternalForces {
  private:
   template <class F>
   void for_each_point_force(int b, F f) const {
-    for (int i : loads_of_[b]) f(loads_[i]);
-    for (int i : supports_of_[b]) f(supports_[i]);
+    if (of_blocks_.empty()) return;
+    for (int i : of_blocks_[b].loads) f(loads_[i]);
+    for (int i : of_blocks_[b].supports) f(supports_[i]);
   }
+  /// Those at a block, by their numbers.
+  struct PointForces {
+    std::vector<int> loads, supports;
+  };
 
   Vec2 gravity_;
   BaseMotion base_motion_;
   Vec2 base_acceleration_ = Vec2::Zero();
   std::vector<PointForce> loads_, supports_;
-  std::vector<std::vector<int>> loads_of_, supports_of_;
+  std::vector<PointForces> of_blocks_;  ///< empty without any
 };
 
 extern template class ExternalForces<3>;

@@ -274,6 +274,7 @@ void cut_domain(const CuttingTables& tables, const NameList& material_names, Nam
 
   const int digits = std::max(4, static_cast<int>(std::to_string(cutting.blocks.size()).size()));
   int number = 0;
+  scene.blocks.reserve(scene.blocks.size() + cutting.blocks.size());
   for (const Polygon& polygon : cutting.blocks) {
     BlockInput block;
     block.name = fmt::format("b{:0{}}", ++number, digits);

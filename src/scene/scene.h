@@ -254,4 +254,7 @@ struct Scene {
   const JointProperties* joint(int material_a, int material_b) const;
 };
 
+/// [bytes] Of the list of blocks with their names and vertices.
+std::size_t bytes_of_blocks(const Scene& scene);
+
 }  // namespace openclose

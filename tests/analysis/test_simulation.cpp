@@ -374,6 +374,46 @@ TEST_CASE("restarting the clock empties the books and nothing else", "[analysis]
   CHECK(same_bits(contacts, after));
 }
 
+TEST_CASE("an account of the memory, by what has it", "[analysis][simulation]") {
+  for (const std::string method : {"soft", "hard", "shi", "dem"}) {
+    INFO(method);
+    Simulation<3> few(tumbling(method));
+    CHECK(few.memory().without_factor() == 0);  // nothing yet
+    REQUIRE(few.advance(2e-3));
+    const Memory of = few.memory();
+    CHECK(of.blocks > few.system().block_count() * (sizeof(BlockSystem<3>::Block) + sizeof(BlockInput)));
+    CHECK(of.contacts > few.contacts().size() * (sizeof(Contact) + 100));
+    CHECK((of.matrix > 0) == (method != "dem"));
+    CHECK((of.factor > of.matrix) == (method != "dem"));
+    CHECK(of.krylov == 0);
+    // What is in the scene and in the system is in the account, to the byte.
+    Scene named = tumbling(method);
+    constexpr std::size_t letters = 1000, points = 512;
+    for (BlockInput& block : named.blocks) block.name = std::string(letters, 'b');
+    Simulation<3> same(named);
+    const std::size_t before = same.system().bytes();
+    for (std::size_t i = 0; i < points; ++i) same.system().follow_point(1, named.blocks[1].vertices[0]);
+    const std::size_t of_points = same.system().bytes() - before;
+    CHECK(of_points >= points * sizeof(Vec2));
+    REQUIRE(same.advance(2e-3));
+    std::size_t of_names = 0;
+    for (std::size_t b = 0; b < named.blocks.size(); ++b) of_names += named.blocks[b].name.size() - tumbling(method).blocks[b].name.capacity();
+    CHECK(same.memory().blocks == of.blocks + of_points + of_names);
+    // Twice the scene, far from the first, has twice of everything but for the spare room of lists.
+    Scene scene = tumbling(method);
+    for (BlockInput block : tumbling(method).blocks) {
+      for (Vec2& vertex : block.vertices) vertex.x() += 1000.0;
+      scene.blocks.push_back(block);
+    }
+    Simulation<3> many(scene);
+    REQUIRE(many.advance(2e-3));
+    CHECK(2 * many.memory().blocks > 3 * of.blocks);
+    CHECK(2 * many.memory().contacts > 3 * of.contacts);
+    CHECK(10 * many.memory().matrix >= 19 * of.matrix);
+    CHECK(many.memory().blocks + many.memory().contacts < 3 * (of.blocks + of.contacts));
+  }
+}
+
 TEST_CASE("velocities of the scene come back after they were stopped", "[analysis][simulation]") {
   Scene scene = test::tumbling_blocks();
   Simulation<3> simulation(scene);

@@ -34,7 +34,45 @@ Scene rough_floor() {
   return scene;
 }
 
+/// Squares of a metre, side by side and one on the other.
+Scene wall(int columns, int rows) {
+  Scene scene = test::empty_scene();
+  for (int i = 0; i < columns; ++i) {
+    for (int j = 0; j < rows; ++j) scene.blocks.push_back(free_block("square", rectangle(i, j, 1.0, 1.0)));
+  }
+  return scene;
+}
+
 }  // namespace
+
+TEST_CASE("what a large system gives back between updates changes nothing", "[contact][search]") {
+  constexpr int columns = 50, rows = 42;
+  const DetectionSkips skips;
+  Detection large(wall(columns, rows), 0.05, skips), small(wall(columns, rows / 2), 0.05, skips);
+  const auto bytes_a_block = [](const Detection& d) {
+    const Memory of = d.detector.memory();
+    return static_cast<double>(of.blocks + of.contacts) / d.system.block_count();
+  };
+  // 4 edges of 40 bytes and a box of 32, at least.
+  CHECK(bytes_a_block(small) - bytes_a_block(large) > 190.0);
+  Detection searching(wall(columns, rows), 0.05, {false, true, true, 0.0});
+  require_same(large.contacts, searching.contacts);
+  for (int step = 0; step < 3; ++step) {
+    for (const int b : {17, 800, 801, 2099}) {
+      for (Detection* d : {&large, &searching}) d->move(b, 0.3 * tolerance::contact_skin_m * (b % 3 - 1), 1.2 * tolerance::contact_skin_m, 1e-4);
+    }
+    large.update();
+    searching.update();
+    REQUIRE(large.contacts.size() == searching.contacts.size());
+    for (std::size_t i = 0; i < large.contacts.size(); ++i) {
+      const Contact &a = large.contacts[i], &b = searching.contacts[i];
+      REQUIRE(std::pair(a.vertex, a.edge) == std::pair(b.vertex, b.edge));
+      REQUIRE(std::abs(a.length - b.length) < tolerance::contact_skin_m);
+    }
+  }
+  CHECK(large.detector.counters().narrow_phases_skipped > 0);
+  CHECK(bytes_a_block(small) - bytes_a_block(large) > 190.0);
+}
 
 TEST_CASE("skipping searches changes nothing while blocks move far", "[contact][search]") {
   const Scene scene = rough_floor();

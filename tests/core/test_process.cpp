@@ -2,29 +2,13 @@
 
 #include <algorithm>
 #include <ctime>
-#include <fstream>
 #include <memory>
-#include <string>
 #include <vector>
 
 #include "openclose/core/process.h"
 #include "support/catch.h"
 
 using namespace openclose;
-
-namespace {
-
-/// [bytes] 0 where /proc does not tell.
-long resident_memory() {
-  std::ifstream status("/proc/self/status");
-  for (std::string word; status >> word;) {
-    long value = 0;
-    if (word == "VmRSS:" && status >> value) return 1024 * value;
-  }
-  return 0;
-}
-
-}  // namespace
 
 TEST_CASE("the clock of the process is fine also under a limit of CPU time", "[core][process]") {
   // With a limit the kernel's clock of the process moves by ticks of milliseconds.
@@ -61,6 +45,9 @@ TEST_CASE("peak memory counts what was there and is gone", "[core][process]") {
   }
   CHECK(peak_memory() - before > static_cast<long>(bytes) * 9 / 10);
   CHECK(peak_memory() - before < static_cast<long>(bytes) * 12 / 10);
+  CHECK(resident_memory() < peak_memory() - static_cast<long>(bytes) / 2);
+  CHECK(memory_of_program() > 0);
+  CHECK(memory_of_program() <= before);
 }
 
 #ifdef __GLIBC__

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "io/files.h"
+#include "openclose/core/process.h"
 #include "openclose/io/results.h"
 #include "openclose/version.h"
 #include "support/catch.h"
@@ -291,6 +292,18 @@ TEST_CASE("summary.json of a run", "[io][results]") {
   CHECK(j.at("counters").at("steps").get<long>() >= 11);
   CHECK(j.at("counters").at("iterations") == simulation.step_counters().iterations);
   CHECK(j.at("counters").at("searches") == simulation.detection_counters().searches);
+  const nlohmann::json& memory = j.at("memory_bytes");
+  CHECK(memory.at("program") == memory_of_program());
+  CHECK(memory.at("program").get<long>() < j.at("peak_memory_bytes").get<long>());
+  CHECK(memory.at("contacts") == simulation.memory().contacts);
+  CHECK(memory.at("factor") == simulation.memory().factor);
+  CHECK(memory.at("krylov") == 0);
+  long sum = 0;
+  for (const char* part : {"program", "blocks", "contacts", "matrix"}) {
+    CHECK(memory.at(part).get<long>() > 0);
+    sum += memory.at(part).get<long>();
+  }
+  CHECK(memory.at("without_factor") == sum);
   for (const char* stage : {"detection", "solution", "bookkeeping"}) CHECK(j.at("stage_s").at(stage).get<double>() > 0.0);
   CHECK(same_bits(j.at("energy_ledger").at("friction_j").get<double>(), 1.0 / 3.0));
   CHECK(j.at("energy_ledger").at("imbalance_j") == 1.0 / 3.0);

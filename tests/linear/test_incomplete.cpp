@@ -189,6 +189,36 @@ TEST_CASE("a direct factor goes before an incomplete one is made, and stays whil
   CHECK(direct.times_let_go == 5);
 }
 
+TEST_CASE("memory of factors and of GMRES", "[linear][incomplete]") {
+  RandomSystems random(48);
+  const BlockMatrix<3> at_rest = grid(60, 50), in_motion = moving(at_rest);
+  const Eigen::VectorXd right_side = random.vector(at_rest.unknowns());
+  const std::size_t numbers = sizeof(double) * static_cast<std::size_t>(9 * at_rest.row_start(at_rest.rows()));
+  CHECK(at_rest.bytes() > numbers);
+  CHECK(at_rest.bytes() < numbers + 9 * at_rest.rows() * sizeof(int));
+  const auto direct = make_block_solver<3>();
+  REQUIRE(direct->factor(at_rest));
+  const std::size_t with_fill = direct->memory().factor;
+  CHECK(with_fill > 2 * numbers);
+  CHECK(direct->memory().krylov == 0);
+  direct->let_go();
+  CHECK(direct->memory().factor < with_fill / 2);
+
+  const auto solver = make_solver_for_all_sizes();
+  REQUIRE(solver->factor(in_motion));
+  solver->solve(right_side, 1e-6);
+  CHECK(solver->memory().krylov == 2 * sizeof(double) * static_cast<std::size_t>(solver->counters().krylov_iterations * right_side.size()));
+  const std::size_t incomplete = solver->memory().factor;
+  CHECK(incomplete > numbers / 2);
+  CHECK(incomplete < with_fill);
+  // In vain, and the factor that was made instead is the only one.
+  REQUIRE(solver->factor(at_rest));
+  solver->solve(right_side);
+  REQUIRE(solver->counters().krylov_given_up == 1);
+  CHECK(solver->memory().factor > with_fill);
+  CHECK(solver->memory().factor < with_fill + incomplete);
+}
+
 TEST_CASE("a singular matrix has no solution, also after an incomplete factor", "[linear][incomplete]") {
   BlockMatrix<3> matrix = grid(4, 4);
   matrix.set_zero();
