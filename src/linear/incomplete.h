@@ -37,7 +37,7 @@ class IncompleteLu {
   }
 
   std::size_t bytes() const {
-    return bytes_of(slots_, order_, row_start_, diagonal_, column_, entries_, entries_start_, value_, taken_, scale_, changed_, working_slot_, solution_);
+    return bytes_of(slots_, order_, row_start_, diagonal_, column_, entries_, entries_start_, value_, taken_, changed_, working_slot_, solution_);
   }
   std::size_t stored_blocks() const { return column_.size(); }
 
