@@ -11,12 +11,12 @@ namespace {
 
 /// [-] Of the way that the estimate gives: the longest step after which momentum never makes a vibration grow.
 constexpr double safe_step = 1.0 / TwoLevelFlexibility::largest_eigenvalue;
-/// Ten times what a slope of 50,000 blocks needs. What has no equilibrium ends here, if not by its displacement.
+/// Thirty times what the first step of a slope of 100,000 blocks needs. What has no equilibrium ends here, if not by its displacement.
 constexpr int most_relaxation_steps = 100000;
 constexpr int steps_between_looks = 100;  ///< at the displacement
 /// [m] At the start of the step contacts may be kept over gaps of twice the longest step. Closures are tenths of this.
 constexpr double near_gap = 1e-3;
-/// After so many steps the estimate may be renewed, which takes as long as ten of them.
+/// After so many steps the estimate may be renewed, which takes as long as three of them.
 constexpr int steps_between_estimates = 50;
 /// [-] In that time, part of the contacts: while more of them change their states, all that may come back are counted.
 constexpr double few_changes = 1e-3;
@@ -25,7 +25,7 @@ constexpr double renewing_decrease = 0.1;
 /// [m] A block goes no farther than this in a step for which its own unbalanced force is to blame: less than joints close under load, so that what
 /// comes loose does not pass through what would stop it. Slopes of 20,100 blocks take as many steps with a tenth of it.
 constexpr double longest_lone_way = 1e-4;
-/// [-] Residual over the largest force at which what has slipped is known: contacts carry a hundredth of that force and more.
+/// [-] Residual over the largest force at which what has slipped is known: contacts that may slip carry a hundredth of that force.
 constexpr double residual_of_slip = 1e-6;
 /// [-] Of the longest displacement: momentum carries blocks a few hundredths beyond their place.
 constexpr double largest_overshoot = 1.1;
