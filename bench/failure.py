@@ -28,6 +28,11 @@ LARGE = {"full": (2000,), "long": (2000, 10000)}
 LARGE_REFERENCE_STEP_S = 5e-3
 
 DT_S = "step.dt_s"
+# Adaptive steps are as long as their tolerance lets them be, and end together with dt_s only: the shorter that is, the more of them are cut there.
+# Forces need not balance to more digits than the tolerance leaves: with 1e-12 the times differ by 1e-6 of them. Settling is then to ask for no more,
+# over the weight of a block, which is a thousandth of the largest force.
+USUAL: Settings = ((DT_S, 0.01),)
+ADAPTIVE_USUAL: Settings = ((DT_S, 0.05), ("method.residual_tolerance", 1e-8), ("settle.unbalanced_fraction", 1e-5))
 
 
 @dataclass(frozen=True)
@@ -63,7 +68,8 @@ class Arrival:
 
 
 def _case(method: Method, key: str, value: float, start: int = 0, name: str = "", more: Settings = ()) -> Case:
-    settings = [*method.settings, (DT_S, 0.01), (key, value), ("run.strength_reduction_factor", FACTOR * (1 + PERTURBATION * start)),
+    usual = ADAPTIVE_USUAL if method.adaptive else USUAL
+    settings = [*method.settings, *usual, (key, value), ("run.strength_reduction_factor", FACTOR * (1 + PERTURBATION * start)),
                 ("output.every_s", 1.0), ("output.milestones_m", list(DISTANCES_M)), *more]
     return Case(f"failure-{method.name}-{value:g}-{start}{name}".replace(" ", "_"), "run", JointedSlope.POST_FAILURE, tuple(settings), LIMIT_S)
 

@@ -349,6 +349,12 @@ void BatchKernels::add_stiffness(const std::vector<ContactBatch>& contacts, cons
   add_stiffness_(contacts.data(), trials.data(), trials.size(), branches.data(), tangent, slots.data(), matrix.value(0).data());
 }
 
+double BatchKernels::largest_force(const std::vector<TrialBatch>& trials) {
+  Lanes largest{};
+  for (const TrialBatch& trial : trials) largest = larger(largest, larger(magnitude(trial.normal), magnitude(trial.shear)));
+  return std::max({largest[0], largest[1], largest[2], largest[3]});
+}
+
 ContactStart<3> ContactBatch::start(int lane) const {
   ContactStart<3> s;
   s.normal = {normal_x[lane], normal_y[lane]};

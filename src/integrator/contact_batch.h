@@ -185,6 +185,13 @@ class BatchKernels {
                   std::vector<TrialBatch>& trials, std::vector<Branch>& branches, std::vector<ForceRow>& rows) const {
     return evaluate_(forces, ramp, contacts.data(), contacts.size(), moves, rounding_of_sums, trials.data(), branches.data(), rows.data());
   }
+  /// The same of one batch.
+  void evaluate_one(StepForces forces, double ramp, const std::vector<ContactBatch>& contacts, std::size_t batch, const BlockMove<3>* moves,
+                    double rounding_of_sums, std::vector<TrialBatch>& trials, std::vector<Branch>& branches, std::vector<ForceRow>& rows) const {
+    evaluate_(forces, ramp, &contacts[batch], 1, moves, rounding_of_sums, &trials[batch], &branches[batch_size * batch], rows.data());
+  }
+  /// [N] of all batches that were evaluated.
+  static double largest_force(const std::vector<TrialBatch>& trials);
   /// Adds the stiffness of all contacts to the matrix. There are slots for every place of a batch.
   void add_stiffness(const std::vector<ContactBatch>& contacts, const std::vector<TrialBatch>& trials, const std::vector<Branch>& branches,
                      const BatchTangent& tangent, const std::vector<ContactSlots>& slots, BlockMatrix<3>& matrix) const;

@@ -141,9 +141,15 @@ class Newton {
   void prepare_start(const std::vector<ContactSprings>& springs);
   void solve_prepared(StepSolution<N>& solution, FirstTangent first);
   void evaluate(const Eigen::VectorXd& d);
+  /// The same, to the last bit, where only these rows have moved since the last evaluation.
+  void evaluate_moved(const std::vector<int>& moved, const Eigen::VectorXd& d, StepEffort& effort);
   /// Evaluates at the present position and keeps the forces.
   void sum_start_forces();
-  void evaluate_blocks(const Eigen::VectorXd& d);
+  void move_block(int row, const Eigen::VectorXd& d);
+  /// Forces and residual of a block to which its contacts have added theirs.
+  void evaluate_block(int row, const Eigen::VectorXd& d);
+  double magnitude(const StepBlock& block, const Unknowns& d) const;  ///< [N] of the forces on it but those of contacts
+  void find_force_scale(double of_contacts, const Eigen::VectorXd& d);
   // Contact c is one of the lanes of its batch.
   static int lane(std::size_t c) { return static_cast<int>(c % batch_size); }
   const ContactBatch& start(std::size_t c) const { return contacts_[c / batch_size]; }
@@ -211,6 +217,8 @@ class Newton {
   std::vector<double> holds_;            ///< [-] part of its springs that an open or sliding contact has in the tangent; else empty
   Eigen::VectorXd trial_;                ///< displacement
   std::vector<ForceRow> rows_;           ///< all forces at the trial position but inertia; a row more for the fixed blocks
+  std::vector<ForceRow> sums_of_moved_;  ///< those of evaluate_moved()
+  bool has_replaced_forces_ = false;     ///< since the last evaluation: contacts carry something else than the law says
   Eigen::VectorXd start_force_;          ///< the same at the start of the step, used if theta < 1
   Eigen::VectorXd residual_;
   double force_scale_ = 0.0;

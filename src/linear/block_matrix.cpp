@@ -7,11 +7,59 @@
 
 #include "openclose/core/parallel.h"
 
+#if defined(__x86_64__) && defined(__GNUC__)
+#define OPENCLOSE_HAS_WIDE_REGISTERS
+#endif
+
 namespace openclose {
 namespace {
 
 /// Of a product, about ten microseconds: more than it takes to hand them over.
 constexpr int rows_of_a_part = 500;
+
+typedef double FourNumbers __attribute__((vector_size(4 * sizeof(double)), aligned(alignof(double))));
+
+[[gnu::always_inline]] inline const FourNumbers& load(const double* numbers) {
+  return *reinterpret_cast<const FourNumbers*>(numbers);
+}
+
+/// Sum of the products of a row's blocks with x, column by column of each: the operations of Eigen in their order, three rows at a time.
+template <int N>
+[[gnu::always_inline]] inline void multiply_row(const double* block, const int* column, int count, const double* x, double* y) {
+  static_assert(N == 3, "the last column is read with an entry before it, to stay within the block");
+  FourNumbers sum{};
+  for (int s = 0; s < count; ++s, block += N * N) {
+    const double* const part = x + N * column[s];
+    const FourNumbers last = load(block + 2 * N - 1);
+    sum += (load(block) * part[0] + load(block + N) * part[1]) + __builtin_shufflevector(last, last, 1, 2, 3, 3) * part[2];
+  }
+  for (int k = 0; k < N; ++k) y[k] = sum[k];
+}
+
+/// Of a matrix of blocks, row by row.
+struct Rows {
+  const double* values;
+  const int *start, *columns;
+};
+
+template <int N>
+[[gnu::always_inline]] inline void multiply(const Rows& rows, int first, int end, const double* x, double* y) {
+  for (int i = first; i < end; ++i) {
+    const int begin = rows.start[i];
+    multiply_row<N>(rows.values + N * N * begin, rows.columns + begin, rows.start[i + 1] - begin, x, y + N * i);
+  }
+}
+
+template <int N>
+void multiply_with_any_registers(const Rows& rows, int first, int end, const double* x, double* y) {
+  multiply<N>(rows, first, end, x, y);
+}
+#ifdef OPENCLOSE_HAS_WIDE_REGISTERS
+template <int N>
+[[gnu::target("avx2")]] void multiply_with_wide_registers(const Rows& rows, int first, int end, const double* x, double* y) {
+  multiply<N>(rows, first, end, x, y);
+}
+#endif
 
 }  // namespace
 
@@ -105,9 +153,11 @@ Eigen::VectorXd BlockMatrix<N>::multiply(const Eigen::VectorXd& x) const {
 
 template <int N>
 void BlockMatrix<N>::multiply_rows(int first, int end, const Eigen::VectorXd& x, Eigen::VectorXd& y) const {
-  for (int i = first; i < end; ++i) {
-    for (int s = row_start_[i]; s < row_start_[i + 1]; ++s) y.segment<N>(N * i) += values_[s] * x.segment<N>(N * columns_[s]);
-  }
+  const Rows all{values_.empty() ? nullptr : values_[0].data(), row_start_.data(), columns_.data()};
+#ifdef OPENCLOSE_HAS_WIDE_REGISTERS
+  if (__builtin_cpu_supports("avx2")) return multiply_with_wide_registers<N>(all, first, end, x.data(), y.data());
+#endif
+  multiply_with_any_registers<N>(all, first, end, x.data(), y.data());
 }
 
 template <int N>

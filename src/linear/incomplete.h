@@ -3,10 +3,10 @@
 // sparse positive definite systems, 1981, chapter 4), which makes what is dropped small.
 //
 // Within a step few rows of the matrix change by more than matters to a preconditioner. A row of the factor is kept while its row of the matrix is
-// about what it was when it was taken, and the pivots of the rows that it subtracts are about what they were.
+// about what it was when it was taken, and the pivots of the rows that it subtracts are about what they were. The diagonal block tells: a contact
+// that changes what couples two blocks changes as much in the diagonal blocks of both.
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "openclose/core/archive.h"
@@ -33,11 +33,11 @@ class IncompleteLu {
   /// Gives back the memory of the factor until the next one.
   void let_go() {
     std::vector<PaddedBlock>().swap(value_);
-    std::vector<TakenBlock>().swap(taken_);
+    std::vector<PaddedBlock>().swap(taken_);
   }
 
   std::size_t bytes() const {
-    return bytes_of(slots_, order_, row_start_, diagonal_, column_, entries_, entries_start_, value_, taken_, scale_, changed_, working_slot_, solution_);
+    return bytes_of(slots_, order_, row_start_, diagonal_, column_, entries_, entries_start_, value_, taken_, changed_, working_slot_, solution_);
   }
   std::size_t stored_blocks() const { return column_.size(); }
 
@@ -59,25 +59,19 @@ class IncompleteLu {
       }
     }
   };
-  /// Of the matrix, column by column.
-  struct TakenBlock {
-    std::array<float, N * N> entry;
-
-    void exchange(Archive& archive) {
-      for (float& value : entry) archive(value);
-    }
-  };
 
   static void subtract_product(const PaddedBlock& left, const PaddedBlock& right, PaddedBlock& target);
   static PaddedBlock product(const PaddedBlock& left, const PaddedBlock& right);
   static PaddedBlock padded(const typename BlockMatrix<N>::Block& block);
   static bool invert(PaddedBlock& pivot);
+  /// Whether an entry has changed by more than kept_change over the root of the weights of its row and column.
+  static bool has_changed(const PaddedBlock& before, const PaddedBlock& now, const Lanes& weight);
+  /// Sizes of those of row i when it was taken.
+  Lanes diagonal_entries(int i) const;
   /// Whether row i of the factor is that of a row of the matrix which has hardly changed since.
   bool is_as_taken(const BlockMatrix<N>& matrix, int i) const;
   bool subtracts_changed_row(int i) const;
   void take_row(const BlockMatrix<N>& matrix, int i);
-  void note_scale(int row, int diagonal);
-  bool has_changed(int i, const PaddedBlock& inverse_before) const;
   void subtract_rows_above(int i);
   /// What the slots times the solution so far leave of `sum`.
   Lanes reduced(Lanes sum, int begin, int end) const;
@@ -98,8 +92,7 @@ class IncompleteLu {
   std::vector<Entry> entries_;  ///< in the order in which elimination meets them
   std::vector<int> entries_start_;
   std::vector<PaddedBlock> value_;  ///< none before the first factor() of a pattern
-  std::vector<TakenBlock> taken_;   ///< by slots of the matrix, row by row as it was when the row of the factor was worked out
-  std::vector<Lanes> scale_;        ///< diagonal entries of these rows, by rows of the matrix
+  std::vector<PaddedBlock> taken_;  ///< by places in the factor: diagonal block of the matrix that the row was worked out from
   std::vector<char> changed_;       ///< by places in the factor: whether the row is another one than in the factor before
   int rows_kept_ = 0;
   std::vector<int> working_slot_;        ///< of a column in the row under work; -1 where it has none

@@ -214,6 +214,7 @@ MethodInput read_method(Table table, const SourceLocation& scene_where) {
   table.optional("skip_factorisation", method.skip_factorisation);
   table.optional("skip_symbolic", method.skip_symbolic);
   table.optional("skip_balanced", method.skip_balanced);
+  table.optional("skip_unmoved", method.skip_unmoved);
   table.optional("skip_resting", method.skip_resting);
   table.optional("threads", method.threads, Range{.low = 1.0, .high = most_threads, .low_included = true, .high_included = true});
   table.optional("gap_tolerance_m", method.gap_tolerance, positive);

@@ -151,6 +151,7 @@ struct MethodInput {
   int threads = 1;                      ///< that share the work; the results are the same to the last bit
   bool skip_factorisation = true;       ///< factor only rows of the matrix that have changed, and no weak couplings
   bool skip_symbolic = true;            ///< plan a factorisation only once the pattern of the matrix has changed
+  bool skip_unmoved = true;             ///< after parts were solved, evaluate only contacts of what moved with them
   bool skip_balanced = true;            ///< between iterations of large systems in motion, iterate only where forces are far from balance
   bool skip_resting = false;            ///< leave blocks alone that are at rest, see RestInput
   double gap_tolerance = 3e-7;          ///< [m] hard: a closed contact may differ from its target gap, a sticking one from its place, by this much

@@ -170,6 +170,7 @@ void write_method(Text& text, const MethodInput& method) {
   text.line("skip_factorisation", method.skip_factorisation);
   text.line("skip_symbolic", method.skip_symbolic);
   text.line("skip_balanced", method.skip_balanced);
+  text.line("skip_unmoved", method.skip_unmoved);
   text.line("skip_resting", method.skip_resting);
   text.line("threads", method.threads);
   text.line("gap_tolerance_m", method.gap_tolerance);

@@ -61,7 +61,7 @@ TEST_CASE("every key reaches its field", "[scene][reader]") {
       "'steady_sliding'\nstatics = true\nresidual_tolerance = 1e-9\n"
       "max_iterations = 10\nskip_search = false\nskip_narrow_phase = false\nskip_looks = false\nskip_reload = false\nskip_factorisation = "
       "false\nskip_symbolic = "
-      "false\nskip_balanced = false\nskip_resting = true\nthreads = 3\npenalty_pa_per_m = 11\npenalty_shear_ratio = 0.5\npenetration_tolerance_m = 12\n"
+      "false\nskip_balanced = false\nskip_unmoved = false\nskip_resting = true\nthreads = 3\npenalty_pa_per_m = 11\npenalty_shear_ratio = 0.5\npenetration_tolerance_m = 12\n"
       "gap_tolerance_m = 2e-9\nclosing_tolerance_m = 0\nmax_open_close_iterations = 13.0\nstep_cut = 0.25\nstep_fraction = 0.5\ndamping = "
       "'automatic'\nlocal_damping = 0.6\n"
       "[step]\ndt_s = 0.01\nmax_displacement_m = 14\nsmallest_fraction = 1\nadaptive = true\nerror_tolerance_m = 1e-3\n"
@@ -117,6 +117,7 @@ TEST_CASE("every key reaches its field", "[scene][reader]") {
   CHECK_FALSE(method.skip_factorisation);
   CHECK_FALSE(method.skip_symbolic);
   CHECK_FALSE(method.skip_balanced);
+  CHECK_FALSE(method.skip_unmoved);
   CHECK(method.skip_resting);
   CHECK(method.threads == 3);
   CHECK(scene.rest.time == 0.5);

@@ -53,6 +53,7 @@ void check_same(const MethodInput& a, const MethodInput& b) {
   CHECK(a.skip_factorisation == b.skip_factorisation);
   CHECK(a.skip_symbolic == b.skip_symbolic);
   CHECK(a.skip_balanced == b.skip_balanced);
+  CHECK(a.skip_unmoved == b.skip_unmoved);
   CHECK(a.skip_resting == b.skip_resting);
   CHECK(a.threads == b.threads);
   CHECK(a.penalty == b.penalty);
@@ -191,6 +192,7 @@ Scene random_scene(unsigned seed) {
   scene.method.skip_factorisation = false;
   scene.method.skip_symbolic = false;
   scene.method.skip_balanced = false;
+  scene.method.skip_unmoved = false;
   scene.method.skip_resting = true;
   scene.method.threads = 3;
   scene.method.penalty = number();
