@@ -480,7 +480,7 @@ class BlockLuSolver : public LinearSolver<N> {
 
   Eigen::VectorXd solve(const Eigen::VectorXd& right_side, double reduction, double enough) override {
     ++this->counters_.solves;
-    return solve_once(right_side, std::max(enough, refined_to(reduction)));
+    return solve_once(right_side, reduction, enough);
   }
 
   Memory memory() const override {
@@ -538,17 +538,17 @@ class BlockLuSolver : public LinearSolver<N> {
     return regular;
   }
 
-  Eigen::VectorXd solve_once(const Eigen::VectorXd& right_side, double reduction) {
+  Eigen::VectorXd solve_once(const Eigen::VectorXd& right_side, double reduction, double enough) {
     Eigen::VectorXd x(right_side.size());
     if (use_fronts_) {
-      x = fronts_->solve(right_side, reduction);
+      x = fronts_->solve(right_side, reduction, enough);
       count_help();
       return x;
     }
     substitute(right_side.data(), x.data());
-    if (left_out_.empty() || refine(right_side, reduction, x)) return x;
+    if (left_out_.empty() || refine(right_side, std::max(enough, refined_to(reduction)), x)) return x;
     const bool can_do = rows_lag_ ? factor_analysed(0.0) : take_in();
-    return can_do ? solve_once(right_side, reduction) : Eigen::VectorXd();
+    return can_do ? solve_once(right_side, reduction, enough) : Eigen::VectorXd();
   }
 
   static double refined_to(double reduction) { return reduction > full_reduction ? std::min(reduction, refined_reduction) : refined_to_rounding; }

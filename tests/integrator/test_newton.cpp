@@ -192,6 +192,23 @@ TEST_CASE("solving a step again with springs that start differently is solving i
   CHECK(anew.norm() > 1e-7);
 }
 
+TEST_CASE("a step whose matrix was singular is solved again with springs that hold", "[integrator][newton]") {
+  Probe probe(test::column_of_blocks(3));
+  const StepProblem<3> present = probe.simulation.problem(1.0, true);
+  const StepProblem<3> problem{present.system, present.external, present.joints, present.contacts, present.method, present.dt, true, 0.0};
+  std::vector<ContactSprings> open = probe.springs;
+  for (ContactSprings& s : open) s.target = s.gap - 1.0;
+  StepSolution<3> solution;
+  solution.d = Eigen::VectorXd::Zero(3 * problem.system.free_count());
+  probe.newton.solve(problem, open, solution, FirstTangent::present);
+  REQUIRE_FALSE(solution.converged);
+  REQUIRE(solution.reason == "singular matrix");
+  solution.d.setZero();
+  probe.newton.solve_again(probe.springs, solution, FirstTangent::present);
+  CHECK(solution.converged);
+  CHECK(solution.contacts.size() == probe.springs.size());
+}
+
 TEST_CASE("a displacement that has run away is no solution, however much its rounding excuses", "[integrator][newton]") {
   Probe probe(test::column_of_blocks(3));
   StepProblem<3> problem = probe.simulation.problem(1e6, true);  // so long that inertia is below the rounding of the springs
