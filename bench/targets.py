@@ -100,7 +100,8 @@ def _sizes(bench: Bench) -> list[Target]:
         found.append(Target("100,000 blocks settle", "yes", "-", None))
     else:
         found.append(Target("100,000 blocks settle", "yes", largest.reason or f"{largest.blocks:,} in {largest.cpu_s:.3g} s", not largest.reason))
-    return [*found, _memory(bench, "soft", "memory in all: soft", 12.0), _memory(bench, "soft", "memory without the factor: soft", 2.0, scaling.memory_without_factor),
+    return [*found, _memory(bench, "soft", "memory in all: soft", 12.0),
+            _memory(bench, "soft", "memory without the factor: soft", 2.0, scaling.memory_without_factor),
             _memory(bench, "dem", "memory without the factor: dem, which has none", 2.0)]
 
 

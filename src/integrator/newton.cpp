@@ -32,8 +32,8 @@ constexpr double shortest_backtrack = 0.01;
 constexpr double linear_reduction = 1e-5;
 /// [-] The same in motion as long as contacts change their states, which leaves a larger residual than this, and the iteration gets on: where it does
 /// not, what a solve leaves is no longer small for the worst block (20,100 blocks at 10 ms: 4 of 28 steps did not converge, with 1e-5 1 of 22). In
-/// failure, with what follows: 0.93 of the instructions of 9,745 free blocks, 0.91 of those of 1,773; with 1e-2 0.91 and 0.93. Not with the springs of
-/// `hard`, whose error grows by their stiffness over that of the solution: 1.18 of the instructions of 1,773 free blocks.
+/// failure, with what follows: 0.93 of the instructions of 9,745 free blocks, 0.91 of those of 1,773; with 1e-2 0.91 and 0.93. Not with the stiff
+/// springs of `hard`: 1.18 of the instructions of 1,773 free blocks.
 constexpr double linear_reduction_of_changes = 1e-3;
 /// [-] Where the end of the iteration is within reach of a solve with the first of these, it goes as far as that; no residual is brought down farther
 /// than to a part of what ends the iteration.

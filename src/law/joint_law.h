@@ -148,8 +148,8 @@ inline ContactForces spring_slider(const ContactSprings& springs, const ContactS
 /// Derivatives the springs would have in a given status; used before the first iteration, which starts from the states of the last step.
 ContactForces tangent_for_status(const ContactSprings& springs, const ContactStrength& strength, ContactStatus status, double normal, double shear);
 
-/// The same with the forces: the linear piece of the law that holds in this status around these forces, prolonged to where gap and slip have changed by
-/// so much. A closed contact may pull there and a sticking one carry more than its strength; an open one carries nothing.
+/// The same with the forces: the linear piece of the law that holds in this status around these forces, prolonged to where gap and slip have changed
+/// by so much. A closed contact may pull there and a sticking one carry more than its strength; an open one carries nothing.
 ContactForces prolonged(const ContactSprings& springs, const ContactStrength& strength, ContactStatus status, double normal, double shear,
                         double gap_change, double slip_change);
 

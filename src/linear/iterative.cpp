@@ -118,7 +118,7 @@ class IncompleteSolver : public LinearSolver<N> {
   bool use_direct_ = false;
   int pause_ = first_pause, left_to_pause_ = 0;  ///< matrices
   std::size_t krylov_bytes_ = 0;
-  LinearCounters own_;                           ///< without those of the direct solver
+  LinearCounters own_;  ///< without those of the direct solver
 };
 
 }  // namespace

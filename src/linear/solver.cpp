@@ -63,7 +63,8 @@ class SparseSolver : public LinearSolver<N> {
   Memory memory() const override {
     constexpr std::size_t entry = sizeof(double) + sizeof(int);
     Memory of;
-    of.factor = bytes_of(position_) + entry * static_cast<std::size_t>(scalar_.nonZeros() + (this->counters_.factorisations > 0 ? lu_.nnzL() + lu_.nnzU() : 0));
+    of.factor = bytes_of(position_) +
+                entry * static_cast<std::size_t>(scalar_.nonZeros() + (this->counters_.factorisations > 0 ? lu_.nnzL() + lu_.nnzU() : 0));
     return of;
   }
 

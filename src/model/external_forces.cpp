@@ -3,8 +3,7 @@
 namespace openclose {
 
 template <int N>
-ExternalForces<N>::ExternalForces(const Scene& scene, BlockSystem<N>& system)
-    : gravity_(scene.gravity), base_motion_(scene.base_motion) {
+ExternalForces<N>::ExternalForces(const Scene& scene, BlockSystem<N>& system) : gravity_(scene.gravity), base_motion_(scene.base_motion) {
   if (!scene.loads.empty() || !scene.supports.empty()) of_blocks_.resize(scene.blocks.size());
   for (const Load& load : scene.loads) {
     of_blocks_[load.block].loads.push_back(static_cast<int>(loads_.size()));

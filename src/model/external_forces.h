@@ -17,8 +17,8 @@ class ExternalForces {
   /// Makes `system` follow the points of the scene's loads and supports.
   ExternalForces(const Scene& scene, BlockSystem<N>& system);
 
-  /// The forces of the next step are those of a base that moves as it does between these times [s]: what they give the blocks is exactly the change of
-  /// the base's velocity.
+  /// The forces of the next step are those of a base that moves as it does between these times [s]: what they give the blocks is exactly the change
+  /// of the base's velocity.
   void move_base(double from, double to) { base_acceleration_ = base_motion_.mean_acceleration(from, to); }
   void hold_base() { base_acceleration_.setZero(); }
   void exchange(Archive& archive) { archive(base_acceleration_); }
@@ -31,8 +31,8 @@ class ExternalForces {
   /// Minus the derivative of force() by d.
   Matrix stiffness(const BlockSystem<N>& system, int b, const Unknowns& d) const;
 
-  /// The mean of such forces over a step to d, along a straight path and in the mean geometry: their work is the product with d, exactly for translations
-  /// and to the third order in the rotation.
+  /// The mean of such forces over a step to d, along a straight path and in the mean geometry: their work is the product with d, exactly for
+  /// translations and to the third order in the rotation.
   Unknowns mean_force(const BlockSystem<N>& system, int b, const Unknowns& d) const;
   /// Minus the derivative of mean_force() by d.
   Matrix mean_stiffness(const BlockSystem<N>& system, int b, const Unknowns& d) const;
