@@ -71,7 +71,8 @@ def _failures(bench: Bench, findings: failure.Findings | None) -> list[Target]:
     floor = findings.converged if findings else 0.0
     found = [_failure(bench, failure.SCENE, "40 m after failure at equal error, 482 blocks: dem over implicit", floor)]
     found.append(_failure(bench, failure.RESTING_SCENE, "the same with blocks at rest left alone", floor))
-    return found + [_failure(bench, failure.large_scene(n), f"the same, {n:,} blocks", floor) for n in failure.LARGE["long"]]
+    large_floors = findings.large_converged if findings else {}
+    return found + [_failure(bench, failure.large_scene(n), f"the same, {n:,} blocks", large_floors.get(n, 0.0)) for n in failure.LARGE["long"]]
 
 
 def _hard(bench: Bench) -> list[Target]:
