@@ -75,22 +75,38 @@ def fits(bench: Bench) -> list[Fit]:
     def per_iteration(row: Row) -> float:
         return row.cpu_s / row.iterations if row.iterations else 0.0
 
+    def relaxation_steps(row: Row) -> int:
+        return _settled(bench, row).get("counters", {}).get("relaxation_steps", 0)
+
+    def per_newton_iteration(row: Row) -> float:
+        return 0.0 if relaxation_steps(row) else per_iteration(row)
+
+    def per_relaxation_step(row: Row) -> float:
+        return row.cpu_s / relaxation_steps(row) if relaxation_steps(row) else 0.0
+
     found = []
     for method in LARGEST:
         found += [fit(SETTLING, method, "settling", lambda r: r.cpu_s), fit(MOTION, method, "a step of motion", per_step)]
         if method != "dem":
-            found += [fit(SETTLING, method, "an iteration of settling", per_iteration), fit(MOTION, method, "an iteration of motion", per_iteration)]
+            found += [fit(SETTLING, method, "an iteration of settling", per_newton_iteration),
+                      fit(MOTION, method, "an iteration of motion", per_iteration)]
+        if method == "soft":
+            found.append(fit(SETTLING, method, "a step of relaxation", per_relaxation_step))
         found.append(fit(SETTLING, method, "memory", lambda r: r.peak_memory_bytes))
     return found
 
 
+def _settled(bench: Bench, row: Row) -> dict:
+    """The summary of the settling of a size."""
+    method = next(m for m in (SOFT, HARD, SHI, DEM) if m.name == row.method)
+    return bench.summaries(_settle(method, int(row.scene.rsplit(" ", 1)[1])))[0]
+
+
 def memory_without_factor(bench: Bench, row: Row) -> int | None:
     """Of the settling of a size [bytes]: program, blocks, contacts and matrix, each as large as it has been."""
-    method = next(m for m in (SOFT, HARD, SHI, DEM) if m.name == row.method)
-    return bench.summaries(_settle(method, int(row.scene.rsplit(" ", 1)[1])))[0].get("memory_bytes", {}).get("without_factor")
+    return _settled(bench, row).get("memory_bytes", {}).get("without_factor")
 
 
 def krylov_iterations(bench: Bench, row: Row) -> int | None:
     """Of the settling of a size."""
-    method = next(m for m in (SOFT, HARD, SHI, DEM) if m.name == row.method)
-    return bench.summaries(_settle(method, int(row.scene.rsplit(" ", 1)[1])))[0].get("counters", {}).get("krylov_iterations")
+    return _settled(bench, row).get("counters", {}).get("krylov_iterations")

@@ -96,7 +96,7 @@ def _sizes(bench: Bench) -> list[Target]:
     settled = [r for r in bench.of(scaling.SETTLING) if r.method == "soft"]
     largest = next((r for r in settled if r.scene == "3.4 of 100000"), None)
     found = [_at_most(f"soft: exponent of {what}, 500 to 50,000 blocks", fits.get(("soft", what)), 1.2)
-             for what in ("an iteration of motion", "an iteration of settling")]
+             for what in ("an iteration of motion", "an iteration of settling", "a step of relaxation")]
     if largest is None:
         found.append(Target("100,000 blocks settle", "yes", "-", None))
     else:
