@@ -29,8 +29,8 @@ LARGE_REFERENCE_STEPS_S = (2.5e-3, 1.25e-3)
 
 DT_S = "step.dt_s"
 # Adaptive steps are as long as their tolerance lets them be, and end together with dt_s only: the shorter that is, the more of them are cut there.
-# Forces need not balance to more digits than the tolerance leaves: with 1e-12 the times differ by 1e-6 of them. Settling is then to ask for no more,
-# over the weight of a block, which is a thousandth of the largest force.
+# Forces need not balance to more digits than the tolerance leaves: with 1e-12 the times differ by 1e-6 of them, at 2,000 blocks by 1e-4.
+# Settling is then to ask for no more, over the weight of a block, which is a thousandth of the largest force.
 USUAL: Settings = ((DT_S, 0.01),)
 ADAPTIVE_USUAL: Settings = ((DT_S, 0.05), ("method.residual_tolerance", 1e-8), ("settle.unbalanced_fraction", 1e-5))
 

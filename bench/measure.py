@@ -43,7 +43,7 @@ class Row:
     contacts: int | None
     dt_s: float | None
     steps: int | None
-    iterations: float | None  # of Newton's method, those of parts by the part of the rows that they have; none where statics were relaxed
+    iterations: float | None  # of Newton's method, those of parts by the part of the rows that they have; steps of relaxation are none
     cpu_s: float | None
     error: float | None
     max_penetration_m: float | None

@@ -95,7 +95,7 @@ RunResult prepare_start(Simulation<N>& simulation, const SettleProgress& progres
       break;
   }
   result.cpu_of_start = process_cpu_time() - begin;
-  // The contacts of the blocks in their places of now are for the motion.
+  // Contacts are found for the first step of the motion; the start has been found without them.
   simulation.contacts();
   simulation.restart_clock();
   simulation.start_base_motion();

@@ -761,7 +761,7 @@ void Newton<N>::solve_prepared(StepSolution<N>& solution, FirstTangent first) {
 template <int N>
 Memory Newton<N>::present_memory() const {
   Memory of = tangent_.memory();
-  of.blocks += bytes_of(blocks_, moves_, rows_);
+  of.blocks += bytes_of(blocks_, moves_, rows_, places_, sums_of_moved_);
   for (const Eigen::VectorXd* vector : {&trial_, &start_force_, &residual_}) of.blocks += sizeof(double) * static_cast<std::size_t>(vector->size());
   of.contacts += bytes_of(contacts_, trials_, branches_, branches_before_, holds_, part_springs_) + neighbourhood_.bytes();
   return of;
