@@ -125,7 +125,8 @@ class Simulation {
   /// Velocity of block b at time() (the system's own may be half a step behind, see time_scheme.h).
   Unknowns velocity(int b) const;
   double stored_contact_energy() const;
-  /// [N] What static steps may leave unbalanced on a block until this is called again; 0: the residual is solved for to the last, which rigid contacts do in any case.
+  /// [N] What static steps may leave unbalanced on a block until this is called again; 0: the residual is solved for to the last, which rigid
+  /// contacts do in any case.
   void neglect(double force) { negligible_force_ = force; }
   double force_scale() const;  ///< [N] weight of the heaviest free block, or the largest load or contact force if there is no gravity
 
