@@ -11,7 +11,7 @@ namespace openclose {
 namespace {
 
 using namespace lanes;
-using Branches = Branch __attribute__((vector_size(batch_size)));
+using Bytes = Branch __attribute__((vector_size(sizeof(Lanes))));
 constexpr int entries = 9;  ///< of a block of the matrix, column by column
 
 /// Of four blocks.
@@ -71,6 +71,27 @@ OPENCLOSE_KERNEL void find_pose(const ContactBatch& c, const Moves& vertex, cons
   trial.edge_arm_y = (c.end_arm_y + c.lever_y) + shift_y;
 }
 
+/// Each lane's branch in a byte of its own, at the place that it has in the list of branches.
+template <Branch b>
+OPENCLOSE_KERNEL Mask in_own_byte() {
+  return (Mask)Bytes{b, 0, 0, 0, 0, 0, 0, 0, 0, b, 0, 0, 0, 0, 0, 0, 0, 0, b, 0, 0, 0, 0, 0, 0, 0, 0, b, 0, 0, 0, 0};
+}
+/// Writes the branches of four contacts, all others being open. A sliding contact is on minus its branch where it slides backward.
+OPENCLOSE_KERNEL void write_branches(Branch* branches, Mask sticking, Mask sliding, Mask backward) {
+  constexpr auto sticking_branch = static_cast<Branch>(ContactStatus::sticking);
+  Mask all = (sticking & in_own_byte<sticking_branch>()) | (sliding & ~backward & in_own_byte<sliding_branch>()) |
+             (sliding & backward & in_own_byte<static_cast<Branch>(-sliding_branch)>());
+  all |= __builtin_shufflevector(all, all, 2, 3, 0, 1);
+  all |= __builtin_shufflevector(all, all, 1, 0, 3, 2);
+  std::memcpy(branches, &all, batch_size);
+}
+OPENCLOSE_KERNEL bool all_are_open(const Branch* branches) {
+  int all;
+  static_assert(sizeof all == batch_size * sizeof(Branch));
+  std::memcpy(&all, branches, sizeof all);
+  return all == 0;
+}
+
 /// The joint law; returns which contacts are closed.
 OPENCLOSE_KERNEL Mask find_forces(const ContactBatch& c, double ramp, TrialBatch& trial, Branch* branches) {
   const Lanes zero{};
@@ -84,22 +105,19 @@ OPENCLOSE_KERNEL Mask find_forces(const ContactBatch& c, double ramp, TrialBatch
   const Lanes bound = limit.value, carried_shear = clamped(shear, bound);
   const Mask sticking = closed & (magnitude(shear) <= bound), sliding = closed & ~sticking;
 
-  const Mask dashpot_outweighs = (c.normal_damping > 0.0) & (normal <= -c.tension);
-  const Lanes normal_by_gap = dashpot_outweighs ? zero : -(c.normal + c.normal_damping);
-  const Lanes slope = bound > 0.0 ? (limit.on_ramp < limit.on_slope ? limit.steep : c.friction) : zero;
-  const Mask signed_slope = (Mask)slope | ((Mask)shear & (Mask)-zero);
-  trial.normal = closed ? normal : zero;
-  trial.shear = closed ? carried_shear : zero;
-  trial.elastic_normal = closed ? elastic_normal : zero;
-  trial.elastic_shear = closed ? clamped(elastic_shear, bound) : zero;
-  trial.normal_by_gap = closed ? normal_by_gap : zero;
-  trial.shear_by_gap = sliding ? (Lanes)signed_slope * normal_by_gap : zero;
-  trial.shear_by_slip = sticking ? -(c.shear + c.shear_damping) : zero;
+  const Mask spring_works = closed & ~((c.normal_damping > 0.0) & (normal <= -c.tension));
+  const Lanes normal_by_gap = only_where(spring_works, -(c.normal + c.normal_damping));
+  const Lanes slope = only_where(bound > 0.0, limit.on_ramp < limit.on_slope ? limit.steep : c.friction);
+  const Lanes signed_slope = (Lanes)((Mask)slope | ((Mask)shear & (Mask)-zero));
+  trial.normal = only_where(closed, normal);
+  trial.shear = only_where(closed, carried_shear);
+  trial.elastic_normal = only_where(closed, elastic_normal);
+  trial.elastic_shear = only_where(closed, clamped(elastic_shear, bound));
+  trial.normal_by_gap = normal_by_gap;
+  trial.shear_by_gap = only_where(sliding, signed_slope * normal_by_gap);
+  trial.shear_by_slip = only_where(sticking, -(c.shear + c.shear_damping));
 
-  // A comparison is -1 where it holds.
-  const Mask backward = sliding & (carried_shear < 0.0);
-  const Branches now = __builtin_convertvector(-sticking - 2 * sliding + 4 * backward, Branches);
-  std::memcpy(branches, &now, sizeof now);
+  write_branches(branches, sticking, sliding, carried_shear < 0.0);
   return closed;
 }
 
@@ -133,8 +151,7 @@ OPENCLOSE_KERNEL Mask find_mean_forces(const ContactBatch& c, TrialBatch& trial,
   trial.normal_by_gap = sticks ? 0.5 * (-c.normal_damping + (-c.normal - c.normal_damping)) : zero;
   trial.shear_by_gap = zero;
   trial.shear_by_slip = sticks ? 0.5 * (-c.shear_damping + (-c.shear - c.shear_damping)) : zero;
-  const Branches now = __builtin_convertvector(-sticks, Branches);
-  std::memcpy(branches, &now, sizeof now);
+  write_branches(branches, sticks, Mask{}, Mask{});
 
   Mask carries = sticks;
   const Mask others = (starts_closed | ends_closed) & ~sticks;
@@ -194,12 +211,13 @@ OPENCLOSE_KERNEL double evaluate(double ramp, const ContactBatch* contacts, std:
     const Moves vertex(moves, c.vertex_block), edge(moves, c.edge_block);
     find_pose(c, vertex, edge, trial);
     constexpr bool averaged = forces == StepForces::averaged;
-    const Mask carries = averaged ? find_mean_forces(c, trial, branches + batch_size * i) : find_forces(c, ramp, trial, branches + batch_size * i);
-    if (!any(carries)) continue;
+    Branch* const branches_now = branches + batch_size * i;
+    const Mask carries = averaged ? find_mean_forces(c, trial, branches_now) : find_forces(c, ramp, trial, branches_now);
+    if (averaged ? !any(carries) : all_are_open(branches_now)) continue;
     const Lanes normal = magnitude(trial.normal), shear = magnitude(trial.shear);
     const Lanes moved = (vertex.way + c.vertex_reach * vertex.turn) + (edge.way + c.edge_reach * edge.turn);
     const Lanes stiffness = c.normal + c.normal_damping + c.shear + c.shear_damping;
-    const Lanes rounding = carries ? rounding_of_sums * (stiffness * moved + normal + shear) : Lanes{};
+    const Lanes rounding = only_where(carries, rounding_of_sums * (stiffness * moved + normal + shear));
     push(c, trial, averaged ? ActingPose(c, trial) : ActingPose(trial), rounding, rows);
     largest = larger(largest, larger(normal, shear));
   }
@@ -236,7 +254,7 @@ struct Stiffness {
 
 /// Whether the linear equations know nothing of these contacts.
 OPENCLOSE_KERNEL bool adds_nothing(const TrialBatch& at, const Branch* branches, bool open_ones_too) {
-  if ((branches[0] | branches[1] | branches[2] | branches[3]) != 0) return false;
+  if (!all_are_open(branches)) return false;
   return !open_ones_too || !any((at.normal != 0.0) | (at.normal_by_gap != 0.0) | (at.shear_by_slip != 0.0));
 }
 

@@ -23,8 +23,12 @@ OPENCLOSE_KERNEL Lanes load(const double* from) {
 OPENCLOSE_KERNEL void store(double* to, Lanes x) {
   std::memcpy(to, &x, sizeof x);
 }
+/// x in the lanes of the mask, 0 in the others.
+OPENCLOSE_KERNEL Lanes only_where(Mask mask, Lanes x) {
+  return (Lanes)((Mask)x & mask);
+}
 OPENCLOSE_KERNEL Lanes magnitude(Lanes x) {
-  return x < 0.0 ? -x : x;
+  return (Lanes)((Mask)x & ~(Mask)-Lanes{});
 }
 /// In files that are compiled with -fno-math-errno one operation.
 OPENCLOSE_KERNEL Lanes square_root(Lanes x) {
@@ -32,7 +36,7 @@ OPENCLOSE_KERNEL Lanes square_root(Lanes x) {
   for (int k = 0; k < batch_size; ++k) root[k] = std::sqrt(x[k]);
   return root;
 }
-/// As std::max, std::min and std::clamp.
+/// As std::max, std::min and, for a bound of at least 0, std::clamp: one operation for each bound.
 OPENCLOSE_KERNEL Lanes larger(Lanes a, Lanes b) {
   return a < b ? b : a;
 }
@@ -40,7 +44,7 @@ OPENCLOSE_KERNEL Lanes smaller(Lanes a, Lanes b) {
   return b < a ? b : a;
 }
 OPENCLOSE_KERNEL Lanes clamped(Lanes x, Lanes bound) {
-  return x < -bound ? -bound : (bound < x ? bound : x);
+  return larger(smaller(x, bound), -bound);
 }
 OPENCLOSE_KERNEL bool any(Mask m) {
   return (m[0] | m[1] | m[2] | m[3]) != 0;
