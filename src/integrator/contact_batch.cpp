@@ -19,11 +19,12 @@ struct Moves {
   Lanes x, y, way, turn;
   Lanes sine, versine, edge_sine, edge_versine;
 
-  OPENCLOSE_KERNEL Moves(const BlockMove<3>* moves, const int* block) {
+  /// \param at  as in ContactBatch
+  OPENCLOSE_KERNEL Moves(const BlockMove<3>* moves, const unsigned* at) {
     Lanes* const first[] = {&x, &y, &way, &turn};
     Lanes* const second[] = {&sine, &versine, &edge_sine, &edge_versine};
     for (int k = 0; k < batch_size; ++k) {
-      const double* const move = moves[block[k]].translation.data();
+      const double* const move = moves->translation.data() + at[k];
       *first[k] = load(move);
       *second[k] = load(move + batch_size);
     }
@@ -188,6 +189,12 @@ struct ActingPose {
         edge_arm_y(0.5 * ((c.end_arm_y + c.lever_y) + t.edge_arm_y)) {}
 };
 
+/// \param at  as in ContactBatch
+OPENCLOSE_KERNEL Lanes& sums_at(ForceRow* rows, unsigned at) {
+  constexpr std::size_t bytes_by_double = sizeof(ForceRow) / doubles_of_move;
+  return reinterpret_cast<ForceRow*>(reinterpret_cast<char*>(rows) + bytes_by_double * at)->sums;
+}
+
 /// Adds the forces of four contacts to their blocks, one contact after the other.
 OPENCLOSE_KERNEL void push(const ContactBatch& c, const TrialBatch& trial, const ActingPose& at, Lanes rounding, ForceRow* rows) {
   const Lanes x = trial.normal * at.normal_x - trial.shear * at.normal_y, y = trial.normal * at.normal_y + trial.shear * at.normal_x;
@@ -196,8 +203,8 @@ OPENCLOSE_KERNEL void push(const ContactBatch& c, const TrialBatch& trial, const
   transpose(forward[0], forward[1], forward[2], forward[3]);
   transpose(back[0], back[1], back[2], back[3]);
   for (int k = 0; k < batch_size; ++k) {
-    rows[c.vertex_row[k]].sums += forward[k];
-    rows[c.edge_row[k]].sums += back[k];
+    sums_at(rows, c.vertex_at[k]) += forward[k];
+    sums_at(rows, c.edge_at[k]) += back[k];
   }
 }
 
@@ -208,7 +215,7 @@ OPENCLOSE_KERNEL double evaluate(double ramp, const ContactBatch* contacts, std:
   for (std::size_t i = 0; i < count; ++i) {
     const ContactBatch& c = contacts[i];
     TrialBatch& trial = trials[i];
-    const Moves vertex(moves, c.vertex_block), edge(moves, c.edge_block);
+    const Moves vertex(moves, c.vertex_at), edge(moves, c.edge_at);
     find_pose(c, vertex, edge, trial);
     constexpr bool averaged = forces == StepForces::averaged;
     Branch* const branches_now = branches + batch_size * i;
@@ -263,8 +270,6 @@ template <bool averaged>
 OPENCLOSE_KERNEL void add_stiffness(const ContactBatch* contacts, const TrialBatch* trials, std::size_t count, const Branch* branches,
                                     const BatchTangent& tangent, const ContactSlots* slots, double* values) {
   const Lanes zero{}, theta = all(tangent.end_weight);
-  double nowhere[entries] = {};
-  const auto block = [&](int slot) { return slot >= 0 ? values + entries * slot : nowhere; };
   for (std::size_t i = 0; i < count; ++i, branches += batch_size, slots += batch_size) {
     const TrialBatch& at = trials[i];
     if (adds_nothing(at, branches, tangent.open_ones_too)) continue;
@@ -300,10 +305,10 @@ OPENCLOSE_KERNEL void add_stiffness(const ContactBatch* contacts, const TrialBat
     k.find(vertex_edge, -1.0, force_vx, force_vy, ex, ey, -turning_at_vertex, turning_y, -turning_x, zero, zero);
     k.find(edge_vertex, -1.0, force_ex, force_ey, vx, vy, -along_vertex, zero, zero, on_arms_y, -on_arms_x);
     for (int lane = 0; lane < batch_size; ++lane) {
-      vertex.add_to(block(slots[lane].vertex), lane);
-      edge.add_to(block(slots[lane].edge), lane);
-      vertex_edge.add_to(block(slots[lane].vertex_edge), lane);
-      edge_vertex.add_to(block(slots[lane].edge_vertex), lane);
+      vertex.add_to(values + slots[lane].vertex, lane);
+      edge.add_to(values + slots[lane].edge, lane);
+      vertex_edge.add_to(values + slots[lane].vertex_edge, lane);
+      edge_vertex.add_to(values + slots[lane].edge_vertex, lane);
     }
   }
 }

@@ -37,6 +37,8 @@ enum class StepForces {
   averaged,  ///< means over its path, see path_average.h
 };
 
+inline constexpr unsigned doubles_of_move = sizeof(BlockMove<3>) / sizeof(double);
+
 /// Four contacts at the start of a step: set() one by one, then BatchKernels::begin(). What is not set carries nothing and adds nothing.
 struct ContactBatch {
   Lanes normal_x{}, normal_y{}, lever_x{}, lever_y{}, vertex_arm_x{}, vertex_arm_y{}, end_arm_x{}, end_arm_y{};  // as in ContactStart
@@ -45,13 +47,20 @@ struct ContactBatch {
   Lanes normal{}, shear{}, gap_off_target{}, shift{}, initial_shear{}, normal_damping{}, shear_damping{}, parted{};
   Lanes friction{}, cohesion{}, tension{};
   Lanes dissipation{};  ///< of path_average()
-  int vertex_block[batch_size] = {}, edge_block[batch_size] = {};
-  int vertex_row[batch_size] = {}, edge_row[batch_size] = {};  ///< of ForceRow; that of fixed blocks nobody reads
+  /// Of their blocks, in the lists of moves and of sums alike: the place times the doubles of a move, from which the kernels address either at once.
+  unsigned vertex_at[batch_size] = {}, edge_at[batch_size] = {};
 
+  /// \param vertex, edge  places of the blocks
+  void set_places(int lane, int vertex, int edge) {
+    vertex_at[lane] = doubles_of_move * static_cast<unsigned>(vertex);
+    edge_at[lane] = doubles_of_move * static_cast<unsigned>(edge);
+  }
+  int vertex_place(int lane) const { return static_cast<int>(vertex_at[lane] / doubles_of_move); }
+  int edge_place(int lane) const { return static_cast<int>(edge_at[lane] / doubles_of_move); }
   void set(int lane, const ContactPlace<3>& at, const ContactSprings& springs, const ContactStrength& strength);
   /// The part of set() that follows from where the springs start: their gap, its target, and what they carry there.
   void set_start(int lane, const ContactSprings& springs);
-  /// All but the blocks and rows.
+  /// All but the places.
   void copy(int lane, const ContactBatch& other, int from);
   ContactStart<3> start(int lane) const;
   ContactStrength strength(int lane) const;
@@ -92,7 +101,7 @@ inline void ContactBatch::set_start(int lane, const ContactSprings& springs) {
 }
 
 inline void ContactBatch::copy(int lane, const ContactBatch& other, int from) {
-  static_assert(sizeof(ContactBatch) == 22 * sizeof(Lanes) + 4 * sizeof(vertex_block), "one line here for each member");
+  static_assert(sizeof(ContactBatch) == 22 * sizeof(Lanes) + 2 * sizeof(vertex_at), "one line here for each member");
   for (Lanes ContactBatch::*member :
        {&ContactBatch::normal_x,       &ContactBatch::normal_y,     &ContactBatch::lever_x,       &ContactBatch::lever_y,
         &ContactBatch::vertex_arm_x,   &ContactBatch::vertex_arm_y, &ContactBatch::end_arm_x,     &ContactBatch::end_arm_y,
@@ -153,11 +162,15 @@ struct ForceRow {
   Lanes sums{};
 };
 
-/// Slots of the matrix that a contact's stiffness goes to; -1 where a block is fixed.
+/// Where in a matrix a contact's stiffness goes to: slots times the entries of a block, that of nobody where a block is fixed.
 struct ContactSlots {
-  int vertex_row = -1, edge_row = -1;
-  int vertex = -1, edge = -1;
-  int vertex_edge = -1, edge_vertex = -1;
+  unsigned vertex, edge, vertex_edge, edge_vertex;
+
+  explicit ContactSlots(int nobody = 0) : vertex(entry(nobody)), edge(vertex), vertex_edge(vertex), edge_vertex(vertex) {}
+  static unsigned entry(int slot) { return entries_of_block * static_cast<unsigned>(slot); }
+
+ private:
+  static constexpr unsigned entries_of_block = 9;
 };
 
 /// Which tangent is added up.
@@ -179,7 +192,7 @@ class BatchKernels {
   double begin(std::vector<ContactBatch>& contacts) const { return begin_(contacts.data(), contacts.size()); }
   /// Fills trials and branches; adds to the rows. Returns [N] the largest force.
   /// \param ramp   [-] see ContactStrength::shear_bound(); means have the usual one
-  /// \param moves  of all blocks
+  /// \param moves  of all blocks; a place of rows for each
   /// \param rounding_of_sums  [-] of the forces and changes of force of a contact
   double evaluate(StepForces forces, double ramp, const std::vector<ContactBatch>& contacts, const BlockMove<3>* moves, double rounding_of_sums,
                   std::vector<TrialBatch>& trials, std::vector<Branch>& branches, std::vector<ForceRow>& rows) const {

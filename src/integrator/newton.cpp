@@ -127,19 +127,16 @@ void Newton<N>::prepare(const StepProblem<N>& problem, const std::vector<Contact
     const int equation = system.block(b).equation;
     places_.push_back({system.centroid(b), equation >= 0 ? equation : system.free_count()});
   }
-  places_.push_back({Vec2::Zero(), system.free_count()});
-  const int nobody = system.block_count();
   for (std::size_t c = 0; c < batch_size * contacts_.size(); ++c) {
     ContactBatch& batch = contacts_[c / batch_size];
     const int k = lane(c);
-    const bool is_one = c < contact_count_;
-    batch.vertex_block[k] = is_one ? problem.contacts[c].vertex_block : nobody;
-    batch.edge_block[k] = is_one ? problem.contacts[c].edge_block : nobody;
-    const BlockPlace &vertex = places_[batch.vertex_block[k]], &edge = places_[batch.edge_block[k]];
-    batch.vertex_row[k] = vertex.row;
-    batch.edge_row[k] = edge.row;
-    if (!is_one) continue;
+    if (c >= contact_count_) {
+      batch.set_places(k, system.free_count(), system.free_count());
+      continue;
+    }
     const Contact& contact = problem.contacts[c];
+    const BlockPlace &vertex = places_[contact.vertex_block], &edge = places_[contact.edge_block];
+    batch.set_places(k, vertex.place, edge.place);
     batch.set(k, ContactPlace<N>(system, contact, vertex.centroid, edge.centroid), springs[c],
               ContactStrength(problem.joints.joint(contact.joint), contact));
   }
@@ -148,7 +145,7 @@ void Newton<N>::prepare(const StepProblem<N>& problem, const std::vector<Contact
   for (int b : system.free_blocks()) {
     const auto& block = system.block(b);
     const Unknowns still = Unknowns::Zero();
-    blocks_.push_back({b, b, problem.external.has_point_forces(b), block.rotation_locked, block.radius, problem.inertia * block.mass,
+    blocks_.push_back({b, problem.external.has_point_forces(b), block.rotation_locked, block.radius, problem.inertia * block.mass,
                        problem.external.force(system, b, still), problem.drift(b), problem.external.magnitude(system, b, still),
                        problem.external.spring_scale(system, b)});
   }
@@ -160,7 +157,7 @@ void Newton<N>::prepare(const StepProblem<N>& problem, const std::vector<Contact
   resize_closely(trials_, contacts_.size());
   step_forces_ = problem.averages_path() ? StepForces::averaged : StepForces::at_end;
   branches_.assign(batch_size * contacts_.size(), 0);
-  moves_.assign(system.block_count() + 1, BlockMove<N>());
+  moves_.assign(system.free_count() + 1, BlockMove<N>());
   neighbourhood_.clear();
 }
 
@@ -205,7 +202,7 @@ double Newton<N>::magnitude(const StepBlock& block, const Unknowns& d) const {
 
 template <int N>
 void Newton<N>::move_block(int row, const Eigen::VectorXd& d) {
-  moves_[blocks_[row].move] = BlockMove<N>(d.template segment<N>(N * row), problem_->system.rotation_kind());
+  moves_[row] = BlockMove<N>(d.template segment<N>(N * row), problem_->system.rotation_kind());
 }
 
 template <int N>
@@ -220,7 +217,7 @@ template <int N>
 void Newton<N>::evaluate(const Eigen::VectorXd& d) {
   const int rows = static_cast<int>(blocks_.size());
   for (int row = 0; row < rows; ++row) move_block(row, d);
-  rows_.assign(blocks_.size() + 1, ForceRow());
+  rows_.assign(moves_.size(), ForceRow());
   residual_.resize(N * static_cast<Eigen::Index>(blocks_.size()));
   const double largest = kernels_.evaluate(step_forces_, ramp_, contacts_, moves_.data(), rounding_of_sums, trials_, branches_, rows_);
   for (int row = 0; row < rows; ++row) evaluate_block(row, d);
@@ -388,15 +385,15 @@ void Newton<N>::replace_forces(std::size_t c, const ContactForces& forces) {
   // In single numbers: what has just been stored number by number cannot be loaded in pairs at once.
   const double x = normal * pose.normal.x() - shear * pose.normal.y(), y = normal * pose.normal.y() + shear * pose.normal.x();
   const auto push = [&](int row, double sign, const Vec2& arm) {
-    if (row == static_cast<int>(blocks_.size())) return;
+    if (row >= static_cast<int>(blocks_.size())) return;
     double* const residual = residual_.data() + static_cast<std::ptrdiff_t>(N) * row;
     residual[0] += sign * x;
     residual[1] += sign * y;
     residual[2] += sign * (arm.x() * y - arm.y() * x);
     if (blocks_[row].rotation_locked) residual[Motion<N>::rotation_index] = 0.0;
   };
-  push(start(c).vertex_row[k], 1.0, pose.vertex_arm);
-  push(start(c).edge_row[k], -1.0, pose.edge_arm);
+  push(start(c).vertex_place(k), 1.0, pose.vertex_arm);
+  push(start(c).edge_place(k), -1.0, pose.edge_arm);
   batch.set_forces(k, forces);
   branches_[c] = branch(forces);
   has_replaced_forces_ = true;
@@ -491,20 +488,16 @@ void Newton<N>::take_part(const Newton& whole, const Part& part) {
   blocks_.clear();
   moves_.clear();
   if (problem_->end_weight < 1.0) start_force_ = rows_of<N>(whole.start_force_, part.rows);
-  std::unordered_map<int, int> places;  // in moves_, by that in the whole's
-  for (int row : part.rows) {
-    const int place = static_cast<int>(blocks_.size());
-    blocks_.push_back(whole.blocks_[row]);
-    moves_.push_back(whole.moves_[blocks_.back().move]);
-    places.emplace(blocks_.back().move, place);
-    blocks_.back().move = place;
-  }
-  const auto place = [&](int move) {
-    const auto [at, is_new] = places.try_emplace(move, static_cast<int>(moves_.size()));
-    if (is_new) moves_.push_back(whole.moves_[move]);
+  std::unordered_map<int, int> places;  // by those in the whole
+  const auto place = [&](int of_whole) {
+    const auto [at, is_new] = places.try_emplace(of_whole, static_cast<int>(moves_.size()));
+    if (is_new) moves_.push_back(whole.moves_[of_whole]);
     return at->second;
   };
-  const auto row = [&](int at) { return std::min(at, rows); };
+  for (int row : part.rows) {
+    blocks_.push_back(whole.blocks_[row]);
+    place(row);
+  }
   const auto equation = [&](int at) { return at < rows ? at : -1; };
   contact_count_ = part.contacts.size();
   contacts_.assign((contact_count_ + batch_size - 1) / batch_size, ContactBatch());
@@ -514,18 +507,15 @@ void Newton<N>::take_part(const Newton& whole, const Part& part) {
   for (std::size_t c = 0; c < batch_size * contacts_.size(); ++c) {
     ContactBatch& batch = contacts_[c / batch_size];
     const int k = lane(c);
-    batch.vertex_block[k] = batch.edge_block[k] = nobody;
-    batch.vertex_row[k] = batch.edge_row[k] = rows;
+    batch.set_places(k, nobody, nobody);
     if (c >= contact_count_) continue;
     const int of_whole = part.contacts[c];
     const ContactBatch& from = whole.start(of_whole);
     part_springs_.push_back((*whole.springs_)[of_whole]);
     batch.copy(k, from, lane(of_whole));
-    batch.vertex_block[k] = place(from.vertex_block[lane(of_whole)]);
-    batch.edge_block[k] = place(from.edge_block[lane(of_whole)]);
-    batch.vertex_row[k] = row(batch.vertex_block[k]);
-    batch.edge_row[k] = row(batch.edge_block[k]);
-    ends.emplace_back(equation(batch.vertex_row[k]), equation(batch.edge_row[k]));
+    const int vertex = place(from.vertex_place(lane(of_whole))), edge = place(from.edge_place(lane(of_whole)));
+    batch.set_places(k, vertex, edge);
+    ends.emplace_back(equation(vertex), equation(edge));
   }
   springs_ = &part_springs_;
   trials_.resize(contacts_.size());
@@ -537,7 +527,7 @@ template <int N>
 std::vector<Part> Newton<N>::unbalanced_parts(double norm) {
   const int rows = static_cast<int>(blocks_.size());
   if (neighbourhood_.rows() != rows) {
-    neighbourhood_.build(rows, contact_count_, [&](std::size_t c) { return std::pair(start(c).vertex_row[lane(c)], start(c).edge_row[lane(c)]); });
+    neighbourhood_.build(rows, contact_count_, [&](std::size_t c) { return std::pair(start(c).vertex_place(lane(c)), start(c).edge_place(lane(c))); });
   }
   std::vector<int> seeds;
   for (int row = 0; row < rows; ++row) {

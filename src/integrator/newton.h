@@ -92,7 +92,6 @@ class Newton {
 
   struct StepBlock {
     int block = 0;
-    int move = 0;  ///< place in moves_
     bool has_point_forces = false, rotation_locked = false;
     double radius = 0.0;
     Unknowns inertia, force, drift;        ///< mass over time squared; all but contacts' at the start; displacement without forces
@@ -103,7 +102,7 @@ class Newton {
   /// What the contacts of a step need of a block.
   struct BlockPlace {
     Vec2 centroid;  ///< [m]
-    int row;        ///< that of fixed ones comes after all others
+    int place;      ///< in moves_ and rows_
   };
 
   /// Evaluates at the displacement to start from and returns its residual_norm().
@@ -208,7 +207,7 @@ class Newton {
   std::vector<ContactBatch> contacts_;
   std::vector<BlockPlace> places_;               ///< of all blocks, and of nobody
   std::vector<StepBlock> blocks_;                ///< the free ones, by their equations
-  std::vector<BlockMove<N>> moves_;              ///< of all blocks, or those that a part sees, at the trial displacement; one that stays
+  std::vector<BlockMove<N>> moves_;              ///< at the trial displacement: of the rows, of others that a part sees, and of what stays
   StepForces step_forces_ = StepForces::at_end;  ///< what trials_ has
   std::vector<TrialBatch> trials_;
   std::vector<Branch> branches_;         ///< of the contacts
@@ -216,7 +215,7 @@ class Newton {
   std::vector<bool> has_broken_;         ///< contacts that have lost strength while they were relaxed
   std::vector<double> holds_;            ///< [-] part of its springs that an open or sliding contact has in the tangent; else empty
   Eigen::VectorXd trial_;                ///< displacement
-  std::vector<ForceRow> rows_;           ///< all forces at the trial position but inertia; a row more for the fixed blocks
+  std::vector<ForceRow> rows_;           ///< all forces at the trial position but inertia; of those that have no equation not to be read
   std::vector<ForceRow> sums_of_moved_;  ///< those of evaluate_moved()
   bool has_replaced_forces_ = false;     ///< since the last evaluation: contacts carry something else than the law says
   Eigen::VectorXd start_force_;          ///< the same at the start of the step, used if theta < 1

@@ -98,7 +98,7 @@ TwoLevelFlexibility Newton<N>::flexibility(const Eigen::VectorXd& d, const std::
   std::vector<std::pair<int, int>> couplings;
   for (std::size_t c = 0; c < contact_count_; ++c) {
     if (!counted[c]) continue;
-    const std::pair<int, int> pair = std::minmax(row_of(start(c).vertex_row[lane(c)]), row_of(start(c).edge_row[lane(c)]));
+    const std::pair<int, int> pair = std::minmax(row_of(start(c).vertex_place(lane(c))), row_of(start(c).edge_place(lane(c))));
     if (pair.first >= 0 && (couplings.empty() || couplings.back() != pair)) couplings.push_back(pair);
   }
   TwoLevelFlexibility sum(centroids, couplings);
@@ -108,7 +108,7 @@ TwoLevelFlexibility Newton<N>::flexibility(const Eigen::VectorXd& d, const std::
   };
   for (std::size_t c = 0; c < contact_count_; ++c) {
     if (!counted[c]) continue;
-    const int k = lane(c), i = row_of(start(c).vertex_row[k]), j = row_of(start(c).edge_row[k]);
+    const int k = lane(c), i = row_of(start(c).vertex_place(k)), j = row_of(start(c).edge_place(k));
     const ContactPose<N> pose = trial(c).pose(k);
     const Vec2 tangent(-pose.normal.y(), pose.normal.x());
     for (const auto& [stiffness, way] : {std::pair(start(c).normal[k], pose.normal), std::pair(start(c).shear[k], tangent)})

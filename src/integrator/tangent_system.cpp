@@ -9,18 +9,24 @@ template <class RowsOf>
 bool TangentSystem<N>::find_slots(std::size_t count, const RowsOf& rows_of) {
   const std::size_t known = slots_.size();
   resize_closely(slots_, (count + batch_size - 1) / batch_size * batch_size);
-  std::fill(slots_.begin() + static_cast<std::ptrdiff_t>(count), slots_.end(), ContactSlots());
+  std::fill(slots_.begin() + static_cast<std::ptrdiff_t>(count), slots_.end(), ContactSlots(matrix_.nobody()));
+  const auto diagonal = [&](int row) { return ContactSlots::entry(row < 0 ? matrix_.nobody() : matrix_.diagonal(row)); };
   for (std::size_t c = 0; c < count; ++c) {
     ContactSlots& slots = slots_[c];
     const auto [i, j] = rows_of(c);
-    if (c < known && slots.vertex_row == i && slots.edge_row == j) continue;  // most contacts have their places of the last step
-    slots = {i, j, i < 0 ? -1 : matrix_.diagonal(i), j < 0 ? -1 : matrix_.diagonal(j), -1, -1};
+    const unsigned vertex = diagonal(i), edge = diagonal(j);
+    if (c < known && slots.vertex == vertex && slots.edge == edge) continue;  // most contacts have their places of the last step
+    slots = ContactSlots(matrix_.nobody());
+    slots.vertex = vertex;
+    slots.edge = edge;
     if (i < 0 || j < 0) continue;
-    slots.vertex_edge = matrix_.find(i, j);
-    slots.edge_vertex = matrix_.find(j, i);
-    if (slots.vertex_edge >= 0) continue;
-    slots_.clear();
-    return false;
+    const int vertex_edge = matrix_.find(i, j);
+    if (vertex_edge < 0) {
+      slots_.clear();
+      return false;
+    }
+    slots.vertex_edge = ContactSlots::entry(vertex_edge);
+    slots.edge_vertex = ContactSlots::entry(matrix_.find(j, i));
   }
   return true;
 }

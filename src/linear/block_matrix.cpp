@@ -93,7 +93,7 @@ void BlockMatrix<N>::set_pattern(int rows, const std::vector<std::pair<int, int>
   columns_.erase(last, columns_.end());
   diagonal_.resize(rows);
   for (int i = 0; i < rows; ++i) diagonal_[i] = find(i, i);
-  values_.assign(columns_.size(), Block::Zero());
+  values_.assign(columns_.size() + 1, Block::Zero());
   renew_version();
 }
 

@@ -27,6 +27,8 @@ class BlockMatrix {
   bool contains(int row, int column) const { return find(row, column) >= 0; }
   int find(int row, int column) const;                    ///< slot of the pair, -1 if not in the pattern
   int diagonal(int row) const { return diagonal_[row]; }  ///< slot
+  /// A slot after all others, which nothing reads: for what belongs to no row.
+  int nobody() const { return static_cast<int>(columns_.size()); }
 
   void set_zero();
   /// Throws std::logic_error if the pair is not in the pattern.

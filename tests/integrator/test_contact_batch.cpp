@@ -61,10 +61,7 @@ struct RandomContacts {
       ContactBatch& batch = list[c / batch_size];
       const int lane = static_cast<int>(c % batch_size);
       const bool is_one = c < starts.size();
-      batch.vertex_block[lane] = is_one ? vertex_blocks[c] : block_count;
-      batch.edge_block[lane] = is_one ? edge_blocks[c] : block_count;
-      batch.vertex_row[lane] = std::min(batch.vertex_block[lane], free_count);
-      batch.edge_row[lane] = std::min(batch.edge_block[lane], free_count);
+      batch.set_places(lane, is_one ? vertex_blocks[c] : block_count, is_one ? edge_blocks[c] : block_count);
       if (is_one) batch.set(lane, places[c], springs[c], strengths[c]);
     }
     return list;
@@ -91,7 +88,7 @@ struct RandomContacts {
 
 struct Evaluated {
   Evaluated(const RandomContacts& contacts, const BatchKernels& kernels, StepForces forces, double ramp = tolerance::cohesion_ramp)
-      : batches(contacts.batches()), trials(batches.size()), branches(batch_size * batches.size(), 77), rows(free_count + 1) {
+      : batches(contacts.batches()), trials(batches.size()), branches(batch_size * batches.size(), 77), rows(block_count + 1) {
     largest_at_start = kernels.begin(batches);
     largest = kernels.evaluate(forces, ramp, batches, contacts.moves.data(), rounding_of_sums, trials, branches, rows);
   }
@@ -140,7 +137,7 @@ TEST_CASE("four contacts at a time are where each is and carry what each carries
   const double ramp = step_forces == StepForces::averaged ? tolerance::cohesion_ramp : GENERATE(tolerance::cohesion_ramp, 1.0);
   const RandomContacts contacts(seed, count);
   const Evaluated all(contacts, BatchKernels(wide), step_forces, ramp);
-  std::vector<Eigen::Vector4d> sums(free_count + 1, Eigen::Vector4d::Zero());
+  std::vector<Eigen::Vector4d> sums(block_count + 1, Eigen::Vector4d::Zero());
   double largest = 0.0;
   int wrong = 0, of_status[3] = {}, outweighed = 0, backward = 0, opened = 0;
   for (std::size_t c = 0; c < count; ++c) {
@@ -164,13 +161,13 @@ TEST_CASE("four contacts at a time are where each is and carry what each carries
     Eigen::Vector4d on_vertex, on_edge;
     on_vertex << Motion<3>::gradient(one.acting.vertex_arm, force), rounding;
     on_edge << -Motion<3>::gradient(one.acting.edge_arm, force), rounding;
-    sums[std::min(a, free_count)] += on_vertex;
-    sums[std::min(b, free_count)] += on_edge;
+    sums[a] += on_vertex;
+    sums[b] += on_edge;
     largest = std::max({largest, std::abs(f.normal), std::abs(f.shear)});
   }
   CHECK(wrong == 0);
   for (std::size_t c = count; c < all.branches.size(); ++c) CHECK(all.branches[c] == 0);
-  for (int row = 0; row <= free_count; ++row) {
+  for (int row = 0; row <= block_count; ++row) {
     for (int i = 0; i < 4; ++i) CHECK(all.rows[row].sums[i] == sums[row][i]);
   }
   CHECK(all.largest == largest);
@@ -207,14 +204,14 @@ TEST_CASE("the stiffness of four contacts at a time is that of each", "[integrat
   BlockMatrix<3> matrix, expected;
   matrix.set_pattern(free_count, couplings);
   expected.set_pattern(free_count, couplings);
-  std::vector<ContactSlots> slots(all.branches.size());
+  std::vector<ContactSlots> slots(all.branches.size(), ContactSlots(matrix.nobody()));
   for (std::size_t c = 0; c < count; ++c) {
     const int a = contacts.vertex_blocks[c], b = contacts.edge_blocks[c];
-    if (a < free_count) slots[c].vertex = matrix.diagonal(a);
-    if (b < free_count) slots[c].edge = matrix.diagonal(b);
+    if (a < free_count) slots[c].vertex = ContactSlots::entry(matrix.diagonal(a));
+    if (b < free_count) slots[c].edge = ContactSlots::entry(matrix.diagonal(b));
     if (a < free_count && b < free_count) {
-      slots[c].vertex_edge = matrix.find(a, b);
-      slots[c].edge_vertex = matrix.find(b, a);
+      slots[c].vertex_edge = ContactSlots::entry(matrix.find(a, b));
+      slots[c].edge_vertex = ContactSlots::entry(matrix.find(b, a));
     }
   }
   kernels.add_stiffness(all.batches, trials, all.branches, tangent, slots, matrix);
@@ -246,11 +243,12 @@ TEST_CASE("the stiffness of four contacts at a time is that of each", "[integrat
       k.turning = share * (f.normal * n + f.shear * t);
       k.on_arms = share * (f.normal * force_n + f.shear * force_t);
     }
-    if (slots[c].vertex >= 0) k.add_to_vertex(expected.value(slots[c].vertex));
-    if (slots[c].edge >= 0) k.add_to_edge(expected.value(slots[c].edge));
-    if (slots[c].vertex_edge < 0) continue;
-    k.add_to_vertex_edge(expected.value(slots[c].vertex_edge));
-    k.add_to_edge_vertex(expected.value(slots[c].edge_vertex));
+    const int a = contacts.vertex_blocks[c], b = contacts.edge_blocks[c];
+    if (a < free_count) k.add_to_vertex(expected.value(expected.diagonal(a)));
+    if (b < free_count) k.add_to_edge(expected.value(expected.diagonal(b)));
+    if (a >= free_count || b >= free_count) continue;
+    k.add_to_vertex_edge(expected.value(expected.find(a, b)));
+    k.add_to_edge_vertex(expected.value(expected.find(b, a)));
   }
   INFO("exact " << exact << " wide " << wide << " count " << count << " theta " << end_weight << " slip " << tangent.static_slip_stiffness);
   CHECK((matrix.dense() - expected.dense()).cwiseAbs().maxCoeff() == 0.0);
