@@ -498,7 +498,6 @@ void Newton<N>::take_part(const Newton& whole, const Part& part) {
     blocks_.push_back(whole.blocks_[row]);
     place(row);
   }
-  const auto equation = [&](int at) { return at < rows ? at : -1; };
   contact_count_ = part.contacts.size();
   contacts_.assign((contact_count_ + batch_size - 1) / batch_size, ContactBatch());
   part_springs_.clear();
@@ -515,12 +514,12 @@ void Newton<N>::take_part(const Newton& whole, const Part& part) {
     batch.copy(k, from, lane(of_whole));
     const int vertex = place(from.vertex_place(lane(of_whole))), edge = place(from.edge_place(lane(of_whole)));
     batch.set_places(k, vertex, edge);
-    ends.emplace_back(equation(vertex), equation(edge));
+    ends.emplace_back(vertex, edge);
   }
   springs_ = &part_springs_;
   trials_.resize(contacts_.size());
   branches_.assign(batch_size * contacts_.size(), 0);
-  tangent_.fit_part(problem_->method, rows, ends);
+  tangent_.fit_part(problem_->method, rows, static_cast<int>(moves_.size()), ends);
 }
 
 template <int N>

@@ -1,24 +1,26 @@
 #include "openclose/integrator/tangent_system.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace openclose {
 
 template <int N>
-template <class RowsOf>
-bool TangentSystem<N>::find_slots(std::size_t count, const RowsOf& rows_of) {
+template <class BlocksOf>
+bool TangentSystem<N>::find_slots(std::size_t count, const BlocksOf& blocks_of) {
+  diagonal_of_.clear();
+  for (int row : row_of_) diagonal_of_.push_back(ContactSlots::entry(row < 0 ? matrix_.nobody() : matrix_.diagonal(row)));
   const std::size_t known = slots_.size();
   resize_closely(slots_, (count + batch_size - 1) / batch_size * batch_size);
   std::fill(slots_.begin() + static_cast<std::ptrdiff_t>(count), slots_.end(), ContactSlots(matrix_.nobody()));
-  const auto diagonal = [&](int row) { return ContactSlots::entry(row < 0 ? matrix_.nobody() : matrix_.diagonal(row)); };
   for (std::size_t c = 0; c < count; ++c) {
     ContactSlots& slots = slots_[c];
-    const auto [i, j] = rows_of(c);
-    const unsigned vertex = diagonal(i), edge = diagonal(j);
-    if (c < known && slots.vertex == vertex && slots.edge == edge) continue;  // most contacts have their places of the last step
+    const auto [a, b] = blocks_of(c);
+    if (c < known && slots.vertex == diagonal_of_[a] && slots.edge == diagonal_of_[b]) continue;  // most contacts have their places of the last step
     slots = ContactSlots(matrix_.nobody());
-    slots.vertex = vertex;
-    slots.edge = edge;
+    slots.vertex = diagonal_of_[a];
+    slots.edge = diagonal_of_[b];
+    const int i = row_of_[a], j = row_of_[b];
     if (i < 0 || j < 0) continue;
     const int vertex_edge = matrix_.find(i, j);
     if (vertex_edge < 0) {
@@ -43,33 +45,35 @@ template <int N>
 void TangentSystem<N>::fit_pattern(const StepProblem<N>& problem) {
   skip_symbolic_ = problem.method.skip_symbolic;
   const int rows = problem.system.free_count();
-  const auto rows_of = [&](std::size_t c) {
-    return std::pair(problem.system.block(problem.contacts[c].vertex_block).equation, problem.system.block(problem.contacts[c].edge_block).equation);
-  };
-  if (solver_ && matrix_.rows() == rows && find_slots(problem.contacts.size(), rows_of)) return;
-  renew_pattern(problem.method, rows, problem.contacts.size(), rows_of);
+  row_of_.clear();
+  for (int b = 0; b < problem.system.block_count(); ++b) row_of_.push_back(problem.system.block(b).equation);
+  const auto blocks_of = [&](std::size_t c) { return std::pair(problem.contacts[c].vertex_block, problem.contacts[c].edge_block); };
+  if (solver_ && matrix_.rows() == rows && find_slots(problem.contacts.size(), blocks_of)) return;
+  renew_pattern(problem.method, rows, problem.contacts.size(), blocks_of);
 }
 
 template <int N>
-void TangentSystem<N>::fit_part(const MethodInput& method, int rows, const std::vector<std::pair<int, int>>& contacts) {
+void TangentSystem<N>::fit_part(const MethodInput& method, int rows, int blocks, const std::vector<std::pair<int, int>>& contacts) {
+  row_of_.assign(blocks, BlockSystem<N>::fixed);
+  std::iota(row_of_.begin(), row_of_.begin() + rows, 0);
   solver_ = nullptr;
   renew_pattern(method, rows, contacts.size(), [&](std::size_t c) { return contacts[c]; });
 }
 
 template <int N>
-template <class RowsOf>
-void TangentSystem<N>::renew_pattern(const MethodInput& method, int rows, std::size_t count, const RowsOf& rows_of) {
+template <class BlocksOf>
+void TangentSystem<N>::renew_pattern(const MethodInput& method, int rows, std::size_t count, const BlocksOf& blocks_of) {
   std::vector<std::pair<int, int>> couplings;
   for (std::size_t c = 0; c < count; ++c) {
-    const auto [i, j] = rows_of(c);
-    const std::pair<int, int> coupling = std::minmax(i, j);
+    const auto [a, b] = blocks_of(c);
+    const std::pair<int, int> coupling = std::minmax(row_of_[a], row_of_[b]);
     if (coupling.first >= 0 && (couplings.empty() || couplings.back() != coupling))
       couplings.push_back(coupling);  // a pair's contacts are neighbours
   }
   kind_ = method.linear_solver;
   factoring_ = method.skip_factorisation ? Factoring::needed : Factoring::whole;
   set_pattern(rows, couplings);
-  find_slots(count, rows_of);
+  find_slots(count, blocks_of);
 }
 
 template <int N>
@@ -105,6 +109,7 @@ Memory TangentSystem<N>::memory() const {
   Memory of = solver_memory_;
   of.matrix = matrix_.bytes();
   of.contacts = bytes_of(slots_);
+  of.blocks = bytes_of(row_of_, diagonal_of_);
   return of;
 }
 

@@ -14,8 +14,9 @@ class TangentSystem {
   void fit(const StepProblem<N>& problem);
 
   /// The same for a system of `rows` blocks that has nothing to do with the last one.
-  /// \param contacts  the rows of the blocks of each, -1 without
-  void fit_part(const MethodInput& method, int rows, const std::vector<std::pair<int, int>>& contacts);
+  /// \param blocks    those with rows come first
+  /// \param contacts  the blocks of each
+  void fit_part(const MethodInput& method, int rows, int blocks, const std::vector<std::pair<int, int>>& contacts);
 
   /// Of the contacts in order, and of nothing up to the end of the last batch.
   const std::vector<ContactSlots>& slots() const { return slots_; }
@@ -35,16 +36,18 @@ class TangentSystem {
  private:
   void fit_pattern(const StepProblem<N>& problem);
   /// False if a pair of blocks has none.
-  /// \param rows_of  the rows of the blocks of a contact, -1 without
-  template <class RowsOf>
-  bool find_slots(std::size_t count, const RowsOf& rows_of);
-  template <class RowsOf>
-  void renew_pattern(const MethodInput& method, int rows, std::size_t count, const RowsOf& rows_of);
+  /// \param blocks_of  the two blocks of a contact
+  template <class BlocksOf>
+  bool find_slots(std::size_t count, const BlocksOf& blocks_of);
+  template <class BlocksOf>
+  void renew_pattern(const MethodInput& method, int rows, std::size_t count, const BlocksOf& blocks_of);
   void set_pattern(int rows, const std::vector<std::pair<int, int>>& couplings);
   void choose_solver(int rows);
 
   BlockMatrix<N> matrix_;
   std::vector<ContactSlots> slots_;
+  std::vector<int> row_of_;            ///< by block, negative without
+  std::vector<unsigned> diagonal_of_;  ///< by block, as in ContactSlots
   LinearSolverKind kind_ = LinearSolverKind::automatic;
   Factoring factoring_ = Factoring::needed;
   bool skip_symbolic_ = true;
