@@ -68,6 +68,30 @@ double MeasuredPoints<N>::largest_displacement() const {
   return largest;
 }
 
+namespace {
+
+/// Settles by the method that the scene names for it, and leaves the simulation with the one of the motion.
+template <int N>
+SettleResult settle_start(Simulation<N>& simulation, const SettleProgress& progress) {
+  const MethodInput own = simulation.scene().method;
+  const std::string by = simulation.scene().settled_by.value_or(own.contact);
+  if (by == own.contact) return make_equilibrium_search(simulation)->settle_first(progress);
+  MethodInput settling = own;
+  settling.contact = by;
+  // Statics know none of these, and some methods refuse them.
+  settling.integrator.reset();
+  settling.theta.reset();
+  settling.rho_inf.reset();
+  settling.dissipation.reset();
+  settling.static_solver = StaticSolver::automatic;
+  simulation.change_method(settling);
+  const SettleResult result = make_equilibrium_search(simulation)->settle_first(progress);
+  simulation.change_method(own);
+  return result;
+}
+
+}  // namespace
+
 template <int N>
 RunResult prepare_start(Simulation<N>& simulation, const SettleProgress& progress) {
   const double begin = process_cpu_time();
@@ -80,7 +104,7 @@ RunResult prepare_start(Simulation<N>& simulation, const SettleProgress& progres
     case Start::unloaded:
       break;
     case Start::settled:
-      result.settling = make_equilibrium_search(simulation)->settle_first(progress);
+      result.settling = settle_start(simulation, progress);
       result.converged = result.settling.settled;
       if (!result.converged)
         result.reason = "no static equilibrium to start from (" + result.settling.criterion + "); method.start = \"unloaded\" starts in motion";

@@ -1,5 +1,7 @@
 #include "openclose/analysis/simulation.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -27,6 +29,11 @@ class Stopwatch {
 /// [-] of the largest displacement of a step, to be aimed at where steps have to be shorter.
 constexpr double part_of_limit = 0.9;
 
+template <int N>
+bool has_joint_springs(const std::string& contact) {
+  return std::ranges::any_of(enforcements<N>(), [&](const auto& entry) { return entry.name == contact && entry.make()->has_joint_springs(); });
+}
+
 }  // namespace
 
 template <int N>
@@ -53,6 +60,11 @@ Simulation<N>::Simulation(Scene scene, std::unique_ptr<Enforcement<N>> enforceme
   if (scene_.step.adaptive && !enforcement_->takes_adaptive_steps())
     throw InputError(scene_.where, "step.adaptive", "true has no meaning for method.contact = \"" + scene_.method.contact + "\"",
                      "contact = \"soft\"");
+  if (!scene_.settled_by || *scene_.settled_by == scene_.method.contact) return;
+  if (!has_joint_springs<N>(scene_.method.contact) || !has_joint_springs<N>(*scene_.settled_by))
+    throw InputError(scene_.settled_by_where, "run.settled_by",
+                     fmt::format("no equilibrium of \"{}\" is one for method.contact = \"{}\"", *scene_.settled_by, scene_.method.contact),
+                     "\"soft\" or \"dem\" where method.contact is one of these, or what method.contact is");
 }
 
 template <int N>
@@ -709,6 +721,15 @@ void Simulation<N>::restart_scheme() {
   for (int b : system_.free_blocks()) system_.set_velocity(b, output_velocity_[b]);
   scheme_ = enforcement_->make_time_scheme(scene_.method);
   start_kinetic_energy_ = system_.kinetic_energy() - ledger_.kinetic;
+}
+
+template <int N>
+void Simulation<N>::change_method(const MethodInput& method) {
+  take_back();
+  scene_.method = method;
+  enforcement_ = make_enforcement<N>(method);
+  loop_ = enforcement_->is_explicit() ? std::make_unique<CentralDifference<N>>() : nullptr;
+  restart_scheme();
 }
 
 template <int N>

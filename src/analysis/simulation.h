@@ -138,6 +138,9 @@ class Simulation {
   /// Of the arrays, each part as large as it has been after a step.
   const Memory& memory() const { return memory_; }
 
+  /// Goes on with this method, from where blocks and contacts are. Both must have springs of the joints (Enforcement::has_joint_springs()). What was
+  /// counted of linear equations is lost.
+  void change_method(const MethodInput& method);
   /// Takes the blocks' velocities away; the kinetic energy goes to the ledger's scheme, as in static steps.
   void come_to_rest();
   /// From now on the base moves as the scene says, counted from time 0. Static steps know nothing of it.

@@ -54,6 +54,7 @@ class Dem : public Enforcement<N> {
     return make_central_difference_scheme<N>();
   }
   bool is_explicit() const override { return true; }
+  bool has_joint_springs() const override { return true; }
   LinearCounters linear_counters() const override { return counters_; }
 
  private:

@@ -134,6 +134,8 @@ class Enforcement {
   virtual bool follows_gaps() const { return true; }           ///< false: the gap at a step's end is not exactly that of the positions
   virtual bool has_elastic_contacts() const { return true; }   ///< false: contacts store no energy and keep no penetration
   virtual bool takes_adaptive_steps() const { return false; }  ///< true: step.adaptive has a meaning
+  /// true: what a contact carries at rest is that of its joint_springs(), so that one such method's equilibrium is another one's.
+  virtual bool has_joint_springs() const { return false; }
   /// true: steps need no equations to be solved but must stay below the critical one; Simulation takes them by CentralDifference.
   virtual bool is_explicit() const { return false; }
   virtual double step_cut(const MethodInput&) const { return 0.5; }  ///< factor on a step that failed

@@ -48,6 +48,7 @@ class Soft final : public Enforcement<N> {
   }
 
   bool takes_adaptive_steps() const override { return true; }
+  bool has_joint_springs() const override { return true; }
   std::unique_ptr<TimeScheme<N>> make_time_scheme(const MethodInput& method) const override { return make_integrator<N>(method); }
   LinearCounters linear_counters() const override { return newton_.linear_counters(); }
   Memory memory() const override {

@@ -240,6 +240,7 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
       {"error_tolerance_m", scene.step.error_tolerance},
       {"rest", {{"time_s", scene.rest.time}, {"displacement_m", scene.rest.displacement}, {"acceleration_m_per_s2", scene.rest.acceleration}}},
       {"run_strength_reduction_factor", scene.run_strength_reduction_factor},
+      {"settled_by", scene.settled_by ? ordered_json(*scene.settled_by) : ordered_json(nullptr)},
       {"end_time_s", scene.end_time},
       {"end_displacement_m", scene.end_displacement ? ordered_json(*scene.end_displacement) : ordered_json(nullptr)},
       {"every_s", scene.output_every},

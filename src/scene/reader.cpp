@@ -256,6 +256,7 @@ RestInput read_rest(Table table) {
 
 void read_run(Table table, Scene& scene) {
   table.optional("strength_reduction_factor", scene.run_strength_reduction_factor, positive);
+  if (table.optional("settled_by", scene.settled_by)) scene.settled_by_where = table.at("settled_by").where();
   table.finish();
 }
 

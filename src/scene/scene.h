@@ -241,6 +241,8 @@ struct Scene {
   StepInput step;
   RestInput rest;
   double run_strength_reduction_factor = 1.0;  ///< [-] on the strength of the joints in the motion, see RunResult
+  std::optional<std::string> settled_by;       ///< contact method that finds the equilibrium a run starts from; absent: that of the motion
+  SourceLocation settled_by_where;             ///< for the error of a method that cannot
   double end_time = 0.0;                       ///< [s]
   std::optional<double> end_displacement;      ///< [m] of any measured point; ends the run before its time
   double output_every = 0.0;                   ///< [s] interval of the history rows; 0: every step

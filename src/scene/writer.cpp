@@ -198,6 +198,7 @@ void write_run(Text& text, const Scene& scene) {
   text.line("acceleration_m_per_s2", scene.rest.acceleration);
   text.header("[run]");
   text.line("strength_reduction_factor", scene.run_strength_reduction_factor);
+  if (scene.settled_by) text.line("settled_by", std::string_view(*scene.settled_by));
   text.header("[end]");
   text.line("time_s", scene.end_time);
   if (scene.end_displacement) text.line("displacement_m", *scene.end_displacement);

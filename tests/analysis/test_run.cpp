@@ -229,6 +229,71 @@ TEST_CASE("a run with reduced strength settles with the full one and slides with
   }
 }
 
+TEST_CASE("a run starts from the equilibrium of the method that settles it, and stays there", "[analysis][run]") {
+  // What friction holds in a slope depends on the way to its equilibrium.
+  const auto scene_of = [](const std::string& contact, const std::string& by) {
+    Scene scene = read_scene(std::string(OPENCLOSE_PAPER_SCENES) + "/example_3_4_post_failure.toml");
+    scene.method.contact = contact;
+    scene.settled_by = by;
+    scene.run_strength_reduction_factor = 1.0;
+    scene.end_displacement.reset();
+    scene.milestones.clear();
+    scene.end_time = 0.1;
+    return scene;
+  };
+  struct Way {
+    std::vector<Eigen::Vector3d> settled;
+    double moved = 0.0;  // [m] since, at most
+  };
+  const auto follow = [&](const Scene& scene) {
+    Simulation<3> simulation(scene);
+    Way way;
+    RunObserver<3> observer;
+    observer.started = [&](const Simulation<3>& s) { way.settled = s.system().state().displacement; };
+    REQUIRE(run(simulation, observer).converged);
+    for (std::size_t b = 0; b < way.settled.size(); ++b) {
+      const Eigen::Vector3d moved = simulation.system().state().displacement[b] - way.settled[b];
+      way.moved = std::max(way.moved, moved.head<2>().norm());
+    }
+    return way;
+  };
+  const auto largest_difference = [](const Way& a, const Way& b) {
+    double largest = 0.0;
+    for (std::size_t i = 0; i < a.settled.size(); ++i) largest = std::max(largest, (a.settled[i] - b.settled[i]).head<2>().norm());
+    return largest;
+  };
+  const Way soft = follow(scene_of("soft", "soft")), dem = follow(scene_of("dem", "dem"));
+  Scene with_integrator = scene_of("soft", "dem");
+  with_integrator.method.integrator = "path_average";  // dem has none
+  const Way soft_by_dem = follow(with_integrator), dem_by_soft = follow(scene_of("dem", "soft"));
+  CHECK(largest_difference(soft, dem) > 1e-4);
+  CHECK(largest_difference(soft, dem_by_soft) == 0.0);
+  CHECK(largest_difference(dem, soft_by_dem) == 0.0);
+  for (const Way& way : {soft, dem, soft_by_dem, dem_by_soft}) CHECK(way.moved < 1e-6);
+}
+
+TEST_CASE("only methods with springs of the joints share their equilibria", "[analysis][run]") {
+  Scene scene = test::block_on_base();
+  scene.settled_by_where = {"scene.toml", 9};
+  const auto refusal = [&](const std::string& contact, const std::string& by) {
+    scene.method.contact = contact;
+    scene.settled_by = by;
+    try {
+      Simulation<3> simulation(scene);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  for (const std::string contact : {"soft", "dem"}) {
+    for (const std::string by : {"soft", "dem"}) CHECK(refusal(contact, by).empty());
+    for (const std::string by : {"hard", "shi", "softer"})
+      CHECK_THAT(refusal(contact, by), ContainsSubstring("scene.toml:9: run.settled_by: no equilibrium of \"" + by + "\" is one for"));
+    CHECK_THAT(refusal("hard", contact), ContainsSubstring("run.settled_by"));
+  }
+  CHECK(refusal("hard", "hard").empty());
+}
+
 TEST_CASE("starts that do not settle have the reduced strength from the beginning", "[analysis][run]") {
   const Start start = GENERATE(Start::unloaded, Start::normal_balanced, Start::steady_sliding, Start::settled);
   Simulation<3> simulation(reduced_slider(start));

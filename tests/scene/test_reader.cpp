@@ -36,6 +36,7 @@ TEST_CASE("a small scene gets the defaults of the structs", "[scene][reader]") {
   CHECK(scene.end_time == 0.0);
   CHECK_FALSE(scene.end_displacement);
   CHECK(scene.run_strength_reduction_factor == 1.0);
+  CHECK_FALSE(scene.settled_by.has_value());
   CHECK(scene.milestones.empty());
   CHECK(scene.snapshot_times.empty());
   CHECK(scene.settle.criterion == SettleCriterion::unbalanced_force);
@@ -67,7 +68,7 @@ TEST_CASE("every key reaches its field", "[scene][reader]") {
       "'automatic'\nlocal_damping = 0.6\n"
       "[step]\ndt_s = 0.01\nmax_displacement_m = 14\nsmallest_fraction = 1\nadaptive = true\nerror_tolerance_m = 1e-3\n"
       "[rest]\ntime_s = 0.5\ndisplacement_m = 2e-3\nacceleration_m_per_s2 = 0.75\n"
-      "[run]\nstrength_reduction_factor = 1.5\n"
+      "[run]\nstrength_reduction_factor = 1.5\nsettled_by = 'another'\n"
       "[end]\ntime_s = 15\ndisplacement_m = 40\n[output]\nevery_s = 16\ncheckpoint_every_s = 24\nmilestones_m = [10, 20.5]\nsnapshots_s = [0, "
       "1.522]\n"
       "[settle]\nunbalanced_fraction = 1e-3\nfirst_dt_s = 17\nmax_steps = 18\nfailure_displacement_m = 19\n"
@@ -143,6 +144,7 @@ TEST_CASE("every key reaches its field", "[scene][reader]") {
   CHECK(scene.output_every == 16.0);
   CHECK(scene.checkpoint_every == 24.0);
   CHECK(scene.run_strength_reduction_factor == 1.5);
+  CHECK(scene.settled_by == "another");
   CHECK(scene.end_displacement == 40.0);
   CHECK(scene.milestones == std::vector<double>{10.0, 20.5});
   CHECK(scene.snapshot_times == std::vector<double>{0.0, 1.522});

@@ -115,6 +115,7 @@ void check_same(const Scene& a, const Scene& b) {
   CHECK(a.output_every == b.output_every);
   CHECK(a.checkpoint_every == b.checkpoint_every);
   CHECK(a.run_strength_reduction_factor == b.run_strength_reduction_factor);
+  CHECK(a.settled_by == b.settled_by);
   CHECK(a.end_displacement == b.end_displacement);
   CHECK(a.milestones == b.milestones);
   CHECK(a.snapshot_times == b.snapshot_times);
@@ -211,6 +212,7 @@ Scene random_scene(unsigned seed) {
   scene.output_every = number();
   scene.checkpoint_every = number();
   scene.run_strength_reduction_factor = number();
+  scene.settled_by = "settler";
   scene.end_displacement = number();
   const double first = number();
   scene.milestones = {first, 2.0 * first};
