@@ -1,10 +1,11 @@
-// Springs kept from step to step against springs made anew in every step: the same to the last bit.
+// Contacts with springs kept from step to step against contacts made anew in every step: the same to the last bit.
 #include <algorithm>
+#include <cstring>
 #include <random>
 #include <vector>
 
 #include "openclose/analysis/simulation.h"
-#include "openclose/integrator/spring_list.h"
+#include "openclose/integrator/batch_renewal.h"
 #include "support/catch.h"
 #include "support/scenes.h"
 
@@ -12,16 +13,31 @@ using namespace openclose;
 
 namespace {
 
-ContactSprings plain_springs(const StepProblem<3>& problem, const Contact& contact) {
-  ContactSprings s = joint_springs(problem, contact);
-  add_dashpots(problem, contact, s);
-  return s;
-}
+/// Springs of the joints, counted as they are made.
+class CountedSprings final : public SpringSource<3> {
+ public:
+  explicit CountedSprings(const StepProblem<3>& problem) : problem_(problem) {}
+  ContactSprings make(std::size_t c) const override {
+    ++made;
+    ContactSprings s = joint_springs(problem_, problem_.contacts[c]);
+    add_dashpots(problem_, problem_.contacts[c], s);
+    return s;
+  }
+  bool last() const override { return true; }
+  mutable std::size_t made = 0;
 
-bool are_same(const ContactSprings& a, const ContactSprings& b) {
-  return a.normal == b.normal && a.shear == b.shear && a.gap == b.gap && a.target == b.target && a.shift == b.shift &&
-         a.initial_shear == b.initial_shear && a.normal_damping == b.normal_damping && a.shear_damping == b.shear_damping &&
-         a.dissipation == b.dissipation;
+ private:
+  const StepProblem<3>& problem_;
+};
+
+/// With springs made anew for each contact.
+std::vector<ContactBatch> made_anew(const StepProblem<3>& problem) {
+  const CountedSprings source(problem);
+  std::vector<ContactSprings> springs;
+  for (std::size_t c = 0; c < problem.contacts.size(); ++c) springs.push_back(source.make(c));
+  std::vector<ContactBatch> batches;
+  BatchRenewal<3>().renew(problem, GivenSprings<3>(springs), batches);
+  return batches;
 }
 
 }  // namespace
@@ -34,16 +50,16 @@ TEST_CASE("springs kept from step to step are those made anew", "[integrator][sp
   const StepProblem<3> present = simulation.problem(1e-3, false);
   StepProblem<3> problem{present.system, present.external, present.joints, contacts, present.method};
   problem.dt = 1e-3;
-  SpringList<3> list;
+  BatchRenewal<3> renewal;
+  std::vector<ContactBatch> batches;
   std::size_t made = 0;
   const auto renew = [&] {
-    made = 0;
-    list.renew(problem, [&](const Contact& contact) {
-      ++made;
-      return plain_springs(problem, contact);
-    });
-    REQUIRE(list.springs().size() == contacts.size());
-    for (std::size_t c = 0; c < contacts.size(); ++c) CHECK(are_same(list.springs()[c], plain_springs(problem, contacts[c])));
+    const CountedSprings source(problem);
+    renewal.renew(problem, source, batches);
+    made = source.made;
+    const std::vector<ContactBatch> expected = made_anew(problem);
+    REQUIRE(batches.size() == expected.size());
+    CHECK(std::memcmp(batches.data(), expected.data(), sizeof(ContactBatch) * batches.size()) == 0);
   };
   renew();
   CHECK(made == contacts.size());
@@ -90,9 +106,12 @@ TEST_CASE("springs kept from step to step are those made anew", "[integrator][sp
     renew();
     CHECK(made == contacts.size());
   }
-  SECTION("a dissipation lasts for one step") {
-    list.set_dissipation(0.1);
-    CHECK(list.springs()[1].dissipation == 0.1);
+  SECTION("springs that last for one step") {
+    std::vector<ContactSprings> springs(contacts.size());
+    for (ContactSprings& s : springs) s.dissipation = 0.1;
+    renewal.renew(problem, GivenSprings<3>(springs), batches);
+    CHECK(batches[0].dissipation[1] == 0.1);
     renew();
+    CHECK(made == contacts.size());
   }
 }
