@@ -45,6 +45,8 @@ std::vector<ContactBatch> made_anew(const StepProblem<3>& problem) {
 TEST_CASE("springs kept from step to step are those made anew", "[integrator][springs]") {
   Scene scene = test::column_of_blocks(6);
   scene.joints[0].damping_ratio = 0.1;
+  scene.joints[0].cohesion = 1e5;
+  scene.joints[0].tensile_strength = 1e4;
   Simulation<3> simulation(scene);
   std::vector<Contact> contacts = simulation.contacts();
   const StepProblem<3> present = simulation.problem(1e-3, false);
@@ -82,6 +84,26 @@ TEST_CASE("springs kept from step to step are those made anew", "[integrator][sp
     contacts[2].length *= 0.5;
     renew();
     CHECK(made == 1);
+  }
+  SECTION("a bond is lost") {
+    move_on();
+    contacts[2].bonded = false;
+    renew();
+    CHECK(made == 1);
+    CHECK(batches[0].tension[2] == 0.0);
+  }
+  SECTION("the strength of joints is reduced") {
+    const double before = batches[0].tension[1];
+    simulation.joints().reduce_strength(2.0);
+    renew();
+    CHECK(made == contacts.size());
+    CHECK(batches[0].tension[1] == 0.5 * before);
+  }
+  SECTION("others have changed the batches") {
+    batches[0].cohesion[1] = 0.0;
+    renewal.forget();
+    renew();
+    CHECK(made == contacts.size());
   }
   SECTION("contacts have other places, or are gone") {
     std::rotate(contacts.begin(), contacts.begin() + 1, contacts.end());
