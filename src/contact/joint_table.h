@@ -24,6 +24,7 @@ class JointTable {
 
   /// Divides tan(friction angle), cohesion and tensile strength of every joint, as the scene gave them, by the strength reduction factor.
   void reduce_strength(double factor);
+  const std::optional<double>& reduction() const { return reduction_; }  ///< [-] the last one's, from which the strengths follow
   void exchange(Archive& archive);
 
  private:

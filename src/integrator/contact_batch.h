@@ -39,7 +39,7 @@ enum class StepForces {
 
 inline constexpr unsigned doubles_of_move = sizeof(BlockMove<3>) / sizeof(double);
 
-/// Four contacts at the start of a step: set() one by one, then BatchKernels::begin(). What is not set carries nothing and adds nothing.
+/// Four contacts at the start of a step: set one by one, then BatchKernels::begin(). What is not set carries nothing and adds nothing.
 struct ContactBatch {
   Lanes normal_x{}, normal_y{}, lever_x{}, lever_y{}, vertex_arm_x{}, vertex_arm_y{}, end_arm_x{}, end_arm_y{};  // as in ContactStart
   Lanes vertex_reach{}, edge_reach{};  ///< [m] from the centroids to the contact
@@ -57,9 +57,14 @@ struct ContactBatch {
   }
   int vertex_place(int lane) const { return static_cast<int>(vertex_at[lane] / doubles_of_move); }
   int edge_place(int lane) const { return static_cast<int>(edge_at[lane] / doubles_of_move); }
-  void set(int lane, const ContactPlace<3>& at, const ContactSprings& springs, const ContactStrength& strength);
-  /// The part of set() that follows from where the springs start: their gap, its target, and what they carry there.
+  void set_geometry(int lane, const ContactPlace<3>& at);
+  void set_strength(int lane, const ContactStrength& strength);
+  /// Once the strength is set.
+  void set_springs(int lane, const ContactSprings& springs);
+  /// The part of set_springs() that follows from where the springs start: their gap, its target, and what they carry there.
   void set_start(int lane, const ContactSprings& springs);
+  /// The same for springs of the joint, which rest at gap zero.
+  void set_start(int lane, const Contact& contact);
   /// All but the places.
   void copy(int lane, const ContactBatch& other, int from);
   ContactStart<3> start(int lane) const;
@@ -68,7 +73,7 @@ struct ContactBatch {
   ContactSprings springs(int lane) const;
 };
 
-inline void ContactBatch::set(int lane, const ContactPlace<3>& at, const ContactSprings& springs, const ContactStrength& strength) {
+inline void ContactBatch::set_geometry(int lane, const ContactPlace<3>& at) {
   // The edge, until its normal is known.
   normal_x[lane] = at.edge.x();
   normal_y[lane] = at.edge.y();
@@ -78,13 +83,19 @@ inline void ContactBatch::set(int lane, const ContactPlace<3>& at, const Contact
   vertex_arm_y[lane] = at.vertex_arm.y();
   end_arm_x[lane] = at.end_arm.x();
   end_arm_y[lane] = at.end_arm.y();
+}
+
+inline void ContactBatch::set_strength(int lane, const ContactStrength& strength) {
+  friction[lane] = strength.friction;
+  cohesion[lane] = strength.cohesion;
+  tension[lane] = strength.tension;
+}
+
+inline void ContactBatch::set_springs(int lane, const ContactSprings& springs) {
   normal[lane] = springs.normal;
   shear[lane] = springs.shear;
   normal_damping[lane] = springs.normal_damping;
   shear_damping[lane] = springs.shear_damping;
-  friction[lane] = strength.friction;
-  cohesion[lane] = strength.cohesion;
-  tension[lane] = strength.tension;
   dissipation[lane] = springs.dissipation;
   set_start(lane, springs);
 }
@@ -98,6 +109,13 @@ inline void ContactBatch::set_start(int lane, const ContactSprings& springs) {
     const double opening = springs.target + (springs.shift + tension[lane]) / springs.normal;
     parted[lane] = std::max(0.0, springs.gap - opening);
   }
+}
+
+inline void ContactBatch::set_start(int lane, const Contact& contact) {
+  gap_off_target[lane] = contact.gap;
+  shift[lane] = 0.0;
+  initial_shear[lane] = -shear[lane] * contact.elastic_slip;
+  parted[lane] = normal_damping[lane] != 0.0 ? std::max(0.0, contact.gap - tension[lane] / normal[lane]) : 0.0;
 }
 
 inline void ContactBatch::copy(int lane, const ContactBatch& other, int from) {

@@ -67,17 +67,18 @@ class ContactOutcomes {
     branches_[c] = branch(o.forces);
   }
 
-  /// Newton's batches, lent with the springs of the contacts in them.
-  void borrow(std::vector<TrialBatch>& trials, std::vector<Branch>& branches, const std::vector<ContactSprings>& springs) {
+  /// Newton's batches, lent with the stiffness of so many contacts in them.
+  /// \param starts  of the same contacts
+  void borrow(std::vector<TrialBatch>& trials, std::vector<Branch>& branches, std::size_t count, const std::vector<ContactBatch>& starts) {
     trials_.swap(trials);
     branches_.swap(branches);
-    take_stiffness(springs);
+    take_stiffness(count, starts);
   }
   /// A copy of them.
-  void copy(const std::vector<TrialBatch>& trials, const std::vector<Branch>& branches, const std::vector<ContactSprings>& springs) {
+  void copy(const std::vector<TrialBatch>& trials, const std::vector<Branch>& branches, std::size_t count, const std::vector<ContactBatch>& starts) {
     trials_ = trials;
     branches_ = branches;
-    take_stiffness(springs);
+    take_stiffness(count, starts);
   }
   /// What was lent is given back; empty again.
   void give_back(std::vector<TrialBatch>& trials, std::vector<Branch>& branches) {
@@ -91,10 +92,13 @@ class ContactOutcomes {
     double normal, shear;
   };
 
-  void take_stiffness(const std::vector<ContactSprings>& springs) {
+  void take_stiffness(std::size_t count, const std::vector<ContactBatch>& starts) {
     clear();
-    stiffness_.resize(springs.size());
-    for (std::size_t c = 0; c < springs.size(); ++c) stiffness_[c] = {springs[c].normal, springs[c].shear};
+    resize_closely(stiffness_, count);
+    for (std::size_t c = 0; c < count; ++c) {
+      const ContactBatch& start = starts[c / batch_size];
+      stiffness_[c] = {start.normal[lane(c)], start.shear[lane(c)]};
+    }
   }
   static int lane(std::size_t c) { return static_cast<int>(c % batch_size); }
   const TrialBatch& batch(std::size_t c) const { return trials_[c / batch_size]; }

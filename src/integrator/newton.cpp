@@ -115,31 +115,11 @@ Eigen::VectorXd rows_of(const Eigen::VectorXd& whole, const std::vector<int>& ro
 }  // namespace
 
 template <int N>
-void Newton<N>::prepare(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs) {
+void Newton<N>::prepare(const StepProblem<N>& problem, const SpringSource<N>& springs) {
   const BlockSystem<N>& system = problem.system;
   problem_ = &problem;
-  springs_ = &springs;
   contact_count_ = problem.contacts.size();
-  resize_closely(contacts_, (contact_count_ + batch_size - 1) / batch_size);
-  if (!contacts_.empty()) contacts_.back() = ContactBatch();
-  places_.clear();
-  for (int b = 0; b < system.block_count(); ++b) {
-    const int equation = system.block(b).equation;
-    places_.push_back({system.centroid(b), equation >= 0 ? equation : system.free_count()});
-  }
-  for (std::size_t c = 0; c < batch_size * contacts_.size(); ++c) {
-    ContactBatch& batch = contacts_[c / batch_size];
-    const int k = lane(c);
-    if (c >= contact_count_) {
-      batch.set_places(k, system.free_count(), system.free_count());
-      continue;
-    }
-    const Contact& contact = problem.contacts[c];
-    const BlockPlace &vertex = places_[contact.vertex_block], &edge = places_[contact.edge_block];
-    batch.set_places(k, vertex.place, edge.place);
-    batch.set(k, ContactPlace<N>(system, contact, vertex.centroid, edge.centroid), springs[c],
-              ContactStrength(problem.joints.joint(contact.joint), contact));
-  }
+  renewal_.renew(problem, springs, contacts_);
   blocks_.clear();
   blocks_.reserve(system.free_count());
   for (int b : system.free_blocks()) {
@@ -163,7 +143,6 @@ void Newton<N>::prepare(const StepProblem<N>& problem, const std::vector<Contact
 
 template <int N>
 void Newton<N>::prepare_start(const std::vector<ContactSprings>& springs) {
-  springs_ = &springs;
   start_scale_ = block_scale_;
   for (std::size_t c = 0; c < contact_count_; ++c) {
     const ContactSprings& s = springs[c];
@@ -366,10 +345,10 @@ double Newton<N>::backtrack(const Eigen::VectorXd& d, const Eigen::VectorXd& ste
 
 template <int N>
 ContactSprings Newton<N>::seen_springs(std::size_t c) const {
-  ContactSprings springs = (*springs_)[c];
+  ContactSprings springs = this->springs(c);
   if (averages_path()) {
     // The same force at the start of the step.
-    springs.shift -= 0.5 * springs.normal * (springs.gap - springs.target);
+    springs.shift -= 0.5 * springs.normal * springs.gap;
     springs.normal *= 0.5;
     springs.shear *= 0.5;
   }
@@ -430,20 +409,22 @@ void Newton<N>::take_last_states() {
   const double touching_gap = problem_->statics ? tolerance::rounding_of_ways_m : 0.0;
   for (std::size_t c = 0; c < contact_count_; ++c) {
     const Contact& contact = problem_->contacts[c];
-    const bool touching = contact.status == ContactStatus::open && (*springs_)[c].gap <= touching_gap && (*springs_)[c].shift >= 0.0;
+    const bool touching = contact.status == ContactStatus::open && contact.gap <= touching_gap && start(c).shift[lane(c)] >= 0.0;
     take_state(c, touching ? ContactStatus::sticking : contact.status, contact.normal_force, contact.shear_force);
   }
 }
 
 template <int N>
 void Newton<N>::take_states_before() {
-  for (std::size_t c = 0; c < contact_count_; ++c) take_state(c, status(branches_before_[c]), (*springs_)[c].shift, (*springs_)[c].initial_shear);
+  for (std::size_t c = 0; c < contact_count_; ++c) {
+    take_state(c, status(branches_before_[c]), start(c).shift[lane(c)], start(c).initial_shear[lane(c)]);
+  }
 }
 
 template <int N>
 void Newton<N>::report_paths(StepSolution<N>& solution) {
   for (std::size_t c = 0; c < contact_count_; ++c) {
-    const ContactSprings& springs = (*springs_)[c];
+    const ContactSprings springs = this->springs(c);
     TrialBatch& at = trial(c);
     const int k = lane(c);
     const PathAverage path = path_average(springs, start(c).strength(k), at.gap_change[k], at.slip_change[k], springs.dissipation);
@@ -500,7 +481,6 @@ void Newton<N>::take_part(const Newton& whole, const Part& part) {
   }
   contact_count_ = part.contacts.size();
   contacts_.assign((contact_count_ + batch_size - 1) / batch_size, ContactBatch());
-  part_springs_.clear();
   std::vector<std::pair<int, int>> ends;
   const int nobody = place(static_cast<int>(whole.moves_.size()) - 1);
   for (std::size_t c = 0; c < batch_size * contacts_.size(); ++c) {
@@ -510,13 +490,11 @@ void Newton<N>::take_part(const Newton& whole, const Part& part) {
     if (c >= contact_count_) continue;
     const int of_whole = part.contacts[c];
     const ContactBatch& from = whole.start(of_whole);
-    part_springs_.push_back((*whole.springs_)[of_whole]);
     batch.copy(k, from, lane(of_whole));
     const int vertex = place(from.vertex_place(lane(of_whole))), edge = place(from.edge_place(lane(of_whole)));
     batch.set_places(k, vertex, edge);
     ends.emplace_back(vertex, edge);
   }
-  springs_ = &part_springs_;
   trials_.resize(contacts_.size());
   branches_.assign(batch_size * contacts_.size(), 0);
   tangent_.fit_part(problem_->method, rows, static_cast<int>(moves_.size()), ends);
@@ -695,7 +673,7 @@ double Newton<N>::begin(const Eigen::VectorXd& d, FirstTangent first) {
 }
 
 template <int N>
-void Newton<N>::solve(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs, StepSolution<N>& solution, FirstTangent first) {
+void Newton<N>::solve(const StepProblem<N>& problem, const SpringSource<N>& springs, StepSolution<N>& solution, FirstTangent first) {
   solution.contacts.give_back(trials_, branches_);
   branches_before_ = branches_;
   prepare(problem, springs);
@@ -716,7 +694,7 @@ void Newton<N>::solve_prepared(StepSolution<N>& solution, FirstTangent first) {
   const StepProblem<N>& problem = *problem_;
   if (problem.end_weight < 1.0) {
     sum_start_forces();
-    solution.start_contacts.copy(trials_, branches_, *springs_);
+    solution.start_contacts.copy(trials_, branches_, contact_count_, contacts_);
   }
   const Eigen::VectorXd start = solution.d;
   double norm = begin(start, first);
@@ -744,15 +722,15 @@ void Newton<N>::solve_prepared(StepSolution<N>& solution, FirstTangent first) {
   if (!solution.converged) solution.reason = outcome == Outcome::singular ? "singular matrix" : "Newton's method did not converge";
   solution.paths.clear();
   if (averages_path()) report_paths(solution);
-  solution.contacts.borrow(trials_, branches_, *springs_);
+  solution.contacts.borrow(trials_, branches_, contact_count_, contacts_);
 }
 
 template <int N>
 Memory Newton<N>::present_memory() const {
   Memory of = tangent_.memory();
-  of.blocks += bytes_of(blocks_, moves_, rows_, places_, sums_of_moved_);
+  of.blocks += bytes_of(blocks_, moves_, rows_, sums_of_moved_);
   for (const Eigen::VectorXd* vector : {&trial_, &start_force_, &residual_}) of.blocks += sizeof(double) * static_cast<std::size_t>(vector->size());
-  of.contacts += bytes_of(contacts_, trials_, branches_, branches_before_, holds_, part_springs_) + neighbourhood_.bytes();
+  of.contacts += bytes_of(contacts_, trials_, branches_, branches_before_, holds_) + renewal_.bytes() + neighbourhood_.bytes();
   return of;
 }
 
@@ -762,7 +740,7 @@ Eigen::MatrixXd Newton<N>::stiffness(const StepProblem<N>& problem, const std::v
   static_problem.inertia = 0.0;
   static_problem.end_weight = 1.0;
   static_problem.scheme = nullptr;
-  prepare(static_problem, springs);
+  prepare(static_problem, GivenSprings<N>(springs));
   tangent_.fit(static_problem);
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(N * problem.system.free_count());
   evaluate(zero);
@@ -772,7 +750,7 @@ Eigen::MatrixXd Newton<N>::stiffness(const StepProblem<N>& problem, const std::v
 
 template <int N>
 Eigen::VectorXd Newton<N>::forces(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs) {
-  prepare(problem, springs);
+  prepare(problem, GivenSprings<N>(springs));
   sum_start_forces();
   return start_force_;
 }

@@ -22,7 +22,7 @@
 
 #include <memory>
 
-#include "openclose/integrator/contact_batch.h"
+#include "openclose/integrator/batch_renewal.h"
 #include "openclose/integrator/parts.h"
 #include "openclose/integrator/tangent_system.h"
 #include "openclose/integrator/two_level.h"
@@ -52,8 +52,11 @@ class Newton {
   explicit Newton(Merit merit = Merit::worst_block) : asked_merit_(merit) {}
 
   /// Solves for solution.d, starting from the value it has; fills its contacts. effort is added to.
+  void solve(const StepProblem<N>& problem, const SpringSource<N>& springs, StepSolution<N>& solution, FirstTangent first = FirstTangent::last_step);
   void solve(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs, StepSolution<N>& solution,
-             FirstTangent first = FirstTangent::last_step);
+             FirstTangent first = FirstTangent::last_step) {
+    solve(problem, GivenSprings<N>(springs), solution, first);
+  }
   /// The step of the last solve() again, with springs that differ only in what they carry at its start and in the gaps they keep.
   void solve_again(const std::vector<ContactSprings>& springs, StepSolution<N>& solution, FirstTangent first);
 
@@ -61,7 +64,7 @@ class Newton {
   void set_cohesion_ramp(double ramp) { ramp_ = ramp; }
 
   /// The same for a static step, by relaxation. What friction holds in the end depends on the way there.
-  void relax(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs, StepSolution<N>& solution);
+  void relax(const StepProblem<N>& problem, const SpringSource<N>& springs, StepSolution<N>& solution);
 
   /// Minus the derivative of all forces but inertia by the unknowns, at the start of the step, contacts in the status they have. Rows and columns of
   /// locked rotations are those of the unit matrix.
@@ -99,12 +102,6 @@ class Newton {
     double rounding_of_coordinates = 0.0;  ///< [N]
   };
 
-  /// What the contacts of a step need of a block.
-  struct BlockPlace {
-    Vec2 centroid;  ///< [m]
-    int place;      ///< in moves_ and rows_
-  };
-
   /// Evaluates at the displacement to start from and returns its residual_norm().
   double begin(const Eigen::VectorXd& d, FirstTangent first);
   /// Iterates from solution.d until its residual_norm() is small enough.
@@ -128,14 +125,15 @@ class Newton {
   /// The springs of contacts that slide or are open slip to where they carry what these carry now.
   void keep_slip();
   /// What the law says of contact c for its way since the start of the step.
-  ContactForces slipped_as_a_whole(std::size_t c) const;
+  /// \param springs  those that the step has started with
+  ContactForces slipped_as_a_whole(const SpringSource<N>& springs, std::size_t c) const;
   /// Contacts that have slipped in the step as a whole and lose strength by that carry what they can without. True if there are any.
-  bool break_slipped_bonds();
+  bool break_slipped_bonds(const SpringSource<N>& springs);
   /// Those have slid for what loses its strength by that, though they stick on what they have kept.
-  void note_slip();
+  void note_slip(const SpringSource<N>& springs);
   /// Whether a block has gone so far that the step will be refused.
   bool has_left(const Eigen::VectorXd& d) const;
-  void prepare(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs);
+  void prepare(const StepProblem<N>& problem, const SpringSource<N>& springs);
   /// The part of prepare() that solve_again() needs.
   void prepare_start(const std::vector<ContactSprings>& springs);
   void solve_prepared(StepSolution<N>& solution, FirstTangent first);
@@ -149,6 +147,8 @@ class Newton {
   void evaluate_block(int row, const Eigen::VectorXd& d);
   double magnitude(const StepBlock& block, const Unknowns& d) const;  ///< [N] of the forces on it but those of contacts
   void find_force_scale(double of_contacts, const Eigen::VectorXd& d);
+  /// The springs of contact c, with the gap counted from their target.
+  ContactSprings springs(std::size_t c) const { return start(c).springs(lane(c)); }
   // Contact c is one of the lanes of its batch.
   static int lane(std::size_t c) { return static_cast<int>(c % batch_size); }
   const ContactBatch& start(std::size_t c) const { return contacts_[c / batch_size]; }
@@ -201,11 +201,10 @@ class Newton {
   Merit asked_merit_;
   double ramp_ = tolerance::cohesion_ramp;  ///< [-]
   const StepProblem<N>* problem_ = nullptr;
-  const std::vector<ContactSprings>* springs_ = nullptr;
   BatchKernels kernels_;
+  BatchRenewal<N> renewal_;
   std::size_t contact_count_ = 0;
   std::vector<ContactBatch> contacts_;
-  std::vector<BlockPlace> places_;               ///< of all blocks, and of nobody
   std::vector<StepBlock> blocks_;                ///< the free ones, by their equations
   std::vector<BlockMove<N>> moves_;              ///< at the trial displacement: of the rows, of others that a part sees, and of what stays
   StepForces step_forces_ = StepForces::at_end;  ///< what trials_ has
@@ -228,7 +227,6 @@ class Newton {
   LinearCounters part_counters_;
   Memory memory_;
   bool is_part_ = false;
-  std::vector<ContactSprings> part_springs_;  ///< of a part: its own springs_
 };
 
 extern template class Newton<3>;

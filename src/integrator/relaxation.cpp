@@ -50,8 +50,8 @@ class Momentum {
 /// open ones it is right about blocks that few contacts hold.
 class CountedContacts {
  public:
-  CountedContacts(const std::vector<ContactSprings>& springs, const std::vector<Branch>& branches) : changed_(springs.size()), last_(branches) {
-    for (std::size_t c = 0; c < springs.size(); ++c) counted_.push_back(springs[c].gap <= near_gap || status(branches[c]) != ContactStatus::open);
+  CountedContacts(const std::vector<Contact>& contacts, const std::vector<Branch>& branches) : changed_(contacts.size()), last_(branches) {
+    for (std::size_t c = 0; c < contacts.size(); ++c) counted_.push_back(contacts[c].gap <= near_gap || status(branches[c]) != ContactStatus::open);
   }
   /// After a step. True if one has closed that was not counted.
   bool follow(const std::vector<Branch>& branches) {
@@ -141,18 +141,18 @@ void Newton<N>::keep_slip() {
 }
 
 template <int N>
-ContactForces Newton<N>::slipped_as_a_whole(std::size_t c) const {
-  return spring_slider((*springs_)[c], start(c).strength(lane(c)), trial(c).gap_change[lane(c)], trial(c).slip_change[lane(c)]);
+ContactForces Newton<N>::slipped_as_a_whole(const SpringSource<N>& springs, std::size_t c) const {
+  return spring_slider(springs.make(c), start(c).strength(lane(c)), trial(c).gap_change[lane(c)], trial(c).slip_change[lane(c)]);
 }
 
 template <int N>
-bool Newton<N>::break_slipped_bonds() {
+bool Newton<N>::break_slipped_bonds(const SpringSource<N>& springs) {
   bool any = false;
   for (std::size_t c = 0; c < contact_count_; ++c) {
     const Contact& contact = problem_->contacts[c];
     const JointProperties& joint = problem_->joints.joint(contact.joint);
     if (has_broken_[c] || !can_lose_strength(joint, contact.bonded) || stays_bonded(joint, contact.bonded, ContactStatus::sliding)) continue;
-    if (status(branches_[c]) == ContactStatus::open || slipped_as_a_whole(c).status != ContactStatus::sliding) continue;
+    if (status(branches_[c]) == ContactStatus::open || slipped_as_a_whole(springs, c).status != ContactStatus::sliding) continue;
     has_broken_[c] = any = true;
     ContactStrength strength = start(c).strength(lane(c));
     strength.break_bond(joint);
@@ -163,10 +163,10 @@ bool Newton<N>::break_slipped_bonds() {
 }
 
 template <int N>
-void Newton<N>::note_slip() {
+void Newton<N>::note_slip(const SpringSource<N>& springs) {
   for (std::size_t c = 0; c < contact_count_; ++c) {
     if (status(branches_[c]) != ContactStatus::sticking) continue;
-    const ContactForces law = slipped_as_a_whole(c);
+    const ContactForces law = slipped_as_a_whole(springs, c);
     if (law.status == ContactStatus::sliding) branches_[c] = branch(law);
     if (has_broken_[c]) branches_[c] = trial(c).shear[lane(c)] < 0.0 ? static_cast<Branch>(-sliding_branch) : sliding_branch;
   }
@@ -182,13 +182,14 @@ bool Newton<N>::has_left(const Eigen::VectorXd& d) const {
 }
 
 template <int N>
-void Newton<N>::relax(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs, StepSolution<N>& solution) {
+void Newton<N>::relax(const StepProblem<N>& problem, const SpringSource<N>& springs, StepSolution<N>& solution) {
   solution.contacts.give_back(trials_, branches_);
   prepare(problem, springs);
+  renewal_.forget();  // bonds may break in the batches, whether or not the step is taken
   Eigen::VectorXd& d = solution.d;
   evaluate(d);
   double norm = residual_norm(), norm_of_estimate = norm;
-  CountedContacts contacts(springs, branches_);
+  CountedContacts contacts(problem.contacts, branches_);
   int& estimates = solution.effort.estimates;
   std::optional<TwoLevelFlexibility> estimate;
   const auto renew = [&](double longest_way) {
@@ -217,7 +218,7 @@ void Newton<N>::relax(const StepProblem<N>& problem, const std::vector<ContactSp
     norm = residual_norm();
     ++steps;
     const bool is_near = norm <= 1.0 || norm * problem.method.residual_tolerance <= residual_of_slip;
-    if (is_near && !bonds_are_known && break_slipped_bonds()) {
+    if (is_near && !bonds_are_known && break_slipped_bonds(springs)) {
       evaluate(d);
       norm = residual_norm();
     }
@@ -233,9 +234,9 @@ void Newton<N>::relax(const StepProblem<N>& problem, const std::vector<ContactSp
   solution.converged = norm <= 1.0;
   solution.unbalanced = largest_unbalanced();
   if (!solution.converged) solution.reason = "relaxation did not come to rest";
-  note_slip();
+  note_slip(springs);
   solution.paths.clear();
-  solution.contacts.borrow(trials_, branches_, springs);
+  solution.contacts.borrow(trials_, branches_, contact_count_, contacts_);
 }
 
 template class Newton<3>;

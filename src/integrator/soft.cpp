@@ -1,11 +1,11 @@
 // `soft`, the paper's DDA-SC: the springs are the joint's own stiffness; penetration is the joint's closure and is not constrained.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "openclose/integrator/integrators.h"
 #include "openclose/integrator/newton.h"
 #include "openclose/integrator/registry.h"
-#include "openclose/integrator/spring_list.h"
 
 namespace openclose {
 namespace {
@@ -20,6 +20,26 @@ constexpr int many_blocks = 9000;
 bool relaxes(StaticSolver asked, int free_blocks) {
   return asked == StaticSolver::relaxation || (asked == StaticSolver::automatic && free_blocks >= many_blocks);
 }
+
+/// Those of a step.
+template <int N>
+class SoftSprings final : public SpringSource<N> {
+ public:
+  /// \param dissipation  [-] for path_average, instead of what the scene says
+  SoftSprings(const Enforcement<N>& of, const StepProblem<N>& problem, std::optional<double> dissipation = {})
+      : of_(of), problem_(problem), dissipation_(dissipation) {}
+  ContactSprings make(std::size_t c) const override {
+    ContactSprings springs = of_.springs(problem_, problem_.contacts[c]);
+    if (dissipation_) springs.dissipation = *dissipation_;
+    return springs;
+  }
+  bool last() const override { return !dissipation_; }
+
+ private:
+  const Enforcement<N>& of_;
+  const StepProblem<N>& problem_;
+  std::optional<double> dissipation_;
+};
 
 template <int N>
 class Soft final : public Enforcement<N> {
@@ -36,13 +56,11 @@ class Soft final : public Enforcement<N> {
   }
 
   void solve(const StepProblem<N>& problem, StepSolution<N>& solution) override {
-    springs_.renew(problem, [&](const Contact& contact) { return springs(problem, contact); });
-    attempt(problem, solution);
+    attempt(problem, SoftSprings<N>(*this, problem), solution);
     if (solution.converged || !problem.averages_path()) return;
-    springs_.set_dissipation(largest_dissipation);
     const StepEffort wasted = solution.effort;
     solution.clear();
-    attempt(problem, solution);
+    attempt(problem, SoftSprings<N>(*this, problem, largest_dissipation), solution);
     solution.effort += wasted;
     solution.dissipative = true;
   }
@@ -51,24 +69,19 @@ class Soft final : public Enforcement<N> {
   bool has_joint_springs() const override { return true; }
   std::unique_ptr<TimeScheme<N>> make_time_scheme(const MethodInput& method) const override { return make_integrator<N>(method); }
   LinearCounters linear_counters() const override { return newton_.linear_counters(); }
-  Memory memory() const override {
-    Memory of = newton_.memory();
-    of.contacts += springs_.bytes();
-    return of;
-  }
+  Memory memory() const override { return newton_.memory(); }
   void exchange(Archive& archive) override { newton_.exchange(archive); }
 
  private:
-  void attempt(const StepProblem<N>& problem, StepSolution<N>& solution) {
+  void attempt(const StepProblem<N>& problem, const SoftSprings<N>& springs, StepSolution<N>& solution) {
     solution.d = drift(problem);
     if (problem.statics && relaxes(problem.method.static_solver, problem.system.free_count()))
-      newton_.relax(problem, springs_.springs(), solution);
+      newton_.relax(problem, springs, solution);
     else
-      newton_.solve(problem, springs_.springs(), solution);
+      newton_.solve(problem, springs, solution);
   }
 
   Newton<N> newton_;
-  SpringList<N> springs_;
 };
 
 }  // namespace

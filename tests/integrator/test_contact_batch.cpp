@@ -62,7 +62,10 @@ struct RandomContacts {
       const int lane = static_cast<int>(c % batch_size);
       const bool is_one = c < starts.size();
       batch.set_places(lane, is_one ? vertex_blocks[c] : block_count, is_one ? edge_blocks[c] : block_count);
-      if (is_one) batch.set(lane, places[c], springs[c], strengths[c]);
+      if (!is_one) continue;
+      batch.set_geometry(lane, places[c]);
+      batch.set_strength(lane, strengths[c]);
+      batch.set_springs(lane, springs[c]);
     }
     return list;
   }

@@ -79,19 +79,19 @@ TEST_CASE("slack belongs to its contact and to its step", "[integrator][outcomes
 TEST_CASE("batches are lent with their springs and given back", "[integrator][outcomes]") {
   std::vector<TrialBatch> trials(1);
   std::vector<Branch> branches(batch_size, 0);
-  std::vector<ContactSprings> springs(2);
+  std::vector<ContactBatch> starts(1);
   for (int c = 0; c < 2; ++c) {
     const ContactOutcome<3> o = outcome(c);
     trials[0].set_pose(c, o.pose);
     trials[0].set_carried(c, o.forces);
     branches[c] = branch(o.forces);
-    springs[c].normal = o.normal_stiffness;
-    springs[c].shear = o.shear_stiffness;
+    starts[0].normal[c] = o.normal_stiffness;
+    starts[0].shear[c] = o.shear_stiffness;
   }
   const TrialBatch* const where = trials.data();
   ContactOutcomes<3> copy, outcomes;
-  copy.copy(trials, branches, springs);
-  outcomes.borrow(trials, branches, springs);
+  copy.copy(trials, branches, 2, starts);
+  outcomes.borrow(trials, branches, 2, starts);
   CHECK(trials.empty());
   for (int c = 0; c < 2; ++c) {
     check_same(outcomes[c], outcome(c));

@@ -1,0 +1,62 @@
+#include "openclose/integrator/batch_renewal.h"
+
+#include <algorithm>
+
+namespace openclose {
+
+template <int N>
+void BatchRenewal<N>::find_places(const BlockSystem<N>& system) {
+  places_.resize(system.block_count());
+  for (int b = 0; b < system.block_count(); ++b) {
+    const int equation = system.block(b).equation;
+    places_[b] = {system.centroid(b), equation >= 0 ? equation : system.free_count()};
+  }
+}
+
+template <int N>
+void BatchRenewal<N>::renew(const StepProblem<N>& problem, const SpringSource<N>& springs, std::vector<ContactBatch>& batches) {
+  const Step step{problem.dt, problem.end_weight, problem.statics, problem.averages_path(), problem.joints.reduction()};
+  const bool last = springs.last();
+  if (!last || !(step == step_)) owners_.clear();
+  step_ = step;
+  const std::size_t count = problem.contacts.size();
+  if (last) resize_closely(owners_, count);
+  resize_closely(batches, (count + batch_size - 1) / batch_size);
+  find_places(problem.system);
+  const Contact* const contacts = problem.contacts.data();
+  const BlockPlace* const places = places_.data();
+  const ContactSprings* const given = springs.list();
+  Owner* const owners = owners_.data();
+  std::size_t c = 0;
+  for (ContactBatch& batch : batches) {
+    const int lanes = static_cast<int>(std::min<std::size_t>(batch_size, count - c));
+    for (int k = 0; k < lanes; ++k, ++c) {
+      const Contact& contact = contacts[c];
+      const BlockPlace &vertex = places[contact.vertex_block], &edge = places[contact.edge_block];
+      batch.set_places(k, vertex.place, edge.place);
+      batch.set_geometry(k, ContactPlace<N>(problem.system, contact, vertex.centroid, edge.centroid));
+      if (last) {
+        const Owner owner{contact.length, contact.joint, contact.vertex_block, contact.edge_block, contact.bonded};
+        if (owner == owners[c]) {
+          batch.set_start(k, contact);
+          continue;
+        }
+        owners[c] = owner;
+      }
+      batch.set_strength(k, ContactStrength(problem.joints.joint(contact.joint), contact));
+      if (given) {
+        batch.set_springs(k, given[c]);
+      } else {
+        batch.set_springs(k, springs.make(c));
+      }
+    }
+    for (int k = lanes; k < batch_size; ++k) {
+      batch.copy(k, ContactBatch(), 0);
+      batch.set_places(k, problem.system.free_count(), problem.system.free_count());
+    }
+  }
+}
+
+template class BatchRenewal<3>;
+
+}  // namespace openclose

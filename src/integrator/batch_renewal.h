@@ -1,0 +1,79 @@
+// The contacts of a step in batches, where most of them are those of the last step: springs and strength, which follow from joint, bond, length and
+// blocks, and from the duration of the step, are worked out anew only where one of these has changed.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "openclose/integrator/contact_batch.h"
+#include "openclose/integrator/enforcement.h"
+
+namespace openclose {
+
+/// The springs of the contacts of a step.
+template <int N>
+class SpringSource {
+ public:
+  virtual ~SpringSource() = default;
+  virtual ContactSprings make(std::size_t c) const = 0;
+  /// Those of all contacts, where they are at hand.
+  virtual const ContactSprings* list() const { return nullptr; }
+  /// Whether gap and initial_shear are those of joint_springs(), target and shift 0, and all else follows from nothing but the contact's joint, length
+  /// and blocks and from the problem's dt, statics, end_weight and averages_path().
+  virtual bool last() const = 0;
+};
+
+/// As they stand in a list.
+template <int N>
+class GivenSprings final : public SpringSource<N> {
+ public:
+  explicit GivenSprings(const std::vector<ContactSprings>& list) : list_(list) {}
+  ContactSprings make(std::size_t c) const override { return list_[c]; }
+  const ContactSprings* list() const override { return list_.data(); }
+  bool last() const override { return false; }
+
+ private:
+  const std::vector<ContactSprings>& list_;
+};
+
+/// Serves one system of blocks and one table of joints: masses and stiffnesses are taken to stay, strengths to follow from the table's reduction.
+template <int N>
+class BatchRenewal {
+ public:
+  /// Sets all batches up to BatchKernels::begin(). The places of blocks are their equations; those without have the one that comes after these.
+  /// \param batches  as the last call has left them, but for gaps and forces at the start
+  void renew(const StepProblem<N>& problem, const SpringSource<N>& springs, std::vector<ContactBatch>& batches);
+  /// The batches are not as the last call has left them.
+  void forget() { owners_.clear(); }
+  std::size_t bytes() const { return bytes_of(places_, owners_); }
+
+ private:
+  struct Step {
+    double dt = 0.0, end_weight = 0.0;
+    bool statics = false, averages_path = false;
+    std::optional<double> reduction;
+    bool operator==(const Step&) const = default;
+  };
+  /// What the contacts of a step need of a block.
+  struct BlockPlace {
+    Vec2 centroid;  ///< [m]
+    int place;
+  };
+  /// Whose springs and strength they are.
+  struct Owner {
+    double length = 0.0;
+    int joint = -1, vertex_block = -1, edge_block = -1;
+    bool bonded = false;
+    bool operator==(const Owner&) const = default;
+  };
+
+  void find_places(const BlockSystem<N>& system);
+
+  Step step_;
+  std::vector<BlockPlace> places_;  ///< of blocks
+  std::vector<Owner> owners_;       ///< of the contacts of the last step, none where their springs do not last
+};
+
+extern template class BatchRenewal<3>;
+
+}  // namespace openclose
