@@ -2,8 +2,11 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <limits>
+
+#include "openclose/linear/packed_block.h"
 
 namespace openclose {
 namespace {
@@ -24,6 +27,11 @@ constexpr float kept_change = 1e-2f;
 
 typedef double FourNumbers __attribute__((vector_size(4 * sizeof(double)), aligned(alignof(double))));
 typedef float FourEntries __attribute__((vector_size(4 * sizeof(float)), aligned(alignof(float))));
+
+/// [-] The largest of the whole numbers that a block is kept as.
+constexpr float largest_number = 32767.0f;
+/// [-] What has no larger entries, beside diagonal entries of one, is kept as zero: its scale would have no digits.
+constexpr float negligible_entry = 1e-30f;
 
 /// Four consecutive entries of a block in single precision.
 FourEntries four(const double* entry) {
@@ -122,7 +130,7 @@ void IncompleteLu<N>::exchange(Archive& archive, const BlockMatrix<N>& matrix) {
   if (!known) return;
   archive(slots);
   if (archive.reading()) plan(matrix, std::move(slots));
-  archive(value_, taken_);
+  archive(value_, worth_, taken_, scale_);
 }
 
 template <int N>
@@ -136,7 +144,7 @@ void IncompleteLu<N>::plan(const BlockMatrix<N>& matrix, std::vector<char> slots
   column_.clear();
   entries_.clear();
   entries_start_.assign(1, 0);
-  working_slot_.assign(rows, -1);
+  working_place_.assign(rows, -1);
   RowPattern pattern(rows);
   std::vector<std::vector<Fill>> right_of(rows);
   for (int i = 0; i < rows; ++i) {
@@ -150,18 +158,18 @@ void IncompleteLu<N>::plan(const BlockMatrix<N>& matrix, std::vector<char> slots
       if (entry.column < i) {
         for (const Fill& above : right_of[entry.column]) pattern.put(above.column, entry.level + above.level + 1);
       }
-      working_slot_[entry.column] = static_cast<int>(column_.size());
+      working_place_[entry.column] = static_cast<int>(column_.size()) - row_start_[i];
       column_.push_back(entry.column);
     }
     pattern.clear();
     for (int s = matrix.row_start(order_[i]); s < matrix.row_start(order_[i] + 1); ++s) {
-      if (slots_[s]) entries_.push_back({s, working_slot_[place[matrix.column(s)]]});
+      if (slots_[s]) entries_.push_back({s, working_place_[place[matrix.column(s)]]});
     }
     entries_start_.push_back(static_cast<int>(entries_.size()));
     row_start_.push_back(static_cast<int>(column_.size()));
   }
   solution_.resize(rows);
-  working_slot_.assign(rows, -1);
+  working_place_.assign(rows, -1);
   let_go();
   version_ = matrix.pattern_version();
 }
@@ -205,17 +213,65 @@ bool IncompleteLu<N>::invert(PaddedBlock& pivot) {
 }
 
 template <int N>
-void IncompleteLu<N>::subtract_rows_above(int i) {
-  for (int s = row_start_[i]; s < row_start_[i + 1]; ++s) working_slot_[column_[s]] = s;
-  for (int s = row_start_[i]; s < diagonal_[i]; ++s) {
-    const int k = column_[s];
-    const PaddedBlock left = value_[s] = product(value_[s], value_[diagonal_[k]]);
-    for (int u = diagonal_[k] + 1; u < row_start_[k + 1]; ++u) {
-      const int t = working_slot_[column_[u]];
-      if (t >= 0) subtract_product(left, value_[u], value_[t]);
+inline typename IncompleteLu<N>::PaddedBlock IncompleteLu<N>::widen(const StoredBlock& block, float scale) {
+  const packed::Eight numbers = packed::eight(block.entry);
+  const packed::Four last{block.last};
+  // The fourth of each counts for nothing.
+  return {{scale * __builtin_shufflevector(numbers, numbers, 0, 1, 2, 3), scale * __builtin_shufflevector(numbers, numbers, 3, 4, 5, 6),
+           scale * __builtin_shufflevector(__builtin_shufflevector(numbers, numbers, 6, 7, 6, 7), last, 0, 1, 4, 4)}};
+}
+
+template <int N>
+float IncompleteLu<N>::store(int first, int end, int row_start) {
+  const auto entry = [&](int slot, int k) { return working_row_[slot - row_start].column[k / N][k % N]; };
+  float largest = 0.0f;
+  for (int s = first; s < end; ++s) {
+    for (int k = 0; k < N * N; ++k) largest = std::max(largest, std::abs(entry(s, k)));
+  }
+  const float numbers = largest > negligible_entry ? largest_number / largest : 0.0f;
+  for (int s = first; s < end; ++s) {
+    for (int k = 0; k < N * N - 1; ++k) {
+      const float number = numbers * entry(s, k);
+      value_[s].entry[k] = static_cast<std::int16_t>(number + (number < 0.0f ? -0.5f : 0.5f));  // what is cut off the same way everywhere adds up
+    }
+    value_[s].last = numbers * entry(s, N * N - 1);
+  }
+  return largest / largest_number;
+}
+
+template <int N>
+void IncompleteLu<N>::find_scale(const BlockMatrix<N>& matrix) {
+  scale_.assign(static_cast<std::size_t>(numbers_of_row) * order_.size(), 0.0f);
+  for (int i = 0; i < rows(); ++i) {
+    const auto& diagonal = matrix.value(matrix.diagonal(order_[i]));
+    for (int k = 0; k < N; ++k) {
+      const double entry = diagonal(k, k);
+      scale_[numbers_of_row * i + k] = std::isnormal(entry) ? std::ldexp(1.0f, -std::ilogb(entry) / 2) : 1.0f;
     }
   }
-  for (int s = row_start_[i]; s < row_start_[i + 1]; ++s) working_slot_[column_[s]] = -1;
+}
+
+template <int N>
+typename IncompleteLu<N>::PaddedBlock IncompleteLu<N>::scaled(const typename BlockMatrix<N>::Block& block, int row, int column) const {
+  PaddedBlock result = padded(block);
+  const Lanes of_row = packed::four(&scale_[numbers_of_row * row]);
+  for (int c = 0; c < N; ++c) result.column[c] *= of_row * scale_[numbers_of_row * column + c];
+  return result;
+}
+
+template <int N>
+void IncompleteLu<N>::subtract_rows_above(int i) {
+  const int start = row_start_[i];
+  for (int s = start; s < row_start_[i + 1]; ++s) working_place_[column_[s]] = s - start;
+  for (int s = start; s < diagonal_[i]; ++s) {
+    const int k = column_[s];
+    const PaddedBlock left = working_row_[s - start] = product(working_row_[s - start], widen(value_[diagonal_[k]], worth_[k].pivot));
+    for (int u = diagonal_[k] + 1; u < row_start_[k + 1]; ++u) {
+      const int t = working_place_[column_[u]];
+      if (t >= 0) subtract_product(left, widen(value_[u], worth_[k].above), working_row_[t]);
+    }
+  }
+  for (int s = start; s < row_start_[i + 1]; ++s) working_place_[column_[s]] = -1;
 }
 
 template <int N>
@@ -237,7 +293,7 @@ typename IncompleteLu<N>::Lanes IncompleteLu<N>::diagonal_entries(int i) const {
 
 template <int N>
 bool IncompleteLu<N>::is_as_taken(const BlockMatrix<N>& matrix, int i) const {
-  return !has_changed(taken_[i], padded(matrix.value(matrix.diagonal(order_[i]))), 1.0f / diagonal_entries(i));
+  return !has_changed(taken_[i], scaled(matrix.value(matrix.diagonal(order_[i])), i, i), 1.0f / diagonal_entries(i));
 }
 
 template <int N>
@@ -247,17 +303,22 @@ bool IncompleteLu<N>::subtracts_changed_row(int i) const {
 
 template <int N>
 void IncompleteLu<N>::take_row(const BlockMatrix<N>& matrix, int i) {
-  std::fill(value_.begin() + row_start_[i], value_.begin() + row_start_[i + 1], PaddedBlock{});
-  for (int e = entries_start_[i]; e < entries_start_[i + 1]; ++e) value_[entries_[e].target] = padded(matrix.value(entries_[e].slot));
-  taken_[i] = value_[diagonal_[i]];
+  working_row_.assign(row_start_[i + 1] - row_start_[i], PaddedBlock{});
+  for (int e = entries_start_[i]; e < entries_start_[i + 1]; ++e) {
+    const auto& [slot, target] = entries_[e];
+    working_row_[target] = scaled(matrix.value(slot), i, column_[row_start_[i] + target]);
+  }
+  taken_[i] = working_row_[diagonal_[i] - row_start_[i]];
 }
 
 template <int N>
 bool IncompleteLu<N>::factor(const BlockMatrix<N>& matrix) {
   const bool anew = factoring_ == Factoring::whole || value_.empty();
   if (anew) {
-    value_.assign(column_.size(), PaddedBlock{});
+    value_.assign(column_.size(), StoredBlock{});
+    worth_.assign(rows(), RowScale());
     taken_.resize(rows());
+    find_scale(matrix);
   }
   changed_.assign(rows(), anew ? 1 : 0);
   rows_kept_ = 0;
@@ -266,48 +327,90 @@ bool IncompleteLu<N>::factor(const BlockMatrix<N>& matrix) {
       ++rows_kept_;
       continue;
     }
-    const PaddedBlock inverse_before = value_[diagonal_[i]];
+    const PaddedBlock inverse_before = widen(value_[diagonal_[i]], worth_[i].pivot);
     take_row(matrix, i);
     subtract_rows_above(i);
-    if (!invert(value_[diagonal_[i]])) {
+    const int start = row_start_[i], diagonal = diagonal_[i];
+    PaddedBlock& pivot = working_row_[diagonal - start];
+    if (!invert(pivot)) {
       value_.clear();
       return false;
     }
-    changed_[i] = anew || has_changed(inverse_before, value_[diagonal_[i]], diagonal_entries(i));
+    worth_[i] = {store(start, diagonal, start), store(diagonal, diagonal + 1, start), store(diagonal + 1, row_start_[i + 1], start)};
+    changed_[i] = anew || has_changed(inverse_before, pivot, diagonal_entries(i));
   }
   return true;
 }
 
-template <int N>
-inline typename IncompleteLu<N>::Lanes IncompleteLu<N>::reduced(Lanes sum, int begin, int end) const {
-  Lanes products[N]{};
-  for (int s = begin; s < end; ++s) {
-    const Lanes x = solution_[column_[s]];
-    for (int k = 0; k < N; ++k) products[k] += value_[s].column[k] * x[k];
+namespace {
+
+template <class StoredBlock>
+OPENCLOSE_KERNEL packed::Four product(const StoredBlock* blocks, const int* columns, int count, const packed::Four* x) {
+  packed::RowProduct product;
+  for (int s = 0; s < count; ++s) product.add(packed::eight(blocks[s].entry), blocks[s].last, x[columns[s]]);
+  return product.sum();
+}
+
+/// Both triangles of a factor, row by row.
+template <class StoredBlock, class RowScale>
+struct Triangles {
+  int rows;
+  const int *row_start, *diagonal, *column;
+  const StoredBlock* value;
+  const RowScale* worth;
+  const float* scale;
+
+  OPENCLOSE_KERNEL void substitute(const float* right_side, packed::Four* solution, float* x) const {
+    for (int i = 0; i < rows; ++i) {
+      const int begin = row_start[i], at = numbers_of_row * i;
+      const packed::Four above = product(value + begin, column + begin, diagonal[i] - begin, solution);
+      solution[i] = packed::four(scale + at) * packed::four(right_side + at) - worth[i].below * above;
+    }
+    for (int i = rows - 1; i >= 0; --i) {
+      const int begin = diagonal[i] + 1, at = numbers_of_row * i;
+      const packed::Four left = solution[i] - worth[i].above * product(value + begin, column + begin, row_start[i + 1] - begin, solution);
+      packed::RowProduct entry;
+      entry.add(packed::eight(value[diagonal[i]].entry), value[diagonal[i]].last, left);
+      solution[i] = worth[i].pivot * entry.sum();
+      packed::store(x + at, packed::four(scale + at) * solution[i]);
+    }
   }
-  for (int k = 0; k < N; ++k) sum -= products[k];
-  return sum;
+};
+
+template <class Factor>
+void substitute_with_any_registers(const Factor& factor, const float* right_side, packed::Four* solution, float* x) {
+  factor.substitute(right_side, solution, x);
+}
+#ifdef OPENCLOSE_HAS_WIDE_REGISTERS
+template <class Factor>
+[[gnu::target("avx2")]] void substitute_with_wide_registers(const Factor& factor, const float* right_side, packed::Four* solution, float* x) {
+  factor.substitute(right_side, solution, x);
+}
+#endif
+
+}  // namespace
+
+template <int N>
+Eigen::VectorXf IncompleteLu<N>::solve_in_order(const Eigen::VectorXf& right_side) const {
+  const Triangles<StoredBlock, RowScale> factor{rows(),        row_start_.data(), diagonal_.data(), column_.data(),
+                                                value_.data(), worth_.data(),     scale_.data()};
+  Eigen::VectorXf x(right_side.size());
+#ifdef OPENCLOSE_HAS_WIDE_REGISTERS
+  if (__builtin_cpu_supports("avx2")) {
+    substitute_with_wide_registers(factor, right_side.data(), solution_.data(), x.data());
+    return x;
+  }
+#endif
+  substitute_with_any_registers(factor, right_side.data(), solution_.data(), x.data());
+  return x;
 }
 
 template <int N>
 Eigen::VectorXd IncompleteLu<N>::solve(const Eigen::VectorXd& right_side) const {
   // Of size one, since single precision ends at 1e38.
   const double size = right_side.size() == 0 ? 0.0 : right_side.cwiseAbs().maxCoeff();
-  if (!(size > 0.0)) return right_side;
-  Eigen::VectorXd x(right_side.size());
-  for (int i = 0; i < rows(); ++i) {
-    Lanes sum{};
-    for (int k = 0; k < N; ++k) sum[k] = static_cast<float>(right_side[N * order_[i] + k] / size);
-    solution_[i] = reduced(sum, row_start_[i], diagonal_[i]);
-  }
-  for (int i = rows() - 1; i >= 0; --i) {
-    const Lanes sum = reduced(solution_[i], diagonal_[i] + 1, row_start_[i + 1]);
-    const PaddedBlock& inverse = value_[diagonal_[i]];
-    Lanes entry = inverse.column[0] * sum[0];
-    for (int k = 1; k < N; ++k) entry += inverse.column[k] * sum[k];
-    solution_[i] = entry;
-    for (int k = 0; k < N; ++k) x[N * order_[i] + k] = size * static_cast<double>(entry[k]);
-  }
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(right_side.size());
+  if (size > 0.0) add_in_order<N>(solve_in_order(in_order<N>(right_side, size, order_)), size, order_, x);
   return x;
 }
 

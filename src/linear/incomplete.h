@@ -2,14 +2,20 @@
 // systems, 2003, section 10.3.3), in single precision, rows in reverse Cuthill-McKee order (A. George, J. W. H. Liu, Computer solution of large
 // sparse positive definite systems, 1981, chapter 4), which makes what is dropped small.
 //
+// Of large systems a solve waits for the factor to come from memory. It is kept as whole numbers of 16 bits, half of the bytes, with a scale for what
+// a row has on either side of the diagonal: 3e-5 of the largest entry is lost, while what is dropped are hundredths. So that this is as true for
+// blocks of a centimetre as for those of a hundred metres, rows and columns are brought to diagonal entries of about one first.
+//
 // Within a step few rows of the matrix change by more than matters to a preconditioner. A row of the factor is kept while its row of the matrix is
 // about what it was when it was taken, and the pivots of the rows that it subtracts are about what they were. The diagonal block tells: a contact
 // that changes what couples two blocks changes as much in the diagonal blocks of both.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "openclose/core/archive.h"
+#include "openclose/linear/single_matrix.h"
 #include "openclose/linear/weak_couplings.h"
 
 namespace openclose {
@@ -26,23 +32,27 @@ class IncompleteLu {
   int rows_kept() const { return rows_kept_; }  ///< by the last factor(); none of a whole factor
   /// About the inverse of the matrix times `right_side`, of which seven digits are read.
   Eigen::VectorXd solve(const Eigen::VectorXd& right_side) const;
+  /// The same of vectors in the factor's order, see single_matrix.h.
+  Eigen::VectorXf solve_in_order(const Eigen::VectorXf& right_side) const;
+  const std::vector<int>& order() const { return order_; }  ///< row of the matrix at a place in the factor
 
   /// Which couplings it has, which decides what solve() gives, and the factor, of which the next one keeps rows.
   void exchange(Archive& archive, const BlockMatrix<N>& matrix);
 
   /// Gives back the memory of the factor until the next one.
   void let_go() {
-    std::vector<PaddedBlock>().swap(value_);
+    std::vector<StoredBlock>().swap(value_);
     std::vector<PaddedBlock>().swap(taken_);
   }
 
   std::size_t bytes() const {
-    return bytes_of(slots_, order_, row_start_, diagonal_, column_, entries_, entries_start_, value_, taken_, changed_, working_slot_, solution_);
+    return bytes_of(slots_, order_, row_start_, diagonal_, column_, entries_, entries_start_, value_, worth_, taken_, scale_, changed_,
+                    working_place_, working_row_, solution_);
   }
   std::size_t stored_blocks() const { return column_.size(); }
 
  private:
-  static constexpr int lanes = 4;
+  static constexpr int lanes = numbers_of_row;
   typedef float Lanes __attribute__((vector_size(lanes * sizeof(float))));
   /// Columns, padded with zeros to a register of four that every processor has.
   struct PaddedBlock {
@@ -60,6 +70,26 @@ class IncompleteLu {
     }
   };
 
+  /// Whole numbers, column by column; the last one as a number of single precision, which fills up the row of bytes.
+  struct StoredBlock {
+    std::int16_t entry[N * N - 1];
+    float last;
+
+    void exchange(Archive& archive) {
+      for (std::int16_t& number : entry) archive(number);
+      archive(last);
+    }
+  };
+  /// [-] What the numbers of a row are worth.
+  struct RowScale {
+    float below = 0.0f, pivot = 0.0f, above = 0.0f;  ///< the diagonal, with the inverse of the pivot on it
+
+    void exchange(Archive& archive) { archive(below, pivot, above); }
+  };
+
+  static PaddedBlock widen(const StoredBlock& block, float scale);
+  /// Keeps blocks of the row under work; returns the scale.
+  float store(int first, int end, int row_start);
   static void subtract_product(const PaddedBlock& left, const PaddedBlock& right, PaddedBlock& target);
   static PaddedBlock product(const PaddedBlock& left, const PaddedBlock& right);
   static PaddedBlock padded(const typename BlockMatrix<N>::Block& block);
@@ -73,8 +103,9 @@ class IncompleteLu {
   bool subtracts_changed_row(int i) const;
   void take_row(const BlockMatrix<N>& matrix, int i);
   void subtract_rows_above(int i);
-  /// What the slots times the solution so far leave of `sum`.
-  Lanes reduced(Lanes sum, int begin, int end) const;
+  void find_scale(const BlockMatrix<N>& matrix);
+  /// A block of the matrix that goes to these places of the factor.
+  PaddedBlock scaled(const typename BlockMatrix<N>::Block& block, int row, int column) const;
 
   int rows() const { return static_cast<int>(diagonal_.size()); }
 
@@ -83,7 +114,7 @@ class IncompleteLu {
   Factoring factoring_;
   long version_ = -1;
   std::vector<char> slots_;  ///< of the matrix: whether the factor has them
-  std::vector<int> order_;   ///< row of the matrix at a place in the factor
+  std::vector<int> order_;
   std::vector<int> row_start_, diagonal_, column_;
   /// In the matrix and in the factor.
   struct Entry {
@@ -91,11 +122,16 @@ class IncompleteLu {
   };
   std::vector<Entry> entries_;  ///< in the order in which elimination meets them
   std::vector<int> entries_start_;
-  std::vector<PaddedBlock> value_;  ///< none before the first factor() of a pattern
+  std::vector<StoredBlock> value_;  ///< none before the first factor() of a pattern; pivots as their inverses
+  std::vector<RowScale> worth_;     ///< by places in the factor
   std::vector<PaddedBlock> taken_;  ///< by places in the factor: diagonal block of the matrix that the row was worked out from
-  std::vector<char> changed_;       ///< by places in the factor: whether the row is another one than in the factor before
+  /// What rows and columns of the matrix are multiplied with before it is factored, four numbers at a place in the factor, the last one zero: powers
+  /// of two, so that this is exact. Of the matrix at which the factor was begun.
+  std::vector<float> scale_;
+  std::vector<char> changed_;  ///< by places in the factor: whether the row is another one than in the factor before
   int rows_kept_ = 0;
-  std::vector<int> working_slot_;        ///< of a column in the row under work; -1 where it has none
+  std::vector<int> working_place_;  ///< of a column in the row under work; -1 where it has none
+  std::vector<PaddedBlock> working_row_;
   mutable std::vector<Lanes> solution_;  ///< a block row each, in the factor's order
 };
 

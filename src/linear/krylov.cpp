@@ -11,25 +11,49 @@ namespace {
 /// After so many iterations, and this part of those allowed, the residuals tell how fast they fall.
 constexpr int iterations_to_judge = 3;
 constexpr double part_to_judge = 0.3;
-/// [-] The residual may be this much larger than the rotations say, from rounding; beyond, the basis has lost its meaning.
-constexpr double rounding_excess = 2.0;
-
+/// Numbers of a vector that stay in the nearest cache while two things are done with them, and of which a sum in single precision is good enough.
+constexpr Eigen::Index piece = 1024;
 bool too_slow(double start, double now, double wanted, int iterations, int most_iterations) {
   if (iterations < std::max<double>(iterations_to_judge, part_to_judge * most_iterations)) return false;
   if (!(now < start)) return true;
   return iterations * std::log(start / wanted) > most_iterations * std::log(start / now);
 }
 
+template <class Scalar>
+double product(const VectorOf<Scalar>& a, const VectorOf<Scalar>& b) {
+  double sum = 0.0;
+  for (Eigen::Index first = 0; first < a.size(); first += piece) {
+    const Eigen::Index count = std::min(piece, a.size() - first);
+    sum += static_cast<double>(a.segment(first, count).dot(b.segment(first, count)));
+  }
+  return sum;
+}
+
+/// Takes `part` of a direction from a vector. Returns the product of what is left with `other`, which may be that itself.
+template <class Scalar>
+double subtract(VectorOf<Scalar>& vector, double part, const VectorOf<Scalar>& direction, const VectorOf<Scalar>& other) {
+  double sum = 0.0;
+  for (Eigen::Index first = 0; first < vector.size(); first += piece) {
+    const Eigen::Index count = std::min(piece, vector.size() - first);
+    auto left = vector.segment(first, count);
+    left -= static_cast<Scalar>(part) * direction.segment(first, count);
+    sum += static_cast<double>(left.dot(other.segment(first, count)));
+  }
+  return sum;
+}
+
 }  // namespace
 
-KrylovResult gmres(const LinearMap& matrix, const LinearMap& preconditioner, Eigen::VectorXd& residual, Eigen::VectorXd& x, double wanted,
-                   int most_iterations) {
-  KrylovResult result;
-  const double start = residual.norm();
+template <class Scalar>
+KrylovStep<Scalar> krylov_step(const LinearMapOf<Scalar>& matrix, const LinearMapOf<Scalar>& preconditioner, const VectorOf<Scalar>& residual,
+                               double wanted, int most_iterations) {
+  KrylovStep<Scalar> result;
+  const double start = std::sqrt(product(residual, residual));
   result.converged = start <= wanted;
+  if (result.converged) result.step = VectorOf<Scalar>::Zero(residual.size());
   if (result.converged || !std::isfinite(start)) return result;
 
-  std::vector<Eigen::VectorXd> basis{residual / start}, directions;
+  std::vector<VectorOf<Scalar>> basis{residual / static_cast<Scalar>(start)}, directions;
   std::vector<Eigen::JacobiRotation<double>> rotations;
   Eigen::MatrixXd upper = Eigen::MatrixXd::Zero(most_iterations + 1, most_iterations);  // of the Hessenberg matrix, rotated
   Eigen::VectorXd right = Eigen::VectorXd::Zero(most_iterations + 1);
@@ -37,12 +61,10 @@ KrylovResult gmres(const LinearMap& matrix, const LinearMap& preconditioner, Eig
   while (!result.converged && result.iterations < most_iterations) {
     const int k = result.iterations++;
     directions.push_back(preconditioner(basis[k]));
-    Eigen::VectorXd next = matrix(directions[k]);
-    for (int i = 0; i <= k; ++i) {
-      upper(i, k) = basis[i].dot(next);
-      next -= upper(i, k) * basis[i];
-    }
-    const double length = next.norm();
+    VectorOf<Scalar> next = matrix(directions[k]);
+    upper(0, k) = product(basis[0], next);
+    for (int i = 0; i < k; ++i) upper(i + 1, k) = subtract(next, upper(i, k), basis[i], basis[i + 1]);
+    const double length = std::sqrt(subtract(next, upper(k, k), basis[k], next));
     upper(k + 1, k) = length;
     for (int i = 0; i < k; ++i) upper.col(k).applyOnTheLeft(i, i + 1, rotations[i].adjoint());
     rotations.emplace_back();
@@ -52,18 +74,29 @@ KrylovResult gmres(const LinearMap& matrix, const LinearMap& preconditioner, Eig
     const double now = std::abs(right[k + 1]);
     if (upper(k, k) == 0.0) return result;  // a singular matrix
     result.converged = now <= wanted;
-    if (!(length > 0.0) || (!result.converged && too_slow(start, now, wanted, result.iterations, most_iterations))) break;
-    basis.push_back(next / length);
+    if (result.converged || !(length > 0.0) || too_slow(start, now, wanted, result.iterations, most_iterations)) break;
+    basis.push_back(next / static_cast<Scalar>(length));
   }
-  const int used = result.iterations;
   if (!result.converged) return result;
+  const int used = result.iterations;
   const Eigen::VectorXd part = upper.topLeftCorner(used, used).triangularView<Eigen::Upper>().solve(right.head(used));
-  Eigen::VectorXd step = Eigen::VectorXd::Zero(x.size());
-  for (int i = 0; i < used; ++i) step += part[i] * directions[i];
-  const Eigen::VectorXd left = residual - matrix(step);
+  result.step = static_cast<Scalar>(part[0]) * directions[0];
+  for (int i = 1; i < used; ++i) result.step += static_cast<Scalar>(part[i]) * directions[i];
+  return result;
+}
+
+template KrylovStep<float> krylov_step<float>(const LinearMapOf<float>&, const LinearMapOf<float>&, const VectorOf<float>&, double, int);
+template KrylovStep<double> krylov_step<double>(const LinearMapOf<double>&, const LinearMapOf<double>&, const VectorOf<double>&, double, int);
+
+KrylovResult gmres(const LinearMap& matrix, const LinearMap& preconditioner, Eigen::VectorXd& residual, Eigen::VectorXd& x, double wanted,
+                   int most_iterations) {
+  const KrylovStep<double> found = krylov_step<double>(matrix, preconditioner, residual, wanted, most_iterations);
+  KrylovResult result = found;
+  if (!result.converged || result.iterations == 0) return result;
+  const Eigen::VectorXd left = residual - matrix(found.step);
   result.converged = left.norm() <= rounding_excess * wanted;
   if (!result.converged) return result;
-  x += step;
+  x += found.step;
   residual = left;
   return result;
 }

@@ -1,0 +1,50 @@
+// A block matrix in single precision, for GMRES with an incomplete factor, which waits for memory: half of the bytes, its rows in the order of the
+// factor, and vectors in which each block row is one register.
+//
+// Where blocks that move together stay far from their places, the large forces of their contacts cancel: sum_j A_ij x_j is small beside its terms.
+// Its product is therefore (sum_j A_ij) x_i + sum_j A_ij (x_j - x_i), which is the same, but for rounding: the sum of the blocks is formed in double
+// precision, and differences lose next to nothing.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "openclose/linear/block_matrix.h"
+
+namespace openclose {
+
+/// Vectors have four numbers for each block row, in the factor's order: its unknowns, and zero.
+inline constexpr int numbers_of_row = 4;
+
+/// The part of a vector over `size`, which makes its numbers fit, in the order of the rows.
+template <int N>
+Eigen::VectorXf in_order(const Eigen::VectorXd& vector, double size, const std::vector<int>& order);
+/// Adds `size` times a vector in the order of the rows.
+template <int N>
+void add_in_order(const Eigen::VectorXf& vector, double size, const std::vector<int>& order, Eigen::VectorXd& sum);
+
+template <int N>
+class SingleMatrix {
+ public:
+  /// Takes over the numbers.
+  /// \param order  row of the matrix at each place; the same as long as the pattern is
+  void take(const BlockMatrix<N>& matrix, const std::vector<int>& order);
+
+  void use_threads(int threads) { threads_ = threads; }  ///< for products; they are the same to the last bit
+  Eigen::VectorXf multiply(const Eigen::VectorXf& x) const;
+  std::size_t bytes() const { return bytes_of(row_start_, columns_, values_); }
+
+ private:
+  void plan(const BlockMatrix<N>& matrix, const std::vector<int>& order);
+
+  long version_ = -1;
+  int threads_ = 1;
+  std::vector<int> row_start_, columns_;
+  std::vector<float> values_;  ///< block by block, each column by column; of each row the sum of all comes first, in place of the diagonal
+};
+
+extern template Eigen::VectorXf in_order<3>(const Eigen::VectorXd&, double, const std::vector<int>&);
+extern template void add_in_order<3>(const Eigen::VectorXf&, double, const std::vector<int>&, Eigen::VectorXd&);
+extern template class SingleMatrix<3>;
+
+}  // namespace openclose
