@@ -16,6 +16,7 @@ typedef float Four __attribute__((vector_size(4 * sizeof(float)), aligned(4 * si
 typedef float LooseFour __attribute__((vector_size(4 * sizeof(float)), aligned(sizeof(float)), may_alias));
 typedef float Eight __attribute__((vector_size(8 * sizeof(float)), aligned(8 * sizeof(float))));
 typedef float LooseEight __attribute__((vector_size(8 * sizeof(float)), aligned(sizeof(float)), may_alias));
+typedef double FourDoubles __attribute__((vector_size(4 * sizeof(double)), aligned(4 * sizeof(double))));
 typedef std::int16_t EightWholeNumbers __attribute__((vector_size(8 * sizeof(std::int16_t)), aligned(sizeof(std::int16_t)), may_alias));
 
 OPENCLOSE_KERNEL Four four(const float* numbers) {
@@ -28,11 +29,14 @@ OPENCLOSE_KERNEL Eight eight(const std::int16_t* numbers) {
   typedef int EightIntegers __attribute__((vector_size(8 * sizeof(int)), aligned(8 * sizeof(int))));
   return __builtin_convertvector(__builtin_convertvector(*reinterpret_cast<const EightWholeNumbers*>(numbers), EightIntegers), Eight);
 }
+OPENCLOSE_KERNEL FourDoubles widened(Four numbers) {
+  return __builtin_convertvector(numbers, FourDoubles);
+}
 OPENCLOSE_KERNEL void store(float* to, Four numbers) {
   *reinterpret_cast<LooseFour*>(to) = numbers;
 }
 
-/// The blocks of a row times their parts of a vector, added up.
+/// The blocks of a row times their parts of a vector, added up in single precision.
 class RowProduct {
  public:
   /// \param entries  of the block, column by column, and the last one

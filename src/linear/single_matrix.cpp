@@ -17,21 +17,26 @@ struct Rows {
   const int *start, *columns;
 };
 
+/// A block times a part of a vector. The fourth number of a column is the next one's first, that of the last what comes after the block.
+template <int N>
+OPENCLOSE_KERNEL packed::FourDoubles product(const float* block, packed::FourDoubles x) {
+  const auto column = [block](int k) { return packed::widened(packed::four(block + N * k)); };
+  static_assert(N == 3);
+  return (column(0) * x[0] + column(1) * x[1]) + column(2) * x[2];
+}
+
 template <int N>
 OPENCLOSE_KERNEL void multiply(const Rows& rows, int first, int end, const float* x, float* y) {
   static_assert(N + 1 == numbers_of_row);
-  constexpr int entries = N * N;
-  const float* block = rows.values + static_cast<std::ptrdiff_t>(entries) * rows.start[first];
+  const auto part = [x](int row) { return packed::widened(packed::four(x + static_cast<std::ptrdiff_t>(numbers_of_row) * row)); };
+  const float* block = rows.values + static_cast<std::ptrdiff_t>(N * N) * rows.start[first];
   for (int i = first; i < end; ++i) {
-    const auto part = [x](int row) { return packed::four(x + static_cast<std::ptrdiff_t>(numbers_of_row) * row); };
-    const packed::Four own = part(i);
-    packed::RowProduct product;
-    product.add(packed::eight(block), block[entries - 1], own);
-    block += entries;
-    for (int s = rows.start[i] + 1; s < rows.start[i + 1]; ++s, block += entries) {
-      product.add(packed::eight(block), block[entries - 1], part(rows.columns[s]) - own);
-    }
-    packed::store(y + static_cast<std::ptrdiff_t>(numbers_of_row) * i, product.sum());
+    const packed::FourDoubles own = part(i);
+    packed::FourDoubles sum = product<N>(block, own);
+    block += N * N;
+    for (int s = rows.start[i] + 1; s < rows.start[i + 1]; ++s, block += N * N) sum += product<N>(block, part(rows.columns[s]) - own);
+    sum[N] = 0.0;
+    packed::store(y + static_cast<std::ptrdiff_t>(numbers_of_row) * i, __builtin_convertvector(sum, packed::Four));
   }
 }
 
@@ -83,7 +88,7 @@ void SingleMatrix<N>::plan(const BlockMatrix<N>& matrix, const std::vector<int>&
     }
     row_start_.push_back(static_cast<int>(columns_.size()));
   }
-  values_.assign(static_cast<std::size_t>(N * N) * columns_.size(), 0.0f);
+  values_.assign(static_cast<std::size_t>(N * N) * columns_.size() + 1, 0.0f);
   version_ = matrix.pattern_version();
 }
 

