@@ -190,9 +190,10 @@ struct ActingPose {
 };
 
 /// \param at  as in ContactBatch
-OPENCLOSE_KERNEL Lanes& sums_at(ForceRow* rows, unsigned at) {
-  constexpr std::size_t bytes_by_double = sizeof(ForceRow) / doubles_of_move;
-  return reinterpret_cast<ForceRow*>(reinterpret_cast<char*>(rows) + bytes_by_double * at)->sums;
+OPENCLOSE_KERNEL Lanes& sums_at(ForceRow* rows, unsigned at, int lane) {
+  static_assert(sizeof(ForceRow) == doubles_of_move * sizeof(double));
+  double* const row = &rows->sums[0] + at;
+  return *reinterpret_cast<Lanes*>(lane % 2 == 0 ? row : row + batch_size);
 }
 
 /// Adds the forces of four contacts to their blocks, one contact after the other.
@@ -203,30 +204,44 @@ OPENCLOSE_KERNEL void push(const ContactBatch& c, const TrialBatch& trial, const
   transpose(forward[0], forward[1], forward[2], forward[3]);
   transpose(back[0], back[1], back[2], back[3]);
   for (int k = 0; k < batch_size; ++k) {
-    sums_at(rows, c.vertex_at[k]) += forward[k];
-    sums_at(rows, c.edge_at[k]) += back[k];
+    sums_at(rows, c.vertex_at[k], k) += forward[k];
+    sums_at(rows, c.edge_at[k], k) += back[k];
   }
 }
+
+/// Batches go through the loops of evaluate() so many at a time: each loop is short enough for the processor to work on several of them at once, and
+/// what one leaves to the next stays at hand.
+constexpr std::size_t batches_at_once = 8;
 
 template <StepForces forces>
 OPENCLOSE_KERNEL double evaluate(double ramp, const ContactBatch* contacts, std::size_t count, const BlockMove<3>* moves, double rounding_of_sums,
                                  TrialBatch* trials, Branch* branches, ForceRow* rows) {
-  Lanes largest{};
-  for (std::size_t i = 0; i < count; ++i) {
-    const ContactBatch& c = contacts[i];
-    TrialBatch& trial = trials[i];
-    const Moves vertex(moves, c.vertex_at), edge(moves, c.edge_at);
-    find_pose(c, vertex, edge, trial);
-    constexpr bool averaged = forces == StepForces::averaged;
-    Branch* const branches_now = branches + batch_size * i;
-    const Mask carries = averaged ? find_mean_forces(c, trial, branches_now) : find_forces(c, ramp, trial, branches_now);
-    if (averaged ? !any(carries) : all_are_open(branches_now)) continue;
-    const Lanes normal = magnitude(trial.normal), shear = magnitude(trial.shear);
-    const Lanes moved = (vertex.way + c.vertex_reach * vertex.turn) + (edge.way + c.edge_reach * edge.turn);
-    const Lanes stiffness = c.normal + c.normal_damping + c.shear + c.shear_damping;
-    const Lanes rounding = only_where(carries, rounding_of_sums * (stiffness * moved + normal + shear));
-    push(c, trial, averaged ? ActingPose(c, trial) : ActingPose(trial), rounding, rows);
-    largest = larger(largest, larger(normal, shear));
+  constexpr bool averaged = forces == StepForces::averaged;
+  Lanes largest{}, moved[batches_at_once];
+  Mask carries[batches_at_once];
+  for (std::size_t first = 0; first < count; first += batches_at_once) {
+    const std::size_t at_once = std::min(batches_at_once, count - first);
+    const ContactBatch* const starts = contacts + first;
+    TrialBatch* const trial = trials + first;
+    Branch* const branches_now = branches + batch_size * first;
+    for (std::size_t i = 0; i < at_once; ++i) {
+      const Moves vertex(moves, starts[i].vertex_at), edge(moves, starts[i].edge_at);
+      find_pose(starts[i], vertex, edge, trial[i]);
+      moved[i] = (vertex.way + starts[i].vertex_reach * vertex.turn) + (edge.way + starts[i].edge_reach * edge.turn);
+    }
+    for (std::size_t i = 0; i < at_once; ++i) {
+      Branch* const now = branches_now + batch_size * i;
+      carries[i] = averaged ? find_mean_forces(starts[i], trial[i], now) : find_forces(starts[i], ramp, trial[i], now);
+    }
+    for (std::size_t i = 0; i < at_once; ++i) {
+      if (averaged ? !any(carries[i]) : all_are_open(branches_now + batch_size * i)) continue;
+      const ContactBatch& c = starts[i];
+      const Lanes normal = magnitude(trial[i].normal), shear = magnitude(trial[i].shear);
+      const Lanes stiffness = c.normal + c.normal_damping + c.shear + c.shear_damping;
+      const Lanes rounding = only_where(carries[i], rounding_of_sums * (stiffness * moved[i] + normal + shear));
+      push(c, trial[i], averaged ? ActingPose(c, trial[i]) : ActingPose(trial[i]), rounding, rows);
+      largest = larger(largest, larger(normal, shear));
+    }
   }
   return std::max({largest[0], largest[1], largest[2], largest[3]});
 }

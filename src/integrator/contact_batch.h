@@ -175,9 +175,11 @@ inline void TrialBatch::set_carried(int lane, const CarriedForces& f) {
   elastic_shear[lane] = f.elastic_shear;
 }
 
-/// Sum of the contact forces on a block: force [N, N], moment [N m], and [N] what rounding leaves in it.
+/// Sum of the contact forces on a block: force [N, N], moment [N m], and [N] what rounding leaves in it. In two parts, because contacts that follow
+/// each other in the list touch the same blocks and would wait for each other's sum.
 struct ForceRow {
-  Lanes sums{};
+  Lanes sums{};          ///< of the contacts in the first and third lanes of their batches
+  Lanes of_odd_lanes{};  ///< of the others
 };
 
 /// Where in a matrix a contact's stiffness goes to: slots times the entries of a block, that of nobody where a block is fixed.

@@ -159,6 +159,7 @@ void Newton<N>::evaluate_block(int row, const Eigen::VectorXd& d) {
   const int at = N * row;
   const Unknowns db = d.template segment<N>(at);
   Lanes& sums = rows_[row].sums;
+  sums += rows_[row].of_odd_lanes;
   Unknowns force(sums[0], sums[1], sums[2]);
   if (block.has_point_forces) {
     force += averages_path() ? problem_->external.mean_force(system, block.block, db) : problem_->external.force(system, block.block, db);
@@ -504,7 +505,8 @@ template <int N>
 std::vector<Part> Newton<N>::unbalanced_parts(double norm) {
   const int rows = static_cast<int>(blocks_.size());
   if (neighbourhood_.rows() != rows) {
-    neighbourhood_.build(rows, contact_count_, [&](std::size_t c) { return std::pair(start(c).vertex_place(lane(c)), start(c).edge_place(lane(c))); });
+    neighbourhood_.build(rows, contact_count_,
+                         [&](std::size_t c) { return std::pair(start(c).vertex_place(lane(c)), start(c).edge_place(lane(c))); });
   }
   std::vector<int> seeds;
   for (int row = 0; row < rows; ++row) {
