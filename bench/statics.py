@@ -14,8 +14,9 @@ PAPER_SCENES = Path(__file__).parent.parent / "paper" / "scenes"
 SCENES = {"3.3": PAPER_SCENES / "example_3_3_wedge.toml", "3.4": PAPER_SCENES / "example_3_4.toml"}
 METHODS = (SOFT, HARD, SHI, DEM)
 
-# What is left unbalanced, over the weight of the heaviest block; the converged state has less than all of them.
-FRACTIONS = (1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8)
+# What is left unbalanced, over the weight of the heaviest block; the converged state has less than all of them. Close to each other where errors
+# are about 1 %, so that each method is seen near the largest error that counts.
+FRACTIONS = (5e-1, 3e-1, 1e-1, 3e-2, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8)
 CONVERGED_FRACTION = 1e-10
 ERROR_OF = f"place of any vertex against the method's own converged state (unbalanced {CONVERGED_FRACTION:g}), over the settlement of soft"
 WIDTH = 0.005

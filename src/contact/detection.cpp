@@ -7,6 +7,7 @@
 #include <numbers>
 #include <numeric>
 #include <ranges>
+#include <span>
 
 #include "openclose/core/tolerance.h"
 #include "openclose/geometry/polygon.h"
@@ -54,8 +55,8 @@ class Detector<N>::Shapes {
     Edge() {}  // nothing: memory of which nothing is measured need not be there
     Edge(const Vec2& from, const Vec2& along, double over) : start(from), direction(along), length(over) {}
     Vec2 normal() const { return {direction.y(), -direction.x()}; }  ///< outward
-    double gap(const Vec2& p) const { return normal().dot(p - start); }
-    double along(const Vec2& p) const { return direction.dot(p - start); }
+    double gap(const Vec2& p) const { return direction.y() * (p.x() - start.x()) - direction.x() * (p.y() - start.y()); }
+    double along(const Vec2& p) const { return direction.x() * (p.x() - start.x()) + direction.y() * (p.y() - start.y()); }
     Vec2 end() const { return start + length * direction; }
     Box box() const { return Box::around(start, end()); }
   };
@@ -83,6 +84,11 @@ class Detector<N>::Shapes {
     if (!measured_[block]) measure(block);
     return boxes_[block];
   }
+  /// Of a block that has been measured, from its first vertex on.
+  std::span<const Edge> edges(int block) const {
+    const auto& b = system_->block(block);
+    return {edges_.data() + b.first_vertex, static_cast<std::size_t>(b.vertex_count)};
+  }
   /// Of a block that has been measured.
   bool is_convex(int block) const { return convex_[block] != 0; }
   /// Whether two blocks lie on different sides of a line along an edge of one of them, the other one farther from it than `room` [m].
@@ -93,17 +99,15 @@ class Detector<N>::Shapes {
   }
 
  private:
-  auto vertices(int b) const {
-    const auto& block = system_->block(b);
-    return std::views::iota(block.first_vertex, block.first_vertex + block.vertex_count);
-  }
   bool parted_by_edge_of(int a, int b, double room) const {
-    return std::ranges::any_of(vertices(a), [&](int e) {
-      const auto gap = [&](int v) { return edges_[e].gap(edges_[v].start); };
-      const auto is_beyond = [&](double distance) { return std::ranges::all_of(vertices(b), [&](int v) { return gap(v) > distance; }); };
+    return std::ranges::any_of(edges(a), [&](const Edge& edge) {
+      const auto is_beyond = [&](double distance) {
+        return std::ranges::all_of(edges(b), [&](const Edge& corner) { return edge.gap(corner.start) > distance; });
+      };
       if (!is_beyond(room)) return false;
+      if (is_convex(a)) return true;
       double own = 0.0;  // what lies before an edge in a notch
-      for (const int v : vertices(a)) own = std::max(own, gap(v));
+      for (const Edge& corner : edges(a)) own = std::max(own, edge.gap(corner.start));
       return own == 0.0 || is_beyond(room + own);
     });
   }
@@ -162,6 +166,7 @@ class Detector<N>::ContactIndex {
 
   /// Looks at the contacts of one pair of blocks.
   void select(const Range& range) { range_ = range; }
+  bool has_any() const { return range_.size() > 0; }
   /// Position in the list, or -1; of the selected pair.
   int find(int vertex, int edge) const {
     for (int i = range_.begin; i < range_.end; ++i) {
@@ -222,16 +227,20 @@ class Detector<N>::NarrowPhase {
     // Only what lies in the box of both blocks, with the reach, can touch.
     const Box room = shapes_.box(block_a).inflated(reach_).common(shapes_.box(block_b).inflated(reach_));
     if (room.empty()) return;
-    for_each_vertex(block_a, [&](int a) {
-      const Edge& edge = shapes_.edge(a);
-      if (!edge.box().overlaps(room)) return;
-      for_each_vertex(block_b, [&](int b) {
-        const double cosine = -edge.direction.dot(shapes_.edge(b).direction);
-        if (cosine > cosine_none) facing_edges(block_a, a, block_b, b, parallel_weight(cosine));
-      });
-    });
-    lone_corners(block_a, block_b, room);
-    lone_corners(block_b, block_a, room);
+    const bool some_of_a = find_near_corners(block_a, block_b, near_[0]), some_of_b = find_near_corners(block_b, block_a, near_[1]);
+    if (!some_of_a && !some_of_b) return;
+    const std::span<const Edge> edges_a = shapes_.edges(block_a), edges_b = shapes_.edges(block_b);
+    const int first_a = system_.block(block_a).first_vertex, first_b = system_.block(block_b).first_vertex;
+    for (std::size_t a = 0; a < edges_a.size(); ++a) {
+      const bool a_is_near = has_near_end(near_[0], a);
+      for (std::size_t b = 0; b < edges_b.size(); ++b) {
+        const double cosine = -edges_a[a].direction.dot(edges_b[b].direction);
+        if (cosine <= cosine_none || !(a_is_near || has_near_end(near_[1], b))) continue;
+        facing_edges(block_a, first_a + static_cast<int>(a), block_b, first_b + static_cast<int>(b), parallel_weight(cosine));
+      }
+    }
+    lone_corners(block_a, block_b, near_[0], room);
+    lone_corners(block_b, block_a, near_[1], room);
   }
 
  private:
@@ -240,6 +249,34 @@ class Detector<N>::NarrowPhase {
     const auto& b = system_.block(block);
     for (int v = b.first_vertex; v < b.first_vertex + b.vertex_count; ++v) f(v);
   }
+
+  /// Of the corners of a block, those that may touch the other one. Where two convex blocks were not in contact, a corner that touches an edge is at
+  /// most as far beyond the lines along other edges as it is from this one, and by 1 % more where edges face each other that are not quite parallel.
+  bool find_near_corners(int block, int other, std::vector<char>& near) const {
+    const std::span<const Edge> corners = shapes_.edges(block), edges = shapes_.edges(other);
+    if (previous_.has_any() || !shapes_.is_convex(block) || !shapes_.is_convex(other)) {
+      near.assign(corners.size(), true);
+      return true;
+    }
+    near.resize(corners.size());
+    const double room = room_of_corners * reach_;
+    bool some = false;
+    const Edge* parting = edges.data();  // the edge before which the last corner was too far
+    for (std::size_t v = 0; v < corners.size(); ++v) {
+      const Vec2& p = corners[v].start;
+      near[v] = false;
+      if (parting->gap(p) > room) continue;
+      const auto edge = std::ranges::find_if(edges, [&](const Edge& e) { return e.gap(p) > room; });
+      if (edge == edges.end()) {
+        near[v] = true;
+        some = true;
+      } else {
+        parting = &*edge;
+      }
+    }
+    return some;
+  }
+  static bool has_near_end(const std::vector<char>& near, std::size_t edge) { return near[edge] || near[edge + 1 < near.size() ? edge + 1 : 0]; }
 
   void facing_edges(int block_a, int a, int block_b, int b, double weight) {
     const Edge &edge_a = shapes_.edge(a), &edge_b = shapes_.edge(b);
@@ -271,25 +308,30 @@ class Detector<N>::NarrowPhase {
     }
   }
 
-  void lone_corners(int vertex_block, int edge_block, const Box& room) {
-    for_each_vertex(vertex_block, [&](int v) {
-      if (system_.is_reflex(v)) return;
+  /// \param near  of the corners of the first block
+  void lone_corners(int vertex_block, int edge_block, const std::vector<char>& near, const Box& room) {
+    const std::span<const Edge> edges = shapes_.edges(edge_block);
+    const int first = system_.block(vertex_block).first_vertex, first_edge = system_.block(edge_block).first_vertex;
+    for (std::size_t k = 0; k < near.size(); ++k) {
+      const int v = first + static_cast<int>(k);
+      if (!near[k] || system_.is_reflex(v)) continue;
       const Vec2& p = shapes_.edge(v).start;
-      if (!room.contains(p)) return;
+      if (!room.contains(p)) continue;
       const Sides sides = sides_of(v);
-      for_each_vertex(edge_block, [&](int e) {
-        const Edge& edge = shapes_.edge(e);
-        if (edge.gap(p) > reach_ || !sides.leave(edge, sine_flush)) return;
+      for (std::size_t i = 0; i < edges.size(); ++i) {
+        const Edge& edge = edges[i];
+        if (edge.gap(p) > reach_ || !sides.leave(edge, sine_flush)) continue;
+        const int e = first_edge + static_cast<int>(i);
         const double along = edge.along(p);
         const double beyond = std::max(-along, along - edge.length);
-        if (beyond > 0.0 && beyond > end_margin(v, edge)) return;
+        if (beyond > 0.0 && beyond > end_margin(v, edge)) continue;
         const double weight = sides.lone_weight(edge);
-        if (weight == 0.0 || passes_over(v, edge_block, e)) return;
+        if (weight == 0.0 || passes_over(v, edge_block, e)) continue;
         const Vec2 ahead = system_.arm(system_.next(v)) - system_.arm(v), back = system_.arm(system_.previous(v)) - system_.arm(v);
         const auto projection = [&](const Vec2& side) { return std::min(std::abs(side.dot(edge.direction)), edge.length); };
         add(vertex_block, v, edge_block, e, 0.5 * weight * (projection(ahead) + projection(back)), [&] { return previous_.was_closed(v, e); });
-      });
-    });
+      }
+    }
   }
 
   /// Directions from a corner along its two edges.
@@ -433,12 +475,15 @@ class Detector<N>::NarrowPhase {
     return contains(polygon_, p) || distance_to_boundary(polygon_, p) <= tolerance::edge_end_m;
   }
 
+  static constexpr double room_of_corners = 1.5;  ///< [-] over the reach
+
   const BlockSystem<N>& system_;
   double reach_;
   Shapes& shapes_;
   const ContactIndex& previous_;
   std::vector<Contact>* found_ = nullptr;
   std::size_t first_ = 0;
+  std::vector<char> near_[2];  ///< of the corners of both blocks
   Polygon polygon_;
 };
 

@@ -1,13 +1,18 @@
 #include "openclose/core/process.h"
 
 #include <chrono>
+#include <cstdint>
 #include <fstream>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "openclose/core/parallel.h"
 
 #ifdef __GLIBC__
 #include <malloc.h>
+#include <sys/mman.h>
+#include <unistd.h>
 #endif
 
 namespace openclose {
@@ -23,6 +28,9 @@ long status_of_process(const std::string& key) {
   }
   return 0;
 }
+
+/// Far below what glibc takes for large, with or without return_large_memory().
+[[maybe_unused]] constexpr std::size_t piece_of_heap_bytes = 64u << 10;
 
 const auto program_start = std::chrono::steady_clock::now();
 const long memory_at_start = status_of_process("VmRSS:");
@@ -60,6 +68,24 @@ void return_large_memory() {
   constexpr int kept_end_bytes = 16 << 20;
   mallopt(M_MMAP_THRESHOLD, large_bytes);
   mallopt(M_TRIM_THRESHOLD, kept_end_bytes);
+#endif
+}
+
+bool provide_memory([[maybe_unused]] std::size_t bytes) {
+#if defined(__GLIBC__) && defined(MADV_POPULATE_WRITE)
+  // Of the heap's end, where it stays when it is given back: larger pieces would not.
+  const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+  std::vector<std::unique_ptr<char[]>> pieces;
+  bool provided = true;
+  for (std::size_t got = 0; got < bytes && provided; got += piece_of_heap_bytes) {
+    pieces.emplace_back(new char[piece_of_heap_bytes]);
+    const auto address = reinterpret_cast<std::uintptr_t>(pieces.back().get());
+    const std::uintptr_t first = (address + page - 1) / page * page, end = (address + piece_of_heap_bytes) / page * page;
+    provided = madvise(reinterpret_cast<void*>(first), end - first, MADV_POPULATE_WRITE) == 0;
+  }
+  return provided;
+#else
+  return false;
 #endif
 }
 

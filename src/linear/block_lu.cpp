@@ -23,6 +23,8 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <span>
+#include <utility>
 
 #include "openclose/core/parallel.h"
 #include "openclose/core/process.h"
@@ -81,6 +83,7 @@ template <int N>
 struct alignas(alignment) PaddedBlock {
   static_assert(N <= lanes);
   Lanes row[N];
+  PaddedBlock() {}  // nothing: a factor is written before it is read
 };
 
 struct alignas(alignment) PaddedVector {
@@ -322,7 +325,9 @@ OPENCLOSE_KERNEL int take_changes(const BlockMatrix<N>& matrix, Factor<N>& f, do
 /// Lays row i of the matrix into its slots.
 template <int N>
 OPENCLOSE_KERNEL void lay_row(Factor<N>& f, int i) {
-  std::fill(f.value.begin() + f.row_start[i], f.value.begin() + f.row_start[i + 1], PaddedBlock<N>{});
+  for (int s = f.row_start[i]; s < f.row_start[i + 1]; ++s) {
+    for (Lanes& row : f.value[s].row) row = Lanes{};
+  }
   for (int e = f.entries_start[i]; e < f.entries_start[i + 1]; ++e) pad<N>(f.taken[e], f.value[f.entries[e].target]);
   f.size[i] = square_norm(f.value[f.diagonal[i]]);
 }
@@ -636,29 +641,44 @@ class BlockLuSolver : public LinearSolver<N> {
     version_ = matrix.pattern_version();
     has_factor_ = false;
     slots_ = std::move(slots);
-    const int rows = matrix.rows();
     const RowGraph graph = graph_of(matrix, slots_);
     order_rows(graph);
 
-    // Entries above the diagonal, row by row in the new order; each row hands its pattern down to the first row it meets.
-    std::vector<std::vector<int>> upper(rows), children(rows);
-    std::vector<int> seen(rows, -1);
+    lay_out(find_upper_pattern(graph));
+    cut_into_subtrees();
+    find_entries(matrix);
+  }
+
+  /// Of rows one after another: what each has above the diagonal, in ascending order.
+  struct UpperPattern {
+    std::vector<int> start, column;
+    std::span<const int> row(int i) const { return {column.data() + start[i], column.data() + start[i + 1]}; }
+  };
+
+  /// In the new order. Each row hands its pattern down to the first row it meets.
+  UpperPattern find_upper_pattern(const RowGraph& graph) const {
+    const int rows = graph.rows();
+    UpperPattern upper;
+    upper.start.assign(1, 0);
+    std::vector<int> first_child(rows, -1), next_child(rows, -1), seen(rows, -1);
     for (int i = 0; i < rows; ++i) {
-      std::vector<int>& row = upper[i];
       seen[i] = i;
       const auto take = [&](int j) {
         if (j <= i || seen[j] == i) return;
         seen[j] = i;
-        row.push_back(j);
+        upper.column.push_back(j);
       };
       for (int k = graph.start[factor_.order[i]]; k < graph.start[factor_.order[i] + 1]; ++k) take(place_[graph.neighbour[k]]);
-      for (int child : children[i]) std::for_each(upper[child].begin(), upper[child].end(), take);
-      std::sort(row.begin(), row.end());
-      if (!row.empty()) children[row.front()].push_back(i);
+      for (int child = first_child[i]; child >= 0; child = next_child[child]) {
+        for (int k = upper.start[child]; k < upper.start[child + 1]; ++k) take(upper.column[k]);
+      }
+      std::sort(upper.column.begin() + upper.start[i], upper.column.end());
+      upper.start.push_back(static_cast<int>(upper.column.size()));
+      if (upper.row(i).empty()) continue;
+      const int parent = upper.row(i).front();
+      next_child[i] = std::exchange(first_child[parent], i);
     }
-    lay_out(upper);
-    cut_into_subtrees();
-    find_entries(matrix);
+    return upper;
   }
 
   // One of the two is there at a time: pivots are seldom lost, and fronts are as large as the rows.
@@ -739,36 +759,43 @@ class BlockLuSolver : public LinearSolver<N> {
       factor_.order.insert(factor_.order.end(), part.begin(), part.end());
       return;
     }
-    std::vector<Eigen::Triplet<double>> entries;
-    for (int i = 0; i < rows; ++i) {
-      entries.emplace_back(i, i, 1.0);
-      for (int k = graph.start[part[i]]; k < graph.start[part[i] + 1]; ++k) entries.emplace_back(i, place_[graph.neighbour[k]], 1.0);
-    }
     Eigen::SparseMatrix<double> pattern(rows, rows);
-    pattern.setFromTriplets(entries.begin(), entries.end());
+    const auto degree = [&](int i) { return graph.start[part[i] + 1] - graph.start[part[i]]; };
+    for (int i = 0; i < rows; ++i) pattern.outerIndexPtr()[i + 1] = pattern.outerIndexPtr()[i] + 1 + degree(i);
+    pattern.resizeNonZeros(pattern.outerIndexPtr()[rows]);
+    std::fill(pattern.valuePtr(), pattern.valuePtr() + pattern.nonZeros(), 1.0);
+    for (int i = 0; i < rows; ++i) {
+      int* const column = pattern.innerIndexPtr() + pattern.outerIndexPtr()[i];
+      for (int k = 0; k < degree(i); ++k) column[k] = place_[graph.neighbour[graph.start[part[i]] + k]];
+      column[degree(i)] = i;
+      std::inplace_merge(column, column + degree(i), column + degree(i) + 1);
+    }
     Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> permutation;
     Eigen::AMDOrdering<int>()(pattern, permutation);
     for (int i = 0; i < rows; ++i) factor_.order.push_back(part[permutation.indices()[i]]);
   }
 
   /// Rows of L, diagonal and U one after another in one array.
-  void lay_out(const std::vector<std::vector<int>>& upper) {
-    const int rows = static_cast<int>(upper.size());
-    std::vector<std::vector<int>> lower(rows);
+  void lay_out(const UpperPattern& upper) {
+    const int rows = static_cast<int>(upper.start.size()) - 1;
+    std::vector<int> below(rows, 0), place(rows);  // of L: numbers in a row, and where the next one goes
+    for (const int j : upper.column) ++below[j];
+    factor_.row_start.resize(rows + 1);
+    factor_.diagonal.resize(rows);
+    factor_.column.resize(rows + 2 * upper.column.size());
+    factor_.same_as_next.resize(rows);
+    int end = 0;
     for (int i = 0; i < rows; ++i) {
-      for (int j : upper[i]) lower[j].push_back(i);
+      const std::span<const int> right = upper.row(i);
+      factor_.row_start[i] = place[i] = end;
+      factor_.diagonal[i] = end + below[i];
+      factor_.column[factor_.diagonal[i]] = i;
+      end = static_cast<int>(std::copy(right.begin(), right.end(), factor_.column.begin() + factor_.diagonal[i] + 1) - factor_.column.begin());
+      factor_.same_as_next[i] = !right.empty() && right.front() == i + 1 && right.size() == upper.row(i + 1).size() + 1;
     }
-    factor_.row_start.assign(1, 0);
-    factor_.diagonal.clear();
-    factor_.column.clear();
-    factor_.same_as_next.clear();
+    factor_.row_start[rows] = end;
     for (int i = 0; i < rows; ++i) {
-      factor_.column.insert(factor_.column.end(), lower[i].begin(), lower[i].end());
-      factor_.diagonal.push_back(static_cast<int>(factor_.column.size()));
-      factor_.column.push_back(i);
-      factor_.column.insert(factor_.column.end(), upper[i].begin(), upper[i].end());
-      factor_.row_start.push_back(static_cast<int>(factor_.column.size()));
-      factor_.same_as_next.push_back(!upper[i].empty() && upper[i].front() == i + 1 && upper[i].size() == upper[i + 1].size() + 1);
+      for (const int j : upper.row(i)) factor_.column[place[j]++] = i;
     }
     factor_.solution.resize(rows);
     factor_.size.resize(rows);

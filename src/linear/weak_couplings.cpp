@@ -33,6 +33,8 @@ std::vector<char> factored_slots(const BlockMatrix<N>& matrix, Factoring factori
 template <int N>
 RowGraph graph_of(const BlockMatrix<N>& matrix, const std::vector<char>& slots) {
   RowGraph graph;
+  graph.start.reserve(matrix.rows() + 1);
+  graph.neighbour.reserve(slots.size());
   for (int i = 0; i < matrix.rows(); ++i) {
     for (int s = matrix.row_start(i); s < matrix.row_start(i + 1); ++s) {
       if (slots[s] && matrix.column(s) != i) graph.neighbour.push_back(matrix.column(s));

@@ -290,6 +290,39 @@ TEST_CASE("boxes at random places on a line touch over their overlap", "[contact
   CHECK(touching > 200);
 }
 
+TEST_CASE("corners that are left out because they are too far from the other block would have touched nothing", "[contact][detection]") {
+  // Every corner of a pair that was in contact is looked at.
+  Contact known;
+  known.vertex_block = 1;
+  known.vertex = 4;
+  const double reach = GENERATE(0.02, 0.2, 1.0);
+  std::mt19937 generator(17);
+  std::uniform_real_distribution<double> size(0.2, 3.0), corner_angle(20.0 * degree, 160.0 * degree), place(-3.0, 3.0), share(-0.1, 1.2),
+      tilt(-16.0 * degree, 16.0 * degree);
+  const auto leaning = [&] {
+    const double width = size(generator), angle = corner_angle(generator);
+    const Vec2 up = size(generator) * Vec2(std::cos(angle), std::sin(angle));
+    return std::vector<Vec2>{{0.0, 0.0}, {width, 0.0}, Vec2(width, 0.0) + up, up};
+  };
+  std::size_t contacts = 0;
+  for (int trial = 0; trial < 2000; ++trial) {
+    const std::vector<Vec2> below = leaning();
+    const std::vector<Vec2> above = placed(leaning(), tilt(generator), Vec2(place(generator), below[2].y() + reach * share(generator)));
+    const Detection all_new(turned(scene_with({fixed_block("below", below), free_block("above", above)}), place(generator), {0.0, 0.0}), reach);
+    std::vector<Contact> found{known};
+    Detector<3> detector(reach, {true, false, true, 0.0});
+    REQUIRE(detector.update(all_new.system, all_new.joints, found));
+    REQUIRE(found.size() == all_new.contacts.size());
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      CHECK(found[i].vertex == all_new.contacts[i].vertex);
+      CHECK(found[i].edge == all_new.contacts[i].edge);
+      CHECK(found[i].length == all_new.contacts[i].length);
+    }
+    contacts += found.size();
+  }
+  CHECK(contacts > 1000);
+}
+
 TEST_CASE("joints are those of the two materials", "[contact][detection]") {
   Scene scene = scene_with({fixed_block("base", rectangle(-5.0, -1.0, 10.0, 1.0)), free_block("block", rectangle(0.0, 0.0, 2.0, 1.0)),
                             free_block("top", rectangle(0.0, 1.0, 2.0, 1.0))});

@@ -53,6 +53,24 @@ TEST_CASE("peak memory counts what was there and is gone", "[core][process]") {
 }
 
 #if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__)
+TEST_CASE("memory that was provided at once is there when it is touched", "[core][process]") {
+  constexpr std::size_t bytes = 8u << 20, piece = 100u << 10;
+  return_large_memory();
+  const long before = resident_memory();
+  if (!provide_memory(bytes)) return;  // an old kernel
+  const auto faults = [] {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return usage.ru_minflt;
+  };
+  const long faults_before = faults();
+  std::vector<std::unique_ptr<std::vector<char>>> pieces;
+  for (std::size_t got = 0; got < bytes; got += piece) pieces.push_back(std::make_unique<std::vector<char>>(piece, 1));
+  // Without, one of the 2000 pages each; the last piece goes beyond what was provided.
+  CHECK(faults() - faults_before < 100);
+  if (before > 0) CHECK(resident_memory() - before < static_cast<long>(bytes) * 12 / 10);
+}
+
 TEST_CASE("memory that was freed between what is in use goes back", "[core][process]") {
   if (resident_memory() == 0) return;  // no /proc here
   // Small enough to come from the heap, and every tenth stays, so that the heap cannot shrink.
