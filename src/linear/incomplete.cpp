@@ -391,18 +391,13 @@ template <class Factor>
 }  // namespace
 
 template <int N>
-Eigen::VectorXf IncompleteLu<N>::solve_in_order(const Eigen::VectorXf& right_side) const {
+void IncompleteLu<N>::solve_in_order(const Eigen::VectorXf& right_side, Eigen::VectorXf& x) const {
   const Triangles<StoredBlock, RowScale> factor{rows(),        row_start_.data(), diagonal_.data(), column_.data(),
                                                 value_.data(), worth_.data(),     scale_.data()};
-  Eigen::VectorXf x(right_side.size());
 #ifdef OPENCLOSE_HAS_WIDE_REGISTERS
-  if (__builtin_cpu_supports("avx2")) {
-    substitute_with_wide_registers(factor, right_side.data(), solution_.data(), x.data());
-    return x;
-  }
+  if (__builtin_cpu_supports("avx2")) return substitute_with_wide_registers(factor, right_side.data(), solution_.data(), x.data());
 #endif
   substitute_with_any_registers(factor, right_side.data(), solution_.data(), x.data());
-  return x;
 }
 
 template <int N>
@@ -410,7 +405,11 @@ Eigen::VectorXd IncompleteLu<N>::solve(const Eigen::VectorXd& right_side) const 
   // Of size one, since single precision ends at 1e38.
   const double size = right_side.size() == 0 ? 0.0 : right_side.cwiseAbs().maxCoeff();
   Eigen::VectorXd x = Eigen::VectorXd::Zero(right_side.size());
-  if (size > 0.0) add_in_order<N>(solve_in_order(in_order<N>(right_side, size, order_)), size, order_, x);
+  if (!(size > 0.0)) return x;
+  const Eigen::VectorXf ordered = in_order<N>(right_side, size, order_);
+  Eigen::VectorXf solution(ordered.size());
+  solve_in_order(ordered, solution);
+  add_in_order<N>(solution, size, order_, x);
   return x;
 }
 

@@ -33,7 +33,7 @@ class IncompleteLu {
   /// About the inverse of the matrix times `right_side`, of which seven digits are read.
   Eigen::VectorXd solve(const Eigen::VectorXd& right_side) const;
   /// The same of vectors in the factor's order, see single_matrix.h.
-  Eigen::VectorXf solve_in_order(const Eigen::VectorXf& right_side) const;
+  void solve_in_order(const Eigen::VectorXf& right_side, Eigen::VectorXf& x) const;
   const std::vector<int>& order() const { return order_; }  ///< row of the matrix at a place in the factor
 
   /// Which couplings it has, which decides what solve() gives, and the factor, of which the next one keeps rows.
