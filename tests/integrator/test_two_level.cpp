@@ -8,6 +8,11 @@ using namespace openclose;
 
 namespace {
 
+/// [-] What the factor of a group leaves, whole numbers of 16 bits: of the largest entry of a row, each of nine may lack one of 32,767 parts. The
+/// condition of the groups here, of which the estimate may lose so many times as much, is some tens.
+constexpr double sixteen_bits = 9.0 / 32767.0;
+constexpr double condition = 30.0;
+
 /// Bricks of 2 m x 1 m, `width` of them in each of `height` courses on a fixed base, joined by springs of 1 N/m along and across two points of every
 /// joint.
 struct Wall {
@@ -51,7 +56,7 @@ struct Wall {
   Eigen::VectorXd eigenvalues() {
     Eigen::MatrixXd estimate(3 * rows, 3 * rows);
     for (int k = 0; k < 3 * rows; ++k) estimate.col(k) = flexibility->displacement(Eigen::VectorXd::Unit(3 * rows, k));
-    CHECK((estimate - estimate.transpose()).norm() < 1e-10 * estimate.norm());
+    CHECK((estimate - estimate.transpose()).norm() < sixteen_bits * condition * estimate.norm());
     const Eigen::MatrixXd root = stiffness.llt().matrixL();
     return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(root.transpose() * estimate * root).eigenvalues();
   }
@@ -63,10 +68,11 @@ struct Wall {
 
 }  // namespace
 
-TEST_CASE("one group is solved exactly, and once more as a rigid body", "[integrator][two_level]") {
+TEST_CASE("one group is solved as it is, and once more as a rigid body", "[integrator][two_level]") {
   Wall wall(1, 1, 4);
   const Eigen::Vector3d force(1.0, -2.0, 0.5);
-  CHECK((wall.flexibility->displacement(force) - 2.0 * wall.stiffness.inverse() * force).norm() < 1e-12);
+  const Eigen::Vector3d expected = 2.0 * wall.stiffness.inverse() * force;
+  CHECK((wall.flexibility->displacement(force) - expected).norm() < sixteen_bits * expected.norm());
 }
 
 TEST_CASE("no eigenvalue of the estimate times the stiffness is above 3", "[integrator][two_level]") {
@@ -92,7 +98,7 @@ TEST_CASE("what is held by inertia alone follows it", "[integrator][two_level]")
   REQUIRE(flexibility.factor());
   Eigen::VectorXd force(9);
   force << 1, 2, 3, 4, 5, 6, 7, 8, 9;
-  for (int k = 0; k < 9; ++k) CHECK(flexibility.displacement(force)[k] == Approx(2.0 * force[k] / (k % 3 == 2 ? 4.0 : 2.0)));
+  for (int k = 0; k < 9; ++k) CHECK(flexibility.displacement(force)[k] == Approx(2.0 * force[k] / (k % 3 == 2 ? 4.0 : 2.0)).epsilon(sixteen_bits));
 }
 
 TEST_CASE("a block that nothing holds is found out", "[integrator][two_level]") {

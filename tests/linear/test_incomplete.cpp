@@ -1,5 +1,8 @@
+#include <Eigen/LU>
+
 #include "grids.h"
 #include "openclose/linear/incomplete.h"
+#include "openclose/linear/single_solver.h"
 #include "openclose/linear/solver.h"
 #include "random_systems.h"
 #include "support/catch.h"
@@ -90,6 +93,35 @@ TEST_CASE("fill of low level is kept", "[linear][incomplete]") {
   const double left = relative_residual(matrix, lu.solve(right_side), right_side);
   CHECK(left < 0.1);
   CHECK(left > sixteen_bits);
+}
+
+TEST_CASE("an estimating solver keeps all fill", "[linear][incomplete]") {
+  RandomSystems random(50);
+  const auto solver = make_estimating_solver<3>();
+  // Eigenvalues of the springs of a grid are below 10, so that the condition is.
+  constexpr double condition = 10.0;
+  for (const double inertia : {1.0, 2.0}) {
+    const BlockMatrix<3> matrix = moving(grid(20, 20, 7), inertia);
+    REQUIRE(solver->factor(matrix));
+    const Eigen::VectorXd right_side = random.vector(matrix.unknowns());
+    CHECK(relative_residual(matrix, solver->solve(right_side), right_side) < condition * sixteen_bits);
+  }
+  CHECK(solver->counters().factorisations == 2);
+  CHECK(solver->counters().solves == 2);
+  CHECK(solver->counters().pivots_lost == 0);
+  CHECK(solver->memory().factor > 0);
+  // Stiff springs between blocks that next to nothing holds.
+  for (const double inertia : {1e-1, 1e-5, 1e-6}) {
+    BlockMatrix<3> loose = grid(6, 1);
+    for (int i = 0; i < loose.rows(); ++i) loose.add(i, i, (inertia - 1.0) * Eigen::Matrix3d::Identity());
+    REQUIRE(solver->factor(loose));
+    CHECK(solver->counters().pivots_lost == (inertia == 1e-1 ? 0 : inertia == 1e-5 ? 1 : 2));
+    const Eigen::VectorXd right_side = random.vector(loose.unknowns()), exact = loose.dense().lu().solve(right_side);
+    CHECK((solver->solve(right_side) - exact).norm() < 0.03 * exact.norm());
+  }
+  BlockMatrix<3> singular = grid(4, 4);
+  singular.set_zero();
+  CHECK_FALSE(solver->factor(singular));
 }
 
 TEST_CASE("an incomplete factor does not ask for the unit of the right side", "[linear][incomplete]") {
