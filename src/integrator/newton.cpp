@@ -575,11 +575,12 @@ bool Newton<N>::iterate_from_cold(StepSolution<N>& solution, double& norm) {
 }
 
 template <int N>
-typename Newton<N>::Outcome Newton<N>::iterate_holding(StepSolution<N>& solution, double& norm) {
+typename Newton<N>::Outcome Newton<N>::iterate_holding(StepSolution<N>& solution, double& norm, int done) {
   Eigen::VectorXd& d = solution.d;
   holds_.assign(contact_count_, 0.0);
+  if (done > 0) hold_changed(norm);
   Outcome outcome = Outcome::ended;
-  for (int iteration = 0; iteration < most_holding_iterations && norm > 1.0 && std::isfinite(norm); ++iteration) {
+  for (int iteration = done; iteration < most_holding_iterations && norm > 1.0 && std::isfinite(norm); ++iteration) {
     branches_before_ = branches_;
     // With the coupling, loose blocks fall from one side to the other; without it, single contacts go round between open and sliding.
     hold_contacts(iteration % 2 == 1);
@@ -706,17 +707,20 @@ void Newton<N>::solve_prepared(StepSolution<N>& solution, FirstTangent first) {
   const Until until{1.0, problem.method.max_iterations};
   Outcome outcome = iterate(problem, solution, norm, until, may_start_cold);
   if (outcome == Outcome::cold_start) {
-    outcome = iterate_from_cold(solution, norm) ? iterate(problem, solution, norm, until, false) : Outcome::no_common_step;
+    const Eigen::VectorXd after_first = solution.d;
+    const std::vector<Branch> before_first = branches_before_;
+    if (iterate_from_cold(solution, norm)) outcome = iterate(problem, solution, norm, until, false);
     if (!(norm <= 1.0)) {
-      solution.d = start;
-      norm = begin(start, first);
-      outcome = iterate(problem, solution, norm, until, false);
+      evaluate(solution.d = after_first);
+      norm = residual_norm();
+      branches_before_ = before_first;
+      outcome = iterate_holding(solution, norm, 1);
     }
   }
   if (outcome == Outcome::no_common_step) {
     solution.d = start;
     norm = begin(start, first);
-    outcome = iterate_holding(solution, norm);
+    outcome = iterate_holding(solution, norm, 0);
   }
   note_memory(solution.memory());
   solution.converged = norm <= 1.0;

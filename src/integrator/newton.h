@@ -115,7 +115,8 @@ class Newton {
   /// still held by a part of its springs. False if blocks come loose all the same.
   bool iterate_from_cold(StepSolution<N>& solution, double& norm);
   /// The same by whole steps with tangents that hold contacts which have changed their state.
-  Outcome iterate_holding(StepSolution<N>& solution, double& norm);
+  /// \param done  iterations that have been made so; the last one from branches_before_
+  Outcome iterate_holding(StepSolution<N>& solution, double& norm, int done);
   /// The next linear solve holds contacts by holds_. With friction that lags it leaves out for them that friction follows the normal force.
   void hold_contacts(bool friction_lags);
   /// Adapts holds_ to what an iteration has changed.
