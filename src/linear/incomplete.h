@@ -1,6 +1,6 @@
 // Incomplete LU factorisation of a block matrix as a preconditioner: fill is kept up to a level (Y. Saad, Iterative methods for sparse linear
 // systems, 2003, section 10.3.3), in single precision, rows in reverse Cuthill-McKee order (A. George, J. W. H. Liu, Computer solution of large
-// sparse positive definite systems, 1981, chapter 4), which makes what is dropped small.
+// sparse positive definite systems, 1981, chapter 4), which makes what is dropped small, from both of its ends at a time.
 //
 // Of large systems a solve waits for the factor to come from memory. It is kept as whole numbers of 16 bits, half of the bytes, with a scale for what
 // a row has on either side of the diagonal: 3e-5 of the largest entry is lost, while what is dropped are hundredths. So that this is as true for
@@ -33,7 +33,7 @@ class IncompleteLu {
   /// About the inverse of the matrix times `right_side`, of which seven digits are read.
   Eigen::VectorXd solve(const Eigen::VectorXd& right_side) const;
   /// The same of vectors in the factor's order, see single_matrix.h.
-  Eigen::VectorXf solve_in_order(const Eigen::VectorXf& right_side) const;
+  void solve_in_order(const Eigen::VectorXf& right_side, Eigen::VectorXf& x) const;
   const std::vector<int>& order() const { return order_; }  ///< row of the matrix at a place in the factor
 
   /// Which couplings it has, which decides what solve() gives, and the factor, of which the next one keeps rows.

@@ -124,10 +124,10 @@ class IncompleteSolver : public LinearSolver<N> {
     const double part = std::clamp(to_spare * wanted, most_of_single_precision, least_of_single_precision);
     // As many of the iterations as it is of the way.
     const int share = static_cast<int>(std::ceil(most * std::min(1.0, std::log(part) / std::log(to_spare * wanted))));
-    KrylovStep<float> found = krylov_step<float>([&](const Eigen::VectorXf& v) { return single_.multiply(v); },
-                                                 [&](const Eigen::VectorXf& v) { return incomplete_.solve_in_order(v); },
-                                                 in_order<N>(residual, size, incomplete_.order()), part, share);
-    krylov_bytes_ = std::max(krylov_bytes_, bytes_of_basis<float>(numbers_of_row * matrix_->rows(), found.iterations));
+    KrylovStep<float> found = krylov_step<float>([&](const Eigen::VectorXf& v, Eigen::VectorXf& product) { single_.multiply(v, product); },
+                                                 [&](const Eigen::VectorXf& v, Eigen::VectorXf& product) { incomplete_.solve_in_order(v, product); },
+                                                 in_order<N>(residual, size, incomplete_.order()), part, share, room_);
+    krylov_bytes_ = std::max(krylov_bytes_, room_.bytes());
     return found;
   }
 
@@ -137,6 +137,7 @@ class IncompleteSolver : public LinearSolver<N> {
     pause_ = std::min(2 * pause_, longest_pause);
     use_direct_ = true;
     incomplete_.let_go();
+    room_ = {};
     return factor_directly();
   }
 
@@ -157,6 +158,7 @@ class IncompleteSolver : public LinearSolver<N> {
   SingleMatrix<N> single_;
   bool use_direct_ = false;
   int pause_ = first_pause, left_to_pause_ = 0;  ///< matrices
+  KrylovRoom<float> room_;
   std::size_t krylov_bytes_ = 0;
   LinearCounters own_;  ///< without those of the direct solver
 };

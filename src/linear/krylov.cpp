@@ -42,26 +42,36 @@ double subtract(VectorOf<Scalar>& vector, double part, const VectorOf<Scalar>& d
   return sum;
 }
 
+/// One of the vectors; makes it if it is not there yet.
+template <class Scalar>
+VectorOf<Scalar>& vector_of(std::vector<VectorOf<Scalar>>& vectors, int number, Eigen::Index size) {
+  if (static_cast<int>(vectors.size()) <= number) vectors.resize(number + 1);
+  vectors[number].resize(size);
+  return vectors[number];
+}
+
 }  // namespace
 
 template <class Scalar>
-KrylovStep<Scalar> krylov_step(const LinearMapOf<Scalar>& matrix, const LinearMapOf<Scalar>& preconditioner, const VectorOf<Scalar>& residual,
-                               double wanted, int most_iterations) {
+KrylovStep<Scalar> krylov_step(const MapInto<Scalar>& matrix, const MapInto<Scalar>& preconditioner, const VectorOf<Scalar>& residual, double wanted,
+                               int most_iterations, KrylovRoom<Scalar>& room) {
   KrylovStep<Scalar> result;
   const double start = std::sqrt(product(residual, residual));
   result.converged = start <= wanted;
   if (result.converged) result.step = VectorOf<Scalar>::Zero(residual.size());
   if (result.converged || !std::isfinite(start)) return result;
 
-  std::vector<VectorOf<Scalar>> basis{residual / static_cast<Scalar>(start)}, directions;
+  auto& [basis, directions] = room;
   std::vector<Eigen::JacobiRotation<double>> rotations;
   Eigen::MatrixXd upper = Eigen::MatrixXd::Zero(most_iterations + 1, most_iterations);  // of the Hessenberg matrix, rotated
   Eigen::VectorXd right = Eigen::VectorXd::Zero(most_iterations + 1);
   right[0] = start;
+  vector_of(basis, 0, residual.size()) = residual / static_cast<Scalar>(start);
   while (!result.converged && result.iterations < most_iterations) {
     const int k = result.iterations++;
-    directions.push_back(preconditioner(basis[k]));
-    VectorOf<Scalar> next = matrix(directions[k]);
+    VectorOf<Scalar>& next = vector_of(basis, k + 1, residual.size());
+    preconditioner(basis[k], vector_of(directions, k, residual.size()));
+    matrix(directions[k], next);
     upper(0, k) = product(basis[0], next);
     for (int i = 0; i < k; ++i) upper(i + 1, k) = subtract(next, upper(i, k), basis[i], basis[i + 1]);
     const double length = std::sqrt(subtract(next, upper(k, k), basis[k], next));
@@ -75,7 +85,7 @@ KrylovStep<Scalar> krylov_step(const LinearMapOf<Scalar>& matrix, const LinearMa
     if (upper(k, k) == 0.0) return result;  // a singular matrix
     result.converged = now <= wanted;
     if (result.converged || !(length > 0.0) || too_slow(start, now, wanted, result.iterations, most_iterations)) break;
-    basis.push_back(next / static_cast<Scalar>(length));
+    next /= static_cast<Scalar>(length);
   }
   if (!result.converged) return result;
   const int used = result.iterations;
@@ -85,12 +95,14 @@ KrylovStep<Scalar> krylov_step(const LinearMapOf<Scalar>& matrix, const LinearMa
   return result;
 }
 
-template KrylovStep<float> krylov_step<float>(const LinearMapOf<float>&, const LinearMapOf<float>&, const VectorOf<float>&, double, int);
-template KrylovStep<double> krylov_step<double>(const LinearMapOf<double>&, const LinearMapOf<double>&, const VectorOf<double>&, double, int);
+template KrylovStep<float> krylov_step<float>(const MapInto<float>&, const MapInto<float>&, const VectorOf<float>&, double, int, KrylovRoom<float>&);
 
 KrylovResult gmres(const LinearMap& matrix, const LinearMap& preconditioner, Eigen::VectorXd& residual, Eigen::VectorXd& x, double wanted,
                    int most_iterations) {
-  const KrylovStep<double> found = krylov_step<double>(matrix, preconditioner, residual, wanted, most_iterations);
+  KrylovRoom<double> room;
+  const KrylovStep<double> found = krylov_step<double>([&](const Eigen::VectorXd& v, Eigen::VectorXd& product) { product = matrix(v); },
+                                                       [&](const Eigen::VectorXd& v, Eigen::VectorXd& product) { product = preconditioner(v); },
+                                                       residual, wanted, most_iterations, room);
   KrylovResult result = found;
   if (!result.converged || result.iterations == 0) return result;
   const Eigen::VectorXd left = residual - matrix(found.step);

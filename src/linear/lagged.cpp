@@ -118,7 +118,7 @@ class LaggedSolver : public LinearSolver<N> {
   std::optional<Eigen::VectorXd> iterate(const Eigen::VectorXd& right_side, double reduction, int most_iterations) {
     Refined result = refine(*matrix_, lu_, right_side, lu_.solve(right_side), reduction, most_iterations);
     this->counters_.krylov_iterations += result.iterations;
-    krylov_bytes_ = std::max(krylov_bytes_, bytes_of_basis<double>(right_side.size(), result.iterations));
+    krylov_bytes_ = std::max(krylov_bytes_, bytes_of_basis(right_side, result.iterations));
     if (!exact_) spent_ += result.iterations;
     return std::move(result.x);
   }

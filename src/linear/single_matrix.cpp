@@ -113,18 +113,16 @@ void SingleMatrix<N>::take(const BlockMatrix<N>& matrix, const std::vector<int>&
 }
 
 template <int N>
-Eigen::VectorXf SingleMatrix<N>::multiply(const Eigen::VectorXf& x) const {
-  Eigen::VectorXf y(x.size());
+void SingleMatrix<N>::multiply(const Eigen::VectorXf& x, Eigen::VectorXf& product) const {
   const int all = static_cast<int>(row_start_.size()) - 1, parts = std::max(1, all / rows_of_a_part);
   const Rows rows{values_.data(), row_start_.data(), columns_.data()};
   for_each_part(SharedWork::product, threads_, parts, [&](int part) {
     const int first = part * rows_of_a_part, end = part + 1 < parts ? first + rows_of_a_part : all;
 #ifdef OPENCLOSE_HAS_WIDE_REGISTERS
-    if (__builtin_cpu_supports("avx2")) return multiply_with_wide_registers<N>(rows, first, end, x.data(), y.data());
+    if (__builtin_cpu_supports("avx2")) return multiply_with_wide_registers<N>(rows, first, end, x.data(), product.data());
 #endif
-    multiply_with_any_registers<N>(rows, first, end, x.data(), y.data());
+    multiply_with_any_registers<N>(rows, first, end, x.data(), product.data());
   });
-  return y;
 }
 
 template Eigen::VectorXf in_order<3>(const Eigen::VectorXd&, double, const std::vector<int>&);

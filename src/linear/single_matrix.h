@@ -32,7 +32,7 @@ class SingleMatrix {
   void take(const BlockMatrix<N>& matrix, const std::vector<int>& order);
 
   void use_threads(int threads) { threads_ = threads; }  ///< for products; they are the same to the last bit
-  Eigen::VectorXf multiply(const Eigen::VectorXf& x) const;
+  void multiply(const Eigen::VectorXf& x, Eigen::VectorXf& product) const;
   std::size_t bytes() const { return bytes_of(row_start_, columns_, values_); }
 
  private:
