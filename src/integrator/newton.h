@@ -150,7 +150,7 @@ class Newton {
   void find_force_scale(double of_contacts, const Eigen::VectorXd& d);
   /// The springs of contact c, with the gap counted from their target.
   ContactSprings springs(std::size_t c) const { return start(c).springs(lane(c)); }
-  // Contact c is one of the lanes of its batch.
+  // Contact c is one of the lanes of its batch: it is counted by its place there. Those of the problem are told from their order_.
   static int lane(std::size_t c) { return static_cast<int>(c % batch_size); }
   const ContactBatch& start(std::size_t c) const { return contacts_[c / batch_size]; }
   TrialBatch& trial(std::size_t c) { return trials_[c / batch_size]; }
@@ -203,6 +203,7 @@ class Newton {
   double ramp_ = tolerance::cohesion_ramp;  ///< [-]
   const StepProblem<N>* problem_ = nullptr;
   BatchKernels kernels_;
+  ContactOrder order_;  ///< of the problem's contacts; in statics that of the list
   BatchRenewal<N> renewal_;
   std::size_t contact_count_ = 0;
   std::vector<ContactBatch> contacts_;
