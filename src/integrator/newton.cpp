@@ -146,7 +146,7 @@ void Newton<N>::prepare_start(const std::vector<ContactSprings>& springs) {
   start_scale_ = block_scale_;
   for (std::size_t c = 0; c < contact_count_; ++c) {
     const ContactSprings& s = springs[c];
-    contacts_[c / batch_size].set_start(lane(c), s);
+    contacts_[c / batch_size].set_springs(lane(c), s);
     start_scale_ = std::max({start_scale_, s.shift - s.normal * (s.gap - s.target), std::abs(s.initial_shear)});
   }
 }
