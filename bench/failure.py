@@ -23,11 +23,17 @@ STARTS, QUICK_STARTS = 3, 2
 REFERENCE = SOFT_PATH_AVERAGE
 REFERENCE_STEPS_S = (2e-3, 1e-3)
 QUICK_REFERENCE_STEPS_S = (4e-3, 2e-3)
-# More blocks: one start. With 5 ms the times of 2,000 blocks are still off by 1.3 %.
+# More blocks, smaller ones: the contacts of a step are those of its start, and blocks of 2 m that move at 15 m/s leave and meet corners within steps
+# of milliseconds. From the same state of 10,000 blocks at 10 m path_average comes to the motion of dem with the first power of its step (after 0.3 s
+# they are 0.76, 0.45, 0.12 mm rms apart with 2.5, 1.25, 0.5 ms; two fractions of dem's step 0.06 mm), so that two of its steps agree long before either
+# is right. The reference is dem here, whose steps are a tenth of a millisecond.
 LARGE = {"full": (2000,), "long": (2000, 10000)}
-LARGE_REFERENCE_STEPS_S = (2.5e-3, 1.25e-3)
+LARGE_STARTS = 2
 
-DT_S = "step.dt_s"
+DT_S, FRACTION = "step.dt_s", "method.step_fraction"
+LARGE_REFERENCE_FRACTIONS = (0.6, 0.3)
+# What friction holds in a settled slope depends on how it has settled; motions are compared from the same equilibrium.
+SAME_START: Settings = (("run.settled_by", "soft"),)
 # Adaptive steps are as long as their tolerance lets them be, and end together with dt_s only: the shorter that is, the more of them are cut there.
 # Forces need not balance to more digits than the tolerance leaves: with 1e-12 the times differ by 1e-6 of them, at 2,000 blocks by 1e-4.
 # Settling is then to ask for no more, over the weight of a block, which is a thousandth of the largest force.
@@ -49,13 +55,14 @@ FOLLOWERS = (
     *(Follower(method, STEPS_S) for method in (SOFT_SHI, SOFT_PATH_AVERAGE, HARD)),
     *(Follower(method, TOLERANCES_M, "step.error_tolerance_m") for method in ADAPTIVE),
     Follower(SHI, (0.005, 0.01, 0.002)),
-    Follower(DEM, FRACTIONS, "method.step_fraction"),
+    Follower(DEM, FRACTIONS, FRACTION),
 )
 QUICK_FOLLOWER_STEPS = 2
 LARGE_FOLLOWERS = (
-    *(Follower(method, (0.02,)) for method in (SOFT_SHI, SOFT_PATH_AVERAGE, HARD)),
-    Follower(ADAPTIVE[0], (3e-4, 1e-4, 3e-5), "step.error_tolerance_m"),
-    Follower(DEM, (0.9,), "method.step_fraction"),
+    Follower(SOFT_SHI, (0.02, 0.01, 0.003)),
+    *(Follower(method, (0.02,)) for method in (SOFT_PATH_AVERAGE, HARD)),
+    Follower(ADAPTIVE[0], (1e-3, 3e-4, 1e-4), "step.error_tolerance_m"),
+    Follower(DEM, (0.9,), FRACTION),
 )
 
 
@@ -69,7 +76,7 @@ class Arrival:
 
 def _case(method: Method, key: str, value: float, start: int = 0, name: str = "", more: Settings = ()) -> Case:
     usual = ADAPTIVE_USUAL if method.adaptive else USUAL
-    settings = [*method.settings, *usual, (key, value), ("run.strength_reduction_factor", FACTOR * (1 + PERTURBATION * start)),
+    settings = [*method.settings, *(SAME_START if method is DEM else ()), *usual, (key, value), ("run.strength_reduction_factor", FACTOR * (1 + PERTURBATION * start)),
                 ("output.every_s", 1.0), ("output.milestones_m", list(DISTANCES_M)), *more]
     return Case(f"failure-{method.name}-{value:g}-{start}{name}".replace(" ", "_"), "run", JointedSlope.POST_FAILURE, tuple(settings), LIMIT_S)
 
@@ -93,8 +100,8 @@ def _distance(a: Arrival, b: Arrival) -> float:
 
 @dataclass
 class Findings:
-    """`converged` is what the two references differ by; `arrivals` are those of the runs that are judged, by method and step. Of `large_converged`,
-    by numbers of blocks, only those whose references got to 40 m."""
+    """`converged` is what the two references differ by; `arrivals` are those of the runs that are judged, by method and step. `large_converged`, by
+    numbers of blocks, is what is not known of their references, of those that got to 40 m."""
 
     reference: Arrival
     converged: float
@@ -145,22 +152,23 @@ def large_scene(blocks: int) -> str:
 
 
 def _large(bench: Bench, blocks: int) -> float | None:
-    """What the two references differ by."""
-    name, more = f"-of-{blocks}", spacings(blocks)
+    """What is not known of the reference: the difference of the two, or half of what the starts differ by if that is more."""
+    name, more, starts = f"-of-{blocks}", spacings(blocks), range(LARGE_STARTS)
     references = []
-    for dt in LARGE_REFERENCE_STEPS_S:
-        reference = _case(REFERENCE, DT_S, dt, 0, name, more)
-        bench.run(reference)
-        arrival = _arrival(bench, [reference])
+    for fraction in LARGE_REFERENCE_FRACTIONS:
+        cases = [_case(DEM, FRACTION, fraction, k, name, more) for k in starts]
+        for case in cases:
+            bench.run(case)
+        arrival = _arrival(bench, cases)
         if arrival is None:
-            bench.leave_out(STUDY, large_scene(blocks), "all", f"the reference did not get to 40 m: {bench.openclose.summary(reference)['reason']}")
+            bench.leave_out(STUDY, large_scene(blocks), "all", f"the reference did not get to 40 m: {bench.openclose.summary(cases[0])['reason']}")
             return None
         references.append(arrival)
     coarse, fine = references
 
-    def error_against(case: Case) -> Callable[[Case], float | None]:
+    def error_against(cases: list[Case]) -> Callable[[Case], float | None]:
         def of(_: Case) -> float | None:
-            arrival = _arrival(bench, [case])
+            arrival = _arrival(bench, cases)
             return None if arrival is None else _distance(arrival, fine)
 
         return of
@@ -168,10 +176,9 @@ def _large(bench: Bench, blocks: int) -> float | None:
     trials = []
     for follower in LARGE_FOLLOWERS:
         for value in follower.values:
-            case = _case(follower.method, follower.key, value, 0, name, (*more, *RESTING))
-            trials.append(Trial(STUDY, large_scene(blocks), follower.method.name, case, "motion", "time at which the toe block has moved 10, 20, 30, "
-                                f"40 m, largest of the four against {REFERENCE.name} with {1e3 * LARGE_REFERENCE_STEPS_S[-1]:g} ms "
-                                "and no block left alone",
-                                error_against(case), value if follower.key == DT_S else None))
+            cases = [_case(follower.method, follower.key, value, k, name, (*more, *RESTING)) for k in starts]
+            trials.append(Trial(STUDY, large_scene(blocks), follower.method.name, cases[0], "motion", "time at which the toe block has moved 10, 20, "
+                                f"30, 40 m, mean of {LARGE_STARTS} starts, largest of the four against dem with {LARGE_REFERENCE_FRACTIONS[-1]:g} of "
+                                "the critical step, no block left alone", error_against(cases), value if follower.key == DT_S else None, tuple(cases)))
     bench.measure(trials)
-    return _distance(coarse, fine)
+    return max(_distance(coarse, fine), fine.spread)

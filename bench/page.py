@@ -147,7 +147,7 @@ def _failure(bench: Bench, findings: failure.Findings | None) -> str:
                 f"{failure.PERTURBATION:g} in strength spread its times by {100 * findings.reference.spread:.2g} %, those of the other runs as the "
                 "table says: a run is no surer than that, and where it is much more than the step's error the motion is chaotic. Times are means "
                 "over the starts.\n\n")
-        text += "".join(f"With {blocks:,} blocks the references differ by {100 * converged:.2g} %.\n\n"
+        text += "".join(f"With {blocks:,} blocks the reference, dem with shorter steps, is known to {100 * converged:.2g} %.\n\n"
                         for blocks, converged in findings.large_converged.items())
         text += _table(["method", "step [s]; dem: part of the critical; adaptive: tolerance [m]",
                         "10 m [s]", "20 m", "30 m", "40 m", "half the spread of the starts"],

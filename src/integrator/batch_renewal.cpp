@@ -14,7 +14,8 @@ void BatchRenewal<N>::find_places(const BlockSystem<N>& system) {
 }
 
 template <int N>
-void BatchRenewal<N>::renew(const StepProblem<N>& problem, const SpringSource<N>& springs, std::vector<ContactBatch>& batches) {
+void BatchRenewal<N>::renew(const StepProblem<N>& problem, const SpringSource<N>& springs, const ContactOrder& order,
+                            std::vector<ContactBatch>& batches) {
   const Step step{problem.dt, problem.end_weight, problem.statics, problem.averages_path(), problem.joints.reduction()};
   const bool last = springs.last();
   if (!last || !(step == step_)) owners_.clear();
@@ -27,33 +28,33 @@ void BatchRenewal<N>::renew(const StepProblem<N>& problem, const SpringSource<N>
   const BlockPlace* const places = places_.data();
   const ContactSprings* const given = springs.list();
   Owner* const owners = owners_.data();
-  std::size_t c = 0;
-  for (ContactBatch& batch : batches) {
-    const int lanes = static_cast<int>(std::min<std::size_t>(batch_size, count - c));
-    for (int k = 0; k < lanes; ++k, ++c) {
-      const Contact& contact = contacts[c];
-      const BlockPlace &vertex = places[contact.vertex_block], &edge = places[contact.edge_block];
-      batch.set_places(k, vertex.place, edge.place);
-      batch.set_geometry(k, ContactPlace<N>(problem.system, contact, vertex.centroid, edge.centroid));
-      if (last) {
-        const Owner owner{contact.length, contact.joint, contact.vertex_block, contact.edge_block, contact.bonded};
-        if (owner == owners[c]) {
-          batch.set_start(k, contact);
-          continue;
-        }
-        owners[c] = owner;
+  for (std::size_t c = 0; c < count; ++c) {
+    const std::size_t at = order[c];
+    ContactBatch& batch = batches[at / batch_size];
+    const int k = static_cast<int>(at % batch_size);
+    const Contact& contact = contacts[c];
+    const BlockPlace &vertex = places[contact.vertex_block], &edge = places[contact.edge_block];
+    batch.set_places(k, vertex.place, edge.place);
+    batch.set_geometry(k, ContactPlace<N>(problem.system, contact, vertex.centroid, edge.centroid));
+    if (last) {
+      const Owner owner{contact.length, contact.joint, contact.vertex_block, contact.edge_block, contact.bonded};
+      if (owner == owners[at]) {
+        batch.set_start(k, contact);
+        continue;
       }
-      batch.set_strength(k, ContactStrength(problem.joints.joint(contact.joint), contact));
-      if (given) {
-        batch.set_springs(k, given[c]);
-      } else {
-        batch.set_springs(k, springs.make(c));
-      }
+      owners[at] = owner;
     }
-    for (int k = lanes; k < batch_size; ++k) {
-      batch.copy(k, ContactBatch(), 0);
-      batch.set_places(k, problem.system.free_count(), problem.system.free_count());
+    batch.set_strength(k, ContactStrength(problem.joints.joint(contact.joint), contact));
+    if (given) {
+      batch.set_springs(k, given[c]);
+    } else {
+      batch.set_springs(k, springs.make(c));
     }
+  }
+  for (std::size_t at = count; at < batch_size * batches.size(); ++at) {
+    const int k = static_cast<int>(at % batch_size);
+    batches.back().copy(k, ContactBatch(), 0);
+    batches.back().set_places(k, problem.system.free_count(), problem.system.free_count());
   }
 }
 

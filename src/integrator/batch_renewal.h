@@ -41,8 +41,9 @@ template <int N>
 class BatchRenewal {
  public:
   /// Sets all batches up to BatchKernels::begin(). The places of blocks are their equations; those without have the one that comes after these.
+  /// \param order    of the contacts in the batches
   /// \param batches  as the last call has left them, but for gaps and forces at the start
-  void renew(const StepProblem<N>& problem, const SpringSource<N>& springs, std::vector<ContactBatch>& batches);
+  void renew(const StepProblem<N>& problem, const SpringSource<N>& springs, const ContactOrder& order, std::vector<ContactBatch>& batches);
   /// The batches are not as the last call has left them.
   void forget() { owners_.clear(); }
   std::size_t bytes() const { return bytes_of(places_, owners_); }
@@ -71,7 +72,7 @@ class BatchRenewal {
 
   Step step_;
   std::vector<BlockPlace> places_;  ///< of blocks
-  std::vector<Owner> owners_;       ///< of the contacts of the last step, none where their springs do not last
+  std::vector<Owner> owners_;       ///< of the places in the batches of the last step, none where their springs do not last
 };
 
 extern template class BatchRenewal<3>;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "openclose/integrator/contact_batch.h"
+#include "openclose/integrator/contact_order.h"
 
 namespace openclose {
 
@@ -38,8 +39,8 @@ class ContactOutcomes {
     o.pose = pose(c);
     return o;
   }
-  ContactStatus status(std::size_t c) const { return openclose::status(branches_[c]); }
-  CarriedForces forces(std::size_t c) const { return batch(c).carried(lane(c), branches_[c]); }
+  ContactStatus status(std::size_t c) const { return openclose::status(branches_[order_[c]]); }
+  CarriedForces forces(std::size_t c) const { return batch(c).carried(lane(c), branches_[order_[c]]); }
   ContactPose<N> pose(std::size_t c) const { return batch(c).pose(lane(c)); }
   double gap_change(std::size_t c) const { return batch(c).gap_change[lane(c)]; }  ///< [m]
   double normal_stiffness(std::size_t c) const { return stiffness_[c].normal; }    ///< [N/m]
@@ -50,16 +51,18 @@ class ContactOutcomes {
     slack_[c] = slack;
   }
 
-  std::size_t bytes() const { return bytes_of(trials_, branches_, stiffness_, slack_); }
+  std::size_t bytes() const { return bytes_of(trials_, branches_, stiffness_, slack_) + order_.bytes(); }
 
   /// Empty again, with its memory for the next step.
   void clear() {
     stiffness_.clear();
     slack_.clear();
+    order_.clear();
   }
   void push_back(const ContactOutcome<N>& o) {
     const std::size_t c = size();
     stiffness_.push_back({o.normal_stiffness, o.shear_stiffness});
+    order_.push_back();
     if (c / batch_size == trials_.size()) trials_.emplace_back();
     if (c >= branches_.size()) branches_.push_back(0);
     trials_[c / batch_size].set_pose(lane(c), o.pose);
@@ -67,18 +70,19 @@ class ContactOutcomes {
     branches_[c] = branch(o.forces);
   }
 
-  /// Newton's batches, lent with the stiffness of so many contacts in them.
+  /// Newton's batches, lent with the stiffness of the contacts in them.
   /// \param starts  of the same contacts
-  void borrow(std::vector<TrialBatch>& trials, std::vector<Branch>& branches, std::size_t count, const std::vector<ContactBatch>& starts) {
+  void borrow(std::vector<TrialBatch>& trials, std::vector<Branch>& branches, const ContactOrder& order, const std::vector<ContactBatch>& starts) {
     trials_.swap(trials);
     branches_.swap(branches);
-    take_stiffness(count, starts);
+    take_stiffness(order, starts);
   }
   /// A copy of them.
-  void copy(const std::vector<TrialBatch>& trials, const std::vector<Branch>& branches, std::size_t count, const std::vector<ContactBatch>& starts) {
+  void copy(const std::vector<TrialBatch>& trials, const std::vector<Branch>& branches, const ContactOrder& order,
+            const std::vector<ContactBatch>& starts) {
     trials_ = trials;
     branches_ = branches;
-    take_stiffness(count, starts);
+    take_stiffness(order, starts);
   }
   /// What was lent is given back; empty again.
   void give_back(std::vector<TrialBatch>& trials, std::vector<Branch>& branches) {
@@ -92,19 +96,21 @@ class ContactOutcomes {
     double normal, shear;
   };
 
-  void take_stiffness(std::size_t count, const std::vector<ContactBatch>& starts) {
+  void take_stiffness(const ContactOrder& order, const std::vector<ContactBatch>& starts) {
     clear();
-    resize_closely(stiffness_, count);
-    for (std::size_t c = 0; c < count; ++c) {
-      const ContactBatch& start = starts[c / batch_size];
+    order_ = order;
+    resize_closely(stiffness_, order.size());
+    for (std::size_t c = 0; c < order.size(); ++c) {
+      const ContactBatch& start = starts[order[c] / batch_size];
       stiffness_[c] = {start.normal[lane(c)], start.shear[lane(c)]};
     }
   }
-  static int lane(std::size_t c) { return static_cast<int>(c % batch_size); }
-  const TrialBatch& batch(std::size_t c) const { return trials_[c / batch_size]; }
+  int lane(std::size_t c) const { return static_cast<int>(order_[c] % batch_size); }
+  const TrialBatch& batch(std::size_t c) const { return trials_[order_[c] / batch_size]; }
 
   std::vector<TrialBatch> trials_;  ///< at least as many as there are contacts
   std::vector<Branch> branches_;
+  ContactOrder order_;                ///< of these
   std::vector<Stiffness> stiffness_;  ///< [N/m]
   std::vector<double> slack_;         ///< [m] of all, or empty where there is none
 };

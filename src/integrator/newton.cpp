@@ -119,7 +119,12 @@ void Newton<N>::prepare(const StepProblem<N>& problem, const SpringSource<N>& sp
   const BlockSystem<N>& system = problem.system;
   problem_ = &problem;
   contact_count_ = problem.contacts.size();
-  renewal_.renew(problem, springs, contacts_);
+  if (problem.statics) {
+    order_.keep(contact_count_);
+  } else {
+    order_.pack(problem.contacts);
+  }
+  renewal_.renew(problem, springs, order_, contacts_);
   blocks_.clear();
   blocks_.reserve(system.free_count());
   for (int b : system.free_blocks()) {
@@ -146,7 +151,8 @@ void Newton<N>::prepare_start(const std::vector<ContactSprings>& springs) {
   start_scale_ = block_scale_;
   for (std::size_t c = 0; c < contact_count_; ++c) {
     const ContactSprings& s = springs[c];
-    contacts_[c / batch_size].set_springs(lane(c), s);
+    const std::size_t at = order_[c];
+    contacts_[at / batch_size].set_springs(lane(at), s);
     start_scale_ = std::max({start_scale_, s.shift - s.normal * (s.gap - s.target), std::abs(s.initial_shear)});
   }
 }
@@ -410,8 +416,9 @@ void Newton<N>::take_last_states() {
   const double touching_gap = problem_->statics ? tolerance::rounding_of_ways_m : 0.0;
   for (std::size_t c = 0; c < contact_count_; ++c) {
     const Contact& contact = problem_->contacts[c];
-    const bool touching = contact.status == ContactStatus::open && contact.gap <= touching_gap && start(c).shift[lane(c)] >= 0.0;
-    take_state(c, touching ? ContactStatus::sticking : contact.status, contact.normal_force, contact.shear_force);
+    const std::size_t at = order_[c];
+    const bool touching = contact.status == ContactStatus::open && contact.gap <= touching_gap && start(at).shift[lane(at)] >= 0.0;
+    take_state(at, touching ? ContactStatus::sticking : contact.status, contact.normal_force, contact.shear_force);
   }
 }
 
@@ -424,7 +431,8 @@ void Newton<N>::take_states_before() {
 
 template <int N>
 void Newton<N>::report_paths(StepSolution<N>& solution) {
-  for (std::size_t c = 0; c < contact_count_; ++c) {
+  for (std::size_t i = 0; i < contact_count_; ++i) {
+    const std::size_t c = order_[i];
     const ContactSprings springs = this->springs(c);
     TrialBatch& at = trial(c);
     const int k = lane(c);
@@ -575,11 +583,12 @@ bool Newton<N>::iterate_from_cold(StepSolution<N>& solution, double& norm) {
 }
 
 template <int N>
-typename Newton<N>::Outcome Newton<N>::iterate_holding(StepSolution<N>& solution, double& norm) {
+typename Newton<N>::Outcome Newton<N>::iterate_holding(StepSolution<N>& solution, double& norm, int done) {
   Eigen::VectorXd& d = solution.d;
   holds_.assign(contact_count_, 0.0);
+  if (done > 0) hold_changed(norm);
   Outcome outcome = Outcome::ended;
-  for (int iteration = 0; iteration < most_holding_iterations && norm > 1.0 && std::isfinite(norm); ++iteration) {
+  for (int iteration = done; iteration < most_holding_iterations && norm > 1.0 && std::isfinite(norm); ++iteration) {
     branches_before_ = branches_;
     // With the coupling, loose blocks fall from one side to the other; without it, single contacts go round between open and sliding.
     hold_contacts(iteration % 2 == 1);
@@ -679,7 +688,7 @@ void Newton<N>::solve(const StepProblem<N>& problem, const SpringSource<N>& spri
   solution.contacts.give_back(trials_, branches_);
   branches_before_ = branches_;
   prepare(problem, springs);
-  tangent_.fit(problem);
+  tangent_.fit(problem, contacts_);
   solve_prepared(solution, first);
 }
 
@@ -696,7 +705,7 @@ void Newton<N>::solve_prepared(StepSolution<N>& solution, FirstTangent first) {
   const StepProblem<N>& problem = *problem_;
   if (problem.end_weight < 1.0) {
     sum_start_forces();
-    solution.start_contacts.copy(trials_, branches_, contact_count_, contacts_);
+    solution.start_contacts.copy(trials_, branches_, order_, contacts_);
   }
   const Eigen::VectorXd start = solution.d;
   double norm = begin(start, first);
@@ -706,17 +715,20 @@ void Newton<N>::solve_prepared(StepSolution<N>& solution, FirstTangent first) {
   const Until until{1.0, problem.method.max_iterations};
   Outcome outcome = iterate(problem, solution, norm, until, may_start_cold);
   if (outcome == Outcome::cold_start) {
-    outcome = iterate_from_cold(solution, norm) ? iterate(problem, solution, norm, until, false) : Outcome::no_common_step;
+    const Eigen::VectorXd after_first = solution.d;
+    const std::vector<Branch> before_first = branches_before_;
+    if (iterate_from_cold(solution, norm)) outcome = iterate(problem, solution, norm, until, false);
     if (!(norm <= 1.0)) {
-      solution.d = start;
-      norm = begin(start, first);
-      outcome = iterate(problem, solution, norm, until, false);
+      evaluate(solution.d = after_first);
+      norm = residual_norm();
+      branches_before_ = before_first;
+      outcome = iterate_holding(solution, norm, 1);
     }
   }
   if (outcome == Outcome::no_common_step) {
     solution.d = start;
     norm = begin(start, first);
-    outcome = iterate_holding(solution, norm);
+    outcome = iterate_holding(solution, norm, 0);
   }
   note_memory(solution.memory());
   solution.converged = norm <= 1.0;
@@ -724,7 +736,7 @@ void Newton<N>::solve_prepared(StepSolution<N>& solution, FirstTangent first) {
   if (!solution.converged) solution.reason = outcome == Outcome::singular ? "singular matrix" : "Newton's method did not converge";
   solution.paths.clear();
   if (averages_path()) report_paths(solution);
-  solution.contacts.borrow(trials_, branches_, contact_count_, contacts_);
+  solution.contacts.borrow(trials_, branches_, order_, contacts_);
 }
 
 template <int N>
@@ -732,7 +744,7 @@ Memory Newton<N>::present_memory() const {
   Memory of = tangent_.memory();
   of.blocks += bytes_of(blocks_, moves_, rows_, sums_of_moved_);
   for (const Eigen::VectorXd* vector : {&trial_, &start_force_, &residual_}) of.blocks += sizeof(double) * static_cast<std::size_t>(vector->size());
-  of.contacts += bytes_of(contacts_, trials_, branches_, branches_before_, holds_) + renewal_.bytes() + neighbourhood_.bytes();
+  of.contacts += bytes_of(contacts_, trials_, branches_, branches_before_, holds_) + renewal_.bytes() + order_.bytes() + neighbourhood_.bytes();
   return of;
 }
 
@@ -743,7 +755,7 @@ Eigen::MatrixXd Newton<N>::stiffness(const StepProblem<N>& problem, const std::v
   static_problem.end_weight = 1.0;
   static_problem.scheme = nullptr;
   prepare(static_problem, GivenSprings<N>(springs));
-  tangent_.fit(static_problem);
+  tangent_.fit(static_problem, contacts_);
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(N * problem.system.free_count());
   evaluate(zero);
   assemble(zero, Tangent::exact);

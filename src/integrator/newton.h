@@ -116,7 +116,8 @@ class Newton {
   /// still held by a part of its springs. False if blocks come loose all the same.
   bool iterate_from_cold(StepSolution<N>& solution, double& norm);
   /// The same by whole steps with tangents that hold contacts which have changed their state.
-  Outcome iterate_holding(StepSolution<N>& solution, double& norm);
+  /// \param done  iterations that have been made so; the last one from branches_before_
+  Outcome iterate_holding(StepSolution<N>& solution, double& norm, int done);
   /// The next linear solve holds contacts by holds_. With friction that lags it leaves out for them that friction follows the normal force.
   void hold_contacts(bool friction_lags);
   /// Adapts holds_ to what an iteration has changed.
@@ -150,7 +151,7 @@ class Newton {
   void find_force_scale(double of_contacts, const Eigen::VectorXd& d);
   /// The springs of contact c, with the gap counted from their target.
   ContactSprings springs(std::size_t c) const { return start(c).springs(lane(c)); }
-  // Contact c is one of the lanes of its batch.
+  // Contact c is one of the lanes of its batch: it is counted by its place there. Those of the problem are told from their order_.
   static int lane(std::size_t c) { return static_cast<int>(c % batch_size); }
   const ContactBatch& start(std::size_t c) const { return contacts_[c / batch_size]; }
   TrialBatch& trial(std::size_t c) { return trials_[c / batch_size]; }
@@ -203,6 +204,7 @@ class Newton {
   double ramp_ = tolerance::cohesion_ramp;  ///< [-]
   const StepProblem<N>* problem_ = nullptr;
   BatchKernels kernels_;
+  ContactOrder order_;  ///< of the problem's contacts; in statics that of the list
   BatchRenewal<N> renewal_;
   std::size_t contact_count_ = 0;
   std::vector<ContactBatch> contacts_;

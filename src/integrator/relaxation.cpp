@@ -236,7 +236,7 @@ void Newton<N>::relax(const StepProblem<N>& problem, const SpringSource<N>& spri
   if (!solution.converged) solution.reason = "relaxation did not come to rest";
   note_slip(springs);
   solution.paths.clear();
-  solution.contacts.borrow(trials_, branches_, contact_count_, contacts_);
+  solution.contacts.borrow(trials_, branches_, order_, contacts_);
 }
 
 template class Newton<3>;

@@ -35,21 +35,33 @@ bool TangentSystem<N>::find_slots(std::size_t count, const BlocksOf& blocks_of) 
 
 template <int N>
 void TangentSystem<N>::fit(const StepProblem<N>& problem) {
-  fit_pattern(problem);
-  matrix_.use_threads(problem.method.threads);
-  solver_->use_threads(problem.method.threads);
-  solver_->let_rows_lag(!problem.statics);
+  row_of_.clear();
+  for (int b = 0; b < problem.system.block_count(); ++b) row_of_.push_back(problem.system.block(b).equation);
+  fit_pattern(problem, [&](std::size_t c) { return std::pair(problem.contacts[c].vertex_block, problem.contacts[c].edge_block); });
 }
 
 template <int N>
-void TangentSystem<N>::fit_pattern(const StepProblem<N>& problem) {
+void TangentSystem<N>::fit(const StepProblem<N>& problem, const std::vector<ContactBatch>& contacts) {
+  row_of_.resize(problem.system.free_count() + 1);
+  std::iota(row_of_.begin(), row_of_.end() - 1, 0);
+  row_of_.back() = BlockSystem<N>::fixed;
+  fit_pattern(problem, [&](std::size_t at) {
+    const ContactBatch& batch = contacts[at / batch_size];
+    const int k = static_cast<int>(at % batch_size);
+    return std::pair(batch.vertex_place(k), batch.edge_place(k));
+  });
+}
+
+template <int N>
+template <class BlocksOf>
+void TangentSystem<N>::fit_pattern(const StepProblem<N>& problem, const BlocksOf& blocks_of) {
   skip_symbolic_ = problem.method.skip_symbolic;
   const int rows = problem.system.free_count();
-  row_of_.clear();
-  for (int b = 0; b < problem.system.block_count(); ++b) row_of_.push_back(problem.system.block(b).equation);
-  const auto blocks_of = [&](std::size_t c) { return std::pair(problem.contacts[c].vertex_block, problem.contacts[c].edge_block); };
-  if (solver_ && matrix_.rows() == rows && find_slots(problem.contacts.size(), blocks_of)) return;
-  renew_pattern(problem.method, rows, problem.contacts.size(), blocks_of);
+  const bool fits = solver_ && matrix_.rows() == rows && find_slots(problem.contacts.size(), blocks_of);
+  if (!fits) renew_pattern(problem.method, rows, problem.contacts.size(), blocks_of);
+  matrix_.use_threads(problem.method.threads);
+  solver_->use_threads(problem.method.threads);
+  solver_->let_rows_lag(!problem.statics);
 }
 
 template <int N>

@@ -12,13 +12,15 @@ class TangentSystem {
  public:
   /// Makes room for the contacts of this step and finds their slots.
   void fit(const StepProblem<N>& problem);
+  /// The same, the slots in the order of the batches.
+  void fit(const StepProblem<N>& problem, const std::vector<ContactBatch>& contacts);
 
   /// The same for a system of `rows` blocks that has nothing to do with the last one.
   /// \param blocks    those with rows come first
   /// \param contacts  the blocks of each
   void fit_part(const MethodInput& method, int rows, int blocks, const std::vector<std::pair<int, int>>& contacts);
 
-  /// Of the contacts in order, and of nothing up to the end of the last batch.
+  /// Of the contacts, and of nothing up to the end of the last batch.
   const std::vector<ContactSlots>& slots() const { return slots_; }
   BlockMatrix<N>& matrix() { return matrix_; }
   /// False if the matrix is singular.
@@ -34,7 +36,8 @@ class TangentSystem {
   const LinearCounters& counters() const { return solver_ ? solver_->counters() : nothing_done_; }
 
  private:
-  void fit_pattern(const StepProblem<N>& problem);
+  template <class BlocksOf>
+  void fit_pattern(const StepProblem<N>& problem, const BlocksOf& blocks_of);
   /// False if a pair of blocks has none.
   /// \param blocks_of  the two blocks of a contact
   template <class BlocksOf>

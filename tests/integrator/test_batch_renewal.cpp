@@ -30,13 +30,19 @@ class CountedSprings final : public SpringSource<3> {
   const StepProblem<3>& problem_;
 };
 
+ContactOrder in_order(std::size_t count) {
+  ContactOrder order;
+  order.keep(count);
+  return order;
+}
+
 /// With springs made anew for each contact.
 std::vector<ContactBatch> made_anew(const StepProblem<3>& problem) {
   const CountedSprings source(problem);
   std::vector<ContactSprings> springs;
   for (std::size_t c = 0; c < problem.contacts.size(); ++c) springs.push_back(source.make(c));
   std::vector<ContactBatch> batches;
-  BatchRenewal<3>().renew(problem, GivenSprings<3>(springs), batches);
+  BatchRenewal<3>().renew(problem, GivenSprings<3>(springs), in_order(problem.contacts.size()), batches);
   return batches;
 }
 
@@ -57,7 +63,7 @@ TEST_CASE("springs kept from step to step are those made anew", "[integrator][sp
   std::size_t made = 0;
   const auto renew = [&] {
     const CountedSprings source(problem);
-    renewal.renew(problem, source, batches);
+    renewal.renew(problem, source, in_order(contacts.size()), batches);
     made = source.made;
     const std::vector<ContactBatch> expected = made_anew(problem);
     REQUIRE(batches.size() == expected.size());
@@ -131,7 +137,7 @@ TEST_CASE("springs kept from step to step are those made anew", "[integrator][sp
   SECTION("springs that last for one step") {
     std::vector<ContactSprings> springs(contacts.size());
     for (ContactSprings& s : springs) s.dissipation = 0.1;
-    renewal.renew(problem, GivenSprings<3>(springs), batches);
+    renewal.renew(problem, GivenSprings<3>(springs), in_order(contacts.size()), batches);
     CHECK(batches[0].dissipation[1] == 0.1);
     renew();
     CHECK(made == contacts.size());

@@ -90,8 +90,10 @@ TEST_CASE("batches are lent with their springs and given back", "[integrator][ou
   }
   const TrialBatch* const where = trials.data();
   ContactOutcomes<3> copy, outcomes;
-  copy.copy(trials, branches, 2, starts);
-  outcomes.borrow(trials, branches, 2, starts);
+  ContactOrder order;
+  order.keep(2);
+  copy.copy(trials, branches, order, starts);
+  outcomes.borrow(trials, branches, order, starts);
   CHECK(trials.empty());
   for (int c = 0; c < 2; ++c) {
     check_same(outcomes[c], outcome(c));
