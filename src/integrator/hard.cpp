@@ -56,6 +56,8 @@ constexpr double kept_penetration = 0.5, recovered_penetration = 0.5;
 constexpr int most_outer_passes = 100;
 /// Motion: passes that keep more of the error than slow_convergence. What goes on through many blocks needs some; more of them lead nowhere.
 constexpr int most_slow_passes = 30;
+/// After so many the decrease per pass tells whether that many are enough.
+constexpr int slow_passes_to_judge = 3;
 /// [-] A step that needs more of them is repeated with the part of its length in which what multipliers lack would move the blocks by this part of
 /// what is tolerated, the error going with the square of the length; at most the longest part. What would take less than the shortest is no matter of
 /// its length: blocks that hit each other, whose impulse does not become less.
@@ -174,6 +176,7 @@ class Hard final : public Enforcement<N> {
     solution.d = drift(problem);
     solution.eased = false;
     int slow_passes = 0;
+    double first_slow_error = 0.0;
     Eigen::VectorXd first;                                      // where the first pass of statics has brought the blocks
     double last_way = std::numeric_limits<double>::infinity();  // [m] of the farthest block in the last pass
     double last_error = std::numeric_limits<double>::infinity();
@@ -192,7 +195,9 @@ class Hard final : public Enforcement<N> {
       if (moves_on && error * tolerated(problem) <= std::min(problem.method.gap_tolerance, part_of_way * way)) return;
       if (may_be_compliant(problem) && !compliant_.converged) compliant_ = solution;
       if (!problem.statics && error > slow_convergence * last_error) {
-        if (++slow_passes > most_slow_passes) {
+        if (++slow_passes == 1) first_slow_error = error;
+        if (slow_passes >= slow_passes_to_judge &&
+            error * std::pow(error / first_slow_error, most_slow_passes / (slow_passes - 1.0)) > incompatible_gaps) {
           solution.part = shorter(error);
           break;
         }
