@@ -471,13 +471,14 @@ class Detector<N>::NarrowPhase {
   bool in_block(int block, const Vec2& p) {
     constexpr double margin = 2.0 * tolerance::edge_end_m;  // what is decided so is the same by the distance below
     if (!shapes_.box(block).inflated(margin).contains(p)) return false;
-    const bool convex = shapes_.is_convex(block);
-    polygon_.clear();
-    const auto& vertices = system_.block(block);
-    for (int v = vertices.first_vertex; v < vertices.first_vertex + vertices.vertex_count; ++v) {
-      if (convex && shapes_.edge(v).gap(p) > margin) return false;
-      polygon_.push_back(shapes_.edge(v).start);
+    if (shapes_.is_convex(block)) {
+      double farthest = -std::numeric_limits<double>::infinity();  // before an edge
+      for (const Edge& edge : shapes_.edges(block)) farthest = std::max(farthest, edge.gap(p));
+      if (farthest > margin) return false;
+      if (farthest <= 0.0) return true;
     }
+    polygon_.clear();
+    for (const Edge& edge : shapes_.edges(block)) polygon_.push_back(edge.start);
     return contains(polygon_, p) || distance_to_boundary(polygon_, p) <= tolerance::edge_end_m;
   }
 

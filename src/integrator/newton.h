@@ -4,10 +4,11 @@
 // (sticking springs only) with an energy line search, which makes progress while many contacts still change state. Convergence means the residual
 // alone: the contact states are functions of the displacement.
 //
-// Where a static step has thousands of loose contacts, a few of them make any common length of the step uselessly short. It is then begun again with
-// another tangent and whole steps: contacts that have just opened or slid are held by their springs in it, and let go while they stay as they are,
-// each for itself. With all of them held the iteration is the one of initial stresses (O. C. Zienkiewicz, S. Valliappan and I. P. King, 1969), which
-// is slow and steady; with none it is Newton's. The residual knows nothing of this, and so neither does the solution.
+// Where a static step has thousands of loose contacts, a few of them make any common length of the step uselessly short. It is then begun again, from
+// a cold start gone on with after its first iteration, with another tangent and whole steps: contacts that have just opened or slid are held by their
+// springs in it, and let go while they stay as they are, each for itself. With all of them held the iteration is the one of initial stresses (O. C.
+// Zienkiewicz, S. Valliappan and I. P. King, 1969), which is slow and steady; with none it is Newton's. The residual knows nothing of this, and so
+// neither does the solution.
 //
 // In the motion of a large system a few contacts that change their states would make all blocks iterate. Between two iterations of the whole, the
 // parts around them are solved for themselves (the nonlinear elimination of P. J. Lanzkron, D. J. Rose and J. T. Wilkes, 1996), so that the number of

@@ -55,7 +55,8 @@ class LinearSolver {
   virtual bool factor(const BlockMatrix<N>& matrix, double kept_change) = 0;
   bool factor(const BlockMatrix<N>& matrix) { return factor(matrix, 0.0); }
   /// Nothing (size 0) if the matrix turns out to be singular only here.
-  /// \param reduction  [-] of the Euclidean norm of the residual over that of the right side, at least; factors of the matrix itself do not ask
+  /// \param reduction  [-] of the Euclidean norm of the residual over that of the right side, at least, but for rounding: of 1e-5 and more single
+  ///                   precision may leave twice as much. Factors of the matrix itself do not ask.
   virtual Eigen::VectorXd solve(const Eigen::VectorXd& right_side, double reduction) = 0;
   Eigen::VectorXd solve(const Eigen::VectorXd& right_side) { return solve(right_side, full_reduction); }
   /// \param enough  [-] a residual below which nobody needs to go, also where it would cost little
