@@ -5,7 +5,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from measure import Bench, Trial
-from methods import ADAPTIVE, DEM, HARD, SHI, SOFT_PATH_AVERAGE, SOFT_SHI, Method, Settings
+from methods import ADAPTIVE, AHEAD, DEM, HARD, SHI, SOFT_PATH_AVERAGE, SOFT_SHI, Method, Settings
 from runs import Case
 from scaling import spacings
 from slopes import JointedSlope
@@ -53,6 +53,7 @@ TOLERANCES_M = (1e-4, 3e-5, 1e-3, 1e-5)
 FRACTIONS = (0.9, 0.45, 0.225)
 FOLLOWERS = (
     *(Follower(method, STEPS_S) for method in (SOFT_SHI, SOFT_PATH_AVERAGE, HARD)),
+    *(Follower(method, (0.01, 0.005, 0.02)) for method in AHEAD),
     *(Follower(method, TOLERANCES_M, "step.error_tolerance_m") for method in ADAPTIVE),
     Follower(SHI, (0.005, 0.01, 0.002)),
     Follower(DEM, FRACTIONS, FRACTION),
@@ -60,6 +61,8 @@ FOLLOWERS = (
 QUICK_FOLLOWER_STEPS = 2
 LARGE_FOLLOWERS = (
     Follower(SOFT_SHI, (0.02, 0.01, 0.003)),
+    Follower(AHEAD[0], (0.01,)),
+    Follower(AHEAD[1], (0.01, 0.005)),
     *(Follower(method, (0.02,)) for method in (SOFT_PATH_AVERAGE, HARD)),
     Follower(ADAPTIVE[0], (1e-3, 3e-4, 1e-4), "step.error_tolerance_m"),
     Follower(DEM, (0.9,), FRACTION),

@@ -26,6 +26,8 @@ INTEGRATORS = (
     Method("soft tr_bdf2", _soft("tr_bdf2")),
     SOFT_PATH_AVERAGE,
 )
+# Their contacts found in the middle of the step.
+AHEAD = tuple(Method(f"{method.name} looking ahead", (*method.settings, ("step.look_ahead", 0.5))) for method in (SOFT_SHI, SOFT_PATH_AVERAGE))
 ADAPTIVE = tuple(Method(f"{method.name} adaptive", (*method.settings, ("step.adaptive", "true")), adaptive=True)
                  for method in (SOFT_SHI, SOFT_PATH_AVERAGE))
 SOFT = Method("soft", (("method.contact", "soft"),))

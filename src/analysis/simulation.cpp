@@ -60,6 +60,9 @@ Simulation<N>::Simulation(Scene scene, std::unique_ptr<Enforcement<N>> enforceme
   if (scene_.step.adaptive && !enforcement_->takes_adaptive_steps())
     throw InputError(scene_.where, "step.adaptive", "true has no meaning for method.contact = \"" + scene_.method.contact + "\"",
                      "contact = \"soft\"");
+  if (scene_.step.look_ahead > 0.0 && (enforcement_->is_explicit() || !enforcement_->follows_gaps()))
+    throw InputError(scene_.where, "step.look_ahead", "has no meaning for method.contact = \"" + scene_.method.contact + "\"",
+                     "contact = \"soft\" or \"hard\", or 0");
   if (!scene_.settled_by || *scene_.settled_by == scene_.method.contact) return;
   if (!has_joint_springs<N>(scene_.method.contact) || !has_joint_springs<N>(*scene_.settled_by))
     throw InputError(scene_.settled_by_where, "run.settled_by",
@@ -262,12 +265,21 @@ double Simulation<N>::force_scale() const {
 }
 
 template <int N>
-void Simulation<N>::detect() {
+bool Simulation<N>::find_contacts(double lead) {
+  // What touches in the drawing is found there.
+  if (lead == 0.0 || detector_.counters().searches == 0) return detector_.update(system_, joints_, contacts_);
+  BlockSystem<N> ahead = system_;
+  for (int b : system_.free_blocks()) ahead.advance(b, scheme_->drift(b, lead, system_.velocity(b)));
+  return detector_.update(ahead, joints_, contacts_, &system_);
+}
+
+template <int N>
+void Simulation<N>::detect(double lead) {
   const Stopwatch watch(stage_times_.detection);
   const bool elastic = enforcement_->has_elastic_contacts();
   const double before = elastic ? moving_contact_energy() : 0.0;
   contacts_current_ = true;
-  if (!detector_.update(system_, joints_, contacts_) || !elastic) return;
+  if (!find_contacts(lead) || !elastic) return;
   const StepProblem<N> p = present_problem(scene_.step.dt, false);
   for (const DetectionChange& change : detector_.changes()) {
     for (int i = change.after.begin; i < change.after.end; ++i) store_energy(p, contacts_[i]);
@@ -294,9 +306,9 @@ std::vector<Contact>& Simulation<N>::contacts() {
 }
 
 template <int N>
-std::vector<Contact>& Simulation<N>::moving_contacts() {
+std::vector<Contact>& Simulation<N>::moving_contacts(double lead) {
   unload_loop();
-  if (!contacts_current_) detect();
+  if (!contacts_current_) detect(lead);
   return contacts_;
 }
 
@@ -316,7 +328,7 @@ bool Simulation<N>::move_base(double dt, bool statics) {
 template <int N>
 StepProblem<N> Simulation<N>::problem(double dt, bool statics) {
   move_base(dt, statics);
-  moving_contacts();
+  moving_contacts(statics ? 0.0 : scene_.step.look_ahead * dt);
   return present_problem(dt, statics);
 }
 

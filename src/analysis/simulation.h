@@ -170,7 +170,10 @@ class Simulation {
   void exchange(Archive& archive);
 
  private:
-  void detect();
+  /// Those of the places to which their velocities carry the blocks within `lead` [s]: of what happens to a corner within a step, that it passes the
+  /// end of an edge or comes to the next one, half is then seen too early where all would be seen too late. False if the list stays as it is.
+  bool find_contacts(double lead);
+  void detect(double lead);
   void restart_scheme();
   /// Gives the external forces what the base does in the next step.
   /// True if blocks at rest were woken by it.
@@ -197,7 +200,8 @@ class Simulation {
   /// The same, and no block is at rest any more, because the caller may change what the steps work on.
   void take_back();
   /// Of the blocks that move.
-  std::vector<Contact>& moving_contacts();
+  /// \param lead  see find_contacts()
+  std::vector<Contact>& moving_contacts(double lead = 0.0);
   double moving_contact_energy() const;
   /// Follows how quiet the blocks are and puts some to rest.
   void rest_after(double dt);

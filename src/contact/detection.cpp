@@ -9,6 +9,7 @@
 #include <ranges>
 #include <span>
 
+#include "openclose/contact/kinematics.h"
 #include "openclose/core/tolerance.h"
 #include "openclose/geometry/polygon.h"
 
@@ -218,8 +219,8 @@ class Detector<N>::NarrowPhase {
  public:
   using Edge = typename Shapes::Edge;
 
-  NarrowPhase(const BlockSystem<N>& system, double reach, Shapes& shapes, const ContactIndex& previous)
-      : system_(system), reach_(reach), shapes_(shapes), previous_(previous) {}
+  NarrowPhase(const BlockSystem<N>& system, const BlockSystem<N>* present, double reach, Shapes& shapes, const ContactIndex& previous)
+      : system_(system), present_(present), reach_(reach), shapes_(shapes), previous_(previous) {}
 
   void run(int block_a, int block_b, std::vector<Contact>& found) {
     found_ = &found;
@@ -362,15 +363,20 @@ class Detector<N>::NarrowPhase {
     const Vec2& p = shapes_.edge(v).start;
     const double gap = edge.gap(p);
     if (gap > reach_ || !outside(v, edge)) return;
-    if (gap < 0.0 && !entered_through(v, edge_block, e, gap, closed)) return;
     Contact contact;
     contact.vertex_block = vertex_block;
     contact.vertex = v;
     contact.edge_block = edge_block;
     contact.edge = e;
     contact.length = length;
-    contact.gap = gap;
+    contact.gap = present_ ? present_gap(contact) : gap;
+    if (gap < 0.0 && (!present_ || contact.gap < 0.0) && !entered_through(v, edge_block, e, gap, closed)) return;
     found_->push_back(contact);
+  }
+
+  double present_gap(const Contact& contact) const {
+    const ContactStart<N> at(*present_, contact);
+    return at.normal.dot(at.lever);
   }
 
   /// [m] What the contacts of a corner have closed.
@@ -479,6 +485,7 @@ class Detector<N>::NarrowPhase {
   static constexpr double room_of_corners = 1.5;  ///< [-] over the reach
 
   const BlockSystem<N>& system_;
+  const BlockSystem<N>* present_;
   double reach_;
   Shapes& shapes_;
   const ContactIndex& previous_;
@@ -1022,7 +1029,7 @@ void Detector<N>::let_go_of_working_memory() {
 }
 
 template <int N>
-bool Detector<N>::update(const BlockSystem<N>& system, const JointTable& joints, std::vector<Contact>& contacts) {
+bool Detector<N>::update(const BlockSystem<N>& system, const JointTable& joints, std::vector<Contact>& contacts, const BlockSystem<N>* present) {
   const bool all = forgotten_ || !skips_.search || !skips_.narrow_phase;
   const bool searches = needs_search(system);
   forgotten_ = false;
@@ -1045,7 +1052,7 @@ bool Detector<N>::update(const BlockSystem<N>& system, const JointTable& joints,
   if (!searches) shapes_->begin(system);
   index_->begin(system, contacts, resting_.contacts);
   for (const int pair : pairs_around_due_ones()) index_->add(ranges_[pair]);
-  NarrowPhase narrow(system, reach_ + skips_.contact_skin, *shapes_, *index_);
+  NarrowPhase narrow(system, present, reach_ + skips_.contact_skin, *shapes_, *index_);
   for (const int pair : due_pairs_) redo(joints, system, pair, narrow, contacts);
   if (!first_) pass_on_history(system, contacts);
   put_in_place(contacts, orphans);

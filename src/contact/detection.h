@@ -110,7 +110,9 @@ class Detector {
   /// the last step, and is renewed where needed; whoever adds to it or takes from it calls forget() first.
   /// Only what touches in the very first call is bonded: those joints exist in the rock; surfaces that meet later have no cohesion unless it is
   /// ductile.
-  bool update(const BlockSystem<N>& system, const JointTable& joints, std::vector<Contact>& contacts);
+  /// \param present  where the blocks are, if `system` has them where they are expected: gaps are those of `present`, and what has not gone behind an
+  ///                 edge there is met by it however deep it is behind it in `system`. Null: `system` has them where they are.
+  bool update(const BlockSystem<N>& system, const JointTable& joints, std::vector<Contact>& contacts, const BlockSystem<N>* present = nullptr);
 
   /// Which blocks are at rest has changed. From now on `contacts`, the list as the last update() left it, has those of pairs of which a block moves;
   /// the others are kept here.

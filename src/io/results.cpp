@@ -238,6 +238,7 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
       {"base_motion", scene.base_motion ? ordered_json(word_for(base_motion_words, scene.base_motion->kind)) : ordered_json(nullptr)},
       {"adaptive", scene.step.adaptive},
       {"error_tolerance_m", scene.step.error_tolerance},
+      {"look_ahead", scene.step.look_ahead},
       {"rest", {{"time_s", scene.rest.time}, {"displacement_m", scene.rest.displacement}, {"acceleration_m_per_s2", scene.rest.acceleration}}},
       {"run_strength_reduction_factor", scene.run_strength_reduction_factor},
       {"settled_by", scene.settled_by ? ordered_json(*scene.settled_by) : ordered_json(nullptr)},

@@ -241,6 +241,7 @@ StepInput read_step(Table table) {
   table.optional("smallest_fraction", step.smallest_fraction, Range{.low = 0.0, .high = 1.0, .high_included = true});
   table.optional("adaptive", step.adaptive);
   table.optional("error_tolerance_m", step.error_tolerance, positive);
+  table.optional("look_ahead", step.look_ahead, Range{.low = 0.0, .high = 1.0, .low_included = true, .high_included = true});
   table.finish();
   return step;
 }

@@ -172,6 +172,7 @@ struct StepInput {
   double smallest_fraction = 1e-6;  ///< [-] of dt, below which cutting is given up
   bool adaptive = false;            ///< steps up to dt as long as error_tolerance allows
   double error_tolerance = 1e-4;    ///< [m] adaptive: local error of a step, of any vertex
+  double look_ahead = 0.0;          ///< [-] part of the step after which the blocks are where its contacts are found, if they keep their velocities
 };
 
 /// When a block is at rest in a motion, and when it is not any more; the rule is in analysis/resting.h. A tenth of a second is some periods of blocks

@@ -192,6 +192,7 @@ void write_run(Text& text, const Scene& scene) {
   text.line("smallest_fraction", scene.step.smallest_fraction);
   text.line("adaptive", scene.step.adaptive);
   text.line("error_tolerance_m", scene.step.error_tolerance);
+  text.line("look_ahead", scene.step.look_ahead);
   text.header("[rest]");
   text.line("time_s", scene.rest.time);
   text.line("displacement_m", scene.rest.displacement);

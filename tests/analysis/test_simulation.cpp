@@ -484,3 +484,50 @@ TEST_CASE("scenes that cannot be simulated", "[analysis][simulation]") {
   }
   CHECK_THROWS_AS(Simulation<3>(scene), InputError);
 }
+
+TEST_CASE("contacts are those of where the blocks will be, their gaps those of now", "[analysis][simulation]") {
+  Scene scene = test::empty_scene();
+  // On one corner, a centimetre before the seam of two bases.
+  scene.blocks = {test::fixed_block("left", test::rectangle(-10.0, -1.0, 10.0, 1.0)),
+                  test::fixed_block("right", test::rectangle(0.0, -1.0, 10.0, 1.0)),
+                  test::free_block("block", test::placed(test::rectangle(0.0, 0.0, 1.0, 1.0), 0.35, {-0.01, 0.0}))};
+  scene.blocks[2].velocity = {2.0, -0.5};
+  const double dt = 0.01;  // [s]: 20 mm on, 5 mm deep
+  const auto bases_below = [&](double look_ahead) {
+    scene.step.look_ahead = look_ahead;
+    Simulation<3> simulation(scene);
+    // What touches in the drawing is found there, and is what is bonded.
+    const auto below = [&] {
+      std::vector<int> bases;
+      for (const Contact& c : simulation.problem(dt, false).contacts) {
+        if (c.vertex_block != 2) continue;  // a base's own corner
+        bases.push_back(c.edge_block);
+        CHECK(std::abs(c.gap) < 1e-12);
+        CHECK(c.bonded);  // one base inherits from the other
+      }
+      return bases;
+    };
+    CHECK(below() == std::vector<int>{0});
+    simulation.positions_changed();
+    const std::vector<int> bases = below();
+    CHECK(simulation.system().displacement(2).isZero(0.0));
+    return bases;
+  };
+  CHECK(bases_below(0.0) == std::vector<int>{0});
+  CHECK(bases_below(0.25) == std::vector<int>{0});
+  CHECK(bases_below(0.75) == std::vector<int>{1});
+  CHECK(bases_below(1.0) == std::vector<int>{1});
+}
+
+TEST_CASE("only methods that follow gaps in steps of their own look ahead", "[analysis][simulation]") {
+  Scene scene = test::block_on_base();
+  scene.step.look_ahead = 0.5;
+  for (const std::string contact : {"soft", "hard"}) {
+    scene.method.contact = contact;
+    CHECK_NOTHROW(Simulation<3>(scene));
+  }
+  for (const std::string contact : {"dem", "shi"}) {
+    scene.method.contact = contact;
+    CHECK_THROWS_WITH(Simulation<3>(scene), ContainsSubstring("step.look_ahead: has no meaning for method.contact = \"" + contact + "\""));
+  }
+}

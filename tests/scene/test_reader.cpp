@@ -66,7 +66,7 @@ TEST_CASE("every key reaches its field", "[scene][reader]") {
       "0.5\npenetration_tolerance_m = 12\n"
       "gap_tolerance_m = 2e-9\nclosing_tolerance_m = 0\nmax_open_close_iterations = 13.0\nstep_cut = 0.25\nstep_fraction = 0.5\ndamping = "
       "'automatic'\nlocal_damping = 0.6\n"
-      "[step]\ndt_s = 0.01\nmax_displacement_m = 14\nsmallest_fraction = 1\nadaptive = true\nerror_tolerance_m = 1e-3\n"
+      "[step]\ndt_s = 0.01\nmax_displacement_m = 14\nsmallest_fraction = 1\nadaptive = true\nerror_tolerance_m = 1e-3\nlook_ahead = 0.75\n"
       "[rest]\ntime_s = 0.5\ndisplacement_m = 2e-3\nacceleration_m_per_s2 = 0.75\n"
       "[run]\nstrength_reduction_factor = 1.5\nsettled_by = 'another'\n"
       "[end]\ntime_s = 15\ndisplacement_m = 40\n[output]\nevery_s = 16\ncheckpoint_every_s = 24\nmilestones_m = [10, 20.5]\nsnapshots_s = [0, "
@@ -140,6 +140,7 @@ TEST_CASE("every key reaches its field", "[scene][reader]") {
   CHECK(scene.step.smallest_fraction == 1.0);
   CHECK(scene.step.adaptive);
   CHECK(scene.step.error_tolerance == 1e-3);
+  CHECK(scene.step.look_ahead == 0.75);
   CHECK(scene.end_time == 15.0);
   CHECK(scene.output_every == 16.0);
   CHECK(scene.checkpoint_every == 24.0);

@@ -198,6 +198,7 @@ TEST_CASE("options out of range", "[scene][reader][errors]") {
       {"step", "dt_s = -0.1", "-0.1", "a number > 0"},
       {"step", "max_displacement_m = 0", "0", "a number > 0"},
       {"step", "error_tolerance_m = 0", "0", "a number > 0"},
+      {"step", "look_ahead = 1.5", "1.5", "a number in [0, 1]"},
       {"step", "smallest_fraction = 2", "2", "a number in (0, 1]"},
       {"end", "time_s = -1", "-1", "a number >= 0"},
       {"output", "every_s = -1", "-1", "a number >= 0"},

@@ -108,6 +108,7 @@ void check_same(const Scene& a, const Scene& b) {
   CHECK(a.step.smallest_fraction == b.step.smallest_fraction);
   CHECK(a.step.adaptive == b.step.adaptive);
   CHECK(a.step.error_tolerance == b.step.error_tolerance);
+  CHECK(a.step.look_ahead == b.step.look_ahead);
   CHECK(a.rest.time == b.rest.time);
   CHECK(a.rest.displacement == b.rest.displacement);
   CHECK(a.rest.acceleration == b.rest.acceleration);
@@ -206,7 +207,7 @@ Scene random_scene(unsigned seed) {
   scene.method.step_fraction = fraction(generator);
   scene.method.damping = MassDamping::local;
   scene.method.local_damping = fraction(generator);
-  scene.step = {number(), number(), fraction(generator), true, number()};
+  scene.step = {number(), number(), fraction(generator), true, number(), fraction(generator)};
   scene.rest = {number(), number(), number()};
   scene.end_time = number();
   scene.output_every = number();
