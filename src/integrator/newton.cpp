@@ -152,7 +152,7 @@ void Newton<N>::prepare_start(const std::vector<ContactSprings>& springs) {
   for (std::size_t c = 0; c < contact_count_; ++c) {
     const ContactSprings& s = springs[c];
     const std::size_t at = order_[c];
-    contacts_[at / batch_size].set_start(lane(at), s);
+    contacts_[at / batch_size].set_springs(lane(at), s);
     start_scale_ = std::max({start_scale_, s.shift - s.normal * (s.gap - s.target), std::abs(s.initial_shear)});
   }
 }

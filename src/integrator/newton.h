@@ -58,7 +58,8 @@ class Newton {
              FirstTangent first = FirstTangent::last_step) {
     solve(problem, GivenSprings<N>(springs), solution, first);
   }
-  /// The step of the last solve() again, with springs that differ only in what they carry at its start and in the gaps they keep.
+  /// The step of the last solve() again, with springs that differ only in what they carry at its start, in the gaps they keep and
+  /// in their stiffness.
   void solve_again(const std::vector<ContactSprings>& springs, StepSolution<N>& solution, FirstTangent first);
 
   /// [-] Part of the cohesion over which it comes in, in what is solved from now on: see ContactStrength::shear_bound().
