@@ -104,7 +104,8 @@ class IncompleteSolver : public LinearSolver<N> {
     Eigen::VectorXd x = Eigen::VectorXd::Zero(right_side.size()), residual = right_side;
     double size = residual.norm(), wanted = reduction * size;
     if (!std::isfinite(size)) return result;
-    const double excess = reduction < most_of_single_precision ? 1.0 : rounding_excess;
+    const bool is_one_go = reduction >= most_of_single_precision && reduction <= least_of_single_precision;
+    const double excess = is_one_go ? rounding_excess : 1.0;
     while (size > excess * wanted) {
       const KrylovStep<float> found = step_in_single_precision(residual, size, wanted / size, most_iterations() - result.iterations);
       result.iterations += found.iterations;
