@@ -38,7 +38,7 @@ bool has_joint_springs(const std::string& contact) {
 
 template <int N>
 Simulation<N>::Simulation(Scene scene) : Simulation(std::move(scene), nullptr) {
-  if (enforcement_->is_explicit()) loop_ = std::make_unique<CentralDifference<N>>();
+  if (enforcement_->is_explicit()) loop_ = std::make_unique<CentralDifference<N>>(scene_.method.contact_skin);
 }
 
 template <int N>
@@ -51,7 +51,8 @@ Simulation<N>::Simulation(Scene scene, std::unique_ptr<Enforcement<N>> enforceme
       scheme_(enforcement_->make_time_scheme(scene_.method)),
       // Two vertices may approach each other by the largest displacement each.
       detector_(2.0 * scene_.step.max_displacement,
-                {scene_.method.skip_search, scene_.method.skip_narrow_phase && enforcement_->follows_gaps(), scene_.method.skip_looks}),
+                {scene_.method.skip_search, scene_.method.skip_narrow_phase && enforcement_->follows_gaps(), scene_.method.skip_looks,
+                 scene_.method.contact_skin}),
       output_velocity_(system_.state().velocity),
       resting_(scene_.rest, system_),
       start_kinetic_energy_(system_.kinetic_energy()),
@@ -740,7 +741,7 @@ void Simulation<N>::change_method(const MethodInput& method) {
   take_back();
   scene_.method = method;
   enforcement_ = make_enforcement<N>(method);
-  loop_ = enforcement_->is_explicit() ? std::make_unique<CentralDifference<N>>() : nullptr;
+  loop_ = enforcement_->is_explicit() ? std::make_unique<CentralDifference<N>>(scene_.method.contact_skin) : nullptr;
   restart_scheme();
 }
 

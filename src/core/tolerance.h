@@ -55,8 +55,8 @@ inline constexpr double edge_end_m = 1e-6;
 /// [m] Room around a block's box within which candidates are kept although they cannot touch yet; larger: fewer searches, more candidates.
 inline constexpr double search_skin_m = 0.25;
 
-/// [m] The list of contacts stays as it is until blocks may have moved this much against each other: tributary lengths are off by less, 0.1 % of a
-/// joint of 1 m, while gaps are followed exactly.
+/// [m] The list of contacts stays as it is until blocks may have moved this much against each other, unless the scene says otherwise: tributary
+/// lengths are off by less, 0.1 % of a joint of 1 m, while gaps are followed exactly.
 inline constexpr double contact_skin_m = 1e-3;
 
 /// [-] Part of the cohesion's force, as a normal force, over which the shear strength of a bonded contact rises from zero (a jump there has no

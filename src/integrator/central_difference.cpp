@@ -146,7 +146,7 @@ double CentralDifference<N>::needed_approach(double more_speed) const {
   for (std::size_t i = 0; i < inertia_.size(); ++i) {
     fastest = std::max(fastest, square(rates_[i].x) + square(rates_[i].y) + square(inertia_[i].radius * rates_[i].turn));
   }
-  return 2.0 * tolerance::contact_skin_m + 2.0 * more_speed * h_ * std::sqrt(2.0 * fastest);
+  return 2.0 * skin_ + 2.0 * more_speed * h_ * std::sqrt(2.0 * fastest);
 }
 
 /// Takes a contact over, unless it is too far apart.
@@ -687,7 +687,7 @@ void CentralDifference<N>::lose_strength(Link& link, const JointProperties& join
 
 template <int N>
 bool CentralDifference<N>::moved_beyond_skin() {
-  if (moved_ <= tolerance::contact_skin_m) return false;
+  if (moved_ <= skin_) return false;
   // The way may have been longer than where it has led to.
   double farthest = 0.0;
   for (std::size_t i = 0; i < inertia_.size(); ++i) {
@@ -696,7 +696,7 @@ bool CentralDifference<N>::moved_beyond_skin() {
                                       inertia_[i].radius * std::abs(rates_[i].angle - from.angle));
   }
   moved_ = 2.0 * farthest;
-  return moved_ > renew_fraction * tolerance::contact_skin_m;
+  return moved_ > renew_fraction * skin_;
 }
 
 template <int N>

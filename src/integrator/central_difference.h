@@ -10,7 +10,7 @@
 //       gap = gap_0 + (n - n_0) . w_0 + n . D,   slip = (t - t_0) . w_0 + t . D,   D = u_v - u_e + (R_v - 1) r_v
 //     (r_v arm of the corner, w_0 from the edge's centroid to the corner, both at the load), free of cancellation and exact whatever the rotation;
 //   - contacts too far apart to close before they are renewed are not looked at.
-// moved_beyond_skin() tells when blocks may have moved tolerance::contact_skin_m against each other since the list was last looked through: then it
+// moved_beyond_skin() tells when blocks may have moved by the skin against each other since the list was last looked through: then it
 // is to be renewed. It adds up the largest speed of each step, and looks at the blocks only when that sum has reached the skin.
 //
 // When some pairs of blocks have got their contacts anew, renew() exchanges those and leaves the others as they are. What is loaded then is laid down
@@ -50,9 +50,10 @@ class CentralDifference {
  public:
   using Unknowns = typename Motion<N>::Unknowns;
 
+  /// \param skin [m] by which blocks may move against each other before the list of contacts is to be renewed
   /// \param fours, wide_registers  false: links one by one, in the registers that every processor has; the results are the same to the last bit
-  explicit CentralDifference(bool fours = true, bool wide_registers = true)
-      : fours_(fours), wide_registers_(wide_registers && has_wide_registers()) {}
+  explicit CentralDifference(double skin, bool fours = true, bool wide_registers = true)
+      : skin_(skin), fours_(fours), wide_registers_(wide_registers && has_wide_registers()) {}
 
   /// Takes over blocks, velocities of the middle of the last step, contacts with their history, and the forces they carry now.
   void load(const StepProblem<N>& problem);
@@ -239,6 +240,7 @@ class CentralDifference {
   const JointTable* joints_ = nullptr;
   ExplicitEnergies energies_;
   bool damped_ = false, lost_strength_ = false;
+  const double skin_;  ///< [m]
   bool fours_, wide_registers_;
   CriticalStepBound<N> critical_step_;
   double approach_ = 0.0, moved_ = 0.0, unbalanced_ = 0.0, max_penetration_ = 0.0;

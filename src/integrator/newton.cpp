@@ -88,6 +88,25 @@ constexpr double work_on_parts = 3.0;
 /// Below, the plan of a part's factorisation costs what it saves (387 rows: work 1.04 to 1.08, 850 rows: 0.82 to 0.94).
 constexpr int smallest_system_with_parts = 600;
 
+/// Whether an iteration still gets somewhere.
+class Headway {
+ public:
+  explicit Headway(double value) : reached_(value) {}
+
+  /// To be asked once an iteration.
+  /// \param best  the smallest value of what it must reduce, so far
+  bool is_lost(double best) {
+    if (best > 0.5 * reached_) return ++iterations_ > most_iterations_to_halve;
+    reached_ = best;
+    iterations_ = 0;
+    return false;
+  }
+
+ private:
+  double reached_;
+  int iterations_ = 0;  ///< since then
+};
+
 /// To be asked of an iterative solver, where the iteration ends with this part of the residual that it has now.
 double reduction_to(double end, bool expects_changes) {
   const double usual = expects_changes ? linear_reduction_of_changes : linear_reduction;
@@ -618,6 +637,8 @@ typename Newton<N>::Outcome Newton<N>::iterate(const StepProblem<N>& problem, St
   bool parts_help = problem.method.skip_balanced && !problem.statics && !is_part_ && static_cast<int>(blocks_.size()) >= smallest_system_with_parts;
   int switches = 0;
   bool gets_on = false;  // the last iteration has halved what it must reduce
+  const bool may_be_lost = asked_merit_ == Merit::all_blocks && !problem.statics && !is_part_;
+  Headway headway(value);
   for (int iteration = 0; iteration < until.iterations && norm > until.norm; ++iteration) {
     if (parts_help && switches > 0) {
       const double whole_norm = norm;
@@ -628,6 +649,7 @@ typename Newton<N>::Outcome Newton<N>::iterate(const StepProblem<N>& problem, St
       best = std::min(best, value);
       if (norm <= until.norm) break;
     }
+    if (may_be_lost && headway.is_lost(best)) break;
     branches_before_ = branches_;
     const bool may_be_loose = !problem.statics && asked_merit_ == Merit::worst_block;
     const bool expects_changes = may_be_loose && (iteration == 0 || (switches > 0 && gets_on));

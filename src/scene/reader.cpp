@@ -210,6 +210,7 @@ MethodInput read_method(Table table, const SourceLocation& scene_where) {
   table.optional("skip_search", method.skip_search);
   table.optional("skip_narrow_phase", method.skip_narrow_phase);
   table.optional("skip_looks", method.skip_looks);
+  table.optional("contact_skin_m", method.contact_skin, positive);
   table.optional("skip_reload", method.skip_reload);
   table.optional("skip_factorisation", method.skip_factorisation);
   table.optional("skip_symbolic", method.skip_symbolic);

@@ -313,6 +313,25 @@ TEST_CASE("leaving contacts as they are changes nothing while lengths stay", "[a
   }
 }
 
+TEST_CASE("contacts are found anew after as much motion as the scene says", "[analysis][simulation]") {
+  Scene scene = test::block_on_base();
+  scene.blocks[1].velocity = {2.0, 0.0};
+  scene.method.contact = GENERATE("soft", "dem");
+  const auto renewals_on_the_way = [&](double skin, double& way) {
+    scene.method.contact_skin = skin;
+    Simulation<3> simulation(scene);
+    for (int i = 0; i < 500; ++i) REQUIRE(simulation.advance(1e-4));
+    way = simulation.system().displacement(1).x();
+    return simulation.detection_counters().narrow_phases;
+  };
+  double often_way = 0.0, seldom_way = 0.0;
+  const long often = renewals_on_the_way(1e-3, often_way), seldom = renewals_on_the_way(1e-2, seldom_way);
+  // 0.1 m: about one renewal a skin, or two, as dem asks for both a way of all blocks and that of the pair, and the first.
+  CHECK(often >= 0.4 * often_way / 1e-3);
+  CHECK(seldom <= seldom_way / 1e-2 + 2.0);
+  CHECK(seldom_way == Approx(often_way).margin(1e-9));  // lengths stay; see above
+}
+
 TEST_CASE("a block far away is not felt", "[analysis][simulation]") {
   for (const std::string method : {"soft", "hard", "shi"}) {
     INFO(method);

@@ -42,7 +42,7 @@ TEST_CASE("links four at a time do what each does", "[integrator][explicit]") {
   constexpr double h = 1e-4;  // [s]
   std::vector<Contact> by_fours = simulation.contacts();
   const StepProblem<3> problem = simulation.problem(h, false);
-  CentralDifference<3> fours(true, wide), ones(false, wide);
+  CentralDifference<3> fours(tolerance::contact_skin_m, true, wide), ones(tolerance::contact_skin_m, false, wide);
   fours.load(problem);
   ones.load(problem);
   std::vector<Contact> one_by_one = by_fours;

@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <cmath>
 #include <random>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -7,6 +9,7 @@
 #include "openclose/analysis/simulation.h"
 #include "openclose/integrator/newton.h"
 #include "openclose/integrator/registry.h"
+#include "openclose/scene/reader.h"
 #include "support/catch.h"
 #include "support/scenes.h"
 
@@ -302,6 +305,31 @@ TEST_CASE("contacts that another pass holds where they were begin it in the stat
   };
   CHECK(solves(FirstTangent::last_solution) <= 2);  // the second for the turning of the blocks
   CHECK(solves(FirstTangent::present) > solves(FirstTangent::last_solution));
+}
+
+TEST_CASE("Newton ends where it is lost among the contact states, and goes on for as long as it gets on", "[integrator][newton][hard]") {
+  // A slope of 978 blocks, too weak to stand, that gravity meets at once.
+  Scene scene = read_scene(std::string(OPENCLOSE_PAPER_SCENES) + "/example_3_4_post_failure.toml",
+                           {"joint_set[0].spacing_m=27.2", "joint_set[1].spacing_m=6.8", "joint[0].cohesion_pa=47e3", "method.contact=\"hard\""});
+  scene.method.residual_tolerance = 1e-6;
+  scene.method.max_iterations = 1000;
+  int longest = 0;
+  for (const double friction_angle : {20.0, 21.0, 22.0, 23.0, 24.0, 25.0}) {
+    scene.joints[0].friction_angle = friction_angle * test::degree;
+    Simulation<3> simulation(scene);
+    const StepProblem<3> problem = simulation.problem(scene.step.dt, false);
+    std::vector<ContactSprings> springs;
+    for (const Contact& c : problem.contacts) springs.push_back(simulation.enforcement().springs(problem, c));
+    StepSolution<3> solution;
+    solution.d = drift(problem);
+    Newton<3>(Merit::all_blocks).solve(problem, springs, solution);
+    // From all blocks out of balance by the largest force to one that is so by what is tolerated.
+    const double halvings = std::log2(std::sqrt(problem.system.free_count()) / scene.method.residual_tolerance);
+    INFO(friction_angle << " degrees: " << solution.effort.iterations << " iterations");
+    CHECK(solution.effort.iterations <= halvings * most_iterations_to_halve);
+    longest = std::max(longest, solution.effort.iterations);
+  }
+  CHECK(longest > 2 * most_iterations_to_halve);  // some has halved its residuals after a while, and then gone on
 }
 
 TEST_CASE("Newton counts its linear solves and says why it gives up", "[integrator][newton]") {

@@ -60,7 +60,7 @@ TEST_CASE("every key reaches its field", "[scene][reader]") {
       "[[measured_point]]\nname = 'p'\nblock = 'one'\npoint_m = [1, 0]\n"
       "[method]\ncontact = 'anything'\ntheta = 0.5\nintegrator = 'any'\nrho_inf = 0.25\ndissipation = 0.01\nrotation = 'linear'\nstart = "
       "'steady_sliding'\nstatics = true\nresidual_tolerance = 1e-9\n"
-      "max_iterations = 10\nskip_search = false\nskip_narrow_phase = false\nskip_looks = false\nskip_reload = false\nskip_factorisation = "
+      "max_iterations = 10\nskip_search = false\nskip_narrow_phase = false\nskip_looks = false\ncontact_skin_m = 0.01\nskip_reload = false\nskip_factorisation = "
       "false\nskip_symbolic = "
       "false\nskip_balanced = false\nskip_unmoved = false\nskip_resting = true\nthreads = 3\npenalty_pa_per_m = 11\npenalty_shear_ratio = "
       "0.5\npenetration_tolerance_m = 12\n"
@@ -115,6 +115,7 @@ TEST_CASE("every key reaches its field", "[scene][reader]") {
   CHECK_FALSE(method.skip_search);
   CHECK_FALSE(method.skip_narrow_phase);
   CHECK_FALSE(method.skip_looks);
+  CHECK(method.contact_skin == 0.01);
   CHECK_FALSE(method.skip_reload);
   CHECK_FALSE(method.skip_factorisation);
   CHECK_FALSE(method.skip_symbolic);

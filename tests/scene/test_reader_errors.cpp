@@ -189,6 +189,7 @@ TEST_CASE("options out of range", "[scene][reader][errors]") {
       {"method", "penetration_tolerance_m = 0", "0", "a number > 0"},
       {"method", "closing_tolerance_m = -1", "-1", "a number >= 0"},
       {"method", "gap_tolerance_m = 0", "0", "a number > 0"},
+      {"method", "contact_skin_m = 0", "0", "a number > 0"},
       {"method", "max_open_close_iterations = 0", "0", "a whole number in [1, 1000000000]"},
       {"method", "step_cut = 1", "1", "a number in (0, 1)"},
       {"method", "step_fraction = 1", "1", "a number in (0, 1)"},

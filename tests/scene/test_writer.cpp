@@ -49,6 +49,7 @@ void check_same(const MethodInput& a, const MethodInput& b) {
   CHECK(a.skip_search == b.skip_search);
   CHECK(a.skip_narrow_phase == b.skip_narrow_phase);
   CHECK(a.skip_looks == b.skip_looks);
+  CHECK(a.contact_skin == b.contact_skin);
   CHECK(a.skip_reload == b.skip_reload);
   CHECK(a.skip_factorisation == b.skip_factorisation);
   CHECK(a.skip_symbolic == b.skip_symbolic);
@@ -190,6 +191,7 @@ Scene random_scene(unsigned seed) {
   scene.method.skip_search = false;
   scene.method.skip_narrow_phase = false;
   scene.method.skip_looks = false;
+  scene.method.contact_skin = number();
   scene.method.skip_reload = false;
   scene.method.skip_factorisation = false;
   scene.method.skip_symbolic = false;
