@@ -375,6 +375,19 @@ TEST_CASE("a restored state is followed with the step that is asked for, not wit
   CHECK(simulation.step_counters().steps == before + 1);
 }
 
+TEST_CASE("after a change of the method the motion is that of its time scheme", "[analysis][simulation]") {
+  Scene scene = test::falling_block();
+  scene.method.integrator = "shi";
+  MethodInput of_two_stages = scene.method;
+  of_two_stages.integrator = "tr_bdf2";
+  Simulation<3> simulation(scene);
+  REQUIRE(simulation.advance(1e-2));
+  CHECK(simulation.step_counters().steps == 1);
+  simulation.change_method(of_two_stages);
+  REQUIRE(simulation.advance(1e-2));
+  CHECK(simulation.step_counters().steps == 1 + 2);
+}
+
 TEST_CASE("restarting the clock empties the books and nothing else", "[analysis][simulation]") {
   Simulation<3> simulation(tumbling("soft"));
   for (int i = 0; i < 200; ++i) REQUIRE(simulation.advance(2e-3));
