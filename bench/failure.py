@@ -5,7 +5,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from measure import Bench, Trial
-from methods import ADAPTIVE, AHEAD, DEM, HARD, SHI, SOFT_PATH_AVERAGE, SOFT_SHI, Method, Settings
+from methods import (ADAPTIVE, ADAPTIVE_AHEAD_WIDE, AHEAD, AHEAD_WIDE, DEM, DEM_WIDE, HARD, SHI, SOFT_PATH_AVERAGE, SOFT_SHI, Method,
+                     Settings)
 from runs import Case
 from scaling import spacings
 from slopes import JointedSlope
@@ -25,8 +26,8 @@ REFERENCE_STEPS_S = (2e-3, 1e-3)
 QUICK_REFERENCE_STEPS_S = (4e-3, 2e-3)
 # More blocks, smaller ones: the contacts of a step are those of its start, and blocks of 2 m that move at 15 m/s leave and meet corners within steps
 # of milliseconds. From the same state of 10,000 blocks at 10 m path_average comes to the motion of dem with the first power of its step (after 0.3 s
-# they are 0.76, 0.45, 0.12 mm rms apart with 2.5, 1.25, 0.5 ms; two fractions of dem's step 0.06 mm), so that two of its steps agree long before either
-# is right. The reference is dem here, whose steps are a tenth of a millisecond.
+# they are 0.76, 0.45, 0.12 mm rms apart with 2.5, 1.25, 0.5 ms; two fractions of dem's step 0.06 mm), so that two of its steps agree long before
+# either is right. The reference is dem here, whose steps are a tenth of a millisecond.
 LARGE = {"full": (2000,), "long": (2000, 10000)}
 LARGE_STARTS = 2
 
@@ -54,18 +55,20 @@ FRACTIONS = (0.9, 0.45, 0.225)
 FOLLOWERS = (
     *(Follower(method, STEPS_S) for method in (SOFT_SHI, SOFT_PATH_AVERAGE, HARD)),
     *(Follower(method, (0.01, 0.005, 0.02)) for method in AHEAD),
+    *(Follower(method, (0.01, 0.005, 0.02)) for method in AHEAD_WIDE),
     *(Follower(method, TOLERANCES_M, "step.error_tolerance_m") for method in ADAPTIVE),
+    Follower(ADAPTIVE_AHEAD_WIDE, (1e-4, 3e-4, 3e-5), "step.error_tolerance_m"),
     Follower(SHI, (0.005, 0.01, 0.002)),
-    Follower(DEM, FRACTIONS, FRACTION),
+    *(Follower(method, FRACTIONS, FRACTION) for method in (DEM, DEM_WIDE)),
 )
 QUICK_FOLLOWER_STEPS = 2
 LARGE_FOLLOWERS = (
     Follower(SOFT_SHI, (0.02, 0.01, 0.003)),
-    Follower(AHEAD[0], (0.01,)),
-    Follower(AHEAD[1], (0.01, 0.005)),
+    *(Follower(method, (0.01,)) for method in (*AHEAD, *AHEAD_WIDE)),
+    Follower(ADAPTIVE_AHEAD_WIDE, (1e-3, 1e-4), "step.error_tolerance_m"),
     *(Follower(method, (0.02,)) for method in (SOFT_PATH_AVERAGE, HARD)),
-    Follower(ADAPTIVE[0], (1e-3, 3e-4, 1e-4), "step.error_tolerance_m"),
-    Follower(DEM, (0.9,), FRACTION),
+    Follower(ADAPTIVE[0], (1e-3, 3e-4), "step.error_tolerance_m"),
+    *(Follower(method, (0.9,), FRACTION) for method in (DEM, DEM_WIDE)),
 )
 
 
@@ -79,7 +82,8 @@ class Arrival:
 
 def _case(method: Method, key: str, value: float, start: int = 0, name: str = "", more: Settings = ()) -> Case:
     usual = ADAPTIVE_USUAL if method.adaptive else USUAL
-    settings = [*method.settings, *(SAME_START if method is DEM else ()), *usual, (key, value), ("run.strength_reduction_factor", FACTOR * (1 + PERTURBATION * start)),
+    strength = ("run.strength_reduction_factor", FACTOR * (1 + PERTURBATION * start))
+    settings = [*method.settings, *(SAME_START if method.explicit else ()), *usual, (key, value), strength,
                 ("output.every_s", 1.0), ("output.milestones_m", list(DISTANCES_M)), *more]
     return Case(f"failure-{method.name}-{value:g}-{start}{name}".replace(" ", "_"), "run", JointedSlope.POST_FAILURE, tuple(settings), LIMIT_S)
 
@@ -176,12 +180,13 @@ def _large(bench: Bench, blocks: int) -> float | None:
 
         return of
 
+    what = (f"time at which the toe block has moved 10, 20, 30, 40 m, mean of {LARGE_STARTS} starts, largest of the four against dem with "
+            f"{LARGE_REFERENCE_FRACTIONS[-1]:g} of the critical step, no block left alone")
     trials = []
     for follower in LARGE_FOLLOWERS:
         for value in follower.values:
             cases = [_case(follower.method, follower.key, value, k, name, (*more, *RESTING)) for k in starts]
-            trials.append(Trial(STUDY, large_scene(blocks), follower.method.name, cases[0], "motion", "time at which the toe block has moved 10, 20, "
-                                f"30, 40 m, mean of {LARGE_STARTS} starts, largest of the four against dem with {LARGE_REFERENCE_FRACTIONS[-1]:g} of "
-                                "the critical step, no block left alone", error_against(cases), value if follower.key == DT_S else None, tuple(cases)))
+            trials.append(Trial(STUDY, large_scene(blocks), follower.method.name, cases[0], "motion", what, error_against(cases),
+                                value if follower.key == DT_S else None, tuple(cases)))
     bench.measure(trials)
     return max(_distance(coarse, fine), fine.spread)

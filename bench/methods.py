@@ -12,6 +12,10 @@ class Method:
     rigid: bool = False     # contacts that do not give: another reference
     adaptive: bool = False  # chooses its steps by a tolerance
 
+    @property
+    def explicit(self) -> bool:
+        return ("method.contact", "dem") in self.settings
+
 
 def _soft(integrator: str, *more: tuple[str, object]) -> Settings:
     return (("method.contact", "soft"), ("method.integrator", integrator), *more)
@@ -34,6 +38,12 @@ SOFT = Method("soft", (("method.contact", "soft"),))
 HARD = Method("hard", (("method.contact", "hard"),), rigid=True)
 SHI = Method("shi", (("method.contact", "shi"),))
 DEM = Method("dem", (("method.contact", "dem"),))
+# Contacts found anew after ten times the way: half of dem's time after failure goes into finding them.
+WIDE_SKIN: Settings = (("method.contact_skin_m", 0.01),)
+DEM_WIDE = Method("dem, skin of 10 mm", (*DEM.settings, *WIDE_SKIN))
+AHEAD_WIDE = tuple(Method(f"{m.name}, skin of 10 mm", (*m.settings, *WIDE_SKIN)) for m in AHEAD)
+ADAPTIVE_AHEAD_WIDE = Method("soft shi adaptive looking ahead, skin of 10 mm",
+                             (*ADAPTIVE[0].settings, ("step.look_ahead", 0.5), *WIDE_SKIN), adaptive=True)
 
 
 def on_joint_springs(stiffness_pa_per_m: float) -> Method:

@@ -204,7 +204,7 @@ def write(bench: Bench, found: dict, printed: dict, description: dict, figures: 
     text += _table(["what", "asked", "measured", "kept"], [[t.what, t.asked, t.measured, t.verdict] for t in goals])
     text += section("Single blocks in motion", motion.STUDY, lambda: _comparison(bench, motion.STUDY))
     text += section("Static equilibrium from nothing", statics.EQUILIBRIUM,
-                    lambda: _comparison(bench, statics.EQUILIBRIUM) + _all_runs(bench, statics.EQUILIBRIUM))
+                    lambda: f"{statics.NOTE}\n\n" + _comparison(bench, statics.EQUILIBRIUM) + _all_runs(bench, statics.EQUILIBRIUM))
     text += section("Strength reduction", statics.REDUCTION, lambda: _comparison(bench, statics.REDUCTION) + _all_runs(bench, statics.REDUCTION))
     text += section("After failure", failure.STUDY, lambda: _failure(bench, found.get("failure")) + _all_runs(bench, failure.STUDY))
     if bench.of(motion.STUDY) or bench.of(failure.STUDY):

@@ -74,17 +74,8 @@ namespace {
 template <int N>
 SettleResult settle_start(Simulation<N>& simulation, const SettleProgress& progress) {
   const MethodInput own = simulation.scene().method;
-  const std::string by = simulation.scene().settled_by.value_or(own.contact);
-  if (by == own.contact) return make_equilibrium_search(simulation)->settle_first(progress);
-  MethodInput settling = own;
-  settling.contact = by;
-  // Statics know none of these, and some methods refuse them.
-  settling.integrator.reset();
-  settling.theta.reset();
-  settling.rho_inf.reset();
-  settling.dissipation.reset();
-  settling.static_solver = StaticSolver::automatic;
-  simulation.change_method(settling);
+  if (!is_settled_by_another(simulation.scene())) return make_equilibrium_search(simulation)->settle_first(progress);
+  simulation.change_method(settling_method(simulation.scene()));
   const SettleResult result = make_equilibrium_search(simulation)->settle_first(progress);
   simulation.change_method(own);
   return result;

@@ -36,6 +36,24 @@ bool has_joint_springs(const std::string& contact) {
 
 }  // namespace
 
+bool is_settled_by_another(const Scene& scene) {
+  return scene.settled_by.value_or(scene.method.contact) != scene.method.contact;
+}
+
+MethodInput settling_method(const Scene& scene) {
+  MethodInput settling = scene.method;
+  if (!is_settled_by_another(scene)) return settling;
+  settling.contact = *scene.settled_by;
+  // These are of the motion's method, and some methods refuse them.
+  settling.integrator.reset();
+  settling.theta.reset();
+  settling.rho_inf.reset();
+  settling.dissipation.reset();
+  settling.static_solver = StaticSolver::automatic;
+  settling.statics = false;
+  return settling;
+}
+
 template <int N>
 Simulation<N>::Simulation(Scene scene) : Simulation(std::move(scene), nullptr) {
   if (enforcement_->is_explicit()) loop_ = std::make_unique<CentralDifference<N>>(scene_.method.contact_skin);
@@ -59,16 +77,27 @@ Simulation<N>::Simulation(Scene scene, std::unique_ptr<Enforcement<N>> enforceme
       control_(scene_.step.error_tolerance),
       bytes_of_scene_(bytes_of_blocks(scene_)) {
   if (scene_.step.adaptive && !enforcement_->takes_adaptive_steps())
-    throw InputError(scene_.where, "step.adaptive", "true has no meaning for method.contact = \"" + scene_.method.contact + "\"",
+    throw InputError(scene_.step.adaptive_where, "step.adaptive", "true has no meaning for method.contact = \"" + scene_.method.contact + "\"",
                      "contact = \"soft\"");
   if (scene_.step.look_ahead > 0.0 && (enforcement_->is_explicit() || !enforcement_->follows_gaps()))
-    throw InputError(scene_.where, "step.look_ahead", "has no meaning for method.contact = \"" + scene_.method.contact + "\"",
+    throw InputError(scene_.step.look_ahead_where, "step.look_ahead", "has no meaning for method.contact = \"" + scene_.method.contact + "\"",
                      "contact = \"soft\" or \"hard\", or 0");
-  if (!scene_.settled_by || *scene_.settled_by == scene_.method.contact) return;
+  if (is_settled_by_another(scene_)) check_settling();
+}
+
+template <int N>
+void Simulation<N>::check_settling() const {
   if (!has_joint_springs<N>(scene_.method.contact) || !has_joint_springs<N>(*scene_.settled_by))
     throw InputError(scene_.settled_by_where, "run.settled_by",
                      fmt::format("no equilibrium of \"{}\" is one for method.contact = \"{}\"", *scene_.settled_by, scene_.method.contact),
                      "\"soft\" or \"dem\" where method.contact is one of these, or what method.contact is");
+  const MethodInput settling = settling_method(scene_);
+  try {
+    make_enforcement<N>(settling)->make_time_scheme(settling);
+  } catch (const InputError& error) {
+    throw InputError(scene_.settled_by_where, "run.settled_by", fmt::format("\"{}\" cannot settle this scene: {}", settling.contact, error.what()),
+                     "");
+  }
 }
 
 template <int N>
@@ -268,9 +297,9 @@ double Simulation<N>::force_scale() const {
 template <int N>
 bool Simulation<N>::find_contacts(double lead) {
   // What touches in the drawing is found there.
-  if (lead == 0.0 || detector_.counters().searches == 0) return detector_.update(system_, joints_, contacts_);
+  if (lead == 0.0 || !detector_.knows_bonds()) return detector_.update(system_, joints_, contacts_);
   BlockSystem<N> ahead = system_;
-  for (int b : system_.free_blocks()) ahead.advance(b, scheme_->drift(b, lead, system_.velocity(b)));
+  for (int b : system_.free_blocks()) ahead.advance(b, lead * system_.velocity(b));
   return detector_.update(ahead, joints_, contacts_, &system_);
 }
 

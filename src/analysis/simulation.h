@@ -16,6 +16,11 @@
 
 namespace openclose {
 
+/// Whether the start "settled" is found by another method than that of the motion.
+bool is_settled_by_another(const Scene& scene);
+/// The method that finds it: where it is another one, with what is chosen for every method, and the defaults of what is only for that of the motion.
+MethodInput settling_method(const Scene& scene);
+
 struct StepCounters {
   long steps = 0;
   long cuts = 0;                        ///< attempts thrown away
@@ -199,6 +204,8 @@ class Simulation {
   void unload_loop();
   /// The same, and no block is at rest any more, because the caller may change what the steps work on.
   void take_back();
+  /// Throws InputError if run.settled_by cannot find the equilibrium that the motion starts from.
+  void check_settling() const;
   /// Of the blocks that move.
   /// \param lead  see find_contacts()
   std::vector<Contact>& moving_contacts(double lead = 0.0);

@@ -39,14 +39,20 @@ struct Options {
   bool quiet = false;
 };
 
-struct Loaded {
-  Scene scene;
-  std::vector<std::string> warnings;
-};
-
 void print_warnings(const std::vector<std::string>& warnings) {
   for (const std::string& warning : warnings) fmt::print(stderr, "openclose: warning: {}\n", warning);
 }
+
+struct Loaded {
+  Scene scene;
+  std::vector<std::string> warnings;
+
+  /// Of what the command leaves unused.
+  void warn(const std::string& text) {
+    warnings.push_back(scene.where.file + ": " + text);
+    print_warnings({warnings.back()});
+  }
+};
 
 Loaded load(const Options& options) {
   Loaded loaded{read_scene(options.scene_file, options.overrides), {}};
@@ -91,6 +97,8 @@ int run_command(const Options& options) {
   if (loaded.scene.step.dt <= 0.0) throw InputError(loaded.scene.where, "step.dt_s", "missing", "a step in seconds, here or with --dt");
   if (loaded.scene.end_time <= 0.0) throw InputError(loaded.scene.where, "end.time_s", "missing", "an end time in seconds, here or with --end");
   require_countable_steps(loaded.scene, "end.time_s", loaded.scene.end_time);
+  if (is_settled_by_another(loaded.scene) && loaded.scene.method.start != Start::settled)
+    loaded.warn("run.settled_by is for method.start = \"settled\"; the other starts are not settled");
   std::optional<RestartPoint> restart;
   if (!options.restart_file.empty()) restart = {options.restart_file, read_checkpoint(options.restart_file, loaded.scene)};
   Simulation<unknowns> simulation(std::move(loaded.scene));
@@ -174,14 +182,9 @@ int run_command(const Options& options) {
 
 int fos_command(const Options& options) {
   Loaded loaded = load(options);
-  if (loaded.scene.run_strength_reduction_factor != 1.0) {
-    loaded.warnings.push_back(loaded.scene.where.file + ": run.strength_reduction_factor is for run; fos starts from the full strength");
-    print_warnings({loaded.warnings.back()});
-  }
-  if (loaded.scene.base_motion) {
-    loaded.warnings.push_back(loaded.scene.where.file + ": base_motion is for run; fos asks for static equilibrium on a base at rest");
-    print_warnings({loaded.warnings.back()});
-  }
+  if (loaded.scene.run_strength_reduction_factor != 1.0) loaded.warn("run.strength_reduction_factor is for run; fos starts from the full strength");
+  if (is_settled_by_another(loaded.scene)) loaded.warn("run.settled_by is for run; fos settles by method.contact");
+  if (loaded.scene.base_motion) loaded.warn("base_motion is for run; fos asks for static equilibrium on a base at rest");
   if (loaded.scene.step.dt <= 0.0) {
     const bool paper = loaded.scene.settle.criterion == SettleCriterion::paper;
     if (loaded.scene.strength_reduction.curve_time || paper) {

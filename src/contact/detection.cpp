@@ -144,12 +144,15 @@ class Detector<N>::ContactIndex {
     if (!knows_resting_) {
       first_.assign(system.state().arm.size(), -1);
       entries_.clear();
+      deepest_ = 0.0;
       for (const Contact& c : resting) add(c);
       resting_first_ = first_;
       resting_entries_ = entries_.size();
+      resting_deepest_ = deepest_;
       knows_resting_ = true;
     }
     first_ = resting_first_;
+    deepest_ = resting_deepest_;
     entries_.resize(resting_entries_);
   }
   /// The contacts of one pair of blocks, in ascending order.
@@ -183,6 +186,8 @@ class Detector<N>::ContactIndex {
   double closed_length(int vertex, int edge) const { return was_closed(vertex, edge) ? (*contacts_)[find(vertex, edge)].length : 0.0; }
   /// Whether this vertex or one of its two edges is in contact, with any block.
   bool closed(int vertex) const { return first_[vertex] >= 0; }
+  /// [m] The largest closure of all contacts.
+  double deepest() const { return deepest_; }
   /// Closed contacts of this vertex and those on its two edges.
   template <class F>
   void for_closed(int vertex, F f) const {
@@ -197,6 +202,7 @@ class Detector<N>::ContactIndex {
 
   void add(const Contact& contact) {
     if (contact.status == ContactStatus::open) return;
+    deepest_ = std::max(deepest_, -contact.gap);
     for (const int corner : {contact.vertex, contact.edge, system_->next(contact.edge)}) {
       entries_.push_back({&contact, first_[corner]});
       first_[corner] = static_cast<int>(entries_.size()) - 1;
@@ -208,9 +214,11 @@ class Detector<N>::ContactIndex {
   Range range_;
   std::vector<int> first_;      ///< per vertex, in entries_; -1 without any
   std::vector<Entry> entries_;  ///< closed contacts of one vertex, of the ends of their edges too, chained
+  double deepest_ = 0.0;        ///< [m]
   bool knows_resting_ = false;
   std::vector<int> resting_first_;   ///< of contacts at rest alone, which stand first among the entries
   std::size_t resting_entries_ = 0;  ///< number of these
+  double resting_deepest_ = 0.0;     ///< [m]
 };
 
 /// Narrow phase between the blocks of one pair. Collects contacts; a vertex-edge pair found twice gets the sum of the lengths.
@@ -225,8 +233,9 @@ class Detector<N>::NarrowPhase {
   void run(int block_a, int block_b, std::vector<Contact>& found) {
     found_ = &found;
     first_ = found.size();
-    // Only what lies in the box of both blocks, with the reach, can touch.
-    const Box room = shapes_.box(block_a).inflated(reach_).common(shapes_.box(block_b).inflated(reach_));
+    // Only what lies in the box of both blocks, with the reach and what end_margin() allows, can touch.
+    const double margin = reach_ + tolerance::seam_closures * previous_.deepest();
+    const Box room = shapes_.box(block_a).inflated(margin).common(shapes_.box(block_b).inflated(margin));
     if (room.empty()) return;
     const bool some_of_a = find_near_corners(block_a, block_b, near_[0]), some_of_b = find_near_corners(block_b, block_a, near_[1]);
     if (!some_of_a && !some_of_b) return;
@@ -245,14 +254,9 @@ class Detector<N>::NarrowPhase {
   }
 
  private:
-  template <class F>
-  void for_each_vertex(int block, F f) const {
-    const auto& b = system_.block(block);
-    for (int v = b.first_vertex; v < b.first_vertex + b.vertex_count; ++v) f(v);
-  }
-
   /// Of the corners of a block, those that may touch the other one. Where two convex blocks were not in contact, a corner that touches an edge is at
-  /// most as far beyond the lines along other edges as it is from this one, and by 1 % more where edges face each other that are not quite parallel.
+  /// most as far beyond the lines along other edges as it is from this one, and by 1 % more where edges face each other that are not quite parallel,
+  /// or beyond the end of this one by what end_margin() allows.
   bool find_near_corners(int block, int other, std::vector<char>& near) const {
     const std::span<const Edge> corners = shapes_.edges(block), edges = shapes_.edges(other);
     if (previous_.has_any() || !shapes_.is_convex(block) || !shapes_.is_convex(other)) {
@@ -260,12 +264,13 @@ class Detector<N>::NarrowPhase {
       return true;
     }
     near.resize(corners.size());
-    const double room = room_of_corners * reach_;
+    const int first = system_.block(block).first_vertex;
     bool some = false;
     const Edge* parting = edges.data();  // the edge before which the last corner was too far
     for (std::size_t v = 0; v < corners.size(); ++v) {
       const Vec2& p = corners[v].start;
       near[v] = false;
+      const double room = room_of_corners * reach_ + tolerance::seam_closures * closure(first + static_cast<int>(v));
       if (parting->gap(p) > room) continue;
       const auto edge = std::ranges::find_if(edges, [&](const Edge& e) { return e.gap(p) > room; });
       if (edge == edges.end()) {

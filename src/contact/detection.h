@@ -130,6 +130,8 @@ class Detector {
   /// skin, overlap, and no line along an edge of one of them keeps them as far apart. Renewed only when something moved beyond the skin.
   const std::vector<std::pair<int, int>>& candidate_pairs() const { return pairs_; }
   const DetectionCounters& counters() const { return counters_; }
+  /// Whether there has been an update(), the first of which decides what is bonded.
+  bool knows_bonds() const { return !first_; }
 
   /// Blocks or contacts were changed by others: the next update() searches and finds everything anew.
   void forget() { forgotten_ = true; }

@@ -196,7 +196,7 @@ OPENCLOSE_KERNEL Lanes& sums_at(ForceRow* rows, unsigned at, int lane) {
   return *reinterpret_cast<Lanes*>(lane % 2 == 0 ? row : row + batch_size);
 }
 
-/// Adds the forces of four contacts to their blocks, one contact after the other.
+/// Adds the forces of four contacts to their blocks, those of even and of odd lanes to sums of their own.
 OPENCLOSE_KERNEL void push(const ContactBatch& c, const TrialBatch& trial, const ActingPose& at, Lanes rounding, ForceRow* rows) {
   const Lanes x = trial.normal * at.normal_x - trial.shear * at.normal_y, y = trial.normal * at.normal_y + trial.shear * at.normal_x;
   const Lanes on_vertex = at.vertex_arm_x * y - at.vertex_arm_y * x, on_edge = at.edge_arm_x * y - at.edge_arm_y * x;

@@ -1,8 +1,8 @@
 // The contacts of a step four at a time: where they are at a trial displacement, what they carry there, and their stiffness.
 //
 // The formulas are those of ContactPose, spring_slider() and ContactStiffness, operation by operation, so that every number is the same to the last
-// bit; forces and stiffness are added up contact by contact in the order of the list. The kernels are compiled once for every processor and once for
-// wide registers, with the same results.
+// bit; forces and stiffness are added up in the order of the batches (ContactOrder), forces in two parts. The kernels are compiled once for every
+// processor and once for wide registers, with the same results.
 //
 // Schemes that average over the path of the step have the mean forces of path_average() instead, which act in the mean_pose(). Contacts that are open
 // or stick all the way are taken four at a time, the others one by one.

@@ -39,7 +39,7 @@ constexpr int steps_before_stiffer = 2, most_steps_before_stiffer = 64;
 /// [-] Where a surface begins to slip or to open, one contact after the other gives its force to the next, and a pass takes that on by one contact.
 /// So the springs of single contacts become stiffer by this factor from pass to pass if their error is more than what is tolerated and hardly
 /// becomes less, up to the stiffest over the inertia. 20 steps of failing slopes of 4,568 and 9,745 free blocks that lose their strength at once take
-/// 970 and 1,773 iterations with this and the number of passes below, 1,422 and 5,926 without.
+/// 975 and 1,943 iterations with this and the number of passes below, 1,422 and 5,926 without.
 constexpr double stiffening = 3.0, stiffest_over_inertia = 1000.0;
 /// [-] Instead of tolerance::cohesion_ramp where Newton's method gets lost: friction and cohesion together never grow faster than about the normal
 /// force.

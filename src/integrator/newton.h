@@ -86,9 +86,9 @@ class Newton {
     tangent_.exchange(archive);
     archive(part_counters_);
   }
-  /// Those of parts included.
   /// The largest so far, factors of parts and of relaxation included; springs are their owner's.
   const Memory& memory() const { return memory_; }
+  /// Those of parts included.
   LinearCounters linear_counters() const { return LinearCounters(tangent_.counters()) += part_counters_; }
 
  private:

@@ -15,15 +15,11 @@ namespace openclose::packed {
 typedef float Four __attribute__((vector_size(4 * sizeof(float)), aligned(4 * sizeof(float))));
 typedef float LooseFour __attribute__((vector_size(4 * sizeof(float)), aligned(sizeof(float)), may_alias));
 typedef float Eight __attribute__((vector_size(8 * sizeof(float)), aligned(8 * sizeof(float))));
-typedef float LooseEight __attribute__((vector_size(8 * sizeof(float)), aligned(sizeof(float)), may_alias));
 typedef double FourDoubles __attribute__((vector_size(4 * sizeof(double)), aligned(4 * sizeof(double))));
 typedef std::int16_t EightWholeNumbers __attribute__((vector_size(8 * sizeof(std::int16_t)), aligned(sizeof(std::int16_t)), may_alias));
 
 OPENCLOSE_KERNEL Four four(const float* numbers) {
   return *reinterpret_cast<const LooseFour*>(numbers);
-}
-OPENCLOSE_KERNEL Eight eight(const float* numbers) {
-  return *reinterpret_cast<const LooseEight*>(numbers);
 }
 OPENCLOSE_KERNEL Eight eight(const std::int16_t* numbers) {
   typedef int EightIntegers __attribute__((vector_size(8 * sizeof(int)), aligned(8 * sizeof(int))));

@@ -240,9 +240,10 @@ StepInput read_step(Table table) {
   table.optional("dt_s", step.dt, positive);
   table.optional("max_displacement_m", step.max_displacement, positive);
   table.optional("smallest_fraction", step.smallest_fraction, Range{.low = 0.0, .high = 1.0, .high_included = true});
-  table.optional("adaptive", step.adaptive);
+  if (table.optional("adaptive", step.adaptive)) step.adaptive_where = table.at("adaptive").where();
   table.optional("error_tolerance_m", step.error_tolerance, positive);
-  table.optional("look_ahead", step.look_ahead, Range{.low = 0.0, .high = 1.0, .low_included = true, .high_included = true});
+  if (table.optional("look_ahead", step.look_ahead, Range{.low = 0.0, .high = 1.0, .low_included = true, .high_included = true}))
+    step.look_ahead_where = table.at("look_ahead").where();
   table.finish();
   return step;
 }

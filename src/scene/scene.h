@@ -175,6 +175,7 @@ struct StepInput {
   bool adaptive = false;            ///< steps up to dt as long as error_tolerance allows
   double error_tolerance = 1e-4;    ///< [m] adaptive: local error of a step, of any vertex
   double look_ahead = 0.0;          ///< [-] part of the step after which the blocks are where its contacts are found, if they keep their velocities
+  SourceLocation adaptive_where{}, look_ahead_where{};  ///< for the errors of methods that have no use for them
 };
 
 /// When a block is at rest in a motion, and when it is not any more; the rule is in analysis/resting.h. A tenth of a second is some periods of blocks

@@ -375,6 +375,19 @@ TEST_CASE("a restored state is followed with the step that is asked for, not wit
   CHECK(simulation.step_counters().steps == before + 1);
 }
 
+TEST_CASE("after a change of the method the motion is that of its time scheme", "[analysis][simulation]") {
+  Scene scene = test::falling_block();
+  scene.method.integrator = "shi";
+  MethodInput of_two_stages = scene.method;
+  of_two_stages.integrator = "tr_bdf2";
+  Simulation<3> simulation(scene);
+  REQUIRE(simulation.advance(1e-2));
+  CHECK(simulation.step_counters().steps == 1);
+  simulation.change_method(of_two_stages);
+  REQUIRE(simulation.advance(1e-2));
+  CHECK(simulation.step_counters().steps == 1 + 2);
+}
+
 TEST_CASE("restarting the clock empties the books and nothing else", "[analysis][simulation]") {
   Simulation<3> simulation(tumbling("soft"));
   for (int i = 0; i < 200; ++i) REQUIRE(simulation.advance(2e-3));
@@ -538,15 +551,43 @@ TEST_CASE("contacts are those of where the blocks will be, their gaps those of n
   CHECK(bases_below(1.0) == std::vector<int>{1});
 }
 
+TEST_CASE("the second stage of a step looks ahead by its own part of the velocity", "[analysis][simulation]") {
+  const double stage = 2.0 - std::sqrt(2.0), speed = 2.0, dt = 0.01;  // [-, m/s, s]: of tr_bdf2 the first is a trapezoid over this part of the step
+  Scene scene = test::empty_scene();
+  scene.gravity = {0.0, 0.0};
+  scene.method.integrator = "tr_bdf2";
+  // A corner that flies a millimetre above two bases, 3 mm before their seam when the second stage begins; it goes 8.3 mm in that.
+  scene.blocks = {test::fixed_block("left", test::rectangle(-10.0, -1.0, 10.0, 1.0)),
+                  test::fixed_block("right", test::rectangle(0.0, -1.0, 10.0, 1.0)),
+                  test::free_block("block", test::placed(test::rectangle(0.0, 0.0, 1.0, 1.0), 0.35, {-0.003 - stage * dt * speed, 0.001}))};
+  scene.blocks[2].velocity = {speed, 0.0};
+  const auto bases_below = [&](double look_ahead) {
+    scene.step.look_ahead = look_ahead;
+    Simulation<3> simulation(scene);
+    REQUIRE(simulation.step(stage * dt, false).accepted);
+    std::vector<int> bases;
+    for (const Contact& c : simulation.problem((1.0 - stage) * dt, false).contacts) {
+      if (c.vertex_block == 2) bases.push_back(c.edge_block);
+    }
+    return bases;
+  };
+  CHECK(bases_below(0.0) == std::vector<int>{0});
+  CHECK(bases_below(0.01) == std::vector<int>{0});
+  CHECK(bases_below(0.3) == std::vector<int>{0});  // 2.5 mm
+  CHECK(bases_below(0.4) == std::vector<int>{1});  // 3.3 mm
+}
+
 TEST_CASE("only methods that follow gaps in steps of their own look ahead", "[analysis][simulation]") {
   Scene scene = test::block_on_base();
   scene.step.look_ahead = 0.5;
+  scene.step.look_ahead_where = {"scene.toml", 7};
   for (const std::string contact : {"soft", "hard"}) {
     scene.method.contact = contact;
     CHECK_NOTHROW(Simulation<3>(scene));
   }
   for (const std::string contact : {"dem", "shi"}) {
     scene.method.contact = contact;
-    CHECK_THROWS_WITH(Simulation<3>(scene), ContainsSubstring("step.look_ahead: has no meaning for method.contact = \"" + contact + "\""));
+    CHECK_THROWS_WITH(Simulation<3>(scene),
+                      ContainsSubstring("scene.toml:7: step.look_ahead: has no meaning for method.contact = \"" + contact + "\""));
   }
 }

@@ -72,8 +72,10 @@ TEST_CASE("adaptive steps: the error goes with the tolerance, and falls are take
 TEST_CASE("adaptive steps are for soft", "[analysis][step_control]") {
   Scene scene = test::block_on_base();
   scene.step.adaptive = true;
+  scene.step.adaptive_where = {"scene.toml", 7};
   for (const char* contact : {"hard", "shi", "dem"}) {
     scene.method.contact = contact;
     CHECK_THROWS_AS(Simulation<3>(scene), InputError);
+    CHECK_THROWS_WITH(Simulation<3>(scene), Catch::Matchers::ContainsSubstring("scene.toml:7: step.adaptive: true has no meaning"));
   }
 }

@@ -267,3 +267,18 @@ TEST_CASE("a record that is not there", "[cli][bad_input]") {
   CHECK_THAT(refusal_of_scene(block_on_base + "[base_motion]\nkind = 'record'\nhorizontal_file = 'nowhere.AT2'\n"),
              ContainsSubstring("nowhere.AT2: there is no such file"));
 }
+
+TEST_CASE("a method that cannot settle the scene is refused before anything is written", "[cli][bad_input]") {
+  const Workplace place(block_on_base + "[method]\nrotation = \"linear\"\n[run]\nsettled_by = \"dem\"\n");
+  const std::string message = refusal(place, "run scene.toml -o out" + steps);
+  CHECK_THAT(message, ContainsSubstring("scene.toml:25: run.settled_by: \"dem\" cannot settle this scene: ") &&
+                          ContainsSubstring("method.rotation: \"linear\" has no meaning"));
+  CHECK(refusal(place, "check scene.toml") == message);
+  CHECK(place.run("run scene.toml -o out --set run.settled_by=soft" + steps).status == 0);
+}
+
+TEST_CASE("methods that have no use for keys of the step name their lines", "[cli][bad_input]") {
+  const std::string scene = block_on_base + "[method]\ncontact = \"dem\"\n[step]\n";
+  CHECK_THAT(refusal_of_scene(scene + "look_ahead = 0.5\n"), ContainsSubstring("scene.toml:25: step.look_ahead: has no meaning"));
+  CHECK_THAT(refusal_of_scene(scene + "adaptive = true\n"), ContainsSubstring("scene.toml:25: step.adaptive: true has no meaning"));
+}

@@ -284,6 +284,23 @@ TEST_CASE("a failing slope: reduced strength, milestones, snapshots, end by disp
   }
 }
 
+TEST_CASE("a method to settle by that nothing asks for is worth a warning", "[cli]") {
+  const Workplace place(openclose::test::block_on_incline(20.0));
+  const auto warning = [&](const std::string& arguments) {
+    const CommandResult result = place.run(arguments + " scene.toml -o out --dt 0.001");
+    CHECK(result.status == 0);
+    const auto summary = summary_in(place.folder() / "out");
+    CHECK(summary.at("warnings").size() == result.errors.size());
+    return result.errors.empty() ? std::string() : result.errors[0];
+  };
+  CHECK(warning("run --end 0.01 --set run.settled_by=dem").empty());
+  CHECK(warning("run --end 0.01 --start unloaded --set run.settled_by=soft").empty());
+  CHECK_THAT(warning("run --end 0.01 --start unloaded --set run.settled_by=dem"),
+             StartsWith("openclose: warning: scene.toml: run.settled_by is for method.start = \"settled\""));
+  CHECK_THAT(warning("fos --set strength_reduction.width=0.5 --set run.settled_by=dem"),
+             StartsWith("openclose: warning: scene.toml: run.settled_by is for run"));
+}
+
 TEST_CASE("what was asked for and did not come is worth a warning", "[cli]") {
   const Workplace place;
   const CommandResult result = place.run(

@@ -323,6 +323,53 @@ TEST_CASE("corners that are left out because they are too far from the other blo
   CHECK(contacts > 1000);
 }
 
+TEST_CASE("a joint that has closed under one of two corners stays closed for the other one, through however thin a slab", "[contact][detection]") {
+  // What has gone 20 mm into a slab of 2 mm is farther behind its underside than any new corner that could touch it.
+  Scene scene = scene_with({fixed_block("slab", rectangle(0.0, -0.002, 5.0, 0.002)), free_block("block", rectangle(0.5, -0.02, 2.0, 1.0))});
+  const Detection all_new(scene, 1e-3);
+  CHECK(all_new.contacts.empty());
+  Contact known;  // of the slab's corner, while it was the nearer one
+  known.vertex_block = 0;
+  known.vertex = 3;
+  known.edge_block = 1;
+  known.edge = 4;
+  known.gap = -0.02;
+  known.status = ContactStatus::sticking;
+  std::vector<Contact> found{known};
+  Detector<3> detector(1e-3, {true, false, true, 0.0});
+  REQUIRE(detector.update(all_new.system, all_new.joints, found));
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].vertex == 4);
+  CHECK(found[0].edge == 2);
+  CHECK(found[0].gap == Approx(-0.02));
+}
+
+TEST_CASE("a corner that leans on one block is opposite to another one's edge up to twice its closure beyond the end, in steps however short",
+          "[contact][detection]") {
+  constexpr double closure = 1e-3;
+  const double beyond = GENERATE(0.5, 1.9, 2.1) * closure;
+  // The side that leans over the wall by 10 degrees is neither quite parallel to it nor turned away.
+  const double lean = std::tan(10.0 * degree);
+  const Scene scene = scene_with({fixed_block("base", rectangle(-5.0, -1.0, 10.0, 1.0)),
+                                  free_block("block", {{0.0, -closure}, {2.0, -closure}, {2.0, 1.0 - closure}, {lean, 1.0 - closure}}),
+                                  fixed_block("wall", rectangle(-1.0001, beyond - closure, 1.0, 1.0))});
+  Contact known;
+  known.vertex_block = 1;
+  known.vertex = 4;
+  known.edge_block = 0;
+  known.edge = 2;
+  known.gap = -closure;
+  known.status = ContactStatus::sticking;
+  std::vector<Contact> found{known};
+  const BlockSystem<3> system(scene);
+  const JointTable joints(scene);
+  constexpr double reach = 2e-4;  // [m] of steps of 0.1 mm
+  Detector<3> detector(reach, {true, false, true, 0.0});
+  REQUIRE(detector.update(system, joints, found));
+  const bool meets = std::ranges::any_of(found, [](const Contact& c) { return c.vertex == 4 && c.edge == 9; });
+  CHECK(meets == (beyond < 2.0 * closure));
+}
+
 TEST_CASE("joints are those of the two materials", "[contact][detection]") {
   Scene scene = scene_with({fixed_block("base", rectangle(-5.0, -1.0, 10.0, 1.0)), free_block("block", rectangle(0.0, 0.0, 2.0, 1.0)),
                             free_block("top", rectangle(0.0, 1.0, 2.0, 1.0))});

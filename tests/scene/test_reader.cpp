@@ -142,6 +142,7 @@ TEST_CASE("every key reaches its field", "[scene][reader]") {
   CHECK(scene.step.adaptive);
   CHECK(scene.step.error_tolerance == 1e-3);
   CHECK(scene.step.look_ahead == 0.75);
+  CHECK(scene.step.look_ahead_where.line - scene.step.adaptive_where.line == 2);
   CHECK(scene.end_time == 15.0);
   CHECK(scene.output_every == 16.0);
   CHECK(scene.checkpoint_every == 24.0);
