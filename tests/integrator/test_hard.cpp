@@ -4,6 +4,7 @@
 #include "openclose/analysis/run.h"
 #include "openclose/analysis/settle.h"
 #include "openclose/core/tolerance.h"
+#include "openclose/integrator/registry.h"
 #include "support/catch.h"
 #include "support/scenes.h"
 
@@ -146,6 +147,32 @@ TEST_CASE("a closed contact that penetrates is pushed out by no more than passes
   CHECK(push(-0.4 * tolerance) == 0.0);
   CHECK(push(-0.7 * tolerance) == Approx(0.2 * tolerance).epsilon(1e-9));  // back to what it may keep, half the tolerance
   CHECK(push(-100.0 * tolerance) == Approx(0.5 * tolerance).epsilon(1e-9));
+}
+
+TEST_CASE("a force that grows drives a closed contact in no deeper than it is", "[integrator][hard]") {
+  Scene scene = settling();
+  scene.method.contact = "hard";
+  Simulation<3> simulation(scene);
+  REQUIRE(settle(simulation).settled);
+  const StepProblem<3> present = simulation.problem(scene.step.dt, false);
+  std::vector<Contact> contacts = present.contacts;
+  for (Contact& c : contacts) {
+    // Less by this than what the block weighs: the first pass misses its target by no more than what is tolerated.
+    const double lacking = 0.75 * test::gap_tolerance;
+    c.gap = -3.0 * test::gap_tolerance;
+    c.normal_force -= lacking * simulation.enforcement().springs(present, c).normal;
+  }
+  const StepProblem<3> problem{present.system, present.external, present.joints, contacts, present.method, present.dt, false, present.inertia};
+  StepSolution<3> solution;
+  make_enforcement<3>(scene.method)->solve(problem, solution);
+  REQUIRE(solution.converged);
+  int closed = 0;
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    if (contacts[c].status == ContactStatus::open) continue;
+    ++closed;
+    CHECK(solution.contacts[c].pose.gap_change >= 0.0);
+  }
+  CHECK(closed == 2);
 }
 
 TEST_CASE("springs of rigid contacts become stiffer where they are too soft for a column", "[integrator][hard]") {
