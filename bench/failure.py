@@ -65,7 +65,7 @@ QUICK_FOLLOWER_STEPS = 2
 LARGE_FOLLOWERS = (
     Follower(SOFT_SHI, (0.02, 0.01, 0.003)),
     *(Follower(method, (0.01,)) for method in (*AHEAD, *AHEAD_WIDE)),
-    Follower(ADAPTIVE_AHEAD_WIDE, (1e-3, 1e-4), "step.error_tolerance_m"),
+    Follower(ADAPTIVE_AHEAD_WIDE, (1e-3, 1e-4, 3e-5), "step.error_tolerance_m"),
     *(Follower(method, (0.02,)) for method in (SOFT_PATH_AVERAGE, HARD)),
     Follower(ADAPTIVE[0], (1e-3, 3e-4), "step.error_tolerance_m"),
     *(Follower(method, (0.9,), FRACTION) for method in (DEM, DEM_WIDE)),

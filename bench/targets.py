@@ -94,8 +94,9 @@ def _hard(bench: Bench) -> list[Target]:
         rows = {r.method: r for r in bench.of(study, "3.4 of 500") if not r.reason}
         if "hard" in rows and "soft" in rows:
             found.append(_at_most(f"{study}, 500 blocks: hard over soft in time", rows["hard"].cpu_s / rows["soft"].cpu_s, 1.2, " x"))
-    for study, blocks in ((failure.STUDY, "482 blocks"), (scaling.MOTION, "all sizes")):
-        deepest = [r.max_penetration_m for r in bench.of(study) if r.method == "hard" and not r.reason]
+    small = [r for scene in (failure.SCENE, failure.RESTING_SCENE) for r in bench.of(failure.STUDY, scene)]
+    for rows, blocks in ((small, "482 blocks"), (bench.of(scaling.MOTION), "20 steps, all sizes")):
+        deepest = [r.max_penetration_m for r in rows if r.method == "hard" and not r.reason]
         found.append(_at_most(f"hard: deepest penetration, 3.4 in failure, {blocks}", max(deepest, default=None), LARGEST_PENETRATION_M, " m"))
     return found
 
