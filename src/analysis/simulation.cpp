@@ -68,9 +68,8 @@ Simulation<N>::Simulation(Scene scene, std::unique_ptr<Enforcement<N>> enforceme
       enforcement_(enforcement ? std::move(enforcement) : make_enforcement<N>(scene_.method)),
       scheme_(enforcement_->make_time_scheme(scene_.method)),
       // Two vertices may approach each other by the largest displacement each.
-      detector_(2.0 * scene_.step.max_displacement,
-                {scene_.method.skip_search, scene_.method.skip_narrow_phase && enforcement_->follows_gaps(), scene_.method.skip_looks,
-                 scene_.method.contact_skin}),
+      detector_(2.0 * scene_.step.max_displacement, {scene_.method.skip_search, scene_.method.skip_narrow_phase && enforcement_->follows_gaps(),
+                                                     scene_.method.skip_looks, scene_.method.contact_skin}),
       output_velocity_(system_.state().velocity),
       resting_(scene_.rest, system_),
       start_kinetic_energy_(system_.kinetic_energy()),

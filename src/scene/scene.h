@@ -146,16 +146,16 @@ struct MethodInput {
   LinearSolverKind linear_solver = LinearSolverKind::automatic;
   StaticSolver static_solver = StaticSolver::automatic;  ///< soft
   bool skip_search = true;                               ///< search candidates only once something has moved beyond the skin
-  bool skip_narrow_phase = true;        ///< find the contacts of two blocks anew only once they have moved against each other beyond the skin
-  bool skip_looks = true;               ///< see DetectionSkips
+  bool skip_narrow_phase = true;  ///< find the contacts of two blocks anew only once they have moved against each other beyond the skin
+  bool skip_looks = true;         ///< see DetectionSkips
   double contact_skin = tolerance::contact_skin_m;  ///< [m]
-  bool skip_reload = true;              ///< dem: exchange only the contacts that were found anew, and leave the others in the loop
-  int threads = 1;                      ///< that share the work; the results are the same to the last bit
-  bool skip_factorisation = true;       ///< factor only rows of the matrix that have changed, and no weak couplings
-  bool skip_symbolic = true;            ///< plan a factorisation only once the pattern of the matrix has changed
-  bool skip_unmoved = true;             ///< after parts were solved, evaluate only contacts of what moved with them
-  bool skip_balanced = true;            ///< between iterations of large systems in motion, iterate only where forces are far from balance
-  bool skip_resting = false;            ///< leave blocks alone that are at rest, see RestInput
+  bool skip_reload = true;                          ///< dem: exchange only the contacts that were found anew, and leave the others in the loop
+  int threads = 1;                                  ///< that share the work; the results are the same to the last bit
+  bool skip_factorisation = true;                   ///< factor only rows of the matrix that have changed, and no weak couplings
+  bool skip_symbolic = true;                        ///< plan a factorisation only once the pattern of the matrix has changed
+  bool skip_unmoved = true;                         ///< after parts were solved, evaluate only contacts of what moved with them
+  bool skip_balanced = true;                        ///< between iterations of large systems in motion, iterate only where forces are far from balance
+  bool skip_resting = false;                        ///< leave blocks alone that are at rest, see RestInput
   double gap_tolerance = 3e-7;          ///< [m] hard: a closed contact may differ from its target gap, a sticking one from its place, by this much
   std::optional<double> penalty;        ///< [Pa/m] shi: normal penalty, times the tributary length like any stiffness; absent: 10 times the joint's
   double penalty_shear_ratio = 0.4;     ///< [-] shi: shear penalty over normal penalty

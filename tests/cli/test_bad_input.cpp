@@ -85,13 +85,16 @@ TEST_CASE("unknown key", "[cli][bad_input]") {
 }
 
 TEST_CASE("wrong unit suffix", "[cli][bad_input]") {
-  CHECK_THAT(refusal_with(9, "friction_angle_rad = 0.6"), ContainsSubstring("joint[0].friction_angle_rad: ") && ContainsSubstring("friction_angle_deg"));
-  CHECK_THAT(refusal_with(3, "density_g_per_cm3 = 2.7"), ContainsSubstring("material[0].density_g_per_cm3: ") && ContainsSubstring("density_kg_per_m3"));
+  CHECK_THAT(refusal_with(9, "friction_angle_rad = 0.6"),
+             ContainsSubstring("joint[0].friction_angle_rad: ") && ContainsSubstring("friction_angle_deg"));
+  CHECK_THAT(refusal_with(3, "density_g_per_cm3 = 2.7"),
+             ContainsSubstring("material[0].density_g_per_cm3: ") && ContainsSubstring("density_kg_per_m3"));
   CHECK_THAT(refusal_of_scene(block_on_base + "[step]\ndt_ms = 1\n"), ContainsSubstring("step.dt_ms: ") && ContainsSubstring("dt_s"));
 }
 
 TEST_CASE("numbers that are none", "[cli][bad_input]") {
-  CHECK_THAT(refusal_with(3, "density_kg_per_m3 = nan"), ContainsSubstring("scene.toml:3: material[0].density_kg_per_m3: nan is not a finite number"));
+  CHECK_THAT(refusal_with(3, "density_kg_per_m3 = nan"),
+             ContainsSubstring("scene.toml:3: material[0].density_kg_per_m3: nan is not a finite number"));
   CHECK_THAT(refusal_with(7, "normal_stiffness_pa_per_m = inf"), ContainsSubstring("joint[0].normal_stiffness_pa_per_m: inf is not a finite number"));
   CHECK_THAT(refusal_with_vertices("[[0, 0], [1, nan], [1, 1]]"), ContainsSubstring("block[1].vertices_m[1][1]: nan is not a finite number"));
   const Workplace place;
@@ -100,12 +103,14 @@ TEST_CASE("numbers that are none", "[cli][bad_input]") {
 }
 
 TEST_CASE("negative density", "[cli][bad_input]") {
-  CHECK_THAT(refusal_with(3, "density_kg_per_m3 = -2700"), ContainsSubstring("material[0].density_kg_per_m3: -2700 is out of range; accepted: a number > 0"));
+  CHECK_THAT(refusal_with(3, "density_kg_per_m3 = -2700"),
+             ContainsSubstring("material[0].density_kg_per_m3: -2700 is out of range; accepted: a number > 0"));
 }
 
 TEST_CASE("zero or negative stiffness", "[cli][bad_input]") {
   CHECK_THAT(refusal_with(7, "normal_stiffness_pa_per_m = 0"), ContainsSubstring("joint[0].normal_stiffness_pa_per_m: 0 is out of range"));
-  CHECK_THAT(refusal_with(7, "normal_stiffness_pa_per_m = -1e9"), ContainsSubstring("joint[0].normal_stiffness_pa_per_m: -1000000000 is out of range"));
+  CHECK_THAT(refusal_with(7, "normal_stiffness_pa_per_m = -1e9"),
+             ContainsSubstring("joint[0].normal_stiffness_pa_per_m: -1000000000 is out of range"));
   CHECK_THAT(refusal_with(8, "shear_stiffness_pa_per_m = 0.0"), ContainsSubstring("joint[0].shear_stiffness_pa_per_m: 0 is out of range"));
   CHECK_THAT(refusal_with(8, "shear_stiffness_pa_per_m = -1"), ContainsSubstring("joint[0].shear_stiffness_pa_per_m: -1 is out of range"));
 }
@@ -123,7 +128,8 @@ TEST_CASE("polygon with two points", "[cli][bad_input]") {
 }
 
 TEST_CASE("self-intersecting polygon", "[cli][bad_input]") {
-  CHECK_THAT(refusal_with_vertices("[[0, 0], [1, 1], [1, 0], [0, 1]]"), ContainsSubstring("block[1].vertices_m: the polygon intersects or touches itself"));
+  CHECK_THAT(refusal_with_vertices("[[0, 0], [1, 1], [1, 0], [0, 1]]"),
+             ContainsSubstring("block[1].vertices_m: the polygon intersects or touches itself"));
 }
 
 TEST_CASE("zero-area sliver", "[cli][bad_input]") {
@@ -151,14 +157,16 @@ TEST_CASE("clockwise polygon is turned", "[cli][bad_input]") {
 }
 
 TEST_CASE("blocks that overlap deeper than the stated depth", "[cli][bad_input]") {
-  CHECK_THAT(refusal_with_vertices("[[0, -0.002], [1, -0.002], [1, 1], [0, 1]]"),
-             ContainsSubstring("scene.toml:17: block: \"block\" overlaps \"base\" (line 11)") && ContainsSubstring("accepted: overlaps of at most 0.001 m"));
+  CHECK_THAT(
+      refusal_with_vertices("[[0, -0.002], [1, -0.002], [1, 1], [0, 1]]"),
+      ContainsSubstring("scene.toml:17: block: \"block\" overlaps \"base\" (line 11)") && ContainsSubstring("accepted: overlaps of at most 0.001 m"));
   const Workplace place(with_line(block_on_base, 20, "vertices_m = [[0, -0.0009], [1, -0.0009], [1, 1], [0, 1]]"));
   CHECK(place.run("check scene.toml").status == 0);
 }
 
 TEST_CASE("unknown material", "[cli][bad_input]") {
-  CHECK_THAT(refusal_with(19, "material = \"roc\""), ContainsSubstring("scene.toml:19: block[1].material: there is no material \"roc\"; accepted: \"rock\""));
+  CHECK_THAT(refusal_with(19, "material = \"roc\""),
+             ContainsSubstring("scene.toml:19: block[1].material: there is no material \"roc\"; accepted: \"rock\""));
 }
 
 TEST_CASE("missing joint", "[cli][bad_input]") {
@@ -187,7 +195,8 @@ TEST_CASE("unknown method", "[cli][bad_input]") {
   const std::string in_file = refusal_of_scene(block_on_base + "[method]\ncontact = 'firm'\n");
   CHECK_THAT(in_file, ContainsSubstring("scene.toml:23: method.contact: \"firm\""));
   for (const std::string& message : {in_file, refusal_of_scene(block_on_base, " --contact firm")}) {
-    CHECK_THAT(message, ContainsSubstring("method.contact: \"firm\"") && ContainsSubstring("\"soft\"") && ContainsSubstring("\"hard\"") && ContainsSubstring("\"shi\""));
+    CHECK_THAT(message, ContainsSubstring("method.contact: \"firm\"") && ContainsSubstring("\"soft\"") && ContainsSubstring("\"hard\"") &&
+                            ContainsSubstring("\"shi\""));
   }
 }
 
@@ -203,7 +212,8 @@ TEST_CASE("unknown start", "[cli][bad_input]") {
 
 TEST_CASE("a start that the scene does not have", "[cli][bad_input]") {
   const Workplace place(block_on_base + "[[block]]\nname = 'top'\nmaterial = 'rock'\nvertices_m = [[0, 1], [1, 1], [1, 2], [0, 2]]\n");
-  CHECK_THAT(refusal(place, "run scene.toml -o out --start steady_sliding" + steps), ContainsSubstring("block: \"block\" rests on a block that is not fixed"));
+  CHECK_THAT(refusal(place, "run scene.toml -o out --start steady_sliding" + steps),
+             ContainsSubstring("block: \"block\" rests on a block that is not fixed"));
 }
 
 TEST_CASE("unwritable output folder", "[cli][bad_input]") {
@@ -240,9 +250,11 @@ TEST_CASE("options of a run that mean nothing", "[cli][bad_input]") {
 
 TEST_CASE("more steps than anyone waits for", "[cli][bad_input]") {
   const Workplace place;
-  CHECK_THAT(refusal(place, "run scene.toml -o out --dt 0.001 --end 1e300"), ContainsSubstring("end.time_s: 1e+300 s in steps of 0.001 s; accepted: at most 1e+09"));
+  CHECK_THAT(refusal(place, "run scene.toml -o out --dt 0.001 --end 1e300"),
+             ContainsSubstring("end.time_s: 1e+300 s in steps of 0.001 s; accepted: at most 1e+09"));
   CHECK_THAT(refusal(place, "run scene.toml -o out --dt 1e-16 --end 0.1"), ContainsSubstring("end.time_s"));
-  CHECK_THAT(refusal(place, "fos scene.toml -o out --dt 1e-16 --set strength_reduction.curve_time_s=1"), ContainsSubstring("strength_reduction.curve_time_s"));
+  CHECK_THAT(refusal(place, "fos scene.toml -o out --dt 1e-16 --set strength_reduction.curve_time_s=1"),
+             ContainsSubstring("strength_reduction.curve_time_s"));
 }
 
 TEST_CASE("overrides that cannot be", "[cli][bad_input]") {

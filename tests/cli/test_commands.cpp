@@ -42,8 +42,9 @@ TEST_CASE("help and version", "[cli]") {
     CHECK(result->errors.empty());
   }
   CHECK_THAT(help.out, ContainsSubstring("run") && ContainsSubstring("fos") && ContainsSubstring("check") && ContainsSubstring("Exit status"));
-  CHECK_THAT(run_help.out, ContainsSubstring("--contact") && ContainsSubstring("--dt") && ContainsSubstring("--end") && ContainsSubstring("--start") && ContainsSubstring("--set") &&
-                               ContainsSubstring("--output") && ContainsSubstring("--quiet"));
+  CHECK_THAT(run_help.out, ContainsSubstring("--contact") && ContainsSubstring("--dt") && ContainsSubstring("--end") &&
+                               ContainsSubstring("--start") && ContainsSubstring("--set") && ContainsSubstring("--output") &&
+                               ContainsSubstring("--quiet"));
   for (const char* name : {"soft", "hard", "shi", "dem", "path_average"}) CHECK_THAT(run_help.out, ContainsSubstring(std::string(name) + " ("));
   CHECK(version.out == std::string(openclose::version) + "\n");
 }
@@ -303,8 +304,8 @@ TEST_CASE("a method to settle by that nothing asks for is worth a warning", "[cl
 
 TEST_CASE("what was asked for and did not come is worth a warning", "[cli]") {
   const Workplace place;
-  const CommandResult result = place.run(
-      "run scene.toml -o out --dt 0.001 --end 0.01 --set end.displacement_m=1 --set output.milestones_m=[2] --set output.snapshots_s=[3]");
+  const CommandResult result =
+      place.run("run scene.toml -o out --dt 0.001 --end 0.01 --set end.displacement_m=1 --set output.milestones_m=[2] --set output.snapshots_s=[3]");
   CHECK(result.status == 0);
   REQUIRE(result.errors.size() == 3);
   CHECK_THAT(result.errors[0], StartsWith("openclose: warning: milestone 2 m not reached: the run ended at t = 0.01 s"));
