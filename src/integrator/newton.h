@@ -114,9 +114,10 @@ class Newton {
   double begin(const Eigen::VectorXd& d, FirstTangent first);
   /// Iterates from solution.d until its residual_norm() is small enough.
   Outcome iterate(const StepProblem<N>& problem, StepSolution<N>& solution, double& norm, Until until, bool may_start_cold);
-  /// Solves the parts around the largest residuals, each for itself, and moves on if the residual is smaller then. Returns its norm.
+  /// Solves the parts around the largest residuals, each for itself, and moves on with those that got better unless the residual is larger then.
+  /// Returns its norm.
   double solve_parts(StepSolution<N>& solution, double norm);
-  std::vector<Part> unbalanced_parts(double norm);
+  std::vector<Part> unbalanced_parts(double norm, double end);
   /// The equations of a part of another system, while all other blocks stay where they are there.
   void take_part(const Newton& whole, const Part& part);
   /// Goes on, after the first iteration of a cold start, by whole steps with the exact tangent, in which what has just opened or begun to slide is

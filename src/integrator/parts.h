@@ -13,6 +13,11 @@ struct Part {
   std::vector<int> contacts;  ///< all that touch one of them, ascending
 };
 
+/// Rows with more than a part of the largest residual, and those with more than that part of it, and so on as long as there are few.
+/// \param largest  of the residuals; infinite: none
+/// \param end      rows with less are never among them
+std::vector<int> most_unbalanced(const std::vector<double>& residuals, double largest, double end, double part, int few);
+
 /// Which contacts join which blocks.
 class Neighbourhood {
  public:
