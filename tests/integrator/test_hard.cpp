@@ -189,6 +189,20 @@ TEST_CASE("springs of rigid contacts become stiffer where they are too soft for 
   CHECK(simulation.step_counters().steps == 10);  // none of them in parts, as where the passes that a step may take are too few
 }
 
+TEST_CASE("a step of which the passes do not find the multipliers is cut to what their error tells", "[integrator][hard]") {
+  Scene scene = test::empty_scene();
+  scene.blocks = {test::fixed_block("base", test::rectangle(-5.0, -1.0, 10.0, 1.0))};
+  for (int i = 0; i < 400; ++i) scene.blocks.push_back(test::free_block("block " + std::to_string(i), test::rectangle(0.0, i, 2.0, 1.0)));
+  scene.method.contact = "hard";
+  scene.method.gap_tolerance = 3e-7;
+  scene.step.dt = 0.1;
+  scene.end_time = 3.0 * scene.step.dt;
+  Simulation<3> simulation(scene);
+  CHECK(run<3>(simulation, {}).converged);
+  CHECK(simulation.step_counters().cuts > 0);
+  CHECK(simulation.step_counters().compliant == 0);
+}
+
 TEST_CASE("soft contacts close by what their stiffness says", "[integrator][soft]") {
   const Outcome a = outcome(settling(), "soft", 1.0), b = outcome(settling(), "soft", 0.5);
   const double closure = test::block_weight / (1e9 * test::block_edge);
