@@ -33,9 +33,6 @@ namespace {
 /// first is as high as Newton takes without more iterations (40 m of a failing slope: 2900, with 1000 3900, with 100 more passes); where it gets lost
 /// among the contact states, the softer ones are easier.
 constexpr std::array stiffness_over_inertia = {300.0, 100.0, 30.0, 1.0};
-/// Steps that softer springs must have taken before stiffer ones are tried again, in which Newton's method may get lost anew: twice as many each time
-/// that it does, up to the most, and half as many after a step with the stiffest.
-constexpr int steps_before_stiffer = 2, most_steps_before_stiffer = 64;
 /// [-] Where a surface begins to slip or to open, one contact after the other gives its force to the next, and a pass takes that on by one contact.
 /// So the springs of single contacts become stiffer by this factor from pass to pass if their error is more than what is tolerated and hardly
 /// becomes less, up to the stiffest over the inertia. 20 steps of failing slopes of 4,568 and 9,745 free blocks that lose their strength at once take
@@ -90,19 +87,19 @@ class Hard final : public Enforcement<N> {
       return;
     }
     compliant_.clear();
+    // The next attempt at a step begins with the springs whose passes were too slow in the one before: slopes of 1,000 to 5,000 blocks that lose
+    // their strength at once take 7 to 13 % fewer iterations than with all springs anew.
+    if (problem.failed_attempts == 0) level_ = 0;
     for (std::size_t level = level_; level < stiffness_over_inertia.size(); ++level) {
       set_springs(problem, stiffness_over_inertia[level]);
       pass_until_held(problem, level == 0 ? Cohesion::as_it_is : Cohesion::may_be_eased, solution);
-      if (solution.converged) return take_level(level);
+      if (solution.converged) return;
       if (solution.part > 0.0) {  // with softer springs the passes are even slower
         level_ = level;
-        steps_at_level_ = 0;
         break;
       }
-      steps_before_stiffer_ = std::min(2 * steps_before_stiffer_, most_steps_before_stiffer);
     }
     if (!compliant_.converged) return;
-    level_ = 0;  // what these springs leave is the less, the stiffer they are
     compliant_.effort = solution.effort;
     compliant_.compliant = true;
     solution = std::exchange(compliant_, {});
@@ -119,24 +116,11 @@ class Hard final : public Enforcement<N> {
     of.contacts += bytes_of(springs_);
     return of;
   }
-  void exchange(Archive& archive) override {
-    newton_.exchange(archive);
-    archive(level_, steps_at_level_, steps_before_stiffer_);
-  }
+  void exchange(Archive& archive) override { newton_.exchange(archive); }
 
  private:
   /// Whether the first pass may take the longer ramp.
   enum class Cohesion { as_it_is, may_be_eased };
-
-  /// A step has been solved with these springs: which ones the next is to begin with.
-  void take_level(std::size_t level) {
-    steps_at_level_ = level == level_ ? steps_at_level_ + 1 : 1;
-    level_ = level;
-    if (level_ == 0) steps_before_stiffer_ = std::max(steps_before_stiffer, steps_before_stiffer_ / 2);
-    if (level_ == 0 || steps_at_level_ < steps_before_stiffer_) return;
-    --level_;
-    steps_at_level_ = 0;
-  }
 
   /// [N/m] of the heavier block, which is not fixed.
   static double inertia(const StepProblem<N>& problem, const Contact& contact) {
@@ -357,9 +341,7 @@ class Hard final : public Enforcement<N> {
   Newton<N> newton_{Merit::all_blocks};
   std::vector<ContactSprings> springs_;
   StepSolution<N> compliant_;  ///< of this step, if it may be
-  std::size_t level_ = 0;      ///< of stiffness_over_inertia: what the next step of a motion begins with
-  int steps_at_level_ = 0;     ///< that these springs have taken, one after the other
-  int steps_before_stiffer_ = steps_before_stiffer;
+  std::size_t level_ = 0;      ///< of stiffness_over_inertia: what the next attempt at this step begins with
 };
 
 }  // namespace
