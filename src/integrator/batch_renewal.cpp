@@ -37,7 +37,7 @@ void BatchRenewal<N>::renew(const StepProblem<N>& problem, const SpringSource<N>
     batch.set_places(k, vertex.place, edge.place);
     batch.set_geometry(k, ContactPlace<N>(problem.system, contact, vertex.centroid, edge.centroid));
     if (last) {
-      const Owner owner{contact.length, contact.joint, contact.vertex_block, contact.edge_block, contact.bonded};
+      const Owner owner(contact);
       if (owner == owners[at]) {
         batch.set_start(k, contact);
         continue;

@@ -60,11 +60,15 @@ class BatchRenewal {
     Vec2 centroid;  ///< [m]
     int place;
   };
-  /// Whose springs and strength they are.
+  /// Whose springs and strength they are; the blocks tell the joint.
   struct Owner {
     double length = 0.0;
-    int joint = -1, vertex_block = -1, edge_block = -1;
-    bool bonded = false;
+    int vertex_block = -1;
+    int edge_block = -1;  ///< where the joint is not bonded minus this minus 2: no numbers of the others
+
+    Owner() = default;
+    explicit Owner(const Contact& contact)
+        : length(contact.length), vertex_block(contact.vertex_block), edge_block(contact.bonded ? contact.edge_block : -2 - contact.edge_block) {}
     bool operator==(const Owner&) const = default;
   };
 

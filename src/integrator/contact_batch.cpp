@@ -16,20 +16,20 @@ constexpr int entries = 9;  ///< of a block of the matrix, column by column
 
 /// Of four blocks.
 struct Moves {
-  Lanes x, y, way, turn;
-  Lanes sine, versine, edge_sine, edge_versine;
+  Lanes x, y, sine, versine;
+  Lanes edge_sine, edge_versine, bound, unused;
 
   /// \param at  as in ContactBatch
   OPENCLOSE_KERNEL Moves(const BlockMove<3>* moves, const unsigned* at) {
-    Lanes* const first[] = {&x, &y, &way, &turn};
-    Lanes* const second[] = {&sine, &versine, &edge_sine, &edge_versine};
+    Lanes* const first[] = {&x, &y, &sine, &versine};
+    Lanes* const second[] = {&edge_sine, &edge_versine, &bound, &unused};
     for (int k = 0; k < batch_size; ++k) {
       const double* const move = moves->translation.data() + at[k];
       *first[k] = load(move);
       *second[k] = load(move + batch_size);
     }
-    transpose(x, y, way, turn);
-    transpose(sine, versine, edge_sine, edge_versine);
+    transpose(x, y, sine, versine);
+    transpose(edge_sine, edge_versine, bound, unused);
   }
 };
 static_assert(sizeof(BlockMove<3>) == 2 * sizeof(Lanes), "its members are loaded in their order");
@@ -47,8 +47,6 @@ OPENCLOSE_KERNEL double begin(ContactBatch* contacts, std::size_t count) {
     // Places without a contact have no edge.
     c.normal_x = edge > 0.0 ? edge_y / edge : Lanes{};
     c.normal_y = edge > 0.0 ? -(edge_x / edge) : Lanes{};
-    c.vertex_reach = length(c.vertex_arm_x, c.vertex_arm_y);
-    c.edge_reach = length(c.end_arm_x + c.lever_x, c.end_arm_y + c.lever_y);
     largest = larger(largest, larger(c.shift - c.normal * c.gap_off_target, magnitude(c.initial_shear)));
   }
   return std::max({largest[0], largest[1], largest[2], largest[3]});
@@ -97,7 +95,9 @@ OPENCLOSE_KERNEL bool all_are_open(const Branch* branches) {
 OPENCLOSE_KERNEL Mask find_forces(const ContactBatch& c, double ramp, TrialBatch& trial, Branch* branches) {
   const Lanes zero{};
   const Lanes elastic_normal = c.shift - c.normal * (c.gap_off_target + trial.gap_change);
-  const Lanes viscous_normal = -c.normal_damping * (c.parted + trial.gap_change);
+  // By how much the gap is wider than where the spring opens; not a number where there is no contact.
+  const Lanes parted = larger(zero, c.gap_off_target - (c.shift + c.tension) / c.normal);
+  const Lanes viscous_normal = -c.normal_damping * (parted + trial.gap_change);
   const Lanes elastic_shear = c.initial_shear - c.shear * trial.slip_change, shear = elastic_shear + -c.shear_damping * trial.slip_change;
   const Mask closed = ~is_open(c.tension, elastic_normal);
 
@@ -227,7 +227,7 @@ OPENCLOSE_KERNEL double evaluate(double ramp, const ContactBatch* contacts, std:
     for (std::size_t i = 0; i < at_once; ++i) {
       const Moves vertex(moves, starts[i].vertex_at), edge(moves, starts[i].edge_at);
       find_pose(starts[i], vertex, edge, trial[i]);
-      moved[i] = (vertex.way + starts[i].vertex_reach * vertex.turn) + (edge.way + starts[i].edge_reach * edge.turn);
+      moved[i] = vertex.bound + edge.bound;
     }
     for (std::size_t i = 0; i < at_once; ++i) {
       Branch* const now = branches_now + batch_size * i;

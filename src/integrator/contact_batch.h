@@ -42,11 +42,9 @@ inline constexpr unsigned doubles_of_move = sizeof(BlockMove<3>) / sizeof(double
 /// Four contacts at the start of a step: set one by one, then BatchKernels::begin(). What is not set carries nothing and adds nothing.
 struct ContactBatch {
   Lanes normal_x{}, normal_y{}, lever_x{}, lever_y{}, vertex_arm_x{}, vertex_arm_y{}, end_arm_x{}, end_arm_y{};  // as in ContactStart
-  Lanes vertex_reach{}, edge_reach{};  ///< [m] from the centroids to the contact
-  // As in ContactSprings and ContactStrength; parted [m] is by how much the gap is wider than where the spring opens, in viscous_normal().
-  Lanes normal{}, shear{}, gap_off_target{}, shift{}, initial_shear{}, normal_damping{}, shear_damping{}, parted{};
-  Lanes friction{}, cohesion{}, tension{};
-  Lanes dissipation{};  ///< of path_average()
+  Lanes normal{}, shear{}, gap_off_target{}, shift{}, initial_shear{}, normal_damping{}, shear_damping{};        // as in ContactSprings
+  Lanes friction{}, cohesion{}, tension{};                                                                       // as in ContactStrength
+  Lanes dissipation{};                                                                                           ///< of path_average()
   /// Of their blocks, in the lists of moves and of sums alike: the place times the doubles of a move, from which the kernels address either at once.
   unsigned vertex_at[batch_size] = {}, edge_at[batch_size] = {};
 
@@ -59,7 +57,6 @@ struct ContactBatch {
   int edge_place(int lane) const { return static_cast<int>(edge_at[lane] / doubles_of_move); }
   void set_geometry(int lane, const ContactPlace<3>& at);
   void set_strength(int lane, const ContactStrength& strength);
-  /// Once the strength is set.
   void set_springs(int lane, const ContactSprings& springs);
   /// The part of set_springs() that follows from where the springs start: their gap, its target, and what they carry there.
   void set_start(int lane, const ContactSprings& springs);
@@ -104,29 +101,21 @@ inline void ContactBatch::set_start(int lane, const ContactSprings& springs) {
   gap_off_target[lane] = springs.gap - springs.target;
   shift[lane] = springs.shift;
   initial_shear[lane] = springs.initial_shear;
-  parted[lane] = 0.0;
-  if (springs.normal_damping != 0.0) {
-    const double opening = springs.target + (springs.shift + tension[lane]) / springs.normal;
-    parted[lane] = std::max(0.0, springs.gap - opening);
-  }
 }
 
 inline void ContactBatch::set_start(int lane, const Contact& contact) {
   gap_off_target[lane] = contact.gap;
   shift[lane] = 0.0;
   initial_shear[lane] = -shear[lane] * contact.elastic_slip;
-  parted[lane] = normal_damping[lane] != 0.0 ? std::max(0.0, contact.gap - tension[lane] / normal[lane]) : 0.0;
 }
 
 inline void ContactBatch::copy(int lane, const ContactBatch& other, int from) {
-  static_assert(sizeof(ContactBatch) == 22 * sizeof(Lanes) + 2 * sizeof(vertex_at), "one line here for each member");
+  static_assert(sizeof(ContactBatch) == 19 * sizeof(Lanes) + 2 * sizeof(vertex_at), "one line here for each member");
   for (Lanes ContactBatch::*member :
-       {&ContactBatch::normal_x,       &ContactBatch::normal_y,     &ContactBatch::lever_x,       &ContactBatch::lever_y,
-        &ContactBatch::vertex_arm_x,   &ContactBatch::vertex_arm_y, &ContactBatch::end_arm_x,     &ContactBatch::end_arm_y,
-        &ContactBatch::vertex_reach,   &ContactBatch::edge_reach,   &ContactBatch::normal,        &ContactBatch::shear,
-        &ContactBatch::gap_off_target, &ContactBatch::shift,        &ContactBatch::initial_shear, &ContactBatch::normal_damping,
-        &ContactBatch::shear_damping,  &ContactBatch::parted,       &ContactBatch::friction,      &ContactBatch::cohesion,
-        &ContactBatch::tension,        &ContactBatch::dissipation}) {
+       {&ContactBatch::normal_x, &ContactBatch::normal_y, &ContactBatch::lever_x, &ContactBatch::lever_y, &ContactBatch::vertex_arm_x,
+        &ContactBatch::vertex_arm_y, &ContactBatch::end_arm_x, &ContactBatch::end_arm_y, &ContactBatch::normal, &ContactBatch::shear,
+        &ContactBatch::gap_off_target, &ContactBatch::shift, &ContactBatch::initial_shear, &ContactBatch::normal_damping,
+        &ContactBatch::shear_damping, &ContactBatch::friction, &ContactBatch::cohesion, &ContactBatch::tension, &ContactBatch::dissipation}) {
     (this->*member)[lane] = (other.*member)[from];
   }
 }
@@ -207,7 +196,7 @@ class BatchKernels {
   /// \param wide_registers  to be used where the processor has them
   explicit BatchKernels(bool wide_registers = true);
 
-  /// Works out, of contacts that have just been set, what is the same operations for all: their normals and reaches. Returns [N] the largest force of
+  /// Works out, of contacts that have just been set, what is the same operations for all: their normals. Returns [N] the largest force of
   /// a spring at the start of the step, pulling ones not counted.
   double begin(std::vector<ContactBatch>& contacts) const { return begin_(contacts.data(), contacts.size()); }
   /// Fills trials and branches; adds to the rows. Returns [N] the largest force.

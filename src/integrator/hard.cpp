@@ -290,7 +290,9 @@ class Hard final : public Enforcement<N> {
       const Contact& contact = problem.contacts[c];
       const auto of_vertex = turned.of(problem.system, contact.vertex_block), of_edge = turned.of(problem.system, contact.edge_block);
       const ContactStart<N> start(problem.system, contact);
-      const ContactPose<N> before(start, {}, {}), after(start, BlockMove<N>(of_vertex, kind), BlockMove<N>(of_edge, kind));
+      const BlockMove<N> vertex(of_vertex, kind, problem.system.block(contact.vertex_block).radius);
+      const BlockMove<N> edge(of_edge, kind, problem.system.block(contact.edge_block).radius);
+      const ContactPose<N> before(start, {}, {}), after(start, vertex, edge);
       springs_[c].shift += springs_[c].normal * (after.gap_change - before.normal_way(of_vertex, of_edge));
       springs_[c].initial_shear += springs_[c].shear * (after.slip_change - before.shear_way(of_vertex, of_edge));
     }

@@ -207,7 +207,7 @@ double Newton<N>::magnitude(const StepBlock& block, const Unknowns& d) const {
 
 template <int N>
 void Newton<N>::move_block(int row, const Eigen::VectorXd& d) {
-  moves_[row] = BlockMove<N>(d.template segment<N>(N * row), problem_->system.rotation_kind());
+  moves_[row] = BlockMove<N>(d.template segment<N>(N * row), problem_->system.rotation_kind(), blocks_[row].radius);
 }
 
 template <int N>
