@@ -41,9 +41,8 @@ template <int N>
 class BatchRenewal {
  public:
   /// Sets all batches up to BatchKernels::begin(). The places of blocks are their equations; those without have the one that comes after these.
-  /// \param order    of the contacts in the batches
-  /// \param batches  as the last call has left them, but for gaps and forces at the start
-  void renew(const StepProblem<N>& problem, const SpringSource<N>& springs, const ContactOrder& order, std::vector<ContactBatch>& batches);
+  /// \param starts  their order, and the batches as the last call has left them, but for gaps and forces at the start
+  void renew(const StepProblem<N>& problem, const SpringSource<N>& springs, ContactStarts& starts);
   /// The batches are not as the last call has left them.
   void forget() { owners_.clear(); }
   std::size_t bytes() const { return bytes_of(places_, owners_); }

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "openclose/contact/kinematics.h"
+#include "openclose/integrator/contact_order.h"
 #include "openclose/integrator/lanes.h"
 #include "openclose/law/joint_law.h"
 #include "openclose/linear/block_matrix.h"
@@ -65,6 +66,10 @@ struct ContactBatch {
   /// All but the places.
   void copy(int lane, const ContactBatch& other, int from);
   ContactStart<3> start(int lane) const;
+  /// \param moves  of the blocks, by their places
+  ContactPose<3> pose(int lane, const std::vector<BlockMove<3>>& moves) const {
+    return {start(lane), moves[vertex_place(lane)], moves[edge_place(lane)]};
+  }
   ContactStrength strength(int lane) const;
   /// Those that were set, with the gap counted from their target.
   ContactSprings springs(int lane) const;
@@ -80,6 +85,15 @@ inline void ContactBatch::set_geometry(int lane, const ContactPlace<3>& at) {
   vertex_arm_y[lane] = at.vertex_arm.y();
   end_arm_x[lane] = at.end_arm.x();
   end_arm_y[lane] = at.end_arm.y();
+}
+
+inline ContactStart<3> ContactBatch::start(int lane) const {
+  ContactStart<3> s;
+  s.normal = {normal_x[lane], normal_y[lane]};
+  s.vertex_arm = {vertex_arm_x[lane], vertex_arm_y[lane]};
+  s.end_arm = {end_arm_x[lane], end_arm_y[lane]};
+  s.lever = {lever_x[lane], lever_y[lane]};
+  return s;
 }
 
 inline void ContactBatch::set_strength(int lane, const ContactStrength& strength) {
@@ -120,13 +134,20 @@ inline void ContactBatch::copy(int lane, const ContactBatch& other, int from) {
   }
 }
 
-/// The same contacts at the trial displacement, their forces or means of them, and the derivatives of these.
-struct TrialBatch {
-  Lanes normal_x{}, normal_y{}, vertex_arm_x{}, vertex_arm_y{}, edge_arm_x{}, edge_arm_y{}, gap_change{}, slip_change{};  // as in ContactPose
-  Lanes normal{}, shear{}, elastic_normal{}, elastic_shear{}, normal_by_gap{}, shear_by_gap{}, shear_by_slip{};           // as in ContactForces
+/// All contacts of a step at its start.
+struct ContactStarts {
+  ContactOrder order;  ///< of the contacts in the batches
+  std::vector<ContactBatch> batches;
 
-  ContactPose<3> pose(int lane) const;
-  void set_pose(int lane, const ContactPose<3>& pose);
+  std::size_t bytes() const { return order.bytes() + bytes_of(batches); }
+};
+
+/// What contacts carry at the trial displacement, or means of it, and the derivatives of these forces. Where they are then follows from their start
+/// and the moves of their blocks.
+struct TrialBatch {
+  Lanes gap_change{}, slip_change{};                                                                             // as in ContactPose
+  Lanes normal{}, shear{}, elastic_normal{}, elastic_shear{}, normal_by_gap{}, shear_by_gap{}, shear_by_slip{};  // as in ContactForces
+
   /// \param branch  which has the status
   CarriedForces carried(int lane, Branch branch) const {
     return {status(branch), normal[lane], shear[lane], elastic_normal[lane], elastic_shear[lane]};
@@ -135,27 +156,6 @@ struct TrialBatch {
   ContactForces forces(int lane, Branch branch) const;
   void set_forces(int lane, const ContactForces& forces);
 };
-
-inline ContactPose<3> TrialBatch::pose(int lane) const {
-  ContactPose<3> p;
-  p.normal = {normal_x[lane], normal_y[lane]};
-  p.vertex_arm = {vertex_arm_x[lane], vertex_arm_y[lane]};
-  p.edge_arm = {edge_arm_x[lane], edge_arm_y[lane]};
-  p.gap_change = gap_change[lane];
-  p.slip_change = slip_change[lane];
-  return p;
-}
-
-inline void TrialBatch::set_pose(int lane, const ContactPose<3>& pose) {
-  normal_x[lane] = pose.normal.x();
-  normal_y[lane] = pose.normal.y();
-  vertex_arm_x[lane] = pose.vertex_arm.x();
-  vertex_arm_y[lane] = pose.vertex_arm.y();
-  edge_arm_x[lane] = pose.edge_arm.x();
-  edge_arm_y[lane] = pose.edge_arm.y();
-  gap_change[lane] = pose.gap_change;
-  slip_change[lane] = pose.slip_change;
-}
 
 inline void TrialBatch::set_carried(int lane, const CarriedForces& f) {
   normal[lane] = f.normal;
@@ -215,13 +215,16 @@ class BatchKernels {
   /// [N] of all batches that were evaluated.
   static double largest_force(const std::vector<TrialBatch>& trials);
   /// Adds the stiffness of all contacts to the matrix. There are slots for every place of a batch.
-  void add_stiffness(const std::vector<ContactBatch>& contacts, const std::vector<TrialBatch>& trials, const std::vector<Branch>& branches,
-                     const BatchTangent& tangent, const std::vector<ContactSlots>& slots, BlockMatrix<3>& matrix) const;
+  /// \param moves  with which the trials were evaluated
+  void add_stiffness(const std::vector<ContactBatch>& contacts, const BlockMove<3>* moves, const std::vector<TrialBatch>& trials,
+                     const std::vector<Branch>& branches, const BatchTangent& tangent, const std::vector<ContactSlots>& slots,
+                     BlockMatrix<3>& matrix) const;
 
  private:
   double (*begin_)(ContactBatch*, std::size_t);
   double (*evaluate_)(StepForces, double, const ContactBatch*, std::size_t, const BlockMove<3>*, double, TrialBatch*, Branch*, ForceRow*);
-  void (*add_stiffness_)(const ContactBatch*, const TrialBatch*, std::size_t, const Branch*, const BatchTangent&, const ContactSlots*, double*);
+  void (*add_stiffness_)(const ContactBatch*, const BlockMove<3>*, const TrialBatch*, std::size_t, const Branch*, const BatchTangent&,
+                         const ContactSlots*, double*);
 };
 
 }  // namespace openclose

@@ -150,7 +150,9 @@ TEST_CASE("four contacts at a time are where each is and carry what each carries
     const Single one(contacts, c, step_forces, ramp);
     const ContactForces& f = one.forces;
     const TrialBatch& trial = all.trials[c / batch_size];
-    wrong += differences(trial.pose(lane), one.pose) + differences(trial.forces(lane, all.branches[c]), f) + (all.branches[c] != branch(f));
+    wrong += (trial.gap_change[lane] != one.pose.gap_change) + (trial.slip_change[lane] != one.pose.slip_change);
+    wrong += differences(trial.forces(lane, all.branches[c]), f) + (all.branches[c] != branch(f));
+    wrong += differences(all.batches[c / batch_size].pose(lane, contacts.moves), one.pose);
     ++of_status[static_cast<int>(f.status)];
     outweighed += f.status != ContactStatus::open && f.normal_by_gap == 0.0;
     backward += all.branches[c] == -sliding_branch;
@@ -220,7 +222,7 @@ TEST_CASE("the stiffness of four contacts at a time is that of each", "[integrat
       slots[c].edge_vertex = ContactSlots::entry(matrix.find(b, a));
     }
   }
-  kernels.add_stiffness(all.batches, trials, all.branches, tangent, slots, matrix);
+  kernels.add_stiffness(all.batches, contacts.moves.data(), trials, all.branches, tangent, slots, matrix);
 
   for (std::size_t c = 0; c < count; ++c) {
     const Single one(contacts, c, step_forces);
