@@ -139,11 +139,11 @@ void Newton<N>::prepare(const StepProblem<N>& problem, const SpringSource<N>& sp
   problem_ = &problem;
   contact_count_ = problem.contacts.size();
   if (problem.statics) {
-    order_.keep(contact_count_);
+    starts_->order.keep(contact_count_);
   } else {
-    order_.pack(problem.contacts);
+    starts_->order.pack(problem.contacts);
   }
-  renewal_.renew(problem, springs, order_, contacts_);
+  renewal_.renew(problem, springs, *starts_);
   blocks_.clear();
   blocks_.reserve(system.free_count());
   for (int b : system.free_blocks()) {
@@ -157,10 +157,10 @@ void Newton<N>::prepare(const StepProblem<N>& problem, const SpringSource<N>& sp
   for (const StepBlock& block : blocks_) {
     block_scale_ = std::max({block_scale_, block.magnitude, Motion<N>::largest_force(block.inertia.cwiseProduct(block.drift), block.radius)});
   }
-  start_scale_ = std::max(kernels_.begin(contacts_), block_scale_);
-  resize_closely(trials_, contacts_.size());
+  start_scale_ = std::max(kernels_.begin(contacts()), block_scale_);
+  resize_closely(trials_, contacts().size());
   step_forces_ = problem.averages_path() ? StepForces::averaged : StepForces::at_end;
-  branches_.assign(batch_size * contacts_.size(), 0);
+  branches_.assign(batch_size * contacts().size(), 0);
   moves_.assign(system.free_count() + 1, BlockMove<N>());
   neighbourhood_.clear();
 }
@@ -170,8 +170,8 @@ void Newton<N>::prepare_start(const std::vector<ContactSprings>& springs) {
   start_scale_ = block_scale_;
   for (std::size_t c = 0; c < contact_count_; ++c) {
     const ContactSprings& s = springs[c];
-    const std::size_t at = order_[c];
-    contacts_[at / batch_size].set_springs(lane(at), s);
+    const std::size_t at = order()[c];
+    contacts()[at / batch_size].set_springs(lane(at), s);
     start_scale_ = std::max({start_scale_, s.shift - s.normal * (s.gap - s.target), std::abs(s.initial_shear)});
   }
 }
@@ -207,7 +207,7 @@ double Newton<N>::magnitude(const StepBlock& block, const Unknowns& d) const {
 
 template <int N>
 void Newton<N>::move_block(int row, const Eigen::VectorXd& d) {
-  moves_[row] = BlockMove<N>(d.template segment<N>(N * row), problem_->system.rotation_kind());
+  moves_[row] = BlockMove<N>(d.template segment<N>(N * row), problem_->system.rotation_kind(), blocks_[row].radius);
 }
 
 template <int N>
@@ -224,7 +224,7 @@ void Newton<N>::evaluate(const Eigen::VectorXd& d) {
   for (int row = 0; row < rows; ++row) move_block(row, d);
   rows_.assign(moves_.size(), ForceRow());
   residual_.resize(N * static_cast<Eigen::Index>(blocks_.size()));
-  const double largest = kernels_.evaluate(step_forces_, ramp_, contacts_, moves_.data(), rounding_of_sums, trials_, branches_, rows_);
+  const double largest = kernels_.evaluate(step_forces_, ramp_, contacts(), moves_.data(), rounding_of_sums, trials_, branches_, rows_);
   for (int row = 0; row < rows; ++row) evaluate_block(row, d);
   find_force_scale(largest, d);
   has_replaced_forces_ = false;
@@ -232,7 +232,7 @@ void Newton<N>::evaluate(const Eigen::VectorXd& d) {
 
 template <int N>
 void Newton<N>::evaluate_moved(const std::vector<int>& moved, const Eigen::VectorXd& d, StepEffort& effort) {
-  const auto all = static_cast<long>(contacts_.size());
+  const auto all = static_cast<long>(contacts().size());
   // Forces that were replaced are to be the law's again everywhere.
   if (!problem_->method.skip_unmoved || has_replaced_forces_) {
     effort.part_batches += all;
@@ -240,15 +240,15 @@ void Newton<N>::evaluate_moved(const std::vector<int>& moved, const Eigen::Vecto
   }
   for (int row : moved) move_block(row, d);
   const std::vector<int> pushed = neighbourhood_.with_neighbours(moved);
-  std::vector<char> is_due(contacts_.size(), 0);
+  std::vector<char> is_due(contacts().size(), 0);
   neighbourhood_.for_contacts_of(pushed, [&](int c) { is_due[c / batch_size] = 1; });
   // Their batches have contacts of other rows, too, whose sums stay.
   sums_of_moved_.assign(rows_.size(), ForceRow());
   long due = 0;
-  for (std::size_t batch = 0; batch < contacts_.size(); ++batch) {
+  for (std::size_t batch = 0; batch < contacts().size(); ++batch) {
     if (!is_due[batch]) continue;
     ++due;
-    kernels_.evaluate_one(step_forces_, ramp_, contacts_, batch, moves_.data(), rounding_of_sums, trials_, branches_, sums_of_moved_);
+    kernels_.evaluate_one(step_forces_, ramp_, contacts(), batch, moves_.data(), rounding_of_sums, trials_, branches_, sums_of_moved_);
   }
   effort.part_batches += due;
   effort.part_batches_skipped += all - due;
@@ -309,7 +309,7 @@ void Newton<N>::assemble(const Eigen::VectorXd& d, Tangent tangent) {
   const bool open_ones_too = averages_path() || !holds_.empty();
   const BatchTangent asked{step_forces_, tangent == Tangent::exact, problem_->end_weight, problem_->statics ? static_slip_stiffness : 0.0,
                            open_ones_too};
-  kernels_.add_stiffness(contacts_, trials_, branches_, asked, tangent_.slots(), matrix);
+  kernels_.add_stiffness(contacts(), moves_.data(), trials_, branches_, asked, tangent_.slots(), matrix);
   for (std::size_t i = 0; i < blocks_.size(); ++i) {
     const StepBlock& block = blocks_[i];
     const int row = static_cast<int>(i);
@@ -435,7 +435,7 @@ void Newton<N>::take_last_states() {
   const double touching_gap = problem_->statics ? tolerance::rounding_of_ways_m : 0.0;
   for (std::size_t c = 0; c < contact_count_; ++c) {
     const Contact& contact = problem_->contacts[c];
-    const std::size_t at = order_[c];
+    const std::size_t at = order()[c];
     const bool touching = contact.status == ContactStatus::open && contact.gap <= touching_gap && start(at).shift[lane(at)] >= 0.0;
     take_state(at, touching ? ContactStatus::sticking : contact.status, contact.normal_force, contact.shear_force);
   }
@@ -451,7 +451,7 @@ void Newton<N>::take_states_before() {
 template <int N>
 void Newton<N>::report_paths(StepSolution<N>& solution) {
   for (std::size_t i = 0; i < contact_count_; ++i) {
-    const std::size_t c = order_[i];
+    const std::size_t c = order()[i];
     const ContactSprings springs = this->springs(c);
     TrialBatch& at = trial(c);
     const int k = lane(c);
@@ -477,7 +477,7 @@ template <int N>
 void Newton<N>::hold_contacts(bool friction_lags) {
   for (std::size_t c = 0; c < contact_count_; ++c) {
     if (holds_[c] == 0.0 || status(branches_[c]) == ContactStatus::sticking) continue;
-    const ContactBatch& contact = contacts_[c / batch_size];
+    const ContactBatch& contact = contacts()[c / batch_size];
     TrialBatch& trial = trials_[c / batch_size];
     const int k = lane(c);
     trial.shear_by_slip[k] -= holds_[c] * contact.shear[k];
@@ -508,11 +508,11 @@ void Newton<N>::take_part(const Newton& whole, const Part& part) {
     place(row);
   }
   contact_count_ = part.contacts.size();
-  contacts_.assign((contact_count_ + batch_size - 1) / batch_size, ContactBatch());
+  contacts().assign((contact_count_ + batch_size - 1) / batch_size, ContactBatch());
   std::vector<std::pair<int, int>> ends;
   const int nobody = place(static_cast<int>(whole.moves_.size()) - 1);
-  for (std::size_t c = 0; c < batch_size * contacts_.size(); ++c) {
-    ContactBatch& batch = contacts_[c / batch_size];
+  for (std::size_t c = 0; c < batch_size * contacts().size(); ++c) {
+    ContactBatch& batch = contacts()[c / batch_size];
     const int k = lane(c);
     batch.set_places(k, nobody, nobody);
     if (c >= contact_count_) continue;
@@ -523,8 +523,8 @@ void Newton<N>::take_part(const Newton& whole, const Part& part) {
     batch.set_places(k, vertex, edge);
     ends.emplace_back(vertex, edge);
   }
-  trials_.resize(contacts_.size());
-  branches_.assign(batch_size * contacts_.size(), 0);
+  trials_.resize(contacts().size());
+  branches_.assign(batch_size * contacts().size(), 0);
   tangent_.fit_part(problem_->method, rows, static_cast<int>(moves_.size()), ends);
 }
 
@@ -706,17 +706,23 @@ double Newton<N>::begin(const Eigen::VectorXd& d, FirstTangent first) {
 }
 
 template <int N>
+void Newton<N>::take_back(ContactOutcomes<N>& outcomes) {
+  outcomes.give_back(moves_, trials_, branches_);
+  if (starts_.use_count() > 1) starts_ = std::make_shared<ContactStarts>(*starts_);
+}
+
+template <int N>
 void Newton<N>::solve(const StepProblem<N>& problem, const SpringSource<N>& springs, StepSolution<N>& solution, FirstTangent first) {
-  solution.contacts.give_back(trials_, branches_);
+  take_back(solution.contacts);
   branches_before_ = branches_;
   prepare(problem, springs);
-  tangent_.fit(problem, contacts_);
+  tangent_.fit(problem, contacts());
   solve_prepared(solution, first);
 }
 
 template <int N>
 void Newton<N>::solve_again(const std::vector<ContactSprings>& springs, StepSolution<N>& solution, FirstTangent first) {
-  solution.contacts.give_back(trials_, branches_);
+  take_back(solution.contacts);
   branches_before_ = branches_;
   prepare_start(springs);
   solve_prepared(solution, first);
@@ -727,7 +733,7 @@ void Newton<N>::solve_prepared(StepSolution<N>& solution, FirstTangent first) {
   const StepProblem<N>& problem = *problem_;
   if (problem.end_weight < 1.0) {
     sum_start_forces();
-    solution.start_contacts.copy(trials_, branches_, order_, contacts_);
+    solution.start_contacts.copy(starts_, moves_, trials_, branches_);
   }
   const Eigen::VectorXd start = solution.d;
   double norm = begin(start, first);
@@ -758,7 +764,7 @@ void Newton<N>::solve_prepared(StepSolution<N>& solution, FirstTangent first) {
   if (!solution.converged) solution.reason = outcome == Outcome::singular ? "singular matrix" : "Newton's method did not converge";
   solution.paths.clear();
   if (averages_path()) report_paths(solution);
-  solution.contacts.borrow(trials_, branches_, order_, contacts_);
+  solution.contacts.borrow(starts_, moves_, trials_, branches_);
 }
 
 template <int N>
@@ -766,7 +772,7 @@ Memory Newton<N>::present_memory() const {
   Memory of = tangent_.memory();
   of.blocks += bytes_of(blocks_, moves_, rows_, sums_of_moved_);
   for (const Eigen::VectorXd* vector : {&trial_, &start_force_, &residual_}) of.blocks += sizeof(double) * static_cast<std::size_t>(vector->size());
-  of.contacts += bytes_of(contacts_, trials_, branches_, branches_before_, holds_) + renewal_.bytes() + order_.bytes() + neighbourhood_.bytes();
+  of.contacts += bytes_of(trials_, branches_, branches_before_, holds_) + starts_->bytes() + renewal_.bytes() + neighbourhood_.bytes();
   return of;
 }
 
@@ -777,7 +783,7 @@ Eigen::MatrixXd Newton<N>::stiffness(const StepProblem<N>& problem, const std::v
   static_problem.end_weight = 1.0;
   static_problem.scheme = nullptr;
   prepare(static_problem, GivenSprings<N>(springs));
-  tangent_.fit(static_problem, contacts_);
+  tangent_.fit(static_problem, contacts());
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(N * problem.system.free_count());
   evaluate(zero);
   assemble(zero, Tangent::exact);

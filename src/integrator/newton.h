@@ -110,6 +110,8 @@ class Newton {
     double rounding_of_coordinates = 0.0;  ///< [N]
   };
 
+  /// Takes back what outcomes have, so that the next step can be laid out in it.
+  void take_back(ContactOutcomes<N>& outcomes);
   /// Evaluates at the displacement to start from and returns its residual_norm().
   double begin(const Eigen::VectorXd& d, FirstTangent first);
   /// Iterates from solution.d until its residual_norm() is small enough.
@@ -158,17 +160,18 @@ class Newton {
   void find_force_scale(double of_contacts, const Eigen::VectorXd& d);
   /// The springs of contact c, with the gap counted from their target.
   ContactSprings springs(std::size_t c) const { return start(c).springs(lane(c)); }
-  // Contact c is one of the lanes of its batch: it is counted by its place there. Those of the problem are told from their order_.
+  // Contact c is one of the lanes of its batch: it is counted by its place there. Those of the problem are told from their order.
   static int lane(std::size_t c) { return static_cast<int>(c % batch_size); }
-  const ContactBatch& start(std::size_t c) const { return contacts_[c / batch_size]; }
+  std::vector<ContactBatch>& contacts() { return starts_->batches; }
+  const std::vector<ContactBatch>& contacts() const { return starts_->batches; }
+  const ContactOrder& order() const { return starts_->order; }
+  const ContactBatch& start(std::size_t c) const { return contacts()[c / batch_size]; }
   TrialBatch& trial(std::size_t c) { return trials_[c / batch_size]; }
   const TrialBatch& trial(std::size_t c) const { return trials_[c / batch_size]; }
   ContactForces forces(std::size_t c) const { return trial(c).forces(lane(c), branches_[c]); }
   /// The forces act along its normal and tangent, at its arms.
-  ContactPose<N> force_pose(std::size_t c) const {
-    const ContactPose<N> at = trial(c).pose(lane(c));
-    return averages_path() ? mean_pose(start(c).start(lane(c)), at) : at;
-  }
+  ContactPose<N> force_pose(std::size_t c) const { return averages_path() ? mean_pose(start(c).start(lane(c)), pose(c)) : pose(c); }
+  ContactPose<N> pose(std::size_t c) const { return start(c).pose(lane(c), moves_); }
   bool averages_path() const { return step_forces_ == StepForces::averaged; }
   /// What a step sees of the springs of contact c while it stays closed: half of them, if it averages over its path.
   ContactSprings seen_springs(std::size_t c) const;
@@ -211,10 +214,11 @@ class Newton {
   double ramp_ = tolerance::cohesion_ramp;  ///< [-]
   const StepProblem<N>* problem_ = nullptr;
   BatchKernels kernels_;
-  ContactOrder order_;  ///< of the problem's contacts; in statics that of the list
   BatchRenewal<N> renewal_;
   std::size_t contact_count_ = 0;
-  std::vector<ContactBatch> contacts_;
+  /// Of the problem's contacts, in statics in the order of the list. Steps that are known by their outcomes have them, too: where they still do,
+  /// the next step has others.
+  std::shared_ptr<ContactStarts> starts_ = std::make_shared<ContactStarts>();
   std::vector<StepBlock> blocks_;                ///< the free ones, by their equations
   std::vector<BlockMove<N>> moves_;              ///< at the trial displacement: of the rows, of others that a part sees, and of what stays
   StepForces step_forces_ = StepForces::at_end;  ///< what trials_ has
