@@ -566,17 +566,19 @@ void Simulation<N>::accept_contacts(const StepSolution<N>& solution) {
   const bool elastic = enforcement_->has_elastic_contacts();
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     Contact& c = contacts_[i];
+    c.status = solution.contacts.status(i);
+    c.bonded = stays_bonded(joints_.joint(c.joint), c.bonded, c.status);
+    c.slack = solution.contacts.slack(i);
+    c.gap += solution.contacts.gap_change(i);
+    c.normal_force = c.shear_force = c.elastic_slip = c.stored_energy = 0.0;
+    if (c.status == ContactStatus::open) continue;
     const CarriedForces f = solution.contacts.forces(i);
     const double kn = solution.contacts.normal_stiffness(i), ks = solution.contacts.shear_stiffness(i);
-    c.bonded = stays_bonded(joints_.joint(c.joint), c.bonded, f.status);
-    c.status = f.status;
     c.normal_force = f.normal;
     c.shear_force = f.shear;
     c.elastic_slip = -f.elastic_shear / ks;
-    c.slack = solution.contacts.slack(i);
-    c.gap += solution.contacts.gap_change(i);
-    c.stored_energy = elastic ? stored_energy(kn, ks, f.elastic_normal, f.elastic_shear) : 0.0;
-    if (c.status != ContactStatus::open) max_penetration_ = std::max(max_penetration_, -c.gap);
+    if (elastic) c.stored_energy = stored_energy(kn, ks, f.elastic_normal, f.elastic_shear);
+    max_penetration_ = std::max(max_penetration_, -c.gap);
   }
 }
 

@@ -4,8 +4,9 @@ namespace openclose {
 
 template <int N>
 ContactKinematics<N>::ContactKinematics(const BlockSystem<N>& system, const Contact& contact, const Unknowns& d_vertex, const Unknowns& d_edge)
-    : ContactKinematics(ContactPose<N>(ContactStart<N>(system, contact), BlockMove<N>(d_vertex, system.rotation_kind()),
-                                       BlockMove<N>(d_edge, system.rotation_kind()))) {}
+    : ContactKinematics(ContactPose<N>(ContactStart<N>(system, contact),
+                                       BlockMove<N>(d_vertex, system.rotation_kind(), system.block(contact.vertex_block).radius),
+                                       BlockMove<N>(d_edge, system.rotation_kind(), system.block(contact.edge_block).radius))) {}
 
 template <int N>
 ContactKinematics<N>::ContactKinematics(const ContactPose<N>& pose)

@@ -17,17 +17,18 @@ namespace openclose {
 template <int N>
 struct BlockMove {
   Vec2 translation = Vec2::Zero();  ///< [m]
-  double way = 0.0;                 ///< [m] its length
-  double turn = 0.0;                ///< [rad] magnitude of the rotation
   double sine = 0.0;                ///< of the rotation
   double versine = 0.0;             ///< 1 - cosine, free of cancellation
   double edge_sine = 0.0;           ///< of the angle by which the edges' directions turn
   double edge_versine = 0.0;
+  double bound = 0.0;   ///< [m] no point of the block moves farther than this
+  double unused = 0.0;  ///< the kernels load four numbers at a time
 
   BlockMove() = default;  ///< no motion
-  BlockMove(const typename Motion<N>::Unknowns& d, RotationKind kind) : translation(Motion<N>::translation(d)), way(translation.norm()) {
+  /// \param radius  [m] of the block, for the bound
+  BlockMove(const typename Motion<N>::Unknowns& d, RotationKind kind, double radius)
+      : translation(Motion<N>::translation(d)), bound(Motion<N>::displacement_bound(d, radius)) {
     const double angle = Motion<N>::rotation(d);
-    turn = std::abs(angle);
     // A linearly rotated edge also grows; its direction turns by the arc tangent.
     const SineCosine half(0.5 * (kind == RotationKind::exact ? angle : std::atan(angle)));
     edge_sine = 2.0 * half.sine * half.cosine;
@@ -35,9 +36,6 @@ struct BlockMove {
     sine = kind == RotationKind::exact ? edge_sine : angle;
     versine = kind == RotationKind::exact ? edge_versine : 0.0;
   }
-
-  /// [m] no point of the block that lies within `reach` of the centroid moves farther than this.
-  double bound(double reach) const { return way + reach * turn; }
 
   Vec2 displacement(const Vec2& arm) const { return translation + (sine * perpendicular(arm) - versine * arm); }
 };

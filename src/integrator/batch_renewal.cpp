@@ -14,8 +14,9 @@ void BatchRenewal<N>::find_places(const BlockSystem<N>& system) {
 }
 
 template <int N>
-void BatchRenewal<N>::renew(const StepProblem<N>& problem, const SpringSource<N>& springs, const ContactOrder& order,
-                            std::vector<ContactBatch>& batches) {
+void BatchRenewal<N>::renew(const StepProblem<N>& problem, const SpringSource<N>& springs, ContactStarts& starts) {
+  const ContactOrder& order = starts.order;
+  std::vector<ContactBatch>& batches = starts.batches;
   const Step step{problem.dt, problem.end_weight, problem.statics, problem.averages_path(), problem.joints.reduction()};
   const bool last = springs.last();
   if (!last || !(step == step_)) owners_.clear();
@@ -37,7 +38,7 @@ void BatchRenewal<N>::renew(const StepProblem<N>& problem, const SpringSource<N>
     batch.set_places(k, vertex.place, edge.place);
     batch.set_geometry(k, ContactPlace<N>(problem.system, contact, vertex.centroid, edge.centroid));
     if (last) {
-      const Owner owner{contact.length, contact.joint, contact.vertex_block, contact.edge_block, contact.bonded};
+      const Owner owner(contact);
       if (owner == owners[at]) {
         batch.set_start(k, contact);
         continue;

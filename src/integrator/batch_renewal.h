@@ -41,9 +41,8 @@ template <int N>
 class BatchRenewal {
  public:
   /// Sets all batches up to BatchKernels::begin(). The places of blocks are their equations; those without have the one that comes after these.
-  /// \param order    of the contacts in the batches
-  /// \param batches  as the last call has left them, but for gaps and forces at the start
-  void renew(const StepProblem<N>& problem, const SpringSource<N>& springs, const ContactOrder& order, std::vector<ContactBatch>& batches);
+  /// \param starts  their order, and the batches as the last call has left them, but for gaps and forces at the start
+  void renew(const StepProblem<N>& problem, const SpringSource<N>& springs, ContactStarts& starts);
   /// The batches are not as the last call has left them.
   void forget() { owners_.clear(); }
   std::size_t bytes() const { return bytes_of(places_, owners_); }
@@ -60,11 +59,15 @@ class BatchRenewal {
     Vec2 centroid;  ///< [m]
     int place;
   };
-  /// Whose springs and strength they are.
+  /// Whose springs and strength they are; the blocks tell the joint.
   struct Owner {
     double length = 0.0;
-    int joint = -1, vertex_block = -1, edge_block = -1;
-    bool bonded = false;
+    int vertex_block = -1;
+    int edge_block = -1;  ///< where the joint is not bonded minus this minus 2: no numbers of the others
+
+    Owner() = default;
+    explicit Owner(const Contact& contact)
+        : length(contact.length), vertex_block(contact.vertex_block), edge_block(contact.bonded ? contact.edge_block : -2 - contact.edge_block) {}
     bool operator==(const Owner&) const = default;
   };
 

@@ -16,20 +16,20 @@ constexpr int entries = 9;  ///< of a block of the matrix, column by column
 
 /// Of four blocks.
 struct Moves {
-  Lanes x, y, way, turn;
-  Lanes sine, versine, edge_sine, edge_versine;
+  Lanes x, y, sine, versine;
+  Lanes edge_sine, edge_versine, bound, unused;
 
   /// \param at  as in ContactBatch
   OPENCLOSE_KERNEL Moves(const BlockMove<3>* moves, const unsigned* at) {
-    Lanes* const first[] = {&x, &y, &way, &turn};
-    Lanes* const second[] = {&sine, &versine, &edge_sine, &edge_versine};
+    Lanes* const first[] = {&x, &y, &sine, &versine};
+    Lanes* const second[] = {&edge_sine, &edge_versine, &bound, &unused};
     for (int k = 0; k < batch_size; ++k) {
       const double* const move = moves->translation.data() + at[k];
       *first[k] = load(move);
       *second[k] = load(move + batch_size);
     }
-    transpose(x, y, way, turn);
-    transpose(sine, versine, edge_sine, edge_versine);
+    transpose(x, y, sine, versine);
+    transpose(edge_sine, edge_versine, bound, unused);
   }
 };
 static_assert(sizeof(BlockMove<3>) == 2 * sizeof(Lanes), "its members are loaded in their order");
@@ -47,30 +47,33 @@ OPENCLOSE_KERNEL double begin(ContactBatch* contacts, std::size_t count) {
     // Places without a contact have no edge.
     c.normal_x = edge > 0.0 ? edge_y / edge : Lanes{};
     c.normal_y = edge > 0.0 ? -(edge_x / edge) : Lanes{};
-    c.vertex_reach = length(c.vertex_arm_x, c.vertex_arm_y);
-    c.edge_reach = length(c.end_arm_x + c.lever_x, c.end_arm_y + c.lever_y);
     largest = larger(largest, larger(c.shift - c.normal * c.gap_off_target, magnitude(c.initial_shear)));
   }
   return std::max({largest[0], largest[1], largest[2], largest[3]});
 }
 
-OPENCLOSE_KERNEL void find_pose(const ContactBatch& c, const Moves& vertex, const Moves& edge, TrialBatch& trial) {
-  const Lanes dnx = -edge.edge_sine * c.normal_y - edge.edge_versine * c.normal_x, dny = edge.edge_sine * c.normal_x - edge.edge_versine * c.normal_y;
-  const Lanes nx = c.normal_x + dnx, ny = c.normal_y + dny;
-  const Lanes turn_x = -vertex.sine * c.vertex_arm_y - vertex.versine * c.vertex_arm_x,
-              turn_y = vertex.sine * c.vertex_arm_x - vertex.versine * c.vertex_arm_y;
-  const Lanes shift_x = (vertex.x - edge.x) + turn_x, shift_y = (vertex.y - edge.y) + turn_y;
-  const Lanes apart_x = shift_x + (edge.sine * c.end_arm_y + edge.versine * c.end_arm_x),
-              apart_y = shift_y - (edge.sine * c.end_arm_x - edge.versine * c.end_arm_y);
-  trial.gap_change = (dnx * c.lever_x + dny * c.lever_y) + (nx * apart_x + ny * apart_y);
-  trial.slip_change = (dnx * c.lever_y - dny * c.lever_x) + (nx * apart_y - ny * apart_x);
-  trial.normal_x = nx;
-  trial.normal_y = ny;
-  trial.vertex_arm_x = c.vertex_arm_x + turn_x;
-  trial.vertex_arm_y = c.vertex_arm_y + turn_y;
-  trial.edge_arm_x = (c.end_arm_x + c.lever_x) + shift_x;
-  trial.edge_arm_y = (c.end_arm_y + c.lever_y) + shift_y;
-}
+/// As ContactPose.
+struct Pose {
+  Lanes normal_x, normal_y, vertex_arm_x, vertex_arm_y, edge_arm_x, edge_arm_y, gap_change, slip_change;
+
+  OPENCLOSE_KERNEL Pose(const ContactBatch& c, const Moves& vertex, const Moves& edge) {
+    const Lanes dnx = -edge.edge_sine * c.normal_y - edge.edge_versine * c.normal_x,
+                dny = edge.edge_sine * c.normal_x - edge.edge_versine * c.normal_y;
+    normal_x = c.normal_x + dnx;
+    normal_y = c.normal_y + dny;
+    const Lanes turn_x = -vertex.sine * c.vertex_arm_y - vertex.versine * c.vertex_arm_x,
+                turn_y = vertex.sine * c.vertex_arm_x - vertex.versine * c.vertex_arm_y;
+    const Lanes shift_x = (vertex.x - edge.x) + turn_x, shift_y = (vertex.y - edge.y) + turn_y;
+    const Lanes apart_x = shift_x + (edge.sine * c.end_arm_y + edge.versine * c.end_arm_x),
+                apart_y = shift_y - (edge.sine * c.end_arm_x - edge.versine * c.end_arm_y);
+    gap_change = (dnx * c.lever_x + dny * c.lever_y) + (normal_x * apart_x + normal_y * apart_y);
+    slip_change = (dnx * c.lever_y - dny * c.lever_x) + (normal_x * apart_y - normal_y * apart_x);
+    vertex_arm_x = c.vertex_arm_x + turn_x;
+    vertex_arm_y = c.vertex_arm_y + turn_y;
+    edge_arm_x = (c.end_arm_x + c.lever_x) + shift_x;
+    edge_arm_y = (c.end_arm_y + c.lever_y) + shift_y;
+  }
+};
 
 /// Each lane's branch in a byte of its own, at the place that it has in the list of branches.
 template <Branch b>
@@ -97,7 +100,9 @@ OPENCLOSE_KERNEL bool all_are_open(const Branch* branches) {
 OPENCLOSE_KERNEL Mask find_forces(const ContactBatch& c, double ramp, TrialBatch& trial, Branch* branches) {
   const Lanes zero{};
   const Lanes elastic_normal = c.shift - c.normal * (c.gap_off_target + trial.gap_change);
-  const Lanes viscous_normal = -c.normal_damping * (c.parted + trial.gap_change);
+  // By how much the gap is wider than where the spring opens; not a number where there is no contact.
+  const Lanes parted = larger(zero, c.gap_off_target - (c.shift + c.tension) / c.normal);
+  const Lanes viscous_normal = -c.normal_damping * (parted + trial.gap_change);
   const Lanes elastic_shear = c.initial_shear - c.shear * trial.slip_change, shear = elastic_shear + -c.shear_damping * trial.slip_change;
   const Mask closed = ~is_open(c.tension, elastic_normal);
 
@@ -172,7 +177,8 @@ OPENCLOSE_KERNEL Mask find_mean_forces(const ContactBatch& c, TrialBatch& trial,
 struct ActingPose {
   Lanes normal_x, normal_y, vertex_arm_x, vertex_arm_y, edge_arm_x, edge_arm_y;
 
-  OPENCLOSE_KERNEL explicit ActingPose(const TrialBatch& t)
+  ActingPose() = default;
+  OPENCLOSE_KERNEL explicit ActingPose(const Pose& t)
       : normal_x(t.normal_x),
         normal_y(t.normal_y),
         vertex_arm_x(t.vertex_arm_x),
@@ -180,7 +186,7 @@ struct ActingPose {
         edge_arm_x(t.edge_arm_x),
         edge_arm_y(t.edge_arm_y) {}
   /// As mean_pose().
-  OPENCLOSE_KERNEL ActingPose(const ContactBatch& c, const TrialBatch& t)
+  OPENCLOSE_KERNEL ActingPose(const ContactBatch& c, const Pose& t)
       : normal_x(0.5 * (c.normal_x + t.normal_x)),
         normal_y(0.5 * (c.normal_y + t.normal_y)),
         vertex_arm_x(0.5 * (c.vertex_arm_x + t.vertex_arm_x)),
@@ -218,6 +224,7 @@ OPENCLOSE_KERNEL double evaluate(double ramp, const ContactBatch* contacts, std:
                                  TrialBatch* trials, Branch* branches, ForceRow* rows) {
   constexpr bool averaged = forces == StepForces::averaged;
   Lanes largest{}, moved[batches_at_once];
+  ActingPose acting[batches_at_once];
   Mask carries[batches_at_once];
   for (std::size_t first = 0; first < count; first += batches_at_once) {
     const std::size_t at_once = std::min(batches_at_once, count - first);
@@ -226,8 +233,11 @@ OPENCLOSE_KERNEL double evaluate(double ramp, const ContactBatch* contacts, std:
     Branch* const branches_now = branches + batch_size * first;
     for (std::size_t i = 0; i < at_once; ++i) {
       const Moves vertex(moves, starts[i].vertex_at), edge(moves, starts[i].edge_at);
-      find_pose(starts[i], vertex, edge, trial[i]);
-      moved[i] = (vertex.way + starts[i].vertex_reach * vertex.turn) + (edge.way + starts[i].edge_reach * edge.turn);
+      const Pose pose(starts[i], vertex, edge);
+      trial[i].gap_change = pose.gap_change;
+      trial[i].slip_change = pose.slip_change;
+      acting[i] = averaged ? ActingPose(starts[i], pose) : ActingPose(pose);
+      moved[i] = vertex.bound + edge.bound;
     }
     for (std::size_t i = 0; i < at_once; ++i) {
       Branch* const now = branches_now + batch_size * i;
@@ -239,7 +249,7 @@ OPENCLOSE_KERNEL double evaluate(double ramp, const ContactBatch* contacts, std:
       const Lanes normal = magnitude(trial[i].normal), shear = magnitude(trial[i].shear);
       const Lanes stiffness = c.normal + c.normal_damping + c.shear + c.shear_damping;
       const Lanes rounding = only_where(carries[i], rounding_of_sums * (stiffness * moved[i] + normal + shear));
-      push(c, trial[i], averaged ? ActingPose(c, trial[i]) : ActingPose(trial[i]), rounding, rows);
+      push(c, trial[i], acting[i], rounding, rows);
       largest = larger(largest, larger(normal, shear));
     }
   }
@@ -282,13 +292,14 @@ OPENCLOSE_KERNEL bool adds_nothing(const TrialBatch& at, const Branch* branches,
 
 /// \param averaged  forces act in the mean pose, gap and slip change with the pose at the end
 template <bool averaged>
-OPENCLOSE_KERNEL void add_stiffness(const ContactBatch* contacts, const TrialBatch* trials, std::size_t count, const Branch* branches,
-                                    const BatchTangent& tangent, const ContactSlots* slots, double* values) {
+OPENCLOSE_KERNEL void add_stiffness(const ContactBatch* contacts, const BlockMove<3>* moves, const TrialBatch* trials, std::size_t count,
+                                    const Branch* branches, const BatchTangent& tangent, const ContactSlots* slots, double* values) {
   const Lanes zero{}, theta = all(tangent.end_weight);
   for (std::size_t i = 0; i < count; ++i, branches += batch_size, slots += batch_size) {
     const TrialBatch& at = trials[i];
     if (adds_nothing(at, branches, tangent.open_ones_too)) continue;
-    const ActingPose acting = averaged ? ActingPose(contacts[i], at) : ActingPose(at);
+    const Pose pose(contacts[i], Moves(moves, contacts[i].vertex_at), Moves(moves, contacts[i].edge_at));
+    const ActingPose acting = averaged ? ActingPose(contacts[i], pose) : ActingPose(pose);
     const Lanes nn = -theta * at.normal_by_gap, tn = tangent.exact ? -theta * at.shear_by_gap : zero;
     Lanes tt = -theta * at.shear_by_slip;
     if (!tangent.exact && tangent.static_slip_stiffness > 0.0) {
@@ -296,7 +307,7 @@ OPENCLOSE_KERNEL void add_stiffness(const ContactBatch* contacts, const TrialBat
         if (status(branches[k]) == ContactStatus::sliding) tt[k] = tangent.static_slip_stiffness * contacts[i].shear[k];
       }
     }
-    const Lanes nx = at.normal_x, ny = at.normal_y, tx = -ny, ty = nx;
+    const Lanes nx = pose.normal_x, ny = pose.normal_y, tx = -ny, ty = nx;
     const Lanes force_nx = acting.normal_x, force_ny = acting.normal_y, force_tx = -force_ny, force_ty = force_nx;
     const Lanes by_gap_x = nn * force_nx + tn * force_tx, by_gap_y = nn * force_ny + tn * force_ty, by_slip_x = tt * force_tx,
                 by_slip_y = tt * force_ty;
@@ -310,7 +321,7 @@ OPENCLOSE_KERNEL void add_stiffness(const ContactBatch* contacts, const TrialBat
       on_arms_x = averaged ? share * (at.normal * force_nx + at.shear * force_tx) : turning_x;
       on_arms_y = averaged ? share * (at.normal * force_ny + at.shear * force_ty) : turning_y;
     }
-    const Lanes vx = at.vertex_arm_x, vy = at.vertex_arm_y, ex = at.edge_arm_x, ey = at.edge_arm_y;
+    const Lanes vx = pose.vertex_arm_x, vy = pose.vertex_arm_y, ex = pose.edge_arm_x, ey = pose.edge_arm_y;
     const Lanes force_vx = acting.vertex_arm_x, force_vy = acting.vertex_arm_y, force_ex = acting.edge_arm_x, force_ey = acting.edge_arm_y;
     const Lanes turning_at_vertex = turning_x * force_vx + turning_y * force_vy, turning_at_edge = turning_x * force_ex + turning_y * force_ey;
     const Lanes along_vertex = on_arms_x * vx + on_arms_y * vy;
@@ -333,11 +344,12 @@ OPENCLOSE_KERNEL double evaluate_either(StepForces forces, double ramp, const Co
   if (forces == StepForces::averaged) return evaluate<StepForces::averaged>(ramp, contacts, count, moves, rounding_of_sums, trials, branches, rows);
   return evaluate<StepForces::at_end>(ramp, contacts, count, moves, rounding_of_sums, trials, branches, rows);
 }
-OPENCLOSE_KERNEL void add_either_stiffness(const ContactBatch* contacts, const TrialBatch* trials, std::size_t count, const Branch* branches,
-                                           const BatchTangent& tangent, const ContactSlots* slots, double* values) {
+OPENCLOSE_KERNEL void add_either_stiffness(const ContactBatch* contacts, const BlockMove<3>* moves, const TrialBatch* trials, std::size_t count,
+                                           const Branch* branches, const BatchTangent& tangent, const ContactSlots* slots, double* values) {
   // The symmetric tangent of means over a path knows one pose.
-  if (tangent.exact && tangent.forces == StepForces::averaged) return add_stiffness<true>(contacts, trials, count, branches, tangent, slots, values);
-  add_stiffness<false>(contacts, trials, count, branches, tangent, slots, values);
+  if (tangent.exact && tangent.forces == StepForces::averaged)
+    return add_stiffness<true>(contacts, moves, trials, count, branches, tangent, slots, values);
+  add_stiffness<false>(contacts, moves, trials, count, branches, tangent, slots, values);
 }
 
 double begin_with_any_registers(ContactBatch* contacts, std::size_t count) {
@@ -347,9 +359,9 @@ double evaluate_with_any_registers(StepForces forces, double ramp, const Contact
                                    double rounding_of_sums, TrialBatch* trials, Branch* branches, ForceRow* rows) {
   return evaluate_either(forces, ramp, contacts, count, moves, rounding_of_sums, trials, branches, rows);
 }
-void add_stiffness_with_any_registers(const ContactBatch* contacts, const TrialBatch* trials, std::size_t count, const Branch* branches,
-                                      const BatchTangent& tangent, const ContactSlots* slots, double* values) {
-  add_either_stiffness(contacts, trials, count, branches, tangent, slots, values);
+void add_stiffness_with_any_registers(const ContactBatch* contacts, const BlockMove<3>* moves, const TrialBatch* trials, std::size_t count,
+                                      const Branch* branches, const BatchTangent& tangent, const ContactSlots* slots, double* values) {
+  add_either_stiffness(contacts, moves, trials, count, branches, tangent, slots, values);
 }
 
 #ifdef OPENCLOSE_HAS_WIDE_REGISTERS
@@ -361,10 +373,10 @@ void add_stiffness_with_any_registers(const ContactBatch* contacts, const TrialB
                                                             ForceRow* rows) {
   return evaluate_either(forces, ramp, contacts, count, moves, rounding_of_sums, trials, branches, rows);
 }
-[[gnu::target("avx2")]] void add_stiffness_with_wide_registers(const ContactBatch* contacts, const TrialBatch* trials, std::size_t count,
-                                                               const Branch* branches, const BatchTangent& tangent, const ContactSlots* slots,
-                                                               double* values) {
-  add_either_stiffness(contacts, trials, count, branches, tangent, slots, values);
+[[gnu::target("avx2")]] void add_stiffness_with_wide_registers(const ContactBatch* contacts, const BlockMove<3>* moves, const TrialBatch* trials,
+                                                               std::size_t count, const Branch* branches, const BatchTangent& tangent,
+                                                               const ContactSlots* slots, double* values) {
+  add_either_stiffness(contacts, moves, trials, count, branches, tangent, slots, values);
 }
 #endif
 
@@ -380,26 +392,17 @@ BatchKernels::BatchKernels([[maybe_unused]] bool wide_registers)
 #endif
 }
 
-void BatchKernels::add_stiffness(const std::vector<ContactBatch>& contacts, const std::vector<TrialBatch>& trials,
+void BatchKernels::add_stiffness(const std::vector<ContactBatch>& contacts, const BlockMove<3>* moves, const std::vector<TrialBatch>& trials,
                                  const std::vector<Branch>& branches, const BatchTangent& tangent, const std::vector<ContactSlots>& slots,
                                  BlockMatrix<3>& matrix) const {
   if (matrix.rows() == 0) return;
-  add_stiffness_(contacts.data(), trials.data(), trials.size(), branches.data(), tangent, slots.data(), matrix.value(0).data());
+  add_stiffness_(contacts.data(), moves, trials.data(), trials.size(), branches.data(), tangent, slots.data(), matrix.value(0).data());
 }
 
 double BatchKernels::largest_force(const std::vector<TrialBatch>& trials) {
   Lanes largest{};
   for (const TrialBatch& trial : trials) largest = larger(largest, larger(magnitude(trial.normal), magnitude(trial.shear)));
   return std::max({largest[0], largest[1], largest[2], largest[3]});
-}
-
-ContactStart<3> ContactBatch::start(int lane) const {
-  ContactStart<3> s;
-  s.normal = {normal_x[lane], normal_y[lane]};
-  s.vertex_arm = {vertex_arm_x[lane], vertex_arm_y[lane]};
-  s.end_arm = {end_arm_x[lane], end_arm_y[lane]};
-  s.lever = {lever_x[lane], lever_y[lane]};
-  return s;
 }
 
 ContactStrength ContactBatch::strength(int lane) const {

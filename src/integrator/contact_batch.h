@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "openclose/contact/kinematics.h"
+#include "openclose/integrator/contact_order.h"
 #include "openclose/integrator/lanes.h"
 #include "openclose/law/joint_law.h"
 #include "openclose/linear/block_matrix.h"
@@ -42,11 +43,9 @@ inline constexpr unsigned doubles_of_move = sizeof(BlockMove<3>) / sizeof(double
 /// Four contacts at the start of a step: set one by one, then BatchKernels::begin(). What is not set carries nothing and adds nothing.
 struct ContactBatch {
   Lanes normal_x{}, normal_y{}, lever_x{}, lever_y{}, vertex_arm_x{}, vertex_arm_y{}, end_arm_x{}, end_arm_y{};  // as in ContactStart
-  Lanes vertex_reach{}, edge_reach{};  ///< [m] from the centroids to the contact
-  // As in ContactSprings and ContactStrength; parted [m] is by how much the gap is wider than where the spring opens, in viscous_normal().
-  Lanes normal{}, shear{}, gap_off_target{}, shift{}, initial_shear{}, normal_damping{}, shear_damping{}, parted{};
-  Lanes friction{}, cohesion{}, tension{};
-  Lanes dissipation{};  ///< of path_average()
+  Lanes normal{}, shear{}, gap_off_target{}, shift{}, initial_shear{}, normal_damping{}, shear_damping{};        // as in ContactSprings
+  Lanes friction{}, cohesion{}, tension{};                                                                       // as in ContactStrength
+  Lanes dissipation{};                                                                                           ///< of path_average()
   /// Of their blocks, in the lists of moves and of sums alike: the place times the doubles of a move, from which the kernels address either at once.
   unsigned vertex_at[batch_size] = {}, edge_at[batch_size] = {};
 
@@ -59,7 +58,6 @@ struct ContactBatch {
   int edge_place(int lane) const { return static_cast<int>(edge_at[lane] / doubles_of_move); }
   void set_geometry(int lane, const ContactPlace<3>& at);
   void set_strength(int lane, const ContactStrength& strength);
-  /// Once the strength is set.
   void set_springs(int lane, const ContactSprings& springs);
   /// The part of set_springs() that follows from where the springs start: their gap, its target, and what they carry there.
   void set_start(int lane, const ContactSprings& springs);
@@ -68,6 +66,10 @@ struct ContactBatch {
   /// All but the places.
   void copy(int lane, const ContactBatch& other, int from);
   ContactStart<3> start(int lane) const;
+  /// \param moves  of the blocks, by their places
+  ContactPose<3> pose(int lane, const std::vector<BlockMove<3>>& moves) const {
+    return {start(lane), moves[vertex_place(lane)], moves[edge_place(lane)]};
+  }
   ContactStrength strength(int lane) const;
   /// Those that were set, with the gap counted from their target.
   ContactSprings springs(int lane) const;
@@ -83,6 +85,15 @@ inline void ContactBatch::set_geometry(int lane, const ContactPlace<3>& at) {
   vertex_arm_y[lane] = at.vertex_arm.y();
   end_arm_x[lane] = at.end_arm.x();
   end_arm_y[lane] = at.end_arm.y();
+}
+
+inline ContactStart<3> ContactBatch::start(int lane) const {
+  ContactStart<3> s;
+  s.normal = {normal_x[lane], normal_y[lane]};
+  s.vertex_arm = {vertex_arm_x[lane], vertex_arm_y[lane]};
+  s.end_arm = {end_arm_x[lane], end_arm_y[lane]};
+  s.lever = {lever_x[lane], lever_y[lane]};
+  return s;
 }
 
 inline void ContactBatch::set_strength(int lane, const ContactStrength& strength) {
@@ -104,40 +115,39 @@ inline void ContactBatch::set_start(int lane, const ContactSprings& springs) {
   gap_off_target[lane] = springs.gap - springs.target;
   shift[lane] = springs.shift;
   initial_shear[lane] = springs.initial_shear;
-  parted[lane] = 0.0;
-  if (springs.normal_damping != 0.0) {
-    const double opening = springs.target + (springs.shift + tension[lane]) / springs.normal;
-    parted[lane] = std::max(0.0, springs.gap - opening);
-  }
 }
 
 inline void ContactBatch::set_start(int lane, const Contact& contact) {
   gap_off_target[lane] = contact.gap;
   shift[lane] = 0.0;
   initial_shear[lane] = -shear[lane] * contact.elastic_slip;
-  parted[lane] = normal_damping[lane] != 0.0 ? std::max(0.0, contact.gap - tension[lane] / normal[lane]) : 0.0;
 }
 
 inline void ContactBatch::copy(int lane, const ContactBatch& other, int from) {
-  static_assert(sizeof(ContactBatch) == 22 * sizeof(Lanes) + 2 * sizeof(vertex_at), "one line here for each member");
+  static_assert(sizeof(ContactBatch) == 19 * sizeof(Lanes) + 2 * sizeof(vertex_at), "one line here for each member");
   for (Lanes ContactBatch::*member :
-       {&ContactBatch::normal_x,       &ContactBatch::normal_y,     &ContactBatch::lever_x,       &ContactBatch::lever_y,
-        &ContactBatch::vertex_arm_x,   &ContactBatch::vertex_arm_y, &ContactBatch::end_arm_x,     &ContactBatch::end_arm_y,
-        &ContactBatch::vertex_reach,   &ContactBatch::edge_reach,   &ContactBatch::normal,        &ContactBatch::shear,
-        &ContactBatch::gap_off_target, &ContactBatch::shift,        &ContactBatch::initial_shear, &ContactBatch::normal_damping,
-        &ContactBatch::shear_damping,  &ContactBatch::parted,       &ContactBatch::friction,      &ContactBatch::cohesion,
-        &ContactBatch::tension,        &ContactBatch::dissipation}) {
+       {&ContactBatch::normal_x, &ContactBatch::normal_y, &ContactBatch::lever_x, &ContactBatch::lever_y, &ContactBatch::vertex_arm_x,
+        &ContactBatch::vertex_arm_y, &ContactBatch::end_arm_x, &ContactBatch::end_arm_y, &ContactBatch::normal, &ContactBatch::shear,
+        &ContactBatch::gap_off_target, &ContactBatch::shift, &ContactBatch::initial_shear, &ContactBatch::normal_damping,
+        &ContactBatch::shear_damping, &ContactBatch::friction, &ContactBatch::cohesion, &ContactBatch::tension, &ContactBatch::dissipation}) {
     (this->*member)[lane] = (other.*member)[from];
   }
 }
 
-/// The same contacts at the trial displacement, their forces or means of them, and the derivatives of these.
-struct TrialBatch {
-  Lanes normal_x{}, normal_y{}, vertex_arm_x{}, vertex_arm_y{}, edge_arm_x{}, edge_arm_y{}, gap_change{}, slip_change{};  // as in ContactPose
-  Lanes normal{}, shear{}, elastic_normal{}, elastic_shear{}, normal_by_gap{}, shear_by_gap{}, shear_by_slip{};           // as in ContactForces
+/// All contacts of a step at its start.
+struct ContactStarts {
+  ContactOrder order;  ///< of the contacts in the batches
+  std::vector<ContactBatch> batches;
 
-  ContactPose<3> pose(int lane) const;
-  void set_pose(int lane, const ContactPose<3>& pose);
+  std::size_t bytes() const { return order.bytes() + bytes_of(batches); }
+};
+
+/// What contacts carry at the trial displacement, or means of it, and the derivatives of these forces. Where they are then follows from their start
+/// and the moves of their blocks.
+struct TrialBatch {
+  Lanes gap_change{}, slip_change{};                                                                             // as in ContactPose
+  Lanes normal{}, shear{}, elastic_normal{}, elastic_shear{}, normal_by_gap{}, shear_by_gap{}, shear_by_slip{};  // as in ContactForces
+
   /// \param branch  which has the status
   CarriedForces carried(int lane, Branch branch) const {
     return {status(branch), normal[lane], shear[lane], elastic_normal[lane], elastic_shear[lane]};
@@ -146,27 +156,6 @@ struct TrialBatch {
   ContactForces forces(int lane, Branch branch) const;
   void set_forces(int lane, const ContactForces& forces);
 };
-
-inline ContactPose<3> TrialBatch::pose(int lane) const {
-  ContactPose<3> p;
-  p.normal = {normal_x[lane], normal_y[lane]};
-  p.vertex_arm = {vertex_arm_x[lane], vertex_arm_y[lane]};
-  p.edge_arm = {edge_arm_x[lane], edge_arm_y[lane]};
-  p.gap_change = gap_change[lane];
-  p.slip_change = slip_change[lane];
-  return p;
-}
-
-inline void TrialBatch::set_pose(int lane, const ContactPose<3>& pose) {
-  normal_x[lane] = pose.normal.x();
-  normal_y[lane] = pose.normal.y();
-  vertex_arm_x[lane] = pose.vertex_arm.x();
-  vertex_arm_y[lane] = pose.vertex_arm.y();
-  edge_arm_x[lane] = pose.edge_arm.x();
-  edge_arm_y[lane] = pose.edge_arm.y();
-  gap_change[lane] = pose.gap_change;
-  slip_change[lane] = pose.slip_change;
-}
 
 inline void TrialBatch::set_carried(int lane, const CarriedForces& f) {
   normal[lane] = f.normal;
@@ -207,7 +196,7 @@ class BatchKernels {
   /// \param wide_registers  to be used where the processor has them
   explicit BatchKernels(bool wide_registers = true);
 
-  /// Works out, of contacts that have just been set, what is the same operations for all: their normals and reaches. Returns [N] the largest force of
+  /// Works out, of contacts that have just been set, what is the same operations for all: their normals. Returns [N] the largest force of
   /// a spring at the start of the step, pulling ones not counted.
   double begin(std::vector<ContactBatch>& contacts) const { return begin_(contacts.data(), contacts.size()); }
   /// Fills trials and branches; adds to the rows. Returns [N] the largest force.
@@ -226,13 +215,16 @@ class BatchKernels {
   /// [N] of all batches that were evaluated.
   static double largest_force(const std::vector<TrialBatch>& trials);
   /// Adds the stiffness of all contacts to the matrix. There are slots for every place of a batch.
-  void add_stiffness(const std::vector<ContactBatch>& contacts, const std::vector<TrialBatch>& trials, const std::vector<Branch>& branches,
-                     const BatchTangent& tangent, const std::vector<ContactSlots>& slots, BlockMatrix<3>& matrix) const;
+  /// \param moves  with which the trials were evaluated
+  void add_stiffness(const std::vector<ContactBatch>& contacts, const BlockMove<3>* moves, const std::vector<TrialBatch>& trials,
+                     const std::vector<Branch>& branches, const BatchTangent& tangent, const std::vector<ContactSlots>& slots,
+                     BlockMatrix<3>& matrix) const;
 
  private:
   double (*begin_)(ContactBatch*, std::size_t);
   double (*evaluate_)(StepForces, double, const ContactBatch*, std::size_t, const BlockMove<3>*, double, TrialBatch*, Branch*, ForceRow*);
-  void (*add_stiffness_)(const ContactBatch*, const TrialBatch*, std::size_t, const Branch*, const BatchTangent&, const ContactSlots*, double*);
+  void (*add_stiffness_)(const ContactBatch*, const BlockMove<3>*, const TrialBatch*, std::size_t, const Branch*, const BatchTangent&,
+                         const ContactSlots*, double*);
 };
 
 }  // namespace openclose

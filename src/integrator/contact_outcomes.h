@@ -3,11 +3,11 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <utility>
 #include <vector>
 
 #include "openclose/integrator/contact_batch.h"
-#include "openclose/integrator/contact_order.h"
 
 namespace openclose {
 
@@ -28,91 +28,95 @@ class ContactOutcomes {
   static_assert(N == 3, "contacts are laid out in batches for rigid blocks");
 
  public:
-  std::size_t size() const { return stiffness_.size(); }
-  bool empty() const { return stiffness_.empty(); }
+  std::size_t size() const { return starts_ ? starts_->order.size() : list_.size(); }
+  bool empty() const { return size() == 0; }
 
   ContactOutcome<N> operator[](std::size_t c) const {
+    if (!starts_) return list_[c];
     ContactOutcome<N> o;
-    o.normal_stiffness = stiffness_[c].normal;
-    o.shear_stiffness = stiffness_[c].shear;
+    o.normal_stiffness = normal_stiffness(c);
+    o.shear_stiffness = shear_stiffness(c);
     o.forces = forces(c);
     o.pose = pose(c);
     return o;
   }
-  ContactStatus status(std::size_t c) const { return openclose::status(branches_[order_[c]]); }
-  CarriedForces forces(std::size_t c) const { return batch(c).carried(lane(c), branches_[order_[c]]); }
-  ContactPose<N> pose(std::size_t c) const { return batch(c).pose(lane(c)); }
-  double gap_change(std::size_t c) const { return batch(c).gap_change[lane(c)]; }  ///< [m]
-  double normal_stiffness(std::size_t c) const { return stiffness_[c].normal; }    ///< [N/m]
-  double shear_stiffness(std::size_t c) const { return stiffness_[c].shear; }      ///< [N/m]
-  double slack(std::size_t c) const { return slack_.empty() ? 0.0 : slack_[c]; }   ///< [m] see Contact
+  ContactStatus status(std::size_t c) const { return starts_ ? openclose::status(branches_[place(c)]) : list_[c].forces.status; }
+  CarriedForces forces(std::size_t c) const {
+    if (!starts_) return list_[c].forces;
+    const std::size_t at = place(c);
+    return trial(at).carried(lane(at), branches_[at]);
+  }
+  ContactPose<N> pose(std::size_t c) const {
+    if (!starts_) return list_[c].pose;
+    const std::size_t at = place(c);
+    ContactPose<N> pose = start(at).pose(lane(at), moves_);
+    pose.gap_change = trial(at).gap_change[lane(at)];  // the same numbers, not worked out again
+    pose.slip_change = trial(at).slip_change[lane(at)];
+    return pose;
+  }
+  double gap_change(std::size_t c) const { return starts_ ? of_trial(c, &TrialBatch::gap_change) : list_[c].pose.gap_change; }       ///< [m]
+  double slip_change(std::size_t c) const { return starts_ ? of_trial(c, &TrialBatch::slip_change) : list_[c].pose.slip_change; }    ///< [m]
+  double normal_stiffness(std::size_t c) const { return starts_ ? of_start(c, &ContactBatch::normal) : list_[c].normal_stiffness; }  ///< [N/m]
+  double shear_stiffness(std::size_t c) const { return starts_ ? of_start(c, &ContactBatch::shear) : list_[c].shear_stiffness; }     ///< [N/m]
+  double slack(std::size_t c) const { return slack_.empty() ? 0.0 : slack_[c]; }  ///< [m] see Contact
   void set_slack(std::size_t c, double slack) {
     slack_.resize(size());
     slack_[c] = slack;
   }
 
-  std::size_t bytes() const { return bytes_of(trials_, branches_, stiffness_, slack_) + order_.bytes(); }
+  /// Without what others have, too.
+  std::size_t bytes() const { return bytes_of(moves_, trials_, branches_, list_, slack_) + (starts_.use_count() == 1 ? starts_->bytes() : 0); }
 
   /// Empty again, with its memory for the next step.
   void clear() {
-    stiffness_.clear();
+    starts_.reset();
+    list_.clear();
     slack_.clear();
-    order_.clear();
   }
-  void push_back(const ContactOutcome<N>& o) {
-    const std::size_t c = size();
-    stiffness_.push_back({o.normal_stiffness, o.shear_stiffness});
-    order_.push_back();
-    if (c / batch_size == trials_.size()) trials_.emplace_back();
-    if (c >= branches_.size()) branches_.push_back(0);
-    trials_[c / batch_size].set_pose(lane(c), o.pose);
-    trials_[c / batch_size].set_carried(lane(c), o.forces);
-    branches_[c] = branch(o.forces);
-  }
+  /// For methods without batches.
+  void push_back(const ContactOutcome<N>& o) { list_.push_back(o); }
 
-  /// Newton's batches, lent with the stiffness of the contacts in them.
-  /// \param starts  of the same contacts
-  void borrow(std::vector<TrialBatch>& trials, std::vector<Branch>& branches, const ContactOrder& order, const std::vector<ContactBatch>& starts) {
+  /// Newton's batches, lent with where they start, which is shared, and the moves of their blocks.
+  void borrow(std::shared_ptr<const ContactStarts> starts, std::vector<BlockMove<N>>& moves, std::vector<TrialBatch>& trials,
+              std::vector<Branch>& branches) {
+    clear();
+    starts_ = std::move(starts);
+    moves_.swap(moves);
     trials_.swap(trials);
     branches_.swap(branches);
-    take_stiffness(order, starts);
   }
   /// A copy of them.
-  void copy(const std::vector<TrialBatch>& trials, const std::vector<Branch>& branches, const ContactOrder& order,
-            const std::vector<ContactBatch>& starts) {
+  void copy(std::shared_ptr<const ContactStarts> starts, const std::vector<BlockMove<N>>& moves, const std::vector<TrialBatch>& trials,
+            const std::vector<Branch>& branches) {
+    clear();
+    starts_ = std::move(starts);
+    moves_ = moves;
     trials_ = trials;
     branches_ = branches;
-    take_stiffness(order, starts);
   }
   /// What was lent is given back; empty again.
-  void give_back(std::vector<TrialBatch>& trials, std::vector<Branch>& branches) {
+  void give_back(std::vector<BlockMove<N>>& moves, std::vector<TrialBatch>& trials, std::vector<Branch>& branches) {
+    moves_.swap(moves);
     trials_.swap(trials);
     branches_.swap(branches);
     clear();
   }
 
  private:
-  struct Stiffness {
-    double normal, shear;
-  };
+  std::size_t place(std::size_t c) const { return starts_->order[c]; }
+  // By places.
+  static int lane(std::size_t at) { return static_cast<int>(at % batch_size); }
+  const ContactBatch& start(std::size_t at) const { return starts_->batches[at / batch_size]; }
+  const TrialBatch& trial(std::size_t at) const { return trials_[at / batch_size]; }
+  double of_start(std::size_t c, Lanes ContactBatch::*member) const { return (start(place(c)).*member)[lane(place(c))]; }
+  double of_trial(std::size_t c, Lanes TrialBatch::*member) const { return (trial(place(c)).*member)[lane(place(c))]; }
 
-  void take_stiffness(const ContactOrder& order, const std::vector<ContactBatch>& starts) {
-    clear();
-    order_ = order;
-    resize_closely(stiffness_, order.size());
-    for (std::size_t c = 0; c < order.size(); ++c) {
-      const ContactBatch& start = starts[order[c] / batch_size];
-      stiffness_[c] = {start.normal[lane(c)], start.shear[lane(c)]};
-    }
-  }
-  int lane(std::size_t c) const { return static_cast<int>(order_[c] % batch_size); }
-  const TrialBatch& batch(std::size_t c) const { return trials_[order_[c] / batch_size]; }
-
-  std::vector<TrialBatch> trials_;  ///< at least as many as there are contacts
+  std::shared_ptr<const ContactStarts> starts_;  ///< null where the outcomes stand in the list
+  std::vector<BlockMove<N>> moves_;              ///< by places of blocks
+  std::vector<TrialBatch> trials_;
   std::vector<Branch> branches_;
-  ContactOrder order_;                ///< of these
-  std::vector<Stiffness> stiffness_;  ///< [N/m]
-  std::vector<double> slack_;         ///< [m] of all, or empty where there is none
+  std::vector<ContactOutcome<N>> list_;
+  std::vector<double> slack_;  ///< [m] of all, or empty where there is none
 };
 
 }  // namespace openclose

@@ -186,7 +186,7 @@ class Hard final : public Enforcement<N> {
           break;
         }
       }
-      for (std::size_t c = 0; c < springs_.size(); ++c) carry_on(problem, solution.contacts[c], springs_[c]);
+      for (std::size_t c = 0; c < springs_.size(); ++c) carry_on(problem, solution.contacts, c);
       if (!problem.statics && error > incompatible_gaps) stiffen(problem, solution, errors);
       if (pass == 0) first = solution.d;
       if (pass == 1 && problem.statics && !moves_on) straighten(problem, solution, first);
@@ -234,19 +234,21 @@ class Hard final : public Enforcement<N> {
   }
 
   /// What the springs of the next pass start from.
-  static void carry_on(const StepProblem<N>& problem, const ContactOutcome<N>& outcome, ContactSprings& s) {
-    const bool open = outcome.forces.status == ContactStatus::open;
+  void carry_on(const StepProblem<N>& problem, const ContactOutcomes<N>& outcomes, std::size_t c) {
+    ContactSprings& s = springs_[c];
+    const CarriedForces forces = outcomes.forces(c);
+    const bool open = forces.status == ContactStatus::open;
     if (!problem.statics) {
-      s.shift = outcome.forces.normal;
-      s.initial_shear = outcome.forces.shear;
+      s.shift = forces.normal;
+      s.initial_shear = forces.shear;
     } else if (open) {
       // A gap that was there before is one on every pass; only what has come to it is remembered.
-      const double parted = outcome.pose.gap_change + std::min(0.0, s.gap - s.target);
+      const double parted = outcomes.gap_change(c) + std::min(0.0, s.gap - s.target);
       s.shift = std::min(0.0, s.shift - s.normal * parted);
       s.initial_shear = 0.0;
     } else {
-      s.shift = outcome.forces.normal;
-      s.initial_shear -= s.shear * outcome.pose.slip_change;
+      s.shift = forces.normal;
+      s.initial_shear -= s.shear * outcomes.slip_change(c);
     }
   }
 
@@ -274,7 +276,9 @@ class Hard final : public Enforcement<N> {
       const Contact& contact = problem.contacts[c];
       const auto of_vertex = turned.of(problem.system, contact.vertex_block), of_edge = turned.of(problem.system, contact.edge_block);
       const ContactStart<N> start(problem.system, contact);
-      const ContactPose<N> before(start, {}, {}), after(start, BlockMove<N>(of_vertex, kind), BlockMove<N>(of_edge, kind));
+      const BlockMove<N> vertex(of_vertex, kind, problem.system.block(contact.vertex_block).radius);
+      const BlockMove<N> edge(of_edge, kind, problem.system.block(contact.edge_block).radius);
+      const ContactPose<N> before(start, {}, {}), after(start, vertex, edge);
       springs_[c].shift += springs_[c].normal * (after.gap_change - before.normal_way(of_vertex, of_edge));
       springs_[c].initial_shear += springs_[c].shear * (after.slip_change - before.shear_way(of_vertex, of_edge));
     }
@@ -310,14 +314,14 @@ class Hard final : public Enforcement<N> {
   /// [-] Error of contact c over what is tolerated: closed contacts off their target gaps, sticking ones off their places. Where more than forces is
   /// remembered also open ones that penetrate and sliding ones that go against their friction.
   double constraint_error(const StepProblem<N>& problem, const StepSolution<N>& solution, std::size_t c) const {
-    const ContactOutcome<N>& o = solution.contacts[c];
-    const double off_target = (springs_[c].gap - springs_[c].target) + o.pose.gap_change;
+    const CarriedForces forces = solution.contacts.forces(c);
+    const double off_target = (springs_[c].gap - springs_[c].target) + solution.contacts.gap_change(c);
     double error;
-    if (o.forces.status == ContactStatus::open) {
+    if (forces.status == ContactStatus::open) {
       error = -off_target;
     } else {
-      const double slip =
-          o.forces.status == ContactStatus::sticking ? std::abs(o.pose.slip_change) : std::copysign(1.0, o.forces.shear) * o.pose.slip_change;
+      const double change = solution.contacts.slip_change(c);
+      const double slip = forces.status == ContactStatus::sticking ? std::abs(change) : std::copysign(1.0, forces.shear) * change;
       // What is pushed out by that part of the tolerance may miss it by no more, or a force that grows from step to step drives it in.
       const bool is_pushed_out = !problem.statics && springs_[c].gap < springs_[c].target;
       const double inward = is_pushed_out ? -off_target / recovered_penetration : 0.0;

@@ -110,6 +110,8 @@ class Newton {
     double rounding_of_coordinates = 0.0;  ///< [N]
   };
 
+  /// Takes back what outcomes have, so that the next step can be laid out in it.
+  void take_back(ContactOutcomes<N>& outcomes);
   /// Evaluates at the displacement to start from and returns its residual_norm().
   double begin(const Eigen::VectorXd& d, FirstTangent first);
   /// Iterates from solution.d until its residual_norm() is small enough.
@@ -118,6 +120,10 @@ class Newton {
   /// Returns its norm.
   double solve_parts(StepSolution<N>& solution, double norm);
   std::vector<Part> unbalanced_parts(double norm, double end);
+  /// Moves on by a step that has made the residual larger, and solves parts there until the merit falls as it should. False if it does not; the
+  /// displacement is the one before then, the forces are not.
+  /// \param norm  residual_norm() after the step, then with parts
+  bool take_with_parts(const Eigen::VectorXd& step, double value_before, StepSolution<N>& solution, double& norm);
   /// The equations of a part of another system, while all other blocks stay where they are there.
   void take_part(const Newton& whole, const Part& part);
   /// Goes on, after the first iteration of a cold start, by whole steps with the exact tangent, in which what has just opened or begun to slide is
@@ -159,17 +165,18 @@ class Newton {
   void find_force_scale(double of_contacts, const Eigen::VectorXd& d);
   /// The springs of contact c, with the gap counted from their target.
   ContactSprings springs(std::size_t c) const { return start(c).springs(lane(c)); }
-  // Contact c is one of the lanes of its batch: it is counted by its place there. Those of the problem are told from their order_.
+  // Contact c is one of the lanes of its batch: it is counted by its place there. Those of the problem are told from their order.
   static int lane(std::size_t c) { return static_cast<int>(c % batch_size); }
-  const ContactBatch& start(std::size_t c) const { return contacts_[c / batch_size]; }
+  std::vector<ContactBatch>& contacts() { return starts_->batches; }
+  const std::vector<ContactBatch>& contacts() const { return starts_->batches; }
+  const ContactOrder& order() const { return starts_->order; }
+  const ContactBatch& start(std::size_t c) const { return contacts()[c / batch_size]; }
   TrialBatch& trial(std::size_t c) { return trials_[c / batch_size]; }
   const TrialBatch& trial(std::size_t c) const { return trials_[c / batch_size]; }
   ContactForces forces(std::size_t c) const { return trial(c).forces(lane(c), branches_[c]); }
   /// The forces act along its normal and tangent, at its arms.
-  ContactPose<N> force_pose(std::size_t c) const {
-    const ContactPose<N> at = trial(c).pose(lane(c));
-    return averages_path() ? mean_pose(start(c).start(lane(c)), at) : at;
-  }
+  ContactPose<N> force_pose(std::size_t c) const { return averages_path() ? mean_pose(start(c).start(lane(c)), pose(c)) : pose(c); }
+  ContactPose<N> pose(std::size_t c) const { return start(c).pose(lane(c), moves_); }
   bool averages_path() const { return step_forces_ == StepForces::averaged; }
   /// What a step sees of the springs of contact c while it stays closed: half of them, if it averages over its path.
   ContactSprings seen_springs(std::size_t c) const;
@@ -183,6 +190,10 @@ class Newton {
   void take_state(std::size_t c, ContactStatus status, double normal, double shear);
   /// The same of branches_before_, around the forces that the springs start from.
   void take_states_before();
+  /// [-] Of the residual's Euclidean norm: no block has a larger residual than the largest one now where no more than that is left of it.
+  double part_of_worst() const;
+  /// [-] To be asked of an iterative solver while the end of the iteration is out of its reach.
+  double usual_reduction(bool gets_on, int switches) const;
   /// What a step must reduce, with the residual_norm() that belongs to it.
   double merit(double norm) const;
   /// Largest residual of a block over what is tolerated: converged at 1, which is also what negligible ones count for; infinite where that tells
@@ -212,10 +223,11 @@ class Newton {
   double ramp_ = tolerance::cohesion_ramp;  ///< [-]
   const StepProblem<N>* problem_ = nullptr;
   BatchKernels kernels_;
-  ContactOrder order_;  ///< of the problem's contacts; in statics that of the list
   BatchRenewal<N> renewal_;
   std::size_t contact_count_ = 0;
-  std::vector<ContactBatch> contacts_;
+  /// Of the problem's contacts, in statics in the order of the list. Steps that are known by their outcomes have them, too: where they still do,
+  /// the next step has others.
+  std::shared_ptr<ContactStarts> starts_ = std::make_shared<ContactStarts>();
   std::vector<StepBlock> blocks_;                ///< the free ones, by their equations
   std::vector<BlockMove<N>> moves_;              ///< at the trial displacement: of the rows, of others that a part sees, and of what stays
   StepForces step_forces_ = StepForces::at_end;  ///< what trials_ has

@@ -109,7 +109,7 @@ TwoLevelFlexibility Newton<N>::flexibility(const Eigen::VectorXd& d, const std::
   for (std::size_t c = 0; c < contact_count_; ++c) {
     if (!counted[c]) continue;
     const int k = lane(c), i = row_of(start(c).vertex_place(k)), j = row_of(start(c).edge_place(k));
-    const ContactPose<N> pose = trial(c).pose(k);
+    const ContactPose<N> pose = this->pose(c);
     const Vec2 tangent(-pose.normal.y(), pose.normal.x());
     for (const auto& [stiffness, way] : {std::pair(start(c).normal[k], pose.normal), std::pair(start(c).shear[k], tangent)})
       sum.add_spring(stiffness, i, gradient(i, way, pose.vertex_arm), j, -gradient(j, way, pose.edge_arm));
@@ -127,10 +127,10 @@ TwoLevelFlexibility Newton<N>::flexibility(const Eigen::VectorXd& d, const std::
 template <int N>
 void Newton<N>::keep_slip() {
   constexpr auto sticking = static_cast<Branch>(ContactStatus::sticking);
-  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+  for (std::size_t i = 0; i < contacts().size(); ++i) {
     const Branch* const branches = branches_.data() + batch_size * i;
     if (std::all_of(branches, branches + batch_size, [](Branch b) { return b == sticking; })) continue;
-    ContactBatch& contact = contacts_[i];
+    ContactBatch& contact = contacts()[i];
     const TrialBatch& now = trials_[i];
     for (int k = 0; k < batch_size; ++k) {
       const bool slid = branches[k] != sticking;
@@ -156,8 +156,8 @@ bool Newton<N>::break_slipped_bonds(const SpringSource<N>& springs) {
     has_broken_[c] = any = true;
     ContactStrength strength = start(c).strength(lane(c));
     strength.break_bond(joint);
-    contacts_[c / batch_size].cohesion[lane(c)] = strength.cohesion;
-    contacts_[c / batch_size].tension[lane(c)] = strength.tension;
+    contacts()[c / batch_size].cohesion[lane(c)] = strength.cohesion;
+    contacts()[c / batch_size].tension[lane(c)] = strength.tension;
   }
   return any;
 }
@@ -183,7 +183,7 @@ bool Newton<N>::has_left(const Eigen::VectorXd& d) const {
 
 template <int N>
 void Newton<N>::relax(const StepProblem<N>& problem, const SpringSource<N>& springs, StepSolution<N>& solution) {
-  solution.contacts.give_back(trials_, branches_);
+  take_back(solution.contacts);
   prepare(problem, springs);
   renewal_.forget();  // bonds may break in the batches, whether or not the step is taken
   Eigen::VectorXd& d = solution.d;
@@ -236,7 +236,7 @@ void Newton<N>::relax(const StepProblem<N>& problem, const SpringSource<N>& spri
   if (!solution.converged) solution.reason = "relaxation did not come to rest";
   note_slip(springs);
   solution.paths.clear();
-  solution.contacts.borrow(trials_, branches_, order_, contacts_);
+  solution.contacts.borrow(starts_, moves_, trials_, branches_);
 }
 
 template class Newton<3>;

@@ -121,8 +121,8 @@ struct ContactDashpots {
 /// for gaps g1 below the opening g_o, at which the spring pulls with the tensile strength.
 inline double viscous_normal(const ContactSprings& springs, const ContactStrength& strength, double gap_change) {
   if (springs.normal_damping == 0.0) return 0.0;
-  const double opening = springs.target + (springs.shift + strength.tension) / springs.normal;
-  return -springs.normal_damping * (std::max(0.0, springs.gap - opening) + gap_change);
+  const double parted = (springs.gap - springs.target) - (springs.shift + strength.tension) / springs.normal;
+  return -springs.normal_damping * (std::max(0.0, parted) + gap_change);
 }
 
 /// Forces when gap and slip have changed by these amounts [m] since the start of the step.

@@ -48,7 +48,7 @@ struct Poses {
 
 Poses poses(const System& system, const Contact& contact, const Unknowns& dv, const Unknowns& de) {
   const ContactStart<3> start(system, contact);
-  const ContactPose<3> end(start, BlockMove<3>(dv, RotationKind::exact), BlockMove<3>(de, RotationKind::exact));
+  const ContactPose<3> end(start, BlockMove<3>(dv, RotationKind::exact, 1.0), BlockMove<3>(de, RotationKind::exact, 1.0));
   return {end, mean_pose(start, end)};
 }
 

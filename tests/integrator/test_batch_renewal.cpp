@@ -30,20 +30,15 @@ class CountedSprings final : public SpringSource<3> {
   const StepProblem<3>& problem_;
 };
 
-ContactOrder in_order(std::size_t count) {
-  ContactOrder order;
-  order.keep(count);
-  return order;
-}
-
 /// With springs made anew for each contact.
 std::vector<ContactBatch> made_anew(const StepProblem<3>& problem) {
   const CountedSprings source(problem);
   std::vector<ContactSprings> springs;
   for (std::size_t c = 0; c < problem.contacts.size(); ++c) springs.push_back(source.make(c));
-  std::vector<ContactBatch> batches;
-  BatchRenewal<3>().renew(problem, GivenSprings<3>(springs), in_order(problem.contacts.size()), batches);
-  return batches;
+  ContactStarts starts;
+  starts.order.keep(problem.contacts.size());
+  BatchRenewal<3>().renew(problem, GivenSprings<3>(springs), starts);
+  return starts.batches;
 }
 
 }  // namespace
@@ -59,11 +54,13 @@ TEST_CASE("springs kept from step to step are those made anew", "[integrator][sp
   StepProblem<3> problem{present.system, present.external, present.joints, contacts, present.method};
   problem.dt = 1e-3;
   BatchRenewal<3> renewal;
-  std::vector<ContactBatch> batches;
+  ContactStarts starts;
+  std::vector<ContactBatch>& batches = starts.batches;
   std::size_t made = 0;
   const auto renew = [&] {
     const CountedSprings source(problem);
-    renewal.renew(problem, source, in_order(contacts.size()), batches);
+    starts.order.keep(contacts.size());
+    renewal.renew(problem, source, starts);
     made = source.made;
     const std::vector<ContactBatch> expected = made_anew(problem);
     REQUIRE(batches.size() == expected.size());
@@ -137,7 +134,7 @@ TEST_CASE("springs kept from step to step are those made anew", "[integrator][sp
   SECTION("springs that last for one step") {
     std::vector<ContactSprings> springs(contacts.size());
     for (ContactSprings& s : springs) s.dissipation = 0.1;
-    renewal.renew(problem, GivenSprings<3>(springs), in_order(contacts.size()), batches);
+    renewal.renew(problem, GivenSprings<3>(springs), starts);
     CHECK(batches[0].dissipation[1] == 0.1);
     renew();
     CHECK(made == contacts.size());

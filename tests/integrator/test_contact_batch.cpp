@@ -19,7 +19,7 @@ constexpr double rounding_of_sums = 16.0 * 2.2e-16;
 struct RandomContacts {
   explicit RandomContacts(unsigned seed, std::size_t count) : random(seed), moves(block_count + 1) {
     for (int b = 0; b < free_count; ++b) {
-      moves[b] = BlockMove<3>({number(1e-3), number(1e-3), number(1e-3)}, seed % 2 == 0 ? RotationKind::exact : RotationKind::linear);
+      moves[b] = BlockMove<3>({number(1e-3), number(1e-3), number(1e-3)}, seed % 2 == 0 ? RotationKind::exact : RotationKind::linear, 7.0);
     }
     for (std::size_t c = 0; c < count; ++c) {
       ContactPlace<3> at;
@@ -150,14 +150,15 @@ TEST_CASE("four contacts at a time are where each is and carry what each carries
     const Single one(contacts, c, step_forces, ramp);
     const ContactForces& f = one.forces;
     const TrialBatch& trial = all.trials[c / batch_size];
-    wrong += differences(trial.pose(lane), one.pose) + differences(trial.forces(lane, all.branches[c]), f) + (all.branches[c] != branch(f));
+    wrong += (trial.gap_change[lane] != one.pose.gap_change) + (trial.slip_change[lane] != one.pose.slip_change);
+    wrong += differences(trial.forces(lane, all.branches[c]), f) + (all.branches[c] != branch(f));
+    wrong += differences(all.batches[c / batch_size].pose(lane, contacts.moves), one.pose);
     ++of_status[static_cast<int>(f.status)];
     outweighed += f.status != ContactStatus::open && f.normal_by_gap == 0.0;
     backward += all.branches[c] == -sliding_branch;
     if (!one.carries()) continue;
     opened += f.status == ContactStatus::open;
-    const double moved = contacts.moves[a].bound(contacts.starts[c].vertex_arm.norm()) +
-                         contacts.moves[b].bound((contacts.starts[c].end_arm + contacts.starts[c].lever).norm());
+    const double moved = contacts.moves[a].bound + contacts.moves[b].bound;
     const double rounding =
         rounding_of_sums * ((s.normal + s.normal_damping + s.shear + s.shear_damping) * moved + std::abs(f.normal) + std::abs(f.shear));
     const Vec2& n = one.acting.normal;
@@ -221,7 +222,7 @@ TEST_CASE("the stiffness of four contacts at a time is that of each", "[integrat
       slots[c].edge_vertex = ContactSlots::entry(matrix.find(b, a));
     }
   }
-  kernels.add_stiffness(all.batches, trials, all.branches, tangent, slots, matrix);
+  kernels.add_stiffness(all.batches, contacts.moves.data(), trials, all.branches, tangent, slots, matrix);
 
   for (std::size_t c = 0; c < count; ++c) {
     const Single one(contacts, c, step_forces);

@@ -96,7 +96,7 @@ TEST_CASE("a step reports of each contact what its law says of it, wherever it i
   int open = 0;
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     const Contact& contact = contacts[c];
-    const auto move = [&](int b) { return BlockMove<3>(solution.of(problem.system, b), RotationKind::exact); };
+    const auto move = [&](int b) { return BlockMove<3>(solution.of(problem.system, b), RotationKind::exact, problem.system.block(b).radius); };
     const ContactPose<3> pose(ContactStart<3>(problem.system, contact), move(contact.vertex_block), move(contact.edge_block));
     const ContactStrength strength(problem.joints.joint(contact.joint), contact);
     const ContactForces law = spring_slider(springs[c], strength, pose.gap_change, pose.slip_change);

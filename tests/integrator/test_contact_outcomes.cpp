@@ -1,3 +1,6 @@
+#include <memory>
+#include <vector>
+
 #include "openclose/integrator/contact_outcomes.h"
 #include "support/catch.h"
 
@@ -55,6 +58,7 @@ TEST_CASE("what contacts did comes back as it was put in, whole and in parts", "
       check_same(outcomes[c], expected);
       CHECK(outcomes.status(c) == expected.forces.status);
       CHECK(outcomes.gap_change(c) == expected.pose.gap_change);
+      CHECK(outcomes.slip_change(c) == expected.pose.slip_change);
       CHECK(outcomes.normal_stiffness(c) == expected.normal_stiffness);
       CHECK(outcomes.shear_stiffness(c) == expected.shear_stiffness);
       CHECK(outcomes.slack(c) == 0.0);
@@ -76,30 +80,49 @@ TEST_CASE("slack belongs to its contact and to its step", "[integrator][outcomes
   CHECK(outcomes.slack(0) == 0.0);
 }
 
-TEST_CASE("batches are lent with their springs and given back", "[integrator][outcomes]") {
+TEST_CASE("batches are lent with where their contacts start, and given back", "[integrator][outcomes]") {
+  auto starts = std::make_shared<ContactStarts>();
+  starts->order.keep(2);
+  starts->batches.resize(1);
+  std::vector<BlockMove<3>> moves{BlockMove<3>({0.1, 0.2, 0.3}, RotationKind::exact, 1.0), BlockMove<3>({-0.3, 0.1, -0.2}, RotationKind::exact, 1.0)};
   std::vector<TrialBatch> trials(1);
   std::vector<Branch> branches(batch_size, 0);
-  std::vector<ContactBatch> starts(1);
+  std::vector<ContactOutcome<3>> expected;
   for (int c = 0; c < 2; ++c) {
-    const ContactOutcome<3> o = outcome(c);
-    trials[0].set_pose(c, o.pose);
+    ContactPlace<3> at;
+    at.vertex_arm = {1.0 + c, 2.0};
+    at.end_arm = {3.0, -1.0 - c};
+    at.lever = {0.5, 0.25};
+    at.edge = {0.0, 2.0};
+    ContactOutcome<3> o = outcome(c);
+    o.pose = ContactPose<3>(ContactStart<3>(at), moves[c], moves[1 - c]);
+    expected.push_back(o);
+    starts->batches[0].set_places(c, c, 1 - c);
+    starts->batches[0].set_geometry(c, at);
+    starts->batches[0].normal[c] = o.normal_stiffness;
+    starts->batches[0].shear[c] = o.shear_stiffness;
+    trials[0].gap_change[c] = o.pose.gap_change;
+    trials[0].slip_change[c] = o.pose.slip_change;
     trials[0].set_carried(c, o.forces);
     branches[c] = branch(o.forces);
-    starts[0].normal[c] = o.normal_stiffness;
-    starts[0].shear[c] = o.shear_stiffness;
   }
+  BatchKernels().begin(starts->batches);
   const TrialBatch* const where = trials.data();
   ContactOutcomes<3> copy, outcomes;
-  ContactOrder order;
-  order.keep(2);
-  copy.copy(trials, branches, order, starts);
-  outcomes.borrow(trials, branches, order, starts);
+  copy.copy(starts, moves, trials, branches);
+  outcomes.borrow(starts, moves, trials, branches);
   CHECK(trials.empty());
+  CHECK(moves.empty());
   for (int c = 0; c < 2; ++c) {
-    check_same(outcomes[c], outcome(c));
-    check_same(copy[c], outcome(c));
+    check_same(outcomes[c], expected[c]);
+    check_same(copy[c], expected[c]);
+    CHECK(outcomes.gap_change(c) == expected[c].pose.gap_change);
+    CHECK(outcomes.slip_change(c) == expected[c].pose.slip_change);
+    CHECK(outcomes.status(c) == expected[c].forces.status);
   }
-  outcomes.give_back(trials, branches);
+  outcomes.give_back(moves, trials, branches);
   CHECK(outcomes.empty());
   CHECK(trials.data() == where);
+  CHECK(moves.size() == 2);
+  CHECK(copy.size() == 2);
 }
