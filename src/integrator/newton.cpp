@@ -102,12 +102,13 @@ constexpr int smallest_system_with_parts = 600;
 /// Whether an iteration still gets somewhere.
 class Headway {
  public:
-  explicit Headway(double value) : reached_(value) {}
+  /// \param most_iterations  in which the value must be halved
+  Headway(double value, int most_iterations) : reached_(value), most_iterations_(most_iterations) {}
 
   /// To be asked once an iteration.
   /// \param best  the smallest value of what it must reduce, so far
   bool is_lost(double best) {
-    if (best > 0.5 * reached_) return ++iterations_ > most_iterations_to_halve;
+    if (best > 0.5 * reached_) return ++iterations_ > most_iterations_;
     reached_ = best;
     iterations_ = 0;
     return false;
@@ -115,7 +116,28 @@ class Headway {
 
  private:
   double reached_;
+  int most_iterations_;
   int iterations_ = 0;  ///< since then
+};
+
+/// After something was tried in vain, twice as long each time.
+class Pause {
+ public:
+  /// To be asked once an iteration.
+  bool is_over() {
+    if (left_ == 0) return true;
+    --left_;
+    return false;
+  }
+  void begin() {
+    left_ = next_;
+    next_ *= 2;
+  }
+  /// It was not in vain.
+  void end() { next_ = 1; }
+
+ private:
+  int left_ = 0, next_ = 1;  ///< iterations
 };
 
 /// To be asked of an iterative solver, where the iteration ends with this part of the residual that it has now.
@@ -682,19 +704,25 @@ typename Newton<N>::Outcome Newton<N>::iterate(const StepProblem<N>& problem, St
   int refusals = 0;  // of the exact step since the residual was at its smallest
   double value = merit(norm), best = value;
   const int few = static_cast<int>(few_switches * static_cast<double>(contact_count_));
-  const bool has_parts =
+  const bool may_help_by_parts =
       problem.method.skip_balanced && !problem.statics && !is_part_ && static_cast<int>(blocks_.size()) >= smallest_system_with_parts;
-  bool parts_help = has_parts;
   int switches = static_cast<int>(contact_count_);  // any may be in another state than in the first tangent
   bool gets_on = true;                              // the last iteration has halved what it must reduce
-  const bool may_be_lost = asked_merit_ == Merit::all_blocks && !problem.statics && !is_part_;
-  Headway headway(value);
+  const bool of_all_blocks = asked_merit_ == Merit::all_blocks;
+  const bool may_be_lost = !problem.statics && !is_part_ && (of_all_blocks || may_help_by_parts);
+  Headway headway(value, of_all_blocks ? most_iterations_to_halve : most_iterations_to_halve_with_parts);
+  Pause parts_pause;
   for (int iteration = 0; iteration < until.iterations && norm > until.norm; ++iteration) {
-    if (parts_help && iteration > 0 && switches > 0) {
+    const bool try_parts = may_help_by_parts && parts_pause.is_over();
+    if (try_parts && iteration > 0 && switches > 0) {
       const double whole_norm = norm;
       norm = solve_parts(solution, norm);
-      parts_help = norm < whole_norm;
-      if (parts_help) tangent = Tangent::exact;
+      if (norm < whole_norm) {
+        parts_pause.end();
+        tangent = Tangent::exact;
+      } else {
+        parts_pause.begin();
+      }
       value = merit(norm);
       best = std::min(best, value);
       if (norm <= until.norm) break;
@@ -720,7 +748,7 @@ typename Newton<N>::Outcome Newton<N>::iterate(const StepProblem<N>& problem, St
     switches = differences(branches_before_, branches_);
     bool is_taken = false;  // d has gone the step, and farther in parts
     if (tangent == Tangent::exact && iteration > 0 && next_value > value) {
-      is_taken = parts_help && take_with_parts(step, value, solution, next_norm);
+      is_taken = try_parts && take_with_parts(step, value, solution, next_norm);
       if (!is_taken) alpha = backtrack(d, step, value);
       if (alpha == 0.0) {
         evaluate(d);
@@ -736,7 +764,6 @@ typename Newton<N>::Outcome Newton<N>::iterate(const StepProblem<N>& problem, St
     if (next_value < best) refusals = 0;
     best = std::min(best, next_value);
     const bool halved = gets_on = next_value <= 0.5 * value;
-    parts_help = parts_help || (has_parts && halved);
     if (!is_taken) d += alpha * step;
     norm = next_norm;
     value = next_value;

@@ -250,8 +250,6 @@ TEST_CASE("iterating only where forces are far from balance changes no more than
     CHECK(all.step_counters().steps_with_parts == 0);
     CHECK(skipping.step_counters().steps_with_parts > 0);
     CHECK(skipping.step_counters().iterations < all.step_counters().iterations);
-    // An iteration that has got on lets parts try again where they did not help before: else nearly three quarters.
-    if (method == "hard") CHECK(3 * skipping.step_counters().iterations < 2 * all.step_counters().iterations);
   }
 }
 
