@@ -538,7 +538,7 @@ bool Simulation<N>::loses_strength(const StepSolution<N>& solution) const {
 
 template <int N>
 void Simulation<N>::accept(const StepProblem<N>& problem, const StepSolution<N>& solution) {
-  add_step(ledger_, problem, solution, *scheme_, enforcement_->has_elastic_contacts());
+  if (books_steps_) add_step(ledger_, problem, solution, *scheme_, enforcement_->has_elastic_contacts());
   accept_contacts(solution);
   for (int b : system_.free_blocks()) {
     const Unknowns d = solution.of(system_, b), v = problem.velocity(b);
@@ -791,6 +791,7 @@ void Simulation<N>::restart_clock() {
   take_back();
   time_ = 0.0;
   ledger_ = EnergyLedger();
+  books_steps_ = true;
   max_penetration_ = 0.0;
   restart_scheme();
 }
