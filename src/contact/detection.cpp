@@ -6,27 +6,12 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
-#include <ranges>
-#include <span>
 
-#include "openclose/contact/kinematics.h"
+#include "openclose/contact/narrow_phase.h"
 #include "openclose/core/tolerance.h"
-#include "openclose/geometry/polygon.h"
 
 namespace openclose {
 namespace {
-
-const double cosine_full = std::cos(tolerance::parallel_full_rad);
-const double cosine_none = std::cos(tolerance::parallel_none_rad), sine_none = std::sin(tolerance::parallel_none_rad);
-const double cosine_needle = std::cos(2.0 * tolerance::parallel_none_rad);
-const double sine_flush = std::sin(tolerance::flush_tilt_rad);
-
-/// How far two edges may count as facing each other; see the header.
-double parallel_weight(double cosine) {
-  if (cosine >= cosine_full) return 1.0;
-  if (cosine <= cosine_none) return 0.0;
-  return (tolerance::parallel_none_rad - std::acos(cosine)) / (tolerance::parallel_none_rad - tolerance::parallel_full_rad);
-}
 
 /// Above, an update gives its working memory back when it is done: 0.4 kB a block, more than 1 MB, which costs 0.1 ms to touch again.
 constexpr int most_blocks_with_working_memory = 2000;
@@ -42,465 +27,6 @@ void take_marked(std::vector<std::uint64_t>& set, std::vector<int>& numbers) {
     for (; set[k] != 0; set[k] &= set[k] - 1) numbers.push_back(static_cast<int>(bits * k) + std::countr_zero(set[k]));
   }
 }
-
-}  // namespace
-
-/// Places of the blocks' corners and edges, measured when they are first asked for after begin().
-template <int N>
-class Detector<N>::Shapes {
- public:
-  /// A corner and the edge that begins there.
-  struct Edge {
-    Vec2 start, direction;
-    double length;
-    Edge() {}  // nothing: memory of which nothing is measured need not be there
-    Edge(const Vec2& from, const Vec2& along, double over) : start(from), direction(along), length(over) {}
-    Vec2 normal() const { return {direction.y(), -direction.x()}; }  ///< outward
-    double gap(const Vec2& p) const { return direction.y() * (p.x() - start.x()) - direction.x() * (p.y() - start.y()); }
-    double along(const Vec2& p) const { return direction.x() * (p.x() - start.x()) + direction.y() * (p.y() - start.y()); }
-    Vec2 end() const { return start + length * direction; }
-    Box box() const { return Box::around(start, end()); }
-  };
-
-  std::size_t bytes() const { return bytes_of(measured_, boxes_, convex_, edges_); }
-  /// Gives its memory back until the next begin().
-  void let_go() {
-    std::vector<Box>().swap(boxes_);
-    std::vector<Edge>().swap(edges_);
-  }
-  void begin(const BlockSystem<N>& system) {
-    system_ = &system;
-    measured_.assign(system.block_count(), 0);
-    boxes_.resize(system.block_count());
-    convex_.resize(system.block_count());
-    edges_.resize(system.state().arm.size());
-  }
-  const Edge& edge(int block, int e) {
-    if (!measured_[block]) measure(block);
-    return edges_[e];
-  }
-  /// Of a block that has been measured.
-  const Edge& edge(int e) const { return edges_[e]; }
-  const Box& box(int block) {
-    if (!measured_[block]) measure(block);
-    return boxes_[block];
-  }
-  /// Of a block that has been measured, from its first vertex on.
-  std::span<const Edge> edges(int block) const {
-    const auto& b = system_->block(block);
-    return {edges_.data() + b.first_vertex, static_cast<std::size_t>(b.vertex_count)};
-  }
-  /// Of a block that has been measured.
-  bool is_convex(int block) const { return convex_[block] != 0; }
-  /// Whether two blocks lie on different sides of a line along an edge of one of them, the other one farther from it than `room` [m].
-  bool apart(int a, int b, double room) {
-    if (!measured_[a]) measure(a);
-    if (!measured_[b]) measure(b);
-    return parted_by_edge_of(a, b, room) || parted_by_edge_of(b, a, room);
-  }
-
- private:
-  bool parted_by_edge_of(int a, int b, double room) const {
-    return std::ranges::any_of(edges(a), [&](const Edge& edge) {
-      const auto is_beyond = [&](double distance) {
-        return std::ranges::all_of(edges(b), [&](const Edge& corner) { return edge.gap(corner.start) > distance; });
-      };
-      if (!is_beyond(room)) return false;
-      if (is_convex(a)) return true;
-      double own = 0.0;  // what lies before an edge in a notch
-      for (const Edge& corner : edges(a)) own = std::max(own, edge.gap(corner.start));
-      return own == 0.0 || is_beyond(room + own);
-    });
-  }
-  void measure(int b) {
-    measured_[b] = 1;
-    const auto& block = system_->block(b);
-    Box& box = boxes_[b];
-    convex_[b] = 1;
-    for (int v = block.first_vertex; v < block.first_vertex + block.vertex_count; ++v) {
-      if (system_->is_reflex(v)) convex_[b] = 0;
-      const Vec2 span = system_->arm(system_->next(v)) - system_->arm(v);
-      const double length = span.norm();
-      edges_[v] = Edge(system_->position(b, v), span / length, length);
-      const Box own = edges_[v].box();
-      box = v == block.first_vertex ? own : Box{box.low.cwiseMin(own.low), box.high.cwiseMax(own.high)};
-    }
-  }
-
-  const BlockSystem<N>* system_ = nullptr;
-  std::vector<char> measured_;  ///< of the blocks
-  std::vector<Box> boxes_;
-  std::vector<char> convex_;
-  std::vector<Edge> edges_;  ///< by the vertex they begin at
-};
-
-/// The contacts as they were, by pair and by corner: all those of the blocks whose pairs are due.
-template <int N>
-class Detector<N>::ContactIndex {
- public:
-  void begin(const BlockSystem<N>& system, const std::vector<Contact>& contacts, const std::vector<Contact>& resting) {
-    system_ = &system;
-    contacts_ = &contacts;
-    if (!knows_resting_) {
-      first_.assign(system.state().arm.size(), -1);
-      entries_.clear();
-      deepest_ = 0.0;
-      for (const Contact& c : resting) add(c);
-      resting_first_ = first_;
-      resting_entries_ = entries_.size();
-      resting_deepest_ = deepest_;
-      knows_resting_ = true;
-    }
-    first_ = resting_first_;
-    deepest_ = resting_deepest_;
-    entries_.resize(resting_entries_);
-  }
-  /// The contacts of one pair of blocks, in ascending order.
-  void add(const Range& range) {
-    for (int i = range.begin; i < range.end; ++i) add((*contacts_)[i]);
-  }
-  /// Gives back what the contacts that move have taken.
-  void let_go() {
-    entries_.resize(resting_entries_);
-    entries_.shrink_to_fit();
-  }
-  std::size_t bytes() const { return bytes_of(first_, entries_, resting_first_); }
-  /// Other contacts are at rest than before.
-  void forget_resting() { knows_resting_ = false; }
-
-  /// Looks at the contacts of one pair of blocks.
-  void select(const Range& range) { range_ = range; }
-  bool has_any() const { return range_.size() > 0; }
-  /// Position in the list, or -1; of the selected pair.
-  int find(int vertex, int edge) const {
-    for (int i = range_.begin; i < range_.end; ++i) {
-      if ((*contacts_)[i].vertex == vertex && (*contacts_)[i].edge == edge) return i;
-    }
-    return -1;
-  }
-  bool was_closed(int vertex, int edge) const {
-    const int i = find(vertex, edge);
-    return i >= 0 && (*contacts_)[i].status != ContactStatus::open;
-  }
-  /// [m] length over which the contact is closed.
-  double closed_length(int vertex, int edge) const { return was_closed(vertex, edge) ? (*contacts_)[find(vertex, edge)].length : 0.0; }
-  /// Whether this vertex or one of its two edges is in contact, with any block.
-  bool closed(int vertex) const { return first_[vertex] >= 0; }
-  /// [m] The largest closure of all contacts.
-  double deepest() const { return deepest_; }
-  /// Closed contacts of this vertex and those on its two edges.
-  template <class F>
-  void for_closed(int vertex, F f) const {
-    for (int i = first_[vertex]; i >= 0; i = entries_[i].next) f(*entries_[i].contact);
-  }
-
- private:
-  struct Entry {
-    const Contact* contact = nullptr;
-    int next = -1;
-  };
-
-  void add(const Contact& contact) {
-    if (contact.status == ContactStatus::open) return;
-    deepest_ = std::max(deepest_, -contact.gap);
-    for (const int corner : {contact.vertex, contact.edge, system_->next(contact.edge)}) {
-      entries_.push_back({&contact, first_[corner]});
-      first_[corner] = static_cast<int>(entries_.size()) - 1;
-    }
-  }
-
-  const BlockSystem<N>* system_ = nullptr;
-  const std::vector<Contact>* contacts_ = nullptr;
-  Range range_;
-  std::vector<int> first_;      ///< per vertex, in entries_; -1 without any
-  std::vector<Entry> entries_;  ///< closed contacts of one vertex, of the ends of their edges too, chained
-  double deepest_ = 0.0;        ///< [m]
-  bool knows_resting_ = false;
-  std::vector<int> resting_first_;   ///< of contacts at rest alone, which stand first among the entries
-  std::size_t resting_entries_ = 0;  ///< number of these
-  double resting_deepest_ = 0.0;     ///< [m]
-};
-
-/// Narrow phase between the blocks of one pair. Collects contacts; a vertex-edge pair found twice gets the sum of the lengths.
-template <int N>
-class Detector<N>::NarrowPhase {
- public:
-  using Edge = typename Shapes::Edge;
-
-  NarrowPhase(const BlockSystem<N>& system, const BlockSystem<N>* present, double reach, Shapes& shapes, const ContactIndex& previous)
-      : system_(system), present_(present), reach_(reach), shapes_(shapes), previous_(previous) {}
-
-  void run(int block_a, int block_b, std::vector<Contact>& found) {
-    found_ = &found;
-    first_ = found.size();
-    // Only what lies in the box of both blocks, with the reach and what end_margin() allows, can touch.
-    const double margin = reach_ + tolerance::seam_closures * previous_.deepest();
-    const Box room = shapes_.box(block_a).inflated(margin).common(shapes_.box(block_b).inflated(margin));
-    if (room.empty()) return;
-    const bool some_of_a = find_near_corners(block_a, block_b, near_[0]), some_of_b = find_near_corners(block_b, block_a, near_[1]);
-    if (!some_of_a && !some_of_b) return;
-    const std::span<const Edge> edges_a = shapes_.edges(block_a), edges_b = shapes_.edges(block_b);
-    const int first_a = system_.block(block_a).first_vertex, first_b = system_.block(block_b).first_vertex;
-    for (std::size_t a = 0; a < edges_a.size(); ++a) {
-      const bool a_is_near = has_near_end(near_[0], a);
-      for (std::size_t b = 0; b < edges_b.size(); ++b) {
-        const double cosine = -edges_a[a].direction.dot(edges_b[b].direction);
-        if (cosine <= cosine_none || !(a_is_near || has_near_end(near_[1], b))) continue;
-        facing_edges(block_a, first_a + static_cast<int>(a), block_b, first_b + static_cast<int>(b), parallel_weight(cosine));
-      }
-    }
-    lone_corners(block_a, block_b, near_[0], room);
-    lone_corners(block_b, block_a, near_[1], room);
-  }
-
- private:
-  /// Of the corners of a block, those that may touch the other one. Where two convex blocks were not in contact, a corner that touches an edge is at
-  /// most as far beyond the lines along other edges as it is from this one, and by 1 % more where edges face each other that are not quite parallel,
-  /// or beyond the end of this one by what end_margin() allows.
-  bool find_near_corners(int block, int other, std::vector<char>& near) const {
-    const std::span<const Edge> corners = shapes_.edges(block), edges = shapes_.edges(other);
-    if (previous_.has_any() || !shapes_.is_convex(block) || !shapes_.is_convex(other)) {
-      near.assign(corners.size(), true);
-      return true;
-    }
-    near.resize(corners.size());
-    const int first = system_.block(block).first_vertex;
-    bool some = false;
-    const Edge* parting = edges.data();  // the edge before which the last corner was too far
-    for (std::size_t v = 0; v < corners.size(); ++v) {
-      const Vec2& p = corners[v].start;
-      near[v] = false;
-      const double room = room_of_corners * reach_ + tolerance::seam_closures * closure(first + static_cast<int>(v));
-      if (parting->gap(p) > room) continue;
-      const auto edge = std::ranges::find_if(edges, [&](const Edge& e) { return e.gap(p) > room; });
-      if (edge == edges.end()) {
-        near[v] = true;
-        some = true;
-      } else {
-        parting = &*edge;
-      }
-    }
-    return some;
-  }
-  static bool has_near_end(const std::vector<char>& near, std::size_t edge) { return near[edge] || near[edge + 1 < near.size() ? edge + 1 : 0]; }
-
-  void facing_edges(int block_a, int a, int block_b, int b, double weight) {
-    const Edge &edge_a = shapes_.edge(a), &edge_b = shapes_.edge(b);
-    // Along the bisector u edge b runs forward and edge a backward, so that the overlap is [max of starts, min of ends].
-    const Vec2 u = (edge_b.direction - edge_a.direction).normalized();
-    const int a_end = system_.next(a), b_end = system_.next(b);
-    const auto along = [&](int v) { return u.dot(shapes_.edge(v).start - edge_b.start); };
-    const double a_low = along(a_end), a_high = along(a);
-    const double b_low = along(b), b_high = along(b_end);
-    const double overlap = std::min(a_high, b_high) - std::max(a_low, b_low);
-    if (overlap < tolerance::shortest_overlap_m) return;
-    const double length = 0.5 * weight * overlap;
-    add_end(block_a, a_end, a, block_b, b, b, a_low >= b_low, std::abs(a_low - b_low), length);
-    add_end(block_a, a, a, block_b, b_end, b, a_high <= b_high, std::abs(a_high - b_high), length);
-  }
-
-  /// One end of an overlap: vertex va of edge a on edge b, or vertex vb of edge b on edge a; `beyond` [m] is how far the other one lies outside the
-  /// overlap. A reflex vertex has material all around and touches nothing: the other block's vertex stands in, if it leans into that notch's wall and
-  /// is not far off.
-  void add_end(int block_a, int va, int a, int block_b, int vb, int b, bool a_is_inside, double beyond, double length) {
-    const bool inside_is_reflex = system_.is_reflex(a_is_inside ? va : vb);
-    if (inside_is_reflex && beyond > tolerance::seam_height_m + tolerance::seam_closures * std::max(closure(va), closure(vb))) return;
-    // The two corners take turns: a joint that has closed under one of them is closed for the other.
-    const auto closed = [&] { return previous_.was_closed(va, b) || previous_.was_closed(vb, a); };
-    if (a_is_inside != inside_is_reflex) {
-      add(block_a, va, block_b, b, length, closed);
-    } else {
-      add(block_b, vb, block_a, a, length, closed);
-    }
-  }
-
-  /// \param near  of the corners of the first block
-  void lone_corners(int vertex_block, int edge_block, const std::vector<char>& near, const Box& room) {
-    const std::span<const Edge> edges = shapes_.edges(edge_block);
-    const int first = system_.block(vertex_block).first_vertex, first_edge = system_.block(edge_block).first_vertex;
-    for (std::size_t k = 0; k < near.size(); ++k) {
-      const int v = first + static_cast<int>(k);
-      if (!near[k] || system_.is_reflex(v)) continue;
-      const Vec2& p = shapes_.edge(v).start;
-      if (!room.contains(p)) continue;
-      const Sides sides = sides_of(v);
-      for (std::size_t i = 0; i < edges.size(); ++i) {
-        const Edge& edge = edges[i];
-        if (edge.gap(p) > reach_ || !sides.leave(edge, sine_flush)) continue;
-        const int e = first_edge + static_cast<int>(i);
-        const double along = edge.along(p);
-        const double beyond = std::max(-along, along - edge.length);
-        if (beyond > 0.0 && beyond > end_margin(v, edge)) continue;
-        const double weight = sides.lone_weight(edge);
-        if (weight == 0.0 || passes_over(v, edge_block, e)) continue;
-        const Vec2 ahead = system_.arm(system_.next(v)) - system_.arm(v), back = system_.arm(system_.previous(v)) - system_.arm(v);
-        const auto projection = [&](const Vec2& side) { return std::min(std::abs(side.dot(edge.direction)), edge.length); };
-        add(vertex_block, v, edge_block, e, 0.5 * weight * (projection(ahead) + projection(back)), [&] { return previous_.was_closed(v, e); });
-      }
-    }
-  }
-
-  /// Directions from a corner along its two edges.
-  struct Sides {
-    Vec2 ahead, back;
-
-    /// Both point out of the edge's half-plane, or into it by no more than the tilt.
-    bool leave(const Edge& edge, double tilt) const { return edge.normal().dot(ahead) >= -tilt && edge.normal().dot(back) >= -tilt; }
-    /// 1 - w_v of the header, of a corner that stands on the edge.
-    double lone_weight(const Edge& edge) const {
-      return 1.0 - std::max(parallel_weight(-ahead.dot(edge.direction)), parallel_weight(back.dot(edge.direction)));
-    }
-  };
-  Sides sides_of(int v) const { return {shapes_.edge(v).direction, -shapes_.edge(system_.previous(v)).direction}; }
-
-  /// \param closed  tells whether this place was in contact already
-  template <class Closed>
-  void add(int vertex_block, int v, int edge_block, int e, double length, const Closed& closed) {
-    if (system_.is_reflex(v)) return;
-    for (std::size_t i = first_; i < found_->size(); ++i) {
-      Contact& known = (*found_)[i];
-      if (known.vertex == v && known.edge == e) {
-        known.length += length;
-        return;
-      }
-    }
-    const Edge& edge = shapes_.edge(e);
-    const Vec2& p = shapes_.edge(v).start;
-    const double gap = edge.gap(p);
-    if (gap > reach_ || !outside(v, edge)) return;
-    Contact contact;
-    contact.vertex_block = vertex_block;
-    contact.vertex = v;
-    contact.edge_block = edge_block;
-    contact.edge = e;
-    contact.length = length;
-    contact.gap = present_ ? present_gap(contact) : gap;
-    if (gap < 0.0 && (!present_ || contact.gap < 0.0) && !entered_through(v, edge_block, e, gap, closed)) return;
-    found_->push_back(contact);
-  }
-
-  double present_gap(const Contact& contact) const {
-    const ContactStart<N> at(*present_, contact);
-    return at.normal.dot(at.lever);
-  }
-
-  /// [m] What the contacts of a corner have closed.
-  double closure(int v) const {
-    double largest = 0.0;
-    previous_.for_closed(v, [&](const Contact& c) { largest = std::max(largest, c.vertex == v ? -c.gap : 0.0); });
-    return largest;
-  }
-  /// [m] How far the closures of its contacts, those on its two edges included, have moved a corner along the normal of `edge`.
-  double closure_across(int v, const Edge& edge) const {
-    double largest = 0.0;
-    previous_.for_closed(v, [&](const Contact& c) {
-      const double cosine = edge.direction.dot(shapes_.edge(c.edge_block, c.edge).direction);
-      largest = std::max(largest, -c.gap * std::abs(cosine));
-    });
-    return largest;
-  }
-
-  /// Whether a corner, or one of its two edges, is in contact with something parallel to `edge`.
-  bool slides_along(int v, const Edge& edge) const {
-    bool parallel = false;
-    previous_.for_closed(v, [&](const Contact& c) { parallel |= !turns_away(shapes_.edge(c.edge_block, c.edge), edge); });
-    return parallel;
-  }
-
-  /// Two corners that meet separate the blocks along any one of up to four edges, theirs at v and at the end of e: as long as one that turns away
-  /// from e does, v does not run into e. Blocks that lie flush but for the closures of their contacts must not catch on the seams between them: a
-  /// corner that slides on something keeps its way if what it slides on is lower than the seam's height. Where corners coincide and nothing has
-  /// closed yet, the motion decides. An overlap no longer than a seam is high is no closed contact.
-  bool passes_over(int v, int edge_block, int e) const {
-    const Edge& edge = shapes_.edge(edge_block, e);
-    const Vec2& p = shapes_.edge(v).start;
-    const bool near_start = edge.along(p) < 0.5 * edge.length;
-    const int end = near_start ? e : system_.next(e);
-    if (system_.is_reflex(end)) return false;
-    const Vec2& q = shapes_.edge(end).start;
-    const bool slides = previous_.closed(v) || previous_.closed(end);
-    if (!slides && (p - q).norm() > tolerance::edge_end_m) return false;
-    if (previous_.closed_length(v, e) > tolerance::seam_height_m) return false;
-    const bool in_front = edge.gap(p) > -tolerance::shortest_edge_m;
-    const auto separates = [&](int corner, const Vec2& position, const Edge& other) {
-      if (!turns_away(edge, other) || !stands_on(corner, other)) return false;
-      const double step = in_front && (slides_along(v, other) || slides_along(end, other)) ? tolerance::seam_height_m : tolerance::edge_end_m;
-      const double closure = std::max(closure_across(v, other), closure_across(end, other));
-      return other.gap(position) > -step - tolerance::seam_closures * closure;
-    };
-    return separates(v, p, shapes_.edge(near_start ? system_.previous(e) : system_.next(e))) || separates(end, q, shapes_.edge(v)) ||
-           separates(end, q, shapes_.edge(system_.previous(v)));
-  }
-
-  static bool turns_away(const Edge& a, const Edge& b) { return std::abs(a.direction.dot(b.direction)) < cosine_none; }
-
-  /// [m] How far beyond an end of the edge a corner still counts as opposite to it: where the corner leans on something else there, a notch's other
-  /// wall or another block, by what its contacts have closed.
-  double end_margin(int v, const Edge& edge) const {
-    bool leans = false;
-    previous_.for_closed(v, [&](const Contact& c) { leans |= c.vertex == v && turns_away(shapes_.edge(c.edge_block, c.edge), edge); });
-    return tolerance::edge_end_m + (leans ? tolerance::seam_closures * closure(v) : 0.0);
-  }
-
-  /// Both sides of the corner leave the edge's half-plane: only then can the corner touch the edge from outside. Overlaps of facing edges fade out
-  /// until parallel_none.
-  bool outside(int v, const Edge& edge) const { return sides_of(v).leave(edge, sine_none); }
-  /// The same for a lone corner.
-  bool stands_on(int v, const Edge& edge) const { return sides_of(v).leave(edge, sine_flush); }
-
-  bool share_reflex_corner(int e, int f) const {
-    return (system_.next(e) == f && system_.is_reflex(f)) || (system_.next(f) == e && system_.is_reflex(e));
-  }
-
-  /// A penetrating corner touches the edge it came in through: no other edge that it could touch is nearer. Only in a notch does it touch both walls.
-  /// History decides nothing here: beside a four-block corner a corner is first behind the joint's face, then, as it slides on, behind the right one.
-  template <class Closed>
-  bool entered_through(int v, int edge_block, int e, double gap, const Closed& closed) {
-    const Vec2& p = shapes_.edge(v).start;
-    // What lies behind the edge must lie in the block, except for what drawings leave and what contacts that carry load have closed.
-    if (-gap > tolerance::deepest_initial_overlap_m && !in_block(edge_block, p) && !closed()) return false;
-    const Edge& edge = shapes_.edge(e);
-    const auto& block = system_.block(edge_block);
-    for (int f = block.first_vertex; f < block.first_vertex + block.vertex_count; ++f) {
-      const Edge& other = shapes_.edge(f);
-      // An edge is no nearer than the line on which it lies.
-      if (f == e || std::abs(other.gap(p)) > -gap || share_reflex_corner(e, f)) continue;
-      if (distance_to_segment(p, other.start, other.end()) >= -gap - tolerance::shortest_edge_m) continue;
-      // At a needle's tip, closed by a little, the edge that is faced need not be the nearest one.
-      const bool at_needle = std::abs(edge.direction.dot(other.direction)) > cosine_needle;
-      if (at_needle ? stands_on(v, other) : outside(v, other)) return false;
-    }
-    return true;
-  }
-
-  bool in_block(int block, const Vec2& p) {
-    constexpr double margin = 2.0 * tolerance::edge_end_m;  // what is decided so is the same by the distance below
-    if (!shapes_.box(block).inflated(margin).contains(p)) return false;
-    if (shapes_.is_convex(block)) {
-      double farthest = -std::numeric_limits<double>::infinity();  // before an edge
-      for (const Edge& edge : shapes_.edges(block)) farthest = std::max(farthest, edge.gap(p));
-      if (farthest > margin) return false;
-      if (farthest <= 0.0) return true;
-    }
-    polygon_.clear();
-    for (const Edge& edge : shapes_.edges(block)) polygon_.push_back(edge.start);
-    return contains(polygon_, p) || distance_to_boundary(polygon_, p) <= tolerance::edge_end_m;
-  }
-
-  static constexpr double room_of_corners = 1.5;  ///< [-] over the reach
-
-  const BlockSystem<N>& system_;
-  const BlockSystem<N>* present_;
-  double reach_;
-  Shapes& shapes_;
-  const ContactIndex& previous_;
-  std::vector<Contact>* found_ = nullptr;
-  std::size_t first_ = 0;
-  std::vector<char> near_[2];  ///< of the corners of both blocks
-  Polygon polygon_;
-};
-
-namespace {
 
 void inherit(const Contact& from, Contact& to) {
   to.status = from.status;
@@ -520,29 +46,24 @@ Vec2 turned_little_by(double angle, const Vec2& r) {
   return angle * (1.0 - q / 6.0 * (1.0 - q / 20.0 * (1.0 - q / 42.0))) * perpendicular(r) - 0.5 * q * (1.0 - q / 12.0 * (1.0 - q / 30.0)) * r;
 }
 
+const double cosine_collinear = std::cos(tolerance::parallel_none_rad);
+
 /// Whether `now` continues `before` under another name: the same corner has gone on to a nearly collinear edge, or, at the end of an overlap, the
 /// corner that lay on the edge has passed its end and the edge's own corner lies on the other block's edge instead.
 template <int N>
 bool continues(const BlockSystem<N>& system, const Contact& before, const Contact& now) {
   const auto direction = [&](int e) { return (system.arm(system.next(e)) - system.arm(e)).normalized(); };
   const double cosine = direction(now.edge).dot(direction(before.edge));
-  if (now.vertex == before.vertex) return cosine > cosine_none;
+  if (now.vertex == before.vertex) return cosine > cosine_collinear;
   const bool edge_end_took_over = now.vertex == before.edge || now.vertex == system.next(before.edge);
   const bool edge_belongs_to_corner = now.edge == before.vertex || system.next(now.edge) == before.vertex;
-  return edge_end_took_over && edge_belongs_to_corner && cosine < -cosine_none;
+  return edge_end_took_over && edge_belongs_to_corner && cosine < -cosine_collinear;
 }
 
 }  // namespace
 
 template <int N>
-Detector<N>::Detector(double reach, const DetectionSkips& skips)
-    : reach_(reach), skips_(skips), shapes_(std::make_unique<Shapes>()), index_(std::make_unique<ContactIndex>()) {}
-
-template <int N>
-Detector<N>::Detector(Detector&&) noexcept = default;
-
-template <int N>
-Detector<N>::~Detector() = default;
+Detector<N>::Detector(double reach, const DetectionSkips& skips) : reach_(reach), skips_(skips) {}
 
 template <int N>
 bool Detector<N>::moved_beyond_search_skin(const BlockSystem<N>& system) const {
@@ -599,7 +120,7 @@ void Detector<N>::find_pairs(const BlockSystem<N>& system, const std::vector<Box
         if (!someone_moves || !box.overlaps(boxes[members[j]])) continue;
         // Where both begin, and nowhere else.
         if (strip(std::max(box.low.y(), boxes[members[j]].low.y())) != k) continue;
-        if (shapes_->apart(a, b, room)) continue;
+        if (shapes_.apart(a, b, room)) continue;
         pairs_.emplace_back(a, b);
         ++counts[a + 1];
       }
@@ -618,7 +139,7 @@ void Detector<N>::find_pairs(const BlockSystem<N>& system, const std::vector<Box
 template <int N>
 void Detector<N>::search(const BlockSystem<N>& system) {
   ++counters_.searches;
-  shapes_->begin(system);
+  shapes_.begin(system);
   std::vector<Box> boxes;
   boxes.reserve(system.block_count());
   searched_at_.resize(system.block_count());
@@ -853,19 +374,19 @@ void Detector<N>::pass_on_history(const BlockSystem<N>& system, std::vector<Cont
 
 /// Finds the contacts of a pair anew, with the history of those that live on.
 template <int N>
-void Detector<N>::redo(const JointTable& joints, const BlockSystem<N>& system, int pair, NarrowPhase& narrow, const std::vector<Contact>& before) {
+void Detector<N>::redo(const JointTable& joints, const BlockSystem<N>& system, int pair, NarrowPhase<N>& narrow, const std::vector<Contact>& before) {
   const auto [a, b] = pairs_[pair];
   states_[pair] = {places_[a].x - places_[b].x, places_[a].y - places_[b].y, places_[a].turn, places_[b].turn};
   look_again_before(pair, 0.0);
   const Range old = ranges_[pair];
   const std::size_t begin = found_.size();
-  index_->select(old);
+  index_.select(old);
   narrow.run(a, b, found_);
   lives_on_.assign(old.end - old.begin, 0);
   for (std::size_t k = begin; k < found_.size(); ++k) {
     Contact& c = found_[k];
     c.joint = joints.index(system.block(a).material, system.block(b).material);
-    const int known = index_->find(c.vertex, c.edge);
+    const int known = index_.find(c.vertex, c.edge);
     if (known >= 0) {
       inherit(before[known], c);
       lives_on_[known - old.begin] = 1;
@@ -1010,29 +531,29 @@ void Detector<N>::divide(const BlockSystem<N>& system, std::vector<Contact>& con
   ranges_.swap(moving.ranges);
   contacts.swap(moving.contacts);
   list_pairs_of_blocks(system.block_count());
-  index_->forget_resting();
+  index_.forget_resting();
 }
 
 template <int N>
 void Detector<N>::exchange(Archive& archive) {
   archive(first_, forgotten_, pairs_, states_, ranges_, resting_, searched_at_, searched_moving_at_, counters_, places_, ways_, pairs_of_start_,
           pairs_of_);
-  if (archive.reading()) index_->forget_resting();
+  if (archive.reading()) index_.forget_resting();
 }
 
 template <int N>
 Memory Detector<N>::memory() const {
   Memory of;
   of.blocks = bytes_of(searched_at_, searched_moving_at_, places_, ways_, pairs_of_start_, restless_, in_due_pairs_, is_restless_, in_due_pair_) +
-              shapes_->bytes();
+              shapes_.bytes();
   of.contacts = bytes_of(pairs_, states_, ranges_, pairs_of_, changes_, due_pairs_, around_due_, marks_, found_, kept_, lives_on_, born_, gone_) +
-                bytes_of(gone_by_vertex_, gone_by_edge_, resting_.pairs, resting_.states, resting_.ranges, resting_.contacts) + index_->bytes();
+                bytes_of(gone_by_vertex_, gone_by_edge_, resting_.pairs, resting_.states, resting_.ranges, resting_.contacts) + index_.bytes();
   return of;
 }
 
 template <int N>
 void Detector<N>::let_go_of_working_memory() {
-  shapes_->let_go();
+  shapes_.let_go();
   for (std::vector<int>* list : {&restless_, &in_due_pairs_, &due_pairs_, &around_due_, &gone_}) std::vector<int>().swap(*list);
   std::vector<std::size_t>().swap(born_);
   std::vector<Run>().swap(kept_);
@@ -1060,14 +581,14 @@ bool Detector<N>::update(const BlockSystem<N>& system, const JointTable& joints,
   counters_.narrow_phases += static_cast<long>(due_pairs_.size());
   counters_.narrow_phases_skipped += static_cast<long>(pairs_.size() - due_pairs_.size());
   const bool orphans = !gone_.empty();
-  if (!searches) shapes_->begin(system);
-  index_->begin(system, contacts, resting_.contacts);
-  for (const int pair : pairs_around_due_ones()) index_->add(ranges_[pair]);
-  NarrowPhase narrow(system, present, reach_ + skips_.contact_skin, *shapes_, *index_);
+  if (!searches) shapes_.begin(system);
+  index_.begin(system, contacts, resting_.contacts);
+  for (const int pair : pairs_around_due_ones()) index_.add(ranges_[pair]);
+  NarrowPhase<N> narrow(system, present, reach_ + skips_.contact_skin, shapes_, index_);
   for (const int pair : due_pairs_) redo(joints, system, pair, narrow, contacts);
   if (!first_) pass_on_history(system, contacts);
   put_in_place(contacts, orphans);
-  if (due_pairs_.size() == pairs_.size()) index_->let_go();  // later ones are few
+  if (due_pairs_.size() == pairs_.size()) index_.let_go();  // later ones are few
   if (system.block_count() > most_blocks_with_working_memory) let_go_of_working_memory();
   first_ = false;
   return true;

@@ -1,31 +1,5 @@
-// Which vertices face which edges, with which tributary length.
-//
-// Tributary lengths: one rule for all methods, continuous in the motion. Let theta be the angle by which an edge a of one block and an edge e of
-// another miss being antiparallel, and w = 1 for theta <= parallel_full, 0 for theta >= parallel_none, linear between.
-//   - Facing edges: the overlap o of a and e, projected on the bisector of their directions, makes a contact at each of its two ends, with w o/2.
-//     Two blocks that slide off each other lose length, stiffness and cohesion continuously to zero.
-//   - Lone corner: vertex v opposite to e, of which neither edge points into e's half-plane, gets (1 - w_v) times half the projections on e of its
-//     own two edges (none counted longer than e), where w_v is the larger w of its two edges against e. It depends on the directions only, so it
-//     does not change where a corner crosses from one edge to a collinear one of the next block. An edge that points in by up to parallel_full has
-//     w_v = 1 anyhow, so that nothing jumps where it turns in.
-// A vertex that faces e through both rules, or through both its edges, has one contact with the sum of the lengths.
-//
-// Corner against corner: where v comes to an end q of e, two convex blocks are apart as soon as one line separates them, which is one of up to four
-// edges: the two of q with v outside, the two of v with q outside (both sides of the corner leave the edge's half-plane, to flush_tilt; else it is no
-// candidate). A contact with each of them would lock the blocks. So v has no lone contact with e while another one of the four, more than
-// parallel_none from e in direction, separates
-//   - to within edge_end, where v and q coincide: nothing is in contact yet and the motion decides which edge it will be,
-//   - to within edge_end and what the closures of contacts at v, q and their edges make of it (seam_closures), where one of them slides on something,
-//   - and, while v is still in front of e and v or q slides along that line, to within seam_height: blocks that are flush in the drawing do not catch
-//     on each other's faces.
-// So a block whose front corner stands on a joint slides on, three blocks and air or four blocks around the corner. A contact that has closed over
-// more than seam_height stays until its corner is nearer to another edge; at a reflex q both walls hold.
-//
-// Where it is not continuous: a lone corner within edge_end of the seam of two collinear edges has a contact with both; it loses its length where it
-// leaves the end of an edge that nothing continues; and at a corner the contact passes from one edge to the next with its gap, not with its
-// direction. Energy held there goes into the ledger's redefinition.
-//
-// At four-block corners the diagonal blocks have facing edges without overlap and no lone corner, hence no contact: they cannot lock.
+// Which vertices of all blocks face which edges: pairs of blocks that may touch, and their contacts (narrow_phase.h), with the history of those that
+// live on.
 //
 // Which pairs are looked at: each block adds up a bound on its way, with what its turning does where it can touch others. A pair in which something
 // may still move by s before it is due cannot become so while each of its blocks goes less than s/2; so only the pairs of blocks that have gone as
@@ -45,11 +19,12 @@
 
 #include <cstdint>
 #include <limits>
-#include <memory>
 #include <utility>
 #include <vector>
 
+#include "openclose/contact/block_shapes.h"
 #include "openclose/contact/contact.h"
+#include "openclose/contact/contact_index.h"
 #include "openclose/contact/joint_table.h"
 #include "openclose/core/memory.h"
 #include "openclose/core/tolerance.h"
@@ -81,17 +56,6 @@ struct DetectionCounters {
   }
 };
 
-/// Positions [begin, end) in a list of contacts.
-struct ContactRange {
-  int begin = 0, end = 0;
-  int size() const { return end - begin; }
-
-  void exchange(Archive& archive) {
-    auto& [a, b] = *this;
-    archive(a, b);
-  }
-};
-
 /// The contacts of a pair of blocks were found anew: those at `before` in the list as it was are now those at `after`.
 struct DetectionChange {
   int pair;  ///< of the candidates
@@ -99,12 +63,14 @@ struct DetectionChange {
 };
 
 template <int N>
+class NarrowPhase;
+
+template <int N>
 class Detector {
  public:
   /// \param reach [m] open contacts are kept up to this gap: at least what two vertices can approach each other within a step
   explicit Detector(double reach, const DetectionSkips& skips = {});
-  Detector(Detector&&) noexcept;
-  ~Detector();
+  Detector(Detector&&) noexcept = default;  // and no copy: the index points into the contacts at rest
 
   /// Contacts of the present positions; false if the list stays as it is. `contacts` is the list as it came from the last call, with the history of
   /// the last step, and is renewed where needed; whoever adds to it or takes from it calls forget() first.
@@ -143,9 +109,6 @@ class Detector {
  private:
   using Unknowns = typename BlockSystem<N>::Unknowns;
   using Range = ContactRange;
-  class Shapes;
-  class ContactIndex;
-  class NarrowPhase;
   struct Place {
     double x, y, turn;  ///< [m, m, rad] of a centroid
     double radius;      ///< [m]
@@ -215,7 +178,7 @@ class Detector {
   bool mark_due_pairs(const BlockSystem<N>& system, bool all);
   void find_blocks_of_due_pairs();
   const std::vector<int>& pairs_around_due_ones();
-  void redo(const JointTable& joints, const BlockSystem<N>& system, int pair, NarrowPhase& narrow, const std::vector<Contact>& before);
+  void redo(const JointTable& joints, const BlockSystem<N>& system, int pair, NarrowPhase<N>& narrow, const std::vector<Contact>& before);
   void pass_on_history(const BlockSystem<N>& system, std::vector<Contact>& before);
   void put_in_place(std::vector<Contact>& contacts, bool orphans);
   void find_kept_runs();
@@ -238,8 +201,8 @@ class Detector {
   DetectionCounters counters_;
 
   // Working memory of update().
-  std::unique_ptr<Shapes> shapes_;
-  std::unique_ptr<ContactIndex> index_;
+  BlockShapes<N> shapes_;
+  ContactIndex<N> index_;
   std::vector<int> restless_, in_due_pairs_;  ///< blocks: whose pairs are looked at; of pairs that are due
   std::vector<char> is_restless_, in_due_pair_;
   std::vector<int> due_pairs_, around_due_;  ///< in order

@@ -3,8 +3,12 @@
 //
 // Row by row (Duff, Erisman, Reid, Direct methods for sparse matrices, 2017, chapter 10): row i of the matrix is laid into the slots of row i of L
 // and U, and the rows above are subtracted from it in ascending order. The pattern is symmetric, so that L has the transposed pattern of U. The
-// diagonal blocks are inverted; nothing is exchanged between blocks, which is safe while each block is held by its own inertia and contacts: where a
-// pivot has lost its digits, the matrix is given to the multifrontal solver, which exchanges rows within its fronts.
+// diagonal blocks are inverted and the rows of U multiplied by these inverses (Crout's form), so that a row is subtracted as often as its block in L
+// says; nothing is exchanged between blocks, which is safe while each block is held by its own inertia and contacts: where a pivot has lost its
+// digits, the matrix is given to the multifrontal solver, which exchanges rows within its fronts.
+//
+// Single precision has been tried in a prototype: rows of U have six blocks on average (387 rows), so that half of the instructions are for fetching
+// and not for products, and the elimination takes 0.9 of the time, which one refinement of each solution takes back.
 //
 // The rows above that row i subtracts lie below it in the elimination tree (J. W. H. Liu, The role of elimination trees in sparse factorization, SIAM
 // J. Matrix Anal. Appl. 11 (1990)). Large systems are therefore cut into subtrees, which do not depend on each other, and the rows where these meet,
@@ -16,7 +20,6 @@
 // it was last taken. Putting rows last that change in nearly every matrix gains nothing: those that change now and then lie anywhere. And weak
 // couplings are left out of the factor (weak_couplings.h): what they carry is found by iteration, whose residual they are. Where there is this
 // iteration rows may lag farther behind, if the caller lets them: what they lack belongs to the residual.
-#include <Eigen/LU>
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseCore>
 #include <algorithm>
@@ -102,7 +105,7 @@ struct LeftOut {
   int slot, row, column;  ///< in the matrix
 };
 
-/// L, inverted diagonal and U on their pattern, and the way there from the matrix.
+/// L, inverted diagonal and U (multiplied by it) on their pattern, and the way there from the matrix.
 template <int N>
 struct Factor {
   std::vector<int> order;  ///< row of the matrix at a place in the factor
@@ -140,16 +143,6 @@ struct Factor {
 // so that results do not depend on the processor.
 #define OPENCLOSE_KERNEL [[gnu::always_inline]] inline
 
-template <int N>
-OPENCLOSE_KERNEL PaddedBlock<N> product(const PaddedBlock<N>& left, const PaddedBlock<N>& right) {
-  PaddedBlock<N> result;
-  for (int r = 0; r < N; ++r) {
-    result.row[r] = left.row[r][0] * right.row[0];
-    for (int c = 1; c < N; ++c) result.row[r] += left.row[r][c] * right.row[c];
-  }
-  return result;
-}
-
 /// The entries of a block one by one, as they multiply the rows of another.
 template <int N>
 struct Multipliers {
@@ -164,11 +157,18 @@ struct Multipliers {
     for (int c = 1; c < N; ++c) sum += entry[r][c] * right.row[c];
     target -= sum;
   }
+  OPENCLOSE_KERNEL void replace_by_product(PaddedBlock<N>& right) const {
+    PaddedBlock<N> result;
+    for (int r = 0; r < N; ++r) {
+      result.row[r] = entry[r][0] * right.row[0];
+      for (int c = 1; c < N; ++c) result.row[r] += entry[r][c] * right.row[c];
+    }
+    right = result;
+  }
 };
 
 template <int N>
 OPENCLOSE_KERNEL void subtract_row(Factor<N>& f, int s, int k, const int* place) {
-  f.value[s] = product(f.value[s], f.value[f.diagonal[k]]);
   const Multipliers<N> left(f.value[s]);
   for (int u = f.diagonal[k] + 1; u < f.row_start[k + 1]; ++u) {
     const PaddedBlock<N>& right = f.value[u];
@@ -183,10 +183,8 @@ OPENCLOSE_KERNEL void subtract_two_rows(Factor<N>& f, int s, int k, const int* p
   PaddedBlock<N>* const value = f.value.data();
   const int* const column = f.column.data();
   const int first = f.diagonal[k] + 2, second = f.diagonal[k + 1] + 1, count = f.row_start[k + 1] - first;
-  value[s] = product(value[s], value[first - 2]);
   const Multipliers<N> left(value[s]);
   for (int r = 0; r < N; ++r) left.subtract_row_of_product(r, value[first - 1], value[s + 1].row[r]);
-  value[s + 1] = product(value[s + 1], value[second - 1]);
   const Multipliers<N> next_left(value[s + 1]);
   for (int u = 0; u < count; ++u) {
     const PaddedBlock<N>&right = value[first + u], &next_right = value[second + u];
@@ -216,46 +214,64 @@ OPENCLOSE_KERNEL void subtract_panel(Factor<N>& f, int i, int panel, int* place)
   }
 }
 
-template <int N>
-OPENCLOSE_KERNEL void pad(const typename BlockMatrix<N>::Block& block, PaddedBlock<N>& padded) {
-  for (int r = 0; r < N; ++r) {
-    for (int c = 0; c < N; ++c) padded.row[r][c] = block(r, c);
+OPENCLOSE_KERNEL const LooseLanes& lanes_at(const double* from) {
+  return *reinterpret_cast<const LooseLanes*>(from);
+}
+
+/// A block of the matrix, column by column. The padding repeats the last column.
+OPENCLOSE_KERNEL void pad(const double* block, PaddedBlock<3>& padded) {
+  const Lanes first = lanes_at(block), next = lanes_at(block + 3), last = lanes_at(block + 5);  // of this the numbers from one on
+  const Lanes even = __builtin_shufflevector(first, next, 0, 4, 2, 6), odd = __builtin_shufflevector(first, next, 1, 5, 3, 7);
+  padded.row[0] = __builtin_shufflevector(even, last, 0, 1, 5, 5);
+  padded.row[1] = __builtin_shufflevector(odd, last, 0, 1, 6, 6);
+  padded.row[2] = __builtin_shufflevector(even, last, 2, 3, 7, 7);
+}
+
+/// Three rows of a block by columns.
+struct Columns {
+  Lanes first, next, last;
+
+  OPENCLOSE_KERNEL explicit Columns(const Lanes (&rows)[3]) {
+    const Lanes even = __builtin_shufflevector(rows[0], rows[1], 0, 4, 2, 6), odd = __builtin_shufflevector(rows[0], rows[1], 1, 5, 3, 7);
+    first = __builtin_shufflevector(even, rows[2], 0, 1, 4, 5);
+    next = __builtin_shufflevector(odd, rows[2], 0, 1, 5, 6);
+    last = __builtin_shufflevector(even, rows[2], 2, 3, 6, 6);
   }
+};
+
+OPENCLOSE_KERNEL double sum_of_three(const Lanes& x) {
+  return x[0] + x[1] + x[2];
 }
 
 template <int N>
-typename BlockMatrix<N>::Block unpadded(const PaddedBlock<N>& padded) {
-  typename BlockMatrix<N>::Block block;
-  for (int r = 0; r < N; ++r) {
-    for (int c = 0; c < N; ++c) block(r, c) = padded.row[r][c];
-  }
-  return block;
-}
-
-template <int N>
-OPENCLOSE_KERNEL double square_norm(const PaddedBlock<N>& block) {
+OPENCLOSE_KERNEL Lanes squares_of_columns(const PaddedBlock<N>& block) {
   Lanes sum = block.row[0] * block.row[0];
   for (int r = 1; r < N; ++r) sum += block.row[r] * block.row[r];
-  double total = sum[0];
-  for (int c = 1; c < N; ++c) total += sum[c];
-  return total;
+  return sum;
+}
+
+OPENCLOSE_KERNEL Lanes cross_product(const Lanes& a, const Lanes& b) {
+  return __builtin_shufflevector(a, a, 1, 2, 0, 3) * __builtin_shufflevector(b, b, 2, 0, 1, 3) -
+         __builtin_shufflevector(a, a, 2, 0, 1, 3) * __builtin_shufflevector(b, b, 1, 2, 0, 3);
 }
 
 /// Replaces the pivot by its inverse; false if it has none worth the name.
 /// \param original_size  square of the block's norm before the elimination
 template <int N>
-bool invert(PaddedBlock<N>& pivot, double original_size) {
+OPENCLOSE_KERNEL bool invert(PaddedBlock<N>& pivot, double original_size) {
+  static_assert(N == 3, "columns of the inverse are cross products of rows");
   constexpr double square = smallest_pivot * smallest_pivot;
-  typename BlockMatrix<N>::Block block = unpadded(pivot);
-  const double columns = block.colwise().squaredNorm().prod(), determinant = block.determinant();
-  if (!(block.squaredNorm() > square * original_size) || !(determinant * determinant > square * columns)) return false;
-  block = block.inverse().eval();
-  pad<N>(block, pivot);
-  return block.allFinite();
-}
-
-OPENCLOSE_KERNEL const LooseLanes& lanes_at(const double* from) {
-  return *reinterpret_cast<const LooseLanes*>(from);
+  const Lanes squares = squares_of_columns(pivot);
+  const Lanes cofactors[N] = {cross_product(pivot.row[1], pivot.row[2]), cross_product(pivot.row[2], pivot.row[0]),
+                              cross_product(pivot.row[0], pivot.row[1])};
+  const double determinant = sum_of_three(pivot.row[0] * cofactors[0]), columns = squares[0] * squares[1] * squares[2];
+  if (!(sum_of_three(squares) > square * original_size) || !(determinant * determinant > square * columns)) return false;
+  const Columns rows(cofactors);
+  const double factor = 1.0 / determinant;
+  pivot.row[0] = rows.first * factor;
+  pivot.row[1] = rows.next * factor;
+  pivot.row[2] = rows.last * factor;
+  return std::isfinite(sum_of_three(squares_of_columns(pivot)));
 }
 
 /// The nine entries of a block, column by column, as two registers and one number.
@@ -328,8 +344,8 @@ OPENCLOSE_KERNEL void lay_row(Factor<N>& f, int i) {
   for (int s = f.row_start[i]; s < f.row_start[i + 1]; ++s) {
     for (Lanes& row : f.value[s].row) row = Lanes{};
   }
-  for (int e = f.entries_start[i]; e < f.entries_start[i + 1]; ++e) pad<N>(f.taken[e], f.value[f.entries[e].target]);
-  f.size[i] = square_norm(f.value[f.diagonal[i]]);
+  for (int e = f.entries_start[i]; e < f.entries_start[i + 1]; ++e) pad(f.taken[e].data(), f.value[f.entries[e].target]);
+  f.size[i] = sum_of_three(squares_of_columns(f.value[f.diagonal[i]]));
 }
 
 /// Subtracts a panel from stale rows of later ones.
@@ -350,6 +366,8 @@ OPENCLOSE_KERNEL bool eliminate(Factor<N>& f, const std::vector<int>& rows, int 
     if (panel == 0) lay_row(f, i);
     subtract_panel(f, i, panel, place);
     if (!invert(f.value[f.diagonal[i]], f.size[i])) return false;
+    const Multipliers<N> inverse(f.value[f.diagonal[i]]);
+    for (int s = f.diagonal[i] + 1; s < f.row_start[i + 1]; ++s) inverse.replace_by_product(f.value[s]);
   }
   return true;
 }
@@ -371,26 +389,29 @@ OPENCLOSE_KERNEL void subtract_product(const BlockMatrix<N>& matrix, const doubl
   }
 }
 
-/// Subtracts the sum over the slots of value times solution.
-template <int N>
-OPENCLOSE_KERNEL void subtract_product(const Factor<N>& f, int begin, int end, double* sum) {
+/// `sum` less the sum over the slots of value times solution. The solution that is found last, on which everything waits, comes last.
+/// \tparam direction  1 or -1: from slot to slot
+template <int direction, int N>
+OPENCLOSE_KERNEL Lanes less_product(const Factor<N>& f, int first, int end, const Lanes& sum) {
   Lanes products[N]{};
-  for (int s = begin; s < end; ++s) {
+  for (int s = first; s != end; s += direction) {
     const Lanes& x = f.solution[f.column[s]].entries;
     for (int r = 0; r < N; ++r) products[r] += f.value[s].row[r] * x;
   }
-  for (int r = 0; r < N; ++r) {
-    for (int c = 0; c < N; ++c) sum[r] -= products[r][c];
-  }
+  const Columns columns(products);
+  return sum - columns.first - columns.next - columns.last;
 }
 
 template <int N>
 OPENCLOSE_KERNEL void substitute_forward(Factor<N>& f, const std::vector<int>& rows, const double* right_side) {
+  static_assert(N == 3, "the width of Columns");
   for (int i : rows) {
-    double sum[N];
-    for (int k = 0; k < N; ++k) sum[k] = right_side[N * f.order[i] + k];
-    subtract_product(f, f.row_start[i], f.diagonal[i], sum);
-    for (int k = 0; k < N; ++k) f.solution[i].entries[k] = sum[k];
+    const double* const b = right_side + N * f.order[i];
+    const Lanes sum = less_product<1>(f, f.row_start[i], f.diagonal[i], Lanes{b[0], b[1], b[2], 0.0});
+    Lanes products[N];
+    for (int r = 0; r < N; ++r) products[r] = f.value[f.diagonal[i]].row[r] * sum;
+    const Columns columns(products);
+    f.solution[i].entries = columns.first + columns.next + columns.last;
   }
 }
 
@@ -398,16 +419,9 @@ template <int N>
 OPENCLOSE_KERNEL void substitute_back(Factor<N>& f, const std::vector<int>& rows, double* x) {
   for (auto row = rows.rbegin(); row != rows.rend(); ++row) {
     const int i = *row;
-    double sum[N];
-    for (int k = 0; k < N; ++k) sum[k] = f.solution[i].entries[k];
-    subtract_product(f, f.diagonal[i] + 1, f.row_start[i + 1], sum);
-    const PaddedBlock<N>& inverse = f.value[f.diagonal[i]];
-    for (int k = 0; k < N; ++k) {
-      double entry = inverse.row[k][0] * sum[0];
-      for (int c = 1; c < N; ++c) entry += inverse.row[k][c] * sum[c];
-      f.solution[i].entries[k] = entry;
-      x[N * f.order[i] + k] = entry;
-    }
+    const Lanes entries = less_product<-1>(f, f.row_start[i + 1] - 1, f.diagonal[i], f.solution[i].entries);
+    f.solution[i].entries = entries;
+    for (int k = 0; k < N; ++k) x[N * f.order[i] + k] = entries[k];
   }
 }
 
@@ -649,7 +663,7 @@ class BlockLuSolver : public LinearSolver<N> {
     find_entries(matrix);
   }
 
-  /// Of rows one after another: what each has above the diagonal, in ascending order.
+  /// Of rows one after another: what each has above the diagonal, in any order.
   struct UpperPattern {
     std::vector<int> start, column;
     std::span<const int> row(int i) const { return {column.data() + start[i], column.data() + start[i + 1]}; }
@@ -672,10 +686,9 @@ class BlockLuSolver : public LinearSolver<N> {
       for (int child = first_child[i]; child >= 0; child = next_child[child]) {
         for (int k = upper.start[child]; k < upper.start[child + 1]; ++k) take(upper.column[k]);
       }
-      std::sort(upper.column.begin() + upper.start[i], upper.column.end());
       upper.start.push_back(static_cast<int>(upper.column.size()));
       if (upper.row(i).empty()) continue;
-      const int parent = upper.row(i).front();
+      const int parent = *std::ranges::min_element(upper.row(i));
       next_child[i] = std::exchange(first_child[parent], i);
     }
     return upper;
@@ -759,26 +772,29 @@ class BlockLuSolver : public LinearSolver<N> {
       factor_.order.insert(factor_.order.end(), part.begin(), part.end());
       return;
     }
-    Eigen::SparseMatrix<double> pattern(rows, rows);
-    const auto degree = [&](int i) { return graph.start[part[i] + 1] - graph.start[part[i]]; };
-    for (int i = 0; i < rows; ++i) pattern.outerIndexPtr()[i + 1] = pattern.outerIndexPtr()[i] + 1 + degree(i);
+    // One half, from the diagonal on.
+    Eigen::SparseMatrix<float> pattern(rows, rows);
+    const auto after = [&](int i) {
+      const auto begin = graph.neighbour.begin() + graph.start[part[i]], end = graph.neighbour.begin() + graph.start[part[i] + 1];
+      return std::span(std::upper_bound(begin, end, part[i]), end);
+    };
+    for (int i = 0; i < rows; ++i) pattern.outerIndexPtr()[i + 1] = pattern.outerIndexPtr()[i] + 1 + static_cast<int>(after(i).size());
     pattern.resizeNonZeros(pattern.outerIndexPtr()[rows]);
-    std::fill(pattern.valuePtr(), pattern.valuePtr() + pattern.nonZeros(), 1.0);
+    std::fill(pattern.valuePtr(), pattern.valuePtr() + pattern.nonZeros(), 1.0F);
     for (int i = 0; i < rows; ++i) {
-      int* const column = pattern.innerIndexPtr() + pattern.outerIndexPtr()[i];
-      for (int k = 0; k < degree(i); ++k) column[k] = place_[graph.neighbour[graph.start[part[i]] + k]];
-      column[degree(i)] = i;
-      std::inplace_merge(column, column + degree(i), column + degree(i) + 1);
+      int* column = pattern.innerIndexPtr() + pattern.outerIndexPtr()[i];
+      *column++ = i;
+      for (const int j : after(i)) *column++ = place_[j];
     }
     Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> permutation;
-    Eigen::AMDOrdering<int>()(pattern, permutation);
+    Eigen::AMDOrdering<int>()(pattern.selfadjointView<Eigen::Lower>(), permutation);
     for (int i = 0; i < rows; ++i) factor_.order.push_back(part[permutation.indices()[i]]);
   }
 
   /// Rows of L, diagonal and U one after another in one array.
   void lay_out(const UpperPattern& upper) {
     const int rows = static_cast<int>(upper.start.size()) - 1;
-    std::vector<int> below(rows, 0), place(rows);  // of L: numbers in a row, and where the next one goes
+    std::vector<int> below(rows, 0), place(rows);  // of L: numbers in a row; of L, then of U: where the next one goes
     for (const int j : upper.column) ++below[j];
     factor_.row_start.resize(rows + 1);
     factor_.diagonal.resize(rows);
@@ -786,16 +802,22 @@ class BlockLuSolver : public LinearSolver<N> {
     factor_.same_as_next.resize(rows);
     int end = 0;
     for (int i = 0; i < rows; ++i) {
-      const std::span<const int> right = upper.row(i);
       factor_.row_start[i] = place[i] = end;
       factor_.diagonal[i] = end + below[i];
       factor_.column[factor_.diagonal[i]] = i;
-      end = static_cast<int>(std::copy(right.begin(), right.end(), factor_.column.begin() + factor_.diagonal[i] + 1) - factor_.column.begin());
-      factor_.same_as_next[i] = !right.empty() && right.front() == i + 1 && right.size() == upper.row(i + 1).size() + 1;
+      end = factor_.diagonal[i] + 1 + static_cast<int>(upper.row(i).size());
     }
     factor_.row_start[rows] = end;
+    // Row by row, so that each list is in ascending order.
     for (int i = 0; i < rows; ++i) {
       for (const int j : upper.row(i)) factor_.column[place[j]++] = i;
+    }
+    for (int i = 0; i < rows; ++i) ++place[i];  // over the diagonal
+    for (int i = 0; i < rows; ++i) {
+      for (int s = factor_.row_start[i]; s < factor_.diagonal[i]; ++s) factor_.column[place[factor_.column[s]]++] = i;
+    }
+    for (int i = 0; i < rows; ++i) {
+      factor_.same_as_next[i] = factor_.parent(i) == i + 1 && upper.row(i).size() == upper.row(i + 1).size() + 1;
     }
     factor_.solution.resize(rows);
     factor_.size.resize(rows);

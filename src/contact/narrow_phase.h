@@ -1,0 +1,335 @@
+// Which corners of two blocks face which edges, with which tributary length.
+//
+// Tributary lengths: one rule for all methods, continuous in the motion. Let theta be the angle by which an edge a of one block and an edge e of
+// another miss being antiparallel, and w = 1 for theta <= parallel_full, 0 for theta >= parallel_none, linear between.
+//   - Facing edges: the overlap o of a and e, projected on the bisector of their directions, makes a contact at each of its two ends, with w o/2.
+//     Two blocks that slide off each other lose length, stiffness and cohesion continuously to zero.
+//   - Lone corner: vertex v opposite to e, of which neither edge points into e's half-plane, gets (1 - w_v) times half the projections on e of its
+//     own two edges (none counted longer than e), where w_v is the larger w of its two edges against e. It depends on the directions only, so it
+//     does not change where a corner crosses from one edge to a collinear one of the next block. An edge that points in by up to parallel_full has
+//     w_v = 1 anyhow, so that nothing jumps where it turns in.
+// A vertex that faces e through both rules, or through both its edges, has one contact with the sum of the lengths.
+//
+// Corner against corner: where v comes to an end q of e, two convex blocks are apart as soon as one line separates them, which is one of up to four
+// edges: the two of q with v outside, the two of v with q outside (both sides of the corner leave the edge's half-plane, to flush_tilt; else it is no
+// candidate). A contact with each of them would lock the blocks. So v has no lone contact with e while another one of the four, more than
+// parallel_none from e in direction, separates
+//   - to within edge_end, where v and q coincide: nothing is in contact yet and the motion decides which edge it will be,
+//   - to within edge_end and what the closures of contacts at v, q and their edges make of it (seam_closures), where one of them slides on something,
+//   - and, while v is still in front of e and v or q slides along that line, to within seam_height: blocks that are flush in the drawing do not catch
+//     on each other's faces.
+// So a block whose front corner stands on a joint slides on, three blocks and air or four blocks around the corner. A contact that has closed over
+// more than seam_height stays until its corner is nearer to another edge; at a reflex q both walls hold.
+//
+// Where it is not continuous: a lone corner within edge_end of the seam of two collinear edges has a contact with both; it loses its length where it
+// leaves the end of an edge that nothing continues; and at a corner the contact passes from one edge to the next with its gap, not with its
+// direction. Energy held there goes into the ledger's redefinition.
+//
+// At four-block corners the diagonal blocks have facing edges without overlap and no lone corner, hence no contact: they cannot lock.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "openclose/contact/block_shapes.h"
+#include "openclose/contact/contact_index.h"
+#include "openclose/contact/kinematics.h"
+#include "openclose/core/tolerance.h"
+#include "openclose/geometry/polygon.h"
+
+namespace openclose {
+
+/// Between the blocks of one pair. Collects contacts; a vertex-edge pair found twice gets the sum of the lengths.
+template <int N>
+class NarrowPhase {
+ public:
+  using Edge = typename BlockShapes<N>::Edge;
+
+  NarrowPhase(const BlockSystem<N>& system, const BlockSystem<N>* present, double reach, BlockShapes<N>& shapes, const ContactIndex<N>& previous)
+      : system_(system), present_(present), reach_(reach), shapes_(shapes), previous_(previous) {}
+
+  void run(int block_a, int block_b, std::vector<Contact>& found) {
+    found_ = &found;
+    first_ = found.size();
+    // Only what lies in the box of both blocks, with the reach and what end_margin() allows, can touch.
+    const double margin = reach_ + tolerance::seam_closures * previous_.deepest();
+    const Box room = shapes_.box(block_a).inflated(margin).common(shapes_.box(block_b).inflated(margin));
+    if (room.empty()) return;
+    const bool some_of_a = find_near_corners(block_a, block_b, near_[0]), some_of_b = find_near_corners(block_b, block_a, near_[1]);
+    if (!some_of_a && !some_of_b) return;
+    const std::span<const Edge> edges_a = shapes_.edges(block_a), edges_b = shapes_.edges(block_b);
+    const int first_a = system_.block(block_a).first_vertex, first_b = system_.block(block_b).first_vertex;
+    for (std::size_t a = 0; a < edges_a.size(); ++a) {
+      const bool a_is_near = has_near_end(near_[0], a);
+      for (std::size_t b = 0; b < edges_b.size(); ++b) {
+        const double cosine = -edges_a[a].direction.dot(edges_b[b].direction);
+        if (cosine <= cosine_none || !(a_is_near || has_near_end(near_[1], b))) continue;
+        facing_edges(block_a, first_a + static_cast<int>(a), block_b, first_b + static_cast<int>(b), parallel_weight(cosine));
+      }
+    }
+    lone_corners(block_a, block_b, near_[0], room);
+    lone_corners(block_b, block_a, near_[1], room);
+  }
+
+ private:
+  /// Of the corners of a block, those that may touch the other one. Where two convex blocks were not in contact, a corner that touches an edge is at
+  /// most as far beyond the lines along other edges as it is from this one, and by 1 % more where edges face each other that are not quite parallel,
+  /// or beyond the end of this one by what end_margin() allows.
+  bool find_near_corners(int block, int other, std::vector<char>& near) const {
+    const std::span<const Edge> corners = shapes_.edges(block), edges = shapes_.edges(other);
+    if (previous_.has_any() || !shapes_.is_convex(block) || !shapes_.is_convex(other)) {
+      near.assign(corners.size(), true);
+      return true;
+    }
+    near.resize(corners.size());
+    const int first = system_.block(block).first_vertex;
+    bool some = false;
+    const Edge* parting = edges.data();  // the edge before which the last corner was too far
+    for (std::size_t v = 0; v < corners.size(); ++v) {
+      const Vec2& p = corners[v].start;
+      near[v] = false;
+      const double room = room_of_corners * reach_ + tolerance::seam_closures * closure(first + static_cast<int>(v));
+      if (parting->gap(p) > room) continue;
+      const auto edge = std::ranges::find_if(edges, [&](const Edge& e) { return e.gap(p) > room; });
+      if (edge == edges.end()) {
+        near[v] = true;
+        some = true;
+      } else {
+        parting = &*edge;
+      }
+    }
+    return some;
+  }
+  static bool has_near_end(const std::vector<char>& near, std::size_t edge) { return near[edge] || near[edge + 1 < near.size() ? edge + 1 : 0]; }
+
+  void facing_edges(int block_a, int a, int block_b, int b, double weight) {
+    const Edge &edge_a = shapes_.edge(a), &edge_b = shapes_.edge(b);
+    // Along the bisector u edge b runs forward and edge a backward, so that the overlap is [max of starts, min of ends].
+    const Vec2 u = (edge_b.direction - edge_a.direction).normalized();
+    const int a_end = system_.next(a), b_end = system_.next(b);
+    const auto along = [&](int v) { return u.dot(shapes_.edge(v).start - edge_b.start); };
+    const double a_low = along(a_end), a_high = along(a);
+    const double b_low = along(b), b_high = along(b_end);
+    const double overlap = std::min(a_high, b_high) - std::max(a_low, b_low);
+    if (overlap < tolerance::shortest_overlap_m) return;
+    const double length = 0.5 * weight * overlap;
+    add_end(block_a, a_end, a, block_b, b, b, a_low >= b_low, std::abs(a_low - b_low), length);
+    add_end(block_a, a, a, block_b, b_end, b, a_high <= b_high, std::abs(a_high - b_high), length);
+  }
+
+  /// One end of an overlap: vertex va of edge a on edge b, or vertex vb of edge b on edge a; `beyond` [m] is how far the other one lies outside the
+  /// overlap. A reflex vertex has material all around and touches nothing: the other block's vertex stands in, if it leans into that notch's wall and
+  /// is not far off.
+  void add_end(int block_a, int va, int a, int block_b, int vb, int b, bool a_is_inside, double beyond, double length) {
+    const bool inside_is_reflex = system_.is_reflex(a_is_inside ? va : vb);
+    if (inside_is_reflex && beyond > tolerance::seam_height_m + tolerance::seam_closures * std::max(closure(va), closure(vb))) return;
+    // The two corners take turns: a joint that has closed under one of them is closed for the other.
+    const auto closed = [&] { return previous_.was_closed(va, b) || previous_.was_closed(vb, a); };
+    if (a_is_inside != inside_is_reflex) {
+      add(block_a, va, block_b, b, length, closed);
+    } else {
+      add(block_b, vb, block_a, a, length, closed);
+    }
+  }
+
+  /// \param near  of the corners of the first block
+  void lone_corners(int vertex_block, int edge_block, const std::vector<char>& near, const Box& room) {
+    const std::span<const Edge> edges = shapes_.edges(edge_block);
+    const int first = system_.block(vertex_block).first_vertex, first_edge = system_.block(edge_block).first_vertex;
+    for (std::size_t k = 0; k < near.size(); ++k) {
+      const int v = first + static_cast<int>(k);
+      if (!near[k] || system_.is_reflex(v)) continue;
+      const Vec2& p = shapes_.edge(v).start;
+      if (!room.contains(p)) continue;
+      const Sides sides = sides_of(v);
+      for (std::size_t i = 0; i < edges.size(); ++i) {
+        const Edge& edge = edges[i];
+        if (edge.gap(p) > reach_ || !sides.leave(edge, sine_flush)) continue;
+        const int e = first_edge + static_cast<int>(i);
+        const double along = edge.along(p);
+        const double beyond = std::max(-along, along - edge.length);
+        if (beyond > 0.0 && beyond > end_margin(v, edge)) continue;
+        const double weight = sides.lone_weight(edge);
+        if (weight == 0.0 || passes_over(v, edge_block, e)) continue;
+        const Vec2 ahead = system_.arm(system_.next(v)) - system_.arm(v), back = system_.arm(system_.previous(v)) - system_.arm(v);
+        const auto projection = [&](const Vec2& side) { return std::min(std::abs(side.dot(edge.direction)), edge.length); };
+        add(vertex_block, v, edge_block, e, 0.5 * weight * (projection(ahead) + projection(back)), [&] { return previous_.was_closed(v, e); });
+      }
+    }
+  }
+
+  /// Directions from a corner along its two edges.
+  struct Sides {
+    Vec2 ahead, back;
+
+    /// Both point out of the edge's half-plane, or into it by no more than the tilt.
+    bool leave(const Edge& edge, double tilt) const { return edge.normal().dot(ahead) >= -tilt && edge.normal().dot(back) >= -tilt; }
+    /// 1 - w_v of the header, of a corner that stands on the edge.
+    double lone_weight(const Edge& edge) const {
+      return 1.0 - std::max(parallel_weight(-ahead.dot(edge.direction)), parallel_weight(back.dot(edge.direction)));
+    }
+  };
+  Sides sides_of(int v) const { return {shapes_.edge(v).direction, -shapes_.edge(system_.previous(v)).direction}; }
+
+  /// \param closed  tells whether this place was in contact already
+  template <class Closed>
+  void add(int vertex_block, int v, int edge_block, int e, double length, const Closed& closed) {
+    if (system_.is_reflex(v)) return;
+    for (std::size_t i = first_; i < found_->size(); ++i) {
+      Contact& known = (*found_)[i];
+      if (known.vertex == v && known.edge == e) {
+        known.length += length;
+        return;
+      }
+    }
+    const Edge& edge = shapes_.edge(e);
+    const Vec2& p = shapes_.edge(v).start;
+    const double gap = edge.gap(p);
+    if (gap > reach_ || !outside(v, edge)) return;
+    Contact contact;
+    contact.vertex_block = vertex_block;
+    contact.vertex = v;
+    contact.edge_block = edge_block;
+    contact.edge = e;
+    contact.length = length;
+    contact.gap = present_ ? present_gap(contact) : gap;
+    if (gap < 0.0 && (!present_ || contact.gap < 0.0) && !entered_through(v, edge_block, e, gap, closed)) return;
+    found_->push_back(contact);
+  }
+
+  double present_gap(const Contact& contact) const {
+    const ContactStart<N> at(*present_, contact);
+    return at.normal.dot(at.lever);
+  }
+
+  /// [m] What the contacts of a corner have closed.
+  double closure(int v) const {
+    double largest = 0.0;
+    previous_.for_closed(v, [&](const Contact& c) { largest = std::max(largest, c.vertex == v ? -c.gap : 0.0); });
+    return largest;
+  }
+  /// [m] How far the closures of its contacts, those on its two edges included, have moved a corner along the normal of `edge`.
+  double closure_across(int v, const Edge& edge) const {
+    double largest = 0.0;
+    previous_.for_closed(v, [&](const Contact& c) {
+      const double cosine = edge.direction.dot(shapes_.edge(c.edge_block, c.edge).direction);
+      largest = std::max(largest, -c.gap * std::abs(cosine));
+    });
+    return largest;
+  }
+
+  /// Whether a corner, or one of its two edges, is in contact with something parallel to `edge`.
+  bool slides_along(int v, const Edge& edge) const {
+    bool parallel = false;
+    previous_.for_closed(v, [&](const Contact& c) { parallel |= !turns_away(shapes_.edge(c.edge_block, c.edge), edge); });
+    return parallel;
+  }
+
+  /// Two corners that meet separate the blocks along any one of up to four edges, theirs at v and at the end of e: as long as one that turns away
+  /// from e does, v does not run into e. Blocks that lie flush but for the closures of their contacts must not catch on the seams between them: a
+  /// corner that slides on something keeps its way if what it slides on is lower than the seam's height. Where corners coincide and nothing has
+  /// closed yet, the motion decides. An overlap no longer than a seam is high is no closed contact.
+  bool passes_over(int v, int edge_block, int e) const {
+    const Edge& edge = shapes_.edge(edge_block, e);
+    const Vec2& p = shapes_.edge(v).start;
+    const bool near_start = edge.along(p) < 0.5 * edge.length;
+    const int end = near_start ? e : system_.next(e);
+    if (system_.is_reflex(end)) return false;
+    const Vec2& q = shapes_.edge(end).start;
+    const bool slides = previous_.closed(v) || previous_.closed(end);
+    if (!slides && (p - q).norm() > tolerance::edge_end_m) return false;
+    if (previous_.closed_length(v, e) > tolerance::seam_height_m) return false;
+    const bool in_front = edge.gap(p) > -tolerance::shortest_edge_m;
+    const auto separates = [&](int corner, const Vec2& position, const Edge& other) {
+      if (!turns_away(edge, other) || !stands_on(corner, other)) return false;
+      const double step = in_front && (slides_along(v, other) || slides_along(end, other)) ? tolerance::seam_height_m : tolerance::edge_end_m;
+      const double closure = std::max(closure_across(v, other), closure_across(end, other));
+      return other.gap(position) > -step - tolerance::seam_closures * closure;
+    };
+    return separates(v, p, shapes_.edge(near_start ? system_.previous(e) : system_.next(e))) || separates(end, q, shapes_.edge(v)) ||
+           separates(end, q, shapes_.edge(system_.previous(v)));
+  }
+
+  static bool turns_away(const Edge& a, const Edge& b) { return std::abs(a.direction.dot(b.direction)) < cosine_none; }
+
+  /// [m] How far beyond an end of the edge a corner still counts as opposite to it: where the corner leans on something else there, a notch's other
+  /// wall or another block, by what its contacts have closed.
+  double end_margin(int v, const Edge& edge) const {
+    bool leans = false;
+    previous_.for_closed(v, [&](const Contact& c) { leans |= c.vertex == v && turns_away(shapes_.edge(c.edge_block, c.edge), edge); });
+    return tolerance::edge_end_m + (leans ? tolerance::seam_closures * closure(v) : 0.0);
+  }
+
+  /// Both sides of the corner leave the edge's half-plane: only then can the corner touch the edge from outside. Overlaps of facing edges fade out
+  /// until parallel_none.
+  bool outside(int v, const Edge& edge) const { return sides_of(v).leave(edge, sine_none); }
+  /// The same for a lone corner.
+  bool stands_on(int v, const Edge& edge) const { return sides_of(v).leave(edge, sine_flush); }
+
+  bool share_reflex_corner(int e, int f) const {
+    return (system_.next(e) == f && system_.is_reflex(f)) || (system_.next(f) == e && system_.is_reflex(e));
+  }
+
+  /// A penetrating corner touches the edge it came in through: no other edge that it could touch is nearer. Only in a notch does it touch both walls.
+  /// History decides nothing here: beside a four-block corner a corner is first behind the joint's face, then, as it slides on, behind the right one.
+  template <class Closed>
+  bool entered_through(int v, int edge_block, int e, double gap, const Closed& closed) {
+    const Vec2& p = shapes_.edge(v).start;
+    // What lies behind the edge must lie in the block, except for what drawings leave and what contacts that carry load have closed.
+    if (-gap > tolerance::deepest_initial_overlap_m && !in_block(edge_block, p) && !closed()) return false;
+    const Edge& edge = shapes_.edge(e);
+    const auto& block = system_.block(edge_block);
+    for (int f = block.first_vertex; f < block.first_vertex + block.vertex_count; ++f) {
+      const Edge& other = shapes_.edge(f);
+      // An edge is no nearer than the line on which it lies.
+      if (f == e || std::abs(other.gap(p)) > -gap || share_reflex_corner(e, f)) continue;
+      if (distance_to_segment(p, other.start, other.end()) >= -gap - tolerance::shortest_edge_m) continue;
+      // At a needle's tip, closed by a little, the edge that is faced need not be the nearest one.
+      const bool at_needle = std::abs(edge.direction.dot(other.direction)) > cosine_needle;
+      if (at_needle ? stands_on(v, other) : outside(v, other)) return false;
+    }
+    return true;
+  }
+
+  bool in_block(int block, const Vec2& p) {
+    constexpr double margin = 2.0 * tolerance::edge_end_m;  // what is decided so is the same by the distance below
+    if (!shapes_.box(block).inflated(margin).contains(p)) return false;
+    if (shapes_.is_convex(block)) {
+      double farthest = -std::numeric_limits<double>::infinity();  // before an edge
+      for (const Edge& edge : shapes_.edges(block)) farthest = std::max(farthest, edge.gap(p));
+      if (farthest > margin) return false;
+      if (farthest <= 0.0) return true;
+    }
+    polygon_.clear();
+    for (const Edge& edge : shapes_.edges(block)) polygon_.push_back(edge.start);
+    return contains(polygon_, p) || distance_to_boundary(polygon_, p) <= tolerance::edge_end_m;
+  }
+
+  /// How far two edges may count as facing each other; see above.
+  static double parallel_weight(double cosine) {
+    if (cosine >= cosine_full) return 1.0;
+    if (cosine <= cosine_none) return 0.0;
+    return (tolerance::parallel_none_rad - std::acos(cosine)) / (tolerance::parallel_none_rad - tolerance::parallel_full_rad);
+  }
+
+  static constexpr double room_of_corners = 1.5;  ///< [-] over the reach
+  static inline const double cosine_full = std::cos(tolerance::parallel_full_rad);
+  static inline const double cosine_none = std::cos(tolerance::parallel_none_rad), sine_none = std::sin(tolerance::parallel_none_rad);
+  static inline const double cosine_needle = std::cos(2.0 * tolerance::parallel_none_rad);
+  static inline const double sine_flush = std::sin(tolerance::flush_tilt_rad);
+
+  const BlockSystem<N>& system_;
+  const BlockSystem<N>* present_;
+  double reach_;
+  BlockShapes<N>& shapes_;
+  const ContactIndex<N>& previous_;
+  std::vector<Contact>* found_ = nullptr;
+  std::size_t first_ = 0;
+  std::vector<char> near_[2];  ///< of the corners of both blocks
+  Polygon polygon_;
+};
+
+}  // namespace openclose
