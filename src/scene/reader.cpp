@@ -102,7 +102,7 @@ std::vector<JointProperties> read_joints(const std::vector<Table>& tables, const
 BlockInput read_block(Table table, const NameList& material_names, NameList& block_names) {
   BlockInput block;
   Polygon vertices;
-  block.where = table.where();
+  block.line = table.where().line;
   table.required("name", block.name);
   table.required("material", block.material, material_names);
   table.required("vertices_m", vertices, coordinate);

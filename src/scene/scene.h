@@ -45,7 +45,7 @@ struct BlockInput {
   bool rotation_locked = false;
   Vec2 velocity = Vec2::Zero();   ///< [m/s]
   double angular_velocity = 0.0;  ///< [rad/s] counter-clockwise
-  SourceLocation where;
+  int line = 0;                   ///< of the scene's file, for errors
 };
 
 /// A spring that holds one material point of a block at its initial place.

@@ -24,9 +24,8 @@ TEST_CASE("a small scene gets the defaults of the structs", "[scene][reader]") {
   REQUIRE(scene.blocks.size() == 2);
   CHECK(scene.blocks[0].name == "base");
   CHECK(scene.blocks[0].fixed);
-  CHECK(scene.blocks[0].where.line == 11);
-  CHECK(scene.blocks[1].where.line == 17);
-  CHECK(scene.blocks[1].where.file == file.path());
+  CHECK(scene.blocks[0].line == 11);
+  CHECK(scene.blocks[1].line == 17);
   CHECK_FALSE(scene.blocks[1].fixed);
   CHECK(scene.blocks[1].vertices == std::vector<Vec2>{{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}});
   CHECK(scene.method.contact == MethodInput{}.contact);
