@@ -138,7 +138,7 @@ class MotionInTime {
   }
 
   void begin() {
-    begun_ = true;
+    begun_ = row_is_there_ = true;
     take_snapshots(0);
   }
 
@@ -148,7 +148,7 @@ class MotionInTime {
       if (!simulation_.advance(length(i))) {
         result_.converged = false;
         result_.reason = simulation_.reason();
-        row_is_there_ = false;
+        row_is_there_ = row_is_there_ && simulation_.time() == time_after(i - 1);
         conclude();
         return;
       }
@@ -274,7 +274,7 @@ class MotionInTime {
   double moved_before_ = 0.0;  ///< [m] by the first point, before the step
   std::size_t snapshots_taken_ = 0;
   bool begun_ = false;         ///< there is a start state
-  bool row_is_there_ = false;  ///< observer_.output has been called after the last step
+  bool row_is_there_ = false;  ///< observer_.output has been called for the present state
 };
 
 }  // namespace

@@ -75,6 +75,8 @@ TEST_CASE("a run that gets stuck on its way", "[cli][not_converged]") {
   const auto history = lines_of(place.folder() / "out/history.csv");
   REQUIRE(history.size() > 5);
   CHECK(std::stod(history.back()) == time);
+  // The last state is there once, although it is the one of a regular row, too.
+  CHECK(std::stod(history[history.size() - 2]) < time);
   CHECK(lines_of(place.folder() / "out/energy.csv").size() == history.size());
   CHECK(states_in(place.folder() / "out/blocks.csv").count("final") == 1);
 }
