@@ -511,7 +511,8 @@ void Newton<N>::take_states_before() {
 }
 
 template <int N>
-void Newton<N>::report_paths(StepSolution<N>& solution) {
+std::vector<ElasticBatch> Newton<N>::report_paths(StepSolution<N>& solution) {
+  std::vector<ElasticBatch> elastic(trials_.size());
   for (std::size_t i = 0; i < contact_count_; ++i) {
     const std::size_t c = order()[i];
     const ContactSprings springs = this->springs(c);
@@ -519,9 +520,27 @@ void Newton<N>::report_paths(StepSolution<N>& solution) {
     const int k = lane(c);
     const PathAverage path = path_average(springs, start(c).strength(k), at.gap_change[k], at.slip_change[k], springs.dissipation);
     solution.paths.push_back({path.mean.normal, path.mean.shear, path.energies, force_pose(c)});
-    at.set_carried(k, path.end);
+    at.normal[k] = path.end.normal;
+    at.shear[k] = path.end.shear;
+    elastic[c / batch_size].normal[k] = path.end.elastic_normal;
+    elastic[c / batch_size].shear[k] = path.end.elastic_shear;
     branches_[c] = branch(path.end);
   }
+  return elastic;
+}
+
+template <int N>
+std::vector<ElasticBatch> Newton<N>::elastic_parts() const {
+  std::vector<ElasticBatch> elastic(trials_.size());
+  kernels_.find_elastic(ramp_, contacts(), trials_, elastic);
+  return elastic;
+}
+
+template <int N>
+void Newton<N>::lend(StepSolution<N>& solution) {
+  solution.paths.clear();
+  solution.contacts.borrow(starts_, moves_, trials_, branches_, averages_path() ? report_paths(solution) : elastic_parts());
+  note_memory(solution.memory());
 }
 
 template <int N>
@@ -822,7 +841,7 @@ void Newton<N>::solve_prepared(StepSolution<N>& solution, FirstTangent first) {
   const StepProblem<N>& problem = *problem_;
   if (problem.end_weight < 1.0) {
     sum_start_forces();
-    solution.start_contacts.copy(starts_, moves_, trials_, branches_);
+    solution.start_contacts.copy(starts_, moves_, trials_, branches_, elastic_parts());
   }
   const Eigen::VectorXd start = solution.d;
   double norm = begin(start, first);
@@ -847,13 +866,10 @@ void Newton<N>::solve_prepared(StepSolution<N>& solution, FirstTangent first) {
     norm = begin(start, first);
     outcome = iterate_holding(solution, norm, 0);
   }
-  note_memory(solution.memory());
   solution.converged = norm <= 1.0;
   if (problem.statics) solution.unbalanced = largest_unbalanced();
   if (!solution.converged) solution.reason = outcome == Outcome::singular ? "singular matrix" : "Newton's method did not converge";
-  solution.paths.clear();
-  if (averages_path()) report_paths(solution);
-  solution.contacts.borrow(starts_, moves_, trials_, branches_);
+  lend(solution);
 }
 
 template <int N>
