@@ -277,20 +277,30 @@ void Newton<N>::evaluate_moved(const std::vector<int>& moved, const Eigen::Vecto
   const std::vector<int> pushed = neighbourhood_.with_neighbours(moved);
   std::vector<char> is_due(contacts().size(), 0);
   neighbourhood_.for_contacts_of(pushed, [&](int c) { is_due[c / batch_size] = 1; });
+  for (int row : pushed) rows_[row] = ForceRow();
   // Their batches have contacts of other rows, too, whose sums stay.
-  sums_of_moved_.assign(rows_.size(), ForceRow());
+  std::vector<std::pair<int, ForceRow>> sums_of_others;
+  std::vector<char> is_known(rows_.size(), 0);
+  for (int row : pushed) is_known[row] = 1;
+  const auto keep_sums = [&](int row) {
+    if (is_known[row]) return;
+    is_known[row] = 1;
+    sums_of_others.emplace_back(row, rows_[row]);
+  };
   long due = 0;
   for (std::size_t batch = 0; batch < contacts().size(); ++batch) {
     if (!is_due[batch]) continue;
     ++due;
-    kernels_.evaluate_one(step_forces_, ramp_, contacts(), batch, moves_.data(), rounding_of_sums, trials_, branches_, sums_of_moved_);
+    for (int k = 0; k < batch_size; ++k) {
+      keep_sums(contacts()[batch].vertex_place(k));
+      keep_sums(contacts()[batch].edge_place(k));
+    }
+    kernels_.evaluate_one(step_forces_, ramp_, contacts(), batch, moves_.data(), rounding_of_sums, trials_, branches_, rows_);
   }
   effort.part_batches += due;
   effort.part_batches_skipped += all - due;
-  for (int row : pushed) {
-    rows_[row] = sums_of_moved_[row];
-    evaluate_block(row, d);
-  }
+  for (const auto& [row, sums] : sums_of_others) rows_[row] = sums;
+  for (int row : pushed) evaluate_block(row, d);
   find_force_scale(kernels_.largest_force(trials_), d);
 }
 
@@ -852,7 +862,7 @@ void Newton<N>::solve_prepared(StepSolution<N>& solution, FirstTangent first) {
 template <int N>
 Memory Newton<N>::present_memory() const {
   Memory of = tangent_.memory();
-  of.blocks += bytes_of(blocks_, moves_, rows_, sums_of_moved_);
+  of.blocks += bytes_of(blocks_, moves_, rows_);
   for (const Eigen::VectorXd* vector : {&trial_, &start_force_, &residual_}) of.blocks += sizeof(double) * static_cast<std::size_t>(vector->size());
   of.contacts += bytes_of(trials_, branches_, branches_before_, holds_) + starts_->bytes() + renewal_.bytes() + neighbourhood_.bytes();
   return of;

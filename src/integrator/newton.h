@@ -241,7 +241,6 @@ class Newton {
   std::vector<double> holds_;            ///< [-] part of its springs that an open or sliding contact has in the tangent; else empty
   Eigen::VectorXd trial_;                ///< displacement
   std::vector<ForceRow> rows_;           ///< all forces at the trial position but inertia; of those that have no equation not to be read
-  std::vector<ForceRow> sums_of_moved_;  ///< those of evaluate_moved()
   bool has_replaced_forces_ = false;     ///< since the last evaluation: contacts carry something else than the law says
   Eigen::VectorXd start_force_;          ///< the same at the start of the step, used if theta < 1
   Eigen::VectorXd residual_;

@@ -67,7 +67,7 @@ void Neighbourhood::build(int rows, std::size_t contacts, const RowsOf& rows_of)
   }
   int end = 0;
   for (int& first : first_) first = end += first;
-  ends_.resize(end);
+  resize_closely(ends_, end);
   // From the back, which leaves each row its first place.
   for (std::size_t c = contacts; c-- > 0;) {
     const auto [i, j] = rows_of(c);
