@@ -23,7 +23,7 @@ constexpr double negligible_part = 0.5;
 
 /// What the first static step touches a block of memory that nobody has touched yet, in slopes of 482 blocks with `soft`; a fifth of its time is for
 /// that, when it comes page by page.
-constexpr std::size_t fresh_bytes_of_a_block = 4400;
+constexpr std::size_t fresh_bytes_of_a_block = 4050;
 /// Fewer blocks find what they need where the scene was read; of more the arrays are pieces of their own, which the end of the heap does not serve.
 constexpr int fewest_blocks_with_fresh_memory = 200, most_blocks_in_heap = 1000;
 

@@ -184,6 +184,9 @@ class Simulation {
   /// end of an edge or comes to the next one, half is then seen too early where all would be seen too late. False if the list stays as it is.
   bool find_contacts(double lead);
   void detect(double lead);
+  /// Whether the next step is one of method.first_integrator.
+  bool is_beginning() const;
+  std::unique_ptr<TimeScheme<N>> make_scheme() const;
   void restart_scheme();
   /// Gives the external forces what the base does in the next step.
   /// True if blocks at rest were woken by it.
@@ -231,6 +234,7 @@ class Simulation {
   ExternalForces<N> external_;
   JointTable joints_;
   std::unique_ptr<Enforcement<N>> enforcement_;
+  bool begins_;  ///< the scheme is method.first_integrator
   std::unique_ptr<TimeScheme<N>> scheme_;
   StepSolution<N> solution_;  ///< of the last step; a member for its memory
   Detector<N> detector_;

@@ -107,9 +107,9 @@ struct StepSolution {
     paths.clear();
   }
   Memory memory() const {
-    Memory of;
-    of.blocks = sizeof(double) * static_cast<std::size_t>(d.size());
-    of.contacts = contacts.bytes() + start_contacts.bytes() + bytes_of(paths);
+    Memory of = contacts.memory() + start_contacts.memory();
+    of.blocks += sizeof(double) * static_cast<std::size_t>(d.size());
+    of.contacts += bytes_of(paths);
     return of;
   }
 
@@ -189,6 +189,7 @@ inline void refuse_integrators(const MethodInput& method) {
   refuse(method.theta.value_or(1.0) != 1.0, "method.theta");
   refuse(method.rho_inf.has_value(), "method.rho_inf");
   refuse(method.dissipation.has_value(), "method.dissipation");
+  refuse(method.first_integrator.has_value(), "method.first_integrator");
   refuse(method.static_solver != StaticSolver::automatic, "method.static_solver");
 }
 

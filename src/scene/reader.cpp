@@ -200,6 +200,7 @@ MethodInput read_method(Table table, const SourceLocation& scene_where) {
   table.optional("integrator", method.integrator);
   table.optional("rho_inf", method.rho_inf, Range{.low = 0.0, .high = 1.0, .low_included = true, .high_included = true});
   table.optional("dissipation", method.dissipation, Range{.low = 0.0, .high = 1.0, .low_included = true, .high_included = true});
+  if (table.optional("first_integrator", method.first_integrator)) table.required("first_integrator_s", method.first_integrator_time, positive);
   table.optional("rotation", method.rotation, rotation_words);
   table.optional("start", method.start, start_words);
   table.optional("statics", method.statics);

@@ -254,6 +254,28 @@ TEST_CASE("iterating only where forces are far from balance changes no more than
   }
 }
 
+TEST_CASE("steps that begin before its time are the first integrator's, the others start from where it has got to", "[analysis][simulation]") {
+  constexpr int at_first = 60;
+  Scene scene = tumbling("soft");
+  scene.method.integrator = "path_average";
+  Simulation<3> expected(scene);
+  scene.method.first_integrator = "path_average";
+  scene.method.first_integrator_time = at_first * scene.step.dt;
+  scene.method.integrator = "tr_bdf2";
+  Simulation<3> changing(scene);
+  const auto advance_as_expected = [&] {
+    REQUIRE(expected.advance(scene.step.dt));
+    REQUIRE(changing.advance(scene.step.dt));
+    CHECK(changing.system().state().displacement == expected.system().state().displacement);
+  };
+  for (int i = 0; i < at_first; ++i) advance_as_expected();
+  MethodInput last = scene.method;
+  last.first_integrator.reset();
+  expected.change_method(last);
+  for (int i = 0; i < at_first; ++i) advance_as_expected();
+  CHECK(std::abs(changing.ledger().imbalance()) < 1e-9 * changing.ledger().turnover);
+}
+
 TEST_CASE("evaluating only what moved with a part changes no bit", "[analysis][simulation]") {
   for (const std::string integrator : {"shi", "theta", "path_average"}) {
     INFO(integrator);
