@@ -113,7 +113,11 @@ void write_checkpoint(const std::string& path, const Scene& scene, Checkpoint ch
   std::string bytes = heading() + body.bytes();
   const std::uint64_t sum = check_sum(bytes.data(), bytes.size());
   bytes.append(reinterpret_cast<const char*>(&sum), sizeof sum);
-  write_files({{path, bytes}});
+  try {
+    write_files({{path, bytes}});
+  } catch (const InputError&) {
+    throw WriteError(path);  // the run has begun: its input was good
+  }
 }
 
 Checkpoint read_checkpoint(const std::string& path, const Scene& scene) {

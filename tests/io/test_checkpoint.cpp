@@ -63,6 +63,12 @@ TEST_CASE("a checkpoint comes back", "[io][checkpoint]") {
   CHECK(text_of(saved.path).rfind("openclose checkpoint, format 18, version " + std::string(version) + "\n", 0) == 0);
 }
 
+TEST_CASE("a checkpoint that cannot be made is no bad input: the run has begun", "[io][checkpoint]") {
+  const Saved saved;
+  CHECK_THROWS_AS(write_checkpoint(saved.folder / "history.csv/checkpoint.bin", a_scene(), a_checkpoint()), WriteError);
+  CHECK(saved.folder.entries() == std::set<std::string>{"checkpoint.bin", "history.csv"});
+}
+
 TEST_CASE("a checkpoint of another scene is refused by what differs first", "[io][checkpoint]") {
   const Saved saved;
   Scene scene = a_scene();
