@@ -44,7 +44,6 @@ BlockInput free_block(const std::string& name, std::vector<Vec2> vertices) {
   BlockInput block;
   block.name = name;
   block.vertices = std::move(vertices);
-  block.where = {"(built in memory)", 0};
   return block;
 }
 

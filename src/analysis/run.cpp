@@ -95,6 +95,7 @@ RunResult prepare_start(Simulation<N>& simulation, const SettleProgress& progres
     case Start::unloaded:
       break;
     case Start::settled:
+      simulation.book_steps(false);
       result.settling = settle_start(simulation, progress);
       result.converged = result.settling.settled;
       if (!result.converged)

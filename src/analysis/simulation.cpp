@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "openclose/integrator/integrators.h"
 #include "openclose/integrator/registry.h"
 
 namespace openclose {
@@ -46,6 +47,7 @@ MethodInput settling_method(const Scene& scene) {
   settling.contact = *scene.settled_by;
   // These are of the motion's method, and some methods refuse them.
   settling.integrator.reset();
+  settling.first_integrator.reset();
   settling.theta.reset();
   settling.rho_inf.reset();
   settling.dissipation.reset();
@@ -66,7 +68,8 @@ Simulation<N>::Simulation(Scene scene, std::unique_ptr<Enforcement<N>> enforceme
       external_(scene_, system_),
       joints_(scene_),
       enforcement_(enforcement ? std::move(enforcement) : make_enforcement<N>(scene_.method)),
-      scheme_(enforcement_->make_time_scheme(scene_.method)),
+      begins_(scene_.method.first_integrator.has_value()),
+      scheme_(make_scheme()),
       // Two vertices may approach each other by the largest displacement each.
       detector_(2.0 * scene_.step.max_displacement, {scene_.method.skip_search, scene_.method.skip_narrow_phase && enforcement_->follows_gaps(),
                                                      scene_.method.skip_looks, scene_.method.contact_skin}),
@@ -538,7 +541,7 @@ bool Simulation<N>::loses_strength(const StepSolution<N>& solution) const {
 
 template <int N>
 void Simulation<N>::accept(const StepProblem<N>& problem, const StepSolution<N>& solution) {
-  add_step(ledger_, problem, solution, *scheme_, enforcement_->has_elastic_contacts());
+  if (books_steps_) add_step(ledger_, problem, solution, *scheme_, enforcement_->has_elastic_contacts());
   accept_contacts(solution);
   for (int b : system_.free_blocks()) {
     const Unknowns d = solution.of(system_, b), v = problem.velocity(b);
@@ -721,6 +724,7 @@ bool Simulation<N>::advance_explicitly(double dt) {
 template <int N>
 bool Simulation<N>::advance(double dt) {
   if (loop_) return advance_explicitly(dt);
+  if (begins_ != is_beginning()) restart_scheme();
   const bool adaptive = scene_.step.adaptive && !scene_.method.statics;
   double remaining = dt, trial = adaptive ? control_.step(dt) : dt;
   const double smallest = scene_.step.smallest_fraction * dt;
@@ -758,11 +762,24 @@ bool Simulation<N>::advance(double dt) {
 }
 
 template <int N>
+bool Simulation<N>::is_beginning() const {
+  constexpr double rounding = 1e-12;  // [-] of a sum of steps
+  return scene_.method.first_integrator && time_ < scene_.method.first_integrator_time * (1.0 - rounding);
+}
+
+template <int N>
+std::unique_ptr<TimeScheme<N>> Simulation<N>::make_scheme() const {
+  std::unique_ptr<TimeScheme<N>> scheme = enforcement_->make_time_scheme(scene_.method);  // for its complaints, too
+  return begins_ ? enforcement_->make_time_scheme(method_at_first(scene_.method)) : std::move(scheme);
+}
+
+template <int N>
 void Simulation<N>::restart_scheme() {
   take_back();
   // A new scheme starts from whole-step velocities.
   for (int b : system_.free_blocks()) system_.set_velocity(b, output_velocity_[b]);
-  scheme_ = enforcement_->make_time_scheme(scene_.method);
+  begins_ = is_beginning();
+  scheme_ = make_scheme();
   start_kinetic_energy_ = system_.kinetic_energy() - ledger_.kinetic;
 }
 
@@ -791,6 +808,7 @@ void Simulation<N>::restart_clock() {
   take_back();
   time_ = 0.0;
   ledger_ = EnergyLedger();
+  books_steps_ = true;
   max_penetration_ = 0.0;
   restart_scheme();
 }
@@ -827,7 +845,8 @@ template <int N>
 void Simulation<N>::exchange(Archive& archive) {
   archive(system_, resting_, may_rest_, external_, joints_, base_moves_, keep_bonds_, detector_, contacts_, contacts_current_, output_velocity_,
           time_, reason_, ledger_, start_kinetic_energy_, collected_contact_energy_, max_penetration_, step_counters_, failed_attempts_, last_speed_,
-          control_);
+          control_, begins_);
+  if (archive.reading()) scheme_ = make_scheme();
   scheme_->exchange(archive);
   enforcement_->exchange(archive);
   if (loop_) {

@@ -157,6 +157,9 @@ class Simulation {
   void allow_resting() { may_rest_ = scene_.method.skip_resting && !scene_.method.statics; }
   /// Declares the present moment the start: time 0, ledger empty. Positions, contacts and velocities stay.
   void restart_clock();
+  /// Whether implicit steps enter the ledger until restart_clock(), from which on they always do: nobody asks for the energies of the way to an
+  /// equilibrium.
+  void book_steps(bool book) { books_steps_ = book; }
   /// Gives block b this velocity at time(); to be followed by restart_clock().
   void set_velocity(int b, const Unknowns& velocity);
   /// Gives the blocks the velocities of the scene (settling has stopped them); to be followed by restart_clock().
@@ -181,6 +184,9 @@ class Simulation {
   /// end of an edge or comes to the next one, half is then seen too early where all would be seen too late. False if the list stays as it is.
   bool find_contacts(double lead);
   void detect(double lead);
+  /// Whether the next step is one of method.first_integrator.
+  bool is_beginning() const;
+  std::unique_ptr<TimeScheme<N>> make_scheme() const;
   void restart_scheme();
   /// Gives the external forces what the base does in the next step.
   /// True if blocks at rest were woken by it.
@@ -228,6 +234,7 @@ class Simulation {
   ExternalForces<N> external_;
   JointTable joints_;
   std::unique_ptr<Enforcement<N>> enforcement_;
+  bool begins_;  ///< the scheme is method.first_integrator
   std::unique_ptr<TimeScheme<N>> scheme_;
   StepSolution<N> solution_;  ///< of the last step; a member for its memory
   Detector<N> detector_;
@@ -249,8 +256,9 @@ class Simulation {
   mutable double max_penetration_ = 0.0;
   StepCounters step_counters_;
   double negligible_force_ = 0.0;  ///< [N]
-  int failed_attempts_ = 0;        ///< since the last step that was accepted
-  double last_speed_ = 0.0;        ///< [m/s] largest displacement of the last step over its duration
+  bool books_steps_ = true;
+  int failed_attempts_ = 0;  ///< since the last step that was accepted
+  double last_speed_ = 0.0;  ///< [m/s] largest displacement of the last step over its duration
   StepControl control_;
   StageTimes stage_times_;
   std::size_t bytes_of_scene_;

@@ -56,8 +56,9 @@ class Balance {
   Unknowns rotation_direction() const { return Unknowns::Unit(Motion<N>::rotation_index); }
 
   [[noreturn]] void fail(const std::string& what) const {
-    const BlockInput& input = simulation_.scene().blocks[block_];
-    throw InputError(input.where, "block", fmt::format("\"{}\" {}", input.name, what),
+    const Scene& scene = simulation_.scene();
+    const BlockInput& input = scene.blocks[block_];
+    throw InputError({scene.where.file, input.line}, "block", fmt::format("\"{}\" {}", input.name, what),
                      "for this method.start, blocks that rest on fixed blocks along one direction");
   }
 

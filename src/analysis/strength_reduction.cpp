@@ -23,6 +23,7 @@ class StrengthReduction {
         progress_(progress) {}
 
   FactorOfSafety<N> run() {
+    simulation_.book_steps(false);
     if (!settle_first()) {
       result_.reason = "not stable even at a strength reduction factor of 0.001 (" + result_.criterion + ")";
       return std::move(result_);

@@ -67,9 +67,10 @@ Detector<N>::Detector(double reach, const DetectionSkips& skips) : reach_(reach)
 
 template <int N>
 bool Detector<N>::moved_beyond_search_skin(const BlockSystem<N>& system) const {
-  for (int b : system.free_blocks()) {
-    for (const auto& then : {searched_at_[b], searched_moving_at_[b]}) {
-      const double moved = Motion<N>::displacement_bound(system.displacement(b) - then, system.block(b).radius);
+  for (const std::vector<Unknowns>* then : {&searched_at_, &searched_moving_at_}) {
+    if (then->empty()) continue;
+    for (int b : system.free_blocks()) {
+      const double moved = Motion<N>::displacement_bound(system.displacement(b) - (*then)[b], system.block(b).radius);
       if (moved > 0.5 * tolerance::search_skin_m) return true;
     }
   }
@@ -142,12 +143,15 @@ void Detector<N>::search(const BlockSystem<N>& system) {
   std::vector<Box> boxes;
   boxes.reserve(system.block_count());
   searched_at_.resize(system.block_count());
-  searched_moving_at_.resize(system.block_count());
+  if (system.resting_blocks().empty())
+    searched_moving_at_.clear();
+  else if (searched_moving_at_.empty())
+    searched_moving_at_ = searched_at_;
   const double room = reach_ + skips_.contact_skin + tolerance::search_skin_m;
   for (int b = 0; b < system.block_count(); ++b) {
     const auto& block = system.block(b);
     searched_at_[b] = system.displacement(b);
-    if (!system.is_at_rest(b)) searched_moving_at_[b] = system.displacement(b);
+    if (!searched_moving_at_.empty() && !system.is_at_rest(b)) searched_moving_at_[b] = system.displacement(b);
     Box box{system.arm(block.first_vertex), system.arm(block.first_vertex)};
     for (int v = block.first_vertex + 1; v < block.first_vertex + block.vertex_count; ++v) {
       box.low = box.low.cwiseMin(system.arm(v));
@@ -159,6 +163,7 @@ void Detector<N>::search(const BlockSystem<N>& system) {
   const std::vector<PairState> old_states = std::move(states_);
   find_pairs(system, boxes, room);
   states_.assign(pairs_.size(), PairState());
+  places_.reserve(system.block_count());
   for (int b = static_cast<int>(places_.size()); b < system.block_count(); ++b) places_.push_back(place(system, b));
   ways_.resize(places_.size());
   for (std::size_t i = 0, old = 0; i < pairs_.size(); ++i) {
@@ -561,6 +566,8 @@ bool Detector<N>::update(const BlockSystem<N>& system, const JointTable& joints,
   forgotten_ = false;
   born_.clear();
   gone_.clear();
+  changes_.clear();
+  if (system.block_count() > most_blocks_with_working_memory) std::vector<DetectionChange>().swap(changes_);  // the first ones are all
   if (searches) {
     search(system);
     locate(contacts);
@@ -574,7 +581,6 @@ bool Detector<N>::update(const BlockSystem<N>& system, const JointTable& joints,
   counters_.narrow_phases += static_cast<long>(due_pairs_.size());
   counters_.narrow_phases_skipped += static_cast<long>(pairs_.size() - due_pairs_.size());
   const bool orphans = !gone_.empty();
-  changes_.clear();
   if (!searches) shapes_.begin(system);
   index_.begin(system, contacts, resting_.contacts);
   for (const int pair : pairs_around_due_ones()) index_.add(ranges_[pair]);

@@ -86,8 +86,8 @@ class Detector {
   /// Between blocks of which neither moves, one at least being at rest.
   const std::vector<Contact>& resting_contacts() const { return resting_.contacts; }
 
-  /// What the last update() that was true has renewed, in the order of the list, pairs without contacts before and after left out. Where it has
-  /// searched, contacts may also have gone whose blocks are no pair any more.
+  /// What the last update() has renewed, in the order of the list, pairs without contacts before and after left out. Where it has searched, contacts
+  /// may also have gone whose blocks are no pair any more.
   const std::vector<DetectionChange>& changes() const { return changes_; }
   /// Whether the next update() searches for pairs.
   bool needs_search(const BlockSystem<N>& system) const { return forgotten_ || !skips_.search || moved_beyond_search_skin(system); }
@@ -193,7 +193,7 @@ class Detector {
   std::vector<Range> ranges_;                   ///< of the pairs, in the list as the last update() left it
   PairList resting_;                            ///< set aside, in any order
   std::vector<Unknowns> searched_at_;           ///< displacements of the blocks in the last search
-  std::vector<Unknowns> searched_moving_at_;    ///< in the last one before which they were not at rest
+  std::vector<Unknowns> searched_moving_at_;    ///< in the last one before which they were not at rest; empty while none is
   std::vector<Place> places_;                   ///< of the blocks in the last update()
   std::vector<Way> ways_;                       ///< of the blocks
   std::vector<int> pairs_of_start_, pairs_of_;  ///< of the blocks: pairs_of_[pairs_of_start_[b]] to before that of b + 1

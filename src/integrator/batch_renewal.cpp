@@ -5,12 +5,13 @@
 namespace openclose {
 
 template <int N>
-void BatchRenewal<N>::find_places(const BlockSystem<N>& system) {
-  places_.resize(system.block_count());
+std::vector<typename BatchRenewal<N>::BlockPlace> BatchRenewal<N>::places_of(const BlockSystem<N>& system) {
+  std::vector<BlockPlace> places(system.block_count());
   for (int b = 0; b < system.block_count(); ++b) {
     const int equation = system.block(b).equation;
-    places_[b] = {system.centroid(b), equation >= 0 ? equation : system.free_count()};
+    places[b] = {system.centroid(b), equation >= 0 ? equation : system.free_count()};
   }
+  return places;
 }
 
 template <int N>
@@ -24,9 +25,9 @@ void BatchRenewal<N>::renew(const StepProblem<N>& problem, const SpringSource<N>
   const std::size_t count = problem.contacts.size();
   if (last) resize_closely(owners_, count);
   resize_closely(batches, (count + batch_size - 1) / batch_size);
-  find_places(problem.system);
   const Contact* const contacts = problem.contacts.data();
-  const BlockPlace* const places = places_.data();
+  const std::vector<BlockPlace> place_of = places_of(problem.system);
+  const BlockPlace* const places = place_of.data();
   const ContactSprings* const given = springs.list();
   Owner* const owners = owners_.data();
   for (std::size_t c = 0; c < count; ++c) {

@@ -45,7 +45,7 @@ class BatchRenewal {
   void renew(const StepProblem<N>& problem, const SpringSource<N>& springs, ContactStarts& starts);
   /// The batches are not as the last call has left them.
   void forget() { owners_.clear(); }
-  std::size_t bytes() const { return bytes_of(places_, owners_); }
+  std::size_t bytes() const { return bytes_of(owners_); }
 
  private:
   struct Step {
@@ -71,10 +71,9 @@ class BatchRenewal {
     bool operator==(const Owner&) const = default;
   };
 
-  void find_places(const BlockSystem<N>& system);
+  static std::vector<BlockPlace> places_of(const BlockSystem<N>& system);
 
   Step step_;
-  std::vector<BlockPlace> places_;  ///< of blocks
   std::vector<Owner> owners_;       ///< of the places in the batches of the last step, none where their springs do not last
 };
 

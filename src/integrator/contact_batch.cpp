@@ -268,6 +268,10 @@ struct Entries {
   }
 };
 
+OPENCLOSE_KERNEL double* block(double* values, int slot) {
+  return values + static_cast<std::ptrdiff_t>(entries) * slot;
+}
+
 /// As ContactStiffness.
 struct Stiffness {
   Lanes xx, xy, yx, yy;
@@ -293,9 +297,11 @@ OPENCLOSE_KERNEL bool adds_nothing(const TrialBatch& at, const Branch* branches,
 /// \param averaged  forces act in the mean pose, gap and slip change with the pose at the end
 template <bool averaged>
 OPENCLOSE_KERNEL void add_stiffness(const ContactBatch* contacts, const BlockMove<3>* moves, const TrialBatch* trials, std::size_t count,
-                                    const Branch* branches, const BatchTangent& tangent, const ContactSlots* slots, double* values) {
+                                    const Branch* branches, const BatchTangent& tangent, const MatrixSlots& slots, double* values) {
   const Lanes zero{}, theta = all(tangent.end_weight);
-  for (std::size_t i = 0; i < count; ++i, branches += batch_size, slots += batch_size) {
+  const ContactSlots* of_contacts = slots.of_contacts.data();
+  const int* const diagonals = slots.diagonals.data();
+  for (std::size_t i = 0; i < count; ++i, branches += batch_size, of_contacts += batch_size) {
     const TrialBatch& at = trials[i];
     if (adds_nothing(at, branches, tangent.open_ones_too)) continue;
     const Pose pose(contacts[i], Moves(moves, contacts[i].vertex_at), Moves(moves, contacts[i].edge_at));
@@ -331,10 +337,10 @@ OPENCLOSE_KERNEL void add_stiffness(const ContactBatch* contacts, const BlockMov
     k.find(vertex_edge, -1.0, force_vx, force_vy, ex, ey, -turning_at_vertex, turning_y, -turning_x, zero, zero);
     k.find(edge_vertex, -1.0, force_ex, force_ey, vx, vy, -along_vertex, zero, zero, on_arms_y, -on_arms_x);
     for (int lane = 0; lane < batch_size; ++lane) {
-      vertex.add_to(values + slots[lane].vertex, lane);
-      edge.add_to(values + slots[lane].edge, lane);
-      vertex_edge.add_to(values + slots[lane].vertex_edge, lane);
-      edge_vertex.add_to(values + slots[lane].edge_vertex, lane);
+      vertex.add_to(block(values, diagonals[contacts[i].vertex_place(lane)]), lane);
+      edge.add_to(block(values, diagonals[contacts[i].edge_place(lane)]), lane);
+      vertex_edge.add_to(block(values, of_contacts[lane].vertex_edge), lane);
+      edge_vertex.add_to(block(values, of_contacts[lane].edge_vertex), lane);
     }
   }
 }
@@ -345,7 +351,7 @@ OPENCLOSE_KERNEL double evaluate_either(StepForces forces, double ramp, const Co
   return evaluate<StepForces::at_end>(ramp, contacts, count, moves, rounding_of_sums, trials, branches, rows);
 }
 OPENCLOSE_KERNEL void add_either_stiffness(const ContactBatch* contacts, const BlockMove<3>* moves, const TrialBatch* trials, std::size_t count,
-                                           const Branch* branches, const BatchTangent& tangent, const ContactSlots* slots, double* values) {
+                                           const Branch* branches, const BatchTangent& tangent, const MatrixSlots& slots, double* values) {
   // The symmetric tangent of means over a path knows one pose.
   if (tangent.exact && tangent.forces == StepForces::averaged)
     return add_stiffness<true>(contacts, moves, trials, count, branches, tangent, slots, values);
@@ -360,7 +366,7 @@ double evaluate_with_any_registers(StepForces forces, double ramp, const Contact
   return evaluate_either(forces, ramp, contacts, count, moves, rounding_of_sums, trials, branches, rows);
 }
 void add_stiffness_with_any_registers(const ContactBatch* contacts, const BlockMove<3>* moves, const TrialBatch* trials, std::size_t count,
-                                      const Branch* branches, const BatchTangent& tangent, const ContactSlots* slots, double* values) {
+                                      const Branch* branches, const BatchTangent& tangent, const MatrixSlots& slots, double* values) {
   add_either_stiffness(contacts, moves, trials, count, branches, tangent, slots, values);
 }
 
@@ -375,7 +381,7 @@ void add_stiffness_with_any_registers(const ContactBatch* contacts, const BlockM
 }
 [[gnu::target("avx2")]] void add_stiffness_with_wide_registers(const ContactBatch* contacts, const BlockMove<3>* moves, const TrialBatch* trials,
                                                                std::size_t count, const Branch* branches, const BatchTangent& tangent,
-                                                               const ContactSlots* slots, double* values) {
+                                                               const MatrixSlots& slots, double* values) {
   add_either_stiffness(contacts, moves, trials, count, branches, tangent, slots, values);
 }
 #endif
@@ -393,10 +399,10 @@ BatchKernels::BatchKernels([[maybe_unused]] bool wide_registers)
 }
 
 void BatchKernels::add_stiffness(const std::vector<ContactBatch>& contacts, const BlockMove<3>* moves, const std::vector<TrialBatch>& trials,
-                                 const std::vector<Branch>& branches, const BatchTangent& tangent, const std::vector<ContactSlots>& slots,
+                                 const std::vector<Branch>& branches, const BatchTangent& tangent, const MatrixSlots& slots,
                                  BlockMatrix<3>& matrix) const {
   if (matrix.rows() == 0) return;
-  add_stiffness_(contacts.data(), moves, trials.data(), trials.size(), branches.data(), tangent, slots.data(), matrix.value(0).data());
+  add_stiffness_(contacts.data(), moves, trials.data(), trials.size(), branches.data(), tangent, slots, matrix.value(0).data());
 }
 
 double BatchKernels::largest_force(const std::vector<TrialBatch>& trials) {

@@ -171,15 +171,14 @@ struct ForceRow {
   Lanes of_odd_lanes{};  ///< of the others
 };
 
-/// Where in a matrix a contact's stiffness goes to: slots times the entries of a block, that of nobody where a block is fixed.
+/// Where in a matrix a contact's stiffness goes to beside the diagonal: slots, that of nobody where a block is fixed.
 struct ContactSlots {
-  unsigned vertex, edge, vertex_edge, edge_vertex;
+  int vertex_edge, edge_vertex;
+};
 
-  explicit ContactSlots(int nobody = 0) : vertex(entry(nobody)), edge(vertex), vertex_edge(vertex), edge_vertex(vertex) {}
-  static unsigned entry(int slot) { return entries_of_block * static_cast<unsigned>(slot); }
-
- private:
-  static constexpr unsigned entries_of_block = 9;
+struct MatrixSlots {
+  std::vector<ContactSlots> of_contacts;  ///< of every place of a batch
+  std::vector<int> diagonals;             ///< by the places of blocks, that of nobody where one is fixed
 };
 
 /// Which tangent is added up.
@@ -214,17 +213,16 @@ class BatchKernels {
   }
   /// [N] of all batches that were evaluated.
   static double largest_force(const std::vector<TrialBatch>& trials);
-  /// Adds the stiffness of all contacts to the matrix. There are slots for every place of a batch.
+  /// Adds the stiffness of all contacts to the matrix.
   /// \param moves  with which the trials were evaluated
   void add_stiffness(const std::vector<ContactBatch>& contacts, const BlockMove<3>* moves, const std::vector<TrialBatch>& trials,
-                     const std::vector<Branch>& branches, const BatchTangent& tangent, const std::vector<ContactSlots>& slots,
-                     BlockMatrix<3>& matrix) const;
+                     const std::vector<Branch>& branches, const BatchTangent& tangent, const MatrixSlots& slots, BlockMatrix<3>& matrix) const;
 
  private:
   double (*begin_)(ContactBatch*, std::size_t);
   double (*evaluate_)(StepForces, double, const ContactBatch*, std::size_t, const BlockMove<3>*, double, TrialBatch*, Branch*, ForceRow*);
   void (*add_stiffness_)(const ContactBatch*, const BlockMove<3>*, const TrialBatch*, std::size_t, const Branch*, const BatchTangent&,
-                         const ContactSlots*, double*);
+                         const MatrixSlots&, double*);
 };
 
 }  // namespace openclose

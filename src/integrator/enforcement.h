@@ -190,6 +190,7 @@ inline void refuse_integrators(const MethodInput& method) {
   refuse(method.theta.value_or(1.0) != 1.0, "method.theta");
   refuse(method.rho_inf.has_value(), "method.rho_inf");
   refuse(method.dissipation.has_value(), "method.dissipation");
+  refuse(method.first_integrator.has_value(), "method.first_integrator");
   refuse(method.static_solver != StaticSolver::automatic, "method.static_solver");
 }
 

@@ -25,6 +25,31 @@ std::string integrator_name(const MethodInput& method) {
   return method.integrator.value_or(method.theta ? "theta" : default_integrator);
 }
 
+MethodInput method_at_first(const MethodInput& method) {
+  MethodInput first = method;
+  first.integrator = method.first_integrator;
+  first.theta.reset();
+  first.rho_inf.reset();
+  first.dissipation.reset();
+  return first;
+}
+
+namespace {
+
+template <int N>
+const IntegratorEntry<N>& find_integrator(const MethodInput& method, const std::string& name, const char* key) {
+  if (name == "path_average" && method.rotation != RotationKind::exact)
+    throw InputError(method.contact_where, "method.rotation", "\"linear\" has no path that could be averaged", "\"exact\", or another integrator");
+  std::string names;
+  for (const auto& entry : integrators<N>()) {
+    if (name == entry.name) return entry;
+    names += fmt::format("{}\"{}\"", names.empty() ? "" : ", ", entry.name);
+  }
+  throw InputError(method.contact_where, key, fmt::format("\"{}\" is no known integrator", name), names);
+}
+
+}  // namespace
+
 template <int N>
 std::unique_ptr<TimeScheme<N>> make_integrator(const MethodInput& method) {
   const std::string name = integrator_name(method);
@@ -36,14 +61,8 @@ std::unique_ptr<TimeScheme<N>> make_integrator(const MethodInput& method) {
   only_for(method.theta.has_value(), "method.theta", "theta");
   only_for(method.rho_inf.has_value(), "method.rho_inf", "generalized_alpha");
   only_for(method.dissipation.has_value(), "method.dissipation", "path_average");
-  if (name == "path_average" && method.rotation != RotationKind::exact)
-    throw InputError(method.contact_where, "method.rotation", "\"linear\" has no path that could be averaged", "\"exact\", or another integrator");
-  std::string names;
-  for (const auto& entry : integrators<N>()) {
-    if (name == entry.name) return entry.make(method);
-    names += fmt::format("{}\"{}\"", names.empty() ? "" : ", ", entry.name);
-  }
-  throw InputError(method.contact_where, "method.integrator", fmt::format("\"{}\" is no known integrator", name), names);
+  if (method.first_integrator) find_integrator<N>(method, *method.first_integrator, "method.first_integrator");
+  return find_integrator<N>(method, name, "method.integrator").make(method);
 }
 
 template const std::vector<IntegratorEntry<3>>& integrators<3>();

@@ -41,7 +41,10 @@ const std::vector<IntegratorEntry<N>>& integrators();
 /// method.integrator; where it is absent "theta" if there is a method.theta, else the default.
 std::string integrator_name(const MethodInput& method);
 
-/// Throws InputError for an unknown name and for parameters of another integrator.
+/// With the first integrator of the method, and what it takes where the scene does not say, instead of the other one.
+MethodInput method_at_first(const MethodInput& method);
+
+/// Throws InputError for an unknown name, also of the first integrator, and for parameters of another integrator.
 template <int N>
 std::unique_ptr<TimeScheme<N>> make_integrator(const MethodInput& method);
 

@@ -1,6 +1,7 @@
 #include "openclose/integrator/parts.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace openclose {
 
@@ -9,6 +10,26 @@ namespace {
 constexpr int outside = -1;  ///< of all rings
 
 }  // namespace
+
+std::vector<int> most_unbalanced(const std::vector<double>& residuals, double largest, double end, double part, int few) {
+  if (!std::isfinite(largest)) return {};
+  const auto beyond = [&](double limit) {
+    std::vector<int> rows;
+    for (std::size_t row = 0; row < residuals.size(); ++row) {
+      if (residuals[row] > limit) rows.push_back(static_cast<int>(row));
+    }
+    return rows;
+  };
+  double limit = std::max(end, part * largest);
+  std::vector<int> rows = beyond(limit);
+  while (limit > end) {
+    limit = std::max(end, part * limit);
+    std::vector<int> more = beyond(limit);
+    if (static_cast<int>(more.size()) > few) break;
+    rows = std::move(more);
+  }
+  return rows;
+}
 
 std::vector<Part> Neighbourhood::parts(const std::vector<int>& seeds, int rings, int largest) const {
   std::vector<int> ring(rows(), outside);

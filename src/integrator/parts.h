@@ -13,6 +13,11 @@ struct Part {
   std::vector<int> contacts;  ///< all that touch one of them, ascending
 };
 
+/// Rows with more than a part of the largest residual, and those with more than that part of it, and so on as long as there are few.
+/// \param largest  of the residuals; infinite: none
+/// \param end      rows with less are never among them
+std::vector<int> most_unbalanced(const std::vector<double>& residuals, double largest, double end, double part, int few);
+
 /// Which contacts join which blocks.
 class Neighbourhood {
  public:
@@ -62,7 +67,7 @@ void Neighbourhood::build(int rows, std::size_t contacts, const RowsOf& rows_of)
   }
   int end = 0;
   for (int& first : first_) first = end += first;
-  ends_.resize(end);
+  resize_closely(ends_, end);
   // From the back, which leaves each row its first place.
   for (std::size_t c = contacts; c-- > 0;) {
     const auto [i, j] = rows_of(c);

@@ -8,27 +8,26 @@ namespace openclose {
 template <int N>
 template <class BlocksOf>
 bool TangentSystem<N>::find_slots(std::size_t count, const BlocksOf& blocks_of) {
-  diagonal_of_.clear();
-  for (int row : row_of_) diagonal_of_.push_back(ContactSlots::entry(row < 0 ? matrix_.nobody() : matrix_.diagonal(row)));
-  const std::size_t known = slots_.size();
-  resize_closely(slots_, (count + batch_size - 1) / batch_size * batch_size);
-  std::fill(slots_.begin() + static_cast<std::ptrdiff_t>(count), slots_.end(), ContactSlots(matrix_.nobody()));
+  slots_.diagonals.clear();
+  for (int row : row_of_) slots_.diagonals.push_back(row < 0 ? matrix_.nobody() : matrix_.diagonal(row));
+  const ContactSlots nobodies{matrix_.nobody(), matrix_.nobody()};
+  const std::size_t known = slots_.of_contacts.size();
+  resize_closely(slots_.of_contacts, (count + batch_size - 1) / batch_size * batch_size);
+  std::fill(slots_.of_contacts.begin() + static_cast<std::ptrdiff_t>(std::min(count, known)), slots_.of_contacts.end(), nobodies);
   for (std::size_t c = 0; c < count; ++c) {
-    ContactSlots& slots = slots_[c];
+    ContactSlots& slots = slots_.of_contacts[c];
     const auto [a, b] = blocks_of(c);
-    if (c < known && slots.vertex == diagonal_of_[a] && slots.edge == diagonal_of_[b]) continue;  // most contacts have their places of the last step
-    slots = ContactSlots(matrix_.nobody());
-    slots.vertex = diagonal_of_[a];
-    slots.edge = diagonal_of_[b];
     const int i = row_of_[a], j = row_of_[b];
-    if (i < 0 || j < 0) continue;
-    const int vertex_edge = matrix_.find(i, j);
-    if (vertex_edge < 0) {
-      slots_.clear();
+    if (i < 0 || j < 0) {
+      slots = nobodies;
+      continue;
+    }
+    if (matrix_.is_at(slots.vertex_edge, i, j)) continue;  // most contacts have their places of the last step
+    slots = {matrix_.find(i, j), matrix_.find(j, i)};
+    if (slots.vertex_edge < 0) {
+      slots_.of_contacts.clear();
       return false;
     }
-    slots.vertex_edge = ContactSlots::entry(vertex_edge);
-    slots.edge_vertex = ContactSlots::entry(matrix_.find(j, i));
   }
   return true;
 }
@@ -91,7 +90,7 @@ void TangentSystem<N>::renew_pattern(const MethodInput& method, int rows, std::s
 template <int N>
 void TangentSystem<N>::set_pattern(int rows, const std::vector<std::pair<int, int>>& couplings) {
   matrix_.set_pattern(rows, couplings);
-  slots_.clear();
+  slots_.of_contacts.clear();
   if (!solver_) choose_solver(rows);
 }
 
@@ -120,8 +119,8 @@ template <int N>
 Memory TangentSystem<N>::memory() const {
   Memory of = solver_memory_;
   of.matrix = matrix_.bytes();
-  of.contacts = bytes_of(slots_);
-  of.blocks = bytes_of(row_of_, diagonal_of_);
+  of.contacts = bytes_of(slots_.of_contacts);
+  of.blocks = bytes_of(row_of_, slots_.diagonals);
   return of;
 }
 

@@ -20,8 +20,7 @@ class TangentSystem {
   /// \param contacts  the blocks of each
   void fit_part(const MethodInput& method, int rows, int blocks, const std::vector<std::pair<int, int>>& contacts);
 
-  /// Of the contacts, and of nothing up to the end of the last batch.
-  const std::vector<ContactSlots>& slots() const { return slots_; }
+  const MatrixSlots& slots() const { return slots_; }
   BlockMatrix<N>& matrix() { return matrix_; }
   /// False if the matrix is singular.
   /// \param kept_change  [-] see LinearSolver::factor()
@@ -48,9 +47,8 @@ class TangentSystem {
   void choose_solver(int rows);
 
   BlockMatrix<N> matrix_;
-  std::vector<ContactSlots> slots_;
-  std::vector<int> row_of_;            ///< by block, negative without
-  std::vector<unsigned> diagonal_of_;  ///< by block, as in ContactSlots
+  MatrixSlots slots_;
+  std::vector<int> row_of_;  ///< by block, negative without
   LinearSolverKind kind_ = LinearSolverKind::automatic;
   Factoring factoring_ = Factoring::needed;
   bool skip_symbolic_ = true;

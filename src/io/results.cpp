@@ -212,6 +212,8 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
       {"theta", optional_json(scene.method.theta)},
       {"rho_inf", optional_json(scene.method.rho_inf)},
       {"dissipation", optional_json(scene.method.dissipation)},
+      {"first_integrator", scene.method.first_integrator ? ordered_json(*scene.method.first_integrator) : ordered_json(nullptr)},
+      {"first_integrator_s", scene.method.first_integrator ? ordered_json(scene.method.first_integrator_time) : ordered_json(nullptr)},
       {"rotation", word_for(rotation_words, scene.method.rotation)},
       {"start", word_for(start_words, scene.method.start)},
       {"statics", scene.method.statics},

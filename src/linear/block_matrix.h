@@ -25,7 +25,9 @@ class BlockMatrix {
   void renew_version();                                      ///< lets the pattern pass for a new one
 
   bool contains(int row, int column) const { return find(row, column) >= 0; }
-  int find(int row, int column) const;                    ///< slot of the pair, -1 if not in the pattern
+  int find(int row, int column) const;  ///< slot of the pair, -1 if not in the pattern
+  /// Whether this is the slot of the pair.
+  bool is_at(int slot, int row, int column) const { return slot >= row_start_[row] && slot < row_start_[row + 1] && columns_[slot] == column; }
   int diagonal(int row) const { return diagonal_[row]; }  ///< slot
   /// A slot after all others, which nothing reads: for what belongs to no row.
   int nobody() const { return static_cast<int>(columns_.size()); }

@@ -8,7 +8,14 @@ namespace openclose {
 
 template <int N>
 BlockSystem<N>::BlockSystem(const Scene& scene) : rotation_kind_(scene.method.rotation) {
-  blocks_.reserve(scene.blocks.size());
+  const std::size_t blocks = scene.blocks.size();
+  std::size_t vertices = 0;
+  for (const BlockInput& input : scene.blocks) vertices += input.vertices.size();
+  blocks_.reserve(blocks);
+  for (auto* list : {&state_.displacement, &state_.velocity}) list->reserve(blocks);
+  for (auto* list : {&next_, &previous_}) list->reserve(vertices);
+  reflex_.reserve(vertices);
+  reference_arm_.reserve(vertices);
   if (!scene.blocks.empty()) origin_ = scene.blocks.front().vertices.front();
   for (const BlockInput& input : scene.blocks) {
     Polygon polygon;  // near zero: differences of neighbouring coordinates are exact, their products are not

@@ -12,14 +12,15 @@
 namespace openclose {
 namespace {
 
-[[noreturn]] void fail_overlap(const BlockInput& a, const BlockInput& b, double depth) {
-  throw InputError(b.where, "block",
-                   fmt::format("\"{}\" overlaps \"{}\" (line {}) by at least {:.3g} m at the start", b.name, a.name, a.where.line, depth),
+[[noreturn]] void fail_overlap(const Scene& scene, const BlockInput& a, const BlockInput& b, double depth) {
+  throw InputError({scene.where.file, b.line}, "block",
+                   fmt::format("\"{}\" overlaps \"{}\" (line {}) by at least {:.3g} m at the start", b.name, a.name, a.line, depth),
                    fmt::format("overlaps of at most {} m", tolerance::deepest_initial_overlap_m));
 }
 
 /// Sweep over x: a block is compared only with those that begin before it ends.
-void require_no_overlap(const std::vector<BlockInput>& blocks) {
+void require_no_overlap(const Scene& scene) {
+  const std::vector<BlockInput>& blocks = scene.blocks;
   std::vector<Box> boxes;
   for (const BlockInput& block : blocks) boxes.push_back(Box::around(block.vertices));
   std::vector<int> by_x(blocks.size());
@@ -33,7 +34,7 @@ void require_no_overlap(const std::vector<BlockInput>& blocks) {
       if (!boxes[by_x[i]].overlaps(boxes[by_x[j]].inflated(-tolerance::deepest_initial_overlap_m))) continue;
       const auto [first, second] = std::minmax(by_x[i], by_x[j]);
       const double depth = overlap_depth(blocks[first].vertices, blocks[second].vertices);
-      if (depth > tolerance::deepest_initial_overlap_m) fail_overlap(blocks[first], blocks[second], depth);
+      if (depth > tolerance::deepest_initial_overlap_m) fail_overlap(scene, blocks[first], blocks[second], depth);
     }
   }
 }
@@ -74,7 +75,7 @@ void require_joints(const Scene& scene) {
 
 std::vector<std::string> check_scene(const Scene& scene) {
   require_joints(scene);
-  require_no_overlap(scene.blocks);
+  require_no_overlap(scene);
   std::vector<std::string> warnings;
   if (scene.cutting) warnings = scene.cutting->warnings;
   if (nothing_holds(scene)) warnings.push_back(scene.where.file + ": nothing is fixed or supported under gravity: every block will fall");

@@ -280,7 +280,7 @@ void cut_domain(const CuttingTables& tables, const NameList& material_names, Nam
     block.name = fmt::format("b{:0{}}", ++number, digits);
     block.material = material_at(polygon_properties(polygon).centroid, regions, domain.material);
     block.vertices = polygon;
-    block.where = table.where();
+    block.line = table.where().line;
     block_names.add(table.at("vertices_m"), block.name);
     scene.blocks.push_back(std::move(block));
   }

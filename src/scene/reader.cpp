@@ -102,7 +102,7 @@ std::vector<JointProperties> read_joints(const std::vector<Table>& tables, const
 BlockInput read_block(Table table, const NameList& material_names, NameList& block_names) {
   BlockInput block;
   Polygon vertices;
-  block.where = table.where();
+  block.line = table.where().line;
   table.required("name", block.name);
   table.required("material", block.material, material_names);
   table.required("vertices_m", vertices, coordinate);
@@ -200,6 +200,7 @@ MethodInput read_method(Table table, const SourceLocation& scene_where) {
   table.optional("integrator", method.integrator);
   table.optional("rho_inf", method.rho_inf, Range{.low = 0.0, .high = 1.0, .low_included = true, .high_included = true});
   table.optional("dissipation", method.dissipation, Range{.low = 0.0, .high = 1.0, .low_included = true, .high_included = true});
+  if (table.optional("first_integrator", method.first_integrator)) table.required("first_integrator_s", method.first_integrator_time, positive);
   table.optional("rotation", method.rotation, rotation_words);
   table.optional("start", method.start, start_words);
   table.optional("statics", method.statics);

@@ -45,7 +45,7 @@ struct BlockInput {
   bool rotation_locked = false;
   Vec2 velocity = Vec2::Zero();   ///< [m/s]
   double angular_velocity = 0.0;  ///< [rad/s] counter-clockwise
-  SourceLocation where;
+  int line = 0;                   ///< of the scene's file, for errors
 };
 
 /// A spring that holds one material point of a block at its initial place.
@@ -137,7 +137,9 @@ struct MethodInput {
       integrator;                 ///< soft: name in the list of integrators (analysis looks it up); absent: theta if there is one, else the default
   std::optional<double> theta;    ///< [-] theta: 1: Newmark (1/2, 1), Shi's; 1/2: trapezoid (Newmark (1/4, 1/2))
   std::optional<double> rho_inf;  ///< [-] generalized_alpha: spectral radius at infinite frequency; absent: default_rho_inf
-  std::optional<double> dissipation;  ///< [-] path_average: see Soft; absent: none
+  std::optional<double> dissipation;            ///< [-] path_average: see Soft; absent: none
+  std::optional<std::string> first_integrator;  ///< soft: the integrator of steps that begin before the next one; absent: there are none
+  double first_integrator_time = 0.0;           ///< [s]
   RotationKind rotation = RotationKind::exact;
   Start start = Start::settled;
   bool statics = false;               ///< dynamic coefficient 0: every step starts from rest

@@ -156,6 +156,10 @@ void write_method(Text& text, const MethodInput& method) {
   if (method.theta) text.line("theta", *method.theta);
   if (method.rho_inf) text.line("rho_inf", *method.rho_inf);
   if (method.dissipation) text.line("dissipation", *method.dissipation);
+  if (method.first_integrator) {
+    text.line("first_integrator", std::string_view(*method.first_integrator));
+    text.line("first_integrator_s", method.first_integrator_time);
+  }
   text.line("rotation", word_for(rotation_words, method.rotation));
   text.line("start", word_for(start_words, method.start));
   text.line("statics", method.statics);

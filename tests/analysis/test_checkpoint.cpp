@@ -117,6 +117,17 @@ TEST_CASE("a saved simulation goes on bit for bit with every integrator, in adap
   }
 }
 
+TEST_CASE("a saved simulation goes on bit for bit before, at and after the end of its first integrator", "[analysis][checkpoint]") {
+  for (const auto& [first, then] : {std::pair("path_average", "shi"), std::pair("generalized_alpha", "tr_bdf2")}) {
+    INFO(first << ", then " << then);
+    Scene scene = prepared(test::tumbling_blocks(), "soft");
+    scene.method.first_integrator = first;
+    scene.method.first_integrator_time = 60.0 * scene.step.dt;
+    scene.method.integrator = then;
+    for (const int at : {0, 59, 60, 61}) check_goes_on(scene, at, at + 60);
+  }
+}
+
 TEST_CASE("saving leaves a simulation as it is", "[analysis][checkpoint]") {
   for (const std::string& method : all_methods) {
     INFO(method);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "openclose/analysis/run.h"
+#include "openclose/analysis/settle.h"
 #include "openclose/analysis/simulation.h"
 #include "openclose/core/error.h"
 #include "support/catch.h"
@@ -253,6 +254,28 @@ TEST_CASE("iterating only where forces are far from balance changes no more than
   }
 }
 
+TEST_CASE("steps that begin before its time are the first integrator's, the others start from where it has got to", "[analysis][simulation]") {
+  constexpr int at_first = 60;
+  Scene scene = tumbling("soft");
+  scene.method.integrator = "path_average";
+  Simulation<3> expected(scene);
+  scene.method.first_integrator = "path_average";
+  scene.method.first_integrator_time = at_first * scene.step.dt;
+  scene.method.integrator = "tr_bdf2";
+  Simulation<3> changing(scene);
+  const auto advance_as_expected = [&] {
+    REQUIRE(expected.advance(scene.step.dt));
+    REQUIRE(changing.advance(scene.step.dt));
+    CHECK(changing.system().state().displacement == expected.system().state().displacement);
+  };
+  for (int i = 0; i < at_first; ++i) advance_as_expected();
+  MethodInput last = scene.method;
+  last.first_integrator.reset();
+  expected.change_method(last);
+  for (int i = 0; i < at_first; ++i) advance_as_expected();
+  CHECK(std::abs(changing.ledger().imbalance()) < 1e-9 * changing.ledger().turnover);
+}
+
 TEST_CASE("evaluating only what moved with a part changes no bit", "[analysis][simulation]") {
   for (const std::string integrator : {"shi", "theta", "path_average"}) {
     INFO(integrator);
@@ -393,6 +416,24 @@ TEST_CASE("after a change of the method the motion is that of its time scheme", 
   simulation.change_method(of_two_stages);
   REQUIRE(simulation.advance(1e-2));
   CHECK(simulation.step_counters().steps == 1 + 2);
+}
+
+TEST_CASE("the way to an equilibrium is the same without books, which begin with the clock", "[analysis][simulation]") {
+  for (const std::string method : {"soft", "hard", "shi"}) {
+    INFO(method);
+    Scene scene = tumbling(method);
+    Simulation<3> booked(scene), unbooked(scene);
+    unbooked.book_steps(false);
+    for (Simulation<3>* s : {&booked, &unbooked}) REQUIRE(settle(*s).settled);
+    CHECK(booked.ledger().turnover > 0.0);
+    CHECK(unbooked.ledger().turnover == 0.0);
+    for (Simulation<3>* s : {&booked, &unbooked}) {
+      s->restart_clock();
+      for (int i = 0; i < 20; ++i) REQUIRE(s->advance(2e-3));
+    }
+    CHECK(unbooked.ledger().turnover > 0.0);
+    CHECK(same_bits(everything(unbooked), everything(booked)));
+  }
 }
 
 TEST_CASE("restarting the clock empties the books and nothing else", "[analysis][simulation]") {

@@ -212,15 +212,12 @@ TEST_CASE("the stiffness of four contacts at a time is that of each", "[integrat
   BlockMatrix<3> matrix, expected;
   matrix.set_pattern(free_count, couplings);
   expected.set_pattern(free_count, couplings);
-  std::vector<ContactSlots> slots(all.branches.size(), ContactSlots(matrix.nobody()));
+  MatrixSlots slots{std::vector<ContactSlots>(all.branches.size(), {matrix.nobody(), matrix.nobody()}),
+                    std::vector<int>(block_count + 1, matrix.nobody())};
+  for (int row = 0; row < free_count; ++row) slots.diagonals[row] = matrix.diagonal(row);
   for (std::size_t c = 0; c < count; ++c) {
     const int a = contacts.vertex_blocks[c], b = contacts.edge_blocks[c];
-    if (a < free_count) slots[c].vertex = ContactSlots::entry(matrix.diagonal(a));
-    if (b < free_count) slots[c].edge = ContactSlots::entry(matrix.diagonal(b));
-    if (a < free_count && b < free_count) {
-      slots[c].vertex_edge = ContactSlots::entry(matrix.find(a, b));
-      slots[c].edge_vertex = ContactSlots::entry(matrix.find(b, a));
-    }
+    if (a < free_count && b < free_count) slots.of_contacts[c] = {matrix.find(a, b), matrix.find(b, a)};
   }
   kernels.add_stiffness(all.batches, contacts.moves.data(), trials, all.branches, tangent, slots, matrix);
 

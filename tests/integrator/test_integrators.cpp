@@ -125,6 +125,23 @@ TEST_CASE("unknown integrators and parameters of another one are refused", "[int
   CHECK_THROWS_WITH(make_integrator<3>(input), ContainsSubstring("method.rotation"));
 }
 
+TEST_CASE("the first integrator has none of the parameters of the other one, and is refused if it is unknown", "[integrator][integrators]") {
+  MethodInput input = method("theta");
+  input.theta = 0.5;
+  input.first_integrator = "shi";
+  CHECK(make_integrator<3>(input)->end_weight() == 0.5);
+  CHECK(make_integrator<3>(method_at_first(input))->end_weight() == 1.0);
+  input.first_integrator = "path_average";
+  CHECK_FALSE(make_integrator<3>(input)->averages_path());
+  CHECK(make_integrator<3>(method_at_first(input))->averages_path());
+  input.first_integrator = "newmark";
+  CHECK_THROWS_WITH(make_integrator<3>(input),
+                    ContainsSubstring("scene.toml:7: method.first_integrator: \"newmark\"") && ContainsSubstring("\"path_average\""));
+  input.first_integrator = "path_average";
+  input.rotation = RotationKind::linear;
+  CHECK_THROWS_WITH(make_integrator<3>(input), ContainsSubstring("method.rotation"));
+}
+
 TEST_CASE("integrators: observed order on an oscillator", "[integrator][integrators]") {
   for (const auto& [name, order] :
        std::vector<std::pair<std::string, double>>{{"shi", 1.0}, {"generalized_alpha", 2.0}, {"tr_bdf2", 2.0}, {"path_average", 2.0}}) {
@@ -253,10 +270,12 @@ TEST_CASE("path averages keep the energy of a support's springs where there is n
 }
 
 TEST_CASE("path averages converge fast where the weight turns a block about soft contacts", "[integrator][integrators]") {
-  // A tall column sways on springs so soft that the turning of the contact forces takes a third of their stiffness against tilting, k b^2/2 of m g h/2.
+  // A tall column sways on springs so soft that the turning of the contact forces takes a third of their stiffness against tilting, k b^2/2 of m g
+  // h/2.
   Scene scene = test::empty_scene();
   scene.method.integrator = "path_average";
-  scene.blocks = {test::fixed_block("base", test::rectangle(-10.0, -1.0, 20.0, 1.0)), test::free_block("column", test::rectangle(-1.0, 0.0, 2.0, 20.0))};
+  scene.blocks = {test::fixed_block("base", test::rectangle(-10.0, -1.0, 20.0, 1.0)),
+                  test::free_block("column", test::rectangle(-1.0, 0.0, 2.0, 20.0))};
   scene.joints[0].normal_stiffness = 3e6;
   scene.joints[0].shear_stiffness = 3e6;
   scene.joints[0].friction_angle = 60.0 * test::degree;

@@ -332,6 +332,31 @@ TEST_CASE("Newton ends where it is lost among the contact states, and goes on fo
   CHECK(longest > 2 * most_iterations_to_halve);  // some has halved its residuals after a while, and then gone on
 }
 
+TEST_CASE("Newton with parts ends soon where a few contacts keep it from balance", "[integrator][newton]") {
+  // The same slope with springs, of contacts that were bonded when gravity came.
+  Scene scene = read_scene(std::string(OPENCLOSE_PAPER_SCENES) + "/example_3_4_post_failure.toml",
+                           {"joint_set[0].spacing_m=27.2", "joint_set[1].spacing_m=6.8", "method.contact=\"soft\""});
+  scene.method.max_iterations = 1000;
+  bool some_is_lost = false, some_is_found = false;
+  for (const double cohesion : {20e3, 30e3, 40e3, 50e3, 60e3, 70e3}) {
+    scene.joints[0].cohesion = cohesion;
+    Simulation<3> simulation(scene);
+    const StepProblem<3> problem = simulation.problem(scene.step.dt, false);
+    std::vector<ContactSprings> springs;
+    for (const Contact& c : problem.contacts) springs.push_back(simulation.enforcement().springs(problem, c));
+    StepSolution<3> solution;
+    solution.d = drift(problem);
+    Newton<3>().solve(problem, springs, solution);
+    // From a block out of balance by the largest force to one that is so by what is tolerated.
+    const double halvings = -std::log2(scene.method.residual_tolerance);
+    INFO(cohesion << " Pa: " << solution.effort.iterations << " iterations");
+    CHECK(solution.effort.iterations <= halvings * most_iterations_to_halve_with_parts);
+    (solution.converged ? some_is_found : some_is_lost) = true;
+  }
+  CHECK(some_is_found);
+  CHECK(some_is_lost);
+}
+
 TEST_CASE("Newton counts its linear solves and says why it gives up", "[integrator][newton]") {
   Scene scene = settled_scene(3);
   scene.method.max_iterations = 1;

@@ -59,6 +59,18 @@ TEST_CASE("theta is soft's own: other enforcements refuse it", "[integrator][reg
   }
 }
 
+TEST_CASE("a first integrator is soft's own: other enforcements refuse it", "[integrator][registry]") {
+  for (const std::string& name : all_methods) {
+    MethodInput input = method(name);
+    input.first_integrator = "path_average";
+    if (name == "soft")
+      CHECK_NOTHROW(make_enforcement<3>(input)->make_time_scheme(input));
+    else
+      CHECK_THROWS_WITH(make_enforcement<3>(input)->make_time_scheme(input),
+                        ContainsSubstring("scene.toml:7: method.first_integrator: ") && ContainsSubstring(name));
+  }
+}
+
 TEST_CASE("only hard contacts store no energy", "[integrator][registry]") {
   for (const std::string& name : all_methods) CHECK(make_enforcement<3>(method(name))->has_elastic_contacts() == (name != "hard"));
 }

@@ -16,7 +16,6 @@ BlockInput block(const std::string& name, double x, double y, double width, doub
   BlockInput input;
   input.name = name;
   input.vertices = {{x, y}, {x + width, y}, {x + width, y + height}, {x, y + height}};
-  input.where = {"scene.toml", 0};
   return input;
 }
 

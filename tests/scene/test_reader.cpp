@@ -24,9 +24,8 @@ TEST_CASE("a small scene gets the defaults of the structs", "[scene][reader]") {
   REQUIRE(scene.blocks.size() == 2);
   CHECK(scene.blocks[0].name == "base");
   CHECK(scene.blocks[0].fixed);
-  CHECK(scene.blocks[0].where.line == 11);
-  CHECK(scene.blocks[1].where.line == 17);
-  CHECK(scene.blocks[1].where.file == file.path());
+  CHECK(scene.blocks[0].line == 11);
+  CHECK(scene.blocks[1].line == 17);
   CHECK_FALSE(scene.blocks[1].fixed);
   CHECK(scene.blocks[1].vertices == std::vector<Vec2>{{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}});
   CHECK(scene.method.contact == MethodInput{}.contact);
@@ -58,7 +57,7 @@ TEST_CASE("every key reaches its field", "[scene][reader]") {
       "[[support]]\nblock = 'one'\npoint_m = [0, 0]\nstiffness_n_per_m = [0, 7]\n"
       "[[load]]\nblock = 'one'\npoint_m = [0.25, 0.25]\nforce_n = [-8, 9]\n"
       "[[measured_point]]\nname = 'p'\nblock = 'one'\npoint_m = [1, 0]\n"
-      "[method]\ncontact = 'anything'\ntheta = 0.5\nintegrator = 'any'\nrho_inf = 0.25\ndissipation = 0.01\nrotation = 'linear'\nstart = "
+      "[method]\ncontact = 'anything'\ntheta = 0.5\nintegrator = 'any'\nrho_inf = 0.25\ndissipation = 0.01\nfirst_integrator = 'other'\nfirst_integrator_s = 0.5\nrotation = 'linear'\nstart = "
       "'steady_sliding'\nstatics = true\nresidual_tolerance = 1e-9\n"
       "max_iterations = 10\nskip_search = false\nskip_narrow_phase = false\nskip_looks = false\ncontact_skin_m = 0.01\nskip_reload = "
       "false\nskip_factorisation = "
@@ -108,6 +107,8 @@ TEST_CASE("every key reaches its field", "[scene][reader]") {
   CHECK(method.integrator == "any");
   CHECK(method.rho_inf == 0.25);
   CHECK(method.dissipation == 0.01);
+  CHECK(method.first_integrator == "other");
+  CHECK(method.first_integrator_time == 0.5);
   CHECK(method.rotation == RotationKind::linear);
   CHECK(method.start == Start::steady_sliding);
   CHECK(method.statics);

@@ -228,6 +228,14 @@ TEST_CASE("options out of range", "[scene][reader][errors]") {
         "23: " + key + ": " + c.read + " is out of range; accepted: " + c.accepted);
 }
 
+TEST_CASE("a first integrator wants to know for how long", "[scene][reader][errors]") {
+  const auto error = [](const std::string& lines) { return error_of(block_on_base + "[method]\n" + lines); };
+  CHECK_THAT(error("first_integrator = 'a'\n"), ContainsSubstring("method.first_integrator_s: this key is missing"));
+  CHECK(error("first_integrator = 'a'\nfirst_integrator_s = 0\n") ==
+        "24: method.first_integrator_s: 0 is out of range; accepted: a number > 0");
+  CHECK_THAT(error("first_integrator_s = 1\n"), ContainsSubstring("23: method.first_integrator_s: "));
+}
+
 TEST_CASE("a factor of the strength reduction curve out of range", "[scene][reader][errors]") {
   CHECK(error_of(block_on_base + "[strength_reduction]\ncurve = [1, 0]\n") ==
         "23: strength_reduction.curve[1]: 0 is out of range; accepted: a number > 0");

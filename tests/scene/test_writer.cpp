@@ -39,6 +39,8 @@ void check_same(const MethodInput& a, const MethodInput& b) {
   CHECK(a.theta == b.theta);
   CHECK(a.rho_inf == b.rho_inf);
   CHECK(a.dissipation == b.dissipation);
+  CHECK(a.first_integrator == b.first_integrator);
+  CHECK(a.first_integrator_time == b.first_integrator_time);
   CHECK(a.rotation == b.rotation);
   CHECK(a.start == b.start);
   CHECK(a.statics == b.statics);
@@ -181,6 +183,8 @@ Scene random_scene(unsigned seed) {
   scene.method.theta = 0.5 + 0.5 * fraction(generator);
   scene.method.rho_inf = fraction(generator);
   scene.method.dissipation = fraction(generator);
+  scene.method.first_integrator = "path_average";
+  scene.method.first_integrator_time = number();
   scene.method.rotation = RotationKind::linear;
   scene.method.start = Start::steady_sliding;
   scene.method.statics = true;

@@ -29,7 +29,7 @@ inline BlockInput free_block(const std::string& name, std::vector<Vec2> vertices
   BlockInput block;
   block.name = name;
   block.vertices = std::move(vertices);
-  block.where = {"scene.toml", 11};
+  block.line = 11;
   return block;
 }
 
