@@ -5,8 +5,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from measure import Bench, Trial
-from methods import (ADAPTIVE, ADAPTIVE_AHEAD_WIDE, AHEAD, AHEAD_WIDE, DEM, DEM_WIDE, HARD, SHI, SOFT_PATH_AVERAGE, SOFT_SHI, Method,
-                     Settings)
+from methods import (ADAPTIVE, ADAPTIVE_AHEAD_WIDE, AHEAD, AHEAD_WIDE, DEM, DEM_COARSE_REST, DEM_WIDE, HARD, LONG, SHI, SOFT_PATH_AVERAGE,
+                     SOFT_SHI, Method, Settings)
 from runs import Case
 from scaling import spacings
 from slopes import JointedSlope
@@ -62,14 +62,18 @@ FOLLOWERS = (
     *(Follower(method, FRACTIONS, FRACTION) for method in (DEM, DEM_WIDE)),
 )
 QUICK_FOLLOWER_STEPS = 2
-LARGE_FOLLOWERS = (
+LARGE_FOLLOWERS: dict[int, tuple[Follower, ...]] = {2000: (
     Follower(SOFT_SHI, (0.02, 0.01, 0.003)),
     *(Follower(method, (0.01,)) for method in (*AHEAD, *AHEAD_WIDE)),
     Follower(ADAPTIVE_AHEAD_WIDE, (1e-3, 1e-4, 3e-5), "step.error_tolerance_m"),
     *(Follower(method, (0.02,)) for method in (SOFT_PATH_AVERAGE, HARD)),
     Follower(ADAPTIVE[0], (1e-3, 3e-4), "step.error_tolerance_m"),
-    *(Follower(method, (0.9,), FRACTION) for method in (DEM, DEM_WIDE)),
-)
+    *(Follower(method, (0.01,)) for method in LONG),
+    *(Follower(method, (0.9,), FRACTION) for method in (DEM, DEM_WIDE, DEM_COARSE_REST)),
+), 10000: (  # what has been found to be quick with fewer blocks: all of it is to end within half an hour
+    *(Follower(method, (0.01,)) for method in (*AHEAD_WIDE, *LONG)),
+    *(Follower(method, (0.9,), FRACTION) for method in (DEM, DEM_WIDE, DEM_COARSE_REST)),
+)}
 
 
 @dataclass(frozen=True)
@@ -183,7 +187,7 @@ def _large(bench: Bench, blocks: int) -> float | None:
     what = (f"time at which the toe block has moved 10, 20, 30, 40 m, mean of {LARGE_STARTS} starts, largest of the four against dem with "
             f"{LARGE_REFERENCE_FRACTIONS[-1]:g} of the critical step, no block left alone")
     trials = []
-    for follower in LARGE_FOLLOWERS:
+    for follower in LARGE_FOLLOWERS[blocks]:
         for value in follower.values:
             cases = [_case(follower.method, follower.key, value, k, name, (*more, *RESTING)) for k in starts]
             trials.append(Trial(STUDY, large_scene(blocks), follower.method.name, cases[0], "motion", what, error_against(cases),

@@ -44,6 +44,21 @@ DEM_WIDE = Method("dem, skin of 10 mm", (*DEM.settings, *WIDE_SKIN))
 AHEAD_WIDE = tuple(Method(f"{m.name}, skin of 10 mm", (*m.settings, *WIDE_SKIN)) for m in AHEAD)
 ADAPTIVE_AHEAD_WIDE = Method("soft shi adaptive looking ahead, skin of 10 mm",
                              (*ADAPTIVE[0].settings, ("step.look_ahead", 0.5), *WIDE_SKIN), adaptive=True)
+# Steps that blocks of 20 m/s need not cut, and forces that balance to 1e-7 of the largest, which at 10,000 blocks is a thousand weights of a block:
+# what is left accelerates it by 1e-4 g, now this way and now that.
+LONG_WAYS: Settings = (("step.look_ahead", 0.5), *WIDE_SKIN, ("step.max_displacement_m", 0.3), ("method.residual_tolerance", 1e-7),
+                       ("settle.unbalanced_fraction", 2e-4))
+# Rock that trembles under what falls on it is at rest.
+COARSE_REST: Settings = (("rest.acceleration_m_per_s2", 3.0), ("rest.displacement_m", 1e-3))
+# Shi's steps damp the waves that break bonds when the strength is lost.
+FIRST_TR_BDF2: Settings = (("method.first_integrator", "tr_bdf2"), ("method.first_integrator_s", 0.5))
+LONG = (
+    Method("soft shi, long ways", (*SOFT_SHI.settings, *LONG_WAYS)),
+    Method("soft shi, long ways, coarse rest", (*SOFT_SHI.settings, *LONG_WAYS, *COARSE_REST)),
+    Method("soft tr_bdf2 first, then shi, long ways", (*SOFT_SHI.settings, *FIRST_TR_BDF2, *LONG_WAYS)),
+    Method("soft tr_bdf2 first, then shi, long ways, coarse rest", (*SOFT_SHI.settings, *FIRST_TR_BDF2, *LONG_WAYS, *COARSE_REST)),
+)
+DEM_COARSE_REST = Method("dem, skin of 10 mm, coarse rest", (*DEM_WIDE.settings, *COARSE_REST))
 
 
 def on_joint_springs(stiffness_pa_per_m: float) -> Method:

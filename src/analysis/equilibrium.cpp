@@ -6,6 +6,8 @@
 namespace openclose {
 namespace {
 
+constexpr const char* max_time_steps_key = "settle.max_time_steps";
+
 template <int N>
 class ByUnbalancedForce : public EquilibriumSearch<N> {
  public:
@@ -78,6 +80,7 @@ class ByRelativeDisplacement : public EquilibriumSearch<N> {
     }
     result.settled = steady >= input_.steady_steps;
     result.criterion = result.settled ? "relative displacement" : "steps";
+    if (!result.settled) result.limit = max_time_steps_key;
     return result;
   }
 
@@ -94,7 +97,8 @@ class ByForceInTime : public EquilibriumSearch<N> {
   SettleResult settle_first(const SettleProgress& progress) override { return settle_trial(progress); }
   SettleResult settle_trial(const SettleProgress& progress) override {
     const SettleInput& input = simulation_.scene().settle;
-    return settle_explicitly(simulation_, {input.unbalanced_force, input.max_time_steps, std::numeric_limits<double>::infinity(), false}, progress);
+    return settle_explicitly(
+        simulation_, {input.unbalanced_force, input.max_time_steps, max_time_steps_key, std::numeric_limits<double>::infinity(), false}, progress);
   }
 
  private:

@@ -99,7 +99,7 @@ RunResult prepare_start(Simulation<N>& simulation, const SettleProgress& progres
       result.settling = settle_start(simulation, progress);
       result.converged = result.settling.settled;
       if (!result.converged)
-        result.reason = "no static equilibrium to start from (" + result.settling.criterion + "); method.start = \"unloaded\" starts in motion";
+        result.reason = "no static equilibrium to start from (" + result.settling.verdict() + "); method.start = \"unloaded\" starts in motion";
       simulation.restore_velocities();
       reduce_strength();
       break;
@@ -137,7 +137,10 @@ class MotionInTime {
     steps_ = std::lround(std::ceil(scene_.end_time / scene_.step.dt * (1.0 - 1e-12)));
   }
 
-  void begin() { take_snapshots(0); }
+  void begin() {
+    begun_ = true;
+    take_snapshots(0);
+  }
 
   void follow() {
     const long every = steps_in(scene_.output_every), checkpoint_every = steps_in(scene_.checkpoint_every);
@@ -145,8 +148,8 @@ class MotionInTime {
       if (!simulation_.advance(length(i))) {
         result_.converged = false;
         result_.reason = simulation_.reason();
-        take_checkpoint();
-        if (observer_.output) observer_.output(simulation_);
+        row_is_there_ = false;
+        conclude();
         return;
       }
       simulation_.set_time(time_after(i));
@@ -157,16 +160,25 @@ class MotionInTime {
       if (there) result_.ended_by = "end.displacement_m";
       const bool last = there || i == steps_, regular = i % every == 0;
       if (observer_.output && regular) observer_.output(simulation_);
-      // Before the row that is only there because the run ends.
-      if (last || i % checkpoint_every == 0) take_checkpoint();
-      if (observer_.output && last && !regular) observer_.output(simulation_);
+      row_is_there_ = regular;
+      if (last) {
+        conclude();
+      } else if (i % checkpoint_every == 0) {
+        take_checkpoint();
+      }
       if (observer_.progress) observer_.progress(share_done(i));
       if (there) return;
     }
     result_.ended_by = "end.time_s";
   }
 
-  /// Whether a run that goes on has nothing left to do.
+  /// The checkpoint comes before the row that is only there because the run ends: a run that goes on to a later end has no such row.
+  void conclude() {
+    take_checkpoint();
+    if (observer_.output && !row_is_there_) observer_.output(simulation_);
+  }
+
+  /// Whether a run that goes on has no step left to take.
   bool is_over() {
     if (moved_enough()) {
       result_.ended_by = "end.displacement_m";
@@ -177,18 +189,18 @@ class MotionInTime {
   }
 
   void exchange(Archive& archive) {
-    archive(done_, moved_before_, snapshots_taken_, result_.settling, result_.milestones);
+    archive(begun_, done_, moved_before_, snapshots_taken_, row_is_there_, result_.settling, result_.milestones);
     if (points_) archive(*points_);
   }
 
   /// Says what has been asked for and did not come.
   void finish() {
     result_.cpu_of_motion = process_cpu_time() - cpu_at_start_;
-    const std::string ending = fmt::format("the run ended at t = {:.6g} s", simulation_.time());
+    const std::string ending = begun_ ? fmt::format("the run ended at t = {:.6g} s", simulation_.time()) : "the run had no state to start from";
     while (result_.milestones.size() < scene_.milestones.size()) {
       Milestone missing;
       missing.displacement = scene_.milestones[result_.milestones.size()];
-      missing.reason = fmt::format("{} with the first measured point moved by {:.6g} m", ending, points_->first_displacement());
+      missing.reason = begun_ ? fmt::format("{} with the first measured point moved by {:.6g} m", ending, points_->first_displacement()) : ending;
       result_.warnings.push_back(fmt::format("milestone {} m not reached: {}", missing.displacement, missing.reason));
       result_.milestones.push_back(missing);
     }
@@ -203,7 +215,8 @@ class MotionInTime {
  private:
   bool moved_enough() const { return scene_.end_displacement && points_->largest_displacement() >= *scene_.end_displacement; }
 
-  long steps_in(double interval) const { return std::max(1L, std::lround(interval / scene_.step.dt)); }
+  /// At least one; for what is longer than the run one more than it takes, which never comes.
+  long steps_in(double interval) const { return std::max(1L, std::lround(std::min(interval / scene_.step.dt, static_cast<double>(steps_ + 1)))); }
 
   void take_checkpoint() {
     if (scene_.checkpoint_every == 0.0 || !observer_.checkpoint) return;
@@ -260,6 +273,8 @@ class MotionInTime {
   long done_ = 0;              ///< whole steps
   double moved_before_ = 0.0;  ///< [m] by the first point, before the step
   std::size_t snapshots_taken_ = 0;
+  bool begun_ = false;         ///< there is a start state
+  bool row_is_there_ = false;  ///< observer_.output has been called after the last step
 };
 
 }  // namespace
@@ -285,7 +300,11 @@ RunResult resume(Simulation<N>& simulation, const RunObserver<N>& observer, Arch
   MotionInTime<N> motion(simulation, observer, result);
   state(simulation, motion);
   if (resumed) resumed();
-  if (!motion.is_over()) motion.follow();
+  if (motion.is_over()) {
+    motion.conclude();
+  } else {
+    motion.follow();
+  }
   motion.finish();
   return result;
 }

@@ -23,7 +23,7 @@ constexpr double negligible_part = 0.5;
 
 /// What the first static step touches a block of memory that nobody has touched yet, in slopes of 482 blocks with `soft`; a fifth of its time is for
 /// that, when it comes page by page.
-constexpr std::size_t fresh_bytes_of_a_block = 4400;
+constexpr std::size_t fresh_bytes_of_a_block = 4050;
 /// Fewer blocks find what they need where the scene was read; of more the arrays are pieces of their own, which the end of the heap does not serve.
 constexpr int fewest_blocks_with_fresh_memory = 200, most_blocks_in_heap = 1000;
 
@@ -59,7 +59,8 @@ SettleResult settle(Simulation<N>& simulation, const SettleProgress& progress) {
   const SettleInput& input = simulation.scene().settle;
   if (simulation.is_explicit()) {
     const double force = input.unbalanced_fraction * simulation.force_scale();
-    return settle_explicitly(simulation, {force, input.max_explicit_steps, input.failure_displacement, input.keep_bonds}, progress);
+    return settle_explicitly(simulation, {force, input.max_explicit_steps, "settle.max_explicit_steps", input.failure_displacement, input.keep_bonds},
+                             progress);
   }
   const auto& system = simulation.system();
   const bool is_first = simulation.step_counters().steps + simulation.step_counters().cuts == 0;
@@ -97,6 +98,7 @@ SettleResult settle(Simulation<N>& simulation, const SettleProgress& progress) {
     }
     if (result.displacement > input.failure_displacement) {
       result.criterion = "displacement";
+      result.limit = "settle.failure_displacement_m";
       return result;
     }
     // A balance that a loss of strength has upset gives no reason for longer steps.
@@ -105,6 +107,7 @@ SettleResult settle(Simulation<N>& simulation, const SettleProgress& progress) {
     growth = std::min(growth * growth, fastest_growth);
   }
   result.criterion = "steps";
+  result.limit = "settle.max_steps";
   return result;
 }
 

@@ -17,10 +17,14 @@ struct SettleResult {
   double unbalanced_fraction = 1.0;             ///< [-] of Simulation::force_scale()
   double displacement = 0.0;                    ///< [m] largest of any block on the way
   std::optional<double> relative_displacement;  ///< [-] of the last step, see equilibrium.h; steps in time only, which know no unbalanced fraction
+  std::string limit;                            ///< key of the limit that ended the search without equilibrium; empty where a step failed
+
+  /// For messages: what decided, with the key to change.
+  std::string verdict() const { return limit.empty() ? criterion : criterion + ", limited by " + limit; }
 
   void exchange(Archive& archive) {
-    auto& [a, b, c, d, e, f] = *this;
-    archive(a, b, c, d, e, f);
+    auto& [a, b, c, d, e, f, g] = *this;
+    archive(a, b, c, d, e, f, g);
   }
 };
 
@@ -37,6 +41,7 @@ double settled_share(double now, double wanted);
 struct RestLimits {
   double unbalanced_force;      ///< [N] largest on a block that counts as rest
   int max_steps;                ///< of the explicit loop
+  std::string max_steps_key;    ///< that says so
   double failure_displacement;  ///< [m] a block that moved farther is failing
   bool keep_bonds;              ///< contacts lose strength at rest only, see below
 };

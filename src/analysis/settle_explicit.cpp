@@ -64,9 +64,11 @@ SettleResult seek_rest(Simulation<N>& simulation, const RestLimits& limits, cons
     if (result.settled) break;
     if (result.displacement > limits.failure_displacement) {
       result.criterion = "displacement";
+      result.limit = "settle.failure_displacement_m";
       break;
     }
   }
+  if (result.criterion == "steps") result.limit = limits.max_steps_key;
   simulation.come_to_rest();
   return result;
 }

@@ -25,7 +25,7 @@ class StrengthReduction {
   FactorOfSafety<N> run() {
     simulation_.book_steps(false);
     if (!settle_first()) {
-      result_.reason = "not stable even at a strength reduction factor of 0.001 (" + result_.criterion + ")";
+      result_.reason = "not stable even at a strength reduction factor of 0.001 (" + verdict_ + ")";
       return std::move(result_);
     }
     if (!bracket()) {
@@ -61,6 +61,7 @@ class StrengthReduction {
       }
       result_.failed = srf;
       result_.criterion = settled.criterion;
+      verdict_ = settled.verdict();
       result_.failed_state = simulation_.save();
     }
     return false;
@@ -138,6 +139,7 @@ class StrengthReduction {
   const StrengthReductionInput& input_;
   std::function<void(double)> progress_;
   double share_done_ = 0.0;  ///< of the bisection
+  std::string verdict_;      ///< of the last search for the first state, with the key that limited it
   FactorOfSafety<N> result_;
 };
 

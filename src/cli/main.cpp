@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <optional>
@@ -74,6 +75,40 @@ void require_countable_steps(const Scene& scene, const std::string& key, double 
                    fmt::format("at most {:g} steps of step.dt_s", most_steps));
 }
 
+/// Throws InputError where a scene does not say what `run` has to know.
+void require_run(const Scene& scene) {
+  if (scene.step.dt <= 0.0) throw InputError(scene.where, "step.dt_s", "missing", "a step in seconds, here or with --dt");
+  if (scene.end_time <= 0.0) throw InputError(scene.where, "end.time_s", "missing", "an end time in seconds, here or with --end");
+  require_countable_steps(scene, "end.time_s", scene.end_time);
+}
+
+/// Throws InputError for blocks that do not have the start that the scene asks for; found out on a copy, before any file is written.
+void require_start(const Scene& scene) {
+  const bool can_be_refused = scene.method.start == Start::normal_balanced || scene.method.start == Start::steady_sliding;
+  if (!can_be_refused) return;
+  Simulation<unknowns> trial(scene);
+  prepare_start(trial);
+}
+
+/// Throws InputError where a scene does not say what `fos` has to know.
+void require_strength_reduction(const Scene& scene) {
+  const std::optional<double>& curve_time = scene.strength_reduction.curve_time;
+  const bool paper = scene.settle.criterion == SettleCriterion::paper;
+  if (scene.step.dt <= 0.0 && (curve_time || paper)) {
+    throw InputError(scene.where, "step.dt_s", "missing",
+                     fmt::format("a step in seconds: {} asks for motion", paper ? "settle.criterion" : "strength_reduction.curve_time_s"));
+  }
+  if (curve_time) require_countable_steps(scene, "strength_reduction.curve_time_s", *curve_time);
+}
+
+/// Throws InputError for what `run` or `fos` would refuse. A scene without step or end is one for `fos`, or gets them from the command line.
+void require_use(const Scene& scene) {
+  require_strength_reduction(scene);
+  if (scene.step.dt <= 0.0 || scene.end_time <= 0.0) return;
+  require_run(scene);
+  require_start(scene);
+}
+
 /// Deepest closed contact now [m].
 double penetration_of(Simulation<unknowns>& simulation) {
   double deepest = 0.0;
@@ -94,9 +129,7 @@ Summary summary_of(const std::string& command, const Options& options, const Loa
 
 int run_command(const Options& options) {
   Loaded loaded = load(options);
-  if (loaded.scene.step.dt <= 0.0) throw InputError(loaded.scene.where, "step.dt_s", "missing", "a step in seconds, here or with --dt");
-  if (loaded.scene.end_time <= 0.0) throw InputError(loaded.scene.where, "end.time_s", "missing", "an end time in seconds, here or with --end");
-  require_countable_steps(loaded.scene, "end.time_s", loaded.scene.end_time);
+  require_run(loaded.scene);
   if (is_settled_by_another(loaded.scene) && loaded.scene.method.start != Start::settled)
     loaded.warn("run.settled_by is for method.start = \"settled\"; the other starts are not settled");
   std::optional<RestartPoint> restart;
@@ -104,15 +137,11 @@ int run_command(const Options& options) {
   Simulation<unknowns> simulation(std::move(loaded.scene));
   const Scene& scene = simulation.scene();
   MeasuredPoints<unknowns> points(simulation);
-  const bool start_can_be_refused = scene.method.start == Start::normal_balanced || scene.method.start == Start::steady_sliding;
-  if (start_can_be_refused && !restart) {
-    // Find out on a copy, before any file is written.
-    Simulation<unknowns> trial(scene);
-    prepare_start(trial);
-  }
+  if (!restart) require_start(scene);
 
   const OutputFolder folder = output_folder(options);
   const RestartPoint* goes_on_from = restart ? &*restart : nullptr;
+  if (!restart || !folder.has(restart->checkpoint_file)) folder.remove_results();
   HistoryFile history(folder, goes_on_from);
   EnergyFile energy(folder, goes_on_from);
   BlocksFile<unknowns> blocks(folder, goes_on_from);
@@ -135,8 +164,7 @@ int run_command(const Options& options) {
   observer.progress = [&](double fraction) { progress->update(fraction); };
   observer.checkpoint = [&](Archive& state, const Simulation<unknowns>& s) {
     state(points);
-    write_checkpoint(folder.path() + "/" + checkpoint_name, s.scene(),
-                     {s.time(), {history.written(), energy.written(), blocks.written()}, state.bytes()});
+    write_checkpoint(folder.path_of(checkpoint_name), s.scene(), {s.time(), {history.written(), energy.written(), blocks.written()}, state.bytes()});
   };
   RunResult result;
   if (restart) {
@@ -185,17 +213,11 @@ int fos_command(const Options& options) {
   if (loaded.scene.run_strength_reduction_factor != 1.0) loaded.warn("run.strength_reduction_factor is for run; fos starts from the full strength");
   if (is_settled_by_another(loaded.scene)) loaded.warn("run.settled_by is for run; fos settles by method.contact");
   if (loaded.scene.base_motion) loaded.warn("base_motion is for run; fos asks for static equilibrium on a base at rest");
-  if (loaded.scene.step.dt <= 0.0) {
-    const bool paper = loaded.scene.settle.criterion == SettleCriterion::paper;
-    if (loaded.scene.strength_reduction.curve_time || paper) {
-      throw InputError(loaded.scene.where, "step.dt_s", "missing",
-                       fmt::format("a step in seconds: {} asks for motion", paper ? "settle.criterion" : "strength_reduction.curve_time_s"));
-    }
-  }
+  require_strength_reduction(loaded.scene);
   if (loaded.scene.step.dt <= 0.0) loaded.scene.step.dt = loaded.scene.settle.first_dt;
-  require_countable_steps(loaded.scene, "strength_reduction.curve_time_s", loaded.scene.strength_reduction.curve_time.value_or(0.0));
   Simulation<unknowns> simulation(std::move(loaded.scene));
   const OutputFolder folder = output_folder(options);
+  folder.remove_results();
   BlocksFile<unknowns> blocks(folder);
   blocks.add("initial", simulation);
   FactorOfSafety<unknowns> safety;
@@ -254,14 +276,20 @@ void write_spectrum(Simulation<unknowns>& simulation, const std::string& file) {
 
 int check_command(const Options& options) {
   Simulation<unknowns> simulation(load(options).scene);
+  require_use(simulation.scene());
   double area = 0.0;
   for (const auto& block : simulation.system().blocks()) area += block.area;
   fmt::print("{}: {} blocks, {} of them free, {:.6g} m2; {} contacts within reach at the start; method {}\n", options.scene_file,
              simulation.system().block_count(), simulation.system().free_count(), area, simulation.contacts().size(),
              simulation.scene().method.contact);
   if (simulation.is_explicit()) {
-    fmt::print("critical step {:.6g} s; the longest step taken is {:.6g} s\n", simulation.critical_step(),
-               simulation.longest_stable_step(simulation.scene().method.damping));
+    const double critical = simulation.critical_step();
+    if (std::isfinite(critical)) {
+      fmt::print("critical step {:.6g} s; the longest step taken is {:.6g} s\n", critical,
+                 simulation.longest_stable_step(simulation.scene().method.damping));
+    } else {
+      fmt::print("no critical step, since no contact or support is there; the longest step taken is step.dt_s\n");
+    }
   }
   if (!options.spectrum_file.empty()) write_spectrum(simulation, options.spectrum_file);
   return exit_success;
@@ -325,14 +353,15 @@ void add_options(CLI::App& app, Options& options, bool writes_folder) {
          "KEY=VALUE: overrides any key of the scene, e.g. joint[0].friction_angle_deg=20")
       ->allow_extra_args(false);
   if (!writes_folder) return;
-  app.add_option("-o,--output", options.folder, "output folder (default: results/<name of the scene>)");
+  app.add_option("-o,--output", options.folder,
+                 "output folder (default: results/<name of the scene>); files of an earlier run there are removed first");
   add_quiet(app, options);
 }
 
 int main_checked(int argc, char** argv) {
   CLI::App app{
       "Openclose: 2-D block systems of jointed rock and masonry. Exit status: 0 success, 1 not converged (state saved), 2 bad input (nothing "
-      "written)."};
+      "written), 3 broken off (a result cannot be written, or an internal error)."};
   app.set_version_flag("--version", version);
   app.require_subcommand(1);
   Options options;
@@ -348,9 +377,8 @@ int main_checked(int argc, char** argv) {
                   "go on from this checkpoint.bin of an earlier run of the scene (see output.checkpoint_every_s), continuing the tables beside it");
   subcommand("fos", "factor of safety by strength reduction", true, &fos_command);
   CLI::App* check = subcommand(
-      "check",
-      "read and check a scene, write nothing but --spectrum; whether it settles, or has the start that it asks for, only run and fos find out", false,
-      &check_command);
+      "check", "read and check a scene, write nothing but --spectrum; what run or fos would refuse is refused, whether it settles only they find out",
+      false, &check_command);
   check->add_option("--spectrum", options.spectrum_file,
                     "CSV file to write: frequencies of the contacts' springs, critical step 2/w_max, condition number of a step's matrix");
   CLI::App* cut = subcommand("cut", "cut the domain of a scene into blocks, write them as a scene and draw them", false, &cut_command);
@@ -373,13 +401,17 @@ int main_checked(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   openclose::return_large_memory();
+  openclose::fail_beyond_size_limit();
   try {
     return openclose::main_checked(argc, argv);
   } catch (const openclose::InputError& e) {
     fmt::print(stderr, "openclose: {}\n", e.what());
     return openclose::exit_bad_input;
+  } catch (const openclose::WriteError& e) {
+    fmt::print(stderr, "openclose: {}\n", e.what());
+    return openclose::exit_broken_off;
   } catch (const std::exception& e) {
     fmt::print(stderr, "openclose: internal error: {}\n", e.what());
-    return openclose::exit_not_converged;
+    return openclose::exit_broken_off;
   }
 }

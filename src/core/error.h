@@ -1,5 +1,6 @@
-// The two ways a run can end badly: the input is wrong (exit code 2, nothing written), or the analysis does not converge (exit code 1, state and
-// reason saved). Anything else that is thrown is a fault of the program.
+// The ways a run can end badly: the input is wrong (exit code 2, nothing written), the analysis does not converge (exit code 1, state and reason
+// saved), or a result cannot be written (exit code 3, what has been written stays). Anything else that is thrown is a fault of the program (exit code
+// 3).
 #pragma once
 
 #include <stdexcept>
@@ -10,6 +11,7 @@ namespace openclose {
 inline constexpr int exit_success = 0;
 inline constexpr int exit_not_converged = 1;
 inline constexpr int exit_bad_input = 2;
+inline constexpr int exit_broken_off = 3;
 
 /// Where in a scene file a value stands; line 0 means that the file as a whole is meant.
 struct SourceLocation {
@@ -25,6 +27,14 @@ class InputError : public std::runtime_error {
   /// \param read      what was read, with the verdict, e.g. "-3 is negative"
   /// \param accepted  what would be right, e.g. "a number of degrees in [0, 90)"
   InputError(const SourceLocation& where, const std::string& key, const std::string& read, const std::string& accepted);
+};
+
+/// A file that could be made is not written to its end. what() is one line that begins with its path.
+class WriteError : public std::runtime_error {
+ public:
+  explicit WriteError(const std::string& path,
+                      const std::string& what = "cannot be written to its end: is the disk full, or a limit on the size of files reached?")
+      : std::runtime_error(path + ": " + what) {}
 };
 
 }  // namespace openclose

@@ -1,6 +1,7 @@
 #include "openclose/core/process.h"
 
 #include <chrono>
+#include <csignal>
 #include <cstdint>
 #include <fstream>
 #include <memory>
@@ -93,6 +94,10 @@ void return_freed_memory() {
 #ifdef __GLIBC__
   malloc_trim(0);
 #endif
+}
+
+void fail_beyond_size_limit() {
+  std::signal(SIGXFSZ, SIG_IGN);
 }
 
 }  // namespace openclose

@@ -24,4 +24,7 @@ bool provide_memory(std::size_t bytes);
 /// Gives what has been freed, and lies between memory in use, back to the system. Nothing where the C library has no way to.
 void return_freed_memory();
 
+/// From now on a write beyond the limit on the size of files (RLIMIT_FSIZE) fails, as on a full disk, instead of ending the process.
+void fail_beyond_size_limit();
+
 }  // namespace openclose

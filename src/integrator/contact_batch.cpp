@@ -96,14 +96,33 @@ OPENCLOSE_KERNEL bool all_are_open(const Branch* branches) {
   return all == 0;
 }
 
+/// What springs would carry that nothing bounds.
+OPENCLOSE_KERNEL Lanes elastic_normal_at(const ContactBatch& c, const TrialBatch& trial) {
+  return c.shift - c.normal * (c.gap_off_target + trial.gap_change);
+}
+OPENCLOSE_KERNEL Lanes elastic_shear_at(const ContactBatch& c, const TrialBatch& trial) {
+  return c.initial_shear - c.shear * trial.slip_change;
+}
+
+OPENCLOSE_KERNEL void find_elastic(double ramp, const ContactBatch* contacts, const TrialBatch* trials, std::size_t count, ElasticBatch* elastic) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const ContactBatch& c = contacts[i];
+    const Lanes normal = elastic_normal_at(c, trials[i]);
+    const Mask closed = ~is_open(c.tension, normal);
+    const Lanes bound = ShearBound(c.friction, c.cohesion, c.tension, trials[i].normal, ramp).value;
+    elastic[i].normal = only_where(closed, normal);
+    elastic[i].shear = only_where(closed, clamped(elastic_shear_at(c, trials[i]), bound));
+  }
+}
+
 /// The joint law; returns which contacts are closed.
 OPENCLOSE_KERNEL Mask find_forces(const ContactBatch& c, double ramp, TrialBatch& trial, Branch* branches) {
   const Lanes zero{};
-  const Lanes elastic_normal = c.shift - c.normal * (c.gap_off_target + trial.gap_change);
+  const Lanes elastic_normal = elastic_normal_at(c, trial);
   // By how much the gap is wider than where the spring opens; not a number where there is no contact.
   const Lanes parted = larger(zero, c.gap_off_target - (c.shift + c.tension) / c.normal);
   const Lanes viscous_normal = -c.normal_damping * (parted + trial.gap_change);
-  const Lanes elastic_shear = c.initial_shear - c.shear * trial.slip_change, shear = elastic_shear + -c.shear_damping * trial.slip_change;
+  const Lanes shear = elastic_shear_at(c, trial) + -c.shear_damping * trial.slip_change;
   const Mask closed = ~is_open(c.tension, elastic_normal);
 
   const Lanes normal = larger(-c.tension, elastic_normal + viscous_normal);
@@ -117,8 +136,6 @@ OPENCLOSE_KERNEL Mask find_forces(const ContactBatch& c, double ramp, TrialBatch
   const Lanes signed_slope = (Lanes)((Mask)slope | ((Mask)shear & (Mask)-zero));
   trial.normal = only_where(closed, normal);
   trial.shear = only_where(closed, carried_shear);
-  trial.elastic_normal = only_where(closed, elastic_normal);
-  trial.elastic_shear = only_where(closed, clamped(elastic_shear, bound));
   trial.normal_by_gap = normal_by_gap;
   trial.shear_by_gap = only_where(sliding, signed_slope * normal_by_gap);
   trial.shear_by_slip = only_where(sticking, -(c.shear + c.shear_damping));
@@ -152,8 +169,6 @@ OPENCLOSE_KERNEL Mask find_mean_forces(const ContactBatch& c, TrialBatch& trial,
 
   trial.normal = sticks ? 0.5 * (first + last) : zero;
   trial.shear = sticks ? 0.5 * (total_0 + total_1) : zero;
-  trial.elastic_normal = sticks ? 0.5 * (start + end) : zero;
-  trial.elastic_shear = sticks ? 0.5 * (shear_0 + shear_1) : zero;
   trial.normal_by_gap = sticks ? 0.5 * (-c.normal_damping + (-c.normal - c.normal_damping)) : zero;
   trial.shear_by_gap = zero;
   trial.shear_by_slip = sticks ? 0.5 * (-c.shear_damping + (-c.shear - c.shear_damping)) : zero;
@@ -361,6 +376,9 @@ OPENCLOSE_KERNEL void add_either_stiffness(const ContactBatch* contacts, const B
 double begin_with_any_registers(ContactBatch* contacts, std::size_t count) {
   return begin(contacts, count);
 }
+void find_elastic_with_any_registers(double ramp, const ContactBatch* contacts, const TrialBatch* trials, std::size_t count, ElasticBatch* elastic) {
+  find_elastic(ramp, contacts, trials, count, elastic);
+}
 double evaluate_with_any_registers(StepForces forces, double ramp, const ContactBatch* contacts, std::size_t count, const BlockMove<3>* moves,
                                    double rounding_of_sums, TrialBatch* trials, Branch* branches, ForceRow* rows) {
   return evaluate_either(forces, ramp, contacts, count, moves, rounding_of_sums, trials, branches, rows);
@@ -373,6 +391,10 @@ void add_stiffness_with_any_registers(const ContactBatch* contacts, const BlockM
 #ifdef OPENCLOSE_HAS_WIDE_REGISTERS
 [[gnu::target("avx2")]] double begin_with_wide_registers(ContactBatch* contacts, std::size_t count) {
   return begin(contacts, count);
+}
+[[gnu::target("avx2")]] void find_elastic_with_wide_registers(double ramp, const ContactBatch* contacts, const TrialBatch* trials, std::size_t count,
+                                                              ElasticBatch* elastic) {
+  find_elastic(ramp, contacts, trials, count, elastic);
 }
 [[gnu::target("avx2")]] double evaluate_with_wide_registers(StepForces forces, double ramp, const ContactBatch* contacts, std::size_t count,
                                                             const BlockMove<3>* moves, double rounding_of_sums, TrialBatch* trials, Branch* branches,
@@ -389,10 +411,14 @@ void add_stiffness_with_any_registers(const ContactBatch* contacts, const BlockM
 }  // namespace
 
 BatchKernels::BatchKernels([[maybe_unused]] bool wide_registers)
-    : begin_(&begin_with_any_registers), evaluate_(&evaluate_with_any_registers), add_stiffness_(&add_stiffness_with_any_registers) {
+    : begin_(&begin_with_any_registers),
+      find_elastic_(&find_elastic_with_any_registers),
+      evaluate_(&evaluate_with_any_registers),
+      add_stiffness_(&add_stiffness_with_any_registers) {
 #ifdef OPENCLOSE_HAS_WIDE_REGISTERS
   if (!wide_registers || !has_wide_registers()) return;
   begin_ = &begin_with_wide_registers;
+  find_elastic_ = &find_elastic_with_wide_registers;
   evaluate_ = &evaluate_with_wide_registers;
   add_stiffness_ = &add_stiffness_with_wide_registers;
 #endif
@@ -433,7 +459,10 @@ ContactSprings ContactBatch::springs(int lane) const {
 }
 
 ContactForces TrialBatch::forces(int lane, Branch branch) const {
-  ContactForces f{carried(lane, branch)};
+  ContactForces f;
+  f.status = status(branch);
+  f.normal = normal[lane];
+  f.shear = shear[lane];
   f.normal_by_gap = normal_by_gap[lane];
   f.shear_by_gap = shear_by_gap[lane];
   f.shear_by_slip = shear_by_slip[lane];
@@ -441,7 +470,8 @@ ContactForces TrialBatch::forces(int lane, Branch branch) const {
 }
 
 void TrialBatch::set_forces(int lane, const ContactForces& f) {
-  set_carried(lane, f);
+  normal[lane] = f.normal;
+  shear[lane] = f.shear;
   normal_by_gap[lane] = f.normal_by_gap;
   shear_by_gap[lane] = f.shear_by_gap;
   shear_by_slip[lane] = f.shear_by_slip;

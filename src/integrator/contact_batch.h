@@ -145,24 +145,19 @@ struct ContactStarts {
 /// What contacts carry at the trial displacement, or means of it, and the derivatives of these forces. Where they are then follows from their start
 /// and the moves of their blocks.
 struct TrialBatch {
-  Lanes gap_change{}, slip_change{};                                                                             // as in ContactPose
-  Lanes normal{}, shear{}, elastic_normal{}, elastic_shear{}, normal_by_gap{}, shear_by_gap{}, shear_by_slip{};  // as in ContactForces
+  Lanes gap_change{}, slip_change{};                                          // as in ContactPose
+  Lanes normal{}, shear{}, normal_by_gap{}, shear_by_gap{}, shear_by_slip{};  // as in ContactForces
 
+  /// All but what is in the springs.
   /// \param branch  which has the status
-  CarriedForces carried(int lane, Branch branch) const {
-    return {status(branch), normal[lane], shear[lane], elastic_normal[lane], elastic_shear[lane]};
-  }
-  void set_carried(int lane, const CarriedForces& forces);
   ContactForces forces(int lane, Branch branch) const;
   void set_forces(int lane, const ContactForces& forces);
 };
 
-inline void TrialBatch::set_carried(int lane, const CarriedForces& f) {
-  normal[lane] = f.normal;
-  shear[lane] = f.shear;
-  elastic_normal[lane] = f.elastic_normal;
-  elastic_shear[lane] = f.elastic_shear;
-}
+/// The springs' parts of the forces that contacts carry, which only the end of a step asks for.
+struct ElasticBatch {
+  Lanes normal{}, shear{};
+};
 
 /// Sum of the contact forces on a block: force [N, N], moment [N m], and [N] what rounding leaves in it. In two parts, because contacts that follow
 /// each other in the list touch the same blocks and would wait for each other's sum.
@@ -213,6 +208,12 @@ class BatchKernels {
   }
   /// [N] of all batches that were evaluated.
   static double largest_force(const std::vector<TrialBatch>& trials);
+  /// Of forces at the end of the step.
+  /// \param ramp, trials  with which and to what they were evaluated
+  void find_elastic(double ramp, const std::vector<ContactBatch>& contacts, const std::vector<TrialBatch>& trials,
+                    std::vector<ElasticBatch>& elastic) const {
+    find_elastic_(ramp, contacts.data(), trials.data(), elastic.size(), elastic.data());
+  }
   /// Adds the stiffness of all contacts to the matrix.
   /// \param moves  with which the trials were evaluated
   void add_stiffness(const std::vector<ContactBatch>& contacts, const BlockMove<3>* moves, const std::vector<TrialBatch>& trials,
@@ -220,6 +221,7 @@ class BatchKernels {
 
  private:
   double (*begin_)(ContactBatch*, std::size_t);
+  void (*find_elastic_)(double, const ContactBatch*, const TrialBatch*, std::size_t, ElasticBatch*);
   double (*evaluate_)(StepForces, double, const ContactBatch*, std::size_t, const BlockMove<3>*, double, TrialBatch*, Branch*, ForceRow*);
   void (*add_stiffness_)(const ContactBatch*, const BlockMove<3>*, const TrialBatch*, std::size_t, const Branch*, const BatchTangent&,
                          const MatrixSlots&, double*);

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "openclose/core/memory.h"
 #include "openclose/integrator/contact_batch.h"
 
 namespace openclose {
@@ -44,7 +45,9 @@ class ContactOutcomes {
   CarriedForces forces(std::size_t c) const {
     if (!starts_) return list_[c].forces;
     const std::size_t at = place(c);
-    return trial(at).carried(lane(at), branches_[at]);
+    const int k = lane(at);
+    const ElasticBatch& elastic = elastic_[at / batch_size];
+    return {openclose::status(branches_[at]), trial(at).normal[k], trial(at).shear[k], elastic.normal[k], elastic.shear[k]};
   }
   ContactPose<N> pose(std::size_t c) const {
     if (!starts_) return list_[c].pose;
@@ -65,11 +68,17 @@ class ContactOutcomes {
   }
 
   /// Without what others have, too.
-  std::size_t bytes() const { return bytes_of(moves_, trials_, branches_, list_, slack_) + (starts_.use_count() == 1 ? starts_->bytes() : 0); }
+  Memory memory() const {
+    Memory of;
+    of.blocks = bytes_of(moves_);
+    of.contacts = bytes_of(trials_, branches_, elastic_, list_, slack_) + (starts_.use_count() == 1 ? starts_->bytes() : 0);
+    return of;
+  }
 
-  /// Empty again, with its memory for the next step.
+  /// Empty again, with most of its memory for the next step.
   void clear() {
     starts_.reset();
+    std::vector<ElasticBatch>().swap(elastic_);  // steps have parts of their own meanwhile
     list_.clear();
     slack_.clear();
   }
@@ -78,21 +87,23 @@ class ContactOutcomes {
 
   /// Newton's batches, lent with where they start, which is shared, and the moves of their blocks.
   void borrow(std::shared_ptr<const ContactStarts> starts, std::vector<BlockMove<N>>& moves, std::vector<TrialBatch>& trials,
-              std::vector<Branch>& branches) {
+              std::vector<Branch>& branches, std::vector<ElasticBatch> elastic) {
     clear();
     starts_ = std::move(starts);
     moves_.swap(moves);
     trials_.swap(trials);
     branches_.swap(branches);
+    elastic_ = std::move(elastic);
   }
   /// A copy of them.
   void copy(std::shared_ptr<const ContactStarts> starts, const std::vector<BlockMove<N>>& moves, const std::vector<TrialBatch>& trials,
-            const std::vector<Branch>& branches) {
+            const std::vector<Branch>& branches, std::vector<ElasticBatch> elastic) {
     clear();
     starts_ = std::move(starts);
     moves_ = moves;
     trials_ = trials;
     branches_ = branches;
+    elastic_ = std::move(elastic);
   }
   /// What was lent is given back; empty again.
   void give_back(std::vector<BlockMove<N>>& moves, std::vector<TrialBatch>& trials, std::vector<Branch>& branches) {
@@ -115,6 +126,7 @@ class ContactOutcomes {
   std::vector<BlockMove<N>> moves_;              ///< by places of blocks
   std::vector<TrialBatch> trials_;
   std::vector<Branch> branches_;
+  std::vector<ElasticBatch> elastic_;
   std::vector<ContactOutcome<N>> list_;
   std::vector<double> slack_;  ///< [m] of all, or empty where there is none
 };

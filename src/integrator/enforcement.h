@@ -108,9 +108,9 @@ struct StepSolution {
     paths.clear();
   }
   Memory memory() const {
-    Memory of;
-    of.blocks = sizeof(double) * static_cast<std::size_t>(d.size());
-    of.contacts = contacts.bytes() + start_contacts.bytes() + bytes_of(paths);
+    Memory of = contacts.memory() + start_contacts.memory();
+    of.blocks += sizeof(double) * static_cast<std::size_t>(d.size());
+    of.contacts += bytes_of(paths);
     return of;
   }
 

@@ -215,7 +215,10 @@ class Newton {
   /// Part of the exact step along which the merit falls as it should; 0 if none. Leaves the forces there.
   double backtrack(const Eigen::VectorXd& d, const Eigen::VectorXd& step, double merit_before);
   /// The means over the path go to the solution, the forces at its end take their place.
-  void report_paths(StepSolution<N>& solution);
+  std::vector<ElasticBatch> report_paths(StepSolution<N>& solution);
+  std::vector<ElasticBatch> elastic_parts() const;
+  /// The solution has the contacts' outcomes from here until the next step.
+  void lend(StepSolution<N>& solution);
   /// Of what there is now.
   Memory present_memory() const;
   /// Takes it into the account.

@@ -128,7 +128,7 @@ TwoLevelFlexibility Newton<N>::flexibility(const Eigen::VectorXd& d, const std::
 }
 
 template <int N>
-void Newton<N>::keep_slip() {
+void Newton<N>::keep_slip() {  // all of the shear force is in the spring: nothing damps at rest
   constexpr auto sticking = static_cast<Branch>(ContactStatus::sticking);
   for (std::size_t i = 0; i < contacts().size(); ++i) {
     const Branch* const branches = branches_.data() + batch_size * i;
@@ -137,7 +137,7 @@ void Newton<N>::keep_slip() {
     const TrialBatch& now = trials_[i];
     for (int k = 0; k < batch_size; ++k) {
       const bool slid = branches[k] != sticking;
-      const double slack = now.elastic_shear[k] + contact.shear[k] * now.slip_change[k];
+      const double slack = now.shear[k] + contact.shear[k] * now.slip_change[k];
       contact.initial_shear[k] = slid ? slack : contact.initial_shear[k];
     }
   }
@@ -238,8 +238,7 @@ void Newton<N>::relax(const StepProblem<N>& problem, const SpringSource<N>& spri
   solution.unbalanced = largest_unbalanced();
   if (!solution.converged) solution.reason = "relaxation did not come to rest";
   note_slip(springs);
-  solution.paths.clear();
-  solution.contacts.borrow(starts_, moves_, trials_, branches_);
+  lend(solution);
 }
 
 template class Newton<3>;

@@ -26,7 +26,7 @@ struct Checkpoint {
   }
 };
 
-/// Throws InputError if the file cannot be made, std::runtime_error if the disk is full.
+/// Throws InputError if the file cannot be made, WriteError if it cannot be written to its end; the older one is still there then.
 void write_checkpoint(const std::string& path, const Scene& scene, Checkpoint checkpoint);
 
 /// Throws InputError if there is no such file, if it is damaged or of another version of the program or another scene (other in more than

@@ -3,12 +3,14 @@
 #include <unistd.h>
 
 #include <filesystem>
-#include <stdexcept>
 
 #include "openclose/core/error.h"
 
 namespace openclose {
 namespace {
+
+constexpr const char* result_names[] = {"history.csv", "energy.csv",     "blocks.csv",   "contacts.csv",  "trials.csv",
+                                        "curve.csv",   "milestones.csv", "summary.json", checkpoint_name, "checkpoint.bin.part"};
 
 [[noreturn]] void fail_unwritable(const std::string& path) {
   throw InputError({path, 0}, "", "cannot be written", "a file in a folder that exists or can be made, and may be written to");
@@ -63,29 +65,42 @@ OutputFolder::OutputFolder(const std::string& path) : path_(path) {
   const bool usable = !error && std::filesystem::is_directory(path) && access(path.c_str(), W_OK | X_OK) == 0;
   if (!usable)
     throw InputError({path, 0}, "", "cannot write to this output folder", "-o with a folder that exists or can be made, and may be written to");
-  for (const char* name : {"history.csv", "energy.csv", "blocks.csv", "contacts.csv", "trials.csv", "curve.csv", "milestones.csv", "summary.json",
-                           checkpoint_name}) {
-    const std::string file = path + "/" + name;
+  for (const char* name : result_names) {
+    const std::string file = path_of(name);
     if (!std::filesystem::exists(file)) continue;
     if (std::filesystem::is_regular_file(file) && access(file.c_str(), W_OK) == 0) continue;
     throw InputError({file, 0}, "", "is there and cannot be written over", "-o with another folder");
   }
 }
 
+void OutputFolder::remove_results() const {
+  for (const char* name : result_names) {
+    std::error_code error;
+    std::filesystem::remove(path_of(name), error);
+    if (error) throw WriteError(path_of(name), "is there from an earlier run and cannot be removed");
+  }
+}
+
+bool OutputFolder::has(const std::string& checkpoint_file) const {
+  std::error_code unknown;
+  return std::filesystem::equivalent(std::filesystem::absolute(checkpoint_file).parent_path(), path_, unknown) ||
+         std::filesystem::equivalent(checkpoint_file, path_of(checkpoint_name), unknown);
+}
+
 std::ofstream OutputFolder::open(const std::string& name) const {
-  const std::string full = path_ + "/" + name;
-  std::ofstream file(full);
-  if (!file) throw InputError({full, 0}, "", "cannot be written", "an output folder in which files can be made");
+  std::ofstream file(path_of(name));
+  if (!file) throw WriteError(path_of(name));
   return file;
 }
 
 std::ofstream OutputFolder::open(const std::string& name, const std::string& head, std::uintmax_t length) const {
-  const std::string full = path_ + "/" + name;
+  const std::string full = path_of(name);
   std::error_code error, differs;
-  if (!std::filesystem::equivalent(head, full, differs)) std::filesystem::copy_file(head, full, std::filesystem::copy_options::overwrite_existing, error);
+  if (!std::filesystem::equivalent(head, full, differs))
+    std::filesystem::copy_file(head, full, std::filesystem::copy_options::overwrite_existing, error);
   if (!error) std::filesystem::resize_file(full, length, error);
   std::ofstream file(full, std::ios::app);
-  if (error || !file) throw InputError({full, 0}, "", "cannot be written", "an output folder in which files can be made");
+  if (error || !file) throw WriteError(full);
   return file;
 }
 
@@ -100,12 +115,16 @@ void write_files(const std::vector<TextFile>& files) {
     stream << file.text;
     finish(stream, part);
   }
-  for (const TextFile& file : files) std::filesystem::rename(file.path + ".part", file.path);
+  for (const TextFile& file : files) {
+    std::error_code error;
+    std::filesystem::rename(file.path + ".part", file.path, error);
+    if (error) throw WriteError(file.path);
+  }
 }
 
-void finish(std::ofstream& file, const std::string& name) {
+void finish(std::ofstream& file, const std::string& path) {
   file.close();
-  if (!file) throw std::runtime_error("writing " + name + " failed: is the disk full?");
+  if (!file) throw WriteError(path);
 }
 
 }  // namespace openclose

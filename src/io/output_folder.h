@@ -15,11 +15,17 @@ class OutputFolder {
   /// Creates the folder if it is missing. Throws InputError if the files of a run cannot be written there.
   explicit OutputFolder(const std::string& path);
 
-  /// A new file, replacing an old one of that name.
+  /// Removes what an earlier run or factor of safety has left, by the names that this program gives; nothing else. Throws WriteError if it cannot.
+  void remove_results() const;
+  /// Whether a run that goes on from this checkpoint goes on in this folder, whatever the paths look like.
+  bool has(const std::string& checkpoint_file) const;
+
+  /// A new file, replacing an old one of that name. Throws WriteError if it cannot be made any more.
   std::ofstream open(const std::string& name) const;
   /// The same, but beginning with the first `length` bytes of the file `head`, which may be this one.
   std::ofstream open(const std::string& name, const std::string& head, std::uintmax_t length) const;
   const std::string& path() const { return path_; }
+  std::string path_of(const std::string& name) const { return path_ + "/" + name; }
 
  private:
   std::string path_;
@@ -31,10 +37,10 @@ struct TextFile {
 };
 
 /// Writes whole files, with the folders they need: all of them, or none and no folder. Old ones are replaced only when all new ones are complete;
-/// until then these have ".part" after their names. Throws InputError if a file cannot be made, std::runtime_error if the disk is full.
+/// until then these have ".part" after their names. Throws InputError if a file cannot be made, WriteError if one cannot be written to its end.
 void write_files(const std::vector<TextFile>& files);
 
-/// Closes a file after its last line; throws std::runtime_error if anything of it was not written (a full disk, say).
-void finish(std::ofstream& file, const std::string& name);
+/// Closes a file after its last line; throws WriteError if anything of it was not written (a full disk, say).
+void finish(std::ofstream& file, const std::string& path);
 
 }  // namespace openclose

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "openclose/core/error.h"
 #include "openclose/core/parallel.h"
 #include "openclose/core/process.h"
 #include "openclose/integrator/integrators.h"
@@ -67,7 +68,8 @@ std::string energy_columns() {
 
 }  // namespace
 
-RunTable::RunTable(const OutputFolder& folder, const std::string& name, const std::string& columns, const RestartPoint* restart) : name_(name) {
+RunTable::RunTable(const OutputFolder& folder, const std::string& name, const std::string& columns, const RestartPoint* restart)
+    : name_(name), path_(folder.path_of(name)) {
   if (restart) {
     for (const auto& [table, length] : restart->checkpoint.tables) {
       if (table == name) file_ = folder.open(name, table_beside(restart->checkpoint_file, name), length);
@@ -80,7 +82,12 @@ RunTable::RunTable(const OutputFolder& folder, const std::string& name, const st
 
 std::pair<std::string, std::uint64_t> RunTable::written() {
   file_.flush();
+  require_written();
   return {name_, static_cast<std::uint64_t>(file_.tellp())};
+}
+
+void RunTable::require_written() const {
+  if (!file_) throw WriteError(path_);
 }
 
 HistoryFile::HistoryFile(const OutputFolder& folder, const RestartPoint* restart)
@@ -91,6 +98,7 @@ void HistoryFile::add(double time, const std::vector<PointMotion>& motions) {
     fmt::print(file_, "{:.17g},{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g}\n", time, field(m.name), m.displacement.x(), m.displacement.y(), m.rotation,
                m.velocity.x(), m.velocity.y());
   }
+  require_written();
 }
 
 EnergyFile::EnergyFile(const OutputFolder& folder, const RestartPoint* restart) : RunTable(folder, "energy.csv", energy_columns(), restart) {}
@@ -99,6 +107,7 @@ void EnergyFile::add(double time, const EnergyLedger& ledger) {
   fmt::print(file_, "{:.17g}", time);
   for (const auto& entry : entries(ledger)) fmt::print(file_, ",{:.17g}", entry.second);
   file_ << '\n';
+  require_written();
 }
 
 template <int N>
@@ -115,6 +124,7 @@ void BlocksFile<N>::add(const std::string& state, const Simulation<N>& simulatio
       fmt::print(file_, "{},{},{},{:.17g},{:.17g}\n", state, field(simulation.scene().blocks[b].name), i, p.x(), p.y());
     }
   }
+  require_written();
 }
 
 template <int N>
@@ -130,7 +140,7 @@ void write_contacts(const OutputFolder& folder, const std::string& state, Simula
                field(simulation.scene().blocks[c.vertex_block].name), field(simulation.scene().blocks[c.edge_block].name), p.x(), p.y(), n.x(), n.y(),
                c.length, c.gap, c.normal_force, c.shear_force, name_of(c.status));
   }
-  finish(file, "contacts.csv");
+  finish(file, folder.path_of("contacts.csv"));
 }
 
 void write_trials(const OutputFolder& folder, const std::vector<StrengthTrial>& trials) {
@@ -139,14 +149,14 @@ void write_trials(const OutputFolder& folder, const std::vector<StrengthTrial>& 
   for (const StrengthTrial& t : trials) {
     fmt::print(file, "{:.17g},{},{},{},{},{:.17g}\n", t.srf, t.stage, t.stable ? 1 : 0, field(t.criterion), t.steps, t.displacement);
   }
-  finish(file, "trials.csv");
+  finish(file, folder.path_of("trials.csv"));
 }
 
 void write_curve(const OutputFolder& folder, const std::vector<CurvePoint>& curve) {
   std::ofstream file = folder.open("curve.csv");
   file << "srf,point,displacement_m\n";
   for (const CurvePoint& p : curve) fmt::print(file, "{:.17g},{},{:.17g}\n", p.srf, field(p.point), p.displacement);
-  finish(file, "curve.csv");
+  finish(file, folder.path_of("curve.csv"));
 }
 
 void write_milestones(const OutputFolder& folder, const std::vector<Milestone>& milestones) {
@@ -159,7 +169,7 @@ void write_milestones(const OutputFolder& folder, const std::vector<Milestone>& 
       fmt::print(file, "{:.17g},,,,{}\n", m.displacement, field(m.reason));
     }
   }
-  finish(file, "milestones.csv");
+  finish(file, folder.path_of("milestones.csv"));
 }
 
 namespace {
@@ -248,6 +258,9 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
       {"end_time_s", scene.end_time},
       {"end_displacement_m", scene.end_displacement ? ordered_json(*scene.end_displacement) : ordered_json(nullptr)},
       {"every_s", scene.output_every},
+      {"checkpoint_every_s", scene.checkpoint_every},
+      {"milestones_m", scene.milestones},
+      {"snapshots_s", scene.snapshot_times},
       {"settle",
        {{"criterion", word_for(settle_criterion_words, scene.settle.criterion)},
         {"unbalanced_fraction", scene.settle.unbalanced_fraction},
@@ -260,7 +273,11 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
         {"steady_steps", scene.settle.steady_steps},
         {"max_time_steps", scene.settle.max_time_steps},
         {"unbalanced_force_n", scene.settle.unbalanced_force}}},
-      {"strength_reduction", {{"width", scene.strength_reduction.width}, {"upper_limit", scene.strength_reduction.upper_limit}}}};
+      {"strength_reduction",
+       {{"width", scene.strength_reduction.width},
+        {"upper_limit", scene.strength_reduction.upper_limit},
+        {"curve", scene.strength_reduction.curve},
+        {"curve_time_s", optional_json(scene.strength_reduction.curve_time)}}}};
   j["warnings"] = summary.warnings;
   j["blocks"] = simulation.system().block_count();
   j["free_blocks"] = simulation.system().free_count() + static_cast<int>(simulation.system().resting_blocks().size());
@@ -345,7 +362,7 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
   j["stage_s"] = {{"detection", cpu.detection}, {"solution", cpu.solution}, {"bookkeeping", cpu.bookkeeping}};
   std::ofstream file = folder.open("summary.json");
   file << j.dump(2) << '\n';
-  finish(file, "summary.json");
+  finish(file, folder.path_of("summary.json"));
 }
 
 template class BlocksFile<3>;

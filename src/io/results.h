@@ -20,17 +20,19 @@ struct RestartPoint {
 /// A table that grows while a run goes on.
 class RunTable {
  public:
-  void close() { finish(file_, name_); }
-  /// Name and length [bytes] of what has reached the disk: everything so far.
+  void close() { finish(file_, path_); }
+  /// Name and length [bytes] of what has reached the disk: everything so far. Throws WriteError if it has not.
   std::pair<std::string, std::uint64_t> written();
 
  protected:
   /// With these column names, or with what the table had when the run it goes on from was saved.
   RunTable(const OutputFolder& folder, const std::string& name, const std::string& columns, const RestartPoint* restart);
+  /// After rows: nobody waits for the end of a run whose table has stopped growing. Throws WriteError then.
+  void require_written() const;
   std::ofstream file_;
 
  private:
-  std::string name_;
+  std::string name_, path_;
 };
 
 /// history.csv: motion of the measured points.

@@ -196,6 +196,54 @@ TEST_CASE("a run goes on from each of its checkpoints", "[analysis][checkpoint]"
   }
 }
 
+TEST_CASE("a run that goes on from its end ends as it did", "[analysis][checkpoint]") {
+  Scene scene = prepared(test::falling_block(), "soft");
+  scene.checkpoint_every = 1.0;
+  scene.snapshot_times = {0.0, 5.0};
+  std::string key = "end.time_s";
+  SECTION("by time, in the middle of a step") {
+    scene.end_time = 0.0305;
+  }
+  SECTION("by time") {
+    scene.end_time = 0.03;
+  }
+  SECTION("by displacement") {
+    scene.end_time = 1.0;
+    scene.end_displacement = 0.001;
+    key = "end.displacement_m";
+  }
+  for (const double every : {0.001, 0.002, 0.004, 0.015, 1.0}) {
+    INFO(every);
+    scene.output_every = every;
+    struct Seen {
+      std::vector<double> rows;
+      std::string checkpoint;
+      std::size_t rows_before = 0;  ///< the checkpoint
+    };
+    const auto watch = [](Seen& seen) {
+      RunObserver<3> observer;
+      observer.output = [&](const Simulation<3>& s) { seen.rows.push_back(s.time()); };
+      observer.checkpoint = [&](Archive& state, const Simulation<3>&) {
+        seen.checkpoint = state.bytes();
+        seen.rows_before = seen.rows.size();
+      };
+      return observer;
+    };
+    Seen first, second;
+    Simulation<3> whole(scene), again(scene);
+    const RunResult result = run(whole, watch(first));
+    REQUIRE(result.ended_by == key);
+    REQUIRE(first.rows.back() == whole.time());
+    Archive state(first.checkpoint);
+    const RunResult resumed = resume<3>(again, watch(second), state);
+    CHECK(resumed.converged);
+    CHECK(resumed.ended_by == key);
+    CHECK(resumed.warnings == result.warnings);
+    CHECK(second.rows == std::vector<double>(first.rows.begin() + static_cast<long>(first.rows_before), first.rows.end()));
+    CHECK(second.checkpoint == first.checkpoint);
+  }
+}
+
 TEST_CASE("checkpoints come on request only", "[analysis][checkpoint]") {
   Scene scene = prepared(test::falling_block(), "soft");
   scene.end_time = 0.01;

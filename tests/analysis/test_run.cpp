@@ -99,6 +99,8 @@ TEST_CASE("a settled start that does not exist ends the run with its reason", "[
   scene.method.start = Start::settled;
   scene.settle.failure_displacement = 0.01;
   scene.end_time = 1.0;
+  scene.snapshot_times = {0.0};
+  scene.milestones = {0.5};
   Simulation<3> simulation(scene);
   int outputs = 0, steps = 0;
   RunObserver<3> observer;
@@ -106,9 +108,50 @@ TEST_CASE("a settled start that does not exist ends the run with its reason", "[
   observer.progress = [&](double) { ++steps; };
   const RunResult result = run(simulation, observer);
   CHECK_FALSE(result.converged);
-  CHECK(result.reason == "no static equilibrium to start from (displacement); method.start = \"unloaded\" starts in motion");
+  CHECK(result.reason ==
+        "no static equilibrium to start from (displacement, limited by settle.failure_displacement_m); method.start = \"unloaded\" starts in motion");
   CHECK(outputs == 1);
   CHECK(steps == 0);
+  CHECK(result.warnings == std::vector<std::string>{"milestone 0.5 m not reached: the run had no state to start from",
+                                                    "no snapshot at t = 0 s: the run had no state to start from"});
+}
+
+TEST_CASE("a search that is given up names the key that limits it", "[analysis][run]") {
+  Scene scene = test::block_on_incline(40.0 * test::degree);
+  scene.method.start = Start::settled;
+  scene.settle.failure_displacement = 1e9;
+  scene.settle.max_steps = scene.settle.max_explicit_steps = scene.settle.max_time_steps = 2;
+  scene.end_time = 1.0;
+  const auto reason = [&](const std::string& method, SettleCriterion criterion) {
+    scene.method.contact = method;
+    scene.settle.criterion = criterion;
+    Simulation<3> simulation(scene);
+    return run<3>(simulation, {}).reason;
+  };
+  CHECK_THAT(reason("soft", SettleCriterion::unbalanced_force), ContainsSubstring("(steps, limited by settle.max_steps)"));
+  CHECK_THAT(reason("dem", SettleCriterion::unbalanced_force), ContainsSubstring("(steps, limited by settle.max_explicit_steps)"));
+  for (const char* method : {"soft", "dem"})
+    CHECK_THAT(reason(method, SettleCriterion::paper), ContainsSubstring("(steps, limited by settle.max_time_steps)"));
+  scene.settle.max_explicit_steps = 10000;
+  scene.settle.failure_displacement = 0.01;
+  CHECK_THAT(reason("dem", SettleCriterion::unbalanced_force), ContainsSubstring("(displacement, limited by settle.failure_displacement_m)"));
+}
+
+TEST_CASE("what comes at longer intervals than the run takes does not come within it", "[analysis][run]") {
+  for (const double interval : {0.011, 1e10, 1e20, 1e300}) {
+    INFO(interval);
+    Scene scene = test::falling_block();
+    scene.end_time = 0.01;
+    scene.output_every = scene.checkpoint_every = interval;
+    Simulation<3> simulation(scene);
+    std::vector<double> rows, checkpoints;
+    RunObserver<3> observer;
+    observer.output = [&](const Simulation<3>& s) { rows.push_back(s.time()); };
+    observer.checkpoint = [&](Archive&, const Simulation<3>& s) { checkpoints.push_back(s.time()); };
+    REQUIRE(run(simulation, observer).converged);
+    CHECK(rows == std::vector<double>{0.0, simulation.time()});
+    CHECK(checkpoints == std::vector<double>{simulation.time()});
+  }
 }
 
 TEST_CASE("a run that gets stuck keeps what it has", "[analysis][run]") {

@@ -28,9 +28,10 @@ class Workplace {
     if (!scene.empty()) folder_.write("scene.toml", scene);
   }
 
-  CommandResult run(const std::string& arguments) const {
+  /// \param before  what the shell does first, to be followed by the command
+  CommandResult run(const std::string& arguments, const std::string& before = "") const {
     const std::string line =
-        "cd '" + folder_.path() + "' && '" OPENCLOSE_COMMAND "' " + arguments + " >'" + log_ / "out" + "' 2>'" + log_ / "err" + "'";
+        "cd '" + folder_.path() + "' && " + before + "'" OPENCLOSE_COMMAND "' " + arguments + " >'" + log_ / "out" + "' 2>'" + log_ / "err" + "'";
     const int status = std::system(line.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of(log_ / "out"), lines_of(log_ / "err")};
   }

@@ -257,6 +257,22 @@ TEST_CASE("more steps than anyone waits for", "[cli][bad_input]") {
              ContainsSubstring("strength_reduction.curve_time_s"));
 }
 
+TEST_CASE("check refuses what run or fos would refuse, in the same words", "[cli][bad_input]") {
+  const Workplace place;
+  const auto refused_by_check_and = [&](const std::string& command, const std::string& arguments) {
+    CHECK(refusal(place, "check scene.toml" + arguments) == refusal(place, command + " scene.toml -o out" + arguments));
+  };
+  refused_by_check_and("run", " --dt 0.001 --end 1e18");
+  refused_by_check_and("run", " --dt 1e-320 --end 1");
+  refused_by_check_and("run", steps + " --start steady_sliding --set 'block[1].vertices_m=[[0, 5], [1, 5], [1, 6], [0, 6]]'");
+  refused_by_check_and("fos", " --dt 1e-16 --set strength_reduction.curve_time_s=1");
+  refused_by_check_and("fos", " --set strength_reduction.curve_time_s=1");
+  refused_by_check_and("fos", " --set settle.criterion=paper");
+  // A step or an end for the command line, or none for fos.
+  for (const char* arguments : {"", " --dt 0.001", " --end 1", " --start steady_sliding"})
+    CHECK(place.run(std::string("check scene.toml") + arguments).status == 0);
+}
+
 TEST_CASE("overrides that cannot be", "[cli][bad_input]") {
   CHECK_THAT(refusal_of_scene(block_on_base, " --set joint[7].friction_angle_deg=20"), ContainsSubstring("joint[7]"));
   CHECK_THAT(refusal_of_scene(block_on_base, " --set method.thetta=0.6"), ContainsSubstring("method.thetta"));

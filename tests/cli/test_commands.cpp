@@ -110,6 +110,68 @@ TEST_CASE("a second run replaces the files of the first", "[cli]") {
   CHECK(lines_of(place.folder() / "out/history.csv").size() == 12);
 }
 
+TEST_CASE("a folder has the results of one run only, beside files of the user's own", "[cli]") {
+  const Workplace place(openclose::test::block_on_incline(30.0));
+  const auto in_out = [&] { return entries(place.folder() / "out"); };
+  const std::string run = "run scene.toml -o out --dt 0.001 --end 0.01 ";
+  const std::set<std::string> bare = {"history.csv", "energy.csv", "blocks.csv", "contacts.csv", "summary.json", "mine.csv"};
+  REQUIRE(place.run(run + "--set output.milestones_m=[9] --set output.checkpoint_every_s=1").status == 0);
+  place.folder().write("out/mine.csv", "kept");
+  place.folder().write("out/checkpoint.bin.part", "of a run that was killed");
+
+  SECTION("another run") {
+    CHECK(place.run(run).status == 0);
+    CHECK(in_out() == bare);
+  }
+  SECTION("a factor of safety, and a run again") {
+    CHECK(place
+              .run("fos scene.toml -o out --dt 0.001 --set strength_reduction.width=1 --set settle.failure_displacement_m=0.05 --set "
+                   "strength_reduction.curve=[1.1] "
+                   "--set strength_reduction.curve_time_s=0.01")
+              .status == 0);
+    CHECK(in_out() == std::set<std::string>{"blocks.csv", "contacts.csv", "trials.csv", "curve.csv", "summary.json", "mine.csv"});
+    CHECK(place.run(run).status == 0);
+    CHECK(in_out() == bare);
+  }
+  SECTION("a run that is killed leaves no summary of the one before") {
+    place.run("run scene.toml -o out --dt 0.001 --end 1000", "ulimit -t 1; ");
+    CHECK(in_out() == std::set<std::string>{"history.csv", "energy.csv", "blocks.csv", "mine.csv"});
+  }
+  SECTION("a run that is refused") {
+    const auto before = in_out();
+    CHECK(place.run(run + "--set method.thetta=1").status == 2);
+    CHECK(place.run("run scene.toml -o out --dt 0.001 --end 1e18").status == 2);
+    CHECK(place.run(run + "--start steady_sliding --set 'block[1].vertices_m=[[0, 5], [1, 5], [1, 6], [0, 6]]'").status == 2);
+    CHECK(place.run(run + "--restart nowhere.bin").status == 2);
+    CHECK(place.run("fos scene.toml -o out --set strength_reduction.curve_time_s=1").status == 2);
+    CHECK(in_out() == before);
+    CHECK(before.count("milestones.csv") == 1);
+  }
+  CHECK(text_of(place.folder() / "out/mine.csv") == "kept");
+}
+
+TEST_CASE("a result that cannot be written to its end breaks the command off", "[cli]") {
+  const Workplace place;
+  const auto broken_off_at = [&](const std::string& file, const std::string& arguments) {
+    const CommandResult result = place.run(arguments, "ulimit -f 16; ");
+    INFO(arguments);
+    CHECK(result.status == 3);
+    CHECK(result.out.empty());
+    REQUIRE(result.errors.size() == 1);
+    CHECK_THAT(result.errors[0], StartsWith("openclose: ") && ContainsSubstring(place.folder() / file + ": cannot be written to its end"));
+  };
+  const std::string out = place.folder() / "out";
+  // Long before the run would end.
+  broken_off_at("out/history.csv", "run scene.toml --dt 0.001 --end 1000 -o " + out);
+  CHECK(entries(place.folder() / "out") == std::set<std::string>{"history.csv", "energy.csv", "blocks.csv"});
+  const std::string cut =
+      "[domain]\nmaterial = 'rock'\nvertices_m = [[-30, -9], [30, -9], [30, -3], [-30, -3]]\n"
+      "[[joint_set]]\ndip_deg = 90\nspacing_m = 0.1\norigin_m = [0, 0]\n";
+  place.folder().write("scene.toml", block_on_base + cut);
+  broken_off_at("cut/blocks.toml.part", "cut scene.toml -o " + place.folder() / "cut/blocks.toml");
+  CHECK_FALSE(std::filesystem::exists(place.folder() / "cut"));
+}
+
 TEST_CASE("the same run twice gives the same files bit for bit", "[cli]") {
   const Workplace place(openclose::test::block_on_incline(40.0));
   const std::string arguments = " --dt 0.001 --end 0.1 --start unloaded";
@@ -236,6 +298,14 @@ TEST_CASE("check writes the spectrum that it is asked for", "[cli]") {
   CHECK(place.run("check scene.toml --spectrum scene.toml --dt 0.001").status == 2);
   CHECK(place.run("check scene.toml").status == 0);
   CHECK(place.folder().entries() == std::set<std::string>{"scene.toml", "spectrum.csv"});
+}
+
+TEST_CASE("check tells the steps of dem, where nothing bounds them, too", "[cli]") {
+  const Workplace place;
+  CHECK_THAT(place.run("check scene.toml --contact dem").out, ContainsSubstring("\ncritical step 0.0"));
+  const CommandResult free = place.run("check scene.toml --contact dem --set 'block[1].vertices_m=[[0, 5], [1, 5], [1, 6], [0, 6]]'");
+  CHECK(free.status == 0);
+  CHECK_THAT(free.out, ContainsSubstring("no critical step") && ContainsSubstring("step.dt_s") && !ContainsSubstring("inf"));
 }
 
 TEST_CASE("check tells what it has read and writes nothing", "[cli]") {

@@ -50,14 +50,14 @@ TEST_CASE("no factor of safety at any strength", "[cli][not_converged]") {
   const Workplace place(openclose::test::block_on_incline(0.0));
   const CommandResult result =
       place.run("fos scene.toml -o out --set 'block[1].vertices_m=[[0, 5], [1, 5], [1, 6], [0, 6]]' --set settle.failure_displacement_m=0.1");
-  check_saved(place, result, "not stable even at a strength reduction factor of");
+  check_saved(place, result, "not stable even at a strength reduction factor of 0.001 (displacement, limited by settle.failure_displacement_m)");
   CHECK(states_in(place.folder() / "out/blocks.csv") == std::set<std::string>{"failed", "initial"});
 }
 
 TEST_CASE("no static equilibrium to start from", "[cli][not_converged]") {
   const Workplace place(openclose::test::block_on_incline(40.0));
   const CommandResult result = place.run("run scene.toml -o out --dt 0.001 --end 0.1 --start settled --set settle.failure_displacement_m=0.05");
-  check_saved(place, result, "no static equilibrium to start from (displacement)");
+  check_saved(place, result, "no static equilibrium to start from (displacement, limited by settle.failure_displacement_m)");
   CHECK(states_in(place.folder() / "out/blocks.csv") == std::set<std::string>{"initial", "start", "final"});
   CHECK(summary_of(place).at("settling").at("settled") == false);
   CHECK(summary_of(place).at("time_s") == 0.0);

@@ -56,6 +56,77 @@ TEST_CASE("a killed run goes on from its last checkpoint", "[cli][restart]") {
   check_same_tables(place, "whole", "killed");
 }
 
+TEST_CASE("a run that goes on from its end has the files that it had", "[cli][restart]") {
+  const Workplace place(openclose::test::block_on_incline(35.0));
+  const std::string common = std::string("run scene.toml") + motion + " --set output.checkpoint_every_s=0.04 --set output.milestones_m=[1e-6,9] ";
+  // Each ends between two rows.
+  for (const std::string end : {"--end 0.1 ", "--end 0.1005 ", "--end 0.1 --set end.displacement_m=1e-5 "}) {
+    INFO(end);
+    const auto times = [&](const std::string& folder) {
+      std::vector<std::string> list;
+      for (const std::string& line : openclose::test::lines_of(place.folder() / (folder + "/milestones.csv")))
+        list.push_back(openclose::test::fields_of(line)[0] + openclose::test::fields_of(line)[1]);
+      return list;
+    };
+    REQUIRE(place.run(common + end + "-o whole").status == 0);
+    std::filesystem::copy(place.folder() / "whole", place.folder() / "again");
+    for (const std::string into : {"again", "elsewhere"}) {
+      INFO(into);
+      CHECK(place.run(common + end + "-o " + into + " --restart again/checkpoint.bin").status == 0);
+      check_same_tables(place, "whole", into);
+      CHECK(times(into) == times("whole"));
+      CHECK(std::filesystem::exists(place.folder() / (into + "/checkpoint.bin")));
+    }
+    for (const char* folder : {"whole", "again", "elsewhere"}) std::filesystem::remove_all(place.folder() / folder);
+  }
+}
+
+TEST_CASE("a run that filled the disk goes on from its last checkpoint", "[cli][restart]") {
+  const Workplace place(openclose::test::block_on_incline(35.0));
+  const std::string common = std::string("run scene.toml") + motion + " --end 0.3 --set output.checkpoint_every_s=0.01 -o ";
+  REQUIRE(place.run(common + "whole").status == 0);
+  REQUIRE(text_of(place.folder() / "whole/energy.csv").size() > 20 * 512);
+  CHECK(place.run(common + "full", "ulimit -f 20; ").status == 3);
+  CHECK_FALSE(std::filesystem::exists(place.folder() / "full/summary.json"));
+  CHECK(place.run(common + "full --restart full/checkpoint.bin").status == 0);
+  check_same_tables(place, "whole", "full");
+}
+
+TEST_CASE("a run goes on into a folder that has results", "[cli][restart]") {
+  const Workplace place(openclose::test::block_on_incline(35.0));
+  const std::string common = std::string("run scene.toml") + motion;
+  REQUIRE(place.run(common + " --end 0.15 -o whole").status == 0);
+  REQUIRE(place.run(common + " --end 0.07 -o parts --set output.checkpoint_every_s=0.05 --set output.milestones_m=[9]").status == 0);
+  const std::string checkpoint = text_of(place.folder() / "parts/checkpoint.bin");
+  const auto goes_on = [&](const std::string& arguments) {
+    CHECK(place.run(common + " --end 0.15 --set output.milestones_m=[9] " + arguments).status == 0);
+    CHECK(text_of(place.folder() / "parts/checkpoint.bin") == checkpoint);
+  };
+  SECTION("of another run: they go, the checkpoint and its tables stay") {
+    REQUIRE(place.run(common + " --end 0.3 -o other --set output.checkpoint_every_s=0.05").status == 0);
+    goes_on("-o other --restart parts/checkpoint.bin");
+    CHECK_FALSE(std::filesystem::exists(place.folder() / "other/checkpoint.bin"));
+    check_same_tables(place, "whole", "other");
+  }
+  SECTION("its own, under another path") {
+    std::filesystem::create_directory_symlink("parts", place.folder() / "link");
+    goes_on("-o link --restart parts/checkpoint.bin");
+    check_same_tables(place, "whole", "parts");
+  }
+  SECTION("its own, from a checkpoint under another name") {
+    std::filesystem::rename(place.folder() / "parts/checkpoint.bin", place.folder() / "parts/saved.bin");
+    CHECK(place.run(common + " --end 0.15 --set output.milestones_m=[9] -o parts --restart parts/saved.bin").status == 0);
+    check_same_tables(place, "whole", "parts");
+  }
+  SECTION("its own, seen from within") {
+    const std::string within = "cd parts && ";
+    CHECK(place.run("run ../scene.toml" + std::string(motion) + " --end 0.15 --set output.milestones_m=[9] -o . --restart checkpoint.bin", within)
+              .status == 0);
+    CHECK(text_of(place.folder() / "parts/checkpoint.bin") == checkpoint);
+    check_same_tables(place, "whole", "parts");
+  }
+}
+
 TEST_CASE("a restart that cannot be writes nothing", "[cli][restart]") {
   const Workplace place(openclose::test::block_on_incline(35.0));
   const std::string common = std::string("run scene.toml") + motion;

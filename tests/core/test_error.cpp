@@ -23,8 +23,14 @@ TEST_CASE("what is not known is left out of the message", "[core][error]") {
   CHECK(std::string(InputError("plain").what()) == "plain");
 }
 
-TEST_CASE("success, no convergence and bad input are told apart by the exit code", "[core][error]") {
+TEST_CASE("a file that is not written to its end is told by its path", "[core][error]") {
+  CHECK(std::string(WriteError("out/history.csv").what()).rfind("out/history.csv: cannot be written to its end: ", 0) == 0);
+  CHECK(std::string(WriteError("out/history.csv", "is gone").what()) == "out/history.csv: is gone");
+}
+
+TEST_CASE("success, no convergence, bad input and what was broken off are told apart by the exit code", "[core][error]") {
   CHECK(exit_success == 0);
   CHECK(exit_not_converged == 1);
   CHECK(exit_bad_input == 2);
+  CHECK(exit_broken_off == 3);
 }

@@ -86,6 +86,7 @@ TEST_CASE("batches are lent with where their contacts start, and given back", "[
   starts->batches.resize(1);
   std::vector<BlockMove<3>> moves{BlockMove<3>({0.1, 0.2, 0.3}, RotationKind::exact, 1.0), BlockMove<3>({-0.3, 0.1, -0.2}, RotationKind::exact, 1.0)};
   std::vector<TrialBatch> trials(1);
+  std::vector<ElasticBatch> elastic(1);
   std::vector<Branch> branches(batch_size, 0);
   std::vector<ContactOutcome<3>> expected;
   for (int c = 0; c < 2; ++c) {
@@ -103,14 +104,17 @@ TEST_CASE("batches are lent with where their contacts start, and given back", "[
     starts->batches[0].shear[c] = o.shear_stiffness;
     trials[0].gap_change[c] = o.pose.gap_change;
     trials[0].slip_change[c] = o.pose.slip_change;
-    trials[0].set_carried(c, o.forces);
+    trials[0].normal[c] = o.forces.normal;
+    trials[0].shear[c] = o.forces.shear;
+    elastic[0].normal[c] = o.forces.elastic_normal;
+    elastic[0].shear[c] = o.forces.elastic_shear;
     branches[c] = branch(o.forces);
   }
   BatchKernels().begin(starts->batches);
   const TrialBatch* const where = trials.data();
   ContactOutcomes<3> copy, outcomes;
-  copy.copy(starts, moves, trials, branches);
-  outcomes.borrow(starts, moves, trials, branches);
+  copy.copy(starts, moves, trials, branches, elastic);
+  outcomes.borrow(starts, moves, trials, branches, elastic);
   CHECK(trials.empty());
   CHECK(moves.empty());
   for (int c = 0; c < 2; ++c) {

@@ -238,6 +238,24 @@ TEST_CASE("a bond that broke in a relaxed step that is not taken holds in the ne
   CHECK(statuses(light) == both_stick);
 }
 
+TEST_CASE("a solution that is kept stays as it was while another one is found", "[integrator][newton]") {
+  Probe probe(test::column_of_blocks(3));
+  const StepProblem<3> problem = probe.simulation.problem(0.01, false);
+  StepSolution<3> solution;
+  solution.d = Eigen::VectorXd::Zero(3 * problem.system.free_count());
+  probe.newton.solve(problem, probe.springs, solution, FirstTangent::present);
+  REQUIRE(solution.converged);
+  const StepSolution<3> kept = solution;
+  std::vector<ContactSprings> stiffer = probe.springs;
+  for (ContactSprings& s : stiffer) s.normal *= 2.0;
+  probe.newton.solve_again(stiffer, solution, FirstTangent::present);
+  REQUIRE(solution.converged);
+  for (std::size_t c = 0; c < probe.springs.size(); ++c) {
+    CHECK(kept.contacts.normal_stiffness(c) == probe.springs[c].normal);
+    CHECK(solution.contacts.normal_stiffness(c) == stiffer[c].normal);
+  }
+}
+
 TEST_CASE("a displacement that has run away is no solution, however much its rounding excuses", "[integrator][newton]") {
   Probe probe(test::column_of_blocks(3));
   StepProblem<3> problem = probe.simulation.problem(1e6, true);  // so long that inertia is below the rounding of the springs

@@ -1,10 +1,10 @@
 #include <filesystem>
 #include <fstream>
-#include <stdexcept>
 
 #include "io/files.h"
 #include "openclose/core/error.h"
 #include "openclose/io/output_folder.h"
+#include "openclose/io/results.h"
 #include "support/catch.h"
 
 using namespace openclose;
@@ -81,5 +81,43 @@ TEST_CASE("a file that is not written to its end is an error", "[io][output_fold
   std::ofstream full("/dev/full");
   REQUIRE(full.is_open());
   full << "a row\n";
-  CHECK_THROWS_AS(finish(full, "history.csv"), std::runtime_error);
+  CHECK_THROWS_AS(finish(full, "out/history.csv"), WriteError);
+}
+
+TEST_CASE("a table that is not written is an error at once, before a checkpoint counts on it", "[io][output_folder]") {
+  struct Table : RunTable {
+    explicit Table(const OutputFolder& folder) : RunTable(folder, "table.csv", "column", nullptr) {}
+    using RunTable::file_;
+    using RunTable::require_written;
+  };
+  const TemporaryFolder place;
+  Table table(OutputFolder(place.path()));
+  table.file_.close();
+  table.file_.open("/dev/full");
+  table.file_ << "a row\n";
+  CHECK_NOTHROW(table.require_written());
+  CHECK_THROWS_WITH(table.written(), ContainsSubstring(place / "table.csv"));
+  CHECK_THROWS_AS(table.require_written(), WriteError);
+}
+
+TEST_CASE("results are removed by their names, nothing else is", "[io][output_folder]") {
+  const TemporaryFolder place;
+  for (const char* name : {"history.csv", "summary.json", "checkpoint.bin", "mine.txt", "history.csv.old"}) place.write(name, "x");
+  const OutputFolder folder(place.path());
+  CHECK(place.entries().size() == 5);
+  folder.remove_results();
+  CHECK(place.entries() == std::set<std::string>{"mine.txt", "history.csv.old"});
+}
+
+TEST_CASE("a folder knows the checkpoints that lie in it", "[io][output_folder]") {
+  const TemporaryFolder place, other;
+  for (const TemporaryFolder* folder : {&place, &other}) folder->write("checkpoint.bin", "x");
+  place.write("saved.bin", "x");
+  std::filesystem::create_symlink(place / "checkpoint.bin", other / "latest.bin");
+  const OutputFolder folder(place.path());
+  CHECK(folder.has(place / "checkpoint.bin"));
+  CHECK(folder.has(place / "saved.bin"));
+  CHECK(folder.has(place / "../" + std::filesystem::path(place.path()).filename().string() + "/checkpoint.bin"));
+  CHECK(folder.has(other / "latest.bin"));
+  CHECK_FALSE(folder.has(other / "checkpoint.bin"));
 }

@@ -234,6 +234,11 @@ TEST_CASE("summary.json of a start by the paper's criterion", "[io][results]") {
   scene.settle.criterion = SettleCriterion::paper;
   scene.end_displacement = 2.0;
   scene.run_strength_reduction_factor = 1.5;
+  scene.checkpoint_every = 0.25;
+  scene.milestones = {1.0, 2.5};
+  scene.snapshot_times = {0.5};
+  scene.strength_reduction.curve = {1.1};
+  scene.strength_reduction.curve_time = 3.0;
   Simulation<3> simulation(scene);
   Summary summary;
   summary.settling.steps = 7;
@@ -249,6 +254,11 @@ TEST_CASE("summary.json of a start by the paper's criterion", "[io][results]") {
   CHECK(j.at("options").at("settle").at("keep_bonds") == true);
   CHECK(j.at("options").at("end_displacement_m") == 2.0);
   CHECK(j.at("options").at("run_strength_reduction_factor") == 1.5);
+  CHECK(j.at("options").at("checkpoint_every_s") == 0.25);
+  CHECK(j.at("options").at("milestones_m") == scene.milestones);
+  CHECK(j.at("options").at("snapshots_s") == scene.snapshot_times);
+  CHECK(j.at("options").at("strength_reduction").at("curve") == scene.strength_reduction.curve);
+  CHECK(j.at("options").at("strength_reduction").at("curve_time_s") == 3.0);
 }
 
 TEST_CASE("summary.json of a run", "[io][results]") {

@@ -37,6 +37,16 @@ TEST_CASE("the pattern holds the diagonal and both triangles, once each, and sta
   CHECK(matrix.dense().isZero(0.0));
 }
 
+TEST_CASE("a slot is that of one pair", "[linear][block_matrix]") {
+  BlockMatrix<3> matrix;
+  matrix.set_pattern(4, {{2, 0}, {1, 2}, {1, 3}});
+  for (int slot = 0; slot <= matrix.nobody(); ++slot) {
+    for (int i = 0; i < 4; ++i) {
+      for (int j = 0; j < 4; ++j) CHECK(matrix.is_at(slot, i, j) == (matrix.find(i, j) == slot));
+    }
+  }
+}
+
 TEST_CASE("blocks are added where they belong", "[linear][block_matrix]") {
   BlockMatrix<3> matrix;
   matrix.set_pattern(3, {{0, 2}});
