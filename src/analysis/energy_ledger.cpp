@@ -121,10 +121,18 @@ void add_step(EnergyLedger& ledger, const StepProblem<N>& problem, const StepSol
       const Vec2 moved = Motion<N>::displacement(d, arm0, system.rotation_kind());
       const Vec2 arm1 = arm0 + moved - Motion<N>::translation(d);
       const Vec2 x0 = system.point_position(f.point) - f.anchor, x1 = x0 + moved;
-      const double work = problem.averages_path()
-                              ? Motion<N>::gradient(0.5 * (arm0 + arm1), f.force - 0.5 * f.stiffness.cwiseProduct(x0 + x1)).dot(path)
-                              : theta * Motion<N>::gradient(arm1, f.force - f.stiffness.cwiseProduct(x1)).dot(path) +
-                                    (1.0 - theta) * Motion<N>::gradient(arm0, f.force - f.stiffness.cwiseProduct(x0)).dot(path);
+      const auto force_at = [&](const Vec2& arm, const Vec2& stretch) {
+        return Motion<N>::gradient(arm, f.force - f.stiffness.cwiseProduct(stretch));
+      };
+      Unknowns force;  // as it acted in this step
+      if (solution.first_order) {
+        force = ExternalForces<N>::linear_force(system, f, d);
+      } else if (problem.averages_path()) {
+        force = force_at(0.5 * (arm0 + arm1), 0.5 * (x0 + x1));
+      } else {
+        force = theta * force_at(arm1, x1) + (1.0 - theta) * force_at(arm0, x0);
+      }
+      const double work = force.dot(path);
       const double stored = 0.5 * f.stiffness.dot(x1.cwiseAbs2() - x0.cwiseAbs2());
       const double by_load = f.force.dot(moved);
       account += stored - by_load;

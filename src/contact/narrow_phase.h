@@ -278,9 +278,11 @@ class NarrowPhase {
   template <class Closed>
   bool entered_through(int v, int edge_block, int e, double gap, const Closed& closed) {
     const Vec2& p = shapes_.edge(v).start;
-    // What lies behind the edge must lie in the block, except for what drawings leave and what contacts that carry load have closed.
-    if (-gap > tolerance::deepest_initial_overlap_m && !in_block(edge_block, p) && !closed()) return false;
     const Edge& edge = shapes_.edge(e);
+    // What lies behind the edge must lie in the block, except for what drawings leave, which is not beyond a thin block, and what contacts that carry
+    // load have closed.
+    const double left_by_drawings = std::min(tolerance::deepest_initial_overlap_m, depth_behind(edge_block, edge));
+    if (-gap > left_by_drawings && !in_block(edge_block, p) && !closed()) return false;
     const auto& block = system_.block(edge_block);
     for (int f = block.first_vertex; f < block.first_vertex + block.vertex_count; ++f) {
       const Edge& other = shapes_.edge(f);
@@ -292,6 +294,13 @@ class NarrowPhase {
       if (at_needle ? stands_on(v, other) : outside(v, other)) return false;
     }
     return true;
+  }
+
+  /// [m] of a block behind one of its edges.
+  double depth_behind(int block, const Edge& edge) const {
+    double depth = 0.0;
+    for (const Edge& corner : shapes_.edges(block)) depth = std::max(depth, -edge.gap(corner.start));
+    return depth;
   }
 
   bool in_block(int block, const Vec2& p) {

@@ -33,6 +33,11 @@ double sign(double x) {
   return x > 0.0 ? 1.0 : (x < 0.0 ? -1.0 : 0.0);
 }
 
+/// Unlike std::max() no number, once there has been one that is none.
+double larger_or_nan(double largest, double next) {
+  return largest >= next || std::isnan(largest) ? largest : next;
+}
+
 }  // namespace
 
 template <int N>
@@ -398,7 +403,7 @@ bool CentralDifference<N>::move(double h, double span, const Vec2& base, double 
     next.y = (keep * v.y + span * (damped(f.y - m.mass * base.y(), v.y) * m.per_mass)) * per_viscous;
     next.turn = m.turns * (keep * v.turn + span * (damped(f.turn, v.turn) * m.per_moment)) * per_viscous;
     // (a + b)^2 <= 2 (a^2 + b^2) for the speed of the centroid and of the farthest point around it.
-    fastest = std::max(fastest, next.x * next.x + next.y * next.y + square(next.turn * m.radius));
+    fastest = larger_or_nan(fastest, next.x * next.x + next.y * next.y + square(next.turn * m.radius));
     unbalanced = std::max(unbalanced, force_squared(i));
   }
   const double farthest = h * std::sqrt(2.0 * fastest);

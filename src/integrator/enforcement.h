@@ -85,6 +85,7 @@ struct StepSolution {
   bool converged = false;
   bool compliant = false;    ///< `hard`: taken with springs, see hard.cpp
   bool eased = false;        ///< `hard`: the cohesion came in over a longer ramp, see hard.cpp
+  bool first_order = false;  ///< `shi`: loads and supports act as linearised at the start of the step
   bool dissipative = false;  ///< path_average: taken with more dissipation than asked for, see soft.cpp
   std::string reason;        ///< why not converged
   double part = 0.0;         ///< [-] not converged: of the step, a length that is likely to; 0 if that is not known
@@ -97,7 +98,7 @@ struct StepSolution {
 
   /// Empty again, with its memory for the next step.
   void clear() {
-    converged = compliant = eased = dissipative = false;
+    converged = compliant = eased = first_order = dissipative = false;
     reason.clear();
     part = 0.0;
     effort = {};

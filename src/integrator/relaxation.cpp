@@ -102,6 +102,9 @@ TwoLevelFlexibility Newton<N>::flexibility(const Eigen::VectorXd& d, const std::
     if (pair.first >= 0 && (couplings.empty() || couplings.back() != pair)) couplings.push_back(pair);
   }
   TwoLevelFlexibility sum(centroids, couplings);
+  for (int row = 0; row < rows; ++row) {
+    if (blocks_[row].rotation_locked) sum.lock_rotation(row);
+  }
   const auto gradient = [&](int row, const Vec2& direction, const Vec2& arm) {
     const bool turns = row >= 0 && !blocks_[row].rotation_locked;
     return Unknowns(direction.x(), direction.y(), turns ? arm.x() * direction.y() - arm.y() * direction.x() : 0.0);

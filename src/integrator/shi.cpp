@@ -205,7 +205,7 @@ class Shi : public Enforcement<N> {
         return;
       }
     }
-    solution.converged = true;
+    solution.converged = solution.first_order = true;
     for (std::size_t c = 0; c < outcome_.size(); ++c) {
       const ContactKinematics<N>& k = outcome_[c].kinematics;
       // What a sliding contact carried in this step is the friction of the pass before.

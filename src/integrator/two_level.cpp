@@ -13,6 +13,7 @@ TwoLevelFlexibility::TwoLevelFlexibility(const std::vector<Vec2>& centroids, con
     : largest_group_(largest_group),
       group_(centroids.size()),
       arm_(centroids),
+      turns_(centroids.size(), 1.0),
       within_solver_(make_estimating_solver<3>()),
       between_solver_(make_block_solver<3>(Factoring::whole)) {
   std::vector<int> rows(centroids.size());
@@ -55,12 +56,12 @@ void TwoLevelFlexibility::divide(std::vector<int>::iterator first, std::vector<i
 
 TwoLevelFlexibility::Unknowns TwoLevelFlexibility::on_group(int row, const Unknowns& force) const {
   const Vec2& arm = arm_[row];
-  return {force.x(), force.y(), force.z() + arm.x() * force.y() - arm.y() * force.x()};
+  return {force.x(), force.y(), turns_[row] * force.z() + arm.x() * force.y() - arm.y() * force.x()};
 }
 
 TwoLevelFlexibility::Unknowns TwoLevelFlexibility::of_block(int row, const Unknowns& motion) const {
   const Vec2& arm = arm_[row];
-  return {motion.x() - motion.z() * arm.y(), motion.y() + motion.z() * arm.x(), motion.z()};
+  return {motion.x() - motion.z() * arm.y(), motion.y() + motion.z() * arm.x(), turns_[row] * motion.z()};
 }
 
 void TwoLevelFlexibility::add_own(int row, const Stiffness& stiffness) {
@@ -68,6 +69,7 @@ void TwoLevelFlexibility::add_own(int row, const Stiffness& stiffness) {
   Stiffness on_group_of_block, on_both;
   for (int k = 0; k < 3; ++k) on_group_of_block.col(k) = on_group(row, stiffness.col(k));
   for (int k = 0; k < 3; ++k) on_both.row(k) = on_group(row, on_group_of_block.row(k).transpose()).transpose();
+  if (turns_[row] == 0.0) on_both(2, 2) += stiffness(2, 2);  // a group of nothing but such a block has no other
   between_.add(group_[row], group_[row], on_both);
 }
 
@@ -81,7 +83,9 @@ void TwoLevelFlexibility::add_spring(double stiffness, int i, const Unknowns& fi
   }
   const bool joins = i >= 0 && j >= 0;
   if (joins && group_[i] == group_[j]) {
-    join(within_, i, first, j, second);  // a rigid group does not stretch it
+    join(within_, i, first, j, second);
+    const Unknowns stretch = on_group(i, first) + on_group(j, second);  // none, but for rounding, where both turn with their group
+    if (turns_[i] * turns_[j] == 0.0) join(between_, group_[i], stretch, group_[i], stretch);
     return;
   }
   for (const auto& [row, gradient] : {std::pair(i, first), std::pair(j, second)}) {
@@ -106,7 +110,7 @@ Eigen::VectorXd TwoLevelFlexibility::displacement(const Eigen::VectorXd& force) 
 
 Memory TwoLevelFlexibility::memory() const {
   Memory of;
-  of.blocks = bytes_of(group_, arm_);
+  of.blocks = bytes_of(group_, arm_, turns_);
   of.matrix = within_.bytes() + between_.bytes();
   for (const LinearSolver<3>* solver : {within_solver_.get(), between_solver_.get()}) of += solver ? solver->memory() : Memory();
   return of;

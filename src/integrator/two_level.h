@@ -33,6 +33,8 @@ class TwoLevelFlexibility {
   /// \param largest_group  blocks
   TwoLevelFlexibility(const std::vector<Vec2>& centroids, const std::vector<std::pair<int, int>>& couplings, int largest_group = usual_group);
 
+  /// A block that does not turn: forces on it have no moment, and where its group turns it only goes along. To be said before anything is added.
+  void lock_rotation(int row) { turns_[row] = 0.0; }
   /// What holds a block in its place.
   void add_own(int row, const Stiffness& stiffness);
   /// A spring [N/m] whose length grows by first * u_i + second * u_j; a row is -1 where the block is fixed.
@@ -51,8 +53,9 @@ class TwoLevelFlexibility {
 
   int largest_group_;
   int groups_ = 0;
-  std::vector<int> group_;  ///< by rows
-  std::vector<Vec2> arm_;   ///< [m] from the centre of the group
+  std::vector<int> group_;     ///< by rows
+  std::vector<Vec2> arm_;      ///< [m] from the centre of the group
+  std::vector<double> turns_;  ///< 1, or 0 where the rotation is locked
   BlockMatrix<3> within_, between_;
   std::unique_ptr<LinearSolver<3>> within_solver_, between_solver_;
 };

@@ -42,6 +42,7 @@ template <int N>
 class SparseSolver : public LinearSolver<N> {
  public:
   bool factor(const BlockMatrix<N>& matrix, double) override {
+    if (matrix.rows() == 0) return true;  // where no block moves; Eigen divides by the number of columns
     if (version_ != matrix.pattern_version() || scalar_.rows() != matrix.unknowns()) {
       build(matrix);
     } else {
@@ -57,6 +58,7 @@ class SparseSolver : public LinearSolver<N> {
     return lu_.info() == Eigen::Success;
   }
   Eigen::VectorXd solve(const Eigen::VectorXd& right_side, double) override {
+    if (right_side.size() == 0) return right_side;
     ++this->counters_.solves;
     return lu_.solve(right_side);
   }

@@ -44,12 +44,22 @@ typename ExternalForces<N>::Matrix ExternalForces<N>::stiffness(const BlockSyste
   for_each_point_force(b, [&](const PointForce& f) {
     const Vec2 moved = Motion<N>::displacement(d, system.point_arm(f.point), system.rotation_kind());
     const Vec2 stretch = (system.point_position(f.point) - f.anchor) + moved;
-    const Vec2 arm = system.point_arm(f.point) + moved - Motion<N>::translation(d);
-    const Unknowns gx = Motion<N>::gradient(arm, {1.0, 0.0}), gy = Motion<N>::gradient(arm, {0.0, 1.0});
-    total += f.stiffness.x() * gx * gx.transpose() + f.stiffness.y() * gy * gy.transpose();
-    total -= Motion<N>::hessian(arm, f.force - f.stiffness.cwiseProduct(stretch));
+    total += stiffness(f, system.point_arm(f.point) + moved - Motion<N>::translation(d), stretch);
   });
   return total;
+}
+
+template <int N>
+typename ExternalForces<N>::Matrix ExternalForces<N>::stiffness(const PointForce& f, const Vec2& arm, const Vec2& stretch) {
+  const Unknowns gx = Motion<N>::gradient(arm, {1.0, 0.0}), gy = Motion<N>::gradient(arm, {0.0, 1.0});
+  return f.stiffness.x() * gx * gx.transpose() + f.stiffness.y() * gy * gy.transpose() -
+         Motion<N>::hessian(arm, f.force - f.stiffness.cwiseProduct(stretch));
+}
+
+template <int N>
+typename ExternalForces<N>::Unknowns ExternalForces<N>::linear_force(const BlockSystem<N>& system, const PointForce& f, const Unknowns& d) {
+  const Vec2 arm = system.point_arm(f.point), stretch = system.point_position(f.point) - f.anchor;
+  return Motion<N>::gradient(arm, f.force - f.stiffness.cwiseProduct(stretch)) - stiffness(f, arm, stretch) * d;
 }
 
 template <int N>

@@ -14,6 +14,13 @@ class ExternalForces {
   using Unknowns = typename Motion<N>::Unknowns;
   using Matrix = typename Motion<N>::Matrix;
 
+  struct PointForce {
+    int point = 0;                  ///< followed point of the system
+    Vec2 force = Vec2::Zero();      ///< [N] constant part
+    Vec2 stiffness = Vec2::Zero();  ///< [N/m] of springs in x and y
+    Vec2 anchor = Vec2::Zero();     ///< [m] where the springs are slack, relative to the system's origin
+  };
+
   /// Makes `system` follow the points of the scene's loads and supports.
   ExternalForces(const Scene& scene, BlockSystem<N>& system);
 
@@ -31,6 +38,9 @@ class ExternalForces {
   /// Minus the derivative of force() by d.
   Matrix stiffness(const BlockSystem<N>& system, int b, const Unknowns& d) const;
 
+  /// One of these forces as it is at the start of a step, and what it changes by with d in the first order.
+  static Unknowns linear_force(const BlockSystem<N>& system, const PointForce& f, const Unknowns& d);
+
   /// The mean of such forces over a step to d, along a straight path and in the mean geometry: their work is the product with d, exactly for
   /// translations and to the third order in the rotation.
   Unknowns mean_force(const BlockSystem<N>& system, int b, const Unknowns& d) const;
@@ -42,12 +52,6 @@ class ExternalForces {
   /// [N] what the springs' forces change by when coordinates change by their own size: times the rounding unit, the noise of that force.
   double spring_scale(const BlockSystem<N>& system, int b) const;
 
-  struct PointForce {
-    int point = 0;                  ///< followed point of the system
-    Vec2 force = Vec2::Zero();      ///< [N] constant part
-    Vec2 stiffness = Vec2::Zero();  ///< [N/m] of springs in x and y
-    Vec2 anchor = Vec2::Zero();     ///< [m] where the springs are slack, relative to the system's origin
-  };
   /// False: force() does not depend on d.
   bool has_point_forces(int b) const { return !of_blocks_.empty() && !(of_blocks_[b].loads.empty() && of_blocks_[b].supports.empty()); }
   const std::vector<PointForce>& loads() const { return loads_; }
@@ -61,6 +65,7 @@ class ExternalForces {
     for (int i : of_blocks_[b].loads) f(loads_[i]);
     for (int i : of_blocks_[b].supports) f(supports_[i]);
   }
+  static Matrix stiffness(const PointForce& f, const Vec2& arm, const Vec2& stretch);
   /// Those at a block, by their numbers.
   struct PointForces {
     std::vector<int> loads, supports;

@@ -190,6 +190,20 @@ TEST_CASE("ledger of a load", "[analysis][energy]") {
   }
 }
 
+TEST_CASE("the ledger closes with loads and supports that turn a block, with every method", "[analysis][energy]") {
+  const std::string method = GENERATE(from_range(all_methods));
+  INFO(method);
+  Scene scene = test::falling_block();
+  scene.method.contact = method;
+  scene.step.dt = 0.01;
+  scene.loads = {{0, {2.0, 1.0}, {3000.0, -2000.0}}};
+  scene.supports = {{0, {0.0, 0.0}, {1e6, 1e6}}};
+  Simulation<3> simulation(scene);
+  advance(simulation, 50);
+  CHECK(std::abs(simulation.system().displacement(0)[2]) > 0.1);
+  CHECK(relative_imbalance(simulation.ledger()) < 1e-12);
+}
+
 TEST_CASE("ledger of a stiff impact: all that was fallen is lost", "[analysis][energy]") {
   Scene scene = test::block_on_base();
   scene.method.contact = "hard";

@@ -383,6 +383,14 @@ TEST_CASE("a step that moves a block too far is taken in parts and leaves no tra
   CHECK(std::abs(simulation.ledger().imbalance()) < 1e-12 * simulation.ledger().turnover);
 }
 
+TEST_CASE("motions that are no numbers end an explicit run", "[analysis][explicit]") {
+  Scene scene = explicit_scene(test::falling_block(), 1.0);
+  scene.materials[0].density = 1e308;  // its weight is infinite, and its acceleration no number
+  Simulation<3> simulation(scene);
+  CHECK_FALSE(simulation.advance(1.0));
+  CHECK(simulation.system().displacement(0).isZero(0.0));
+}
+
 TEST_CASE("a state that was saved goes on as the original", "[analysis][explicit]") {
   const Scene scene = rocking_column();
   Simulation<3> first(scene);

@@ -312,6 +312,16 @@ TEST_CASE("relaxation finds the places of rest without linear equations", "[anal
     CHECK(simulation.system().displacement(1)[2] == 0.0);
     CHECK(simulation.system().displacement(1)[1] == Approx(-(block_weight + 1e5) / (1e9 * test::block_edge)).epsilon(2e-8));
   }
+  SECTION("a block whose rotation is locked, with one on it that hangs over") {
+    Scene scene = test::block_on_base();
+    scene.blocks[1].rotation_locked = true;
+    scene.blocks.push_back(test::free_block("upper", test::rectangle(0.3, 1.0, 1.0, 1.0)));
+    Simulation<3> newton(scene), simulation(relaxed(scene));
+    REQUIRE(settle(newton).settled);
+    REQUIRE(settle(simulation).settled);
+    CHECK(simulation.system().displacement(1)[2] == 0.0);
+    for (const int b : {1, 2}) CHECK((newton.system().displacement(b) - simulation.system().displacement(b)).norm() < 1e-6 * 1e-4);
+  }
   SECTION("an incline flatter than its friction holds, a steeper one does not") {
     for (const double slope : {29.9, 30.1}) {
       Simulation<3> simulation(relaxed(test::block_on_incline(slope * test::degree)));

@@ -64,6 +64,14 @@ TEST_CASE("a block that hangs over touches with its corner and with the base's",
   CHECK(base_corner->edge_block == 1);
 }
 
+TEST_CASE("a corner above a thin plate is not behind the plate's lower side", "[contact][detection]") {
+  const double thickness = 4e-4;
+  Detection d(
+      scene_with({fixed_block("lower", rectangle(0.0, 0.0, 2.0, thickness)), free_block("upper", rectangle(0.5, thickness, 1.0, thickness))}));
+  REQUIRE(d.contacts.size() == 2);
+  for (const Contact& c : d.contacts) CHECK(std::abs(c.gap) < 1e-15);
+}
+
 TEST_CASE("a wide block on a narrow base touches with the base's corners only", "[contact][detection]") {
   Detection d(scene_with({fixed_block("base", rectangle(0.5, -1.0, 1.0, 1.0)), free_block("block", rectangle(0.0, 0.0, 2.0, 1.0))}));
   REQUIRE(d.contacts.size() == 2);

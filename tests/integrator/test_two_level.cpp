@@ -1,5 +1,6 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
+#include <ranges>
 
 #include "openclose/integrator/two_level.h"
 #include "support/catch.h"
@@ -14,9 +15,10 @@ constexpr double sixteen_bits = 9.0 / 32767.0;
 constexpr double condition = 30.0;
 
 /// Bricks of 2 m x 1 m, `width` of them in each of `height` courses on a fixed base, joined by springs of 1 N/m along and across two points of every
-/// joint.
+/// joint. Every third brick may be locked against turning.
 struct Wall {
-  Wall(int width, int height, int largest_group) : rows(width * height), stiffness(Eigen::MatrixXd::Zero(3 * rows, 3 * rows)) {
+  Wall(int width, int height, int largest_group, bool some_locked = false)
+      : are_some_locked(some_locked), rows(width * height), stiffness(Eigen::MatrixXd::Zero(3 * rows, 3 * rows)) {
     std::vector<Vec2> centroids;
     std::vector<std::pair<int, int>> couplings;
     const auto row = [&](int x, int y) { return y * width + x; };
@@ -28,6 +30,12 @@ struct Wall {
       }
     }
     flexibility = std::make_unique<TwoLevelFlexibility>(centroids, couplings, largest_group);
+    for (int i = 0; i < rows; ++i) {
+      if (turns(i)) continue;
+      flexibility->lock_rotation(i);
+      flexibility->add_own(i, Eigen::Vector3d(0.0, 0.0, 1.0).asDiagonal());
+      stiffness(3 * i + 2, 3 * i + 2) = 1.0;
+    }
     for (int y = 0; y < height; ++y) {
       for (int x = 0; x < width; ++x) {
         if (x > 0) join(row(x - 1, y), {1.0, 0.0}, row(x, y), {-1.0, 0.0}, {0.0, 0.5});
@@ -37,12 +45,16 @@ struct Wall {
     REQUIRE(flexibility->factor());
   }
 
+  bool turns(int row) const { return row < 0 || !are_some_locked || row % 3 != 0; }
+
   /// Springs at both ends of a joint, given by its middle seen from either block and half its length.
   void join(int i, const Vec2& from_i, int j, const Vec2& from_j, const Vec2& half) {
     for (const double end : {-1.0, 1.0}) {
       for (const Vec2& way : {Vec2(1.0, 0.0), Vec2(0.0, 1.0)}) {
-        const auto gradient = [&](const Vec2& arm) { return Eigen::Vector3d(way.x(), way.y(), arm.x() * way.y() - arm.y() * way.x()); };
-        const Eigen::Vector3d first = gradient(from_i + end * half), second = -gradient(from_j + end * half);
+        const auto gradient = [&](int row, const Vec2& arm) {
+          return Eigen::Vector3d(way.x(), way.y(), turns(row) ? arm.x() * way.y() - arm.y() * way.x() : 0.0);
+        };
+        const Eigen::Vector3d first = gradient(i, from_i + end * half), second = -gradient(j, from_j + end * half);
         flexibility->add_spring(1.0, i, first, j, second);
         Eigen::VectorXd whole = Eigen::VectorXd::Zero(3 * rows);
         if (i >= 0) whole.segment<3>(3 * i) = first;
@@ -61,6 +73,7 @@ struct Wall {
     return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(root.transpose() * estimate * root).eigenvalues();
   }
 
+  bool are_some_locked;
   int rows;
   Eigen::MatrixXd stiffness;
   std::unique_ptr<TwoLevelFlexibility> flexibility;
@@ -81,6 +94,22 @@ TEST_CASE("no eigenvalue of the estimate times the stiffness is above 3", "[inte
     const Eigen::VectorXd found = Wall(8, 8, group).eigenvalues();
     CHECK(found.maxCoeff() <= TwoLevelFlexibility::largest_eigenvalue);
     CHECK(found.minCoeff() > 0.0);
+  }
+}
+
+TEST_CASE("bricks that are locked do not turn with their group", "[integrator][two_level]") {
+  const auto [width, height] = GENERATE(std::pair(8, 8), std::pair(1, 16));
+  for (const int group : {1, 4, 1000}) {
+    INFO(width << " x " << height << ", groups of " << group);
+    Wall wall(width, height, group, true);
+    Eigen::VectorXd force = Eigen::VectorXd::LinSpaced(3 * wall.rows, -1.0, 2.0);
+    const auto is_locked = [&](int row) { return !wall.turns(row); };
+    for (int row : std::views::iota(0, wall.rows) | std::views::filter(is_locked)) force[3 * row + 2] = 0.0;
+    const Eigen::VectorXd found = wall.flexibility->displacement(force);
+    for (int row : std::views::iota(0, wall.rows) | std::views::filter(is_locked)) CHECK(found[3 * row + 2] == 0.0);
+    const Eigen::VectorXd eigenvalues = wall.eigenvalues();
+    CHECK(eigenvalues.maxCoeff() <= TwoLevelFlexibility::largest_eigenvalue);
+    CHECK(eigenvalues.minCoeff() > 0.0);
   }
 }
 

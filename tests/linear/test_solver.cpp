@@ -144,6 +144,16 @@ TEST_CASE("factors, answers and products have the same bits with one thread and 
   }
 }
 
+TEST_CASE("a system in which nothing moves has an empty solution", "[linear][solver]") {
+  BlockMatrix<3> matrix;
+  matrix.set_pattern(0, {});
+  for (const LinearSolverKind kind : {LinearSolverKind::plain, LinearSolverKind::direct, LinearSolverKind::iterative}) {
+    const Solver solver = make_solver<3>(0, kind);
+    REQUIRE(solver->factor(matrix));
+    CHECK(solver->solve(Eigen::VectorXd()).size() == 0);
+  }
+}
+
 TEST_CASE("several right sides use one factorisation", "[linear][solver]") {
   RandomSystems random(4);
   const Solver solver = make(GENERATE("dense", "sparse", "block", "multifrontal", "lagged"));
