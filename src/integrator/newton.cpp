@@ -728,84 +728,120 @@ typename Newton<N>::Outcome Newton<N>::iterate_holding(StepSolution<N>& solution
 }
 
 template <int N>
+struct Newton<N>::Course {
+  double norm = 0.0, value = 0.0, best = 0.0;  ///< [-] residual_norm(), merit(), and the smallest merit so far
+  Tangent tangent = Tangent::exact;
+  int refusals = 0;     ///< of the exact step since the merit was at its smallest
+  int switches = 0;     ///< contacts whose state the last iteration has changed
+  bool gets_on = true;  ///< the last iteration has halved the merit
+};
+
+template <int N>
+bool Newton<N>::help_by_parts(StepSolution<N>& solution, Course& course) {
+  const double norm_before = course.norm;
+  course.norm = solve_parts(solution, norm_before);
+  course.value = merit(course.norm);
+  course.best = std::min(course.best, course.value);
+  if (!(course.norm < norm_before)) return false;
+  course.tangent = Tangent::exact;
+  return true;
+}
+
+template <int N>
+double Newton<N>::try_step(const Eigen::VectorXd& d, const Eigen::VectorXd& step, const Course& course) {
+  const double slope = residual_.dot(step);
+  if (course.tangent == Tangent::exact || slope <= 0.0) {
+    evaluate(trial_ = d + step);
+    return 1.0;
+  }
+  const double alpha = line_search(d, step, slope) / static_cast<double>(std::max(1, course.refusals - patience));
+  if (course.refusals > patience + 1) evaluate(trial_ = d + alpha * step);
+  return alpha;
+}
+
+template <int N>
+void Newton<N>::follow(Course& course, double norm) {
+  const double value = merit(norm);
+  course.switches = differences(branches_before_, branches_);
+  course.gets_on = value <= 0.5 * course.value;
+  if (value < course.best) course.refusals = 0;
+  course.best = std::min(course.best, value);
+  course.norm = norm;
+  course.value = value;
+}
+
+template <int N>
+void Newton<N>::choose_tangent(Course& course) {
+  const int few = static_cast<int>(few_switches * static_cast<double>(contact_count_));
+  const bool held = course.norm > 1.0 && !course.gets_on && hold_reversed() > 0;  // a solution keeps the forces of the law
+  const bool exact_works = held || course.switches <= few || (course.tangent == Tangent::exact && course.gets_on);
+  course.tangent = exact_works ? Tangent::exact : Tangent::symmetric;
+}
+
+template <int N>
 typename Newton<N>::Outcome Newton<N>::iterate(const StepProblem<N>& problem, StepSolution<N>& solution, double& norm, Until until,
                                                bool may_start_cold) {
   Eigen::VectorXd& d = solution.d;
-  Tangent tangent = Tangent::exact;
-  int refusals = 0;  // of the exact step since the residual was at its smallest
-  double value = merit(norm), best = value;
-  const int few = static_cast<int>(few_switches * static_cast<double>(contact_count_));
+  Course course;
+  course.norm = norm;
+  course.value = course.best = merit(norm);
+  course.switches = static_cast<int>(contact_count_);  // any may be in another state than in the first tangent
   const bool may_help_by_parts =
       problem.method.skip_balanced && !problem.statics && !is_part_ && static_cast<int>(blocks_.size()) >= smallest_system_with_parts;
-  int switches = static_cast<int>(contact_count_);  // any may be in another state than in the first tangent
-  bool gets_on = true;                              // the last iteration has halved what it must reduce
   const bool of_all_blocks = asked_merit_ == Merit::all_blocks;
   const bool may_be_lost = !problem.statics && !is_part_ && (of_all_blocks || may_help_by_parts);
-  Headway headway(value, of_all_blocks ? most_iterations_to_halve : most_iterations_to_halve_with_parts);
+  Headway headway(course.value, of_all_blocks ? most_iterations_to_halve : most_iterations_to_halve_with_parts);
   // The stiff springs of hard let parts fail where they have failed: with pauses 40 m of a failing slope of 1,773 free blocks cost 1.1 times as much,
   // and with whole steps that parts make up for, but no pauses, 20 steps of 9,745 free blocks 7 times.
   Pause parts_pause(of_all_blocks ? until.iterations : 1);
-  for (int iteration = 0; iteration < until.iterations && norm > until.norm; ++iteration) {
+  Outcome outcome = Outcome::ended;
+  for (int iteration = 0; iteration < until.iterations && course.norm > until.norm; ++iteration) {
     const bool try_parts = may_help_by_parts && parts_pause.is_over();
-    if (try_parts && iteration > 0 && switches > 0) {
-      const double whole_norm = norm;
-      norm = solve_parts(solution, norm);
-      if (norm < whole_norm) {
-        parts_pause.end();
-        tangent = Tangent::exact;
-      } else {
-        parts_pause.begin();
-      }
-      value = merit(norm);
-      best = std::min(best, value);
-      if (norm <= until.norm) break;
+    if (try_parts && iteration > 0 && course.switches > 0) {
+      help_by_parts(solution, course) ? parts_pause.end() : parts_pause.begin();
+      if (course.norm <= until.norm) break;
     }
-    if (may_be_lost && headway.is_lost(best)) break;
+    if (may_be_lost && headway.is_lost(course.best)) break;
     branches_before_ = branches_;
-    const double end = end_to_spare * until.norm / norm;
-    const double reduction = reduction_to(end, usual_reduction(gets_on, switches));
-    const Eigen::VectorXd step = direction(d, tangent, reduction, std::min(end, loosest_reduction));
+    const double end = end_to_spare * until.norm / course.norm;
+    const double reduction = reduction_to(end, usual_reduction(course.gets_on, course.switches));
+    const Eigen::VectorXd step = direction(d, course.tangent, reduction, std::min(end, loosest_reduction));
     ++solution.effort.iterations;
-    if (step.size() == 0) return Outcome::singular;
-    const double slope = residual_.dot(step);
-    double alpha = 1.0;
-    if (tangent == Tangent::symmetric && slope > 0.0) {
-      alpha = line_search(d, step, slope) / static_cast<double>(std::max(1, refusals - patience));
-      if (problem.statics && alpha < shortest_common_step) return Outcome::no_common_step;
-      if (refusals > patience + 1) evaluate(trial_ = d + alpha * step);
-    } else {
-      evaluate(trial_ = d + step);
+    if (step.size() == 0) {
+      outcome = Outcome::singular;
+      break;
+    }
+    double alpha = try_step(d, step, course);
+    if (problem.statics && alpha < shortest_common_step) {
+      outcome = Outcome::no_common_step;
+      break;
     }
     double next_norm = residual_norm();
-    double next_value = merit(next_norm);
-    switches = differences(branches_before_, branches_);
-    bool is_taken = false;  // d has gone the step, and farther in parts
-    if (tangent == Tangent::exact && iteration > 0 && next_value > value) {
-      is_taken = try_parts && !of_all_blocks && take_with_parts(step, value, solution, next_norm);
-      if (!is_taken) alpha = backtrack(d, step, value);
+    bool has_gone = false;  // d the step, and farther in parts
+    if (course.tangent == Tangent::exact && iteration > 0 && merit(next_norm) > course.value) {
+      const int switches = differences(branches_before_, branches_);
+      has_gone = try_parts && !of_all_blocks && take_with_parts(step, course.value, solution, next_norm);
+      if (!has_gone) alpha = backtrack(d, step, course.value);
       if (alpha == 0.0) {
         evaluate(d);
-        tangent = Tangent::symmetric;
-        gets_on = false;
-        ++refusals;
+        course.tangent = Tangent::symmetric;
+        course.switches = switches;
+        course.gets_on = false;
+        ++course.refusals;
         continue;
       }
-      if (!is_taken) next_norm = residual_norm();
-      next_value = merit(next_norm);
-      switches = differences(branches_before_, branches_);
+      if (!has_gone) next_norm = residual_norm();
     }
-    if (next_value < best) refusals = 0;
-    best = std::min(best, next_value);
-    const bool halved = gets_on = next_value <= 0.5 * value;
-    if (!is_taken) d += alpha * step;
-    norm = next_norm;
-    value = next_value;
-    if (may_start_cold && iteration == 0 && switches > cold_start_switches * static_cast<double>(contact_count_)) return Outcome::cold_start;
-    const bool held = norm > 1.0 && !halved && hold_reversed() > 0;  // a solution keeps the forces of the law
-    const bool exact_works = held || switches <= few || (tangent == Tangent::exact && halved);
-    tangent = exact_works ? Tangent::exact : Tangent::symmetric;
+    if (!has_gone) d += alpha * step;
+    follow(course, next_norm);
+    if (may_start_cold && iteration == 0 && course.switches > cold_start_switches * static_cast<double>(contact_count_)) {
+      outcome = Outcome::cold_start;
+      break;
+    }
+    choose_tangent(course);
   }
-  return Outcome::ended;
+  norm = course.norm;
+  return outcome;
 }
 
 template <int N>

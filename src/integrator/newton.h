@@ -117,6 +117,15 @@ class Newton {
   void take_back(ContactOutcomes<N>& outcomes);
   /// Evaluates at the displacement to start from and returns its residual_norm().
   double begin(const Eigen::VectorXd& d, FirstTangent first);
+  /// Where an iteration stands.
+  struct Course;
+  /// Solves parts and says whether that has made the residual smaller.
+  bool help_by_parts(StepSolution<N>& solution, Course& course);
+  /// Evaluates along a step and returns the part of it that was tried: all of one with the exact tangent.
+  double try_step(const Eigen::VectorXd& d, const Eigen::VectorXd& step, const Course& course);
+  /// The iteration has gone to where the forces are, with this residual_norm().
+  void follow(Course& course, double norm);
+  void choose_tangent(Course& course);
   /// Iterates from solution.d until its residual_norm() is small enough.
   Outcome iterate(const StepProblem<N>& problem, StepSolution<N>& solution, double& norm, Until until, bool may_start_cold);
   /// Solves the parts around the largest residuals, each for itself, and moves on with those that got better unless the residual is larger then.
