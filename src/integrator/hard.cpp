@@ -100,6 +100,7 @@ class Hard final : public Enforcement<N> {
       }
     }
     if (!compliant_.converged) return;
+    level_ = 0;  // the next step begins with the stiffest springs, of which the least is left if it is compliant, too
     compliant_.effort = solution.effort;
     compliant_.compliant = true;
     solution = std::exchange(compliant_, {});

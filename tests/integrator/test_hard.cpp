@@ -200,6 +200,18 @@ TEST_CASE("a step of which the passes do not find the multipliers is cut to what
   CHECK(simulation.step_counters().compliant == 0);
 }
 
+TEST_CASE("steps without multipliers penetrate by no more than their forces compress the springs", "[integrator][hard]") {
+  const int blocks = 200;
+  const double dt = 0.02;
+  Scene scene = column(blocks, dt, 20);
+  scene.method.gap_tolerance = 1e-10;  // which passes through so many blocks do not reach
+  Simulation<3> simulation(scene);
+  REQUIRE(run<3>(simulation, {}).converged);
+  CHECK(simulation.step_counters().compliant == simulation.step_counters().steps);
+  // The weight of the column on the two corners of its lowest block, twice as much where it bounces, over springs of 300 times the inertia.
+  CHECK(simulation.max_penetration() < blocks * 9.81 * dt * dt / 300.0);
+}
+
 TEST_CASE("soft contacts close by what their stiffness says", "[integrator][soft]") {
   const Outcome a = outcome(settling(), "soft", 1.0), b = outcome(settling(), "soft", 0.5);
   const double closure = test::block_weight / (1e9 * test::block_edge);
