@@ -10,6 +10,7 @@
 #include "openclose/analysis/equilibrium.h"
 #include "openclose/analysis/start.h"
 #include "openclose/core/process.h"
+#include "openclose/core/tolerance.h"
 
 namespace openclose {
 
@@ -134,7 +135,7 @@ class MotionInTime {
         cpu_at_start_(process_cpu_time() - result.cpu_of_motion) {
     if (scene_.end_displacement || !scene_.milestones.empty()) points_.emplace(simulation);
     // The last step is shorter where the end is no multiple of the step.
-    steps_ = std::lround(std::ceil(scene_.end_time / scene_.step.dt * (1.0 - 1e-12)));
+    steps_ = std::lround(std::ceil(scene_.end_time / scene_.step.dt * (1.0 - tolerance::rounding_of_times)));
   }
 
   void begin() {
@@ -182,7 +183,7 @@ class MotionInTime {
   bool is_over() {
     if (moved_enough()) {
       result_.ended_by = "end.displacement_m";
-    } else if (simulation_.time() >= scene_.end_time) {
+    } else if (done_ == steps_ || simulation_.time() >= scene_.end_time) {
       result_.ended_by = "end.time_s";
     }
     return !result_.ended_by.empty();
@@ -231,7 +232,9 @@ class MotionInTime {
     return (whole(step) ? scene_.step.dt : scene_.end_time - static_cast<double>(step - 1) * scene_.step.dt) - begun;
   }
 
-  bool whole(long step) const { return static_cast<double>(step - 1) * scene_.step.dt + scene_.step.dt <= scene_.end_time * (1.0 + 1e-12); }
+  bool whole(long step) const {
+    return static_cast<double>(step - 1) * scene_.step.dt + scene_.step.dt <= scene_.end_time * (1.0 + tolerance::rounding_of_times);
+  }
   double time_after(long step) const { return step == 0 || whole(step) ? static_cast<double>(step) * scene_.step.dt : scene_.end_time; }
 
   double share_done(long step) const {
@@ -257,7 +260,7 @@ class MotionInTime {
 
   /// A snapshot is taken after the step that ends nearest to its time.
   void take_snapshots(long step) {
-    const double latest = step == steps_ ? scene_.end_time * (1.0 + 1e-12) : 0.5 * (time_after(step) + time_after(step + 1));
+    const double latest = step == steps_ ? scene_.end_time * (1.0 + tolerance::rounding_of_times) : 0.5 * (time_after(step) + time_after(step + 1));
     for (; snapshots_taken_ < scene_.snapshot_times.size() && scene_.snapshot_times[snapshots_taken_] <= latest; ++snapshots_taken_) {
       if (observer_.snapshot) observer_.snapshot(fmt::format("t={}", scene_.snapshot_times[snapshots_taken_]), simulation_);
     }

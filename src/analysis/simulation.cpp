@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "openclose/core/tolerance.h"
 #include "openclose/integrator/integrators.h"
 #include "openclose/integrator/registry.h"
 
@@ -693,7 +694,7 @@ bool Simulation<N>::advance_explicitly(double dt) {
     if (steps == 0 || now != longest) {
       longest = now;
       // A quotient that is whole but for rounding stays whole.
-      steps = std::max(1L, std::lround(std::ceil(remaining / longest * (1.0 - 1e-12))));
+      steps = std::max(1L, std::lround(std::ceil(remaining / longest * (1.0 - tolerance::rounding_of_times))));
     }
     const double h = remaining / static_cast<double>(steps);
     if (!system_.resting_blocks().empty() && move_base(h, false)) {  // the step may be too long for those that it woke
@@ -738,7 +739,7 @@ bool Simulation<N>::advance(double dt) {
     if (result.accepted) {
       last_speed_ = result.moved / now;
       // A rest below rounding is no step.
-      remaining = remaining - now > 1e-12 * dt ? remaining - now : 0.0;
+      remaining = remaining - now > tolerance::rounding_of_times * dt ? remaining - now : 0.0;
       if (scheme_->is_within_step()) continue;
       if (adaptive) control_.accepted(trial, result.error);
       trial = adaptive ? control_.step(dt) : 2.0 * trial;
@@ -763,8 +764,7 @@ bool Simulation<N>::advance(double dt) {
 
 template <int N>
 bool Simulation<N>::is_beginning() const {
-  constexpr double rounding = 1e-12;  // [-] of a sum of steps
-  return scene_.method.first_integrator && time_ < scene_.method.first_integrator_time * (1.0 - rounding);
+  return scene_.method.first_integrator && time_ < scene_.method.first_integrator_time * (1.0 - tolerance::rounding_of_times);
 }
 
 template <int N>

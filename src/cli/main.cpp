@@ -141,7 +141,7 @@ int run_command(const Options& options) {
 
   const OutputFolder folder = output_folder(options);
   const RestartPoint* goes_on_from = restart ? &*restart : nullptr;
-  if (!restart || !folder.has(restart->checkpoint_file)) folder.remove_results();
+  restart&& folder.has(restart->checkpoint_file) ? folder.remove_last_results() : folder.remove_results();
   HistoryFile history(folder, goes_on_from);
   EnergyFile energy(folder, goes_on_from);
   BlocksFile<unknowns> blocks(folder, goes_on_from);

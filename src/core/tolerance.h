@@ -67,6 +67,10 @@ inline constexpr double cohesion_ramp = 0.1;
 /// m have it twice over (1e7 * 2^-52 = 2e-9 m).
 inline constexpr double rounding_of_ways_m = 1e-8;
 
+/// [-] What rounding may leave in a time that is a multiple of the step, and in a quotient of times: some thousand units in the last place, and far
+/// below a step of the longest runs, which have 1e9.
+inline constexpr double rounding_of_times = 1e-12;
+
 /// [m/s] `hard`: speed at which a penetration found at closing is pushed out.
 inline constexpr double hard_recovery_m_per_s = 0.1;
 

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "openclose/core/error.h"
+#include "openclose/core/tolerance.h"
 #include "openclose/io/output_folder.h"
 #include "openclose/scene/writer.h"
 #include "openclose/version.h"
@@ -129,7 +130,7 @@ Checkpoint read_checkpoint(const std::string& path, const Scene& scene) {
   if (order != byte_order) refuse(path, "it was written by a processor with another order of bytes", "a checkpoint of this machine");
   body(text, checkpoint);
   require_same_scene(path, text, scene);
-  if (scene.end_time < checkpoint.time)
+  if (scene.end_time * (1.0 + tolerance::rounding_of_times) < checkpoint.time)
     throw InputError(scene.where, "end.time_s",
                      fmt::format("{:g} s lies before the checkpoint, which stands at {:g} s", scene.end_time, checkpoint.time), "a later time");
   require_tables(path, checkpoint);

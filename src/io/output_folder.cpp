@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "openclose/core/error.h"
@@ -9,8 +10,10 @@
 namespace openclose {
 namespace {
 
-constexpr const char* result_names[] = {"history.csv", "energy.csv",     "blocks.csv",   "contacts.csv",  "trials.csv",
-                                        "curve.csv",   "milestones.csv", "summary.json", checkpoint_name, "checkpoint.bin.part"};
+/// What grows with an analysis, so that one that is broken off can go on from there.
+constexpr const char* growing_results[] = {"history.csv", "energy.csv", "blocks.csv", checkpoint_name};
+/// What comes at its end.
+constexpr const char* last_results[] = {"contacts.csv", "trials.csv", "curve.csv", "milestones.csv", "summary.json", "checkpoint.bin.part"};
 
 [[noreturn]] void fail_unwritable(const std::string& path) {
   throw InputError({path, 0}, "", "cannot be written", "a file in a folder that exists or can be made, and may be written to");
@@ -65,20 +68,29 @@ OutputFolder::OutputFolder(const std::string& path) : path_(path) {
   const bool usable = !error && std::filesystem::is_directory(path) && access(path.c_str(), W_OK | X_OK) == 0;
   if (!usable)
     throw InputError({path, 0}, "", "cannot write to this output folder", "-o with a folder that exists or can be made, and may be written to");
-  for (const char* name : result_names) {
+  const auto require_replaceable_name = [&](const char* name) {
     const std::string file = path_of(name);
-    if (!std::filesystem::exists(file)) continue;
-    if (std::filesystem::is_regular_file(file) && access(file.c_str(), W_OK) == 0) continue;
+    if (!std::filesystem::exists(file)) return;
+    if (std::filesystem::is_regular_file(file) && access(file.c_str(), W_OK) == 0) return;
     throw InputError({file, 0}, "", "is there and cannot be written over", "-o with another folder");
-  }
+  };
+  std::ranges::for_each(growing_results, require_replaceable_name);
+  std::ranges::for_each(last_results, require_replaceable_name);
+}
+
+void OutputFolder::remove(const char* name) const {
+  std::error_code error;
+  std::filesystem::remove(path_of(name), error);
+  if (error) throw WriteError(path_of(name), "is there from an earlier run and cannot be removed");
 }
 
 void OutputFolder::remove_results() const {
-  for (const char* name : result_names) {
-    std::error_code error;
-    std::filesystem::remove(path_of(name), error);
-    if (error) throw WriteError(path_of(name), "is there from an earlier run and cannot be removed");
-  }
+  for (const char* name : growing_results) remove(name);
+  remove_last_results();
+}
+
+void OutputFolder::remove_last_results() const {
+  for (const char* name : last_results) remove(name);
 }
 
 bool OutputFolder::has(const std::string& checkpoint_file) const {

@@ -17,6 +17,8 @@ class OutputFolder {
 
   /// Removes what an earlier run or factor of safety has left, by the names that this program gives; nothing else. Throws WriteError if it cannot.
   void remove_results() const;
+  /// Of these only what comes at the end of an analysis, not the tables and the checkpoint with which one that was broken off goes on.
+  void remove_last_results() const;
   /// Whether a run that goes on from this checkpoint goes on in this folder, whatever the paths look like.
   bool has(const std::string& checkpoint_file) const;
 
@@ -28,6 +30,8 @@ class OutputFolder {
   std::string path_of(const std::string& name) const { return path_ + "/" + name; }
 
  private:
+  void remove(const char* name) const;
+
   std::string path_;
 };
 

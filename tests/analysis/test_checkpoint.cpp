@@ -220,6 +220,11 @@ TEST_CASE("a run that goes on from its end ends as it did", "[analysis][checkpoi
   SECTION("by time") {
     scene.end_time = 0.03;
   }
+  SECTION("by time, of which whole steps lack one unit in the last place") {
+    scene.step.dt = 0.03;
+    scene.end_time = 0.33;
+    REQUIRE(11.0 * scene.step.dt < scene.end_time);
+  }
   SECTION("by displacement") {
     scene.end_time = 1.0;
     scene.end_displacement = 0.001;

@@ -1,3 +1,4 @@
+#include <cmath>
 #include <string>
 
 #include "io/files.h"
@@ -88,6 +89,13 @@ TEST_CASE("a checkpoint behind the end of the scene is refused", "[io][checkpoin
   scene.end_time = 1.0;
   CHECK_THAT(refusal(saved.path, scene),
              ContainsSubstring("end.time_s") && ContainsSubstring("1 s lies before the checkpoint, which stands at 1.5 s"));
+}
+
+TEST_CASE("a checkpoint that stands at the end but for rounding is read", "[io][checkpoint]") {
+  const Saved saved;
+  Scene scene = a_scene();
+  scene.end_time = std::nextafter(1.5, 0.0);
+  CHECK(read_checkpoint(saved.path, scene).time == 1.5);
 }
 
 TEST_CASE("a checkpoint without the tables of its run is refused", "[io][checkpoint]") {
