@@ -58,7 +58,7 @@ class Balance {
   [[noreturn]] void fail(const std::string& what) const {
     const Scene& scene = simulation_.scene();
     const BlockInput& input = scene.blocks[block_];
-    throw InputError({scene.where.file, input.line}, "block", fmt::format("\"{}\" {}", input.name, what),
+    throw InputError(scene.place_of(input), "block", fmt::format("\"{}\" {}", input.name, what),
                      "for this method.start, blocks that rest on fixed blocks along one direction");
   }
 

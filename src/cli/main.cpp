@@ -141,7 +141,11 @@ int run_command(const Options& options) {
 
   const OutputFolder folder = output_folder(options);
   const RestartPoint* goes_on_from = restart ? &*restart : nullptr;
-  restart&& folder.has(restart->checkpoint_file) ? folder.remove_last_results() : folder.remove_results();
+  if (restart && folder.has(restart->checkpoint_file)) {
+    folder.remove_last_results();
+  } else {
+    folder.remove_results();
+  }
   HistoryFile history(folder, goes_on_from);
   EnergyFile energy(folder, goes_on_from);
   BlocksFile<unknowns> blocks(folder, goes_on_from);
@@ -212,6 +216,10 @@ int fos_command(const Options& options) {
   Loaded loaded = load(options);
   if (loaded.scene.run_strength_reduction_factor != 1.0) loaded.warn("run.strength_reduction_factor is for run; fos starts from the full strength");
   if (is_settled_by_another(loaded.scene)) loaded.warn("run.settled_by is for run; fos settles by method.contact");
+  if (loaded.scene.method.first_integrator) {
+    loaded.warn("method.first_integrator is for run; fos settles by method.integrator");
+    loaded.scene.method.first_integrator.reset();
+  }
   if (loaded.scene.base_motion) loaded.warn("base_motion is for run; fos asks for static equilibrium on a base at rest");
   require_strength_reduction(loaded.scene);
   if (loaded.scene.step.dt <= 0.0) loaded.scene.step.dt = loaded.scene.settle.first_dt;

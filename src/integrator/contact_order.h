@@ -32,9 +32,6 @@ class ContactOrder {
   std::size_t size() const { return within_.size(); }
   /// Place of contact c; below size().
   std::size_t operator[](std::size_t c) const { return c / group_size * group_size + within_[c]; }
-  /// Another contact at the end of the list.
-  void push_back() { within_.push_back(static_cast<unsigned char>(size() % group_size)); }
-  void clear() { within_.clear(); }
   std::size_t bytes() const { return within_.capacity(); }
 
  private:

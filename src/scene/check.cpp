@@ -8,13 +8,14 @@
 #include "openclose/core/tolerance.h"
 #include "openclose/geometry/box.h"
 #include "openclose/geometry/overlap.h"
+#include "openclose/scene/table.h"
 
 namespace openclose {
 namespace {
 
 [[noreturn]] void fail_overlap(const Scene& scene, const BlockInput& a, const BlockInput& b, double depth) {
-  throw InputError({scene.where.file, b.line}, "block",
-                   fmt::format("\"{}\" overlaps \"{}\" (line {}) by at least {:.3g} m at the start", b.name, a.name, a.line, depth),
+  throw InputError(scene.place_of(b), "block",
+                   fmt::format("\"{}\" overlaps \"{}\" ({}) by at least {:.3g} m at the start", b.name, a.name, place_name(scene.place_of(a)), depth),
                    fmt::format("overlaps of at most {} m", tolerance::deepest_initial_overlap_m));
 }
 

@@ -99,10 +99,12 @@ std::vector<JointProperties> read_joints(const std::vector<Table>& tables, const
   return joints;
 }
 
-BlockInput read_block(Table table, const NameList& material_names, NameList& block_names) {
+BlockInput read_block(Table table, const std::string& file, const NameList& material_names, NameList& block_names) {
   BlockInput block;
   Polygon vertices;
-  block.line = table.where().line;
+  const SourceLocation where = table.where();
+  block.line = where.line;
+  if (where.file != file) block.source = std::make_shared<const std::string>(where.file);
   table.required("name", block.name);
   table.required("material", block.material, material_names);
   table.required("vertices_m", vertices, coordinate);
@@ -200,7 +202,10 @@ MethodInput read_method(Table table, const SourceLocation& scene_where) {
   table.optional("integrator", method.integrator);
   table.optional("rho_inf", method.rho_inf, Range{.low = 0.0, .high = 1.0, .low_included = true, .high_included = true});
   table.optional("dissipation", method.dissipation, Range{.low = 0.0, .high = 1.0, .low_included = true, .high_included = true});
-  if (table.optional("first_integrator", method.first_integrator)) table.required("first_integrator_s", method.first_integrator_time, positive);
+  const bool has_first = table.optional("first_integrator", method.first_integrator);
+  const bool has_its_time = table.optional("first_integrator_s", method.first_integrator_time, positive);
+  if (has_first && !has_its_time) table.required("first_integrator_s", method.first_integrator_time, positive);
+  if (has_its_time && !has_first) table.required("first_integrator", method.first_integrator);
   table.optional("rotation", method.rotation, rotation_words);
   table.optional("start", method.start, start_words);
   table.optional("statics", method.statics);
@@ -352,7 +357,7 @@ Scene interpret(const toml::table& document, const std::string& file) {
   NameList point_names("measured point");
   for (const Table& table : materials) scene.materials.push_back(read_material(table, scene.gravity, material_names));
   scene.joints = read_joints(joints, material_names);
-  for (const Table& table : blocks) scene.blocks.push_back(read_block(table, material_names, block_names));
+  for (const Table& table : blocks) scene.blocks.push_back(read_block(table, scene.where.file, material_names, block_names));
   cut_domain(cutting, material_names, block_names, scene);
   fix_blocks(fixed_lines, scene);
   for (const Table& table : supports) scene.supports.push_back(read_support(table, scene, block_names));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -43,9 +44,10 @@ struct BlockInput {
   std::vector<Vec2> vertices;  ///< [m] counter-clockwise, simple, no repeated first vertex
   bool fixed = false;
   bool rotation_locked = false;
-  Vec2 velocity = Vec2::Zero();   ///< [m/s]
-  double angular_velocity = 0.0;  ///< [rad/s] counter-clockwise
-  int line = 0;                   ///< of the scene's file, for errors
+  Vec2 velocity = Vec2::Zero();               ///< [m/s]
+  double angular_velocity = 0.0;              ///< [rad/s] counter-clockwise
+  int line = 0;                               ///< where it was read, for errors; see Scene::place_of()
+  std::shared_ptr<const std::string> source;  ///< null: the scene's file
 };
 
 /// A spring that holds one material point of a block at its initial place.
@@ -258,6 +260,7 @@ struct Scene {
   SettleInput settle;
   StrengthReductionInput strength_reduction;
 
+  SourceLocation place_of(const BlockInput& block) const { return {block.source ? *block.source : where.file, block.line}; }
   /// The joint between two materials, in either order; null if the scene gives none.
   const JointProperties* joint(int material_a, int material_b) const;
 };

@@ -56,14 +56,10 @@ TEST_CASE("contacts that are closed come first in their group, in the order of t
 }
 
 TEST_CASE("contacts in the order of the list", "[integrator][order]") {
-  ContactOrder kept, grown;
+  ContactOrder kept;
   kept.keep(130);
-  for (int c = 0; c < 130; ++c) grown.push_back();
-  REQUIRE(grown.size() == 130);
-  for (std::size_t c = 0; c < 130; ++c) {
-    CHECK(kept[c] == c);
-    CHECK(grown[c] == c);
-  }
+  REQUIRE(kept.size() == 130);
+  for (std::size_t c = 0; c < 130; ++c) CHECK(kept[c] == c);
 }
 
 TEST_CASE("a step reports of each contact what its law says of it, wherever it is in its batches", "[integrator][order]") {

@@ -51,6 +51,14 @@ TEST_CASE("blocks that overlap at the start are refused", "[scene][check]") {
                                             ContainsSubstring("accepted: overlaps of at most 0.001 m"));
 }
 
+TEST_CASE("overlaps of blocks that overrides bring name these", "[scene][check]") {
+  const test::SceneFile file(block_on_base);
+  const std::string square = "material='rock', vertices_m=[[0, 5], [1, 5], [1, 6], [0, 6]]}";
+  const Scene scene = read_scene(file.path(), {"block[0]={name='a', fixed=true, " + square, "block[1]={name='b', " + square});
+  CHECK_THROWS_WITH(check_scene(scene),
+                    ContainsSubstring("--set block[1]: block: \"b\" overlaps \"a\" (") && ContainsSubstring("--set block[0]) by"));
+}
+
 TEST_CASE("overlaps of drawing accuracy are allowed", "[scene][check]") {
   CHECK_NOTHROW(check_scene(read_text(block_on_base, {"block[1].vertices_m=[[0, -0.0009], [1, 0], [1, 1], [0, 1]]"})));
 }

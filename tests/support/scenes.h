@@ -117,8 +117,8 @@ inline Scene tumbling_blocks() {
 }
 
 /// A wall of 640 blocks of 2 m x 1 m in running bond on the base. Some of the blocks on top have got a stroke to the right and downwards.
-inline Scene struck_wall() {
-  constexpr int courses = 16, blocks = 40;
+inline Scene struck_wall(int blocks = 40) {
+  constexpr int courses = 16;
   Scene scene = empty_scene();
   scene.blocks = {fixed_block("base", rectangle(-1.0, -1.0, 2.0 * blocks + 3.0, 1.0))};
   for (int course = 0; course < courses; ++course) {
