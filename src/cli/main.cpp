@@ -168,7 +168,7 @@ int run_command(const Options& options) {
   observer.progress = [&](double fraction) { progress->update(fraction); };
   observer.checkpoint = [&](Archive& state, const Simulation<unknowns>& s) {
     state(points);
-    write_checkpoint(folder.path_of(checkpoint_name), s.scene(), {s.time(), {history.written(), energy.written(), blocks.written()}, state.bytes()});
+    write_checkpoint(folder.path_of(checkpoint_name), s.scene(), {s.time(), {history.written(), energy.written(), blocks.written()}, state.take()});
   };
   RunResult result;
   if (restart) {

@@ -27,6 +27,8 @@ class Archive {
 
   bool reading() const { return reading_; }
   const std::string& bytes() const { return bytes_; }
+  /// The same, which this archive then no longer has.
+  std::string take() { return std::move(bytes_); }
   bool at_end() const { return at_ == bytes_.size(); }
 
   template <class... T>

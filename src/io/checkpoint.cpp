@@ -111,11 +111,16 @@ void write_checkpoint(const std::string& path, const Scene& scene, Checkpoint ch
   std::uint32_t order = byte_order;
   std::string text = fixed_part(scene);
   body(order, text, checkpoint);
-  std::string bytes = heading() + body.bytes();
+  // A state may be as large as all else that a run has in memory: it is moved on instead of copied.
+  std::string().swap(checkpoint.state);
+  std::string bytes = body.take();
+  bytes.insert(0, heading());
   const std::uint64_t sum = check_sum(bytes.data(), bytes.size());
   bytes.append(reinterpret_cast<const char*>(&sum), sizeof sum);
+  std::vector<TextFile> files(1);
+  files.front() = {path, std::move(bytes)};
   try {
-    write_files({{path, bytes}});
+    write_files(files);
   } catch (const InputError&) {
     throw WriteError(path);  // the run has begun: its input was good
   }
