@@ -17,29 +17,45 @@ from winner import LARGEST_ERROR
 
 SMALLEST_ERROR = 1e-9  # smaller ones, rounding, are drawn there
 SMALLEST_SHOWN = 1e-4  # of a critical angle: finer than the brackets
-LEGEND_INCHES = 0.7  # below the panels
+LEGEND_COLUMNS = 4  # below the panels
+LEGEND_LINE_INCHES = 0.2
 COLOUR = {**METHOD_COLOUR, "soft shi": "#1f77b4", "soft theta 1/2": "#17becf", "soft generalized_alpha": "#e377c2", "soft tr_bdf2": "#bcbd22",
           "soft path_average": "#8c564b", "soft path_average adaptive": "#ff7f0e", "soft shi adaptive": "#000080", "soft, 10 ms": "#8c564b"}
 MARKER = {**METHOD_MARKER, "soft shi": "o", "soft theta 1/2": "P", "soft generalized_alpha": "X", "soft tr_bdf2": "v", "soft path_average": "*",
           "soft path_average adaptive": "<", "soft shi adaptive": ">"}
 
 
+# Of methods that share a colour, as they come.
+VARIANTS = (("-", "full"), ("--", "none"), (":", "left"), ("-.", "right"), ((0, (1, 1)), "top"), ((0, (5, 1)), "bottom"))
+
+
 def _methods(rows: list[Row]) -> list[str]:
     return list(dict.fromkeys(row.method for row in rows))
 
 
-def _spread(axes: plt.Axes, rows: list[Row], x: Callable[[Row], float], y: Callable[[Row], float], method: str) -> None:
+def _styles(methods: list[str]) -> dict[str, dict]:
+    """\\return how to draw each: variants of a method, whose names begin with its name, in its colour and with its marker."""
+    styles, met = {}, {}
+    for method in methods:
+        known = [name for name in COLOUR if method == name or method.startswith((name + " ", name + ","))]
+        base = max(known, key=len, default=method)
+        line, fill = VARIANTS[met.get(base, 0) % len(VARIANTS)]
+        met[base] = met.get(base, 0) + 1
+        styles[method] = {"color": COLOUR.get(base), "marker": MARKER.get(base, "o"), "linestyle": line, "fillstyle": fill}
+    return styles
+
+
+def _spread(axes: plt.Axes, rows: list[Row], x: Callable[[Row], float], y: Callable[[Row], float], style: dict) -> None:
     low = [y(r) * (1 - r.cpu_min_s / r.cpu_s) if r.cpu_s else 0.0 for r in rows]
     high = [y(r) * (r.cpu_max_s / r.cpu_s - 1) if r.cpu_s else 0.0 for r in rows]
-    axes.errorbar([x(r) for r in rows], [y(r) for r in rows], yerr=[low, high], color=COLOUR.get(method), marker=MARKER.get(method, "o"),
-                  markersize=5, linewidth=1.1, capsize=2, label=method)
+    axes.errorbar([x(r) for r in rows], [y(r) for r in rows], yerr=[low, high], markersize=5, linewidth=1.1, capsize=2, label=rows[0].method, **style)
 
 
-def _work_precision(axes: plt.Axes, rows: list[Row], title: str) -> None:
+def _work_precision(axes: plt.Axes, rows: list[Row], title: str, styles: dict[str, dict]) -> None:
     for method in _methods(rows):
         good = [r for r in rows if r.method == method and not r.reason and r.error is not None and r.cpu_s]
         if good:
-            _spread(axes, good, lambda r: max(r.error, SMALLEST_ERROR), lambda r: r.cpu_s, method)
+            _spread(axes, good, lambda r: max(r.error, SMALLEST_ERROR), lambda r: r.cpu_s, styles[method])
     axes.axvline(LARGEST_ERROR, color="#222222", linestyle="--", linewidth=1)
     axes.set_xscale("log")
     axes.set_yscale("log")
@@ -54,15 +70,17 @@ def _panels(bench: Bench, study: str, file: Path, columns: int = 2) -> bool:
         return False
     lines = -(-len(scenes) // columns)
     wide = min(columns, len(scenes))
-    figure, axes = plt.subplots(lines, wide, figsize=(6.2 * wide, 4.4 * lines + LEGEND_INCHES), squeeze=False)
-    figure.subplots_adjust(left=0.6 / (6.2 * wide) * 1.4, right=0.985, top=1 - 0.35 / (4.4 * lines + LEGEND_INCHES),
-                           bottom=(LEGEND_INCHES + 0.5) / (4.4 * lines + LEGEND_INCHES), wspace=0.2, hspace=0.3)
+    styles = _styles(_methods(bench.of(study)))
+    legend = 0.3 + LEGEND_LINE_INCHES * -(-len(styles) // LEGEND_COLUMNS)
+    high = 4.4 * lines + legend
+    figure, axes = plt.subplots(lines, wide, figsize=(6.2 * wide, high), squeeze=False)
+    figure.subplots_adjust(left=0.6 / (6.2 * wide) * 1.4, right=0.985, top=1 - 0.35 / high, bottom=(legend + 0.5) / high, wspace=0.2, hspace=0.3)
     for place, scene in zip(axes.flat, scenes):
-        _work_precision(place, bench.of(study, scene), scene)
+        _work_precision(place, bench.of(study, scene), scene, styles)
     for place in list(axes.flat)[len(scenes):]:
         place.axis("off")
     handles = {label: handle for place in axes.flat for handle, label in zip(*place.get_legend_handles_labels())}
-    figure.legend(handles.values(), handles.keys(), loc="lower center", ncol=4, fontsize=8)
+    figure.legend(handles.values(), handles.keys(), loc="lower center", ncol=LEGEND_COLUMNS, fontsize=8)
     save(figure, file)
     return True
 
