@@ -74,7 +74,7 @@ class BatchRenewal {
   static std::vector<BlockPlace> places_of(const BlockSystem<N>& system);
 
   Step step_;
-  std::vector<Owner> owners_;       ///< of the places in the batches of the last step, none where their springs do not last
+  std::vector<Owner> owners_;  ///< of the places in the batches of the last step, none where their springs do not last
 };
 
 extern template class BatchRenewal<3>;
