@@ -320,7 +320,9 @@ TEST_CASE("relaxation finds the places of rest without linear equations", "[anal
     REQUIRE(settle(newton).settled);
     REQUIRE(settle(simulation).settled);
     CHECK(simulation.system().displacement(1)[2] == 0.0);
-    for (const int b : {1, 2}) CHECK((newton.system().displacement(b) - simulation.system().displacement(b)).norm() < 1e-6 * 1e-4);
+    // The unbalanced force may be 1e-8 of the weight.
+    for (const int b : {1, 2})
+      CHECK((newton.system().displacement(b) - simulation.system().displacement(b)).norm() < 1e-7 * newton.system().displacement(b).norm());
   }
   SECTION("an incline flatter than its friction holds, a steeper one does not") {
     for (const double slope : {29.9, 30.1}) {
