@@ -1,5 +1,5 @@
 # The front door. Needs nothing but make; what else is missing, the targets install. Settings: JOBS=2 (processes), PYTHON=/path/to/python3,
-# BENCH=quick (make bench with fewer sizes, steps and repeats) or long (with more).
+# BENCH=quick (make bench with fewer sizes, steps and repeats) or long (with more), SEED=1 COUNT=20 PART=all METHODS='soft dem' (make stress).
 
 JOBS ?= $(shell nproc)
 export JOBS PYTHON
@@ -11,11 +11,14 @@ VERIFY := $(BUILD)/verification/openclose-verify
 CONVERGENCE := $(BUILD)/verification/openclose-convergence
 PAPER_RESULTS := results/paper
 BENCH ?= full
+SEED ?= 1
+COUNT ?= 20
+PART ?= all
 COMPARISON := $(PAPER_RESULTS)/comparison.csv
 NULL_SOLVER := results/verify-null-solver.txt
 
 .DEFAULT_GOAL := help
-.PHONY: help build test verify reproduce convergence bench bench-peers sanitize mutants clean packages figure-packages bench-packages peer-packages
+.PHONY: help build test verify reproduce convergence stress bench bench-peers sanitize mutants clean packages stress-packages figure-packages bench-packages peer-packages
 
 help: ## print the targets
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(firstword $(MAKEFILE_LIST)) | while read -r target text; do printf '  make %-11s %s\n' "$$target" "$$text"; done
@@ -28,8 +31,9 @@ test: packages ## build and run the unit tests
 	@ctest --preset release --parallel $(JOBS)
 
 # The null solver comes first, so that the count of the real checks is the last line. The page is made of failed checks, too.
-verify: build ## build, run the unit tests and the verification against closed forms (results/verification.md); the exit status says pass or fail
+verify: build stress-packages ## build, run the unit tests and the verification against closed forms (results/verification.md); the exit status says pass or fail
 	ctest --preset release --parallel $(JOBS)
+	@"$${PYTHON:-python3}" -m unittest discover -q -s stress
 	@mkdir -p results
 	$(VERIFY) --null-solver >$(NULL_SOLVER) || { grep ' pass$$' $(NULL_SOLVER); tail -n 2 $(NULL_SOLVER); exit 1; }
 	@tail -n 2 $(NULL_SOLVER) | head -n 1
@@ -45,6 +49,10 @@ reproduce: figure-packages $(COMPARISON) ## build, run the paper's examples, dra
 convergence: build figure-packages ## measure the orders of convergence against theory (results/convergence.csv) and draw them; the exit status says pass or fail
 	@$(CONVERGENCE) --results results; status=$$?; \
 	  python=$$(scripts/find-python) && "$$python" verification/draw_convergence.py results/convergence.csv results/convergence || exit 2; exit $$status
+
+stress: build stress-packages ## random scenes from seeds, judged by rules that know nothing of the method (results/stress.csv); exit status 1 for a false answer
+	@"$${PYTHON:-python3}" -m unittest discover -q -s stress
+	@"$${PYTHON:-python3}" stress/stress.py --seed $(SEED) --count $(COUNT) --part $(PART) $(if $(METHODS),--methods $(METHODS)) --jobs $(JOBS)
 
 # Always anew: a time is of today. The test is of the rule that nothing wins with a large error.
 bench: bench-packages ## run time beside error, cost by size, what skips save (results/bench.md); half an hour and more, BENCH=quick: a few minutes
@@ -64,11 +72,15 @@ mutants: packages ## plant the faults of mutants/faults.toml one by one and repo
 
 clean: ## remove what these targets have made; other results stay
 	rm -rf build $(PAPER_RESULTS) results/verify.csv results/verify_series.csv results/verify_cases.csv results/verification results/verification.md $(NULL_SOLVER) results/convergence results/convergence.csv
+	rm -rf results/stress results/stress.csv results/stress.md
 	rm -rf results/bench results/bench.csv results/bench.md results/bench_machine.json
 	rm -f results/mutants.csv results/mutants.md
 
 packages:
 	@scripts/install-packages build
+
+stress-packages:
+	@scripts/install-packages stress
 
 figure-packages:
 	@scripts/install-packages build figures

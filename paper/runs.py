@@ -33,7 +33,7 @@ class Case:
     cpu_limit_s: int | None = None
 
 
-def _run_process(arguments: list[str], cpu_limit_s: int | None = None) -> subprocess.CompletedProcess:
+def run_process(arguments: list[str], cpu_limit_s: int | None = None) -> subprocess.CompletedProcess:
     def limit() -> None:
         resource.setrlimit(resource.RLIMIT_CPU, (cpu_limit_s, cpu_limit_s + 1))
 
@@ -44,7 +44,7 @@ def _run_process(arguments: list[str], cpu_limit_s: int | None = None) -> subpro
 
 
 def call(arguments: list[str]) -> str:
-    done = _run_process(arguments)
+    done = run_process(arguments)
     if done.returncode != DONE:
         raise RunFailed(f"exit status {done.returncode} from: {' '.join(arguments)}\n{done.stderr.strip()}")
     return done.stdout
@@ -102,7 +102,7 @@ class Openclose:
     def _run_limited(self, case: Case, arguments: list[str]) -> None:
         folder = self.folder_of(case)
         shutil.rmtree(folder, ignore_errors=True)
-        done = _run_process(arguments, case.cpu_limit_s)
+        done = run_process(arguments, case.cpu_limit_s)
         if done.returncode in (-signal.SIGXCPU, -signal.SIGKILL):
             stopped = {"converged": False, "stopped": True, "reason": f"stopped after {case.cpu_limit_s} s of CPU time"}
             folder.mkdir(parents=True, exist_ok=True)

@@ -1,0 +1,81 @@
+"""Jointed slopes as a user would draw them without much thought: nothing here is chosen to be easy. Seeds make scenes for `fos`."""
+
+import math
+import random
+
+from scene import Scene, log_uniform, rounded
+
+PART = "slopes"
+MOST_BLOCKS = 600
+DAYLIGHTING_SHARE = 0.5  # of scenes whose first set dips out of the face for sure: with dips of any direction most slopes never fail
+CLOSEST_SETS_DEG = 10  # joint sets nearer than this to each other would be one set
+GRAVITY = 9.81
+
+
+def draw(seed: int, attempt: int = 0) -> Scene:
+    """Every number comes from the seed and, where the blocks of earlier attempts were all fixed, from the attempt."""
+    r = random.Random(f"{PART} {seed} {attempt}")
+    height = rounded(log_uniform(r, 0.5, 500))
+    face = r.uniform(40, 85)
+    face_width = height / math.tan(math.radians(face))
+    bench, depth, behind = (rounded(height * f, 4) for f in (r.uniform(0.3, 0.8), r.uniform(0.2, 0.5), r.uniform(0.8, 2.0)))
+    right = rounded(face_width + behind, 8)
+    corners = [[-bench, -depth], [right, -depth], [right, height], [rounded(face_width, 8), height], [0.0, 0.0], [-bench, 0.0]]
+    area = (bench + right) * depth + (right - face_width / 2) * height
+    count = 3 if r.random() < 0.35 else 2
+    sets = [_joint_set(r, seed + k, height) for k in range(count)]
+    if r.random() < DAYLIGHTING_SHARE:
+        sets[0]["dip_deg"] = rounded(r.uniform(15, face), 5)
+    _separate(r, sets)
+    _widen(sets, area, log_uniform(r, 12, MOST_BLOCKS))
+    density, ratio = r.uniform(2300, 2800), rounded(log_uniform(r, 0.05, 1), 3)
+    kn = rounded(log_uniform(r, 1e8, 1e11), 4)
+    friction = rounded(r.uniform(15, 50), 4)
+    # Cohesion as a share of what the height weighs, so that it matters on any height.
+    cohesion = 0.0 if r.random() < 0.5 else rounded(log_uniform(r, 1e-3, 0.05) * density * GRAVITY * height, 4)
+    joint = {"materials": ["rock", "rock"], "normal_stiffness_pa_per_m": kn, "shear_stiffness_pa_per_m": rounded(kn * ratio, 4),
+             "friction_angle_deg": friction, "cohesion_pa": cohesion}
+    document = {
+        "title": f"{PART} {seed}",
+        "material": [{"name": "rock", "density_kg_per_m3": rounded(density, 5)}],
+        "joint": [joint],
+        "domain": {"material": "rock", "vertices_m": corners, "enclosed_joints": "drop"},
+        "joint_set": sets,
+        "fixed_line": [{"from_m": a, "to_m": b} for a, b in ((corners[0], corners[1]), (corners[0], corners[5]), (corners[1], corners[2]))],
+        "strength_reduction": {"width": 0.002},
+    }
+    drawn = {"height_m": height, "face_deg": face, "sets": count, "finite": sum("persistence" in s for s in sets), "friction_deg": friction,
+             "cohesion_pa": cohesion, "kn": kn, "ks_over_kn": ratio}
+    return Scene(PART, seed, "fos", document, drawn)
+
+
+def _joint_set(r: random.Random, seed: int, height: float) -> dict:
+    """The first spacing is one of proportions only."""
+    joints = {"dip_deg": rounded(r.uniform(-90, 90), 5), "spacing_m": height * log_uniform(r, 0.5, 1.6),
+              "origin_m": [rounded(height * r.uniform(-0.05, 0.05)), rounded(height * r.uniform(-0.05, 0.05))]}
+    if r.random() < 0.35:
+        joints |= {"trace_length_m": r.uniform(1.5, 5), "persistence": rounded(r.uniform(0.5, 0.95), 3), "stagger": 0.5, "seed": seed % 100000 + 1}
+    return joints
+
+
+def _separate(r: random.Random, sets: list[dict]) -> None:
+    """Draws anew the dip of a set that would be one with an earlier set."""
+    for k, joints in enumerate(sets):
+        while any(_between(joints["dip_deg"], other["dip_deg"]) < CLOSEST_SETS_DEG for other in sets[:k]):
+            joints["dip_deg"] = rounded(r.uniform(-90, 90), 5)
+
+
+def _between(a: float, b: float) -> float:
+    difference = abs(a - b) % 180
+    return min(difference, 180 - difference)
+
+
+def _widen(sets: list[dict], area: float, blocks: float) -> None:
+    """Scales the spacings so that through-going joints would cut about so many blocks: each pair of sets meets sin(angle)/(s1 s2) times a unit area."""
+    meetings = sum(math.sin(math.radians(_between(a["dip_deg"], b["dip_deg"]))) / (a["spacing_m"] * b["spacing_m"])
+                   for i, a in enumerate(sets) for b in sets[:i])
+    scale = math.sqrt(area * meetings / blocks)
+    for joints in sets:
+        joints["spacing_m"] = rounded(joints["spacing_m"] * scale)
+        if "trace_length_m" in joints:
+            joints["trace_length_m"] = rounded(joints["trace_length_m"] * joints["spacing_m"])
