@@ -52,7 +52,7 @@ convergence: build figure-packages ## measure the orders of convergence against 
 
 stress: build stress-packages ## random scenes from seeds, judged by rules that know nothing of the method (results/stress.csv); exit status 1 for a false answer
 	@"$${PYTHON:-python3}" -m unittest discover -q -s stress
-	@"$${PYTHON:-python3}" stress/stress.py --seed $(SEED) --count $(COUNT) --part $(PART) $(if $(METHODS),--methods $(METHODS)) --jobs $(JOBS)
+	@python=$$(scripts/find-python 2>/dev/null || echo "$${PYTHON:-python3}"); "$$python" stress/stress.py --seed $(SEED) --count $(COUNT) --part $(PART) $(if $(METHODS),--methods $(METHODS)) --jobs $(JOBS)
 
 # Always anew: a time is of today. The test is of the rule that nothing wins with a large error.
 bench: bench-packages ## run time beside error, cost by size, what skips save (results/bench.md); half an hour and more, BENCH=quick: a few minutes

@@ -7,14 +7,22 @@ from concurrent.futures import ProcessPoolExecutor
 from dataclasses import asdict, dataclass, fields, replace
 from pathlib import Path
 
+import maps
+import masonry
 import slopes
 import tumbles
 import verdicts
+from motion import outlines_of
 from outcome import METHODS, OF_MOTION_ONLY, Programs
-from scene import Scene, measured
+from scene import Scene, measured, of_blocks, to_toml
+from variants import VARIANTS
 
-PARTS = {"slopes": slopes.draw, "tumbles": tumbles.draw}
+PARTS = {part.PART: part.draw for part in (slopes, masonry, tumbles, maps)}
 MOST_ATTEMPTS = 50
+# What runs inside `make verify`: seeds that stay, a few of each part. Whoever accepts a change draws others.
+REGRESSION = {slopes.PART: range(2000, 2012), masonry.PART: range(2000, 2012), tumbles.PART: range(2000, 2024), maps.PART: range(2000, 2018)}
+REGRESSION_LIMIT_S = 10
+SAME = {"soft", "hard"}  # in statics they are one solver
 
 
 @dataclass(frozen=True)
@@ -26,15 +34,24 @@ class Row:
     blocks: int
     verdict: str
     reason: str
-    factor: float | None
-    stable: float | None
-    failed: float | None
-    limit_analysis: float | None
-    energy_created: float | None
-    energy_rise: float | None
-    overlap: float | None
-    cpu_s: float
-    exit: int | None
+    answer: str = ""  # of `fos`: certified, interval, no_failure, no_equilibrium, undecided
+    factor: float | None = None
+    stable: float | None = None
+    failed: float | None = None
+    limit_analysis: float | None = None
+    energy_created: float | None = None  # [-] over the start's
+    energy_rise: float | None = None
+    overlap: float | None = None         # [-] over the smaller block's area
+    cpu_s: float = 0.0
+    exit: int | None = None
+
+
+def read(file: Path) -> dict:
+    return tomllib.loads(file.read_text(encoding="utf-8"))
+
+
+def _to_follow(scene: Scene) -> Scene:
+    return replace(scene, document=measured(scene.document)) if scene.command == "run" else scene
 
 
 @dataclass(frozen=True)
@@ -42,6 +59,7 @@ class Campaign:
     programs: Programs
     folder: Path  # scenes and what was written for them
     methods: tuple[str, ...]
+    invariances: bool = False  # slopes also drawn in other ways, by every method
 
     def scene(self, part: str, seed: int) -> tuple[Scene, Path]:
         """Draws it, and writes it as blocks. Slopes in which every block is fixed are drawn anew."""
@@ -52,10 +70,10 @@ class Campaign:
             drawn, blocks = folder / "scene.toml", folder / "blocks.toml"
             scene.write(drawn)
             if "domain" not in scene.document:
-                return replace(scene, document=measured(scene.document) if scene.command == "run" else scene.document), drawn
+                return _to_follow(scene), drawn
             cut = self.programs.cut(drawn, blocks)
-            if cut.exit == 0 and any(not b.get("fixed") for b in tomllib.loads(blocks.read_text(encoding="utf-8"))["block"]):
-                return scene, drawn
+            if cut.exit == 0 and any(not b.get("fixed") for b in read(blocks)["block"]):
+                return _to_follow(replace(scene, document=of_blocks(scene.document, read(blocks)))) if scene.command == "run" else scene, drawn
         raise ValueError(f"{part}, seed {seed}: no scene that can be cut and has a free block in {MOST_ATTEMPTS} attempts; the last: {cut.message}")
 
     def written(self, part: str, seed: int) -> Path:
@@ -82,17 +100,58 @@ class Campaign:
         blocks = file.parent / "blocks.toml"
         if not blocks.exists():
             shutil.copy(file, blocks)
-        assembly = verdicts.Assembly(tomllib.loads(blocks.read_text(encoding="utf-8")))
-        limit = self.programs.limit_analysis(blocks)
-        rows = []
-        for method in self.methods:
-            if method in OF_MOTION_ONLY:
-                continue
-            outcome = self.programs.analyse("fos", file, METHODS[method], file.parent / method)
-            verdict = verdicts.of_factor(outcome, assembly, limit)
-            rows.append(_row(scene, method, len(assembly.vertices), verdict, outcome))
-            self._tidy(outcome.folder, verdict)
+        methods = [m for m in self.methods if m not in OF_MOTION_ONLY]
+        rows, found = self._factors_of(scene, file, blocks, methods)
+        if SAME <= set(found):
+            rows += self._same(scene, *(found[method] for method in sorted(SAME)))
+        if self.invariances and scene.part == slopes.PART:
+            rows += self._invariances(scene, blocks, methods, found)
         return rows
+
+    def _factors_of(self, scene: Scene, file: Path, blocks: Path, methods: list[str], variant: str = "") -> tuple[list[Row], dict[str, verdicts.Verdict]]:
+        assembly, limit = verdicts.Assembly(read(blocks)), self.programs.limit_analysis(blocks)
+        rows, found = [], {}
+        for method in methods:
+            outcome = self.programs.analyse("fos", file, METHODS[method], file.parent / f"{method}{variant}".replace(" ", "_"))
+            found[method] = verdicts.of_factor(outcome, assembly, limit)
+            rows.append(_row(scene, f"{method}{variant}", len(assembly.vertices), found[method], outcome))
+            self._tidy(outcome.folder, found[method])
+        return rows, found
+
+    @staticmethod
+    def _same(scene: Scene, one: verdicts.Verdict, other: verdicts.Verdict) -> list[Row]:
+        wide = next((f"a bracket of {v.stable:.6g} to {v.failed:.6g}" for v in (one, other) if verdicts.too_wide(v)), "")
+        return _comparison(scene, " = ".join(sorted(SAME)), one, other, wide)
+
+    def _invariances(self, scene: Scene, blocks: Path, methods: list[str], found: dict[str, verdicts.Verdict]) -> list[Row]:
+        """The brackets of the same slope drawn in another way."""
+        document = of_blocks(scene.document, read(blocks))
+        rows = []
+        for name, change in VARIANTS.items():
+            file = blocks.parent / f"{name}.toml".replace(" ", "_")
+            file.write_text(to_toml(change(document)), encoding="utf-8")
+            more, changed = self._factors_of(scene, file, file, methods, f", {name}")
+            rows += more
+            for method in methods:
+                rows += _comparison(scene, f"{method} = {method}, {name}", found[method], changed[method])
+        return rows
+
+    def draw_again(self, row: Row, file: Path) -> bool:
+        """A picture of what a row is about, from a run of its own; false if it left no blocks."""
+        import pictures
+
+        scene, path = self.scene(row.part, row.seed)
+        scene.write(path)
+        outcome = self.programs.analyse(scene.command, path, METHODS[row.method], file.with_suffix(""))
+        states = outlines_of(outcome)
+        blocks = path.parent / "blocks.toml"
+        document = read(blocks) if blocks.exists() else scene.document
+        shutil.rmtree(outcome.folder, ignore_errors=True)
+        if not states:
+            return False
+        title = f"{row.part} {row.seed}, {row.method}: {row.verdict}"
+        pictures.draw(states, {b["name"] for b in document["block"] if b.get("fixed")}, title, file)
+        return True
 
     @staticmethod
     def _tidy(folder: Path, verdict: verdicts.Verdict) -> None:
@@ -101,8 +160,17 @@ class Campaign:
             shutil.rmtree(folder, ignore_errors=True)
 
 
+def _comparison(scene: Scene, what: str, one: verdicts.Verdict, other: verdicts.Verdict, wrong: str = "") -> list[Row]:
+    """A row for two answers that have to be one; none where there are not two."""
+    if one.stable is None or other.stable is None:
+        return []
+    wrong = verdicts.same_bracket(one, other) or wrong
+    return [Row(scene.part, scene.seed, scene.described(), what, 0, verdicts.FALSE if wrong else verdicts.RIGHT, wrong)]
+
+
 def _row(scene: Scene, method: str, blocks: int, verdict: verdicts.Verdict, outcome) -> Row:
-    return Row(scene.part, scene.seed, scene.described(), method, blocks, verdict.kind, verdict.reason, verdict.factor, verdict.stable, verdict.failed,
+    return Row(scene.part, scene.seed, scene.described(), method, blocks, verdict.kind, verdict.reason,
+               outcome.summary.get("verdict", ""), verdict.factor, verdict.stable, verdict.failed,
                verdict.limit, verdict.created, verdict.rise, verdict.overlap, round(outcome.cpu_s, 4), outcome.exit)
 
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from geometry import Body, Placed, Point, turned
 from outcome import Outcome
-from scene import POINT_MARK, Scene
+from scene import POINT_MARK, Scene, densities
 
 STORED = "contact_springs_j", "support_springs_j"
 DONE_BY_OTHERS = "loads_j", "base_motion_j"  # minus their work
@@ -45,8 +45,8 @@ class Motion:
     def __init__(self, scene: Scene, outcome: Outcome):
         self._document = scene.document
         self._floor = scene.floor_m
-        outlines = _outlines(outcome)
-        density = {m["name"]: m["density_kg_per_m3"] for m in scene.document["material"]}
+        outlines = outlines_of(outcome)
+        density = densities(scene.document)
         start = outlines.get("start", outlines["initial"])
         self.blocks = {b["name"]: Block(b["name"], outlines["initial"][b["name"]], start[b["name"]], density[b["material"]], b.get("fixed", False))
                        for b in scene.document["block"]}
@@ -97,7 +97,7 @@ class Motion:
         return [(b, b.placed(b.start if b.fixed else self.states[k][b.name].vertices)) for b in self.blocks.values()]
 
 
-def _outlines(outcome: Outcome) -> dict[str, dict[str, list[Point]]]:
+def outlines_of(outcome: Outcome) -> dict[str, dict[str, list[Point]]]:
     """Vertices by state and block."""
     states: dict[str, dict[str, list[Point]]] = {}
     for row in outcome.table("blocks.csv"):

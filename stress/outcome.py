@@ -24,6 +24,7 @@ METHODS = {
     "dem": {"method.contact": "dem"},
     "path_average": {"method.contact": "soft", "method.integrator": "path_average"},
 }
+LIMITS_WITHOUT_A_FACTOR = {"no equilibrium at any factor": 0.0, "stands at every factor": math.inf}
 OF_MOTION_ONLY = ("path_average",)
 
 
@@ -91,10 +92,11 @@ class Programs:
         return self._call([str(self.openclose), "cut", str(scene), "--quiet", "-o", str(blocks), "--svg", str(blocks.with_suffix(".svg"))], blocks.parent)
 
     def limit_analysis(self, blocks: Path) -> dict[str, float] | None:
-        """Largest feasible and smallest infeasible factor; none if the reference finds none."""
+        """Largest feasible and smallest infeasible factor, both 0 without equilibrium at any factor and infinite where all stand; none without an answer."""
         done = run_process([str(self.reference), "limit-analysis", str(blocks)], self.limit_s)
         if done.returncode != DONE:
-            return None
+            answer = next((factor for words, factor in LIMITS_WITHOUT_A_FACTOR.items() if words in done.stderr), None)
+            return None if answer is None else {"factor": answer, "failed": answer}
         values = {row["quantity"]: float(row["value"]) for row in csv.DictReader(done.stdout.splitlines())}
         return {"factor": values["factor_of_safety"], "failed": values["smallest_failed_factor"]}
 

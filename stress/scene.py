@@ -7,6 +7,16 @@ from pathlib import Path
 
 
 @dataclass(frozen=True)
+class Expected:
+    """Displacement of a block's centroid at the end, from the start of the motion [m]."""
+
+    block: str
+    x: float
+    y: float
+    tolerance: float
+
+
+@dataclass(frozen=True)
 class Scene:
     part: str
     seed: int
@@ -16,6 +26,7 @@ class Scene:
     # Free blocks stay inside [x0, y0, x1, y1] [m] for good; None: nothing encloses them.
     enclosure: tuple[float, float, float, float] | None = None
     floor_m: float = 0.0  # no centroid can come lower: potential energy counts from here
+    expected: tuple[Expected, ...] = ()
 
     @property
     def name(self) -> str:
@@ -30,7 +41,7 @@ class Scene:
 
 
 def to_toml(document: dict) -> str:
-    """Tables one level deep, and arrays of them, as scene files have them."""
+    """Tables one level deep, and arrays of them, as scene files have them; a dot in a name makes a table within one."""
     lines = [f"{key} = {_value(value)}" for key, value in document.items() if not _is_table(value)]
     for key, value in document.items():
         if _is_table(value):
@@ -59,6 +70,20 @@ def log_uniform(random, low: float, high: float) -> float:
 def rounded(value: float, digits: int = 6) -> float:
     """To significant digits, so that scene files can be read."""
     return float(f"{value:.{digits}g}")
+
+# What `openclose cut` has worked in already.
+OF_THE_CUT = "domain", "joint_set", "joint_line", "fixed_line", "region", "material", "joint", "block", "gravity_m_per_s2"
+
+
+def of_blocks(scene: dict, cut: dict) -> dict:
+    """A scene with a domain as one of blocks: those of the file that `openclose cut` wrote, with the scene's own analysis."""
+    return {**{k: v for k, v in cut.items() if k in OF_THE_CUT}, **{k: v for k, v in scene.items() if k not in OF_THE_CUT}}
+
+
+def densities(document: dict) -> dict[str, float]:
+    """[kg/m3] By material."""
+    gravity = math.hypot(*document.get("gravity_m_per_s2", (0.0, -9.81)))
+    return {m["name"]: m["density_kg_per_m3"] if "density_kg_per_m3" in m else m["unit_weight_n_per_m3"] / gravity for m in document["material"]}
 
 
 POINT_MARK = ":"  # between the name of a block and the number of one of its two measured points

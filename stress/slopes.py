@@ -42,7 +42,7 @@ def draw(seed: int, attempt: int = 0) -> Scene:
         "domain": {"material": "rock", "vertices_m": corners, "enclosed_joints": "drop"},
         "joint_set": sets,
         "fixed_line": [{"from_m": a, "to_m": b} for a, b in ((corners[0], corners[1]), (corners[0], corners[5]), (corners[1], corners[2]))],
-        "strength_reduction": {"width": 0.002},
+        "strength_reduction": {"width": 5e-4},
     }
     drawn = {"height_m": height, "face_deg": face, "sets": count, "finite": sum("persistence" in s for s in sets), "friction_deg": friction,
              "cohesion_pa": cohesion, "kn": kn, "ks_over_kn": ratio}

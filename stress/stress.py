@@ -13,6 +13,7 @@ from collections import Counter
 from pathlib import Path
 
 import campaign
+import page
 from outcome import METHODS, Programs
 from verdicts import FALSE
 
@@ -28,6 +29,8 @@ def parse_arguments() -> argparse.Namespace:
     parser.add_argument("--methods", nargs="+", choices=METHODS, default=list(METHODS), metavar="METHOD", help=f"of {', '.join(METHODS)} (default: all)")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="processes (default: %(default)s)")
     parser.add_argument("--limit-s", type=int, default=60, help="CPU time of a run, beyond which it is slow (default: %(default)s)")
+    parser.add_argument("--invariances", action="store_true", help="slopes also with other stiffness, mirrored, far away, small and large")
+    parser.add_argument("--regression", action="store_true", help="the seeds that `make verify` runs, without pictures")
     parser.add_argument("--keep", type=int, metavar="SEED", help="write the scene of this seed and stop")
     parser.add_argument("--openclose", type=Path, default=Path("build/release/openclose"))
     parser.add_argument("--reference", type=Path, default=Path("build/release/analytical/openclose-reference"))
@@ -39,25 +42,47 @@ def parts(arguments: argparse.Namespace) -> list[str]:
     return list(campaign.PARTS) if arguments.part == ALL else [arguments.part]
 
 
+def seeds(arguments: argparse.Namespace, part: str) -> range:
+    return campaign.REGRESSION[part] if arguments.regression else range(arguments.seed, arguments.seed + arguments.count)
+
+
 def report(rows: list[campaign.Row]) -> None:
     counts = Counter((row.part, row.method, row.verdict) for row in rows)
     for (part, method, verdict), number in sorted(counts.items()):
         print(f"{part:8} {method:13} {verdict:8} {number}")
 
 
+def draw_worst(one: campaign.Campaign, rows: list[campaign.Row], results: Path) -> list[tuple[campaign.Row, str]]:
+    """Rows and their pictures; none without matplotlib."""
+    drawn = []
+    for row in page.worst([row for row in rows if row.method in METHODS]):
+        file = results / "stress" / f"{row.part}-{row.seed}-{row.method}.png"
+        try:
+            if one.draw_again(row, file):
+                drawn.append((row, str(file.relative_to(results))))
+        except ModuleNotFoundError:
+            print("stress: no matplotlib, so stress.md has no pictures", file=sys.stderr)
+            break
+    return drawn
+
+
 def main() -> int:
     arguments = parse_arguments()
+    if arguments.regression:
+        arguments.limit_s = campaign.REGRESSION_LIMIT_S
     for program in (arguments.openclose, arguments.reference):
         if not program.exists():
             print(f"stress: no {program}; make build makes it", file=sys.stderr)
             return EXIT_CANNOT_START
-    one = campaign.Campaign(Programs(arguments.openclose, arguments.reference, arguments.limit_s), arguments.results / "stress", tuple(arguments.methods))
+    one = campaign.Campaign(Programs(arguments.openclose, arguments.reference, arguments.limit_s), arguments.results / "stress", tuple(arguments.methods),
+                            arguments.invariances)
     if arguments.keep is not None:
         for part in parts(arguments):
             print(one.written(part, arguments.keep))
         return 0
-    rows = campaign.run(one, [(part, arguments.seed + k) for part in parts(arguments) for k in range(arguments.count)], arguments.jobs)
+    rows = campaign.run(one, [(part, seed) for part in parts(arguments) for seed in seeds(arguments, part)], arguments.jobs)
     campaign.write_csv(rows, arguments.results / "stress.csv")
+    page.write(rows, [] if arguments.regression else draw_worst(one, rows, arguments.results), " ".join(["stress/stress.py", *sys.argv[1:]]), arguments.results / "stress.md")
     report(rows)
     return EXIT_FALSE if any(row.verdict == FALSE for row in rows) else 0
 

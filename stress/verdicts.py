@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import geometry
 from motion import Block, Motion
 from outcome import BAD_INPUT, DONE, NOT_CONVERGED, Outcome
-from scene import Scene
+from scene import Scene, densities
 
 RIGHT, REFUSED, FALSE, SLOW = "right", "refused", "FALSE", "slow"
 
@@ -64,7 +64,8 @@ def of_motion(scene: Scene, method: str, outcome: Outcome) -> Verdict:
     motion = Motion(scene, outcome)
     energy = Energy(motion)
     overlaps = list(_overlaps(motion))
-    wrong = next((reason for reason in (_place(scene, motion, energy), energy.wrong(), _too_deep(motion, overlaps, scene, method), _bookkeeping(motion)) if reason), "")
+    wrong = next((reason for reason in (_place(scene, motion, energy), energy.wrong(), _too_deep(motion, overlaps, scene, method),
+                                        _elsewhere(scene, motion), _bookkeeping(motion)) if reason), "")
     return Verdict(FALSE if wrong else RIGHT, wrong, created=energy.created, rise=energy.rise, overlap=max((o.share for o in overlaps), default=0.0))
 
 
@@ -156,10 +157,22 @@ def _too_deep(motion: Motion, overlaps: list[BlocksOverlap], scene: Scene, metho
     return max(wrong)[1] if wrong else ""
 
 
+AT_ONCE = 2  # [-] a weight that comes at once goes twice as deep as one that rests
+
+
 def closure(speed: float, mass: float, weight: float, stiffness: float) -> float:
     """[m] By which a spring gives way that stops a mass and carries a weight. With the stiffness of the joint on the chord of the overlap it is the softest
     that two blocks can be to each other; with the heaviest block, the fastest speed so far and all the weight it is an upper bound of what can happen."""
-    return speed * math.sqrt(mass / stiffness) + weight / stiffness
+    return speed * math.sqrt(mass / stiffness) + AT_ONCE * weight / stiffness
+
+
+def _elsewhere(scene: Scene, motion: Motion) -> str:
+    """Where the answer is known."""
+    for e in scene.expected:
+        x, y = (motion.states[-1][e.block].centroid[k] - motion.blocks[e.block].centroid[k] for k in (0, 1))
+        if math.hypot(x - e.x, y - e.y) > e.tolerance:
+            return f"{e.block} has moved by ({x:.5g}, {y:.5g}) m instead of ({e.x:.5g}, {e.y:.5g}) m, tolerance {e.tolerance:.3g} m"
+    return ""
 
 
 def _bookkeeping(motion: Motion) -> str:
@@ -182,7 +195,7 @@ class Bracket:
 
 PROVED_BY = "mechanism", "limit_analysis", "limit analysis"
 PROVED_BEFORE = "displacement"
-NO_FAILURE = "no_failure"
+NO_FAILURE, NO_EQUILIBRIUM = "no_failure", "no_equilibrium"
 
 
 def read_bracket(summary: dict) -> Bracket:
@@ -196,7 +209,10 @@ def read_bracket(summary: dict) -> Bracket:
 def of_factor(outcome: Outcome, assembly: "Assembly", limit: dict[str, float] | None) -> Verdict:
     known = of_exit(outcome)
     if known:
-        return replace(known, limit=limit and limit["factor"])
+        known = replace(known, limit=limit and limit["factor"])
+        if outcome.exit == NOT_CONVERGED and limit and limit["factor"] == 0 and outcome.summary.get("verdict") == NO_EQUILIBRIUM:
+            return replace(known, kind=RIGHT)
+        return known
     bracket = read_bracket(outcome.summary)
     factor = outcome.summary.get("factor_of_safety")
     forces = assembly.forces(outcome)
@@ -253,8 +269,7 @@ class Assembly:
 
     def __init__(self, document: dict):
         self.gravity = document.get("gravity_m_per_s2", [0.0, -9.81])
-        density = {m["name"]: m["density_kg_per_m3"] if "density_kg_per_m3" in m else m["unit_weight_n_per_m3"] / math.hypot(*self.gravity)
-                   for m in document["material"]}
+        density = densities(document)
         self.joints = {frozenset(j["materials"]): j for j in document["joint"]}
         self.material = {b["name"]: b["material"] for b in document["block"]}
         self.vertices = {b["name"]: geometry.counter_clockwise([tuple(p) for p in b["vertices_m"]]) for b in document["block"]}
