@@ -33,6 +33,7 @@ void arch(Report&);
 void overhang(Report&);
 void column(Report&);
 void tilt(Report&);
+void no_energy_from_nothing(Report&);
 void invariance(Report&);
 
 const std::vector<Case>& cases() {
@@ -68,6 +69,7 @@ const std::vector<Case>& cases() {
       {"F2", "overhang of a stack", &overhang},
       {"F3", "forces and modes of a column", &column},
       {"F4", "a column tips", &tilt},
+      {"H1", "no energy from nothing", &no_energy_from_nothing},
       {"I", "invariance: units, mirror, turn, place, frame, order, strangers, restart", &invariance},
   };
   return list;

@@ -24,7 +24,7 @@ void add_elastic_contact(EnergyLedger& ledger, const Contact& contact, const Con
   const double n1 = end.forces.normal, t1 = end.forces.shear;
   const double p0 = start.elastic_normal / kn, p1 = end.forces.elastic_normal / kn;
   const double u0 = contact.elastic_slip, u1 = -end.forces.elastic_shear / ks;
-  const double opening0 = contact.gap + p0;
+  const double opening0 = contact.stretch() + p0;
 
   double by_springs = (theta - 0.5) * (kn * square(p1 - p0) + ks * square(u1 - u0)) + theta * n1 * opening0;
   double by_rotation = theta * (n1 * (paths.normal_end - gap_change) + t1 * (paths.shear_end - slip));
@@ -32,7 +32,7 @@ void add_elastic_contact(EnergyLedger& ledger, const Contact& contact, const Con
   double shear = theta * t1;
   double let_go = 0.0;
   if (theta < 1.0) {
-    const double weight = 1.0 - theta, n0 = start.normal, t0 = start.shear, opening1 = contact.gap + gap_change + p1;
+    const double weight = 1.0 - theta, n0 = start.normal, t0 = start.shear, opening1 = contact.stretch() + gap_change + p1;
     by_springs -= weight * n0 * opening1;
     by_rotation += weight * (n0 * (paths.normal_start - gap_change) + t0 * (paths.shear_start - slip));
     viscous_normal += weight * (n0 - start.elastic_normal);
@@ -50,16 +50,16 @@ void add_elastic_contact(EnergyLedger& ledger, const Contact& contact, const Con
   ledger.friction -= shear * (slip - (u1 - u0));
 }
 
-/// [N] All that a step with the forces at its end needs of those at its start. Of springs that rest at gap zero: those of `soft`, `shi` and `dem`.
+/// [N] All that a step with the forces at its end needs of those at its start. Of the springs of `soft`, `shi` and `dem`.
 template <int N>
 double elastic_normal_at_start(const Contact& contact, const TabulatedJoint& joint, const ContactOutcome<N>& end) {
-  const double elastic = -end.normal_stiffness * contact.gap;
+  const double elastic = -end.normal_stiffness * contact.stretch();
   return is_open(ContactStrength(joint, contact), elastic) ? 0.0 : elastic;
 }
 
 /// Open before and after, nothing stored: every entry would be zero.
 bool rests_open(const Contact& contact, ContactStatus end) {
-  return end == ContactStatus::open && contact.status == ContactStatus::open && !contact.bonded && contact.gap > 0.0 && contact.elastic_slip == 0.0 &&
+  return end == ContactStatus::open && contact.status == ContactStatus::open && !contact.bonded && contact.stretch() > 0.0 && contact.elastic_slip == 0.0 &&
          contact.stored_energy == 0.0;
 }
 

@@ -2,7 +2,7 @@
 // difference of the others, so that the imbalance can fail.
 //
 // With the work displacement of the time scheme the change of kinetic energy of a step is exactly the work of the forces in its equation of motion.
-// For a contact with springs k that carry the elastic parts of N and T, compression p = N_el/k, gap g = g+ - p (g+ the free opening), stretch
+// For a contact with springs k that carry the elastic parts of N and T, compression p = N_el/k, gap g = g+ - p from where the spring rests (g+ the free opening), stretch
 // u = -T_el/k of the shear spring and weights theta at the end, 1 - theta at the start of the step, minus its work is the sum of
 //   springs   k (p1^2 - p0^2)/2 + k_s (u1^2 - u0^2)/2
 //   damping   theta [(N1 - N1_el) (p1 - p0) - (T1 - T1_el) (u1 - u0)] + (1 - theta) [the same with the forces at the start]
@@ -31,7 +31,7 @@ struct EnergyLedger {
   double mass_damping = 0.0;     ///< dissipated by damping of the blocks' motion (`dem`)
   double impact = 0.0;           ///< dissipated by hard contacts that close
   double scheme = 0.0;           ///< dissipated by the time integration
-  double redefinition = 0.0;     ///< released where contacts change their tributary length, their gap's linearisation, or end while loaded
+  double redefinition = 0.0;     ///< released where contacts change their length, their gap's linearisation, or end while loaded, see history.h
   double turnover = 0.0;         ///< sum of the absolute changes of kinetic, gravity, base motion and loads: what an imbalance is compared with
 
   void exchange(Archive& archive) {

@@ -97,7 +97,7 @@ class Balance {
       const ContactKinematics<N> k(system, c, owns_vertex ? d : still, owns_vertex ? still : d);
       const ContactSprings springs = simulation_.enforcement().springs(problem, c);
       const ContactStrength strength(simulation_.joints().joint(c.joint), c);
-      const double normal = std::max(0.0, -springs.normal * (springs.gap + k.gap_change));
+      const double normal = std::max(0.0, -springs.normal * ((springs.gap - springs.target) + k.gap_change));
       const auto bound = strength.shear_bound(normal);
       const Unknowns& gn = owns_vertex ? k.normal_vertex : k.normal_edge;
       const Unknowns& gt = owns_vertex ? k.shear_vertex : k.shear_edge;

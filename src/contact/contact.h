@@ -22,8 +22,9 @@ struct Contact {
   bool bonded = true;  ///< cohesion and tensile strength are still there
 
   // Geometry at the start of the step.
-  double length = 0.0;  ///< [m] tributary length: stiffness, cohesion and tensile strength are per length
-  double gap = 0.0;     ///< [m]
+  double length = 0.0;    ///< [m] tributary length: stiffness, cohesion and tensile strength are per length
+  double gap = 0.0;       ///< [m]
+  double rest_gap = 0.0;  ///< [m] at which the normal spring carries nothing, see history.h
 
   // History, as the last accepted step left it.
   double elastic_slip = 0.0;   ///< [m] stretch of the shear spring; the spring's part of the shear force is -shear stiffness * elastic slip
@@ -32,9 +33,12 @@ struct Contact {
   double stored_energy = 0.0;  ///< [J] in both springs
   double slack = 0.0;          ///< [m] `hard` at rest: by how much an open contact would have parted, see hard.cpp
 
+  /// [m] What the normal spring reads: the gap from where the spring rests.
+  double stretch() const { return gap - rest_gap; }
+
   void exchange(Archive& archive) {
-    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n] = *this;
-    archive(a, b, c, d, e, f, g, h, i, j, k, l, m, n);
+    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o] = *this;
+    archive(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o);
   }
 };
 

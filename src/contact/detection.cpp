@@ -6,7 +6,9 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <utility>
 
+#include "openclose/contact/history.h"
 #include "openclose/contact/narrow_phase.h"
 #include "openclose/core/tolerance.h"
 
@@ -26,16 +28,6 @@ void take_marked(std::vector<std::uint64_t>& set, std::vector<int>& numbers) {
   for (std::size_t k = 0; k < set.size(); ++k) {
     for (; set[k] != 0; set[k] &= set[k] - 1) numbers.push_back(static_cast<int>(bits * k) + std::countr_zero(set[k]));
   }
-}
-
-void inherit(const Contact& from, Contact& to) {
-  to.status = from.status;
-  to.bonded = from.bonded;
-  to.elastic_slip = from.elastic_slip;
-  to.normal_force = from.normal_force;
-  to.shear_force = from.shear_force;
-  to.stored_energy = from.stored_energy;
-  to.slack = from.slack;
 }
 
 /// (R(angle) - 1) r; for most angles, which are small, without sines: what the series leave out is below rounding.
@@ -366,7 +358,7 @@ void Detector<N>::pass_on_history(const BlockSystem<N>& system, std::vector<Cont
     consider(gone_by_edge_, found_[i].vertex);
     consider(gone_by_edge_, system.previous(found_[i].vertex));
     if (ancestor < 0) continue;
-    inherit(before[ancestor], found_[i]);
+    inherit(before[ancestor], before[ancestor].stretch(), found_[i]);
     before[ancestor].length = taken;
     ++counters_.transfers;
   }
@@ -388,10 +380,11 @@ void Detector<N>::redo(const JointTable& joints, const BlockSystem<N>& system, i
     c.joint = joints.index(system.block(a).material, system.block(b).material);
     const int known = index_.find(c.vertex, c.edge);
     if (known >= 0) {
-      inherit(before[known], c);
+      inherit(before[known], stretch_at(before[known], c.gap, moved_by_others_), c);
       lives_on_[known - old.begin] = 1;
     } else {
       c.bonded = first_ && c.gap <= tolerance::deepest_initial_overlap_m;
+      if (!first_) rest_at_present_gap(c);
       born_.push_back(k);
     }
   }
@@ -563,7 +556,7 @@ template <int N>
 bool Detector<N>::update(const BlockSystem<N>& system, const JointTable& joints, std::vector<Contact>& contacts, const BlockSystem<N>* present) {
   const bool all = forgotten_ || !skips_.search || !skips_.narrow_phase;
   const bool searches = needs_search(system);
-  forgotten_ = false;
+  moved_by_others_ = std::exchange(forgotten_, false);
   born_.clear();
   gone_.clear();
   changes_.clear();

@@ -188,6 +188,7 @@ class Detector {
   DetectionSkips skips_;
   bool first_ = true;
   bool forgotten_ = true;
+  bool moved_by_others_ = false;  ///< before this update()
   std::vector<std::pair<int, int>> pairs_;
   std::vector<PairState> states_;               ///< of the pairs
   std::vector<Range> ranges_;                   ///< of the pairs, in the list as the last update() left it

@@ -23,7 +23,7 @@
 //
 // Where it is not continuous: a lone corner within edge_end of the seam of two collinear edges has a contact with both; it loses its length where it
 // leaves the end of an edge that nothing continues; and at a corner the contact passes from one edge to the next with its gap, not with its
-// direction. Energy held there goes into the ledger's redefinition.
+// direction. What becomes of the energy held there stands in history.h: it never grows.
 //
 // At four-block corners the diagonal blocks have facing edges without overlap and no lone corner, hence no contact: they cannot lock.
 #pragma once
@@ -196,7 +196,7 @@ class NarrowPhase {
     contact.edge = e;
     contact.length = length;
     contact.gap = present_ ? present_gap(contact) : gap;
-    if (gap < 0.0 && (!present_ || contact.gap < 0.0) && !entered_through(v, edge_block, e, gap, closed)) return;
+    if (gap < 0.0 && (!present_ || contact.gap < 0.0) && !entered_through(vertex_block, v, edge_block, e, gap, closed)) return;
     found_->push_back(contact);
   }
 
@@ -273,10 +273,13 @@ class NarrowPhase {
     return (system_.next(e) == f && system_.is_reflex(f)) || (system_.next(f) == e && system_.is_reflex(e));
   }
 
-  /// A penetrating corner touches the edge it came in through: no other edge that it could touch is nearer. Only in a notch does it touch both walls.
-  /// History decides nothing here: beside a four-block corner a corner is first behind the joint's face, then, as it slides on, behind the right one.
+  /// A penetrating corner touches the edge it came in through: no other edge that it could touch is nearer, and its own block reaches the edge, as
+  /// long as a nearer one is passed over because the corner could not touch it. What two blocks have in common is bounded by the edges of each that
+  /// lie in the other one, so that a corner in it came in through none of the rest, such as the back of a notched block behind the face that it has
+  /// gone through. Only in a notch does it touch both walls. History decides nothing here: beside a four-block corner a corner is first behind the
+  /// joint's face, then, as it slides on, behind the right one.
   template <class Closed>
-  bool entered_through(int v, int edge_block, int e, double gap, const Closed& closed) {
+  bool entered_through(int vertex_block, int v, int edge_block, int e, double gap, const Closed& closed) {
     const Vec2& p = shapes_.edge(v).start;
     const Edge& edge = shapes_.edge(e);
     // What lies behind the edge must lie in the block, except for what drawings leave, which is not beyond a thin block, and what contacts that carry
@@ -292,8 +295,20 @@ class NarrowPhase {
       // At a needle's tip, closed by a little, the edge that is faced need not be the nearest one.
       const bool at_needle = std::abs(edge.direction.dot(other.direction)) > cosine_needle;
       if (at_needle ? stands_on(v, other) : outside(v, other)) return false;
+      if (!reaches(vertex_block, edge) && in_block(edge_block, p)) return false;
     }
     return true;
+  }
+
+  /// Whether a part of an edge lies in a block.
+  bool reaches(int block, const Edge& edge) {
+    for (const Edge& side : shapes_.edges(block)) {
+      const double start = side.gap(edge.start), end = side.gap(edge.end()), side_start = edge.gap(side.start), side_end = edge.gap(side.end());
+      if ((start < 0.0) != (end < 0.0) && (side_start < 0.0) != (side_end < 0.0)) return true;
+    }
+    polygon_.clear();
+    for (const Edge& side : shapes_.edges(block)) polygon_.push_back(side.start);
+    return contains(polygon_, edge.start);
   }
 
   /// [m] of a block behind one of its edges.

@@ -18,7 +18,7 @@ class SpringSource {
   virtual ContactSprings make(std::size_t c) const = 0;
   /// Those of all contacts, where they are at hand.
   virtual const ContactSprings* list() const { return nullptr; }
-  /// Whether gap and initial_shear are those of joint_springs(), target and shift 0, and all else follows from nothing but the contact's joint,
+  /// Whether gap, target and initial_shear are those of joint_springs(), shift is 0, and all else follows from nothing but the contact's joint,
   /// length and blocks and from the problem's dt, statics, end_weight and averages_path().
   virtual bool last() const = 0;
 };

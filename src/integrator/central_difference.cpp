@@ -190,7 +190,7 @@ void CentralDifference<N>::add_link(const StepProblem<N>& problem, int contact) 
             .normal_dashpot = dashpots.normal,
             .shear_dashpot = dashpots.shear,
             .strength = strength,
-            .gap = c.gap,
+            .gap = c.stretch(),
             .slip = 0.0,
             .stretch = c.elastic_slip,
             .normal = 0.0,
@@ -199,12 +199,13 @@ void CentralDifference<N>::add_link(const StepProblem<N>& problem, int contact) 
             .viscous_shear = 0.0,
             .vertex_slot = at_vertex,
             .edge_slot = at_edge,
+            .rest_gap = static_cast<float>(c.rest_gap),
             .status = c.status,
             .bonded = c.bonded,
             .breakable = !problem.keep_bonds && can_lose_strength(joint, c.bonded)};
   Place at = place(link);
-  link.loaded_gap = c.gap - at.gap;
-  at.gap = c.gap;
+  link.loaded_gap = link.gap - at.gap;
+  at.gap = link.gap;
   link.slip = at.slip;
   carry_now(link, at);
   // What the list has moved apart is open before anything moves.
@@ -225,7 +226,8 @@ void CentralDifference<N>::add_link(const StepProblem<N>& problem, int contact) 
                       edge_arm.x(),
                       edge_arm.y(),
                       share(c.vertex_block, c.edge_block),
-                      share(c.edge_block, c.vertex_block)};
+                      share(c.edge_block, c.vertex_block),
+                      c.rest_gap};
   add_parts(link, rest, 1.0);
   if (holes_.empty()) {
     link_of_[contact] = static_cast<int>(links_.size());
@@ -516,7 +518,7 @@ void CentralDifference<N>::follow_link(Link& link, LinkSums& sums) {
     link.elastic_normal = f.elastic_normal;
     link.viscous_shear = f.shear - f.elastic_shear;
   }
-  if (f.status != ContactStatus::open) sums.deepest = std::max(sums.deepest, -at.gap);
+  if (f.status != ContactStatus::open) sums.deepest = std::max(sums.deepest, -at.gap - link.rest_gap);
   if (link.breakable) lose_strength(link, joints_->joint(rest_[&link - links_.data()].joint), at);
   push(link, at);
 }
@@ -599,7 +601,7 @@ bool CentralDifference<N>::follow_four(Link* links, LinkSums& sums) {
                        0.5 * (kn * closing * closing + ks * stretched * stretched) -
                        (shear_before - viscous_shear_before + ks * stretch_before) * stretched;
   const Lanes rubbed = shear_before * (slip - stretched);
-  const Lanes depth = closed ? -gap : zero;
+  const Lanes rest_gap{links[0].rest_gap, links[1].rest_gap, links[2].rest_gap, links[3].rest_gap}, depth = closed ? -gap - rest_gap : zero;
   for (int k = 0; k < batch_size; ++k) {
     sums.scheme += scheme[k];
     sums.friction -= rubbed[k];
@@ -750,7 +752,7 @@ void CentralDifference<N>::store_contacts(std::vector<Contact>& contacts) const 
   for (std::size_t i = 0; i < links_.size(); ++i) {
     const Link& link = links_[i];
     Contact& c = contacts[rest_[i].contact];
-    c.gap = link.gap;
+    c.gap = link.gap + rest_[i].rest_gap;
     c.status = link.status;
     c.bonded = link.bonded;
     c.elastic_slip = link.stretch;
@@ -767,6 +769,7 @@ void CentralDifference<N>::store_far_gaps(const BlockSystem<N>& system, std::vec
     Contact& c = contacts[i];
     const Vec2 normal = -perpendicular((system.arm(system.next(c.edge)) - system.arm(c.edge)).normalized());
     c.gap = normal.dot(system.position(c.vertex_block, c.vertex) - system.position(c.edge_block, c.edge));
+    c.rest_gap = std::min(c.rest_gap, c.gap);  // it has carried nothing
   }
 }
 

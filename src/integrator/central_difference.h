@@ -137,15 +137,16 @@ class CentralDifference {
     double normal_dashpot, shear_dashpot;
     ContactStrength strength;
     // History, at the present position.
-    double gap, slip, stretch;  ///< slip since the load, stretch of the shear spring
+    double gap, slip, stretch;  ///< gap from where the normal spring rests, slip since the load, stretch of the shear spring
     double normal, shear, elastic_normal, viscous_shear;
     int vertex_slot, edge_slot;
+    float rest_gap;  ///< [m] for the depth alone, of which seven digits are enough
     ContactStatus status;
     bool bonded, breakable;
 
     void exchange(Archive& archive) {
-      auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, w, x, y] = *this;
-      archive(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, w, x, y);
+      auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, w, x, y, z] = *this;
+      archive(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, w, x, y, z);
     }
   };
   /// What a step does not need of a contact.
@@ -154,10 +155,11 @@ class CentralDifference {
     double normal_x, normal_y;        ///< in the frame of the corner's block
     double edge_arm_x, edge_arm_y;    ///< [m] from the edge's centroid to the corner, in the frame of the edge's block
     double vertex_share, edge_share;  ///< see critical_step.h
+    double rest_gap;                  ///< [m]
 
     void exchange(Archive& archive) {
-      auto& [a, b, c, d, e, f, g, h] = *this;
-      archive(a, b, c, d, e, f, g, h);
+      auto& [a, b, c, d, e, f, g, h, i] = *this;
+      archive(a, b, c, d, e, f, g, h, i);
     }
   };
   struct PointForce {

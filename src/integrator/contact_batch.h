@@ -61,7 +61,7 @@ struct ContactBatch {
   void set_springs(int lane, const ContactSprings& springs);
   /// The part of set_springs() that follows from where the springs start: their gap, its target, and what they carry there.
   void set_start(int lane, const ContactSprings& springs);
-  /// The same for springs of the joint, which rest at gap zero.
+  /// The same for springs of the joint.
   void set_start(int lane, const Contact& contact);
   /// All but the places.
   void copy(int lane, const ContactBatch& other, int from);
@@ -118,7 +118,7 @@ inline void ContactBatch::set_start(int lane, const ContactSprings& springs) {
 }
 
 inline void ContactBatch::set_start(int lane, const Contact& contact) {
-  gap_off_target[lane] = contact.gap;
+  gap_off_target[lane] = contact.stretch();
   shift[lane] = 0.0;
   initial_shear[lane] = -shear[lane] * contact.elastic_slip;
 }

@@ -37,7 +37,7 @@ class ContactOrder {
  private:
   /// With one batch of both kinds in most groups a sixteenth of the batches is mixed.
   static constexpr std::size_t group_size = 64;
-  static bool is_closed(const Contact& contact) { return contact.status != ContactStatus::open || contact.gap <= 0.0; }
+  static bool is_closed(const Contact& contact) { return contact.status != ContactStatus::open || contact.stretch() <= 0.0; }
 
   std::vector<unsigned char> within_;  ///< place in its group
 };

@@ -67,7 +67,7 @@ class Dem : public Enforcement<N> {
     const ContactSprings s = springs(problem, contact);
     const ContactKinematics<N> k(problem.system, contact, d(a), d(b));
     ForceTrials trial;
-    trial.elastic_normal = -s.normal * (s.gap + k.gap_change);
+    trial.elastic_normal = -s.normal * ((s.gap - s.target) + k.gap_change);
     trial.viscous_normal = -dashpots.normal * (k.normal_vertex.dot(v(a)) + k.normal_edge.dot(v(b)));
     trial.elastic_shear = s.initial_shear - s.shear * k.slip_change;
     trial.viscous_shear = -dashpots.shear * (k.shear_vertex.dot(v(a)) + k.shear_edge.dot(v(b)));

@@ -166,6 +166,7 @@ ContactSprings joint_springs(const StepProblem<N>& problem, const Contact& conta
   s.normal = joint.normal_stiffness * contact.length;
   s.shear = joint.shear_stiffness * contact.length;
   s.gap = contact.gap;
+  s.target = contact.rest_gap;
   s.initial_shear = -s.shear * contact.elastic_slip;
   return s;
 }

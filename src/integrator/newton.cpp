@@ -504,7 +504,8 @@ void Newton<N>::take_last_states() {
   for (std::size_t c = 0; c < contact_count_; ++c) {
     const Contact& contact = problem_->contacts[c];
     const std::size_t at = order()[c];
-    const bool touching = contact.status == ContactStatus::open && contact.gap <= touching_gap && start(at).shift[lane(at)] >= 0.0;
+    const bool touching =
+        contact.status == ContactStatus::open && start(at).gap_off_target[lane(at)] <= touching_gap && start(at).shift[lane(at)] >= 0.0;
     take_state(at, touching ? ContactStatus::sticking : contact.status, contact.normal_force, contact.shear_force);
   }
 }

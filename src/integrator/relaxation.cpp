@@ -51,7 +51,8 @@ class Momentum {
 class CountedContacts {
  public:
   CountedContacts(const std::vector<Contact>& contacts, const std::vector<Branch>& branches) : changed_(contacts.size()), last_(branches) {
-    for (std::size_t c = 0; c < contacts.size(); ++c) counted_.push_back(contacts[c].gap <= near_gap || status(branches[c]) != ContactStatus::open);
+    for (std::size_t c = 0; c < contacts.size(); ++c)
+      counted_.push_back(contacts[c].stretch() <= near_gap || status(branches[c]) != ContactStatus::open);
   }
   /// After a step. True if one has closed that was not counted.
   bool follow(const std::vector<Branch>& branches) {

@@ -28,6 +28,7 @@ class Shi : public Enforcement<N> {
     s.normal = problem.method.penalty.value_or(default_penalty_over_joint * joint) * contact.length;
     s.shear = problem.method.penalty_shear_ratio * s.normal;
     s.gap = contact.gap;
+    s.target = contact.rest_gap;
     s.initial_shear = -s.shear * contact.elastic_slip;
     add_dashpots(problem, contact, s);
     return s;
@@ -78,7 +79,7 @@ class Shi : public Enforcement<N> {
     for (const Contact& c : problem.contacts) {
       strength_.emplace_back(problem.joints.joint(c.joint), c);
       LinearContact o{springs(problem, c), {}, ContactKinematics<N>(problem.system, c, still, still)};
-      o.forces.status = c.status == ContactStatus::open && c.gap < -problem.method.closing_tolerance ? ContactStatus::sticking : c.status;
+      o.forces.status = c.status == ContactStatus::open && c.stretch() < -problem.method.closing_tolerance ? ContactStatus::sticking : c.status;
       o.forces.normal = c.normal_force;
       o.forces.shear = std::copysign(strength_.back().shear_bound(c.normal_force).value, c.shear_force);
       outcome_.push_back(o);
@@ -123,7 +124,7 @@ class Shi : public Enforcement<N> {
     if (o.forces.status == ContactStatus::open) return;
     const bool locked = o.forces.status == ContactStatus::sticking;
     const double kn = o.springs.normal + o.springs.normal_damping, ks = locked ? o.springs.shear + o.springs.shear_damping : 0.0;
-    const double normal = -o.springs.normal * o.springs.gap + viscous_normal(o.springs, strength_[c], 0.0);
+    const double normal = -o.springs.normal * (o.springs.gap - o.springs.target) + viscous_normal(o.springs, strength_[c], 0.0);
     const double shear = locked ? o.springs.initial_shear : o.forces.shear;
     applied_shear_[c] = shear;
     const ContactKinematics<N>& k = o.kinematics;
@@ -167,13 +168,13 @@ class Shi : public Enforcement<N> {
   }
 
   static CarriedForces next_forces(const StepProblem<N>& problem, const LinearContact& o, const ContactStrength& strength) {
-    const double gap = o.springs.gap + o.kinematics.gap_change;
-    const double elastic = -o.springs.normal * gap, normal = elastic + viscous_normal(o.springs, strength, o.kinematics.gap_change);
+    const double stretch = (o.springs.gap - o.springs.target) + o.kinematics.gap_change;
+    const double elastic = -o.springs.normal * stretch, normal = elastic + viscous_normal(o.springs, strength, o.kinematics.gap_change);
     const double elastic_trial = o.springs.initial_shear - o.springs.shear * o.kinematics.slip_change;
     const double trial = elastic_trial - o.springs.shear_damping * o.kinematics.slip_change;
     const bool opens = normal < -strength.tension || (strength.tension == 0.0 && normal <= 0.0);
     CarriedForces f;
-    if (opens || (o.forces.status == ContactStatus::open && gap >= -problem.method.closing_tolerance)) return f;
+    if (opens || (o.forces.status == ContactStatus::open && stretch >= -problem.method.closing_tolerance)) return f;
     f.normal = normal;
     f.elastic_normal = elastic;
     if (o.forces.status == ContactStatus::open) {

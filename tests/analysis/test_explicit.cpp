@@ -212,7 +212,10 @@ TEST_CASE("exchanging only the contacts that were found anew changes nothing", "
     REQUIRE(twin.step(scene.step.dt, false).accepted);
     of_ledger.add_step(twin, loop, reloaded, scene.step.dt);
   }
-  const double rounding = 100.0 * rounding_of(scene, c.steps) + (std::string(c.name) == "tumbling" ? 1e-9 : 1e-11);
+  // Where the bound of friction falls while the dashpot pushes against the spring, the spring's memory alone does not tell what a contact that was
+  // not found anew has carried: one step of the first order in the dashpot, which happens where blocks tumble.
+  const double by_dashpots = scene.joints[0].damping_ratio > 0.0 ? 1e-3 : 1e-9;
+  const double rounding = 100.0 * rounding_of(scene, c.steps) + (std::string(c.name) == "tumbling" ? by_dashpots : 1e-11);
   const double allowed = of_ledger.largest() / reloaded.ledger().turnover, is = difference(loop.ledger(), reloaded.ledger());
   INFO("rounding " << rounding << ", motion " << difference(loop, std::as_const(reloaded)) << ", ledgers " << is << " of " << allowed);
   CHECK(difference(loop, std::as_const(reloaded)) < rounding);
@@ -229,7 +232,8 @@ TEST_CASE("the ledger closes where a contact is closed when it is found", "[anal
   for (int i = 0; i < 5000; ++i) REQUIRE(simulation.advance(scene.step.dt));
   const EnergyLedger& l = simulation.ledger();
   CHECK(std::abs(l.imbalance()) < 1e-10 * l.turnover);
-  // What the scene is for: contacts with the right floor come with a closure, which is energy that was not there before.
+  CHECK(l.redefinition >= 0.0);
+  // What the scene is for: contacts with the right floor come with a closure, which would be energy that was not there before.
   Simulation<3> watched = plain(scene);
   int found_closed = 0;
   std::set<std::pair<int, int>> known;
@@ -238,7 +242,11 @@ TEST_CASE("the ledger closes where a contact is closed when it is found", "[anal
     std::set<std::pair<int, int>> now;
     for (const Contact& c : watched.contacts()) {
       now.emplace(c.vertex, c.edge);
-      if (c.status == ContactStatus::open && c.stored_energy > 1e-8 * l.turnover && !known.contains({c.vertex, c.edge})) ++found_closed;
+      const double stiffness = scene.joints[0].normal_stiffness * c.length;
+      const bool closed = c.gap < 0.0 && 0.5 * stiffness * c.gap * c.gap > 1e-8 * l.turnover;
+      if (c.status != ContactStatus::open || !closed || known.contains({c.vertex, c.edge})) continue;
+      ++found_closed;
+      CHECK(c.stored_energy == 0.0);
     }
     known.swap(now);
   }

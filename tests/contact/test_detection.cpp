@@ -378,6 +378,23 @@ TEST_CASE("a corner that leans on one block is opposite to another one's edge up
   CHECK(meets == (beyond < 2.0 * closure));
 }
 
+TEST_CASE("a corner deep in the floor of a wide box does not touch the back of its walls", "[contact][detection]") {
+  // A wedge has gone into the floor with its lower side ahead, so that its tip (8) faces neither floor nor underside but, 90 m away, a wall's back.
+  const double tilt = GENERATE(-1.0, 1.0);  // the tip to the right or, seen in a mirror, to the left
+  std::vector<Vec2> wedge{{40.0, -0.3}, {30.2, 1.4}, {30.6, -3.7}};
+  if (tilt < 0.0) wedge = {{-40.0, -0.3}, {-30.6, -3.7}, {-30.2, 1.4}};
+  Detection d(scene_with(
+      {fixed_block("box", {{-54, -8}, {54, -8}, {54, 30}, {50, 30}, {50, 0}, {-50, 0}, {-50, 30}, {-54, 30}}), free_block("wedge", wedge)}));
+  REQUIRE(d.find(tilt > 0.0 ? 10 : 9, 4) != nullptr);  // its other lower corner has come in through the floor
+  for (const Contact& c : d.contacts) CHECK(c.edge == 4);
+}
+
+TEST_CASE("a block wholly inside another one is pushed to the nearest face only", "[contact][detection]") {
+  Detection d(scene_with({fixed_block("base", rectangle(-50.0, -20.0, 100.0, 20.0)), free_block("block", rectangle(0.0, -1.5, 1.0, 1.0))}));
+  REQUIRE_FALSE(d.contacts.empty());
+  for (const Contact& c : d.contacts) CHECK(c.edge == 2);
+}
+
 TEST_CASE("joints are those of the two materials", "[contact][detection]") {
   Scene scene = scene_with({fixed_block("base", rectangle(-5.0, -1.0, 10.0, 1.0)), free_block("block", rectangle(0.0, 0.0, 2.0, 1.0)),
                             free_block("top", rectangle(0.0, 1.0, 2.0, 1.0))});

@@ -1,7 +1,10 @@
 // What a contact remembers, and how it is passed on.
 #include <cmath>
+#include <limits>
 
 #include "contacts.h"
+#include "openclose/contact/history.h"
+#include "openclose/contact/kinematics.h"
 #include "openclose/core/tolerance.h"
 #include "support/catch.h"
 
@@ -24,11 +27,12 @@ void load(Contact& contact) {
   contact.stored_energy = 7.0;
 }
 
-void check_loaded(const Contact* contact) {
+/// \param shorter  [-] by which its tributary length has become so
+void check_loaded(const Contact* contact, double shorter = 1.0) {
   REQUIRE(contact != nullptr);
   CHECK(contact->status == ContactStatus::sliding);
   CHECK(contact->bonded);
-  CHECK(contact->elastic_slip == 0.25);
+  CHECK(contact->elastic_slip == Approx(0.25 * std::sqrt(shorter)).epsilon(1e-12));
   CHECK(contact->normal_force == 3.0);
   CHECK(contact->shear_force == -2.0);
   CHECK(contact->stored_energy == 7.0);
@@ -113,11 +117,12 @@ TEST_CASE("a corner does not take its history to an edge of another direction", 
                           free_block("block", placed(rectangle(0.0, 0.0, 1.0, 1.0), 45.0 * degree))}));
   REQUIRE(d.contacts.size() == 1);
   load(*d.find(8, 2));
+  const double length = d.length(8, 2);
   d.move(2, 4.0, 2.0 * std::tan(slope));
   d.update();
   REQUIRE(d.contacts.size() == 1);
   if (slope < 15.0 * degree) {
-    check_loaded(d.find(8, 4 + 2));
+    check_loaded(d.find(8, 4 + 2), length / d.length(8, 4 + 2));
   } else {
     check_new(d.find(8, 4 + 2));
   }
@@ -128,10 +133,11 @@ TEST_CASE("history follows when the end of an overlap changes hands", "[contact]
   Detection d(scene_with({fixed_block("base", rectangle(-5.0, -1.0, 6.0, 1.0)), free_block("block", rectangle(-0.01, 0.0, 1.0, 1.0))}));
   REQUIRE(d.contacts.size() == 2);
   load(*d.find(5, 2));
+  const double length = d.length(5, 2);
   d.move(1, 0.02, 0.0);
   d.update();
   REQUIRE(d.contacts.size() == 2);
-  check_loaded(d.find(2, 4));
+  check_loaded(d.find(2, 4), length / d.length(2, 4));
   CHECK(d.find(4, 2)->elastic_slip == 0.0);
   CHECK(d.detector.counters().transfers == 1);
   d.move(1, -0.02, 0.0);
@@ -201,4 +207,127 @@ TEST_CASE("pairs that are redone at different times still pass history on", "[co
   }
   CHECK(d.find(8, 2) == nullptr);
   check_loaded(d.find(8, 4 + 2));
+}
+
+namespace {
+
+/// [J] over a stiffness of 1 Pa/m.
+double normal_energy(const Contact& c, double stretch) {
+  return 0.5 * c.length * stretch * stretch;
+}
+double shear_energy(const Contact& c) {
+  return 0.5 * c.length * c.elastic_slip * c.elastic_slip;
+}
+
+}  // namespace
+
+TEST_CASE("a spring that changes its length keeps its energy, or loses some, and never closes more than there is", "[contact][history]") {
+  const double length_before = GENERATE(1e-9, 0.3, 1.0, 4.0), length = GENERATE(1e-9, 0.3, 1.0, 4.0);
+  const double stretch = GENERATE(-2.0, -1e-3, -1e-9), gap = GENERATE(-3.0, -1e-3, 0.0, 0.2);
+  Contact before, now;
+  load(before);
+  before.length = length_before;
+  now.length = length;
+  now.gap = gap;
+  inherit(before, stretch, now);
+  CHECK(now.rest_gap <= std::max(0.0, gap));
+  // The stretch is the difference of two gaps.
+  const double rounding = 4.0 * std::numeric_limits<double>::epsilon() * std::abs(gap), of_same_energy = stretch * std::sqrt(length_before / length);
+  CHECK(now.stretch() == Approx(std::max(of_same_energy, std::min(0.0, gap))).epsilon(1e-12).margin(rounding));
+  CHECK(normal_energy(before, stretch) == Approx(normal_energy(now, of_same_energy)).epsilon(1e-12));
+  CHECK(shear_energy(now) == Approx(shear_energy(before)).epsilon(1e-12));
+}
+
+TEST_CASE("lengths that change to and fro leave a spring as it was", "[contact][history]") {
+  Contact c;
+  load(c);
+  c.length = 1.0;
+  c.gap = -1.0;
+  for (const double length : {0.5, 3.0, 1e-3, 1.0}) {
+    Contact next;
+    next.length = length;
+    next.gap = -100.0;  // deep enough for all of them
+    inherit(c, c.stretch(), next);
+    c = next;
+  }
+  CHECK(c.stretch() == Approx(-1.0).epsilon(1e-12));
+  CHECK(c.elastic_slip == Approx(0.25).epsilon(1e-12));
+}
+
+TEST_CASE("a spring that pulls never gains energy by its length", "[contact][history]") {
+  const double length = GENERATE(0.1, 1.0, 7.0), gap = GENERATE(1e-4, 2e-4);
+  Contact before, now;
+  load(before);
+  before.length = 1.0;
+  now.length = length;
+  now.gap = gap;
+  inherit(before, 2e-4, now);
+  CHECK(now.stretch() > 0.0);
+  CHECK(normal_energy(now, now.stretch()) <= normal_energy(before, 2e-4) * (1.0 + 1e-12));
+}
+
+TEST_CASE("an open contact begins to carry where it is, at most at gap zero", "[contact][history]") {
+  const double gap = GENERATE(-0.3, 0.0, 0.1);
+  Contact before, now;
+  before.length = now.length = 1.0;
+  now.gap = gap;
+  inherit(before, 1e-5, now);
+  CHECK(now.rest_gap == std::min(0.0, gap));
+}
+
+TEST_CASE("what is found deep in a block is born without force, in the drawing with it", "[contact][history]") {
+  Detection d(scene_with({fixed_block("base", rectangle(-5.0, -1.0, 10.0, 1.0)), free_block("block", rectangle(0.0, -5e-4, 2.0, 1.0))}));
+  REQUIRE(d.contacts.size() == 2);
+  for (const Contact& c : d.contacts) CHECK(c.stretch() == c.gap);
+  d.move(1, 0.0, 1.0);
+  CHECK(d.update().empty());
+  d.move(1, 0.0, -1.01);
+  d.update();
+  REQUIRE(d.contacts.size() == 2);
+  for (const Contact& c : d.contacts) {
+    CHECK(c.gap < -0.01);
+    CHECK(c.stretch() == 0.0);
+  }
+}
+
+TEST_CASE("springs follow the positions, but open ones only where somebody has moved the blocks", "[contact][history]") {
+  const bool loaded = GENERATE(false, true), others = GENERATE(false, true);
+  Detection d(scene_with({fixed_block("base", rectangle(-5.0, -1.0, 10.0, 1.0)), free_block("block", rectangle(0.0, 5e-4, 2.0, 1.0))}));
+  for (Contact& c : d.contacts) {
+    if (loaded) load(c);
+  }
+  d.move(1, 0.0, -6e-4);
+  if (others) d.detector.forget();
+  d.update();
+  REQUIRE(d.contacts.size() == 2);
+  for (const Contact& c : d.contacts) {
+    CHECK(c.gap == Approx(-1e-4));
+    CHECK(c.stretch() == Approx(loaded || others ? -1e-4 : 0.0));
+  }
+}
+
+TEST_CASE("however a block moves, finding its contacts anew adds no energy", "[contact][history]") {
+  Detection d(
+      scene_with({fixed_block("base", rectangle(-5.0, -1.0, 5.0, 1.0)), free_block("block", placed(rectangle(-1.5, -5e-4, 2.0, 1.0), 0.11))}));
+  for (Contact& c : d.contacts) load(c);
+  const auto energy = [&] {
+    double sum = 0.0;
+    for (const Contact& c : d.contacts) sum += normal_energy(c, std::min(0.0, c.stretch())) + shear_energy(c);
+    return sum;
+  };
+  double largest_loss = 0.0;
+  for (int step = 0; step < 100; ++step) {
+    const double turn = step % 2 == 0 ? 0.02 : -0.015;
+    d.move(1, 0.013, 0.0, turn);
+    for (Contact& c : d.contacts) {
+      const ContactStart<3> at(d.system, c);
+      c.gap = at.normal.dot(at.lever);
+    }
+    const double before = energy();
+    d.update();
+    const double now = energy();
+    CHECK(now <= before * (1.0 + 1e-12));
+    largest_loss = std::max(largest_loss, 1.0 - now / before);
+  }
+  CHECK(largest_loss > 1e-3);  // lengths did change
 }
