@@ -104,6 +104,8 @@ class Campaign:
         rows, found = self._factors_of(scene, file, blocks, methods)
         if SAME <= set(found):
             rows += self._same(scene, *(found[method] for method in sorted(SAME)))
+        for method in set(found) - SAME if "soft" in found else ():
+            rows += _comparison(scene, f"{method} = soft", verdicts.nearly_same(found["soft"], found[method]), found["soft"], found[method])
         if self.invariances and scene.part == slopes.PART:
             rows += self._invariances(scene, blocks, methods, found)
         return rows
@@ -121,7 +123,7 @@ class Campaign:
     @staticmethod
     def _same(scene: Scene, one: verdicts.Verdict, other: verdicts.Verdict) -> list[Row]:
         wide = next((f"a bracket of {v.stable:.6g} to {v.failed:.6g}" for v in (one, other) if verdicts.too_wide(v)), "")
-        return _comparison(scene, " = ".join(sorted(SAME)), one, other, wide)
+        return _comparison(scene, " = ".join(sorted(SAME)), verdicts.same_bracket(one, other) or wide, one, other)
 
     def _invariances(self, scene: Scene, blocks: Path, methods: list[str], found: dict[str, verdicts.Verdict]) -> list[Row]:
         """The brackets of the same slope drawn in another way."""
@@ -133,7 +135,8 @@ class Campaign:
             more, changed = self._factors_of(scene, file, file, methods, f", {name}")
             rows += more
             for method in methods:
-                rows += _comparison(scene, f"{method} = {method}, {name}", found[method], changed[method])
+                wrong = verdicts.same_bracket(found[method], changed[method])
+                rows += _comparison(scene, f"{method} = {method}, {name}", wrong, found[method], changed[method])
         return rows
 
     def draw_again(self, row: Row, file: Path) -> bool:
@@ -160,11 +163,10 @@ class Campaign:
             shutil.rmtree(folder, ignore_errors=True)
 
 
-def _comparison(scene: Scene, what: str, one: verdicts.Verdict, other: verdicts.Verdict, wrong: str = "") -> list[Row]:
+def _comparison(scene: Scene, what: str, wrong: str, one: verdicts.Verdict, other: verdicts.Verdict) -> list[Row]:
     """A row for two answers that have to be one; none where there are not two."""
     if one.stable is None or other.stable is None:
         return []
-    wrong = verdicts.same_bracket(one, other) or wrong
     return [Row(scene.part, scene.seed, scene.described(), what, 0, verdicts.FALSE if wrong else verdicts.RIGHT, wrong)]
 
 

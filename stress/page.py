@@ -6,12 +6,11 @@ from collections.abc import Callable
 from pathlib import Path
 
 from campaign import Row
-from verdicts import FALSE, REFUSED, RIGHT, SLOW
+from verdicts import AT_THE_LIMIT, FALSE, REFUSED, RIGHT, SLOW
 
 VERDICTS = RIGHT, REFUSED, FALSE, SLOW
 WORST = 10
 QUANTILES = (("median", 0.5), ("90 %", 0.9), ("99 %", 0.99), ("largest", 1.0))
-AT_THE_LIMIT = 0.995
 
 
 def write(rows: list[Row], pictures: list[tuple[Row, str]], command: str, file: Path) -> None:

@@ -119,9 +119,10 @@ class Comparisons(unittest.TestCase):
         def of(stable, failed):
             return SimpleNamespace(stable=stable, failed=failed)
 
-        self.assertEqual([r.verdict for r in campaign._comparison(scene, "a = b", of(1.0, 1.01), of(1.02, 1.03))], ["FALSE"])
-        self.assertEqual([r.verdict for r in campaign._comparison(scene, "a = b", of(1.0, 1.01), of(1.005, 1.03))], ["right"])
-        self.assertEqual(campaign._comparison(scene, "a = b", of(1.0, 1.01), of(None, None)), [])
+        self.assertEqual([r.verdict for r in campaign.Campaign._same(scene, of(1.0, 1.004), of(1.005, 1.006))], ["FALSE"])
+        self.assertEqual([r.verdict for r in campaign.Campaign._same(scene, of(1.0, 1.01), of(1.005, 1.006))], ["FALSE"])
+        self.assertEqual([r.verdict for r in campaign.Campaign._same(scene, of(1.0, 1.004), of(1.002, 1.006))], ["right"])
+        self.assertEqual(campaign.Campaign._same(scene, of(1.0, 1.004), of(None, None)), [])
 
 
 if __name__ == "__main__":

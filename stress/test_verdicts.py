@@ -196,6 +196,9 @@ class OfFactors(unittest.TestCase):
         self.false("out of balance", shear=-0.6)
         self.false("out of balance", points=((4.0, 3.0), (3.2, 2.4)))
 
+    def test_forces_that_are_missing(self):
+        self.false("no forces", points=())
+
     def test_forces_beyond_the_reduced_strength(self):
         self.false("beyond the strength", stable=1.334, limit=None)
 
@@ -227,6 +230,10 @@ class OfFactors(unittest.TestCase):
         self.assertEqual(verdicts.same_bracket(of(1.0, 1.004), of(1.003, 1.006)), "")
         self.assertIn("no factor in common", verdicts.same_bracket(of(1.0, 1.004), of(1.005, 1.006)))
         self.assertIn("no factor in common", verdicts.same_bracket(of(1.005, None), of(1.0, 1.004)))
+        at_the_limit = verdicts.Verdict(verdicts.RIGHT, stable=1.0, limit=1.002)
+        self.assertIn("instead of", verdicts.nearly_same(at_the_limit, of(0.98, 0.985)))
+        self.assertEqual(verdicts.nearly_same(at_the_limit, of(0.992, 0.995)), "")
+        self.assertEqual(verdicts.nearly_same(verdicts.Verdict(verdicts.RIGHT, stable=1.0, limit=1.1), of(0.98, 0.985)), "")
         self.assertTrue(verdicts.too_wide(of(1.0, 1.006)))
         self.assertFalse(verdicts.too_wide(of(1.0, 1.0049)))
 

@@ -30,6 +30,8 @@ ON_AN_EDGE = 1e-6
 LOADED = 1e-9
 # [-] Of the factor: soft and hard, which are one solver in statics, give one bracket no wider than this.
 WIDEST_BRACKET = 0.005
+# [-] Of limit analysis: from here on all methods give one factor, to within
+AT_THE_LIMIT, METHODS_DIFFER = 0.995, 0.01
 
 
 @dataclass(frozen=True)
@@ -217,7 +219,7 @@ def of_factor(outcome: Outcome, assembly: "Assembly", limit: dict[str, float] | 
     factor = outcome.summary.get("factor_of_safety")
     forces = assembly.forces(outcome)
     corners = assembly.lone_corners(forces)
-    wrong = next((reason for reason in (_unproved(bracket), _unordered(bracket, factor), assembly.unbalanced(forces, bracket.stable), _above(bracket, limit, corners),
+    wrong = next((reason for reason in (_unproved(bracket), _unordered(bracket, factor), assembly.unbalanced(forces, bracket.stable) if bracket.complete else "", _above(bracket, limit, corners),
                                         _unproved_by_limit_analysis(bracket, limit)) if reason), "")
     note = f"{corners} lone corners carry load, not compared with limit analysis" if corners else ""
     return Verdict(FALSE if wrong else RIGHT, wrong or note, factor, bracket.stable, bracket.failed, limit and limit["factor"])
@@ -295,9 +297,11 @@ class Assembly:
                 for row in outcome.table("contacts.csv") if row["state"] == "stable"]
 
     def unbalanced(self, forces: list[Force], factor: float | None) -> str:
-        """Forces that do not balance, or exceed the strength over the factor."""
-        if not forces or factor is None:
+        """Forces that are missing, do not balance, or exceed the strength over the factor."""
+        if factor is None:
             return ""
+        if not forces:
+            return "contacts.csv has no forces of the stable state"
         return self._out_of_balance(forces) or self._too_strong(forces, factor)
 
     def _out_of_balance(self, forces: list[Force]) -> str:
@@ -366,6 +370,13 @@ def same_bracket(one: Verdict, other: Verdict) -> str:
     if one.failed is not None and one.failed < other.stable or other.failed is not None and other.failed < one.stable:
         return f"brackets {_written(one)} and {_written(other)} have no factor in common"
     return ""
+
+
+def nearly_same(one: Verdict, other: Verdict) -> str:
+    """Where the factor is that of limit analysis, neither the way to equilibrium nor ks/kn matters: methods agree."""
+    if one.stable is None or other.stable is None or one.limit is None or one.stable < AT_THE_LIMIT * one.limit or abs(other.stable / one.stable - 1) <= METHODS_DIFFER:
+        return ""
+    return f"stable at {other.stable:.6g} instead of {one.stable:.6g}, limit analysis {one.limit:.6g}"
 
 
 def too_wide(verdict: Verdict) -> bool:
