@@ -143,13 +143,14 @@ class Campaign:
         """A picture of what a row is about, from a run of its own; false if it left no blocks."""
         import pictures
 
-        scene, path = self.scene(row.part, row.seed)
+        folder = file.with_suffix("")
+        scene, path = replace(self, folder=folder).scene(row.part, row.seed)
         scene.write(path)
-        outcome = self.programs.analyse(scene.command, path, METHODS[row.method], file.with_suffix(""))
+        outcome = self.programs.analyse(scene.command, path, METHODS[row.method], path.parent / row.method)
         states = outlines_of(outcome)
         blocks = path.parent / "blocks.toml"
         document = read(blocks) if blocks.exists() else scene.document
-        shutil.rmtree(outcome.folder, ignore_errors=True)
+        shutil.rmtree(folder, ignore_errors=True)
         if not states:
             return False
         title = f"{row.part} {row.seed}, {row.method}: {row.verdict}"
