@@ -85,6 +85,15 @@ class Motion:
         """In springs, since time 0, as the program says."""
         return sum(float(self._energy_rows[k][column]) for column in STORED)
 
+    def kinetic_in_ledger(self, k: int) -> float:
+        """As the program says: velocities in history.csv may be those of half a step before, when what a contact now stores was still kinetic."""
+        return self.kinetic(0) + float(self._energy_rows[k]["kinetic_j"])
+
+    def energy(self, k: int) -> float:
+        """Kinetic and potential from places and velocities, with what the springs hold where that is not counted twice."""
+        kinetic = self.kinetic(k)
+        return self.potential(k) + max(kinetic, min(kinetic, self.kinetic_in_ledger(k)) + self.stored(k))
+
     def work_done(self, k: int) -> float:
         """By loads and the base, since time 0."""
         return -sum(float(self._energy_rows[k][column]) for column in DONE_BY_OTHERS)

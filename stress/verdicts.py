@@ -79,7 +79,7 @@ class Energy:
         steps = range(len(motion.times))
         self.times = motion.times
         work = [motion.work_done(k) for k in steps]
-        without_work = [motion.kinetic(k) + motion.potential(k) + motion.stored(k) - work[k] for k in steps]
+        without_work = [motion.energy(k) - work[k] for k in steps]
         self.start = without_work[0]
         self.scale = max(self.start, *(abs(w) for w in work), math.ulp(0.0))
         self.worst = max(steps, key=lambda k: without_work[k])
