@@ -167,6 +167,11 @@ def incline(corner: bool = False) -> verdicts.Assembly:
     return verdicts.Assembly({"gravity_m_per_s2": [0.0, -GRAVITY], "material": [{"name": "rock", "density_kg_per_m3": DENSITY}], "joint": [joint], "block": blocks})
 
 
+def _lifted(points: list, by: float) -> list:
+    """The block of the last stable state has moved, by far too much for a joint: forces balance where it was drawn."""
+    return [(x + by, y + by) for x, y in points]
+
+
 class OfFactors(unittest.TestCase):
     """The forces: N = 0.8 W, T = 0.6 W at the two lower corners; their moments balance with 0.5 (N -+ T) at each."""
 
@@ -180,12 +185,17 @@ class OfFactors(unittest.TestCase):
         folder = Path(self.folder.name)
         (folder / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
         normal = [0.5 * (0.8 + 0.6) * WEIGHT * scale, 0.5 * (0.8 - 0.6) * WEIGHT * scale]
-        rows = [["stable", "b", "base", *p, -0.6, 0.8, 0.5, n, -shear * WEIGHT * n / sum(normal), "sticking"] for p, n in zip(points, normal)]
+        assembly_of = assembly or incline()
+        rows = [["stable", "b", "base", *_lifted([p], 0.125)[0], -0.6, 0.8, 0.5, n, -shear * WEIGHT * n / sum(normal), "sticking"] for p, n in zip(points, normal)]
         with open(folder / "contacts.csv", "w", newline="", encoding="utf-8") as stream:
             header = "state,block_a,block_b,x_m,y_m,normal_x,normal_y,length_m,normal_force_n,shear_force_n,status"
             csv.writer(stream).writerows([header.split(","), *rows])
+        outlines = [[state, name, k, *p] for state, lift in (("initial", 0.0), ("stable", 0.125)) for name, polygon in assembly_of.vertices.items()
+                    for k, p in enumerate(_lifted(polygon, lift if name == "b" else 0.0))]
+        with open(folder / "blocks.csv", "w", newline="", encoding="utf-8") as stream:
+            csv.writer(stream).writerows(["state,block,vertex,x_m,y_m".split(","), *outlines])
         known = None if limit is None else {"factor": limit, "failed": limit * (1 + 1e-5)}
-        return verdicts.of_factor(Outcome(folder, exit_status, "", 0.1), assembly or incline(), known)
+        return verdicts.of_factor(Outcome(folder, exit_status, "", 0.1), assembly_of, known)
 
     def false(self, reason: str, **planted) -> None:
         verdict = self.verdict(**planted)

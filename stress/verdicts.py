@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import geometry
-from motion import Block, Motion
+from motion import Block, Motion, outlines_of
 from outcome import BAD_INPUT, DONE, NOT_CONVERGED, Outcome
 from scene import Scene, densities
 
@@ -196,6 +196,7 @@ class Bracket:
 
 
 PROVED_BY = "mechanism", "limit_analysis", "limit analysis"
+STABLE = "stable"  # of the states in contacts.csv and blocks.csv: the last one that was certified
 PROVED_BEFORE = "displacement"
 NO_FAILURE, NO_EQUILIBRIUM = "no_failure", "no_equilibrium"
 
@@ -266,6 +267,33 @@ class Force:
     shear_force: float
 
 
+def _on_drawn(rows: list[dict[str, str]], states: dict[str, dict[str, list[geometry.Point]]]) -> list[Force]:
+    """Corners and edges of contacts.csv are those of the blocks where they have moved to; their numbers tell which they are in the drawing."""
+    moved, drawn = states.get(STABLE, states["initial"]), states["initial"]
+    forces = []
+    for row in rows:
+        a, b = row["block_a"], row["block_b"]
+        point, normal = (float(row["x_m"]), float(row["y_m"])), (float(row["normal_x"]), float(row["normal_y"]))
+        corner = min(range(len(moved[a])), key=lambda i: math.dist(moved[a][i], point))
+        edge = _edge_of(moved[b], point, normal)
+        forces.append(Force(a, b, drawn[a][corner], _outward(*geometry.edges(drawn[b])[edge]), float(row["length_m"]), float(row["normal_force_n"]),
+                            float(row["shear_force_n"])))
+    return forces
+
+
+def _edge_of(polygon: geometry.Polygon, point: geometry.Point, normal: geometry.Point) -> int:
+    """Number of the edge with this normal; of several the nearest."""
+    edges = geometry.edges(polygon)
+    off = [math.dist(_outward(*e), normal) for e in edges]
+    parallel = [i for i, o in enumerate(off) if o <= min(off) + SAME_PLACE]
+    return min(parallel, key=lambda i: abs(geometry.cross(*edges[i], point)) / math.dist(*edges[i]))
+
+
+def _outward(p: geometry.Point, q: geometry.Point) -> geometry.Point:
+    length = math.dist(p, q)
+    return (q[1] - p[1]) / length, (p[0] - q[0]) / length
+
+
 class Assembly:
     """Blocks of a file that `openclose cut` wrote, with gravity, loads and joints: equilibrium and strength are computed from these alone."""
 
@@ -291,10 +319,9 @@ class Assembly:
         return max(self.mass[name] for name in self.free) * math.hypot(*self.gravity)
 
     def forces(self, outcome: Outcome) -> list[Force]:
-        """Of the last stable state; none where they are not written."""
-        return [Force(row["block_a"], row["block_b"], (float(row["x_m"]), float(row["y_m"])), (float(row["normal_x"]), float(row["normal_y"])),
-                      float(row["length_m"]), float(row["normal_force_n"]), float(row["shear_force_n"]))
-                for row in outcome.table("contacts.csv") if row["state"] == "stable"]
+        """Of the last stable state, on the drawn corners and edges, where they balance at small displacements; none where they are not written."""
+        rows = [row for row in outcome.table("contacts.csv") if row["state"] == STABLE]
+        return _on_drawn(rows, outlines_of(outcome)) if rows else []
 
     def unbalanced(self, forces: list[Force], factor: float | None) -> str:
         """Forces that are missing, do not balance, or exceed the strength over the factor."""
