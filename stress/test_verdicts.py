@@ -5,6 +5,7 @@ import json
 import math
 import tempfile
 import unittest
+from dataclasses import replace
 from pathlib import Path
 
 import verdicts
@@ -147,6 +148,8 @@ class OfMotion(unittest.TestCase):
     def test_refused_needs_a_reason(self):
         flight = self.flight()
         self.assertEqual(flight.verdict(exit_status=1, message="openclose: steps too long").kind, verdicts.REFUSED)
+        flight.scene = replace(flight.scene, too_soft=True)
+        self.assertEqual(flight.verdict(exit_status=1, message="openclose: steps too long").kind, verdicts.RIGHT)
         self.assertEqual(flight.verdict(exit_status=1, message="openclose: warning: something").kind, verdicts.FALSE)
         self.assertEqual(flight.verdict(exit_status=3, message="openclose: disk full").kind, verdicts.FALSE)
         self.assertEqual(flight.verdict(exit_status=-11).kind, verdicts.FALSE)

@@ -12,17 +12,20 @@ DENSITY = 2600.0
 SPACING = 1.25          # of places over the largest block: no two blocks overlap at the start, however they are turned
 OUTPUTS = 60
 MOST_STEPS = 4000
-# A spring that stops a block of size D at speed v gives way by v sqrt(density D/kn): so much of D.
-CLOSURE_OF_SIZE = 3e-4, 0.1
+# What a sharp corner gives way by that stops the heaviest block at the fastest speed, over the narrowest width of a block or plate. Beyond a quarter springs
+# are too soft for these blocks, and to refuse is right: one scene in five or so.
+CLOSURE_OF_WIDTH = 0.06, 0.4
+TOO_SOFT = 0.25
 WAY_OF_SIZE_IN_A_STEP = 2e-3, 0.1
 CONCAVE_SHARE = 0.3
+LEAST_AREA = 0.03  # [-] of the square of a block's size
 
 
 def draw(seed: int, attempt: int = 0) -> Scene:
     r = random.Random(f"{PART} {seed} {attempt}")
     count = round(log_uniform(r, 1, 100))
     size = log_uniform(r, 0.05, 10)
-    spread = 1.0 if r.random() < 0.5 else log_uniform(r, 1, 8)
+    spread = 1.0 if r.random() < 0.5 else log_uniform(r, 1, 5)
     sizes = [size / log_uniform(r, 1, spread) for _ in range(count)]
     speed = log_uniform(r, 0.1, 50)
     columns = max(1, min(count, round(math.sqrt(count * log_uniform(r, 0.3, 3)))))
@@ -36,8 +39,8 @@ def draw(seed: int, attempt: int = 0) -> Scene:
     for k, place in enumerate(places):
         blocks.append(_thrown(r, f"b{k}", place, sizes[k], speed))
     impact = math.hypot(speed, math.sqrt(2 * GRAVITY * height))
-    closure = log_uniform(r, *CLOSURE_OF_SIZE)
-    kn = rounded(DENSITY * impact**2 / (closure**2 * size), 4)
+    closure = log_uniform(r, *CLOSURE_OF_WIDTH)
+    kn = rounded(_stiffness(blocks, impact, closure), 4)
     ratio, friction = rounded(log_uniform(r, 0.1, 1), 3), rounded(r.uniform(0, 45), 4)
     damping = 0.0 if r.random() < 0.7 else rounded(r.uniform(0.02, 0.5), 3)
     duration = min(2.5 * max(height, 2 * half_width) / impact + math.sqrt(2 * height / GRAVITY), 20.0)
@@ -55,13 +58,21 @@ def draw(seed: int, attempt: int = 0) -> Scene:
         "output": {"every_s": rounded(duration / OUTPUTS, 4)},
     }
     drawn = {"thrown": len(places), "size_m": size, "spread": spread, "speed": speed, "kn": kn, "ks_over_kn": ratio, "friction_deg": friction, "damping": damping,
-             "dt_s": dt, "closure_over_size": closure}
-    return Scene(PART, seed, "run", document, drawn, (-half_width, 0.0, half_width, height), 0.0)
+             "dt_s": dt, "closure_over_width": closure}
+    return Scene(PART, seed, "run", document, drawn, (-half_width, 0.0, half_width, height), 0.0, too_soft=closure > TOO_SOFT)
+
+
+def _stiffness(blocks: list[dict], speed: float, closure: float) -> float:
+    """A right angle that is d deep has a chord of 2 d: it stops m at the speed v where m v^2 = kn 2 d^3. The width of a block is 2 area/perimeter."""
+    parts = [(integrals(b["vertices_m"]).area, sum(math.dist(p, q) for p, q in edges(b["vertices_m"])), b.get("fixed", False)) for b in blocks]
+    narrowest = min(2 * area / perimeter for area, perimeter, _ in parts)
+    mass = DENSITY * max(area for area, _, fixed in parts if not fixed)
+    return mass * speed**2 / (2 * (closure * narrowest) ** 3)
 
 
 def _walls(r: random.Random, size: float, half_width: float, height: float) -> list[dict]:
-    """A closed box, of four plates or of a deep cup with a lid. Plates are as thin as a hundredth of a block."""
-    t = size * log_uniform(r, 0.01, 1)
+    """A closed box, of four plates or of a deep cup with a lid. Plates are as thin as a thirtieth of a block."""
+    t = size * log_uniform(r, 0.03, 1)
     w, h = half_width, height
     lid = [[-w - t, h], [w + t, h], [w + t, h + t], [-w - t, h + t]]
     if r.random() < 0.5:
@@ -116,7 +127,7 @@ def _star(r: random.Random) -> list[tuple[float, float]]:
 
 def _sound(points: Polygon, size: float) -> bool:
     """A simple polygon that is no needle: area, edges and width are those of a block."""
-    if integrals(points).area < 0.01 * size**2 or min(math.dist(a, b) for a, b in edges(points)) < 0.01 * size:
+    if integrals(points).area < LEAST_AREA * size**2 or min(math.dist(a, b) for a, b in edges(points)) < 0.01 * size:
         return False
     try:
         convex_parts(points)

@@ -62,7 +62,7 @@ def of_exit(outcome: Outcome) -> Verdict | None:
 def of_motion(scene: Scene, method: str, outcome: Outcome) -> Verdict:
     known = of_exit(outcome)
     if known:
-        return known
+        return replace(known, kind=RIGHT) if known.kind == REFUSED and scene.too_soft else known
     motion = Motion(scene, outcome)
     energy = Energy(motion)
     overlaps = list(_overlaps(motion))
