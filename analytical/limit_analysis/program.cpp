@@ -1,0 +1,328 @@
+#include "openclose/limit_analysis/program.h"
+
+#include <ClpSolve.hpp>
+#include <CoinError.hpp>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace openclose::limit_analysis {
+namespace {
+
+constexpr double program_tolerance = 1e-9;  // [-] of constraints and reduced costs, in loads of blocks
+
+/// [-] A barrier that ends with larger errors than this has not got to the end; the crossover does better.
+constexpr double clean_barrier = 1e-9;
+
+/// [-] So near to a program whose basis is known the simplex method takes less time than the barrier; the second program so near to another pays for
+/// the crossover that gives a basis.
+constexpr double nearby = 0.05;
+
+Trial undecided(double factor, const char* reason) {
+  Trial trial;
+  trial.factor = factor;
+  trial.reason = reason;
+  return trial;
+}
+
+/// The cone of a contact at a factor: n >= -tension, |t| <= friction (n + tension) + half_width.
+struct Cone {
+  double tension;     // [N]
+  double friction;    // [-]
+  double half_width;  // [N]
+
+  Cone(const Contact& c, double factor) : tension(c.tension / factor), friction(c.friction / factor) {
+    // The cone has its tip where cohesion and friction leave no shear.
+    if (c.friction > 0) tension = std::min(tension, c.cohesion / c.friction);
+    half_width = std::max(0.0, c.cohesion / factor - friction * tension);
+  }
+};
+
+}  // namespace
+
+LimitAnalysis::Program::Program(Problem problem) : problem_(std::move(problem)) {
+  check(problem_);
+  number_rows();
+  number_columns();
+  model_.setLogLevel(0);
+  model_.setPrimalTolerance(program_tolerance);
+  model_.setDualTolerance(program_tolerance);
+}
+
+void LimitAnalysis::Program::number_rows() {
+  for (const Block& block : problem_.blocks) {
+    BlockRows rows;
+    for (int k = 0; k < 3; ++k) {
+      if (block.free[k]) rows.row[k] = row_count_++;
+    }
+    rows.load = block.fixed() ? 0 : block.load.head<2>().norm();
+    rows.radius = block.radius;
+    rows_.push_back(rows);
+  }
+}
+
+void LimitAnalysis::Program::replace_contacts(std::vector<Contact> contacts) {
+  Problem next{problem_.blocks, std::move(contacts), problem_.free_forces};
+  check(next);
+  const std::vector<ContactColumns> before = columns_;
+  const int count_before = column_count_;
+  problem_ = std::move(next);
+  number_columns();
+  if (basis_.empty()) return;
+  // The status of what has still a column is kept.
+  const auto tail = basis_.begin() + count_before;
+  std::vector<unsigned char> basis(column_count_, static_cast<unsigned char>(ClpSimplex::atLowerBound));
+  for (std::size_t p = 0; p < std::min(before.size(), columns_.size()); ++p) {
+    for (const auto column : {&ContactColumns::first_ray, &ContactColumns::second_ray, &ContactColumns::shear}) {
+      if (before[p].*column >= 0 && columns_[p].*column >= 0) basis[columns_[p].*column] = basis_[before[p].*column];
+    }
+  }
+  basis.insert(basis.end(), tail, basis_.end());
+  basis_ = std::move(basis);
+}
+
+void LimitAnalysis::Program::number_columns() {
+  columns_.clear();
+  column_count_ = 0;
+  for (const Contact& c : problem_.contacts) {
+    ContactColumns columns;
+    const double a = rows_[c.a].load, b = c.b < 0 ? 0 : rows_[c.b].load;
+    columns.unit = a > 0 && b > 0 ? std::sqrt(a * b) : std::max(a, b);
+    if (columns.unit > 0) {
+      columns.first_ray = column_count_++;
+      if (c.friction > 0) columns.second_ray = column_count_++;
+      if (c.cohesion > 0) columns.shear = column_count_++;
+    }
+    columns_.push_back(columns);
+  }
+}
+
+namespace {
+
+/// Columns of a linear program, filled one after the other.
+class Columns {
+ public:
+  void add(double low, double high, double cost) {
+    low_.push_back(low);
+    high_.push_back(high);
+    cost_.push_back(cost);
+    starts_.push_back(static_cast<CoinBigIndex>(values_.size()));
+  }
+  /// An entry of the column that was added last.
+  void enter(int row, double value) {
+    if (row < 0 || value == 0) return;
+    rows_.push_back(row);
+    values_.push_back(value);
+  }
+  void load(ClpSimplex& model, const std::vector<double>& right_side) {
+    starts_.push_back(static_cast<CoinBigIndex>(values_.size()));
+    model.loadProblem(static_cast<int>(low_.size()), static_cast<int>(right_side.size()), starts_.data(), rows_.data(), values_.data(), low_.data(),
+                      high_.data(), cost_.data(), right_side.data(), right_side.data());
+  }
+
+ private:
+  std::vector<double> low_, high_, cost_, values_;
+  std::vector<CoinBigIndex> starts_;
+  std::vector<int> rows_;
+};
+
+}  // namespace
+
+Eigen::Vector3d LimitAnalysis::Program::in_rows(int block, const Point& point, const Point& force) const {
+  const BlockRows& rows = rows_[block];
+  const Point arm = point - problem_.blocks[block].centroid;
+  return Eigen::Vector3d(force.x(), force.y(), (arm.x() * force.y() - arm.y() * force.x()) / rows.radius) / rows.load;
+}
+
+void LimitAnalysis::Program::build(double factor) {
+  std::vector<double> right_side(row_count_);
+  for (std::size_t b = 0; b < rows_.size(); ++b) {
+    const Eigen::Vector3d& load = problem_.blocks[b].load;
+    for (int k = 0; k < 3; ++k) {
+      if (rows_[b].row[k] >= 0) right_side[rows_[b].row[k]] = -load[k] / (k < 2 ? rows_[b].load : rows_[b].load * rows_[b].radius);
+    }
+  }
+  const double infinity = COIN_DBL_MAX;
+  Columns columns;
+  for (std::size_t p = 0; p < columns_.size(); ++p) {
+    if (columns_[p].first_ray < 0) continue;
+    const Contact& c = problem_.contacts[p];
+    const Cone cone(c, factor);
+    const double unit = columns_[p].unit;
+    const Point normal = c.normal, tangent = c.tangent();
+    const auto enter = [&](const Point& force) {
+      for (const auto& [block, sign] : {std::pair(c.a, unit), std::pair(c.b, -unit)}) {
+        if (block < 0 || rows_[block].load == 0) continue;
+        const Eigen::Vector3d entries = sign * in_rows(block, c.point, force);
+        for (int k = 0; k < 3; ++k) columns.enter(rows_[block].row[k], entries[k]);
+      }
+    };
+    columns.add(0, infinity, 0);
+    enter(normal + cone.friction * tangent);
+    if (columns_[p].second_ray >= 0) {
+      columns.add(0, infinity, 0);
+      enter(normal - cone.friction * tangent);
+    }
+    if (columns_[p].shear >= 0) {
+      columns.add(-cone.half_width / unit, cone.half_width / unit, 0);
+      enter(tangent);
+    }
+    if (cone.tension == 0) continue;
+    for (const auto& [block, sign] : {std::pair(c.a, 1.0), std::pair(c.b, -1.0)}) {
+      if (block < 0 || rows_[block].load == 0) continue;
+      const Eigen::Vector3d entries = sign * cone.tension * in_rows(block, c.point, normal);
+      for (int k = 0; k < 3; ++k) {
+        if (rows_[block].row[k] >= 0) right_side[rows_[block].row[k]] += entries[k];
+      }
+    }
+  }
+  for (const FreeForce& f : problem_.free_forces) {
+    const BlockRows& rows = rows_[f.block];
+    columns.add(-infinity, infinity, 0);
+    if (rows.load == 0) continue;
+    for (int k = 0; k < 3; ++k) columns.enter(rows.row[k], f.unit[k] / (k < 2 ? 1.0 : rows.radius));
+  }
+  for (int row = 0; row < row_count_; ++row) {
+    for (const double sign : {1.0, -1.0}) {
+      columns.add(0, infinity, 1);
+      columns.enter(row, sign);
+    }
+  }
+  columns.load(model_, right_side);
+}
+
+bool LimitAnalysis::Program::solve_by(Way way) try {
+  ++solved_;
+  ClpSolve barrier;
+  switch (way) {
+    case Way::warm_simplex:
+      model_.copyinStatus(basis_.data());
+      model_.primal();
+      break;
+    case Way::barrier:
+    case Way::barrier_and_crossover:
+      barrier.setSolveType(way == Way::barrier ? ClpSolve::useBarrierNoCross : ClpSolve::useBarrier);
+      barrier.setPresolveType(ClpSolve::presolveOff);
+      model_.initialSolve(barrier);
+      break;
+    case Way::simplex:
+      // Without any contact force every price is right, since nothing costs less than zero.
+      model_.allSlackBasis(true);
+      model_.dual();
+      break;
+  }
+  // A barrier that stops early may have what is asked for; the certificates say so.
+  return way == Way::barrier || model_.isProvenOptimal();
+} catch (const CoinError&) {
+  return false;
+}
+
+Forces LimitAnalysis::Program::forces(double factor) const {
+  const double* x = model_.primalColumnSolution();
+  const auto value = [&](int column) { return column < 0 ? 0.0 : x[column]; };
+  Forces forces;
+  for (std::size_t p = 0; p < columns_.size(); ++p) {
+    const Cone cone(problem_.contacts[p], factor);
+    const ContactColumns& c = columns_[p];
+    ContactForce force;
+    if (c.first_ray >= 0) {
+      force.normal = -cone.tension + c.unit * (value(c.first_ray) + value(c.second_ray));
+      force.shear = c.unit * (cone.friction * (value(c.first_ray) - value(c.second_ray)) + value(c.shear));
+    }
+    forces.contacts.push_back(force);
+  }
+  for (std::size_t k = 0; k < problem_.free_forces.size(); ++k) {
+    forces.free_forces.push_back(x[column_count_ + static_cast<int>(k)] * rows_[problem_.free_forces[k].block].load);
+  }
+  return forces;
+}
+
+/// The prices of the equilibrium rows, as velocities with which the loads do work.
+Mechanism LimitAnalysis::Program::mechanism() const {
+  const double* price = model_.dualRowSolution();
+  Mechanism mechanism(problem_.blocks.size());
+  for (std::size_t b = 0; b < mechanism.size(); ++b) {
+    const BlockRows& rows = rows_[b];
+    const auto component = [&](int k) { return rows.row[k] < 0 ? 0.0 : -price[rows.row[k]] / rows.load; };
+    mechanism[b] = {{component(0), component(1)}, rows.load > 0 ? component(2) / rows.radius : 0.0};
+  }
+  return mechanism;
+}
+
+/// d(least artificial force)/d(1/F): by the shear and tension that a larger 1/F gives to what the mechanism slides and tears.
+double LimitAnalysis::Program::slope_of(double factor, const Forces& forces, const Mechanism& mechanism) const {
+  double slope = 0;
+  for (std::size_t p = 0; p < columns_.size(); ++p) {
+    if (columns_[p].first_ray < 0) continue;
+    const Contact& c = problem_.contacts[p];
+    const auto velocity = [&](int b) { return b < 0 ? Point(Point::Zero()) : velocity_at(problem_.blocks[b], mechanism[b], c.point); };
+    const Point relative = velocity(c.a) - velocity(c.b);
+    const double sliding = std::abs(relative.dot(c.tangent()));
+    slope += sliding * std::max(0.0, c.cohesion + c.friction * forces.contacts[p].normal);
+    const bool to_tip = c.friction > 0 && c.cohesion * factor <= c.friction * c.tension;
+    if (!to_tip) slope += c.tension * std::max(0.0, relative.dot(c.normal) - c.friction / factor * sliding);
+  }
+  return -slope;
+}
+
+std::vector<LimitAnalysis::Program::Way> LimitAnalysis::Program::ways(double factor) const {
+  const auto near = [&](double other) { return other > 0 && std::abs(factor / other - 1) < nearby; };
+  std::vector<Way> ways;
+  if (near(basis_factor_)) {
+    ways.push_back(Way::warm_simplex);
+  } else if (!near(last_factor_)) {
+    ways.push_back(Way::barrier);
+  }
+  ways.insert(ways.end(), {Way::barrier_and_crossover, Way::simplex});
+  return ways;
+}
+
+Trial LimitAnalysis::Program::at(double factor) {
+  Trial trial;
+  for (const Way way : ways(factor)) {
+    build(factor);
+    const bool solved = solve_by(way);
+    trial = solved ? judge(factor, way == Way::barrier ? clean_barrier : force_tolerance) : undecided(factor, "a linear program was not solved");
+    if (trial.verdict == Verdict::undecided) continue;
+    if (way != Way::barrier) {
+      basis_.assign(model_.statusArray(), model_.statusArray() + model_.numberRows() + model_.numberColumns());
+      basis_factor_ = factor;
+    }
+    break;
+  }
+  last_factor_ = factor;
+  return trial;
+}
+
+Trial LimitAnalysis::Program::judge(double factor, double tolerance) {
+  Trial trial;
+  trial.factor = factor;
+  const Forces forces = this->forces(factor);
+  const ForceCheck check = check_forces(problem_, factor, forces);
+  if (std::max(check.unbalanced, check.excess) <= tolerance) {
+    trial.verdict = Verdict::feasible;
+    trial.forces = forces;
+    return trial;
+  }
+  Mechanism mechanism = this->mechanism();
+  if (check_mechanism(problem_, factor, mechanism).holds()) {
+    trial.verdict = Verdict::infeasible;
+    artificial_ = model_.objectiveValue();
+    slope_ = slope_of(factor, forces, mechanism);
+    normalise(mechanism);
+    trial.mechanism = std::move(mechanism);
+    return trial;
+  }
+  return undecided(factor, "neither forces nor mechanism hold");
+}
+
+void LimitAnalysis::Program::normalise(Mechanism& mechanism) const {
+  double fastest = 0;
+  for (std::size_t b = 0; b < mechanism.size(); ++b) fastest = std::max(fastest, speed(problem_.blocks[b], mechanism[b]));
+  for (BlockVelocity& motion : mechanism) {
+    motion.velocity /= fastest;
+    motion.rotation /= fastest;
+  }
+}
+
+}  // namespace openclose::limit_analysis

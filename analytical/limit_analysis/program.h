@@ -1,0 +1,65 @@
+// The linear program of one factor: the least artificial force that equilibrium needs besides forces within the strength.
+#pragma once
+
+#include <ClpSimplex.hpp>
+#include <vector>
+
+#include "openclose/limit_analysis/limit_analysis.h"
+
+namespace openclose::limit_analysis {
+
+/// Rows: the equilibrium of each free unknown, in loads of its block (moments over the radius as well). The forces of a contact are its cone's
+///   (n, t) = (-tension/F, 0) + a (1, friction/F) + b (1, -friction/F) + q (0, 1),   a, b >= 0,   |q| <= (cohesion - friction tension/F)/F,
+/// so that the strength needs no rows. Two artificial forces for each row, one for each sense, cost what they are.
+class LimitAnalysis::Program {
+ public:
+  explicit Program(Problem problem);
+
+  Trial at(double factor);
+  void replace_contacts(std::vector<Contact> contacts);
+  const Problem& problem() const { return problem_; }
+  int solved() const { return solved_; }
+
+  /// Of the last infeasible program: the least artificial force, in loads of blocks, and its derivative with respect to 1/F.
+  double artificial() const { return artificial_; }
+  double slope() const { return slope_; }
+
+ private:
+  struct BlockRows {
+    int row[3] = {-1, -1, -1};
+    double load = 0;    // [N]
+    double radius = 0;  // [m]
+  };
+  struct ContactColumns {
+    int first_ray = -1, second_ray = -1, shear = -1;  // -1: not a column
+    double unit = 0;                                  // [N] of the forces
+  };
+
+  void number_rows();
+  void number_columns();
+  Eigen::Vector3d in_rows(int block, const Point& point, const Point& force) const;
+  void build(double factor);
+  enum class Way { warm_simplex, barrier, barrier_and_crossover, simplex };
+  /// The ways to try, one after the other until forces or mechanism hold.
+  std::vector<Way> ways(double factor) const;
+  bool solve_by(Way way);
+  /// Forces or mechanism of the program that was solved last, if they hold; the forces with errors up to `tolerance`.
+  Trial judge(double factor, double tolerance);
+  Forces forces(double factor) const;
+  Mechanism mechanism() const;
+  void normalise(Mechanism& mechanism) const;
+  double slope_of(double factor, const Forces& forces, const Mechanism& mechanism) const;
+
+  Problem problem_;
+  std::vector<BlockRows> rows_;
+  std::vector<ContactColumns> columns_;
+  int row_count_ = 0, column_count_ = 0;
+  ClpSimplex model_;
+  int solved_ = 0;
+  double artificial_ = 0, slope_ = 0;
+  double last_factor_ = 0;
+  std::vector<unsigned char> basis_;  // of the program of `basis_factor_`
+  double basis_factor_ = 0;
+};
+
+}  // namespace openclose::limit_analysis
