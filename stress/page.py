@@ -64,7 +64,7 @@ def _energy(rows: list[Row]) -> list[str]:
 
 
 def _distances(rows: list[Row]) -> list[str]:
-    known = [row for row in rows if row.verdict == RIGHT and row.stable and row.limit_analysis not in (None, 0.0, float("inf")) and "compared" not in row.reason]
+    known = [row for row in rows if row.verdict == RIGHT and row.stable and row.limit_analysis not in (None, 0.0, float("inf"))]
     body = []
     for key, group in _groups(known, lambda row: (row.part, row.method, "c = 0" if "cohesion_pa=0 " in row.drawn else "c > 0")).items():
         ratios = [row.stable / row.limit_analysis for row in group]

@@ -220,7 +220,9 @@ def of_factor(outcome: Outcome, assembly: "Assembly", limit: dict[str, float] | 
     factor = outcome.summary.get("factor_of_safety")
     forces = assembly.forces(outcome)
     corners = assembly.lone_corners(forces)
-    wrong = next((reason for reason in (_unproved(bracket), _unordered(bracket, factor), assembly.unbalanced(forces, bracket.stable) if bracket.complete else "", _above(bracket, limit, corners),
+    if corners:
+        limit = None
+    wrong = next((reason for reason in (_unproved(bracket), _unordered(bracket, factor), assembly.unbalanced(forces, bracket.stable) if bracket.complete else "", _above(bracket, limit),
                                         _unproved_by_limit_analysis(bracket, limit)) if reason), "")
     note = f"{corners} lone corners carry load, not compared with limit analysis" if corners else ""
     return Verdict(FALSE if wrong else RIGHT, wrong or note, factor, bracket.stable, bracket.failed, limit and limit["factor"])
@@ -243,8 +245,8 @@ def _unordered(bracket: Bracket, factor: float | None) -> str:
     return "" if factor == bracket.stable else f"factor {factor:.6g} is not the stable end {bracket.stable:.6g}"
 
 
-def _above(bracket: Bracket, limit: dict[str, float] | None, corners: int) -> str:
-    if limit is None or corners or bracket.stable is None or bracket.stable <= limit["failed"] * (1 + LIMIT_ANALYSIS):
+def _above(bracket: Bracket, limit: dict[str, float] | None) -> str:
+    if limit is None or bracket.stable is None or bracket.stable <= limit["failed"] * (1 + LIMIT_ANALYSIS):
         return ""
     return f"stable at {bracket.stable:.6g}, limit analysis {limit['factor']:.6g}"
 
