@@ -177,14 +177,14 @@ def _row(scene: Scene, method: str, blocks: int, verdict: verdicts.Verdict, outc
                verdict.limit, verdict.created, verdict.rise, verdict.overlap, round(outcome.cpu_s, 4), outcome.exit)
 
 
-def run(campaign: Campaign, seeds: list[tuple[str, int]], jobs: int) -> list[Row]:
-    """In the order of the seeds, a scene a process."""
+def run(campaign: Campaign, seeds: list[tuple[str, int]], jobs: int, told: tuple[str, ...]) -> list[Row]:
+    """In the order of the seeds, a scene a process; prints the rows of these verdicts."""
     rows = []
     with ProcessPoolExecutor(jobs) as pool:
         for judged in pool.map(campaign.judge, *zip(*seeds)):
             rows += judged
             for row in judged:
-                if row.verdict != verdicts.RIGHT:
+                if row.verdict in told:
                     print(f"{row.part} {row.seed} {row.method}: {row.verdict}: {row.reason}", flush=True)
     return rows
 

@@ -51,7 +51,8 @@ class Motion:
         self.blocks = {b["name"]: Block(b["name"], outlines["initial"][b["name"]], start[b["name"]], density[b["material"]], b.get("fixed", False))
                        for b in scene.document["block"]}
         self.final = outlines["final"]
-        self.gravity = -scene.document.get("gravity_m_per_s2", [0.0, -9.81])[1]
+        self.sideways, upwards = scene.document.get("gravity_m_per_s2", [0.0, -9.81])
+        self.gravity = -upwards
         self._energy_rows = outcome.table("energy.csv")
         self.times, self.states = self._follow(outcome.table("history.csv"))
 
@@ -78,8 +79,9 @@ class Motion:
         return (b.mass * (s.velocity[0] ** 2 + s.velocity[1] ** 2) + b.inertia * s.spin**2) / 2
 
     def potential(self, k: int) -> float:
-        """Above the floor."""
-        return sum(b.mass * self.gravity * (self.states[k][b.name].centroid[1] - self._floor) for b in self.free)
+        """Above the floor; where gravity is inclined, also sideways from the start."""
+        places = [(b, self.states[k][b.name].centroid) for b in self.free]
+        return sum(b.mass * (self.gravity * (y - self._floor) - self.sideways * (x - b.centroid[0])) for b, (x, y) in places)
 
     def stored(self, k: int) -> float:
         """In springs, since time 0, as the program says."""

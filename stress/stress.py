@@ -15,7 +15,7 @@ from pathlib import Path
 import campaign
 import page
 from outcome import METHODS, Programs
-from verdicts import FALSE
+from verdicts import FALSE, REFUSED, SLOW
 
 EXIT_FALSE, EXIT_CANNOT_START = 1, 2
 ALL = "all"
@@ -80,10 +80,15 @@ def main() -> int:
         for part in parts(arguments):
             print(one.written(part, arguments.keep))
         return 0
-    rows = campaign.run(one, [(part, seed) for part in parts(arguments) for seed in seeds(arguments, part)], arguments.jobs)
+    rows = campaign.run(one, [(part, seed) for part in parts(arguments) for seed in seeds(arguments, part)], arguments.jobs,
+                        (FALSE,) if arguments.regression else (FALSE, REFUSED, SLOW))
+    arguments.results.mkdir(parents=True, exist_ok=True)
     campaign.write_csv(rows, arguments.results / "stress.csv")
     page.write(rows, [] if arguments.regression else draw_worst(one, rows, arguments.results), " ".join(["stress/stress.py", *sys.argv[1:]]), arguments.results / "stress.md")
-    report(rows)
+    if arguments.regression:
+        print("random scenes:", ", ".join(f"{sum(row.verdict == verdict for row in rows)} {verdict}" for verdict in page.VERDICTS))
+    else:
+        report(rows)
     return EXIT_FALSE if any(row.verdict == FALSE for row in rows) else 0
 
 

@@ -101,6 +101,15 @@ class OfMotion(unittest.TestCase):
         self.false(self.flight(faster(0.55)), "energy created")
         self.assertEqual(self.flight(faster(0.17)).verdict().kind, verdicts.RIGHT)
 
+    def test_inclined_gravity_does_work_sideways(self):
+        def pulled(t, place, velocity, spin):
+            return (place[0] + 4 * t * t / 2, place[1]), (velocity[0] + 4 * t, velocity[1]), spin
+
+        flight = self.flight(pulled)
+        self.assertEqual(flight.verdict().kind, verdicts.FALSE)
+        flight.scene.document["gravity_m_per_s2"] = [4.0, -GRAVITY]
+        self.assertEqual(flight.verdict().kind, verdicts.RIGHT)
+
     def test_spin_from_nothing(self):
         self.false(self.flight(lambda t, place, velocity, spin: (place, velocity, spin * (4 if t > 0.25 else 1))), "energy created")
 

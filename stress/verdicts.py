@@ -81,7 +81,8 @@ class Energy:
         work = [motion.work_done(k) for k in steps]
         without_work = [motion.energy(k) - work[k] for k in steps]
         self.start = without_work[0]
-        self.scale = max(self.start, *(abs(w) for w in work), math.ulp(0.0))
+        fallen = motion.potential(0) - min(motion.potential(k) for k in steps)
+        self.scale = max(self.start, fallen, *(abs(w) for w in work), math.ulp(0.0))
         self.worst = max(steps, key=lambda k: without_work[k])
         self.created = (without_work[self.worst] - self.start) / self.scale
         lowest, self.rise, self.risen = math.inf, 0.0, 0
@@ -107,7 +108,7 @@ def _place(scene: Scene, motion: Motion, energy: Energy) -> str:
                 x0, y0, x1, y1 = scene.enclosure
                 if not (x0 <= x <= x1 and y0 <= y <= y1):
                     return f"{b.name} is outside the walls at t = {time:.4g} s, centroid ({x:.4g}, {y:.4g})"
-            highest = (1 + CREATED_ENERGY) * energy.scale / (b.mass * motion.gravity) if motion.gravity > 0 else math.inf
+            highest = (1 + CREATED_ENERGY) * energy.scale / (b.mass * motion.gravity) if motion.gravity > 0 and motion.sideways == 0 else math.inf
             if y - scene.floor_m > highest:
                 return f"{b.name} is {y - scene.floor_m:.4g} m high at t = {time:.4g} s; the energy of the start lifts it {highest:.4g} m"
     return ""
