@@ -191,9 +191,9 @@ class OfFactors(unittest.TestCase):
         self.folder = tempfile.TemporaryDirectory()
         self.addCleanup(self.folder.cleanup)
 
-    def verdict(self, assembly=None, limit=4 / 3, scale=1.0, shear=0.6, exit_status=0, points=((3.2, 2.4), (4.0, 3.0)), factor=None, **bracket):
+    def verdict(self, assembly=None, limit=4 / 3, scale=1.0, shear=0.6, exit_status=0, points=((3.2, 2.4), (4.0, 3.0)), factor=None, reason="", **bracket):
         bracket = {"stable": 1.33, "failed": 1.335, "failed_by": "mechanism"} | bracket
-        summary = {"factor_of_safety": factor or bracket["stable"], "verdict": "certified", "bracket": bracket}
+        summary = {"factor_of_safety": factor or bracket["stable"], "verdict": "certified", "bracket": bracket, "reason": reason}
         folder = Path(self.folder.name)
         (folder / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
         normal = [0.5 * (0.8 + 0.6) * WEIGHT * scale, 0.5 * (0.8 - 0.6) * WEIGHT * scale]
@@ -230,6 +230,11 @@ class OfFactors(unittest.TestCase):
 
     def test_above_limit_analysis(self):
         self.false("limit analysis", limit=1.32)
+
+    def test_to_refuse_is_right_without_any_equilibrium(self):
+        self.assertEqual(self.verdict(exit_status=1, limit=1.5, reason="no equilibrium").kind, verdicts.REFUSED)
+        self.assertEqual(self.verdict(exit_status=1, limit=0.0, reason="no equilibrium").kind, verdicts.RIGHT)
+        self.false("limit analysis", limit=0.0)
 
     def test_lone_corners_are_not_compared(self):
         assembly = incline(corner=True)

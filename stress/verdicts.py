@@ -199,7 +199,7 @@ class Bracket:
 PROVED_BY = "mechanism", "limit_analysis", "limit analysis"
 STABLE = "stable"  # of the states in contacts.csv and blocks.csv: the last one that was certified
 PROVED_BEFORE = "displacement"
-NO_FAILURE, NO_EQUILIBRIUM = "no_failure", "no_equilibrium"
+NO_FAILURE = "no_failure"
 
 
 def read_bracket(summary: dict) -> Bracket:
@@ -214,8 +214,8 @@ def of_factor(outcome: Outcome, assembly: "Assembly", limit: dict[str, float] | 
     known = of_exit(outcome)
     if known:
         known = replace(known, limit=limit and limit["factor"])
-        if outcome.exit == NOT_CONVERGED and limit and limit["factor"] == 0 and outcome.summary.get("verdict") == NO_EQUILIBRIUM:
-            return replace(known, kind=RIGHT)
+        if known.kind == REFUSED and limit and limit["factor"] == 0:
+            return replace(known, kind=RIGHT)  # there is no equilibrium to be found
         return known
     bracket = read_bracket(outcome.summary)
     factor = outcome.summary.get("factor_of_safety")
