@@ -18,7 +18,7 @@ COMPARISON := $(PAPER_RESULTS)/comparison.csv
 NULL_SOLVER := results/verify-null-solver.txt
 
 .DEFAULT_GOAL := help
-.PHONY: help build test verify reproduce convergence stress bench bench-peers sanitize mutants clean packages stress-packages figure-packages bench-packages peer-packages
+.PHONY: help build test verify reproduce convergence stress regression bench bench-peers sanitize mutants clean packages stress-packages figure-packages bench-packages peer-packages
 
 help: ## print the targets
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(firstword $(MAKEFILE_LIST)) | while read -r target text; do printf '  make %-11s %s\n' "$$target" "$$text"; done
@@ -54,6 +54,9 @@ stress: build stress-packages ## random scenes from seeds, judged by rules that 
 	@"$${PYTHON:-python3}" -m unittest discover -q -s stress
 	@python=$$(scripts/find-python 2>/dev/null || echo "$${PYTHON:-python3}"); "$$python" stress/stress.py --seed $(SEED) --count $(COUNT) --part $(PART) $(if $(METHODS),--methods $(METHODS)) --jobs $(JOBS)
 
+regression: build stress-packages ## the fixed seeds of the random scenes, a minute or two (results/regression/stress.md); exit status 1 for a false answer
+	@"$${PYTHON:-python3}" stress/stress.py --regression --jobs $(JOBS) --results results/regression
+
 # Always anew: a time is of today. The test is of the rule that nothing wins with a large error.
 bench: bench-packages ## run time beside error, cost by size, what skips save (results/bench.md); half an hour and more, BENCH=quick: a few minutes
 	@OPTIONS=-DOPENCLOSE_BENCH=ON scripts/build release openclose openclose_reference openclose_bench
@@ -72,7 +75,7 @@ mutants: packages ## plant the faults of mutants/faults.toml one by one and repo
 
 clean: ## remove what these targets have made; other results stay
 	rm -rf build $(PAPER_RESULTS) results/verify.csv results/verify_series.csv results/verify_cases.csv results/verification results/verification.md $(NULL_SOLVER) results/convergence results/convergence.csv
-	rm -rf results/stress results/stress.csv results/stress.md
+	rm -rf results/stress results/stress.csv results/stress.md results/regression
 	rm -rf results/bench results/bench.csv results/bench.md results/bench_machine.json
 	rm -f results/mutants.csv results/mutants.md
 

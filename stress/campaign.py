@@ -19,7 +19,7 @@ from variants import VARIANTS
 
 PARTS = {part.PART: part.draw for part in (slopes, masonry, tumbles, maps)}
 MOST_ATTEMPTS = 50
-# What runs inside `make verify`: seeds that stay, a few of each part. Whoever accepts a change draws others.
+# `make regression`: seeds that stay, a few of each part. Whoever accepts a change draws others.
 REGRESSION = {slopes.PART: range(2000, 2012), masonry.PART: range(2000, 2012), tumbles.PART: range(2000, 2016), maps.PART: range(2000, 2018)}
 REGRESSION_LIMIT_S = 5
 SAME = {"soft", "hard"}  # in statics they are one solver

@@ -30,7 +30,7 @@ def parse_arguments() -> argparse.Namespace:
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="processes (default: %(default)s)")
     parser.add_argument("--limit-s", type=int, default=60, help="CPU time of a run, beyond which it is slow (default: %(default)s)")
     parser.add_argument("--invariances", action="store_true", help="slopes also with other stiffness, mirrored, far away, small and large")
-    parser.add_argument("--regression", action="store_true", help="the seeds that `make verify` runs, without pictures")
+    parser.add_argument("--regression", action="store_true", help="the seeds that stay, without pictures")
     parser.add_argument("--keep", type=int, metavar="SEED", help="write the scene of this seed and stop")
     parser.add_argument("--openclose", type=Path, default=Path("build/release/openclose"))
     parser.add_argument("--reference", type=Path, default=Path("build/release/analytical/openclose-reference"))
