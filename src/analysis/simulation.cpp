@@ -31,6 +31,23 @@ class Stopwatch {
 /// [-] of the largest displacement of a step, to be aimed at where steps have to be shorter.
 constexpr double part_of_limit = 0.9;
 
+/// [rad] No block that is in contact turns by more than this in a step: then other edges face each other than those whose contacts the step knows,
+/// and a splinter that may turn as it likes finds states of balance after whole turns. Where facing edges have become corners, nothing is left of
+/// them.
+constexpr double largest_turn_in_contact_rad = tolerance::parallel_none_rad;
+
+/// Whether a block that is in contact at the start or the end of a step turns by more than that.
+template <int N>
+bool turns_too_far(const BlockSystem<N>& system, const std::vector<Contact>& contacts, const StepSolution<N>& solution) {
+  const auto turns = [&](int b) { return std::abs(Motion<N>::rotation(solution.of(system, b))) > largest_turn_in_contact_rad; };
+  if (std::ranges::none_of(system.free_blocks(), turns)) return false;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const bool touches = contacts[i].status != ContactStatus::open || solution.contacts.status(i) != ContactStatus::open;
+    if (touches && (turns(contacts[i].vertex_block) || turns(contacts[i].edge_block))) return true;
+  }
+  return false;
+}
+
 template <int N>
 bool has_joint_springs(const std::string& contact) {
   return std::ranges::any_of(enforcements<N>(), [&](const auto& entry) { return entry.name == contact && entry.make()->has_joint_springs(); });
@@ -486,7 +503,8 @@ StepResult Simulation<N>::step(double dt, bool statics) {
     return step(dt, statics);
   }
   if (solution.converged) result.moved = largest_move(solution);
-  const bool too_far = result.moved > scene_.step.max_displacement;
+  const bool turned = solution.converged && turns_too_far(system_, contacts_, solution);
+  const bool too_far = turned || result.moved > scene_.step.max_displacement;
   if (solution.converged && !too_far && !statics && scene_.step.adaptive) {
     result.error = local_error(p, solution);
     result.too_wrong = !(result.error <= control_.tolerance());
@@ -498,7 +516,9 @@ StepResult Simulation<N>::step(double dt, bool statics) {
     }
   }
   if (!solution.converged || too_far) {
-    result.reason = too_far ? "a block moved farther in one step than step.max_displacement_m" : solution.reason;
+    result.reason = turned    ? "a block that is in contact turned by more than 15 degrees in one step"
+                    : too_far ? "a block moved farther in one step than step.max_displacement_m"
+                              : solution.reason;
     result.part = solution.part;
     ++step_counters_.cuts;
     ++failed_attempts_;

@@ -9,6 +9,7 @@
 #include "openclose/analysis/settle.h"
 #include "openclose/analysis/simulation.h"
 #include "openclose/core/error.h"
+#include "openclose/core/tolerance.h"
 #include "support/catch.h"
 #include "support/scenes.h"
 
@@ -154,6 +155,20 @@ TEST_CASE("no step moves a vertex farther than allowed", "[analysis][simulation]
   CHECK_FALSE(far.accepted);
   CHECK_THAT(far.reason, ContainsSubstring("step.max_displacement_m"));
   CHECK(simulation.step(0.0029, false).accepted);
+}
+
+TEST_CASE("no step turns a block that is in contact farther than its contacts know, one in the air as far as it likes", "[analysis][simulation]") {
+  const double height = GENERATE(0.0, 5.0), angle = GENERATE(0.8, 1.2) * tolerance::parallel_none_rad;
+  Scene scene = test::block_on_base();
+  for (Vec2& v : scene.blocks[1].vertices) v.y() += height;
+  scene.blocks[1].angular_velocity = angle / scene.step.dt;
+  scene.joints[0].normal_stiffness = scene.joints[0].shear_stiffness = 1.0;  // too soft to slow it down
+  scene.step.max_displacement = 100.0;
+  Simulation<3> simulation(scene);
+  const StepResult result = simulation.step(scene.step.dt, false);
+  const bool allowed = height > 0.0 || angle < tolerance::parallel_none_rad;
+  CHECK(result.accepted == allowed);
+  if (!allowed) CHECK_THAT(result.reason, ContainsSubstring("turned by more than 15 degrees"));
 }
 
 TEST_CASE("advance covers its time exactly when steps are cut", "[analysis][simulation]") {
