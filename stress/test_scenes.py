@@ -117,7 +117,7 @@ class Comparisons(unittest.TestCase):
         scene = slopes.draw(1)
 
         def of(stable, failed):
-            return SimpleNamespace(stable=stable, failed=failed)
+            return SimpleNamespace(stable=stable, failed=failed, answer="certified")
 
         self.assertEqual([r.verdict for r in campaign.Campaign._same(scene, of(1.0, 1.004), of(1.005, 1.006))], ["FALSE"])
         self.assertEqual([r.verdict for r in campaign.Campaign._same(scene, of(1.0, 1.01), of(1.005, 1.006))], ["FALSE"])

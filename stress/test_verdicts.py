@@ -215,7 +215,7 @@ class OfFactors(unittest.TestCase):
         self.assertIn(reason, verdict.reason)
 
     def test_what_balances_is_right(self):
-        self.assertEqual(self.verdict(), verdicts.Verdict(verdicts.RIGHT, "", 1.33, 1.33, 1.335, 4 / 3))
+        self.assertEqual(self.verdict(), verdicts.Verdict(verdicts.RIGHT, "", 1.33, 1.33, 1.335, 4 / 3, answer="certified"))
 
     def test_forces_that_do_not_balance(self):
         self.false("out of balance", scale=1 + 1e-5)
@@ -270,6 +270,7 @@ class OfFactors(unittest.TestCase):
         self.assertEqual(verdicts.nearly_same(verdicts.Verdict(verdicts.RIGHT, stable=1.0, limit=1.1), of(0.98, 0.985)), "")
         self.assertTrue(verdicts.too_wide(of(1.0, 1.006)))
         self.assertFalse(verdicts.too_wide(of(1.0, 1.0049)))
+        self.assertFalse(verdicts.too_wide(replace(of(1.0, 1.1), answer="interval")))
 
 
 if __name__ == "__main__":

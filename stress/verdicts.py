@@ -44,6 +44,7 @@ class Verdict:
     limit: float | None = None        # factor of limit analysis
     created: float | None = None      # largest energy above the start's, over the scale of energy
     rise: float | None = None         # largest rise of energy from any earlier time, over the same
+    answer: str = ""                  # what `fos` calls its own: certified, interval, ...
     overlap: float | None = None      # largest overlap at an output time, over the smaller block's area
 
 
@@ -199,7 +200,7 @@ class Bracket:
 PROVED_BY = "mechanism", "limit_analysis", "limit analysis"
 STABLE = "stable"  # of the states in contacts.csv and blocks.csv: the last one that was certified
 PROVED_BEFORE = "displacement"
-NO_FAILURE = "no_failure"
+NO_FAILURE, INTERVAL = "no_failure", "interval"
 
 
 def read_bracket(summary: dict) -> Bracket:
@@ -226,7 +227,7 @@ def of_factor(outcome: Outcome, assembly: "Assembly", limit: dict[str, float] | 
     wrong = next((reason for reason in (_unproved(bracket), _unordered(bracket, factor), assembly.unbalanced(forces, bracket.stable) if bracket.complete else "", _above(bracket, limit),
                                         _unproved_by_limit_analysis(bracket, limit)) if reason), "")
     note = f"{corners} lone corners carry load, not compared with limit analysis" if corners else ""
-    return Verdict(FALSE if wrong else RIGHT, wrong or note, factor, bracket.stable, bracket.failed, limit and limit["factor"])
+    return Verdict(FALSE if wrong else RIGHT, wrong or note, factor, bracket.stable, bracket.failed, limit and limit["factor"], answer=bracket.verdict)
 
 
 def _unproved(bracket: Bracket) -> str:
@@ -410,7 +411,8 @@ def nearly_same(one: Verdict, other: Verdict) -> str:
 
 
 def too_wide(verdict: Verdict) -> bool:
-    return verdict.stable is not None and verdict.failed is not None and verdict.failed - verdict.stable > WIDEST_BRACKET * verdict.stable
+    """A certified bracket; what is called an interval says itself that it is none."""
+    return verdict.answer != INTERVAL and verdict.stable is not None and verdict.failed is not None and verdict.failed - verdict.stable > WIDEST_BRACKET * verdict.stable
 
 
 def _written(v: Verdict) -> str:
