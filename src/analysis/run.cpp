@@ -123,6 +123,9 @@ RunResult prepare_start(Simulation<N>& simulation, const SettleProgress& progres
 
 namespace {
 
+/// [-] Of the work of friction: as large as what the watch lets pass of the energy, and as friction angles are known.
+constexpr double noticeable_friction_lag = 0.01;
+
 /// The motion from time 0 to what ends it.
 template <int N>
 class MotionInTime {
@@ -138,9 +141,11 @@ class MotionInTime {
     steps_ = std::lround(std::ceil(scene_.end_time / scene_.step.dt * (1.0 - tolerance::rounding_of_times)));
   }
 
-  void begin() {
+  /// False if the state at the start is none that could be gone on from.
+  bool begin() {
     begun_ = row_is_there_ = true;
     take_snapshots(0);
+    return accepted(watch_.begin(simulation_));
   }
 
   void follow() {
@@ -158,8 +163,14 @@ class MotionInTime {
       take_milestones(i);
       take_snapshots(i);
       const bool there = moved_enough();
+      const bool last = there || i == steps_;
+      if (!accepted(last ? watch_.check_at_end(simulation_) : Watch<N>::is_due(i) ? watch_.check(simulation_) : std::string())) {
+        row_is_there_ = false;
+        conclude();
+        return;
+      }
       if (there) result_.ended_by = "end.displacement_m";
-      const bool last = there || i == steps_, regular = i % every == 0;
+      const bool regular = i % every == 0;
       if (observer_.output && regular) observer_.output(simulation_);
       row_is_there_ = regular;
       if (last) {
@@ -190,13 +201,20 @@ class MotionInTime {
   }
 
   void exchange(Archive& archive) {
-    archive(begun_, done_, moved_before_, snapshots_taken_, row_is_there_, result_.settling, result_.milestones);
+    archive(begun_, done_, moved_before_, snapshots_taken_, row_is_there_, result_.settling, result_.milestones, watch_);
     if (points_) archive(*points_);
   }
 
   /// Says what has been asked for and did not come.
   void finish() {
     result_.cpu_of_motion = process_cpu_time() - cpu_at_start_;
+    result_.watch = watch_.report();
+    if (const double lag = simulation_.friction_lag(); lag > noticeable_friction_lag) {
+      result_.warnings.push_back(fmt::format(
+          "friction of sliding contacts was that of the iteration before, off by {:.2g} % of its work; step.dt_s = {:.2g} or method.contact = "
+          "\"soft\" would be a remedy",
+          100.0 * lag, 0.5 * scene_.step.dt));
+    }
     const std::string ending = begun_ ? fmt::format("the run ended at t = {:.6g} s", simulation_.time()) : "the run had no state to start from";
     while (result_.milestones.size() < scene_.milestones.size()) {
       Milestone missing;
@@ -214,6 +232,15 @@ class MotionInTime {
   }
 
  private:
+  /// Takes the watch's answer: the run ends where it has found something.
+  bool accepted(const std::string& found) {
+    if (found.empty()) return true;
+    result_.converged = false;
+    result_.refused = true;
+    result_.reason = found;
+    return false;
+  }
+
   bool moved_enough() const { return scene_.end_displacement && points_->largest_displacement() >= *scene_.end_displacement; }
 
   /// At least one; for what is longer than the run one more than it takes, which never comes.
@@ -272,6 +299,7 @@ class MotionInTime {
   RunResult& result_;
   double cpu_at_start_;                      ///< [s]
   std::optional<MeasuredPoints<N>> points_;  ///< if anything depends on them
+  Watch<N> watch_;
   long steps_ = 0;
   long done_ = 0;              ///< whole steps
   double moved_before_ = 0.0;  ///< [m] by the first point, before the step
@@ -289,8 +317,7 @@ RunResult run(Simulation<N>& simulation, const RunObserver<N>& observer) {
   if (observer.output) observer.output(simulation);
   MotionInTime<N> motion(simulation, observer, result);
   if (result.converged) {
-    motion.begin();
-    motion.follow();
+    if (motion.begin()) motion.follow();
   }
   motion.finish();
   return result;

@@ -8,6 +8,7 @@
 
 #include "openclose/analysis/settle.h"
 #include "openclose/analysis/simulation.h"
+#include "openclose/analysis/watch.h"
 
 namespace openclose {
 
@@ -65,7 +66,9 @@ struct Milestone {
 /// made with the strength of the motion: `steady_sliding` is to go on as it starts, `normal_balanced` knows no strength.
 struct RunResult {
   bool converged = false;
+  bool refused = false;  ///< it did not converge because the watch has stopped it
   std::string reason;
+  WatchReport watch;
   std::string ended_by;               ///< key that ended it: end.time_s or end.displacement_m; empty if it did not converge
   std::vector<std::string> warnings;  ///< what was asked for and did not come
   std::vector<Milestone> milestones;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "openclose/analysis/corner_entry.h"
 #include "openclose/core/tolerance.h"
 #include "openclose/integrator/integrators.h"
 #include "openclose/integrator/registry.h"
@@ -47,6 +48,10 @@ bool turns_too_far(const BlockSystem<N>& system, const std::vector<Contact>& con
   }
   return false;
 }
+
+/// A step that has been cut so often where corners enter, because the shorter one goes another way, is taken as it is: the next step finds what is
+/// in.
+constexpr int most_cuts_at_entry = 8;
 
 template <int N>
 bool has_joint_springs(const std::string& contact) {
@@ -356,6 +361,12 @@ std::vector<Contact>& Simulation<N>::contacts() {
 }
 
 template <int N>
+const std::vector<Contact>& Simulation<N>::contacts() const {
+  collect();
+  return contacts_;
+}
+
+template <int N>
 std::vector<Contact>& Simulation<N>::moving_contacts(double lead) {
   unload_loop();
   if (!contacts_current_) detect(lead);
@@ -481,6 +492,14 @@ double Simulation<N>::largest_move(const StepSolution<N>& solution) const {
 }
 
 template <int N>
+double Simulation<N>::part_before_entry(const StepSolution<N>& solution, double moved) const {
+  // Springs give way by more than what a corner enters in a step.
+  if (enforcement_->has_elastic_contacts() || cuts_at_entry_ == most_cuts_at_entry) return 1.0;
+  const double tolerated = std::max(scene_.method.gap_tolerance, tolerance::rounding_of_ways_m);
+  return 2.0 * moved > tolerated ? first_entry(system_, solution, detector_.candidate_pairs(), tolerated) : 1.0;
+}
+
+template <int N>
 StepResult Simulation<N>::step(double dt, bool statics) {
   if (loop_ && !statics) {
     StepResult taken = explicit_step(dt, scene_.method.damping);
@@ -514,6 +533,16 @@ StepResult Simulation<N>::step(double dt, bool statics) {
       ++step_counters_.error_cuts;
       return result;
     }
+  }
+  const double part = solution.converged && !too_far && !statics ? part_before_entry(solution, result.moved) : 1.0;
+  if (part < 1.0) {
+    result.reason = "a corner enters a block that it is not in contact with";
+    result.part = part;
+    result.ends_at_entry = true;
+    ++step_counters_.cuts;
+    ++step_counters_.entry_cuts;
+    ++cuts_at_entry_;
+    return result;
   }
   if (!solution.converged || too_far) {
     result.reason = turned    ? "a block that is in contact turned by more than 15 degrees in one step"
@@ -578,10 +607,15 @@ void Simulation<N>::accept(const StepProblem<N>& problem, const StepSolution<N>&
   ++step_counters_.steps;
   count_moves();
   // Where multipliers have just failed, the next step need not fail again before it may be compliant: cuts would outrun the growth of the step.
+  if (!problem.statics) {
+    friction_work_ += solution.friction_work;
+    lagging_friction_work_ += solution.lagging_friction_work;
+  }
   if (solution.compliant) ++step_counters_.compliant;
   if (solution.eased) ++step_counters_.eased;
   if (solution.dissipative) ++step_counters_.dissipative;
   if (!solution.compliant) failed_attempts_ = 0;
+  cuts_at_entry_ = 0;
   contacts_current_ = false;
 }
 
@@ -750,6 +784,7 @@ bool Simulation<N>::advance(double dt) {
   double remaining = dt, trial = adaptive ? control_.step(dt) : dt;
   const double smallest = scene_.step.smallest_fraction * dt;
   const double limit = part_of_limit * scene_.step.max_displacement;
+  bool ended_at_entry = false;  // the last attempt was cut there: what comes next has its contact and may be long
   while (remaining > 0.0) {
     trial = std::min(trial, remaining);
     // Blocks that move on as they did must not exceed the largest displacement; equal parts of what remains cost least and suit every scheme.
@@ -762,10 +797,12 @@ bool Simulation<N>::advance(double dt) {
       remaining = remaining - now > tolerance::rounding_of_times * dt ? remaining - now : 0.0;
       if (scheme_->is_within_step()) continue;
       if (adaptive) control_.accepted(trial, result.error);
-      trial = adaptive ? control_.step(dt) : 2.0 * trial;
+      trial = adaptive ? control_.step(dt) : ended_at_entry ? remaining : 2.0 * trial;
+      ended_at_entry = false;
       continue;
     }
     scheme_->abandon_step();
+    ended_at_entry = result.ends_at_entry;
     if (result.too_wrong) {
       control_.refused(trial, result.error);
       trial = control_.step(dt);
@@ -829,7 +866,7 @@ void Simulation<N>::restart_clock() {
   time_ = 0.0;
   ledger_ = EnergyLedger();
   books_steps_ = true;
-  max_penetration_ = 0.0;
+  max_penetration_ = friction_work_ = lagging_friction_work_ = 0.0;
   restart_scheme();
 }
 
@@ -856,7 +893,7 @@ void Simulation<N>::restore(const Snapshot& snapshot) {
   may_rest_ = false;  // what is known of quiet blocks and their contacts is of another state
   contacts_current_ = true;
   output_velocity_ = snapshot.blocks.velocity;
-  failed_attempts_ = 0;
+  failed_attempts_ = cuts_at_entry_ = 0;
   last_speed_ = 0.0;
   restart_scheme();
 }
@@ -864,8 +901,8 @@ void Simulation<N>::restore(const Snapshot& snapshot) {
 template <int N>
 void Simulation<N>::exchange(Archive& archive) {
   archive(system_, resting_, may_rest_, external_, joints_, base_moves_, keep_bonds_, detector_, contacts_, contacts_current_, output_velocity_,
-          time_, reason_, ledger_, start_kinetic_energy_, collected_contact_energy_, max_penetration_, step_counters_, failed_attempts_, last_speed_,
-          control_, begins_);
+          time_, reason_, ledger_, start_kinetic_energy_, collected_contact_energy_, max_penetration_, friction_work_, lagging_friction_work_,
+          step_counters_, failed_attempts_, cuts_at_entry_, last_speed_, control_, begins_);
   if (archive.reading()) scheme_ = make_scheme();
   scheme_->exchange(archive);
   enforcement_->exchange(archive);

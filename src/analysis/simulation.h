@@ -25,6 +25,7 @@ struct StepCounters {
   long steps = 0;
   long cuts = 0;                        ///< attempts thrown away
   long error_cuts = 0;                  ///< of these: because of step.error_tolerance_m
+  long entry_cuts = 0;                  ///< of these: `hard`, because a corner entered a block that it was not in contact with
   long iterations = 0;                  ///< linear solves of the whole system, thrown-away attempts included
   long parts = 0;                       ///< of the system, solved for themselves between these
   long part_iterations = 0;             ///< linear solves of parts
@@ -60,8 +61,8 @@ struct StepCounters {
   }
 
   void exchange(Archive& archive) {
-    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, w, x] = *this;
-    archive(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, w, x);
+    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, w, x, y] = *this;
+    archive(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, w, x, y);
   }
 };
 
@@ -80,6 +81,7 @@ struct StepResult {
   double error = 0.0;             ///< [m] local error, see local_error(); only if the scene asks for adaptive steps
   bool too_wrong = false;         ///< refused because of it
   double part = 0.0;              ///< [-] refused: of the step, a length that is likely to be accepted; 0 if that is not known
+  bool ends_at_entry = false;     ///< refused: `part` ends where a corner enters a block that it is not in contact with
   bool lost_strength = false;     ///< a contact has lost its cohesion or tensile strength at the end of the step
 };
 
@@ -125,6 +127,10 @@ class Simulation {
   const ExternalForces<N>& external() const { return external_; }
   /// Contacts of the present positions. Reference valid until the next step.
   std::vector<Contact>& contacts();
+  /// As the last step left them.
+  const std::vector<Contact>& contacts() const;
+  /// Pairs of blocks that may touch, see Detector::candidate_pairs().
+  const std::vector<std::pair<int, int>>& candidate_pairs() const { return detector_.candidate_pairs(); }
   const Enforcement<N>& enforcement() const { return *enforcement_; }
   /// The next step as it stands; for starts, and for those who want the tangent.
   StepProblem<N> problem(double dt, bool statics);
@@ -138,7 +144,12 @@ class Simulation {
   double force_scale() const;  ///< [N] weight of the heaviest free block, or the largest load or contact force if there is no gravity
 
   const EnergyLedger& ledger() const;
+  /// [J] What is to be added to the ledger's mechanical energy so that all of it belongs to time(), see CentralDifference::energy_to_end(); 0 for
+  /// implicit methods.
+  double energy_to_end_of_step() const { return loop_ && loop_is_loaded_ ? loop_->energy_to_end() : 0.0; }
   double max_penetration() const;
+  /// [-] `shi`: by how much of its work the friction of sliding contacts was not that of their normal force, but that of the pass before.
+  double friction_lag() const { return friction_work_ > 0.0 ? lagging_friction_work_ / friction_work_ : 0.0; }
   const StepCounters& step_counters() const { return step_counters_; }
   const DetectionCounters& detection_counters() const { return detector_.counters(); }
   const StageTimes& stage_times() const { return stage_times_; }
@@ -197,6 +208,8 @@ class Simulation {
   /// [N] Sum of the forces on every free block as it stands, without dashpots.
   Eigen::VectorXd forces_now(const StepProblem<N>& problem) const;
   double largest_move(const StepSolution<N>& solution) const;
+  /// [-] Part of a step after which a corner has entered a block by what rigid contacts tolerate, see first_entry(); 1 if there is none.
+  double part_before_entry(const StepSolution<N>& solution, double moved) const;
   double unbalanced_force(const StepProblem<N>& problem, const StepSolution<N>& solution) const;
   void accept(const StepProblem<N>& problem, const StepSolution<N>& solution);
   void accept_contacts(const StepSolution<N>& solution);
@@ -244,6 +257,7 @@ class Simulation {
   std::unique_ptr<CentralDifference<N>> loop_;  ///< null for implicit methods
   mutable bool loop_is_ahead_ = false;          ///< of system_ and contacts_
   bool loop_is_loaded_ = false;
+  int cuts_at_entry_ = 0;  ///< since the last step that was accepted
   Resting<N> resting_;
   bool may_rest_ = false;
   bool base_moves_ = false;
@@ -254,6 +268,7 @@ class Simulation {
   double start_kinetic_energy_ = 0.0;              ///< [J]
   mutable double collected_contact_energy_ = 0.0;  ///< [J] stored when the loop was last collected from or loaded
   mutable double max_penetration_ = 0.0;
+  double friction_work_ = 0.0, lagging_friction_work_ = 0.0;  ///< [J] see friction_lag()
   StepCounters step_counters_;
   double negligible_force_ = 0.0;  ///< [N]
   bool books_steps_ = true;

@@ -192,6 +192,7 @@ int run_command(const Options& options) {
   summary.reason = result.reason;
   summary.settling = result.settling;
   summary.ended_by = result.ended_by;
+  summary.watch = result.watch;
   summary.milestones = result.milestones;
   summary.cpu_of_start = result.cpu_of_start;
   summary.cpu_of_motion = result.cpu_of_motion;
@@ -200,7 +201,7 @@ int run_command(const Options& options) {
   write_summary(folder, summary, simulation);
 
   if (!result.converged) {
-    fmt::print(stderr, "openclose: not converged at t = {:.6g} s: {}; state saved in {}\n", simulation.time(), result.reason, folder.path());
+    fmt::print(stderr, "openclose: {} at t = {:.6g} s: {}; state saved in {}\n", result.refused ? "refused" : "not converged", simulation.time(), result.reason, folder.path());
     return exit_not_converged;
   }
   if (!options.quiet) {

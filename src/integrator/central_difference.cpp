@@ -712,6 +712,17 @@ double CentralDifference<N>::last_unbalanced_force() const {
 }
 
 template <int N>
+double CentralDifference<N>::energy_to_end() const {
+  double power = 0.0;  // of all forces but gravity, whose work in the half step is the loss of height
+  for (std::size_t i = 0; i < inertia_.size(); ++i) {
+    const Inertia& m = inertia_[i];
+    const Rate &v = rates_[i], &f = forces_[i];
+    power += v.x * (f.x - m.weight_x) + v.y * (f.y - m.weight_y) + m.turns * v.turn * f.turn;
+  }
+  return 0.5 * h_ * power;
+}
+
+template <int N>
 double CentralDifference<N>::unbalanced_force() const {
   double largest = 0.0;
   for (std::size_t i = 0; i < inertia_.size(); ++i) largest = std::max(largest, force_squared(i));

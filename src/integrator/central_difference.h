@@ -74,6 +74,10 @@ class CentralDifference {
   bool moved_beyond_skin();
   double critical_step() { return critical_step_.step(); }     ///< [s] of the contacts that may close before they are renewed
   double last_unbalanced_force() const;                        ///< [N] largest force on a block when the last step began
+  /// [J] From the mechanical energy with the kinetic energy and the height of the middle of the last step, and the springs of its end, to that in
+  /// which the kinetic energy is m v- v+/2 of the velocities before and after its end. For a spring that stays closed this is the energy that central
+  /// differences keep exactly (the former swings by half of step times frequency), and so it is for constant forces. Moving bases left out.
+  double energy_to_end() const;
   double unbalanced_force() const;                             ///< [N] now; a pass over the blocks
   bool lost_strength() const { return lost_strength_; }        ///< a contact has lost cohesion or tensile strength in the last step
   double max_penetration() const { return max_penetration_; }  ///< [m] since the load

@@ -89,6 +89,8 @@ struct StepSolution {
   bool dissipative = false;  ///< path_average: taken with more dissipation than asked for, see soft.cpp
   std::string reason;        ///< why not converged
   double part = 0.0;         ///< [-] not converged: of the step, a length that is likely to; 0 if that is not known
+  double friction_work = 0.0,
+         lagging_friction_work = 0.0;  ///< [J] `shi`: of sliding contacts by their strength, and what their friction missed it by
   StepEffort effort;
   Eigen::VectorXd d;        ///< displacement of the step, N per free block
   double unbalanced = 0.0;  ///< [N] largest residual of a block, if static
@@ -101,6 +103,7 @@ struct StepSolution {
     converged = compliant = eased = first_order = dissipative = false;
     reason.clear();
     part = 0.0;
+    friction_work = lagging_friction_work = 0.0;
     effort = {};
     unbalanced = 0.0;
     contacts.clear();

@@ -193,8 +193,10 @@ void Newton<N>::prepare(const StepProblem<N>& problem, const SpringSource<N>& sp
                        problem.external.force(system, b, still), problem.drift(b), problem.external.magnitude(system, b, still),
                        problem.external.spring_scale(system, b)});
   }
+  find_blocks_alone();
   block_scale_ = 0.0;
   for (const StepBlock& block : blocks_) {
+    if (block.is_alone) continue;
     block_scale_ = std::max({block_scale_, block.magnitude, Motion<N>::largest_force(block.inertia.cwiseProduct(block.drift), block.radius)});
   }
   start_scale_ = std::max(kernels_.begin(contacts()), block_scale_);
@@ -203,6 +205,32 @@ void Newton<N>::prepare(const StepProblem<N>& problem, const SpringSource<N>& sp
   branches_.assign(batch_size * contacts().size(), 0);
   moves_.assign(system.free_count() + 1, BlockMove<N>());
   neighbourhood_.clear();
+}
+
+template <int N>
+void Newton<N>::find_blocks_alone() {
+  for (StepBlock& block : blocks_) block.is_alone = !block.has_point_forces;
+  const int rows = static_cast<int>(blocks_.size());
+  const auto touch = [&](int row) {
+    if (row < rows) blocks_[row].is_alone = false;
+  };
+  for (const ContactBatch& batch : contacts()) {
+    for (int k = 0; k < batch_size; ++k) {
+      touch(batch.vertex_place(k));
+      touch(batch.edge_place(k));
+    }
+  }
+}
+
+template <int N>
+void Newton<N>::move_blocks_alone(Eigen::VectorXd& d) const {
+  for (std::size_t row = 0; row < blocks_.size(); ++row) {
+    const StepBlock& block = blocks_[row];
+    if (!block.is_alone) continue;
+    Unknowns by_force = block.force.cwiseQuotient(block.inertia);
+    if (block.rotation_locked) by_force[Motion<N>::rotation_index] = 0.0;
+    d.template segment<N>(N * static_cast<Eigen::Index>(row)) = block.drift + by_force;
+  }
 }
 
 template <int N>
@@ -234,6 +262,7 @@ void Newton<N>::evaluate_block(int row, const Eigen::VectorXd& d) {
   Unknowns r = block.inertia.cwiseProduct(block.drift - db) + theta * force;
   if (theta < 1.0) r += (1.0 - theta) * start_force_.template segment<N>(at);
   if (block.rotation_locked) r[Motion<N>::rotation_index] = 0.0;
+  if (block.is_alone) r.setZero();
   residual_.template segment<N>(at) = r;
   const Unknowns moved = block.inertia.cwiseProduct(block.drift.cwiseAbs() + db.cwiseAbs());
   sums = Lanes{force[0], force[1], force[2], sums[N]};
@@ -254,6 +283,7 @@ template <int N>
 void Newton<N>::find_force_scale(double of_contacts, const Eigen::VectorXd& d) {
   force_scale_ = of_contacts;
   for (int row = 0; row < static_cast<int>(blocks_.size()); ++row) {
+    if (blocks_[row].is_alone) continue;
     force_scale_ = std::max(force_scale_, magnitude(blocks_[row], d.template segment<N>(N * row)));
   }
 }
@@ -875,6 +905,14 @@ void Newton<N>::solve(const StepProblem<N>& problem, const SpringSource<N>& spri
 }
 
 template <int N>
+bool Newton<N>::solve_if_few_change(const StepProblem<N>& problem, const SpringSource<N>& springs, StepSolution<N>& solution) {
+  only_if_few_change_ = true;
+  solve(problem, springs, solution);
+  only_if_few_change_ = false;
+  return solution.converged;
+}
+
+template <int N>
 void Newton<N>::solve_again(const std::vector<ContactSprings>& springs, StepSolution<N>& solution, FirstTangent first) {
   take_back(solution.contacts);
   branches_before_ = branches_;
@@ -885,6 +923,7 @@ void Newton<N>::solve_again(const std::vector<ContactSprings>& springs, StepSolu
 template <int N>
 void Newton<N>::solve_prepared(StepSolution<N>& solution, FirstTangent first) {
   const StepProblem<N>& problem = *problem_;
+  move_blocks_alone(solution.d);
   if (problem.end_weight < 1.0) {
     sum_start_forces();
     solution.start_contacts.copy(starts_, moves_, trials_, branches_, elastic_parts());
@@ -892,11 +931,11 @@ void Newton<N>::solve_prepared(StepSolution<N>& solution, FirstTangent first) {
   const Eigen::VectorXd start = solution.d;
   double norm = begin(start, first);
   const auto is_open = [](const Contact& contact) { return contact.status == ContactStatus::open; };
-  const bool may_start_cold = problem.statics && problem.method.max_iterations >= most_cold_iterations &&
-                              std::all_of(problem.contacts.begin(), problem.contacts.end(), is_open);
+  const bool may_start_cold = only_if_few_change_ || (problem.statics && problem.method.max_iterations >= most_cold_iterations &&
+                                                      std::all_of(problem.contacts.begin(), problem.contacts.end(), is_open));
   const Until until{1.0, problem.method.max_iterations};
   Outcome outcome = iterate(problem, solution, norm, until, may_start_cold);
-  if (outcome == Outcome::cold_start) {
+  if (outcome == Outcome::cold_start && !only_if_few_change_) {
     const Eigen::VectorXd after_first = solution.d;
     const std::vector<Branch> before_first = branches_before_;
     if (iterate_from_cold(solution, norm)) outcome = iterate(problem, solution, norm, until, false);
@@ -907,7 +946,7 @@ void Newton<N>::solve_prepared(StepSolution<N>& solution, FirstTangent first) {
       outcome = iterate_holding(solution, norm, 1);
     }
   }
-  if (outcome == Outcome::no_common_step) {
+  if (outcome == Outcome::no_common_step && !only_if_few_change_) {
     solution.d = start;
     norm = begin(start, first);
     outcome = iterate_holding(solution, norm, 0);

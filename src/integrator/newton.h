@@ -74,6 +74,9 @@ class Newton {
   /// [-] Part of the cohesion over which it comes in, in what is solved from now on: see ContactStrength::shear_bound().
   void set_cohesion_ramp(double ramp) { ramp_ = ramp; }
 
+  /// The same for a static step that has more blocks than Newton's method is quick with, unless few contacts change their state: false, and nothing
+  /// is solved, if more than a tenth do in the first iteration, or if the iteration does not converge.
+  bool solve_if_few_change(const StepProblem<N>& problem, const SpringSource<N>& springs, StepSolution<N>& solution);
   /// The same for a static step, by relaxation. What friction holds in the end depends on the way there.
   void relax(const StepProblem<N>& problem, const SpringSource<N>& springs, StepSolution<N>& solution);
 
@@ -111,6 +114,7 @@ class Newton {
     Unknowns inertia, force, drift;        ///< mass over time squared; all but contacts' at the start; displacement without forces
     double magnitude = 0.0;                ///< [N] of these forces
     double rounding_of_coordinates = 0.0;  ///< [N]
+    bool is_alone = false;                 ///< without contacts and point forces
   };
 
   /// Takes back what outcomes have, so that the next step can be laid out in it.
@@ -162,6 +166,10 @@ class Newton {
   /// Whether a block has gone so far that the step will be refused.
   bool has_left(const Eigen::VectorXd& d) const;
   void prepare(const StepProblem<N>& problem, const SpringSource<N>& springs);
+  /// Blocks that nothing touches go where constant forces move them, which is known at once. They have no residual, and their forces are no measure
+  /// of others, so that whatever they are changes not a bit of what the others do.
+  void find_blocks_alone();
+  void move_blocks_alone(Eigen::VectorXd& d) const;
   /// The part of prepare() that solve_again() needs.
   void prepare_start(const std::vector<ContactSprings>& springs);
   void solve_prepared(StepSolution<N>& solution, FirstTangent first);
@@ -264,6 +272,7 @@ class Newton {
   LinearCounters part_counters_;
   Memory memory_;
   bool is_part_ = false;
+  bool only_if_few_change_ = false;
 };
 
 extern template class Newton<3>;

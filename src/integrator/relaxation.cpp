@@ -191,6 +191,7 @@ void Newton<N>::relax(const StepProblem<N>& problem, const SpringSource<N>& spri
   prepare(problem, springs);
   renewal_.forget();  // bonds may break in the batches, whether or not the step is taken
   Eigen::VectorXd& d = solution.d;
+  move_blocks_alone(d);
   evaluate(d);
   double norm = residual_norm(), norm_of_estimate = norm;
   CountedContacts contacts(problem.contacts, branches_);

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "openclose/integrator/registry.h"
 #include "openclose/integrator/tangent_system.h"
@@ -18,6 +19,10 @@ namespace {
 
 /// [-] Default penalty over the joint's stiffness: the original takes about 50 E, and rigid blocks have no E.
 constexpr double default_penalty_over_joint = 10.0;
+/// [m] and [-] of the size of the free blocks: what contacts may penetrate by default, the larger of the two. A thousandth of a block changes no
+/// geometry (the original scales with the height of the model, a slope of 1 km then has 0.1 m); what drawings leave is no reason to cut steps of
+/// smaller blocks.
+constexpr double default_penetration_m = 1e-3, default_penetration_of_size = 1e-3;
 
 template <int N>
 class Shi : public Enforcement<N> {
@@ -196,13 +201,26 @@ class Shi : public Enforcement<N> {
     return f;
   }
 
+  /// [m] The size is the root of the median area, so that single slivers or giants do not decide.
+  static double default_penetration_tolerance(const BlockSystem<N>& system) {
+    std::vector<double> areas;
+    for (int b : system.free_blocks()) areas.push_back(system.block(b).area);
+    if (areas.empty()) return default_penetration_m;
+    const auto median = areas.begin() + static_cast<std::ptrdiff_t>(areas.size() / 2);
+    std::nth_element(areas.begin(), median, areas.end());
+    return std::max(default_penetration_m, default_penetration_of_size * std::sqrt(*median));
+  }
+
   void finish(const StepProblem<N>& problem, StepSolution<N>& solution) {
+    std::optional<double> tolerated = problem.method.penetration_tolerance;
     for (const LinearContact& o : outcome_) {
       const double depth = o.forces.status == ContactStatus::open ? 0.0 : -(o.springs.gap + o.kinematics.gap_change);
-      if (depth > problem.method.penetration_tolerance) {
+      if (depth <= tolerated.value_or(default_penetration_m)) continue;
+      if (!tolerated) tolerated = default_penetration_tolerance(problem.system);
+      if (depth > *tolerated) {
         solution.reason =
             fmt::format("penetration of {:.3g} m exceeds method.penetration_tolerance_m = {:.3g}; a larger method.penalty_pa_per_m would reduce it",
-                        depth, problem.method.penetration_tolerance);
+                        depth, *tolerated);
         return;
       }
     }
@@ -211,7 +229,12 @@ class Shi : public Enforcement<N> {
       const ContactKinematics<N>& k = outcome_[c].kinematics;
       // What a sliding contact carried in this step is the friction of the pass before.
       CarriedForces f = outcome_[c].forces;
-      if (f.status == ContactStatus::sliding) f.shear = f.elastic_shear = applied_shear_[c];
+      if (f.status == ContactStatus::sliding) {
+        const double slip = std::abs(outcome_[c].kinematics.slip_change);
+        solution.friction_work += std::abs(f.shear) * slip;
+        solution.lagging_friction_work += std::abs(applied_shear_[c] - f.shear) * slip;
+        f.shear = f.elastic_shear = applied_shear_[c];
+      }
       solution.contacts.push_back({outcome_[c].springs, f, k.pose()});
     }
   }

@@ -295,6 +295,13 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
     for (const auto& [name, value] : entries(summary.ledger)) ledger[name] = value;
     j["energy_ledger"] = ledger;
     j["ended_by"] = summary.ended_by;
+    j["watch"] = {{"checks", summary.watch.checks},
+                  {"created_energy", summary.watch.created_energy},
+                  {"available_energy_j", summary.watch.available_energy},
+                  {"penetration", summary.watch.penetration},
+                  {"overlap", summary.watch.overlap},
+                  {"depth_m", summary.watch.depth},
+                  {"reach", summary.watch.reach}};
     j["milestones"] = milestones_json(summary.milestones);
     j["cpu_s"] = {{"start", summary.cpu_of_start}, {"motion", summary.cpu_of_motion}};
   }
@@ -313,6 +320,7 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
   j["counters"] = {{"steps", steps.steps},
                    {"steps_cut", steps.cuts},
                    {"error_cuts", steps.error_cuts},
+                   {"entry_cuts", steps.entry_cuts},
                    {"compliant_steps", steps.compliant},
                    {"eased_steps", steps.eased},
                    {"dissipative_steps", steps.dissipative},

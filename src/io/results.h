@@ -80,6 +80,7 @@ struct Summary {
   EnergyLedger ledger;
   SettleResult settling;
   std::string ended_by;               ///< see RunResult
+  WatchReport watch;                  ///< see RunResult
   std::vector<Milestone> milestones;  ///< see RunResult
   double cpu_of_start = 0.0;          ///< [s]
   double cpu_of_motion = 0.0;         ///< [s]

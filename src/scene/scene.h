@@ -163,7 +163,7 @@ struct MethodInput {
   double gap_tolerance = 3e-7;          ///< [m] hard: a closed contact may differ from its target gap, a sticking one from its place, by this much
   std::optional<double> penalty;        ///< [Pa/m] shi: normal penalty, times the tributary length like any stiffness; absent: 10 times the joint's
   double penalty_shear_ratio = 0.4;     ///< [-] shi: shear penalty over normal penalty
-  double penetration_tolerance = 1e-3;  ///< [m] shi: deeper contacts cut the step
+  std::optional<double> penetration_tolerance;  ///< [m] shi: deeper contacts cut the step; absent: see Shi
   double closing_tolerance = 1e-9;      ///< [m] shi: an open contact closes beyond this penetration
   int max_open_close_iterations = 6;    ///< shi: per step, before the step is cut
   double step_cut = 0.3;                ///< [-] shi: factor on the step when open-close does not settle

@@ -181,7 +181,7 @@ void write_method(Text& text, const MethodInput& method) {
   text.line("gap_tolerance_m", method.gap_tolerance);
   if (method.penalty) text.line("penalty_pa_per_m", *method.penalty);
   text.line("penalty_shear_ratio", method.penalty_shear_ratio);
-  text.line("penetration_tolerance_m", method.penetration_tolerance);
+  if (method.penetration_tolerance) text.line("penetration_tolerance_m", *method.penetration_tolerance);
   text.line("closing_tolerance_m", method.closing_tolerance);
   text.line("max_open_close_iterations", method.max_open_close_iterations);
   text.line("step_cut", method.step_cut);

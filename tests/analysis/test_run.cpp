@@ -514,3 +514,32 @@ TEST_CASE("hard takes slopes of a thousand and more blocks that gravity meets at
   CHECK(simulation.max_penetration() < 5e-6);
   CHECK(std::abs(simulation.ledger().imbalance()) < 1e-10 * simulation.ledger().turnover);
 }
+
+TEST_CASE("a run of shi says how far the friction of sliding contacts lags behind", "[analysis][run]") {
+  const auto result_of = [](Scene scene, double& lag) {
+    scene.method.contact = "shi";
+    test::use_joint_springs_as_penalty(scene);
+    Simulation<3> simulation(scene);
+    const RunResult result = run<3>(simulation, {});
+    CHECK(result.converged);
+    lag = simulation.friction_lag();
+    return result.warnings;
+  };
+  double lag = 0.0;
+  SECTION("not where the normal force stays as it is") {
+    Scene scene = test::block_on_incline(0.6);
+    scene.joints[0].friction_angle = 0.3;
+    scene.method.start = Start::steady_sliding;
+    scene.end_time = 0.1;
+    CHECK(result_of(scene, lag).empty());
+    CHECK(lag < 1e-3);
+  }
+  SECTION("but where blocks hit each other") {
+    Scene scene = test::tumbling_blocks();
+    scene.end_time = 0.4;
+    const std::vector<std::string> warnings = result_of(scene, lag);
+    REQUIRE(warnings.size() == 1);
+    CHECK_THAT(warnings[0], ContainsSubstring("friction of sliding contacts") && ContainsSubstring("step.dt_s = 0.0005"));
+    CHECK(lag > 0.01);
+  }
+}

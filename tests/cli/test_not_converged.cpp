@@ -80,3 +80,15 @@ TEST_CASE("a run that gets stuck on its way", "[cli][not_converged]") {
   CHECK(lines_of(place.folder() / "out/energy.csv").size() == history.size());
   CHECK(states_in(place.folder() / "out/blocks.csv").count("final") == 1);
 }
+
+TEST_CASE("a run that the watch refuses", "[cli][not_converged]") {
+  const Workplace place;
+  const CommandResult result = place.run("run scene.toml -o out --dt 0.001 --end 1 --start unloaded --set joint[0].normal_stiffness_pa_per_m=2e4");
+  check_saved(place, result, "the springs are too soft for these blocks");
+  CHECK_THAT(result.errors[0], ContainsSubstring("refused at t = ") && ContainsSubstring("joint[0].normal_stiffness_pa_per_m = "));
+  const nlohmann::json watch = summary_of(place).at("watch");
+  CHECK(watch.at("penetration") > 0.25);
+  CHECK(watch.at("checks") >= 100);
+  CHECK(watch.at("created_energy") < 0.01);
+  CHECK(summary_of(place).at("ended_by") == "");
+}

@@ -206,7 +206,8 @@ TEST_CASE("steps without multipliers penetrate by no more than their forces comp
   Scene scene = column(blocks, dt, 20);
   scene.method.gap_tolerance = 1e-10;  // which passes through so many blocks do not reach
   Simulation<3> simulation(scene);
-  REQUIRE(run<3>(simulation, {}).converged);
+  prepare_start(simulation);  // the watch would refuse a run that misses its tolerance so far
+  for (int i = 0; i < 20; ++i) REQUIRE(simulation.advance(dt));
   CHECK(simulation.step_counters().compliant == simulation.step_counters().steps);
   // The weight of the column on the two corners of its lowest block, twice as much where it bounces, over springs of 300 times the inertia.
   CHECK(simulation.max_penetration() < blocks * 9.81 * dt * dt / 300.0);

@@ -102,3 +102,23 @@ TEST_CASE("an open contact of shi closes beyond its tolerance only", "[integrato
   scene.method.closing_tolerance = 0.5e-7;
   CHECK(std::abs(outcome(scene, "shi").displacement[1]) < 0.9e-7);
 }
+
+TEST_CASE("what contacts of shi may penetrate by default goes with the blocks, not with the model", "[integrator][shi]") {
+  // A block a hundred times as large on the same closure over its size.
+  const auto steps_on = [](double size, double closure_of_size) {
+    Scene scene = test::block_on_base();
+    for (BlockInput& block : scene.blocks) {
+      for (Vec2& v : block.vertices) v *= size;
+    }
+    scene.method.contact = "shi";
+    scene.step.max_displacement = size;
+    const double weight = test::block_weight * size * size;
+    scene.method.penalty = weight / (closure_of_size * size * test::block_edge * size);
+    return static_step(scene).accepted;
+  };
+  CHECK(steps_on(1.0, 0.9e-3));
+  CHECK_FALSE(steps_on(1.0, 1.5e-3 * std::sqrt(2.0)));
+  CHECK(steps_on(100.0, 0.9e-3));
+  CHECK_FALSE(steps_on(100.0, 1.5e-3 * std::sqrt(2.0)));
+  CHECK(steps_on(0.01, 0.05));  // 0.5 mm
+}

@@ -1,0 +1,141 @@
+#include "openclose/analysis/corner_entry.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "openclose/core/tolerance.h"
+
+namespace openclose {
+namespace {
+
+/// [-] A shorter part of a step would be no step: the corner counts as being behind already.
+constexpr double shortest_part = 1e-3;
+/// [-] Of what is tolerated: closed contacts whose gaps exclude each other miss theirs by three times as much.
+constexpr double behind = 4.0;
+/// [-] Of tolerance::edge_end_m, to which corners that slide on something count as flush.
+constexpr double flush = 2.0;
+
+/// A point that goes straight from one place to another within the step.
+struct Way {
+  Vec2 start, gone;
+  Vec2 at(double part) const { return start + part * gone; }
+};
+
+template <int N>
+class Ways {
+ public:
+  Ways(const BlockSystem<N>& system, const StepSolution<N>& solution) : system_(system), solution_(solution) {}
+
+  Way operator()(int b, int vertex) const {
+    return {system_.position(b, vertex), Motion<N>::displacement(solution_.of(system_, b), system_.arm(vertex), system_.rotation_kind())};
+  }
+  /// [m] By which no two points of the blocks that are near each other can come nearer.
+  double approach(int a, int b) const {
+    const auto of_a = solution_.of(system_, a), of_b = solution_.of(system_, b);
+    const auto& block_a = system_.block(a);
+    const auto& block_b = system_.block(b);
+    return Motion<N>::translation(of_a - of_b).norm() + block_a.radius * std::abs(Motion<N>::rotation(of_a)) +
+           block_b.radius * std::abs(Motion<N>::rotation(of_b));
+  }
+
+ private:
+  const BlockSystem<N>& system_;
+  const StepSolution<N>& solution_;
+};
+
+/// How a corner moves against an edge.
+class Course {
+ public:
+  Course(const Way& corner, const Way& start, const Way& end) : corner_(corner), start_(start), end_(end), length_((end.start - start.start).norm()) {
+    // Behind is on the left. The area between edge and corner is a quadratic function of the part of the step.
+    const Vec2 edge = end.start - start.start, edge_gone = end.gone - start.gone;
+    const Vec2 lever = corner.start - start.start, lever_gone = corner.gone - start.gone;
+    c0_ = cross(edge, lever), c1_ = cross(edge, lever_gone) + cross(edge_gone, lever), c2_ = cross(edge_gone, lever_gone);
+  }
+  /// [-] When it is behind by a depth [m]; 1 if it is so at once, or does not end up behind by `least` [m].
+  double part(double depth, double least) const {
+    const double c = c0_ - depth * length_;
+    if (c >= 0.0 || c0_ + c1_ + c2_ <= least * length_) return 1.0;
+    // It is before that at the start and behind it at the end, so that exactly one root lies between. Without cancellation, since c < 0.
+    return -2.0 * c / (c1_ + std::sqrt(std::max(0.0, c1_ * c1_ - 4.0 * c2_ * c)));
+  }
+  /// [m] Where it is along the edge.
+  double along(double part) const { return (end_.at(part) - start_.at(part)).dot(corner_.at(part) - start_.at(part)) / length_; }
+  double length() const { return length_; }
+
+ private:
+  const Way &corner_, &start_, &end_;
+  double length_;
+  double c0_, c1_, c2_;
+};
+
+template <int N>
+class Entries {
+ public:
+  Entries(const BlockSystem<N>& system, const StepSolution<N>& solution, double tolerated)
+      : system_(system), ways_(system, solution), tolerated_(tolerated) {}
+
+  /// [-] Of the corners of one block into another one.
+  double first(int of, int into) const {
+    const double reach = ways_.approach(of, into);
+    const auto& block = system_.block(of);
+    const auto& target = system_.block(into);
+    double first = 1.0;
+    for (int v = block.first_vertex; v < block.first_vertex + block.vertex_count; ++v) {
+      if (system_.is_reflex(v)) continue;
+      const Way corner = ways_(of, v);
+      if ((corner.start - system_.centroid(into)).norm() > target.radius + reach) continue;
+      for (int e = target.first_vertex; e < target.first_vertex + target.vertex_count; ++e) first = std::min(first, entry(corner, v, into, e));
+    }
+    return first;
+  }
+  bool may_be(int a, int b) const {
+    const double reach = ways_.approach(a, b);
+    return reach > behind * tolerated_ &&
+           (system_.centroid(a) - system_.centroid(b)).norm() <= system_.block(a).radius + system_.block(b).radius + reach;
+  }
+
+ private:
+  double entry(const Way& corner, int v, int into, int e) const {
+    const Way start = ways_(into, e), end = ways_(into, system_.next(e));
+    const Course course(corner, start, end);
+    const double part = course.part(0.5 * tolerated_, behind * tolerated_);
+    if (!(part >= shortest_part && part < 1.0)) return 1.0;
+    const double along = course.along(part), from_start = along, from_end = course.length() - along;
+    if (std::min(from_start, from_end) < -tolerated_) return 1.0;
+    if (std::min(from_start, from_end) > behind * tolerated_) return part;
+    // At its end a corner slides on over a neighbour that is flush with the block, unless its own block is behind that side of the block, too: the
+    // feet of two blocks that meet on one floor. Detection takes corners for flush until they are deeper than rounding leaves them.
+    if (stands_on(v, from_start < from_end ? system_.previous(e) : system_.next(e))) return 1.0;
+    const double deeper = course.part(flush * tolerance::edge_end_m, flush * tolerance::edge_end_m);
+    return deeper >= shortest_part ? deeper : 1.0;
+  }
+  /// Both sides of a corner leave the half-plane behind an edge.
+  bool stands_on(int v, int e) const {
+    const Vec2 along = (system_.arm(system_.next(e)) - system_.arm(e)).normalized(), outward(along.y(), -along.x());
+    const auto leaves = [&](int other) {
+      return outward.dot((system_.arm(other) - system_.arm(v)).normalized()) >= -std::sin(tolerance::flush_tilt_rad);
+    };
+    return leaves(system_.next(v)) && leaves(system_.previous(v));
+  }
+
+  const BlockSystem<N>& system_;
+  const Ways<N> ways_;
+  double tolerated_;  ///< [m]
+};
+
+}  // namespace
+
+template <int N>
+double first_entry(const BlockSystem<N>& system, const StepSolution<N>& solution, const std::vector<std::pair<int, int>>& pairs, double tolerated) {
+  const Entries<N> entries(system, solution, tolerated);
+  double first = 1.0;
+  for (const auto& [a, b] : pairs) {
+    if (entries.may_be(a, b)) first = std::min({first, entries.first(a, b), entries.first(b, a)});
+  }
+  return first;
+}
+
+template double first_entry<3>(const BlockSystem<3>&, const StepSolution<3>&, const std::vector<std::pair<int, int>>&, double);
+
+}  // namespace openclose

@@ -1,0 +1,354 @@
+#include "openclose/analysis/watch.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "openclose/core/tolerance.h"
+#include "openclose/geometry/box.h"
+#include "openclose/geometry/overlap.h"
+#include "openclose/integrator/integrators.h"
+
+namespace openclose {
+namespace {
+
+/// Steps that are checked one by one; after them each doubling of their number has half as many checks.
+constexpr long first_steps = 128;
+/// [-] Part of the pairs that a check looks at, so that each is looked at some times in a run and this is no more work than the rest of a check.
+constexpr std::size_t turns = 32;
+/// [-] A remedy asks for this much more than what would just have been enough.
+constexpr double margin = 2.0;
+
+/// How many blocks stand on each other: in the scene as it starts, from what is fixed to the block that the most others part from it; no fewer than
+/// in a pile of all.
+template <int N>
+double stacked_blocks(const Simulation<N>& simulation) {
+  const BlockSystem<N>& system = simulation.system();
+  const double pile = std::sqrt(static_cast<double>(system.free_count()));
+  const int far = system.block_count();
+  std::vector<int> level(system.block_count(), far);
+  for (int b = 0; b < system.block_count(); ++b) {
+    if (system.block(b).equation == BlockSystem<N>::fixed) level[b] = 0;
+  }
+  for (bool is_new = true; is_new;) {
+    is_new = false;
+    for (const Contact& c : simulation.contacts()) {
+      for (const auto& [from, to] : {std::pair(c.vertex_block, c.edge_block), std::pair(c.edge_block, c.vertex_block)}) {
+        if (level[from] + 1 >= level[to]) continue;
+        level[to] = level[from] + 1;
+        is_new = true;
+      }
+    }
+  }
+  double most = pile;
+  for (const int l : level) most = std::max(most, l < far ? static_cast<double>(l) : 0.0);
+  return most;
+}
+
+/// [m] To which a method tells where blocks are: rigid contacts may be off by their tolerance, and where blocks stand on each other these add up.
+template <int N>
+double undetermined_length(const Simulation<N>& simulation) {
+  if (simulation.enforcement().has_elastic_contacts()) return tolerance::rounding_of_ways_m;
+  const double tolerated = watch_bound::gap_tolerances * simulation.scene().method.gap_tolerance;
+  return std::max(stacked_blocks(simulation) * tolerated, tolerance::rounding_of_ways_m);
+}
+
+template <int N>
+Polygon polygon(const BlockSystem<N>& system, int b) {
+  const auto& block = system.block(b);
+  const Vec2 centroid = system.centroid(b);
+  Polygon polygon;
+  polygon.reserve(block.vertex_count);
+  for (int v = block.first_vertex; v < block.first_vertex + block.vertex_count; ++v) polygon.push_back(centroid + system.arm(v));
+  return polygon;
+}
+
+double perimeter(const Polygon& polygon) {
+  double length = 0.0;
+  for (std::size_t i = 0; i < polygon.size(); ++i) length += (polygon[(i + 1) % polygon.size()] - polygon[i]).norm();
+  return length;
+}
+
+/// Whether the line along an edge of a convex polygon keeps the other one out but for this depth [m].
+bool parts(const Polygon& convex, const Polygon& other, double depth) {
+  for (std::size_t i = 0; i < convex.size(); ++i) {
+    const Vec2 along = convex[(i + 1) % convex.size()] - convex[i];
+    const double reach = depth * along.norm();
+    const auto is_behind = [&](const Vec2& point) { return cross(along, point - convex[i]) > reach; };
+    if (std::ranges::none_of(other, is_behind)) return true;
+  }
+  return false;
+}
+
+/// Whether no edge of the one comes near the box of the other, and a corner of that lies outside: for blocks in a hollow of one that is not convex.
+bool lies_beside(const Polygon& inner, const Polygon& hollow) {
+  const Box box = Box::around(inner);
+  for (std::size_t i = 0; i < hollow.size(); ++i) {
+    if (Box::around(hollow[i], hollow[(i + 1) % hollow.size()]).overlaps(box)) return false;
+  }
+  return !contains(hollow, inner[0]);
+}
+
+std::string shorter_step(const Scene& scene, double factor) {
+  return fmt::format("step.dt_s = {:.2g} would be a remedy", scene.step.dt / factor);
+}
+
+/// The key that makes a contact stiffer by a factor, with its value.
+template <int N>
+std::string stiffer_contact(const Simulation<N>& simulation, int joint, double factor) {
+  const MethodInput& method = simulation.scene().method;
+  const double stiffness = simulation.scene().joints[joint].normal_stiffness;
+  if (method.contact == "shi" && method.penalty)
+    return fmt::format("method.penalty_pa_per_m = {:.2g} or more would be a remedy", factor * *method.penalty);
+  return fmt::format("joint[{}].normal_stiffness_pa_per_m = {:.2g} or more would be a remedy", joint, factor * stiffness);
+}
+
+/// What makes the energy of contacts more exact.
+template <int N>
+std::string better_energy(const Simulation<N>& simulation) {
+  const Scene& scene = simulation.scene();
+  if (simulation.is_explicit()) {
+    // The step taken is the shorter one of the two.
+    return fmt::format("method.step_fraction = {:.2g}, or step.dt_s = {:.2g}, would be a remedy", scene.method.step_fraction / margin,
+                       std::min(scene.step.dt, simulation.step_counters().longest_step) / margin);
+  }
+  if (scene.method.contact == "soft" && integrator_name(scene.method) != "path_average")
+    return shorter_step(scene, margin) + ", or method.integrator = \"path_average\"";
+  return shorter_step(scene, margin);
+}
+
+}  // namespace
+
+template <int N>
+bool Watch<N>::is_due(long step) {
+  long interval = 1;
+  while (step / interval > first_steps) interval *= 2;
+  return step % interval == 0;
+}
+
+template <int N>
+void Watch<N>::find_widths(const Simulation<N>& simulation) {
+  const BlockSystem<N>& system = simulation.system();
+  widths_.clear();
+  convex_.clear();
+  for (int b = 0; b < system.block_count(); ++b) {
+    const auto& block = system.block(b);
+    widths_.push_back(2.0 * block.area / perimeter(polygon(system, b)));
+    bool convex = true;
+    for (int v = block.first_vertex; v < block.first_vertex + block.vertex_count; ++v) convex &= !system.is_reflex(v);
+    convex_.push_back(convex);
+  }
+}
+
+template <int N>
+std::string Watch<N>::begin(const Simulation<N>& simulation) {
+  const BlockSystem<N>& system = simulation.system();
+  find_widths(simulation);
+  start_.clear();
+  double weights = 0.0, kinetic = 0.0, supports = 0.0;
+  for (int b = 0; b < system.block_count(); ++b) {
+    start_.push_back(Motion<N>::translation(system.displacement(b)));
+    if (system.block(b).equation < 0) continue;
+    weights += simulation.external().weight(system, b).norm();
+    const auto v = simulation.velocity(b);
+    kinetic += 0.5 * v.dot(system.block(b).mass.cwiseProduct(v));
+  }
+  for (const auto& load : simulation.external().loads()) weights += load.force.norm();
+  for (const auto& support : simulation.external().supports()) {
+    const Vec2 stretch = system.point_position(support.point) - support.anchor;
+    supports += 0.5 * support.stiffness.dot(stretch.cwiseAbs2());
+  }
+  undetermined_energy_ = weights * undetermined_length(simulation);
+  energy_at_start_ = kinetic + supports + simulation.stored_contact_energy();
+  report_.available_energy = energy_at_start_;
+  depth_at_start_ = std::numeric_limits<double>::infinity();  // rigid contacts begin with what the drawing has
+  std::string found = check_contacts(simulation);
+  if (found.empty()) found = check_overlaps(simulation, 0, simulation.candidate_pairs().size());
+  depth_at_start_ = report_.depth;
+  return found;
+}
+
+template <int N>
+std::string Watch<N>::check(const Simulation<N>& simulation) {
+  const std::size_t pairs = simulation.candidate_pairs().size(), checks = static_cast<std::size_t>(report_.checks);
+  const std::size_t now = (checks + 1) * pairs / turns - checks * pairs / turns;
+  if (next_pair_ >= pairs) next_pair_ = 0;
+  const std::size_t first = next_pair_;
+  next_pair_ += now;
+  return check(simulation, first, now);
+}
+
+template <int N>
+std::string Watch<N>::check_at_end(const Simulation<N>& simulation) {
+  return check(simulation, 0, simulation.candidate_pairs().size());
+}
+
+template <int N>
+std::string Watch<N>::check(const Simulation<N>& simulation, std::size_t first_pair, std::size_t pairs) {
+  ++report_.checks;
+  if (std::string wrong = check_finite(simulation); !wrong.empty()) return wrong;
+  follow_energy(simulation);
+  // What is deepest in each other comes first: it is where energy comes from, too, and has the better remedy.
+  if (std::string wrong = check_contacts(simulation); !wrong.empty()) return wrong;
+  if (std::string wrong = check_overlaps(simulation, first_pair, pairs); !wrong.empty()) return wrong;
+  if (std::string wrong = check_energy(simulation); !wrong.empty()) return wrong;
+  return check_reach(simulation);
+}
+
+template <int N>
+std::string Watch<N>::check_finite(const Simulation<N>& simulation) const {
+  const BlockSystem<N>& system = simulation.system();
+  for (int b : system.free_blocks()) {
+    if (system.displacement(b).allFinite() && simulation.velocity(b).allFinite()) continue;
+    return fmt::format("block \"{}\" has no finite position or velocity any more; {}", simulation.scene().blocks[b].name,
+                       shorter_step(simulation.scene(), margin));
+  }
+  return {};
+}
+
+template <int N>
+void Watch<N>::follow_energy(const Simulation<N>& simulation) {
+  const BlockSystem<N>& system = simulation.system();
+  const EnergyLedger& ledger = simulation.ledger();
+  energies_.assign(system.block_count(), 0.0);
+  falls_.assign(system.block_count(), 0.0);
+  double released = 0.0;
+  const auto follow = [&](int b) {
+    const auto& mass = system.block(b).mass;
+    const auto v = simulation.velocity(b), w = system.velocity(b);
+    // Where the two belong to different times, neither alone is a bound.
+    energies_[b] = 0.5 * std::min(v.dot(mass.cwiseProduct(v)), w.dot(mass.cwiseProduct(w)));
+    falls_[b] = mass[0] * simulation.external().gravity().dot(Motion<N>::translation(system.displacement(b)) - start_[b]);
+    released += std::max(0.0, falls_[b]);
+  };
+  for (int b : system.free_blocks()) follow(b);
+  for (int b : system.resting_blocks()) follow(b);
+  released_ = std::max(released_, released);
+  work_ = std::max(work_, std::max(0.0, -ledger.loads) + std::max(0.0, -ledger.base_motion));
+  report_.available_energy = energy_at_start_ + released_ + work_;
+}
+
+template <int N>
+std::string Watch<N>::check_energy(const Simulation<N>& simulation) {
+  const EnergyLedger& ledger = simulation.ledger();
+  const double now = ledger.kinetic + ledger.gravity + ledger.contact_springs + ledger.support_springs + ledger.loads + ledger.base_motion +
+                     simulation.energy_to_end_of_step();
+  lowest_energy_ = std::min(lowest_energy_, now);
+  // Of an explicit step the scheme's entry has what lies between friction at the end and motion at the middle of steps.
+  const double by_scheme = simulation.is_explicit() ? 0.0 : -ledger.scheme;
+  // Where gaps are followed to first order only, what the contact update corrects has gone to the scheme before.
+  const double by_contacts = -ledger.redefinition + (simulation.enforcement().follows_gaps() ? 0.0 : -ledger.scheme);
+  struct Source {
+    double energy;
+    const char* name;
+  };
+  const Source sources[] = {{now - lowest_energy_, "the mechanical energy rose"},
+                            {by_contacts, "contacts that changed their edges or lengths released it"},
+                            {-ledger.impact, "impacts released it"},
+                            {by_scheme, "the time integration released it"},
+                            {std::abs(ledger.imbalance()), "the energy ledger does not close"}};
+  const Source& worst = *std::ranges::max_element(sources, {}, &Source::energy);
+  const double scale = energy_scale();
+  const double part = worst.energy > 0.0 ? worst.energy / scale : 0.0;
+  if (!(part <= report_.created_energy)) report_.created_energy = part;
+  if (part <= watch_bound::created_energy) return {};
+  return fmt::format("energy was created: {:.3g} J where {:.3g} J were there to move anything ({:.2g} of it, at most {:g}; {}); {}", worst.energy,
+                     scale, part, watch_bound::created_energy, worst.name, better_energy(simulation));
+}
+
+template <int N>
+std::string Watch<N>::check_reach(const Simulation<N>& simulation) {
+  const BlockSystem<N>& system = simulation.system();
+  const double scale = energy_scale();
+  for (int b : system.free_blocks()) {
+    const double energy = energies_[b] + std::max(0.0, -falls_[b]);
+    const double part = energy > 0.0 ? energy / scale : 0.0;
+    if (!(part <= report_.reach)) report_.reach = part;
+    if (part <= 1.0 + watch_bound::created_energy) continue;
+    const auto v = simulation.velocity(b);
+    return fmt::format(
+        "block \"{}\" moves at {:.3g} m/s, {:.3g} J above where it started, for which all of the energy that there was, {:.3g} J, is not enough; {}",
+        simulation.scene().blocks[b].name, Motion<N>::translation(v).norm(), std::max(0.0, -falls_[b]), scale, better_energy(simulation));
+  }
+  return {};
+}
+
+template <int N>
+bool Watch<N>::is_rigid(const Simulation<N>& simulation) {
+  return !simulation.enforcement().has_elastic_contacts();
+}
+
+template <int N>
+double Watch<N>::allowed_depth(const Simulation<N>& simulation, double narrower) const {
+  const double by_width = watch_bound::penetration * narrower;
+  if (!is_rigid(simulation)) return by_width;
+  const double tolerance = std::max(simulation.scene().method.gap_tolerance, tolerance::rounding_of_ways_m);
+  return std::min(by_width, depth_at_start_ + watch_bound::gap_tolerances * tolerance);
+}
+
+template <int N>
+std::string Watch<N>::too_deep(const Simulation<N>& simulation, int a, int b, double depth, double allowed) const {
+  const auto& blocks = simulation.scene().blocks;
+  const bool by_width = allowed >= watch_bound::penetration * std::min(widths_[a], widths_[b]);
+  const char* reason = by_width ? "a quarter of the width, 2 area / perimeter, of the narrower one"
+                                : "ten times method.gap_tolerance_m, and what there was at the start";
+  return fmt::format("\"{}\" and \"{}\" are {:.3g} m deep in each other, at most {:.3g} m ({})", blocks[a].name, blocks[b].name, depth, allowed,
+                     reason);
+}
+
+template <int N>
+std::string Watch<N>::check_contacts(const Simulation<N>& simulation) {
+  double worst = 0.0;  // [-] of what is allowed
+  const Contact* deepest = nullptr;
+  for (const Contact& c : simulation.contacts()) {
+    if (c.gap >= 0.0) continue;
+    const double narrower = std::min(widths_[c.vertex_block], widths_[c.edge_block]);
+    report_.penetration = std::max(report_.penetration, -c.gap / narrower);
+    const double part = -c.gap / (watch_bound::penetration * narrower);
+    if (part <= worst) continue;
+    worst = part;
+    deepest = &c;
+  }
+  if (deepest) report_.depth = std::max(report_.depth, -deepest->gap);
+  if (worst <= 1.0) return {};
+  const int a = deepest->vertex_block, b = deepest->edge_block;
+  const double narrower = std::min(widths_[a], widths_[b]);
+  const std::string found = too_deep(simulation, a, b, -deepest->gap, watch_bound::penetration * narrower);
+  if (is_rigid(simulation)) return "rigid contacts have not been held: " + found + "; " + shorter_step(simulation.scene(), margin);
+  // The square of the closure goes with the energy that the springs have to take: what they have, and what still moves the two blocks.
+  double stored = 0.0;
+  for (const Contact& c : simulation.contacts()) {
+    if (std::minmax(c.vertex_block, c.edge_block) == std::minmax(a, b)) stored += c.stored_energy;
+  }
+  const double moving = energies_.empty() ? 0.0 : energies_[a] + energies_[b];
+  const double factor = margin * worst * worst * (stored > 0.0 ? 1.0 + moving / stored : 1.0);
+  return "the springs are too soft for these blocks: " + found + "; " + stiffer_contact(simulation, deepest->joint, factor);
+}
+
+template <int N>
+std::string Watch<N>::check_overlaps(const Simulation<N>& simulation, std::size_t first_pair, std::size_t pairs) {
+  const BlockSystem<N>& system = simulation.system();
+  const auto& candidates = simulation.candidate_pairs();
+  for (std::size_t i = first_pair; i < std::min(first_pair + pairs, candidates.size()); ++i) {
+    const auto [a, b] = candidates[i];
+    const double narrower = std::min(widths_[a], widths_[b]), allowed = allowed_depth(simulation, narrower);
+    const double apart = (system.centroid(a) - system.centroid(b)).norm();
+    if (apart >= system.block(a).radius + system.block(b).radius) continue;
+    const Polygon of_a = polygon(system, a), of_b = polygon(system, b);
+    if ((convex_[a] && parts(of_a, of_b, allowed)) || (convex_[b] && parts(of_b, of_a, allowed))) continue;
+    if ((!convex_[a] && lies_beside(of_b, of_a)) || (!convex_[b] && lies_beside(of_a, of_b))) continue;
+    const double depth = overlap_depth(of_a, of_b);
+    report_.overlap = std::max(report_.overlap, depth / narrower);
+    report_.depth = std::max(report_.depth, depth);
+    if (depth <= allowed) continue;
+    return "blocks have passed into each other: " + too_deep(simulation, a, b, depth, allowed) + "; " + shorter_step(simulation.scene(), margin);
+  }
+  return {};
+}
+
+template class Watch<3>;
+
+}  // namespace openclose

@@ -1,0 +1,87 @@
+#include "openclose/analysis/corner_entry.h"
+#include "openclose/analysis/run.h"
+#include "openclose/geometry/overlap.h"
+#include "support/catch.h"
+#include "support/scenes.h"
+
+using namespace openclose;
+
+namespace {
+
+constexpr double tolerated = 1e-6;  // [m]
+
+/// Of a block that starts at this height above the base, 10 m from its left end or shifted, and moves by d.
+double entry_from(double height, const Motion<3>::Unknowns& d, double shift = 0.0) {
+  Scene scene = test::block_on_base();
+  for (Vec2& v : scene.blocks[1].vertices) v += Vec2(shift, height);
+  const BlockSystem<3> system(scene);
+  StepSolution<3> solution;
+  solution.d = d;
+  return first_entry<3>(system, solution, {{0, 1}}, tolerated);
+}
+
+/// A square that comes down on its corner, past the corner of a fixed block, at 20 m/s.
+Scene passing_corners(double dt) {
+  Scene scene = test::empty_scene();
+  scene.blocks = {test::fixed_block("base", {{-3.0, -2.0}, {0.0, -2.0}, {0.0, 0.0}, {-3.0, -0.5}}),
+                  test::free_block("square", test::placed(test::rectangle(-0.5, -0.5, 1.0, 1.0), 0.7, {0.3, 1.0}))};
+  scene.blocks[1].velocity = {-12.0, -16.0};
+  scene.method.contact = "hard";
+  scene.method.gap_tolerance = 3e-7;
+  scene.step.dt = dt;
+  scene.step.max_displacement = 1.0;
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("a step ends where a corner enters a block", "[analysis][corner_entry]") {
+  CHECK(entry_from(0.05, {0.3, -0.1, 0.0}) == Approx((0.05 + 0.5 * tolerated) / 0.1).epsilon(1e-8));
+  SECTION("not where none does") {
+    CHECK(entry_from(0.05, {0.3, -0.05, 0.0}) == 1.0);
+    CHECK(entry_from(0.05, {0.0, -0.05 - 3.9 * tolerated, 0.0}) == 1.0);
+    CHECK(entry_from(0.05, {0.0, 0.1, 0.0}) == 1.0);
+  }
+  SECTION("nor where it is in and goes no deeper") {
+    CHECK(entry_from(-0.01, {0.1, 0.0, 0.0}) == 1.0);
+    CHECK(entry_from(-0.01, {0.1, 0.005, 0.0}) == 1.0);
+  }
+  SECTION("nor at once") {
+    CHECK(entry_from(0.0, {0.0, -0.1, 0.0}) == 1.0);
+  }
+  SECTION("nor beside the end of an edge") {
+    CHECK(entry_from(0.0, {1.0, 0.0, 0.0}, -12.5) == 1.0);
+    CHECK(entry_from(-0.5, {1.0, 0.0, 0.0}, -12.5) == Approx(0.5 + 0.5 * tolerated).epsilon(1e-8));
+  }
+  SECTION("also if it leaves it again within the step") {
+    CHECK(entry_from(0.05, {0.0, -1.1, 0.0}) == Approx(0.05 / 1.1).epsilon(1e-4));
+  }
+  SECTION("one that turns in") {
+    const double angle = 0.2;  // the lower left corner goes down
+    const double part = entry_from(0.01, {0.0, 0.0, angle});
+    CHECK(part > 0.0);
+    CHECK(part < 1.0);
+    CHECK(entry_from(0.01, part * Motion<3>::Unknowns(0.0, 0.0, angle)) == 1.0);
+    CHECK(entry_from(0.01, 1.001 * part * Motion<3>::Unknowns(0.0, 0.0, angle)) < 1.0);
+  }
+}
+
+TEST_CASE("rigid corners that meet within a step do not enter each other", "[analysis][corner_entry]") {
+  for (const double dt : {0.02, 0.011, 0.005}) {
+    INFO(dt);
+    const Scene scene = passing_corners(dt);
+    Simulation<3> simulation(scene);
+    prepare_start(simulation);
+    double deepest = 0.0;
+    while (simulation.time() < 0.1) {
+      REQUIRE(simulation.advance(dt));
+      const BlockSystem<3>& system = std::as_const(simulation).system();
+      Polygon base, square;
+      for (int v = 0; v < 4; ++v) base.push_back(system.position(0, v));
+      for (int v = 4; v < 8; ++v) square.push_back(system.position(1, v));
+      deepest = std::max(deepest, overlap_depth(base, square));
+    }
+    CHECK(deepest <= 10.0 * scene.method.gap_tolerance);
+    CHECK(simulation.velocity(1).norm() < 19.0);  // they have met
+  }
+}

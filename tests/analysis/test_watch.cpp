@@ -1,0 +1,159 @@
+#include <cmath>
+#include <limits>
+
+#include "openclose/analysis/run.h"
+#include "openclose/analysis/watch.h"
+#include "support/catch.h"
+#include "support/scenes.h"
+
+using namespace openclose;
+using Catch::Matchers::ContainsSubstring;
+using openclose::test::all_methods;
+
+namespace {
+
+/// A simulation that has taken one step under the eyes of a watch.
+struct Watched {
+  explicit Watched(const Scene& scene) : simulation(scene) {
+    prepare_start(simulation);
+    REQUIRE(watch.begin(simulation).empty());
+    REQUIRE(simulation.advance(scene.step.dt));
+    REQUIRE(watch.check(simulation).empty());
+  }
+
+  Simulation<3> simulation;
+  Watch<3> watch;
+};
+
+Scene dropped_block(double height) {
+  Scene scene = test::block_on_base();
+  for (Vec2& v : scene.blocks[1].vertices) v.y() += height;
+  scene.end_time = 1.0;
+  return scene;
+}
+
+long checks_of(long steps) {
+  long checks = 0;
+  for (long step = 1; step <= steps; ++step) checks += Watch<3>::is_due(step) ? 1 : 0;
+  return checks;
+}
+
+}  // namespace
+
+TEST_CASE("a run has a hundred checks, or one a step", "[analysis][watch]") {
+  CHECK(checks_of(7) == 7);
+  CHECK(checks_of(128) == 128);
+  for (long steps : {100L, 129L, 257L, 1000L, 123456L}) {
+    INFO(steps);
+    CHECK(checks_of(steps) >= 100);
+    CHECK(static_cast<double>(checks_of(steps)) <= 128.0 + 64.0 * std::log2(static_cast<double>(steps) / 128.0 + 1.0) + 1.0);
+  }
+}
+
+TEST_CASE("right runs are not refused, and the report says how right they are", "[analysis][watch]") {
+  for (const std::string& method : all_methods) {
+    INFO(method);
+    Scene scene = dropped_block(0.3);
+    SECTION("dropped, " + method) {
+      scene.method.contact = method;
+      scene.joints[0].normal_stiffness = 1e7;  // so that most of the energy is in the springs for some hundredths of a second
+      if (method == "shi") test::use_joint_springs_as_penalty(scene);
+    }
+    SECTION("at rest, " + method) {
+      scene = test::block_on_incline(0.3);
+      scene.method.contact = method;
+      scene.method.start = Start::settled;
+      scene.end_time = 0.2;
+    }
+    SECTION("without gravity, " + method) {
+      scene.method.contact = method;
+      scene.gravity = Vec2::Zero();
+    }
+    Simulation<3> simulation(scene);
+    const RunResult result = run<3>(simulation, {});
+    INFO(result.reason);
+    CHECK(result.converged);
+    CHECK_FALSE(result.refused);
+    CHECK(result.watch.checks >= 100);
+    CHECK(result.watch.created_energy <= watch_bound::created_energy);
+    CHECK(result.watch.penetration < 0.2);
+    CHECK(result.watch.reach < 1.001);
+  }
+}
+
+TEST_CASE("an undamped bounce of dem keeps the energy that the watch reads", "[analysis][watch]") {
+  Scene scene = dropped_block(0.3);
+  scene.method.contact = "dem";
+  scene.method.step_fraction = 0.5;
+  scene.joints[0].normal_stiffness = 1e7;
+  Simulation<3> simulation(scene);
+  const RunResult result = run<3>(simulation, {});
+  CHECK(result.converged);
+  // With kinetic energy and springs half a step apart it would rise and fall by a quarter.
+  CHECK(result.watch.created_energy < 2e-3);
+  CHECK(result.watch.penetration > 0.02);
+}
+
+TEST_CASE("motion from nowhere is found by the energy ledger", "[analysis][watch]") {
+  for (const std::string& method : {"soft", "hard", "dem"}) {
+    INFO(method);
+    Scene scene = dropped_block(0.3);
+    scene.method.contact = method;
+    Watched w(scene);
+    for (int i = 0; i < 20; ++i) REQUIRE(w.simulation.advance(scene.step.dt));
+    REQUIRE(w.watch.check(w.simulation).empty());
+    auto& system = w.simulation.system();
+    system.set_velocity(1, 1.02 * system.velocity(1));  // 4 % more kinetic energy
+    REQUIRE(w.simulation.advance(scene.step.dt));
+    CHECK_THAT(w.watch.check(w.simulation), ContainsSubstring("energy was created") && ContainsSubstring("step.dt_s = "));
+    CHECK(w.watch.report().created_energy == Approx(0.04).epsilon(0.25));
+  }
+}
+
+TEST_CASE("a block faster than all energy could make it is found without the ledger", "[analysis][watch]") {
+  Watched w(dropped_block(0.3));
+  const Motion<3>::Unknowns fast(0.0, 5.0, 0.0);
+  w.simulation.system().set_velocity(1, fast);
+  w.simulation.set_velocity(1, fast);
+  CHECK_THAT(w.watch.check(w.simulation), ContainsSubstring("block \"block\" moves at 5 m/s"));
+}
+
+TEST_CASE("numbers that are none are found", "[analysis][watch]") {
+  Watched w(dropped_block(0.3));
+  w.simulation.set_velocity(1, Motion<3>::Unknowns::Constant(std::numeric_limits<double>::quiet_NaN()));
+  CHECK_THAT(w.watch.check(w.simulation), ContainsSubstring("no finite position or velocity"));
+}
+
+TEST_CASE("blocks that have passed into each other are found without a contact", "[analysis][watch]") {
+  Watched w(dropped_block(0.05));
+  for (double depth : {0.1, 0.3}) {
+    w.simulation.system().move_to(1, {0.0, -0.05 - depth, 0.0});
+    // The width of the block is 2/3 m.
+    const std::string found = w.watch.check_at_end(w.simulation);
+    INFO(found);
+    CHECK(found.empty() == (depth < 0.25 * 2.0 / 3.0));
+    if (!found.empty()) CHECK_THAT(found, ContainsSubstring("blocks have passed into each other: \"base\" and \"block\" are 0.3 m deep in each other, at most 0.167 m"));
+  }
+}
+
+TEST_CASE("springs too soft for their blocks are refused, with the stiffness that would do", "[analysis][watch]") {
+  Scene scene = test::block_on_base();
+  scene.joints[0].normal_stiffness = scene.joints[0].shear_stiffness = 1e5;  // closure of 0.25 m at rest, 0.37 of the width
+  scene.end_time = 1.0;
+  SECTION("at rest") {
+    scene.method.start = Start::settled;
+  }
+  SECTION("in motion") {}
+  Simulation<3> simulation(scene);
+  const RunResult result = run<3>(simulation, {});
+  CHECK_FALSE(result.converged);
+  CHECK(result.refused);
+  CHECK(result.ended_by.empty());
+  CHECK(result.watch.penetration > watch_bound::penetration);
+  CHECK_THAT(result.reason,
+             ContainsSubstring("the springs are too soft for these blocks") && ContainsSubstring("joint[0].normal_stiffness_pa_per_m = "));
+  const std::size_t at = result.reason.find("per_m = ") + 8;
+  scene.joints[0].normal_stiffness = std::stod(result.reason.substr(at));
+  Simulation<3> stiffer(scene);
+  CHECK(run<3>(stiffer, {}).converged);
+}
