@@ -163,6 +163,13 @@ bool is_on_piece(ContactStatus now, double normal_by_gap, ContactStatus wanted) 
   return now == ContactStatus::open || (now == ContactStatus::sticking && normal_by_gap != 0.0);
 }
 
+/// [J] Of forces along a way, summed in the order of the blocks: zeros of further blocks change no bit of it.
+double work(const Eigen::VectorXd& forces, const Eigen::VectorXd& way) {
+  double sum = 0.0;
+  for (Eigen::Index i = 0; i < forces.size(); ++i) sum += forces[i] * way[i];
+  return sum;
+}
+
 /// Of the blocks of a part.
 template <int N>
 Eigen::VectorXd rows_of(const Eigen::VectorXd& whole, const std::vector<int>& rows) {
@@ -439,13 +446,13 @@ double Newton<N>::line_search(const Eigen::VectorXd& d, const Eigen::VectorXd& s
   // Root of the energy's slope along the step by regula falsi; the slope falls along the step because the symmetric tangent is positive definite.
   double low = 0.0, slope_low = slope, high = 1.0;
   evaluate(trial_ = d + step);
-  double slope_high = residual_.dot(step);
+  double slope_high = work(residual_, step);
   if (std::abs(slope_high) <= line_search_slope * std::abs(slope) || slope_high > 0.0) return high;
   double alpha = high;
   for (int i = 0; i < line_search_steps; ++i) {
     alpha = low + (high - low) * std::clamp(slope_low / (slope_low - slope_high), 0.1, 0.9);
     evaluate(trial_ = d + alpha * step);
-    const double s = residual_.dot(step);
+    const double s = work(residual_, step);
     if (std::abs(s) <= line_search_slope * std::abs(slope)) break;
     if (s > 0.0) {
       low = alpha;
@@ -784,7 +791,7 @@ bool Newton<N>::help_by_parts(StepSolution<N>& solution, Course& course) {
 
 template <int N>
 double Newton<N>::try_step(const Eigen::VectorXd& d, const Eigen::VectorXd& step, const Course& course) {
-  const double slope = residual_.dot(step);
+  const double slope = work(residual_, step);
   if (course.tangent == Tangent::exact || slope <= 0.0) {
     evaluate(trial_ = d + step);
     return 1.0;
