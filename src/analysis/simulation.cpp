@@ -493,8 +493,8 @@ double Simulation<N>::largest_move(const StepSolution<N>& solution) const {
 
 template <int N>
 double Simulation<N>::part_before_entry(const StepSolution<N>& solution, double moved) const {
-  // Springs give way by more than what a corner enters in a step.
-  if (enforcement_->has_elastic_contacts() || cuts_at_entry_ == most_cuts_at_entry) return 1.0;
+  // Springs give way by more than what a corner enters in a step, those of a compliant step too.
+  if (enforcement_->has_elastic_contacts() || solution.compliant || cuts_at_entry_ == most_cuts_at_entry) return 1.0;
   const double tolerated = std::max(scene_.method.gap_tolerance, tolerance::rounding_of_ways_m);
   return 2.0 * moved > tolerated ? first_entry(system_, solution, detector_.candidate_pairs(), tolerated) : 1.0;
 }

@@ -396,7 +396,7 @@ TEST_CASE("a slope of 10,208 blocks is relaxed unasked, and what is loose goes n
   Simulation<3> simulation(slope(8.24, 2.06));
   const SettleResult result = settle(simulation);
   CHECK(result.settled);
-  CHECK(simulation.step_counters().iterations == 0);
+  CHECK(simulation.step_counters().iterations <= 3);  // each static step tries whether few contacts change their states
   // 1,921 steps. Contacts that stay open hold blocks in the estimate for 840 more if they are never left out of it; blocks that nothing but their
   // inertia holds there are thrown 73 mm far, which takes twice as many.
   CHECK(simulation.step_counters().relaxation_steps < 2300);
