@@ -88,7 +88,8 @@ class PlaneFailure:
 
     def bracket(self, method: str) -> tuple[float, float]:
         """[-] the largest factor found stable and the smallest found failing"""
-        return tuple(self._openclose.summary(self._fos(method))["bracket"])
+        bracket = self._openclose.summary(self._fos(method))["bracket"]
+        return bracket["stable"], bracket["failed"]
 
     def brittle_factor_of_safety(self, behaviour: str) -> float:
         """With `soft` and a cohesion that is lost."""

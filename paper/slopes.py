@@ -103,7 +103,7 @@ def _fos(openclose: Openclose, case: Case) -> Fos:
     summary = openclose.summary(case)
     if not summary.get("factor_of_safety"):
         return Fos(None, summary["reason"], "")
-    return Fos(summary["factor_of_safety"], "", "; ".join(summary["warnings"]), summary["bracket"][1])
+    return Fos(summary["factor_of_safety"], "", "; ".join(summary["warnings"]), summary["bracket"]["failed"])
 
 
 class CutBlocks:

@@ -173,7 +173,7 @@ double threshold(double fails, double holds, double width, const std::function<d
 double strength_reduction_factor(const Report& report, const Scene& scene) {
   RigidSimulation simulation = report.simulate(scene);
   const auto result = factor_of_safety<unknowns>(simulation);
-  return result.found ? result.stable : not_measured();
+  return result.found() ? result.stable() : not_measured();
 }
 
 analytical::LimitState limit_state(const Scene& scene) {

@@ -1,91 +1,173 @@
 #include "openclose/analysis/strength_reduction.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <stdexcept>
 
-#include "openclose/analysis/equilibrium.h"
+#include "openclose/analysis/frozen_limit.h"
+#include "openclose/analysis/frozen_trials.h"
+#include "openclose/analysis/settling_trials.h"
 
 namespace openclose {
 namespace {
 
-constexpr double bracket_ratio = 1.25;               ///< [-] between the factors tried first
-const std::string by_displacement = "displacement";  ///< see SettleResult::criterion
-constexpr double smallest_factor = 1e-3;             ///< [-] below which nothing is stable at any strength one could mean
+constexpr double slowest_of_mechanism = 1e-2;     ///< [-] of the fastest block: slower ones are carried along by rounding and springs
+constexpr double sliver_of_median = 1e-4;         ///< [-] area of a block over the median one below which it is a sliver
+constexpr double far_below_limit = 0.995;         ///< [-] of the limit analysis: above it neither stiffness nor path matters
+constexpr double ratios_compared[] = {0.1, 1.0};  ///< [-] shear over normal stiffness
+/// [-] of the factor: how narrow brackets at other stiffness ratios need to be for a warning.
+constexpr double width_of_comparison = 5e-3;
+constexpr double drawn_travel = 0.5;  ///< [-] of the median block's size by which the fastest block of a mechanism is drawn away
 
 template <int N>
 class StrengthReduction {
  public:
   StrengthReduction(Simulation<N>& simulation, const std::function<void(double)>& progress)
-      : simulation_(simulation),
-        search_(make_equilibrium_search(simulation)),
-        points_(simulation),
-        input_(simulation.scene().strength_reduction),
-        progress_(progress) {}
+      : simulation_(simulation), scene_(simulation.scene()), input_(scene_.strength_reduction), progress_(progress) {}
 
   FactorOfSafety<N> run() {
-    simulation_.book_steps(false);
-    if (!settle_first()) {
-      result_.reason = "not stable even at a strength reduction factor of 0.001 (" + verdict_ + ")";
-      return std::move(result_);
+    if (input_.definition == FactorDefinition::large_displacements) {
+      at_large_displacements();
+    } else if (input_.definition == FactorDefinition::small_displacements) {
+      at_small_displacements(scene_);
+    } else if (const std::optional<Scene> settled = settled_scene()) {
+      at_small_displacements(*settled);
     }
-    if (!bracket()) {
-      result_.reason = "still stable at strength_reduction.upper_limit";
-      return std::move(result_);
-    }
-    bisect();
-    result_.found = true;
-    // The paper's criterion knows no other failure than too many steps.
-    if (result_.criterion != by_displacement && simulation_.scene().settle.criterion != SettleCriterion::paper) {
-      result_.warnings.push_back("the smallest factor counted as failed did not settle (" + result_.criterion +
-                                 "), but no block moved beyond settle.failure_displacement_m");
-    }
-    curve();
     return std::move(result_);
   }
 
  private:
-  /// The settled state is reached at factor 1, or at a smaller one if the scene fails with its own strength.
-  bool settle_first() {
-    const auto initial = simulation_.save();
-    for (double srf = 1.0; srf >= smallest_factor; srf /= bracket_ratio * bracket_ratio) {
-      simulation_.restore(initial);
-      simulation_.joints().reduce_strength(srf);
-      const SettleResult settled = search_->settle_first(shown());
-      record(srf, "bracket", settled);
-      if (settled.settled) {
-        result_.stable = srf;
-        result_.settled_state = simulation_.save();
-        points_.restart();
-        result_.trials.back().displacement = 0.0;
-        return true;
-      }
-      result_.failed = srf;
-      result_.criterion = settled.criterion;
-      verdict_ = settled.verdict();
-      result_.failed_state = simulation_.save();
-    }
-    return false;
+  void at_large_displacements() {
+    simulation_.book_steps(false);
+    SettlingTrials<N> trials(simulation_, shown());
+    result_.bracket = search(trials);
+    judge();
+    curve(trials);
+    if (trials.settled()) add_state("settled", *trials.settled());
+    if (trials.failed()) add_state("failed", *trials.failed());
   }
 
-  bool bracket() {
-    double srf = result_.stable;
-    while (result_.failed == 0.0) {
-      if (srf >= input_.upper_limit) return false;
-      srf = std::min(srf * bracket_ratio, input_.upper_limit);
-      attempt(srf, "bracket");
+  void at_small_displacements(const Scene& scene) {
+    const FrozenSystem system(scene);
+    FrozenTrials trials(scene, system);
+    if (input_.limit_analysis) trials.know_failure_above(limit_of(system, trials.strength()));
+    result_.bracket = search(trials);
+    judge();
+    for (double srf : input_.curve) {
+      if (trials.stable()) record(srf, "curve", trials.next(srf));
+    }
+    if (trials.stable()) {
+      add_frozen_state("stable", system, *trials.stable());
+      result_.largest_travel = trials.travel().largest * system.closure_unit();
+      warn_of_travel(trials.travel());
+    }
+    if (trials.mechanism().size() > 0) add_mechanism(system, trials.mechanism());
+    warn_of_geometry();
+    result_.linear_solves = trials.solver().linear_solves();
+  }
+
+  /// Its smallest factor of proved failure; infinite where there is none.
+  double limit_of(const FrozenSystem& system, const FrozenStrength& strength) {
+    LimitAnalysisResult& result = result_.limit_analysis.emplace();
+    double failed = std::numeric_limits<double>::infinity();
+    try {
+      limit_analysis::Options options;
+      options.upper_limit = std::max(options.upper_limit, 2.0 * input_.upper_limit);
+      const limit_analysis::Bracket bracket = limit_analysis::limit_analysis(limit_problem(system, strength), options);
+      result.programs = bracket.programs;
+      result.verdict = bracket.found() ? "found" : bracket.reason;
+      if (bracket.factor > 0.0 && bracket.found()) result.factor = bracket.factor;
+      if (bracket.failed > 0.0) failed = bracket.failed;
+    } catch (const std::invalid_argument& error) {
+      result.verdict = error.what();
+    }
+    if (!result.factor) result_.warnings.push_back("limit analysis has no factor: " + result.verdict);
+    return failed;
+  }
+
+  /// The scene with its blocks where gravity has brought them with their full strength; nothing if they do not come to rest.
+  std::optional<Scene> settled_scene() {
+    simulation_.book_steps(false);
+    const SettleResult settled = make_equilibrium_search(simulation_)->settle_first(shown());
+    if (!settled.settled) {
+      result_.reason = "the joints' closures are not known, since the scene does not settle with its own strength (" + settled.verdict() + ")";
+      return std::nullopt;
+    }
+    add_state("settled", simulation_.save());
+    Scene moved = scene_;
+    const BlockSystem<N>& system = simulation_.system();
+    for (int b = 0; b < system.block_count(); ++b) {
+      const auto& block = system.block(b);
+      for (int i = 0; i < block.vertex_count; ++i) moved.blocks[b].vertices[i] = system.position(b, block.first_vertex + i) + system.origin();
+    }
+    const auto carried = [&](int b, const Vec2& point) {
+      const auto& d = system.displacement(b);
+      const Vec2 arm = point - system.origin() - system.block(b).reference_centroid;
+      return Vec2(point + Motion<N>::displacement(d, arm, system.rotation_kind()));
+    };
+    for (Load& load : moved.loads) load.point = carried(load.block, load.point);
+    for (Support& support : moved.supports) support.point = carried(support.block, support.point);
+    for (MeasuredPoint& p : moved.measured_points) p.point = carried(p.block, p.point);
+    return moved;
+  }
+
+  StrengthBracket search(StrengthTrials& trials) {
+    return search_strength(
+        trials, input_, [this](const StrengthTrial& trial) { result_.trials.push_back(trial); },
+        progress_ ? [this](double share) { progress_(share_done_ = share); } : std::function<void(double)>());
+  }
+
+  /// What the bracket is worth, in a word and in a sentence.
+  void judge() {
+    const StrengthBracket& b = result_.bracket;
+    if (!b.stable) {
+      const bool none = b.at_every_strength || (b.failed && b.undecided == 0);
+      result_.verdict = none ? FactorVerdict::no_equilibrium : FactorVerdict::undecided;
+      result_.reason = b.at_every_strength ? "no strength of the joints could hold the blocks: " + b.first_verdict
+                                           : "not stable even at a strength reduction factor of 0.001 (" + b.first_verdict + ")";
+      return;
+    }
+    if (b.at_limit) {
+      result_.verdict = FactorVerdict::no_failure;
+      result_.reason = "still stable at strength_reduction.upper_limit";
+      return;
+    }
+    if (b.failed && *b.failed - *b.stable <= input_.width) {
+      result_.verdict = FactorVerdict::certified;
+    } else {
+      result_.verdict = FactorVerdict::interval;
+      result_.reason =
+          b.failed ? fmt::format("undecided between {:.6g} and {:.6g}", *b.stable, *b.failed) : fmt::format("undecided above {:.6g}", *b.stable);
+      if (b.undecided > 0) result_.reason += fmt::format(": {} trials found neither equilibrium nor failure", b.undecided);
+    }
+    for (double srf : b.failed_below) result_.warnings.push_back(fmt::format("failed at {:.6g}, and stands again at {:.6g}", srf, *b.stable));
+  }
+
+  void curve(SettlingTrials<N>& trials) {
+    if (!trials.settled()) return;
+    MeasuredPoints<N> points(simulation_);
+    for (double srf : input_.curve) {
+      record(srf, "curve", trials.next(srf));
+      if (!input_.curve_time) continue;
+      simulation_.restore(*trials.settled());
+      points.restart();
+      if (!move(*input_.curve_time)) {
+        result_.warnings.push_back(fmt::format("no displacement for the curve at factor {:g}: {}", srf, simulation_.reason()));
+        continue;
+      }
+      for (const PointMotion& m : points.motions()) result_.curve.push_back({srf, m.name, m.displacement.norm()});
+    }
+  }
+
+  bool move(double time) {
+    const double dt = scene_.step.dt;
+    for (long i = 0, steps = std::lround(time / dt); i < steps; ++i) {
+      if (!simulation_.advance(dt)) return false;
     }
     return true;
-  }
-
-  void bisect() {
-    const double first_width = result_.failed - result_.stable;
-    while (result_.failed - result_.stable > input_.width) {
-      const double middle = 0.5 * (result_.stable + result_.failed);
-      if (middle <= result_.stable || middle >= result_.failed) return;  // no number in between
-      attempt(middle, "bisect");
-      const double width = result_.failed - result_.stable;
-      share_done_ = std::min(1.0, std::log(first_width / width) / std::log(first_width / input_.width));
-    }
   }
 
   /// While a trial settles the share stands still, but the bar is there.
@@ -94,56 +176,112 @@ class StrengthReduction {
     return [this](double) { progress_(share_done_); };
   }
 
-  void attempt(double srf, const char* stage) {
-    if (progress_) progress_(share_done_);
-    simulation_.restore(result_.settled_state);
-    simulation_.joints().reduce_strength(srf);
-    const SettleResult settled = search_->settle_trial(shown());
-    record(srf, stage, settled);
-    if (settled.settled) {
-      result_.stable = std::max(result_.stable, srf);
-    } else {
-      result_.failed = srf;
-      result_.criterion = settled.criterion;
-      result_.failed_state = simulation_.save();
-    }
+  void record(double srf, const char* stage, const TrialResult& trial_result) {
+    StrengthTrial trial;
+    static_cast<TrialResult&>(trial) = trial_result;
+    trial.srf = srf;
+    trial.stage = stage;
+    result_.trials.push_back(trial);
   }
 
-  void curve() {
-    for (double srf : input_.curve) {
-      if (progress_) progress_(share_done_);
-      simulation_.restore(result_.settled_state);
-      simulation_.joints().reduce_strength(srf);
-      record(srf, "curve", search_->settle_trial(shown()));
-      if (!input_.curve_time) continue;
-      simulation_.restore(result_.settled_state);
-      const double dt = simulation_.scene().step.dt;
-      const long steps = std::lround(*input_.curve_time / dt);
-      bool arrived = true;
-      for (long i = 0; i < steps && arrived; ++i) arrived = simulation_.advance(dt);
-      if (!arrived) {
-        result_.warnings.push_back("no displacement for the curve at factor " + std::to_string(srf) + ": " + simulation_.reason());
-        continue;
-      }
-      for (const PointMotion& m : points_.motions()) result_.curve.push_back({srf, m.name, m.displacement.norm()});
-    }
+  void add_state(const char* name, const typename Simulation<N>::Snapshot& snapshot) {
+    simulation_.restore(snapshot);
+    result_.states.push_back({name, std::as_const(simulation_).system(), simulation_.contacts()});
   }
 
-  void record(double srf, const char* stage, const SettleResult& settled) {
-    result_.trials.push_back({srf, stage, settled.settled, settled.criterion, settled.steps, points_.largest_displacement()});
+  /// The drawn blocks, moved by the closures, and the forces that hold them.
+  void add_frozen_state(const char* name, const FrozenSystem& system, const FrozenState& state) {
+    NamedState<N> named{name, BlockSystem<N>(scene_), {}};
+    for (int row = 0; row < system.rows(); ++row) move_block(system, row, state.displacement[row] * system.closure_unit(), named.system);
+    for (std::size_t i = 0; i < state.contacts.size(); ++i) {
+      const FrozenContactState& s = state.contacts[i];
+      Contact contact = system.contacts()[i].source;
+      contact.gap = s.gap * system.closure_unit();
+      contact.normal_force = s.normal * system.force_unit();
+      contact.shear_force = s.shear * system.force_unit();
+      contact.status = s.status;
+      contact.bonded = s.bonded;
+      named.contacts.push_back(contact);
+    }
+    result_.states.push_back(std::move(named));
+  }
+
+  void move_block(const FrozenSystem& system, int row, const BlockVector& d, BlockSystem<N>& blocks) const {
+    const FrozenBlock& block = system.blocks()[row];
+    blocks.advance(block.block, {d[0], d[1], d[2] / (block.radius * system.length_unit())});
+  }
+
+  void add_mechanism(const FrozenSystem& system, const Eigen::VectorXd& direction) {
+    NamedState<N> failed{"failed", BlockSystem<N>(scene_), {}};
+    double fastest = 0.0;
+    const auto speed = [&](int row) { return direction.segment<2>(3 * row).norm() + std::abs(direction[3 * row + 2]); };
+    for (int row = 0; row < system.rows(); ++row) fastest = std::max(fastest, speed(row));
+    for (int row = 0; row < system.rows(); ++row) {
+      const BlockVector velocity = direction.segment<3>(3 * row) / fastest;
+      move_block(system, row, velocity * drawn_travel * system.length_unit(), failed.system);
+      if (speed(row) <= slowest_of_mechanism * fastest) continue;
+      const FrozenBlock& block = system.blocks()[row];
+      result_.mechanism.push_back({block.block, failed.system.block(block.block).area, block.centroid, velocity.template head<2>(),
+                                   velocity[2] / (block.radius * system.length_unit())});
+    }
+    result_.states.push_back(std::move(failed));
+  }
+
+  void warn_of_travel(const TravelOnPath& travel) {
+    if (!travel.factor_before_jump) return;
+    result_.warnings.push_back(
+        fmt::format("the blocks moved by up to {:.3g} joint closures on the way to a new equilibrium (at {:.6g}); the factor before "
+                    "the first such way is {:.6g}",
+                    travel.largest, travel.at_factor, *travel.factor_before_jump));
+  }
+
+  void warn_of_geometry() {
+    std::vector<double> areas;
+    const BlockSystem<N>& system = std::as_const(simulation_).system();
+    for (int b : system.free_blocks()) areas.push_back(system.block(b).area);
+    if (areas.empty()) return;
+    const auto middle = areas.begin() + static_cast<std::ptrdiff_t>(areas.size() / 2);
+    std::ranges::nth_element(areas, middle);
+    const double median = *middle;
+    const auto slivers = std::ranges::count_if(areas, [&](double area) { return area < sliver_of_median * median; });
+    if (slivers > 0) {
+      result_.warnings.push_back(fmt::format(
+          "{} of {} free blocks are slivers, smaller than {:g} of the median block; domain.sliver_area_m2 unites them with their neighbours", slivers,
+          areas.size(), sliver_of_median));
+    }
+    double failing = 0.0;
+    for (const FailingBlock& block : result_.mechanism) failing += block.area;
+    if (!result_.mechanism.empty() && areas.size() > 1 && failing < median) {
+      result_.warnings.push_back(fmt::format("what fails is small: {} of {} free blocks with {:.3g} m2, the median block has {:.3g} m2",
+                                             result_.mechanism.size(), areas.size(), failing, median));
+    }
   }
 
   Simulation<N>& simulation_;
-  std::unique_ptr<EquilibriumSearch<N>> search_;
-  MeasuredPoints<N> points_;
+  const Scene& scene_;
   const StrengthReductionInput& input_;
   std::function<void(double)> progress_;
   double share_done_ = 0.0;  ///< of the bisection
-  std::string verdict_;      ///< of the last search for the first state, with the key that limited it
   FactorOfSafety<N> result_;
 };
 
 }  // namespace
+
+const char* factor_verdict_word(FactorVerdict verdict) {
+  switch (verdict) {
+    case FactorVerdict::certified:
+      return "certified";
+    case FactorVerdict::interval:
+      return "interval";
+    case FactorVerdict::no_failure:
+      return "no_failure";
+    case FactorVerdict::no_equilibrium:
+      return "no_equilibrium";
+    case FactorVerdict::undecided:
+      return "undecided";
+  }
+  return "";
+}
 
 template <int N>
 FactorOfSafety<N> factor_of_safety(Simulation<N>& simulation, const std::function<void(double)>& progress) {

@@ -1,23 +1,19 @@
-// Factor of safety by strength reduction: settle with full strength, then find the largest factor by which tan(phi), c and the tensile strength can
-// be divided so that the system still settles.
+// Factor of safety by strength reduction: the largest factor by which tan(phi), c and the tensile strength can be divided so that the system still
+// stands. What stands and fails means is strength_reduction.definition:
+//   small_displacements  the drawn geometry; both ends of the bracket are proved (frozen_trials.h)
+//   joint_closures       the same on the geometry that the joints' closures under gravity leave
+//   large_displacements  blocks move; stable is what settles, failed what moves beyond settle.failure_displacement_m (settling_trials.h)
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "openclose/analysis/run.h"
+#include "openclose/analysis/strength_search.h"
 
 namespace openclose {
-
-struct StrengthTrial {
-  double srf = 1.0;   ///< [-] strength reduction factor
-  std::string stage;  ///< bracket, bisect or curve
-  bool stable = false;
-  std::string criterion;  ///< what decided, see SettleResult
-  int steps = 0;
-  double displacement = 0.0;  ///< [m] largest of a measured point since the settled state
-};
 
 /// Displacement after a stated time of motion with reduced strength, from the settled state.
 struct CurvePoint {
@@ -26,18 +22,60 @@ struct CurvePoint {
   double displacement = 0.0;  ///< [m]
 };
 
+enum class FactorVerdict {
+  certified,       ///< a stable and a failed factor, no farther apart than asked for
+  interval,        ///< farther apart, or without a failed one
+  no_failure,      ///< stable up to the limit of the search
+  no_equilibrium,  ///< failed down to the smallest factor
+  undecided,       ///< no stable state found
+};
+
+/// As summary.json has it.
+const char* factor_verdict_word(FactorVerdict verdict);
+
+/// Blocks as they are to be drawn, with the forces between them.
+template <int N>
+struct NamedState {
+  std::string name;
+  BlockSystem<N> system;
+  std::vector<Contact> contacts;
+};
+
+/// A block that moves in the mechanism, faster than a hundredth of the fastest.
+struct FailingBlock {
+  int block = 0;
+  double area = 0.0;             ///< [m2]
+  Vec2 centroid = Vec2::Zero();  ///< [m]
+  Vec2 velocity = Vec2::Zero();  ///< [-] of the centroid; the fastest point of all blocks has about 1
+  double rotation = 0.0;         ///< [1/m] counter-clockwise
+};
+
+/// Rigid-block limit analysis beside the search.
+struct LimitAnalysisResult {
+  std::optional<double> factor;  ///< [-] largest for which forces within the strength exist; none where there is no such largest one
+  std::string verdict;           ///< in words, where there is no factor
+  int programs = 0;              ///< linear programs
+};
+
 template <int N>
 struct FactorOfSafety {
-  bool found = false;
-  std::string reason;     ///< why not
-  double stable = 0.0;    ///< [-] the largest factor that settled: the factor of safety, to within failed - stable
-  double failed = 0.0;    ///< [-] the smallest one that did not
-  std::string criterion;  ///< what decided there
+  FactorVerdict verdict = FactorVerdict::undecided;
+  StrengthBracket bracket;
+  std::string reason;  ///< in words, unless certified
   std::vector<std::string> warnings;
   std::vector<StrengthTrial> trials;
   std::vector<CurvePoint> curve;
-  typename Simulation<N>::Snapshot settled_state;
-  typename Simulation<N>::Snapshot failed_state;
+  std::vector<NamedState<N>> states;
+  std::vector<FailingBlock> mechanism;
+  std::optional<LimitAnalysisResult> limit_analysis;
+  std::optional<double> largest_travel;                               ///< [m] between two stable states of the search, of any point of a block
+  std::vector<std::pair<double, double>> factors_by_stiffness_ratio;  ///< shear over normal stiffness, largest stable factor; what was computed
+  long linear_solves = 0;                                             ///< at small displacements
+
+  /// Whether the factor can be used: a stable end, and a failed one or the limit of the search.
+  bool found() const { return bracket.stable && verdict != FactorVerdict::undecided && verdict != FactorVerdict::no_equilibrium; }
+  double stable() const { return bracket.stable.value_or(0.0); }
+  double failed() const { return bracket.failed.value_or(0.0); }
 };
 
 template <int N>

@@ -99,6 +99,13 @@ void require_strength_reduction(const Scene& scene) {
                      fmt::format("a step in seconds: {} asks for motion", paper ? "settle.criterion" : "strength_reduction.curve_time_s"));
   }
   if (curve_time) require_countable_steps(scene, "strength_reduction.curve_time_s", *curve_time);
+  if (scene.strength_reduction.definition == FactorDefinition::large_displacements) return;
+  const std::string large = "strength_reduction.definition = \"large_displacements\", in which blocks move";
+  if (paper) throw InputError(scene.where, "settle.criterion", "\"paper\" is a rule for motion", large);
+  if (curve_time) {
+    throw InputError(scene.strength_reduction.curve_time_where, "strength_reduction.curve_time_s", "asks for motion, which this definition has not",
+                     large);
+  }
 }
 
 /// Throws InputError for what `run` or `fos` would refuse. A scene without step or end is one for `fos`, or gets them from the command line.
@@ -109,10 +116,10 @@ void require_use(const Scene& scene) {
   require_start(scene);
 }
 
-/// Deepest closed contact now [m].
-double penetration_of(Simulation<unknowns>& simulation) {
+/// Deepest closed contact [m].
+double deepest_of(const std::vector<Contact>& contacts) {
   double deepest = 0.0;
-  for (const Contact& c : simulation.contacts()) {
+  for (const Contact& c : contacts) {
     if (c.status != ContactStatus::open) deepest = std::max(deepest, -c.gap);
   }
   return deepest;
@@ -184,7 +191,7 @@ int run_command(const Options& options) {
   history.close();
   energy.close();
   blocks.close();
-  write_contacts(folder, "final", simulation);
+  write_contacts(folder, "final", scene, std::as_const(simulation).system(), simulation.contacts());
   if (!result.milestones.empty()) write_milestones(folder, result.milestones);
   Summary summary = summary_of("run", options, loaded);
   summary.warnings.insert(summary.warnings.end(), result.warnings.begin(), result.warnings.end());
@@ -211,6 +218,27 @@ int run_command(const Options& options) {
                simulation.ledger().turnover, folder.path());
   }
   return exit_success;
+}
+
+/// The answer and what it is worth, in two or three lines.
+void print_factor(const Scene& scene, const FactorOfSafety<unknowns>& safety, const OutputFolder& folder) {
+  const std::string stable = fmt::format("{:.6g}", safety.stable());
+  if (safety.verdict == FactorVerdict::no_failure) {
+    fmt::print("factor of safety above {} ({}): {}; written to {}\n", stable, scene.method.contact, safety.reason, folder.path());
+    return;
+  }
+  const std::string failed = safety.bracket.failed ? fmt::format("failed at {:.6g} by {}", safety.failed(), safety.bracket.failed_by)
+                                                   : std::string("no failure proved above");
+  fmt::print("factor of safety {} ({}; {}: stable at {}, {}); written to {}\n", stable, scene.method.contact, factor_verdict_word(safety.verdict),
+             stable, failed, folder.path());
+  if (safety.limit_analysis && safety.limit_analysis->factor) {
+    fmt::print("rigid-block limit analysis, never below it: {:.6g}\n", *safety.limit_analysis->factor);
+  }
+  if (!safety.mechanism.empty()) {
+    double area = 0.0;
+    for (const FailingBlock& block : safety.mechanism) area += block.area;
+    fmt::print("what fails: {} of {} blocks, {:.4g} m2, see mechanism.csv\n", safety.mechanism.size(), scene.blocks.size(), area);
+  }
 }
 
 int fos_command(const Options& options) {
@@ -242,32 +270,25 @@ int fos_command(const Options& options) {
   summary.cpu_of_search = cpu_of_search;
   summary.warnings.insert(summary.warnings.end(), safety.warnings.begin(), safety.warnings.end());
   print_warnings(safety.warnings);
-  if (safety.stable > 0.0) {
-    simulation.restore(safety.settled_state);
-    blocks.add("settled", simulation);
-    summary.max_penetration = penetration_of(simulation);
-    if (safety.failed == 0.0) write_contacts(folder, "settled", simulation);
-  }
-  if (safety.failed > 0.0) {
-    simulation.restore(safety.failed_state);
-    blocks.add("failed", simulation);
-    write_contacts(folder, "failed", simulation);
+  for (const NamedState<unknowns>& state : safety.states) {
+    blocks.add(state.name, simulation.scene(), state.system);
+    if (state.contacts.empty()) continue;
+    write_contacts(folder, state.name, simulation.scene(), state.system, state.contacts);
+    summary.max_penetration = deepest_of(state.contacts);
   }
   blocks.close();
   write_trials(folder, safety.trials);
+  if (!safety.mechanism.empty()) write_mechanism(folder, simulation.scene(), safety.mechanism);
   if (!safety.curve.empty()) write_curve(folder, safety.curve);
-  summary.converged = safety.found;
+  summary.converged = safety.found();
   summary.reason = safety.reason;
   write_summary(folder, summary, simulation, &safety);
 
-  if (!safety.found) {
+  if (!safety.found()) {
     fmt::print(stderr, "openclose: no factor of safety: {}; state saved in {}\n", safety.reason, folder.path());
     return exit_not_converged;
   }
-  if (!options.quiet) {
-    fmt::print("factor of safety {:.6g} ({}; stable at {:.6g}, failed at {:.6g} by {}); written to {}\n", safety.stable,
-               simulation.scene().method.contact, safety.stable, safety.failed, safety.criterion, folder.path());
-  }
+  if (!options.quiet) print_factor(simulation.scene(), safety, folder);
   return exit_success;
 }
 

@@ -27,6 +27,19 @@ const char* name_of(ContactStatus status) {
   return "";
 }
 
+/// In the column `stable`.
+const char* word_of(TrialOutcome outcome) {
+  switch (outcome) {
+    case TrialOutcome::stable:
+      return "1";
+    case TrialOutcome::failed:
+      return "0";
+    case TrialOutcome::undecided:
+      return "undecided";
+  }
+  return "";
+}
+
 nlohmann::ordered_json optional_json(const std::optional<double>& value) {
   return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
 }
@@ -115,39 +128,47 @@ BlocksFile<N>::BlocksFile(const OutputFolder& folder, const RestartPoint* restar
     : RunTable(folder, "blocks.csv", "state,block,vertex,x_m,y_m", restart) {}
 
 template <int N>
-void BlocksFile<N>::add(const std::string& state, const Simulation<N>& simulation) {
-  const auto& system = simulation.system();
+void BlocksFile<N>::add(const std::string& state, const Scene& scene, const BlockSystem<N>& system) {
   for (int b = 0; b < system.block_count(); ++b) {
     const auto& block = system.block(b);
     for (int i = 0; i < block.vertex_count; ++i) {
       const Vec2 p = system.position(b, block.first_vertex + i) + system.origin();
-      fmt::print(file_, "{},{},{},{:.17g},{:.17g}\n", state, field(simulation.scene().blocks[b].name), i, p.x(), p.y());
+      fmt::print(file_, "{},{},{},{:.17g},{:.17g}\n", state, field(scene.blocks[b].name), i, p.x(), p.y());
     }
   }
   require_written();
 }
 
 template <int N>
-void write_contacts(const OutputFolder& folder, const std::string& state, Simulation<N>& simulation) {
+void write_contacts(const OutputFolder& folder, const std::string& state, const Scene& scene, const BlockSystem<N>& system,
+                    const std::vector<Contact>& contacts) {
   std::ofstream file = folder.open("contacts.csv");
   file << "state,block_a,block_b,x_m,y_m,normal_x,normal_y,length_m,gap_m,normal_force_n,shear_force_n,status\n";
-  const auto& system = simulation.system();
   const auto still = Motion<N>::Unknowns::Zero().eval();
-  for (const Contact& c : simulation.contacts()) {
+  for (const Contact& c : contacts) {
     const Vec2 p = system.position(c.vertex_block, c.vertex) + system.origin();
     const Vec2 n = ContactKinematics<N>(system, c, still, still).normal;
-    fmt::print(file, "{},{},{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{}\n", state,
-               field(simulation.scene().blocks[c.vertex_block].name), field(simulation.scene().blocks[c.edge_block].name), p.x(), p.y(), n.x(), n.y(),
-               c.length, c.gap, c.normal_force, c.shear_force, name_of(c.status));
+    fmt::print(file, "{},{},{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{}\n", state, field(scene.blocks[c.vertex_block].name),
+               field(scene.blocks[c.edge_block].name), p.x(), p.y(), n.x(), n.y(), c.length, c.gap, c.normal_force, c.shear_force, name_of(c.status));
   }
   finish(file, folder.path_of("contacts.csv"));
+}
+
+void write_mechanism(const OutputFolder& folder, const Scene& scene, const std::vector<FailingBlock>& blocks) {
+  std::ofstream file = folder.open("mechanism.csv");
+  file << "block,area_m2,x_m,y_m,velocity_x,velocity_y,rotation_per_m\n";
+  for (const FailingBlock& b : blocks) {
+    fmt::print(file, "{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g}\n", field(scene.blocks[b.block].name), b.area, b.centroid.x(),
+               b.centroid.y(), b.velocity.x(), b.velocity.y(), b.rotation);
+  }
+  finish(file, folder.path_of("mechanism.csv"));
 }
 
 void write_trials(const OutputFolder& folder, const std::vector<StrengthTrial>& trials) {
   std::ofstream file = folder.open("trials.csv");
   file << "srf,stage,stable,criterion,steps,displacement_m\n";
   for (const StrengthTrial& t : trials) {
-    fmt::print(file, "{:.17g},{},{},{},{},{:.17g}\n", t.srf, t.stage, t.stable ? 1 : 0, field(t.criterion), t.steps, t.displacement);
+    fmt::print(file, "{:.17g},{},{},{},{},{:.17g}\n", t.srf, t.stage, word_of(t.outcome), field(t.criterion), t.steps, t.displacement);
   }
   finish(file, folder.path_of("trials.csv"));
 }
@@ -197,6 +218,47 @@ nlohmann::ordered_json settling_json(const SettleResult& settling) {
   }
   j["displacement_m"] = settling.displacement;
   return j;
+}
+
+}  // namespace
+
+namespace {
+
+template <int N>
+void add_factor(const FactorOfSafety<N>& safety, const Scene& scene, nlohmann::ordered_json& j) {
+  using nlohmann::ordered_json;
+  j["factor_of_safety"] = optional_json(safety.bracket.stable);
+  j["verdict"] = factor_verdict_word(safety.verdict);
+  j["definition"] = word_for(factor_definition_words, scene.strength_reduction.definition);
+  const bool failed = safety.bracket.failed.has_value();
+  j["bracket"] = {{"stable", optional_json(safety.bracket.stable)},
+                  {"failed", optional_json(safety.bracket.failed)},
+                  {"failed_by", failed ? ordered_json(safety.bracket.failed_by) : ordered_json(nullptr)},
+                  {"undecided_trials", safety.bracket.undecided}};
+  if (safety.limit_analysis) {
+    j["limit_analysis"] = {{"factor", optional_json(safety.limit_analysis->factor)},
+                           {"verdict", safety.limit_analysis->verdict},
+                           {"programs", safety.limit_analysis->programs}};
+  } else {
+    j["limit_analysis"] = nullptr;
+  }
+  double area = 0.0;
+  ordered_json names = ordered_json::array();
+  for (const FailingBlock& block : safety.mechanism) {
+    area += block.area;
+    names.push_back(scene.blocks[block.block].name);
+  }
+  j["failing_blocks"] = {{"number", safety.mechanism.size()}, {"area_m2", area}, {"names", names}};
+  j["largest_travel_m"] = optional_json(safety.largest_travel);
+  ordered_json curve = ordered_json::array();
+  for (const StrengthTrial& t : safety.trials) {
+    if (t.outcome == TrialOutcome::stable) curve.push_back({{"srf", t.srf}, {"displacement_m", t.displacement}});
+  }
+  j["displacement_curve"] = curve;
+  ordered_json ratios = ordered_json::array();
+  for (const auto& [ratio, factor] : safety.factors_by_stiffness_ratio) ratios.push_back({{"shear_over_normal", ratio}, {"factor", factor}});
+  j["factors_by_stiffness_ratio"] = ratios;
+  j["small_displacement_factorisations"] = safety.linear_solves;
 }
 
 }  // namespace
@@ -274,7 +336,9 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
         {"max_time_steps", scene.settle.max_time_steps},
         {"unbalanced_force_n", scene.settle.unbalanced_force}}},
       {"strength_reduction",
-       {{"width", scene.strength_reduction.width},
+       {{"definition", word_for(factor_definition_words, scene.strength_reduction.definition)},
+        {"limit_analysis", scene.strength_reduction.limit_analysis},
+        {"width", scene.strength_reduction.width},
         {"upper_limit", scene.strength_reduction.upper_limit},
         {"curve", scene.strength_reduction.curve},
         {"curve_time_s", optional_json(scene.strength_reduction.curve_time)}}}};
@@ -286,9 +350,7 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
   if (!safety) j["time_s"] = simulation.time();
   if (summary.settling.steps > 0) j["settling"] = settling_json(summary.settling);
   if (safety) {
-    j["factor_of_safety"] = safety->found ? ordered_json(safety->stable) : ordered_json(nullptr);
-    j["bracket"] = {safety->stable, safety->failed};
-    j["criterion"] = safety->criterion;
+    add_factor(*safety, scene, j);
     j["cpu_s"] = {{"search", summary.cpu_of_search}};
   } else {
     ordered_json ledger;
@@ -374,7 +436,7 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
 }
 
 template class BlocksFile<3>;
-template void write_contacts<3>(const OutputFolder&, const std::string&, Simulation<3>&);
+template void write_contacts<3>(const OutputFolder&, const std::string&, const Scene&, const BlockSystem<3>&, const std::vector<Contact>&);
 template void write_summary<3>(const OutputFolder&, const Summary&, const Simulation<3>&, const FactorOfSafety<3>*);
 
 }  // namespace openclose

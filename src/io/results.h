@@ -54,12 +54,17 @@ template <int N>
 class BlocksFile : public RunTable {
  public:
   explicit BlocksFile(const OutputFolder& folder, const RestartPoint* restart = nullptr);
-  void add(const std::string& state, const Simulation<N>& simulation);
+  void add(const std::string& state, const Simulation<N>& simulation) { add(state, simulation.scene(), simulation.system()); }
+  void add(const std::string& state, const Scene& scene, const BlockSystem<N>& system);
 };
 
-/// contacts.csv: every contact at the end.
+/// contacts.csv: every contact of a state.
 template <int N>
-void write_contacts(const OutputFolder& folder, const std::string& state, Simulation<N>& simulation);
+void write_contacts(const OutputFolder& folder, const std::string& state, const Scene& scene, const BlockSystem<N>& system,
+                    const std::vector<Contact>& contacts);
+
+/// mechanism.csv: the blocks that move when the scene fails.
+void write_mechanism(const OutputFolder& folder, const Scene& scene, const std::vector<FailingBlock>& blocks);
 
 /// trials.csv and, if the scene asks for motion, curve.csv.
 void write_trials(const OutputFolder& folder, const std::vector<StrengthTrial>& trials);

@@ -50,6 +50,12 @@ inline constexpr std::array settle_criterion_words{
     Word{"paper", SettleCriterion::paper},
 };
 
+inline constexpr std::array factor_definition_words{
+    Word{"small_displacements", FactorDefinition::small_displacements},
+    Word{"joint_closures", FactorDefinition::joint_closures},
+    Word{"large_displacements", FactorDefinition::large_displacements},
+};
+
 inline constexpr std::array static_solver_words{
     Word{"automatic", StaticSolver::automatic},
     Word{"newton", StaticSolver::newton},

@@ -312,10 +312,12 @@ SettleInput read_settle(Table table) {
 
 StrengthReductionInput read_strength_reduction(Table table) {
   StrengthReductionInput reduction;
+  table.optional("definition", reduction.definition, factor_definition_words);
+  table.optional("limit_analysis", reduction.limit_analysis);
   table.optional("width", reduction.width, positive);
   table.optional("upper_limit", reduction.upper_limit, Range{.low = 1.0});
   table.optional("curve", reduction.curve, positive);
-  table.optional("curve_time_s", reduction.curve_time, positive);
+  if (table.optional("curve_time_s", reduction.curve_time, positive)) reduction.curve_time_where = table.at("curve_time_s").where();
   table.finish();
   return reduction;
 }

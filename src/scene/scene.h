@@ -212,11 +212,21 @@ struct SettleInput {
   bool keep_bonds = true;               ///< dem: joints lose strength only at rest, not on the way there
 };
 
+/// Which factor of safety is meant.
+enum class FactorDefinition {
+  small_displacements,  ///< of the drawn geometry: lengths and directions of contacts stay as drawn; no stiffness scale, no length counts
+  joint_closures,       ///< the same on the geometry that the joints' closures under gravity leave
+  large_displacements,  ///< blocks move as far as they do; failed is what moves beyond settle.failure_displacement_m
+};
+
 struct StrengthReductionInput {
+  FactorDefinition definition = FactorDefinition::small_displacements;
+  bool limit_analysis = true;        ///< rigid-block limit analysis beside it: a proof of failure and a second opinion
   double width = 1e-4;               ///< [-] of the final bracket
   double upper_limit = 100.0;        ///< [-] strength reduction factor beyond which the search stops
   std::vector<double> curve;         ///< [-] further factors at which displacement is recorded
   std::optional<double> curve_time;  ///< [s] physical time of a dynamic run at each of them; absent: settled displacement only
+  SourceLocation curve_time_where{};  ///< for the error of a definition that knows no motion
 };
 
 /// What the joints made of a domain.

@@ -229,6 +229,8 @@ void write_statics(Text& text, const SettleInput& settle, const StrengthReductio
   text.line("max_time_steps", settle.max_time_steps);
   text.line("unbalanced_force_n", settle.unbalanced_force);
   text.header("[strength_reduction]");
+  text.line("definition", word_for(factor_definition_words, reduction.definition));
+  text.line("limit_analysis", reduction.limit_analysis);
   text.line("width", reduction.width);
   text.line("upper_limit", reduction.upper_limit);
   text.line("curve", reduction.curve);

@@ -336,7 +336,7 @@ TEST_CASE("relaxation finds the places of rest without linear equations", "[anal
     const std::vector<std::string> brittle = {"joint[0].cohesion_pa=20000", "joint[0].cohesion_behaviour='lost_on_slip'"};
     const Scene scene = read_scene(std::string(OPENCLOSE_PAPER_SCENES) + "/example_3_2.toml", brittle);
     Simulation<3> newton(scene), simulation(relaxed(scene));
-    const double expected = factor_of_safety<3>(newton).stable, found = factor_of_safety<3>(simulation).stable;
+    const double expected = factor_of_safety<3>(newton).stable(), found = factor_of_safety<3>(simulation).stable();
     const double without_cohesion = std::tan(40.0 * test::degree) / std::tan(35.0 * test::degree);
     CHECK(found <= expected + scene.strength_reduction.width);
     CHECK(found > without_cohesion);

@@ -155,7 +155,7 @@ TEST_CASE("contacts.csv tells what every contact carries", "[io][results]") {
   const TemporaryFolder place;
   Simulation<3> simulation(test::block_on_base());
   REQUIRE(settle(simulation).settled);
-  write_contacts(OutputFolder(place.path()), "final", simulation);
+  write_contacts(OutputFolder(place.path()), "final", simulation.scene(), std::as_const(simulation).system(), simulation.contacts());
   const auto lines = lines_of(place / "contacts.csv");
   REQUIRE(lines.size() == 3);
   CHECK(lines[0] == "state,block_a,block_b,x_m,y_m,normal_x,normal_y,length_m,gap_m,normal_force_n,shear_force_n,status");
@@ -184,12 +184,15 @@ TEST_CASE("contacts.csv tells what every contact carries", "[io][results]") {
 TEST_CASE("trials.csv and curve.csv", "[io][results]") {
   const TemporaryFolder place;
   const OutputFolder folder(place.path());
-  write_trials(folder, {{1.0, "bracket", true, "unbalanced force", 3, 0.0}, {1.0 / 3.0, "bisect", false, "displacement", 17, 0.1}});
+  write_trials(folder, {{{TrialOutcome::stable, "unbalanced force", 3, 0.0}, 1.0, "bracket"},
+                        {{TrialOutcome::failed, "displacement", 17, 0.1}, 1.0 / 3.0, "bisect"},
+                        {{TrialOutcome::undecided, "steps", 200, 0.0}, 1.5, "bisect"}});
   write_curve(folder, {{1.1, "crest, left", 1.0 / 3.0}});
   CHECK(test::text_of(place / "trials.csv") ==
         "srf,stage,stable,criterion,steps,displacement_m\n"
         "1,bracket,1,unbalanced force,3,0\n"
-        "0.33333333333333331,bisect,0,displacement,17,0.10000000000000001\n");
+        "0.33333333333333331,bisect,0,displacement,17,0.10000000000000001\n"
+        "1.5,bisect,undecided,steps,200,0\n");
   CHECK(test::text_of(place / "curve.csv") ==
         "srf,point,displacement_m\n"
         "1.1000000000000001,\"crest, left\",0.33333333333333331\n");
@@ -383,25 +386,42 @@ TEST_CASE("summary.json of a factor of safety", "[io][results]") {
   const TemporaryFolder place;
   Simulation<3> simulation(test::block_on_base());
   FactorOfSafety<3> safety;
-  safety.stable = 1.25;
-  safety.failed = 1.5;
-  safety.criterion = "displacement";
+  Scene scene = test::block_on_base();
   Summary summary;
   summary.command = "fos";
   summary.reason = "why";
   SECTION("found") {
-    safety.found = summary.converged = true;
+    safety.bracket.stable = 1.25;
+    safety.bracket.failed = 1.5;
+    safety.bracket.failed_by = "mechanism";
+    safety.verdict = FactorVerdict::certified;
+    safety.mechanism = {{1, 2.5, Vec2(0.5, 0.5), Vec2(1.0, 0.0), 0.0}};
+    safety.trials.resize(1);
+    safety.trials[0].outcome = TrialOutcome::stable;
+    safety.trials[0].srf = 1.25;
+    summary.converged = true;
     write_summary(OutputFolder(place.path()), summary, simulation, &safety);
     const nlohmann::json j = summary_json(place);
     CHECK(j.at("factor_of_safety") == 1.25);
-    CHECK(j.at("bracket") == std::vector<double>{1.25, 1.5});
-    CHECK(j.at("criterion") == "displacement");
+    CHECK(j.at("verdict") == "certified");
+    CHECK(j.at("definition") == "small_displacements");
+    CHECK(j.at("bracket").at("stable") == 1.25);
+    CHECK(j.at("bracket").at("failed") == 1.5);
+    CHECK(j.at("bracket").at("failed_by") == "mechanism");
+    CHECK(j.at("limit_analysis").is_null());
+    CHECK(j.at("failing_blocks").at("number") == 1);
+    CHECK(j.at("failing_blocks").at("area_m2") == 2.5);
+    CHECK(j.at("failing_blocks").at("names").at(0) == scene.blocks[1].name);
+    CHECK(j.at("displacement_curve").at(0).at("srf") == 1.25);
     CHECK(j.at("converged") == true);
   }
   SECTION("not found") {
     write_summary(OutputFolder(place.path()), summary, simulation, &safety);
     const nlohmann::json j = summary_json(place);
     CHECK(j.at("factor_of_safety").is_null());
+    CHECK(j.at("verdict") == "undecided");
+    CHECK(j.at("bracket").at("stable").is_null());
+    CHECK(j.at("bracket").at("failed_by").is_null());
     CHECK(j.at("converged") == false);
     CHECK(j.at("reason") == "why");
   }

@@ -27,13 +27,12 @@ struct Safety {
 Safety safety_of(const Report& report, const Scene& scene) {
   RigidSimulation simulation = report.simulate(scene);
   const auto result = factor_of_safety<unknowns>(simulation);
-  if (!result.found) return {};
-  simulation.restore(result.settled_state);
+  if (!result.found()) return {};
   double deepest = 0.0;
-  for (const Contact& c : simulation.contacts()) {
+  for (const Contact& c : result.states.front().contacts) {
     if (c.status != ContactStatus::open) deepest = std::max(deepest, -c.gap);
   }
-  return {result.stable, deepest};
+  return {result.stable(), deepest};
 }
 
 }  // namespace

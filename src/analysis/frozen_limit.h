@@ -1,0 +1,13 @@
+// Rigid-block limit analysis of a FrozenSystem: an upper bound of every factor at small displacements, and a proof of failure above it.
+#pragma once
+
+#include "openclose/limit_analysis/limit_analysis.h"
+#include "openclose/statics/frozen_state.h"
+
+namespace openclose {
+
+/// The same blocks, contact points and strengths, in metres and newtons. Supports hold without limit.
+/// \param strength  at factor 1
+limit_analysis::Problem limit_problem(const FrozenSystem& system, const FrozenStrength& strength);
+
+}  // namespace openclose

@@ -1,0 +1,101 @@
+#include "openclose/analysis/frozen_trials.h"
+
+#include "openclose/statics/explicit_relaxation.h"
+#include "openclose/statics/relaxation.h"
+
+namespace openclose {
+namespace {
+
+/// Rigid contacts at rest carry what springs do, since only the ratios of stiffnesses count.
+std::unique_ptr<FrozenSolver> solver_of(const Scene& scene, const FrozenSystem& system, const FrozenStrength& strength) {
+  if (scene.method.contact == "dem")
+    return std::make_unique<ExplicitRelaxation>(system, strength, scene.method.local_damping, scene.settle.max_explicit_steps);
+  if (scene.method.contact == "shi") return std::make_unique<Relaxation>(system, strength, IncrementRule::open_close, scene.settle.max_steps);
+  return std::make_unique<Relaxation>(system, strength, IncrementRule::newton);
+}
+
+const char* word_of(RelaxationEnd end) {
+  switch (end) {
+    case RelaxationEnd::stable:
+      return "equilibrium";
+    case RelaxationEnd::mechanism:
+      return "mechanism";
+    case RelaxationEnd::escaped:
+      return "moves on without a steady mechanism";
+    case RelaxationEnd::undecided:
+      return "neither equilibrium nor mechanism found";
+  }
+  return "";
+}
+
+}  // namespace
+
+FrozenTrials::FrozenTrials(const Scene& scene, const FrozenSystem& system)
+    : system_(system), strength_(system, scene), solver_(solver_of(scene, system, strength_)) {
+  for (int row = 0; row < system.rows(); ++row) {
+    const FrozenBlock& block = system.blocks()[row];
+    if (scene.measured_points.empty()) points_.push_back({row, Vec2::Zero()});
+    for (const MeasuredPoint& p : scene.measured_points) {
+      if (p.block == block.block) points_.push_back({row, (p.point - block.centroid) / (block.radius * system.length_unit())});
+    }
+  }
+}
+
+TrialResult FrozenTrials::first(double srf) {
+  strength_.reduce(srf);
+  if (!bonded_ && !bonded_failed_) {
+    RelaxationResult bonded = solver_->bonded_state();
+    if (bonded.end == RelaxationEnd::stable) {
+      bonded_ = std::move(bonded.state);
+    } else {
+      bonded_failed_ = true;
+    }
+  }
+  if (bonded_failed_) {
+    TrialResult none;
+    none.criterion = "no equilibrium even of joints that neither slip nor open in shear";
+    return none;
+  }
+  TrialResult result = result_of(solver_->relax(*bonded_), srf);
+  result.displacement = 0.0;
+  return result;
+}
+
+TrialResult FrozenTrials::next(double srf) {
+  strength_.reduce(srf);
+  return result_of(solver_->relax(*stable_), srf);
+}
+
+TrialResult FrozenTrials::result_of(RelaxationResult&& relaxed, double srf) {
+  TrialResult result;
+  result.criterion = word_of(relaxed.end);
+  result.steps = static_cast<int>(relaxed.steps);
+  const bool is_first = !stable_;
+  if (relaxed.end == RelaxationEnd::stable) {
+    result.outcome = TrialOutcome::stable;
+    if (is_first) first_stable_ = relaxed.state;
+    if (!is_first && relaxed.travel > travel_.largest) travel_.largest = relaxed.travel, travel_.at_factor = srf;
+    if (!is_first && relaxed.travel > jump_in_closures && !travel_.factor_before_jump) travel_.factor_before_jump = stable_factor_;
+    result.displacement = displacement_of_points(relaxed.state);
+    stable_ = std::move(relaxed.state);
+    stable_factor_ = srf;
+    return result;
+  }
+  if (first_stable_) result.displacement = displacement_of_points(relaxed.state);
+  if (relaxed.end == RelaxationEnd::mechanism) {
+    result.outcome = TrialOutcome::failed;
+    mechanism_ = std::move(relaxed.mechanism);
+  }
+  return result;
+}
+
+double FrozenTrials::displacement_of_points(const FrozenState& state) const {
+  double largest = 0.0;
+  for (const Point& p : points_) {
+    const BlockVector d = state.displacement[p.row] - first_stable_->displacement[p.row];
+    largest = std::max(largest, (d.head<2>() + d[2] * perpendicular(p.arm)).norm());
+  }
+  return largest * system_.closure_unit();
+}
+
+}  // namespace openclose

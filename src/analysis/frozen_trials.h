@@ -1,0 +1,63 @@
+// Trials at small displacements: the geometry stays as drawn, and stable and failed are proved (statics/certificate.h).
+#pragma once
+
+#include <limits>
+#include <memory>
+
+#include "openclose/analysis/strength_search.h"
+#include "openclose/statics/frozen_solver.h"
+
+namespace openclose {
+
+/// The largest motion of a stable state on the way, in closures.
+struct TravelOnPath {
+  double largest = 0.0;                      ///< between two stable states
+  double at_factor = 0.0;                    ///< [-] of the state that it led to
+  std::optional<double> factor_before_jump;  ///< [-] the largest stable factor before the first travel beyond a jump's
+};
+
+/// [-] In closures: a travel that is no closure of joints any more, but a way to another place.
+inline constexpr double jump_in_closures = 10.0;
+
+class FrozenTrials : public StrengthTrials {
+ public:
+  /// The joint's own stiffnesses, solved as method.contact does.
+  FrozenTrials(const Scene& scene, const FrozenSystem& system);
+
+  TrialResult first(double srf) override;
+  TrialResult next(double srf) override;
+  std::string known_failure(double srf) override { return srf >= proved_failure_ ? "limit analysis" : ""; }
+  /// From this factor on, proved by limit analysis.
+  void know_failure_above(double srf) { proved_failure_ = srf; }
+
+  const FrozenSystem& system() const { return system_; }
+  FrozenStrength& strength() { return strength_; }
+  FrozenSolver& solver() { return *solver_; }
+  const std::optional<FrozenState>& stable() const { return stable_; }
+  double stable_factor() const { return stable_factor_; }
+  /// Of the last trial that failed by a mechanism; empty if none did.
+  const Eigen::VectorXd& mechanism() const { return mechanism_; }
+  const TravelOnPath& travel() const { return travel_; }
+
+ private:
+  TrialResult result_of(RelaxationResult&& relaxed, double srf);
+  double displacement_of_points(const FrozenState& state) const;
+
+  struct Point {
+    int row;
+    Vec2 arm;  ///< in radii of the block
+  };
+
+  const FrozenSystem& system_;
+  FrozenStrength strength_;
+  std::unique_ptr<FrozenSolver> solver_;
+  std::vector<Point> points_;
+  std::optional<FrozenState> bonded_, first_stable_, stable_;
+  bool bonded_failed_ = false;
+  double stable_factor_ = 0.0;
+  double proved_failure_ = std::numeric_limits<double>::infinity();  ///< [-]
+  Eigen::VectorXd mechanism_;
+  TravelOnPath travel_;
+};
+
+}  // namespace openclose

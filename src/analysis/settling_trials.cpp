@@ -1,0 +1,56 @@
+#include "openclose/analysis/settling_trials.h"
+
+namespace openclose {
+namespace {
+
+const std::string by_displacement = "displacement";  ///< see SettleResult::criterion
+
+}  // namespace
+
+template <int N>
+SettlingTrials<N>::SettlingTrials(Simulation<N>& simulation, const SettleProgress& progress)
+    : simulation_(simulation), search_(make_equilibrium_search(simulation)), points_(simulation), progress_(progress), initial_(simulation.save()) {}
+
+template <int N>
+TrialResult SettlingTrials<N>::first(double srf) {
+  simulation_.restore(initial_);
+  simulation_.joints().reduce_strength(srf);
+  const SettleResult settled = search_->settle_first(progress_);
+  TrialResult result = result_of(settled);
+  result.criterion = settled.verdict();
+  if (result.outcome != TrialOutcome::stable) return result;
+  settled_ = simulation_.save();
+  points_.restart();
+  result.displacement = 0.0;
+  return result;
+}
+
+template <int N>
+TrialResult SettlingTrials<N>::next(double srf) {
+  simulation_.restore(*settled_);
+  simulation_.joints().reduce_strength(srf);
+  return result_of(search_->settle_trial(progress_));
+}
+
+template <int N>
+TrialResult SettlingTrials<N>::result_of(const SettleResult& settled) {
+  // The paper's criterion knows no other failure than too many steps.
+  const bool paper = simulation_.scene().settle.criterion == SettleCriterion::paper;
+  TrialResult result;
+  result.criterion = settled.criterion;
+  result.steps = settled.steps;
+  result.displacement = points_.largest_displacement();
+  if (settled.settled) {
+    result.outcome = TrialOutcome::stable;
+    return result;
+  }
+  if (settled.criterion == by_displacement || (paper && settled.criterion == "steps")) {
+    result.outcome = TrialOutcome::failed;
+    failed_ = simulation_.save();
+  }
+  return result;
+}
+
+template class SettlingTrials<3>;
+
+}  // namespace openclose

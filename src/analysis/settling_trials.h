@@ -1,0 +1,35 @@
+// Trials at large displacements: blocks move as far as they do. Stable is what settles; failed is what has moved beyond
+// settle.failure_displacement_m. With settle.criterion = "paper" that is what its steps have not brought to rest.
+#pragma once
+
+#include "openclose/analysis/equilibrium.h"
+#include "openclose/analysis/run.h"
+#include "openclose/analysis/strength_search.h"
+
+namespace openclose {
+
+template <int N>
+class SettlingTrials : public StrengthTrials {
+ public:
+  SettlingTrials(Simulation<N>& simulation, const SettleProgress& progress);
+
+  TrialResult first(double srf) override;
+  /// From the first state that settled.
+  TrialResult next(double srf) override;
+
+  using Snapshot = typename Simulation<N>::Snapshot;
+  const std::optional<Snapshot>& settled() const { return settled_; }
+  const std::optional<Snapshot>& failed() const { return failed_; }  ///< of the last trial that was not stable
+
+ private:
+  TrialResult result_of(const SettleResult& settled);
+
+  Simulation<N>& simulation_;
+  std::unique_ptr<EquilibriumSearch<N>> search_;
+  MeasuredPoints<N> points_;
+  SettleProgress progress_;
+  Snapshot initial_;
+  std::optional<Snapshot> settled_, failed_;
+};
+
+}  // namespace openclose

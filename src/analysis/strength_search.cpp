@@ -1,0 +1,158 @@
+#include "openclose/analysis/strength_search.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace openclose {
+namespace {
+
+constexpr double bracket_ratio = 1.25;    ///< [-] between the factors tried first
+constexpr double smallest_factor = 1e-3;  ///< [-] below which nothing is stable at any strength one could mean
+constexpr int most_undecided = 4;         ///< trials: each may cost as much as all that are decided
+
+class Search {
+ public:
+  Search(StrengthTrials& trials, const StrengthReductionInput& input, const TrialObserver& done, const std::function<void(double)>& progress)
+      : trials_(trials), input_(input), done_(done), progress_(progress) {}
+
+  StrengthBracket run() {
+    if (!find_first()) return std::move(bracket_);
+    while (const std::optional<double> srf = choose()) attempt(*srf);
+    bracket_.undecided = static_cast<int>(undecided_.size());
+    for (double srf : failures_) {
+      if (srf < *bracket_.stable) bracket_.failed_below.push_back(srf);
+    }
+    return std::move(bracket_);
+  }
+
+ private:
+  /// At factor 1, or at a smaller one if the scene fails with its own strength. Where that is not decided, also a little above: which factor is hard
+  /// to decide is a matter of chance.
+  bool find_first() {
+    std::vector<double> factors;
+    for (double srf = 1.0; srf >= smallest_factor; srf /= bracket_ratio * bracket_ratio) factors.push_back(srf);
+    for (std::size_t i = 0; i < factors.size(); ++i) {
+      const TrialResult result = record(factors[i], "bracket", trials_.first(factors[i]));
+      if (result.outcome == TrialOutcome::stable) {
+        bracket_.stable = factors[i];
+        return true;
+      }
+      bracket_.failed_by = bracket_.first_verdict = result.criterion;
+      if (result.outcome == TrialOutcome::failed) bracket_.failed = factors[i];
+      bracket_.at_every_strength = result.at_every_strength;
+      if (result.at_every_strength) return false;
+      if (result.outcome == TrialOutcome::undecided && i == 0) {
+        const double above = bracket_ratio;
+        if (record(above, "bracket", trials_.first(above)).outcome == TrialOutcome::stable) {
+          bracket_.stable = above;
+          bracket_.failed.reset();
+          return true;
+        }
+        ++bracket_.undecided;
+      } else if (result.outcome == TrialOutcome::undecided) {
+        ++bracket_.undecided;
+      }
+    }
+    return false;
+  }
+
+  /// The next factor to try; nothing when the bracket is as narrow as asked for, or cannot become narrower.
+  std::optional<double> choose() {
+    if (!started_) {
+      // Trials from the beginning have failed on another path.
+      bracket_.failed.reset();
+      bracket_.failed_by.clear();
+      started_ = true;
+    }
+    const double stable = *bracket_.stable;
+    std::erase_if(undecided_, [&](double srf) { return srf <= stable || (bracket_.failed && srf >= *bracket_.failed); });
+    if (undecided_.empty()) return bracket_.failed ? middle(stable, *bracket_.failed) : above(stable);
+    std::ranges::sort(undecided_);
+    const double lowest = undecided_.front(), highest = undecided_.back();
+    if (undecided_.size() < most_undecided) {
+      if (lowest - stable > 0.5 * input_.width) return 0.5 * (stable + lowest);
+      if (retried_ != lowest) return retried_ = lowest;
+    }
+    if (bracket_.failed) {
+      if (undecided_.size() >= most_undecided) return std::nullopt;
+      return middle(highest, *bracket_.failed);
+    }
+    if (undecided_.size() >= 2 * most_undecided) return std::nullopt;
+    return above(highest);
+  }
+
+  std::optional<double> middle(double low, double high) const {
+    const double between = 0.5 * (low + high);
+    if (high - low <= input_.width || between <= low || between >= high) return std::nullopt;
+    return between;
+  }
+
+  std::optional<double> above(double srf) {
+    if (srf >= input_.upper_limit) {
+      bracket_.at_limit = srf == *bracket_.stable;
+      return std::nullopt;
+    }
+    return std::min(srf * bracket_ratio, input_.upper_limit);
+  }
+
+  void attempt(double srf) {
+    if (progress_) progress_(share_done());
+    const char* stage = bracket_.failed ? "bisect" : "bracket";
+    const std::string known = trials_.known_failure(srf);
+    const TrialResult result = known.empty() ? trials_.next(srf) : TrialResult{TrialOutcome::failed, known, 0, 0.0, false};
+    record(srf, stage, result);
+    switch (result.outcome) {
+      case TrialOutcome::stable:
+        bracket_.stable = std::max(*bracket_.stable, srf);
+        break;
+      case TrialOutcome::failed:
+        failures_.push_back(srf);
+        if (!bracket_.failed || srf < *bracket_.failed) {
+          bracket_.failed = srf;
+          bracket_.failed_by = result.criterion;
+        }
+        if (first_width_ == 0.0) first_width_ = *bracket_.failed - *bracket_.stable;
+        std::erase(undecided_, srf);
+        break;
+      case TrialOutcome::undecided:
+        if (std::ranges::find(undecided_, srf) == undecided_.end()) undecided_.push_back(srf);
+        break;
+    }
+  }
+
+  TrialResult record(double srf, const char* stage, const TrialResult& result) {
+    StrengthTrial trial;
+    static_cast<TrialResult&>(trial) = result;
+    trial.srf = srf;
+    trial.stage = stage;
+    done_(trial);
+    return result;
+  }
+
+  /// Of the bisection, on a logarithmic scale; it never falls back.
+  double share_done() {
+    if (!bracket_.failed || first_width_ <= input_.width) return share_;
+    const double width = std::max(*bracket_.failed - *bracket_.stable, input_.width);
+    return share_ = std::clamp(std::log(first_width_ / width) / std::log(first_width_ / input_.width), share_, 1.0);
+  }
+
+  StrengthTrials& trials_;
+  const StrengthReductionInput& input_;
+  const TrialObserver& done_;
+  const std::function<void(double)>& progress_;
+  StrengthBracket bracket_;
+  bool started_ = false;
+  std::vector<double> undecided_;  ///< factors between the two ends
+  double retried_ = 0.0;
+  std::vector<double> failures_;
+  double first_width_ = 0.0, share_ = 0.0;
+};
+
+}  // namespace
+
+StrengthBracket search_strength(StrengthTrials& trials, const StrengthReductionInput& input, const TrialObserver& done,
+                                const std::function<void(double share)>& progress) {
+  return Search(trials, input, done, progress).run();
+}
+
+}  // namespace openclose

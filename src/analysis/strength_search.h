@@ -1,0 +1,65 @@
+// The search for the largest strength reduction factor at which a system stands. It knows trials by their outcome only: stable, failed, or undecided,
+// and an undecided trial never counts as failed.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "openclose/scene/scene.h"
+
+namespace openclose {
+
+enum class TrialOutcome {
+  stable,     ///< equilibrium within the strength
+  failed,     ///< as the definition of the factor has it: proved, or moved too far
+  undecided,  ///< neither: did not converge
+};
+
+struct TrialResult {
+  TrialOutcome outcome = TrialOutcome::undecided;
+  std::string criterion;  ///< what decided
+  int steps = 0;
+  double displacement = 0.0;       ///< [m] largest of a measured point since the first stable state
+  bool at_every_strength = false;  ///< failed, and no strength whatever would help
+};
+
+struct StrengthTrial : TrialResult {
+  double srf = 1.0;   ///< [-] strength reduction factor
+  std::string stage;  ///< bracket, bisect or curve
+};
+
+/// One way to find out whether a system stands at a factor.
+class StrengthTrials {
+ public:
+  virtual ~StrengthTrials() = default;
+  /// From the beginning: gravity on the scene as it starts. A stable state becomes the one that next() starts from.
+  virtual TrialResult first(double srf) = 0;
+  /// From the last stable state, which is replaced if this one is stable, too.
+  virtual TrialResult next(double srf) = 0;
+  /// How failure at this factor is known without a trial; empty if it is not.
+  virtual std::string known_failure(double /*srf*/) { return {}; }
+};
+
+/// What is known of the factor.
+struct StrengthBracket {
+  std::optional<double> stable;      ///< [-] largest stable factor on the path
+  std::optional<double> failed;      ///< [-] smallest failed factor above it
+  std::string failed_by;             ///< what decided there
+  bool at_limit = false;             ///< stable at the upper limit
+  bool at_every_strength = false;    ///< no strength whatever holds the system
+  int undecided = 0;                 ///< trials between the two ends that stayed undecided
+  std::vector<double> failed_below;  ///< [-] failed factors below the largest stable one
+  std::string first_verdict;         ///< of the last trial from the beginning that was not stable
+};
+
+/// Told about every trial before (empty) and after it.
+using TrialObserver = std::function<void(const StrengthTrial&)>;
+
+/// Each trial starts from the last stable state. Where one stays undecided, the search comes near it from below with smaller increments, tries again,
+/// and then looks above it for the smallest factor at which failure is certain.
+StrengthBracket search_strength(StrengthTrials& trials, const StrengthReductionInput& input, const TrialObserver& done,
+                                const std::function<void(double share)>& progress = {});
+
+}  // namespace openclose

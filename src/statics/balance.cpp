@@ -1,0 +1,490 @@
+#include "openclose/statics/balance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace openclose {
+namespace {
+
+/// [-] |R| that counts as zero: forces of the order of one, four digits above their rounding. A long increment brings rounding of its own, a tenth of
+/// its length in closures of which every digit counts.
+constexpr double balanced = 1e-12;
+constexpr double share_of_length = 0.1;
+constexpr int most_newton_iterations = 25;
+constexpr int patience = 6;                    ///< iterations in which the residual must have fallen by `progress`
+constexpr double progress = 0.9;               ///< [-]
+constexpr double shortest_part = 1.0 / 512.0;  ///< [-] of a Newton step
+constexpr int most_passes = 6;                 ///< with friction bounds held fixed
+constexpr int most_open_close_passes = 6;      ///< as in Shi's program
+constexpr int most_pieces = 400;               ///< of the contact law on the way of follow_path()
+constexpr double generic_shift = 1e-7;         ///< in closures, of the start of that way
+constexpr int most_convex_iterations = 60;
+constexpr int most_searches = 60;           ///< along one step of it
+constexpr double search_reduction = 1e-2;   ///< [-] slope at the end of a search over that at its start
+constexpr double convex_reduction = 1e-10;  ///< [-] residual of a pass over that at its start
+
+}  // namespace
+
+Balance::Balance(const FrozenSystem& system, const FrozenStrength& strength)
+    : system_(system), strength_(strength), solver_(make_solver<3>(system.rows())) {
+  std::vector<std::pair<int, int>> couplings;
+  for (const FrozenContact& c : system.contacts()) {
+    if (c.a >= 0 && c.b >= 0) couplings.emplace_back(c.a, c.b);
+  }
+  matrix_.set_pattern(system.rows(), couplings);
+  for (const FrozenContact& c : system.contacts()) {
+    Row row{c.a >= 0 ? c.a : system.rows(), c.b >= 0 ? c.b : system.rows(), {}, {}, {}, {}};
+    for (int k = 0; k < 3; ++k) {
+      if (c.a >= 0) row.normal_a[k] = c.normal_a[k], row.shear_a[k] = c.shear_a[k];
+      if (c.b >= 0) row.normal_b[k] = c.normal_b[k], row.shear_b[k] = c.shear_b[k];
+    }
+    rows_.push_back(row);
+  }
+  list_shares();
+  padded_ = forces_ = Eigen::VectorXd::Zero(3 * (system.rows() + 1));
+  responses_.resize(system.contacts().size());
+  springs_.resize(system.contacts().size());
+  residual_.resize(3 * system.rows());
+}
+
+void Balance::start(const FrozenState& state, double eps) {
+  eps_ = eps;
+  support_forces_ = state.supports;
+  for (std::size_t i = 0; i < springs_.size(); ++i) {
+    const FrozenContact& c = system_.contacts()[i];
+    springs_[i] = {state.contacts[i].gap, state.contacts[i].shear, c.normal_stiffness, c.shear_stiffness, springs_[i].strength};
+  }
+}
+
+void Balance::renew_strength(const FrozenState& state) {
+  for (std::size_t i = 0; i < springs_.size(); ++i) springs_[i].strength = strength_.of(i, state.contacts[i].bonded);
+}
+
+Balance::Response Balance::respond(const Spring& spring, double gap_change, double slip_change, ShearLaw law) const {
+  Response r;
+  const double trial = -spring.normal_stiffness * (spring.gap + gap_change);
+  const bool closed = trial >= -spring.strength.tension;  // joints that just touch, as drawn, resist
+  r.normal = closed ? trial : -spring.strength.tension;
+  r.normal_by_gap = closed ? -spring.normal_stiffness : 0.0;
+  const double shear = spring.shear - spring.shear_stiffness * slip_change;
+  r.shear = shear;
+  r.shear_by_gap = 0.0;
+  r.shear_by_slip = -spring.shear_stiffness;
+  if (law == ShearLaw::elastic) return r;
+  const ContactStrength::ShearBound bound =
+      law == ShearLaw::coulomb ? spring.strength.shear_bound(r.normal) : ContactStrength::ShearBound{spring.bound, 0.0};
+  if (std::abs(shear) <= bound.value) return r;
+  r.shear = std::copysign(bound.value, shear);
+  r.shear_by_gap = std::copysign(bound.slope, shear) * r.normal_by_gap;
+  r.shear_by_slip = 0.0;
+  return r;
+}
+
+const double* Balance::padded(const Increment& x) {
+  padded_.head(x.size()) = x;
+  return padded_.data();
+}
+
+void Balance::evaluate(const Increment& x, ShearLaw law) {
+  ++counters_.evaluations;
+  const double* motion = padded(x);
+  forces_.setZero();
+  double* force = forces_.data();
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    const Row& row = rows_[i];
+    const Response& r = responses_[i] = respond(springs_[i], row.gap(motion), row.slip(motion), law);
+    if (r.normal == 0.0 && r.shear == 0.0) continue;
+    for (int k = 0; k < 3; ++k) {
+      force[3 * row.a + k] += r.normal * row.normal_a[k] + r.shear * row.shear_a[k];
+      force[3 * row.b + k] += r.normal * row.normal_b[k] + r.shear * row.shear_b[k];
+    }
+  }
+  const auto& supports = system_.supports();
+  for (std::size_t i = 0; i < supports.size(); ++i) {
+    const double stretch = supports[i].direction.dot(x.segment<3>(3 * supports[i].row));
+    forces_.segment<3>(3 * supports[i].row) += (support_forces_[i] - supports[i].stiffness * stretch) * supports[i].direction;
+  }
+  const auto& blocks = system_.blocks();
+  for (int b = 0; b < system_.rows(); ++b) {
+    residual_.segment<3>(3 * b) = eps_ * blocks[b].mass.cwiseProduct(x.segment<3>(3 * b)) - blocks[b].load - forces_.segment<3>(3 * b);
+  }
+}
+
+/// Which contacts add to which blocks of the matrix.
+void Balance::list_shares() {
+  std::vector<std::pair<int, Share>> all;
+  slots_of_contact_.resize(system_.contacts().size());
+  for (int i = 0; i < static_cast<int>(system_.contacts().size()); ++i) {
+    const FrozenContact& c = system_.contacts()[i];
+    const auto add = [&](int slot, bool force_on_b, bool motion_of_b) {
+      all.push_back({slot, {i, force_on_b, motion_of_b}});
+      slots_of_contact_[i].push_back(slot);
+    };
+    if (c.a >= 0) add(matrix_.diagonal(c.a), false, false);
+    if (c.b >= 0) add(matrix_.diagonal(c.b), true, true);
+    if (c.a >= 0 && c.b >= 0) {
+      add(matrix_.find(c.a, c.b), false, true);
+      add(matrix_.find(c.b, c.a), true, false);
+    }
+  }
+  std::ranges::stable_sort(all, {}, &std::pair<int, Share>::first);
+  const int slots = matrix_.row_start(system_.rows());
+  share_start_.assign(slots + 1, 0);
+  for (const auto& [slot, share] : all) {
+    ++share_start_[slot + 1];
+    shares_.push_back(share);
+  }
+  for (int slot = 0; slot < slots; ++slot) share_start_[slot + 1] += share_start_[slot];
+  is_stale_.assign(slots, 0);
+  assembled_.resize(system_.contacts().size());
+}
+
+void Balance::mark_stale(int slot) {
+  if (is_stale_[slot]) return;
+  is_stale_[slot] = 1;
+  stale_.push_back(slot);
+}
+
+/// One block of the matrix: minus the derivative of the forces, all contacts that add to it summed up anew, so that nothing is left of those that
+/// have opened.
+void Balance::renew(int slot) {
+  auto& block = matrix_.value(slot);
+  block.setZero();
+  for (int k = share_start_[slot]; k < share_start_[slot + 1]; ++k) {
+    const Share& share = shares_[k];
+    const Response& r = responses_[share.contact];
+    if (r.normal_by_gap == 0.0 && r.shear_by_slip == 0.0) continue;
+    const Row& row = rows_[share.contact];
+    const double *force_n = share.force_on_b ? row.normal_b : row.normal_a, *force_t = share.force_on_b ? row.shear_b : row.shear_a;
+    const double *way_n = share.motion_of_b ? row.normal_b : row.normal_a, *way_t = share.motion_of_b ? row.shear_b : row.shear_a;
+    for (int i = 0; i < 3; ++i) {
+      const double by_gap = -(r.normal_by_gap * force_n[i] + r.shear_by_gap * force_t[i]), by_slip = -r.shear_by_slip * force_t[i];
+      for (int j = 0; j < 3; ++j) block(i, j) += by_gap * way_n[j] + by_slip * way_t[j];
+    }
+  }
+}
+
+/// The tangent at the last evaluation; what has not changed since the last one stays.
+void Balance::assemble() {
+  const auto differ = [](const Response& a, const Response& b) {
+    return a.normal_by_gap != b.normal_by_gap || a.shear_by_gap != b.shear_by_gap || a.shear_by_slip != b.shear_by_slip;
+  };
+  const bool first = assembled_eps_ < 0.0;
+  for (std::size_t i = 0; i < responses_.size(); ++i) {
+    if (!first && !differ(responses_[i], assembled_[i])) continue;
+    assembled_[i] = responses_[i];
+    for (const int slot : slots_of_contact_[i]) mark_stale(slot);
+  }
+  if (eps_ != assembled_eps_) {
+    for (int b = 0; b < system_.rows(); ++b) mark_stale(matrix_.diagonal(b));
+  }
+  for (const FrozenSupport& s : system_.supports()) mark_stale(matrix_.diagonal(s.row));
+  assembled_eps_ = eps_;
+  const auto& blocks = system_.blocks();
+  for (const int slot : stale_) renew(slot);
+  for (int b = 0; b < system_.rows(); ++b) {
+    const int slot = matrix_.diagonal(b);
+    if (is_stale_[slot]) matrix_.value(slot).diagonal() += eps_ * blocks[b].mass;
+  }
+  for (const FrozenSupport& s : system_.supports()) matrix_.value(matrix_.diagonal(s.row)) += s.stiffness * s.direction * s.direction.transpose();
+  for (const int slot : stale_) is_stale_[slot] = 0;
+  stale_.clear();
+}
+
+double Balance::tolerance_at(const Increment& x) const {
+  return balanced * std::max(1.0, share_of_length * size(x));
+}
+
+double Balance::residual_norm(const Increment& x) {
+  evaluate(x, ShearLaw::coulomb);
+  return residual_.norm();
+}
+
+/// Newton's method with the full tangent; the residual's norm decides how much of a step is taken.
+bool Balance::newton(Increment& x, int most_iterations) {
+  evaluate(x, ShearLaw::coulomb);
+  double norm = residual_.norm(), norm_before = norm;
+  int since = 0;
+  for (int k = 0; k < most_iterations; ++k) {
+    if (!std::isfinite(norm)) return false;
+    if (norm <= tolerance_at(x)) return true;
+    assemble();
+    ++counters_.factorisations;
+    if (!solver_->factor(matrix_)) return false;
+    const Increment step = solver_->solve(residual_);
+    if (step.size() == 0 || !step.allFinite()) return false;
+    double part = 1.0;
+    Increment trial;
+    double trial_norm;
+    for (;; part *= 0.5) {
+      trial = x - part * step;
+      evaluate(trial, ShearLaw::coulomb);
+      trial_norm = residual_.norm();
+      if (trial_norm < norm || part <= shortest_part) break;
+    }
+    x.swap(trial);
+    norm = trial_norm;
+    if (++since == patience) {
+      if (!(norm < progress * norm_before)) return norm <= tolerance_at(x);
+      since = 0;
+      norm_before = norm;
+    }
+  }
+  return norm <= tolerance_at(x);
+}
+
+/// A convex problem: Newton's method with an exact search along each step, which ends for a piecewise quadratic energy.
+bool Balance::convex(Increment& x, ShearLaw law) {
+  evaluate(x, law);
+  const double first = residual_.norm();
+  for (int k = 0; k < most_convex_iterations; ++k) {
+    const double norm = residual_.norm();
+    if (norm <= std::max(tolerance_at(x), convex_reduction * first)) return true;
+    assemble();
+    ++counters_.factorisations;
+    if (!solver_->factor(matrix_)) return false;
+    const Increment step = solver_->solve(residual_);
+    if (step.size() == 0 || !step.allFinite()) return false;
+    const Increment from = x;
+    const auto slope = [&](double part) {
+      x = from - part * step;
+      evaluate(x, law);
+      return -step.dot(residual_);  // derivative of the energy along the step
+    };
+    const double steepest = std::abs(step.dot(residual_));
+    double low = 0.0, low_slope = -steepest, high = 1.0, high_slope = slope(1.0);
+    // The slope never falls along the step. Where it is still negative at the whole step, that is taken: it does not overshoot. Else the root is
+    // found by the regula falsi with halving of the end that stays (Illinois).
+    for (int i = 0; i < most_searches && high_slope > search_reduction * steepest; ++i) {
+      const double middle = low + (high - low) * (-low_slope) / (high_slope - low_slope);
+      const double middle_slope = slope(middle);
+      if (std::abs(middle_slope) <= search_reduction * steepest) break;
+      if (middle_slope > 0.0) {
+        high = middle, high_slope = middle_slope;
+        low_slope *= 0.5;
+      } else {
+        low = middle, low_slope = middle_slope;
+        high_slope *= 0.5;
+      }
+    }
+  }
+  return residual_.norm() <= std::max(tolerance_at(x), convex_reduction * first);
+}
+
+/// Where Newton's method stalls: problems with the friction bounds held fixed, the bounds being those of mean normal forces, and from every second
+/// Newton's method anew.
+bool Balance::restart(Increment& x) {
+  std::vector<double> mean(springs_.size());
+  evaluate(x, ShearLaw::coulomb);
+  for (std::size_t i = 0; i < springs_.size(); ++i) mean[i] = responses_[i].normal;
+  Increment y = Increment::Zero(x.size());
+  for (int pass = 1; pass <= most_passes; ++pass) {
+    for (std::size_t i = 0; i < springs_.size(); ++i) springs_[i].bound = springs_[i].strength.shear_bound(mean[i]).value;
+    if (!convex(y, ShearLaw::fixed)) return false;
+    for (std::size_t i = 0; i < springs_.size(); ++i) mean[i] = 0.5 * (mean[i] + responses_[i].normal);
+    if (pass % 2 != 0) continue;
+    Increment trial = y;
+    if (newton(trial, most_newton_iterations)) {
+      x.swap(trial);
+      return true;
+    }
+  }
+  return false;
+}
+
+bool Balance::solve_quickly(Increment& x) {
+  return newton(x, most_newton_iterations);
+}
+
+bool Balance::solve(Increment& x) {
+  const Increment guess = x;
+  if (newton(x, most_newton_iterations) || restart(x)) return true;
+  x = guess;
+  return follow_path(x);
+}
+
+Balance::Piece Balance::piece_at(const Spring& spring, double normal, double shear) {
+  const ContactStrength& s = spring.strength;
+  if (normal < -s.tension) return Piece::open;
+  const ContactStrength::ShearBound bound = s.shear_bound(normal);
+  if (std::abs(shear) <= bound.value) return Piece::stick;
+  const bool on_ramp = bound.slope != s.friction;
+  if (shear > 0.0) return on_ramp ? Piece::ramp_forward : Piece::slide_forward;
+  return on_ramp ? Piece::ramp_backward : Piece::slide_backward;
+}
+
+/// The pieces are divided by N = -tension, by the two lines of the strength with either sign of T, and by the end of the ramp.
+std::array<Balance::Line, Balance::line_count> Balance::lines_of(const Spring& spring, double normal, double normal_way, double shear,
+                                                                 double shear_way) {
+  const ContactStrength& s = spring.strength;
+  const double mu = s.friction, steep = mu + 1.0 / tolerance::cohesion_ramp;
+  return {{{normal + s.tension, normal_way},
+           {shear - (mu * normal + s.cohesion), shear_way - mu * normal_way},
+           {shear - steep * (normal + s.tension), shear_way - steep * normal_way},
+           {-shear - (mu * normal + s.cohesion), -shear_way - mu * normal_way},
+           {-shear - steep * (normal + s.tension), -shear_way - steep * normal_way},
+           {steep * (normal + s.tension) - (mu * normal + s.cohesion), (steep - mu) * normal_way}}};
+}
+
+/// Where a contact leaves its piece on a straight way of its trial forces, and what it comes to.
+/// \param crossed_line  from which it has just come and moves away; -1 for none
+Balance::Event Balance::next_event(const Spring& spring, Piece piece, double normal, double normal_way, double shear, double shear_way,
+                                   int crossed_line) {
+  const std::array<Line, line_count> lines = lines_of(spring, normal, normal_way, shear, shear_way);
+  // Crossings in the order in which they come.
+  std::array<double, line_count> at;
+  std::array<int, line_count> line;
+  int count = 0;
+  for (int k = 0; k < line_count; ++k) {
+    if (k == crossed_line || lines[k].slope == 0.0) continue;
+    const double where = -lines[k].value / lines[k].slope;
+    if (!(where >= 0.0)) continue;
+    int place = count++;
+    for (; place > 0 && at[place - 1] > where; --place) at[place] = at[place - 1], line[place] = line[place - 1];
+    at[place] = where, line[place] = k;
+  }
+  for (int k = 0; k < count; ++k) {
+    const double after = k + 1 < count ? 0.5 * (at[k] + at[k + 1]) : 2.0 * at[k] + 1.0;
+    const Piece next = piece_at(spring, normal + after * normal_way, shear + after * shear_way);
+    if (next != piece) return {at[k], next, line[k]};
+  }
+  return {std::numeric_limits<double>::infinity(), piece, -1};
+}
+
+Balance::Response Balance::tangent_of(const Spring& spring, Piece piece) {
+  const double steep = spring.strength.friction + 1.0 / tolerance::cohesion_ramp;
+  const double kn = spring.normal_stiffness, ks = spring.shear_stiffness;
+  switch (piece) {
+    case Piece::open:
+      return {0.0, 0.0, 0.0, 0.0, 0.0};
+    case Piece::stick:
+      return {0.0, 0.0, -kn, 0.0, -ks};
+    case Piece::slide_forward:
+      return {0.0, 0.0, -kn, -kn * spring.strength.friction, 0.0};
+    case Piece::slide_backward:
+      return {0.0, 0.0, -kn, kn * spring.strength.friction, 0.0};
+    case Piece::ramp_forward:
+      return {0.0, 0.0, -kn, -kn * steep, 0.0};
+    case Piece::ramp_backward:
+      return {0.0, 0.0, -kn, kn * steep, 0.0};
+  }
+  return {};
+}
+
+void Balance::trial_ways(const Increment& d, Eigen::VectorXd& normal, Eigen::VectorXd& shear) {
+  const double* motion = padded(d);
+  normal.resize(static_cast<Eigen::Index>(rows_.size()));
+  shear.resize(normal.size());
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    normal[i] = -springs_[i].normal_stiffness * rows_[i].gap(motion);
+    shear[i] = -springs_[i].shear_stiffness * rows_[i].slip(motion);
+  }
+}
+
+void Balance::trial_forces(const Increment& x, Eigen::VectorXd& normal, Eigen::VectorXd& shear) {
+  trial_ways(x, normal, shear);
+  for (std::size_t i = 0; i < springs_.size(); ++i) {
+    normal[i] -= springs_[i].normal_stiffness * springs_[i].gap;
+    shear[i] += springs_[i].shear;
+  }
+}
+
+/// Katzenelson's method with reversals (Chien and Kuh 1977): follows R(x) = (1 - t) R(x0) from t = 0 through one linear piece of the contact law
+/// after the other. At every kink one contact changes its piece; where the new piece turns the way back, t falls for a while, below zero if need be.
+/// Since R is continuous and large for large x, the way from a generic x0 cannot end elsewhere than at t = 1 or far below zero.
+bool Balance::follow_path(Increment& x) {
+  // A generic start: contacts that share a kink reach it one after the other.
+  for (Eigen::Index k = 0; k < x.size(); ++k) x[k] += generic_shift * std::sin(1.0 + 1.7 * static_cast<double>(k));
+  evaluate(x, ShearLaw::coulomb);
+  const Eigen::VectorXd start = residual_;
+  Eigen::VectorXd normal, shear, normal_way, shear_way;
+  trial_forces(x, normal, shear);
+  std::vector<Piece> pieces(springs_.size());
+  for (std::size_t i = 0; i < springs_.size(); ++i) pieces[i] = piece_at(springs_[i], normal[i], shear[i]);
+  double t = 0.0;
+  std::size_t entered = springs_.size();  // the contact that has changed its piece last, the line that it has crossed and in which sense
+  int crossed_line = -1;
+  bool rising = true;
+  for (int k = 0; k < most_pieces; ++k) {
+    for (std::size_t i = 0; i < springs_.size(); ++i) responses_[i] = tangent_of(springs_[i], pieces[i]);
+    assemble();
+    ++counters_.factorisations;
+    if (!solver_->factor(matrix_)) return false;
+    const Increment way = -solver_->solve(start);
+    if (way.size() == 0 || !way.allFinite()) return false;
+    trial_ways(way, normal_way, shear_way);
+    double sense = 1.0;
+    if (entered < springs_.size()) {
+      const Line line = lines_of(springs_[entered], normal[entered], normal_way[entered], shear[entered], shear_way[entered])[crossed_line];
+      if ((line.slope > 0.0) != rising) sense = -1.0;
+    }
+    Event nearest{sense > 0.0 ? 1.0 - t : std::numeric_limits<double>::infinity(), Piece::open, -1};
+    std::size_t next = springs_.size();
+    for (std::size_t i = 0; i < springs_.size(); ++i) {
+      const Event event =
+          next_event(springs_[i], pieces[i], normal[i], sense * normal_way[i], shear[i], sense * shear_way[i], i == entered ? crossed_line : -1);
+      if (event.at < nearest.at) nearest = event, next = i;
+    }
+    if (!std::isfinite(nearest.at)) return false;
+    x += sense * nearest.at * way;
+    t += sense * nearest.at;
+    if (next == springs_.size()) return newton(x, most_newton_iterations);
+    rising = sense * lines_of(springs_[next], normal[next], normal_way[next], shear[next], shear_way[next])[nearest.line].slope > 0.0;
+    trial_forces(x, normal, shear);
+    pieces[next] = nearest.next;
+    entered = next;
+    crossed_line = nearest.line;
+  }
+  return false;
+}
+
+bool Balance::solve_open_close(Increment& x) {
+  const auto state_of = [](const Response& r) { return r.normal_by_gap == 0.0 ? 0 : r.shear_by_slip == 0.0 ? 1 : 2; };
+  evaluate(x, ShearLaw::coulomb);
+  for (int pass = 0; pass < most_open_close_passes; ++pass) {
+    std::vector<int> states;
+    for (Response& r : responses_) {
+      states.push_back(state_of(r));
+      r.shear_by_gap = 0.0;  // friction is a known force
+    }
+    assemble();
+    ++counters_.factorisations;
+    if (!solver_->factor(matrix_)) return false;
+    const Increment step = solver_->solve(residual_);
+    if (step.size() == 0 || !step.allFinite()) return false;
+    x -= step;
+    evaluate(x, ShearLaw::coulomb);
+    bool same = true;
+    for (std::size_t i = 0; i < responses_.size() && same; ++i) same = state_of(responses_[i]) == states[i];
+    if (same) return true;
+  }
+  return false;
+}
+
+bool Balance::solve_bonded(Increment& x) {
+  return convex(x, ShearLaw::elastic);
+}
+
+void Balance::accept(const Increment& x, FrozenState& state, ShearLaw law) const {
+  const auto& contacts = system_.contacts();
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const FrozenContact& c = contacts[i];
+    double gap = 0.0, slip = 0.0;
+    if (c.a >= 0) gap += c.normal_a.dot(x.segment<3>(3 * c.a)), slip += c.shear_a.dot(x.segment<3>(3 * c.a));
+    if (c.b >= 0) gap += c.normal_b.dot(x.segment<3>(3 * c.b)), slip += c.shear_b.dot(x.segment<3>(3 * c.b));
+    const Response r = respond(springs_[i], gap, slip, law);
+    FrozenContactState& s = state.contacts[i];
+    s.gap += gap;
+    s.normal = r.normal;
+    s.shear = r.shear;
+    s.status = r.normal_by_gap == 0.0 ? ContactStatus::open : r.shear_by_slip == 0.0 ? ContactStatus::sliding : ContactStatus::sticking;
+  }
+  for (std::size_t i = 0; i < state.supports.size(); ++i) {
+    const FrozenSupport& s = system_.supports()[i];
+    state.supports[i] -= s.stiffness * s.direction.dot(x.segment<3>(3 * s.row));
+  }
+  for (std::size_t b = 0; b < state.displacement.size(); ++b) state.displacement[b] += x.segment<3>(3 * static_cast<Eigen::Index>(b));
+}
+
+}  // namespace openclose

@@ -1,0 +1,139 @@
+// One overdamped increment of a FrozenSystem: find the displacements x of the blocks with
+//     R(x) = eps M x - w - B' q(x) = 0,
+// M the masses, w the loads, q the contact forces after the increment, eps a viscosity. The limit of small eps is equilibrium, or, where there is
+// none, a motion whose velocity x is the acceleration of the rigid blocks divided by eps.
+//
+// Contact law: N = max(-tension, -k g); T = clip(T0 - k_s s, +-b(N)), b the Coulomb bound of joint_law.h, g the gap, s the slip of the increment. It
+// is piecewise linear, and its tangent is not symmetric where contacts slide.
+//
+// A solution exists for every eps > 0: R is continuous, and x'R(x) > 0 for large x, since every normal spring and every friction force resists a
+// large increment (Brouwer's theorem). It need not be unique.
+#pragma once
+
+#include <array>
+#include <memory>
+
+#include "openclose/linear/solver.h"
+#include "openclose/statics/frozen_state.h"
+
+namespace openclose {
+
+/// What a contact's shear force is bounded by during an increment.
+enum class ShearLaw {
+  coulomb,  ///< by the strength at the normal force of the same increment
+  fixed,    ///< by given bounds: a convex problem
+  elastic,  ///< by nothing: neither slips nor opens; a convex problem
+};
+
+struct BalanceCounters {
+  long factorisations = 0;
+  long evaluations = 0;
+};
+
+class Balance {
+ public:
+  Balance(const FrozenSystem& system, const FrozenStrength& strength);
+
+  using Increment = Eigen::VectorXd;  ///< three numbers a block
+
+  /// Sets the state from which the increment is taken, and the viscosity.
+  void start(const FrozenState& state, double eps);
+  /// Takes the strengths anew, after they have changed.
+  void renew_strength(const FrozenState& state);
+
+  /// From x on; true if |R| is down to rounding. `x` is the best found otherwise.
+  bool solve(Increment& x);
+  /// The same by Newton's method alone.
+  bool solve_quickly(Increment& x);
+  /// Shi's open-close iteration: linear solutions with the contacts' states, and the friction of sliding ones, as the pass before has left them,
+  /// until no state changes; false if passes do not suffice. What friction has changed by in the last pass stays unbalanced for the next increment.
+  bool solve_open_close(Increment& x);
+  /// With elastic shear springs: the state of blocks whose joints neither slip nor open in shear.
+  bool solve_bonded(Increment& x);
+  /// [-] of R at x.
+  double residual_norm(const Increment& x);
+  /// The forces after the increment x.
+  void accept(const Increment& x, FrozenState& state, ShearLaw law = ShearLaw::coulomb) const;
+  /// Largest component of an increment.
+  static double size(const Increment& x) { return x.size() == 0 ? 0.0 : x.cwiseAbs().maxCoeff(); }
+
+  const BalanceCounters& counters() const { return counters_; }
+
+ private:
+  struct Spring {  // what a contact starts the increment with
+    double gap, shear, normal_stiffness, shear_stiffness;
+    ContactStrength strength;
+    double bound = 0.0;  // of ShearLaw::fixed
+  };
+  struct Response {
+    double normal, shear;
+    double normal_by_gap, shear_by_gap, shear_by_slip;
+  };
+  /// Linear pieces of the contact law.
+  enum class Piece : unsigned char { open, stick, slide_forward, slide_backward, ramp_forward, ramp_backward };
+  /// A line c_n N + c_t T + c = 0 of trial forces that divides two pieces.
+  struct Line {
+    double value, slope;  // now, and along a way
+  };
+  static constexpr int line_count = 6;
+  struct Event {
+    double at;  // along the way
+    Piece next;
+    int line;
+  };
+
+  /// What the loops over all contacts read of one: the rows of its blocks, a fixed one being the row after the last, whose numbers nothing reads.
+  struct Row {
+    int a, b;
+    double normal_a[3], normal_b[3], shear_a[3], shear_b[3];
+    double gap(const double* x) const { return along(normal_a, x + 3 * a) + along(normal_b, x + 3 * b); }
+    double slip(const double* x) const { return along(shear_a, x + 3 * a) + along(shear_b, x + 3 * b); }
+    static double along(const double* g, const double* d) { return g[0] * d[0] + g[1] * d[1] + g[2] * d[2]; }
+  };
+  /// A block of the matrix to which a contact adds: the products of its forces on one block by the motion of one.
+  struct Share {
+    int contact;
+    bool force_on_b, motion_of_b;
+  };
+
+  static Piece piece_at(const Spring& spring, double normal, double shear);
+  static std::array<Line, line_count> lines_of(const Spring& spring, double normal, double normal_way, double shear, double shear_way);
+  static Event next_event(const Spring& spring, Piece piece, double normal, double normal_way, double shear, double shear_way, int crossed_line);
+  static Response tangent_of(const Spring& spring, Piece piece);
+  void trial_forces(const Increment& x, Eigen::VectorXd& normal, Eigen::VectorXd& shear);
+  void trial_ways(const Increment& d, Eigen::VectorXd& normal, Eigen::VectorXd& shear);
+  Response respond(const Spring& spring, double gap_change, double slip_change, ShearLaw law) const;
+  void evaluate(const Increment& x, ShearLaw law);
+  void assemble();
+  void list_shares();
+  void mark_stale(int slot);
+  void renew(int slot);
+  const double* padded(const Increment& x);
+  bool newton(Increment& x, int most_iterations);
+  bool convex(Increment& x, ShearLaw law);
+  bool restart(Increment& x);
+  bool follow_path(Increment& x);
+  double tolerance_at(const Increment& x) const;
+
+  const FrozenSystem& system_;
+  const FrozenStrength& strength_;
+  std::unique_ptr<LinearSolver<3>> solver_;
+  BlockMatrix<3> matrix_;
+  std::vector<Row> rows_;
+  std::vector<int> share_start_;  ///< of the slots of the matrix, in shares_
+  std::vector<Share> shares_;
+  std::vector<std::vector<int>> slots_of_contact_;
+  std::vector<Response> assembled_;  ///< with whose tangents the matrix was assembled
+  std::vector<char> is_stale_;       ///< slots
+  std::vector<int> stale_;
+  double assembled_eps_ = -1.0;
+  Eigen::VectorXd padded_, forces_;  ///< with the row of fixed blocks
+  std::vector<Spring> springs_;
+  std::vector<double> support_forces_;
+  std::vector<Response> responses_;
+  Eigen::VectorXd residual_;
+  double eps_ = 1.0;
+  BalanceCounters counters_;
+};
+
+}  // namespace openclose

@@ -1,0 +1,129 @@
+#include "openclose/statics/explicit_relaxation.h"
+
+#include <algorithm>
+
+#include "openclose/statics/relaxation.h"
+
+namespace openclose {
+namespace {
+
+/// Unit of time: with the inertia of assign_inertia() no frequency is above 1, so that this is half the critical step. A contact that closes in a
+/// step then returns at most what it has taken.
+constexpr double time_step = 1.0;
+constexpr long steps_between_checks = 100;
+constexpr long first_judgement = 20000;  ///< steps; most systems settle in a tenth of them
+constexpr long between_judgements = 4;   ///< [-] ratio of the steps at two of them
+constexpr double most_travel = 1e3;      ///< in closures: what has gone so far from its last equilibrium moves on
+
+/// Rows of the stiffness matrix of closed, sticking contacts by the sums of their magnitudes: a bound of its eigenvalues over them (Gershgorin).
+std::vector<BlockVector> stiffness_sums(const FrozenSystem& system) {
+  std::vector<BlockVector> sums(system.blocks().size(), BlockVector::Zero());
+  for (const FrozenContact& c : system.contacts()) {
+    const double normal_way = (c.a >= 0 ? c.normal_a.lpNorm<1>() : 0.0) + (c.b >= 0 ? c.normal_b.lpNorm<1>() : 0.0);
+    const double shear_way = (c.a >= 0 ? c.shear_a.lpNorm<1>() : 0.0) + (c.b >= 0 ? c.shear_b.lpNorm<1>() : 0.0);
+    if (c.a >= 0) sums[c.a] += c.normal_stiffness * normal_way * c.normal_a.cwiseAbs() + c.shear_stiffness * shear_way * c.shear_a.cwiseAbs();
+    if (c.b >= 0) sums[c.b] += c.normal_stiffness * normal_way * c.normal_b.cwiseAbs() + c.shear_stiffness * shear_way * c.shear_b.cwiseAbs();
+  }
+  for (const FrozenSupport& s : system.supports()) sums[s.row] += s.stiffness * s.direction.lpNorm<1>() * s.direction.cwiseAbs();
+  return sums;
+}
+
+}  // namespace
+
+ExplicitRelaxation::ExplicitRelaxation(const FrozenSystem& system, const FrozenStrength& strength, double local_damping, long most_steps)
+    : system_(system), strength_(strength), local_damping_(local_damping), most_steps_(most_steps), inertia_(stiffness_sums(system)) {
+  // What no spring holds in a direction has its own mass there.
+  for (std::size_t b = 0; b < inertia_.size(); ++b) {
+    for (int k = 0; k < 3; ++k) {
+      if (!(inertia_[b][k] > 0.0)) inertia_[b][k] = std::max(system.blocks()[b].mass[k], system.blocks()[b].weight);
+    }
+  }
+}
+
+RelaxationResult ExplicitRelaxation::bonded_state() {
+  return settle(FrozenState(system_), ShearBound::none);
+}
+
+/// On the way waves open contacts that equilibrium keeps closed, so joints keep their bonds until rest; what is open or slides there loses them, and
+/// the rest settles again.
+RelaxationResult ExplicitRelaxation::relax(const FrozenState& from) {
+  RelaxationResult result = settle(from, ShearBound::strength);
+  while (result.end == RelaxationEnd::stable && lose_bonds(strength_, result.state)) {
+    const long steps = result.steps;
+    result = settle(result.state, ShearBound::strength);
+    result.steps += steps;
+  }
+  return result;
+}
+
+/// What `dem` has not brought to rest is judged by the viscous increments from the same state: nothing counts as failed without a mechanism.
+bool ExplicitRelaxation::fails(const FrozenState& from, RelaxationResult& result) const {
+  RelaxationResult judged = Relaxation(system_, strength_, IncrementRule::newton).relax(from);
+  if (judged.end != RelaxationEnd::mechanism) return false;
+  result.end = RelaxationEnd::mechanism;
+  result.mechanism = std::move(judged.mechanism);
+  return true;
+}
+
+RelaxationResult ExplicitRelaxation::settle(const FrozenState& from, ShearBound bound) {
+  RelaxationResult result;
+  result.state = from;
+  velocity_.assign(system_.blocks().size(), BlockVector::Zero());
+  strengths_.clear();
+  for (std::size_t i = 0; i < from.contacts.size(); ++i) strengths_.push_back(strength_.of(i, from.contacts[i].bonded));
+  long judgement = first_judgement;
+  while (result.steps < most_steps_) {
+    for (long k = 0; k < steps_between_checks; ++k) move(result.state, bound);
+    result.steps += steps_between_checks;
+    result.travel = farthest_between(result.state, from);
+    const EquilibriumCheck check = check_equilibrium(system_, strength_, result.state);
+    if (bound == ShearBound::none ? check.in_balance() : check.holds()) {
+      result.end = RelaxationEnd::stable;
+      return result;
+    }
+    const bool escaped = !(result.travel <= most_travel);
+    if (bound == ShearBound::strength && (escaped || result.steps >= judgement)) {
+      if (fails(from, result)) return result;
+      judgement *= between_judgements;
+    }
+    if (escaped) {
+      result.end = RelaxationEnd::escaped;
+      return result;
+    }
+  }
+  return result;
+}
+
+/// One step: forces move the blocks, and their motion gives the next forces.
+void ExplicitRelaxation::move(FrozenState& state, ShearBound bound) {
+  const std::vector<BlockVector> force = unbalanced_forces(system_, state);
+  for (std::size_t b = 0; b < force.size(); ++b) {
+    for (int k = 0; k < 3; ++k) {
+      double& v = velocity_[b][k];
+      const double damping = v == 0.0 ? 0.0 : std::copysign(local_damping_ * std::abs(force[b][k]), v);
+      v += time_step * (force[b][k] - damping) / inertia_[b][k];
+    }
+    state.displacement[b] += time_step * velocity_[b];
+  }
+  for (std::size_t i = 0; i < state.contacts.size(); ++i) {
+    const FrozenContact& c = system_.contacts()[i];
+    FrozenContactState& s = state.contacts[i];
+    double gap = 0.0, slip = 0.0;
+    if (c.a >= 0) gap += c.normal_a.dot(velocity_[c.a]), slip += c.shear_a.dot(velocity_[c.a]);
+    if (c.b >= 0) gap += c.normal_b.dot(velocity_[c.b]), slip += c.shear_b.dot(velocity_[c.b]);
+    s.gap += time_step * gap;
+    const double normal = -c.normal_stiffness * s.gap, shear = s.shear - c.shear_stiffness * time_step * slip;
+    const bool open = normal < -strengths_[i].tension;
+    s.normal = open ? -strengths_[i].tension : normal;
+    const double largest = strengths_[i].largest_shear(s.normal);
+    const bool slides = bound == ShearBound::strength && std::abs(shear) > largest;
+    s.shear = slides ? std::copysign(largest, shear) : shear;
+    s.status = open ? ContactStatus::open : slides ? ContactStatus::sliding : ContactStatus::sticking;
+  }
+  for (std::size_t i = 0; i < state.supports.size(); ++i) {
+    const FrozenSupport& s = system_.supports()[i];
+    state.supports[i] -= s.stiffness * time_step * s.direction.dot(velocity_[s.row]);
+  }
+}
+
+}  // namespace openclose

@@ -1,0 +1,34 @@
+// How a method finds out whether a FrozenSystem stands.
+#pragma once
+
+#include "openclose/statics/certificate.h"
+
+namespace openclose {
+
+enum class RelaxationEnd {
+  stable,     ///< equilibrium, proved by its forces
+  mechanism,  ///< failure, proved by forces and accelerations
+  escaped,    ///< blocks have gone too far without becoming steady: no proof
+  undecided,  ///< no increment was found, or too many were needed
+};
+
+struct RelaxationResult {
+  RelaxationEnd end = RelaxationEnd::undecided;
+  FrozenState state;          ///< where it ended
+  Eigen::VectorXd mechanism;  ///< direction of the accelerations, three numbers a block, the largest 1; if it ended so
+  long steps = 0;
+  double travel = 0.0;  ///< in closures, of any component of a block's motion
+};
+
+class FrozenSolver {
+ public:
+  virtual ~FrozenSolver() = default;
+  /// The state of blocks whose joints neither slip nor open in shear, springs unloaded before: gravity on the intact rock. Not stable only where no
+  /// strength of the joints in shear could hold the blocks.
+  virtual RelaxationResult bonded_state() = 0;
+  /// From a state, at the present strength.
+  virtual RelaxationResult relax(const FrozenState& from) = 0;
+  virtual long linear_solves() const { return 0; }
+};
+
+}  // namespace openclose

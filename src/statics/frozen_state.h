@@ -1,0 +1,60 @@
+// What the contacts of a FrozenSystem carry and where its blocks are; what the joints can carry at a strength reduction factor.
+#pragma once
+
+#include <vector>
+
+#include "openclose/law/joint_law.h"
+#include "openclose/statics/frozen_system.h"
+
+namespace openclose {
+
+/// Forces and memory of one contact.
+struct FrozenContactState {
+  double gap = 0.0;     ///< in closures; the normal spring's stretch
+  double normal = 0.0;  ///< compression positive
+  double shear = 0.0;   ///< also what the shear spring remembers
+  bool bonded = true;   ///< cohesion and tensile strength are still there
+  ContactStatus status = ContactStatus::sticking;
+};
+
+struct FrozenState {
+  std::vector<FrozenContactState> contacts;
+  std::vector<double> supports;           ///< force of each along its direction
+  std::vector<BlockVector> displacement;  ///< in closures, since the drawing
+
+  FrozenState() = default;
+  explicit FrozenState(const FrozenSystem& system)
+      : contacts(system.contacts().size()), supports(system.supports().size(), 0.0), displacement(system.blocks().size(), BlockVector::Zero()) {}
+};
+
+/// Strengths of all contacts at a factor, over the unit of force.
+class FrozenStrength {
+ public:
+  FrozenStrength(const FrozenSystem& system, const Scene& scene);
+  /// Divides tan(friction angle), cohesion and tensile strength by the factor.
+  void reduce(double factor);
+  double factor() const { return factor_; }
+  /// Of contact i, with what its bonds leave it.
+  ContactStrength of(std::size_t i, bool bonded) const;
+  /// Whether bonds survive a state of the contact.
+  bool stays_bonded(std::size_t i, const FrozenContactState& state) const;
+  bool can_break(std::size_t i, bool bonded) const;
+
+ private:
+  const FrozenSystem& system_;
+  JointTable joints_;
+  double factor_ = 1.0;
+};
+
+/// Takes bonds from contacts whose state does not leave them; whether any had one to lose.
+bool lose_bonds(const FrozenStrength& strength, FrozenState& state);
+
+/// In closures: the largest component of what blocks have moved between two states.
+double farthest_between(const FrozenState& a, const FrozenState& b);
+
+/// The unbalanced force of each block: load, contacts and supports.
+std::vector<BlockVector> unbalanced_forces(const FrozenSystem& system, const FrozenState& state);
+/// The sum of the magnitudes of the forces on each block: the scale of what rounding leaves of their sum.
+std::vector<double> force_magnitudes(const FrozenSystem& system, const FrozenState& state);
+
+}  // namespace openclose

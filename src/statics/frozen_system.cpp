@@ -1,0 +1,167 @@
+#include "openclose/statics/frozen_system.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "openclose/contact/detection.h"
+#include "openclose/contact/kinematics.h"
+#include "openclose/geometry/polygon.h"
+#include "openclose/model/external_forces.h"
+
+namespace openclose {
+namespace {
+
+/// [m] The root of the median area of the free blocks.
+double median_size(const Scene& scene) {
+  std::vector<double> areas;
+  for (const BlockInput& block : scene.blocks) {
+    if (block.fixed) continue;
+    Polygon polygon;
+    for (const Vec2& v : block.vertices) polygon.push_back(v - block.vertices.front());
+    areas.push_back(polygon_properties(polygon).area);
+  }
+  if (areas.empty()) return 1.0;
+  const auto middle = areas.begin() + static_cast<std::ptrdiff_t>(areas.size() / 2);
+  std::nth_element(areas.begin(), middle, areas.end());
+  return std::sqrt(*middle);
+}
+
+/// The scene with its first vertex at the origin and lengths in this unit [m]; only what detection looks at.
+Scene in_units(const Scene& scene, double unit) {
+  Scene scaled = scene;
+  if (scene.blocks.empty()) return scaled;
+  const Vec2 origin = scene.blocks.front().vertices.front();
+  const auto scale = [&](Vec2& p) { p = (p - origin) / unit; };
+  for (BlockInput& block : scaled.blocks) {
+    for (Vec2& v : block.vertices) scale(v);
+  }
+  for (Load& load : scaled.loads) scale(load.point);
+  for (Support& support : scaled.supports) scale(support.point);
+  return scaled;
+}
+
+Polygon polygon_of(const BlockSystem<3>& system, int b) {
+  Polygon polygon;
+  const auto& block = system.block(b);
+  for (int v = block.first_vertex; v < block.first_vertex + block.vertex_count; ++v) polygon.push_back(system.position(b, v));
+  return polygon;
+}
+
+/// Whether a third block lies between the corner and the edge of a contact that is drawn open.
+bool has_block_between(const BlockSystem<3>& system, const Contact& contact, const std::vector<std::vector<int>>& neighbours) {
+  if (contact.gap <= tolerance::edge_end_m) return false;
+  const ContactStart<3> at(system, contact);
+  const Vec2 middle = system.position(contact.vertex_block, contact.vertex) - 0.5 * contact.gap * at.normal;
+  return std::ranges::any_of(neighbours[contact.vertex_block],
+                             [&](int other) { return other != contact.edge_block && contains(polygon_of(system, other), middle); });
+}
+
+BlockVector scaled_rotation(const Eigen::Vector3d& gradient, double radius, bool locked) {
+  return {gradient[0], gradient[1], locked ? 0.0 : gradient[2] / radius};
+}
+
+}  // namespace
+
+FrozenSystem::FrozenSystem(const Scene& scene) : length_unit_(median_size(scene)) {
+  const Scene scaled = in_units(scene, length_unit_);
+  BlockSystem<3> system(scaled);
+  const ExternalForces<3> external(scaled, system);
+  const double area_unit = length_unit_ * length_unit_;
+
+  double acceleration_unit = scene.gravity.norm(), heaviest = 0.0;
+  for (int b : system.free_blocks()) {
+    FrozenBlock block;
+    block.block = b;
+    block.centroid = scene.blocks.front().vertices.front() + length_unit_ * system.centroid(b);
+    block.radius = system.block(b).radius;
+    block.rotation_locked = system.block(b).rotation_locked;
+    const BlockSystem<3>::Unknowns mass = system.block(b).mass * area_unit;  // [kg, kg, kg in units of length squared]
+    block.mass = {mass[0], mass[1], mass[2] / (block.radius * block.radius)};
+    // Moments have their arms in units of length.
+    BlockVector load = Motion<3>::gradient(Vec2::Zero(), mass[0] * scene.gravity);
+    for (const auto& f : external.loads()) {
+      if (system.point_block(f.point) == b) load += Motion<3>::gradient(system.point_arm(f.point), f.force);
+    }
+    block.load = scaled_rotation(load, block.radius, system.block(b).rotation_locked);
+    if (scene.gravity.norm() == 0.0) acceleration_unit = std::max(acceleration_unit, block.load.norm() / mass[0]);
+    heaviest = std::max(heaviest, mass[0]);
+    blocks_.push_back(block);
+  }
+  if (acceleration_unit == 0.0) acceleration_unit = 1.0;  // nothing to carry
+  force_unit_ = heaviest > 0.0 ? heaviest * acceleration_unit : 1.0;
+  for (FrozenBlock& block : blocks_) {
+    block.load /= force_unit_;
+    block.mass /= heaviest;
+    block.weight = block.mass[0];
+  }
+  for (const auto& f : external.supports()) {
+    const int b = system.point_block(f.point);
+    const int row = system.block(b).equation;
+    if (row < 0) continue;
+    for (int k = 0; k < 2; ++k) {
+      if (f.stiffness[k] == 0.0) continue;
+      const BlockVector direction = Motion<3>::gradient(system.point_arm(f.point), Vec2::Unit(k));
+      supports_.push_back({row, scaled_rotation(direction, system.block(b).radius, system.block(b).rotation_locked), f.stiffness[k]});
+    }
+  }
+  find_contacts(scaled, system);
+  for (FrozenContact& c : contacts_) c.point = scene.blocks.front().vertices.front() + length_unit_ * c.point;
+  set_units(scene);
+}
+
+void FrozenSystem::find_contacts(const Scene& scaled, const BlockSystem<3>& system) {
+  const JointTable joints(scaled);
+  DetectionSkips skips;
+  skips.contact_skin = tolerance::rounding_of_ways_m;
+  Detector<3> detector(closed_gap, skips);
+  std::vector<Contact> found;
+  detector.update(system, joints, found);
+  std::vector<std::vector<int>> neighbours(system.block_count());
+  for (const auto& [a, b] : detector.candidate_pairs()) {
+    neighbours[a].push_back(b);
+    neighbours[b].push_back(a);
+  }
+  const BlockSystem<3>::Unknowns still = BlockSystem<3>::Unknowns::Zero();
+  for (const Contact& contact : found) {
+    if (contact.gap > closed_gap || has_block_between(system, contact, neighbours)) continue;
+    const auto &corner_block = system.block(contact.vertex_block), &edge_block = system.block(contact.edge_block);
+    if (corner_block.equation < 0 && edge_block.equation < 0) continue;
+    const ContactKinematics<3> k(system, contact, still, still);
+    FrozenContact c;
+    c.a = std::max(corner_block.equation, -1);
+    c.b = std::max(edge_block.equation, -1);
+    c.normal_a = scaled_rotation(k.normal_vertex, corner_block.radius, corner_block.rotation_locked);
+    c.shear_a = scaled_rotation(k.shear_vertex, corner_block.radius, corner_block.rotation_locked);
+    c.normal_b = scaled_rotation(k.normal_edge, edge_block.radius, edge_block.rotation_locked);
+    c.shear_b = scaled_rotation(k.shear_edge, edge_block.radius, edge_block.rotation_locked);
+    c.source = contact;
+    c.source.length *= length_unit_;
+    c.source.bonded = true;
+    c.normal = k.normal;
+    c.point = system.position(contact.vertex_block, contact.vertex);
+    contacts_.push_back(c);
+  }
+}
+
+/// Springs over the mean of the normal ones.
+void FrozenSystem::set_units(const Scene& scene) {
+  const JointTable joints(scene);
+  double sum = 0.0;
+  for (const FrozenContact& c : contacts_) sum += joints.joint(c.source.joint).normal_stiffness * c.source.length;
+  const double stiffness_unit = contacts_.empty() ? 1.0 : sum / static_cast<double>(contacts_.size());  // [N/m]
+  closure_unit_ = force_unit_ / stiffness_unit;
+  for (FrozenContact& c : contacts_) {
+    const TabulatedJoint& joint = joints.joint(c.source.joint);
+    c.normal_stiffness = joint.normal_stiffness * c.source.length / stiffness_unit;
+    c.shear_stiffness = joint.shear_stiffness * c.source.length / stiffness_unit;
+  }
+  for (FrozenSupport& s : supports_) s.stiffness /= stiffness_unit;
+}
+
+FrozenSystem FrozenSystem::with_stiffness_ratio(double ratio) const {
+  FrozenSystem other = *this;
+  for (FrozenContact& c : other.contacts_) c.shear_stiffness = ratio * c.normal_stiffness;
+  return other;
+}
+
+}  // namespace openclose

@@ -1,0 +1,83 @@
+// The scene at small displacements: directions, lever arms and tributary lengths of the contacts stay as drawn, so that gaps and slips are linear in
+// the displacements. Contact forces of statics do then not depend on the scale of the joints' stiffness, only on the ratios of stiffnesses; what is
+// computed from here is a property of the drawn geometry.
+//
+// Everything is without dimension. Units: of length the root of the median area of the free blocks; of force the weight of the heaviest free block
+// (without gravity: its mass times the largest acceleration that the loads would give a block); of displacement the closure of a mean contact under
+// that force. Unknowns of a block are (x, y, rotation times its radius).
+//
+// Contacts are those that the detection finds in the drawing, seen in the units above, so that a scene drawn a thousand times smaller has the same
+// ones. Joints drawn open or overlapping by less than closed_gap are closed; whatever is farther apart does not touch.
+#pragma once
+
+#include <vector>
+
+#include "openclose/contact/contact.h"
+#include "openclose/contact/joint_table.h"
+#include "openclose/model/block_system.h"
+#include "openclose/scene/scene.h"
+
+namespace openclose {
+
+/// [-] of the unit of length: a joint drawn open or overlapping by less is closed, unless another block lies in between. Drawings of blocks of a
+/// metre are rounded to the millimetre.
+inline constexpr double closed_gap = 1e-3;
+
+using BlockVector = Eigen::Vector3d;  ///< x, y, rotation times radius
+
+struct FrozenBlock {
+  int block = 0;                           ///< of the scene
+  Vec2 centroid = Vec2::Zero();            ///< [m] of the scene
+  double radius = 0.0;                     ///< [-] of the farthest vertex
+  BlockVector mass = BlockVector::Zero();  ///< over that of the heaviest block
+  BlockVector load = BlockVector::Zero();  ///< gravity and loads
+  bool rotation_locked = false;
+  double weight = 0.0;  ///< [-] mass times the unit of acceleration: the scale of forces on this block
+};
+
+/// One corner on one edge. Force N > 0 is compression; T is the shear force on the corner's block along the edge, see contact.h.
+struct FrozenContact {
+  int a = -1, b = -1;              ///< block rows of the corner's and the edge's block, -1 for a fixed one
+  BlockVector normal_a, normal_b;  ///< gradients of the gap; also the generalised forces of N = 1
+  BlockVector shear_a, shear_b;    ///< of the slip
+  double normal_stiffness = 0.0;   ///< [-]
+  double shear_stiffness = 0.0;    ///< [-]
+  Contact source;                  ///< blocks, corner, edge, joint; its length in metres
+  Vec2 point = Vec2::Zero();       ///< [m] of the scene
+  Vec2 normal = Vec2::Zero();      ///< from the edge's block into the corner's
+};
+
+/// A spring that holds a point of a block in one direction; slack in the drawing.
+struct FrozenSupport {
+  int row = 0;
+  BlockVector direction;  ///< generalised force of a unit force
+  double stiffness = 0.0;
+};
+
+class FrozenSystem {
+ public:
+  /// \throws InputError for a missing joint
+  explicit FrozenSystem(const Scene& scene);
+
+  const std::vector<FrozenBlock>& blocks() const { return blocks_; }  ///< the free ones, in the order of their rows
+  const std::vector<FrozenContact>& contacts() const { return contacts_; }
+  const std::vector<FrozenSupport>& supports() const { return supports_; }
+  int rows() const { return static_cast<int>(blocks_.size()); }
+
+  double force_unit() const { return force_unit_; }      ///< [N]
+  double closure_unit() const { return closure_unit_; }  ///< [m]
+  double length_unit() const { return length_unit_; }    ///< [m]
+  /// The same system with these shear stiffnesses: `ratio` times the normal ones.
+  FrozenSystem with_stiffness_ratio(double ratio) const;
+
+ private:
+  void find_contacts(const Scene& scaled, const BlockSystem<3>& system);
+  void set_units(const Scene& scene);
+
+  std::vector<FrozenBlock> blocks_;
+  std::vector<FrozenContact> contacts_;
+  std::vector<FrozenSupport> supports_;
+  double force_unit_ = 1.0, closure_unit_ = 1.0, length_unit_ = 1.0;
+};
+
+}  // namespace openclose

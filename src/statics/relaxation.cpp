@@ -1,0 +1,126 @@
+#include "openclose/statics/relaxation.h"
+
+#include <algorithm>
+
+namespace openclose {
+namespace {
+
+/// [-] Viscosity of the last increments: what it holds of a block's weight when that has gone one closure is below negligible_share_of_weight.
+constexpr double least_viscosity = 1e-9;
+constexpr double first_viscosity = 1e-2;
+constexpr double most_viscosity = 1e4;
+constexpr long most_factorisations = 3000;  ///< of one relaxation; nine in ten that end do so in a tenth of them
+
+// Ways are in closures.
+constexpr double most_travel = 1e6;             ///< beyond, gaps lose their digits
+constexpr double least_travel_of_escape = 1e3;  ///< what has gone so far without rest is a motion, if an unsteady one
+constexpr double least_travel_of_mechanism = 1.0;
+constexpr double first_increment_of_motion = 10.0;
+constexpr double growth_of_motion = 0.5;    ///< [-]
+constexpr double most_over_longest = 10.0;  ///< [-] an increment longer than the longest by this is taken in shorter ones
+constexpr double worst_guess = 100.0;       ///< [-] over the residual at rest
+
+}  // namespace
+
+RelaxationResult Relaxation::bonded_state() {
+  RelaxationResult result;
+  result.state = FrozenState(system_);
+  balance_.renew_strength(result.state);
+  // At the least viscosity at once; where that does not converge, by falling ones (proximal point method: converges for every convex problem).
+  double eps = least_viscosity;
+  while (result.steps < most_steps_) {
+    ++result.steps;
+    balance_.start(result.state, eps);
+    Eigen::VectorXd x = Eigen::VectorXd::Zero(3 * system_.rows());
+    if (!balance_.solve_bonded(x)) {
+      if (eps >= most_viscosity) break;
+      eps = std::max(first_viscosity, 10.0 * eps);
+      continue;
+    }
+    if (Balance::size(x) > least_travel_of_escape && is_beyond_all_strength(system_, strength_, x)) {
+      result.end = RelaxationEnd::mechanism;
+      result.mechanism = x / Balance::size(x);
+      break;
+    }
+    balance_.accept(x, result.state, ShearLaw::elastic);
+    result.travel = std::max(result.travel, Balance::size(x));
+    if (check_equilibrium(system_, strength_, result.state).in_balance()) {
+      result.end = RelaxationEnd::stable;
+      break;
+    }
+    eps = std::max(least_viscosity, 0.1 * eps);
+  }
+  return result;
+}
+
+/// Where the first increment, which is to end it at once, is not found easily, shorter ones are.
+bool Relaxation::solve(Eigen::VectorXd& x, bool is_first) {
+  if (rule_ == IncrementRule::open_close) return balance_.solve_open_close(x);
+  return is_first ? balance_.solve_quickly(x) : balance_.solve(x);
+}
+
+/// Strength that a joint loses for good is lost between increments.
+void Relaxation::accept(const Eigen::VectorXd& x, FrozenState& state) {
+  balance_.accept(x, state);
+  if (lose_bonds(strength_, state)) balance_.renew_strength(state);
+}
+
+/// A steady motion goes on with its velocity; where that is far from balance, nothing is guessed.
+Eigen::VectorXd Relaxation::guess(const Eigen::VectorXd& velocity, double eps) {
+  Eigen::VectorXd still = Eigen::VectorXd::Zero(3 * system_.rows());
+  if (velocity.size() == 0) return still;
+  const Eigen::VectorXd steady = velocity / eps;
+  return balance_.residual_norm(steady) < worst_guess * balance_.residual_norm(still) ? steady : still;
+}
+
+bool Relaxation::ended(RelaxationResult& result, const Eigen::VectorXd& x) const {
+  if (check_equilibrium(system_, strength_, result.state).holds()) {
+    result.end = RelaxationEnd::stable;
+    return true;
+  }
+  if (Balance::size(x) > least_travel_of_mechanism && is_mechanism(system_, strength_, result.state, x)) {
+    result.end = RelaxationEnd::mechanism;
+    result.mechanism = x / Balance::size(x);
+    return true;
+  }
+  return false;
+}
+
+RelaxationResult Relaxation::relax(const FrozenState& from) {
+  RelaxationResult result;
+  result.state = from;
+  balance_.renew_strength(result.state);
+  Eigen::VectorXd velocity;  // of the last increment: its length times its viscosity
+  double eps = least_viscosity;
+  const long begin = balance_.counters().factorisations;
+  while (result.steps < most_steps_ && balance_.counters().factorisations - begin < most_factorisations) {
+    ++result.steps;
+    const long before = balance_.counters().factorisations;
+    balance_.start(result.state, eps);
+    Eigen::VectorXd x = guess(velocity, eps);
+
+    if (!solve(x, result.steps == 1)) {
+      eps = std::max(first_viscosity, 10.0 * eps);
+      if (eps > most_viscosity) break;
+      continue;
+    }
+    velocity = eps * x;
+    // Increments of a motion grow with the way that lies behind: a motion that begins at rest changes with the logarithm of its way.
+    const double longest = std::max(first_increment_of_motion, growth_of_motion * result.travel);
+    const double length = Balance::size(x);
+    if (length > most_over_longest * longest) {
+      eps *= length / longest;
+      continue;
+    }
+    accept(x, result.state);
+    result.travel = std::max(result.travel, farthest_between(result.state, from));
+    if (ended(result, x)) return result;
+    if (result.travel > most_travel) break;
+    const long effort = balance_.counters().factorisations - before;
+    eps = std::max({least_viscosity, eps / (effort <= 6 ? 10.0 : effort <= 15 ? 4.0 : 2.0), Balance::size(velocity) / longest});
+  }
+  result.end = result.travel > least_travel_of_escape ? RelaxationEnd::escaped : RelaxationEnd::undecided;
+  return result;
+}
+
+}  // namespace openclose
