@@ -13,7 +13,8 @@ namespace {
 /// What grows with an analysis, so that one that is broken off can go on from there.
 constexpr const char* growing_results[] = {"history.csv", "energy.csv", "blocks.csv", checkpoint_name};
 /// What comes at its end.
-constexpr const char* last_results[] = {"contacts.csv", "trials.csv", "curve.csv", "milestones.csv", "summary.json", "checkpoint.bin.part"};
+constexpr const char* last_results[] = {"contacts.csv",   "trials.csv",   "mechanism.csv",      "curve.csv",
+                                        "milestones.csv", "summary.json", "checkpoint.bin.part"};
 
 [[noreturn]] void fail_unwritable(const std::string& path) {
   throw InputError({path, 0}, "", "cannot be written", "a file in a folder that exists or can be made, and may be written to");

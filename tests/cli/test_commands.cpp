@@ -125,7 +125,8 @@ TEST_CASE("a folder has the results of one run only, beside files of the user's 
   }
   SECTION("a factor of safety, and a run again") {
     CHECK(place
-              .run("fos scene.toml -o out --dt 0.001 --set strength_reduction.width=1 --set settle.failure_displacement_m=0.05 --set "
+              .run("fos scene.toml -o out --dt 0.001 --set strength_reduction.definition=large_displacements --set strength_reduction.width=1 --set "
+                   "settle.failure_displacement_m=0.05 --set "
                    "strength_reduction.curve=[1.1] "
                    "--set strength_reduction.curve_time_s=0.01")
               .status == 0);

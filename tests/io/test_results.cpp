@@ -184,9 +184,14 @@ TEST_CASE("contacts.csv tells what every contact carries", "[io][results]") {
 TEST_CASE("trials.csv and curve.csv", "[io][results]") {
   const TemporaryFolder place;
   const OutputFolder folder(place.path());
-  write_trials(folder, {{{TrialOutcome::stable, "unbalanced force", 3, 0.0}, 1.0, "bracket"},
-                        {{TrialOutcome::failed, "displacement", 17, 0.1}, 1.0 / 3.0, "bisect"},
-                        {{TrialOutcome::undecided, "steps", 200, 0.0}, 1.5, "bisect"}});
+  const auto trial = [](TrialOutcome outcome, const char* criterion, int steps, double displacement, double srf, const char* stage) {
+    StrengthTrial t;
+    t.outcome = outcome, t.criterion = criterion, t.steps = steps, t.displacement = displacement, t.srf = srf, t.stage = stage;
+    return t;
+  };
+  write_trials(folder, {trial(TrialOutcome::stable, "unbalanced force", 3, 0.0, 1.0, "bracket"),
+                        trial(TrialOutcome::failed, "displacement", 17, 0.1, 1.0 / 3.0, "bisect"),
+                        trial(TrialOutcome::undecided, "steps", 200, 0.0, 1.5, "bisect")});
   write_curve(folder, {{1.1, "crest, left", 1.0 / 3.0}});
   CHECK(test::text_of(place / "trials.csv") ==
         "srf,stage,stable,criterion,steps,displacement_m\n"
