@@ -59,8 +59,8 @@ double elastic_normal_at_start(const Contact& contact, const TabulatedJoint& joi
 
 /// Open before and after, nothing stored: every entry would be zero.
 bool rests_open(const Contact& contact, ContactStatus end) {
-  return end == ContactStatus::open && contact.status == ContactStatus::open && !contact.bonded && contact.stretch() > 0.0 && contact.elastic_slip == 0.0 &&
-         contact.stored_energy == 0.0;
+  return end == ContactStatus::open && contact.status == ContactStatus::open && !contact.bonded && contact.stretch() > 0.0 &&
+         contact.elastic_slip == 0.0 && contact.stored_energy == 0.0;
 }
 
 /// Forces averaged over the path; what rotations leave between the ways of these forces and the changes of gap and slip.

@@ -2,8 +2,9 @@
 // difference of the others, so that the imbalance can fail.
 //
 // With the work displacement of the time scheme the change of kinetic energy of a step is exactly the work of the forces in its equation of motion.
-// For a contact with springs k that carry the elastic parts of N and T, compression p = N_el/k, gap g = g+ - p from where the spring rests (g+ the free opening), stretch
-// u = -T_el/k of the shear spring and weights theta at the end, 1 - theta at the start of the step, minus its work is the sum of
+// For a contact with springs k that carry the elastic parts of N and T, compression p = N_el/k, gap g = g+ - p from where the spring rests (g+ the
+// free opening), stretch u = -T_el/k of the shear spring and weights theta at the end, 1 - theta at the start of the step, minus its work is the sum
+// of
 //   springs   k (p1^2 - p0^2)/2 + k_s (u1^2 - u0^2)/2
 //   damping   theta [(N1 - N1_el) (p1 - p0) - (T1 - T1_el) (u1 - u0)] + (1 - theta) [the same with the forces at the start]
 //   scheme    (theta - 1/2) [k (p1 - p0)^2 + k_s (u1 - u0)^2] + theta N1 g0+ - (1 - theta) N0 g1+    (for Shi's theta = 1 half k times the square)

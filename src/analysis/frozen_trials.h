@@ -26,7 +26,8 @@ class FrozenTrials : public StrengthTrials {
 
   TrialResult first(double srf) override;
   TrialResult next(double srf) override;
-  std::string known_failure(double srf) override { return srf >= proved_failure_ ? "limit analysis" : ""; }
+  std::string known_failure(double srf) override { return knows_failure(srf) ? "limit analysis" : ""; }
+  bool knows_failure(double srf) const { return srf >= proved_failure_; }
   /// From this factor on, proved by limit analysis.
   void know_failure_above(double srf) { proved_failure_ = srf; }
 

@@ -64,7 +64,7 @@ class StrengthReduction {
       result_.largest_travel = trials.travel().largest * system.closure_unit();
       warn_of_travel(trials.travel());
     }
-    if (trials.mechanism().size() > 0) add_mechanism(system, trials.mechanism());
+    add_mechanism(system, failing_motion(system, trials));
     warn_of_geometry();
     result_.linear_solves = trials.solver().linear_solves();
   }
@@ -73,18 +73,25 @@ class StrengthReduction {
   double limit_of(const FrozenSystem& system, const FrozenStrength& strength) {
     LimitAnalysisResult& result = result_.limit_analysis.emplace();
     double failed = std::numeric_limits<double>::infinity();
+    auto verdict = limit_analysis::Bracket::Verdict::undecided;
     try {
       limit_analysis::Options options;
       options.upper_limit = std::max(options.upper_limit, 2.0 * input_.upper_limit);
       const limit_analysis::Bracket bracket = limit_analysis::limit_analysis(limit_problem(system, strength), options);
       result.programs = bracket.programs;
+      verdict = bracket.verdict;
       result.verdict = bracket.found() ? "found" : bracket.reason;
       if (bracket.factor > 0.0 && bracket.found()) result.factor = bracket.factor;
-      if (bracket.failed > 0.0) failed = bracket.failed;
+      if (bracket.failed > 0.0) {
+        failed = bracket.failed;
+        limit_mechanism_ = bracket.mechanism;
+      }
     } catch (const std::invalid_argument& error) {
       result.verdict = error.what();
     }
-    if (!result.factor) result_.warnings.push_back("limit analysis has no factor: " + result.verdict);
+    const bool says_so =
+        verdict == limit_analysis::Bracket::Verdict::stands_at_every_factor || verdict == limit_analysis::Bracket::Verdict::no_equilibrium;
+    if (!result.factor && !says_so) result_.warnings.push_back("limit analysis has no factor: " + result.verdict);
     return failed;
   }
 
@@ -211,7 +218,20 @@ class StrengthReduction {
     blocks.advance(block.block, {d[0], d[1], d[2] / (block.radius * system.length_unit())});
   }
 
+  /// Of the failed end of the bracket: accelerations where the blocks start to move, the motion of limit analysis where that has proved the failure.
+  Eigen::VectorXd failing_motion(const FrozenSystem& system, const FrozenTrials& trials) const {
+    const bool by_limit = result_.bracket.failed && trials.knows_failure(*result_.bracket.failed) && !limit_mechanism_.empty();
+    if (!by_limit) return trials.mechanism();
+    Eigen::VectorXd motion(3 * system.rows());
+    for (int row = 0; row < system.rows(); ++row) {
+      const limit_analysis::BlockVelocity& v = limit_mechanism_[row];
+      motion.segment<3>(3 * row) << v.velocity, v.rotation * system.blocks()[row].radius * system.length_unit();
+    }
+    return motion;
+  }
+
   void add_mechanism(const FrozenSystem& system, const Eigen::VectorXd& direction) {
+    if (direction.size() == 0) return;
     NamedState<N> failed{"failed", BlockSystem<N>(scene_), {}};
     double fastest = 0.0;
     const auto speed = [&](int row) { return direction.segment<2>(3 * row).norm() + std::abs(direction[3 * row + 2]); };
@@ -261,7 +281,8 @@ class StrengthReduction {
   const Scene& scene_;
   const StrengthReductionInput& input_;
   std::function<void(double)> progress_;
-  double share_done_ = 0.0;  ///< of the bisection
+  double share_done_ = 0.0;                    ///< of the bisection
+  limit_analysis::Mechanism limit_mechanism_;  ///< of limit analysis at its smallest factor of failure; empty without
   FactorOfSafety<N> result_;
 };
 

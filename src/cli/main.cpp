@@ -274,7 +274,7 @@ int fos_command(const Options& options) {
     blocks.add(state.name, simulation.scene(), state.system);
     if (state.contacts.empty()) continue;
     write_contacts(folder, state.name, simulation.scene(), state.system, state.contacts);
-    summary.max_penetration = deepest_of(state.contacts);
+    if (state.name != "failed") summary.max_penetration = deepest_of(state.contacts);
   }
   blocks.close();
   write_trials(folder, safety.trials);

@@ -9,7 +9,7 @@ namespace {
 constexpr double least_viscosity = 1e-9;
 constexpr double first_viscosity = 1e-2;
 constexpr double most_viscosity = 1e4;
-constexpr long most_factorisations = 3000;  ///< of one relaxation; nine in ten that end do so in a tenth of them
+constexpr long most_factorisations = 3000;  ///< of one relaxation by Newton's method; nine in ten that end do so in a tenth of them
 
 // Ways are in closures.
 constexpr double most_travel = 1e6;             ///< beyond, gaps lose their digits
@@ -93,7 +93,7 @@ RelaxationResult Relaxation::relax(const FrozenState& from) {
   Eigen::VectorXd velocity;  // of the last increment: its length times its viscosity
   double eps = least_viscosity;
   const long begin = balance_.counters().factorisations;
-  while (result.steps < most_steps_ && balance_.counters().factorisations - begin < most_factorisations) {
+  while (result.steps < most_steps_ && (rule_ == IncrementRule::open_close || balance_.counters().factorisations - begin < most_factorisations)) {
     ++result.steps;
     const long before = balance_.counters().factorisations;
     balance_.start(result.state, eps);

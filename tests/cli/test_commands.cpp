@@ -278,7 +278,8 @@ TEST_CASE("factor of safety: the settled state penetrates by what its contacts c
 TEST_CASE("factor of safety with a curve", "[cli]") {
   const Workplace place(openclose::test::block_on_incline(30.0));
   const CommandResult result = place.run(
-      "fos scene.toml -o out --dt 0.001 --set settle.failure_displacement_m=0.05 --set 'strength_reduction.curve=[1.1, 1.5]' "
+      "fos scene.toml -o out --dt 0.001 --set strength_reduction.definition=large_displacements --set settle.failure_displacement_m=0.05 "
+      "--set 'strength_reduction.curve=[1.1, 1.5]' "
       "--set strength_reduction.curve_time_s=0.1 --set strength_reduction.width=0.01");
   CHECK(result.status == 0);
   const auto curve = lines_of(place.folder() / "out/curve.csv");
@@ -396,14 +397,15 @@ TEST_CASE("what was asked for and did not come is worth a warning", "[cli]") {
 TEST_CASE("factor of safety by the paper's criterion", "[cli]") {
   const Workplace place(openclose::test::block_on_incline(30.0));
   const CommandResult result = place.run(
-      "fos scene.toml -o out --dt 0.001 --set settle.criterion=paper --set settle.relative_displacement=1e-8 --set run.strength_reduction_factor=2 "
+      "fos scene.toml -o out --dt 0.001 --set strength_reduction.definition=large_displacements --set settle.criterion=paper --set "
+      "settle.relative_displacement=1e-8 --set run.strength_reduction_factor=2 "
       "--set method.first_integrator=path_average --set method.first_integrator_s=10");
   CHECK(result.status == 0);
   REQUIRE(result.errors.size() == 2);
   CHECK_THAT(result.errors[0], ContainsSubstring("run.strength_reduction_factor is for run"));
   CHECK_THAT(result.errors[1], ContainsSubstring("method.first_integrator is for run"));
   CHECK_THAT(result.out, StartsWith("factor of safety 1.21"));
-  CHECK(summary_in(place.folder() / "out").at("criterion") == "steps");
+  CHECK(summary_in(place.folder() / "out").at("bracket").at("failed_by") == "steps");
   CHECK_THAT(text_of(place.folder() / "out/trials.csv"), ContainsSubstring("\n1,bracket,1,relative displacement,"));
 }
 

@@ -225,7 +225,7 @@ Scene random_scene(unsigned seed) {
   scene.milestones = {first, 2.0 * first};
   scene.snapshot_times = {0.0, first};
   scene.settle = {fraction(generator), number(), 77, number(), SettleCriterion::paper, fraction(generator), 78, 79, 80};
-  scene.strength_reduction = {number(), 1.0 + number(), {number(), number()}, number()};
+  scene.strength_reduction = {FactorDefinition::joint_closures, false, number(), 1.0 + number(), {number(), number()}, number()};
   return scene;
 }
 

@@ -16,9 +16,8 @@ struct Setting {
   const char* method;
   double stiffness;  ///< [Pa/m]
   double width;      ///< [-] of the bracket of the factor
-  double failing;    ///< [m] displacement, well beyond what the joints close in sum; more where the reduced strength comes on at once
 };
-constexpr Setting settings[] = {{"soft", 1e10, 1e-4, 0.02}, {"hard", 1e10, 1e-4, 0.02}, {"shi", 1e10, 1e-4, 0.02}, {"dem", 1e9, 1e-3, 1.0}};
+constexpr Setting settings[] = {{"soft", 1e10, 1e-4}, {"hard", 1e10, 1e-4}, {"dem", 1e9, 1e-3}};
 
 Scene columns(const Setting& setting) {
   const analytical::GoodmanBray data;
@@ -37,7 +36,6 @@ Scene columns(const Setting& setting) {
   scene.method.penalty = setting.stiffness;
   scene.method.penalty_shear_ratio = 1.0;
   scene.strength_reduction.width = setting.width;
-  scene.settle.failure_displacement = setting.failing;
   scene.step.max_displacement = 0.1;
   return scene;
 }
@@ -77,15 +75,12 @@ void goodman_bray(Report& report) {
         "critical friction angle between the limits", setting.method, degrees(associated), degrees(recursion + tolerance), degrees(angle), "deg",
         "limit analysis with dilatancy, an upper bound of strength (at constant volume, by Gilbert et al.: " + text("{:.2f}", degrees(other)) +
             "); recursion");
-    if (setting.method == std::string("hard")) {
-      report.leave_out(
-          "critical friction angle", setting.method,
-          text("{:.3f} deg: rigid contacts leave open how sides share their forces, and hold a little longer than the recursion", degrees(angle)));
-      continue;
-    }
     report.near("critical friction angle", setting.method, degrees(recursion), degrees(angle), degrees(tolerance), "deg",
                 "recursion; width of the bracket and what closures turn");
   }
+  report.leave_out(
+      "critical friction angle", "shi",
+      "its passes, with the friction of the pass before, do not come to an end in the last 0.4 % before the limit: it answers with an interval");
 }
 
 }  // namespace openclose::verification
