@@ -239,3 +239,121 @@ TEST_CASE("hard knows columns that topple slowly from such that stand", "[analys
   INFO("soft " << solves[0] << " solves, hard " << solves[1]);
   CHECK(solves[1] <= 3 * solves[0]);
 }
+
+namespace {
+
+/// Answers as a table of outcomes says.
+class ToldTrials : public StrengthTrials {
+ public:
+  explicit ToldTrials(std::function<TrialOutcome(double)> outcome) : outcome_(std::move(outcome)) {}
+  TrialResult first(double srf) override { return next(srf); }
+  TrialResult next(double srf) override {
+    TrialResult result;
+    result.outcome = outcome_(srf);
+    result.criterion = "told";
+    return result;
+  }
+
+ private:
+  std::function<TrialOutcome(double)> outcome_;
+};
+
+StrengthBracket searched(const std::function<TrialOutcome(double)>& outcome, double width = 1e-3) {
+  ToldTrials trials(outcome);
+  StrengthReductionInput input;
+  input.width = width;
+  return search_strength(trials, input, [](const StrengthTrial&) {});
+}
+
+}  // namespace
+
+TEST_CASE("an undecided trial is never a failed one", "[analysis][strength_reduction]") {
+  SECTION("undecided between a stable and a failed range: both ends are found") {
+    const auto b = searched([](double srf) { return srf < 1.3 ? TrialOutcome::stable : srf < 1.4 ? TrialOutcome::undecided : TrialOutcome::failed; });
+    REQUIRE((b.stable && b.failed));
+    CHECK(*b.stable < 1.3);
+    CHECK(*b.failed >= 1.4);
+    CHECK(b.undecided > 0);
+  }
+  SECTION("nothing but undecided above") {
+    const auto b = searched([](double srf) { return srf < 1.3 ? TrialOutcome::stable : TrialOutcome::undecided; });
+    REQUIRE(b.stable);
+    CHECK_FALSE(b.failed);
+  }
+  SECTION("never decided") {
+    const auto b = searched([](double) { return TrialOutcome::undecided; });
+    CHECK_FALSE(b.stable);
+    CHECK_FALSE(b.failed);
+    CHECK(b.undecided > 0);
+  }
+  SECTION("an undecided factor within a stable range does not stop the search") {
+    const auto b = searched([](double srf) {
+      return srf == 1.25 ? TrialOutcome::undecided : srf < 2.0 ? TrialOutcome::stable : TrialOutcome::failed;
+    });
+    REQUIRE((b.stable && b.failed));
+    CHECK(*b.failed - *b.stable <= 1e-3);
+    CHECK(*b.stable < 2.0);
+    CHECK(*b.failed >= 2.0);
+  }
+}
+
+TEST_CASE("the factor at small displacements is the closed form's, proved at both ends, whatever the stiffness", "[analysis][strength_reduction]") {
+  for (const std::string& method : all_methods) {
+    for (const double stiffness : {1.0, 1e-2, 1e3}) {
+      INFO(method << ", stiffness times " << stiffness);
+      Scene scene = slope_scene(method, 30.0, 35.0, 5000.0);
+      scene.strength_reduction.definition = FactorDefinition::small_displacements;
+      scene.joints[0].normal_stiffness *= stiffness;
+      scene.joints[0].shear_stiffness *= stiffness;
+      const auto safety = factor(scene);
+      CHECK(safety.verdict == FactorVerdict::certified);
+      const double exact = closed_form(30.0, 35.0, 5000.0);
+      // Forces are in balance to 1e-8 of the weight.
+      CHECK(safety.stable() <= exact * (1.0 + 1e-7));
+      CHECK(safety.failed() >= exact * (1.0 - 1e-7));
+      CHECK(safety.failed() - safety.stable() <= scene.strength_reduction.width);
+      REQUIRE(safety.limit_analysis);
+      REQUIRE(safety.limit_analysis->factor);
+      CHECK(*safety.limit_analysis->factor == Approx(exact).margin(2e-5));
+      REQUIRE(safety.mechanism.size() == 1);
+      CHECK(safety.mechanism[0].velocity.normalized().dot(test::downhill(30.0 * test::degree)) == Approx(1.0).epsilon(1e-6));
+    }
+  }
+}
+
+TEST_CASE("supports, loads and tensile strength count in the factor at small displacements", "[analysis][strength_reduction]") {
+  SECTION("a push of 5 kN on a block on the flat: mu W/H") {
+    Scene scene = test::block_on_base();
+    scene.joints[0].friction_angle = 30.0 * test::degree;
+    scene.loads.push_back({1, Vec2(1.0, 0.5), Vec2(5000.0, 0.0)});
+    const auto safety = factor(scene);
+    CHECK(safety.verdict == FactorVerdict::certified);
+    CHECK(safety.stable() == Approx(std::tan(30.0 * test::degree) * test::block_weight / 5000.0).epsilon(1e-4));
+  }
+  SECTION("a spring that holds the block along the slope holds it at every factor") {
+    Scene scene = test::block_on_incline(30.0 * test::degree);
+    scene.supports.push_back({1, 0.5 * (scene.blocks[1].vertices[0] + scene.blocks[1].vertices[2]), Vec2(1e8, 1e8)});
+    CHECK(factor(scene).verdict == FactorVerdict::no_failure);
+  }
+  SECTION("a block that hangs by its tensile strength: f L/W") {
+    Scene scene = test::empty_scene();
+    scene.blocks = {test::fixed_block("ceiling", test::rectangle(-10.0, 1.0, 20.0, 1.0)),
+                    test::free_block("block", test::rectangle(0.0, 0.0, 2.0, 1.0))};
+    scene.joints[0].tensile_strength = 1.5 * test::block_weight / test::block_edge;
+    scene.joints[0].cohesion = 1e6;
+    const auto safety = factor(scene);
+    CHECK(safety.verdict == FactorVerdict::certified);
+    CHECK(safety.stable() == Approx(1.5).margin(2e-4));
+  }
+}
+
+TEST_CASE("closures of the joints before the search: the same factor where the plane does not turn", "[analysis][strength_reduction]") {
+  Scene scene = slope_scene("soft", 30.0, 40.0, 0.0);
+  scene.strength_reduction.definition = FactorDefinition::joint_closures;
+  const auto safety = factor(scene);
+  CHECK(safety.verdict == FactorVerdict::certified);
+  // The block tilts on its springs by less than 1e-4.
+  CHECK(safety.stable() == Approx(closed_form(30.0, 40.0, 0.0)).epsilon(4e-4));
+  REQUIRE(safety.states.size() >= 2);
+  CHECK(safety.states[0].name == "settled");
+}

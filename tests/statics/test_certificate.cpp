@@ -1,0 +1,121 @@
+#include <cmath>
+
+#include "openclose/statics/certificate.h"
+#include "openclose/statics/explicit_relaxation.h"
+#include "openclose/statics/relaxation.h"
+#include "support/catch.h"
+#include "support/scenes.h"
+
+using namespace openclose;
+
+namespace {
+
+constexpr double slope = 30.0 * test::degree;
+constexpr double friction = 40.0 * test::degree;
+
+Scene incline() {
+  Scene scene = test::block_on_incline(slope);
+  scene.joints[0].friction_angle = friction;
+  return scene;
+}
+
+/// Relaxed from the bonded state at a factor.
+RelaxationResult relaxed(const FrozenSystem& system, FrozenStrength& strength, double factor) {
+  strength.reduce(factor);
+  Relaxation relaxation(system, strength, IncrementRule::newton);
+  const RelaxationResult bonded = relaxation.bonded_state();
+  REQUIRE(bonded.end == RelaxationEnd::stable);
+  return relaxation.relax(bonded.state);
+}
+
+}  // namespace
+
+TEST_CASE("forces that balance within the strength prove that a block stands, others do not", "[statics]") {
+  const Scene scene = incline();
+  const FrozenSystem system(scene);
+  FrozenStrength strength(system, scene);
+  const double limit = std::tan(friction) / std::tan(slope);
+  const RelaxationResult stands = relaxed(system, strength, 0.999 * limit);
+  REQUIRE(stands.end == RelaxationEnd::stable);
+  CHECK(check_equilibrium(system, strength, stands.state).holds());
+  // Normal and shear forces of the whole base are the components of the weight.
+  double normal = 0.0, shear = 0.0;
+  for (const FrozenContactState& s : stands.state.contacts) normal += s.normal, shear += std::abs(s.shear);
+  CHECK(normal == Approx(std::cos(slope)).epsilon(1e-9));
+  CHECK(shear == Approx(std::sin(slope)).epsilon(1e-9));
+
+  SECTION("a force that is off by a millionth of the weight") {
+    FrozenState other = stands.state;
+    other.contacts[0].normal += 1e-6;
+    CHECK_FALSE(check_equilibrium(system, strength, other).in_balance());
+  }
+  SECTION("a strength that is too small by a thousandth") {
+    strength.reduce(1.001 * limit);
+    const EquilibriumCheck check = check_equilibrium(system, strength, stands.state);
+    CHECK(check.in_balance());
+    CHECK_FALSE(check.within_strength);
+  }
+  SECTION("no number") {
+    FrozenState other = stands.state;
+    other.contacts[0].normal = std::nan("");
+    CHECK_FALSE(check_equilibrium(system, strength, other).holds());
+  }
+}
+
+TEST_CASE("forces and accelerations prove that a block starts to slide", "[statics]") {
+  const Scene scene = incline();
+  const FrozenSystem system(scene);
+  FrozenStrength strength(system, scene);
+  const RelaxationResult slides = relaxed(system, strength, 1.001 * std::tan(friction) / std::tan(slope));
+  REQUIRE(slides.end == RelaxationEnd::mechanism);
+  CHECK(is_mechanism(system, strength, slides.state, slides.mechanism));
+  const Vec2 direction = slides.mechanism.head<2>();
+  CHECK(direction.normalized().dot(test::downhill(slope)) == Approx(1.0).epsilon(1e-6));
+
+  SECTION("uphill is none") {
+    CHECK_FALSE(is_mechanism(system, strength, slides.state, -slides.mechanism));
+  }
+  SECTION("into the base is none") {
+    Eigen::VectorXd into = slides.mechanism;
+    into.head<2>() -= 1e-3 * test::off_slope(slope);
+    CHECK_FALSE(is_mechanism(system, strength, slides.state, into));
+  }
+  SECTION("with more strength it is none") {
+    strength.reduce(0.99 * std::tan(friction) / std::tan(slope));
+    CHECK_FALSE(is_mechanism(system, strength, slides.state, slides.mechanism));
+  }
+}
+
+TEST_CASE("a block in the air is beyond all strength, one on the ground is not", "[statics]") {
+  const Eigen::VectorXd down = Eigen::Vector3d(0.0, -1.0, 0.0);
+  const Scene air = test::falling_block(), ground = test::block_on_base();
+  for (const Scene& scene : {air, ground}) {
+    const FrozenSystem system(scene);
+    FrozenStrength strength(system, scene);
+    const bool falls = scene.blocks.size() == 1;
+    CHECK(is_beyond_all_strength(system, strength, down) == falls);
+    CHECK_FALSE(is_beyond_all_strength(system, strength, -down));
+    Relaxation relaxation(system, strength, IncrementRule::newton);
+    CHECK((relaxation.bonded_state().end == RelaxationEnd::mechanism) == falls);
+  }
+}
+
+TEST_CASE("every way to relax finds the state in which a block stands", "[statics]") {
+  const Scene scene = incline();
+  const FrozenSystem system(scene);
+  FrozenStrength strength(system, scene);
+  strength.reduce(1.4);
+  const RelaxationResult newton = relaxed(system, strength, 1.4);
+  Relaxation open_close(system, strength, IncrementRule::open_close, 200);
+  ExplicitRelaxation loop(system, strength, 0.8, 100000);
+  for (FrozenSolver* solver : {static_cast<FrozenSolver*>(&open_close), static_cast<FrozenSolver*>(&loop)}) {
+    const RelaxationResult bonded = solver->bonded_state();
+    REQUIRE(bonded.end == RelaxationEnd::stable);
+    const RelaxationResult result = solver->relax(bonded.state);
+    REQUIRE(result.end == RelaxationEnd::stable);
+    for (std::size_t i = 0; i < result.state.contacts.size(); ++i) {
+      CHECK(result.state.contacts[i].normal == Approx(newton.state.contacts[i].normal).margin(1e-7));
+      CHECK(result.state.contacts[i].shear == Approx(newton.state.contacts[i].shear).margin(1e-7));
+    }
+  }
+}
