@@ -49,10 +49,13 @@ TrialResult FrozenTrials::first(double srf) {
       bonded_ = std::move(bonded.state);
     } else {
       bonded_failed_ = true;
+      if (bonded.end == RelaxationEnd::mechanism) mechanism_ = std::move(bonded.mechanism);
     }
   }
   if (bonded_failed_) {
     TrialResult none;
+    none.at_every_strength = mechanism_.size() > 0;
+    none.outcome = none.at_every_strength ? TrialOutcome::failed : TrialOutcome::undecided;
     none.criterion = "no equilibrium even of joints that neither slip nor open in shear";
     return none;
   }
