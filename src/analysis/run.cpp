@@ -164,7 +164,7 @@ class MotionInTime {
       take_snapshots(i);
       const bool there = moved_enough();
       const bool last = there || i == steps_;
-      if (!accepted(last ? watch_.check_at_end(simulation_) : Watch<N>::is_due(i) ? watch_.check(simulation_) : std::string())) {
+      if (!accepted(last ? watch_.check_at_end(simulation_) : watch_.is_due(simulation_, i) ? watch_.check(simulation_) : std::string())) {
         row_is_there_ = false;
         conclude();
         return;

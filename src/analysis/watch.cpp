@@ -172,7 +172,13 @@ std::string Watch<N>::begin(const Simulation<N>& simulation) {
 }
 
 template <int N>
+bool Watch<N>::is_due(const Simulation<N>& simulation, long step) const {
+  return is_rigid(simulation) || is_due(step);
+}
+
+template <int N>
 std::string Watch<N>::check(const Simulation<N>& simulation) {
+  if (is_rigid(simulation)) return check_at_end(simulation);
   const std::size_t pairs = simulation.candidate_pairs().size(), checks = static_cast<std::size_t>(report_.checks);
   const std::size_t now = (checks + 1) * pairs / turns - checks * pairs / turns;
   if (next_pair_ >= pairs) next_pair_ = 0;

@@ -60,7 +60,10 @@ class Watch {
   /// Whether a check is due after this step, counted from 1. It depends on nothing but that number, so that a run which goes on from a checkpoint to
   /// another end is checked where it would have been.
   static bool is_due(long step);
-  /// Empty while nothing is wrong, else what is, with the remedy. Of the pairs of blocks that may overlap each check looks at some, in turns.
+  /// With rigid contacts after every step: what goes into another block there comes out of it again within some steps, and nothing else tells.
+  bool is_due(const Simulation<N>& simulation, long step) const;
+  /// Empty while nothing is wrong, else what is, with the remedy. Of the pairs of blocks that may overlap each check looks at some, in turns; with
+  /// rigid contacts at all.
   std::string check(const Simulation<N>& simulation);
   /// The same with all pairs.
   std::string check_at_end(const Simulation<N>& simulation);

@@ -95,7 +95,7 @@ TEST_CASE("an undamped bounce of dem keeps the energy that the watch reads", "[a
 }
 
 TEST_CASE("motion from nowhere is found by the energy ledger", "[analysis][watch]") {
-  for (const std::string& method : {"soft", "hard", "dem"}) {
+  for (const std::string method : {"soft", "hard", "dem"}) {
     INFO(method);
     Scene scene = dropped_block(0.3);
     scene.method.contact = method;
@@ -132,7 +132,9 @@ TEST_CASE("blocks that have passed into each other are found without a contact",
     const std::string found = w.watch.check_at_end(w.simulation);
     INFO(found);
     CHECK(found.empty() == (depth < 0.25 * 2.0 / 3.0));
-    if (!found.empty()) CHECK_THAT(found, ContainsSubstring("blocks have passed into each other: \"base\" and \"block\" are 0.3 m deep in each other, at most 0.167 m"));
+    if (!found.empty())
+      CHECK_THAT(found,
+                 ContainsSubstring("blocks have passed into each other: \"base\" and \"block\" are 0.3 m deep in each other, at most 0.167 m"));
   }
 }
 
@@ -156,4 +158,14 @@ TEST_CASE("springs too soft for their blocks are refused, with the stiffness tha
   scene.joints[0].normal_stiffness = std::stod(result.reason.substr(at));
   Simulation<3> stiffer(scene);
   CHECK(run<3>(stiffer, {}).converged);
+}
+
+TEST_CASE("with rigid contacts the watch looks after every step", "[analysis][watch]") {
+  constexpr long some_step = 1000001;  // between the checks of other methods
+  Scene scene = test::block_on_base();
+  for (const std::string method : {"soft", "hard"}) {
+    scene.method.contact = method;
+    const Simulation<3> simulation(scene);
+    CHECK(Watch<3>().is_due(simulation, some_step) == (method == "hard"));
+  }
 }
