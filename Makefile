@@ -40,6 +40,7 @@ verify: build stress-packages ## build, run the unit tests and the verification 
 	@scripts/find-python >/dev/null 2>&1 || echo 'verify: no python3 imports matplotlib, so results/verification.md is not made; results/verify.csv has all rows'
 	$(VERIFY) --results results; status=$$?; \
 	  if python=$$(scripts/find-python 2>/dev/null); then "$$python" verification/report.py --results results; fi; \
+	  "$${PYTHON:-python3}" stress/stress.py --regression --jobs $(JOBS) --results results/regression || status=1; \
 	  exit $$status
 
 reproduce: figure-packages $(COMPARISON) ## build, run the paper's examples, draw the figures and print the comparison (results/paper)
