@@ -14,13 +14,9 @@
 namespace openclose {
 namespace {
 
-constexpr double slowest_of_mechanism = 1e-2;     ///< [-] of the fastest block: slower ones are carried along by rounding and springs
-constexpr double sliver_of_median = 1e-4;         ///< [-] area of a block over the median one below which it is a sliver
-constexpr double far_below_limit = 0.995;         ///< [-] of the limit analysis: above it neither stiffness nor path matters
-constexpr double ratios_compared[] = {0.1, 1.0};  ///< [-] shear over normal stiffness
-/// [-] of the factor: how narrow brackets at other stiffness ratios need to be for a warning.
-constexpr double width_of_comparison = 5e-3;
-constexpr double drawn_travel = 0.5;  ///< [-] of the median block's size by which the fastest block of a mechanism is drawn away
+constexpr double slowest_of_mechanism = 1e-2;  ///< [-] of the fastest block: slower ones are carried along by rounding and springs
+constexpr double sliver_of_median = 1e-4;      ///< [-] area of a block over the median one below which it is a sliver
+constexpr double drawn_travel = 0.5;           ///< [-] of the median block's size by which the fastest block of a mechanism is drawn away
 
 template <int N>
 class StrengthReduction {

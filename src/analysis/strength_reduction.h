@@ -68,9 +68,8 @@ struct FactorOfSafety {
   std::vector<NamedState<N>> states;
   std::vector<FailingBlock> mechanism;
   std::optional<LimitAnalysisResult> limit_analysis;
-  std::optional<double> largest_travel;                               ///< [m] between two stable states of the search, of any point of a block
-  std::vector<std::pair<double, double>> factors_by_stiffness_ratio;  ///< shear over normal stiffness, largest stable factor; what was computed
-  long linear_solves = 0;                                             ///< at small displacements
+  std::optional<double> largest_travel;  ///< [m] between two stable states of the search, of any point of a block
+  long linear_solves = 0;                ///< at small displacements
 
   /// Whether the factor can be used: a stable end, and a failed one or the limit of the search.
   bool found() const { return bracket.stable && verdict != FactorVerdict::undecided && verdict != FactorVerdict::no_equilibrium; }

@@ -255,9 +255,6 @@ void add_factor(const FactorOfSafety<N>& safety, const Scene& scene, nlohmann::o
     if (t.outcome == TrialOutcome::stable) curve.push_back({{"srf", t.srf}, {"displacement_m", t.displacement}});
   }
   j["displacement_curve"] = curve;
-  ordered_json ratios = ordered_json::array();
-  for (const auto& [ratio, factor] : safety.factors_by_stiffness_ratio) ratios.push_back({{"shear_over_normal", ratio}, {"factor", factor}});
-  j["factors_by_stiffness_ratio"] = ratios;
   j["small_displacement_factorisations"] = safety.linear_solves;
 }
 

@@ -158,10 +158,4 @@ void FrozenSystem::set_units(const Scene& scene) {
   for (FrozenSupport& s : supports_) s.stiffness /= stiffness_unit;
 }
 
-FrozenSystem FrozenSystem::with_stiffness_ratio(double ratio) const {
-  FrozenSystem other = *this;
-  for (FrozenContact& c : other.contacts_) c.shear_stiffness = ratio * c.normal_stiffness;
-  return other;
-}
-
 }  // namespace openclose

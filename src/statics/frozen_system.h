@@ -67,8 +67,6 @@ class FrozenSystem {
   double force_unit() const { return force_unit_; }      ///< [N]
   double closure_unit() const { return closure_unit_; }  ///< [m]
   double length_unit() const { return length_unit_; }    ///< [m]
-  /// The same system with these shear stiffnesses: `ratio` times the normal ones.
-  FrozenSystem with_stiffness_ratio(double ratio) const;
 
  private:
   void find_contacts(const Scene& scaled, const BlockSystem<3>& system);
