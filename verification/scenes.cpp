@@ -171,9 +171,12 @@ double threshold(double fails, double holds, double width, const std::function<d
 }
 
 double strength_reduction_factor(const Report& report, const Scene& scene) {
-  RigidSimulation simulation = report.simulate(scene);
+  Scene asked = scene;
+  // At small displacements nothing takes steps of the simulation, and a solver that does nothing would not show: it answers where blocks move.
+  if (report.null_solver()) asked.strength_reduction.definition = FactorDefinition::large_displacements;
+  RigidSimulation simulation = report.simulate(asked);
   const auto result = factor_of_safety<unknowns>(simulation);
-  return result.found() ? result.stable() : not_measured();
+  return result.found() && result.bracket.failed ? result.stable() : not_measured();
 }
 
 analytical::LimitState limit_state(const Scene& scene) {

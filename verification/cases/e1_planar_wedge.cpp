@@ -27,7 +27,7 @@ struct Safety {
 Safety safety_of(const Report& report, const Scene& scene) {
   RigidSimulation simulation = report.simulate(scene);
   const auto result = factor_of_safety<unknowns>(simulation);
-  if (!result.found()) return {};
+  if (!result.found() || !result.bracket.failed) return {};
   double deepest = 0.0;
   for (const Contact& c : result.states.front().contacts) {
     if (c.status != ContactStatus::open) deepest = std::max(deepest, -c.gap);
