@@ -1,5 +1,6 @@
 #include "openclose/analysis/energy_ledger.h"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -33,11 +34,13 @@ void add_elastic_contact(EnergyLedger& ledger, const Contact& contact, const Con
   double let_go = 0.0;
   if (theta < 1.0) {
     const double weight = 1.0 - theta, n0 = start.normal, t0 = start.shear, opening1 = contact.stretch() + gap_change + p1;
-    by_springs -= weight * n0 * opening1;
-    by_rotation += weight * (n0 * (paths.normal_start - gap_change) + t0 * (paths.shear_start - slip));
-    viscous_normal += weight * (n0 - start.elastic_normal);
-    viscous_shear += weight * (t0 - start.elastic_shear);
-    shear += weight * t0;
+    // An open contact's force is none of its spring, see crossing_energy.h.
+    const double of_joint = start.status == ContactStatus::open ? 0.0 : n0, of_joint_t = start.status == ContactStatus::open ? 0.0 : t0;
+    by_springs -= weight * of_joint * opening1;
+    by_rotation += weight * (n0 * paths.normal_start - of_joint * gap_change + t0 * paths.shear_start - of_joint_t * slip);
+    viscous_normal += weight * (of_joint - start.elastic_normal);
+    viscous_shear += weight * (of_joint_t - start.elastic_shear);
+    shear += weight * of_joint_t;
     // Where the strength has gone since the last step the spring lets go before it starts.
     let_go = weight * (start.elastic_shear + ks * u0) * (u1 - u0);
   }
@@ -48,6 +51,12 @@ void add_elastic_contact(EnergyLedger& ledger, const Contact& contact, const Con
   ledger.scheme -= let_go;
   ledger.contact_damping += viscous_normal * (p1 - p0) - viscous_shear * (u1 - u0);
   ledger.friction -= shear * (slip - (u1 - u0));
+  if (theta == 0.0) {  // what rubs in a step of central difference is the mean force: so its work is summed by parts
+    const double t_end = end.forces.status == ContactStatus::open ? 0.0 : t1, plastic = slip - (u1 - u0);
+    const double rubbed = std::max(0.0, -0.5 * (shear + t_end) * plastic), not_yet = rubbed + shear * plastic;
+    ledger.friction += not_yet;
+    ledger.scheme -= not_yet;
+  }
 }
 
 /// [N] All that a step with the forces at its end needs of those at its start. Of the springs of `soft`, `shi` and `dem`.
@@ -60,7 +69,7 @@ double elastic_normal_at_start(const Contact& contact, const TabulatedJoint& joi
 /// Open before and after, nothing stored: every entry would be zero.
 bool rests_open(const Contact& contact, ContactStatus end) {
   return end == ContactStatus::open && contact.status == ContactStatus::open && !contact.bonded && contact.stretch() > 0.0 &&
-         contact.elastic_slip == 0.0 && contact.stored_energy == 0.0;
+         contact.elastic_slip == 0.0 && contact.stored_energy == 0.0 && contact.normal_force == 0.0 && contact.shear_force == 0.0;
 }
 
 /// Forces averaged over the path; what rotations leave between the ways of these forces and the changes of gap and slip.

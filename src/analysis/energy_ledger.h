@@ -11,8 +11,8 @@
 //             and what the finite rotation of a step leaves between the path of its forces and the change of gap and slip
 //   friction  -(theta T1 + (1 - theta) T0) (slip - change of u)
 // The kinetic energy is that of the present velocities, so that motion which comes from elsewhere shows as an imbalance. With mid-step velocities
-// (`hard`) all entries stand at the middle of the last step. With forces at the start of the step (`dem`, theta = 0) kinetic, gravity and scheme do
-// so, springs, friction and damping stand at its end; the scheme's entry holds what lies between. Hard contacts store nothing: minus their normal
+// (`hard`) all entries stand at the middle of the last step. With forces at the start of the step (`dem`, theta = 0) gravity and scheme do
+// so; springs, friction and damping stand at its end, and the kinetic energy goes with them (CentralDifference::kinetic_ahead()). Hard contacts store nothing: minus their normal
 // work is the loss of impacts, minus their shear work is friction.
 #pragma once
 

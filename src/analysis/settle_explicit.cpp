@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "openclose/analysis/settle.h"
@@ -28,6 +29,43 @@ class Travel {
   std::vector<typename Motion<N>::Unknowns> start_;
 };
 
+/// Notices blocks that swing without end: while the unbalanced force neither falls nor moves anything on, the way to rest leads nowhere.
+///
+/// It compares one stretch of steps with the next, twice as long: whatever falls at any rate shows in some stretch, and a block that slides away goes
+/// farther in the second one.
+class Standstill {
+ public:
+  void add(double unbalanced) { lowest_ = std::min(lowest_, unbalanced); }
+  bool is_due(int steps) const { return steps == end_; }
+  /// Whether nothing has become better in the stretch that ends here.
+  bool ends_here(double displacement) {
+    const bool still = lowest_ > least_fall * before_ && displacement <= least_way * displacement_;
+    before_ = std::min(before_, lowest_);
+    displacement_ = displacement;
+    lowest_ = std::numeric_limits<double>::infinity();
+    end_ *= 2;
+    return still;
+  }
+  /// After something has been changed.
+  void begin_anew(int steps) {
+    const double displacement = displacement_;
+    *this = Standstill();
+    displacement_ = displacement;
+    end_ = steps + first_stretch;
+  }
+
+ private:
+  /// A wave crosses a slope of 10,000 blocks some ten times in so many steps.
+  static constexpr int first_stretch = 5000;
+  static constexpr double least_fall = 0.9;  ///< [-] of the unbalanced force
+  static constexpr double least_way = 1.01;  ///< [-] of the displacement
+  int end_ = first_stretch;
+  double lowest_ = std::numeric_limits<double>::infinity(), before_ = lowest_, displacement_ = 0.0;
+};
+
+/// [-] On the step where blocks swing without end: what the shortest step leaves swinging swings at any length.
+constexpr double shorter = 0.5, shortest = 0.125;
+
 template <int N>
 SettleResult seek_rest(Simulation<N>& simulation, const RestLimits& limits, const SettleProgress& progress) {
   const MassDamping asked = simulation.scene().method.damping;
@@ -38,15 +76,22 @@ SettleResult seek_rest(Simulation<N>& simulation, const RestLimits& limits, cons
 
   SettleResult result;
   result.criterion = "steps";
+  Standstill standstill;
+  double fraction = 1.0;
   for (double part = 1.0; result.steps < limits.max_steps;) {
     // Without contacts and supports nothing bounds the step but the way it may go.
-    const double h = part * std::min(simulation.longest_stable_step(damping), simulation.scene().settle.first_dt);
+    const double h = part * fraction * std::min(simulation.longest_stable_step(damping), simulation.scene().settle.first_dt);
     const StepResult step = simulation.explicit_step(h, damping);
+    if (step.relisted) continue;
     if (!step.accepted) {
       part *= cut;
       result.criterion = step.reason;
       if (part < simulation.scene().step.smallest_fraction) break;
       continue;
+    }
+    if (step.stops) {
+      result.criterion = step.reason;
+      break;
     }
     part = std::min(1.0, part / cut);
     ++result.steps;
@@ -62,6 +107,19 @@ SettleResult seek_rest(Simulation<N>& simulation, const RestLimits& limits, cons
     }
     if (result.settled) result.criterion = "unbalanced force";
     if (result.settled) break;
+    standstill.add(result.unbalanced_fraction);
+    if (standstill.is_due(result.steps)) {
+      result.displacement = std::max(result.displacement, travel.largest());
+      if (standstill.ends_here(result.displacement)) {
+        if (fraction <= shortest) {
+          result.criterion = "blocks swing without end";
+          result.limit = "method.damping";
+          break;
+        }
+        fraction *= shorter;
+        standstill.begin_anew(result.steps);
+      }
+    }
     if (result.displacement > limits.failure_displacement) {
       result.criterion = "displacement";
       result.limit = "settle.failure_displacement_m";

@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "openclose/analysis/corner_entry.h"
 #include "openclose/core/tolerance.h"
+#include "openclose/integrator/crossing_energy.h"
 #include "openclose/integrator/integrators.h"
 #include "openclose/integrator/registry.h"
 
@@ -52,6 +54,12 @@ bool turns_too_far(const BlockSystem<N>& system, const std::vector<Contact>& con
 /// A step that has been cut so often where corners enter, because the shorter one goes another way, is taken as it is: the next step finds what is
 /// in.
 constexpr int most_cuts_at_entry = 8;
+
+/// [-] By which explicit steps may become longer before they do.
+constexpr double worthwhile_growth = 1.1;
+
+/// [-] Closure of an impact over the thickness of what it meets, to be aimed at with stiffer springs: a tenth is what dem promises to resolve.
+constexpr double closure_of_thickness = 0.1;
 
 template <int N>
 bool has_joint_springs(const std::string& contact) {
@@ -148,7 +156,30 @@ void Simulation<N>::collect() const {
   ledger_.scheme += e.scheme;
   ledger_.redefinition += e.redefinition;
   ledger_.turnover += e.turnover;
-  ledger_.kinetic = system_.kinetic_energy() - start_kinetic_energy_;
+  book_kinetic_energy(loop_->kinetic_ahead());
+}
+
+template <int N>
+void Simulation<N>::book_kinetic_energy(double ahead) const {
+  ledger_.scheme -= ahead - kinetic_ahead_;
+  kinetic_ahead_ = ahead;
+  ledger_.kinetic = system_.kinetic_energy() + ahead - start_kinetic_energy_;
+}
+
+template <int N>
+double Simulation<N>::kinetic_ahead(const StepProblem<N>& problem, const StepSolution<N>& solution) const {
+  double power = 0.0;
+  for (int b : system_.free_blocks()) {
+    const Unknowns others = external_.force(system_, b, Unknowns::Zero()) - external_.weight(system_, b) - external_.base_force(system_, b);
+    power += system_.velocity(b).dot(others);
+  }
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    const ContactOutcome<N> o = solution.contacts[i];
+    const ContactKinematics<N> k(o.pose);
+    power += system_.velocity(contacts_[i].vertex_block).dot(o.forces.normal * k.normal_vertex + o.forces.shear * k.shear_vertex);
+    power += system_.velocity(contacts_[i].edge_block).dot(o.forces.normal * k.normal_edge + o.forces.shear * k.shear_edge);
+  }
+  return 0.5 * problem.dt * power;
 }
 
 template <int N>
@@ -351,7 +382,7 @@ template <int N>
 void Simulation<N>::store_energy(const StepProblem<N>& problem, Contact& contact) const {
   const ContactSprings springs = enforcement_->springs(problem, contact);
   const ContactForces f = spring_slider(springs, ContactStrength(joints_.joint(contact.joint), contact), 0.0, 0.0);
-  contact.stored_energy = stored_energy(springs.normal, springs.shear, f.normal, springs.initial_shear);
+  contact.stored_energy = stored_energy(springs.normal, springs.shear, f.normal, springs.initial_shear) - contact.crossing_energy;
 }
 
 template <int N>
@@ -502,7 +533,8 @@ double Simulation<N>::part_before_entry(const StepSolution<N>& solution, double 
 template <int N>
 StepResult Simulation<N>::step(double dt, bool statics) {
   if (loop_ && !statics) {
-    StepResult taken = explicit_step(dt, scene_.method.damping);
+    StepResult taken = explicit_step(dt, scene_.method.damping, true);
+    while (taken.relisted) taken = explicit_step(dt, scene_.method.damping, true);
     collect();
     return taken;
   }
@@ -602,7 +634,7 @@ void Simulation<N>::accept(const StepProblem<N>& problem, const StepSolution<N>&
   }
   for (int b : system_.free_blocks()) system_.advance(b, solution.of(system_, b));
   if (!problem.statics) scheme_->accept(problem.dt);
-  ledger_.kinetic = system_.kinetic_energy() - start_kinetic_energy_;
+  book_kinetic_energy(enforcement_->is_explicit() ? kinetic_ahead(problem, solution) : 0.0);
   time_ += problem.dt;
   ++step_counters_.steps;
   count_moves();
@@ -624,25 +656,46 @@ void Simulation<N>::accept_contacts(const StepSolution<N>& solution) {
   const bool elastic = enforcement_->has_elastic_contacts();
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     Contact& c = contacts_[i];
+    const Contact start = c;
     c.status = solution.contacts.status(i);
     c.bonded = stays_bonded(joints_.joint(c.joint), c.bonded, c.status);
     c.slack = solution.contacts.slack(i);
     c.gap += solution.contacts.gap_change(i);
     c.normal_force = c.shear_force = c.elastic_slip = c.stored_energy = 0.0;
+    if (enforcement_->is_explicit()) book_crossing(c, solution.contacts[i], start);
     if (c.status == ContactStatus::open) continue;
     const CarriedForces f = solution.contacts.forces(i);
     const double kn = solution.contacts.normal_stiffness(i), ks = solution.contacts.shear_stiffness(i);
     c.normal_force = f.normal;
     c.shear_force = f.shear;
     c.elastic_slip = -f.elastic_shear / ks;
-    if (elastic) c.stored_energy = stored_energy(kn, ks, f.elastic_normal, f.elastic_shear);
+    if (elastic) c.stored_energy = -c.crossing_energy + stored_energy(kn, ks, f.elastic_normal, f.elastic_shear);
     max_penetration_ = std::max(max_penetration_, -c.gap);
   }
 }
 
 template <int N>
+void Simulation<N>::book_crossing(Contact& contact, const ContactOutcome<N>& outcome, const Contact& start) {
+  const double before = contact.crossing_energy;
+  contact.crossing_energy = 0.0;
+  const bool is_open = contact.status == ContactStatus::open;
+  if (is_open) {
+    contact.normal_force = outcome.forces.normal;
+    contact.shear_force = outcome.forces.shear;
+    contact.crossing_energy = outcome.crossing_energy;
+    contact.stored_energy = -contact.crossing_energy;
+  } else if (ContactStrength(joints_.joint(contact.joint), contact).tension == 0.0) {
+    contact.crossing_energy =
+        start.status == ContactStatus::open ? closing_energy(outcome.normal_stiffness, start.stretch(), contact.stretch()) : before;
+  }
+  ledger_.contact_springs -= contact.crossing_energy - before;
+  ledger_.scheme += contact.crossing_energy - before;
+}
+
+template <int N>
 void Simulation<N>::load_loop() {
   if (loop_is_loaded_ && contacts_current_) return;
+  approach_step_.reset();
   if (!loop_is_loaded_ || !renew_loop()) {
     moving_contacts();
     loop_->load(present_problem(scene_.step.dt, false));
@@ -681,6 +734,30 @@ bool Simulation<N>::renew_loop() {
 }
 
 template <int N>
+double Simulation<N>::approach_step() {
+  if (!approach_step_) {
+    loop_->store_blocks(system_);
+    approach_step_ = approach_bound_.step(system_, joints_, detector_.candidate_pairs(), loop_->approach(), scene_.method.contact_skin,
+                                          scene_.method.step_fraction);
+  }
+  return *approach_step_;
+}
+
+template <int N>
+std::string Simulation<N>::too_deep() {
+  const auto found = loop_->too_deep();
+  if (!found) return {};
+  const Contact& c = contacts_[found->contact];
+  // The closure of an impact falls with the root of the stiffness.
+  const double wanted = closure_of_thickness * found->limit / DepthLimits<N>::part, factor = found->depth / wanted;
+  return fmt::format(
+      "the springs are too soft for these blocks: a corner of \"{}\" has come {:.2g} m into \"{}\", which is {:.2g} m thick there; "
+      "joint[{}].normal_stiffness_pa_per_m = {:.2g} or more would be a remedy",
+      scene_.blocks[c.vertex_block].name, found->depth, scene_.blocks[c.edge_block].name, found->limit / DepthLimits<N>::part, c.joint,
+      joints_.joint(c.joint).normal_stiffness * factor * factor);
+}
+
+template <int N>
 double Simulation<N>::critical_step() {
   load_loop();
   return loop_->critical_step();
@@ -688,23 +765,41 @@ double Simulation<N>::critical_step() {
 
 template <int N>
 double Simulation<N>::longest_stable_step(MassDamping damping) {
-  const double added = damping == MassDamping::local ? scene_.method.local_damping : 0.0;
-  return scene_.method.step_fraction * critical_step() / std::sqrt(1.0 + added);
+  load_loop();
+  const double stable = scene_.method.step_fraction * loop_->critical_step(damping == MassDamping::local ? scene_.method.local_damping : 0.0);
+  const double longest = loop_->is_fast() ? std::min(stable, approach_step()) : stable;
+  // Each change of the step has its price.
+  if (longest < held_step_ || longest > worthwhile_growth * held_step_) held_step_ = longest;
+  return held_step_;
 }
 
 template <int N>
-StepResult Simulation<N>::explicit_step(double h, MassDamping damping) {
+StepResult Simulation<N>::explicit_step(double h, MassDamping damping, bool any_length) {
   move_base(h, false);
   load_loop();
   StepResult result;
   const double span = 1.0 / (h * scheme_->inertia(h));
-  if (!loop_->move(h, span, external_.base_acceleration(), scene_.step.max_displacement, damping, scene_.method.local_damping)) {
+  const auto move = [&](double fast_step) {
+    return loop_->move(h, span, external_.base_acceleration(), scene_.step.max_displacement, fast_step, damping, scene_.method.local_damping);
+  };
+  // What the step would do is known only now.
+  constexpr double any = std::numeric_limits<double>::infinity(), rounding = 1.0 + tolerance::rounding_of_times;
+  Move moved = move(any_length ? any : rounding * approach_step_.value_or(0.0));
+  if (moved == Move::too_fast) moved = move(rounding * approach_step());
+  if (moved == Move::past_list || moved == Move::too_fast) {
+    contacts_current_ &= moved != Move::past_list;
+    result.relisted = true;
+    return result;
+  }
+  if (moved == Move::too_far) {
     result.reason = "a block moved farther in one step than step.max_displacement_m";
     ++step_counters_.cuts;
     return result;
   }
   loop_->follow_contacts();
   loop_is_ahead_ = true;
+  result.reason = too_deep();
+  result.stops = !result.reason.empty();
   scheme_->accept(h);
   time_ += h;
   ++step_counters_.steps;
@@ -759,6 +854,14 @@ bool Simulation<N>::advance_explicitly(double dt) {
     {
       const Stopwatch watch(stage_times_.solution);
       result = explicit_step(h, scene_.method.damping);
+    }
+    if (result.relisted) {
+      steps = 0;
+      continue;
+    }
+    if (result.stops) {
+      reason_ = result.reason;
+      break;
     }
     if (result.accepted) {
       remaining = --steps > 0 ? remaining - h : 0.0;
@@ -837,7 +940,7 @@ void Simulation<N>::restart_scheme() {
   for (int b : system_.free_blocks()) system_.set_velocity(b, output_velocity_[b]);
   begins_ = is_beginning();
   scheme_ = make_scheme();
-  start_kinetic_energy_ = system_.kinetic_energy() - ledger_.kinetic;
+  start_kinetic_energy_ = system_.kinetic_energy() + kinetic_ahead_ - ledger_.kinetic;
 }
 
 template <int N>
@@ -852,7 +955,8 @@ void Simulation<N>::change_method(const MethodInput& method) {
 template <int N>
 void Simulation<N>::come_to_rest() {
   take_back();
-  const double dropped = system_.kinetic_energy();
+  const double dropped = system_.kinetic_energy() + kinetic_ahead_;
+  kinetic_ahead_ = 0.0;
   ledger_.scheme += dropped;
   ledger_.kinetic -= dropped;
   system_.stop();
@@ -865,6 +969,7 @@ void Simulation<N>::restart_clock() {
   take_back();
   time_ = 0.0;
   ledger_ = EnergyLedger();
+  kinetic_ahead_ = 0.0;
   books_steps_ = true;
   max_penetration_ = friction_work_ = lagging_friction_work_ = 0.0;
   restart_scheme();
@@ -894,15 +999,16 @@ void Simulation<N>::restore(const Snapshot& snapshot) {
   contacts_current_ = true;
   output_velocity_ = snapshot.blocks.velocity;
   failed_attempts_ = cuts_at_entry_ = 0;
-  last_speed_ = 0.0;
+  last_speed_ = held_step_ = 0.0;
+  if (loop_) loop_ = std::make_unique<CentralDifference<N>>(scene_.method.contact_skin);
   restart_scheme();
 }
 
 template <int N>
 void Simulation<N>::exchange(Archive& archive) {
   archive(system_, resting_, may_rest_, external_, joints_, base_moves_, keep_bonds_, detector_, contacts_, contacts_current_, output_velocity_,
-          time_, reason_, ledger_, start_kinetic_energy_, collected_contact_energy_, max_penetration_, friction_work_, lagging_friction_work_,
-          step_counters_, failed_attempts_, cuts_at_entry_, last_speed_, control_, begins_);
+          time_, reason_, ledger_, start_kinetic_energy_, kinetic_ahead_, collected_contact_energy_, max_penetration_, friction_work_,
+          lagging_friction_work_, step_counters_, failed_attempts_, cuts_at_entry_, last_speed_, control_, begins_, approach_step_, held_step_);
   if (archive.reading()) scheme_ = make_scheme();
   scheme_->exchange(archive);
   enforcement_->exchange(archive);

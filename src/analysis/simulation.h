@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "openclose/analysis/step_control.h"
 #include "openclose/contact/detection.h"
 #include "openclose/core/memory.h"
+#include "openclose/integrator/approach_bound.h"
 #include "openclose/integrator/central_difference.h"
 #include "openclose/integrator/enforcement.h"
 
@@ -82,7 +84,9 @@ struct StepResult {
   bool too_wrong = false;         ///< refused because of it
   double part = 0.0;              ///< [-] refused: of the step, a length that is likely to be accepted; 0 if that is not known
   bool ends_at_entry = false;     ///< refused: `part` ends where a corner enters a block that it is not in contact with
-  bool lost_strength = false;     ///< a contact has lost its cohesion or tensile strength at the end of the step
+  bool relisted = false;       ///< explicit: not taken, since it needed more contacts than were listed; now they are, and the critical step is known
+  bool stops = false;          ///< explicit: taken, but nothing that follows can be right, for this reason
+  bool lost_strength = false;  ///< a contact has lost its cohesion or tensile strength at the end of the step
 };
 
 template <int N>
@@ -103,12 +107,11 @@ class Simulation {
   bool is_explicit() const { return loop_ != nullptr; }
   /// [s] Of the present contacts; explicit methods only.
   double critical_step();
-  /// [s] step_fraction of it: the longest step that advance() takes. Local damping, which adds its share to forces that slow a block down, has the
-  /// critical step of springs stiffer by that share.
+  /// [s] step_fraction of it, with this damping of the motion: the longest step that advance() takes.
   double longest_stable_step(MassDamping damping);
   /// One step of the loop with this damping of the motion, for settling. The state stays in the loop: references to it that were taken before do not
-  /// follow, asking again does.
-  StepResult explicit_step(double h, MassDamping damping);
+  /// follow, asking again does. A step that is not taken because it was `relisted` is to be chosen again, from the critical step of more contacts.
+  StepResult explicit_step(double h, MassDamping damping) { return explicit_step(h, damping, false); }
   /// From now on contacts lose neither cohesion nor tensile strength; explicit methods only.
   void keep_bonds(bool keep);
   /// Takes from every contact what its present status does not leave it.
@@ -144,9 +147,6 @@ class Simulation {
   double force_scale() const;  ///< [N] weight of the heaviest free block, or the largest load or contact force if there is no gravity
 
   const EnergyLedger& ledger() const;
-  /// [J] What is to be added to the ledger's mechanical energy so that all of it belongs to time(), see CentralDifference::energy_to_end(); 0 for
-  /// implicit methods.
-  double energy_to_end_of_step() const { return loop_ && loop_is_loaded_ ? loop_->energy_to_end() : 0.0; }
   double max_penetration() const;
   /// [-] `shi`: by how much of its work the friction of sliding contacts was not that of their normal force, but that of the pass before.
   double friction_lag() const { return friction_work_ > 0.0 ? lagging_friction_work_ / friction_work_ : 0.0; }
@@ -213,10 +213,18 @@ class Simulation {
   double unbalanced_force(const StepProblem<N>& problem, const StepSolution<N>& solution) const;
   void accept(const StepProblem<N>& problem, const StepSolution<N>& solution);
   void accept_contacts(const StepSolution<N>& solution);
+  /// What crossing_energy.h says of a contact, for steps taken one by one.
+  void book_crossing(Contact& contact, const ContactOutcome<N>& outcome, const Contact& start);
   bool loses_strength(const StepSolution<N>& solution) const;
   bool advance_explicitly(double dt);
   void load_loop();
   bool renew_loop();
+  /// [s] Longest fast step with the present list, see approach_bound.h.
+  double approach_step();
+  /// \param any_length  false: a step that is too long for what it comes near is relisted
+  StepResult explicit_step(double h, MassDamping damping, bool any_length);
+  /// What the loop finds too deep, with the remedy; empty if nothing is.
+  std::string too_deep();
   StepProblem<N> present_problem(double dt, bool statics) const;
   void store_energy(const StepProblem<N>& problem, Contact& contact) const;
   /// Takes back what the loop has done since; it goes on from its own arrays.
@@ -239,6 +247,10 @@ class Simulation {
   bool wake_by_forces(typename Resting<N>::Urgency urgency);
   void divide();
   void count_moves();
+  /// Writes down the kinetic energy of the blocks' velocities and what explicit steps add to it for the present moment.
+  void book_kinetic_energy(double ahead) const;
+  /// [J] See CentralDifference::kinetic_ahead(), for steps taken one by one.
+  double kinetic_ahead(const StepProblem<N>& problem, const StepSolution<N>& solution) const;
   void note_memory();
 
   Scene scene_;
@@ -258,6 +270,9 @@ class Simulation {
   mutable bool loop_is_ahead_ = false;          ///< of system_ and contacts_
   bool loop_is_loaded_ = false;
   int cuts_at_entry_ = 0;  ///< since the last step that was accepted
+  ApproachBound<N> approach_bound_;
+  double held_step_ = 0.0;               ///< [s] last one that longest_stable_step() returned
+  std::optional<double> approach_step_;  ///< [s] bound of the steps with the present list, if one of them was fast enough to need it
   Resting<N> resting_;
   bool may_rest_ = false;
   bool base_moves_ = false;
@@ -266,6 +281,7 @@ class Simulation {
   std::string reason_;
   mutable EnergyLedger ledger_;
   double start_kinetic_energy_ = 0.0;              ///< [J]
+  mutable double kinetic_ahead_ = 0.0;             ///< [J] in the ledger, see CentralDifference::kinetic_ahead()
   mutable double collected_contact_energy_ = 0.0;  ///< [J] stored when the loop was last collected from or loaded
   mutable double max_penetration_ = 0.0;
   double friction_work_ = 0.0, lagging_friction_work_ = 0.0;  ///< [J] see friction_lag()

@@ -27,18 +27,19 @@ struct Contact {
   double rest_gap = 0.0;  ///< [m] at which the normal spring carries nothing, see history.h
 
   // History, as the last accepted step left it.
-  double elastic_slip = 0.0;   ///< [m] stretch of the shear spring; the spring's part of the shear force is -shear stiffness * elastic slip
-  double normal_force = 0.0;   ///< [N] spring and dashpot
-  double shear_force = 0.0;    ///< [N]
-  double stored_energy = 0.0;  ///< [J] in both springs
-  double slack = 0.0;          ///< [m] `hard` at rest: by how much an open contact would have parted, see hard.cpp
+  double elastic_slip = 0.0;     ///< [m] stretch of the shear spring; the spring's part of the shear force is -shear stiffness * elastic slip
+  double normal_force = 0.0;     ///< [N] spring and dashpot; `dem`, of a contact that has just opened: what settles its crossing
+  double shear_force = 0.0;      ///< [N]
+  double stored_energy = 0.0;    ///< [J] in both springs, less the next
+  double crossing_energy = 0.0;  ///< [J] `dem`: what closing has lost (negative) or opening has gained, see crossing_energy.h; not in the springs
+  double slack = 0.0;            ///< [m] `hard` at rest: by how much an open contact would have parted, see hard.cpp
 
   /// [m] What the normal spring reads: the gap from where the spring rests.
   double stretch() const { return gap - rest_gap; }
 
   void exchange(Archive& archive) {
-    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o] = *this;
-    archive(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o);
+    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p] = *this;
+    archive(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p);
   }
 };
 

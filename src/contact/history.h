@@ -39,6 +39,7 @@ inline void inherit(const Contact& from, double stretch, Contact& to) {
   to.normal_force = from.normal_force;
   to.shear_force = from.shear_force;
   to.stored_energy = from.stored_energy;
+  to.crossing_energy = from.crossing_energy;
   to.slack = from.slack;
   const double longer = to.length > 0.0 ? std::sqrt(from.length / to.length) : 1.0;
   to.elastic_slip = longer * from.elastic_slip;

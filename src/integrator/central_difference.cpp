@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "openclose/core/tolerance.h"
+#include "openclose/integrator/crossing_energy.h"
 #include "openclose/integrator/lane_operations.h"
 
 namespace openclose {
@@ -22,7 +24,11 @@ constexpr double first_viscous = 0.01;
 
 /// [-] Of the skin: with less of it used up the list is kept and the way counted anew from there.
 constexpr double renew_fraction = 0.5;
-/// [-] Contacts are left out as too far apart until blocks are this much faster than when that was decided.
+/// [-] Cleared links among all, a few per cent of a step, above which they are removed.
+constexpr double most_cleared_share = 0.1;
+/// In place of a contact's number.
+constexpr int none = -1;
+/// [-] Contacts are left out as too far apart until a step is this much longer than the one before that was decided.
 constexpr double more_speed = 1.5;
 
 double square(double x) {
@@ -43,6 +49,9 @@ double larger_or_nan(double largest, double next) {
 template <int N>
 void CentralDifference<N>::load(const StepProblem<N>& problem) {
   joints_ = &problem.joints;
+  share_ = square(problem.method.step_fraction);
+  if (depth_limits_.empty()) depth_limits_.begin(problem.system);
+  room_ = 0.0;
   load_blocks(problem);
   load_points(problem);
   load_contacts(problem);
@@ -51,25 +60,30 @@ void CentralDifference<N>::load(const StepProblem<N>& problem) {
 }
 
 template <int N>
-bool CentralDifference<N>::can_renew() const {
-  return needed_approach(1.0) <= approach_;
-}
-
-template <int N>
 void CentralDifference<N>::renew(const StepProblem<N>& problem, const std::vector<DetectionChange>& changes) {
+  if (depth_limits_.empty()) depth_limits_.begin(problem.system);  // after a restart
+  free_.clear();
+  free_ends_.clear();
   for (const DetectionChange& change : changes) {
     for (int i = change.before.begin; i < change.before.end; ++i) {
-      if (link_of_[i] >= 0) take_link(link_of_[i]);
+      if (link_of_[i] < 0) continue;
+      take_link(link_of_[i]);
+      free_.push_back(link_of_[i]);
     }
+    free_ends_.push_back(free_.size());
   }
   renumber(changes);
-  for (const DetectionChange& change : changes) {
-    for (int i = change.after.begin; i < change.after.end; ++i) {
+  for (std::size_t k = 0; k < changes.size(); ++k) {
+    free_end_ = free_ends_[k];
+    for (int i = changes[k].after.begin; i < changes[k].after.end; ++i) {
       energies_.redefinition -= problem.contacts[i].stored_energy;
       add_link(problem, i);
     }
+    while (next_free_ < free_end_) clear_link(free_[next_free_++]);
   }
-  close_holes();
+  next_free_ = free_end_ = 0;
+  if (cleared_ > most_cleared_share * static_cast<double>(links_.size())) remove_cleared_links();
+  room_ = 0.0;
   keep();
 }
 
@@ -133,25 +147,16 @@ void CentralDifference<N>::load_contacts(const StepProblem<N>& problem) {
   links_.reserve(problem.contacts.size());
   rest_.clear();
   rest_.reserve(problem.contacts.size());
-  holes_.clear();
+  cleared_ = 0;
   link_of_.assign(problem.contacts.size(), -1);
   damped_ = false;
   begin_forces();
   add_point_forces(false);
-  approach_ = needed_approach(more_speed);
+  // By the skin when their pair is last passed over, by the skin until the pairs are looked at again, and by the step with which blocks leave it.
+  approach_ = 2.0 * skin_ + more_speed * step_ahead_;
+  list_is_short_ = false;
   critical_step_.begin(problem);
   for (std::size_t i = 0; i < problem.contacts.size(); ++i) add_link(problem, static_cast<int>(i));
-}
-
-/// [m] By which blocks may approach each other before their contacts are renewed: by the skin when their pair is last passed over, by the skin until
-/// the pairs are looked at again, and by the step with which they leave it, whose length and speed are about the last ones.
-template <int N>
-double CentralDifference<N>::needed_approach(double more_speed) const {
-  double fastest = 0.0;
-  for (std::size_t i = 0; i < inertia_.size(); ++i) {
-    fastest = std::max(fastest, square(rates_[i].x) + square(rates_[i].y) + square(inertia_[i].radius * rates_[i].turn));
-  }
-  return 2.0 * skin_ + 2.0 * more_speed * h_ * std::sqrt(2.0 * fastest);
 }
 
 /// Takes a contact over, unless it is too far apart.
@@ -162,7 +167,7 @@ void CentralDifference<N>::add_link(const StepProblem<N>& problem, int contact) 
   const TabulatedJoint& joint = problem.joints.joint(c.joint);
   const ContactStrength strength(joint, c);
   const double normal_stiffness = joint.normal_stiffness * c.length, shear_stiffness = joint.shear_stiffness * c.length;
-  const bool at_rest = c.status == ContactStatus::open && c.elastic_slip == 0.0;
+  const bool at_rest = c.status == ContactStatus::open && c.elastic_slip == 0.0 && c.normal_force == 0.0 && c.shear_force == 0.0;
   link_of_[contact] = -1;
   if (at_rest && !may_close(strength, normal_stiffness, c.gap, approach_)) return;
 
@@ -195,8 +200,8 @@ void CentralDifference<N>::add_link(const StepProblem<N>& problem, int contact) 
             .stretch = c.elastic_slip,
             .normal = 0.0,
             .shear = 0.0,
-            .elastic_normal = 0.0,
             .viscous_shear = 0.0,
+            .crossing_energy = c.crossing_energy,
             .vertex_slot = at_vertex,
             .edge_slot = at_edge,
             .rest_gap = static_cast<float>(c.rest_gap),
@@ -207,11 +212,16 @@ void CentralDifference<N>::add_link(const StepProblem<N>& problem, int contact) 
   link.loaded_gap = link.gap - at.gap;
   at.gap = link.gap;
   link.slip = at.slip;
-  carry_now(link, at);
+  const double elastic_normal = carry_now(link, at);
   // What the list has moved apart is open before anything moves.
   if (link.gap > link.strength.tension / link.normal_stiffness) link.status = ContactStatus::open;
   // What is found closed carries from now on, as the ledger of its renewal says, even where its dashpot outweighs the spring.
-  if (link.status == ContactStatus::open && link.elastic_normal != 0.0) link.status = ContactStatus::sticking;
+  if (link.status == ContactStatus::open && elastic_normal != 0.0) link.status = ContactStatus::sticking;
+  // What its opening has shown is still to be settled.
+  if (link.status == ContactStatus::open && c.status == ContactStatus::open) {
+    link.normal = c.normal_force;
+    link.shear = c.shear_force;
+  }
   push(link, at);
 
   const auto share = [&](int b, int other) {
@@ -227,17 +237,18 @@ void CentralDifference<N>::add_link(const StepProblem<N>& problem, int contact) 
                       edge_arm.y(),
                       share(c.vertex_block, c.edge_block),
                       share(c.edge_block, c.vertex_block),
-                      c.rest_gap};
+                      c.rest_gap,
+                      depth_limits_.of(c.vertex_block, c.edge)};
   add_parts(link, rest, 1.0);
-  if (holes_.empty()) {
+  if (next_free_ == free_end_) {
     link_of_[contact] = static_cast<int>(links_.size());
     links_.push_back(link);
     rest_.push_back(rest);
   } else {
-    link_of_[contact] = holes_.back();
-    links_[holes_.back()] = link;
-    rest_[holes_.back()] = rest;
-    holes_.pop_back();
+    const int entry = free_[next_free_++];
+    link_of_[contact] = entry;
+    links_[entry] = link;
+    rest_[entry] = rest;
   }
 }
 
@@ -252,7 +263,7 @@ void CentralDifference<N>::add_parts(const Link& link, const LinkRest& rest, dou
   part(link.edge_slot, rest.edge_share, {link.normal_x, link.normal_y}, {rest.edge_arm_x, rest.edge_arm_y});
 }
 
-/// Takes a contact, with its force and energy, out of the sums; its place is free.
+/// Takes a contact, with its force and energy, out of the sums.
 template <int N>
 void CentralDifference<N>::take_link(int slot) {
   Link& link = links_[slot];
@@ -262,7 +273,6 @@ void CentralDifference<N>::take_link(int slot) {
   link.normal = -link.normal;
   link.shear = -link.shear;
   push(link, at);
-  holes_.push_back(slot);
 }
 
 template <int N>
@@ -285,32 +295,42 @@ void CentralDifference<N>::renumber(const std::vector<DetectionChange>& changes)
   }
 }
 
-/// The last links go where places are free.
+/// Leaves an open contact between fixed blocks there. Links are never moved into what others leave: the order in which the forces on a block are
+/// added up depends on its own contacts alone, and so do its last digits.
 template <int N>
-void CentralDifference<N>::close_holes() {
-  std::sort(holes_.begin(), holes_.end());
-  while (!holes_.empty()) {
-    const int last = static_cast<int>(links_.size()) - 1;
-    if (holes_.back() != last) {
-      // The highest place that is free lies below the last link: the lowest takes it.
-      const int hole = holes_.front();
-      links_[hole] = links_[last];
-      rest_[hole] = rest_[last];
-      link_of_[rest_[hole].contact] = hole;
-      holes_.erase(holes_.begin());
-    } else {
-      holes_.pop_back();
-    }
-    links_.pop_back();
-    rest_.pop_back();
+void CentralDifference<N>::clear_link(int entry) {
+  const int fixed_slot = static_cast<int>(inertia_.size());
+  Link& link = links_[entry];
+  link.vertex_slot = link.edge_slot = fixed_slot;
+  link.loaded_gap = link.gap = 1.0;
+  link.slip = link.stretch = link.normal = link.shear = link.viscous_shear = link.crossing_energy = 0.0;
+  link.strength = ContactStrength();
+  link.status = ContactStatus::open;
+  link.breakable = false;
+  rest_[entry].contact = none;
+  ++cleared_;
+}
+
+template <int N>
+void CentralDifference<N>::remove_cleared_links() {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    if (rest_[i].contact == none) continue;
+    links_[kept] = links_[i];
+    rest_[kept] = rest_[i];
+    link_of_[rest_[kept].contact] = static_cast<int>(kept);
+    ++kept;
   }
+  links_.resize(kept);
+  rest_.resize(kept);
+  cleared_ = 0;
 }
 
 /// [J] In the springs of a contact; the shear spring of one that has just opened lets go in the next step.
 template <int N>
 double CentralDifference<N>::stored_energy(const Link& link) {
   const double closure = link.status == ContactStatus::open ? 0.0 : link.gap;
-  return 0.5 * (link.normal_stiffness * closure * closure + link.shear_stiffness * link.stretch * link.stretch);
+  return 0.5 * (link.normal_stiffness * closure * closure + link.shear_stiffness * link.stretch * link.stretch) - link.crossing_energy;
 }
 
 template <int N>
@@ -342,12 +362,12 @@ ForceTrials CentralDifference<N>::trials(const Link& link, const Place& at, doub
 
 /// The forces with which the next step starts, from the memory of the contact; the memory stays.
 template <int N>
-void CentralDifference<N>::carry_now(Link& link, const Place& at) {
+double CentralDifference<N>::carry_now(Link& link, const Place& at) {
   const CarriedForces f = carry(link.strength, trials(link, at, -link.shear_stiffness * link.stretch));
   link.normal = f.normal;
   link.shear = f.shear;
-  link.elastic_normal = f.elastic_normal;
   link.viscous_shear = f.shear - f.elastic_shear;
+  return f.elastic_normal;
 }
 
 template <int N>
@@ -389,7 +409,7 @@ void CentralDifference<N>::add_point_forces(bool step) {
 }
 
 template <int N>
-bool CentralDifference<N>::move(double h, double span, const Vec2& base, double limit, MassDamping damping, double local_damping) {
+Move CentralDifference<N>::move(double h, double span, const Vec2& base, double limit, double fast_step, MassDamping damping, double local_damping) {
   const std::size_t n = inertia_.size();
   const double alpha = damping == MassDamping::local ? local_damping : 0.0;
   if (damping != MassDamping::automatic) viscous_ = 0.0;
@@ -409,9 +429,15 @@ bool CentralDifference<N>::move(double h, double span, const Vec2& base, double 
     unbalanced = std::max(unbalanced, force_squared(i));
   }
   const double farthest = h * std::sqrt(2.0 * fastest);
-  if (!(farthest <= limit)) return false;
-  // Two blocks that move against each other.
-  moved_ += 2.0 * farthest;
+  if (!(farthest <= limit)) return Move::too_far;
+  step_ahead_ = 2.0 * farthest;  // two blocks that move against each other
+  list_is_short_ = 2.0 * skin_ + step_ahead_ > approach_;
+  if (list_is_short_) return Move::past_list;
+  if (is_fast() && h > fast_step) return Move::too_fast;
+  const double before = 2.0 * span - h;
+  if (alpha == 0.0 && viscous_ == 0.0 && std::abs(h - before) > tolerance::rounding_of_times * h) book_step_change(before, h, base);
+  moved_ += step_ahead_;
+  room_ -= step_ahead_;
   unbalanced_ = unbalanced;
 
   ExplicitEnergies sum;
@@ -460,7 +486,7 @@ bool CentralDifference<N>::move(double h, double span, const Vec2& base, double 
   rates_.swap(next_rates_);
   h_ = h;
   span_ = span;
-  return true;
+  return Move::taken;
 }
 
 template <int N>
@@ -499,25 +525,33 @@ void CentralDifference<N>::follow_link(Link& link, LinkSums& sums) {
   } else {
     f = carry(link.strength, {-link.normal_stiffness * at.gap, 0.0, memory, 0.0});
   }
-  // The step's forces were those at its start; see the ledger for the formulas, with theta = 0.
+  const bool was_open = link.status == ContactStatus::open, opened = f.status == ContactStatus::open;
+  const double normal_before = was_open ? 0.0 : link.normal,
+               shear_before = was_open ? 0.0 : link.shear;  // what settles an opening is no joint's force
+  double settled_shear = f.shear;
+  if (was_open != opened || (was_open && (link.normal != 0.0 || link.shear != 0.0))) {
+    settle_crossing(link, {normal_before, shear_before, at.gap, slip, opened}, f.normal, settled_shear, sums.scheme);
+  }
+  // The step's forces were those at its start, but for what settles an opening; see the ledger for the formulas, with theta = 0.
   const double stretch = -f.elastic_shear * link.per_shear_stiffness;
-  const double stretched = stretch - link.stretch, opening = f.status == ContactStatus::open ? at.gap : 0.0;
-  const double closing = -gap_change + (opening - (link.status == ContactStatus::open ? link.gap : 0.0));
-  sums.scheme += link.normal * gap_change + link.shear * slip - link.normal * opening -
+  const double stretched = stretch - link.stretch, opening = opened ? at.gap : 0.0;
+  const double closing = -gap_change + (opening - (was_open ? link.gap : 0.0));
+  sums.scheme += normal_before * gap_change + shear_before * slip - normal_before * opening -
                  0.5 * (link.normal_stiffness * closing * closing + link.shear_stiffness * stretched * stretched) -
-                 (link.shear - link.viscous_shear + link.shear_stiffness * link.stretch) * stretched;
-  sums.friction -= link.shear * (slip - stretched);
-  if constexpr (damped) sums.damping += (link.normal - link.elastic_normal) * closing - link.viscous_shear * stretched;
+                 (shear_before - link.viscous_shear + link.shear_stiffness * link.stretch) * stretched;
+  // What rubs in the step is the mean force: so the work of central difference is summed by parts.
+  const double rubbed = std::max(0.0, -0.5 * (shear_before + f.shear) * (slip - stretched));
+  sums.friction += rubbed;
+  sums.scheme -= rubbed + shear_before * (slip - stretched);
+  if constexpr (damped)
+    sums.damping += (normal_before - (was_open ? 0.0 : -link.normal_stiffness * link.gap)) * closing - link.viscous_shear * stretched;
   link.gap = at.gap;
   link.slip = at.slip;
   link.stretch = stretch;
   link.status = f.status;
   link.normal = f.normal;
-  link.shear = f.shear;
-  if constexpr (damped) {
-    link.elastic_normal = f.elastic_normal;
-    link.viscous_shear = f.shear - f.elastic_shear;
-  }
+  link.shear = settled_shear;
+  if constexpr (damped) link.viscous_shear = f.shear - f.elastic_shear;
   if (f.status != ContactStatus::open) sums.deepest = std::max(sums.deepest, -at.gap - link.rest_gap);
   if (link.breakable) lose_strength(link, joints_->joint(rest_[&link - links_.data()].joint), at);
   push(link, at);
@@ -564,13 +598,16 @@ bool CentralDifference<N>::follow_four(Link* links, LinkSums& sums) {
   const double* strength[] = {&links[0].strength.friction, &links[1].strength.friction, &links[2].strength.friction, &links[3].strength.friction};
   fetch(strength, friction, cohesion, tension, gap_before);
   fetch_links(&Link::slip, slip_before, stretch_before, normal_before, shear_before);
-  const Lanes elastic_normal_before{links[0].elastic_normal, links[1].elastic_normal, links[2].elastic_normal, links[3].elastic_normal};
   const Lanes viscous_shear_before{links[0].viscous_shear, links[1].viscous_shear, links[2].viscous_shear, links[3].viscous_shear};
   Mask was_open{}, breakable{};
   for (int k = 0; k < batch_size; ++k) {
     was_open[k] = links[k].status == ContactStatus::open ? -1 : 0;
     breakable[k] = links[k].breakable ? -1 : 0;
   }
+
+  const Mask settles = was_open & ((normal_before != 0.0) | (shear_before != 0.0));
+  normal_before = was_open ? zero : normal_before;  // what settles an opening is no joint's force
+  shear_before = was_open ? zero : shear_before;
 
   // As trials() and carry().
   const Lanes gap_change = gap - gap_before, slip = all_slip - slip_before;
@@ -590,8 +627,23 @@ bool CentralDifference<N>::follow_four(Link* links, LinkSums& sums) {
   const Lanes bound = ShearBound(friction, cohesion, tension, unbounded_normal).value;
   const Mask sticking = closed & (magnitude(unbounded_shear) <= bound);
   if (any(breakable & ~sticking)) return false;
-  const Lanes normal = closed ? unbounded_normal : zero, shear = closed ? clamped(unbounded_shear, bound) : zero;
+  Lanes normal = closed ? unbounded_normal : zero;
+  const Lanes shear = closed ? clamped(unbounded_shear, bound) : zero;
   const Lanes elastic_shear = closed ? clamped(memory, bound) : zero;
+
+  // Few do so in a step: one by one.
+  const Mask crosses = (was_open ^ ~closed) | settles;
+  Lanes settled_shear = shear;
+  double settled[batch_size] = {};
+  if (any(crosses)) {
+    for (int k = 0; k < batch_size; ++k) {
+      if (!crosses[k]) continue;
+      double n = normal[k], t = settled_shear[k];
+      settle_crossing(links[k], {normal_before[k], shear_before[k], gap[k], slip[k], !closed[k]}, n, t, settled[k]);
+      normal[k] = n;
+      settled_shear[k] = t;
+    }
+  }
 
   // The step's forces were those at its start; see follow_link().
   const Lanes stretch = -elastic_shear * per_ks;
@@ -600,26 +652,28 @@ bool CentralDifference<N>::follow_four(Link* links, LinkSums& sums) {
   const Lanes scheme = normal_before * gap_change + shear_before * slip - normal_before * opening -
                        0.5 * (kn * closing * closing + ks * stretched * stretched) -
                        (shear_before - viscous_shear_before + ks * stretch_before) * stretched;
-  const Lanes rubbed = shear_before * (slip - stretched);
+  const Lanes rubbed = larger(zero, -0.5 * (shear_before + shear) * (slip - stretched)), not_yet = rubbed + shear_before * (slip - stretched);
   const Lanes rest_gap{links[0].rest_gap, links[1].rest_gap, links[2].rest_gap, links[3].rest_gap}, depth = closed ? -gap - rest_gap : zero;
   for (int k = 0; k < batch_size; ++k) {
+    sums.friction += rubbed[k];
+    sums.scheme += settled[k];
     sums.scheme += scheme[k];
-    sums.friction -= rubbed[k];
+    sums.scheme -= not_yet[k];
     sums.deepest = std::max(sums.deepest, depth[k]);
   }
   if constexpr (damped) {
-    const Lanes damping = (normal_before - elastic_normal_before) * closing - viscous_shear_before * stretched;
-    const Lanes kept_normal = closed ? elastic_normal : zero, kept_shear = shear - elastic_shear;
+    const Lanes elastic_before = was_open ? zero : -kn * gap_before;
+    const Lanes damping = (normal_before - elastic_before) * closing - viscous_shear_before * stretched;
+    const Lanes kept_shear = shear - elastic_shear;
     for (int k = 0; k < batch_size; ++k) {
       sums.damping += damping[k];
-      links[k].elastic_normal = kept_normal[k];
       links[k].viscous_shear = kept_shear[k];
     }
   }
 
-  const Lanes x = normal * nx - shear * ny, y = normal * ny + shear * nx;
+  const Lanes x = normal * nx - settled_shear * ny, y = normal * ny + settled_shear * nx;
   const Lanes on_vertex = now_arm_x * y - now_arm_y * x, on_edge = now_across_x * y - now_across_y * x;
-  Lanes history[] = {all_slip, stretch, normal, shear}, forward[] = {x, y, on_vertex, zero}, back[] = {x, y, on_edge, zero};
+  Lanes history[] = {all_slip, stretch, normal, settled_shear}, forward[] = {x, y, on_vertex, zero}, back[] = {x, y, on_edge, zero};
   transpose(history[0], history[1], history[2], history[3]);
   transpose(forward[0], forward[1], forward[2], forward[3]);
   transpose(back[0], back[1], back[2], back[3]);
@@ -679,6 +733,46 @@ void CentralDifference<N>::follow_links() {
   max_penetration_ = sums.deepest;
 }
 
+/// Of a contact that closes or opens, or has opened in the last step: the forces that settle its crossing, see crossing_energy.h, instead of none.
+/// What a dashpot takes is not given back.
+template <int N>
+[[gnu::noinline]] void CentralDifference<N>::settle_crossing(Link& link, const Crossing& crossing, double& normal, double& shear, double& scheme) {
+  const double before = link.crossing_energy;
+  const bool was_open = link.status == ContactStatus::open;
+  link.crossing_energy = 0.0;
+  if (link.strength.tension == 0.0 && was_open && !crossing.is_open) {
+    link.crossing_energy = closing_energy(link.normal_stiffness, link.gap, crossing.gap);
+  } else if (link.strength.tension == 0.0 && !was_open && crossing.is_open) {
+    const double energy = before + 0.5 * std::min(crossing.normal_before, -link.normal_stiffness * link.gap) * crossing.gap;
+    const Opening opening = settled(energy, link.normal_stiffness, crossing.gap - link.gap, link.shear_stiffness, crossing.slip, link.stretch,
+                                    crossing.shear_before, share_);
+    normal = opening.normal;
+    shear = opening.shear;
+    link.crossing_energy = opening.energy;
+  }
+  scheme += link.crossing_energy - before;
+}
+
+template <int N>
+void CentralDifference<N>::book_step_change(double before, double now, const Vec2& base) {
+  const double factor = 0.125 * (before * before - now * now);
+  const auto acceleration = [&](int slot) -> Rate {
+    if (slot >= static_cast<int>(inertia_.size())) return {};
+    const Inertia& m = inertia_[slot];
+    const Rate& f = forces_[slot];
+    return {f.x * m.per_mass - base.x(), f.y * m.per_mass - base.y(), m.turns * f.turn * m.per_moment, 0.0};
+  };
+  for (Link& link : links_) {
+    if (link.status == ContactStatus::open || link.strength.tension > 0.0) continue;
+    const Place at = place(link);
+    const Rate v = acceleration(link.vertex_slot), e = acceleration(link.edge_slot);
+    const double x = (v.x - v.turn * at.arm_y) - (e.x - e.turn * at.across_y), y = (v.y + v.turn * at.arm_x) - (e.y + e.turn * at.across_x);
+    const double gained = factor * (link.normal * (at.normal_x * x + at.normal_y * y) + link.shear * (at.normal_x * y - at.normal_y * x));
+    link.crossing_energy += gained;
+    energies_.scheme += gained;
+  }
+}
+
 template <int N>
 void CentralDifference<N>::lose_strength(Link& link, const JointProperties& joint, const Place& at) {
   if (stays_bonded(joint, true, link.status)) return;
@@ -690,6 +784,18 @@ void CentralDifference<N>::lose_strength(Link& link, const JointProperties& join
   // It slipped while it was pulling: nothing pulls any more.
   link.status = ContactStatus::open;
   energies_.redefinition += 0.5 * link.normal_stiffness * square(at.gap);
+}
+
+template <int N>
+std::optional<typename CentralDifference<N>::TooDeep> CentralDifference<N>::too_deep() {
+  if (room_ > 0.0) return std::nullopt;
+  room_ = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    const double depth = links_[i].status == ContactStatus::open ? 0.0 : -links_[i].gap - rest_[i].rest_gap, limit = rest_[i].depth_limit;
+    if (depth > limit) return TooDeep{rest_[i].contact, depth, limit};
+    room_ = std::min(room_, limit - depth);
+  }
+  return std::nullopt;
 }
 
 template <int N>
@@ -709,17 +815,6 @@ bool CentralDifference<N>::moved_beyond_skin() {
 template <int N>
 double CentralDifference<N>::last_unbalanced_force() const {
   return std::sqrt(unbalanced_);
-}
-
-template <int N>
-double CentralDifference<N>::energy_to_end() const {
-  double power = 0.0;  // of all forces but gravity, whose work in the half step is the loss of height
-  for (std::size_t i = 0; i < inertia_.size(); ++i) {
-    const Inertia& m = inertia_[i];
-    const Rate &v = rates_[i], &f = forces_[i];
-    power += v.x * (f.x - m.weight_x) + v.y * (f.y - m.weight_y) + m.turns * v.turn * f.turn;
-  }
-  return 0.5 * h_ * power;
 }
 
 template <int N>
@@ -761,6 +856,7 @@ void CentralDifference<N>::store_blocks(BlockSystem<N>& system) const {
 template <int N>
 void CentralDifference<N>::store_contacts(std::vector<Contact>& contacts) const {
   for (std::size_t i = 0; i < links_.size(); ++i) {
+    if (rest_[i].contact == none) continue;
     const Link& link = links_[i];
     Contact& c = contacts[rest_[i].contact];
     c.gap = link.gap + rest_[i].rest_gap;
@@ -769,6 +865,7 @@ void CentralDifference<N>::store_contacts(std::vector<Contact>& contacts) const 
     c.elastic_slip = link.stretch;
     c.normal_force = link.normal;
     c.shear_force = link.shear;
+    c.crossing_energy = link.crossing_energy;
     c.stored_energy = stored_energy(link);
   }
 }
@@ -785,6 +882,17 @@ void CentralDifference<N>::store_far_gaps(const BlockSystem<N>& system, std::vec
 }
 
 template <int N>
+double CentralDifference<N>::kinetic_ahead() const {
+  double power = 0.0;
+  for (std::size_t i = 0; i < inertia_.size(); ++i) {
+    const Inertia& m = inertia_[i];
+    const Rate &f = forces_[i], &v = rates_[i];
+    power += (f.x - m.weight_x) * v.x + (f.y - m.weight_y) * v.y + f.turn * v.turn;
+  }
+  return 0.5 * h_ * power;
+}
+
+template <int N>
 ExplicitEnergies CentralDifference<N>::take_energies() {
   const ExplicitEnergies taken = energies_;
   energies_ = ExplicitEnergies();
@@ -794,16 +902,17 @@ ExplicitEnergies CentralDifference<N>::take_energies() {
 template <int N>
 void CentralDifference<N>::exchange(Archive& archive, const JointTable& joints) {
   joints_ = &joints;
-  archive(poses_, rates_, previous_rates_, next_rates_, forces_, inertia_, blocks_, rest_slot_, loaded_at_, links_, rest_, link_of_, holes_, kept_at_,
-          points_, energies_, damped_, lost_strength_, critical_step_, approach_, moved_, unbalanced_, max_penetration_, h_, span_, viscous_);
+  archive(poses_, rates_, previous_rates_, next_rates_, forces_, inertia_, blocks_, rest_slot_, loaded_at_, links_, rest_, link_of_, cleared_,
+          kept_at_, points_, energies_, damped_, lost_strength_, critical_step_, approach_, moved_, unbalanced_, max_penetration_, step_ahead_,
+          list_is_short_, share_, room_, h_, span_, viscous_);
 }
 
 template <int N>
 Memory CentralDifference<N>::memory() const {
   Memory of;
   of.blocks = bytes_of(poses_, rates_, previous_rates_, next_rates_, forces_, inertia_, blocks_, rest_slot_, loaded_at_, kept_at_, points_) +
-              critical_step_.bytes();
-  of.contacts = bytes_of(links_, rest_, link_of_, holes_, renumbered_);
+              critical_step_.bytes() + depth_limits_.bytes();
+  of.contacts = bytes_of(links_, rest_, link_of_, renumbered_);
   return of;
 }
 

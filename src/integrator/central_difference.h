@@ -9,7 +9,8 @@
 //   - a contact is one record with all its constants, in the order of the list; gap and slip follow from
 //       gap = gap_0 + (n - n_0) . w_0 + n . D,   slip = (t - t_0) . w_0 + t . D,   D = u_v - u_e + (R_v - 1) r_v
 //     (r_v arm of the corner, w_0 from the edge's centroid to the corner, both at the load), free of cancellation and exact whatever the rotation;
-//   - contacts too far apart to close before they are renewed are not looked at.
+//   - contacts too far apart to close before they are renewed are left out. Each step is known before it is taken: where it might close one of them,
+//     all are loaded anew, which also finds the critical step with those that it may close.
 // moved_beyond_skin() tells when blocks may have moved by the skin against each other since the list was last looked through: then it
 // is to be renewed. It adds up the largest speed of each step, and looks at the blocks only when that sum has reached the skin.
 //
@@ -22,10 +23,12 @@
 // step by a constant factor so that the power it takes is half the rate at which the kinetic energy changes.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "openclose/contact/detection.h"
 #include "openclose/integrator/critical_step.h"
+#include "openclose/integrator/depth_limits.h"
 #include "openclose/integrator/enforcement.h"
 #include "openclose/integrator/lanes.h"
 
@@ -43,6 +46,14 @@ struct ExplicitEnergies {
   }
 };
 
+/// What has become of a step.
+enum class Move : unsigned char {
+  taken,
+  too_far,    ///< a block would have moved farther than it may
+  too_fast,   ///< two blocks would have moved by more than the skin against each other in a step longer than such a one may be
+  past_list,  ///< contacts that were left out as too far apart might have closed: the list is to be loaded anew, and the step chosen again
+};
+
 template <int N>
 class CentralDifference {
   static_assert(N == 3, "the arrays are laid out for rigid blocks");
@@ -57,8 +68,8 @@ class CentralDifference {
 
   /// Takes over blocks, velocities of the middle of the last step, contacts with their history, and the forces they carry now.
   void load(const StepProblem<N>& problem);
-  /// False if blocks have become so fast that contacts might close which were left out as too far apart: then all is to be loaded anew.
-  bool can_renew() const;
+  /// False if contacts that were left out as too far apart may close in the step to come: then all is to be loaded anew.
+  bool can_renew() const { return !list_is_short_; }
   /// Exchanges contacts: those that stood at `before` in the list are gone, those at `after` have come, the others carry on. The positions of the
   /// system are those of the loop.
   void renew(const StepProblem<N>& problem, const std::vector<DetectionChange>& changes);
@@ -66,18 +77,28 @@ class CentralDifference {
   void keep();
 
   /// Moves the blocks by a step of h; `span` is the time between the middles of the last and this step, `base` the mean acceleration of the base over
-  /// it [m/s2]. False, and nothing has changed, if a block would move by more than `limit` [m].
-  bool move(double h, double span, const Vec2& base, double limit, MassDamping damping, double local_damping);
+  /// it [m/s2]. Unless the step is taken, nothing has changed.
+  /// \param limit      [m] for a block
+  /// \param fast_step  [s] longest step in which two blocks may move by more than the skin against each other
+  Move move(double h, double span, const Vec2& base, double limit, double fast_step, MassDamping damping, double local_damping);
   /// Brings gaps, forces and energies to the new positions. To be called after every move().
   void follow_contacts();
 
+  /// [m] Up to which contacts are listed.
+  double approach() const { return approach_; }
+  /// Whether two blocks may have moved by more than the skin against each other in the last step, or in one that was not taken.
+  bool is_fast() const { return step_ahead_ > skin_; }
+  /// What carries more than it can, see depth_limits.h.
+  struct TooDeep {
+    int contact;          ///< in the list
+    double depth, limit;  ///< [m]
+  };
+  std::optional<TooDeep> too_deep();
+
   bool moved_beyond_skin();
-  double critical_step() { return critical_step_.step(); }     ///< [s] of the contacts that may close before they are renewed
+  /// [s] Of the contacts that may close before they are renewed, with local damping of this share.
+  double critical_step(double local_damping = 0.0) { return critical_step_.step(local_damping); }
   double last_unbalanced_force() const;                        ///< [N] largest force on a block when the last step began
-  /// [J] From the mechanical energy with the kinetic energy and the height of the middle of the last step, and the springs of its end, to that in
-  /// which the kinetic energy is m v- v+/2 of the velocities before and after its end. For a spring that stays closed this is the energy that central
-  /// differences keep exactly (the former swings by half of step times frequency), and so it is for constant forces. Moving bases left out.
-  double energy_to_end() const;
   double unbalanced_force() const;                             ///< [N] now; a pass over the blocks
   bool lost_strength() const { return lost_strength_; }        ///< a contact has lost cohesion or tensile strength in the last step
   double max_penetration() const { return max_penetration_; }  ///< [m] since the load
@@ -93,6 +114,10 @@ class CentralDifference {
   void store_contacts(std::vector<Contact>& contacts) const;
   /// Gaps of the contacts that were left out, at the positions of the system.
   void store_far_gaps(const BlockSystem<N>& system, std::vector<Contact>& contacts) const;
+  /// [J] What contacts, loads and supports add to the kinetic energy from the middle of the last step to the present moment, where springs store what
+  /// the ledger says: half of what they do in a step as long, which makes v(-1/2) M v(+1/2)/2 of it. So the energy of linear vibration stays exactly as
+  /// it is. The work of gravity and base is counted up to the middle of the step.
+  double kinetic_ahead() const;
   ExplicitEnergies take_energies();
 
   Memory memory() const;
@@ -142,7 +167,8 @@ class CentralDifference {
     ContactStrength strength;
     // History, at the present position.
     double gap, slip, stretch;  ///< gap from where the normal spring rests, slip since the load, stretch of the shear spring
-    double normal, shear, elastic_normal, viscous_shear;
+    double normal, shear, viscous_shear;
+    double crossing_energy;  ///< [J] see crossing_energy.h
     int vertex_slot, edge_slot;
     float rest_gap;  ///< [m] for the depth alone, of which seven digits are enough
     ContactStatus status;
@@ -155,15 +181,16 @@ class CentralDifference {
   };
   /// What a step does not need of a contact.
   struct LinkRest {
-    int joint, contact;               ///< in the table, in the list
+    int joint, contact;               ///< in the table, in the list (negative: cleared)
     double normal_x, normal_y;        ///< in the frame of the corner's block
     double edge_arm_x, edge_arm_y;    ///< [m] from the edge's centroid to the corner, in the frame of the edge's block
     double vertex_share, edge_share;  ///< see critical_step.h
     double rest_gap;                  ///< [m]
+    double depth_limit;               ///< [m]
 
     void exchange(Archive& archive) {
-      auto& [a, b, c, d, e, f, g, h, i] = *this;
-      archive(a, b, c, d, e, f, g, h, i);
+      auto& [a, b, c, d, e, f, g, h, i, j] = *this;
+      archive(a, b, c, d, e, f, g, h, i, j);
     }
   };
   struct PointForce {
@@ -186,21 +213,33 @@ class CentralDifference {
   void load_blocks(const StepProblem<N>& problem);
   void load_contacts(const StepProblem<N>& problem);
   void load_points(const StepProblem<N>& problem);
-  double needed_approach(double more_speed) const;
   void add_link(const StepProblem<N>& problem, int contact);
   void take_link(int slot);
   void add_parts(const Link& link, const LinkRest& rest, double sign);
   void renumber(const std::vector<DetectionChange>& changes);
-  void close_holes();
+  void clear_link(int entry);
+  void remove_cleared_links();
   // In the innermost loop; as calls they cost more than what they do.
   [[gnu::always_inline]] inline Place place(const Link& link) const;
   [[gnu::always_inline]] inline void push(const Link& link, const Place& at);
   [[gnu::always_inline]] inline ForceTrials trials(const Link& link, const Place& at, double elastic_shear) const;
-  void carry_now(Link& link, const Place& at);
+  /// [N] In the normal spring.
+  double carry_now(Link& link, const Place& at);
+  /// A contact on its way to other positions.
+  struct Crossing {
+    double normal_before, shear_before;  ///< [N]
+    double gap, slip;                    ///< [m] after the step, in the step
+    bool is_open;                        ///< after it
+  };
+  /// What contacts owe because this step is not as long as the one before, see crossing_energy.h.
+  void book_step_change(double before, double now, const Vec2& base);
+  void settle_crossing(Link& link, const Crossing& crossing, double& normal, double& shear, double& scheme);
   void lose_strength(Link& link, const JointProperties& joint, const Place& at);
   static double stored_energy(const Link& link);
   /// Whether nothing but gap and slip of a contact changes in a step that leaves it open.
-  static bool rests(const Link& link) { return link.status == ContactStatus::open && link.stretch == 0.0 && !link.breakable; }
+  static bool rests(const Link& link) {
+    return link.status == ContactStatus::open && link.stretch == 0.0 && link.normal == 0.0 && link.shear == 0.0 && !link.breakable;
+  }
   void begin_forces();
   void add_point_forces(bool step);
   /// Sums of what the links of a step take, and the deepest of them.
@@ -232,7 +271,11 @@ class CentralDifference {
   std::vector<Link> links_;
   std::vector<LinkRest> rest_;  ///< of the links
   std::vector<int> link_of_;    ///< per contact of the list; -1: too far apart
-  std::vector<int> holes_, renumbered_;
+  std::vector<int> renumbered_;
+  std::vector<int> free_;                       ///< links of contacts that are being exchanged, pair by pair
+  std::vector<std::size_t> free_ends_;          ///< of the pairs in that list
+  std::size_t next_free_ = 0, free_end_ = 0;    ///< of the present pair
+  int cleared_ = 0;                             ///< links that are no contact's
   struct Way {
     double x, y, angle;
 
@@ -250,6 +293,11 @@ class CentralDifference {
   bool fours_, wide_registers_;
   CriticalStepBound<N> critical_step_;
   double approach_ = 0.0, moved_ = 0.0, unbalanced_ = 0.0, max_penetration_ = 0.0;
+  double step_ahead_ = 0.0;     ///< [m] by which two blocks may have approached in the last step, or in one that was not taken
+  bool list_is_short_ = false;  ///< such a step might have closed contacts that were left out
+  double share_ = 1.0;          ///< [-] square of the longest step over the critical one, for crossing_energy.h
+  DepthLimits<N> depth_limits_;
+  double room_ = 0.0;  ///< [m] by which blocks may still move against each other before a contact can be deeper than its limit
   double h_ = 0.0, span_ = 0.0, viscous_ = 0.0;
 };
 

@@ -18,6 +18,7 @@ struct ContactOutcome {
   double normal_stiffness = 0.0, shear_stiffness = 0.0;  ///< [N/m] of its springs
   CarriedForces forces;                                  ///< at the end of the step
   ContactPose<N> pose;                                   ///< whose gradients carried these forces in the equation of motion
+  double crossing_energy = 0.0;                          ///< [J] `dem`, of a contact that opens: see crossing_energy.h
 
   ContactOutcome() = default;
   ContactOutcome(const ContactSprings& springs, const CarriedForces& carried, const ContactPose<N>& at)

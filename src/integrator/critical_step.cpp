@@ -66,6 +66,7 @@ void CriticalStepBound<N>::begin(const StepProblem<N>& problem) {
   stiffness_.assign(system.free_count(), Matrix());
   damping_.assign(system.free_count(), Matrix());
   damped_ = false;
+  changed_ = true;
   for (int b : system.free_blocks()) {
     const auto& block = system.block(b);
     const double turns = block.rotation_locked ? 0.0 : 1.0;
@@ -97,6 +98,7 @@ void CriticalStepBound<N>::add(Matrix& m, const Scale& scale, const StiffnessPar
   m.yr += scale.lever * (k * n.y() * lever_n + s * n.x() * lever_t);
   m.rr += scale.moment * (k * lever_n * lever_n + s * lever_t * lever_t);
   m.largest = -1.0;
+  changed_ = true;
 }
 
 template <int N>
@@ -137,8 +139,13 @@ double CriticalStepBound<N>::largest(std::vector<Matrix>& matrices) {
 }
 
 template <int N>
-double CriticalStepBound<N>::step() {
-  const double a = largest(stiffness_), b = damped_ ? largest(damping_) : 0.0;
+double CriticalStepBound<N>::step(double local_damping) {
+  if (changed_) {
+    stiffest_ = largest(stiffness_);
+    most_damped_ = damped_ ? largest(damping_) : 0.0;
+    changed_ = false;
+  }
+  const double a = (1.0 + local_damping) * stiffest_, b = (1.0 + local_damping) * most_damped_;
   return a > 0.0 ? 4.0 / (b + std::sqrt(b * b + 4.0 * a)) : std::numeric_limits<double>::infinity();
 }
 

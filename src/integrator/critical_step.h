@@ -1,7 +1,9 @@
 // Critical time step of the explicit method: the longest for which central difference is stable in linear vibration.
 //
 // With stiffness K, dashpots C (whose velocity is half a step old) and mass M a step h is stable while h^2 K + 2 h C < 4 M, which without dashpots is
-// h < 2/w_max. Two numbers that bound the eigenvalues of M^-1 K and M^-1 C from above, a and b, give the step a h^2 + 2 b h = 4.
+// h < 2/w_max. Two numbers that bound the eigenvalues of M^-1 K and M^-1 C from above, a and b, give the step a h^2 + 2 b h = 4. Local damping adds
+// -alpha |F| sign(v) to the unbalanced force F, which holds the forces of springs and dashpots: it acts as both being stiffer by the share alpha, at
+// most, so that a and b are to be multiplied by 1 + alpha.
 //
 // They come from a bound of Gershgorin's kind, by blocks: what a contact stores, k (x_1 + x_2)^2/2 with x_i the parts of its two blocks in the
 // closure, is at most the sum of k (1 + m_1/m_2) x_1^2/2 and k (1 + m_2/m_1) x_2^2/2, so that no eigenvalue exceeds the largest one of a single block
@@ -48,8 +50,10 @@ class CriticalStepBound {
   void begin(const StepProblem<N>& problem);
   /// Puts a contact's part on its block, or takes it away again with sign = -1.
   void add(const StiffnessPart& part, double sign = 1.0);
-  double step();  ///< [s], infinite if nothing holds any block
-  void exchange(Archive& archive) { archive(scales_, stiffness_, damping_, damped_); }
+  /// [s], infinite if nothing holds any block.
+  /// \param local_damping  [-] alpha
+  double step(double local_damping = 0.0);
+  void exchange(Archive& archive) { archive(scales_, stiffness_, damping_, damped_, changed_, stiffest_, most_damped_); }
   std::size_t bytes() const { return bytes_of(scales_, stiffness_, damping_); }
 
  private:
@@ -73,12 +77,13 @@ class CriticalStepBound {
       archive(a, b, c);
     }
   };
-  static void add(Matrix& matrix, const Scale& scale, const StiffnessPart& part, double normal, double shear);
+  void add(Matrix& matrix, const Scale& scale, const StiffnessPart& part, double normal, double shear);
   static double largest(std::vector<Matrix>& matrices);
 
   std::vector<Scale> scales_;
   std::vector<Matrix> stiffness_, damping_;
-  bool damped_ = false;
+  bool damped_ = false, changed_ = true;       ///< since the two numbers below were found
+  double stiffest_ = 0.0, most_damped_ = 0.0;  ///< [1/s2], [1/s] a and b
 };
 
 extern template class CriticalStepBound<3>;

@@ -1,6 +1,9 @@
 // `dem`, one step of the explicit method written plainly: the forces where the step starts move the blocks, then the contacts follow.
 //
 // This is the reference that the loop of central_difference.h is tested against; Simulation takes that one.
+#include <algorithm>
+
+#include "openclose/integrator/crossing_energy.h"
 #include "openclose/integrator/registry.h"
 
 namespace openclose {
@@ -24,8 +27,12 @@ class Dem : public Enforcement<N> {
     Eigen::VectorXd force = Eigen::VectorXd::Zero(N * system.free_count());
     for (const Contact& c : problem.contacts) {
       const auto velocity = [&](int b) { return problem.velocity(b); };
-      const ContactOutcome<N> o = outcome(
+      ContactOutcome<N> o = outcome(
           problem, c, [&](int) { return still; }, velocity);
+      if (o.forces.status == ContactStatus::open && c.status == ContactStatus::open) {
+        o.forces.normal = c.normal_force;
+        o.forces.shear = c.shear_force;
+      }
       const ContactKinematics<N> k(o.pose);
       add(force, system.block(c.vertex_block).equation, o.forces.normal * k.normal_vertex + o.forces.shear * k.shear_vertex);
       add(force, system.block(c.edge_block).equation, o.forces.normal * k.normal_edge + o.forces.shear * k.shear_edge);
@@ -40,7 +47,11 @@ class Dem : public Enforcement<N> {
     }
     const auto displacement = [&](int b) { return solution.of(system, b); };
     const auto velocity = [&](int b) { return Unknowns(solution.of(system, b) / problem.dt); };
-    for (const Contact& c : problem.contacts) solution.contacts.push_back(outcome(problem, c, displacement, velocity));
+    for (std::size_t i = 0; i < problem.contacts.size(); ++i) {
+      ContactOutcome<N> end = outcome(problem, problem.contacts[i], displacement, velocity);
+      settle_opening(problem, problem.contacts[i], solution.start_contacts.forces(i), end);
+      solution.contacts.push_back(end);
+    }
     solution.converged = true;
   }
 
@@ -72,6 +83,20 @@ class Dem : public Enforcement<N> {
     trial.elastic_shear = s.initial_shear - s.shear * k.slip_change;
     trial.viscous_shear = -dashpots.shear * (k.shear_vertex.dot(v(a)) + k.shear_edge.dot(v(b)));
     return {s, carry(ContactStrength(joint, contact), trial), k.pose()};
+  }
+
+  /// See crossing_energy.h.
+  static void settle_opening(const StepProblem<N>& problem, const Contact& contact, const CarriedForces& start, ContactOutcome<N>& end) {
+    if (start.status == ContactStatus::open || end.forces.status != ContactStatus::open) return;
+    const double share = problem.method.step_fraction * problem.method.step_fraction;
+    if (ContactStrength(problem.joints.joint(contact.joint), contact).tension > 0.0) return;
+    const double gap = contact.stretch() + end.pose.gap_change;
+    const double energy = 0.5 * std::min(start.normal, start.elastic_normal) * gap + contact.crossing_energy;
+    const Opening opening = settled(energy, end.normal_stiffness, end.pose.gap_change, end.shear_stiffness, end.pose.slip_change,
+                                    contact.elastic_slip, start.shear, share);
+    end.forces.normal = opening.normal;
+    end.forces.shear = opening.shear;
+    end.crossing_energy = opening.energy;
   }
 
   static void add(Eigen::VectorXd& force, int equation, const Unknowns& f) {

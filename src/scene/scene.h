@@ -167,7 +167,7 @@ struct MethodInput {
   double closing_tolerance = 1e-9;      ///< [m] shi: an open contact closes beyond this penetration
   int max_open_close_iterations = 6;    ///< shi: per step, before the step is cut
   double step_cut = 0.3;                ///< [-] shi: factor on the step when open-close does not settle
-  double step_fraction = 0.9;           ///< [-] dem: longest step over the critical one
+  double step_fraction = 0.5;           ///< [-] dem: longest step over the critical one
   MassDamping damping = MassDamping::none;  ///< dem: of the motion; settling takes `local` instead of `none`
   double local_damping = 0.8;               ///< [-] dem: of the unbalanced force
 };

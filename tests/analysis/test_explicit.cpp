@@ -215,7 +215,10 @@ TEST_CASE("exchanging only the contacts that were found anew changes nothing", "
   // Where the bound of friction falls while the dashpot pushes against the spring, the spring's memory alone does not tell what a contact that was
   // not found anew has carried: one step of the first order in the dashpot, which happens where blocks tumble.
   const double by_dashpots = scene.joints[0].damping_ratio > 0.0 ? 1e-3 : 1e-9;
-  const double rounding = 100.0 * rounding_of(scene, c.steps) + (std::string(c.name) == "tumbling" ? by_dashpots : 1e-11);
+  // A loop that is loaded anew leaves out what is too far apart by then, and what is left out rests at no gap when it comes back, see history.h: an
+  // open contact's offset fades earlier. It shows where blocks rattle and joints break.
+  const double by_offsets = std::string(c.name) == "breaking" ? 1e-3 : 1e-11;
+  const double rounding = 100.0 * rounding_of(scene, c.steps) + (std::string(c.name) == "tumbling" ? by_dashpots : by_offsets);
   const double allowed = of_ledger.largest() / reloaded.ledger().turnover, is = difference(loop.ledger(), reloaded.ledger());
   INFO("rounding " << rounding << ", motion " << difference(loop, std::as_const(reloaded)) << ", ledgers " << is << " of " << allowed);
   CHECK(difference(loop, std::as_const(reloaded)) < rounding);
@@ -369,7 +372,7 @@ TEST_CASE("what cannot be held fails by displacement, what takes too long by ste
 TEST_CASE("an interval is divided into equal steps below the critical one", "[analysis][explicit]") {
   Scene scene = explicit_scene(test::block_on_base(), 1e-1);
   Simulation<3> simulation(scene);
-  const double longest = 0.9 * simulation.critical_step();
+  const double longest = scene.method.step_fraction * simulation.critical_step();
   REQUIRE(simulation.advance(scene.step.dt));
   const auto steps = static_cast<long>(std::ceil(scene.step.dt / longest));
   CHECK(simulation.step_counters().steps == steps);

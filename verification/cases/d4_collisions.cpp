@@ -78,7 +78,8 @@ void elastic_pairs(Report& report, const Scheme& scheme) {
       if (!collided) errors.back() = momentum = not_measured();
     }
     const std::string name = second == 2500.0 ? "equal masses swap velocities" : "masses 1:3, velocities after";
-    const double expected = scheme.order == 1.0 ? 1.0 : 3.0;
+    const bool settles = scheme.contact == "dem";
+    const double expected = scheme.order == 1.0 ? 1.0 : settles ? 4.0 : 3.0;
     if (scheme.conserves) {
       report.near(with_variant(name + ": largest error at 4 steps", scheme), scheme.contact, 0.0,
                   *std::max_element(errors.begin(), errors.end(), std::less_equal<>()), residual_share * 3.6, "m/s",
@@ -86,6 +87,7 @@ void elastic_pairs(Report& report, const Scheme& scheme) {
     } else {
       report.order(with_variant(name, scheme), scheme.contact, steps, errors, expected - 0.1, expected + 0.1,
                    expected == 1.0 ? "closed form; spectral radius of D1: order 1"
+                   : settles       ? "closed form; ends on steps leave e of order 3, and what settles it e^2/(k D^2), D of order 1: order 4"
                                    : "closed form; on the spring no energy is lost, ends on steps leave order 3");
     }
     report.near(with_variant(name + ": momentum", scheme), scheme.contact, 0.0, momentum, 1e-12, "-",
@@ -103,18 +105,24 @@ void elastic_row(Report& report, const Scheme& scheme) {
   const auto exact = analytical::elastic_row(row, end);
   std::vector<double> steps, errors;
   double momentum = 0.0;
-  for (const int n : {800, 1600, 3200, 6400, 12800}) {
-    const Outcome o = follow(report, scheme, row, end / n, n);
+  // Where in a step contacts begin and end is a random factor on each error: the mean over step sizes that lie close together is free of it.
+  constexpr int near_sizes = 8;
+  for (const int n : {400, 800, 1600, 3200}) {
+    double squares = 0.0;
+    for (int i = 0; i < near_sizes; ++i) {
+      const int count = n + n * i / 25;
+      const Outcome o = follow(report, scheme, row, end / count, count);
+      squares += std::pow(largest_difference(o.displacements, exact.displacements), 2);
+      momentum = std::max(momentum, std::abs(o.momentum));
+      if (!(o.velocities[0] < 2.0)) squares = momentum = not_measured();  // it has met the others
+    }
     steps.push_back(end / n);
-    errors.push_back(largest_difference(o.displacements, exact.displacements));
-    momentum = std::max(momentum, std::abs(o.momentum));
-    if (!(o.velocities[0] < 2.0)) errors.back() = momentum = not_measured();  // it has met the others
+    errors.push_back(std::sqrt(squares / near_sizes));
   }
-  const double slack = scheme.order == 2.0 ? 0.4 : 0.2;
-  report.order(with_variant("row of five: places", scheme), scheme.contact, steps, errors, scheme.order - slack, scheme.order + slack,
-               "CVODE with events; order of the scheme, where in a step contacts begin and end is a random factor");
-  report.near(with_variant("row of five: momentum", scheme), scheme.contact, 0.0, momentum, 12800 * 2.2e-16, "-",
-              "action = reaction; over the sum of |m v|, rounded once in each of 12800 steps");
+  report.order(with_variant("row of five: places, root mean square of 8 near steps", scheme), scheme.contact, steps, errors, scheme.order - 0.2,
+               scheme.order + 0.2, "CVODE with events; order of the scheme");
+  report.near(with_variant("row of five: momentum", scheme), scheme.contact, 0.0, momentum, 2 * 4096 * 2.2e-16, "-",
+              "action = reaction; over the sum of |m v|, rounded in each of up to 4096 steps, in both stages of tr_bdf2");
 }
 
 /// Rigid contact is plastic. The step of a blow closes the gap exactly and keeps the momentum, as the exact motion does in the same time: wherever in
