@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace openclose {
 namespace {
@@ -17,8 +16,6 @@ constexpr double progress = 0.9;               ///< [-]
 constexpr double shortest_part = 1.0 / 512.0;  ///< [-] of a Newton step
 constexpr int most_passes = 6;                 ///< with friction bounds held fixed
 constexpr int most_open_close_passes = 6;      ///< as in Shi's program
-constexpr int most_pieces = 400;               ///< of the contact law on the way of follow_path()
-constexpr double generic_shift = 1e-7;         ///< in closures, of the start of that way
 constexpr int most_convex_iterations = 60;
 constexpr int most_searches = 60;           ///< along one step of it
 constexpr double search_reduction = 1e-2;   ///< [-] slope at the end of a search over that at its start
@@ -234,6 +231,62 @@ bool Balance::newton(Increment& x, int most_iterations) {
   return norm <= tolerance_at(x);
 }
 
+void Balance::begin_search(const Increment& x, const Increment& way) {
+  ways_.resize(rows_.size());
+  const double* motion = padded(x);
+  for (std::size_t i = 0; i < rows_.size(); ++i) ways_[i].gap = rows_[i].gap(motion), ways_[i].slip = rows_[i].slip(motion);
+  motion = padded(way);
+  for (std::size_t i = 0; i < rows_.size(); ++i) ways_[i].opening = rows_[i].gap(motion), ways_[i].slipping = rows_[i].slip(motion);
+  linear_slope_ = curvature_ = 0.0;
+  for (int b = 0; b < system_.rows(); ++b) {
+    const FrozenBlock& block = system_.blocks()[b];
+    const auto along = way.segment<3>(3 * b);
+    const BlockVector inertia = eps_ * block.mass.cwiseProduct(along);
+    linear_slope_ += inertia.dot(x.segment<3>(3 * b)) - block.load.dot(along);
+    curvature_ += inertia.dot(along);
+  }
+  for (std::size_t i = 0; i < system_.supports().size(); ++i) {
+    const FrozenSupport& s = system_.supports()[i];
+    const double stretch = s.direction.dot(x.segment<3>(3 * s.row)), stretching = s.direction.dot(way.segment<3>(3 * s.row));
+    linear_slope_ -= (support_forces_[i] - s.stiffness * stretch) * stretching;
+    curvature_ += s.stiffness * stretching * stretching;
+  }
+}
+
+/// Derivative of the energy of a convex problem along the way of the search.
+double Balance::slope_at(double part, ShearLaw law) const {
+  double slope = linear_slope_ + part * curvature_;
+  for (std::size_t i = 0; i < ways_.size(); ++i) {
+    const WayOfContact& w = ways_[i];
+    const Response r = respond(springs_[i], w.gap + part * w.opening, w.slip + part * w.slipping, law);
+    slope -= r.normal * w.opening + r.shear * w.slipping;
+  }
+  return slope;
+}
+
+/// The part of a Newton step at which the slope of the energy has nearly vanished. The slope never falls along the step. Where it is still negative at
+/// the whole step, that is taken: it does not overshoot. Else the root is found by the regula falsi with halving of the end that stays (Illinois).
+double Balance::search(const Increment& x, const Increment& way, ShearLaw law) {
+  begin_search(x, way);
+  double low = 0.0, low_slope = slope_at(0.0, law), high = 1.0, high_slope = slope_at(1.0, law);
+  const double small = search_reduction * std::abs(low_slope);
+  if (high_slope <= small || low_slope >= 0.0) return high;
+  double part = high;
+  for (int i = 0; i < most_searches; ++i) {
+    part = low + (high - low) * (-low_slope) / (high_slope - low_slope);
+    const double slope = slope_at(part, law);
+    if (std::abs(slope) <= small) break;
+    if (slope > 0.0) {
+      high = part, high_slope = slope;
+      low_slope *= 0.5;
+    } else {
+      low = part, low_slope = slope;
+      high_slope *= 0.5;
+    }
+  }
+  return part;
+}
+
 /// A convex problem: Newton's method with an exact search along each step, which ends for a piecewise quadratic energy.
 bool Balance::convex(Increment& x, ShearLaw law) {
   evaluate(x, law);
@@ -244,30 +297,10 @@ bool Balance::convex(Increment& x, ShearLaw law) {
     assemble();
     ++counters_.factorisations;
     if (!solver_->factor(matrix_)) return false;
-    const Increment step = solver_->solve(residual_);
-    if (step.size() == 0 || !step.allFinite()) return false;
-    const Increment from = x;
-    const auto slope = [&](double part) {
-      x = from - part * step;
-      evaluate(x, law);
-      return -step.dot(residual_);  // derivative of the energy along the step
-    };
-    const double steepest = std::abs(step.dot(residual_));
-    double low = 0.0, low_slope = -steepest, high = 1.0, high_slope = slope(1.0);
-    // The slope never falls along the step. Where it is still negative at the whole step, that is taken: it does not overshoot. Else the root is
-    // found by the regula falsi with halving of the end that stays (Illinois).
-    for (int i = 0; i < most_searches && high_slope > search_reduction * steepest; ++i) {
-      const double middle = low + (high - low) * (-low_slope) / (high_slope - low_slope);
-      const double middle_slope = slope(middle);
-      if (std::abs(middle_slope) <= search_reduction * steepest) break;
-      if (middle_slope > 0.0) {
-        high = middle, high_slope = middle_slope;
-        low_slope *= 0.5;
-      } else {
-        low = middle, low_slope = middle_slope;
-        high_slope *= 0.5;
-      }
-    }
+    const Increment way = -solver_->solve(residual_);
+    if (way.size() == 0 || !way.allFinite()) return false;
+    x += search(x, way, law) * way;
+    evaluate(x, law);
   }
   return residual_.norm() <= std::max(tolerance_at(x), convex_reduction * first);
 }
@@ -298,145 +331,7 @@ bool Balance::solve_quickly(Increment& x) {
 }
 
 bool Balance::solve(Increment& x) {
-  const Increment guess = x;
-  if (newton(x, most_newton_iterations) || restart(x)) return true;
-  x = guess;
-  return follow_path(x);
-}
-
-Balance::Piece Balance::piece_at(const Spring& spring, double normal, double shear) {
-  const ContactStrength& s = spring.strength;
-  if (normal < -s.tension) return Piece::open;
-  const ContactStrength::ShearBound bound = s.shear_bound(normal);
-  if (std::abs(shear) <= bound.value) return Piece::stick;
-  const bool on_ramp = bound.slope != s.friction;
-  if (shear > 0.0) return on_ramp ? Piece::ramp_forward : Piece::slide_forward;
-  return on_ramp ? Piece::ramp_backward : Piece::slide_backward;
-}
-
-/// The pieces are divided by N = -tension, by the two lines of the strength with either sign of T, and by the end of the ramp.
-std::array<Balance::Line, Balance::line_count> Balance::lines_of(const Spring& spring, double normal, double normal_way, double shear,
-                                                                 double shear_way) {
-  const ContactStrength& s = spring.strength;
-  const double mu = s.friction, steep = mu + 1.0 / tolerance::cohesion_ramp;
-  return {{{normal + s.tension, normal_way},
-           {shear - (mu * normal + s.cohesion), shear_way - mu * normal_way},
-           {shear - steep * (normal + s.tension), shear_way - steep * normal_way},
-           {-shear - (mu * normal + s.cohesion), -shear_way - mu * normal_way},
-           {-shear - steep * (normal + s.tension), -shear_way - steep * normal_way},
-           {steep * (normal + s.tension) - (mu * normal + s.cohesion), (steep - mu) * normal_way}}};
-}
-
-/// Where a contact leaves its piece on a straight way of its trial forces, and what it comes to.
-/// \param crossed_line  from which it has just come and moves away; -1 for none
-Balance::Event Balance::next_event(const Spring& spring, Piece piece, double normal, double normal_way, double shear, double shear_way,
-                                   int crossed_line) {
-  const std::array<Line, line_count> lines = lines_of(spring, normal, normal_way, shear, shear_way);
-  // Crossings in the order in which they come.
-  std::array<double, line_count> at;
-  std::array<int, line_count> line;
-  int count = 0;
-  for (int k = 0; k < line_count; ++k) {
-    if (k == crossed_line || lines[k].slope == 0.0) continue;
-    const double where = -lines[k].value / lines[k].slope;
-    if (!(where >= 0.0)) continue;
-    int place = count++;
-    for (; place > 0 && at[place - 1] > where; --place) at[place] = at[place - 1], line[place] = line[place - 1];
-    at[place] = where, line[place] = k;
-  }
-  for (int k = 0; k < count; ++k) {
-    const double after = k + 1 < count ? 0.5 * (at[k] + at[k + 1]) : 2.0 * at[k] + 1.0;
-    const Piece next = piece_at(spring, normal + after * normal_way, shear + after * shear_way);
-    if (next != piece) return {at[k], next, line[k]};
-  }
-  return {std::numeric_limits<double>::infinity(), piece, -1};
-}
-
-Balance::Response Balance::tangent_of(const Spring& spring, Piece piece) {
-  const double steep = spring.strength.friction + 1.0 / tolerance::cohesion_ramp;
-  const double kn = spring.normal_stiffness, ks = spring.shear_stiffness;
-  switch (piece) {
-    case Piece::open:
-      return {0.0, 0.0, 0.0, 0.0, 0.0};
-    case Piece::stick:
-      return {0.0, 0.0, -kn, 0.0, -ks};
-    case Piece::slide_forward:
-      return {0.0, 0.0, -kn, -kn * spring.strength.friction, 0.0};
-    case Piece::slide_backward:
-      return {0.0, 0.0, -kn, kn * spring.strength.friction, 0.0};
-    case Piece::ramp_forward:
-      return {0.0, 0.0, -kn, -kn * steep, 0.0};
-    case Piece::ramp_backward:
-      return {0.0, 0.0, -kn, kn * steep, 0.0};
-  }
-  return {};
-}
-
-void Balance::trial_ways(const Increment& d, Eigen::VectorXd& normal, Eigen::VectorXd& shear) {
-  const double* motion = padded(d);
-  normal.resize(static_cast<Eigen::Index>(rows_.size()));
-  shear.resize(normal.size());
-  for (std::size_t i = 0; i < rows_.size(); ++i) {
-    normal[i] = -springs_[i].normal_stiffness * rows_[i].gap(motion);
-    shear[i] = -springs_[i].shear_stiffness * rows_[i].slip(motion);
-  }
-}
-
-void Balance::trial_forces(const Increment& x, Eigen::VectorXd& normal, Eigen::VectorXd& shear) {
-  trial_ways(x, normal, shear);
-  for (std::size_t i = 0; i < springs_.size(); ++i) {
-    normal[i] -= springs_[i].normal_stiffness * springs_[i].gap;
-    shear[i] += springs_[i].shear;
-  }
-}
-
-/// Katzenelson's method with reversals (Chien and Kuh 1977): follows R(x) = (1 - t) R(x0) from t = 0 through one linear piece of the contact law
-/// after the other. At every kink one contact changes its piece; where the new piece turns the way back, t falls for a while, below zero if need be.
-/// Since R is continuous and large for large x, the way from a generic x0 cannot end elsewhere than at t = 1 or far below zero.
-bool Balance::follow_path(Increment& x) {
-  // A generic start: contacts that share a kink reach it one after the other.
-  for (Eigen::Index k = 0; k < x.size(); ++k) x[k] += generic_shift * std::sin(1.0 + 1.7 * static_cast<double>(k));
-  evaluate(x, ShearLaw::coulomb);
-  const Eigen::VectorXd start = residual_;
-  Eigen::VectorXd normal, shear, normal_way, shear_way;
-  trial_forces(x, normal, shear);
-  std::vector<Piece> pieces(springs_.size());
-  for (std::size_t i = 0; i < springs_.size(); ++i) pieces[i] = piece_at(springs_[i], normal[i], shear[i]);
-  double t = 0.0;
-  std::size_t entered = springs_.size();  // the contact that has changed its piece last, the line that it has crossed and in which sense
-  int crossed_line = -1;
-  bool rising = true;
-  for (int k = 0; k < most_pieces; ++k) {
-    for (std::size_t i = 0; i < springs_.size(); ++i) responses_[i] = tangent_of(springs_[i], pieces[i]);
-    assemble();
-    ++counters_.factorisations;
-    if (!solver_->factor(matrix_)) return false;
-    const Increment way = -solver_->solve(start);
-    if (way.size() == 0 || !way.allFinite()) return false;
-    trial_ways(way, normal_way, shear_way);
-    double sense = 1.0;
-    if (entered < springs_.size()) {
-      const Line line = lines_of(springs_[entered], normal[entered], normal_way[entered], shear[entered], shear_way[entered])[crossed_line];
-      if ((line.slope > 0.0) != rising) sense = -1.0;
-    }
-    Event nearest{sense > 0.0 ? 1.0 - t : std::numeric_limits<double>::infinity(), Piece::open, -1};
-    std::size_t next = springs_.size();
-    for (std::size_t i = 0; i < springs_.size(); ++i) {
-      const Event event =
-          next_event(springs_[i], pieces[i], normal[i], sense * normal_way[i], shear[i], sense * shear_way[i], i == entered ? crossed_line : -1);
-      if (event.at < nearest.at) nearest = event, next = i;
-    }
-    if (!std::isfinite(nearest.at)) return false;
-    x += sense * nearest.at * way;
-    t += sense * nearest.at;
-    if (next == springs_.size()) return newton(x, most_newton_iterations);
-    rising = sense * lines_of(springs_[next], normal[next], normal_way[next], shear[next], shear_way[next])[nearest.line].slope > 0.0;
-    trial_forces(x, normal, shear);
-    pieces[next] = nearest.next;
-    entered = next;
-    crossed_line = nearest.line;
-  }
-  return false;
+  return newton(x, most_newton_iterations) || restart(x);
 }
 
 bool Balance::solve_open_close(Increment& x) {

@@ -10,7 +10,6 @@
 // large increment (Brouwer's theorem). It need not be unique.
 #pragma once
 
-#include <array>
 #include <memory>
 
 #include "openclose/linear/solver.h"
@@ -69,19 +68,6 @@ class Balance {
     double normal, shear;
     double normal_by_gap, shear_by_gap, shear_by_slip;
   };
-  /// Linear pieces of the contact law.
-  enum class Piece : unsigned char { open, stick, slide_forward, slide_backward, ramp_forward, ramp_backward };
-  /// A line c_n N + c_t T + c = 0 of trial forces that divides two pieces.
-  struct Line {
-    double value, slope;  // now, and along a way
-  };
-  static constexpr int line_count = 6;
-  struct Event {
-    double at;  // along the way
-    Piece next;
-    int line;
-  };
-
   /// What the loops over all contacts read of one: the rows of its blocks, a fixed one being the row after the last, whose numbers nothing reads.
   struct Row {
     int a, b;
@@ -96,12 +82,6 @@ class Balance {
     bool force_on_b, motion_of_b;
   };
 
-  static Piece piece_at(const Spring& spring, double normal, double shear);
-  static std::array<Line, line_count> lines_of(const Spring& spring, double normal, double normal_way, double shear, double shear_way);
-  static Event next_event(const Spring& spring, Piece piece, double normal, double normal_way, double shear, double shear_way, int crossed_line);
-  static Response tangent_of(const Spring& spring, Piece piece);
-  void trial_forces(const Increment& x, Eigen::VectorXd& normal, Eigen::VectorXd& shear);
-  void trial_ways(const Increment& d, Eigen::VectorXd& normal, Eigen::VectorXd& shear);
   Response respond(const Spring& spring, double gap_change, double slip_change, ShearLaw law) const;
   void evaluate(const Increment& x, ShearLaw law);
   void assemble();
@@ -111,8 +91,10 @@ class Balance {
   const double* padded(const Increment& x);
   bool newton(Increment& x, int most_iterations);
   bool convex(Increment& x, ShearLaw law);
+  void begin_search(const Increment& x, const Increment& way);
+  double slope_at(double part, ShearLaw law) const;
+  double search(const Increment& x, const Increment& way, ShearLaw law);
   bool restart(Increment& x);
-  bool follow_path(Increment& x);
   double tolerance_at(const Increment& x) const;
 
   const FrozenSystem& system_;
@@ -130,6 +112,12 @@ class Balance {
   Eigen::VectorXd padded_, forces_;  ///< with the row of fixed blocks
   std::vector<Spring> springs_;
   std::vector<double> support_forces_;
+  /// The way of a line search: each contact's gap and slip at its start and along it; of the linear rest the slope at its start and the curvature.
+  struct WayOfContact {
+    double gap, slip, opening, slipping;
+  };
+  std::vector<WayOfContact> ways_;
+  double linear_slope_ = 0.0, curvature_ = 0.0;
   std::vector<Response> responses_;
   Eigen::VectorXd residual_;
   double eps_ = 1.0;

@@ -9,14 +9,16 @@ namespace {
 constexpr double least_viscosity = 1e-9;
 constexpr double first_viscosity = 1e-2;
 constexpr double most_viscosity = 1e4;
-constexpr long most_factorisations = 3000;  ///< of one relaxation by Newton's method; nine in ten that end do so in a tenth of them
+constexpr long effort_of_steady_motion = 2;  ///< [factorisations] of an increment that begins with the velocity of the one before
+constexpr int increments_of_caution = 3;  ///< after one that was not found
+constexpr long most_factorisations = 1500;  ///< of one relaxation by Newton's method; twice as many decide no more trials
 
 // Ways are in closures.
 constexpr double most_travel = 1e6;             ///< beyond, gaps lose their digits
 constexpr double least_travel_of_escape = 1e3;  ///< what has gone so far without rest is a motion, if an unsteady one
 constexpr double least_travel_of_mechanism = 1.0;
 constexpr double first_increment_of_motion = 10.0;
-constexpr double growth_of_motion = 0.5;    ///< [-]
+constexpr double growth_of_motion = 1.0;    ///< [-]
 constexpr double most_over_longest = 10.0;  ///< [-] an increment longer than the longest by this is taken in shorter ones
 constexpr double worst_guess = 100.0;       ///< [-] over the residual at rest
 
@@ -86,12 +88,23 @@ bool Relaxation::ended(RelaxationResult& result, const Eigen::VectorXd& x) const
   return false;
 }
 
+/// A long increment of a steady motion hides in its rounding that it is steady; the next short one shows it.
+bool Relaxation::ends_in_a_short_increment(const Eigen::VectorXd& velocity, RelaxationResult& result) {
+  const double eps = Balance::size(velocity) / first_increment_of_motion;
+  balance_.start(result.state, eps);
+  Eigen::VectorXd x = velocity / eps;
+  if (!balance_.solve_quickly(x)) return false;
+  accept(x, result.state);
+  return ended(result, x);
+}
+
 RelaxationResult Relaxation::relax(const FrozenState& from) {
   RelaxationResult result;
   result.state = from;
   balance_.renew_strength(result.state);
   Eigen::VectorXd velocity;  // of the last increment: its length times its viscosity
-  double eps = least_viscosity;
+  double eps = least_viscosity, stalled = 0.0;  // the latter of the last increment that was not found
+  int found_since = 0;
   const long begin = balance_.counters().factorisations;
   while (result.steps < most_steps_ && (rule_ == IncrementRule::open_close || balance_.counters().factorisations - begin < most_factorisations)) {
     ++result.steps;
@@ -100,10 +113,13 @@ RelaxationResult Relaxation::relax(const FrozenState& from) {
     Eigen::VectorXd x = guess(velocity, eps);
 
     if (!solve(x, result.steps == 1)) {
-      eps = std::max(first_viscosity, 10.0 * eps);
+      stalled = eps;
+      found_since = 0;
+      eps = result.steps == 1 ? first_viscosity : 10.0 * eps;
       if (eps > most_viscosity) break;
       continue;
     }
+    ++found_since;
     velocity = eps * x;
     // Increments of a motion grow with the way that lies behind: a motion that begins at rest changes with the logarithm of its way.
     const double longest = std::max(first_increment_of_motion, growth_of_motion * result.travel);
@@ -117,7 +133,10 @@ RelaxationResult Relaxation::relax(const FrozenState& from) {
     if (ended(result, x)) return result;
     if (result.travel > most_travel) break;
     const long effort = balance_.counters().factorisations - before;
-    eps = std::max({least_viscosity, eps / (effort <= 6 ? 10.0 : effort <= 15 ? 4.0 : 2.0), Balance::size(velocity) / longest});
+    if (effort <= effort_of_steady_motion && length > first_increment_of_motion && ends_in_a_short_increment(velocity, result)) return result;
+    // What was too much a moment ago is not tried again at once.
+    const double bearable = found_since < increments_of_caution ? std::min(eps, 2.0 * stalled) : 0.0;
+    eps = std::max({least_viscosity, bearable, eps / (effort <= 6 ? 10.0 : effort <= 15 ? 4.0 : 2.0), Balance::size(velocity) / longest});
   }
   result.end = result.travel > least_travel_of_escape ? RelaxationEnd::escaped : RelaxationEnd::undecided;
   return result;

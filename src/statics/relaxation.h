@@ -28,6 +28,7 @@ class Relaxation : public FrozenSolver {
   void accept(const Eigen::VectorXd& x, FrozenState& state);
   Eigen::VectorXd guess(const Eigen::VectorXd& velocity, double eps);
   bool solve(Eigen::VectorXd& x, bool is_first);
+  bool ends_in_a_short_increment(const Eigen::VectorXd& velocity, RelaxationResult& result);
   bool ended(RelaxationResult& result, const Eigen::VectorXd& x) const;
 
   const FrozenSystem& system_;
