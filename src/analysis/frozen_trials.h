@@ -1,7 +1,7 @@
 // Trials at small displacements: the geometry stays as drawn, and stable and failed are proved (statics/certificate.h).
 #pragma once
 
-#include <limits>
+#include <functional>
 #include <memory>
 
 #include "openclose/analysis/strength_search.h"
@@ -26,16 +26,14 @@ class FrozenTrials : public StrengthTrials {
 
   TrialResult first(double srf) override;
   TrialResult next(double srf) override;
-  std::string known_failure(double srf) override { return knows_failure(srf) ? "limit analysis" : ""; }
-  bool knows_failure(double srf) const { return srf >= proved_failure_; }
-  /// From this factor on, proved by limit analysis.
-  void know_failure_above(double srf) { proved_failure_ = srf; }
+  /// By limit analysis, if that is to be done.
+  std::optional<double> proved_failure(double near) override { return limit_analysis_ ? limit_analysis_(near) : std::nullopt; }
+  /// Another way to prove a failure: the smallest factor at which nothing can stand, found from one near it.
+  void set_limit_analysis(std::function<std::optional<double>(double near)> f) { limit_analysis_ = std::move(f); }
 
-  const FrozenSystem& system() const { return system_; }
   FrozenStrength& strength() { return strength_; }
   FrozenSolver& solver() { return *solver_; }
   const std::optional<FrozenState>& stable() const { return stable_; }
-  double stable_factor() const { return stable_factor_; }
   /// Of the last trial that failed by a mechanism; empty if none did.
   const Eigen::VectorXd& mechanism() const { return mechanism_; }
   const TravelOnPath& travel() const { return travel_; }
@@ -56,7 +54,7 @@ class FrozenTrials : public StrengthTrials {
   std::optional<FrozenState> bonded_, first_stable_, stable_;
   bool bonded_failed_ = false;
   double stable_factor_ = 0.0;
-  double proved_failure_ = std::numeric_limits<double>::infinity();  ///< [-]
+  std::function<std::optional<double>(double near)> limit_analysis_;
   Eigen::VectorXd mechanism_;
   TravelOnPath travel_;
 };

@@ -4,19 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <stdexcept>
 
-#include "openclose/analysis/frozen_limit.h"
 #include "openclose/analysis/frozen_trials.h"
 #include "openclose/analysis/settling_trials.h"
 
 namespace openclose {
 namespace {
 
-constexpr double slowest_of_mechanism = 1e-2;  ///< [-] of the fastest block: slower ones are carried along by rounding and springs
-constexpr double sliver_of_median = 1e-4;      ///< [-] area of a block over the median one below which it is a sliver
-constexpr double drawn_travel = 0.5;           ///< [-] of the median block's size by which the fastest block of a mechanism is drawn away
+constexpr double slowest_of_mechanism = 1e-2;      ///< [-] of the fastest block: slower ones are carried along by rounding and springs
+constexpr double sliver_of_median = 1e-4;          ///< [-] area of a block over the median one below which it is a sliver
+constexpr double far_below_limit_analysis = 0.98;  ///< [-] of its factor: below it the reason for the distance is given
+constexpr double drawn_travel = 0.5;               ///< [-] of the median block's size by which the fastest block of a mechanism is drawn away
 
 template <int N>
 class StrengthReduction {
@@ -49,8 +47,9 @@ class StrengthReduction {
   void at_small_displacements(const Scene& scene) {
     const FrozenSystem system(scene);
     FrozenTrials trials(scene, system);
-    if (input_.limit_analysis) trials.know_failure_above(limit_of(system, trials.strength()));
+    if (input_.limit_analysis) trials.set_limit_analysis([&](double near) { return limit_near(scene, system, near).failed; });
     result_.bracket = search(trials);
+    if (input_.limit_analysis) limit_near(scene, system, result_.bracket.stable.value_or(1.0));
     judge();
     for (double srf : input_.curve) {
       if (trials.stable()) record(srf, "curve", trials.next(srf));
@@ -62,33 +61,14 @@ class StrengthReduction {
     }
     add_mechanism(system, failing_motion(system, trials));
     warn_of_geometry();
+    if (input_.limit_analysis) compare(scene, trials);
     result_.linear_solves = trials.solver().linear_solves();
   }
 
-  /// Its smallest factor of proved failure; infinite where there is none.
-  double limit_of(const FrozenSystem& system, const FrozenStrength& strength) {
-    LimitAnalysisResult& result = result_.limit_analysis.emplace();
-    double failed = std::numeric_limits<double>::infinity();
-    auto verdict = limit_analysis::Bracket::Verdict::undecided;
-    try {
-      limit_analysis::Options options;
-      options.upper_limit = std::max(options.upper_limit, 2.0 * input_.upper_limit);
-      const limit_analysis::Bracket bracket = limit_analysis::limit_analysis(limit_problem(system, strength), options);
-      result.programs = bracket.programs;
-      verdict = bracket.verdict;
-      result.verdict = bracket.found() ? "found" : bracket.reason;
-      if (bracket.factor > 0.0 && bracket.found()) result.factor = bracket.factor;
-      if (bracket.failed > 0.0) {
-        failed = bracket.failed;
-        limit_mechanism_ = bracket.mechanism;
-      }
-    } catch (const std::invalid_argument& error) {
-      result.verdict = error.what();
-    }
-    const bool says_so =
-        verdict == limit_analysis::Bracket::Verdict::stands_at_every_factor || verdict == limit_analysis::Bracket::Verdict::no_equilibrium;
-    if (!result.factor && !says_so) result_.warnings.push_back("limit analysis has no factor: " + result.verdict);
-    return failed;
+  /// Done once, at the latest when the search has ended.
+  const LimitAnalysisResult& limit_near(const Scene& scene, const FrozenSystem& system, double near) {
+    if (!result_.limit_analysis) result_.limit_analysis = limit_analysis_of(scene, system, input_.upper_limit, near);
+    return *result_.limit_analysis;
   }
 
   /// The scene with its blocks where gravity has brought them with their full strength; nothing if they do not come to rest.
@@ -127,7 +107,8 @@ class StrengthReduction {
   void judge() {
     const StrengthBracket& b = result_.bracket;
     if (!b.stable) {
-      const bool none = b.at_every_strength || (b.failed && b.undecided == 0);
+      const bool proved = result_.limit_analysis && result_.limit_analysis->no_equilibrium;
+      const bool none = proved || b.at_every_strength || (b.failed && b.undecided == 0);
       result_.verdict = none ? FactorVerdict::no_equilibrium : FactorVerdict::undecided;
       result_.reason = b.at_every_strength ? "no strength of the joints could hold the blocks: " + b.first_verdict
                                            : "not stable even at a strength reduction factor of 0.001 (" + b.first_verdict + ")";
@@ -216,11 +197,12 @@ class StrengthReduction {
 
   /// Of the failed end of the bracket: accelerations where the blocks start to move, the motion of limit analysis where that has proved the failure.
   Eigen::VectorXd failing_motion(const FrozenSystem& system, const FrozenTrials& trials) const {
-    const bool by_limit = result_.bracket.failed && trials.knows_failure(*result_.bracket.failed) && !limit_mechanism_.empty();
+    const std::optional<LimitAnalysisResult>& limit = result_.limit_analysis;
+    const bool by_limit = result_.bracket.failed_by == by_limit_analysis && limit && !limit->mechanism.empty();
     if (!by_limit) return trials.mechanism();
     Eigen::VectorXd motion(3 * system.rows());
     for (int row = 0; row < system.rows(); ++row) {
-      const limit_analysis::BlockVelocity& v = limit_mechanism_[row];
+      const limit_analysis::BlockVelocity& v = limit->mechanism[row];
       motion.segment<3>(3 * row) << v.velocity, v.rotation * system.blocks()[row].radius * system.length_unit();
     }
     return motion;
@@ -241,6 +223,40 @@ class StrengthReduction {
                                    velocity[2] / (block.radius * system.length_unit())});
     }
     result_.states.push_back(std::move(failed));
+  }
+
+  /// What speaks for a factor and what against it: limit analysis, and joints of other ratios of stiffness.
+  void compare(const Scene& scene, const FrozenTrials& trials) {
+    const LimitAnalysisResult& limit = *result_.limit_analysis;
+    if (!limit.is_conclusive) result_.warnings.push_back("limit analysis has no factor: " + limit.verdict);
+    if (!result_.bracket.stable || result_.bracket.at_limit) return;
+    result_.stiffness_effects = openclose::stiffness_effects(scene, *result_.bracket.stable, limit.failed);
+    const double low = *result_.bracket.stable, high = result_.bracket.failed.value_or(low);
+    double largest = low;
+    std::string others;
+    for (const StiffnessEffect& effect : result_.stiffness_effects) {
+      largest = std::max(largest, effect.stable.value_or(0.0));
+      const double clear = 0.5 * width_of_stiffness_effect * low;
+      const bool differs = !effect.stable || *effect.stable > high + clear || (effect.failed && *effect.failed < low - clear);
+      if (!differs) continue;
+      const std::string factor = effect.stable ? fmt::format("{:.4g}", *effect.stable) : "no equilibrium found";
+      others += fmt::format("{}{} at a ratio of {:g}", others.empty() ? "" : ", ", factor, effect.ratio);
+    }
+    if (!others.empty())
+      result_.warnings.push_back(
+          fmt::format("the factor depends on the ratio of shear to normal stiffness: {}, where the scene's own give {:.4g}", others, low));
+    if (limit.factor && low < far_below_limit_analysis * *limit.factor) warn_of_distance(*limit.factor, largest, trials);
+  }
+
+  void warn_of_distance(double limit, double largest, const FrozenTrials& trials) {
+    const auto& contacts = trials.stable()->contacts;
+    const auto broken = std::ranges::count_if(contacts, [](const FrozenContactState& s) { return !s.bonded; });
+    const std::string reason = broken > 0 ? fmt::format("bonds have broken at {} contacts, which it does not know", broken)
+                               : largest >= far_below_limit_analysis * limit
+                                   ? "with another ratio of stiffness the joints carry nearly as much"
+                                   : "it lets joints open by their friction angle as they slide, which jams blocks; here they slide without opening";
+    result_.warnings.push_back(
+        fmt::format("limit analysis has {:.4g}, {:.2g} % above: {}", limit, 100.0 * (limit / *result_.bracket.stable - 1.0), reason));
   }
 
   void warn_of_travel(const TravelOnPath& travel) {
@@ -277,8 +293,7 @@ class StrengthReduction {
   const Scene& scene_;
   const StrengthReductionInput& input_;
   std::function<void(double)> progress_;
-  double share_done_ = 0.0;                    ///< of the bisection
-  limit_analysis::Mechanism limit_mechanism_;  ///< of limit analysis at its smallest factor of failure; empty without
+  double share_done_ = 0.0;  ///< of the bisection
   FactorOfSafety<N> result_;
 };
 

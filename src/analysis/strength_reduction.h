@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "openclose/analysis/run.h"
+#include "openclose/analysis/second_opinion.h"
 #include "openclose/analysis/strength_search.h"
 
 namespace openclose {
@@ -50,13 +51,6 @@ struct FailingBlock {
   double rotation = 0.0;         ///< [1/m] counter-clockwise
 };
 
-/// Rigid-block limit analysis beside the search.
-struct LimitAnalysisResult {
-  std::optional<double> factor;  ///< [-] largest for which forces within the strength exist; none where there is no such largest one
-  std::string verdict;           ///< in words, where there is no factor
-  int programs = 0;              ///< linear programs
-};
-
 template <int N>
 struct FactorOfSafety {
   FactorVerdict verdict = FactorVerdict::undecided;
@@ -68,6 +62,7 @@ struct FactorOfSafety {
   std::vector<NamedState<N>> states;
   std::vector<FailingBlock> mechanism;
   std::optional<LimitAnalysisResult> limit_analysis;
+  std::vector<StiffnessEffect> stiffness_effects;
   std::optional<double> largest_travel;  ///< [m] between two stable states of the search, of any point of a block
   long linear_solves = 0;                ///< at small displacements
 

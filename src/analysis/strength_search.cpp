@@ -6,9 +6,9 @@
 namespace openclose {
 namespace {
 
-constexpr double bracket_ratio = 1.25;    ///< [-] between the factors tried first
-constexpr double smallest_factor = 1e-3;  ///< [-] below which nothing is stable at any strength one could mean
-constexpr int most_undecided = 4;         ///< trials: each may cost as much as all that are decided
+constexpr double bracket_ratio = 1.25;     ///< [-] between the factors tried first
+constexpr std::size_t most_undecided = 4;  ///< trials: each may cost as much as all that are decided
+constexpr double smallest_factor = 1e-3;   ///< [-] below which nothing is stable at any strength one could mean
 
 class Search {
  public:
@@ -29,31 +29,26 @@ class Search {
   /// At factor 1, or at a smaller one if the scene fails with its own strength. Where that is not decided, also a little above: which factor is hard
   /// to decide is a matter of chance.
   bool find_first() {
-    std::vector<double> factors;
-    for (double srf = 1.0; srf >= smallest_factor; srf /= bracket_ratio * bracket_ratio) factors.push_back(srf);
-    for (std::size_t i = 0; i < factors.size(); ++i) {
-      const TrialResult result = record(factors[i], "bracket", trials_.first(factors[i]));
-      if (result.outcome == TrialOutcome::stable) {
-        bracket_.stable = factors[i];
-        return true;
-      }
-      bracket_.failed_by = bracket_.first_verdict = result.criterion;
-      if (result.outcome == TrialOutcome::failed) bracket_.failed = factors[i];
-      bracket_.at_every_strength = result.at_every_strength;
-      if (result.at_every_strength) return false;
-      if (result.outcome == TrialOutcome::undecided && i == 0) {
-        const double above = bracket_ratio;
-        if (record(above, "bracket", trials_.first(above)).outcome == TrialOutcome::stable) {
-          bracket_.stable = above;
-          bracket_.failed.reset();
-          return true;
-        }
-        ++bracket_.undecided;
-      } else if (result.outcome == TrialOutcome::undecided) {
-        ++bracket_.undecided;
-      }
+    for (double srf = 1.0; srf >= smallest_factor; srf /= bracket_ratio * bracket_ratio) {
+      const TrialOutcome outcome = begin_at(srf);
+      if (outcome == TrialOutcome::stable) return true;
+      if (bracket_.at_every_strength) return false;
+      if (outcome == TrialOutcome::undecided && srf == 1.0 && begin_at(bracket_ratio) == TrialOutcome::stable) return true;
     }
     return false;
+  }
+
+  TrialOutcome begin_at(double srf) {
+    const TrialResult result = record(srf, "bracket", trials_.first(srf));
+    if (result.outcome == TrialOutcome::stable) {
+      bracket_.stable = srf;
+      return result.outcome;
+    }
+    bracket_.failed_by = bracket_.first_verdict = result.criterion;
+    bracket_.at_every_strength = result.at_every_strength;
+    if (result.outcome == TrialOutcome::failed) bracket_.failed = srf;
+    if (result.outcome == TrialOutcome::undecided) ++bracket_.undecided;
+    return result.outcome;
   }
 
   /// The next factor to try; nothing when the bracket is as narrow as asked for, or cannot become narrower.
@@ -97,27 +92,41 @@ class Search {
 
   void attempt(double srf) {
     if (progress_) progress_(share_done());
-    const char* stage = bracket_.failed ? "bisect" : "bracket";
-    const std::string known = trials_.known_failure(srf);
-    const TrialResult result = known.empty() ? trials_.next(srf) : TrialResult{TrialOutcome::failed, known, 0, 0.0, false};
-    record(srf, stage, result);
+    const TrialResult result = record(srf, bracket_.failed ? "bisect" : "bracket", trials_.next(srf));
     switch (result.outcome) {
       case TrialOutcome::stable:
         bracket_.stable = std::max(*bracket_.stable, srf);
         break;
       case TrialOutcome::failed:
-        failures_.push_back(srf);
-        if (!bracket_.failed || srf < *bracket_.failed) {
-          bracket_.failed = srf;
-          bracket_.failed_by = result.criterion;
-        }
-        if (first_width_ == 0.0) first_width_ = *bracket_.failed - *bracket_.stable;
-        std::erase(undecided_, srf);
+        add_failure(srf, result.criterion);
         break;
       case TrialOutcome::undecided:
         if (std::ranges::find(undecided_, srf) == undecided_.end()) undecided_.push_back(srf);
+        look_for_proof();
         break;
     }
+  }
+
+  /// Where a trial leaves open what happens, there may be a proof without one.
+  void look_for_proof() {
+    if (has_looked_for_proof_) return;
+    has_looked_for_proof_ = true;
+    const std::optional<double> proved = trials_.proved_failure(*bracket_.stable);
+    if (!proved || *proved <= *bracket_.stable || (bracket_.failed && *proved >= *bracket_.failed)) return;
+    TrialResult result;
+    result.outcome = TrialOutcome::failed;
+    result.criterion = by_limit_analysis;
+    add_failure(*proved, record(*proved, bracket_.failed ? "bisect" : "bracket", result).criterion);
+  }
+
+  void add_failure(double srf, const std::string& criterion) {
+    failures_.push_back(srf);
+    if (!bracket_.failed || srf < *bracket_.failed) {
+      bracket_.failed = srf;
+      bracket_.failed_by = criterion;
+    }
+    if (first_width_ == 0.0) first_width_ = *bracket_.failed - *bracket_.stable;
+    std::erase(undecided_, srf);
   }
 
   TrialResult record(double srf, const char* stage, const TrialResult& result) {
@@ -144,6 +153,7 @@ class Search {
   bool started_ = false;
   std::vector<double> undecided_;  ///< factors between the two ends
   double retried_ = 0.0;
+  bool has_looked_for_proof_ = false;
   std::vector<double> failures_;
   double first_width_ = 0.0, share_ = 0.0;
 };

@@ -17,6 +17,9 @@ enum class TrialOutcome {
   undecided,  ///< neither: did not converge
 };
 
+/// TrialResult::criterion of a failure that StrengthTrials::proved_failure() has proved.
+inline constexpr const char* by_limit_analysis = "limit analysis";
+
 struct TrialResult {
   TrialOutcome outcome = TrialOutcome::undecided;
   std::string criterion;  ///< what decided
@@ -38,8 +41,9 @@ class StrengthTrials {
   virtual TrialResult first(double srf) = 0;
   /// From the last stable state, which is replaced if this one is stable, too.
   virtual TrialResult next(double srf) = 0;
-  /// How failure at this factor is known without a trial; empty if it is not.
-  virtual std::string known_failure(double /*srf*/) { return {}; }
+  /// The smallest factor whose failure is proved without a trial; none if no proof is to be had. Asked for once a trial has stayed undecided.
+  /// \param near  [-] a factor near which it may lie
+  virtual std::optional<double> proved_failure(double /*near*/) { return std::nullopt; }
 };
 
 /// What is known of the factor.
@@ -54,7 +58,7 @@ struct StrengthBracket {
   std::string first_verdict;         ///< of the last trial from the beginning that was not stable
 };
 
-/// Told about every trial before (empty) and after it.
+/// Told about every trial.
 using TrialObserver = std::function<void(const StrengthTrial&)>;
 
 /// Each trial starts from the last stable state. Where one stays undecided, the search comes near it from below with smaller increments, tries again,

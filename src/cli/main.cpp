@@ -232,7 +232,7 @@ void print_factor(const Scene& scene, const FactorOfSafety<unknowns>& safety, co
   fmt::print("factor of safety {} ({}; {}: stable at {}, {}); written to {}\n", stable, scene.method.contact, factor_verdict_word(safety.verdict),
              stable, failed, folder.path());
   if (safety.limit_analysis && safety.limit_analysis->factor) {
-    fmt::print("rigid-block limit analysis, never below it: {:.6g}\n", *safety.limit_analysis->factor);
+    fmt::print("rigid-block limit analysis: at most {:.6g}\n", *safety.limit_analysis->factor);
   }
   if (!safety.mechanism.empty()) {
     double area = 0.0;

@@ -242,6 +242,11 @@ void add_factor(const FactorOfSafety<N>& safety, const Scene& scene, nlohmann::o
   } else {
     j["limit_analysis"] = nullptr;
   }
+  ordered_json effects = ordered_json::array();
+  for (const StiffnessEffect& effect : safety.stiffness_effects) {
+    effects.push_back({{"ratio", effect.ratio}, {"stable", optional_json(effect.stable)}, {"failed", optional_json(effect.failed)}});
+  }
+  j["shear_to_normal_stiffness"] = effects;
   double area = 0.0;
   ordered_json names = ordered_json::array();
   for (const FailingBlock& block : safety.mechanism) {

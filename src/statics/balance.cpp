@@ -84,7 +84,6 @@ const double* Balance::padded(const Increment& x) {
 }
 
 void Balance::evaluate(const Increment& x, ShearLaw law) {
-  ++counters_.evaluations;
   const double* motion = padded(x);
   forces_.setZero();
   double* force = forces_.data();
@@ -264,8 +263,8 @@ double Balance::slope_at(double part, ShearLaw law) const {
   return slope;
 }
 
-/// The part of a Newton step at which the slope of the energy has nearly vanished. The slope never falls along the step. Where it is still negative at
-/// the whole step, that is taken: it does not overshoot. Else the root is found by the regula falsi with halving of the end that stays (Illinois).
+/// The part of a Newton step at which the slope of the energy has nearly vanished. The slope never falls along the step. Where it is still negative
+/// at the whole step, that is taken: it does not overshoot. Else the root is found by the regula falsi with halving of the end that stays (Illinois).
 double Balance::search(const Increment& x, const Increment& way, ShearLaw law) {
   begin_search(x, way);
   double low = 0.0, low_slope = slope_at(0.0, law), high = 1.0, high_slope = slope_at(1.0, law);

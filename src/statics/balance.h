@@ -26,7 +26,6 @@ enum class ShearLaw {
 
 struct BalanceCounters {
   long factorisations = 0;
-  long evaluations = 0;
 };
 
 class Balance {

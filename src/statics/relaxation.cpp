@@ -10,8 +10,8 @@ constexpr double least_viscosity = 1e-9;
 constexpr double first_viscosity = 1e-2;
 constexpr double most_viscosity = 1e4;
 constexpr long effort_of_steady_motion = 2;  ///< [factorisations] of an increment that begins with the velocity of the one before
-constexpr int increments_of_caution = 3;  ///< after one that was not found
-constexpr long most_factorisations = 1500;  ///< of one relaxation by Newton's method; twice as many decide no more trials
+constexpr int increments_of_caution = 3;     ///< after one that was not found
+constexpr long most_factorisations = 1500;   ///< of one relaxation by Newton's method; twice as many decide no more trials
 
 // Ways are in closures.
 constexpr double most_travel = 1e6;             ///< beyond, gaps lose their digits
@@ -102,7 +102,7 @@ RelaxationResult Relaxation::relax(const FrozenState& from) {
   RelaxationResult result;
   result.state = from;
   balance_.renew_strength(result.state);
-  Eigen::VectorXd velocity;  // of the last increment: its length times its viscosity
+  Eigen::VectorXd velocity;                     // of the last increment: its length times its viscosity
   double eps = least_viscosity, stalled = 0.0;  // the latter of the last increment that was not found
   int found_since = 0;
   const long begin = balance_.counters().factorisations;

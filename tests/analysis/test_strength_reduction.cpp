@@ -360,3 +360,45 @@ TEST_CASE("closures of the joints before the search: the same factor where the p
   REQUIRE(safety.states.size() >= 2);
   CHECK(safety.states[0].name == "settled");
 }
+
+TEST_CASE("what the ratio of the stiffnesses does to the factor is what a search of its own finds", "[analysis][strength_reduction]") {
+  const auto mentions_ratio = [](const FactorOfSafety<3>& safety) {
+    return std::ranges::any_of(safety.warnings, [](const std::string& w) { return w.find("ratio of shear to normal stiffness") != std::string::npos; });
+  };
+  SECTION("columns that slide and topple") {
+    Scene scene = read_scene(std::string(OPENCLOSE_VERIFICATION_SCENES) + "/slope_face_60_columns_m70.toml");
+    scene.strength_reduction.definition = FactorDefinition::small_displacements;
+    const auto safety = factor(scene);
+    REQUIRE(safety.stiffness_effects.size() == 2);
+    REQUIRE(safety.limit_analysis->failed);
+    for (const StiffnessEffect& effect : safety.stiffness_effects) {
+      for (JointProperties& joint : scene.joints) joint.shear_stiffness = effect.ratio * joint.normal_stiffness;
+      const auto other = factor(scene);
+      REQUIRE(effect.stable);
+      REQUIRE(effect.failed);
+      CHECK(*effect.stable <= other.failed());
+      CHECK(*effect.failed >= other.stable());
+      CHECK(*effect.failed <= *safety.limit_analysis->failed);
+    }
+    CHECK(*safety.stiffness_effects[0].failed < safety.stable());  // soft in shear, they stand less
+    CHECK(mentions_ratio(safety));
+  }
+  SECTION("one block on an incline: nothing") {
+    Scene scene = slope_scene("soft", 30.0, 35.0, 0.0);
+    scene.strength_reduction.definition = FactorDefinition::small_displacements;
+    const auto safety = factor(scene);
+    REQUIRE(safety.stiffness_effects.size() == 2);
+    for (const StiffnessEffect& effect : safety.stiffness_effects) {
+      CHECK(effect.stable.value() <= closed_form(30.0, 35.0, 0.0) * (1.0 + 1e-7));
+      CHECK(effect.failed.value() >= closed_form(30.0, 35.0, 0.0) * (1.0 - 1e-7));
+    }
+    CHECK_FALSE(mentions_ratio(safety));
+    CHECK(safety.warnings.empty());
+  }
+  SECTION("left out with limit analysis") {
+    Scene scene = slope_scene("soft", 30.0, 35.0, 0.0);
+    scene.strength_reduction.definition = FactorDefinition::small_displacements;
+    scene.strength_reduction.limit_analysis = false;
+    CHECK(factor(scene).stiffness_effects.empty());
+  }
+}

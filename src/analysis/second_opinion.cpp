@@ -1,0 +1,99 @@
+#include "openclose/analysis/second_opinion.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "openclose/analysis/frozen_limit.h"
+#include "openclose/analysis/frozen_trials.h"
+
+namespace openclose {
+namespace {
+
+/// [-] The bound lies above what a path has reached, often by less than a bracket and seldom by more than a tenth: tried first and next.
+constexpr double first_above = 1.002;
+constexpr double ratio_above = 1.1;
+constexpr double first_of_effect = 0.8;  ///< [-] of the smaller of 1 and the factor: where gravity acts first
+
+}  // namespace
+
+LimitAnalysisResult limit_analysis_of(const Scene& scene, const FrozenSystem& system, double upper_limit, double near) {
+  using Verdict = limit_analysis::Bracket::Verdict;
+  LimitAnalysisResult result;
+  limit_analysis::Options options;
+  options.upper_limit = std::max(options.upper_limit, 2.0 * upper_limit);
+  options.first = first_above * near;
+  options.ratio = ratio_above;
+  try {
+    limit_analysis::Bracket bracket = limit_analysis::limit_analysis(limit_problem(system, FrozenStrength(system, scene)), options);
+    result.programs = bracket.programs;
+    result.verdict = bracket.found() ? "found" : bracket.reason;
+    result.is_conclusive = bracket.verdict != Verdict::undecided;
+    result.no_equilibrium = bracket.verdict == Verdict::no_equilibrium;
+    if (bracket.found() && bracket.factor > 0.0) result.factor = bracket.factor;
+    if (bracket.failed > 0.0) {
+      result.failed = bracket.failed;
+      result.mechanism = std::move(bracket.mechanism);
+    }
+  } catch (const std::invalid_argument& error) {
+    result.verdict = error.what();
+  }
+  return result;
+}
+
+namespace {
+
+/// From the factor of the scene's own stiffness up or down in growing steps, until one trial stands and the next does not.
+class EffectSearch {
+ public:
+  EffectSearch(StrengthTrials& trials, double ratio, double factor, std::optional<double> proved_failure)
+      : trials_(trials), factor_(factor), proved_failure_(proved_failure) {
+    effect_.ratio = ratio;
+  }
+
+  StiffnessEffect run() {
+    const double first = first_of_effect * std::min(1.0, factor_);
+    if (trials_.first(first).outcome != TrialOutcome::stable) return effect_;
+    effect_.stable = first;
+    double step = width_of_stiffness_effect;
+    if (stands(factor_)) {
+      while (stands(factor_ * (1.0 + step))) step *= 2.0;
+    } else {
+      while (factor_ * (1.0 - step) > first && !stands(factor_ * (1.0 - step))) step *= 2.0;
+    }
+    return effect_;
+  }
+
+ private:
+  bool stands(double srf) {
+    if (proved_failure_ && srf >= *proved_failure_) {
+      effect_.failed = *proved_failure_;
+      return false;
+    }
+    const TrialOutcome outcome = trials_.next(srf).outcome;
+    if (outcome == TrialOutcome::stable) effect_.stable = srf;
+    if (outcome == TrialOutcome::failed) effect_.failed = srf;
+    return outcome == TrialOutcome::stable;
+  }
+
+  StrengthTrials& trials_;
+  double factor_;
+  std::optional<double> proved_failure_;
+  StiffnessEffect effect_;
+};
+
+}  // namespace
+
+std::vector<StiffnessEffect> stiffness_effects(const Scene& scene, double factor, std::optional<double> proved_failure) {
+  Scene other = scene;
+  other.method.contact = "soft";
+  std::vector<StiffnessEffect> effects;
+  for (const double ratio : stiffness_ratios) {
+    for (JointProperties& joint : other.joints) joint.shear_stiffness = ratio * joint.normal_stiffness;
+    const FrozenSystem system(other);
+    FrozenTrials trials(other, system);
+    effects.push_back(EffectSearch(trials, ratio, factor, proved_failure).run());
+  }
+  return effects;
+}
+
+}  // namespace openclose

@@ -1,0 +1,46 @@
+// What an engineer asks beside a factor of safety at small displacements: what limit analysis says of the same blocks, and what the ratio of the
+// joints' shear and normal stiffness, which is seldom known, does to the factor.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "openclose/analysis/strength_search.h"
+#include "openclose/limit_analysis/limit_analysis.h"
+#include "openclose/statics/frozen_system.h"
+
+namespace openclose {
+
+/// Rigid-block limit analysis: an upper bound of every factor at small displacements.
+struct LimitAnalysisResult {
+  std::optional<double> factor;         ///< [-] largest for which forces within the strength exist; none where there is no such largest one
+  std::string verdict;                  ///< in words, where there is no factor
+  int programs = 0;                     ///< linear programs
+  std::optional<double> failed;         ///< [-] smallest factor at which failure is proved
+  limit_analysis::Mechanism mechanism;  ///< there
+  bool is_conclusive = false;           ///< a factor, or the proof that there is none
+  bool no_equilibrium = false;          ///< proved: at any factor
+};
+
+/// \param upper_limit  [-] of the search
+/// \param near         [-] a factor near which the answer may lie: it saves programs
+LimitAnalysisResult limit_analysis_of(const Scene& scene, const FrozenSystem& system, double upper_limit, double near);
+
+/// The factor if all joints had this ratio of shear to normal stiffness.
+struct StiffnessEffect {
+  double ratio = 0.0;  ///< [-]
+  std::optional<double> stable, failed;
+};
+
+/// The ratios between which joints are found to lie.
+inline constexpr double stiffness_ratios[] = {0.1, 1.0};
+/// [-] Over the factor: what differs by less is not told apart.
+inline constexpr double width_of_stiffness_effect = 0.01;
+
+/// By Newton's method, whatever the method of the scene.
+/// \param factor          [-] of the scene with its own stiffness
+/// \param proved_failure  [-] where no stiffness helps
+std::vector<StiffnessEffect> stiffness_effects(const Scene& scene, double factor, std::optional<double> proved_failure);
+
+}  // namespace openclose
