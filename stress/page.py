@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from campaign import Row
-from verdicts import AT_THE_LIMIT, FALSE, REFUSED, RIGHT, SLOW
+from verdicts import AT_THE_LIMIT, FALSE, REFUSED, RIGHT, SLOW, WIDEST_BRACKET
 
 VERDICTS = RIGHT, REFUSED, FALSE, SLOW
 WORST = 10
@@ -78,7 +78,9 @@ def _brackets(rows: list[Row]) -> list[str]:
     """What `fos` says of its own answers."""
     count = {key: Counter(row.answer for row in group) for key, group in _groups([row for row in rows if row.answer]).items()}
     answers = sorted({a for c in count.values() for a in c})
-    return ["## Answers of `fos`", "", *_table(["part", "method", *answers], [[*key, *(c[a] for a in answers)] for key, c in count.items()])] if count else []
+    narrow = Counter((row.part, row.method) for row in rows if row.stable and row.failed and row.failed - row.stable <= WIDEST_BRACKET * row.stable)
+    head = ["part", "method", *answers, f"both ends proved, within {WIDEST_BRACKET:.1%}"]
+    return ["## Answers of `fos`", "", *_table(head, [[*key, *(c[a] for a in answers), narrow[key]] for key, c in count.items()])] if count else []
 
 
 def _times(rows: list[Row]) -> list[str]:

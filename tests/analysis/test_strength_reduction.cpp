@@ -245,7 +245,8 @@ namespace {
 /// Answers as a table of outcomes says.
 class ToldTrials : public StrengthTrials {
  public:
-  explicit ToldTrials(std::function<TrialOutcome(double)> outcome) : outcome_(std::move(outcome)) {}
+  explicit ToldTrials(std::function<TrialOutcome(double)> outcome, std::optional<double> proved = std::nullopt)
+      : outcome_(std::move(outcome)), proved_(proved) {}
   TrialResult first(double srf) override { return next(srf); }
   TrialResult next(double srf) override {
     TrialResult result;
@@ -253,13 +254,15 @@ class ToldTrials : public StrengthTrials {
     result.criterion = "told";
     return result;
   }
+  std::optional<double> proved_failure(double) override { return proved_; }
 
  private:
   std::function<TrialOutcome(double)> outcome_;
+  std::optional<double> proved_;
 };
 
-StrengthBracket searched(const std::function<TrialOutcome(double)>& outcome, double width = 1e-3) {
-  ToldTrials trials(outcome);
+StrengthBracket searched(const std::function<TrialOutcome(double)>& outcome, std::optional<double> proved = std::nullopt, double width = 1e-3) {
+  ToldTrials trials(outcome, proved);
   StrengthReductionInput input;
   input.width = width;
   return search_strength(trials, input, [](const StrengthTrial&) {});
@@ -279,6 +282,22 @@ TEST_CASE("an undecided trial is never a failed one", "[analysis][strength_reduc
     const auto b = searched([](double srf) { return srf < 1.3 ? TrialOutcome::stable : TrialOutcome::undecided; });
     REQUIRE(b.stable);
     CHECK_FALSE(b.failed);
+  }
+  SECTION("nothing but undecided above, up to a proof without a trial") {
+    const auto b = searched([](double srf) { return srf < 1.3 ? TrialOutcome::stable : TrialOutcome::undecided; }, 1.35);
+    REQUIRE((b.stable && b.failed));
+    CHECK(*b.stable < 1.3);
+    CHECK(*b.failed == 1.35);
+    CHECK(b.failed_by == by_limit_analysis);
+  }
+  SECTION("a proof above what trials have found to fail changes nothing") {
+    const auto b =
+        searched([](double srf) { return srf < 1.3    ? TrialOutcome::stable
+                                         : srf < 1.31 ? TrialOutcome::undecided
+                                                      : TrialOutcome::failed; }, 1.7);
+    REQUIRE(b.failed);
+    CHECK(*b.failed < 1.33);
+    CHECK(b.failed_by == "told");
   }
   SECTION("never decided") {
     const auto b = searched([](double) { return TrialOutcome::undecided; });
@@ -363,7 +382,8 @@ TEST_CASE("closures of the joints before the search: the same factor where the p
 
 TEST_CASE("what the ratio of the stiffnesses does to the factor is what a search of its own finds", "[analysis][strength_reduction]") {
   const auto mentions_ratio = [](const FactorOfSafety<3>& safety) {
-    return std::ranges::any_of(safety.warnings, [](const std::string& w) { return w.find("ratio of shear to normal stiffness") != std::string::npos; });
+    return std::ranges::any_of(safety.warnings,
+                               [](const std::string& w) { return w.find("ratio of shear to normal stiffness") != std::string::npos; });
   };
   SECTION("columns that slide and topple") {
     Scene scene = read_scene(std::string(OPENCLOSE_VERIFICATION_SCENES) + "/slope_face_60_columns_m70.toml");
