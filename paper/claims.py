@@ -242,7 +242,7 @@ class Claims:
         last = self._openclose.table(case, "history.csv")[-1]
         cosine, sine = i.downhill
         moved = float(last["displacement_x_m"]) * cosine + float(last["displacement_y_m"]) * sine
-        carried = sum(float(row["normal_force_n"]) for row in self._openclose.table(case, "contacts.csv"))
+        carried = sum(float(row["normal_force_n"]) for row in self._openclose.table(case, "contacts.csv") if row["state"] == "final")
         weight = i.density * i.gravity * i.length * i.height * math.cos(math.radians(i.slope_angle_deg))
         exact = self.slider.closed_form(incline.MAIN_ANGLE_DEG)[INCLINE_END_S]
         return Sliding(summary["converged"], moved / exact - 1, carried / weight - 1,

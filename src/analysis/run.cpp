@@ -56,6 +56,7 @@ std::vector<PointMotion> MeasuredPoints<N>::motions() const {
     m.name = p.name;
     m.displacement = displacement(p);
     m.rotation = Motion<N>::rotation(moved);
+    m.angular_velocity = Motion<N>::rotation(velocity);
     m.velocity = Motion<N>::translation(velocity) + Motion<N>::rotation(velocity) * perpendicular(system.point_arm(p.number));
     list.push_back(m);
   }
@@ -262,6 +263,8 @@ class MotionInTime {
   bool whole(long step) const {
     return static_cast<double>(step - 1) * scene_.step.dt + scene_.step.dt <= scene_.end_time * (1.0 + tolerance::rounding_of_times);
   }
+  /// A multiple of the step as a user would write it: 0.3, not 0.30000000000000004.
+  static double without_rounding(double time) { return std::stod(fmt::format("{:.12g}", time)); }
   double time_after(long step) const { return step == 0 || whole(step) ? static_cast<double>(step) * scene_.step.dt : scene_.end_time; }
 
   double share_done(long step) const {
@@ -287,10 +290,18 @@ class MotionInTime {
 
   /// A snapshot is taken after the step that ends nearest to its time.
   void take_snapshots(long step) {
+    std::string last;
+    const auto take = [&](double time) {
+      std::string state = fmt::format("t={}", time);
+      if (state == last || !observer_.snapshot) return;
+      observer_.snapshot(state, simulation_);
+      last = std::move(state);
+    };
     const double latest = step == steps_ ? scene_.end_time * (1.0 + tolerance::rounding_of_times) : 0.5 * (time_after(step) + time_after(step + 1));
     for (; snapshots_taken_ < scene_.snapshot_times.size() && scene_.snapshot_times[snapshots_taken_] <= latest; ++snapshots_taken_) {
-      if (observer_.snapshot) observer_.snapshot(fmt::format("t={}", scene_.snapshot_times[snapshots_taken_]), simulation_);
+      take(scene_.snapshot_times[snapshots_taken_]);
     }
+    if (scene_.snapshots_every > 0.0 && step > 0 && step % steps_in(scene_.snapshots_every) == 0) take(without_rounding(time_after(step)));
   }
 
   Simulation<N>& simulation_;

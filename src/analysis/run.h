@@ -18,6 +18,7 @@ struct PointMotion {
   Vec2 displacement = Vec2::Zero();  ///< [m]
   double rotation = 0.0;             ///< [rad]
   Vec2 velocity = Vec2::Zero();      ///< [m/s]
+  double angular_velocity = 0.0;     ///< [rad/s]
 };
 
 /// The measured points of a scene; without any, the centroids of the free blocks.

@@ -398,6 +398,14 @@ const std::vector<Contact>& Simulation<N>::contacts() const {
 }
 
 template <int N>
+std::vector<Contact> Simulation<N>::every_contact() const {
+  std::vector<Contact> list = contacts();
+  const std::vector<Contact>& resting = detector_.resting_contacts();
+  list.insert(list.end(), resting.begin(), resting.end());
+  return list;
+}
+
+template <int N>
 std::vector<Contact>& Simulation<N>::moving_contacts(double lead) {
   unload_loop();
   if (!contacts_current_) detect(lead);

@@ -132,6 +132,8 @@ class Simulation {
   std::vector<Contact>& contacts();
   /// As the last step left them.
   const std::vector<Contact>& contacts() const;
+  /// The same with those between blocks at rest, whose forces are the ones they were put to rest with.
+  std::vector<Contact> every_contact() const;
   /// Pairs of blocks that may touch, see Detector::candidate_pairs().
   const std::vector<std::pair<int, int>>& candidate_pairs() const { return detector_.candidate_pairs(); }
   const Enforcement<N>& enforcement() const { return *enforcement_; }

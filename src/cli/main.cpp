@@ -17,6 +17,7 @@
 #include "openclose/io/checkpoint.h"
 #include "openclose/io/drawing.h"
 #include "openclose/io/progress.h"
+#include "openclose/io/result_picture.h"
 #include "openclose/io/results.h"
 #include "openclose/scene/check.h"
 #include "openclose/scene/reader.h"
@@ -36,6 +37,8 @@ struct Options {
   std::string drawing_file;
   std::string spectrum_file;
   std::string restart_file;
+  std::string results;
+  DrawingRequest drawing;
   std::vector<std::string> overrides;
   bool quiet = false;
 };
@@ -147,35 +150,46 @@ int run_command(const Options& options) {
   if (!restart) require_start(scene);
 
   const OutputFolder folder = output_folder(options);
+  folder.require_other_than(options.scene_file);
   const RestartPoint* goes_on_from = restart ? &*restart : nullptr;
   if (restart && folder.has(restart->checkpoint_file)) {
     folder.remove_last_results();
   } else {
     folder.remove_results();
   }
+  folder.write_scene_copy(write_scene(scene));
+  write_block_properties(folder, scene, std::as_const(simulation).system());
   HistoryFile history(folder, goes_on_from);
   EnergyFile energy(folder, goes_on_from);
-  BlocksFile<unknowns> blocks(folder, goes_on_from);
-  if (!restart) blocks.add("initial", simulation);
+  StateTables<unknowns> states(folder, scene, goes_on_from);
+  const MeasuredContacts<unknowns> measured_contacts(scene);
+  std::optional<ContactHistoryFile> contact_history;
+  if (!scene.measured_contacts.empty()) contact_history.emplace(folder, goes_on_from);
+  if (!restart) states.add_drawing(simulation);
   std::optional<Progress> progress;
   progress.emplace(restart ? "run" : "settle", options.quiet);
 
   RunObserver<unknowns> observer;
   observer.started = [&](const Simulation<unknowns>& s) {
     points.restart();
-    blocks.add("start", s);
+    states.add("start", s);
     progress.emplace("run", options.quiet);
   };
   observer.settling = [&](double fraction) { progress->update(fraction); };
-  observer.snapshot = [&](const std::string& state, const Simulation<unknowns>& s) { blocks.add(state, s); };
+  observer.snapshot = [&](const std::string& state, const Simulation<unknowns>& s) { states.add(state, s); };
   observer.output = [&](const Simulation<unknowns>& s) {
     history.add(s.time(), points.motions());
     energy.add(s.time(), s.ledger());
+    if (contact_history) contact_history->add(s.time(), measured_contacts.motions(s));
   };
   observer.progress = [&](double fraction) { progress->update(fraction); };
   observer.checkpoint = [&](Archive& state, const Simulation<unknowns>& s) {
     state(points);
-    write_checkpoint(folder.path_of(checkpoint_name), s.scene(), {s.time(), {history.written(), energy.written(), blocks.written()}, state.take()});
+    auto tables = states.written();
+    tables.push_back(history.written());
+    tables.push_back(energy.written());
+    if (contact_history) tables.push_back(contact_history->written());
+    write_checkpoint(folder.path_of(checkpoint_name), s.scene(), {s.time(), std::move(tables), state.take()});
   };
   RunResult result;
   if (restart) {
@@ -187,11 +201,12 @@ int run_command(const Options& options) {
   progress.reset();
   print_warnings(result.warnings);
 
-  blocks.add("final", simulation);
+  // Asking for the contacts finds those of the last positions.
+  states.add("final", simulation, simulation.contacts());
   history.close();
   energy.close();
-  blocks.close();
-  write_contacts(folder, "final", scene, std::as_const(simulation).system(), simulation.contacts());
+  states.close();
+  if (contact_history) contact_history->close();
   if (!result.milestones.empty()) write_milestones(folder, result.milestones);
   Summary summary = summary_of("run", options, loaded);
   summary.warnings.insert(summary.warnings.end(), result.warnings.begin(), result.warnings.end());
@@ -250,13 +265,17 @@ int fos_command(const Options& options) {
     loaded.scene.method.first_integrator.reset();
   }
   if (loaded.scene.base_motion) loaded.warn("base_motion is for run; fos asks for static equilibrium on a base at rest");
+  if (!loaded.scene.measured_contacts.empty()) loaded.warn("measured_contact is for run; contacts.csv has what every contact carries");
   require_strength_reduction(loaded.scene);
   if (loaded.scene.step.dt <= 0.0) loaded.scene.step.dt = loaded.scene.settle.first_dt;
   Simulation<unknowns> simulation(std::move(loaded.scene));
   const OutputFolder folder = output_folder(options);
+  folder.require_other_than(options.scene_file);
   folder.remove_results();
-  BlocksFile<unknowns> blocks(folder);
-  blocks.add("initial", simulation);
+  folder.write_scene_copy(write_scene(simulation.scene()));
+  write_block_properties(folder, simulation.scene(), std::as_const(simulation).system());
+  StateTables<unknowns> states(folder, simulation.scene());
+  states.add_drawing(simulation);
   FactorOfSafety<unknowns> safety;
   double cpu_of_search = 0.0;
   {
@@ -271,12 +290,11 @@ int fos_command(const Options& options) {
   summary.warnings.insert(summary.warnings.end(), safety.warnings.begin(), safety.warnings.end());
   print_warnings(safety.warnings);
   for (const NamedState<unknowns>& state : safety.states) {
-    blocks.add(state.name, simulation.scene(), state.system);
+    states.add(state, simulation.scene());
     if (state.contacts.empty()) continue;
-    write_contacts(folder, state.name, simulation.scene(), state.system, state.contacts);
     if (state.name != "failed") summary.max_penetration = deepest_of(state.contacts);
   }
-  blocks.close();
+  states.close();
   write_trials(folder, safety.trials);
   if (!safety.mechanism.empty()) write_mechanism(folder, simulation.scene(), safety.mechanism);
   if (!safety.curve.empty()) write_curve(folder, safety.curve);
@@ -342,13 +360,24 @@ int cut_command(const Options& options) {
   if (place_of(file) == place_of(drawing)) {
     throw InputError({file, 0}, "", "the scene and its drawing cannot be the same file", "another name with --svg");
   }
-  write_files({{file, write_scene(loaded.scene)}, {drawing, svg_drawing(loaded.scene)}});
+  write_files({{file, write_scene(loaded.scene)}, {drawing, svg_drawing(picture_of(loaded.scene))}});
   if (options.quiet) return exit_success;
   const auto fixed = std::count_if(loaded.scene.blocks.begin(), loaded.scene.blocks.end(), [](const BlockInput& block) { return block.fixed; });
   fmt::print("{}: {} blocks cut by {} traces, {:.9g} m2 (domain {:.9g} m2), smallest {:.3g} m2; {} of {} blocks fixed\n", options.scene_file,
              cutting.blocks, cutting.traces, cutting.area, cutting.domain_area, cutting.smallest_block, fixed, loaded.scene.blocks.size());
   fmt::print("{} slivers merged ({:.3g} m2), {} dangling ends dropped; written to {} and {}\n", cutting.slivers_merged, cutting.slivers_area,
              cutting.dangling_ends, file, drawing);
+  return exit_success;
+}
+
+int draw_command(const Options& options) {
+  const std::string file = options.drawing_file.empty() ? options.results + "/drawing.svg" : options.drawing_file;
+  // A name that is left out, or mistaken for another option's, would write over a scene or a table.
+  if (std::filesystem::path(file).extension() != ".svg")
+    throw InputError({file, 0}, "-o", "a drawing would be written over what is no drawing", "a name that ends in .svg");
+  const Picture picture = picture_of_results(options.results, options.drawing);
+  write_files({{file, svg_drawing(picture)}});
+  if (!options.quiet) fmt::print("{}: {} blocks drawn; {}; written to {}\n", options.results, picture.blocks.size(), picture.notes.front(), file);
   return exit_success;
 }
 
@@ -388,6 +417,27 @@ void add_options(CLI::App& app, Options& options, bool writes_folder) {
   add_quiet(app, options);
 }
 
+CLI::App* add_draw(CLI::App& app, Options& options) {
+  CLI::App* draw = app.add_subcommand("draw", "draw a state of a run or fos as SVG: blocks, what their joints do, what holds and pushes them");
+  draw->add_option("results", options.results, "folder that run or fos has written")->required();
+  draw->add_option("--state", options.drawing.state,
+                   "state in blocks.csv, such as initial, start, t=1.5, final, stable, failed (default: failed, the mechanism, of fos; else the last)");
+  draw->add_option_function<std::string>(
+          "--colour",
+          [&options](const std::string& name) {
+            const auto& names = block_colour_names();
+            options.drawing.colour = static_cast<BlockColour>(std::ranges::find(names, name) - names.begin());
+          },
+          "what the colours of the blocks tell: material, displacement, velocity (with arrows) or state (default: velocity for a mechanism, else "
+          "material)")
+      ->check(CLI::IsMember(block_colour_names()));
+  draw->add_flag("--forces", options.drawing.forces, "draw the resultants between blocks, as wide as they are large");
+  draw->add_flag("--cracks", options.drawing.cracks, "draw the openings of joints, as wide as they are open");
+  draw->add_option("-o,--output", options.drawing_file, "SVG file to write (default: drawing.svg in the folder)");
+  add_quiet(*draw, options);
+  return draw;
+}
+
 int main_checked(int argc, char** argv) {
   CLI::App app{
       "Openclose: 2-D block systems of jointed rock and masonry. Exit status: 0 success, 1 not converged (state saved), 2 bad input (nothing "
@@ -415,6 +465,7 @@ int main_checked(int argc, char** argv) {
   cut->add_option("-o,--output", options.blocks_file, "scene file to write (default: results/<name of the scene>/blocks.toml)");
   cut->add_option("--svg", options.drawing_file, "drawing to write (default: beside the scene file, .svg)");
   add_quiet(*cut, options);
+  add_draw(app, options)->callback([&command] { command = &draw_command; });
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& e) {

@@ -1,45 +1,55 @@
 #include "openclose/io/drawing.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
+#include <map>
+#include <utility>
 
 #include "openclose/geometry/box.h"
+#include "openclose/io/svg_page.h"
 
 namespace openclose {
 namespace {
 
-/// [px] of the longer side of the drawing, and around it.
-constexpr double longer_side = 1200.0;
+/// [px] The blocks fill one of these two, and titles and legends have at least the last one.
+constexpr double widest_drawing = 1140.0, highest_drawing = 820.0, narrowest_page = 760.0;
 constexpr double margin = 30.0;
-constexpr double scale_room = 50.0;
-constexpr double title_room = 30.0;
-constexpr double line_height = 22.0;
+constexpr double title_size = 20.0, note_size = 14.0, line_height = 22.0;
+/// [px] Room below the blocks before the legend begins.
+constexpr double legend_gap = 22.0;
+
+/// Of more blocks than this each colour is one path, without tooltips: a viewer then still turns pages at once.
+constexpr std::size_t most_single_blocks = 4000;
+/// Of more lines than this those of about the same width are one path.
+constexpr std::size_t most_single_lines = 4000;
+constexpr int width_classes = 24;
+constexpr int colour_classes = 32;
+/// [-] Forces and openings below this part of the largest are thinner than a line can be drawn.
+constexpr double least_drawn_part = 0.005;
+/// Names are written beside no more points and loads than this; tooltips tell the others.
+constexpr std::size_t most_labels = 12;
 
 constexpr std::array fills = {"#e8dcc3", "#c9d8c5", "#c7d3e3", "#e3c9c5", "#d9cde3", "#e0e0d0"};
 constexpr const char* fixed_fill = "#a5a096";
+constexpr const char* outline_colour = "#333";
+constexpr const char* sliding_colour = "#f16913";
+constexpr const char* open_colour = "#cb181d";
+constexpr const char* force_colour = "#6a0a78";
+constexpr const char* load_colour = "#08519c";
+constexpr const char* support_colour = "#006d2c";
 
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '&':
-        result += "&amp;";
-        break;
-      default:
-        result += c;
-    }
-  }
-  return result;
+/// From 0 to 1: light to dark, told apart in grey, too (YlGnBu of ColorBrewer).
+constexpr std::array<std::array<int, 3>, 8> gradient = {
+    {{255, 255, 229}, {237, 248, 177}, {199, 233, 180}, {127, 205, 187}, {65, 182, 196}, {29, 145, 192}, {34, 94, 168}, {37, 52, 148}}};
+
+std::string colour_at(double part) {
+  const double place = std::clamp(part, 0.0, 1.0) * static_cast<double>(gradient.size() - 1);
+  const std::size_t i = std::min(static_cast<std::size_t>(place), gradient.size() - 2);
+  const double share = place - static_cast<double>(i);
+  std::array<int, 3> c;
+  for (std::size_t k = 0; k < 3; ++k) c[k] = static_cast<int>(std::lround((1.0 - share) * gradient[i][k] + share * gradient[i + 1][k]));
+  return fmt::format("#{:02x}{:02x}{:02x}", c[0], c[1], c[2]);
 }
 
 /// 1, 2 or 5 times a power of ten, not above the value.
@@ -51,84 +61,398 @@ double round_length(double value) {
   return power;
 }
 
+std::string force_text(double newtons) {
+  if (newtons >= 1e6) return fmt::format("{:.4g} MN/m", 1e-6 * newtons);
+  if (newtons >= 1e3) return fmt::format("{:.4g} kN/m", 1e-3 * newtons);
+  return fmt::format("{:.4g} N/m", newtons);
+}
+
+std::string length_text(double metres) {
+  if (metres >= 1.0) return fmt::format("{:.4g} m", metres);
+  if (metres >= 1e-3) return fmt::format("{:.4g} mm", 1e3 * metres);
+  return fmt::format("{:.4g} \xc2\xb5m", 1e6 * metres);
+}
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
 class Drawing {
  public:
-  explicit Drawing(const Scene& scene) {
-    box_ = Box::around(scene.blocks.front().vertices);
-    for (const BlockInput& block : scene.blocks) {
-      const Box other = Box::around(block.vertices);
+  explicit Drawing(const Picture& picture) : picture_(picture) {
+    box_ = Box::around(picture.blocks.front().outline);
+    std::vector<double> areas;
+    for (const Picture::Block& block : picture.blocks) {
+      const Box other = Box::around(block.outline);
       box_ = {box_.low.cwiseMin(other.low), box_.high.cwiseMax(other.high)};
+      if (!block.fixed) areas.push_back(signed_area(block.outline));
     }
     const Vec2 size = box_.high - box_.low;
-    scale_ = (longer_side - 2.0 * margin) / size.maxCoeff();
-    top_ = margin + title_room;
-    const double legend = line_height * static_cast<double>(scene.materials.size() + 1);
-    const Vec2 page = scale_ * size + Vec2(2.0 * margin, top_ + scale_room + legend + margin);
-    print("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" viewBox=\"0 0 {0:.0f} {1:.0f}\">\n", page.x(), page.y());
-    print(
+    scale_ = std::min(widest_drawing / size.x(), highest_drawing / size.y());
+    block_size_ = areas.empty() ? 100.0 : scale_ * std::sqrt(median(std::move(areas)));
+    page_width_ = std::max(narrowest_page, scale_ * size.x() + 2.0 * margin);
+    left_ = 0.5 * (page_width_ - scale_ * size.x());
+    title_lines_ = wrapped(picture.title, title_size);
+    for (const std::string& note : picture.notes) {
+      for (std::string& line : wrapped(note, note_size)) note_lines_.push_back(std::move(line));
+    }
+    top_ = margin + line_height * static_cast<double>(note_lines_.size()) + 1.3 * title_size * static_cast<double>(title_lines_.size()) + 6.0;
+  }
+
+  std::string svg() {
+    draw_blocks();
+    draw_joints();
+    draw_cracks();
+    draw_forces();
+    draw_velocities();
+    draw_supports();
+    draw_loads();
+    draw_points();
+    draw_legend();
+    const std::string body = page_.take();
+    SvgPage page;
+    page.print("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" viewBox=\"0 0 {0:.0f} {1:.0f}\" font-family=\"sans-serif\">\n",
+               page_width_, legend_y_ + margin);
+    page.print(
         "<defs><pattern id=\"fixed\" width=\"7\" height=\"7\" patternUnits=\"userSpaceOnUse\">"
         "<circle cx=\"3.5\" cy=\"3.5\" r=\"1.1\" fill=\"#444\"/></pattern></defs>\n"
         "<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n");
-    write(margin, margin + 0.4 * title_room, fmt::format("{} ({} blocks)", scene.title.empty() ? "Blocks" : scene.title, scene.blocks.size()));
-  }
-
-  void add(const BlockInput& block) {
-    std::string points;
-    for (const Vec2& vertex : block.vertices) {
-      fmt::format_to(std::back_inserter(points), "{:.2f},{:.2f} ", margin + scale_ * (vertex.x() - box_.low.x()),
-                     top_ + scale_ * (box_.high.y() - vertex.y()));
-    }
-    points.pop_back();
-    const char* fill = fills[block.material % fills.size()];
-    print("<polygon points=\"{}\" fill=\"{}\" stroke=\"#333\" stroke-width=\"0.6\"{}><title>{}</title></polygon>\n", points,
-          block.fixed ? fixed_fill : fill, " stroke-linejoin=\"round\"", escaped(block.name));
-    if (block.fixed) print("<polygon points=\"{}\" fill=\"url(#fixed)\" pointer-events=\"none\"/>\n", points);
-  }
-
-  std::string finish(const Scene& scene) {
-    const double length = round_length(0.25 * (box_.high.x() - box_.low.x()));
-    double y = top_ + scale_ * (box_.high.y() - box_.low.y()) + 0.5 * scale_room;
-    print("<path d=\"M{0:.2f},{2:.2f} v8 H{1:.2f} v-8\" fill=\"none\" stroke=\"black\"/>\n", margin, margin + scale_ * length, y);
-    write(margin + scale_ * length + 8.0, y + 9.0, fmt::format("{:g} m", length));
-    y += 0.5 * scale_room;
-    for (std::size_t m = 0; m < scene.materials.size(); ++m, y += line_height) add_swatch(y, fills[m % fills.size()], scene.materials[m].name);
-    const bool any_fixed = std::any_of(scene.blocks.begin(), scene.blocks.end(), [](const BlockInput& block) { return block.fixed; });
-    if (any_fixed) {
-      add_swatch(y, fixed_fill, "fixed");
-      add_swatch(y, "url(#fixed)", "");
-    }
-    text_ += "</svg>\n";
-    return std::move(text_);
+    double y = margin;
+    for (const std::string& line : title_lines_) page.write(margin, (y += 1.3 * title_size) - 10.0, line, title_size, " font-weight=\"bold\"");
+    for (const std::string& line : note_lines_) page.write(margin, (y += line_height) - 8.0, line, note_size, " fill=\"#333\"");
+    return page.take() + body + "</svg>\n";
   }
 
  private:
-  void add_swatch(double y, const char* fill, const std::string& text) {
-    print("<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"28\" height=\"16\" fill=\"{}\" stroke=\"#333\" stroke-width=\"0.6\"/>\n", margin, y, fill);
-    write(margin + 36.0, y + 13.0, text);
+  Vec2 at(const Vec2& place) const { return {left_ + scale_ * (place.x() - box_.low.x()), top_ + scale_ * (box_.high.y() - place.y())}; }
+
+  /// Broken between words where it would be wider than the page.
+  std::vector<std::string> wrapped(const std::string& text, double size) const {
+    std::vector<std::string> lines;
+    std::string rest = text;
+    const auto most = static_cast<std::size_t>((page_width_ - 2.0 * margin) / width_of("x", size));
+    while (rest.size() > most) {
+      std::size_t end = rest.rfind(' ', most);
+      if (end == std::string::npos || end == 0) end = most;
+      lines.push_back(rest.substr(0, end));
+      rest = rest.substr(std::min(rest.size(), rest.find_first_not_of(' ', end)));
+    }
+    if (!rest.empty()) lines.push_back(rest);
+    return lines;
   }
 
-  void write(double x, double y, const std::string& text) {
-    if (text.empty()) return;
-    print("<text x=\"{:.2f}\" y=\"{:.2f}\" font-family=\"sans-serif\" font-size=\"14\">{}</text>\n", x, y, escaped(text));
+  double outline_width() const { return std::clamp(0.02 * block_size_, 0.08, 0.9); }
+
+  std::string fill_of(const Picture::Block& block) const {
+    if (block.fixed) return fixed_fill;
+    if (!picture_.scale) return fills[static_cast<std::size_t>(block.colour) % fills.size()];
+    return colour_at(picture_.scale->largest > 0.0 ? block.value / picture_.scale->largest : 0.0);
   }
 
-  template <typename... Arguments>
-  void print(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
-    fmt::format_to(std::back_inserter(text_), format, std::forward<Arguments>(arguments)...);
+  void draw_blocks() {
+    if (picture_.blocks.size() > most_single_blocks) return draw_blocks_by_colour();
+    const std::string stroke = fmt::format("stroke=\"{}\" stroke-width=\"{:.2f}\" stroke-linejoin=\"round\"", outline_colour, outline_width());
+    for (const Picture::Block& block : picture_.blocks) {
+      std::string points;
+      for (const Vec2& vertex : block.outline) {
+        const Vec2 p = at(vertex);
+        fmt::format_to(std::back_inserter(points), "{:.2f},{:.2f} ", p.x(), p.y());
+      }
+      points.pop_back();
+      page_.print("<polygon points=\"{}\" fill=\"{}\" {}><title>{}</title></polygon>\n", points, fill_of(block), stroke, tooltip(block));
+      if (block.fixed) page_.print("<polygon points=\"{}\" fill=\"url(#fixed)\" pointer-events=\"none\"/>\n", points);
+    }
   }
 
+  std::string tooltip(const Picture::Block& block) const {
+    if (!picture_.scale || block.fixed) return escaped(block.name);
+    return escaped(fmt::format("{}: {} {:.4g}", block.name, picture_.scale->quantity, block.value));
+  }
+
+  void draw_blocks_by_colour() {
+    std::map<std::string, PathData> paths;
+    Polygon outline;
+    for (const Picture::Block& block : picture_.blocks) {
+      Picture::Block rounded{"", {}, block.colour, block.fixed, block.value};
+      if (picture_.scale && picture_.scale->largest > 0.0)
+        rounded.value = picture_.scale->largest * std::round(block.value / picture_.scale->largest * colour_classes) / colour_classes;
+      outline.clear();
+      for (const Vec2& vertex : block.outline) outline.push_back(at(vertex));
+      paths[fill_of(rounded)].polygon(outline);
+    }
+    for (const auto& [fill, path] : paths) {
+      page_.path(path, fmt::format("fill=\"{}\" stroke=\"{}\" stroke-linejoin=\"round\"", fill, outline_colour), outline_width());
+    }
+  }
+
+  void draw_joints() {
+    std::map<JointDrawing, PathData> paths;
+    for (const Picture::Joint& joint : picture_.joints) {
+      if (joint.state == JointDrawing::plain || joint.state == JointDrawing::sticking) continue;  // as the outlines have them
+      if (joint.from == joint.to) {
+        paths[joint.state].dot(at(joint.from));
+      } else {
+        paths[joint.state].segment(at(joint.from), at(joint.to));
+      }
+    }
+    const double width = std::clamp(0.06 * block_size_, 0.5, 3.0);
+    for (const auto& [state, path] : paths) {
+      const bool open = state == JointDrawing::open;
+      page_.path(path, fmt::format("class=\"{}\" fill=\"none\" stroke=\"{}\" stroke-linecap=\"round\"", open ? "open" : "sliding",
+                                   open ? open_colour : sliding_colour), width);
+    }
+  }
+
+  /// [px] Of the widest line that stands for a size.
+  double widest_line() const { return std::clamp(0.3 * block_size_, 1.5, 14.0); }
+
+  struct SizedLine {
+    std::vector<std::pair<Vec2, Vec2>> pieces;
+    double size = 0.0;
+  };
+
+  /// Lines whose width is their size over the largest, in paths by width where there are many.
+  void draw_sized_lines(const std::vector<SizedLine>& lines, double largest, const char* name, const char* colour, double opacity) {
+    if (lines.empty()) return;
+    page_.print("<g class=\"{}\" fill=\"none\" stroke=\"{}\" stroke-opacity=\"{:g}\" stroke-linecap=\"round\" stroke-linejoin=\"round\">\n", name, colour,
+                opacity);
+    const bool single = lines.size() <= most_single_lines;
+    std::map<int, PathData> paths;
+    for (const SizedLine& line : lines) {
+      if (line.size < least_drawn_part * largest) continue;
+      PathData own;
+      PathData& data = single ? own : paths[static_cast<int>(std::ceil(line.size / largest * width_classes))];
+      for (const auto& [from, to] : line.pieces) data.segment(at(from), at(to));
+      if (single) page_.path(own, "class=\"sized\"", widest_line() * line.size / largest);
+    }
+    for (const auto& [width, path] : paths) page_.path(path, "class=\"sized\"", widest_line() * width / width_classes);
+    page_.print("</g>\n");
+  }
+
+  void draw_forces() {
+    std::vector<SizedLine> lines;
+    for (const Picture::Force& force : picture_.forces) {
+      largest_force_ = std::max(largest_force_, force.size);
+      lines.push_back({{{force.towards_a, force.point}, {force.point, force.towards_b}}, force.size});
+    }
+    draw_sized_lines(lines, largest_force_, "forces", force_colour, 0.72);
+  }
+
+  void draw_cracks() {
+    std::vector<SizedLine> lines;
+    for (const Picture::Crack& crack : picture_.cracks) {
+      largest_opening_ = std::max(largest_opening_, crack.opening);
+      lines.push_back({{{crack.from, crack.to}}, crack.opening});
+    }
+    std::erase_if(lines, [](const SizedLine& line) { return line.size <= 0.0; });
+    draw_sized_lines(lines, largest_opening_, "cracks", open_colour, 0.8);
+  }
+
+  /// A line with a head at its end.
+  void draw_arrow(const Vec2& from, const Vec2& to, double head, const std::string& colour, double width) {
+    const Vec2 way = to - from;
+    const double length = way.norm();
+    if (length <= 0.0) return;
+    const Vec2 along = way / length, across = perpendicular(along);
+    const double size = std::min(head, 0.6 * length);
+    const Vec2 neck = to - size * along;
+    page_.line(from, neck, fmt::format("stroke=\"{}\" stroke-width=\"{:.2f}\"", colour, width));
+    const Vec2 a = neck + 0.4 * size * across, b = neck - 0.4 * size * across;
+    page_.print("<path d=\"M{:.2f} {:.2f}L{:.2f} {:.2f}L{:.2f} {:.2f}z\" fill=\"{}\"/>\n", to.x(), to.y(), a.x(), a.y(), b.x(), b.y(), colour);
+  }
+
+  /// One arrow in each cell of a grid, or they would cover each other: the fastest there.
+  void draw_velocities() {
+    double fastest = 0.0;
+    for (const Picture::Arrow& arrow : picture_.velocities) fastest = std::max(fastest, arrow.vector.norm());
+    if (fastest == 0.0) return;
+    longest_arrow_ = std::clamp(1.1 * block_size_, 22.0, 60.0);
+    const double cell = 0.75 * longest_arrow_;
+    std::map<std::pair<long, long>, const Picture::Arrow*> shown;
+    for (const Picture::Arrow& arrow : picture_.velocities) {
+      if (arrow.vector.norm() < 0.03 * fastest) continue;
+      const Vec2 p = at(arrow.point) / cell;
+      const Picture::Arrow*& place = shown[{std::lround(p.x()), std::lround(p.y())}];
+      if (!place || place->vector.norm() < arrow.vector.norm()) place = &arrow;
+    }
+    page_.print("<g class=\"velocities\">\n");
+    for (const auto& [place, arrow] : shown) {
+      const Vec2 way = longest_arrow_ / fastest * Vec2(arrow->vector.x(), -arrow->vector.y());
+      draw_arrow(at(arrow->point), at(arrow->point) + way, 8.0, "black", 1.4);
+    }
+    page_.print("</g>\n");
+  }
+
+  void draw_loads() {
+    double largest = 0.0;
+    for (const Picture::Arrow& load : picture_.loads) largest = std::max(largest, load.vector.norm());
+    if (largest == 0.0) return;
+    page_.print("<g class=\"loads\">\n");
+    for (const Picture::Arrow& load : picture_.loads) {
+      // The head is where the load acts.
+      const double length = std::max(18.0, 70.0 * load.vector.norm() / largest);
+      const Vec2 way = length * Vec2(load.vector.x(), -load.vector.y()).normalized(), tip = at(load.point);
+      draw_arrow(tip - way, tip, 11.0, load_colour, 2.4);
+      if (picture_.loads.size() <= most_labels)
+        label(tip - way, force_text(load.vector.norm()), load_colour);
+    }
+    page_.print("</g>\n");
+  }
+
+  /// With a white rim, readable on blocks; on the side of the point where the page has room for it.
+  void label(const Vec2& p, const std::string& text, const char* colour) {
+    const bool to_the_left = p.x() + 8.0 + width_of(text, 13.0) > page_width_;
+    page_.write(to_the_left ? p.x() - 7.0 : p.x() + 7.0, std::max(p.y() - 6.0, top_ + 2.0), text, 13.0,
+                fmt::format(" fill=\"{}\" stroke=\"white\" stroke-width=\"3\" paint-order=\"stroke\"{}", colour, to_the_left ? " text-anchor=\"end\"" : "").c_str());
+  }
+
+  void draw_supports() {
+    if (picture_.supports.empty()) return;
+    page_.print("<g class=\"supports\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.8\">\n", support_colour);
+    for (const Picture::Spring& support : picture_.supports) {
+      const Vec2 p = at(support.point);
+      if (support.in_x) page_.print("<path d=\"M{:.2f} {:.2f}h-6l-2 -5l-4 10l-4 -10l-4 10l-2 -5h-4m0 -8v16\"/>\n", p.x(), p.y());
+      if (support.in_y) page_.print("<path d=\"M{:.2f} {:.2f}v6l-5 2l10 4l-10 4l10 4l-5 2v4m-8 0h16\"/>\n", p.x(), p.y());
+      page_.print("<circle cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"2.6\" fill=\"{}\"/>\n", p.x(), p.y(), support_colour);
+    }
+    page_.print("</g>\n");
+  }
+
+  void draw_points() {
+    if (picture_.points.empty()) return;
+    page_.print("<g class=\"points\">\n");
+    for (const Picture::Point& point : picture_.points) {
+      const Vec2 p = at(point.place);
+      page_.print("<circle cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"4\" fill=\"white\" stroke=\"black\" stroke-width=\"1.4\"><title>{}</title></circle>\n", p.x(), p.y(),
+                  escaped(point.name));
+      if (picture_.points.size() <= most_labels) label(p, point.name, "black");
+    }
+    page_.print("</g>\n");
+  }
+
+  /// The left end of the next entry of the legend, which is this wide; it begins a new row where the present one is full.
+  double next_entry(double width) {
+    if (legend_x_ > margin && legend_x_ + width > page_width_ - margin) {
+      legend_x_ = margin;
+      legend_y_ += 1.5 * line_height;
+    }
+    const double x = legend_x_;
+    legend_x_ += width + 22.0;
+    return x;
+  }
+
+  void add_swatch(const std::string& fill, const std::string& text, const char* over = nullptr) {
+    const double x = next_entry(36.0 + width_of(text, 14.0));
+    for (const std::string& colour : {fill, std::string(over ? over : "")}) {
+      if (!colour.empty())
+        page_.print("<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"28\" height=\"16\" fill=\"{}\" stroke=\"#333\" stroke-width=\"0.6\"/>\n", x, legend_y_ - 13.0, colour);
+    }
+    page_.write(x + 36.0, legend_y_, text);
+  }
+
+  void add_line(const char* name, const std::string& colour, double width, const std::string& text, double opacity = 1.0) {
+    const double x = next_entry(42.0 + width_of(text, 14.0));
+    page_.line({x, legend_y_ - 5.0}, {x + 34.0, legend_y_ - 5.0},
+               fmt::format("class=\"{}\" stroke=\"{}\" stroke-width=\"{:.3f}\" stroke-opacity=\"{:g}\" stroke-linecap=\"round\"", name, colour, width, opacity));
+    page_.write(x + 42.0, legend_y_, text);
+  }
+
+  void add_colour_bar(const Picture::Scale& scale) {
+    constexpr double length = 240.0;
+    const double text = width_of(scale.quantity, 14.0), x = next_entry(text + 12.0 + length + 20.0) + text + 12.0;
+    page_.write(x - text - 12.0, legend_y_, scale.quantity);
+    page_.print("<defs><linearGradient id=\"colours\">");
+    for (std::size_t i = 0; i < gradient.size(); ++i) {
+      const double part = static_cast<double>(i) / static_cast<double>(gradient.size() - 1);
+      page_.print("<stop offset=\"{:.4f}\" stop-color=\"{}\"/>", part, colour_at(part));
+    }
+    page_.print("</linearGradient></defs>\n<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:g}\" height=\"14\" fill=\"url(#colours)\" stroke=\"#333\" stroke-width=\"0.6\"/>\n", x,
+                legend_y_ - 12.0, length);
+    for (const double part : {0.0, 0.5, 1.0})
+      page_.write(x + part * length, legend_y_ + 16.0, fmt::format("{:.3g}", part * scale.largest), 12.0, " text-anchor=\"middle\"");
+    legend_y_ += 14.0;
+  }
+
+  void add_scale_bar() {
+    const double length = round_length(std::min(0.25 * (box_.high.x() - box_.low.x()), 300.0 / scale_));
+    const double x = next_entry(scale_ * length + 60.0);
+    page_.print("<path class=\"scale\" d=\"M{:.2f},{:.2f} v8 H{:.2f} v-8\" fill=\"none\" stroke=\"black\" stroke-width=\"1.4\"/>\n", x, legend_y_ - 10.0,
+                x + scale_ * length);
+    page_.write(x + scale_ * length + 8.0, legend_y_, fmt::format("{:g} m", length));
+  }
+
+  void draw_legend() {
+    legend_y_ = top_ + scale_ * (box_.high.y() - box_.low.y()) + legend_gap + 14.0;
+    legend_x_ = margin;
+    add_scale_bar();
+    if (picture_.scale) add_colour_bar(*picture_.scale);
+    if (!picture_.scale) {
+      std::vector<char> used(picture_.colour_names.size(), 0);
+      for (const Picture::Block& block : picture_.blocks) {
+        if (!block.fixed && static_cast<std::size_t>(block.colour) < used.size()) used[static_cast<std::size_t>(block.colour)] = 1;
+      }
+      for (std::size_t m = 0; m < picture_.colour_names.size(); ++m) {
+        if (used[m]) add_swatch(fills[m % fills.size()], picture_.colour_names[m]);
+      }
+    }
+    if (std::ranges::any_of(picture_.blocks, &Picture::Block::fixed)) add_swatch(fixed_fill, "fixed", "url(#fixed)");
+    const auto has = [&](JointDrawing state) {
+      return std::ranges::any_of(picture_.joints, [&](const Picture::Joint& joint) { return joint.state == state; });
+    };
+    if (has(JointDrawing::sticking)) add_line("sticking", outline_colour, 1.0, "joint that holds");
+    if (has(JointDrawing::sliding)) add_line("sliding", sliding_colour, 3.0, "slides");
+    if (has(JointDrawing::open)) add_line("open", open_colour, 3.0, "open");
+    if (largest_opening_ > 0.0) add_line("crack-scale", open_colour, widest_line(), fmt::format("opening {}", length_text(largest_opening_)), 0.8);
+    if (largest_force_ > 0.0) {
+      for (const double part : {1.0, 0.3}) {
+        const double size = part == 1.0 ? largest_force_ : round_length(part * largest_force_);
+        add_line("force-scale", force_colour, widest_line() * size / largest_force_, force_text(size), 0.72);
+      }
+    }
+    if (longest_arrow_ > 0.0) {
+      const double x = next_entry(longest_arrow_ + 8.0 + width_of(picture_.velocity_name, 14.0));
+      draw_arrow({x, legend_y_ - 5.0}, {x + longest_arrow_, legend_y_ - 5.0}, 8.0, "black", 1.4);
+      page_.write(x + longest_arrow_ + 8.0, legend_y_, picture_.velocity_name);
+    }
+    if (!picture_.loads.empty()) add_line("load-key", load_colour, 2.4, "load");
+    if (!picture_.supports.empty()) add_line("support-key", support_colour, 2.4, "support");
+    if (!picture_.points.empty()) {
+      const double x = next_entry(14.0 + width_of("measured point", 14.0));
+      page_.print("<circle cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"4\" fill=\"white\" stroke=\"black\" stroke-width=\"1.4\"/>\n", x + 4.0, legend_y_ - 5.0);
+      page_.write(x + 14.0, legend_y_, "measured point");
+    }
+  }
+
+  const Picture& picture_;
   Box box_;
-  double scale_ = 1.0;  ///< [px/m]
-  double top_ = 0.0;    ///< [px]
-  std::string text_;
+  double scale_ = 1.0;                  ///< [px/m]
+  double left_ = 0.0, top_ = 0.0;       ///< [px] of the blocks
+  double page_width_ = 0.0;             ///< [px]
+  double block_size_ = 0.0;             ///< [px] of the median free block
+  double legend_x_ = 0.0, legend_y_ = 0.0;  ///< [px]
+  double largest_force_ = 0.0, largest_opening_ = 0.0, longest_arrow_ = 0.0;
+  std::vector<std::string> title_lines_, note_lines_;
+  SvgPage page_;
 };
 
 }  // namespace
 
-std::string svg_drawing(const Scene& scene) {
-  Drawing drawing(scene);
-  for (const BlockInput& block : scene.blocks) drawing.add(block);
-  return drawing.finish(scene);
+std::string svg_drawing(const Picture& picture) {
+  return Drawing(picture).svg();
+}
+
+Picture picture_of(const Scene& scene) {
+  Picture picture;
+  picture.title = fmt::format("{} ({} blocks)", scene.title.empty() ? "Blocks" : scene.title, scene.blocks.size());
+  for (const Material& material : scene.materials) picture.colour_names.push_back(material.name);
+  for (const BlockInput& block : scene.blocks) picture.blocks.push_back({block.name, block.vertices, block.material, block.fixed, 0.0});
+  for (const Support& s : scene.supports) picture.supports.push_back({s.point, s.stiffness.x() > 0.0, s.stiffness.y() > 0.0});
+  for (const Load& load : scene.loads) picture.loads.push_back({load.point, load.force});
+  for (const MeasuredPoint& point : scene.measured_points) picture.points.push_back({point.name, point.point});
+  return picture;
 }
 
 }  // namespace openclose

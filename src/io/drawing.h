@@ -1,14 +1,78 @@
-// A drawing of the blocks of a scene.
+// Drawings of blocks as SVG: a scene, or a state of a result. What is to be drawn is data; how it looks is decided in one place.
 #pragma once
 
+#include <optional>
 #include <string>
+#include <vector>
 
+#include "openclose/geometry/polygon.h"
 #include "openclose/scene/scene.h"
 
 namespace openclose {
 
-/// The blocks as an SVG document: one polygon each, with the block's name as its tooltip; a colour for each material, named below;
-/// fixed blocks darker and dotted; the title above, a scale bar of a round length in metres.
-std::string svg_drawing(const Scene& scene);
+/// What a joint does, or a piece of it.
+enum class JointDrawing { plain, sticking, sliding, open };
+
+/// Everything in metres, newtons and seconds, x to the right and y upwards.
+struct Picture {
+  struct Block {
+    std::string name;
+    Polygon outline;
+    int colour = 0;  ///< index into colour_names, where blocks have no value
+    bool fixed = false;
+    double value = 0.0;  ///< in the unit of the scale
+  };
+  /// Colours for a number, from 0 to the largest one.
+  struct Scale {
+    std::string quantity;  ///< with its unit
+    double largest = 0.0;
+  };
+  struct Joint {
+    Vec2 from = Vec2::Zero(), to = Vec2::Zero();
+    JointDrawing state = JointDrawing::plain;
+  };
+  /// The resultant between two blocks, drawn through its point towards either of them.
+  struct Force {
+    Vec2 point = Vec2::Zero(), towards_a = Vec2::Zero(), towards_b = Vec2::Zero();
+    double size = 0.0;  ///< [N]
+  };
+  struct Crack {
+    Vec2 from = Vec2::Zero(), to = Vec2::Zero();
+    double opening = 0.0;  ///< [m]
+  };
+  /// A velocity of a point, or a load on it.
+  struct Arrow {
+    Vec2 point = Vec2::Zero(), vector = Vec2::Zero();
+  };
+  struct Spring {
+    Vec2 point = Vec2::Zero();
+    bool in_x = false, in_y = false;
+  };
+  struct Point {
+    std::string name;
+    Vec2 place = Vec2::Zero();
+  };
+
+  std::string title;
+  std::vector<std::string> notes;  ///< lines below the title
+  std::vector<Block> blocks;
+  std::vector<std::string> colour_names;  ///< a colour each, for the legend
+  std::optional<Scale> scale;
+  std::vector<Joint> joints;
+  std::vector<Force> forces;
+  std::vector<Crack> cracks;
+  std::vector<Arrow> velocities;
+  std::string velocity_name;  ///< for the legend
+  std::vector<Arrow> loads;
+  std::vector<Spring> supports;
+  std::vector<Point> points;
+};
+
+/// An SVG document: one polygon a block with its name as its tooltip, or, of many blocks, one path a colour; fixed blocks dotted; what is drawn is
+/// explained below, with a scale bar of a round length in metres and scales for what has a size. Widths of lines follow the size of the blocks.
+std::string svg_drawing(const Picture& picture);
+
+/// The blocks of a scene, a colour for each material, with supports, loads and measured points.
+Picture picture_of(const Scene& scene);
 
 }  // namespace openclose

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <string_view>
 
 #include "openclose/core/error.h"
 
@@ -11,10 +12,13 @@ namespace openclose {
 namespace {
 
 /// What grows with an analysis, so that one that is broken off can go on from there.
-constexpr const char* growing_results[] = {"history.csv", "energy.csv", "blocks.csv", checkpoint_name};
+constexpr const char* growing_results[] = {"history.csv",      "energy.csv", "blocks.csv",          "contacts.csv",
+                                           "block_states.csv", "cracks.csv", "contact_history.csv", checkpoint_name};
 /// What comes at its end.
-constexpr const char* last_results[] = {"contacts.csv",   "trials.csv",   "mechanism.csv",      "curve.csv",
-                                        "milestones.csv", "summary.json", "checkpoint.bin.part"};
+constexpr const char* last_results[] = {"block_properties.csv", "trials.csv",   "mechanism.csv",       "curve.csv",
+                                        "milestones.csv",       "summary.json", "checkpoint.bin.part", "drawing.svg"};
+/// The first line of the scene that belongs to the results: a file of that name without it is somebody's own.
+constexpr std::string_view scene_heading = "# The scene as openclose has read it. The next run here writes it anew: copy it before you change it.\n";
 
 [[noreturn]] void fail_unwritable(const std::string& path) {
   throw InputError({path, 0}, "", "cannot be written", "a file in a folder that exists or can be made, and may be written to");
@@ -77,6 +81,28 @@ OutputFolder::OutputFolder(const std::string& path) : path_(path) {
   };
   std::ranges::for_each(growing_results, require_replaceable_name);
   std::ranges::for_each(last_results, require_replaceable_name);
+  require_replaceable_name(scene_copy_name);
+  if (std::filesystem::exists(path_of(scene_copy_name)) && !has_own_scene_copy()) {
+    throw InputError({path_of(scene_copy_name), 0}, "", "is there and has not been written by openclose", "-o with another folder");
+  }
+}
+
+bool OutputFolder::has_own_scene_copy() const {
+  std::ifstream file(path_of(scene_copy_name), std::ios::binary);
+  std::string heading(scene_heading.size(), ' ');
+  return file.read(heading.data(), static_cast<std::streamsize>(heading.size())) && heading == scene_heading;
+}
+
+void OutputFolder::require_other_than(const std::string& scene_file) const {
+  std::error_code unknown;
+  if (std::filesystem::equivalent(scene_file, path_of(scene_copy_name), unknown))
+    throw InputError({scene_file, 0}, "", "this is where the scene would be written as it was read", "-o with another folder");
+}
+
+void OutputFolder::write_scene_copy(const std::string& text) const {
+  std::ofstream file = open(scene_copy_name);
+  file << scene_heading << text;
+  finish(file, path_of(scene_copy_name));
 }
 
 void OutputFolder::remove(const char* name) const {
@@ -92,6 +118,7 @@ void OutputFolder::remove_results() const {
 
 void OutputFolder::remove_last_results() const {
   for (const char* name : last_results) remove(name);
+  if (has_own_scene_copy()) remove(scene_copy_name);
 }
 
 bool OutputFolder::has(const std::string& checkpoint_file) const {

@@ -9,11 +9,16 @@
 namespace openclose {
 
 inline constexpr const char* checkpoint_name = "checkpoint.bin";
+inline constexpr const char* scene_copy_name = "scene_as_read.toml";
 
 class OutputFolder {
  public:
   /// Creates the folder if it is missing. Throws InputError if the files of a run cannot be written there.
   explicit OutputFolder(const std::string& path);
+  /// Throws InputError if this scene, which is to be read, is the file that write_scene_copy() would write over.
+  void require_other_than(const std::string& scene_file) const;
+  /// The scene as it was read, with its blocks cut and its overrides applied.
+  void write_scene_copy(const std::string& text) const;
 
   /// Removes what an earlier run or factor of safety has left, by the names that this program gives; nothing else. Throws WriteError if it cannot.
   void remove_results() const;
@@ -31,6 +36,7 @@ class OutputFolder {
 
  private:
   void remove(const char* name) const;
+  bool has_own_scene_copy() const;
 
   std::string path_;
 };

@@ -104,12 +104,14 @@ void RunTable::require_written() const {
 }
 
 HistoryFile::HistoryFile(const OutputFolder& folder, const RestartPoint* restart)
-    : RunTable(folder, "history.csv", "time_s,point,displacement_x_m,displacement_y_m,rotation_rad,velocity_x_m_per_s,velocity_y_m_per_s", restart) {}
+    : RunTable(folder, "history.csv", "time_s,point,displacement_x_m,displacement_y_m,rotation_rad,velocity_x_m_per_s,velocity_y_m_per_s,"
+               "angular_velocity_rad_per_s",
+               restart) {}
 
 void HistoryFile::add(double time, const std::vector<PointMotion>& motions) {
   for (const PointMotion& m : motions) {
-    fmt::print(file_, "{:.17g},{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g}\n", time, field(m.name), m.displacement.x(), m.displacement.y(), m.rotation,
-               m.velocity.x(), m.velocity.y());
+    fmt::print(file_, "{:.17g},{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g}\n", time, field(m.name), m.displacement.x(), m.displacement.y(),
+               m.rotation, m.velocity.x(), m.velocity.y(), m.angular_velocity);
   }
   require_written();
 }
@@ -140,18 +142,127 @@ void BlocksFile<N>::add(const std::string& state, const Scene& scene, const Bloc
 }
 
 template <int N>
-void write_contacts(const OutputFolder& folder, const std::string& state, const Scene& scene, const BlockSystem<N>& system,
-                    const std::vector<Contact>& contacts) {
-  std::ofstream file = folder.open("contacts.csv");
-  file << "state,block_a,block_b,x_m,y_m,normal_x,normal_y,length_m,gap_m,normal_force_n,shear_force_n,status\n";
+ContactsFile<N>::ContactsFile(const OutputFolder& folder, const RestartPoint* restart)
+    : RunTable(folder, "contacts.csv",
+               "state,block_a,block_b,x_m,y_m,normal_x,normal_y,length_m,gap_m,normal_force_n,shear_force_n,status", restart) {}
+
+template <int N>
+void ContactsFile<N>::add(const std::string& state, const Scene& scene, const BlockSystem<N>& system, const std::vector<Contact>& contacts) {
   const auto still = Motion<N>::Unknowns::Zero().eval();
   for (const Contact& c : contacts) {
     const Vec2 p = system.position(c.vertex_block, c.vertex) + system.origin();
     const Vec2 n = ContactKinematics<N>(system, c, still, still).normal;
-    fmt::print(file, "{},{},{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{}\n", state, field(scene.blocks[c.vertex_block].name),
+    fmt::print(file_, "{},{},{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{}\n", state, field(scene.blocks[c.vertex_block].name),
                field(scene.blocks[c.edge_block].name), p.x(), p.y(), n.x(), n.y(), c.length, c.gap, c.normal_force, c.shear_force, name_of(c.status));
   }
-  finish(file, folder.path_of("contacts.csv"));
+  require_written();
+}
+
+template <int N>
+BlockStatesFile<N>::BlockStatesFile(const OutputFolder& folder, const RestartPoint* restart)
+    : RunTable(folder, "block_states.csv",
+               "state,time_s,block,x_m,y_m,displacement_x_m,displacement_y_m,rotation_rad,velocity_x_m_per_s,velocity_y_m_per_s,"
+               "angular_velocity_rad_per_s",
+               restart) {}
+
+template <int N>
+void BlockStatesFile<N>::add_place(const std::string& state, const std::string& time, const Scene& scene, const BlockSystem<N>& system, int b) {
+  const Vec2 p = system.centroid(b) + system.origin();
+  const auto& d = system.displacement(b);
+  fmt::print(file_, "{},{},{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g}", state, time, field(scene.blocks[b].name), p.x(), p.y(), d[0], d[1],
+             Motion<N>::rotation(d));
+}
+
+template <int N>
+void BlockStatesFile<N>::add(const std::string& state, const Simulation<N>& simulation) {
+  const std::string time = fmt::format("{:.17g}", simulation.time());
+  for (int b = 0; b < simulation.system().block_count(); ++b) {
+    add_place(state, time, simulation.scene(), simulation.system(), b);
+    const auto v = simulation.velocity(b);
+    fmt::print(file_, ",{:.17g},{:.17g},{:.17g}\n", v[0], v[1], Motion<N>::rotation(v));
+  }
+  require_written();
+}
+
+template <int N>
+void BlockStatesFile<N>::add(const std::string& state, const Scene& scene, const BlockSystem<N>& system) {
+  for (int b = 0; b < system.block_count(); ++b) {
+    add_place(state, "", scene, system, b);
+    file_ << ",,,\n";
+  }
+  require_written();
+}
+
+template <int N>
+CracksFile<N>::CracksFile(const OutputFolder& folder, const Scene& scene, const RestartPoint* restart)
+    : RunTable(folder, "cracks.csv", "state,block_a,block_b,x1_m,y1_m,x2_m,y2_m,length_m,opening1_m,opening2_m,slip1_m,slip2_m", restart),
+      joints_(drawn_joints(scene)) {}
+
+template <int N>
+void CracksFile<N>::add(const std::string& state, const Scene& scene, const BlockSystem<N>& system) {
+  for (const DrawnJoint& joint : joints_) {
+    const JointMotion m = joint_motion(joint, system);
+    fmt::print(file_, "{},{},{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g}\n", state,
+               field(scene.blocks[joint.block_a].name), field(scene.blocks[joint.block_b].name), m.from.middle.x(), m.from.middle.y(),
+               m.to.middle.x(), m.to.middle.y(), (joint.to_b - joint.from_b).norm(), m.from.opening, m.to.opening, m.from.slip, m.to.slip);
+  }
+  require_written();
+}
+
+ContactHistoryFile::ContactHistoryFile(const OutputFolder& folder, const RestartPoint* restart)
+    : RunTable(folder, "contact_history.csv", "time_s,contact,normal_force_n,shear_force_n,gap_m,slip_m,status,closed_contacts", restart) {}
+
+void ContactHistoryFile::add(double time, const std::vector<ContactMotion>& motions) {
+  for (const ContactMotion& m : motions) {
+    fmt::print(file_, "{:.17g},{},{:.17g},{:.17g},{:.17g},{:.17g},{},{}\n", time, field(m.name), m.normal_force, m.shear_force, m.gap, m.slip,
+               name_of(m.status), m.closed);
+  }
+  require_written();
+}
+
+template <int N>
+StateTables<N>::StateTables(const OutputFolder& folder, const Scene& scene, const RestartPoint* restart)
+    : blocks_(folder, restart), contacts_(folder, restart), states_(folder, restart), cracks_(folder, scene, restart) {}
+
+template <int N>
+void StateTables<N>::add(const std::string& state, const Simulation<N>& simulation, const std::vector<Contact>& contacts) {
+  blocks_.add(state, simulation);
+  contacts_.add(state, simulation.scene(), simulation.system(), contacts);
+  states_.add(state, simulation);
+  cracks_.add(state, simulation.scene(), simulation.system());
+}
+
+template <int N>
+void StateTables<N>::add(const NamedState<N>& state, const Scene& scene) {
+  blocks_.add(state.name, scene, state.system);
+  contacts_.add(state.name, scene, state.system, state.contacts);
+  states_.add(state.name, scene, state.system);
+  cracks_.add(state.name, scene, state.system);
+}
+
+template <int N>
+std::vector<std::pair<std::string, std::uint64_t>> StateTables<N>::written() {
+  return {blocks_.written(), contacts_.written(), states_.written(), cracks_.written()};
+}
+
+template <int N>
+void StateTables<N>::close() {
+  blocks_.close();
+  contacts_.close();
+  states_.close();
+  cracks_.close();
+}
+
+template <int N>
+void write_block_properties(const OutputFolder& folder, const Scene& scene, const BlockSystem<N>& system) {
+  std::ofstream file = folder.open("block_properties.csv");
+  file << "block,material,fixed,area_m2,mass_kg\n";
+  for (int b = 0; b < system.block_count(); ++b) {
+    const BlockInput& block = scene.blocks[b];
+    fmt::print(file, "{},{},{},{:.17g},{:.17g}\n", field(block.name), field(scene.materials[block.material].name), block.fixed ? 1 : 0,
+               system.block(b).area, system.block(b).mass[0]);
+  }
+  finish(file, folder.path_of("block_properties.csv"));
 }
 
 void write_mechanism(const OutputFolder& folder, const Scene& scene, const std::vector<FailingBlock>& blocks) {
@@ -223,6 +334,19 @@ nlohmann::ordered_json settling_json(const SettleResult& settling) {
 }  // namespace
 
 namespace {
+
+/// Where something is held, pushed or measured: points of the drawing.
+void add_points(const Scene& scene, nlohmann::ordered_json& j) {
+  using nlohmann::ordered_json;
+  const auto pair = [](const Vec2& v) { return ordered_json::array({v.x(), v.y()}); };
+  j["supports"] = j["loads"] = j["measured_points"] = ordered_json::array();
+  for (const Support& s : scene.supports)
+    j["supports"].push_back({{"block", scene.blocks[s.block].name}, {"point_m", pair(s.point)}, {"stiffness_n_per_m", pair(s.stiffness)}});
+  for (const Load& l : scene.loads)
+    j["loads"].push_back({{"block", scene.blocks[l.block].name}, {"point_m", pair(l.point)}, {"force_n", pair(l.force)}});
+  for (const MeasuredPoint& p : scene.measured_points)
+    j["measured_points"].push_back({{"name", p.name}, {"block", scene.blocks[p.block].name}, {"point_m", pair(p.point)}});
+}
 
 template <int N>
 void add_factor(const FactorOfSafety<N>& safety, const Scene& scene, nlohmann::ordered_json& j) {
@@ -325,6 +449,8 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
       {"checkpoint_every_s", scene.checkpoint_every},
       {"milestones_m", scene.milestones},
       {"snapshots_s", scene.snapshot_times},
+      {"snapshots_every_s", scene.snapshots_every},
+      {"vtk", scene.vtk},
       {"settle",
        {{"criterion", word_for(settle_criterion_words, scene.settle.criterion)},
         {"unbalanced_fraction", scene.settle.unbalanced_fraction},
@@ -344,6 +470,7 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
         {"upper_limit", scene.strength_reduction.upper_limit},
         {"curve", scene.strength_reduction.curve},
         {"curve_time_s", optional_json(scene.strength_reduction.curve_time)}}}};
+  add_points(scene, j);
   j["warnings"] = summary.warnings;
   j["blocks"] = simulation.system().block_count();
   j["free_blocks"] = simulation.system().free_count() + static_cast<int>(simulation.system().resting_blocks().size());
@@ -438,7 +565,11 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
 }
 
 template class BlocksFile<3>;
-template void write_contacts<3>(const OutputFolder&, const std::string&, const Scene&, const BlockSystem<3>&, const std::vector<Contact>&);
+template class ContactsFile<3>;
+template class BlockStatesFile<3>;
+template class CracksFile<3>;
+template class StateTables<3>;
+template void write_block_properties<3>(const OutputFolder&, const Scene&, const BlockSystem<3>&);
 template void write_summary<3>(const OutputFolder&, const Summary&, const Simulation<3>&, const FactorOfSafety<3>*);
 
 }  // namespace openclose

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "openclose/analysis/drawn_joints.h"
+#include "openclose/analysis/measured_contacts.h"
 #include "openclose/analysis/strength_reduction.h"
 #include "openclose/io/checkpoint.h"
 #include "openclose/io/output_folder.h"
@@ -58,10 +60,70 @@ class BlocksFile : public RunTable {
   void add(const std::string& state, const Scene& scene, const BlockSystem<N>& system);
 };
 
-/// contacts.csv: every contact of a state.
+/// contacts.csv: every contact of each state, with the forces that act there.
 template <int N>
-void write_contacts(const OutputFolder& folder, const std::string& state, const Scene& scene, const BlockSystem<N>& system,
-                    const std::vector<Contact>& contacts);
+class ContactsFile : public RunTable {
+ public:
+  explicit ContactsFile(const OutputFolder& folder, const RestartPoint* restart = nullptr);
+  void add(const std::string& state, const Scene& scene, const BlockSystem<N>& system, const std::vector<Contact>& contacts);
+};
+
+/// block_states.csv: where the centroid of every block has gone, and how fast it moves. States without time have no velocities either.
+template <int N>
+class BlockStatesFile : public RunTable {
+ public:
+  explicit BlockStatesFile(const OutputFolder& folder, const RestartPoint* restart = nullptr);
+  void add(const std::string& state, const Simulation<N>& simulation);
+  void add(const std::string& state, const Scene& scene, const BlockSystem<N>& system);
+
+ private:
+  void add_place(const std::string& state, const std::string& time, const Scene& scene, const BlockSystem<N>& system, int b);
+};
+
+/// cracks.csv: opening and slip at the two ends of every joint of the drawing.
+template <int N>
+class CracksFile : public RunTable {
+ public:
+  CracksFile(const OutputFolder& folder, const Scene& scene, const RestartPoint* restart = nullptr);
+  void add(const std::string& state, const Scene& scene, const BlockSystem<N>& system);
+
+ private:
+  std::vector<DrawnJoint> joints_;
+};
+
+/// contact_history.csv: the measured contacts.
+class ContactHistoryFile : public RunTable {
+ public:
+  explicit ContactHistoryFile(const OutputFolder& folder, const RestartPoint* restart = nullptr);
+  void add(double time, const std::vector<ContactMotion>& motions);
+};
+
+/// The tables of states that belong together.
+template <int N>
+class StateTables {
+ public:
+  StateTables(const OutputFolder& folder, const Scene& scene, const RestartPoint* restart = nullptr);
+  /// The drawing: nothing has moved, and no force acts yet.
+  void add_drawing(const Simulation<N>& simulation) { blocks_.add("initial", simulation); }
+  /// A moment of a run.
+  void add(const std::string& state, const Simulation<N>& simulation) { add(state, simulation, simulation.every_contact()); }
+  void add(const std::string& state, const Simulation<N>& simulation, const std::vector<Contact>& contacts);
+  /// A state of a factor of safety.
+  void add(const NamedState<N>& state, const Scene& scene);
+  /// See RunTable::written().
+  std::vector<std::pair<std::string, std::uint64_t>> written();
+  void close();
+
+ private:
+  BlocksFile<N> blocks_;
+  ContactsFile<N> contacts_;
+  BlockStatesFile<N> states_;
+  CracksFile<N> cracks_;
+};
+
+/// block_properties.csv: what does not change.
+template <int N>
+void write_block_properties(const OutputFolder& folder, const Scene& scene, const BlockSystem<N>& system);
 
 /// mechanism.csv: the blocks that move when the scene fails.
 void write_mechanism(const OutputFolder& folder, const Scene& scene, const std::vector<FailingBlock>& blocks);

@@ -137,6 +137,11 @@ int block_at(const Value& value, const Vec2& point, const std::vector<BlockInput
   return found.front();
 }
 
+bool touches(const BlockInput& block, const Vec2& point) {
+  if (!Box::around(block.vertices).inflated(tolerance::farthest_point_from_joint_m).contains(point)) return false;
+  return distance_to_boundary(block.vertices, point) <= tolerance::farthest_point_from_joint_m;
+}
+
 /// Reads the keys block and point_m. Without the first, which blocks cut out of a domain have no use for, the point tells the block.
 class PointOfBlock {
  public:
@@ -191,6 +196,40 @@ MeasuredPoint read_measured_point(Table table, const Scene& scene, const NameLis
 
   point_names.add(table.at("name"), measured.name);
   place.check(scene);
+  return measured;
+}
+
+MeasuredContact read_measured_contact(Table table, const Scene& scene, const NameList& block_names, NameList& contact_names) {
+  MeasuredContact measured;
+  table.required("name", measured.name);
+  const bool has_a = table.optional("block_a", measured.block_a, block_names);
+  const bool has_b = table.optional("block_b", measured.block_b, block_names);
+  if (has_a && !has_b) table.required("block_b", measured.block_b, block_names);
+  if (has_b && !has_a) table.required("block_a", measured.block_a, block_names);
+  table.required("point_m", measured.point);
+  table.finish();
+
+  contact_names.add(table.at("name"), measured.name);
+  const Value value = table.at("point_m");
+  const std::string where = fmt::format("({}, {})", measured.point.x(), measured.point.y());
+  if (has_a) {
+    if (measured.block_a == measured.block_b) table.at("block_b").fail("this is block_a, too", "the name of another block");
+    for (const int b : {measured.block_a, measured.block_b}) {
+      if (!touches(scene.blocks[b], measured.point))
+        value.fail(fmt::format("{} does not lie on the boundary of {}", where, in_quotes(scene.blocks[b].name)), "a point of the joint between the two");
+    }
+    return measured;
+  }
+  std::vector<int> found;
+  for (std::size_t b = 0; b < scene.blocks.size(); ++b) {
+    if (touches(scene.blocks[b], measured.point)) found.push_back(static_cast<int>(b));
+  }
+  if (found.size() != 2) {
+    value.fail(fmt::format("{} lies on the boundaries of {} blocks", where, found.size()),
+               "a point of the joint between two blocks; where more of them meet, block_a and block_b name the two");
+  }
+  measured.block_a = found[0];
+  measured.block_b = found[1];
   return measured;
 }
 
@@ -287,6 +326,8 @@ void read_output(Table table, Scene& scene) {
   table.optional("checkpoint_every_s", scene.checkpoint_every, not_negative);
   const bool has_milestones = table.optional("milestones_m", scene.milestones, positive);
   const bool has_snapshots = table.optional("snapshots_s", scene.snapshot_times, not_negative);
+  table.optional("snapshots_every_s", scene.snapshots_every, not_negative);
+  table.optional("vtk", scene.vtk);
   table.finish();
 
   if (has_milestones) require_increasing(table.at("milestones_m"), scene.milestones);
@@ -341,6 +382,7 @@ Scene interpret(const toml::table& document, const std::string& file) {
   const std::vector<Table> supports = root.tables("support");
   const std::vector<Table> loads = root.tables("load");
   const std::vector<Table> measured_points = root.tables("measured_point");
+  const std::vector<Table> measured_contacts = root.tables("measured_contact");
   const Table base_motion = root.table("base_motion");
   const Table method = root.table("method");
   const Table step = root.table("step");
@@ -357,6 +399,7 @@ Scene interpret(const toml::table& document, const std::string& file) {
   NameList material_names("material");
   NameList block_names("block");
   NameList point_names("measured point");
+  NameList contact_names("measured contact");
   for (const Table& table : materials) scene.materials.push_back(read_material(table, scene.gravity, material_names));
   scene.joints = read_joints(joints, material_names);
   for (const Table& table : blocks) scene.blocks.push_back(read_block(table, scene.where.file, material_names, block_names));
@@ -365,6 +408,9 @@ Scene interpret(const toml::table& document, const std::string& file) {
   for (const Table& table : supports) scene.supports.push_back(read_support(table, scene, block_names));
   for (const Table& table : loads) scene.loads.push_back(read_load(table, scene, block_names));
   for (const Table& table : measured_points) scene.measured_points.push_back(read_measured_point(table, scene, block_names, point_names));
+  for (const Table& table : measured_contacts) {
+    scene.measured_contacts.push_back(read_measured_contact(table, scene, block_names, contact_names));
+  }
   scene.method = read_method(method, scene.where);
   if (base_motion.is_there()) {
     scene.base_motion = read_base_motion(base_motion, file);

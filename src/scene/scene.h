@@ -70,6 +70,13 @@ struct MeasuredPoint {
   Vec2 point = Vec2::Zero();  ///< [m]
 };
 
+/// The joint between two blocks at a point of it, of which forces, gap and slip are recorded.
+struct MeasuredContact {
+  std::string name;
+  int block_a = 0, block_b = 0;
+  Vec2 point = Vec2::Zero();  ///< [m] on the boundaries of both, as drawn
+};
+
 enum class BaseMotionKind {
   pulses,    ///< rectangular ones; where they overlap they add up
   harmonic,  ///< amplitude sin(2 pi frequency t + phase) from time 0 on
@@ -254,6 +261,7 @@ struct Scene {
   std::vector<Support> supports;
   std::vector<Load> loads;
   std::vector<MeasuredPoint> measured_points;
+  std::vector<MeasuredContact> measured_contacts;
   std::optional<BaseMotionInput> base_motion;
   MethodInput method;
   StepInput step;
@@ -266,7 +274,9 @@ struct Scene {
   double output_every = 0.0;                   ///< [s] interval of the history rows; 0: every step
   double checkpoint_every = 0.0;               ///< [s] interval of the checkpoints; 0: none, not even at the end
   std::vector<double> milestones;              ///< [m] displacements of the first measured point to be timed, increasing
-  std::vector<double> snapshot_times;          ///< [s] at which the blocks are drawn, increasing
+  std::vector<double> snapshot_times;          ///< [s] at which the state is written, increasing
+  double snapshots_every = 0.0;                ///< [s] interval at which it is written besides; 0: never
+  bool vtk = false;                            ///< the states are written for ParaView, too
   SettleInput settle;
   StrengthReductionInput strength_reduction;
 

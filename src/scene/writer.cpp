@@ -116,6 +116,13 @@ void write_points(Text& text, const Scene& scene) {
     text.line("block", std::string_view(scene.blocks[measured.block].name));
     text.line("point_m", measured.point);
   }
+  for (const MeasuredContact& measured : scene.measured_contacts) {
+    text.header("[[measured_contact]]");
+    text.line("name", std::string_view(measured.name));
+    text.line("block_a", std::string_view(scene.blocks[measured.block_a].name));
+    text.line("block_b", std::string_view(scene.blocks[measured.block_b].name));
+    text.line("point_m", measured.point);
+  }
 }
 
 void write_record(Text& text, const std::string& direction, const AccelerationRecord& record) {
@@ -213,6 +220,8 @@ void write_run(Text& text, const Scene& scene) {
   text.line("checkpoint_every_s", scene.checkpoint_every);
   text.line("milestones_m", scene.milestones);
   text.line("snapshots_s", scene.snapshot_times);
+  text.line("snapshots_every_s", scene.snapshots_every);
+  text.line("vtk", scene.vtk);
 }
 
 void write_statics(Text& text, const SettleInput& settle, const StrengthReductionInput& reduction) {

@@ -32,6 +32,10 @@ std::set<std::string> entries(const std::string& folder) {
   return names;
 }
 
+/// What a run has written before it ends.
+const std::set<std::string> tables_of_run = {"block_properties.csv", "block_states.csv", "blocks.csv", "contacts.csv", "cracks.csv",
+                                             "energy.csv",           "history.csv",      "scene_as_read.toml"};
+
 }  // namespace
 
 TEST_CASE("help and version", "[cli]") {
@@ -57,7 +61,9 @@ TEST_CASE("run writes its files and one line", "[cli]") {
   CHECK_THAT(result.out, StartsWith("soft: 2 blocks, ") && ContainsSubstring("written to out"));
   CHECK(std::count(result.out.begin(), result.out.end(), '\n') == 1);
   const std::string out = place.folder() / "out";
-  CHECK(entries(out) == std::set<std::string>{"history.csv", "energy.csv", "blocks.csv", "contacts.csv", "summary.json"});
+  std::set<std::string> written = tables_of_run;
+  written.insert("summary.json");
+  CHECK(entries(out) == written);
   CHECK(place.folder().entries() == std::set<std::string>{"scene.toml", "out"});
 
   const auto history = lines_of(out + "/history.csv");
@@ -69,7 +75,7 @@ TEST_CASE("run writes its files and one line", "[cli]") {
 
   // Settled: W/(kn L) with W = 2700 * 9.81 on 1 m.
   const auto contacts = lines_of(out + "/contacts.csv");
-  REQUIRE(contacts.size() == 3);
+  REQUIRE(contacts.size() == 1 + 2 * 2);
   CHECK(std::stod(fields_of(contacts[1])[8]) == Approx(-2700.0 * 9.81 / 1e9).epsilon(1e-6));
 
   const auto summary = summary_in(out);
@@ -114,7 +120,10 @@ TEST_CASE("a folder has the results of one run only, beside files of the user's 
   const Workplace place(openclose::test::block_on_incline(30.0));
   const auto in_out = [&] { return entries(place.folder() / "out"); };
   const std::string run = "run scene.toml -o out --dt 0.001 --end 0.01 ";
-  const std::set<std::string> bare = {"history.csv", "energy.csv", "blocks.csv", "contacts.csv", "summary.json", "mine.csv"};
+  std::set<std::string> killed = tables_of_run;
+  killed.insert("mine.csv");
+  std::set<std::string> bare = killed;
+  bare.insert("summary.json");
   REQUIRE(place.run(run + "--set output.milestones_m=[9] --set output.checkpoint_every_s=1").status == 0);
   place.folder().write("out/mine.csv", "kept");
   place.folder().write("out/checkpoint.bin.part", "of a run that was killed");
@@ -130,13 +139,14 @@ TEST_CASE("a folder has the results of one run only, beside files of the user's 
                    "strength_reduction.curve=[1.1] "
                    "--set strength_reduction.curve_time_s=0.01")
               .status == 0);
-    CHECK(in_out() == std::set<std::string>{"blocks.csv", "contacts.csv", "trials.csv", "curve.csv", "summary.json", "mine.csv"});
+    CHECK(in_out() == std::set<std::string>{"block_properties.csv", "block_states.csv", "blocks.csv", "contacts.csv", "cracks.csv", "curve.csv", "mine.csv",
+                                            "scene_as_read.toml", "summary.json", "trials.csv"});
     CHECK(place.run(run).status == 0);
     CHECK(in_out() == bare);
   }
   SECTION("a run that is killed leaves no summary of the one before") {
     place.run("run scene.toml -o out --dt 0.001 --end 1000", "ulimit -t 1; ");
-    CHECK(in_out() == std::set<std::string>{"history.csv", "energy.csv", "blocks.csv", "mine.csv"});
+    CHECK(in_out() == killed);
   }
   SECTION("a run that is refused") {
     const auto before = in_out();
@@ -164,7 +174,7 @@ TEST_CASE("a result that cannot be written to its end breaks the command off", "
   const std::string out = place.folder() / "out";
   // Long before the run would end.
   broken_off_at("out/history.csv", "run scene.toml --dt 0.001 --end 1000 -o " + out);
-  CHECK(entries(place.folder() / "out") == std::set<std::string>{"history.csv", "energy.csv", "blocks.csv"});
+  CHECK(entries(place.folder() / "out") == tables_of_run);
   const std::string cut =
       "[domain]\nmaterial = 'rock'\nvertices_m = [[-30, -9], [30, -9], [30, -3], [-30, -3]]\n"
       "[[joint_set]]\ndip_deg = 90\nspacing_m = 0.1\norigin_m = [0, 0]\n";
@@ -178,7 +188,7 @@ TEST_CASE("the same run twice gives the same files bit for bit", "[cli]") {
   const std::string arguments = " --dt 0.001 --end 0.1 --start unloaded";
   CHECK(place.run("run scene.toml -o a" + arguments).status == 0);
   CHECK(place.run("run scene.toml -o b" + arguments).status == 0);
-  for (const char* file : {"history.csv", "energy.csv", "blocks.csv", "contacts.csv"}) {
+  for (const std::string& file : tables_of_run) {
     CHECK(text_of(place.folder() / "a/" + file) == text_of(place.folder() / "b/" + file));
   }
 }
@@ -232,7 +242,8 @@ TEST_CASE("factor of safety", "[cli]") {
   CHECK(result.errors.empty());
   CHECK_THAT(result.out, StartsWith("factor of safety 1.21") && ContainsSubstring("soft") && ContainsSubstring("limit analysis"));
   const std::string out = place.folder() / "out";
-  CHECK(entries(out) == std::set<std::string>{"blocks.csv", "contacts.csv", "mechanism.csv", "summary.json", "trials.csv"});
+  CHECK(entries(out) == std::set<std::string>{"block_properties.csv", "block_states.csv", "blocks.csv", "contacts.csv", "cracks.csv", "mechanism.csv",
+                                              "scene_as_read.toml", "summary.json", "trials.csv"});
   const auto summary = summary_in(out);
   CHECK(summary.at("command") == "fos");
   CHECK(summary.at("converged") == true);
@@ -357,7 +368,7 @@ TEST_CASE("a failing slope: reduced strength, milestones, snapshots, end by disp
 
   // CPU times differ from run to run and stand in summary.json and milestones.csv only.
   CHECK(place.run("run scene.toml -o again" + arguments).status == 0);
-  for (const char* file : {"history.csv", "energy.csv", "blocks.csv", "contacts.csv"}) {
+  for (const std::string& file : tables_of_run) {
     CHECK(text_of(place.folder() / "out/" + file) == text_of(place.folder() / "again/" + file));
   }
 }
@@ -426,4 +437,46 @@ TEST_CASE("help of check says what it does not do", "[cli]") {
   const CommandResult result = Workplace().run("check --help");
   CHECK(result.status == 0);
   CHECK_THAT(result.out, ContainsSubstring("whether it settles"));
+}
+
+TEST_CASE("the scene that a run has read is in its folder, and runs again to the same results", "[cli]") {
+  const Workplace place(openclose::test::block_on_incline(40.0));
+  const std::string common = " --set output.snapshots_every_s=0.02";
+  REQUIRE(place.run("run scene.toml -o a --dt 0.001 --end 0.05 --start unloaded --set joint[0].friction_angle_deg=20" + common).status == 0);
+  REQUIRE(place.run("run a/scene_as_read.toml -o b").status == 0);
+  for (const std::string& file : tables_of_run) CHECK(text_of(place.folder() / "a/" + file) == text_of(place.folder() / "b/" + file));
+  const std::string copy = text_of(place.folder() / "a/scene_as_read.toml");
+  CHECK_THAT(copy, ContainsSubstring("friction_angle_deg = 20"));
+
+  SECTION("but not in its own folder, where it would be written over") {
+    for (const std::string command : {"run", "fos"}) {
+      const CommandResult refused = place.run(command + " a/scene_as_read.toml -o a");
+      CHECK(refused.status == 2);
+      REQUIRE(refused.errors.size() == 1);
+      CHECK_THAT(refused.errors[0], ContainsSubstring("-o with another folder"));
+      CHECK(text_of(place.folder() / "a/scene_as_read.toml") == copy);
+      CHECK(entries(place.folder() / "a").count("summary.json") == 1);
+    }
+  }
+}
+
+TEST_CASE("measured contacts have their own history, in runs only", "[cli]") {
+  const Workplace place(block_on_base + "[[measured_contact]]\nname = 'foot'\npoint_m = [0.5, 0]\n");
+  REQUIRE(place.run("run scene.toml -o out --dt 0.001 --end 0.01").status == 0);
+  const auto lines = lines_of(place.folder() / "out/contact_history.csv");
+  REQUIRE(lines.size() == 1 + 11);
+  CHECK(lines[0] == "time_s,contact,normal_force_n,shear_force_n,gap_m,slip_m,status,closed_contacts");
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    const auto fields = fields_of(lines[i]);
+    CHECK(fields[1] == "foot");
+    CHECK(std::stod(fields[2]) == Approx(2700.0 * 9.81).epsilon(1e-6));
+    CHECK(std::abs(std::stod(fields[3])) < 1.0);
+    CHECK(std::stod(fields[4]) == Approx(-2700.0 * 9.81 / 1e9).epsilon(1e-6));
+    CHECK(fields[6] == "sticking");
+    CHECK(fields[7] == "2");
+  }
+  const CommandResult fos = place.run("fos scene.toml -o out");
+  CHECK(fos.errors.size() > 0);
+  CHECK_THAT(fos.errors[0], ContainsSubstring("measured_contact is for run"));
+  CHECK_FALSE(std::filesystem::exists(place.folder() / "out/contact_history.csv"));
 }

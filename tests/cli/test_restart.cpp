@@ -12,10 +12,10 @@ using openclose::test::Workplace;
 
 namespace {
 
-constexpr const char* motion = " --dt 0.001 --start unloaded --set output.every_s=0.003 --set output.snapshots_s=[0.02,0.1]";
+constexpr const char* motion = " --dt 0.001 --start unloaded --set output.every_s=0.003 --set output.snapshots_s=[0.02,0.1] --set output.snapshots_every_s=0.03";
 
 void check_same_tables(const Workplace& place, const std::string& a, const std::string& b) {
-  for (const char* table : {"history.csv", "energy.csv", "blocks.csv", "contacts.csv"}) {
+  for (const char* table : {"history.csv", "energy.csv", "blocks.csv", "contacts.csv", "block_states.csv", "cracks.csv"}) {
     INFO(table);
     const std::string text = text_of(place.folder() / (a + "/" + table));
     CHECK(text.size() > 100);

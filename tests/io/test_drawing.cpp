@@ -32,7 +32,7 @@ TEST_CASE("drawings have up above, right on the right and one scale", "[io][draw
   Scene scene = test::empty_scene();
   scene.blocks = {test::fixed_block("base", test::rectangle(100.0, 50.0, 4.0, 1.0)),
                   test::free_block("tower", test::rectangle(103.0, 51.0, 1.0, 2.0))};
-  const std::string svg = svg_drawing(scene);
+  const std::string svg = svg_drawing(picture_of(scene));
   const Box base = box_of(svg, "base"), tower = box_of(svg, "tower");
   // Coordinates are written with two decimals.
   constexpr double rounding = 0.011;

@@ -110,6 +110,29 @@ TEST_CASE("results are removed by their names, nothing else is", "[io][output_fo
   CHECK(place.entries() == std::set<std::string>{"mine.txt", "history.csv.old"});
 }
 
+TEST_CASE("the copy of the scene takes the place of no other file", "[io][output_folder]") {
+  const TemporaryFolder place;
+  SECTION("its own is written over and removed") {
+    const OutputFolder folder(place.path());
+    folder.write_scene_copy("title = 'first'\n");
+    OutputFolder(place.path()).write_scene_copy("title = 'second'\n");
+    CHECK_THAT(test::text_of(place / scene_copy_name), ContainsSubstring("second") && !ContainsSubstring("first"));
+    folder.remove_results();
+    CHECK(place.entries().empty());
+  }
+  SECTION("somebody's own scene of that name stays, and the folder is refused") {
+    place.write(scene_copy_name, "title = 'mine'\n");
+    CHECK_THROWS_WITH(OutputFolder(place.path()), ContainsSubstring("scene_as_read.toml: is there and has not been written by openclose"));
+    CHECK(test::text_of(place / scene_copy_name) == "title = 'mine'\n");
+  }
+  SECTION("a copy that is itself the scene to be read is refused") {
+    const OutputFolder folder(place.path());
+    folder.write_scene_copy("title = 'first'\n");
+    CHECK_THROWS_AS(folder.require_other_than(place / scene_copy_name), InputError);
+    CHECK_NOTHROW(folder.require_other_than(place / "other.toml"));
+  }
+}
+
 TEST_CASE("a folder knows the checkpoints that lie in it", "[io][output_folder]") {
   const TemporaryFolder place, other;
   for (const TemporaryFolder* folder : {&place, &other}) folder->write("checkpoint.bin", "x");

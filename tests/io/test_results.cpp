@@ -63,20 +63,21 @@ TEST_CASE("history.csv", "[io][results]") {
       m.displacement = {x, -x};
       m.rotation = x;
       m.velocity = {-x, x};
+      m.angular_velocity = -x;
       file.add(x, {m, motion("q")});
     }
     file.close();
   }
   const auto lines = lines_of(place / "history.csv");
   REQUIRE(lines.size() == 1 + 2 * awkward.size());
-  CHECK(lines[0] == "time_s,point,displacement_x_m,displacement_y_m,rotation_rad,velocity_x_m_per_s,velocity_y_m_per_s");
+  CHECK(lines[0] == "time_s,point,displacement_x_m,displacement_y_m,rotation_rad,velocity_x_m_per_s,velocity_y_m_per_s,angular_velocity_rad_per_s");
   for (std::size_t i = 0; i < awkward.size(); ++i) {
     const double x = awkward[i];
     const auto fields = fields_of(lines[1 + 2 * i]);
-    REQUIRE(fields.size() == 7);
+    REQUIRE(fields.size() == 8);
     CHECK(fields[1] == "p");
-    const double expected[] = {x, 0.0, x, -x, x, -x, x};
-    for (int k : {0, 2, 3, 4, 5, 6}) CHECK(same_bits(number(fields[k]), expected[k]));
+    const double expected[] = {x, 0.0, x, -x, x, -x, x, -x};
+    for (int k : {0, 2, 3, 4, 5, 6, 7}) CHECK(same_bits(number(fields[k]), expected[k]));
     CHECK(fields_of(lines[2 + 2 * i])[1] == "q");
   }
 }
@@ -87,7 +88,7 @@ TEST_CASE("names that would break a row are quoted", "[io][results]") {
   file.add(0.0, {motion("plain name"), motion("a,b"), motion("say \"x\""), motion("two\nlines")});
   file.close();
   const std::string text = test::text_of(place / "history.csv");
-  const std::string zeros = ",0,0,0,0,0\n";
+  const std::string zeros = ",0,0,0,0,0,0\n";
   const std::string header = lines_of(place / "history.csv")[0] + "\n";
   CHECK(text == header + "0,plain name" + zeros + "0,\"a,b\"" + zeros + "0,\"say \"\"x\"\"\"" + zeros + "0,\"two\nlines\"" + zeros);
 }
@@ -155,7 +156,9 @@ TEST_CASE("contacts.csv tells what every contact carries", "[io][results]") {
   const TemporaryFolder place;
   Simulation<3> simulation(test::block_on_base());
   REQUIRE(settle(simulation).settled);
-  write_contacts(OutputFolder(place.path()), "final", simulation.scene(), std::as_const(simulation).system(), simulation.contacts());
+  ContactsFile<3> file(OutputFolder(place.path()));
+  file.add("final", simulation.scene(), std::as_const(simulation).system(), simulation.contacts());
+  file.close();
   const auto lines = lines_of(place / "contacts.csv");
   REQUIRE(lines.size() == 3);
   CHECK(lines[0] == "state,block_a,block_b,x_m,y_m,normal_x,normal_y,length_m,gap_m,normal_force_n,shear_force_n,status");

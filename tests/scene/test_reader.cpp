@@ -70,7 +70,7 @@ TEST_CASE("every key reaches its field", "[scene][reader]") {
       "[rest]\ntime_s = 0.5\ndisplacement_m = 2e-3\nacceleration_m_per_s2 = 0.75\n"
       "[run]\nstrength_reduction_factor = 1.5\nsettled_by = 'another'\n"
       "[end]\ntime_s = 15\ndisplacement_m = 40\n[output]\nevery_s = 16\ncheckpoint_every_s = 24\nmilestones_m = [10, 20.5]\nsnapshots_s = [0, "
-      "1.522]\n"
+      "1.522]\nsnapshots_every_s = 0.25\nvtk = true\n"
       "[settle]\nunbalanced_fraction = 1e-3\nfirst_dt_s = 17\nmax_steps = 18\nfailure_displacement_m = 19\n"
       "criterion = 'paper'\nrelative_displacement = 1e-6\nsteady_steps = 22\nmax_time_steps = 23\nunbalanced_force_n = 24\nkeep_bonds = false\n"
       "[strength_reduction]\nwidth = 0.125\nupper_limit = 20\ncurve = [1, 1.5]\ncurve_time_s = 21\n");
@@ -100,6 +100,8 @@ TEST_CASE("every key reaches its field", "[scene][reader]") {
   CHECK(scene.loads.at(0).force == Vec2(-8.0, 9.0));
   CHECK(scene.measured_points.at(0).name == "p");
   CHECK(scene.measured_points.at(0).point == Vec2(1.0, 0.0));
+  CHECK(scene.snapshots_every == 0.25);
+  CHECK(scene.vtk);
   const MethodInput& method = scene.method;
   CHECK(method.contact == "anything");
   CHECK(method.contact_where.line == 38);
@@ -194,4 +196,17 @@ TEST_CASE("polygons are put in order silently", "[scene][reader]") {
 TEST_CASE("points on the rim of their block, to six decimals, belong to it", "[scene][reader]") {
   const Scene scene = read_text(block_on_base + "[[load]]\nblock = 'block'\npoint_m = [1.0000009, 0.5]\nforce_n = [1, 0]\n");
   CHECK(scene.loads.at(0).point == Vec2(1.0000009, 0.5));
+}
+
+TEST_CASE("the two blocks of a measured contact are named, or found by its point", "[scene][reader]") {
+  const std::string contact = "[[measured_contact]]\nname = 'foot'\npoint_m = [0.5, 0]\n";
+  for (const std::string names : {"", "block_a = 'base'\nblock_b = 'block'\n"}) {
+    const Scene scene = read_text(block_on_base + contact + names);
+    REQUIRE(scene.measured_contacts.size() == 1);
+    CHECK(scene.measured_contacts[0].name == "foot");
+    CHECK(scene.measured_contacts[0].block_a == 0);
+    CHECK(scene.measured_contacts[0].block_b == 1);
+    CHECK(scene.measured_contacts[0].point == Vec2(0.5, 0.0));
+  }
+  CHECK(read_text(block_on_base + contact + "block_a = 'block'\nblock_b = 'base'\n").measured_contacts[0].block_a == 1);
 }

@@ -362,3 +362,20 @@ TEST_CASE("supports without stiffness", "[scene][reader][errors]") {
   CHECK(error_of(block_on_base + "[[support]]\nblock = 'block'\npoint_m = [0, 0]\nstiffness_n_per_m = [1, -1]\n") ==
         "25: support[0].stiffness_n_per_m[1]: -1 is out of range; accepted: a number >= 0");
 }
+
+TEST_CASE("measured contacts that are none", "[scene][reader][errors]") {
+  const auto error = [](const std::string& lines) { return error_of(block_on_base + "[[measured_contact]]\nname = 'c'\n" + lines); };
+  CHECK(error("point_m = [0.5, 0.5]\n") ==
+        "24: measured_contact[0].point_m: (0.5, 0.5) lies on the boundaries of 0 blocks; accepted: a point of the joint between two blocks; where more "
+        "of them meet, block_a and block_b name the two");
+  CHECK(error("point_m = [0.5, 1]\nblock_a = 'base'\nblock_b = 'block'\n") ==
+        "24: measured_contact[0].point_m: (0.5, 1) does not lie on the boundary of \"base\"; accepted: a point of the joint between the two");
+  CHECK(error("point_m = [0.5, 0]\nblock_a = 'base'\nblock_b = 'base'\n") ==
+        "26: measured_contact[0].block_b: this is block_a, too; accepted: the name of another block");
+  CHECK_THAT(error("point_m = [0.5, 0]\nblock_a = 'base'\n"), Catch::Matchers::ContainsSubstring("block_b"));
+}
+
+TEST_CASE("intervals of snapshots", "[scene][reader][errors]") {
+  CHECK(error_of(block_on_base + "[output]\nsnapshots_every_s = -1\n") ==
+        "23: output.snapshots_every_s: -1 is out of range; accepted: a number >= 0");
+}

@@ -123,6 +123,15 @@ void check_same(const Scene& a, const Scene& b) {
   CHECK(a.end_displacement == b.end_displacement);
   CHECK(a.milestones == b.milestones);
   CHECK(a.snapshot_times == b.snapshot_times);
+  CHECK(a.snapshots_every == b.snapshots_every);
+  CHECK(a.vtk == b.vtk);
+  REQUIRE(a.measured_contacts.size() == b.measured_contacts.size());
+  for (std::size_t i = 0; i < a.measured_contacts.size(); ++i) {
+    CHECK(a.measured_contacts[i].name == b.measured_contacts[i].name);
+    CHECK(a.measured_contacts[i].block_a == b.measured_contacts[i].block_a);
+    CHECK(a.measured_contacts[i].block_b == b.measured_contacts[i].block_b);
+    CHECK(a.measured_contacts[i].point == b.measured_contacts[i].point);
+  }
   CHECK(a.settle.unbalanced_fraction == b.settle.unbalanced_fraction);
   CHECK(a.settle.first_dt == b.settle.first_dt);
   CHECK(a.settle.max_steps == b.settle.max_steps);
@@ -224,6 +233,13 @@ Scene random_scene(unsigned seed) {
   const double first = number();
   scene.milestones = {first, 2.0 * first};
   scene.snapshot_times = {0.0, first};
+  scene.snapshots_every = number();
+  scene.vtk = true;
+  // Two blocks that share a corner: the second one is turned by half a turn about it.
+  const Vec2 shared = scene.blocks[0].vertices[0], old = scene.blocks[1].vertices[0];
+  for (Vec2& v : scene.blocks[1].vertices) v = shared - (v - old);
+  scene.supports[1].point = scene.loads[1].point = scene.measured_points[1].point = scene.blocks[0].vertices[0];
+  scene.measured_contacts = {{"contact", 1, 0, scene.blocks[0].vertices[0]}};
   scene.settle = {fraction(generator), number(), 77, number(), SettleCriterion::paper, fraction(generator), 78, 79, 80};
   scene.strength_reduction = {FactorDefinition::joint_closures, false, number(), 1.0 + number(), {number(), number()}, number()};
   return scene;

@@ -1,0 +1,484 @@
+#include "openclose/io/result_picture.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <unordered_map>
+
+#include "openclose/core/error.h"
+#include "openclose/io/state_table.h"
+#include "openclose/scene/nearest.h"
+
+namespace openclose {
+namespace {
+
+using nlohmann::json;
+
+/// The mechanism of a factor of safety as blocks.csv has it.
+constexpr const char* mechanism_state = "failed";
+/// [-] Of the size of the median block: a joint that has opened or slipped by more is no line any more, the gap itself is to be seen.
+constexpr double widest_drawn_opening = 0.1;
+/// [-] Of the largest displacement of the mechanism: what opens or slips by less has been moved by rounding.
+constexpr double noticeable_part_of_mechanism = 0.01;
+
+struct BlockInfo {
+  std::string name;
+  std::string material;
+  bool fixed = false;
+};
+
+struct ContactRow {
+  int a = 0, b = 0;
+  Vec2 point = Vec2::Zero(), force = Vec2::Zero();  ///< force on a [N]
+  JointDrawing state = JointDrawing::plain;
+  bool used = false;
+};
+
+struct CrackRow {
+  int a = 0, b = 0;
+  Vec2 from = Vec2::Zero(), to = Vec2::Zero();
+  double opening_from = 0.0, opening_to = 0.0, slip_from = 0.0, slip_to = 0.0;
+};
+
+JointDrawing status_in(std::string_view word) {
+  if (word == "sliding") return JointDrawing::sliding;
+  return word == "sticking" ? JointDrawing::sticking : JointDrawing::open;
+}
+
+Vec2 point_in(const json& list) {
+  return {list.at(0).get<double>(), list.at(1).get<double>()};
+}
+
+/// How a block has moved from one polygon to another, as a rigid body.
+struct Placement {
+  Vec2 from = Vec2::Zero(), to = Vec2::Zero();  ///< the mean of the vertices
+  double sine = 0.0, cosine = 1.0;
+
+  Placement(const Polygon& before, const Polygon& after) {
+    for (std::size_t i = 0; i < before.size(); ++i) from += before[i], to += after[i];
+    from /= static_cast<double>(before.size());
+    to /= static_cast<double>(before.size());
+    double along = 0.0, across = 0.0;
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      along += (before[i] - from).dot(after[i] - to);
+      across += cross(before[i] - from, after[i] - to);
+    }
+    const double length = std::hypot(along, across);
+    if (length > 0.0) sine = across / length, cosine = along / length;
+  }
+  Vec2 of(const Vec2& point) const {
+    const Vec2 arm = point - from;
+    return to + cosine * arm + sine * perpendicular(arm);
+  }
+};
+
+class ResultPicture {
+ public:
+  ResultPicture(const std::string& folder, const DrawingRequest& request)
+      : folder_(require_folder(folder)), request_(request), outlines_(path_of("blocks.csv"), {"block", "x_m", "y_m"}) {
+    if (outlines_.states().empty())
+      throw InputError({path_of("blocks.csv"), 0}, "", std::filesystem::exists(path_of("blocks.csv")) ? "no state is written there" : "there is no such file", "the folder of a run or fos");
+    read_summary();
+    choose_state();
+  }
+
+  Picture picture() {
+    read_blocks();
+    read_contacts();
+    read_cracks();
+    colour_blocks();
+    add_joints();
+    if (request_.forces) add_forces();
+    if (request_.cracks) add_cracks();
+    if (colour_ == BlockColour::velocity) add_velocities();
+    add_points();
+    add_titles();
+    return std::move(picture_);
+  }
+
+ private:
+  static std::string require_folder(const std::string& folder) {
+    std::error_code error;
+    const std::string accepted = "the folder of a run or fos, results/<name of the scene> by default";
+    if (!std::filesystem::exists(folder, error)) throw InputError({folder, 0}, "", "there is no such folder", accepted);
+    if (!std::filesystem::is_directory(folder, error)) throw InputError({folder, 0}, "", "this is no folder", accepted);
+    return folder;
+  }
+  std::string path_of(const std::string& name) const { return folder_ + "/" + name; }
+
+  void read_summary() {
+    std::ifstream file(path_of("summary.json"));
+    if (!file) return;  // a run that goes on, or was broken off: what it has written can be drawn
+    summary_ = json::parse(file, nullptr, false);
+    if (summary_.is_discarded()) throw InputError({path_of("summary.json"), 0}, "", "this is not JSON", "the file as openclose has written it");
+  }
+  bool is_factor() const { return summary_.value("command", "") == "fos"; }
+
+  void choose_state() {
+    const std::vector<std::string>& states = outlines_.states();
+    if (request_.state) {
+      if (!outlines_.has(*request_.state)) {
+        std::vector<std::string> quoted;
+        for (const std::string& state : states) quoted.push_back('"' + state + '"');
+        throw InputError({path_of("blocks.csv"), 0}, "--state", fmt::format("there is no state \"{}\"", *request_.state),
+                         suggestions('"' + *request_.state + '"', quoted));
+      }
+      state_ = *request_.state;
+    } else {
+      state_ = states.back();
+      if (is_factor() && outlines_.has(mechanism_state)) state_ = mechanism_state;
+    }
+    shows_mechanism_ = is_factor() && state_ == mechanism_state;
+    colour_ = request_.colour.value_or(shows_mechanism_ ? BlockColour::velocity : BlockColour::material);
+  }
+
+  std::vector<Polygon> outlines_in(const std::string& state, bool names_them) {
+    std::vector<Polygon> list;
+    std::string_view last;
+    outlines_.rows(state, [&](const Row& row) {
+      if (list.empty() || row[0] != last) {
+        if (names_them) index_.emplace(std::string(row[0]), static_cast<int>(list.size())), blocks_.push_back({std::string(row[0]), "", false});
+        list.emplace_back();
+        last = row[0];
+      }
+      list.back().emplace_back(number_in(row[1]), number_in(row[2]));
+    });
+    return list;
+  }
+
+  void read_blocks() {
+    now_ = outlines_in(state_, true);
+    drawn_ = state_ == "initial" ? now_ : outlines_in("initial", false);
+    if (drawn_.size() != now_.size()) drawn_ = now_;  // of a table that was broken off
+    std::ifstream file(path_of("block_properties.csv"));
+    std::string line;
+    std::getline(file, line);
+    std::unordered_map<std::string, int> materials;
+    for (std::size_t b = 0; std::getline(file, line) && b < blocks_.size(); ++b) {
+      const std::size_t first = line.find(','), second = line.find(',', first + 1);
+      if (second == std::string::npos || line.substr(0, first) != blocks_[b].name) continue;
+      blocks_[b].material = line.substr(first + 1, second - first - 1);
+      blocks_[b].fixed = line.substr(second + 1, 1) == "1";
+    }
+    for (std::size_t b = 0; b < blocks_.size(); ++b) {
+      const auto [place, is_new] = materials.try_emplace(blocks_[b].material, static_cast<int>(materials.size()));
+      if (is_new) picture_.colour_names.push_back(blocks_[b].material);
+      picture_.blocks.push_back({blocks_[b].name, now_[b], place->second, blocks_[b].fixed, 0.0});
+    }
+    std::vector<double> areas;
+    for (const Polygon& outline : now_) areas.push_back(std::abs(signed_area(outline)));
+    const auto middle = areas.begin() + static_cast<std::ptrdiff_t>(areas.size() / 2);
+    std::ranges::nth_element(areas, middle);
+    size_ = std::sqrt(*middle);
+  }
+
+  int index_of(std::string_view name) const {
+    const auto place = index_.find(std::string(name));
+    return place == index_.end() ? 0 : place->second;
+  }
+
+  void read_contacts() {
+    const StateTable table(path_of("contacts.csv"), {"block_a", "block_b", "x_m", "y_m", "normal_x", "normal_y", "normal_force_n", "shear_force_n", "status"});
+    table.rows(state_, [&](const Row& row) {
+      const Vec2 normal(number_in(row[4]), number_in(row[5]));
+      contacts_.push_back({index_of(row[0]), index_of(row[1]), {number_in(row[2]), number_in(row[3])},
+                           number_in(row[6]) * normal + number_in(row[7]) * perpendicular(normal), status_in(row[8])});
+    });
+    if (request_.forces && contacts_.empty()) {
+      std::string accepted;
+      for (const std::string& state : table.states()) accepted += fmt::format("{}\"{}\"", accepted.empty() ? "" : ", ", state);
+      throw InputError({path_of("contacts.csv"), 0}, "--forces", fmt::format("there are no contacts in the state \"{}\"", state_),
+                       accepted.empty() ? "a result with contacts" : "--state with one of " + accepted);
+    }
+    for (std::size_t i = 0; i < contacts_.size(); ++i) of_pair_[pair_key(contacts_[i].a, contacts_[i].b)].push_back(i);
+  }
+
+  void read_cracks() {
+    const StateTable table(path_of("cracks.csv"), {"block_a", "block_b", "x1_m", "y1_m", "x2_m", "y2_m", "opening1_m", "opening2_m", "slip1_m", "slip2_m"});
+    table.rows(state_, [&](const Row& row) {
+      cracks_.push_back({index_of(row[0]), index_of(row[1]), {number_in(row[2]), number_in(row[3])}, {number_in(row[4]), number_in(row[5])},
+                         number_in(row[6]), number_in(row[7]), number_in(row[8]), number_in(row[9])});
+    });
+    if (request_.cracks && cracks_.empty()) {
+      throw InputError({path_of("cracks.csv"), 0}, "--cracks", fmt::format("no joints are written of the state \"{}\"", state_),
+                       "another --state than \"initial\", of a result whose drawing has joints");
+    }
+  }
+
+  /// The same whichever of the two comes first.
+  static std::uint64_t pair_key(int a, int b) {
+    const auto [low, high] = std::minmax(a, b);
+    return (static_cast<std::uint64_t>(low) << 32) | static_cast<std::uint64_t>(high);
+  }
+
+  double largest_displacement() const {
+    double largest = 0.0;
+    for (std::size_t b = 0; b < now_.size(); ++b) {
+      const Placement placement(drawn_[b], now_[b]);
+      largest = std::max(largest, (placement.to - placement.from).norm());
+    }
+    return largest;
+  }
+
+  JointDrawing state_at(const CrackRow& crack, bool at_from) {
+    const double opening = at_from ? crack.opening_from : crack.opening_to, slip = at_from ? crack.slip_from : crack.slip_to;
+    if (contacts_.empty()) {
+      if (!shows_mechanism_) return JointDrawing::plain;
+      const double noticeable = noticeable_part_of_mechanism * largest_displacement_;
+      if (opening > noticeable) return JointDrawing::open;
+      return std::abs(slip) > noticeable ? JointDrawing::sliding : JointDrawing::sticking;
+    }
+    const auto found = of_pair_.find(pair_key(crack.a, crack.b));
+    if (found == of_pair_.end()) return opening > 0.0 ? JointDrawing::open : JointDrawing::plain;
+    const Vec2 place = at_from ? crack.from : crack.to;
+    const std::size_t nearest =
+        *std::ranges::min_element(found->second, {}, [&](std::size_t i) { return (contacts_[i].point - place).squaredNorm(); });
+    for (const std::size_t i : found->second) contacts_[i].used = true;
+    return contacts_[nearest].state;
+  }
+
+  void add_joints() {
+    if (shows_mechanism_) largest_displacement_ = largest_displacement();
+    for (const CrackRow& crack : cracks_) {
+      const double widest = std::max({crack.opening_from, crack.opening_to, std::abs(crack.slip_from), std::abs(crack.slip_to)});
+      if (widest > widest_drawn_opening * size_ && !shows_mechanism_) continue;
+      const Vec2 middle = 0.5 * (crack.from + crack.to);
+      const JointDrawing from = state_at(crack, true), to = state_at(crack, false);
+      if (from == to) {
+        picture_.joints.push_back({crack.from, crack.to, from});
+      } else {
+        picture_.joints.push_back({crack.from, middle, from});
+        picture_.joints.push_back({middle, crack.to, to});
+      }
+    }
+    // What touches now and did not in the drawing.
+    for (const ContactRow& contact : contacts_) {
+      if (!contact.used && contact.state != JointDrawing::open) picture_.joints.push_back({contact.point, contact.point, contact.state});
+    }
+  }
+
+  void colour_blocks() {
+    switch (colour_) {
+      case BlockColour::material:
+        break;
+      case BlockColour::displacement:
+        colour_by_displacement();
+        break;
+      case BlockColour::velocity:
+        colour_by_velocity();
+        break;
+      case BlockColour::state:
+        colour_by_state();
+        break;
+    }
+  }
+
+  void set_values(const std::vector<double>& values, const std::string& quantity, const std::string& unit) {
+    double largest = 0.0;
+    for (const double value : values) largest = std::max(largest, value);
+    // Lengths of closures are easier to read in millimetres.
+    const bool small = unit.rfind("m", 0) == 0 && largest < 0.1;
+    picture_.scale = {fmt::format("{} [{}{}]", quantity, small ? "m" : "", unit), small ? 1e3 * largest : largest};
+    for (std::size_t b = 0; b < values.size(); ++b) picture_.blocks[b].value = small ? 1e3 * values[b] : values[b];
+  }
+
+  void colour_by_displacement() {
+    std::vector<double> values;
+    for (std::size_t b = 0; b < now_.size(); ++b) {
+      const Placement placement(drawn_[b], now_[b]);
+      values.push_back((placement.to - placement.from).norm());
+    }
+    set_values(values, "displacement", "m");
+  }
+
+  void colour_by_velocity() {
+    velocities_.assign(now_.size(), Vec2::Zero());
+    if (shows_mechanism_) {
+      // mechanism.csv has a row a block that moves.
+      std::ifstream file(path_of("mechanism.csv"));
+      std::string line;
+      for (std::getline(file, line); std::getline(file, line);) {
+        std::vector<std::string> fields;
+        for (std::size_t begin = 0; begin <= line.size();) {
+          const std::size_t end = std::min(line.find(',', begin), line.size());
+          fields.push_back(line.substr(begin, end - begin));
+          begin = end + 1;
+        }
+        if (fields.size() < 6) continue;
+        velocities_[static_cast<std::size_t>(index_of(fields[0]))] = {number_in(fields[4]), number_in(fields[5])};
+        has_velocities_ = true;
+      }
+    } else {
+      const StateTable table(path_of("block_states.csv"), {"block", "velocity_x_m_per_s", "velocity_y_m_per_s"});
+      table.rows(state_, [&](const Row& row) {
+        if (row[1].empty()) return;
+        velocities_[static_cast<std::size_t>(index_of(row[0]))] = {number_in(row[1]), number_in(row[2])};
+        has_velocities_ = true;
+      });
+    }
+    if (!has_velocities_) {
+      throw InputError({folder_, 0}, "--colour", fmt::format("there are no velocities in the state \"{}\"", state_),
+                       is_factor() ? "--state failed, the mechanism" : "a state of a run after its start");
+    }
+    std::vector<double> values;
+    for (const Vec2& v : velocities_) values.push_back(v.norm());
+    const double fastest = *std::ranges::max_element(values);
+    if (shows_mechanism_ && fastest > 0.0) {
+      for (double& value : values) value /= fastest;
+      set_values(values, "velocity over the fastest", "-");
+    } else {
+      set_values(values, "velocity", "m/s");
+    }
+  }
+
+  void colour_by_state() {
+    // Reported by joints of the drawing, too, where no contacts are written.
+    enum Class { untouched, held, slid_upon };
+    std::vector<int> classes(now_.size(), untouched);
+    const auto raise = [&](int b, int to) { classes[static_cast<std::size_t>(b)] = std::max(classes[static_cast<std::size_t>(b)], to); };
+    const auto note = [&](int a, int b, JointDrawing state) {
+      if (state == JointDrawing::open || state == JointDrawing::plain) return;
+      for (const int block : {a, b}) raise(block, state == JointDrawing::sliding ? slid_upon : held);
+    };
+    if (contacts_.empty() && shows_mechanism_) largest_displacement_ = largest_displacement();
+    for (const ContactRow& contact : contacts_) note(contact.a, contact.b, contact.state);
+    for (const CrackRow& crack : cracks_) {
+      if (contacts_.empty()) note(crack.a, crack.b, std::min(state_at(crack, true), state_at(crack, false)));
+    }
+    picture_.colour_names = {"touched by nothing", "held by friction or cohesion", "something slides along it"};
+    for (std::size_t b = 0; b < classes.size(); ++b) picture_.blocks[b].colour = classes[b];
+  }
+
+  void add_velocities() {
+    for (std::size_t b = 0; b < now_.size(); ++b) {
+      const Placement placement(drawn_[b], now_[b]);
+      picture_.velocities.push_back({placement.to, velocities_[b]});
+    }
+    double fastest = 0.0;
+    for (const Vec2& v : velocities_) fastest = std::max(fastest, v.norm());
+    picture_.velocity_name = shows_mechanism_ ? "velocity of the mechanism" : fmt::format("{:.3g} m/s", fastest);
+  }
+
+  void add_forces() {
+    for (const auto& [key, list] : of_pair_) {
+      Picture::Force force;
+      Vec2 sum = Vec2::Zero();
+      double weights = 0.0;
+      const int a = contacts_[list.front()].a, b = contacts_[list.front()].b;
+      for (const std::size_t i : list) {
+        const double weight = contacts_[i].force.norm();
+        sum += contacts_[i].a == a ? contacts_[i].force : Vec2(-contacts_[i].force);
+        force.point += weight * contacts_[i].point;
+        weights += weight;
+      }
+      if (weights == 0.0) continue;
+      force.point /= weights;
+      force.size = sum.norm();
+      force.towards_a = end_of_chain(a, force.point, sum);
+      force.towards_b = end_of_chain(b, force.point, -sum);
+      picture_.forces.push_back(force);
+    }
+  }
+
+  /// The centroid of a block; of a fixed one, which may be large, a place within it along the force.
+  Vec2 end_of_chain(int b, const Vec2& point, const Vec2& force_on_it) const {
+    const auto& block = picture_.blocks[static_cast<std::size_t>(b)];
+    if (!block.fixed) return polygon_properties(block.outline).centroid;
+    return point + 0.3 * size_ * force_on_it.normalized();
+  }
+
+  void add_cracks() {
+    for (const CrackRow& crack : cracks_) {
+      // Half of the joint stands for each end.
+      const Vec2 middle = 0.5 * (crack.from + crack.to);
+      picture_.cracks.push_back({crack.from, middle, std::max(0.0, crack.opening_from)});
+      picture_.cracks.push_back({middle, crack.to, std::max(0.0, crack.opening_to)});
+    }
+  }
+
+  void add_points() {
+    const auto carried = [&](const json& entry) {
+      const auto b = static_cast<std::size_t>(index_of(entry.at("block").get<std::string>()));
+      return Placement(drawn_[b], now_[b]).of(point_in(entry.at("point_m")));
+    };
+    for (const json& entry : summary_.value("supports", json::array())) {
+      const Vec2 stiffness = point_in(entry.at("stiffness_n_per_m"));
+      picture_.supports.push_back({carried(entry), stiffness.x() > 0.0, stiffness.y() > 0.0});
+    }
+    for (const json& entry : summary_.value("loads", json::array())) picture_.loads.push_back({carried(entry), point_in(entry.at("force_n"))});
+    for (const json& entry : summary_.value("measured_points", json::array()))
+      picture_.points.push_back({entry.at("name").get<std::string>(), carried(entry)});
+  }
+
+  void add_titles() {
+    const std::string title = summary_.value("title", "");
+    picture_.title = title.empty() ? std::filesystem::path(folder_).lexically_normal().filename().string() : title;
+    if (summary_.is_object()) picture_.notes.push_back(is_factor() ? answer_of_factor() : answer_of_run());
+    picture_.notes.push_back(fmt::format("{} blocks; state \"{}\"{}", now_.size(), state_, explanation()));
+  }
+
+  std::string answer_of_factor() const {
+    const json& bracket = summary_.at("bracket");
+    const std::string verdict = summary_.at("verdict"), method = summary_.at("options").at("contact");
+    const json& stable = bracket.at("stable");
+    if (stable.is_null() || verdict == "no_equilibrium" || verdict == "undecided")
+      return fmt::format("no factor of safety ({}): {}", method, summary_.value("reason", ""));
+    if (verdict == "no_failure") return fmt::format("factor of safety above {:.5g} ({}: no failure found up to there)", stable.get<double>(), method);
+    const json& failed = bracket.at("failed");
+    const std::string end = failed.is_null() ? "no failure proved" : fmt::format("failed at {:.5g}", failed.get<double>());
+    return fmt::format("factor of safety {:.5g} ({}, {}; {})", stable.get<double>(), end, verdict, method);
+  }
+
+  std::string answer_of_run() const {
+    const std::string method = summary_.at("options").at("contact");
+    std::string answer = fmt::format("{}: run to t = {:.5g} s", method, summary_.value("time_s", 0.0));
+    if (!summary_.value("converged", false)) answer += fmt::format("; stopped: {}", summary_.value("reason", ""));
+    return answer;
+  }
+
+  std::string explanation() const {
+    if (shows_mechanism_) {
+      const json failing = summary_.value("failing_blocks", json::object());
+      return fmt::format(": the mechanism, drawn moved by half the median block's size; {} blocks move", failing.value("number", 0));
+    }
+    if (is_factor() && state_ == "stable") return ": the last one that stands";
+    if (state_ == "initial") return ": the drawing";
+    if (state_ == "start") return ": the start of the motion";
+    return "";
+  }
+
+  std::string folder_;
+  DrawingRequest request_;
+  StateTable outlines_;
+  json summary_;
+  std::string state_;
+  bool shows_mechanism_ = false, has_velocities_ = false;
+  BlockColour colour_ = BlockColour::material;
+  std::vector<BlockInfo> blocks_;
+  std::unordered_map<std::string, int> index_;
+  std::vector<Polygon> drawn_, now_;
+  double size_ = 1.0;                   ///< [m] of the median block
+  double largest_displacement_ = 0.0;   ///< [m] of the mechanism
+  std::vector<ContactRow> contacts_;
+  std::unordered_map<std::uint64_t, std::vector<std::size_t>> of_pair_;
+  std::vector<CrackRow> cracks_;
+  std::vector<Vec2> velocities_;
+  Picture picture_;
+};
+
+}  // namespace
+
+const std::vector<std::string>& block_colour_names() {
+  static const std::vector<std::string> names = {"material", "displacement", "velocity", "state"};
+  return names;
+}
+
+Picture picture_of_results(const std::string& folder, const DrawingRequest& request) {
+  return ResultPicture(folder, request).picture();
+}
+
+}  // namespace openclose
