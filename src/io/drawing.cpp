@@ -93,13 +93,21 @@ class Drawing {
     const Vec2 size = box_.high - box_.low;
     scale_ = std::min(widest_drawing / size.x(), highest_drawing / size.y());
     block_size_ = areas.empty() ? 100.0 : scale_ * std::sqrt(median(std::move(areas)));
-    page_width_ = std::max(narrowest_page, scale_ * size.x() + 2.0 * margin);
+    // Loads push from outside: their tails have to lie on the page, too.
+    std::vector<Vec2> tails = {Vec2::Zero(), scale_ * size};
+    for (const Picture::Arrow& load : picture.loads) {
+      largest_load_ = std::max(largest_load_, load.vector.norm());
+    }
+    for (const Picture::Arrow& load : picture.loads) tails.push_back(scale_ * (load.point - box_.low) - length_of(load) * load.vector.normalized());
+    const Box around = Box::around(tails);
+    page_width_ = std::max(narrowest_page, scale_ * size.x() + 2.0 * (margin + std::max(-around.low.x(), around.high.x() - scale_ * size.x())));
     left_ = 0.5 * (page_width_ - scale_ * size.x());
     title_lines_ = wrapped(picture.title, title_size);
     for (const std::string& note : picture.notes) {
       for (std::string& line : wrapped(note, note_size)) note_lines_.push_back(std::move(line));
     }
-    top_ = margin + line_height * static_cast<double>(note_lines_.size()) + 1.3 * title_size * static_cast<double>(title_lines_.size()) + 6.0;
+    top_ = margin + line_height * static_cast<double>(note_lines_.size()) + 1.3 * title_size * static_cast<double>(title_lines_.size()) + 6.0 +
+           (around.high.y() - scale_ * size.y());
   }
 
   std::string svg() {
@@ -115,7 +123,7 @@ class Drawing {
     const std::string body = page_.take();
     SvgPage page;
     page.print("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" viewBox=\"0 0 {0:.0f} {1:.0f}\" font-family=\"sans-serif\">\n",
-               page_width_, legend_y_ + margin);
+               page_width_, legend_y_ + row_extra_ + margin);
     page.print(
         "<defs><pattern id=\"fixed\" width=\"7\" height=\"7\" patternUnits=\"userSpaceOnUse\">"
         "<circle cx=\"3.5\" cy=\"3.5\" r=\"1.1\" fill=\"#444\"/></pattern></defs>\n"
@@ -144,6 +152,8 @@ class Drawing {
     return lines;
   }
 
+  /// [px] Of the arrow of a load.
+  double length_of(const Picture::Arrow& load) const { return std::max(18.0, 70.0 * load.vector.norm() / largest_load_); }
   double outline_width() const { return std::clamp(0.02 * block_size_, 0.08, 0.9); }
 
   std::string fill_of(const Picture::Block& block) const {
@@ -189,17 +199,24 @@ class Drawing {
   }
 
   void draw_joints() {
-    std::map<JointDrawing, PathData> paths;
+    std::map<std::pair<JointDrawing, bool>, PathData> paths;
     for (const Picture::Joint& joint : picture_.joints) {
-      if (joint.state == JointDrawing::plain || joint.state == JointDrawing::sticking) continue;  // as the outlines have them
-      if (joint.from == joint.to) {
-        paths[joint.state].dot(at(joint.from));
-      } else {
-        paths[joint.state].segment(at(joint.from), at(joint.to));
+      if (joint.state == JointDrawing::plain) continue;
+      const bool is_point = joint.from == joint.to;
+      PathData& path = paths[{joint.state, is_point}];
+      if (is_point) {
+        path.dot(at(joint.from));
+      } else if (joint.state != JointDrawing::sticking) {  // as the outlines have it
+        path.segment(at(joint.from), at(joint.to));
       }
     }
-    const double width = std::clamp(0.06 * block_size_, 0.5, 3.0);
-    for (const auto& [state, path] : paths) {
+    for (const auto& [kind, path] : paths) {
+      const auto [state, is_point] = kind;
+      const double width = std::clamp(0.06 * block_size_, 0.25, 3.0) * (is_point ? 2.0 : 1.0);
+      if (state == JointDrawing::sticking) {
+        page_.path(path, fmt::format("class=\"sticking\" fill=\"none\" stroke=\"{}\" stroke-linecap=\"round\"", outline_colour), width);
+        continue;
+      }
       const bool open = state == JointDrawing::open;
       page_.path(path, fmt::format("class=\"{}\" fill=\"none\" stroke=\"{}\" stroke-linecap=\"round\"", open ? "open" : "sliding",
                                    open ? open_colour : sliding_colour), width);
@@ -236,7 +253,7 @@ class Drawing {
     std::vector<SizedLine> lines;
     for (const Picture::Force& force : picture_.forces) {
       largest_force_ = std::max(largest_force_, force.size);
-      lines.push_back({{{force.towards_a, force.point}, {force.point, force.towards_b}}, force.size});
+      lines.push_back({{{force.from, force.to}}, force.size});
     }
     draw_sized_lines(lines, largest_force_, "forces", force_colour, 0.72);
   }
@@ -281,20 +298,18 @@ class Drawing {
     page_.print("<g class=\"velocities\">\n");
     for (const auto& [place, arrow] : shown) {
       const Vec2 way = longest_arrow_ / fastest * Vec2(arrow->vector.x(), -arrow->vector.y());
+      page_.line(at(arrow->point), at(arrow->point) + way, "stroke=\"white\" stroke-width=\"4\" stroke-opacity=\"0.6\" stroke-linecap=\"round\"");
       draw_arrow(at(arrow->point), at(arrow->point) + way, 8.0, "black", 1.4);
     }
     page_.print("</g>\n");
   }
 
   void draw_loads() {
-    double largest = 0.0;
-    for (const Picture::Arrow& load : picture_.loads) largest = std::max(largest, load.vector.norm());
-    if (largest == 0.0) return;
+    if (largest_load_ == 0.0) return;
     page_.print("<g class=\"loads\">\n");
     for (const Picture::Arrow& load : picture_.loads) {
       // The head is where the load acts.
-      const double length = std::max(18.0, 70.0 * load.vector.norm() / largest);
-      const Vec2 way = length * Vec2(load.vector.x(), -load.vector.y()).normalized(), tip = at(load.point);
+      const Vec2 way = length_of(load) * Vec2(load.vector.x(), -load.vector.y()).normalized(), tip = at(load.point);
       draw_arrow(tip - way, tip, 11.0, load_colour, 2.4);
       if (picture_.loads.size() <= most_labels)
         label(tip - way, force_text(load.vector.norm()), load_colour);
@@ -337,7 +352,8 @@ class Drawing {
   double next_entry(double width) {
     if (legend_x_ > margin && legend_x_ + width > page_width_ - margin) {
       legend_x_ = margin;
-      legend_y_ += 1.5 * line_height;
+      legend_y_ += 1.5 * line_height + row_extra_;
+      row_extra_ = 0.0;
     }
     const double x = legend_x_;
     legend_x_ += width + 22.0;
@@ -356,7 +372,7 @@ class Drawing {
   void add_line(const char* name, const std::string& colour, double width, const std::string& text, double opacity = 1.0) {
     const double x = next_entry(42.0 + width_of(text, 14.0));
     page_.line({x, legend_y_ - 5.0}, {x + 34.0, legend_y_ - 5.0},
-               fmt::format("class=\"{}\" stroke=\"{}\" stroke-width=\"{:.3f}\" stroke-opacity=\"{:g}\" stroke-linecap=\"round\"", name, colour, width, opacity));
+               fmt::format("class=\"{}\" stroke=\"{}\" stroke-width=\"{:.3f}\" stroke-opacity=\"{:g}\"", name, colour, width, opacity));
     page_.write(x + 42.0, legend_y_, text);
   }
 
@@ -373,7 +389,7 @@ class Drawing {
                 legend_y_ - 12.0, length);
     for (const double part : {0.0, 0.5, 1.0})
       page_.write(x + part * length, legend_y_ + 16.0, fmt::format("{:.3g}", part * scale.largest), 12.0, " text-anchor=\"middle\"");
-    legend_y_ += 14.0;
+    row_extra_ = 12.0;
   }
 
   void add_scale_bar() {
@@ -405,7 +421,7 @@ class Drawing {
     if (has(JointDrawing::sticking)) add_line("sticking", outline_colour, 1.0, "joint that holds");
     if (has(JointDrawing::sliding)) add_line("sliding", sliding_colour, 3.0, "slides");
     if (has(JointDrawing::open)) add_line("open", open_colour, 3.0, "open");
-    if (largest_opening_ > 0.0) add_line("crack-scale", open_colour, widest_line(), fmt::format("opening {}", length_text(largest_opening_)), 0.8);
+    if (largest_opening_ > 0.0) add_line("crack-scale", open_colour, widest_line(), fmt::format("{} {}", picture_.crack_name, length_text(largest_opening_)), 0.8);
     if (largest_force_ > 0.0) {
       for (const double part : {1.0, 0.3}) {
         const double size = part == 1.0 ? largest_force_ : round_length(part * largest_force_);
@@ -433,7 +449,9 @@ class Drawing {
   double page_width_ = 0.0;             ///< [px]
   double block_size_ = 0.0;             ///< [px] of the median free block
   double legend_x_ = 0.0, legend_y_ = 0.0;  ///< [px]
-  double largest_force_ = 0.0, largest_opening_ = 0.0, longest_arrow_ = 0.0;
+  double row_extra_ = 0.0;                  ///< [px] what the present row of the legend has below its line
+  double largest_force_ = 0.0, largest_opening_ = 0.0, largest_load_ = 0.0;
+  double longest_arrow_ = 0.0;              ///< [px] of the velocities
   std::vector<std::string> title_lines_, note_lines_;
   SvgPage page_;
 };

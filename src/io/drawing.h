@@ -31,9 +31,9 @@ struct Picture {
     Vec2 from = Vec2::Zero(), to = Vec2::Zero();
     JointDrawing state = JointDrawing::plain;
   };
-  /// The resultant between two blocks, drawn through its point towards either of them.
+  /// The resultant between two blocks, drawn along its direction so far into either of them.
   struct Force {
-    Vec2 point = Vec2::Zero(), towards_a = Vec2::Zero(), towards_b = Vec2::Zero();
+    Vec2 from = Vec2::Zero(), to = Vec2::Zero();
     double size = 0.0;  ///< [N]
   };
   struct Crack {
@@ -61,6 +61,7 @@ struct Picture {
   std::vector<Joint> joints;
   std::vector<Force> forces;
   std::vector<Crack> cracks;
+  std::string crack_name;  ///< for the legend, before the width of the largest
   std::vector<Arrow> velocities;
   std::string velocity_name;  ///< for the legend
   std::vector<Arrow> loads;

@@ -22,6 +22,10 @@ using nlohmann::json;
 constexpr const char* mechanism_state = "failed";
 /// [-] Of the size of the median block: a joint that has opened or slipped by more is no line any more, the gap itself is to be seen.
 constexpr double widest_drawn_opening = 0.1;
+/// [-] Of the size of the median block.
+constexpr double stump_of_force = 0.25;
+/// [-] Two contacts whose lengths add up to their distance to this accuracy are the ends of one face.
+constexpr double accuracy_of_lengths = 0.1;
 /// [-] Of the largest displacement of the mechanism: what opens or slips by less has been moved by rounding.
 constexpr double noticeable_part_of_mechanism = 0.01;
 
@@ -34,6 +38,7 @@ struct BlockInfo {
 struct ContactRow {
   int a = 0, b = 0;
   Vec2 point = Vec2::Zero(), force = Vec2::Zero();  ///< force on a [N]
+  double length = 0.0;  ///< [m]
   JointDrawing state = JointDrawing::plain;
   bool used = false;
 };
@@ -132,8 +137,11 @@ class ResultPicture {
       state_ = states.back();
       if (is_factor() && outlines_.has(mechanism_state)) state_ = mechanism_state;
     }
-    shows_mechanism_ = is_factor() && state_ == mechanism_state;
-    colour_ = request_.colour.value_or(shows_mechanism_ ? BlockColour::velocity : BlockColour::material);
+    const bool shows_failure = is_factor() && state_ == mechanism_state;
+    // At large displacements the failed state is one of a motion, and no mechanism.
+    shows_mechanism_ = shows_failure && std::filesystem::exists(path_of("mechanism.csv"));
+    const BlockColour usual = shows_failure ? BlockColour::displacement : BlockColour::material;
+    colour_ = request_.colour.value_or(shows_mechanism_ ? BlockColour::velocity : usual);
   }
 
   std::vector<Polygon> outlines_in(const std::string& state, bool names_them) {
@@ -182,11 +190,11 @@ class ResultPicture {
   }
 
   void read_contacts() {
-    const StateTable table(path_of("contacts.csv"), {"block_a", "block_b", "x_m", "y_m", "normal_x", "normal_y", "normal_force_n", "shear_force_n", "status"});
+    const StateTable table(path_of("contacts.csv"), {"block_a", "block_b", "x_m", "y_m", "normal_x", "normal_y", "normal_force_n", "shear_force_n", "status", "length_m"});
     table.rows(state_, [&](const Row& row) {
       const Vec2 normal(number_in(row[4]), number_in(row[5]));
       contacts_.push_back({index_of(row[0]), index_of(row[1]), {number_in(row[2]), number_in(row[3])},
-                           number_in(row[6]) * normal + number_in(row[7]) * perpendicular(normal), status_in(row[8])});
+                           number_in(row[6]) * normal + number_in(row[7]) * perpendicular(normal), number_in(row[9]), status_in(row[8])});
     });
     if (request_.forces && contacts_.empty()) {
       std::string accepted;
@@ -256,9 +264,27 @@ class ResultPicture {
       }
     }
     // What touches now and did not in the drawing.
-    for (const ContactRow& contact : contacts_) {
-      if (!contact.used && contact.state != JointDrawing::open) picture_.joints.push_back({contact.point, contact.point, contact.state});
+    for (const auto& [key, list] : of_pair_) {
+      if (contacts_[list.front()].used) continue;
+      if (!add_face(list)) {
+        for (const std::size_t i : list) {
+          const ContactRow& contact = contacts_[i];
+          if (contact.state == JointDrawing::sliding) picture_.joints.push_back({contact.point, contact.point, contact.state});
+        }
+      }
     }
+  }
+
+  /// Two contacts at the ends of the stretch along which two edges face each other, of which each has a part. False if it is something else.
+  bool add_face(const std::vector<std::size_t>& list) {
+    if (list.size() != 2) return false;
+    const ContactRow &a = contacts_[list[0]], &b = contacts_[list[1]];
+    const double apart = (a.point - b.point).norm(), length = a.length + b.length;
+    if (std::abs(apart - length) > accuracy_of_lengths * length) return false;
+    const Vec2 between = a.point + a.length / length * (b.point - a.point);
+    picture_.joints.push_back({a.point, between, a.state});
+    picture_.joints.push_back({between, b.point, b.state});
+    return true;
   }
 
   void colour_blocks() {
@@ -366,32 +392,35 @@ class ResultPicture {
   void add_forces() {
     for (const auto& [key, list] : of_pair_) {
       Picture::Force force;
-      Vec2 sum = Vec2::Zero();
+      Vec2 sum = Vec2::Zero(), point = Vec2::Zero();
       double weights = 0.0;
       const int a = contacts_[list.front()].a, b = contacts_[list.front()].b;
       for (const std::size_t i : list) {
         const double weight = contacts_[i].force.norm();
         sum += contacts_[i].a == a ? contacts_[i].force : Vec2(-contacts_[i].force);
-        force.point += weight * contacts_[i].point;
+        point += weight * contacts_[i].point;
         weights += weight;
       }
       if (weights == 0.0) continue;
-      force.point /= weights;
+      point /= weights;
       force.size = sum.norm();
-      force.towards_a = end_of_chain(a, force.point, sum);
-      force.towards_b = end_of_chain(b, force.point, -sum);
+      if (force.size == 0.0) continue;
+      force.from = point + reach_into(a, point) * sum.normalized();
+      force.to = point - reach_into(b, point) * sum.normalized();
       picture_.forces.push_back(force);
     }
   }
 
-  /// The centroid of a block; of a fixed one, which may be large, a place within it along the force.
-  Vec2 end_of_chain(int b, const Vec2& point, const Vec2& force_on_it) const {
+  /// [m] About as far as the centroid, so that what passes through a block makes a chain; of a fixed block, which may be large, a stump.
+  double reach_into(int b, const Vec2& point) const {
     const auto& block = picture_.blocks[static_cast<std::size_t>(b)];
-    if (!block.fixed) return polygon_properties(block.outline).centroid;
-    return point + 0.3 * size_ * force_on_it.normalized();
+    if (block.fixed) return stump_of_force * size_;
+    const PolygonProperties shape = polygon_properties(block.outline);
+    return std::min((shape.centroid - point).norm(), 0.5 * std::sqrt(shape.area));
   }
 
   void add_cracks() {
+    picture_.crack_name = shows_mechanism_ ? "opening, as drawn," : "opening";
     for (const CrackRow& crack : cracks_) {
       // Half of the joint stands for each end.
       const Vec2 middle = 0.5 * (crack.from + crack.to);
@@ -417,7 +446,7 @@ class ResultPicture {
   void add_titles() {
     const std::string title = summary_.value("title", "");
     picture_.title = title.empty() ? std::filesystem::path(folder_).lexically_normal().filename().string() : title;
-    if (summary_.is_object()) picture_.notes.push_back(is_factor() ? answer_of_factor() : answer_of_run());
+    if (summary_.contains("command")) picture_.notes.push_back(is_factor() ? answer_of_factor() : answer_of_run());
     picture_.notes.push_back(fmt::format("{} blocks; state \"{}\"{}", now_.size(), state_, explanation()));
   }
 
@@ -443,8 +472,9 @@ class ResultPicture {
   std::string explanation() const {
     if (shows_mechanism_) {
       const json failing = summary_.value("failing_blocks", json::object());
-      return fmt::format(": the mechanism, drawn moved by half the median block's size; {} blocks move", failing.value("number", 0));
+      return fmt::format(": the mechanism of {} of them, drawn moved by half the median block's size", failing.value("number", 0));
     }
+    if (is_factor() && state_ == mechanism_state) return ": after failure";
     if (is_factor() && state_ == "stable") return ": the last one that stands";
     if (state_ == "initial") return ": the drawing";
     if (state_ == "start") return ": the start of the motion";
@@ -454,7 +484,7 @@ class ResultPicture {
   std::string folder_;
   DrawingRequest request_;
   StateTable outlines_;
-  json summary_;
+  json summary_ = json::object();  ///< empty where the run has not ended
   std::string state_;
   bool shows_mechanism_ = false, has_velocities_ = false;
   BlockColour colour_ = BlockColour::material;

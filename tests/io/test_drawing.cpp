@@ -1,20 +1,30 @@
-// The drawing shows the blocks as they lie.
+// Drawings show the blocks as they lie, and what they say of sizes is measured from their lines.
+#include <cmath>
+#include <map>
+#include <regex>
 #include <sstream>
 #include <string>
+#include <vector>
 
+#include "io/files.h"
+#include "openclose/core/error.h"
 #include "openclose/geometry/box.h"
 #include "openclose/geometry/polygon.h"
 #include "openclose/io/drawing.h"
+#include "openclose/io/result_picture.h"
+#include "openclose/io/results.h"
 #include "support/catch.h"
 #include "support/scenes.h"
 
 using namespace openclose;
+using Catch::Matchers::ContainsSubstring;
+using openclose::test::TemporaryFolder;
 
 namespace {
 
 /// [px] The box of the polygon with this name, x to the right and y downwards.
 Box box_of(const std::string& svg, const std::string& name) {
-  const std::size_t title = svg.find("<title>" + name + "</title>");
+  const std::size_t title = svg.find("<title>" + name);
   REQUIRE(title != std::string::npos);
   const std::string opening = "points=\"";
   const std::size_t begin = svg.rfind(opening, title) + opening.size();
@@ -26,13 +36,74 @@ Box box_of(const std::string& svg, const std::string& name) {
   return Box::around(polygon);
 }
 
-}  // namespace
+std::size_t count(const std::string& text, const std::string& what) {
+  std::size_t found = 0;
+  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++found;
+  return found;
+}
 
-TEST_CASE("drawings have up above, right on the right and one scale", "[io][drawing]") {
+/// What the groups of the expression match, wherever it does.
+std::vector<std::vector<std::string>> all_matches(const std::string& text, const std::string& expression) {
+  const std::regex regex(expression);
+  std::vector<std::vector<std::string>> list;
+  for (std::sregex_iterator i(text.begin(), text.end(), regex), end; i != end; ++i) list.push_back({i->begin() + 1, i->end()});
+  return list;
+}
+
+/// The part of the document in the group of this class.
+std::string group(const std::string& svg, const std::string& name) {
+  const std::size_t begin = svg.find("<g class=\"" + name + "\"");
+  return begin == std::string::npos ? "" : svg.substr(begin, svg.find("</g>", begin) - begin);
+}
+
+Scene tower_on_base() {
   Scene scene = test::empty_scene();
   scene.blocks = {test::fixed_block("base", test::rectangle(100.0, 50.0, 4.0, 1.0)),
                   test::free_block("tower", test::rectangle(103.0, 51.0, 1.0, 2.0))};
-  const std::string svg = svg_drawing(picture_of(scene));
+  return scene;
+}
+
+/// The results of a column of blocks that has come to rest on its base, or of its factor of safety.
+struct Results {
+  TemporaryFolder place;
+  Scene scene;
+
+  explicit Results(bool is_factor = false) : scene(is_factor ? test::block_on_incline(0.3) : test::column_of_blocks(3)) {
+    scene.title = "A <small> one";
+    scene.strength_reduction.limit_analysis = false;  // its mechanism would dilate
+    scene.end_time = 0.01;
+    scene.method.start = Start::settled;
+    scene.measured_points = {{"mark", 1, scene.blocks[1].vertices[3]}};
+    scene.loads = {{1, scene.blocks[1].vertices[2], {0.0, -1000.0}}};
+    scene.supports = {{1, scene.blocks[1].vertices[1], {0.0, 1e3}}};
+    const OutputFolder folder(place.path());
+    Simulation<3> simulation(scene);
+    StateTables<3> states(folder, scene);
+    states.add_drawing(simulation);
+    write_block_properties(folder, scene, std::as_const(simulation).system());
+    Summary summary;
+    if (is_factor) {
+      summary.command = "fos";
+      const FactorOfSafety<3> safety = factor_of_safety<3>(simulation);
+      for (const NamedState<3>& state : safety.states) states.add(state, scene);
+      write_mechanism(folder, scene, safety.mechanism);
+      write_summary(folder, summary, simulation, &safety);
+    } else {
+      summary.command = "run";
+      summary.converged = run(simulation, RunObserver<3>()).converged;
+      states.add("final", simulation, simulation.contacts());
+      write_summary(folder, summary, simulation);
+    }
+    states.close();
+  }
+
+  std::string draw(const DrawingRequest& request = {}) const { return svg_drawing(picture_of_results(place.path(), request)); }
+};
+
+}  // namespace
+
+TEST_CASE("drawings have up above, right on the right and one scale", "[io][drawing]") {
+  const std::string svg = svg_drawing(picture_of(tower_on_base()));
   const Box base = box_of(svg, "base"), tower = box_of(svg, "tower");
   // Coordinates are written with two decimals.
   constexpr double rounding = 0.011;
@@ -43,4 +114,207 @@ TEST_CASE("drawings have up above, right on the right and one scale", "[io][draw
   CHECK(tower.high.x() - tower.low.x() == Approx(scale).margin(2.0 * rounding));
   CHECK(tower.high.y() - tower.low.y() == Approx(2.0 * scale).margin(2.0 * rounding));
   CHECK(base.high.y() - base.low.y() == Approx(scale).margin(2.0 * rounding));
+}
+
+TEST_CASE("the scale bar is as long as it says", "[io][drawing]") {
+  for (const double size : {0.01, 1.0, 37.0, 1000.0}) {
+    Scene scene = tower_on_base();
+    for (BlockInput& block : scene.blocks) {
+      for (Vec2& v : block.vertices) v *= size;
+    }
+    const std::string svg = svg_drawing(picture_of(scene));
+    const Box base = box_of(svg, "base");
+    const auto bar = all_matches(svg, "class=\"scale\" d=\"M([0-9.]+),[0-9.]+ v8 H([0-9.]+) v-8\"[^>]*/>\\n<text[^>]*>([0-9.e-]+) m<");
+    REQUIRE(bar.size() == 1);
+    const double pixels = std::stod(bar[0][1]) - std::stod(bar[0][0]), metres = std::stod(bar[0][2]);
+    CHECK(pixels == Approx(metres / (4.0 * size) * (base.high.x() - base.low.x())).margin(0.03));
+    CHECK(pixels > 50.0);
+  }
+}
+
+TEST_CASE("tall and wide scenes keep their titles on the page", "[io][drawing]") {
+  for (const double height : {0.05, 500.0}) {
+    Scene scene = test::empty_scene();
+    scene.title = std::string(30, 'a') + " " + std::string(30, 'b') + " " + std::string(30, 'c') + " " + std::string(30, 'd');
+    scene.blocks = {test::free_block("block", test::rectangle(0.0, 0.0, 1.0, height))};
+    const std::string svg = svg_drawing(picture_of(scene));
+    const double width = std::stod(all_matches(svg, "viewBox=\"0 0 ([0-9]+) ([0-9]+)\"")[0][0]);
+    for (const auto& text : all_matches(svg, "<text x=\"([0-9.]+)\"[^>]*font-size=\"20\"[^>]*>([^<]*)<"))
+      CHECK(std::stod(text[0]) + 0.56 * 20.0 * static_cast<double>(text[1].size()) <= width);
+    CHECK(box_of(svg, "block").high.y() <= std::stod(all_matches(svg, "viewBox=\"0 0 ([0-9]+) ([0-9]+)\"")[0][1]));
+  }
+}
+
+TEST_CASE("every block is a polygon; of many blocks every colour is one path", "[io][drawing]") {
+  Picture picture;
+  picture.colour_names = {"rock", "clay"};
+  constexpr int columns = 90, rows = 60;
+  for (int i = 0; i < columns * rows; ++i) {
+    picture.blocks.push_back({"block", test::rectangle(i % columns, i / columns, 0.9, 0.9), i % 2, i < columns});
+  }
+  const std::string svg = svg_drawing(picture);
+  CHECK(count(svg, "<polygon") == 0);
+  // Regular expressions of the library run out of stack on paths as long as these.
+  std::vector<std::string> paths;
+  for (std::size_t at = svg.find("<path transform=\"scale(.01)\" fill=\"#"); at != std::string::npos; at = svg.find("<path transform=\"scale(.01)\" fill=\"#", at + 1)) {
+    const std::size_t begin = svg.find(" d=\"", at) + 4;
+    paths.push_back(svg.substr(begin, svg.find('"', begin) - begin));
+  }
+  REQUIRE(paths.size() == 3);
+  std::size_t outlines = 0;
+  for (const std::string& path : paths) outlines += count(path, "z");
+  CHECK(outlines == columns * rows);
+  // The last square of a path is where it belongs: rounding has not added up along the way.
+  double x = 0.0, start = 0.0, widest = 0.0;
+  std::istringstream steps(paths[1]);
+  for (char command = 0; steps >> command;) {
+    double dx = 0.0, dy = 0.0;
+    if (command == 'z') continue;
+    REQUIRE(steps >> dx >> dy);
+    // After z a path is at the start of the outline before.
+    if (command == 'm') x = start, start = x + dx;
+    x += dx;
+    widest = std::max(widest, x);
+  }
+  const double scale = 100.0 * std::min(1140.0 / 89.9, 820.0 / 59.9);
+  CHECK(widest == Approx(3000.0 + 89.9 * scale).margin(2.0));
+
+  picture.blocks.resize(100);
+  CHECK(count(svg_drawing(picture), "<title>block") == 100);
+}
+
+TEST_CASE("lines are as wide as forces and openings are large", "[io][drawing]") {
+  Picture picture = picture_of(tower_on_base());
+  for (const double force : {4e5, 1e5, 2e4, 10.0}) picture.forces.push_back({{100.0, 50.0}, {101.0, 51.0}, force});
+  picture.crack_name = "opening";
+  picture.cracks = {{{100.0, 50.0}, {101.0, 51.0}, 0.02}, {{100.0, 50.0}, {101.0, 51.0}, 0.005}, {{100.0, 50.0}, {101.0, 51.0}, 0.0}};
+  const std::string svg = svg_drawing(picture);
+  const auto widths = [&](const std::string& name) {
+    std::vector<double> list;
+    for (const auto& match : all_matches(group(svg, name), "stroke-width=\"([0-9.]+)\"")) list.push_back(std::stod(match[0]));
+    return list;
+  };
+  const std::vector<double> forces = widths("forces"), cracks = widths("cracks");
+  // What is below a two hundredth of the largest is not drawn.
+  REQUIRE(forces.size() == 3);
+  CHECK(forces[0] / forces[1] == Approx(4.0).epsilon(2e-3));
+  CHECK(forces[0] / forces[2] == Approx(20.0).epsilon(2e-3));
+  REQUIRE(cracks.size() == 2);
+  CHECK(cracks[0] / cracks[1] == Approx(4.0).epsilon(2e-3));
+  // The scale in the legend: the same widths for the same forces.
+  const auto scale = all_matches(svg, "class=\"force-scale\"[^>]*stroke-width=\"([0-9.]+)\"[^>]*/>\\n<text[^>]*>([0-9.]+) kN/m<");
+  REQUIRE(scale.size() == 2);
+  for (const auto& entry : scale) CHECK(100.0 * std::stod(entry[0]) / forces[0] == Approx(std::stod(entry[1]) / 400.0).epsilon(2e-3));
+  CHECK_THAT(svg, ContainsSubstring(">opening 20 mm<"));
+}
+
+TEST_CASE("the drawing of a run: state, contact forces, what holds and pushes", "[io][drawing]") {
+  const Results results;
+  DrawingRequest request;
+  request.forces = true;
+  const Picture picture = picture_of_results(results.place.path(), request);
+  REQUIRE(picture.blocks.size() == 4);
+  CHECK(picture.blocks[0].fixed);
+  // Each joint carries what lies above it, less what the weak support takes.
+  std::vector<double> sizes;
+  for (const Picture::Force& force : picture.forces) {
+    sizes.push_back(force.size);
+    CHECK(std::abs(force.from.x() - force.to.x()) < 1e-3);
+  }
+  std::ranges::sort(sizes);
+  REQUIRE(sizes.size() == 3);
+  CHECK(sizes[0] == Approx(test::block_weight).epsilon(1e-3));
+  CHECK(sizes[1] == Approx(2.0 * test::block_weight).epsilon(1e-3));
+  CHECK(sizes[2] == Approx(3.0 * test::block_weight + 1000.0).epsilon(1e-3));
+  for (const Picture::Joint& joint : picture.joints) CHECK(joint.state == JointDrawing::sticking);
+  const std::string svg = svg_drawing(picture);
+  CHECK_THAT(svg, ContainsSubstring(">A &lt;small&gt; one<") && ContainsSubstring("soft: run to t = 0.01 s") && ContainsSubstring("state \"final\""));
+  CHECK_THAT(svg, ContainsSubstring("class=\"supports\"") && ContainsSubstring("class=\"loads\"") && ContainsSubstring(">mark<"));
+  CHECK_THAT(svg, ContainsSubstring(">1 kN/m<"));
+}
+
+TEST_CASE("the drawing of a factor of safety has it in the title and shows the mechanism", "[io][drawing]") {
+  const Results results(true);
+  const Picture mechanism = picture_of_results(results.place.path(), {});
+  const double exact = std::tan(30.0 * test::degree) / std::tan(0.3);
+  const auto answer = all_matches(mechanism.notes.at(0), "factor of safety ([0-9.]+) \\(failed at ([0-9.]+), certified; soft\\)");
+  REQUIRE(answer.size() == 1);
+  CHECK(std::stod(answer[0][0]) < std::stod(answer[0][1]));
+  // The load adds to the weight, so that friction alone still decides.
+  CHECK(std::stod(answer[0][0]) == Approx(exact).margin(1e-2));
+  CHECK_THAT(mechanism.notes.at(1), ContainsSubstring("state \"failed\""));
+  REQUIRE(mechanism.velocities.size() == 2);
+  CHECK(mechanism.velocities[0].vector.norm() == 0.0);
+  CHECK(mechanism.velocities[1].vector.normalized().dot(test::downhill(0.3)) == Approx(1.0).epsilon(1e-3));
+  CHECK(mechanism.blocks[1].value == 1.0);
+  CHECK_THAT(results.draw(), ContainsSubstring("class=\"velocities\""));
+
+  DrawingRequest request;
+  request.state = "stable";
+  request.colour = BlockColour::displacement;
+  const Picture stable = picture_of_results(results.place.path(), request);
+  REQUIRE(stable.scale);
+  CHECK(stable.scale->quantity == "displacement [mm]");
+  // Closures: of the order of weight over stiffness times area, and of the slip of the shear springs.
+  CHECK(stable.scale->largest > 1e3 * test::block_weight * std::cos(0.3) / 2e9);
+  CHECK(stable.scale->largest < 1.0);
+}
+
+TEST_CASE("joints are drawn as their contacts are", "[io][drawing]") {
+  const TemporaryFolder place;
+  const auto write = [&](const std::string& status) {
+    place.write("blocks.csv",
+                "state,block,vertex,x_m,y_m\n"
+                "final,a,0,0,0\nfinal,a,1,1,0\nfinal,a,2,1,1\nfinal,a,3,0,1\n"
+                "final,b,0,0,1\nfinal,b,1,1,1\nfinal,b,2,1,2\nfinal,b,3,0,2\n");
+    place.write("contacts.csv",
+                "state,block_a,block_b,x_m,y_m,normal_x,normal_y,length_m,gap_m,normal_force_n,shear_force_n,status\n"
+                "final,b,a,0,1,0,1,0.5,0,1,0," +
+                    status + "\nfinal,b,a,1,1,0,1,0.5,0,1,0,sticking\n");
+    place.write("cracks.csv",
+                "state,block_a,block_b,x1_m,y1_m,x2_m,y2_m,length_m,opening1_m,opening2_m,slip1_m,slip2_m\n"
+                "final,a,b,0,1,1,1,1,0,0,0,0\n");
+  };
+  const std::map<std::string, JointDrawing> states = {{"open", JointDrawing::open}, {"sliding", JointDrawing::sliding}};
+  for (const auto& [word, state] : states) {
+    write(word);
+    const Picture picture = picture_of_results(place.path(), {});
+    REQUIRE(picture.joints.size() == 2);
+    CHECK(picture.joints[0].state == state);
+    CHECK(picture.joints[0].to == Vec2(0.5, 1.0));
+    CHECK(picture.joints[1].state == JointDrawing::sticking);
+    const std::string svg = svg_drawing(picture);
+    CHECK(count(svg, "class=\"open\"") == (word == "open" ? 2 : 0));      // the joint, and the legend
+    CHECK(count(svg, "class=\"sliding\"") == (word == "sliding" ? 2 : 0));
+  }
+}
+
+TEST_CASE("what cannot be drawn is refused with what can", "[io][drawing]") {
+  const Results results;
+  const auto refusal = [&](const std::string& folder, const DrawingRequest& request) {
+    try {
+      picture_of_results(folder, request);
+    } catch (const InputError& e) {
+      return std::string(e.what());
+    }
+    return std::string("nothing is refused");
+  };
+  DrawingRequest request;
+  CHECK_THAT(refusal(results.place / "nowhere", request), ContainsSubstring("nowhere: there is no such folder; accepted: the folder of a run or fos"));
+  CHECK_THAT(refusal(results.place / "blocks.csv", request), ContainsSubstring("this is no folder"));
+  const TemporaryFolder empty;
+  CHECK_THAT(refusal(empty.path(), request), ContainsSubstring("blocks.csv: there is no such file"));
+  empty.write("blocks.csv", "state,block,vertex,x_m,y_m\n");
+  CHECK_THAT(refusal(empty.path(), request), ContainsSubstring("no state is written there"));
+  request.state = "finl";
+  CHECK_THAT(refusal(results.place.path(), request), ContainsSubstring("--state: there is no state \"finl\"; accepted: \"final\", \"initial\""));
+  request.state = "initial";
+  request.forces = true;
+  CHECK_THAT(refusal(results.place.path(), request), ContainsSubstring("--forces: there are no contacts in the state \"initial\"; accepted: --state with one of \"final\""));
+  request.forces = false;
+  request.cracks = true;
+  CHECK_THAT(refusal(results.place.path(), request), ContainsSubstring("--cracks"));
+  request.cracks = false;
+  request.colour = BlockColour::velocity;
+  CHECK_THAT(refusal(results.place.path(), request), ContainsSubstring("--colour: there are no velocities in the state \"initial\""));
 }

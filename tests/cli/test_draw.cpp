@@ -1,0 +1,63 @@
+// `draw`: pictures of results, and nothing written over what is no picture.
+#include <filesystem>
+#include <string>
+
+#include "cli/command.h"
+#include "support/catch.h"
+
+using Catch::Matchers::ContainsSubstring;
+using Catch::Matchers::StartsWith;
+using openclose::test::CommandResult;
+using openclose::test::text_of;
+using openclose::test::Workplace;
+
+TEST_CASE("draw writes a picture into the folder, or where it is told to", "[cli][draw]") {
+  const Workplace place(openclose::test::block_on_incline(30.0));
+  REQUIRE(place.run("run scene.toml -o out --dt 0.001 --end 0.01 -q").status == 0);
+  const CommandResult result = place.run("draw out");
+  CHECK(result.status == 0);
+  CHECK(result.errors.empty());
+  CHECK_THAT(result.out, ContainsSubstring("2 blocks drawn") && ContainsSubstring("written to out/drawing.svg"));
+  CHECK_THAT(text_of(place.folder() / "out/drawing.svg"), StartsWith("<svg "));
+  for (const std::string colour : {"material", "displacement", "velocity", "state"}) {
+    const CommandResult coloured = place.run("draw out --quiet --forces --cracks --state start --colour " + colour + " -o pictures/" + colour + ".svg");
+    CHECK(coloured.status == 0);
+    CHECK(coloured.out.empty());
+    CHECK_THAT(text_of(place.folder() / ("pictures/" + colour + ".svg")), StartsWith("<svg "));
+  }
+  // The next run takes the picture of this one away.
+  REQUIRE(place.run("run scene.toml -o out --dt 0.001 --end 0.01 -q").status == 0);
+  CHECK_FALSE(std::filesystem::exists(place.folder() / "out/drawing.svg"));
+}
+
+TEST_CASE("draw shows the mechanism of a factor of safety with the factor", "[cli][draw]") {
+  const Workplace place(openclose::test::block_on_incline(30.0));
+  REQUIRE(place.run("fos scene.toml -o out -q").status == 0);
+  const CommandResult result = place.run("draw out");
+  CHECK(result.status == 0);
+  CHECK_THAT(result.out, ContainsSubstring("factor of safety 1.21"));
+  CHECK_THAT(text_of(place.folder() / "out/drawing.svg"), ContainsSubstring("factor of safety 1.21") && ContainsSubstring("class=\"velocities\""));
+}
+
+TEST_CASE("draw refuses in one line, and writes nothing", "[cli][draw]") {
+  const Workplace place(openclose::test::block_on_incline(30.0));
+  REQUIRE(place.run("run scene.toml -o out --dt 0.001 --end 0.01 -q").status == 0);
+  const std::string scene = text_of(place.folder() / "scene.toml"), blocks = text_of(place.folder() / "out/blocks.csv");
+  const auto refused = [&](const std::string& arguments, const std::string& message) {
+    INFO(arguments);
+    const CommandResult result = place.run("draw " + arguments);
+    CHECK(result.status == 2);
+    CHECK(result.out.empty());
+    REQUIRE(result.errors.size() == 1);
+    CHECK_THAT(result.errors[0], StartsWith("openclose: ") && ContainsSubstring(message));
+    CHECK_FALSE(std::filesystem::exists(place.folder() / "out/drawing.svg"));
+  };
+  refused("nowhere", "nowhere: there is no such folder");
+  refused("out --state finl", "accepted: \"final\"");
+  refused("out --colour red", "red");
+  refused("out -o scene.toml", "a name that ends in .svg");
+  refused("out -o out/blocks.csv", "a name that ends in .svg");
+  refused("", "results");
+  CHECK(text_of(place.folder() / "scene.toml") == scene);
+  CHECK(text_of(place.folder() / "out/blocks.csv") == blocks);
+}
