@@ -18,7 +18,7 @@ COMPARISON := $(PAPER_RESULTS)/comparison.csv
 NULL_SOLVER := results/verify-null-solver.txt
 
 .DEFAULT_GOAL := help
-.PHONY: help build test verify reproduce convergence stress regression bench bench-peers sanitize mutants clean packages stress-packages figure-packages bench-packages peer-packages
+.PHONY: help build test verify reproduce convergence stress regression bench bench-peers sanitize mutants clean verify-vtk packages vtk-packages stress-packages figure-packages bench-packages peer-packages
 
 help: ## print the targets
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(firstword $(MAKEFILE_LIST)) | while read -r target text; do printf '  make %-11s %s\n' "$$target" "$$text"; done
@@ -42,6 +42,9 @@ verify: build stress-packages ## build, run the unit tests and the verification 
 	  if python=$$(scripts/find-python 2>/dev/null); then "$$python" verification/report.py --results results; fi; \
 	  "$${PYTHON:-python3}" stress/stress.py --regression --jobs $(JOBS) --results results/regression || status=1; \
 	  exit $$status
+
+verify-vtk: build vtk-packages ## read the files for ParaView with VTK and compare them with the tables; installs python3-vtk9, which is large
+	/usr/bin/python3 tests/vtk/read_back.py $(OPENCLOSE)
 
 reproduce: figure-packages $(COMPARISON) ## build, run the paper's examples, draw the figures and print the comparison (results/paper)
 	$(if $(comparison_printed),,@"$${PYTHON:-python3}" paper/reproduce.py --print-only --results $(PAPER_RESULTS))
@@ -82,6 +85,9 @@ clean: ## remove what these targets have made; other results stay
 
 packages:
 	@scripts/install-packages build
+
+vtk-packages:
+	@scripts/install-packages build vtk
 
 stress-packages:
 	@scripts/install-packages stress

@@ -19,6 +19,7 @@
 #include "openclose/io/progress.h"
 #include "openclose/io/result_picture.h"
 #include "openclose/io/results.h"
+#include "openclose/io/vtk.h"
 #include "openclose/scene/check.h"
 #include "openclose/scene/reader.h"
 #include "openclose/scene/writer.h"
@@ -207,6 +208,7 @@ int run_command(const Options& options) {
   energy.close();
   states.close();
   if (contact_history) contact_history->close();
+  if (scene.vtk) write_vtk(folder);
   if (!result.milestones.empty()) write_milestones(folder, result.milestones);
   Summary summary = summary_of("run", options, loaded);
   summary.warnings.insert(summary.warnings.end(), result.warnings.begin(), result.warnings.end());
@@ -295,6 +297,7 @@ int fos_command(const Options& options) {
     if (state.name != "failed") summary.max_penetration = deepest_of(state.contacts);
   }
   states.close();
+  if (simulation.scene().vtk) write_vtk(folder);
   write_trials(folder, safety.trials);
   if (!safety.mechanism.empty()) write_mechanism(folder, simulation.scene(), safety.mechanism);
   if (!safety.curve.empty()) write_curve(folder, safety.curve);
