@@ -24,6 +24,7 @@ constexpr const char* mechanism_state = "failed";
 constexpr double widest_drawn_opening = 0.1;
 /// [-] Of the size of the median block.
 constexpr double stump_of_force = 0.25;
+constexpr double step_into_block = 1e-3;
 /// [-] Two contacts whose lengths add up to their distance to this accuracy are the ends of one face.
 constexpr double accuracy_of_lengths = 0.1;
 /// [-] Of the largest displacement of the mechanism: what opens or slips by less has been moved by rounding.
@@ -405,18 +406,35 @@ class ResultPicture {
       point /= weights;
       force.size = sum.norm();
       if (force.size == 0.0) continue;
-      force.from = point + reach_into(a, point) * sum.normalized();
-      force.to = point - reach_into(b, point) * sum.normalized();
+      const Vec2 direction = sum.normalized();
+      force.from = point + reach_into(a, point, direction) * direction;
+      force.to = point - reach_into(b, point, -direction) * direction;
       picture_.forces.push_back(force);
     }
   }
 
-  /// [m] About as far as the centroid, so that what passes through a block makes a chain; of a fixed block, which may be large, a stump.
-  double reach_into(int b, const Vec2& point) const {
+  /// [m] About as far as the centroid, so that what passes through a block makes a chain, and not out of the block; of a fixed block, which may be
+  /// large, a stump.
+  double reach_into(int b, const Vec2& point, const Vec2& direction) const {
     const auto& block = picture_.blocks[static_cast<std::size_t>(b)];
-    if (block.fixed) return stump_of_force * size_;
-    const PolygonProperties shape = polygon_properties(block.outline);
-    return std::min((shape.centroid - point).norm(), 0.5 * std::sqrt(shape.area));
+    double reach = stump_of_force * size_;
+    if (!block.fixed) {
+      const PolygonProperties shape = polygon_properties(block.outline);
+      reach = std::min((shape.centroid - point).norm(), 0.5 * std::sqrt(shape.area));
+    }
+    // Where the way leaves the block, seen from just within it: the point itself lies on its boundary.
+    const Polygon& outline = block.outline;
+    const double within = step_into_block * size_;
+    const Vec2 start = point + within * direction;
+    if (!contains(outline, start)) return 0.0;
+    for (std::size_t i = 0; i < outline.size(); ++i) {
+      const Vec2 edge = outline[(i + 1) % outline.size()] - outline[i], to_edge = outline[i] - start;
+      const double slope = cross(direction, edge);
+      if (slope == 0.0) continue;
+      const double along = cross(to_edge, edge) / slope, on_edge = cross(to_edge, direction) / slope;
+      if (along >= 0.0 && on_edge >= 0.0 && on_edge <= 1.0) reach = std::min(reach, within + along);
+    }
+    return reach;
   }
 
   void add_cracks() {
