@@ -283,9 +283,17 @@ class MotionInTime {
       reached.cpu_of_program = process_cpu_time();
       reached.cpu_of_motion = reached.cpu_of_program - cpu_at_start_;
       result_.milestones.push_back(reached);
-      if (observer_.snapshot) observer_.snapshot(fmt::format("moved {} m", reached.displacement), simulation_);
+      take_snapshot(fmt::format("moved {} m", reached.displacement));
     }
     moved_before_ = moved;
+  }
+
+  /// What becomes of a state is no part of the motion: the CPU time of its tables is left out.
+  void take_snapshot(const std::string& state) {
+    if (!observer_.snapshot) return;
+    const double begin = process_cpu_time();
+    observer_.snapshot(state, simulation_);
+    cpu_at_start_ += process_cpu_time() - begin;
   }
 
   /// A snapshot is taken after the step that ends nearest to its time.
@@ -293,8 +301,8 @@ class MotionInTime {
     std::string last;
     const auto take = [&](double time) {
       std::string state = fmt::format("t={}", time);
-      if (state == last || !observer_.snapshot) return;
-      observer_.snapshot(state, simulation_);
+      if (state == last) return;
+      take_snapshot(state);
       last = std::move(state);
     };
     const double latest = step == steps_ ? scene_.end_time * (1.0 + tolerance::rounding_of_times) : 0.5 * (time_after(step) + time_after(step + 1));
@@ -308,7 +316,7 @@ class MotionInTime {
   const RunObserver<N>& observer_;
   const Scene& scene_;
   RunResult& result_;
-  double cpu_at_start_;                      ///< [s]
+  double cpu_at_start_;                      ///< [s] from which that of the motion counts
   std::optional<MeasuredPoints<N>> points_;  ///< if anything depends on them
   Watch<N> watch_;
   long steps_ = 0;

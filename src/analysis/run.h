@@ -53,7 +53,7 @@ class MeasuredPoints {
 struct Milestone {
   double displacement = 0.0;    ///< [m]
   std::optional<double> time;   ///< [s] interpolated linearly within the step; none if it did not get there
-  double cpu_of_motion = 0.0;   ///< [s] of the process since time 0, at the end of that step
+  double cpu_of_motion = 0.0;   ///< [s] of the process since time 0, at the end of that step, without snapshots
   double cpu_of_program = 0.0;  ///< [s] of the process since it began
   std::string reason;           ///< why there is no time
 
@@ -75,7 +75,7 @@ struct RunResult {
   std::vector<Milestone> milestones;
   SettleResult settling;       ///< if the start was `settled`
   double cpu_of_start = 0.0;   ///< [s] of the process, until time 0
-  double cpu_of_motion = 0.0;  ///< [s] since, output included
+  double cpu_of_motion = 0.0;  ///< [s] since, rows of the history included, snapshots not
 };
 
 /// What a run tells while it goes on.

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 #include <fmt/ostream.h>
 
+#include <iterator>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "openclose/core/error.h"
 #include "openclose/core/parallel.h"
@@ -42,6 +44,13 @@ const char* word_of(TrialOutcome outcome) {
 
 nlohmann::ordered_json optional_json(const std::optional<double>& value) {
   return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
+}
+
+/// Rows of a state are put together first: a table has hundreds of thousands of them. Numbers are the shortest that read back exactly, which is also
+/// the quickest way to write them.
+template <typename... Arguments>
+void print(std::string& rows, fmt::format_string<Arguments...> format, Arguments&&... arguments) {
+  fmt::format_to(std::back_inserter(rows), format, std::forward<Arguments>(arguments)...);
 }
 
 /// A text field: quoted if it holds what would break the row.
@@ -131,13 +140,15 @@ BlocksFile<N>::BlocksFile(const OutputFolder& folder, const RestartPoint* restar
 
 template <int N>
 void BlocksFile<N>::add(const std::string& state, const Scene& scene, const BlockSystem<N>& system) {
+  std::string rows;
   for (int b = 0; b < system.block_count(); ++b) {
     const auto& block = system.block(b);
     for (int i = 0; i < block.vertex_count; ++i) {
       const Vec2 p = system.position(b, block.first_vertex + i) + system.origin();
-      fmt::print(file_, "{},{},{},{:.17g},{:.17g}\n", state, field(scene.blocks[b].name), i, p.x(), p.y());
+      print(rows, "{},{},{},{},{}\n", state, field(scene.blocks[b].name), i, p.x(), p.y());
     }
   }
+  file_ << rows;
   require_written();
 }
 
@@ -149,12 +160,14 @@ ContactsFile<N>::ContactsFile(const OutputFolder& folder, const RestartPoint* re
 template <int N>
 void ContactsFile<N>::add(const std::string& state, const Scene& scene, const BlockSystem<N>& system, const std::vector<Contact>& contacts) {
   const auto still = Motion<N>::Unknowns::Zero().eval();
+  std::string rows;
   for (const Contact& c : contacts) {
     const Vec2 p = system.position(c.vertex_block, c.vertex) + system.origin();
     const Vec2 n = ContactKinematics<N>(system, c, still, still).normal;
-    fmt::print(file_, "{},{},{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{}\n", state, field(scene.blocks[c.vertex_block].name),
+    print(rows, "{},{},{},{},{},{},{},{},{},{},{},{}\n", state, field(scene.blocks[c.vertex_block].name),
                field(scene.blocks[c.edge_block].name), p.x(), p.y(), n.x(), n.y(), c.length, c.gap, c.normal_force, c.shear_force, name_of(c.status));
   }
+  file_ << rows;
   require_written();
 }
 
@@ -166,30 +179,35 @@ BlockStatesFile<N>::BlockStatesFile(const OutputFolder& folder, const RestartPoi
                restart) {}
 
 template <int N>
-void BlockStatesFile<N>::add_place(const std::string& state, const std::string& time, const Scene& scene, const BlockSystem<N>& system, int b) {
+void BlockStatesFile<N>::add_place(std::string& rows, const std::string& state, const std::string& time, const Scene& scene, const BlockSystem<N>& system,
+                                   int b) const {
   const Vec2 p = system.centroid(b) + system.origin();
   const auto& d = system.displacement(b);
-  fmt::print(file_, "{},{},{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g}", state, time, field(scene.blocks[b].name), p.x(), p.y(), d[0], d[1],
+  print(rows, "{},{},{},{},{},{},{},{}", state, time, field(scene.blocks[b].name), p.x(), p.y(), d[0], d[1],
              Motion<N>::rotation(d));
 }
 
 template <int N>
 void BlockStatesFile<N>::add(const std::string& state, const Simulation<N>& simulation) {
-  const std::string time = fmt::format("{:.17g}", simulation.time());
+  const std::string time = fmt::format("{}", simulation.time());
+  std::string rows;
   for (int b = 0; b < simulation.system().block_count(); ++b) {
-    add_place(state, time, simulation.scene(), simulation.system(), b);
+    add_place(rows, state, time, simulation.scene(), simulation.system(), b);
     const auto v = simulation.velocity(b);
-    fmt::print(file_, ",{:.17g},{:.17g},{:.17g}\n", v[0], v[1], Motion<N>::rotation(v));
+    print(rows, ",{},{},{}\n", v[0], v[1], Motion<N>::rotation(v));
   }
+  file_ << rows;
   require_written();
 }
 
 template <int N>
 void BlockStatesFile<N>::add(const std::string& state, const Scene& scene, const BlockSystem<N>& system) {
+  std::string rows;
   for (int b = 0; b < system.block_count(); ++b) {
-    add_place(state, "", scene, system, b);
-    file_ << ",,,\n";
+    add_place(rows, state, "", scene, system, b);
+    print(rows, ",,,\n");
   }
+  file_ << rows;
   require_written();
 }
 
@@ -200,12 +218,14 @@ CracksFile<N>::CracksFile(const OutputFolder& folder, const Scene& scene, const 
 
 template <int N>
 void CracksFile<N>::add(const std::string& state, const Scene& scene, const BlockSystem<N>& system) {
+  std::string rows;
   for (const DrawnJoint& joint : joints_) {
     const JointMotion m = joint_motion(joint, system);
-    fmt::print(file_, "{},{},{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g}\n", state,
+    print(rows, "{},{},{},{},{},{},{},{},{},{},{},{}\n", state,
                field(scene.blocks[joint.block_a].name), field(scene.blocks[joint.block_b].name), m.from.middle.x(), m.from.middle.y(),
                m.to.middle.x(), m.to.middle.y(), (joint.to_b - joint.from_b).norm(), m.from.opening, m.to.opening, m.from.slip, m.to.slip);
   }
+  file_ << rows;
   require_written();
 }
 

@@ -1,4 +1,5 @@
-// The files of a run. Units stand in the column names; numbers carry 17 significant digits, so that nothing is lost between run and evaluation.
+// The files of a run. Units stand in the column names; numbers read back exactly (17 significant digits, of states the shortest that
+// do), so that nothing is lost between run and evaluation.
 #pragma once
 
 #include <fstream>
@@ -77,7 +78,7 @@ class BlockStatesFile : public RunTable {
   void add(const std::string& state, const Scene& scene, const BlockSystem<N>& system);
 
  private:
-  void add_place(const std::string& state, const std::string& time, const Scene& scene, const BlockSystem<N>& system, int b);
+  void add_place(std::string& rows, const std::string& state, const std::string& time, const Scene& scene, const BlockSystem<N>& system, int b) const;
 };
 
 /// cracks.csv: opening and slip at the two ends of every joint of the drawing.
