@@ -268,6 +268,10 @@ class OfFactors(unittest.TestCase):
         self.assertIn("instead of", verdicts.nearly_same(at_the_limit, of(0.98, 0.985)))
         self.assertEqual(verdicts.nearly_same(at_the_limit, of(0.992, 0.995)), "")
         self.assertEqual(verdicts.nearly_same(verdicts.Verdict(verdicts.RIGHT, stable=1.0, limit=1.1), of(0.98, 0.985)), "")
+        # An interval says itself what it does not know, as long as the other factor lies in it.
+        self.assertEqual(verdicts.nearly_same(at_the_limit, replace(of(0.68, 1.001), answer="interval")), "")
+        self.assertIn("instead of", verdicts.nearly_same(at_the_limit, replace(of(0.68, 0.9), answer="interval")))
+        self.assertIn("instead of", verdicts.nearly_same(at_the_limit, replace(of(1.02, 1.1), answer="interval")))
         self.assertTrue(verdicts.too_wide(of(1.0, 1.006)))
         self.assertFalse(verdicts.too_wide(of(1.0, 1.0049)))
         self.assertFalse(verdicts.too_wide(replace(of(1.0, 1.1), answer="interval")))

@@ -407,6 +407,8 @@ def nearly_same(one: Verdict, other: Verdict) -> str:
     """Where the factor is that of limit analysis, neither the way to equilibrium nor ks/kn matters: methods agree."""
     if one.stable is None or other.stable is None or one.limit is None or one.stable < AT_THE_LIMIT * one.limit or abs(other.stable / one.stable - 1) <= METHODS_DIFFER:
         return ""
+    if other.answer == INTERVAL and other.stable < one.stable and (other.failed is None or other.failed >= one.stable):
+        return ""  # it says itself that it does not know better
     return f"stable at {other.stable:.6g} instead of {one.stable:.6g}, limit analysis {one.limit:.6g}"
 
 

@@ -245,7 +245,8 @@ class StrengthReduction {
     if (!others.empty())
       result_.warnings.push_back(
           fmt::format("the factor depends on the ratio of shear to normal stiffness: {}, where the scene's own give {:.4g}", others, low));
-    if (limit.factor && low < far_below_limit_analysis * *limit.factor) warn_of_distance(*limit.factor, largest, trials);
+    if (result_.verdict == FactorVerdict::certified && limit.factor && low < far_below_limit_analysis * *limit.factor)
+      warn_of_distance(*limit.factor, largest, trials);
   }
 
   void warn_of_distance(double limit, double largest, const FrozenTrials& trials) {
