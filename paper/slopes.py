@@ -101,8 +101,8 @@ class Fos:
 
 def _fos(openclose: Openclose, case: Case) -> Fos:
     summary = openclose.summary(case)
-    if not summary.get("factor_of_safety"):
-        return Fos(None, summary["reason"], "")
+    if not summary.get("factor_of_safety") or summary["verdict"] == "no_failure":
+        return Fos(None, summary["reason"], "")  # a slope that stands at every factor tried has none
     return Fos(summary["factor_of_safety"], "", "; ".join(summary["warnings"]), summary["bracket"]["failed"])
 
 
