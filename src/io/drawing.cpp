@@ -39,9 +39,9 @@ constexpr const char* force_colour = "#6a0a78";
 constexpr const char* load_colour = "#08519c";
 constexpr const char* support_colour = "#006d2c";
 
-/// From 0 to 1: light to dark, told apart in grey, too (YlGnBu of ColorBrewer).
-constexpr std::array<std::array<int, 3>, 8> gradient = {
-    {{255, 255, 229}, {237, 248, 177}, {199, 233, 180}, {127, 205, 187}, {65, 182, 196}, {29, 145, 192}, {34, 94, 168}, {37, 52, 148}}};
+/// From 0 to 1: light to dark, told apart in grey, too (YlGnBu of ColorBrewer, without its darkest end, on which no outline can be seen).
+constexpr std::array<std::array<int, 3>, 7> gradient = {
+    {{255, 255, 229}, {237, 248, 177}, {199, 233, 180}, {127, 205, 187}, {65, 182, 196}, {29, 145, 192}, {44, 110, 180}}};
 
 std::string colour_at(double part) {
   const double place = std::clamp(part, 0.0, 1.0) * static_cast<double>(gradient.size() - 1);
