@@ -42,6 +42,19 @@ TEST_CASE("drawn gaps of a millimetre are joints, wider ones are not", "[analysi
   }
 }
 
+TEST_CASE("edges that gape are a joint if their far ends are no farther apart", "[analysis][drawn_joints]") {
+  for (const double angle : {4e-4, 0.05}) {
+    Scene scene = test::block_on_base();
+    scene.blocks[1].vertices = test::placed(scene.blocks[1].vertices, angle);
+    const std::vector<DrawnJoint> joints = drawn_joints(scene);
+    // 2 m long: 0.8 mm apart at the far end, or 0.1 m.
+    REQUIRE(joints.size() == (angle < 1e-3 ? 1 : 0));
+    if (joints.empty()) continue;
+    const JointMotion m = joint_motion(joints[0], BlockSystem<3>(scene));
+    CHECK(std::abs(m.from.opening) + std::abs(m.to.opening) == Approx(2.0 * std::sin(angle)).epsilon(1e-3));
+  }
+}
+
 TEST_CASE("a lifted and turned block opens its joint by the closed form, however far it goes", "[analysis][drawn_joints]") {
   for (const double slope : {0.0, 0.4}) {
     const Scene scene = test::block_on_incline(slope);
