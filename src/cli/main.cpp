@@ -426,7 +426,7 @@ CLI::App* add_draw(CLI::App& app, Options& options) {
   draw->add_option("--state", options.drawing.state,
                    "state in blocks.csv, such as initial, start, t=1.5, final, stable, failed (default: failed, the mechanism, of fos; else the last)");
   draw->add_option_function<std::string>(
-          "--colour",
+          "--colour,--color",
           [&options](const std::string& name) {
             const auto& names = block_colour_names();
             options.drawing.colour = static_cast<BlockColour>(std::ranges::find(names, name) - names.begin());
