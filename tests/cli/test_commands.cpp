@@ -480,3 +480,17 @@ TEST_CASE("measured contacts have their own history, in runs only", "[cli]") {
   CHECK_THAT(fos.errors[0], ContainsSubstring("measured_contact is for run"));
   CHECK_FALSE(std::filesystem::exists(place.folder() / "out/contact_history.csv"));
 }
+
+TEST_CASE("writing states leaves the run as it is, bit for bit", "[cli]") {
+  const Workplace place(openclose::test::block_on_incline(36.0));
+  for (const std::string method : {"soft", "hard", "shi", "dem"}) {
+    INFO(method);
+    const std::string common = "run scene.toml --dt 0.001 --end 0.3 --start unloaded --contact " + method;
+    REQUIRE(place.run(common + " -o plain").status == 0);
+    REQUIRE(place.run(common + " -o states --set output.snapshots_every_s=0.007 --set output.vtk=true").status == 0);
+    for (const std::string file : {"history.csv", "energy.csv"}) {
+      CHECK(text_of(place.folder() / "plain/" + file) == text_of(place.folder() / "states/" + file));
+    }
+    CHECK(lines_of(place.folder() / "states/cracks.csv").size() == 1 + 2 + 42);
+  }
+}
