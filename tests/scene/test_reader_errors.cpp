@@ -368,6 +368,9 @@ TEST_CASE("measured contacts that are none", "[scene][reader][errors]") {
   CHECK(error("point_m = [0.5, 0.5]\n") ==
         "24: measured_contact[0].point_m: (0.5, 0.5) lies on the boundaries of 0 blocks; accepted: a point of the joint between two blocks; where more "
         "of them meet, block_a and block_b name the two");
+  const std::string neighbour = "[[block]]\nname = 'neighbour'\nmaterial = 'rock'\nvertices_m = [[1, 0], [2, 0], [2, 1], [1, 1]]\n";
+  CHECK_THAT(error_of(block_on_base + neighbour + "[[measured_contact]]\nname = 'c'\npoint_m = [1, 0]\n"),
+             Catch::Matchers::ContainsSubstring("(1, 0) lies on the boundaries of 3 blocks"));
   CHECK(error("point_m = [0.5, 1]\nblock_a = 'base'\nblock_b = 'block'\n") ==
         "24: measured_contact[0].point_m: (0.5, 1) does not lie on the boundary of \"base\"; accepted: a point of the joint between the two");
   CHECK(error("point_m = [0.5, 0]\nblock_a = 'base'\nblock_b = 'base'\n") ==
