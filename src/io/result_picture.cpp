@@ -463,7 +463,8 @@ class ResultPicture {
 
   void add_titles() {
     const std::string title = summary_.value("title", "");
-    picture_.title = title.empty() ? std::filesystem::path(folder_).lexically_normal().filename().string() : title;
+    const std::filesystem::path folder = std::filesystem::path(folder_ + "/").lexically_normal().parent_path();
+    picture_.title = title.empty() ? folder.filename().string() : title;
     if (summary_.contains("command")) picture_.notes.push_back(is_factor() ? answer_of_factor() : answer_of_run());
     picture_.notes.push_back(fmt::format("{} blocks; state \"{}\"{}", now_.size(), state_, explanation()));
   }
@@ -526,7 +527,11 @@ const std::vector<std::string>& block_colour_names() {
 }
 
 Picture picture_of_results(const std::string& folder, const DrawingRequest& request) {
-  return ResultPicture(folder, request).picture();
+  try {
+    return ResultPicture(folder, request).picture();
+  } catch (const json::exception&) {
+    throw InputError({folder + "/summary.json", 0}, "", "this is not what openclose writes of a run or fos", "the results of this version of openclose");
+  }
 }
 
 }  // namespace openclose

@@ -300,6 +300,12 @@ TEST_CASE("what cannot be drawn is refused with what can", "[io][drawing]") {
     return std::string("nothing is refused");
   };
   DrawingRequest request;
+  const TemporaryFolder old;
+  old.write("blocks.csv", test::text_of(results.place / "blocks.csv"));
+  old.write("summary.json", "{\"command\": \"fos\", \"title\": \"old\"}");
+  CHECK_THAT(refusal(old.path(), request), ContainsSubstring("summary.json: this is not what openclose writes"));
+  old.write("summary.json", "{");
+  CHECK_THAT(refusal(old.path(), request), ContainsSubstring("summary.json: this is not JSON"));
   CHECK_THAT(refusal(results.place / "nowhere", request), ContainsSubstring("nowhere: there is no such folder; accepted: the folder of a run or fos"));
   CHECK_THAT(refusal(results.place / "blocks.csv", request), ContainsSubstring("this is no folder"));
   const TemporaryFolder empty;
