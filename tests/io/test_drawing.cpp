@@ -165,19 +165,22 @@ TEST_CASE("every block is a polygon; of many blocks every colour is one path", "
   for (const std::string& path : paths) outlines += count(path, "z");
   CHECK(outlines == columns * rows);
   // The last square of a path is where it belongs: rounding has not added up along the way.
-  double x = 0.0, start = 0.0, widest = 0.0;
+  Vec2 at = Vec2::Zero(), start = Vec2::Zero();
+  Box all = {Vec2::Constant(1e9), Vec2::Constant(-1e9)};
   std::istringstream steps(paths[1]);
   for (char command = 0; steps >> command;) {
-    double dx = 0.0, dy = 0.0;
+    Vec2 step = Vec2::Zero();
     if (command == 'z') continue;
-    REQUIRE(steps >> dx >> dy);
+    REQUIRE(steps >> step.x() >> step.y());
     // After z a path is at the start of the outline before.
-    if (command == 'm') x = start, start = x + dx;
-    x += dx;
-    widest = std::max(widest, x);
+    if (command == 'm') at = start, start = at + step;
+    at += step;
+    all = {all.low.cwiseMin(at), all.high.cwiseMax(at)};
   }
   const double scale = 100.0 * std::min(1140.0 / 89.9, 820.0 / 59.9);
-  CHECK(widest == Approx(3000.0 + 89.9 * scale).margin(2.0));
+  CHECK(all.high.x() == Approx(3000.0 + 89.9 * scale).margin(2.0));
+  // The lowest row is fixed, and in another path.
+  CHECK(all.high.y() - all.low.y() == Approx(58.9 * scale).margin(2.0));
 
   picture.blocks.resize(100);
   CHECK(count(svg_drawing(picture), "<title>block") == 100);
