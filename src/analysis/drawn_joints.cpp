@@ -36,8 +36,7 @@ std::vector<OutlineEdge> all_edges(const Scene& scene) {
   std::vector<OutlineEdge> edges;
   for (std::size_t b = 0; b < scene.blocks.size(); ++b) {
     const std::vector<Vec2>& v = scene.blocks[b].vertices;
-    for (std::size_t i = 0; i < v.size(); ++i)
-      edges.push_back({static_cast<int>(b), static_cast<int>(i), {v[i], v[(i + 1) % v.size()]}});
+    for (std::size_t i = 0; i < v.size(); ++i) edges.push_back({static_cast<int>(b), static_cast<int>(i), {v[i], v[(i + 1) % v.size()]}});
   }
   return edges;
 }

@@ -15,7 +15,7 @@ namespace openclose {
 /// Points are those of the drawing [m]; `from` to `to` runs along the edge of b, counter-clockwise around b.
 struct DrawnJoint {
   int block_a = 0, block_b = 0;
-  int edge_a = 0, edge_b = 0;  ///< number of the edge's first vertex in the outline of its block
+  int edge_a = 0, edge_b = 0;                       ///< number of the edge's first vertex in the outline of its block
   Vec2 from_a = Vec2::Zero(), to_a = Vec2::Zero();  ///< on the side of a
   Vec2 from_b = Vec2::Zero(), to_b = Vec2::Zero();  ///< opposite to these on the side of b
 };
@@ -31,8 +31,9 @@ struct JointMotion {
   JointGap from, to;
 };
 
-/// All of them, by ascending blocks and edges. Edges face each other if they are parallel to within tolerance::parallel_full_rad and no farther apart,
-/// nor deeper in each other, than tolerance::farthest_point_from_joint_m or a thousandth of the median block's size; pairs of fixed blocks are none.
+/// All of them, by ascending blocks and edges. Edges face each other if they are parallel to within tolerance::parallel_full_rad and no farther
+/// apart, nor deeper in each other, than tolerance::farthest_point_from_joint_m or a thousandth of the median block's size; pairs of fixed blocks are
+/// none.
 std::vector<DrawnJoint> drawn_joints(const Scene& scene);
 
 /// The joint between two blocks at a point of it, of no length: that of the two edges there which face each other best.

@@ -12,10 +12,10 @@ namespace openclose {
 /// Forces are sums over all contacts on the two edges that face each other at the point: corners of either block on the edge of the other.
 struct ContactMotion {
   std::string name;
-  double normal_force = 0.0;  ///< [N] positive in compression
-  double shear_force = 0.0;   ///< [N] on a along the edge of b, counter-clockwise around b
-  double gap = 0.0;           ///< [m] at the point, see JointGap; known beyond the reach of detection, too
-  double slip = 0.0;          ///< [m] at the point, since the drawing
+  double normal_force = 0.0;                   ///< [N] positive in compression
+  double shear_force = 0.0;                    ///< [N] on a along the edge of b, counter-clockwise around b
+  double gap = 0.0;                            ///< [m] at the point, see JointGap; known beyond the reach of detection, too
+  double slip = 0.0;                           ///< [m] at the point, since the drawing
   ContactStatus status = ContactStatus::open;  ///< open if all contacts are, sliding if all that are closed slide
   int closed = 0;                              ///< contacts
 };

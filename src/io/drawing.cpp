@@ -122,8 +122,10 @@ class Drawing {
     draw_legend();
     const std::string body = page_.take();
     SvgPage page;
-    page.print("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" viewBox=\"0 0 {0:.0f} {1:.0f}\" font-family=\"sans-serif\">\n",
-               page_width_, legend_y_ + row_extra_ + margin);
+    page.print(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" viewBox=\"0 0 {0:.0f} {1:.0f}\" "
+        "font-family=\"sans-serif\">\n",
+        page_width_, legend_y_ + row_extra_ + margin);
     page.print(
         "<defs><pattern id=\"fixed\" width=\"7\" height=\"7\" patternUnits=\"userSpaceOnUse\">"
         "<circle cx=\"3.5\" cy=\"3.5\" r=\"1.1\" fill=\"#444\"/></pattern></defs>\n"
@@ -218,8 +220,10 @@ class Drawing {
         continue;
       }
       const bool open = state == JointDrawing::open;
-      page_.path(path, fmt::format("class=\"{}\" fill=\"none\" stroke=\"{}\" stroke-linecap=\"round\"", open ? "open" : "sliding",
-                                   open ? open_colour : sliding_colour), width);
+      page_.path(path,
+                 fmt::format("class=\"{}\" fill=\"none\" stroke=\"{}\" stroke-linecap=\"round\"", open ? "open" : "sliding",
+                             open ? open_colour : sliding_colour),
+                 width);
     }
   }
 
@@ -234,8 +238,8 @@ class Drawing {
   /// Lines whose width is their size over the largest, in paths by width where there are many.
   void draw_sized_lines(const std::vector<SizedLine>& lines, double largest, const char* name, const char* colour, double opacity) {
     if (lines.empty()) return;
-    page_.print("<g class=\"{}\" fill=\"none\" stroke=\"{}\" stroke-opacity=\"{:g}\" stroke-linecap=\"round\" stroke-linejoin=\"round\">\n", name, colour,
-                opacity);
+    page_.print("<g class=\"{}\" fill=\"none\" stroke=\"{}\" stroke-opacity=\"{:g}\" stroke-linecap=\"round\" stroke-linejoin=\"round\">\n", name,
+                colour, opacity);
     const bool single = lines.size() <= most_single_lines;
     std::map<int, PathData> paths;
     for (const SizedLine& line : lines) {
@@ -311,8 +315,7 @@ class Drawing {
       // The head is where the load acts.
       const Vec2 way = length_of(load) * Vec2(load.vector.x(), -load.vector.y()).normalized(), tip = at(load.point);
       draw_arrow(tip - way, tip, 11.0, load_colour, 2.4);
-      if (picture_.loads.size() <= most_labels)
-        label(tip - way, force_text(load.vector.norm()), load_colour);
+      if (picture_.loads.size() <= most_labels) label(tip - way, force_text(load.vector.norm()), load_colour);
     }
     page_.print("</g>\n");
   }
@@ -320,8 +323,10 @@ class Drawing {
   /// With a white rim, readable on blocks; on the side of the point where the page has room for it.
   void label(const Vec2& p, const std::string& text, const char* colour) {
     const bool to_the_left = p.x() + 8.0 + width_of(text, 13.0) > page_width_;
-    page_.write(to_the_left ? p.x() - 7.0 : p.x() + 7.0, std::max(p.y() - 6.0, top_ + 2.0), text, 13.0,
-                fmt::format(" fill=\"{}\" stroke=\"white\" stroke-width=\"3\" paint-order=\"stroke\"{}", colour, to_the_left ? " text-anchor=\"end\"" : "").c_str());
+    page_.write(
+        to_the_left ? p.x() - 7.0 : p.x() + 7.0, std::max(p.y() - 6.0, top_ + 2.0), text, 13.0,
+        fmt::format(" fill=\"{}\" stroke=\"white\" stroke-width=\"3\" paint-order=\"stroke\"{}", colour, to_the_left ? " text-anchor=\"end\"" : "")
+            .c_str());
   }
 
   void draw_supports() {
@@ -341,8 +346,8 @@ class Drawing {
     page_.print("<g class=\"points\">\n");
     for (const Picture::Point& point : picture_.points) {
       const Vec2 p = at(point.place);
-      page_.print("<circle cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"4\" fill=\"white\" stroke=\"black\" stroke-width=\"1.4\"><title>{}</title></circle>\n", p.x(), p.y(),
-                  escaped(point.name));
+      page_.print("<circle cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"4\" fill=\"white\" stroke=\"black\" stroke-width=\"1.4\"><title>{}</title></circle>\n",
+                  p.x(), p.y(), escaped(point.name));
       if (picture_.points.size() <= most_labels) label(p, point.name, "black");
     }
     page_.print("</g>\n");
@@ -364,7 +369,8 @@ class Drawing {
     const double x = next_entry(36.0 + width_of(text, 14.0));
     for (const std::string& colour : {fill, std::string(over ? over : "")}) {
       if (!colour.empty())
-        page_.print("<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"28\" height=\"16\" fill=\"{}\" stroke=\"#333\" stroke-width=\"0.6\"/>\n", x, legend_y_ - 13.0, colour);
+        page_.print("<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"28\" height=\"16\" fill=\"{}\" stroke=\"#333\" stroke-width=\"0.6\"/>\n", x,
+                    legend_y_ - 13.0, colour);
     }
     page_.write(x + 36.0, legend_y_, text);
   }
@@ -385,8 +391,10 @@ class Drawing {
       const double part = static_cast<double>(i) / static_cast<double>(gradient.size() - 1);
       page_.print("<stop offset=\"{:.4f}\" stop-color=\"{}\"/>", part, colour_at(part));
     }
-    page_.print("</linearGradient></defs>\n<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:g}\" height=\"14\" fill=\"url(#colours)\" stroke=\"#333\" stroke-width=\"0.6\"/>\n", x,
-                legend_y_ - 12.0, length);
+    page_.print(
+        "</linearGradient></defs>\n<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:g}\" height=\"14\" fill=\"url(#colours)\" stroke=\"#333\" "
+        "stroke-width=\"0.6\"/>\n",
+        x, legend_y_ - 12.0, length);
     for (const double part : {0.0, 0.5, 1.0})
       page_.write(x + part * length, legend_y_ + 16.0, fmt::format("{:.3g}", part * scale.largest), 12.0, " text-anchor=\"middle\"");
     row_extra_ = 12.0;
@@ -395,8 +403,8 @@ class Drawing {
   void add_scale_bar() {
     const double length = round_length(std::min(0.25 * (box_.high.x() - box_.low.x()), 300.0 / scale_));
     const double x = next_entry(scale_ * length + 60.0);
-    page_.print("<path class=\"scale\" d=\"M{:.2f},{:.2f} v8 H{:.2f} v-8\" fill=\"none\" stroke=\"black\" stroke-width=\"1.4\"/>\n", x, legend_y_ - 10.0,
-                x + scale_ * length);
+    page_.print("<path class=\"scale\" d=\"M{:.2f},{:.2f} v8 H{:.2f} v-8\" fill=\"none\" stroke=\"black\" stroke-width=\"1.4\"/>\n", x,
+                legend_y_ - 10.0, x + scale_ * length);
     page_.write(x + scale_ * length + 8.0, legend_y_, fmt::format("{:g} m", length));
   }
 
@@ -421,7 +429,8 @@ class Drawing {
     if (has(JointDrawing::sticking)) add_line("sticking", outline_colour, 1.0, "joint that holds");
     if (has(JointDrawing::sliding)) add_line("sliding", sliding_colour, 3.0, "slides");
     if (has(JointDrawing::open)) add_line("open", open_colour, 3.0, "open");
-    if (largest_opening_ > 0.0) add_line("crack-scale", open_colour, widest_line(), fmt::format("{} {}", picture_.crack_name, length_text(largest_opening_)), 0.8);
+    if (largest_opening_ > 0.0)
+      add_line("crack-scale", open_colour, widest_line(), fmt::format("{} {}", picture_.crack_name, length_text(largest_opening_)), 0.8);
     if (largest_force_ > 0.0) {
       for (const double part : {1.0, 0.3}) {
         const double size = part == 1.0 ? largest_force_ : round_length(part * largest_force_);
@@ -444,14 +453,14 @@ class Drawing {
 
   const Picture& picture_;
   Box box_;
-  double scale_ = 1.0;                  ///< [px/m]
-  double left_ = 0.0, top_ = 0.0;       ///< [px] of the blocks
-  double page_width_ = 0.0;             ///< [px]
-  double block_size_ = 0.0;             ///< [px] of the median free block
+  double scale_ = 1.0;                      ///< [px/m]
+  double left_ = 0.0, top_ = 0.0;           ///< [px] of the blocks
+  double page_width_ = 0.0;                 ///< [px]
+  double block_size_ = 0.0;                 ///< [px] of the median free block
   double legend_x_ = 0.0, legend_y_ = 0.0;  ///< [px]
   double row_extra_ = 0.0;                  ///< [px] what the present row of the legend has below its line
   double largest_force_ = 0.0, largest_opening_ = 0.0, largest_load_ = 0.0;
-  double longest_arrow_ = 0.0;              ///< [px] of the velocities
+  double longest_arrow_ = 0.0;  ///< [px] of the velocities
   std::vector<std::string> title_lines_, note_lines_;
   SvgPage page_;
 };

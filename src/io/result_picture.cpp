@@ -39,7 +39,7 @@ struct BlockInfo {
 struct ContactRow {
   int a = 0, b = 0;
   Vec2 point = Vec2::Zero(), force = Vec2::Zero();  ///< force on a [N]
-  double length = 0.0;  ///< [m]
+  double length = 0.0;                              ///< [m]
   JointDrawing state = JointDrawing::plain;
   bool used = false;
 };
@@ -87,7 +87,9 @@ class ResultPicture {
   ResultPicture(const std::string& folder, const DrawingRequest& request)
       : folder_(require_folder(folder)), request_(request), outlines_(path_of("blocks.csv"), {"block", "x_m", "y_m"}) {
     if (outlines_.states().empty())
-      throw InputError({path_of("blocks.csv"), 0}, "", std::filesystem::exists(path_of("blocks.csv")) ? "no state is written there" : "there is no such file", "the folder of a run or fos");
+      throw InputError({path_of("blocks.csv"), 0}, "",
+                       std::filesystem::exists(path_of("blocks.csv")) ? "no state is written there" : "there is no such file",
+                       "the folder of a run or fos");
     read_summary();
     choose_state();
   }
@@ -191,11 +193,16 @@ class ResultPicture {
   }
 
   void read_contacts() {
-    const StateTable table(path_of("contacts.csv"), {"block_a", "block_b", "x_m", "y_m", "normal_x", "normal_y", "normal_force_n", "shear_force_n", "status", "length_m"});
+    const StateTable table(path_of("contacts.csv"),
+                           {"block_a", "block_b", "x_m", "y_m", "normal_x", "normal_y", "normal_force_n", "shear_force_n", "status", "length_m"});
     table.rows(state_, [&](const Row& row) {
       const Vec2 normal(number_in(row[4]), number_in(row[5]));
-      contacts_.push_back({index_of(row[0]), index_of(row[1]), {number_in(row[2]), number_in(row[3])},
-                           number_in(row[6]) * normal + number_in(row[7]) * perpendicular(normal), number_in(row[9]), status_in(row[8])});
+      contacts_.push_back({index_of(row[0]),
+                           index_of(row[1]),
+                           {number_in(row[2]), number_in(row[3])},
+                           number_in(row[6]) * normal + number_in(row[7]) * perpendicular(normal),
+                           number_in(row[9]),
+                           status_in(row[8])});
     });
     if (request_.forces && contacts_.empty()) {
       std::string accepted;
@@ -207,10 +214,17 @@ class ResultPicture {
   }
 
   void read_cracks() {
-    const StateTable table(path_of("cracks.csv"), {"block_a", "block_b", "x1_m", "y1_m", "x2_m", "y2_m", "opening1_m", "opening2_m", "slip1_m", "slip2_m"});
+    const StateTable table(path_of("cracks.csv"),
+                           {"block_a", "block_b", "x1_m", "y1_m", "x2_m", "y2_m", "opening1_m", "opening2_m", "slip1_m", "slip2_m"});
     table.rows(state_, [&](const Row& row) {
-      cracks_.push_back({index_of(row[0]), index_of(row[1]), {number_in(row[2]), number_in(row[3])}, {number_in(row[4]), number_in(row[5])},
-                         number_in(row[6]), number_in(row[7]), number_in(row[8]), number_in(row[9])});
+      cracks_.push_back({index_of(row[0]),
+                         index_of(row[1]),
+                         {number_in(row[2]), number_in(row[3])},
+                         {number_in(row[4]), number_in(row[5])},
+                         number_in(row[6]),
+                         number_in(row[7]),
+                         number_in(row[8]),
+                         number_in(row[9])});
     });
     if (request_.cracks && cracks_.empty()) {
       throw InputError({path_of("cracks.csv"), 0}, "--cracks", fmt::format("no joints are written of the state \"{}\"", state_),
@@ -510,8 +524,8 @@ class ResultPicture {
   std::vector<BlockInfo> blocks_;
   std::unordered_map<std::string, int> index_;
   std::vector<Polygon> drawn_, now_;
-  double size_ = 1.0;                   ///< [m] of the median block
-  double largest_displacement_ = 0.0;   ///< [m] of the mechanism
+  double size_ = 1.0;                  ///< [m] of the median block
+  double largest_displacement_ = 0.0;  ///< [m] of the mechanism
   std::vector<ContactRow> contacts_;
   std::unordered_map<std::uint64_t, std::vector<std::size_t>> of_pair_;
   std::vector<CrackRow> cracks_;
@@ -530,7 +544,8 @@ Picture picture_of_results(const std::string& folder, const DrawingRequest& requ
   try {
     return ResultPicture(folder, request).picture();
   } catch (const json::exception&) {
-    throw InputError({folder + "/summary.json", 0}, "", "this is not what openclose writes of a run or fos", "the results of this version of openclose");
+    throw InputError({folder + "/summary.json", 0}, "", "this is not what openclose writes of a run or fos",
+                     "the results of this version of openclose");
   }
 }
 

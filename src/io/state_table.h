@@ -45,8 +45,8 @@ class StateTable {
   static void split(std::string_view line, Row& fields);
 
   std::string text_;
-  std::size_t width_ = 0;               ///< fields of a row
-  std::vector<std::size_t> columns_;    ///< of the file
+  std::size_t width_ = 0;             ///< fields of a row
+  std::vector<std::size_t> columns_;  ///< of the file
   std::vector<std::string> states_;
   std::vector<std::string_view> ranges_;  ///< the rows of each
 };

@@ -43,8 +43,8 @@ class Grid {
     const std::uint64_t size = values.size() * sizeof(T);
     std::string bytes(reinterpret_cast<const char*>(&size), sizeof size);
     bytes.append(reinterpret_cast<const char*>(values.data()), size);
-    text_ += fmt::format("<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"binary\">{}</DataArray>\n", vtk_type<T>(), name, components,
-                         base64(bytes.data(), bytes.size()));
+    text_ += fmt::format("<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"binary\">{}</DataArray>\n", vtk_type<T>(), name,
+                         components, base64(bytes.data(), bytes.size()));
   }
   std::string take() { return std::move(text_) + "</Piece>\n</UnstructuredGrid>\n</VTKFile>\n"; }
 
@@ -64,7 +64,8 @@ struct BlockNumbers {
     for (std::getline(file, line); std::getline(file, line);) {
       const std::size_t first = line.find(','), second = line.find(',', first + 1);
       of.emplace(line.substr(0, first), static_cast<std::int64_t>(material.size()));
-      material.push_back(materials.try_emplace(line.substr(first + 1, second - first - 1), static_cast<std::int64_t>(materials.size())).first->second);
+      material.push_back(
+          materials.try_emplace(line.substr(first + 1, second - first - 1), static_cast<std::int64_t>(materials.size())).first->second);
       fixed.push_back(line.at(second + 1) == '1' ? 1 : 0);
     }
   }
@@ -188,9 +189,9 @@ std::string base64(const char* bytes, std::size_t size) {
 void write_vtk(const OutputFolder& folder) {
   const StateTable outlines(folder.path_of("blocks.csv"), {"block", "x_m", "y_m"});
   const StateTable motions(folder.path_of("block_states.csv"), {"block", "displacement_x_m", "displacement_y_m", "rotation_rad", "velocity_x_m_per_s",
-                                                               "velocity_y_m_per_s", "angular_velocity_rad_per_s", "time_s"});
+                                                                "velocity_y_m_per_s", "angular_velocity_rad_per_s", "time_s"});
   const StateTable contacts(folder.path_of("contacts.csv"), {"block_a", "block_b", "x_m", "y_m", "normal_x", "normal_y", "length_m", "gap_m",
-                                                            "normal_force_n", "shear_force_n", "status"});
+                                                             "normal_force_n", "shear_force_n", "status"});
   const BlockNumbers numbers(folder.path_of("block_properties.csv"));
   std::vector<std::pair<double, std::string>> block_files, contact_files;
   for (const std::string& state : outlines.states()) {

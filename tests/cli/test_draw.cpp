@@ -20,7 +20,8 @@ TEST_CASE("draw writes a picture into the folder, or where it is told to", "[cli
   CHECK_THAT(result.out, ContainsSubstring("2 blocks drawn") && ContainsSubstring("written to out/drawing.svg"));
   CHECK_THAT(text_of(place.folder() / "out/drawing.svg"), StartsWith("<svg "));
   for (const std::string colour : {"material", "displacement", "velocity", "state"}) {
-    const CommandResult coloured = place.run("draw out --quiet --forces --cracks --state start --colour " + colour + " -o pictures/" + colour + ".svg");
+    const CommandResult coloured =
+        place.run("draw out --quiet --forces --cracks --state start --colour " + colour + " -o pictures/" + colour + ".svg");
     CHECK(coloured.status == 0);
     CHECK(coloured.out.empty());
     CHECK_THAT(text_of(place.folder() / ("pictures/" + colour + ".svg")), StartsWith("<svg "));

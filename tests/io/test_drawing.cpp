@@ -156,7 +156,8 @@ TEST_CASE("every block is a polygon; of many blocks every colour is one path", "
   CHECK(count(svg, "<polygon") == 0);
   // Regular expressions of the library run out of stack on paths as long as these.
   std::vector<std::string> paths;
-  for (std::size_t at = svg.find("<path transform=\"scale(.01)\" fill=\"#"); at != std::string::npos; at = svg.find("<path transform=\"scale(.01)\" fill=\"#", at + 1)) {
+  for (std::size_t at = svg.find("<path transform=\"scale(.01)\" fill=\"#"); at != std::string::npos;
+       at = svg.find("<path transform=\"scale(.01)\" fill=\"#", at + 1)) {
     const std::size_t begin = svg.find(" d=\"", at) + 4;
     paths.push_back(svg.substr(begin, svg.find('"', begin) - begin));
   }
@@ -287,7 +288,7 @@ TEST_CASE("joints are drawn as their contacts are", "[io][drawing]") {
     CHECK(picture.joints[0].to == Vec2(0.5, 1.0));
     CHECK(picture.joints[1].state == JointDrawing::sticking);
     const std::string svg = svg_drawing(picture);
-    CHECK(count(svg, "class=\"open\"") == (word == "open" ? 2 : 0));      // the joint, and the legend
+    CHECK(count(svg, "class=\"open\"") == (word == "open" ? 2 : 0));  // the joint, and the legend
     CHECK(count(svg, "class=\"sliding\"") == (word == "sliding" ? 2 : 0));
   }
 }
@@ -309,7 +310,8 @@ TEST_CASE("what cannot be drawn is refused with what can", "[io][drawing]") {
   CHECK_THAT(refusal(old.path(), request), ContainsSubstring("summary.json: this is not what openclose writes"));
   old.write("summary.json", "{");
   CHECK_THAT(refusal(old.path(), request), ContainsSubstring("summary.json: this is not JSON"));
-  CHECK_THAT(refusal(results.place / "nowhere", request), ContainsSubstring("nowhere: there is no such folder; accepted: the folder of a run or fos"));
+  CHECK_THAT(refusal(results.place / "nowhere", request),
+             ContainsSubstring("nowhere: there is no such folder; accepted: the folder of a run or fos"));
   CHECK_THAT(refusal(results.place / "blocks.csv", request), ContainsSubstring("this is no folder"));
   const TemporaryFolder empty;
   CHECK_THAT(refusal(empty.path(), request), ContainsSubstring("blocks.csv: there is no such file"));
@@ -319,7 +321,8 @@ TEST_CASE("what cannot be drawn is refused with what can", "[io][drawing]") {
   CHECK_THAT(refusal(results.place.path(), request), ContainsSubstring("--state: there is no state \"finl\"; accepted: \"final\", \"initial\""));
   request.state = "initial";
   request.forces = true;
-  CHECK_THAT(refusal(results.place.path(), request), ContainsSubstring("--forces: there are no contacts in the state \"initial\"; accepted: --state with one of \"final\""));
+  CHECK_THAT(refusal(results.place.path(), request),
+             ContainsSubstring("--forces: there are no contacts in the state \"initial\"; accepted: --state with one of \"final\""));
   request.forces = false;
   request.cracks = true;
   CHECK_THAT(refusal(results.place.path(), request), ContainsSubstring("--cracks"));

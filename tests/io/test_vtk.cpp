@@ -1,5 +1,5 @@
-// The files for ParaView: well-formed, their arrays of the lengths that they say, and the numbers those of the tables. `make verify-vtk` reads them with
-// VTK itself.
+// The files for ParaView: well-formed, their arrays of the lengths that they say, and the numbers those of the tables. `make verify-vtk` reads them
+// with VTK itself.
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -70,8 +70,8 @@ bool is_well_formed(const std::string& xml) {
 }  // namespace
 
 TEST_CASE("base64 is that of RFC 4648", "[io][vtk]") {
-  const std::pair<const char*, const char*> vectors[] = {{"", ""},         {"f", "Zg=="},     {"fo", "Zm8="},        {"foo", "Zm9v"},
-                                                         {"foob", "Zm9vYg=="}, {"fooba", "Zm9vYmE="}, {"foobar", "Zm9vYmFy"}};
+  const std::pair<const char*, const char*> vectors[] = {
+      {"", ""}, {"f", "Zg=="}, {"fo", "Zm8="}, {"foo", "Zm9v"}, {"foob", "Zm9vYg=="}, {"fooba", "Zm9vYmE="}, {"foobar", "Zm9vYmFy"}};
   for (const auto& [plain, coded] : vectors) CHECK(base64(plain, std::strlen(plain)) == coded);
 }
 
