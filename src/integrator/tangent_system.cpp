@@ -97,7 +97,7 @@ void TangentSystem<N>::set_pattern(int rows, const std::vector<std::pair<int, in
 template <int N>
 void TangentSystem<N>::choose_solver(int rows) {
   solver_rows_ = rows;
-  solver_ = make_solver<N>(rows, kind_, factoring_);
+  solver_ = make_solver<N>(kind_, factoring_);
 }
 
 template <int N>

@@ -562,10 +562,8 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
                    {"refinements", linear.refinements},
                    {"couplings_taken_in", linear.couplings_taken_in},
                    {"pivots_lost", linear.pivots_lost},
-                   {"plain_factorisations", linear.plain},
                    {"symbolic", linear.symbolic},
                    {"symbolic_skipped", linear.symbolic_skipped},
-                   {"factors_kept", linear.factors_kept},
                    {"krylov_iterations", linear.krylov_iterations},
                    {"krylov_given_up", linear.krylov_given_up},
                    {"incomplete_factorisations", linear.incomplete}};

@@ -5,7 +5,7 @@
 // and U, and the rows above are subtracted from it in ascending order. The pattern is symmetric, so that L has the transposed pattern of U. The
 // diagonal blocks are inverted and the rows of U multiplied by these inverses (Crout's form), so that a row is subtracted as often as its block in L
 // says; nothing is exchanged between blocks, which is safe while each block is held by its own inertia and contacts: where a pivot has lost its
-// digits, the matrix is given to the multifrontal solver, which exchanges rows within its fronts.
+// digits, the matrix is given to the plain solver, which exchanges rows.
 //
 // Single precision has been tried in a prototype: rows of U have six blocks on average (387 rows), so that half of the instructions are for fetching
 // and not for products, and the elimination takes 0.9 of the time, which one refinement of each solution takes back.
@@ -31,7 +31,6 @@
 
 #include "openclose/core/parallel.h"
 #include "openclose/core/process.h"
-#include "openclose/linear/elimination.h"
 #include "openclose/linear/solver.h"
 #include "openclose/linear/weak_couplings.h"
 
@@ -504,16 +503,16 @@ class BlockLuSolver : public LinearSolver<N> {
   }
 
   Memory memory() const override {
-    Memory of = fronts_ ? fronts_->memory() : Memory();
+    Memory of = plain_ ? plain_->memory() : Memory();
     of.factor += factor_.bytes() + bytes_of(slots_, left_out_, working_place_, place_);
     for (const std::vector<int>& place : working_place_) of.factor += bytes_of(place);
     return of;
   }
 
   void let_go() override {
-    has_factor_ = use_fronts_ = false;
+    has_factor_ = use_plain_ = false;
     let_go_of_rows();
-    let_go_of_fronts();
+    plain_.reset();
   }
 
   void exchange(Archive& archive, const BlockMatrix<N>& matrix) override {
@@ -545,26 +544,20 @@ class BlockLuSolver : public LinearSolver<N> {
     rows_lag_ = this->rows_may_lag_ && kept_change > 0.0 && !left_out_.empty();
     this->counters_.rows_kept += kernels_.take_changes(*matrix_, factor_, rows_lag_ ? std::max(kept_change, lagging_change) : kept_change);
     has_factor_ = eliminate();
-    use_fronts_ = !has_factor_;
+    use_plain_ = !has_factor_;
     if (has_factor_) {
-      let_go_of_fronts();
+      plain_.reset();
       return true;
     }
     ++this->counters_.pivots_lost;
     let_go_of_rows();
-    if (!fronts_) fronts_ = make_multifrontal_solver<N>(Refactor::always);
-    const bool regular = fronts_->factor(*matrix_);
-    count_help();
-    return regular;
+    if (!plain_) plain_ = make_sparse_solver<N>();
+    return plain_->factor(*matrix_);
   }
 
   Eigen::VectorXd solve_once(const Eigen::VectorXd& right_side, double reduction, double enough) {
+    if (use_plain_) return plain_->solve(right_side);
     Eigen::VectorXd x(right_side.size());
-    if (use_fronts_) {
-      x = fronts_->solve(right_side, reduction, enough);
-      count_help();
-      return x;
-    }
     substitute(right_side.data(), x.data());
     if (left_out_.empty() || refine(right_side, std::max(enough, refined_to(reduction)), x)) return x;
     const bool can_do = rows_lag_ ? factor_analysed(0.0) : take_in();
@@ -637,14 +630,6 @@ class BlockLuSolver : public LinearSolver<N> {
                   [&](int part) { kernels_.substitute_back(factor_, factor_.subtrees[part], x); });
   }
 
-  /// The factorisation is counted already, what the fronts needed on top of it is not.
-  void count_help() {
-    const LinearCounters& help = fronts_->counters();
-    this->counters_.plain += help.plain - counted_.plain;
-    this->counters_.krylov_iterations += help.krylov_iterations - counted_.krylov_iterations;
-    counted_ = help;
-  }
-
   /// \param slots  of the matrix: whether the factor gets them
   void analyse(std::vector<char> slots) {
     ++this->counters_.symbolic;
@@ -694,17 +679,12 @@ class BlockLuSolver : public LinearSolver<N> {
     return upper;
   }
 
-  // One of the two is there at a time: pivots are seldom lost, and fronts are as large as the rows.
+  // One of the two is there at a time: pivots are seldom lost, and the plain factor is as large as the rows.
   void let_go_of_rows() { std::vector<PaddedBlock<N>>().swap(factor_.value); }
-  void let_go_of_fronts() {
-    fronts_.reset();
-    counted_ = LinearCounters();
-  }
 
   /// For the numbers of the factor.
   void make_room() {
     const std::size_t size = factor_.column.size();
-    if (fronts_) fronts_->let_go();
     if (factor_.value.capacity() < size) {
       let_go_of_rows();  // else the old and the new ones would be there at once
       // Ordering and pattern have left holes too small for the factor.
@@ -892,9 +872,8 @@ class BlockLuSolver : public LinearSolver<N> {
   bool rows_lag_ = false;                        ///< rows of the factor may be those of matrices before the last one
   std::vector<std::vector<int>> working_place_;  ///< for each part: slot of a column in the row under work
   std::vector<int> place_;                       ///< in the factor, of a row of the matrix
-  bool use_fronts_ = false;
-  std::unique_ptr<LinearSolver<N>> fronts_;
-  LinearCounters counted_;  ///< of the fronts
+  bool use_plain_ = false;
+  std::unique_ptr<LinearSolver<N>> plain_;
 };
 
 }  // namespace

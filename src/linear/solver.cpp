@@ -6,12 +6,6 @@
 namespace openclose {
 namespace {
 
-/// Up to here a factor of its own for each matrix, row by row, where GMRES does not serve: 42 against 78 ms by supernodes at 19,445 rows, 0.21
-/// against 0.33 s at 49,066, 0.71 against 1.0 s at 98,600, and solves in four fifths of the time. Keeping the latter for the next matrices does not
-/// make up for that: settling a slope of 20,100 blocks 19 of 1,807 factors served again. An iteration of its motion takes 25 ms so and 36 ms with
-/// kept factors.
-constexpr int largest_row_by_row_system_blocks = 100000;
-
 /// From here on GMRES with an incomplete factor is worth a try. A slope in motion at 10 ms, CPU time of all it does over that with factors of which
 /// rows are kept: 1.07 with 1,119 free blocks, 0.8 with 1,773, 0.55 with 4,568.
 constexpr int smallest_iterative_system_blocks = 1500;
@@ -107,17 +101,15 @@ std::unique_ptr<LinearSolver<N>> make_sparse_solver() {
 }
 
 template <int N>
-std::unique_ptr<LinearSolver<N>> make_solver(int blocks, LinearSolverKind kind, Factoring factoring) {
+std::unique_ptr<LinearSolver<N>> make_solver(LinearSolverKind kind, Factoring factoring) {
   if (kind == LinearSolverKind::plain) return make_sparse_solver<N>();
-  const bool row_by_row = kind != LinearSolverKind::iterative && blocks <= largest_row_by_row_system_blocks;
-  auto direct = row_by_row ? make_block_solver<N>(factoring)
-                           : make_multifrontal_solver<N>(kind == LinearSolverKind::direct ? Refactor::always : Refactor::when_needed);
+  auto direct = make_block_solver<N>(factoring);
   if (kind == LinearSolverKind::direct) return direct;
   return make_incomplete_solver<N>(std::move(direct), kind == LinearSolverKind::iterative ? 0 : smallest_iterative_system_blocks, factoring);
 }
 
 template std::unique_ptr<LinearSolver<3>> make_dense_solver<3>();
 template std::unique_ptr<LinearSolver<3>> make_sparse_solver<3>();
-template std::unique_ptr<LinearSolver<3>> make_solver<3>(int, LinearSolverKind, Factoring);
+template std::unique_ptr<LinearSolver<3>> make_solver<3>(LinearSolverKind, Factoring);
 
 }  // namespace openclose

@@ -20,11 +20,9 @@ struct LinearCounters {
   long symbolic_skipped = 0;  ///< factorisations on a known pattern
   long factorisations = 0;
   long solves = 0;
-  long pivots_lost = 0;         ///< factorisations row by row that were done again with exchange of rows
-  long plain = 0;               ///< matrices that only the plain solver could do
-  long factors_kept = 0;        ///< matrices solved with the factor of an earlier one
+  long pivots_lost = 0;         ///< factorisations row by row that the plain solver did again, with exchange of rows
   long krylov_iterations = 0;   ///< of GMRES
-  long krylov_given_up = 0;     ///< solves with an earlier factor or an incomplete one that were given up for a new one
+  long krylov_given_up = 0;     ///< solves with an incomplete factor that were given up for a direct one
   long incomplete = 0;          ///< incomplete factorisations, not counted in `factorisations`
   long rows = 0;                ///< block rows of all matrices that were to be factored row by row, incomplete factors included
   long rows_kept = 0;           ///< of these: as they were in the factor before
@@ -32,15 +30,15 @@ struct LinearCounters {
   long couplings_taken_in = 0;  ///< factorisations done again because weak couplings were too strong for that
 
   LinearCounters& operator+=(const LinearCounters& other) {
-    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n] = *this;
-    const auto& [a2, b2, c2, d2, e2, f2, g2, h2, i2, j2, k2, l2, m2, n2] = other;
-    a += a2, b += b2, c += c2, d += d2, e += e2, f += f2, g += g2, h += h2, i += i2, j += j2, k += k2, l += l2, m += m2, n += n2;
+    auto& [a, b, c, d, e, f, g, h, i, j, k, l] = *this;
+    const auto& [a2, b2, c2, d2, e2, f2, g2, h2, i2, j2, k2, l2] = other;
+    a += a2, b += b2, c += c2, d += d2, e += e2, f += f2, g += g2, h += h2, i += i2, j += j2, k += k2, l += l2;
     return *this;
   }
 
   void exchange(Archive& archive) {
-    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n] = *this;
-    archive(a, b, c, d, e, f, g, h, i, j, k, l, m, n);
+    auto& [a, b, c, d, e, f, g, h, i, j, k, l] = *this;
+    archive(a, b, c, d, e, f, g, h, i, j, k, l);
   }
 };
 
@@ -91,20 +89,10 @@ std::unique_ptr<LinearSolver<N>> make_dense_solver();
 template <int N>
 std::unique_ptr<LinearSolver<N>> make_sparse_solver();
 
-/// LU of the blocks, without exchange between them, in an order of little fill; goes over to the multifrontal one where a pivot has lost its digits.
+/// LU of the blocks, without exchange between them, in an order of little fill; goes over to the plain solver where a pivot has lost its digits.
 /// \param wide_registers  false: only the instructions that every processor has, for comparison; the bits of the answer are the same
 template <int N>
 std::unique_ptr<LinearSolver<N>> make_block_solver(Factoring factoring = Factoring::needed, bool wide_registers = true);
-
-/// When the multifrontal solver factors.
-enum class Refactor {
-  always,       ///< every matrix
-  when_needed,  ///< once GMRES with the last factor takes too long
-};
-
-/// Multifrontal LU of supernodes, refined by GMRES: for large systems.
-template <int N>
-std::unique_ptr<LinearSolver<N>> make_multifrontal_solver(Refactor refactor);
 
 /// GMRES with an incomplete factor of each matrix; those that this does not serve, and small ones, go to `direct`.
 /// \param smallest_system  [-] block rows
@@ -112,9 +100,8 @@ template <int N>
 std::unique_ptr<LinearSolver<N>> make_incomplete_solver(std::unique_ptr<LinearSolver<N>> direct, int smallest_system,
                                                         Factoring factoring = Factoring::needed);
 
-/// The solver for a system of this many blocks.
+/// The solver that serves every system, or the one asked for.
 template <int N>
-std::unique_ptr<LinearSolver<N>> make_solver(int blocks, LinearSolverKind kind = LinearSolverKind::automatic,
-                                             Factoring factoring = Factoring::needed);
+std::unique_ptr<LinearSolver<N>> make_solver(LinearSolverKind kind = LinearSolverKind::automatic, Factoring factoring = Factoring::needed);
 
 }  // namespace openclose

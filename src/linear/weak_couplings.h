@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "openclose/linear/block_matrix.h"
-#include "openclose/linear/elimination.h"
 
 namespace openclose {
 
@@ -19,6 +18,13 @@ enum class Factoring {
 /// large against the diagonal entries of its row and column, or which are zero, since nobody knows how strong they will be.
 template <int N>
 std::vector<char> factored_slots(const BlockMatrix<N>& matrix, Factoring factoring);
+
+/// The neighbours of each row of a symmetric pattern, without the row itself: those of row i are neighbour[start[i]] to neighbour[start[i + 1] - 1].
+struct RowGraph {
+  std::vector<int> start{0};
+  std::vector<int> neighbour;
+  int rows() const { return static_cast<int>(start.size()) - 1; }
+};
 
 /// The couplings of these slots.
 template <int N>

@@ -374,7 +374,6 @@ TEST_CASE("summary.json has counters under their own names", "[io][results]") {
                                                 {"refinements", linear.refinements},
                                                 {"couplings_taken_in", linear.couplings_taken_in},
                                                 {"pivots_lost", linear.pivots_lost},
-                                                {"plain_factorisations", linear.plain},
                                                 {"symbolic", linear.symbolic},
                                                 {"symbolic_skipped", linear.symbolic_skipped}};
   const nlohmann::json counters = summary_json(place).at("counters");

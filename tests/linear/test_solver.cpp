@@ -63,8 +63,6 @@ BlockMatrix<3> cancelling_diagonal() {
 
 Solver make(const std::string& name) {
   if (name == "dense") return make_dense_solver<3>();
-  if (name == "multifrontal") return make_multifrontal_solver<3>(Refactor::always);
-  if (name == "lagged") return make_multifrontal_solver<3>(Refactor::when_needed);
   return name == "block" ? make_block_solver<3>() : make_sparse_solver<3>();
 }
 
@@ -79,21 +77,18 @@ TEST_CASE("all solvers solve random systems to rounding and agree", "[linear][so
     BlockMatrix<3> matrix;
     matrix.set_pattern(rows, pairs);
     random.fill(matrix, pairs, dominance);
-    const Solver dense = make_dense_solver<3>(), sparse = make("sparse"), block = make("block"), fronts = make("multifrontal");
+    const Solver dense = make_dense_solver<3>(), sparse = make("sparse"), block = make("block");
     REQUIRE(dense->factor(matrix));
     REQUIRE(sparse->factor(matrix));
     REQUIRE(block->factor(matrix));
-    REQUIRE(fronts->factor(matrix));
     const Eigen::VectorXd right_side = random.vector(matrix.unknowns());
-    const Eigen::VectorXd x = dense->solve(right_side), y = sparse->solve(right_side), z = block->solve(right_side), w = fronts->solve(right_side);
+    const Eigen::VectorXd x = dense->solve(right_side), y = sparse->solve(right_side), z = block->solve(right_side);
     CHECK(residual_over_rounding(matrix, x, right_side) < 1.0);
     CHECK(residual_over_rounding(matrix, y, right_side) < 1.0);
-    CHECK(residual_over_rounding(matrix, w, right_side) < 1.0);
     if (dominance <= 1.0) continue;
     CHECK(residual_over_rounding(matrix, z, right_side) < 1.0);
     CHECK((x - y).norm() <= 1e-13 * x.norm());
     CHECK((x - z).norm() <= 1e-13 * x.norm());
-    CHECK((x - w).norm() <= 1e-13 * x.norm());
   }
 }
 
@@ -148,7 +143,7 @@ TEST_CASE("a system in which nothing moves has an empty solution", "[linear][sol
   BlockMatrix<3> matrix;
   matrix.set_pattern(0, {});
   for (const LinearSolverKind kind : {LinearSolverKind::plain, LinearSolverKind::direct, LinearSolverKind::iterative}) {
-    const Solver solver = make_solver<3>(0, kind);
+    const Solver solver = make_solver<3>(kind);
     REQUIRE(solver->factor(matrix));
     CHECK(solver->solve(Eigen::VectorXd()).size() == 0);
   }
@@ -156,7 +151,7 @@ TEST_CASE("a system in which nothing moves has an empty solution", "[linear][sol
 
 TEST_CASE("several right sides use one factorisation", "[linear][solver]") {
   RandomSystems random(4);
-  const Solver solver = make(GENERATE("dense", "sparse", "block", "multifrontal", "lagged"));
+  const Solver solver = make(GENERATE("dense", "sparse", "block"));
   const auto pairs = random.couplings(12, 30);
   BlockMatrix<3> matrix;
   matrix.set_pattern(12, pairs);
@@ -172,7 +167,7 @@ TEST_CASE("several right sides use one factorisation", "[linear][solver]") {
 
 TEST_CASE("symbolic work is done once for a pattern, numbers every time", "[linear][solver]") {
   RandomSystems random(5);
-  const Solver solver = make(GENERATE("sparse", "block", "multifrontal"));
+  const Solver solver = make(GENERATE("sparse", "block"));
   BlockMatrix<3> matrix;
   const auto check_solution = [&] {
     REQUIRE(solver->factor(matrix));
@@ -206,7 +201,7 @@ TEST_CASE("symbolic work is done once for a pattern, numbers every time", "[line
 
 TEST_CASE("zeros within the pattern may become numbers later", "[linear][solver]") {
   RandomSystems random(6);
-  const Solver solver = make(GENERATE("sparse", "block", "multifrontal"));
+  const Solver solver = make(GENERATE("sparse", "block"));
   const std::vector<std::pair<int, int>> pairs{{0, 1}, {1, 2}};
   BlockMatrix<3> matrix;
   matrix.set_pattern(3, pairs);
@@ -221,7 +216,7 @@ TEST_CASE("zeros within the pattern may become numbers later", "[linear][solver]
 }
 
 TEST_CASE("a singular matrix is reported, and the solver works again afterwards", "[linear][solver]") {
-  const std::string name = GENERATE("dense", "sparse", "block", "multifrontal", "lagged");
+  const std::string name = GENERATE("dense", "sparse", "block");
   const Solver solver = make(name);
   RandomSystems random(7);
   BlockMatrix<3> matrix;
@@ -246,7 +241,7 @@ TEST_CASE("a singular matrix is reported, and the solver works again afterwards"
   CHECK(residual_over_rounding(matrix, solver->solve(right_side), right_side) < 1.0);
 }
 
-TEST_CASE("a pivot that has lost its digits goes to the solver that exchanges rows, and is counted", "[linear][solver]") {
+TEST_CASE("a pivot that has lost its digits goes to the plain solver, which exchanges rows, and is counted", "[linear][solver]") {
   for (const bool before_elimination : {true, false}) {
     INFO((before_elimination ? "nearly singular diagonal" : "cancelling diagonal"));
     const BlockMatrix<3> matrix = before_elimination ? nearly_singular_diagonal() : cancelling_diagonal();
@@ -255,7 +250,6 @@ TEST_CASE("a pivot that has lost its digits goes to the solver that exchanges ro
     REQUIRE(solver->factor(matrix));
     CHECK(residual_over_rounding(matrix, solver->solve(right_side), right_side) < 1.0);
     CHECK(solver->counters().pivots_lost == 1);
-    CHECK(solver->counters().plain == 0);
   }
   RandomSystems systems(8);
   BlockMatrix<3> sound;
@@ -267,8 +261,7 @@ TEST_CASE("a pivot that has lost its digits goes to the solver that exchanges ro
   CHECK(solver->counters().pivots_lost == 0);
 }
 
-TEST_CASE("only what no exchange within the fronts helps goes to the plain solver", "[linear][solver]") {
-  // Nothing on the diagonal: of the blocks that a front is to eliminate more may belong to one colour of the chessboard than to the other.
+TEST_CASE("a system with nothing on its diagonal is solved by exchange of rows", "[linear][solver]") {
   RandomSystems random(10);
   const auto pairs = test::grid_pairs(20, 20);
   BlockMatrix<3> matrix;
@@ -280,11 +273,10 @@ TEST_CASE("only what no exchange within the fronts helps goes to the plain solve
   REQUIRE(solver->factor(matrix));
   CHECK(residual_over_rounding(matrix, solver->solve(right_side), right_side) < 1.0);
   CHECK(solver->counters().pivots_lost == 1);
-  CHECK(solver->counters().plain == 1);
 }
 
 TEST_CASE("an eliminated unknown makes a floating system regular and keeps its right side", "[linear][solver]") {
-  const std::string name = GENERATE("dense", "sparse", "block", "multifrontal", "lagged");
+  const std::string name = GENERATE("dense", "sparse", "block");
   const Solver solver = make(name);
   BlockMatrix<3> matrix = floating_pair();
   for (int k = 0; k < 3; ++k) matrix.eliminate(0, k);
@@ -296,7 +288,7 @@ TEST_CASE("an eliminated unknown makes a floating system regular and keeps its r
 }
 
 TEST_CASE("numbers that are none do not pass for a factorisation", "[linear][solver]") {
-  const std::string name = GENERATE("dense", "sparse", "block", "multifrontal", "lagged");
+  const std::string name = GENERATE("dense", "sparse", "block");
   const Solver solver = make(name);
   BlockMatrix<3> matrix = floating_pair();
   matrix.add(0, 0, Eigen::Matrix3d::Constant(std::numeric_limits<double>::quiet_NaN()));
