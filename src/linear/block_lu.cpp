@@ -545,10 +545,7 @@ class BlockLuSolver : public LinearSolver<N> {
     this->counters_.rows_kept += kernels_.take_changes(*matrix_, factor_, rows_lag_ ? std::max(kept_change, lagging_change) : kept_change);
     has_factor_ = eliminate();
     use_plain_ = !has_factor_;
-    if (has_factor_) {
-      plain_.reset();
-      return true;
-    }
+    if (has_factor_) return true;
     ++this->counters_.pivots_lost;
     let_go_of_rows();
     if (!plain_) plain_ = make_sparse_solver<N>();
