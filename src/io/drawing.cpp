@@ -106,8 +106,8 @@ class Drawing {
     for (const std::string& note : picture.notes) {
       for (std::string& line : wrapped(note, note_size)) note_lines_.push_back(std::move(line));
     }
-    top_ = margin + line_height * static_cast<double>(note_lines_.size()) + 1.3 * title_size * static_cast<double>(title_lines_.size()) + 6.0 +
-           (around.high.y() - scale_ * size.y());
+    notes_bottom_ = margin + line_height * static_cast<double>(note_lines_.size()) + 1.3 * title_size * static_cast<double>(title_lines_.size());
+    top_ = notes_bottom_ + 6.0 + (around.high.y() - scale_ * size.y());
   }
 
   std::string svg() {
@@ -320,11 +320,11 @@ class Drawing {
     page_.print("</g>\n");
   }
 
-  /// With a white rim, readable on blocks; on the side of the point where the page has room for it.
+  /// With a white rim, readable on blocks; on the side of the point where the page has room for it, and below the lines of the title.
   void label(const Vec2& p, const std::string& text, const char* colour) {
     const bool to_the_left = p.x() + 8.0 + width_of(text, 13.0) > page_width_;
     page_.write(
-        to_the_left ? p.x() - 7.0 : p.x() + 7.0, std::max(p.y() - 6.0, top_ + 2.0), text, 13.0,
+        to_the_left ? p.x() - 7.0 : p.x() + 7.0, std::max(p.y() - 6.0, notes_bottom_ + 8.0), text, 13.0,
         fmt::format(" fill=\"{}\" stroke=\"white\" stroke-width=\"3\" paint-order=\"stroke\"{}", colour, to_the_left ? " text-anchor=\"end\"" : "")
             .c_str());
   }
@@ -434,7 +434,7 @@ class Drawing {
     if (largest_force_ > 0.0) {
       for (const double part : {1.0, 0.3}) {
         const double size = part == 1.0 ? largest_force_ : round_length(part * largest_force_);
-        add_line("force-scale", force_colour, widest_line() * size / largest_force_, force_text(size), 0.72);
+        add_line("force-scale", force_colour, widest_line() * size / largest_force_, (part == 1.0 ? "largest force " : "") + force_text(size), 0.72);
       }
     }
     if (longest_arrow_ > 0.0) {
@@ -455,6 +455,7 @@ class Drawing {
   Box box_;
   double scale_ = 1.0;                      ///< [px/m]
   double left_ = 0.0, top_ = 0.0;           ///< [px] of the blocks
+  double notes_bottom_ = 0.0;               ///< [px] where title and notes end
   double page_width_ = 0.0;                 ///< [px]
   double block_size_ = 0.0;                 ///< [px] of the median free block
   double legend_x_ = 0.0, legend_y_ = 0.0;  ///< [px]

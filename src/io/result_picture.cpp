@@ -370,7 +370,7 @@ class ResultPicture {
     const double fastest = *std::ranges::max_element(values);
     if (shows_mechanism_ && fastest > 0.0) {
       for (double& value : values) value /= fastest;
-      set_values(values, "velocity over the fastest", "-");
+      set_values(values, "velocity / largest velocity", "-");
     } else {
       set_values(values, "velocity", "m/s");
     }
@@ -401,7 +401,9 @@ class ResultPicture {
     }
     double fastest = 0.0;
     for (const Vec2& v : velocities_) fastest = std::max(fastest, v.norm());
-    picture_.velocity_name = shows_mechanism_ ? "velocity of the mechanism" : fmt::format("{:.3g} m/s", fastest);
+    picture_.velocity_name = shows_mechanism_                               ? "velocity of the mechanism"
+                             : picture_.scale->quantity.ends_with("[mm/s]") ? fmt::format("{:.3g} mm/s", 1e3 * fastest)
+                                                                            : fmt::format("{:.3g} m/s", fastest);
   }
 
   void add_forces() {
@@ -421,8 +423,12 @@ class ResultPicture {
       force.size = sum.norm();
       if (force.size == 0.0) continue;
       const Vec2 direction = sum.normalized();
-      force.from = point + reach_into(a, point, direction) * direction;
-      force.to = point - reach_into(b, point, -direction) * direction;
+      double into_a = reach_into(a, point, direction), into_b = reach_into(b, point, -direction);
+      // A hinge presses corner on corner, and its force leaves both blocks at once: without a stump it would be a dot, and the chain be broken.
+      const double stump = 0.5 * stump_of_force * size_;
+      if (into_a + into_b < stump) into_a = into_b = stump;
+      force.from = point + into_a * direction;
+      force.to = point - into_b * direction;
       picture_.forces.push_back(force);
     }
   }
@@ -489,10 +495,10 @@ class ResultPicture {
     const json& stable = bracket.at("stable");
     if (stable.is_null() || verdict == "no_equilibrium" || verdict == "undecided")
       return fmt::format("no factor of safety ({}): {}", method, summary_.value("reason", ""));
-    if (verdict == "no_failure") return fmt::format("factor of safety above {:.5g} ({}: no failure found up to there)", stable.get<double>(), method);
+    if (verdict == "no_failure") return fmt::format("factor of safety above {:.6g} ({}: no failure found up to there)", stable.get<double>(), method);
     const json& failed = bracket.at("failed");
-    const std::string end = failed.is_null() ? "no failure proved" : fmt::format("failed at {:.5g}", failed.get<double>());
-    return fmt::format("factor of safety {:.5g} ({}, {}; {})", stable.get<double>(), end, verdict, method);
+    const std::string end = failed.is_null() ? "no failure proved" : fmt::format("failed at {:.6g}", failed.get<double>());
+    return fmt::format("factor of safety {:.6g} ({}, {}; {})", stable.get<double>(), end, verdict, method);
   }
 
   std::string answer_of_run() const {

@@ -206,8 +206,9 @@ TEST_CASE("lines are as wide as forces and openings are large", "[io][drawing]")
   REQUIRE(cracks.size() == 2);
   CHECK(cracks[0] / cracks[1] == Approx(4.0).epsilon(2e-3));
   // The scale in the legend: the same widths for the same forces.
-  const auto scale = all_matches(svg, "class=\"force-scale\"[^>]*stroke-width=\"([0-9.]+)\"[^>]*/>\\n<text[^>]*>([0-9.]+) kN/m<");
+  const auto scale = all_matches(svg, "class=\"force-scale\"[^>]*stroke-width=\"([0-9.]+)\"[^>]*/>\\n<text[^>]*>(?:largest force )?([0-9.]+) kN/m<");
   REQUIRE(scale.size() == 2);
+  CHECK_THAT(svg, ContainsSubstring(">largest force 400 kN/m<"));
   for (const auto& entry : scale) CHECK(100.0 * std::stod(entry[0]) / forces[0] == Approx(std::stod(entry[1]) / 400.0).epsilon(2e-3));
   CHECK_THAT(svg, ContainsSubstring(">opening 20 mm<"));
 }
@@ -291,6 +292,37 @@ TEST_CASE("joints are drawn as their contacts are", "[io][drawing]") {
     CHECK(count(svg, "class=\"open\"") == (word == "open" ? 2 : 0));  // the joint, and the legend
     CHECK(count(svg, "class=\"sliding\"") == (word == "sliding" ? 2 : 0));
   }
+}
+
+TEST_CASE("the force of a hinge is seen, though it leaves both blocks at once", "[io][drawing]") {
+  const TemporaryFolder folder;
+  std::string outlines = "state,block,vertex,x_m,y_m\n";
+  for (const char* row : {"left,1,0,0", "left,2,1,0", "left,3,1,1", "left,4,0,0.5", "right,1,1,0", "right,2,2,0", "right,3,2,0.5", "right,4,1,1"})
+    outlines += std::string("final,") + row + "\n";
+  folder.write("blocks.csv", outlines);
+  folder.write("contacts.csv",
+               "state,block_a,block_b,x_m,y_m,normal_x,normal_y,length_m,gap_m,normal_force_n,shear_force_n,status\n"
+               "final,left,right,1,1,-1,0,0.5,0,1000,0,sticking\n");
+  folder.write("cracks.csv", "state,block_a,block_b,x1_m,y1_m,x2_m,y2_m,length_m,opening1_m,opening2_m,slip1_m,slip2_m\n");
+  DrawingRequest request;
+  request.forces = true;
+  const Picture picture = picture_of_results(folder.path(), request);
+  REQUIRE(picture.forces.size() == 1);
+  const Vec2 line = picture.forces[0].to - picture.forces[0].from;
+  CHECK(std::abs(line.y()) < 1e-12);
+  CHECK(line.x() > 0.1);
+  CHECK(line.x() < 1.0);
+}
+
+TEST_CASE("the label of a load stands at the tail of its arrow", "[io][drawing]") {
+  Picture picture = picture_of(tower_on_base());
+  picture.loads = {{{103.5, 53.0}, {0.0, -5e3}}};
+  const std::string svg = svg_drawing(picture);
+  const auto tail = all_matches(group(svg, "loads"), "<line[^>]*y1=\"([-0-9.]+)\"");
+  const auto label = all_matches(group(svg, "loads"), "<text x=\"[-0-9.]+\" y=\"([-0-9.]+)\"[^>]*>5 kN/m<");
+  REQUIRE(tail.size() == 1);
+  REQUIRE(label.size() == 1);
+  CHECK(std::abs(std::stod(label[0][0]) - std::stod(tail[0][0])) < 10.0);
 }
 
 TEST_CASE("what cannot be drawn is refused with what can", "[io][drawing]") {
