@@ -82,7 +82,7 @@ void require_countable_steps(const Scene& scene, const std::string& key, double 
 /// Throws InputError where a scene does not say what `run` has to know.
 void require_run(const Scene& scene) {
   if (scene.step.dt <= 0.0) throw InputError(scene.where, "step.dt_s", "missing", "a step in seconds, here or with --dt");
-  if (scene.end_time <= 0.0) throw InputError(scene.where, "end.time_s", "missing", "an end time in seconds, here or with --end");
+  if (scene.end_time <= 0.0) throw InputError(scene.where, "end.time_s", "missing, or 0", "an end time > 0 in seconds, here or with --end");
   require_countable_steps(scene, "end.time_s", scene.end_time);
 }
 
@@ -254,7 +254,8 @@ void print_factor(const Scene& scene, const FactorOfSafety<unknowns>& safety, co
   if (!safety.mechanism.empty()) {
     double area = 0.0;
     for (const FailingBlock& block : safety.mechanism) area += block.area;
-    fmt::print("what fails: {} of {} blocks, {:.4g} m2, see mechanism.csv\n", safety.mechanism.size(), scene.blocks.size(), area);
+    const auto free = std::ranges::count_if(scene.blocks, [](const BlockInput& block) { return !block.fixed; });
+    fmt::print("what fails: {} of {} free blocks, {:.4g} m2, see mechanism.csv\n", safety.mechanism.size(), free, area);
   }
 }
 
@@ -328,11 +329,12 @@ void write_spectrum(Simulation<unknowns>& simulation, const std::string& file) {
 int check_command(const Options& options) {
   Simulation<unknowns> simulation(load(options).scene);
   require_use(simulation.scene());
-  double area = 0.0;
-  for (const auto& block : simulation.system().blocks()) area += block.area;
-  fmt::print("{}: {} blocks, {} of them free, {:.6g} m2; {} contacts within reach at the start; method {}\n", options.scene_file,
-             simulation.system().block_count(), simulation.system().free_count(), area, simulation.contacts().size(),
-             simulation.scene().method.contact);
+  const auto& system = std::as_const(simulation).system();
+  double area = 0.0, free_area = 0.0;
+  for (const auto& block : system.blocks()) area += block.area;
+  for (const int b : system.free_blocks()) free_area += system.block(b).area;
+  fmt::print("{}: {} blocks, {} of them free, {:.6g} m2 ({:.6g} m2 free); {} contacts within reach at the start; method {}\n", options.scene_file,
+             system.block_count(), system.free_count(), area, free_area, simulation.contacts().size(), simulation.scene().method.contact);
   if (simulation.is_explicit()) {
     const double critical = simulation.critical_step();
     if (std::isfinite(critical)) {
@@ -474,7 +476,11 @@ int main_checked(int argc, char** argv) {
   } catch (const CLI::Success& e) {
     return app.exit(e);
   } catch (const CLI::ParseError& e) {
-    fmt::print(stderr, "openclose: {}; see openclose --help\n", e.what());
+    std::string names;
+    if (app.get_subcommands().empty()) {
+      for (const CLI::App* sub : app.get_subcommands({})) names += (names.empty() ? "; accepted: " : ", ") + sub->get_name();
+    }
+    fmt::print(stderr, "openclose: {}{}; see openclose --help\n", e.what(), names);
     return exit_bad_input;
   }
   return command(options);

@@ -284,7 +284,7 @@ TEST_CASE("bad options", "[cli][bad_input]") {
   const Workplace place;
   CHECK_THAT(refusal(place, "run scene.toml -o out --fast" + steps), ContainsSubstring("--fast") && ContainsSubstring("see openclose --help"));
   CHECK_THAT(refusal(place, "run" + steps), ContainsSubstring("scene"));
-  CHECK_THAT(refusal(place, ""), ContainsSubstring("subcommand"));
+  CHECK_THAT(refusal(place, ""), ContainsSubstring("subcommand is required; accepted: run, fos, check, cut, draw"));
   CHECK_THAT(refusal(place, "walk scene.toml"), ContainsSubstring("see openclose --help"));
   CHECK_THAT(refusal(place, "check scene.toml -o out"), ContainsSubstring("-o"));
   CHECK_THAT(refusal(place, "run scene.toml -o out --end 1 --dt"), ContainsSubstring("--dt"));

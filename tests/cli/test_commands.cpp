@@ -331,7 +331,7 @@ TEST_CASE("check tells what it has read and writes nothing", "[cli]") {
   const CommandResult result = place.run("check scene.toml --contact hard");
   CHECK(result.status == 0);
   CHECK(result.errors.empty());
-  CHECK_THAT(result.out, ContainsSubstring("2 blocks, 1 of them free, 4 m2; 2 contacts") && ContainsSubstring("method hard"));
+  CHECK_THAT(result.out, ContainsSubstring("2 blocks, 1 of them free, 4 m2 (1 m2 free); 2 contacts") && ContainsSubstring("method hard"));
   CHECK(place.folder().entries() == std::set<std::string>{"scene.toml"});
 }
 

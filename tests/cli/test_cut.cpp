@@ -81,7 +81,7 @@ TEST_CASE("cut writes the blocks as a scene and draws them", "[cli][cut]") {
   SECTION("the scene can be read again: the same blocks, areas and contacts") {
     const std::string whole = place.run("check scene.toml").out;
     const std::string again = place.run("check out/wall.toml").out;
-    CHECK_THAT(whole, StartsWith("scene.toml: 12 blocks, 8 of them free, 12 m2; "));
+    CHECK_THAT(whole, StartsWith("scene.toml: 12 blocks, 8 of them free, 12 m2 (8 m2 free); "));
     CHECK(again == "out/wall.toml" + whole.substr(std::string("scene.toml").size()));
   }
   SECTION("there is nothing left in it to cut") {
