@@ -225,7 +225,8 @@ int run_command(const Options& options) {
   write_summary(folder, summary, simulation);
 
   if (!result.converged) {
-    fmt::print(stderr, "openclose: {} at t = {:.6g} s: {}; state saved in {}\n", result.refused ? "refused" : "not converged", simulation.time(), result.reason, folder.path());
+    fmt::print(stderr, "openclose: {} at t = {:.6g} s: {}; state saved in {}\n", result.refused ? "refused" : "not converged", simulation.time(),
+               result.reason, folder.path());
     return exit_not_converged;
   }
   if (!options.quiet) {
@@ -425,8 +426,9 @@ void add_options(CLI::App& app, Options& options, bool writes_folder) {
 CLI::App* add_draw(CLI::App& app, Options& options) {
   CLI::App* draw = app.add_subcommand("draw", "draw a state of a run or fos as SVG: blocks, what their joints do, what holds and pushes them");
   draw->add_option("results", options.results, "folder that run or fos has written")->required();
-  draw->add_option("--state", options.drawing.state,
-                   "state in blocks.csv, such as initial, start, t=1.5, final, stable, failed (default: failed, the mechanism, of fos; else the last)");
+  draw->add_option(
+      "--state", options.drawing.state,
+      "state in blocks.csv, such as initial, start, t=1.5, final, stable, failed (default: failed, the mechanism, of fos; else the last)");
   draw->add_option_function<std::string>(
           "--colour,--color",
           [&options](const std::string& name) {
