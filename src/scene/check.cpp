@@ -51,6 +51,17 @@ bool can_meet(const std::vector<Use>& uses, std::size_t a, std::size_t b) {
   return uses[a].blocks >= 1 && uses[b].blocks >= 1 && uses[a].free_blocks + uses[b].free_blocks >= 1;
 }
 
+/// A fixed block feels neither: in a domain, a point may lie in a large block that a fixed line happens to touch.
+void warn_of_fixed_points(const Scene& scene, std::vector<std::string>& warnings) {
+  const auto warn = [&](const std::string& what, int block, const Vec2& point) {
+    if (scene.blocks[block].fixed)
+      warnings.push_back(fmt::format("{}: the {} at ({:g}, {:g}) has no effect: its block \"{}\" is fixed", scene.where.file, what, point.x(),
+                                     point.y(), scene.blocks[block].name));
+  };
+  for (const Load& load : scene.loads) warn("load", load.block, load.point);
+  for (const Support& support : scene.supports) warn("support", support.block, support.point);
+}
+
 bool nothing_holds(const Scene& scene) {
   const bool any_fixed = std::any_of(scene.blocks.begin(), scene.blocks.end(), [](const BlockInput& block) { return block.fixed; });
   return !any_fixed && scene.supports.empty() && !scene.gravity.isZero(0.0);
@@ -80,6 +91,7 @@ std::vector<std::string> check_scene(const Scene& scene) {
   std::vector<std::string> warnings;
   if (scene.cutting) warnings = scene.cutting->warnings;
   if (nothing_holds(scene)) warnings.push_back(scene.where.file + ": nothing is fixed or supported under gravity: every block will fall");
+  warn_of_fixed_points(scene, warnings);
   return warnings;
 }
 

@@ -130,7 +130,12 @@ int block_at(const Value& value, const Vec2& point, const std::vector<BlockInput
   }
   const std::string accepted = "a point inside a block, or on the boundary of one that the key block names";
   const std::string where = fmt::format("({}, {})", point.x(), point.y());
-  if (found.empty()) value.fail(where + " lies in no block", accepted);
+  if (found.empty()) {
+    const auto nearest = std::ranges::min_element(blocks, {}, [&](const BlockInput& block) { return distance_to_boundary(block.vertices, point); });
+    value.fail(fmt::format("{} lies in no block; the nearest one is {}, {:.3g} m away", where, in_quotes(nearest->name),
+                           distance_to_boundary(nearest->vertices, point)),
+               accepted);
+  }
   if (found.size() > 1) {
     value.fail(fmt::format("{} lies where {} and {} meet", where, in_quotes(blocks[found[0]].name), in_quotes(blocks[found[1]].name)), accepted);
   }

@@ -88,6 +88,18 @@ TEST_CASE("a thousand blocks are checked at once", "[scene][check]") {
   CHECK(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() < 2.0);
 }
 
+TEST_CASE("loads and supports of fixed blocks are worth a warning", "[scene][check]") {
+  Scene scene = read_text(block_on_base);
+  scene.blocks[0].fixed = true;
+  scene.blocks[1].fixed = false;
+  scene.loads = {{1, scene.blocks[1].vertices[0], {0.0, -1.0}}, {0, scene.blocks[0].vertices[0], {0.0, -1.0}}};
+  scene.supports = {{0, scene.blocks[0].vertices[0], {1.0, 0.0}}, {1, scene.blocks[1].vertices[0], {1.0, 0.0}}};
+  const std::vector<std::string> warnings = check_scene(scene);
+  REQUIRE(warnings.size() == 2);
+  CHECK_THAT(warnings[0], ContainsSubstring("the load at") && ContainsSubstring("has no effect") && ContainsSubstring(scene.blocks[0].name));
+  CHECK_THAT(warnings[1], ContainsSubstring("the support at"));
+}
+
 TEST_CASE("nothing that holds the blocks is worth a warning", "[scene][check]") {
   Scene scene = read_text(block_on_base);
   scene.blocks[0].fixed = false;

@@ -167,7 +167,7 @@ TEST_CASE("points tell their blocks", "[scene][domain]") {
           "the key "
           "block names");
     CHECK_THAT(error_of(square_domain + "[[load]]\npoint_m = [2, 5]\nforce_n = [0, -1]\n"),
-               ContainsSubstring("29: load[0].point_m: (2, 5) lies in no block; "));
+               ContainsSubstring("29: load[0].point_m: (2, 5) lies in no block; the nearest one is ") && ContainsSubstring(", 1 m away; "));
   }
 }
 
