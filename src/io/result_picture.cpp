@@ -458,7 +458,7 @@ class ResultPicture {
   }
 
   void add_cracks() {
-    picture_.crack_name = shows_mechanism_ ? "opening, as drawn," : "opening";
+    picture_.crack_name = shows_mechanism_ ? "largest opening, as drawn," : "largest opening";
     for (const CrackRow& crack : cracks_) {
       // Half of the joint stands for each end.
       const Vec2 middle = 0.5 * (crack.from + crack.to);
