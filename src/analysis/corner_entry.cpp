@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "openclose/core/tolerance.h"
 
@@ -29,6 +30,8 @@ class Ways {
   Way operator()(int b, int vertex) const {
     return {system_.position(b, vertex), Motion<N>::displacement(solution_.of(system_, b), system_.arm(vertex), system_.rotation_kind())};
   }
+  /// [m] From the way of a corner, an arc, to its chord.
+  double bow(int b) const { return 0.125 * system_.block(b).radius * std::pow(Motion<N>::rotation(solution_.of(system_, b)), 2); }
   /// [m] By which no two points of the blocks that are near each other can come nearer.
   double approach(int a, int b) const {
     const auto of_a = solution_.of(system_, a), of_b = solution_.of(system_, b);
@@ -72,8 +75,8 @@ class Course {
 template <int N>
 class Entries {
  public:
-  Entries(const BlockSystem<N>& system, const StepSolution<N>& solution, double tolerated)
-      : system_(system), ways_(system, solution), tolerated_(tolerated) {}
+  Entries(const BlockSystem<N>& system, const StepSolution<N>& solution, const EntryTolerance& tolerance, const std::vector<Contact>* held)
+      : system_(system), ways_(system, solution), tolerance_(tolerance), held_(held) {}
 
   /// [-] Of the corners of one block into another one.
   double first(int of, int into) const {
@@ -89,21 +92,34 @@ class Entries {
     }
     return first;
   }
-  bool may_be(int a, int b) const {
-    const double reach = ways_.approach(a, b);
+  /// Whether a corner of one of two blocks may be in the other one at the end of the step; what is tolerated is that of these two from then on.
+  bool may_be(int a, int b) {
+    const double reach = reach_ = ways_.approach(a, b);
+    bow_ = ways_.bow(a) + ways_.bow(b);
+    tolerated_ = tolerance_.of(std::min(width(a), width(b)));
     return reach > behind * tolerated_ &&
            (system_.centroid(a) - system_.centroid(b)).norm() <= system_.block(a).radius + system_.block(b).radius + reach;
   }
 
  private:
+  /// [m] No more than 2 area / perimeter of a convex block, whose perimeter is at most that of the circle around it.
+  double width(int b) const { return system_.block(b).area / (std::numbers::pi * system_.block(b).radius); }
+  bool is_held(int v, int e) const {
+    return held_ && std::ranges::any_of(*held_, [&](const Contact& c) { return c.vertex == v && c.edge == e; });
+  }
+
   double entry(const Way& corner, int v, int into, int e) const {
     const Way start = ways_(into, e), end = ways_(into, system_.next(e));
     const Course course(corner, start, end);
     const double part = course.part(0.5 * tolerated_, behind * tolerated_);
     if (!(part >= shortest_part && part < 1.0)) return 1.0;
     const double along = course.along(part), from_start = along, from_end = course.length() - along;
-    if (std::min(from_start, from_end) < -tolerated_) return 1.0;
-    if (std::min(from_start, from_end) > behind * tolerated_) return part;
+    const double inside = std::min(from_start, from_end);
+    if (inside > behind * tolerated_) return is_held(v, e) ? 1.0 : part;
+    // In a notch one wall leads the corner on to the other one, and nothing slides on over that: what is behind one wall beyond its end is behind both.
+    const bool in_notch = system_.is_reflex(from_start < from_end ? e : system_.next(e));
+    if (inside < -(in_notch ? reach_ : tolerated_ + bow_) || is_held(v, e)) return 1.0;
+    if (in_notch) return part;
     // At its end a corner slides on over a neighbour that is flush with the block, unless its own block is behind that side of the block, too: the
     // feet of two blocks that meet on one floor. Detection takes corners for flush until they are deeper than rounding leaves them.
     if (stands_on(v, from_start < from_end ? system_.previous(e) : system_.next(e))) return 1.0;
@@ -121,14 +137,18 @@ class Entries {
 
   const BlockSystem<N>& system_;
   const Ways<N> ways_;
-  double tolerated_;  ///< [m]
+  const EntryTolerance tolerance_;
+  const std::vector<Contact>* held_;
+  /// [m] Of the present two blocks: what is tolerated, by how much they come nearer at most, and how far their corners pass beside straight ways.
+  double tolerated_ = 0.0, reach_ = 0.0, bow_ = 0.0;
 };
 
 }  // namespace
 
 template <int N>
-double first_entry(const BlockSystem<N>& system, const StepSolution<N>& solution, const std::vector<std::pair<int, int>>& pairs, double tolerated) {
-  const Entries<N> entries(system, solution, tolerated);
+double first_entry(const BlockSystem<N>& system, const StepSolution<N>& solution, const std::vector<std::pair<int, int>>& pairs,
+                   const EntryTolerance& tolerance, const std::vector<Contact>* held) {
+  Entries<N> entries(system, solution, tolerance, held);
   double first = 1.0;
   for (const auto& [a, b] : pairs) {
     if (entries.may_be(a, b)) first = std::min({first, entries.first(a, b), entries.first(b, a)});
@@ -136,6 +156,7 @@ double first_entry(const BlockSystem<N>& system, const StepSolution<N>& solution
   return first;
 }
 
-template double first_entry<3>(const BlockSystem<3>&, const StepSolution<3>&, const std::vector<std::pair<int, int>>&, double);
+template double first_entry<3>(const BlockSystem<3>&, const StepSolution<3>&, const std::vector<std::pair<int, int>>&, const EntryTolerance&,
+                               const std::vector<Contact>*);
 
 }  // namespace openclose

@@ -1,11 +1,14 @@
 // When, within a step, a corner enters a block through an edge that it is not held by.
 //
-// The contacts of a step are those of its start. A corner that passes another block's corner within the step, or comes round it, has none, and where
-// contacts are rigid nothing takes back what it enters before the next step finds it; a thin block or the tip of a needle it has left again by then.
-// Such a step is cut where the corner is behind the edge by half of what is tolerated: along the way of the step, on which this contact did not act,
-// that moment is known without solving again.
+// The contacts of a step are those of its start. A corner that passes another block's corner within the step, or comes round it, has none, and nothing
+// takes back what it enters before the next step finds it. Rigid contacts then have a penetration that they may not have, springs begin to carry
+// where they are found, behind the edge; and a thin block or the tip of a needle it has left again by then. Such a step is cut where the corner is
+// behind the edge by half of what is tolerated: along the way of the step, on which this contact did not act, that moment is known without solving
+// again.
 #pragma once
 
+#include <algorithm>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -13,10 +16,21 @@
 
 namespace openclose {
 
-/// [-] Part of a step of these displacements after which the first corner has gone through an edge by half of `tolerated` [m]; 1 if none ends farther
-/// behind than closed contacts may miss their places. Corners that are behind at once do not count: cutting would not help.
+/// What corners may enter between two steps.
+struct EntryTolerance {
+  double depth = 0.0;          ///< [m]
+  double part_of_width = 0.0;  ///< [-] of the narrower block, if that is more
+  double most = std::numeric_limits<double>::infinity();  ///< [m] and no more than this
+
+  double of(double narrower) const { return std::min(std::max(depth, part_of_width * narrower), most); }
+};
+
+/// [-] Part of a step of these displacements after which the first corner has gone through an edge by half of what is tolerated; 1 if none ends
+/// farther behind than closed contacts may miss their places. Corners that are behind at once do not count: cutting would not help.
 /// \param pairs  of blocks that may touch
+/// \param held   contacts of which corners and edges do not count, because their springs have acted; none if rigid ones hold what they should
 template <int N>
-double first_entry(const BlockSystem<N>& system, const StepSolution<N>& solution, const std::vector<std::pair<int, int>>& pairs, double tolerated);
+double first_entry(const BlockSystem<N>& system, const StepSolution<N>& solution, const std::vector<std::pair<int, int>>& pairs,
+                   const EntryTolerance& tolerance, const std::vector<Contact>* held = nullptr);
 
 }  // namespace openclose

@@ -40,6 +40,16 @@ struct EnergyLedger {
     archive(a, b, c, d, e, f, g, h, i, j, k, l, m);
   }
 
+  /// What falls by losses alone: the work of loads and base counts as energy that is given back.
+  double mechanical() const { return kinetic + gravity + contact_springs + support_springs + loads + base_motion; }
+  EnergyLedger& operator+=(const EnergyLedger& other) {
+    kinetic += other.kinetic, gravity += other.gravity, base_motion += other.base_motion, contact_springs += other.contact_springs;
+    support_springs += other.support_springs, loads += other.loads, friction += other.friction, contact_damping += other.contact_damping;
+    mass_damping += other.mass_damping, impact += other.impact, scheme += other.scheme, redefinition += other.redefinition;
+    turnover += other.turnover;
+    return *this;
+  }
+
   double imbalance() const {
     return kinetic + gravity + base_motion + contact_springs + support_springs + loads + friction + contact_damping + mass_damping + impact + scheme +
            redefinition;

@@ -235,6 +235,7 @@ class MotionInTime {
  private:
   /// Takes the watch's answer: the run ends where it has found something.
   bool accepted(const std::string& found) {
+    simulation_.allow_energy(watch_.creatable_energy());
     if (found.empty()) return true;
     result_.converged = false;
     result_.refused = true;

@@ -10,6 +10,7 @@
 
 #include "openclose/analysis/corner_entry.h"
 #include "openclose/core/tolerance.h"
+#include "openclose/geometry/polygon.h"
 #include "openclose/integrator/crossing_energy.h"
 #include "openclose/integrator/integrators.h"
 #include "openclose/integrator/registry.h"
@@ -55,6 +56,18 @@ bool turns_too_far(const BlockSystem<N>& system, const std::vector<Contact>& con
 /// in.
 constexpr int most_cuts_at_entry = 8;
 
+/// [-] Of the width of the narrower block: behind an edge that it is not in contact with, a corner at whose contact springs are to act may be four
+/// times as deep at the end of a step (see corner_entry.cpp). A sixth of what the watch lets it close.
+constexpr double unnoticed_part_of_width = 0.01;
+
+/// [-] Of the energy that may be created in all: once this share has been, a step that creates more than the second share is cut. What the time
+/// integration of a turning block makes of the force of an impact goes with the square of the step.
+constexpr double share_before_cuts = 0.5, share_of_step = 0.02;
+/// [-] Of the present kinetic energy: what may be created, where that is more than what has last been allowed.
+constexpr double creatable_part_of_kinetic = 0.01;
+/// What so many halvings do not cure is not of the step.
+constexpr int most_cuts_for_energy = 6;
+
 /// [-] By which explicit steps may become longer before they do.
 constexpr double worthwhile_growth = 1.1;
 
@@ -67,6 +80,17 @@ bool has_joint_springs(const std::string& contact) {
 }
 
 }  // namespace
+
+double default_contact_skin(const std::vector<BlockInput>& blocks) {
+  std::vector<double> areas;
+  for (const BlockInput& block : blocks) {
+    if (!block.fixed) areas.push_back(std::abs(signed_area(block.vertices)));
+  }
+  if (areas.empty()) return tolerance::contact_skin_m;
+  const auto median = areas.begin() + static_cast<std::ptrdiff_t>(areas.size() / 2);
+  std::nth_element(areas.begin(), median, areas.end());
+  return std::min(tolerance::contact_skin_m, tolerance::contact_skin_of_size * std::sqrt(*median));
+}
 
 bool is_settled_by_another(const Scene& scene) {
   return scene.settled_by.value_or(scene.method.contact) != scene.method.contact;
@@ -89,12 +113,13 @@ MethodInput settling_method(const Scene& scene) {
 
 template <int N>
 Simulation<N>::Simulation(Scene scene) : Simulation(std::move(scene), nullptr) {
-  if (enforcement_->is_explicit()) loop_ = std::make_unique<CentralDifference<N>>(scene_.method.contact_skin);
+  if (enforcement_->is_explicit()) loop_ = std::make_unique<CentralDifference<N>>(contact_skin_);
 }
 
 template <int N>
 Simulation<N>::Simulation(Scene scene, std::unique_ptr<Enforcement<N>> enforcement)
     : scene_(std::move(scene)),
+      contact_skin_(scene_.method.contact_skin.value_or(default_contact_skin(scene_.blocks))),
       system_(scene_),
       external_(scene_, system_),
       joints_(scene_),
@@ -103,7 +128,7 @@ Simulation<N>::Simulation(Scene scene, std::unique_ptr<Enforcement<N>> enforceme
       scheme_(make_scheme()),
       // Two vertices may approach each other by the largest displacement each.
       detector_(2.0 * scene_.step.max_displacement, {scene_.method.skip_search, scene_.method.skip_narrow_phase && enforcement_->follows_gaps(),
-                                                     scene_.method.skip_looks, scene_.method.contact_skin}),
+                                                     scene_.method.skip_looks, contact_skin_}),
       output_velocity_(system_.state().velocity),
       resting_(scene_.rest, system_),
       start_kinetic_energy_(system_.kinetic_energy()),
@@ -532,10 +557,13 @@ double Simulation<N>::largest_move(const StepSolution<N>& solution) const {
 
 template <int N>
 double Simulation<N>::part_before_entry(const StepSolution<N>& solution, double moved) const {
-  // Springs give way by more than what a corner enters in a step, those of a compliant step too.
-  if (enforcement_->has_elastic_contacts() || solution.compliant || cuts_at_entry_ == most_cuts_at_entry) return 1.0;
+  if (solution.compliant || cuts_at_entry_ == most_cuts_at_entry) return 1.0;  // springs of a compliant step give way by more than what is tolerated
+  if (enforcement_->has_elastic_contacts()) {
+    const EntryTolerance tolerance{tolerance::rounding_of_ways_m, unnoticed_part_of_width, enforcement_->deepest_entry(scene_.method)};
+    return first_entry(system_, solution, detector_.candidate_pairs(), tolerance, &contacts_);
+  }
   const double tolerated = std::max(scene_.method.gap_tolerance, tolerance::rounding_of_ways_m);
-  return 2.0 * moved > tolerated ? first_entry(system_, solution, detector_.candidate_pairs(), tolerated) : 1.0;
+  return 2.0 * moved > tolerated ? first_entry(system_, solution, detector_.candidate_pairs(), {tolerated}) : 1.0;
 }
 
 template <int N>
@@ -594,6 +622,14 @@ StepResult Simulation<N>::step(double dt, bool statics) {
     return result;
   }
   const Stopwatch watch(stage_times_.bookkeeping);
+  step_ledger_ = {};
+  if (books_steps_) add_step(step_ledger_, p, solution, *scheme_, enforcement_->has_elastic_contacts());
+  if (!statics && creates_energy(p, solution)) {
+    result.reason = "a step creates energy";
+    ++step_counters_.cuts;
+    ++cuts_for_energy_;
+    return result;
+  }
   if (statics) result.unbalanced_force = unbalanced_force(p, solution);
   result.lost_strength = loses_strength(solution);
   accept(p, solution);
@@ -630,8 +666,74 @@ bool Simulation<N>::loses_strength(const StepSolution<N>& solution) const {
 }
 
 template <int N>
+void Simulation<N>::velocities_by_forces_now(const StepProblem<N>& problem, const StepSolution<N>& solution) {
+  std::vector<Unknowns> force(system_.block_count(), Unknowns::Zero());
+  for (int b : system_.free_blocks()) force[b] = external_.force(system_, b, Unknowns::Zero());
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    const ContactOutcome<N> o = solution.contacts[i];
+    const ContactKinematics<N> k(o.pose);
+    force[contacts_[i].vertex_block] += o.forces.normal * k.normal_vertex + o.forces.shear * k.shear_vertex;
+    force[contacts_[i].edge_block] += o.forces.normal * k.normal_edge + o.forces.shear * k.shear_edge;
+  }
+  for (int b : system_.free_blocks()) {
+    if (system_.block(b).rotation_locked) force[b][Motion<N>::rotation_index] = 0.0;
+    output_velocity_[b] = system_.velocity(b) + 0.5 * problem.dt * force[b].cwiseQuotient(system_.block(b).mass);
+  }
+}
+
+template <int N>
+std::vector<std::size_t> Simulation<N>::closing_contacts(const StepProblem<N>& problem, const StepSolution<N>& solution) const {
+  std::vector<std::size_t> closing;
+  if (problem.statics || enforcement_->has_elastic_contacts()) return closing;
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    if (contacts_[i].status == ContactStatus::open && solution.contacts.status(i) != ContactStatus::open) closing.push_back(i);
+  }
+  return closing;
+}
+
+template <int N>
+void Simulation<N>::take_out_of_velocity(const StepProblem<N>& problem, const Contact& contact, const ContactOutcome<N>& outcome) {
+  const ContactKinematics<N> k(outcome.pose);
+  const auto take = [&](int b, const Unknowns& normal, const Unknowns& shear) {
+    if (system_.block(b).equation < 0) return;
+    const Unknowns force = outcome.forces.normal * normal + outcome.forces.shear * shear;
+    Unknowns change = 0.5 * problem.dt * force.cwiseQuotient(system_.block(b).mass);
+    if (system_.block(b).rotation_locked) change[Motion<N>::rotation_index] = 0.0;
+    output_velocity_[b] -= change;
+  };
+  take(contact.vertex_block, k.normal_vertex, k.shear_vertex);
+  take(contact.edge_block, k.normal_edge, k.shear_edge);
+}
+
+template <int N>
+double Simulation<N>::kinetic_change(const StepProblem<N>& problem, const StepSolution<N>& solution) const {
+  double change = 0.0;
+  for (int b : system_.free_blocks()) {
+    const Unknowns before = problem.velocity(b), after = scheme_->next_velocity(b, problem.dt, solution.of(system_, b), before);
+    const auto& mass = system_.block(b).mass;
+    change += 0.5 * (after.dot(mass.cwiseProduct(after)) - before.dot(mass.cwiseProduct(before)));
+  }
+  return change;
+}
+
+template <int N>
+bool Simulation<N>::creates_energy(const StepProblem<N>& problem, const StepSolution<N>& solution) const {
+  if (!std::isfinite(creatable_energy_) || cuts_for_energy_ == most_cuts_for_energy) return false;
+  EnergyLedger after = ledger_;
+  after += step_ledger_;
+  after.kinetic += kinetic_change(problem, solution);
+  const double rise = after.mechanical() - ledger_.mechanical(), above_lowest = after.mechanical() - lowest_energy_;
+  const double allowed = std::max(creatable_energy_, creatable_part_of_kinetic * system_.kinetic_energy());
+  const auto is_much = [&](double in_all, double in_step) {
+    return in_all > share_before_cuts * allowed && in_step > share_of_step * allowed;
+  };
+  return is_much(above_lowest, rise) || is_much(-after.scheme, -step_ledger_.scheme) || is_much(-after.impact, -step_ledger_.impact);
+}
+
+template <int N>
 void Simulation<N>::accept(const StepProblem<N>& problem, const StepSolution<N>& solution) {
-  if (books_steps_) add_step(ledger_, problem, solution, *scheme_, enforcement_->has_elastic_contacts());
+  if (books_steps_) ledger_ += step_ledger_;
+  const std::vector<std::size_t> impacts = closing_contacts(problem, solution);
   accept_contacts(solution);
   for (int b : system_.free_blocks()) {
     const Unknowns d = solution.of(system_, b), v = problem.velocity(b);
@@ -641,6 +743,8 @@ void Simulation<N>::accept(const StepProblem<N>& problem, const StepSolution<N>&
     if (!statics) scheme_->record(b, problem.dt, d, v);
   }
   for (int b : system_.free_blocks()) system_.advance(b, solution.of(system_, b));
+  if (enforcement_->is_explicit()) velocities_by_forces_now(problem, solution);
+  for (const std::size_t i : impacts) take_out_of_velocity(problem, contacts_[i], solution.contacts[i]);
   if (!problem.statics) scheme_->accept(problem.dt);
   book_kinetic_energy(enforcement_->is_explicit() ? kinetic_ahead(problem, solution) : 0.0);
   time_ += problem.dt;
@@ -655,7 +759,10 @@ void Simulation<N>::accept(const StepProblem<N>& problem, const StepSolution<N>&
   if (solution.eased) ++step_counters_.eased;
   if (solution.dissipative) ++step_counters_.dissipative;
   if (!solution.compliant) failed_attempts_ = 0;
-  cuts_at_entry_ = 0;
+  // The contact that the step has come to may be new to a pair that has hardly moved.
+  if (cuts_at_entry_ > 0) detector_.look_again();
+  cuts_at_entry_ = cuts_for_energy_ = 0;
+  lowest_energy_ = std::min(lowest_energy_, ledger_.mechanical());
   contacts_current_ = false;
 }
 
@@ -745,7 +852,7 @@ template <int N>
 double Simulation<N>::approach_step() {
   if (!approach_step_) {
     loop_->store_blocks(system_);
-    approach_step_ = approach_bound_.step(system_, joints_, detector_.candidate_pairs(), loop_->approach(), scene_.method.contact_skin,
+    approach_step_ = approach_bound_.step(system_, joints_, detector_.candidate_pairs(), loop_->approach(), contact_skin_,
                                           scene_.method.step_fraction);
   }
   return *approach_step_;
@@ -956,7 +1063,7 @@ void Simulation<N>::change_method(const MethodInput& method) {
   take_back();
   scene_.method = method;
   enforcement_ = make_enforcement<N>(method);
-  loop_ = enforcement_->is_explicit() ? std::make_unique<CentralDifference<N>>(scene_.method.contact_skin) : nullptr;
+  loop_ = enforcement_->is_explicit() ? std::make_unique<CentralDifference<N>>(contact_skin_) : nullptr;
   restart_scheme();
 }
 
@@ -977,7 +1084,7 @@ void Simulation<N>::restart_clock() {
   take_back();
   time_ = 0.0;
   ledger_ = EnergyLedger();
-  kinetic_ahead_ = 0.0;
+  kinetic_ahead_ = lowest_energy_ = 0.0;
   books_steps_ = true;
   max_penetration_ = friction_work_ = lagging_friction_work_ = 0.0;
   restart_scheme();
@@ -1006,9 +1113,9 @@ void Simulation<N>::restore(const Snapshot& snapshot) {
   may_rest_ = false;  // what is known of quiet blocks and their contacts is of another state
   contacts_current_ = true;
   output_velocity_ = snapshot.blocks.velocity;
-  failed_attempts_ = cuts_at_entry_ = 0;
+  failed_attempts_ = cuts_at_entry_ = cuts_for_energy_ = 0;
   last_speed_ = held_step_ = 0.0;
-  if (loop_) loop_ = std::make_unique<CentralDifference<N>>(scene_.method.contact_skin);
+  if (loop_) loop_ = std::make_unique<CentralDifference<N>>(contact_skin_);
   restart_scheme();
 }
 
@@ -1016,7 +1123,7 @@ template <int N>
 void Simulation<N>::exchange(Archive& archive) {
   archive(system_, resting_, may_rest_, external_, joints_, base_moves_, keep_bonds_, detector_, contacts_, contacts_current_, output_velocity_,
           time_, reason_, ledger_, start_kinetic_energy_, kinetic_ahead_, collected_contact_energy_, max_penetration_, friction_work_,
-          lagging_friction_work_, step_counters_, failed_attempts_, cuts_at_entry_, last_speed_, control_, begins_, approach_step_, held_step_);
+          lagging_friction_work_, step_counters_, failed_attempts_, cuts_at_entry_, cuts_for_energy_, lowest_energy_, creatable_energy_, last_speed_, control_, begins_, approach_step_, held_step_);
   if (archive.reading()) scheme_ = make_scheme();
   scheme_->exchange(archive);
   enforcement_->exchange(archive);

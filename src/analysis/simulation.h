@@ -2,6 +2,7 @@
 // linear solver keeps, which shows in the answer as far as Newton's method tolerates).
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -17,6 +18,9 @@
 #include "openclose/integrator/enforcement.h"
 
 namespace openclose {
+
+/// [m] By which blocks of this size may move against each other before their contacts are found anew.
+double default_contact_skin(const std::vector<BlockInput>& blocks);
 
 /// Whether the start "settled" is found by another method than that of the motion.
 bool is_settled_by_another(const Scene& scene);
@@ -173,6 +177,8 @@ class Simulation {
   /// Whether implicit steps enter the ledger until restart_clock(), from which on they always do: nobody asks for the energies of the way to an
   /// equilibrium.
   void book_steps(bool book) { books_steps_ = book; }
+  /// [J] What may be created in all. Once half of it has been, steps that go on creating energy are cut.
+  void allow_energy(double energy) { creatable_energy_ = energy; }
   /// Gives block b this velocity at time(); to be followed by restart_clock().
   void set_velocity(int b, const Unknowns& velocity);
   /// Gives the blocks the velocities of the scene (settling has stopped them); to be followed by restart_clock().
@@ -210,7 +216,8 @@ class Simulation {
   /// [N] Sum of the forces on every free block as it stands, without dashpots.
   Eigen::VectorXd forces_now(const StepProblem<N>& problem) const;
   double largest_move(const StepSolution<N>& solution) const;
-  /// [-] Part of a step after which a corner has entered a block by what rigid contacts tolerate, see first_entry(); 1 if there is none.
+  /// [-] Part of a step after which a corner has entered a block that it is not in contact with by what is tolerated, see first_entry(); 1 if there is
+  /// none.
   double part_before_entry(const StepSolution<N>& solution, double moved) const;
   double unbalanced_force(const StepProblem<N>& problem, const StepSolution<N>& solution) const;
   void accept(const StepProblem<N>& problem, const StepSolution<N>& solution);
@@ -252,10 +259,20 @@ class Simulation {
   /// Writes down the kinetic energy of the blocks' velocities and what explicit steps add to it for the present moment.
   void book_kinetic_energy(double ahead) const;
   /// [J] See CentralDifference::kinetic_ahead(), for steps taken one by one.
+  /// Velocities at the end of an explicit step, half a step after those of the system, see CentralDifference::velocity_at_end().
+  void velocities_by_forces_now(const StepProblem<N>& problem, const StepSolution<N>& solution);
+  /// Of rigid contacts in motion: those that an impact closes in this step.
+  std::vector<std::size_t> closing_contacts(const StepProblem<N>& problem, const StepSolution<N>& solution) const;
+  /// The velocity at the end of a step goes on from that of its middle with the forces of the step. An impact is over then: its force is taken out.
+  void take_out_of_velocity(const StepProblem<N>& problem, const Contact& contact, const ContactOutcome<N>& outcome);
+  double kinetic_change(const StepProblem<N>& problem, const StepSolution<N>& solution) const;  ///< [J]
+  /// Whether a solved step creates energy where much has been created already, see allow_energy().
+  bool creates_energy(const StepProblem<N>& problem, const StepSolution<N>& solution) const;
   double kinetic_ahead(const StepProblem<N>& problem, const StepSolution<N>& solution) const;
   void note_memory();
 
   Scene scene_;
+  const double contact_skin_;  ///< [m]
   // While the explicit loop runs it holds the state; what stands here is brought up to date by whoever asks for it.
   mutable BlockSystem<N> system_;
   ExternalForces<N> external_;
@@ -271,7 +288,10 @@ class Simulation {
   std::unique_ptr<CentralDifference<N>> loop_;  ///< null for implicit methods
   mutable bool loop_is_ahead_ = false;          ///< of system_ and contacts_
   bool loop_is_loaded_ = false;
-  int cuts_at_entry_ = 0;  ///< since the last step that was accepted
+  int cuts_at_entry_ = 0, cuts_for_energy_ = 0;  ///< since the last step that was accepted
+  double creatable_energy_ = std::numeric_limits<double>::infinity();  ///< [J] see allow_energy()
+  double lowest_energy_ = 0.0;                                         ///< [J] mechanical, against that at the start
+  EnergyLedger step_ledger_;                                           ///< of the last step that was solved
   ApproachBound<N> approach_bound_;
   double held_step_ = 0.0;               ///< [s] last one that longest_stable_step() returned
   std::optional<double> approach_step_;  ///< [s] bound of the steps with the present list, if one of them was fast enough to need it

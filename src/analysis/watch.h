@@ -68,6 +68,8 @@ class Watch {
   /// The same with all pairs.
   std::string check_at_end(const Simulation<N>& simulation);
   const WatchReport& report() const { return report_; }
+  /// [J] What may be created, as of the last check.
+  double creatable_energy() const { return watch_bound::created_energy * energy_scale(); }
   void exchange(Archive& archive) {
     archive(report_, energy_at_start_, released_, work_, lowest_energy_, undetermined_energy_, start_, depth_at_start_, next_pair_, widths_, convex_);
   }

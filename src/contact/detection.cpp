@@ -529,7 +529,7 @@ void Detector<N>::divide(const BlockSystem<N>& system, std::vector<Contact>& con
 
 template <int N>
 void Detector<N>::exchange(Archive& archive) {
-  archive(first_, forgotten_, pairs_, states_, ranges_, resting_, searched_at_, searched_moving_at_, counters_, places_, ways_, pairs_of_start_,
+  archive(first_, forgotten_, looks_again_, pairs_, states_, ranges_, resting_, searched_at_, searched_moving_at_, counters_, places_, ways_, pairs_of_start_,
           pairs_of_);
   if (archive.reading()) index_.forget_resting();
 }
@@ -554,7 +554,7 @@ void Detector<N>::let_go_of_working_memory() {
 
 template <int N>
 bool Detector<N>::update(const BlockSystem<N>& system, const JointTable& joints, std::vector<Contact>& contacts, const BlockSystem<N>* present) {
-  const bool all = forgotten_ || !skips_.search || !skips_.narrow_phase;
+  const bool all = std::exchange(looks_again_, false) || forgotten_ || !skips_.search || !skips_.narrow_phase;
   const bool searches = needs_search(system);
   moved_by_others_ = std::exchange(forgotten_, false);
   born_.clear();

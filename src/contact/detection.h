@@ -101,6 +101,8 @@ class Detector {
 
   /// Blocks or contacts were changed by others: the next update() searches and finds everything anew.
   void forget() { forgotten_ = true; }
+  /// The next update() finds the contacts of all pairs anew, however little they have moved.
+  void look_again() { looks_again_ = true; }
   /// Of candidates and contacts at rest, and of what an update has left of its working memory.
   Memory memory() const;
   /// What decides when something is found anew.
@@ -187,7 +189,7 @@ class Detector {
   double reach_;
   DetectionSkips skips_;
   bool first_ = true;
-  bool forgotten_ = true;
+  bool forgotten_ = true, looks_again_ = false;
   bool moved_by_others_ = false;  ///< before this update()
   std::vector<std::pair<int, int>> pairs_;
   std::vector<PairState> states_;               ///< of the pairs

@@ -21,6 +21,10 @@
 // So a block whose front corner stands on a joint slides on, three blocks and air or four blocks around the corner. A contact that has closed over
 // more than seam_height stays until its corner is nearer to another edge; at a reflex q both walls hold.
 //
+// In front of a notch a corner faces both walls from wherever it may reach them, also where it lies beyond the end of one: what is in front of both is
+// in front of the whole line of either, and a corner that slides down one wall into the notch is to meet the other one there. Two feet that slide
+// towards each other on one floor meet in such a notch.
+//
 // Where it is not continuous: a lone corner within edge_end of the seam of two collinear edges has a contact with both; it loses its length where it
 // leaves the end of an edge that nothing continues; and at a corner the contact passes from one edge to the next with its gap, not with its
 // direction. What becomes of the energy held there stands in history.h: it never grows.
@@ -151,7 +155,7 @@ class NarrowPhase {
         const int e = first_edge + static_cast<int>(i);
         const double along = edge.along(p);
         const double beyond = std::max(-along, along - edge.length);
-        if (beyond > 0.0 && beyond > end_margin(v, edge)) continue;
+        if (beyond > 0.0 && beyond > end_margin(v, edge) && !(beyond <= reach_ && ends_in_notch(v, e, along < 0.0))) continue;
         const double weight = sides.lone_weight(edge);
         if (weight == 0.0 || passes_over(v, edge_block, e)) continue;
         const Vec2 ahead = system_.arm(system_.next(v)) - system_.arm(v), back = system_.arm(system_.previous(v)) - system_.arm(v);
@@ -242,12 +246,17 @@ class NarrowPhase {
     const bool slides = previous_.closed(v) || previous_.closed(end);
     if (!slides && (p - q).norm() > tolerance::edge_end_m) return false;
     if (previous_.closed_length(v, e) > tolerance::seam_height_m) return false;
-    const bool in_front = edge.gap(p) > -tolerance::shortest_edge_m;
+    const double gap = edge.gap(p);
+    const bool in_front = gap > -tolerance::shortest_edge_m, in_notch = ends_in_notch(v, e, near_start);
     const auto separates = [&](int corner, const Vec2& position, const Edge& other) {
       if (!turns_away(edge, other) || !stands_on(corner, other)) return false;
-      const double step = in_front && (slides_along(v, other) || slides_along(end, other)) ? tolerance::seam_height_m : tolerance::edge_end_m;
-      const double closure = std::max(closure_across(v, other), closure_across(end, other));
-      return other.gap(position) > -step - tolerance::seam_closures * closure;
+      const bool slides_on_it = slides_along(v, other) || slides_along(end, other);
+      const double step = in_front && slides_on_it ? tolerance::seam_height_m : tolerance::edge_end_m;
+      const double closure = std::max(closure_across(v, other), closure_across(end, other)), height = step + tolerance::seam_closures * closure;
+      const double other_gap = other.gap(position);
+      // Two lines that nothing slides on must not pass the corner over to each other: of two tips that meet head-on, the wider gap keeps its contact.
+      if (!slides_on_it && (in_notch || gap > height) && other_gap <= gap) return false;
+      return other_gap > -height;
     };
     return separates(v, p, shapes_.edge(near_start ? system_.previous(e) : system_.next(e))) || separates(end, q, shapes_.edge(v)) ||
            separates(end, q, shapes_.edge(system_.previous(v)));
@@ -261,6 +270,23 @@ class NarrowPhase {
     bool leans = false;
     previous_.for_closed(v, [&](const Contact& c) { leans |= c.vertex == v && turns_away(shapes_.edge(c.edge_block, c.edge), edge); });
     return tolerance::edge_end_m + (leans ? tolerance::seam_closures * closure(v) : 0.0);
+  }
+
+  /// Whether a corner near the start or the end of an edge has a notch before it: that of the block, or one that the edge makes with what both the
+  /// corner and this end slide on.
+  bool ends_in_notch(int v, int e, bool at_start) const {
+    const int end = at_start ? e : system_.next(e);
+    if (system_.is_reflex(end)) return true;
+    if (!previous_.closed(end)) return false;
+    const Edge& edge = shapes_.edge(e);
+    const Vec2 near_end = at_start ? edge.start : edge.end(), far_end = at_start ? edge.end() : edge.start;
+    const double lift = tolerance::edge_end_m + tolerance::seam_closures * std::max(closure(v), closure(end));
+    bool on_one_floor = false;
+    previous_.for_closed(v, [&](const Contact& c) {
+      const Edge& floor = shapes_.edge(c.edge_block, c.edge);
+      on_one_floor |= c.vertex == v && turns_away(floor, edge) && floor.gap(near_end) <= lift && floor.gap(far_end) > lift;
+    });
+    return on_one_floor;
   }
 
   /// Both sides of the corner leave the edge's half-plane: only then can the corner touch the edge from outside. Overlaps of facing edges fade out

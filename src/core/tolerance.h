@@ -55,9 +55,10 @@ inline constexpr double edge_end_m = 1e-6;
 /// [m] Room around a block's box within which candidates are kept although they cannot touch yet; larger: fewer searches, more candidates.
 inline constexpr double search_skin_m = 0.25;
 
-/// [m] The list of contacts stays as it is until blocks may have moved this much against each other, unless the scene says otherwise: tributary
-/// lengths are off by less, 0.1 % of a joint of 1 m, while gaps are followed exactly.
-inline constexpr double contact_skin_m = 1e-3;
+/// [m] and [-] of the size of the free blocks, the root of their median area: the list of contacts stays as it is until blocks may have moved this
+/// much against each other, the smaller of the two, unless the scene says otherwise. Tributary lengths are off by less, 0.1 % of a joint, and corners
+/// that come over the end of an edge are found by less too late, while gaps are followed exactly.
+inline constexpr double contact_skin_m = 1e-3, contact_skin_of_size = 1e-3;
 
 /// [-] Part of the cohesion's force, as a normal force, over which the shear strength of a bonded contact rises from zero (a jump there has no
 /// solution on either side and makes contact states cycle; 0.1 changed 8 s of slope failure by 0.1 %).

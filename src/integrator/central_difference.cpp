@@ -39,6 +39,11 @@ double sign(double x) {
   return x > 0.0 ? 1.0 : (x < 0.0 ? -1.0 : 0.0);
 }
 
+/// [N] What Cundall's local damping of this share leaves of an unbalanced force.
+double locally_damped(double force, double velocity, double share) {
+  return force - share * std::abs(force) * sign(velocity);
+}
+
 /// Unlike std::max() no number, once there has been one that is none.
 double larger_or_nan(double largest, double next) {
   return largest >= next || std::isnan(largest) ? largest : next;
@@ -101,7 +106,6 @@ void CentralDifference<N>::load_blocks(const StepProblem<N>& problem) {
   const std::size_t slots = n + 1 + system.resting_blocks().size();
   poses_.assign(slots, Pose());
   rates_.assign(slots, Rate());
-  previous_rates_.assign(slots, Rate());
   next_rates_.assign(slots, Rate());
   forces_.assign(slots, Rate());
   rest_slot_.assign(system.block_count(), static_cast<int>(n));
@@ -415,7 +419,7 @@ Move CentralDifference<N>::move(double h, double span, const Vec2& base, double 
   if (damping != MassDamping::automatic) viscous_ = 0.0;
   if (damping == MassDamping::automatic && viscous_ == 0.0) viscous_ = first_viscous / h;
   const double keep = 1.0 - 0.5 * viscous_ * span, per_viscous = 1.0 / (1.0 + 0.5 * viscous_ * span);
-  const auto damped = [alpha](double force, double velocity) { return force - alpha * std::abs(force) * sign(velocity); };
+  const auto damped = [alpha](double force, double velocity) { return locally_damped(force, velocity, alpha); };
   double fastest = 0.0, unbalanced = 0.0;
   for (std::size_t i = 0; i < n; ++i) {
     const Inertia& m = inertia_[i];
@@ -482,10 +486,10 @@ Move CentralDifference<N>::move(double h, double span, const Vec2& base, double 
   energies_.mass_damping += sum.mass_damping;
   energies_.turnover += sum.turnover;
   if (viscous_ > 0.0) adapt(sum.mass_damping, kinetic_change, h);
-  previous_rates_.swap(rates_);
   rates_.swap(next_rates_);
   h_ = h;
-  span_ = span;
+  base_ = base;
+  local_damping_ = alpha;
   return Move::taken;
 }
 
@@ -832,9 +836,14 @@ double CentralDifference<N>::force_squared(std::size_t i) const {
 
 template <int N>
 typename CentralDifference<N>::Unknowns CentralDifference<N>::velocity_at_end(int equation) const {
-  const Rate &v = rates_[equation], &before = previous_rates_[equation];
-  const double ahead = 0.5 * h_ / span_;
-  return {v.x + ahead * (v.x - before.x), v.y + ahead * (v.y - before.y), v.turn + ahead * (v.turn - before.turn)};
+  const Inertia& m = inertia_[equation];
+  const Rate &f = forces_[equation], &v = rates_[equation];
+  const double half = 0.5 * h_;
+  const auto ahead = [&](double force, double velocity, double per_mass) {
+    return velocity + half * (locally_damped(force, velocity, local_damping_) * per_mass - viscous_ * velocity);
+  };
+  return {ahead(f.x - m.mass * base_.x(), v.x, m.per_mass), ahead(f.y - m.mass * base_.y(), v.y, m.per_mass),
+          m.turns * ahead(f.turn, v.turn, m.per_moment)};
 }
 
 template <int N>
@@ -902,15 +911,15 @@ ExplicitEnergies CentralDifference<N>::take_energies() {
 template <int N>
 void CentralDifference<N>::exchange(Archive& archive, const JointTable& joints) {
   joints_ = &joints;
-  archive(poses_, rates_, previous_rates_, next_rates_, forces_, inertia_, blocks_, rest_slot_, loaded_at_, links_, rest_, link_of_, cleared_,
+  archive(poses_, rates_, next_rates_, forces_, inertia_, blocks_, rest_slot_, loaded_at_, links_, rest_, link_of_, cleared_,
           kept_at_, points_, energies_, damped_, lost_strength_, critical_step_, approach_, moved_, unbalanced_, max_penetration_, step_ahead_,
-          list_is_short_, share_, room_, h_, span_, viscous_);
+          list_is_short_, share_, room_, h_, base_, local_damping_, viscous_);
 }
 
 template <int N>
 Memory CentralDifference<N>::memory() const {
   Memory of;
-  of.blocks = bytes_of(poses_, rates_, previous_rates_, next_rates_, forces_, inertia_, blocks_, rest_slot_, loaded_at_, kept_at_, points_) +
+  of.blocks = bytes_of(poses_, rates_, next_rates_, forces_, inertia_, blocks_, rest_slot_, loaded_at_, kept_at_, points_) +
               critical_step_.bytes() + depth_limits_.bytes();
   of.contacts = bytes_of(links_, rest_, link_of_, renumbered_);
   return of;

@@ -108,7 +108,8 @@ class CentralDifference {
 
   /// Moves the blocks of the system to where they are now, with the velocities of the middle of the last step.
   void store_blocks(BlockSystem<N>& system) const;
-  /// Whole-step velocity of a free block; call only after a step.
+  /// Velocity of a free block at the end of the last step, half a step after the middle that the loop has: by the forces that act there now, because
+  /// those of the step before may be of an impact that is over.
   Unknowns velocity_at_end(int equation) const;
   /// Gap and history of the contacts, in the order of the list; of those that are too far apart nothing changes but the gap, see store_far_gaps().
   void store_contacts(std::vector<Contact>& contacts) const;
@@ -263,7 +264,7 @@ class CentralDifference {
   void adapt(double taken, double kinetic_change, double h);
 
   std::vector<Pose> poses_;  ///< per free block, one for all that are fixed, and then per block at rest
-  std::vector<Rate> rates_, previous_rates_, next_rates_, forces_;
+  std::vector<Rate> rates_, next_rates_, forces_;
   std::vector<Inertia> inertia_;
   std::vector<int> blocks_;          ///< of the system, per free block
   std::vector<int> rest_slot_;       ///< per block of the system; of others than those at rest the one of fixed blocks
@@ -298,7 +299,9 @@ class CentralDifference {
   double share_ = 1.0;          ///< [-] square of the longest step over the critical one, for crossing_energy.h
   DepthLimits<N> depth_limits_;
   double room_ = 0.0;  ///< [m] by which blocks may still move against each other before a contact can be deeper than its limit
-  double h_ = 0.0, span_ = 0.0, viscous_ = 0.0;
+  double h_ = 0.0;             ///< [s] the last step
+  Vec2 base_ = Vec2::Zero();   ///< [m/s2] in it
+  double local_damping_ = 0.0, viscous_ = 0.0;  ///< [-], [1/s] in it
 };
 
 extern template class CentralDifference<3>;

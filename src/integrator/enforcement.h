@@ -144,6 +144,8 @@ class Enforcement {
   virtual bool has_joint_springs() const { return false; }
   /// true: steps need no equations to be solved but must stay below the critical one; Simulation takes them by CentralDifference.
   virtual bool is_explicit() const { return false; }
+  /// [m] What a corner may enter a block by before there is a contact, see corner_entry.h.
+  virtual double deepest_entry(const MethodInput&) const { return std::numeric_limits<double>::infinity(); }
   virtual double step_cut(const MethodInput&) const { return 0.5; }  ///< factor on a step that failed
   virtual LinearCounters linear_counters() const = 0;
   /// The largest so far, that of solutions included.

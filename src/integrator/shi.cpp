@@ -24,6 +24,9 @@ constexpr double default_penalty_over_joint = 10.0;
 /// smaller blocks.
 constexpr double default_penetration_m = 1e-3, default_penetration_of_size = 1e-3;
 
+/// [-] Of the penetration that is tolerated: a corner is found up to four times as deep as this, and its contact closes by more before it carries.
+constexpr double entry_of_penetration = 0.1;
+
 template <int N>
 class Shi : public Enforcement<N> {
  public:
@@ -57,6 +60,10 @@ class Shi : public Enforcement<N> {
     return make_theta_scheme<N>(1.0);
   }
   bool follows_gaps() const override { return false; }  // they add up first-order changes
+  /// A contact that is found deeper than what is tolerated of closed ones would have no step.
+  double deepest_entry(const MethodInput& method) const override {
+    return entry_of_penetration * method.penetration_tolerance.value_or(default_penetration_m);
+  }
   double step_cut(const MethodInput& method) const override { return method.step_cut; }
   LinearCounters linear_counters() const override { return tangent_.counters(); }
   Memory memory() const override {

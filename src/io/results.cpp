@@ -441,7 +441,7 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
       {"skip_search", scene.method.skip_search},
       {"skip_narrow_phase", scene.method.skip_narrow_phase},
       {"skip_looks", scene.method.skip_looks},
-      {"contact_skin_m", scene.method.contact_skin},
+      {"contact_skin_m", optional_json(scene.method.contact_skin)},
       {"skip_reload", scene.method.skip_reload},
       {"skip_resting", scene.method.skip_resting},
       {"threads", scene.method.threads},

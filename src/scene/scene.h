@@ -159,7 +159,7 @@ struct MethodInput {
   bool skip_search = true;                               ///< search candidates only once something has moved beyond the skin
   bool skip_narrow_phase = true;  ///< find the contacts of two blocks anew only once they have moved against each other beyond the skin
   bool skip_looks = true;         ///< see DetectionSkips
-  double contact_skin = tolerance::contact_skin_m;  ///< [m]
+  std::optional<double> contact_skin;  ///< [m] the default is that of the blocks, see default_contact_skin()
   bool skip_reload = true;                          ///< dem: exchange only the contacts that were found anew, and leave the others in the loop
   int threads = 1;                                  ///< that share the work; the results are the same to the last bit
   bool skip_factorisation = true;                   ///< factor only rows of the matrix that have changed, and no weak couplings

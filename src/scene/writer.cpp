@@ -177,7 +177,7 @@ void write_method(Text& text, const MethodInput& method) {
   text.line("skip_search", method.skip_search);
   text.line("skip_narrow_phase", method.skip_narrow_phase);
   text.line("skip_looks", method.skip_looks);
-  text.line("contact_skin_m", method.contact_skin);
+  if (method.contact_skin) text.line("contact_skin_m", *method.contact_skin);
   text.line("skip_reload", method.skip_reload);
   text.line("skip_factorisation", method.skip_factorisation);
   text.line("skip_symbolic", method.skip_symbolic);

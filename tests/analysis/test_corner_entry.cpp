@@ -17,7 +17,7 @@ double entry_from(double height, const Motion<3>::Unknowns& d, double shift = 0.
   const BlockSystem<3> system(scene);
   StepSolution<3> solution;
   solution.d = d;
-  return first_entry<3>(system, solution, {{0, 1}}, tolerated);
+  return first_entry<3>(system, solution, {{0, 1}}, {tolerated});
 }
 
 /// A square that comes down on its corner, past the corner of a fixed block, at 20 m/s.
@@ -64,6 +64,32 @@ TEST_CASE("a step ends where a corner enters a block", "[analysis][corner_entry]
     CHECK(entry_from(0.01, 0.9 * part * Motion<3>::Unknowns(0.0, 0.0, angle)) == 1.0);  // the way is the chord of the arc
     CHECK(entry_from(0.01, 1.1 * part * Motion<3>::Unknowns(0.0, 0.0, angle)) < 1.0);
   }
+}
+
+TEST_CASE("what a corner may enter goes with the width of the narrower block", "[analysis][corner_entry]") {
+  Scene scene = test::block_on_base();
+  for (Vec2& v : scene.blocks[1].vertices) v += Vec2(0.0, 0.05);
+  const BlockSystem<3> above(scene);
+  const double width = above.block(1).area / (3.14159265358979323846 * above.block(1).radius), tenth = 0.1;
+  StepSolution<3> solution;
+  const auto part = [&](double down, const EntryTolerance& tolerance, const std::vector<Contact>* held = nullptr) {
+    solution.d = Motion<3>::Unknowns(0.0, -0.05 - down, 0.0);
+    return first_entry<3>(above, solution, {{0, 1}}, tolerance, held);
+  };
+  const EntryTolerance by_width{.part_of_width = tenth};
+  CHECK(part(3.9 * tenth * width, by_width) == 1.0);
+  CHECK(part(4.1 * tenth * width, by_width) == Approx((0.05 + 0.5 * tenth * width) / (0.05 + 4.1 * tenth * width)).epsilon(1e-8));
+  CHECK(part(3.9 * tenth * width, {.part_of_width = tenth, .most = 0.5 * tenth * width}) < 1.0);
+  // Springs that have acted hold their corners.
+  std::vector<Contact> held;
+  for (int v = 4; v < 8; ++v) {
+    for (int e = 0; e < 4; ++e) {
+      Contact c;
+      c.vertex_block = 1, c.vertex = v, c.edge_block = 0, c.edge = e;
+      held.push_back(c);
+    }
+  }
+  CHECK(part(4.1 * tenth * width, by_width, &held) == 1.0);
 }
 
 TEST_CASE("rigid corners that meet within a step do not enter each other", "[analysis][corner_entry]") {

@@ -377,6 +377,36 @@ TEST_CASE("contacts are found anew after as much motion as the scene says", "[an
   CHECK(seldom.way == Approx(often.way).margin(1e-9));  // lengths stay; see above
 }
 
+TEST_CASE("contacts of small blocks are found anew after as much less motion", "[analysis][simulation]") {
+  std::vector<BlockInput> blocks{test::fixed_block("base", test::rectangle(-9.0, -9.0, 18.0, 9.0)), test::free_block("block", test::rectangle(0.0, 0.0, 2.0, 0.5))};
+  CHECK(default_contact_skin(blocks) == Approx(tolerance::contact_skin_m));
+  blocks[1].vertices = test::rectangle(0.0, 0.0, 0.2, 0.05);
+  CHECK(default_contact_skin(blocks) == Approx(tolerance::contact_skin_of_size * 0.1));
+  blocks[1].vertices = test::rectangle(0.0, 0.0, 20.0, 5.0);
+  CHECK(default_contact_skin(blocks) == tolerance::contact_skin_m);
+}
+
+TEST_CASE("the velocity that a step ends with is none of an impact that is over", "[analysis][simulation]") {
+  // A block falls flat on a base at 1 m/s, without gravity, and may come back at the same speed at most.
+  const std::string method = GENERATE("dem", "hard");
+  const double height = GENERATE(0.0101, 0.0123, 0.0142, 0.0179);
+  Scene scene = test::block_on_base();
+  scene.gravity = Vec2::Zero();
+  for (Vec2& v : scene.blocks[1].vertices) v += Vec2(0.0, height);
+  scene.blocks[1].velocity = {0.0, -1.0};
+  scene.method.contact = method;
+  Simulation<3> simulation(scene);
+  double fastest = 0.0, slowest = 1.0;
+  for (int i = 0; i < 400; ++i) {
+    REQUIRE(simulation.step(method == "dem" ? std::min(0.5 * simulation.critical_step(), 1e-3) : 1e-3, false).accepted);
+    fastest = std::max(fastest, simulation.velocity(1).norm());
+    slowest = std::min(slowest, simulation.velocity(1).norm());
+  }
+  CHECK(slowest < 0.9);  // it has been there
+  CHECK(fastest < 1.01);  // what a spring at its longest step makes of half a step's force
+  if (method == "hard") CHECK(simulation.velocity(1).norm() < 1e-6);
+}
+
 TEST_CASE("a block far away is not felt", "[analysis][simulation]") {
   for (const std::string method : {"soft", "hard", "shi"}) {
     INFO(method);

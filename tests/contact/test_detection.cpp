@@ -406,3 +406,43 @@ TEST_CASE("joints are those of the two materials", "[contact][detection]") {
   REQUIRE(d.contacts.size() == 4);
   for (const Contact& c : d.contacts) CHECK(c.joint == (std::max(c.vertex_block, c.edge_block) == 2 ? 1 : 0));
 }
+
+TEST_CASE("two feet that slide towards each other on one floor meet", "[contact][detection]") {
+  // Both lean away from each other, so that neither tip lies opposite to the other one's side before they have passed each other.
+  const double apart = GENERATE(1e-2, 1e-5, 3e-7, 0.0, -3e-7, -5e-6);
+  Detection d(scene_with({fixed_block("floor", rectangle(-5.0, -1.0, 10.0, 1.0)), free_block("left", {{-2.0, 0.0}, {0.0, 0.0}, {-1.0, 2.0}}),
+                          free_block("right", {{0.02, 0.0}, {2.0, 0.0}, {1.0, 1.0}})}));
+  for (int step = 0; step < 2; ++step) {
+    for (Contact& c : d.contacts) c.status = c.edge_block == 0 ? ContactStatus::sliding : ContactStatus::open;
+    d.move(1, step == 0 ? 0.005 : 0.015 - apart, 0.0);
+    d.update();
+  }
+  CAPTURE(apart);
+  const auto between = std::count_if(d.contacts.begin(), d.contacts.end(), [](const Contact& c) { return c.vertex_block + c.edge_block == 3; });
+  CHECK(between >= 1);
+}
+
+TEST_CASE("two tips that slide towards each other along a wall do not pass each other on", "[contact][detection]") {
+  // The faces by which they meet are 16 degrees from parallel: each of the two lines parts the blocks as well as the other.
+  const double apart = GENERATE(0.02, 0.01, 1e-3);
+  const double slope = std::tan(8.0 * degree);
+  Detection d(scene_with({fixed_block("wall", rectangle(-1.0, -5.0, 1.0, 10.0)),
+                          free_block("upper", placed({{0.0, 0.0}, {2.0, 2.0 * slope}, {1.0, 3.0}}, 0.0, {0.0, apart})),
+                          free_block("lower", {{0.0, 0.0}, {1.0, -3.0}, {2.0, -2.0 * slope}})}));
+  for (Contact& c : d.contacts) c.status = c.edge_block == 0 ? ContactStatus::sliding : ContactStatus::open;
+  d.move(1, 0.0, -2e-6);
+  d.detector.look_again();
+  d.update();
+  CAPTURE(apart);
+  const auto between = std::count_if(d.contacts.begin(), d.contacts.end(), [](const Contact& c) { return c.vertex_block + c.edge_block == 3; });
+  CHECK(between >= 1);
+}
+
+TEST_CASE("a corner that slides down a wall meets the other wall of an obtuse notch", "[contact][detection]") {
+  const double before = GENERATE(0.02, 1e-2, 1e-4);  // [m] of the notch's corner, vertex 3
+  Detection d(scene_with({fixed_block("base", {{-3.0, -2.0}, {3.0, -2.0}, {3.0, 1.0}, {0.0, 0.0}, {-3.0, 0.0}}),
+                          free_block("block", placed({{0.0, 0.0}, {1.0, 2.0}, {-1.0, 2.0}}, 0.0, Vec2(-before, 0.0)))}));
+  REQUIRE(d.system.is_reflex(3));
+  CHECK(d.find(5, 3) != nullptr);
+  CHECK(d.find(5, 2) != nullptr);
+}
