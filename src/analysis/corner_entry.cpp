@@ -116,7 +116,8 @@ class Entries {
     const double along = course.along(part), from_start = along, from_end = course.length() - along;
     const double inside = std::min(from_start, from_end);
     if (inside > behind * tolerated_) return is_held(v, e) ? 1.0 : part;
-    // In a notch one wall leads the corner on to the other one, and nothing slides on over that: what is behind one wall beyond its end is behind both.
+    // In a notch one wall leads the corner on to the other one, and nothing slides on over that: what is behind one wall beyond its end is behind
+    // both.
     const bool in_notch = system_.is_reflex(from_start < from_end ? e : system_.next(e));
     if (inside < -(in_notch ? reach_ : tolerated_ + bow_) || is_held(v, e)) return 1.0;
     if (in_notch) return part;

@@ -1,9 +1,9 @@
 // When, within a step, a corner enters a block through an edge that it is not held by.
 //
-// The contacts of a step are those of its start. A corner that passes another block's corner within the step, or comes round it, has none, and nothing
-// takes back what it enters before the next step finds it. Rigid contacts then have a penetration that they may not have, springs begin to carry
-// where they are found, behind the edge; and a thin block or the tip of a needle it has left again by then. Such a step is cut where the corner is
-// behind the edge by half of what is tolerated: along the way of the step, on which this contact did not act, that moment is known without solving
+// The contacts of a step are those of its start. A corner that passes another block's corner within the step, or comes round it, has none, and
+// nothing takes back what it enters before the next step finds it. Rigid contacts then have a penetration that they may not have, springs begin to
+// carry where they are found, behind the edge; and a thin block or the tip of a needle it has left again by then. Such a step is cut where the corner
+// is behind the edge by half of what is tolerated: along the way of the step, on which this contact did not act, that moment is known without solving
 // again.
 #pragma once
 
@@ -18,8 +18,8 @@ namespace openclose {
 
 /// What corners may enter between two steps.
 struct EntryTolerance {
-  double depth = 0.0;          ///< [m]
-  double part_of_width = 0.0;  ///< [-] of the narrower block, if that is more
+  double depth = 0.0;                                     ///< [m]
+  double part_of_width = 0.0;                             ///< [-] of the narrower block, if that is more
   double most = std::numeric_limits<double>::infinity();  ///< [m] and no more than this
 
   double of(double narrower) const { return std::min(std::max(depth, part_of_width * narrower), most); }

@@ -12,8 +12,8 @@
 //   friction  -(theta T1 + (1 - theta) T0) (slip - change of u)
 // The kinetic energy is that of the present velocities, so that motion which comes from elsewhere shows as an imbalance. With mid-step velocities
 // (`hard`) all entries stand at the middle of the last step. With forces at the start of the step (`dem`, theta = 0) gravity and scheme do
-// so; springs, friction and damping stand at its end, and the kinetic energy goes with them (CentralDifference::kinetic_ahead()). Hard contacts store nothing: minus their normal
-// work is the loss of impacts, minus their shear work is friction.
+// so; springs, friction and damping stand at its end, and the kinetic energy goes with them (CentralDifference::kinetic_ahead()). Hard contacts store
+// nothing: minus their normal work is the loss of impacts, minus their shear work is friction.
 #pragma once
 
 #include "openclose/integrator/enforcement.h"

@@ -724,9 +724,7 @@ bool Simulation<N>::creates_energy(const StepProblem<N>& problem, const StepSolu
   after.kinetic += kinetic_change(problem, solution);
   const double rise = after.mechanical() - ledger_.mechanical(), above_lowest = after.mechanical() - lowest_energy_;
   const double allowed = std::max(creatable_energy_, creatable_part_of_kinetic * system_.kinetic_energy());
-  const auto is_much = [&](double in_all, double in_step) {
-    return in_all > share_before_cuts * allowed && in_step > share_of_step * allowed;
-  };
+  const auto is_much = [&](double in_all, double in_step) { return in_all > share_before_cuts * allowed && in_step > share_of_step * allowed; };
   return is_much(above_lowest, rise) || is_much(-after.scheme, -step_ledger_.scheme) || is_much(-after.impact, -step_ledger_.impact);
 }
 
@@ -852,8 +850,8 @@ template <int N>
 double Simulation<N>::approach_step() {
   if (!approach_step_) {
     loop_->store_blocks(system_);
-    approach_step_ = approach_bound_.step(system_, joints_, detector_.candidate_pairs(), loop_->approach(), contact_skin_,
-                                          scene_.method.step_fraction);
+    approach_step_ =
+        approach_bound_.step(system_, joints_, detector_.candidate_pairs(), loop_->approach(), contact_skin_, scene_.method.step_fraction);
   }
   return *approach_step_;
 }
@@ -1123,7 +1121,8 @@ template <int N>
 void Simulation<N>::exchange(Archive& archive) {
   archive(system_, resting_, may_rest_, external_, joints_, base_moves_, keep_bonds_, detector_, contacts_, contacts_current_, output_velocity_,
           time_, reason_, ledger_, start_kinetic_energy_, kinetic_ahead_, collected_contact_energy_, max_penetration_, friction_work_,
-          lagging_friction_work_, step_counters_, failed_attempts_, cuts_at_entry_, cuts_for_energy_, lowest_energy_, creatable_energy_, last_speed_, control_, begins_, approach_step_, held_step_);
+          lagging_friction_work_, step_counters_, failed_attempts_, cuts_at_entry_, cuts_for_energy_, lowest_energy_, creatable_energy_, last_speed_,
+          control_, begins_, approach_step_, held_step_);
   if (archive.reading()) scheme_ = make_scheme();
   scheme_->exchange(archive);
   enforcement_->exchange(archive);

@@ -216,8 +216,8 @@ class Simulation {
   /// [N] Sum of the forces on every free block as it stands, without dashpots.
   Eigen::VectorXd forces_now(const StepProblem<N>& problem) const;
   double largest_move(const StepSolution<N>& solution) const;
-  /// [-] Part of a step after which a corner has entered a block that it is not in contact with by what is tolerated, see first_entry(); 1 if there is
-  /// none.
+  /// [-] Part of a step after which a corner has entered a block that it is not in contact with by what is tolerated, see first_entry(); 1 if there
+  /// is none.
   double part_before_entry(const StepSolution<N>& solution, double moved) const;
   double unbalanced_force(const StepProblem<N>& problem, const StepSolution<N>& solution) const;
   void accept(const StepProblem<N>& problem, const StepSolution<N>& solution);
@@ -288,7 +288,7 @@ class Simulation {
   std::unique_ptr<CentralDifference<N>> loop_;  ///< null for implicit methods
   mutable bool loop_is_ahead_ = false;          ///< of system_ and contacts_
   bool loop_is_loaded_ = false;
-  int cuts_at_entry_ = 0, cuts_for_energy_ = 0;  ///< since the last step that was accepted
+  int cuts_at_entry_ = 0, cuts_for_energy_ = 0;                        ///< since the last step that was accepted
   double creatable_energy_ = std::numeric_limits<double>::infinity();  ///< [J] see allow_energy()
   double lowest_energy_ = 0.0;                                         ///< [J] mechanical, against that at the start
   EnergyLedger step_ledger_;                                           ///< of the last step that was solved

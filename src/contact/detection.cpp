@@ -529,8 +529,8 @@ void Detector<N>::divide(const BlockSystem<N>& system, std::vector<Contact>& con
 
 template <int N>
 void Detector<N>::exchange(Archive& archive) {
-  archive(first_, forgotten_, looks_again_, pairs_, states_, ranges_, resting_, searched_at_, searched_moving_at_, counters_, places_, ways_, pairs_of_start_,
-          pairs_of_);
+  archive(first_, forgotten_, looks_again_, pairs_, states_, ranges_, resting_, searched_at_, searched_moving_at_, counters_, places_, ways_,
+          pairs_of_start_, pairs_of_);
   if (archive.reading()) index_.forget_resting();
 }
 

@@ -21,8 +21,8 @@
 // So a block whose front corner stands on a joint slides on, three blocks and air or four blocks around the corner. A contact that has closed over
 // more than seam_height stays until its corner is nearer to another edge; at a reflex q both walls hold.
 //
-// In front of a notch a corner faces both walls from wherever it may reach them, also where it lies beyond the end of one: what is in front of both is
-// in front of the whole line of either, and a corner that slides down one wall into the notch is to meet the other one there. Two feet that slide
+// In front of a notch a corner faces both walls from wherever it may reach them, also where it lies beyond the end of one: what is in front of both
+// is in front of the whole line of either, and a corner that slides down one wall into the notch is to meet the other one there. Two feet that slide
 // towards each other on one floor meet in such a notch.
 //
 // Where it is not continuous: a lone corner within edge_end of the seam of two collinear edges has a contact with both; it loses its length where it

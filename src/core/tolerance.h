@@ -82,7 +82,8 @@ inline constexpr double farthest_coordinate_m = 1e7;
 inline constexpr double farthest_point_outside_block_m = 1e-6;
 
 /// [m] Two edges of a drawing that are no farther apart, or overlap by no more, are the sides of one joint; a point this near to both is a point of
-/// it: drawings are rounded to millimetres. Where blocks are large, a thousandth of the median block's size is taken, as for what fos takes as closed.
+/// it: drawings are rounded to millimetres. Where blocks are large, a thousandth of the median block's size is taken, as for what fos takes as
+/// closed.
 inline constexpr double farthest_point_from_joint_m = 1e-3;
 
 }  // namespace openclose::tolerance

@@ -911,16 +911,16 @@ ExplicitEnergies CentralDifference<N>::take_energies() {
 template <int N>
 void CentralDifference<N>::exchange(Archive& archive, const JointTable& joints) {
   joints_ = &joints;
-  archive(poses_, rates_, next_rates_, forces_, inertia_, blocks_, rest_slot_, loaded_at_, links_, rest_, link_of_, cleared_,
-          kept_at_, points_, energies_, damped_, lost_strength_, critical_step_, approach_, moved_, unbalanced_, max_penetration_, step_ahead_,
-          list_is_short_, share_, room_, h_, base_, local_damping_, viscous_);
+  archive(poses_, rates_, next_rates_, forces_, inertia_, blocks_, rest_slot_, loaded_at_, links_, rest_, link_of_, cleared_, kept_at_, points_,
+          energies_, damped_, lost_strength_, critical_step_, approach_, moved_, unbalanced_, max_penetration_, step_ahead_, list_is_short_, share_,
+          room_, h_, base_, local_damping_, viscous_);
 }
 
 template <int N>
 Memory CentralDifference<N>::memory() const {
   Memory of;
-  of.blocks = bytes_of(poses_, rates_, next_rates_, forces_, inertia_, blocks_, rest_slot_, loaded_at_, kept_at_, points_) +
-              critical_step_.bytes() + depth_limits_.bytes();
+  of.blocks = bytes_of(poses_, rates_, next_rates_, forces_, inertia_, blocks_, rest_slot_, loaded_at_, kept_at_, points_) + critical_step_.bytes() +
+              depth_limits_.bytes();
   of.contacts = bytes_of(links_, rest_, link_of_, renumbered_);
   return of;
 }

@@ -116,8 +116,8 @@ class CentralDifference {
   /// Gaps of the contacts that were left out, at the positions of the system.
   void store_far_gaps(const BlockSystem<N>& system, std::vector<Contact>& contacts) const;
   /// [J] What contacts, loads and supports add to the kinetic energy from the middle of the last step to the present moment, where springs store what
-  /// the ledger says: half of what they do in a step as long, which makes v(-1/2) M v(+1/2)/2 of it. So the energy of linear vibration stays exactly as
-  /// it is. The work of gravity and base is counted up to the middle of the step.
+  /// the ledger says: half of what they do in a step as long, which makes v(-1/2) M v(+1/2)/2 of it. So the energy of linear vibration stays exactly
+  /// as it is. The work of gravity and base is counted up to the middle of the step.
   double kinetic_ahead() const;
   ExplicitEnergies take_energies();
 
@@ -273,10 +273,10 @@ class CentralDifference {
   std::vector<LinkRest> rest_;  ///< of the links
   std::vector<int> link_of_;    ///< per contact of the list; -1: too far apart
   std::vector<int> renumbered_;
-  std::vector<int> free_;                       ///< links of contacts that are being exchanged, pair by pair
-  std::vector<std::size_t> free_ends_;          ///< of the pairs in that list
-  std::size_t next_free_ = 0, free_end_ = 0;    ///< of the present pair
-  int cleared_ = 0;                             ///< links that are no contact's
+  std::vector<int> free_;                     ///< links of contacts that are being exchanged, pair by pair
+  std::vector<std::size_t> free_ends_;        ///< of the pairs in that list
+  std::size_t next_free_ = 0, free_end_ = 0;  ///< of the present pair
+  int cleared_ = 0;                           ///< links that are no contact's
   struct Way {
     double x, y, angle;
 
@@ -298,9 +298,9 @@ class CentralDifference {
   bool list_is_short_ = false;  ///< such a step might have closed contacts that were left out
   double share_ = 1.0;          ///< [-] square of the longest step over the critical one, for crossing_energy.h
   DepthLimits<N> depth_limits_;
-  double room_ = 0.0;  ///< [m] by which blocks may still move against each other before a contact can be deeper than its limit
-  double h_ = 0.0;             ///< [s] the last step
-  Vec2 base_ = Vec2::Zero();   ///< [m/s2] in it
+  double room_ = 0.0;         ///< [m] by which blocks may still move against each other before a contact can be deeper than its limit
+  double h_ = 0.0;            ///< [s] the last step
+  Vec2 base_ = Vec2::Zero();  ///< [m/s2] in it
   double local_damping_ = 0.0, viscous_ = 0.0;  ///< [-], [1/s] in it
 };
 

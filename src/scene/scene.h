@@ -157,26 +157,26 @@ struct MethodInput {
   LinearSolverKind linear_solver = LinearSolverKind::automatic;
   StaticSolver static_solver = StaticSolver::automatic;  ///< soft
   bool skip_search = true;                               ///< search candidates only once something has moved beyond the skin
-  bool skip_narrow_phase = true;  ///< find the contacts of two blocks anew only once they have moved against each other beyond the skin
-  bool skip_looks = true;         ///< see DetectionSkips
+  bool skip_narrow_phase = true;       ///< find the contacts of two blocks anew only once they have moved against each other beyond the skin
+  bool skip_looks = true;              ///< see DetectionSkips
   std::optional<double> contact_skin;  ///< [m] the default is that of the blocks, see default_contact_skin()
-  bool skip_reload = true;                          ///< dem: exchange only the contacts that were found anew, and leave the others in the loop
-  int threads = 1;                                  ///< that share the work; the results are the same to the last bit
-  bool skip_factorisation = true;                   ///< factor only rows of the matrix that have changed, and no weak couplings
-  bool skip_symbolic = true;                        ///< plan a factorisation only once the pattern of the matrix has changed
-  bool skip_unmoved = true;                         ///< after parts were solved, evaluate only contacts of what moved with them
-  bool skip_balanced = true;                        ///< between iterations of large systems in motion, iterate only where forces are far from balance
-  bool skip_resting = false;                        ///< leave blocks alone that are at rest, see RestInput
-  double gap_tolerance = 3e-7;          ///< [m] hard: a closed contact may differ from its target gap, a sticking one from its place, by this much
-  std::optional<double> penalty;        ///< [Pa/m] shi: normal penalty, times the tributary length like any stiffness; absent: 10 times the joint's
-  double penalty_shear_ratio = 0.4;     ///< [-] shi: shear penalty over normal penalty
+  bool skip_reload = true;             ///< dem: exchange only the contacts that were found anew, and leave the others in the loop
+  int threads = 1;                     ///< that share the work; the results are the same to the last bit
+  bool skip_factorisation = true;      ///< factor only rows of the matrix that have changed, and no weak couplings
+  bool skip_symbolic = true;           ///< plan a factorisation only once the pattern of the matrix has changed
+  bool skip_unmoved = true;            ///< after parts were solved, evaluate only contacts of what moved with them
+  bool skip_balanced = true;           ///< between iterations of large systems in motion, iterate only where forces are far from balance
+  bool skip_resting = false;           ///< leave blocks alone that are at rest, see RestInput
+  double gap_tolerance = 3e-7;         ///< [m] hard: a closed contact may differ from its target gap, a sticking one from its place, by this much
+  std::optional<double> penalty;       ///< [Pa/m] shi: normal penalty, times the tributary length like any stiffness; absent: 10 times the joint's
+  double penalty_shear_ratio = 0.4;    ///< [-] shi: shear penalty over normal penalty
   std::optional<double> penetration_tolerance;  ///< [m] shi: deeper contacts cut the step; absent: see Shi
-  double closing_tolerance = 1e-9;      ///< [m] shi: an open contact closes beyond this penetration
-  int max_open_close_iterations = 6;    ///< shi: per step, before the step is cut
-  double step_cut = 0.3;                ///< [-] shi: factor on the step when open-close does not settle
-  double step_fraction = 0.5;           ///< [-] dem: longest step over the critical one
-  MassDamping damping = MassDamping::none;  ///< dem: of the motion; settling takes `local` instead of `none`
-  double local_damping = 0.8;               ///< [-] dem: of the unbalanced force
+  double closing_tolerance = 1e-9;              ///< [m] shi: an open contact closes beyond this penetration
+  int max_open_close_iterations = 6;            ///< shi: per step, before the step is cut
+  double step_cut = 0.3;                        ///< [-] shi: factor on the step when open-close does not settle
+  double step_fraction = 0.5;                   ///< [-] dem: longest step over the critical one
+  MassDamping damping = MassDamping::none;      ///< dem: of the motion; settling takes `local` instead of `none`
+  double local_damping = 0.8;                   ///< [-] dem: of the unbalanced force
 };
 
 struct StepInput {
@@ -228,11 +228,11 @@ enum class FactorDefinition {
 
 struct StrengthReductionInput {
   FactorDefinition definition = FactorDefinition::small_displacements;
-  bool limit_analysis = true;        ///< rigid-block limit analysis beside it: a proof of failure and a second opinion
-  double width = 1e-4;               ///< [-] of the final bracket
-  double upper_limit = 100.0;        ///< [-] strength reduction factor beyond which the search stops
-  std::vector<double> curve;         ///< [-] further factors at which displacement is recorded
-  std::optional<double> curve_time;  ///< [s] physical time of a dynamic run at each of them; absent: settled displacement only
+  bool limit_analysis = true;         ///< rigid-block limit analysis beside it: a proof of failure and a second opinion
+  double width = 1e-4;                ///< [-] of the final bracket
+  double upper_limit = 100.0;         ///< [-] strength reduction factor beyond which the search stops
+  std::vector<double> curve;          ///< [-] further factors at which displacement is recorded
+  std::optional<double> curve_time;   ///< [s] physical time of a dynamic run at each of them; absent: settled displacement only
   SourceLocation curve_time_where{};  ///< for the error of a definition that knows no motion
 };
 

@@ -378,7 +378,8 @@ TEST_CASE("contacts are found anew after as much motion as the scene says", "[an
 }
 
 TEST_CASE("contacts of small blocks are found anew after as much less motion", "[analysis][simulation]") {
-  std::vector<BlockInput> blocks{test::fixed_block("base", test::rectangle(-9.0, -9.0, 18.0, 9.0)), test::free_block("block", test::rectangle(0.0, 0.0, 2.0, 0.5))};
+  std::vector<BlockInput> blocks{test::fixed_block("base", test::rectangle(-9.0, -9.0, 18.0, 9.0)),
+                                 test::free_block("block", test::rectangle(0.0, 0.0, 2.0, 0.5))};
   CHECK(default_contact_skin(blocks) == Approx(tolerance::contact_skin_m));
   blocks[1].vertices = test::rectangle(0.0, 0.0, 0.2, 0.05);
   CHECK(default_contact_skin(blocks) == Approx(tolerance::contact_skin_of_size * 0.1));
@@ -402,7 +403,7 @@ TEST_CASE("the velocity that a step ends with is none of an impact that is over"
     fastest = std::max(fastest, simulation.velocity(1).norm());
     slowest = std::min(slowest, simulation.velocity(1).norm());
   }
-  CHECK(slowest < 0.9);  // it has been there
+  CHECK(slowest < 0.9);   // it has been there
   CHECK(fastest < 1.01);  // what a spring at its longest step makes of half a step's force
   if (method == "hard") CHECK(simulation.velocity(1).norm() < 1e-6);
 }
