@@ -177,6 +177,8 @@ class Simulation {
   /// Whether implicit steps enter the ledger until restart_clock(), from which on they always do: nobody asks for the energies of the way to an
   /// equilibrium.
   void book_steps(bool book) { books_steps_ = book; }
+  /// [m] The scene's, or the default for its blocks.
+  double contact_skin() const { return contact_skin_; }
   /// [J] What may be created in all. Once half of it has been, steps that go on creating energy are cut.
   void allow_energy(double energy) { creatable_energy_ = energy; }
   /// Gives block b this velocity at time(); to be followed by restart_clock().

@@ -113,8 +113,7 @@ void RunTable::require_written() const {
 }
 
 HistoryFile::HistoryFile(const OutputFolder& folder, const RestartPoint* restart)
-    : RunTable(folder, "history.csv",
-               "time_s,point,displacement_x_m,displacement_y_m,rotation_rad,velocity_x_m_per_s,velocity_y_m_per_s,"
+    : RunTable(folder, "history.csv", "time_s,point,displacement_x_m,displacement_y_m,rotation_rad,velocity_x_m_per_s,velocity_y_m_per_s,"
                "angular_velocity_rad_per_s",
                restart) {}
 
@@ -155,8 +154,8 @@ void BlocksFile<N>::add(const std::string& state, const Scene& scene, const Bloc
 
 template <int N>
 ContactsFile<N>::ContactsFile(const OutputFolder& folder, const RestartPoint* restart)
-    : RunTable(folder, "contacts.csv", "state,block_a,block_b,x_m,y_m,normal_x,normal_y,length_m,gap_m,normal_force_n,shear_force_n,status",
-               restart) {}
+    : RunTable(folder, "contacts.csv",
+               "state,block_a,block_b,x_m,y_m,normal_x,normal_y,length_m,gap_m,normal_force_n,shear_force_n,status", restart) {}
 
 template <int N>
 void ContactsFile<N>::add(const std::string& state, const Scene& scene, const BlockSystem<N>& system, const std::vector<Contact>& contacts) {
@@ -165,8 +164,8 @@ void ContactsFile<N>::add(const std::string& state, const Scene& scene, const Bl
   for (const Contact& c : contacts) {
     const Vec2 p = system.position(c.vertex_block, c.vertex) + system.origin();
     const Vec2 n = ContactKinematics<N>(system, c, still, still).normal;
-    print(rows, "{},{},{},{},{},{},{},{},{},{},{},{}\n", state, field(scene.blocks[c.vertex_block].name), field(scene.blocks[c.edge_block].name),
-          p.x(), p.y(), n.x(), n.y(), c.length, c.gap, c.normal_force, c.shear_force, name_of(c.status));
+    print(rows, "{},{},{},{},{},{},{},{},{},{},{},{}\n", state, field(scene.blocks[c.vertex_block].name),
+               field(scene.blocks[c.edge_block].name), p.x(), p.y(), n.x(), n.y(), c.length, c.gap, c.normal_force, c.shear_force, name_of(c.status));
   }
   file_ << rows;
   require_written();
@@ -180,11 +179,12 @@ BlockStatesFile<N>::BlockStatesFile(const OutputFolder& folder, const RestartPoi
                restart) {}
 
 template <int N>
-void BlockStatesFile<N>::add_place(std::string& rows, const std::string& state, const std::string& time, const Scene& scene,
-                                   const BlockSystem<N>& system, int b) const {
+void BlockStatesFile<N>::add_place(std::string& rows, const std::string& state, const std::string& time, const Scene& scene, const BlockSystem<N>& system,
+                                   int b) const {
   const Vec2 p = system.centroid(b) + system.origin();
   const auto& d = system.displacement(b);
-  print(rows, "{},{},{},{},{},{},{},{}", state, time, field(scene.blocks[b].name), p.x(), p.y(), d[0], d[1], Motion<N>::rotation(d));
+  print(rows, "{},{},{},{},{},{},{},{}", state, time, field(scene.blocks[b].name), p.x(), p.y(), d[0], d[1],
+             Motion<N>::rotation(d));
 }
 
 template <int N>
@@ -221,9 +221,9 @@ void CracksFile<N>::add(const std::string& state, const Scene& scene, const Bloc
   std::string rows;
   for (const DrawnJoint& joint : joints_) {
     const JointMotion m = joint_motion(joint, system);
-    print(rows, "{},{},{},{},{},{},{},{},{},{},{},{}\n", state, field(scene.blocks[joint.block_a].name), field(scene.blocks[joint.block_b].name),
-          m.from.middle.x(), m.from.middle.y(), m.to.middle.x(), m.to.middle.y(), (joint.to_b - joint.from_b).norm(), m.from.opening, m.to.opening,
-          m.from.slip, m.to.slip);
+    print(rows, "{},{},{},{},{},{},{},{},{},{},{},{}\n", state,
+               field(scene.blocks[joint.block_a].name), field(scene.blocks[joint.block_b].name), m.from.middle.x(), m.from.middle.y(),
+               m.to.middle.x(), m.to.middle.y(), (joint.to_b - joint.from_b).norm(), m.from.opening, m.to.opening, m.from.slip, m.to.slip);
   }
   file_ << rows;
   require_written();
@@ -441,7 +441,7 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
       {"skip_search", scene.method.skip_search},
       {"skip_narrow_phase", scene.method.skip_narrow_phase},
       {"skip_looks", scene.method.skip_looks},
-      {"contact_skin_m", optional_json(scene.method.contact_skin)},
+      {"contact_skin_m", simulation.contact_skin()},
       {"skip_reload", scene.method.skip_reload},
       {"skip_resting", scene.method.skip_resting},
       {"threads", scene.method.threads},

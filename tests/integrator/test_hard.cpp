@@ -189,7 +189,7 @@ TEST_CASE("a force that grows drives a closed contact in no deeper than it is", 
 
 TEST_CASE("springs of rigid contacts become stiffer where they are too soft for a column", "[integrator][hard]") {
   Simulation<3> simulation(column(200, 1e-2, 10));
-  REQUIRE(run<3>(simulation, {}).converged);
+  for (int i = 0; i < 10; ++i) REQUIRE(simulation.advance(1e-2));  // as run() does, which would cut steps for the energy of gravity at once, too
   CHECK(simulation.step_counters().steps == 10);  // none of them in parts, as where the passes that a step may take are too few
 }
 
