@@ -23,6 +23,12 @@ RelativeMotion relative_motion(const FrozenContact& c, const Eigen::VectorXd& di
   return m;
 }
 
+/// The spring of a support has no strength: a motion that stretches it comes to an end.
+bool stretches_support(const FrozenSystem& system, const Eigen::VectorXd& velocity) {
+  return std::ranges::any_of(system.supports(),
+                             [&](const FrozenSupport& s) { return std::abs(s.direction.dot(velocity.segment<3>(3 * s.row))) > mechanism_tolerance; });
+}
+
 }  // namespace
 
 EquilibriumCheck check_equilibrium(const FrozenSystem& system, const FrozenStrength& strength, const FrozenState& state) {
@@ -60,6 +66,7 @@ bool is_mechanism(const FrozenSystem& system, const FrozenStrength& strength, co
     const double room = mechanism_tolerance * acceleration * system.blocks()[b].weight + rounding_of_forces * magnitudes[b];
     if (!((unbalanced[b] - expected).norm() <= room)) return false;
   }
+  if (stretches_support(system, direction / fastest)) return false;
   for (std::size_t i = 0; i < state.contacts.size(); ++i) {
     const FrozenContact& c = system.contacts()[i];
     const FrozenContactState& s = state.contacts[i];
@@ -88,9 +95,7 @@ bool is_beyond_all_strength(const FrozenSystem& system, const FrozenStrength& st
     work += system.blocks()[b].load.dot(motion);
     scale += system.blocks()[b].load.norm() * motion.norm();
   }
-  for (const FrozenSupport& s : system.supports()) {
-    if (std::abs(s.direction.dot(direction.segment<3>(3 * s.row))) > mechanism_tolerance * fastest) return false;
-  }
+  if (stretches_support(system, direction / fastest)) return false;
   for (std::size_t i = 0; i < system.contacts().size(); ++i) {
     const auto [opening, slip] = relative_motion(system.contacts()[i], direction / fastest);
     if (opening < -mechanism_tolerance || std::abs(slip) > mechanism_tolerance) return false;

@@ -27,9 +27,8 @@ struct EquilibriumCheck {
 EquilibriumCheck check_equilibrium(const FrozenSystem& system, const FrozenStrength& strength, const FrozenState& state);
 
 /// Proof that the blocks start to move: forces within the strength leave accelerations, under which every contact goes on as it is. Closed contacts
-/// stay closed, sticking ones do not slip, sliding ones slip against their friction at its bound, open ones do not close. The accelerations are those
-/// of rigid blocks under these forces.
-/// \param direction  of the accelerations, as the solver found it
+/// stay closed, sticking ones do not slip, sliding ones slip against their friction at its bound, open ones do not close, and no support is
+/// stretched. The accelerations are those of rigid blocks under these forces. \param direction  of the accelerations, as the solver found it
 bool is_mechanism(const FrozenSystem& system, const FrozenStrength& strength, const FrozenState& state, const Eigen::VectorXd& direction);
 
 /// Proof that no strength in shear, however large, could hold the blocks: a motion on which the loads do work, in which no contact closes or slips,
