@@ -23,10 +23,14 @@ RelativeMotion relative_motion(const FrozenContact& c, const Eigen::VectorXd& di
   return m;
 }
 
-/// The spring of a support has no strength: a motion that stretches it comes to an end.
-bool stretches_support(const FrozenSystem& system, const Eigen::VectorXd& velocity) {
-  return std::ranges::any_of(system.supports(),
-                             [&](const FrozenSupport& s) { return std::abs(s.direction.dot(velocity.segment<3>(3 * s.row))) > mechanism_tolerance; });
+/// The springs of supports have no strength: whether one could bring a motion to an end within `farthest_way`.
+/// \param velocity  over the fastest
+/// \param acceleration  [-] of the fastest; 0 for a motion that no support may resist at all
+bool may_be_stopped(const FrozenSystem& system, const Eigen::VectorXd& velocity, double acceleration) {
+  return std::ranges::any_of(system.supports(), [&](const FrozenSupport& s) {
+    const double stretching = std::abs(s.direction.dot(velocity.segment<3>(3 * s.row)));
+    return stretching > mechanism_tolerance && s.stiffness * stretching * farthest_way > acceleration * system.blocks()[s.row].weight;
+  });
 }
 
 }  // namespace
@@ -66,7 +70,7 @@ bool is_mechanism(const FrozenSystem& system, const FrozenStrength& strength, co
     const double room = mechanism_tolerance * acceleration * system.blocks()[b].weight + rounding_of_forces * magnitudes[b];
     if (!((unbalanced[b] - expected).norm() <= room)) return false;
   }
-  if (stretches_support(system, direction / fastest)) return false;
+  if (may_be_stopped(system, direction / fastest, acceleration)) return false;
   for (std::size_t i = 0; i < state.contacts.size(); ++i) {
     const FrozenContact& c = system.contacts()[i];
     const FrozenContactState& s = state.contacts[i];
@@ -95,7 +99,7 @@ bool is_beyond_all_strength(const FrozenSystem& system, const FrozenStrength& st
     work += system.blocks()[b].load.dot(motion);
     scale += system.blocks()[b].load.norm() * motion.norm();
   }
-  if (stretches_support(system, direction / fastest)) return false;
+  if (may_be_stopped(system, direction / fastest, 0.0)) return false;
   for (std::size_t i = 0; i < system.contacts().size(); ++i) {
     const auto [opening, slip] = relative_motion(system.contacts()[i], direction / fastest);
     if (opening < -mechanism_tolerance || std::abs(slip) > mechanism_tolerance) return false;

@@ -13,6 +13,8 @@ inline constexpr double rounding_of_forces = 1e-13;
 inline constexpr double rounding_of_strength = 1e-12;
 /// [-] What a mechanism's velocities and forces may miss of its conditions, over the largest.
 inline constexpr double mechanism_tolerance = 1e-6;
+/// In closures: beyond, gaps lose their digits, and no motion is followed.
+inline constexpr double farthest_way = 1e6;
 
 /// How far a state is from equilibrium.
 struct EquilibriumCheck {

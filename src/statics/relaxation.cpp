@@ -14,7 +14,6 @@ constexpr int increments_of_caution = 3;     ///< after one that was not found
 constexpr long most_factorisations = 1500;   ///< of one relaxation by Newton's method; twice as many decide no more trials
 
 // Ways are in closures.
-constexpr double most_travel = 1e6;             ///< beyond, gaps lose their digits
 constexpr double least_travel_of_escape = 1e3;  ///< what has gone so far without rest is a motion, if an unsteady one
 constexpr double least_travel_of_mechanism = 1.0;
 constexpr double first_increment_of_motion = 10.0;
@@ -131,7 +130,7 @@ RelaxationResult Relaxation::relax(const FrozenState& from) {
     accept(x, result.state);
     result.travel = std::max(result.travel, farthest_between(result.state, from));
     if (ended(result, x)) return result;
-    if (result.travel > most_travel) break;
+    if (result.travel > farthest_way) break;
     const long effort = balance_.counters().factorisations - before;
     if (effort <= effort_of_steady_motion && length > first_increment_of_motion && ends_in_a_short_increment(velocity, result)) return result;
     // What was too much a moment ago is not tried again at once.

@@ -75,7 +75,7 @@ struct Results {
     scene.method.start = Start::settled;
     scene.measured_points = {{"mark", 1, scene.blocks[1].vertices[3]}};
     scene.loads = {{1, scene.blocks[1].vertices[2], {0.0, -1000.0}}};
-    scene.supports = {{1, scene.blocks[1].vertices[1], {0.0, 1e3}}};
+    scene.supports = {{1, scene.blocks[1].vertices[1], {0.0, is_factor ? 1e-6 : 1e3}}};  // too weak to stop what fails
     const OutputFolder folder(place.path());
     Simulation<3> simulation(scene);
     StateTables<3> states(folder, scene);
