@@ -119,7 +119,7 @@ class StrengthReduction {
       result_.reason = "still stable at strength_reduction.upper_limit";
       return;
     }
-    if (b.failed && *b.failed - *b.stable <= input_.width) {
+    if (b.failed && *b.failed - *b.stable <= widest_bracket(input_, *b.stable)) {
       result_.verdict = FactorVerdict::certified;
     } else {
       result_.verdict = FactorVerdict::interval;

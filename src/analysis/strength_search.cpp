@@ -65,7 +65,7 @@ class Search {
     std::ranges::sort(undecided_);
     const double lowest = undecided_.front(), highest = undecided_.back();
     if (undecided_.size() < most_undecided) {
-      if (lowest - stable > 0.5 * input_.width) return 0.5 * (stable + lowest);
+      if (lowest - stable > 0.5 * widest_bracket(input_, stable)) return 0.5 * (stable + lowest);
       if (retried_ != lowest) return retried_ = lowest;
     }
     if (bracket_.failed) {
@@ -78,7 +78,7 @@ class Search {
 
   std::optional<double> middle(double low, double high) const {
     const double between = 0.5 * (low + high);
-    if (high - low <= input_.width || between <= low || between >= high) return std::nullopt;
+    if (high - low <= widest_bracket(input_, low) || between <= low || between >= high) return std::nullopt;
     return between;
   }
 
@@ -140,9 +140,11 @@ class Search {
 
   /// Of the bisection, on a logarithmic scale; it never falls back.
   double share_done() {
-    if (!bracket_.failed || first_width_ <= input_.width) return share_;
-    const double width = std::max(*bracket_.failed - *bracket_.stable, input_.width);
-    return share_ = std::clamp(std::log(first_width_ / width) / std::log(first_width_ / input_.width), share_, 1.0);
+    if (!bracket_.failed) return share_;
+    const double final_width = widest_bracket(input_, *bracket_.stable);
+    if (first_width_ <= final_width) return share_;
+    const double width = std::max(*bracket_.failed - *bracket_.stable, final_width);
+    return share_ = std::clamp(std::log(first_width_ / width) / std::log(first_width_ / final_width), share_, 1.0);
   }
 
   StrengthTrials& trials_;
@@ -159,6 +161,8 @@ class Search {
 };
 
 }  // namespace
+
+double widest_bracket(const StrengthReductionInput& input, double factor) { return input.width * std::min(1.0, factor); }
 
 StrengthBracket search_strength(StrengthTrials& trials, const StrengthReductionInput& input, const TrialObserver& done,
                                 const std::function<void(double share)>& progress) {

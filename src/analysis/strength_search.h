@@ -61,6 +61,10 @@ struct StrengthBracket {
 /// Told about every trial.
 using TrialObserver = std::function<void(const StrengthTrial&)>;
 
+/// [-] Between the ends of a bracket that is narrow enough: strength_reduction.width, and below a factor of 1 that part of the factor, since an error
+/// of 5e-4 is nothing at 1.3 and nearly one per cent at 0.06.
+double widest_bracket(const StrengthReductionInput& input, double factor);
+
 /// Each trial starts from the last stable state. Where one stays undecided, the search comes near it from below with smaller increments, tries again,
 /// and then looks above it for the smallest factor at which failure is certain.
 StrengthBracket search_strength(StrengthTrials& trials, const StrengthReductionInput& input, const TrialObserver& done,

@@ -229,7 +229,7 @@ enum class FactorDefinition {
 struct StrengthReductionInput {
   FactorDefinition definition = FactorDefinition::small_displacements;
   bool limit_analysis = true;         ///< rigid-block limit analysis beside it: a proof of failure and a second opinion
-  double width = 1e-4;                ///< [-] of the final bracket
+  double width = 1e-4;                ///< [-] of the final bracket; times the factor where that is below 1
   double upper_limit = 100.0;         ///< [-] strength reduction factor beyond which the search stops
   std::vector<double> curve;          ///< [-] further factors at which displacement is recorded
   std::optional<double> curve_time;   ///< [s] physical time of a dynamic run at each of them; absent: settled displacement only

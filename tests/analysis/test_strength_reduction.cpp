@@ -316,6 +316,16 @@ TEST_CASE("an undecided trial is never a failed one", "[analysis][strength_reduc
   }
 }
 
+TEST_CASE("the bracket of a small factor is narrow beside the factor", "[analysis][strength_reduction]") {
+  const double limit = 0.0637, width = 1e-3;
+  const auto b = searched([&](double srf) { return srf < limit ? TrialOutcome::stable : TrialOutcome::failed; }, std::nullopt, width);
+  REQUIRE((b.stable && b.failed));
+  CHECK(*b.stable < limit);
+  CHECK(*b.failed >= limit);
+  CHECK(*b.failed - *b.stable <= width * *b.stable);
+  CHECK(*b.failed - *b.stable > 0.4 * width * *b.stable);
+}
+
 TEST_CASE("the factor at small displacements is the closed form's, proved at both ends, whatever the stiffness", "[analysis][strength_reduction]") {
   for (const std::string& method : all_methods) {
     for (const double stiffness : {1.0, 1e-2, 1e3}) {
