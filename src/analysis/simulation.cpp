@@ -55,6 +55,9 @@ bool turns_too_far(const BlockSystem<N>& system, const std::vector<Contact>& con
 /// A step that has been cut so often where corners enter, because the shorter one goes another way, is taken as it is: the next step finds what is
 /// in.
 constexpr int most_cuts_at_entry = 8;
+/// [-] The same in statics, where a contact that is found with a penetration is pushed out however short the pseudo-time step is: a step whose way
+/// has not become shorter than this by a cut.
+constexpr double shorter_by_cut = 0.9;
 
 /// [-] Of the width of the narrower block: behind an edge that it is not in contact with, a corner at whose contact springs are to act may be four
 /// times as deep at the end of a step (see corner_entry.cpp). A sixth of what the watch lets it close.
@@ -602,7 +605,9 @@ StepResult Simulation<N>::step(double dt, bool statics) {
       return result;
     }
   }
-  const double part = solution.converged && !too_far && !statics ? part_before_entry(solution, result.moved) : 1.0;
+  const bool heeds_entries = !statics || !enforcement_->has_elastic_contacts();  // joints at rest give way by more than a corner that comes to one
+  const bool is_no_shorter = statics && cuts_at_entry_ > 0 && result.moved > shorter_by_cut * way_at_entry_;
+  const double part = solution.converged && !too_far && heeds_entries && !is_no_shorter ? part_before_entry(solution, result.moved) : 1.0;
   if (part < 1.0) {
     result.reason = "a corner enters a block that it is not in contact with";
     result.part = part;
@@ -610,6 +615,7 @@ StepResult Simulation<N>::step(double dt, bool statics) {
     ++step_counters_.cuts;
     ++step_counters_.entry_cuts;
     ++cuts_at_entry_;
+    way_at_entry_ = result.moved;
     return result;
   }
   if (!solution.converged || too_far) {

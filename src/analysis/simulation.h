@@ -291,6 +291,7 @@ class Simulation {
   mutable bool loop_is_ahead_ = false;          ///< of system_ and contacts_
   bool loop_is_loaded_ = false;
   int cuts_at_entry_ = 0, cuts_for_energy_ = 0;                        ///< since the last step that was accepted
+  double way_at_entry_ = 0.0;                                          ///< [m] of the farthest vertex in the last step that was cut there
   double creatable_energy_ = std::numeric_limits<double>::infinity();  ///< [J] see allow_energy()
   double lowest_energy_ = 0.0;                                         ///< [J] mechanical, against that at the start
   EnergyLedger step_ledger_;                                           ///< of the last step that was solved

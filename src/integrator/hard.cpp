@@ -51,6 +51,9 @@ constexpr double rounding_units = 4.0;
 /// tolerated.
 constexpr double kept_penetration = 0.5, recovered_penetration = 0.5;
 constexpr int most_outer_passes = 100;
+/// Statics: solutions with springs that are stiffer from one to the next, if no passes hold the contacts. The first makes all of them stiffer, each
+/// further one those of the few contacts that carry more than before.
+constexpr int most_stiffenings = 6;
 /// Motion: passes that keep more of the error than slow_convergence. What goes on through many blocks needs some; more of them lead nowhere.
 constexpr int most_slow_passes = 30;
 /// After so many the decrease per pass tells whether that many are enough.
@@ -83,6 +86,7 @@ class Hard final : public Enforcement<N> {
       // Softer springs would not be those of the joint; shorter steps help more.
       set_springs(problem, stiffness_over_inertia.front());
       pass_until_held(problem, Cohesion::as_it_is, solution);
+      if (!solution.converged) hold_by_stiff_springs(problem, solution);
       if (solution.converged) note_slack(solution);
       return;
     }
@@ -199,6 +203,54 @@ class Hard final : public Enforcement<N> {
     solution.reason = "the multipliers of hard contacts did not converge";
   }
 
+  /// Contacts that close, and stick from there, may ask for places that exclude each other, and no passes come to an end. Then springs hold the
+  /// blocks: those of the joints, made stiffer by one factor until what they close by in this step is part of the tolerance. Contacts of small
+  /// tributary length that still give way become stiffer by themselves.
+  void hold_by_stiff_springs(const StepProblem<N>& problem, StepSolution<N>& solution) {
+    const StepEffort before = solution.effort;
+    solution.clear();
+    solution.effort = before;
+    set_springs(problem, 0.0);
+    for (std::size_t c = 0; c < springs_.size(); ++c) {
+      const Contact& contact = problem.contacts[c];
+      if (contact.status == ContactStatus::open) {
+        springs_[c].shift = 0.0;
+      } else {
+        springs_[c].target = held_gap(problem, contact);
+      }
+    }
+    solution.d = drift(problem);
+    newton_.solve(problem, springs_, solution);
+    const double tolerated = kept_penetration * problem.method.gap_tolerance;
+    double common = 0.0;
+    for (std::size_t c = 0; c < springs_.size(); ++c) common = std::max(common, closure(solution, c) / tolerated);
+    for (int round = 0; solution.converged && round < most_stiffenings; ++round) {
+      bool is_held = true;
+      for (std::size_t c = 0; c < springs_.size(); ++c) {
+        const double factor = round == 0 ? common : closure(solution, c) / tolerated;
+        if (factor <= 1.0) continue;
+        springs_[c].normal *= stiffening * factor;
+        springs_[c].shear *= stiffening * factor;
+        is_held = false;
+      }
+      if (is_held) return;
+      solution.d = drift(problem);
+      newton_.solve_again(springs_, solution, FirstTangent::present);
+    }
+    if (!solution.converged) return;
+    double largest = 0.0;
+    for (std::size_t c = 0; c < springs_.size(); ++c) largest = std::max(largest, closure(solution, c));
+    if (largest <= incompatible_gaps * problem.method.gap_tolerance) return;
+    solution.converged = false;
+    solution.reason = "the multipliers of hard contacts did not converge";
+  }
+
+  /// [m] Of a contact that carries: by how much it misses its target gap.
+  double closure(const StepSolution<N>& solution, std::size_t c) const {
+    if (solution.contacts.status(c) == ContactStatus::open) return 0.0;
+    return std::abs(springs_[c].gap - springs_[c].target + solution.contacts.gap_change(c));
+  }
+
   /// One pass. Where Newton's method gets lost with the cohesion as it is, and from a solution with the longer ramp, too, the latter stands for this
   /// step.
   void solve_pass(const StepProblem<N>& problem, int pass, Cohesion cohesion, StepSolution<N>& solution) {
@@ -295,8 +347,13 @@ class Hard final : public Enforcement<N> {
   /// should; an open one closes to zero, and a penetration found on closing is pushed out slowly. In statics every contact goes back to zero gap.
   static double target_gap(const StepProblem<N>& problem, const Contact& contact) {
     if (problem.statics) return 0.0;
-    const double level = contact.status == ContactStatus::open ? 0.0 : -kept_penetration * problem.method.gap_tolerance;
-    if (contact.status == ContactStatus::open) return std::min(level, contact.gap + tolerance::hard_recovery_m_per_s * problem.dt);
+    if (contact.status == ContactStatus::open) return std::min(0.0, contact.gap + tolerance::hard_recovery_m_per_s * problem.dt);
+    return held_gap(problem, contact);
+  }
+
+  /// [m] Of a closed contact.
+  static double held_gap(const StepProblem<N>& problem, const Contact& contact) {
+    const double level = -kept_penetration * problem.method.gap_tolerance;
     return contact.gap >= level ? contact.gap : std::min(level, contact.gap + recovered_penetration * problem.method.gap_tolerance);
   }
 

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <numeric>
 #include <string>
 
 #include "openclose/analysis/settle.h"
@@ -50,6 +51,33 @@ Scene slope(double horizontal_spacing, double face_spacing) {
   return read_scene(std::string(OPENCLOSE_PAPER_SCENES) + "/example_3_4_post_failure.toml",
                     {"joint_set[0].spacing_m=" + std::to_string(horizontal_spacing), "joint_set[1].spacing_m=" + std::to_string(face_spacing),
                      "output.milestones_m=[]"});
+}
+
+/// Columns of blocks that lean on a fixed wall, every joint drawn open by this gap [m]. When they settle, the joints close and stick one after the
+/// other, at places that exclude each other by what they went before they closed.
+Scene leaning_columns(int columns, const std::vector<double>& heights, double gap, double lean, double width) {
+  Scene scene = test::empty_scene();
+  scene.method.contact = "hard";
+  scene.method.gap_tolerance = MethodInput().gap_tolerance;
+  scene.step.max_displacement = 1.0;
+  scene.joints[0].friction_angle = 40.0 * test::degree;
+  scene.joints[0].shear_stiffness = scene.joints[0].normal_stiffness;
+  const auto sheared = [&](double x0, double x1, double low, double high) -> std::vector<Vec2> {
+    return {{x0 + lean * low, low}, {x1 + lean * low, low}, {x1 + lean * high, high}, {x0 + lean * high, high}};
+  };
+  const double end = columns * width, top = 20.0 + std::accumulate(heights.begin(), heights.end(), 0.0);
+  scene.blocks = {test::fixed_block("base", test::rectangle(-600.0, -30.0, 600.0 + end, 30.0)),
+                  test::fixed_block("wall", sheared(end, end + 60.0, 0.0, top))};
+  for (int column = 0; column < columns; ++column) {
+    double low = 0.0;
+    for (const double height : heights) {
+      scene.blocks.push_back(
+          test::free_block(std::to_string(scene.blocks.size()),
+                           sheared(column * width + 0.7 * gap, (column + 1) * width - 0.7 * gap, low + 0.5 * gap, low + height - 0.5 * gap)));
+      low += height;
+    }
+  }
+  return scene;
 }
 
 /// `soft`, whose second step is a displacement that no force explains.
@@ -415,6 +443,28 @@ TEST_CASE("a slope that nothing has loaded yet settles by whole steps", "[analys
   int sliding = 0;
   for (const Contact& c : simulation.contacts()) sliding += c.status == ContactStatus::sliding ? 1 : 0;
   CHECK(sliding > 300);
+}
+
+TEST_CASE("open joints close to the tolerance of rigid contacts", "[analysis][settle]") {
+  const auto settles = [](const Scene& scene) {
+    Simulation<3> simulation(scene);
+    const SettleResult result = settle(simulation);
+    INFO(result.criterion);
+    REQUIRE(result.settled);
+    const double largest = scene.settle.unbalanced_fraction * simulation.force_scale();
+    CHECK(worst_balance(simulation) < 2.0 * largest);
+    // Incompatible places may be missed by three times the tolerance.
+    for (const Contact& c : simulation.contacts()) CHECK(c.gap >= -4.0 * scene.method.gap_tolerance);
+  };
+  SECTION("0.7 mm, of high columns") {
+    settles(leaning_columns(3, {10.0, 20.0, 40.0, 20.0, 40.0, 10.0, 20.0, 40.0}, 7e-4, 0.387, 3.048));
+  }
+  SECTION("7 mm, of narrow columns") {
+    settles(leaning_columns(3, {10.0, 20.0, 40.0, 10.0, 40.0, 10.0, 10.0}, 7e-3, 0.4764, 1.531));
+  }
+  SECTION("0.17 mm, where four blocks meet") {
+    settles(leaning_columns(4, {40.0, 40.0, 40.0, 40.0}, 1.75e-4, 0.4124, 5.022));
+  }
 }
 
 TEST_CASE("balance with cohesion that was lost in the same step is none", "[analysis][settle]") {
