@@ -169,8 +169,16 @@ class NarrowPhase {
   struct Sides {
     Vec2 ahead, back;
 
-    /// Both point out of the edge's half-plane, or into it by no more than the tilt.
-    bool leave(const Edge& edge, double tilt) const { return edge.normal().dot(ahead) >= -tilt && edge.normal().dot(back) >= -tilt; }
+    /// Both point out of the edge's half-plane, or into it by no more than the tilt, and the corner is not behind the edge.
+    bool leave(const Edge& edge, double tilt) const {
+      return edge.normal().dot(ahead) >= -tilt && edge.normal().dot(back) >= -tilt && !is_blunt_from_behind(edge);
+    }
+    /// A corner of nearly 180 deg has both its sides along the edge from behind, too, as where the tip of a thin wedge lies on it: what tells is
+    /// where its block is.
+    bool is_blunt_from_behind(const Edge& edge) const {
+      const Vec2 inwards = perpendicular(ahead - back);
+      return ahead.dot(back) < 0.0 && edge.normal().dot(inwards) < 0.0;
+    }
     /// 1 - w_v of the header, of a corner that stands on the edge.
     double lone_weight(const Edge& edge) const {
       return 1.0 - std::max(parallel_weight(-ahead.dot(edge.direction)), parallel_weight(back.dot(edge.direction)));

@@ -446,3 +446,19 @@ TEST_CASE("a corner that slides down a wall meets the other wall of an obtuse no
   CHECK(d.find(5, 3) != nullptr);
   CHECK(d.find(5, 2) != nullptr);
 }
+
+TEST_CASE("a blunt corner at the tip of a thin wedge does not hold the wedge's outer side", "[contact][detection]") {
+  // A slope whose face is steeper than the joint under the wedge by half a degree: the wedge tapers to a tip at the blunt corner where both meet.
+  const double joint = 51.0 * test::degree, face = 51.5 * test::degree, length = 1.0;
+  const Vec2 up_joint = length * Vec2(std::cos(joint), std::sin(joint)), up_face = length * Vec2(std::cos(face), std::sin(face));
+  const Detection d(test::scene_with({test::fixed_block("slope", {Vec2(0.0, 0.0), -up_face, Vec2(3.0, -1.0), Vec2(3.0, 3.0), up_joint}),
+                                      test::free_block("wedge", {Vec2(0.0, 0.0), up_joint, up_face})}));
+  for (const Contact& c : d.contacts) {
+    const Vec2 normal = perpendicular(d.system.arm(d.system.next(c.edge)) - d.system.arm(c.edge)).normalized();
+    const double along_joint = std::abs(normal.dot(up_joint));
+    INFO("corner " << c.vertex << " on edge " << c.edge);
+    CHECK(along_joint < 1e-12);
+    if (c.vertex_block == 0) CHECK(c.edge == 5);
+  }
+  CHECK(d.total_length() == Approx(length));
+}
