@@ -13,7 +13,7 @@ from slopes import JointedSlope
 
 STUDY, SCENE = "failure", "3.4 in failure"
 # The same with blocks at rest left alone.
-RESTING_SCENE, RESTING = "3.4 in failure, blocks at rest left alone", (("method.skip_resting", "true"),)
+RESTING_SCENE, RESTING = "3.4 in failure, blocks at rest left alone", (("solver.skip_resting", "true"),)
 DISTANCES_M = (10.0, 20.0, 30.0, 40.0)
 LIMIT_S = 250
 # The strength is divided by the scene's factor times 1 + k of this, for a number of starts: what these differ by tells how much one run says.
@@ -39,7 +39,7 @@ SAME_START: Settings = (("run.settled_by", "soft"),)
 # Forces need not balance to more digits than the tolerance leaves: with 1e-12 the times differ by 1e-6 of them, at 2,000 blocks by 1e-4.
 # Settling is then to ask for no more, over the weight of a block, which is a thousandth of the largest force.
 USUAL: Settings = ((DT_S, 0.01),)
-ADAPTIVE_USUAL: Settings = ((DT_S, 0.05), ("method.residual_tolerance", 1e-8), ("settle.unbalanced_fraction", 1e-5))
+ADAPTIVE_USUAL: Settings = ((DT_S, 0.05), ("solver.residual_tolerance", 1e-8), ("settle.unbalanced_fraction", 1e-5))
 
 
 @dataclass(frozen=True)

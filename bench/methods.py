@@ -39,14 +39,14 @@ HARD = Method("hard", (("method.contact", "hard"),), rigid=True)
 SHI = Method("shi", (("method.contact", "shi"),))
 DEM = Method("dem", (("method.contact", "dem"),))
 # Contacts found anew after ten times the way: half of dem's time after failure goes into finding them.
-WIDE_SKIN: Settings = (("method.contact_skin_m", 0.01),)
+WIDE_SKIN: Settings = (("solver.contact_skin_m", 0.01),)
 DEM_WIDE = Method("dem, skin of 10 mm", (*DEM.settings, *WIDE_SKIN))
 AHEAD_WIDE = tuple(Method(f"{m.name}, skin of 10 mm", (*m.settings, *WIDE_SKIN)) for m in AHEAD)
 ADAPTIVE_AHEAD_WIDE = Method("soft shi adaptive looking ahead, skin of 10 mm",
                              (*ADAPTIVE[0].settings, ("step.look_ahead", 0.5), *WIDE_SKIN), adaptive=True)
 # Steps that blocks of 20 m/s need not cut, and forces that balance to 1e-7 of the largest, which at 10,000 blocks is a thousand weights of a block:
 # what is left accelerates it by 1e-4 g, now this way and now that.
-LONG_WAYS: Settings = (("step.look_ahead", 0.5), *WIDE_SKIN, ("step.max_displacement_m", 0.3), ("method.residual_tolerance", 1e-7),
+LONG_WAYS: Settings = (("step.look_ahead", 0.5), *WIDE_SKIN, ("step.max_displacement_m", 0.3), ("solver.residual_tolerance", 1e-7),
                        ("settle.unbalanced_fraction", 2e-4))
 # Rock that trembles under what falls on it is at rest.
 COARSE_REST: Settings = (("rest.acceleration_m_per_s2", 3.0), ("rest.displacement_m", 1e-3))
@@ -64,4 +64,4 @@ DEM_COARSE_REST = Method("dem, skin of 10 mm, coarse rest", (*DEM_WIDE.settings,
 def on_joint_springs(stiffness_pa_per_m: float) -> Method:
     """shi with the joint's springs for its penalty, so that it has the reference of the others, and room for them to give."""
     return Method("shi", (*SHI.settings, ("method.penalty_pa_per_m", stiffness_pa_per_m), ("method.penalty_shear_ratio", 1.0),
-                          ("method.penetration_tolerance_m", 1.0)))
+                          ("solver.penetration_tolerance_m", 1.0)))

@@ -16,7 +16,7 @@ SWITCHED_ON = ("skip_resting",)  # that a scene has to ask for
 def _case(bench: Bench, method: Method, off: tuple[str, ...]) -> Case:
     end = QUICK_END_S if bench.quick else END_S
     settings = (*method.settings, ("step.dt_s", STEP_S[method.name]), ("end.time_s", end), ("output.every_s", end), ("output.milestones_m", []),
-                *((f"method.{key}", "false" if key in off else "true") for key in dict.fromkeys((*SWITCHED_ON, *off))))
+                *((f"solver.{key}", "false" if key in off else "true") for key in dict.fromkeys((*SWITCHED_ON, *off))))
     return Case(f"skips-{method.name}-{'-'.join(off) or 'on'}", "run", JointedSlope.POST_FAILURE, settings, LIMIT_S)
 
 
@@ -35,7 +35,7 @@ def _error(bench: Bench, method: Method):
 
 
 def keys(summary: dict) -> tuple[str, ...]:
-    return tuple(key for key in summary.get("options", {}) if key.startswith("skip_"))
+    return tuple(key for key in summary.get("options", {}).get("solver", {}) if key.startswith("skip_"))
 
 
 def run(bench: Bench) -> None:

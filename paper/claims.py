@@ -107,7 +107,7 @@ def _slope(method: str, factor: float, end: float, name: str = "", more: tuple =
 
 def _tolerant(key: str, value: float) -> tuple:
     """Other tolerances do not act where one is studied."""
-    return (("method.penetration_tolerance_m", NO_TOLERANCE_M), (key, value))
+    return (("solver.penetration_tolerance_m", NO_TOLERANCE_M), (key, value))
 
 
 def _slide(method: str, name: str = "", more: tuple = (), limit: int | None = None) -> Case:
@@ -120,7 +120,7 @@ def _wedge(method: str) -> Case:
 
 
 MAY_FAIL_S = 20  # [s] of CPU time, far above what these runs take
-_PENETRATION, _CLOSING, _PENALTY = "method.penetration_tolerance_m", "method.closing_tolerance_m", "method.penalty_pa_per_m"
+_PENETRATION, _CLOSING, _PENALTY = "solver.penetration_tolerance_m", "solver.closing_tolerance_m", "method.penalty_pa_per_m"
 
 
 class Claims:

@@ -100,7 +100,7 @@ def _method_settings(method: str, inputs: Inputs) -> list[tuple[str, object]]:
         ("method.contact", "shi"),
         ("method.penalty_pa_per_m", inputs.normal_stiffness),
         ("method.penalty_shear_ratio", ratio),
-        ("method.penetration_tolerance_m", 0.01),
+        ("solver.penetration_tolerance_m", 0.01),
     ]
 
 

@@ -99,7 +99,7 @@ template <int N>
 RunResult run(Simulation<N>& simulation, const RunObserver<N>& observer);
 
 /// Goes on, bit for bit, from what a checkpoint of the same scene holds, in a simulation that has not been used. The scene may have another end_time
-/// (not before the state's), output_every, checkpoint_every and method.threads, and another step.smallest_fraction and method.max_iterations, to get
+/// (not before the state's), output_every, checkpoint_every and method.threads, and another solver.smallest_fraction and solver.max_iterations, to get
 /// over a step that did not converge. `state` is left where the observer's own part begins; `resumed` is called then, before the first step. Throws
 /// std::runtime_error if the state does not fit the scene.
 template <int N>

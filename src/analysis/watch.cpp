@@ -299,7 +299,7 @@ std::string Watch<N>::too_deep(const Simulation<N>& simulation, int a, int b, do
   const auto& blocks = simulation.scene().blocks;
   const bool by_width = allowed >= watch_bound::penetration * std::min(widths_[a], widths_[b]);
   const char* reason = by_width ? "a quarter of the width, 2 area / perimeter, of the narrower one"
-                                : "ten times method.gap_tolerance_m, and what there was at the start";
+                                : "ten times solver.gap_tolerance_m, and what there was at the start";
   return fmt::format("\"{}\" and \"{}\" are {:.3g} m deep in each other, at most {:.3g} m ({})", blocks[a].name, blocks[b].name, depth, allowed,
                      reason);
 }

@@ -30,7 +30,7 @@ inline constexpr double created_energy = 0.01;
 /// [-] Closure or overlap over the width of the narrower block, 2 area / perimeter (half a square's side). A corner that is this deep is still nearer
 /// to the edge it came in through than to any other one of a convex block, whose inscribed circle has at least half this width as its radius.
 inline constexpr double penetration = 0.25;
-/// [-] Rigid contacts are held to method.gap_tolerance_m: so many times that, and what the drawing has, is what is found of several steps and of
+/// [-] Rigid contacts are held to solver.gap_tolerance_m: so many times that, and what the drawing has, is what is found of several steps and of
 /// corners that are noticed at the end of one.
 inline constexpr double gap_tolerances = 10.0;
 

@@ -16,6 +16,7 @@
 #include "openclose/integrator/registry.h"
 #include "openclose/io/checkpoint.h"
 #include "openclose/io/drawing.h"
+#include "openclose/io/key_reference.h"
 #include "openclose/io/progress.h"
 #include "openclose/io/result_picture.h"
 #include "openclose/io/results.h"
@@ -39,6 +40,8 @@ struct Options {
   std::string spectrum_file;
   std::string restart_file;
   std::string results;
+  std::string key;
+  bool page = false, schema = false;
   DrawingRequest drawing;
   std::vector<std::string> overrides;
   bool quiet = false;
@@ -387,6 +390,19 @@ int draw_command(const Options& options) {
   return exit_success;
 }
 
+int explain_command(const Options& options) {
+  if (options.page) {
+    fmt::print("{}", keys_page());
+  } else if (options.schema) {
+    fmt::print("{}", scene_schema());
+  } else if (!options.key.empty()) {
+    fmt::print("{}", explanation_of(options.key));
+  } else {
+    throw InputError({"explain", 0}, "", "nothing is asked for", "a key or a table, e.g. theta, step.dt_s or settle; --page; --schema");
+  }
+  return exit_success;
+}
+
 void add_quiet(CLI::App& app, Options& options) {
   app.add_flag("-q,--quiet", options.quiet, "print nothing but warnings and errors");
 }
@@ -445,6 +461,14 @@ CLI::App* add_draw(CLI::App& app, Options& options) {
   return draw;
 }
 
+CLI::App* add_explain(CLI::App& app, Options& options) {
+  CLI::App* explain = app.add_subcommand("explain", "tell what a key of the scene file does, its unit, default and what is accepted");
+  explain->add_option("key", options.key, "a key, alone or with its table, or a table: theta, step.dt_s, settle");
+  explain->add_flag("--page", options.page, "print the reference page of all keys instead (Markdown)");
+  explain->add_flag("--schema", options.schema, "print the JSON Schema of scene files instead, for editors that know TOML");
+  return explain;
+}
+
 int main_checked(int argc, char** argv) {
   CLI::App app{
       "Openclose: 2-D block systems of jointed rock and masonry. Exit status: 0 success, 1 not converged (state saved), 2 bad input (nothing "
@@ -473,6 +497,7 @@ int main_checked(int argc, char** argv) {
   cut->add_option("--svg", options.drawing_file, "drawing to write (default: beside the scene file, .svg)");
   add_quiet(*cut, options);
   add_draw(app, options)->callback([&command] { command = &draw_command; });
+  add_explain(app, options)->callback([&command] { command = &explain_command; });
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& e) {

@@ -197,7 +197,7 @@ inline void refuse_integrators(const MethodInput& method) {
   refuse(method.rho_inf.has_value(), "method.rho_inf");
   refuse(method.dissipation.has_value(), "method.dissipation");
   refuse(method.first_integrator.has_value(), "method.first_integrator");
-  refuse(method.static_solver != StaticSolver::automatic, "method.static_solver");
+  refuse(method.static_solver != StaticSolver::automatic, "solver.static_solver");
 }
 
 }  // namespace openclose

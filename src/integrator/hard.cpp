@@ -1,4 +1,4 @@
-// `hard`: no penetration beyond method.gap_tolerance_m, by multipliers that are iterated within the step (method of multipliers with Newton inside).
+// `hard`: no penetration beyond solver.gap_tolerance_m, by multipliers that are iterated within the step (method of multipliers with Newton inside).
 //
 // Each outer pass solves N = max(0, shift - k (gap - target)), T = clamp(initial shear - k s) and takes N, T as the next pass's shift and initial
 // shear. The passes converge whatever the stiffness k is (it only sets how fast), so the answer does not depend on the joint's stiffness: a closed

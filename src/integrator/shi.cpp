@@ -226,7 +226,7 @@ class Shi : public Enforcement<N> {
       if (!tolerated) tolerated = default_penetration_tolerance(problem.system);
       if (depth > *tolerated) {
         solution.reason =
-            fmt::format("penetration of {:.3g} m exceeds method.penetration_tolerance_m = {:.3g}; a larger method.penalty_pa_per_m would reduce it",
+            fmt::format("penetration of {:.3g} m exceeds solver.penetration_tolerance_m = {:.3g}; a larger method.penalty_pa_per_m would reduce it",
                         depth, *tolerated);
         return;
       }

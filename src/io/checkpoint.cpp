@@ -10,6 +10,7 @@
 #include "openclose/core/error.h"
 #include "openclose/core/tolerance.h"
 #include "openclose/io/output_folder.h"
+#include "openclose/scene/keys.h"
 #include "openclose/scene/writer.h"
 #include "openclose/version.h"
 
@@ -17,7 +18,7 @@ namespace openclose {
 namespace {
 
 /// To be raised with every change of what any exchange() hands over.
-constexpr int format = 23;
+constexpr int format = 24;
 /// Reads differently where the order of bytes is another one.
 constexpr std::uint32_t byte_order = 0x01020304;
 
@@ -25,17 +26,12 @@ std::string heading() {
   return fmt::format("openclose checkpoint, format {}, version {}\n", format, version);
 }
 
-/// The text of a scene without what may change between checkpoint and restart.
-std::string fixed_part(Scene scene) {
-  const Scene defaults;
-  scene.title.clear();
-  scene.end_time = defaults.end_time;
-  scene.output_every = defaults.output_every;
-  scene.checkpoint_every = defaults.checkpoint_every;
-  scene.step.smallest_fraction = defaults.step.smallest_fraction;
-  scene.method.max_iterations = defaults.method.max_iterations;
-  scene.method.threads = defaults.method.threads;
-  return write_scene(scene);
+std::string changeable_keys() {
+  std::string keys;
+  for (const KeyEntry& entry : key_entries(Scene{})) {
+    if (entry.key.may_change_on_restart) keys += (keys.empty() ? "" : ", ") + entry.dotted();
+  }
+  return keys;
 }
 
 /// Fowler, Noll, Vo, 1a, 64 bits: against disks and half copies, not against people.
@@ -78,7 +74,7 @@ std::string body_of(const std::string& path) {
 
 /// Names the first line in which the scenes differ.
 void require_same_scene(const std::string& path, const std::string& saved, const Scene& scene) {
-  const std::string given = fixed_part(scene);
+  const std::string given = write_fixed_part(scene);
   if (saved == given) return;
   std::istringstream a(saved), b(given);
   std::string in_saved, in_given;
@@ -88,10 +84,8 @@ void require_same_scene(const std::string& path, const std::string& saved, const
     std::getline(a, in_saved);
     std::getline(b, in_given);
   } while (in_saved == in_given && (a || b));
-  refuse(
-      path, fmt::format("it belongs to another scene: there \"{}\", here \"{}\"", in_saved, in_given),
-      "the same scene, other in no more than end.time_s, output.every_s, output.checkpoint_every_s, step.smallest_fraction, method.max_iterations, "
-      "method.threads");
+  refuse(path, fmt::format("it belongs to another scene: there \"{}\", here \"{}\"", in_saved, in_given),
+         "the same scene, other in no more than " + changeable_keys());
 }
 
 void require_tables(const std::string& path, const Checkpoint& checkpoint) {
@@ -109,7 +103,7 @@ void require_tables(const std::string& path, const Checkpoint& checkpoint) {
 void write_checkpoint(const std::string& path, const Scene& scene, Checkpoint checkpoint) {
   Archive body;
   std::uint32_t order = byte_order;
-  std::string text = fixed_part(scene);
+  std::string text = write_fixed_part(scene);
   body(order, text, checkpoint);
   // A state may be as large as all else that a run has in memory: it is moved on instead of copied.
   std::string().swap(checkpoint.state);

@@ -30,7 +30,7 @@ struct Checkpoint {
 void write_checkpoint(const std::string& path, const Scene& scene, Checkpoint checkpoint);
 
 /// Throws InputError if there is no such file, if it is damaged or of another version of the program or another scene (other in more than
-/// end.time_s, output.every_s, output.checkpoint_every_s, step.smallest_fraction, method.max_iterations and method.threads), if the scene ends before
+/// end.time_s, output.every_s, output.checkpoint_every_s, solver.smallest_fraction, solver.max_iterations and method.threads), if the scene ends before
 /// it, or if one of the tables that were there when it was written is no longer beside it, or shorter.
 Checkpoint read_checkpoint(const std::string& path, const Scene& scene);
 

@@ -491,7 +491,7 @@ class ResultPicture {
 
   std::string answer_of_factor() const {
     const json& bracket = summary_.at("bracket");
-    const std::string verdict = summary_.at("verdict"), method = summary_.at("options").at("contact");
+    const std::string verdict = summary_.at("verdict"), method = summary_.at("options").at("method").at("contact");
     const json& stable = bracket.at("stable");
     if (stable.is_null() || verdict == "no_equilibrium" || verdict == "undecided")
       return fmt::format("no factor of safety ({}): {}", method, summary_.value("reason", ""));
@@ -502,7 +502,7 @@ class ResultPicture {
   }
 
   std::string answer_of_run() const {
-    const std::string method = summary_.at("options").at("contact");
+    const std::string method = summary_.at("options").at("method").at("contact");
     std::string answer = fmt::format("{}: run to t = {:.5g} s", method, summary_.value("time_s", 0.0));
     if (!summary_.value("converged", false)) answer += fmt::format("; stopped: {}", summary_.value("reason", ""));
     return answer;

@@ -11,6 +11,7 @@
 #include "openclose/core/parallel.h"
 #include "openclose/core/process.h"
 #include "openclose/integrator/integrators.h"
+#include "openclose/scene/keys.h"
 #include "openclose/scene/names.h"
 #include "openclose/version.h"
 
@@ -113,7 +114,8 @@ void RunTable::require_written() const {
 }
 
 HistoryFile::HistoryFile(const OutputFolder& folder, const RestartPoint* restart)
-    : RunTable(folder, "history.csv", "time_s,point,displacement_x_m,displacement_y_m,rotation_rad,velocity_x_m_per_s,velocity_y_m_per_s,"
+    : RunTable(folder, "history.csv",
+               "time_s,point,displacement_x_m,displacement_y_m,rotation_rad,velocity_x_m_per_s,velocity_y_m_per_s,"
                "angular_velocity_rad_per_s",
                restart) {}
 
@@ -154,8 +156,8 @@ void BlocksFile<N>::add(const std::string& state, const Scene& scene, const Bloc
 
 template <int N>
 ContactsFile<N>::ContactsFile(const OutputFolder& folder, const RestartPoint* restart)
-    : RunTable(folder, "contacts.csv",
-               "state,block_a,block_b,x_m,y_m,normal_x,normal_y,length_m,gap_m,normal_force_n,shear_force_n,status", restart) {}
+    : RunTable(folder, "contacts.csv", "state,block_a,block_b,x_m,y_m,normal_x,normal_y,length_m,gap_m,normal_force_n,shear_force_n,status",
+               restart) {}
 
 template <int N>
 void ContactsFile<N>::add(const std::string& state, const Scene& scene, const BlockSystem<N>& system, const std::vector<Contact>& contacts) {
@@ -164,8 +166,8 @@ void ContactsFile<N>::add(const std::string& state, const Scene& scene, const Bl
   for (const Contact& c : contacts) {
     const Vec2 p = system.position(c.vertex_block, c.vertex) + system.origin();
     const Vec2 n = ContactKinematics<N>(system, c, still, still).normal;
-    print(rows, "{},{},{},{},{},{},{},{},{},{},{},{}\n", state, field(scene.blocks[c.vertex_block].name),
-               field(scene.blocks[c.edge_block].name), p.x(), p.y(), n.x(), n.y(), c.length, c.gap, c.normal_force, c.shear_force, name_of(c.status));
+    print(rows, "{},{},{},{},{},{},{},{},{},{},{},{}\n", state, field(scene.blocks[c.vertex_block].name), field(scene.blocks[c.edge_block].name),
+          p.x(), p.y(), n.x(), n.y(), c.length, c.gap, c.normal_force, c.shear_force, name_of(c.status));
   }
   file_ << rows;
   require_written();
@@ -179,12 +181,11 @@ BlockStatesFile<N>::BlockStatesFile(const OutputFolder& folder, const RestartPoi
                restart) {}
 
 template <int N>
-void BlockStatesFile<N>::add_place(std::string& rows, const std::string& state, const std::string& time, const Scene& scene, const BlockSystem<N>& system,
-                                   int b) const {
+void BlockStatesFile<N>::add_place(std::string& rows, const std::string& state, const std::string& time, const Scene& scene,
+                                   const BlockSystem<N>& system, int b) const {
   const Vec2 p = system.centroid(b) + system.origin();
   const auto& d = system.displacement(b);
-  print(rows, "{},{},{},{},{},{},{},{}", state, time, field(scene.blocks[b].name), p.x(), p.y(), d[0], d[1],
-             Motion<N>::rotation(d));
+  print(rows, "{},{},{},{},{},{},{},{}", state, time, field(scene.blocks[b].name), p.x(), p.y(), d[0], d[1], Motion<N>::rotation(d));
 }
 
 template <int N>
@@ -221,9 +222,9 @@ void CracksFile<N>::add(const std::string& state, const Scene& scene, const Bloc
   std::string rows;
   for (const DrawnJoint& joint : joints_) {
     const JointMotion m = joint_motion(joint, system);
-    print(rows, "{},{},{},{},{},{},{},{},{},{},{},{}\n", state,
-               field(scene.blocks[joint.block_a].name), field(scene.blocks[joint.block_b].name), m.from.middle.x(), m.from.middle.y(),
-               m.to.middle.x(), m.to.middle.y(), (joint.to_b - joint.from_b).norm(), m.from.opening, m.to.opening, m.from.slip, m.to.slip);
+    print(rows, "{},{},{},{},{},{},{},{},{},{},{},{}\n", state, field(scene.blocks[joint.block_a].name), field(scene.blocks[joint.block_b].name),
+          m.from.middle.x(), m.from.middle.y(), m.to.middle.x(), m.to.middle.y(), (joint.to_b - joint.from_b).norm(), m.from.opening, m.to.opening,
+          m.from.slip, m.to.slip);
   }
   file_ << rows;
   require_written();
@@ -368,6 +369,21 @@ void add_points(const Scene& scene, nlohmann::ordered_json& j) {
     j["measured_points"].push_back({{"name", p.name}, {"block", scene.blocks[p.block].name}, {"point_m", pair(p.point)}});
 }
 
+/// Every key with the value that was used, by tables; null where there is none.
+template <int N>
+nlohmann::ordered_json options_json(const Simulation<N>& simulation) {
+  using nlohmann::ordered_json;
+  const Scene& scene = simulation.scene();
+  ordered_json options;
+  for (const KeyEntry& entry : key_entries(scene))
+    options[std::string(entry.table.name)][std::string(entry.key.name)] = entry.value ? ordered_json::parse(*entry.value) : ordered_json(nullptr);
+  // What a key leaves to the method and to the blocks.
+  if (scene.method.contact == "soft") options["method"]["integrator"] = integrator_name(scene.method);
+  options["solver"]["contact_skin_m"] = simulation.contact_skin();
+  options["base_motion"] = scene.base_motion ? ordered_json(word_for(base_motion_words, scene.base_motion->kind)) : ordered_json(nullptr);
+  return options;
+}
+
 template <int N>
 void add_factor(const FactorOfSafety<N>& safety, const Scene& scene, nlohmann::ordered_json& j) {
   using nlohmann::ordered_json;
@@ -424,72 +440,7 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
   j["scene"] = summary.scene_file;
   j["title"] = scene.title;
   j["overrides"] = summary.overrides;
-  j["options"] = {
-      {"contact", scene.method.contact},
-      {"integrator", scene.method.contact == "soft" ? ordered_json(integrator_name(scene.method)) : ordered_json(nullptr)},
-      {"theta", optional_json(scene.method.theta)},
-      {"rho_inf", optional_json(scene.method.rho_inf)},
-      {"dissipation", optional_json(scene.method.dissipation)},
-      {"first_integrator", scene.method.first_integrator ? ordered_json(*scene.method.first_integrator) : ordered_json(nullptr)},
-      {"first_integrator_s", scene.method.first_integrator ? ordered_json(scene.method.first_integrator_time) : ordered_json(nullptr)},
-      {"rotation", word_for(rotation_words, scene.method.rotation)},
-      {"start", word_for(start_words, scene.method.start)},
-      {"statics", scene.method.statics},
-      {"residual_tolerance", scene.method.residual_tolerance},
-      {"linear_solver", word_for(linear_solver_words, scene.method.linear_solver)},
-      {"static_solver", word_for(static_solver_words, scene.method.static_solver)},
-      {"skip_search", scene.method.skip_search},
-      {"skip_narrow_phase", scene.method.skip_narrow_phase},
-      {"skip_looks", scene.method.skip_looks},
-      {"contact_skin_m", simulation.contact_skin()},
-      {"skip_reload", scene.method.skip_reload},
-      {"skip_resting", scene.method.skip_resting},
-      {"threads", scene.method.threads},
-      {"skip_factorisation", scene.method.skip_factorisation},
-      {"skip_symbolic", scene.method.skip_symbolic},
-      {"skip_balanced", scene.method.skip_balanced},
-      {"skip_unmoved", scene.method.skip_unmoved},
-      {"step_fraction", scene.method.step_fraction},
-      {"damping", word_for(mass_damping_words, scene.method.damping)},
-      {"local_damping", scene.method.local_damping},
-      {"dt_s", scene.step.dt},
-      {"max_iterations", scene.method.max_iterations},
-      {"max_displacement_m", scene.step.max_displacement},
-      {"smallest_fraction", scene.step.smallest_fraction},
-      {"base_motion", scene.base_motion ? ordered_json(word_for(base_motion_words, scene.base_motion->kind)) : ordered_json(nullptr)},
-      {"adaptive", scene.step.adaptive},
-      {"error_tolerance_m", scene.step.error_tolerance},
-      {"look_ahead", scene.step.look_ahead},
-      {"rest", {{"time_s", scene.rest.time}, {"displacement_m", scene.rest.displacement}, {"acceleration_m_per_s2", scene.rest.acceleration}}},
-      {"run_strength_reduction_factor", scene.run_strength_reduction_factor},
-      {"settled_by", scene.settled_by ? ordered_json(*scene.settled_by) : ordered_json(nullptr)},
-      {"end_time_s", scene.end_time},
-      {"end_displacement_m", scene.end_displacement ? ordered_json(*scene.end_displacement) : ordered_json(nullptr)},
-      {"every_s", scene.output_every},
-      {"checkpoint_every_s", scene.checkpoint_every},
-      {"milestones_m", scene.milestones},
-      {"snapshots_s", scene.snapshot_times},
-      {"snapshots_every_s", scene.snapshots_every},
-      {"vtk", scene.vtk},
-      {"settle",
-       {{"criterion", word_for(settle_criterion_words, scene.settle.criterion)},
-        {"unbalanced_fraction", scene.settle.unbalanced_fraction},
-        {"first_dt_s", scene.settle.first_dt},
-        {"max_steps", scene.settle.max_steps},
-        {"max_explicit_steps", scene.settle.max_explicit_steps},
-        {"keep_bonds", scene.settle.keep_bonds},
-        {"failure_displacement_m", scene.settle.failure_displacement},
-        {"relative_displacement", scene.settle.relative_displacement},
-        {"steady_steps", scene.settle.steady_steps},
-        {"max_time_steps", scene.settle.max_time_steps},
-        {"unbalanced_force_n", scene.settle.unbalanced_force}}},
-      {"strength_reduction",
-       {{"definition", word_for(factor_definition_words, scene.strength_reduction.definition)},
-        {"limit_analysis", scene.strength_reduction.limit_analysis},
-        {"width", scene.strength_reduction.width},
-        {"upper_limit", scene.strength_reduction.upper_limit},
-        {"curve", scene.strength_reduction.curve},
-        {"curve_time_s", optional_json(scene.strength_reduction.curve_time)}}}};
+  j["options"] = options_json(simulation);
   add_points(scene, j);
   j["warnings"] = summary.warnings;
   j["blocks"] = simulation.system().block_count();

@@ -88,8 +88,8 @@ void require_joints(const Scene& scene) {
 std::vector<std::string> check_scene(const Scene& scene) {
   require_joints(scene);
   require_no_overlap(scene);
-  std::vector<std::string> warnings;
-  if (scene.cutting) warnings = scene.cutting->warnings;
+  std::vector<std::string> warnings = scene.warnings;
+  if (scene.cutting) warnings.insert(warnings.end(), scene.cutting->warnings.begin(), scene.cutting->warnings.end());
   if (nothing_holds(scene)) warnings.push_back(scene.where.file + ": nothing is fixed or supported under gravity: every block will fall");
   warn_of_fixed_points(scene, warnings);
   return warnings;

@@ -23,8 +23,9 @@ inline constexpr Range any_number{};
 inline constexpr Range positive{.low = 0.0};
 inline constexpr Range not_negative{.low = 0.0, .low_included = true};
 inline constexpr Range between_0_and_1{.low = 0.0, .high = 1.0};
+inline constexpr Range from_0_to_1{.low = 0.0, .high = 1.0, .low_included = true, .high_included = true};
 /// Of steps, iterations: 10^9 of anything is out of reach.
-inline constexpr Range count{.low = 1.0, .high = 1e9, .low_included = true, .high_included = true};
+inline constexpr Range at_least_one{.low = 1.0, .high = 1e9, .low_included = true, .high_included = true};
 
 /// A word that stands for the value of an enumeration.
 template <typename Enum>
@@ -34,5 +35,14 @@ struct Word {
 };
 template <typename Enum>
 Word(const char*, Enum) -> Word<Enum>;
+
+/// The word for a value; every value has one.
+template <typename Words, typename Enum>
+constexpr std::string_view word_for(const Words& words, Enum value) {
+  for (const auto& word : words) {
+    if (word.value == value) return word.text;
+  }
+  return {};
+}
 
 }  // namespace openclose

@@ -10,7 +10,8 @@
 namespace openclose {
 namespace {
 
-constexpr std::size_t longest_list = 14;  // the keys of [method], the largest table, all fit
+constexpr std::size_t longest_list = 15;          // the keys of [method], the largest table for users, all fit
+constexpr std::size_t most_misspelt_letters = 3;  // two letters exchanged, and one forgotten; with more of them another word may be meant
 
 constexpr std::array<std::string_view, 45> unit_words{
     "per", "m",   "mm",  "cm",   "km",  "ft",  "m2",  "mm2", "cm2",     "m3",      "mm3", "cm3", "s",       "s2",     "ms",
@@ -47,6 +48,13 @@ std::string suggestions(const std::string& word, std::vector<std::string> accept
   std::string text = fmt::format("{}", fmt::join(accepted.begin(), accepted.begin() + static_cast<std::ptrdiff_t>(shown), ", "));
   if (shown < accepted.size()) text += fmt::format(" ... ({} in all)", accepted.size());
   return text;
+}
+
+std::optional<std::string> similar(const std::string& word, const std::vector<std::string>& accepted) {
+  const auto distance = [&](const std::string& candidate) { return edit_distance(word, candidate); };
+  const auto nearest = std::ranges::min_element(accepted, {}, distance);
+  if (nearest == accepted.end() || distance(*nearest) > most_misspelt_letters || distance(*nearest) >= nearest->size() / 2) return std::nullopt;
+  return *nearest;
 }
 
 std::string without_unit(const std::string& key) {

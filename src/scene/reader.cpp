@@ -8,11 +8,11 @@
 #include <iterator>
 #include <map>
 
-#include "openclose/core/parallel.h"
 #include "openclose/geometry/box.h"
 #include "openclose/scene/angle.h"
 #include "openclose/scene/base_motion.h"
 #include "openclose/scene/domain.h"
+#include "openclose/scene/former_keys.h"
 #include "openclose/scene/names.h"
 #include "openclose/scene/outline.h"
 #include "openclose/scene/override.h"
@@ -221,7 +221,8 @@ MeasuredContact read_measured_contact(Table table, const Scene& scene, const Nam
     if (measured.block_a == measured.block_b) table.at("block_b").fail("this is block_a, too", "the name of another block");
     for (const int b : {measured.block_a, measured.block_b}) {
       if (!touches(scene.blocks[b], measured.point))
-        value.fail(fmt::format("{} does not lie on the boundary of {}", where, in_quotes(scene.blocks[b].name)), "a point of the joint between the two");
+        value.fail(fmt::format("{} does not lie on the boundary of {}", where, in_quotes(scene.blocks[b].name)),
+                   "a point of the joint between the two");
     }
     return measured;
   }
@@ -238,87 +239,6 @@ MeasuredContact read_measured_contact(Table table, const Scene& scene, const Nam
   return measured;
 }
 
-MethodInput read_method(Table table, const SourceLocation& scene_where) {
-  MethodInput method;
-  method.contact_where = scene_where;
-  const bool contact_given = table.optional("contact", method.contact);
-  table.optional("theta", method.theta, Range{.low = 0.5, .high = 1.0, .low_included = true, .high_included = true});
-  table.optional("integrator", method.integrator);
-  table.optional("rho_inf", method.rho_inf, Range{.low = 0.0, .high = 1.0, .low_included = true, .high_included = true});
-  table.optional("dissipation", method.dissipation, Range{.low = 0.0, .high = 1.0, .low_included = true, .high_included = true});
-  const bool has_first = table.optional("first_integrator", method.first_integrator);
-  const bool has_its_time = table.optional("first_integrator_s", method.first_integrator_time, positive);
-  if (has_first && !has_its_time) table.required("first_integrator_s", method.first_integrator_time, positive);
-  if (has_its_time && !has_first) table.required("first_integrator", method.first_integrator);
-  table.optional("rotation", method.rotation, rotation_words);
-  table.optional("start", method.start, start_words);
-  table.optional("statics", method.statics);
-  table.optional("residual_tolerance", method.residual_tolerance, between_0_and_1);
-  table.optional("max_iterations", method.max_iterations, count);
-  table.optional("linear_solver", method.linear_solver, linear_solver_words);
-  table.optional("static_solver", method.static_solver, static_solver_words);
-  table.optional("skip_search", method.skip_search);
-  table.optional("skip_narrow_phase", method.skip_narrow_phase);
-  table.optional("skip_looks", method.skip_looks);
-  table.optional("contact_skin_m", method.contact_skin, positive);
-  table.optional("skip_reload", method.skip_reload);
-  table.optional("skip_factorisation", method.skip_factorisation);
-  table.optional("skip_symbolic", method.skip_symbolic);
-  table.optional("skip_balanced", method.skip_balanced);
-  table.optional("skip_unmoved", method.skip_unmoved);
-  table.optional("skip_resting", method.skip_resting);
-  table.optional("threads", method.threads, Range{.low = 1.0, .high = most_threads, .low_included = true, .high_included = true});
-  table.optional("gap_tolerance_m", method.gap_tolerance, positive);
-  table.optional("penalty_pa_per_m", method.penalty, positive);
-  table.optional("penalty_shear_ratio", method.penalty_shear_ratio, positive);
-  table.optional("penetration_tolerance_m", method.penetration_tolerance, positive);
-  table.optional("closing_tolerance_m", method.closing_tolerance, not_negative);
-  table.optional("max_open_close_iterations", method.max_open_close_iterations, count);
-  table.optional("step_cut", method.step_cut, between_0_and_1);
-  table.optional("step_fraction", method.step_fraction, between_0_and_1);
-  table.optional("damping", method.damping, mass_damping_words);
-  table.optional("local_damping", method.local_damping, between_0_and_1);
-  table.finish();
-
-  if (contact_given) method.contact_where = table.at("contact").where();
-  if (method.contact.empty()) table.at("contact").fail("the name is empty", "the name of a contact method, e.g. \"soft\"");
-  return method;
-}
-
-StepInput read_step(Table table) {
-  StepInput step;
-  table.optional("dt_s", step.dt, positive);
-  table.optional("max_displacement_m", step.max_displacement, positive);
-  table.optional("smallest_fraction", step.smallest_fraction, Range{.low = 0.0, .high = 1.0, .high_included = true});
-  if (table.optional("adaptive", step.adaptive)) step.adaptive_where = table.at("adaptive").where();
-  table.optional("error_tolerance_m", step.error_tolerance, positive);
-  if (table.optional("look_ahead", step.look_ahead, Range{.low = 0.0, .high = 1.0, .low_included = true, .high_included = true}))
-    step.look_ahead_where = table.at("look_ahead").where();
-  table.finish();
-  return step;
-}
-
-RestInput read_rest(Table table) {
-  RestInput rest;
-  table.optional("time_s", rest.time, positive);
-  table.optional("displacement_m", rest.displacement, positive);
-  table.optional("acceleration_m_per_s2", rest.acceleration, positive);
-  table.finish();
-  return rest;
-}
-
-void read_run(Table table, Scene& scene) {
-  table.optional("strength_reduction_factor", scene.run_strength_reduction_factor, positive);
-  if (table.optional("settled_by", scene.settled_by)) scene.settled_by_where = table.at("settled_by").where();
-  table.finish();
-}
-
-void read_end(Table table, Scene& scene) {
-  table.optional("time_s", scene.end_time, not_negative);
-  table.optional("displacement_m", scene.end_displacement, positive);
-  table.finish();
-}
-
 /// What is met one after the other in a run is also written so: it names its rows and states.
 void require_increasing(const Value& value, const std::vector<double>& list) {
   for (std::size_t i = 1; i < list.size(); ++i) {
@@ -326,46 +246,75 @@ void require_increasing(const Value& value, const std::vector<double>& list) {
   }
 }
 
-void read_output(Table table, Scene& scene) {
-  table.optional("every_s", scene.output_every, not_negative);
-  table.optional("checkpoint_every_s", scene.checkpoint_every, not_negative);
-  const bool has_milestones = table.optional("milestones_m", scene.milestones, positive);
-  const bool has_snapshots = table.optional("snapshots_s", scene.snapshot_times, not_negative);
-  table.optional("snapshots_every_s", scene.snapshots_every, not_negative);
-  table.optional("vtk", scene.vtk);
-  table.finish();
+/// The names of the tables in which keys stand.
+class TableNames {
+ public:
+  void table(const KeyTable& table) { names.emplace_back(table.name); }
+  template <typename... Row>
+  void operator()(const Key&, const Row&...) {}
 
-  if (has_milestones) require_increasing(table.at("milestones_m"), scene.milestones);
-  if (has_snapshots) require_increasing(table.at("snapshots_s"), scene.snapshot_times);
+  std::vector<std::string> names;
+};
+
+/// Reads every key of the tables of keys that the file gives.
+class KeyReader {
+ public:
+  explicit KeyReader(std::map<std::string, Table>& tables) : tables_(tables) {}
+
+  void table(const KeyTable& table) {
+    finish();
+    table_ = &tables_.at(std::string(table.name));
+  }
+
+  template <typename T, typename Accepted>
+  void operator()(const Key& key, T& member, const Accepted& accepted, SourceLocation* where = nullptr) {
+    const std::string name(key.name);
+    if (read_member(name, member, accepted) && where != nullptr) *where = table_->at(name).where();
+  }
+
+  /// To be called after the last row.
+  void finish() const {
+    if (table_ != nullptr) table_->finish();
+  }
+
+ private:
+  template <typename T, typename Accepted>
+  bool read_member(const std::string& name, T& member, const Accepted& limits) {
+    return table_->optional(name, member, limits);
+  }
+  bool read_member(const std::string& name, bool& member, const Flag&) { return table_->optional(name, member); }
+  bool read_member(const std::string& name, std::vector<double>& member, const ListOf& list) { return table_->optional(name, member, list.each); }
+  bool read_member(const std::string& name, std::vector<double>& member, const Increasing& list) {
+    const bool given = table_->optional(name, member, list.each);
+    if (given) require_increasing(table_->at(name), member);
+    return given;
+  }
+  template <typename T>
+  bool read_member(const std::string& name, T& member, const NameIn& names) {
+    std::string text;
+    if (!table_->optional(name, text)) return false;
+    if (text.empty())
+      table_->at(name).fail("the name is empty", names == NameIn::enforcements ? "the name of a contact method, e.g. \"soft\""
+                                                                               : "the name of a time integrator, e.g. \"theta\"");
+    member = text;
+    return true;
+  }
+
+  std::map<std::string, Table>& tables_;
+  Table* table_ = nullptr;
+};
+
+void require_both(const Table& table, const std::string& a, const std::string& b) {
+  if (table.has(a) == table.has(b)) return;
+  throw_input_error(table.where(), fmt::format("method.{}", table.has(a) ? b : a), "this key is missing", fmt::format("{} and {} together", a, b));
 }
 
-SettleInput read_settle(Table table) {
-  SettleInput settle;
-  table.optional("criterion", settle.criterion, settle_criterion_words);
-  table.optional("unbalanced_fraction", settle.unbalanced_fraction, between_0_and_1);
-  table.optional("first_dt_s", settle.first_dt, positive);
-  table.optional("max_steps", settle.max_steps, count);
-  table.optional("max_explicit_steps", settle.max_explicit_steps, count);
-  table.optional("keep_bonds", settle.keep_bonds);
-  table.optional("failure_displacement_m", settle.failure_displacement, positive);
-  table.optional("relative_displacement", settle.relative_displacement, between_0_and_1);
-  table.optional("steady_steps", settle.steady_steps, count);
-  table.optional("max_time_steps", settle.max_time_steps, count);
-  table.optional("unbalanced_force_n", settle.unbalanced_force, positive);
-  table.finish();
-  return settle;
-}
-
-StrengthReductionInput read_strength_reduction(Table table) {
-  StrengthReductionInput reduction;
-  table.optional("definition", reduction.definition, factor_definition_words);
-  table.optional("limit_analysis", reduction.limit_analysis);
-  table.optional("width", reduction.width, positive);
-  table.optional("upper_limit", reduction.upper_limit, Range{.low = 1.0});
-  table.optional("curve", reduction.curve, positive);
-  if (table.optional("curve_time_s", reduction.curve_time, positive)) reduction.curve_time_where = table.at("curve_time_s").where();
-  table.finish();
-  return reduction;
+void read_keys(std::map<std::string, Table>& tables, Scene& scene) {
+  scene.method.contact_where = scene.where;
+  KeyReader reader(tables);
+  visit_keys(scene, reader);
+  reader.finish();
+  require_both(tables.at("method"), "first_integrator", "first_integrator_s");
 }
 
 void require_some(const std::vector<Table>& tables, const SourceLocation& where, const std::string& key) {
@@ -389,14 +338,10 @@ Scene interpret(const toml::table& document, const std::string& file) {
   const std::vector<Table> measured_points = root.tables("measured_point");
   const std::vector<Table> measured_contacts = root.tables("measured_contact");
   const Table base_motion = root.table("base_motion");
-  const Table method = root.table("method");
-  const Table step = root.table("step");
-  const Table rest = root.table("rest");
-  const Table run = root.table("run");
-  const Table end = root.table("end");
-  const Table output = root.table("output");
-  const Table settle = root.table("settle");
-  const Table strength_reduction = root.table("strength_reduction");
+  TableNames of_keys;
+  visit_keys(scene, of_keys);
+  std::map<std::string, Table> key_tables;
+  for (const std::string& name : of_keys.names) key_tables.emplace(name, root.table(name));
   root.finish();
   require_some(materials, scene.where, "material");
   if (!cutting.domain.is_there()) require_some(blocks, scene.where, "block");
@@ -416,19 +361,12 @@ Scene interpret(const toml::table& document, const std::string& file) {
   for (const Table& table : measured_contacts) {
     scene.measured_contacts.push_back(read_measured_contact(table, scene, block_names, contact_names));
   }
-  scene.method = read_method(method, scene.where);
+  read_keys(key_tables, scene);
   if (base_motion.is_there()) {
     scene.base_motion = read_base_motion(base_motion, file);
     if (scene.method.statics)
       base_motion.fail("steps that start from rest know no motion of the base", "no [base_motion], or method.statics = false");
   }
-  scene.step = read_step(step);
-  scene.rest = read_rest(rest);
-  read_run(run, scene);
-  read_end(end, scene);
-  read_output(output, scene);
-  scene.settle = read_settle(settle);
-  scene.strength_reduction = read_strength_reduction(strength_reduction);
   return scene;
 }
 
@@ -436,8 +374,12 @@ Scene interpret(const toml::table& document, const std::string& file) {
 
 Scene read_scene(const std::string& path, const std::vector<std::string>& overrides) {
   toml::table document = parse(path);
-  for (const std::string& key_and_value : overrides) apply_override(document, path, key_and_value);
-  return interpret(document, path);
+  std::vector<std::string> warnings;
+  move_former_keys(document, path, warnings);
+  for (const std::string& key_and_value : overrides) apply_override(document, path, with_current_key(key_and_value, path, warnings));
+  Scene scene = interpret(document, path);
+  scene.warnings = std::move(warnings);
+  return scene;
 }
 
 }  // namespace openclose

@@ -11,6 +11,7 @@
 #include "openclose/core/tolerance.h"
 #include "openclose/core/vector.h"
 #include "openclose/scene/acceleration_record.h"
+#include "openclose/scene/options.h"
 
 namespace openclose {
 
@@ -101,141 +102,6 @@ struct BaseMotionInput {
   AccelerationRecord vertical;    ///< positive upwards; empty: none
 };
 
-/// How a run starts.
-enum class Start {
-  unloaded,         ///< gravity drops on unloaded springs at t = 0
-  settled,          ///< static equilibrium first
-  normal_balanced,  ///< normal forces and moments in balance, shear springs relaxed
-  steady_sliding,   ///< as normal_balanced, with friction fully mobilised against the driving force
-};
-
-enum class RotationKind {
-  exact,   ///< rotation matrix
-  linear,  ///< Shi's first-order rotation, which makes spinning blocks grow
-};
-
-/// Damping of the blocks' motion, for `dem`.
-enum class MassDamping {
-  none,
-  local,      ///< against the motion, in proportion to the unbalanced force
-  automatic,  ///< viscous, its coefficient following what the kinetic energy does
-};
-
-/// How the linear equations of a step are solved.
-enum class LinearSolverKind {
-  automatic,  ///< directly, and for many blocks iteratively
-  direct,     ///< every matrix is factored
-  iterative,  ///< with an incomplete factor, or that of an earlier matrix, as preconditioner
-  plain,      ///< by the library's sparse LU, to compare with
-};
-
-/// How `soft` finds the balance of a static step.
-enum class StaticSolver {
-  automatic,   ///< by Newton's method, and for many blocks by relaxation
-  newton,      ///< by linear equations
-  relaxation,  ///< every block follows the force on it, with momentum: no linear equations
-};
-
-inline constexpr double default_rho_inf = 0.5;  ///< [-] of MethodInput::rho_inf
-
-/// How contacts are enforced and steps are taken.
-struct MethodInput {
-  std::string contact = "soft";  ///< name in the registry of enforcements (analysis looks it up): soft, hard, shi, dem
-  SourceLocation contact_where;  ///< for the error of an unknown name
-  std::optional<std::string>
-      integrator;                 ///< soft: name in the list of integrators (analysis looks it up); absent: theta if there is one, else the default
-  std::optional<double> theta;    ///< [-] theta: 1: Newmark (1/2, 1), Shi's; 1/2: trapezoid (Newmark (1/4, 1/2))
-  std::optional<double> rho_inf;  ///< [-] generalized_alpha: spectral radius at infinite frequency; absent: default_rho_inf
-  std::optional<double> dissipation;            ///< [-] path_average: see Soft; absent: none
-  std::optional<std::string> first_integrator;  ///< soft: the integrator of steps that begin before the next one; absent: there are none
-  double first_integrator_time = 0.0;           ///< [s]
-  RotationKind rotation = RotationKind::exact;
-  Start start = Start::settled;
-  bool statics = false;               ///< dynamic coefficient 0: every step starts from rest
-  double residual_tolerance = 1e-12;  ///< [-] unbalanced force left by Newton, as a fraction of the largest force in the system
-  int max_iterations = 60;            ///< per step, before the step is cut
-  LinearSolverKind linear_solver = LinearSolverKind::automatic;
-  StaticSolver static_solver = StaticSolver::automatic;  ///< soft
-  bool skip_search = true;                               ///< search candidates only once something has moved beyond the skin
-  bool skip_narrow_phase = true;       ///< find the contacts of two blocks anew only once they have moved against each other beyond the skin
-  bool skip_looks = true;              ///< see DetectionSkips
-  std::optional<double> contact_skin;  ///< [m] the default is that of the blocks, see default_contact_skin()
-  bool skip_reload = true;             ///< dem: exchange only the contacts that were found anew, and leave the others in the loop
-  int threads = 1;                     ///< that share the work; the results are the same to the last bit
-  bool skip_factorisation = true;      ///< factor only rows of the matrix that have changed, and no weak couplings
-  bool skip_symbolic = true;           ///< plan a factorisation only once the pattern of the matrix has changed
-  bool skip_unmoved = true;            ///< after parts were solved, evaluate only contacts of what moved with them
-  bool skip_balanced = true;           ///< between iterations of large systems in motion, iterate only where forces are far from balance
-  bool skip_resting = false;           ///< leave blocks alone that are at rest, see RestInput
-  double gap_tolerance = 3e-7;         ///< [m] hard: a closed contact may differ from its target gap, a sticking one from its place, by this much
-  std::optional<double> penalty;       ///< [Pa/m] shi: normal penalty, times the tributary length like any stiffness; absent: 10 times the joint's
-  double penalty_shear_ratio = 0.4;    ///< [-] shi: shear penalty over normal penalty
-  std::optional<double> penetration_tolerance;  ///< [m] shi: deeper contacts cut the step; absent: see Shi
-  double closing_tolerance = 1e-9;              ///< [m] shi: an open contact closes beyond this penetration
-  int max_open_close_iterations = 6;            ///< shi: per step, before the step is cut
-  double step_cut = 0.3;                        ///< [-] shi: factor on the step when open-close does not settle
-  double step_fraction = 0.5;                   ///< [-] dem: longest step over the critical one
-  MassDamping damping = MassDamping::none;      ///< dem: of the motion; settling takes `local` instead of `none`
-  double local_damping = 0.8;                   ///< [-] dem: of the unbalanced force
-};
-
-struct StepInput {
-  double dt = 0.0;                  ///< [s]
-  double max_displacement = 0.1;    ///< [m] of any vertex in one step; a step that would move more is cut
-  double smallest_fraction = 1e-6;  ///< [-] of dt, below which cutting is given up
-  bool adaptive = false;            ///< steps up to dt as long as error_tolerance allows
-  double error_tolerance = 1e-4;    ///< [m] adaptive: local error of a step, of any vertex
-  double look_ahead = 0.0;          ///< [-] part of the step after which the blocks are where its contacts are found, if they keep their velocities
-  SourceLocation adaptive_where{}, look_ahead_where{};  ///< for the errors of methods that have no use for them
-};
-
-/// When a block is at rest in a motion, and when it is not any more; the rule is in analysis/resting.h. A tenth of a second is some periods of blocks
-/// on joints (300 rad/s in the paper's example 3.4), 3 % of gravity what impacts elsewhere send through a slope; there skipping changes the times at
-/// which the failing mass has gone 10 to 40 m by 0.04 % at most. A tenth of a millimetre in a tenth of a second is creep that may be left out.
-struct RestInput {
-  double time = 0.1;           ///< [s] for which it and those it touches have been quiet; fading of the change of forces
-  double displacement = 1e-4;  ///< [m] of any point in that time
-  double acceleration = 0.3;   ///< [m/s2] of any point on the average of a step; of blocks at rest: change of the forces over the mass
-};
-
-/// What tells that a scene has settled.
-enum class SettleCriterion {
-  unbalanced_force,  ///< static steps until forces are in balance
-  paper,             ///< the reference paper's: steps in time until blocks move little in a step; dem: until a force in newtons is left
-};
-
-/// Static settling: when it is done, and when it has failed.
-struct SettleInput {
-  double unbalanced_fraction = 1e-8;  ///< [-] largest unbalanced force over the weight of the heaviest free block
-  double first_dt = 1.0;              ///< [s] first pseudo-time step; grows tenfold while steps succeed
-  int max_steps = 200;
-  double failure_displacement = 1.0;  ///< [m] a block that moved farther is failing
-  SettleCriterion criterion = SettleCriterion::unbalanced_force;
-  double relative_displacement = 1e-5;  ///< [-] paper: of a step, over half the height of the model
-  int steady_steps = 100;               ///< paper: steps in a row that must stay below
-  int max_time_steps = 10000;           ///< paper: of step.dt, for the first settling; dem: explicit ones, for each settling
-  double unbalanced_force = 1e3;        ///< [N] paper, dem: that may be left on a block
-  int max_explicit_steps = 1000000;     ///< dem: instead of max_steps
-  bool keep_bonds = true;               ///< dem: joints lose strength only at rest, not on the way there
-};
-
-/// Which factor of safety is meant.
-enum class FactorDefinition {
-  small_displacements,  ///< of the drawn geometry: lengths and directions of contacts stay as drawn; no stiffness scale, no length counts
-  joint_closures,       ///< the same on the geometry that the joints' closures under gravity leave
-  large_displacements,  ///< blocks move as far as they do; failed is what moves beyond settle.failure_displacement_m
-};
-
-struct StrengthReductionInput {
-  FactorDefinition definition = FactorDefinition::small_displacements;
-  bool limit_analysis = true;         ///< rigid-block limit analysis beside it: a proof of failure and a second opinion
-  double width = 1e-4;                ///< [-] of the final bracket; times the factor where that is below 1
-  double upper_limit = 100.0;         ///< [-] strength reduction factor beyond which the search stops
-  std::vector<double> curve;          ///< [-] further factors at which displacement is recorded
-  std::optional<double> curve_time;   ///< [s] physical time of a dynamic run at each of them; absent: settled displacement only
-  SourceLocation curve_time_where{};  ///< for the error of a definition that knows no motion
-};
-
 /// What the joints made of a domain.
 struct CuttingSummary {
   int blocks = 0;
@@ -252,6 +118,7 @@ struct CuttingSummary {
 
 struct Scene {
   SourceLocation where;
+  std::vector<std::string> warnings;  ///< of the reader
   std::string title;
   Vec2 gravity{0.0, -9.81};  ///< [m/s2]
   std::vector<Material> materials;
@@ -287,5 +154,42 @@ struct Scene {
 
 /// [bytes] Of the list of blocks with their names and vertices.
 std::size_t bytes_of_blocks(const Scene& scene);
+
+/// All keys of tables that a file has once, in the order in which they are written.
+template <class Input, class Visitor>
+void visit_keys(Input& scene, Visitor& visit) {
+  visit_method_keys(scene.method, visit);
+  visit_step_keys(scene.step, visit);
+  visit_solver_keys(scene.method, scene.step, visit);
+  visit_rest_keys(scene.rest, visit);
+  visit.table({"run", Audience::user, "what `run` does with the strength and with the start"});
+  visit({"strength_reduction_factor",
+         "tan(friction angle), cohesion and tensile strength are divided by it for the motion; the start \"settled\" is reached with full strength, "
+         "before time 0, the other starts have the reduced one from the beginning"},
+        scene.run_strength_reduction_factor, positive);
+  visit({"settled_by",
+         "the method that finds the equilibrium of the start \"settled\": \"soft\" and \"dem\" can do so for each other, see [scenes](scene.md)",
+         "`method.contact`"},
+        scene.settled_by, NameIn::enforcements, &scene.settled_by_where);
+  visit.table({"end", Audience::user, "when a run ends"});
+  visit({.name = "time_s", .says = "at the latest; > 0 is needed by `run`", .may_change_on_restart = true}, scene.end_time, not_negative);
+  visit({"displacement_m", "the run ends when a measured point has moved this far since time 0", "none"}, scene.end_displacement, positive);
+  visit.table({"output", Audience::user, "what is written"});
+  visit({.name = "every_s",
+         .says = "interval of the history, in whole steps; 0: every step; longer than the run: its ends only",
+         .may_change_on_restart = true},
+        scene.output_every, not_negative);
+  visit({.name = "checkpoint_every_s",
+         .says = "interval, in whole steps, at which the state is saved for a restart, also at the end (alone, if longer than the run) and where a "
+                 "step does not converge; 0: never",
+         .may_change_on_restart = true},
+        scene.checkpoint_every, not_negative);
+  visit({"milestones_m", "when has the first measured point moved so far, and at what CPU time"}, scene.milestones, Increasing{positive});
+  visit({"snapshots_s", "the state at these times, each after the step that ends nearest to it"}, scene.snapshot_times, Increasing{not_negative});
+  visit({"snapshots_every_s", "interval, in whole steps, at which the state is written besides; 0: never"}, scene.snapshots_every, not_negative);
+  visit({"vtk", "true: the states for ParaView, too, in the folder `vtk` of the results; of `fos`, too"}, scene.vtk, Flag{});
+  visit_settle_keys(scene.settle, visit);
+  visit_strength_reduction_keys(scene.strength_reduction, visit);
+}
 
 }  // namespace openclose

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "openclose/scene/keys.h"
+
 namespace openclose {
 namespace {
 
@@ -167,11 +169,17 @@ std::vector<Table> Table::tables(const std::string& key) {
 }
 
 void Table::refuse(const toml::node& node, const std::string& key) const {
+  const std::vector<std::string> elsewhere = tables_with(key);
+  if (!elsewhere.empty())
+    throw_input_error(location(node, *file_), dotted(key), "this key belongs in another table", fmt::format("{}", fmt::join(elsewhere, ", ")));
   const std::vector<std::string> other_units = same_quantity(key, accepted_);
   if (!other_units.empty()) {
     throw_input_error(location(node, *file_), dotted(key), "this key has another unit", fmt::format("{}", fmt::join(other_units, ", ")));
   }
-  throw_input_error(location(node, *file_), dotted(key), "this key is not known", suggestions(key, accepted_));
+  std::optional<std::string> meant = similar(key, accepted_);
+  if (!meant) meant = similar_key(dotted(key));
+  throw_input_error(location(node, *file_), dotted(key),
+                    meant ? fmt::format("this key is not known, did you mean {}?", *meant) : "this key is not known", suggestions(key, accepted_));
 }
 
 void Table::finish() const {

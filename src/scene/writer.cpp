@@ -2,55 +2,23 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <string_view>
 
 #include "openclose/scene/angle.h"
+#include "openclose/scene/keys.h"
 #include "openclose/scene/names.h"
+#include "openclose/scene/toml_text.h"
 
 namespace openclose {
 namespace {
 
-std::string toml(double number) {
-  // TOML knows no signed zero among its integers.
-  return number == 0.0 && std::signbit(number) ? "-0.0" : fmt::format("{}", number);
-}
-std::string toml(int number) {
-  return fmt::format("{}", number);
-}
-std::string toml(bool flag) {
-  return flag ? "true" : "false";
-}
-std::string toml(const Vec2& vector) {
-  return fmt::format("[{}, {}]", toml(vector.x()), toml(vector.y()));
-}
-
-std::string toml(std::string_view text) {
-  std::string literal = "\"";
-  for (const char character : text) {
-    if (static_cast<unsigned char>(character) < 0x20 || character == 0x7f) {
-      literal += fmt::format("\\u{:04X}", static_cast<unsigned char>(character));
-    } else {
-      if (character == '"' || character == '\\') literal += '\\';
-      literal += character;
-    }
-  }
-  return literal + '"';
-}
-
-template <typename T>
-std::string toml(const std::vector<T>& list) {
-  std::vector<std::string> items;
-  for (const T& item : list) items.push_back(toml(item));
-  return fmt::format("[{}]", fmt::join(items, ", "));
-}
-
 class Text {
  public:
   void header(std::string_view header) { text_ += fmt::format("\n{}\n", header); }
+  void raw_line(std::string_view key, std::string_view value) { text_ += fmt::format("{} = {}\n", key, value); }
   template <typename T>
   void line(std::string_view key, const T& value) {
-    text_ += fmt::format("{} = {}\n", key, toml(value));
+    raw_line(key, toml(value));
   }
   template <typename T>
   void line_unless(const T& absent, std::string_view key, const T& value) {
@@ -156,111 +124,37 @@ void write_base_motion(Text& text, const BaseMotionInput& motion) {
   }
 }
 
-void write_method(Text& text, const MethodInput& method) {
-  text.header("[method]");
-  text.line("contact", std::string_view(method.contact));
-  if (method.integrator) text.line("integrator", std::string_view(*method.integrator));
-  if (method.theta) text.line("theta", *method.theta);
-  if (method.rho_inf) text.line("rho_inf", *method.rho_inf);
-  if (method.dissipation) text.line("dissipation", *method.dissipation);
-  if (method.first_integrator) {
-    text.line("first_integrator", std::string_view(*method.first_integrator));
-    text.line("first_integrator_s", method.first_integrator_time);
+/// What the tables of keys hold, but for the keys that may change on a restart if they are to be left out.
+void write_keys(Text& text, const Scene& scene, bool with_changeable) {
+  std::string_view table;
+  for (const KeyEntry& entry : key_entries(scene)) {
+    if (entry.table.name != table) text.header(fmt::format("[{}]", entry.table.name));
+    table = entry.table.name;
+    if (entry.value && (with_changeable || !entry.key.may_change_on_restart)) text.raw_line(entry.key.name, *entry.value);
   }
-  text.line("rotation", word_for(rotation_words, method.rotation));
-  text.line("start", word_for(start_words, method.start));
-  text.line("statics", method.statics);
-  text.line("residual_tolerance", method.residual_tolerance);
-  text.line("max_iterations", method.max_iterations);
-  text.line("linear_solver", word_for(linear_solver_words, method.linear_solver));
-  text.line("static_solver", word_for(static_solver_words, method.static_solver));
-  text.line("skip_search", method.skip_search);
-  text.line("skip_narrow_phase", method.skip_narrow_phase);
-  text.line("skip_looks", method.skip_looks);
-  if (method.contact_skin) text.line("contact_skin_m", *method.contact_skin);
-  text.line("skip_reload", method.skip_reload);
-  text.line("skip_factorisation", method.skip_factorisation);
-  text.line("skip_symbolic", method.skip_symbolic);
-  text.line("skip_balanced", method.skip_balanced);
-  text.line("skip_unmoved", method.skip_unmoved);
-  text.line("skip_resting", method.skip_resting);
-  text.line("threads", method.threads);
-  text.line("gap_tolerance_m", method.gap_tolerance);
-  if (method.penalty) text.line("penalty_pa_per_m", *method.penalty);
-  text.line("penalty_shear_ratio", method.penalty_shear_ratio);
-  if (method.penetration_tolerance) text.line("penetration_tolerance_m", *method.penetration_tolerance);
-  text.line("closing_tolerance_m", method.closing_tolerance);
-  text.line("max_open_close_iterations", method.max_open_close_iterations);
-  text.line("step_cut", method.step_cut);
-  text.line("step_fraction", method.step_fraction);
-  text.line("damping", word_for(mass_damping_words, method.damping));
-  text.line("local_damping", method.local_damping);
 }
 
-void write_run(Text& text, const Scene& scene) {
-  text.header("[step]");
-  text.line_unless(0.0, "dt_s", scene.step.dt);
-  text.line("max_displacement_m", scene.step.max_displacement);
-  text.line("smallest_fraction", scene.step.smallest_fraction);
-  text.line("adaptive", scene.step.adaptive);
-  text.line("error_tolerance_m", scene.step.error_tolerance);
-  text.line("look_ahead", scene.step.look_ahead);
-  text.header("[rest]");
-  text.line("time_s", scene.rest.time);
-  text.line("displacement_m", scene.rest.displacement);
-  text.line("acceleration_m_per_s2", scene.rest.acceleration);
-  text.header("[run]");
-  text.line("strength_reduction_factor", scene.run_strength_reduction_factor);
-  if (scene.settled_by) text.line("settled_by", std::string_view(*scene.settled_by));
-  text.header("[end]");
-  text.line("time_s", scene.end_time);
-  if (scene.end_displacement) text.line("displacement_m", *scene.end_displacement);
-  text.header("[output]");
-  text.line("every_s", scene.output_every);
-  text.line("checkpoint_every_s", scene.checkpoint_every);
-  text.line("milestones_m", scene.milestones);
-  text.line("snapshots_s", scene.snapshot_times);
-  text.line("snapshots_every_s", scene.snapshots_every);
-  text.line("vtk", scene.vtk);
-}
-
-void write_statics(Text& text, const SettleInput& settle, const StrengthReductionInput& reduction) {
-  text.header("[settle]");
-  text.line("criterion", word_for(settle_criterion_words, settle.criterion));
-  text.line("unbalanced_fraction", settle.unbalanced_fraction);
-  text.line("first_dt_s", settle.first_dt);
-  text.line("max_steps", settle.max_steps);
-  text.line("max_explicit_steps", settle.max_explicit_steps);
-  text.line("keep_bonds", settle.keep_bonds);
-  text.line("failure_displacement_m", settle.failure_displacement);
-  text.line("relative_displacement", settle.relative_displacement);
-  text.line("steady_steps", settle.steady_steps);
-  text.line("max_time_steps", settle.max_time_steps);
-  text.line("unbalanced_force_n", settle.unbalanced_force);
-  text.header("[strength_reduction]");
-  text.line("definition", word_for(factor_definition_words, reduction.definition));
-  text.line("limit_analysis", reduction.limit_analysis);
-  text.line("width", reduction.width);
-  text.line("upper_limit", reduction.upper_limit);
-  text.line("curve", reduction.curve);
-  if (reduction.curve_time) text.line("curve_time_s", *reduction.curve_time);
-}
-
-}  // namespace
-
-std::string write_scene(const Scene& scene) {
+std::string written(const Scene& scene, bool with_changeable) {
   Text text;
-  text.line("title", std::string_view(scene.title));
+  if (with_changeable) text.line("title", std::string_view(scene.title));
   text.line("gravity_m_per_s2", scene.gravity);
   write_materials(text, scene);
   write_joints(text, scene);
   write_blocks(text, scene);
   write_points(text, scene);
   if (scene.base_motion) write_base_motion(text, *scene.base_motion);
-  write_method(text, scene.method);
-  write_run(text, scene);
-  write_statics(text, scene.settle, scene.strength_reduction);
+  write_keys(text, scene, with_changeable);
   return text.text();
+}
+
+}  // namespace
+
+std::string write_scene(const Scene& scene) {
+  return written(scene, true);
+}
+
+std::string write_fixed_part(const Scene& scene) {
+  return written(scene, false);
 }
 
 }  // namespace openclose

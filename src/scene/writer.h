@@ -13,4 +13,7 @@ namespace openclose {
 /// zero. Unit weights come out as densities.
 std::string write_scene(const Scene& scene);
 
+/// The same without the title and the keys that may change between a checkpoint and the run that goes on from it.
+std::string write_fixed_part(const Scene& scene);
+
 }  // namespace openclose

@@ -97,7 +97,7 @@ TEST_CASE("steps of hard that penetrate begin with the stiffest springs again, f
   // The same slope with a tolerance that its passes do not reach.
   Scene scene = read_scene(std::string(OPENCLOSE_PAPER_SCENES) + "/example_3_4_post_failure.toml",
                            {"joint_set[0].spacing_m=27.2", "joint_set[1].spacing_m=6.8", "joint[0].friction_angle_deg=21.7",
-                            "joint[0].cohesion_pa=47e3", "step.dt_s=0.02", "method.contact=\"hard\"", "method.gap_tolerance_m=1e-10"});
+                            "joint[0].cohesion_pa=47e3", "step.dt_s=0.02", "method.contact=\"hard\"", "solver.gap_tolerance_m=1e-10"});
   check_goes_on(scene, 3, 6);
   Simulation<3> simulation(scene);
   for (int i = 0; i < 6; ++i) REQUIRE(simulation.advance(scene.step.dt));

@@ -423,7 +423,7 @@ TEST_CASE("dem refuses what has no meaning for it", "[analysis][explicit]") {
   }
   SECTION("relaxation") {
     scene.method.static_solver = StaticSolver::relaxation;
-    CHECK_THROWS_WITH(Simulation<3>(scene), Catch::Matchers::ContainsSubstring("method.static_solver"));
+    CHECK_THROWS_WITH(Simulation<3>(scene), Catch::Matchers::ContainsSubstring("solver.static_solver"));
   }
   SECTION("linear rotation") {
     scene.method.rotation = RotationKind::linear;

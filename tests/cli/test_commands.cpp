@@ -200,10 +200,10 @@ TEST_CASE("overrides change the scene and are on record", "[cli]") {
       "--set joint[0].friction_angle_deg=20");
   CHECK(result.status == 0);
   const auto summary = summary_in(place.folder() / "out");
-  CHECK(summary.at("options").at("contact") == "shi");
-  CHECK(summary.at("options").at("start") == "unloaded");
-  CHECK(summary.at("options").at("dt_s") == 0.001);
-  CHECK(summary.at("options").at("end_time_s") == 0.004);
+  CHECK(summary.at("options").at("method").at("contact") == "shi");
+  CHECK(summary.at("options").at("method").at("start") == "unloaded");
+  CHECK(summary.at("options").at("step").at("dt_s") == 0.001);
+  CHECK(summary.at("options").at("end").at("time_s") == 0.004);
   CHECK(summary.at("title") == "renamed");
   CHECK(summary.at("counters").at("steps") == 4);
   CHECK(summary.at("overrides").size() == 7);

@@ -70,8 +70,8 @@ TEST_CASE("no static equilibrium to start from", "[cli][not_converged]") {
 TEST_CASE("a run that gets stuck on its way", "[cli][not_converged]") {
   const Workplace place;
   const CommandResult result = place.run(
-      "run scene.toml -o out --dt 0.001 --end 1 --contact shi --start unloaded --set method.max_open_close_iterations=1 "
-      "--set 'block[1].vertices_m=[[0, 0.001], [1, 0.001], [1, 1], [0, 1]]' --set step.smallest_fraction=0.5");
+      "run scene.toml -o out --dt 0.001 --end 1 --contact shi --start unloaded --set solver.max_open_close_iterations=1 "
+      "--set 'block[1].vertices_m=[[0, 0.001], [1, 0.001], [1, 1], [0, 1]]' --set solver.smallest_fraction=0.5");
   check_saved(place, result, "open-close iterations did not settle");
   const double time = summary_of(place).at("time_s");
   CHECK(time > 0.005);

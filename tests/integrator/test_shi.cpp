@@ -74,7 +74,7 @@ TEST_CASE("a penetration beyond the tolerance names both keys that could help", 
   scene.method.penetration_tolerance = 1e-6;
   const StepResult result = static_step(scene);
   CHECK_FALSE(result.accepted);
-  CHECK_THAT(result.reason, ContainsSubstring("method.penetration_tolerance_m") && ContainsSubstring("method.penalty_pa_per_m"));
+  CHECK_THAT(result.reason, ContainsSubstring("solver.penetration_tolerance_m") && ContainsSubstring("method.penalty_pa_per_m"));
   scene.method.penetration_tolerance = 1e-5;
   CHECK(static_step(scene).accepted);
 }

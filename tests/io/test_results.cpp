@@ -11,6 +11,7 @@
 #include "io/files.h"
 #include "openclose/core/process.h"
 #include "openclose/io/results.h"
+#include "openclose/scene/keys.h"
 #include "openclose/version.h"
 #include "support/catch.h"
 #include "support/scenes.h"
@@ -236,7 +237,7 @@ TEST_CASE("milestones: the missing ones have a reason in place of times", "[io][
   CHECK(j.at("ended_by") == "end.displacement_m");
   CHECK(j.at("cpu_s").at("start") == 0.25);
   CHECK(j.at("cpu_s").at("motion") == 0.6);
-  CHECK(j.at("options").at("end_displacement_m").is_null());
+  CHECK(j.at("options").at("end").at("displacement_m").is_null());
 }
 
 TEST_CASE("summary.json of a start by the paper's criterion", "[io][results]") {
@@ -263,13 +264,37 @@ TEST_CASE("summary.json of a start by the paper's criterion", "[io][results]") {
   CHECK(j.at("options").at("settle").at("relative_displacement") == 1e-5);
   CHECK(j.at("options").at("settle").at("unbalanced_force_n") == 1e3);
   CHECK(j.at("options").at("settle").at("keep_bonds") == true);
-  CHECK(j.at("options").at("end_displacement_m") == 2.0);
-  CHECK(j.at("options").at("run_strength_reduction_factor") == 1.5);
-  CHECK(j.at("options").at("checkpoint_every_s") == 0.25);
-  CHECK(j.at("options").at("milestones_m") == scene.milestones);
-  CHECK(j.at("options").at("snapshots_s") == scene.snapshot_times);
+  CHECK(j.at("options").at("end").at("displacement_m") == 2.0);
+  CHECK(j.at("options").at("run").at("strength_reduction_factor") == 1.5);
+  CHECK(j.at("options").at("output").at("checkpoint_every_s") == 0.25);
+  CHECK(j.at("options").at("output").at("milestones_m") == scene.milestones);
+  CHECK(j.at("options").at("output").at("snapshots_s") == scene.snapshot_times);
   CHECK(j.at("options").at("strength_reduction").at("curve") == scene.strength_reduction.curve);
   CHECK(j.at("options").at("strength_reduction").at("curve_time_s") == 3.0);
+}
+
+TEST_CASE("summary.json has every key as it was used", "[io][results][keys]") {
+  const TemporaryFolder place;
+  Scene scene = test::block_on_base();
+  scene.method.contact = "shi";
+  scene.method.penalty = 3e9;
+  scene.method.closing_tolerance = 1e-7;
+  scene.step.smallest_fraction = 0.25;
+  const Simulation<3> simulation(scene);
+  write_summary(OutputFolder(place.path()), Summary{}, simulation);
+  const nlohmann::json options = summary_json(place).at("options");
+  for (const KeyEntry& entry : key_entries(scene)) {
+    INFO(entry.dotted());
+    const nlohmann::json& value = options.at(std::string(entry.table.name)).at(std::string(entry.key.name));
+    if (entry.value) CHECK(value == nlohmann::json::parse(*entry.value));
+    if (!entry.value && entry.key.name != "contact_skin_m") CHECK(value.is_null());
+  }
+  CHECK(options.at("method").at("penalty_pa_per_m") == 3e9);
+  CHECK(options.at("method").at("integrator").is_null());
+  CHECK(options.at("solver").at("closing_tolerance_m") == 1e-7);
+  CHECK(options.at("solver").at("smallest_fraction") == 0.25);
+  CHECK(options.at("solver").at("gap_tolerance_m") == scene.method.gap_tolerance);
+  CHECK(options.at("solver").at("contact_skin_m") == simulation.contact_skin());
 }
 
 TEST_CASE("summary.json of a run", "[io][results]") {
@@ -298,11 +323,11 @@ TEST_CASE("summary.json of a run", "[io][results]") {
   CHECK(j.at("title") == "A \"quoted\" title");
   CHECK(j.at("overrides") == std::vector<std::string>{"method.theta=1"});
   CHECK(j.at("warnings") == std::vector<std::string>{"one"});
-  CHECK(j.at("options").at("contact") == "soft");
-  CHECK(j.at("options").at("start") == "settled");
-  CHECK(j.at("options").at("integrator") == "shi");
-  CHECK(j.at("options").at("theta").is_null());
-  CHECK(j.at("options").at("dt_s") == 1e-3);
+  CHECK(j.at("options").at("method").at("contact") == "soft");
+  CHECK(j.at("options").at("method").at("start") == "settled");
+  CHECK(j.at("options").at("method").at("integrator") == "shi");
+  CHECK(j.at("options").at("method").at("theta").is_null());
+  CHECK(j.at("options").at("step").at("dt_s") == 1e-3);
   CHECK(j.at("blocks") == 2);
   CHECK(j.at("free_blocks") == 1);
   CHECK(j.at("converged") == true);

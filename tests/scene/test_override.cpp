@@ -71,8 +71,8 @@ TEST_CASE("errors in overridden values name the override", "[scene][override]") 
 }
 
 TEST_CASE("overrides of keys that are not known", "[scene][override]") {
-  CHECK_THAT(error_of("method.thetta=1"), ContainsSubstring("--set method.thetta: method.thetta: this key is not known; accepted: theta, "));
-  CHECK_THAT(error_of("metod.theta=1"), ContainsSubstring("--set metod.theta: metod: this key is not known; accepted: method, "));
+  CHECK_THAT(error_of("method.thetta=1"), ContainsSubstring("--set method.thetta: method.thetta: this key is not known, did you mean theta?; accepted: theta, "));
+  CHECK_THAT(error_of("metod.theta=1"), ContainsSubstring("--set metod.theta: metod: this key is not known, did you mean method?; accepted: method, "));
   CHECK(error_of("step.dt_ms=1") == "--set step.dt_ms: step.dt_ms: this key has another unit; accepted: dt_s");
 }
 

@@ -57,16 +57,14 @@ TEST_CASE("every key reaches its field", "[scene][reader]") {
       "[[support]]\nblock = 'one'\npoint_m = [0, 0]\nstiffness_n_per_m = [0, 7]\n"
       "[[load]]\nblock = 'one'\npoint_m = [0.25, 0.25]\nforce_n = [-8, 9]\n"
       "[[measured_point]]\nname = 'p'\nblock = 'one'\npoint_m = [1, 0]\n"
-      "[method]\ncontact = 'anything'\ntheta = 0.5\nintegrator = 'any'\nrho_inf = 0.25\ndissipation = 0.01\nfirst_integrator = 'other'\nfirst_integrator_s = 0.5\nrotation = 'linear'\nstart = "
-      "'steady_sliding'\nstatics = true\nresidual_tolerance = 1e-9\n"
-      "max_iterations = 10\nskip_search = false\nskip_narrow_phase = false\nskip_looks = false\ncontact_skin_m = 0.01\nskip_reload = "
-      "false\nskip_factorisation = "
-      "false\nskip_symbolic = "
-      "false\nskip_balanced = false\nskip_unmoved = false\nskip_resting = true\nthreads = 3\npenalty_pa_per_m = 11\npenalty_shear_ratio = "
-      "0.5\npenetration_tolerance_m = 12\n"
-      "gap_tolerance_m = 2e-9\nclosing_tolerance_m = 0\nmax_open_close_iterations = 13.0\nstep_cut = 0.25\nstep_fraction = 0.5\ndamping = "
-      "'automatic'\nlocal_damping = 0.6\n"
-      "[step]\ndt_s = 0.01\nmax_displacement_m = 14\nsmallest_fraction = 1\nadaptive = true\nerror_tolerance_m = 1e-3\nlook_ahead = 0.75\n"
+      "[method]\ncontact = 'anything'\ntheta = 0.5\nintegrator = 'any'\nrho_inf = 0.25\ndissipation = 0.01\n"
+      "first_integrator = 'other'\nfirst_integrator_s = 0.5\nrotation = 'linear'\nstart = 'steady_sliding'\nstatics = true\n"
+      "threads = 3\npenalty_pa_per_m = 11\npenalty_shear_ratio = 0.5\nstep_fraction = 0.5\ndamping = 'automatic'\n"
+      "[solver]\nresidual_tolerance = 1e-9\nmax_iterations = 10\nskip_search = false\nskip_narrow_phase = false\nskip_looks = false\n"
+      "contact_skin_m = 0.01\nskip_reload = false\nskip_factorisation = false\nskip_symbolic = false\nskip_balanced = false\n"
+      "skip_unmoved = false\nskip_resting = true\npenetration_tolerance_m = 12\ngap_tolerance_m = 2e-9\nclosing_tolerance_m = 0\n"
+      "max_open_close_iterations = 13.0\nstep_cut = 0.25\nlocal_damping = 0.6\nsmallest_fraction = 1\n"
+      "[step]\ndt_s = 0.01\nmax_displacement_m = 14\nadaptive = true\nerror_tolerance_m = 1e-3\nlook_ahead = 0.75\n"
       "[rest]\ntime_s = 0.5\ndisplacement_m = 2e-3\nacceleration_m_per_s2 = 0.75\n"
       "[run]\nstrength_reduction_factor = 1.5\nsettled_by = 'another'\n"
       "[end]\ntime_s = 15\ndisplacement_m = 40\n[output]\nevery_s = 16\ncheckpoint_every_s = 24\nmilestones_m = [10, 20.5]\nsnapshots_s = [0, "
@@ -173,13 +171,13 @@ TEST_CASE("every key reaches its field", "[scene][reader]") {
 
 TEST_CASE("the linear solver is chosen by its word", "[scene][reader]") {
   CHECK(read_text(block_on_base).method.linear_solver == LinearSolverKind::automatic);
-  CHECK(read_text(std::string(block_on_base) + "[method]\nlinear_solver = 'direct'\n").method.linear_solver == LinearSolverKind::direct);
+  CHECK(read_text(std::string(block_on_base) + "[solver]\nlinear_solver = 'direct'\n").method.linear_solver == LinearSolverKind::direct);
 }
 
 TEST_CASE("the solver of static steps is chosen by its word", "[scene][reader]") {
   CHECK(read_text(block_on_base).method.static_solver == StaticSolver::automatic);
-  CHECK(read_text(std::string(block_on_base) + "[method]\nstatic_solver = 'relaxation'\n").method.static_solver == StaticSolver::relaxation);
-  CHECK(read_text(std::string(block_on_base) + "[method]\nstatic_solver = 'newton'\n").method.static_solver == StaticSolver::newton);
+  CHECK(read_text(std::string(block_on_base) + "[solver]\nstatic_solver = 'relaxation'\n").method.static_solver == StaticSolver::relaxation);
+  CHECK(read_text(std::string(block_on_base) + "[solver]\nstatic_solver = 'newton'\n").method.static_solver == StaticSolver::newton);
 }
 
 TEST_CASE("polygons are put in order silently", "[scene][reader]") {

@@ -71,13 +71,13 @@ TEST_CASE("text that is not TOML", "[scene][reader][errors]") {
 }
 
 TEST_CASE("unknown keys", "[scene][reader][errors]") {
-  CHECK_THAT(error_with(15, "fixd = true"), ContainsSubstring("15: block[0].fixd: this key is not known; accepted: fixed, "));
-  CHECK_THAT(error_with(11, "[[blok]]"), ContainsSubstring("11: blok: this key is not known; accepted: block, "));
-  CHECK_THAT(error_of(block_on_base + "[method]\nthetta = 1\n"), ContainsSubstring("23: method.thetta: this key is not known; accepted: theta, "));
+  CHECK_THAT(error_with(15, "fixd = true"), ContainsSubstring("15: block[0].fixd: this key is not known, did you mean fixed?; accepted: fixed, "));
+  CHECK_THAT(error_with(11, "[[blok]]"), ContainsSubstring("11: blok: this key is not known, did you mean block?; accepted: block, "));
+  CHECK_THAT(error_of(block_on_base + "[method]\nthetta = 1\n"), ContainsSubstring("23: method.thetta: this key is not known, did you mean theta?; accepted: theta, "));
   CHECK_THAT(error_of(block_on_base + "[end]\nvertices = 1\n"), ContainsSubstring("23: end.vertices: this key is not known; accepted: time_s"));
   SECTION("a misspelt key goes before the one that is missing for it") {
     CHECK_THAT(error_with(9, "friction_angel_deg = 35"),
-               ContainsSubstring("9: joint[0].friction_angel_deg: this key is not known; accepted: friction_angle_deg, "));
+               ContainsSubstring("9: joint[0].friction_angel_deg: this key is not known, did you mean friction_angle_deg?; accepted: friction_angle_deg, "));
   }
   SECTION("a key with a line break leaves the message on one line") {
     CHECK_THAT(error_with(15, "\"a\\nb\" = 1"), ContainsSubstring("15: block[0].a\\x0ab: "));
@@ -128,10 +128,10 @@ TEST_CASE("values of another type", "[scene][reader][errors]") {
   CHECK_THAT(error_with_vertices("[[0, 0],\n [1, 0],\n [1]]"),
              ContainsSubstring("22: block[1].vertices_m[2]: is an array of 1 values; accepted: [x, y], each a number in ["));
   CHECK(error_with(6, "materials = 'rock'") == "6: joint[0].materials: \"rock\" is a string; accepted: an array");
-  CHECK(error_of(block_on_base + "[method]\nmax_iterations = 1.5\n") ==
-        "23: method.max_iterations: 1.5 is not a whole number; accepted: a whole number in [1, 1000000000]");
-  CHECK(error_of(block_on_base + "[method]\nmax_iterations = 'many'\n") ==
-        "23: method.max_iterations: \"many\" is a string; accepted: a whole number in [1, 1000000000]");
+  CHECK(error_of(block_on_base + "[solver]\nmax_iterations = 1.5\n") ==
+        "23: solver.max_iterations: 1.5 is not a whole number; accepted: a whole number in [1, 1000000000]");
+  CHECK(error_of(block_on_base + "[solver]\nmax_iterations = 'many'\n") ==
+        "23: solver.max_iterations: \"many\" is a string; accepted: a whole number in [1, 1000000000]");
   CHECK(error_of(block_on_base + "[strength_reduction]\ncurve = [1, 'x']\n") ==
         "23: strength_reduction.curve[1]: \"x\" is a string; accepted: a number > 0");
 }
@@ -148,8 +148,8 @@ TEST_CASE("numbers that are none", "[scene][reader][errors]") {
         "7: joint[0].normal_stiffness_pa_per_m: inf is not a finite number; accepted: a number > 0");
   CHECK_THAT(error_with_vertices("[[0, 0], [1, -inf], [1, 1]]"), ContainsSubstring("20: block[1].vertices_m[1][1]: -inf is not a finite number"));
   CHECK_THAT(error_of(block_on_base + "[end]\ntime_s = nan\n"), ContainsSubstring("23: end.time_s: nan is not a finite number"));
-  CHECK_THAT(error_of(block_on_base + "[method]\nmax_iterations = inf\n"),
-             ContainsSubstring("23: method.max_iterations: inf is not a finite number"));
+  CHECK_THAT(error_of(block_on_base + "[solver]\nmax_iterations = inf\n"),
+             ContainsSubstring("23: solver.max_iterations: inf is not a finite number"));
   CHECK_THAT(error_of("gravity_m_per_s2 = [0, nan]\n" + block_on_base),
              ContainsSubstring("1: gravity_m_per_s2[1]: nan is not a finite number; accepted: a finite number"));
 }
@@ -179,28 +179,28 @@ TEST_CASE("options out of range", "[scene][reader][errors]") {
       {"method", "theta = 1.01", "1.01", "a number in [0.5, 1]"},
       {"method", "rho_inf = 1.5", "1.5", "a number in [0, 1]"},
       {"method", "dissipation = -0.1", "-0.1", "a number in [0, 1]"},
-      {"method", "residual_tolerance = 1", "1", "a number in (0, 1)"},
-      {"method", "max_iterations = 0", "0", "a whole number in [1, 1000000000]"},
+      {"solver", "residual_tolerance = 1", "1", "a number in (0, 1)"},
+      {"solver", "max_iterations = 0", "0", "a whole number in [1, 1000000000]"},
       {"method", "threads = 0", "0", "a whole number in [1, 8]"},
       {"method", "threads = 9", "9", "a whole number in [1, 8]"},
-      {"method", "max_iterations = 3000000000", "3000000000", "a whole number in [1, 1000000000]"},
+      {"solver", "max_iterations = 3000000000", "3000000000", "a whole number in [1, 1000000000]"},
       {"method", "penalty_pa_per_m = 0", "0", "a number > 0"},
       {"method", "penalty_shear_ratio = -1", "-1", "a number > 0"},
-      {"method", "penetration_tolerance_m = 0", "0", "a number > 0"},
-      {"method", "closing_tolerance_m = -1", "-1", "a number >= 0"},
-      {"method", "gap_tolerance_m = 0", "0", "a number > 0"},
-      {"method", "contact_skin_m = 0", "0", "a number > 0"},
-      {"method", "max_open_close_iterations = 0", "0", "a whole number in [1, 1000000000]"},
-      {"method", "step_cut = 1", "1", "a number in (0, 1)"},
+      {"solver", "penetration_tolerance_m = 0", "0", "a number > 0"},
+      {"solver", "closing_tolerance_m = -1", "-1", "a number >= 0"},
+      {"solver", "gap_tolerance_m = 0", "0", "a number > 0"},
+      {"solver", "contact_skin_m = 0", "0", "a number > 0"},
+      {"solver", "max_open_close_iterations = 0", "0", "a whole number in [1, 1000000000]"},
+      {"solver", "step_cut = 1", "1", "a number in (0, 1)"},
       {"method", "step_fraction = 1", "1", "a number in (0, 1)"},
-      {"method", "local_damping = 0", "0", "a number in (0, 1)"},
+      {"solver", "local_damping = 0", "0", "a number in (0, 1)"},
       {"settle", "max_explicit_steps = 0", "0", "a whole number in [1, 1000000000]"},
       {"step", "dt_s = 0", "0", "a number > 0"},
       {"step", "dt_s = -0.1", "-0.1", "a number > 0"},
       {"step", "max_displacement_m = 0", "0", "a number > 0"},
       {"step", "error_tolerance_m = 0", "0", "a number > 0"},
       {"step", "look_ahead = 1.5", "1.5", "a number in [0, 1]"},
-      {"step", "smallest_fraction = 2", "2", "a number in (0, 1]"},
+      {"solver", "smallest_fraction = 2", "2", "a number in (0, 1]"},
       {"end", "time_s = -1", "-1", "a number >= 0"},
       {"output", "every_s = -1", "-1", "a number >= 0"},
       {"end", "displacement_m = 0", "0", "a number > 0"},
