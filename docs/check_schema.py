@@ -42,6 +42,12 @@ WRONG = {
     "part of a whole number": "[method]\nthreads = 1.5\n",
     "a list with a text": "[output]\nmilestones_m = [1, 'x']\n",
     "a key of another table": "[step]\ntheta = 1\n",
+    "a block without a name": "[[block]]\nmaterial = 'a'\nvertices_m = [[0, 0], [1, 0], [0, 1]]\n",
+    "a block with two corners": "[[block]]\nname = 'a'\nmaterial = 'a'\nvertices_m = [[0, 0], [1, 0]]\n",
+    "a corner with three coordinates": "[[block]]\nname = 'a'\nmaterial = 'a'\nvertices_m = [[0, 0], [1, 0], [0, 1, 2]]\n",
+    "a pulse without a duration": "[base_motion]\nkind = 'pulses'\n[[base_motion.pulse]]\nacceleration_m_per_s2 = [1, 0]\n",
+    "a form of results that is none": "[output]\nformats = ['dxf']\n",
+    "an unknown table": "[water]\nlevel_m = 1\n",
 }
 
 

@@ -16,11 +16,11 @@
 #include "openclose/integrator/registry.h"
 #include "openclose/io/checkpoint.h"
 #include "openclose/io/drawing.h"
+#include "openclose/io/formats.h"
 #include "openclose/io/key_reference.h"
 #include "openclose/io/progress.h"
 #include "openclose/io/result_picture.h"
 #include "openclose/io/results.h"
-#include "openclose/io/vtk.h"
 #include "openclose/scene/check.h"
 #include "openclose/scene/reader.h"
 #include "openclose/scene/writer.h"
@@ -64,6 +64,7 @@ struct Loaded {
 
 Loaded load(const Options& options) {
   Loaded loaded{read_scene(options.scene_file, options.overrides), {}};
+  require_formats(loaded.scene.formats, loaded.scene.formats_where);
   loaded.warnings = check_scene(loaded.scene);
   print_warnings(loaded.warnings);
   return loaded;
@@ -211,7 +212,6 @@ int run_command(const Options& options) {
   energy.close();
   states.close();
   if (contact_history) contact_history->close();
-  if (scene.vtk) write_vtk(folder);
   if (!result.milestones.empty()) write_milestones(folder, result.milestones);
   Summary summary = summary_of("run", options, loaded);
   summary.warnings.insert(summary.warnings.end(), result.warnings.begin(), result.warnings.end());
@@ -226,6 +226,7 @@ int run_command(const Options& options) {
   summary.ledger = simulation.ledger();
   summary.max_penetration = simulation.max_penetration();
   write_summary(folder, summary, simulation);
+  write_formats(scene.formats, folder);
 
   if (!result.converged) {
     fmt::print(stderr, "openclose: {} at t = {:.6g} s: {}; state saved in {}\n", result.refused ? "refused" : "not converged", simulation.time(),
@@ -302,13 +303,13 @@ int fos_command(const Options& options) {
     if (state.name != "failed") summary.max_penetration = deepest_of(state.contacts);
   }
   states.close();
-  if (simulation.scene().vtk) write_vtk(folder);
   write_trials(folder, safety.trials);
   if (!safety.mechanism.empty()) write_mechanism(folder, simulation.scene(), safety.mechanism);
   if (!safety.curve.empty()) write_curve(folder, safety.curve);
   summary.converged = safety.found();
   summary.reason = safety.reason;
   write_summary(folder, summary, simulation, &safety);
+  write_formats(simulation.scene().formats, folder);
 
   if (!safety.found()) {
     fmt::print(stderr, "openclose: no factor of safety: {}; state saved in {}\n", safety.reason, folder.path());

@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <cctype>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "openclose/core/error.h"
 #include "openclose/integrator/integrators.h"
 #include "openclose/integrator/registry.h"
+#include "openclose/io/formats.h"
 #include "openclose/scene/keys.h"
 #include "openclose/scene/nearest.h"
 #include "openclose/scene/table.h"
@@ -20,10 +22,16 @@ using nlohmann::ordered_json;
 /// The names that a text may be; they stand in the registries.
 std::vector<std::string> known_names(NameIn list) {
   std::vector<std::string> names;
-  if (list == NameIn::enforcements) {
-    for (const auto& entry : enforcements<3>()) names.emplace_back(entry.name);
-  } else {
-    for (const auto& entry : integrators<3>()) names.emplace_back(entry.name);
+  switch (list) {
+    case NameIn::enforcements:
+      for (const auto& entry : enforcements<3>()) names.emplace_back(entry.name);
+      break;
+    case NameIn::integrators:
+      for (const auto& entry : integrators<3>()) names.emplace_back(entry.name);
+      break;
+    case NameIn::formats:
+      for (const OutputFormat& entry : output_formats()) names.emplace_back(entry.name);
+      break;
   }
   return names;
 }
@@ -31,6 +39,12 @@ std::vector<std::string> known_names(NameIn list) {
 std::vector<std::string> accepted_words(const KeyEntry& entry) {
   if (entry.names) return known_names(*entry.names);
   return {entry.words.begin(), entry.words.end()};
+}
+
+std::string accepted_names(const KeyEntry& entry) {
+  std::vector<std::string> quoted;
+  for (const std::string& word : accepted_words(entry)) quoted.push_back(in_quotes(word));
+  return fmt::format("{}", fmt::join(quoted, ", "));
 }
 
 std::string accepted(const KeyEntry& entry) {
@@ -44,26 +58,44 @@ std::string accepted(const KeyEntry& entry) {
     case ValueType::list:
       return fmt::format("a list, each {}{}", entry.range.describe("number"), entry.increasing ? " and above the one before" : "");
     case ValueType::text:
-    case ValueType::word: {
-      std::vector<std::string> quoted;
-      for (const std::string& word : accepted_words(entry)) quoted.push_back(in_quotes(word));
-      return fmt::format("{}", fmt::join(quoted, ", "));
-    }
+      return entry.names ? accepted_names(entry) : "a text";
+    case ValueType::word:
+      return accepted_names(entry);
+    case ValueType::names:
+      return entry.names ? "a list of " + accepted_names(entry) : "a list of names";
+    case ValueType::vector:
+      return "[x, y], each " + entry.range.describe("number");
+    case ValueType::polygon:
+      return "[[x, y], ...], 3 points or more";
+    case ValueType::polygons:
+      return "a list of polygons";
   }
   return {};
 }
 
 std::string default_of(const KeyEntry& entry) {
+  if (entry.key.required) return "required";
   return entry.value ? *entry.value : std::string(entry.key.absent);
 }
 
-void add_tables(std::string& page, Audience audience) {
-  std::string_view table;
-  for (const KeyEntry& entry : key_entries(Scene{})) {
+std::string sentence(std::string_view text) {
+  std::string with_capital(text);
+  with_capital.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(with_capital.front())));
+  return with_capital + ".";
+}
+
+std::string heading(const KeyTable& table) {
+  if (table.name.empty()) return "## The scene as a whole";
+  return table.many ? fmt::format("## [[{}]]", table.name) : fmt::format("## [{}]", table.name);
+}
+
+void add_tables(std::string& page, const std::vector<KeyEntry>& entries, Audience audience) {
+  std::optional<std::string_view> table;
+  for (const KeyEntry& entry : entries) {
     if (entry.table.audience != audience) continue;
-    if (entry.table.name != table)
-      page += fmt::format("\n## [{}]\n\n{}.\n\n| key | unit | default | accepted | what it does |\n|---|---|---|---|---|\n", entry.table.name,
-                          entry.table.says);
+    if (table != entry.table.name)
+      page += fmt::format("\n{}\n\n{}\n\n| key | unit | default | accepted | what it does |\n|---|---|---|---|---|\n", heading(entry.table),
+                          sentence(entry.table.says));
     table = entry.table.name;
     page +=
         fmt::format("| `{}` | {} | {} | {} | {} |\n", entry.key.name, unit_of(entry.key.name), default_of(entry), accepted(entry), entry.key.says);
@@ -77,6 +109,24 @@ ordered_json number_schema(const KeyEntry& entry, const char* type) {
   return schema;
 }
 
+ordered_json list_of(const ordered_json& item, int at_least = 0) {
+  ordered_json schema = {{"type", "array"}, {"items", item}};
+  if (at_least > 0) schema["minItems"] = at_least;
+  return schema;
+}
+
+ordered_json vector_schema(const KeyEntry& entry) {
+  ordered_json schema = list_of(number_schema(entry, "number"), 2);
+  schema["maxItems"] = 2;
+  return schema;
+}
+
+ordered_json word_schema(const KeyEntry& entry) {
+  ordered_json schema = {{"type", "string"}};
+  if (const std::vector<std::string> words = accepted_words(entry); !words.empty()) schema["enum"] = words;
+  return schema;
+}
+
 ordered_json value_schema(const KeyEntry& entry) {
   switch (entry.type) {
     case ValueType::boolean:
@@ -86,10 +136,18 @@ ordered_json value_schema(const KeyEntry& entry) {
     case ValueType::whole_number:
       return number_schema(entry, "integer");
     case ValueType::list:
-      return {{"type", "array"}, {"items", number_schema(entry, "number")}};
+      return list_of(number_schema(entry, "number"));
     case ValueType::text:
     case ValueType::word:
-      return {{"type", "string"}, {"enum", accepted_words(entry)}};
+      return word_schema(entry);
+    case ValueType::names:
+      return list_of(word_schema(entry));
+    case ValueType::vector:
+      return vector_schema(entry);
+    case ValueType::polygon:
+      return list_of(vector_schema(entry), 3);
+    case ValueType::polygons:
+      return list_of(list_of(vector_schema(entry), 3));
   }
   return {};
 }
@@ -117,40 +175,72 @@ std::string explained(const KeyEntry& entry) {
 std::string keys_page() {
   std::string page =
       "<!-- Made by `openclose explain --page` from the tables of keys in src/scene; a test fails if it is not up to date. -->\n"
-      "# Keys of a scene file\n\n"
-      "The options of an analysis, table by table; the blocks, joints and forces themselves are in [scenes](scene.md). Every key can be left out, be "
-      "set on the command line (`--set method.theta=0.5`) and be asked for (`openclose explain theta`). `summary.json` has all of them as they were "
-      "used.\n";
-  add_tables(page, Audience::user);
+      "# Options of an analysis\n\n"
+      "Every key here can be left out, be set on the command line (`--set method.theta=0.5`) and be asked for (`openclose explain theta`).\n"
+      "`summary.json` has all of them as they were used.\n";
+  add_tables(page, option_keys(), Audience::user);
+  page +=
+      "\n# What a scene is made of\n\nTables in double brackets stand there once for each thing. How they go together is in [scenes](scene.md).\n";
+  add_tables(page, element_keys(), Audience::user);
   page +=
       "\n# For developers\n\n"
       "Nobody needs these tables to get an answer: they are for measurements, comparisons and the rare step that does not converge.\n";
-  add_tables(page, Audience::developer);
+  add_tables(page, option_keys(), Audience::developer);
   return page;
 }
 
-std::string scene_schema() {
-  ordered_json tables = ordered_json::object();
-  for (const KeyEntry& entry : key_entries(Scene{})) {
-    ordered_json& table = tables[std::string(entry.table.name)];
-    if (table.is_null())
-      table = {{"type", "object"}, {"description", entry.table.says}, {"additionalProperties", false}, {"properties", ordered_json::object()}};
-    table["properties"][std::string(entry.key.name)] = key_schema(entry);
+namespace {
+
+/// The table of a dotted name in the schema, made where it is missing.
+ordered_json& table_in(ordered_json& root, const KeyTable& table) {
+  ordered_json* parent = &root;
+  std::string_view name = table.name;
+  if (name.empty()) return root;
+  if (const std::size_t dot = name.find('.'); dot != std::string_view::npos) {
+    parent = &root["properties"][std::string(name.substr(0, dot))];
+    name.remove_prefix(dot + 1);
   }
-  const ordered_json schema = {
-      {"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"title", "Scene of Openclose"}, {"type", "object"}, {"properties", tables}};
-  return schema.dump(1) + "\n";
+  ordered_json& schema = (*parent)["properties"][std::string(name)];
+  if (schema.is_null()) {
+    const ordered_json object = {{"type", "object"}, {"additionalProperties", false}, {"properties", ordered_json::object()}};
+    schema = table.many ? list_of(object) : object;
+    schema["description"] = sentence(table.says);
+  }
+  return table.many ? schema["items"] : schema;
+}
+
+}  // namespace
+
+std::string scene_schema() {
+  ordered_json root = {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
+                       {"title", "Scene of Openclose"},
+                       {"type", "object"},
+                       {"required", {"material"}},
+                       {"additionalProperties", false},
+                       {"properties", ordered_json::object()}};
+  for (const auto* entries : {&element_keys(), &option_keys()}) {
+    for (const KeyEntry& entry : *entries) {
+      ordered_json& table = table_in(root, entry.table);
+      table["properties"][std::string(entry.key.name)] = key_schema(entry);
+      if (entry.key.required) table["required"].push_back(entry.key.name);
+    }
+  }
+  return root.dump(1) + "\n";
 }
 
 std::string explanation_of(const std::string& key) {
   std::string text;
-  std::vector<std::string> known;
-  for (const KeyEntry& entry : key_entries(Scene{})) {
-    known.push_back(entry.dotted());
-    if (key == entry.dotted() || key == entry.key.name || key == entry.table.name || key == entry.key.formerly) text += explained(entry);
+  std::vector<std::string> names;
+  for (const auto* entries : {&option_keys(), &element_keys()}) {
+    for (const KeyEntry& entry : *entries) {
+      names.emplace_back(key.find('.') == std::string::npos ? std::string(entry.key.name) : entry.dotted());
+      if (key == entry.dotted() || key == entry.key.name || key == entry.table.name || key == entry.key.formerly) text += explained(entry);
+    }
   }
   if (!text.empty()) return text;
-  throw InputError({"explain", 0}, key, "this key is not known", suggestions(key, known));
+  const std::optional<std::string> meant = similar(key, names);
+  throw InputError({"explain", 0}, key, meant ? fmt::format("this key is not known, did you mean {}?", *meant) : "this key is not known",
+                   suggestions(key, names));
 }
 
 }  // namespace openclose

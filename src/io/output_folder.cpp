@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "openclose/core/error.h"
+#include "openclose/io/formats.h"
 
 namespace openclose {
 namespace {
@@ -18,7 +19,6 @@ constexpr const char* growing_results[] = {"history.csv",      "energy.csv", "bl
 /// What comes at its end.
 constexpr const char* last_results[] = {"block_properties.csv", "trials.csv",   "mechanism.csv",       "curve.csv",
                                         "milestones.csv",       "summary.json", "checkpoint.bin.part", "drawing.svg"};
-constexpr const char* vtk_folder = "vtk";
 /// The first line of the scene that belongs to the results: a file of that name without it is somebody's own.
 constexpr std::string_view scene_heading = "# The scene as openclose has read it. The next run here writes it anew: copy it before you change it.\n";
 
@@ -121,27 +121,29 @@ void OutputFolder::remove_results() const {
 void OutputFolder::remove_last_results() const {
   for (const char* name : last_results) remove(name);
   if (has_own_scene_copy()) remove(scene_copy_name);
-  remove_vtk_files();
+  remove_format_files();
 }
 
-void OutputFolder::remove_vtk_files() const {
-  static const std::regex ours("(blocks|contacts)(\\.pvd|_[0-9]{4,}\\.vtu)");
-  const std::filesystem::path folder = path_of(vtk_folder);
-  std::error_code error;
-  if (!std::filesystem::is_directory(folder, error)) return;
-  std::vector<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) names.push_back(entry.path().filename().string());
-  for (const std::string& name : names) {
-    if (std::regex_match(name, ours)) remove((std::string(vtk_folder) + "/" + name).c_str());
+void OutputFolder::remove_format_files() const {
+  for (const OutputFormat& format : output_formats()) {
+    const std::regex ours(format.files);
+    const std::filesystem::path folder = path_of(format.name);
+    std::error_code error;
+    if (!std::filesystem::is_directory(folder, error)) continue;
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) names.push_back(entry.path().filename().string());
+    for (const std::string& name : names) {
+      if (std::regex_match(name, ours)) remove((std::string(format.name) + "/" + name).c_str());
+    }
+    // Only an empty folder goes.
+    std::filesystem::remove(folder, error);
   }
-  // Only an empty folder goes.
-  std::filesystem::remove(folder, error);
 }
 
-void OutputFolder::write_vtk_file(const std::string& name, const std::string& text) const {
+void OutputFolder::write_format_file(const std::string& format, const std::string& name, const std::string& text) const {
   std::error_code error;
-  std::filesystem::create_directories(path_of(vtk_folder), error);
-  const std::string in_folder = std::string(vtk_folder) + "/" + name;
+  std::filesystem::create_directories(path_of(format), error);
+  const std::string in_folder = format + "/" + name;
   std::ofstream file = open(in_folder);
   file << text;
   finish(file, path_of(in_folder));

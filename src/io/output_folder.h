@@ -19,8 +19,8 @@ class OutputFolder {
   void require_other_than(const std::string& scene_file) const;
   /// The scene as it was read, with its blocks cut and its overrides applied.
   void write_scene_copy(const std::string& text) const;
-  /// A file of this name in the folder vtk, which is made where it is missing.
-  void write_vtk_file(const std::string& name, const std::string& text) const;
+  /// A file of this name in the folder of a format, which is made where it is missing.
+  void write_format_file(const std::string& format, const std::string& name, const std::string& text) const;
 
   /// Removes what an earlier run or factor of safety has left, by the names that this program gives; nothing else. Throws WriteError if it cannot.
   void remove_results() const;
@@ -39,7 +39,7 @@ class OutputFolder {
  private:
   void remove(const char* name) const;
   bool has_own_scene_copy() const;
-  void remove_vtk_files() const;
+  void remove_format_files() const;
 
   std::string path_;
 };

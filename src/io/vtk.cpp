@@ -204,11 +204,11 @@ void write_vtk(const OutputFolder& folder) {
     const std::string number = fmt::format("{:04}.vtu", block_files.size());
     block_files.emplace_back(time.value_or(0.0), "blocks_" + number);
     contact_files.emplace_back(time.value_or(0.0), "contacts_" + number);
-    folder.write_vtk_file(block_files.back().second, grid_of_blocks(outlines, motions, state, numbers));
-    folder.write_vtk_file(contact_files.back().second, grid_of_contacts(contacts, state, numbers));
+    folder.write_format_file("vtk", block_files.back().second, grid_of_blocks(outlines, motions, state, numbers));
+    folder.write_format_file("vtk", contact_files.back().second, grid_of_contacts(contacts, state, numbers));
   }
-  folder.write_vtk_file("blocks.pvd", collection(block_files));
-  folder.write_vtk_file("contacts.pvd", collection(contact_files));
+  folder.write_format_file("vtk", "blocks.pvd", collection(block_files));
+  folder.write_format_file("vtk", "contacts.pvd", collection(contact_files));
 }
 
 }  // namespace openclose

@@ -33,14 +33,21 @@ void move(toml::table& document, const std::string& file, const KeyEntry& entry,
                       fmt::format("{} gives {}, the new name of this key, too", place_name(location(*there, file)), entry.dotted()),
                       "one of the two");
   warnings.push_back(warning(fmt::format("{}:{}", where.file, where.line), entry));
-  node->visit([&](auto& value) { to->insert_or_assign(entry.key.name, std::move(value)); });
+  if (node->is_boolean() && entry.type == ValueType::names) {
+    // What was a switch of its own is now a name in a list.
+    toml::array list;
+    if (node->as_boolean()->get()) list.push_back(std::string(old_key));
+    to->insert_or_assign(entry.key.name, std::move(list));
+  } else {
+    node->visit([&](auto& value) { to->insert_or_assign(entry.key.name, std::move(value)); });
+  }
   from->erase(old_key);
 }
 
 }  // namespace
 
 void move_former_keys(toml::table& document, const std::string& file, std::vector<std::string>& warnings) {
-  for (const KeyEntry& entry : key_entries(Scene{})) {
+  for (const KeyEntry& entry : option_keys()) {
     if (!entry.key.formerly.empty()) move(document, file, entry, warnings);
   }
 }
@@ -48,10 +55,12 @@ void move_former_keys(toml::table& document, const std::string& file, std::vecto
 std::string with_current_key(const std::string& key_and_value, const std::string& file, std::vector<std::string>& warnings) {
   const std::size_t equals = key_and_value.find('=');
   const std::string key = key_and_value.substr(0, key_and_value.find_last_not_of(' ', equals == 0 ? 0 : equals - 1) + 1);
-  for (const KeyEntry& entry : key_entries(Scene{})) {
+  for (const KeyEntry& entry : option_keys()) {
     if (equals == std::string::npos || entry.key.formerly.empty() || entry.key.formerly != key) continue;
     warnings.push_back(warning(fmt::format("{}: --set {}", file, key), entry));
-    return entry.dotted() + key_and_value.substr(equals);
+    const std::string value = key_and_value.substr(equals + 1);
+    if (entry.type != ValueType::names || (value != "true" && value != "false")) return entry.dotted() + "=" + value;
+    return fmt::format("{}=[{}]", entry.dotted(), value == "true" ? in_quotes(split(key).second) : "");
   }
   return key_and_value;
 }

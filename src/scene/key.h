@@ -15,6 +15,7 @@ struct KeyTable {
   std::string_view name;
   Audience audience = Audience::user;
   std::string_view says;  ///< what its keys are about
+  bool many = false;      ///< written [[name]], as often as there are such things
 };
 
 /// A key of the scene file. Its default is what the member has before anything is read, its unit stands at the end of its name.
@@ -24,6 +25,7 @@ struct Key {
   std::string_view absent{};           ///< what holds without it, where the member itself does not tell
   std::string_view formerly{};         ///< the dotted key that earlier versions had; still read, with a warning
   bool may_change_on_restart = false;  ///< the run that goes on from a checkpoint may have another value
+  bool required = false;               ///< a table without it is refused
 };
 
 /// What a value may be, beside a Range and a list of words.
@@ -34,7 +36,11 @@ struct Increasing {
 struct ListOf {
   Range each;
 };
-/// A name in a list that the scene does not know, because it stands downstream; who looks it up refuses an unknown one.
-enum class NameIn { enforcements, integrators };
+/// An angle in degrees, in radians inside.
+struct Degrees {
+  Range range;
+};
+/// A name, or a list of names, in a registry that the scene does not know, because it stands downstream; who looks it up refuses an unknown one.
+enum class NameIn { enforcements, integrators, formats };
 
 }  // namespace openclose

@@ -5,6 +5,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "openclose/scene/angle.h"
 #include "openclose/scene/nearest.h"
 #include "openclose/scene/toml_text.h"
 
@@ -19,9 +20,14 @@ std::optional<std::string> text_of(const std::string& value, const NameIn&) {
   return toml(std::string_view(value));
 }
 template <typename Number>
-  requires std::is_arithmetic_v<Number>
-std::optional<std::string> text_of(Number value, const Range& range) {
+requires std::is_arithmetic_v<Number> std::optional<std::string> text_of(Number value, const Range& range) {
   return range.contains(value) ? std::optional(toml(value)) : std::nullopt;
+}
+std::optional<std::string> text_of(const std::vector<std::string>& value, const NameIn&) {
+  return toml(value);
+}
+std::optional<std::string> text_of(double value, const Degrees& angle) {
+  return text_of(degrees(value), angle.range);
 }
 template <typename Accepted>
 std::optional<std::string> text_of(const std::vector<double>& value, const Accepted&) {
@@ -82,8 +88,13 @@ class Collector {
     entry.range = list.each;
   }
   template <typename T>
+  static void describe(KeyEntry& entry, const T&, const Degrees& angle) {
+    entry.type = ValueType::number;
+    entry.range = angle.range;
+  }
+  template <typename T>
   static void describe(KeyEntry& entry, const T&, const NameIn& names) {
-    entry.type = ValueType::text;
+    entry.type = std::is_same_v<T, std::vector<std::string>> ? ValueType::names : ValueType::text;
     entry.names = names;
   }
   template <typename T, typename Enum, std::size_t n>
@@ -95,12 +106,6 @@ class Collector {
   KeyTable table_;
 };
 
-/// A scene that nobody has touched: what the rows tell beside values needs one, too.
-const std::vector<KeyEntry>& rows() {
-  static const std::vector<KeyEntry> entries = key_entries(Scene{});
-  return entries;
-}
-
 constexpr std::array<std::pair<std::string_view, std::string_view>, 4> spelt_units{{{"pa", "Pa"}, {"n", "N"}, {"hz", "Hz"}, {"j", "J"}}};
 
 }  // namespace
@@ -109,6 +114,19 @@ std::vector<KeyEntry> key_entries(const Scene& scene) {
   Collector collector;
   visit_keys(scene, collector);
   return std::move(collector.entries);
+}
+
+std::vector<KeyEntry> joint_entries(const JointProperties& joint) {
+  Collector collector;
+  collector.table({"joint", Audience::user, "One for every pair of materials that can touch", true});
+  visit_joint_keys(joint, collector);
+  return std::move(collector.entries);
+}
+
+const std::vector<KeyEntry>& option_keys() {
+  static const Scene untouched;
+  static const std::vector<KeyEntry> entries = key_entries(untouched);
+  return entries;
 }
 
 std::string unit_of(std::string_view key) {
@@ -135,15 +153,17 @@ std::string unit_of(std::string_view key) {
 
 std::vector<std::string> tables_with(const std::string& name) {
   std::vector<std::string> found;
-  for (const KeyEntry& entry : rows()) {
-    if (entry.key.name == name) found.push_back(entry.dotted());
+  for (const auto& rows : {option_keys(), element_keys()}) {
+    for (const KeyEntry& entry : rows) {
+      if (entry.key.name == name) found.push_back(entry.dotted());
+    }
   }
   return found;
 }
 
 std::optional<std::string> similar_key(const std::string& dotted) {
   std::vector<std::string> keys;
-  for (const KeyEntry& entry : rows()) keys.push_back(entry.dotted());
+  for (const KeyEntry& entry : option_keys()) keys.push_back(entry.dotted());
   return similar(dotted, keys);
 }
 

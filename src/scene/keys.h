@@ -11,29 +11,39 @@
 
 namespace openclose {
 
-enum class ValueType { boolean, number, whole_number, text, word, list };
+enum class ValueType { boolean, number, whole_number, text, word, list, names, vector, polygon, polygons };
 
 /// A row with the value of its member.
 struct KeyEntry {
   KeyTable table;
   Key key;
   ValueType type = ValueType::boolean;
-  Range range{};                        ///< of numbers, and of each number of a list
+  Range range{};                        ///< of numbers, and of each number of a list or vector
   bool increasing = false;              ///< of a list
   std::vector<std::string_view> words;  ///< of ValueType::word
-  std::optional<NameIn> names;          ///< of ValueType::text: where they are looked up
+  std::optional<NameIn> names;          ///< of ValueType::text and names: where they are looked up
   std::optional<std::string> value;     ///< as TOML and JSON; absent where the key was not given and has no default of its own
 
-  std::string dotted() const { return std::string(table.name) + '.' + std::string(key.name); }
+  std::string dotted() const { return (table.name.empty() ? "" : std::string(table.name) + '.') + std::string(key.name); }
 };
 
-/// All rows with the values of the scene, in the order of the tables.
+/// The rows of the options of an analysis, those of the tables that a file has once, with their defaults.
+const std::vector<KeyEntry>& option_keys();
+
+/// The rows of what a scene is made of, without values: materials, joints, blocks, forces, base motion, domain. The table of keys that stand at the
+/// top of the file has no name.
+const std::vector<KeyEntry>& element_keys();
+
+/// The rows of the options with the values of the scene, in the order of the tables.
 std::vector<KeyEntry> key_entries(const Scene& scene);
+
+/// The rows of [[joint]], but for its materials, with the values of the joint.
+std::vector<KeyEntry> joint_entries(const JointProperties& joint);
 
 /// The unit at the end of a key's name as one writes it: "dt_s" -> "s", "penalty_pa_per_m" -> "Pa/m"; empty for a number without one.
 std::string unit_of(std::string_view key);
 
-/// The dotted keys of other tables that have this name.
+/// The dotted keys of all tables that have this name.
 std::vector<std::string> tables_with(const std::string& name);
 
 /// The dotted key most like this one, if it is hardly more than misspelt.

@@ -64,23 +64,70 @@ Material read_material(Table table, const Vec2& gravity, NameList& names) {
   return material;
 }
 
+/// What is met one after the other in a run is also written so: it names its rows and states.
+void require_increasing(const Value& value, const std::vector<double>& list) {
+  for (std::size_t i = 1; i < list.size(); ++i) {
+    if (list[i] <= list[i - 1]) value.element(i).fail(fmt::format("{} follows {}", list[i], list[i - 1]), "numbers that increase");
+  }
+}
+
+/// Reads the rows of one table of keys: what the file gives; of the rest finish() reports what is required.
+class RowReader {
+ public:
+  explicit RowReader(Table* table) : table_(table) {}
+
+  template <typename T, typename Accepted>
+  void operator()(const Key& key, T& member, const Accepted& accepted, SourceLocation* where = nullptr) {
+    const std::string name(key.name);
+    const bool given = read_member(name, member, accepted);
+    if (given && where != nullptr) *where = table_->at(name).where();
+    if (!given && key.required) table_->miss(name);
+  }
+
+ protected:
+  Table* table_;
+
+ private:
+  template <typename T, typename Accepted>
+  bool read_member(const std::string& name, T& member, const Accepted& limits) {
+    return table_->optional(name, member, limits);
+  }
+  bool read_member(const std::string& name, bool& member, const Flag&) { return table_->optional(name, member); }
+  bool read_member(const std::string& name, double& member, const Degrees& angle) {
+    double in_degrees = 0.0;
+    const bool given = table_->optional(name, in_degrees, angle.range);
+    if (given) member = radians(in_degrees);
+    return given;
+  }
+  bool read_member(const std::string& name, std::vector<double>& member, const ListOf& list) { return table_->optional(name, member, list.each); }
+  bool read_member(const std::string& name, std::vector<double>& member, const Increasing& list) {
+    const bool given = table_->optional(name, member, list.each);
+    if (given) require_increasing(table_->at(name), member);
+    return given;
+  }
+  bool read_member(const std::string& name, std::vector<std::string>& member, const NameIn&) { return table_->optional(name, member); }
+  template <typename T>
+  bool read_member(const std::string& name, T& member, const NameIn& names) {
+    std::string text;
+    if (!table_->optional(name, text)) return false;
+    if (text.empty())
+      table_->at(name).fail("the name is empty", names == NameIn::enforcements ? "the name of a contact method, e.g. \"soft\""
+                                                                               : "the name of a time integrator, e.g. \"theta\"");
+    member = text;
+    return true;
+  }
+};
+
 JointProperties read_joint(Table table, const NameList& material_names) {
   JointProperties joint;
   std::vector<int> materials;
-  double friction_angle_deg = 0.0;
   table.required("materials", materials, material_names);
-  table.required("normal_stiffness_pa_per_m", joint.normal_stiffness, positive);
-  table.required("shear_stiffness_pa_per_m", joint.shear_stiffness, positive);
-  table.required("friction_angle_deg", friction_angle_deg, Range{.low = 0.0, .high = 90.0, .low_included = true});
-  table.optional("cohesion_pa", joint.cohesion, not_negative);
-  table.optional("tensile_strength_pa", joint.tensile_strength, not_negative);
-  table.optional("cohesion_behaviour", joint.cohesion_behaviour, cohesion_behaviour_words);
-  table.optional("damping_ratio", joint.damping_ratio, not_negative);
+  RowReader reader(&table);
+  visit_joint_keys(joint, reader);
   table.finish();
 
   if (materials.size() != 2) table.at("materials").fail(fmt::format("there are {} names", materials.size()), "two names of materials");
   joint.materials = {materials[0], materials[1]};
-  joint.friction_angle = radians(friction_angle_deg);
   return joint;
 }
 
@@ -239,13 +286,6 @@ MeasuredContact read_measured_contact(Table table, const Scene& scene, const Nam
   return measured;
 }
 
-/// What is met one after the other in a run is also written so: it names its rows and states.
-void require_increasing(const Value& value, const std::vector<double>& list) {
-  for (std::size_t i = 1; i < list.size(); ++i) {
-    if (list[i] <= list[i - 1]) value.element(i).fail(fmt::format("{} follows {}", list[i], list[i - 1]), "numbers that increase");
-  }
-}
-
 /// The names of the tables in which keys stand.
 class TableNames {
  public:
@@ -256,52 +296,22 @@ class TableNames {
   std::vector<std::string> names;
 };
 
-/// Reads every key of the tables of keys that the file gives.
-class KeyReader {
+/// Reads every key of the options that the file gives.
+class KeyReader : public RowReader {
  public:
-  explicit KeyReader(std::map<std::string, Table>& tables) : tables_(tables) {}
+  explicit KeyReader(std::map<std::string, Table>& tables) : RowReader(nullptr), tables_(tables) {}
 
   void table(const KeyTable& table) {
     finish();
     table_ = &tables_.at(std::string(table.name));
   }
-
-  template <typename T, typename Accepted>
-  void operator()(const Key& key, T& member, const Accepted& accepted, SourceLocation* where = nullptr) {
-    const std::string name(key.name);
-    if (read_member(name, member, accepted) && where != nullptr) *where = table_->at(name).where();
-  }
-
   /// To be called after the last row.
   void finish() const {
     if (table_ != nullptr) table_->finish();
   }
 
  private:
-  template <typename T, typename Accepted>
-  bool read_member(const std::string& name, T& member, const Accepted& limits) {
-    return table_->optional(name, member, limits);
-  }
-  bool read_member(const std::string& name, bool& member, const Flag&) { return table_->optional(name, member); }
-  bool read_member(const std::string& name, std::vector<double>& member, const ListOf& list) { return table_->optional(name, member, list.each); }
-  bool read_member(const std::string& name, std::vector<double>& member, const Increasing& list) {
-    const bool given = table_->optional(name, member, list.each);
-    if (given) require_increasing(table_->at(name), member);
-    return given;
-  }
-  template <typename T>
-  bool read_member(const std::string& name, T& member, const NameIn& names) {
-    std::string text;
-    if (!table_->optional(name, text)) return false;
-    if (text.empty())
-      table_->at(name).fail("the name is empty", names == NameIn::enforcements ? "the name of a contact method, e.g. \"soft\""
-                                                                               : "the name of a time integrator, e.g. \"theta\"");
-    member = text;
-    return true;
-  }
-
   std::map<std::string, Table>& tables_;
-  Table* table_ = nullptr;
 };
 
 void require_both(const Table& table, const std::string& a, const std::string& b) {

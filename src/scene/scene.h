@@ -27,6 +27,12 @@ enum class CohesionBehaviour {
   lost_on_slip,     ///< gone once the contact has slipped or opened
 };
 
+inline constexpr std::array cohesion_behaviour_words{
+    Word{"ductile", CohesionBehaviour::ductile},
+    Word{"lost_on_opening", CohesionBehaviour::lost_on_opening},
+    Word{"lost_on_slip", CohesionBehaviour::lost_on_slip},
+};
+
 /// Mohr-Coulomb joint with tension cut-off, for one unordered pair of materials.
 struct JointProperties {
   std::array<int, 2> materials{};  ///< indices into Scene::materials
@@ -38,6 +44,20 @@ struct JointProperties {
   CohesionBehaviour cohesion_behaviour = CohesionBehaviour::ductile;
   double damping_ratio = 0.0;  ///< [-] of dashpots parallel to the springs, see law/joint_law.h
 };
+
+/// The keys of [[joint]], but for its two materials.
+template <class Joint, class Visitor>
+void visit_joint_keys(Joint& j, Visitor& visit) {
+  visit({.name = "normal_stiffness_pa_per_m", .says = "of the springs across the joint, for a square metre of it", .required = true},
+        j.normal_stiffness, positive);
+  visit({.name = "shear_stiffness_pa_per_m", .says = "of the springs along it", .required = true}, j.shear_stiffness, positive);
+  visit({.name = "friction_angle_deg", .says = "of Mohr and Coulomb's law", .required = true}, j.friction_angle,
+        Degrees{{.low = 0.0, .high = 90.0, .low_included = true}});
+  visit({"cohesion_pa", "of Mohr and Coulomb's law"}, j.cohesion, not_negative);
+  visit({"tensile_strength_pa", "gone once the joint has opened"}, j.tensile_strength, not_negative);
+  visit({"cohesion_behaviour", "when the cohesion is lost, if ever"}, j.cohesion_behaviour, cohesion_behaviour_words);
+  visit({"damping_ratio", "dashpots beside the joint's springs, see [methods](methods.md)"}, j.damping_ratio, not_negative);
+}
 
 struct BlockInput {
   std::string name;
@@ -143,7 +163,8 @@ struct Scene {
   std::vector<double> milestones;              ///< [m] displacements of the first measured point to be timed, increasing
   std::vector<double> snapshot_times;          ///< [s] at which the state is written, increasing
   double snapshots_every = 0.0;                ///< [s] interval at which it is written besides; 0: never
-  bool vtk = false;                            ///< the states are written for ParaView, too
+  std::vector<std::string> formats;            ///< in which results are written besides the tables (io looks them up)
+  SourceLocation formats_where;                ///< for the error of an unknown one
   SettleInput settle;
   StrengthReductionInput strength_reduction;
 
@@ -187,7 +208,8 @@ void visit_keys(Input& scene, Visitor& visit) {
   visit({"milestones_m", "when has the first measured point moved so far, and at what CPU time"}, scene.milestones, Increasing{positive});
   visit({"snapshots_s", "the state at these times, each after the step that ends nearest to it"}, scene.snapshot_times, Increasing{not_negative});
   visit({"snapshots_every_s", "interval, in whole steps, at which the state is written besides; 0: never"}, scene.snapshots_every, not_negative);
-  visit({"vtk", "true: the states for ParaView, too, in the folder `vtk` of the results; of `fos`, too"}, scene.vtk, Flag{});
+  visit({"formats", "in which the results are written besides the tables, see [output](output.md): each in a folder of its name", {}, "output.vtk", true},
+        scene.formats, NameIn::formats, &scene.formats_where);
   visit_settle_keys(scene.settle, visit);
   visit_strength_reduction_keys(scene.strength_reduction, visit);
 }

@@ -26,6 +26,18 @@ std::string escaped(std::string_view text) {
   return line;
 }
 
+/// "block[2].fixed" -> "block.fixed"
+std::string without_indices(const std::string& key) {
+  std::string name;
+  bool inside = false;
+  for (const char character : key) {
+    if (character == '[') inside = true;
+    if (!inside) name += character;
+    if (character == ']') inside = false;
+  }
+  return name;
+}
+
 /// What a value of the wrong type is, in the user's terms.
 std::string description(const toml::node& node) {
   switch (node.type()) {
@@ -169,7 +181,8 @@ std::vector<Table> Table::tables(const std::string& key) {
 }
 
 void Table::refuse(const toml::node& node, const std::string& key) const {
-  const std::vector<std::string> elsewhere = tables_with(key);
+  std::vector<std::string> elsewhere = tables_with(key);
+  std::erase(elsewhere, without_indices(dotted(key)));
   if (!elsewhere.empty())
     throw_input_error(location(node, *file_), dotted(key), "this key belongs in another table", fmt::format("{}", fmt::join(elsewhere, ", ")));
   const std::vector<std::string> other_units = same_quantity(key, accepted_);

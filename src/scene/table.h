@@ -121,7 +121,7 @@ class Table {
   /// Reads the key into the target; its absence is reported by finish().
   template <typename T, typename... Limits>
   void required(const std::string& key, T& target, const Limits&... limits) {
-    if (!optional(key, target, limits...)) missing_.push_back(key);
+    if (!optional(key, target, limits...)) miss(key);
   }
 
   /// Reads the key into the target if it is there, and says whether it was.
@@ -132,6 +132,9 @@ class Table {
     if (value) read(*value, target, limits...);
     return value.has_value();
   }
+
+  /// A key that is required and was not there; finish() reports it.
+  void miss(const std::string& key) { missing_.push_back(key); }
 
   /// A table within this one, written [key]; one without keys if it is absent.
   Table table(const std::string& key);

@@ -42,13 +42,9 @@ void write_joints(Text& text, const Scene& scene) {
   for (const JointProperties& joint : scene.joints) {
     text.header("[[joint]]");
     text.line("materials", std::vector<std::string_view>{scene.materials[joint.materials[0]].name, scene.materials[joint.materials[1]].name});
-    text.line("normal_stiffness_pa_per_m", joint.normal_stiffness);
-    text.line("shear_stiffness_pa_per_m", joint.shear_stiffness);
-    text.line("friction_angle_deg", degrees(joint.friction_angle));
-    text.line_unless(0.0, "cohesion_pa", joint.cohesion);
-    text.line_unless(0.0, "tensile_strength_pa", joint.tensile_strength);
-    text.line("cohesion_behaviour", word_for(cohesion_behaviour_words, joint.cohesion_behaviour));
-    text.line_unless(0.0, "damping_ratio", joint.damping_ratio);
+    for (const KeyEntry& entry : joint_entries(joint)) {
+      if (entry.value) text.raw_line(entry.key.name, *entry.value);
+    }
   }
 }
 

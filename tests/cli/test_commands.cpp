@@ -33,8 +33,8 @@ std::set<std::string> entries(const std::string& folder) {
 }
 
 /// What a run has written before it ends.
-const std::set<std::string> tables_of_run = {"block_properties.csv", "block_states.csv", "blocks.csv", "contacts.csv", "cracks.csv",
-                                             "energy.csv",           "history.csv",      "scene_as_read.toml"};
+const std::set<std::string> tables_of_run = {"block_properties.csv", "block_states.csv", "blocks.csv",  "contacts.csv",
+                                             "cracks.csv",           "energy.csv",       "history.csv", "scene_as_read.toml"};
 
 }  // namespace
 
@@ -139,8 +139,8 @@ TEST_CASE("a folder has the results of one run only, beside files of the user's 
                    "strength_reduction.curve=[1.1] "
                    "--set strength_reduction.curve_time_s=0.01")
               .status == 0);
-    CHECK(in_out() == std::set<std::string>{"block_properties.csv", "block_states.csv", "blocks.csv", "contacts.csv", "cracks.csv", "curve.csv", "mine.csv",
-                                            "scene_as_read.toml", "summary.json", "trials.csv"});
+    CHECK(in_out() == std::set<std::string>{"block_properties.csv", "block_states.csv", "blocks.csv", "contacts.csv", "cracks.csv", "curve.csv",
+                                            "mine.csv", "scene_as_read.toml", "summary.json", "trials.csv"});
     CHECK(place.run(run).status == 0);
     CHECK(in_out() == bare);
   }
@@ -487,10 +487,49 @@ TEST_CASE("writing states leaves the run as it is, bit for bit", "[cli]") {
     INFO(method);
     const std::string common = "run scene.toml --dt 0.001 --end 0.3 --start unloaded --contact " + method;
     REQUIRE(place.run(common + " -o plain").status == 0);
-    REQUIRE(place.run(common + " -o states --set output.snapshots_every_s=0.007 --set output.vtk=true").status == 0);
+    REQUIRE(place.run(common + " -o states --set output.snapshots_every_s=0.007 --set 'output.formats=[\"vtk\"]'").status == 0);
     for (const std::string file : {"history.csv", "energy.csv"}) {
       CHECK(text_of(place.folder() / "plain/" + file) == text_of(place.folder() / "states/" + file));
     }
     CHECK(lines_of(place.folder() / "states/cracks.csv").size() == 1 + 2 + 42);
   }
+}
+
+TEST_CASE("explain tells a key, and refuses an unknown one", "[cli][keys]") {
+  const Workplace place("");
+  const CommandResult theta = place.run("explain theta");
+  CHECK(theta.status == 0);
+  CHECK_THAT(theta.out, ContainsSubstring("method.theta: ") && ContainsSubstring("accepted  a number in [0.5, 1]"));
+  CHECK_THAT(place.run("explain --page").out, ContainsSubstring("| `dt_s` | s | "));
+  CHECK_THAT(place.run("explain --schema").out, ContainsSubstring("\"$schema\""));
+  for (const std::string wrong : {"explain thetta", "explain"}) {
+    const CommandResult refused = place.run(wrong);
+    CHECK(refused.status == 2);
+    CHECK(refused.errors.size() == 1);
+    CHECK(refused.out.empty());
+  }
+  CHECK_THAT(place.run("explain thetta").errors.at(0), ContainsSubstring("explain: thetta: this key is not known, did you mean theta?"));
+}
+
+TEST_CASE("a key in its old place is warned of once and changes nothing else", "[cli][keys]") {
+  const std::string motion = "[step]\ndt_s = 0.001\n[end]\ntime_s = 0.01\n";
+  const Workplace old_place(block_on_base + "[method]\nmax_iterations = 70\n" + motion),
+      new_place(block_on_base + "[solver]\nmax_iterations = 70\n" + motion);
+  const CommandResult old_key = old_place.run("run scene.toml -o out"), new_key = new_place.run("run scene.toml -o out");
+  CHECK(old_key.status == 0);
+  CHECK(old_key.errors == std::vector<std::string>{
+                              "openclose: warning: scene.toml:23: method.max_iterations is now solver.max_iterations; the old name is still read"});
+  CHECK(new_key.status == 0);
+  CHECK(new_key.errors.empty());
+  for (const char* table : {"out/history.csv", "out/energy.csv", "out/scene_as_read.toml"})
+    CHECK(text_of(old_place.folder() / table) == text_of(new_place.folder() / table));
+  CHECK(summary_in(old_place.folder() / "out").at("warnings").size() == 1);
+}
+
+TEST_CASE("a form of results that there is not is refused before anything is written", "[cli][formats]") {
+  const Workplace place;
+  const CommandResult result = place.run("run scene.toml -o out --dt 0.001 --end 0.002 --set 'output.formats=[\"dxf\"]'");
+  CHECK(result.status == 2);
+  CHECK_THAT(result.errors.at(0), ContainsSubstring("output.formats: \"dxf\" is no known form of results; accepted: \"vtk\""));
+  CHECK_FALSE(std::filesystem::exists(place.folder() / "out"));
 }

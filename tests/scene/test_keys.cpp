@@ -1,7 +1,9 @@
 // The tables of keys: every row is gone through, so that a new key is tested as soon as it has one.
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
+#include <utility>
 
 #include "openclose/scene/check.h"
 #include "openclose/scene/keys.h"
@@ -41,6 +43,10 @@ std::string other_value(const KeyEntry& entry) {
       return toml(entry.value == toml(entry.words.front()) ? entry.words.back() : entry.words.front());
     case ValueType::list:
       return "[" + toml(a) + ", " + toml(b) + "]";
+    case ValueType::names:
+      return "[\"something\"]";
+    default:
+      FAIL("no option has such a type");
   }
   return {};
 }
@@ -71,7 +77,7 @@ std::string error_of(const std::string& text, const std::vector<std::string>& ov
   return "no error";
 }
 
-const std::vector<KeyEntry> all_keys = key_entries(Scene{});
+const std::vector<KeyEntry>& all_keys = option_keys();
 
 }  // namespace
 
@@ -157,6 +163,74 @@ TEST_CASE("a key under both names is refused", "[scene][keys]") {
   CHECK_THAT(error_of(block_on_base + "[method]\nmax_iterations = 0\n"), ContainsSubstring(":23: solver.max_iterations: 0 is out of range"));
 }
 
+TEST_CASE("a switch that has become a name in a list is still read", "[scene][keys]") {
+  CHECK(read_text(block_on_base + "[output]\nvtk = true\n").formats == std::vector<std::string>{"vtk"});
+  CHECK(read_text(block_on_base + "[output]\nvtk = false\n").formats.empty());
+  CHECK(read_text(block_on_base, {"output.vtk=true"}).formats == std::vector<std::string>{"vtk"});
+  CHECK(read_text(block_on_base + "[output]\nvtk = true\n", {"output.vtk=false"}).formats.empty());
+  CHECK_THAT(error_of(block_on_base + "[output]\nvtk = 1\n"), ContainsSubstring(":23: output.formats: 1 is a number; accepted: an array"));
+}
+
+namespace {
+
+/// What the reader asks of a table: all its keys, or those without which it is refused, from the lists in its errors.
+std::set<std::string> names_after(const std::string& error, const std::string& start) {
+  const std::size_t begin = error.find(start);
+  INFO(error);
+  REQUIRE(begin != std::string::npos);
+  std::set<std::string> names;
+  std::string name;
+  for (const char c : error.substr(begin + start.size()) + ",") {
+    if (c == ',') {
+      names.insert(std::exchange(name, ""));
+    } else if (c != ' ') {
+      name += c;
+    }
+  }
+  return names;
+}
+
+/// A scene with an empty table of this name, to which a line can be added.
+std::vector<std::string> scenes_with(const std::string& table) {
+  const std::string domain = "[domain]\nmaterial = 'rock'\nvertices_m = [[10, 0], [20, 0], [20, 10], [10, 10]]\n";
+  if (table == "base_motion.pulse") return {block_on_base + "[base_motion]\nkind = 'pulses'\n[[base_motion.pulse]]\n"};
+  if (table == "base_motion") {
+    std::vector<std::string> kinds;
+    for (const char* kind : {"pulses", "harmonic", "record"}) kinds.push_back(block_on_base + "[base_motion]\nkind = '" + kind + "'\n");
+    return kinds;
+  }
+  if (table == "domain") return {block_on_base + "[domain]\n"};
+  return {block_on_base + domain + "[[" + table + "]]\n"};
+}
+
+}  // namespace
+
+TEST_CASE("what a scene is made of is described with the keys that the reader asks for", "[scene][keys]") {
+  std::map<std::string, std::pair<std::set<std::string>, std::set<std::string>>> described;
+  for (const KeyEntry& entry : element_keys()) {
+    INFO(entry.dotted());
+    CHECK_FALSE(entry.key.says.empty());
+    auto& [all, required] = described[std::string(entry.table.name)];
+    CHECK(all.insert(std::string(entry.key.name)).second);
+    if (entry.key.required) required.insert(std::string(entry.key.name));
+  }
+  CHECK(described.size() == 15);
+  CHECK(described[""].first == std::set<std::string>{"title", "gravity_m_per_s2"});
+  for (const auto& [table, keys] : described) {
+    if (table.empty()) continue;
+    std::set<std::string> asked;
+    for (const std::string& scene : scenes_with(table)) {
+      asked.merge(names_after(error_of(scene + "qqqqqqqqqqqqqqqq = 1\n"), "qqqqqqqqqqqqqqqq: this key is not known; accepted: "));
+    }
+    INFO("[" << table << "]");
+    if (table == "base_motion") asked.erase("pulse");  // a table within it
+    CHECK(keys.first == asked);
+    if (table == "base_motion") continue;
+    const std::string error = error_of(scenes_with(table).front());
+    if (!keys.second.empty()) CHECK(keys.second == names_after(error, "this key is missing; accepted: a table with "));
+  }
+}
+
 TEST_CASE("a key in the wrong table says where it belongs", "[scene][keys]") {
   CHECK_THAT(error_of(block_on_base + "[step]\ntheta = 1\n"),
              ContainsSubstring(":23: step.theta: this key belongs in another table; accepted: method.theta"));
@@ -166,6 +240,13 @@ TEST_CASE("a key in the wrong table says where it belongs", "[scene][keys]") {
              ContainsSubstring(":1: contact: this key belongs in another table; accepted: method.contact"));
   CHECK_THAT(error_of(block_on_base, {"step.contact=dem"}),
              ContainsSubstring("step.contact: this key belongs in another table; accepted: method.contact"));
+}
+
+TEST_CASE("a key of the right table in the wrong case of it is no stranger's", "[scene][keys]") {
+  CHECK_THAT(error_of(block_on_base + "[base_motion]\nkind = 'pulses'\nfrequency_hz = 1\n"),
+             ContainsSubstring("base_motion.frequency_hz: this key is not known; accepted: "));
+  CHECK_THAT(error_of(block_on_base + "[[load]]\nstiffness_n_per_m = [1, 1]\n"),
+             ContainsSubstring("load[0].stiffness_n_per_m: this key belongs in another table; accepted: support.stiffness_n_per_m"));
 }
 
 TEST_CASE("a misspelt key is guessed, in its table and beyond", "[scene][keys]") {

@@ -68,7 +68,7 @@ TEST_CASE("every key reaches its field", "[scene][reader]") {
       "[rest]\ntime_s = 0.5\ndisplacement_m = 2e-3\nacceleration_m_per_s2 = 0.75\n"
       "[run]\nstrength_reduction_factor = 1.5\nsettled_by = 'another'\n"
       "[end]\ntime_s = 15\ndisplacement_m = 40\n[output]\nevery_s = 16\ncheckpoint_every_s = 24\nmilestones_m = [10, 20.5]\nsnapshots_s = [0, "
-      "1.522]\nsnapshots_every_s = 0.25\nvtk = true\n"
+      "1.522]\nsnapshots_every_s = 0.25\nformats = ['vtk']\n"
       "[settle]\nunbalanced_fraction = 1e-3\nfirst_dt_s = 17\nmax_steps = 18\nfailure_displacement_m = 19\n"
       "criterion = 'paper'\nrelative_displacement = 1e-6\nsteady_steps = 22\nmax_time_steps = 23\nunbalanced_force_n = 24\nkeep_bonds = false\n"
       "[strength_reduction]\nwidth = 0.125\nupper_limit = 20\ncurve = [1, 1.5]\ncurve_time_s = 21\n");
@@ -99,7 +99,7 @@ TEST_CASE("every key reaches its field", "[scene][reader]") {
   CHECK(scene.measured_points.at(0).name == "p");
   CHECK(scene.measured_points.at(0).point == Vec2(1.0, 0.0));
   CHECK(scene.snapshots_every == 0.25);
-  CHECK(scene.vtk);
+  CHECK(scene.formats == std::vector<std::string>{"vtk"});
   const MethodInput& method = scene.method;
   CHECK(method.contact == "anything");
   CHECK(method.contact_where.line == 38);

@@ -124,7 +124,7 @@ void check_same(const Scene& a, const Scene& b) {
   CHECK(a.milestones == b.milestones);
   CHECK(a.snapshot_times == b.snapshot_times);
   CHECK(a.snapshots_every == b.snapshots_every);
-  CHECK(a.vtk == b.vtk);
+  CHECK(a.formats == b.formats);
   REQUIRE(a.measured_contacts.size() == b.measured_contacts.size());
   for (std::size_t i = 0; i < a.measured_contacts.size(); ++i) {
     CHECK(a.measured_contacts[i].name == b.measured_contacts[i].name);
@@ -234,7 +234,7 @@ Scene random_scene(unsigned seed) {
   scene.milestones = {first, 2.0 * first};
   scene.snapshot_times = {0.0, first};
   scene.snapshots_every = number();
-  scene.vtk = true;
+  scene.formats = {"one", "another"};
   // Two blocks that share a corner: the second one is turned by half a turn about it.
   const Vec2 shared = scene.blocks[0].vertices[0], old = scene.blocks[1].vertices[0];
   for (Vec2& v : scene.blocks[1].vertices) v = shared - (v - old);
@@ -273,7 +273,10 @@ TEST_CASE("what was read is written as a person would", "[scene][writer]") {
       "normal_stiffness_pa_per_m = 1000000000\n"
       "shear_stiffness_pa_per_m = 400000000\n"
       "friction_angle_deg = 35\n"
+      "cohesion_pa = 0\n"
+      "tensile_strength_pa = 0\n"
       "cohesion_behaviour = \"ductile\"\n"
+      "damping_ratio = 0\n"
       "\n"
       "[[block]]\n"
       "name = \"base\"\n"

@@ -1,4 +1,4 @@
-"""Reads what `output.vtk = true` writes with VTK itself and compares it with the tables beside it: every point, every value, every time.
+"""Reads what `output.formats = ["vtk"]` writes with VTK itself and compares it with the tables beside it: every point, every value, every time.
 
     python3 tests/vtk/read_back.py OPENCLOSE        (needs python3-vtk9; make verify-vtk installs it)
 """
@@ -46,7 +46,7 @@ dt_s = 1e-3
 time_s = 0.4
 [output]
 snapshots_every_s = 0.1
-vtk = true
+formats = ["vtk"]
 """
 
 
