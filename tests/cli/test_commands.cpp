@@ -487,7 +487,7 @@ TEST_CASE("writing states leaves the run as it is, bit for bit", "[cli]") {
     INFO(method);
     const std::string common = "run scene.toml --dt 0.001 --end 0.3 --start unloaded --contact " + method;
     REQUIRE(place.run(common + " -o plain").status == 0);
-    REQUIRE(place.run(common + " -o states --set output.snapshots_every_s=0.007 --set 'output.formats=[\"vtk\"]'").status == 0);
+    REQUIRE(place.run(common + " -o states --set output.snapshots_every_s=0.007 --set 'output.formats=[\"vtk\", \"svg\"]'").status == 0);
     for (const std::string file : {"history.csv", "energy.csv"}) {
       CHECK(text_of(place.folder() / "plain/" + file) == text_of(place.folder() / "states/" + file));
     }
@@ -530,6 +530,6 @@ TEST_CASE("a form of results that there is not is refused before anything is wri
   const Workplace place;
   const CommandResult result = place.run("run scene.toml -o out --dt 0.001 --end 0.002 --set 'output.formats=[\"dxf\"]'");
   CHECK(result.status == 2);
-  CHECK_THAT(result.errors.at(0), ContainsSubstring("output.formats: \"dxf\" is no known form of results; accepted: \"vtk\""));
+  CHECK_THAT(result.errors.at(0), ContainsSubstring("output.formats: \"dxf\" is no known form of results; accepted: \"vtk\", \"svg\""));
   CHECK_FALSE(std::filesystem::exists(place.folder() / "out"));
 }
