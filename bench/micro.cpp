@@ -48,40 +48,40 @@ class Slope {
   }
 
   explicit Slope(int blocks) : simulation_(scene_of(blocks)) {
-    const RunResult result = run<3>(simulation_, {});
+    const RunResult result = run(simulation_, {});
     if (!result.converged) throw std::runtime_error(result.reason);
   }
 
-  Simulation<3>& simulation() { return simulation_; }
-  StepProblem<3> problem() { return simulation_.problem(dt, false); }
+  Simulation& simulation() { return simulation_; }
+  StepProblem problem() { return simulation_.problem(dt, false); }
 
   std::vector<ContactSprings> springs() {
-    const auto soft = make_soft<3>();
-    const StepProblem<3> step = problem();
+    const auto soft = make_soft();
+    const StepProblem step = problem();
     std::vector<ContactSprings> list;
     for (const Contact& c : step.contacts) list.push_back(soft->springs(step, c));
     return list;
   }
 
  private:
-  Simulation<3> simulation_;
+  Simulation simulation_;
 };
 
 /// The derivatives of one contact's springs by the unknowns of its blocks, closed and sticking.
 struct ContactMatrix {
   int vertex_row, edge_row;  // -1: fixed
-  BlockMatrix<3>::Block vertex, edge, vertex_edge;
+  BlockMatrix::Block vertex, edge, vertex_edge;
 };
 
 std::vector<ContactMatrix> contact_matrices(Slope& slope) {
-  const StepProblem<3> step = slope.problem();
+  const StepProblem step = slope.problem();
   const auto springs = slope.springs();
-  const auto nothing = Motion<3>::Unknowns::Zero().eval();
+  const auto nothing = Motion::Unknowns::Zero().eval();
   std::vector<ContactMatrix> list;
   for (std::size_t c = 0; c < springs.size(); ++c) {
     const Contact& contact = step.contacts[c];
     if (contact.status == ContactStatus::open) continue;
-    const ContactKinematics<3> k(step.system, contact, nothing, nothing);
+    const ContactKinematics k(step.system, contact, nothing, nothing);
     const ContactSprings& s = springs[c];
     list.push_back({step.system.block(contact.vertex_block).equation, step.system.block(contact.edge_block).equation,
                     s.normal * k.normal_vertex * k.normal_vertex.transpose() + s.shear * k.shear_vertex * k.shear_vertex.transpose(),
@@ -91,7 +91,7 @@ std::vector<ContactMatrix> contact_matrices(Slope& slope) {
   return list;
 }
 
-void assemble(Slope& slope, const std::vector<ContactMatrix>& contacts, BlockMatrix<3>& matrix) {
+void assemble(Slope& slope, const std::vector<ContactMatrix>& contacts, BlockMatrix& matrix) {
   matrix.set_zero();
   const auto& system = std::as_const(slope.simulation()).system();
   for (const int b : system.free_blocks()) {
@@ -119,7 +119,7 @@ struct Equations {
   }
 
   std::vector<ContactMatrix> contacts;
-  BlockMatrix<3> matrix;
+  BlockMatrix matrix;
 };
 
 void say_size(benchmark::State& state, Slope& slope) {
@@ -134,7 +134,7 @@ void detect(benchmark::State& state, bool search) {
   DetectionSkips skips;
   skips.search = !search;
   skips.narrow_phase = false;
-  Detector<3> detector(simulation.scene().step.max_displacement, skips);
+  Detector detector(simulation.scene().step.max_displacement, skips);
   detector.update(simulation.system(), slope.simulation().joints(), contacts);
   for (auto _ : state) detector.update(simulation.system(), slope.simulation().joints(), contacts);
   say_size(state, slope);
@@ -149,8 +149,8 @@ void search_and_narrow_phase(benchmark::State& state) {
 void residual(benchmark::State& state) {
   Slope& slope = Slope::of(state.range(0));
   const auto springs = slope.springs();
-  const StepProblem<3> step = slope.problem();
-  Newton<3> newton;
+  const StepProblem step = slope.problem();
+  Newton newton;
   for (auto _ : state) benchmark::DoNotOptimize(newton.forces(step, springs).data());
   say_size(state, slope);
 }
@@ -168,7 +168,7 @@ void assembly(benchmark::State& state) {
 void factor(benchmark::State& state) {
   Slope& slope = Slope::of(state.range(0));
   const Equations equations(slope);
-  const auto solver = make_block_solver<3>(Factoring::whole);
+  const auto solver = make_block_solver(Factoring::whole);
   if (!solver->factor(equations.matrix)) throw std::runtime_error("singular");
   for (auto _ : state) benchmark::DoNotOptimize(solver->factor(equations.matrix));
   say_size(state, slope);
@@ -177,7 +177,7 @@ void factor(benchmark::State& state) {
 void solve(benchmark::State& state) {
   Slope& slope = Slope::of(state.range(0));
   const Equations equations(slope);
-  const auto solver = make_block_solver<3>(Factoring::whole);
+  const auto solver = make_block_solver(Factoring::whole);
   if (!solver->factor(equations.matrix)) throw std::runtime_error("singular");
   const Eigen::VectorXd right_side = Eigen::VectorXd::Ones(equations.matrix.unknowns());
   for (auto _ : state) benchmark::DoNotOptimize(solver->solve(right_side).data());
@@ -188,7 +188,7 @@ void solve(benchmark::State& state) {
 void incomplete_factor_and_solve(benchmark::State& state) {
   Slope& slope = Slope::of(state.range(0));
   const Equations equations(slope);
-  const auto solver = make_incomplete_solver<3>(make_block_solver<3>(), 0);
+  const auto solver = make_incomplete_solver(make_block_solver(), 0);
   const Eigen::VectorXd right_side = Eigen::VectorXd::Ones(equations.matrix.unknowns());
   for (auto _ : state) {
     if (!solver->factor(equations.matrix)) throw std::runtime_error("singular");
@@ -203,9 +203,9 @@ void incomplete_factor_and_solve(benchmark::State& state) {
 /// A whole step with the solver that the program takes; the counter tells how many iterations it needs.
 void step_of_soft(benchmark::State& state) {
   Slope& slope = Slope::of(state.range(0));
-  const auto soft = make_soft<3>();
-  const StepProblem<3> step = slope.problem();
-  StepSolution<3> solution;
+  const auto soft = make_soft();
+  const StepProblem step = slope.problem();
+  StepSolution solution;
   soft->solve(step, solution);
   for (auto _ : state) {
     soft->solve(step, solution);

@@ -12,26 +12,26 @@ namespace openclose::verification {
 namespace {
 
 /// A step in which nothing moves and no contact carries anything, always "converged".
-class NullEnforcement : public Enforcement<unknowns> {
+class NullEnforcement : public Enforcement {
  public:
-  explicit NullEnforcement(const MethodInput& method) : real_(make_enforcement<unknowns>(method)) {}
-  ContactSprings springs(const StepProblem<unknowns>& problem, const Contact& contact) const override { return real_->springs(problem, contact); }
-  void solve(const StepProblem<unknowns>& problem, StepSolution<unknowns>& solution) override {
+  explicit NullEnforcement(const MethodInput& method) : real_(make_enforcement(method)) {}
+  ContactSprings springs(const StepProblem& problem, const Contact& contact) const override { return real_->springs(problem, contact); }
+  void solve(const StepProblem& problem, StepSolution& solution) override {
     solution.converged = true;
-    solution.d = Eigen::VectorXd::Zero(unknowns * problem.system.free_count());
-    const auto still = Motion<unknowns>::Unknowns::Zero().eval();
+    solution.d = Eigen::VectorXd::Zero(dofs * problem.system.free_count());
+    const auto still = Motion::Unknowns::Zero().eval();
     for (const Contact& c : problem.contacts) {
-      solution.contacts.push_back({real_->springs(problem, c), CarriedForces{}, ContactKinematics<unknowns>(problem.system, c, still, still).pose()});
+      solution.contacts.push_back({real_->springs(problem, c), CarriedForces{}, ContactKinematics(problem.system, c, still, still).pose()});
     }
     if (problem.end_weight < 1.0) solution.start_contacts = solution.contacts;
   }
   bool takes_adaptive_steps() const override { return real_->takes_adaptive_steps(); }
-  std::unique_ptr<TimeScheme<unknowns>> make_time_scheme(const MethodInput& method) const override { return real_->make_time_scheme(method); }
+  std::unique_ptr<TimeScheme> make_time_scheme(const MethodInput& method) const override { return real_->make_time_scheme(method); }
   bool has_elastic_contacts() const override { return real_->has_elastic_contacts(); }
   LinearCounters linear_counters() const override { return real_->linear_counters(); }
 
  private:
-  std::unique_ptr<Enforcement<unknowns>> real_;
+  std::unique_ptr<Enforcement> real_;
 };
 
 }  // namespace
@@ -74,9 +74,9 @@ void Report::leave_out(const std::string& quantity, const std::string& method, c
   checks_.push_back({case_, quantity, method, none, none, "", none, none, Status::left_out, reason});
 }
 
-RigidSimulation Report::simulate(const Scene& scene) const {
-  if (null_solver_) return RigidSimulation(scene, std::make_unique<NullEnforcement>(scene.method));
-  return RigidSimulation(scene);
+Simulation Report::simulate(const Scene& scene) const {
+  if (null_solver_) return Simulation(scene, std::make_unique<NullEnforcement>(scene.method));
+  return Simulation(scene);
 }
 
 double log_slope(const std::vector<double>& x, const std::vector<double>& y) {
@@ -93,12 +93,12 @@ double log_slope(const std::vector<double>& x, const std::vector<double>& y) {
   return (n * sxy - sx * sy) / (n * sxx - sx * sx);
 }
 
-std::vector<Sample> history(RigidSimulation& simulation) {
-  MeasuredPoints<unknowns> points(simulation);
+std::vector<Sample> history(Simulation& simulation) {
+  MeasuredPoints points(simulation);
   std::vector<Sample> samples;
-  RunObserver<unknowns> observer;
-  observer.started = [&](const RigidSimulation&) { points.restart(); };
-  observer.output = [&](const RigidSimulation& s) { samples.push_back({s.time(), points.motions().front()}); };
+  RunObserver observer;
+  observer.started = [&](const Simulation&) { points.restart(); };
+  observer.output = [&](const Simulation& s) { samples.push_back({s.time(), points.motions().front()}); };
   if (!run(simulation, observer).converged) samples.clear();
   return samples;
 }

@@ -16,9 +16,6 @@ namespace openclose::verification {
 inline constexpr const char* compliance_name = "compliance_m2_per_n";
 inline constexpr const char* stiffness_name = "stiffness_n_per_m2";
 
-inline constexpr int unknowns = 3;
-using RigidSimulation = Simulation<unknowns>;
-
 enum class Status { pass, fail, left_out };
 
 struct Check {
@@ -65,7 +62,7 @@ class Report {
   void leave_out(const std::string& quantity, const std::string& method, const std::string& reason);
 
   /// A simulation with the scene's enforcement, or with one that does nothing.
-  RigidSimulation simulate(const Scene& scene) const;
+  Simulation simulate(const Scene& scene) const;
 
   const std::vector<Check>& checks() const { return checks_; }
   const std::vector<SeriesPoint>& series() const { return series_; }
@@ -97,7 +94,7 @@ struct Sample {
   double time;
   PointMotion motion;
 };
-std::vector<Sample> history(RigidSimulation& simulation);
+std::vector<Sample> history(Simulation& simulation);
 
 /// NaN, for a measurement whose conditions were not met.
 double not_measured();

@@ -117,13 +117,13 @@ std::string with_variant(const std::string& quantity, const Scheme& scheme) {
   return scheme.variant.empty() ? quantity : quantity + ", " + scheme.variant;
 }
 
-void check_ledger(Report& report, const std::string& name, const std::string& method, const RigidSimulation& simulation, bool done) {
+void check_ledger(Report& report, const std::string& name, const std::string& method, const Simulation& simulation, bool done) {
   const EnergyLedger& l = simulation.ledger();
   report.near(name + ": energy ledger, imbalance over turnover", method, 0.0, done ? std::abs(l.imbalance()) / l.turnover : not_measured(), 1e-10,
               "-", "work of the forces = change of kinetic energy");
 }
 
-std::vector<double> downhill_history(RigidSimulation& simulation, const analytical::BlockOnPlane& data, std::size_t count) {
+std::vector<double> downhill_history(Simulation& simulation, const analytical::BlockOnPlane& data, std::size_t count) {
   std::vector<double> list;
   for (const Sample& s : history(simulation)) list.push_back(downhill(data, s.motion.displacement));
   if (list.size() != count) list.assign(count, not_measured());
@@ -141,17 +141,17 @@ double largest_difference(const std::vector<double>& a, const std::vector<double
 }
 
 double stands(const Report& report, const Scene& scene) {
-  RigidSimulation simulation = report.simulate(scene);
+  Simulation simulation = report.simulate(scene);
   const SettleResult result = settle(simulation);
   if (result.criterion == "displacement") return 0.0;
   if (!result.settled) return not_measured();
-  const BlockSystem<unknowns>& system = simulation.system();
+  const BlockSystem& system = simulation.system();
   Vec2 weight = Vec2::Zero(), carried = Vec2::Zero();
   for (const int b : system.free_blocks()) weight += simulation.external().weight(system, b).head<2>();
   for (const Contact& c : simulation.contacts()) {
     if (c.status == ContactStatus::open) continue;
     const Eigen::Vector3d still = Eigen::Vector3d::Zero();
-    const ContactKinematics<unknowns> k(system, c, still, still);
+    const ContactKinematics k(system, c, still, still);
     const Vec2 on_vertex = c.normal_force * k.normal_vertex.head<2>() + c.shear_force * k.shear_vertex.head<2>();
     if (system.block(c.edge_block).equation < 0) carried += on_vertex;
     if (system.block(c.vertex_block).equation < 0) carried -= on_vertex;
@@ -174,8 +174,8 @@ double strength_reduction_factor(const Report& report, const Scene& scene) {
   Scene asked = scene;
   // At small displacements nothing takes steps of the simulation, and a solver that does nothing would not show: it answers where blocks move.
   if (report.null_solver()) asked.strength_reduction.definition = FactorDefinition::large_displacements;
-  RigidSimulation simulation = report.simulate(asked);
-  const auto result = factor_of_safety<unknowns>(simulation);
+  Simulation simulation = report.simulate(asked);
+  const auto result = factor_of_safety(simulation);
   return result.found() && result.bracket.failed ? result.stable() : not_measured();
 }
 

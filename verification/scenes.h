@@ -66,10 +66,10 @@ void use_joint_springs_as_penalty(Scene& scene, const analytical::BlockOnPlane& 
 
 /// The energy ledger of a run: what it leaves unexplained over its turnover, to the level that rounding of a run of many steps leaves. `done`: the
 /// run got to its end.
-void check_ledger(Report& report, const std::string& name, const std::string& method, const RigidSimulation& simulation, bool done);
+void check_ledger(Report& report, const std::string& name, const std::string& method, const Simulation& simulation, bool done);
 
 /// Displacements [m] downhill at the output times, of which there must be as many as asked for; else NaN.
-std::vector<double> downhill_history(RigidSimulation& simulation, const analytical::BlockOnPlane& data, std::size_t count);
+std::vector<double> downhill_history(Simulation& simulation, const analytical::BlockOnPlane& data, std::size_t count);
 /// Largest difference of two lists.
 double largest_difference(const std::vector<double>& a, const std::vector<double>& b);
 /// Whether the scene's blocks come to rest: 1 if they do and the fixed blocks carry their weight, 0 if one moves beyond settle.failure_displacement;

@@ -76,7 +76,7 @@ void Studies::in_time(const std::string& method, const std::vector<double>& step
   measure(method, "dt_s", steps, expected, error, [](double dt) { return dt; });
 }
 
-bool follow(RigidSimulation& simulation, double dt, double end) {
+bool follow(Simulation& simulation, double dt, double end) {
   constexpr double rounding = 1e-9;  // [-] of a step
   const auto whole = static_cast<long>(std::floor(end / dt * (1.0 + 1e-14) + rounding));
   for (long i = 0; i < whole; ++i) {
@@ -90,7 +90,7 @@ Eigen::Vector3d push_and_follow(const Studies& studies, Scene scene, int b, cons
   const Eigen::Vector3d none = Eigen::Vector3d::Constant(not_measured());
   scene.step.dt = dt;
   scene.settle.unbalanced_fraction = 1e-12;
-  RigidSimulation simulation = studies.simulate(scene);
+  Simulation simulation = studies.simulate(scene);
   if (!settle(simulation).settled) return none;
   const Eigen::Vector3d rest = simulation.system().displacement(b);
   simulation.set_velocity(b, velocity);

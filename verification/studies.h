@@ -48,7 +48,7 @@ class Studies {
   explicit Studies(bool null_solver) : report_(null_solver) {}
 
   void begin(const std::string& study) { study_ = study; }
-  RigidSimulation simulate(const Scene& scene) const { return report_.simulate(scene); }
+  Simulation simulate(const Scene& scene) const { return report_.simulate(scene); }
   const Report& report() const { return report_; }
 
   /// Measures the error at every size; dt(size) tells the step that belongs to it.
@@ -74,7 +74,7 @@ struct Fit {
 Fit fit_order(const std::vector<Sized>& points);
 
 /// Steps of dt, the last one shorter where `end` [s] is no multiple; false if a step does not succeed.
-bool follow(RigidSimulation& simulation, double dt, double end);
+bool follow(Simulation& simulation, double dt, double end);
 /// Displacement of block b from where it settles, `end` [s] after it was given a velocity there; NaN if that does not succeed.
 Eigen::Vector3d push_and_follow(const Studies& studies, Scene scene, int b, const Eigen::Vector3d& velocity, double dt, double end);
 

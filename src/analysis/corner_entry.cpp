@@ -22,28 +22,27 @@ struct Way {
   Vec2 at(double part) const { return start + part * gone; }
 };
 
-template <int N>
 class Ways {
  public:
-  Ways(const BlockSystem<N>& system, const StepSolution<N>& solution) : system_(system), solution_(solution) {}
+  Ways(const BlockSystem& system, const StepSolution& solution) : system_(system), solution_(solution) {}
 
   Way operator()(int b, int vertex) const {
-    return {system_.position(b, vertex), Motion<N>::displacement(solution_.of(system_, b), system_.arm(vertex), system_.rotation_kind())};
+    return {system_.position(b, vertex), Motion::displacement(solution_.of(system_, b), system_.arm(vertex), system_.rotation_kind())};
   }
   /// [m] From the way of a corner, an arc, to its chord.
-  double bow(int b) const { return 0.125 * system_.block(b).radius * std::pow(Motion<N>::rotation(solution_.of(system_, b)), 2); }
+  double bow(int b) const { return 0.125 * system_.block(b).radius * std::pow(Motion::rotation(solution_.of(system_, b)), 2); }
   /// [m] By which no two points of the blocks that are near each other can come nearer.
   double approach(int a, int b) const {
     const auto of_a = solution_.of(system_, a), of_b = solution_.of(system_, b);
     const auto& block_a = system_.block(a);
     const auto& block_b = system_.block(b);
-    return Motion<N>::translation(of_a - of_b).norm() + block_a.radius * std::abs(Motion<N>::rotation(of_a)) +
-           block_b.radius * std::abs(Motion<N>::rotation(of_b));
+    return Motion::translation(of_a - of_b).norm() + block_a.radius * std::abs(Motion::rotation(of_a)) +
+           block_b.radius * std::abs(Motion::rotation(of_b));
   }
 
  private:
-  const BlockSystem<N>& system_;
-  const StepSolution<N>& solution_;
+  const BlockSystem& system_;
+  const StepSolution& solution_;
 };
 
 /// How a corner moves against an edge.
@@ -72,10 +71,9 @@ class Course {
   double c0_, c1_, c2_;
 };
 
-template <int N>
 class Entries {
  public:
-  Entries(const BlockSystem<N>& system, const StepSolution<N>& solution, const EntryTolerance& tolerance, const std::vector<Contact>* held)
+  Entries(const BlockSystem& system, const StepSolution& solution, const EntryTolerance& tolerance, const std::vector<Contact>* held)
       : system_(system), ways_(system, solution), tolerance_(tolerance), held_(held) {}
 
   /// [-] Of the corners of one block into another one.
@@ -136,8 +134,8 @@ class Entries {
     return leaves(system_.next(v)) && leaves(system_.previous(v));
   }
 
-  const BlockSystem<N>& system_;
-  const Ways<N> ways_;
+  const BlockSystem& system_;
+  const Ways ways_;
   const EntryTolerance tolerance_;
   const std::vector<Contact>* held_;
   /// [m] Of the present two blocks: what is tolerated, by how much they come nearer at most, and how far their corners pass beside straight ways.
@@ -146,18 +144,14 @@ class Entries {
 
 }  // namespace
 
-template <int N>
-double first_entry(const BlockSystem<N>& system, const StepSolution<N>& solution, const std::vector<std::pair<int, int>>& pairs,
+double first_entry(const BlockSystem& system, const StepSolution& solution, const std::vector<std::pair<int, int>>& pairs,
                    const EntryTolerance& tolerance, const std::vector<Contact>* held) {
-  Entries<N> entries(system, solution, tolerance, held);
+  Entries entries(system, solution, tolerance, held);
   double first = 1.0;
   for (const auto& [a, b] : pairs) {
     if (entries.may_be(a, b)) first = std::min({first, entries.first(a, b), entries.first(b, a)});
   }
   return first;
 }
-
-template double first_entry<3>(const BlockSystem<3>&, const StepSolution<3>&, const std::vector<std::pair<int, int>>&, const EntryTolerance&,
-                               const std::vector<Contact>*);
 
 }  // namespace openclose

@@ -29,8 +29,7 @@ struct EntryTolerance {
 /// farther behind than closed contacts may miss their places. Corners that are behind at once do not count: cutting would not help.
 /// \param pairs  of blocks that may touch
 /// \param held   contacts of which corners and edges do not count, because their springs have acted; none if rigid ones hold what they should
-template <int N>
-double first_entry(const BlockSystem<N>& system, const StepSolution<N>& solution, const std::vector<std::pair<int, int>>& pairs,
+double first_entry(const BlockSystem& system, const StepSolution& solution, const std::vector<std::pair<int, int>>& pairs,
                    const EntryTolerance& tolerance, const std::vector<Contact>* held = nullptr);
 
 }  // namespace openclose

@@ -65,11 +65,10 @@ std::optional<DrawnJoint> common_stretch(const OutlineEdge& a, const OutlineEdge
   return apart ? std::nullopt : std::optional(joint);
 }
 
-template <int N>
-JointGap gap_between(const DrawnJoint& joint, const Vec2& on_a, const Vec2& on_b, const BlockSystem<N>& system) {
+JointGap gap_between(const DrawnJoint& joint, const Vec2& on_a, const Vec2& on_b, const BlockSystem& system) {
   const auto moved = [&](int b, const Vec2& point) {
     const Vec2 arm = (point - system.origin()) - system.block(b).reference_centroid;
-    return Motion<N>::displacement(system.displacement(b), arm, system.rotation_kind());
+    return Motion::displacement(system.displacement(b), arm, system.rotation_kind());
   };
   const Vec2 way_a = moved(joint.block_a, on_a), way_b = moved(joint.block_b, on_b);
   const auto& block = system.block(joint.block_b);
@@ -131,11 +130,8 @@ DrawnJoint joint_at(const Scene& scene, int block_a, int block_b, const Vec2& po
   return best;
 }
 
-template <int N>
-JointMotion joint_motion(const DrawnJoint& joint, const BlockSystem<N>& system) {
+JointMotion joint_motion(const DrawnJoint& joint, const BlockSystem& system) {
   return {gap_between(joint, joint.from_a, joint.from_b, system), gap_between(joint, joint.to_a, joint.to_b, system)};
 }
-
-template JointMotion joint_motion<3>(const DrawnJoint&, const BlockSystem<3>&);
 
 }  // namespace openclose

@@ -39,7 +39,6 @@ std::vector<DrawnJoint> drawn_joints(const Scene& scene);
 /// The joint between two blocks at a point of it, of no length: that of the two edges there which face each other best.
 DrawnJoint joint_at(const Scene& scene, int block_a, int block_b, const Vec2& point);
 
-template <int N>
-JointMotion joint_motion(const DrawnJoint& joint, const BlockSystem<N>& system);
+JointMotion joint_motion(const DrawnJoint& joint, const BlockSystem& system);
 
 }  // namespace openclose

@@ -17,8 +17,7 @@ struct ContactPaths {
   double normal_start, shear_start;
 };
 
-template <int N>
-void add_elastic_contact(EnergyLedger& ledger, const Contact& contact, const ContactOutcome<N>& end, const CarriedForces& start,
+void add_elastic_contact(EnergyLedger& ledger, const Contact& contact, const ContactOutcome& end, const CarriedForces& start,
                          const ContactPaths& paths, double theta) {
   const double kn = end.normal_stiffness, ks = end.shear_stiffness;
   const double gap_change = end.pose.gap_change, slip = end.pose.slip_change;
@@ -60,8 +59,7 @@ void add_elastic_contact(EnergyLedger& ledger, const Contact& contact, const Con
 }
 
 /// [N] All that a step with the forces at its end needs of those at its start. Of the springs of `soft`, `shi` and `dem`.
-template <int N>
-double elastic_normal_at_start(const Contact& contact, const TabulatedJoint& joint, const ContactOutcome<N>& end) {
+double elastic_normal_at_start(const Contact& contact, const TabulatedJoint& joint, const ContactOutcome& end) {
   const double elastic = -end.normal_stiffness * contact.stretch();
   return is_open(ContactStrength(joint, contact), elastic) ? 0.0 : elastic;
 }
@@ -73,9 +71,8 @@ bool rests_open(const Contact& contact, ContactStatus end) {
 }
 
 /// Forces averaged over the path; what rotations leave between the ways of these forces and the changes of gap and slip.
-template <int N>
-void add_averaged_contact(EnergyLedger& ledger, const Contact& contact, const PathOutcome<N>& path, double normal_rest, double shear_rest,
-                          const ContactOutcome<N>& end) {
+void add_averaged_contact(EnergyLedger& ledger, const Contact& contact, const PathOutcome& path, double normal_rest, double shear_rest,
+                          const ContactOutcome& end) {
   const PathEnergies& e = path.energies;
   const double stored = stored_energy(end.normal_stiffness, end.shear_stiffness, end.forces.elastic_normal, end.forces.elastic_shear);
   ledger.contact_springs += stored - contact.stored_energy;
@@ -92,10 +89,9 @@ double stored_energy(double normal_stiffness, double shear_stiffness, double nor
   return 0.5 * (normal * normal / normal_stiffness + shear * shear / shear_stiffness);
 }
 
-template <int N>
-void add_step(EnergyLedger& ledger, const StepProblem<N>& problem, const StepSolution<N>& solution, const TimeScheme<N>& scheme, bool elastic) {
-  using Unknowns = typename Motion<N>::Unknowns;
-  const BlockSystem<N>& system = problem.system;
+void add_step(EnergyLedger& ledger, const StepProblem& problem, const StepSolution& solution, const TimeScheme& scheme, bool elastic) {
+  using Unknowns = Motion::Unknowns;
+  const BlockSystem& system = problem.system;
   const double dt = problem.dt, theta = problem.end_weight;
   // A static step starts from rest, whatever the scheme, and drops its kinetic energy at the end.
   std::vector<Unknowns> work_displacement(system.block_count());
@@ -127,15 +123,13 @@ void add_step(EnergyLedger& ledger, const StepProblem<N>& problem, const StepSol
       if (system.block(b).equation < 0) continue;
       const Unknowns d = solution.of(system, b), path = work_displacement[b];
       const Vec2 arm0 = system.point_arm(f.point);
-      const Vec2 moved = Motion<N>::displacement(d, arm0, system.rotation_kind());
-      const Vec2 arm1 = arm0 + moved - Motion<N>::translation(d);
+      const Vec2 moved = Motion::displacement(d, arm0, system.rotation_kind());
+      const Vec2 arm1 = arm0 + moved - Motion::translation(d);
       const Vec2 x0 = system.point_position(f.point) - f.anchor, x1 = x0 + moved;
-      const auto force_at = [&](const Vec2& arm, const Vec2& stretch) {
-        return Motion<N>::gradient(arm, f.force - f.stiffness.cwiseProduct(stretch));
-      };
+      const auto force_at = [&](const Vec2& arm, const Vec2& stretch) { return Motion::gradient(arm, f.force - f.stiffness.cwiseProduct(stretch)); };
       Unknowns force;  // as it acted in this step
       if (solution.first_order) {
-        force = ExternalForces<N>::linear_force(system, f, d);
+        force = ExternalForces::linear_force(system, f, d);
       } else if (problem.averages_path()) {
         force = force_at(0.5 * (arm0 + arm1), 0.5 * (x0 + x1));
       } else {
@@ -155,10 +149,10 @@ void add_step(EnergyLedger& ledger, const StepProblem<N>& problem, const StepSol
   for (std::size_t c = 0; c < problem.contacts.size(); ++c) {
     const Contact& contact = problem.contacts[c];
     if (solution.paths.empty() && rests_open(contact, solution.contacts.status(c))) continue;
-    const ContactOutcome<N> end = solution.contacts[c];
+    const ContactOutcome end = solution.contacts[c];
     const Unknowns &pv = work_displacement[contact.vertex_block], &pe = work_displacement[contact.edge_block];
     if (!solution.paths.empty()) {
-      const PathOutcome<N>& mean = solution.paths[c];
+      const PathOutcome& mean = solution.paths[c];
       add_averaged_contact(ledger, contact, mean, mean.pose.normal_way(pv, pe) - end.pose.gap_change,
                            mean.pose.shear_way(pv, pe) - end.pose.slip_change, end);
       continue;
@@ -173,7 +167,7 @@ void add_step(EnergyLedger& ledger, const StepProblem<N>& problem, const StepSol
     if (theta == 1.0) {
       start.elastic_normal = elastic_normal_at_start(contact, problem.joints.joint(contact.joint), end);
     } else {
-      const ContactPose<N> pose = solution.start_contacts.pose(c);
+      const ContactPose pose = solution.start_contacts.pose(c);
       start = solution.start_contacts.forces(c);
       paths.normal_start = pose.normal_way(pv, pe);
       paths.shear_start = pose.shear_way(pv, pe);
@@ -181,7 +175,5 @@ void add_step(EnergyLedger& ledger, const StepProblem<N>& problem, const StepSol
     add_elastic_contact(ledger, contact, end, start, paths, theta);
   }
 }
-
-template void add_step<3>(EnergyLedger&, const StepProblem<3>&, const StepSolution<3>&, const TimeScheme<3>&, bool);
 
 }  // namespace openclose

@@ -57,8 +57,7 @@ struct EnergyLedger {
 };
 
 /// Adds an accepted step. `system` still holds the state at its start; `elastic` is Enforcement::has_elastic_contacts().
-template <int N>
-void add_step(EnergyLedger& ledger, const StepProblem<N>& problem, const StepSolution<N>& solution, const TimeScheme<N>& scheme, bool elastic);
+void add_step(EnergyLedger& ledger, const StepProblem& problem, const StepSolution& solution, const TimeScheme& scheme, bool elastic);
 
 /// Energy stored in the springs of a contact carrying these forces [J].
 double stored_energy(double normal_stiffness, double shear_stiffness, double normal, double shear);

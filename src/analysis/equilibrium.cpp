@@ -8,20 +8,18 @@ namespace {
 
 constexpr const char* max_time_steps_key = "settle.max_time_steps";
 
-template <int N>
-class ByUnbalancedForce : public EquilibriumSearch<N> {
+class ByUnbalancedForce : public EquilibriumSearch {
  public:
-  explicit ByUnbalancedForce(Simulation<N>& simulation) : simulation_(simulation) {}
+  explicit ByUnbalancedForce(Simulation& simulation) : simulation_(simulation) {}
   SettleResult settle_first(const SettleProgress& progress) override { return settle(simulation_, progress); }
   SettleResult settle_trial(const SettleProgress& progress) override { return settle(simulation_, progress); }
 
  private:
-  Simulation<N>& simulation_;
+  Simulation& simulation_;
 };
 
 /// Half the height [m] of all blocks together.
-template <int N>
-double half_height(const BlockSystem<N>& system) {
+double half_height(const BlockSystem& system) {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (int b = 0; b < system.block_count(); ++b) {
     const auto& block = system.block(b);
@@ -33,14 +31,13 @@ double half_height(const BlockSystem<N>& system) {
   return 0.5 * (high - low);
 }
 
-template <int N>
-class ByRelativeDisplacement : public EquilibriumSearch<N> {
+class ByRelativeDisplacement : public EquilibriumSearch {
  public:
-  explicit ByRelativeDisplacement(Simulation<N>& simulation)
+  explicit ByRelativeDisplacement(Simulation& simulation)
       : simulation_(simulation), input_(simulation.scene().settle), half_height_(half_height(simulation.system())) {}
 
   SettleResult settle_first(const SettleProgress& progress) override {
-    for (int b : simulation_.system().free_blocks()) simulation_.set_velocity(b, Motion<N>::Unknowns::Zero());
+    for (int b : simulation_.system().free_blocks()) simulation_.set_velocity(b, Motion::Unknowns::Zero());
     simulation_.restart_clock();
     SettleResult result = follow(input_.max_time_steps, true, progress);
     first_steps_ = result.steps;
@@ -49,13 +46,13 @@ class ByRelativeDisplacement : public EquilibriumSearch<N> {
   SettleResult settle_trial(const SettleProgress& progress) override { return follow(2 * first_steps_, false, progress); }
 
  private:
-  using Displacements = std::vector<typename Motion<N>::Unknowns>;
+  using Displacements = std::vector<Motion::Unknowns>;
 
   double farthest(const Displacements& from) const {
     const auto& system = simulation_.system();
     double largest = 0.0;
     for (int b : system.free_blocks()) {
-      largest = std::max(largest, Motion<N>::displacement_bound(system.displacement(b) - from[b], system.block(b).radius));
+      largest = std::max(largest, Motion::displacement_bound(system.displacement(b) - from[b], system.block(b).radius));
     }
     return largest;
   }
@@ -84,16 +81,15 @@ class ByRelativeDisplacement : public EquilibriumSearch<N> {
     return result;
   }
 
-  Simulation<N>& simulation_;
+  Simulation& simulation_;
   const SettleInput& input_;
   double half_height_;   ///< [m]
   int first_steps_ = 0;  ///< that the first settling took
 };
 
-template <int N>
-class ByForceInTime : public EquilibriumSearch<N> {
+class ByForceInTime : public EquilibriumSearch {
  public:
-  explicit ByForceInTime(Simulation<N>& simulation) : simulation_(simulation) {}
+  explicit ByForceInTime(Simulation& simulation) : simulation_(simulation) {}
   SettleResult settle_first(const SettleProgress& progress) override { return settle_trial(progress); }
   SettleResult settle_trial(const SettleProgress& progress) override {
     const SettleInput& input = simulation_.scene().settle;
@@ -102,23 +98,20 @@ class ByForceInTime : public EquilibriumSearch<N> {
   }
 
  private:
-  Simulation<N>& simulation_;
+  Simulation& simulation_;
 };
 
 }  // namespace
 
-template <int N>
-std::unique_ptr<EquilibriumSearch<N>> make_equilibrium_search(Simulation<N>& simulation) {
+std::unique_ptr<EquilibriumSearch> make_equilibrium_search(Simulation& simulation) {
   switch (simulation.scene().settle.criterion) {
     case SettleCriterion::unbalanced_force:
-      return std::make_unique<ByUnbalancedForce<N>>(simulation);
+      return std::make_unique<ByUnbalancedForce>(simulation);
     case SettleCriterion::paper:
-      if (simulation.is_explicit()) return std::make_unique<ByForceInTime<N>>(simulation);
-      return std::make_unique<ByRelativeDisplacement<N>>(simulation);
+      if (simulation.is_explicit()) return std::make_unique<ByForceInTime>(simulation);
+      return std::make_unique<ByRelativeDisplacement>(simulation);
   }
   return nullptr;
 }
-
-template std::unique_ptr<EquilibriumSearch<3>> make_equilibrium_search<3>(Simulation<3>&);
 
 }  // namespace openclose

@@ -23,7 +23,6 @@
 
 namespace openclose {
 
-template <int N>
 class EquilibriumSearch {
  public:
   virtual ~EquilibriumSearch() = default;
@@ -34,7 +33,6 @@ class EquilibriumSearch {
 };
 
 /// The simulation must outlive the search.
-template <int N>
-std::unique_ptr<EquilibriumSearch<N>> make_equilibrium_search(Simulation<N>& simulation);
+std::unique_ptr<EquilibriumSearch> make_equilibrium_search(Simulation& simulation);
 
 }  // namespace openclose

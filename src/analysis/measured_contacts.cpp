@@ -3,8 +3,7 @@
 namespace openclose {
 namespace {
 
-template <int N>
-bool lies_on(const Contact& contact, const DrawnJoint& joint, const BlockSystem<N>& system) {
+bool lies_on(const Contact& contact, const DrawnJoint& joint, const BlockSystem& system) {
   const auto on = [&](int vertex_block, int edge_block, int edge) {
     return contact.vertex_block == vertex_block && contact.edge_block == edge_block && contact.edge == system.block(edge_block).first_vertex + edge;
   };
@@ -13,15 +12,13 @@ bool lies_on(const Contact& contact, const DrawnJoint& joint, const BlockSystem<
 
 }  // namespace
 
-template <int N>
-MeasuredContacts<N>::MeasuredContacts(const Scene& scene) {
+MeasuredContacts::MeasuredContacts(const Scene& scene) {
   for (const MeasuredContact& m : scene.measured_contacts) joints_.push_back(joint_at(scene, m.block_a, m.block_b, m.point));
 }
 
-template <int N>
-std::vector<ContactMotion> MeasuredContacts<N>::motions(const Simulation<N>& simulation) const {
+std::vector<ContactMotion> MeasuredContacts::motions(const Simulation& simulation) const {
   if (joints_.empty()) return {};
-  const BlockSystem<N>& system = simulation.system();
+  const BlockSystem& system = simulation.system();
   const std::vector<Contact> contacts = simulation.every_contact();
   std::vector<ContactMotion> list;
   for (std::size_t i = 0; i < joints_.size(); ++i) {
@@ -44,7 +41,5 @@ std::vector<ContactMotion> MeasuredContacts<N>::motions(const Simulation<N>& sim
   }
   return list;
 }
-
-template class MeasuredContacts<3>;
 
 }  // namespace openclose

@@ -20,11 +20,10 @@ struct ContactMotion {
   int closed = 0;                              ///< contacts
 };
 
-template <int N>
 class MeasuredContacts {
  public:
   explicit MeasuredContacts(const Scene& scene);
-  std::vector<ContactMotion> motions(const Simulation<N>& simulation) const;
+  std::vector<ContactMotion> motions(const Simulation& simulation) const;
 
  private:
   std::vector<DrawnJoint> joints_;

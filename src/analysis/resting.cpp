@@ -15,22 +15,19 @@ constexpr double haste = 3.0;
 constexpr double nearly = 0.7;
 
 /// Adds, or takes away with sign -1, what contacts do to blocks at rest.
-template <int N>
-void add_forces(const BlockSystem<N>& system, const std::vector<Contact>& contacts, double sign,
-                std::vector<typename Motion<N>::Unknowns>& per_block) {
+void add_forces(const BlockSystem& system, const std::vector<Contact>& contacts, double sign, std::vector<Motion::Unknowns>& per_block) {
   for (const Contact& c : contacts) {
     if (c.status == ContactStatus::open || !(system.is_at_rest(c.vertex_block) || system.is_at_rest(c.edge_block))) continue;
-    const ContactPose<N> pose(ContactStart<N>(system, c), {}, {});
+    const ContactPose pose(ContactStart(system, c), {}, {});
     const Vec2 force = sign * (c.normal_force * pose.normal + c.shear_force * pose.tangent());
-    per_block[c.vertex_block] += Motion<N>::gradient(pose.vertex_arm, force);
-    per_block[c.edge_block] -= Motion<N>::gradient(pose.edge_arm, force);
+    per_block[c.vertex_block] += Motion::gradient(pose.vertex_arm, force);
+    per_block[c.edge_block] -= Motion::gradient(pose.edge_arm, force);
   }
 }
 
 }  // namespace
 
-template <int N>
-Resting<N>::Resting(const RestInput& input, const BlockSystem<N>& system)
+Resting::Resting(const RestInput& input, const BlockSystem& system)
     : input_(input),
       anchor_(system.block_count(), Unknowns::Zero()),
       velocity_(system.block_count(), Unknowns::Zero()),
@@ -38,27 +35,24 @@ Resting<N>::Resting(const RestInput& input, const BlockSystem<N>& system)
       held_(system.block_count(), Unknowns::Zero()),
       change_(system.block_count(), Unknowns::Zero()) {}
 
-template <int N>
-void Resting<N>::follow(const BlockSystem<N>& system, const std::vector<Unknowns>& velocities, double dt) {
+void Resting::follow(const BlockSystem& system, const std::vector<Unknowns>& velocities, double dt) {
   since_ += dt;
   for (const int b : system.free_blocks()) {
     const double radius = system.block(b).radius;
     const Unknowns moved = system.displacement(b) - anchor_[b], faster = velocities[b] - velocity_[b];
     velocity_[b] = velocities[b];
-    const bool quiet = Motion<N>::displacement_bound(moved, radius) <= input_.displacement &&
-                       Motion<N>::displacement_bound(faster, radius) <= input_.acceleration * dt;
+    const bool quiet =
+        Motion::displacement_bound(moved, radius) <= input_.displacement && Motion::displacement_bound(faster, radius) <= input_.acceleration * dt;
     quiet_[b] = quiet ? quiet_[b] + dt : 0.0;
     if (!quiet) anchor_[b] = system.displacement(b);
   }
 }
 
-template <int N>
-void Resting<N>::disturb(const BlockSystem<N>& system) {
+void Resting::disturb(const BlockSystem& system) {
   for (const int b : system.free_blocks()) quiet_[b] = 0.0;
 }
 
-template <int N>
-std::vector<int> Resting<N>::quiet_blocks(const BlockSystem<N>& system, const std::vector<Contact>& contacts) {
+std::vector<int> Resting::quiet_blocks(const BlockSystem& system, const std::vector<Contact>& contacts) {
   std::vector<int> list;
   if (since_ < input_.time) return list;
   const auto is_quiet = [&](int b) { return system.block(b).equation < 0 || quiet_[b] >= input_.time; };
@@ -76,9 +70,8 @@ std::vector<int> Resting<N>::quiet_blocks(const BlockSystem<N>& system, const st
   return list;
 }
 
-template <int N>
-void Resting<N>::keep_forces(const BlockSystem<N>& system, const std::vector<int>& blocks, const std::vector<Contact>& contacts,
-                             const std::vector<Contact>& resting_contacts) {
+void Resting::keep_forces(const BlockSystem& system, const std::vector<int>& blocks, const std::vector<Contact>& contacts,
+                          const std::vector<Contact>& resting_contacts) {
   std::vector<Unknowns> forces(system.block_count(), Unknowns::Zero());
   add_forces(system, contacts, 1.0, forces);
   add_forces(system, resting_contacts, 1.0, forces);
@@ -91,22 +84,19 @@ void Resting<N>::keep_forces(const BlockSystem<N>& system, const std::vector<int
   }
 }
 
-template <int N>
-void Resting<N>::divide(const BlockSystem<N>& system, const std::vector<Contact>& resting_contacts) {
+void Resting::divide(const BlockSystem& system, const std::vector<Contact>& resting_contacts) {
   std::vector<Unknowns> forces = held_;
   add_forces(system, resting_contacts, -1.0, forces);
   awaited_.clear();
   for (const int b : system.resting_blocks()) awaited_.push_back(forces[b]);
 }
 
-template <int N>
-std::vector<typename Resting<N>::Unknowns>& Resting<N>::pushes(const BlockSystem<N>& system) {
+std::vector<Resting::Unknowns>& Resting::pushes(const BlockSystem& system) {
   pushes_.assign(system.resting_blocks().size(), Unknowns::Zero());
   return pushes_;
 }
 
-template <int N>
-void Resting<N>::judge(const BlockSystem<N>& system, double dt) {
+void Resting::judge(const BlockSystem& system, double dt) {
   const double share = -std::expm1(-dt / input_.time);
   judged_.resize(pushes_.size());
   for (std::size_t i = 0; i < pushes_.size(); ++i) {
@@ -115,17 +105,16 @@ void Resting<N>::judge(const BlockSystem<N>& system, double dt) {
   }
 }
 
-template <int N>
-std::vector<int> Resting<N>::woken(const BlockSystem<N>& system, const std::vector<Contact>& contacts, const std::vector<Contact>& resting_contacts,
-                                   Urgency urgency) {
+std::vector<int> Resting::woken(const BlockSystem& system, const std::vector<Contact>& contacts, const std::vector<Contact>& resting_contacts,
+                                Urgency urgency) {
   const double limit = input_.acceleration * (urgency == Urgency::in_haste ? haste : 1.0);
   std::vector<int> list, nearly_woken;
   for (std::size_t i = 0; i < judged_.size(); ++i) {
     const int b = system.resting_blocks()[i];
     const auto& block = system.block(b);
     Unknowns change = judged_[i];
-    if (block.rotation_locked) change[Motion<N>::rotation_index] = 0.0;
-    const double force = Motion<N>::largest_force(change, block.radius);
+    if (block.rotation_locked) change[Motion::rotation_index] = 0.0;
+    const double force = Motion::largest_force(change, block.radius);
     if (force > limit * block.mass[0]) list.push_back(b);
     if (force > nearly * limit * block.mass[0]) nearly_woken.push_back(b);
   }
@@ -138,7 +127,7 @@ std::vector<int> Resting<N>::woken(const BlockSystem<N>& system, const std::vect
     for (const Contact& c : touching) {
       if (c.status == ContactStatus::open) continue;
       for (const auto& [from, to] : {std::pair(c.vertex_block, c.edge_block), std::pair(c.edge_block, c.vertex_block)}) {
-        if (layer[from] != k || layer[to] != 0 || system.block(to).equation == BlockSystem<N>::fixed) continue;
+        if (layer[from] != k || layer[to] != 0 || system.block(to).equation == BlockSystem::fixed) continue;
         layer[to] = k + 1;
         if (system.is_at_rest(to)) list.push_back(to);
       }
@@ -152,12 +141,9 @@ std::vector<int> Resting<N>::woken(const BlockSystem<N>& system, const std::vect
   return list;
 }
 
-template <int N>
-void Resting<N>::accept(const BlockSystem<N>& system) {
+void Resting::accept(const BlockSystem& system) {
   layers_ = 1;
   for (std::size_t i = 0; i < judged_.size(); ++i) change_[system.resting_blocks()[i]] = judged_[i];
 }
-
-template class Resting<3>;
 
 }  // namespace openclose

@@ -23,39 +23,38 @@
 
 namespace openclose {
 
-template <int N>
 class Resting {
  public:
-  using Unknowns = typename Motion<N>::Unknowns;
+  using Unknowns = Motion::Unknowns;
 
-  Resting(const RestInput& input, const BlockSystem<N>& system);
+  Resting(const RestInput& input, const BlockSystem& system);
 
   /// After a step of dt [s] that has ended with these velocities, per block.
-  void follow(const BlockSystem<N>& system, const std::vector<Unknowns>& velocities, double dt);
+  void follow(const BlockSystem& system, const std::vector<Unknowns>& velocities, double dt);
   /// No block has been quiet up to now.
-  void disturb(const BlockSystem<N>& system);
+  void disturb(const BlockSystem& system);
   /// Blocks to be put to rest now; `contacts` are those of the blocks that move.
-  std::vector<int> quiet_blocks(const BlockSystem<N>& system, const std::vector<Contact>& contacts);
+  std::vector<int> quiet_blocks(const BlockSystem& system, const std::vector<Contact>& contacts);
 
   /// These blocks have been put to rest, the contacts still being divided as before: what holds them now is what is to hold them from now on.
-  void keep_forces(const BlockSystem<N>& system, const std::vector<int>& blocks, const std::vector<Contact>& contacts,
+  void keep_forces(const BlockSystem& system, const std::vector<int>& blocks, const std::vector<Contact>& contacts,
                    const std::vector<Contact>& resting_contacts);
   /// Blocks have been put to rest or woken: works out which part of that is to come from blocks that move.
-  void divide(const BlockSystem<N>& system, const std::vector<Contact>& resting_contacts);
+  void divide(const BlockSystem& system, const std::vector<Contact>& resting_contacts);
 
   /// [N, N m] To be filled with what the blocks at rest, in their order, get from blocks that move at the end of a step.
-  std::vector<Unknowns>& pushes(const BlockSystem<N>& system);
+  std::vector<Unknowns>& pushes(const BlockSystem& system);
   /// Takes up the pushes of a step of dt that may have to be done again.
-  void judge(const BlockSystem<N>& system, double dt);
+  void judge(const BlockSystem& system, double dt);
   enum class Urgency {
     any,       ///< to be woken after the step
     in_haste,  ///< before it, which is to be done again
   };
   /// Blocks that the step wakes, with layers of those at rest that they touch.
-  std::vector<int> woken(const BlockSystem<N>& system, const std::vector<Contact>& contacts, const std::vector<Contact>& resting_contacts,
+  std::vector<int> woken(const BlockSystem& system, const std::vector<Contact>& contacts, const std::vector<Contact>& resting_contacts,
                          Urgency urgency);
   /// The step that was judged counts.
-  void accept(const BlockSystem<N>& system);
+  void accept(const BlockSystem& system);
 
   void exchange(Archive& archive) { archive(anchor_, velocity_, quiet_, since_, held_, change_, awaited_, layers_); }
 
@@ -74,7 +73,5 @@ class Resting {
   std::vector<Unknowns> pushes_, judged_;
   int layers_ = 1;
 };
-
-extern template class Resting<3>;
 
 }  // namespace openclose

@@ -14,12 +14,11 @@
 
 namespace openclose {
 
-template <int N>
-MeasuredPoints<N>::MeasuredPoints(Simulation<N>& simulation) : simulation_(simulation) {
+MeasuredPoints::MeasuredPoints(Simulation& simulation) : simulation_(simulation) {
   const Scene& scene = simulation.scene();
   auto& system = simulation.system();
   const auto follow = [&](const std::string& name, int block, const Vec2& position) {
-    points_.push_back({name, system.follow_point(block, position), Vec2::Zero(), Motion<N>::Unknowns::Zero()});
+    points_.push_back({name, system.follow_point(block, position), Vec2::Zero(), Motion::Unknowns::Zero()});
   };
   for (const MeasuredPoint& p : scene.measured_points) follow(p.name, p.block, p.point);
   if (points_.empty()) {
@@ -28,8 +27,7 @@ MeasuredPoints<N>::MeasuredPoints(Simulation<N>& simulation) : simulation_(simul
   restart();
 }
 
-template <int N>
-void MeasuredPoints<N>::restart() {
+void MeasuredPoints::restart() {
   const auto& system = simulation_.system();
   for (Point& p : points_) {
     p.start_displacement = system.displacement(system.point_block(p.number));
@@ -37,15 +35,13 @@ void MeasuredPoints<N>::restart() {
   }
 }
 
-template <int N>
-Vec2 MeasuredPoints<N>::displacement(const Point& point) const {
+Vec2 MeasuredPoints::displacement(const Point& point) const {
   const auto& system = simulation_.system();
   const auto moved = (system.displacement(system.point_block(point.number)) - point.start_displacement).eval();
-  return Motion<N>::translation(moved) + (system.point_arm(point.number) - point.start_arm);
+  return Motion::translation(moved) + (system.point_arm(point.number) - point.start_arm);
 }
 
-template <int N>
-std::vector<PointMotion> MeasuredPoints<N>::motions() const {
+std::vector<PointMotion> MeasuredPoints::motions() const {
   const auto& system = simulation_.system();
   std::vector<PointMotion> list;
   for (const Point& p : points_) {
@@ -55,16 +51,15 @@ std::vector<PointMotion> MeasuredPoints<N>::motions() const {
     PointMotion m;
     m.name = p.name;
     m.displacement = displacement(p);
-    m.rotation = Motion<N>::rotation(moved);
-    m.angular_velocity = Motion<N>::rotation(velocity);
-    m.velocity = Motion<N>::translation(velocity) + Motion<N>::rotation(velocity) * perpendicular(system.point_arm(p.number));
+    m.rotation = Motion::rotation(moved);
+    m.angular_velocity = Motion::rotation(velocity);
+    m.velocity = Motion::translation(velocity) + Motion::rotation(velocity) * perpendicular(system.point_arm(p.number));
     list.push_back(m);
   }
   return list;
 }
 
-template <int N>
-double MeasuredPoints<N>::largest_displacement() const {
+double MeasuredPoints::largest_displacement() const {
   double largest = 0.0;
   for (const Point& p : points_) largest = std::max(largest, displacement(p).norm());
   return largest;
@@ -73,8 +68,7 @@ double MeasuredPoints<N>::largest_displacement() const {
 namespace {
 
 /// Settles by the method that the scene names for it, and leaves the simulation with the one of the motion.
-template <int N>
-SettleResult settle_start(Simulation<N>& simulation, const SettleProgress& progress) {
+SettleResult settle_start(Simulation& simulation, const SettleProgress& progress) {
   const MethodInput own = simulation.scene().method;
   if (!is_settled_by_another(simulation.scene())) return make_equilibrium_search(simulation)->settle_first(progress);
   simulation.change_method(settling_method(simulation.scene()));
@@ -85,8 +79,7 @@ SettleResult settle_start(Simulation<N>& simulation, const SettleProgress& progr
 
 }  // namespace
 
-template <int N>
-RunResult prepare_start(Simulation<N>& simulation, const SettleProgress& progress) {
+RunResult prepare_start(Simulation& simulation, const SettleProgress& progress) {
   const double begin = process_cpu_time();
   RunResult result;
   result.converged = true;
@@ -128,10 +121,9 @@ namespace {
 constexpr double noticeable_friction_lag = 0.01;
 
 /// The motion from time 0 to what ends it.
-template <int N>
 class MotionInTime {
  public:
-  MotionInTime(Simulation<N>& simulation, const RunObserver<N>& observer, RunResult& result)
+  MotionInTime(Simulation& simulation, const RunObserver& observer, RunResult& result)
       : simulation_(simulation),
         observer_(observer),
         scene_(simulation.scene()),
@@ -313,13 +305,13 @@ class MotionInTime {
     if (scene_.snapshots_every > 0.0 && step > 0 && step % steps_in(scene_.snapshots_every) == 0) take(without_rounding(time_after(step)));
   }
 
-  Simulation<N>& simulation_;
-  const RunObserver<N>& observer_;
+  Simulation& simulation_;
+  const RunObserver& observer_;
   const Scene& scene_;
   RunResult& result_;
-  double cpu_at_start_;                      ///< [s] from which that of the motion counts
-  std::optional<MeasuredPoints<N>> points_;  ///< if anything depends on them
-  Watch<N> watch_;
+  double cpu_at_start_;                   ///< [s] from which that of the motion counts
+  std::optional<MeasuredPoints> points_;  ///< if anything depends on them
+  Watch watch_;
   long steps_ = 0;
   long done_ = 0;              ///< whole steps
   double moved_before_ = 0.0;  ///< [m] by the first point, before the step
@@ -330,12 +322,11 @@ class MotionInTime {
 
 }  // namespace
 
-template <int N>
-RunResult run(Simulation<N>& simulation, const RunObserver<N>& observer) {
+RunResult run(Simulation& simulation, const RunObserver& observer) {
   RunResult result = prepare_start(simulation, observer.settling);
   if (observer.started) observer.started(simulation);
   if (observer.output) observer.output(simulation);
-  MotionInTime<N> motion(simulation, observer, result);
+  MotionInTime motion(simulation, observer, result);
   if (result.converged) {
     if (motion.begin()) motion.follow();
   }
@@ -343,11 +334,10 @@ RunResult run(Simulation<N>& simulation, const RunObserver<N>& observer) {
   return result;
 }
 
-template <int N>
-RunResult resume(Simulation<N>& simulation, const RunObserver<N>& observer, Archive& state, const std::function<void()>& resumed) {
+RunResult resume(Simulation& simulation, const RunObserver& observer, Archive& state, const std::function<void()>& resumed) {
   RunResult result;
   result.converged = true;
-  MotionInTime<N> motion(simulation, observer, result);
+  MotionInTime motion(simulation, observer, result);
   state(simulation, motion);
   if (resumed) resumed();
   if (motion.is_over()) {
@@ -358,10 +348,5 @@ RunResult resume(Simulation<N>& simulation, const RunObserver<N>& observer, Arch
   motion.finish();
   return result;
 }
-
-template class MeasuredPoints<3>;
-template RunResult prepare_start<3>(Simulation<3>&, const SettleProgress&);
-template RunResult run<3>(Simulation<3>&, const RunObserver<3>&);
-template RunResult resume<3>(Simulation<3>&, const RunObserver<3>&, Archive&, const std::function<void()>&);
 
 }  // namespace openclose

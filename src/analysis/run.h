@@ -22,10 +22,9 @@ struct PointMotion {
 };
 
 /// The measured points of a scene; without any, the centroids of the free blocks.
-template <int N>
 class MeasuredPoints {
  public:
-  explicit MeasuredPoints(Simulation<N>& simulation);
+  explicit MeasuredPoints(Simulation& simulation);
   /// Displacements count from here.
   void restart();
   std::vector<PointMotion> motions() const;
@@ -41,11 +40,11 @@ class MeasuredPoints {
     std::string name;
     int number;  ///< of the system's followed points
     Vec2 start_arm;
-    typename Motion<N>::Unknowns start_displacement;
+    Motion::Unknowns start_displacement;
   };
   Vec2 displacement(const Point& point) const;
 
-  const Simulation<N>& simulation_;  // const: the explicit loop goes on after it has been asked
+  const Simulation& simulation_;  // const: the explicit loop goes on after it has been asked
   std::vector<Point> points_;
 };
 
@@ -79,30 +78,26 @@ struct RunResult {
 };
 
 /// What a run tells while it goes on.
-template <int N>
 struct RunObserver {
-  std::function<void(const Simulation<N>&)> started;                             ///< the start state is reached, time is 0
-  std::function<void(const Simulation<N>&)> output;                              ///< at time 0 and at every output time
-  std::function<void(const std::string& state, const Simulation<N>&)> snapshot;  ///< at the snapshot times ("t=1.5") and milestones ("moved 10 m")
-  std::function<void(double fraction)> progress;                                 ///< after every step
-  SettleProgress settling;                                                       ///< while it settles
+  std::function<void(const Simulation&)> started;                             ///< the start state is reached, time is 0
+  std::function<void(const Simulation&)> output;                              ///< at time 0 and at every output time
+  std::function<void(const std::string& state, const Simulation&)> snapshot;  ///< at the snapshot times ("t=1.5") and milestones ("moved 10 m")
+  std::function<void(double fraction)> progress;                              ///< after every step
+  SettleProgress settling;                                                    ///< while it settles
   /// A checkpoint is due (every Scene::checkpoint_every, at the end, and where a step does not converge): `state` holds the whole run, and whatever
   /// the observer adds to it.
-  std::function<void(Archive& state, const Simulation<N>&)> checkpoint;
+  std::function<void(Archive& state, const Simulation&)> checkpoint;
 };
 
 /// Brings the simulation into the scene's start state.
-template <int N>
-RunResult prepare_start(Simulation<N>& simulation, const SettleProgress& progress = {});
+RunResult prepare_start(Simulation& simulation, const SettleProgress& progress = {});
 
-template <int N>
-RunResult run(Simulation<N>& simulation, const RunObserver<N>& observer);
+RunResult run(Simulation& simulation, const RunObserver& observer);
 
 /// Goes on, bit for bit, from what a checkpoint of the same scene holds, in a simulation that has not been used. The scene may have another end_time
-/// (not before the state's), output_every, checkpoint_every and method.threads, and another solver.smallest_fraction and solver.max_iterations, to get
-/// over a step that did not converge. `state` is left where the observer's own part begins; `resumed` is called then, before the first step. Throws
-/// std::runtime_error if the state does not fit the scene.
-template <int N>
-RunResult resume(Simulation<N>& simulation, const RunObserver<N>& observer, Archive& state, const std::function<void()>& resumed = {});
+/// (not before the state's), output_every, checkpoint_every and method.threads, and another solver.smallest_fraction and solver.max_iterations, to
+/// get over a step that did not converge. `state` is left where the observer's own part begins; `resumed` is called then, before the first step.
+/// Throws std::runtime_error if the state does not fit the scene.
+RunResult resume(Simulation& simulation, const RunObserver& observer, Archive& state, const std::function<void()>& resumed = {});
 
 }  // namespace openclose

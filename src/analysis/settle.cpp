@@ -28,10 +28,9 @@ constexpr std::size_t fresh_bytes_of_a_block = 4050;
 constexpr int fewest_blocks_with_fresh_memory = 200, most_blocks_in_heap = 1000;
 
 /// What a static step may leave unbalanced, while it lives.
-template <int N>
 class Neglect {
  public:
-  explicit Neglect(Simulation<N>& simulation) : simulation_(simulation) {}
+  explicit Neglect(Simulation& simulation) : simulation_(simulation) {}
   ~Neglect() { simulation_.neglect(0.0); }
   Neglect(const Neglect&) = delete;
   Neglect& operator=(const Neglect&) = delete;
@@ -40,7 +39,7 @@ class Neglect {
   void renew() { simulation_.neglect(negligible_part * simulation_.scene().settle.unbalanced_fraction * simulation_.force_scale()); }
 
  private:
-  Simulation<N>& simulation_;
+  Simulation& simulation_;
 };
 
 /// From rest a failing block moves with the square of the step: the factor on a step that moved so far which makes full use of the limit.
@@ -54,8 +53,7 @@ double settled_share(double now, double wanted) {
   return now > 0.0 ? std::clamp(std::log(now) / std::log(wanted), 0.0, 1.0) : 1.0;
 }
 
-template <int N>
-SettleResult settle(Simulation<N>& simulation, const SettleProgress& progress) {
+SettleResult settle(Simulation& simulation, const SettleProgress& progress) {
   const SettleInput& input = simulation.scene().settle;
   if (simulation.is_explicit()) {
     const double force = input.unbalanced_fraction * simulation.force_scale();
@@ -66,10 +64,10 @@ SettleResult settle(Simulation<N>& simulation, const SettleProgress& progress) {
   const bool is_first = simulation.step_counters().steps + simulation.step_counters().cuts == 0;
   const int blocks = system.block_count();
   if (is_first && blocks >= fewest_blocks_with_fresh_memory && blocks <= most_blocks_in_heap) provide_memory(fresh_bytes_of_a_block * blocks);
-  std::vector<typename Motion<N>::Unknowns> start;
+  std::vector<Motion::Unknowns> start;
   for (int b = 0; b < system.block_count(); ++b) start.push_back(system.displacement(b));
   simulation.system().stop();
-  Neglect<N> neglect(simulation);
+  Neglect neglect(simulation);
 
   SettleResult result;
   double dt = input.first_dt, growth = fastest_growth;
@@ -88,7 +86,7 @@ SettleResult settle(Simulation<N>& simulation, const SettleProgress& progress) {
     result.unbalanced_fraction = step.unbalanced_force / simulation.force_scale();
     if (progress) progress(settled_share(result.unbalanced_fraction, input.unbalanced_fraction));
     for (int b : system.free_blocks()) {
-      result.displacement = std::max(result.displacement, Motion<N>::displacement_bound(system.displacement(b) - start[b], system.block(b).radius));
+      result.displacement = std::max(result.displacement, Motion::displacement_bound(system.displacement(b) - start[b], system.block(b).radius));
     }
     // Forces that were in balance with cohesion that is gone now are to be balanced anew.
     if (result.unbalanced_fraction <= input.unbalanced_fraction && !step.lost_strength) {
@@ -110,7 +108,5 @@ SettleResult settle(Simulation<N>& simulation, const SettleProgress& progress) {
   result.limit = "settle.max_steps";
   return result;
 }
-
-template SettleResult settle<3>(Simulation<3>&, const SettleProgress&);
 
 }  // namespace openclose

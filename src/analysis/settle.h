@@ -31,8 +31,7 @@ struct SettleResult {
 /// Told after every step which share of the way is behind; it may fall back.
 using SettleProgress = std::function<void(double fraction)>;
 
-template <int N>
-SettleResult settle(Simulation<N>& simulation, const SettleProgress& progress = {});
+SettleResult settle(Simulation& simulation, const SettleProgress& progress = {});
 
 /// The share [-] of the way down to `wanted` on a logarithmic scale, 0 where `now` is 1 or more.
 double settled_share(double now, double wanted);
@@ -52,7 +51,6 @@ struct RestLimits {
 /// That way is no motion of the slope: waves that the sudden change sends through it open contacts for a moment which equilibrium keeps closed. With
 /// `keep_bonds` it is gone with all bonds (what users of distinct-element codes know as "elastic first"). At rest, contacts that are open (or, where
 /// the joint says so, slide) lose what they have to lose, and what this leaves settles again, now losing on the way, too.
-template <int N>
-SettleResult settle_explicitly(Simulation<N>& simulation, const RestLimits& limits, const SettleProgress& progress);
+SettleResult settle_explicitly(Simulation& simulation, const RestLimits& limits, const SettleProgress& progress);
 
 }  // namespace openclose

@@ -11,22 +11,21 @@ constexpr double cut = 0.5;              ///< [-] on a step that moves a block t
 constexpr int displacement_every = 100;  ///< steps between two looks at the displacement, which costs as much as a step
 
 /// Displacement of the farthest block since this was made.
-template <int N>
 class Travel {
  public:
-  explicit Travel(const Simulation<N>& simulation) : simulation_(simulation), start_(simulation.system().state().displacement) {}
+  explicit Travel(const Simulation& simulation) : simulation_(simulation), start_(simulation.system().state().displacement) {}
   double largest() const {
-    const BlockSystem<N>& system = simulation_.system();
+    const BlockSystem& system = simulation_.system();
     double largest = 0.0;
     for (int b : system.free_blocks()) {
-      largest = std::max(largest, Motion<N>::displacement_bound(system.displacement(b) - start_[b], system.block(b).radius));
+      largest = std::max(largest, Motion::displacement_bound(system.displacement(b) - start_[b], system.block(b).radius));
     }
     return largest;
   }
 
  private:
-  const Simulation<N>& simulation_;
-  std::vector<typename Motion<N>::Unknowns> start_;
+  const Simulation& simulation_;
+  std::vector<Motion::Unknowns> start_;
 };
 
 /// Notices blocks that swing without end: while the unbalanced force neither falls nor moves anything on, the way to rest leads nowhere.
@@ -66,12 +65,11 @@ class Standstill {
 /// [-] On the step where blocks swing without end: what the shortest step leaves swinging swings at any length.
 constexpr double shorter = 0.5, shortest = 0.125;
 
-template <int N>
-SettleResult seek_rest(Simulation<N>& simulation, const RestLimits& limits, const SettleProgress& progress) {
+SettleResult seek_rest(Simulation& simulation, const RestLimits& limits, const SettleProgress& progress) {
   const MassDamping asked = simulation.scene().method.damping;
   const MassDamping damping = asked == MassDamping::none ? MassDamping::local : asked;
   simulation.come_to_rest();
-  const Travel<N> travel(simulation);
+  const Travel travel(simulation);
   const double scale = simulation.force_scale(), wanted = limits.unbalanced_force / scale;
 
   SettleResult result;
@@ -133,8 +131,7 @@ SettleResult seek_rest(Simulation<N>& simulation, const RestLimits& limits, cons
 
 }  // namespace
 
-template <int N>
-SettleResult settle_explicitly(Simulation<N>& simulation, const RestLimits& limits, const SettleProgress& progress) {
+SettleResult settle_explicitly(Simulation& simulation, const RestLimits& limits, const SettleProgress& progress) {
   if (!limits.keep_bonds) return seek_rest(simulation, limits, progress);
   simulation.keep_bonds(true);
   SettleResult kept = seek_rest(simulation, limits, progress);
@@ -148,7 +145,5 @@ SettleResult settle_explicitly(Simulation<N>& simulation, const RestLimits& limi
   result.displacement = std::max(result.displacement, kept.displacement);
   return result;
 }
-
-template SettleResult settle_explicitly<3>(Simulation<3>&, const RestLimits&, const SettleProgress&);
 
 }  // namespace openclose

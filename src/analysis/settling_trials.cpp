@@ -7,12 +7,10 @@ const std::string by_displacement = "displacement";  ///< see SettleResult::crit
 
 }  // namespace
 
-template <int N>
-SettlingTrials<N>::SettlingTrials(Simulation<N>& simulation, const SettleProgress& progress)
+SettlingTrials::SettlingTrials(Simulation& simulation, const SettleProgress& progress)
     : simulation_(simulation), search_(make_equilibrium_search(simulation)), points_(simulation), progress_(progress), initial_(simulation.save()) {}
 
-template <int N>
-TrialResult SettlingTrials<N>::first(double srf) {
+TrialResult SettlingTrials::first(double srf) {
   simulation_.restore(initial_);
   simulation_.joints().reduce_strength(srf);
   const SettleResult settled = search_->settle_first(progress_);
@@ -25,15 +23,13 @@ TrialResult SettlingTrials<N>::first(double srf) {
   return result;
 }
 
-template <int N>
-TrialResult SettlingTrials<N>::next(double srf) {
+TrialResult SettlingTrials::next(double srf) {
   simulation_.restore(*settled_);
   simulation_.joints().reduce_strength(srf);
   return result_of(search_->settle_trial(progress_));
 }
 
-template <int N>
-TrialResult SettlingTrials<N>::result_of(const SettleResult& settled) {
+TrialResult SettlingTrials::result_of(const SettleResult& settled) {
   // The paper's criterion knows no other failure than too many steps.
   const bool paper = simulation_.scene().settle.criterion == SettleCriterion::paper;
   TrialResult result;
@@ -50,7 +46,5 @@ TrialResult SettlingTrials<N>::result_of(const SettleResult& settled) {
   }
   return result;
 }
-
-template class SettlingTrials<3>;
 
 }  // namespace openclose

@@ -8,25 +8,24 @@
 
 namespace openclose {
 
-template <int N>
 class SettlingTrials : public StrengthTrials {
  public:
-  SettlingTrials(Simulation<N>& simulation, const SettleProgress& progress);
+  SettlingTrials(Simulation& simulation, const SettleProgress& progress);
 
   TrialResult first(double srf) override;
   /// From the first state that settled.
   TrialResult next(double srf) override;
 
-  using Snapshot = typename Simulation<N>::Snapshot;
+  using Snapshot = Simulation::Snapshot;
   const std::optional<Snapshot>& settled() const { return settled_; }
   const std::optional<Snapshot>& failed() const { return failed_; }  ///< of the last trial that was not stable
 
  private:
   TrialResult result_of(const SettleResult& settled);
 
-  Simulation<N>& simulation_;
-  std::unique_ptr<EquilibriumSearch<N>> search_;
-  MeasuredPoints<N> points_;
+  Simulation& simulation_;
+  std::unique_ptr<EquilibriumSearch> search_;
+  MeasuredPoints points_;
   SettleProgress progress_;
   Snapshot initial_;
   std::optional<Snapshot> settled_, failed_;

@@ -41,9 +41,8 @@ constexpr double part_of_limit = 0.9;
 constexpr double largest_turn_in_contact_rad = tolerance::parallel_none_rad;
 
 /// Whether a block that is in contact at the start or the end of a step turns by more than that.
-template <int N>
-bool turns_too_far(const BlockSystem<N>& system, const std::vector<Contact>& contacts, const StepSolution<N>& solution) {
-  const auto turns = [&](int b) { return std::abs(Motion<N>::rotation(solution.of(system, b))) > largest_turn_in_contact_rad; };
+bool turns_too_far(const BlockSystem& system, const std::vector<Contact>& contacts, const StepSolution& solution) {
+  const auto turns = [&](int b) { return std::abs(Motion::rotation(solution.of(system, b))) > largest_turn_in_contact_rad; };
   if (std::ranges::none_of(system.free_blocks(), turns)) return false;
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const bool touches = contacts[i].status != ContactStatus::open || solution.contacts.status(i) != ContactStatus::open;
@@ -77,9 +76,8 @@ constexpr double worthwhile_growth = 1.1;
 /// [-] Closure of an impact over the thickness of what it meets, to be aimed at with stiffer springs: a tenth is what dem promises to resolve.
 constexpr double closure_of_thickness = 0.1;
 
-template <int N>
 bool has_joint_springs(const std::string& contact) {
-  return std::ranges::any_of(enforcements<N>(), [&](const auto& entry) { return entry.name == contact && entry.make()->has_joint_springs(); });
+  return std::ranges::any_of(enforcements(), [&](const auto& entry) { return entry.name == contact && entry.make()->has_joint_springs(); });
 }
 
 }  // namespace
@@ -114,19 +112,17 @@ MethodInput settling_method(const Scene& scene) {
   return settling;
 }
 
-template <int N>
-Simulation<N>::Simulation(Scene scene) : Simulation(std::move(scene), nullptr) {
-  if (enforcement_->is_explicit()) loop_ = std::make_unique<CentralDifference<N>>(contact_skin_);
+Simulation::Simulation(Scene scene) : Simulation(std::move(scene), nullptr) {
+  if (enforcement_->is_explicit()) loop_ = std::make_unique<CentralDifference>(contact_skin_);
 }
 
-template <int N>
-Simulation<N>::Simulation(Scene scene, std::unique_ptr<Enforcement<N>> enforcement)
+Simulation::Simulation(Scene scene, std::unique_ptr<Enforcement> enforcement)
     : scene_(std::move(scene)),
       contact_skin_(scene_.method.contact_skin.value_or(default_contact_skin(scene_.blocks))),
       system_(scene_),
       external_(scene_, system_),
       joints_(scene_),
-      enforcement_(enforcement ? std::move(enforcement) : make_enforcement<N>(scene_.method)),
+      enforcement_(enforcement ? std::move(enforcement) : make_enforcement(scene_.method)),
       begins_(scene_.method.first_integrator.has_value()),
       scheme_(make_scheme()),
       // Two vertices may approach each other by the largest displacement each.
@@ -146,23 +142,21 @@ Simulation<N>::Simulation(Scene scene, std::unique_ptr<Enforcement<N>> enforceme
   if (is_settled_by_another(scene_)) check_settling();
 }
 
-template <int N>
-void Simulation<N>::check_settling() const {
-  if (!has_joint_springs<N>(scene_.method.contact) || !has_joint_springs<N>(*scene_.settled_by))
+void Simulation::check_settling() const {
+  if (!has_joint_springs(scene_.method.contact) || !has_joint_springs(*scene_.settled_by))
     throw InputError(scene_.settled_by_where, "run.settled_by",
                      fmt::format("no equilibrium of \"{}\" is one for method.contact = \"{}\"", *scene_.settled_by, scene_.method.contact),
                      "\"soft\" or \"dem\" where method.contact is one of these, or what method.contact is");
   const MethodInput settling = settling_method(scene_);
   try {
-    make_enforcement<N>(settling)->make_time_scheme(settling);
+    make_enforcement(settling)->make_time_scheme(settling);
   } catch (const InputError& error) {
     throw InputError(scene_.settled_by_where, "run.settled_by", fmt::format("\"{}\" cannot settle this scene: {}", settling.contact, error.what()),
                      "");
   }
 }
 
-template <int N>
-void Simulation<N>::collect() const {
+void Simulation::collect() const {
   if (!loop_is_ahead_) return;
   loop_is_ahead_ = false;
   loop_->store_blocks(system_);
@@ -187,43 +181,38 @@ void Simulation<N>::collect() const {
   book_kinetic_energy(loop_->kinetic_ahead());
 }
 
-template <int N>
-void Simulation<N>::book_kinetic_energy(double ahead) const {
+void Simulation::book_kinetic_energy(double ahead) const {
   ledger_.scheme -= ahead - kinetic_ahead_;
   kinetic_ahead_ = ahead;
   ledger_.kinetic = system_.kinetic_energy() + ahead - start_kinetic_energy_;
 }
 
-template <int N>
-double Simulation<N>::kinetic_ahead(const StepProblem<N>& problem, const StepSolution<N>& solution) const {
+double Simulation::kinetic_ahead(const StepProblem& problem, const StepSolution& solution) const {
   double power = 0.0;
   for (int b : system_.free_blocks()) {
     const Unknowns others = external_.force(system_, b, Unknowns::Zero()) - external_.weight(system_, b) - external_.base_force(system_, b);
     power += system_.velocity(b).dot(others);
   }
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
-    const ContactOutcome<N> o = solution.contacts[i];
-    const ContactKinematics<N> k(o.pose);
+    const ContactOutcome o = solution.contacts[i];
+    const ContactKinematics k(o.pose);
     power += system_.velocity(contacts_[i].vertex_block).dot(o.forces.normal * k.normal_vertex + o.forces.shear * k.shear_vertex);
     power += system_.velocity(contacts_[i].edge_block).dot(o.forces.normal * k.normal_edge + o.forces.shear * k.shear_edge);
   }
   return 0.5 * problem.dt * power;
 }
 
-template <int N>
-void Simulation<N>::unload_loop() {
+void Simulation::unload_loop() {
   collect();
   loop_is_loaded_ = false;
 }
 
-template <int N>
-void Simulation<N>::take_back() {
+void Simulation::take_back() {
   unload_loop();
   wake(std::vector<int>(system_.resting_blocks()));
 }
 
-template <int N>
-void Simulation<N>::rest_after(double dt) {
+void Simulation::rest_after(double dt) {
   if (!may_rest_) return;
   if (external_.base_acceleration().isZero(0.0)) {
     resting_.follow(system_, output_velocity_, dt);
@@ -247,8 +236,7 @@ void Simulation<N>::rest_after(double dt) {
   divide();
 }
 
-template <int N>
-void Simulation<N>::wake(const std::vector<int>& blocks) {
+void Simulation::wake(const std::vector<int>& blocks) {
   if (blocks.empty()) return;
   unload_loop();
   system_.wake(blocks);
@@ -256,46 +244,41 @@ void Simulation<N>::wake(const std::vector<int>& blocks) {
   divide();
 }
 
-template <int N>
-void Simulation<N>::divide() {
+void Simulation::divide() {
   detector_.divide(system_, contacts_);
   resting_.divide(system_, detector_.resting_contacts());
 }
 
-template <int N>
-bool Simulation<N>::wake_in_haste(const StepSolution<N>& solution, double dt) {
+bool Simulation::wake_in_haste(const StepSolution& solution, double dt) {
   if (system_.resting_blocks().empty()) return false;
   std::vector<Unknowns>& pushes = resting_.pushes(system_);
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     const int a = contacts_[i].vertex_block, b = contacts_[i].edge_block;
     if (solution.contacts.status(i) == ContactStatus::open || !(system_.is_at_rest(a) || system_.is_at_rest(b))) continue;
-    const ContactOutcome<N> o = solution.contacts[i];
+    const ContactOutcome o = solution.contacts[i];
     const Vec2 force = o.forces.normal * o.pose.normal + o.forces.shear * o.pose.tangent();
-    if (system_.is_at_rest(a)) pushes[system_.rest_number(a)] += Motion<N>::gradient(o.pose.vertex_arm, force);
-    if (system_.is_at_rest(b)) pushes[system_.rest_number(b)] -= Motion<N>::gradient(o.pose.edge_arm, force);
+    if (system_.is_at_rest(a)) pushes[system_.rest_number(a)] += Motion::gradient(o.pose.vertex_arm, force);
+    if (system_.is_at_rest(b)) pushes[system_.rest_number(b)] -= Motion::gradient(o.pose.edge_arm, force);
   }
   resting_.judge(system_, dt);
-  return wake_by_forces(Resting<N>::Urgency::in_haste);
+  return wake_by_forces(Resting::Urgency::in_haste);
 }
 
-template <int N>
-bool Simulation<N>::wake_by_forces(typename Resting<N>::Urgency urgency) {
+bool Simulation::wake_by_forces(Resting::Urgency urgency) {
   if (system_.resting_blocks().empty()) return false;
   const std::vector<int> woken = resting_.woken(system_, contacts_, detector_.resting_contacts(), urgency);
-  if (urgency == Resting<N>::Urgency::any) resting_.accept(system_);
+  if (urgency == Resting::Urgency::any) resting_.accept(system_);
   step_counters_.woken += static_cast<long>(woken.size());
   wake(woken);
   return !woken.empty();
 }
 
-template <int N>
-void Simulation<N>::count_moves() {
+void Simulation::count_moves() {
   step_counters_.block_steps += system_.free_count();
   step_counters_.block_steps_skipped += static_cast<long>(system_.resting_blocks().size());
 }
 
-template <int N>
-void Simulation<N>::note_memory() {
+void Simulation::note_memory() {
   Memory now = enforcement_->memory() + detector_.memory();
   if (loop_) now += loop_->memory();
   now.blocks += bytes_of_scene_ + system_.bytes() + bytes_of(output_velocity_);
@@ -303,72 +286,61 @@ void Simulation<N>::note_memory() {
   memory_.grow_to(now);
 }
 
-template <int N>
-BlockSystem<N>& Simulation<N>::system() {
+BlockSystem& Simulation::system() {
   take_back();
   return system_;
 }
 
-template <int N>
-const BlockSystem<N>& Simulation<N>::system() const {
+const BlockSystem& Simulation::system() const {
   collect();
   return system_;
 }
 
-template <int N>
-JointTable& Simulation<N>::joints() {
+JointTable& Simulation::joints() {
   take_back();
   return joints_;
 }
 
-template <int N>
-typename Simulation<N>::Unknowns Simulation<N>::velocity(int b) const {
+Simulation::Unknowns Simulation::velocity(int b) const {
   collect();
   return output_velocity_[b];
 }
 
-template <int N>
-const EnergyLedger& Simulation<N>::ledger() const {
+const EnergyLedger& Simulation::ledger() const {
   collect();
   return ledger_;
 }
 
-template <int N>
-double Simulation<N>::max_penetration() const {
+double Simulation::max_penetration() const {
   collect();
   return max_penetration_;
 }
 
-template <int N>
-void Simulation<N>::set_velocity(int b, const Unknowns& velocity) {
+void Simulation::set_velocity(int b, const Unknowns& velocity) {
   take_back();
   output_velocity_[b] = velocity;
 }
 
-template <int N>
-void Simulation<N>::positions_changed() {
+void Simulation::positions_changed() {
   take_back();
   detector_.forget();
   contacts_current_ = false;
 }
 
-template <int N>
-double Simulation<N>::stored_contact_energy() const {
+double Simulation::stored_contact_energy() const {
   double energy = moving_contact_energy();
   for (const Contact& c : detector_.resting_contacts()) energy += c.stored_energy;
   return energy;
 }
 
-template <int N>
-double Simulation<N>::moving_contact_energy() const {
+double Simulation::moving_contact_energy() const {
   collect();
   double energy = 0.0;
   for (const Contact& c : contacts_) energy += c.stored_energy;
   return energy;
 }
 
-template <int N>
-double Simulation<N>::force_scale() const {
+double Simulation::force_scale() const {
   collect();
   double scale = 0.0;
   for (int b : system_.free_blocks()) scale = std::max(scale, external_.weight(system_, b).norm());
@@ -378,23 +350,21 @@ double Simulation<N>::force_scale() const {
   return scale > 0.0 ? scale : 1.0;
 }
 
-template <int N>
-bool Simulation<N>::find_contacts(double lead) {
+bool Simulation::find_contacts(double lead) {
   // What touches in the drawing is found there.
   if (lead == 0.0 || !detector_.knows_bonds()) return detector_.update(system_, joints_, contacts_);
-  BlockSystem<N> ahead = system_;
+  BlockSystem ahead = system_;
   for (int b : system_.free_blocks()) ahead.advance(b, lead * system_.velocity(b));
   return detector_.update(ahead, joints_, contacts_, &system_);
 }
 
-template <int N>
-void Simulation<N>::detect(double lead) {
+void Simulation::detect(double lead) {
   const Stopwatch watch(stage_times_.detection);
   const bool elastic = enforcement_->has_elastic_contacts();
   const double before = elastic ? moving_contact_energy() : 0.0;
   contacts_current_ = true;
   if (!find_contacts(lead) || !elastic) return;
-  const StepProblem<N> p = present_problem(scene_.step.dt, false);
+  const StepProblem p = present_problem(scene_.step.dt, false);
   for (const DetectionChange& change : detector_.changes()) {
     for (int i = change.after.begin; i < change.after.end; ++i) store_energy(p, contacts_[i]);
   }
@@ -406,42 +376,36 @@ void Simulation<N>::detect(double lead) {
   ledger_.contact_springs += change;
 }
 
-template <int N>
-void Simulation<N>::store_energy(const StepProblem<N>& problem, Contact& contact) const {
+void Simulation::store_energy(const StepProblem& problem, Contact& contact) const {
   const ContactSprings springs = enforcement_->springs(problem, contact);
   const ContactForces f = spring_slider(springs, ContactStrength(joints_.joint(contact.joint), contact), 0.0, 0.0);
   contact.stored_energy = stored_energy(springs.normal, springs.shear, f.normal, springs.initial_shear) - contact.crossing_energy;
 }
 
-template <int N>
-std::vector<Contact>& Simulation<N>::contacts() {
+std::vector<Contact>& Simulation::contacts() {
   take_back();
   return moving_contacts();
 }
 
-template <int N>
-const std::vector<Contact>& Simulation<N>::contacts() const {
+const std::vector<Contact>& Simulation::contacts() const {
   collect();
   return contacts_;
 }
 
-template <int N>
-std::vector<Contact> Simulation<N>::every_contact() const {
+std::vector<Contact> Simulation::every_contact() const {
   std::vector<Contact> list = contacts();
   const std::vector<Contact>& resting = detector_.resting_contacts();
   list.insert(list.end(), resting.begin(), resting.end());
   return list;
 }
 
-template <int N>
-std::vector<Contact>& Simulation<N>::moving_contacts(double lead) {
+std::vector<Contact>& Simulation::moving_contacts(double lead) {
   unload_loop();
   if (!contacts_current_) detect(lead);
   return contacts_;
 }
 
-template <int N>
-bool Simulation<N>::move_base(double dt, bool statics) {
+bool Simulation::move_base(double dt, bool statics) {
   const TimeSpan span = scheme_->span_of_velocities(dt);
   if (base_moves_ && !statics) {
     external_.move_base(time_ + span.from, time_ + span.to);
@@ -453,16 +417,14 @@ bool Simulation<N>::move_base(double dt, bool statics) {
   return true;
 }
 
-template <int N>
-StepProblem<N> Simulation<N>::problem(double dt, bool statics) {
+StepProblem Simulation::problem(double dt, bool statics) {
   move_base(dt, statics);
   moving_contacts(statics ? 0.0 : scene_.step.look_ahead * dt);
   return present_problem(dt, statics);
 }
 
-template <int N>
-StepProblem<N> Simulation<N>::present_problem(double dt, bool statics) const {
-  StepProblem<N> p{system_, external_, joints_, contacts_, scene_.method};
+StepProblem Simulation::present_problem(double dt, bool statics) const {
+  StepProblem p{system_, external_, joints_, contacts_, scene_.method};
   p.dt = dt;
   p.statics = statics;
   p.inertia = statics ? 2.0 / (dt * dt) : scheme_->inertia(dt);
@@ -479,56 +441,54 @@ StepProblem<N> Simulation<N>::present_problem(double dt, bool statics) const {
     const Eigen::VectorXd force = forces_now(p);
     for (int b : system_.free_blocks()) {
       const auto& block = system_.block(b);
-      scheme_->start(b, force.segment<N>(N * block.equation).cwiseQuotient(block.mass));
+      scheme_->start(b, force.segment<dofs>(dofs * block.equation).cwiseQuotient(block.mass));
     }
   }
   return p;
 }
 
-template <int N>
-Eigen::VectorXd Simulation<N>::forces_now(const StepProblem<N>& problem) const {
-  Eigen::VectorXd force(N * system_.free_count());
-  for (int b : system_.free_blocks()) force.segment<N>(N * system_.block(b).equation) = external_.force(system_, b, Unknowns::Zero());
+Eigen::VectorXd Simulation::forces_now(const StepProblem& problem) const {
+  Eigen::VectorXd force(dofs * system_.free_count());
+  for (int b : system_.free_blocks()) force.segment<dofs>(dofs * system_.block(b).equation) = external_.force(system_, b, Unknowns::Zero());
   const auto push = [&](int b, const Unknowns& f) {
     const int i = system_.block(b).equation;
-    if (i >= 0) force.segment<N>(N * i) += f;
+    if (i >= 0) force.segment<dofs>(dofs * i) += f;
   };
   for (const Contact& c : contacts_) {
     const ContactForces f = spring_slider(enforcement_->springs(problem, c), ContactStrength(joints_.joint(c.joint), c), 0.0, 0.0);
     if (f.status == ContactStatus::open) continue;
-    const ContactKinematics<N> k(system_, c, Unknowns::Zero(), Unknowns::Zero());
+    const ContactKinematics k(system_, c, Unknowns::Zero(), Unknowns::Zero());
     push(c.vertex_block, f.normal * k.normal_vertex + f.shear * k.shear_vertex);
     push(c.edge_block, f.normal * k.normal_edge + f.shear * k.shear_edge);
   }
   for (int b : system_.free_blocks()) {
-    if (system_.block(b).rotation_locked) force[N * system_.block(b).equation + Motion<N>::rotation_index] = 0.0;
+    if (system_.block(b).rotation_locked) force[dofs * system_.block(b).equation + Motion::rotation_index] = 0.0;
   }
   return force;
 }
 
-template <int N>
-double Simulation<N>::local_error(const StepProblem<N>& problem, const StepSolution<N>& solution) const {
-  Eigen::VectorXd change = Eigen::VectorXd::Zero(N * system_.free_count());
+double Simulation::local_error(const StepProblem& problem, const StepSolution& solution) const {
+  Eigen::VectorXd change = Eigen::VectorXd::Zero(dofs * system_.free_count());
   for (int b : system_.free_blocks()) {
     if (!external_.has_point_forces(b)) continue;  // the others do not change
-    change.segment<N>(N * system_.block(b).equation) =
+    change.segment<dofs>(dofs * system_.block(b).equation) =
         external_.force(system_, b, solution.of(system_, b)) - external_.force(system_, b, Unknowns::Zero());
   }
   const auto push = [&](int b, const Vec2& arm, const Vec2& force) {
     const int i = system_.block(b).equation;
-    if (i >= 0) change.segment<N>(N * i) += Motion<N>::gradient(arm, force);
+    if (i >= 0) change.segment<dofs>(dofs * i) += Motion::gradient(arm, force);
   };
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     const Contact& c = contacts_[i];
     if (solution.contacts.status(i) != ContactStatus::open) {
-      const ContactPose<N> at = solution.contacts.pose(i);
+      const ContactPose at = solution.contacts.pose(i);
       const CarriedForces f = solution.contacts.forces(i);
       const Vec2 force = f.normal * at.normal + f.shear * at.tangent();
       push(c.vertex_block, at.vertex_arm, force);
       push(c.edge_block, at.edge_arm, -force);
     }
     if (c.status != ContactStatus::open) {
-      const ContactStart<N> before(system_, c);
+      const ContactStart before(system_, c);
       const Vec2 force = c.normal_force * before.normal + c.shear_force * perpendicular(before.normal);
       push(c.vertex_block, before.vertex_arm, -force);
       push(c.edge_block, before.end_arm + before.lever, force);
@@ -537,29 +497,27 @@ double Simulation<N>::local_error(const StepProblem<N>& problem, const StepSolut
   double largest = 0.0;
   for (int b : system_.free_blocks()) {
     const auto& block = system_.block(b);
-    Unknowns error = problem.dt * problem.dt / 12.0 * change.segment<N>(N * block.equation).cwiseQuotient(block.mass);
-    if (block.rotation_locked) error[Motion<N>::rotation_index] = 0.0;
-    largest = std::max(largest, Motion<N>::displacement_bound(error, block.radius));
+    Unknowns error = problem.dt * problem.dt / 12.0 * change.segment<dofs>(dofs * block.equation).cwiseQuotient(block.mass);
+    if (block.rotation_locked) error[Motion::rotation_index] = 0.0;
+    largest = std::max(largest, Motion::displacement_bound(error, block.radius));
   }
   return largest;
 }
 
-template <int N>
-double Simulation<N>::largest_move(const StepSolution<N>& solution) const {
+double Simulation::largest_move(const StepSolution& solution) const {
   double largest = 0.0;
   for (int b : system_.free_blocks()) {
     const auto& block = system_.block(b);
     const Unknowns d = solution.of(system_, b);
-    if (Motion<N>::displacement_bound(d, block.radius) <= largest) continue;
+    if (Motion::displacement_bound(d, block.radius) <= largest) continue;
     for (int v = block.first_vertex; v < block.first_vertex + block.vertex_count; ++v) {
-      largest = std::max(largest, Motion<N>::displacement(d, system_.arm(v), system_.rotation_kind()).norm());
+      largest = std::max(largest, Motion::displacement(d, system_.arm(v), system_.rotation_kind()).norm());
     }
   }
   return largest;
 }
 
-template <int N>
-double Simulation<N>::part_before_entry(const StepSolution<N>& solution, double moved) const {
+double Simulation::part_before_entry(const StepSolution& solution, double moved) const {
   if (solution.compliant || cuts_at_entry_ == most_cuts_at_entry) return 1.0;  // springs of a compliant step give way by more than what is tolerated
   if (enforcement_->has_elastic_contacts()) {
     const EntryTolerance tolerance{tolerance::rounding_of_ways_m, unnoticed_part_of_width, enforcement_->deepest_entry(scene_.method)};
@@ -569,8 +527,7 @@ double Simulation<N>::part_before_entry(const StepSolution<N>& solution, double 
   return 2.0 * moved > tolerated ? first_entry(system_, solution, detector_.candidate_pairs(), {tolerated}) : 1.0;
 }
 
-template <int N>
-StepResult Simulation<N>::step(double dt, bool statics) {
+StepResult Simulation::step(double dt, bool statics) {
   if (loop_ && !statics) {
     StepResult taken = explicit_step(dt, scene_.method.damping, true);
     while (taken.relisted) taken = explicit_step(dt, scene_.method.damping, true);
@@ -579,8 +536,8 @@ StepResult Simulation<N>::step(double dt, bool statics) {
   }
   StepResult result;
   if (statics) take_back();
-  const StepProblem<N> p = problem(dt, statics);
-  StepSolution<N>& solution = solution_;
+  const StepProblem p = problem(dt, statics);
+  StepSolution& solution = solution_;
   {
     const Stopwatch watch(stage_times_.solution);
     solution.clear();
@@ -640,16 +597,15 @@ StepResult Simulation<N>::step(double dt, bool statics) {
   result.lost_strength = loses_strength(solution);
   accept(p, solution);
   result.accepted = true;
-  wake_by_forces(Resting<N>::Urgency::any);
+  wake_by_forces(Resting::Urgency::any);
   return result;
 }
 
-template <int N>
-double Simulation<N>::unbalanced_force(const StepProblem<N>& problem, const StepSolution<N>& solution) const {
+double Simulation::unbalanced_force(const StepProblem& problem, const StepSolution& solution) const {
   double largest = 0.0;  // of what inertia carries
   for (int b : system_.free_blocks()) {
     const Unknowns inertia_force = problem.inertia * system_.block(b).mass.cwiseProduct(solution.of(system_, b));
-    largest = std::max(largest, Motion<N>::largest_force(inertia_force, system_.block(b).radius));
+    largest = std::max(largest, Motion::largest_force(inertia_force, system_.block(b).radius));
   }
   // Where friction lags behind the normal force, equilibrium with the old friction is none yet.
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
@@ -661,8 +617,7 @@ double Simulation<N>::unbalanced_force(const StepProblem<N>& problem, const Step
   return largest + solution.unbalanced;
 }
 
-template <int N>
-bool Simulation<N>::loses_strength(const StepSolution<N>& solution) const {
+bool Simulation::loses_strength(const StepSolution& solution) const {
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     const Contact& c = contacts_[i];
     const JointProperties& joint = joints_.joint(c.joint);
@@ -671,24 +626,22 @@ bool Simulation<N>::loses_strength(const StepSolution<N>& solution) const {
   return false;
 }
 
-template <int N>
-void Simulation<N>::velocities_by_forces_now(const StepProblem<N>& problem, const StepSolution<N>& solution) {
+void Simulation::velocities_by_forces_now(const StepProblem& problem, const StepSolution& solution) {
   std::vector<Unknowns> force(system_.block_count(), Unknowns::Zero());
   for (int b : system_.free_blocks()) force[b] = external_.force(system_, b, Unknowns::Zero());
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
-    const ContactOutcome<N> o = solution.contacts[i];
-    const ContactKinematics<N> k(o.pose);
+    const ContactOutcome o = solution.contacts[i];
+    const ContactKinematics k(o.pose);
     force[contacts_[i].vertex_block] += o.forces.normal * k.normal_vertex + o.forces.shear * k.shear_vertex;
     force[contacts_[i].edge_block] += o.forces.normal * k.normal_edge + o.forces.shear * k.shear_edge;
   }
   for (int b : system_.free_blocks()) {
-    if (system_.block(b).rotation_locked) force[b][Motion<N>::rotation_index] = 0.0;
+    if (system_.block(b).rotation_locked) force[b][Motion::rotation_index] = 0.0;
     output_velocity_[b] = system_.velocity(b) + 0.5 * problem.dt * force[b].cwiseQuotient(system_.block(b).mass);
   }
 }
 
-template <int N>
-std::vector<std::size_t> Simulation<N>::closing_contacts(const StepProblem<N>& problem, const StepSolution<N>& solution) const {
+std::vector<std::size_t> Simulation::closing_contacts(const StepProblem& problem, const StepSolution& solution) const {
   std::vector<std::size_t> closing;
   if (problem.statics || enforcement_->has_elastic_contacts()) return closing;
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
@@ -697,22 +650,20 @@ std::vector<std::size_t> Simulation<N>::closing_contacts(const StepProblem<N>& p
   return closing;
 }
 
-template <int N>
-void Simulation<N>::take_out_of_velocity(const StepProblem<N>& problem, const Contact& contact, const ContactOutcome<N>& outcome) {
-  const ContactKinematics<N> k(outcome.pose);
+void Simulation::take_out_of_velocity(const StepProblem& problem, const Contact& contact, const ContactOutcome& outcome) {
+  const ContactKinematics k(outcome.pose);
   const auto take = [&](int b, const Unknowns& normal, const Unknowns& shear) {
     if (system_.block(b).equation < 0) return;
     const Unknowns force = outcome.forces.normal * normal + outcome.forces.shear * shear;
     Unknowns change = 0.5 * problem.dt * force.cwiseQuotient(system_.block(b).mass);
-    if (system_.block(b).rotation_locked) change[Motion<N>::rotation_index] = 0.0;
+    if (system_.block(b).rotation_locked) change[Motion::rotation_index] = 0.0;
     output_velocity_[b] -= change;
   };
   take(contact.vertex_block, k.normal_vertex, k.shear_vertex);
   take(contact.edge_block, k.normal_edge, k.shear_edge);
 }
 
-template <int N>
-double Simulation<N>::kinetic_change(const StepProblem<N>& problem, const StepSolution<N>& solution) const {
+double Simulation::kinetic_change(const StepProblem& problem, const StepSolution& solution) const {
   double change = 0.0;
   for (int b : system_.free_blocks()) {
     const Unknowns before = problem.velocity(b), after = scheme_->next_velocity(b, problem.dt, solution.of(system_, b), before);
@@ -722,8 +673,7 @@ double Simulation<N>::kinetic_change(const StepProblem<N>& problem, const StepSo
   return change;
 }
 
-template <int N>
-bool Simulation<N>::creates_energy(const StepProblem<N>& problem, const StepSolution<N>& solution) const {
+bool Simulation::creates_energy(const StepProblem& problem, const StepSolution& solution) const {
   if (!std::isfinite(creatable_energy_) || cuts_for_energy_ == most_cuts_for_energy) return false;
   EnergyLedger after = ledger_;
   after += step_ledger_;
@@ -734,8 +684,7 @@ bool Simulation<N>::creates_energy(const StepProblem<N>& problem, const StepSolu
   return is_much(above_lowest, rise) || is_much(-after.scheme, -step_ledger_.scheme) || is_much(-after.impact, -step_ledger_.impact);
 }
 
-template <int N>
-void Simulation<N>::accept(const StepProblem<N>& problem, const StepSolution<N>& solution) {
+void Simulation::accept(const StepProblem& problem, const StepSolution& solution) {
   if (books_steps_) ledger_ += step_ledger_;
   const std::vector<std::size_t> impacts = closing_contacts(problem, solution);
   accept_contacts(solution);
@@ -770,8 +719,7 @@ void Simulation<N>::accept(const StepProblem<N>& problem, const StepSolution<N>&
   contacts_current_ = false;
 }
 
-template <int N>
-void Simulation<N>::accept_contacts(const StepSolution<N>& solution) {
+void Simulation::accept_contacts(const StepSolution& solution) {
   const bool elastic = enforcement_->has_elastic_contacts();
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     Contact& c = contacts_[i];
@@ -793,8 +741,7 @@ void Simulation<N>::accept_contacts(const StepSolution<N>& solution) {
   }
 }
 
-template <int N>
-void Simulation<N>::book_crossing(Contact& contact, const ContactOutcome<N>& outcome, const Contact& start) {
+void Simulation::book_crossing(Contact& contact, const ContactOutcome& outcome, const Contact& start) {
   const double before = contact.crossing_energy;
   contact.crossing_energy = 0.0;
   const bool is_open = contact.status == ContactStatus::open;
@@ -811,8 +758,7 @@ void Simulation<N>::book_crossing(Contact& contact, const ContactOutcome<N>& out
   ledger_.scheme += contact.crossing_energy - before;
 }
 
-template <int N>
-void Simulation<N>::load_loop() {
+void Simulation::load_loop() {
   if (loop_is_loaded_ && contacts_current_) return;
   approach_step_.reset();
   if (!loop_is_loaded_ || !renew_loop()) {
@@ -828,8 +774,7 @@ void Simulation<N>::load_loop() {
 }
 
 /// Renews the list of contacts under the running loop; false if the loop is to take over everything anew.
-template <int N>
-bool Simulation<N>::renew_loop() {
+bool Simulation::renew_loop() {
   if (!scene_.method.skip_reload || !loop_->can_renew()) return false;
   loop_->store_blocks(system_);
   if (detector_.needs_search(system_)) return false;
@@ -842,7 +787,7 @@ bool Simulation<N>::renew_loop() {
       return true;
     }
   }
-  const StepProblem<N> p = present_problem(scene_.step.dt, false);
+  const StepProblem p = present_problem(scene_.step.dt, false);
   for (const DetectionChange& change : detector_.changes()) {
     for (int i = change.after.begin; i < change.after.end; ++i) store_energy(p, contacts_[i]);
   }
@@ -852,8 +797,7 @@ bool Simulation<N>::renew_loop() {
   return true;
 }
 
-template <int N>
-double Simulation<N>::approach_step() {
+double Simulation::approach_step() {
   if (!approach_step_) {
     loop_->store_blocks(system_);
     approach_step_ =
@@ -862,28 +806,25 @@ double Simulation<N>::approach_step() {
   return *approach_step_;
 }
 
-template <int N>
-std::string Simulation<N>::too_deep() {
+std::string Simulation::too_deep() {
   const auto found = loop_->too_deep();
   if (!found) return {};
   const Contact& c = contacts_[found->contact];
   // The closure of an impact falls with the root of the stiffness.
-  const double wanted = closure_of_thickness * found->limit / DepthLimits<N>::part, factor = found->depth / wanted;
+  const double wanted = closure_of_thickness * found->limit / DepthLimits::part, factor = found->depth / wanted;
   return fmt::format(
       "the springs are too soft for these blocks: a corner of \"{}\" has come {:.2g} m into \"{}\", which is {:.2g} m thick there; "
       "joint[{}].normal_stiffness_pa_per_m = {:.2g} or more would be a remedy",
-      scene_.blocks[c.vertex_block].name, found->depth, scene_.blocks[c.edge_block].name, found->limit / DepthLimits<N>::part, c.joint,
+      scene_.blocks[c.vertex_block].name, found->depth, scene_.blocks[c.edge_block].name, found->limit / DepthLimits::part, c.joint,
       joints_.joint(c.joint).normal_stiffness * factor * factor);
 }
 
-template <int N>
-double Simulation<N>::critical_step() {
+double Simulation::critical_step() {
   load_loop();
   return loop_->critical_step();
 }
 
-template <int N>
-double Simulation<N>::longest_stable_step(MassDamping damping) {
+double Simulation::longest_stable_step(MassDamping damping) {
   load_loop();
   const double stable = scene_.method.step_fraction * loop_->critical_step(damping == MassDamping::local ? scene_.method.local_damping : 0.0);
   const double longest = loop_->is_fast() ? std::min(stable, approach_step()) : stable;
@@ -892,8 +833,7 @@ double Simulation<N>::longest_stable_step(MassDamping damping) {
   return held_step_;
 }
 
-template <int N>
-StepResult Simulation<N>::explicit_step(double h, MassDamping damping, bool any_length) {
+StepResult Simulation::explicit_step(double h, MassDamping damping, bool any_length) {
   move_base(h, false);
   load_loop();
   StepResult result;
@@ -931,30 +871,26 @@ StepResult Simulation<N>::explicit_step(double h, MassDamping damping, bool any_
   if (!system_.resting_blocks().empty()) {
     loop_->rest_forces(resting_.pushes(system_));
     resting_.judge(system_, h);
-    wake_by_forces(Resting<N>::Urgency::any);
+    wake_by_forces(Resting::Urgency::any);
   }
   return result;
 }
 
-template <int N>
-void Simulation<N>::keep_bonds(bool keep) {
+void Simulation::keep_bonds(bool keep) {
   take_back();
   keep_bonds_ = keep;
 }
 
-template <int N>
-void Simulation<N>::judge_bonds() {
+void Simulation::judge_bonds() {
   for (Contact& c : contacts()) c.bonded = stays_bonded(joints_.joint(c.joint), c.bonded, c.status);
 }
 
-template <int N>
-double Simulation<N>::unbalanced_force() {
+double Simulation::unbalanced_force() {
   load_loop();
   return loop_->unbalanced_force();
 }
 
-template <int N>
-bool Simulation<N>::advance_explicitly(double dt) {
+bool Simulation::advance_explicitly(double dt) {
   const double smallest = scene_.step.smallest_fraction * dt;
   double remaining = dt, longest = 0.0, part = 1.0;
   for (long steps = 0; remaining > 0.0;) {  // equal ones, of the remaining time
@@ -998,8 +934,7 @@ bool Simulation<N>::advance_explicitly(double dt) {
   return remaining == 0.0;
 }
 
-template <int N>
-bool Simulation<N>::advance(double dt) {
+bool Simulation::advance(double dt) {
   if (loop_) return advance_explicitly(dt);
   if (begins_ != is_beginning()) restart_scheme();
   const bool adaptive = scene_.step.adaptive && !scene_.method.statics;
@@ -1041,19 +976,16 @@ bool Simulation<N>::advance(double dt) {
   return true;
 }
 
-template <int N>
-bool Simulation<N>::is_beginning() const {
+bool Simulation::is_beginning() const {
   return scene_.method.first_integrator && time_ < scene_.method.first_integrator_time * (1.0 - tolerance::rounding_of_times);
 }
 
-template <int N>
-std::unique_ptr<TimeScheme<N>> Simulation<N>::make_scheme() const {
-  std::unique_ptr<TimeScheme<N>> scheme = enforcement_->make_time_scheme(scene_.method);  // for its complaints, too
+std::unique_ptr<TimeScheme> Simulation::make_scheme() const {
+  std::unique_ptr<TimeScheme> scheme = enforcement_->make_time_scheme(scene_.method);  // for its complaints, too
   return begins_ ? enforcement_->make_time_scheme(method_at_first(scene_.method)) : std::move(scheme);
 }
 
-template <int N>
-void Simulation<N>::restart_scheme() {
+void Simulation::restart_scheme() {
   take_back();
   // A new scheme starts from whole-step velocities.
   for (int b : system_.free_blocks()) system_.set_velocity(b, output_velocity_[b]);
@@ -1062,17 +994,15 @@ void Simulation<N>::restart_scheme() {
   start_kinetic_energy_ = system_.kinetic_energy() + kinetic_ahead_ - ledger_.kinetic;
 }
 
-template <int N>
-void Simulation<N>::change_method(const MethodInput& method) {
+void Simulation::change_method(const MethodInput& method) {
   take_back();
   scene_.method = method;
-  enforcement_ = make_enforcement<N>(method);
-  loop_ = enforcement_->is_explicit() ? std::make_unique<CentralDifference<N>>(contact_skin_) : nullptr;
+  enforcement_ = make_enforcement(method);
+  loop_ = enforcement_->is_explicit() ? std::make_unique<CentralDifference>(contact_skin_) : nullptr;
   restart_scheme();
 }
 
-template <int N>
-void Simulation<N>::come_to_rest() {
+void Simulation::come_to_rest() {
   take_back();
   const double dropped = system_.kinetic_energy() + kinetic_ahead_;
   kinetic_ahead_ = 0.0;
@@ -1083,8 +1013,7 @@ void Simulation<N>::come_to_rest() {
   restart_scheme();
 }
 
-template <int N>
-void Simulation<N>::restart_clock() {
+void Simulation::restart_clock() {
   take_back();
   time_ = 0.0;
   ledger_ = EnergyLedger();
@@ -1094,22 +1023,19 @@ void Simulation<N>::restart_clock() {
   restart_scheme();
 }
 
-template <int N>
-void Simulation<N>::restore_velocities() {
+void Simulation::restore_velocities() {
   take_back();
-  for (std::size_t b = 0; b < scene_.blocks.size(); ++b) output_velocity_[b] = BlockSystem<N>::velocity_at_start(scene_.blocks[b]);
+  for (std::size_t b = 0; b < scene_.blocks.size(); ++b) output_velocity_[b] = BlockSystem::velocity_at_start(scene_.blocks[b]);
 }
 
-template <int N>
-typename Simulation<N>::Snapshot Simulation<N>::save() {
+Simulation::Snapshot Simulation::save() {
   contacts();
   Snapshot snapshot{system_.state(), contacts_};
   snapshot.blocks.velocity = output_velocity_;
   return snapshot;
 }
 
-template <int N>
-void Simulation<N>::restore(const Snapshot& snapshot) {
+void Simulation::restore(const Snapshot& snapshot) {
   take_back();
   system_.restore(snapshot.blocks);
   contacts_ = snapshot.contacts;
@@ -1119,12 +1045,11 @@ void Simulation<N>::restore(const Snapshot& snapshot) {
   output_velocity_ = snapshot.blocks.velocity;
   failed_attempts_ = cuts_at_entry_ = cuts_for_energy_ = 0;
   last_speed_ = held_step_ = 0.0;
-  if (loop_) loop_ = std::make_unique<CentralDifference<N>>(contact_skin_);
+  if (loop_) loop_ = std::make_unique<CentralDifference>(contact_skin_);
   restart_scheme();
 }
 
-template <int N>
-void Simulation<N>::exchange(Archive& archive) {
+void Simulation::exchange(Archive& archive) {
   archive(system_, resting_, may_rest_, external_, joints_, base_moves_, keep_bonds_, detector_, contacts_, contacts_current_, output_velocity_,
           time_, reason_, ledger_, start_kinetic_energy_, kinetic_ahead_, collected_contact_energy_, max_penetration_, friction_work_,
           lagging_friction_work_, step_counters_, failed_attempts_, cuts_at_entry_, cuts_for_energy_, lowest_energy_, creatable_energy_, last_speed_,
@@ -1137,7 +1062,5 @@ void Simulation<N>::exchange(Archive& archive) {
     archive(loop_is_ahead_, loop_is_loaded_);
   }
 }
-
-template class Simulation<3>;
 
 }  // namespace openclose

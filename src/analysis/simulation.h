@@ -93,15 +93,14 @@ struct StepResult {
   bool lost_strength = false;  ///< a contact has lost its cohesion or tensile strength at the end of the step
 };
 
-template <int N>
 class Simulation {
  public:
-  using Unknowns = typename Motion<N>::Unknowns;
+  using Unknowns = Motion::Unknowns;
 
   /// Throws InputError for an unknown enforcement or a missing joint. Explicit methods run in the loop of CentralDifference.
   explicit Simulation(Scene scene);
   /// With an enforcement of the caller's own, which solves every step itself, also if it is explicit; null: the one that the scene names.
-  Simulation(Scene scene, std::unique_ptr<Enforcement<N>> enforcement);
+  Simulation(Scene scene, std::unique_ptr<Enforcement> enforcement);
 
   /// One attempt at a step, or at the next stage of one where the integrator has several; advance() puts them together. Explicit methods do not look
   /// whether dt is below the critical step; they have no static steps.
@@ -128,10 +127,10 @@ class Simulation {
   double time() const { return time_; }
   const std::string& reason() const { return reason_; }
   const Scene& scene() const { return scene_; }
-  BlockSystem<N>& system();
-  const BlockSystem<N>& system() const;
+  BlockSystem& system();
+  const BlockSystem& system() const;
   JointTable& joints();
-  const ExternalForces<N>& external() const { return external_; }
+  const ExternalForces& external() const { return external_; }
   /// Contacts of the present positions. Reference valid until the next step.
   std::vector<Contact>& contacts();
   /// As the last step left them.
@@ -140,9 +139,9 @@ class Simulation {
   std::vector<Contact> every_contact() const;
   /// Pairs of blocks that may touch, see Detector::candidate_pairs().
   const std::vector<std::pair<int, int>>& candidate_pairs() const { return detector_.candidate_pairs(); }
-  const Enforcement<N>& enforcement() const { return *enforcement_; }
+  const Enforcement& enforcement() const { return *enforcement_; }
   /// The next step as it stands; for starts, and for those who want the tangent.
-  StepProblem<N> problem(double dt, bool statics);
+  StepProblem problem(double dt, bool statics);
 
   /// Velocity of block b at time() (the system's own may be half a step behind, see time_scheme.h).
   Unknowns velocity(int b) const;
@@ -190,7 +189,7 @@ class Simulation {
 
   /// Positions, contacts and the velocities at time().
   struct Snapshot {
-    typename BlockSystem<N>::State blocks;
+    BlockSystem::State blocks;
     std::vector<Contact> contacts;
   };
   Snapshot save();
@@ -207,26 +206,26 @@ class Simulation {
   void detect(double lead);
   /// Whether the next step is one of method.first_integrator.
   bool is_beginning() const;
-  std::unique_ptr<TimeScheme<N>> make_scheme() const;
+  std::unique_ptr<TimeScheme> make_scheme() const;
   void restart_scheme();
   /// Gives the external forces what the base does in the next step.
   /// True if blocks at rest were woken by it.
   bool move_base(double dt, bool statics);
   /// [m] What the trapezoid leaves out in a step with these end forces, dt^2 (a1 - a0)/12, as a displacement of any vertex. a0 are the accelerations
   /// by the forces that the last step ended with.
-  double local_error(const StepProblem<N>& problem, const StepSolution<N>& solution) const;
+  double local_error(const StepProblem& problem, const StepSolution& solution) const;
   /// [N] Sum of the forces on every free block as it stands, without dashpots.
-  Eigen::VectorXd forces_now(const StepProblem<N>& problem) const;
-  double largest_move(const StepSolution<N>& solution) const;
+  Eigen::VectorXd forces_now(const StepProblem& problem) const;
+  double largest_move(const StepSolution& solution) const;
   /// [-] Part of a step after which a corner has entered a block that it is not in contact with by what is tolerated, see first_entry(); 1 if there
   /// is none.
-  double part_before_entry(const StepSolution<N>& solution, double moved) const;
-  double unbalanced_force(const StepProblem<N>& problem, const StepSolution<N>& solution) const;
-  void accept(const StepProblem<N>& problem, const StepSolution<N>& solution);
-  void accept_contacts(const StepSolution<N>& solution);
+  double part_before_entry(const StepSolution& solution, double moved) const;
+  double unbalanced_force(const StepProblem& problem, const StepSolution& solution) const;
+  void accept(const StepProblem& problem, const StepSolution& solution);
+  void accept_contacts(const StepSolution& solution);
   /// What crossing_energy.h says of a contact, for steps taken one by one.
-  void book_crossing(Contact& contact, const ContactOutcome<N>& outcome, const Contact& start);
-  bool loses_strength(const StepSolution<N>& solution) const;
+  void book_crossing(Contact& contact, const ContactOutcome& outcome, const Contact& start);
+  bool loses_strength(const StepSolution& solution) const;
   bool advance_explicitly(double dt);
   void load_loop();
   bool renew_loop();
@@ -236,8 +235,8 @@ class Simulation {
   StepResult explicit_step(double h, MassDamping damping, bool any_length);
   /// What the loop finds too deep, with the remedy; empty if nothing is.
   std::string too_deep();
-  StepProblem<N> present_problem(double dt, bool statics) const;
-  void store_energy(const StepProblem<N>& problem, Contact& contact) const;
+  StepProblem present_problem(double dt, bool statics) const;
+  void store_energy(const StepProblem& problem, Contact& contact) const;
   /// Takes back what the loop has done since; it goes on from its own arrays.
   void collect() const;
   /// The same, and the loop takes over anew before its next step.
@@ -254,51 +253,51 @@ class Simulation {
   void rest_after(double dt);
   void wake(const std::vector<int>& blocks);
   /// Judges what a step of dt does to the blocks at rest; true if some have been woken and it is to be done again.
-  bool wake_in_haste(const StepSolution<N>& solution, double dt);
-  bool wake_by_forces(typename Resting<N>::Urgency urgency);
+  bool wake_in_haste(const StepSolution& solution, double dt);
+  bool wake_by_forces(Resting::Urgency urgency);
   void divide();
   void count_moves();
   /// Writes down the kinetic energy of the blocks' velocities and what explicit steps add to it for the present moment.
   void book_kinetic_energy(double ahead) const;
   /// [J] See CentralDifference::kinetic_ahead(), for steps taken one by one.
   /// Velocities at the end of an explicit step, half a step after those of the system, see CentralDifference::velocity_at_end().
-  void velocities_by_forces_now(const StepProblem<N>& problem, const StepSolution<N>& solution);
+  void velocities_by_forces_now(const StepProblem& problem, const StepSolution& solution);
   /// Of rigid contacts in motion: those that an impact closes in this step.
-  std::vector<std::size_t> closing_contacts(const StepProblem<N>& problem, const StepSolution<N>& solution) const;
+  std::vector<std::size_t> closing_contacts(const StepProblem& problem, const StepSolution& solution) const;
   /// The velocity at the end of a step goes on from that of its middle with the forces of the step. An impact is over then: its force is taken out.
-  void take_out_of_velocity(const StepProblem<N>& problem, const Contact& contact, const ContactOutcome<N>& outcome);
-  double kinetic_change(const StepProblem<N>& problem, const StepSolution<N>& solution) const;  ///< [J]
+  void take_out_of_velocity(const StepProblem& problem, const Contact& contact, const ContactOutcome& outcome);
+  double kinetic_change(const StepProblem& problem, const StepSolution& solution) const;  ///< [J]
   /// Whether a solved step creates energy where much has been created already, see allow_energy().
-  bool creates_energy(const StepProblem<N>& problem, const StepSolution<N>& solution) const;
-  double kinetic_ahead(const StepProblem<N>& problem, const StepSolution<N>& solution) const;
+  bool creates_energy(const StepProblem& problem, const StepSolution& solution) const;
+  double kinetic_ahead(const StepProblem& problem, const StepSolution& solution) const;
   void note_memory();
 
   Scene scene_;
   const double contact_skin_;  ///< [m]
   // While the explicit loop runs it holds the state; what stands here is brought up to date by whoever asks for it.
-  mutable BlockSystem<N> system_;
-  ExternalForces<N> external_;
+  mutable BlockSystem system_;
+  ExternalForces external_;
   JointTable joints_;
-  std::unique_ptr<Enforcement<N>> enforcement_;
+  std::unique_ptr<Enforcement> enforcement_;
   bool begins_;  ///< the scheme is method.first_integrator
-  std::unique_ptr<TimeScheme<N>> scheme_;
-  StepSolution<N> solution_;  ///< of the last step; a member for its memory
-  Detector<N> detector_;
+  std::unique_ptr<TimeScheme> scheme_;
+  StepSolution solution_;  ///< of the last step; a member for its memory
+  Detector detector_;
   mutable std::vector<Contact> contacts_;
   bool contacts_current_ = false;
   mutable std::vector<Unknowns> output_velocity_;
-  std::unique_ptr<CentralDifference<N>> loop_;  ///< null for implicit methods
-  mutable bool loop_is_ahead_ = false;          ///< of system_ and contacts_
+  std::unique_ptr<CentralDifference> loop_;  ///< null for implicit methods
+  mutable bool loop_is_ahead_ = false;       ///< of system_ and contacts_
   bool loop_is_loaded_ = false;
   int cuts_at_entry_ = 0, cuts_for_energy_ = 0;                        ///< since the last step that was accepted
   double way_at_entry_ = 0.0;                                          ///< [m] of the farthest vertex in the last step that was cut there
   double creatable_energy_ = std::numeric_limits<double>::infinity();  ///< [J] see allow_energy()
   double lowest_energy_ = 0.0;                                         ///< [J] mechanical, against that at the start
   EnergyLedger step_ledger_;                                           ///< of the last step that was solved
-  ApproachBound<N> approach_bound_;
+  ApproachBound approach_bound_;
   double held_step_ = 0.0;               ///< [s] last one that longest_stable_step() returned
   std::optional<double> approach_step_;  ///< [s] bound of the steps with the present list, if one of them was fast enough to need it
-  Resting<N> resting_;
+  Resting resting_;
   bool may_rest_ = false;
   bool base_moves_ = false;
   bool keep_bonds_ = false;
@@ -320,7 +319,5 @@ class Simulation {
   std::size_t bytes_of_scene_;
   Memory memory_;
 };
-
-extern template class Simulation<3>;
 
 }  // namespace openclose

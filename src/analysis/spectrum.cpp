@@ -13,18 +13,17 @@ namespace openclose {
 namespace {
 
 /// Stiffness of supports and of contacts that touch, in rows and columns of equations.
-template <int N>
-Eigen::MatrixXd stiffness(const StepProblem<N>& problem, const Enforcement<N>& enforcement) {
-  using Unknowns = typename Motion<N>::Unknowns;
-  const BlockSystem<N>& system = problem.system;
+Eigen::MatrixXd stiffness(const StepProblem& problem, const Enforcement& enforcement) {
+  using Unknowns = Motion::Unknowns;
+  const BlockSystem& system = problem.system;
   const Unknowns still = Unknowns::Zero();
-  Eigen::MatrixXd k = Eigen::MatrixXd::Zero(N * system.free_count(), N * system.free_count());
-  const auto part = [&](int i, int j) { return k.template block<N, N>(N * i, N * j); };
+  Eigen::MatrixXd k = Eigen::MatrixXd::Zero(dofs * system.free_count(), dofs * system.free_count());
+  const auto part = [&](int i, int j) { return k.block<dofs, dofs>(dofs * i, dofs * j); };
   for (int b : system.free_blocks()) part(system.block(b).equation, system.block(b).equation) += problem.external.stiffness(system, b, still);
   for (const Contact& c : problem.contacts) {
     const ContactSprings springs = enforcement.springs(problem, c);
     if (!may_close(ContactStrength(problem.joints.joint(c.joint), c), springs.normal, c.gap, tolerance::touching_m)) continue;
-    const ContactKinematics<N> kinematics(system, c, still, still);
+    const ContactKinematics kinematics(system, c, still, still);
     const int equations[] = {system.block(c.vertex_block).equation, system.block(c.edge_block).equation};
     const Unknowns normals[] = {kinematics.normal_vertex, kinematics.normal_edge}, shears[] = {kinematics.shear_vertex, kinematics.shear_edge};
     for (int i = 0; i < 2; ++i) {
@@ -38,28 +37,26 @@ Eigen::MatrixXd stiffness(const StepProblem<N>& problem, const Enforcement<N>& e
 }
 
 /// Masses of the unknowns; infinite where a rotation is locked, which leaves that unknown a frequency of 0 that is not counted.
-template <int N>
-Eigen::VectorXd masses(const BlockSystem<N>& system) {
-  Eigen::VectorXd m(N * system.free_count());
+Eigen::VectorXd masses(const BlockSystem& system) {
+  Eigen::VectorXd m(dofs * system.free_count());
   for (int b : system.free_blocks()) {
     const auto& block = system.block(b);
-    m.template segment<N>(N * block.equation) = block.mass;
-    if (block.rotation_locked) m[N * block.equation + Motion<N>::rotation_index] = std::numeric_limits<double>::infinity();
+    m.segment<dofs>(dofs * block.equation) = block.mass;
+    if (block.rotation_locked) m[dofs * block.equation + Motion::rotation_index] = std::numeric_limits<double>::infinity();
   }
   return m;
 }
 
 }  // namespace
 
-template <int N>
-Spectrum spectrum(Simulation<N>& simulation, double dt) {
-  const Enforcement<N>& enforcement = simulation.enforcement();
+Spectrum spectrum(Simulation& simulation, double dt) {
+  const Enforcement& enforcement = simulation.enforcement();
   const Scene& scene = simulation.scene();
   if (!enforcement.has_elastic_contacts())
     throw InputError(scene.method.contact_where, "method.contact", "\"" + scene.method.contact + "\" has no springs to vibrate on",
                      "soft, shi or dem");
   if (simulation.system().free_count() == 0) throw InputError(scene.where, "block", "none is free", "at least one block that can move");
-  const StepProblem<N> problem = simulation.problem(dt, false);
+  const StepProblem problem = simulation.problem(dt, false);
   const Eigen::VectorXd mass = masses(problem.system);
   const Eigen::VectorXd scale = mass.cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd scaled = scale.asDiagonal() * stiffness(problem, enforcement) * scale.asDiagonal();
@@ -70,7 +67,5 @@ Spectrum spectrum(Simulation<N>& simulation, double dt) {
   const double low = squared(locked), high = squared(mass.size() - 1);
   return {std::sqrt(low), std::sqrt(high), (problem.inertia + high) / (problem.inertia + low)};
 }
-
-template Spectrum spectrum<3>(Simulation<3>&, double);
 
 }  // namespace openclose

@@ -15,7 +15,6 @@ struct Spectrum {
 
 /// Dense eigenvalues: a second for 400 free blocks, growing with the third power. Throws InputError if the contacts have no springs or no block is
 /// free.
-template <int N>
-Spectrum spectrum(Simulation<N>& simulation, double dt);
+Spectrum spectrum(Simulation& simulation, double dt);
 
 }  // namespace openclose

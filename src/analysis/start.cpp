@@ -17,12 +17,11 @@ constexpr double balance_fraction = 1e-14;
 constexpr int most_iterations = 50;
 
 /// Balance of one free block on fixed ones, in two unknowns: the displacement along the common normal and the rotation.
-template <int N>
 class Balance {
  public:
-  using Unknowns = typename Motion<N>::Unknowns;
+  using Unknowns = Motion::Unknowns;
 
-  Balance(Simulation<N>& simulation, int block, bool mobilised) : simulation_(simulation), block_(block), mobilised_(mobilised) {
+  Balance(Simulation& simulation, int block, bool mobilised) : simulation_(simulation), block_(block), mobilised_(mobilised) {
     const auto& contacts = simulation.contacts();
     for (std::size_t c = 0; c < contacts.size(); ++c) {
       if (touches(contacts[c])) contacts_.push_back(c);
@@ -32,7 +31,7 @@ class Balance {
 
   void solve() {
     const auto& system = simulation_.system();
-    const StepProblem<N> problem = simulation_.problem(simulation_.scene().step.dt, false);
+    const StepProblem problem = simulation_.problem(simulation_.scene().step.dt, false);
     const double weight = std::max(simulation_.force_scale(), 1e-300);
     const double radius = system.block(block_).radius;
     Unknowns d = Unknowns::Zero();
@@ -52,8 +51,8 @@ class Balance {
 
  private:
   bool locked() const { return simulation_.system().block(block_).rotation_locked; }
-  Unknowns normal_direction() const { return Motion<N>::gradient(Vec2::Zero(), normal_); }
-  Unknowns rotation_direction() const { return Unknowns::Unit(Motion<N>::rotation_index); }
+  Unknowns normal_direction() const { return Motion::gradient(Vec2::Zero(), normal_); }
+  Unknowns rotation_direction() const { return Unknowns::Unit(Motion::rotation_index); }
 
   [[noreturn]] void fail(const std::string& what) const {
     const Scene& scene = simulation_.scene();
@@ -75,17 +74,17 @@ class Balance {
       const int other = c.vertex_block == block_ ? c.edge_block : c.vertex_block;
       if (system.block(other).equation >= 0) fail("rests on a block that is not fixed");
       const Unknowns still = Unknowns::Zero();
-      const Vec2 n = ContactKinematics<N>(system, c, still, still).normal * (c.vertex_block == block_ ? 1.0 : -1.0);
+      const Vec2 n = ContactKinematics(system, c, still, still).normal * (c.vertex_block == block_ ? 1.0 : -1.0);
       if (i != contacts_.front() && std::abs(cross(normal_, n)) > same_direction_rad) fail("rests on edges of different directions");
       normal_ = n;
     }
     if (contacts_.empty()) fail("rests on nothing");
-    const Vec2 drive = Motion<N>::translation(simulation_.external().force(system, block_, Unknowns::Zero()));
+    const Vec2 drive = Motion::translation(simulation_.external().force(system, block_, Unknowns::Zero()));
     drive_ = perpendicular(normal_) * perpendicular(normal_).dot(drive);
   }
 
   /// Contact forces, their sum with the external ones, and the stiffness in the two unknowns, after the block has moved by d.
-  void evaluate(const StepProblem<N>& problem, const Unknowns& d) {
+  void evaluate(const StepProblem& problem, const Unknowns& d) {
     const auto& system = simulation_.system();
     residual_ = simulation_.external().force(system, block_, d);
     stiffness_.setZero();
@@ -94,14 +93,14 @@ class Balance {
       const Contact& c = simulation_.contacts()[i];
       const bool owns_vertex = c.vertex_block == block_;
       const Unknowns still = Unknowns::Zero();
-      const ContactKinematics<N> k(system, c, owns_vertex ? d : still, owns_vertex ? still : d);
+      const ContactKinematics k(system, c, owns_vertex ? d : still, owns_vertex ? still : d);
       const ContactSprings springs = simulation_.enforcement().springs(problem, c);
       const ContactStrength strength(simulation_.joints().joint(c.joint), c);
       const double normal = std::max(0.0, -springs.normal * ((springs.gap - springs.target) + k.gap_change));
       const auto bound = strength.shear_bound(normal);
       const Unknowns& gn = owns_vertex ? k.normal_vertex : k.normal_edge;
       const Unknowns& gt = owns_vertex ? k.shear_vertex : k.shear_edge;
-      const double against_drive = Motion<N>::translation(gt).dot(drive_) > 0.0 ? -1.0 : 1.0;
+      const double against_drive = Motion::translation(gt).dot(drive_) > 0.0 ? -1.0 : 1.0;
       const double mobilised = mobilised_ ? against_drive : 0.0;
       residual_ += normal * gn + mobilised * bound.value * gt;
       const Unknowns force_by_normal = gn + mobilised * bound.slope * gt;
@@ -128,7 +127,7 @@ class Balance {
     double normal, shear, shear_stiffness;
   };
 
-  Simulation<N>& simulation_;
+  Simulation& simulation_;
   int block_;
   bool mobilised_;
   std::vector<std::size_t> contacts_;
@@ -140,13 +139,10 @@ class Balance {
 
 }  // namespace
 
-template <int N>
-void balance_normal_forces(Simulation<N>& simulation, bool mobilised_friction) {
+void balance_normal_forces(Simulation& simulation, bool mobilised_friction) {
   const std::vector<int> free_blocks = simulation.system().free_blocks();
-  for (int b : free_blocks) Balance<N>(simulation, b, mobilised_friction).solve();
+  for (int b : free_blocks) Balance(simulation, b, mobilised_friction).solve();
   simulation.positions_changed();
 }
-
-template void balance_normal_forces<3>(Simulation<3>&, bool);
 
 }  // namespace openclose

@@ -10,7 +10,6 @@ namespace openclose {
 /// phi < alpha there is no static equilibrium to settle into; these are the two starts that stand in for it.
 ///
 /// Throws InputError if a free block rests on free blocks, on edges of different directions, or on nothing.
-template <int N>
-void balance_normal_forces(Simulation<N>& simulation, bool mobilised_friction);
+void balance_normal_forces(Simulation& simulation, bool mobilised_friction);
 
 }  // namespace openclose

@@ -16,13 +16,12 @@ constexpr double sliver_of_median = 1e-4;          ///< [-] area of a block over
 constexpr double far_below_limit_analysis = 0.98;  ///< [-] of its factor: below it the reason for the distance is given
 constexpr double drawn_travel = 0.5;               ///< [-] of the median block's size by which the fastest block of a mechanism is drawn away
 
-template <int N>
 class StrengthReduction {
  public:
-  StrengthReduction(Simulation<N>& simulation, const std::function<void(double)>& progress)
+  StrengthReduction(Simulation& simulation, const std::function<void(double)>& progress)
       : simulation_(simulation), scene_(simulation.scene()), input_(scene_.strength_reduction), progress_(progress) {}
 
-  FactorOfSafety<N> run() {
+  FactorOfSafety run() {
     if (input_.definition == FactorDefinition::large_displacements) {
       at_large_displacements();
     } else if (input_.definition == FactorDefinition::small_displacements) {
@@ -36,7 +35,7 @@ class StrengthReduction {
  private:
   void at_large_displacements() {
     simulation_.book_steps(false);
-    SettlingTrials<N> trials(simulation_, shown());
+    SettlingTrials trials(simulation_, shown());
     result_.bracket = search(trials);
     judge();
     curve(trials);
@@ -81,7 +80,7 @@ class StrengthReduction {
     }
     add_state("settled", simulation_.save());
     Scene moved = scene_;
-    const BlockSystem<N>& system = simulation_.system();
+    const BlockSystem& system = simulation_.system();
     for (int b = 0; b < system.block_count(); ++b) {
       const auto& block = system.block(b);
       for (int i = 0; i < block.vertex_count; ++i) moved.blocks[b].vertices[i] = system.position(b, block.first_vertex + i) + system.origin();
@@ -89,7 +88,7 @@ class StrengthReduction {
     const auto carried = [&](int b, const Vec2& point) {
       const auto& d = system.displacement(b);
       const Vec2 arm = point - system.origin() - system.block(b).reference_centroid;
-      return Vec2(point + Motion<N>::displacement(d, arm, system.rotation_kind()));
+      return Vec2(point + Motion::displacement(d, arm, system.rotation_kind()));
     };
     for (Load& load : moved.loads) load.point = carried(load.block, load.point);
     for (Support& support : moved.supports) support.point = carried(support.block, support.point);
@@ -130,9 +129,9 @@ class StrengthReduction {
     for (double srf : b.failed_below) result_.warnings.push_back(fmt::format("failed at {:.6g}, and stands again at {:.6g}", srf, *b.stable));
   }
 
-  void curve(SettlingTrials<N>& trials) {
+  void curve(SettlingTrials& trials) {
     if (!trials.settled()) return;
-    MeasuredPoints<N> points(simulation_);
+    MeasuredPoints points(simulation_);
     for (double srf : input_.curve) {
       record(srf, "curve", trials.next(srf));
       if (!input_.curve_time) continue;
@@ -168,14 +167,14 @@ class StrengthReduction {
     result_.trials.push_back(trial);
   }
 
-  void add_state(const char* name, const typename Simulation<N>::Snapshot& snapshot) {
+  void add_state(const char* name, const Simulation::Snapshot& snapshot) {
     simulation_.restore(snapshot);
     result_.states.push_back({name, std::as_const(simulation_).system(), simulation_.contacts()});
   }
 
   /// The drawn blocks, moved by the closures, and the forces that hold them.
   void add_frozen_state(const char* name, const FrozenSystem& system, const FrozenState& state) {
-    NamedState<N> named{name, BlockSystem<N>(scene_), {}};
+    NamedState named{name, BlockSystem(scene_), {}};
     for (int row = 0; row < system.rows(); ++row) move_block(system, row, state.displacement[row] * system.closure_unit(), named.system);
     for (std::size_t i = 0; i < state.contacts.size(); ++i) {
       const FrozenContactState& s = state.contacts[i];
@@ -190,7 +189,7 @@ class StrengthReduction {
     result_.states.push_back(std::move(named));
   }
 
-  void move_block(const FrozenSystem& system, int row, const BlockVector& d, BlockSystem<N>& blocks) const {
+  void move_block(const FrozenSystem& system, int row, const BlockVector& d, BlockSystem& blocks) const {
     const FrozenBlock& block = system.blocks()[row];
     blocks.advance(block.block, {d[0], d[1], d[2] / (block.radius * system.length_unit())});
   }
@@ -210,7 +209,7 @@ class StrengthReduction {
 
   void add_mechanism(const FrozenSystem& system, const Eigen::VectorXd& direction) {
     if (direction.size() == 0) return;
-    NamedState<N> failed{"failed", BlockSystem<N>(scene_), {}};
+    NamedState failed{"failed", BlockSystem(scene_), {}};
     double fastest = 0.0;
     const auto speed = [&](int row) { return direction.segment<2>(3 * row).norm() + std::abs(direction[3 * row + 2]); };
     for (int row = 0; row < system.rows(); ++row) fastest = std::max(fastest, speed(row));
@@ -219,7 +218,7 @@ class StrengthReduction {
       move_block(system, row, velocity * drawn_travel * system.length_unit(), failed.system);
       if (speed(row) <= slowest_of_mechanism * fastest) continue;
       const FrozenBlock& block = system.blocks()[row];
-      result_.mechanism.push_back({block.block, failed.system.block(block.block).area, block.centroid, velocity.template head<2>(),
+      result_.mechanism.push_back({block.block, failed.system.block(block.block).area, block.centroid, velocity.head<2>(),
                                    velocity[2] / (block.radius * system.length_unit())});
     }
     result_.states.push_back(std::move(failed));
@@ -270,7 +269,7 @@ class StrengthReduction {
 
   void warn_of_geometry() {
     std::vector<double> areas;
-    const BlockSystem<N>& system = std::as_const(simulation_).system();
+    const BlockSystem& system = std::as_const(simulation_).system();
     for (int b : system.free_blocks()) areas.push_back(system.block(b).area);
     if (areas.empty()) return;
     const auto middle = areas.begin() + static_cast<std::ptrdiff_t>(areas.size() / 2);
@@ -290,12 +289,12 @@ class StrengthReduction {
     }
   }
 
-  Simulation<N>& simulation_;
+  Simulation& simulation_;
   const Scene& scene_;
   const StrengthReductionInput& input_;
   std::function<void(double)> progress_;
   double share_done_ = 0.0;  ///< of the bisection
-  FactorOfSafety<N> result_;
+  FactorOfSafety result_;
 };
 
 }  // namespace
@@ -316,11 +315,8 @@ const char* factor_verdict_word(FactorVerdict verdict) {
   return "";
 }
 
-template <int N>
-FactorOfSafety<N> factor_of_safety(Simulation<N>& simulation, const std::function<void(double)>& progress) {
-  return StrengthReduction<N>(simulation, progress).run();
+FactorOfSafety factor_of_safety(Simulation& simulation, const std::function<void(double)>& progress) {
+  return StrengthReduction(simulation, progress).run();
 }
-
-template FactorOfSafety<3> factor_of_safety<3>(Simulation<3>&, const std::function<void(double)>&);
 
 }  // namespace openclose

@@ -35,10 +35,9 @@ enum class FactorVerdict {
 const char* factor_verdict_word(FactorVerdict verdict);
 
 /// Blocks as they are to be drawn, with the forces between them.
-template <int N>
 struct NamedState {
   std::string name;
-  BlockSystem<N> system;
+  BlockSystem system;
   std::vector<Contact> contacts;
 };
 
@@ -51,7 +50,6 @@ struct FailingBlock {
   double rotation = 0.0;         ///< [1/m] counter-clockwise
 };
 
-template <int N>
 struct FactorOfSafety {
   FactorVerdict verdict = FactorVerdict::undecided;
   StrengthBracket bracket;
@@ -59,7 +57,7 @@ struct FactorOfSafety {
   std::vector<std::string> warnings;
   std::vector<StrengthTrial> trials;
   std::vector<CurvePoint> curve;
-  std::vector<NamedState<N>> states;
+  std::vector<NamedState> states;
   std::vector<FailingBlock> mechanism;
   std::optional<LimitAnalysisResult> limit_analysis;
   std::vector<StiffnessEffect> stiffness_effects;
@@ -72,7 +70,6 @@ struct FactorOfSafety {
   double failed() const { return bracket.failed.value_or(0.0); }
 };
 
-template <int N>
-FactorOfSafety<N> factor_of_safety(Simulation<N>& simulation, const std::function<void(double fraction)>& progress = {});
+FactorOfSafety factor_of_safety(Simulation& simulation, const std::function<void(double fraction)>& progress = {});
 
 }  // namespace openclose

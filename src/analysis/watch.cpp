@@ -24,14 +24,13 @@ constexpr double margin = 2.0;
 
 /// How many blocks stand on each other: in the scene as it starts, from what is fixed to the block that the most others part from it; no fewer than
 /// in a pile of all.
-template <int N>
-double stacked_blocks(const Simulation<N>& simulation) {
-  const BlockSystem<N>& system = simulation.system();
+double stacked_blocks(const Simulation& simulation) {
+  const BlockSystem& system = simulation.system();
   const double pile = std::sqrt(static_cast<double>(system.free_count()));
   const int far = system.block_count();
   std::vector<int> level(system.block_count(), far);
   for (int b = 0; b < system.block_count(); ++b) {
-    if (system.block(b).equation == BlockSystem<N>::fixed) level[b] = 0;
+    if (system.block(b).equation == BlockSystem::fixed) level[b] = 0;
   }
   for (bool is_new = true; is_new;) {
     is_new = false;
@@ -49,15 +48,13 @@ double stacked_blocks(const Simulation<N>& simulation) {
 }
 
 /// [m] To which a method tells where blocks are: rigid contacts may be off by their tolerance, and where blocks stand on each other these add up.
-template <int N>
-double undetermined_length(const Simulation<N>& simulation) {
+double undetermined_length(const Simulation& simulation) {
   if (simulation.enforcement().has_elastic_contacts()) return tolerance::rounding_of_ways_m;
   const double tolerated = watch_bound::gap_tolerances * simulation.scene().method.gap_tolerance;
   return std::max(stacked_blocks(simulation) * tolerated, tolerance::rounding_of_ways_m);
 }
 
-template <int N>
-Polygon polygon(const BlockSystem<N>& system, int b) {
+Polygon polygon(const BlockSystem& system, int b) {
   const auto& block = system.block(b);
   const Vec2 centroid = system.centroid(b);
   Polygon polygon;
@@ -97,8 +94,7 @@ std::string shorter_step(const Scene& scene, double factor) {
 }
 
 /// The key that makes a contact stiffer by a factor, with its value.
-template <int N>
-std::string stiffer_contact(const Simulation<N>& simulation, int joint, double factor) {
+std::string stiffer_contact(const Simulation& simulation, int joint, double factor) {
   const MethodInput& method = simulation.scene().method;
   const double stiffness = simulation.scene().joints[joint].normal_stiffness;
   if (method.contact == "shi" && method.penalty)
@@ -107,8 +103,7 @@ std::string stiffer_contact(const Simulation<N>& simulation, int joint, double f
 }
 
 /// What makes the energy of contacts more exact.
-template <int N>
-std::string better_energy(const Simulation<N>& simulation) {
+std::string better_energy(const Simulation& simulation) {
   const Scene& scene = simulation.scene();
   if (simulation.is_explicit()) {
     // The step taken is the shorter one of the two.
@@ -122,16 +117,14 @@ std::string better_energy(const Simulation<N>& simulation) {
 
 }  // namespace
 
-template <int N>
-bool Watch<N>::is_due(long step) {
+bool Watch::is_due(long step) {
   long interval = 1;
   while (step / interval > first_steps) interval *= 2;
   return step % interval == 0;
 }
 
-template <int N>
-void Watch<N>::find_widths(const Simulation<N>& simulation) {
-  const BlockSystem<N>& system = simulation.system();
+void Watch::find_widths(const Simulation& simulation) {
+  const BlockSystem& system = simulation.system();
   widths_.clear();
   convex_.clear();
   for (int b = 0; b < system.block_count(); ++b) {
@@ -143,14 +136,13 @@ void Watch<N>::find_widths(const Simulation<N>& simulation) {
   }
 }
 
-template <int N>
-std::string Watch<N>::begin(const Simulation<N>& simulation) {
-  const BlockSystem<N>& system = simulation.system();
+std::string Watch::begin(const Simulation& simulation) {
+  const BlockSystem& system = simulation.system();
   find_widths(simulation);
   start_.clear();
   double weights = 0.0, kinetic = 0.0, supports = 0.0;
   for (int b = 0; b < system.block_count(); ++b) {
-    start_.push_back(Motion<N>::translation(system.displacement(b)));
+    start_.push_back(Motion::translation(system.displacement(b)));
     if (system.block(b).equation < 0) continue;
     weights += simulation.external().weight(system, b).norm();
     const auto v = simulation.velocity(b);
@@ -171,13 +163,11 @@ std::string Watch<N>::begin(const Simulation<N>& simulation) {
   return found;
 }
 
-template <int N>
-bool Watch<N>::is_due(const Simulation<N>& simulation, long step) const {
+bool Watch::is_due(const Simulation& simulation, long step) const {
   return is_rigid(simulation) || is_due(step);
 }
 
-template <int N>
-std::string Watch<N>::check(const Simulation<N>& simulation) {
+std::string Watch::check(const Simulation& simulation) {
   if (is_rigid(simulation)) return check_at_end(simulation);
   const std::size_t pairs = simulation.candidate_pairs().size(), checks = static_cast<std::size_t>(report_.checks);
   const std::size_t now = (checks + 1) * pairs / turns - checks * pairs / turns;
@@ -187,13 +177,11 @@ std::string Watch<N>::check(const Simulation<N>& simulation) {
   return check(simulation, first, now);
 }
 
-template <int N>
-std::string Watch<N>::check_at_end(const Simulation<N>& simulation) {
+std::string Watch::check_at_end(const Simulation& simulation) {
   return check(simulation, 0, simulation.candidate_pairs().size());
 }
 
-template <int N>
-std::string Watch<N>::check(const Simulation<N>& simulation, std::size_t first_pair, std::size_t pairs) {
+std::string Watch::check(const Simulation& simulation, std::size_t first_pair, std::size_t pairs) {
   ++report_.checks;
   if (std::string wrong = check_finite(simulation); !wrong.empty()) return wrong;
   follow_energy(simulation);
@@ -204,9 +192,8 @@ std::string Watch<N>::check(const Simulation<N>& simulation, std::size_t first_p
   return check_reach(simulation);
 }
 
-template <int N>
-std::string Watch<N>::check_finite(const Simulation<N>& simulation) const {
-  const BlockSystem<N>& system = simulation.system();
+std::string Watch::check_finite(const Simulation& simulation) const {
+  const BlockSystem& system = simulation.system();
   for (int b : system.free_blocks()) {
     if (system.displacement(b).allFinite() && simulation.velocity(b).allFinite()) continue;
     return fmt::format("block \"{}\" has no finite position or velocity any more; {}", simulation.scene().blocks[b].name,
@@ -215,9 +202,8 @@ std::string Watch<N>::check_finite(const Simulation<N>& simulation) const {
   return {};
 }
 
-template <int N>
-void Watch<N>::follow_energy(const Simulation<N>& simulation) {
-  const BlockSystem<N>& system = simulation.system();
+void Watch::follow_energy(const Simulation& simulation) {
+  const BlockSystem& system = simulation.system();
   const EnergyLedger& ledger = simulation.ledger();
   energies_.assign(system.block_count(), 0.0);
   falls_.assign(system.block_count(), 0.0);
@@ -227,7 +213,7 @@ void Watch<N>::follow_energy(const Simulation<N>& simulation) {
     const auto v = simulation.velocity(b), w = system.velocity(b);
     // Where the two belong to different times, neither alone is a bound.
     energies_[b] = 0.5 * std::min(v.dot(mass.cwiseProduct(v)), w.dot(mass.cwiseProduct(w)));
-    falls_[b] = mass[0] * simulation.external().gravity().dot(Motion<N>::translation(system.displacement(b)) - start_[b]);
+    falls_[b] = mass[0] * simulation.external().gravity().dot(Motion::translation(system.displacement(b)) - start_[b]);
     released += std::max(0.0, falls_[b]);
   };
   for (int b : system.free_blocks()) follow(b);
@@ -237,8 +223,7 @@ void Watch<N>::follow_energy(const Simulation<N>& simulation) {
   report_.available_energy = energy_at_start_ + released_ + work_;
 }
 
-template <int N>
-std::string Watch<N>::check_energy(const Simulation<N>& simulation) {
+std::string Watch::check_energy(const Simulation& simulation) {
   const EnergyLedger& ledger = simulation.ledger();
   const double now = ledger.kinetic + ledger.gravity + ledger.contact_springs + ledger.support_springs + ledger.loads + ledger.base_motion;
   lowest_energy_ = std::min(lowest_energy_, now);
@@ -264,9 +249,8 @@ std::string Watch<N>::check_energy(const Simulation<N>& simulation) {
                      scale, part, watch_bound::created_energy, worst.name, better_energy(simulation));
 }
 
-template <int N>
-std::string Watch<N>::check_reach(const Simulation<N>& simulation) {
-  const BlockSystem<N>& system = simulation.system();
+std::string Watch::check_reach(const Simulation& simulation) {
+  const BlockSystem& system = simulation.system();
   const double scale = energy_scale();
   for (int b : system.free_blocks()) {
     const double energy = energies_[b] + std::max(0.0, -falls_[b]);
@@ -276,26 +260,23 @@ std::string Watch<N>::check_reach(const Simulation<N>& simulation) {
     const auto v = simulation.velocity(b);
     return fmt::format(
         "block \"{}\" moves at {:.3g} m/s, {:.3g} J above where it started, for which all of the energy that there was, {:.3g} J, is not enough; {}",
-        simulation.scene().blocks[b].name, Motion<N>::translation(v).norm(), std::max(0.0, -falls_[b]), scale, better_energy(simulation));
+        simulation.scene().blocks[b].name, Motion::translation(v).norm(), std::max(0.0, -falls_[b]), scale, better_energy(simulation));
   }
   return {};
 }
 
-template <int N>
-bool Watch<N>::is_rigid(const Simulation<N>& simulation) {
+bool Watch::is_rigid(const Simulation& simulation) {
   return !simulation.enforcement().has_elastic_contacts();
 }
 
-template <int N>
-double Watch<N>::allowed_depth(const Simulation<N>& simulation, double narrower) const {
+double Watch::allowed_depth(const Simulation& simulation, double narrower) const {
   const double by_width = watch_bound::penetration * narrower;
   if (!is_rigid(simulation)) return by_width;
   const double tolerance = std::max(simulation.scene().method.gap_tolerance, tolerance::rounding_of_ways_m);
   return std::min(by_width, depth_at_start_ + watch_bound::gap_tolerances * tolerance);
 }
 
-template <int N>
-std::string Watch<N>::too_deep(const Simulation<N>& simulation, int a, int b, double depth, double allowed) const {
+std::string Watch::too_deep(const Simulation& simulation, int a, int b, double depth, double allowed) const {
   const auto& blocks = simulation.scene().blocks;
   const bool by_width = allowed >= watch_bound::penetration * std::min(widths_[a], widths_[b]);
   const char* reason = by_width ? "a quarter of the width, 2 area / perimeter, of the narrower one"
@@ -304,8 +285,7 @@ std::string Watch<N>::too_deep(const Simulation<N>& simulation, int a, int b, do
                      reason);
 }
 
-template <int N>
-std::string Watch<N>::check_contacts(const Simulation<N>& simulation) {
+std::string Watch::check_contacts(const Simulation& simulation) {
   double worst = 0.0;  // [-] of what is allowed
   const Contact* deepest = nullptr;
   for (const Contact& c : simulation.contacts()) {
@@ -333,9 +313,8 @@ std::string Watch<N>::check_contacts(const Simulation<N>& simulation) {
   return "the springs are too soft for these blocks: " + found + "; " + stiffer_contact(simulation, deepest->joint, factor);
 }
 
-template <int N>
-std::string Watch<N>::check_overlaps(const Simulation<N>& simulation, std::size_t first_pair, std::size_t pairs) {
-  const BlockSystem<N>& system = simulation.system();
+std::string Watch::check_overlaps(const Simulation& simulation, std::size_t first_pair, std::size_t pairs) {
+  const BlockSystem& system = simulation.system();
   const auto& candidates = simulation.candidate_pairs();
   for (std::size_t i = first_pair; i < std::min(first_pair + pairs, candidates.size()); ++i) {
     const auto [a, b] = candidates[i];
@@ -353,7 +332,5 @@ std::string Watch<N>::check_overlaps(const Simulation<N>& simulation, std::size_
   }
   return {};
 }
-
-template class Watch<3>;
 
 }  // namespace openclose

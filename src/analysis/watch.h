@@ -52,21 +52,20 @@ struct WatchReport {
   }
 };
 
-template <int N>
 class Watch {
  public:
   /// The run starts from the state that the simulation is in; its ledger is empty. Returns what check_at_end() does, but for energies.
-  std::string begin(const Simulation<N>& simulation);
+  std::string begin(const Simulation& simulation);
   /// Whether a check is due after this step, counted from 1. It depends on nothing but that number, so that a run which goes on from a checkpoint to
   /// another end is checked where it would have been.
   static bool is_due(long step);
   /// With rigid contacts after every step: what goes into another block there comes out of it again within some steps, and nothing else tells.
-  bool is_due(const Simulation<N>& simulation, long step) const;
+  bool is_due(const Simulation& simulation, long step) const;
   /// Empty while nothing is wrong, else what is, with the remedy. Of the pairs of blocks that may overlap each check looks at some, in turns; with
   /// rigid contacts at all.
-  std::string check(const Simulation<N>& simulation);
+  std::string check(const Simulation& simulation);
   /// The same with all pairs.
-  std::string check_at_end(const Simulation<N>& simulation);
+  std::string check_at_end(const Simulation& simulation);
   const WatchReport& report() const { return report_; }
   /// [J] What may be created, as of the last check.
   double creatable_energy() const { return watch_bound::created_energy * energy_scale(); }
@@ -75,18 +74,18 @@ class Watch {
   }
 
  private:
-  std::string check(const Simulation<N>& simulation, std::size_t first_pair, std::size_t pairs);
-  void find_widths(const Simulation<N>& simulation);
+  std::string check(const Simulation& simulation, std::size_t first_pair, std::size_t pairs);
+  void find_widths(const Simulation& simulation);
   /// [m] To which blocks may be in each other, the narrower one having this width [m].
-  double allowed_depth(const Simulation<N>& simulation, double narrower) const;
-  std::string too_deep(const Simulation<N>& simulation, int a, int b, double depth, double allowed) const;
-  static bool is_rigid(const Simulation<N>& simulation);
-  void follow_energy(const Simulation<N>& simulation);
-  std::string check_finite(const Simulation<N>& simulation) const;
-  std::string check_energy(const Simulation<N>& simulation);
-  std::string check_reach(const Simulation<N>& simulation);
-  std::string check_contacts(const Simulation<N>& simulation);
-  std::string check_overlaps(const Simulation<N>& simulation, std::size_t first_pair, std::size_t pairs);
+  double allowed_depth(const Simulation& simulation, double narrower) const;
+  std::string too_deep(const Simulation& simulation, int a, int b, double depth, double allowed) const;
+  static bool is_rigid(const Simulation& simulation);
+  void follow_energy(const Simulation& simulation);
+  std::string check_finite(const Simulation& simulation) const;
+  std::string check_energy(const Simulation& simulation);
+  std::string check_reach(const Simulation& simulation);
+  std::string check_contacts(const Simulation& simulation);
+  std::string check_overlaps(const Simulation& simulation, std::size_t first_pair, std::size_t pairs);
   /// [J] Of which a part may be created: that of the energy there was, and more by what the method leaves undetermined.
   double energy_scale() const { return report_.available_energy + undetermined_energy_ / watch_bound::created_energy; }
 
@@ -103,7 +102,5 @@ class Watch {
   std::vector<char> convex_;              ///< of the blocks
   std::vector<double> energies_, falls_;  ///< [J] of the blocks in this check: kinetic, and lost in height
 };
-
-extern template class Watch<3>;
 
 }  // namespace openclose

@@ -29,9 +29,6 @@
 namespace openclose {
 namespace {
 
-/// Rigid blocks: three unknowns each.
-constexpr int unknowns = 3;
-
 struct Options {
   std::string scene_file;
   std::string folder;
@@ -94,7 +91,7 @@ void require_run(const Scene& scene) {
 void require_start(const Scene& scene) {
   const bool can_be_refused = scene.method.start == Start::normal_balanced || scene.method.start == Start::steady_sliding;
   if (!can_be_refused) return;
-  Simulation<unknowns> trial(scene);
+  Simulation trial(scene);
   prepare_start(trial);
 }
 
@@ -149,9 +146,9 @@ int run_command(const Options& options) {
     loaded.warn("run.settled_by is for method.start = \"settled\"; the other starts are not settled");
   std::optional<RestartPoint> restart;
   if (!options.restart_file.empty()) restart = {options.restart_file, read_checkpoint(options.restart_file, loaded.scene)};
-  Simulation<unknowns> simulation(std::move(loaded.scene));
+  Simulation simulation(std::move(loaded.scene));
   const Scene& scene = simulation.scene();
-  MeasuredPoints<unknowns> points(simulation);
+  MeasuredPoints points(simulation);
   if (!restart) require_start(scene);
 
   const OutputFolder folder = output_folder(options);
@@ -166,29 +163,29 @@ int run_command(const Options& options) {
   write_block_properties(folder, scene, std::as_const(simulation).system());
   HistoryFile history(folder, goes_on_from);
   EnergyFile energy(folder, goes_on_from);
-  StateTables<unknowns> states(folder, scene, goes_on_from);
-  const MeasuredContacts<unknowns> measured_contacts(scene);
+  StateTables states(folder, scene, goes_on_from);
+  const MeasuredContacts measured_contacts(scene);
   std::optional<ContactHistoryFile> contact_history;
   if (!scene.measured_contacts.empty()) contact_history.emplace(folder, goes_on_from);
   if (!restart) states.add_drawing(simulation);
   std::optional<Progress> progress;
   progress.emplace(restart ? "run" : "settle", options.quiet);
 
-  RunObserver<unknowns> observer;
-  observer.started = [&](const Simulation<unknowns>& s) {
+  RunObserver observer;
+  observer.started = [&](const Simulation& s) {
     points.restart();
     states.add("start", s);
     progress.emplace("run", options.quiet);
   };
   observer.settling = [&](double fraction) { progress->update(fraction); };
-  observer.snapshot = [&](const std::string& state, const Simulation<unknowns>& s) { states.add(state, s); };
-  observer.output = [&](const Simulation<unknowns>& s) {
+  observer.snapshot = [&](const std::string& state, const Simulation& s) { states.add(state, s); };
+  observer.output = [&](const Simulation& s) {
     history.add(s.time(), points.motions());
     energy.add(s.time(), s.ledger());
     if (contact_history) contact_history->add(s.time(), measured_contacts.motions(s));
   };
   observer.progress = [&](double fraction) { progress->update(fraction); };
-  observer.checkpoint = [&](Archive& state, const Simulation<unknowns>& s) {
+  observer.checkpoint = [&](Archive& state, const Simulation& s) {
     state(points);
     auto tables = states.written();
     tables.push_back(history.written());
@@ -199,7 +196,7 @@ int run_command(const Options& options) {
   RunResult result;
   if (restart) {
     Archive state(restart->checkpoint.state);
-    result = resume<unknowns>(simulation, observer, state, [&] { state(points); });
+    result = resume(simulation, observer, state, [&] { state(points); });
   } else {
     result = run(simulation, observer);
   }
@@ -243,7 +240,7 @@ int run_command(const Options& options) {
 }
 
 /// The answer and what it is worth, in two or three lines.
-void print_factor(const Scene& scene, const FactorOfSafety<unknowns>& safety, const OutputFolder& folder) {
+void print_factor(const Scene& scene, const FactorOfSafety& safety, const OutputFolder& folder) {
   const std::string stable = fmt::format("{:.6g}", safety.stable());
   if (safety.verdict == FactorVerdict::no_failure) {
     fmt::print("factor of safety above {} ({}): {}; written to {}\n", stable, scene.method.contact, safety.reason, folder.path());
@@ -276,20 +273,20 @@ int fos_command(const Options& options) {
   if (!loaded.scene.measured_contacts.empty()) loaded.warn("measured_contact is for run; contacts.csv has what every contact carries");
   require_strength_reduction(loaded.scene);
   if (loaded.scene.step.dt <= 0.0) loaded.scene.step.dt = loaded.scene.settle.first_dt;
-  Simulation<unknowns> simulation(std::move(loaded.scene));
+  Simulation simulation(std::move(loaded.scene));
   const OutputFolder folder = output_folder(options);
   folder.require_other_than(options.scene_file);
   folder.remove_results();
   folder.write_scene_copy(write_scene(simulation.scene()));
   write_block_properties(folder, simulation.scene(), std::as_const(simulation).system());
-  StateTables<unknowns> states(folder, simulation.scene());
+  StateTables states(folder, simulation.scene());
   states.add_drawing(simulation);
-  FactorOfSafety<unknowns> safety;
+  FactorOfSafety safety;
   double cpu_of_search = 0.0;
   {
     Progress progress("strength reduction", options.quiet);
     const double begin = process_cpu_time();
-    safety = factor_of_safety<unknowns>(simulation, [&](double fraction) { progress.update(fraction); });
+    safety = factor_of_safety(simulation, [&](double fraction) { progress.update(fraction); });
     cpu_of_search = process_cpu_time() - begin;
   }
 
@@ -297,7 +294,7 @@ int fos_command(const Options& options) {
   summary.cpu_of_search = cpu_of_search;
   summary.warnings.insert(summary.warnings.end(), safety.warnings.begin(), safety.warnings.end());
   print_warnings(safety.warnings);
-  for (const NamedState<unknowns>& state : safety.states) {
+  for (const NamedState& state : safety.states) {
     states.add(state, simulation.scene());
     if (state.contacts.empty()) continue;
     if (state.name != "failed") summary.max_penetration = deepest_of(state.contacts);
@@ -319,7 +316,7 @@ int fos_command(const Options& options) {
   return exit_success;
 }
 
-void write_spectrum(Simulation<unknowns>& simulation, const std::string& file) {
+void write_spectrum(Simulation& simulation, const std::string& file) {
   const Scene& scene = simulation.scene();
   std::error_code unknown;
   if (std::filesystem::equivalent(file, scene.where.file, unknown))
@@ -332,7 +329,7 @@ void write_spectrum(Simulation<unknowns>& simulation, const std::string& file) {
 }
 
 int check_command(const Options& options) {
-  Simulation<unknowns> simulation(load(options).scene);
+  Simulation simulation(load(options).scene);
   require_use(simulation.scene());
   const auto& system = std::as_const(simulation).system();
   double area = 0.0, free_area = 0.0;
@@ -423,9 +420,9 @@ void add_options(CLI::App& app, Options& options, bool writes_folder) {
     app.add_option_function<std::string>(
         flag, [&options, key](const std::string& value) { options.overrides.push_back(key + "=" + value); }, help);
   };
-  shorthand("--contact", "method.contact", "contact enforcement: " + listed(enforcements<unknowns>()));
+  shorthand("--contact", "method.contact", "contact enforcement: " + listed(enforcements()));
   shorthand("--start", "method.start", "start state: unloaded, settled, normal_balanced or steady_sliding");
-  shorthand("--integrator", "method.integrator", "time integrator of soft: " + listed(integrators<unknowns>()));
+  shorthand("--integrator", "method.integrator", "time integrator of soft: " + listed(integrators()));
   shorthand("--threads", "method.threads",
             fmt::format("threads that share the work of large systems, 1 to {}; the results are the same to the last bit", most_threads));
   shorthand("--dt", "step.dt_s", "time step [s]");

@@ -12,7 +12,6 @@
 
 namespace openclose {
 
-template <int N>
 class BlockShapes {
  public:
   /// A corner and the edge that begins there.
@@ -34,7 +33,7 @@ class BlockShapes {
     std::vector<Box>().swap(boxes_);
     std::vector<Edge>().swap(edges_);
   }
-  void begin(const BlockSystem<N>& system) {
+  void begin(const BlockSystem& system) {
     system_ = &system;
     measured_.assign(system.block_count(), 0);
     boxes_.resize(system.block_count());
@@ -93,7 +92,7 @@ class BlockShapes {
     }
   }
 
-  const BlockSystem<N>* system_ = nullptr;
+  const BlockSystem* system_ = nullptr;
   std::vector<char> measured_;  ///< of the blocks
   std::vector<Box> boxes_;
   std::vector<char> convex_;

@@ -21,10 +21,9 @@ struct ContactRange {
   }
 };
 
-template <int N>
 class ContactIndex {
  public:
-  void begin(const BlockSystem<N>& system, const std::vector<Contact>& contacts, const std::vector<Contact>& resting) {
+  void begin(const BlockSystem& system, const std::vector<Contact>& contacts, const std::vector<Contact>& resting) {
     system_ = &system;
     contacts_ = &contacts;
     if (!knows_resting_) {
@@ -95,7 +94,7 @@ class ContactIndex {
     }
   }
 
-  const BlockSystem<N>* system_ = nullptr;
+  const BlockSystem* system_ = nullptr;
   const std::vector<Contact>* contacts_ = nullptr;
   ContactRange range_;
   std::vector<int> first_;      ///< per vertex, in entries_; -1 without any

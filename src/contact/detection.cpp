@@ -33,7 +33,7 @@ void take_marked(std::vector<std::uint64_t>& set, std::vector<int>& numbers) {
 /// (R(angle) - 1) r; for most angles, which are small, without sines: what the series leave out is below rounding.
 Vec2 turned_little_by(double angle, const Vec2& r) {
   constexpr double small = 0.01;  // [rad]; angle^9/9! and angle^8/8! are left out
-  if (std::abs(angle) >= small) return Motion<3>::turned_by(angle, r, RotationKind::exact);
+  if (std::abs(angle) >= small) return Motion::turned_by(angle, r, RotationKind::exact);
   const double q = angle * angle;
   return angle * (1.0 - q / 6.0 * (1.0 - q / 20.0 * (1.0 - q / 42.0))) * perpendicular(r) - 0.5 * q * (1.0 - q / 12.0 * (1.0 - q / 30.0)) * r;
 }
@@ -42,8 +42,7 @@ const double cosine_collinear = std::cos(tolerance::parallel_none_rad);
 
 /// Whether `now` continues `before` under another name: the same corner has gone on to a nearly collinear edge, or, at the end of an overlap, the
 /// corner that lay on the edge has passed its end and the edge's own corner lies on the other block's edge instead.
-template <int N>
-bool continues(const BlockSystem<N>& system, const Contact& before, const Contact& now) {
+bool continues(const BlockSystem& system, const Contact& before, const Contact& now) {
   const auto direction = [&](int e) { return (system.arm(system.next(e)) - system.arm(e)).normalized(); };
   const double cosine = direction(now.edge).dot(direction(before.edge));
   if (now.vertex == before.vertex) return cosine > cosine_collinear;
@@ -54,15 +53,13 @@ bool continues(const BlockSystem<N>& system, const Contact& before, const Contac
 
 }  // namespace
 
-template <int N>
-Detector<N>::Detector(double reach, const DetectionSkips& skips) : reach_(reach), skips_(skips) {}
+Detector::Detector(double reach, const DetectionSkips& skips) : reach_(reach), skips_(skips) {}
 
-template <int N>
-bool Detector<N>::moved_beyond_search_skin(const BlockSystem<N>& system) const {
+bool Detector::moved_beyond_search_skin(const BlockSystem& system) const {
   for (const std::vector<Unknowns>* then : {&searched_at_, &searched_moving_at_}) {
     if (then->empty()) continue;
     for (int b : system.free_blocks()) {
-      const double moved = Motion<N>::displacement_bound(system.displacement(b) - (*then)[b], system.block(b).radius);
+      const double moved = Motion::displacement_bound(system.displacement(b) - (*then)[b], system.block(b).radius);
       if (moved > 0.5 * tolerance::search_skin_m) return true;
     }
   }
@@ -72,8 +69,7 @@ bool Detector<N>::moved_beyond_search_skin(const BlockSystem<N>& system) const {
 /// Pairs of boxes that overlap, but for those of blocks that are more than `room` [m] apart: in a slope with an inclined joint set four out of five.
 /// By sweeping along x within strips of y that are as high as the middling box: in a plane full of blocks each strip holds few at a time, so that the
 /// work grows with the number of blocks, and a block that is larger than others is only in more strips.
-template <int N>
-void Detector<N>::find_pairs(const BlockSystem<N>& system, const std::vector<Box>& boxes, double room) {
+void Detector::find_pairs(const BlockSystem& system, const std::vector<Box>& boxes, double room) {
   pairs_.clear();
   const int n = static_cast<int>(boxes.size());
   if (n < 2) return;
@@ -128,8 +124,7 @@ void Detector<N>::find_pairs(const BlockSystem<N>& system, const std::vector<Box
   pairs_.swap(ordered);
 }
 
-template <int N>
-void Detector<N>::search(const BlockSystem<N>& system) {
+void Detector::search(const BlockSystem& system) {
   ++counters_.searches;
   shapes_.begin(system);
   std::vector<Box> boxes;
@@ -178,8 +173,7 @@ void Detector<N>::search(const BlockSystem<N>& system) {
 }
 
 /// Finds the contacts of each pair in the list, which is in the order of the pairs; those whose blocks are no pair any more are gone.
-template <int N>
-void Detector<N>::locate(const std::vector<Contact>& contacts) {
+void Detector::locate(const std::vector<Contact>& contacts) {
   const auto pair_of = [](const Contact& c) { return std::pair<int, int>(std::minmax(c.vertex_block, c.edge_block)); };
   ranges_.resize(pairs_.size());
   const int count = static_cast<int>(contacts.size());
@@ -193,17 +187,15 @@ void Detector<N>::locate(const std::vector<Contact>& contacts) {
   for (; at < count; ++at) gone_.push_back(at);
 }
 
-template <int N>
-typename Detector<N>::Place Detector<N>::place(const BlockSystem<N>& system, int b) {
+Detector::Place Detector::place(const BlockSystem& system, int b) {
   const Vec2 centroid = system.centroid(b);
-  return {centroid.x(), centroid.y(), Motion<N>::rotation(system.displacement(b)), system.block(b).radius};
+  return {centroid.x(), centroid.y(), Motion::rotation(system.displacement(b)), system.block(b).radius};
 }
 
 /// [m] How far points where two blocks can touch may have moved against each other since the pair's contacts were found. With u the displacements of
 /// the centroids and R the rotations since then, c the way between the centroids then and r the arm of the point from the centroid of block 1,
 /// u_1 - u_2 - (R_2 - 1) c + (R_1 - R_2) r; r is not longer than the radius of block 1, the smaller one, and the reach.
-template <int N>
-double Detector<N>::relative_way(const PairState& then, const Place& first, const Place& second) const {
+double Detector::relative_way(const PairState& then, const Place& first, const Place& second) const {
   // Which one is the larger is as good as random: chosen from a list, without a branch. Exchanging the blocks turns the sign of the shift only.
   const double turns[] = {first.turn - then.first_turn, second.turn - then.second_turn};
   const double turn_of_larger = turns[first.radius > second.radius ? 0 : 1], radius = std::min(first.radius, second.radius);
@@ -212,15 +204,13 @@ double Detector<N>::relative_way(const PairState& then, const Place& first, cons
   return (radius + reach_ + skips_.contact_skin) * std::abs(turns[0] - turns[1]) + shift.norm();
 }
 
-template <int N>
-typename Detector<N>::Due Detector<N>::due(double way) const {
+Detector::Due Detector::due(double way) const {
   constexpr double companion_part = 0.1;               // of the skin
   if (!(way <= skips_.contact_skin)) return Due::yes;  // also where nothing is known of the pair
   return way > companion_part * skips_.contact_skin ? Due::moved : Due::no;
 }
 
-template <int N>
-void Detector<N>::list_pairs_of_blocks(int blocks) {
+void Detector::list_pairs_of_blocks(int blocks) {
   pairs_of_start_.assign(blocks + 1, 0);
   pairs_of_.resize(2 * pairs_.size());
   for (const auto& [a, b] : pairs_) {
@@ -235,8 +225,7 @@ void Detector<N>::list_pairs_of_blocks(int blocks) {
 }
 
 /// Adds up the ways of the blocks and finds those whose pairs are to be looked at.
-template <int N>
-void Detector<N>::follow_blocks(const BlockSystem<N>& system, bool all) {
+void Detector::follow_blocks(const BlockSystem& system, bool all) {
   restless_.clear();
   is_restless_.assign(system.block_count(), 0);
   for (int b = 0; b < system.block_count(); ++b) {
@@ -254,9 +243,8 @@ void Detector<N>::follow_blocks(const BlockSystem<N>& system, bool all) {
 }
 
 /// Once each.
-template <int N>
 template <class F>
-void Detector<N>::for_pairs_of(const std::vector<int>& blocks, const std::vector<char>& is_among_them, F f) const {
+void Detector::for_pairs_of(const std::vector<int>& blocks, const std::vector<char>& is_among_them, F f) const {
   for (const int b : blocks) {
     for (int k = pairs_of_start_[b]; k < pairs_of_start_[b + 1]; ++k) {
       const auto& [first, second] = pairs_[pairs_of_[k]];
@@ -266,14 +254,12 @@ void Detector<N>::for_pairs_of(const std::vector<int>& blocks, const std::vector
 }
 
 /// A pair in which something has moved by `way` is not due before its blocks have gone what is left of the skin.
-template <int N>
-void Detector<N>::look_again_before(int pair, double way) {
+void Detector::look_again_before(int pair, double way) {
   const double left = skips_.contact_skin - tolerance::rounding_of_ways_m - way;
   for (const int b : {pairs_[pair].first, pairs_[pair].second}) ways_[b].look_at = std::min(ways_[b].look_at, ways_[b].gone + 0.5 * left);
 }
 
-template <int N>
-bool Detector<N>::mark_due_pairs(const BlockSystem<N>& system, bool all) {
+bool Detector::mark_due_pairs(const BlockSystem& system, bool all) {
   follow_blocks(system, all || !skips_.looks);
   due_pairs_.clear();
   if (all) {
@@ -306,8 +292,7 @@ bool Detector<N>::mark_due_pairs(const BlockSystem<N>& system, bool all) {
   return true;
 }
 
-template <int N>
-void Detector<N>::find_blocks_of_due_pairs() {
+void Detector::find_blocks_of_due_pairs() {
   in_due_pair_.assign(places_.size(), 0);
   in_due_pairs_.clear();
   for (const int i : due_pairs_) {
@@ -319,8 +304,7 @@ void Detector<N>::find_blocks_of_due_pairs() {
 }
 
 /// Those that share a block with a pair that is due, and these.
-template <int N>
-const std::vector<int>& Detector<N>::pairs_around_due_ones() {
+const std::vector<int>& Detector::pairs_around_due_ones() {
   find_blocks_of_due_pairs();
   marks_.resize(pairs_.size() / bits + 1);
   for_pairs_of(in_due_pairs_, in_due_pair_, [&](int pair) { mark(marks_, pair); });
@@ -329,8 +313,7 @@ const std::vector<int>& Detector<N>::pairs_around_due_ones() {
 }
 
 /// Contacts that are new inherit from those of the same corner that are gone.
-template <int N>
-void Detector<N>::pass_on_history(const BlockSystem<N>& system, std::vector<Contact>& before) {
+void Detector::pass_on_history(const BlockSystem& system, std::vector<Contact>& before) {
   if (born_.empty() || gone_.empty()) return;
   gone_by_vertex_.clear();
   gone_by_edge_.clear();
@@ -365,8 +348,7 @@ void Detector<N>::pass_on_history(const BlockSystem<N>& system, std::vector<Cont
 }
 
 /// Finds the contacts of a pair anew, with the history of those that live on.
-template <int N>
-void Detector<N>::redo(const JointTable& joints, const BlockSystem<N>& system, int pair, NarrowPhase<N>& narrow, const std::vector<Contact>& before) {
+void Detector::redo(const JointTable& joints, const BlockSystem& system, int pair, NarrowPhase& narrow, const std::vector<Contact>& before) {
   const auto [a, b] = pairs_[pair];
   states_[pair] = {places_[a].x - places_[b].x, places_[a].y - places_[b].y, places_[a].turn, places_[b].turn};
   look_again_before(pair, 0.0);
@@ -397,8 +379,7 @@ void Detector<N>::redo(const JointTable& joints, const BlockSystem<N>& system, i
 }
 
 /// Where the contacts of pairs that are not due go; ranges_ are those of the new list from then on.
-template <int N>
-void Detector<N>::find_kept_runs() {
+void Detector::find_kept_runs() {
   kept_.clear();
   auto change = changes_.begin();
   int end = 0;
@@ -421,8 +402,7 @@ void Detector<N>::find_kept_runs() {
 
 /// Puts what was found in place of what was there. What stays is moved within the list: first what goes forward, from the front, then what goes back,
 /// from the end, so that nothing is written over that has still to be moved.
-template <int N>
-void Detector<N>::put_in_place(std::vector<Contact>& contacts, bool orphans) {
+void Detector::put_in_place(std::vector<Contact>& contacts, bool orphans) {
   const std::vector<Contact> found = std::move(found_);  // so that it is gone in the end
   found_.clear();
   const auto put = [&](const Range& from, const Range& to) {
@@ -456,16 +436,14 @@ void Detector<N>::put_in_place(std::vector<Contact>& contacts, bool orphans) {
   for (DetectionChange& change : changes_) change.after = ranges_[change.pair];
 }
 
-template <int N>
-void Detector<N>::PairList::reserve(std::size_t pair_count, std::size_t contact_count) {
+void Detector::PairList::reserve(std::size_t pair_count, std::size_t contact_count) {
   pairs.reserve(pair_count);
   states.reserve(pair_count);
   ranges.reserve(pair_count);
   contacts.reserve(contact_count);
 }
 
-template <int N>
-void Detector<N>::PairList::add(const std::pair<int, int>& pair, const PairState& state, const Range& range, const std::vector<Contact>& range_of) {
+void Detector::PairList::add(const std::pair<int, int>& pair, const PairState& state, const Range& range, const std::vector<Contact>& range_of) {
   const int begin = static_cast<int>(contacts.size());
   pairs.push_back(pair);
   states.push_back(state);
@@ -473,9 +451,8 @@ void Detector<N>::PairList::add(const std::pair<int, int>& pair, const PairState
   contacts.insert(contacts.end(), range_of.begin() + range.begin, range_of.begin() + range.end);
 }
 
-template <int N>
 template <class F>
-void Detector<N>::PairList::remove_if(F leaves) {
+void Detector::PairList::remove_if(F leaves) {
   std::size_t kept = 0;
   int end = 0;
   for (std::size_t k = 0; k < pairs.size(); ++k) {
@@ -493,8 +470,7 @@ void Detector<N>::PairList::remove_if(F leaves) {
   contacts.resize(end);
 }
 
-template <int N>
-void Detector<N>::divide(const BlockSystem<N>& system, std::vector<Contact>& contacts) {
+void Detector::divide(const BlockSystem& system, std::vector<Contact>& contacts) {
   const auto moves = [&](const std::pair<int, int>& pair) {
     return system.block(pair.first).equation >= 0 || system.block(pair.second).equation >= 0;
   };
@@ -527,15 +503,13 @@ void Detector<N>::divide(const BlockSystem<N>& system, std::vector<Contact>& con
   index_.forget_resting();
 }
 
-template <int N>
-void Detector<N>::exchange(Archive& archive) {
+void Detector::exchange(Archive& archive) {
   archive(first_, forgotten_, looks_again_, pairs_, states_, ranges_, resting_, searched_at_, searched_moving_at_, counters_, places_, ways_,
           pairs_of_start_, pairs_of_);
   if (archive.reading()) index_.forget_resting();
 }
 
-template <int N>
-Memory Detector<N>::memory() const {
+Memory Detector::memory() const {
   Memory of;
   of.blocks = bytes_of(searched_at_, searched_moving_at_, places_, ways_, pairs_of_start_, restless_, in_due_pairs_, is_restless_, in_due_pair_) +
               shapes_.bytes();
@@ -544,16 +518,14 @@ Memory Detector<N>::memory() const {
   return of;
 }
 
-template <int N>
-void Detector<N>::let_go_of_working_memory() {
+void Detector::let_go_of_working_memory() {
   shapes_.let_go();
   for (std::vector<int>* list : {&restless_, &in_due_pairs_, &due_pairs_, &around_due_, &gone_}) std::vector<int>().swap(*list);
   std::vector<std::size_t>().swap(born_);
   std::vector<Run>().swap(kept_);
 }
 
-template <int N>
-bool Detector<N>::update(const BlockSystem<N>& system, const JointTable& joints, std::vector<Contact>& contacts, const BlockSystem<N>* present) {
+bool Detector::update(const BlockSystem& system, const JointTable& joints, std::vector<Contact>& contacts, const BlockSystem* present) {
   const bool all = std::exchange(looks_again_, false) || forgotten_ || !skips_.search || !skips_.narrow_phase;
   const bool searches = needs_search(system);
   moved_by_others_ = std::exchange(forgotten_, false);
@@ -577,7 +549,7 @@ bool Detector<N>::update(const BlockSystem<N>& system, const JointTable& joints,
   if (!searches) shapes_.begin(system);
   index_.begin(system, contacts, resting_.contacts);
   for (const int pair : pairs_around_due_ones()) index_.add(ranges_[pair]);
-  NarrowPhase<N> narrow(system, present, reach_ + skips_.contact_skin, shapes_, index_);
+  NarrowPhase narrow(system, present, reach_ + skips_.contact_skin, shapes_, index_);
   for (const int pair : due_pairs_) redo(joints, system, pair, narrow, contacts);
   if (!first_) pass_on_history(system, contacts);
   put_in_place(contacts, orphans);
@@ -586,7 +558,5 @@ bool Detector<N>::update(const BlockSystem<N>& system, const JointTable& joints,
   first_ = false;
   return true;
 }
-
-template class Detector<3>;
 
 }  // namespace openclose

@@ -62,10 +62,8 @@ struct DetectionChange {
   ContactRange before, after;
 };
 
-template <int N>
 class NarrowPhase;
 
-template <int N>
 class Detector {
  public:
   /// \param reach [m] open contacts are kept up to this gap: at least what two vertices can approach each other within a step
@@ -78,11 +76,11 @@ class Detector {
   /// ductile.
   /// \param present  where the blocks are, if `system` has them where they are expected: gaps are those of `present`, and what has not gone behind an
   ///                 edge there is met by it however deep it is behind it in `system`. Null: `system` has them where they are.
-  bool update(const BlockSystem<N>& system, const JointTable& joints, std::vector<Contact>& contacts, const BlockSystem<N>* present = nullptr);
+  bool update(const BlockSystem& system, const JointTable& joints, std::vector<Contact>& contacts, const BlockSystem* present = nullptr);
 
   /// Which blocks are at rest has changed. From now on `contacts`, the list as the last update() left it, has those of pairs of which a block moves;
   /// the others are kept here.
-  void divide(const BlockSystem<N>& system, std::vector<Contact>& contacts);
+  void divide(const BlockSystem& system, std::vector<Contact>& contacts);
   /// Between blocks of which neither moves, one at least being at rest.
   const std::vector<Contact>& resting_contacts() const { return resting_.contacts; }
 
@@ -90,7 +88,7 @@ class Detector {
   /// may also have gone whose blocks are no pair any more.
   const std::vector<DetectionChange>& changes() const { return changes_; }
   /// Whether the next update() searches for pairs.
-  bool needs_search(const BlockSystem<N>& system) const { return forgotten_ || !skips_.search || moved_beyond_search_skin(system); }
+  bool needs_search(const BlockSystem& system) const { return forgotten_ || !skips_.search || moved_beyond_search_skin(system); }
 
   /// Pairs of blocks, at least one of them free, that may come within reach before something has moved beyond the skin: their boxes, with reach and
   /// skin, overlap, and no line along an edge of one of them keeps them as far apart. Renewed only when something moved beyond the skin.
@@ -109,7 +107,7 @@ class Detector {
   void exchange(Archive& archive);
 
  private:
-  using Unknowns = typename BlockSystem<N>::Unknowns;
+  using Unknowns = BlockSystem::Unknowns;
   using Range = ContactRange;
   struct Place {
     double x, y, turn;  ///< [m, m, rad] of a centroid
@@ -165,23 +163,23 @@ class Detector {
     }
   };
 
-  bool moved_beyond_search_skin(const BlockSystem<N>& system) const;
-  void search(const BlockSystem<N>& system);
-  void find_pairs(const BlockSystem<N>& system, const std::vector<Box>& boxes, double room);
+  bool moved_beyond_search_skin(const BlockSystem& system) const;
+  void search(const BlockSystem& system);
+  void find_pairs(const BlockSystem& system, const std::vector<Box>& boxes, double room);
   void locate(const std::vector<Contact>& contacts);
-  static Place place(const BlockSystem<N>& system, int b);
+  static Place place(const BlockSystem& system, int b);
   double relative_way(const PairState& then, const Place& first, const Place& second) const;
   Due due(double way) const;
   void list_pairs_of_blocks(int blocks);
-  void follow_blocks(const BlockSystem<N>& system, bool all);
+  void follow_blocks(const BlockSystem& system, bool all);
   template <class F>
   void for_pairs_of(const std::vector<int>& blocks, const std::vector<char>& is_among_them, F f) const;
   void look_again_before(int pair, double way);
-  bool mark_due_pairs(const BlockSystem<N>& system, bool all);
+  bool mark_due_pairs(const BlockSystem& system, bool all);
   void find_blocks_of_due_pairs();
   const std::vector<int>& pairs_around_due_ones();
-  void redo(const JointTable& joints, const BlockSystem<N>& system, int pair, NarrowPhase<N>& narrow, const std::vector<Contact>& before);
-  void pass_on_history(const BlockSystem<N>& system, std::vector<Contact>& before);
+  void redo(const JointTable& joints, const BlockSystem& system, int pair, NarrowPhase& narrow, const std::vector<Contact>& before);
+  void pass_on_history(const BlockSystem& system, std::vector<Contact>& before);
   void put_in_place(std::vector<Contact>& contacts, bool orphans);
   void find_kept_runs();
   void let_go_of_working_memory();
@@ -204,8 +202,8 @@ class Detector {
   DetectionCounters counters_;
 
   // Working memory of update().
-  BlockShapes<N> shapes_;
-  ContactIndex<N> index_;
+  BlockShapes shapes_;
+  ContactIndex index_;
   std::vector<int> restless_, in_due_pairs_;  ///< blocks: whose pairs are looked at; of pairs that are due
   std::vector<char> is_restless_, in_due_pair_;
   std::vector<int> due_pairs_, around_due_;  ///< in order
@@ -217,7 +215,5 @@ class Detector {
   std::vector<int> gone_;                    ///< positions in the old list
   std::vector<std::pair<int, int>> gone_by_vertex_, gone_by_edge_;
 };
-
-extern template class Detector<3>;
 
 }  // namespace openclose

@@ -2,28 +2,25 @@
 
 namespace openclose {
 
-template <int N>
-ContactKinematics<N>::ContactKinematics(const BlockSystem<N>& system, const Contact& contact, const Unknowns& d_vertex, const Unknowns& d_edge)
-    : ContactKinematics(ContactPose<N>(ContactStart<N>(system, contact),
-                                       BlockMove<N>(d_vertex, system.rotation_kind(), system.block(contact.vertex_block).radius),
-                                       BlockMove<N>(d_edge, system.rotation_kind(), system.block(contact.edge_block).radius))) {}
+ContactKinematics::ContactKinematics(const BlockSystem& system, const Contact& contact, const Unknowns& d_vertex, const Unknowns& d_edge)
+    : ContactKinematics(ContactPose(ContactStart(system, contact),
+                                    BlockMove(d_vertex, system.rotation_kind(), system.block(contact.vertex_block).radius),
+                                    BlockMove(d_edge, system.rotation_kind(), system.block(contact.edge_block).radius))) {}
 
-template <int N>
-ContactKinematics<N>::ContactKinematics(const ContactPose<N>& pose)
+ContactKinematics::ContactKinematics(const ContactPose& pose)
     : normal(pose.normal),
       tangent(pose.tangent()),
       vertex_arm(pose.vertex_arm),
       edge_arm(pose.edge_arm),
       gap_change(pose.gap_change),
       slip_change(pose.slip_change),
-      normal_vertex(Motion<N>::gradient(vertex_arm, normal)),
-      normal_edge(-Motion<N>::gradient(edge_arm, normal)),
-      shear_vertex(Motion<N>::gradient(vertex_arm, tangent)),
-      shear_edge(-Motion<N>::gradient(edge_arm, tangent)) {}
+      normal_vertex(Motion::gradient(vertex_arm, normal)),
+      normal_edge(-Motion::gradient(edge_arm, normal)),
+      shear_vertex(Motion::gradient(vertex_arm, tangent)),
+      shear_edge(-Motion::gradient(edge_arm, tangent)) {}
 
-template <int N>
-ContactPose<N> ContactKinematics<N>::pose() const {
-  ContactPose<N> p;
+ContactPose ContactKinematics::pose() const {
+  ContactPose p;
   p.normal = normal;
   p.vertex_arm = vertex_arm;
   p.edge_arm = edge_arm;
@@ -32,19 +29,16 @@ ContactPose<N> ContactKinematics<N>::pose() const {
   return p;
 }
 
-template <int N>
-typename ContactKinematics<N>::Hessian ContactKinematics<N>::hessian(const Vec2& m) const {
+ContactKinematics::Hessian ContactKinematics::hessian(const Vec2& m) const {
   // m . (p - e) depends on the rotation of the edge's block through m and through the lever of p: see the derivation of ContactKinematics.
-  Hessian h{Motion<N>::hessian(vertex_arm, m), Matrix::Zero(), Motion<N>::hessian(edge_arm, m)};
-  constexpr int r = Motion<N>::rotation_index;
+  Hessian h{Motion::hessian(vertex_arm, m), Matrix::Zero(), Motion::hessian(edge_arm, m)};
+  constexpr int r = Motion::rotation_index;
   const Vec2 turned = perpendicular(m);
-  h.vertex_edge.template block<2, 1>(0, r) = turned;
+  h.vertex_edge.block<2, 1>(0, r) = turned;
   h.vertex_edge(r, r) = m.dot(vertex_arm);
-  h.edge_edge.template block<2, 1>(0, r) = -turned;
-  h.edge_edge.template block<1, 2>(r, 0) = -turned.transpose();
+  h.edge_edge.block<2, 1>(0, r) = -turned;
+  h.edge_edge.block<1, 2>(r, 0) = -turned.transpose();
   return h;
 }
-
-template struct ContactKinematics<3>;
 
 }  // namespace openclose

@@ -14,7 +14,6 @@
 namespace openclose {
 
 /// Motion of one block within a step, its sines computed once for all its contacts.
-template <int N>
 struct BlockMove {
   Vec2 translation = Vec2::Zero();  ///< [m]
   double sine = 0.0;                ///< of the rotation
@@ -26,9 +25,9 @@ struct BlockMove {
 
   BlockMove() = default;  ///< no motion
   /// \param radius  [m] of the block, for the bound
-  BlockMove(const typename Motion<N>::Unknowns& d, RotationKind kind, double radius)
-      : translation(Motion<N>::translation(d)), bound(Motion<N>::displacement_bound(d, radius)) {
-    const double angle = Motion<N>::rotation(d);
+  BlockMove(const Motion::Unknowns& d, RotationKind kind, double radius)
+      : translation(Motion::translation(d)), bound(Motion::displacement_bound(d, radius)) {
+    const double angle = Motion::rotation(d);
     // A linearly rotated edge also grows; its direction turns by the arc tangent.
     const SineCosine half(0.5 * (kind == RotationKind::exact ? angle : std::atan(angle)));
     edge_sine = 2.0 * half.sine * half.cosine;
@@ -41,16 +40,15 @@ struct BlockMove {
 };
 
 /// Where a contact is, as the system has it.
-template <int N>
 struct ContactPlace {
   Vec2 vertex_arm, end_arm, lever;  ///< [m] as in ContactStart
   Vec2 edge;                        ///< [m] from e to the edge's other end
 
   ContactPlace() = default;
-  ContactPlace(const BlockSystem<N>& system, const Contact& contact)
+  ContactPlace(const BlockSystem& system, const Contact& contact)
       : ContactPlace(system, contact, system.centroid(contact.vertex_block), system.centroid(contact.edge_block)) {}
   /// With the centroids of its two blocks.
-  ContactPlace(const BlockSystem<N>& system, const Contact& contact, const Vec2& vertex_centroid, const Vec2& edge_centroid)
+  ContactPlace(const BlockSystem& system, const Contact& contact, const Vec2& vertex_centroid, const Vec2& edge_centroid)
       : vertex_arm(system.arm(contact.vertex)),
         end_arm(system.arm(contact.edge)),
         lever((vertex_centroid + vertex_arm) - (edge_centroid + end_arm)),
@@ -58,7 +56,6 @@ struct ContactPlace {
 };
 
 /// A contact at the start of a step.
-template <int N>
 struct ContactStart {
   Vec2 normal;
   Vec2 vertex_arm;  ///< [m] from the centroid of the vertex's block to p
@@ -66,13 +63,12 @@ struct ContactStart {
   Vec2 lever;       ///< [m] from e to p
 
   ContactStart() = default;
-  explicit ContactStart(const ContactPlace<N>& at)
+  explicit ContactStart(const ContactPlace& at)
       : normal(-perpendicular(at.edge.normalized())), vertex_arm(at.vertex_arm), end_arm(at.end_arm), lever(at.lever) {}
-  ContactStart(const BlockSystem<N>& system, const Contact& contact) : ContactStart(ContactPlace<N>(system, contact)) {}
+  ContactStart(const BlockSystem& system, const Contact& contact) : ContactStart(ContactPlace(system, contact)) {}
 };
 
 /// A contact at a trial position.
-template <int N>
 struct ContactPose {
   Vec2 normal = Vec2::Zero();
   Vec2 vertex_arm = Vec2::Zero(), edge_arm = Vec2::Zero();  ///< [m] from the centroids of the two blocks to p
@@ -80,10 +76,10 @@ struct ContactPose {
   double slip_change = 0.0;                                 ///< [m]
 
   ContactPose() = default;
-  ContactPose(const ContactStart<N>& start, const BlockMove<N>& vertex, const BlockMove<N>& edge) { set(start, vertex, edge); }
+  ContactPose(const ContactStart& start, const BlockMove& vertex, const BlockMove& edge) { set(start, vertex, edge); }
 
   /// In single numbers: vectors of two cost more in shuffling than they save.
-  void set(const ContactStart<N>& start, const BlockMove<N>& vertex, const BlockMove<N>& edge) {
+  void set(const ContactStart& start, const BlockMove& vertex, const BlockMove& edge) {
     const double n0x = start.normal.x(), n0y = start.normal.y(), lx = start.lever.x(), ly = start.lever.y();
     const double ax = start.vertex_arm.x(), ay = start.vertex_arm.y(), ex = start.end_arm.x(), ey = start.end_arm.y();
     const double dnx = -edge.edge_sine * n0y - edge.edge_versine * n0x, dny = edge.edge_sine * n0x - edge.edge_versine * n0y;
@@ -103,26 +99,20 @@ struct ContactPose {
 
   /// [J/N] Work of unit forces along normal and tangent when the blocks of vertex and edge move by these: the products with the gradients of gap and
   /// slip.
-  double normal_way(const typename Motion<N>::Unknowns& vertex, const typename Motion<N>::Unknowns& edge) const { return way(normal, vertex, edge); }
-  double shear_way(const typename Motion<N>::Unknowns& vertex, const typename Motion<N>::Unknowns& edge) const {
-    return way(tangent(), vertex, edge);
-  }
+  double normal_way(const Motion::Unknowns& vertex, const Motion::Unknowns& edge) const { return way(normal, vertex, edge); }
+  double shear_way(const Motion::Unknowns& vertex, const Motion::Unknowns& edge) const { return way(tangent(), vertex, edge); }
 
  private:
-  double way(const Vec2& direction, const typename Motion<N>::Unknowns& vertex, const typename Motion<N>::Unknowns& edge) const {
-    return Motion<N>::gradient(vertex_arm, direction).dot(vertex) - Motion<N>::gradient(edge_arm, direction).dot(edge);
+  double way(const Vec2& direction, const Motion::Unknowns& vertex, const Motion::Unknowns& edge) const {
+    return Motion::gradient(vertex_arm, direction).dot(vertex) - Motion::gradient(edge_arm, direction).dot(edge);
   }
 };
 
 /// Stiffness of a contact: the four blocks of minus the derivative of the generalised forces by the unknowns. The force f acts at p on the vertex's
 /// block and -f on the edge's, at its arms; `by_shift` is minus its derivative by the displacement of p against the edge's block, `turning` the
 /// part of it that turns with that block (for second derivatives; zero leaves them out).
-template <int N>
-struct ContactStiffness;
-
-template <>
-struct ContactStiffness<3> {
-  using Block = Motion<3>::Matrix;
+struct ContactStiffness {
+  using Block = Motion::Matrix;
   double shift_xx, shift_xy, shift_yx, shift_yy;  ///< [N/m]
   Vec2 force_vertex_arm, force_edge_arm;          ///< [m] where the force acts
   Vec2 vertex_arm, edge_arm;                      ///< [m] of the contact's motion: the same, unless the force is a mean over a path
@@ -157,10 +147,9 @@ struct ContactStiffness<3> {
   }
 };
 
-template <int N>
 struct ContactKinematics {
-  using Unknowns = typename Motion<N>::Unknowns;
-  using Matrix = typename Motion<N>::Matrix;
+  using Unknowns = Motion::Unknowns;
+  using Matrix = Motion::Matrix;
 
   Vec2 normal, tangent;                 ///< at the trial position
   Vec2 vertex_arm, edge_arm;            ///< [m] from the centroids of the two blocks to p
@@ -170,9 +159,9 @@ struct ContactKinematics {
   Unknowns shear_vertex, shear_edge;    ///< gradient of the slip
 
   /// Kinematics after the two blocks have moved by d_vertex, d_edge from the system's present state.
-  ContactKinematics(const BlockSystem<N>& system, const Contact& contact, const Unknowns& d_vertex, const Unknowns& d_edge);
-  explicit ContactKinematics(const ContactPose<N>& pose);
-  ContactPose<N> pose() const;
+  ContactKinematics(const BlockSystem& system, const Contact& contact, const Unknowns& d_vertex, const Unknowns& d_edge);
+  explicit ContactKinematics(const ContactPose& pose);
+  ContactPose pose() const;
 
   /// Second derivatives of m . (p - e), m turning with the edge's block: blocks (vertex, vertex), (vertex, edge), (edge, edge).
   struct Hessian {
@@ -180,7 +169,5 @@ struct ContactKinematics {
   };
   Hessian hessian(const Vec2& m) const;
 };
-
-extern template struct ContactKinematics<3>;
 
 }  // namespace openclose

@@ -11,9 +11,8 @@
 namespace openclose {
 
 /// For exact rotation. Its changes of gap and slip are left at zero; its normal is shorter than a unit vector where the edge turns.
-template <int N>
-ContactPose<N> mean_pose(const ContactStart<N>& start, const ContactPose<N>& end) {
-  ContactPose<N> mean;
+inline ContactPose mean_pose(const ContactStart& start, const ContactPose& end) {
+  ContactPose mean;
   mean.normal = 0.5 * (start.normal + end.normal);
   mean.vertex_arm = 0.5 * (start.vertex_arm + end.vertex_arm);
   mean.edge_arm = 0.5 * ((start.end_arm + start.lever) + end.edge_arm);

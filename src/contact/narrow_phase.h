@@ -47,12 +47,11 @@
 namespace openclose {
 
 /// Between the blocks of one pair. Collects contacts; a vertex-edge pair found twice gets the sum of the lengths.
-template <int N>
 class NarrowPhase {
  public:
-  using Edge = typename BlockShapes<N>::Edge;
+  using Edge = BlockShapes::Edge;
 
-  NarrowPhase(const BlockSystem<N>& system, const BlockSystem<N>* present, double reach, BlockShapes<N>& shapes, const ContactIndex<N>& previous)
+  NarrowPhase(const BlockSystem& system, const BlockSystem* present, double reach, BlockShapes& shapes, const ContactIndex& previous)
       : system_(system), present_(present), reach_(reach), shapes_(shapes), previous_(previous) {}
 
   void run(int block_a, int block_b, std::vector<Contact>& found) {
@@ -213,7 +212,7 @@ class NarrowPhase {
   }
 
   double present_gap(const Contact& contact) const {
-    const ContactStart<N> at(*present_, contact);
+    const ContactStart at(*present_, contact);
     return at.normal.dot(at.lever);
   }
 
@@ -379,11 +378,11 @@ class NarrowPhase {
   static inline const double cosine_needle = std::cos(2.0 * tolerance::parallel_none_rad);
   static inline const double sine_flush = std::sin(tolerance::flush_tilt_rad);
 
-  const BlockSystem<N>& system_;
-  const BlockSystem<N>* present_;
+  const BlockSystem& system_;
+  const BlockSystem* present_;
   double reach_;
-  BlockShapes<N>& shapes_;
-  const ContactIndex<N>& previous_;
+  BlockShapes& shapes_;
+  const ContactIndex& previous_;
   std::vector<Contact>* found_ = nullptr;
   std::size_t first_ = 0;
   std::vector<char> near_[2];  ///< of the corners of both blocks

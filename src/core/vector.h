@@ -7,6 +7,9 @@ namespace openclose {
 
 using Vec2 = Eigen::Vector2d;
 
+/// Degrees of freedom of a rigid block: the translation of its centroid [m] and its rotation [rad].
+inline constexpr int dofs = 3;
+
 /// The vector turned by +90 degrees (counter-clockwise).
 inline Vec2 perpendicular(const Vec2& v) {
   return {-v.y(), v.x()};

@@ -8,25 +8,22 @@ namespace openclose {
 namespace {
 
 /// [1/kg] Largest acceleration of any point of a block by a force of 1 N there.
-template <int N>
-double mobility(const BlockSystem<N>& system, int b) {
+double mobility(const BlockSystem& system, int b) {
   const auto& block = system.block(b);
   if (block.equation < 0) return 0.0;
   return 1.0 / block.mass[0] + (block.rotation_locked ? 0.0 : block.radius * block.radius / block.mass[2]);
 }
 
 /// [m/s] Of any point of a block.
-template <int N>
-double speed(const BlockSystem<N>& system, int b) {
+double speed(const BlockSystem& system, int b) {
   const auto& v = system.velocity(b);
   return Vec2(v[0], v[1]).norm() + system.block(b).radius * std::abs(v[2]);
 }
 
 }  // namespace
 
-template <int N>
-double ApproachBound<N>::step(const BlockSystem<N>& system, const JointTable& joints, const std::vector<std::pair<int, int>>& pairs, double room,
-                              double skin, double fraction) {
+double ApproachBound::step(const BlockSystem& system, const JointTable& joints, const std::vector<std::pair<int, int>>& pairs, double room,
+                           double skin, double fraction) {
   if (longest_edges_.empty()) {
     for (const auto& block : system.blocks()) {
       double longest = 0.0;
@@ -48,7 +45,5 @@ double ApproachBound<N>::step(const BlockSystem<N>& system, const JointTable& jo
   }
   return step;
 }
-
-template class ApproachBound<3>;
 
 }  // namespace openclose

@@ -18,20 +18,17 @@
 
 namespace openclose {
 
-template <int N>
 class ApproachBound {
  public:
   /// [s] For the pairs whose blocks are no farther apart than `room` [m], with the velocities of the system; infinite if nothing is near.
   /// \param skin      [m] see above
   /// \param fraction  [-] p
-  double step(const BlockSystem<N>& system, const JointTable& joints, const std::vector<std::pair<int, int>>& pairs, double room, double skin,
+  double step(const BlockSystem& system, const JointTable& joints, const std::vector<std::pair<int, int>>& pairs, double room, double skin,
               double fraction);
   std::size_t bytes() const { return bytes_of(longest_edges_); }
 
  private:
   std::vector<double> longest_edges_;  ///< [m] of the blocks
 };
-
-extern template class ApproachBound<3>;
 
 }  // namespace openclose

@@ -4,8 +4,7 @@
 
 namespace openclose {
 
-template <int N>
-std::vector<typename BatchRenewal<N>::BlockPlace> BatchRenewal<N>::places_of(const BlockSystem<N>& system) {
+std::vector<BatchRenewal::BlockPlace> BatchRenewal::places_of(const BlockSystem& system) {
   std::vector<BlockPlace> places(system.block_count());
   for (int b = 0; b < system.block_count(); ++b) {
     const int equation = system.block(b).equation;
@@ -14,8 +13,7 @@ std::vector<typename BatchRenewal<N>::BlockPlace> BatchRenewal<N>::places_of(con
   return places;
 }
 
-template <int N>
-void BatchRenewal<N>::renew(const StepProblem<N>& problem, const SpringSource<N>& springs, ContactStarts& starts) {
+void BatchRenewal::renew(const StepProblem& problem, const SpringSource& springs, ContactStarts& starts) {
   const ContactOrder& order = starts.order;
   std::vector<ContactBatch>& batches = starts.batches;
   const Step step{problem.dt, problem.end_weight, problem.statics, problem.averages_path(), problem.joints.reduction()};
@@ -37,7 +35,7 @@ void BatchRenewal<N>::renew(const StepProblem<N>& problem, const SpringSource<N>
     const Contact& contact = contacts[c];
     const BlockPlace &vertex = places[contact.vertex_block], &edge = places[contact.edge_block];
     batch.set_places(k, vertex.place, edge.place);
-    batch.set_geometry(k, ContactPlace<N>(problem.system, contact, vertex.centroid, edge.centroid));
+    batch.set_geometry(k, ContactPlace(problem.system, contact, vertex.centroid, edge.centroid));
     if (last) {
       const Owner owner(contact);
       if (owner == owners[at]) {
@@ -59,7 +57,5 @@ void BatchRenewal<N>::renew(const StepProblem<N>& problem, const SpringSource<N>
     batches.back().set_places(k, problem.system.free_count(), problem.system.free_count());
   }
 }
-
-template class BatchRenewal<3>;
 
 }  // namespace openclose

@@ -11,7 +11,6 @@
 namespace openclose {
 
 /// The springs of the contacts of a step.
-template <int N>
 class SpringSource {
  public:
   virtual ~SpringSource() = default;
@@ -24,8 +23,7 @@ class SpringSource {
 };
 
 /// As they stand in a list.
-template <int N>
-class GivenSprings final : public SpringSource<N> {
+class GivenSprings final : public SpringSource {
  public:
   explicit GivenSprings(const std::vector<ContactSprings>& list) : list_(list) {}
   ContactSprings make(std::size_t c) const override { return list_[c]; }
@@ -37,12 +35,11 @@ class GivenSprings final : public SpringSource<N> {
 };
 
 /// Serves one system of blocks and one table of joints: masses and stiffnesses are taken to stay, strengths to follow from the table's reduction.
-template <int N>
 class BatchRenewal {
  public:
   /// Sets all batches up to BatchKernels::begin(). The places of blocks are their equations; those without have the one that comes after these.
   /// \param starts  their order, and the batches as the last call has left them, but for gaps and forces at the start
-  void renew(const StepProblem<N>& problem, const SpringSource<N>& springs, ContactStarts& starts);
+  void renew(const StepProblem& problem, const SpringSource& springs, ContactStarts& starts);
   /// The batches are not as the last call has left them.
   void forget() { owners_.clear(); }
   std::size_t bytes() const { return bytes_of(owners_); }
@@ -71,12 +68,10 @@ class BatchRenewal {
     bool operator==(const Owner&) const = default;
   };
 
-  static std::vector<BlockPlace> places_of(const BlockSystem<N>& system);
+  static std::vector<BlockPlace> places_of(const BlockSystem& system);
 
   Step step_;
   std::vector<Owner> owners_;  ///< of the places in the batches of the last step, none where their springs do not last
 };
-
-extern template class BatchRenewal<3>;
 
 }  // namespace openclose

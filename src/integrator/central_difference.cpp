@@ -51,8 +51,7 @@ double larger_or_nan(double largest, double next) {
 
 }  // namespace
 
-template <int N>
-void CentralDifference<N>::load(const StepProblem<N>& problem) {
+void CentralDifference::load(const StepProblem& problem) {
   joints_ = &problem.joints;
   share_ = square(problem.method.step_fraction);
   if (depth_limits_.empty()) depth_limits_.begin(problem.system);
@@ -64,8 +63,7 @@ void CentralDifference<N>::load(const StepProblem<N>& problem) {
   keep();
 }
 
-template <int N>
-void CentralDifference<N>::renew(const StepProblem<N>& problem, const std::vector<DetectionChange>& changes) {
+void CentralDifference::renew(const StepProblem& problem, const std::vector<DetectionChange>& changes) {
   if (depth_limits_.empty()) depth_limits_.begin(problem.system);  // after a restart
   free_.clear();
   free_ends_.clear();
@@ -92,16 +90,14 @@ void CentralDifference<N>::renew(const StepProblem<N>& problem, const std::vecto
   keep();
 }
 
-template <int N>
-void CentralDifference<N>::keep() {
+void CentralDifference::keep() {
   moved_ = 0.0;
   kept_at_.resize(inertia_.size());
   for (std::size_t i = 0; i < inertia_.size(); ++i) kept_at_[i] = {poses_[i].x, poses_[i].y, rates_[i].angle};
 }
 
-template <int N>
-void CentralDifference<N>::load_blocks(const StepProblem<N>& problem) {
-  const BlockSystem<N>& system = problem.system;
+void CentralDifference::load_blocks(const StepProblem& problem) {
+  const BlockSystem& system = problem.system;
   const std::size_t n = system.free_blocks().size();
   const std::size_t slots = n + 1 + system.resting_blocks().size();
   poses_.assign(slots, Pose());
@@ -123,10 +119,9 @@ void CentralDifference<N>::load_blocks(const StepProblem<N>& problem) {
   }
 }
 
-template <int N>
-void CentralDifference<N>::load_points(const StepProblem<N>& problem) {
+void CentralDifference::load_points(const StepProblem& problem) {
   points_.clear();
-  const BlockSystem<N>& system = problem.system;
+  const BlockSystem& system = problem.system;
   const auto add = [&](const auto& list, bool is_load) {
     for (const auto& f : list) {
       const int slot = system.block(system.point_block(f.point)).equation;
@@ -145,8 +140,7 @@ void CentralDifference<N>::load_points(const StepProblem<N>& problem) {
   add(problem.external.supports(), false);
 }
 
-template <int N>
-void CentralDifference<N>::load_contacts(const StepProblem<N>& problem) {
+void CentralDifference::load_contacts(const StepProblem& problem) {
   links_.clear();
   links_.reserve(problem.contacts.size());
   rest_.clear();
@@ -164,9 +158,8 @@ void CentralDifference<N>::load_contacts(const StepProblem<N>& problem) {
 }
 
 /// Takes a contact over, unless it is too far apart.
-template <int N>
-void CentralDifference<N>::add_link(const StepProblem<N>& problem, int contact) {
-  const BlockSystem<N>& system = problem.system;
+void CentralDifference::add_link(const StepProblem& problem, int contact) {
+  const BlockSystem& system = problem.system;
   const Contact& c = problem.contacts[contact];
   const TabulatedJoint& joint = problem.joints.joint(c.joint);
   const ContactStrength strength(joint, c);
@@ -256,8 +249,7 @@ void CentralDifference<N>::add_link(const StepProblem<N>& problem, int contact) 
   }
 }
 
-template <int N>
-void CentralDifference<N>::add_parts(const Link& link, const LinkRest& rest, double sign) {
+void CentralDifference::add_parts(const Link& link, const LinkRest& rest, double sign) {
   const int fixed_slot = static_cast<int>(inertia_.size());
   const auto part = [&](int slot, double share, const Vec2& normal, const Vec2& arm) {
     if (slot >= fixed_slot) return;
@@ -268,8 +260,7 @@ void CentralDifference<N>::add_parts(const Link& link, const LinkRest& rest, dou
 }
 
 /// Takes a contact, with its force and energy, out of the sums.
-template <int N>
-void CentralDifference<N>::take_link(int slot) {
+void CentralDifference::take_link(int slot) {
   Link& link = links_[slot];
   energies_.redefinition += stored_energy(link);
   add_parts(link, rest_[slot], -1.0);
@@ -279,8 +270,7 @@ void CentralDifference<N>::take_link(int slot) {
   push(link, at);
 }
 
-template <int N>
-void CentralDifference<N>::renumber(const std::vector<DetectionChange>& changes) {
+void CentralDifference::renumber(const std::vector<DetectionChange>& changes) {
   const bool moved = std::any_of(changes.begin(), changes.end(),
                                  [](const DetectionChange& c) { return c.before.begin != c.after.begin || c.before.end != c.after.end; });
   if (!moved) return;
@@ -301,8 +291,7 @@ void CentralDifference<N>::renumber(const std::vector<DetectionChange>& changes)
 
 /// Leaves an open contact between fixed blocks there. Links are never moved into what others leave: the order in which the forces on a block are
 /// added up depends on its own contacts alone, and so do its last digits.
-template <int N>
-void CentralDifference<N>::clear_link(int entry) {
+void CentralDifference::clear_link(int entry) {
   const int fixed_slot = static_cast<int>(inertia_.size());
   Link& link = links_[entry];
   link.vertex_slot = link.edge_slot = fixed_slot;
@@ -315,8 +304,7 @@ void CentralDifference<N>::clear_link(int entry) {
   ++cleared_;
 }
 
-template <int N>
-void CentralDifference<N>::remove_cleared_links() {
+void CentralDifference::remove_cleared_links() {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < links_.size(); ++i) {
     if (rest_[i].contact == none) continue;
@@ -331,14 +319,12 @@ void CentralDifference<N>::remove_cleared_links() {
 }
 
 /// [J] In the springs of a contact; the shear spring of one that has just opened lets go in the next step.
-template <int N>
-double CentralDifference<N>::stored_energy(const Link& link) {
+double CentralDifference::stored_energy(const Link& link) {
   const double closure = link.status == ContactStatus::open ? 0.0 : link.gap;
   return 0.5 * (link.normal_stiffness * closure * closure + link.shear_stiffness * link.stretch * link.stretch) - link.crossing_energy;
 }
 
-template <int N>
-typename CentralDifference<N>::Place CentralDifference<N>::place(const Link& link) const {
+CentralDifference::Place CentralDifference::place(const Link& link) const {
   const Pose& v = poses_[link.vertex_slot];
   const Pose& e = poses_[link.edge_slot];
   const double turned_x = v.cos_minus_1 * link.arm_x - v.sin * link.arm_y, turned_y = v.cos_minus_1 * link.arm_y + v.sin * link.arm_x;
@@ -355,8 +341,7 @@ typename CentralDifference<N>::Place CentralDifference<N>::place(const Link& lin
           link.across_y + dy};
 }
 
-template <int N>
-ForceTrials CentralDifference<N>::trials(const Link& link, const Place& at, double elastic_shear) const {
+ForceTrials CentralDifference::trials(const Link& link, const Place& at, double elastic_shear) const {
   const Rate& v = rates_[link.vertex_slot];
   const Rate& e = rates_[link.edge_slot];
   const double x = (v.x - v.turn * at.arm_y) - (e.x - e.turn * at.across_y), y = (v.y + v.turn * at.arm_x) - (e.y + e.turn * at.across_x);
@@ -365,8 +350,7 @@ ForceTrials CentralDifference<N>::trials(const Link& link, const Place& at, doub
 }
 
 /// The forces with which the next step starts, from the memory of the contact; the memory stays.
-template <int N>
-double CentralDifference<N>::carry_now(Link& link, const Place& at) {
+double CentralDifference::carry_now(Link& link, const Place& at) {
   const CarriedForces f = carry(link.strength, trials(link, at, -link.shear_stiffness * link.stretch));
   link.normal = f.normal;
   link.shear = f.shear;
@@ -374,8 +358,7 @@ double CentralDifference<N>::carry_now(Link& link, const Place& at) {
   return f.elastic_normal;
 }
 
-template <int N>
-void CentralDifference<N>::push(const Link& link, const Place& at) {
+void CentralDifference::push(const Link& link, const Place& at) {
   const double x = link.normal * at.normal_x - link.shear * at.normal_y, y = link.normal * at.normal_y + link.shear * at.normal_x;
   Rate& v = forces_[link.vertex_slot];
   v.x += x;
@@ -387,14 +370,12 @@ void CentralDifference<N>::push(const Link& link, const Place& at) {
   e.turn -= at.across_x * y - at.across_y * x;
 }
 
-template <int N>
-void CentralDifference<N>::begin_forces() {
+void CentralDifference::begin_forces() {
   for (std::size_t i = 0; i < inertia_.size(); ++i) forces_[i] = {inertia_[i].weight_x, inertia_[i].weight_y, 0.0, 0.0};
   std::fill(forces_.begin() + static_cast<std::ptrdiff_t>(inertia_.size()), forces_.end(), Rate());
 }
 
-template <int N>
-void CentralDifference<N>::add_point_forces(bool step) {
+void CentralDifference::add_point_forces(bool step) {
   for (PointForce& p : points_) {
     const Pose& pose = poses_[p.slot];
     const Vec2 turned = pose.cos_minus_1 * p.arm + pose.sin * perpendicular(p.arm), moved = Vec2(pose.x, pose.y) + turned;
@@ -412,8 +393,7 @@ void CentralDifference<N>::add_point_forces(bool step) {
   }
 }
 
-template <int N>
-Move CentralDifference<N>::move(double h, double span, const Vec2& base, double limit, double fast_step, MassDamping damping, double local_damping) {
+Move CentralDifference::move(double h, double span, const Vec2& base, double limit, double fast_step, MassDamping damping, double local_damping) {
   const std::size_t n = inertia_.size();
   const double alpha = damping == MassDamping::local ? local_damping : 0.0;
   if (damping != MassDamping::automatic) viscous_ = 0.0;
@@ -493,15 +473,13 @@ Move CentralDifference<N>::move(double h, double span, const Vec2& base, double 
   return Move::taken;
 }
 
-template <int N>
-void CentralDifference<N>::adapt(double taken, double kinetic_change, double h) {
+void CentralDifference::adapt(double taken, double kinetic_change, double h) {
   viscous_ *= taken < power_ratio * std::abs(kinetic_change) ? adaptation : 1.0 / adaptation;
   // Critical damping of the fastest motion a step can follow, and a trace from which it can grow again.
   viscous_ = std::clamp(viscous_, 1e-3 * first_viscous / h, 1.0 / h);
 }
 
-template <int N>
-void CentralDifference<N>::follow_contacts() {
+void CentralDifference::follow_contacts() {
   begin_forces();
   add_point_forces(true);
   lost_strength_ = false;
@@ -512,9 +490,8 @@ void CentralDifference<N>::follow_contacts() {
   }
 }
 
-template <int N>
 template <bool damped>
-void CentralDifference<N>::follow_link(Link& link, LinkSums& sums) {
+void CentralDifference::follow_link(Link& link, LinkSums& sums) {
   const Place at = place(link);
   if (rests(link) && openclose::is_open(link.strength, -link.normal_stiffness * at.gap)) {
     link.gap = at.gap;
@@ -561,9 +538,8 @@ void CentralDifference<N>::follow_link(Link& link, LinkSums& sums) {
   push(link, at);
 }
 
-template <int N>
 template <bool damped>
-bool CentralDifference<N>::follow_four(Link* links, LinkSums& sums) {
+bool CentralDifference::follow_four(Link* links, LinkSums& sums) {
   const Lanes zero{};
   const auto fetch = [](const double*(&from)[batch_size], Lanes& a, Lanes& b, Lanes& c, Lanes& d) {
     a = lanes::load(from[0]);
@@ -694,9 +670,8 @@ bool CentralDifference<N>::follow_four(Link* links, LinkSums& sums) {
   return true;
 }
 
-template <int N>
 template <bool damped>
-void CentralDifference<N>::follow_all(LinkSums& sums) {
+void CentralDifference::follow_all(LinkSums& sums) {
   const std::size_t fours = fours_ ? links_.size() / batch_size * batch_size : 0;
   for (std::size_t i = 0; i < links_.size(); i += batch_size) {
     if (i < fours && follow_four<damped>(&links_[i], sums)) continue;
@@ -704,23 +679,20 @@ void CentralDifference<N>::follow_all(LinkSums& sums) {
   }
 }
 
-template <int N>
 template <bool damped>
-void CentralDifference<N>::follow_with_any_registers(LinkSums& sums) {
+void CentralDifference::follow_with_any_registers(LinkSums& sums) {
   follow_all<damped>(sums);
 }
 
 #ifdef OPENCLOSE_HAS_WIDE_REGISTERS
-template <int N>
 template <bool damped>
-[[gnu::target("avx2")]] void CentralDifference<N>::follow_with_wide_registers(LinkSums& sums) {
+[[gnu::target("avx2")]] void CentralDifference::follow_with_wide_registers(LinkSums& sums) {
   follow_all<damped>(sums);
 }
 #endif
 
-template <int N>
 template <bool damped>
-void CentralDifference<N>::follow_links() {
+void CentralDifference::follow_links() {
   LinkSums sums{0.0, 0.0, 0.0, max_penetration_};
 #ifdef OPENCLOSE_HAS_WIDE_REGISTERS
   if (wide_registers_) {
@@ -739,8 +711,7 @@ void CentralDifference<N>::follow_links() {
 
 /// Of a contact that closes or opens, or has opened in the last step: the forces that settle its crossing, see crossing_energy.h, instead of none.
 /// What a dashpot takes is not given back.
-template <int N>
-[[gnu::noinline]] void CentralDifference<N>::settle_crossing(Link& link, const Crossing& crossing, double& normal, double& shear, double& scheme) {
+[[gnu::noinline]] void CentralDifference::settle_crossing(Link& link, const Crossing& crossing, double& normal, double& shear, double& scheme) {
   const double before = link.crossing_energy;
   const bool was_open = link.status == ContactStatus::open;
   link.crossing_energy = 0.0;
@@ -757,8 +728,7 @@ template <int N>
   scheme += link.crossing_energy - before;
 }
 
-template <int N>
-void CentralDifference<N>::book_step_change(double before, double now, const Vec2& base) {
+void CentralDifference::book_step_change(double before, double now, const Vec2& base) {
   const double factor = 0.125 * (before * before - now * now);
   const auto acceleration = [&](int slot) -> Rate {
     if (slot >= static_cast<int>(inertia_.size())) return {};
@@ -777,8 +747,7 @@ void CentralDifference<N>::book_step_change(double before, double now, const Vec
   }
 }
 
-template <int N>
-void CentralDifference<N>::lose_strength(Link& link, const JointProperties& joint, const Place& at) {
+void CentralDifference::lose_strength(Link& link, const JointProperties& joint, const Place& at) {
   if (stays_bonded(joint, true, link.status)) return;
   lost_strength_ = true;
   link.bonded = link.breakable = false;
@@ -790,8 +759,7 @@ void CentralDifference<N>::lose_strength(Link& link, const JointProperties& join
   energies_.redefinition += 0.5 * link.normal_stiffness * square(at.gap);
 }
 
-template <int N>
-std::optional<typename CentralDifference<N>::TooDeep> CentralDifference<N>::too_deep() {
+std::optional<CentralDifference::TooDeep> CentralDifference::too_deep() {
   if (room_ > 0.0) return std::nullopt;
   room_ = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < links_.size(); ++i) {
@@ -802,8 +770,7 @@ std::optional<typename CentralDifference<N>::TooDeep> CentralDifference<N>::too_
   return std::nullopt;
 }
 
-template <int N>
-bool CentralDifference<N>::moved_beyond_skin() {
+bool CentralDifference::moved_beyond_skin() {
   if (moved_ <= skin_) return false;
   // The way may have been longer than where it has led to.
   double farthest = 0.0;
@@ -816,26 +783,22 @@ bool CentralDifference<N>::moved_beyond_skin() {
   return moved_ > renew_fraction * skin_;
 }
 
-template <int N>
-double CentralDifference<N>::last_unbalanced_force() const {
+double CentralDifference::last_unbalanced_force() const {
   return std::sqrt(unbalanced_);
 }
 
-template <int N>
-double CentralDifference<N>::unbalanced_force() const {
+double CentralDifference::unbalanced_force() const {
   double largest = 0.0;
   for (std::size_t i = 0; i < inertia_.size(); ++i) largest = std::max(largest, force_squared(i));
   return std::sqrt(largest);
 }
 
-template <int N>
-double CentralDifference<N>::force_squared(std::size_t i) const {
+double CentralDifference::force_squared(std::size_t i) const {
   const Rate& f = forces_[i];
   return std::max(f.x * f.x + f.y * f.y, square(inertia_[i].turns * f.turn / inertia_[i].radius));
 }
 
-template <int N>
-typename CentralDifference<N>::Unknowns CentralDifference<N>::velocity_at_end(int equation) const {
+CentralDifference::Unknowns CentralDifference::velocity_at_end(int equation) const {
   const Inertia& m = inertia_[equation];
   const Rate &f = forces_[equation], &v = rates_[equation];
   const double half = 0.5 * h_;
@@ -846,14 +809,12 @@ typename CentralDifference<N>::Unknowns CentralDifference<N>::velocity_at_end(in
           m.turns * ahead(f.turn, v.turn, m.per_moment)};
 }
 
-template <int N>
-void CentralDifference<N>::rest_forces(std::vector<Unknowns>& forces) const {
+void CentralDifference::rest_forces(std::vector<Unknowns>& forces) const {
   const std::size_t first = inertia_.size() + 1;
   for (std::size_t i = 0; i < forces.size(); ++i) forces[i] = {forces_[first + i].x, forces_[first + i].y, forces_[first + i].turn};
 }
 
-template <int N>
-void CentralDifference<N>::store_blocks(BlockSystem<N>& system) const {
+void CentralDifference::store_blocks(BlockSystem& system) const {
   for (std::size_t i = 0; i < blocks_.size(); ++i) {
     const Pose& pose = poses_[i];
     const Rate& v = rates_[i];
@@ -862,8 +823,7 @@ void CentralDifference<N>::store_blocks(BlockSystem<N>& system) const {
   }
 }
 
-template <int N>
-void CentralDifference<N>::store_contacts(std::vector<Contact>& contacts) const {
+void CentralDifference::store_contacts(std::vector<Contact>& contacts) const {
   for (std::size_t i = 0; i < links_.size(); ++i) {
     if (rest_[i].contact == none) continue;
     const Link& link = links_[i];
@@ -879,8 +839,7 @@ void CentralDifference<N>::store_contacts(std::vector<Contact>& contacts) const 
   }
 }
 
-template <int N>
-void CentralDifference<N>::store_far_gaps(const BlockSystem<N>& system, std::vector<Contact>& contacts) const {
+void CentralDifference::store_far_gaps(const BlockSystem& system, std::vector<Contact>& contacts) const {
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     if (link_of_[i] >= 0) continue;
     Contact& c = contacts[i];
@@ -890,8 +849,7 @@ void CentralDifference<N>::store_far_gaps(const BlockSystem<N>& system, std::vec
   }
 }
 
-template <int N>
-double CentralDifference<N>::kinetic_ahead() const {
+double CentralDifference::kinetic_ahead() const {
   double power = 0.0;
   for (std::size_t i = 0; i < inertia_.size(); ++i) {
     const Inertia& m = inertia_[i];
@@ -901,30 +859,25 @@ double CentralDifference<N>::kinetic_ahead() const {
   return 0.5 * h_ * power;
 }
 
-template <int N>
-ExplicitEnergies CentralDifference<N>::take_energies() {
+ExplicitEnergies CentralDifference::take_energies() {
   const ExplicitEnergies taken = energies_;
   energies_ = ExplicitEnergies();
   return taken;
 }
 
-template <int N>
-void CentralDifference<N>::exchange(Archive& archive, const JointTable& joints) {
+void CentralDifference::exchange(Archive& archive, const JointTable& joints) {
   joints_ = &joints;
   archive(poses_, rates_, next_rates_, forces_, inertia_, blocks_, rest_slot_, loaded_at_, links_, rest_, link_of_, cleared_, kept_at_, points_,
           energies_, damped_, lost_strength_, critical_step_, approach_, moved_, unbalanced_, max_penetration_, step_ahead_, list_is_short_, share_,
           room_, h_, base_, local_damping_, viscous_);
 }
 
-template <int N>
-Memory CentralDifference<N>::memory() const {
+Memory CentralDifference::memory() const {
   Memory of;
   of.blocks = bytes_of(poses_, rates_, next_rates_, forces_, inertia_, blocks_, rest_slot_, loaded_at_, kept_at_, points_) + critical_step_.bytes() +
               depth_limits_.bytes();
   of.contacts = bytes_of(links_, rest_, link_of_, renumbered_);
   return of;
 }
-
-template class CentralDifference<3>;
 
 }  // namespace openclose

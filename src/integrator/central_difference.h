@@ -54,12 +54,9 @@ enum class Move : unsigned char {
   past_list,  ///< contacts that were left out as too far apart might have closed: the list is to be loaded anew, and the step chosen again
 };
 
-template <int N>
 class CentralDifference {
-  static_assert(N == 3, "the arrays are laid out for rigid blocks");
-
  public:
-  using Unknowns = typename Motion<N>::Unknowns;
+  using Unknowns = Motion::Unknowns;
 
   /// \param skin [m] by which blocks may move against each other before the list of contacts is to be renewed
   /// \param fours, wide_registers  false: links one by one, in the registers that every processor has; the results are the same to the last bit
@@ -67,12 +64,12 @@ class CentralDifference {
       : skin_(skin), fours_(fours), wide_registers_(wide_registers && has_wide_registers()) {}
 
   /// Takes over blocks, velocities of the middle of the last step, contacts with their history, and the forces they carry now.
-  void load(const StepProblem<N>& problem);
+  void load(const StepProblem& problem);
   /// False if contacts that were left out as too far apart may close in the step to come: then all is to be loaded anew.
   bool can_renew() const { return !list_is_short_; }
   /// Exchanges contacts: those that stood at `before` in the list are gone, those at `after` have come, the others carry on. The positions of the
   /// system are those of the loop.
-  void renew(const StepProblem<N>& problem, const std::vector<DetectionChange>& changes);
+  void renew(const StepProblem& problem, const std::vector<DetectionChange>& changes);
   /// The list of contacts stays as it is, for another way of the skin.
   void keep();
 
@@ -107,14 +104,14 @@ class CentralDifference {
   void rest_forces(std::vector<Unknowns>& forces) const;
 
   /// Moves the blocks of the system to where they are now, with the velocities of the middle of the last step.
-  void store_blocks(BlockSystem<N>& system) const;
+  void store_blocks(BlockSystem& system) const;
   /// Velocity of a free block at the end of the last step, half a step after the middle that the loop has: by the forces that act there now, because
   /// those of the step before may be of an impact that is over.
   Unknowns velocity_at_end(int equation) const;
   /// Gap and history of the contacts, in the order of the list; of those that are too far apart nothing changes but the gap, see store_far_gaps().
   void store_contacts(std::vector<Contact>& contacts) const;
   /// Gaps of the contacts that were left out, at the positions of the system.
-  void store_far_gaps(const BlockSystem<N>& system, std::vector<Contact>& contacts) const;
+  void store_far_gaps(const BlockSystem& system, std::vector<Contact>& contacts) const;
   /// [J] What contacts, loads and supports add to the kinetic energy from the middle of the last step to the present moment, where springs store what
   /// the ledger says: half of what they do in a step as long, which makes v(-1/2) M v(+1/2)/2 of it. So the energy of linear vibration stays exactly
   /// as it is. The work of gravity and base is counted up to the middle of the step.
@@ -211,10 +208,10 @@ class CentralDifference {
     double normal_x, normal_y, arm_x, arm_y, across_x, across_y;
   };
 
-  void load_blocks(const StepProblem<N>& problem);
-  void load_contacts(const StepProblem<N>& problem);
-  void load_points(const StepProblem<N>& problem);
-  void add_link(const StepProblem<N>& problem, int contact);
+  void load_blocks(const StepProblem& problem);
+  void load_contacts(const StepProblem& problem);
+  void load_points(const StepProblem& problem);
+  void add_link(const StepProblem& problem, int contact);
   void take_link(int slot);
   void add_parts(const Link& link, const LinkRest& rest, double sign);
   void renumber(const std::vector<DetectionChange>& changes);
@@ -292,18 +289,16 @@ class CentralDifference {
   bool damped_ = false, lost_strength_ = false;
   const double skin_;  ///< [m]
   bool fours_, wide_registers_;
-  CriticalStepBound<N> critical_step_;
+  CriticalStepBound critical_step_;
   double approach_ = 0.0, moved_ = 0.0, unbalanced_ = 0.0, max_penetration_ = 0.0;
   double step_ahead_ = 0.0;     ///< [m] by which two blocks may have approached in the last step, or in one that was not taken
   bool list_is_short_ = false;  ///< such a step might have closed contacts that were left out
   double share_ = 1.0;          ///< [-] square of the longest step over the critical one, for crossing_energy.h
-  DepthLimits<N> depth_limits_;
+  DepthLimits depth_limits_;
   double room_ = 0.0;         ///< [m] by which blocks may still move against each other before a contact can be deeper than its limit
   double h_ = 0.0;            ///< [s] the last step
   Vec2 base_ = Vec2::Zero();  ///< [m/s2] in it
   double local_damping_ = 0.0, viscous_ = 0.0;  ///< [-], [1/s] in it
 };
-
-extern template class CentralDifference<3>;
 
 }  // namespace openclose

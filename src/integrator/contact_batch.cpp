@@ -20,7 +20,7 @@ struct Moves {
   Lanes edge_sine, edge_versine, bound, unused;
 
   /// \param at  as in ContactBatch
-  OPENCLOSE_KERNEL Moves(const BlockMove<3>* moves, const unsigned* at) {
+  OPENCLOSE_KERNEL Moves(const BlockMove* moves, const unsigned* at) {
     Lanes* const first[] = {&x, &y, &sine, &versine};
     Lanes* const second[] = {&edge_sine, &edge_versine, &bound, &unused};
     for (int k = 0; k < batch_size; ++k) {
@@ -32,7 +32,7 @@ struct Moves {
     transpose(edge_sine, edge_versine, bound, unused);
   }
 };
-static_assert(sizeof(BlockMove<3>) == 2 * sizeof(Lanes), "its members are loaded in their order");
+static_assert(sizeof(BlockMove) == 2 * sizeof(Lanes), "its members are loaded in their order");
 
 OPENCLOSE_KERNEL Lanes length(Lanes x, Lanes y) {
   return square_root(x * x + y * y);
@@ -235,7 +235,7 @@ OPENCLOSE_KERNEL void push(const ContactBatch& c, const TrialBatch& trial, const
 constexpr std::size_t batches_at_once = 8;
 
 template <StepForces forces>
-OPENCLOSE_KERNEL double evaluate(double ramp, const ContactBatch* contacts, std::size_t count, const BlockMove<3>* moves, double rounding_of_sums,
+OPENCLOSE_KERNEL double evaluate(double ramp, const ContactBatch* contacts, std::size_t count, const BlockMove* moves, double rounding_of_sums,
                                  TrialBatch* trials, Branch* branches, ForceRow* rows) {
   constexpr bool averaged = forces == StepForces::averaged;
   Lanes largest{}, moved[batches_at_once];
@@ -311,7 +311,7 @@ OPENCLOSE_KERNEL bool adds_nothing(const TrialBatch& at, const Branch* branches,
 
 /// \param averaged  forces act in the mean pose, gap and slip change with the pose at the end
 template <bool averaged>
-OPENCLOSE_KERNEL void add_stiffness(const ContactBatch* contacts, const BlockMove<3>* moves, const TrialBatch* trials, std::size_t count,
+OPENCLOSE_KERNEL void add_stiffness(const ContactBatch* contacts, const BlockMove* moves, const TrialBatch* trials, std::size_t count,
                                     const Branch* branches, const BatchTangent& tangent, const MatrixSlots& slots, double* values) {
   const Lanes zero{}, theta = all(tangent.end_weight);
   const ContactSlots* of_contacts = slots.of_contacts.data();
@@ -360,12 +360,12 @@ OPENCLOSE_KERNEL void add_stiffness(const ContactBatch* contacts, const BlockMov
   }
 }
 
-OPENCLOSE_KERNEL double evaluate_either(StepForces forces, double ramp, const ContactBatch* contacts, std::size_t count, const BlockMove<3>* moves,
+OPENCLOSE_KERNEL double evaluate_either(StepForces forces, double ramp, const ContactBatch* contacts, std::size_t count, const BlockMove* moves,
                                         double rounding_of_sums, TrialBatch* trials, Branch* branches, ForceRow* rows) {
   if (forces == StepForces::averaged) return evaluate<StepForces::averaged>(ramp, contacts, count, moves, rounding_of_sums, trials, branches, rows);
   return evaluate<StepForces::at_end>(ramp, contacts, count, moves, rounding_of_sums, trials, branches, rows);
 }
-OPENCLOSE_KERNEL void add_either_stiffness(const ContactBatch* contacts, const BlockMove<3>* moves, const TrialBatch* trials, std::size_t count,
+OPENCLOSE_KERNEL void add_either_stiffness(const ContactBatch* contacts, const BlockMove* moves, const TrialBatch* trials, std::size_t count,
                                            const Branch* branches, const BatchTangent& tangent, const MatrixSlots& slots, double* values) {
   // The symmetric tangent of means over a path knows one pose.
   if (tangent.exact && tangent.forces == StepForces::averaged)
@@ -379,11 +379,11 @@ double begin_with_any_registers(ContactBatch* contacts, std::size_t count) {
 void find_elastic_with_any_registers(double ramp, const ContactBatch* contacts, const TrialBatch* trials, std::size_t count, ElasticBatch* elastic) {
   find_elastic(ramp, contacts, trials, count, elastic);
 }
-double evaluate_with_any_registers(StepForces forces, double ramp, const ContactBatch* contacts, std::size_t count, const BlockMove<3>* moves,
+double evaluate_with_any_registers(StepForces forces, double ramp, const ContactBatch* contacts, std::size_t count, const BlockMove* moves,
                                    double rounding_of_sums, TrialBatch* trials, Branch* branches, ForceRow* rows) {
   return evaluate_either(forces, ramp, contacts, count, moves, rounding_of_sums, trials, branches, rows);
 }
-void add_stiffness_with_any_registers(const ContactBatch* contacts, const BlockMove<3>* moves, const TrialBatch* trials, std::size_t count,
+void add_stiffness_with_any_registers(const ContactBatch* contacts, const BlockMove* moves, const TrialBatch* trials, std::size_t count,
                                       const Branch* branches, const BatchTangent& tangent, const MatrixSlots& slots, double* values) {
   add_either_stiffness(contacts, moves, trials, count, branches, tangent, slots, values);
 }
@@ -397,11 +397,11 @@ void add_stiffness_with_any_registers(const ContactBatch* contacts, const BlockM
   find_elastic(ramp, contacts, trials, count, elastic);
 }
 [[gnu::target("avx2")]] double evaluate_with_wide_registers(StepForces forces, double ramp, const ContactBatch* contacts, std::size_t count,
-                                                            const BlockMove<3>* moves, double rounding_of_sums, TrialBatch* trials, Branch* branches,
+                                                            const BlockMove* moves, double rounding_of_sums, TrialBatch* trials, Branch* branches,
                                                             ForceRow* rows) {
   return evaluate_either(forces, ramp, contacts, count, moves, rounding_of_sums, trials, branches, rows);
 }
-[[gnu::target("avx2")]] void add_stiffness_with_wide_registers(const ContactBatch* contacts, const BlockMove<3>* moves, const TrialBatch* trials,
+[[gnu::target("avx2")]] void add_stiffness_with_wide_registers(const ContactBatch* contacts, const BlockMove* moves, const TrialBatch* trials,
                                                                std::size_t count, const Branch* branches, const BatchTangent& tangent,
                                                                const MatrixSlots& slots, double* values) {
   add_either_stiffness(contacts, moves, trials, count, branches, tangent, slots, values);
@@ -424,9 +424,9 @@ BatchKernels::BatchKernels([[maybe_unused]] bool wide_registers)
 #endif
 }
 
-void BatchKernels::add_stiffness(const std::vector<ContactBatch>& contacts, const BlockMove<3>* moves, const std::vector<TrialBatch>& trials,
+void BatchKernels::add_stiffness(const std::vector<ContactBatch>& contacts, const BlockMove* moves, const std::vector<TrialBatch>& trials,
                                  const std::vector<Branch>& branches, const BatchTangent& tangent, const MatrixSlots& slots,
-                                 BlockMatrix<3>& matrix) const {
+                                 BlockMatrix& matrix) const {
   if (matrix.rows() == 0) return;
   add_stiffness_(contacts.data(), moves, trials.data(), trials.size(), branches.data(), tangent, slots, matrix.value(0).data());
 }

@@ -38,7 +38,7 @@ enum class StepForces {
   averaged,  ///< means over its path, see path_average.h
 };
 
-inline constexpr unsigned doubles_of_move = sizeof(BlockMove<3>) / sizeof(double);
+inline constexpr unsigned doubles_of_move = sizeof(BlockMove) / sizeof(double);
 
 /// Four contacts at the start of a step: set one by one, then BatchKernels::begin(). What is not set carries nothing and adds nothing.
 struct ContactBatch {
@@ -56,7 +56,7 @@ struct ContactBatch {
   }
   int vertex_place(int lane) const { return static_cast<int>(vertex_at[lane] / doubles_of_move); }
   int edge_place(int lane) const { return static_cast<int>(edge_at[lane] / doubles_of_move); }
-  void set_geometry(int lane, const ContactPlace<3>& at);
+  void set_geometry(int lane, const ContactPlace& at);
   void set_strength(int lane, const ContactStrength& strength);
   void set_springs(int lane, const ContactSprings& springs);
   /// The part of set_springs() that follows from where the springs start: their gap, its target, and what they carry there.
@@ -65,17 +65,15 @@ struct ContactBatch {
   void set_start(int lane, const Contact& contact);
   /// All but the places.
   void copy(int lane, const ContactBatch& other, int from);
-  ContactStart<3> start(int lane) const;
+  ContactStart start(int lane) const;
   /// \param moves  of the blocks, by their places
-  ContactPose<3> pose(int lane, const std::vector<BlockMove<3>>& moves) const {
-    return {start(lane), moves[vertex_place(lane)], moves[edge_place(lane)]};
-  }
+  ContactPose pose(int lane, const std::vector<BlockMove>& moves) const { return {start(lane), moves[vertex_place(lane)], moves[edge_place(lane)]}; }
   ContactStrength strength(int lane) const;
   /// Those that were set, with the gap counted from their target.
   ContactSprings springs(int lane) const;
 };
 
-inline void ContactBatch::set_geometry(int lane, const ContactPlace<3>& at) {
+inline void ContactBatch::set_geometry(int lane, const ContactPlace& at) {
   // The edge, until its normal is known.
   normal_x[lane] = at.edge.x();
   normal_y[lane] = at.edge.y();
@@ -87,8 +85,8 @@ inline void ContactBatch::set_geometry(int lane, const ContactPlace<3>& at) {
   end_arm_y[lane] = at.end_arm.y();
 }
 
-inline ContactStart<3> ContactBatch::start(int lane) const {
-  ContactStart<3> s;
+inline ContactStart ContactBatch::start(int lane) const {
+  ContactStart s;
   s.normal = {normal_x[lane], normal_y[lane]};
   s.vertex_arm = {vertex_arm_x[lane], vertex_arm_y[lane]};
   s.end_arm = {end_arm_x[lane], end_arm_y[lane]};
@@ -197,12 +195,12 @@ class BatchKernels {
   /// \param ramp   [-] see ContactStrength::shear_bound(); means have the usual one
   /// \param moves  of all blocks; a place of rows for each
   /// \param rounding_of_sums  [-] of the forces and changes of force of a contact
-  double evaluate(StepForces forces, double ramp, const std::vector<ContactBatch>& contacts, const BlockMove<3>* moves, double rounding_of_sums,
+  double evaluate(StepForces forces, double ramp, const std::vector<ContactBatch>& contacts, const BlockMove* moves, double rounding_of_sums,
                   std::vector<TrialBatch>& trials, std::vector<Branch>& branches, std::vector<ForceRow>& rows) const {
     return evaluate_(forces, ramp, contacts.data(), contacts.size(), moves, rounding_of_sums, trials.data(), branches.data(), rows.data());
   }
   /// The same of one batch.
-  void evaluate_one(StepForces forces, double ramp, const std::vector<ContactBatch>& contacts, std::size_t batch, const BlockMove<3>* moves,
+  void evaluate_one(StepForces forces, double ramp, const std::vector<ContactBatch>& contacts, std::size_t batch, const BlockMove* moves,
                     double rounding_of_sums, std::vector<TrialBatch>& trials, std::vector<Branch>& branches, std::vector<ForceRow>& rows) const {
     evaluate_(forces, ramp, &contacts[batch], 1, moves, rounding_of_sums, &trials[batch], &branches[batch_size * batch], rows.data());
   }
@@ -216,14 +214,14 @@ class BatchKernels {
   }
   /// Adds the stiffness of all contacts to the matrix.
   /// \param moves  with which the trials were evaluated
-  void add_stiffness(const std::vector<ContactBatch>& contacts, const BlockMove<3>* moves, const std::vector<TrialBatch>& trials,
-                     const std::vector<Branch>& branches, const BatchTangent& tangent, const MatrixSlots& slots, BlockMatrix<3>& matrix) const;
+  void add_stiffness(const std::vector<ContactBatch>& contacts, const BlockMove* moves, const std::vector<TrialBatch>& trials,
+                     const std::vector<Branch>& branches, const BatchTangent& tangent, const MatrixSlots& slots, BlockMatrix& matrix) const;
 
  private:
   double (*begin_)(ContactBatch*, std::size_t);
   void (*find_elastic_)(double, const ContactBatch*, const TrialBatch*, std::size_t, ElasticBatch*);
-  double (*evaluate_)(StepForces, double, const ContactBatch*, std::size_t, const BlockMove<3>*, double, TrialBatch*, Branch*, ForceRow*);
-  void (*add_stiffness_)(const ContactBatch*, const BlockMove<3>*, const TrialBatch*, std::size_t, const Branch*, const BatchTangent&,
+  double (*evaluate_)(StepForces, double, const ContactBatch*, std::size_t, const BlockMove*, double, TrialBatch*, Branch*, ForceRow*);
+  void (*add_stiffness_)(const ContactBatch*, const BlockMove*, const TrialBatch*, std::size_t, const Branch*, const BatchTangent&,
                          const MatrixSlots&, double*);
 };
 

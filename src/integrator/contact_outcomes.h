@@ -13,29 +13,25 @@
 namespace openclose {
 
 /// What one contact did in a step: what the energy ledger and the contact's history need of it.
-template <int N>
 struct ContactOutcome {
   double normal_stiffness = 0.0, shear_stiffness = 0.0;  ///< [N/m] of its springs
   CarriedForces forces;                                  ///< at the end of the step
-  ContactPose<N> pose;                                   ///< whose gradients carried these forces in the equation of motion
+  ContactPose pose;                                      ///< whose gradients carried these forces in the equation of motion
   double crossing_energy = 0.0;                          ///< [J] `dem`, of a contact that opens: see crossing_energy.h
 
   ContactOutcome() = default;
-  ContactOutcome(const ContactSprings& springs, const CarriedForces& carried, const ContactPose<N>& at)
+  ContactOutcome(const ContactSprings& springs, const CarriedForces& carried, const ContactPose& at)
       : normal_stiffness(springs.normal), shear_stiffness(springs.shear), forces(carried), pose(at) {}
 };
 
-template <int N>
 class ContactOutcomes {
-  static_assert(N == 3, "contacts are laid out in batches for rigid blocks");
-
  public:
   std::size_t size() const { return starts_ ? starts_->order.size() : list_.size(); }
   bool empty() const { return size() == 0; }
 
-  ContactOutcome<N> operator[](std::size_t c) const {
+  ContactOutcome operator[](std::size_t c) const {
     if (!starts_) return list_[c];
-    ContactOutcome<N> o;
+    ContactOutcome o;
     o.normal_stiffness = normal_stiffness(c);
     o.shear_stiffness = shear_stiffness(c);
     o.forces = forces(c);
@@ -50,10 +46,10 @@ class ContactOutcomes {
     const ElasticBatch& elastic = elastic_[at / batch_size];
     return {openclose::status(branches_[at]), trial(at).normal[k], trial(at).shear[k], elastic.normal[k], elastic.shear[k]};
   }
-  ContactPose<N> pose(std::size_t c) const {
+  ContactPose pose(std::size_t c) const {
     if (!starts_) return list_[c].pose;
     const std::size_t at = place(c);
-    ContactPose<N> pose = start(at).pose(lane(at), moves_);
+    ContactPose pose = start(at).pose(lane(at), moves_);
     pose.gap_change = trial(at).gap_change[lane(at)];  // the same numbers, not worked out again
     pose.slip_change = trial(at).slip_change[lane(at)];
     return pose;
@@ -84,10 +80,10 @@ class ContactOutcomes {
     slack_.clear();
   }
   /// For methods without batches.
-  void push_back(const ContactOutcome<N>& o) { list_.push_back(o); }
+  void push_back(const ContactOutcome& o) { list_.push_back(o); }
 
   /// Newton's batches, lent with where they start, which is shared, and the moves of their blocks.
-  void borrow(std::shared_ptr<const ContactStarts> starts, std::vector<BlockMove<N>>& moves, std::vector<TrialBatch>& trials,
+  void borrow(std::shared_ptr<const ContactStarts> starts, std::vector<BlockMove>& moves, std::vector<TrialBatch>& trials,
               std::vector<Branch>& branches, std::vector<ElasticBatch> elastic) {
     clear();
     starts_ = std::move(starts);
@@ -97,7 +93,7 @@ class ContactOutcomes {
     elastic_ = std::move(elastic);
   }
   /// A copy of them.
-  void copy(std::shared_ptr<const ContactStarts> starts, const std::vector<BlockMove<N>>& moves, const std::vector<TrialBatch>& trials,
+  void copy(std::shared_ptr<const ContactStarts> starts, const std::vector<BlockMove>& moves, const std::vector<TrialBatch>& trials,
             const std::vector<Branch>& branches, std::vector<ElasticBatch> elastic) {
     clear();
     starts_ = std::move(starts);
@@ -107,7 +103,7 @@ class ContactOutcomes {
     elastic_ = std::move(elastic);
   }
   /// What was lent is given back; empty again.
-  void give_back(std::vector<BlockMove<N>>& moves, std::vector<TrialBatch>& trials, std::vector<Branch>& branches) {
+  void give_back(std::vector<BlockMove>& moves, std::vector<TrialBatch>& trials, std::vector<Branch>& branches) {
     moves_.swap(moves);
     trials_.swap(trials);
     branches_.swap(branches);
@@ -124,11 +120,11 @@ class ContactOutcomes {
   double of_trial(std::size_t c, Lanes TrialBatch::*member) const { return (trial(place(c)).*member)[lane(place(c))]; }
 
   std::shared_ptr<const ContactStarts> starts_;  ///< null where the outcomes stand in the list
-  std::vector<BlockMove<N>> moves_;              ///< by places of blocks
+  std::vector<BlockMove> moves_;                 ///< by places of blocks
   std::vector<TrialBatch> trials_;
   std::vector<Branch> branches_;
   std::vector<ElasticBatch> elastic_;
-  std::vector<ContactOutcome<N>> list_;
+  std::vector<ContactOutcome> list_;
   std::vector<double> slack_;  ///< [m] of all, or empty where there is none
 };
 

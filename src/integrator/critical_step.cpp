@@ -9,31 +9,29 @@ namespace openclose {
 namespace {
 
 /// Largest eigenvalue of M^-1 A over the blocks' diagonal matrices A; those whose trace stays below what was found are not looked at.
-template <int N>
-double largest_eigenvalue(const BlockSystem<N>& system, const std::vector<typename Motion<N>::Matrix>& matrices) {
+double largest_eigenvalue(const BlockSystem& system, const std::vector<Motion::Matrix>& matrices) {
   double largest = 0.0;
   for (int b : system.free_blocks()) {
     const auto& block = system.block(b);
-    const typename Motion<N>::Unknowns scale = block.mass.cwiseSqrt().cwiseInverse();
-    typename Motion<N>::Matrix m = scale.asDiagonal() * matrices[block.equation] * scale.asDiagonal();
+    const Motion::Unknowns scale = block.mass.cwiseSqrt().cwiseInverse();
+    Motion::Matrix m = scale.asDiagonal() * matrices[block.equation] * scale.asDiagonal();
     if (block.rotation_locked) {
-      m.row(Motion<N>::rotation_index).setZero();
-      m.col(Motion<N>::rotation_index).setZero();
+      m.row(Motion::rotation_index).setZero();
+      m.col(Motion::rotation_index).setZero();
     }
     if (m.trace() <= largest) continue;
-    const Eigen::SelfAdjointEigenSolver<typename Motion<N>::Matrix> solver(m, Eigen::EigenvaluesOnly);
-    largest = std::max(largest, solver.eigenvalues()[N - 1]);
+    const Eigen::SelfAdjointEigenSolver<Motion::Matrix> solver(m, Eigen::EigenvaluesOnly);
+    largest = std::max(largest, solver.eigenvalues()[dofs - 1]);
   }
   return largest;
 }
 
 }  // namespace
 
-template <int N>
-double critical_step(const StepProblem<N>& problem, double approach) {
-  using Unknowns = typename Motion<N>::Unknowns;
-  using Matrix = typename Motion<N>::Matrix;
-  const BlockSystem<N>& system = problem.system;
+double critical_step(const StepProblem& problem, double approach) {
+  using Unknowns = Motion::Unknowns;
+  using Matrix = Motion::Matrix;
+  const BlockSystem& system = problem.system;
   const Unknowns still = Unknowns::Zero();
   std::vector<Matrix> stiffness(system.free_count(), Matrix::Zero()), damping(system.free_count(), Matrix::Zero());
   for (int b : system.free_blocks()) stiffness[system.block(b).equation] = problem.external.stiffness(system, b, still);
@@ -41,7 +39,7 @@ double critical_step(const StepProblem<N>& problem, double approach) {
   for (const Contact& c : problem.contacts) {
     const TabulatedJoint& joint = problem.joints.joint(c.joint);
     if (!may_close(ContactStrength(joint, c), joint.normal_stiffness * c.length, c.gap, approach)) continue;
-    const ContactKinematics<N> k(system, c, still, still);
+    const ContactKinematics k(system, c, still, still);
     const ContactDashpots dashpots(joint, c.length, system.reduced_mass(c.vertex_block, c.edge_block));
     damped |= joint.damping_ratio > 0.0;
     const auto add = [&](int b, int other, const Unknowns& normal, const Unknowns& shear) {
@@ -55,13 +53,12 @@ double critical_step(const StepProblem<N>& problem, double approach) {
     add(c.vertex_block, c.edge_block, k.normal_vertex, k.shear_vertex);
     add(c.edge_block, c.vertex_block, k.normal_edge, k.shear_edge);
   }
-  const double a = largest_eigenvalue<N>(system, stiffness), b = damped ? largest_eigenvalue<N>(system, damping) : 0.0;
+  const double a = largest_eigenvalue(system, stiffness), b = damped ? largest_eigenvalue(system, damping) : 0.0;
   return a > 0.0 ? 4.0 / (b + std::sqrt(b * b + 4.0 * a)) : std::numeric_limits<double>::infinity();
 }
 
-template <int N>
-void CriticalStepBound<N>::begin(const StepProblem<N>& problem) {
-  const BlockSystem<N>& system = problem.system;
+void CriticalStepBound::begin(const StepProblem& problem) {
+  const BlockSystem& system = problem.system;
   scales_.clear();
   stiffness_.assign(system.free_count(), Matrix());
   damping_.assign(system.free_count(), Matrix());
@@ -71,23 +68,21 @@ void CriticalStepBound<N>::begin(const StepProblem<N>& problem) {
     const auto& block = system.block(b);
     const double turns = block.rotation_locked ? 0.0 : 1.0;
     const Scale scale{1.0 / block.mass[0], turns / block.mass[2], turns / std::sqrt(block.mass[0] * block.mass[2])};
-    const typename Motion<N>::Matrix k = problem.external.stiffness(system, b, Motion<N>::Unknowns::Zero());
+    const Motion::Matrix k = problem.external.stiffness(system, b, Motion::Unknowns::Zero());
     stiffness_[block.equation] = {scale.mass * k(0, 0),  scale.mass * k(0, 1),  scale.mass * k(1, 1),
                                   scale.lever * k(0, 2), scale.lever * k(1, 2), scale.moment * k(2, 2)};
     scales_.push_back(scale);
   }
 }
 
-template <int N>
-void CriticalStepBound<N>::add(const StiffnessPart& part, double sign) {
+void CriticalStepBound::add(const StiffnessPart& part, double sign) {
   add(stiffness_[part.equation], scales_[part.equation], part, sign * part.normal_stiffness, sign * part.shear_stiffness);
   if (part.normal_dashpot == 0.0) return;
   damped_ = true;
   add(damping_[part.equation], scales_[part.equation], part, sign * part.normal_dashpot, sign * part.shear_dashpot);
 }
 
-template <int N>
-void CriticalStepBound<N>::add(Matrix& m, const Scale& scale, const StiffnessPart& part, double normal, double shear) {
+void CriticalStepBound::add(Matrix& m, const Scale& scale, const StiffnessPart& part, double normal, double shear) {
   const Vec2& n = part.normal;
   const double lever_n = cross(part.arm, n), lever_t = part.arm.dot(n);  // of the normal and of the tangent, the normal turned by +90 degrees
   const double k = part.share * normal, s = part.share * shear;
@@ -101,15 +96,13 @@ void CriticalStepBound<N>::add(Matrix& m, const Scale& scale, const StiffnessPar
   changed_ = true;
 }
 
-template <int N>
-double CriticalStepBound<N>::Matrix::bound() const {
+double CriticalStepBound::Matrix::bound() const {
   return std::max({xx + std::abs(xy) + std::abs(xr), yy + std::abs(xy) + std::abs(yr), rr + std::abs(xr) + std::abs(yr)});
 }
 
 /// Newton's method on the characteristic polynomial, from a bound: above its largest root the polynomial of a symmetric matrix is convex and rises,
 /// so that every iterate is a bound from above.
-template <int N>
-double CriticalStepBound<N>::Matrix::largest_eigenvalue() const {
+double CriticalStepBound::Matrix::largest_eigenvalue() const {
   constexpr double close = 1e-10;  // [-] of the eigenvalue, far below the room that step_fraction leaves
   constexpr int most = 60;         // a double root halves its distance in every iteration
   const double c_2 = xx + yy + rr;
@@ -126,8 +119,7 @@ double CriticalStepBound<N>::Matrix::largest_eigenvalue() const {
   return x;
 }
 
-template <int N>
-double CriticalStepBound<N>::largest(std::vector<Matrix>& matrices) {
+double CriticalStepBound::largest(std::vector<Matrix>& matrices) {
   double largest = 0.0;
   for (const Matrix& m : matrices) largest = std::max(largest, m.largest);
   for (Matrix& m : matrices) {
@@ -138,8 +130,7 @@ double CriticalStepBound<N>::largest(std::vector<Matrix>& matrices) {
   return largest;
 }
 
-template <int N>
-double CriticalStepBound<N>::step(double local_damping) {
+double CriticalStepBound::step(double local_damping) {
   if (changed_) {
     stiffest_ = largest(stiffness_);
     most_damped_ = damped_ ? largest(damping_) : 0.0;
@@ -148,9 +139,5 @@ double CriticalStepBound<N>::step(double local_damping) {
   const double a = (1.0 + local_damping) * stiffest_, b = (1.0 + local_damping) * most_damped_;
   return a > 0.0 ? 4.0 / (b + std::sqrt(b * b + 4.0 * a)) : std::numeric_limits<double>::infinity();
 }
-
-template class CriticalStepBound<3>;
-
-template double critical_step<3>(const StepProblem<3>&, double);
 
 }  // namespace openclose

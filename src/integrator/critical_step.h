@@ -26,8 +26,7 @@ inline bool may_close(const ContactStrength& strength, double normal_stiffness, 
 
 /// [s] Of all contacts that are closed or close when their blocks approach by `approach` [m], and of the supports; infinite without any. Sliding
 /// counts as sticking.
-template <int N>
-double critical_step(const StepProblem<N>& problem, double approach);
+double critical_step(const StepProblem& problem, double approach);
 
 /// What a contact adds to one of its blocks. Normal, tangent and lever may be taken in any frame that turns with the block, the same for all its
 /// contacts.
@@ -41,13 +40,10 @@ struct StiffnessPart {
 };
 
 /// The same bound, kept up to date contact by contact: a change costs its two blocks, and of those only blocks are solved that may decide.
-template <int N>
 class CriticalStepBound {
-  static_assert(N == 3, "the matrices are those of rigid blocks");
-
  public:
   /// The blocks with their supports, no contacts.
-  void begin(const StepProblem<N>& problem);
+  void begin(const StepProblem& problem);
   /// Puts a contact's part on its block, or takes it away again with sign = -1.
   void add(const StiffnessPart& part, double sign = 1.0);
   /// [s], infinite if nothing holds any block.
@@ -85,7 +81,5 @@ class CriticalStepBound {
   bool damped_ = false, changed_ = true;       ///< since the two numbers below were found
   double stiffest_ = 0.0, most_damped_ = 0.0;  ///< [1/s2], [1/s] a and b
 };
-
-extern template class CriticalStepBound<3>;
 
 }  // namespace openclose

@@ -21,8 +21,7 @@ double distance_behind(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& 
 
 }  // namespace
 
-template <int N>
-void DepthLimits<N>::begin(const BlockSystem<N>& system) {
+void DepthLimits::begin(const BlockSystem& system) {
   blocks_.clear();
   edges_.clear();
   for (const auto& block : system.blocks()) {
@@ -42,7 +41,5 @@ void DepthLimits<N>::begin(const BlockSystem<N>& system) {
     }
   }
 }
-
-template class DepthLimits<3>;
 
 }  // namespace openclose

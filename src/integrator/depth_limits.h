@@ -13,14 +13,13 @@
 
 namespace openclose {
 
-template <int N>
 class DepthLimits {
  public:
   /// [-] Of the thickness; below half of it, with room for the step in which the depth is found. An impact whose closure v sqrt(m/k) is a tenth of
   /// the thickness stays far below it, whatever part of the block's weight comes on one corner.
   static constexpr double part = 0.4;
 
-  void begin(const BlockSystem<N>& system);
+  void begin(const BlockSystem& system);
   bool empty() const { return edges_.empty(); }
   /// [m] For a corner of one block behind an edge of another.
   double of(int vertex_block, int edge) const { return part * std::min(blocks_[vertex_block], edges_[edge]); }
@@ -30,7 +29,5 @@ class DepthLimits {
   std::vector<double> blocks_;  ///< [m] 4 area/perimeter: the side of a square
   std::vector<double> edges_;   ///< [m] what lies behind an edge, by its first vertex: the next face that looks the other way
 };
-
-extern template class DepthLimits<3>;
 
 }  // namespace openclose

@@ -22,10 +22,9 @@
 namespace openclose {
 
 /// One step to be solved. Everything is as it stands at the start of the step.
-template <int N>
 struct StepProblem {
-  const BlockSystem<N>& system;
-  const ExternalForces<N>& external;
+  const BlockSystem& system;
+  const ExternalForces& external;
   const JointTable& joints;
   const std::vector<Contact>& contacts;
   const MethodInput& method;
@@ -37,26 +36,25 @@ struct StepProblem {
   bool keep_bonds = false;                                                ///< explicit methods: contacts lose no strength
   double negligible_force = 0.0;                                          ///< [N] what a static step may leave unbalanced on a block
   double longest_displacement = std::numeric_limits<double>::infinity();  ///< [m] of a vertex; a step that moves one farther is refused
-  const TimeScheme<N>* scheme = nullptr;                                  ///< null: every step starts from rest
+  const TimeScheme* scheme = nullptr;                                     ///< null: every step starts from rest
 
   bool averages_path() const { return scheme && scheme->averages_path(); }
   /// Displacement of block b if there were no forces.
-  typename Motion<N>::Unknowns drift(int b) const {
+  Motion::Unknowns drift(int b) const {
     const auto v = velocity(b);
-    return scheme ? scheme->drift(b, dt, v) : typename Motion<N>::Unknowns(dt * v);
+    return scheme ? scheme->drift(b, dt, v) : Motion::Unknowns(dt * v);
   }
-  typename Motion<N>::Unknowns velocity(int b) const {
-    if (statics) return Motion<N>::Unknowns::Zero();
+  Motion::Unknowns velocity(int b) const {
+    if (statics) return Motion::Unknowns::Zero();
     return system.velocity(b);
   }
 };
 
 /// What one contact carried on the average of a step, for schemes that average over its path.
-template <int N>
 struct PathOutcome {
   double normal = 0.0, shear = 0.0;  ///< [N]
   PathEnergies energies;
-  ContactPose<N> pose;  ///< the mean one, whose gradients carried the forces
+  ContactPose pose;  ///< the mean one, whose gradients carried the forces
 };
 
 /// What a step has cost.
@@ -80,7 +78,6 @@ struct StepEffort {
   }
 };
 
-template <int N>
 struct StepSolution {
   bool converged = false;
   bool compliant = false;    ///< `hard`: taken with springs, see hard.cpp
@@ -92,11 +89,11 @@ struct StepSolution {
   double friction_work = 0.0,
          lagging_friction_work = 0.0;  ///< [J] `shi`: of sliding contacts by their strength, and what their friction missed it by
   StepEffort effort;
-  Eigen::VectorXd d;        ///< displacement of the step, N per free block
+  Eigen::VectorXd d;        ///< displacement of the step, three numbers per free block
   double unbalanced = 0.0;  ///< [N] largest residual of a block, if static
-  ContactOutcomes<N> contacts;
-  ContactOutcomes<N> start_contacts;  ///< forces that entered with weight 1 - theta: of every contact, or none for theta = 1
-  std::vector<PathOutcome<N>> paths;  ///< mean forces that entered instead of those at the end; empty for other schemes
+  ContactOutcomes contacts;
+  ContactOutcomes start_contacts;  ///< forces that entered with weight 1 - theta: of every contact, or none for theta = 1
+  std::vector<PathOutcome> paths;  ///< mean forces that entered instead of those at the end; empty for other schemes
 
   /// Empty again, with its memory for the next step.
   void clear() {
@@ -118,25 +115,24 @@ struct StepSolution {
   }
 
   /// Displacement of block b: zero if fixed.
-  typename Motion<N>::Unknowns of(const BlockSystem<N>& system, int b) const {
+  Motion::Unknowns of(const BlockSystem& system, int b) const {
     const int equation = system.block(b).equation;
-    if (equation < 0) return Motion<N>::Unknowns::Zero();
-    return d.template segment<N>(N * equation);
+    if (equation < 0) return Motion::Unknowns::Zero();
+    return d.segment<dofs>(dofs * equation);
   }
 };
 
-template <int N>
 class Enforcement {
  public:
   virtual ~Enforcement() = default;
 
   /// Springs of a contact at the start of a step.
-  virtual ContactSprings springs(const StepProblem<N>& problem, const Contact& contact) const = 0;
+  virtual ContactSprings springs(const StepProblem& problem, const Contact& contact) const = 0;
   /// Fills an empty solution.
-  virtual void solve(const StepProblem<N>& problem, StepSolution<N>& solution) = 0;
+  virtual void solve(const StepProblem& problem, StepSolution& solution) = 0;
 
   /// Throws InputError if the method asks for a theta that the enforcement has no use for.
-  virtual std::unique_ptr<TimeScheme<N>> make_time_scheme(const MethodInput& method) const = 0;
+  virtual std::unique_ptr<TimeScheme> make_time_scheme(const MethodInput& method) const = 0;
   virtual bool follows_gaps() const { return true; }           ///< false: the gap at a step's end is not exactly that of the positions
   virtual bool has_elastic_contacts() const { return true; }   ///< false: contacts store no energy and keep no penetration
   virtual bool takes_adaptive_steps() const { return false; }  ///< true: step.adaptive has a meaning
@@ -154,18 +150,16 @@ class Enforcement {
   virtual void exchange(Archive&) {}
 };
 
-/// Displacements of a step without forces, dt v: zero in statics. N per free block.
-template <int N>
-Eigen::VectorXd drift(const StepProblem<N>& problem) {
-  Eigen::VectorXd d(N * problem.system.free_count());
-  for (int b : problem.system.free_blocks()) d.template segment<N>(N * problem.system.block(b).equation) = problem.dt * problem.velocity(b);
+/// Displacements of a step without forces, dt v: zero in statics. Three numbers per free block.
+inline Eigen::VectorXd drift(const StepProblem& problem) {
+  Eigen::VectorXd d(dofs * problem.system.free_count());
+  for (int b : problem.system.free_blocks()) d.segment<dofs>(dofs * problem.system.block(b).equation) = problem.dt * problem.velocity(b);
   return d;
 }
 
 /// Springs of the joint's own stiffness. The memory is the stretch of the spring, not its force: when the tributary length changes, strength and
 /// force change alike.
-template <int N>
-ContactSprings joint_springs(const StepProblem<N>& problem, const Contact& contact) {
+inline ContactSprings joint_springs(const StepProblem& problem, const Contact& contact) {
   const JointProperties& joint = problem.joints.joint(contact.joint);
   ContactSprings s;
   s.normal = joint.normal_stiffness * contact.length;
@@ -178,8 +172,7 @@ ContactSprings joint_springs(const StepProblem<N>& problem, const Contact& conta
 
 /// Gives the springs the joint's dashpots for this step. They resist the mean velocity d/dt of the step with their whole force: what enters the
 /// equation of motion with weight theta is divided by it, and the force at the start is the springs' alone. Pseudo-time has no velocities.
-template <int N>
-void add_dashpots(const StepProblem<N>& problem, const Contact& contact, ContactSprings& springs) {
+inline void add_dashpots(const StepProblem& problem, const Contact& contact, ContactSprings& springs) {
   const JointProperties& joint = problem.joints.joint(contact.joint);
   if (joint.damping_ratio == 0.0 || problem.statics) return;
   const ContactDashpots dashpots(joint, contact.length, problem.system.reduced_mass(contact.vertex_block, contact.edge_block));

@@ -7,10 +7,9 @@
 namespace openclose {
 namespace {
 
-template <int N>
-class GeneralizedAlpha : public TimeScheme<N> {
+class GeneralizedAlpha : public TimeScheme {
  public:
-  using Unknowns = typename TimeScheme<N>::Unknowns;
+  using Unknowns = TimeScheme::Unknowns;
   explicit GeneralizedAlpha(double rho)
       : am_((2.0 * rho - 1.0) / (rho + 1.0)), af_(rho / (rho + 1.0)), gamma_(0.5 - am_ + af_), beta_(0.25 * (1.0 - am_ + af_) * (1.0 - am_ + af_)) {}
 
@@ -50,16 +49,13 @@ class GeneralizedAlpha : public TimeScheme<N> {
 
   double am_, af_, gamma_, beta_;
   bool started_ = false;
-  BlockMemory<N> acceleration_;
+  BlockMemory acceleration_;
 };
 
 }  // namespace
 
-template <int N>
-std::unique_ptr<TimeScheme<N>> make_generalized_alpha(double rho_inf) {
-  return std::make_unique<GeneralizedAlpha<N>>(rho_inf);
+std::unique_ptr<TimeScheme> make_generalized_alpha(double rho_inf) {
+  return std::make_unique<GeneralizedAlpha>(rho_inf);
 }
-
-template std::unique_ptr<TimeScheme<3>> make_generalized_alpha<3>(double);
 
 }  // namespace openclose

@@ -74,14 +74,13 @@ constexpr double incompatible_gaps = 3.0, incompatible_static_gaps = 100.0;
 /// nor than this part of its way.
 constexpr double going_on = 0.5, part_of_way = 0.01;
 
-template <int N>
-class Hard final : public Enforcement<N> {
+class Hard final : public Enforcement {
  public:
-  ContactSprings springs(const StepProblem<N>& problem, const Contact& contact) const override {
+  ContactSprings springs(const StepProblem& problem, const Contact& contact) const override {
     return springs(problem, contact, stiffness_over_inertia.front());
   }
 
-  void solve(const StepProblem<N>& problem, StepSolution<N>& solution) override {
+  void solve(const StepProblem& problem, StepSolution& solution) override {
     if (problem.statics) {
       // Softer springs would not be those of the joint; shorter steps help more.
       set_springs(problem, stiffness_over_inertia.front());
@@ -110,9 +109,9 @@ class Hard final : public Enforcement<N> {
     solution = std::exchange(compliant_, {});
   }
 
-  std::unique_ptr<TimeScheme<N>> make_time_scheme(const MethodInput& method) const override {
+  std::unique_ptr<TimeScheme> make_time_scheme(const MethodInput& method) const override {
     refuse_integrators(method);
-    return make_midstep_scheme<N>();
+    return make_midstep_scheme();
   }
   bool has_elastic_contacts() const override { return false; }
   LinearCounters linear_counters() const override { return newton_.linear_counters(); }
@@ -128,7 +127,7 @@ class Hard final : public Enforcement<N> {
   enum class Cohesion { as_it_is, may_be_eased };
 
   /// [N/m] of the heavier block, which is not fixed.
-  static double inertia(const StepProblem<N>& problem, const Contact& contact) {
+  static double inertia(const StepProblem& problem, const Contact& contact) {
     double mass = 0.0;
     for (int b : {contact.vertex_block, contact.edge_block}) {
       if (problem.system.block(b).equation >= 0) mass = std::max(mass, problem.system.block(b).mass[0]);
@@ -136,7 +135,7 @@ class Hard final : public Enforcement<N> {
     return problem.inertia * mass;
   }
 
-  static ContactSprings springs(const StepProblem<N>& problem, const Contact& contact, double ratio) {
+  static ContactSprings springs(const StepProblem& problem, const Contact& contact, double ratio) {
     const JointProperties& joint = problem.joints.joint(contact.joint);
     const double from_inertia = ratio * inertia(problem, contact);
     const double from_joint = problem.statics ? contact.length : 0.0;
@@ -150,16 +149,16 @@ class Hard final : public Enforcement<N> {
     return s;
   }
 
-  void set_springs(const StepProblem<N>& problem, double ratio) {
+  void set_springs(const StepProblem& problem, double ratio) {
     springs_.resize(problem.contacts.size());
     for (std::size_t c = 0; c < springs_.size(); ++c) springs_[c] = springs(problem, problem.contacts[c], ratio);
   }
 
-  static bool may_be_compliant(const StepProblem<N>& problem) { return !problem.statics && problem.failed_attempts >= attempts_before_compliance; }
+  static bool may_be_compliant(const StepProblem& problem) { return !problem.statics && problem.failed_attempts >= attempts_before_compliance; }
 
   /// Passes until the contacts are held. A step that may be compliant keeps the first that converged with the springs it had, in case that no
   /// multipliers do.
-  void pass_until_held(const StepProblem<N>& problem, Cohesion cohesion, StepSolution<N>& solution) {
+  void pass_until_held(const StepProblem& problem, Cohesion cohesion, StepSolution& solution) {
     // From the drift dt v: the stiff matrix costs digits of what is solved for, and these are better lost from the change of motion than from the
     // motion.
     solution.d = drift(problem);
@@ -177,7 +176,7 @@ class Hard final : public Enforcement<N> {
         return;
       }
       const double error = constraint_error(problem, solution);
-      const double way = solution.d.template lpNorm<Eigen::Infinity>();
+      const double way = solution.d.lpNorm<Eigen::Infinity>();
       const bool moves_on = problem.statics && way >= going_on * last_way;
       if (error <= 1.0) return;
       if (error > slow_convergence * last_error && error <= (problem.statics ? incompatible_static_gaps : incompatible_gaps)) return;
@@ -206,7 +205,7 @@ class Hard final : public Enforcement<N> {
   /// Contacts that close, and stick from there, may ask for places that exclude each other, and no passes come to an end. Then springs hold the
   /// blocks: those of the joints, made stiffer by one factor until what they close by in this step is part of the tolerance. Contacts of small
   /// tributary length that still give way become stiffer by themselves.
-  void hold_by_stiff_springs(const StepProblem<N>& problem, StepSolution<N>& solution) {
+  void hold_by_stiff_springs(const StepProblem& problem, StepSolution& solution) {
     const StepEffort before = solution.effort;
     solution.clear();
     solution.effort = before;
@@ -246,14 +245,14 @@ class Hard final : public Enforcement<N> {
   }
 
   /// [m] Of a contact that carries: by how much it misses its target gap.
-  double closure(const StepSolution<N>& solution, std::size_t c) const {
+  double closure(const StepSolution& solution, std::size_t c) const {
     if (solution.contacts.status(c) == ContactStatus::open) return 0.0;
     return std::abs(springs_[c].gap - springs_[c].target + solution.contacts.gap_change(c));
   }
 
   /// One pass. Where Newton's method gets lost with the cohesion as it is, and from a solution with the longer ramp, too, the latter stands for this
   /// step.
-  void solve_pass(const StepProblem<N>& problem, int pass, Cohesion cohesion, StepSolution<N>& solution) {
+  void solve_pass(const StepProblem& problem, int pass, Cohesion cohesion, StepSolution& solution) {
     const Eigen::VectorXd start = solution.d;
     if (!solution.eased) {
       if (pass == 0) {
@@ -272,7 +271,7 @@ class Hard final : public Enforcement<N> {
                                        : FirstTangent::present);
     newton_.set_cohesion_ramp(tolerance::cohesion_ramp);
     if (!solution.converged || solution.eased) return;
-    StepSolution<N> eased = solution;
+    StepSolution eased = solution;
     newton_.solve_again(springs_, solution, FirstTangent::present);
     if (solution.converged) return;
     eased.effort = solution.effort;
@@ -287,7 +286,7 @@ class Hard final : public Enforcement<N> {
   }
 
   /// What the springs of the next pass start from.
-  void carry_on(const StepProblem<N>& problem, const ContactOutcomes<N>& outcomes, std::size_t c) {
+  void carry_on(const StepProblem& problem, const ContactOutcomes& outcomes, std::size_t c) {
     ContactSprings& s = springs_[c];
     const CarriedForces forces = outcomes.forces(c);
     const bool open = forces.status == ContactStatus::open;
@@ -307,7 +306,7 @@ class Hard final : public Enforcement<N> {
 
   /// The springs of contacts whose error the last pass has hardly reduced become stiffer.
   /// \param errors  [-] of the pass before, if any; becomes that of the last one
-  void stiffen(const StepProblem<N>& problem, const StepSolution<N>& solution, std::vector<float>& errors) {
+  void stiffen(const StepProblem& problem, const StepSolution& solution, std::vector<float>& errors) {
     errors.resize(springs_.size(), std::numeric_limits<float>::max());
     for (std::size_t c = 0; c < springs_.size(); ++c) {
       const auto error = static_cast<float>(constraint_error(problem, solution, c));
@@ -320,24 +319,24 @@ class Hard final : public Enforcement<N> {
 
   /// Takes from what closed contacts remember of the first pass that they turned on its way. What rigid contacts leave undetermined is then shared as
   /// springs do whose changes of gap and slip are linear in the motion of the blocks, which is the same however stiff they are.
-  void straighten(const StepProblem<N>& problem, const StepSolution<N>& solution, const Eigen::VectorXd& first) {
-    StepSolution<N> turned;
+  void straighten(const StepProblem& problem, const StepSolution& solution, const Eigen::VectorXd& first) {
+    StepSolution turned;
     turned.d = first;
     const RotationKind kind = problem.system.rotation_kind();
     for (std::size_t c = 0; c < springs_.size(); ++c) {
       if (solution.contacts.status(c) == ContactStatus::open) continue;
       const Contact& contact = problem.contacts[c];
       const auto of_vertex = turned.of(problem.system, contact.vertex_block), of_edge = turned.of(problem.system, contact.edge_block);
-      const ContactStart<N> start(problem.system, contact);
-      const BlockMove<N> vertex(of_vertex, kind, problem.system.block(contact.vertex_block).radius);
-      const BlockMove<N> edge(of_edge, kind, problem.system.block(contact.edge_block).radius);
-      const ContactPose<N> before(start, {}, {}), after(start, vertex, edge);
+      const ContactStart start(problem.system, contact);
+      const BlockMove vertex(of_vertex, kind, problem.system.block(contact.vertex_block).radius);
+      const BlockMove edge(of_edge, kind, problem.system.block(contact.edge_block).radius);
+      const ContactPose before(start, {}, {}), after(start, vertex, edge);
       springs_[c].shift += springs_[c].normal * (after.gap_change - before.normal_way(of_vertex, of_edge));
       springs_[c].initial_shear += springs_[c].shear * (after.slip_change - before.shear_way(of_vertex, of_edge));
     }
   }
 
-  void note_slack(StepSolution<N>& solution) const {
+  void note_slack(StepSolution& solution) const {
     for (std::size_t c = 0; c < springs_.size(); ++c) {
       if (solution.contacts.status(c) == ContactStatus::open) solution.contacts.set_slack(c, std::max(0.0, -springs_[c].shift / springs_[c].normal));
     }
@@ -345,25 +344,25 @@ class Hard final : public Enforcement<N> {
 
   /// In motion a closed contact keeps the gap it has, so that standing still is always consistent, unless earlier steps have left more than they
   /// should; an open one closes to zero, and a penetration found on closing is pushed out slowly. In statics every contact goes back to zero gap.
-  static double target_gap(const StepProblem<N>& problem, const Contact& contact) {
+  static double target_gap(const StepProblem& problem, const Contact& contact) {
     if (problem.statics) return 0.0;
     if (contact.status == ContactStatus::open) return std::min(0.0, contact.gap + tolerance::hard_recovery_m_per_s * problem.dt);
     return held_gap(problem, contact);
   }
 
   /// [m] Of a closed contact.
-  static double held_gap(const StepProblem<N>& problem, const Contact& contact) {
+  static double held_gap(const StepProblem& problem, const Contact& contact) {
     const double level = -kept_penetration * problem.method.gap_tolerance;
     return contact.gap >= level ? contact.gap : std::min(level, contact.gap + recovered_penetration * problem.method.gap_tolerance);
   }
 
   /// [m]
-  static double tolerated(const StepProblem<N>& problem) {
+  static double tolerated(const StepProblem& problem) {
     return problem.statics ? std::min(static_gap, problem.method.gap_tolerance) : problem.method.gap_tolerance;
   }
 
   /// Largest error of a contact.
-  double constraint_error(const StepProblem<N>& problem, const StepSolution<N>& solution) const {
+  double constraint_error(const StepProblem& problem, const StepSolution& solution) const {
     double worst = 0.0;
     for (std::size_t c = 0; c < springs_.size(); ++c) worst = std::max(worst, constraint_error(problem, solution, c));
     return worst;
@@ -371,7 +370,7 @@ class Hard final : public Enforcement<N> {
 
   /// [-] Error of contact c over what is tolerated: closed contacts off their target gaps, sticking ones off their places. Where more than forces is
   /// remembered also open ones that penetrate and sliding ones that go against their friction.
-  double constraint_error(const StepProblem<N>& problem, const StepSolution<N>& solution, std::size_t c) const {
+  double constraint_error(const StepProblem& problem, const StepSolution& solution, std::size_t c) const {
     const CarriedForces forces = solution.contacts.forces(c);
     const double off_target = (springs_[c].gap - springs_[c].target) + solution.contacts.gap_change(c);
     double error;
@@ -391,28 +390,25 @@ class Hard final : public Enforcement<N> {
   }
 
   /// [m] the coordinates and displacements of which a gap is the small difference; two contacts at one place differ by their rounding.
-  static double coordinates(const StepProblem<N>& problem, const StepSolution<N>& solution, const Contact& contact) {
+  static double coordinates(const StepProblem& problem, const StepSolution& solution, const Contact& contact) {
     double sum =
         problem.system.position(contact.vertex_block, contact.vertex).norm() + problem.system.position(contact.edge_block, contact.edge).norm();
     for (int b : {contact.vertex_block, contact.edge_block}) {
-      sum += Motion<N>::displacement_bound(solution.of(problem.system, b), problem.system.block(b).radius);
+      sum += Motion::displacement_bound(solution.of(problem.system, b), problem.system.block(b).radius);
     }
     return sum;
   }
 
-  Newton<N> newton_{Merit::all_blocks};
+  Newton newton_{Merit::all_blocks};
   std::vector<ContactSprings> springs_;
-  StepSolution<N> compliant_;  ///< of this step, if it may be
-  std::size_t level_ = 0;      ///< of stiffness_over_inertia: what the next attempt at this step begins with
+  StepSolution compliant_;  ///< of this step, if it may be
+  std::size_t level_ = 0;   ///< of stiffness_over_inertia: what the next attempt at this step begins with
 };
 
 }  // namespace
 
-template <int N>
-std::unique_ptr<Enforcement<N>> make_hard() {
-  return std::make_unique<Hard<N>>();
+std::unique_ptr<Enforcement> make_hard() {
+  return std::make_unique<Hard>();
 }
-
-template std::unique_ptr<Enforcement<3>> make_hard<3>();
 
 }  // namespace openclose

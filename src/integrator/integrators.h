@@ -21,22 +21,17 @@ namespace openclose {
 /// What `soft` steps with if the scene does not say.
 inline constexpr const char* default_integrator = "shi";
 
-template <int N>
-std::unique_ptr<TimeScheme<N>> make_generalized_alpha(double rho_inf);
-template <int N>
-std::unique_ptr<TimeScheme<N>> make_tr_bdf2();
-template <int N>
-std::unique_ptr<TimeScheme<N>> make_path_average();
+std::unique_ptr<TimeScheme> make_generalized_alpha(double rho_inf);
+std::unique_ptr<TimeScheme> make_tr_bdf2();
+std::unique_ptr<TimeScheme> make_path_average();
 
-template <int N>
 struct IntegratorEntry {
   const char* name;
   const char* summary;
-  std::unique_ptr<TimeScheme<N>> (*make)(const MethodInput&);
+  std::unique_ptr<TimeScheme> (*make)(const MethodInput&);
 };
 
-template <int N>
-const std::vector<IntegratorEntry<N>>& integrators();
+const std::vector<IntegratorEntry>& integrators();
 
 /// method.integrator; where it is absent "theta" if there is a method.theta, else the default.
 std::string integrator_name(const MethodInput& method);
@@ -45,7 +40,6 @@ std::string integrator_name(const MethodInput& method);
 MethodInput method_at_first(const MethodInput& method);
 
 /// Throws InputError for an unknown name, also of the first integrator, and for parameters of another integrator.
-template <int N>
-std::unique_ptr<TimeScheme<N>> make_integrator(const MethodInput& method);
+std::unique_ptr<TimeScheme> make_integrator(const MethodInput& method);
 
 }  // namespace openclose

@@ -171,18 +171,16 @@ double work(const Eigen::VectorXd& forces, const Eigen::VectorXd& way) {
 }
 
 /// Of the blocks of a part.
-template <int N>
 Eigen::VectorXd rows_of(const Eigen::VectorXd& whole, const std::vector<int>& rows) {
-  Eigen::VectorXd part(N * static_cast<Eigen::Index>(rows.size()));
-  for (std::size_t i = 0; i < rows.size(); ++i) part.segment<N>(N * i) = whole.segment<N>(N * rows[i]);
+  Eigen::VectorXd part(dofs * static_cast<Eigen::Index>(rows.size()));
+  for (std::size_t i = 0; i < rows.size(); ++i) part.segment<dofs>(dofs * i) = whole.segment<dofs>(dofs * rows[i]);
   return part;
 }
 
 }  // namespace
 
-template <int N>
-void Newton<N>::prepare(const StepProblem<N>& problem, const SpringSource<N>& springs) {
-  const BlockSystem<N>& system = problem.system;
+void Newton::prepare(const StepProblem& problem, const SpringSource& springs) {
+  const BlockSystem& system = problem.system;
   problem_ = &problem;
   contact_count_ = problem.contacts.size();
   if (problem.statics) {
@@ -204,18 +202,17 @@ void Newton<N>::prepare(const StepProblem<N>& problem, const SpringSource<N>& sp
   block_scale_ = 0.0;
   for (const StepBlock& block : blocks_) {
     if (block.is_alone) continue;
-    block_scale_ = std::max({block_scale_, block.magnitude, Motion<N>::largest_force(block.inertia.cwiseProduct(block.drift), block.radius)});
+    block_scale_ = std::max({block_scale_, block.magnitude, Motion::largest_force(block.inertia.cwiseProduct(block.drift), block.radius)});
   }
   start_scale_ = std::max(kernels_.begin(contacts()), block_scale_);
   resize_closely(trials_, contacts().size());
   step_forces_ = problem.averages_path() ? StepForces::averaged : StepForces::at_end;
   branches_.assign(batch_size * contacts().size(), 0);
-  moves_.assign(system.free_count() + 1, BlockMove<N>());
+  moves_.assign(system.free_count() + 1, BlockMove());
   neighbourhood_.clear();
 }
 
-template <int N>
-void Newton<N>::find_blocks_alone() {
+void Newton::find_blocks_alone() {
   for (StepBlock& block : blocks_) block.is_alone = !block.has_point_forces;
   const int rows = static_cast<int>(blocks_.size());
   const auto touch = [&](int row) {
@@ -229,19 +226,17 @@ void Newton<N>::find_blocks_alone() {
   }
 }
 
-template <int N>
-void Newton<N>::move_blocks_alone(Eigen::VectorXd& d) const {
+void Newton::move_blocks_alone(Eigen::VectorXd& d) const {
   for (std::size_t row = 0; row < blocks_.size(); ++row) {
     const StepBlock& block = blocks_[row];
     if (!block.is_alone) continue;
     Unknowns by_force = block.force.cwiseQuotient(block.inertia);
-    if (block.rotation_locked) by_force[Motion<N>::rotation_index] = 0.0;
-    d.template segment<N>(N * static_cast<Eigen::Index>(row)) = block.drift + by_force;
+    if (block.rotation_locked) by_force[Motion::rotation_index] = 0.0;
+    d.segment<dofs>(dofs * static_cast<Eigen::Index>(row)) = block.drift + by_force;
   }
 }
 
-template <int N>
-void Newton<N>::prepare_start(const std::vector<ContactSprings>& springs) {
+void Newton::prepare_start(const std::vector<ContactSprings>& springs) {
   start_scale_ = block_scale_;
   for (std::size_t c = 0; c < contact_count_; ++c) {
     const ContactSprings& s = springs[c];
@@ -251,13 +246,12 @@ void Newton<N>::prepare_start(const std::vector<ContactSprings>& springs) {
   }
 }
 
-template <int N>
-void Newton<N>::evaluate_block(int row, const Eigen::VectorXd& d) {
-  const BlockSystem<N>& system = problem_->system;
+void Newton::evaluate_block(int row, const Eigen::VectorXd& d) {
+  const BlockSystem& system = problem_->system;
   const double theta = problem_->end_weight;
   const StepBlock& block = blocks_[row];
-  const int at = N * row;
-  const Unknowns db = d.template segment<N>(at);
+  const int at = dofs * row;
+  const Unknowns db = d.segment<dofs>(at);
   Lanes& sums = rows_[row].sums;
   sums += rows_[row].of_odd_lanes;
   Unknowns force(sums[0], sums[1], sums[2]);
@@ -267,48 +261,43 @@ void Newton<N>::evaluate_block(int row, const Eigen::VectorXd& d) {
     force += block.force;
   }
   Unknowns r = block.inertia.cwiseProduct(block.drift - db) + theta * force;
-  if (theta < 1.0) r += (1.0 - theta) * start_force_.template segment<N>(at);
-  if (block.rotation_locked) r[Motion<N>::rotation_index] = 0.0;
+  if (theta < 1.0) r += (1.0 - theta) * start_force_.segment<dofs>(at);
+  if (block.rotation_locked) r[Motion::rotation_index] = 0.0;
   if (block.is_alone) r.setZero();
-  residual_.template segment<N>(at) = r;
+  residual_.segment<dofs>(at) = r;
   const Unknowns moved = block.inertia.cwiseProduct(block.drift.cwiseAbs() + db.cwiseAbs());
-  sums = Lanes{force[0], force[1], force[2], sums[N]};
-  sums[N] += rounding_of_sums * (Motion<N>::largest_force(moved, block.radius) + magnitude(block, db) + block.rounding_of_coordinates);
+  sums = Lanes{force[0], force[1], force[2], sums[dofs]};
+  sums[dofs] += rounding_of_sums * (Motion::largest_force(moved, block.radius) + magnitude(block, db) + block.rounding_of_coordinates);
 }
 
-template <int N>
-double Newton<N>::magnitude(const StepBlock& block, const Unknowns& d) const {
+double Newton::magnitude(const StepBlock& block, const Unknowns& d) const {
   return block.has_point_forces ? problem_->external.magnitude(problem_->system, block.block, d) : block.magnitude;
 }
 
-template <int N>
-void Newton<N>::move_block(int row, const Eigen::VectorXd& d) {
-  moves_[row] = BlockMove<N>(d.template segment<N>(N * row), problem_->system.rotation_kind(), blocks_[row].radius);
+void Newton::move_block(int row, const Eigen::VectorXd& d) {
+  moves_[row] = BlockMove(d.segment<dofs>(dofs * row), problem_->system.rotation_kind(), blocks_[row].radius);
 }
 
-template <int N>
-void Newton<N>::find_force_scale(double of_contacts, const Eigen::VectorXd& d) {
+void Newton::find_force_scale(double of_contacts, const Eigen::VectorXd& d) {
   force_scale_ = of_contacts;
   for (int row = 0; row < static_cast<int>(blocks_.size()); ++row) {
     if (blocks_[row].is_alone) continue;
-    force_scale_ = std::max(force_scale_, magnitude(blocks_[row], d.template segment<N>(N * row)));
+    force_scale_ = std::max(force_scale_, magnitude(blocks_[row], d.segment<dofs>(dofs * row)));
   }
 }
 
-template <int N>
-void Newton<N>::evaluate(const Eigen::VectorXd& d) {
+void Newton::evaluate(const Eigen::VectorXd& d) {
   const int rows = static_cast<int>(blocks_.size());
   for (int row = 0; row < rows; ++row) move_block(row, d);
   rows_.assign(moves_.size(), ForceRow());
-  residual_.resize(N * static_cast<Eigen::Index>(blocks_.size()));
+  residual_.resize(dofs * static_cast<Eigen::Index>(blocks_.size()));
   const double largest = kernels_.evaluate(step_forces_, ramp_, contacts(), moves_.data(), rounding_of_sums, trials_, branches_, rows_);
   for (int row = 0; row < rows; ++row) evaluate_block(row, d);
   find_force_scale(largest, d);
   has_replaced_forces_ = false;
 }
 
-template <int N>
-void Newton<N>::evaluate_moved(const std::vector<int>& moved, const Eigen::VectorXd& d, StepEffort& effort) {
+void Newton::evaluate_moved(const std::vector<int>& moved, const Eigen::VectorXd& d, StepEffort& effort) {
   const auto all = static_cast<long>(contacts().size());
   // Forces that were replaced are to be the law's again everywhere.
   if (!problem_->method.skip_unmoved || has_replaced_forces_) {
@@ -346,18 +335,15 @@ void Newton<N>::evaluate_moved(const std::vector<int>& moved, const Eigen::Vecto
   find_force_scale(kernels_.largest_force(trials_), d);
 }
 
-template <int N>
-double Newton<N>::tolerated(int row) const {
-  return problem_->method.residual_tolerance * force_scale_ + rows_[row].sums[N];
+double Newton::tolerated(int row) const {
+  return problem_->method.residual_tolerance * force_scale_ + rows_[row].sums[dofs];
 }
 
-template <int N>
-double Newton<N>::unbalanced(int row) const {
-  return Motion<N>::largest_force(residual_.template segment<N>(N * row), blocks_[row].radius);
+double Newton::unbalanced(int row) const {
+  return Motion::largest_force(residual_.segment<dofs>(dofs * row), blocks_[row].radius);
 }
 
-template <int N>
-double Newton<N>::residual_norm() const {
+double Newton::residual_norm() const {
   double worst = 0.0, largest = 0.0;
   const double loosest = std::max(loosest_balance, largest_force_growth * problem_->method.residual_tolerance) * start_scale_;
   for (int row = 0; row < static_cast<int>(blocks_.size()); ++row) {
@@ -371,15 +357,13 @@ double Newton<N>::residual_norm() const {
   return largest <= problem_->negligible_force ? std::min(worst, 1.0) : worst;
 }
 
-template <int N>
-double Newton<N>::largest_unbalanced() const {
+double Newton::largest_unbalanced() const {
   double largest = 0.0;
   for (int row = 0; row < static_cast<int>(blocks_.size()); ++row) largest = std::max(largest, unbalanced(row));
   return largest;
 }
 
-template <int N>
-double Newton<N>::part_of_worst() const {
+double Newton::part_of_worst() const {
   double largest = 0.0, shortest_arm = arm_of_equal_force;
   for (int row = 0; row < static_cast<int>(blocks_.size()); ++row) {
     largest = std::max(largest, unbalanced(row));
@@ -388,28 +372,25 @@ double Newton<N>::part_of_worst() const {
   return shortest_arm * largest / residual_.norm();
 }
 
-template <int N>
-double Newton<N>::usual_reduction(bool gets_on, int switches) const {
+double Newton::usual_reduction(bool gets_on, int switches) const {
   const bool may_be_loose = !problem_->statics && asked_merit_ == Merit::worst_block;
   if (!may_be_loose) return linear_reduction;
   if (gets_on) return switches > 0 ? linear_reduction_of_changes : linear_reduction;
   return std::clamp(linear_rest_of_worst * part_of_worst(), linear_reduction, loosest_reduction);
 }
 
-template <int N>
-double Newton<N>::merit(double norm) const {
+double Newton::merit(double norm) const {
   if (asked_merit_ == Merit::worst_block || problem_->statics || !std::isfinite(norm)) return norm;
   double work = 0.0;  // [J]
   for (std::size_t i = 0; i < blocks_.size(); ++i) {
-    const Unknowns residual = residual_.template segment<N>(N * static_cast<int>(i));
+    const Unknowns residual = residual_.segment<dofs>(dofs * static_cast<int>(i));
     work += residual.dot(residual.cwiseQuotient(blocks_[i].inertia));
   }
   return std::sqrt(work);
 }
 
-template <int N>
-void Newton<N>::assemble(const Eigen::VectorXd& d, Tangent tangent) {
-  BlockMatrix<N>& matrix = tangent_.matrix();
+void Newton::assemble(const Eigen::VectorXd& d, Tangent tangent) {
+  BlockMatrix& matrix = tangent_.matrix();
   matrix.set_zero();
   const bool open_ones_too = averages_path() || !holds_.empty();
   const BatchTangent asked{step_forces_, tangent == Tangent::exact, problem_->end_weight, problem_->statics ? static_slip_stiffness : 0.0,
@@ -421,7 +402,7 @@ void Newton<N>::assemble(const Eigen::VectorXd& d, Tangent tangent) {
     auto& diagonal = matrix.value(matrix.diagonal(row));
     diagonal.diagonal() += block.inertia;
     if (!block.has_point_forces) continue;
-    const Unknowns db = d.template segment<N>(N * row);
+    const Unknowns db = d.segment<dofs>(dofs * row);
     if (averages_path()) {
       diagonal += problem_->external.mean_stiffness(problem_->system, block.block, db);
     } else {
@@ -429,20 +410,18 @@ void Newton<N>::assemble(const Eigen::VectorXd& d, Tangent tangent) {
     }
   }
   for (std::size_t i = 0; i < blocks_.size(); ++i) {
-    if (blocks_[i].rotation_locked) matrix.eliminate(static_cast<int>(i), Motion<N>::rotation_index);
+    if (blocks_[i].rotation_locked) matrix.eliminate(static_cast<int>(i), Motion::rotation_index);
   }
 }
 
-template <int N>
-Eigen::VectorXd Newton<N>::direction(const Eigen::VectorXd& d, Tangent tangent, double reduction, double enough) {
+Eigen::VectorXd Newton::direction(const Eigen::VectorXd& d, Tangent tangent, double reduction, double enough) {
   assemble(d, tangent);
   Eigen::VectorXd step;
   if (tangent_.factor(problem_->statics ? static_kept_change : kept_change)) step = tangent_.solve(residual_, reduction, enough);
   return step;
 }
 
-template <int N>
-double Newton<N>::line_search(const Eigen::VectorXd& d, const Eigen::VectorXd& step, double slope) {
+double Newton::line_search(const Eigen::VectorXd& d, const Eigen::VectorXd& step, double slope) {
   // Root of the energy's slope along the step by regula falsi; the slope falls along the step because the symmetric tangent is positive definite.
   double low = 0.0, slope_low = slope, high = 1.0;
   evaluate(trial_ = d + step);
@@ -465,8 +444,7 @@ double Newton<N>::line_search(const Eigen::VectorXd& d, const Eigen::VectorXd& s
   return alpha;
 }
 
-template <int N>
-double Newton<N>::backtrack(const Eigen::VectorXd& d, const Eigen::VectorXd& step, double merit_before) {
+double Newton::backtrack(const Eigen::VectorXd& d, const Eigen::VectorXd& step, double merit_before) {
   for (double alpha = 0.5; alpha > shortest_backtrack; alpha *= 0.5) {
     evaluate(trial_ = d + alpha * step);
     if (merit(residual_norm()) <= (1.0 - sufficient_decrease * alpha) * merit_before) return alpha;
@@ -474,8 +452,7 @@ double Newton<N>::backtrack(const Eigen::VectorXd& d, const Eigen::VectorXd& ste
   return 0.0;
 }
 
-template <int N>
-ContactSprings Newton<N>::seen_springs(std::size_t c) const {
+ContactSprings Newton::seen_springs(std::size_t c) const {
   ContactSprings springs = this->springs(c);
   if (averages_path()) {
     // The same force at the start of the step.
@@ -486,21 +463,20 @@ ContactSprings Newton<N>::seen_springs(std::size_t c) const {
   return springs;
 }
 
-template <int N>
-void Newton<N>::replace_forces(std::size_t c, const ContactForces& forces) {
+void Newton::replace_forces(std::size_t c, const ContactForces& forces) {
   TrialBatch& batch = trial(c);
   const int k = lane(c);
-  const ContactPose<N> pose = force_pose(c);
+  const ContactPose pose = force_pose(c);
   const double normal = problem_->end_weight * (forces.normal - batch.normal[k]), shear = problem_->end_weight * (forces.shear - batch.shear[k]);
   // In single numbers: what has just been stored number by number cannot be loaded in pairs at once.
   const double x = normal * pose.normal.x() - shear * pose.normal.y(), y = normal * pose.normal.y() + shear * pose.normal.x();
   const auto push = [&](int row, double sign, const Vec2& arm) {
     if (row >= static_cast<int>(blocks_.size())) return;
-    double* const residual = residual_.data() + static_cast<std::ptrdiff_t>(N) * row;
+    double* const residual = residual_.data() + static_cast<std::ptrdiff_t>(dofs) * row;
     residual[0] += sign * x;
     residual[1] += sign * y;
     residual[2] += sign * (arm.x() * y - arm.y() * x);
-    if (blocks_[row].rotation_locked) residual[Motion<N>::rotation_index] = 0.0;
+    if (blocks_[row].rotation_locked) residual[Motion::rotation_index] = 0.0;
   };
   push(start(c).vertex_place(k), 1.0, pose.vertex_arm);
   push(start(c).edge_place(k), -1.0, pose.edge_arm);
@@ -509,8 +485,7 @@ void Newton<N>::replace_forces(std::size_t c, const ContactForces& forces) {
   has_replaced_forces_ = true;
 }
 
-template <int N>
-int Newton<N>::hold_reversed() {
+int Newton::hold_reversed() {
   int held = 0;
   for (std::size_t c = 0; c < contact_count_; ++c) {
     const bool reversed = std::abs(branches_before_[c]) == sliding_branch && branches_before_[c] == -branches_[c];
@@ -526,16 +501,14 @@ int Newton<N>::hold_reversed() {
   return held;
 }
 
-template <int N>
-void Newton<N>::take_state(std::size_t c, ContactStatus wanted, double normal, double shear) {
+void Newton::take_state(std::size_t c, ContactStatus wanted, double normal, double shear) {
   const TrialBatch& now = trial(c);
   const int k = lane(c);
   if (!averages_path() && is_on_piece(status(branches_[c]), now.normal_by_gap[k], wanted)) return;
   replace_forces(c, prolonged(seen_springs(c), start(c).strength(k), wanted, normal, shear, now.gap_change[k], now.slip_change[k]));
 }
 
-template <int N>
-void Newton<N>::take_last_states() {
+void Newton::take_last_states() {
   // Statics begins with the drawing, whose rounding is in the gaps; a motion knows which of its contacts are open.
   const double touching_gap = problem_->statics ? tolerance::rounding_of_ways_m : 0.0;
   for (std::size_t c = 0; c < contact_count_; ++c) {
@@ -547,15 +520,13 @@ void Newton<N>::take_last_states() {
   }
 }
 
-template <int N>
-void Newton<N>::take_states_before() {
+void Newton::take_states_before() {
   for (std::size_t c = 0; c < contact_count_; ++c) {
     take_state(c, status(branches_before_[c]), start(c).shift[lane(c)], start(c).initial_shear[lane(c)]);
   }
 }
 
-template <int N>
-std::vector<ElasticBatch> Newton<N>::report_paths(StepSolution<N>& solution) {
+std::vector<ElasticBatch> Newton::report_paths(StepSolution& solution) {
   std::vector<ElasticBatch> elastic(trials_.size());
   for (std::size_t i = 0; i < contact_count_; ++i) {
     const std::size_t c = order()[i];
@@ -573,22 +544,19 @@ std::vector<ElasticBatch> Newton<N>::report_paths(StepSolution<N>& solution) {
   return elastic;
 }
 
-template <int N>
-std::vector<ElasticBatch> Newton<N>::elastic_parts() const {
+std::vector<ElasticBatch> Newton::elastic_parts() const {
   std::vector<ElasticBatch> elastic(trials_.size());
   kernels_.find_elastic(ramp_, contacts(), trials_, elastic);
   return elastic;
 }
 
-template <int N>
-void Newton<N>::lend(StepSolution<N>& solution) {
+void Newton::lend(StepSolution& solution) {
   solution.paths.clear();
   solution.contacts.borrow(starts_, moves_, trials_, branches_, averages_path() ? report_paths(solution) : elastic_parts());
   note_memory(solution.memory());
 }
 
-template <int N>
-void Newton<N>::hold_changed(double norm) {
+void Newton::hold_changed(double norm) {
   const double residual = norm * problem_->method.residual_tolerance;
   const double fullest = std::min(1.0, residual / residual_of_full_hold);
   for (std::size_t c = 0; c < holds_.size(); ++c) {
@@ -598,8 +566,7 @@ void Newton<N>::hold_changed(double norm) {
   }
 }
 
-template <int N>
-void Newton<N>::hold_contacts(bool friction_lags) {
+void Newton::hold_contacts(bool friction_lags) {
   for (std::size_t c = 0; c < contact_count_; ++c) {
     if (holds_[c] == 0.0 || status(branches_[c]) == ContactStatus::sticking) continue;
     const ContactBatch& contact = contacts()[c / batch_size];
@@ -611,8 +578,7 @@ void Newton<N>::hold_contacts(bool friction_lags) {
   }
 }
 
-template <int N>
-void Newton<N>::take_part(const Newton& whole, const Part& part) {
+void Newton::take_part(const Newton& whole, const Part& part) {
   is_part_ = true;
   problem_ = whole.problem_;
   step_forces_ = whole.step_forces_;
@@ -621,7 +587,7 @@ void Newton<N>::take_part(const Newton& whole, const Part& part) {
   const int rows = static_cast<int>(part.rows.size());
   blocks_.clear();
   moves_.clear();
-  if (problem_->end_weight < 1.0) start_force_ = rows_of<N>(whole.start_force_, part.rows);
+  if (problem_->end_weight < 1.0) start_force_ = rows_of(whole.start_force_, part.rows);
   std::unordered_map<int, int> places;  // by those in the whole
   const auto place = [&](int of_whole) {
     const auto [at, is_new] = places.try_emplace(of_whole, static_cast<int>(moves_.size()));
@@ -653,8 +619,7 @@ void Newton<N>::take_part(const Newton& whole, const Part& part) {
   tangent_.fit_part(problem_->method, rows, static_cast<int>(moves_.size()), ends);
 }
 
-template <int N>
-std::vector<Part> Newton<N>::unbalanced_parts(double norm, double end) {
+std::vector<Part> Newton::unbalanced_parts(double norm, double end) {
   const int rows = static_cast<int>(blocks_.size());
   if (neighbourhood_.rows() != rows) {
     neighbourhood_.build(rows, contact_count_,
@@ -666,8 +631,7 @@ std::vector<Part> Newton<N>::unbalanced_parts(double norm, double end) {
   return neighbourhood_.parts(seeds, rings_of_a_part, static_cast<int>(largest_part * rows));
 }
 
-template <int N>
-double Newton<N>::solve_parts(StepSolution<N>& solution, double norm) {
+double Newton::solve_parts(StepSolution& solution, double norm) {
   const Until until{std::max(1.0, linear_reduction * norm), problem_->method.max_iterations};
   const std::vector<Part> parts = unbalanced_parts(norm, until.norm);
   if (parts.empty()) return norm;
@@ -678,14 +642,14 @@ double Newton<N>::solve_parts(StepSolution<N>& solution, double norm) {
   long rows = 0;  // of all linear solves
   for (const Part& part : parts) {
     newton_of_part.take_part(*this, part);
-    StepSolution<N> found;
-    found.d = rows_of<N>(solution.d, part.rows);
+    StepSolution found;
+    found.d = rows_of(solution.d, part.rows);
     newton_of_part.evaluate(found.d);
     double norm_of_part = newton_of_part.residual_norm();
     const double norm_before = norm_of_part;
     newton_of_part.iterate(*problem_, found, norm_of_part, until, false);
     if (norm_of_part < norm_before) {
-      for (std::size_t i = 0; i < part.rows.size(); ++i) trial_.template segment<N>(N * part.rows[i]) = found.d.template segment<N>(N * i);
+      for (std::size_t i = 0; i < part.rows.size(); ++i) trial_.segment<dofs>(dofs * part.rows[i]) = found.d.segment<dofs>(dofs * i);
       moved.insert(moved.end(), part.rows.begin(), part.rows.end());
     }
     part_counters_ += newton_of_part.tangent_.counters();
@@ -706,8 +670,7 @@ double Newton<N>::solve_parts(StepSolution<N>& solution, double norm) {
   return norm;
 }
 
-template <int N>
-bool Newton<N>::take_with_parts(const Eigen::VectorXd& step, double value_before, StepSolution<N>& solution, double& norm) {
+bool Newton::take_with_parts(const Eigen::VectorXd& step, double value_before, StepSolution& solution, double& norm) {
   const Eigen::VectorXd before = solution.d;
   solution.d += step;
   double last = std::numeric_limits<double>::infinity();
@@ -722,10 +685,9 @@ bool Newton<N>::take_with_parts(const Eigen::VectorXd& step, double value_before
   return false;
 }
 
-template <int N>
-bool Newton<N>::iterate_from_cold(StepSolution<N>& solution, double& norm) {
+bool Newton::iterate_from_cold(StepSolution& solution, double& norm) {
   Eigen::VectorXd& d = solution.d;
-  const double longest = d.template lpNorm<Eigen::Infinity>();
+  const double longest = d.lpNorm<Eigen::Infinity>();
   holds_.resize(contact_count_);
   for (int iteration = 1; iteration < most_cold_iterations && norm > 1.0 && std::isfinite(norm); ++iteration) {
     for (std::size_t c = 0; c < contact_count_; ++c) {
@@ -736,7 +698,7 @@ bool Newton<N>::iterate_from_cold(StepSolution<N>& solution, double& norm) {
     hold_contacts(false);
     const Eigen::VectorXd step = direction(d, Tangent::exact, held_linear_reduction);
     ++solution.effort.iterations;
-    const bool is_held = step.size() > 0 && step.template lpNorm<Eigen::Infinity>() <= longest;
+    const bool is_held = step.size() > 0 && step.lpNorm<Eigen::Infinity>() <= longest;
     if (is_held) evaluate(d += step);
     norm = is_held ? residual_norm() : std::numeric_limits<double>::infinity();
   }
@@ -744,8 +706,7 @@ bool Newton<N>::iterate_from_cold(StepSolution<N>& solution, double& norm) {
   return std::isfinite(norm);
 }
 
-template <int N>
-typename Newton<N>::Outcome Newton<N>::iterate_holding(StepSolution<N>& solution, double& norm, int done) {
+Newton::Outcome Newton::iterate_holding(StepSolution& solution, double& norm, int done) {
   Eigen::VectorXd& d = solution.d;
   holds_.assign(contact_count_, 0.0);
   if (done > 0) hold_changed(norm);
@@ -769,8 +730,7 @@ typename Newton<N>::Outcome Newton<N>::iterate_holding(StepSolution<N>& solution
   return outcome;
 }
 
-template <int N>
-struct Newton<N>::Course {
+struct Newton::Course {
   double norm = 0.0, value = 0.0, best = 0.0;  ///< [-] residual_norm(), merit(), and the smallest merit so far
   Tangent tangent = Tangent::exact;
   int refusals = 0;     ///< of the exact step since the merit was at its smallest
@@ -778,8 +738,7 @@ struct Newton<N>::Course {
   bool gets_on = true;  ///< the last iteration has halved the merit
 };
 
-template <int N>
-bool Newton<N>::help_by_parts(StepSolution<N>& solution, Course& course) {
+bool Newton::help_by_parts(StepSolution& solution, Course& course) {
   const double norm_before = course.norm;
   course.norm = solve_parts(solution, norm_before);
   course.value = merit(course.norm);
@@ -789,8 +748,7 @@ bool Newton<N>::help_by_parts(StepSolution<N>& solution, Course& course) {
   return true;
 }
 
-template <int N>
-double Newton<N>::try_step(const Eigen::VectorXd& d, const Eigen::VectorXd& step, const Course& course) {
+double Newton::try_step(const Eigen::VectorXd& d, const Eigen::VectorXd& step, const Course& course) {
   const double slope = work(residual_, step);
   if (course.tangent == Tangent::exact || slope <= 0.0) {
     evaluate(trial_ = d + step);
@@ -801,8 +759,7 @@ double Newton<N>::try_step(const Eigen::VectorXd& d, const Eigen::VectorXd& step
   return alpha;
 }
 
-template <int N>
-void Newton<N>::follow(Course& course, double norm) {
+void Newton::follow(Course& course, double norm) {
   const double value = merit(norm);
   course.switches = differences(branches_before_, branches_);
   course.gets_on = value <= 0.5 * course.value;
@@ -812,17 +769,14 @@ void Newton<N>::follow(Course& course, double norm) {
   course.value = value;
 }
 
-template <int N>
-void Newton<N>::choose_tangent(Course& course) {
+void Newton::choose_tangent(Course& course) {
   const int few = static_cast<int>(few_switches * static_cast<double>(contact_count_));
   const bool held = course.norm > 1.0 && !course.gets_on && hold_reversed() > 0;  // a solution keeps the forces of the law
   const bool exact_works = held || course.switches <= few || (course.tangent == Tangent::exact && course.gets_on);
   course.tangent = exact_works ? Tangent::exact : Tangent::symmetric;
 }
 
-template <int N>
-typename Newton<N>::Outcome Newton<N>::iterate(const StepProblem<N>& problem, StepSolution<N>& solution, double& norm, Until until,
-                                               bool may_start_cold) {
+Newton::Outcome Newton::iterate(const StepProblem& problem, StepSolution& solution, double& norm, Until until, bool may_start_cold) {
   Eigen::VectorXd& d = solution.d;
   Course course;
   course.norm = norm;
@@ -887,8 +841,7 @@ typename Newton<N>::Outcome Newton<N>::iterate(const StepProblem<N>& problem, St
   return outcome;
 }
 
-template <int N>
-double Newton<N>::begin(const Eigen::VectorXd& d, FirstTangent first) {
+double Newton::begin(const Eigen::VectorXd& d, FirstTangent first) {
   evaluate(d);
   const double norm = residual_norm();
   if (norm > 1.0 && first == FirstTangent::last_step) take_last_states();
@@ -896,14 +849,12 @@ double Newton<N>::begin(const Eigen::VectorXd& d, FirstTangent first) {
   return norm;
 }
 
-template <int N>
-void Newton<N>::take_back(ContactOutcomes<N>& outcomes) {
+void Newton::take_back(ContactOutcomes& outcomes) {
   outcomes.give_back(moves_, trials_, branches_);
   if (starts_.use_count() > 1) starts_ = std::make_shared<ContactStarts>(*starts_);
 }
 
-template <int N>
-void Newton<N>::solve(const StepProblem<N>& problem, const SpringSource<N>& springs, StepSolution<N>& solution, FirstTangent first) {
+void Newton::solve(const StepProblem& problem, const SpringSource& springs, StepSolution& solution, FirstTangent first) {
   take_back(solution.contacts);
   branches_before_ = branches_;
   prepare(problem, springs);
@@ -911,25 +862,22 @@ void Newton<N>::solve(const StepProblem<N>& problem, const SpringSource<N>& spri
   solve_prepared(solution, first);
 }
 
-template <int N>
-bool Newton<N>::solve_if_few_change(const StepProblem<N>& problem, const SpringSource<N>& springs, StepSolution<N>& solution) {
+bool Newton::solve_if_few_change(const StepProblem& problem, const SpringSource& springs, StepSolution& solution) {
   only_if_few_change_ = true;
   solve(problem, springs, solution);
   only_if_few_change_ = false;
   return solution.converged;
 }
 
-template <int N>
-void Newton<N>::solve_again(const std::vector<ContactSprings>& springs, StepSolution<N>& solution, FirstTangent first) {
+void Newton::solve_again(const std::vector<ContactSprings>& springs, StepSolution& solution, FirstTangent first) {
   take_back(solution.contacts);
   branches_before_ = branches_;
   prepare_start(springs);
   solve_prepared(solution, first);
 }
 
-template <int N>
-void Newton<N>::solve_prepared(StepSolution<N>& solution, FirstTangent first) {
-  const StepProblem<N>& problem = *problem_;
+void Newton::solve_prepared(StepSolution& solution, FirstTangent first) {
+  const StepProblem& problem = *problem_;
   move_blocks_alone(solution.d);
   if (problem.end_weight < 1.0) {
     sum_start_forces();
@@ -964,8 +912,7 @@ void Newton<N>::solve_prepared(StepSolution<N>& solution, FirstTangent first) {
   lend(solution);
 }
 
-template <int N>
-Memory Newton<N>::present_memory() const {
+Memory Newton::present_memory() const {
   Memory of = tangent_.memory();
   of.blocks += bytes_of(blocks_, moves_, rows_);
   for (const Eigen::VectorXd* vector : {&trial_, &start_force_, &residual_}) of.blocks += sizeof(double) * static_cast<std::size_t>(vector->size());
@@ -973,35 +920,30 @@ Memory Newton<N>::present_memory() const {
   return of;
 }
 
-template <int N>
-Eigen::MatrixXd Newton<N>::stiffness(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs) {
-  StepProblem<N> static_problem = problem;
+Eigen::MatrixXd Newton::stiffness(const StepProblem& problem, const std::vector<ContactSprings>& springs) {
+  StepProblem static_problem = problem;
   static_problem.inertia = 0.0;
   static_problem.end_weight = 1.0;
   static_problem.scheme = nullptr;
-  prepare(static_problem, GivenSprings<N>(springs));
+  prepare(static_problem, GivenSprings(springs));
   tangent_.fit(static_problem, contacts());
-  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(N * problem.system.free_count());
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(dofs * problem.system.free_count());
   evaluate(zero);
   assemble(zero, Tangent::exact);
   return tangent_.matrix().dense();
 }
 
-template <int N>
-Eigen::VectorXd Newton<N>::forces(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs) {
-  prepare(problem, GivenSprings<N>(springs));
+Eigen::VectorXd Newton::forces(const StepProblem& problem, const std::vector<ContactSprings>& springs) {
+  prepare(problem, GivenSprings(springs));
   sum_start_forces();
   return start_force_;
 }
 
-template <int N>
-void Newton<N>::sum_start_forces() {
+void Newton::sum_start_forces() {
   const int blocks = problem_->system.free_count();
-  start_force_.setZero(N * blocks);
-  evaluate(Eigen::VectorXd::Zero(N * blocks));
-  for (int i = 0; i < blocks; ++i) start_force_.template segment<N>(N * i) << rows_[i].sums[0], rows_[i].sums[1], rows_[i].sums[2];
+  start_force_.setZero(dofs * blocks);
+  evaluate(Eigen::VectorXd::Zero(dofs * blocks));
+  for (int i = 0; i < blocks; ++i) start_force_.segment<dofs>(dofs * i) << rows_[i].sums[0], rows_[i].sums[1], rows_[i].sums[2];
 }
-
-template class Newton<3>;
 
 }  // namespace openclose

@@ -52,40 +52,37 @@ constexpr int most_iterations_to_halve = 30;
 /// of 41 iterations that found their balance none went for more than 2 without halving the residual, 3 that found none for 45 and more.
 constexpr int most_iterations_to_halve_with_parts = 10;
 
-template <int N>
 class Newton {
-  static_assert(N == 3, "contacts are laid out in batches for rigid blocks");
-
  public:
-  using Unknowns = typename Motion<N>::Unknowns;
+  using Unknowns = Motion::Unknowns;
 
   explicit Newton(Merit merit = Merit::worst_block) : asked_merit_(merit) {}
 
   /// Solves for solution.d, starting from the value it has; fills its contacts. effort is added to.
-  void solve(const StepProblem<N>& problem, const SpringSource<N>& springs, StepSolution<N>& solution, FirstTangent first = FirstTangent::last_step);
-  void solve(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs, StepSolution<N>& solution,
+  void solve(const StepProblem& problem, const SpringSource& springs, StepSolution& solution, FirstTangent first = FirstTangent::last_step);
+  void solve(const StepProblem& problem, const std::vector<ContactSprings>& springs, StepSolution& solution,
              FirstTangent first = FirstTangent::last_step) {
-    solve(problem, GivenSprings<N>(springs), solution, first);
+    solve(problem, GivenSprings(springs), solution, first);
   }
   /// The step of the last solve() again, with springs that differ only in what they carry at its start, in the gaps they keep and
   /// in their stiffness.
-  void solve_again(const std::vector<ContactSprings>& springs, StepSolution<N>& solution, FirstTangent first);
+  void solve_again(const std::vector<ContactSprings>& springs, StepSolution& solution, FirstTangent first);
 
   /// [-] Part of the cohesion over which it comes in, in what is solved from now on: see ContactStrength::shear_bound().
   void set_cohesion_ramp(double ramp) { ramp_ = ramp; }
 
   /// The same for a static step that has more blocks than Newton's method is quick with, unless few contacts change their state: false, and nothing
   /// is solved, if more than a tenth do in the first iteration, or if the iteration does not converge.
-  bool solve_if_few_change(const StepProblem<N>& problem, const SpringSource<N>& springs, StepSolution<N>& solution);
+  bool solve_if_few_change(const StepProblem& problem, const SpringSource& springs, StepSolution& solution);
   /// The same for a static step, by relaxation. What friction holds in the end depends on the way there.
-  void relax(const StepProblem<N>& problem, const SpringSource<N>& springs, StepSolution<N>& solution);
+  void relax(const StepProblem& problem, const SpringSource& springs, StepSolution& solution);
 
   /// Minus the derivative of all forces but inertia by the unknowns, at the start of the step, contacts in the status they have. Rows and columns of
   /// locked rotations are those of the unit matrix.
-  Eigen::MatrixXd stiffness(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs);
+  Eigen::MatrixXd stiffness(const StepProblem& problem, const std::vector<ContactSprings>& springs);
 
   /// [N] forces of contacts, gravity, loads and supports at the present position.
-  Eigen::VectorXd forces(const StepProblem<N>& problem, const std::vector<ContactSprings>& springs);
+  Eigen::VectorXd forces(const StepProblem& problem, const std::vector<ContactSprings>& springs);
 
   double force_scale() const { return force_scale_; }  ///< [N] largest single force in the last evaluation
   void exchange(Archive& archive) {
@@ -118,36 +115,36 @@ class Newton {
   };
 
   /// Takes back what outcomes have, so that the next step can be laid out in it.
-  void take_back(ContactOutcomes<N>& outcomes);
+  void take_back(ContactOutcomes& outcomes);
   /// Evaluates at the displacement to start from and returns its residual_norm().
   double begin(const Eigen::VectorXd& d, FirstTangent first);
   /// Where an iteration stands.
   struct Course;
   /// Solves parts and says whether that has made the residual smaller.
-  bool help_by_parts(StepSolution<N>& solution, Course& course);
+  bool help_by_parts(StepSolution& solution, Course& course);
   /// Evaluates along a step and returns the part of it that was tried: all of one with the exact tangent.
   double try_step(const Eigen::VectorXd& d, const Eigen::VectorXd& step, const Course& course);
   /// The iteration has gone to where the forces are, with this residual_norm().
   void follow(Course& course, double norm);
   void choose_tangent(Course& course);
   /// Iterates from solution.d until its residual_norm() is small enough.
-  Outcome iterate(const StepProblem<N>& problem, StepSolution<N>& solution, double& norm, Until until, bool may_start_cold);
+  Outcome iterate(const StepProblem& problem, StepSolution& solution, double& norm, Until until, bool may_start_cold);
   /// Solves the parts around the largest residuals, each for itself, and moves on with those that got better unless the residual is larger then.
   /// Returns its norm.
-  double solve_parts(StepSolution<N>& solution, double norm);
+  double solve_parts(StepSolution& solution, double norm);
   std::vector<Part> unbalanced_parts(double norm, double end);
   /// Moves on by a step that has made the residual larger, and solves parts there until the merit falls as it should. False if it does not; the
   /// displacement is the one before then, the forces are not.
   /// \param norm  residual_norm() after the step, then with parts
-  bool take_with_parts(const Eigen::VectorXd& step, double value_before, StepSolution<N>& solution, double& norm);
+  bool take_with_parts(const Eigen::VectorXd& step, double value_before, StepSolution& solution, double& norm);
   /// The equations of a part of another system, while all other blocks stay where they are there.
   void take_part(const Newton& whole, const Part& part);
   /// Goes on, after the first iteration of a cold start, by whole steps with the exact tangent, in which what has just opened or begun to slide is
   /// still held by a part of its springs. False if blocks come loose all the same.
-  bool iterate_from_cold(StepSolution<N>& solution, double& norm);
+  bool iterate_from_cold(StepSolution& solution, double& norm);
   /// The same by whole steps with tangents that hold contacts which have changed their state.
   /// \param done  iterations that have been made so; the last one from branches_before_
-  Outcome iterate_holding(StepSolution<N>& solution, double& norm, int done);
+  Outcome iterate_holding(StepSolution& solution, double& norm, int done);
   /// The next linear solve holds contacts by holds_. With friction that lags it leaves out for them that friction follows the normal force.
   void hold_contacts(bool friction_lags);
   /// Adapts holds_ to what an iteration has changed.
@@ -158,21 +155,21 @@ class Newton {
   void keep_slip();
   /// What the law says of contact c for its way since the start of the step.
   /// \param springs  those that the step has started with
-  ContactForces slipped_as_a_whole(const SpringSource<N>& springs, std::size_t c) const;
+  ContactForces slipped_as_a_whole(const SpringSource& springs, std::size_t c) const;
   /// Contacts that have slipped in the step as a whole and lose strength by that carry what they can without. True if there are any.
-  bool break_slipped_bonds(const SpringSource<N>& springs);
+  bool break_slipped_bonds(const SpringSource& springs);
   /// Those have slid for what loses its strength by that, though they stick on what they have kept.
-  void note_slip(const SpringSource<N>& springs);
+  void note_slip(const SpringSource& springs);
   /// Whether a block has gone so far that the step will be refused.
   bool has_left(const Eigen::VectorXd& d) const;
-  void prepare(const StepProblem<N>& problem, const SpringSource<N>& springs);
+  void prepare(const StepProblem& problem, const SpringSource& springs);
   /// Blocks that nothing touches go where constant forces move them, which is known at once. They have no residual, and their forces are no measure
   /// of others, so that whatever they are changes not a bit of what the others do.
   void find_blocks_alone();
   void move_blocks_alone(Eigen::VectorXd& d) const;
   /// The part of prepare() that solve_again() needs.
   void prepare_start(const std::vector<ContactSprings>& springs);
-  void solve_prepared(StepSolution<N>& solution, FirstTangent first);
+  void solve_prepared(StepSolution& solution, FirstTangent first);
   void evaluate(const Eigen::VectorXd& d);
   /// The same, to the last bit, where only these rows have moved since the last evaluation.
   void evaluate_moved(const std::vector<int>& moved, const Eigen::VectorXd& d, StepEffort& effort);
@@ -195,8 +192,8 @@ class Newton {
   const TrialBatch& trial(std::size_t c) const { return trials_[c / batch_size]; }
   ContactForces forces(std::size_t c) const { return trial(c).forces(lane(c), branches_[c]); }
   /// The forces act along its normal and tangent, at its arms.
-  ContactPose<N> force_pose(std::size_t c) const { return averages_path() ? mean_pose(start(c).start(lane(c)), pose(c)) : pose(c); }
-  ContactPose<N> pose(std::size_t c) const { return start(c).pose(lane(c), moves_); }
+  ContactPose force_pose(std::size_t c) const { return averages_path() ? mean_pose(start(c).start(lane(c)), pose(c)) : pose(c); }
+  ContactPose pose(std::size_t c) const { return start(c).pose(lane(c), moves_); }
   bool averages_path() const { return step_forces_ == StepForces::averaged; }
   /// What a step sees of the springs of contact c while it stays closed: half of them, if it averages over its path.
   ContactSprings seen_springs(std::size_t c) const;
@@ -232,10 +229,10 @@ class Newton {
   /// Part of the exact step along which the merit falls as it should; 0 if none. Leaves the forces there.
   double backtrack(const Eigen::VectorXd& d, const Eigen::VectorXd& step, double merit_before);
   /// The means over the path go to the solution, the forces at its end take their place.
-  std::vector<ElasticBatch> report_paths(StepSolution<N>& solution);
+  std::vector<ElasticBatch> report_paths(StepSolution& solution);
   std::vector<ElasticBatch> elastic_parts() const;
   /// The solution has the contacts' outcomes from here until the next step.
-  void lend(StepSolution<N>& solution);
+  void lend(StepSolution& solution);
   /// Of what there is now.
   Memory present_memory() const;
   /// Takes it into the account.
@@ -244,15 +241,15 @@ class Newton {
 
   Merit asked_merit_;
   double ramp_ = tolerance::cohesion_ramp;  ///< [-]
-  const StepProblem<N>* problem_ = nullptr;
+  const StepProblem* problem_ = nullptr;
   BatchKernels kernels_;
-  BatchRenewal<N> renewal_;
+  BatchRenewal renewal_;
   std::size_t contact_count_ = 0;
   /// Of the problem's contacts, in statics in the order of the list. Steps that are known by their outcomes have them, too: where they still do,
   /// the next step has others.
   std::shared_ptr<ContactStarts> starts_ = std::make_shared<ContactStarts>();
   std::vector<StepBlock> blocks_;                ///< the free ones, by their equations
-  std::vector<BlockMove<N>> moves_;              ///< at the trial displacement: of the rows, of others that a part sees, and of what stays
+  std::vector<BlockMove> moves_;                 ///< at the trial displacement: of the rows, of others that a part sees, and of what stays
   StepForces step_forces_ = StepForces::at_end;  ///< what trials_ has
   std::vector<TrialBatch> trials_;
   std::vector<Branch> branches_;         ///< of the contacts
@@ -267,14 +264,12 @@ class Newton {
   double force_scale_ = 0.0;
   double start_scale_ = 0.0;  ///< [N] largest single force at the start of the step, that of the inertia included
   double block_scale_ = 0.0;  ///< [N] the same of what acts on blocks without contacts
-  TangentSystem<N> tangent_;
+  TangentSystem tangent_;
   Neighbourhood neighbourhood_;  ///< of this step, once it is needed
   LinearCounters part_counters_;
   Memory memory_;
   bool is_part_ = false;
   bool only_if_few_change_ = false;
 };
-
-extern template class Newton<3>;
 
 }  // namespace openclose

@@ -6,10 +6,9 @@
 namespace openclose {
 namespace {
 
-template <int N>
-class PathAveraged : public TimeScheme<N> {
+class PathAveraged : public TimeScheme {
  public:
-  using Unknowns = typename TimeScheme<N>::Unknowns;
+  using Unknowns = TimeScheme::Unknowns;
 
   double inertia(double dt) const override { return 2.0 / (dt * dt); }
   double end_weight() const override { return 1.0; }
@@ -21,11 +20,8 @@ class PathAveraged : public TimeScheme<N> {
 
 }  // namespace
 
-template <int N>
-std::unique_ptr<TimeScheme<N>> make_path_average() {
-  return std::make_unique<PathAveraged<N>>();
+std::unique_ptr<TimeScheme> make_path_average() {
+  return std::make_unique<PathAveraged>();
 }
-
-template std::unique_ptr<TimeScheme<3>> make_path_average<3>();
 
 }  // namespace openclose

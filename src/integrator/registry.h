@@ -8,27 +8,20 @@
 
 namespace openclose {
 
-template <int N>
-std::unique_ptr<Enforcement<N>> make_soft();
-template <int N>
-std::unique_ptr<Enforcement<N>> make_hard();
-template <int N>
-std::unique_ptr<Enforcement<N>> make_shi();
-template <int N>
-std::unique_ptr<Enforcement<N>> make_dem();
+std::unique_ptr<Enforcement> make_soft();
+std::unique_ptr<Enforcement> make_hard();
+std::unique_ptr<Enforcement> make_shi();
+std::unique_ptr<Enforcement> make_dem();
 
-template <int N>
 struct EnforcementEntry {
   const char* name;
   const char* summary;
-  std::unique_ptr<Enforcement<N>> (*make)();
+  std::unique_ptr<Enforcement> (*make)();
 };
 
-template <int N>
-const std::vector<EnforcementEntry<N>>& enforcements();
+const std::vector<EnforcementEntry>& enforcements();
 
 /// Throws InputError, naming the accepted ones, if there is none of that name.
-template <int N>
-std::unique_ptr<Enforcement<N>> make_enforcement(const MethodInput& method);
+std::unique_ptr<Enforcement> make_enforcement(const MethodInput& method);
 
 }  // namespace openclose

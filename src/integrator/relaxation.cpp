@@ -90,8 +90,7 @@ class CountedContacts {
 
 }  // namespace
 
-template <int N>
-TwoLevelFlexibility Newton<N>::flexibility(const Eigen::VectorXd& d, const std::vector<bool>& counted, double longest_way) const {
+TwoLevelFlexibility Newton::flexibility(const Eigen::VectorXd& d, const std::vector<bool>& counted, double longest_way) const {
   const int rows = static_cast<int>(blocks_.size());
   const auto row_of = [&](int row) { return row < rows ? row : -1; };
   std::vector<Vec2> centroids;
@@ -113,14 +112,14 @@ TwoLevelFlexibility Newton<N>::flexibility(const Eigen::VectorXd& d, const std::
   for (std::size_t c = 0; c < contact_count_; ++c) {
     if (!counted[c]) continue;
     const int k = lane(c), i = row_of(start(c).vertex_place(k)), j = row_of(start(c).edge_place(k));
-    const ContactPose<N> pose = this->pose(c);
+    const ContactPose pose = this->pose(c);
     const Vec2 tangent(-pose.normal.y(), pose.normal.x());
     for (const auto& [stiffness, way] : {std::pair(start(c).normal[k], pose.normal), std::pair(start(c).shear[k], tangent)})
       sum.add_spring(stiffness, i, gradient(i, way, pose.vertex_arm), j, -gradient(j, way, pose.edge_arm));
   }
   for (int i = 0; i < rows; ++i) {
-    Eigen::Matrix<double, N, N> own = blocks_[i].inertia.asDiagonal();
-    if (blocks_[i].has_point_forces) own += problem_->external.stiffness(problem_->system, blocks_[i].block, d.template segment<N>(N * i));
+    Eigen::Matrix<double, dofs, dofs> own = blocks_[i].inertia.asDiagonal();
+    if (blocks_[i].has_point_forces) own += problem_->external.stiffness(problem_->system, blocks_[i].block, d.segment<dofs>(dofs * i));
     const double hold = unbalanced(i) / longest_way, radius = blocks_[i].radius;
     own.diagonal() += hold * Unknowns(1.0, 1.0, radius * radius);
     sum.add_own(i, own);
@@ -128,8 +127,7 @@ TwoLevelFlexibility Newton<N>::flexibility(const Eigen::VectorXd& d, const std::
   return sum;
 }
 
-template <int N>
-void Newton<N>::keep_slip() {  // all of the shear force is in the spring: nothing damps at rest
+void Newton::keep_slip() {  // all of the shear force is in the spring: nothing damps at rest
   constexpr auto sticking = static_cast<Branch>(ContactStatus::sticking);
   for (std::size_t i = 0; i < contacts().size(); ++i) {
     const Branch* const branches = branches_.data() + batch_size * i;
@@ -144,13 +142,11 @@ void Newton<N>::keep_slip() {  // all of the shear force is in the spring: nothi
   }
 }
 
-template <int N>
-ContactForces Newton<N>::slipped_as_a_whole(const SpringSource<N>& springs, std::size_t c) const {
+ContactForces Newton::slipped_as_a_whole(const SpringSource& springs, std::size_t c) const {
   return spring_slider(springs.make(c), start(c).strength(lane(c)), trial(c).gap_change[lane(c)], trial(c).slip_change[lane(c)]);
 }
 
-template <int N>
-bool Newton<N>::break_slipped_bonds(const SpringSource<N>& springs) {
+bool Newton::break_slipped_bonds(const SpringSource& springs) {
   bool any = false;
   for (std::size_t c = 0; c < contact_count_; ++c) {
     const Contact& contact = problem_->contacts[c];
@@ -166,8 +162,7 @@ bool Newton<N>::break_slipped_bonds(const SpringSource<N>& springs) {
   return any;
 }
 
-template <int N>
-void Newton<N>::note_slip(const SpringSource<N>& springs) {
+void Newton::note_slip(const SpringSource& springs) {
   for (std::size_t c = 0; c < contact_count_; ++c) {
     if (status(branches_[c]) != ContactStatus::sticking) continue;
     const ContactForces law = slipped_as_a_whole(springs, c);
@@ -176,17 +171,15 @@ void Newton<N>::note_slip(const SpringSource<N>& springs) {
   }
 }
 
-template <int N>
-bool Newton<N>::has_left(const Eigen::VectorXd& d) const {
+bool Newton::has_left(const Eigen::VectorXd& d) const {
   for (std::size_t i = 0; i < blocks_.size(); ++i) {
-    const double way = Motion<N>::displacement_bound(d.template segment<N>(N * static_cast<int>(i)), blocks_[i].radius);
+    const double way = Motion::displacement_bound(d.segment<dofs>(dofs * static_cast<int>(i)), blocks_[i].radius);
     if (!(way <= largest_overshoot * problem_->longest_displacement)) return true;
   }
   return false;
 }
 
-template <int N>
-void Newton<N>::relax(const StepProblem<N>& problem, const SpringSource<N>& springs, StepSolution<N>& solution) {
+void Newton::relax(const StepProblem& problem, const SpringSource& springs, StepSolution& solution) {
   take_back(solution.contacts);
   prepare(problem, springs);
   renewal_.forget();  // bonds may break in the batches, whether or not the step is taken
@@ -242,7 +235,5 @@ void Newton<N>::relax(const StepProblem<N>& problem, const SpringSource<N>& spri
   note_slip(springs);
   lend(solution);
 }
-
-template class Newton<3>;
 
 }  // namespace openclose

@@ -27,10 +27,9 @@ constexpr double default_penetration_m = 1e-3, default_penetration_of_size = 1e-
 /// [-] Of the penetration that is tolerated: a corner is found up to four times as deep as this, and its contact closes by more before it carries.
 constexpr double entry_of_penetration = 0.1;
 
-template <int N>
-class Shi : public Enforcement<N> {
+class Shi : public Enforcement {
  public:
-  ContactSprings springs(const StepProblem<N>& problem, const Contact& contact) const override {
+  ContactSprings springs(const StepProblem& problem, const Contact& contact) const override {
     const double joint = problem.joints.joint(contact.joint).normal_stiffness;
     ContactSprings s;
     s.normal = problem.method.penalty.value_or(default_penalty_over_joint * joint) * contact.length;
@@ -42,7 +41,7 @@ class Shi : public Enforcement<N> {
     return s;
   }
 
-  void solve(const StepProblem<N>& problem, StepSolution<N>& solution) override {
+  void solve(const StepProblem& problem, StepSolution& solution) override {
     begin(problem);
     for (int pass = 0; pass < problem.method.max_open_close_iterations; ++pass) {
       if (!solve_once(problem, solution)) return;
@@ -55,9 +54,9 @@ class Shi : public Enforcement<N> {
     solution.reason = "open-close iterations did not settle";
   }
 
-  std::unique_ptr<TimeScheme<N>> make_time_scheme(const MethodInput& method) const override {
+  std::unique_ptr<TimeScheme> make_time_scheme(const MethodInput& method) const override {
     refuse_integrators(method);
-    return make_theta_scheme<N>(1.0);
+    return make_theta_scheme(1.0);
   }
   bool follows_gaps() const override { return false; }  // they add up first-order changes
   /// A contact that is found deeper than what is tolerated of closed ones would have no step.
@@ -74,23 +73,23 @@ class Shi : public Enforcement<N> {
   void exchange(Archive& archive) override { tangent_.exchange(archive); }
 
  private:
-  using Unknowns = typename Motion<N>::Unknowns;
+  using Unknowns = Motion::Unknowns;
 
   /// A contact in the geometry of the start of the step; its changes of gap and slip are linear in the displacement.
   struct LinearContact {
     ContactSprings springs;
     CarriedForces forces;
-    ContactKinematics<N> kinematics;
+    ContactKinematics kinematics;
   };
 
-  void begin(const StepProblem<N>& problem) {
+  void begin(const StepProblem& problem) {
     const Unknowns still = Unknowns::Zero();
     outcome_.clear();
     strength_.clear();
     applied_shear_.clear();
     for (const Contact& c : problem.contacts) {
       strength_.emplace_back(problem.joints.joint(c.joint), c);
-      LinearContact o{springs(problem, c), {}, ContactKinematics<N>(problem.system, c, still, still)};
+      LinearContact o{springs(problem, c), {}, ContactKinematics(problem.system, c, still, still)};
       o.forces.status = c.status == ContactStatus::open && c.stretch() < -problem.method.closing_tolerance ? ContactStatus::sticking : c.status;
       o.forces.normal = c.normal_force;
       o.forces.shear = std::copysign(strength_.back().shear_bound(c.normal_force).value, c.shear_force);
@@ -100,25 +99,25 @@ class Shi : public Enforcement<N> {
     tangent_.fit(problem);
   }
 
-  bool solve_once(const StepProblem<N>& problem, StepSolution<N>& solution) {
-    const BlockSystem<N>& system = problem.system;
+  bool solve_once(const StepProblem& problem, StepSolution& solution) {
+    const BlockSystem& system = problem.system;
     tangent_.matrix().set_zero();
-    Eigen::VectorXd right = Eigen::VectorXd::Zero(N * system.free_count());
+    Eigen::VectorXd right = Eigen::VectorXd::Zero(dofs * system.free_count());
     const Unknowns still = Unknowns::Zero();
     for (int b : system.free_blocks()) {
       const auto& block = system.block(b);
-      typename Motion<N>::Matrix diagonal = problem.external.stiffness(system, b, still);
+      Motion::Matrix diagonal = problem.external.stiffness(system, b, still);
       diagonal += (problem.inertia * block.mass).asDiagonal();
       tangent_.matrix().add(block.equation, block.equation, diagonal);
-      right.template segment<N>(N * block.equation) =
+      right.segment<dofs>(dofs * block.equation) =
           problem.inertia * problem.dt * block.mass.cwiseProduct(problem.velocity(b)) + problem.external.force(system, b, still);
     }
     for (std::size_t c = 0; c < outcome_.size(); ++c) add_contact(problem, c, right);
     for (int b : system.free_blocks()) {
       const auto& block = system.block(b);
       if (!block.rotation_locked) continue;
-      tangent_.matrix().eliminate(block.equation, Motion<N>::rotation_index);
-      right[N * block.equation + Motion<N>::rotation_index] = 0.0;
+      tangent_.matrix().eliminate(block.equation, Motion::rotation_index);
+      right[dofs * block.equation + Motion::rotation_index] = 0.0;
     }
     ++solution.effort.iterations;
     const bool regular = tangent_.factor(0.0);
@@ -130,7 +129,7 @@ class Shi : public Enforcement<N> {
     return true;
   }
 
-  void add_contact(const StepProblem<N>& problem, std::size_t c, Eigen::VectorXd& right) {
+  void add_contact(const StepProblem& problem, std::size_t c, Eigen::VectorXd& right) {
     const Contact& contact = problem.contacts[c];
     const LinearContact& o = outcome_[c];
     if (o.forces.status == ContactStatus::open) return;
@@ -139,18 +138,18 @@ class Shi : public Enforcement<N> {
     const double normal = -o.springs.normal * (o.springs.gap - o.springs.target) + viscous_normal(o.springs, strength_[c], 0.0);
     const double shear = locked ? o.springs.initial_shear : o.forces.shear;
     applied_shear_[c] = shear;
-    const ContactKinematics<N>& k = o.kinematics;
+    const ContactKinematics& k = o.kinematics;
     const int i = problem.system.block(contact.vertex_block).equation, j = problem.system.block(contact.edge_block).equation;
     const auto block = [&](const Unknowns& n1, const Unknowns& t1, const Unknowns& n2, const Unknowns& t2) {
-      return typename Motion<N>::Matrix(kn * n1 * n2.transpose() + ks * t1 * t2.transpose());
+      return Motion::Matrix(kn * n1 * n2.transpose() + ks * t1 * t2.transpose());
     };
     if (i >= 0) {
       tangent_.matrix().add(i, i, block(k.normal_vertex, k.shear_vertex, k.normal_vertex, k.shear_vertex));
-      right.template segment<N>(N * i) += normal * k.normal_vertex + shear * k.shear_vertex;
+      right.segment<dofs>(dofs * i) += normal * k.normal_vertex + shear * k.shear_vertex;
     }
     if (j >= 0) {
       tangent_.matrix().add(j, j, block(k.normal_edge, k.shear_edge, k.normal_edge, k.shear_edge));
-      right.template segment<N>(N * j) += normal * k.normal_edge + shear * k.shear_edge;
+      right.segment<dofs>(dofs * j) += normal * k.normal_edge + shear * k.shear_edge;
     }
     if (i >= 0 && j >= 0) {
       tangent_.matrix().add(i, j, block(k.normal_vertex, k.shear_vertex, k.normal_edge, k.shear_edge));
@@ -159,14 +158,14 @@ class Shi : public Enforcement<N> {
   }
 
   /// Moves every contact to the state its springs ask for; true if any state has changed. Forces are updated either way.
-  bool change_states(const StepProblem<N>& problem, const Eigen::VectorXd& d) {
+  bool change_states(const StepProblem& problem, const Eigen::VectorXd& d) {
     bool changed = false;
     for (std::size_t c = 0; c < outcome_.size(); ++c) {
       const Contact& contact = problem.contacts[c];
       LinearContact& o = outcome_[c];
       const auto path = [&](int b, const Unknowns& gradient) {
         const int i = problem.system.block(b).equation;
-        return i < 0 ? 0.0 : gradient.dot(d.template segment<N>(N * i));
+        return i < 0 ? 0.0 : gradient.dot(d.segment<dofs>(dofs * i));
       };
       o.kinematics.gap_change = path(contact.vertex_block, o.kinematics.normal_vertex) + path(contact.edge_block, o.kinematics.normal_edge);
       o.kinematics.slip_change = path(contact.vertex_block, o.kinematics.shear_vertex) + path(contact.edge_block, o.kinematics.shear_edge);
@@ -179,7 +178,7 @@ class Shi : public Enforcement<N> {
     return changed;
   }
 
-  static CarriedForces next_forces(const StepProblem<N>& problem, const LinearContact& o, const ContactStrength& strength) {
+  static CarriedForces next_forces(const StepProblem& problem, const LinearContact& o, const ContactStrength& strength) {
     const double stretch = (o.springs.gap - o.springs.target) + o.kinematics.gap_change;
     const double elastic = -o.springs.normal * stretch, normal = elastic + viscous_normal(o.springs, strength, o.kinematics.gap_change);
     const double elastic_trial = o.springs.initial_shear - o.springs.shear * o.kinematics.slip_change;
@@ -209,7 +208,7 @@ class Shi : public Enforcement<N> {
   }
 
   /// [m] The size is the root of the median area, so that single slivers or giants do not decide.
-  static double default_penetration_tolerance(const BlockSystem<N>& system) {
+  static double default_penetration_tolerance(const BlockSystem& system) {
     std::vector<double> areas;
     for (int b : system.free_blocks()) areas.push_back(system.block(b).area);
     if (areas.empty()) return default_penetration_m;
@@ -218,7 +217,7 @@ class Shi : public Enforcement<N> {
     return std::max(default_penetration_m, default_penetration_of_size * std::sqrt(*median));
   }
 
-  void finish(const StepProblem<N>& problem, StepSolution<N>& solution) {
+  void finish(const StepProblem& problem, StepSolution& solution) {
     std::optional<double> tolerated = problem.method.penetration_tolerance;
     for (const LinearContact& o : outcome_) {
       const double depth = o.forces.status == ContactStatus::open ? 0.0 : -(o.springs.gap + o.kinematics.gap_change);
@@ -233,7 +232,7 @@ class Shi : public Enforcement<N> {
     }
     solution.converged = solution.first_order = true;
     for (std::size_t c = 0; c < outcome_.size(); ++c) {
-      const ContactKinematics<N>& k = outcome_[c].kinematics;
+      const ContactKinematics& k = outcome_[c].kinematics;
       // What a sliding contact carried in this step is the friction of the pass before.
       CarriedForces f = outcome_[c].forces;
       if (f.status == ContactStatus::sliding) {
@@ -249,17 +248,14 @@ class Shi : public Enforcement<N> {
   std::vector<LinearContact> outcome_;
   std::vector<ContactStrength> strength_;
   std::vector<double> applied_shear_;  ///< [N] right side of the last pass
-  TangentSystem<N> tangent_;
+  TangentSystem tangent_;
   Memory memory_of_solution_;
 };
 
 }  // namespace
 
-template <int N>
-std::unique_ptr<Enforcement<N>> make_shi() {
-  return std::make_unique<Shi<N>>();
+std::unique_ptr<Enforcement> make_shi() {
+  return std::make_unique<Shi>();
 }
-
-template std::unique_ptr<Enforcement<3>> make_shi<3>();
 
 }  // namespace openclose

@@ -20,11 +20,10 @@ constexpr double largest_dissipation = 0.1;
 constexpr int many_blocks = 9000;
 
 /// Those of a step.
-template <int N>
-class SoftSprings final : public SpringSource<N> {
+class SoftSprings final : public SpringSource {
  public:
   /// \param dissipation  [-] for path_average, instead of what the scene says
-  SoftSprings(const Enforcement<N>& of, const StepProblem<N>& problem, std::optional<double> dissipation = {})
+  SoftSprings(const Enforcement& of, const StepProblem& problem, std::optional<double> dissipation = {})
       : of_(of), problem_(problem), dissipation_(dissipation) {}
   ContactSprings make(std::size_t c) const override {
     ContactSprings springs = of_.springs(problem_, problem_.contacts[c]);
@@ -34,15 +33,14 @@ class SoftSprings final : public SpringSource<N> {
   bool last() const override { return !dissipation_; }
 
  private:
-  const Enforcement<N>& of_;
-  const StepProblem<N>& problem_;
+  const Enforcement& of_;
+  const StepProblem& problem_;
   std::optional<double> dissipation_;
 };
 
-template <int N>
-class Soft final : public Enforcement<N> {
+class Soft final : public Enforcement {
  public:
-  ContactSprings springs(const StepProblem<N>& problem, const Contact& contact) const override {
+  ContactSprings springs(const StepProblem& problem, const Contact& contact) const override {
     ContactSprings s = joint_springs(problem, contact);
     add_dashpots(problem, contact, s);
     if (problem.averages_path() && problem.method.dissipation) {
@@ -53,25 +51,25 @@ class Soft final : public Enforcement<N> {
     return s;
   }
 
-  void solve(const StepProblem<N>& problem, StepSolution<N>& solution) override {
-    attempt(problem, SoftSprings<N>(*this, problem), solution);
+  void solve(const StepProblem& problem, StepSolution& solution) override {
+    attempt(problem, SoftSprings(*this, problem), solution);
     if (solution.converged || !problem.averages_path()) return;
     const StepEffort wasted = solution.effort;
     solution.clear();
-    attempt(problem, SoftSprings<N>(*this, problem, largest_dissipation), solution);
+    attempt(problem, SoftSprings(*this, problem, largest_dissipation), solution);
     solution.effort += wasted;
     solution.dissipative = true;
   }
 
   bool takes_adaptive_steps() const override { return true; }
   bool has_joint_springs() const override { return true; }
-  std::unique_ptr<TimeScheme<N>> make_time_scheme(const MethodInput& method) const override { return make_integrator<N>(method); }
+  std::unique_ptr<TimeScheme> make_time_scheme(const MethodInput& method) const override { return make_integrator(method); }
   LinearCounters linear_counters() const override { return newton_.linear_counters(); }
   Memory memory() const override { return newton_.memory(); }
   void exchange(Archive& archive) override { newton_.exchange(archive); }
 
  private:
-  void attempt(const StepProblem<N>& problem, const SoftSprings<N>& springs, StepSolution<N>& solution) {
+  void attempt(const StepProblem& problem, const SoftSprings& springs, StepSolution& solution) {
     solution.d = drift(problem);
     const StaticSolver solver = problem.statics ? problem.method.static_solver : StaticSolver::newton;
     const bool is_large = problem.system.free_count() >= many_blocks;
@@ -89,17 +87,14 @@ class Soft final : public Enforcement<N> {
     newton_.relax(problem, springs, solution);
   }
 
-  Newton<N> newton_;
+  Newton newton_;
   bool few_change_ = false;  ///< the last static step of many blocks was solved by Newton's method
 };
 
 }  // namespace
 
-template <int N>
-std::unique_ptr<Enforcement<N>> make_soft() {
-  return std::make_unique<Soft<N>>();
+std::unique_ptr<Enforcement> make_soft() {
+  return std::make_unique<Soft>();
 }
-
-template std::unique_ptr<Enforcement<3>> make_soft<3>();
 
 }  // namespace openclose

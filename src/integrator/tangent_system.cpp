@@ -5,9 +5,8 @@
 
 namespace openclose {
 
-template <int N>
 template <class BlocksOf>
-bool TangentSystem<N>::find_slots(std::size_t count, const BlocksOf& blocks_of) {
+bool TangentSystem::find_slots(std::size_t count, const BlocksOf& blocks_of) {
   slots_.diagonals.clear();
   for (int row : row_of_) slots_.diagonals.push_back(row < 0 ? matrix_.nobody() : matrix_.diagonal(row));
   const ContactSlots nobodies{matrix_.nobody(), matrix_.nobody()};
@@ -32,18 +31,16 @@ bool TangentSystem<N>::find_slots(std::size_t count, const BlocksOf& blocks_of) 
   return true;
 }
 
-template <int N>
-void TangentSystem<N>::fit(const StepProblem<N>& problem) {
+void TangentSystem::fit(const StepProblem& problem) {
   row_of_.clear();
   for (int b = 0; b < problem.system.block_count(); ++b) row_of_.push_back(problem.system.block(b).equation);
   fit_pattern(problem, [&](std::size_t c) { return std::pair(problem.contacts[c].vertex_block, problem.contacts[c].edge_block); });
 }
 
-template <int N>
-void TangentSystem<N>::fit(const StepProblem<N>& problem, const std::vector<ContactBatch>& contacts) {
+void TangentSystem::fit(const StepProblem& problem, const std::vector<ContactBatch>& contacts) {
   row_of_.resize(problem.system.free_count() + 1);
   std::iota(row_of_.begin(), row_of_.end() - 1, 0);
-  row_of_.back() = BlockSystem<N>::fixed;
+  row_of_.back() = BlockSystem::fixed;
   fit_pattern(problem, [&](std::size_t at) {
     const ContactBatch& batch = contacts[at / batch_size];
     const int k = static_cast<int>(at % batch_size);
@@ -51,9 +48,8 @@ void TangentSystem<N>::fit(const StepProblem<N>& problem, const std::vector<Cont
   });
 }
 
-template <int N>
 template <class BlocksOf>
-void TangentSystem<N>::fit_pattern(const StepProblem<N>& problem, const BlocksOf& blocks_of) {
+void TangentSystem::fit_pattern(const StepProblem& problem, const BlocksOf& blocks_of) {
   skip_symbolic_ = problem.method.skip_symbolic;
   const int rows = problem.system.free_count();
   const bool fits = solver_ && matrix_.rows() == rows && find_slots(problem.contacts.size(), blocks_of);
@@ -63,17 +59,15 @@ void TangentSystem<N>::fit_pattern(const StepProblem<N>& problem, const BlocksOf
   solver_->let_rows_lag(!problem.statics);
 }
 
-template <int N>
-void TangentSystem<N>::fit_part(const MethodInput& method, int rows, int blocks, const std::vector<std::pair<int, int>>& contacts) {
-  row_of_.assign(blocks, BlockSystem<N>::fixed);
+void TangentSystem::fit_part(const MethodInput& method, int rows, int blocks, const std::vector<std::pair<int, int>>& contacts) {
+  row_of_.assign(blocks, BlockSystem::fixed);
   std::iota(row_of_.begin(), row_of_.begin() + rows, 0);
   solver_ = nullptr;
   renew_pattern(method, rows, contacts.size(), [&](std::size_t c) { return contacts[c]; });
 }
 
-template <int N>
 template <class BlocksOf>
-void TangentSystem<N>::renew_pattern(const MethodInput& method, int rows, std::size_t count, const BlocksOf& blocks_of) {
+void TangentSystem::renew_pattern(const MethodInput& method, int rows, std::size_t count, const BlocksOf& blocks_of) {
   std::vector<std::pair<int, int>> couplings;
   for (std::size_t c = 0; c < count; ++c) {
     const auto [a, b] = blocks_of(c);
@@ -87,36 +81,31 @@ void TangentSystem<N>::renew_pattern(const MethodInput& method, int rows, std::s
   find_slots(count, blocks_of);
 }
 
-template <int N>
-void TangentSystem<N>::set_pattern(int rows, const std::vector<std::pair<int, int>>& couplings) {
+void TangentSystem::set_pattern(int rows, const std::vector<std::pair<int, int>>& couplings) {
   matrix_.set_pattern(rows, couplings);
   slots_.of_contacts.clear();
   if (!solver_) choose_solver(rows);
 }
 
-template <int N>
-void TangentSystem<N>::choose_solver(int rows) {
+void TangentSystem::choose_solver(int rows) {
   solver_rows_ = rows;
-  solver_ = make_solver<N>(kind_, factoring_);
+  solver_ = make_solver(kind_, factoring_);
 }
 
-template <int N>
-bool TangentSystem<N>::factor(double kept_change) {
+bool TangentSystem::factor(double kept_change) {
   if (!skip_symbolic_) matrix_.renew_version();
   const bool regular = solver_->factor(matrix_, kept_change);
   solver_memory_.grow_to(solver_->memory());
   return regular;
 }
 
-template <int N>
-Eigen::VectorXd TangentSystem<N>::solve(const Eigen::VectorXd& right_side, double reduction, double enough) {
+Eigen::VectorXd TangentSystem::solve(const Eigen::VectorXd& right_side, double reduction, double enough) {
   Eigen::VectorXd x = solver_->solve(right_side, reduction, enough);
   solver_memory_.grow_to(solver_->memory());
   return x;
 }
 
-template <int N>
-Memory TangentSystem<N>::memory() const {
+Memory TangentSystem::memory() const {
   Memory of = solver_memory_;
   of.matrix = matrix_.bytes();
   of.contacts = bytes_of(slots_.of_contacts);
@@ -124,8 +113,7 @@ Memory TangentSystem<N>::memory() const {
   return of;
 }
 
-template <int N>
-void TangentSystem<N>::exchange(Archive& archive) {
+void TangentSystem::exchange(Archive& archive) {
   int rows = matrix_.rows();
   auto couplings = matrix_.couplings();
   archive(solver_rows_, rows, couplings, kind_, factoring_);
@@ -136,7 +124,5 @@ void TangentSystem<N>::exchange(Archive& archive) {
   }
   solver_->exchange(archive, matrix_);
 }
-
-template class TangentSystem<3>;
 
 }  // namespace openclose

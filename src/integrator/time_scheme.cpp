@@ -3,10 +3,9 @@
 namespace openclose {
 namespace {
 
-template <int N>
-class ThetaScheme : public TimeScheme<N> {
+class ThetaScheme : public TimeScheme {
  public:
-  using Unknowns = typename TimeScheme<N>::Unknowns;
+  using Unknowns = TimeScheme::Unknowns;
   explicit ThetaScheme(double theta) : theta_(theta) {}
 
   double inertia(double dt) const override { return 2.0 / (dt * dt); }
@@ -19,10 +18,9 @@ class ThetaScheme : public TimeScheme<N> {
   double theta_;
 };
 
-template <int N>
-class MidstepScheme : public TimeScheme<N> {
+class MidstepScheme : public TimeScheme {
  public:
-  using Unknowns = typename TimeScheme<N>::Unknowns;
+  using Unknowns = TimeScheme::Unknowns;
   explicit MidstepScheme(double end_weight) : end_weight_(end_weight) {}
 
   double inertia(double dt) const override { return 1.0 / (dt * span(dt)); }
@@ -45,23 +43,16 @@ class MidstepScheme : public TimeScheme<N> {
 
 }  // namespace
 
-template <int N>
-std::unique_ptr<TimeScheme<N>> make_theta_scheme(double theta) {
-  return std::make_unique<ThetaScheme<N>>(theta);
+std::unique_ptr<TimeScheme> make_theta_scheme(double theta) {
+  return std::make_unique<ThetaScheme>(theta);
 }
 
-template <int N>
-std::unique_ptr<TimeScheme<N>> make_midstep_scheme() {
-  return std::make_unique<MidstepScheme<N>>(1.0);
+std::unique_ptr<TimeScheme> make_midstep_scheme() {
+  return std::make_unique<MidstepScheme>(1.0);
 }
 
-template <int N>
-std::unique_ptr<TimeScheme<N>> make_central_difference_scheme() {
-  return std::make_unique<MidstepScheme<N>>(0.0);
+std::unique_ptr<TimeScheme> make_central_difference_scheme() {
+  return std::make_unique<MidstepScheme>(0.0);
 }
-
-template std::unique_ptr<TimeScheme<3>> make_theta_scheme<3>(double);
-template std::unique_ptr<TimeScheme<3>> make_midstep_scheme<3>();
-template std::unique_ptr<TimeScheme<3>> make_central_difference_scheme<3>();
 
 }  // namespace openclose

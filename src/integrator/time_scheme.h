@@ -18,10 +18,9 @@ struct TimeSpan {
   double from, to;
 };
 
-template <int N>
 class TimeScheme {
  public:
-  using Unknowns = typename Motion<N>::Unknowns;
+  using Unknowns = Motion::Unknowns;
   virtual ~TimeScheme() = default;
 
   virtual double inertia(double dt) const = 0;  ///< [1/s2]
@@ -60,25 +59,21 @@ class TimeScheme {
 
 /// u1 = u0 + dt (v0 + v1)/2, M (v1 - v0) = dt [theta F1 + (1 - theta) F0]. theta = 1: Newmark (1/2, 1), Shi's, order 1; theta = 1/2: trapezoid,
 /// Newmark (1/4, 1/2), order 2. Exact for constant forces.
-template <int N>
-std::unique_ptr<TimeScheme<N>> make_theta_scheme(double theta);
+std::unique_ptr<TimeScheme> make_theta_scheme(double theta);
 
 /// Velocities at mid-steps: v = d/dt, M (v_new - v_old) = h F with h = (dt + previous dt)/2, half a step at the start. Exact for constant forces, of
 /// order 1 for forces that change with the position, which are taken at the end of the step; a gap that is held has no velocity, where 2 d/dt - v
 /// would ring for ever. Used by `hard`.
-template <int N>
-std::unique_ptr<TimeScheme<N>> make_midstep_scheme();
+std::unique_ptr<TimeScheme> make_midstep_scheme();
 
 /// Central difference: the same velocities at mid-steps, with the forces at the start of the step. Explicit, of order 2 (order 1 in what dashpots do,
 /// whose velocity is half a step old). Used by `dem`.
-template <int N>
-std::unique_ptr<TimeScheme<N>> make_central_difference_scheme();
+std::unique_ptr<TimeScheme> make_central_difference_scheme();
 
 /// What a scheme remembers of every block; zero until it was set.
-template <int N>
 class BlockMemory {
  public:
-  using Unknowns = typename Motion<N>::Unknowns;
+  using Unknowns = Motion::Unknowns;
   Unknowns of(int b) const { return b < static_cast<int>(values_.size()) ? values_[b] : Unknowns(Unknowns::Zero()); }
   void set(int b, const Unknowns& value) {
     if (b >= static_cast<int>(values_.size())) values_.resize(b + 1, Unknowns::Zero());

@@ -16,10 +16,9 @@ const double c1 = 1.0 / (g * (2.0 - g));
 const double c2 = c1 - 1.0;
 const double c3 = 0.5 * g;
 
-template <int N>
-class TrBdf2 : public TimeScheme<N> {
+class TrBdf2 : public TimeScheme {
  public:
-  using Unknowns = typename TimeScheme<N>::Unknowns;
+  using Unknowns = TimeScheme::Unknowns;
 
   double inertia(double dt) const override {
     if (!second_) return 2.0 / (dt * dt);
@@ -71,16 +70,13 @@ class TrBdf2 : public TimeScheme<N> {
 
   bool second_ = false;
   double first_dt_ = 0.0;
-  BlockMemory<N> first_d_, first_v_;
+  BlockMemory first_d_, first_v_;
 };
 
 }  // namespace
 
-template <int N>
-std::unique_ptr<TimeScheme<N>> make_tr_bdf2() {
-  return std::make_unique<TrBdf2<N>>();
+std::unique_ptr<TimeScheme> make_tr_bdf2() {
+  return std::make_unique<TrBdf2>();
 }
-
-template std::unique_ptr<TimeScheme<3>> make_tr_bdf2<3>();
 
 }  // namespace openclose

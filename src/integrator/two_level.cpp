@@ -14,8 +14,8 @@ TwoLevelFlexibility::TwoLevelFlexibility(const std::vector<Vec2>& centroids, con
       group_(centroids.size()),
       arm_(centroids),
       turns_(centroids.size(), 1.0),
-      within_solver_(make_estimating_solver<3>()),
-      between_solver_(make_block_solver<3>(Factoring::whole)) {
+      within_solver_(make_estimating_solver()),
+      between_solver_(make_block_solver(Factoring::whole)) {
   std::vector<int> rows(centroids.size());
   std::iota(rows.begin(), rows.end(), 0);
   divide(rows.begin(), rows.end(), centroids);
@@ -74,7 +74,7 @@ void TwoLevelFlexibility::add_own(int row, const Stiffness& stiffness) {
 }
 
 void TwoLevelFlexibility::add_spring(double stiffness, int i, const Unknowns& first, int j, const Unknowns& second) {
-  const auto join = [&](BlockMatrix<3>& matrix, int row, const Unknowns& a, int column, const Unknowns& b) {
+  const auto join = [&](BlockMatrix& matrix, int row, const Unknowns& a, int column, const Unknowns& b) {
     matrix.add(row, column, stiffness * a * b.transpose());
     if (row != column) matrix.add(column, row, stiffness * b * a.transpose());
   };
@@ -112,7 +112,7 @@ Memory TwoLevelFlexibility::memory() const {
   Memory of;
   of.blocks = bytes_of(group_, arm_, turns_);
   of.matrix = within_.bytes() + between_.bytes();
-  for (const LinearSolver<3>* solver : {within_solver_.get(), between_solver_.get()}) of += solver ? solver->memory() : Memory();
+  for (const LinearSolver* solver : {within_solver_.get(), between_solver_.get()}) of += solver ? solver->memory() : Memory();
   return of;
 }
 

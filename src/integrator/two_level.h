@@ -56,8 +56,8 @@ class TwoLevelFlexibility {
   std::vector<int> group_;     ///< by rows
   std::vector<Vec2> arm_;      ///< [m] from the centre of the group
   std::vector<double> turns_;  ///< 1, or 0 where the rotation is locked
-  BlockMatrix<3> within_, between_;
-  std::unique_ptr<LinearSolver<3>> within_solver_, between_solver_;
+  BlockMatrix within_, between_;
+  std::unique_ptr<LinearSolver> within_solver_, between_solver_;
 };
 
 }  // namespace openclose

@@ -24,10 +24,10 @@ std::vector<std::string> known_names(NameIn list) {
   std::vector<std::string> names;
   switch (list) {
     case NameIn::enforcements:
-      for (const auto& entry : enforcements<3>()) names.emplace_back(entry.name);
+      for (const auto& entry : enforcements()) names.emplace_back(entry.name);
       break;
     case NameIn::integrators:
-      for (const auto& entry : integrators<3>()) names.emplace_back(entry.name);
+      for (const auto& entry : integrators()) names.emplace_back(entry.name);
       break;
     case NameIn::formats:
       for (const OutputFormat& entry : output_formats()) names.emplace_back(entry.name);

@@ -136,12 +136,10 @@ void EnergyFile::add(double time, const EnergyLedger& ledger) {
   require_written();
 }
 
-template <int N>
-BlocksFile<N>::BlocksFile(const OutputFolder& folder, const RestartPoint* restart)
+BlocksFile::BlocksFile(const OutputFolder& folder, const RestartPoint* restart)
     : RunTable(folder, "blocks.csv", "state,block,vertex,x_m,y_m", restart) {}
 
-template <int N>
-void BlocksFile<N>::add(const std::string& state, const Scene& scene, const BlockSystem<N>& system) {
+void BlocksFile::add(const std::string& state, const Scene& scene, const BlockSystem& system) {
   std::string rows;
   for (int b = 0; b < system.block_count(); ++b) {
     const auto& block = system.block(b);
@@ -154,18 +152,16 @@ void BlocksFile<N>::add(const std::string& state, const Scene& scene, const Bloc
   require_written();
 }
 
-template <int N>
-ContactsFile<N>::ContactsFile(const OutputFolder& folder, const RestartPoint* restart)
+ContactsFile::ContactsFile(const OutputFolder& folder, const RestartPoint* restart)
     : RunTable(folder, "contacts.csv", "state,block_a,block_b,x_m,y_m,normal_x,normal_y,length_m,gap_m,normal_force_n,shear_force_n,status",
                restart) {}
 
-template <int N>
-void ContactsFile<N>::add(const std::string& state, const Scene& scene, const BlockSystem<N>& system, const std::vector<Contact>& contacts) {
-  const auto still = Motion<N>::Unknowns::Zero().eval();
+void ContactsFile::add(const std::string& state, const Scene& scene, const BlockSystem& system, const std::vector<Contact>& contacts) {
+  const auto still = Motion::Unknowns::Zero().eval();
   std::string rows;
   for (const Contact& c : contacts) {
     const Vec2 p = system.position(c.vertex_block, c.vertex) + system.origin();
-    const Vec2 n = ContactKinematics<N>(system, c, still, still).normal;
+    const Vec2 n = ContactKinematics(system, c, still, still).normal;
     print(rows, "{},{},{},{},{},{},{},{},{},{},{},{}\n", state, field(scene.blocks[c.vertex_block].name), field(scene.blocks[c.edge_block].name),
           p.x(), p.y(), n.x(), n.y(), c.length, c.gap, c.normal_force, c.shear_force, name_of(c.status));
   }
@@ -173,36 +169,32 @@ void ContactsFile<N>::add(const std::string& state, const Scene& scene, const Bl
   require_written();
 }
 
-template <int N>
-BlockStatesFile<N>::BlockStatesFile(const OutputFolder& folder, const RestartPoint* restart)
+BlockStatesFile::BlockStatesFile(const OutputFolder& folder, const RestartPoint* restart)
     : RunTable(folder, "block_states.csv",
                "state,time_s,block,x_m,y_m,displacement_x_m,displacement_y_m,rotation_rad,velocity_x_m_per_s,velocity_y_m_per_s,"
                "angular_velocity_rad_per_s",
                restart) {}
 
-template <int N>
-void BlockStatesFile<N>::add_place(std::string& rows, const std::string& state, const std::string& time, const Scene& scene,
-                                   const BlockSystem<N>& system, int b) const {
+void BlockStatesFile::add_place(std::string& rows, const std::string& state, const std::string& time, const Scene& scene, const BlockSystem& system,
+                                int b) const {
   const Vec2 p = system.centroid(b) + system.origin();
   const auto& d = system.displacement(b);
-  print(rows, "{},{},{},{},{},{},{},{}", state, time, field(scene.blocks[b].name), p.x(), p.y(), d[0], d[1], Motion<N>::rotation(d));
+  print(rows, "{},{},{},{},{},{},{},{}", state, time, field(scene.blocks[b].name), p.x(), p.y(), d[0], d[1], Motion::rotation(d));
 }
 
-template <int N>
-void BlockStatesFile<N>::add(const std::string& state, const Simulation<N>& simulation) {
+void BlockStatesFile::add(const std::string& state, const Simulation& simulation) {
   const std::string time = fmt::format("{}", simulation.time());
   std::string rows;
   for (int b = 0; b < simulation.system().block_count(); ++b) {
     add_place(rows, state, time, simulation.scene(), simulation.system(), b);
     const auto v = simulation.velocity(b);
-    print(rows, ",{},{},{}\n", v[0], v[1], Motion<N>::rotation(v));
+    print(rows, ",{},{},{}\n", v[0], v[1], Motion::rotation(v));
   }
   file_ << rows;
   require_written();
 }
 
-template <int N>
-void BlockStatesFile<N>::add(const std::string& state, const Scene& scene, const BlockSystem<N>& system) {
+void BlockStatesFile::add(const std::string& state, const Scene& scene, const BlockSystem& system) {
   std::string rows;
   for (int b = 0; b < system.block_count(); ++b) {
     add_place(rows, state, "", scene, system, b);
@@ -212,13 +204,11 @@ void BlockStatesFile<N>::add(const std::string& state, const Scene& scene, const
   require_written();
 }
 
-template <int N>
-CracksFile<N>::CracksFile(const OutputFolder& folder, const Scene& scene, const RestartPoint* restart)
+CracksFile::CracksFile(const OutputFolder& folder, const Scene& scene, const RestartPoint* restart)
     : RunTable(folder, "cracks.csv", "state,block_a,block_b,x1_m,y1_m,x2_m,y2_m,length_m,opening1_m,opening2_m,slip1_m,slip2_m", restart),
       joints_(drawn_joints(scene)) {}
 
-template <int N>
-void CracksFile<N>::add(const std::string& state, const Scene& scene, const BlockSystem<N>& system) {
+void CracksFile::add(const std::string& state, const Scene& scene, const BlockSystem& system) {
   std::string rows;
   for (const DrawnJoint& joint : joints_) {
     const JointMotion m = joint_motion(joint, system);
@@ -241,41 +231,35 @@ void ContactHistoryFile::add(double time, const std::vector<ContactMotion>& moti
   require_written();
 }
 
-template <int N>
-StateTables<N>::StateTables(const OutputFolder& folder, const Scene& scene, const RestartPoint* restart)
+StateTables::StateTables(const OutputFolder& folder, const Scene& scene, const RestartPoint* restart)
     : blocks_(folder, restart), contacts_(folder, restart), states_(folder, restart), cracks_(folder, scene, restart) {}
 
-template <int N>
-void StateTables<N>::add(const std::string& state, const Simulation<N>& simulation, const std::vector<Contact>& contacts) {
+void StateTables::add(const std::string& state, const Simulation& simulation, const std::vector<Contact>& contacts) {
   blocks_.add(state, simulation);
   contacts_.add(state, simulation.scene(), simulation.system(), contacts);
   states_.add(state, simulation);
   cracks_.add(state, simulation.scene(), simulation.system());
 }
 
-template <int N>
-void StateTables<N>::add(const NamedState<N>& state, const Scene& scene) {
+void StateTables::add(const NamedState& state, const Scene& scene) {
   blocks_.add(state.name, scene, state.system);
   contacts_.add(state.name, scene, state.system, state.contacts);
   states_.add(state.name, scene, state.system);
   cracks_.add(state.name, scene, state.system);
 }
 
-template <int N>
-std::vector<std::pair<std::string, std::uint64_t>> StateTables<N>::written() {
+std::vector<std::pair<std::string, std::uint64_t>> StateTables::written() {
   return {blocks_.written(), contacts_.written(), states_.written(), cracks_.written()};
 }
 
-template <int N>
-void StateTables<N>::close() {
+void StateTables::close() {
   blocks_.close();
   contacts_.close();
   states_.close();
   cracks_.close();
 }
 
-template <int N>
-void write_block_properties(const OutputFolder& folder, const Scene& scene, const BlockSystem<N>& system) {
+void write_block_properties(const OutputFolder& folder, const Scene& scene, const BlockSystem& system) {
   std::ofstream file = folder.open("block_properties.csv");
   file << "block,material,fixed,area_m2,mass_kg\n";
   for (int b = 0; b < system.block_count(); ++b) {
@@ -370,8 +354,7 @@ void add_points(const Scene& scene, nlohmann::ordered_json& j) {
 }
 
 /// Every key with the value that was used, by tables; null where there is none.
-template <int N>
-nlohmann::ordered_json options_json(const Simulation<N>& simulation) {
+nlohmann::ordered_json options_json(const Simulation& simulation) {
   using nlohmann::ordered_json;
   const Scene& scene = simulation.scene();
   ordered_json options;
@@ -384,8 +367,7 @@ nlohmann::ordered_json options_json(const Simulation<N>& simulation) {
   return options;
 }
 
-template <int N>
-void add_factor(const FactorOfSafety<N>& safety, const Scene& scene, nlohmann::ordered_json& j) {
+void add_factor(const FactorOfSafety& safety, const Scene& scene, nlohmann::ordered_json& j) {
   using nlohmann::ordered_json;
   j["factor_of_safety"] = optional_json(safety.bracket.stable);
   j["verdict"] = factor_verdict_word(safety.verdict);
@@ -425,8 +407,7 @@ void add_factor(const FactorOfSafety<N>& safety, const Scene& scene, nlohmann::o
 
 }  // namespace
 
-template <int N>
-void write_summary(const OutputFolder& folder, const Summary& summary, const Simulation<N>& simulation, const FactorOfSafety<N>* safety) {
+void write_summary(const OutputFolder& folder, const Summary& summary, const Simulation& simulation, const FactorOfSafety* safety) {
   using nlohmann::ordered_json;
   const Scene& scene = simulation.scene();
   const StepCounters& steps = simulation.step_counters();
@@ -532,13 +513,5 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
   file << j.dump(2) << '\n';
   finish(file, folder.path_of("summary.json"));
 }
-
-template class BlocksFile<3>;
-template class ContactsFile<3>;
-template class BlockStatesFile<3>;
-template class CracksFile<3>;
-template class StateTables<3>;
-template void write_block_properties<3>(const OutputFolder&, const Scene&, const BlockSystem<3>&);
-template void write_summary<3>(const OutputFolder&, const Summary&, const Simulation<3>&, const FactorOfSafety<3>*);
 
 }  // namespace openclose

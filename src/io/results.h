@@ -53,40 +53,36 @@ class EnergyFile : public RunTable {
 };
 
 /// blocks.csv: the polygons of all blocks in named states.
-template <int N>
 class BlocksFile : public RunTable {
  public:
   explicit BlocksFile(const OutputFolder& folder, const RestartPoint* restart = nullptr);
-  void add(const std::string& state, const Simulation<N>& simulation) { add(state, simulation.scene(), simulation.system()); }
-  void add(const std::string& state, const Scene& scene, const BlockSystem<N>& system);
+  void add(const std::string& state, const Simulation& simulation) { add(state, simulation.scene(), simulation.system()); }
+  void add(const std::string& state, const Scene& scene, const BlockSystem& system);
 };
 
 /// contacts.csv: every contact of each state, with the forces that act there.
-template <int N>
 class ContactsFile : public RunTable {
  public:
   explicit ContactsFile(const OutputFolder& folder, const RestartPoint* restart = nullptr);
-  void add(const std::string& state, const Scene& scene, const BlockSystem<N>& system, const std::vector<Contact>& contacts);
+  void add(const std::string& state, const Scene& scene, const BlockSystem& system, const std::vector<Contact>& contacts);
 };
 
 /// block_states.csv: where the centroid of every block has gone, and how fast it moves. States without time have no velocities either.
-template <int N>
 class BlockStatesFile : public RunTable {
  public:
   explicit BlockStatesFile(const OutputFolder& folder, const RestartPoint* restart = nullptr);
-  void add(const std::string& state, const Simulation<N>& simulation);
-  void add(const std::string& state, const Scene& scene, const BlockSystem<N>& system);
+  void add(const std::string& state, const Simulation& simulation);
+  void add(const std::string& state, const Scene& scene, const BlockSystem& system);
 
  private:
-  void add_place(std::string& rows, const std::string& state, const std::string& time, const Scene& scene, const BlockSystem<N>& system, int b) const;
+  void add_place(std::string& rows, const std::string& state, const std::string& time, const Scene& scene, const BlockSystem& system, int b) const;
 };
 
 /// cracks.csv: opening and slip at the two ends of every joint of the drawing.
-template <int N>
 class CracksFile : public RunTable {
  public:
   CracksFile(const OutputFolder& folder, const Scene& scene, const RestartPoint* restart = nullptr);
-  void add(const std::string& state, const Scene& scene, const BlockSystem<N>& system);
+  void add(const std::string& state, const Scene& scene, const BlockSystem& system);
 
  private:
   std::vector<DrawnJoint> joints_;
@@ -100,31 +96,29 @@ class ContactHistoryFile : public RunTable {
 };
 
 /// The tables of states that belong together.
-template <int N>
 class StateTables {
  public:
   StateTables(const OutputFolder& folder, const Scene& scene, const RestartPoint* restart = nullptr);
   /// The drawing: nothing has moved, and no force acts yet.
-  void add_drawing(const Simulation<N>& simulation) { blocks_.add("initial", simulation); }
+  void add_drawing(const Simulation& simulation) { blocks_.add("initial", simulation); }
   /// A moment of a run.
-  void add(const std::string& state, const Simulation<N>& simulation) { add(state, simulation, simulation.every_contact()); }
-  void add(const std::string& state, const Simulation<N>& simulation, const std::vector<Contact>& contacts);
+  void add(const std::string& state, const Simulation& simulation) { add(state, simulation, simulation.every_contact()); }
+  void add(const std::string& state, const Simulation& simulation, const std::vector<Contact>& contacts);
   /// A state of a factor of safety.
-  void add(const NamedState<N>& state, const Scene& scene);
+  void add(const NamedState& state, const Scene& scene);
   /// See RunTable::written().
   std::vector<std::pair<std::string, std::uint64_t>> written();
   void close();
 
  private:
-  BlocksFile<N> blocks_;
-  ContactsFile<N> contacts_;
-  BlockStatesFile<N> states_;
-  CracksFile<N> cracks_;
+  BlocksFile blocks_;
+  ContactsFile contacts_;
+  BlockStatesFile states_;
+  CracksFile cracks_;
 };
 
 /// block_properties.csv: what does not change.
-template <int N>
-void write_block_properties(const OutputFolder& folder, const Scene& scene, const BlockSystem<N>& system);
+void write_block_properties(const OutputFolder& folder, const Scene& scene, const BlockSystem& system);
 
 /// mechanism.csv: the blocks that move when the scene fails.
 void write_mechanism(const OutputFolder& folder, const Scene& scene, const std::vector<FailingBlock>& blocks);
@@ -155,7 +149,6 @@ struct Summary {
   double cpu_of_search = 0.0;         ///< [s] of a factor of safety, settling included
 };
 
-template <int N>
-void write_summary(const OutputFolder& folder, const Summary& summary, const Simulation<N>& simulation, const FactorOfSafety<N>* safety = nullptr);
+void write_summary(const OutputFolder& folder, const Summary& summary, const Simulation& simulation, const FactorOfSafety* safety = nullptr);
 
 }  // namespace openclose

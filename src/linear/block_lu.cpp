@@ -81,10 +81,9 @@ typedef double Lanes __attribute__((vector_size(alignment), aligned(alignment)))
 typedef double LooseLanes __attribute__((vector_size(alignment), aligned(sizeof(double)), may_alias));
 
 /// N x N, row by row.
-template <int N>
 struct alignas(alignment) PaddedBlock {
-  static_assert(N <= lanes);
-  Lanes row[N];
+  static_assert(dofs <= lanes);
+  Lanes row[dofs];
   PaddedBlock() {}  // nothing: a factor is written before it is read
 };
 
@@ -105,21 +104,20 @@ struct LeftOut {
 };
 
 /// L, inverted diagonal and U (multiplied by it) on their pattern, and the way there from the matrix.
-template <int N>
 struct Factor {
   std::vector<int> order;  ///< row of the matrix at a place in the factor
   std::vector<int> row_start, diagonal, column;
-  std::vector<char> same_as_next;                     ///< of rows: to the right of the next diagonal this row of U has the next one's pattern
-  std::vector<Entry> entries;                         ///< in the order in which elimination meets them
-  std::vector<int> entries_start;                     ///< where in `entries` a row begins
-  std::vector<typename BlockMatrix<N>::Block> taken;  ///< of the entries, from the matrix: the factor is that of these
-  std::vector<PaddedVector> scale;                    ///< of rows: sizes of the diagonal entries in `taken`
-  std::vector<char> stale;                            ///< of rows: to be eliminated anew
-  std::vector<double> size;                           ///< of rows: square of the pivot's norm before the elimination
-  std::vector<int> panel;                             ///< of rows: 0 in a subtree; of the top from 1 on
-  std::vector<std::vector<int>> subtrees;             ///< rows of one or several subtrees each; all rows of a small system
-  std::vector<std::vector<int>> panels;               ///< rows of the top
-  std::vector<PaddedBlock<N>> value;
+  std::vector<char> same_as_next;          ///< of rows: to the right of the next diagonal this row of U has the next one's pattern
+  std::vector<Entry> entries;              ///< in the order in which elimination meets them
+  std::vector<int> entries_start;          ///< where in `entries` a row begins
+  std::vector<BlockMatrix::Block> taken;   ///< of the entries, from the matrix: the factor is that of these
+  std::vector<PaddedVector> scale;         ///< of rows: sizes of the diagonal entries in `taken`
+  std::vector<char> stale;                 ///< of rows: to be eliminated anew
+  std::vector<double> size;                ///< of rows: square of the pivot's norm before the elimination
+  std::vector<int> panel;                  ///< of rows: 0 in a subtree; of the top from 1 on
+  std::vector<std::vector<int>> subtrees;  ///< rows of one or several subtrees each; all rows of a small system
+  std::vector<std::vector<int>> panels;    ///< rows of the top
+  std::vector<PaddedBlock> value;
   std::vector<PaddedVector> solution;  ///< a block row each, in the factor's order
 
   int rows() const { return static_cast<int>(diagonal.size()); }
@@ -143,52 +141,49 @@ struct Factor {
 #define OPENCLOSE_KERNEL [[gnu::always_inline]] inline
 
 /// The entries of a block one by one, as they multiply the rows of another.
-template <int N>
 struct Multipliers {
-  double entry[N][N];
-  OPENCLOSE_KERNEL explicit Multipliers(const PaddedBlock<N>& block) {
-    for (int r = 0; r < N; ++r) {
-      for (int c = 0; c < N; ++c) entry[r][c] = block.row[r][c];
+  double entry[dofs][dofs];
+  OPENCLOSE_KERNEL explicit Multipliers(const PaddedBlock& block) {
+    for (int r = 0; r < dofs; ++r) {
+      for (int c = 0; c < dofs; ++c) entry[r][c] = block.row[r][c];
     }
   }
-  OPENCLOSE_KERNEL void subtract_row_of_product(int r, const PaddedBlock<N>& right, Lanes& target) const {
+  OPENCLOSE_KERNEL void subtract_row_of_product(int r, const PaddedBlock& right, Lanes& target) const {
     Lanes sum = entry[r][0] * right.row[0];
-    for (int c = 1; c < N; ++c) sum += entry[r][c] * right.row[c];
+    for (int c = 1; c < dofs; ++c) sum += entry[r][c] * right.row[c];
     target -= sum;
   }
-  OPENCLOSE_KERNEL void replace_by_product(PaddedBlock<N>& right) const {
-    PaddedBlock<N> result;
-    for (int r = 0; r < N; ++r) {
+  OPENCLOSE_KERNEL void replace_by_product(PaddedBlock& right) const {
+    PaddedBlock result;
+    for (int r = 0; r < dofs; ++r) {
       result.row[r] = entry[r][0] * right.row[0];
-      for (int c = 1; c < N; ++c) result.row[r] += entry[r][c] * right.row[c];
+      for (int c = 1; c < dofs; ++c) result.row[r] += entry[r][c] * right.row[c];
     }
     right = result;
   }
 };
 
-template <int N>
-OPENCLOSE_KERNEL void subtract_row(Factor<N>& f, int s, int k, const int* place) {
-  const Multipliers<N> left(f.value[s]);
+OPENCLOSE_KERNEL void subtract_row(Factor& f, int s, int k, const int* place) {
+  const Multipliers left(f.value[s]);
   for (int u = f.diagonal[k] + 1; u < f.row_start[k + 1]; ++u) {
-    const PaddedBlock<N>& right = f.value[u];
-    PaddedBlock<N>& target = f.value[place[f.column[u]]];
-    for (int r = 0; r < N; ++r) left.subtract_row_of_product(r, right, target.row[r]);
+    const PaddedBlock& right = f.value[u];
+    PaddedBlock& target = f.value[place[f.column[u]]];
+    for (int r = 0; r < dofs; ++r) left.subtract_row_of_product(r, right, target.row[r]);
   }
 }
 
 /// Rows k and k + 1 of one pattern: every block of the row under work is fetched once for both.
-template <int N>
-OPENCLOSE_KERNEL void subtract_two_rows(Factor<N>& f, int s, int k, const int* place) {
-  PaddedBlock<N>* const value = f.value.data();
+OPENCLOSE_KERNEL void subtract_two_rows(Factor& f, int s, int k, const int* place) {
+  PaddedBlock* const value = f.value.data();
   const int* const column = f.column.data();
   const int first = f.diagonal[k] + 2, second = f.diagonal[k + 1] + 1, count = f.row_start[k + 1] - first;
-  const Multipliers<N> left(value[s]);
-  for (int r = 0; r < N; ++r) left.subtract_row_of_product(r, value[first - 1], value[s + 1].row[r]);
-  const Multipliers<N> next_left(value[s + 1]);
+  const Multipliers left(value[s]);
+  for (int r = 0; r < dofs; ++r) left.subtract_row_of_product(r, value[first - 1], value[s + 1].row[r]);
+  const Multipliers next_left(value[s + 1]);
   for (int u = 0; u < count; ++u) {
-    const PaddedBlock<N>&right = value[first + u], &next_right = value[second + u];
-    PaddedBlock<N>& target = value[place[column[second + u]]];
-    for (int r = 0; r < N; ++r) {
+    const PaddedBlock &right = value[first + u], &next_right = value[second + u];
+    PaddedBlock& target = value[place[column[second + u]]];
+    for (int r = 0; r < dofs; ++r) {
       Lanes row = target.row[r];
       left.subtract_row_of_product(r, right, row);
       next_left.subtract_row_of_product(r, next_right, row);
@@ -199,8 +194,7 @@ OPENCLOSE_KERNEL void subtract_two_rows(Factor<N>& f, int s, int k, const int* p
 
 /// Subtracts from row i what the rows of a panel above it contribute.
 /// \param place  room for the slot of each column in the row
-template <int N>
-OPENCLOSE_KERNEL void subtract_panel(Factor<N>& f, int i, int panel, int* place) {
+OPENCLOSE_KERNEL void subtract_panel(Factor& f, int i, int panel, int* place) {
   for (int s = f.row_start[i]; s < f.row_start[i + 1]; ++s) place[f.column[s]] = s;
   for (int s = f.row_start[i]; s < f.diagonal[i]; ++s) {
     const int k = f.column[s];
@@ -218,7 +212,7 @@ OPENCLOSE_KERNEL const LooseLanes& lanes_at(const double* from) {
 }
 
 /// A block of the matrix, column by column. The padding repeats the last column.
-OPENCLOSE_KERNEL void pad(const double* block, PaddedBlock<3>& padded) {
+OPENCLOSE_KERNEL void pad(const double* block, PaddedBlock& padded) {
   const Lanes first = lanes_at(block), next = lanes_at(block + 3), last = lanes_at(block + 5);  // of this the numbers from one on
   const Lanes even = __builtin_shufflevector(first, next, 0, 4, 2, 6), odd = __builtin_shufflevector(first, next, 1, 5, 3, 7);
   padded.row[0] = __builtin_shufflevector(even, last, 0, 1, 5, 5);
@@ -242,10 +236,9 @@ OPENCLOSE_KERNEL double sum_of_three(const Lanes& x) {
   return x[0] + x[1] + x[2];
 }
 
-template <int N>
-OPENCLOSE_KERNEL Lanes squares_of_columns(const PaddedBlock<N>& block) {
+OPENCLOSE_KERNEL Lanes squares_of_columns(const PaddedBlock& block) {
   Lanes sum = block.row[0] * block.row[0];
-  for (int r = 1; r < N; ++r) sum += block.row[r] * block.row[r];
+  for (int r = 1; r < dofs; ++r) sum += block.row[r] * block.row[r];
   return sum;
 }
 
@@ -256,13 +249,11 @@ OPENCLOSE_KERNEL Lanes cross_product(const Lanes& a, const Lanes& b) {
 
 /// Replaces the pivot by its inverse; false if it has none worth the name.
 /// \param original_size  square of the block's norm before the elimination
-template <int N>
-OPENCLOSE_KERNEL bool invert(PaddedBlock<N>& pivot, double original_size) {
-  static_assert(N == 3, "columns of the inverse are cross products of rows");
+OPENCLOSE_KERNEL bool invert(PaddedBlock& pivot, double original_size) {
   constexpr double square = smallest_pivot * smallest_pivot;
   const Lanes squares = squares_of_columns(pivot);
-  const Lanes cofactors[N] = {cross_product(pivot.row[1], pivot.row[2]), cross_product(pivot.row[2], pivot.row[0]),
-                              cross_product(pivot.row[0], pivot.row[1])};
+  const Lanes cofactors[dofs] = {cross_product(pivot.row[1], pivot.row[2]), cross_product(pivot.row[2], pivot.row[0]),
+                                 cross_product(pivot.row[0], pivot.row[1])};
   const double determinant = sum_of_three(pivot.row[0] * cofactors[0]), columns = squares[0] * squares[1] * squares[2];
   if (!(sum_of_three(squares) > square * original_size) || !(determinant * determinant > square * columns)) return false;
   const Columns rows(cofactors);
@@ -290,9 +281,7 @@ struct Entries {
 };
 
 /// Whether no entry of row i has changed by more than `change` times the root of the diagonal entries of its row and column.
-template <int N>
-OPENCLOSE_KERNEL bool is_as_taken(const BlockMatrix<N>& matrix, const Factor<N>& f, int i, double change) {
-  static_assert(N == 3, "the layout of Entries");
+OPENCLOSE_KERNEL bool is_as_taken(const BlockMatrix& matrix, const Factor& f, int i, double change) {
   const Lanes s = change * change * f.scale[i].entries;
   auto within = s <= s;
   bool last_within = true;
@@ -306,23 +295,20 @@ OPENCLOSE_KERNEL bool is_as_taken(const BlockMatrix<N>& matrix, const Factor<N>&
   return last_within && (within[0] & within[1] & within[2] & within[3]) != 0;
 }
 
-template <int N>
-OPENCLOSE_KERNEL void note_scale(Factor<N>& f, int i) {
+OPENCLOSE_KERNEL void note_scale(Factor& f, int i) {
   for (int e = f.entries_start[i]; e < f.entries_start[i + 1]; ++e) {
     if (f.entries[e].column != i) continue;
-    for (int r = 0; r < N; ++r) f.scale[i].entries[r] = std::abs(f.taken[e](r, r));
+    for (int r = 0; r < dofs; ++r) f.scale[i].entries[r] = std::abs(f.taken[e](r, r));
   }
 }
 
-template <int N>
-OPENCLOSE_KERNEL void take_row(const BlockMatrix<N>& matrix, Factor<N>& f, int i) {
+OPENCLOSE_KERNEL void take_row(const BlockMatrix& matrix, Factor& f, int i) {
   for (int e = f.entries_start[i]; e < f.entries_start[i + 1]; ++e) f.taken[e] = matrix.value(f.entries[e].slot);
   note_scale(f, i);
 }
 
 /// Takes the rows that are stale, because they or rows that they subtract have changed, from the matrix. The number of those that are not.
-template <int N>
-OPENCLOSE_KERNEL int take_changes(const BlockMatrix<N>& matrix, Factor<N>& f, double change) {
+OPENCLOSE_KERNEL int take_changes(const BlockMatrix& matrix, Factor& f, double change) {
   int kept = 0;
   for (int i = 0; i < f.rows(); ++i) {
     if (!f.stale[i] && is_as_taken(matrix, f, i, change)) {
@@ -338,8 +324,7 @@ OPENCLOSE_KERNEL int take_changes(const BlockMatrix<N>& matrix, Factor<N>& f, do
 }
 
 /// Lays row i of the matrix into its slots.
-template <int N>
-OPENCLOSE_KERNEL void lay_row(Factor<N>& f, int i) {
+OPENCLOSE_KERNEL void lay_row(Factor& f, int i) {
   for (int s = f.row_start[i]; s < f.row_start[i + 1]; ++s) {
     for (Lanes& row : f.value[s].row) row = Lanes{};
   }
@@ -348,8 +333,7 @@ OPENCLOSE_KERNEL void lay_row(Factor<N>& f, int i) {
 }
 
 /// Subtracts a panel from stale rows of later ones.
-template <int N>
-OPENCLOSE_KERNEL void advance(Factor<N>& f, const std::vector<int>& rows, int panel, int* place) {
+OPENCLOSE_KERNEL void advance(Factor& f, const std::vector<int>& rows, int panel, int* place) {
   for (int i : rows) {
     if (!f.stale[i]) continue;
     if (panel == 0) lay_row(f, i);
@@ -358,113 +342,105 @@ OPENCLOSE_KERNEL void advance(Factor<N>& f, const std::vector<int>& rows, int pa
 }
 
 /// Ends the elimination of stale rows of a panel, which have subtracted all before it. False if a pivot has lost its digits.
-template <int N>
-OPENCLOSE_KERNEL bool eliminate(Factor<N>& f, const std::vector<int>& rows, int panel, int* place) {
+OPENCLOSE_KERNEL bool eliminate(Factor& f, const std::vector<int>& rows, int panel, int* place) {
   for (int i : rows) {
     if (!f.stale[i]) continue;
     if (panel == 0) lay_row(f, i);
     subtract_panel(f, i, panel, place);
     if (!invert(f.value[f.diagonal[i]], f.size[i])) return false;
-    const Multipliers<N> inverse(f.value[f.diagonal[i]]);
+    const Multipliers inverse(f.value[f.diagonal[i]]);
     for (int s = f.diagonal[i] + 1; s < f.row_start[i + 1]; ++s) inverse.replace_by_product(f.value[s]);
   }
   return true;
 }
 
 /// y -= A x
-template <int N>
-OPENCLOSE_KERNEL void subtract_product(const BlockMatrix<N>& matrix, const double* x, double* y) {
-  static_assert(N == 3, "the last column is read from one number before it on");
+OPENCLOSE_KERNEL void subtract_product(const BlockMatrix& matrix, const double* x, double* y) {
   for (int i = 0; i < matrix.rows(); ++i) {
     Lanes first{}, next{}, last{};  // by columns of the blocks; the last one's numbers are one place further on
     for (int s = matrix.row_start(i); s < matrix.row_start(i + 1); ++s) {
       const double* const block = matrix.value(s).data();
-      const double* const part = x + N * matrix.column(s);
+      const double* const part = x + dofs * matrix.column(s);
       first += lanes_at(block) * part[0];
-      next += lanes_at(block + N) * part[1];
-      last += lanes_at(block + 2 * N - 1) * part[2];
+      next += lanes_at(block + dofs) * part[1];
+      last += lanes_at(block + 2 * dofs - 1) * part[2];
     }
-    for (int r = 0; r < N; ++r) y[N * i + r] -= (first[r] + next[r]) + last[r + 1];
+    for (int r = 0; r < dofs; ++r) y[dofs * i + r] -= (first[r] + next[r]) + last[r + 1];
   }
 }
 
 /// `sum` less the sum over the slots of value times solution. The solution that is found last, on which everything waits, comes last.
 /// \tparam direction  1 or -1: from slot to slot
-template <int direction, int N>
-OPENCLOSE_KERNEL Lanes less_product(const Factor<N>& f, int first, int end, const Lanes& sum) {
-  Lanes products[N]{};
+template <int direction>
+OPENCLOSE_KERNEL Lanes less_product(const Factor& f, int first, int end, const Lanes& sum) {
+  Lanes products[dofs]{};
   for (int s = first; s != end; s += direction) {
     const Lanes& x = f.solution[f.column[s]].entries;
-    for (int r = 0; r < N; ++r) products[r] += f.value[s].row[r] * x;
+    for (int r = 0; r < dofs; ++r) products[r] += f.value[s].row[r] * x;
   }
   const Columns columns(products);
   return sum - columns.first - columns.next - columns.last;
 }
 
-template <int N>
-OPENCLOSE_KERNEL void substitute_forward(Factor<N>& f, const std::vector<int>& rows, const double* right_side) {
-  static_assert(N == 3, "the width of Columns");
+OPENCLOSE_KERNEL void substitute_forward(Factor& f, const std::vector<int>& rows, const double* right_side) {
   for (int i : rows) {
-    const double* const b = right_side + N * f.order[i];
+    const double* const b = right_side + dofs * f.order[i];
     const Lanes sum = less_product<1>(f, f.row_start[i], f.diagonal[i], Lanes{b[0], b[1], b[2], 0.0});
-    Lanes products[N];
-    for (int r = 0; r < N; ++r) products[r] = f.value[f.diagonal[i]].row[r] * sum;
+    Lanes products[dofs];
+    for (int r = 0; r < dofs; ++r) products[r] = f.value[f.diagonal[i]].row[r] * sum;
     const Columns columns(products);
     f.solution[i].entries = columns.first + columns.next + columns.last;
   }
 }
 
-template <int N>
-OPENCLOSE_KERNEL void substitute_back(Factor<N>& f, const std::vector<int>& rows, double* x) {
+OPENCLOSE_KERNEL void substitute_back(Factor& f, const std::vector<int>& rows, double* x) {
   for (auto row = rows.rbegin(); row != rows.rend(); ++row) {
     const int i = *row;
     const Lanes entries = less_product<-1>(f, f.row_start[i + 1] - 1, f.diagonal[i], f.solution[i].entries);
     f.solution[i].entries = entries;
-    for (int k = 0; k < N; ++k) x[N * f.order[i] + k] = entries[k];
+    for (int k = 0; k < dofs; ++k) x[dofs * f.order[i] + k] = entries[k];
   }
 }
 
 /// The functions for the registers of a processor.
-template <int N>
 struct Kernels {
-  int (*take_changes)(const BlockMatrix<N>&, Factor<N>&, double);
-  void (*advance)(Factor<N>&, const std::vector<int>&, int, int*);
-  bool (*eliminate)(Factor<N>&, const std::vector<int>&, int, int*);
-  void (*subtract_product)(const BlockMatrix<N>&, const double*, double*);
-  void (*substitute_forward)(Factor<N>&, const std::vector<int>&, const double*);
-  void (*substitute_back)(Factor<N>&, const std::vector<int>&, double*);
+  int (*take_changes)(const BlockMatrix&, Factor&, double);
+  void (*advance)(Factor&, const std::vector<int>&, int, int*);
+  bool (*eliminate)(Factor&, const std::vector<int>&, int, int*);
+  void (*subtract_product)(const BlockMatrix&, const double*, double*);
+  void (*substitute_forward)(Factor&, const std::vector<int>&, const double*);
+  void (*substitute_back)(Factor&, const std::vector<int>&, double*);
 };
 
-#define OPENCLOSE_KERNELS_WITH(registers, target)                                                                         \
-  template <int N>                                                                                                        \
-  target int take_changes_with_##registers(const BlockMatrix<N>& matrix, Factor<N>& f, double change) {                   \
-    return take_changes(matrix, f, change);                                                                               \
-  }                                                                                                                       \
-  template <int N>                                                                                                        \
-  target void advance_with_##registers(Factor<N>& f, const std::vector<int>& rows, int panel, int* place) {               \
-    advance(f, rows, panel, place);                                                                                       \
-  }                                                                                                                       \
-  template <int N>                                                                                                        \
-  target bool eliminate_with_##registers(Factor<N>& f, const std::vector<int>& rows, int panel, int* place) {             \
-    return eliminate(f, rows, panel, place);                                                                              \
-  }                                                                                                                       \
-  template <int N>                                                                                                        \
-  target void subtract_product_with_##registers(const BlockMatrix<N>& matrix, const double* x, double* y) {               \
-    subtract_product(matrix, x, y);                                                                                       \
-  }                                                                                                                       \
-  template <int N>                                                                                                        \
-  target void substitute_forward_with_##registers(Factor<N>& f, const std::vector<int>& rows, const double* right_side) { \
-    substitute_forward(f, rows, right_side);                                                                              \
-  }                                                                                                                       \
-  template <int N>                                                                                                        \
-  target void substitute_back_with_##registers(Factor<N>& f, const std::vector<int>& rows, double* x) {                   \
-    substitute_back(f, rows, x);                                                                                          \
-  }                                                                                                                       \
-  template <int N>                                                                                                        \
-  Kernels<N> kernels_with_##registers() {                                                                                 \
-    return {&take_changes_with_##registers<N>,       &advance_with_##registers<N>,                                        \
-            &eliminate_with_##registers<N>,          &subtract_product_with_##registers<N>,                               \
-            &substitute_forward_with_##registers<N>, &substitute_back_with_##registers<N>};                               \
+#define OPENCLOSE_KERNELS_WITH(registers, target)                                                                                                    \
+                                                                                                                                                     \
+  target int take_changes_with_##registers(const BlockMatrix& matrix, Factor& f, double change) {                                                    \
+    return take_changes(matrix, f, change);                                                                                                          \
+  }                                                                                                                                                  \
+                                                                                                                                                     \
+  target void advance_with_##registers(Factor& f, const std::vector<int>& rows, int panel, int* place) {                                             \
+    advance(f, rows, panel, place);                                                                                                                  \
+  }                                                                                                                                                  \
+                                                                                                                                                     \
+  target bool eliminate_with_##registers(Factor& f, const std::vector<int>& rows, int panel, int* place) {                                           \
+    return eliminate(f, rows, panel, place);                                                                                                         \
+  }                                                                                                                                                  \
+                                                                                                                                                     \
+  target void subtract_product_with_##registers(const BlockMatrix& matrix, const double* x, double* y) {                                             \
+    subtract_product(matrix, x, y);                                                                                                                  \
+  }                                                                                                                                                  \
+                                                                                                                                                     \
+  target void substitute_forward_with_##registers(Factor& f, const std::vector<int>& rows, const double* right_side) {                               \
+    substitute_forward(f, rows, right_side);                                                                                                         \
+  }                                                                                                                                                  \
+                                                                                                                                                     \
+  target void substitute_back_with_##registers(Factor& f, const std::vector<int>& rows, double* x) {                                                 \
+    substitute_back(f, rows, x);                                                                                                                     \
+  }                                                                                                                                                  \
+                                                                                                                                                     \
+  Kernels kernels_with_##registers() {                                                                                                               \
+    return {&take_changes_with_##registers,       &advance_with_##registers,        &eliminate_with_##registers, &subtract_product_with_##registers, \
+            &substitute_forward_with_##registers, &substitute_back_with_##registers};                                                                \
   }
 
 OPENCLOSE_KERNELS_WITH(any_registers, )
@@ -472,20 +448,18 @@ OPENCLOSE_KERNELS_WITH(any_registers, )
 OPENCLOSE_KERNELS_WITH(wide_registers, [[gnu::target("avx2")]])
 #endif
 
-template <int N>
-Kernels<N> choose_kernels([[maybe_unused]] bool wide_registers) {
+Kernels choose_kernels([[maybe_unused]] bool wide_registers) {
 #ifdef OPENCLOSE_HAS_WIDE_REGISTERS
-  if (wide_registers && __builtin_cpu_supports("avx2")) return kernels_with_wide_registers<N>();
+  if (wide_registers && __builtin_cpu_supports("avx2")) return kernels_with_wide_registers();
 #endif
-  return kernels_with_any_registers<N>();
+  return kernels_with_any_registers();
 }
 
-template <int N>
-class BlockLuSolver : public LinearSolver<N> {
+class BlockLuSolver : public LinearSolver {
  public:
-  BlockLuSolver(Factoring factoring, bool wide_registers) : factoring_(factoring), kernels_(choose_kernels<N>(wide_registers)) {}
+  BlockLuSolver(Factoring factoring, bool wide_registers) : factoring_(factoring), kernels_(choose_kernels(wide_registers)) {}
 
-  bool factor(const BlockMatrix<N>& matrix, double kept_change) override {
+  bool factor(const BlockMatrix& matrix, double kept_change) override {
     matrix_ = &matrix;
     if (version_ != matrix.pattern_version()) {
       analyse(factored_slots(matrix, factoring_));
@@ -515,8 +489,8 @@ class BlockLuSolver : public LinearSolver<N> {
     plain_.reset();
   }
 
-  void exchange(Archive& archive, const BlockMatrix<N>& matrix) override {
-    LinearSolver<N>::exchange(archive, matrix);
+  void exchange(Archive& archive, const BlockMatrix& matrix) override {
+    LinearSolver::exchange(archive, matrix);
     bool known = version_ == matrix.pattern_version(), has_factor = has_factor_;
     std::vector<char> slots = slots_;
     archive(known);
@@ -548,7 +522,7 @@ class BlockLuSolver : public LinearSolver<N> {
     if (has_factor_) return true;
     ++this->counters_.pivots_lost;
     let_go_of_rows();
-    if (!plain_) plain_ = make_sparse_solver<N>();
+    if (!plain_) plain_ = make_sparse_solver();
     return plain_->factor(*matrix_);
   }
 
@@ -590,7 +564,7 @@ class BlockLuSolver : public LinearSolver<N> {
     }
     // To the last digit: the factor's part of the product is the residual.
     residual.setZero();
-    for (const LeftOut& e : left_out_) residual.template segment<N>(N * e.row) -= matrix_->value(e.slot) * step.template segment<N>(N * e.column);
+    for (const LeftOut& e : left_out_) residual.segment<dofs>(dofs * e.row) -= matrix_->value(e.slot) * step.segment<dofs>(dofs * e.column);
   }
 
   /// Factors anew with the couplings that have become strong, or, if there are none, with all. False if the matrix is singular.
@@ -633,7 +607,7 @@ class BlockLuSolver : public LinearSolver<N> {
     plan(*matrix_, std::move(slots));
   }
 
-  void plan(const BlockMatrix<N>& matrix, std::vector<char> slots) {
+  void plan(const BlockMatrix& matrix, std::vector<char> slots) {
     version_ = matrix.pattern_version();
     has_factor_ = false;
     slots_ = std::move(slots);
@@ -677,7 +651,7 @@ class BlockLuSolver : public LinearSolver<N> {
   }
 
   // One of the two is there at a time: pivots are seldom lost, and the plain factor is as large as the rows.
-  void let_go_of_rows() { std::vector<PaddedBlock<N>>().swap(factor_.value); }
+  void let_go_of_rows() { std::vector<PaddedBlock>().swap(factor_.value); }
 
   /// For the numbers of the factor.
   void make_room() {
@@ -685,12 +659,12 @@ class BlockLuSolver : public LinearSolver<N> {
     if (factor_.value.capacity() < size) {
       let_go_of_rows();  // else the old and the new ones would be there at once
       // Ordering and pattern have left holes too small for the factor.
-      if (size * sizeof(PaddedBlock<N>) > largest_factor_beside_holes_bytes) return_freed_memory();
+      if (size * sizeof(PaddedBlock) > largest_factor_beside_holes_bytes) return_freed_memory();
     }
     factor_.value.resize(factor_.column.size());
   }
 
-  void find_entries(const BlockMatrix<N>& matrix) {
+  void find_entries(const BlockMatrix& matrix) {
     const int rows = matrix.rows();
     factor_.entries.clear();
     factor_.entries_start.assign(1, 0);
@@ -859,10 +833,10 @@ class BlockLuSolver : public LinearSolver<N> {
 
   static constexpr int unplaced = -1, in_top = -1;
   Factoring factoring_;
-  const BlockMatrix<N>* matrix_ = nullptr;
+  const BlockMatrix* matrix_ = nullptr;
   long version_ = -1;
-  Kernels<N> kernels_;
-  Factor<N> factor_;
+  Kernels kernels_;
+  Factor factor_;
   bool has_factor_ = false;                      ///< of what it has taken
   std::vector<char> slots_;                      ///< of the matrix: whether the factor has them
   std::vector<LeftOut> left_out_;                ///< those that it has not
@@ -870,16 +844,13 @@ class BlockLuSolver : public LinearSolver<N> {
   std::vector<std::vector<int>> working_place_;  ///< for each part: slot of a column in the row under work
   std::vector<int> place_;                       ///< in the factor, of a row of the matrix
   bool use_plain_ = false;
-  std::unique_ptr<LinearSolver<N>> plain_;
+  std::unique_ptr<LinearSolver> plain_;
 };
 
 }  // namespace
 
-template <int N>
-std::unique_ptr<LinearSolver<N>> make_block_solver(Factoring factoring, bool wide_registers) {
-  return std::make_unique<BlockLuSolver<N>>(factoring, wide_registers);
+std::unique_ptr<LinearSolver> make_block_solver(Factoring factoring, bool wide_registers) {
+  return std::make_unique<BlockLuSolver>(factoring, wide_registers);
 }
-
-template std::unique_ptr<LinearSolver<3>> make_block_solver<3>(Factoring, bool);
 
 }  // namespace openclose

@@ -24,16 +24,14 @@ typedef double FourNumbers __attribute__((vector_size(4 * sizeof(double)), align
 }
 
 /// Sum of the products of a row's blocks with x, column by column of each: the operations of Eigen in their order, three rows at a time.
-template <int N>
 [[gnu::always_inline]] inline void multiply_row(const double* block, const int* column, int count, const double* x, double* y) {
-  static_assert(N == 3, "the last column is read with an entry before it, to stay within the block");
   FourNumbers sum{};
-  for (int s = 0; s < count; ++s, block += N * N) {
-    const double* const part = x + N * column[s];
-    const FourNumbers last = load(block + 2 * N - 1);
-    sum += (load(block) * part[0] + load(block + N) * part[1]) + __builtin_shufflevector(last, last, 1, 2, 3, 3) * part[2];
+  for (int s = 0; s < count; ++s, block += dofs * dofs) {
+    const double* const part = x + dofs * column[s];
+    const FourNumbers last = load(block + 2 * dofs - 1);
+    sum += (load(block) * part[0] + load(block + dofs) * part[1]) + __builtin_shufflevector(last, last, 1, 2, 3, 3) * part[2];
   }
-  for (int k = 0; k < N; ++k) y[k] = sum[k];
+  for (int k = 0; k < dofs; ++k) y[k] = sum[k];
 }
 
 /// Of a matrix of blocks, row by row.
@@ -42,29 +40,25 @@ struct Rows {
   const int *start, *columns;
 };
 
-template <int N>
 [[gnu::always_inline]] inline void multiply(const Rows& rows, int first, int end, const double* x, double* y) {
   for (int i = first; i < end; ++i) {
     const int begin = rows.start[i];
-    multiply_row<N>(rows.values + N * N * begin, rows.columns + begin, rows.start[i + 1] - begin, x, y + N * i);
+    multiply_row(rows.values + dofs * dofs * begin, rows.columns + begin, rows.start[i + 1] - begin, x, y + dofs * i);
   }
 }
 
-template <int N>
 void multiply_with_any_registers(const Rows& rows, int first, int end, const double* x, double* y) {
-  multiply<N>(rows, first, end, x, y);
+  multiply(rows, first, end, x, y);
 }
 #ifdef OPENCLOSE_HAS_WIDE_REGISTERS
-template <int N>
 [[gnu::target("avx2")]] void multiply_with_wide_registers(const Rows& rows, int first, int end, const double* x, double* y) {
-  multiply<N>(rows, first, end, x, y);
+  multiply(rows, first, end, x, y);
 }
 #endif
 
 }  // namespace
 
-template <int N>
-void BlockMatrix<N>::set_pattern(int rows, const std::vector<std::pair<int, int>>& couplings) {
+void BlockMatrix::set_pattern(int rows, const std::vector<std::pair<int, int>>& couplings) {
   // Rows one after another with room for repetitions, then each in order.
   std::vector<int> begin(rows + 1, 0), end(rows);
   const auto count = [&](int i) { ++begin[i + 1]; };
@@ -97,14 +91,12 @@ void BlockMatrix<N>::set_pattern(int rows, const std::vector<std::pair<int, int>
   renew_version();
 }
 
-template <int N>
-void BlockMatrix<N>::renew_version() {
+void BlockMatrix::renew_version() {
   static std::atomic<long> latest{0};  // over all matrices, so that a solver can tell them apart
   pattern_version_ = ++latest;
 }
 
-template <int N>
-std::vector<std::pair<int, int>> BlockMatrix<N>::couplings() const {
+std::vector<std::pair<int, int>> BlockMatrix::couplings() const {
   std::vector<std::pair<int, int>> pairs;
   for (int i = 0; i < rows(); ++i) {
     for (int s = row_start_[i]; s < row_start_[i + 1]; ++s) {
@@ -114,27 +106,23 @@ std::vector<std::pair<int, int>> BlockMatrix<N>::couplings() const {
   return pairs;
 }
 
-template <int N>
-void BlockMatrix<N>::set_zero() {
+void BlockMatrix::set_zero() {
   for (Block& v : values_) v.setZero();
 }
 
-template <int N>
-int BlockMatrix<N>::find(int row, int column) const {
+int BlockMatrix::find(int row, int column) const {
   const auto begin = columns_.begin() + row_start_[row], end = columns_.begin() + row_start_[row + 1];
   const auto it = std::lower_bound(begin, end, column);
   return it == end || *it != column ? -1 : static_cast<int>(it - columns_.begin());
 }
 
-template <int N>
-int BlockMatrix<N>::slot(int row, int column) const {
+int BlockMatrix::slot(int row, int column) const {
   const int s = find(row, column);
   if (s < 0) throw std::logic_error("BlockMatrix: entry outside the pattern");
   return s;
 }
 
-template <int N>
-void BlockMatrix<N>::eliminate(int row, int k) {
+void BlockMatrix::eliminate(int row, int k) {
   for (int s = row_start_[row]; s < row_start_[row + 1]; ++s) {
     values_[s].row(k).setZero();
     values_[slot(columns_[s], row)].col(k).setZero();
@@ -142,8 +130,7 @@ void BlockMatrix<N>::eliminate(int row, int k) {
   values_[slot(row, row)](k, k) = 1.0;
 }
 
-template <int N>
-Eigen::VectorXd BlockMatrix<N>::multiply(const Eigen::VectorXd& x) const {
+Eigen::VectorXd BlockMatrix::multiply(const Eigen::VectorXd& x) const {
   Eigen::VectorXd y = Eigen::VectorXd::Zero(unknowns());
   const int parts = std::max(1, rows() / rows_of_a_part);
   for_each_part(SharedWork::product, threads_, parts,
@@ -151,24 +138,20 @@ Eigen::VectorXd BlockMatrix<N>::multiply(const Eigen::VectorXd& x) const {
   return y;
 }
 
-template <int N>
-void BlockMatrix<N>::multiply_rows(int first, int end, const Eigen::VectorXd& x, Eigen::VectorXd& y) const {
+void BlockMatrix::multiply_rows(int first, int end, const Eigen::VectorXd& x, Eigen::VectorXd& y) const {
   const Rows all{values_.empty() ? nullptr : values_[0].data(), row_start_.data(), columns_.data()};
 #ifdef OPENCLOSE_HAS_WIDE_REGISTERS
-  if (__builtin_cpu_supports("avx2")) return multiply_with_wide_registers<N>(all, first, end, x.data(), y.data());
+  if (__builtin_cpu_supports("avx2")) return multiply_with_wide_registers(all, first, end, x.data(), y.data());
 #endif
-  multiply_with_any_registers<N>(all, first, end, x.data(), y.data());
+  multiply_with_any_registers(all, first, end, x.data(), y.data());
 }
 
-template <int N>
-Eigen::MatrixXd BlockMatrix<N>::dense() const {
+Eigen::MatrixXd BlockMatrix::dense() const {
   Eigen::MatrixXd a = Eigen::MatrixXd::Zero(unknowns(), unknowns());
   for (int i = 0; i < rows(); ++i) {
-    for (int s = row_start_[i]; s < row_start_[i + 1]; ++s) a.block<N, N>(N * i, N * columns_[s]) = values_[s];
+    for (int s = row_start_[i]; s < row_start_[i + 1]; ++s) a.block<dofs, dofs>(dofs * i, dofs * columns_[s]) = values_[s];
   }
   return a;
 }
-
-template class BlockMatrix<3>;
 
 }  // namespace openclose

@@ -1,5 +1,5 @@
-// Sparse matrix of small dense blocks, N unknowns each, on a pattern given by the pairs of blocks that may touch. Both triangles are stored, because
-// sliding contacts make the tangent non-symmetric.
+// Sparse matrix of small dense blocks, three unknowns each, on a pattern given by the pairs of blocks that may touch. Both triangles are stored,
+// because sliding contacts make the tangent non-symmetric.
 #pragma once
 
 #include <Eigen/Core>
@@ -7,19 +7,19 @@
 #include <vector>
 
 #include "openclose/core/memory.h"
+#include "openclose/core/vector.h"
 
 namespace openclose {
 
-template <int N>
 class BlockMatrix {
  public:
-  using Block = Eigen::Matrix<double, N, N>;
+  using Block = Eigen::Matrix<double, dofs, dofs>;
 
   /// \param couplings  pairs of different block rows, in any order, repetitions allowed; the diagonal is always there
   void set_pattern(int rows, const std::vector<std::pair<int, int>>& couplings);
 
   int rows() const { return static_cast<int>(row_start_.size()) - 1; }
-  int unknowns() const { return N * rows(); }
+  int unknowns() const { return dofs * rows(); }
   std::vector<std::pair<int, int>> couplings() const;        ///< with which set_pattern() makes this pattern
   long pattern_version() const { return pattern_version_; }  ///< changes with every new pattern, differs between matrices
   void renew_version();                                      ///< lets the pattern pass for a new one
@@ -62,7 +62,5 @@ class BlockMatrix {
   std::vector<int> diagonal_;
   std::vector<Block, Eigen::aligned_allocator<Block>> values_;
 };
-
-extern template class BlockMatrix<3>;
 
 }  // namespace openclose

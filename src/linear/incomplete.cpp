@@ -137,19 +137,16 @@ class RowPattern {
 
 }  // namespace
 
-template <int N>
-IncompleteLu<N>::IncompleteLu(Factoring factoring, Fill fill)
+IncompleteLu::IncompleteLu(Factoring factoring, Fill fill)
     : factoring_(factoring), most_fill_(fill == Fill::low ? level_of_low_fill : std::numeric_limits<int>::max() / 4) {}
 
-template <int N>
-bool IncompleteLu<N>::analyse(const BlockMatrix<N>& matrix) {
+bool IncompleteLu::analyse(const BlockMatrix& matrix) {
   if (version_ == matrix.pattern_version()) return false;
   plan(matrix, factored_slots(matrix, factoring_));
   return true;
 }
 
-template <int N>
-void IncompleteLu<N>::exchange(Archive& archive, const BlockMatrix<N>& matrix) {
+void IncompleteLu::exchange(Archive& archive, const BlockMatrix& matrix) {
   bool known = version_ == matrix.pattern_version();
   std::vector<char> slots = slots_;
   archive(known);
@@ -159,8 +156,7 @@ void IncompleteLu<N>::exchange(Archive& archive, const BlockMatrix<N>& matrix) {
   archive(value_, worth_, taken_, scale_);
 }
 
-template <int N>
-void IncompleteLu<N>::plan(const BlockMatrix<N>& matrix, std::vector<char> slots) {
+void IncompleteLu::plan(const BlockMatrix& matrix, std::vector<char> slots) {
   slots_ = std::move(slots);
   const int rows = matrix.rows();
   const RowGraph graph = graph_of(matrix, slots_);
@@ -201,46 +197,40 @@ void IncompleteLu<N>::plan(const BlockMatrix<N>& matrix, std::vector<char> slots
   version_ = matrix.pattern_version();
 }
 
-template <int N>
-inline void IncompleteLu<N>::subtract_product(const PaddedBlock& left, const PaddedBlock& right, PaddedBlock& target) {
-  for (int c = 0; c < N; ++c) {
+inline void IncompleteLu::subtract_product(const PaddedBlock& left, const PaddedBlock& right, PaddedBlock& target) {
+  for (int c = 0; c < dofs; ++c) {
     Lanes sum = left.column[0] * right.column[c][0];
-    for (int k = 1; k < N; ++k) sum += left.column[k] * right.column[c][k];
+    for (int k = 1; k < dofs; ++k) sum += left.column[k] * right.column[c][k];
     target.column[c] -= sum;
   }
 }
 
-template <int N>
-inline typename IncompleteLu<N>::PaddedBlock IncompleteLu<N>::product(const PaddedBlock& left, const PaddedBlock& right) {
+inline IncompleteLu::PaddedBlock IncompleteLu::product(const PaddedBlock& left, const PaddedBlock& right) {
   PaddedBlock result;
-  for (int c = 0; c < N; ++c) {
+  for (int c = 0; c < dofs; ++c) {
     result.column[c] = left.column[0] * right.column[c][0];
-    for (int k = 1; k < N; ++k) result.column[c] += left.column[k] * right.column[c][k];
+    for (int k = 1; k < dofs; ++k) result.column[c] += left.column[k] * right.column[c][k];
   }
   return result;
 }
 
-template <int N>
-inline typename IncompleteLu<N>::PaddedBlock IncompleteLu<N>::padded(const typename BlockMatrix<N>::Block& block) {
-  static_assert(N == 3, "the last column is read with an entry before it, to stay within the block");
-  const Lanes first = four(block.data()), second = four(block.data() + N), last = four(block.data() + 2 * N - 1), zero{};
+inline IncompleteLu::PaddedBlock IncompleteLu::padded(const BlockMatrix::Block& block) {
+  const Lanes first = four(block.data()), second = four(block.data() + dofs), last = four(block.data() + 2 * dofs - 1), zero{};
   return {{__builtin_shufflevector(first, zero, 0, 1, 2, 4), __builtin_shufflevector(second, zero, 0, 1, 2, 4),
            __builtin_shufflevector(last, zero, 1, 2, 3, 4)}};
 }
 
-template <int N>
-bool IncompleteLu<N>::invert(PaddedBlock& pivot) {
-  typename BlockMatrix<N>::Block block;
-  for (int c = 0; c < N; ++c) {
-    for (int r = 0; r < N; ++r) block(r, c) = pivot.column[c][r];
+bool IncompleteLu::invert(PaddedBlock& pivot) {
+  BlockMatrix::Block block;
+  for (int c = 0; c < dofs; ++c) {
+    for (int r = 0; r < dofs; ++r) block(r, c) = pivot.column[c][r];
   }
   block = block.inverse().eval();
   pivot = padded(block);
-  return block.template cast<float>().allFinite();
+  return block.cast<float>().allFinite();
 }
 
-template <int N>
-inline typename IncompleteLu<N>::PaddedBlock IncompleteLu<N>::widen(const StoredBlock& block, float scale) {
+inline IncompleteLu::PaddedBlock IncompleteLu::widen(const StoredBlock& block, float scale) {
   const packed::Eight numbers = packed::eight(block.entry);
   const packed::Four last{block.last};
   // The fourth of each counts for nothing.
@@ -248,12 +238,11 @@ inline typename IncompleteLu<N>::PaddedBlock IncompleteLu<N>::widen(const Stored
            scale * __builtin_shufflevector(__builtin_shufflevector(numbers, numbers, 6, 7, 6, 7), last, 0, 1, 4, 4)}};
 }
 
-template <int N>
-float IncompleteLu<N>::store(int first, int end, int row_start) {
-  const auto entry = [&](int slot, int k) { return working_row_[slot - row_start].column[k / N][k % N]; };
+float IncompleteLu::store(int first, int end, int row_start) {
+  const auto entry = [&](int slot, int k) { return working_row_[slot - row_start].column[k / dofs][k % dofs]; };
   float largest = 0.0f, sum = 0.0f;
   for (int s = first; s < end; ++s) {
-    for (int k = 0; k < N * N; ++k) {
+    for (int k = 0; k < dofs * dofs; ++k) {
       largest = std::max(largest, std::abs(entry(s, k)));
       sum += std::abs(entry(s, k));
     }
@@ -261,44 +250,40 @@ float IncompleteLu<N>::store(int first, int end, int row_start) {
   if (!std::isfinite(sum)) return sum;  // no whole number stands for what single precision has none for
   const float numbers = largest > negligible_entry ? largest_number / largest : 0.0f;
   for (int s = first; s < end; ++s) {
-    for (int k = 0; k < N * N - 1; ++k) {
+    for (int k = 0; k < dofs * dofs - 1; ++k) {
       const float number = numbers * entry(s, k);
       value_[s].entry[k] = static_cast<std::int16_t>(number + (number < 0.0f ? -0.5f : 0.5f));  // what is cut off the same way everywhere adds up
     }
-    value_[s].last = numbers * entry(s, N * N - 1);
+    value_[s].last = numbers * entry(s, dofs * dofs - 1);
   }
   return largest / largest_number;
 }
 
-template <int N>
-double IncompleteLu<N>::largest_inverse() const {
+double IncompleteLu::largest_inverse() const {
   float largest = 0.0f;
   for (const RowScale& row : worth_) largest = std::max(largest, row.pivot);
   return static_cast<double>(largest * largest_number);
 }
 
-template <int N>
-void IncompleteLu<N>::find_scale(const BlockMatrix<N>& matrix) {
+void IncompleteLu::find_scale(const BlockMatrix& matrix) {
   scale_.assign(static_cast<std::size_t>(numbers_of_row) * order_.size(), 0.0f);
   for (int i = 0; i < rows(); ++i) {
     const auto& diagonal = matrix.value(matrix.diagonal(order_[i]));
-    for (int k = 0; k < N; ++k) {
+    for (int k = 0; k < dofs; ++k) {
       const double entry = diagonal(k, k);
       scale_[numbers_of_row * i + k] = std::isnormal(entry) ? std::ldexp(1.0f, -std::ilogb(entry) / 2) : 1.0f;
     }
   }
 }
 
-template <int N>
-typename IncompleteLu<N>::PaddedBlock IncompleteLu<N>::scaled(const typename BlockMatrix<N>::Block& block, int row, int column) const {
+IncompleteLu::PaddedBlock IncompleteLu::scaled(const BlockMatrix::Block& block, int row, int column) const {
   PaddedBlock result = padded(block);
   const Lanes of_row = packed::four(&scale_[numbers_of_row * row]);
-  for (int c = 0; c < N; ++c) result.column[c] *= of_row * scale_[numbers_of_row * column + c];
+  for (int c = 0; c < dofs; ++c) result.column[c] *= of_row * scale_[numbers_of_row * column + c];
   return result;
 }
 
-template <int N>
-void IncompleteLu<N>::subtract_rows_above(int i) {
+void IncompleteLu::subtract_rows_above(int i) {
   const int start = row_start_[i];
   for (int s = start; s < row_start_[i + 1]; ++s) working_place_[column_[s]] = s - start;
   for (int s = start; s < diagonal_[i]; ++s) {
@@ -312,35 +297,30 @@ void IncompleteLu<N>::subtract_rows_above(int i) {
   for (int s = start; s < row_start_[i + 1]; ++s) working_place_[column_[s]] = -1;
 }
 
-template <int N>
-bool IncompleteLu<N>::has_changed(const PaddedBlock& before, const PaddedBlock& now, const Lanes& weight) {
+bool IncompleteLu::has_changed(const PaddedBlock& before, const PaddedBlock& now, const Lanes& weight) {
   Lanes largest{};
-  for (int c = 0; c < N; ++c) {
+  for (int c = 0; c < dofs; ++c) {
     const Lanes difference = now.column[c] - before.column[c], change = difference * difference * weight * weight[c];
     largest = change <= largest ? largest : change;  // what is no number is a change
   }
   return !(largest[0] <= kept_change * kept_change && largest[1] <= kept_change * kept_change && largest[2] <= kept_change * kept_change);
 }
 
-template <int N>
-typename IncompleteLu<N>::Lanes IncompleteLu<N>::diagonal_entries(int i) const {
+IncompleteLu::Lanes IncompleteLu::diagonal_entries(int i) const {
   Lanes entries{};
-  for (int k = 0; k < N; ++k) entries[k] = std::abs(taken_[i].column[k][k]);
+  for (int k = 0; k < dofs; ++k) entries[k] = std::abs(taken_[i].column[k][k]);
   return entries;
 }
 
-template <int N>
-bool IncompleteLu<N>::is_as_taken(const BlockMatrix<N>& matrix, int i) const {
+bool IncompleteLu::is_as_taken(const BlockMatrix& matrix, int i) const {
   return !has_changed(taken_[i], scaled(matrix.value(matrix.diagonal(order_[i])), i, i), 1.0f / diagonal_entries(i));
 }
 
-template <int N>
-bool IncompleteLu<N>::subtracts_changed_row(int i) const {
+bool IncompleteLu::subtracts_changed_row(int i) const {
   return std::any_of(column_.begin() + row_start_[i], column_.begin() + diagonal_[i], [&](int k) { return changed_[k] != 0; });
 }
 
-template <int N>
-void IncompleteLu<N>::take_row(const BlockMatrix<N>& matrix, int i) {
+void IncompleteLu::take_row(const BlockMatrix& matrix, int i) {
   working_row_.assign(row_start_[i + 1] - row_start_[i], PaddedBlock{});
   for (int e = entries_start_[i]; e < entries_start_[i + 1]; ++e) {
     const auto& [slot, target] = entries_[e];
@@ -349,8 +329,7 @@ void IncompleteLu<N>::take_row(const BlockMatrix<N>& matrix, int i) {
   taken_[i] = working_row_[diagonal_[i] - row_start_[i]];
 }
 
-template <int N>
-bool IncompleteLu<N>::factor(const BlockMatrix<N>& matrix) {
+bool IncompleteLu::factor(const BlockMatrix& matrix) {
   const bool anew = factoring_ == Factoring::whole || value_.empty();
   if (anew) {
     value_.assign(column_.size(), StoredBlock{});
@@ -432,8 +411,7 @@ template <class Factor>
 
 }  // namespace
 
-template <int N>
-void IncompleteLu<N>::solve_in_order(const Eigen::VectorXf& right_side, Eigen::VectorXf& x) const {
+void IncompleteLu::solve_in_order(const Eigen::VectorXf& right_side, Eigen::VectorXf& x) const {
   const Triangles<StoredBlock, RowScale> factor{rows(),        row_start_.data(), diagonal_.data(), column_.data(),
                                                 value_.data(), worth_.data(),     scale_.data()};
 #ifdef OPENCLOSE_HAS_WIDE_REGISTERS
@@ -442,19 +420,16 @@ void IncompleteLu<N>::solve_in_order(const Eigen::VectorXf& right_side, Eigen::V
   substitute_with_any_registers(factor, right_side.data(), solution_.data(), x.data());
 }
 
-template <int N>
-Eigen::VectorXd IncompleteLu<N>::solve(const Eigen::VectorXd& right_side) const {
+Eigen::VectorXd IncompleteLu::solve(const Eigen::VectorXd& right_side) const {
   // Of size one, since single precision ends at 1e38.
   const double size = right_side.size() == 0 ? 0.0 : right_side.cwiseAbs().maxCoeff();
   Eigen::VectorXd x = Eigen::VectorXd::Zero(right_side.size());
   if (!(size > 0.0)) return x;
-  const Eigen::VectorXf ordered = in_order<N>(right_side, size, order_);
+  const Eigen::VectorXf ordered = in_order(right_side, size, order_);
   Eigen::VectorXf solution(ordered.size());
   solve_in_order(ordered, solution);
-  add_in_order<N>(solution, size, order_, x);
+  add_in_order(solution, size, order_, x);
   return x;
 }
-
-template class IncompleteLu<3>;
 
 }  // namespace openclose

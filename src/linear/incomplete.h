@@ -26,15 +26,14 @@ enum class Fill {
   all,  ///< is kept: the factor is whole
 };
 
-template <int N>
 class IncompleteLu {
  public:
   explicit IncompleteLu(Factoring factoring = Factoring::whole, Fill fill = Fill::low);
 
   /// Order and pattern; nothing is done where it is the one already known. True if it was new.
-  bool analyse(const BlockMatrix<N>& matrix);
+  bool analyse(const BlockMatrix& matrix);
   /// Of the analysed pattern. False if a pivot is singular or not finite in single precision; there is no factor then.
-  bool factor(const BlockMatrix<N>& matrix);
+  bool factor(const BlockMatrix& matrix);
   int rows_kept() const { return rows_kept_; }  ///< by the last factor(); none of a whole factor
   /// [-] Entry of the inverse of a pivot, over that of the diagonal block that it has come from, about: of a pivot that much is lost of its digits.
   double largest_inverse() const;
@@ -45,7 +44,7 @@ class IncompleteLu {
   const std::vector<int>& order() const { return order_; }  ///< row of the matrix at a place in the factor
 
   /// Which couplings it has, which decides what solve() gives, and the factor, of which the next one keeps rows.
-  void exchange(Archive& archive, const BlockMatrix<N>& matrix);
+  void exchange(Archive& archive, const BlockMatrix& matrix);
 
   /// Gives back the memory of the factor until the next one.
   void let_go() {
@@ -64,12 +63,12 @@ class IncompleteLu {
   typedef float Lanes __attribute__((vector_size(lanes * sizeof(float))));
   /// Columns, padded with zeros to a register of four that every processor has.
   struct PaddedBlock {
-    static_assert(N <= lanes);
-    Lanes column[N];
+    static_assert(dofs <= lanes);
+    Lanes column[dofs];
 
     void exchange(Archive& archive) {
       for (Lanes& lane : column) {
-        for (int k = 0; k < N; ++k) {
+        for (int k = 0; k < dofs; ++k) {
           float entry = lane[k];
           archive(entry);
           lane[k] = entry;
@@ -80,7 +79,7 @@ class IncompleteLu {
 
   /// Whole numbers, column by column; the last one as a number of single precision, which fills up the row of bytes.
   struct StoredBlock {
-    std::int16_t entry[N * N - 1];
+    std::int16_t entry[dofs * dofs - 1];
     float last;
 
     void exchange(Archive& archive) {
@@ -100,24 +99,24 @@ class IncompleteLu {
   float store(int first, int end, int row_start);
   static void subtract_product(const PaddedBlock& left, const PaddedBlock& right, PaddedBlock& target);
   static PaddedBlock product(const PaddedBlock& left, const PaddedBlock& right);
-  static PaddedBlock padded(const typename BlockMatrix<N>::Block& block);
+  static PaddedBlock padded(const BlockMatrix::Block& block);
   static bool invert(PaddedBlock& pivot);
   /// Whether an entry has changed by more than kept_change over the root of the weights of its row and column.
   static bool has_changed(const PaddedBlock& before, const PaddedBlock& now, const Lanes& weight);
   /// Sizes of those of row i when it was taken.
   Lanes diagonal_entries(int i) const;
   /// Whether row i of the factor is that of a row of the matrix which has hardly changed since.
-  bool is_as_taken(const BlockMatrix<N>& matrix, int i) const;
+  bool is_as_taken(const BlockMatrix& matrix, int i) const;
   bool subtracts_changed_row(int i) const;
-  void take_row(const BlockMatrix<N>& matrix, int i);
+  void take_row(const BlockMatrix& matrix, int i);
   void subtract_rows_above(int i);
-  void find_scale(const BlockMatrix<N>& matrix);
+  void find_scale(const BlockMatrix& matrix);
   /// A block of the matrix that goes to these places of the factor.
-  PaddedBlock scaled(const typename BlockMatrix<N>::Block& block, int row, int column) const;
+  PaddedBlock scaled(const BlockMatrix::Block& block, int row, int column) const;
 
   int rows() const { return static_cast<int>(diagonal_.size()); }
 
-  void plan(const BlockMatrix<N>& matrix, std::vector<char> slots);
+  void plan(const BlockMatrix& matrix, std::vector<char> slots);
 
   Factoring factoring_;
   int most_fill_;  ///< level
@@ -143,7 +142,5 @@ class IncompleteLu {
   std::vector<PaddedBlock> working_row_;
   mutable std::vector<Lanes> solution_;  ///< a block row each, in the factor's order
 };
-
-extern template class IncompleteLu<3>;
 
 }  // namespace openclose

@@ -29,13 +29,12 @@ constexpr double to_spare = 0.8;
 /// [-] Of a residual; where more of it is left then, rounding outweighs the digits of single precision.
 constexpr double slowest_decrease = 0.8;
 
-template <int N>
-class IncompleteSolver : public LinearSolver<N> {
+class IncompleteSolver : public LinearSolver {
  public:
-  IncompleteSolver(std::unique_ptr<LinearSolver<N>> direct, int smallest_system, Factoring factoring)
+  IncompleteSolver(std::unique_ptr<LinearSolver> direct, int smallest_system, Factoring factoring)
       : direct_(std::move(direct)), smallest_system_(smallest_system), incomplete_(factoring) {}
 
-  bool factor(const BlockMatrix<N>& matrix, double kept_change) override {
+  bool factor(const BlockMatrix& matrix, double kept_change) override {
     matrix_ = &matrix;
     kept_change_ = kept_change;
     use_direct_ = matrix.rows() < smallest_system_ || left_to_pause_ > 0;
@@ -90,8 +89,8 @@ class IncompleteSolver : public LinearSolver<N> {
     single_.use_threads(threads);
   }
 
-  void exchange(Archive& archive, const BlockMatrix<N>& matrix) override {
-    LinearSolver<N>::exchange(archive, matrix);
+  void exchange(Archive& archive, const BlockMatrix& matrix) override {
+    LinearSolver::exchange(archive, matrix);
     direct_->exchange(archive, matrix);
     incomplete_.exchange(archive, matrix);
     archive(own_, pause_, left_to_pause_);
@@ -113,7 +112,7 @@ class IncompleteSolver : public LinearSolver<N> {
       const KrylovStep<float> found = step_in_single_precision(residual, size, wanted / size, most_iterations() - result.iterations);
       result.iterations += found.iterations;
       if (!found.converged) return result;
-      add_in_order<N>(found.step, size, incomplete_.order(), x);
+      add_in_order(found.step, size, incomplete_.order(), x);
       residual = right_side - matrix_->multiply(x);
       const double left = residual.norm();
       if (!(left <= slowest_decrease * size)) return result;
@@ -131,7 +130,7 @@ class IncompleteSolver : public LinearSolver<N> {
     const int share = static_cast<int>(std::ceil(most * std::min(1.0, std::log(part) / std::log(to_spare * wanted))));
     KrylovStep<float> found = krylov_step<float>([&](const Eigen::VectorXf& v, Eigen::VectorXf& product) { single_.multiply(v, product); },
                                                  [&](const Eigen::VectorXf& v, Eigen::VectorXf& product) { incomplete_.solve_in_order(v, product); },
-                                                 in_order<N>(residual, size, incomplete_.order()), part, share, room_);
+                                                 in_order(residual, size, incomplete_.order()), part, share, room_);
     krylov_bytes_ = std::max(krylov_bytes_, room_.bytes());
     return found;
   }
@@ -155,12 +154,12 @@ class IncompleteSolver : public LinearSolver<N> {
     return done;
   }
 
-  std::unique_ptr<LinearSolver<N>> direct_;
+  std::unique_ptr<LinearSolver> direct_;
   int smallest_system_;
-  const BlockMatrix<N>* matrix_ = nullptr;
+  const BlockMatrix* matrix_ = nullptr;
   double kept_change_ = 0.0;
-  IncompleteLu<N> incomplete_;
-  SingleMatrix<N> single_;
+  IncompleteLu incomplete_;
+  SingleMatrix single_;
   bool use_direct_ = false;
   int pause_ = first_pause, left_to_pause_ = 0;  ///< matrices
   KrylovRoom<float> room_;
@@ -170,11 +169,8 @@ class IncompleteSolver : public LinearSolver<N> {
 
 }  // namespace
 
-template <int N>
-std::unique_ptr<LinearSolver<N>> make_incomplete_solver(std::unique_ptr<LinearSolver<N>> direct, int smallest_system, Factoring factoring) {
-  return std::make_unique<IncompleteSolver<N>>(std::move(direct), smallest_system, factoring);
+std::unique_ptr<LinearSolver> make_incomplete_solver(std::unique_ptr<LinearSolver> direct, int smallest_system, Factoring factoring) {
+  return std::make_unique<IncompleteSolver>(std::move(direct), smallest_system, factoring);
 }
-
-template std::unique_ptr<LinearSolver<3>> make_incomplete_solver<3>(std::unique_ptr<LinearSolver<3>>, int, Factoring);
 
 }  // namespace openclose

@@ -13,14 +13,13 @@
 namespace openclose {
 
 /// What rounding leaves in the residual: units in the last place of the products in it.
-template <int N>
-double rounding_of_residual(const BlockMatrix<N>& matrix, const Eigen::VectorXd& x) {
+inline double rounding_of_residual(const BlockMatrix& matrix, const Eigen::VectorXd& x) {
   constexpr double rounding_units = 16.0;  // [-] so many units may meet in one residual
   double sum = 0.0;
   for (int i = 0; i < matrix.rows(); ++i) {
     double row = 0.0;
     for (int s = matrix.row_start(i); s < matrix.row_start(i + 1); ++s) {
-      row += matrix.value(s).norm() * x.segment<N>(N * matrix.column(s)).norm();
+      row += matrix.value(s).norm() * x.segment<dofs>(dofs * matrix.column(s)).norm();
     }
     sum += row * row;
   }
@@ -38,8 +37,8 @@ inline constexpr double above_rounding = 1e-8;
 /// \param factor     has solve(), about the inverse of the matrix
 /// \param x          what to start from; of size 0: nothing
 /// \param reduction  [-] of the Euclidean norm of the residual; rounding errors of the product of matrix and solution always pass
-template <int N, class Factor>
-Refined refine(const BlockMatrix<N>& matrix, const Factor& factor, const Eigen::VectorXd& right_side, Eigen::VectorXd x, double reduction,
+template <class Factor>
+Refined refine(const BlockMatrix& matrix, const Factor& factor, const Eigen::VectorXd& right_side, Eigen::VectorXd x, double reduction,
                int most_iterations) {
   if (!x.allFinite()) return {};
   const double size = right_side.norm();

@@ -18,65 +18,57 @@ struct Rows {
 };
 
 /// A block times a part of a vector. The fourth number of a column is the next one's first, that of the last what comes after the block.
-template <int N>
 OPENCLOSE_KERNEL packed::FourDoubles product(const float* block, packed::FourDoubles x) {
-  const auto column = [block](int k) { return packed::widened(packed::four(block + N * k)); };
-  static_assert(N == 3);
+  const auto column = [block](int k) { return packed::widened(packed::four(block + dofs * k)); };
   return (column(0) * x[0] + column(1) * x[1]) + column(2) * x[2];
 }
 
-template <int N>
 OPENCLOSE_KERNEL void multiply(const Rows& rows, int first, int end, const float* x, float* y) {
-  static_assert(N + 1 == numbers_of_row);
+  static_assert(dofs + 1 == numbers_of_row);
   const auto part = [x](int row) { return packed::widened(packed::four(x + static_cast<std::ptrdiff_t>(numbers_of_row) * row)); };
-  const float* block = rows.values + static_cast<std::ptrdiff_t>(N * N) * rows.start[first];
+  const float* block = rows.values + static_cast<std::ptrdiff_t>(dofs * dofs) * rows.start[first];
   for (int i = first; i < end; ++i) {
     const packed::FourDoubles own = part(i);
-    packed::FourDoubles sum = product<N>(block, own);
-    block += N * N;
-    for (int s = rows.start[i] + 1; s < rows.start[i + 1]; ++s, block += N * N) sum += product<N>(block, part(rows.columns[s]) - own);
-    sum[N] = 0.0;
+    packed::FourDoubles sum = product(block, own);
+    block += dofs * dofs;
+    for (int s = rows.start[i] + 1; s < rows.start[i + 1]; ++s, block += dofs * dofs) sum += product(block, part(rows.columns[s]) - own);
+    sum[dofs] = 0.0;
     packed::store(y + static_cast<std::ptrdiff_t>(numbers_of_row) * i, __builtin_convertvector(sum, packed::Four));
   }
 }
 
-template <int N>
 void multiply_with_any_registers(const Rows& rows, int first, int end, const float* x, float* y) {
-  multiply<N>(rows, first, end, x, y);
+  multiply(rows, first, end, x, y);
 }
 #ifdef OPENCLOSE_HAS_WIDE_REGISTERS
-template <int N>
 [[gnu::target("avx2")]] void multiply_with_wide_registers(const Rows& rows, int first, int end, const float* x, float* y) {
-  multiply<N>(rows, first, end, x, y);
+  multiply(rows, first, end, x, y);
 }
 #endif
 
 }  // namespace
 
-template <int N>
 Eigen::VectorXf in_order(const Eigen::VectorXd& vector, double size, const std::vector<int>& order) {
   Eigen::VectorXf result(numbers_of_row * static_cast<Eigen::Index>(order.size()));
   const double scale = 1.0 / size;
   for (std::size_t i = 0; i < order.size(); ++i) {
-    const double* const numbers = vector.data() + static_cast<std::ptrdiff_t>(N) * order[i];
+    const double* const numbers = vector.data() + static_cast<std::ptrdiff_t>(dofs) * order[i];
     float* const row = result.data() + numbers_of_row * i;
-    for (int k = 0; k < N; ++k) row[k] = static_cast<float>(scale * numbers[k]);
-    row[N] = 0.0f;
+    for (int k = 0; k < dofs; ++k) row[k] = static_cast<float>(scale * numbers[k]);
+    row[dofs] = 0.0f;
   }
   return result;
 }
 
-template <int N>
 void add_in_order(const Eigen::VectorXf& vector, double size, const std::vector<int>& order, Eigen::VectorXd& sum) {
   for (std::size_t i = 0; i < order.size(); ++i) {
     const float* const row = vector.data() + numbers_of_row * i;
-    double* const numbers = sum.data() + static_cast<std::ptrdiff_t>(N) * order[i];
-    for (int k = 0; k < N; ++k) numbers[k] += size * static_cast<double>(row[k]);
+    double* const numbers = sum.data() + static_cast<std::ptrdiff_t>(dofs) * order[i];
+    for (int k = 0; k < dofs; ++k) numbers[k] += size * static_cast<double>(row[k]);
   }
 }
 
-template <int N>
-void SingleMatrix<N>::plan(const BlockMatrix<N>& matrix, const std::vector<int>& order) {
+void SingleMatrix::plan(const BlockMatrix& matrix, const std::vector<int>& order) {
   std::vector<int> place(order.size());
   for (std::size_t i = 0; i < order.size(); ++i) place[order[i]] = static_cast<int>(i);
   row_start_.assign(1, 0);
@@ -88,45 +80,39 @@ void SingleMatrix<N>::plan(const BlockMatrix<N>& matrix, const std::vector<int>&
     }
     row_start_.push_back(static_cast<int>(columns_.size()));
   }
-  values_.assign(static_cast<std::size_t>(N * N) * columns_.size() + 1, 0.0f);
+  values_.assign(static_cast<std::size_t>(dofs * dofs) * columns_.size() + 1, 0.0f);
   version_ = matrix.pattern_version();
 }
 
-template <int N>
-void SingleMatrix<N>::take(const BlockMatrix<N>& matrix, const std::vector<int>& order) {
+void SingleMatrix::take(const BlockMatrix& matrix, const std::vector<int>& order) {
   if (version_ != matrix.pattern_version()) plan(matrix, order);
-  const auto put = [](const typename BlockMatrix<N>::Block& block, float* to) {
-    for (int k = 0; k < N * N; ++k) to[k] = static_cast<float>(block.data()[k]);
+  const auto put = [](const BlockMatrix::Block& block, float* to) {
+    for (int k = 0; k < dofs * dofs; ++k) to[k] = static_cast<float>(block.data()[k]);
   };
   float* to = values_.data();
   for (const int row : order) {
-    typename BlockMatrix<N>::Block sum = matrix.value(matrix.diagonal(row));
+    BlockMatrix::Block sum = matrix.value(matrix.diagonal(row));
     float* const of_sum = to;
     for (int s = matrix.row_start(row); s < matrix.row_start(row + 1); ++s) {
       if (s == matrix.diagonal(row)) continue;
-      put(matrix.value(s), to += N * N);
+      put(matrix.value(s), to += dofs * dofs);
       sum += matrix.value(s);
     }
     put(sum, of_sum);
-    to += N * N;
+    to += dofs * dofs;
   }
 }
 
-template <int N>
-void SingleMatrix<N>::multiply(const Eigen::VectorXf& x, Eigen::VectorXf& product) const {
+void SingleMatrix::multiply(const Eigen::VectorXf& x, Eigen::VectorXf& product) const {
   const int all = static_cast<int>(row_start_.size()) - 1, parts = std::max(1, all / rows_of_a_part);
   const Rows rows{values_.data(), row_start_.data(), columns_.data()};
   for_each_part(SharedWork::product, threads_, parts, [&](int part) {
     const int first = part * rows_of_a_part, end = part + 1 < parts ? first + rows_of_a_part : all;
 #ifdef OPENCLOSE_HAS_WIDE_REGISTERS
-    if (__builtin_cpu_supports("avx2")) return multiply_with_wide_registers<N>(rows, first, end, x.data(), product.data());
+    if (__builtin_cpu_supports("avx2")) return multiply_with_wide_registers(rows, first, end, x.data(), product.data());
 #endif
-    multiply_with_any_registers<N>(rows, first, end, x.data(), product.data());
+    multiply_with_any_registers(rows, first, end, x.data(), product.data());
   });
 }
-
-template Eigen::VectorXf in_order<3>(const Eigen::VectorXd&, double, const std::vector<int>&);
-template void add_in_order<3>(const Eigen::VectorXf&, double, const std::vector<int>&, Eigen::VectorXd&);
-template class SingleMatrix<3>;
 
 }  // namespace openclose

@@ -18,34 +18,27 @@ namespace openclose {
 inline constexpr int numbers_of_row = 4;
 
 /// The part of a vector over `size`, which makes its numbers fit, in the order of the rows.
-template <int N>
 Eigen::VectorXf in_order(const Eigen::VectorXd& vector, double size, const std::vector<int>& order);
 /// Adds `size` times a vector in the order of the rows.
-template <int N>
 void add_in_order(const Eigen::VectorXf& vector, double size, const std::vector<int>& order, Eigen::VectorXd& sum);
 
-template <int N>
 class SingleMatrix {
  public:
   /// Takes over the numbers.
   /// \param order  row of the matrix at each place; the same as long as the pattern is
-  void take(const BlockMatrix<N>& matrix, const std::vector<int>& order);
+  void take(const BlockMatrix& matrix, const std::vector<int>& order);
 
   void use_threads(int threads) { threads_ = threads; }  ///< for products; they are the same to the last bit
   void multiply(const Eigen::VectorXf& x, Eigen::VectorXf& product) const;
   std::size_t bytes() const { return bytes_of(row_start_, columns_, values_); }
 
  private:
-  void plan(const BlockMatrix<N>& matrix, const std::vector<int>& order);
+  void plan(const BlockMatrix& matrix, const std::vector<int>& order);
 
   long version_ = -1;
   int threads_ = 1;
   std::vector<int> row_start_, columns_;
   std::vector<float> values_;  ///< block by block, each column by column; of each row the sum of all comes first, in place of the diagonal
 };
-
-extern template Eigen::VectorXf in_order<3>(const Eigen::VectorXd&, double, const std::vector<int>&);
-extern template void add_in_order<3>(const Eigen::VectorXf&, double, const std::vector<int>&, Eigen::VectorXd&);
-extern template class SingleMatrix<3>;
 
 }  // namespace openclose

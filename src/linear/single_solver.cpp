@@ -8,17 +8,16 @@ namespace {
 /// [-] Pivots that have lost more of their diagonal block than this are not known any more: of the numbers of 16 bits 3 % would be left.
 constexpr double largest_loss = 1e3;
 
-template <int N>
-class EstimatingSolver : public LinearSolver<N> {
+class EstimatingSolver : public LinearSolver {
  public:
-  bool factor(const BlockMatrix<N>& matrix, double) override {
+  bool factor(const BlockMatrix& matrix, double) override {
     ++(factor_.analyse(matrix) ? this->counters_.symbolic : this->counters_.symbolic_skipped);
     ++this->counters_.factorisations;
     plain_ = nullptr;
     if (factor_.factor(matrix) && factor_.largest_inverse() <= largest_loss) return true;
     ++this->counters_.pivots_lost;
     factor_.let_go();
-    plain_ = make_block_solver<N>(Factoring::whole);
+    plain_ = make_block_solver(Factoring::whole);
     return plain_->factor(matrix);
   }
   Eigen::VectorXd solve(const Eigen::VectorXd& right_side, double reduction) override {
@@ -32,17 +31,14 @@ class EstimatingSolver : public LinearSolver<N> {
   }
 
  private:
-  IncompleteLu<N> factor_{Factoring::whole, Fill::all};
-  std::unique_ptr<LinearSolver<N>> plain_;  ///< in its place where pivots are lost
+  IncompleteLu factor_{Factoring::whole, Fill::all};
+  std::unique_ptr<LinearSolver> plain_;  ///< in its place where pivots are lost
 };
 
 }  // namespace
 
-template <int N>
-std::unique_ptr<LinearSolver<N>> make_estimating_solver() {
-  return std::make_unique<EstimatingSolver<N>>();
+std::unique_ptr<LinearSolver> make_estimating_solver() {
+  return std::make_unique<EstimatingSolver>();
 }
-
-template std::unique_ptr<LinearSolver<3>> make_estimating_solver<3>();
 
 }  // namespace openclose

@@ -10,9 +10,6 @@
 
 namespace openclose {
 
-template <int N>
-std::unique_ptr<LinearSolver<N>> make_estimating_solver();
-
-extern template std::unique_ptr<LinearSolver<3>> make_estimating_solver<3>();
+std::unique_ptr<LinearSolver> make_estimating_solver();
 
 }  // namespace openclose

@@ -10,10 +10,9 @@ namespace {
 /// rows are kept: 1.07 with 1,119 free blocks, 0.8 with 1,773, 0.55 with 4,568.
 constexpr int smallest_iterative_system_blocks = 1500;
 
-template <int N>
-class DenseSolver : public LinearSolver<N> {
+class DenseSolver : public LinearSolver {
  public:
-  bool factor(const BlockMatrix<N>& matrix, double) override {
+  bool factor(const BlockMatrix& matrix, double) override {
     ++this->counters_.factorisations;
     lu_.compute(matrix.dense());
     return lu_.matrixLU().diagonal().cwiseAbs().minCoeff() > 0.0 && lu_.matrixLU().allFinite();
@@ -32,10 +31,9 @@ class DenseSolver : public LinearSolver<N> {
   Eigen::PartialPivLU<Eigen::MatrixXd> lu_;
 };
 
-template <int N>
-class SparseSolver : public LinearSolver<N> {
+class SparseSolver : public LinearSolver {
  public:
-  bool factor(const BlockMatrix<N>& matrix, double) override {
+  bool factor(const BlockMatrix& matrix, double) override {
     if (matrix.rows() == 0) return true;  // where no block moves; Eigen divides by the number of columns
     if (version_ != matrix.pattern_version() || scalar_.rows() != matrix.unknowns()) {
       build(matrix);
@@ -44,8 +42,8 @@ class SparseSolver : public LinearSolver<N> {
     }
     double* values = scalar_.valuePtr();
     for (int s = 0; s < matrix.row_start(matrix.rows()); ++s) {
-      Eigen::Map<const Eigen::Matrix<double, N * N, 1>> block(matrix.value(s).data());
-      for (int k = 0; k < N * N; ++k) values[position_[s * N * N + k]] = block[k];
+      Eigen::Map<const Eigen::Matrix<double, dofs * dofs, 1>> block(matrix.value(s).data());
+      for (int k = 0; k < dofs * dofs; ++k) values[position_[s * dofs * dofs + k]] = block[k];
     }
     ++this->counters_.factorisations;
     lu_.factorize(scalar_);
@@ -65,12 +63,13 @@ class SparseSolver : public LinearSolver<N> {
   }
 
  private:
-  void build(const BlockMatrix<N>& matrix) {
+  void build(const BlockMatrix& matrix) {
     // Number the entries, sort them into columns, and read back where each went.
     std::vector<Eigen::Triplet<double>> entries;
     for (int i = 0; i < matrix.rows(); ++i) {
       for (int s = matrix.row_start(i); s < matrix.row_start(i + 1); ++s) {
-        for (int k = 0; k < N * N; ++k) entries.emplace_back(N * i + k % N, N * matrix.column(s) + k / N, static_cast<double>(entries.size()));
+        for (int k = 0; k < dofs * dofs; ++k)
+          entries.emplace_back(dofs * i + k % dofs, dofs * matrix.column(s) + k / dofs, static_cast<double>(entries.size()));
       }
     }
     scalar_.resize(matrix.unknowns(), matrix.unknowns());
@@ -90,26 +89,19 @@ class SparseSolver : public LinearSolver<N> {
 
 }  // namespace
 
-template <int N>
-std::unique_ptr<LinearSolver<N>> make_dense_solver() {
-  return std::make_unique<DenseSolver<N>>();
+std::unique_ptr<LinearSolver> make_dense_solver() {
+  return std::make_unique<DenseSolver>();
 }
 
-template <int N>
-std::unique_ptr<LinearSolver<N>> make_sparse_solver() {
-  return std::make_unique<SparseSolver<N>>();
+std::unique_ptr<LinearSolver> make_sparse_solver() {
+  return std::make_unique<SparseSolver>();
 }
 
-template <int N>
-std::unique_ptr<LinearSolver<N>> make_solver(LinearSolverKind kind, Factoring factoring) {
-  if (kind == LinearSolverKind::plain) return make_sparse_solver<N>();
-  auto direct = make_block_solver<N>(factoring);
+std::unique_ptr<LinearSolver> make_solver(LinearSolverKind kind, Factoring factoring) {
+  if (kind == LinearSolverKind::plain) return make_sparse_solver();
+  auto direct = make_block_solver(factoring);
   if (kind == LinearSolverKind::direct) return direct;
-  return make_incomplete_solver<N>(std::move(direct), kind == LinearSolverKind::iterative ? 0 : smallest_iterative_system_blocks, factoring);
+  return make_incomplete_solver(std::move(direct), kind == LinearSolverKind::iterative ? 0 : smallest_iterative_system_blocks, factoring);
 }
-
-template std::unique_ptr<LinearSolver<3>> make_dense_solver<3>();
-template std::unique_ptr<LinearSolver<3>> make_sparse_solver<3>();
-template std::unique_ptr<LinearSolver<3>> make_solver<3>(LinearSolverKind, Factoring);
 
 }  // namespace openclose

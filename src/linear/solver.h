@@ -42,7 +42,6 @@ struct LinearCounters {
   }
 };
 
-template <int N>
 class LinearSolver {
  public:
   virtual ~LinearSolver() = default;
@@ -50,8 +49,8 @@ class LinearSolver {
   /// stands. The matrix must stay as it is until the last solve() with it.
   /// \param kept_change  [-] what a solver has done for rows that have changed by no more it may keep: change of an entry over the root of the
   ///                     diagonal entries of its row and column. The solution is then that of a matrix which differs by so much.
-  virtual bool factor(const BlockMatrix<N>& matrix, double kept_change) = 0;
-  bool factor(const BlockMatrix<N>& matrix) { return factor(matrix, 0.0); }
+  virtual bool factor(const BlockMatrix& matrix, double kept_change) = 0;
+  bool factor(const BlockMatrix& matrix) { return factor(matrix, 0.0); }
   /// Nothing (size 0) if the matrix turns out to be singular only here.
   /// \param reduction  [-] of the Euclidean norm of the residual over that of the right side, at least, but for rounding: of 1e-5 and more single
   ///                   precision may leave twice as much. Factors of the matrix itself do not ask.
@@ -73,7 +72,7 @@ class LinearSolver {
   virtual void use_threads(int threads) { threads_ = threads; }
   /// What the next solves depend on; the symbolic work is done again after reading.
   /// \param matrix  with the pattern that it had when it was factored last, or a newer one; it stays where it is
-  virtual void exchange(Archive& archive, const BlockMatrix<N>& /*matrix*/) { archive(counters_); }
+  virtual void exchange(Archive& archive, const BlockMatrix& /*matrix*/) { archive(counters_); }
 
  protected:
   LinearCounters counters_;
@@ -82,26 +81,21 @@ class LinearSolver {
 };
 
 /// Dense LU with partial pivoting: cheapest for a handful of blocks.
-template <int N>
-std::unique_ptr<LinearSolver<N>> make_dense_solver();
+std::unique_ptr<LinearSolver> make_dense_solver();
 
 /// Eigen's sparse LU with column ordering and exchange of rows: the plain reference for larger systems.
-template <int N>
-std::unique_ptr<LinearSolver<N>> make_sparse_solver();
+std::unique_ptr<LinearSolver> make_sparse_solver();
 
 /// LU of the blocks, without exchange between them, in an order of little fill; goes over to the plain solver where a pivot has lost its digits.
 /// \param wide_registers  false: only the instructions that every processor has, for comparison; the bits of the answer are the same
-template <int N>
-std::unique_ptr<LinearSolver<N>> make_block_solver(Factoring factoring = Factoring::needed, bool wide_registers = true);
+std::unique_ptr<LinearSolver> make_block_solver(Factoring factoring = Factoring::needed, bool wide_registers = true);
 
 /// GMRES with an incomplete factor of each matrix; those that this does not serve, and small ones, go to `direct`.
 /// \param smallest_system  [-] block rows
-template <int N>
-std::unique_ptr<LinearSolver<N>> make_incomplete_solver(std::unique_ptr<LinearSolver<N>> direct, int smallest_system,
-                                                        Factoring factoring = Factoring::needed);
+std::unique_ptr<LinearSolver> make_incomplete_solver(std::unique_ptr<LinearSolver> direct, int smallest_system,
+                                                     Factoring factoring = Factoring::needed);
 
 /// The solver that serves every system, or the one asked for.
-template <int N>
-std::unique_ptr<LinearSolver<N>> make_solver(LinearSolverKind kind = LinearSolverKind::automatic, Factoring factoring = Factoring::needed);
+std::unique_ptr<LinearSolver> make_solver(LinearSolverKind kind = LinearSolverKind::automatic, Factoring factoring = Factoring::needed);
 
 }  // namespace openclose

@@ -7,8 +7,7 @@ namespace {
 /// slope couplings over edges have more than 3e-2, those over corners less than 1e-3.
 constexpr double weak_coupling = 1e-3;
 
-template <int N>
-bool is_weak(const BlockMatrix<N>& matrix, int row, int slot) {
+bool is_weak(const BlockMatrix& matrix, int row, int slot) {
   const auto rows = matrix.value(matrix.diagonal(row)).diagonal().cwiseAbs();
   const auto columns = matrix.value(matrix.diagonal(matrix.column(slot))).diagonal().cwiseAbs();
   const auto& value = matrix.value(slot);
@@ -17,8 +16,7 @@ bool is_weak(const BlockMatrix<N>& matrix, int row, int slot) {
 
 }  // namespace
 
-template <int N>
-std::vector<char> factored_slots(const BlockMatrix<N>& matrix, Factoring factoring) {
+std::vector<char> factored_slots(const BlockMatrix& matrix, Factoring factoring) {
   std::vector<char> slots(matrix.row_start(matrix.rows()), factoring == Factoring::whole);
   if (factoring == Factoring::whole) return slots;
   for (int i = 0; i < matrix.rows(); ++i) {
@@ -30,8 +28,7 @@ std::vector<char> factored_slots(const BlockMatrix<N>& matrix, Factoring factori
   return slots;
 }
 
-template <int N>
-RowGraph graph_of(const BlockMatrix<N>& matrix, const std::vector<char>& slots) {
+RowGraph graph_of(const BlockMatrix& matrix, const std::vector<char>& slots) {
   RowGraph graph;
   graph.start.reserve(matrix.rows() + 1);
   graph.neighbour.reserve(slots.size());
@@ -43,8 +40,5 @@ RowGraph graph_of(const BlockMatrix<N>& matrix, const std::vector<char>& slots) 
   }
   return graph;
 }
-
-template std::vector<char> factored_slots<3>(const BlockMatrix<3>&, Factoring);
-template RowGraph graph_of<3>(const BlockMatrix<3>&, const std::vector<char>&);
 
 }  // namespace openclose

@@ -16,8 +16,7 @@ enum class Factoring {
 
 /// Of every slot whether the factor gets it. Without weak couplings: the diagonal, and those of which an entry of theirs or of the transposed one is
 /// large against the diagonal entries of its row and column, or which are zero, since nobody knows how strong they will be.
-template <int N>
-std::vector<char> factored_slots(const BlockMatrix<N>& matrix, Factoring factoring);
+std::vector<char> factored_slots(const BlockMatrix& matrix, Factoring factoring);
 
 /// The neighbours of each row of a symmetric pattern, without the row itself: those of row i are neighbour[start[i]] to neighbour[start[i + 1] - 1].
 struct RowGraph {
@@ -27,10 +26,6 @@ struct RowGraph {
 };
 
 /// The couplings of these slots.
-template <int N>
-RowGraph graph_of(const BlockMatrix<N>& matrix, const std::vector<char>& slots);
-
-extern template std::vector<char> factored_slots<3>(const BlockMatrix<3>&, Factoring);
-extern template RowGraph graph_of<3>(const BlockMatrix<3>&, const std::vector<char>&);
+RowGraph graph_of(const BlockMatrix& matrix, const std::vector<char>& slots);
 
 }  // namespace openclose

@@ -6,8 +6,7 @@
 
 namespace openclose {
 
-template <int N>
-BlockSystem<N>::BlockSystem(const Scene& scene) : rotation_kind_(scene.method.rotation) {
+BlockSystem::BlockSystem(const Scene& scene) : rotation_kind_(scene.method.rotation) {
   const std::size_t blocks = scene.blocks.size();
   std::size_t vertices = 0;
   for (const BlockInput& input : scene.blocks) vertices += input.vertices.size();
@@ -27,7 +26,7 @@ BlockSystem<N>::BlockSystem(const Scene& scene) : rotation_kind_(scene.method.ro
     block.material = input.material;
     block.area = properties.area;
     block.rotation_locked = input.rotation_locked;
-    block.mass = Motion<N>::mass(scene.materials[input.material].density, properties.area, properties.polar_second_moment);
+    block.mass = Motion::mass(scene.materials[input.material].density, properties.area, properties.polar_second_moment);
     block.reference_centroid = properties.centroid;
     for (int i = 0; i < block.vertex_count; ++i) {
       // Differences of scene coordinates first: they are exact for neighbouring numbers.
@@ -53,30 +52,26 @@ BlockSystem<N>::BlockSystem(const Scene& scene) : rotation_kind_(scene.method.ro
   first_point_.assign(blocks_.size(), -1);
 }
 
-template <int N>
-typename BlockSystem<N>::Unknowns BlockSystem<N>::velocity_at_start(const BlockInput& input) {
+BlockSystem::Unknowns BlockSystem::velocity_at_start(const BlockInput& input) {
   Unknowns velocity = Unknowns::Zero();
   if (!input.fixed) velocity << input.velocity, input.angular_velocity;
   return velocity;
 }
 
-template <int N>
-int BlockSystem<N>::follow_point(int b, const Vec2& point) {
+int BlockSystem::follow_point(int b, const Vec2& point) {
   const Vec2 arm = (point - origin_) - blocks_[b].reference_centroid;
   const int number = static_cast<int>(points_.size());
   points_.push_back({b, arm, first_point_[b]});
   first_point_[b] = number;
-  state_.point_arm.push_back(arm + Motion<N>::turned_by(Motion<N>::rotation(state_.displacement[b]), arm, rotation_kind_));
+  state_.point_arm.push_back(arm + Motion::turned_by(Motion::rotation(state_.displacement[b]), arm, rotation_kind_));
   return number;
 }
 
-template <int N>
-void BlockSystem<N>::stop() {
+void BlockSystem::stop() {
   for (Unknowns& v : state_.velocity) v.setZero();
 }
 
-template <int N>
-void BlockSystem<N>::number(const std::vector<char>& is_free) {
+void BlockSystem::number(const std::vector<char>& is_free) {
   free_blocks_.clear();
   resting_blocks_.clear();
   for (int b = 0; b < block_count(); ++b) {
@@ -86,8 +81,7 @@ void BlockSystem<N>::number(const std::vector<char>& is_free) {
   }
 }
 
-template <int N>
-void BlockSystem<N>::put_to_rest(const std::vector<int>& blocks) {
+void BlockSystem::put_to_rest(const std::vector<int>& blocks) {
   std::vector<char> is_free(blocks_.size(), 0);
   for (const int b : free_blocks_) is_free[b] = 1;
   for (const int b : blocks) {
@@ -97,29 +91,26 @@ void BlockSystem<N>::put_to_rest(const std::vector<int>& blocks) {
   number(is_free);
 }
 
-template <int N>
-void BlockSystem<N>::wake(const std::vector<int>& blocks) {
+void BlockSystem::wake(const std::vector<int>& blocks) {
   std::vector<char> is_free(blocks_.size(), 0);
   for (const int b : free_blocks_) is_free[b] = 1;
   for (const int b : blocks) is_free[b] = 1;
   number(is_free);
 }
 
-template <int N>
-void BlockSystem<N>::exchange(Archive& archive) {
+void BlockSystem::exchange(Archive& archive) {
   std::vector<char> is_free(blocks_.size(), 0);
   for (const int b : free_blocks_) is_free[b] = 1;
   archive(state_, is_free);
   number(is_free);
 }
 
-template <int N>
-void BlockSystem<N>::advance(int b, const Unknowns& d) {
+void BlockSystem::advance(int b, const Unknowns& d) {
   state_.displacement[b] += d;
   const Block& block = blocks_[b];
   // Exact rotation starts from the reference each time, so that rounding does not deform the block; Shi's linear one adds to what it had.
   const bool exact = rotation_kind_ == RotationKind::exact;
-  const typename Motion<N>::Turn turn(Motion<N>::rotation(exact ? state_.displacement[b] : d), rotation_kind_);
+  const Motion::Turn turn(Motion::rotation(exact ? state_.displacement[b] : d), rotation_kind_);
   const auto turned = [&](const Vec2& reference, const Vec2& current) -> Vec2 {
     const Vec2& from = exact ? reference : current;
     return from + turn.of(from);
@@ -128,29 +119,24 @@ void BlockSystem<N>::advance(int b, const Unknowns& d) {
   for (int i = first_point_[b]; i >= 0; i = points_[i].next_of_block) state_.point_arm[i] = turned(points_[i].reference_arm, state_.point_arm[i]);
 }
 
-template <int N>
-void BlockSystem<N>::move_to(int b, const Unknowns& displacement) {
+void BlockSystem::move_to(int b, const Unknowns& displacement) {
   state_.displacement[b] = displacement;
   const Unknowns no_more = Unknowns::Zero();
   advance(b, no_more);
 }
 
-template <int N>
-double BlockSystem<N>::kinetic_energy() const {
+double BlockSystem::kinetic_energy() const {
   double energy = 0.0;
   for (int b : free_blocks_) energy += 0.5 * state_.velocity[b].dot(blocks_[b].mass.cwiseProduct(state_.velocity[b]));
   return energy;
 }
 
-template <int N>
-double BlockSystem<N>::reduced_mass(int a, int b) const {
+double BlockSystem::reduced_mass(int a, int b) const {
   double inverse = 0.0;
   for (const int i : {a, b}) {
     if (blocks_[i].equation != fixed) inverse += 1.0 / blocks_[i].mass[0];
   }
   return 1.0 / inverse;
 }
-
-template class BlockSystem<3>;
 
 }  // namespace openclose

@@ -14,10 +14,9 @@
 
 namespace openclose {
 
-template <int N>
 class BlockSystem {
  public:
-  using Unknowns = typename Motion<N>::Unknowns;
+  using Unknowns = Motion::Unknowns;
 
   static constexpr int fixed = -1;  ///< in place of an equation; blocks at rest have what lies below
 
@@ -65,7 +64,7 @@ class BlockSystem {
   int previous(int vertex) const { return previous_[vertex]; }
   bool is_reflex(int vertex) const { return reflex_[vertex]; }  ///< interior angle above pi
 
-  Vec2 centroid(int b) const { return blocks_[b].reference_centroid + Motion<N>::translation(state_.displacement[b]); }
+  Vec2 centroid(int b) const { return blocks_[b].reference_centroid + Motion::translation(state_.displacement[b]); }
   const Vec2& arm(int vertex) const { return state_.arm[vertex]; }
   Vec2 position(int b, int vertex) const { return centroid(b) + state_.arm[vertex]; }  ///< [m] relative to origin()
 
@@ -124,7 +123,5 @@ class BlockSystem {
   RotationKind rotation_kind_ = RotationKind::exact;
   State state_;
 };
-
-extern template class BlockSystem<3>;
 
 }  // namespace openclose

@@ -2,8 +2,7 @@
 
 namespace openclose {
 
-template <int N>
-ExternalForces<N>::ExternalForces(const Scene& scene, BlockSystem<N>& system) : gravity_(scene.gravity), base_motion_(scene.base_motion) {
+ExternalForces::ExternalForces(const Scene& scene, BlockSystem& system) : gravity_(scene.gravity), base_motion_(scene.base_motion) {
   if (!scene.loads.empty() || !scene.supports.empty()) of_blocks_.resize(scene.blocks.size());
   for (const Load& load : scene.loads) {
     of_blocks_[load.block].loads.push_back(static_cast<int>(loads_.size()));
@@ -16,98 +15,86 @@ ExternalForces<N>::ExternalForces(const Scene& scene, BlockSystem<N>& system) : 
   }
 }
 
-template <int N>
-typename ExternalForces<N>::Unknowns ExternalForces<N>::weight(const BlockSystem<N>& system, int b) const {
-  return Motion<N>::gradient(Vec2::Zero(), system.block(b).mass[0] * gravity_);
+ExternalForces::Unknowns ExternalForces::weight(const BlockSystem& system, int b) const {
+  return Motion::gradient(Vec2::Zero(), system.block(b).mass[0] * gravity_);
 }
 
-template <int N>
-typename ExternalForces<N>::Unknowns ExternalForces<N>::base_force(const BlockSystem<N>& system, int b) const {
-  return Motion<N>::gradient(Vec2::Zero(), -system.block(b).mass[0] * base_acceleration_);
+ExternalForces::Unknowns ExternalForces::base_force(const BlockSystem& system, int b) const {
+  return Motion::gradient(Vec2::Zero(), -system.block(b).mass[0] * base_acceleration_);
 }
 
-template <int N>
-typename ExternalForces<N>::Unknowns ExternalForces<N>::force(const BlockSystem<N>& system, int b, const Unknowns& d) const {
+ExternalForces::Unknowns ExternalForces::force(const BlockSystem& system, int b, const Unknowns& d) const {
   Unknowns total = weight(system, b) + base_force(system, b);
   for_each_point_force(b, [&](const PointForce& f) {
-    const Vec2 moved = Motion<N>::displacement(d, system.point_arm(f.point), system.rotation_kind());
+    const Vec2 moved = Motion::displacement(d, system.point_arm(f.point), system.rotation_kind());
     const Vec2 stretch = (system.point_position(f.point) - f.anchor) + moved;
-    const Vec2 arm = system.point_arm(f.point) + moved - Motion<N>::translation(d);
-    total += Motion<N>::gradient(arm, f.force - f.stiffness.cwiseProduct(stretch));
+    const Vec2 arm = system.point_arm(f.point) + moved - Motion::translation(d);
+    total += Motion::gradient(arm, f.force - f.stiffness.cwiseProduct(stretch));
   });
   return total;
 }
 
-template <int N>
-typename ExternalForces<N>::Matrix ExternalForces<N>::stiffness(const BlockSystem<N>& system, int b, const Unknowns& d) const {
+ExternalForces::Matrix ExternalForces::stiffness(const BlockSystem& system, int b, const Unknowns& d) const {
   Matrix total = Matrix::Zero();
   for_each_point_force(b, [&](const PointForce& f) {
-    const Vec2 moved = Motion<N>::displacement(d, system.point_arm(f.point), system.rotation_kind());
+    const Vec2 moved = Motion::displacement(d, system.point_arm(f.point), system.rotation_kind());
     const Vec2 stretch = (system.point_position(f.point) - f.anchor) + moved;
-    total += stiffness(f, system.point_arm(f.point) + moved - Motion<N>::translation(d), stretch);
+    total += stiffness(f, system.point_arm(f.point) + moved - Motion::translation(d), stretch);
   });
   return total;
 }
 
-template <int N>
-typename ExternalForces<N>::Matrix ExternalForces<N>::stiffness(const PointForce& f, const Vec2& arm, const Vec2& stretch) {
-  const Unknowns gx = Motion<N>::gradient(arm, {1.0, 0.0}), gy = Motion<N>::gradient(arm, {0.0, 1.0});
+ExternalForces::Matrix ExternalForces::stiffness(const PointForce& f, const Vec2& arm, const Vec2& stretch) {
+  const Unknowns gx = Motion::gradient(arm, {1.0, 0.0}), gy = Motion::gradient(arm, {0.0, 1.0});
   return f.stiffness.x() * gx * gx.transpose() + f.stiffness.y() * gy * gy.transpose() -
-         Motion<N>::hessian(arm, f.force - f.stiffness.cwiseProduct(stretch));
+         Motion::hessian(arm, f.force - f.stiffness.cwiseProduct(stretch));
 }
 
-template <int N>
-typename ExternalForces<N>::Unknowns ExternalForces<N>::linear_force(const BlockSystem<N>& system, const PointForce& f, const Unknowns& d) {
+ExternalForces::Unknowns ExternalForces::linear_force(const BlockSystem& system, const PointForce& f, const Unknowns& d) {
   const Vec2 arm = system.point_arm(f.point), stretch = system.point_position(f.point) - f.anchor;
-  return Motion<N>::gradient(arm, f.force - f.stiffness.cwiseProduct(stretch)) - stiffness(f, arm, stretch) * d;
+  return Motion::gradient(arm, f.force - f.stiffness.cwiseProduct(stretch)) - stiffness(f, arm, stretch) * d;
 }
 
-template <int N>
-typename ExternalForces<N>::Unknowns ExternalForces<N>::mean_force(const BlockSystem<N>& system, int b, const Unknowns& d) const {
+ExternalForces::Unknowns ExternalForces::mean_force(const BlockSystem& system, int b, const Unknowns& d) const {
   Unknowns total = weight(system, b) + base_force(system, b);
   for_each_point_force(b, [&](const PointForce& f) {
-    const Vec2 moved = Motion<N>::displacement(d, system.point_arm(f.point), system.rotation_kind());
+    const Vec2 moved = Motion::displacement(d, system.point_arm(f.point), system.rotation_kind());
     const Vec2 stretch = (system.point_position(f.point) - f.anchor) + 0.5 * moved;
-    const Vec2 arm = system.point_arm(f.point) + 0.5 * (moved - Motion<N>::translation(d));
-    total += Motion<N>::gradient(arm, f.force - f.stiffness.cwiseProduct(stretch));
+    const Vec2 arm = system.point_arm(f.point) + 0.5 * (moved - Motion::translation(d));
+    total += Motion::gradient(arm, f.force - f.stiffness.cwiseProduct(stretch));
   });
   return total;
 }
 
-template <int N>
-typename ExternalForces<N>::Matrix ExternalForces<N>::mean_stiffness(const BlockSystem<N>& system, int b, const Unknowns& d) const {
+ExternalForces::Matrix ExternalForces::mean_stiffness(const BlockSystem& system, int b, const Unknowns& d) const {
   Matrix total = Matrix::Zero();
   for_each_point_force(b, [&](const PointForce& f) {
-    const Vec2 moved = Motion<N>::displacement(d, system.point_arm(f.point), system.rotation_kind());
+    const Vec2 moved = Motion::displacement(d, system.point_arm(f.point), system.rotation_kind());
     const Vec2 stretch = (system.point_position(f.point) - f.anchor) + 0.5 * moved;
-    const Vec2 turned = moved - Motion<N>::translation(d);
+    const Vec2 turned = moved - Motion::translation(d);
     const Vec2 end_arm = system.point_arm(f.point) + turned, arm = system.point_arm(f.point) + 0.5 * turned;
-    const Unknowns gx = Motion<N>::gradient(end_arm, {1.0, 0.0}), gy = Motion<N>::gradient(end_arm, {0.0, 1.0});
-    total += 0.5 * f.stiffness.x() * Motion<N>::gradient(arm, {1.0, 0.0}) * gx.transpose();
-    total += 0.5 * f.stiffness.y() * Motion<N>::gradient(arm, {0.0, 1.0}) * gy.transpose();
-    total -= 0.5 * Motion<N>::hessian(end_arm, f.force - f.stiffness.cwiseProduct(stretch));
+    const Unknowns gx = Motion::gradient(end_arm, {1.0, 0.0}), gy = Motion::gradient(end_arm, {0.0, 1.0});
+    total += 0.5 * f.stiffness.x() * Motion::gradient(arm, {1.0, 0.0}) * gx.transpose();
+    total += 0.5 * f.stiffness.y() * Motion::gradient(arm, {0.0, 1.0}) * gy.transpose();
+    total -= 0.5 * Motion::hessian(end_arm, f.force - f.stiffness.cwiseProduct(stretch));
   });
   return total;
 }
 
-template <int N>
-double ExternalForces<N>::magnitude(const BlockSystem<N>& system, int b, const Unknowns& d) const {
+double ExternalForces::magnitude(const BlockSystem& system, int b, const Unknowns& d) const {
   double total = weight(system, b).norm() + base_force(system, b).norm();
   for_each_point_force(b, [&](const PointForce& f) {
-    const Vec2 moved = Motion<N>::displacement(d, system.point_arm(f.point), system.rotation_kind());
+    const Vec2 moved = Motion::displacement(d, system.point_arm(f.point), system.rotation_kind());
     const Vec2 stretch = (system.point_position(f.point) - f.anchor) + moved;
     total += f.force.norm() + f.stiffness.cwiseProduct(stretch).norm();
   });
   return total;
 }
 
-template <int N>
-double ExternalForces<N>::spring_scale(const BlockSystem<N>& system, int b) const {
+double ExternalForces::spring_scale(const BlockSystem& system, int b) const {
   double total = 0.0;
   for_each_point_force(b, [&](const PointForce& f) { total += f.stiffness.maxCoeff() * (f.anchor.norm() + system.point_position(f.point).norm()); });
   return total;
 }
-
-template class ExternalForces<3>;
 
 }  // namespace openclose

@@ -8,11 +8,10 @@
 
 namespace openclose {
 
-template <int N>
 class ExternalForces {
  public:
-  using Unknowns = typename Motion<N>::Unknowns;
-  using Matrix = typename Motion<N>::Matrix;
+  using Unknowns = Motion::Unknowns;
+  using Matrix = Motion::Matrix;
 
   struct PointForce {
     int point = 0;                  ///< followed point of the system
@@ -22,7 +21,7 @@ class ExternalForces {
   };
 
   /// Makes `system` follow the points of the scene's loads and supports.
-  ExternalForces(const Scene& scene, BlockSystem<N>& system);
+  ExternalForces(const Scene& scene, BlockSystem& system);
 
   /// The forces of the next step are those of a base that moves as it does between these times [s]: what they give the blocks is exactly the change
   /// of the base's velocity.
@@ -31,26 +30,26 @@ class ExternalForces {
   void exchange(Archive& archive) { archive(base_acceleration_); }
   const Vec2& base_acceleration() const { return base_acceleration_; }  ///< [m/s2] mean over these times
 
-  Unknowns weight(const BlockSystem<N>& system, int b) const;      ///< [N]
-  Unknowns base_force(const BlockSystem<N>& system, int b) const;  ///< [N] minus mass times acceleration of the base
+  Unknowns weight(const BlockSystem& system, int b) const;      ///< [N]
+  Unknowns base_force(const BlockSystem& system, int b) const;  ///< [N] minus mass times acceleration of the base
   /// Forces of gravity, base, loads and supports on block b after it has moved by d from the system's present state.
-  Unknowns force(const BlockSystem<N>& system, int b, const Unknowns& d) const;
+  Unknowns force(const BlockSystem& system, int b, const Unknowns& d) const;
   /// Minus the derivative of force() by d.
-  Matrix stiffness(const BlockSystem<N>& system, int b, const Unknowns& d) const;
+  Matrix stiffness(const BlockSystem& system, int b, const Unknowns& d) const;
 
   /// One of these forces as it is at the start of a step, and what it changes by with d in the first order.
-  static Unknowns linear_force(const BlockSystem<N>& system, const PointForce& f, const Unknowns& d);
+  static Unknowns linear_force(const BlockSystem& system, const PointForce& f, const Unknowns& d);
 
   /// The mean of such forces over a step to d, along a straight path and in the mean geometry: their work is the product with d, exactly for
   /// translations and to the third order in the rotation.
-  Unknowns mean_force(const BlockSystem<N>& system, int b, const Unknowns& d) const;
+  Unknowns mean_force(const BlockSystem& system, int b, const Unknowns& d) const;
   /// Minus the derivative of mean_force() by d.
-  Matrix mean_stiffness(const BlockSystem<N>& system, int b, const Unknowns& d) const;
+  Matrix mean_stiffness(const BlockSystem& system, int b, const Unknowns& d) const;
 
   /// [N] sum of the magnitudes of these forces on block b, the scale of what rounding leaves of their sum, which may cancel.
-  double magnitude(const BlockSystem<N>& system, int b, const Unknowns& d) const;
+  double magnitude(const BlockSystem& system, int b, const Unknowns& d) const;
   /// [N] what the springs' forces change by when coordinates change by their own size: times the rounding unit, the noise of that force.
-  double spring_scale(const BlockSystem<N>& system, int b) const;
+  double spring_scale(const BlockSystem& system, int b) const;
 
   /// False: force() does not depend on d.
   bool has_point_forces(int b) const { return !of_blocks_.empty() && !(of_blocks_[b].loads.empty() && of_blocks_[b].supports.empty()); }
@@ -77,7 +76,5 @@ class ExternalForces {
   std::vector<PointForce> loads_, supports_;
   std::vector<PointForces> of_blocks_;  ///< empty without any
 };
-
-extern template class ExternalForces<3>;
 
 }  // namespace openclose

@@ -1,6 +1,5 @@
-// How the unknowns of one block move its points. The number of unknowns is a compile-time parameter, so that rigid scenes never pay for strains.
-//
-//   Motion<3>: rigid block, unknowns (u, v, r): translation of the centroid [m], rotation counter-clockwise [rad].
+// How the degrees of freedom of a rigid block move its points: (u, v, r), the translation of its centroid [m] and its rotation [rad],
+// counter-clockwise.
 #pragma once
 
 #include <Eigen/Core>
@@ -27,11 +26,7 @@ struct SineCosine {
   }
 };
 
-template <int N>
-struct Motion;
-
-template <>
-struct Motion<3> {
+struct Motion {
   using Unknowns = Eigen::Vector3d;
   using Matrix = Eigen::Matrix3d;
 

@@ -98,8 +98,8 @@ class Balance {
 
   const FrozenSystem& system_;
   const FrozenStrength& strength_;
-  std::unique_ptr<LinearSolver<3>> solver_;
-  BlockMatrix<3> matrix_;
+  std::unique_ptr<LinearSolver> solver_;
+  BlockMatrix matrix_;
   std::vector<Row> rows_;
   std::vector<int> share_start_;  ///< of the slots of the matrix, in shares_
   std::vector<Share> shares_;

@@ -40,7 +40,7 @@ Scene in_units(const Scene& scene, double unit) {
   return scaled;
 }
 
-Polygon polygon_of(const BlockSystem<3>& system, int b) {
+Polygon polygon_of(const BlockSystem& system, int b) {
   Polygon polygon;
   const auto& block = system.block(b);
   for (int v = block.first_vertex; v < block.first_vertex + block.vertex_count; ++v) polygon.push_back(system.position(b, v));
@@ -48,9 +48,9 @@ Polygon polygon_of(const BlockSystem<3>& system, int b) {
 }
 
 /// Whether a third block lies between the corner and the edge of a contact that is drawn open.
-bool has_block_between(const BlockSystem<3>& system, const Contact& contact, const std::vector<std::vector<int>>& neighbours) {
+bool has_block_between(const BlockSystem& system, const Contact& contact, const std::vector<std::vector<int>>& neighbours) {
   if (contact.gap <= tolerance::edge_end_m) return false;
-  const ContactStart<3> at(system, contact);
+  const ContactStart at(system, contact);
   const Vec2 middle = system.position(contact.vertex_block, contact.vertex) - 0.5 * contact.gap * at.normal;
   return std::ranges::any_of(neighbours[contact.vertex_block],
                              [&](int other) { return other != contact.edge_block && contains(polygon_of(system, other), middle); });
@@ -64,8 +64,8 @@ BlockVector scaled_rotation(const Eigen::Vector3d& gradient, double radius, bool
 
 FrozenSystem::FrozenSystem(const Scene& scene) : length_unit_(median_size(scene)) {
   const Scene scaled = in_units(scene, length_unit_);
-  BlockSystem<3> system(scaled);
-  const ExternalForces<3> external(scaled, system);
+  BlockSystem system(scaled);
+  const ExternalForces external(scaled, system);
   const double area_unit = length_unit_ * length_unit_;
 
   double acceleration_unit = scene.gravity.norm(), heaviest = 0.0;
@@ -75,12 +75,12 @@ FrozenSystem::FrozenSystem(const Scene& scene) : length_unit_(median_size(scene)
     block.centroid = scene.blocks.front().vertices.front() + length_unit_ * system.centroid(b);
     block.radius = system.block(b).radius;
     block.rotation_locked = system.block(b).rotation_locked;
-    const BlockSystem<3>::Unknowns mass = system.block(b).mass * area_unit;  // [kg, kg, kg in units of length squared]
+    const BlockSystem::Unknowns mass = system.block(b).mass * area_unit;  // [kg, kg, kg in units of length squared]
     block.mass = {mass[0], mass[1], mass[2] / (block.radius * block.radius)};
     // Moments have their arms in units of length.
-    BlockVector load = Motion<3>::gradient(Vec2::Zero(), mass[0] * scene.gravity);
+    BlockVector load = Motion::gradient(Vec2::Zero(), mass[0] * scene.gravity);
     for (const auto& f : external.loads()) {
-      if (system.point_block(f.point) == b) load += Motion<3>::gradient(system.point_arm(f.point), f.force);
+      if (system.point_block(f.point) == b) load += Motion::gradient(system.point_arm(f.point), f.force);
     }
     block.load = scaled_rotation(load, block.radius, system.block(b).rotation_locked);
     if (scene.gravity.norm() == 0.0) acceleration_unit = std::max(acceleration_unit, block.load.norm() / mass[0]);
@@ -100,7 +100,7 @@ FrozenSystem::FrozenSystem(const Scene& scene) : length_unit_(median_size(scene)
     if (row < 0) continue;
     for (int k = 0; k < 2; ++k) {
       if (f.stiffness[k] == 0.0) continue;
-      const BlockVector direction = Motion<3>::gradient(system.point_arm(f.point), Vec2::Unit(k));
+      const BlockVector direction = Motion::gradient(system.point_arm(f.point), Vec2::Unit(k));
       supports_.push_back({row, scaled_rotation(direction, system.block(b).radius, system.block(b).rotation_locked), f.stiffness[k]});
     }
   }
@@ -109,11 +109,11 @@ FrozenSystem::FrozenSystem(const Scene& scene) : length_unit_(median_size(scene)
   set_units(scene);
 }
 
-void FrozenSystem::find_contacts(const Scene& scaled, const BlockSystem<3>& system) {
+void FrozenSystem::find_contacts(const Scene& scaled, const BlockSystem& system) {
   const JointTable joints(scaled);
   DetectionSkips skips;
   skips.contact_skin = tolerance::rounding_of_ways_m;
-  Detector<3> detector(closed_gap, skips);
+  Detector detector(closed_gap, skips);
   std::vector<Contact> found;
   detector.update(system, joints, found);
   std::vector<std::vector<int>> neighbours(system.block_count());
@@ -121,12 +121,12 @@ void FrozenSystem::find_contacts(const Scene& scaled, const BlockSystem<3>& syst
     neighbours[a].push_back(b);
     neighbours[b].push_back(a);
   }
-  const BlockSystem<3>::Unknowns still = BlockSystem<3>::Unknowns::Zero();
+  const BlockSystem::Unknowns still = BlockSystem::Unknowns::Zero();
   for (const Contact& contact : found) {
     if (contact.gap > closed_gap || has_block_between(system, contact, neighbours)) continue;
     const auto &corner_block = system.block(contact.vertex_block), &edge_block = system.block(contact.edge_block);
     if (corner_block.equation < 0 && edge_block.equation < 0) continue;
-    const ContactKinematics<3> k(system, contact, still, still);
+    const ContactKinematics k(system, contact, still, still);
     FrozenContact c;
     c.a = std::max(corner_block.equation, -1);
     c.b = std::max(edge_block.equation, -1);

@@ -69,7 +69,7 @@ class FrozenSystem {
   double length_unit() const { return length_unit_; }    ///< [m]
 
  private:
-  void find_contacts(const Scene& scaled, const BlockSystem<3>& system);
+  void find_contacts(const Scene& scaled, const BlockSystem& system);
   void set_units(const Scene& scene);
 
   std::vector<FrozenBlock> blocks_;

@@ -21,10 +21,18 @@ void* operator new(std::size_t size, std::align_val_t alignment) {
   if (void* memory = std::aligned_alloc(to, (size + to - 1) / to * to)) return memory;
   throw std::bad_alloc();
 }
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
+void operator delete(void* memory) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::size_t) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::align_val_t) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
+  std::free(memory);
+}
 
 int main() {
   using namespace openclose;
@@ -32,7 +40,7 @@ int main() {
   scene.method.contact = "dem";
   scene.joints[0].damping_ratio = 0.1;
   scene.blocks[6].velocity = {1e-3, 0.0};
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   bool good = settle(simulation).settled;
   simulation.restore_velocities();
   simulation.restart_clock();

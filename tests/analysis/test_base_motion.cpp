@@ -26,7 +26,7 @@ Scene with_method(Scene scene, const std::string& method) {
   return scene;
 }
 
-void advance(Simulation<3>& simulation, int steps) {
+void advance(Simulation& simulation, int steps) {
   for (int i = 0; i < steps; ++i) REQUIRE(simulation.advance(simulation.scene().step.dt));
 }
 
@@ -41,7 +41,7 @@ TEST_CASE("a free block lags behind its base, exactly, whatever the step", "[ana
     const BaseMotion base(scene.base_motion);
     for (const double dt : {1e-3, 7e-3, 0.05}) {
       scene.step.dt = dt;
-      Simulation<3> simulation(scene);
+      Simulation simulation(scene);
       simulation.start_base_motion();
       const bool midstep = method == "hard" || method == "dem";
       for (int i = 1; i <= 7; ++i) {
@@ -71,7 +71,7 @@ TEST_CASE("its place is of second order", "[analysis][base_motion]") {
     const double exact = -3.0 / (w * w) * (w * end - std::sin(w * end));
     const auto error = [&](int n) {
       scene.step.dt = end / n;
-      Simulation<3> simulation(scene);
+      Simulation simulation(scene);
       simulation.start_base_motion();
       advance(simulation, n);
       return std::abs(simulation.system().displacement(0)[0] - exact);
@@ -93,7 +93,7 @@ TEST_CASE("a steady acceleration of the base is another gravity", "[analysis][ba
       } else {
         scene.gravity -= a;
       }
-      Simulation<3> simulation(scene);
+      Simulation simulation(scene);
       simulation.start_base_motion();
       advance(simulation, 200);
       return simulation.system().state().displacement;
@@ -109,10 +109,10 @@ TEST_CASE("the loop of dem takes the steps of dem", "[analysis][base_motion]") {
   Scene scene = with_method(test::tumbling_blocks(), "dem");
   scene.base_motion = uneven_record();
   scene.step.dt = 2e-4;
-  Simulation<3> loop(scene), plain(scene, make_enforcement<3>(scene.method));
+  Simulation loop(scene), plain(scene, make_enforcement(scene.method));
   REQUIRE(loop.is_explicit());
   REQUIRE(!plain.is_explicit());
-  for (Simulation<3>* s : {&loop, &plain}) {
+  for (Simulation* s : {&loop, &plain}) {
     s->start_base_motion();
     advance(*s, 500);
   }
@@ -129,7 +129,7 @@ TEST_CASE("the ledger closes on a moving base", "[analysis][base_motion][energy]
       Scene scene = with_method(test::tumbling_blocks(), method);
       scene.method.theta = theta;
       scene.base_motion = uneven_record();
-      Simulation<3> simulation(scene);
+      Simulation simulation(scene);
       simulation.start_base_motion();
       advance(simulation, 400);
       const EnergyLedger& l = simulation.ledger();
@@ -146,7 +146,7 @@ TEST_CASE("the base moves from time 0 of a run on, not while it settles", "[anal
     scene.method.start = Start::settled;
     scene.base_motion.emplace();
     scene.base_motion->pulses = {{0.0, 100.0, {20.0, 0.0}}};
-    Simulation<3> simulation(scene);
+    Simulation simulation(scene);
     REQUIRE(prepare_start(simulation).converged);
     CHECK(std::abs(simulation.system().displacement(1)[0]) < 1e-9);
     CHECK(simulation.ledger().base_motion == 0.0);

@@ -14,7 +14,7 @@ using openclose::test::all_methods;
 
 namespace {
 
-std::string state_of(Simulation<3>& simulation) {
+std::string state_of(Simulation& simulation) {
   Archive archive;
   archive(simulation);
   return archive.bytes();
@@ -44,7 +44,7 @@ Scene prepared(Scene scene, const std::string& method) {
 
 /// Leaves at the end of the step `at` in the one simulation and goes on in the other. Whether the states agree from there on.
 void check_goes_on(const Scene& scene, int at, int to) {
-  Simulation<3> first(scene), second(scene);
+  Simulation first(scene), second(scene);
   for (int i = 0; i < at; ++i) REQUIRE(first.advance(scene.step.dt));
   Archive saved;
   saved(first);
@@ -99,7 +99,7 @@ TEST_CASE("steps of hard that penetrate begin with the stiffest springs again, f
                            {"joint_set[0].spacing_m=27.2", "joint_set[1].spacing_m=6.8", "joint[0].friction_angle_deg=21.7",
                             "joint[0].cohesion_pa=47e3", "step.dt_s=0.02", "method.contact=\"hard\"", "solver.gap_tolerance_m=1e-10"});
   check_goes_on(scene, 3, 6);
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   for (int i = 0; i < 6; ++i) REQUIRE(simulation.advance(scene.step.dt));
   CHECK(simulation.step_counters().compliant > 3);
   // Some 40 blocks lie on each other, on two corners each, and bounce; the springs have 300 times the inertia.
@@ -118,7 +118,7 @@ TEST_CASE("a saved simulation goes on bit for bit", "[analysis][checkpoint]") {
 }
 
 TEST_CASE("a saved simulation goes on bit for bit with every integrator, in adaptive steps too", "[analysis][checkpoint]") {
-  for (const auto& entry : integrators<3>()) {
+  for (const auto& entry : integrators()) {
     for (const bool adaptive : {false, true}) {
       INFO(entry.name << (adaptive ? ", adaptive" : ""));
       Scene scene = prepared(test::tumbling_blocks(), "soft");
@@ -145,7 +145,7 @@ TEST_CASE("saving leaves a simulation as it is", "[analysis][checkpoint]") {
   for (const std::string& method : all_methods) {
     INFO(method);
     const Scene scene = prepared(test::tumbling_blocks(), method);
-    Simulation<3> watched(scene), alone(scene);
+    Simulation watched(scene), alone(scene);
     for (int i = 0; i < 200; ++i) {
       REQUIRE(watched.advance(scene.step.dt));
       REQUIRE(alone.advance(scene.step.dt));
@@ -171,13 +171,13 @@ TEST_CASE("a run goes on from each of its checkpoints", "[analysis][checkpoint]"
     scene.base_motion->amplitude = {1.0, 0.5};
     scene.base_motion->frequency = 5.0;
 
-    Simulation<3> whole(scene);
+    Simulation whole(scene);
     std::vector<std::string> checkpoints, snapshots;
     std::vector<double> rows;
-    RunObserver<3> observer;
-    observer.output = [&](const Simulation<3>& s) { rows.push_back(s.time()); };
-    observer.snapshot = [&](const std::string& name, const Simulation<3>&) { snapshots.push_back(name); };
-    observer.checkpoint = [&](Archive& state, const Simulation<3>&) { checkpoints.push_back(state.bytes()); };
+    RunObserver observer;
+    observer.output = [&](const Simulation& s) { rows.push_back(s.time()); };
+    observer.snapshot = [&](const std::string& name, const Simulation&) { snapshots.push_back(name); };
+    observer.checkpoint = [&](Archive& state, const Simulation&) { checkpoints.push_back(state.bytes()); };
     const RunResult result = run(whole, observer);
     REQUIRE(result.converged);
     REQUIRE(result.milestones.size() == 2);
@@ -185,15 +185,15 @@ TEST_CASE("a run goes on from each of its checkpoints", "[analysis][checkpoint]"
     REQUIRE(checkpoints.size() == 5);  // the last one at the end
 
     for (std::size_t c = 0; c < checkpoints.size(); ++c) {
-      Simulation<3> rest(scene);
-      RunObserver<3> other;
+      Simulation rest(scene);
+      RunObserver other;
       std::vector<double> later_rows;
       std::string last;
-      other.output = [&](const Simulation<3>& s) { later_rows.push_back(s.time()); };
-      other.checkpoint = [&](Archive& state, const Simulation<3>&) { last = state.bytes(); };
+      other.output = [&](const Simulation& s) { later_rows.push_back(s.time()); };
+      other.checkpoint = [&](Archive& state, const Simulation&) { last = state.bytes(); };
       Archive state(checkpoints[c]);
       bool told = false;
-      const RunResult resumed = resume<3>(rest, other, state, [&] { told = true; });
+      const RunResult resumed = resume(rest, other, state, [&] { told = true; });
       CHECK(told);
       CHECK(resumed.converged);
       CHECK(resumed.ended_by == "end.time_s");
@@ -239,21 +239,21 @@ TEST_CASE("a run that goes on from its end ends as it did", "[analysis][checkpoi
       std::size_t rows_before = 0;  ///< the checkpoint
     };
     const auto watch = [](Seen& seen) {
-      RunObserver<3> observer;
-      observer.output = [&](const Simulation<3>& s) { seen.rows.push_back(s.time()); };
-      observer.checkpoint = [&](Archive& state, const Simulation<3>&) {
+      RunObserver observer;
+      observer.output = [&](const Simulation& s) { seen.rows.push_back(s.time()); };
+      observer.checkpoint = [&](Archive& state, const Simulation&) {
         seen.checkpoint = state.bytes();
         seen.rows_before = seen.rows.size();
       };
       return observer;
     };
     Seen first, second;
-    Simulation<3> whole(scene), again(scene);
+    Simulation whole(scene), again(scene);
     const RunResult result = run(whole, watch(first));
     REQUIRE(result.ended_by == key);
     REQUIRE(first.rows.back() == whole.time());
     Archive state(first.checkpoint);
-    const RunResult resumed = resume<3>(again, watch(second), state);
+    const RunResult resumed = resume(again, watch(second), state);
     CHECK(resumed.converged);
     CHECK(resumed.ended_by == key);
     CHECK(resumed.warnings == result.warnings);
@@ -266,9 +266,9 @@ TEST_CASE("checkpoints come on request only", "[analysis][checkpoint]") {
   Scene scene = prepared(test::falling_block(), "soft");
   scene.end_time = 0.01;
   int count = 0;
-  RunObserver<3> observer;
-  observer.checkpoint = [&](Archive&, const Simulation<3>&) { ++count; };
-  Simulation<3> simulation(scene);
+  RunObserver observer;
+  observer.checkpoint = [&](Archive&, const Simulation&) { ++count; };
+  Simulation simulation(scene);
   REQUIRE(run(simulation, observer).converged);
   CHECK(count == 0);
 }
@@ -280,11 +280,11 @@ TEST_CASE("a run that ended within a step, or did not converge, goes on where it
   scene.end_time = 0.035;
   scene.checkpoint_every = 1.0;
   std::string saved;
-  RunObserver<3> observer;
-  observer.checkpoint = [&](Archive& state, const Simulation<3>&) { saved = state.bytes(); };
+  RunObserver observer;
+  observer.checkpoint = [&](Archive& state, const Simulation&) { saved = state.bytes(); };
   double to = 0.1;
   SECTION("ended") {
-    Simulation<3> first(scene);
+    Simulation first(scene);
     REQUIRE(run(first, observer).converged);
   }
   SECTION("not converged") {
@@ -292,16 +292,16 @@ TEST_CASE("a run that ended within a step, or did not converge, goes on where it
     scene.end_time = 0.1;
     scene.step.max_displacement = 1.7e-3;
     scene.step.smallest_fraction = 1.0;
-    Simulation<3> first(scene);
+    Simulation first(scene);
     REQUIRE_FALSE(run(first, observer).converged);
     REQUIRE(first.time() < 0.03);
     scene.step.smallest_fraction = 1e-6;
     to = 0.05;
   }
   scene.end_time = to;
-  Simulation<3> second(scene);
+  Simulation second(scene);
   Archive state(saved);
-  const RunResult result = resume<3>(second, {}, state);
+  const RunResult result = resume(second, {}, state);
   CHECK(result.converged);
   CHECK(second.time() == to);
   CHECK(second.system().displacement(0)[1] == Approx(-0.5 * 9.81 * to * to).epsilon(1e-13));

@@ -11,13 +11,13 @@ namespace {
 constexpr double tolerated = 1e-6;  // [m]
 
 /// Of a block that starts at this height above the base, 10 m from its left end or shifted, and moves by d.
-double entry_from(double height, const Motion<3>::Unknowns& d, double shift = 0.0) {
+double entry_from(double height, const Motion::Unknowns& d, double shift = 0.0) {
   Scene scene = test::block_on_base();
   for (Vec2& v : scene.blocks[1].vertices) v += Vec2(shift, height);
-  const BlockSystem<3> system(scene);
-  StepSolution<3> solution;
+  const BlockSystem system(scene);
+  StepSolution solution;
   solution.d = d;
-  return first_entry<3>(system, solution, {{0, 1}}, {tolerated});
+  return first_entry(system, solution, {{0, 1}}, {tolerated});
 }
 
 /// A square that comes down on its corner, past the corner of a fixed block, at 20 m/s.
@@ -61,20 +61,20 @@ TEST_CASE("a step ends where a corner enters a block", "[analysis][corner_entry]
     const double part = entry_from(0.01, {0.0, 0.0, angle});
     CHECK(part > 0.0);
     CHECK(part < 1.0);
-    CHECK(entry_from(0.01, 0.9 * part * Motion<3>::Unknowns(0.0, 0.0, angle)) == 1.0);  // the way is the chord of the arc
-    CHECK(entry_from(0.01, 1.1 * part * Motion<3>::Unknowns(0.0, 0.0, angle)) < 1.0);
+    CHECK(entry_from(0.01, 0.9 * part * Motion::Unknowns(0.0, 0.0, angle)) == 1.0);  // the way is the chord of the arc
+    CHECK(entry_from(0.01, 1.1 * part * Motion::Unknowns(0.0, 0.0, angle)) < 1.0);
   }
 }
 
 TEST_CASE("what a corner may enter goes with the width of the narrower block", "[analysis][corner_entry]") {
   Scene scene = test::block_on_base();
   for (Vec2& v : scene.blocks[1].vertices) v += Vec2(0.0, 0.05);
-  const BlockSystem<3> above(scene);
+  const BlockSystem above(scene);
   const double width = above.block(1).area / (3.14159265358979323846 * above.block(1).radius), tenth = 0.1;
-  StepSolution<3> solution;
+  StepSolution solution;
   const auto part = [&](double down, const EntryTolerance& tolerance, const std::vector<Contact>* held = nullptr) {
-    solution.d = Motion<3>::Unknowns(0.0, -0.05 - down, 0.0);
-    return first_entry<3>(above, solution, {{0, 1}}, tolerance, held);
+    solution.d = Motion::Unknowns(0.0, -0.05 - down, 0.0);
+    return first_entry(above, solution, {{0, 1}}, tolerance, held);
   };
   const EntryTolerance by_width{.part_of_width = tenth};
   CHECK(part(3.9 * tenth * width, by_width) == 1.0);
@@ -96,12 +96,12 @@ TEST_CASE("rigid corners that meet within a step do not enter each other", "[ana
   for (const double dt : {0.02, 0.011, 0.005}) {
     INFO(dt);
     const Scene scene = passing_corners(dt);
-    Simulation<3> simulation(scene);
+    Simulation simulation(scene);
     prepare_start(simulation);
     double deepest = 0.0;
     while (simulation.time() < 0.1) {
       REQUIRE(simulation.advance(dt));
-      const BlockSystem<3>& system = std::as_const(simulation).system();
+      const BlockSystem& system = std::as_const(simulation).system();
       Polygon base, square;
       for (int v = 0; v < 4; ++v) base.push_back(system.position(0, v));
       for (int v = 4; v < 8; ++v) square.push_back(system.position(1, v));

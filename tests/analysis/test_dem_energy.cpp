@@ -20,14 +20,14 @@ Scene explicit_scene(Scene scene, double dt) {
 }
 
 /// What can become motion [J]: it may only fall.
-double mechanical_energy(const Simulation<3>& simulation) {
+double mechanical_energy(const Simulation& simulation) {
   const EnergyLedger& l = simulation.ledger();
   return l.kinetic + l.gravity + l.contact_springs + l.support_springs + l.loads;
 }
 
 /// [-] Rise of the mechanical energy above the least it has been, over the largest change of the kinetic energy or of the height.
 double created_energy(const Scene& scene, double duration) {
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   double least = 0.0, rise = 0.0, scale = simulation.system().kinetic_energy();
   for (int i = 0; i < static_cast<int>(std::lround(duration / scene.step.dt)); ++i) {
     REQUIRE(simulation.advance(scene.step.dt));
@@ -124,7 +124,7 @@ TEST_CASE("a plate stops what it can and the run ends where it cannot", "[analys
   scene.blocks[0].vertices = test::rectangle(-3.0, -thickness, 8.0, thickness);
   scene.joints[0].normal_stiffness = mass * speed * speed / (closure * closure) / size;
   scene.joints[0].shear_stiffness = 0.5 * scene.joints[0].normal_stiffness;
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   const bool arrived = simulation.advance(0.01);
   if (closure > thickness) {
     CHECK_FALSE(arrived);
@@ -139,7 +139,7 @@ TEST_CASE("a plate stops what it can and the run ends where it cannot", "[analys
 TEST_CASE("dashpots shorten the step of local damping, too", "[analysis][dem]") {
   Scene scene = explicit_scene(test::block_on_base(), 1e-3);
   scene.joints[0].damping_ratio = 0.5;
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   const double plain = simulation.longest_stable_step(MassDamping::none), damped = simulation.longest_stable_step(MassDamping::local);
   // a h^2 + 2 b h = 4 with a and b 1 + alpha times as large: shorter by more than the root, by less than the factor itself.
   const double share = 1.0 + scene.method.local_damping;
@@ -152,7 +152,7 @@ TEST_CASE("a block far away changes no digit", "[analysis][dem]") {
   Scene with = alone;
   with.blocks.push_back(test::fixed_block("far ground", test::rectangle(500.0, -1.0, 20.0, 1.0)));
   with.blocks.push_back(test::free_block("far", test::rectangle(505.0, 0.0, 2.0, 1.0)));
-  Simulation<3> one(alone), two(with);
+  Simulation one(alone), two(with);
   for (int i = 0; i < 600; ++i) {
     REQUIRE(one.advance(alone.step.dt));
     REQUIRE(two.advance(with.step.dt));

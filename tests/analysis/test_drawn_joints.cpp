@@ -37,7 +37,7 @@ TEST_CASE("drawn gaps of a millimetre are joints, wider ones are not", "[analysi
     // A thousandth of the root of 2 m2 is 1.4 mm.
     REQUIRE(joints.size() == (gap < 1.4e-3 ? 1 : 0));
     if (joints.empty()) continue;
-    const BlockSystem<3> system(scene);
+    const BlockSystem system(scene);
     CHECK(joint_motion(joints[0], system).from.opening == Approx(gap).epsilon(1e-9));
   }
 }
@@ -50,7 +50,7 @@ TEST_CASE("edges that gape are a joint if their far ends are no farther apart", 
     // 2 m long: 0.8 mm apart at the far end, or 0.1 m.
     REQUIRE(joints.size() == (angle < 1e-3 ? 1 : 0));
     if (joints.empty()) continue;
-    const JointMotion m = joint_motion(joints[0], BlockSystem<3>(scene));
+    const JointMotion m = joint_motion(joints[0], BlockSystem(scene));
     CHECK(std::abs(m.from.opening) + std::abs(m.to.opening) == Approx(2.0 * std::sin(angle)).epsilon(1e-3));
   }
 }
@@ -63,7 +63,7 @@ TEST_CASE("a lifted and turned block opens its joint by the closed form, however
     REQUIRE(joints[0].block_a == 0);
     for (const double lift : {1e-9, 1e-3, 7.0}) {
       for (const double angle : {0.0, 0.3, 2.5}) {
-        BlockSystem<3> system(scene);
+        BlockSystem system(scene);
         const Vec2 shift = lift * test::off_slope(slope) + 0.25 * test::downhill(slope);
         system.advance(1, {shift.x(), shift.y(), angle});
         const JointMotion m = joint_motion(joints[0], system);
@@ -94,9 +94,9 @@ TEST_CASE("a measured contact carries the block's weight, and slips by the shear
     scene.method.start = Start::settled;
     const Vec2 middle = test::downhill(slope);
     scene.measured_contacts = {{"foot", 1, 0, middle}, {"other way", 0, 1, middle}};
-    Simulation<3> simulation(scene);
+    Simulation simulation(scene);
     REQUIRE(prepare_start(simulation).converged);
-    const std::vector<ContactMotion> motions = MeasuredContacts<3>(scene).motions(simulation);
+    const std::vector<ContactMotion> motions = MeasuredContacts(scene).motions(simulation);
     REQUIRE(motions.size() == 2);
     for (const ContactMotion& m : motions) {
       CHECK(m.closed == 2);
@@ -117,10 +117,10 @@ TEST_CASE("a measured contact knows its gap beyond the reach of detection", "[an
   scene.blocks[1].velocity = {0.0, 10.0};
   scene.measured_contacts = {{"foot", 1, 0, {1.0, 0.0}}};
   scene.gravity = Vec2::Zero();
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   REQUIRE(prepare_start(simulation).converged);
   for (int i = 0; i < 100; ++i) REQUIRE(simulation.advance(1e-2));
-  const ContactMotion m = MeasuredContacts<3>(scene).motions(simulation).front();
+  const ContactMotion m = MeasuredContacts(scene).motions(simulation).front();
   CHECK(m.status == ContactStatus::open);
   CHECK(m.closed == 0);
   CHECK(m.normal_force == 0.0);
@@ -134,8 +134,8 @@ TEST_CASE("the measured angular velocity is that of the block", "[analysis][run]
   for (const std::string& method : test::all_methods) {
     INFO(method);
     scene.method.contact = method;
-    Simulation<3> simulation(scene);
-    MeasuredPoints<3> points(simulation);
+    Simulation simulation(scene);
+    MeasuredPoints points(simulation);
     for (int i = 0; i < 40; ++i) REQUIRE(simulation.advance(1e-2));
     const PointMotion m = points.motions().front();
     CHECK(m.angular_velocity == Approx(1.75).epsilon(1e-9));

@@ -24,12 +24,12 @@ double relative_imbalance(const EnergyLedger& l) {
   return std::abs(l.imbalance()) / l.turnover;
 }
 
-void advance(Simulation<3>& simulation, int steps) {
+void advance(Simulation& simulation, int steps) {
   for (int i = 0; i < steps; ++i) REQUIRE(simulation.advance(simulation.scene().step.dt));
 }
 
 /// Sum of m g . u over the free blocks.
-double work_of_gravity(const Simulation<3>& simulation) {
+double work_of_gravity(const Simulation& simulation) {
   double work = 0.0;
   for (int b : simulation.system().free_blocks()) {
     work += simulation.system().block(b).mass[0] * simulation.scene().gravity.dot(simulation.system().displacement(b).head<2>());
@@ -52,7 +52,7 @@ TEST_CASE("ledger of a fall", "[analysis][energy]") {
     INFO(method);
     Scene scene = test::falling_block();
     scene.method.contact = method;
-    Simulation<3> simulation(scene);
+    Simulation simulation(scene);
     advance(simulation, 200);
     const double t = 0.2, fall = 0.5 * g * t * t;
     const EnergyLedger& l = simulation.ledger();
@@ -78,7 +78,7 @@ TEST_CASE("ledger of a support: W^2/2k stored, as much lost on the way to rest",
     scene.method.contact = method;
     const double k = 1e7;
     scene.supports = {{0, {1.0, 0.5}, {k, k}}};
-    Simulation<3> simulation(scene);
+    Simulation simulation(scene);
     REQUIRE(settle(simulation).settled);
     const EnergyLedger& l = simulation.ledger();
     const double stored = 0.5 * block_weight * block_weight / k;
@@ -102,7 +102,7 @@ TEST_CASE("ledger of a vibration on a support: the scheme takes (theta - 1/2) k 
   scene.method.theta = GENERATE(0.5, 0.6, 1.0);
   const double k = 1e8;
   scene.supports = {{0, {1.0, 0.5}, {0.0, k}}};
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   double lost = 0.0, before = 0.0;
   for (int i = 0; i < 300; ++i) {
     advance(simulation, 1);
@@ -122,7 +122,7 @@ TEST_CASE("ledger of contact springs", "[analysis][energy]") {
     Scene scene = test::block_on_base();
     scene.method.contact = method;
     test::use_joint_springs_as_penalty(scene);
-    Simulation<3> simulation(scene);
+    Simulation simulation(scene);
     REQUIRE(settle(simulation).settled);
     simulation.contacts();
     const EnergyLedger& l = simulation.ledger();
@@ -142,7 +142,7 @@ TEST_CASE("ledger of sliding: mu N s", "[analysis][energy]") {
     scene.method.contact = method;
     scene.method.start = Start::steady_sliding;
     scene.joints[0].friction_angle = phi;
-    Simulation<3> simulation(scene);
+    Simulation simulation(scene);
     prepare_start(simulation);
     const auto start = simulation.system().displacement(1);
     advance(simulation, 300);
@@ -169,7 +169,7 @@ TEST_CASE("ledger of a load", "[analysis][energy]") {
   scene.gravity = {0.0, 0.0};
   SECTION("through the centroid") {
     scene.loads = {{0, {1.0, 0.5}, {3000.0, -4000.0}}};
-    Simulation<3> simulation(scene);
+    Simulation simulation(scene);
     advance(simulation, 100);
     const double work = Vec2(3000.0, -4000.0).dot(simulation.system().displacement(0).head<2>());
     CHECK(work == Approx(0.5 * 5000.0 * 5000.0 / test::block_mass * 0.01).epsilon(1e-10));
@@ -179,7 +179,7 @@ TEST_CASE("ledger of a load", "[analysis][energy]") {
   }
   SECTION("at a corner of a block that turns: force times the path of the corner") {
     scene.loads = {{0, {2.0, 1.0}, {30000.0, 90000.0}}};
-    Simulation<3> simulation(scene);
+    Simulation simulation(scene);
     const int corner = simulation.system().follow_point(0, {2.0, 1.0});
     const Vec2 before = simulation.system().point_position(corner);
     advance(simulation, 300);
@@ -199,7 +199,7 @@ TEST_CASE("the ledger closes with loads and supports that turn a block, with eve
   scene.step.dt = 0.01;
   scene.loads = {{0, {2.0, 1.0}, {3000.0, -2000.0}}};
   scene.supports = {{0, {0.0, 0.0}, {1e6, 1e6}}};
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   advance(simulation, 50);
   CHECK(std::abs(simulation.system().displacement(0)[2]) > 0.1);
   CHECK(relative_imbalance(simulation.ledger()) < 1e-12);
@@ -211,7 +211,7 @@ TEST_CASE("ledger of a stiff impact: all that was fallen is lost", "[analysis][e
   scene.joints[0].friction_angle = 0.0;
   scene.blocks[1].vertices = test::rectangle(0.0, 0.05, 2.0, 1.0);
   scene.blocks[1].velocity = {1.0, 0.0};
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   advance(simulation, 200);
   const EnergyLedger& l = simulation.ledger();
   // Of the path of mid-step velocities the first half step lacks its g dt^2 / 8.
@@ -232,7 +232,7 @@ TEST_CASE("ledger of a contact that loses length under load", "[analysis][energy
   scene.blocks[1].rotation_locked = true;
   scene.blocks[1].velocity = {1.0, 0.0};
   scene.method.start = Start::settled;
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   REQUIRE(prepare_start(simulation).converged);
   const auto length = [&] {
     double sum = 0.0;
@@ -260,7 +260,7 @@ TEST_CASE("the ledger closes when blocks tumble and collide", "[analysis][energy
   };
   const Case c = GENERATE(values<Case>({{"soft", 1.0}, {"soft", 0.6}, {"soft", 0.5}, {"shi", 1.0}, {"hard", 1.0}}));
   INFO(c.method << ", theta = " << c.theta);
-  Simulation<3> simulation(tumbling(c.method, c.theta));
+  Simulation simulation(tumbling(c.method, c.theta));
   const double kinetic_start = simulation.system().kinetic_energy();
   advance(simulation, 500);
   simulation.contacts();
@@ -295,7 +295,7 @@ TEST_CASE("the ledger closes with contact damping", "[analysis][energy]") {
   INFO(c.method << ", theta = " << c.theta);
   Scene scene = tumbling(c.method, c.theta);
   scene.joints[0].damping_ratio = 0.3;
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   advance(simulation, 500);
   const EnergyLedger& l = simulation.ledger();
   CHECK(relative_imbalance(l) < 1e-10);
@@ -315,7 +315,7 @@ TEST_CASE("damping takes the kinetic energy of a block that comes to rest on its
     scene.settle.unbalanced_fraction = 1e-12;
     // Slow enough for the contacts to stay closed and to stick.
     scene.blocks[1].velocity = {2e-3, 3e-3};
-    Simulation<3> simulation(scene);
+    Simulation simulation(scene);
     REQUIRE(prepare_start(simulation).converged);
     advance(simulation, 500);
     const EnergyLedger& l = simulation.ledger();
@@ -330,7 +330,7 @@ TEST_CASE("damping takes the kinetic energy of a block that comes to rest on its
 TEST_CASE("energy that comes from outside shows", "[analysis][energy]") {
   for (const std::string& method : all_methods) {
     INFO(method);
-    Simulation<3> simulation(tumbling(method, 1.0));
+    Simulation simulation(tumbling(method, 1.0));
     advance(simulation, 50);
     const double kinetic_start = simulation.system().kinetic_energy() - simulation.ledger().kinetic;
     const double before = simulation.system().kinetic_energy();

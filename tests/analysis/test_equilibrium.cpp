@@ -23,7 +23,7 @@ Scene paper_scene() {
 }  // namespace
 
 TEST_CASE("the criterion by default is that of settle()", "[analysis][equilibrium]") {
-  Simulation<3> a(test::column_of_blocks(3)), b(test::column_of_blocks(3));
+  Simulation a(test::column_of_blocks(3)), b(test::column_of_blocks(3));
   const SettleResult direct = settle(a), chosen = make_equilibrium_search(b)->settle_first({});
   CHECK(chosen.settled);
   CHECK(chosen.criterion == "unbalanced force");
@@ -38,7 +38,7 @@ TEST_CASE("the paper's criterion ends where the block rests", "[analysis][equili
     Scene scene = paper_scene();
     scene.method.contact = method;
     scene.blocks[1].velocity = {3.0, 0.0};  // equilibrium knows no velocity of the scene
-    Simulation<3> simulation(scene);
+    Simulation simulation(scene);
     const SettleResult result = make_equilibrium_search(simulation)->settle_first({});
     REQUIRE(result.settled);
     CHECK(result.criterion == "relative displacement");
@@ -62,7 +62,7 @@ TEST_CASE("a single short step is not steadiness", "[analysis][equilibrium]") {
   scene.settle.criterion = SettleCriterion::paper;
   scene.settle.relative_displacement = 1e-6;  // half the height is 6 m
   scene.settle.max_time_steps = 300;
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   const SettleResult result = make_equilibrium_search(simulation)->settle_first({});
   CHECK_FALSE(result.settled);
   CHECK(result.criterion == "steps");
@@ -75,7 +75,7 @@ TEST_CASE("a trial goes on for twice the steps of the first settling", "[analysi
   Scene scene = test::block_on_incline(20.0 * test::degree);
   scene.settle.criterion = SettleCriterion::paper;
   scene.settle.relative_displacement = 1e-8;
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   const auto search = make_equilibrium_search(simulation);
   const SettleResult first = search->settle_first({});
   REQUIRE(first.settled);
@@ -103,7 +103,7 @@ TEST_CASE("a step that cannot be taken ends the paper's settling with its reason
   scene.blocks[1].vertices = test::rectangle(0.0, 0.001, 2.0, 1.0);
   scene.method.max_open_close_iterations = 1;
   scene.step.smallest_fraction = 0.5;
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   const SettleResult result = make_equilibrium_search(simulation)->settle_first({});
   CHECK_FALSE(result.settled);
   CHECK(result.criterion == "open-close iterations did not settle");
@@ -116,7 +116,7 @@ TEST_CASE("of an explicit method the paper's criterion is a force within a numbe
   scene.settle.unbalanced_force = GENERATE(1e3, 10.0);
   scene.settle.max_time_steps = 2000;
   scene.settle.failure_displacement = 1e-3;  // of the other criterion
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   const auto search = make_equilibrium_search(simulation);
   const SettleResult first = search->settle_first({});
   REQUIRE(first.settled);
@@ -143,8 +143,8 @@ TEST_CASE("factor of safety by the paper's criterion", "[analysis][equilibrium]"
     scene.settle.criterion = SettleCriterion::paper;
     scene.settle.relative_displacement = 1e-8;
     scene.strength_reduction.definition = FactorDefinition::large_displacements;
-    Simulation<3> simulation(scene);
-    const auto safety = factor_of_safety<3>(simulation);
+    Simulation simulation(scene);
+    const auto safety = factor_of_safety(simulation);
     REQUIRE(safety.found());
     CHECK(safety.warnings.empty());
     CHECK(safety.bracket.failed_by == "steps");

@@ -64,12 +64,12 @@ Scene locked() {
   return scene;
 }
 
-Simulation<3> plain(const Scene& scene) {
-  return Simulation<3>(scene, make_dem<3>());
+Simulation plain(const Scene& scene) {
+  return Simulation(scene, make_dem());
 }
 
 /// Largest difference of positions [m] and of whole-step velocities times 1 s.
-double difference(const Simulation<3>& a, const Simulation<3>& b) {
+double difference(const Simulation& a, const Simulation& b) {
   double largest = 0.0;
   for (int i : a.system().free_blocks()) {
     largest = std::max(largest, (a.system().displacement(i) - b.system().displacement(i)).cwiseAbs().maxCoeff());
@@ -92,7 +92,7 @@ double difference(const EnergyLedger& a, const EnergyLedger& b) {
 double rounding_of(const Scene& scene, int steps) {
   Scene changed = scene;
   changed.gravity *= 1.0 + 1e-15;
-  Simulation<3> a = plain(scene), b = plain(changed);
+  Simulation a = plain(scene), b = plain(changed);
   double largest = 0.0;
   for (int i = 0; i < steps; ++i) {
     a.step(scene.step.dt, false);
@@ -107,7 +107,7 @@ double rounding_of(const Scene& scene, int steps) {
 class LedgerDifference {
  public:
   /// To be called after every step. Forces are those of `like`, which does about what the two do: asking for contacts would make a loop load anew.
-  void add_step(Simulation<3>& like, const Simulation<3>& a, const Simulation<3>& b, double dt) {
+  void add_step(Simulation& like, const Simulation& a, const Simulation& b, double dt) {
     constexpr double digit = 2.2e-15;  // [m] last one of coordinates of up to 10 m
     double force = 0.0, stiffness = 0.0, apart = digit, way = 0.0, momentum = 0.0;
     for (const Contact& c : like.contacts()) {
@@ -117,8 +117,8 @@ class LedgerDifference {
     }
     for (const int i : a.system().free_blocks()) {
       const auto& block = a.system().block(i);
-      apart = std::max(apart, Motion<3>::displacement_bound(a.system().displacement(i) - b.system().displacement(i), block.radius) + digit);
-      way = std::max(way, dt * Motion<3>::displacement_bound(a.system().velocity(i), block.radius));
+      apart = std::max(apart, Motion::displacement_bound(a.system().displacement(i) - b.system().displacement(i), block.radius) + digit);
+      way = std::max(way, dt * Motion::displacement_bound(a.system().velocity(i), block.radius));
       momentum += block.mass.dot(a.system().velocity(i).cwiseAbs());
       force += block.mass[0] * 9.81;
     }
@@ -150,7 +150,7 @@ TEST_CASE("the loop moves blocks as the plain steps do, contacts renewed in ever
   Scene scene = c.scene;
   scene.method.skip_narrow_phase = false;
   scene.joints[0].damping_ratio = damping_ratio;
-  Simulation<3> loop(scene), reference = plain(scene);
+  Simulation loop(scene), reference = plain(scene);
   LedgerDifference of_ledger;
   for (int i = 0; i < c.steps; ++i) {
     REQUIRE(loop.step(scene.step.dt, false).accepted);
@@ -177,7 +177,7 @@ TEST_CASE("left alone the loop keeps to the plain steps where lengths do not cha
   scene.joints[0].damping_ratio = GENERATE(0.0, 0.2);
   Scene renewed = scene;
   renewed.method.skip_narrow_phase = false;
-  Simulation<3> loop(scene), reference = plain(renewed);
+  Simulation loop(scene), reference = plain(renewed);
   for (int i = 0; i < 5000; ++i) {
     REQUIRE(loop.step(scene.step.dt, false).accepted);
     REQUIRE(reference.step(scene.step.dt, false).accepted);
@@ -203,7 +203,7 @@ TEST_CASE("exchanging only the contacts that were found anew changes nothing", "
   INFO(c.name << ", damping ratio " << scene.joints[0].damping_ratio);
   Scene plainly = scene;
   plainly.method.skip_reload = false;
-  Simulation<3> loop(scene), reloaded(plainly), twin = plain(scene);
+  Simulation loop(scene), reloaded(plainly), twin = plain(scene);
   LedgerDifference of_ledger;
   for (int i = 0; i < c.steps; ++i) {
     REQUIRE(loop.advance(scene.step.dt));
@@ -231,13 +231,13 @@ TEST_CASE("the ledger closes where a contact is closed when it is found", "[anal
   Scene scene = over_a_seam();
   scene.joints[0].damping_ratio = GENERATE(0.0, 0.2);
   scene.method.skip_reload = GENERATE(true, false);
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   for (int i = 0; i < 5000; ++i) REQUIRE(simulation.advance(scene.step.dt));
   const EnergyLedger& l = simulation.ledger();
   CHECK(std::abs(l.imbalance()) < 1e-10 * l.turnover);
   CHECK(l.redefinition >= 0.0);
   // What the scene is for: contacts with the right floor come with a closure, which would be energy that was not there before.
-  Simulation<3> watched = plain(scene);
+  Simulation watched = plain(scene);
   int found_closed = 0;
   std::set<std::pair<int, int>> known;
   for (int i = 0; i < 5000; ++i) {
@@ -261,7 +261,7 @@ TEST_CASE("the ledger closes where a contact is found closed and its dashpot out
   for (Vec2& v : scene.blocks[1].vertices) v.y() -= 5e-4;
   scene.blocks[1].velocity = {0.0, 0.1};
   scene.joints[0].damping_ratio = GENERATE(0.1, 5.0);
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   for (int i = 0; i < 100; ++i) REQUIRE(simulation.advance(scene.step.dt));
   const EnergyLedger& l = simulation.ledger();
   CHECK(l.redefinition < -1e-3 * l.turnover);  // what the drawing has stored
@@ -270,7 +270,7 @@ TEST_CASE("the ledger closes where a contact is found closed and its dashpot out
 
 TEST_CASE("what was asked for once follows the run", "[analysis][explicit]") {
   Scene scene = explicit_scene(test::falling_block(), 1e-2);
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   const auto& system = simulation.system();
   REQUIRE(simulation.advance(scene.step.dt));
   CHECK(system.displacement(0)[1] < 0.0);
@@ -281,7 +281,7 @@ TEST_CASE("what was asked for once follows the run", "[analysis][explicit]") {
 
 TEST_CASE("looking at a run does not change it", "[analysis][explicit]") {
   const Scene scene = rocking_column();
-  Simulation<3> alone(scene), watched(scene);
+  Simulation alone(scene), watched(scene);
   for (int i = 0; i < 300; ++i) {
     REQUIRE(alone.advance(scene.step.dt));
     REQUIRE(watched.advance(scene.step.dt));
@@ -298,7 +298,7 @@ TEST_CASE("the explicit ledger closes, with damping of the motion too", "[analys
   Scene scene = GENERATE(tumbling(), breaking(), sliding());
   scene.method.damping = GENERATE(MassDamping::none, MassDamping::local, MassDamping::automatic);
   scene.joints[0].damping_ratio = GENERATE(0.0, 0.3);
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   for (int i = 0; i < 1000; ++i) REQUIRE(simulation.advance(scene.step.dt));
   const EnergyLedger& l = simulation.ledger();
   CHECK(std::abs(l.imbalance()) < 1e-10 * l.turnover);
@@ -308,7 +308,7 @@ TEST_CASE("the explicit ledger closes, with damping of the motion too", "[analys
 TEST_CASE("settling explicitly finds the closure under the weight", "[analysis][explicit][settle]") {
   Scene scene = explicit_scene(test::column_of_blocks(4), 1e-3);
   scene.method.damping = GENERATE(MassDamping::none, MassDamping::local, MassDamping::automatic);
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   const SettleResult settled = settle(simulation);
   REQUIRE(settled.settled);
   CHECK(settled.unbalanced_fraction <= scene.settle.unbalanced_fraction);
@@ -331,7 +331,7 @@ TEST_CASE("brittle joints lose at rest what they cannot keep there, not on the w
   scene.loads = {{4, {1.0, 3.5}, {0.8 * test::block_weight, 0.0}}};
   scene.settle.failure_displacement = 0.1;
   scene.settle.keep_bonds = GENERATE(true, false);
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   const SettleResult result = settle(simulation);
   INFO("bonds kept: " << scene.settle.keep_bonds << ", " << result.criterion);
   CHECK(result.settled == scene.settle.keep_bonds);
@@ -344,7 +344,7 @@ TEST_CASE("a contact that is open at rest has lost its bond", "[analysis][explic
   scene.joints[0].cohesion_behaviour = CohesionBehaviour::lost_on_opening;
   scene.supports = {{1, {0.0, 1.0}, {0.0, 1e6}}};
   scene.loads = {{1, {0.0, 1.0}, {1.2 * test::block_weight, 0.0}}};
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   REQUIRE(settle(simulation).settled);
   int open = 0;
   for (const Contact& c : simulation.contacts()) {
@@ -357,12 +357,12 @@ TEST_CASE("a contact that is open at rest has lost its bond", "[analysis][explic
 TEST_CASE("what cannot be held fails by displacement, what takes too long by steps", "[analysis][explicit][settle]") {
   Scene scene = sliding();
   scene.settle.failure_displacement = 0.3;
-  Simulation<3> slides(scene);
+  Simulation slides(scene);
   const SettleResult failed = settle(slides);
   CHECK_FALSE(failed.settled);
   CHECK(failed.criterion == "displacement");
   scene.settle.max_explicit_steps = 10;
-  Simulation<3> slow(scene);
+  Simulation slow(scene);
   const SettleResult steps = settle(slow);
   CHECK_FALSE(steps.settled);
   CHECK(steps.criterion == "steps");
@@ -371,7 +371,7 @@ TEST_CASE("what cannot be held fails by displacement, what takes too long by ste
 
 TEST_CASE("an interval is divided into equal steps below the critical one", "[analysis][explicit]") {
   Scene scene = explicit_scene(test::block_on_base(), 1e-1);
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   const double longest = scene.method.step_fraction * simulation.critical_step();
   REQUIRE(simulation.advance(scene.step.dt));
   const auto steps = static_cast<long>(std::ceil(scene.step.dt / longest));
@@ -386,7 +386,7 @@ TEST_CASE("an interval is divided into equal steps below the critical one", "[an
 TEST_CASE("a step that moves a block too far is taken in parts and leaves no trace", "[analysis][explicit]") {
   Scene scene = explicit_scene(test::falling_block(), 1.0);
   scene.blocks[0].velocity = {1.0, 0.0};
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   REQUIRE(simulation.advance(1.0));
   CHECK(simulation.step_counters().cuts > 0);
   CHECK(simulation.system().displacement(0)[0] == Approx(1.0).epsilon(1e-12));
@@ -397,19 +397,19 @@ TEST_CASE("a step that moves a block too far is taken in parts and leaves no tra
 TEST_CASE("motions that are no numbers end an explicit run", "[analysis][explicit]") {
   Scene scene = explicit_scene(test::falling_block(), 1.0);
   scene.materials[0].density = 1e308;  // its weight is infinite, and its acceleration no number
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   CHECK_FALSE(simulation.advance(1.0));
   CHECK(simulation.system().displacement(0).isZero(0.0));
 }
 
 TEST_CASE("a state that was saved goes on as the original", "[analysis][explicit]") {
   const Scene scene = rocking_column();
-  Simulation<3> first(scene);
+  Simulation first(scene);
   for (int i = 0; i < 200; ++i) REQUIRE(first.advance(scene.step.dt));
   const auto saved = first.save();
   first.restore(saved);
   for (int i = 0; i < 200; ++i) REQUIRE(first.advance(scene.step.dt));
-  Simulation<3> second(scene);
+  Simulation second(scene);
   second.restore(saved);
   for (int i = 0; i < 200; ++i) REQUIRE(second.advance(scene.step.dt));
   CHECK(difference(first, second) == 0.0);
@@ -419,18 +419,18 @@ TEST_CASE("dem refuses what has no meaning for it", "[analysis][explicit]") {
   Scene scene = explicit_scene(test::block_on_base(), 1e-3);
   SECTION("statics") {
     scene.method.statics = true;
-    CHECK_THROWS_WITH(Simulation<3>(scene), Catch::Matchers::ContainsSubstring("method.statics"));
+    CHECK_THROWS_WITH(Simulation(scene), Catch::Matchers::ContainsSubstring("method.statics"));
   }
   SECTION("relaxation") {
     scene.method.static_solver = StaticSolver::relaxation;
-    CHECK_THROWS_WITH(Simulation<3>(scene), Catch::Matchers::ContainsSubstring("solver.static_solver"));
+    CHECK_THROWS_WITH(Simulation(scene), Catch::Matchers::ContainsSubstring("solver.static_solver"));
   }
   SECTION("linear rotation") {
     scene.method.rotation = RotationKind::linear;
-    CHECK_THROWS_WITH(Simulation<3>(scene), Catch::Matchers::ContainsSubstring("method.rotation"));
+    CHECK_THROWS_WITH(Simulation(scene), Catch::Matchers::ContainsSubstring("method.rotation"));
   }
   SECTION("theta") {
     scene.method.theta = 0.5;
-    CHECK_THROWS_WITH(Simulation<3>(scene), Catch::Matchers::ContainsSubstring("method.theta"));
+    CHECK_THROWS_WITH(Simulation(scene), Catch::Matchers::ContainsSubstring("method.theta"));
   }
 }

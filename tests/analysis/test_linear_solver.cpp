@@ -26,7 +26,7 @@ Scene wall(int courses, int bricks, double shift = 0.5) {
 /// Displacements after settling and 40 steps in which the top course slides to rest.
 std::vector<double> displacements(Scene scene, LinearSolverKind kind, LinearCounters& counters) {
   scene.method.linear_solver = kind;
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   REQUIRE(settle(simulation).settled);
   simulation.restore_velocities();
   simulation.restart_clock();
@@ -85,12 +85,12 @@ TEST_CASE("rows that a factor keeps and couplings that it leaves out do not show
 }
 
 TEST_CASE("several threads do what one does, bit for bit, also after a restart", "[analysis][linear][parallel]") {
-  const auto state_of = [](Simulation<3>& simulation) {
+  const auto state_of = [](Simulation& simulation) {
     Archive archive;
     archive(simulation);
     return archive.bytes();
   };
-  const auto motion_of = [](const Simulation<3>& simulation) {
+  const auto motion_of = [](const Simulation& simulation) {
     std::vector<double> list;
     for (int b : simulation.system().free_blocks()) {
       for (int k = 0; k < 3; ++k) list.push_back(simulation.system().displacement(b)[k]);
@@ -110,7 +110,7 @@ TEST_CASE("several threads do what one does, bit for bit, also after a restart",
       INFO(threads << " threads");
       scene.method.threads = threads;
       const long multiplied = times_shared(SharedWork::product);
-      Simulation<3> simulation(scene);
+      Simulation simulation(scene);
       REQUIRE(simulation.advance(scene.step.dt));
       const std::string now = state_of(simulation);
       REQUIRE(simulation.advance(scene.step.dt));
@@ -126,7 +126,7 @@ TEST_CASE("several threads do what one does, bit for bit, also after a restart",
       CHECK(same);
     }
     // What one thread has begun three end.
-    Simulation<3> later(scene);
+    Simulation later(scene);
     Archive archive(first_state);
     archive(later);
     const auto shared = [] { return times_shared(SharedWork::product) + times_shared(SharedWork::factorisation); };

@@ -42,12 +42,12 @@ struct Follower {
     }
   }
   // Asked as a constant: others wake what rests.
-  const BlockSystem<3>& system() const { return simulation.system(); }
+  const BlockSystem& system() const { return simulation.system(); }
   int resting() const { return static_cast<int>(system().resting_blocks().size()); }
-  Vec2 way(int b) const { return Motion<3>::translation(system().displacement(b)); }
-  double speed(int b) const { return Motion<3>::translation(simulation.velocity(b)).norm(); }
+  Vec2 way(int b) const { return Motion::translation(system().displacement(b)); }
+  double speed(int b) const { return Motion::translation(simulation.velocity(b)).norm(); }
 
-  Simulation<3> simulation;
+  Simulation simulation;
 };
 
 /// [m/s] The velocity that the rule may deny a block.
@@ -164,7 +164,7 @@ struct Row {
 
   Row() : system(scene()), resting(RestInput(), system) {
     JointTable joints(scene());
-    Detector<3> detector(0.05);
+    Detector detector(0.05);
     detector.update(system, joints, contacts);
     for (Contact& c : contacts) c.status = ContactStatus::sticking;
     const std::vector<int> at_rest{0, 2, 4, 6};
@@ -178,7 +178,7 @@ struct Row {
     return scene;
   }
   /// Blocks that are woken when those at rest feel these parts of what wakes one.
-  std::vector<int> woken(const std::array<double, 4>& parts, Resting<3>::Urgency urgency) {
+  std::vector<int> woken(const std::array<double, 4>& parts, Resting::Urgency urgency) {
     const RestInput rest;
     auto& pushes = resting.pushes(system);
     for (std::size_t i = 0; i < parts.size(); ++i)
@@ -189,22 +189,22 @@ struct Row {
     return list;
   }
 
-  BlockSystem<3> system;
+  BlockSystem system;
   std::vector<Contact> contacts;
-  Resting<3> resting;
+  Resting resting;
 };
 
 }  // namespace
 
 TEST_CASE("blocks that are nearly woken are woken along with others", "[analysis][resting]") {
-  using Urgency = Resting<3>::Urgency;
+  using Urgency = Resting::Urgency;
   CHECK(Row().woken({0.8, 0.8, 0.8, 0.8}, Urgency::any).empty());
   CHECK(Row().woken({1.01, 0.8, 0.5, 0.8}, Urgency::any) == std::vector<int>{0, 2, 6});
   CHECK(Row().woken({1.01, 0.8, 0.5, 0.8}, Urgency::in_haste).empty());
 }
 
 TEST_CASE("a step that has to be repeated wakes farther and farther blocks, also behind those that move", "[analysis][resting]") {
-  using Urgency = Resting<3>::Urgency;
+  using Urgency = Resting::Urgency;
   Row row;
   CHECK(row.woken({9.0, 0.0, 0.0, 0.0}, Urgency::in_haste) == std::vector<int>{0});
   CHECK(row.woken({9.0, 0.0, 0.0, 0.0}, Urgency::in_haste) == std::vector<int>{0, 2});
@@ -312,7 +312,7 @@ TEST_CASE("dem: a shaking base wakes blocks before the length of the step is cho
 
 TEST_CASE("no block rests in pseudo-time or before it may", "[analysis][resting]") {
   Scene scene = prepared(test::block_on_base(), "soft", true);
-  Simulation<3> waits(scene);
+  Simulation waits(scene);
   for (int i = 0; i < 500; ++i) REQUIRE(waits.advance(1e-3));
   CHECK(waits.step_counters().block_steps_skipped == 0);
   scene.method.statics = true;
@@ -348,7 +348,7 @@ TEST_CASE("energies stay in balance when blocks rest and wake, and steps are cou
     INFO(method);
     check(prepared(slide_over_columns(), method, true));
   }
-  for (const auto& entry : integrators<3>()) {
+  for (const auto& entry : integrators()) {
     INFO(entry.name);
     Scene scene = prepared(slide_over_columns(), "soft", true);
     scene.method.integrator = entry.name;
@@ -359,7 +359,7 @@ TEST_CASE("energies stay in balance when blocks rest and wake, and steps are cou
 TEST_CASE("a saved simulation goes on bit for bit while blocks are at rest", "[analysis][resting][checkpoint]") {
   std::vector<Scene> scenes;
   for (const std::string& method : all_methods) scenes.push_back(prepared(slide_over_columns(), method, true));
-  for (const auto& entry : integrators<3>()) {
+  for (const auto& entry : integrators()) {
     scenes.push_back(prepared(slide_over_columns(), "soft", true));
     scenes.back().method.integrator = entry.name;
   }

@@ -17,10 +17,10 @@ using openclose::test::all_methods;
 namespace {
 
 std::vector<double> output_times(const Scene& scene) {
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   std::vector<double> times;
-  RunObserver<3> observer;
-  observer.output = [&](const Simulation<3>& s) { times.push_back(s.time()); };
+  RunObserver observer;
+  observer.output = [&](const Simulation& s) { times.push_back(s.time()); };
   REQUIRE(run(simulation, observer).converged);
   return times;
 }
@@ -59,8 +59,8 @@ TEST_CASE("the last step ends at the end time", "[analysis][run]") {
     scene.step.max_displacement = 1.0;
     scene.end_time = 0.1;
     CHECK(output_times(scene) == std::vector<double>{0.0, 0.03, 0.06, 0.09, 0.1});
-    Simulation<3> simulation(scene);
-    REQUIRE(run<3>(simulation, {}).converged);
+    Simulation simulation(scene);
+    REQUIRE(run(simulation, {}).converged);
     CHECK(simulation.system().displacement(0)[1] == Approx(-0.5 * 9.81 * 0.01).epsilon(1e-13));
     CHECK(simulation.velocity(0)[1] == Approx(-0.981).epsilon(1e-13));
   }
@@ -70,17 +70,17 @@ TEST_CASE("what a run tells while it goes on", "[analysis][run]") {
   Scene scene = test::block_on_base();
   scene.method.start = Start::settled;
   scene.end_time = 0.01;
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   std::vector<std::string> order;
   std::vector<double> fractions;
-  RunObserver<3> observer;
-  observer.started = [&](const Simulation<3>& s) {
+  RunObserver observer;
+  observer.started = [&](const Simulation& s) {
     order.emplace_back("started");
     CHECK(s.time() == 0.0);
     CHECK(s.ledger().turnover == 0.0);
     CHECK(s.system().displacement(1)[1] < 0.0);
   };
-  observer.output = [&](const Simulation<3>&) { order.emplace_back("output"); };
+  observer.output = [&](const Simulation&) { order.emplace_back("output"); };
   observer.progress = [&](double f) { fractions.push_back(f); };
   const RunResult result = run(simulation, observer);
   CHECK(result.converged);
@@ -101,10 +101,10 @@ TEST_CASE("a settled start that does not exist ends the run with its reason", "[
   scene.end_time = 1.0;
   scene.snapshot_times = {0.0};
   scene.milestones = {0.5};
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   int outputs = 0, steps = 0;
-  RunObserver<3> observer;
-  observer.output = [&](const Simulation<3>&) { ++outputs; };
+  RunObserver observer;
+  observer.output = [&](const Simulation&) { ++outputs; };
   observer.progress = [&](double) { ++steps; };
   const RunResult result = run(simulation, observer);
   CHECK_FALSE(result.converged);
@@ -125,8 +125,8 @@ TEST_CASE("a search that is given up names the key that limits it", "[analysis][
   const auto reason = [&](const std::string& method, SettleCriterion criterion) {
     scene.method.contact = method;
     scene.settle.criterion = criterion;
-    Simulation<3> simulation(scene);
-    return run<3>(simulation, {}).reason;
+    Simulation simulation(scene);
+    return run(simulation, {}).reason;
   };
   CHECK_THAT(reason("soft", SettleCriterion::unbalanced_force), ContainsSubstring("(steps, limited by settle.max_steps)"));
   CHECK_THAT(reason("dem", SettleCriterion::unbalanced_force), ContainsSubstring("(steps, limited by settle.max_explicit_steps)"));
@@ -143,11 +143,11 @@ TEST_CASE("what comes at longer intervals than the run takes does not come withi
     Scene scene = test::falling_block();
     scene.end_time = 0.01;
     scene.output_every = scene.checkpoint_every = interval;
-    Simulation<3> simulation(scene);
+    Simulation simulation(scene);
     std::vector<double> rows, checkpoints;
-    RunObserver<3> observer;
-    observer.output = [&](const Simulation<3>& s) { rows.push_back(s.time()); };
-    observer.checkpoint = [&](Archive&, const Simulation<3>& s) { checkpoints.push_back(s.time()); };
+    RunObserver observer;
+    observer.output = [&](const Simulation& s) { rows.push_back(s.time()); };
+    observer.checkpoint = [&](Archive&, const Simulation& s) { checkpoints.push_back(s.time()); };
     REQUIRE(run(simulation, observer).converged);
     CHECK(rows == std::vector<double>{0.0, simulation.time()});
     CHECK(checkpoints == std::vector<double>{simulation.time()});
@@ -161,10 +161,10 @@ TEST_CASE("a run that gets stuck keeps what it has", "[analysis][run]") {
   scene.method.max_open_close_iterations = 1;
   scene.step.smallest_fraction = 0.5;
   scene.end_time = 1.0;
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   double last = -1.0;
-  RunObserver<3> observer;
-  observer.output = [&](const Simulation<3>& s) { last = s.time(); };
+  RunObserver observer;
+  observer.output = [&](const Simulation& s) { last = s.time(); };
   const RunResult result = run(simulation, observer);
   CHECK_FALSE(result.converged);
   CHECK(result.reason == "open-close iterations did not settle");
@@ -180,7 +180,7 @@ TEST_CASE("settled blocks start with the velocities of the scene", "[analysis][r
     scene.method.contact = method;
     scene.method.start = Start::settled;
     scene.blocks[1].velocity = {0.5, 0.0};
-    Simulation<3> simulation(scene);
+    Simulation simulation(scene);
     REQUIRE(prepare_start(simulation).converged);
     CHECK(simulation.velocity(1) == Eigen::Vector3d(0.5, 0.0, 0.0));
     CHECK(simulation.system().velocity(1) == Eigen::Vector3d(0.5, 0.0, 0.0));
@@ -189,8 +189,8 @@ TEST_CASE("settled blocks start with the velocities of the scene", "[analysis][r
 }
 
 TEST_CASE("without measured points the centroids of free blocks are", "[analysis][run]") {
-  Simulation<3> simulation(test::tumbling_blocks());
-  const MeasuredPoints<3> points(simulation);
+  Simulation simulation(test::tumbling_blocks());
+  const MeasuredPoints points(simulation);
   for (int i = 0; i < 100; ++i) REQUIRE(simulation.advance(1e-3));
   const auto motions = points.motions();
   REQUIRE(motions.size() == 3);
@@ -212,8 +212,8 @@ TEST_CASE("a measured point goes round with its block", "[analysis][run]") {
   scene.blocks[0].angular_velocity = 0.5 * std::numbers::pi;
   scene.blocks[0].velocity = {0.3, 0.0};
   scene.measured_points = {{"corner", 0, {102.0, 51.0}}};
-  Simulation<3> simulation(scene);
-  MeasuredPoints<3> points(simulation);
+  Simulation simulation(scene);
+  MeasuredPoints points(simulation);
   for (int i = 0; i < 1000; ++i) REQUIRE(simulation.advance(1e-3));
   // A quarter turn takes the arm (1, 0.5) to (-0.5, 1).
   const PointMotion m = points.motions().at(0);
@@ -256,10 +256,10 @@ TEST_CASE("a run with reduced strength settles with the full one and slides with
     INFO(method);
     Scene scene = reduced_slider(Start::settled);
     scene.method.contact = method;
-    Simulation<3> simulation(scene);
-    MeasuredPoints<3> points(simulation);
-    RunObserver<3> observer;
-    observer.started = [&](const Simulation<3>& s) {
+    Simulation simulation(scene);
+    MeasuredPoints points(simulation);
+    RunObserver observer;
+    observer.started = [&](const Simulation& s) {
       points.restart();
       CHECK(s.ledger().turnover == 0.0);
     };
@@ -289,10 +289,10 @@ TEST_CASE("a run starts from the equilibrium of the method that settles it, and 
     double moved = 0.0;  // [m] since, at most
   };
   const auto follow = [&](const Scene& scene) {
-    Simulation<3> simulation(scene);
+    Simulation simulation(scene);
     Way way;
-    RunObserver<3> observer;
-    observer.started = [&](const Simulation<3>& s) { way.settled = s.system().state().displacement; };
+    RunObserver observer;
+    observer.started = [&](const Simulation& s) { way.settled = s.system().state().displacement; };
     REQUIRE(run(simulation, observer).converged);
     for (std::size_t b = 0; b < way.settled.size(); ++b) {
       const Eigen::Vector3d moved = simulation.system().state().displacement[b] - way.settled[b];
@@ -325,7 +325,7 @@ TEST_CASE("only methods with springs of the joints share their equilibria", "[an
     scene.method.contact = contact;
     scene.settled_by = by;
     try {
-      Simulation<3> simulation(scene);
+      Simulation simulation(scene);
     } catch (const InputError& error) {
       return std::string(error.what());
     }
@@ -342,16 +342,16 @@ TEST_CASE("only methods with springs of the joints share their equilibria", "[an
 
 TEST_CASE("starts that do not settle have the reduced strength from the beginning", "[analysis][run]") {
   const Start start = GENERATE(Start::unloaded, Start::normal_balanced, Start::steady_sliding, Start::settled);
-  Simulation<3> simulation(reduced_slider(start));
+  Simulation simulation(reduced_slider(start));
   REQUIRE(prepare_start(simulation).converged);
   CHECK(simulation.joints().joint(0).friction_angle == Approx(std::atan(0.5 * std::tan(30.0 * test::degree))).epsilon(1e-15));
 }
 
 TEST_CASE("steady sliding goes on as it starts with reduced strength, too", "[analysis][run]") {
-  Simulation<3> simulation(reduced_slider(Start::steady_sliding));
-  MeasuredPoints<3> points(simulation);
-  RunObserver<3> observer;
-  observer.started = [&](const Simulation<3>&) { points.restart(); };
+  Simulation simulation(reduced_slider(Start::steady_sliding));
+  MeasuredPoints points(simulation);
+  RunObserver observer;
+  observer.started = [&](const Simulation&) { points.restart(); };
   REQUIRE(run(simulation, observer).converged);
   CHECK(points.largest_displacement() == Approx(sliding_distance(0.4)).epsilon(1e-9));
 }
@@ -363,10 +363,10 @@ TEST_CASE("a run ends by displacement or by time and says which", "[analysis][ru
   SECTION("far enough") {
     scene.end_time = 10.0;
     scene.output_every = 0.1;
-    Simulation<3> simulation(scene);
+    Simulation simulation(scene);
     double last_output = 0.0, last_share = 0.0;
-    RunObserver<3> observer;
-    observer.output = [&](const Simulation<3>& s) { last_output = s.time(); };
+    RunObserver observer;
+    observer.output = [&](const Simulation& s) { last_output = s.time(); };
     observer.progress = [&](double share) { last_share = share; };
     const RunResult result = run(simulation, observer);
     CHECK(result.converged);
@@ -379,8 +379,8 @@ TEST_CASE("a run ends by displacement or by time and says which", "[analysis][ru
   }
   SECTION("not before its time") {
     scene.end_time = 0.4;
-    Simulation<3> simulation(scene);
-    const RunResult result = run<3>(simulation, {});
+    Simulation simulation(scene);
+    const RunResult result = run(simulation, {});
     CHECK(result.converged);
     CHECK(result.ended_by == "end.time_s");
     REQUIRE(result.warnings.size() == 1);
@@ -392,10 +392,10 @@ TEST_CASE("milestones are timed within the step", "[analysis][run]") {
   Scene scene = test::falling_block();
   scene.milestones = {0.1, 0.1001, 0.5, 2.0};
   scene.end_time = 0.5;
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   std::vector<std::string> states;
-  RunObserver<3> observer;
-  observer.snapshot = [&](const std::string& state, const Simulation<3>&) { states.push_back(state); };
+  RunObserver observer;
+  observer.snapshot = [&](const std::string& state, const Simulation&) { states.push_back(state); };
   const RunResult result = run(simulation, observer);
   REQUIRE(result.milestones.size() == 4);
   double cpu = 0.0;
@@ -426,8 +426,8 @@ TEST_CASE("an end by displacement does not stop the explicit loop in every step"
   scene.end_displacement = 0.04;
   scene.output_every = 0.05;
   scene.end_time = 5.0;
-  Simulation<3> simulation(scene);
-  REQUIRE(run<3>(simulation, {}).ended_by == "end.displacement_m");
+  Simulation simulation(scene);
+  REQUIRE(run(simulation, {}).ended_by == "end.displacement_m");
   CHECK(simulation.step_counters().steps > 100);
   CHECK(simulation.step_counters().loads < 20);
 }
@@ -438,10 +438,10 @@ TEST_CASE("snapshots are taken after the nearest step", "[analysis][run]") {
   scene.step.max_displacement = 1.0;
   scene.end_time = 0.1;
   scene.snapshot_times = {0.0, 0.044, 0.046, 0.0949, 0.1, 0.11};
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   std::vector<std::pair<std::string, double>> taken;
-  RunObserver<3> observer;
-  observer.snapshot = [&](const std::string& state, const Simulation<3>& s) { taken.emplace_back(state, s.time()); };
+  RunObserver observer;
+  observer.snapshot = [&](const std::string& state, const Simulation& s) { taken.emplace_back(state, s.time()); };
   const RunResult result = run(simulation, observer);
   const std::vector<std::pair<std::string, double>> expected{{"t=0", 0.0}, {"t=0.044", 0.03}, {"t=0.046", 0.06}, {"t=0.0949", 0.09}, {"t=0.1", 0.1}};
   CHECK(taken == expected);
@@ -455,8 +455,8 @@ TEST_CASE("a run that does not start has no milestones and says so", "[analysis]
   scene.end_time = 1.0;
   scene.milestones = {1.0};
   scene.snapshot_times = {0.5};
-  Simulation<3> simulation(scene);
-  const RunResult result = run<3>(simulation, {});
+  Simulation simulation(scene);
+  const RunResult result = run(simulation, {});
   CHECK_FALSE(result.converged);
   CHECK(result.ended_by.empty());
   REQUIRE(result.milestones.size() == 1);
@@ -469,7 +469,7 @@ TEST_CASE("settling tells how far it is", "[analysis][run]") {
   Scene scene = test::column_of_blocks(3);
   scene.method.start = Start::settled;
   scene.settle.criterion = GENERATE(SettleCriterion::unbalanced_force, SettleCriterion::paper);
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   std::vector<double> shares;
   const RunResult result = prepare_start(simulation, [&](double share) { shares.push_back(share); });
   REQUIRE(result.converged);
@@ -486,8 +486,8 @@ TEST_CASE("hard takes a slope that gravity meets at once in long steps, none of 
     scene.method.start = Start::unloaded;
     scene.step.dt = 0.02;
     scene.end_time = 0.5;
-    Simulation<3> simulation(scene);
-    REQUIRE(run<3>(simulation, {}).converged);
+    Simulation simulation(scene);
+    REQUIRE(run(simulation, {}).converged);
     if (contact == "hard") CHECK(simulation.max_penetration() < 1.5 * scene.method.gap_tolerance);
     return simulation.step_counters();
   };
@@ -504,8 +504,8 @@ TEST_CASE("hard takes slopes of a thousand and more blocks that gravity meets at
   scene.method.contact = "hard";
   scene.method.start = Start::unloaded;
   scene.end_time = 0.3;
-  Simulation<3> simulation(scene);
-  REQUIRE(run<3>(simulation, {}).converged);
+  Simulation simulation(scene);
+  REQUIRE(run(simulation, {}).converged);
   const StepCounters& counters = simulation.step_counters();
   CHECK(counters.compliant == 0);
   CHECK(counters.eased <= 1);
@@ -519,8 +519,8 @@ TEST_CASE("a run of shi says how far the friction of sliding contacts lags behin
   const auto result_of = [](Scene scene, double& lag) {
     scene.method.contact = "shi";
     test::use_joint_springs_as_penalty(scene);
-    Simulation<3> simulation(scene);
-    const RunResult result = run<3>(simulation, {});
+    Simulation simulation(scene);
+    const RunResult result = run(simulation, {});
     lag = simulation.friction_lag();
     CHECK((result.converged || result.refused));  // by the watch: blocks that hit each other gain energy in steps of this length
     return result.warnings;

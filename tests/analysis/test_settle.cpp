@@ -16,27 +16,27 @@ using openclose::test::block_weight;
 namespace {
 
 /// Force [N] of the contacts between two blocks on block b.
-Vec2 between(Simulation<3>& simulation, int a, int b) {
+Vec2 between(Simulation& simulation, int a, int b) {
   Vec2 sum = Vec2::Zero();
   const Eigen::Vector3d still = Eigen::Vector3d::Zero();
   for (const Contact& c : simulation.contacts()) {
     const bool ours = (c.vertex_block == a && c.edge_block == b) || (c.vertex_block == b && c.edge_block == a);
     if (!ours || c.status == ContactStatus::open) continue;
-    const ContactKinematics<3> k(simulation.system(), c, still, still);
+    const ContactKinematics k(simulation.system(), c, still, still);
     sum += (c.vertex_block == b ? 1.0 : -1.0) * (c.normal_force * k.normal + c.shear_force * k.tangent);
   }
   return sum;
 }
 
 /// [N] Largest sum of weight and contact forces on a block, from the contacts as they stand.
-double worst_balance(Simulation<3>& simulation) {
-  const BlockSystem<3>& system = simulation.system();
+double worst_balance(Simulation& simulation) {
+  const BlockSystem& system = simulation.system();
   std::vector<Vec2> sum(system.block_count(), Vec2::Zero());
-  for (int b : system.free_blocks()) sum[b] = Motion<3>::translation(simulation.external().weight(system, b));
+  for (int b : system.free_blocks()) sum[b] = Motion::translation(simulation.external().weight(system, b));
   const Eigen::Vector3d still = Eigen::Vector3d::Zero();
   for (const Contact& c : simulation.contacts()) {
     if (c.status == ContactStatus::open) continue;
-    const ContactKinematics<3> k(system, c, still, still);
+    const ContactKinematics k(system, c, still, still);
     const Vec2 force = c.normal_force * k.normal + c.shear_force * k.tangent;
     sum[c.vertex_block] += force;
     sum[c.edge_block] -= force;
@@ -81,19 +81,19 @@ Scene leaning_columns(int columns, const std::vector<double>& heights, double ga
 }
 
 /// `soft`, whose second step is a displacement that no force explains.
-class RunsAwayOnce : public Enforcement<3> {
+class RunsAwayOnce : public Enforcement {
  public:
-  explicit RunsAwayOnce(const MethodInput& method) : real_(make_enforcement<3>(method)) {}
-  ContactSprings springs(const StepProblem<3>& problem, const Contact& contact) const override { return real_->springs(problem, contact); }
-  void solve(const StepProblem<3>& problem, StepSolution<3>& solution) override {
+  explicit RunsAwayOnce(const MethodInput& method) : real_(make_enforcement(method)) {}
+  ContactSprings springs(const StepProblem& problem, const Contact& contact) const override { return real_->springs(problem, contact); }
+  void solve(const StepProblem& problem, StepSolution& solution) override {
     real_->solve(problem, solution);
     if (++solved_ == 2) solution.d.setConstant(1e65);
   }
-  std::unique_ptr<TimeScheme<3>> make_time_scheme(const MethodInput& method) const override { return real_->make_time_scheme(method); }
+  std::unique_ptr<TimeScheme> make_time_scheme(const MethodInput& method) const override { return real_->make_time_scheme(method); }
   LinearCounters linear_counters() const override { return real_->linear_counters(); }
 
  private:
-  std::unique_ptr<Enforcement<3>> real_;
+  std::unique_ptr<Enforcement> real_;
   int solved_ = 0;
 };
 
@@ -105,7 +105,7 @@ TEST_CASE("a block on a base sinks by W/(kn L)", "[analysis][settle]") {
     Scene scene = test::block_on_base();
     scene.method.contact = method;
     scene.blocks[1].velocity = {3.0, 0.0};
-    Simulation<3> simulation(scene);
+    Simulation simulation(scene);
     const SettleResult result = settle(simulation);
     CHECK(result.settled);
     CHECK(result.criterion == "unbalanced force");
@@ -127,7 +127,7 @@ TEST_CASE("a stack carries its weights", "[analysis][settle]") {
     INFO(method);
     Scene scene = test::column_of_blocks(3);
     scene.method.contact = method;
-    Simulation<3> simulation(scene);
+    Simulation simulation(scene);
     const SettleResult result = settle(simulation);
     CHECK(result.settled);
     for (int i = 0; i < 3; ++i) {
@@ -147,7 +147,7 @@ TEST_CASE("the rounding of a drawing opens no contact: an inclined column settle
       Scene scene = test::column_of_blocks(4);
       for (BlockInput& block : scene.blocks) block.vertices = test::placed(block.vertices, slope * test::degree);
       scene.method.contact = method;
-      Simulation<3> simulation(scene);
+      Simulation simulation(scene);
       int parted = 0;
       for (const Contact& c : simulation.contacts()) parted += c.gap > 0.0 && c.gap < 1e-14 ? 1 : 0;
       CHECK(parted > 0);
@@ -165,7 +165,7 @@ TEST_CASE("a support carries a block with a sink of W/k", "[analysis][settle]") 
     Scene scene = test::falling_block();
     scene.method.contact = method;
     scene.supports = {{0, {1.0, 0.5}, {2e6, 5e6}}};
-    Simulation<3> simulation(scene);
+    Simulation simulation(scene);
     REQUIRE(settle(simulation).settled);
     CHECK(simulation.system().displacement(0)[1] == Approx(-block_weight / 5e6).epsilon(2e-8));
     CHECK(simulation.system().displacement(0)[0] == 0.0);
@@ -178,7 +178,7 @@ TEST_CASE("a block that cannot stay fails by its displacement", "[analysis][sett
     Scene scene = test::block_on_incline(40.0 * test::degree);
     scene.method.contact = method;
     scene.settle.failure_displacement = 0.05;
-    Simulation<3> simulation(scene);
+    Simulation simulation(scene);
     const SettleResult result = settle(simulation);
     CHECK_FALSE(result.settled);
     CHECK(result.criterion == "displacement");
@@ -193,7 +193,7 @@ TEST_CASE("an incline flatter than its friction holds, a steeper one does not", 
     for (const double slope : {29.9, 30.1}) {
       Scene scene = test::block_on_incline(slope * test::degree);
       scene.method.contact = method;
-      Simulation<3> simulation(scene);
+      Simulation simulation(scene);
       CHECK(settle(simulation).settled == (slope < 30.0));
     }
   }
@@ -204,7 +204,7 @@ TEST_CASE("settling stops at its number of steps", "[analysis][settle]") {
   scene.settle.max_steps = 2;
   scene.settle.first_dt = 1e-6;
   scene.settle.unbalanced_fraction = 1e-14;
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   const SettleResult result = settle(simulation);
   CHECK_FALSE(result.settled);
   CHECK(result.criterion == "steps");
@@ -216,7 +216,7 @@ TEST_CASE("settling says which step it could not take", "[analysis][settle]") {
   scene.method.max_iterations = 1;
   scene.loads = {{1, {0.0, 1.0}, {1e5, 0.0}}};
   scene.joints[0].friction_angle = 10.0 * test::degree;
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   const SettleResult result = settle(simulation);
   CHECK_FALSE(result.settled);
   CHECK(result.criterion == "Newton's method did not converge");
@@ -224,7 +224,7 @@ TEST_CASE("settling says which step it could not take", "[analysis][settle]") {
 
 TEST_CASE("an iteration that has run away once does not end the settling", "[analysis][settle]") {
   const Scene scene = test::column_of_blocks(3);
-  Simulation<3> simulation(scene, std::make_unique<RunsAwayOnce>(scene.method));
+  Simulation simulation(scene, std::make_unique<RunsAwayOnce>(scene.method));
   const SettleResult result = settle(simulation);
   CHECK(simulation.step_counters().cuts == 1);
   CHECK(result.settled);
@@ -235,7 +235,7 @@ TEST_CASE("the unbalanced force is below what was asked for", "[analysis][settle
   const double fraction = GENERATE(1e-3, 1e-6, 1e-10);
   Scene scene = test::column_of_blocks(3);
   scene.settle.unbalanced_fraction = fraction;
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   const SettleResult result = settle(simulation);
   REQUIRE(result.settled);
   CHECK(result.unbalanced_fraction <= fraction);
@@ -250,7 +250,7 @@ TEST_CASE("a coarse balance is not solved for to the last, and what is left coun
   constexpr double fraction = 0.1;
   const auto settled = [](Scene scene, double asked, SettleResult& result) {
     scene.settle.unbalanced_fraction = asked;
-    auto simulation = std::make_unique<Simulation<3>>(scene);
+    auto simulation = std::make_unique<Simulation>(scene);
     result = settle(*simulation);
     REQUIRE(result.settled);
     CHECK(result.unbalanced_fraction <= asked);
@@ -262,11 +262,11 @@ TEST_CASE("a coarse balance is not solved for to the last, and what is left coun
   CHECK(coarse_result.steps == fine_result.steps);
   CHECK(coarse->step_counters().iterations < fine->step_counters().iterations);
 
-  const BlockSystem<3>& system = coarse->system();
+  const BlockSystem& system = coarse->system();
   std::vector<Vec2> sums;
-  for (int b = 0; b < system.block_count(); ++b) sums.push_back(coarse->external().force(system, b, Motion<3>::Unknowns::Zero()).head<2>());
+  for (int b = 0; b < system.block_count(); ++b) sums.push_back(coarse->external().force(system, b, Motion::Unknowns::Zero()).head<2>());
   for (const Contact& c : coarse->contacts()) {
-    const Vec2 normal = ContactStart<3>(system, c).normal, force = c.normal_force * normal + c.shear_force * perpendicular(normal);
+    const Vec2 normal = ContactStart(system, c).normal, force = c.normal_force * normal + c.shear_force * perpendicular(normal);
     sums[c.vertex_block] += force;
     sums[c.edge_block] -= force;
   }
@@ -293,7 +293,7 @@ TEST_CASE("a coarse balance is not solved for to the last, and what is left coun
 TEST_CASE("a slope with thousands of loose contacts settles without a cut", "[analysis][settle]") {
   // Example 3.4 with joints about half as far apart. No length of a step in common serves all of its 1973 blocks.
   const Scene scene = slope(19.2, 4.8);
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   const SettleResult result = settle(simulation);
   CHECK(result.settled);
   CHECK(simulation.step_counters().cuts == 0);
@@ -309,7 +309,7 @@ TEST_CASE("relaxation finds the places of rest without linear equations", "[anal
     return scene;
   };
   SECTION("a block on its springs") {
-    Simulation<3> simulation(relaxed(test::block_on_base()));
+    Simulation simulation(relaxed(test::block_on_base()));
     REQUIRE(settle(simulation).settled);
     CHECK(simulation.system().displacement(1)[1] == Approx(-block_weight / (1e9 * test::block_edge)).epsilon(2e-8));
     CHECK(simulation.step_counters().relaxation_steps > 0);
@@ -319,7 +319,7 @@ TEST_CASE("relaxation finds the places of rest without linear equations", "[anal
   SECTION("a block on support springs, one of which turns it") {
     Scene scene = test::falling_block();
     scene.supports = {{0, {0.5, 0.5}, {2e6, 5e6}}, {0, {2.0, 0.5}, {2e6, 3e6}}};
-    Simulation<3> newton(scene), simulation(relaxed(scene));
+    Simulation newton(scene), simulation(relaxed(scene));
     REQUIRE(settle(newton).settled);
     REQUIRE(settle(simulation).settled);
     CHECK(newton.step_counters().relaxation_steps == 0);
@@ -327,7 +327,7 @@ TEST_CASE("relaxation finds the places of rest without linear equations", "[anal
     CHECK((newton.system().displacement(0) - simulation.system().displacement(0)).norm() < 1e-7 * newton.system().displacement(0).norm());
   }
   SECTION("a block in the air, which has nothing but its inertia") {
-    Simulation<3> simulation(relaxed(test::falling_block()));
+    Simulation simulation(relaxed(test::falling_block()));
     const double dt = 0.01;
     REQUIRE(simulation.step(dt, true).accepted);
     CHECK(simulation.system().displacement(0)[1] == Approx(-0.5 * 9.81 * dt * dt).epsilon(1e-9));
@@ -336,7 +336,7 @@ TEST_CASE("relaxation finds the places of rest without linear equations", "[anal
     Scene scene = test::block_on_base();
     scene.blocks[1].rotation_locked = true;
     scene.loads = {{1, {0.1, 1.0}, {0.0, -1e5}}};
-    Simulation<3> simulation(relaxed(scene));
+    Simulation simulation(relaxed(scene));
     REQUIRE(settle(simulation).settled);
     CHECK(simulation.system().displacement(1)[2] == 0.0);
     CHECK(simulation.system().displacement(1)[1] == Approx(-(block_weight + 1e5) / (1e9 * test::block_edge)).epsilon(2e-8));
@@ -345,7 +345,7 @@ TEST_CASE("relaxation finds the places of rest without linear equations", "[anal
     Scene scene = test::block_on_base();
     scene.blocks[1].rotation_locked = true;
     scene.blocks.push_back(test::free_block("upper", test::rectangle(0.3, 1.0, 1.0, 1.0)));
-    Simulation<3> newton(scene), simulation(relaxed(scene));
+    Simulation newton(scene), simulation(relaxed(scene));
     REQUIRE(settle(newton).settled);
     REQUIRE(settle(simulation).settled);
     CHECK(simulation.system().displacement(1)[2] == 0.0);
@@ -355,7 +355,7 @@ TEST_CASE("relaxation finds the places of rest without linear equations", "[anal
   }
   SECTION("an incline flatter than its friction holds, a steeper one does not") {
     for (const double slope : {29.9, 30.1}) {
-      Simulation<3> simulation(relaxed(test::block_on_incline(slope * test::degree)));
+      Simulation simulation(relaxed(test::block_on_incline(slope * test::degree)));
       CHECK(settle(simulation).settled == (slope < 30.0));
     }
   }
@@ -364,8 +364,8 @@ TEST_CASE("relaxation finds the places of rest without linear equations", "[anal
     // up to the factor of a ductile cohesion, 1.326; the other statics find 1.262.
     const std::vector<std::string> brittle = {"joint[0].cohesion_pa=20000", "joint[0].cohesion_behaviour='lost_on_slip'"};
     const Scene scene = read_scene(std::string(OPENCLOSE_PAPER_SCENES) + "/example_3_2.toml", brittle);
-    Simulation<3> newton(scene), simulation(relaxed(scene));
-    const double expected = factor_of_safety<3>(newton).stable(), found = factor_of_safety<3>(simulation).stable();
+    Simulation newton(scene), simulation(relaxed(scene));
+    const double expected = factor_of_safety(newton).stable(), found = factor_of_safety(simulation).stable();
     const double without_cohesion = std::tan(40.0 * test::degree) / std::tan(35.0 * test::degree);
     CHECK(found <= expected + scene.strength_reduction.width);
     CHECK(found > without_cohesion);
@@ -377,7 +377,7 @@ TEST_CASE("relaxation finds the places of rest without linear equations", "[anal
     scene.blocks.push_back(test::fixed_block("wall", test::rectangle(1.2, 0.0, 1.0, 6.0)));
     scene.loads = {{1, {0.5, 3.5}, {3e4, 0.0}}};
     scene.step.max_displacement = 0.5;
-    Simulation<3> newton(scene), simulation(relaxed(scene));
+    Simulation newton(scene), simulation(relaxed(scene));
     REQUIRE(settle(newton).settled);
     REQUIRE(settle(simulation).settled);
     CHECK(simulation.step_counters().cuts == 0);
@@ -391,7 +391,7 @@ TEST_CASE("relaxation finds the places of rest without linear equations", "[anal
     Scene scene = slope(40.0, 10.0);
     scene.joints[0].cohesion = scene.joints[0].tensile_strength = 1e9;
     scene.joints[0].cohesion_behaviour = CohesionBehaviour::ductile;
-    Simulation<3> newton(scene), simulation(relaxed(scene));
+    Simulation newton(scene), simulation(relaxed(scene));
     const SettleResult expected = settle(newton);
     REQUIRE(expected.settled);
     REQUIRE(settle(simulation).settled);
@@ -404,7 +404,7 @@ TEST_CASE("relaxation finds the places of rest without linear equations", "[anal
 TEST_CASE("a slope with thousands of loose contacts is relaxed without a cut", "[analysis][settle]") {
   Scene scene = slope(19.2, 4.8);
   scene.method.static_solver = StaticSolver::relaxation;
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   const SettleResult result = settle(simulation);
   CHECK(result.settled);
   CHECK(simulation.step_counters().cuts == 0);
@@ -422,7 +422,7 @@ TEST_CASE("a slope with thousands of loose contacts is relaxed without a cut", "
 }
 
 TEST_CASE("a slope of 10,208 blocks is relaxed unasked, and what is loose goes no farther than it must", "[analysis][settle]") {
-  Simulation<3> simulation(slope(8.24, 2.06));
+  Simulation simulation(slope(8.24, 2.06));
   const SettleResult result = settle(simulation);
   CHECK(result.settled);
   CHECK(simulation.step_counters().iterations <= 3);  // each static step tries whether few contacts change their states
@@ -435,7 +435,7 @@ TEST_CASE("a slope of 10,208 blocks is relaxed unasked, and what is loose goes n
 TEST_CASE("a slope that nothing has loaded yet settles by whole steps", "[analysis][settle]") {
   // Example 3.4: a third of its contacts open or slide. Without a hold for these the same step takes 15 iterations and as many line searches.
   const Scene scene = read_scene(std::string(OPENCLOSE_PAPER_SCENES) + "/example_3_4.toml");
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   const StepResult step = simulation.step(scene.settle.first_dt, true);
   CHECK(step.accepted);
   CHECK(step.unbalanced_force < 1e-2 * simulation.force_scale());
@@ -447,7 +447,7 @@ TEST_CASE("a slope that nothing has loaded yet settles by whole steps", "[analys
 
 TEST_CASE("open joints close to the tolerance of rigid contacts", "[analysis][settle]") {
   const auto settles = [](const Scene& scene) {
-    Simulation<3> simulation(scene);
+    Simulation simulation(scene);
     const SettleResult result = settle(simulation);
     INFO(result.criterion);
     REQUIRE(result.settled);
@@ -476,14 +476,14 @@ TEST_CASE("balance with cohesion that was lost in the same step is none", "[anal
   scene.settle.first_dt = 1e4;
   scene.settle.failure_displacement = 0.05;
   SECTION("ductile: the first step is in balance") {
-    Simulation<3> simulation(scene);
+    Simulation simulation(scene);
     const SettleResult result = settle(simulation);
     CHECK(result.settled);
     CHECK(result.steps == 1);
   }
   SECTION("lost on slip") {
     scene.joints[0].cohesion_behaviour = CohesionBehaviour::lost_on_slip;
-    Simulation<3> simulation(scene);
+    Simulation simulation(scene);
     CHECK_FALSE(settle(simulation).settled);
   }
 }
@@ -497,7 +497,7 @@ TEST_CASE("steps do not grow while each of them finds a balance", "[analysis][se
   scene.method.contact = "hard";
   scene.joints[0].cohesion = 0.4 * weight;
   scene.joints[0].cohesion_behaviour = CohesionBehaviour::lost_on_slip;
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   const SettleResult result = settle(simulation);
   REQUIRE(result.settled);
   REQUIRE(result.steps > 1);

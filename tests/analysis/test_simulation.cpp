@@ -30,7 +30,7 @@ void append(std::vector<double>& list, const EnergyLedger& l) {
 }
 
 /// Everything that a step may change, as numbers to be compared bit for bit.
-std::vector<double> everything(Simulation<3>& simulation) {
+std::vector<double> everything(Simulation& simulation) {
   std::vector<double> list{simulation.time(), simulation.max_penetration(), static_cast<double>(simulation.step_counters().steps)};
   for (const Contact& c : simulation.contacts()) append(list, c);
   append(list, simulation.ledger());
@@ -60,7 +60,7 @@ Scene tumbling(const std::string& method) {
 
 /// States after each of n advances.
 std::vector<std::vector<double>> trajectory(const Scene& scene, int n, int blocks) {
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   std::vector<std::vector<double>> states;
   for (int i = 0; i < n; ++i) {
     REQUIRE(simulation.advance(scene.step.dt));
@@ -84,9 +84,9 @@ int first_difference(const std::vector<std::vector<double>>& a, const std::vecto
 }
 
 /// Four steps of each.
-void advance_both(Simulation<3>& a, Simulation<3>& b) {
+void advance_both(Simulation& a, Simulation& b) {
   for (int i = 0; i < 4; ++i) {
-    for (Simulation<3>* simulation : {&a, &b}) REQUIRE(simulation->advance(simulation->scene().step.dt));
+    for (Simulation* simulation : {&a, &b}) REQUIRE(simulation->advance(simulation->scene().step.dt));
   }
 }
 
@@ -98,7 +98,7 @@ TEST_CASE("a step that fails leaves no trace", "[analysis][simulation]") {
     Scene scene = tumbling(method);
     scene.method.skip_factorisation = false;  // what a factor keeps may come from a step that failed
     scene.blocks.push_back(test::free_block("falling", test::rectangle(50.0, 1000.0, 1.0, 1.0)));
-    Simulation<3> simulation(scene);
+    Simulation simulation(scene);
     for (int i = 0; i < 120; ++i) REQUIRE(simulation.advance(2e-3));
     REQUIRE(simulation.ledger().contact_springs + simulation.ledger().impact != 0.0);
     const std::vector<double> before = everything(simulation);
@@ -112,7 +112,7 @@ TEST_CASE("a step that fails leaves no trace", "[analysis][simulation]") {
     CHECK(simulation.step_counters().cuts == cuts + 1);
 
     // What follows does not know of it either.
-    Simulation<3> other(scene);
+    Simulation other(scene);
     for (int i = 0; i < 120; ++i) REQUIRE(other.advance(2e-3));
     everything(other);  // asks for references through which one could change it: the explicit loop takes the state over anew
     for (int i = 0; i < 20; ++i) {
@@ -131,7 +131,7 @@ TEST_CASE("a step that does not converge leaves no trace", "[analysis][simulatio
     scene.method.max_iterations = 1;
     scene.method.max_open_close_iterations = 1;
     scene.loads = {{1, {0.5, 1.0}, {1e4, 0.0}}};
-    Simulation<3> simulation(scene);
+    Simulation simulation(scene);
     const std::vector<double> before = everything(simulation);
     const StepResult result = simulation.step(1.0, true);
     CHECK_FALSE(result.accepted);
@@ -150,7 +150,7 @@ TEST_CASE("no step moves a vertex farther than allowed", "[analysis][simulation]
     scene.gravity = {0.0, 0.0};
     scene.blocks[0].angular_velocity = 3.0;
   }
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   const StepResult far = simulation.step(0.01, false);
   CHECK_FALSE(far.accepted);
   CHECK_THAT(far.reason, ContainsSubstring("step.max_displacement_m"));
@@ -164,7 +164,7 @@ TEST_CASE("no step turns a block that is in contact farther than its contacts kn
   scene.blocks[1].angular_velocity = angle / scene.step.dt;
   scene.joints[0].normal_stiffness = scene.joints[0].shear_stiffness = 1.0;  // too soft to slow it down
   scene.step.max_displacement = 100.0;
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   const StepResult result = simulation.step(scene.step.dt, false);
   const bool allowed = height > 0.0 || angle < tolerance::parallel_none_rad;
   CHECK(result.accepted == allowed);
@@ -179,7 +179,7 @@ TEST_CASE("advance covers its time exactly when steps are cut", "[analysis][simu
     scene.step.max_displacement = 0.05;
     scene.blocks[0].velocity = {1.0, 2.0};
     const Vec2 v0 = scene.blocks[0].velocity;
-    Simulation<3> simulation(scene);
+    Simulation simulation(scene);
     double t = 0.0;
     for (int i = 0; i < 5; ++i) {
       REQUIRE(simulation.advance(0.1));
@@ -201,8 +201,8 @@ TEST_CASE("a step that would go too far is divided into equal parts", "[analysis
     scene.method.contact = method;
     scene.blocks[4].velocity = {0.4, 0.0};
     scene.step.max_displacement = 4e-3;
-    Simulation<3> divided(scene), halves(scene);
-    for (Simulation<3>* simulation : {&divided, &halves}) REQUIRE(simulation->advance(1e-3));  // to know the speed
+    Simulation divided(scene), halves(scene);
+    for (Simulation* simulation : {&divided, &halves}) REQUIRE(simulation->advance(1e-3));  // to know the speed
     REQUIRE(divided.advance(0.013));
     for (int i = 0; i < 2; ++i) REQUIRE(halves.advance(0.0065));
     CHECK(divided.step_counters().steps == 3);
@@ -218,7 +218,7 @@ TEST_CASE("advance gives up when cutting does not help and says why", "[analysis
   scene.method.max_open_close_iterations = 1;
   scene.method.closing_tolerance = 0.0;
   scene.blocks[1].velocity = {0.0, -1.0};
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   CHECK_FALSE(simulation.advance(0.01));
   CHECK(simulation.reason() == "open-close iterations did not settle");
   CHECK(simulation.time() == 0.0);
@@ -234,7 +234,7 @@ TEST_CASE("skipping searches changes nothing", "[analysis][simulation]") {
     scene.method.skip_search = false;
     CHECK(first_difference(skipping, trajectory(scene, 250, 4)) == -1);
   }
-  Simulation<3> simulation(tumbling("soft"));
+  Simulation simulation(tumbling("soft"));
   for (int i = 0; i < 250; ++i) REQUIRE(simulation.advance(2e-3));
   CHECK(simulation.detection_counters().searches_skipped > 100);
   CHECK(simulation.detection_counters().searches > 2);
@@ -249,9 +249,9 @@ TEST_CASE("iterating only where forces are far from balance changes no more than
     scene.method.contact = method;
     scene.method.gap_tolerance = 3e-7;  // of which hard finds multipliers: else it would take other springs where an iteration fails in only one way
     scene.method.skip_balanced = false;
-    Simulation<3> all(scene);
+    Simulation all(scene);
     scene.method.skip_balanced = true;
-    Simulation<3> skipping(scene);
+    Simulation skipping(scene);
     advance_both(all, skipping);
     double difference = 0.0;
     for (int b = 0; b < all.system().block_count(); ++b) {
@@ -273,11 +273,11 @@ TEST_CASE("steps that begin before its time are the first integrator's, the othe
   constexpr int at_first = 60;
   Scene scene = tumbling("soft");
   scene.method.integrator = "path_average";
-  Simulation<3> expected(scene);
+  Simulation expected(scene);
   scene.method.first_integrator = "path_average";
   scene.method.first_integrator_time = at_first * scene.step.dt;
   scene.method.integrator = "tr_bdf2";
-  Simulation<3> changing(scene);
+  Simulation changing(scene);
   const auto advance_as_expected = [&] {
     REQUIRE(expected.advance(scene.step.dt));
     REQUIRE(changing.advance(scene.step.dt));
@@ -296,9 +296,9 @@ TEST_CASE("evaluating only what moved with a part changes no bit", "[analysis][s
     INFO(integrator);
     Scene scene = test::struck_wall(integrator == "path_average" ? 130 : 40);  // where there are parts
     scene.method.integrator = integrator;
-    Simulation<3> skipping(scene);
+    Simulation skipping(scene);
     scene.method.skip_unmoved = false;
-    Simulation<3> all(scene);
+    Simulation all(scene);
     advance_both(all, skipping);
     CHECK(skipping.system().state().displacement == all.system().state().displacement);
     CHECK(skipping.system().state().velocity == all.system().state().velocity);
@@ -322,7 +322,7 @@ TEST_CASE("skipping the symbolic part of factorisations changes no bit", "[analy
     CHECK(first_difference(skipping, trajectory(scene, 250, 4)) == -1);
     for (const bool skips : {true, false}) {
       scene.method.skip_symbolic = skips;
-      Simulation<3> simulation(scene);
+      Simulation simulation(scene);
       for (int i = 0; i < 50; ++i) REQUIRE(simulation.advance(2e-3));
       const LinearCounters& counters = simulation.enforcement().linear_counters();
       CHECK((counters.symbolic_skipped > 0) == skips);
@@ -342,7 +342,7 @@ TEST_CASE("leaving contacts as they are changes nothing while lengths stay", "[a
     std::array<double, 2> way{};
     for (const bool skips : {true, false}) {
       scene.method.skip_narrow_phase = skips;
-      Simulation<3> simulation(scene);
+      Simulation simulation(scene);
       for (int i = 0; i < 500; ++i) REQUIRE(simulation.advance(1e-4));
       way[skips ? 1 : 0] = simulation.system().displacement(1).x();
       CHECK((simulation.detection_counters().narrow_phases_skipped > 100) == (skips && simulation.enforcement().follows_gaps()));
@@ -363,7 +363,7 @@ TEST_CASE("contacts are found anew after as much motion as the scene says", "[an
   };
   const auto renewals = [&](double skin) {
     scene.method.contact_skin = skin;
-    Simulation<3> simulation(scene);
+    Simulation simulation(scene);
     for (int i = 0; i < 500; ++i) REQUIRE(simulation.advance(1e-4));
     const DetectionCounters counters = simulation.detection_counters();
     return Renewals{counters.narrow_phases, counters.searches + counters.searches_skipped, simulation.system().displacement(1).x()};
@@ -396,7 +396,7 @@ TEST_CASE("the velocity that a step ends with is none of an impact that is over"
   for (Vec2& v : scene.blocks[1].vertices) v += Vec2(0.0, height);
   scene.blocks[1].velocity = {0.0, -1.0};
   scene.method.contact = method;
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   double fastest = 0.0, slowest = 1.0;
   for (int i = 0; i < 400; ++i) {
     REQUIRE(simulation.step(method == "dem" ? std::min(0.5 * simulation.critical_step(), 1e-3) : 1e-3, false).accepted);
@@ -425,7 +425,7 @@ TEST_CASE("a block far away is not felt", "[analysis][simulation]") {
 TEST_CASE("saving and restoring repeats a trajectory", "[analysis][simulation]") {
   for (const std::string method : {"soft", "shi"}) {
     INFO(method);
-    Simulation<3> simulation(tumbling(method));
+    Simulation simulation(tumbling(method));
     for (int i = 0; i < 150; ++i) REQUIRE(simulation.advance(2e-3));
     const auto snapshot = simulation.save();
     for (int i = 0; i < 50; ++i) REQUIRE(simulation.advance(2e-3));
@@ -441,7 +441,7 @@ TEST_CASE("saving and restoring repeats a trajectory", "[analysis][simulation]")
 TEST_CASE("a restored state is followed with the step that is asked for, not with that of the motion before", "[analysis][simulation]") {
   Scene scene = test::falling_block();
   scene.step.max_displacement = 0.1;
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   const auto at_rest = simulation.save();
   REQUIRE(simulation.advance(1.0));
   // Now at 9.8 m/s, which allows 0.01 s; from rest it is 0.14 s.
@@ -456,7 +456,7 @@ TEST_CASE("after a change of the method the motion is that of its time scheme", 
   scene.method.integrator = "shi";
   MethodInput of_two_stages = scene.method;
   of_two_stages.integrator = "tr_bdf2";
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   REQUIRE(simulation.advance(1e-2));
   CHECK(simulation.step_counters().steps == 1);
   simulation.change_method(of_two_stages);
@@ -468,12 +468,12 @@ TEST_CASE("the way to an equilibrium is the same without books, which begin with
   for (const std::string method : {"soft", "hard", "shi"}) {
     INFO(method);
     Scene scene = tumbling(method);
-    Simulation<3> booked(scene), unbooked(scene);
+    Simulation booked(scene), unbooked(scene);
     unbooked.book_steps(false);
-    for (Simulation<3>* s : {&booked, &unbooked}) REQUIRE(settle(*s).settled);
+    for (Simulation* s : {&booked, &unbooked}) REQUIRE(settle(*s).settled);
     CHECK(booked.ledger().turnover > 0.0);
     CHECK(unbooked.ledger().turnover == 0.0);
-    for (Simulation<3>* s : {&booked, &unbooked}) {
+    for (Simulation* s : {&booked, &unbooked}) {
       s->restart_clock();
       for (int i = 0; i < 20; ++i) REQUIRE(s->advance(2e-3));
     }
@@ -483,7 +483,7 @@ TEST_CASE("the way to an equilibrium is the same without books, which begin with
 }
 
 TEST_CASE("restarting the clock empties the books and nothing else", "[analysis][simulation]") {
-  Simulation<3> simulation(tumbling("soft"));
+  Simulation simulation(tumbling("soft"));
   for (int i = 0; i < 200; ++i) REQUIRE(simulation.advance(2e-3));
   const auto state = simulation.system().state();
   std::vector<double> contacts, after;
@@ -504,11 +504,11 @@ TEST_CASE("restarting the clock empties the books and nothing else", "[analysis]
 TEST_CASE("an account of the memory, by what has it", "[analysis][simulation]") {
   for (const std::string method : {"soft", "hard", "shi", "dem"}) {
     INFO(method);
-    Simulation<3> few(tumbling(method));
+    Simulation few(tumbling(method));
     CHECK(few.memory().without_factor() == 0);  // nothing yet
     REQUIRE(few.advance(2e-3));
     const Memory of = few.memory();
-    CHECK(of.blocks > few.system().block_count() * (sizeof(BlockSystem<3>::Block) + sizeof(BlockInput)));
+    CHECK(of.blocks > few.system().block_count() * (sizeof(BlockSystem::Block) + sizeof(BlockInput)));
     CHECK(of.contacts > few.contacts().size() * (sizeof(Contact) + 100));
     CHECK((of.matrix > 0) == (method != "dem"));
     CHECK((of.factor > of.matrix) == (method != "dem"));
@@ -517,7 +517,7 @@ TEST_CASE("an account of the memory, by what has it", "[analysis][simulation]") 
     Scene named = tumbling(method);
     constexpr std::size_t letters = 1000, points = 512;
     for (BlockInput& block : named.blocks) block.name = std::string(letters, 'b');
-    Simulation<3> same(named);
+    Simulation same(named);
     const std::size_t before = same.system().bytes();
     for (std::size_t i = 0; i < points; ++i) same.system().follow_point(1, named.blocks[1].vertices[0]);
     const std::size_t of_points = same.system().bytes() - before;
@@ -532,7 +532,7 @@ TEST_CASE("an account of the memory, by what has it", "[analysis][simulation]") 
       for (Vec2& vertex : block.vertices) vertex.x() += 1000.0;
       scene.blocks.push_back(block);
     }
-    Simulation<3> many(scene);
+    Simulation many(scene);
     REQUIRE(many.advance(2e-3));
     CHECK(2 * many.memory().blocks > 3 * of.blocks);
     CHECK(2 * many.memory().contacts > 3 * of.contacts);
@@ -543,7 +543,7 @@ TEST_CASE("an account of the memory, by what has it", "[analysis][simulation]") 
 
 TEST_CASE("velocities of the scene come back after they were stopped", "[analysis][simulation]") {
   Scene scene = test::tumbling_blocks();
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   simulation.system().stop();
   CHECK(simulation.system().kinetic_energy() == 0.0);
   simulation.restore_velocities();
@@ -561,7 +561,7 @@ TEST_CASE("in statics every step starts and ends at rest", "[analysis][simulatio
     scene.method.statics = true;
     scene.blocks[0].velocity = {5.0, 0.0};
     const double dt = 0.01;
-    Simulation<3> simulation(scene);
+    Simulation simulation(scene);
     for (int i = 1; i <= 3; ++i) {
       REQUIRE(simulation.advance(dt));
       CHECK(simulation.velocity(0).isZero(0.0));
@@ -579,36 +579,36 @@ TEST_CASE("in statics every step starts and ends at rest", "[analysis][simulatio
 TEST_CASE("statics creeps to the equilibrium of the springs", "[analysis][simulation]") {
   Scene scene = test::block_on_base();
   scene.method.statics = true;
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   for (int i = 0; i < 20; ++i) REQUIRE(simulation.advance(1.0));
   CHECK(simulation.system().displacement(1)[1] == Approx(-test::block_weight / (1e9 * test::block_edge)).epsilon(1e-12));
 }
 
 TEST_CASE("what a step is measured against", "[analysis][simulation]") {
   Scene scene = test::block_on_base();
-  CHECK(Simulation<3>(scene).force_scale() == Approx(test::block_weight).epsilon(1e-14));
+  CHECK(Simulation(scene).force_scale() == Approx(test::block_weight).epsilon(1e-14));
   scene.gravity = {0.0, 0.0};
-  CHECK(Simulation<3>(scene).force_scale() == 1.0);
+  CHECK(Simulation(scene).force_scale() == 1.0);
   scene.loads = {{1, {1.0, 1.0}, {30.0, -40.0}}};
-  CHECK(Simulation<3>(scene).force_scale() == Approx(50.0).epsilon(1e-15));
+  CHECK(Simulation(scene).force_scale() == Approx(50.0).epsilon(1e-15));
 }
 
 TEST_CASE("scenes that cannot be simulated", "[analysis][simulation]") {
   Scene scene = test::block_on_base();
   SECTION("unknown enforcement") {
     scene.method.contact = "firm";
-    CHECK_THROWS_WITH(Simulation<3>(scene), ContainsSubstring("method.contact") && ContainsSubstring("\"soft\""));
+    CHECK_THROWS_WITH(Simulation(scene), ContainsSubstring("method.contact") && ContainsSubstring("\"soft\""));
   }
   SECTION("missing joint") {
     scene.joints.clear();
-    CHECK_THROWS_WITH(Simulation<3>(scene), ContainsSubstring("joint: none for the materials \"rock\" and \"rock\""));
+    CHECK_THROWS_WITH(Simulation(scene), ContainsSubstring("joint: none for the materials \"rock\" and \"rock\""));
   }
   SECTION("theta of a method that has none") {
     scene.method.contact = "hard";
     scene.method.theta = 0.5;
-    CHECK_THROWS_WITH(Simulation<3>(scene), ContainsSubstring("method.theta"));
+    CHECK_THROWS_WITH(Simulation(scene), ContainsSubstring("method.theta"));
   }
-  CHECK_THROWS_AS(Simulation<3>(scene), InputError);
+  CHECK_THROWS_AS(Simulation(scene), InputError);
 }
 
 TEST_CASE("contacts are those of where the blocks will be, their gaps those of now", "[analysis][simulation]") {
@@ -621,7 +621,7 @@ TEST_CASE("contacts are those of where the blocks will be, their gaps those of n
   const double dt = 0.01;  // [s]: 20 mm on, 5 mm deep
   const auto bases_below = [&](double look_ahead) {
     scene.step.look_ahead = look_ahead;
-    Simulation<3> simulation(scene);
+    Simulation simulation(scene);
     // What touches in the drawing is found there, and is what is bonded.
     const auto below = [&] {
       std::vector<int> bases;
@@ -657,7 +657,7 @@ TEST_CASE("the second stage of a step looks ahead by its own part of the velocit
   scene.blocks[2].velocity = {speed, 0.0};
   const auto bases_below = [&](double look_ahead) {
     scene.step.look_ahead = look_ahead;
-    Simulation<3> simulation(scene);
+    Simulation simulation(scene);
     REQUIRE(simulation.step(stage * dt, false).accepted);
     std::vector<int> bases;
     for (const Contact& c : simulation.problem((1.0 - stage) * dt, false).contacts) {
@@ -677,11 +677,10 @@ TEST_CASE("only methods that follow gaps in steps of their own look ahead", "[an
   scene.step.look_ahead_where = {"scene.toml", 7};
   for (const std::string contact : {"soft", "hard"}) {
     scene.method.contact = contact;
-    CHECK_NOTHROW(Simulation<3>(scene));
+    CHECK_NOTHROW(Simulation(scene));
   }
   for (const std::string contact : {"dem", "shi"}) {
     scene.method.contact = contact;
-    CHECK_THROWS_WITH(Simulation<3>(scene),
-                      ContainsSubstring("scene.toml:7: step.look_ahead: has no meaning for method.contact = \"" + contact + "\""));
+    CHECK_THROWS_WITH(Simulation(scene), ContainsSubstring("scene.toml:7: step.look_ahead: has no meaning for method.contact = \"" + contact + "\""));
   }
 }

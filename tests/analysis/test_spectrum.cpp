@@ -34,7 +34,7 @@ TEST_CASE("a column whose blocks do not turn has the frequencies of a chain", "[
       scene.blocks[i].vertices = test::rectangle(0.0, i - 1, test::block_edge, 1.0);
       scene.blocks[i].rotation_locked = true;
     }
-    Simulation<3> simulation(scene);
+    Simulation simulation(scene);
     const Spectrum s = spectrum(simulation, dt);
     const double normal = method == "soft" ? 1e9 : 4e9, shear = method == "soft" ? 0.5e9 : 1e9;
     const double highest = chain_frequency(normal * test::block_edge, n, n), lowest = chain_frequency(shear * test::block_edge, n, 1);
@@ -48,7 +48,7 @@ TEST_CASE("a column whose blocks do not turn has the frequencies of a chain", "[
 TEST_CASE("a block that nothing holds has a frequency of zero, supports add theirs", "[analysis][spectrum]") {
   Scene scene = test::falling_block();
   scene.supports = {{0, {1.0, 0.5}, {0.0, 5e6}}};
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   const Spectrum s = spectrum(simulation, dt);
   CHECK(s.lowest == 0.0);
   CHECK(s.highest == Approx(std::sqrt(5e6 / mass)).epsilon(1e-14));
@@ -62,6 +62,6 @@ TEST_CASE("contacts without springs and models without free blocks have no spect
   SECTION("all fixed") {
     scene.blocks[1].fixed = true;
   }
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   CHECK_THROWS_AS(spectrum(simulation, dt), InputError);
 }

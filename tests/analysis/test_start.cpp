@@ -25,11 +25,11 @@ Scene sliding_scene(const std::string& method) {
 }
 
 /// Force and moment of the contacts on block 1, about its centroid, from their forces and places.
-Eigen::Vector3d contact_forces(Simulation<3>& simulation) {
+Eigen::Vector3d contact_forces(Simulation& simulation) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   const Eigen::Vector3d still = Eigen::Vector3d::Zero();
   for (const Contact& c : simulation.contacts()) {
-    const ContactKinematics<3> k(simulation.system(), c, still, still);
+    const ContactKinematics k(simulation.system(), c, still, still);
     const double sign = c.vertex_block == 1 ? 1.0 : -1.0;
     const Vec2 force = sign * (c.normal_force * k.normal + c.shear_force * k.tangent);
     const Vec2 arm = simulation.system().position(c.vertex_block, c.vertex) - simulation.system().centroid(1);
@@ -44,7 +44,7 @@ TEST_CASE("normal forces and moments are in balance, shear springs relaxed or mo
   for (const std::string& method : all_methods) {
     for (const bool mobilised : {false, true}) {
       INFO(method << (mobilised ? ", mobilised" : ", relaxed"));
-      Simulation<3> simulation(sliding_scene(method));
+      Simulation simulation(sliding_scene(method));
       balance_normal_forces(simulation, mobilised);
       const Eigen::Vector3d sum = contact_forces(simulation);
       const double mu = std::tan(20.0 * test::degree), normal = block_weight * std::cos(slope);
@@ -72,7 +72,7 @@ TEST_CASE("a steadily sliding start slides steadily", "[analysis][start]") {
     scene.blocks[1].velocity = {0.0, 0.0};
     scene.method.start = Start::steady_sliding;
     scene.end_time = 0.3;
-    Simulation<3> simulation(scene);
+    Simulation simulation(scene);
     REQUIRE(prepare_start(simulation).converged);
     const auto start = simulation.system().displacement(1);
     for (int i = 1; i <= 300; ++i) {
@@ -91,7 +91,7 @@ TEST_CASE("a steadily sliding start slides steadily", "[analysis][start]") {
 TEST_CASE("a start with loads and supports counts them in", "[analysis][start]") {
   Scene scene = test::block_on_base();
   scene.loads = {{1, {0.5, 1.0}, {0.0, -20000.0}}};
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   balance_normal_forces(simulation, false);
   const Eigen::Vector3d sum = contact_forces(simulation);
   CHECK(sum[1] == Approx(block_weight + 20000.0).epsilon(1e-12));
@@ -104,7 +104,7 @@ TEST_CASE("a locked block is balanced along the normal alone", "[analysis][start
   Scene scene = test::block_on_base();
   scene.loads = {{1, {0.5, 1.0}, {0.0, -20000.0}}};
   scene.blocks[1].rotation_locked = true;
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   balance_normal_forces(simulation, false);
   CHECK(contact_forces(simulation)[1] == Approx(block_weight + 20000.0).epsilon(1e-12));
   CHECK(simulation.system().displacement(1)[2] == 0.0);
@@ -112,7 +112,7 @@ TEST_CASE("a locked block is balanced along the normal alone", "[analysis][start
 
 TEST_CASE("starts that cannot be made are refused", "[analysis][start]") {
   const auto refusal = [](const Scene& scene) {
-    Simulation<3> simulation(scene);
+    Simulation simulation(scene);
     try {
       balance_normal_forces(simulation, true);
     } catch (const InputError& error) {

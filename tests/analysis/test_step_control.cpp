@@ -51,7 +51,7 @@ TEST_CASE("adaptive steps: the error goes with the tolerance, and falls are take
     Scene trial = scene;
     trial.step.error_tolerance = tolerance;
     trial.step.adaptive = adaptive;
-    Simulation<3> simulation(trial);
+    Simulation simulation(trial);
     simulation.system().advance(1, {0.0, 0.05, 0.0});
     simulation.positions_changed();
     simulation.restart_clock();
@@ -75,7 +75,7 @@ TEST_CASE("adaptive steps are for soft", "[analysis][step_control]") {
   scene.step.adaptive_where = {"scene.toml", 7};
   for (const char* contact : {"hard", "shi", "dem"}) {
     scene.method.contact = contact;
-    CHECK_THROWS_AS(Simulation<3>(scene), InputError);
-    CHECK_THROWS_WITH(Simulation<3>(scene), Catch::Matchers::ContainsSubstring("scene.toml:7: step.adaptive: true has no meaning"));
+    CHECK_THROWS_AS(Simulation(scene), InputError);
+    CHECK_THROWS_WITH(Simulation(scene), Catch::Matchers::ContainsSubstring("scene.toml:7: step.adaptive: true has no meaning"));
   }
 }

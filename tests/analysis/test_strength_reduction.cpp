@@ -24,9 +24,9 @@ Scene slope_scene(const std::string& method, double slope_deg, double friction_d
   return scene;
 }
 
-FactorOfSafety<3> factor(const Scene& scene) {
-  Simulation<3> simulation(scene);
-  return factor_of_safety<3>(simulation);
+FactorOfSafety factor(const Scene& scene) {
+  Simulation simulation(scene);
+  return factor_of_safety(simulation);
 }
 
 /// (tan phi cos a W + c L)/(W sin a)
@@ -178,8 +178,8 @@ TEST_CASE("the curve in time: free sliding with the reduced strength", "[analysi
 
 TEST_CASE("settled and failed states are kept", "[analysis][strength_reduction]") {
   Scene scene = slope_scene("soft", 30.0, 40.0, 0.0);
-  Simulation<3> simulation(scene);
-  const auto safety = factor_of_safety<3>(simulation);
+  Simulation simulation(scene);
+  const auto safety = factor_of_safety(simulation);
   REQUIRE(safety.found());
   REQUIRE(safety.states.size() == 2);
   CHECK(safety.states[0].name == "settled");
@@ -190,10 +190,10 @@ TEST_CASE("settled and failed states are kept", "[analysis][strength_reduction]"
 }
 
 TEST_CASE("progress of the bisection never falls back", "[analysis][strength_reduction]") {
-  Simulation<3> simulation(slope_scene("soft", 30.0, 40.0, 0.0));
+  Simulation simulation(slope_scene("soft", 30.0, 40.0, 0.0));
   double last = 0.0;
   int calls = 0;
-  factor_of_safety<3>(simulation, [&](double fraction) {
+  factor_of_safety(simulation, [&](double fraction) {
     CHECK(fraction >= last);
     CHECK(fraction <= 1.0);
     last = fraction;
@@ -209,12 +209,12 @@ TEST_CASE("hard finds the factor of a slope with no more solves than soft", "[an
   scene.joints[0].cohesion_behaviour = behaviour;
   // As near to failure as makes one trial more on either side.
   scene.strength_reduction.width = 0.02;
-  std::vector<FactorOfSafety<3>> found;
+  std::vector<FactorOfSafety> found;
   std::vector<long> solves;
   for (const std::string method : {"soft", "hard"}) {
     scene.method.contact = method;
-    Simulation<3> simulation(scene);
-    found.push_back(factor_of_safety<3>(simulation));
+    Simulation simulation(scene);
+    found.push_back(factor_of_safety(simulation));
     solves.push_back(simulation.step_counters().iterations);
     if (method == "hard") CHECK(simulation.max_penetration() < scene.method.gap_tolerance);
   }
@@ -230,8 +230,8 @@ TEST_CASE("hard knows columns that topple slowly from such that stand", "[analys
   for (const std::string method : {"soft", "hard"}) {
     scene.method.contact = method;
     scene.strength_reduction.definition = FactorDefinition::large_displacements;
-    Simulation<3> simulation(scene);
-    const auto safety = factor_of_safety<3>(simulation);
+    Simulation simulation(scene);
+    const auto safety = factor_of_safety(simulation);
     CHECK(safety.bracket.failed_by == "displacement");
     CHECK(safety.warnings.empty());
     solves.push_back(simulation.step_counters().iterations);
@@ -394,7 +394,7 @@ TEST_CASE("closures of the joints before the search: the same factor where the p
 }
 
 TEST_CASE("what the ratio of the stiffnesses does to the factor is what a search of its own finds", "[analysis][strength_reduction]") {
-  const auto mentions_ratio = [](const FactorOfSafety<3>& safety) {
+  const auto mentions_ratio = [](const FactorOfSafety& safety) {
     return std::ranges::any_of(safety.warnings,
                                [](const std::string& w) { return w.find("ratio of shear to normal stiffness") != std::string::npos; });
   };

@@ -21,8 +21,8 @@ struct Watched {
     REQUIRE(watch.check(simulation).empty());
   }
 
-  Simulation<3> simulation;
-  Watch<3> watch;
+  Simulation simulation;
+  Watch watch;
 };
 
 Scene dropped_block(double height) {
@@ -34,7 +34,7 @@ Scene dropped_block(double height) {
 
 long checks_of(long steps) {
   long checks = 0;
-  for (long step = 1; step <= steps; ++step) checks += Watch<3>::is_due(step) ? 1 : 0;
+  for (long step = 1; step <= steps; ++step) checks += Watch::is_due(step) ? 1 : 0;
   return checks;
 }
 
@@ -69,8 +69,8 @@ TEST_CASE("right runs are not refused, and the report says how right they are", 
       scene.method.contact = method;
       scene.gravity = Vec2::Zero();
     }
-    Simulation<3> simulation(scene);
-    const RunResult result = run<3>(simulation, {});
+    Simulation simulation(scene);
+    const RunResult result = run(simulation, {});
     INFO(result.reason);
     CHECK(result.converged);
     CHECK_FALSE(result.refused);
@@ -86,8 +86,8 @@ TEST_CASE("an undamped bounce of dem keeps the energy that the watch reads", "[a
   scene.method.contact = "dem";
   scene.method.step_fraction = 0.5;
   scene.joints[0].normal_stiffness = 1e7;
-  Simulation<3> simulation(scene);
-  const RunResult result = run<3>(simulation, {});
+  Simulation simulation(scene);
+  const RunResult result = run(simulation, {});
   CHECK(result.converged);
   // With kinetic energy and springs half a step apart it would rise and fall by a quarter.
   CHECK(result.watch.created_energy < 2e-3);
@@ -112,7 +112,7 @@ TEST_CASE("motion from nowhere is found by the energy ledger", "[analysis][watch
 
 TEST_CASE("a block faster than all energy could make it is found without the ledger", "[analysis][watch]") {
   Watched w(dropped_block(0.3));
-  const Motion<3>::Unknowns fast(0.0, 5.0, 0.0);
+  const Motion::Unknowns fast(0.0, 5.0, 0.0);
   w.simulation.system().set_velocity(1, fast);
   w.simulation.set_velocity(1, fast);
   CHECK_THAT(w.watch.check(w.simulation), ContainsSubstring("block \"block\" moves at 5 m/s"));
@@ -120,7 +120,7 @@ TEST_CASE("a block faster than all energy could make it is found without the led
 
 TEST_CASE("numbers that are none are found", "[analysis][watch]") {
   Watched w(dropped_block(0.3));
-  w.simulation.set_velocity(1, Motion<3>::Unknowns::Constant(std::numeric_limits<double>::quiet_NaN()));
+  w.simulation.set_velocity(1, Motion::Unknowns::Constant(std::numeric_limits<double>::quiet_NaN()));
   CHECK_THAT(w.watch.check(w.simulation), ContainsSubstring("no finite position or velocity"));
 }
 
@@ -146,8 +146,8 @@ TEST_CASE("springs too soft for their blocks are refused, with the stiffness tha
     scene.method.start = Start::settled;
   }
   SECTION("in motion") {}
-  Simulation<3> simulation(scene);
-  const RunResult result = run<3>(simulation, {});
+  Simulation simulation(scene);
+  const RunResult result = run(simulation, {});
   CHECK_FALSE(result.converged);
   CHECK(result.refused);
   CHECK(result.ended_by.empty());
@@ -156,8 +156,8 @@ TEST_CASE("springs too soft for their blocks are refused, with the stiffness tha
              ContainsSubstring("the springs are too soft for these blocks") && ContainsSubstring("joint[0].normal_stiffness_pa_per_m = "));
   const std::size_t at = result.reason.find("per_m = ") + 8;
   scene.joints[0].normal_stiffness = std::stod(result.reason.substr(at));
-  Simulation<3> stiffer(scene);
-  CHECK(run<3>(stiffer, {}).converged);
+  Simulation stiffer(scene);
+  CHECK(run(stiffer, {}).converged);
 }
 
 TEST_CASE("with rigid contacts the watch looks after every step", "[analysis][watch]") {
@@ -165,7 +165,7 @@ TEST_CASE("with rigid contacts the watch looks after every step", "[analysis][wa
   Scene scene = test::block_on_base();
   for (const std::string method : {"soft", "hard"}) {
     scene.method.contact = method;
-    const Simulation<3> simulation(scene);
-    CHECK(Watch<3>().is_due(simulation, some_step) == (method == "hard"));
+    const Simulation simulation(scene);
+    CHECK(Watch().is_due(simulation, some_step) == (method == "hard"));
   }
 }

@@ -47,9 +47,9 @@ class Detection {
     return total;
   }
 
-  BlockSystem<3> system;
+  BlockSystem system;
   JointTable joints;
-  Detector<3> detector;
+  Detector detector;
   std::vector<Contact> contacts;
 };
 

@@ -318,7 +318,7 @@ TEST_CASE("corners that are left out because they are too far from the other blo
     const std::vector<Vec2> above = placed(leaning(), tilt(generator), Vec2(place(generator), below[2].y() + reach * share(generator)));
     const Detection all_new(turned(scene_with({fixed_block("below", below), free_block("above", above)}), place(generator), {0.0, 0.0}), reach);
     std::vector<Contact> found{known};
-    Detector<3> detector(reach, {true, false, true, 0.0});
+    Detector detector(reach, {true, false, true, 0.0});
     REQUIRE(detector.update(all_new.system, all_new.joints, found));
     REQUIRE(found.size() == all_new.contacts.size());
     for (std::size_t i = 0; i < found.size(); ++i) {
@@ -344,7 +344,7 @@ TEST_CASE("a joint that has closed under one of two corners stays closed for the
   known.gap = -0.02;
   known.status = ContactStatus::sticking;
   std::vector<Contact> found{known};
-  Detector<3> detector(1e-3, {true, false, true, 0.0});
+  Detector detector(1e-3, {true, false, true, 0.0});
   REQUIRE(detector.update(all_new.system, all_new.joints, found));
   REQUIRE(found.size() == 1);
   CHECK(found[0].vertex == 4);
@@ -369,10 +369,10 @@ TEST_CASE("a corner that leans on one block is opposite to another one's edge up
   known.gap = -closure;
   known.status = ContactStatus::sticking;
   std::vector<Contact> found{known};
-  const BlockSystem<3> system(scene);
+  const BlockSystem system(scene);
   const JointTable joints(scene);
   constexpr double reach = 2e-4;  // [m] of steps of 0.1 mm
-  Detector<3> detector(reach, {true, false, true, 0.0});
+  Detector detector(reach, {true, false, true, 0.0});
   REQUIRE(detector.update(system, joints, found));
   const bool meets = std::ranges::any_of(found, [](const Contact& c) { return c.vertex == 4 && c.edge == 9; });
   CHECK(meets == (beyond < 2.0 * closure));

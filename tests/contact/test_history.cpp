@@ -320,7 +320,7 @@ TEST_CASE("however a block moves, finding its contacts anew adds no energy", "[c
     const double turn = step % 2 == 0 ? 0.02 : -0.015;
     d.move(1, 0.013, 0.0, turn);
     for (Contact& c : d.contacts) {
-      const ContactStart<3> at(d.system, c);
+      const ContactStart at(d.system, c);
       c.gap = at.normal.dot(at.lever);
     }
     const double before = energy();

@@ -11,8 +11,8 @@ using namespace openclose;
 
 namespace {
 
-using System = BlockSystem<3>;
-using Kinematics = ContactKinematics<3>;
+using System = BlockSystem;
+using Kinematics = ContactKinematics;
 using Unknowns = Kinematics::Unknowns;
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
@@ -224,7 +224,8 @@ TEST_CASE("the four blocks of a contact's stiffness are those of its gradients a
     const double nn = pose.number(1.0), tn = pose.number(1.0), tt = pose.number(1.0);
     const Eigen::Matrix2d shift = (nn * at.normal + tn * at.tangent) * at.normal.transpose() + tt * at.tangent * at.tangent.transpose();
     const Vec2 turning(pose.number(1.0), pose.number(1.0));
-    const ContactStiffness<3> k{shift(0, 0), shift(0, 1), shift(1, 0), shift(1, 1), at.vertex_arm, at.edge_arm, at.vertex_arm, at.edge_arm, turning, turning};
+    const ContactStiffness k{shift(0, 0), shift(0, 1),   shift(1, 0), shift(1, 1), at.vertex_arm,
+                             at.edge_arm, at.vertex_arm, at.edge_arm, turning,     turning};
     const auto block = [&](const Unknowns& n1, const Unknowns& t1, const Unknowns& n2, const Unknowns& t2) -> Eigen::Matrix3d {
       return (nn * n1 + tn * t1) * n2.transpose() + tt * t1 * t2.transpose();
     };

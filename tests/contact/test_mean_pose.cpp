@@ -10,8 +10,8 @@ using namespace openclose;
 
 namespace {
 
-using System = BlockSystem<3>;
-using End = ContactKinematics<3>;
+using System = BlockSystem;
+using End = ContactKinematics;
 using Unknowns = End::Unknowns;
 using Six = Eigen::Matrix<double, 6, 1>;
 
@@ -43,12 +43,12 @@ class Pair {
 };
 
 struct Poses {
-  ContactPose<3> end, mean;
+  ContactPose end, mean;
 };
 
 Poses poses(const System& system, const Contact& contact, const Unknowns& dv, const Unknowns& de) {
-  const ContactStart<3> start(system, contact);
-  const ContactPose<3> end(start, BlockMove<3>(dv, RotationKind::exact, 1.0), BlockMove<3>(de, RotationKind::exact, 1.0));
+  const ContactStart start(system, contact);
+  const ContactPose end(start, BlockMove(dv, RotationKind::exact, 1.0), BlockMove(de, RotationKind::exact, 1.0));
   return {end, mean_pose(start, end)};
 }
 
@@ -119,7 +119,7 @@ TEST_CASE("mean pose: derivatives are difference quotients", "[contact][mean_pos
       return pushed(End(poses(pair.system(), pair.contact, v, e).mean), normal, shear);
     };
     const Poses p = poses(pair.system(), pair.contact, dv, de);
-    ContactStiffness<3> k{0.0, 0.0, 0.0, 0.0, p.mean.vertex_arm, p.mean.edge_arm, p.end.vertex_arm, p.end.edge_arm};
+    ContactStiffness k{0.0, 0.0, 0.0, 0.0, p.mean.vertex_arm, p.mean.edge_arm, p.end.vertex_arm, p.end.edge_arm};
     k.turning = 0.5 * (normal * p.end.normal + shear * p.end.tangent());
     k.on_arms = 0.5 * (normal * p.mean.normal + shear * p.mean.tangent());
     Eigen::Matrix3d vertex_vertex = Eigen::Matrix3d::Zero(), vertex_edge = vertex_vertex, edge_vertex = vertex_vertex, edge_edge = vertex_vertex;

@@ -384,7 +384,7 @@ TEST_CASE("looking only at pairs whose blocks have gone far enough finds the sam
     if (step % 500 > 450) {
       // Block 14 goes round with block 13 as if they were one.
       const Vec2 apart = looking.system.centroid(14) - looking.system.centroid(13);
-      const Vec2 with = Motion<3>::turned_by(creep, apart, RotationKind::exact);
+      const Vec2 with = Motion::turned_by(creep, apart, RotationKind::exact);
       move(13, 0.0, 0.0, creep);
       move(14, with.x(), with.y(), creep);
     }

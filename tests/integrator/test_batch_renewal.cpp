@@ -14,9 +14,9 @@ using namespace openclose;
 namespace {
 
 /// Springs of the joints, counted as they are made.
-class CountedSprings final : public SpringSource<3> {
+class CountedSprings final : public SpringSource {
  public:
-  explicit CountedSprings(const StepProblem<3>& problem) : problem_(problem) {}
+  explicit CountedSprings(const StepProblem& problem) : problem_(problem) {}
   ContactSprings make(std::size_t c) const override {
     ++made;
     ContactSprings s = joint_springs(problem_, problem_.contacts[c]);
@@ -27,17 +27,17 @@ class CountedSprings final : public SpringSource<3> {
   mutable std::size_t made = 0;
 
  private:
-  const StepProblem<3>& problem_;
+  const StepProblem& problem_;
 };
 
 /// With springs made anew for each contact.
-std::vector<ContactBatch> made_anew(const StepProblem<3>& problem) {
+std::vector<ContactBatch> made_anew(const StepProblem& problem) {
   const CountedSprings source(problem);
   std::vector<ContactSprings> springs;
   for (std::size_t c = 0; c < problem.contacts.size(); ++c) springs.push_back(source.make(c));
   ContactStarts starts;
   starts.order.keep(problem.contacts.size());
-  BatchRenewal<3>().renew(problem, GivenSprings<3>(springs), starts);
+  BatchRenewal().renew(problem, GivenSprings(springs), starts);
   return starts.batches;
 }
 
@@ -48,12 +48,12 @@ TEST_CASE("springs kept from step to step are those made anew", "[integrator][sp
   scene.joints[0].damping_ratio = 0.1;
   scene.joints[0].cohesion = 1e5;
   scene.joints[0].tensile_strength = 1e4;
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   std::vector<Contact> contacts = simulation.contacts();
-  const StepProblem<3> present = simulation.problem(1e-3, false);
-  StepProblem<3> problem{present.system, present.external, present.joints, contacts, present.method};
+  const StepProblem present = simulation.problem(1e-3, false);
+  StepProblem problem{present.system, present.external, present.joints, contacts, present.method};
   problem.dt = 1e-3;
-  BatchRenewal<3> renewal;
+  BatchRenewal renewal;
   ContactStarts starts;
   std::vector<ContactBatch>& batches = starts.batches;
   std::size_t made = 0;
@@ -134,7 +134,7 @@ TEST_CASE("springs kept from step to step are those made anew", "[integrator][sp
   SECTION("springs that last for one step") {
     std::vector<ContactSprings> springs(contacts.size());
     for (ContactSprings& s : springs) s.dissipation = 0.1;
-    renewal.renew(problem, GivenSprings<3>(springs), starts);
+    renewal.renew(problem, GivenSprings(springs), starts);
     CHECK(batches[0].dissipation[1] == 0.1);
     renew();
     CHECK(made == contacts.size());

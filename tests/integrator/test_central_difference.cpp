@@ -31,7 +31,7 @@ bool same(const std::vector<Contact>& a, const std::vector<Contact>& b) {
 }
 
 /// With the contacts that the step to come may close.
-void load_anew(CentralDifference<3>& loop, Simulation<3>& simulation, const StepProblem<3>& problem) {
+void load_anew(CentralDifference& loop, Simulation& simulation, const StepProblem& problem) {
   loop.store_blocks(simulation.system());
   loop.store_contacts(simulation.contacts());
   loop.store_far_gaps(simulation.system(), simulation.contacts());
@@ -46,18 +46,18 @@ TEST_CASE("links four at a time do what each does", "[integrator][explicit]") {
   scene.joints[0].damping_ratio = GENERATE(0.0, 0.2);
   scene.joints[0].cohesion_behaviour = GENERATE(CohesionBehaviour::ductile, CohesionBehaviour::lost_on_slip);
   const bool wide = GENERATE(false, true);
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   constexpr double h = 1e-4;  // [s]
   std::vector<Contact> by_fours = simulation.contacts();
-  const StepProblem<3> problem = simulation.problem(h, false);
-  CentralDifference<3> fours(tolerance::contact_skin_m, true, wide), ones(tolerance::contact_skin_m, false, wide);
+  const StepProblem problem = simulation.problem(h, false);
+  CentralDifference fours(tolerance::contact_skin_m, true, wide), ones(tolerance::contact_skin_m, false, wide);
   fours.load(problem);
   ones.load(problem);
   std::vector<Contact> one_by_one = by_fours;
   int changes = 0, lost = 0, wrong = 0, reloads = 0;
   for (int step = 0; step < 2000; ++step) {
     const std::vector<Contact> before = one_by_one;
-    for (CentralDifference<3>* loop : {&fours, &ones}) {
+    for (CentralDifference* loop : {&fours, &ones}) {
       const auto move = [&] { return loop->move(h, h, Vec2(0.3, 0.0), 1.0, 1.0, MassDamping::none, 0.0); };
       Move moved = move();
       if (moved == Move::past_list) {

@@ -19,10 +19,10 @@ constexpr double rounding_of_sums = 16.0 * 2.2e-16;
 struct RandomContacts {
   explicit RandomContacts(unsigned seed, std::size_t count) : random(seed), moves(block_count + 1) {
     for (int b = 0; b < free_count; ++b) {
-      moves[b] = BlockMove<3>({number(1e-3), number(1e-3), number(1e-3)}, seed % 2 == 0 ? RotationKind::exact : RotationKind::linear, 7.0);
+      moves[b] = BlockMove({number(1e-3), number(1e-3), number(1e-3)}, seed % 2 == 0 ? RotationKind::exact : RotationKind::linear, 7.0);
     }
     for (std::size_t c = 0; c < count; ++c) {
-      ContactPlace<3> at;
+      ContactPlace at;
       const double angle = number(3.0);
       at.edge = (5.0 + number(4.0)) * Vec2(std::cos(angle), std::sin(angle));
       at.vertex_arm = {number(5.0), number(5.0)};
@@ -82,9 +82,9 @@ struct RandomContacts {
   bool chance(double probability) { return std::bernoulli_distribution(probability)(random); }
 
   std::mt19937 random;
-  std::vector<BlockMove<3>> moves;
-  std::vector<ContactPlace<3>> places;
-  std::vector<ContactStart<3>> starts;
+  std::vector<BlockMove> moves;
+  std::vector<ContactPlace> places;
+  std::vector<ContactStart> starts;
   std::vector<ContactSprings> springs;
   std::vector<ContactStrength> strengths;
   std::vector<int> vertex_blocks, edge_blocks;
@@ -119,12 +119,12 @@ struct Single {
   /// Open at the end of the step, it may have carried a force on the way.
   bool carries() const { return forces.status != ContactStatus::open || forces.normal != 0.0 || forces.normal_by_gap != 0.0; }
 
-  ContactPose<3> pose, acting;
+  ContactPose pose, acting;
   ContactForces forces;
 };
 
 /// How many differ, whatever the sign of zero.
-int differences(const ContactPose<3>& a, const ContactPose<3>& b) {
+int differences(const ContactPose& a, const ContactPose& b) {
   return (a.normal != b.normal) + (a.vertex_arm != b.vertex_arm) + (a.edge_arm != b.edge_arm) + (a.gap_change != b.gap_change) +
          (a.slip_change != b.slip_change);
 }
@@ -170,8 +170,8 @@ TEST_CASE("four contacts at a time are where each is and carry what each carries
     const Vec2& n = one.acting.normal;
     const Vec2 force(f.normal * n.x() - f.shear * n.y(), f.normal * n.y() + f.shear * n.x());
     Eigen::Vector4d on_vertex, on_edge;
-    on_vertex << Motion<3>::gradient(one.acting.vertex_arm, force), rounding;
-    on_edge << -Motion<3>::gradient(one.acting.edge_arm, force), rounding;
+    on_vertex << Motion::gradient(one.acting.vertex_arm, force), rounding;
+    on_edge << -Motion::gradient(one.acting.edge_arm, force), rounding;
     sums[a][c % 2] += on_vertex;
     sums[b][c % 2] += on_edge;
     largest = std::max({largest, std::abs(f.normal), std::abs(f.shear)});
@@ -215,7 +215,7 @@ TEST_CASE("the stiffness of four contacts at a time is that of each", "[integrat
   for (int i = 0; i < free_count; ++i) {
     for (int j = 0; j < i; ++j) couplings.emplace_back(i, j);
   }
-  BlockMatrix<3> matrix, expected;
+  BlockMatrix matrix, expected;
   matrix.set_pattern(free_count, couplings);
   expected.set_pattern(free_count, couplings);
   MatrixSlots slots{std::vector<ContactSlots>(all.branches.size(), {matrix.nobody(), matrix.nobody()}),
@@ -229,7 +229,7 @@ TEST_CASE("the stiffness of four contacts at a time is that of each", "[integrat
 
   for (std::size_t c = 0; c < count; ++c) {
     const Single one(contacts, c, step_forces);
-    const ContactPose<3>&pose = one.pose, &acting = exact ? one.acting : pose;
+    const ContactPose &pose = one.pose, &acting = exact ? one.acting : pose;
     ContactForces f = one.forces;
     if (!averaged && f.status == ContactStatus::open) {
       if (!tangent.open_ones_too) continue;
@@ -240,7 +240,7 @@ TEST_CASE("the stiffness of four contacts at a time is that of each", "[integrat
     if (f.status == ContactStatus::sliding && tangent.static_slip_stiffness > 0.0) tt = tangent.static_slip_stiffness * contacts.springs[c].shear;
     const Vec2 n = pose.normal, t = pose.tangent(), force_n = acting.normal, force_t = acting.tangent();
     const Vec2 by_gap = nn * force_n + tn * force_t, by_slip = tt * force_t;
-    ContactStiffness<3> k;
+    ContactStiffness k;
     k.shift_xx = by_gap.x() * n.x() + by_slip.x() * t.x();
     k.shift_xy = by_gap.x() * n.y() + by_slip.x() * t.y();
     k.shift_yx = by_gap.y() * n.x() + by_slip.y() * t.x();

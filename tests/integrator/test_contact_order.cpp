@@ -68,9 +68,9 @@ TEST_CASE("a step reports of each contact what its law says of it, wherever it i
   scene.method.integrator = integrator;
   if (integrator == "theta") scene.method.theta = 0.6;
   scene.method.residual_tolerance = 1e-9;
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   std::vector<Contact> contacts = simulation.contacts();
-  const StepProblem<3> present = simulation.problem(1e-4, false);
+  const StepProblem present = simulation.problem(1e-4, false);
   // Every third contact is far away and open, the others carry something.
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     const bool open = c % 3 == 1;
@@ -78,13 +78,13 @@ TEST_CASE("a step reports of each contact what its law says of it, wherever it i
     contacts[c].gap = open ? 1e-3 : -1e-6 * static_cast<double>(c + 1);
     contacts[c].length *= 1.0 + 0.01 * static_cast<double>(c);
   }
-  StepProblem<3> problem{present.system, present.external, present.joints, contacts, present.method, present.dt, false, present.inertia};
+  StepProblem problem{present.system, present.external, present.joints, contacts, present.method, present.dt, false, present.inertia};
   problem.end_weight = present.end_weight;
   problem.scheme = present.scheme;
   std::vector<ContactSprings> springs;
   for (const Contact& c : contacts) springs.push_back(joint_springs(problem, c));
-  Newton<3> newton;
-  StepSolution<3> solution;
+  Newton newton;
+  StepSolution solution;
   solution.d = drift(problem);
   newton.solve(problem, springs, solution);
   REQUIRE(solution.converged);
@@ -92,11 +92,11 @@ TEST_CASE("a step reports of each contact what its law says of it, wherever it i
   int open = 0;
   for (std::size_t c = 0; c < contacts.size(); ++c) {
     const Contact& contact = contacts[c];
-    const auto move = [&](int b) { return BlockMove<3>(solution.of(problem.system, b), RotationKind::exact, problem.system.block(b).radius); };
-    const ContactPose<3> pose(ContactStart<3>(problem.system, contact), move(contact.vertex_block), move(contact.edge_block));
+    const auto move = [&](int b) { return BlockMove(solution.of(problem.system, b), RotationKind::exact, problem.system.block(b).radius); };
+    const ContactPose pose(ContactStart(problem.system, contact), move(contact.vertex_block), move(contact.edge_block));
     const ContactStrength strength(problem.joints.joint(contact.joint), contact);
     const ContactForces law = spring_slider(springs[c], strength, pose.gap_change, pose.slip_change);
-    const ContactOutcome<3> o = solution.contacts[c];
+    const ContactOutcome o = solution.contacts[c];
     CHECK(o.normal_stiffness == springs[c].normal);
     CHECK(o.pose.gap_change == pose.gap_change);
     CHECK(o.pose.vertex_arm == pose.vertex_arm);
@@ -105,7 +105,7 @@ TEST_CASE("a step reports of each contact what its law says of it, wherever it i
     CHECK(solution.contacts.status(c) == law.status);
     open += law.status == ContactStatus::open;
     if (!solution.start_contacts.empty()) CHECK(solution.start_contacts.forces(c).normal == std::max(0.0, -springs[c].normal * contact.gap));
-    if (!solution.paths.empty()) CHECK(solution.paths[c].pose.vertex_arm == mean_pose(ContactStart<3>(problem.system, contact), pose).vertex_arm);
+    if (!solution.paths.empty()) CHECK(solution.paths[c].pose.vertex_arm == mean_pose(ContactStart(problem.system, contact), pose).vertex_arm);
   }
   CHECK(open == static_cast<int>(contacts.size()) / 3);
   CHECK(solution.start_contacts.empty() == (problem.end_weight == 1.0));

@@ -9,9 +9,9 @@ using namespace openclose;
 namespace {
 
 /// Numbers that tell contact and member.
-ContactOutcome<3> outcome(int c) {
+ContactOutcome outcome(int c) {
   const double at = 100.0 * c;
-  ContactOutcome<3> o;
+  ContactOutcome o;
   o.normal_stiffness = at + 1.0;
   o.shear_stiffness = at + 2.0;
   const ContactStatus status = c % 3 == 0 ? ContactStatus::open : (c % 3 == 1 ? ContactStatus::sticking : ContactStatus::sliding);
@@ -24,7 +24,7 @@ ContactOutcome<3> outcome(int c) {
   return o;
 }
 
-void check_same(const ContactOutcome<3>& a, const ContactOutcome<3>& b) {
+void check_same(const ContactOutcome& a, const ContactOutcome& b) {
   CHECK(a.normal_stiffness == b.normal_stiffness);
   CHECK(a.shear_stiffness == b.shear_stiffness);
   CHECK(a.forces.status == b.forces.status);
@@ -41,8 +41,8 @@ void check_same(const ContactOutcome<3>& a, const ContactOutcome<3>& b) {
 
 constexpr int count = 2 * batch_size + 1;  // batches that are full and one that is not
 
-ContactOutcomes<3> some_outcomes() {
-  ContactOutcomes<3> outcomes;
+ContactOutcomes some_outcomes() {
+  ContactOutcomes outcomes;
   for (int c = 0; c < count; ++c) outcomes.push_back(outcome(c));
   return outcomes;
 }
@@ -50,11 +50,11 @@ ContactOutcomes<3> some_outcomes() {
 }  // namespace
 
 TEST_CASE("what contacts did comes back as it was put in, whole and in parts", "[integrator][outcomes]") {
-  ContactOutcomes<3> outcomes = some_outcomes();
+  ContactOutcomes outcomes = some_outcomes();
   for (int round = 0; round < 2; ++round) {
     REQUIRE(outcomes.size() == count);
     for (int c = 0; c < count; ++c) {
-      const ContactOutcome<3> expected = outcome(c);
+      const ContactOutcome expected = outcome(c);
       check_same(outcomes[c], expected);
       CHECK(outcomes.status(c) == expected.forces.status);
       CHECK(outcomes.gap_change(c) == expected.pose.gap_change);
@@ -71,7 +71,7 @@ TEST_CASE("what contacts did comes back as it was put in, whole and in parts", "
 }
 
 TEST_CASE("slack belongs to its contact and to its step", "[integrator][outcomes]") {
-  ContactOutcomes<3> outcomes = some_outcomes();
+  ContactOutcomes outcomes = some_outcomes();
   outcomes.set_slack(0, 0.25);
   CHECK(outcomes.slack(0) == 0.25);
   CHECK(outcomes.slack(1) == 0.0);
@@ -84,19 +84,19 @@ TEST_CASE("batches are lent with where their contacts start, and given back", "[
   auto starts = std::make_shared<ContactStarts>();
   starts->order.keep(2);
   starts->batches.resize(1);
-  std::vector<BlockMove<3>> moves{BlockMove<3>({0.1, 0.2, 0.3}, RotationKind::exact, 1.0), BlockMove<3>({-0.3, 0.1, -0.2}, RotationKind::exact, 1.0)};
+  std::vector<BlockMove> moves{BlockMove({0.1, 0.2, 0.3}, RotationKind::exact, 1.0), BlockMove({-0.3, 0.1, -0.2}, RotationKind::exact, 1.0)};
   std::vector<TrialBatch> trials(1);
   std::vector<ElasticBatch> elastic(1);
   std::vector<Branch> branches(batch_size, 0);
-  std::vector<ContactOutcome<3>> expected;
+  std::vector<ContactOutcome> expected;
   for (int c = 0; c < 2; ++c) {
-    ContactPlace<3> at;
+    ContactPlace at;
     at.vertex_arm = {1.0 + c, 2.0};
     at.end_arm = {3.0, -1.0 - c};
     at.lever = {0.5, 0.25};
     at.edge = {0.0, 2.0};
-    ContactOutcome<3> o = outcome(c);
-    o.pose = ContactPose<3>(ContactStart<3>(at), moves[c], moves[1 - c]);
+    ContactOutcome o = outcome(c);
+    o.pose = ContactPose(ContactStart(at), moves[c], moves[1 - c]);
     expected.push_back(o);
     starts->batches[0].set_places(c, c, 1 - c);
     starts->batches[0].set_geometry(c, at);
@@ -112,7 +112,7 @@ TEST_CASE("batches are lent with where their contacts start, and given back", "[
   }
   BatchKernels().begin(starts->batches);
   const TrialBatch* const where = trials.data();
-  ContactOutcomes<3> copy, outcomes;
+  ContactOutcomes copy, outcomes;
   copy.copy(starts, moves, trials, branches, elastic);
   outcomes.borrow(starts, moves, trials, branches, elastic);
   CHECK(trials.empty());

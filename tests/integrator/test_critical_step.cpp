@@ -13,12 +13,12 @@ using namespace openclose;
 namespace {
 
 /// 2/w_max of the tangent itself, contacts closed and sticking.
-double exact_step(Simulation<3>& simulation) {
-  StepProblem<3> problem = simulation.problem(1e-3, false);
+double exact_step(Simulation& simulation) {
+  StepProblem problem = simulation.problem(1e-3, false);
   problem.statics = true;  // no dashpots
   std::vector<ContactSprings> springs;
   for (const Contact& c : problem.contacts) springs.push_back(simulation.enforcement().springs(problem, c));
-  Newton<3> newton;
+  Newton newton;
   const Eigen::MatrixXd k = newton.stiffness(problem, springs);
   Eigen::VectorXd mass(k.rows());
   for (int b : problem.system.free_blocks()) mass.segment<3>(3 * problem.system.block(b).equation) = problem.system.block(b).mass;
@@ -32,14 +32,14 @@ Scene pressed(Scene scene) {
   return scene;
 }
 
-double bound_of(Simulation<3>& simulation) {
+double bound_of(Simulation& simulation) {
   return critical_step(simulation.problem(1e-3, false), tolerance::contact_skin_m);
 }
 
 }  // namespace
 
 TEST_CASE("the bound is the critical step of one block on a fixed base", "[integrator][critical_step]") {
-  Simulation<3> simulation(pressed(test::block_on_base()));
+  Simulation simulation(pressed(test::block_on_base()));
   REQUIRE(settle(simulation).settled);
   // Geometric stiffness, which the bound leaves out: 5e4 N * 0.5 m beside 2e9 N m.
   CHECK(bound_of(simulation) == Approx(exact_step(simulation)).epsilon(2e-5));
@@ -47,7 +47,7 @@ TEST_CASE("the bound is the critical step of one block on a fixed base", "[integ
 
 TEST_CASE("in a column the bound lies below the critical step, not far", "[integrator][critical_step]") {
   Scene scene = pressed(test::column_of_blocks(GENERATE(2, 3, 8)));
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   REQUIRE(settle(simulation).settled);
   const double exact = exact_step(simulation), bound = bound_of(simulation);
   CHECK(bound <= exact);
@@ -58,19 +58,19 @@ TEST_CASE("dashpots shorten the critical step: 2 (sqrt(1 + xi^2) - xi)/w for one
   Scene scene = pressed(test::block_on_base());
   scene.blocks[1].vertices = {{0.0, 0.0}, {1.0, 1.0}, {0.0, 2.0}, {-1.0, 1.0}};
   scene.blocks[1].rotation_locked = true;
-  Simulation<3> plain(scene);
+  Simulation plain(scene);
   const double xi = GENERATE(0.1, 1.0, 3.0);
   scene.joints[0].damping_ratio = xi;
-  Simulation<3> damped(scene);
+  Simulation damped(scene);
   CHECK(bound_of(damped) == Approx(bound_of(plain) * (std::sqrt(1.0 + xi * xi) - xi)).epsilon(1e-12));
 }
 
 TEST_CASE("contacts out of reach do not count, supports do", "[integrator][critical_step]") {
   Scene scene = test::falling_block();
-  Simulation<3> falling(scene);
+  Simulation falling(scene);
   CHECK(std::isinf(bound_of(falling)));
   scene.supports = {{0, {1.0, 0.5}, {0.0, 2e6}}};
-  Simulation<3> held(scene);
+  Simulation held(scene);
   CHECK(bound_of(held) == Approx(2.0 / std::sqrt(2e6 / test::block_mass)).epsilon(1e-12));
 }
 
@@ -79,22 +79,22 @@ TEST_CASE("the bound kept contact by contact is the one of all contacts", "[inte
   scene.joints[0].damping_ratio = GENERATE(0.0, 0.3);
   scene.blocks[2].rotation_locked = GENERATE(false, true);
   scene.supports = {{1, {0.0, 1.0}, {3e6, 1e6}}};
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   REQUIRE(simulation.advance(1e-3));
-  StepProblem<3> problem = simulation.problem(1e-3, false);
+  StepProblem problem = simulation.problem(1e-3, false);
   REQUIRE(problem.contacts.size() >= 4);
-  CriticalStepBound<3> bound;
+  CriticalStepBound bound;
   bound.begin(problem);
   const auto put = [&](const Contact& c, double sign) {
     const JointProperties& joint = problem.joints.joint(c.joint);
-    const Motion<3>::Unknowns still = Motion<3>::Unknowns::Zero();
-    const ContactKinematics<3> k(problem.system, c, still, still);
+    const Motion::Unknowns still = Motion::Unknowns::Zero();
+    const ContactKinematics k(problem.system, c, still, still);
     const ContactDashpots dashpots(joint, c.length, problem.system.reduced_mass(c.vertex_block, c.edge_block));
     const auto part = [&](int block, int other, const Vec2& arm) {
       const auto &b = problem.system.block(block), &o = problem.system.block(other);
       if (b.equation < 0) return;
       // In a frame of the block's own; the one with the support keeps the support's.
-      const Motion<3>::Turn frame(0.1 * (block - 1), RotationKind::exact);
+      const Motion::Turn frame(0.1 * (block - 1), RotationKind::exact);
       bound.add({b.equation, o.equation < 0 ? 1.0 : 1.0 + b.mass[0] / o.mass[0], k.normal + frame.of(k.normal), arm + frame.of(arm),
                  joint.normal_stiffness * c.length, joint.shear_stiffness * c.length, dashpots.normal, dashpots.shear},
                 sign);
@@ -104,7 +104,7 @@ TEST_CASE("the bound kept contact by contact is the one of all contacts", "[inte
   };
   // One by one, then without the stiffest ones again, which takes the last digits of what is left with it.
   std::vector<Contact> some;
-  const StepProblem<3> few{problem.system, problem.external, problem.joints, some, problem.method};
+  const StepProblem few{problem.system, problem.external, problem.joints, some, problem.method};
   for (const Contact& c : problem.contacts) {
     put(c, 1.0);
     some.push_back(c);

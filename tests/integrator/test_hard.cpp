@@ -21,8 +21,8 @@ struct Outcome {
 Outcome outcome(Scene scene, const std::string& method, double stiffness_factor) {
   scene.method.contact = method;
   scene.joints[0].normal_stiffness *= stiffness_factor;
-  Simulation<3> simulation(scene);
-  REQUIRE(run<3>(simulation, {}).converged);
+  Simulation simulation(scene);
+  REQUIRE(run(simulation, {}).converged);
   const auto d = simulation.system().displacement(1);
   return {d.head<2>(), d[2], simulation.max_penetration()};
 }
@@ -83,8 +83,8 @@ TEST_CASE("hard contacts keep to the tolerance that is asked for", "[integrator]
     scene.method.contact = "hard";
     scene.method.gap_tolerance = tolerance;
     scene.end_time = 0.5;
-    Simulation<3> simulation(scene);
-    REQUIRE(run<3>(simulation, {}).converged);
+    Simulation simulation(scene);
+    REQUIRE(run(simulation, {}).converged);
     CHECK(simulation.step_counters().compliant == 0);
     CHECK(simulation.max_penetration() < 1.5 * tolerance);
     solves.push_back(simulation.step_counters().iterations);
@@ -103,7 +103,7 @@ TEST_CASE("how rigid contacts share forces does not depend on the stiffness", "[
     Scene other = scene;
     other.joints[0].normal_stiffness *= factor;
     other.joints[0].shear_stiffness *= factor;
-    Simulation<3> simulation(other);
+    Simulation simulation(other);
     REQUIRE(settle(simulation).settled);
     forces.emplace_back();
     for (const Contact& c : simulation.contacts()) forces.back().insert(forces.back().end(), {c.normal_force, c.shear_force});
@@ -124,7 +124,7 @@ TEST_CASE("the slack of a rigid contact at rest is the gap that springs would le
   std::vector<std::vector<Contact>> contacts;
   for (const std::string method : {"soft", "hard"}) {
     scene.method.contact = method;
-    Simulation<3> simulation(scene);
+    Simulation simulation(scene);
     REQUIRE(settle(simulation).settled);
     contacts.push_back(simulation.contacts());
   }
@@ -145,9 +145,9 @@ TEST_CASE("the slack of a rigid contact at rest is the gap that springs would le
 TEST_CASE("a closed contact that penetrates is pushed out by no more than passes may miss", "[integrator][hard]") {
   Scene scene = settling();
   scene.method.contact = "hard";
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   REQUIRE(settle(simulation).settled);
-  const StepProblem<3> problem = simulation.problem(scene.step.dt, false);
+  const StepProblem problem = simulation.problem(scene.step.dt, false);
   Contact contact = problem.contacts.front();
   REQUIRE(contact.status != ContactStatus::open);
   const auto push = [&](double gap) {
@@ -164,9 +164,9 @@ TEST_CASE("a closed contact that penetrates is pushed out by no more than passes
 TEST_CASE("a force that grows drives a closed contact in no deeper than it is", "[integrator][hard]") {
   Scene scene = settling();
   scene.method.contact = "hard";
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   REQUIRE(settle(simulation).settled);
-  const StepProblem<3> present = simulation.problem(scene.step.dt, false);
+  const StepProblem present = simulation.problem(scene.step.dt, false);
   std::vector<Contact> contacts = present.contacts;
   for (Contact& c : contacts) {
     // Less by this than what the block weighs: the first pass misses its target by no more than what is tolerated.
@@ -174,9 +174,9 @@ TEST_CASE("a force that grows drives a closed contact in no deeper than it is", 
     c.gap = -3.0 * test::gap_tolerance;
     c.normal_force -= lacking * simulation.enforcement().springs(present, c).normal;
   }
-  const StepProblem<3> problem{present.system, present.external, present.joints, contacts, present.method, present.dt, false, present.inertia};
-  StepSolution<3> solution;
-  make_enforcement<3>(scene.method)->solve(problem, solution);
+  const StepProblem problem{present.system, present.external, present.joints, contacts, present.method, present.dt, false, present.inertia};
+  StepSolution solution;
+  make_enforcement(scene.method)->solve(problem, solution);
   REQUIRE(solution.converged);
   int closed = 0;
   for (std::size_t c = 0; c < contacts.size(); ++c) {
@@ -188,14 +188,14 @@ TEST_CASE("a force that grows drives a closed contact in no deeper than it is", 
 }
 
 TEST_CASE("springs of rigid contacts become stiffer where they are too soft for a column", "[integrator][hard]") {
-  Simulation<3> simulation(column(200, 1e-2, 10));
+  Simulation simulation(column(200, 1e-2, 10));
   for (int i = 0; i < 10; ++i) REQUIRE(simulation.advance(1e-2));  // as run() does, which would cut steps for the energy of gravity at once, too
-  CHECK(simulation.step_counters().steps == 10);  // none of them in parts, as where the passes that a step may take are too few
+  CHECK(simulation.step_counters().steps == 10);                   // none of them in parts, as where the passes that a step may take are too few
 }
 
 TEST_CASE("a step of which the passes do not find the multipliers is cut to what their error tells", "[integrator][hard]") {
-  Simulation<3> simulation(column(400, 0.1, 3));
-  REQUIRE(run<3>(simulation, {}).converged);
+  Simulation simulation(column(400, 0.1, 3));
+  REQUIRE(run(simulation, {}).converged);
   CHECK(simulation.step_counters().cuts > 0);
   CHECK(simulation.step_counters().compliant == 0);
 }
@@ -205,7 +205,7 @@ TEST_CASE("steps without multipliers penetrate by no more than their forces comp
   const double dt = 0.02;
   Scene scene = column(blocks, dt, 20);
   scene.method.gap_tolerance = 1e-10;  // which passes through so many blocks do not reach
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   prepare_start(simulation);  // the watch would refuse a run that misses its tolerance so far
   for (int i = 0; i < 20; ++i) REQUIRE(simulation.advance(dt));
   CHECK(simulation.step_counters().compliant == simulation.step_counters().steps);
@@ -233,8 +233,8 @@ TEST_CASE("a hard block that falls stays where it lands", "[integrator][hard]") 
   scene.blocks[1].vertices = test::rectangle(0.0, 0.05, 2.0, 1.0);
   scene.method.contact = "hard";
   scene.end_time = 0.3;
-  Simulation<3> simulation(scene);
-  REQUIRE(run<3>(simulation, {}).converged);
+  Simulation simulation(scene);
+  REQUIRE(run(simulation, {}).converged);
   CHECK(simulation.system().displacement(1)[1] == Approx(-0.05).margin(100 * test::gap_tolerance));
   CHECK(simulation.velocity(1).norm() < 1e-6);
 }

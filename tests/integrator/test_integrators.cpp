@@ -15,7 +15,7 @@ using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
-using Scheme = TimeScheme<3>;
+using Scheme = TimeScheme;
 using Unknowns = Scheme::Unknowns;
 
 MethodInput method(const std::string& integrator) {
@@ -26,7 +26,7 @@ MethodInput method(const std::string& integrator) {
 }
 
 std::unique_ptr<Scheme> make(const std::string& integrator) {
-  return make_integrator<3>(method(integrator));
+  return make_integrator(method(integrator));
 }
 
 /// Steps x'' = force(x) of unit mass; averaging over the path is done by the caller's force, which gets both ends.
@@ -92,7 +92,7 @@ Scene collisions(const std::string& integrator) {
 
 TEST_CASE("every listed integrator can be made by its name", "[integrator][integrators]") {
   std::vector<std::string> names;
-  for (const auto& entry : integrators<3>()) {
+  for (const auto& entry : integrators()) {
     names.emplace_back(entry.name);
     CHECK_FALSE(std::string(entry.summary).empty());
     CHECK(make(entry.name) != nullptr);
@@ -113,33 +113,33 @@ TEST_CASE("unknown integrators and parameters of another one are refused", "[int
   CHECK_THROWS_WITH(make("newmark"), ContainsSubstring("scene.toml:7: method.integrator: \"newmark\"") && ContainsSubstring("\"path_average\""));
   MethodInput input = method("tr_bdf2");
   input.theta = 0.5;
-  CHECK_THROWS_WITH(make_integrator<3>(input), ContainsSubstring("method.theta") && ContainsSubstring("tr_bdf2"));
+  CHECK_THROWS_WITH(make_integrator(input), ContainsSubstring("method.theta") && ContainsSubstring("tr_bdf2"));
   input = method("shi");
   input.rho_inf = 0.5;
-  CHECK_THROWS_WITH(make_integrator<3>(input), ContainsSubstring("method.rho_inf"));
+  CHECK_THROWS_WITH(make_integrator(input), ContainsSubstring("method.rho_inf"));
   input = method("shi");
   input.dissipation = 0.01;
-  CHECK_THROWS_WITH(make_integrator<3>(input), ContainsSubstring("method.dissipation"));
+  CHECK_THROWS_WITH(make_integrator(input), ContainsSubstring("method.dissipation"));
   input = method("path_average");
   input.rotation = RotationKind::linear;
-  CHECK_THROWS_WITH(make_integrator<3>(input), ContainsSubstring("method.rotation"));
+  CHECK_THROWS_WITH(make_integrator(input), ContainsSubstring("method.rotation"));
 }
 
 TEST_CASE("the first integrator has none of the parameters of the other one, and is refused if it is unknown", "[integrator][integrators]") {
   MethodInput input = method("theta");
   input.theta = 0.5;
   input.first_integrator = "shi";
-  CHECK(make_integrator<3>(input)->end_weight() == 0.5);
-  CHECK(make_integrator<3>(method_at_first(input))->end_weight() == 1.0);
+  CHECK(make_integrator(input)->end_weight() == 0.5);
+  CHECK(make_integrator(method_at_first(input))->end_weight() == 1.0);
   input.first_integrator = "path_average";
-  CHECK_FALSE(make_integrator<3>(input)->averages_path());
-  CHECK(make_integrator<3>(method_at_first(input))->averages_path());
+  CHECK_FALSE(make_integrator(input)->averages_path());
+  CHECK(make_integrator(method_at_first(input))->averages_path());
   input.first_integrator = "newmark";
-  CHECK_THROWS_WITH(make_integrator<3>(input),
+  CHECK_THROWS_WITH(make_integrator(input),
                     ContainsSubstring("scene.toml:7: method.first_integrator: \"newmark\"") && ContainsSubstring("\"path_average\""));
   input.first_integrator = "path_average";
   input.rotation = RotationKind::linear;
-  CHECK_THROWS_WITH(make_integrator<3>(input), ContainsSubstring("method.rotation"));
+  CHECK_THROWS_WITH(make_integrator(input), ContainsSubstring("method.rotation"));
 }
 
 TEST_CASE("integrators: observed order on an oscillator", "[integrator][integrators]") {
@@ -151,7 +151,7 @@ TEST_CASE("integrators: observed order on an oscillator", "[integrator][integrat
 }
 
 TEST_CASE("integrators: the change of kinetic energy is the work of the forces and the scheme's own", "[integrator][integrators]") {
-  for (const auto& entry : integrators<3>()) {
+  for (const auto& entry : integrators()) {
     CAPTURE(entry.name);
     Oscillator o(make(entry.name), 3.0);
     for (const double dt : {0.1, 0.2, 0.05, 0.4, 0.1}) {
@@ -174,7 +174,7 @@ TEST_CASE("integrators: what infinitely fast vibrations do", "[integrator][integ
   MethodInput input = method("generalized_alpha");
   for (const double rho : {0.3, 0.5, 0.8}) {
     input.rho_inf = rho;
-    Oscillator o(make_integrator<3>(input), 1e6);
+    Oscillator o(make_integrator(input), 1e6);
     constexpr int n = 200;
     for (int i = 0; i < n; ++i) o.step(1.0);
     const double before = std::abs(o.x);
@@ -185,12 +185,12 @@ TEST_CASE("integrators: what infinitely fast vibrations do", "[integrator][integ
 }
 
 TEST_CASE("integrators: energy ledger of collisions", "[integrator][integrators]") {
-  for (const auto& entry : integrators<3>()) {
+  for (const auto& entry : integrators()) {
     for (const double damping_ratio : {0.0, 0.2}) {
       CAPTURE(entry.name, damping_ratio);
       Scene scene = collisions(entry.name);
       scene.joints[0].damping_ratio = damping_ratio;
-      Simulation<3> simulation(scene);
+      Simulation simulation(scene);
       for (int i = 0; i < 400; ++i) REQUIRE(simulation.advance(1e-3));
       const EnergyLedger& l = simulation.ledger();
       CHECK(l.friction > 1e-3 * l.turnover);
@@ -205,7 +205,7 @@ TEST_CASE("integrators: energy ledger of collisions", "[integrator][integrators]
 
 TEST_CASE("integrators: brittle joints, tension and cohesion keep the ledger closed", "[integrator][integrators]") {
   for (const auto behaviour : {CohesionBehaviour::ductile, CohesionBehaviour::lost_on_opening, CohesionBehaviour::lost_on_slip}) {
-    for (const auto& entry : integrators<3>()) {
+    for (const auto& entry : integrators()) {
       CAPTURE(entry.name, static_cast<int>(behaviour));
       Scene scene = collisions(entry.name);
       scene.joints[0].cohesion = 2e4;
@@ -214,7 +214,7 @@ TEST_CASE("integrators: brittle joints, tension and cohesion keep the ledger clo
       scene.blocks[1].vertices = test::rectangle(0.0, 0.0, 2.0, 1.0);
       scene.blocks[2].vertices = test::rectangle(0.3, 1.0, 1.0, 1.0);
       scene.blocks[2].velocity = {0.4, 0.6};
-      Simulation<3> simulation(scene);
+      Simulation simulation(scene);
       for (int i = 0; i < 300; ++i) REQUIRE(simulation.advance(1e-3));
       const EnergyLedger& l = simulation.ledger();
       CHECK(l.friction > 0.0);
@@ -227,7 +227,7 @@ TEST_CASE("integrators: a step in stages that is cut goes on as a new step", "[i
   Scene scene = test::falling_block();
   scene.method.integrator = "tr_bdf2";
   scene.step.max_displacement = 0.05;
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   REQUIRE(simulation.advance(0.3));
   CHECK(simulation.step_counters().steps > 6);
   // Constant forces are integrated exactly, whatever the stages.
@@ -240,12 +240,12 @@ TEST_CASE("integrators: the dissipation of a path average is in proportion to th
   Scene scene = test::block_on_base();
   scene.method.integrator = "path_average";
   scene.method.dissipation = 0.2;
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   // 1 m of 1e9 Pa/m under each corner of 5000 kg.
   const double frequency = std::sqrt(1e9 / 5000.0);
   for (const double dt : {1e-5, 1e-4, 1e-2}) {
     INFO(dt);
-    const StepProblem<3> problem = simulation.problem(dt, false);
+    const StepProblem problem = simulation.problem(dt, false);
     REQUIRE(problem.contacts.size() == 2);
     for (const Contact& c : problem.contacts) {
       CHECK(simulation.enforcement().springs(problem, c).dissipation == Approx(std::min(0.1, 0.2 * frequency * dt)).epsilon(1e-12));
@@ -260,7 +260,7 @@ TEST_CASE("path averages keep the energy of a support's springs where there is n
   scene.blocks = {test::free_block("block", test::rectangle(0.0, 0.0, 2.0, 1.0))};
   scene.supports = {{0, {1.0, 0.5}, {5e5, 1e6}}};
   scene.blocks[0].velocity = {1.0, 0.5};
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   const auto kinetic = [&] { return 0.5 * simulation.system().velocity(0).cwiseAbs2().dot(simulation.system().block(0).mass); };
   const double before = kinetic();
   for (int i = 0; i < 100; ++i) REQUIRE(simulation.advance(0.02));
@@ -280,7 +280,7 @@ TEST_CASE("path averages converge fast where the weight turns a block about soft
   scene.joints[0].shear_stiffness = 3e6;
   scene.joints[0].friction_angle = 60.0 * test::degree;
   scene.method.start = Start::settled;
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   REQUIRE(settle(simulation).settled);
   simulation.restart_clock();
   simulation.set_velocity(1, {0.0, 0.0, 0.01});

@@ -35,7 +35,7 @@ Scene settled_scene(int blocks) {
 struct Probe {
   explicit Probe(const Scene& scene) : simulation(scene) {
     REQUIRE(settle(simulation).settled);
-    const StepProblem<3> problem = simulation.problem(1.0, false);
+    const StepProblem problem = simulation.problem(1.0, false);
     for (const Contact& c : problem.contacts) springs.push_back(simulation.enforcement().springs(problem, c));
   }
 
@@ -56,7 +56,7 @@ struct Probe {
 
   /// Forces after the blocks have moved by d.
   Eigen::VectorXd forces(const Eigen::VectorXd& d) {
-    const StepProblem<3> here = simulation.problem(1.0, false);
+    const StepProblem here = simulation.problem(1.0, false);
     const auto of = [&](int b) -> Eigen::Vector3d {
       const int i = here.system.block(b).equation;
       return i < 0 ? Eigen::Vector3d::Zero().eval() : d.segment<3>(3 * i).eval();
@@ -64,21 +64,21 @@ struct Probe {
     std::vector<ContactSprings> moved_springs = springs;
     for (std::size_t c = 0; c < springs.size(); ++c) {
       const Contact& contact = here.contacts[c];
-      const ContactKinematics<3> k(here.system, contact, of(contact.vertex_block), of(contact.edge_block));
+      const ContactKinematics k(here.system, contact, of(contact.vertex_block), of(contact.edge_block));
       moved_springs[c].gap += k.gap_change;
       moved_springs[c].initial_shear -= springs[c].shear * k.slip_change;
     }
-    BlockSystem<3> moved = here.system;
+    BlockSystem moved = here.system;
     for (int b : moved.free_blocks()) moved.advance(b, of(b));
-    const StepProblem<3> there{moved, here.external, here.joints, here.contacts, here.method, here.dt, here.statics, here.inertia, here.end_weight};
+    const StepProblem there{moved, here.external, here.joints, here.contacts, here.method, here.dt, here.statics, here.inertia, here.end_weight};
     return newton.forces(there, moved_springs);
   }
 
   Eigen::MatrixXd stiffness() { return newton.stiffness(simulation.problem(1.0, false), springs); }
 
-  Simulation<3> simulation;
+  Simulation simulation;
   std::vector<ContactSprings> springs;
-  Newton<3> newton;
+  Newton newton;
 };
 
 Eigen::VectorXd random_displacement(Eigen::Index size, double largest, std::mt19937& random) {
@@ -103,14 +103,14 @@ double deviation(Probe& probe, double largest_move = small_move, const std::vect
 }
 
 /// As Newton's method leaves the first step of a motion, from its drift.
-StepSolution<3> first_step(const Scene& scene, Merit merit) {
-  Simulation<3> simulation(scene);
-  const StepProblem<3> problem = simulation.problem(scene.step.dt, false);
+StepSolution first_step(const Scene& scene, Merit merit) {
+  Simulation simulation(scene);
+  const StepProblem problem = simulation.problem(scene.step.dt, false);
   std::vector<ContactSprings> springs;
   for (const Contact& c : problem.contacts) springs.push_back(simulation.enforcement().springs(problem, c));
-  StepSolution<3> solution;
+  StepSolution solution;
   solution.d = drift(problem);
-  Newton<3>(merit).solve(problem, springs, solution);
+  Newton(merit).solve(problem, springs, solution);
   return solution;
 }
 
@@ -176,7 +176,7 @@ TEST_CASE("the forces of a settled scene are in balance", "[integrator][newton]"
 
 TEST_CASE("solving a step again with springs that start differently is solving it anew with these", "[integrator][newton]") {
   Probe probe(settled_scene(3));
-  const StepProblem<3> problem = probe.simulation.problem(0.01, GENERATE(false, true));
+  const StepProblem problem = probe.simulation.problem(0.01, GENERATE(false, true));
   const Eigen::VectorXd start = Eigen::VectorXd::Zero(3 * problem.system.free_count());
   for (ContactSprings& s : probe.springs) s.normal_damping = 0.01 * s.normal;
   const FirstTangent first_tangent = GENERATE(FirstTangent::present, FirstTangent::last_solution);
@@ -187,8 +187,8 @@ TEST_CASE("solving a step again with springs that start differently is solving i
     s.shift = -2.0 * s.normal * s.gap;
   }
   const auto solved = [&](bool again) {
-    Newton<3> newton;
-    StepSolution<3> solution;
+    Newton newton;
+    StepSolution solution;
     solution.d = start;
     newton.solve(problem, first, solution);
     REQUIRE(solution.converged);
@@ -210,11 +210,11 @@ TEST_CASE("solving a step again with springs that start differently is solving i
 
 TEST_CASE("a step whose matrix was singular is solved again with springs that hold", "[integrator][newton]") {
   Probe probe(test::column_of_blocks(3));
-  const StepProblem<3> present = probe.simulation.problem(1.0, true);
-  const StepProblem<3> problem{present.system, present.external, present.joints, present.contacts, present.method, present.dt, true, 0.0};
+  const StepProblem present = probe.simulation.problem(1.0, true);
+  const StepProblem problem{present.system, present.external, present.joints, present.contacts, present.method, present.dt, true, 0.0};
   std::vector<ContactSprings> open = probe.springs;
   for (ContactSprings& s : open) s.target = s.gap - 1.0;
-  StepSolution<3> solution;
+  StepSolution solution;
   solution.d = Eigen::VectorXd::Zero(3 * problem.system.free_count());
   probe.newton.solve(problem, open, solution, FirstTangent::present);
   REQUIRE_FALSE(solution.converged);
@@ -235,10 +235,10 @@ TEST_CASE("a bond that broke in a relaxed step that is not taken holds in the ne
     scene.method.static_solver = StaticSolver::relaxation;
     return scene;
   };
-  Simulation<3> heavy(scene_with_gravity(9.81)), light(scene_with_gravity(2.0));
-  const auto soft = make_soft<3>();
-  const auto statuses = [&](Simulation<3>& simulation) {
-    StepSolution<3> solution;
+  Simulation heavy(scene_with_gravity(9.81)), light(scene_with_gravity(2.0));
+  const auto soft = make_soft();
+  const auto statuses = [&](Simulation& simulation) {
+    StepSolution solution;
     soft->solve(simulation.problem(0.1, true), solution);
     REQUIRE(solution.converged);
     std::vector<ContactStatus> list;
@@ -252,12 +252,12 @@ TEST_CASE("a bond that broke in a relaxed step that is not taken holds in the ne
 
 TEST_CASE("a solution that is kept stays as it was while another one is found", "[integrator][newton]") {
   Probe probe(test::column_of_blocks(3));
-  const StepProblem<3> problem = probe.simulation.problem(0.01, false);
-  StepSolution<3> solution;
+  const StepProblem problem = probe.simulation.problem(0.01, false);
+  StepSolution solution;
   solution.d = Eigen::VectorXd::Zero(3 * problem.system.free_count());
   probe.newton.solve(problem, probe.springs, solution, FirstTangent::present);
   REQUIRE(solution.converged);
-  const StepSolution<3> kept = solution;
+  const StepSolution kept = solution;
   std::vector<ContactSprings> stiffer = probe.springs;
   for (ContactSprings& s : stiffer) s.normal *= 2.0;
   probe.newton.solve_again(stiffer, solution, FirstTangent::present);
@@ -270,8 +270,8 @@ TEST_CASE("a solution that is kept stays as it was while another one is found", 
 
 TEST_CASE("a displacement that has run away is no solution, however much its rounding excuses", "[integrator][newton]") {
   Probe probe(test::column_of_blocks(3));
-  StepProblem<3> problem = probe.simulation.problem(1e6, true);  // so long that inertia is below the rounding of the springs
-  StepSolution<3> solution;
+  StepProblem problem = probe.simulation.problem(1e6, true);  // so long that inertia is below the rounding of the springs
+  StepSolution solution;
   solution.d = Eigen::VectorXd::Zero(3 * problem.system.free_count());
   for (int b : problem.system.free_blocks()) solution.d[3 * problem.system.block(b).equation] = 1e30;
   probe.newton.solve(problem, probe.springs, solution, FirstTangent::present);
@@ -287,17 +287,17 @@ TEST_CASE("a solution carries the forces of the law, also where its last iterati
   // Friction B slows the block from one side and then from the other: residuals 3 B and 2 B, of which the second is tolerated.
   MethodInput method = scene.method;
   method.residual_tolerance = 2.5 * friction;
-  const StepProblem<3> present = probe.simulation.problem(0.01, false);
-  const StepProblem<3> problem{present.system, present.external, present.joints, present.contacts, method, present.dt, false, present.inertia};
+  const StepProblem present = probe.simulation.problem(0.01, false);
+  const StepProblem problem{present.system, present.external, present.joints, present.contacts, method, present.dt, false, present.inertia};
   const int block = present.system.free_blocks().front();
   const double inertia = problem.inertia * problem.system.block(block).mass[0];
-  StepSolution<3> solution;
+  StepSolution solution;
   solution.d = -2.0 * friction * test::block_weight / inertia * Eigen::Vector3d::UnitX();
   probe.newton.solve(problem, probe.springs, solution, FirstTangent::present);
   REQUIRE(solution.converged);
   REQUIRE(solution.effort.iterations == 1);
   for (std::size_t c = 0; c < probe.springs.size(); ++c) {
-    const ContactOutcome<3>& o = solution.contacts[c];
+    const ContactOutcome& o = solution.contacts[c];
     const ContactStrength strength(problem.joints.joint(problem.contacts[c].joint), problem.contacts[c]);
     const ContactForces law = spring_slider(probe.springs[c], strength, o.pose.gap_change, o.pose.slip_change);
     CHECK(law.status == ContactStatus::sliding);
@@ -313,9 +313,9 @@ TEST_CASE("contacts that another pass holds where they were begin it in the stat
   scene.gravity = {1.0, -9.81};
   scene.joints[0].friction_angle = std::atan(0.25);  // enough for all contacts, but not for twice the shear force
   Probe probe(scene);
-  const StepProblem<3> problem = probe.simulation.problem(1.0, false);
+  const StepProblem problem = probe.simulation.problem(1.0, false);
   for (ContactSprings& s : probe.springs) s.initial_shear = 0.0;
-  StepSolution<3> first;
+  StepSolution first;
   first.d = drift(problem);
   probe.newton.solve(problem, probe.springs, first);
   REQUIRE(first.converged);
@@ -327,7 +327,7 @@ TEST_CASE("contacts that another pass holds where they were begin it in the stat
     probe.springs[c].initial_shear = first.contacts[c].forces.shear;
   }
   const auto solves = [&](FirstTangent tangent) {
-    StepSolution<3> solution = first;
+    StepSolution solution = first;
     solution.effort.iterations = 0;
     probe.newton.solve(problem, probe.springs, solution, tangent);
     REQUIRE(solution.converged);
@@ -346,7 +346,7 @@ TEST_CASE("Newton ends where it is lost among the contact states, and goes on fo
   int longest = 0;
   for (const double friction_angle : {20.0, 21.0, 22.0, 23.0, 24.0, 25.0}) {
     scene.joints[0].friction_angle = friction_angle * test::degree;
-    const StepSolution<3> solution = first_step(scene, Merit::all_blocks);
+    const StepSolution solution = first_step(scene, Merit::all_blocks);
     // From all blocks out of balance by the largest force to one that is so by what is tolerated.
     const double halvings = std::log2(std::sqrt(solution.d.size() / 3) / scene.method.residual_tolerance);
     INFO(friction_angle << " degrees: " << solution.effort.iterations << " iterations");
@@ -364,7 +364,7 @@ TEST_CASE("Newton with parts ends soon where a few contacts keep it from balance
   bool some_is_lost = false, some_is_found = false;
   for (const double cohesion : {20e3, 30e3, 40e3, 50e3, 60e3, 70e3}) {
     scene.joints[0].cohesion = cohesion;
-    const StepSolution<3> solution = first_step(scene, Merit::worst_block);
+    const StepSolution solution = first_step(scene, Merit::worst_block);
     // From a block out of balance by the largest force to one that is so by what is tolerated.
     const double halvings = -std::log2(scene.method.residual_tolerance);
     INFO(cohesion << " Pa: " << solution.effort.iterations << " iterations");
@@ -378,7 +378,7 @@ TEST_CASE("Newton with parts ends soon where a few contacts keep it from balance
 TEST_CASE("Newton counts its linear solves and says why it gives up", "[integrator][newton]") {
   Scene scene = settled_scene(3);
   scene.method.max_iterations = 1;
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   const StepResult result = simulation.step(1.0, true);
   CHECK_FALSE(result.accepted);
   CHECK(result.reason == "Newton's method did not converge");

@@ -19,13 +19,13 @@ struct Outcome {
 
 Outcome outcome(Scene scene, const std::string& method) {
   scene.method.contact = method;
-  Simulation<3> simulation(scene);
-  REQUIRE(run<3>(simulation, {}).converged);
+  Simulation simulation(scene);
+  REQUIRE(run(simulation, {}).converged);
   return {simulation.system().displacement(1), simulation.step_counters().iterations, simulation.step_counters().steps};
 }
 
 StepResult static_step(const Scene& scene) {
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   return simulation.step(1.0, true);
 }
 

@@ -77,20 +77,20 @@ struct Results {
     scene.loads = {{1, scene.blocks[1].vertices[2], {0.0, -1000.0}}};
     scene.supports = {{1, scene.blocks[1].vertices[1], {0.0, is_factor ? 1e-6 : 1e3}}};  // too weak to stop what fails
     const OutputFolder folder(place.path());
-    Simulation<3> simulation(scene);
-    StateTables<3> states(folder, scene);
+    Simulation simulation(scene);
+    StateTables states(folder, scene);
     states.add_drawing(simulation);
     write_block_properties(folder, scene, std::as_const(simulation).system());
     Summary summary;
     if (is_factor) {
       summary.command = "fos";
-      const FactorOfSafety<3> safety = factor_of_safety<3>(simulation);
-      for (const NamedState<3>& state : safety.states) states.add(state, scene);
+      const FactorOfSafety safety = factor_of_safety(simulation);
+      for (const NamedState& state : safety.states) states.add(state, scene);
       write_mechanism(folder, scene, safety.mechanism);
       write_summary(folder, summary, simulation, &safety);
     } else {
       summary.command = "run";
-      summary.converged = run(simulation, RunObserver<3>()).converged;
+      summary.converged = run(simulation, RunObserver()).converged;
       states.add("final", simulation, simulation.contacts());
       write_summary(folder, summary, simulation);
     }

@@ -22,9 +22,9 @@ TEST_CASE("an unknown form of results is refused by the names that there are", "
 TEST_CASE("a drawing of every state", "[io][formats]") {
   const TemporaryFolder place;
   const OutputFolder folder(place.path());
-  Simulation<3> simulation(test::block_on_base());
+  Simulation simulation(test::block_on_base());
   {
-    StateTables<3> tables(folder, simulation.scene());
+    StateTables tables(folder, simulation.scene());
     tables.add_drawing(simulation);
     tables.add("start", simulation, simulation.contacts());
     tables.close();

@@ -132,8 +132,8 @@ TEST_CASE("blocks.csv holds the polygons of each state in scene coordinates", "[
   Scene scene = test::empty_scene();
   scene.blocks = {test::fixed_block("base, left", test::rectangle(95.0, 49.0, 10.0, 1.0)),
                   test::free_block("block", test::rectangle(100.0, 50.0, 2.0, 1.0))};
-  Simulation<3> simulation(scene);
-  BlocksFile<3> file(OutputFolder(place.path()));
+  Simulation simulation(scene);
+  BlocksFile file(OutputFolder(place.path()));
   file.add("initial", simulation);
   // A quarter turn about the centroid (101, 50.5), and 3 m up.
   simulation.system().advance(1, {0.0, 3.0, 90.0 * test::degree});
@@ -155,9 +155,9 @@ TEST_CASE("blocks.csv holds the polygons of each state in scene coordinates", "[
 
 TEST_CASE("contacts.csv tells what every contact carries", "[io][results]") {
   const TemporaryFolder place;
-  Simulation<3> simulation(test::block_on_base());
+  Simulation simulation(test::block_on_base());
   REQUIRE(settle(simulation).settled);
-  ContactsFile<3> file(OutputFolder(place.path()));
+  ContactsFile file(OutputFolder(place.path()));
   file.add("final", simulation.scene(), std::as_const(simulation).system(), simulation.contacts());
   file.close();
   const auto lines = lines_of(place / "contacts.csv");
@@ -217,7 +217,7 @@ TEST_CASE("milestones: the missing ones have a reason in place of times", "[io][
         "10,0.33333333333333331,0.5,0.75,\n"
         "40,,,,\"stopped, early\"\n");
 
-  Simulation<3> simulation(test::block_on_base());
+  Simulation simulation(test::block_on_base());
   Summary summary;
   summary.milestones = milestones;
   summary.ended_by = "end.displacement_m";
@@ -251,7 +251,7 @@ TEST_CASE("summary.json of a start by the paper's criterion", "[io][results]") {
   scene.snapshot_times = {0.5};
   scene.strength_reduction.curve = {1.1};
   scene.strength_reduction.curve_time = 3.0;
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   Summary summary;
   summary.settling.steps = 7;
   summary.settling.criterion = "steps";
@@ -280,7 +280,7 @@ TEST_CASE("summary.json has every key as it was used", "[io][results][keys]") {
   scene.method.penalty = 3e9;
   scene.method.closing_tolerance = 1e-7;
   scene.step.smallest_fraction = 0.25;
-  const Simulation<3> simulation(scene);
+  const Simulation simulation(scene);
   write_summary(OutputFolder(place.path()), Summary{}, simulation);
   const nlohmann::json options = summary_json(place).at("options");
   for (const KeyEntry& entry : key_entries(scene)) {
@@ -303,8 +303,8 @@ TEST_CASE("summary.json of a run", "[io][results]") {
   scene.title = "A \"quoted\" title";
   scene.method.start = Start::settled;
   scene.end_time = 0.01;
-  Simulation<3> simulation(scene);
-  const RunResult result = run<3>(simulation, {});
+  Simulation simulation(scene);
+  const RunResult result = run(simulation, {});
   Summary summary;
   summary.command = "run";
   summary.scene_file = "scenes/a.toml";
@@ -365,7 +365,7 @@ TEST_CASE("summary.json has counters under their own names", "[io][results]") {
   scene.method.contact = "soft";
   scene.step.dt = 1e-2;
   scene.step.max_displacement = 0.02;  // some steps are cut
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   for (int i = 0; i < 100; ++i) REQUIRE(simulation.advance(scene.step.dt));
   write_summary(OutputFolder(place.path()), Summary(), simulation);
   const StepCounters& steps = simulation.step_counters();
@@ -416,8 +416,8 @@ TEST_CASE("summary.json has counters under their own names", "[io][results]") {
 
 TEST_CASE("summary.json of a factor of safety", "[io][results]") {
   const TemporaryFolder place;
-  Simulation<3> simulation(test::block_on_base());
-  FactorOfSafety<3> safety;
+  Simulation simulation(test::block_on_base());
+  FactorOfSafety safety;
   Scene scene = test::block_on_base();
   Summary summary;
   summary.command = "fos";

@@ -37,13 +37,13 @@ double number(const std::map<std::string, std::string>& row, const std::string& 
 
 /// Runs it, and writes the states into the folder.
 void run_into(const TemporaryFolder& place, const Scene& scene) {
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   const OutputFolder folder(place.path());
-  StateTables<3> states(folder, scene);
+  StateTables states(folder, scene);
   states.add_drawing(simulation);
-  RunObserver<3> observer;
-  observer.started = [&](const Simulation<3>& s) { states.add("start", s); };
-  observer.snapshot = [&](const std::string& state, const Simulation<3>& s) { states.add(state, s); };
+  RunObserver observer;
+  observer.started = [&](const Simulation& s) { states.add("start", s); };
+  observer.snapshot = [&](const std::string& state, const Simulation& s) { states.add(state, s); };
   REQUIRE(run(simulation, observer).converged);
   states.add("final", simulation, simulation.contacts());
   states.close();
@@ -145,10 +145,10 @@ TEST_CASE("cracks.csv has the opening of a block that was thrown off its base, b
 TEST_CASE("the stable state of a factor of safety has forces that balance the weight", "[io][states]") {
   const TemporaryFolder place;
   Scene scene = test::block_on_incline(0.3);
-  Simulation<3> simulation(scene);
-  const FactorOfSafety<3> safety = factor_of_safety<3>(simulation);
-  StateTables<3> states(OutputFolder(place.path()), scene);
-  for (const NamedState<3>& state : safety.states) states.add(state, scene);
+  Simulation simulation(scene);
+  const FactorOfSafety safety = factor_of_safety(simulation);
+  StateTables states(OutputFolder(place.path()), scene);
+  for (const NamedState& state : safety.states) states.add(state, scene);
   states.close();
   Vec2 total = Vec2::Zero();
   for (const auto& row : rows_of(place / "contacts.csv")) {
@@ -170,7 +170,7 @@ TEST_CASE("the stable state of a factor of safety has forces that balance the we
 TEST_CASE("block_properties.csv", "[io][states]") {
   const TemporaryFolder place;
   const Scene scene = test::block_on_base();
-  const BlockSystem<3> system(scene);
+  const BlockSystem system(scene);
   write_block_properties(OutputFolder(place.path()), scene, system);
   const auto lines = lines_of(place / "block_properties.csv");
   CHECK(lines == std::vector<std::string>{"block,material,fixed,area_m2,mass_kg", "base,rock,1,20,50000", "block,rock,0,2,5000"});

@@ -81,15 +81,15 @@ TEST_CASE("states of a run as grids of blocks and contacts", "[io][vtk]") {
   scene.method.start = Start::settled;
   scene.end_time = 0.2;
   scene.snapshots_every = 0.1;
-  Simulation<3> simulation(scene);
+  Simulation simulation(scene);
   const OutputFolder folder(place.path());
   {
-    StateTables<3> states(folder, scene);
+    StateTables states(folder, scene);
     states.add_drawing(simulation);
     write_block_properties(folder, scene, std::as_const(simulation).system());
-    RunObserver<3> observer;
-    observer.started = [&](const Simulation<3>& s) { states.add("start", s); };
-    observer.snapshot = [&](const std::string& state, const Simulation<3>& s) { states.add(state, s); };
+    RunObserver observer;
+    observer.started = [&](const Simulation& s) { states.add("start", s); };
+    observer.snapshot = [&](const std::string& state, const Simulation& s) { states.add(state, s); };
     REQUIRE(run(simulation, observer).converged);
     states.add("final", simulation, simulation.contacts());
     states.close();

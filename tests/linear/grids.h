@@ -16,8 +16,8 @@ inline std::vector<std::pair<int, int>> grid_pairs(int columns, int rows) {
 
 /// Unit springs in both directions between neighbours of a grid whose lowest row is held. Every `sliding_every`-th one slides: its shear force is 0.8
 /// times the normal one instead of that of a spring, so that the matrix is not symmetric.
-inline BlockMatrix<3> grid(int columns, int rows, int sliding_every = 0) {
-  BlockMatrix<3> matrix;
+inline BlockMatrix grid(int columns, int rows, int sliding_every = 0) {
+  BlockMatrix matrix;
   const auto pairs = grid_pairs(columns, rows);
   matrix.set_pattern(columns * rows, pairs);
   int count = 0;

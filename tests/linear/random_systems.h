@@ -33,7 +33,7 @@ class RandomSystems {
   }
 
   /// Fills the pattern of `pairs`, so that neither triangle is the transpose of the other; `dominance` times the largest row sum on the diagonal.
-  void fill(BlockMatrix<3>& matrix, const std::vector<std::pair<int, int>>& pairs, double dominance) {
+  void fill(BlockMatrix& matrix, const std::vector<std::pair<int, int>>& pairs, double dominance) {
     matrix.set_zero();
     for (const auto& [i, j] : pairs) {
       matrix.add(i, j, block());

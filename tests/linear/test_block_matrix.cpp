@@ -9,7 +9,7 @@ using openclose::test::RandomSystems;
 
 namespace {
 
-using Block = BlockMatrix<3>::Block;
+using Block = BlockMatrix::Block;
 
 Block numbered(double first) {
   return Block::NullaryExpr([first](Eigen::Index i, Eigen::Index j) { return first + 3.0 * static_cast<double>(i) + static_cast<double>(j); });
@@ -18,13 +18,13 @@ Block numbered(double first) {
 }  // namespace
 
 TEST_CASE("a new matrix is empty", "[linear][block_matrix]") {
-  const BlockMatrix<3> matrix;
+  const BlockMatrix matrix;
   CHECK(matrix.rows() == 0);
   CHECK(matrix.unknowns() == 0);
 }
 
 TEST_CASE("the pattern holds the diagonal and both triangles, once each, and starts from zero", "[linear][block_matrix]") {
-  BlockMatrix<3> matrix;
+  BlockMatrix matrix;
   matrix.set_pattern(4, {{2, 0}, {0, 2}, {2, 0}, {1, 2}});
   CHECK(matrix.rows() == 4);
   CHECK(matrix.unknowns() == 12);
@@ -38,7 +38,7 @@ TEST_CASE("the pattern holds the diagonal and both triangles, once each, and sta
 }
 
 TEST_CASE("a slot is that of one pair", "[linear][block_matrix]") {
-  BlockMatrix<3> matrix;
+  BlockMatrix matrix;
   matrix.set_pattern(4, {{2, 0}, {1, 2}, {1, 3}});
   for (int slot = 0; slot <= matrix.nobody(); ++slot) {
     for (int i = 0; i < 4; ++i) {
@@ -48,7 +48,7 @@ TEST_CASE("a slot is that of one pair", "[linear][block_matrix]") {
 }
 
 TEST_CASE("blocks are added where they belong", "[linear][block_matrix]") {
-  BlockMatrix<3> matrix;
+  BlockMatrix matrix;
   matrix.set_pattern(3, {{0, 2}});
   matrix.add(0, 2, numbered(1.0));
   matrix.add(0, 2, numbered(10.0));
@@ -66,7 +66,7 @@ TEST_CASE("blocks are added where they belong", "[linear][block_matrix]") {
 }
 
 TEST_CASE("what is outside the pattern is refused, not written somewhere else", "[linear][block_matrix]") {
-  BlockMatrix<3> matrix;
+  BlockMatrix matrix;
   matrix.set_pattern(4, {{0, 2}});
   for (const auto& [i, j] : std::vector<std::pair<int, int>>{{0, 1}, {1, 0}, {0, 3}, {3, 0}, {2, 3}, {1, 2}}) {
     CHECK_THROWS_AS(matrix.add(i, j, numbered(1.0)), std::logic_error);
@@ -76,7 +76,7 @@ TEST_CASE("what is outside the pattern is refused, not written somewhere else", 
 }
 
 TEST_CASE("a new pattern replaces the old one and changes the version", "[linear][block_matrix]") {
-  BlockMatrix<3> matrix;
+  BlockMatrix matrix;
   matrix.set_pattern(3, {{0, 1}});
   const long version = matrix.pattern_version();
   matrix.add(0, 1, numbered(1.0));
@@ -95,7 +95,7 @@ TEST_CASE("products are those of the dense matrix", "[linear][block_matrix]") {
   for (int trial = 0; trial < 50; ++trial) {
     const int rows = 1 + random.below(20);
     const auto pairs = random.couplings(rows, 2 * rows);
-    BlockMatrix<3> matrix;
+    BlockMatrix matrix;
     matrix.set_pattern(rows, pairs);
     random.fill(matrix, pairs, 0.1);
     const Eigen::VectorXd x = random.vector(matrix.unknowns());
@@ -108,7 +108,7 @@ TEST_CASE("products are those of the dense matrix", "[linear][block_matrix]") {
 TEST_CASE("an eliminated unknown keeps its value and influences no other", "[linear][block_matrix]") {
   RandomSystems random(2);
   const std::vector<std::pair<int, int>> pairs{{0, 1}, {1, 2}, {3, 1}};
-  BlockMatrix<3> matrix;
+  BlockMatrix matrix;
   matrix.set_pattern(4, pairs);
   random.fill(matrix, pairs, 1.0);
   Eigen::MatrixXd expected = matrix.dense();

@@ -17,21 +17,21 @@ namespace {
 /// of 32,767 parts.
 constexpr double sixteen_bits = 9.0 / 32767.0;
 
-double relative_residual(const BlockMatrix<3>& matrix, const Eigen::VectorXd& x, const Eigen::VectorXd& right_side) {
+double relative_residual(const BlockMatrix& matrix, const Eigen::VectorXd& x, const Eigen::VectorXd& right_side) {
   REQUIRE(x.size() == right_side.size());
   return (matrix.multiply(x) - right_side).norm() / right_side.norm();
 }
 
 /// Held by inertia as much as by the neighbours.
-BlockMatrix<3> moving(BlockMatrix<3> matrix, double inertia = 1.0) {
+BlockMatrix moving(BlockMatrix matrix, double inertia = 1.0) {
   for (int i = 0; i < matrix.rows(); ++i) matrix.add(i, i, inertia * Eigen::Matrix3d::Identity());
   return matrix;
 }
 
 /// Tells what is asked of a block solver.
-class WatchedSolver : public LinearSolver<3> {
+class WatchedSolver : public LinearSolver {
  public:
-  bool factor(const BlockMatrix<3>& matrix, double kept_change) override { return real_->factor(matrix, kept_change); }
+  bool factor(const BlockMatrix& matrix, double kept_change) override { return real_->factor(matrix, kept_change); }
   Eigen::VectorXd solve(const Eigen::VectorXd& right_side, double reduction) override { return real_->solve(right_side, reduction); }
   void let_go() override {
     ++times_let_go;
@@ -40,11 +40,11 @@ class WatchedSolver : public LinearSolver<3> {
   int times_let_go = 0;
 
  private:
-  std::unique_ptr<LinearSolver<3>> real_ = make_block_solver<3>();
+  std::unique_ptr<LinearSolver> real_ = make_block_solver();
 };
 
 auto make_solver_for_all_sizes() {
-  return make_incomplete_solver<3>(make_block_solver<3>(), 0);
+  return make_incomplete_solver(make_block_solver(), 0);
 }
 
 }  // namespace
@@ -54,10 +54,10 @@ TEST_CASE("an incomplete factor without anything to drop is the factor", "[linea
   // Trees have no fill in the order from their ends; neither have two that do not touch.
   const std::vector<std::vector<std::pair<int, int>>> forests = {{}, {{0, 1}, {1, 2}, {2, 3}, {3, 4}}, {{0, 3}, {3, 5}, {3, 1}, {2, 4}}};
   for (const auto& pairs : forests) {
-    BlockMatrix<3> matrix;
+    BlockMatrix matrix;
     matrix.set_pattern(6, pairs);
     random.fill(matrix, pairs, 1.5);
-    IncompleteLu<3> lu;
+    IncompleteLu lu;
     CHECK(lu.analyse(matrix));
     CHECK_FALSE(lu.analyse(matrix));
     CHECK(lu.stored_blocks() == 6 + 2 * pairs.size());
@@ -74,10 +74,10 @@ TEST_CASE("fill of low level is kept", "[linear][incomplete]") {
   for (const int rows : {7, 8}) {
     std::vector<std::pair<int, int>> ring;
     for (int i = 0; i < rows; ++i) ring.emplace_back(i, (i + 1) % rows);
-    BlockMatrix<3> matrix;
+    BlockMatrix matrix;
     matrix.set_pattern(rows, ring);
     random.fill(matrix, ring, 0.6);
-    IncompleteLu<3> lu;
+    IncompleteLu lu;
     lu.analyse(matrix);
     CHECK(lu.stored_blocks() == static_cast<std::size_t>(rows + 2 * (rows + 4)));
     REQUIRE(lu.factor(matrix));
@@ -85,8 +85,8 @@ TEST_CASE("fill of low level is kept", "[linear][incomplete]") {
     CHECK((relative_residual(matrix, lu.solve(right_side), right_side) < sixteen_bits) == (rows == 7));
   }
   // A grid fills more than that.
-  const BlockMatrix<3> matrix = moving(grid(20, 20));
-  IncompleteLu<3> lu;
+  const BlockMatrix matrix = moving(grid(20, 20));
+  IncompleteLu lu;
   lu.analyse(matrix);
   REQUIRE(lu.factor(matrix));
   const Eigen::VectorXd right_side = random.vector(matrix.unknowns());
@@ -97,11 +97,11 @@ TEST_CASE("fill of low level is kept", "[linear][incomplete]") {
 
 TEST_CASE("an estimating solver keeps all fill", "[linear][incomplete]") {
   RandomSystems random(50);
-  const auto solver = make_estimating_solver<3>();
+  const auto solver = make_estimating_solver();
   // Eigenvalues of the springs of a grid are below 10, so that the condition is.
   constexpr double condition = 10.0;
   for (const double inertia : {1.0, 2.0}) {
-    const BlockMatrix<3> matrix = moving(grid(20, 20, 7), inertia);
+    const BlockMatrix matrix = moving(grid(20, 20, 7), inertia);
     REQUIRE(solver->factor(matrix));
     const Eigen::VectorXd right_side = random.vector(matrix.unknowns());
     CHECK(relative_residual(matrix, solver->solve(right_side), right_side) < condition * sixteen_bits);
@@ -112,21 +112,21 @@ TEST_CASE("an estimating solver keeps all fill", "[linear][incomplete]") {
   CHECK(solver->memory().factor > 0);
   // Stiff springs between blocks that next to nothing holds.
   for (const double inertia : {1e-1, 1e-5, 1e-6}) {
-    BlockMatrix<3> loose = grid(6, 1);
+    BlockMatrix loose = grid(6, 1);
     for (int i = 0; i < loose.rows(); ++i) loose.add(i, i, (inertia - 1.0) * Eigen::Matrix3d::Identity());
     REQUIRE(solver->factor(loose));
     CHECK(solver->counters().pivots_lost == (inertia == 1e-1 ? 0 : inertia == 1e-5 ? 1 : 2));
     const Eigen::VectorXd right_side = random.vector(loose.unknowns()), exact = loose.dense().lu().solve(right_side);
     CHECK((solver->solve(right_side) - exact).norm() < 0.03 * exact.norm());
   }
-  BlockMatrix<3> singular = grid(4, 4);
+  BlockMatrix singular = grid(4, 4);
   singular.set_zero();
   CHECK_FALSE(solver->factor(singular));
 }
 
 TEST_CASE("an incomplete factor does not ask for the unit of the right side", "[linear][incomplete]") {
-  const BlockMatrix<3> matrix = moving(grid(5, 5));
-  IncompleteLu<3> lu;
+  const BlockMatrix matrix = moving(grid(5, 5));
+  IncompleteLu lu;
   lu.analyse(matrix);
   REQUIRE(lu.factor(matrix));
   const Eigen::VectorXd right_side = Eigen::VectorXd::LinSpaced(matrix.unknowns(), -1.0, 2.0), x = lu.solve(right_side);
@@ -139,13 +139,13 @@ TEST_CASE("an incomplete factor does not ask for the unit of length", "[linear][
   const std::vector<std::pair<int, int>> tree = {{0, 3}, {3, 5}, {3, 1}, {2, 4}, {0, 2}};
   // Moments over lengths and rotations times lengths are forces and ways: of blocks of a metre in metres, of a centimetre, of a kilometre.
   for (const double length : {1.0, 1e-2, 1e3}) {
-    BlockMatrix<3> matrix;
+    BlockMatrix matrix;
     matrix.set_pattern(6, tree);
     random.fill(matrix, tree, 1.5);
     const Eigen::Vector3d unit(1.0, 1.0, length);
     for (int s = 0; s < matrix.row_start(6); ++s) matrix.value(s) = unit.asDiagonal() * matrix.value(s) * unit.asDiagonal();
     const Eigen::VectorXd units = unit.replicate(6, 1), right_side = units.cwiseProduct(random.vector(18));
-    IncompleteLu<3> lu;
+    IncompleteLu lu;
     lu.analyse(matrix);
     REQUIRE(lu.factor(matrix));
     const Eigen::VectorXd left = (matrix.multiply(lu.solve(right_side)) - right_side).cwiseQuotient(units);
@@ -156,9 +156,9 @@ TEST_CASE("an incomplete factor does not ask for the unit of length", "[linear][
 TEST_CASE("a system in motion is solved with an incomplete factor, to the residual asked for", "[linear][incomplete]") {
   RandomSystems random(43);
   for (const int sliding_every : {0, 7}) {
-    const BlockMatrix<3> matrix = moving(grid(60, 50, sliding_every));
+    const BlockMatrix matrix = moving(grid(60, 50, sliding_every));
     const Eigen::VectorXd right_side = random.vector(matrix.unknowns());
-    const auto plain = make_sparse_solver<3>();
+    const auto plain = make_sparse_solver();
     REQUIRE(plain->factor(matrix));
     const Eigen::VectorXd expected = plain->solve(right_side);
     const auto solver = make_solver_for_all_sizes();
@@ -178,20 +178,20 @@ TEST_CASE("a system in motion is solved with an incomplete factor, to the residu
 
 TEST_CASE("small systems and those that inertia does not hold are factored", "[linear][incomplete]") {
   RandomSystems random(44);
-  BlockMatrix<3> matrix = grid(60, 50);
+  BlockMatrix matrix = grid(60, 50);
   const Eigen::VectorXd right_side = random.vector(matrix.unknowns());
-  const auto direct = make_block_solver<3>();
+  const auto direct = make_block_solver();
   REQUIRE(direct->factor(matrix));
   const Eigen::VectorXd expected = direct->solve(right_side);
 
-  const auto larger = make_incomplete_solver<3>(make_block_solver<3>(), matrix.rows() + 1);
+  const auto larger = make_incomplete_solver(make_block_solver(), matrix.rows() + 1);
   REQUIRE(larger->factor(matrix));
   CHECK(larger->solve(right_side) == expected);
   CHECK(larger->counters().incomplete == 0);
   CHECK(larger->counters().factorisations == 1);
 
   const auto solver = make_solver_for_all_sizes();
-  const auto solve = [&](const BlockMatrix<3>& m) {
+  const auto solve = [&](const BlockMatrix& m) {
     REQUIRE(solver->factor(m));
     return solver->solve(right_side);
   };
@@ -201,7 +201,7 @@ TEST_CASE("small systems and those that inertia does not hold are factored", "[l
   CHECK(solver->counters().incomplete == 4);
   CHECK(solver->counters().factorisations == 11);
   // Once it moves, the pause of 8 is the last.
-  const BlockMatrix<3> in_motion = moving(matrix);
+  const BlockMatrix in_motion = moving(matrix);
   for (int i = 0; i < 12; ++i) CHECK(relative_residual(in_motion, solve(in_motion), right_side) <= 1.001 * full_reduction);
   CHECK(solver->counters().incomplete == 8);
   CHECK(solver->counters().krylov_given_up == 4);
@@ -209,9 +209,9 @@ TEST_CASE("small systems and those that inertia does not hold are factored", "[l
 
 TEST_CASE("a factor that was let go of is made again", "[linear][incomplete]") {
   RandomSystems random(46);
-  const BlockMatrix<3> matrix = grid(60, 50);
+  const BlockMatrix matrix = grid(60, 50);
   const Eigen::VectorXd right_side = random.vector(matrix.unknowns());
-  const auto solver = make_block_solver<3>();
+  const auto solver = make_block_solver();
   REQUIRE(solver->factor(matrix));
   const Eigen::VectorXd expected = solver->solve(right_side);
   for (int i = 0; i < 2; ++i) {
@@ -225,12 +225,12 @@ TEST_CASE("a factor that was let go of is made again", "[linear][incomplete]") {
 
 TEST_CASE("a direct factor goes before an incomplete one is made, and stays while there is none", "[linear][incomplete]") {
   RandomSystems random(47);
-  const BlockMatrix<3> at_rest = grid(60, 50), in_motion = moving(at_rest);
+  const BlockMatrix at_rest = grid(60, 50), in_motion = moving(at_rest);
   const Eigen::VectorXd right_side = random.vector(at_rest.unknowns());
   auto owned = std::make_unique<WatchedSolver>();
   const WatchedSolver& direct = *owned;
-  const auto solver = make_incomplete_solver<3>(std::move(owned), 0);
-  const auto solve = [&](const BlockMatrix<3>& m) {
+  const auto solver = make_incomplete_solver(std::move(owned), 0);
+  const auto solve = [&](const BlockMatrix& m) {
     REQUIRE(solver->factor(m));
     CHECK(relative_residual(m, solver->solve(right_side), right_side) <= 1.001 * full_reduction);
     CHECK(direct.times_let_go == solver->counters().incomplete);
@@ -244,12 +244,12 @@ TEST_CASE("a direct factor goes before an incomplete one is made, and stays whil
 
 TEST_CASE("memory of factors and of GMRES", "[linear][incomplete]") {
   RandomSystems random(48);
-  const BlockMatrix<3> at_rest = grid(60, 50), in_motion = moving(at_rest);
+  const BlockMatrix at_rest = grid(60, 50), in_motion = moving(at_rest);
   const Eigen::VectorXd right_side = random.vector(at_rest.unknowns());
   const std::size_t numbers = sizeof(double) * static_cast<std::size_t>(9 * at_rest.row_start(at_rest.rows()));
   CHECK(at_rest.bytes() > numbers);
   CHECK(at_rest.bytes() < numbers + 9 * at_rest.rows() * sizeof(int));
-  const auto direct = make_block_solver<3>();
+  const auto direct = make_block_solver();
   REQUIRE(direct->factor(at_rest));
   const std::size_t with_fill = direct->memory().factor;
   CHECK(with_fill > 2 * numbers);
@@ -275,7 +275,7 @@ TEST_CASE("memory of factors and of GMRES", "[linear][incomplete]") {
 }
 
 TEST_CASE("a singular matrix has no solution, also after an incomplete factor", "[linear][incomplete]") {
-  BlockMatrix<3> matrix = grid(4, 4);
+  BlockMatrix matrix = grid(4, 4);
   matrix.set_zero();
   const auto solver = make_solver_for_all_sizes();
   CHECK_FALSE(solver->factor(matrix));
@@ -283,7 +283,7 @@ TEST_CASE("a singular matrix has no solution, also after an incomplete factor", 
 
 TEST_CASE("a solver that was written and read goes on to the same bits", "[linear][incomplete]") {
   RandomSystems random(45);
-  const BlockMatrix<3> still = grid(30, 30), in_motion = moving(still);
+  const BlockMatrix still = grid(30, 30), in_motion = moving(still);
   const Eigen::VectorXd right_side = random.vector(still.unknowns());
   const auto first = make_solver_for_all_sizes();
   for (int i = 0; i < 3; ++i) {

@@ -11,25 +11,25 @@ using openclose::test::RandomSystems;
 
 namespace {
 
-using Solver = std::unique_ptr<LinearSolver<3>>;
+using Solver = std::unique_ptr<LinearSolver>;
 
-double relative_residual(const BlockMatrix<3>& matrix, const Eigen::VectorXd& x, const Eigen::VectorXd& right_side) {
+double relative_residual(const BlockMatrix& matrix, const Eigen::VectorXd& x, const Eigen::VectorXd& right_side) {
   REQUIRE(x.size() == right_side.size());
   return (matrix.multiply(x) - right_side).norm() / right_side.norm();
 }
 
-Eigen::VectorXd solution(LinearSolver<3>& solver, const BlockMatrix<3>& matrix, const Eigen::VectorXd& right_side, double kept_change = 0.0) {
+Eigen::VectorXd solution(LinearSolver& solver, const BlockMatrix& matrix, const Eigen::VectorXd& right_side, double kept_change = 0.0) {
   REQUIRE(solver.factor(matrix, kept_change));
   return solver.solve(right_side);
 }
 
-Eigen::VectorXd fresh_solution(const BlockMatrix<3>& matrix, const Eigen::VectorXd& right_side) {
-  return solution(*make_block_solver<3>(), matrix, right_side);
+Eigen::VectorXd fresh_solution(const BlockMatrix& matrix, const Eigen::VectorXd& right_side) {
+  return solution(*make_block_solver(), matrix, right_side);
 }
 
 /// Row 0 is coupled to all others, and these to nothing else. Diagonals of 4.
-BlockMatrix<3> star(int rows) {
-  BlockMatrix<3> matrix;
+BlockMatrix star(int rows) {
+  BlockMatrix matrix;
   std::vector<std::pair<int, int>> pairs;
   for (int i = 1; i < rows; ++i) pairs.emplace_back(0, i);
   matrix.set_pattern(rows, pairs);
@@ -42,15 +42,15 @@ BlockMatrix<3> star(int rows) {
 }
 
 /// A grid in motion with couplings of this strength over the corners, too.
-BlockMatrix<3> grid_with_corners(int side, double strength, double inertia = 1.0) {
+BlockMatrix grid_with_corners(int side, double strength, double inertia = 1.0) {
   auto pairs = test::grid_pairs(side, side);
-  const BlockMatrix<3> grid = test::grid(side, side, 7);
+  const BlockMatrix grid = test::grid(side, side, 7);
   std::vector<std::pair<int, int>> corners;
   for (int i = 0; i + side + 1 < side * side; ++i) {
     if (i % side + 1 < side) corners.emplace_back(i, i + side + 1);
   }
   pairs.insert(pairs.end(), corners.begin(), corners.end());
-  BlockMatrix<3> matrix;
+  BlockMatrix matrix;
   matrix.set_pattern(side * side, pairs);
   for (int i = 0; i < grid.rows(); ++i) {
     for (int s = grid.row_start(i); s < grid.row_start(i + 1); ++s) matrix.add(i, grid.column(s), grid.value(s));
@@ -72,11 +72,11 @@ TEST_CASE("a factor with kept rows has the bits of a new one while nothing in th
   RandomSystems random(51);
   for (const int rows : {5, 30, 60}) {
     const auto pairs = random.couplings(rows, 2 * rows);
-    BlockMatrix<3> matrix;
+    BlockMatrix matrix;
     matrix.set_pattern(rows, pairs);
     random.fill(matrix, pairs, 1.0);
     const Eigen::VectorXd right_side = random.vector(matrix.unknowns());
-    const Solver solver = make_block_solver<3>(), whole = make_block_solver<3>(Factoring::whole);
+    const Solver solver = make_block_solver(), whole = make_block_solver(Factoring::whole);
     for (int i = 0; i < 30; ++i) {
       const Eigen::VectorXd x = solution(*solver, matrix, right_side);
       CHECK(x == fresh_solution(matrix, right_side));
@@ -93,9 +93,9 @@ TEST_CASE("a factor with kept rows has the bits of a new one while nothing in th
 
 TEST_CASE("rows are kept that have not changed and subtract none that has", "[linear][partial]") {
   constexpr int rows = 10;
-  BlockMatrix<3> matrix = star(rows);
+  BlockMatrix matrix = star(rows);
   const Eigen::VectorXd right_side = RandomSystems(52).vector(matrix.unknowns());
-  const Solver solver = make_block_solver<3>();
+  const Solver solver = make_block_solver();
   const auto kept_with = [&](double change) {
     const long before = solver->counters().rows_kept;
     const Eigen::VectorXd x = solution(*solver, matrix, right_side, change);
@@ -121,9 +121,9 @@ TEST_CASE("rows are kept that have not changed and subtract none that has", "[li
 TEST_CASE("kept rows have the same bits with one thread and with several", "[linear][partial][parallel]") {
   RandomSystems random(53);
   constexpr int side = 40;
-  BlockMatrix<3> matrix = grid_with_corners(side, 0.1);
+  BlockMatrix matrix = grid_with_corners(side, 0.1);
   const Eigen::VectorXd right_side = random.vector(matrix.unknowns());
-  const Solver one = make_block_solver<3>(), several = make_block_solver<3>();
+  const Solver one = make_block_solver(), several = make_block_solver();
   several->use_threads(4);
   for (int i = 0; i < 12; ++i) {
     const Eigen::VectorXd x = solution(*one, matrix, right_side);
@@ -135,9 +135,9 @@ TEST_CASE("kept rows have the same bits with one thread and with several", "[lin
 }
 
 TEST_CASE("what weak couplings carry is found by refining", "[linear][partial]") {
-  const BlockMatrix<3> matrix = grid_with_corners(12, 1e-4);
+  const BlockMatrix matrix = grid_with_corners(12, 1e-4);
   const Eigen::VectorXd right_side = RandomSystems(54).vector(matrix.unknowns());
-  const Solver solver = make_block_solver<3>(), whole = make_block_solver<3>(Factoring::whole);
+  const Solver solver = make_block_solver(), whole = make_block_solver(Factoring::whole);
   const Eigen::VectorXd x = solution(*solver, matrix, right_side), expected = solution(*whole, matrix, right_side);
   CHECK(relative_residual(matrix, x, right_side) <= full_reduction);
   CHECK((x - expected).norm() <= 1e-11 * expected.norm());
@@ -157,10 +157,10 @@ TEST_CASE("what weak couplings carry is found by refining", "[linear][partial]")
 
 TEST_CASE("rows that lag are made up for by refining", "[linear][partial]") {
   constexpr double kept_change = 1e-8, reduction = 1e-7;  // the latter is what refining keeps to where less is asked for
-  BlockMatrix<3> matrix = grid_with_corners(12, 1e-4);
+  BlockMatrix matrix = grid_with_corners(12, 1e-4);
   const int rows = matrix.rows();
   const Eigen::VectorXd right_side = RandomSystems(60).vector(matrix.unknowns());
-  const Solver lagging = make_block_solver<3>(), plain = make_block_solver<3>(), whole = make_block_solver<3>(Factoring::whole);
+  const Solver lagging = make_block_solver(), plain = make_block_solver(), whole = make_block_solver(Factoring::whole);
   for (const Solver* solver : {&lagging, &whole}) (*solver)->let_rows_lag(true);
   const auto kept_with = [&](const Solver& solver, double change) {
     const long before = solver->counters().rows_kept;
@@ -180,9 +180,9 @@ TEST_CASE("rows that lag are made up for by refining", "[linear][partial]") {
 }
 
 TEST_CASE("rows that lag where nothing holds the system are taken anew", "[linear][partial]") {
-  BlockMatrix<3> matrix = grid_with_corners(12, 1e-6, 1e-5);
+  BlockMatrix matrix = grid_with_corners(12, 1e-6, 1e-5);
   const Eigen::VectorXd right_side = Eigen::VectorXd::Ones(matrix.unknowns());
-  const Solver solver = make_block_solver<3>();
+  const Solver solver = make_block_solver();
   solver->let_rows_lag(true);
   CHECK(relative_residual(matrix, solution(*solver, matrix, right_side, 1e-8), right_side) <= 1e-7);
   for (int i = 0; i < matrix.rows(); ++i) matrix.value(matrix.diagonal(i)) *= 1.0 + 5e-5;
@@ -195,8 +195,8 @@ TEST_CASE("rows that lag where nothing holds the system are taken anew", "[linea
 TEST_CASE("weak couplings that do not stay so, or are not so to the system, are taken in", "[linear][partial]") {
   const Eigen::VectorXd right_side = RandomSystems(55).vector(3 * 12 * 12);
   SECTION("one grows") {
-    BlockMatrix<3> matrix = grid_with_corners(12, 1e-4);
-    const Solver solver = make_block_solver<3>();
+    BlockMatrix matrix = grid_with_corners(12, 1e-4);
+    const Solver solver = make_block_solver();
     solution(*solver, matrix, right_side);
     for (const int row : {14, 27}) matrix.value(matrix.find(row, row == 14 ? 27 : 14)) *= 1e4;
     for (const int row : {14, 27}) matrix.value(matrix.diagonal(row)) += Eigen::Matrix3d::Identity();
@@ -210,12 +210,12 @@ TEST_CASE("weak couplings that do not stay so, or are not so to the system, are 
     CHECK(solver->counters().solves == 4);
   }
   SECTION("nothing else holds the system") {
-    const BlockMatrix<3> matrix = [&] {
-      BlockMatrix<3> m = grid_with_corners(12, 5e-4, 1e-7);
+    const BlockMatrix matrix = [&] {
+      BlockMatrix m = grid_with_corners(12, 5e-4, 1e-7);
       for (int i = 0; i < 12; ++i) m.add(i, i, -(1.0 - 1e-7) * Eigen::Matrix3d::Identity());  // the row below, too
       return m;
     }();
-    const Solver solver = make_block_solver<3>(), whole = make_block_solver<3>(Factoring::whole);
+    const Solver solver = make_block_solver(), whole = make_block_solver(Factoring::whole);
     const Eigen::VectorXd expected = solution(*whole, matrix, right_side);
     for (int i = 0; i < 3; ++i) CHECK((solution(*solver, matrix, right_side) - expected).norm() <= 1e-9 * expected.norm());
     CHECK(solver->counters().couplings_taken_in == 1);
@@ -223,9 +223,9 @@ TEST_CASE("weak couplings that do not stay so, or are not so to the system, are 
 }
 
 TEST_CASE("couplings that are zero are not taken for weak ones", "[linear][partial]") {
-  BlockMatrix<3> matrix = grid_with_corners(12, 0.0);
+  BlockMatrix matrix = grid_with_corners(12, 0.0);
   const Eigen::VectorXd right_side = RandomSystems(56).vector(matrix.unknowns());
-  const Solver solver = make_block_solver<3>();
+  const Solver solver = make_block_solver();
   solution(*solver, matrix, right_side);
   for (const int row : {14, 27}) matrix.value(matrix.find(row, row == 14 ? 27 : 14)) += 0.3 * Eigen::Matrix3d::Identity();
   CHECK(relative_residual(matrix, solution(*solver, matrix, right_side), right_side) <= full_reduction);
@@ -234,17 +234,17 @@ TEST_CASE("couplings that are zero are not taken for weak ones", "[linear][parti
 }
 
 TEST_CASE("an incomplete factor leaves weak couplings out", "[linear][partial][incomplete]") {
-  const BlockMatrix<3> matrix = grid_with_corners(12, 1e-4);
-  IncompleteLu<3> needed(Factoring::needed), whole(Factoring::whole), without(Factoring::whole);
+  const BlockMatrix matrix = grid_with_corners(12, 1e-4);
+  IncompleteLu needed(Factoring::needed), whole(Factoring::whole), without(Factoring::whole);
   needed.analyse(matrix);
   whole.analyse(matrix);
-  BlockMatrix<3> edges_only;
+  BlockMatrix edges_only;
   edges_only.set_pattern(matrix.rows(), test::grid_pairs(12, 12));
   without.analyse(edges_only);
   CHECK(needed.stored_blocks() == without.stored_blocks());
   CHECK(needed.stored_blocks() < whole.stored_blocks());
   const Eigen::VectorXd right_side = RandomSystems(57).vector(matrix.unknowns());
-  const Solver solver = make_incomplete_solver<3>(make_block_solver<3>(), 0);
+  const Solver solver = make_incomplete_solver(make_block_solver(), 0);
   REQUIRE(solver->factor(matrix));
   CHECK(relative_residual(matrix, solver->solve(right_side, 1e-3), right_side) <= 1e-3);
   CHECK(solver->counters().incomplete == 1);
@@ -252,9 +252,9 @@ TEST_CASE("an incomplete factor leaves weak couplings out", "[linear][partial][i
 }
 
 TEST_CASE("rows of an incomplete factor are kept while they and the pivots that they subtract hardly change", "[linear][partial][incomplete]") {
-  BlockMatrix<3> matrix = grid_with_corners(20, 1e-4);
+  BlockMatrix matrix = grid_with_corners(20, 1e-4);
   const Eigen::VectorXd right_side = RandomSystems(60).vector(matrix.unknowns());
-  IncompleteLu<3> kept(Factoring::needed), whole(Factoring::whole);
+  IncompleteLu kept(Factoring::needed), whole(Factoring::whole);
   kept.analyse(matrix);
   whole.analyse(matrix);
   // What is kept differs by 0.01 of the diagonal at most: of the solution, by that times the largest diagonal entry, 5, over the smallest eigenvalue,
@@ -262,7 +262,7 @@ TEST_CASE("rows of an incomplete factor are kept while they and the pivots that 
   constexpr double largest_difference = 0.01 * 5.0;
   const auto difference = [&] {
     REQUIRE(kept.factor(matrix));
-    IncompleteLu<3> fresh(Factoring::needed);
+    IncompleteLu fresh(Factoring::needed);
     fresh.analyse(matrix);
     REQUIRE(fresh.factor(matrix));
     REQUIRE(whole.factor(matrix));
@@ -296,10 +296,9 @@ TEST_CASE("rows of an incomplete factor are kept while they and the pivots that 
 }
 
 TEST_CASE("a solver with rows of an incomplete factor kept goes down to the residual asked for", "[linear][partial][incomplete]") {
-  BlockMatrix<3> matrix = grid_with_corners(40, 1e-4);
+  BlockMatrix matrix = grid_with_corners(40, 1e-4);
   const Eigen::VectorXd right_side = RandomSystems(61).vector(matrix.unknowns());
-  const Solver solver = make_incomplete_solver<3>(make_block_solver<3>(), 0),
-               whole = make_incomplete_solver<3>(make_block_solver<3>(), 0, Factoring::whole);
+  const Solver solver = make_incomplete_solver(make_block_solver(), 0), whole = make_incomplete_solver(make_block_solver(), 0, Factoring::whole);
   for (int i = 0; i < 20; ++i) {
     const Eigen::VectorXd x = solution(*solver, matrix, right_side), expected = solution(*whole, matrix, right_side);
     CHECK(relative_residual(matrix, x, right_side) <= 2.0 * full_reduction);
@@ -314,9 +313,9 @@ TEST_CASE("a solver with rows of an incomplete factor kept goes down to the resi
 }
 
 TEST_CASE("the rows kept of an incomplete factor are saved", "[linear][partial][incomplete]") {
-  BlockMatrix<3> matrix = grid_with_corners(40, 1e-4);
+  BlockMatrix matrix = grid_with_corners(40, 1e-4);
   const Eigen::VectorXd right_side = RandomSystems(62).vector(matrix.unknowns());
-  const Solver first = make_incomplete_solver<3>(make_block_solver<3>(), 0), second = make_incomplete_solver<3>(make_block_solver<3>(), 0);
+  const Solver first = make_incomplete_solver(make_block_solver(), 0), second = make_incomplete_solver(make_block_solver(), 0);
   solution(*first, matrix, right_side);
   for (int i = 0; i < matrix.rows(); ++i) matrix.value(matrix.diagonal(i)) *= 1.008;
   Archive written;
@@ -334,9 +333,9 @@ TEST_CASE("the rows kept of an incomplete factor are saved", "[linear][partial][
 }
 
 TEST_CASE("after a lost pivot all rows are factored anew", "[linear][partial]") {
-  BlockMatrix<3> matrix = star(10);
+  BlockMatrix matrix = star(10);
   const Eigen::VectorXd right_side = RandomSystems(58).vector(matrix.unknowns());
-  const Solver solver = make_block_solver<3>();
+  const Solver solver = make_block_solver();
   solution(*solver, matrix, right_side);
   const Eigen::Matrix3d sound = matrix.value(matrix.diagonal(4));
   matrix.value(matrix.diagonal(4)).topLeftCorner<2, 2>() << 1.0, 1.0, 1.0, 1.0 + 1e-13;
@@ -350,8 +349,8 @@ TEST_CASE("after a lost pivot all rows are factored anew", "[linear][partial]") 
 
 TEST_CASE("kept rows and left out couplings are saved", "[linear][partial]") {
   for (const bool iterative : {false, true}) {
-    const auto make = [&] { return iterative ? make_incomplete_solver<3>(make_block_solver<3>(), 0) : make_block_solver<3>(); };
-    BlockMatrix<3> matrix = grid_with_corners(12, 1e-4);
+    const auto make = [&] { return iterative ? make_incomplete_solver(make_block_solver(), 0) : make_block_solver(); };
+    BlockMatrix matrix = grid_with_corners(12, 1e-4);
     const Eigen::VectorXd right_side = RandomSystems(59).vector(matrix.unknowns());
     constexpr double change = 1e-6;
     const Solver first = make(), second = make();

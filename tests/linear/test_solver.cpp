@@ -12,11 +12,11 @@ using openclose::test::RandomSystems;
 
 namespace {
 
-using Solver = std::unique_ptr<LinearSolver<3>>;
+using Solver = std::unique_ptr<LinearSolver>;
 
 /// Largest residual over what rounding may leave: |A| |x| times machine precision times the number of unknowns (N. J. Higham, Accuracy and stability
 /// of numerical algorithms, 2002, theorem 9.3, with the growth of partial pivoting left to the factor 10).
-double residual_over_rounding(const BlockMatrix<3>& matrix, const Eigen::VectorXd& x, const Eigen::VectorXd& right_side) {
+double residual_over_rounding(const BlockMatrix& matrix, const Eigen::VectorXd& x, const Eigen::VectorXd& right_side) {
   const Eigen::MatrixXd dense = matrix.dense();
   const double scale = dense.cwiseAbs().rowwise().sum().maxCoeff() * x.cwiseAbs().maxCoeff();
   const double rounding = 10.0 * static_cast<double>(x.size()) * std::numeric_limits<double>::epsilon() * scale;
@@ -24,8 +24,8 @@ double residual_over_rounding(const BlockMatrix<3>& matrix, const Eigen::VectorX
 }
 
 /// Two blocks held to each other by a spring but to nothing else: any common translation goes through, to the last bit.
-BlockMatrix<3> floating_pair() {
-  BlockMatrix<3> matrix;
+BlockMatrix floating_pair() {
+  BlockMatrix matrix;
   matrix.set_pattern(2, {{0, 1}});
   const Eigen::Matrix3d k = Eigen::Vector3d(4.0, 2.0, 1.0).asDiagonal();
   matrix.add(0, 0, k);
@@ -36,8 +36,8 @@ BlockMatrix<3> floating_pair() {
 }
 
 /// Regular, in any order of its rows, but its first pivot is as good as singular without being small.
-BlockMatrix<3> nearly_singular_diagonal() {
-  BlockMatrix<3> matrix;
+BlockMatrix nearly_singular_diagonal() {
+  BlockMatrix matrix;
   matrix.set_pattern(2, {{0, 1}});
   Eigen::Matrix3d k = Eigen::Matrix3d::Identity();
   k.topLeftCorner<2, 2>() << 1.0, 1.0, 1.0, 1.0 + 1e-13;
@@ -49,8 +49,8 @@ BlockMatrix<3> nearly_singular_diagonal() {
 }
 
 /// Regular, in any order of its rows, but elimination of the first one leaves 2e-13 of the others' diagonals.
-BlockMatrix<3> cancelling_diagonal() {
-  BlockMatrix<3> matrix;
+BlockMatrix cancelling_diagonal() {
+  BlockMatrix matrix;
   matrix.set_pattern(3, {{0, 1}, {0, 2}, {1, 2}});
   const Eigen::Matrix3d unit = Eigen::Matrix3d::Identity();
   for (int i = 0; i < 3; ++i) matrix.add(i, i, (1.0 + 1e-13) * unit);
@@ -62,8 +62,8 @@ BlockMatrix<3> cancelling_diagonal() {
 }
 
 Solver make(const std::string& name) {
-  if (name == "dense") return make_dense_solver<3>();
-  return name == "block" ? make_block_solver<3>() : make_sparse_solver<3>();
+  if (name == "dense") return make_dense_solver();
+  return name == "block" ? make_block_solver() : make_sparse_solver();
 }
 
 }  // namespace
@@ -74,10 +74,10 @@ TEST_CASE("all solvers solve random systems to rounding and agree", "[linear][so
   const double dominance = GENERATE(2.0, 0.02);
   for (int rows = 1; rows <= 60; ++rows) {
     const auto pairs = random.couplings(rows, random.below(4 * rows));
-    BlockMatrix<3> matrix;
+    BlockMatrix matrix;
     matrix.set_pattern(rows, pairs);
     random.fill(matrix, pairs, dominance);
-    const Solver dense = make_dense_solver<3>(), sparse = make("sparse"), block = make("block");
+    const Solver dense = make_dense_solver(), sparse = make("sparse"), block = make("block");
     REQUIRE(dense->factor(matrix));
     REQUIRE(sparse->factor(matrix));
     REQUIRE(block->factor(matrix));
@@ -94,10 +94,10 @@ TEST_CASE("all solvers solve random systems to rounding and agree", "[linear][so
 
 TEST_CASE("the block solver's answer has the same bits with narrow and with wide registers", "[linear][solver]") {
   RandomSystems random(9);
-  const Solver wide = make_block_solver<3>(Factoring::whole, true), narrow = make_block_solver<3>(Factoring::whole, false);
+  const Solver wide = make_block_solver(Factoring::whole, true), narrow = make_block_solver(Factoring::whole, false);
   for (int rows = 1; rows <= 60; ++rows) {
     const auto pairs = random.couplings(rows, 2 * rows);
-    BlockMatrix<3> matrix;
+    BlockMatrix matrix;
     matrix.set_pattern(rows, pairs);
     random.fill(matrix, pairs, 0.5);
     const Eigen::VectorXd right_side = random.vector(matrix.unknowns());
@@ -116,7 +116,7 @@ TEST_CASE("factors, answers and products have the same bits with one thread and 
     if (i % side + 1 < side) pairs.emplace_back(i, i + 1);
     if (i + side < rows) pairs.emplace_back(i, i + side);
   }
-  BlockMatrix<3> matrix;
+  BlockMatrix matrix;
   matrix.set_pattern(rows, pairs);
   random.fill(matrix, pairs, 1.5);
   const Eigen::VectorXd right_side = random.vector(matrix.unknowns());
@@ -140,10 +140,10 @@ TEST_CASE("factors, answers and products have the same bits with one thread and 
 }
 
 TEST_CASE("a system in which nothing moves has an empty solution", "[linear][solver]") {
-  BlockMatrix<3> matrix;
+  BlockMatrix matrix;
   matrix.set_pattern(0, {});
   for (const LinearSolverKind kind : {LinearSolverKind::plain, LinearSolverKind::direct, LinearSolverKind::iterative}) {
-    const Solver solver = make_solver<3>(kind);
+    const Solver solver = make_solver(kind);
     REQUIRE(solver->factor(matrix));
     CHECK(solver->solve(Eigen::VectorXd()).size() == 0);
   }
@@ -153,7 +153,7 @@ TEST_CASE("several right sides use one factorisation", "[linear][solver]") {
   RandomSystems random(4);
   const Solver solver = make(GENERATE("dense", "sparse", "block"));
   const auto pairs = random.couplings(12, 30);
-  BlockMatrix<3> matrix;
+  BlockMatrix matrix;
   matrix.set_pattern(12, pairs);
   random.fill(matrix, pairs, 1.0);
   REQUIRE(solver->factor(matrix));
@@ -168,7 +168,7 @@ TEST_CASE("several right sides use one factorisation", "[linear][solver]") {
 TEST_CASE("symbolic work is done once for a pattern, numbers every time", "[linear][solver]") {
   RandomSystems random(5);
   const Solver solver = make(GENERATE("sparse", "block"));
-  BlockMatrix<3> matrix;
+  BlockMatrix matrix;
   const auto check_solution = [&] {
     REQUIRE(solver->factor(matrix));
     const Eigen::VectorXd right_side = random.vector(matrix.unknowns());
@@ -203,7 +203,7 @@ TEST_CASE("zeros within the pattern may become numbers later", "[linear][solver]
   RandomSystems random(6);
   const Solver solver = make(GENERATE("sparse", "block"));
   const std::vector<std::pair<int, int>> pairs{{0, 1}, {1, 2}};
-  BlockMatrix<3> matrix;
+  BlockMatrix matrix;
   matrix.set_pattern(3, pairs);
   for (int i = 0; i < 3; ++i) matrix.add(i, i, Eigen::Matrix3d::Identity());
   const Eigen::VectorXd right_side = random.vector(9);
@@ -219,7 +219,7 @@ TEST_CASE("a singular matrix is reported, and the solver works again afterwards"
   const std::string name = GENERATE("dense", "sparse", "block");
   const Solver solver = make(name);
   RandomSystems random(7);
-  BlockMatrix<3> matrix;
+  BlockMatrix matrix;
   SECTION("no entries at all") {
     matrix.set_pattern(2, {{0, 1}});
     CHECK_FALSE(solver->factor(matrix));
@@ -244,7 +244,7 @@ TEST_CASE("a singular matrix is reported, and the solver works again afterwards"
 TEST_CASE("a pivot that has lost its digits goes to the plain solver, which exchanges rows, and is counted", "[linear][solver]") {
   for (const bool before_elimination : {true, false}) {
     INFO((before_elimination ? "nearly singular diagonal" : "cancelling diagonal"));
-    const BlockMatrix<3> matrix = before_elimination ? nearly_singular_diagonal() : cancelling_diagonal();
+    const BlockMatrix matrix = before_elimination ? nearly_singular_diagonal() : cancelling_diagonal();
     const Eigen::VectorXd right_side = RandomSystems(7).vector(matrix.unknowns());
     const Solver solver = make("block");
     REQUIRE(solver->factor(matrix));
@@ -252,7 +252,7 @@ TEST_CASE("a pivot that has lost its digits goes to the plain solver, which exch
     CHECK(solver->counters().pivots_lost == 1);
   }
   RandomSystems systems(8);
-  BlockMatrix<3> sound;
+  BlockMatrix sound;
   const auto pairs = systems.couplings(12, 20);
   sound.set_pattern(12, pairs);
   systems.fill(sound, pairs, 1.0);
@@ -264,7 +264,7 @@ TEST_CASE("a pivot that has lost its digits goes to the plain solver, which exch
 TEST_CASE("a system with nothing on its diagonal is solved by exchange of rows", "[linear][solver]") {
   RandomSystems random(10);
   const auto pairs = test::grid_pairs(20, 20);
-  BlockMatrix<3> matrix;
+  BlockMatrix matrix;
   matrix.set_pattern(400, pairs);
   random.fill(matrix, pairs, 0.0);
   for (int i = 0; i < matrix.rows(); ++i) matrix.value(matrix.diagonal(i)).setZero();
@@ -278,7 +278,7 @@ TEST_CASE("a system with nothing on its diagonal is solved by exchange of rows",
 TEST_CASE("an eliminated unknown makes a floating system regular and keeps its right side", "[linear][solver]") {
   const std::string name = GENERATE("dense", "sparse", "block");
   const Solver solver = make(name);
-  BlockMatrix<3> matrix = floating_pair();
+  BlockMatrix matrix = floating_pair();
   for (int k = 0; k < 3; ++k) matrix.eliminate(0, k);
   REQUIRE(solver->factor(matrix));
   Eigen::VectorXd right_side(6), expected(6);
@@ -290,7 +290,7 @@ TEST_CASE("an eliminated unknown makes a floating system regular and keeps its r
 TEST_CASE("numbers that are none do not pass for a factorisation", "[linear][solver]") {
   const std::string name = GENERATE("dense", "sparse", "block");
   const Solver solver = make(name);
-  BlockMatrix<3> matrix = floating_pair();
+  BlockMatrix matrix = floating_pair();
   matrix.add(0, 0, Eigen::Matrix3d::Constant(std::numeric_limits<double>::quiet_NaN()));
   CHECK_FALSE(solver->factor(matrix));
 }
@@ -299,11 +299,11 @@ TEST_CASE("what nothing connects to a system changes no bit of its solution, whe
   RandomSystems random(8);
   for (const int rows : {1, 2, 3, 4, 8, 9, 40}) {
     const auto pairs = random.couplings(rows, 2 * rows);
-    BlockMatrix<3> alone;
+    BlockMatrix alone;
     alone.set_pattern(rows, pairs);
     random.fill(alone, pairs, 1.0);
     const Eigen::VectorXd right_side = random.vector(alone.unknowns());
-    const Solver solver = make_block_solver<3>();
+    const Solver solver = make_block_solver();
     REQUIRE(solver->factor(alone));
     const Eigen::VectorXd x = solver->solve(right_side);
     CHECK(residual_over_rounding(alone, x, right_side) < 1.0);
@@ -311,7 +311,7 @@ TEST_CASE("what nothing connects to a system changes no bit of its solution, whe
       const auto moved = [&](int row) { return row < stranger ? row : row + 1; };
       std::vector<std::pair<int, int>> moved_pairs;
       for (const auto& [i, j] : pairs) moved_pairs.emplace_back(moved(i), moved(j));
-      BlockMatrix<3> both;
+      BlockMatrix both;
       both.set_pattern(rows + 1, moved_pairs);
       Eigen::VectorXd with_stranger = Eigen::VectorXd::Ones(both.unknowns());
       for (int i = 0; i < rows; ++i) {
@@ -319,7 +319,7 @@ TEST_CASE("what nothing connects to a system changes no bit of its solution, whe
         with_stranger.segment<3>(3 * moved(i)) = right_side.segment<3>(3 * i);
       }
       both.add(stranger, stranger, Eigen::Vector3d(2.0, 3.0, 5.0).asDiagonal().toDenseMatrix());
-      const Solver other = make_block_solver<3>();
+      const Solver other = make_block_solver();
       REQUIRE(other->factor(both));
       const Eigen::VectorXd y = other->solve(with_stranger);
       for (int i = 0; i < rows; ++i) CHECK(y.segment<3>(3 * moved(i)) == x.segment<3>(3 * i));

@@ -17,7 +17,7 @@ using test::rectangle;
 
 namespace {
 
-using System = BlockSystem<3>;
+using System = BlockSystem;
 using Unknowns = System::Unknowns;
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
@@ -267,7 +267,7 @@ TEST_CASE("flags of the scene reach the system", "[model][block_system]") {
 
 TEST_CASE("reduced mass of two blocks, a fixed one counting as infinitely heavy", "[model]") {
   const Scene scene = test::column_of_blocks(2);
-  const BlockSystem<3> system(scene);
+  const BlockSystem system(scene);
   CHECK(system.reduced_mass(1, 2) == Approx(0.5 * test::block_mass).epsilon(1e-14));
   CHECK(system.reduced_mass(0, 2) == Approx(test::block_mass).epsilon(1e-14));
   CHECK(system.reduced_mass(2, 0) == Approx(test::block_mass).epsilon(1e-14));

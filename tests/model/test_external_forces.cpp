@@ -14,8 +14,8 @@ using test::rectangle;
 
 namespace {
 
-using System = BlockSystem<3>;
-using Forces = ExternalForces<3>;
+using System = BlockSystem;
+using Forces = ExternalForces;
 using Unknowns = System::Unknowns;
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();

@@ -9,7 +9,7 @@ using namespace openclose;
 
 namespace {
 
-using Rigid = Motion<3>;
+using Rigid = Motion;
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 

@@ -20,7 +20,7 @@ void projectile(Report& report) {
       BlockInput block = free_block("stone", rectangle(0.0, 0.0, 1.0, 1.0));
       block.velocity = thrown.speed * Vec2(std::cos(thrown.elevation), std::sin(thrown.elevation));
       scene.blocks = {block};
-      RigidSimulation simulation = report.simulate(scene);
+      Simulation simulation = report.simulate(scene);
       const auto samples = history(simulation);
       const Vec2 moved = samples.empty() ? Vec2::Constant(not_measured()) : samples.back().motion.displacement;
       const std::string source = "parabola; scheme exact, rounding of t/dt sums";

@@ -26,12 +26,12 @@ Response push(const Report& report, const std::string& method, const std::vector
   scene.blocks = {free_block("polygon", vertices)};
   const Vec2 force = strength * perpendicular((point - centroid).normalized());
   scene.loads = {{0, point, force}};
-  RigidSimulation simulation = report.simulate(scene);
+  Simulation simulation = report.simulate(scene);
   simulation.step(dt, false);
   const auto d = simulation.system().displacement(0);
-  const double rotation = Motion<unknowns>::rotation(d);
+  const double rotation = Motion::rotation(d);
   const double moment = cross(point - centroid, force);
-  const double mass = strength * dt * dt / (2.0 * Motion<unknowns>::translation(d).norm());
+  const double mass = strength * dt * dt / (2.0 * Motion::translation(d).norm());
   // Lever arm that explains the rotation, along the line from the centroid to the point.
   const double arm = 2.0 * inertia * rotation / (dt * dt * strength);
   return {mass, moment * dt * dt / (2.0 * rotation), arm * (point - centroid).normalized()};

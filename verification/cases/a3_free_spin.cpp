@@ -10,7 +10,7 @@ namespace openclose::verification {
 namespace {
 
 /// Area after the spin over the area before; NaN if the block has not turned by the angle it should.
-double area_ratio(RigidSimulation& simulation, double angle) {
+double area_ratio(Simulation& simulation, double angle) {
   const auto current = [&] {
     Polygon p;
     for (int v = 0; v < simulation.system().block(0).vertex_count; ++v) p.push_back(simulation.system().position(0, v));
@@ -18,12 +18,12 @@ double area_ratio(RigidSimulation& simulation, double angle) {
   };
   const double before = current();
   if (history(simulation).empty()) return not_measured();
-  const double turned = Motion<unknowns>::rotation(simulation.system().displacement(0));
+  const double turned = Motion::rotation(simulation.system().displacement(0));
   return std::abs(turned - angle) < 1e-9 ? current() / before : not_measured();
 }
 
 /// Nothing acts: the kinetic energy stays, and with it the ledger's only entry, which has no turnover to be compared with.
-void check_kinetic_energy(Report& report, RotationKind kind, const std::string& method, const RigidSimulation& simulation, double area) {
+void check_kinetic_energy(Report& report, RotationKind kind, const std::string& method, const Simulation& simulation, double area) {
   const auto& system = simulation.system();
   const double spun = 0.5 * system.velocity(0).cwiseAbs2().dot(system.block(0).mass);
   report.near(std::string("energy ledger, imbalance over kinetic energy, ") + (kind == RotationKind::exact ? "exact" : "linear") + " rotation",
@@ -51,7 +51,7 @@ void free_spin(Report& report) {
       BlockInput block = free_block("spinner", rectangle(0.0, 0.0, 2.0, 1.0));
       block.angular_velocity = omega;
       scene.blocks = {block};
-      RigidSimulation simulation = report.simulate(scene);
+      Simulation simulation = report.simulate(scene);
       const double measured = area_ratio(simulation, omega * steps * dt);
       if (kind == RotationKind::exact) {
         report.relative("area ratio after 10 rad, exact rotation", method, 1.0, measured, 1e-12, "-", "rotation keeps areas");

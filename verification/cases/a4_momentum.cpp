@@ -16,7 +16,7 @@ struct Momentum {
   double size = 0.0;  ///< sum of |m v|
 };
 
-Momentum momentum(const RigidSimulation& simulation) {
+Momentum momentum(const Simulation& simulation) {
   Momentum sum;
   const auto& system = simulation.system();
   for (int b : system.free_blocks()) {
@@ -56,7 +56,7 @@ void ledger(Report& report, const Scheme& scheme) {
   constexpr double dt = 1e-3;
   Scene scene = cluster(scheme.contact, dt);
   set_scheme(scene, scheme);
-  RigidSimulation simulation = report.simulate(scene);
+  Simulation simulation = report.simulate(scene);
   const auto velocity = simulation.velocity(0);
   bool done = true;
   for (int i = 0; i < std::lround(scene.end_time / dt) && done; ++i) done = simulation.advance(dt);
@@ -66,7 +66,7 @@ void ledger(Report& report, const Scheme& scheme) {
 Drift drift(const Report& report, const std::string& method, double dt, const std::optional<std::string>& integrator = {}) {
   Scene scene = cluster(method, dt);
   scene.method.integrator = integrator;
-  RigidSimulation simulation = report.simulate(scene);
+  Simulation simulation = report.simulate(scene);
   const Momentum start = momentum(simulation);
   const auto velocity = simulation.velocity(0);
   Drift d{0.0, 0.0};

@@ -24,7 +24,7 @@ Scene scene_of(const analytical::BlockOnPlane& data, const std::string& method, 
 
 /// Largest relative deviation from eq. (8) after first_time.
 double deviation(const Report& report, const Scene& scene, const analytical::BlockOnPlane& data) {
-  RigidSimulation simulation = report.simulate(scene);
+  Simulation simulation = report.simulate(scene);
   double worst = 0.0;
   const auto samples = history(simulation);
   for (const Sample& s : samples) {
@@ -37,7 +37,7 @@ double deviation(const Report& report, const Scene& scene, const analytical::Blo
 /// Largest deviation [m] from a reference given as a function of time.
 template <class F>
 double distance_to(const Report& report, const Scene& scene, const analytical::BlockOnPlane& data, F reference) {
-  RigidSimulation simulation = report.simulate(scene);
+  Simulation simulation = report.simulate(scene);
   double worst = 0.0;
   const auto samples = history(simulation);
   for (const Sample& s : samples) worst = std::max(worst, std::abs(downhill(data, s.motion.displacement) - reference(s.time)));
@@ -158,7 +158,7 @@ void invariant(Report& report) {
         const std::string method = integrator == "none" ? "hard" : "soft";
         Scene scene = scene_of(data, method, Start::unloaded, dt, 3.0);
         if (method == "soft") scene.method.integrator = integrator;
-        RigidSimulation simulation = report.simulate(scene);
+        Simulation simulation = report.simulate(scene);
         double worst = 0.0;
         const auto samples = history(simulation);
         for (const Sample& s : samples) {
@@ -182,7 +182,7 @@ void ledgers(Report& report) {
     Scene scene = scene_of(data, scheme.contact, Start::unloaded, 1e-3, 1.0);
     set_scheme(scene, scheme);
     use_joint_springs_as_penalty(scene, data);
-    RigidSimulation simulation = report.simulate(scene);
+    Simulation simulation = report.simulate(scene);
     check_ledger(report, with_variant("(a) unloaded, phi = 20 deg", scheme), scheme.contact, simulation, !history(simulation).empty());
   }
 }

@@ -14,7 +14,7 @@ struct Hold {
 };
 
 /// Normal forces of the two corners, the downhill one first.
-Hold forces_of(RigidSimulation& simulation, bool settled) {
+Hold forces_of(Simulation& simulation, bool settled) {
   Hold hold;
   hold.settled = settled;
   double downhill_x = -1e300;
@@ -37,7 +37,7 @@ Hold settle_on(const Report& report, const analytical::BlockOnPlane& data, const
   scene.method.contact = method;
   scene.step.dt = 0.01;
   use_joint_springs_as_penalty(scene, data);
-  RigidSimulation simulation = report.simulate(scene);
+  Simulation simulation = report.simulate(scene);
   const SettleResult result = settle(simulation);
   return forces_of(simulation, result.settled);
 }
@@ -96,7 +96,7 @@ void drift(Report& report) {
     scene.step.dt = 1e-3;
     scene.end_time = 100.0;
     scene.output_every = 1.0;
-    RigidSimulation simulation = report.simulate(scene);
+    Simulation simulation = report.simulate(scene);
     double worst = 0.0;
     const auto samples = history(simulation);
     // From the first second on: before, the 1e-8 of the weight that settling leaves unbalanced is worked off.

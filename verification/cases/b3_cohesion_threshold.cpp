@@ -15,7 +15,7 @@ bool holds(const Report& report, const analytical::BlockOnPlane& data, const std
   scene.method.contact = method;
   scene.step.dt = 0.01;
   use_joint_springs_as_penalty(scene, data);
-  RigidSimulation simulation = report.simulate(scene);
+  Simulation simulation = report.simulate(scene);
   return settle(simulation).settled;
 }
 

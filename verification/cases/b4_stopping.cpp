@@ -43,7 +43,7 @@ Scene scene_of(const Throw& t, const std::string& method, double dt, double end)
 void rigid(Report& report, const Throw& t) {
   const auto stop = analytical::stopping(t.data, speed, t.direction);
   for (const double dt : {1e-2, 1e-3}) {
-    RigidSimulation simulation = report.simulate(scene_of(t, "hard", dt, 0.05 * std::ceil(stop.time / 0.05 + 2.0)));
+    Simulation simulation = report.simulate(scene_of(t, "hard", dt, 0.05 * std::ceil(stop.time / 0.05 + 2.0)));
     const auto samples = history(simulation);
     const double travelled = samples.empty() ? not_measured() : t.direction * downhill(t.data, samples.back().motion.displacement);
     report.near(std::string(t.name) + text(": distance, dt = {} s", dt), "hard", stop.distance, travelled, speed / stop.time * dt * dt, "m",
@@ -62,7 +62,7 @@ void elastic(Report& report, const Throw& t) {
   for (const double dt : {2e-4, 1e-4, 5e-5, 2.5e-5, 1.25e-5}) {
     Scene scene = scene_of(t, "soft", dt, end);
     scene.method.theta = 0.5;
-    RigidSimulation simulation = report.simulate(scene);
+    Simulation simulation = report.simulate(scene);
     const auto samples = history(simulation);
     steps.push_back(dt);
     errors.push_back(samples.empty() ? not_measured() : std::abs(downhill(t.data, samples.back().motion.displacement) - exact));
@@ -82,7 +82,7 @@ void rest(Report& report, const Throw& t, const std::string& method) {
     scene.output_every = 1.0;
     scene.method.start = Start::steady_sliding;
     scene.blocks[1].rotation_locked = true;
-    RigidSimulation simulation = report.simulate(scene);
+    Simulation simulation = report.simulate(scene);
     const auto samples = history(simulation);
     const double place = samples.empty() ? not_measured() : downhill(t.data, samples.back().motion.displacement);
     report.near(text("level, rotation locked: place of rest, dt = {} s", dt), method, expected.centre, place, speed / stop.time * dt * dt, "m",
@@ -100,7 +100,7 @@ void rebound(Report& report, const Throw& t) {
     scene.method.start = Start::steady_sliding;
     scene.blocks[1].rotation_locked = true;
     scene.output_every = dt;
-    RigidSimulation simulation = report.simulate(scene);
+    Simulation simulation = report.simulate(scene);
     double low = 1e300, high = -1e300;
     for (const Sample& s : history(simulation)) {
       if (s.time < 1.05) continue;
@@ -126,7 +126,7 @@ void ledger(Report& report, const Throw& t) {
   for (const Scheme& scheme : schemes()) {
     Scene scene = scene_of(t, scheme.contact, 1e-3, 1.5);
     set_scheme(scene, scheme);
-    RigidSimulation simulation = report.simulate(scene);
+    Simulation simulation = report.simulate(scene);
     const bool done = !history(simulation).empty();
     const EnergyLedger& l = simulation.ledger();
     check_ledger(report, with_variant(t.name, scheme), scheme.contact, simulation, done);

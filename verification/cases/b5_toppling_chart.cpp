@@ -70,7 +70,7 @@ BlockMode observed_mode(const Report& report, const BlockOnPlane& data, const st
   scene.step.dt = dt;
   scene.joints[0].damping_ratio = 1.0;  // gravity comes on at once; what it sets swinging is not the question
   use_joint_springs_as_penalty(scene, data);
-  RigidSimulation simulation = report.simulate(scene);
+  Simulation simulation = report.simulate(scene);
   const auto& system = simulation.system();
   const int lower = system.block(1).first_vertex + 1;
   const Vec2 start = system.position(1, lower);
@@ -107,7 +107,7 @@ double first_acceleration(const Report& report, const BlockOnPlane& data) {
   scene.method.contact = "hard";
   scene.method.gap_tolerance = 1e-14;  // a millionth of the 1e-8 m that the corners move in the step
   scene.step.dt = 1e-4;
-  RigidSimulation simulation = report.simulate(scene);
+  Simulation simulation = report.simulate(scene);
   if (!simulation.step(scene.step.dt, false).accepted) return not_measured();
   return -2.0 * simulation.system().displacement(1)[2] / (scene.step.dt * scene.step.dt);
 }
@@ -119,7 +119,7 @@ double velocity_error(const Report& report, const BlockOnPlane& data, const std:
   scene.step.dt = 1e-4;
   scene.joints[0].damping_ratio = 1.0;
   use_joint_springs_as_penalty(scene, data);
-  RigidSimulation simulation = report.simulate(scene);
+  Simulation simulation = report.simulate(scene);
   while (simulation.time() < 0.05 - 0.5 * scene.step.dt) {
     if (!simulation.advance(scene.step.dt)) return not_measured();
   }

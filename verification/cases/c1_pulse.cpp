@@ -37,7 +37,7 @@ Scene scene_of(const std::string& method, const analytical::BlockOnPlane& data, 
 }
 
 double place(const Report& report, const Scene& scene, const analytical::BlockOnPlane& data) {
-  RigidSimulation simulation = report.simulate(scene);
+  Simulation simulation = report.simulate(scene);
   return downhill_history(simulation, data, 2).back();
 }
 
@@ -65,7 +65,7 @@ void rigid(Report& report) {
   }
   report.order("distance, pulse and stop within steps", "hard", steps, errors, 1.98, 2.02, "V^2/(2 g N) (1 - N/A); order 2");
 
-  RigidSimulation simulation = report.simulate(scene_of("hard", data, 1e-2, 0.25));
+  Simulation simulation = report.simulate(scene_of("hard", data, 1e-2, 0.25));
   const auto samples = history(simulation);
   report.relative("velocity at half the pulse", "hard", (part - friction) * gravity * 0.25,
                   samples.empty() ? not_measured() : samples.back().motion.velocity.x(), 1e-11, "m/s", "momentum: (A - N) g t");
@@ -124,7 +124,7 @@ void pulse_under_block(Report& report) {
   elastic(report);
   stiffness(report);
   for (const std::string& method : all_methods) {
-    RigidSimulation simulation = report.simulate(scene_of(method, level_block(), 1e-3, 2.5));
+    Simulation simulation = report.simulate(scene_of(method, level_block(), 1e-3, 2.5));
     const bool done = !history(simulation).empty();
     check_ledger(report, "pulse", method, simulation, done);
   }

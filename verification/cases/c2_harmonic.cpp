@@ -52,7 +52,7 @@ void rigid(Report& report) {
     Scene scene = scene_of("hard", data, dt, dt * std::ceil(0.45 / dt));
     scene.output_every = scene.end_time;
     scene.base_motion->phase = omega * (cycle.start - span / 16.0);
-    RigidSimulation simulation = report.simulate(scene);
+    Simulation simulation = report.simulate(scene);
     steps.push_back(dt);
     errors.push_back(std::abs(downhill_history(simulation, data, 2).back() - cycle.distance));
   }
@@ -63,7 +63,7 @@ void rigid(Report& report) {
 
   // Wherever in their steps slips begin and end: at most s (t2 - t1)/8 + r (1/8 + 1/24), times dt^2.
   const double dt = 1e-4;
-  RigidSimulation simulation = report.simulate(scene_of("hard", data, dt, 1.5));
+  Simulation simulation = report.simulate(scene_of("hard", data, dt, 1.5));
   const auto places = downhill_history(simulation, data, 4);
   for (int i = 1; i <= 3; ++i) {
     report.near("cycle " + text("{}", i) + text(", dt = {} s", dt), "hard", cycle.distance, places[i] - places[i - 1],
@@ -81,7 +81,7 @@ void stiffness(Report& report) {
     data.normal_stiffness = data.shear_stiffness = k;
     Scene scene = scene_of("soft", data, 0.5 / std::ceil(0.5 / (0.05 / std::sqrt(2.0 * k / data.mass()))), 1.0);
     scene.method.theta = 0.5;
-    RigidSimulation simulation = report.simulate(scene);
+    Simulation simulation = report.simulate(scene);
     const auto places = downhill_history(simulation, data, 3);
     stiffnesses.push_back(k);
     errors.push_back(std::abs(places[2] - places[1] - cycle.distance));
@@ -103,7 +103,7 @@ void elastic(Report& report) {
       set_scheme(scene, s);
       scene.method.start = Start::normal_balanced;
       scene.output_every = end;
-      RigidSimulation simulation = report.simulate(scene);
+      Simulation simulation = report.simulate(scene);
       steps.push_back(end / n);
       errors.push_back(std::abs(downhill_history(simulation, data, 2).back() - exact));
     }
@@ -120,7 +120,7 @@ void shaken_incline(Report& report) {
   stiffness(report);
   elastic(report);
   for (const std::string method : {"soft", "shi", "dem"}) {
-    RigidSimulation simulation = report.simulate(scene_of(method, incline_block(), 1e-3, 1.5));
+    Simulation simulation = report.simulate(scene_of(method, incline_block(), 1e-3, 1.5));
     check_ledger(report, "three cycles", method, simulation, !history(simulation).empty());
   }
 }

@@ -51,7 +51,7 @@ std::vector<double> output_times(double end) {
 }
 
 std::vector<double> places(const Report& report, const Scene& scene) {
-  RigidSimulation simulation = report.simulate(scene);
+  Simulation simulation = report.simulate(scene);
   return downhill_history(simulation, data_of_scene(), output_times(scene.end_time).size());
 }
 
@@ -120,7 +120,7 @@ void recorded_motion(Report& report) {
   elastic(report);
   own_limit(report);
   for (const std::string& method : all_methods) {
-    RigidSimulation simulation = report.simulate(scene_of(method, 1e-3, whole));
+    Simulation simulation = report.simulate(scene_of(method, 1e-3, whole));
     check_ledger(report, "record", method, simulation, !history(simulation).empty());
   }
 }

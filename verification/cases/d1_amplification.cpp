@@ -29,7 +29,7 @@ Scene scene_of(const std::string& method, double theta, double dt) {
 }
 
 /// Displacement from equilibrium and velocity after some steps from given ones.
-std::array<double, 2> follow(RigidSimulation& simulation, double displacement, double velocity, int steps) {
+std::array<double, 2> follow(Simulation& simulation, double displacement, double velocity, int steps) {
   if (!settle(simulation).settled) return {not_measured(), not_measured()};
   const Vec2 rest = simulation.system().centroid(1);
   simulation.system().advance(1, {0.0, displacement, 0.0});
@@ -43,7 +43,7 @@ std::array<double, 2> follow(RigidSimulation& simulation, double displacement, d
 }
 
 std::array<double, 2> follow(const Report& report, const Scene& scene, double displacement, double velocity, int steps) {
-  RigidSimulation simulation = report.simulate(scene);
+  Simulation simulation = report.simulate(scene);
   return follow(simulation, displacement, velocity, steps);
 }
 
@@ -94,7 +94,7 @@ void ledger(Report& report, const Scheme& scheme) {
   constexpr int steps = 100;
   Scene scene = scene_of(scheme.contact, 1.0, 0.1 / w);
   set_scheme(scene, scheme);
-  RigidSimulation simulation = report.simulate(scene);
+  Simulation simulation = report.simulate(scene);
   const bool done = !std::isnan(follow(simulation, amplitude, amplitude * w, steps)[0]);
   check_ledger(report, with_variant("free vibration", scheme), scheme.contact, simulation, done);
 }

@@ -38,7 +38,7 @@ double frequency(bool along) {
 }
 
 /// Displacement along or normal to the base, some steps after a push out of the settled state.
-double follow(RigidSimulation& simulation, bool along, double velocity, int steps) {
+double follow(Simulation& simulation, bool along, double velocity, int steps) {
   if (!settle(simulation).settled) return not_measured();
   const Vec2 rest = simulation.system().centroid(1);
   simulation.set_velocity(1, along ? Eigen::Vector3d(velocity, 0.0, 0.0) : Eigen::Vector3d(0.0, -velocity, 0.0));
@@ -67,7 +67,7 @@ void damping(Report& report, const Scheme& scheme, double ratio, bool along) {
   for (const int n : {80 * refined, 160 * refined, 320 * refined, 640 * refined}) {
     steps.push_back(end / n);
     const double exact = velocity * analytical::damped_vibration(w, ratio, end);
-    RigidSimulation simulation = report.simulate(scene_of(scheme, ratio, end / n));
+    Simulation simulation = report.simulate(scene_of(scheme, ratio, end / n));
     errors.push_back(std::abs(follow(simulation, along, velocity, n) - exact) / velocity * w);
     if (n == 80 * refined) check_ledger(report, with_variant(name, scheme), scheme.contact, simulation, !std::isnan(errors.back()));
   }

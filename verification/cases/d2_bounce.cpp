@@ -37,10 +37,10 @@ Scene scene_of(const Scheme& scheme, double time, double dt) {
 struct State {
   double height, velocity;
 };
-State state_of(RigidSimulation& simulation) {
+State state_of(Simulation& simulation) {
   return {simulation.system().position(1, simulation.system().block(1).first_vertex).y(), simulation.velocity(1)[1]};
 }
-bool advance(RigidSimulation& simulation, int steps) {
+bool advance(Simulation& simulation, int steps) {
   for (int i = 0; i < steps; ++i) {
     if (!simulation.advance(simulation.scene().step.dt)) return false;
   }
@@ -57,7 +57,7 @@ struct Flight {
 Flight aligned_bounce(const Report& report, const Scheme& scheme, int steps_of_contact) {
   const analytical::Bounce b = drop_of_a_metre();
   const double contact = b.contact_time(), before = 2.0 * contact, now = 5.0 * contact;
-  RigidSimulation simulation = report.simulate(scene_of(scheme, b.fall_time() - before, contact / steps_of_contact));
+  Simulation simulation = report.simulate(scene_of(scheme, b.fall_time() - before, contact / steps_of_contact));
   const bool done = advance(simulation, 5 * steps_of_contact);
   const State s = state_of(simulation);
   if (!done || !(s.velocity > 0.0)) return {not_measured(), not_measured(), not_measured(), not_measured(), not_measured()};
@@ -127,7 +127,7 @@ void matrices(Report& report, const Scheme& scheme) {
   for (const int n : {10, 40}) {
     const double dt = b.contact_time() / n;
     const auto expected = analytical::stepped_rebound(b, *scheme.weight, dt);
-    RigidSimulation simulation = report.simulate(scene_of(scheme, b.fall_time() - n * dt, dt));
+    Simulation simulation = report.simulate(scene_of(scheme, b.fall_time() - n * dt, dt));
     const State s = advance(simulation, n + expected.steps) ? state_of(simulation) : State{not_measured(), not_measured()};
     const std::string name = with_variant("off the spring, contact time / dt = " + text("{}", n), scheme);
     report.relative(name + ": velocity", scheme.contact, expected.velocity, s.velocity, 1e-10, "m/s", "matrix of D1 until y > 0; rounding of gaps");
@@ -135,7 +135,7 @@ void matrices(Report& report, const Scheme& scheme) {
   }
 }
 
-double energy(RigidSimulation& simulation) {
+double energy(Simulation& simulation) {
   const State s = state_of(simulation);
   return 0.5 * s.velocity * s.velocity + drop_of_a_metre().gravity * s.height;
 }
@@ -146,7 +146,7 @@ void decay(Report& report, const Scheme& scheme) {
   const analytical::Bounce b = drop_of_a_metre();
   const int n = 200, bounces = 5;
   const double dt = b.contact_time() / n;
-  RigidSimulation simulation = report.simulate(scene_of(scheme, 0.0, dt));
+  Simulation simulation = report.simulate(scene_of(scheme, 0.0, dt));
   const double before = energy(simulation);
   const bool done = advance(simulation, static_cast<int>((b.fall_time() + (bounces - 0.5) * b.period()) / dt));
   const double kept = done ? std::log(energy(simulation) / before) : not_measured();
@@ -166,7 +166,7 @@ void drift(Report& report, const Scheme& scheme) {
     constexpr int starts = 8;
     constexpr double golden_section = 0.6180339887;  // spreads the parts evenly
     for (int i = 0; i < starts; ++i) {
-      RigidSimulation simulation = report.simulate(scene_of(scheme, golden_section * i * dt, dt));
+      Simulation simulation = report.simulate(scene_of(scheme, golden_section * i * dt, dt));
       const double before = energy(simulation);
       const bool done = advance(simulation, static_cast<int>((bounces * b.period()) / dt));
       sum += done && simulation.max_penetration() > 0.0 ? std::pow(energy(simulation) / before - 1.0, 2) : not_measured();
@@ -190,7 +190,7 @@ void plastic(Report& report) {
   std::vector<double> steps, errors;
   const double weight = level_block().weight();
   for (const double dt : {4e-3, 2e-3, 1e-3}) {
-    RigidSimulation simulation = report.simulate(scene_of(scheme_named("hard"), 0.0, dt));
+    Simulation simulation = report.simulate(scene_of(scheme_named("hard"), 0.0, dt));
     const bool done = advance(simulation, static_cast<int>(std::ceil((b.fall_time() + 0.05) / dt)));
     const double lost = done ? simulation.ledger().impact : not_measured();
     report.relative(text("energy of the impact, dt = {} s", dt), "hard", weight * (b.drop - b.gravity * dt * dt / 8.0), lost, 1e-10, "J",
@@ -201,7 +201,7 @@ void plastic(Report& report) {
     report.near(text("velocity after the impact over the one before, dt = {} s", dt), "hard", 0.0,
                 done && simulation.ledger().impact > 0.0 ? std::abs(s.velocity) / b.impact_speed() : not_measured(), 1e-11, "-", "restitution 0");
   }
-  RigidSimulation simulation = report.simulate(scene_of(scheme_named("hard"), 0.0, 1e-3));
+  Simulation simulation = report.simulate(scene_of(scheme_named("hard"), 0.0, 1e-3));
   const bool done = advance(simulation, 500);
   check_ledger(report, "fall and impact", "hard", simulation, done);
   report.order("energy of the impact", "hard", steps, errors, 1.99, 2.01, "W H; order 2");
@@ -216,7 +216,7 @@ void bounce(Report& report) {
     if (scheme.order == 1.0) decay(report, scheme);
     if (scheme.order == 2.0) drift(report, scheme);
     if (scheme.weight) matrices(report, scheme);
-    RigidSimulation simulation = report.simulate(scene_of(scheme, 0.0, 1e-3));
+    Simulation simulation = report.simulate(scene_of(scheme, 0.0, 1e-3));
     const bool done = advance(simulation, 3000);
     check_ledger(report, with_variant("three bounces", scheme), scheme.contact, simulation, done);
   }

@@ -24,12 +24,12 @@ struct Modes {
 };
 
 /// Modes of M x'' + K x = 0 with the code's own tangent at rest.
-Modes modes_of(RigidSimulation& simulation) {
+Modes modes_of(Simulation& simulation) {
   if (!settle(simulation).settled) return {Eigen::Vector3d::Constant(not_measured()), Eigen::Matrix3d::Constant(not_measured())};
   const auto problem = simulation.problem(1e-3, false);
   std::vector<ContactSprings> springs;
   for (const Contact& c : problem.contacts) springs.push_back(simulation.enforcement().springs(problem, c));
-  Newton<unknowns> newton;
+  Newton newton;
   const Eigen::Matrix3d k = newton.stiffness(problem, springs);
   const Eigen::Matrix3d m = simulation.system().block(1).mass.asDiagonal();
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix3d> solver(k, m);
@@ -46,7 +46,7 @@ Scene scene_of(const Scheme& scheme, double dt) {
 }
 
 /// Share of the first displacement, along a mode, that is left after `steps` steps from rest.
-double share_after(RigidSimulation& simulation, int mode, int steps) {
+double share_after(Simulation& simulation, int mode, int steps) {
   const Modes modes = modes_of(simulation);
   if (modes.shapes.hasNaN()) return not_measured();
   auto& system = simulation.system();
@@ -56,7 +56,7 @@ double share_after(RigidSimulation& simulation, int mode, int steps) {
   // The shear springs stretch with the corners.
   const Eigen::Vector3d still = Eigen::Vector3d::Zero();
   for (Contact& c : simulation.contacts()) {
-    const ContactKinematics<unknowns> k(system, c, still, still);
+    const ContactKinematics k(system, c, still, still);
     c.elastic_slip += amplitude * (c.vertex_block == 1 ? k.shear_vertex : k.shear_edge).dot(shape);
   }
   system.advance(1, amplitude * shape);
@@ -73,7 +73,7 @@ double share_after(RigidSimulation& simulation, int mode, int steps) {
 
 /// With an amplitude of 1e-6 m beside closures of 5e-4 m the energies that come and go are small against those that forces of the size of the weight
 /// round: eps W times coordinates of a metre in each of 40 steps.
-void check_small_ledger(Report& report, const std::string& name, const std::string& method, const RigidSimulation& simulation, bool done) {
+void check_small_ledger(Report& report, const std::string& name, const std::string& method, const Simulation& simulation, bool done) {
   const double bound = 40.0 * 2.2e-16 * level_block().weight();
   report.near(name + ": energy ledger, imbalance", method, 0.0, done ? std::abs(simulation.ledger().imbalance()) : not_measured(), bound, "J",
               "work of the forces = change of kinetic energy; rounding of the weight's work in coordinates of a metre");
@@ -82,7 +82,7 @@ void check_small_ledger(Report& report, const std::string& name, const std::stri
 /// 2/w_max of the two corner springs, what the program says of it, and what happens on either side.
 void critical(Report& report, double highest) {
   const double expected = 2.0 / highest;
-  RigidSimulation simulation = report.simulate(scene_of(scheme_named("dem"), 1e-3));
+  Simulation simulation = report.simulate(scene_of(scheme_named("dem"), 1e-3));
   const bool settled = settle(simulation).settled && simulation.is_explicit();
   // The closed form holds for the block under its weight, which the bound leaves out: W h/2 beside the stiffness against rotation, half for w.
   const analytical::BlockOnPlane data = level_block();
@@ -92,12 +92,12 @@ void critical(Report& report, double highest) {
                   "2/w_max; geometric stiffness of the weight is not counted");
   // At the fraction f of the critical step the mode is cos(n p) after n steps, sin(p/2) = f. An amplitude of 1e-6 m changes w by 1e-6 of it.
   const double f = 0.99, phase = 2.0 * std::asin(f), steps = 398.0;
-  RigidSimulation stable = report.simulate(scene_of(scheme_named("dem"), f * expected));
+  Simulation stable = report.simulate(scene_of(scheme_named("dem"), f * expected));
   report.near("share left after 398 steps at 0.99 of the critical step", "dem", std::cos(steps * phase), share_after(stable, 2, 398),
               steps * 2.0 * f / std::sqrt(1.0 - f * f) * 1e-6, "-", "cos(n p), sin(p/2) = 0.99: stable");
   // Beyond, the phase is imaginary. From 5e-4 m on contacts would open, which settles what they have gained: so few steps that it stays far below.
   const double beyond = 1.01, growth = std::cosh(2.0 * 16.0 * std::acosh(beyond));
-  RigidSimulation unstable = report.simulate(scene_of(scheme_named("dem"), beyond * expected));
+  Simulation unstable = report.simulate(scene_of(scheme_named("dem"), beyond * expected));
   report.near("share after 16 steps at 1.01 of the critical step", "dem", growth, share_after(unstable, 2, 16),
               growth * 16.0 * 2.0 * beyond / std::sqrt(beyond * beyond - 1.0) * growth * 1e-6, "-",
               "cosh(2 n arcosh 1.01), 46 times the first: unstable; the amplitude changes w by itself over the height");
@@ -109,7 +109,7 @@ void small_vibration(Report& report) {
   const auto sway = analytical::sway_rock_frequencies(level_block());
   const std::array<double, 3> expected = {sway[0], analytical::bounce_frequency(level_block()), sway[1]};
   const std::array<const char*, 3> names = {"lower sway-rock", "bounce", "upper sway-rock"};
-  RigidSimulation simulation = report.simulate(scene_of(scheme_named("soft"), 1e-3));
+  Simulation simulation = report.simulate(scene_of(scheme_named("soft"), 1e-3));
   const Modes modes = modes_of(simulation);
   for (int i = 0; i < 3; ++i) {
     report.relative(std::string(names[i]) + ": eigenvalue of the tangent", "soft", expected[i], modes.frequencies[i], 1e-9, "rad/s",
@@ -121,7 +121,7 @@ void small_vibration(Report& report) {
       std::vector<double> steps, errors;
       for (const int n : {40, 80, 160, 320}) {
         steps.push_back(end / n);
-        RigidSimulation run = report.simulate(scene_of(scheme, end / n));
+        Simulation run = report.simulate(scene_of(scheme, end / n));
         errors.push_back(std::abs(share_after(run, i, n) - analytical::free_vibration(expected[i], end)));
         // A block that stands still has a share of 1, far from the cosine.
         if (n == 40) check_small_ledger(report, with_variant(names[i], scheme), scheme.contact, run, errors.back() < 0.5);

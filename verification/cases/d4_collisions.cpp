@@ -39,7 +39,7 @@ struct Outcome {
 };
 
 Outcome follow(const Report& report, const Scheme& scheme, const analytical::MassRow& row, double dt, int steps) {
-  RigidSimulation simulation = report.simulate(scene_of(scheme, row, dt));
+  Simulation simulation = report.simulate(scene_of(scheme, row, dt));
   bool done = true;
   for (int i = 0; i < steps && done; ++i) done = simulation.advance(dt);
   Outcome outcome;
@@ -169,7 +169,7 @@ void collisions(Report& report) {
   }
   plastic(report);
   for (const Scheme& scheme : schemes()) {
-    RigidSimulation simulation = report.simulate(scene_of(scheme, row_of_five(), 1e-4));
+    Simulation simulation = report.simulate(scene_of(scheme, row_of_five(), 1e-4));
     bool done = true;
     for (int i = 0; i < 800 && done; ++i) done = simulation.advance(1e-4);
     check_ledger(report, with_variant("row of five", scheme), scheme.contact, simulation, done);

@@ -42,7 +42,7 @@ struct Rocking {
 
 /// From rest at half the critical angle with rigid contact.
 Rocking free_rocking(const Report& report, double angle, double time, double dt) {
-  RigidSimulation simulation = report.simulate(leaning("hard", angle, dt));
+  Simulation simulation = report.simulate(leaning("hard", angle, dt));
   Rocking found;
   double farthest = 0.0, last = angle, turning = 0.0;
   for (int i = 1; i * dt < 1.2; ++i) {
@@ -78,7 +78,7 @@ void rigid(Report& report) {
   report.order("free rocking: period from half the critical angle (1.975213 s)", "hard", steps, periods, 0.8, 1.2, "ODE; order 1");
   report.order("ratio of angular velocities at the impact (0.911765)", "hard", steps, ratios, 0.8, 1.2,
                "1 - 1.5 sin^2 alpha_b, from how far it goes after it; order 1");
-  RigidSimulation simulation = report.simulate(leaning("hard", angle, 1e-3));
+  Simulation simulation = report.simulate(leaning("hard", angle, 1e-3));
   bool done = true;
   for (int i = 0; i < 2000 && done; ++i) done = simulation.advance(1e-3);
   check_ledger(report, "free rocking", "hard", simulation, done);
@@ -102,7 +102,7 @@ class OnSprings {
   double error(const Report& report, const Scheme& scheme, double dt) const {
     Scene scene = leaning(scheme.contact, angle, dt, closure());
     set_scheme(scene, scheme);
-    RigidSimulation simulation = report.simulate(scene);
+    Simulation simulation = report.simulate(scene);
     std::vector<double> angles;
     for (std::size_t i = 0; i < times_.size(); ++i) {
       bool done = true;
@@ -145,7 +145,7 @@ void elastic(Report& report) {
     }
     Scene scene = leaning(s.contact, OnSprings::angle, 1e-3, OnSprings::closure());
     set_scheme(scene, s);
-    RigidSimulation simulation = report.simulate(scene);
+    Simulation simulation = report.simulate(scene);
     bool done = true;
     for (int i = 0; i < 1000 && done; ++i) done = simulation.advance(1e-3);
     check_ledger(report, with_variant("rocking on springs", s), s.contact, simulation, done);
@@ -158,7 +158,7 @@ bool overturned(const Report& report, double acceleration, double duration, doub
   scene.method.start = Start::settled;
   scene.base_motion.emplace();
   scene.base_motion->pulses = {{0.0, duration, {acceleration, 0.0}}};
-  RigidSimulation simulation = report.simulate(scene);
+  Simulation simulation = report.simulate(scene);
   if (!prepare_start(simulation).converged) return false;
   const double critical = rocking.critical_angle();
   for (int i = 1; i * dt < duration + 5.0; ++i) {

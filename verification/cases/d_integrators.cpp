@@ -33,7 +33,7 @@ Scene scene_of(const std::string& integrator, double dt) {
 std::complex<double> follow(const Report& report, const Scene& scene, std::complex<double> start, int steps) {
   const double w = analytical::bounce_frequency(level_block());
   const std::complex<double> nothing(not_measured(), not_measured());
-  RigidSimulation simulation = report.simulate(scene);
+  Simulation simulation = report.simulate(scene);
   if (!settle(simulation).settled) return nothing;
   const Vec2 rest = simulation.system().centroid(1);
   simulation.system().advance(1, {0.0, start.real(), 0.0});
@@ -103,7 +103,7 @@ struct Bounces {
 Bounces bounce(const Report& report, double dt, double end) {
   Scene scene = scene_of("path_average", dt);
   scene.method.start = Start::unloaded;
-  RigidSimulation simulation = report.simulate(scene);
+  Simulation simulation = report.simulate(scene);
   const double loose = simulation.system().centroid(1).y(), weight = 5400.0 * 9.81;
   simulation.system().advance(1, {0.0, drop, 0.0});
   simulation.positions_changed();

@@ -25,8 +25,8 @@ struct Safety {
 };
 
 Safety safety_of(const Report& report, const Scene& scene) {
-  RigidSimulation simulation = report.simulate(scene);
-  const auto result = factor_of_safety<unknowns>(simulation);
+  Simulation simulation = report.simulate(scene);
+  const auto result = factor_of_safety(simulation);
   if (!result.found() || !result.bracket.failed) return {};
   double deepest = 0.0;
   for (const Contact& c : result.states.front().contacts) {

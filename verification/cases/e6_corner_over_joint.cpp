@@ -30,7 +30,7 @@ Scene block_over_joint(const analytical::BlockOnPlane& data, double joint_angle,
 
 /// Displacement down the plane at the scene's end, from the unloaded start.
 double slide(const Report& report, const Scene& scene, const analytical::BlockOnPlane& data) {
-  RigidSimulation simulation = report.simulate(scene);
+  Simulation simulation = report.simulate(scene);
   const std::vector<Sample> samples = history(simulation);
   return samples.empty() ? not_measured() : downhill(data, samples.back().motion.displacement);
 }

@@ -26,7 +26,7 @@ Scene slab(const analytical::BlockOnPlane& data, double joint_angle) {
 
 /// Mean displacement of the two sliding blocks down the plane at the scene's end, from the unloaded start.
 double slide(const Report& report, const Scene& scene, const analytical::BlockOnPlane& data) {
-  RigidSimulation simulation = report.simulate(scene);
+  Simulation simulation = report.simulate(scene);
   const auto& system = simulation.system();
   const Vec2 start = system.centroid(2) + system.centroid(3);
   if (history(simulation).empty()) return not_measured();

@@ -34,7 +34,7 @@ Scene scene_of(const std::string& method, double theta, double dt) {
 }
 
 void forces(Report& report, const std::string& method) {
-  RigidSimulation simulation = report.simulate(scene_of(method, 1.0, 1e-3));
+  Simulation simulation = report.simulate(scene_of(method, 1.0, 1e-3));
   const bool settled = settle(simulation).settled;
   std::vector<double> carried(blocks, 0.0);  // by the joint under each block
   for (const Contact& c : simulation.contacts()) {
@@ -48,23 +48,21 @@ void forces(Report& report, const std::string& method) {
 }
 
 void eigenvalues(Report& report, const std::vector<double>& expected) {
-  RigidSimulation simulation = report.simulate(scene_of("soft", 1.0, 1e-3));
+  Simulation simulation = report.simulate(scene_of("soft", 1.0, 1e-3));
   std::vector<double> found(expected.size(), not_measured());
   if (settle(simulation).settled) {
     const auto problem = simulation.problem(1e-3, false);
     std::vector<ContactSprings> springs;
-    Eigen::VectorXd mass(unknowns * blocks);
+    Eigen::VectorXd mass(dofs * blocks);
     for (const Contact& c : problem.contacts) springs.push_back(simulation.enforcement().springs(problem, c));
-    for (const int b : problem.system.free_blocks())
-      mass.segment<unknowns>(unknowns * problem.system.block(b).equation) = problem.system.block(b).mass;
-    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(Newton<unknowns>().stiffness(problem, springs),
-                                                                           mass.asDiagonal().toDenseMatrix());
+    for (const int b : problem.system.free_blocks()) mass.segment<dofs>(dofs * problem.system.block(b).equation) = problem.system.block(b).mass;
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(Newton().stiffness(problem, springs), mass.asDiagonal().toDenseMatrix());
     // Bouncing does not mix with swaying: a mode is wholly vertical or not at all.
     std::vector<double> bouncing;
     for (int i = 0; i < mass.size(); ++i) {
       const Eigen::VectorXd shape = mass.cwiseSqrt().cwiseProduct(solver.eigenvectors().col(i));
       double vertical = 0.0;
-      for (int b = 0; b < blocks; ++b) vertical += shape[unknowns * b + 1] * shape[unknowns * b + 1];
+      for (int b = 0; b < blocks; ++b) vertical += shape[dofs * b + 1] * shape[dofs * b + 1];
       if (vertical > 0.5 * shape.squaredNorm()) bouncing.push_back(std::sqrt(std::max(0.0, solver.eigenvalues()[i])));
     }
     if (bouncing.size() == found.size()) found = bouncing;
@@ -77,7 +75,7 @@ void eigenvalues(Report& report, const std::vector<double>& expected) {
 
 /// Share of the first displacement along a mode that is left after `steps` steps from rest.
 double share_after(const Report& report, const Scene& scene, int mode, int steps) {
-  RigidSimulation simulation = report.simulate(scene);
+  Simulation simulation = report.simulate(scene);
   if (!settle(simulation).settled) return not_measured();
   auto& system = simulation.system();
   const auto shape = analytical::column_shape(blocks, mode);

@@ -37,7 +37,7 @@ std::vector<Vec2> random_polygon(std::mt19937& engine, int kind, double size) {
       corners.push_back(radius * Vec2(std::cos(angle), std::sin(angle)));
     }
   }
-  for (Vec2& p : corners) p = Motion<3>::turned_by(turn, p, RotationKind::exact);
+  for (Vec2& p : corners) p = Motion::turned_by(turn, p, RotationKind::exact);
   return corners;
 }
 
@@ -75,7 +75,7 @@ struct Created {
 };
 
 /// \\param scale  [J]
-Created created_energy(RigidSimulation& simulation, const Scene& scene, double scale) {
+Created created_energy(Simulation& simulation, const Scene& scene, double scale) {
   Created created;
   const double stored_at_start = simulation.ledger().contact_springs, released_at_start = simulation.ledger().redefinition;
   double released_before = released_at_start;
@@ -92,8 +92,8 @@ Created created_energy(RigidSimulation& simulation, const Scene& scene, double s
 }
 
 /// [J] Kinetic energy at the start, and that of falling to the floor.
-double energy_at_start(const RigidSimulation& simulation) {
-  const BlockSystem<unknowns>& system = simulation.system();
+double energy_at_start(const Simulation& simulation) {
+  const BlockSystem& system = simulation.system();
   double sum = system.kinetic_energy();
   for (int b : system.free_blocks()) sum += system.block(b).mass[0] * 9.81 * system.centroid(b).y();
   return sum;
@@ -103,7 +103,7 @@ void box(Report& report, const Scheme& scheme) {
   Created worst;
   for (const unsigned seed : {1U, 2U, 3U, 4U}) {
     const Scene scene = thrown_into_box(scheme, seed);
-    RigidSimulation simulation = report.simulate(scene);
+    Simulation simulation = report.simulate(scene);
     const Created created = created_energy(simulation, scene, energy_at_start(simulation));
     if (!(created.rise <= worst.rise)) worst.rise = created.rise;
     if (!(created.released <= worst.released)) worst.released = created.released;
@@ -139,7 +139,7 @@ void diamond(Report& report, const Scheme& scheme) {
     return;
   }
   const Scene scene = corner_on_corner(scheme);
-  RigidSimulation simulation = report.simulate(scene);
+  Simulation simulation = report.simulate(scene);
   double highest = 0.0, lowest = 0.0;
   for (int i = 0; i < std::lround(scene.end_time / scene.step.dt); ++i) {
     const bool done = simulation.advance(scene.step.dt);

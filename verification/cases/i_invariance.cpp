@@ -41,7 +41,7 @@ Scene tumbling(const std::string& method) {
 
 /// Displacements of the blocks, in the order of the scene; empty if a step fails.
 std::vector<Eigen::Vector3d> motion(const Report& report, const Scene& scene) {
-  RigidSimulation simulation = report.simulate(scene);
+  Simulation simulation = report.simulate(scene);
   for (int i = 0; i < std::lround(end / dt); ++i) {
     if (!simulation.advance(scene.step.dt)) return {};
   }
@@ -146,12 +146,12 @@ void invariance_of(Report& report, const std::string& method) {
   }
 
   // Stopped in the middle of the first impacts, and continued by another simulation.
-  RigidSimulation whole = report.simulate(scene), first = report.simulate(scene);
+  Simulation whole = report.simulate(scene), first = report.simulate(scene);
   bool going = true;
   for (int i = 0; i < 100; ++i) going = going && whole.advance(dt) && first.advance(dt);
   Archive saved;
   saved(first);
-  RigidSimulation second = report.simulate(scene);
+  Simulation second = report.simulate(scene);
   Archive archive(saved.bytes());
   archive(second);
   for (int i = 0; i < 100; ++i) going = going && whole.advance(dt) && second.advance(dt);
@@ -180,7 +180,7 @@ std::vector<double> moved_with(const Report& report, Scene scene, int threads) {
   constexpr int steps = 5;
   scene.method.threads = threads;
   const long before = times_shared(SharedWork::product);
-  RigidSimulation simulation = report.simulate(scene);
+  Simulation simulation = report.simulate(scene);
   for (int i = 0; i < steps; ++i) {
     if (!simulation.advance(scene.step.dt)) return {};
   }

@@ -46,7 +46,7 @@ void block_number(Studies& studies) {
           scheme.name() + (half_joint ? ", lowest joint of half a block" : ", equal joints"), "1/n [-]", halved(0.5, 5), expected,
           [&](double per_n) {
             const int n = static_cast<int>(std::lround(1.0 / per_n));
-            RigidSimulation simulation = studies.simulate(column(scheme, n, half_joint ? 2.0 : 1.0));
+            Simulation simulation = studies.simulate(column(scheme, n, half_joint ? 2.0 : 1.0));
             if (!settle(simulation).settled) return not_measured();
             const double y = half_joint ? bar_height * (1.0 - 0.5 * per_n) : bar_height;
             const double bar = weight_over_stiffness * (bar_height * y - 0.5 * y * y);

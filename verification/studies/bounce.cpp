@@ -43,7 +43,7 @@ void bounce(Studies& studies) {
         for (Vec2& v : scene.blocks[1].vertices) v.y() += drop;
         use(scheme, scene);
         scene.step.dt = dt;
-        RigidSimulation simulation = studies.simulate(scene);
+        Simulation simulation = studies.simulate(scene);
         if (!follow(simulation, dt, end)) return not_measured();
         squares += std::pow(drop + simulation.system().displacement(1)[1] - height(drop, data.gravity, w, end), 2);
       }

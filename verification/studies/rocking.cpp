@@ -46,7 +46,7 @@ void rocking(Studies& studies) {
       for (Vec2& v : scene.blocks[1].vertices) v = turned(v) - Vec2(0.0, closure);
       use(scheme, scene);
       scene.step.dt = dt;
-      RigidSimulation simulation = studies.simulate(scene);
+      Simulation simulation = studies.simulate(scene);
       if (!follow(simulation, dt, end)) return not_measured();
       const Eigen::Vector3d moved = simulation.system().displacement(1);
       const Eigen::Vector3d error = moved - Eigen::Vector3d(exact.x - start.x, exact.y - start.y, exact.rotation - tilt);

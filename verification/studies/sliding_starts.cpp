@@ -28,7 +28,7 @@ void sliding_starts(Studies& studies) {
         use(scheme, scene);
         scene.method.start = start;
         scene.step.dt = dt;
-        RigidSimulation simulation = studies.simulate(scene);
+        Simulation simulation = studies.simulate(scene);
         prepare_start(simulation);
         const Vec2 from = simulation.system().centroid(1);
         if (!follow(simulation, dt, end)) return not_measured();

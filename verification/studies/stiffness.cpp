@@ -25,7 +25,7 @@ void closure(Studies& studies, const Scheme& scheme) {
         const analytical::BlockOnPlane data = block_with(softness, 0.0);
         Scene scene = block_on_plane(data);
         use(scheme, scene);
-        RigidSimulation simulation = studies.simulate(scene);
+        Simulation simulation = studies.simulate(scene);
         if (!settle(simulation).settled) return not_measured();
         return -simulation.system().displacement(1)[1];
       },
@@ -49,7 +49,7 @@ void lead(Studies& studies, const Scheme& scheme) {
         use(scheme, scene);
         scene.method.start = Start::normal_balanced;
         scene.step.dt = step(softness);
-        RigidSimulation simulation = studies.simulate(scene);
+        Simulation simulation = studies.simulate(scene);
         prepare_start(simulation);
         const Vec2 from = simulation.system().centroid(1);
         if (!follow(simulation, scene.step.dt, end)) return not_measured();

@@ -37,7 +37,7 @@ void stopping_block(Studies& studies) {
         scene.blocks[1].rotation_locked = true;
         scene.blocks[1].velocity = {speed, 0.0};
         scene.step.dt = dt;
-        RigidSimulation simulation = studies.simulate(scene);
+        Simulation simulation = studies.simulate(scene);
         prepare_start(simulation);
         const Vec2 from = simulation.system().centroid(1);
         if (!follow(simulation, dt, stop.time + after)) return not_measured();
