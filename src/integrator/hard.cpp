@@ -9,7 +9,8 @@
 // what they carry: the next pass starts from N - k gap and T - k s as they are, below zero where a contact is open and beyond its strength where it
 // slides. With the forces alone every contact that slides would stand between sliding and sticking, and every open one between open and closed, and
 // Newton's method would have to find out for each of them again. So the passes are the steps that `soft` would take to its rest, with one difference:
-// the forces act on the blocks where they were. How far open contacts have parted in this way (their slack) is kept for the next step.
+// the forces act on the blocks where they were. How far open contacts have parted in this way (their slack) is kept for the next step. Where contacts
+// close within a step and stick, the passes may have no end, and stiff springs hold the blocks, see hold_by_stiff_springs().
 //
 // Gravity that comes at once, or a strength that is gone at once, asks a motion's step for all multipliers anew, and two things fail. Newton's method
 // gets lost: where a contact that hardly carries turns its neighbours by its friction, which on the ramp of the cohesion is ten times its normal

@@ -453,8 +453,8 @@ TEST_CASE("open joints close to the tolerance of rigid contacts", "[analysis][se
     REQUIRE(result.settled);
     const double largest = scene.settle.unbalanced_fraction * simulation.force_scale();
     CHECK(worst_balance(simulation) < 2.0 * largest);
-    // Incompatible places may be missed by three times the tolerance.
-    for (const Contact& c : simulation.contacts()) CHECK(c.gap >= -4.0 * scene.method.gap_tolerance);
+    // A closed contact's target is up to half the tolerance behind zero, and places that exclude each other may be missed by three times the tolerance.
+    for (const Contact& c : simulation.contacts()) CHECK(c.gap >= -3.5 * scene.method.gap_tolerance);
   };
   SECTION("0.7 mm, of high columns") {
     settles(leaning_columns(3, {10.0, 20.0, 40.0, 20.0, 40.0, 10.0, 20.0, 40.0}, 7e-4, 0.387, 3.048));
