@@ -2,6 +2,7 @@
 #include <numeric>
 #include <string>
 
+#include "openclose/analysis/run.h"
 #include "openclose/analysis/settle.h"
 #include "openclose/analysis/strength_reduction.h"
 #include "openclose/integrator/registry.h"
@@ -453,7 +454,8 @@ TEST_CASE("open joints close to the tolerance of rigid contacts", "[analysis][se
     REQUIRE(result.settled);
     const double largest = scene.settle.unbalanced_fraction * simulation.force_scale();
     CHECK(worst_balance(simulation) < 2.0 * largest);
-    // A closed contact's target is up to half the tolerance behind zero, and places that exclude each other may be missed by three times the tolerance.
+    // A closed contact's target is up to half the tolerance behind zero, and places that exclude each other may be missed by three times the
+    // tolerance.
     for (const Contact& c : simulation.contacts()) CHECK(c.gap >= -3.5 * scene.method.gap_tolerance);
   };
   SECTION("0.7 mm, of high columns") {
@@ -465,6 +467,22 @@ TEST_CASE("open joints close to the tolerance of rigid contacts", "[analysis][se
   SECTION("0.17 mm, where four blocks meet") {
     settles(leaning_columns(4, {40.0, 40.0, 40.0, 40.0}, 1.75e-4, 0.4124, 5.022));
   }
+}
+
+TEST_CASE("a corner that enters another block while rigid contacts settle is met there", "[analysis][settle]") {
+  // The corners of diagonal blocks, 0.14 mm apart in the drawing, meet while the columns go 0.7 mm.
+  Scene scene = leaning_columns(4, {10.0, 10.0, 40.0, 40.0}, 1.408e-4, 0.6079, 3.401);
+  scene.materials[0].density = 2600.0;
+  scene.joints[0].normal_stiffness = 1.0363e10;
+  scene.joints[0].shear_stiffness = 2.447e9;
+  scene.joints[0].friction_angle = 31.377 * test::degree;
+  scene.method.start = Start::settled;
+  scene.step.dt = scene.end_time = 0.01;
+  Simulation simulation(scene);
+  // The watch compares the outlines of all blocks, whatever contacts there are.
+  const RunResult result = run(simulation, {});
+  INFO(result.reason);
+  CHECK(result.converged);
 }
 
 TEST_CASE("balance with cohesion that was lost in the same step is none", "[analysis][settle]") {

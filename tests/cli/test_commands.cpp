@@ -509,6 +509,8 @@ TEST_CASE("explain tells a key, and refuses an unknown one", "[cli][keys]") {
     CHECK(refused.out.empty());
   }
   CHECK_THAT(place.run("explain thetta").errors.at(0), ContainsSubstring("explain: thetta: this key is not known, did you mean theta?"));
+  // Several tables have a key `name`.
+  CHECK_THAT(place.run("explain nam").errors.at(0), ContainsSubstring("accepted: name, ") && !ContainsSubstring("name, name"));
 }
 
 TEST_CASE("a key in its old place is warned of once and changes nothing else", "[cli][keys]") {
