@@ -105,7 +105,7 @@ class Campaign:
         if SAME <= set(found):
             rows += self._same(scene, *(found[method] for method in sorted(SAME)))
         for method in set(found) - SAME if "soft" in found else ():
-            rows += _comparison(scene, f"{method} = soft", verdicts.nearly_same(found["soft"], found[method]), found["soft"], found[method])
+            rows += _comparison(scene, f"{method} = soft", verdicts.nearly_same(found["soft"], found[method]), found["soft"], found[method], verdicts.APART)
         if self.invariances and scene.part == slopes.PART:
             rows += self._invariances(scene, blocks, methods, found)
         return rows
@@ -164,11 +164,14 @@ class Campaign:
             shutil.rmtree(folder, ignore_errors=True)
 
 
-def _comparison(scene: Scene, what: str, wrong: str, one: verdicts.Verdict, other: verdicts.Verdict) -> list[Row]:
-    """A row for two answers that have to be one; none where there are not two."""
+def _comparison(scene: Scene, what: str, wrong: str, one: verdicts.Verdict, other: verdicts.Verdict, otherwise: str = verdicts.FALSE) -> list[Row]:
+    """A row for two answers that have to be one; none where there are not two.
+
+    otherwise: the verdict where something is wrong
+    """
     if one.stable is None or other.stable is None:
         return []
-    return [Row(scene.part, scene.seed, scene.described(), what, 0, verdicts.FALSE if wrong else verdicts.RIGHT, wrong)]
+    return [Row(scene.part, scene.seed, scene.described(), what, 0, otherwise if wrong else verdicts.RIGHT, wrong)]
 
 
 def _row(scene: Scene, method: str, blocks: int, verdict: verdicts.Verdict, outcome) -> Row:

@@ -6,9 +6,9 @@ from collections.abc import Callable
 from pathlib import Path
 
 from campaign import Row
-from verdicts import AT_THE_LIMIT, FALSE, REFUSED, RIGHT, SLOW, WIDEST_BRACKET
+from verdicts import APART, AT_THE_LIMIT, FALSE, REFUSED, RIGHT, SLOW, WIDEST_BRACKET
 
-VERDICTS = RIGHT, REFUSED, FALSE, SLOW
+VERDICTS = RIGHT, APART, REFUSED, FALSE, SLOW
 WORST = 10
 QUANTILES = (("median", 0.5), ("90 %", 0.9), ("99 %", 0.99), ("largest", 1.0))
 

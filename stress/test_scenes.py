@@ -15,6 +15,7 @@ import variants
 from campaign import Row
 from geometry import Body
 from scene import POINT_MARK, measured, to_toml
+from verdicts import APART
 
 SEEDS = range(1, 41)
 
@@ -107,7 +108,7 @@ class Page(unittest.TestCase):
 
     def test_it_counts_and_gives_distances(self):
         text = "\n".join(page._counts(self.ROWS) + page._reasons(self.ROWS) + page._distances(self.ROWS) + page._energy(self.ROWS))
-        for line in ("| tumbles | dem | 1 | 0 | 0 | 1 | 0 |", "| FALSE | dem | energy created: ... of the start's | 1 |",
+        for line in ("| tumbles | dem | 1 | 0 | 0 | 0 | 1 | 0 |", "| FALSE | dem | energy created: ... of the start's | 1 |",
                      "| slopes | soft | c = 0 | 1 | 0.9000 | 0.9000 | 0.9000 | 0 of 1 |", "| tumbles | dem | 1 | 12 | 12 | 12 | 12 |"):
             self.assertIn(line, text)
 
@@ -123,6 +124,7 @@ class Comparisons(unittest.TestCase):
         self.assertEqual([r.verdict for r in campaign.Campaign._same(scene, of(1.0, 1.01), of(1.005, 1.006))], ["FALSE"])
         self.assertEqual([r.verdict for r in campaign.Campaign._same(scene, of(1.0, 1.004), of(1.002, 1.006))], ["right"])
         self.assertEqual(campaign.Campaign._same(scene, of(1.0, 1.004), of(None, None)), [])
+        self.assertEqual([r.verdict for r in campaign._comparison(scene, "shi = soft", "instead of", of(1.0, 1.004), of(0.9, 0.904), APART)], ["apart"])
 
 
 if __name__ == "__main__":

@@ -11,6 +11,9 @@ from outcome import BAD_INPUT, DONE, NOT_CONVERGED, Outcome
 from scene import Scene, densities
 
 RIGHT, REFUSED, FALSE, SLOW = "right", "refused", "FALSE", "slow"
+# Of two factors, each proved by forces below and by a mechanism above: without dilatancy there can be an equilibrium and a mechanism at one strength,
+# and which of them is met depends on the way. No answer is false, but they are not the same.
+APART = "apart"
 
 # [-] Of the start's energy above the floor, or of the work done: the one bound of created energy.
 CREATED_ENERGY = 0.01
@@ -404,7 +407,7 @@ def same_bracket(one: Verdict, other: Verdict) -> str:
 
 
 def nearly_same(one: Verdict, other: Verdict) -> str:
-    """Where the factor is that of limit analysis, neither the way to equilibrium nor ks/kn matters: methods agree."""
+    """Where the factor is that of limit analysis, neither the way to equilibrium nor ks/kn matters on all but a few slopes: methods agree."""
     if one.stable is None or other.stable is None or one.limit is None or one.stable < AT_THE_LIMIT * one.limit or abs(other.stable / one.stable - 1) <= METHODS_DIFFER:
         return ""
     if other.answer == INTERVAL and other.stable < one.stable and (other.failed is None or other.failed >= one.stable):
