@@ -10,7 +10,7 @@ namespace openclose {
 namespace {
 
 /// [-] A shorter part of a step would be no step: the corner counts as being behind already.
-constexpr double shortest_part = 1e-3;
+constexpr double shortest_part = 1e-5;
 /// [-] Of what is tolerated: closed contacts whose gaps exclude each other miss theirs by three times as much.
 constexpr double behind = 4.0;
 /// [-] Of tolerance::edge_end_m, to which corners that slide on something count as flush.
@@ -109,22 +109,25 @@ class Entries {
   double entry(const Way& corner, int v, int into, int e) const {
     const Way start = ways_(into, e), end = ways_(into, system_.next(e));
     const Course course(corner, start, end);
-    const double part = course.part(0.5 * tolerated_, behind * tolerated_);
-    if (!(part >= shortest_part && part < 1.0)) return 1.0;
+    const double early = course.part(0.5 * tolerated_, behind * tolerated_), late = course.part(flush * tolerance::edge_end_m, flush * tolerance::edge_end_m);
+    const bool is_behind_at_once = !is_within_step(early);
+    const double part = is_behind_at_once ? late : early;
+    if (!is_within_step(part)) return 1.0;
     const double along = course.along(part), from_start = along, from_end = course.length() - along;
     const double inside = std::min(from_start, from_end);
-    if (inside > behind * tolerated_) return is_held(v, e) ? 1.0 : part;
+    if (inside > behind * tolerated_) return is_behind_at_once || is_held(v, e) ? 1.0 : part;
     // In a notch one wall leads the corner on to the other one, and nothing slides on over that: what is behind one wall beyond its end is behind
     // both.
     const bool in_notch = system_.is_reflex(from_start < from_end ? e : system_.next(e));
     if (inside < -(in_notch ? reach_ : tolerated_ + bow_) || is_held(v, e)) return 1.0;
-    if (in_notch) return part;
+    if (in_notch) return is_behind_at_once ? 1.0 : part;
     // At its end a corner slides on over a neighbour that is flush with the block, unless its own block is behind that side of the block, too: the
-    // feet of two blocks that meet on one floor. Detection takes corners for flush until they are deeper than rounding leaves them.
+    // feet of two blocks that meet on one floor. Detection takes corners for flush until they are deeper than rounding leaves them, so that one that
+    // was behind by less at the end of the last step counts again.
     if (stands_on(v, from_start < from_end ? system_.previous(e) : system_.next(e))) return 1.0;
-    const double deeper = course.part(flush * tolerance::edge_end_m, flush * tolerance::edge_end_m);
-    return deeper >= shortest_part ? deeper : 1.0;
+    return is_within_step(late) ? late : 1.0;
   }
+  static bool is_within_step(double part) { return part >= shortest_part && part < 1.0; }
   /// Both sides of a corner leave the half-plane behind an edge.
   bool stands_on(int v, int e) const {
     const Vec2 along = (system_.arm(system_.next(e)) - system_.arm(e)).normalized(), outward(along.y(), -along.x());

@@ -78,6 +78,9 @@ class NarrowPhase {
   }
 
  private:
+  /// By which a corner has found an edge.
+  enum class Rule { facing_edges, lone_corner };
+
   /// Of the corners of a block, those that may touch the other one. Where two convex blocks were not in contact, a corner that touches an edge is at
   /// most as far beyond the lines along other edges as it is from this one, and by 1 % more where edges face each other that are not quite parallel,
   /// or beyond the end of this one by what end_margin() allows.
@@ -132,9 +135,9 @@ class NarrowPhase {
     // The two corners take turns: a joint that has closed under one of them is closed for the other.
     const auto closed = [&] { return previous_.was_closed(va, b) || previous_.was_closed(vb, a); };
     if (a_is_inside != inside_is_reflex) {
-      add(block_a, va, block_b, b, length, closed);
+      add(block_a, va, block_b, b, length, Rule::facing_edges, closed);
     } else {
-      add(block_b, vb, block_a, a, length, closed);
+      add(block_b, vb, block_a, a, length, Rule::facing_edges, closed);
     }
   }
 
@@ -159,7 +162,7 @@ class NarrowPhase {
         if (weight == 0.0 || passes_over(v, edge_block, e)) continue;
         const Vec2 ahead = system_.arm(system_.next(v)) - system_.arm(v), back = system_.arm(system_.previous(v)) - system_.arm(v);
         const auto projection = [&](const Vec2& side) { return std::min(std::abs(side.dot(edge.direction)), edge.length); };
-        add(vertex_block, v, edge_block, e, 0.5 * weight * (projection(ahead) + projection(back)), [&] { return previous_.was_closed(v, e); });
+        add(vertex_block, v, edge_block, e, 0.5 * weight * (projection(ahead) + projection(back)), Rule::lone_corner, [&] { return previous_.was_closed(v, e); });
       }
     }
   }
@@ -187,7 +190,7 @@ class NarrowPhase {
 
   /// \param closed  tells whether this place was in contact already
   template <class Closed>
-  void add(int vertex_block, int v, int edge_block, int e, double length, const Closed& closed) {
+  void add(int vertex_block, int v, int edge_block, int e, double length, Rule rule, const Closed& closed) {
     if (system_.is_reflex(v)) return;
     for (std::size_t i = first_; i < found_->size(); ++i) {
       Contact& known = (*found_)[i];
@@ -207,7 +210,7 @@ class NarrowPhase {
     contact.edge = e;
     contact.length = length;
     contact.gap = present_ ? present_gap(contact) : gap;
-    if (gap < 0.0 && (!present_ || contact.gap < 0.0) && !entered_through(vertex_block, v, edge_block, e, gap, closed)) return;
+    if (gap < 0.0 && (!present_ || contact.gap < 0.0) && !entered_through(vertex_block, v, edge_block, e, gap, rule, closed)) return;
     found_->push_back(contact);
   }
 
@@ -312,13 +315,13 @@ class NarrowPhase {
   /// gone through. Only in a notch does it touch both walls. History decides nothing here: beside a four-block corner a corner is first behind the
   /// joint's face, then, as it slides on, behind the right one.
   template <class Closed>
-  bool entered_through(int vertex_block, int v, int edge_block, int e, double gap, const Closed& closed) {
+  bool entered_through(int vertex_block, int v, int edge_block, int e, double gap, Rule rule, const Closed& closed) {
     const Vec2& p = shapes_.edge(v).start;
     const Edge& edge = shapes_.edge(e);
-    // What lies behind the edge must lie in the block, except for what drawings leave, which is not beyond a thin block, and what contacts that carry
-    // load have closed.
-    const double left_by_drawings = std::min(tolerance::deepest_initial_overlap_m, depth_behind(edge_block, edge));
-    if (-gap > left_by_drawings && !in_block(edge_block, p) && !closed()) return false;
+    // What lies behind the edge must lie in the block, except for what contacts that carry load have closed, and at an end of two edges that face each
+    // other, which may lie beside the block's corner, for what drawings leave: that is not beyond a thin block.
+    const double beside = rule == Rule::facing_edges ? std::min(tolerance::deepest_initial_overlap_m, depth_behind(edge_block, edge)) : 0.0;
+    if (-gap > beside && !in_block(edge_block, p) && !closed()) return false;
     const auto& block = system_.block(edge_block);
     for (int f = block.first_vertex; f < block.first_vertex + block.vertex_count; ++f) {
       const Edge& other = shapes_.edge(f);

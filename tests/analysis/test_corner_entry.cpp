@@ -1,5 +1,6 @@
 #include "openclose/analysis/corner_entry.h"
 #include "openclose/analysis/run.h"
+#include "openclose/core/tolerance.h"
 #include "openclose/geometry/overlap.h"
 #include "support/catch.h"
 #include "support/scenes.h"
@@ -49,6 +50,9 @@ TEST_CASE("a step ends where a corner enters a block", "[analysis][corner_entry]
   SECTION("nor at once") {
     CHECK(entry_from(0.0, {0.0, -0.1, 0.0}) == 1.0);
   }
+  SECTION("but soon after the start") {
+    CHECK(entry_from(tolerated, {0.0, -0.02, 0.0}) == Approx(1.5 * tolerated / 0.02).epsilon(1e-6));
+  }
   SECTION("nor beside the end of an edge") {
     CHECK(entry_from(0.0, {1.0, 0.0, 0.0}, -12.5) == 1.0);
     CHECK(entry_from(-0.5, {1.0, 0.0, 0.0}, -12.5) == Approx(0.5 + 0.5 * tolerated).epsilon(1e-8));
@@ -64,6 +68,21 @@ TEST_CASE("a step ends where a corner enters a block", "[analysis][corner_entry]
     CHECK(entry_from(0.01, 0.9 * part * Motion::Unknowns(0.0, 0.0, angle)) == 1.0);  // the way is the chord of the arc
     CHECK(entry_from(0.01, 1.1 * part * Motion::Unknowns(0.0, 0.0, angle)) < 1.0);
   }
+}
+
+TEST_CASE("a tip that is behind another one's face by no more than flush corners are enters it all the same", "[analysis][corner_entry]") {
+  // Two feet on one floor, tip to tip; the right one hangs a micrometre higher.
+  const Vec2 face = Vec2(std::cos(57.0 * test::degree), std::sin(57.0 * test::degree)), outward(face.y(), -face.x()), tip(-5e-7, 1e-6);
+  Scene scene = test::empty_scene();
+  scene.blocks = {test::fixed_block("left", {Vec2(0.0, 0.0), 2.0 * face, Vec2(-1.0, 1.5), Vec2(-1.0, 0.1)}),
+                  test::free_block("right", {tip, tip + Vec2(2.0, 0.0), tip + Vec2(2.0, 0.5)})};
+  const BlockSystem system(scene);
+  StepSolution solution;
+  const double way = 1e-4;
+  solution.d = Motion::Unknowns(-way, 0.0, 0.0);
+  // Until it is behind by twice what counts as flush.
+  const double expected = (2.0 * tolerance::edge_end_m + outward.dot(tip)) / (way * outward.x());
+  CHECK(first_entry(system, solution, {{0, 1}}, {tolerated}) == Approx(expected).epsilon(1e-6));
 }
 
 TEST_CASE("what a corner may enter goes with the width of the narrower block", "[analysis][corner_entry]") {

@@ -462,3 +462,11 @@ TEST_CASE("a blunt corner at the tip of a thin wedge does not hold the wedge's o
   }
   CHECK(d.total_length() == Approx(length));
 }
+
+TEST_CASE("a corner that has come past the tip of a wedge does not touch its far side from behind", "[contact][detection]") {
+  // The wedge's tip (2) is about to touch the other block's face (6); that block's lowest corner (3) lies beside the wedge.
+  Detection d(scene_with({fixed_block("wedge", {{-0.0106, -0.0105}, {-0.0120, -0.0315}, {0.0, 0.0}}),
+                          free_block("block", {{4.23e-4, -8.15e-4}, {4.23e-4, 0.0366}, {-0.0067, 0.0309}, {-0.0075, 0.0270}})}));
+  CHECK(d.find(2, 6) != nullptr);
+  for (const Contact& c : d.contacts) CHECK(c.gap > 0.0);
+}
