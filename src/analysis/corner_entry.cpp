@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "openclose/core/tolerance.h"
+#include "openclose/geometry/overlap.h"
 
 namespace openclose {
 namespace {
@@ -109,7 +110,8 @@ class Entries {
   double entry(const Way& corner, int v, int into, int e) const {
     const Way start = ways_(into, e), end = ways_(into, system_.next(e));
     const Course course(corner, start, end);
-    const double early = course.part(0.5 * tolerated_, behind * tolerated_), late = course.part(flush * tolerance::edge_end_m, flush * tolerance::edge_end_m);
+    const double early = course.part(0.5 * tolerated_, behind * tolerated_),
+                 late = course.part(flush * tolerance::edge_end_m, flush * tolerance::edge_end_m);
     const bool is_behind_at_once = !is_within_step(early);
     const double part = is_behind_at_once ? late : early;
     if (!is_within_step(part)) return 1.0;
@@ -155,6 +157,27 @@ double first_entry(const BlockSystem& system, const StepSolution& solution, cons
     if (entries.may_be(a, b)) first = std::min({first, entries.first(a, b), entries.first(b, a)});
   }
   return first;
+}
+
+bool pass_into_each_other(const BlockSystem& system, const StepSolution& solution, const std::vector<std::pair<int, int>>& pairs, double allowed) {
+  const Ways ways(system, solution);
+  const auto outline = [&](int b, double part) {
+    const auto& block = system.block(b);
+    Outline of{{}, true};
+    for (int v = block.first_vertex; v < block.first_vertex + block.vertex_count; ++v) {
+      of.corners.push_back(ways(b, v).at(part));
+      of.is_convex = of.is_convex && !system.is_reflex(v);
+    }
+    return of;
+  };
+  const auto depth = [&](int a, int b, double part) { return overlap_depth_beyond(allowed, outline(a, part), outline(b, part)); };
+  return std::ranges::any_of(pairs, [&](const std::pair<int, int>& pair) {
+    const auto [a, b] = pair;
+    const double nearer = ways.approach(a, b);
+    if (nearer <= allowed || (system.centroid(a) - system.centroid(b)).norm() > system.block(a).radius + system.block(b).radius + nearer)
+      return false;
+    return depth(a, b, 1.0) > allowed && depth(a, b, 0.0) <= allowed;
+  });
 }
 
 }  // namespace openclose

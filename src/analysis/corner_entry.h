@@ -32,4 +32,8 @@ struct EntryTolerance {
 double first_entry(const BlockSystem& system, const StepSolution& solution, const std::vector<std::pair<int, int>>& pairs,
                    const EntryTolerance& tolerance, const std::vector<Contact>* held = nullptr);
 
+/// Whether two blocks are deeper in each other at the end of a step of these displacements than they may be [m], and were not at its start: as where
+/// two tips cross each other's sides with no corner in the other block, or places that exclude each other have been missed.
+bool pass_into_each_other(const BlockSystem& system, const StepSolution& solution, const std::vector<std::pair<int, int>>& pairs, double allowed);
+
 }  // namespace openclose

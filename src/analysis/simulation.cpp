@@ -58,6 +58,10 @@ constexpr int most_cuts_at_entry = 8;
 /// has not become shorter than this by a cut.
 constexpr double shorter_by_cut = 0.9;
 
+/// [-] Of solver.gap_tolerance_m: rigid blocks that come to be deeper in each other within a step are met earlier. Half of what the watch lets pass.
+constexpr double passing_of_tolerance = 5.0;
+constexpr double halved = 0.5;  ///< [-] part of a step
+
 /// [-] Of the width of the narrower block: behind an edge that it is not in contact with, a corner at whose contact springs are to act may be four
 /// times as deep at the end of a step (see corner_entry.cpp). A sixth of what the watch lets it close.
 constexpr double unnoticed_part_of_width = 0.01;
@@ -518,13 +522,16 @@ double Simulation::largest_move(const StepSolution& solution) const {
 }
 
 double Simulation::part_before_entry(const StepSolution& solution, double moved) const {
-  if (solution.compliant || cuts_at_entry_ == most_cuts_at_entry) return 1.0;  // springs of a compliant step give way by more than what is tolerated
+  if (cuts_at_entry_ == most_cuts_at_entry) return 1.0;
+  const auto& pairs = detector_.candidate_pairs();
   if (enforcement_->has_elastic_contacts()) {
     const EntryTolerance tolerance{tolerance::rounding_of_ways_m, unnoticed_part_of_width, enforcement_->deepest_entry(scene_.method)};
-    return first_entry(system_, solution, detector_.candidate_pairs(), tolerance, &contacts_);
+    return first_entry(system_, solution, pairs, tolerance, &contacts_);
   }
   const double tolerated = std::max(scene_.method.gap_tolerance, tolerance::rounding_of_ways_m);
-  return 2.0 * moved > tolerated ? first_entry(system_, solution, detector_.candidate_pairs(), {tolerated}) : 1.0;
+  if (2.0 * moved <= tolerated) return 1.0;
+  const double part = first_entry(system_, solution, pairs, {tolerated});
+  return part == 1.0 && pass_into_each_other(system_, solution, pairs, passing_of_tolerance * tolerated) ? halved : part;
 }
 
 StepResult Simulation::step(double dt, bool statics) {
@@ -703,15 +710,13 @@ void Simulation::accept(const StepProblem& problem, const StepSolution& solution
   time_ += problem.dt;
   ++step_counters_.steps;
   count_moves();
-  // Where multipliers have just failed, the next step need not fail again before it may be compliant: cuts would outrun the growth of the step.
   if (!problem.statics) {
     friction_work_ += solution.friction_work;
     lagging_friction_work_ += solution.lagging_friction_work;
   }
-  if (solution.compliant) ++step_counters_.compliant;
   if (solution.eased) ++step_counters_.eased;
   if (solution.dissipative) ++step_counters_.dissipative;
-  if (!solution.compliant) failed_attempts_ = 0;
+  failed_attempts_ = 0;
   // The contact that the step has come to may be new to a pair that has hardly moved.
   if (cuts_at_entry_ > 0) detector_.look_again();
   cuts_at_entry_ = cuts_for_energy_ = 0;

@@ -41,7 +41,6 @@ struct StepCounters {
   long part_batches_skipped = 0;        ///< not evaluated then, since nothing in them has moved
   long relaxation_steps = 0;            ///< evaluations of all forces in static steps that are relaxed, thrown-away attempts included
   long relaxation_estimates = 0;        ///< of the stiffness of the whole system, made for these
-  long compliant = 0;                   ///< steps of `hard` whose multipliers did not converge: taken with springs
   long eased = 0;                       ///< steps of `hard` that were balanced with a longer ramp of the cohesion only
   long dissipative = 0;                 ///< steps of path_average that found a solution only with dissipation
   long loads = 0;                       ///< times the explicit loop took over the state anew
@@ -67,8 +66,8 @@ struct StepCounters {
   }
 
   void exchange(Archive& archive) {
-    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, w, x, y] = *this;
-    archive(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, w, x, y);
+    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, w, x] = *this;
+    archive(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, w, x);
   }
 };
 

@@ -69,26 +69,6 @@ double perimeter(const Polygon& polygon) {
   return length;
 }
 
-/// Whether the line along an edge of a convex polygon keeps the other one out but for this depth [m].
-bool parts(const Polygon& convex, const Polygon& other, double depth) {
-  for (std::size_t i = 0; i < convex.size(); ++i) {
-    const Vec2 along = convex[(i + 1) % convex.size()] - convex[i];
-    const double reach = depth * along.norm();
-    const auto is_behind = [&](const Vec2& point) { return cross(along, point - convex[i]) > reach; };
-    if (std::ranges::none_of(other, is_behind)) return true;
-  }
-  return false;
-}
-
-/// Whether no edge of the one comes near the box of the other, and a corner of that lies outside: for blocks in a hollow of one that is not convex.
-bool lies_beside(const Polygon& inner, const Polygon& hollow) {
-  const Box box = Box::around(inner);
-  for (std::size_t i = 0; i < hollow.size(); ++i) {
-    if (Box::around(hollow[i], hollow[(i + 1) % hollow.size()]).overlaps(box)) return false;
-  }
-  return !contains(hollow, inner[0]);
-}
-
 std::string shorter_step(const Scene& scene, double factor) {
   return fmt::format("step.dt_s = {:.2g} would be a remedy", scene.step.dt / factor);
 }
@@ -321,10 +301,7 @@ std::string Watch::check_overlaps(const Simulation& simulation, std::size_t firs
     const double narrower = std::min(widths_[a], widths_[b]), allowed = allowed_depth(simulation, narrower);
     const double apart = (system.centroid(a) - system.centroid(b)).norm();
     if (apart >= system.block(a).radius + system.block(b).radius) continue;
-    const Polygon of_a = polygon(system, a), of_b = polygon(system, b);
-    if ((convex_[a] && parts(of_a, of_b, allowed)) || (convex_[b] && parts(of_b, of_a, allowed))) continue;
-    if ((!convex_[a] && lies_beside(of_b, of_a)) || (!convex_[b] && lies_beside(of_a, of_b))) continue;
-    const double depth = overlap_depth(of_a, of_b);
+    const double depth = overlap_depth_beyond(allowed, {polygon(system, a), convex_[a] != 0}, {polygon(system, b), convex_[b] != 0});
     report_.overlap = std::max(report_.overlap, depth / narrower);
     report_.depth = std::max(report_.depth, depth);
     if (depth <= allowed) continue;

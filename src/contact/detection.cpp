@@ -549,7 +549,7 @@ bool Detector::update(const BlockSystem& system, const JointTable& joints, std::
   if (!searches) shapes_.begin(system);
   index_.begin(system, contacts, resting_.contacts);
   for (const int pair : pairs_around_due_ones()) index_.add(ranges_[pair]);
-  NarrowPhase narrow(system, present, reach_ + skips_.contact_skin, shapes_, index_);
+  NarrowPhase narrow(system, present, reach_ + skips_.contact_skin, first_, shapes_, index_);
   for (const int pair : due_pairs_) redo(joints, system, pair, narrow, contacts);
   if (!first_) pass_on_history(system, contacts);
   put_in_place(contacts, orphans);

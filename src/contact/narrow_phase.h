@@ -51,8 +51,9 @@ class NarrowPhase {
  public:
   using Edge = BlockShapes::Edge;
 
-  NarrowPhase(const BlockSystem& system, const BlockSystem* present, double reach, BlockShapes& shapes, const ContactIndex& previous)
-      : system_(system), present_(present), reach_(reach), shapes_(shapes), previous_(previous) {}
+  /// \param is_drawing  the blocks are where they were drawn
+  NarrowPhase(const BlockSystem& system, const BlockSystem* present, double reach, bool is_drawing, BlockShapes& shapes, const ContactIndex& previous)
+      : system_(system), present_(present), reach_(reach), is_drawing_(is_drawing), shapes_(shapes), previous_(previous) {}
 
   void run(int block_a, int block_b, std::vector<Contact>& found) {
     found_ = &found;
@@ -162,7 +163,8 @@ class NarrowPhase {
         if (weight == 0.0 || passes_over(v, edge_block, e)) continue;
         const Vec2 ahead = system_.arm(system_.next(v)) - system_.arm(v), back = system_.arm(system_.previous(v)) - system_.arm(v);
         const auto projection = [&](const Vec2& side) { return std::min(std::abs(side.dot(edge.direction)), edge.length); };
-        add(vertex_block, v, edge_block, e, 0.5 * weight * (projection(ahead) + projection(back)), Rule::lone_corner, [&] { return previous_.was_closed(v, e); });
+        add(vertex_block, v, edge_block, e, 0.5 * weight * (projection(ahead) + projection(back)), Rule::lone_corner,
+            [&] { return previous_.was_closed(v, e); });
       }
     }
   }
@@ -318,9 +320,10 @@ class NarrowPhase {
   bool entered_through(int vertex_block, int v, int edge_block, int e, double gap, Rule rule, const Closed& closed) {
     const Vec2& p = shapes_.edge(v).start;
     const Edge& edge = shapes_.edge(e);
-    // What lies behind the edge must lie in the block, except for what contacts that carry load have closed, and at an end of two edges that face each
-    // other, which may lie beside the block's corner, for what drawings leave: that is not beyond a thin block.
-    const double beside = rule == Rule::facing_edges ? std::min(tolerance::deepest_initial_overlap_m, depth_behind(edge_block, edge)) : 0.0;
+    // What lies behind the edge must lie in the block, except for what contacts that carry load have closed, and in a drawing for what drawings leave
+    // at the ends of two edges that face each other, which may lie beside the block's corner: that is not beyond a thin block.
+    const bool faces_as_drawn = is_drawing_ && rule == Rule::facing_edges;
+    const double beside = faces_as_drawn ? std::min(tolerance::deepest_initial_overlap_m, depth_behind(edge_block, edge)) : 0.0;
     if (-gap > beside && !in_block(edge_block, p) && !closed()) return false;
     const auto& block = system_.block(edge_block);
     for (int f = block.first_vertex; f < block.first_vertex + block.vertex_count; ++f) {
@@ -384,6 +387,7 @@ class NarrowPhase {
   const BlockSystem& system_;
   const BlockSystem* present_;
   double reach_;
+  bool is_drawing_;
   BlockShapes& shapes_;
   const ContactIndex& previous_;
   std::vector<Contact>* found_ = nullptr;

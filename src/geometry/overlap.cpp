@@ -108,6 +108,26 @@ double depth_of_bisectors(const Polygon& polygon, const Polygon& other, const Bo
   return depth;
 }
 
+/// Whether the line along an edge of a convex polygon keeps the other one out but for this depth [m].
+bool parts(const Polygon& convex, const Polygon& other, double depth) {
+  for (std::size_t i = 0; i < convex.size(); ++i) {
+    const Vec2 along = convex[(i + 1) % convex.size()] - convex[i];
+    const double reach = depth * along.norm();
+    const auto is_behind = [&](const Vec2& point) { return cross(along, point - convex[i]) > reach; };
+    if (std::ranges::none_of(other, is_behind)) return true;
+  }
+  return false;
+}
+
+/// Whether no edge of the one comes near the box of the other, and a corner of that lies outside: for blocks in a hollow of one that is not convex.
+bool lies_beside(const Polygon& inner, const Polygon& hollow) {
+  const Box box = Box::around(inner);
+  for (std::size_t i = 0; i < hollow.size(); ++i) {
+    if (Box::around(hollow[i], hollow[(i + 1) % hollow.size()]).overlaps(box)) return false;
+  }
+  return !contains(hollow, inner[0]);
+}
+
 }  // namespace
 
 double overlap_depth(const Polygon& a, const Polygon& b) {
@@ -116,6 +136,12 @@ double overlap_depth(const Polygon& a, const Polygon& b) {
   const double depth = std::max({depth_of_boundary(a, b, common), depth_of_boundary(b, a, common),  //
                                  depth_of_bisectors(a, b, common), depth_of_bisectors(b, a, common)});
   return depth < tolerance::shortest_edge_m ? 0.0 : depth;
+}
+
+double overlap_depth_beyond(double depth, const Outline& a, const Outline& b) {
+  if ((a.is_convex && parts(a.corners, b.corners, depth)) || (b.is_convex && parts(b.corners, a.corners, depth))) return 0.0;
+  if ((!a.is_convex && lies_beside(b.corners, a.corners)) || (!b.is_convex && lies_beside(a.corners, b.corners))) return 0.0;
+  return overlap_depth(a.corners, b.corners);
 }
 
 }  // namespace openclose

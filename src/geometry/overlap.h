@@ -16,4 +16,14 @@ namespace openclose {
 /// shared edges, T-junctions and a block that fills a notch are contacts, not overlaps.
 double overlap_depth(const Polygon& a, const Polygon& b);
 
+/// A polygon of which it is known whether it is convex.
+struct Outline {
+  Polygon corners;
+  bool is_convex = false;
+};
+
+/// [m] The same, or 0 where it is seen at once to be no more than `depth`: a line along an edge of a convex one keeps the other one out but for that,
+/// or one lies beside the other in its hollow.
+double overlap_depth_beyond(double depth, const Outline& a, const Outline& b);
+
 }  // namespace openclose

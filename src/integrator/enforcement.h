@@ -80,7 +80,6 @@ struct StepEffort {
 
 struct StepSolution {
   bool converged = false;
-  bool compliant = false;    ///< `hard`: taken with springs, see hard.cpp
   bool eased = false;        ///< `hard`: the cohesion came in over a longer ramp, see hard.cpp
   bool first_order = false;  ///< `shi`: loads and supports act as linearised at the start of the step
   bool dissipative = false;  ///< path_average: taken with more dissipation than asked for, see soft.cpp
@@ -97,7 +96,7 @@ struct StepSolution {
 
   /// Empty again, with its memory for the next step.
   void clear() {
-    converged = compliant = eased = first_order = dissipative = false;
+    converged = eased = first_order = dissipative = false;
     reason.clear();
     part = 0.0;
     friction_work = lagging_friction_work = 0.0;

@@ -63,8 +63,6 @@ constexpr int slow_passes_to_judge = 3;
 /// what is tolerated, the error going with the square of the length; at most the longest part. What would take less than the shortest is no matter of
 /// its length: blocks that hit each other, whose impulse does not become less.
 constexpr double aimed_error = 0.8, shortest_part = 1.0 / 32.0, longest_part = 0.5;
-/// After so many failed attempts at a step it is taken with springs instead: it is in balance, but penetrates by what its forces compress them.
-constexpr int attempts_before_compliance = 3;
 /// [-] Redundant contacts whose targets exclude each other by what earlier steps tolerated leave an error that no pass reduces: a pass that keeps
 /// more than this part of the error ends the iteration if what is left is below this multiple of what is tolerated. In statics, whose tolerance is
 /// far below that of motion, gaps that motion has left may exclude each other by more.
@@ -90,7 +88,6 @@ class Hard final : public Enforcement {
       if (solution.converged) note_slack(solution);
       return;
     }
-    compliant_.clear();
     // The next attempt at a step begins with the springs whose passes were too slow in the one before: slopes of 1,000 to 5,000 blocks that lose
     // their strength at once take 7 to 13 % fewer iterations than with all springs anew.
     if (problem.failed_attempts == 0) level_ = 0;
@@ -103,11 +100,6 @@ class Hard final : public Enforcement {
         break;
       }
     }
-    if (!compliant_.converged) return;
-    level_ = 0;  // the next step begins with the stiffest springs, of which the least is left if it is compliant, too
-    compliant_.effort = solution.effort;
-    compliant_.compliant = true;
-    solution = std::exchange(compliant_, {});
   }
 
   std::unique_ptr<TimeScheme> make_time_scheme(const MethodInput& method) const override {
@@ -117,7 +109,7 @@ class Hard final : public Enforcement {
   bool has_elastic_contacts() const override { return false; }
   LinearCounters linear_counters() const override { return newton_.linear_counters(); }
   Memory memory() const override {
-    Memory of = newton_.memory() + compliant_.memory();
+    Memory of = newton_.memory();
     of.contacts += bytes_of(springs_);
     return of;
   }
@@ -155,10 +147,7 @@ class Hard final : public Enforcement {
     for (std::size_t c = 0; c < springs_.size(); ++c) springs_[c] = springs(problem, problem.contacts[c], ratio);
   }
 
-  static bool may_be_compliant(const StepProblem& problem) { return !problem.statics && problem.failed_attempts >= attempts_before_compliance; }
-
-  /// Passes until the contacts are held. A step that may be compliant keeps the first that converged with the springs it had, in case that no
-  /// multipliers do.
+  /// Passes until the contacts are held.
   void pass_until_held(const StepProblem& problem, Cohesion cohesion, StepSolution& solution) {
     // From the drift dt v: the stiff matrix costs digits of what is solved for, and these are better lost from the change of motion than from the
     // motion.
@@ -182,7 +171,6 @@ class Hard final : public Enforcement {
       if (error <= 1.0) return;
       if (error > slow_convergence * last_error && error <= (problem.statics ? incompatible_static_gaps : incompatible_gaps)) return;
       if (moves_on && error * tolerated(problem) <= std::min(problem.method.gap_tolerance, part_of_way * way)) return;
-      if (may_be_compliant(problem) && !compliant_.converged) compliant_ = solution;
       if (!problem.statics && error > slow_convergence * last_error) {
         if (++slow_passes == 1) first_slow_error = error;
         if (slow_passes >= slow_passes_to_judge &&
@@ -402,8 +390,7 @@ class Hard final : public Enforcement {
 
   Newton newton_{Merit::all_blocks};
   std::vector<ContactSprings> springs_;
-  StepSolution compliant_;  ///< of this step, if it may be
-  std::size_t level_ = 0;   ///< of stiffness_over_inertia: what the next attempt at this step begins with
+  std::size_t level_ = 0;  ///< of stiffness_over_inertia: what the next attempt at this step begins with
 };
 
 }  // namespace

@@ -19,10 +19,11 @@ namespace {
 
 /// [-] Default penalty over the joint's stiffness: the original takes about 50 E, and rigid blocks have no E.
 constexpr double default_penalty_over_joint = 10.0;
-/// [m] and [-] of the size of the free blocks: what contacts may penetrate by default, the larger of the two. A thousandth of a block changes no
-/// geometry (the original scales with the height of the model, a slope of 1 km then has 0.1 m); what drawings leave is no reason to cut steps of
-/// smaller blocks.
-constexpr double default_penetration_m = 1e-3, default_penetration_of_size = 1e-3;
+/// [m] and [-] of the size of the free blocks: what contacts may penetrate by default, the larger of the two. A hundredth of a block turns the
+/// normals of its contacts by no more than that (the original scales with the height of the model, a slope of 1 km then has 0.1 m), and penalties
+/// that are no stiffer than ten times the joints yield by more than a thousandth where blocks hit each other; what drawings leave is no reason to cut
+/// steps of smaller blocks.
+constexpr double default_penetration_m = 1e-3, default_penetration_of_size = 1e-2;
 
 /// [-] Of the penetration that is tolerated: a corner is found up to four times as deep as this, and its contact closes by more before it carries.
 constexpr double entry_of_penetration = 0.1;

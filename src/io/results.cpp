@@ -464,7 +464,6 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
                    {"steps_cut", steps.cuts},
                    {"error_cuts", steps.error_cuts},
                    {"entry_cuts", steps.entry_cuts},
-                   {"compliant_steps", steps.compliant},
                    {"eased_steps", steps.eased},
                    {"dissipative_steps", steps.dissipative},
                    {"iterations", steps.iterations},

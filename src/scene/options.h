@@ -265,7 +265,7 @@ void visit_solver_keys(Method& m, Step& s, Visitor& visit) {
          "method.gap_tolerance_m"},
         m.gap_tolerance, positive);
   visit({"penetration_tolerance_m", "`shi`: deeper contacts cut the step",
-         "the larger of 1e-3 and a thousandth of the root of the free blocks' median area", "method.penetration_tolerance_m"},
+         "the larger of 1e-3 and a hundredth of the root of the free blocks' median area", "method.penetration_tolerance_m"},
         m.penetration_tolerance, positive);
   visit({"closing_tolerance_m", "`shi`: an open contact closes beyond this penetration", {}, "method.closing_tolerance_m"}, m.closing_tolerance,
         not_negative);

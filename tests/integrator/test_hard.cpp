@@ -85,7 +85,6 @@ TEST_CASE("hard contacts keep to the tolerance that is asked for", "[integrator]
     scene.end_time = 0.5;
     Simulation simulation(scene);
     REQUIRE(run(simulation, {}).converged);
-    CHECK(simulation.step_counters().compliant == 0);
     CHECK(simulation.max_penetration() < 1.5 * tolerance);
     solves.push_back(simulation.step_counters().iterations);
   }
@@ -197,10 +196,9 @@ TEST_CASE("a step of which the passes do not find the multipliers is cut to what
   Simulation simulation(column(400, 0.1, 3));
   REQUIRE(run(simulation, {}).converged);
   CHECK(simulation.step_counters().cuts > 0);
-  CHECK(simulation.step_counters().compliant == 0);
 }
 
-TEST_CASE("steps without multipliers penetrate by no more than their forces compress the springs", "[integrator][hard]") {
+TEST_CASE("steps of which the passes find no multipliers are cut before blocks pass into each other", "[integrator][hard]") {
   const int blocks = 200;
   const double dt = 0.02;
   Scene scene = column(blocks, dt, 20);
@@ -208,9 +206,9 @@ TEST_CASE("steps without multipliers penetrate by no more than their forces comp
   Simulation simulation(scene);
   prepare_start(simulation);  // the watch would refuse a run that misses its tolerance so far
   for (int i = 0; i < 20; ++i) REQUIRE(simulation.advance(dt));
-  CHECK(simulation.step_counters().compliant == simulation.step_counters().steps);
-  // The weight of the column on the two corners of its lowest block, twice as much where it bounces, over springs of 300 times the inertia.
-  CHECK(simulation.max_penetration() < blocks * 9.81 * dt * dt / 300.0);
+  CHECK(simulation.step_counters().cuts > 0);
+  // Springs of 300 times the inertia under the weight of the column would close by a thousand times as much in a whole step.
+  CHECK(simulation.max_penetration() < 10.0 * tolerance::rounding_of_ways_m);
 }
 
 TEST_CASE("soft contacts close by what their stiffness says", "[integrator][soft]") {

@@ -116,9 +116,9 @@ TEST_CASE("what contacts of shi may penetrate by default goes with the blocks, n
     scene.method.penalty = weight / (closure_of_size * size * test::block_edge * size);
     return static_step(scene).accepted;
   };
-  CHECK(steps_on(1.0, 0.9e-3));
-  CHECK_FALSE(steps_on(1.0, 1.5e-3 * std::sqrt(2.0)));
-  CHECK(steps_on(100.0, 0.9e-3));
-  CHECK_FALSE(steps_on(100.0, 1.5e-3 * std::sqrt(2.0)));
+  CHECK(steps_on(1.0, 0.9e-2));
+  CHECK_FALSE(steps_on(1.0, 1.5e-2 * std::sqrt(2.0)));
+  CHECK(steps_on(100.0, 0.9e-2));
+  CHECK_FALSE(steps_on(100.0, 1.5e-2 * std::sqrt(2.0)));
   CHECK(steps_on(0.01, 0.05));  // 0.5 mm
 }

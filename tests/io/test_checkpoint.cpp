@@ -61,7 +61,7 @@ TEST_CASE("a checkpoint comes back", "[io][checkpoint]") {
   CHECK(read.tables == a_checkpoint().tables);
   CHECK(read.state == "state");
   CHECK(saved.folder.entries() == std::set<std::string>{"checkpoint.bin", "history.csv"});
-  CHECK(text_of(saved.path).rfind("openclose checkpoint, format 24, version " + std::string(version) + "\n", 0) == 0);
+  CHECK(text_of(saved.path).rfind("openclose checkpoint, format 25, version " + std::string(version) + "\n", 0) == 0);
 }
 
 TEST_CASE("a checkpoint that cannot be made is no bad input: the run has begun", "[io][checkpoint]") {
@@ -122,7 +122,7 @@ TEST_CASE("no checkpoint, a damaged one, or one of another version is refused", 
                ContainsSubstring(length < 30 ? "this is no checkpoint" : "the checkpoint is damaged"));
   }
   std::string older = whole;
-  older.replace(older.find("format 24"), 9, "format 3");
+  older.replace(older.find("format 25"), 9, "format 3");
   CHECK_THAT(refusal(saved.folder.write("older.bin", older), a_scene()),
-             ContainsSubstring("written by another version") && ContainsSubstring("format 3") && ContainsSubstring("format 24"));
+             ContainsSubstring("written by another version") && ContainsSubstring("format 3") && ContainsSubstring("format 25"));
 }

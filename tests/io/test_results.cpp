@@ -374,7 +374,6 @@ TEST_CASE("summary.json has counters under their own names", "[io][results]") {
   const std::map<std::string, long> expected = {{"steps", steps.steps},
                                                 {"steps_cut", steps.cuts},
                                                 {"error_cuts", steps.error_cuts},
-                                                {"compliant_steps", steps.compliant},
                                                 {"eased_steps", steps.eased},
                                                 {"dissipative_steps", steps.dissipative},
                                                 {"iterations", steps.iterations},
