@@ -572,7 +572,7 @@ StepResult Simulation::step(double dt, bool statics) {
   const bool heeds_entries = !statics || !enforcement_->has_elastic_contacts();  // joints at rest give way by more than a corner that comes to one
   const bool is_no_shorter = statics && cuts_at_entry_ > 0 && result.moved > shorter_by_cut * way_at_entry_;
   const double part = solution.converged && !too_far && heeds_entries && !is_no_shorter ? part_before_entry(solution, result.moved) : 1.0;
-  if (part < 1.0) {
+  if (part < 1.0 && part * dt >= shortest_step()) {
     result.reason = "a corner enters a block that it is not in contact with";
     result.part = part;
     result.ends_at_entry = true;
@@ -682,6 +682,8 @@ double Simulation::kinetic_change(const StepProblem& problem, const StepSolution
 
 bool Simulation::creates_energy(const StepProblem& problem, const StepSolution& solution) const {
   if (!std::isfinite(creatable_energy_) || cuts_for_energy_ == most_cuts_for_energy) return false;
+  // What cannot be cut is taken; whether it was too much is for the watch to say.
+  if (problem.dt * enforcement_->step_cut(scene_.method) < shortest_step()) return false;
   EnergyLedger after = ledger_;
   after += step_ledger_;
   after.kinetic += kinetic_change(problem, solution);

@@ -216,6 +216,8 @@ class Simulation {
   /// [N] Sum of the forces on every free block as it stands, without dashpots.
   Eigen::VectorXd forces_now(const StepProblem& problem) const;
   double largest_move(const StepSolution& solution) const;
+  /// [s] A step that has failed is not cut to less.
+  double shortest_step() const { return scene_.step.smallest_fraction * scene_.step.dt; }
   /// [-] Part of a step after which a corner has entered a block that it is not in contact with by what is tolerated, see first_entry(); 1 if there
   /// is none.
   double part_before_entry(const StepSolution& solution, double moved) const;

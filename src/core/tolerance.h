@@ -72,7 +72,7 @@ inline constexpr double rounding_of_ways_m = 1e-8;
 /// below a step of the longest runs, which have 1e9.
 inline constexpr double rounding_of_times = 1e-12;
 
-/// [m/s] `hard`: speed at which a penetration found at closing is pushed out.
+/// [m/s] `hard`: speed at which a penetration found at closing, or left by earlier steps, is pushed out at most.
 inline constexpr double hard_recovery_m_per_s = 0.1;
 
 /// [m] Coordinates in the file beyond this are refused: rounding (1e7 * 2^-52 = 2e-9 m) would come near the length of the shortest edge.

@@ -339,10 +339,12 @@ class Hard final : public Enforcement {
     return held_gap(problem, contact);
   }
 
-  /// [m] Of a closed contact.
+  /// [m] Of a closed contact. In a step that has been cut short, what is pushed back would throw blocks apart: it has a speed, too.
   static double held_gap(const StepProblem& problem, const Contact& contact) {
     const double level = -kept_penetration * problem.method.gap_tolerance;
-    return contact.gap >= level ? contact.gap : std::min(level, contact.gap + recovered_penetration * problem.method.gap_tolerance);
+    if (contact.gap >= level) return contact.gap;
+    const double recovered = recovered_penetration * problem.method.gap_tolerance;
+    return std::min(level, contact.gap + (problem.statics ? recovered : std::min(recovered, tolerance::hard_recovery_m_per_s * problem.dt)));
   }
 
   /// [m]

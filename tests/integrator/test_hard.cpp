@@ -211,6 +211,20 @@ TEST_CASE("steps of which the passes find no multipliers are cut before blocks p
   CHECK(simulation.max_penetration() < 10.0 * tolerance::rounding_of_ways_m);
 }
 
+TEST_CASE("what is pushed back has a speed, in steps however short", "[integrator][hard]") {
+  // A block that has been left ten tolerances deep. Pushed back by half of one in a step, it would go at 150 m/s.
+  Scene scene = test::block_on_base();
+  scene.method.contact = "hard";
+  scene.method.gap_tolerance = 3e-7;
+  scene.gravity = {0.0, 0.0};
+  for (Vec2& v : scene.blocks[1].vertices) v.y() -= 10.0 * scene.method.gap_tolerance;
+  Simulation simulation(scene);
+  for (int i = 0; i < 5; ++i) {
+    REQUIRE(simulation.step(1e-9, false).accepted);
+    CHECK(simulation.velocity(1).norm() < 2.0 * tolerance::hard_recovery_m_per_s);
+  }
+}
+
 TEST_CASE("soft contacts close by what their stiffness says", "[integrator][soft]") {
   const Outcome a = outcome(settling(), "soft", 1.0), b = outcome(settling(), "soft", 0.5);
   const double closure = test::block_weight / (1e9 * test::block_edge);
