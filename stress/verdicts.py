@@ -394,7 +394,7 @@ def _face(one: tuple, other: tuple) -> bool:
         return False
     # The distance at the ends of what they share, along the other edge.
     span = along[0] - along[1]
-    return all(abs(beside[1] + (beside[0] - beside[1]) * (x - along[1]) / span) <= 2 * ON_AN_EDGE for x in (shared_low, shared_high))
+    return all(abs(beside[1] + (beside[0] - beside[1]) * (x - along[1]) / span) <= ON_AN_EDGE for x in (shared_low, shared_high))
 
 
 def same_bracket(one: Verdict, other: Verdict) -> str:

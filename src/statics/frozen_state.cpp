@@ -14,6 +14,7 @@ void FrozenStrength::reduce(double factor) {
 ContactStrength FrozenStrength::of(std::size_t i, bool bonded) const {
   Contact contact = system_.contacts()[i].source;
   contact.bonded = bonded;
+  contact.length = system_.contacts()[i].joined_length;
   ContactStrength strength(joints_.joint(contact.joint), contact);
   strength.cohesion /= system_.force_unit();
   strength.tension /= system_.force_unit();

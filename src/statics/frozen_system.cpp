@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <utility>
 
 #include "openclose/contact/detection.h"
 #include "openclose/contact/kinematics.h"
@@ -54,6 +56,26 @@ bool has_block_between(const BlockSystem& system, const Contact& contact, const 
   const Vec2 middle = system.position(contact.vertex_block, contact.vertex) - 0.5 * contact.gap * at.normal;
   return std::ranges::any_of(neighbours[contact.vertex_block],
                              [&](int other) { return other != contact.edge_block && contains(polygon_of(system, other), middle); });
+}
+
+/// [units of length] Of the faces at a corner that lie on the edge, those halves of their overlaps that its contact stands for.
+double joined_length(const BlockSystem& system, const Contact& contact) {
+  const Vec2 start = system.position(contact.edge_block, contact.edge), end = system.position(contact.edge_block, system.next(contact.edge));
+  const Vec2 along = (end - start).normalized(), outward = -perpendicular(along);
+  const double length = (end - start).norm();
+  const Vec2 corner = system.position(contact.vertex_block, contact.vertex) - start;
+  double joined = 0.0;
+  for (const int other : {system.next(contact.vertex), system.previous(contact.vertex)}) {
+    const Vec2 far = system.position(contact.vertex_block, other) - start, side = far - corner;
+    // The block lies on the left of its outline: a side that faces the edge runs against it.
+    const double forward = side.dot(along) * (other == system.next(contact.vertex) ? -1.0 : 1.0);
+    if (forward <= std::cos(tolerance::parallel_none_rad) * side.norm()) continue;
+    const double low = std::max(0.0, std::min(corner.dot(along), far.dot(along))),
+                 high = std::min(length, std::max(corner.dot(along), far.dot(along)));
+    const auto gap = [&](double x) { return corner.dot(outward) + (x - corner.dot(along)) / side.dot(along) * side.dot(outward); };
+    if (high > low && std::max(std::abs(gap(low)), std::abs(gap(high))) <= closed_gap) joined += 0.5 * (high - low);
+  }
+  return std::min(joined, contact.length);
 }
 
 BlockVector scaled_rotation(const Eigen::Vector3d& gradient, double radius, bool locked) {
@@ -122,8 +144,18 @@ void FrozenSystem::find_contacts(const Scene& scaled, const BlockSystem& system)
     neighbours[b].push_back(a);
   }
   const BlockSystem::Unknowns still = BlockSystem::Unknowns::Zero();
+  std::vector<double> joined;
+  std::set<std::pair<int, int>> pairs_with_joint;
+  const auto pair_of = [](const Contact& c) { return std::minmax(c.vertex_block, c.edge_block); };
   for (const Contact& contact : found) {
+    joined.push_back(joined_length(system, contact));
+    if (joined.back() > 0.0) pairs_with_joint.insert(pair_of(contact));
+  }
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const Contact& contact = found[i];
     if (contact.gap > closed_gap || has_block_between(system, contact, neighbours)) continue;
+    // Beside a joint of the same two blocks a corner that is drawn open is no careless drawing of a contact.
+    if (joined[i] == 0.0 && contact.gap > tolerance::edge_end_m && pairs_with_joint.contains(pair_of(contact))) continue;
     const auto &corner_block = system.block(contact.vertex_block), &edge_block = system.block(contact.edge_block);
     if (corner_block.equation < 0 && edge_block.equation < 0) continue;
     const ContactKinematics k(system, contact, still, still);
@@ -137,6 +169,7 @@ void FrozenSystem::find_contacts(const Scene& scaled, const BlockSystem& system)
     c.source = contact;
     c.source.length *= length_unit_;
     c.source.bonded = true;
+    c.joined_length = joined[i] * length_unit_;
     c.normal = k.normal;
     c.point = system.position(contact.vertex_block, contact.vertex);
     contacts_.push_back(c);

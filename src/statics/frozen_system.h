@@ -8,6 +8,7 @@
 //
 // Contacts are those that the detection finds in the drawing, seen in the units above, so that a scene drawn a thousand times smaller has the same
 // ones. Joints drawn open or overlapping by less than closed_gap are closed; whatever is farther apart does not touch.
+// Cohesion acts where faces touch: not on a lone corner, nor where two faces open like a wedge, as limit analysis has it.
 #pragma once
 
 #include <vector>
@@ -43,6 +44,7 @@ struct FrozenContact {
   double normal_stiffness = 0.0;   ///< [-]
   double shear_stiffness = 0.0;    ///< [-]
   Contact source;                  ///< blocks, corner, edge, joint; its length in metres
+  double joined_length = 0.0;      ///< [m] of the faces that touch each other here, on which cohesion and tensile strength act; 0 at a lone corner
   Vec2 point = Vec2::Zero();       ///< [m] of the scene
   Vec2 normal = Vec2::Zero();      ///< from the edge's block into the corner's
 };

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "openclose/statics/frozen_state.h"
 #include "openclose/statics/frozen_system.h"
 #include "support/catch.h"
 #include "support/scenes.h"
@@ -53,4 +54,33 @@ TEST_CASE("joints drawn a little open are closed, unless something lies in them"
   CHECK(FrozenSystem(scene).contacts().size() == 2);
   for (Vec2& v : scene.blocks[1].vertices) v.y() += 5e-3;
   CHECK(FrozenSystem(scene).contacts().empty());
+}
+
+TEST_CASE("cohesion acts where faces touch", "[statics]") {
+  SECTION("on the whole of a joint") {
+    for (const FrozenContact& c : FrozenSystem(test::block_on_base()).contacts()) CHECK(c.joined_length == Approx(c.source.length));
+  }
+  SECTION("not where they open like a wedge") {
+    Scene scene = test::empty_scene();
+    const double opening = std::tan(4.0 * test::degree);
+    scene.blocks = {test::fixed_block("base", test::rectangle(-5.0, -1.0, 10.0, 1.0)),
+                    test::free_block("block", {{0.0, 0.0}, {2.0, 2.0 * opening}, {2.0, 2.0}, {0.0, 2.0}})};
+    const FrozenSystem system(scene);
+    REQUIRE(system.contacts().size() == 1);
+    CHECK(system.contacts()[0].source.length > 0.5);
+    CHECK(system.contacts()[0].joined_length == 0.0);
+    scene.joints[0].cohesion = 1e5;
+    CHECK(FrozenStrength(system, scene).of(0, true).cohesion == 0.0);
+  }
+}
+
+TEST_CASE("beside a joint of the same blocks a corner that is drawn open touches nothing", "[statics]") {
+  // A millimetre above the step at the lower end of the joint.
+  Scene scene = test::empty_scene();
+  scene.blocks = {
+      test::fixed_block("slope", {{4.02, -3.34}, {7.9, -2.36}, {3.3, 0.84}, {0.0007, 0.001}, {0.0, 0.0}, {-0.0032, 0.0}, {-0.567, -0.143}}),
+      test::free_block("block", {{0.0007, 0.001}, {3.3, 0.84}, {1.47, 2.12}})};
+  const FrozenSystem system(scene);
+  REQUIRE(system.contacts().size() == 2);
+  for (const FrozenContact& c : system.contacts()) CHECK(std::abs(c.normal.y()) < 0.99);
 }
