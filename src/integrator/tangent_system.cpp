@@ -56,7 +56,6 @@ void TangentSystem::fit_pattern(const StepProblem& problem, const BlocksOf& bloc
   if (!fits) renew_pattern(problem.method, rows, problem.contacts.size(), blocks_of);
   matrix_.use_threads(problem.method.threads);
   solver_->use_threads(problem.method.threads);
-  solver_->let_rows_lag(!problem.statics);
 }
 
 void TangentSystem::fit_part(const MethodInput& method, int rows, int blocks, const std::vector<std::pair<int, int>>& contacts) {

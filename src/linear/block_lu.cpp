@@ -18,8 +18,7 @@
 // From matrix to matrix most rows stay as they are but for the turning of blocks. A row of the factor whose own row of the matrix has changed by no
 // more than it may, and which subtracts only rows that are kept, is kept: the factor is always that of a matrix each of whose rows is as it was when
 // it was last taken. Putting rows last that change in nearly every matrix gains nothing: those that change now and then lie anywhere. And weak
-// couplings are left out of the factor (weak_couplings.h): what they carry is found by iteration, whose residual they are. Where there is this
-// iteration rows may lag farther behind, if the caller lets them: what they lack belongs to the residual.
+// couplings are left out of the factor (weak_couplings.h): what they carry is found by iteration, whose residual they are.
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseCore>
 #include <algorithm>
@@ -64,9 +63,6 @@ constexpr int most_refinements = 6;
 /// [-] Of the residual, at least. An iteration takes a tenth of one of Newton's method, of which there are 13 % more with 1e-5 and 1 % more with
 /// this.
 constexpr double refined_reduction = 1e-7;
-/// [-] Change with which rows may lag. Instructions of 40 m of a failing slope of 387 free blocks with steps of 10 and of 20 ms, over those with
-/// nothing that lags: 0.99 and 0.97 with 1e-5, 0.95 and 0.93 with 1e-4 and with 3e-4; with 1e-3 there are 10 % more refinements.
-constexpr double lagging_change = 1e-4;
 /// [-] The residual after a refinement is not looked at if it would be smaller than wanted by so much, were it reduced as it was the time before:
 /// 10 % fewer refinements and half as many products for 0.4 % more iterations of Newton's method, which finds out in any case.
 constexpr double margin_of_prediction = 10.0;
@@ -354,21 +350,6 @@ OPENCLOSE_KERNEL bool eliminate(Factor& f, const std::vector<int>& rows, int pan
   return true;
 }
 
-/// y -= A x
-OPENCLOSE_KERNEL void subtract_product(const BlockMatrix& matrix, const double* x, double* y) {
-  for (int i = 0; i < matrix.rows(); ++i) {
-    Lanes first{}, next{}, last{};  // by columns of the blocks; the last one's numbers are one place further on
-    for (int s = matrix.row_start(i); s < matrix.row_start(i + 1); ++s) {
-      const double* const block = matrix.value(s).data();
-      const double* const part = x + dofs * matrix.column(s);
-      first += lanes_at(block) * part[0];
-      next += lanes_at(block + dofs) * part[1];
-      last += lanes_at(block + 2 * dofs - 1) * part[2];
-    }
-    for (int r = 0; r < dofs; ++r) y[dofs * i + r] -= (first[r] + next[r]) + last[r + 1];
-  }
-}
-
 /// `sum` less the sum over the slots of value times solution. The solution that is found last, on which everything waits, comes last.
 /// \tparam direction  1 or -1: from slot to slot
 template <int direction>
@@ -407,40 +388,35 @@ struct Kernels {
   int (*take_changes)(const BlockMatrix&, Factor&, double);
   void (*advance)(Factor&, const std::vector<int>&, int, int*);
   bool (*eliminate)(Factor&, const std::vector<int>&, int, int*);
-  void (*subtract_product)(const BlockMatrix&, const double*, double*);
   void (*substitute_forward)(Factor&, const std::vector<int>&, const double*);
   void (*substitute_back)(Factor&, const std::vector<int>&, double*);
 };
 
-#define OPENCLOSE_KERNELS_WITH(registers, target)                                                                                                    \
-                                                                                                                                                     \
-  target int take_changes_with_##registers(const BlockMatrix& matrix, Factor& f, double change) {                                                    \
-    return take_changes(matrix, f, change);                                                                                                          \
-  }                                                                                                                                                  \
-                                                                                                                                                     \
-  target void advance_with_##registers(Factor& f, const std::vector<int>& rows, int panel, int* place) {                                             \
-    advance(f, rows, panel, place);                                                                                                                  \
-  }                                                                                                                                                  \
-                                                                                                                                                     \
-  target bool eliminate_with_##registers(Factor& f, const std::vector<int>& rows, int panel, int* place) {                                           \
-    return eliminate(f, rows, panel, place);                                                                                                         \
-  }                                                                                                                                                  \
-                                                                                                                                                     \
-  target void subtract_product_with_##registers(const BlockMatrix& matrix, const double* x, double* y) {                                             \
-    subtract_product(matrix, x, y);                                                                                                                  \
-  }                                                                                                                                                  \
-                                                                                                                                                     \
-  target void substitute_forward_with_##registers(Factor& f, const std::vector<int>& rows, const double* right_side) {                               \
-    substitute_forward(f, rows, right_side);                                                                                                         \
-  }                                                                                                                                                  \
-                                                                                                                                                     \
-  target void substitute_back_with_##registers(Factor& f, const std::vector<int>& rows, double* x) {                                                 \
-    substitute_back(f, rows, x);                                                                                                                     \
-  }                                                                                                                                                  \
-                                                                                                                                                     \
-  Kernels kernels_with_##registers() {                                                                                                               \
-    return {&take_changes_with_##registers,       &advance_with_##registers,        &eliminate_with_##registers, &subtract_product_with_##registers, \
-            &substitute_forward_with_##registers, &substitute_back_with_##registers};                                                                \
+#define OPENCLOSE_KERNELS_WITH(registers, target)                                                                                         \
+                                                                                                                                          \
+  target int take_changes_with_##registers(const BlockMatrix& matrix, Factor& f, double change) {                                         \
+    return take_changes(matrix, f, change);                                                                                               \
+  }                                                                                                                                       \
+                                                                                                                                          \
+  target void advance_with_##registers(Factor& f, const std::vector<int>& rows, int panel, int* place) {                                  \
+    advance(f, rows, panel, place);                                                                                                       \
+  }                                                                                                                                       \
+                                                                                                                                          \
+  target bool eliminate_with_##registers(Factor& f, const std::vector<int>& rows, int panel, int* place) {                                \
+    return eliminate(f, rows, panel, place);                                                                                              \
+  }                                                                                                                                       \
+                                                                                                                                          \
+  target void substitute_forward_with_##registers(Factor& f, const std::vector<int>& rows, const double* right_side) {                    \
+    substitute_forward(f, rows, right_side);                                                                                              \
+  }                                                                                                                                       \
+                                                                                                                                          \
+  target void substitute_back_with_##registers(Factor& f, const std::vector<int>& rows, double* x) {                                      \
+    substitute_back(f, rows, x);                                                                                                          \
+  }                                                                                                                                       \
+                                                                                                                                          \
+  Kernels kernels_with_##registers() {                                                                                                    \
+    return {&take_changes_with_##registers, &advance_with_##registers, &eliminate_with_##registers, &substitute_forward_with_##registers, \
+            &substitute_back_with_##registers};                                                                                           \
   }
 
 OPENCLOSE_KERNELS_WITH(any_registers, )
@@ -515,8 +491,7 @@ class BlockLuSolver : public LinearSolver {
     make_room();
     std::fill(factor_.stale.begin(), factor_.stale.end(), factoring_ == Factoring::whole || !has_factor_);
     this->counters_.rows += factor_.rows();
-    rows_lag_ = this->rows_may_lag_ && kept_change > 0.0 && !left_out_.empty();
-    this->counters_.rows_kept += kernels_.take_changes(*matrix_, factor_, rows_lag_ ? std::max(kept_change, lagging_change) : kept_change);
+    this->counters_.rows_kept += kernels_.take_changes(*matrix_, factor_, kept_change);
     has_factor_ = eliminate();
     use_plain_ = !has_factor_;
     if (has_factor_) return true;
@@ -531,14 +506,12 @@ class BlockLuSolver : public LinearSolver {
     Eigen::VectorXd x(right_side.size());
     substitute(right_side.data(), x.data());
     if (left_out_.empty() || refine(right_side, std::max(enough, refined_to(reduction)), x)) return x;
-    const bool can_do = rows_lag_ ? factor_analysed(0.0) : take_in();
-    return can_do ? solve_once(right_side, reduction, enough) : Eigen::VectorXd();
+    return take_in() ? solve_once(right_side, reduction, enough) : Eigen::VectorXd();
   }
 
   static double refined_to(double reduction) { return reduction > full_reduction ? std::min(reduction, refined_reduction) : refined_to_rounding; }
 
-  /// Brings the residual, which is what the couplings left out and the changes of rows that lag carry, down to `wanted`. False if that takes too
-  /// long.
+  /// Brings the residual, which is what the couplings left out carry, down to `wanted`. False if that takes too long.
   bool refine(const Eigen::VectorXd& right_side, double reduction, Eigen::VectorXd& x) {
     Eigen::VectorXd step = x, residual = right_side;
     double left = right_side.norm();
@@ -558,10 +531,6 @@ class BlockLuSolver : public LinearSolver {
 
   /// Of the matrix and a step that the factor has found for the residual.
   void subtract_product(const Eigen::VectorXd& step, Eigen::VectorXd& residual) const {
-    if (rows_lag_) {
-      kernels_.subtract_product(*matrix_, step.data(), residual.data());
-      return;
-    }
     // To the last digit: the factor's part of the product is the residual.
     residual.setZero();
     for (const LeftOut& e : left_out_) residual.segment<dofs>(dofs * e.row) -= matrix_->value(e.slot) * step.segment<dofs>(dofs * e.column);
@@ -840,7 +809,6 @@ class BlockLuSolver : public LinearSolver {
   bool has_factor_ = false;                      ///< of what it has taken
   std::vector<char> slots_;                      ///< of the matrix: whether the factor has them
   std::vector<LeftOut> left_out_;                ///< those that it has not
-  bool rows_lag_ = false;                        ///< rows of the factor may be those of matrices before the last one
   std::vector<std::vector<int>> working_place_;  ///< for each part: slot of a column in the row under work
   std::vector<int> place_;                       ///< in the factor, of a row of the matrix
   bool use_plain_ = false;

@@ -83,7 +83,6 @@ class IncompleteSolver : public LinearSolver {
     return of;
   }
 
-  void let_rows_lag(bool lag) override { direct_->let_rows_lag(lag); }
   void use_threads(int threads) override {
     direct_->use_threads(threads);
     single_.use_threads(threads);

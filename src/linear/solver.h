@@ -65,9 +65,6 @@ class LinearSolver {
   virtual Memory memory() const { return {}; }
   /// Gives back the memory of a factor that is not needed for a while; the next factor() starts anew. Not where later matrices are solved with it.
   virtual void let_go() {}
-  /// Whether a solver that refines its solutions anyway, down to the residual of the whole matrix, may keep more rows than factor() allows. Where
-  /// inertia holds every block this costs no further refinement; nothing lags unless this is called.
-  virtual void let_rows_lag(bool lag) { rows_may_lag_ = lag; }
   /// That share the work where it is worth it; the results are the same to the last bit.
   virtual void use_threads(int threads) { threads_ = threads; }
   /// What the next solves depend on; the symbolic work is done again after reading.
@@ -77,7 +74,6 @@ class LinearSolver {
  protected:
   LinearCounters counters_;
   int threads_ = 1;
-  bool rows_may_lag_ = false;
 };
 
 /// Dense LU with partial pivoting: cheapest for a handful of blocks.

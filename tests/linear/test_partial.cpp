@@ -155,43 +155,6 @@ TEST_CASE("what weak couplings carry is found by refining", "[linear][partial]")
   CHECK(whole->counters().refinements == 0);
 }
 
-TEST_CASE("rows that lag are made up for by refining", "[linear][partial]") {
-  constexpr double kept_change = 1e-8, reduction = 1e-7;  // the latter is what refining keeps to where less is asked for
-  BlockMatrix matrix = grid_with_corners(12, 1e-4);
-  const int rows = matrix.rows();
-  const Eigen::VectorXd right_side = RandomSystems(60).vector(matrix.unknowns());
-  const Solver lagging = make_block_solver(), plain = make_block_solver(), whole = make_block_solver(Factoring::whole);
-  for (const Solver* solver : {&lagging, &whole}) (*solver)->let_rows_lag(true);
-  const auto kept_with = [&](const Solver& solver, double change) {
-    const long before = solver->counters().rows_kept;
-    REQUIRE(solver->factor(matrix, change));
-    CHECK(relative_residual(matrix, solver->solve(right_side, 1e-3), right_side) <= reduction);
-    return solver->counters().rows_kept - before;
-  };
-  for (const Solver* solver : {&lagging, &plain}) kept_with(*solver, kept_change);
-  for (int i = 0; i < rows; ++i) matrix.value(matrix.diagonal(i)) *= 1.0 + 5e-5;
-  CHECK(kept_with(lagging, kept_change) == rows);
-  CHECK(kept_with(plain, kept_change) == 0);
-  CHECK(kept_with(whole, kept_change) == 0);
-  CHECK(lagging->counters().refinements == plain->counters().refinements);
-  CHECK(kept_with(lagging, 0.0) == 0);  // the caller asks for the factor of this matrix
-  matrix.value(matrix.diagonal(0)) *= 1.0 + 5e-4;
-  CHECK(kept_with(lagging, kept_change) < rows);
-}
-
-TEST_CASE("rows that lag where nothing holds the system are taken anew", "[linear][partial]") {
-  BlockMatrix matrix = grid_with_corners(12, 1e-6, 1e-5);
-  const Eigen::VectorXd right_side = Eigen::VectorXd::Ones(matrix.unknowns());
-  const Solver solver = make_block_solver();
-  solver->let_rows_lag(true);
-  CHECK(relative_residual(matrix, solution(*solver, matrix, right_side, 1e-8), right_side) <= 1e-7);
-  for (int i = 0; i < matrix.rows(); ++i) matrix.value(matrix.diagonal(i)) *= 1.0 + 5e-5;
-  const long before = solver->counters().factorisations;
-  CHECK(relative_residual(matrix, solution(*solver, matrix, right_side, 1e-8), right_side) <= 1e-7);
-  CHECK(solver->counters().factorisations == before + 2);
-  CHECK(solver->counters().couplings_taken_in == 0);
-}
-
 TEST_CASE("weak couplings that do not stay so, or are not so to the system, are taken in", "[linear][partial]") {
   const Eigen::VectorXd right_side = RandomSystems(55).vector(3 * 12 * 12);
   SECTION("one grows") {
