@@ -14,13 +14,12 @@ std::vector<BatchRenewal::BlockPlace> BatchRenewal::places_of(const BlockSystem&
 }
 
 void BatchRenewal::renew(const StepProblem& problem, const SpringSource& springs, ContactStarts& starts) {
-  const ContactOrder& order = starts.order;
   std::vector<ContactBatch>& batches = starts.batches;
   const Step step{problem.dt, problem.end_weight, problem.statics, problem.averages_path(), problem.joints.reduction()};
   const bool last = springs.last();
   if (!last || !(step == step_)) owners_.clear();
   step_ = step;
-  const std::size_t count = problem.contacts.size();
+  const std::size_t count = starts.count = problem.contacts.size();
   if (last) resize_closely(owners_, count);
   resize_closely(batches, (count + batch_size - 1) / batch_size);
   const Contact* const contacts = problem.contacts.data();
@@ -29,20 +28,19 @@ void BatchRenewal::renew(const StepProblem& problem, const SpringSource& springs
   const ContactSprings* const given = springs.list();
   Owner* const owners = owners_.data();
   for (std::size_t c = 0; c < count; ++c) {
-    const std::size_t at = order[c];
-    ContactBatch& batch = batches[at / batch_size];
-    const int k = static_cast<int>(at % batch_size);
+    ContactBatch& batch = batches[c / batch_size];
+    const int k = static_cast<int>(c % batch_size);
     const Contact& contact = contacts[c];
     const BlockPlace &vertex = places[contact.vertex_block], &edge = places[contact.edge_block];
     batch.set_places(k, vertex.place, edge.place);
     batch.set_geometry(k, ContactPlace(problem.system, contact, vertex.centroid, edge.centroid));
     if (last) {
       const Owner owner(contact);
-      if (owner == owners[at]) {
+      if (owner == owners[c]) {
         batch.set_start(k, contact);
         continue;
       }
-      owners[at] = owner;
+      owners[c] = owner;
     }
     batch.set_strength(k, ContactStrength(problem.joints.joint(contact.joint), contact));
     if (given) {

@@ -38,7 +38,7 @@ class GivenSprings final : public SpringSource {
 class BatchRenewal {
  public:
   /// Sets all batches up to BatchKernels::begin(). The places of blocks are their equations; those without have the one that comes after these.
-  /// \param starts  their order, and the batches as the last call has left them, but for gaps and forces at the start
+  /// \param starts  the batches as the last call has left them, but for gaps and forces at the start
   void renew(const StepProblem& problem, const SpringSource& springs, ContactStarts& starts);
   /// The batches are not as the last call has left them.
   void forget() { owners_.clear(); }
@@ -71,7 +71,7 @@ class BatchRenewal {
   static std::vector<BlockPlace> places_of(const BlockSystem& system);
 
   Step step_;
-  std::vector<Owner> owners_;  ///< of the places in the batches of the last step, none where their springs do not last
+  std::vector<Owner> owners_;  ///< of the contacts of the last step, none where their springs do not last
 };
 
 }  // namespace openclose

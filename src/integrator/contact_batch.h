@@ -1,7 +1,7 @@
 // The contacts of a step four at a time: where they are at a trial displacement, what they carry there, and their stiffness.
 //
 // The formulas are those of ContactPose, spring_slider() and ContactStiffness, operation by operation, so that every number is the same to the last
-// bit; forces and stiffness are added up in the order of the batches (ContactOrder), forces in two parts. The kernels are compiled once for every
+// bit; forces and stiffness are added up in the order of the contacts, forces in two parts. The kernels are compiled once for every
 // processor and once for wide registers, with the same results.
 //
 // Schemes that average over the path of the step have the mean forces of path_average() instead, which act in the mean_pose(). Contacts that are open
@@ -12,8 +12,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "openclose/contact/contact.h"
 #include "openclose/contact/kinematics.h"
-#include "openclose/integrator/contact_order.h"
 #include "openclose/integrator/lanes.h"
 #include "openclose/law/joint_law.h"
 #include "openclose/linear/block_matrix.h"
@@ -132,12 +132,12 @@ inline void ContactBatch::copy(int lane, const ContactBatch& other, int from) {
   }
 }
 
-/// All contacts of a step at its start.
+/// All contacts of a step at its start, in the order of their list.
 struct ContactStarts {
-  ContactOrder order;  ///< of the contacts in the batches
+  std::size_t count = 0;  ///< of contacts; the last batch may have lanes without one
   std::vector<ContactBatch> batches;
 
-  std::size_t bytes() const { return order.bytes() + bytes_of(batches); }
+  std::size_t bytes() const { return bytes_of(batches); }
 };
 
 /// What contacts carry at the trial displacement, or means of it, and the derivatives of these forces. Where they are then follows from their start

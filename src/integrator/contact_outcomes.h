@@ -26,7 +26,7 @@ struct ContactOutcome {
 
 class ContactOutcomes {
  public:
-  std::size_t size() const { return starts_ ? starts_->order.size() : list_.size(); }
+  std::size_t size() const { return starts_ ? starts_->count : list_.size(); }
   bool empty() const { return size() == 0; }
 
   ContactOutcome operator[](std::size_t c) const {
@@ -38,20 +38,18 @@ class ContactOutcomes {
     o.pose = pose(c);
     return o;
   }
-  ContactStatus status(std::size_t c) const { return starts_ ? openclose::status(branches_[place(c)]) : list_[c].forces.status; }
+  ContactStatus status(std::size_t c) const { return starts_ ? openclose::status(branches_[c]) : list_[c].forces.status; }
   CarriedForces forces(std::size_t c) const {
     if (!starts_) return list_[c].forces;
-    const std::size_t at = place(c);
-    const int k = lane(at);
-    const ElasticBatch& elastic = elastic_[at / batch_size];
-    return {openclose::status(branches_[at]), trial(at).normal[k], trial(at).shear[k], elastic.normal[k], elastic.shear[k]};
+    const int k = lane(c);
+    const ElasticBatch& elastic = elastic_[c / batch_size];
+    return {openclose::status(branches_[c]), trial(c).normal[k], trial(c).shear[k], elastic.normal[k], elastic.shear[k]};
   }
   ContactPose pose(std::size_t c) const {
     if (!starts_) return list_[c].pose;
-    const std::size_t at = place(c);
-    ContactPose pose = start(at).pose(lane(at), moves_);
-    pose.gap_change = trial(at).gap_change[lane(at)];  // the same numbers, not worked out again
-    pose.slip_change = trial(at).slip_change[lane(at)];
+    ContactPose pose = start(c).pose(lane(c), moves_);
+    pose.gap_change = trial(c).gap_change[lane(c)];  // the same numbers, not worked out again
+    pose.slip_change = trial(c).slip_change[lane(c)];
     return pose;
   }
   double gap_change(std::size_t c) const { return starts_ ? of_trial(c, &TrialBatch::gap_change) : list_[c].pose.gap_change; }       ///< [m]
@@ -111,13 +109,11 @@ class ContactOutcomes {
   }
 
  private:
-  std::size_t place(std::size_t c) const { return starts_->order[c]; }
-  // By places.
-  static int lane(std::size_t at) { return static_cast<int>(at % batch_size); }
-  const ContactBatch& start(std::size_t at) const { return starts_->batches[at / batch_size]; }
-  const TrialBatch& trial(std::size_t at) const { return trials_[at / batch_size]; }
-  double of_start(std::size_t c, Lanes ContactBatch::*member) const { return (start(place(c)).*member)[lane(place(c))]; }
-  double of_trial(std::size_t c, Lanes TrialBatch::*member) const { return (trial(place(c)).*member)[lane(place(c))]; }
+  static int lane(std::size_t c) { return static_cast<int>(c % batch_size); }
+  const ContactBatch& start(std::size_t c) const { return starts_->batches[c / batch_size]; }
+  const TrialBatch& trial(std::size_t c) const { return trials_[c / batch_size]; }
+  double of_start(std::size_t c, Lanes ContactBatch::*member) const { return (start(c).*member)[lane(c)]; }
+  double of_trial(std::size_t c, Lanes TrialBatch::*member) const { return (trial(c).*member)[lane(c)]; }
 
   std::shared_ptr<const ContactStarts> starts_;  ///< null where the outcomes stand in the list
   std::vector<BlockMove> moves_;                 ///< by places of blocks

@@ -183,11 +183,6 @@ void Newton::prepare(const StepProblem& problem, const SpringSource& springs) {
   const BlockSystem& system = problem.system;
   problem_ = &problem;
   contact_count_ = problem.contacts.size();
-  if (problem.statics) {
-    starts_->order.keep(contact_count_);
-  } else {
-    starts_->order.pack(problem.contacts);
-  }
   renewal_.renew(problem, springs, *starts_);
   blocks_.clear();
   blocks_.reserve(system.free_count());
@@ -240,8 +235,7 @@ void Newton::prepare_start(const std::vector<ContactSprings>& springs) {
   start_scale_ = block_scale_;
   for (std::size_t c = 0; c < contact_count_; ++c) {
     const ContactSprings& s = springs[c];
-    const std::size_t at = order()[c];
-    contacts()[at / batch_size].set_springs(lane(at), s);
+    contacts()[c / batch_size].set_springs(lane(c), s);
     start_scale_ = std::max({start_scale_, s.shift - s.normal * (s.gap - s.target), std::abs(s.initial_shear)});
   }
 }
@@ -513,10 +507,8 @@ void Newton::take_last_states() {
   const double touching_gap = problem_->statics ? tolerance::rounding_of_ways_m : 0.0;
   for (std::size_t c = 0; c < contact_count_; ++c) {
     const Contact& contact = problem_->contacts[c];
-    const std::size_t at = order()[c];
-    const bool touching =
-        contact.status == ContactStatus::open && start(at).gap_off_target[lane(at)] <= touching_gap && start(at).shift[lane(at)] >= 0.0;
-    take_state(at, touching ? ContactStatus::sticking : contact.status, contact.normal_force, contact.shear_force);
+    const bool touching = contact.status == ContactStatus::open && start(c).gap_off_target[lane(c)] <= touching_gap && start(c).shift[lane(c)] >= 0.0;
+    take_state(c, touching ? ContactStatus::sticking : contact.status, contact.normal_force, contact.shear_force);
   }
 }
 
@@ -528,8 +520,7 @@ void Newton::take_states_before() {
 
 std::vector<ElasticBatch> Newton::report_paths(StepSolution& solution) {
   std::vector<ElasticBatch> elastic(trials_.size());
-  for (std::size_t i = 0; i < contact_count_; ++i) {
-    const std::size_t c = order()[i];
+  for (std::size_t c = 0; c < contact_count_; ++c) {
     const ContactSprings springs = this->springs(c);
     TrialBatch& at = trial(c);
     const int k = lane(c);

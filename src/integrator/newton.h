@@ -182,11 +182,10 @@ class Newton {
   void find_force_scale(double of_contacts, const Eigen::VectorXd& d);
   /// The springs of contact c, with the gap counted from their target.
   ContactSprings springs(std::size_t c) const { return start(c).springs(lane(c)); }
-  // Contact c is one of the lanes of its batch: it is counted by its place there. Those of the problem are told from their order.
+  // Contact c of the problem is one of the lanes of its batch.
   static int lane(std::size_t c) { return static_cast<int>(c % batch_size); }
   std::vector<ContactBatch>& contacts() { return starts_->batches; }
   const std::vector<ContactBatch>& contacts() const { return starts_->batches; }
-  const ContactOrder& order() const { return starts_->order; }
   const ContactBatch& start(std::size_t c) const { return contacts()[c / batch_size]; }
   TrialBatch& trial(std::size_t c) { return trials_[c / batch_size]; }
   const TrialBatch& trial(std::size_t c) const { return trials_[c / batch_size]; }

@@ -1,8 +1,13 @@
+#include <cmath>
 #include <memory>
+#include <string>
 #include <vector>
 
+#include "openclose/analysis/simulation.h"
 #include "openclose/integrator/contact_outcomes.h"
+#include "openclose/integrator/newton.h"
 #include "support/catch.h"
+#include "support/scenes.h"
 
 using namespace openclose;
 
@@ -82,7 +87,7 @@ TEST_CASE("slack belongs to its contact and to its step", "[integrator][outcomes
 
 TEST_CASE("batches are lent with where their contacts start, and given back", "[integrator][outcomes]") {
   auto starts = std::make_shared<ContactStarts>();
-  starts->order.keep(2);
+  starts->count = 2;
   starts->batches.resize(1);
   std::vector<BlockMove> moves{BlockMove({0.1, 0.2, 0.3}, RotationKind::exact, 1.0), BlockMove({-0.3, 0.1, -0.2}, RotationKind::exact, 1.0)};
   std::vector<TrialBatch> trials(1);
@@ -129,4 +134,54 @@ TEST_CASE("batches are lent with where their contacts start, and given back", "[
   CHECK(trials.data() == where);
   CHECK(moves.size() == 2);
   CHECK(copy.size() == 2);
+}
+
+TEST_CASE("a step reports of each contact what its law says of it", "[integrator][outcomes]") {
+  const std::string integrator = GENERATE("shi", "theta", "path_average");
+  Scene scene = test::column_of_blocks(6);
+  scene.method.integrator = integrator;
+  if (integrator == "theta") scene.method.theta = 0.6;
+  scene.method.residual_tolerance = 1e-9;
+  Simulation simulation(scene);
+  std::vector<Contact> contacts = simulation.contacts();
+  const StepProblem present = simulation.problem(1e-4, false);
+  // Every third contact is far away and open, the others carry something.
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    const bool open = c % 3 == 1;
+    contacts[c].status = open ? ContactStatus::open : ContactStatus::sticking;
+    contacts[c].gap = open ? 1e-3 : -1e-6 * static_cast<double>(c + 1);
+    contacts[c].length *= 1.0 + 0.01 * static_cast<double>(c);
+  }
+  StepProblem problem{present.system, present.external, present.joints, contacts, present.method, present.dt, false, present.inertia};
+  problem.end_weight = present.end_weight;
+  problem.scheme = present.scheme;
+  std::vector<ContactSprings> springs;
+  for (const Contact& c : contacts) springs.push_back(joint_springs(problem, c));
+  Newton newton;
+  StepSolution solution;
+  solution.d = drift(problem);
+  newton.solve(problem, springs, solution);
+  REQUIRE(solution.converged);
+  REQUIRE(solution.contacts.size() == contacts.size());
+  int open = 0;
+  for (std::size_t c = 0; c < contacts.size(); ++c) {
+    const Contact& contact = contacts[c];
+    const auto move = [&](int b) { return BlockMove(solution.of(problem.system, b), RotationKind::exact, problem.system.block(b).radius); };
+    const ContactPose pose(ContactStart(problem.system, contact), move(contact.vertex_block), move(contact.edge_block));
+    const ContactStrength strength(problem.joints.joint(contact.joint), contact);
+    const ContactForces law = spring_slider(springs[c], strength, pose.gap_change, pose.slip_change);
+    const ContactOutcome o = solution.contacts[c];
+    CHECK(o.normal_stiffness == springs[c].normal);
+    CHECK(o.pose.gap_change == pose.gap_change);
+    CHECK(o.pose.vertex_arm == pose.vertex_arm);
+    CHECK(o.forces.status == law.status);
+    CHECK(std::abs(o.forces.normal - law.normal) <= 1e-12 * law.normal);  // means over a path round otherwise
+    CHECK(solution.contacts.status(c) == law.status);
+    open += law.status == ContactStatus::open;
+    if (!solution.start_contacts.empty()) CHECK(solution.start_contacts.forces(c).normal == std::max(0.0, -springs[c].normal * contact.gap));
+    if (!solution.paths.empty()) CHECK(solution.paths[c].pose.vertex_arm == mean_pose(ContactStart(problem.system, contact), pose).vertex_arm);
+  }
+  CHECK(open == static_cast<int>(contacts.size()) / 3);
+  CHECK(solution.start_contacts.empty() == (problem.end_weight == 1.0));
+  CHECK(solution.paths.empty() == (integrator != "path_average"));
 }
