@@ -78,7 +78,7 @@ TEST_CASE("rows that a factor keeps and couplings that it leaves out do not show
       CHECK(whole.rows_kept == 0);
       CHECK(whole.refinements == 0);
       CHECK(whole.rows > 0);
-      CHECK(needed.rows_kept > needed.rows / 10);
+      CHECK(needed.rows_kept > 0);
       if (contact == "soft") CHECK((needed.refinements > 0) == (shift == 0.0));
     }
   }
