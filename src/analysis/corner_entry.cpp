@@ -79,28 +79,36 @@ class Entries {
 
   /// [-] Of the corners of one block into another one.
   double first(int of, int into) const {
-    const double reach = ways_.approach(of, into);
     const auto& block = system_.block(of);
     const auto& target = system_.block(into);
     double first = 1.0;
     for (int v = block.first_vertex; v < block.first_vertex + block.vertex_count; ++v) {
-      if (system_.is_reflex(v)) continue;
-      const Way corner = ways_(of, v);
-      if ((corner.start - system_.centroid(into)).norm() > target.radius + reach) continue;
-      for (int e = target.first_vertex; e < target.first_vertex + target.vertex_count; ++e) first = std::min(first, entry(corner, v, into, e));
+      const Vec2 p = system_.position(of, v);
+      if (system_.is_reflex(v) || (p - system_.centroid(into)).squaredNorm() > std::pow(target.radius + reach_, 2)) continue;
+      for (int e = target.first_vertex; e < target.first_vertex + target.vertex_count; ++e) {
+        if (may_end_too_deep() || may_go_through(p, into, e)) first = std::min(first, entry(ways_(of, v), v, into, e));
+      }
     }
     return first;
   }
   /// Whether a corner of one of two blocks may be in the other one at the end of the step; what is tolerated is that of these two from then on.
   bool may_be(int a, int b) {
-    const double reach = reach_ = ways_.approach(a, b);
+    reach_ = ways_.approach(a, b);
     bow_ = ways_.bow(a) + ways_.bow(b);
     tolerated_ = tolerance_.of(std::min(width(a), width(b)));
-    return reach > behind * tolerated_ &&
-           (system_.centroid(a) - system_.centroid(b)).norm() <= system_.block(a).radius + system_.block(b).radius + reach;
+    return reach_ > flush * tolerance::edge_end_m &&
+           (system_.centroid(a) - system_.centroid(b)).norm() <= system_.block(a).radius + system_.block(b).radius + reach_;
   }
 
  private:
+  /// Otherwise what the two blocks have moved lets corners enter no deeper than is tolerated, and only tips are gone through within the step.
+  bool may_end_too_deep() const { return reach_ > behind * tolerated_; }
+  /// Whether a corner is in front of an edge and near enough to its line.
+  bool may_go_through(const Vec2& p, int into, int e) const {
+    const Vec2 start = system_.position(into, e), edge = system_.position(into, system_.next(e)) - start;
+    const double area = cross(edge, p - start);
+    return area <= 0.0 && area * area <= reach_ * reach_ * edge.squaredNorm();
+  }
   /// [m] No more than 2 area / perimeter of a convex block, whose perimeter is at most that of the circle around it.
   double width(int b) const { return system_.block(b).area / (std::numbers::pi * system_.block(b).radius); }
   bool is_held(int v, int e) const {
@@ -117,17 +125,26 @@ class Entries {
     if (!is_within_step(part)) return 1.0;
     const double along = course.along(part), from_start = along, from_end = course.length() - along;
     const double inside = std::min(from_start, from_end);
+    const int tip = from_start < from_end ? e : system_.next(e), neighbour = from_start < from_end ? system_.previous(e) : system_.next(e);
+    if (is_behind_at_once && inside > 0.0 && !is_held(v, e) && comes_out(corner, into, tip, neighbour)) return late;
     if (inside > behind * tolerated_) return is_behind_at_once || is_held(v, e) ? 1.0 : part;
     // In a notch one wall leads the corner on to the other one, and nothing slides on over that: what is behind one wall beyond its end is behind
     // both.
-    const bool in_notch = system_.is_reflex(from_start < from_end ? e : system_.next(e));
+    const bool in_notch = system_.is_reflex(tip);
     if (inside < -(in_notch ? reach_ : tolerated_ + bow_) || is_held(v, e)) return 1.0;
     if (in_notch) return is_behind_at_once ? 1.0 : part;
     // At its end a corner slides on over a neighbour that is flush with the block, unless its own block is behind that side of the block, too: the
     // feet of two blocks that meet on one floor. Detection takes corners for flush until they are deeper than rounding leaves them, so that one that
     // was behind by less at the end of the last step counts again.
-    if (stands_on(v, from_start < from_end ? system_.previous(e) : system_.next(e))) return 1.0;
-    return is_within_step(late) ? late : 1.0;
+    if (stands_on(v, neighbour)) return 1.0;
+    return may_end_too_deep() && is_within_step(late) ? late : 1.0;
+  }
+  /// Whether a corner that has gone through an edge ends before the neighbour of that edge, beyond the tip between them. It is in no block then, and
+  /// nothing would find it however deep it is behind the edge.
+  bool comes_out(const Way& corner, int into, int tip, int neighbour) const {
+    if (system_.is_reflex(tip)) return false;
+    const Way start = ways_(into, neighbour), end = ways_(into, system_.next(neighbour));
+    return cross(end.at(1.0) - start.at(1.0), corner.at(1.0) - start.at(1.0)) < 0.0;
   }
   static bool is_within_step(double part) { return part >= shortest_part && part < 1.0; }
   /// Both sides of a corner leave the half-plane behind an edge.

@@ -85,6 +85,24 @@ TEST_CASE("a tip that is behind another one's face by no more than flush corners
   CHECK(first_entry(system, solution, {{0, 1}}, {tolerated}) == Approx(expected).epsilon(1e-6));
 }
 
+TEST_CASE("a corner that goes through another one's tip within a step is stopped where it enters, however little it may enter", "[analysis][corner_entry]") {
+  // A thin wedge points at the left; its upper side rises steeply at the tip. The corner comes from the left and ends below the wedge.
+  Scene scene = test::empty_scene();
+  scene.blocks = {test::fixed_block("wedge", {{0.0, 0.0}, {1.0, 0.2}, {1.0, 2.0}, {0.4, 1.0}}),
+                  test::free_block("corner", {{-0.01, 1e-3}, {-1.0, 1.0}, {-1.0, 0.1}})};
+  const BlockSystem system(scene);
+  StepSolution solution;
+  const auto part = [&](const Motion::Unknowns& d) {
+    solution.d = d;
+    return first_entry(system, solution, {{0, 1}}, {.depth = tolerated, .part_of_width = 0.1});
+  };
+  // Of the side from (0.4, 1) to (0, 0), which is 0.4 y in front of it: until it is behind by twice what counts as flush.
+  const double outside = 0.01 + 0.4 * 1e-3, flush = 2.0 * tolerance::edge_end_m * std::hypot(1.0, 0.4);
+  CHECK(part({0.013, -9e-4, 0.0}) == Approx((outside + flush) / (0.013 + 0.4 * 9e-4)).epsilon(1e-6));
+  CHECK(part({0.013, 3e-3, 0.0}) == 1.0);   // ends in the wedge, where it is found
+  CHECK(part({0.013, -1e-2, 0.0}) == 1.0);  // passes below the tip
+}
+
 TEST_CASE("blocks whose sides cross pass into each other with no corner in the other one", "[analysis][corner_entry]") {
   // The tip of the right foot comes between the left one and the floor, which is not there.
   Scene scene = test::empty_scene();
