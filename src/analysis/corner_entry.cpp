@@ -14,8 +14,8 @@ namespace {
 constexpr double shortest_part = 1e-5;
 /// [-] Of what is tolerated: closed contacts whose gaps exclude each other miss theirs by three times as much.
 constexpr double behind = 4.0;
-/// [-] Of tolerance::edge_end_m, to which corners that slide on something count as flush.
-constexpr double flush = 2.0;
+/// [m] To which corners that slide on something count as flush.
+constexpr double flush_m = 2.0 * tolerance::edge_end_m;
 
 /// A point that goes straight from one place to another within the step.
 struct Way {
@@ -96,7 +96,7 @@ class Entries {
     reach_ = ways_.approach(a, b);
     bow_ = ways_.bow(a) + ways_.bow(b);
     tolerated_ = tolerance_.of(std::min(width(a), width(b)));
-    return reach_ > flush * tolerance::edge_end_m &&
+    return reach_ > flush_m &&
            (system_.centroid(a) - system_.centroid(b)).norm() <= system_.block(a).radius + system_.block(b).radius + reach_;
   }
 
@@ -119,32 +119,36 @@ class Entries {
     const Way start = ways_(into, e), end = ways_(into, system_.next(e));
     const Course course(corner, start, end);
     const double early = course.part(0.5 * tolerated_, behind * tolerated_),
-                 late = course.part(flush * tolerance::edge_end_m, flush * tolerance::edge_end_m);
+                 late = course.part(flush_m, flush_m);
     const bool is_behind_at_once = !is_within_step(early);
     const double part = is_behind_at_once ? late : early;
-    if (!is_within_step(part)) return 1.0;
+    if (!is_within_step(part) || is_held(v, e)) return 1.0;
     const double along = course.along(part), from_start = along, from_end = course.length() - along;
     const double inside = std::min(from_start, from_end);
     const int tip = from_start < from_end ? e : system_.next(e), neighbour = from_start < from_end ? system_.previous(e) : system_.next(e);
-    if (is_behind_at_once && inside > 0.0 && !is_held(v, e) && comes_out(corner, into, tip, neighbour)) return late;
-    if (inside > behind * tolerated_) return is_behind_at_once || is_held(v, e) ? 1.0 : part;
+    const bool in_notch = system_.is_reflex(tip);
+    // What has gone through a tip is in no block at the end of the step, and nothing would find it however deep it is behind the edge.
+    if (is_behind_at_once && inside > flush_m && !in_notch && depth_at_end(corner, into, neighbour) < -flush_m) return late;
+    const double near_tip = may_end_too_deep() ? behind * tolerated_ : flush_m, beside_tip = may_end_too_deep() ? tolerated_ : flush_m;
+    if (inside > near_tip) return is_behind_at_once ? 1.0 : part;
     // In a notch one wall leads the corner on to the other one, and nothing slides on over that: what is behind one wall beyond its end is behind
     // both.
-    const bool in_notch = system_.is_reflex(tip);
-    if (inside < -(in_notch ? reach_ : tolerated_ + bow_) || is_held(v, e)) return 1.0;
+    if (inside < -(in_notch ? reach_ : beside_tip + bow_)) return 1.0;
     if (in_notch) return is_behind_at_once ? 1.0 : part;
-    // At its end a corner slides on over a neighbour that is flush with the block, unless its own block is behind that side of the block, too: the
-    // feet of two blocks that meet on one floor. Detection takes corners for flush until they are deeper than rounding leaves them, so that one that
-    // was behind by less at the end of the last step counts again.
-    if (stands_on(v, neighbour)) return 1.0;
-    return may_end_too_deep() && is_within_step(late) ? late : 1.0;
+    // At its end a corner slides on over a neighbour that is flush with the block, unless it ends as deep behind that side of the block, which has not
+    // held it, or its own block is behind that side, too: the feet of two blocks that meet on one floor. Detection takes corners for flush until they
+    // are deeper than rounding leaves them, so that one that was behind by less at the end of the last step counts again.
+    if (stands_on(v, neighbour)) {
+      const bool is_in = !is_held(v, neighbour) && depth_at_end(corner, into, neighbour) > behind * tolerated_;
+      return is_in && !is_behind_at_once ? part : 1.0;
+    }
+    return is_within_step(late) ? late : 1.0;
   }
-  /// Whether a corner that has gone through an edge ends before the neighbour of that edge, beyond the tip between them. It is in no block then, and
-  /// nothing would find it however deep it is behind the edge.
-  bool comes_out(const Way& corner, int into, int tip, int neighbour) const {
-    if (system_.is_reflex(tip)) return false;
-    const Way start = ways_(into, neighbour), end = ways_(into, system_.next(neighbour));
-    return cross(end.at(1.0) - start.at(1.0), corner.at(1.0) - start.at(1.0)) < 0.0;
+  /// [m] Of a corner behind the line of an edge at the end of the step.
+  double depth_at_end(const Way& corner, int into, int e) const {
+    const Way start = ways_(into, e), end = ways_(into, system_.next(e));
+    const Vec2 edge = end.at(1.0) - start.at(1.0);
+    return cross(edge, corner.at(1.0) - start.at(1.0)) / edge.norm();
   }
   static bool is_within_step(double part) { return part >= shortest_part && part < 1.0; }
   /// Both sides of a corner leave the half-plane behind an edge.
