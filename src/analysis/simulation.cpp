@@ -648,26 +648,22 @@ void Simulation::velocities_by_forces_now(const StepProblem& problem, const Step
   }
 }
 
-std::vector<std::size_t> Simulation::closing_contacts(const StepProblem& problem, const StepSolution& solution) const {
-  std::vector<std::size_t> closing;
-  if (problem.statics || enforcement_->has_elastic_contacts()) return closing;
+std::vector<Simulation::Blow> Simulation::blows(const StepProblem& problem, const StepSolution& solution) const {
+  std::vector<Blow> list;
+  if (problem.statics || enforcement_->has_elastic_contacts()) return list;
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
-    if (contacts_[i].status == ContactStatus::open && solution.contacts.status(i) != ContactStatus::open) closing.push_back(i);
+    const Contact& c = contacts_[i];
+    const CarriedForces now = solution.contacts.forces(i);
+    const double before = c.status == ContactStatus::open ? 0.0 : std::max(0.0, c.normal_force);
+    if (now.status == ContactStatus::open || now.normal <= before) continue;
+    for (int b : {c.vertex_block, c.edge_block}) list.push_back({b, 1.0 - before / now.normal});
   }
-  return closing;
+  return list;
 }
 
-void Simulation::take_out_of_velocity(const StepProblem& problem, const Contact& contact, const ContactOutcome& outcome) {
-  const ContactKinematics k(outcome.pose);
-  const auto take = [&](int b, const Unknowns& normal, const Unknowns& shear) {
-    if (system_.block(b).equation < 0) return;
-    const Unknowns force = outcome.forces.normal * normal + outcome.forces.shear * shear;
-    Unknowns change = 0.5 * problem.dt * force.cwiseQuotient(system_.block(b).mass);
-    if (system_.block(b).rotation_locked) change[Motion::rotation_index] = 0.0;
-    output_velocity_[b] -= change;
-  };
-  take(contact.vertex_block, k.normal_vertex, k.shear_vertex);
-  take(contact.edge_block, k.normal_edge, k.shear_edge);
+void Simulation::end_of_blow(const Blow& blow) {
+  if (system_.block(blow.block).equation < 0) return;
+  output_velocity_[blow.block] -= blow.part * (output_velocity_[blow.block] - system_.velocity(blow.block));
 }
 
 double Simulation::kinetic_change(const StepProblem& problem, const StepSolution& solution) const {
@@ -695,7 +691,7 @@ bool Simulation::creates_energy(const StepProblem& problem, const StepSolution& 
 
 void Simulation::accept(const StepProblem& problem, const StepSolution& solution) {
   if (books_steps_) ledger_ += step_ledger_;
-  const std::vector<std::size_t> impacts = closing_contacts(problem, solution);
+  const std::vector<Blow> struck = blows(problem, solution);
   accept_contacts(solution);
   for (int b : system_.free_blocks()) {
     const Unknowns d = solution.of(system_, b), v = problem.velocity(b);
@@ -706,7 +702,7 @@ void Simulation::accept(const StepProblem& problem, const StepSolution& solution
   }
   for (int b : system_.free_blocks()) system_.advance(b, solution.of(system_, b));
   if (enforcement_->is_explicit()) velocities_by_forces_now(problem, solution);
-  for (const std::size_t i : impacts) take_out_of_velocity(problem, contacts_[i], solution.contacts[i]);
+  for (const Blow& blow : struck) end_of_blow(blow);
   if (!problem.statics) scheme_->accept(problem.dt);
   book_kinetic_energy(enforcement_->is_explicit() ? kinetic_ahead(problem, solution) : 0.0);
   time_ += problem.dt;

@@ -263,10 +263,15 @@ class Simulation {
   /// [J] See CentralDifference::kinetic_ahead(), for steps taken one by one.
   /// Velocities at the end of an explicit step, half a step after those of the system, see CentralDifference::velocity_at_end().
   void velocities_by_forces_now(const StepProblem& problem, const StepSolution& solution);
-  /// Of rigid contacts in motion: those that an impact closes in this step.
-  std::vector<std::size_t> closing_contacts(const StepProblem& problem, const StepSolution& solution) const;
-  /// The velocity at the end of a step goes on from that of its middle with the forces of the step. An impact is over then: its force is taken out.
-  void take_out_of_velocity(const StepProblem& problem, const Contact& contact, const ContactOutcome& outcome);
+  /// A rigid contact in motion carries this part of its force [-] for the first time.
+  struct Blow {
+    int block;
+    double part;
+  };
+  std::vector<Blow> blows(const StepProblem& problem, const StepSolution& solution) const;
+  /// The velocity at the end of a step goes on from that of its middle with the forces of the step. A blow is over then, and what it has changed is in
+  /// the velocity of the middle: that part of going on is taken back.
+  void end_of_blow(const Blow& blow);
   double kinetic_change(const StepProblem& problem, const StepSolution& solution) const;  ///< [J]
   /// Whether a solved step creates energy where much has been created already, see allow_energy().
   bool creates_energy(const StepProblem& problem, const StepSolution& solution) const;

@@ -407,6 +407,28 @@ TEST_CASE("the velocity that a step ends with is none of an impact that is over"
   if (method == "hard") CHECK(simulation.velocity(1).norm() < 1e-6);
 }
 
+TEST_CASE("a blow that a contact passes on is over at the end of its step, too", "[analysis][simulation]") {
+  // A beam on two supports with a block on it is hit from below: the joint under the block carries the blow although it was closed before.
+  Scene scene = test::empty_scene();
+  const double speed = 5.0;
+  scene.blocks = {test::fixed_block("left", test::rectangle(-3.0, -1.0, 2.0, 1.0)), test::fixed_block("right", test::rectangle(1.0, -1.0, 2.0, 1.0)),
+                  test::free_block("beam", test::rectangle(-2.0, 0.0, 4.0, 1.0)), test::free_block("above", test::rectangle(-0.5, 1.0, 1.0, 1.0)),
+                  test::free_block("below", test::rectangle(-0.5, -1.2, 1.0, 1.0))};
+  scene.blocks[4].velocity = {0.0, speed};
+  scene.method.contact = "hard";
+  scene.method.start = Start::unloaded;
+  Simulation simulation(scene);
+  prepare_start(simulation);
+  double fastest = 0.0;
+  while (simulation.time() < 0.1) {
+    REQUIRE(simulation.advance(1e-3));
+    fastest = std::max(fastest, simulation.velocity(3)[1]);
+  }
+  const double together = speed / 6.0;  // one sixth of the mass has brought the momentum, less what gravity takes from it
+  CHECK(fastest < 1.001 * together);
+  CHECK(fastest > 0.9 * together);
+}
+
 TEST_CASE("a block far away is not felt", "[analysis][simulation]") {
   for (const std::string method : {"soft", "hard", "shi"}) {
     INFO(method);
