@@ -142,7 +142,9 @@ class Entries {
       const bool is_in = !is_held(v, neighbour) && depth_at_end(corner, into, neighbour) > behind * tolerated_;
       return is_in && !is_behind_at_once ? part : 1.0;
     }
-    return is_within_step(late) ? late : 1.0;
+    // Corners that lie on each other have one contact, that of either.
+    const bool is_held_by_tip = is_held(tip, v) || is_held(tip, system_.previous(v));
+    return is_within_step(late) && !is_held_by_tip ? late : 1.0;
   }
   /// [m] Of a corner behind the line of an edge at the end of the step.
   double depth_at_end(const Way& corner, int into, int e) const {
