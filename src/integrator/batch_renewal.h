@@ -37,7 +37,7 @@ class GivenSprings final : public SpringSource {
 /// Serves one system of blocks and one table of joints: masses and stiffnesses are taken to stay, strengths to follow from the table's reduction.
 class BatchRenewal {
  public:
-  /// Sets all batches up to BatchKernels::begin(). The places of blocks are their equations; those without have the one that comes after these.
+  /// Sets all batches up to begin(). The places of blocks are their equations; those without have the one that comes after these.
   /// \param starts  the batches as the last call has left them, but for gaps and forces at the start
   void renew(const StepProblem& problem, const SpringSource& springs, ContactStarts& starts);
   /// The batches are not as the last call has left them.

@@ -483,11 +483,7 @@ void CentralDifference::follow_contacts() {
   begin_forces();
   add_point_forces(true);
   lost_strength_ = false;
-  if (damped_) {
-    follow_links<true>();
-  } else {
-    follow_links<false>();
-  }
+  follow_links(damped_);
 }
 
 template <bool damped>
@@ -679,30 +675,17 @@ void CentralDifference::follow_all(LinkSums& sums) {
   }
 }
 
-template <bool damped>
-void CentralDifference::follow_with_any_registers(LinkSums& sums) {
-  follow_all<damped>(sums);
+OPENCLOSE_FOR_WIDE_REGISTERS_TOO void CentralDifference::follow_damped(LinkSums& sums) {
+  follow_all<true>(sums);
 }
 
-#ifdef OPENCLOSE_HAS_WIDE_REGISTERS
-template <bool damped>
-[[gnu::target("avx2")]] void CentralDifference::follow_with_wide_registers(LinkSums& sums) {
-  follow_all<damped>(sums);
+OPENCLOSE_FOR_WIDE_REGISTERS_TOO void CentralDifference::follow_undamped(LinkSums& sums) {
+  follow_all<false>(sums);
 }
-#endif
 
-template <bool damped>
-void CentralDifference::follow_links() {
+void CentralDifference::follow_links(bool damped) {
   LinkSums sums{0.0, 0.0, 0.0, max_penetration_};
-#ifdef OPENCLOSE_HAS_WIDE_REGISTERS
-  if (wide_registers_) {
-    follow_with_wide_registers<damped>(sums);
-  } else {
-    follow_with_any_registers<damped>(sums);
-  }
-#else
-  follow_with_any_registers<damped>(sums);
-#endif
+  damped ? follow_damped(sums) : follow_undamped(sums);
   energies_.friction += sums.friction;
   energies_.contact_damping += sums.damping;
   energies_.scheme += sums.scheme;

@@ -30,7 +30,7 @@
 #include "openclose/integrator/critical_step.h"
 #include "openclose/integrator/depth_limits.h"
 #include "openclose/integrator/enforcement.h"
-#include "openclose/integrator/lanes.h"
+#include "openclose/core/packs.h"
 
 namespace openclose {
 
@@ -59,9 +59,9 @@ class CentralDifference {
   using Unknowns = Motion::Unknowns;
 
   /// \param skin [m] by which blocks may move against each other before the list of contacts is to be renewed
-  /// \param fours, wide_registers  false: links one by one, in the registers that every processor has; the results are the same to the last bit
-  explicit CentralDifference(double skin, bool fours = true, bool wide_registers = true)
-      : skin_(skin), fours_(fours), wide_registers_(wide_registers && has_wide_registers()) {}
+  /// \param fours  false: links one by one; the results are the same to the last bit
+  explicit CentralDifference(double skin, bool fours = true)
+      : skin_(skin), fours_(fours) {}
 
   /// Takes over blocks, velocities of the middle of the last step, contacts with their history, and the forces they carry now.
   void load(const StepProblem& problem);
@@ -251,12 +251,9 @@ class CentralDifference {
   [[gnu::always_inline]] inline bool follow_four(Link* links, LinkSums& sums);
   template <bool damped>
   [[gnu::always_inline]] inline void follow_all(LinkSums& sums);
-  template <bool damped>
-  void follow_links();
-  template <bool damped>
-  void follow_with_any_registers(LinkSums& sums);
-  template <bool damped>
-  void follow_with_wide_registers(LinkSums& sums);
+  void follow_damped(LinkSums& sums);
+  void follow_undamped(LinkSums& sums);
+  void follow_links(bool damped);
   double force_squared(std::size_t i) const;  ///< [N2] on a block, a moment counting at the block's radius
   void adapt(double taken, double kinetic_change, double h);
 
@@ -288,7 +285,7 @@ class CentralDifference {
   ExplicitEnergies energies_;
   bool damped_ = false, lost_strength_ = false;
   const double skin_;  ///< [m]
-  bool fours_, wide_registers_;
+  bool fours_;
   CriticalStepBound critical_step_;
   double approach_ = 0.0, moved_ = 0.0, unbalanced_ = 0.0, max_penetration_ = 0.0;
   double step_ahead_ = 0.0;     ///< [m] by which two blocks may have approached in the last step, or in one that was not taken

@@ -360,78 +360,56 @@ OPENCLOSE_KERNEL void add_stiffness(const ContactBatch* contacts, const BlockMov
   }
 }
 
-OPENCLOSE_KERNEL double evaluate_either(StepForces forces, double ramp, const ContactBatch* contacts, std::size_t count, const BlockMove* moves,
-                                        double rounding_of_sums, TrialBatch* trials, Branch* branches, ForceRow* rows) {
+OPENCLOSE_FOR_WIDE_REGISTERS_TOO double begin_all(ContactBatch* contacts, std::size_t count) {
+  return begin(contacts, count);
+}
+OPENCLOSE_FOR_WIDE_REGISTERS_TOO void find_all_elastic(double ramp, const ContactBatch* contacts, const TrialBatch* trials, std::size_t count,
+                                                       ElasticBatch* elastic) {
+  find_elastic(ramp, contacts, trials, count, elastic);
+}
+OPENCLOSE_FOR_WIDE_REGISTERS_TOO double evaluate_all(StepForces forces, double ramp, const ContactBatch* contacts, std::size_t count,
+                                                     const BlockMove* moves, double rounding_of_sums, TrialBatch* trials, Branch* branches,
+                                                     ForceRow* rows) {
   if (forces == StepForces::averaged) return evaluate<StepForces::averaged>(ramp, contacts, count, moves, rounding_of_sums, trials, branches, rows);
   return evaluate<StepForces::at_end>(ramp, contacts, count, moves, rounding_of_sums, trials, branches, rows);
 }
-OPENCLOSE_KERNEL void add_either_stiffness(const ContactBatch* contacts, const BlockMove* moves, const TrialBatch* trials, std::size_t count,
-                                           const Branch* branches, const BatchTangent& tangent, const MatrixSlots& slots, double* values) {
+OPENCLOSE_FOR_WIDE_REGISTERS_TOO void add_all_stiffness(const ContactBatch* contacts, const BlockMove* moves, const TrialBatch* trials,
+                                                        std::size_t count, const Branch* branches, const BatchTangent& tangent,
+                                                        const MatrixSlots& slots, double* values) {
   // The symmetric tangent of means over a path knows one pose.
   if (tangent.exact && tangent.forces == StepForces::averaged)
     return add_stiffness<true>(contacts, moves, trials, count, branches, tangent, slots, values);
   add_stiffness<false>(contacts, moves, trials, count, branches, tangent, slots, values);
 }
 
-double begin_with_any_registers(ContactBatch* contacts, std::size_t count) {
-  return begin(contacts, count);
-}
-void find_elastic_with_any_registers(double ramp, const ContactBatch* contacts, const TrialBatch* trials, std::size_t count, ElasticBatch* elastic) {
-  find_elastic(ramp, contacts, trials, count, elastic);
-}
-double evaluate_with_any_registers(StepForces forces, double ramp, const ContactBatch* contacts, std::size_t count, const BlockMove* moves,
-                                   double rounding_of_sums, TrialBatch* trials, Branch* branches, ForceRow* rows) {
-  return evaluate_either(forces, ramp, contacts, count, moves, rounding_of_sums, trials, branches, rows);
-}
-void add_stiffness_with_any_registers(const ContactBatch* contacts, const BlockMove* moves, const TrialBatch* trials, std::size_t count,
-                                      const Branch* branches, const BatchTangent& tangent, const MatrixSlots& slots, double* values) {
-  add_either_stiffness(contacts, moves, trials, count, branches, tangent, slots, values);
-}
-
-#ifdef OPENCLOSE_HAS_WIDE_REGISTERS
-[[gnu::target("avx2")]] double begin_with_wide_registers(ContactBatch* contacts, std::size_t count) {
-  return begin(contacts, count);
-}
-[[gnu::target("avx2")]] void find_elastic_with_wide_registers(double ramp, const ContactBatch* contacts, const TrialBatch* trials, std::size_t count,
-                                                              ElasticBatch* elastic) {
-  find_elastic(ramp, contacts, trials, count, elastic);
-}
-[[gnu::target("avx2")]] double evaluate_with_wide_registers(StepForces forces, double ramp, const ContactBatch* contacts, std::size_t count,
-                                                            const BlockMove* moves, double rounding_of_sums, TrialBatch* trials, Branch* branches,
-                                                            ForceRow* rows) {
-  return evaluate_either(forces, ramp, contacts, count, moves, rounding_of_sums, trials, branches, rows);
-}
-[[gnu::target("avx2")]] void add_stiffness_with_wide_registers(const ContactBatch* contacts, const BlockMove* moves, const TrialBatch* trials,
-                                                               std::size_t count, const Branch* branches, const BatchTangent& tangent,
-                                                               const MatrixSlots& slots, double* values) {
-  add_either_stiffness(contacts, moves, trials, count, branches, tangent, slots, values);
-}
-#endif
-
 }  // namespace
 
-BatchKernels::BatchKernels([[maybe_unused]] bool wide_registers)
-    : begin_(&begin_with_any_registers),
-      find_elastic_(&find_elastic_with_any_registers),
-      evaluate_(&evaluate_with_any_registers),
-      add_stiffness_(&add_stiffness_with_any_registers) {
-#ifdef OPENCLOSE_HAS_WIDE_REGISTERS
-  if (!wide_registers || !has_wide_registers()) return;
-  begin_ = &begin_with_wide_registers;
-  find_elastic_ = &find_elastic_with_wide_registers;
-  evaluate_ = &evaluate_with_wide_registers;
-  add_stiffness_ = &add_stiffness_with_wide_registers;
-#endif
+double begin(std::vector<ContactBatch>& contacts) {
+  return begin_all(contacts.data(), contacts.size());
 }
 
-void BatchKernels::add_stiffness(const std::vector<ContactBatch>& contacts, const BlockMove* moves, const std::vector<TrialBatch>& trials,
+double evaluate(StepForces forces, double ramp, const std::vector<ContactBatch>& contacts, const BlockMove* moves, double rounding_of_sums,
+                std::vector<TrialBatch>& trials, std::vector<Branch>& branches, std::vector<ForceRow>& rows) {
+  return evaluate_all(forces, ramp, contacts.data(), contacts.size(), moves, rounding_of_sums, trials.data(), branches.data(), rows.data());
+}
+
+void evaluate_one(StepForces forces, double ramp, const std::vector<ContactBatch>& contacts, std::size_t batch, const BlockMove* moves,
+                  double rounding_of_sums, std::vector<TrialBatch>& trials, std::vector<Branch>& branches, std::vector<ForceRow>& rows) {
+  evaluate_all(forces, ramp, &contacts[batch], 1, moves, rounding_of_sums, &trials[batch], &branches[batch_size * batch], rows.data());
+}
+
+void find_elastic(double ramp, const std::vector<ContactBatch>& contacts, const std::vector<TrialBatch>& trials, std::vector<ElasticBatch>& elastic) {
+  find_all_elastic(ramp, contacts.data(), trials.data(), elastic.size(), elastic.data());
+}
+
+void add_stiffness(const std::vector<ContactBatch>& contacts, const BlockMove* moves, const std::vector<TrialBatch>& trials,
                                  const std::vector<Branch>& branches, const BatchTangent& tangent, const MatrixSlots& slots,
-                                 BlockMatrix& matrix) const {
+                   BlockMatrix& matrix) {
   if (matrix.rows() == 0) return;
-  add_stiffness_(contacts.data(), moves, trials.data(), trials.size(), branches.data(), tangent, slots, matrix.value(0).data());
+  add_all_stiffness(contacts.data(), moves, trials.data(), trials.size(), branches.data(), tangent, slots, matrix.value(0).data());
 }
 
-double BatchKernels::largest_force(const std::vector<TrialBatch>& trials) {
+double largest_force(const std::vector<TrialBatch>& trials) {
   Lanes largest{};
   for (const TrialBatch& trial : trials) largest = larger(largest, larger(magnitude(trial.normal), magnitude(trial.shear)));
   return std::max({largest[0], largest[1], largest[2], largest[3]});

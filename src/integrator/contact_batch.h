@@ -14,7 +14,7 @@
 
 #include "openclose/contact/contact.h"
 #include "openclose/contact/kinematics.h"
-#include "openclose/integrator/lanes.h"
+#include "openclose/core/packs.h"
 #include "openclose/law/joint_law.h"
 #include "openclose/linear/block_matrix.h"
 
@@ -40,7 +40,7 @@ enum class StepForces {
 
 inline constexpr unsigned doubles_of_move = sizeof(BlockMove) / sizeof(double);
 
-/// Four contacts at the start of a step: set one by one, then BatchKernels::begin(). What is not set carries nothing and adds nothing.
+/// Four contacts at the start of a step: set one by one, then begin(). What is not set carries nothing and adds nothing.
 struct ContactBatch {
   Lanes normal_x{}, normal_y{}, lever_x{}, lever_y{}, vertex_arm_x{}, vertex_arm_y{}, end_arm_x{}, end_arm_y{};  // as in ContactStart
   Lanes normal{}, shear{}, gap_off_target{}, shift{}, initial_shear{}, normal_damping{}, shear_damping{};        // as in ContactSprings
@@ -183,46 +183,26 @@ struct BatchTangent {
   bool open_ones_too;            ///< contacts that are open at the end of the step may have a stiffness, too
 };
 
-class BatchKernels {
- public:
-  /// \param wide_registers  to be used where the processor has them
-  explicit BatchKernels(bool wide_registers = true);
-
-  /// Works out, of contacts that have just been set, what is the same operations for all: their normals. Returns [N] the largest force of
-  /// a spring at the start of the step, pulling ones not counted.
-  double begin(std::vector<ContactBatch>& contacts) const { return begin_(contacts.data(), contacts.size()); }
-  /// Fills trials and branches; adds to the rows. Returns [N] the largest force.
-  /// \param ramp   [-] see ContactStrength::shear_bound(); means have the usual one
-  /// \param moves  of all blocks; a place of rows for each
-  /// \param rounding_of_sums  [-] of the forces and changes of force of a contact
-  double evaluate(StepForces forces, double ramp, const std::vector<ContactBatch>& contacts, const BlockMove* moves, double rounding_of_sums,
-                  std::vector<TrialBatch>& trials, std::vector<Branch>& branches, std::vector<ForceRow>& rows) const {
-    return evaluate_(forces, ramp, contacts.data(), contacts.size(), moves, rounding_of_sums, trials.data(), branches.data(), rows.data());
-  }
-  /// The same of one batch.
-  void evaluate_one(StepForces forces, double ramp, const std::vector<ContactBatch>& contacts, std::size_t batch, const BlockMove* moves,
-                    double rounding_of_sums, std::vector<TrialBatch>& trials, std::vector<Branch>& branches, std::vector<ForceRow>& rows) const {
-    evaluate_(forces, ramp, &contacts[batch], 1, moves, rounding_of_sums, &trials[batch], &branches[batch_size * batch], rows.data());
-  }
-  /// [N] of all batches that were evaluated.
-  static double largest_force(const std::vector<TrialBatch>& trials);
-  /// Of forces at the end of the step.
-  /// \param ramp, trials  with which and to what they were evaluated
-  void find_elastic(double ramp, const std::vector<ContactBatch>& contacts, const std::vector<TrialBatch>& trials,
-                    std::vector<ElasticBatch>& elastic) const {
-    find_elastic_(ramp, contacts.data(), trials.data(), elastic.size(), elastic.data());
-  }
-  /// Adds the stiffness of all contacts to the matrix.
-  /// \param moves  with which the trials were evaluated
-  void add_stiffness(const std::vector<ContactBatch>& contacts, const BlockMove* moves, const std::vector<TrialBatch>& trials,
-                     const std::vector<Branch>& branches, const BatchTangent& tangent, const MatrixSlots& slots, BlockMatrix& matrix) const;
-
- private:
-  double (*begin_)(ContactBatch*, std::size_t);
-  void (*find_elastic_)(double, const ContactBatch*, const TrialBatch*, std::size_t, ElasticBatch*);
-  double (*evaluate_)(StepForces, double, const ContactBatch*, std::size_t, const BlockMove*, double, TrialBatch*, Branch*, ForceRow*);
-  void (*add_stiffness_)(const ContactBatch*, const BlockMove*, const TrialBatch*, std::size_t, const Branch*, const BatchTangent&,
-                         const MatrixSlots&, double*);
-};
+/// Works out, of contacts that have just been set, what is the same operations for all: their normals. Returns [N] the largest force of
+/// a spring at the start of the step, pulling ones not counted.
+double begin(std::vector<ContactBatch>& contacts);
+/// Fills trials and branches; adds to the rows. Returns [N] the largest force.
+/// \param ramp   [-] see ContactStrength::shear_bound(); means have the usual one
+/// \param moves  of all blocks; a place of rows for each
+/// \param rounding_of_sums  [-] of the forces and changes of force of a contact
+double evaluate(StepForces forces, double ramp, const std::vector<ContactBatch>& contacts, const BlockMove* moves, double rounding_of_sums,
+                std::vector<TrialBatch>& trials, std::vector<Branch>& branches, std::vector<ForceRow>& rows);
+/// The same of one batch.
+void evaluate_one(StepForces forces, double ramp, const std::vector<ContactBatch>& contacts, std::size_t batch, const BlockMove* moves,
+                  double rounding_of_sums, std::vector<TrialBatch>& trials, std::vector<Branch>& branches, std::vector<ForceRow>& rows);
+/// [N] Of all batches that were evaluated.
+double largest_force(const std::vector<TrialBatch>& trials);
+/// Of forces at the end of the step.
+/// \param ramp, trials  with which and to what they were evaluated
+void find_elastic(double ramp, const std::vector<ContactBatch>& contacts, const std::vector<TrialBatch>& trials, std::vector<ElasticBatch>& elastic);
+/// Adds the stiffness of all contacts to the matrix.
+/// \param moves  with which the trials were evaluated
+void add_stiffness(const std::vector<ContactBatch>& contacts, const BlockMove* moves, const std::vector<TrialBatch>& trials,
+                   const std::vector<Branch>& branches, const BatchTangent& tangent, const MatrixSlots& slots, BlockMatrix& matrix);
 
 }  // namespace openclose

@@ -6,7 +6,7 @@
 #include <cstring>
 
 #include "openclose/core/tolerance.h"
-#include "openclose/integrator/lanes.h"
+#include "openclose/core/packs.h"
 
 namespace openclose::lanes {
 

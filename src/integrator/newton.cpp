@@ -199,7 +199,7 @@ void Newton::prepare(const StepProblem& problem, const SpringSource& springs) {
     if (block.is_alone) continue;
     block_scale_ = std::max({block_scale_, block.magnitude, Motion::largest_force(block.inertia.cwiseProduct(block.drift), block.radius)});
   }
-  start_scale_ = std::max(kernels_.begin(contacts()), block_scale_);
+  start_scale_ = std::max(openclose::begin(contacts()), block_scale_);
   resize_closely(trials_, contacts().size());
   step_forces_ = problem.averages_path() ? StepForces::averaged : StepForces::at_end;
   branches_.assign(batch_size * contacts().size(), 0);
@@ -285,7 +285,7 @@ void Newton::evaluate(const Eigen::VectorXd& d) {
   for (int row = 0; row < rows; ++row) move_block(row, d);
   rows_.assign(moves_.size(), ForceRow());
   residual_.resize(dofs * static_cast<Eigen::Index>(blocks_.size()));
-  const double largest = kernels_.evaluate(step_forces_, ramp_, contacts(), moves_.data(), rounding_of_sums, trials_, branches_, rows_);
+  const double largest = openclose::evaluate(step_forces_, ramp_, contacts(), moves_.data(), rounding_of_sums, trials_, branches_, rows_);
   for (int row = 0; row < rows; ++row) evaluate_block(row, d);
   find_force_scale(largest, d);
   has_replaced_forces_ = false;
@@ -320,13 +320,13 @@ void Newton::evaluate_moved(const std::vector<int>& moved, const Eigen::VectorXd
       keep_sums(contacts()[batch].vertex_place(k));
       keep_sums(contacts()[batch].edge_place(k));
     }
-    kernels_.evaluate_one(step_forces_, ramp_, contacts(), batch, moves_.data(), rounding_of_sums, trials_, branches_, rows_);
+    openclose::evaluate_one(step_forces_, ramp_, contacts(), batch, moves_.data(), rounding_of_sums, trials_, branches_, rows_);
   }
   effort.part_batches += due;
   effort.part_batches_skipped += all - due;
   for (const auto& [row, sums] : sums_of_others) rows_[row] = sums;
   for (int row : pushed) evaluate_block(row, d);
-  find_force_scale(kernels_.largest_force(trials_), d);
+  find_force_scale(largest_force(trials_), d);
 }
 
 double Newton::tolerated(int row) const {
@@ -389,7 +389,7 @@ void Newton::assemble(const Eigen::VectorXd& d, Tangent tangent) {
   const bool open_ones_too = averages_path() || !holds_.empty();
   const BatchTangent asked{step_forces_, tangent == Tangent::exact, problem_->end_weight, problem_->statics ? static_slip_stiffness : 0.0,
                            open_ones_too};
-  kernels_.add_stiffness(contacts(), moves_.data(), trials_, branches_, asked, tangent_.slots(), matrix);
+  openclose::add_stiffness(contacts(), moves_.data(), trials_, branches_, asked, tangent_.slots(), matrix);
   for (std::size_t i = 0; i < blocks_.size(); ++i) {
     const StepBlock& block = blocks_[i];
     const int row = static_cast<int>(i);
@@ -537,7 +537,7 @@ std::vector<ElasticBatch> Newton::report_paths(StepSolution& solution) {
 
 std::vector<ElasticBatch> Newton::elastic_parts() const {
   std::vector<ElasticBatch> elastic(trials_.size());
-  kernels_.find_elastic(ramp_, contacts(), trials_, elastic);
+  find_elastic(ramp_, contacts(), trials_, elastic);
   return elastic;
 }
 

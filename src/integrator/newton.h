@@ -241,7 +241,6 @@ class Newton {
   Merit asked_merit_;
   double ramp_ = tolerance::cohesion_ramp;  ///< [-]
   const StepProblem* problem_ = nullptr;
-  BatchKernels kernels_;
   BatchRenewal renewal_;
   std::size_t contact_count_ = 0;
   /// Of the problem's contacts, in statics in the order of the list. Steps that are known by their outcomes have them, too: where they still do,

@@ -28,14 +28,11 @@
 #include <span>
 #include <utility>
 
+#include "openclose/core/packs.h"
 #include "openclose/core/parallel.h"
 #include "openclose/core/process.h"
 #include "openclose/linear/solver.h"
 #include "openclose/linear/weak_couplings.h"
-
-#if defined(__x86_64__) && defined(__GNUC__)
-#define OPENCLOSE_HAS_WIDE_REGISTERS
-#endif
 
 namespace openclose {
 namespace {
@@ -67,15 +64,12 @@ constexpr double refined_reduction = 1e-7;
 constexpr double refined_to_rounding = std::numeric_limits<double>::epsilon();
 
 /// Rows of blocks are padded to four numbers, one register of four. The padding of products is that of their right factor; nobody reads it.
-constexpr int lanes = 4;
-constexpr int alignment = lanes * sizeof(double);  // said in full: left to itself it depends on the instructions that a function may use
-typedef double Lanes __attribute__((vector_size(alignment), aligned(alignment)));
-
+constexpr int alignment = sizeof(Lanes);
 typedef double LooseLanes __attribute__((vector_size(alignment), aligned(sizeof(double)), may_alias));
 
 /// N x N, row by row.
 struct alignas(alignment) PaddedBlock {
-  static_assert(dofs <= lanes);
+  static_assert(dofs < batch_size);
   Lanes row[dofs];
   PaddedBlock() {}  // nothing: a factor is written before it is read
 };
@@ -128,10 +122,6 @@ struct Factor {
     return next < row_start[i + 1] ? column[next] : -1;
   }
 };
-
-// What follows is compiled once for every processor and once for wide registers. Each number is computed by the same operations in the same order,
-// so that results do not depend on the processor.
-#define OPENCLOSE_KERNEL [[gnu::always_inline]] inline
 
 /// The entries of a block one by one, as they multiply the rows of another.
 struct Multipliers {
@@ -262,7 +252,7 @@ struct Entries {
   Lanes first, next;
   double last;
 
-  OPENCLOSE_KERNEL explicit Entries(const double* block) : first(lanes_at(block)), next(lanes_at(block + lanes)), last(block[2 * lanes]) {}
+  OPENCLOSE_KERNEL explicit Entries(const double* block) : first(lanes_at(block)), next(lanes_at(block + batch_size)), last(block[2 * batch_size]) {}
   OPENCLOSE_KERNEL Entries(const Lanes& rows, const Lanes& columns)
       : first(__builtin_shufflevector(rows, rows, 0, 1, 2, 0) * __builtin_shufflevector(columns, columns, 0, 0, 0, 1)),
         next(__builtin_shufflevector(rows, rows, 1, 2, 0, 1) * __builtin_shufflevector(columns, columns, 1, 1, 2, 2)),
@@ -301,7 +291,7 @@ OPENCLOSE_KERNEL void take_row(const BlockMatrix& matrix, Factor& f, int i) {
 }
 
 /// Takes the rows that are stale, because they or rows that they subtract have changed, from the matrix. The number of those that are not.
-OPENCLOSE_KERNEL int take_changes(const BlockMatrix& matrix, Factor& f, double change) {
+OPENCLOSE_FOR_WIDE_REGISTERS_TOO int take_changes(const BlockMatrix& matrix, Factor& f, double change) {
   int kept = 0;
   for (int i = 0; i < f.rows(); ++i) {
     if (!f.stale[i] && is_as_taken(matrix, f, i, change)) {
@@ -326,7 +316,7 @@ OPENCLOSE_KERNEL void lay_row(Factor& f, int i) {
 }
 
 /// Subtracts a panel from stale rows of later ones.
-OPENCLOSE_KERNEL void advance(Factor& f, const std::vector<int>& rows, int panel, int* place) {
+OPENCLOSE_FOR_WIDE_REGISTERS_TOO void advance(Factor& f, const std::vector<int>& rows, int panel, int* place) {
   for (int i : rows) {
     if (!f.stale[i]) continue;
     if (panel == 0) lay_row(f, i);
@@ -335,7 +325,7 @@ OPENCLOSE_KERNEL void advance(Factor& f, const std::vector<int>& rows, int panel
 }
 
 /// Ends the elimination of stale rows of a panel, which have subtracted all before it. False if a pivot has lost its digits.
-OPENCLOSE_KERNEL bool eliminate(Factor& f, const std::vector<int>& rows, int panel, int* place) {
+OPENCLOSE_FOR_WIDE_REGISTERS_TOO bool eliminate_rows(Factor& f, const std::vector<int>& rows, int panel, int* place) {
   for (int i : rows) {
     if (!f.stale[i]) continue;
     if (panel == 0) lay_row(f, i);
@@ -360,7 +350,7 @@ OPENCLOSE_KERNEL Lanes less_product(const Factor& f, int first, int end, const L
   return sum - columns.first - columns.next - columns.last;
 }
 
-OPENCLOSE_KERNEL void substitute_forward(Factor& f, const std::vector<int>& rows, const double* right_side) {
+OPENCLOSE_FOR_WIDE_REGISTERS_TOO void substitute_forward(Factor& f, const std::vector<int>& rows, const double* right_side) {
   for (int i : rows) {
     const double* const b = right_side + dofs * f.order[i];
     const Lanes sum = less_product<1>(f, f.row_start[i], f.diagonal[i], Lanes{b[0], b[1], b[2], 0.0});
@@ -371,7 +361,7 @@ OPENCLOSE_KERNEL void substitute_forward(Factor& f, const std::vector<int>& rows
   }
 }
 
-OPENCLOSE_KERNEL void substitute_back(Factor& f, const std::vector<int>& rows, double* x) {
+OPENCLOSE_FOR_WIDE_REGISTERS_TOO void substitute_back(Factor& f, const std::vector<int>& rows, double* x) {
   for (auto row = rows.rbegin(); row != rows.rend(); ++row) {
     const int i = *row;
     const Lanes entries = less_product<-1>(f, f.row_start[i + 1] - 1, f.diagonal[i], f.solution[i].entries);
@@ -380,57 +370,9 @@ OPENCLOSE_KERNEL void substitute_back(Factor& f, const std::vector<int>& rows, d
   }
 }
 
-/// The functions for the registers of a processor.
-struct Kernels {
-  int (*take_changes)(const BlockMatrix&, Factor&, double);
-  void (*advance)(Factor&, const std::vector<int>&, int, int*);
-  bool (*eliminate)(Factor&, const std::vector<int>&, int, int*);
-  void (*substitute_forward)(Factor&, const std::vector<int>&, const double*);
-  void (*substitute_back)(Factor&, const std::vector<int>&, double*);
-};
-
-#define OPENCLOSE_KERNELS_WITH(registers, target)                                                                                         \
-                                                                                                                                          \
-  target int take_changes_with_##registers(const BlockMatrix& matrix, Factor& f, double change) {                                         \
-    return take_changes(matrix, f, change);                                                                                               \
-  }                                                                                                                                       \
-                                                                                                                                          \
-  target void advance_with_##registers(Factor& f, const std::vector<int>& rows, int panel, int* place) {                                  \
-    advance(f, rows, panel, place);                                                                                                       \
-  }                                                                                                                                       \
-                                                                                                                                          \
-  target bool eliminate_with_##registers(Factor& f, const std::vector<int>& rows, int panel, int* place) {                                \
-    return eliminate(f, rows, panel, place);                                                                                              \
-  }                                                                                                                                       \
-                                                                                                                                          \
-  target void substitute_forward_with_##registers(Factor& f, const std::vector<int>& rows, const double* right_side) {                    \
-    substitute_forward(f, rows, right_side);                                                                                              \
-  }                                                                                                                                       \
-                                                                                                                                          \
-  target void substitute_back_with_##registers(Factor& f, const std::vector<int>& rows, double* x) {                                      \
-    substitute_back(f, rows, x);                                                                                                          \
-  }                                                                                                                                       \
-                                                                                                                                          \
-  Kernels kernels_with_##registers() {                                                                                                    \
-    return {&take_changes_with_##registers, &advance_with_##registers, &eliminate_with_##registers, &substitute_forward_with_##registers, \
-            &substitute_back_with_##registers};                                                                                           \
-  }
-
-OPENCLOSE_KERNELS_WITH(any_registers, )
-#ifdef OPENCLOSE_HAS_WIDE_REGISTERS
-OPENCLOSE_KERNELS_WITH(wide_registers, [[gnu::target("avx2")]])
-#endif
-
-Kernels choose_kernels([[maybe_unused]] bool wide_registers) {
-#ifdef OPENCLOSE_HAS_WIDE_REGISTERS
-  if (wide_registers && __builtin_cpu_supports("avx2")) return kernels_with_wide_registers();
-#endif
-  return kernels_with_any_registers();
-}
-
 class BlockLuSolver : public LinearSolver {
  public:
-  BlockLuSolver(Factoring factoring, bool wide_registers) : factoring_(factoring), kernels_(choose_kernels(wide_registers)) {}
+  explicit BlockLuSolver(Factoring factoring) : factoring_(factoring) {}
 
   bool factor(const BlockMatrix& matrix, double kept_change) override {
     matrix_ = &matrix;
@@ -488,7 +430,7 @@ class BlockLuSolver : public LinearSolver {
     make_room();
     std::fill(factor_.stale.begin(), factor_.stale.end(), factoring_ == Factoring::whole || !has_factor_);
     this->counters_.rows += factor_.rows();
-    this->counters_.rows_kept += kernels_.take_changes(*matrix_, factor_, kept_change);
+    this->counters_.rows_kept += take_changes(*matrix_, factor_, kept_change);
     has_factor_ = eliminate();
     use_plain_ = !has_factor_;
     if (has_factor_) return true;
@@ -543,12 +485,12 @@ class BlockLuSolver : public LinearSolver {
     const int subtrees = static_cast<int>(factor_.subtrees.size()), panels = static_cast<int>(factor_.panels.size());
     std::atomic<bool> done = true;
     for_each_part(SharedWork::factorisation, this->threads_, subtrees, [&](int part) {
-      if (!kernels_.eliminate(factor_, factor_.subtrees[part], 0, working_place_[part].data())) done = false;
+      if (!eliminate_rows(factor_, factor_.subtrees[part], 0, working_place_[part].data())) done = false;
     });
     for (int panel = 0; panel <= panels && done; ++panel) {
-      if (panel > 0) done = kernels_.eliminate(factor_, factor_.panels[panel - 1], panel, working_place_[0].data());
+      if (panel > 0) done = eliminate_rows(factor_, factor_.panels[panel - 1], panel, working_place_[0].data());
       for_each_part(SharedWork::factorisation, this->threads_, panels - panel,
-                    [&](int later) { kernels_.advance(factor_, factor_.panels[panel + later], panel, working_place_[later].data()); });
+                    [&](int later) { advance(factor_, factor_.panels[panel + later], panel, working_place_[later].data()); });
     }
     return done;
   }
@@ -556,11 +498,11 @@ class BlockLuSolver : public LinearSolver {
   void substitute(const double* right_side, double* x) {
     const int subtrees = static_cast<int>(factor_.subtrees.size());
     for_each_part(SharedWork::substitution, this->threads_, subtrees,
-                  [&](int part) { kernels_.substitute_forward(factor_, factor_.subtrees[part], right_side); });
-    for (const std::vector<int>& panel : factor_.panels) kernels_.substitute_forward(factor_, panel, right_side);
-    for (auto panel = factor_.panels.rbegin(); panel != factor_.panels.rend(); ++panel) kernels_.substitute_back(factor_, *panel, x);
+                  [&](int part) { substitute_forward(factor_, factor_.subtrees[part], right_side); });
+    for (const std::vector<int>& panel : factor_.panels) substitute_forward(factor_, panel, right_side);
+    for (auto panel = factor_.panels.rbegin(); panel != factor_.panels.rend(); ++panel) substitute_back(factor_, *panel, x);
     for_each_part(SharedWork::substitution, this->threads_, subtrees,
-                  [&](int part) { kernels_.substitute_back(factor_, factor_.subtrees[part], x); });
+                  [&](int part) { substitute_back(factor_, factor_.subtrees[part], x); });
   }
 
   /// \param slots  of the matrix: whether the factor gets them
@@ -797,7 +739,6 @@ class BlockLuSolver : public LinearSolver {
   Factoring factoring_;
   const BlockMatrix* matrix_ = nullptr;
   long version_ = -1;
-  Kernels kernels_;
   Factor factor_;
   bool has_factor_ = false;                      ///< of what it has taken
   std::vector<char> slots_;                      ///< of the matrix: whether the factor has them
@@ -810,8 +751,8 @@ class BlockLuSolver : public LinearSolver {
 
 }  // namespace
 
-std::unique_ptr<LinearSolver> make_block_solver(Factoring factoring, bool wide_registers) {
-  return std::make_unique<BlockLuSolver>(factoring, wide_registers);
+std::unique_ptr<LinearSolver> make_block_solver(Factoring factoring) {
+  return std::make_unique<BlockLuSolver>(factoring);
 }
 
 }  // namespace openclose

@@ -5,11 +5,8 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "openclose/core/packs.h"
 #include "openclose/core/parallel.h"
-
-#if defined(__x86_64__) && defined(__GNUC__)
-#define OPENCLOSE_HAS_WIDE_REGISTERS
-#endif
 
 namespace openclose {
 namespace {
@@ -19,12 +16,12 @@ constexpr int rows_of_a_part = 500;
 
 typedef double FourNumbers __attribute__((vector_size(4 * sizeof(double)), aligned(alignof(double))));
 
-[[gnu::always_inline]] inline const FourNumbers& load(const double* numbers) {
+OPENCLOSE_KERNEL const FourNumbers& load(const double* numbers) {
   return *reinterpret_cast<const FourNumbers*>(numbers);
 }
 
 /// Sum of the products of a row's blocks with x, column by column of each: the operations of Eigen in their order, three rows at a time.
-[[gnu::always_inline]] inline void multiply_row(const double* block, const int* column, int count, const double* x, double* y) {
+OPENCLOSE_KERNEL void multiply_row(const double* block, const int* column, int count, const double* x, double* y) {
   FourNumbers sum{};
   for (int s = 0; s < count; ++s, block += dofs * dofs) {
     const double* const part = x + dofs * column[s];
@@ -40,21 +37,12 @@ struct Rows {
   const int *start, *columns;
 };
 
-[[gnu::always_inline]] inline void multiply(const Rows& rows, int first, int end, const double* x, double* y) {
+OPENCLOSE_FOR_WIDE_REGISTERS_TOO void multiply_slots(const Rows& rows, int first, int end, const double* x, double* y) {
   for (int i = first; i < end; ++i) {
     const int begin = rows.start[i];
     multiply_row(rows.values + dofs * dofs * begin, rows.columns + begin, rows.start[i + 1] - begin, x, y + dofs * i);
   }
 }
-
-void multiply_with_any_registers(const Rows& rows, int first, int end, const double* x, double* y) {
-  multiply(rows, first, end, x, y);
-}
-#ifdef OPENCLOSE_HAS_WIDE_REGISTERS
-[[gnu::target("avx2")]] void multiply_with_wide_registers(const Rows& rows, int first, int end, const double* x, double* y) {
-  multiply(rows, first, end, x, y);
-}
-#endif
 
 }  // namespace
 
@@ -140,10 +128,7 @@ Eigen::VectorXd BlockMatrix::multiply(const Eigen::VectorXd& x) const {
 
 void BlockMatrix::multiply_rows(int first, int end, const Eigen::VectorXd& x, Eigen::VectorXd& y) const {
   const Rows all{values_.empty() ? nullptr : values_[0].data(), row_start_.data(), columns_.data()};
-#ifdef OPENCLOSE_HAS_WIDE_REGISTERS
-  if (__builtin_cpu_supports("avx2")) return multiply_with_wide_registers(all, first, end, x.data(), y.data());
-#endif
-  multiply_with_any_registers(all, first, end, x.data(), y.data());
+  multiply_slots(all, first, end, x.data(), y.data());
 }
 
 Eigen::MatrixXd BlockMatrix::dense() const {

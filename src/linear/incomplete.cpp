@@ -398,26 +398,17 @@ struct Triangles {
   }
 };
 
-template <class Factor>
-void substitute_with_any_registers(const Factor& factor, const float* right_side, packed::Four* solution, float* x) {
+OPENCLOSE_FOR_WIDE_REGISTERS_TOO void substitute(const Triangles<IncompleteLu::StoredBlock, IncompleteLu::RowScale>& factor, const float* right_side,
+                                                 packed::Four* solution, float* x) {
   factor.substitute(right_side, solution, x);
 }
-#ifdef OPENCLOSE_HAS_WIDE_REGISTERS
-template <class Factor>
-[[gnu::target("avx2")]] void substitute_with_wide_registers(const Factor& factor, const float* right_side, packed::Four* solution, float* x) {
-  factor.substitute(right_side, solution, x);
-}
-#endif
 
 }  // namespace
 
 void IncompleteLu::solve_in_order(const Eigen::VectorXf& right_side, Eigen::VectorXf& x) const {
   const Triangles<StoredBlock, RowScale> factor{rows(),        row_start_.data(), diagonal_.data(), column_.data(),
                                                 value_.data(), worth_.data(),     scale_.data()};
-#ifdef OPENCLOSE_HAS_WIDE_REGISTERS
-  if (__builtin_cpu_supports("avx2")) return substitute_with_wide_registers(factor, right_side.data(), solution_.data(), x.data());
-#endif
-  substitute_with_any_registers(factor, right_side.data(), solution_.data(), x.data());
+  substitute(factor, right_side.data(), solution_.data(), x.data());
 }
 
 Eigen::VectorXd IncompleteLu::solve(const Eigen::VectorXd& right_side) const {

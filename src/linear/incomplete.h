@@ -28,6 +28,23 @@ enum class Fill {
 
 class IncompleteLu {
  public:
+  /// Whole numbers, column by column; the last one as a number of single precision, which fills up the row of bytes.
+  struct StoredBlock {
+    std::int16_t entry[dofs * dofs - 1];
+    float last;
+
+    void exchange(Archive& archive) {
+      for (std::int16_t& number : entry) archive(number);
+      archive(last);
+    }
+  };
+  /// [-] What the numbers of a row are worth.
+  struct RowScale {
+    float below = 0.0f, pivot = 0.0f, above = 0.0f;  ///< the diagonal, with the inverse of the pivot on it
+
+    void exchange(Archive& archive) { archive(below, pivot, above); }
+  };
+
   explicit IncompleteLu(Factoring factoring = Factoring::whole, Fill fill = Fill::low);
 
   /// Order and pattern; nothing is done where it is the one already known. True if it was new.
@@ -75,23 +92,6 @@ class IncompleteLu {
         }
       }
     }
-  };
-
-  /// Whole numbers, column by column; the last one as a number of single precision, which fills up the row of bytes.
-  struct StoredBlock {
-    std::int16_t entry[dofs * dofs - 1];
-    float last;
-
-    void exchange(Archive& archive) {
-      for (std::int16_t& number : entry) archive(number);
-      archive(last);
-    }
-  };
-  /// [-] What the numbers of a row are worth.
-  struct RowScale {
-    float below = 0.0f, pivot = 0.0f, above = 0.0f;  ///< the diagonal, with the inverse of the pivot on it
-
-    void exchange(Archive& archive) { archive(below, pivot, above); }
   };
 
   static PaddedBlock widen(const StoredBlock& block, float scale);

@@ -5,10 +5,7 @@
 
 #include <cstdint>
 
-#if defined(__x86_64__) && defined(__GNUC__)
-#define OPENCLOSE_HAS_WIDE_REGISTERS
-#endif
-#define OPENCLOSE_KERNEL [[gnu::always_inline]] inline
+#include "openclose/core/packs.h"
 
 namespace openclose::packed {
 

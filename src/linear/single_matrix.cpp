@@ -23,7 +23,7 @@ OPENCLOSE_KERNEL packed::FourDoubles product(const float* block, packed::FourDou
   return (column(0) * x[0] + column(1) * x[1]) + column(2) * x[2];
 }
 
-OPENCLOSE_KERNEL void multiply(const Rows& rows, int first, int end, const float* x, float* y) {
+OPENCLOSE_FOR_WIDE_REGISTERS_TOO void multiply_rows(const Rows& rows, int first, int end, const float* x, float* y) {
   static_assert(dofs + 1 == numbers_of_row);
   const auto part = [x](int row) { return packed::widened(packed::four(x + static_cast<std::ptrdiff_t>(numbers_of_row) * row)); };
   const float* block = rows.values + static_cast<std::ptrdiff_t>(dofs * dofs) * rows.start[first];
@@ -36,15 +36,6 @@ OPENCLOSE_KERNEL void multiply(const Rows& rows, int first, int end, const float
     packed::store(y + static_cast<std::ptrdiff_t>(numbers_of_row) * i, __builtin_convertvector(sum, packed::Four));
   }
 }
-
-void multiply_with_any_registers(const Rows& rows, int first, int end, const float* x, float* y) {
-  multiply(rows, first, end, x, y);
-}
-#ifdef OPENCLOSE_HAS_WIDE_REGISTERS
-[[gnu::target("avx2")]] void multiply_with_wide_registers(const Rows& rows, int first, int end, const float* x, float* y) {
-  multiply(rows, first, end, x, y);
-}
-#endif
 
 }  // namespace
 
@@ -108,10 +99,7 @@ void SingleMatrix::multiply(const Eigen::VectorXf& x, Eigen::VectorXf& product) 
   const Rows rows{values_.data(), row_start_.data(), columns_.data()};
   for_each_part(SharedWork::product, threads_, parts, [&](int part) {
     const int first = part * rows_of_a_part, end = part + 1 < parts ? first + rows_of_a_part : all;
-#ifdef OPENCLOSE_HAS_WIDE_REGISTERS
-    if (__builtin_cpu_supports("avx2")) return multiply_with_wide_registers(rows, first, end, x.data(), product.data());
-#endif
-    multiply_with_any_registers(rows, first, end, x.data(), product.data());
+    multiply_rows(rows, first, end, x.data(), product.data());
   });
 }
 

@@ -83,8 +83,7 @@ std::unique_ptr<LinearSolver> make_dense_solver();
 std::unique_ptr<LinearSolver> make_sparse_solver();
 
 /// LU of the blocks, without exchange between them, in an order of little fill; goes over to the plain solver where a pivot has lost its digits.
-/// \param wide_registers  false: only the instructions that every processor has, for comparison; the bits of the answer are the same
-std::unique_ptr<LinearSolver> make_block_solver(Factoring factoring = Factoring::needed, bool wide_registers = true);
+std::unique_ptr<LinearSolver> make_block_solver(Factoring factoring = Factoring::needed);
 
 /// GMRES with an incomplete factor of each matrix; those that this does not serve, and small ones, go to `direct`.
 /// \param smallest_system  [-] block rows

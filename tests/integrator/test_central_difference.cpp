@@ -45,12 +45,11 @@ TEST_CASE("links four at a time do what each does", "[integrator][explicit]") {
   scene.method.contact = "dem";
   scene.joints[0].damping_ratio = GENERATE(0.0, 0.2);
   scene.joints[0].cohesion_behaviour = GENERATE(CohesionBehaviour::ductile, CohesionBehaviour::lost_on_slip);
-  const bool wide = GENERATE(false, true);
   Simulation simulation(scene);
   constexpr double h = 1e-4;  // [s]
   std::vector<Contact> by_fours = simulation.contacts();
   const StepProblem problem = simulation.problem(h, false);
-  CentralDifference fours(tolerance::contact_skin_m, true, wide), ones(tolerance::contact_skin_m, false, wide);
+  CentralDifference fours(tolerance::contact_skin_m, true), ones(tolerance::contact_skin_m, false);
   fours.load(problem);
   ones.load(problem);
   std::vector<Contact> one_by_one = by_fours;

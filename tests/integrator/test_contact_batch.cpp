@@ -1,4 +1,4 @@
-// Contacts four at a time against the same contacts one by one, for every processor and for wide registers: the same to the last bit.
+// Contacts four at a time against the same contacts one by one: the same to the last bit.
 #include <array>
 #include <random>
 #include <vector>
@@ -91,12 +91,12 @@ struct RandomContacts {
 };
 
 struct Evaluated {
-  Evaluated(const RandomContacts& contacts, const BatchKernels& kernels, StepForces forces, double ramp = tolerance::cohesion_ramp)
+  Evaluated(const RandomContacts& contacts, StepForces forces, double ramp = tolerance::cohesion_ramp)
       : batches(contacts.batches()), trials(batches.size()), branches(batch_size * batches.size(), 77), rows(block_count + 1) {
-    largest_at_start = kernels.begin(batches);
-    largest = kernels.evaluate(forces, ramp, batches, contacts.moves.data(), rounding_of_sums, trials, branches, rows);
+    largest_at_start = openclose::begin(batches);
+    largest = openclose::evaluate(forces, ramp, batches, contacts.moves.data(), rounding_of_sums, trials, branches, rows);
     elastic.resize(trials.size());
-    kernels.find_elastic(ramp, batches, trials, elastic);
+    openclose::find_elastic(ramp, batches, trials, elastic);
   }
   std::vector<ContactBatch> batches;
   std::vector<TrialBatch> trials;
@@ -138,11 +138,10 @@ int differences(const ContactForces& a, const ContactForces& b) {
 TEST_CASE("four contacts at a time are where each is and carry what each carries", "[integrator][batch]") {
   const std::size_t count = GENERATE(0, 1, 3, 4, 401);
   const unsigned seed = GENERATE(1, 2);
-  const bool wide = GENERATE(false, true);
   const StepForces step_forces = GENERATE(StepForces::at_end, StepForces::averaged);
   const double ramp = step_forces == StepForces::averaged ? tolerance::cohesion_ramp : GENERATE(tolerance::cohesion_ramp, 1.0);
   const RandomContacts contacts(seed, count);
-  const Evaluated all(contacts, BatchKernels(wide), step_forces, ramp);
+  const Evaluated all(contacts, step_forces, ramp);
   std::vector<std::array<Eigen::Vector4d, 2>> sums(block_count + 1, {Eigen::Vector4d::Zero(), Eigen::Vector4d::Zero()});
   double largest = 0.0;
   int wrong = 0, of_status[3] = {}, outweighed = 0, backward = 0, opened = 0;
@@ -196,13 +195,12 @@ TEST_CASE("four contacts at a time are where each is and carry what each carries
 TEST_CASE("the stiffness of four contacts at a time is that of each", "[integrator][batch]") {
   const std::size_t count = GENERATE(5, 401);
   const unsigned seed = GENERATE(1, 2);
-  const bool wide = GENERATE(false, true), exact = GENERATE(false, true);
+  const bool exact = GENERATE(false, true);
   const StepForces step_forces = GENERATE(StepForces::at_end, StepForces::averaged);
   const bool averaged = step_forces == StepForces::averaged;
   const double end_weight = averaged ? 1.0 : GENERATE(1.0, 0.6);
   const RandomContacts contacts(seed, count);
-  const BatchKernels kernels(wide);
-  const Evaluated all(contacts, kernels, step_forces);
+  const Evaluated all(contacts, step_forces);
   const BatchTangent tangent{step_forces, exact, end_weight, exact ? 0.0 : GENERATE(0.0, 0.01), averaged ? true : GENERATE(false, true)};
   const double held = 5e8;  // [N/m] of open contacts, where they may have a stiffness
   std::vector<TrialBatch> trials = all.trials;
@@ -225,7 +223,7 @@ TEST_CASE("the stiffness of four contacts at a time is that of each", "[integrat
     const int a = contacts.vertex_blocks[c], b = contacts.edge_blocks[c];
     if (a < free_count && b < free_count) slots.of_contacts[c] = {matrix.find(a, b), matrix.find(b, a)};
   }
-  kernels.add_stiffness(all.batches, contacts.moves.data(), trials, all.branches, tangent, slots, matrix);
+  openclose::add_stiffness(all.batches, contacts.moves.data(), trials, all.branches, tangent, slots, matrix);
 
   for (std::size_t c = 0; c < count; ++c) {
     const Single one(contacts, c, step_forces);
@@ -261,7 +259,7 @@ TEST_CASE("the stiffness of four contacts at a time is that of each", "[integrat
     k.add_to_vertex_edge(expected.value(expected.find(a, b)));
     k.add_to_edge_vertex(expected.value(expected.find(b, a)));
   }
-  INFO("exact " << exact << " wide " << wide << " count " << count << " theta " << end_weight << " slip " << tangent.static_slip_stiffness);
+  INFO("exact " << exact << " count " << count << " theta " << end_weight << " slip " << tangent.static_slip_stiffness);
   CHECK((matrix.dense() - expected.dense()).cwiseAbs().maxCoeff() == 0.0);
   CHECK((count < 100 || matrix.dense().cwiseAbs().maxCoeff() > 1e9));
 }

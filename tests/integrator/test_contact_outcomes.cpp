@@ -115,7 +115,7 @@ TEST_CASE("batches are lent with where their contacts start, and given back", "[
     elastic[0].shear[c] = o.forces.elastic_shear;
     branches[c] = branch(o.forces);
   }
-  BatchKernels().begin(starts->batches);
+  openclose::begin(starts->batches);
   const TrialBatch* const where = trials.data();
   ContactOutcomes copy, outcomes;
   copy.copy(starts, moves, trials, branches, elastic);

@@ -92,21 +92,6 @@ TEST_CASE("all solvers solve random systems to rounding and agree", "[linear][so
   }
 }
 
-TEST_CASE("the block solver's answer has the same bits with narrow and with wide registers", "[linear][solver]") {
-  RandomSystems random(9);
-  const Solver wide = make_block_solver(Factoring::whole, true), narrow = make_block_solver(Factoring::whole, false);
-  for (int rows = 1; rows <= 60; ++rows) {
-    const auto pairs = random.couplings(rows, 2 * rows);
-    BlockMatrix matrix;
-    matrix.set_pattern(rows, pairs);
-    random.fill(matrix, pairs, 0.5);
-    const Eigen::VectorXd right_side = random.vector(matrix.unknowns());
-    REQUIRE(wide->factor(matrix));
-    REQUIRE(narrow->factor(matrix));
-    CHECK(wide->solve(right_side) == narrow->solve(right_side));
-  }
-}
-
 TEST_CASE("factors, answers and products have the same bits with one thread and with several", "[linear][solver][parallel]") {
   RandomSystems random(10);
   // A grid large enough to be shared, whose elimination tree has large subtrees.
