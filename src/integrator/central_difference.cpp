@@ -585,7 +585,7 @@ bool CentralDifference::follow_four(Link* links, LinkSums& sums) {
   normal_before = was_open ? zero : normal_before;  // what settles an opening is no joint's force
   shear_before = was_open ? zero : shear_before;
 
-  // As trials() and carry().
+  // As trials(), and carry() for four.
   const Lanes gap_change = gap - gap_before, slip = all_slip - slip_before;
   const Lanes elastic_normal = -kn * gap, memory = -ks * (stretch_before + slip);
   Lanes viscous_normal = zero, viscous_shear = zero;
@@ -598,14 +598,13 @@ bool CentralDifference::follow_four(Link* links, LinkSums& sums) {
     viscous_normal = -normal_dashpot * (nx * x + ny * y);
     viscous_shear = -shear_dashpot * (nx * y - ny * x);
   }
-  const Mask closed = ~lanes::is_open(tension, elastic_normal);
-  const Lanes unbounded_normal = larger(-tension, elastic_normal + viscous_normal), unbounded_shear = memory + viscous_shear;
-  const Lanes bound = ShearBound(friction, cohesion, tension, unbounded_normal).value;
-  const Mask sticking = closed & (magnitude(unbounded_shear) <= bound);
+  const Mask closed = ~spring_is_open(tension, elastic_normal);
+  const MohrCoulomb carried(friction, cohesion, tension, elastic_normal + viscous_normal, memory + viscous_shear, tolerance::cohesion_ramp);
+  const Mask sticking = closed & carried.is_sticking;
   if (any(breakable & ~sticking)) return false;
-  Lanes normal = closed ? unbounded_normal : zero;
-  const Lanes shear = closed ? clamped(unbounded_shear, bound) : zero;
-  const Lanes elastic_shear = closed ? clamped(memory, bound) : zero;
+  Lanes normal = closed ? carried.normal : zero;
+  const Lanes shear = closed ? carried.shear : zero;
+  const Lanes elastic_shear = closed ? carried.limit.of(memory) : zero;
 
   // Few do so in a step: one by one.
   const Mask crosses = (was_open ^ ~closed) | settles;

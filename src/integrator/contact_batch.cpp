@@ -108,10 +108,10 @@ OPENCLOSE_KERNEL void find_elastic(double ramp, const ContactBatch* contacts, co
   for (std::size_t i = 0; i < count; ++i) {
     const ContactBatch& c = contacts[i];
     const Lanes normal = elastic_normal_at(c, trials[i]);
-    const Mask closed = ~is_open(c.tension, normal);
-    const Lanes bound = ShearBound(c.friction, c.cohesion, c.tension, trials[i].normal, ramp).value;
+    const Mask closed = ~spring_is_open(c.tension, normal);
+    const ShearLimit limit(c.friction, c.cohesion, c.tension, trials[i].normal, ramp);
     elastic[i].normal = only_where(closed, normal);
-    elastic[i].shear = only_where(closed, clamped(elastic_shear_at(c, trials[i]), bound));
+    elastic[i].shear = only_where(closed, limit.of(elastic_shear_at(c, trials[i])));
   }
 }
 
@@ -123,24 +123,23 @@ OPENCLOSE_KERNEL Mask find_forces(const ContactBatch& c, double ramp, TrialBatch
   const Lanes parted = larger(zero, c.gap_off_target - (c.shift + c.tension) / c.normal);
   const Lanes viscous_normal = -c.normal_damping * (parted + trial.gap_change);
   const Lanes shear = elastic_shear_at(c, trial) + -c.shear_damping * trial.slip_change;
-  const Mask closed = ~is_open(c.tension, elastic_normal);
+  const Mask closed = ~spring_is_open(c.tension, elastic_normal);
 
-  const Lanes normal = larger(-c.tension, elastic_normal + viscous_normal);
-  const ShearBound limit(c.friction, c.cohesion, c.tension, normal, ramp);
-  const Lanes bound = limit.value, carried_shear = clamped(shear, bound);
-  const Mask sticking = closed & (magnitude(shear) <= bound), sliding = closed & ~sticking;
+  const MohrCoulomb carried(c.friction, c.cohesion, c.tension, elastic_normal + viscous_normal, shear, ramp);
+  const auto& limit = carried.limit;
+  const Mask sticking = closed & carried.is_sticking, sliding = closed & ~sticking;
 
-  const Mask spring_works = closed & ~((c.normal_damping > 0.0) & (normal <= -c.tension));
+  const Mask spring_works = closed & ~((c.normal_damping > 0.0) & (carried.normal <= -c.tension));
   const Lanes normal_by_gap = only_where(spring_works, -(c.normal + c.normal_damping));
-  const Lanes slope = only_where(bound > 0.0, limit.on_ramp < limit.on_slope ? limit.steep : c.friction);
+  const Lanes slope = only_where(limit.value > 0.0, limit.on_ramp < limit.on_slope ? limit.steep : c.friction);
   const Lanes signed_slope = (Lanes)((Mask)slope | ((Mask)shear & (Mask)-zero));
-  trial.normal = only_where(closed, normal);
-  trial.shear = only_where(closed, carried_shear);
+  trial.normal = only_where(closed, carried.normal);
+  trial.shear = only_where(closed, carried.shear);
   trial.normal_by_gap = normal_by_gap;
   trial.shear_by_gap = only_where(sliding, signed_slope * normal_by_gap);
   trial.shear_by_slip = only_where(sticking, -(c.shear + c.shear_damping));
 
-  write_branches(branches, sticking, sliding, carried_shear < 0.0);
+  write_branches(branches, sticking, sliding, carried.shear < 0.0);
   return closed;
 }
 
@@ -158,8 +157,8 @@ OPENCLOSE_KERNEL Mask find_mean_forces(const ContactBatch& c, TrialBatch& trial,
   const Mask starts_closed = start + c.tension > 0.0, ends_closed = end + c.tension > 0.0;
   const Lanes viscous = c.normal_damping * trial.gap_change, first = start - viscous, last = end - viscous;
   const Lanes kink = kink_of_bound(c);
-  const Lanes bound_0 = ShearBound(c.friction, c.cohesion, c.tension, first).value,
-              bound_1 = ShearBound(c.friction, c.cohesion, c.tension, last).value;
+  const auto bound = [&](Lanes normal) { return ShearLimit(c.friction, c.cohesion, c.tension, normal, tolerance::cohesion_ramp).value; };
+  const Lanes bound_0 = bound(first), bound_1 = bound(last);
   const Lanes shear_0 = c.initial_shear, shear_1 = shear_0 - c.shear * trial.slip_change;
   const Lanes viscous_shear = -c.shear_damping * trial.slip_change, total_0 = shear_0 + viscous_shear, total_1 = shear_1 + viscous_shear;
   const Mask no_kink = (first > -c.tension) & (last > -c.tension) & ~((kink - first) * (kink - last) < 0.0);

@@ -187,7 +187,7 @@ struct BatchTangent {
 /// a spring at the start of the step, pulling ones not counted.
 double begin(std::vector<ContactBatch>& contacts);
 /// Fills trials and branches; adds to the rows. Returns [N] the largest force.
-/// \param ramp   [-] see ContactStrength::shear_bound(); means have the usual one
+/// \param ramp   [-] see ShearLimit; means have the usual one
 /// \param moves  of all blocks; a place of rows for each
 /// \param rounding_of_sums  [-] of the forces and changes of force of a contact
 double evaluate(StepForces forces, double ramp, const std::vector<ContactBatch>& contacts, const BlockMove* moves, double rounding_of_sums,

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstring>
 
-#include "openclose/core/tolerance.h"
 #include "openclose/core/packs.h"
 
 namespace openclose::lanes {
@@ -36,15 +35,12 @@ OPENCLOSE_KERNEL Lanes square_root(Lanes x) {
   for (int k = 0; k < batch_size; ++k) root[k] = std::sqrt(x[k]);
   return root;
 }
-/// As std::max, std::min and, for a bound of at least 0, std::clamp: one operation for each bound.
+/// As std::max and std::min.
 OPENCLOSE_KERNEL Lanes larger(Lanes a, Lanes b) {
   return a < b ? b : a;
 }
 OPENCLOSE_KERNEL Lanes smaller(Lanes a, Lanes b) {
   return b < a ? b : a;
-}
-OPENCLOSE_KERNEL Lanes clamped(Lanes x, Lanes bound) {
-  return larger(smaller(x, bound), -bound);
 }
 OPENCLOSE_KERNEL bool any(Mask m) {
   return (m[0] | m[1] | m[2] | m[3]) != 0;
@@ -58,19 +54,5 @@ OPENCLOSE_KERNEL void transpose(Lanes& a, Lanes& b, Lanes& c, Lanes& d) {
   c = __builtin_shufflevector(ab_even, cd_even, 2, 3, 6, 7);
   d = __builtin_shufflevector(ab_odd, cd_odd, 2, 3, 6, 7);
 }
-
-/// As openclose::is_open().
-OPENCLOSE_KERNEL Mask is_open(Lanes tension, Lanes elastic_normal) {
-  return tension > 0.0 ? elastic_normal < -tension : elastic_normal <= 0.0;
-}
-/// As ContactStrength::shear_bound().
-struct ShearBound {
-  Lanes steep, on_ramp, on_slope, value;
-  OPENCLOSE_KERNEL ShearBound(Lanes friction, Lanes cohesion, Lanes tension, Lanes normal, double ramp = tolerance::cohesion_ramp)
-      : steep(friction + 1.0 / ramp),
-        on_ramp(steep * (normal + tension)),
-        on_slope(friction * normal + cohesion),
-        value(larger(Lanes{}, smaller(on_slope, on_ramp))) {}
-};
 
 }  // namespace openclose::lanes

@@ -68,7 +68,7 @@ class Newton {
   /// in their stiffness.
   void solve_again(const std::vector<ContactSprings>& springs, StepSolution& solution, FirstTangent first);
 
-  /// [-] Part of the cohesion over which it comes in, in what is solved from now on: see ContactStrength::shear_bound().
+  /// [-] Part of the cohesion over which it comes in, in what is solved from now on: see ShearLimit.
   void set_cohesion_ramp(double ramp) { ramp_ = ramp; }
 
   /// The same for a static step that has more blocks than Newton's method is quick with, unless few contacts change their state: false, and nothing

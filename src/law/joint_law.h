@@ -13,6 +13,7 @@
 #include "openclose/contact/contact.h"
 #include "openclose/contact/joint_table.h"
 #include "openclose/core/tolerance.h"
+#include "openclose/law/mohr_coulomb.h"
 #include "openclose/scene/scene.h"
 
 namespace openclose {
@@ -38,17 +39,14 @@ struct ContactStrength {
     double value;  ///< [N]
     double slope;  ///< [-] derivative by the normal force
   };
-  double largest_shear(double n, double ramp = tolerance::cohesion_ramp) const {
-    return std::max(0.0, std::min(friction * n + cohesion, (friction + 1.0 / ramp) * (n + tension)));
-  }
-  /// Largest shear force at normal force n >= -tension. The cohesion comes in over a ramp, min(mu n + C, (mu + 1/eps)(n + tension)) with
-  /// eps = tolerance::cohesion_ramp, because a jump from C to 0 at opening leaves steps without any solution.
-  /// \param ramp  [-] another eps
+  /// Largest shear force at normal force n >= -tension, see ShearLimit.
+  /// \param ramp  [-] another one than the usual
+  double largest_shear(double n, double ramp = tolerance::cohesion_ramp) const { return limit(n, ramp).value; }
   ShearBound shear_bound(double n, double ramp = tolerance::cohesion_ramp) const {
-    const double value = largest_shear(n, ramp), steep = friction + 1.0 / ramp;
-    const bool on_ramp = steep * (n + tension) < friction * n + cohesion;
-    return {value, value > 0.0 ? (on_ramp ? steep : friction) : 0.0};
+    const ShearLimit<double> at = limit(n, ramp);
+    return {at.value, at.value > 0.0 ? (at.on_ramp < at.on_slope ? at.steep : friction) : 0.0};
   }
+  ShearLimit<double> limit(double n, double ramp) const { return {friction, cohesion, tension, n, ramp}; }
 
  private:
   ContactStrength(const JointProperties& joint, double tangent, const Contact& contact) : friction(tangent) {
@@ -88,22 +86,18 @@ struct ForceTrials {
 
 /// Whether the normal spring carries nothing.
 inline bool is_open(const ContactStrength& strength, double elastic_normal) {
-  return strength.tension > 0.0 ? elastic_normal < -strength.tension : elastic_normal <= 0.0;
+  return spring_is_open(strength.tension, elastic_normal);
 }
 
 /// The joint law: what a contact carries of the trials. The elastic shear force is the contact's memory: the spring slips with the friction, the
-/// dashpot does not count in it. A contact is open when its spring is; while the dashpot outweighs the spring it carries nothing but is not open.
-/// \param ramp  [-] see ContactStrength::shear_bound()
+/// dashpot does not count in it.
+/// \param ramp  [-] see ShearLimit
 inline CarriedForces carry(const ContactStrength& strength, const ForceTrials& trial, double ramp = tolerance::cohesion_ramp) {
-  CarriedForces f;
-  if (is_open(strength, trial.elastic_normal)) return f;
-  f.elastic_normal = trial.elastic_normal;
-  f.normal = std::max(-strength.tension, trial.elastic_normal + trial.viscous_normal);
-  const double bound = strength.largest_shear(f.normal, ramp), shear = trial.elastic_shear + trial.viscous_shear;
-  f.elastic_shear = std::clamp(trial.elastic_shear, -bound, bound);
-  f.shear = std::clamp(shear, -bound, bound);
-  f.status = std::abs(shear) <= bound ? ContactStatus::sticking : ContactStatus::sliding;
-  return f;
+  if (is_open(strength, trial.elastic_normal)) return {};
+  const MohrCoulomb<double> carried(strength.friction, strength.cohesion, strength.tension, trial.elastic_normal + trial.viscous_normal,
+                                    trial.elastic_shear + trial.viscous_shear, ramp);
+  return {carried.is_sticking ? ContactStatus::sticking : ContactStatus::sliding, carried.normal, carried.shear, trial.elastic_normal,
+          carried.limit.of(trial.elastic_shear)};
 }
 
 struct ContactForces : CarriedForces {

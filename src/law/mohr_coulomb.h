@@ -1,0 +1,52 @@
+// Mohr-Coulomb with tension cut-off: what a contact carries of what its springs and dashpots try to. The one place of these formulas, for one contact
+// (Number = double) and for four (Number = Lanes, in source files that are compiled without the warning about how vectors are passed); in both by the
+// same operations in the same order.
+#pragma once
+
+#include "openclose/core/packs.h"
+
+namespace openclose {
+
+/// Largest shear force at normal force n >= -tension, max(0, min(mu n + C, (mu + 1/eps)(n + tension))): the cohesion comes in over a ramp, because a
+/// jump from C to 0 at opening leaves steps without any solution.
+/// \param friction  [-] mu, \param cohesion, tension, normal [N], \param ramp [-] eps
+template <class Number>
+struct ShearLimit {
+  Number steep;              ///< [-] slope of the ramp
+  Number on_ramp, on_slope;  ///< [N]
+  Number value;              ///< [N]
+
+  OPENCLOSE_KERNEL ShearLimit(Number friction, Number cohesion, Number tension, Number normal, double ramp)
+      : steep(friction + 1.0 / ramp), on_ramp(steep * (normal + tension)), on_slope(friction * normal + cohesion) {
+    const Number least = on_ramp < on_slope ? on_ramp : on_slope, zero{};
+    value = zero < least ? least : zero;
+  }
+  /// A shear force cut off at the limit.
+  OPENCLOSE_KERNEL Number of(Number shear) const {
+    const Number upper = value < shear ? value : shear;
+    return upper < -value ? -value : upper;
+  }
+};
+
+/// Whether the normal spring carries nothing.
+template <class Number>
+OPENCLOSE_KERNEL auto spring_is_open(Number tension, Number elastic_normal) {
+  return tension > 0.0 ? elastic_normal < -tension : elastic_normal <= 0.0;
+}
+
+/// Of a contact that is not open: a contact is so when its spring is; while the dashpot outweighs the spring it carries nothing but is not open.
+template <class Number>
+struct MohrCoulomb {
+  Number normal;  ///< [N]
+  ShearLimit<Number> limit;
+  Number shear;                              ///< [N]
+  decltype(Number{} < Number{}) is_sticking;  ///< or sliding
+
+  /// \param trial_normal, trial_shear  [N] springs and dashpots, bounded by nothing
+  OPENCLOSE_KERNEL MohrCoulomb(Number friction, Number cohesion, Number tension, Number trial_normal, Number trial_shear, double ramp)
+      : normal(-tension < trial_normal ? trial_normal : -tension), limit(friction, cohesion, tension, normal, ramp), shear(limit.of(trial_shear)) {
+    is_sticking = (trial_shear <= limit.value) & (-limit.value <= trial_shear);
+  }
+};
+
+}  // namespace openclose
