@@ -227,6 +227,12 @@ class NarrowPhase {
     previous_.for_closed(v, [&](const Contact& c) { largest = std::max(largest, c.vertex == v ? -c.gap : 0.0); });
     return largest;
   }
+  /// [m] The same with those on its two edges.
+  double closure_around(int v) const {
+    double largest = 0.0;
+    previous_.for_closed(v, [&](const Contact& c) { largest = std::max(largest, -c.gap); });
+    return largest;
+  }
   /// [m] How far the closures of its contacts, those on its two edges included, have moved a corner along the normal of `edge`.
   double closure_across(int v, const Edge& edge) const {
     double largest = 0.0;
@@ -260,6 +266,7 @@ class NarrowPhase {
     if (previous_.closed_length(v, e) > tolerance::seam_height_m) return false;
     const double gap = edge.gap(p);
     const bool in_front = gap > -tolerance::shortest_edge_m, in_notch = ends_in_notch(v, e, near_start);
+    const bool coincide = (p - q).norm() <= tolerance::edge_end_m + tolerance::seam_closures * std::max(closure_around(v), closure_around(end));
     const auto separates = [&](int corner, const Vec2& position, const Edge& other) {
       if (!turns_away(edge, other) || !stands_on(corner, other)) return false;
       const bool slides_on_it = slides_along(v, other) || slides_along(end, other);
@@ -267,7 +274,7 @@ class NarrowPhase {
       const double closure = std::max(closure_across(v, other), closure_across(end, other)), height = step + tolerance::seam_closures * closure;
       const double other_gap = other.gap(position);
       // Two lines that nothing slides on must not pass the corner over to each other: of two tips that meet head-on, the wider gap keeps its contact.
-      if (!slides_on_it && (in_notch || gap > height) && other_gap <= gap) return false;
+      if (!slides_on_it && (in_notch || gap > height || !coincide) && other_gap <= gap) return false;
       return other_gap > -height;
     };
     return separates(v, p, shapes_.edge(near_start ? system_.previous(e) : system_.next(e))) || separates(end, q, shapes_.edge(v)) ||
