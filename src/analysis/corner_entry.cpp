@@ -96,8 +96,7 @@ class Entries {
     reach_ = ways_.approach(a, b);
     bow_ = ways_.bow(a) + ways_.bow(b);
     tolerated_ = tolerance_.of(std::min(width(a), width(b)));
-    return reach_ > flush_m &&
-           (system_.centroid(a) - system_.centroid(b)).norm() <= system_.block(a).radius + system_.block(b).radius + reach_;
+    return reach_ > flush_m && (system_.centroid(a) - system_.centroid(b)).norm() <= system_.block(a).radius + system_.block(b).radius + reach_;
   }
 
  private:
@@ -118,8 +117,7 @@ class Entries {
   double entry(const Way& corner, int v, int into, int e) const {
     const Way start = ways_(into, e), end = ways_(into, system_.next(e));
     const Course course(corner, start, end);
-    const double early = course.part(0.5 * tolerated_, behind * tolerated_),
-                 late = course.part(flush_m, flush_m);
+    const double early = course.part(0.5 * tolerated_, behind * tolerated_), late = course.part(flush_m, flush_m);
     const bool is_behind_at_once = !is_within_step(early);
     const double part = is_behind_at_once ? late : early;
     if (!is_within_step(part) || is_held(v, e)) return 1.0;
@@ -135,9 +133,9 @@ class Entries {
     // both.
     if (inside < -(in_notch ? reach_ : beside_tip + bow_)) return 1.0;
     if (in_notch) return is_behind_at_once ? 1.0 : part;
-    // At its end a corner slides on over a neighbour that is flush with the block, unless it ends as deep behind that side of the block, which has not
-    // held it, or its own block is behind that side, too: the feet of two blocks that meet on one floor. Detection takes corners for flush until they
-    // are deeper than rounding leaves them, so that one that was behind by less at the end of the last step counts again.
+    // At its end a corner slides on over a neighbour that is flush with the block, unless it ends as deep behind that side of the block, which has
+    // not held it, or its own block is behind that side, too: the feet of two blocks that meet on one floor. Detection takes corners for flush until
+    // they are deeper than rounding leaves them, so that one that was behind by less at the end of the last step counts again.
     if (stands_on(v, neighbour)) {
       const bool is_in = !is_held(v, neighbour) && depth_at_end(corner, into, neighbour) > behind * tolerated_;
       return is_in && !is_behind_at_once ? part : 1.0;

@@ -269,8 +269,8 @@ class Simulation {
     double part;
   };
   std::vector<Blow> blows(const StepProblem& problem, const StepSolution& solution) const;
-  /// The velocity at the end of a step goes on from that of its middle with the forces of the step. A blow is over then, and what it has changed is in
-  /// the velocity of the middle: that part of going on is taken back.
+  /// The velocity at the end of a step goes on from that of its middle with the forces of the step. A blow is over then, and what it has changed is
+  /// in the velocity of the middle: that part of going on is taken back.
   void end_of_blow(const Blow& blow);
   double kinetic_change(const StepProblem& problem, const StepSolution& solution) const;  ///< [J]
   /// Whether a solved step creates energy where much has been created already, see allow_energy().

@@ -19,7 +19,8 @@
 //   - and, while v is still in front of e and v or q slides along that line, to within seam_height: blocks that are flush in the drawing do not catch
 //     on each other's faces.
 // So a block whose front corner stands on a joint slides on, three blocks and air or four blocks around the corner. A contact that has closed over
-// more than seam_height stays until its corner is nearer to another edge; at a reflex q both walls hold.
+// more than seam_height stays until its corner is nearer to another edge; at a reflex q both walls hold. Where nothing slides along the other line
+// and v and q are farther apart than edge_end and the closures around them, the wider gap of the two keeps its contact.
 //
 // In front of a notch a corner faces both walls from wherever it may reach them, also where it lies beyond the end of one: what is in front of both
 // is in front of the whole line of either, and a corner that slides down one wall into the notch is to meet the other one there. Two feet that slide

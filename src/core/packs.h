@@ -1,5 +1,5 @@
-// Packs of four numbers, for the loops over contacts and over the rows of a matrix. What is written with them is compiled once for every processor and
-// once for wide registers; each number is computed by the same operations in the same order, so that results do not depend on the processor.
+// Packs of four numbers, for the loops over contacts and over the rows of a matrix. What is written with them is compiled once for every processor
+// and once for wide registers; each number is computed by the same operations in the same order, so that results do not depend on the processor.
 #pragma once
 
 /// A part of a loop: inlined into each of its two versions.

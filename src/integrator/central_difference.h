@@ -27,10 +27,10 @@
 #include <vector>
 
 #include "openclose/contact/detection.h"
+#include "openclose/core/packs.h"
 #include "openclose/integrator/critical_step.h"
 #include "openclose/integrator/depth_limits.h"
 #include "openclose/integrator/enforcement.h"
-#include "openclose/core/packs.h"
 
 namespace openclose {
 
@@ -60,8 +60,7 @@ class CentralDifference {
 
   /// \param skin [m] by which blocks may move against each other before the list of contacts is to be renewed
   /// \param fours  false: links one by one; the results are the same to the last bit
-  explicit CentralDifference(double skin, bool fours = true)
-      : skin_(skin), fours_(fours) {}
+  explicit CentralDifference(double skin, bool fours = true) : skin_(skin), fours_(fours) {}
 
   /// Takes over blocks, velocities of the middle of the last step, contacts with their history, and the forces they carry now.
   void load(const StepProblem& problem);

@@ -402,8 +402,7 @@ void find_elastic(double ramp, const std::vector<ContactBatch>& contacts, const 
 }
 
 void add_stiffness(const std::vector<ContactBatch>& contacts, const BlockMove* moves, const std::vector<TrialBatch>& trials,
-                                 const std::vector<Branch>& branches, const BatchTangent& tangent, const MatrixSlots& slots,
-                   BlockMatrix& matrix) {
+                   const std::vector<Branch>& branches, const BatchTangent& tangent, const MatrixSlots& slots, BlockMatrix& matrix) {
   if (matrix.rows() == 0) return;
   add_all_stiffness(contacts.data(), moves, trials.data(), trials.size(), branches.data(), tangent, slots, matrix.value(0).data());
 }

@@ -39,7 +39,7 @@ template <class Number>
 struct MohrCoulomb {
   Number normal;  ///< [N]
   ShearLimit<Number> limit;
-  Number shear;                              ///< [N]
+  Number shear;                               ///< [N]
   decltype(Number{} < Number{}) is_sticking;  ///< or sliding
 
   /// \param trial_normal, trial_shear  [N] springs and dashpots, bounded by nothing

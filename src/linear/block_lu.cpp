@@ -501,8 +501,7 @@ class BlockLuSolver : public LinearSolver {
                   [&](int part) { substitute_forward(factor_, factor_.subtrees[part], right_side); });
     for (const std::vector<int>& panel : factor_.panels) substitute_forward(factor_, panel, right_side);
     for (auto panel = factor_.panels.rbegin(); panel != factor_.panels.rend(); ++panel) substitute_back(factor_, *panel, x);
-    for_each_part(SharedWork::substitution, this->threads_, subtrees,
-                  [&](int part) { substitute_back(factor_, factor_.subtrees[part], x); });
+    for_each_part(SharedWork::substitution, this->threads_, subtrees, [&](int part) { substitute_back(factor_, factor_.subtrees[part], x); });
   }
 
   /// \param slots  of the matrix: whether the factor gets them

@@ -85,7 +85,8 @@ TEST_CASE("a tip that is behind another one's face by no more than flush corners
   CHECK(first_entry(system, solution, {{0, 1}}, {tolerated}) == Approx(expected).epsilon(1e-6));
 }
 
-TEST_CASE("a corner that goes through another one's tip within a step is stopped where it enters, however little it may enter", "[analysis][corner_entry]") {
+TEST_CASE("a corner that goes through another one's tip within a step is stopped where it enters, however little it may enter",
+          "[analysis][corner_entry]") {
   // A thin wedge points at the left; its upper side rises steeply at the tip. The corner comes from the left and ends below the wedge.
   Scene scene = test::empty_scene();
   scene.blocks = {test::fixed_block("wedge", {{0.0, 0.0}, {1.0, 0.2}, {1.0, 2.0}, {0.4, 1.0}}),

@@ -242,8 +242,8 @@ TEST_CASE("a step is no seam: the corner is met by its face", "[contact][detecti
 }
 
 TEST_CASE("of two feet tip to tip on one floor one of which hangs a little higher, one meets the other", "[contact][detection]") {
-  // The lower tip lies in front of the upper one's face but for a hair, and farther beyond its end than corners may; the upper tip is before the lower
-  // one's face. They are no corners that coincide.
+  // The lower tip lies in front of the upper one's face but for a hair, and farther beyond its end than corners may; the upper tip is before the
+  // lower one's face. They are no corners that coincide.
   const Vec2 hangs(8.4e-8, 2e-6);
   Detection d(scene_with({fixed_block("floor", rectangle(-5.0, -1.0, 10.0, 1.0)), free_block("lower", {{0.0, 0.0}, {-0.253, 0.638}, {-1.523, 1.193}}),
                           free_block("upper", {hangs, hangs + Vec2(0.0535, 0.00926), hangs + Vec2(0.0835, 1.997)})}));
