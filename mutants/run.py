@@ -32,7 +32,7 @@ except ImportError:
 
 ROOT = Path(__file__).resolve().parent.parent
 FAULTS = Path(__file__).resolve().parent / "faults.toml"
-COPIED = ["CMakeLists.txt", "CMakePresets.json", "analytical", "cmake", "mutants", "paper", "scripts", "src", "tests", "verification"]
+COPIED = ["CMakeLists.txt", "CMakePresets.json", "analytical", "cmake", "docs", "mutants", "paper", "scripts", "src", "tests", "verification"]
 COLUMNS = ["id", "folder", "file", "description", "caught_by", "kind", "seconds"]
 CAUGHT = ("unit test", "verification")
 # A check may take this many times as long as without a fault, and so much more: others use the machine, too.
