@@ -22,6 +22,9 @@
 // more than seam_height stays until its corner is nearer to another edge; at a reflex q both walls hold. Where nothing slides along the other line
 // and v and q are farther apart than edge_end and the closures around them, the wider gap of the two keeps its contact.
 //
+// Where one tip has gone right through another one, so that all their sides cross and neither corner is in the other block, the contact is that of
+// the line which they are least behind: two feet on one floor that lean over each other may come past each other's tips between two steps.
+//
 // In front of a notch a corner faces both walls from wherever it may reach them, also where it lies beyond the end of one: what is in front of both
 // is in front of the whole line of either, and a corner that slides down one wall into the notch is to meet the other one there. Two feet that slide
 // towards each other on one floor meet in such a notch.
@@ -332,7 +335,7 @@ class NarrowPhase {
     // at the ends of two edges that face each other, which may lie beside the block's corner: that is not beyond a thin block.
     const bool faces_as_drawn = is_drawing_ && rule == Rule::facing_edges;
     const double beside = faces_as_drawn ? std::min(tolerance::deepest_initial_overlap_m, depth_behind(edge_block, edge)) : 0.0;
-    if (-gap > beside && !in_block(edge_block, p) && !closed()) return false;
+    if (-gap > beside && !in_block(edge_block, p) && !closed() && (is_drawing_ || !is_pierced(v, e))) return false;
     const auto& block = system_.block(edge_block);
     for (int f = block.first_vertex; f < block.first_vertex + block.vertex_count; ++f) {
       const Edge& other = shapes_.edge(f);
@@ -345,6 +348,30 @@ class NarrowPhase {
       if (!reaches(vertex_block, edge) && in_block(edge_block, p)) return false;
     }
     return true;
+  }
+
+  /// Whether a corner is behind an edge because the tip at the edge's end has gone right through the tip that the corner is: both sides of one cross
+  /// both sides of the other. What they have in common lies between these sides, and neither corner is in the other block. Of the lines that could
+  /// separate the tips, see passes_over(), they touch along the one that they are least behind.
+  bool is_pierced(int v, int e) const {
+    const Edge& edge = shapes_.edge(e);
+    const Vec2& p = shapes_.edge(v).start;
+    const int end = edge.along(p) < 0.5 * edge.length ? e : system_.next(e);
+    if (system_.is_reflex(end)) return false;
+    const double gap = edge.gap(p);
+    const auto is_nearer = [&](int corner, const Edge& line) { return stands_on(corner, line) && line.gap(shapes_.edge(corner).start) > gap; };
+    for (const int s : {v, system_.previous(v)}) {
+      const Edge& side = shapes_.edge(s);
+      if (is_nearer(end, side)) return false;
+      for (const int o : {end, system_.previous(end)}) {
+        const Edge& other = shapes_.edge(o);
+        if (!cross_each_other(side, other) || is_nearer(v, other)) return false;
+      }
+    }
+    return true;
+  }
+  static bool cross_each_other(const Edge& a, const Edge& b) {
+    return (a.gap(b.start) < 0.0) != (a.gap(b.end()) < 0.0) && (b.gap(a.start) < 0.0) != (b.gap(a.end()) < 0.0);
   }
 
   /// Whether a part of an edge lies in a block.

@@ -483,3 +483,29 @@ TEST_CASE("a corner that has come past the tip of a wedge does not touch its far
   CHECK(d.find(2, 6) != nullptr);
   for (const Contact& c : d.contacts) CHECK(c.gap > 0.0);
 }
+
+TEST_CASE("a needle's tip that has gone right through another tip is held by the line that they are least behind", "[contact][detection]") {
+  // The needle's tip (3) lies below the other block's tip (0), so that neither is in the other block; their sides cross. The other block's tip is
+  // behind the needle's upper side (5) by less than the needle's tip is behind its face (0). Seen in a mirror the same.
+  const bool mirrored = GENERATE(false, true);
+  const double way = GENERATE(1.0, 0.1, 1e2);
+  const auto at = [](double length, double angle) -> Vec2 { return length * Vec2(std::cos(angle * degree), std::sin(angle * degree)); };
+  const auto seen = [&](std::vector<Vec2> polygon) {
+    if (mirrored) {
+      for (Vec2& p : polygon) p.x() = -p.x();
+      std::reverse(polygon.begin() + 1, polygon.end());
+    }
+    return polygon;
+  };
+  const Vec2 tip = way * Vec2(-4.6e-5, -4.3e-6);
+  const auto edge_from = [&](int from, int to) { return mirrored ? to : from; };
+  Detection d(scene_with({free_block("block", seen({Vec2(0.0, 0.0), at(0.07, 41.7), at(0.1, 169.0)})),
+                          free_block("needle", seen({Vec2(0.05, 0.0), Vec2(0.05, 0.0) + at(0.2, 11.0), Vec2(0.05, 0.0) + at(0.1, 25.5)}))}));
+  d.move(1, (mirrored ? -1.0 : 1.0) * (tip.x() - 0.05), tip.y());
+  d.update();
+  CAPTURE(mirrored, way);
+  const int upper_side = edge_from(5, 3);
+  REQUIRE(d.contacts.size() == 1);
+  REQUIRE(d.find(0, upper_side) != nullptr);
+  CHECK(d.find(0, upper_side)->gap == Approx(-perpendicular(at(1.0, 25.5)).dot(tip)).margin(1e-12));
+}
