@@ -66,9 +66,6 @@ constexpr double hold_decay = 0.5;
 constexpr double weakest_hold = 1e-4;
 /// [-] Residual, over the largest force, from which on contacts are held with all of their springs; below in proportion, so that the end is Newton's.
 constexpr double residual_of_full_hold = 1e-2;
-/// Each cut of a static step brings blocks nearer to free fall, where contacts carry nearly nothing and change their states most. So these iterations
-/// go on for longer than others: a slope of 10,000 blocks settles with 64 of them.
-constexpr int most_holding_iterations = 150;
 /// [-] A static step from blocks that nothing has loaded yet, in whose first iteration more than this part of the contacts open or slide, has a cold
 /// start: which ones will do so in the end is not known at all.
 constexpr double cold_start_switches = 0.1;
@@ -702,7 +699,9 @@ Newton::Outcome Newton::iterate_holding(StepSolution& solution, double& norm, in
   holds_.assign(contact_count_, 0.0);
   if (done > 0) hold_changed(norm);
   Outcome outcome = Outcome::ended;
-  for (int iteration = done; iteration < most_holding_iterations && norm > 1.0 && std::isfinite(norm); ++iteration) {
+  Headway headway(norm, only_if_few_change_ ? most_iterations_to_halve_with_parts : most_iterations_to_halve_holding);
+  double best = norm;
+  for (int iteration = done; norm > 1.0 && std::isfinite(norm) && !headway.is_lost(best); ++iteration) {
     branches_before_ = branches_;
     // With the coupling, loose blocks fall from one side to the other; without it, single contacts go round between open and sliding.
     hold_contacts(iteration % 2 == 1);
@@ -715,6 +714,7 @@ Newton::Outcome Newton::iterate_holding(StepSolution& solution, double& norm, in
     d += step;
     evaluate(d);
     norm = residual_norm();
+    best = std::min(best, norm);
     hold_changed(norm);
   }
   holds_.clear();
@@ -800,11 +800,11 @@ Newton::Outcome Newton::iterate(const StepProblem& problem, StepSolution& soluti
       break;
     }
     double alpha = try_step(d, step, course);
-    if (problem.statics && alpha < shortest_common_step) {
+    double next_norm = residual_norm();
+    if (problem.statics && (alpha < shortest_common_step || !std::isfinite(next_norm))) {
       outcome = Outcome::no_common_step;
       break;
     }
-    double next_norm = residual_norm();
     bool has_gone = false;  // d the step, and farther in parts
     if (course.tangent == Tangent::exact && iteration > 0 && merit(next_norm) > course.value) {
       const int switches = differences(branches_before_, branches_);
@@ -853,11 +853,10 @@ void Newton::solve(const StepProblem& problem, const SpringSource& springs, Step
   solve_prepared(solution, first);
 }
 
-bool Newton::solve_if_few_change(const StepProblem& problem, const SpringSource& springs, StepSolution& solution) {
+void Newton::solve_if_few_change(const StepProblem& problem, const SpringSource& springs, StepSolution& solution) {
   only_if_few_change_ = true;
   solve(problem, springs, solution);
   only_if_few_change_ = false;
-  return solution.converged;
 }
 
 void Newton::solve_again(const std::vector<ContactSprings>& springs, StepSolution& solution, FirstTangent first) {
@@ -877,11 +876,11 @@ void Newton::solve_prepared(StepSolution& solution, FirstTangent first) {
   const Eigen::VectorXd start = solution.d;
   double norm = begin(start, first);
   const auto is_open = [](const Contact& contact) { return contact.status == ContactStatus::open; };
-  const bool may_start_cold = only_if_few_change_ || (problem.statics && problem.method.max_iterations >= most_cold_iterations &&
-                                                      std::all_of(problem.contacts.begin(), problem.contacts.end(), is_open));
+  const bool may_start_cold = problem.statics && problem.method.max_iterations >= most_cold_iterations &&
+                              std::all_of(problem.contacts.begin(), problem.contacts.end(), is_open);
   const Until until{1.0, problem.method.max_iterations};
   Outcome outcome = iterate(problem, solution, norm, until, may_start_cold);
-  if (outcome == Outcome::cold_start && !only_if_few_change_) {
+  if (outcome == Outcome::cold_start) {
     const Eigen::VectorXd after_first = solution.d;
     const std::vector<Branch> before_first = branches_before_;
     if (iterate_from_cold(solution, norm)) outcome = iterate(problem, solution, norm, until, false);
@@ -892,7 +891,7 @@ void Newton::solve_prepared(StepSolution& solution, FirstTangent first) {
       outcome = iterate_holding(solution, norm, 1);
     }
   }
-  if (outcome == Outcome::no_common_step && !only_if_few_change_) {
+  if (outcome == Outcome::no_common_step) {
     solution.d = start;
     norm = begin(start, first);
     outcome = iterate_holding(solution, norm, 0);

@@ -74,11 +74,10 @@ class Soft final : public Enforcement {
     const StaticSolver solver = problem.statics ? problem.method.static_solver : StaticSolver::newton;
     const bool is_large = problem.system.free_count() >= many_blocks;
     if (solver == StaticSolver::newton || (solver == StaticSolver::automatic && !is_large)) return newton_.solve(problem, springs, solution);
-    if (solver == StaticSolver::automatic) {
-      // Contacts that carry nothing, as in the head joints of a wall, may change their states in every step once the first has shown that few matter.
-      few_change_ =
-          few_change_ ? (newton_.solve(problem, springs, solution), solution.converged) : newton_.solve_if_few_change(problem, springs, solution);
-      if (few_change_) return;
+    if (solver == StaticSolver::automatic && !many_come_loose_) {
+      newton_.solve_if_few_change(problem, springs, solution);
+      if (solution.converged) return;
+      many_come_loose_ = true;
       const StepEffort wasted = solution.effort;
       solution.clear();
       solution.effort = wasted;
@@ -88,7 +87,7 @@ class Soft final : public Enforcement {
   }
 
   Newton newton_;
-  bool few_change_ = false;  ///< the last static step of many blocks was solved by Newton's method
+  bool many_come_loose_ = false;  ///< a static step of many blocks has shown that Newton's method is not the way to their balance
 };
 
 }  // namespace
