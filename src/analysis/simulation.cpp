@@ -8,7 +8,7 @@
 #include <limits>
 #include <utility>
 
-#include "openclose/analysis/corner_entry.h"
+#include "openclose/analysis/solved_step.h"
 #include "openclose/core/tolerance.h"
 #include "openclose/geometry/polygon.h"
 #include "openclose/integrator/crossing_energy.h"
@@ -50,29 +50,6 @@ bool turns_too_far(const BlockSystem& system, const std::vector<Contact>& contac
   }
   return false;
 }
-
-/// A step that has been cut so often where corners enter, because the shorter one goes another way, is taken as it is: the next step finds what is
-/// in.
-constexpr int most_cuts_at_entry = 8;
-/// [-] The same in statics, where a contact that is found with a penetration is pushed out however short the pseudo-time step is: a step whose way
-/// has not become shorter than this by a cut.
-constexpr double shorter_by_cut = 0.9;
-
-/// [-] Of solver.gap_tolerance_m: rigid blocks that come to be deeper in each other within a step are met earlier. Half of what the watch lets pass.
-constexpr double passing_of_tolerance = 5.0;
-constexpr double halved = 0.5;  ///< [-] part of a step
-
-/// [-] Of the width of the narrower block: behind an edge that it is not in contact with, a corner at whose contact springs are to act may be four
-/// times as deep at the end of a step (see corner_entry.cpp). A sixth of what the watch lets it close.
-constexpr double unnoticed_part_of_width = 0.01;
-
-/// [-] Of the energy that may be created in all: once this share has been, a step that creates more than the second share is cut. What the time
-/// integration of a turning block makes of the force of an impact goes with the square of the step.
-constexpr double share_before_cuts = 0.5, share_of_step = 0.02;
-/// [-] Of the present kinetic energy: what may be created, where that is more than what has last been allowed.
-constexpr double creatable_part_of_kinetic = 0.01;
-/// What so many halvings do not cure is not of the step.
-constexpr int most_cuts_for_energy = 6;
 
 /// [-] By which explicit steps may become longer before they do.
 constexpr double worthwhile_growth = 1.1;
@@ -189,21 +166,6 @@ void Simulation::book_kinetic_energy(double ahead) const {
   ledger_.scheme -= ahead - kinetic_ahead_;
   kinetic_ahead_ = ahead;
   ledger_.kinetic = system_.kinetic_energy() + ahead - start_kinetic_energy_;
-}
-
-double Simulation::kinetic_ahead(const StepProblem& problem, const StepSolution& solution) const {
-  double power = 0.0;
-  for (int b : system_.free_blocks()) {
-    const Unknowns others = external_.force(system_, b, Unknowns::Zero()) - external_.weight(system_, b) - external_.base_force(system_, b);
-    power += system_.velocity(b).dot(others);
-  }
-  for (std::size_t i = 0; i < contacts_.size(); ++i) {
-    const ContactOutcome o = solution.contacts[i];
-    const ContactKinematics k(o.pose);
-    power += system_.velocity(contacts_[i].vertex_block).dot(o.forces.normal * k.normal_vertex + o.forces.shear * k.shear_vertex);
-    power += system_.velocity(contacts_[i].edge_block).dot(o.forces.normal * k.normal_edge + o.forces.shear * k.shear_edge);
-  }
-  return 0.5 * problem.dt * power;
 }
 
 void Simulation::unload_loop() {
@@ -442,96 +404,13 @@ StepProblem Simulation::present_problem(double dt, bool statics) const {
   }
   p.scheme = scheme_.get();
   if (scheme_->wants_accelerations()) {
-    const Eigen::VectorXd force = forces_now(p);
+    const Eigen::VectorXd force = forces_now(p, *enforcement_);
     for (int b : system_.free_blocks()) {
       const auto& block = system_.block(b);
       scheme_->start(b, force.segment<dofs>(dofs * block.equation).cwiseQuotient(block.mass));
     }
   }
   return p;
-}
-
-Eigen::VectorXd Simulation::forces_now(const StepProblem& problem) const {
-  Eigen::VectorXd force(dofs * system_.free_count());
-  for (int b : system_.free_blocks()) force.segment<dofs>(dofs * system_.block(b).equation) = external_.force(system_, b, Unknowns::Zero());
-  const auto push = [&](int b, const Unknowns& f) {
-    const int i = system_.block(b).equation;
-    if (i >= 0) force.segment<dofs>(dofs * i) += f;
-  };
-  for (const Contact& c : contacts_) {
-    const ContactForces f = spring_slider(enforcement_->springs(problem, c), ContactStrength(joints_.joint(c.joint), c), 0.0, 0.0);
-    if (f.status == ContactStatus::open) continue;
-    const ContactKinematics k(system_, c, Unknowns::Zero(), Unknowns::Zero());
-    push(c.vertex_block, f.normal * k.normal_vertex + f.shear * k.shear_vertex);
-    push(c.edge_block, f.normal * k.normal_edge + f.shear * k.shear_edge);
-  }
-  for (int b : system_.free_blocks()) {
-    if (system_.block(b).rotation_locked) force[dofs * system_.block(b).equation + Motion::rotation_index] = 0.0;
-  }
-  return force;
-}
-
-double Simulation::local_error(const StepProblem& problem, const StepSolution& solution) const {
-  Eigen::VectorXd change = Eigen::VectorXd::Zero(dofs * system_.free_count());
-  for (int b : system_.free_blocks()) {
-    if (!external_.has_point_forces(b)) continue;  // the others do not change
-    change.segment<dofs>(dofs * system_.block(b).equation) =
-        external_.force(system_, b, solution.of(system_, b)) - external_.force(system_, b, Unknowns::Zero());
-  }
-  const auto push = [&](int b, const Vec2& arm, const Vec2& force) {
-    const int i = system_.block(b).equation;
-    if (i >= 0) change.segment<dofs>(dofs * i) += Motion::gradient(arm, force);
-  };
-  for (std::size_t i = 0; i < contacts_.size(); ++i) {
-    const Contact& c = contacts_[i];
-    if (solution.contacts.status(i) != ContactStatus::open) {
-      const ContactPose at = solution.contacts.pose(i);
-      const CarriedForces f = solution.contacts.forces(i);
-      const Vec2 force = f.normal * at.normal + f.shear * at.tangent();
-      push(c.vertex_block, at.vertex_arm, force);
-      push(c.edge_block, at.edge_arm, -force);
-    }
-    if (c.status != ContactStatus::open) {
-      const ContactStart before(system_, c);
-      const Vec2 force = c.normal_force * before.normal + c.shear_force * perpendicular(before.normal);
-      push(c.vertex_block, before.vertex_arm, -force);
-      push(c.edge_block, before.end_arm + before.lever, force);
-    }
-  }
-  double largest = 0.0;
-  for (int b : system_.free_blocks()) {
-    const auto& block = system_.block(b);
-    Unknowns error = problem.dt * problem.dt / 12.0 * change.segment<dofs>(dofs * block.equation).cwiseQuotient(block.mass);
-    if (block.rotation_locked) error[Motion::rotation_index] = 0.0;
-    largest = std::max(largest, Motion::displacement_bound(error, block.radius));
-  }
-  return largest;
-}
-
-double Simulation::largest_move(const StepSolution& solution) const {
-  double largest = 0.0;
-  for (int b : system_.free_blocks()) {
-    const auto& block = system_.block(b);
-    const Unknowns d = solution.of(system_, b);
-    if (Motion::displacement_bound(d, block.radius) <= largest) continue;
-    for (int v = block.first_vertex; v < block.first_vertex + block.vertex_count; ++v) {
-      largest = std::max(largest, Motion::displacement(d, system_.arm(v), system_.rotation_kind()).norm());
-    }
-  }
-  return largest;
-}
-
-double Simulation::part_before_entry(const StepSolution& solution, double moved) const {
-  if (cuts_at_entry_ == most_cuts_at_entry) return 1.0;
-  const auto& pairs = detector_.candidate_pairs();
-  if (enforcement_->has_elastic_contacts()) {
-    const EntryTolerance tolerance{tolerance::rounding_of_ways_m, unnoticed_part_of_width, enforcement_->deepest_entry(scene_.method)};
-    return first_entry(system_, solution, pairs, tolerance, &contacts_);
-  }
-  const double tolerated = std::max(scene_.method.gap_tolerance, tolerance::rounding_of_ways_m);
-  if (2.0 * moved <= tolerated) return 1.0;
-  const double part = first_entry(system_, solution, pairs, {tolerated});
-  return part == 1.0 && pass_into_each_other(system_, solution, pairs, passing_of_tolerance * tolerated) ? halved : part;
 }
 
 StepResult Simulation::step(double dt, bool statics) {
@@ -556,7 +435,7 @@ StepResult Simulation::step(double dt, bool statics) {
     ++step_counters_.repeated_to_wake;
     return step(dt, statics);
   }
-  if (solution.converged) result.moved = largest_move(solution);
+  if (solution.converged) result.moved = largest_move(system_, solution);
   const bool turned = solution.converged && turns_too_far(system_, contacts_, solution);
   const bool too_far = turned || result.moved > scene_.step.max_displacement;
   if (solution.converged && !too_far && !statics && scene_.step.adaptive) {
@@ -569,17 +448,15 @@ StepResult Simulation::step(double dt, bool statics) {
       return result;
     }
   }
-  const bool heeds_entries = !statics || !enforcement_->has_elastic_contacts();  // joints at rest give way by more than a corner that comes to one
-  const bool is_no_shorter = statics && cuts_at_entry_ > 0 && result.moved > shorter_by_cut * way_at_entry_;
-  const double part = solution.converged && !too_far && heeds_entries && !is_no_shorter ? part_before_entry(solution, result.moved) : 1.0;
+  const bool may_enter = solution.converged && !too_far;
+  const double part = may_enter ? cuts_.part_before_entry(p, solution, *enforcement_, result.moved, detector_.candidate_pairs()) : 1.0;
   if (part < 1.0 && part * dt >= shortest_step()) {
     result.reason = "a corner enters a block that it is not in contact with";
     result.part = part;
     result.ends_at_entry = true;
     ++step_counters_.cuts;
     ++step_counters_.entry_cuts;
-    ++cuts_at_entry_;
-    way_at_entry_ = result.moved;
+    cuts_.cut_at_entry(result.moved);
     return result;
   }
   if (!solution.converged || too_far) {
@@ -594,71 +471,27 @@ StepResult Simulation::step(double dt, bool statics) {
   const Stopwatch watch(stage_times_.bookkeeping);
   step_ledger_ = {};
   if (books_steps_) add_step(step_ledger_, p, solution, *scheme_, enforcement_->has_elastic_contacts());
-  if (!statics && creates_energy(p, solution)) {
+  if (cuts_.creates_energy(p, solution, *enforcement_, ledger_, step_ledger_, shortest_step())) {
     result.reason = "a step creates energy";
     ++step_counters_.cuts;
-    ++cuts_for_energy_;
+    cuts_.cut_for_energy();
     return result;
   }
-  if (statics) result.unbalanced_force = unbalanced_force(p, solution);
-  result.lost_strength = loses_strength(solution);
+  if (statics) result.unbalanced_force = openclose::unbalanced_force(p, solution);
+  result.lost_strength = loses_strength(p, solution);
   accept(p, solution);
   result.accepted = true;
   wake_by_forces(Resting::Urgency::any);
   return result;
 }
 
-double Simulation::unbalanced_force(const StepProblem& problem, const StepSolution& solution) const {
-  double largest = 0.0;  // of what inertia carries
-  for (int b : system_.free_blocks()) {
-    const Unknowns inertia_force = problem.inertia * system_.block(b).mass.cwiseProduct(solution.of(system_, b));
-    largest = std::max(largest, Motion::largest_force(inertia_force, system_.block(b).radius));
-  }
-  // Where friction lags behind the normal force, equilibrium with the old friction is none yet.
-  for (std::size_t i = 0; i < contacts_.size(); ++i) {
-    const CarriedForces f = solution.contacts.forces(i);
-    if (f.status != ContactStatus::sliding) continue;
-    const double bound = ContactStrength(joints_.joint(contacts_[i].joint), contacts_[i]).shear_bound(f.normal).value;
-    largest = std::max(largest, std::abs(bound - std::abs(f.shear)));
-  }
-  return largest + solution.unbalanced;
-}
-
-bool Simulation::loses_strength(const StepSolution& solution) const {
-  for (std::size_t i = 0; i < contacts_.size(); ++i) {
-    const Contact& c = contacts_[i];
-    const JointProperties& joint = joints_.joint(c.joint);
-    if (can_lose_strength(joint, c.bonded) && !stays_bonded(joint, c.bonded, solution.contacts.status(i))) return true;
-  }
-  return false;
-}
-
-void Simulation::velocities_by_forces_now(const StepProblem& problem, const StepSolution& solution) {
-  std::vector<Unknowns> force(system_.block_count(), Unknowns::Zero());
-  for (int b : system_.free_blocks()) force[b] = external_.force(system_, b, Unknowns::Zero());
-  for (std::size_t i = 0; i < contacts_.size(); ++i) {
-    const ContactOutcome o = solution.contacts[i];
-    const ContactKinematics k(o.pose);
-    force[contacts_[i].vertex_block] += o.forces.normal * k.normal_vertex + o.forces.shear * k.shear_vertex;
-    force[contacts_[i].edge_block] += o.forces.normal * k.normal_edge + o.forces.shear * k.shear_edge;
-  }
+void Simulation::take_end_of_explicit_step(const StepProblem& problem, const StepSolution& solution) {
+  std::vector<Unknowns> force = forces_at_end(problem, solution);
+  book_kinetic_energy(kinetic_ahead(problem, force));
   for (int b : system_.free_blocks()) {
     if (system_.block(b).rotation_locked) force[b][Motion::rotation_index] = 0.0;
     output_velocity_[b] = system_.velocity(b) + 0.5 * problem.dt * force[b].cwiseQuotient(system_.block(b).mass);
   }
-}
-
-std::vector<Simulation::Blow> Simulation::blows(const StepProblem& problem, const StepSolution& solution) const {
-  std::vector<Blow> list;
-  if (problem.statics || enforcement_->has_elastic_contacts()) return list;
-  for (std::size_t i = 0; i < contacts_.size(); ++i) {
-    const Contact& c = contacts_[i];
-    const CarriedForces now = solution.contacts.forces(i);
-    const double before = c.status == ContactStatus::open ? 0.0 : std::max(0.0, c.normal_force);
-    if (now.status == ContactStatus::open || now.normal <= before) continue;
-    for (int b : {c.vertex_block, c.edge_block}) list.push_back({b, 1.0 - before / now.normal});
-  }
-  return list;
 }
 
 void Simulation::end_of_blow(const Blow& blow) {
@@ -666,32 +499,10 @@ void Simulation::end_of_blow(const Blow& blow) {
   output_velocity_[blow.block] -= blow.part * (output_velocity_[blow.block] - system_.velocity(blow.block));
 }
 
-double Simulation::kinetic_change(const StepProblem& problem, const StepSolution& solution) const {
-  double change = 0.0;
-  for (int b : system_.free_blocks()) {
-    const Unknowns before = problem.velocity(b), after = scheme_->next_velocity(b, problem.dt, solution.of(system_, b), before);
-    const auto& mass = system_.block(b).mass;
-    change += 0.5 * (after.dot(mass.cwiseProduct(after)) - before.dot(mass.cwiseProduct(before)));
-  }
-  return change;
-}
-
-bool Simulation::creates_energy(const StepProblem& problem, const StepSolution& solution) const {
-  if (!std::isfinite(creatable_energy_) || cuts_for_energy_ == most_cuts_for_energy) return false;
-  // What cannot be cut is taken; whether it was too much is for the watch to say.
-  if (problem.dt * enforcement_->step_cut(scene_.method) < shortest_step()) return false;
-  EnergyLedger after = ledger_;
-  after += step_ledger_;
-  after.kinetic += kinetic_change(problem, solution);
-  const double rise = after.mechanical() - ledger_.mechanical(), above_lowest = after.mechanical() - lowest_energy_;
-  const double allowed = std::max(creatable_energy_, creatable_part_of_kinetic * system_.kinetic_energy());
-  const auto is_much = [&](double in_all, double in_step) { return in_all > share_before_cuts * allowed && in_step > share_of_step * allowed; };
-  return is_much(above_lowest, rise) || is_much(-after.scheme, -step_ledger_.scheme) || is_much(-after.impact, -step_ledger_.impact);
-}
-
 void Simulation::accept(const StepProblem& problem, const StepSolution& solution) {
   if (books_steps_) ledger_ += step_ledger_;
-  const std::vector<Blow> struck = blows(problem, solution);
+  const bool may_be_struck = !problem.statics && !enforcement_->has_elastic_contacts();
+  const std::vector<Blow> struck = may_be_struck ? blows(problem, solution) : std::vector<Blow>();
   accept_contacts(solution);
   for (int b : system_.free_blocks()) {
     const Unknowns d = solution.of(system_, b), v = problem.velocity(b);
@@ -701,10 +512,9 @@ void Simulation::accept(const StepProblem& problem, const StepSolution& solution
     if (!statics) scheme_->record(b, problem.dt, d, v);
   }
   for (int b : system_.free_blocks()) system_.advance(b, solution.of(system_, b));
-  if (enforcement_->is_explicit()) velocities_by_forces_now(problem, solution);
   for (const Blow& blow : struck) end_of_blow(blow);
   if (!problem.statics) scheme_->accept(problem.dt);
-  book_kinetic_energy(enforcement_->is_explicit() ? kinetic_ahead(problem, solution) : 0.0);
+  enforcement_->is_explicit() ? take_end_of_explicit_step(problem, solution) : book_kinetic_energy(0.0);
   time_ += problem.dt;
   ++step_counters_.steps;
   count_moves();
@@ -716,9 +526,8 @@ void Simulation::accept(const StepProblem& problem, const StepSolution& solution
   if (solution.dissipative) ++step_counters_.dissipative;
   failed_attempts_ = 0;
   // The contact that the step has come to may be new to a pair that has hardly moved.
-  if (cuts_at_entry_ > 0) detector_.look_again();
-  cuts_at_entry_ = cuts_for_energy_ = 0;
-  lowest_energy_ = std::min(lowest_energy_, ledger_.mechanical());
+  if (cuts_.has_cut_at_entry()) detector_.look_again();
+  cuts_.accept(ledger_);
   contacts_current_ = false;
 }
 
@@ -1020,7 +829,8 @@ void Simulation::restart_clock() {
   take_back();
   time_ = 0.0;
   ledger_ = EnergyLedger();
-  kinetic_ahead_ = lowest_energy_ = 0.0;
+  kinetic_ahead_ = 0.0;
+  cuts_.restart_ledger();
   books_steps_ = true;
   max_penetration_ = friction_work_ = lagging_friction_work_ = 0.0;
   restart_scheme();
@@ -1046,7 +856,8 @@ void Simulation::restore(const Snapshot& snapshot) {
   may_rest_ = false;  // what is known of quiet blocks and their contacts is of another state
   contacts_current_ = true;
   output_velocity_ = snapshot.blocks.velocity;
-  failed_attempts_ = cuts_at_entry_ = cuts_for_energy_ = 0;
+  failed_attempts_ = 0;
+  cuts_.forget();
   last_speed_ = held_step_ = 0.0;
   if (loop_) loop_ = std::make_unique<CentralDifference>(contact_skin_);
   restart_scheme();
@@ -1055,7 +866,7 @@ void Simulation::restore(const Snapshot& snapshot) {
 void Simulation::exchange(Archive& archive) {
   archive(system_, resting_, may_rest_, external_, joints_, base_moves_, keep_bonds_, detector_, contacts_, contacts_current_, output_velocity_,
           time_, reason_, ledger_, start_kinetic_energy_, kinetic_ahead_, collected_contact_energy_, max_penetration_, friction_work_,
-          lagging_friction_work_, step_counters_, failed_attempts_, cuts_at_entry_, cuts_for_energy_, lowest_energy_, creatable_energy_, last_speed_,
+          lagging_friction_work_, step_counters_, failed_attempts_, cuts_, last_speed_,
           control_, begins_, approach_step_, held_step_);
   if (archive.reading()) scheme_ = make_scheme();
   scheme_->exchange(archive);

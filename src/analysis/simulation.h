@@ -10,6 +10,8 @@
 
 #include "openclose/analysis/energy_ledger.h"
 #include "openclose/analysis/resting.h"
+#include "openclose/analysis/solved_step.h"
+#include "openclose/analysis/step_cuts.h"
 #include "openclose/analysis/step_control.h"
 #include "openclose/contact/detection.h"
 #include "openclose/core/memory.h"
@@ -178,7 +180,7 @@ class Simulation {
   /// [m] The scene's, or the default for its blocks.
   double contact_skin() const { return contact_skin_; }
   /// [J] What may be created in all. Once half of it has been, steps that go on creating energy are cut.
-  void allow_energy(double energy) { creatable_energy_ = energy; }
+  void allow_energy(double energy) { cuts_.allow_energy(energy); }
   /// Gives block b this velocity at time(); to be followed by restart_clock().
   void set_velocity(int b, const Unknowns& velocity);
   /// Gives the blocks the velocities of the scene (settling has stopped them); to be followed by restart_clock().
@@ -210,23 +212,12 @@ class Simulation {
   /// Gives the external forces what the base does in the next step.
   /// True if blocks at rest were woken by it.
   bool move_base(double dt, bool statics);
-  /// [m] What the trapezoid leaves out in a step with these end forces, dt^2 (a1 - a0)/12, as a displacement of any vertex. a0 are the accelerations
-  /// by the forces that the last step ended with.
-  double local_error(const StepProblem& problem, const StepSolution& solution) const;
-  /// [N] Sum of the forces on every free block as it stands, without dashpots.
-  Eigen::VectorXd forces_now(const StepProblem& problem) const;
-  double largest_move(const StepSolution& solution) const;
   /// [s] A step that has failed is not cut to less.
   double shortest_step() const { return scene_.step.smallest_fraction * scene_.step.dt; }
-  /// [-] Part of a step after which a corner has entered a block that it is not in contact with by what is tolerated, see first_entry(); 1 if there
-  /// is none.
-  double part_before_entry(const StepSolution& solution, double moved) const;
-  double unbalanced_force(const StepProblem& problem, const StepSolution& solution) const;
   void accept(const StepProblem& problem, const StepSolution& solution);
   void accept_contacts(const StepSolution& solution);
   /// What crossing_energy.h says of a contact, for steps taken one by one.
   void book_crossing(Contact& contact, const ContactOutcome& outcome, const Contact& start);
-  bool loses_strength(const StepSolution& solution) const;
   bool advance_explicitly(double dt);
   void load_loop();
   bool renew_loop();
@@ -260,22 +251,11 @@ class Simulation {
   void count_moves();
   /// Writes down the kinetic energy of the blocks' velocities and what explicit steps add to it for the present moment.
   void book_kinetic_energy(double ahead) const;
-  /// [J] See CentralDifference::kinetic_ahead(), for steps taken one by one.
-  /// Velocities at the end of an explicit step, half a step after those of the system, see CentralDifference::velocity_at_end().
-  void velocities_by_forces_now(const StepProblem& problem, const StepSolution& solution);
-  /// A rigid contact in motion carries this part of its force [-] for the first time.
-  struct Blow {
-    int block;
-    double part;
-  };
-  std::vector<Blow> blows(const StepProblem& problem, const StepSolution& solution) const;
+  /// Velocities at the end of an explicit step taken by itself, half a step after those of the system, see CentralDifference::velocity_at_end().
+  void take_end_of_explicit_step(const StepProblem& problem, const StepSolution& solution);
   /// The velocity at the end of a step goes on from that of its middle with the forces of the step. A blow is over then, and what it has changed is
   /// in the velocity of the middle: that part of going on is taken back.
   void end_of_blow(const Blow& blow);
-  double kinetic_change(const StepProblem& problem, const StepSolution& solution) const;  ///< [J]
-  /// Whether a solved step creates energy where much has been created already, see allow_energy().
-  bool creates_energy(const StepProblem& problem, const StepSolution& solution) const;
-  double kinetic_ahead(const StepProblem& problem, const StepSolution& solution) const;
   void note_memory();
 
   Scene scene_;
@@ -295,10 +275,7 @@ class Simulation {
   std::unique_ptr<CentralDifference> loop_;  ///< null for implicit methods
   mutable bool loop_is_ahead_ = false;       ///< of system_ and contacts_
   bool loop_is_loaded_ = false;
-  int cuts_at_entry_ = 0, cuts_for_energy_ = 0;                        ///< since the last step that was accepted
-  double way_at_entry_ = 0.0;                                          ///< [m] of the farthest vertex in the last step that was cut there
-  double creatable_energy_ = std::numeric_limits<double>::infinity();  ///< [J] see allow_energy()
-  double lowest_energy_ = 0.0;                                         ///< [J] mechanical, against that at the start
+  StepCuts cuts_;
   EnergyLedger step_ledger_;                                           ///< of the last step that was solved
   ApproachBound approach_bound_;
   double held_step_ = 0.0;               ///< [s] last one that longest_stable_step() returned

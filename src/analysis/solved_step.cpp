@@ -1,0 +1,162 @@
+#include "openclose/analysis/solved_step.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace openclose {
+namespace {
+
+using Unknowns = Motion::Unknowns;
+
+/// The generalised forces of a force at a contact on its two blocks: push(block, forces).
+template <class F>
+void push_apart(const Contact& contact, const ContactPose& at, const CarriedForces& carried, F push) {
+  const Vec2 force = carried.normal * at.normal + carried.shear * at.tangent();
+  push(contact.vertex_block, Motion::gradient(at.vertex_arm, force));
+  push(contact.edge_block, Motion::gradient(at.edge_arm, -force));
+}
+
+/// A contact as it stands at the start of a step.
+ContactPose pose_at_start(const BlockSystem& system, const Contact& contact) {
+  const ContactStart start(system, contact);
+  ContactPose pose;
+  pose.normal = start.normal;
+  pose.vertex_arm = start.vertex_arm;
+  pose.edge_arm = start.end_arm + start.lever;
+  return pose;
+}
+
+/// Adds to the rows of free blocks.
+auto adds_to(Eigen::VectorXd& rows, const BlockSystem& system) {
+  return [&](int b, const Unknowns& f) {
+    const int i = system.block(b).equation;
+    if (i >= 0) rows.segment<dofs>(dofs * i) += f;
+  };
+}
+
+}  // namespace
+
+double largest_move(const BlockSystem& system, const StepSolution& solution) {
+  double largest = 0.0;
+  for (int b : system.free_blocks()) {
+    const auto& block = system.block(b);
+    const Unknowns d = solution.of(system, b);
+    if (Motion::displacement_bound(d, block.radius) <= largest) continue;
+    for (int v = block.first_vertex; v < block.first_vertex + block.vertex_count; ++v) {
+      largest = std::max(largest, Motion::displacement(d, system.arm(v), system.rotation_kind()).norm());
+    }
+  }
+  return largest;
+}
+
+double local_error(const StepProblem& problem, const StepSolution& solution) {
+  const BlockSystem& system = problem.system;
+  Eigen::VectorXd change = Eigen::VectorXd::Zero(dofs * system.free_count());
+  const auto push = adds_to(change, system);
+  for (int b : system.free_blocks()) {
+    if (!problem.external.has_point_forces(b)) continue;  // the others do not change
+    push(b, problem.external.force(system, b, solution.of(system, b)) - problem.external.force(system, b, Unknowns::Zero()));
+  }
+  for (std::size_t i = 0; i < problem.contacts.size(); ++i) {
+    const Contact& c = problem.contacts[i];
+    if (solution.contacts.status(i) != ContactStatus::open) push_apart(c, solution.contacts.pose(i), solution.contacts.forces(i), push);
+    if (c.status == ContactStatus::open) continue;
+    const CarriedForces taken_back{c.status, -c.normal_force, -c.shear_force, 0.0, 0.0};
+    push_apart(c, pose_at_start(system, c), taken_back, push);
+  }
+  double largest = 0.0;
+  for (int b : system.free_blocks()) {
+    const auto& block = system.block(b);
+    Unknowns error = problem.dt * problem.dt / 12.0 * change.segment<dofs>(dofs * block.equation).cwiseQuotient(block.mass);
+    if (block.rotation_locked) error[Motion::rotation_index] = 0.0;
+    largest = std::max(largest, Motion::displacement_bound(error, block.radius));
+  }
+  return largest;
+}
+
+double unbalanced_force(const StepProblem& problem, const StepSolution& solution) {
+  const BlockSystem& system = problem.system;
+  double largest = 0.0;  // of what inertia carries
+  for (int b : system.free_blocks()) {
+    const Unknowns inertia_force = problem.inertia * system.block(b).mass.cwiseProduct(solution.of(system, b));
+    largest = std::max(largest, Motion::largest_force(inertia_force, system.block(b).radius));
+  }
+  // Where friction lags behind the normal force, equilibrium with the old friction is none yet.
+  for (std::size_t i = 0; i < problem.contacts.size(); ++i) {
+    const CarriedForces f = solution.contacts.forces(i);
+    if (f.status != ContactStatus::sliding) continue;
+    const Contact& c = problem.contacts[i];
+    const double bound = ContactStrength(problem.joints.joint(c.joint), c).shear_bound(f.normal).value;
+    largest = std::max(largest, std::abs(bound - std::abs(f.shear)));
+  }
+  return largest + solution.unbalanced;
+}
+
+bool loses_strength(const StepProblem& problem, const StepSolution& solution) {
+  for (std::size_t i = 0; i < problem.contacts.size(); ++i) {
+    const Contact& c = problem.contacts[i];
+    const JointProperties& joint = problem.joints.joint(c.joint);
+    if (can_lose_strength(joint, c.bonded) && !stays_bonded(joint, c.bonded, solution.contacts.status(i))) return true;
+  }
+  return false;
+}
+
+double kinetic_change(const StepProblem& problem, const StepSolution& solution) {
+  const BlockSystem& system = problem.system;
+  double change = 0.0;
+  for (int b : system.free_blocks()) {
+    const Unknowns before = problem.velocity(b), after = problem.scheme->next_velocity(b, problem.dt, solution.of(system, b), before);
+    const auto& mass = system.block(b).mass;
+    change += 0.5 * (after.dot(mass.cwiseProduct(after)) - before.dot(mass.cwiseProduct(before)));
+  }
+  return change;
+}
+
+std::vector<Blow> blows(const StepProblem& problem, const StepSolution& solution) {
+  std::vector<Blow> list;
+  for (std::size_t i = 0; i < problem.contacts.size(); ++i) {
+    const Contact& c = problem.contacts[i];
+    const CarriedForces now = solution.contacts.forces(i);
+    const double before = c.status == ContactStatus::open ? 0.0 : std::max(0.0, c.normal_force);
+    if (now.status == ContactStatus::open || now.normal <= before) continue;
+    for (int b : {c.vertex_block, c.edge_block}) list.push_back({b, 1.0 - before / now.normal});
+  }
+  return list;
+}
+
+Eigen::VectorXd forces_now(const StepProblem& problem, const Enforcement& enforcement) {
+  const BlockSystem& system = problem.system;
+  Eigen::VectorXd force(dofs * system.free_count());
+  for (int b : system.free_blocks()) force.segment<dofs>(dofs * system.block(b).equation) = problem.external.force(system, b, Unknowns::Zero());
+  for (const Contact& c : problem.contacts) {
+    const ContactForces f = spring_slider(enforcement.springs(problem, c), ContactStrength(problem.joints.joint(c.joint), c), 0.0, 0.0);
+    if (f.status != ContactStatus::open) push_apart(c, pose_at_start(system, c), f, adds_to(force, system));
+  }
+  for (int b : system.free_blocks()) {
+    if (system.block(b).rotation_locked) force[dofs * system.block(b).equation + Motion::rotation_index] = 0.0;
+  }
+  return force;
+}
+
+std::vector<Unknowns> forces_at_end(const StepProblem& problem, const StepSolution& solution) {
+  const BlockSystem& system = problem.system;
+  std::vector<Unknowns> force(system.block_count(), Unknowns::Zero());
+  for (int b : system.free_blocks()) force[b] = problem.external.force(system, b, Unknowns::Zero());
+  for (std::size_t i = 0; i < problem.contacts.size(); ++i) {
+    const ContactOutcome o = solution.contacts[i];
+    push_apart(problem.contacts[i], o.pose, o.forces, [&](int b, const Unknowns& f) { force[b] += f; });
+  }
+  return force;
+}
+
+double kinetic_ahead(const StepProblem& problem, const std::vector<Unknowns>& forces) {
+  const BlockSystem& system = problem.system;
+  double power = 0.0;
+  for (int b : system.free_blocks()) {
+    const Unknowns others = forces[b] - problem.external.weight(system, b) - problem.external.base_force(system, b);
+    power += system.velocity(b).dot(others);
+  }
+  return 0.5 * problem.dt * power;
+}
+
+}  // namespace openclose

@@ -1,0 +1,47 @@
+// What a solved step does to blocks and contacts, read off its problem and its solution. Nothing here changes anything.
+#pragma once
+
+#include <Eigen/Core>
+#include <utility>
+#include <vector>
+
+#include "openclose/integrator/enforcement.h"
+
+namespace openclose {
+
+/// [m] The farthest way of a vertex.
+double largest_move(const BlockSystem& system, const StepSolution& solution);
+
+/// [m] What the trapezoid leaves out in a step with these end forces, dt^2 (a1 - a0)/12, as a displacement of any vertex. a0 are the accelerations by
+/// the forces that the last step ended with.
+double local_error(const StepProblem& problem, const StepSolution& solution);
+
+/// [N] Largest sum of forces without inertia on a block, with what friction that lags behind the normal force misses its bound by.
+double unbalanced_force(const StepProblem& problem, const StepSolution& solution);
+
+/// Whether a contact loses its cohesion or tensile strength by the status in which it ends.
+bool loses_strength(const StepProblem& problem, const StepSolution& solution);
+
+/// [J] Of a step in motion.
+double kinetic_change(const StepProblem& problem, const StepSolution& solution);
+
+/// A rigid contact in motion carries this part of its force [-] on a block for the first time.
+struct Blow {
+  int block;
+  double part;
+};
+/// Of rigid contacts, with the forces that they have from the step before.
+std::vector<Blow> blows(const StepProblem& problem, const StepSolution& solution);
+
+/// [N, N, N m] Sum of the forces on every free block as it stands, without dashpots.
+Eigen::VectorXd forces_now(const StepProblem& problem, const Enforcement& enforcement);
+
+/// [N, N, N m] The same after an explicit step, whose contacts carry at its end what they have in the solution; of all blocks. To be asked when
+/// blocks have been moved.
+std::vector<Motion::Unknowns> forces_at_end(const StepProblem& problem, const StepSolution& solution);
+
+/// [J] See CentralDifference::kinetic_ahead(), for explicit steps taken one by one.
+/// \param forces  forces_at_end()
+double kinetic_ahead(const StepProblem& problem, const std::vector<Motion::Unknowns>& forces);
+
+}  // namespace openclose
