@@ -63,7 +63,6 @@ struct StepEffort {
   int parts = 0;             ///< of the system, solved for themselves in between
   int part_iterations = 0;   ///< linear solves of parts
   long part_rows = 0;        ///< block rows in these
-  int steps_with_parts = 0;  ///< of iterations of the whole, not cut because parts have made up for what they did to single blocks
   long part_batches = 0;     ///< of four contacts, evaluated because parts have moved
   long part_batches_skipped = 0;
   int relaxation_steps = 0;  ///< evaluations of all forces instead, see Newton::relax()
@@ -71,7 +70,7 @@ struct StepEffort {
 
   StepEffort& operator+=(const StepEffort& other) {
     iterations += other.iterations, parts += other.parts, part_iterations += other.part_iterations;
-    part_rows += other.part_rows, steps_with_parts += other.steps_with_parts, part_batches += other.part_batches,
+    part_rows += other.part_rows, part_batches += other.part_batches,
         part_batches_skipped += other.part_batches_skipped;
     relaxation_steps += other.relaxation_steps, estimates += other.estimates;
     return *this;

@@ -390,7 +390,7 @@ class Hard final : public Enforcement {
     return sum;
   }
 
-  Newton newton_{Merit::all_blocks};
+  Newton newton_;
   std::vector<ContactSprings> springs_;
   std::size_t level_ = 0;  ///< of stiffness_over_inertia: what the next attempt at this step begins with
 };

@@ -30,17 +30,6 @@ constexpr double shortest_backtrack = 0.01;
 /// contacts that change state, or from the turning of the others. Iterations of all steps of a slope of 1,773 free blocks: 411 with 1e-12, 418 with
 /// 1e-6, 420 with 1e-5, 432 with 1e-4.
 constexpr double linear_reduction = 1e-5;
-/// [-] The same in motion as long as contacts change their states, which leaves a larger residual than this, and the iteration gets on: where it does
-/// not, what a solve leaves is no longer small for the worst block (20,100 blocks at 10 ms: 4 of 28 steps did not converge, with 1e-5 1 of 22). In
-/// failure, with what follows: 0.93 of the instructions of 9,745 free blocks, 0.91 of those of 1,773; with 1e-2 0.91 and 0.93. Not with the stiff
-/// springs of `hard`: 1.18 of the instructions of 1,773 free blocks.
-constexpr double linear_reduction_of_changes = 1e-3;
-/// [-] The same where the iteration does not get on: what a solve may leave of the largest residual of a block, so that no block keeps more. Most of
-/// a step that will be cut short is left anyway, and more digits find no better one. Iterations of GMRES in an iteration of 20 steps after a sudden
-/// loss of strength, with 0.1 and with linear_reduction: 6.7 and 9.4 with 9,745 free blocks, 7.1 and 12.0 with 19,445, 7.3 and 16.1 with 49,066.
-constexpr double linear_rest_of_worst = 0.1;
-/// [m] With this arm a moment that is left does as much as a force of the same number; blocks may be smaller.
-constexpr double arm_of_equal_force = 1.0;
 /// [-] Where the end of the iteration is within reach of a solve with the first of these, it goes as far as that; no residual is brought down farther
 /// than to a part of what ends the iteration.
 constexpr double farthest_reduction = 1e-6, loosest_reduction = 0.1;
@@ -92,9 +81,6 @@ constexpr int rings_of_a_part = 2;
 constexpr double largest_part = 0.25;
 /// [-] of that of one iteration of the whole system, after which no further part is begun, in case that none of them converges.
 constexpr double work_on_parts = 3.0;
-/// A whole step that has made the residual larger, because a few contacts were struck, is taken if parts make up for that. After a round of parts the
-/// next largest residuals have their turn, at most so often.
-constexpr int rounds_of_parts = 3;
 /// Below, the plan of a part's factorisation costs what it saves (387 rows: work 1.04 to 1.08, 850 rows: 0.82 to 0.94).
 constexpr int smallest_system_with_parts = 600;
 /// The same where contact forces are averaged over the path, with which parts take more iterations (1,119 rows: work 1.10 of that without, 1,773 rows
@@ -120,28 +106,6 @@ class Headway {
   double reached_;
   int most_iterations_;
   int iterations_ = 0;  ///< since then
-};
-
-/// After something was tried in vain, twice as long each time.
-class Pause {
- public:
-  /// \param first  iterations
-  explicit Pause(int first) : next_(first), first_(first) {}
-  /// To be asked once an iteration.
-  bool is_over() {
-    if (left_ == 0) return true;
-    --left_;
-    return false;
-  }
-  void begin() {
-    left_ = next_;
-    next_ *= 2;
-  }
-  /// It was not in vain.
-  void end() { next_ = first_; }
-
- private:
-  int left_ = 0, next_, first_;  ///< iterations
 };
 
 /// To be asked of an iterative solver, where the iteration ends with this part of the residual that it has now.
@@ -354,24 +318,8 @@ double Newton::largest_unbalanced() const {
   return largest;
 }
 
-double Newton::part_of_worst() const {
-  double largest = 0.0, shortest_arm = arm_of_equal_force;
-  for (int row = 0; row < static_cast<int>(blocks_.size()); ++row) {
-    largest = std::max(largest, unbalanced(row));
-    shortest_arm = std::min(shortest_arm, blocks_[row].radius);
-  }
-  return shortest_arm * largest / residual_.norm();
-}
-
-double Newton::usual_reduction(bool gets_on, int switches) const {
-  const bool may_be_loose = !problem_->statics && asked_merit_ == Merit::worst_block;
-  if (!may_be_loose) return linear_reduction;
-  if (gets_on) return switches > 0 ? linear_reduction_of_changes : linear_reduction;
-  return std::clamp(linear_rest_of_worst * part_of_worst(), linear_reduction, loosest_reduction);
-}
-
 double Newton::merit(double norm) const {
-  if (asked_merit_ == Merit::worst_block || problem_->statics || !std::isfinite(norm)) return norm;
+  if (problem_->statics || !std::isfinite(norm)) return norm;
   double work = 0.0;  // [J]
   for (std::size_t i = 0; i < blocks_.size(); ++i) {
     const Unknowns residual = residual_.segment<dofs>(dofs * static_cast<int>(i));
@@ -623,7 +571,7 @@ double Newton::solve_parts(StepSolution& solution, double norm) {
   const Until until{std::max(1.0, linear_reduction * norm), problem_->method.max_iterations};
   const std::vector<Part> parts = unbalanced_parts(norm, until.norm);
   if (parts.empty()) return norm;
-  Newton newton_of_part(asked_merit_);  // gone again when the whole is solved: a part may be a quarter of it
+  Newton newton_of_part;  // gone again when the whole is solved: a part may be a quarter of it
   trial_ = solution.d;
   std::vector<int> moved;
   const long most_rows = static_cast<long>(work_on_parts * static_cast<double>(blocks_.size()));
@@ -658,21 +606,6 @@ double Newton::solve_parts(StepSolution& solution, double norm) {
   return norm;
 }
 
-bool Newton::take_with_parts(const Eigen::VectorXd& step, double value_before, StepSolution& solution, double& norm) {
-  const Eigen::VectorXd before = solution.d;
-  solution.d += step;
-  double last = std::numeric_limits<double>::infinity();
-  for (int round = 0; round < rounds_of_parts && norm < last; ++round) {
-    last = norm;
-    norm = solve_parts(solution, norm);
-    if (!(merit(norm) <= (1.0 - sufficient_decrease) * value_before)) continue;
-    ++solution.effort.steps_with_parts;
-    return true;
-  }
-  solution.d = before;
-  return false;
-}
-
 bool Newton::iterate_from_cold(StepSolution& solution, double& norm) {
   Eigen::VectorXd& d = solution.d;
   const double longest = d.lpNorm<Eigen::Infinity>();
@@ -699,7 +632,7 @@ Newton::Outcome Newton::iterate_holding(StepSolution& solution, double& norm, in
   holds_.assign(contact_count_, 0.0);
   if (done > 0) hold_changed(norm);
   Outcome outcome = Outcome::ended;
-  Headway headway(norm, only_if_few_change_ ? most_iterations_to_halve_with_parts : most_iterations_to_halve_holding);
+  Headway headway(norm, only_if_few_change_ ? most_iterations_to_halve_if_few_change : most_iterations_to_halve_holding);
   double best = norm;
   for (int iteration = done; norm > 1.0 && std::isfinite(norm) && !headway.is_lost(best); ++iteration) {
     branches_before_ = branches_;
@@ -776,23 +709,21 @@ Newton::Outcome Newton::iterate(const StepProblem& problem, StepSolution& soluti
   const int smallest_with_parts = averages_path() ? smallest_averaged_system_with_parts : smallest_system_with_parts;
   const bool may_help_by_parts =
       problem.method.skip_balanced && !problem.statics && !is_part_ && static_cast<int>(blocks_.size()) >= smallest_with_parts;
-  const bool of_all_blocks = asked_merit_ == Merit::all_blocks;
-  const bool may_be_lost = !problem.statics && !is_part_ && (of_all_blocks || may_help_by_parts);
-  Headway headway(course.value, of_all_blocks ? most_iterations_to_halve : most_iterations_to_halve_with_parts);
-  // The stiff springs of hard let parts fail where they have failed: with pauses 40 m of a failing slope of 1,773 free blocks cost 1.1 times as much,
-  // and with whole steps that parts make up for, but no pauses, 20 steps of 9,745 free blocks 7 times.
-  Pause parts_pause(of_all_blocks ? until.iterations : 1);
+  const bool may_be_lost = !problem.statics && !is_part_;
+  Headway headway(course.value, most_iterations_to_halve);
+  // Parts that have not helped will not help in this step: with pauses in place of an end 40 m of a failing slope of 1,773 free blocks cost `hard` 1.1
+  // times as much.
+  bool parts_help = may_help_by_parts;
   Outcome outcome = Outcome::ended;
   for (int iteration = 0; iteration < until.iterations && course.norm > until.norm; ++iteration) {
-    const bool try_parts = may_help_by_parts && parts_pause.is_over();
-    if (try_parts && iteration > 0 && course.switches > 0) {
-      help_by_parts(solution, course) ? parts_pause.end() : parts_pause.begin();
+    if (parts_help && iteration > 0 && course.switches > 0) {
+      parts_help = help_by_parts(solution, course);
       if (course.norm <= until.norm) break;
     }
     if (may_be_lost && headway.is_lost(course.best)) break;
     branches_before_ = branches_;
     const double end = end_to_spare * until.norm / course.norm;
-    const double reduction = reduction_to(end, usual_reduction(course.gets_on, course.switches));
+    const double reduction = reduction_to(end, linear_reduction);
     const Eigen::VectorXd step = direction(d, course.tangent, reduction, std::min(end, loosest_reduction));
     ++solution.effort.iterations;
     if (step.size() == 0) {
@@ -805,11 +736,9 @@ Newton::Outcome Newton::iterate(const StepProblem& problem, StepSolution& soluti
       outcome = Outcome::no_common_step;
       break;
     }
-    bool has_gone = false;  // d the step, and farther in parts
     if (course.tangent == Tangent::exact && iteration > 0 && merit(next_norm) > course.value) {
       const int switches = differences(branches_before_, branches_);
-      has_gone = try_parts && !of_all_blocks && take_with_parts(step, course.value, solution, next_norm);
-      if (!has_gone) alpha = backtrack(d, step, course.value);
+      alpha = backtrack(d, step, course.value);
       if (alpha == 0.0) {
         evaluate(d);
         course.tangent = Tangent::symmetric;
@@ -818,9 +747,9 @@ Newton::Outcome Newton::iterate(const StepProblem& problem, StepSolution& soluti
         ++course.refusals;
         continue;
       }
-      if (!has_gone) next_norm = residual_norm();
+      next_norm = residual_norm();
     }
-    if (!has_gone) d += alpha * step;
+    d += alpha * step;
     follow(course, next_norm);
     if (may_start_cold && iteration == 0 && course.switches > cold_start_switches * static_cast<double>(contact_count_)) {
       outcome = Outcome::cold_start;

@@ -37,29 +37,20 @@ enum class FirstTangent {
   present,        ///< those of the displacement that the iteration starts from
 };
 
-/// What a step of the iteration in motion must reduce. At rest it is always the first.
-enum class Merit {
-  worst_block,  ///< the largest residual of a block over what is tolerated
-  all_blocks,   ///< the work of all residuals on what inertia alone would let them move: a single block does not stop the others
-};
-
-/// In motion, with Merit::all_blocks: an iteration that has not halved the residuals in so many is lost among the contact states, where residuals
-/// have minima that are no balance, and ends: softer springs, a longer ramp of the cohesion or a shorter step are the way then. Slopes of 387 to
-/// 4,568 free blocks: of 136 iterations that found their balance and went for more than 3 without halving the residuals, 3 did so for more than 30
-/// and 13 for more than 20, which is too soon; of 28 that found none in 60, 12 for more than 30.
+/// In motion: an iteration that has not halved the residuals in so many is lost among the contact states, where residuals have minima that are no
+/// balance, and ends: softer springs, a longer ramp of the cohesion or a shorter step are the way then. Slopes of 387 to 4,568 free blocks: of 136
+/// iterations that found their balance and went for more than 3 without halving the residuals, 3 did so for more than 30 and 13 for more than 20,
+/// which is too soon; of 28 that found none in 60, 12 for more than 30.
 constexpr int most_iterations_to_halve = 30;
-/// The same with Merit::worst_block, where parts are solved in between. 20 steps of 19,445 and of 49,066 free blocks after a sudden loss of strength:
-/// of 41 iterations that found their balance none went for more than 2 without halving the residual, 3 that found none for 45 and more.
-constexpr int most_iterations_to_halve_with_parts = 10;
 /// The same with held contacts, which are let go a few at a time, so that residuals fall in leaps, if the iteration does not go round in a circle: a
 /// slope of 4,568 free blocks found its balance after 84 iterations, 39 of which did not halve the residual, one of 9,745 went round for 120.
 constexpr int most_iterations_to_halve_holding = 60;
+/// The same for solve_if_few_change(): where few contacts change, their hold is soon let go.
+constexpr int most_iterations_to_halve_if_few_change = 10;
 
 class Newton {
  public:
   using Unknowns = Motion::Unknowns;
-
-  explicit Newton(Merit merit = Merit::worst_block) : asked_merit_(merit) {}
 
   /// Solves for solution.d, starting from the value it has; fills its contacts. effort is added to.
   void solve(const StepProblem& problem, const SpringSource& springs, StepSolution& solution, FirstTangent first = FirstTangent::last_step);
@@ -136,10 +127,6 @@ class Newton {
   /// Returns its norm.
   double solve_parts(StepSolution& solution, double norm);
   std::vector<Part> unbalanced_parts(double norm, double end);
-  /// Moves on by a step that has made the residual larger, and solves parts there until the merit falls as it should. False if it does not; the
-  /// displacement is the one before then, the forces are not.
-  /// \param norm  residual_norm() after the step, then with parts
-  bool take_with_parts(const Eigen::VectorXd& step, double value_before, StepSolution& solution, double& norm);
   /// The equations of a part of another system, while all other blocks stay where they are there.
   void take_part(const Newton& whole, const Part& part);
   /// Goes on, after the first iteration of a cold start, by whole steps with the exact tangent, in which what has just opened or begun to slide is
@@ -209,11 +196,8 @@ class Newton {
   void take_state(std::size_t c, ContactStatus status, double normal, double shear);
   /// The same of branches_before_, around the forces that the springs start from.
   void take_states_before();
-  /// [-] Of the residual's Euclidean norm: no block has a larger residual than the largest one now where no more than that is left of it.
-  double part_of_worst() const;
-  /// [-] To be asked of an iterative solver while the end of the iteration is out of its reach.
-  double usual_reduction(bool gets_on, int switches) const;
-  /// What a step must reduce, with the residual_norm() that belongs to it.
+  /// What a step must reduce: in motion the work of all residuals on what inertia alone would let them move [J^1/2], so that a single block does not
+  /// stop the others; at rest the residual_norm(), which is given.
   double merit(double norm) const;
   /// Largest residual of a block over what is tolerated: converged at 1, which is also what negligible ones count for; infinite where that tells
   /// nothing.
@@ -241,7 +225,6 @@ class Newton {
   /// \param others  what is there beside it
   void note_memory(const Memory& others = {}) { memory_.grow_to(present_memory() + others); }
 
-  Merit asked_merit_;
   double ramp_ = tolerance::cohesion_ramp;  ///< [-]
   const StepProblem* problem_ = nullptr;
   BatchRenewal renewal_;

@@ -470,7 +470,6 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
                    {"parts", steps.parts},
                    {"part_iterations", steps.part_iterations},
                    {"part_rows", steps.part_rows},
-                   {"steps_with_parts", steps.steps_with_parts},
                    {"part_batches", steps.part_batches},
                    {"part_batches_skipped", steps.part_batches_skipped},
                    {"relaxation_steps", steps.relaxation_steps},

@@ -262,8 +262,6 @@ TEST_CASE("iterating only where forces are far from balance changes no more than
     CHECK(skipping.step_counters().parts > 0);
     CHECK(skipping.step_counters().part_iterations >= skipping.step_counters().parts);
     CHECK(skipping.step_counters().part_rows >= skipping.step_counters().part_iterations);
-    CHECK(all.step_counters().steps_with_parts == 0);
-    CHECK((skipping.step_counters().steps_with_parts > 0) == (method == "soft"));
     CHECK(skipping.step_counters().iterations < all.step_counters().iterations);
   }
 }
