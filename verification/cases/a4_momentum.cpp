@@ -82,8 +82,6 @@ Drift drift(const Report& report, const std::string& method, double dt, const st
   return collided ? d : Drift{not_measured(), not_measured()};
 }
 
-}  // namespace
-
 void momentum(Report& report) {
   for (const Scheme& scheme : schemes()) ledger(report, scheme);
   for (const double dt : {2e-3, 4e-4, 1e-4}) {
@@ -122,4 +120,7 @@ void momentum(Report& report) {
   }
 }
 
+const Registered<Case> registered{{"A4", "momentum of a free cluster", &momentum}};
+
+}  // namespace
 }  // namespace openclose::verification

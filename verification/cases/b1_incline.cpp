@@ -187,8 +187,6 @@ void ledgers(Report& report) {
   }
 }
 
-}  // namespace
-
 void incline(Report& report) {
   ledgers(report);
   steady(report);
@@ -197,4 +195,7 @@ void incline(Report& report) {
   invariant(report);
 }
 
+const Registered<Case> registered{{"B1", "block on an incline", &incline}};
+
+}  // namespace
 }  // namespace openclose::verification

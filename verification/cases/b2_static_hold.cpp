@@ -110,12 +110,13 @@ void drift(Report& report) {
   }
 }
 
-}  // namespace
-
 void static_hold(Report& report) {
   corner_forces(report);
   threshold(report);
   drift(report);
 }
 
+const Registered<Case> registered{{"B2", "static hold", &static_hold}};
+
+}  // namespace
 }  // namespace openclose::verification

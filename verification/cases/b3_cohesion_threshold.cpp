@@ -30,8 +30,6 @@ double threshold(const Report& report, const analytical::BlockOnPlane& data, con
   return 0.5 * (low + high);
 }
 
-}  // namespace
-
 void cohesion_threshold(Report& report) {
   const analytical::BlockOnPlane data;
   const double ductile = analytical::ductile_cohesion_threshold(data);
@@ -65,4 +63,7 @@ void cohesion_threshold(Report& report) {
   report.relative("threshold, lost on slip", "hard", brittle, measured, 1e-6, "Pa", "equal shares of T; rigid: no tilt");
 }
 
+const Registered<Case> registered{{"B3", "cohesion threshold", &cohesion_threshold}};
+
+}  // namespace
 }  // namespace openclose::verification

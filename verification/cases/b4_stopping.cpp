@@ -143,8 +143,6 @@ void ledger(Report& report, const Throw& t) {
   }
 }
 
-}  // namespace
-
 void stopping(Report& report) {
   for (const Throw& t : throws()) {
     rigid(report, t);
@@ -155,4 +153,7 @@ void stopping(Report& report) {
   rebound(report, throws().front());
 }
 
+const Registered<Case> registered{{"B4", "initial velocity to a stop", &stopping}};
+
+}  // namespace
 }  // namespace openclose::verification

@@ -126,8 +126,6 @@ double velocity_error(const Report& report, const BlockOnPlane& data, const std:
   return std::abs(simulation.velocity(1)[2] / analytical::toppling_velocity(data, -simulation.system().displacement(1)[2]) + 1.0);
 }
 
-}  // namespace
-
 void toppling_chart(Report& report) {
   for (const std::string& method : all_methods) chart(report, method);
 
@@ -157,4 +155,7 @@ void toppling_chart(Report& report) {
   report.leave_out("initial angular acceleration", "dem", "gravity comes on slack springs; the angular velocity once they carry is checked");
 }
 
+const Registered<Case> registered{{"B5", "sliding and toppling of a block on a plane", &toppling_chart}};
+
+}  // namespace
 }  // namespace openclose::verification

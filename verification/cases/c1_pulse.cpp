@@ -117,8 +117,6 @@ void stiffness(Report& report) {
                "speed won on slack springs, mu g/w: order -1/2", stiffness_name);
 }
 
-}  // namespace
-
 void pulse_under_block(Report& report) {
   rigid(report);
   elastic(report);
@@ -130,4 +128,7 @@ void pulse_under_block(Report& report) {
   }
 }
 
+const Registered<Case> registered{{"C1", "block on a base with a rectangular pulse", &pulse_under_block}};
+
+}  // namespace
 }  // namespace openclose::verification

@@ -113,8 +113,6 @@ void elastic(Report& report) {
   }
 }
 
-}  // namespace
-
 void shaken_incline(Report& report) {
   rigid(report);
   stiffness(report);
@@ -125,4 +123,7 @@ void shaken_incline(Report& report) {
   }
 }
 
+const Registered<Case> registered{{"C2", "block on an incline under harmonic shaking", &shaken_incline}};
+
+}  // namespace
 }  // namespace openclose::verification

@@ -113,8 +113,6 @@ void own_limit(Report& report) {
                "converges within itself with the order of the scheme");
 }
 
-}  // namespace
-
 void recorded_motion(Report& report) {
   rigid(report);
   elastic(report);
@@ -125,4 +123,7 @@ void recorded_motion(Report& report) {
   }
 }
 
+const Registered<Case> registered{{"C3", "block on an incline under a record", &recorded_motion}};
+
+}  // namespace
 }  // namespace openclose::verification

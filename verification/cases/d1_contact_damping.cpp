@@ -76,8 +76,6 @@ void damping(Report& report, const Scheme& scheme, double ratio, bool along) {
                "damped oscillator, m* = mass of the block on a fixed base");
 }
 
-}  // namespace
-
 void contact_damping(Report& report) {
   for (const double ratio : {0.1, 1.0, 2.0}) {
     for (const bool along : {false, true}) {
@@ -87,4 +85,7 @@ void contact_damping(Report& report) {
   report.leave_out("contact damping", "hard", "rigid contacts have no springs and impacts without rebound");
 }
 
+const Registered<Case> registered{{"D1c", "contact damping of one block on one contact", &contact_damping}};
+
+}  // namespace
 }  // namespace openclose::verification

@@ -208,8 +208,6 @@ void plastic(Report& report) {
   report.leave_out("contact time, depth, period, drift", "hard", "rigid contacts do not rebound");
 }
 
-}  // namespace
-
 void bounce(Report& report) {
   for (const Scheme& scheme : spring_schemes()) {
     orders(report, scheme);
@@ -228,4 +226,7 @@ void bounce(Report& report) {
   plastic(report);
 }
 
+const Registered<Case> registered{{"D2", "bounce on a contact", &bounce}};
+
+}  // namespace
 }  // namespace openclose::verification

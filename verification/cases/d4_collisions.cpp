@@ -160,8 +160,6 @@ void plastic(Report& report) {
   report.leave_out("elastic collisions", "hard", "restitution 0: rigid contacts are plastic");
 }
 
-}  // namespace
-
 void collisions(Report& report) {
   for (const Scheme& scheme : spring_schemes()) {
     elastic_pairs(report, scheme);
@@ -176,4 +174,7 @@ void collisions(Report& report) {
   }
 }
 
+const Registered<Case> registered{{"D4", "collisions", &collisions}};
+
+}  // namespace
 }  // namespace openclose::verification

@@ -207,12 +207,13 @@ void overturning(Report& report) {
   report.leave_out("overturning map", "dem", "as soft");
 }
 
-}  // namespace
-
 void rocking_block(Report& report) {
   rigid(report);
   elastic(report);
   overturning(report);
 }
 
+const Registered<Case> registered{{"D5", "rocking block", &rocking_block}};
+
+}  // namespace
 }  // namespace openclose::verification

@@ -1,6 +1,6 @@
-// E6, its other mechanism: a block slides down a plane of two fixed blocks, and its front corner stands on the joint between them: three blocks meet
-// in one corner, and air. This is so wherever joints cross in the face of a slope, and at its toe. A contact of the front corner with the joint's
-// wall below, or of the wall's corner with the block's front, would lock the block; it slides as eq. (8) says.
+// E6c, the other mechanism of E6: a block slides down a plane of two fixed blocks, and its front corner stands on the joint between them: three
+// blocks meet in one corner, and air. This is so wherever joints cross in the face of a slope, and at its toe. A contact of the front corner with the
+// joint's wall below, or of the wall's corner with the block's front, would lock the block; it slides as eq. (8) says.
 #include <cmath>
 
 #include "harness.h"
@@ -35,8 +35,6 @@ double slide(const Report& report, const Scene& scene, const analytical::BlockOn
   return samples.empty() ? not_measured() : downhill(data, samples.back().motion.displacement);
 }
 
-}  // namespace
-
 void corner_over_joint(Report& report) {
   analytical::BlockOnPlane data;
   data.normal_stiffness *= 64;
@@ -58,4 +56,7 @@ void corner_over_joint(Report& report) {
   }
 }
 
+const Registered<Case> registered{{"E6c", "a corner that stands on a joint", &corner_over_joint}};
+
+}  // namespace
 }  // namespace openclose::verification

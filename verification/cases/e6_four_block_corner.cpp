@@ -1,4 +1,4 @@
-// E6, the mechanism behind it: two blocks slide as a slab over two fixed ones, and all four meet exactly in one corner. A contact between the
+// E6f, the mechanism behind E6: two blocks slide as a slab over two fixed ones, and all four meet exactly in one corner. A contact between the
 // diagonal blocks would lock the slab; without one it slides as eq. (8) says.
 #include <cmath>
 
@@ -43,8 +43,6 @@ Scene scene_of(const analytical::BlockOnPlane& data, double degrees, const std::
   return scene;
 }
 
-}  // namespace
-
 void four_block_corner(Report& report) {
   const analytical::BlockOnPlane data;
   const double expected = analytical::sliding_displacement(data, 0.5);
@@ -69,4 +67,7 @@ void four_block_corner(Report& report) {
   }
 }
 
+const Registered<Case> registered{{"E6f", "four blocks that meet in one corner", &four_block_corner}};
+
+}  // namespace
 }  // namespace openclose::verification

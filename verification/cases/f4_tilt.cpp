@@ -45,8 +45,6 @@ double degrees(double radians) {
   return radians / analytical::degree;
 }
 
-}  // namespace
-
 void tilt(Report& report) {
   const analytical::BlockOnPlane data = column(1.0);
   const double rigid = analytical::tipping_angle(data);
@@ -74,4 +72,7 @@ void tilt(Report& report) {
                compliance_name);
 }
 
+const Registered<Case> registered{{"F4", "a column tips", &tilt}};
+
+}  // namespace
 }  // namespace openclose::verification

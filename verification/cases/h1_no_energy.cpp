@@ -157,8 +157,6 @@ void diamond(Report& report, const Scheme& scheme) {
                      : "it starts at rest, and nothing lifts it; the order of its closure under its own weight");
 }
 
-}  // namespace
-
 void no_energy_from_nothing(Report& report) {
   for (const Scheme& scheme : schemes()) {
     box(report, scheme);
@@ -166,4 +164,7 @@ void no_energy_from_nothing(Report& report) {
   }
 }
 
+const Registered<Case> registered{{"H1", "no energy from nothing", &no_energy_from_nothing}};
+
+}  // namespace
 }  // namespace openclose::verification

@@ -224,8 +224,6 @@ void moving_frame(Report& report, const std::string& method) {
               text("growth {:.3g}, measured, times eps times coordinates times roundings", growth));
 }
 
-}  // namespace
-
 void invariance(Report& report) {
   for (const std::string& method : all_methods) {
     invariance_of(report, method);
@@ -234,4 +232,7 @@ void invariance(Report& report) {
   }
 }
 
+const Registered<Case> registered{{"I", "invariance: units, mirror, turn, place, frame, order, strangers, restart", &invariance}};
+
+}  // namespace
 }  // namespace openclose::verification

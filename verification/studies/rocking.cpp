@@ -23,8 +23,6 @@ Vec2 turned(const Vec2& v) {
   return {std::cos(tilt) * v.x() - std::sin(tilt) * v.y(), std::sin(tilt) * v.x() + std::cos(tilt) * v.y()};
 }
 
-}  // namespace
-
 void rocking(Studies& studies) {
   const analytical::BlockOnPlane data = tilted_block();
   const Vec2 arm = turned({0.5 * data.width, 0.5 * data.height});  // from the left corner to the centroid
@@ -55,4 +53,7 @@ void rocking(Studies& studies) {
   }
 }
 
+const Registered<Study> registered{{"rocking", "a block that rocks about one corner, before impact", &rocking}};
+
+}  // namespace
 }  // namespace openclose::verification
