@@ -10,9 +10,7 @@ namespace openclose::verification {
 
 void use(const Scheme& scheme, Scene& scene) {
   set_scheme(scene, scheme);
-  scene.method.penalty = scene.joints[0].normal_stiffness;
-  scene.method.penalty_shear_ratio = scene.joints[0].shear_stiffness / scene.joints[0].normal_stiffness;
-  scene.method.penetration_tolerance = 1.0;
+  use_joint_springs_as_penalty(scene);
 }
 
 Fit fit_order(const std::vector<Sized>& points) {

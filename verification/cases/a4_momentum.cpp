@@ -34,7 +34,7 @@ Scene cluster(const std::string& method, double dt) {
   Scene scene = empty_scene(data);
   scene.gravity = Vec2::Zero();
   scene.method.contact = method;
-  use_joint_springs_as_penalty(scene, data);
+  use_joint_springs_as_penalty(scene);
   scene.step = {dt, 1.0, 1e-6};
   scene.end_time = 0.3;
   BlockInput left = free_block("left", rectangle(0.0, 0.0, 2.0, 1.0));

@@ -36,7 +36,7 @@ Hold settle_on(const Report& report, const analytical::BlockOnPlane& data, const
   Scene scene = block_on_plane(data);
   scene.method.contact = method;
   scene.step.dt = 0.01;
-  use_joint_springs_as_penalty(scene, data);
+  use_joint_springs_as_penalty(scene);
   Simulation simulation = report.simulate(scene);
   const SettleResult result = settle(simulation);
   return forces_of(simulation, result.settled);

@@ -14,7 +14,7 @@ bool holds(const Report& report, const analytical::BlockOnPlane& data, const std
   scene.joints[0].cohesion_behaviour = behaviour;
   scene.method.contact = method;
   scene.step.dt = 0.01;
-  use_joint_springs_as_penalty(scene, data);
+  use_joint_springs_as_penalty(scene);
   Simulation simulation = report.simulate(scene);
   return settle(simulation).settled;
 }

@@ -32,7 +32,7 @@ Scene scene_of(const std::string& method, const analytical::BlockOnPlane& data, 
   // To the left: the block moves on to the right.
   scene.base_motion.emplace();
   scene.base_motion->pulses = {{0.0, duration, {-pulse, 0.0}}};
-  use_joint_springs_as_penalty(scene, data);
+  use_joint_springs_as_penalty(scene);
   return scene;
 }
 

@@ -33,7 +33,7 @@ Scene scene_of(const std::string& method, const analytical::BlockOnPlane& data, 
   scene.base_motion->kind = BaseMotionKind::harmonic;
   scene.base_motion->amplitude = {-amplitude, 0.0};
   scene.base_motion->frequency = frequency;
-  use_joint_springs_as_penalty(scene, data);
+  use_joint_springs_as_penalty(scene);
   return scene;
 }
 

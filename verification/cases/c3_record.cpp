@@ -28,7 +28,7 @@ Scene scene_of(const std::string& method, double dt, double end) {
   scene.step.dt = dt;
   scene.end_time = end;
   scene.output_every = every;
-  use_joint_springs_as_penalty(scene, data_of_scene());
+  use_joint_springs_as_penalty(scene);
   return scene;
 }
 

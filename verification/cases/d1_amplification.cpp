@@ -23,7 +23,7 @@ Scene scene_of(const std::string& method, double theta, double dt) {
   scene.method.contact = method;
   scene.method.theta = theta;
   scene.step.dt = dt;
-  use_joint_springs_as_penalty(scene, level_block());
+  use_joint_springs_as_penalty(scene);
   scene.settle.unbalanced_fraction = 1e-12;
   return scene;
 }

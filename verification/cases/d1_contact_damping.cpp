@@ -25,9 +25,7 @@ Scene scene_of(const Scheme& scheme, double ratio, double dt) {
                   free_block("block", {{0.0, 0.0}, {length, length}, {0.0, 2.0 * length}, {-length, length}})};
   scene.blocks[1].rotation_locked = true;
   set_scheme(scene, scheme);
-  scene.method.penalty = stiffness;
-  scene.method.penalty_shear_ratio = 0.5;
-  scene.method.penetration_tolerance = 1.0;
+  use_joint_springs_as_penalty(scene);
   scene.settle.unbalanced_fraction = 1e-12;
   scene.step.dt = dt;
   return scene;

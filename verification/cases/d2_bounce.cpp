@@ -30,7 +30,7 @@ Scene scene_of(const Scheme& scheme, double time, double dt) {
   scene.blocks[1].rotation_locked = true;
   set_scheme(scene, scheme);
   scene.step.dt = dt;
-  use_joint_springs_as_penalty(scene, level_block());
+  use_joint_springs_as_penalty(scene);
   return scene;
 }
 

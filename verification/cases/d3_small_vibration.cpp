@@ -41,7 +41,7 @@ Scene scene_of(const Scheme& scheme, double dt) {
   set_scheme(scene, scheme);
   scene.step.dt = dt;
   scene.settle.unbalanced_fraction = 1e-12;
-  use_joint_springs_as_penalty(scene, level_block());
+  use_joint_springs_as_penalty(scene);
   return scene;
 }
 

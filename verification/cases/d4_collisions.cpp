@@ -19,8 +19,7 @@ Scene scene_of(const Scheme& scheme, const analytical::MassRow& row, double dt) 
   scene.materials[0].density = density;
   scene.joints[0].normal_stiffness = scene.joints[0].shear_stiffness = row.stiffness;
   set_scheme(scene, scheme);
-  use_joint_springs_as_penalty(scene, data);
-  scene.method.penalty_shear_ratio = 1.0;
+  use_joint_springs_as_penalty(scene);
   scene.step.dt = dt;
   double x = 0.0;
   for (std::size_t i = 0; i < row.masses.size(); ++i) {

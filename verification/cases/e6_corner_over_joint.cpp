@@ -17,8 +17,7 @@ constexpr double duration = 0.5;  // [s]
 /// Angles from the plane, uphill: of the joint below it and of the block's front above.
 Scene block_over_joint(const analytical::BlockOnPlane& data, double joint_angle, double front_angle) {
   Scene scene = empty_scene(data);
-  const double a = data.slope_angle;
-  const auto place = [&](double s, double h) { return Vec2(s * std::cos(a) + h * std::sin(a), -s * std::sin(a) + h * std::cos(a)); };
+  const auto place = [&](double along, double above) { return on_slope(data.slope_angle, along, above); };
   const double joint_lean = 1.0 / std::tan(joint_angle), front_lean = data.height / std::tan(front_angle);
   scene.blocks = {fixed_block("base up", {place(-8.0, 0.0), place(-8.0, -1.0), place(-joint_lean, -1.0), place(0.0, 0.0)}),
                   fixed_block("base down", {place(0.0, 0.0), place(-joint_lean, -1.0), place(8.0, -1.0), place(8.0, 0.0)}),

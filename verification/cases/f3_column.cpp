@@ -29,7 +29,7 @@ Scene scene_of(const std::string& method, double theta, double dt) {
   scene.method.theta = theta;
   scene.step.dt = dt;
   scene.settle.unbalanced_fraction = 1e-12;
-  use_joint_springs_as_penalty(scene, level_block());
+  use_joint_springs_as_penalty(scene);
   return scene;
 }
 

@@ -36,7 +36,7 @@ double tips_at(const Report& report, analytical::BlockOnPlane data, int blocks, 
     scene.method.contact = method;
     scene.step.dt = 1e-3;
     scene.settle.failure_displacement = 0.1;
-    use_joint_springs_as_penalty(scene, data);
+    use_joint_springs_as_penalty(scene);
     return stands(report, scene);
   });
 }
