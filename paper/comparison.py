@@ -4,11 +4,11 @@ import csv
 from dataclasses import dataclass, field
 from pathlib import Path
 
-import incline
-import plane_failure
-from incline import Incline, Study
-from jointed_rock import JointedRock
-from plane_failure import PlaneFailure
+from openclose_scripts.examples import incline
+from openclose_scripts.examples import plane_failure
+from openclose_scripts.examples.incline import Incline, Study
+from openclose_scripts.examples.jointed_rock import JointedRock
+from openclose_scripts.examples.plane_failure import PlaneFailure
 
 METHODS = ("soft", "hard", "shi", "dem")
 COLUMNS = ("item", "quantity", "unit", "paper", "closed_form", *METHODS, *(f"deviation_{m}" for m in METHODS))

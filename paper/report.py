@@ -3,10 +3,10 @@
 from pathlib import Path
 
 import comparison
-import incline
 import tables
-from incline import Incline, Study
-from plane_failure import BRITTLE, METHODS, PlaneFailure, Point
+from openclose_scripts.examples import incline
+from openclose_scripts.examples.incline import Incline, Study
+from openclose_scripts.examples.plane_failure import BRITTLE, METHODS, PlaneFailure, Point
 
 _TEMPLATE = Path(__file__).parent / "report_template.md"
 _MM = 1e-3

@@ -3,10 +3,11 @@
 from pathlib import Path
 
 import claims
-import incline
 import tables
 from claims import Claims, Cost
 from comparison import Row
+from openclose_scripts.examples import incline
+from openclose_scripts.fits import exponent
 
 _TEMPLATE = Path(__file__).parent / "report_claims_template.md"
 
@@ -31,7 +32,7 @@ def _verdict(holds: bool, but: str = "") -> str:
 
 
 def _growth(costs: list[Cost]) -> float:
-    return claims.exponent([c.blocks for c in costs], [c.solves for c in costs])
+    return exponent([c.blocks for c in costs], [c.solves for c in costs])
 
 
 def _sizes(tested: Claims, printed: dict) -> dict[str, str]:
@@ -47,8 +48,8 @@ def _sizes(tested: Claims, printed: dict) -> dict[str, str]:
         "size_table": tables.markdown(("blocks", "free", "shi: solves", "shi: cuts", "shi: CPU [s]", "soft: solves", "soft: CPU [s]"), table),
         "size_exponent": _g(grows, 2),
         "size_exponent_soft": _g(soft_grows, 2),
-        "time_exponent": _g(claims.exponent([c.blocks for c in shi], [c.cpu for c in shi]), 2),
-        "time_exponent_soft": _g(claims.exponent([c.blocks for c in soft], [c.cpu for c in soft]), 2),
+        "time_exponent": _g(exponent([c.blocks for c in shi], [c.cpu for c in shi]), 2),
+        "time_exponent_soft": _g(exponent([c.blocks for c in soft], [c.cpu for c in soft]), 2),
         "size_ratio": f"{_g(min(ratios), 2)} to {_g(max(ratios), 2)}",
         "verdict_1": _verdict(grows > 0.1, f"with a condition: the iterations of `shi` grow as blocks^{_g(grows, 2)}, those of `soft` as "
                               f"blocks^{_g(soft_grows, 2)}, and {sharp}"),

@@ -1,11 +1,11 @@
 """The fields of report_template.md for examples 3.3 and 3.4. Every number comes from the runs, the references or printed.toml."""
 
 import comparison_slopes
-import slopes
 import tables
 from comparison import Row
 from comparison_slopes import MODEL_NAMES, PRINTED_OF_MODEL
-from slopes import BEHAVIOURS, METHODS, Fos, JointedSlope, PlanarSlope
+from openclose_scripts.examples import slopes
+from openclose_scripts.examples.slopes import BEHAVIOURS, METHODS, Fos, JointedSlope, PlanarSlope
 
 _PRINTED_NAMES = {"closed_form": "closed form", "dda_sc": "DDA-SC", "udec": "UDEC"}
 _PAPER_METHODS = ("dem", "soft", "shi")

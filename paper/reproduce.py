@@ -11,11 +11,12 @@ import claims
 import comparison
 import comparison_slopes
 import tables
-from incline import Incline
-from plane_failure import PlaneFailure
-from printed import read_printed
-from runs import Openclose, Reference, RunFailed
-from slopes import JointedSlope, PlanarSlope
+from openclose_scripts.examples.incline import Incline
+from openclose_scripts.examples.plane_failure import PlaneFailure
+from openclose_scripts.examples.slopes import JointedSlope, PlanarSlope
+from openclose_scripts.printed import read_printed
+from openclose_scripts.processes import RunFailed
+from openclose_scripts.runs import Openclose, Reference
 
 EXIT_RUN_FAILED = 1
 EXIT_CANNOT_START = 2

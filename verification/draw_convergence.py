@@ -6,9 +6,8 @@ import math
 import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "paper"))
-import drawing  # noqa: E402
-from drawing import plt  # noqa: E402
+from openclose_scripts import drawing
+from openclose_scripts.drawing import plt
 
 LINES = ("-", "--", ":", "-.")
 

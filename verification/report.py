@@ -9,13 +9,11 @@ Draws and arranges only; every number comes from those files.
 import argparse
 import csv
 import math
-import sys
 from collections import defaultdict
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "paper"))
-from drawing import METHOD_COLOUR, METHOD_MARKER, plt, save  # noqa: E402  (the path comes first)
-from matplotlib.ticker import LogFormatterSciNotation, MaxNLocator, NullFormatter  # noqa: E402
+from matplotlib.ticker import LogFormatterSciNotation, MaxNLocator, NullFormatter
+from openclose_scripts.drawing import METHOD_COLOUR, METHOD_MARKER, plt, save
 
 METHODS = ["soft", "hard", "shi", "dem"]
 LAST_VALUE = "last value: "
