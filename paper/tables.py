@@ -3,6 +3,7 @@
 from collections.abc import Iterable
 
 import comparison
+from openclose_scripts.formats import significant
 
 _HEADINGS = ("quantity", "unit", "paper", "reference", *comparison.METHODS, *(f"dev. {m}" for m in comparison.METHODS))
 _LEFT_ALIGNED = 2
@@ -20,7 +21,7 @@ def number(text: str, digits: int = 6) -> str:
         value = float(text)
     except ValueError:
         return text
-    return f"{value:.{digits}g}" if value == 0 or abs(value) >= 1e-3 else f"{value:.{min(digits, 3) - 1}e}"
+    return significant(value, digits) if value == 0 or abs(value) >= 1e-3 else f"{value:.{min(digits, 3) - 1}e}"
 
 
 def _line(cells: Iterable[str], widths: list[int]) -> str:
