@@ -23,6 +23,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from openclose_scripts import ROOT
+from openclose_scripts.markdown import markdown_table
 from openclose_scripts.processes import DONE, NOT_CONVERGED, call, run_process, was_stopped
 
 SCENE = ROOT / "paper/scenes/example_3_4_post_failure.toml"
@@ -146,9 +147,8 @@ def write(results: Path, columns: list[str], rows: list[list[str]]) -> None:
     results.mkdir(parents=True, exist_ok=True)
     with open(results / "ablation.csv", "w", newline="") as stream:
         csv.writer(stream, lineterminator="\n").writerows([["without", *columns], *rows])
-    lines = ["Cost without over cost with; in brackets the iterations, where they differ; ~ where the answer does.", "",
-             "| " + " | ".join(["without", *columns]) + " |", "|---" * (len(columns) + 1) + "|", *("| " + " | ".join(row) + " |" for row in rows)]
-    (results / "ablation.md").write_text("\n".join(lines) + "\n")
+    note = "Cost without over cost with; in brackets the iterations, where they differ; ~ where the answer does."
+    (results / "ablation.md").write_text(f"{note}\n\n{markdown_table(['without', *columns], rows)}\n")
 
 
 def main() -> None:

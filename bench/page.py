@@ -13,12 +13,12 @@ import table_4
 import targets
 from measure import Bench, Row
 from openclose_scripts.formats import significant
+from openclose_scripts.markdown import markdown_table
 from winner import ERRORS, LARGEST_ERROR, judge
 
 
 def _table(head: list[str], lines: list[list[str]]) -> str:
-    rule = ["---"] * len(head)
-    return "\n".join("| " + " | ".join(line) + " |" for line in [head, rule, *lines]) + "\n"
+    return markdown_table(head, lines) + "\n"
 
 
 def _spread(row: Row) -> str:

@@ -8,6 +8,7 @@ from openclose_scripts.examples import incline
 from openclose_scripts.examples.incline import Incline, Study
 from openclose_scripts.examples.plane_failure import BRITTLE, METHODS, PlaneFailure, Point
 from openclose_scripts.formats import significant
+from openclose_scripts.markdown import number_table
 
 _TEMPLATE = Path(__file__).parent / "report_template.md"
 _MM = 1e-3
@@ -59,7 +60,7 @@ def _steady_table(slider: Incline) -> str:
     def cells(dt: float) -> list[str]:
         return [f"{max(slider.largest_steady_error(m, a, dt) for a in incline.ANGLES_DEG):.1e}" for m in incline.METHODS]
 
-    return tables.markdown(("dt [s]", *incline.METHODS), ([f"{dt:g}", *cells(dt)] for dt in incline.STEADY_STEPS_S))
+    return number_table(("dt [s]", *incline.METHODS), ([f"{dt:g}", *cells(dt)] for dt in incline.STEADY_STEPS_S))
 
 
 def _residual(slider: Incline, displacement: dict[float, float], time: float) -> float:
@@ -103,7 +104,7 @@ def _start_table(slider: Incline, start: str) -> str:
     lines = [(phi, time) for time in incline.TIMES_S]
     lines += [(angle, slider.inputs.end_time) for angle in incline.ANGLES_DEG if angle != phi]
     headings = ("phi, time", "reference ODE", "soft", "hard", "shi, joint's springs", "shi, own penalty")
-    return tables.markdown(headings, ([f"{angle} deg, {time:g} s", *_start_cells(slider, start, angle, time)] for angle, time in lines))
+    return number_table(headings, ([f"{angle} deg, {time:g} s", *_start_cells(slider, start, angle, time)] for angle, time in lines))
 
 
 def _start_cells(slider: Incline, start: str, angle: int, time: float) -> list[str]:
@@ -120,7 +121,7 @@ def _convergence_fields(slider: Incline) -> dict[str, str]:
         "ratio_1": str(incline.REFINEMENT),
         "ratio_2": str(incline.REFINEMENT**2),
         "rounding_floor": significant(incline.ROUNDING_FLOOR_M, 4),
-        "convergence_table": tables.markdown(headings, (_study_cells(slider, study) for study in incline.STUDIES)),
+        "convergence_table": number_table(headings, (_study_cells(slider, study) for study in incline.STUDIES)),
     }
 
 
@@ -136,7 +137,7 @@ def _study_cells(slider: Incline, study: Study) -> list[str]:
 def _table_1(rows: list[comparison.Row]) -> str:
     inputs = (row for row in rows if row.item == "Table 1")
     lines = ((f"{r.quantity} [{r.unit}]", significant(r.paper, 6), significant(r.ours["soft"], 6)) for r in inputs)
-    return tables.markdown(("input", "paper", "ours"), lines)
+    return number_table(("input", "paper", "ours"), lines)
 
 
 def _plane_failure_fields(wedge: PlaneFailure, printed: dict) -> dict[str, str]:
@@ -171,7 +172,7 @@ def _safety_table(wedge: PlaneFailure, printed: dict) -> str:
     for behaviour in BRITTLE:
         value = wedge.brittle_factor_of_safety(behaviour)
         rows.append((f"soft, cohesion {behaviour}", f"{value:.5f}", against(value)))
-    return tables.markdown(("", "factor of safety", "against the closed form"), rows)
+    return number_table(("", "factor of safety", "against the closed form"), rows)
 
 
 def _curve_fields(wedge: PlaneFailure, printed: dict) -> dict[str, str]:

@@ -3,12 +3,12 @@
 from pathlib import Path
 
 import claims
-import tables
 from claims import Claims, Cost
 from comparison import Row
 from openclose_scripts.examples import incline
 from openclose_scripts.fits import exponent
 from openclose_scripts.formats import significant
+from openclose_scripts.markdown import number_table
 
 _TEMPLATE = Path(__file__).parent / "report_claims_template.md"
 
@@ -43,7 +43,7 @@ def _sizes(tested: Claims, printed: dict) -> dict[str, str]:
     sharp = (f"the rise {'is' if above > below else 'is not'} steeper above {bound} blocks (^{significant(below, 2)} up to {largest_below}, "
              f"^{significant(above, 2)} beyond)")
     return {
-        "size_table": tables.markdown(("blocks", "free", "shi: solves", "shi: cuts", "shi: CPU [s]", "soft: solves", "soft: CPU [s]"), table),
+        "size_table": number_table(("blocks", "free", "shi: solves", "shi: cuts", "shi: CPU [s]", "soft: solves", "soft: CPU [s]"), table),
         "size_exponent": significant(grows, 2),
         "size_exponent_soft": significant(soft_grows, 2),
         "time_exponent": significant(exponent([c.blocks for c in shi], [c.cpu for c in shi]), 2),
@@ -78,8 +78,8 @@ def _tolerances(tested: Claims) -> dict[str, str]:
                       f"{100 * closing[v].force_error:+.2f} %"] for v in closing)
     small = bool(stuck) and bool(fine) and max(stuck) < min(fine)
     return {
-        "penetration_table": tables.markdown(("tolerance [m]", "3.4: part of the time reached", "3.4: solves per step", "3.1 finished"), table),
-        "closing_table": tables.markdown(("tolerance [m]", "3.4: part of the time reached", "3.4: solves per step", "3.1: displacement",
+        "penetration_table": number_table(("tolerance [m]", "3.4: part of the time reached", "3.4: solves per step", "3.1 finished"), table),
+        "closing_table": number_table(("tolerance [m]", "3.4: part of the time reached", "3.4: solves per step", "3.1: displacement",
                                           "3.1: normal forces"), closing_table),
         "coarse_blocks": str(slope[depths[-1]].blocks),
         "deepest": significant(slope[depths[-1]].penetration),
@@ -117,9 +117,9 @@ def _penalties(tested: Claims) -> dict[str, str]:
     off = [p for p in slides if abs(slides[p].displacement_error) > 0.01]
     dearer = costs[high].solves / costs[low].solves
     return {
-        "penalty_table": tables.markdown(("penalty [Pa/m]", "condition, all stick", "condition, one unknown free", "reached", "solves per step",
+        "penalty_table": number_table(("penalty [Pa/m]", "condition, all stick", "condition, one unknown free", "reached", "solves per step",
                                           "CPU per step [ms]", "penetration [mm]"), table),
-        "penalty_result_table": tables.markdown(("penalty [Pa/m]", "3.1: error of the displacement"), result),
+        "penalty_result_table": number_table(("penalty [Pa/m]", "3.1: error of the displacement"), result),
         "condition_limit": significant(spectra[high].condition, 4),
         "condition_free": significant(spectra[high].detached, 2),
         "dearer": significant(dearer, 2),
@@ -153,7 +153,7 @@ def _hard_contact(tested: Claims) -> dict[str, str]:
     but += "; `hard`, which does forbid penetration, is exact from both, so that it is not hard contact that deviates" if exact else ""
     table = ([f"{incline.STARTS[s]} {s}", *(f"{found[s][m]:.2g} %" for m in methods)] for s in found)
     return {
-        "hard_contact_table": tables.markdown(("start", "soft", "shi, own penalty", "shi, joint's springs", "hard"), table),
+        "hard_contact_table": number_table(("start", "soft", "shi, own penalty", "shi, joint's springs", "hard"), table),
         "verdict_4": _verdict(bool(more), but),
     }
 
@@ -169,7 +169,7 @@ def _multipliers(tested: Claims) -> dict[str, str]:
     but = f"`hard` takes {significant(min(ratio), 2)} to {significant(max(ratio), 2)} times the solves of `soft`, more in {len(more)} of {len(both)} examples"
     but += f"; {', '.join(lost)}: it does not get to the end" if lost else ""
     return {
-        "multiplier_table": tables.markdown(("example", *claims.METHODS), table),
+        "multiplier_table": number_table(("example", *claims.METHODS), table),
         "verdict_5": _verdict(bool(more), ("with a condition: " if len(more) < len(both) else "") + but),
     }
 
@@ -187,7 +187,7 @@ def _explicit(tested: Claims, printed: dict) -> dict[str, str]:
     table = ([s, *(f"{1e3 * v:.3f}" for v in (e.exact, e.bound, e.two_body, claims.UDEC_FRACTION * e.two_body)), significant(e.smallest_area, 4)]
              for s, e in found.items())
     return {
-        "explicit_table": tables.markdown(("scene", "2/w_max [ms]", "bound of dem [ms]", "two-body [ms]", "a tenth of it [ms]", "smallest block [m2]"),
+        "explicit_table": number_table(("scene", "2/w_max [ms]", "bound of dem [ms]", "two-body [ms]", "a tenth of it [ms]", "smallest block [m2]"),
                                           table),
         "printed_2": f"{1e3 * two:g}",
         "printed_3": f"{1e3 * three:g}",

@@ -1,12 +1,12 @@
 """The fields of report_template.md for examples 3.3 and 3.4. Every number comes from the runs, the references or printed.toml."""
 
 import comparison_slopes
-import tables
 from comparison import Row
 from comparison_slopes import MODEL_NAMES, PRINTED_OF_MODEL
 from openclose_scripts.examples import slopes
 from openclose_scripts.examples.slopes import BEHAVIOURS, METHODS, Fos, JointedSlope, PlanarSlope
 from openclose_scripts.formats import significant
+from openclose_scripts.markdown import number_table
 
 _PRINTED_NAMES = {"closed_form": "closed form", "dda_sc": "DDA-SC", "udec": "UDEC"}
 _PAPER_METHODS = ("dem", "soft", "shi")
@@ -24,7 +24,7 @@ def fields(planar: PlanarSlope, jointed: JointedSlope, rows: list[Row], printed:
 
 def _inputs(item: str, rows: list[Row]) -> str:
     lines = ((f"{r.quantity} [{r.unit}]", significant(r.paper, 6), significant(r.ours["soft"], 6)) for r in rows if r.item == item)
-    return tables.markdown(("input", "paper", "ours"), lines)
+    return number_table(("input", "paper", "ours"), lines)
 
 
 def _fos_cell(fos: Fos, digits: int = 4) -> str:
@@ -44,7 +44,7 @@ def _planar_fields(planar: PlanarSlope, printed: dict) -> dict[str, str]:
                       *(_fos_cell(planar.factor_of_safety(model, m)) for m in METHODS)))
     other_weight = printed["plane_failure"]["unit_weight_n_per_m3"]["value"]
     return {
-        "planar_table": tables.markdown(("model", "blocks", "explains the paper's", "closed form", "limit analysis", *METHODS), lines),
+        "planar_table": number_table(("model", "blocks", "explains the paper's", "closed form", "limit analysis", *METHODS), lines),
         "planar_blocks": str(paper["blocks"]["value"]),
         "planar_printed": significant(paper["factor_of_safety_closed_form"]["value"], 5),
         "planar_closed": f"{planar.closed_form():.5f}",
@@ -66,7 +66,7 @@ def _jointed_fields(jointed: JointedSlope, printed: dict) -> dict[str, str]:
     warned = {m: w for m in METHODS for b in BEHAVIOURS if (w := jointed.factor_of_safety(m, b).warning)}
     tight, ours = jointed.tight_factor_of_safety(), jointed.factor_of_safety("soft", "ductile")
     return {
-        "jointed_table": tables.markdown(("cohesion", "limit analysis", *METHODS), lines),
+        "jointed_table": number_table(("cohesion", "limit analysis", *METHODS), lines),
         "jointed_notes": "\n".join(f"(1) {method}: {warning}." for method, warning in warned.items()),
         "jointed_blocks": str(len(jointed.cut.blocks)),
         "jointed_unknowns": str(jointed.unknowns),
@@ -103,7 +103,7 @@ def _rules(jointed: JointedSlope, printed: dict) -> str:
     paper = printed["table_4"]
     lines = [(f"{method}: {meanings[reading]}", _bracket_cell(jointed.paper_factor_of_safety(method, reading)),
               f"{paper[method]['name']} {paper[method]['factor_of_safety']:g}") for method, reading in slopes.PAPER_RULES]
-    return tables.markdown(("rule", "ours: stable, failed", "paper"), lines)
+    return number_table(("rule", "ours: stable, failed", "paper"), lines)
 
 
 def _bracket_cell(fos: Fos) -> str:
@@ -175,7 +175,7 @@ def _table_4(jointed: JointedSlope, paper: dict) -> str:
         if any(jointed.reason(f, start) for f in slopes.FOLLOWERS):
             lines.append(line(f"why not all, {name}", lambda f, s=start: jointed.reason(f, s), lambda p: ""))
     headings = ("", *(run.name for run in slopes.FOLLOWERS.values()), *(f"paper: {paper[m]['name']}" for m in _PAPER_METHODS))
-    return tables.markdown(headings, lines)
+    return number_table(headings, lines)
 
 
 def _paper_steady(jointed: JointedSlope, follower: str) -> str:
@@ -230,7 +230,7 @@ def _ratios(jointed: JointedSlope, paper: dict) -> str:
             lines.append([f"after failure, at {common:g} m, {name}", *(f"{ours[f]:.3g}" if f in ours else "-" for f in slopes.FOLLOWERS), "", "", ""])
     names = (run.name for run in slopes.FOLLOWERS.values())
     headings = ("CPU time over dem's, over UDEC's", *names, *(f"paper: {paper[m]['name']}" for m in _PAPER_METHODS))
-    return tables.markdown(headings, lines)
+    return number_table(headings, lines)
 
 
 def _energy(jointed: JointedSlope) -> str:
@@ -243,4 +243,4 @@ def _energy(jointed: JointedSlope) -> str:
                 continue
             lines.append([f"{run.name}, {start}", f"{summary['time_s']:.3g} s", f"{summary['energy_ledger']['turnover_j']:.3g}",
                           f"{comparison_slopes.imbalance(summary):.1e}", f"{summary['max_penetration_m'] * 1e3:.3g}"])
-    return tables.markdown(("run", "motion lasted", "energy turned over [J]", "imbalance over it [-]", "deepest penetration [mm]"), lines)
+    return number_table(("run", "motion lasted", "energy turned over [J]", "imbalance over it [-]", "deepest penetration [mm]"), lines)

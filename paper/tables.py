@@ -1,9 +1,10 @@
-"""Tables as text: the comparison on a terminal, and Markdown."""
+"""The comparison as a table of text on a terminal, and in Markdown."""
 
 from collections.abc import Iterable
 
 import comparison
 from openclose_scripts.formats import significant
+from openclose_scripts.markdown import number_table
 
 _HEADINGS = ("quantity", "unit", "paper", "reference", *comparison.METHODS, *(f"dev. {m}" for m in comparison.METHODS))
 _LEFT_ALIGNED = 2
@@ -50,13 +51,5 @@ def comparison_text(rows: list[dict[str, str]]) -> str:
     return "\n".join(lines)
 
 
-def markdown(headings: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
-    """A table whose first column is text and whose others are right-aligned."""
-    headings = list(headings)
-    lines = ["| " + " | ".join(headings) + " |", "|---|" + "---:|" * (len(headings) - 1)]
-    lines += ["| " + " | ".join(cells) + " |" for cells in rows]
-    return "\n".join(lines)
-
-
 def comparison_markdown(rows: list[dict[str, str]]) -> str:
-    return markdown(("item", *_HEADINGS), ([row["item"], *_short(row)] for row in rows))
+    return number_table(("item", *_HEADINGS), ([row["item"], *_short(row)] for row in rows))

@@ -14,6 +14,7 @@ from pathlib import Path
 
 from matplotlib.ticker import LogFormatterSciNotation, MaxNLocator, NullFormatter
 from openclose_scripts.drawing import METHOD_COLOUR, METHOD_MARKER, plt, save
+from openclose_scripts.markdown import markdown_table
 
 METHODS = ["soft", "hard", "shi", "dem"]
 LAST_VALUE = "last value: "
@@ -200,11 +201,11 @@ def cell(row: Row, series: Series) -> str:
     return text if row.status == "pass" else f"**FAIL** {text}"
 
 
-def table(rows: list[Row], series: Series, head: str, expected) -> list[str]:
+def table(rows: list[Row], series: Series, head: tuple[str, str], expected) -> list[str]:
     """One line a quantity, a column for each method that occurs."""
     methods = [m for m in METHODS if any(r.method == m for r in rows)]
     methods += [m for m in dict.fromkeys(r.method for r in rows) if m not in METHODS]
-    lines = [f"| {head} | " + " | ".join(methods) + " | from |", "|---|---|" + "---|" * (len(methods) + 1)]
+    lines = []
     groups = defaultdict(list)
     for r in rows:
         groups[r.key()].append(r)
@@ -218,9 +219,9 @@ def table(rows: list[Row], series: Series, head: str, expected) -> list[str]:
                     mine[m] = of_method[turn]
             first = next(iter(mine.values()))
             source = first.source.split(" (")[0] if series.of(first) else first.source
-            cells = " | ".join(cell(mine[m], series) if m in mine else "" for m in methods)
-            lines.append(f"| {escaped(first.quantity)} | {expected(first)} | {cells} | {escaped(source)} |")
-    return lines + [""]
+            cells = (cell(mine[m], series) if m in mine else "" for m in methods)
+            lines.append([escaped(first.quantity), expected(first), *cells, escaped(source)])
+    return [markdown_table([*head, *methods, "from"], lines), ""]
 
 
 def counts(rows: list[Row]) -> str:
@@ -240,11 +241,11 @@ def case_section(name: str, title: str, rows: list[Row], series: Series, folder:
         lines += [f"![{name}: convergence](verification/{name.lower()}_convergence.png)", ""]
     if orders:
         lines += ["Observed order (ratio of the errors of one refinement to the next):", ""]
-        lines += table(orders, series, "quantity | order, from theory", lambda r: f"{r.expected - r.tolerance:.3g} to {r.expected + r.tolerance:.3g}")
+        lines += table(orders, series, ("quantity", "order, from theory"), lambda r: f"{r.expected - r.tolerance:.3g} to {r.expected + r.tolerance:.3g}")
     if values:
         draw_values(values, folder / f"{name.lower()}_values.png")
         lines += [f"![{name}: values](verification/{name.lower()}_values.png)", "", "Measured (error; relative or absolute as its tolerance):", ""]
-        lines += table(values, series, "quantity | expected, allowed", lambda r: f"{in_unit(r)}, {r.tolerance:.1e}")
+        lines += table(values, series, ("quantity", "expected, allowed"), lambda r: f"{in_unit(r)}, {r.tolerance:.1e}")
     if last:
         lines += [f"Last values: {sum(r.status == 'pass' for r in last)} of {len(last)} unchanged."]
         changed = [r for r in last if r.status != "pass"]
@@ -278,8 +279,7 @@ def page(rows: list[Row], titles: dict, series: Series, folder: Path) -> str:
     unreached = [r for r in rows if r.status == "fail" or (r.left_out and r.source.startswith(FAILS))]
     lines = [INTRODUCTION, f"In all: {counts(rows)}.", "", "## Goals not reached", ""]
     lines += [f"- {r.case}, {r.quantity}, `{r.method}`: {how_far(r)}" for r in unreached] or ["None."]
-    lines += ["", "## Cases", "", "| case | what | rows |", "|---|---|---|"]
-    lines += [f"| {c} | {titles.get(c, '')} | {counts(by_case[c])} |" for c in cases] + [""]
+    lines += ["", "## Cases", "", markdown_table(("case", "what", "rows"), ([c, titles.get(c, ""), counts(by_case[c])] for c in cases)), ""]
     for c in cases:
         lines += case_section(c, titles.get(c, ""), by_case[c], series, folder)
     return "\n".join(lines)
