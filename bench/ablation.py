@@ -23,6 +23,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from openclose_scripts import ROOT
+from openclose_scripts.csv_rows import read_rows
 from openclose_scripts.markdown import markdown_table
 from openclose_scripts.processes import DONE, NOT_CONVERGED, call, run_process, was_stopped
 
@@ -98,8 +99,7 @@ def measure(program: Path, run: Run, more: tuple[str, ...]) -> Outcome:
     if run.command == "fos":
         answer = json.dumps(summary.get("factor_of_safety"))
         return Outcome(min(costs), answer, iterations, answer in ("null", "{}"))
-    with open(output / "history.csv", newline="") as stream:
-        last = list(csv.DictReader(stream))[-1]
+    last = read_rows(output / "history.csv")[-1]
     return Outcome(min(costs), f"{float(last['displacement_x_m']):.8g} {float(last['displacement_y_m']):.8g}", iterations, not summary["converged"])
 
 

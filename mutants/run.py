@@ -31,6 +31,7 @@ except ImportError:
     sys.exit("mutants: Python 3.11 or later is needed, which reads TOML")
 
 from openclose_scripts import ROOT
+from openclose_scripts.csv_rows import read_rows
 from openclose_scripts.markdown import markdown_table
 
 FAULTS = Path(__file__).resolve().parent / "faults.toml"
@@ -232,8 +233,7 @@ def earlier_rows(path, faults):
     """What an earlier run has found for faults that are still the same."""
     if not path.is_file():
         return {}
-    with open(path, newline="") as stream:
-        rows = [row for row in csv.DictReader(stream) if list(row) == COLUMNS]
+    rows = [row for row in read_rows(path) if list(row) == COLUMNS]
     known = [described(fault) for fault in faults]
     return {row["id"]: row for row in rows if {key: row[key] for key in ("id", "folder", "file", "description")} in known}
 

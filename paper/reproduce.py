@@ -11,6 +11,7 @@ import claims
 import comparison
 import comparison_slopes
 import tables
+from openclose_scripts.csv_rows import read_rows
 from openclose_scripts.examples.incline import Incline
 from openclose_scripts.examples.plane_failure import PlaneFailure
 from openclose_scripts.examples.slopes import JointedSlope, PlanarSlope
@@ -33,7 +34,7 @@ def parse_arguments() -> argparse.Namespace:
 
 
 def print_comparison(results: Path) -> None:
-    print(tables.comparison_text(comparison.read_csv(results / "comparison.csv")))
+    print(tables.comparison_text(read_rows(results / "comparison.csv")))
     print(f"\n{tables.NOTE}")
     print(f"Figures, tables and text: {results / 'report.md'}; all digits: {results / 'comparison.csv'}")
 

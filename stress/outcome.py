@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
+from openclose_scripts.csv_rows import read_rows
 from openclose_scripts.processes import DONE, run_process, was_stopped
 
 # Settings of each way to solve a scene; those that only motion knows have no factor of safety of their own.
@@ -43,10 +44,7 @@ class Outcome:
 
     def table(self, file: str) -> list[dict[str, str]]:
         path = self.folder / file
-        if not path.exists():
-            return []
-        with open(path, newline="", encoding="utf-8") as stream:
-            return list(csv.DictReader(stream))
+        return read_rows(path) if path.exists() else []
 
     def not_a_number(self) -> str:
         """The first place where a table or the summary has a number that is none; empty if there is no such place."""

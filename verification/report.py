@@ -7,12 +7,12 @@ Draws and arranges only; every number comes from those files.
 """
 
 import argparse
-import csv
 import math
 from collections import defaultdict
 from pathlib import Path
 
 from matplotlib.ticker import LogFormatterSciNotation, MaxNLocator, NullFormatter
+from openclose_scripts.csv_rows import read_rows
 from openclose_scripts.drawing import METHOD_COLOUR, METHOD_MARKER, plt, save
 from openclose_scripts.markdown import markdown_table
 
@@ -21,11 +21,6 @@ LAST_VALUE = "last value: "
 FAILS = "fails: "
 COLUMNS = 3  # panels beside each other
 OPEN = {"linestyle": "none", "fillstyle": "none"}  # so that points in one place are all seen
-
-
-def read(file: Path) -> list[dict]:
-    with file.open(newline="") as lines:
-        return list(csv.DictReader(lines))
 
 
 def number(text: str) -> float:
@@ -289,15 +284,15 @@ def main() -> None:
     parser = argparse.ArgumentParser(description="Makes verification.md and its pictures from the files of openclose-verify.")
     parser.add_argument("--results", type=Path, default=Path("results"), help="folder of verify.csv, and of the page")
     results = parser.parse_args().results
-    rows = [Row(line) for line in read(results / "verify.csv")]
+    rows = [Row(line) for line in read_rows(results / "verify.csv")]
     titles = defaultdict(list)
-    for line in read(results / "verify_cases.csv"):
+    for line in read_rows(results / "verify_cases.csv"):
         titles[line["case"]].append(line["title"])
     folder = results / "verification"
     folder.mkdir(exist_ok=True)
     for old in folder.glob("*.png"):
         old.unlink()
-    series = Series(read(results / "verify_series.csv"))
+    series = Series(read_rows(results / "verify_series.csv"))
     text = page(rows, {case: "; ".join(t) for case, t in titles.items()}, series, folder)
     (results / "verification.md").write_text(text, encoding="utf-8")
 

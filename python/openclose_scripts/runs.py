@@ -8,6 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
+from openclose_scripts.csv_rows import read_rows
 from openclose_scripts.processes import DONE, NOT_CONVERGED, RunFailed, call, run_process, was_stopped
 
 PARALLEL_PROCESSES = 2
@@ -66,8 +67,7 @@ class Openclose:
         """Rows of a CSV file that the case has written; none if it was stopped before."""
         if case.cpu_limit_s is not None and self.summary(case).get("stopped"):
             return []
-        with open(self.folder_of(case) / file, newline="", encoding="utf-8") as stream:
-            return list(csv.DictReader(stream))
+        return read_rows(self.folder_of(case) / file)
 
     def summary(self, case: Case) -> dict:
         return json.loads((self.folder_of(case) / "summary.json").read_text(encoding="utf-8"))

@@ -14,6 +14,7 @@ import math
 import pathlib
 import tempfile
 
+from openclose_scripts.csv_rows import read_rows
 from openclose_scripts.processes import run_process
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -96,7 +97,7 @@ def main():
     with open(results / "blind.csv", "w", newline="") as file:
         table = csv.writer(file)
         table.writerow(["scene", "load", "printed", "rounding", "variant", "found", "difference_percent"])
-        for case in csv.DictReader(open(HERE / "cases.csv")):
+        for case in read_rows(HERE / "cases.csv"):
             if options.scenes and case["scene"] not in options.scenes:
                 continue
             scene = HERE / f"{case['scene']}.toml"
