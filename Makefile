@@ -111,6 +111,6 @@ $(REFERENCE): $(BUILD_FILES) $(shell find analytical -type f) | figure-packages 
 	@scripts/build release openclose_reference
 
 # The script prints the comparison, so `reproduce` need not do it again.
-$(COMPARISON): $(OPENCLOSE) $(REFERENCE) $(shell find paper -type f -not -name '*.pyc')
+$(COMPARISON): $(OPENCLOSE) $(REFERENCE) $(shell find paper python -type f -not -name '*.pyc')
 	$(eval comparison_printed := yes)
 	@python=$$(scripts/find-python) && "$$python" paper/reproduce.py --openclose $(OPENCLOSE) --reference $(REFERENCE) --results $(PAPER_RESULTS)

@@ -16,18 +16,16 @@ import csv
 import json
 import os
 import re
-import resource
 import shutil
-import signal
-import subprocess
 import sys
 import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(ROOT / "stress"))
-import slopes  # noqa: E402
+from openclose_scripts import ROOT
+from openclose_scripts.csv_rows import read_rows
+from openclose_scripts.markdown import markdown_table
+from openclose_scripts.processes import DONE, NOT_CONVERGED, call, run_process, was_stopped
 
 SCENE = ROOT / "paper/scenes/example_3_4_post_failure.toml"
 COPIED = ("CMakeLists.txt", "CMakePresets.json", "analytical", "cmake", "mutants", "paper", "scripts", "src", "tests", "verification")
@@ -49,9 +47,6 @@ class Run:
     repeats: int = REPEATS
     limit_s: int = LIMIT_S
 
-    def limits(self) -> tuple[int, int]:
-        return self.limit_s, self.limit_s + 1
-
 
 def _of_34(blocks: str, factor: float, contact: str, end_s: float, counted: bool) -> Run:
     """The joint spacings of the paper times a factor; steps of 10 ms after settling."""
@@ -60,13 +55,12 @@ def _of_34(blocks: str, factor: float, contact: str, end_s: float, counted: bool
     return Run(f"{blocks} {contact}", "run", SCENE, settings, counted)
 
 
-def runs(slope_count: int, seed: int) -> list[Run]:
+def runs(slope_count: int, seed: int, program: Path) -> list[Run]:
     found = [_of_34("387", 1, "soft", 4.0, True), _of_34("387", 1, "hard", 1.0, True), _of_34("1.8k", 0.48, "soft", 0.1, True),
              _of_34("9.7k", 0.206, "soft", 0.1, False)]
     for s in range(seed, seed + slope_count):
-        scene = slopes.draw(s)
-        file = FOLDER / "scenes" / f"{scene.name}.toml"
-        scene.write(file)
+        # Drawn where random scenes are at home.
+        file = Path(call([sys.executable, str(ROOT / "stress/stress.py"), "--part", "slopes", "--keep", str(s), "--openclose", str(program), "--results", str(FOLDER)]).strip())
         found += [Run(f"slope {s} {contact}", "fos", file, (f"method.contact={contact}", "strength_reduction.definition=large_displacements"), False, 1,
                       SLOPE_LIMIT_S) for contact in SLOPE_METHODS]
     return found
@@ -92,21 +86,20 @@ def measure(program: Path, run: Run, more: tuple[str, ...]) -> Outcome:
         shutil.rmtree(output, ignore_errors=True)
         before = os.times()
         # Of CPU time: what else the machine does must not look like a failure.
-        done = subprocess.run(arguments, capture_output=True, text=True, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, run.limits()))
+        done = run_process(arguments, run.limit_s)
         after = os.times()
         counted = re.search(r"I +refs: +([\d,]+)", done.stderr)
         costs.append(float(counted[1].replace(",", "")) if counted else after.children_user - before.children_user)
-        if done.returncode == -signal.SIGXCPU:
+        if was_stopped(done):
             return Outcome(run.limit_s, TIME_LIMIT, 0, True)
-        if done.returncode not in (0, 1) or not (output / "summary.json").is_file():
+        if done.returncode not in (DONE, NOT_CONVERGED) or not (output / "summary.json").is_file():
             return Outcome(min(costs), f"exit {done.returncode}", 0, True)
     summary = json.loads((output / "summary.json").read_text())
     iterations = summary.get("counters", {}).get("iterations", 0)
     if run.command == "fos":
         answer = json.dumps(summary.get("factor_of_safety"))
         return Outcome(min(costs), answer, iterations, answer in ("null", "{}"))
-    with open(output / "history.csv", newline="") as stream:
-        last = list(csv.DictReader(stream))[-1]
+    last = read_rows(output / "history.csv")[-1]
     return Outcome(min(costs), f"{float(last['displacement_x_m']):.8g} {float(last['displacement_y_m']):.8g}", iterations, not summary["converged"])
 
 
@@ -134,8 +127,8 @@ def build(mechanism: dict) -> Path:
             target.parent.mkdir(parents=True, exist_ok=True)
             target.write_bytes(content)
             shutil.copymode(path, target)
-    done = subprocess.run(["scripts/build", "release", "openclose"], cwd=tree, capture_output=True, text=True)
-    if done.returncode != 0:
+    done = run_process(["scripts/build", "release", "openclose"], folder=tree)
+    if done.returncode != DONE:
         sys.exit(f"ablation: {mechanism['name']}: {done.stdout[-3000:]}{done.stderr[-1000:]}")
     program.parent.mkdir(parents=True, exist_ok=True)
     shutil.copy2(tree / "build/release/openclose", program)
@@ -154,9 +147,8 @@ def write(results: Path, columns: list[str], rows: list[list[str]]) -> None:
     results.mkdir(parents=True, exist_ok=True)
     with open(results / "ablation.csv", "w", newline="") as stream:
         csv.writer(stream, lineterminator="\n").writerows([["without", *columns], *rows])
-    lines = ["Cost without over cost with; in brackets the iterations, where they differ; ~ where the answer does.", "",
-             "| " + " | ".join(["without", *columns]) + " |", "|---" * (len(columns) + 1) + "|", *("| " + " | ".join(row) + " |" for row in rows)]
-    (results / "ablation.md").write_text("\n".join(lines) + "\n")
+    note = "Cost without over cost with; in brackets the iterations, where they differ; ~ where the answer does."
+    (results / "ablation.md").write_text(f"{note}\n\n{markdown_table(['without', *columns], rows)}\n")
 
 
 def main() -> None:
@@ -170,9 +162,9 @@ def main() -> None:
     with open(Path(__file__).resolve().parent / "ablation.toml", "rb") as stream:
         mechanisms = tomllib.load(stream)["mechanism"]
     chosen = [m for m in mechanisms if not given.name or any(n in m["name"] for n in given.name)]
-    wanted = [r for r in runs(given.slopes, given.seed) if given.only in r.name]
     shutil.rmtree(FOLDER / "bin", ignore_errors=True)
     plain = build({"name": "nothing"})
+    wanted = [r for r in runs(given.slopes, given.seed, plain) if given.only in r.name]
     reference = [measure(plain, run, ()) for run in wanted]
     # All random slopes of a method are one column: their costs added up.
     columns = [r.name for r in wanted if not r.name.startswith("slope")]

@@ -4,25 +4,24 @@ Exit status: 0 done, 1 a run failed, 2 wrong options or no matplotlib.
 """
 
 import argparse
-import subprocess
 import sys
 import time
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parent.parent / "paper"))
-
-import failure  # noqa: E402  (the path comes first)
-import machine  # noqa: E402
-import micro  # noqa: E402
-import motion  # noqa: E402
-import peers  # noqa: E402
-import scaling  # noqa: E402
-import skips  # noqa: E402
-import statics  # noqa: E402
-import table_4  # noqa: E402
-from measure import MODES, Bench, write_csv  # noqa: E402
-from printed import read_printed  # noqa: E402
-from runs import Openclose, Reference, RunFailed  # noqa: E402
+import failure
+import machine
+import micro
+import motion
+import peers
+import scaling
+import skips
+import statics
+import table_4
+from measure import MODES, Bench, write_csv
+from openclose_scripts import ROOT
+from openclose_scripts.printed import read_printed
+from openclose_scripts.processes import RunFailed, run_process
+from openclose_scripts.runs import Openclose, Reference
 
 EXIT_RUN_FAILED = 1
 EXIT_CANNOT_START = 2
@@ -43,8 +42,7 @@ def parse_arguments() -> argparse.Namespace:
 
 
 def commit() -> str:
-    done = subprocess.run(["git", "describe", "--always", "--dirty"], capture_output=True, text=True, check=False, cwd=Path(__file__).parent)
-    return done.stdout.strip()
+    return run_process(["git", "describe", "--always", "--dirty"], folder=ROOT).stdout.strip()
 
 
 def run_studies(arguments: argparse.Namespace, bench: Bench, reference: Reference) -> dict:

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from measure import Bench, Trial
 from methods import (ADAPTIVE, ADAPTIVE_AHEAD_WIDE, AHEAD, AHEAD_WIDE, DEM, DEM_COARSE_REST, DEM_WIDE, HARD, LONG, SHI, SOFT_PATH_AVERAGE,
                      SOFT_SHI, Method, Settings)
-from runs import Case
+from openclose_scripts.runs import Case
 from scaling import spacings
-from slopes import JointedSlope
+from openclose_scripts.examples.slopes import JointedSlope
 
 STUDY, SCENE = "failure", "3.4 in failure"
 # The same with blocks at rest left alone.

@@ -11,8 +11,8 @@ import scaling
 import skips
 import statics
 import table_4
-from drawing import METHOD_COLOUR, METHOD_MARKER, save
 from measure import Bench, Row
+from openclose_scripts.drawing import METHOD_COLOUR, METHOD_MARKER, save
 from winner import LARGEST_ERROR
 
 SMALLEST_ERROR = 1e-9  # smaller ones, rounding, are drawn there

@@ -4,8 +4,9 @@ import json
 import os
 import platform
 import re
-import subprocess
 from pathlib import Path
+
+from openclose_scripts.processes import run_process
 
 
 def _processor() -> str:
@@ -44,7 +45,7 @@ def _compiler(build: Path) -> str:
 def describe(executable: Path, commit: str, mode: str) -> dict:
     build = executable.parent
     return {
-        "version": subprocess.run([str(executable), "--version"], capture_output=True, text=True, check=False).stdout.strip(),
+        "version": run_process([str(executable), "--version"]).stdout.strip(),
         "commit": commit,
         "mode": mode,
         "processor": _processor(),

@@ -7,7 +7,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, fields
 from pathlib import Path
 
-from runs import Case, Openclose, RunFailed
+from openclose_scripts.processes import RunFailed
+from openclose_scripts.runs import Case, Openclose
 
 MODES = ("quick", "full", "long")
 CPU_LIMIT_S = 120

@@ -4,7 +4,7 @@ import json
 from dataclasses import dataclass
 from pathlib import Path
 
-from runs import call
+from openclose_scripts.processes import call
 
 SHORT_S, QUICK_S = 0.3, 0.05  # of each measurement
 REPEATS, QUICK_REPEATS = 5, 3

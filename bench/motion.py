@@ -5,10 +5,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-import incline
 from measure import CPU_LIMIT_S, Bench, Trial
 from methods import ADAPTIVE, DEM, HARD, INTEGRATORS, Method, Settings, on_joint_springs
-from runs import Case, Reference
+from openclose_scripts.examples import incline
+from openclose_scripts.runs import Case, Reference
 
 STUDY = "motion"
 _SCENES = Path(__file__).parent / "scenes"

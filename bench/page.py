@@ -12,16 +12,13 @@ import statics
 import table_4
 import targets
 from measure import Bench, Row
+from openclose_scripts.formats import significant
+from openclose_scripts.markdown import markdown_table
 from winner import ERRORS, LARGEST_ERROR, judge
 
 
-def number(value: float | None, digits: int = 3) -> str:
-    return "-" if value is None else f"{value:.{digits}g}"
-
-
 def _table(head: list[str], lines: list[list[str]]) -> str:
-    rule = ["---"] * len(head)
-    return "\n".join("| " + " | ".join(line) + " |" for line in [head, rule, *lines]) + "\n"
+    return markdown_table(head, lines) + "\n"
 
 
 def _spread(row: Row) -> str:
@@ -37,13 +34,13 @@ def _winners(bench: Bench, study: str) -> str:
         for error in ERRORS:
             verdict = judge(bench.of(study, scene), error)
             if verdict.winner is None:
-                lines.append([scene, number(error), "nobody", "", "", "", ""])
+                lines.append([scene, significant(error), "nobody", "", "", "", ""])
                 continue
             w = verdict.winner
-            others = ", ".join(f"{name} {number(ratio)}{' (spreads overlap)' if name in verdict.tied else ''}" for name, ratio in
+            others = ", ".join(f"{name} {significant(ratio)}{' (spreads overlap)' if name in verdict.tied else ''}" for name, ratio in
                                sorted(verdict.ratios.items(), key=lambda item: item[1]))
-            lines.append([scene, number(error), f"**{w.method}**", number(w.dt_s), f"{number(1e3 * w.cpu_s)} ({_spread(w)})", number(w.error),
-                          others])
+            lines.append([scene, significant(error), f"**{w.method}**", significant(w.dt_s), f"{significant(1e3 * w.cpu_s)} ({_spread(w)})",
+                          significant(w.error), others])
     return _table(["scene", "error at most", "winner", "dt [s]", "CPU [ms]", "its error", "the others, over the winner"], lines)
 
 
@@ -56,7 +53,7 @@ def _integrators(bench: Bench) -> str:
             winners = [judge(rows, error).winner for error in ERRORS]
             lines.append([scene, *(w.method.removeprefix("soft ") if w else "nobody" for w in winners)])
     return ("The quickest way of `soft` to an error; the default is `shi`.\n\n"
-            + _table(["scene", *(f"error at most {number(error)}" for error in ERRORS)], lines))
+            + _table(["scene", *(f"error at most {significant(error)}" for error in ERRORS)], lines))
 
 
 def _failed(bench: Bench, study: str) -> str:
@@ -86,12 +83,12 @@ def _comparison(bench: Bench, study: str) -> str:
 def _all_runs(bench: Bench, study: str) -> str:
     head = ["scene", "method", "dt [s]", "steps", "iterations", "CPU [ms]", "spread", "error", "deepest [m]"]
     return "\n" + _rows(bench.of(study), head, lambda r: [
-        r.scene, r.method, number(r.dt_s), str(r.steps), number(r.iterations), number(1e3 * r.cpu_s), _spread(r), number(r.error),
-        number(r.max_penetration_m)])
+        r.scene, r.method, significant(r.dt_s), str(r.steps), significant(r.iterations), significant(1e3 * r.cpu_s), _spread(r), significant(r.error),
+        significant(r.max_penetration_m)])
 
 
 def _per(whole: int | None, parts: int) -> str:
-    return "-" if whole is None else number(whole / parts)
+    return "-" if whole is None else significant(whole / parts)
 
 
 def _sizes(bench: Bench) -> str:
@@ -102,10 +99,10 @@ def _sizes(bench: Bench) -> str:
             lines.append([r.method, r.scene, "", "", r.reason, "", "", "", "", ""])
             continue
         m = moved.get((r.scene, r.method))
-        lines.append([r.method, f"{r.blocks:,}", f"{r.contacts:,}", str(r.steps), number(r.cpu_s), number(1e3 * m.cpu_s / m.steps) if m else "-",
-                      number(1e3 * m.cpu_s / m.iterations) if m and m.iterations else "-", number(r.peak_memory_bytes / r.blocks),
+        lines.append([r.method, f"{r.blocks:,}", f"{r.contacts:,}", str(r.steps), significant(r.cpu_s), significant(1e3 * m.cpu_s / m.steps) if m else "-",
+                      significant(1e3 * m.cpu_s / m.iterations) if m and m.iterations else "-", significant(r.peak_memory_bytes / r.blocks),
                       _per(scaling.memory_without_factor(bench, r), r.blocks), str(scaling.krylov_iterations(bench, r) or "-")])
-    fits = [[f.method, f.what, number(f.value), str(f.sizes)] for f in scaling.fits(bench)]
+    fits = [[f.method, f.what, significant(f.value), str(f.sizes)] for f in scaling.fits(bench)]
     return (_table(["method", "blocks", "closed contacts", "steps of settling", "settling [s]", "a step of motion [ms]", "an iteration [ms]",
                     "memory [bytes a block]", "without the factor", "Krylov iterations, settling"], lines)
             + f"\nExponents of the number of blocks, from {scaling.FIT_RANGE[0]:,} to {scaling.FIT_RANGE[1]:,}:\n\n"
@@ -121,21 +118,21 @@ def _skips(bench: Bench) -> str:
             if r.reason or on is None or not on.cpu_s:
                 lines.append([scene, r.method, r.reason, "", "", ""])
             else:
-                lines.append([scene, r.method, number(r.cpu_s), number(r.cpu_s / on.cpu_s), _spread(r), number(r.error)])
+                lines.append([scene, r.method, significant(r.cpu_s), significant(r.cpu_s / on.cpu_s), _spread(r), significant(r.error)])
     return _table(["scene", "skips", "CPU [s]", "over all on", "spread", "toe block elsewhere by"], lines)
 
 
 def _stages(bench: Bench) -> str:
     found = skips.stages(bench)
     names = list(next(iter(found.values()), {}))
-    lines = [[m, *(f"{number(times[n])} s, {100 * times[n] / sum(times.values()):.0f} %" for n in names)] for m, times in found.items()]
+    lines = [[m, *(f"{significant(times[n])} s, {100 * times[n] / sum(times.values()):.0f} %" for n in names)] for m, times in found.items()]
     return _table(["method", *names], lines)
 
 
 def _table_4(bench: Bench, printed: dict) -> str:
     found = table_4.rows(bench, printed)
     names = list(found[0][1])
-    lines = [[what, *(f"{number(ours[n])} / {number(paper.get(n))}" for n in names)] for what, ours, paper in found]
+    lines = [[what, *(f"{significant(ours[n])} / {significant(paper.get(n))}" for n in names)] for what, ours, paper in found]
     return ("Time over that of `soft` with the paper's step of 1 ms, here / in the paper's Table 4 (minutes of its machine; dem: its UDEC):\n\n"
             + _table(["", *names], lines) + _failed(bench, table_4.STUDY))
 
@@ -151,7 +148,7 @@ def _failure(bench: Bench, findings: failure.Findings | None) -> str:
                         for blocks, converged in findings.large_converged.items())
         text += _table(["method", "step [s]; dem: part of the critical; adaptive: tolerance [m]",
                         "10 m [s]", "20 m", "30 m", "40 m", "half the spread of the starts"],
-                       [[m, number(v), *(f"{t:.4f}" for t in a.times), f"{100 * a.spread:.2g} %"] for (m, v), a in findings.arrivals.items()]) + "\n"
+                       [[m, significant(v), *(f"{t:.4f}" for t in a.times), f"{100 * a.spread:.2g} %"] for (m, v), a in findings.arrivals.items()]) + "\n"
     return text + _comparison(bench, failure.STUDY)
 
 
@@ -162,9 +159,9 @@ def _peers(findings: peers.Findings) -> str:
             f"{f', {volume:.2f} at constant volume' if volume else ''}; the engines are asked by bisection to {peers.WIDTH_DEG:g} degrees whether "
             f"any block moves {peers.STANDS_M:g} m, ours by strength reduction. Penetration is what each program's own contacts tell. `dem` counts "
             "its own steps.\n\n")
-    lines = [[c.name, number(c.row.dt_s), f"{number(1e3 * c.step)} ({_spread(c.row)})" if c.step else "-", number(c.per_second),
-              number(1e6 * c.iteration) if c.iteration else "-", number(c.critical_deg, 4),
-              "-" if c.row.error is None else f"{100 * c.row.error:.2g} %", number(c.row.max_penetration_m), c.row.reason] for c in findings.compared]
+    lines = [[c.name, significant(c.row.dt_s), f"{significant(1e3 * c.step)} ({_spread(c.row)})" if c.step else "-", significant(c.per_second),
+              significant(1e6 * c.iteration) if c.iteration else "-", significant(c.critical_deg, 4),
+              "-" if c.row.error is None else f"{100 * c.row.error:.2g} %", significant(c.row.max_penetration_m), c.row.reason] for c in findings.compared]
     head = ["", "dt [s]", "a step [ms]", "a simulated second [s]", "a Newton iteration [us]", "critical angle [degrees]", "its error (tan)",
             "deepest penetration [m]", "reason"]
     return (text + _table(head, lines) + "\n" + "\n".join(f"- {c.name}: {c.settings}" for c in findings.compared if c.settings) + "\n")
@@ -178,7 +175,7 @@ def _micro(timed: list[micro.Timed]) -> str:
     def cell(t: micro.Timed | None) -> str:
         if t is None:
             return "-"
-        return f"{number(1e6 * t.cpu)} ({100 * t.variation:.0f} %)" + (f", {t.iterations} iterations" if t.iterations else "")
+        return f"{significant(1e6 * t.cpu)} ({100 * t.variation:.0f} %)" + (f", {t.iterations} iterations" if t.iterations else "")
 
     return ("Microseconds of CPU time, median of repeats in random order (standard deviation); the slope of example 3.4 half a second into failure. "
             "`residual` is the forces of all contacts and blocks at a position, `assembly` the contacts' derivatives into the matrix, `factor` and "

@@ -8,8 +8,9 @@ from pathlib import Path
 
 from measure import Bench, Row, Trial
 from methods import DEM, HARD, SOFT_PATH_AVERAGE, SOFT_SHI, Method
-from runs import Case, Reference, call
-from slopes import CutBlocks, JointedSlope
+from openclose_scripts.examples.slopes import CutBlocks, JointedSlope
+from openclose_scripts.processes import call
+from openclose_scripts.runs import Case, Reference
 
 STUDY = "other engines"
 SCENE = "3.4 without cohesion, in failure"

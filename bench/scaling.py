@@ -2,11 +2,11 @@
 
 from dataclasses import dataclass
 
-from claims import FACE_SPACING_M, HORIZONTAL_SPACING_M, exponent
 from measure import Bench, Row, Trial
 from methods import DEM, HARD, SHI, SOFT, Method, Settings
-from runs import Case
-from slopes import JointedSlope
+from openclose_scripts.examples.slopes import FACE_SPACING_M, HORIZONTAL_SPACING_M, JointedSlope
+from openclose_scripts.fits import exponent
+from openclose_scripts.runs import Case
 from statics import settling
 
 SETTLING, MOTION = "settling by size", "motion by size"

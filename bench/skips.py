@@ -2,8 +2,8 @@
 
 from measure import Bench, Trial
 from methods import DEM, HARD, SHI, SOFT, Method
-from runs import Case
-from slopes import JointedSlope
+from openclose_scripts.examples.slopes import JointedSlope
+from openclose_scripts.runs import Case
 
 STUDY = "skips"
 END_S, LIMIT_S = 4.0, 100

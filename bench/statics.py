@@ -6,11 +6,11 @@ from pathlib import Path
 
 from measure import CPU_LIMIT_S, Bench, Trial
 from methods import DEM, HARD, SHI, SOFT, Method, Settings
-from runs import Case, Reference, outlines
-from slopes import SHI_SETTLE_STEPS, PlanarSlope
+from openclose_scripts import PAPER_SCENES
+from openclose_scripts.examples.slopes import SHI_SETTLE_STEPS, PlanarSlope
+from openclose_scripts.runs import Case, Reference, outlines
 
 EQUILIBRIUM, REDUCTION = "equilibrium", "strength reduction"
-PAPER_SCENES = Path(__file__).parent.parent / "paper" / "scenes"
 SCENES = {"3.3": PAPER_SCENES / "example_3_3_wedge.toml", "3.4": PAPER_SCENES / "example_3_4.toml"}
 METHODS = (SOFT, HARD, SHI, DEM)
 

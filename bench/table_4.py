@@ -2,8 +2,8 @@
 
 from measure import Bench, Trial
 from methods import DEM, SHI, SOFT, Method
-from runs import Case
-from slopes import JointedSlope
+from openclose_scripts.examples.slopes import JointedSlope
+from openclose_scripts.runs import Case
 
 STUDY = "Table 4"
 PAPER_STEP_S = 0.001

@@ -1,14 +1,10 @@
 """python3 -m unittest discover -s bench"""
 
 import math
-import sys
 import unittest
-from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parent.parent / "paper"))
-
-from measure import Row  # noqa: E402  (the path comes first)
-from winner import fastest, judge, may_win  # noqa: E402
+from measure import Row
+from winner import fastest, judge, may_win
 
 
 def row(method: str, cpu: float | None, error: float | None, reason: str = "") -> Row:

@@ -30,7 +30,10 @@ try:
 except ImportError:
     sys.exit("mutants: Python 3.11 or later is needed, which reads TOML")
 
-ROOT = Path(__file__).resolve().parent.parent
+from openclose_scripts import ROOT
+from openclose_scripts.csv_rows import read_rows
+from openclose_scripts.markdown import markdown_table
+
 FAULTS = Path(__file__).resolve().parent / "faults.toml"
 COPIED = ["CMakeLists.txt", "CMakePresets.json", "analytical", "cmake", "docs", "mutants", "paper", "scripts", "src", "tests", "verification"]
 COLUMNS = ["id", "folder", "file", "description", "caught_by", "kind", "seconds"]
@@ -230,8 +233,7 @@ def earlier_rows(path, faults):
     """What an earlier run has found for faults that are still the same."""
     if not path.is_file():
         return {}
-    with open(path, newline="") as stream:
-        rows = [row for row in csv.DictReader(stream) if list(row) == COLUMNS]
+    rows = [row for row in read_rows(path) if list(row) == COLUMNS]
     known = [described(fault) for fault in faults]
     return {row["id"]: row for row in rows if {key: row[key] for key in ("id", "folder", "file", "description")} in known}
 
@@ -249,21 +251,20 @@ def write_page(path, rows, notes):
     lines = ["# Planted faults", "",
              f"{len(rows)} faults of one line each, {sum(float(row['seconds']) for row in rows) / 60.0:.0f} minutes of builds and checks: "
              f"{len(rows) - len(not_caught)} caught "
-             f"({', '.join(f'{count} by {kind}' for kind, count in by_kind.items() if kind in CAUGHT)}), {len(not_caught)} not.", "",
-             "| folder | faults | caught | by the folder's own tests |", "|---|---|---|---|"]
+             f"({', '.join(f'{count} by {kind}' for kind, count in by_kind.items() if kind in CAUGHT)}), {len(not_caught)} not.", ""]
+    by_folder = []
     for folder in folders():
         own = [row for row in rows if row["folder"] == folder]
         caught = [row for row in own if row["kind"] in CAUGHT]
         near = [row for row in caught if row["caught_by"].startswith(f"tests/{folder}:")]
         if own:
-            lines.append(f"| {folder} | {len(own)} | {len(caught)} | {len(near)} |")
-    lines += ["", "## Not caught", ""]
+            by_folder.append([folder, len(own), len(caught), len(near)])
+    lines += [markdown_table(("folder", "faults", "caught", "by the folder's own tests"), by_folder), "", "## Not caught", ""]
     lines += [f"- {row['id']} ({row['file']}): {row['description']}; {row['kind']}" + (f", {row['caught_by']}" if row["caught_by"] else "")
               + (f". {notes[row['id']]}" if row["id"] in notes else "")
               for row in not_caught] or ["None."]
-    lines += ["", "## Caught", "", "| fault | file | what it does | first check that is red |", "|---|---|---|---|"]
-    lines += [f"| {row['id']} | {row['file']} | {row['description'].replace('|', '/')} | {row['caught_by'].replace('|', '/')} |"
-              for row in rows if row["kind"] in CAUGHT]
+    found = ([row["id"], row["file"], row["description"].replace("|", "/"), row["caught_by"].replace("|", "/")] for row in rows if row["kind"] in CAUGHT)
+    lines += ["", "## Caught", "", markdown_table(("fault", "file", "what it does", "first check that is red"), found)]
     path.write_text("\n".join(lines) + "\n")
 
 

@@ -3,20 +3,19 @@
 import math
 import tomllib
 from dataclasses import dataclass
-from pathlib import Path
 
-import incline
-from incline import Incline
-from runs import Case, Openclose, outlines
+from openclose_scripts import PAPER_SCENES
+from openclose_scripts.examples import incline
+from openclose_scripts.examples.incline import Incline
+from openclose_scripts.examples.slopes import FACE_SPACING_M, HORIZONTAL_SPACING_M
+from openclose_scripts.runs import Case, Openclose, outlines
 
-_SCENES = Path(__file__).parent / "scenes"
-SLOPE = _SCENES / "example_3_4.toml"
-WEDGE = _SCENES / "example_3_2.toml"
+SLOPE = PAPER_SCENES / "example_3_4.toml"
+WEDGE = PAPER_SCENES / "example_3_2.toml"
 EXPLICIT_SCENES = ("example_3_3_shifted", "example_3_3_toe", "example_3_3_wedge", "example_3_4")
 METHODS = ("soft", "hard", "shi")
 
 # Example 3.4 with its joints (40 m and 10 m) closer or wider by a factor; gravity drops on unloaded springs, where most contacts change.
-HORIZONTAL_SPACING_M, FACE_SPACING_M = 40.0, 10.0
 FACTORS = (3.0, 2.1, 1.4, 1.0, 0.7, 0.46)
 HARD_FACTORS = (3.0, 2.1, 1.4, 1.0)
 HARD_LIMIT_S = 4
@@ -79,13 +78,6 @@ class Explicit:
     bound: float           # [s] what `dem` takes for it
     smallest_area: float   # [m2] of the free blocks
     two_body: float        # [s] 2 sqrt(m/(2 kn 1 m2)) of the smallest free block
-
-
-def exponent(x: list[float], y: list[float]) -> float:
-    """Of the power law through the points, by least squares of the logarithms."""
-    lx, ly = [math.log(v) for v in x], [math.log(v) for v in y]
-    mx, my = sum(lx) / len(lx), sum(ly) / len(ly)
-    return sum((a - mx) * (b - my) for a, b in zip(lx, ly)) / sum((a - mx) ** 2 for a in lx)
 
 
 def _area(vertices: list[tuple[float, float]]) -> float:
@@ -220,10 +212,10 @@ class Claims:
         return Case(f"claims-spectrum-penalty{value:g}", "check", SLOPE, settings)
 
     def _explicit_spectrum(self, scene: str) -> Case:
-        return Case(f"claims-spectrum-{scene}", "check", _SCENES / f"{scene}.toml", (("method.contact", "dem"), ("step.dt_s", DT_S)))
+        return Case(f"claims-spectrum-{scene}", "check", PAPER_SCENES / f"{scene}.toml", (("method.contact", "dem"), ("step.dt_s", DT_S)))
 
     def _explicit_run(self, scene: str) -> Case:
-        return Case(f"claims-dem-{scene}", "run", _SCENES / f"{scene}.toml", (("method.contact", "dem"), *_common(2 * DT_S)))
+        return Case(f"claims-dem-{scene}", "run", PAPER_SCENES / f"{scene}.toml", (("method.contact", "dem"), *_common(2 * DT_S)))
 
     def _per_step(self, case: Case, end: float) -> float:
         return self._openclose.summary(case)["counters"]["iterations"] / (end / DT_S)
@@ -256,6 +248,6 @@ class Claims:
 
 
 def _slope_inputs(scene: str) -> dict[str, float]:
-    data = tomllib.loads((_SCENES / f"{scene}.toml").read_text(encoding="utf-8"))
+    data = tomllib.loads((PAPER_SCENES / f"{scene}.toml").read_text(encoding="utf-8"))
     density = data["material"][0]["unit_weight_n_per_m3"] / math.hypot(*data["gravity_m_per_s2"])
     return {"density": density, "stiffness": data["joint"][0]["normal_stiffness_pa_per_m"]}

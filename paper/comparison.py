@@ -4,11 +4,11 @@ import csv
 from dataclasses import dataclass, field
 from pathlib import Path
 
-import incline
-import plane_failure
-from incline import Incline, Study
-from jointed_rock import JointedRock
-from plane_failure import PlaneFailure
+from openclose_scripts.examples import incline
+from openclose_scripts.examples import plane_failure
+from openclose_scripts.examples.incline import Incline, Study
+from openclose_scripts.examples.jointed_rock import JointedRock
+from openclose_scripts.examples.plane_failure import PlaneFailure
 
 METHODS = ("soft", "hard", "shi", "dem")
 COLUMNS = ("item", "quantity", "unit", "paper", "closed_form", *METHODS, *(f"deviation_{m}" for m in METHODS))
@@ -198,7 +198,7 @@ def _figure_6(wedge: PlaneFailure, printed: dict) -> list[Row]:
 
 
 def as_text(rows: list[Row]) -> list[dict[str, str]]:
-    """Rows as read_csv gives them, numbers with all digits."""
+    """Rows as read_rows gives them, numbers with all digits."""
     def text(cell: object) -> str:
         return "" if cell is None else repr(cell) if isinstance(cell, float) else str(cell)
 
@@ -210,8 +210,3 @@ def write_csv(rows: list[Row], file: Path) -> None:
         writer = csv.DictWriter(stream, COLUMNS, lineterminator="\n")
         writer.writeheader()
         writer.writerows(as_text(rows))
-
-
-def read_csv(file: Path) -> list[dict[str, str]]:
-    with open(file, newline="", encoding="utf-8") as stream:
-        return list(csv.DictReader(stream))

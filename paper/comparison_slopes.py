@@ -1,8 +1,8 @@
 """Rows of the comparison for examples 3.3 and 3.4: Tables 2 to 4 and the factors of safety."""
 
-import slopes
 from comparison import Row, Values, jointed_rock, relative, rock_inputs
-from slopes import BEHAVIOURS, METHODS, Fos, Inputs, JointedSlope, PlanarSlope
+from openclose_scripts.examples import slopes
+from openclose_scripts.examples.slopes import BEHAVIOURS, METHODS, Fos, Inputs, JointedSlope, PlanarSlope
 
 # Which printed number each model of example 3.3 explains.
 PRINTED_OF_MODEL = {"wedge": "closed_form", "toe": "dda_sc", "shifted": "udec"}

@@ -6,9 +6,9 @@ import figures_slopes
 from figures_geometry import figure_1, figure_2, figure_5
 from figures_incline import figure_3, figure_4
 from figures_plane_failure import figure_6
-from incline import Incline
-from plane_failure import PlaneFailure
-from slopes import JointedSlope, PlanarSlope
+from openclose_scripts.examples.incline import Incline
+from openclose_scripts.examples.plane_failure import PlaneFailure
+from openclose_scripts.examples.slopes import JointedSlope, PlanarSlope
 
 
 def draw_all(slider: Incline, wedge: PlaneFailure, planar: PlanarSlope, jointed: JointedSlope, printed: dict, folder: Path) -> None:

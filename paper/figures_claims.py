@@ -3,10 +3,10 @@
 from pathlib import Path
 
 import claims
-import drawing
-import incline
 from claims import Claims
-from drawing import METHOD_COLOUR, METHOD_MARKER, REFERENCE, plt
+from openclose_scripts import drawing
+from openclose_scripts.drawing import METHOD_COLOUR, METHOD_MARKER, REFERENCE, plt
+from openclose_scripts.examples import incline
 
 _ROUNDING = 1e-9  # [-] smaller errors are drawn here
 _LEAST_PERCENT = 1e-6

@@ -3,10 +3,10 @@
 import math
 from pathlib import Path
 
-import drawing
-from drawing import BLOCK, INK, JOINT, METHOD_COLOUR, ROCK, Point, label
-from incline import Incline
-from plane_failure import PlaneFailure
+from openclose_scripts import drawing
+from openclose_scripts.drawing import BLOCK, INK, JOINT, METHOD_COLOUR, ROCK, Point, label
+from openclose_scripts.examples.incline import Incline
+from openclose_scripts.examples.plane_failure import PlaneFailure
 
 
 def figure_1(file: Path) -> None:

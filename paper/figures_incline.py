@@ -2,10 +2,10 @@
 
 from pathlib import Path
 
-import drawing
-import incline
-from drawing import METHOD_COLOUR, METHOD_LABEL, METHOD_MARKER, REFERENCE, plt
-from incline import Incline
+from openclose_scripts import drawing
+from openclose_scripts.drawing import METHOD_COLOUR, METHOD_LABEL, METHOD_MARKER, REFERENCE, plt
+from openclose_scripts.examples import incline
+from openclose_scripts.examples.incline import Incline
 
 _ROUNDING = 1e-17  # errors that are exactly zero are drawn here
 

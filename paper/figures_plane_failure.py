@@ -4,9 +4,9 @@ from pathlib import Path
 
 from matplotlib.ticker import MultipleLocator
 
-import drawing
-from drawing import METHOD_COLOUR, REFERENCE, plt
-from plane_failure import METHODS, PlaneFailure
+from openclose_scripts import drawing
+from openclose_scripts.drawing import METHOD_COLOUR, REFERENCE, plt
+from openclose_scripts.examples.plane_failure import METHODS, PlaneFailure
 
 _MM = 1e-3
 _ZOOM = (1.808, 1.852)

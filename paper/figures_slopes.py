@@ -6,10 +6,10 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.collections import PolyCollection
 from matplotlib.colors import Normalize
 
-import drawing
-import slopes
-from drawing import INK, METHOD_COLOUR, METHOD_MARKER, ROCK, plt
-from slopes import JointedSlope, Milestone, PlanarSlope, Polygons
+from openclose_scripts import drawing
+from openclose_scripts.drawing import INK, METHOD_COLOUR, METHOD_MARKER, ROCK, plt
+from openclose_scripts.examples import slopes
+from openclose_scripts.examples.slopes import JointedSlope, Milestone, PlanarSlope, Polygons
 
 _EXAGGERATION = 10  # of the displacements in Fig. 7
 _MECHANISM_STATES = ("moved 10 m", "moved 5 m", "moved 2 m", "moved 1 m", "moved 0.5 m")  # of each method the first that it came to

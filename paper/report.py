@@ -3,10 +3,12 @@
 from pathlib import Path
 
 import comparison
-import incline
 import tables
-from incline import Incline, Study
-from plane_failure import BRITTLE, METHODS, PlaneFailure, Point
+from openclose_scripts.examples import incline
+from openclose_scripts.examples.incline import Incline, Study
+from openclose_scripts.examples.plane_failure import BRITTLE, METHODS, PlaneFailure, Point
+from openclose_scripts.formats import significant
+from openclose_scripts.markdown import number_table
 
 _TEMPLATE = Path(__file__).parent / "report_template.md"
 _MM = 1e-3
@@ -31,30 +33,26 @@ def write(slider: Incline, wedge: PlaneFailure, rows: list[comparison.Row], prin
     (folder / "report.md").write_text(_TEMPLATE.read_text(encoding="utf-8").format(**fields), encoding="utf-8")
 
 
-def _g(value: float, digits: int = 4) -> str:
-    return f"{value:.{digits}g}"
-
-
 def _mm(length: float, digits: int = 4) -> str:
-    return _g(length / _MM, digits)
+    return significant(length / _MM, digits)
 
 
 def _incline_fields(slider: Incline, printed: dict) -> dict[str, str]:
     i = slider.inputs
     return {
-        "density": _g(i.density),
-        "end": _g(i.end_time),
+        "density": significant(i.density, 4),
+        "end": significant(i.end_time, 4),
         "angles": ", ".join(str(a) for a in incline.ANGLES_DEG),
         "angle_count": str(len(incline.ANGLES_DEG)),
         "phi": str(incline.MAIN_ANGLE_DEG),
         "sticking_phi": str(incline.STICKING_ANGLE_DEG),
-        "earliest": _g(incline.EARLIEST_S),
-        "fig4_dt": _g(incline.FIG4_STEP_S),
+        "earliest": significant(incline.EARLIEST_S, 4),
+        "fig4_dt": significant(incline.FIG4_STEP_S, 4),
         "steady_table": _steady_table(slider),
         "shi_penetration_mm": _mm(slider.deepest_shi_penetration(), 3),
-        "claim_soft": _g(printed["largest_error_dda_sc_percent"]["value"]),
-        "claim_shi": _g(printed["largest_error_dda_shi_percent"]["value"]),
-        **{f"time_{k}": _g(time) for k, time in enumerate(incline.TIMES_S)},
+        "claim_soft": significant(printed["largest_error_dda_sc_percent"]["value"], 4),
+        "claim_shi": significant(printed["largest_error_dda_shi_percent"]["value"], 4),
+        **{f"time_{k}": significant(time, 4) for k, time in enumerate(incline.TIMES_S)},
     }
 
 
@@ -62,7 +60,7 @@ def _steady_table(slider: Incline) -> str:
     def cells(dt: float) -> list[str]:
         return [f"{max(slider.largest_steady_error(m, a, dt) for a in incline.ANGLES_DEG):.1e}" for m in incline.METHODS]
 
-    return tables.markdown(("dt [s]", *incline.METHODS), ([f"{dt:g}", *cells(dt)] for dt in incline.STEADY_STEPS_S))
+    return number_table(("dt [s]", *incline.METHODS), ([f"{dt:g}", *cells(dt)] for dt in incline.STEADY_STEPS_S))
 
 
 def _residual(slider: Incline, displacement: dict[float, float], time: float) -> float:
@@ -86,7 +84,7 @@ def _balanced_fields(slider: Incline, printed: dict) -> dict[str, str]:
         "rate_second": _mm((_residual(slider, ode, end) - _residual(slider, ode, middle)) / (end - middle)),
         "locked_mm": _mm(_residual(slider, locked, end)),
         "rocking_mm": _mm(_residual(slider, ode, end)),
-        "quarter_ratio": _g(quarter / joint, 3),
+        "quarter_ratio": significant(quarter / joint, 3),
         "angles_below": str(sum(_percent(slider, "soft", start, a, end) < claim for a in incline.ANGLES_DEG)),
         "balanced_table": _start_table(slider, start),
     }
@@ -95,8 +93,8 @@ def _balanced_fields(slider: Incline, printed: dict) -> dict[str, str]:
 def _unloaded_fields(slider: Incline) -> dict[str, str]:
     start, phi, first = "unloaded", incline.MAIN_ANGLE_DEG, incline.TIMES_S[0]
     return {
-        "unloaded_shi": _g(_percent(slider, "shi", start, phi, first), 3),
-        "unloaded_soft": _g(_percent(slider, "soft", start, phi, first), 2),
+        "unloaded_shi": significant(_percent(slider, "shi", start, phi, first), 3),
+        "unloaded_soft": significant(_percent(slider, "soft", start, phi, first), 2),
         "unloaded_table": _start_table(slider, start),
     }
 
@@ -106,7 +104,7 @@ def _start_table(slider: Incline, start: str) -> str:
     lines = [(phi, time) for time in incline.TIMES_S]
     lines += [(angle, slider.inputs.end_time) for angle in incline.ANGLES_DEG if angle != phi]
     headings = ("phi, time", "reference ODE", "soft", "hard", "shi, joint's springs", "shi, own penalty")
-    return tables.markdown(headings, ([f"{angle} deg, {time:g} s", *_start_cells(slider, start, angle, time)] for angle, time in lines))
+    return number_table(headings, ([f"{angle} deg, {time:g} s", *_start_cells(slider, start, angle, time)] for angle, time in lines))
 
 
 def _start_cells(slider: Incline, start: str, angle: int, time: float) -> list[str]:
@@ -118,12 +116,12 @@ def _start_cells(slider: Incline, start: str, angle: int, time: float) -> list[s
 def _convergence_fields(slider: Incline) -> dict[str, str]:
     headings = ("run", *(f"dt = {dt:.3g} s" for dt in incline.CONVERGENCE_STEPS_S), "order")
     return {
-        "convergence_end": _g(incline.CONVERGENCE_END_S),
+        "convergence_end": significant(incline.CONVERGENCE_END_S, 4),
         "refinement": str(incline.REFINEMENT),
         "ratio_1": str(incline.REFINEMENT),
         "ratio_2": str(incline.REFINEMENT**2),
-        "rounding_floor": _g(incline.ROUNDING_FLOOR_M),
-        "convergence_table": tables.markdown(headings, (_study_cells(slider, study) for study in incline.STUDIES)),
+        "rounding_floor": significant(incline.ROUNDING_FLOOR_M, 4),
+        "convergence_table": number_table(headings, (_study_cells(slider, study) for study in incline.STUDIES)),
     }
 
 
@@ -138,20 +136,21 @@ def _study_cells(slider: Incline, study: Study) -> list[str]:
 
 def _table_1(rows: list[comparison.Row]) -> str:
     inputs = (row for row in rows if row.item == "Table 1")
-    return tables.markdown(("input", "paper", "ours"), ((f"{r.quantity} [{r.unit}]", _g(r.paper, 6), _g(r.ours["soft"], 6)) for r in inputs))
+    lines = ((f"{r.quantity} [{r.unit}]", significant(r.paper, 6), significant(r.ours["soft"], 6)) for r in inputs)
+    return number_table(("input", "paper", "ours"), lines)
 
 
 def _plane_failure_fields(wedge: PlaneFailure, printed: dict) -> dict[str, str]:
     i, (stable, failed) = wedge.inputs, wedge.bracket("soft")
     return {
-        "paper_max_displacement": _g(printed["max_displacement_m"]["value"]),
-        "unbalanced_fraction": _g(i.unbalanced_fraction),
-        "failure_displacement": _g(i.failure_displacement),
+        "paper_max_displacement": significant(printed["max_displacement_m"]["value"], 4),
+        "unbalanced_fraction": significant(i.unbalanced_fraction, 4),
+        "failure_displacement": significant(i.failure_displacement, 4),
         "safety_table": _safety_table(wedge, printed),
         "inside": "inside" if stable <= wedge.closed_form <= failed else "outside",
-        "width": _g(failed - stable, 2),
-        "width_asked": _g(i.width),
-        "paper_fos": _g(printed["factor_of_safety_dda_sc"]["value"]),
+        "width": significant(failed - stable, 2),
+        "width_asked": significant(i.width, 4),
+        "paper_fos": significant(printed["factor_of_safety_dda_sc"]["value"], 4),
         "fos_opening": f"{wedge.brittle_factor_of_safety('lost_on_opening'):.5f}",
         "fos_slip": f"{wedge.brittle_factor_of_safety('lost_on_slip'):.5f}",
     }
@@ -173,7 +172,7 @@ def _safety_table(wedge: PlaneFailure, printed: dict) -> str:
     for behaviour in BRITTLE:
         value = wedge.brittle_factor_of_safety(behaviour)
         rows.append((f"soft, cohesion {behaviour}", f"{value:.5f}", against(value)))
-    return tables.markdown(("", "factor of safety", "against the closed form"), rows)
+    return number_table(("", "factor of safety", "against the closed form"), rows)
 
 
 def _curve_fields(wedge: PlaneFailure, printed: dict) -> dict[str, str]:
@@ -185,9 +184,9 @@ def _curve_fields(wedge: PlaneFailure, printed: dict) -> dict[str, str]:
 
     moved, dropped = wedge.moving_curve(), wedge.unsettled_curve()
     return {
-        "steps": _g(wedge.inputs.curve_time / wedge.inputs.dt),
-        "srf_paper": _g(nearest(moved, paper).srf),
-        "srf_analytical": _g(nearest(moved, analytical).srf),
+        "steps": significant(wedge.inputs.curve_time / wedge.inputs.dt, 4),
+        "srf_paper": significant(nearest(moved, paper).srf, 4),
+        "srf_analytical": significant(nearest(moved, analytical).srf, 4),
         "rest_mm": _mm(min(wedge.settled_curve(), key=lambda t: abs(t.srf - paper)).displacement, 2),
         "moved_mm": _mm(nearest(moved, paper).displacement, 2),
         "moved_late_mm": _mm(nearest(moved, analytical).displacement, 2),

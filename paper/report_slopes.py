@@ -1,11 +1,12 @@
 """The fields of report_template.md for examples 3.3 and 3.4. Every number comes from the runs, the references or printed.toml."""
 
 import comparison_slopes
-import slopes
-import tables
 from comparison import Row
 from comparison_slopes import MODEL_NAMES, PRINTED_OF_MODEL
-from slopes import BEHAVIOURS, METHODS, Fos, JointedSlope, PlanarSlope
+from openclose_scripts.examples import slopes
+from openclose_scripts.examples.slopes import BEHAVIOURS, METHODS, Fos, JointedSlope, PlanarSlope
+from openclose_scripts.formats import significant
+from openclose_scripts.markdown import number_table
 
 _PRINTED_NAMES = {"closed_form": "closed form", "dda_sc": "DDA-SC", "udec": "UDEC"}
 _PAPER_METHODS = ("dem", "soft", "shi")
@@ -21,13 +22,9 @@ def fields(planar: PlanarSlope, jointed: JointedSlope, rows: list[Row], printed:
     }
 
 
-def _g(value: float, digits: int = 4) -> str:
-    return f"{value:.{digits}g}"
-
-
 def _inputs(item: str, rows: list[Row]) -> str:
-    lines = ((f"{r.quantity} [{r.unit}]", _g(r.paper, 6), _g(r.ours["soft"], 6)) for r in rows if r.item == item)
-    return tables.markdown(("input", "paper", "ours"), lines)
+    lines = ((f"{r.quantity} [{r.unit}]", significant(r.paper, 6), significant(r.ours["soft"], 6)) for r in rows if r.item == item)
+    return number_table(("input", "paper", "ours"), lines)
 
 
 def _fos_cell(fos: Fos, digits: int = 4) -> str:
@@ -47,15 +44,15 @@ def _planar_fields(planar: PlanarSlope, printed: dict) -> dict[str, str]:
                       *(_fos_cell(planar.factor_of_safety(model, m)) for m in METHODS)))
     other_weight = printed["plane_failure"]["unit_weight_n_per_m3"]["value"]
     return {
-        "planar_table": tables.markdown(("model", "blocks", "explains the paper's", "closed form", "limit analysis", *METHODS), lines),
+        "planar_table": number_table(("model", "blocks", "explains the paper's", "closed form", "limit analysis", *METHODS), lines),
         "planar_blocks": str(paper["blocks"]["value"]),
-        "planar_printed": _g(paper["factor_of_safety_closed_form"]["value"], 5),
+        "planar_printed": significant(paper["factor_of_safety_closed_form"]["value"], 5),
         "planar_closed": f"{planar.closed_form():.5f}",
-        "planar_other_weight": _g(other_weight / 1e6),
-        "planar_weight": _g(planar.inputs.unit_weight / 1e6),
+        "planar_other_weight": significant(other_weight / 1e6, 4),
+        "planar_weight": significant(planar.inputs.unit_weight / 1e6, 4),
         "planar_closed_other": f"{planar.closed_form(other_weight):.4f}",
-        "planar_udec": _g(paper["factor_of_safety_udec"]["value"]),
-        "planar_dda_sc": _g(paper["factor_of_safety_dda_sc"]["value"]),
+        "planar_udec": significant(paper["factor_of_safety_udec"]["value"], 4),
+        "planar_dda_sc": significant(paper["factor_of_safety_dda_sc"]["value"], 4),
         "planar_toe_limit": f"{planar.cut['toe'].limit():.4f}",
         "planar_shifted_limit": f"{planar.cut['shifted'].limit():.4f}",
         "planar_toe_wall": f"{planar.back_wall('toe'):.0f}",
@@ -69,7 +66,7 @@ def _jointed_fields(jointed: JointedSlope, printed: dict) -> dict[str, str]:
     warned = {m: w for m in METHODS for b in BEHAVIOURS if (w := jointed.factor_of_safety(m, b).warning)}
     tight, ours = jointed.tight_factor_of_safety(), jointed.factor_of_safety("soft", "ductile")
     return {
-        "jointed_table": tables.markdown(("cohesion", "limit analysis", *METHODS), lines),
+        "jointed_table": number_table(("cohesion", "limit analysis", *METHODS), lines),
         "jointed_notes": "\n".join(f"(1) {method}: {warning}." for method, warning in warned.items()),
         "jointed_blocks": str(len(jointed.cut.blocks)),
         "jointed_unknowns": str(jointed.unknowns),
@@ -77,24 +74,24 @@ def _jointed_fields(jointed: JointedSlope, printed: dict) -> dict[str, str]:
         "opening_kept": _fos_cell(jointed.factor_of_safety("dem", "lost_on_opening"), 3),
         "opening_broken": _fos_cell(jointed.breaking_factor_of_safety(), 3),
         "shi_settle_steps": str(slopes.SHI_SETTLE_STEPS),
-        "jointed_dem": _g(paper["dem"]["factor_of_safety"]),
-        "jointed_soft": _g(paper["soft"]["factor_of_safety"]),
-        "jointed_shi": _g(paper["shi"]["factor_of_safety"]),
+        "jointed_dem": significant(paper["dem"]["factor_of_safety"], 4),
+        "jointed_soft": significant(paper["soft"]["factor_of_safety"], 4),
+        "jointed_shi": significant(paper["shi"]["factor_of_safety"], 4),
         "jointed_limit": f"{jointed.limit('ductile'):.3f}",
         "jointed_limit_frictional": f"{jointed.limit('lost_on_slip'):.3f}",
         "rules_table": _rules(jointed, printed),
         **{f"rules_steps_{m}": _steps_to_paper_steady(jointed, m) for m in slopes.RULE_METHODS},
-        "rules_length": _g(printed["jointed_slope"]["relative_max_displacement_m"]["value"] * 1e3),
-        "rules_velocity": _g(jointed.rules_velocity(), 2),
-        "rules_upper": _g(slopes.PAPER_RULES_UPPER_LIMIT),
-        "rules_width": _g(slopes.PAPER_RULES_WIDTH),
-        "rules_displacement": _g(printed["jointed_slope"]["relative_max_displacement_m"]["value"]),
-        "rules_force": _g(printed["jointed_slope"]["unbalanced_force_limit_n"]["value"] / 1e3),
-        "rules_steps": _g(printed["jointed_slope"]["unbalanced_force_steps"]["value"], 6),
-        "jointed_width": _g(jointed.inputs.width),
-        "jointed_failure": _g(jointed.inputs.failure_displacement),
-        "jointed_tight_width": _g(slopes.TIGHT_WIDTH),
-        "jointed_tight_failure": _g(slopes.TIGHT_FAILURE_DISPLACEMENT_M),
+        "rules_length": significant(printed["jointed_slope"]["relative_max_displacement_m"]["value"] * 1e3, 4),
+        "rules_velocity": significant(jointed.rules_velocity(), 2),
+        "rules_upper": significant(slopes.PAPER_RULES_UPPER_LIMIT, 4),
+        "rules_width": significant(slopes.PAPER_RULES_WIDTH, 4),
+        "rules_displacement": significant(printed["jointed_slope"]["relative_max_displacement_m"]["value"], 4),
+        "rules_force": significant(printed["jointed_slope"]["unbalanced_force_limit_n"]["value"] / 1e3, 4),
+        "rules_steps": significant(printed["jointed_slope"]["unbalanced_force_steps"]["value"], 6),
+        "jointed_width": significant(jointed.inputs.width, 4),
+        "jointed_failure": significant(jointed.inputs.failure_displacement, 4),
+        "jointed_tight_width": significant(slopes.TIGHT_WIDTH, 4),
+        "jointed_tight_failure": significant(slopes.TIGHT_FAILURE_DISPLACEMENT_M, 4),
         "jointed_tight": _fos_cell(tight),
         "jointed_short": _fos_cell(ours),
     }
@@ -106,7 +103,7 @@ def _rules(jointed: JointedSlope, printed: dict) -> str:
     paper = printed["table_4"]
     lines = [(f"{method}: {meanings[reading]}", _bracket_cell(jointed.paper_factor_of_safety(method, reading)),
               f"{paper[method]['name']} {paper[method]['factor_of_safety']:g}") for method, reading in slopes.PAPER_RULES]
-    return tables.markdown(("rule", "ours: stable, failed", "paper"), lines)
+    return number_table(("rule", "ours: stable, failed", "paper"), lines)
 
 
 def _bracket_cell(fos: Fos) -> str:
@@ -128,16 +125,16 @@ def _after_failure_fields(jointed: JointedSlope, printed: dict) -> dict[str, str
         "ratio_after_paper": _proportion([comparison_slopes.post_failure_ratio(paper, m) for m in _PAPER_METHODS]),
         "ratio_steady_ours": _proportion([steady.get(m) for m in _PAPER_METHODS]),
         "ratio_after_ours": _proportion([after.get(f) for f in ("dem", slopes.PAPER_STEP, "shi")]),
-        "ratio_after_soft": _g(after["soft"], 2) if "soft" in after else "more than all",
-        "after_soft_dt": _g(slopes.FOLLOWERS["soft"].dt),
-        "after_srf": _g(inputs.strength_reduction_factor),
-        "after_law": _g(law, 4),
-        "after_ratio": _g(inputs.strength_reduction_factor / law, 3),
-        "after_damping": _g(inputs.damping_ratio),
-        "after_steps": ", ".join(f"`{run.method}` {_g(run.dt)} s" for run in slopes.FOLLOWERS.values() if run.method != "dem"),
-        "after_critical": f"{_g(jointed.critical_step() * 1e3, 3)} ms" if jointed.critical_step() else "not reached",
-        "paper_dda_dt": _g(printed["jointed_slope"]["dt_s"]["value"]),
-        "paper_udec_dt": _g(printed["jointed_slope"]["udec_dt_s"]["value"]),
+        "ratio_after_soft": significant(after["soft"], 2) if "soft" in after else "more than all",
+        "after_soft_dt": significant(slopes.FOLLOWERS["soft"].dt, 4),
+        "after_srf": significant(inputs.strength_reduction_factor, 4),
+        "after_law": significant(law, 4),
+        "after_ratio": significant(inputs.strength_reduction_factor / law, 3),
+        "after_damping": significant(inputs.damping_ratio, 4),
+        "after_steps": ", ".join(f"`{run.method}` {significant(run.dt, 4)} s" for run in slopes.FOLLOWERS.values() if run.method != "dem"),
+        "after_critical": f"{significant(jointed.critical_step() * 1e3, 3)} ms" if jointed.critical_step() else "not reached",
+        "paper_dda_dt": significant(printed["jointed_slope"]["dt_s"]["value"], 4),
+        "paper_udec_dt": significant(printed["jointed_slope"]["udec_dt_s"]["value"], 4),
         "after_table": _table_4(jointed, paper),
         "after_ratios": _ratios(jointed, paper),
         "after_energy": _energy(jointed),
@@ -147,11 +144,11 @@ def _after_failure_fields(jointed: JointedSlope, printed: dict) -> dict[str, str
 
 
 def _proportion(values: list[float | None]) -> str:
-    return " : ".join("-" if v is None else _g(v, 3) for v in values)
+    return " : ".join("-" if v is None else significant(v, 3) for v in values)
 
 
 def _seconds(value: float | None, missing: str = "not reached") -> str:
-    return missing if value is None else f"{_g(value, 3)} s"
+    return missing if value is None else f"{significant(value, 3)} s"
 
 
 def _table_4(jointed: JointedSlope, paper: dict) -> str:
@@ -178,7 +175,7 @@ def _table_4(jointed: JointedSlope, paper: dict) -> str:
         if any(jointed.reason(f, start) for f in slopes.FOLLOWERS):
             lines.append(line(f"why not all, {name}", lambda f, s=start: jointed.reason(f, s), lambda p: ""))
     headings = ("", *(run.name for run in slopes.FOLLOWERS.values()), *(f"paper: {paper[m]['name']}" for m in _PAPER_METHODS))
-    return tables.markdown(headings, lines)
+    return number_table(headings, lines)
 
 
 def _paper_steady(jointed: JointedSlope, follower: str) -> str:
@@ -233,7 +230,7 @@ def _ratios(jointed: JointedSlope, paper: dict) -> str:
             lines.append([f"after failure, at {common:g} m, {name}", *(f"{ours[f]:.3g}" if f in ours else "-" for f in slopes.FOLLOWERS), "", "", ""])
     names = (run.name for run in slopes.FOLLOWERS.values())
     headings = ("CPU time over dem's, over UDEC's", *names, *(f"paper: {paper[m]['name']}" for m in _PAPER_METHODS))
-    return tables.markdown(headings, lines)
+    return number_table(headings, lines)
 
 
 def _energy(jointed: JointedSlope) -> str:
@@ -246,4 +243,4 @@ def _energy(jointed: JointedSlope) -> str:
                 continue
             lines.append([f"{run.name}, {start}", f"{summary['time_s']:.3g} s", f"{summary['energy_ledger']['turnover_j']:.3g}",
                           f"{comparison_slopes.imbalance(summary):.1e}", f"{summary['max_penetration_m'] * 1e3:.3g}"])
-    return tables.markdown(("run", "motion lasted", "energy turned over [J]", "imbalance over it [-]", "deepest penetration [mm]"), lines)
+    return number_table(("run", "motion lasted", "energy turned over [J]", "imbalance over it [-]", "deepest penetration [mm]"), lines)

@@ -11,11 +11,13 @@ import claims
 import comparison
 import comparison_slopes
 import tables
-from incline import Incline
-from plane_failure import PlaneFailure
-from printed import read_printed
-from runs import Openclose, Reference, RunFailed
-from slopes import JointedSlope, PlanarSlope
+from openclose_scripts.csv_rows import read_rows
+from openclose_scripts.examples.incline import Incline
+from openclose_scripts.examples.plane_failure import PlaneFailure
+from openclose_scripts.examples.slopes import JointedSlope, PlanarSlope
+from openclose_scripts.printed import read_printed
+from openclose_scripts.processes import RunFailed
+from openclose_scripts.runs import Openclose, Reference
 
 EXIT_RUN_FAILED = 1
 EXIT_CANNOT_START = 2
@@ -32,7 +34,7 @@ def parse_arguments() -> argparse.Namespace:
 
 
 def print_comparison(results: Path) -> None:
-    print(tables.comparison_text(comparison.read_csv(results / "comparison.csv")))
+    print(tables.comparison_text(read_rows(results / "comparison.csv")))
     print(f"\n{tables.NOTE}")
     print(f"Figures, tables and text: {results / 'report.md'}; all digits: {results / 'comparison.csv'}")
 

@@ -1,8 +1,10 @@
-"""Tables as text: the comparison on a terminal, and Markdown."""
+"""The comparison as a table of text on a terminal, and in Markdown."""
 
 from collections.abc import Iterable
 
 import comparison
+from openclose_scripts.formats import significant
+from openclose_scripts.markdown import number_table
 
 _HEADINGS = ("quantity", "unit", "paper", "reference", *comparison.METHODS, *(f"dev. {m}" for m in comparison.METHODS))
 _LEFT_ALIGNED = 2
@@ -20,7 +22,7 @@ def number(text: str, digits: int = 6) -> str:
         value = float(text)
     except ValueError:
         return text
-    return f"{value:.{digits}g}" if value == 0 or abs(value) >= 1e-3 else f"{value:.{min(digits, 3) - 1}e}"
+    return significant(value, digits) if value == 0 or abs(value) >= 1e-3 else f"{value:.{min(digits, 3) - 1}e}"
 
 
 def _line(cells: Iterable[str], widths: list[int]) -> str:
@@ -49,13 +51,5 @@ def comparison_text(rows: list[dict[str, str]]) -> str:
     return "\n".join(lines)
 
 
-def markdown(headings: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
-    """A table whose first column is text and whose others are right-aligned."""
-    headings = list(headings)
-    lines = ["| " + " | ".join(headings) + " |", "|---|" + "---:|" * (len(headings) - 1)]
-    lines += ["| " + " | ".join(cells) + " |" for cells in rows]
-    return "\n".join(lines)
-
-
 def comparison_markdown(rows: list[dict[str, str]]) -> str:
-    return markdown(("item", *_HEADINGS), ([row["item"], *_short(row)] for row in rows))
+    return number_table(("item", *_HEADINGS), ([row["item"], *_short(row)] for row in rows))

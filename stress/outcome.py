@@ -5,17 +5,13 @@ import json
 import math
 import resource
 import shutil
-import signal
-import sys
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "paper"))
+from openclose_scripts.csv_rows import read_rows
+from openclose_scripts.processes import DONE, run_process, was_stopped
 
-from runs import run_process  # noqa: E402  (the path comes first)
-
-DONE, NOT_CONVERGED, BAD_INPUT = 0, 1, 2
 # Settings of each way to solve a scene; those that only motion knows have no factor of safety of their own.
 METHODS = {
     "soft": {"method.contact": "soft"},
@@ -48,10 +44,7 @@ class Outcome:
 
     def table(self, file: str) -> list[dict[str, str]]:
         path = self.folder / file
-        if not path.exists():
-            return []
-        with open(path, newline="", encoding="utf-8") as stream:
-            return list(csv.DictReader(stream))
+        return read_rows(path) if path.exists() else []
 
     def not_a_number(self) -> str:
         """The first place where a table or the summary has a number that is none; empty if there is no such place."""
@@ -103,8 +96,7 @@ class Programs:
     def _call(self, arguments: list[str], folder: Path) -> Outcome:
         before = _cpu_of_children()
         done = run_process(arguments, self.limit_s)
-        stopped = done.returncode in (-signal.SIGXCPU, -signal.SIGKILL)
-        return Outcome(folder, None if stopped else done.returncode, done.stderr.strip(), _cpu_of_children() - before)
+        return Outcome(folder, None if was_stopped(done) else done.returncode, done.stderr.strip(), _cpu_of_children() - before)
 
 
 def _cpu_of_children() -> float:

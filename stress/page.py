@@ -6,6 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from campaign import Row
+from openclose_scripts.markdown import markdown_table
 from verdicts import APART, AT_THE_LIMIT, FALSE, REFUSED, RIGHT, SLOW, WIDEST_BRACKET
 
 VERDICTS = RIGHT, APART, REFUSED, FALSE, SLOW
@@ -20,10 +21,6 @@ def write(rows: list[Row], pictures: list[tuple[Row, str]], command: str, file: 
     file.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
-def _table(head: list[str], body: list[list[object]]) -> list[str]:
-    return ["| " + " | ".join(head) + " |", "|" + "---|" * len(head), *("| " + " | ".join(map(str, row)) + " |" for row in body), ""]
-
-
 def _groups(rows: list[Row], key: Callable[[Row], tuple] = lambda row: (row.part, row.method)) -> dict[tuple, list[Row]]:
     groups: dict[tuple, list[Row]] = {}
     for row in rows:
@@ -36,13 +33,14 @@ def _counts(rows: list[Row]) -> list[str]:
     for key, group in _groups(rows).items():
         count = Counter(row.verdict for row in group)
         body.append([*key, len(group), *(count[v] for v in VERDICTS)])
-    return ["## Verdicts", "", *_table(["part", "method", "scenes", *VERDICTS], body)]
+    return ["## Verdicts", "", markdown_table(["part", "method", "scenes", *VERDICTS], body), ""]
 
 
 def _reasons(rows: list[Row]) -> list[str]:
     """Numbers left out, so that like reasons stand together."""
     count = Counter((row.verdict, row.method.split(",")[0], _without_numbers(row.reason)) for row in rows if row.verdict != RIGHT)
-    return ["## Reasons", "", *_table(["verdict", "method", "reason", "scenes"], [[*key, n] for key, n in sorted(count.items(), key=lambda item: (item[0][0], -item[1]))])]
+    body = [[*key, n] for key, n in sorted(count.items(), key=lambda item: (item[0][0], -item[1]))]
+    return ["## Reasons", "", markdown_table(["verdict", "method", "reason", "scenes"], body), ""]
 
 
 def _without_numbers(reason: str) -> str:
@@ -60,7 +58,7 @@ def _energy(rows: list[Row]) -> list[str]:
         values = [row.energy_rise for row in group]
         body.append([*key, len(values), *(f"{_quantile(values, part):.2g}" for _, part in QUANTILES)])
     text = "Largest rise of kinetic, potential and stored energy from any earlier output time, over the start's (or the work done), of all scenes with a result."
-    return ["## Energy created", "", text, "", *_table(["part", "method", "scenes", *(name for name, _ in QUANTILES)], body)] if body else []
+    return ["## Energy created", "", text, "", markdown_table(["part", "method", "scenes", *(name for name, _ in QUANTILES)], body), ""] if body else []
 
 
 def _distances(rows: list[Row]) -> list[str]:
@@ -71,7 +69,7 @@ def _distances(rows: list[Row]) -> list[str]:
         body.append([*key, len(ratios), f"{statistics.median(ratios):.4f}", f"{_quantile(ratios, 0.1):.4f}", f"{min(ratios):.4f}",
                      f"{sum(q >= AT_THE_LIMIT for q in ratios)} of {len(ratios)}"])
     head = ["part", "method", "cohesion", "scenes", "median", "10 %", "least", f"at least {AT_THE_LIMIT}"]
-    return ["## Factor over limit analysis", "", *_table(head, body)] if body else []
+    return ["## Factor over limit analysis", "", markdown_table(head, body), ""] if body else []
 
 
 def _brackets(rows: list[Row]) -> list[str]:
@@ -80,13 +78,13 @@ def _brackets(rows: list[Row]) -> list[str]:
     answers = sorted({a for c in count.values() for a in c})
     narrow = Counter((row.part, row.method) for row in rows if row.stable and row.failed and row.failed - row.stable <= WIDEST_BRACKET * row.stable)
     head = ["part", "method", *answers, f"both ends proved, within {WIDEST_BRACKET:.1%}"]
-    return ["## Answers of `fos`", "", *_table(head, [[*key, *(c[a] for a in answers), narrow[key]] for key, c in count.items()])] if count else []
+    return ["## Answers of `fos`", "", markdown_table(head, [[*key, *(c[a] for a in answers), narrow[key]] for key, c in count.items()]), ""] if count else []
 
 
 def _times(rows: list[Row]) -> list[str]:
     body = [[*key, f"{statistics.median(row.cpu_s for row in group):.3g}", f"{_quantile([row.cpu_s for row in group], 0.9):.3g}", f"{max(row.cpu_s for row in group):.3g}"]
             for key, group in _groups([row for row in rows if row.exit is not None]).items()]
-    return ["## CPU time [s]", "", *_table(["part", "method", "median", "90 %", "largest"], body)]
+    return ["## CPU time [s]", "", markdown_table(["part", "method", "median", "90 %", "largest"], body), ""]
 
 
 def severity(row: Row) -> tuple[bool, float]:

@@ -1,12 +1,9 @@
 """Draws what came out of a scene: where blocks began (outlines) and where they are (filled). Needs matplotlib."""
 
-import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "paper"))
-
-from drawing import BLOCK, INK, JOINT, ROCK, geometry, plt, save_titled  # noqa: E402  (the path comes first)
-from matplotlib.collections import PolyCollection  # noqa: E402
+from matplotlib.collections import PolyCollection
+from openclose_scripts.drawing import BLOCK, INK, JOINT, ROCK, geometry, plt, save_titled
 
 BEGIN = "start", "initial"
 END = "final", "failed", "stable", "settled"

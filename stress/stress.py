@@ -70,7 +70,7 @@ def main() -> int:
     arguments = parse_arguments()
     if arguments.regression:
         arguments.limit_s = campaign.REGRESSION_LIMIT_S
-    for program in (arguments.openclose, arguments.reference):
+    for program in (arguments.openclose,) if arguments.keep is not None else (arguments.openclose, arguments.reference):
         if not program.exists():
             print(f"stress: no {program}; make build makes it", file=sys.stderr)
             return EXIT_CANNOT_START

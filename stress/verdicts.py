@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 
 import geometry
 from motion import Block, Motion, outlines_of
-from outcome import BAD_INPUT, DONE, NOT_CONVERGED, Outcome
+from openclose_scripts.processes import BAD_INPUT, DONE, NOT_CONVERGED
+from outcome import Outcome
 from scene import Scene, densities
 
 RIGHT, REFUSED, FALSE, SLOW = "right", "refused", "FALSE", "slow"

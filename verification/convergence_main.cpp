@@ -37,7 +37,7 @@ void print(const Series& s) {
 int run_all(const std::vector<std::string>& wanted, const std::string& folder, bool null_solver) {
   Studies studies_run(null_solver);
   std::size_t printed = 0;
-  for (const Study& study : studies()) {
+  for (const Study& study : Registered<Study>::all()) {
     if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), study.name) == wanted.end()) continue;
     studies_run.begin(study.name);
     study.run(studies_run);

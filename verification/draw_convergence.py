@@ -1,14 +1,13 @@
 """Draws results/convergence.csv: one picture a study."""
 
 import argparse
-import csv
 import math
 import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "paper"))
-import drawing  # noqa: E402
-from drawing import plt  # noqa: E402
+from openclose_scripts import drawing
+from openclose_scripts.csv_rows import read_rows
+from openclose_scripts.drawing import plt
 
 LINES = ("-", "--", ":", "-.")
 
@@ -16,9 +15,8 @@ LINES = ("-", "--", ":", "-.")
 def read(file: Path) -> dict[str, dict[str, list[dict[str, str]]]]:
     """Rows by study and series."""
     studies: dict[str, dict[str, list[dict[str, str]]]] = {}
-    with file.open() as stream:
-        for row in csv.DictReader(stream):
-            studies.setdefault(row["case"], {}).setdefault((row["method"], row["abscissa"]), []).append(row)
+    for row in read_rows(file):
+        studies.setdefault(row["case"], {}).setdefault((row["method"], row["abscissa"]), []).append(row)
     return studies
 
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "openclose/analysis/run.h"
+#include "registry.h"
 
 namespace openclose::verification {
 
@@ -81,12 +82,12 @@ class Report {
 /// Least-squares slope of log(y) over log(x); NaN if any value is not positive.
 double log_slope(const std::vector<double>& x, const std::vector<double>& y);
 
+/// Registers itself from its source in cases/.
 struct Case {
-  const char* name;
+  const char* name;  ///< "B1", its identifier
   const char* title;
   void (*run)(Report&);
 };
-const std::vector<Case>& cases();
 
 /// Runs to the scene's end and hands out the motion of the first measured point (or first free block) at the output times.
 /// Empty if the run does not get there.

@@ -7,26 +7,20 @@ Draws and arranges only; every number comes from those files.
 """
 
 import argparse
-import csv
 import math
-import sys
 from collections import defaultdict
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "paper"))
-from drawing import METHOD_COLOUR, METHOD_MARKER, plt, save  # noqa: E402  (the path comes first)
-from matplotlib.ticker import LogFormatterSciNotation, MaxNLocator, NullFormatter  # noqa: E402
+from matplotlib.ticker import LogFormatterSciNotation, MaxNLocator, NullFormatter
+from openclose_scripts.csv_rows import read_rows
+from openclose_scripts.drawing import METHOD_COLOUR, METHOD_MARKER, plt, save
+from openclose_scripts.markdown import markdown_table
 
 METHODS = ["soft", "hard", "shi", "dem"]
 LAST_VALUE = "last value: "
 FAILS = "fails: "
 COLUMNS = 3  # panels beside each other
 OPEN = {"linestyle": "none", "fillstyle": "none"}  # so that points in one place are all seen
-
-
-def read(file: Path) -> list[dict]:
-    with file.open(newline="") as lines:
-        return list(csv.DictReader(lines))
 
 
 def number(text: str) -> float:
@@ -202,11 +196,11 @@ def cell(row: Row, series: Series) -> str:
     return text if row.status == "pass" else f"**FAIL** {text}"
 
 
-def table(rows: list[Row], series: Series, head: str, expected) -> list[str]:
+def table(rows: list[Row], series: Series, head: tuple[str, str], expected) -> list[str]:
     """One line a quantity, a column for each method that occurs."""
     methods = [m for m in METHODS if any(r.method == m for r in rows)]
     methods += [m for m in dict.fromkeys(r.method for r in rows) if m not in METHODS]
-    lines = [f"| {head} | " + " | ".join(methods) + " | from |", "|---|---|" + "---|" * (len(methods) + 1)]
+    lines = []
     groups = defaultdict(list)
     for r in rows:
         groups[r.key()].append(r)
@@ -220,9 +214,9 @@ def table(rows: list[Row], series: Series, head: str, expected) -> list[str]:
                     mine[m] = of_method[turn]
             first = next(iter(mine.values()))
             source = first.source.split(" (")[0] if series.of(first) else first.source
-            cells = " | ".join(cell(mine[m], series) if m in mine else "" for m in methods)
-            lines.append(f"| {escaped(first.quantity)} | {expected(first)} | {cells} | {escaped(source)} |")
-    return lines + [""]
+            cells = (cell(mine[m], series) if m in mine else "" for m in methods)
+            lines.append([escaped(first.quantity), expected(first), *cells, escaped(source)])
+    return [markdown_table([*head, *methods, "from"], lines), ""]
 
 
 def counts(rows: list[Row]) -> str:
@@ -242,11 +236,11 @@ def case_section(name: str, title: str, rows: list[Row], series: Series, folder:
         lines += [f"![{name}: convergence](verification/{name.lower()}_convergence.png)", ""]
     if orders:
         lines += ["Observed order (ratio of the errors of one refinement to the next):", ""]
-        lines += table(orders, series, "quantity | order, from theory", lambda r: f"{r.expected - r.tolerance:.3g} to {r.expected + r.tolerance:.3g}")
+        lines += table(orders, series, ("quantity", "order, from theory"), lambda r: f"{r.expected - r.tolerance:.3g} to {r.expected + r.tolerance:.3g}")
     if values:
         draw_values(values, folder / f"{name.lower()}_values.png")
         lines += [f"![{name}: values](verification/{name.lower()}_values.png)", "", "Measured (error; relative or absolute as its tolerance):", ""]
-        lines += table(values, series, "quantity | expected, allowed", lambda r: f"{in_unit(r)}, {r.tolerance:.1e}")
+        lines += table(values, series, ("quantity", "expected, allowed"), lambda r: f"{in_unit(r)}, {r.tolerance:.1e}")
     if last:
         lines += [f"Last values: {sum(r.status == 'pass' for r in last)} of {len(last)} unchanged."]
         changed = [r for r in last if r.status != "pass"]
@@ -280,8 +274,7 @@ def page(rows: list[Row], titles: dict, series: Series, folder: Path) -> str:
     unreached = [r for r in rows if r.status == "fail" or (r.left_out and r.source.startswith(FAILS))]
     lines = [INTRODUCTION, f"In all: {counts(rows)}.", "", "## Goals not reached", ""]
     lines += [f"- {r.case}, {r.quantity}, `{r.method}`: {how_far(r)}" for r in unreached] or ["None."]
-    lines += ["", "## Cases", "", "| case | what | rows |", "|---|---|---|"]
-    lines += [f"| {c} | {titles.get(c, '')} | {counts(by_case[c])} |" for c in cases] + [""]
+    lines += ["", "## Cases", "", markdown_table(("case", "what", "rows"), ([c, titles.get(c, ""), counts(by_case[c])] for c in cases)), ""]
     for c in cases:
         lines += case_section(c, titles.get(c, ""), by_case[c], series, folder)
     return "\n".join(lines)
@@ -291,15 +284,15 @@ def main() -> None:
     parser = argparse.ArgumentParser(description="Makes verification.md and its pictures from the files of openclose-verify.")
     parser.add_argument("--results", type=Path, default=Path("results"), help="folder of verify.csv, and of the page")
     results = parser.parse_args().results
-    rows = [Row(line) for line in read(results / "verify.csv")]
+    rows = [Row(line) for line in read_rows(results / "verify.csv")]
     titles = defaultdict(list)
-    for line in read(results / "verify_cases.csv"):
+    for line in read_rows(results / "verify_cases.csv"):
         titles[line["case"]].append(line["title"])
     folder = results / "verification"
     folder.mkdir(exist_ok=True)
     for old in folder.glob("*.png"):
         old.unlink()
-    series = Series(read(results / "verify_series.csv"))
+    series = Series(read_rows(results / "verify_series.csv"))
     text = page(rows, {case: "; ".join(t) for case, t in titles.items()}, series, folder)
     (results / "verification.md").write_text(text, encoding="utf-8")
 

@@ -1,7 +1,6 @@
 // Scenes that several cases share, built in memory.
 #pragma once
 
-#include <array>
 #include <functional>
 #include <optional>
 #include <string>
@@ -11,10 +10,12 @@
 #include "openclose/analytical/block_on_plane.h"
 #include "openclose/analytical/limit_analysis.h"
 #include "openclose/scene/scene.h"
+#include "support/builders.h"
 
 namespace openclose::verification {
 
-inline const std::array<std::string, 4> all_methods = {"soft", "hard", "shi", "dem"};
+using namespace builders;
+using builders::downhill;  // which the one below would hide
 
 /// A contact method with its time integration.
 struct Scheme {
@@ -47,11 +48,6 @@ inline constexpr double residual_share = 4e-12;
 /// One material "rock", gravity 9.81 downwards, joint without cohesion as the block's; `unloaded` start; no blocks yet.
 Scene empty_scene(const analytical::BlockOnPlane& data = {});
 
-std::vector<Vec2> rectangle(double x, double y, double width, double height);
-
-BlockInput free_block(const std::string& name, std::vector<Vec2> vertices);
-BlockInput fixed_block(const std::string& name, std::vector<Vec2> vertices);
-
 /// A fixed plane (as long as asked for downhill, 20 m uphill) and on it the block of `data`, whose lower left corner touches at the origin, falling
 /// to the right. Stiffness, friction and density from `data`.
 Scene block_on_plane(const analytical::BlockOnPlane& data, double length_downhill = 25.0);
@@ -60,9 +56,6 @@ Scene block_on_plane(const analytical::BlockOnPlane& data, double length_downhil
 double downhill(const analytical::BlockOnPlane& data, const Vec2& displacement);
 /// Displacement normal to it, away from it [m].
 double off_plane(const analytical::BlockOnPlane& data, const Vec2& displacement);
-
-/// `shi` with the joint's own springs as penalties, so that soft-contact references hold for it too.
-void use_joint_springs_as_penalty(Scene& scene, const analytical::BlockOnPlane& data);
 
 /// The energy ledger of a run: what it leaves unexplained over its turnover, to the level that rounding of a run of many steps leaves. `done`: the
 /// run got to its end.

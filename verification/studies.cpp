@@ -8,36 +8,9 @@
 
 namespace openclose::verification {
 
-void spring_vibration(Studies&);
-void sway_and_rock(Studies&);
-void support_springs(Studies&);
-void rocking(Studies&);
-void bounce(Studies&);
-void sliding_starts(Studies&);
-void stopping_block(Studies&);
-void stiffness(Studies&);
-void block_number(Studies&);
-
-const std::vector<Study>& studies() {
-  static const std::vector<Study> list = {
-      {"spring", "vertical vibration on contact springs (D1)", &spring_vibration},
-      {"sway_rock", "sway and rock on contact springs (D3)", &sway_and_rock},
-      {"support", "a block between support springs", &support_springs},
-      {"rocking", "a block that rocks about one corner, before impact", &rocking},
-      {"bounce", "three bounces on contact springs (D2)", &bounce},
-      {"incline", "starts with a transient on an incline, stick and slip (B1)", &sliding_starts},
-      {"stop", "initial velocity to a stop (B4)", &stopping_block},
-      {"stiffness", "from soft to hard: what contact springs change", &stiffness},
-      {"blocks", "a column of more and more blocks", &block_number},
-  };
-  return list;
-}
-
 void use(const Scheme& scheme, Scene& scene) {
   set_scheme(scene, scheme);
-  scene.method.penalty = scene.joints[0].normal_stiffness;
-  scene.method.penalty_shear_ratio = scene.joints[0].shear_stiffness / scene.joints[0].normal_stiffness;
-  scene.method.penetration_tolerance = 1.0;
+  use_joint_springs_as_penalty(scene);
 }
 
 Fit fit_order(const std::vector<Sized>& points) {

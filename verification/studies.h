@@ -1,6 +1,5 @@
 // Convergence studies: errors against a size (time step, 1/kn, 1/number of blocks), the order fitted over the asymptotic range with its confidence
-// band, and bounds of that order from theory. A study is a file in studies/ and a line in studies.cpp; a way to integrate is a line in schemes() of
-// scenes.cpp.
+// band, and bounds of that order from theory. A study is a file in studies/; a way to integrate is a line in schemes() of scenes.cpp.
 #pragma once
 
 #include <functional>
@@ -81,11 +80,11 @@ Eigen::Vector3d push_and_follow(const Studies& studies, Scene scene, int b, cons
 /// first, first/ratio, first/ratio^2, ...
 std::vector<double> halved(double first, int count, double ratio = 2.0);
 
+/// Registers itself from its source in studies/.
 struct Study {
-  const char* name;
+  const char* name;  ///< "spring", its identifier
   const char* title;
   void (*run)(Studies&);
 };
-const std::vector<Study>& studies();
 
 }  // namespace openclose::verification

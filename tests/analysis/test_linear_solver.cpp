@@ -9,18 +9,8 @@ using namespace openclose;
 
 namespace {
 
-/// A wall of bricks 2 m x 1 m , every other course shifted, on a fixed base, its top course moving.
 Scene wall(int courses, int bricks, double shift = 0.5) {
-  Scene scene = test::empty_scene();
-  scene.blocks = {test::fixed_block("base", test::rectangle(-10.0, -1.0, 2.0 * bricks + 20.0, 1.0))};
-  for (int c = 0; c < courses; ++c) {
-    for (int b = 0; b < bricks; ++b) {
-      const std::string name = std::to_string(c) + "_" + std::to_string(b);
-      scene.blocks.push_back(test::free_block(name, test::rectangle(2.0 * b + shift * (c % 2), 1.0 * c, 2.0, 1.0)));
-      if (c + 1 == courses) scene.blocks.back().velocity = {2.0, 0.0};
-    }
-  }
-  return scene;
+  return test::scene_with(test::wall_with_moving_top(courses, bricks, shift));
 }
 
 /// Displacements after settling and 40 steps in which the top course slides to rest.

@@ -9,12 +9,6 @@
 
 namespace openclose::test {
 
-inline Scene scene_with(std::vector<BlockInput> blocks) {
-  Scene scene = empty_scene();
-  scene.blocks = std::move(blocks);
-  return scene;
-}
-
 /// A scene under detection. Vertices are numbered through all blocks; edge 2 of a rectangle is its top, run through from right to left.
 class Detection {
  public:

@@ -15,11 +15,8 @@ using test::rectangle;
 namespace {
 
 JointProperties joint_between(int a, int b, double friction_deg) {
-  JointProperties joint;
+  JointProperties joint = test::frictional_joint(1e9, 4e8, friction_deg * degree);
   joint.materials = {a, b};
-  joint.normal_stiffness = 1e9;
-  joint.shear_stiffness = 4e8;
-  joint.friction_angle = friction_deg * degree;
   joint.cohesion = 5e4;
   joint.tensile_strength = 2e4;
   return joint;

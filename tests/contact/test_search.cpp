@@ -35,12 +35,8 @@ Scene rough_floor() {
 }
 
 /// Squares of a metre, side by side and one on the other.
-Scene wall(int columns, int rows) {
-  Scene scene = test::empty_scene();
-  for (int i = 0; i < columns; ++i) {
-    for (int j = 0; j < rows; ++j) scene.blocks.push_back(free_block("square", rectangle(i, j, 1.0, 1.0)));
-  }
-  return scene;
+Scene squares(int columns, int rows) {
+  return scene_with(wall(rows, columns, 1.0, 0.0));
 }
 
 }  // namespace
@@ -48,14 +44,14 @@ Scene wall(int columns, int rows) {
 TEST_CASE("what a large system gives back between updates changes nothing", "[contact][search]") {
   constexpr int columns = 50, rows = 42;
   const DetectionSkips skips;
-  Detection large(wall(columns, rows), 0.05, skips), small(wall(columns, rows / 2), 0.05, skips);
+  Detection large(squares(columns, rows), 0.05, skips), small(squares(columns, rows / 2), 0.05, skips);
   const auto bytes_a_block = [](const Detection& d) {
     const Memory of = d.detector.memory();
     return static_cast<double>(of.blocks + of.contacts) / d.system.block_count();
   };
   // 4 edges of 40 bytes and a box of 32, at least.
   CHECK(bytes_a_block(small) - bytes_a_block(large) > 190.0);
-  Detection searching(wall(columns, rows), 0.05, {false, true, true, 0.0});
+  Detection searching(squares(columns, rows), 0.05, {false, true, true, 0.0});
   require_same(large.contacts, searching.contacts);
   for (int step = 0; step < 3; ++step) {
     for (const int b : {17, 800, 801, 2099}) {

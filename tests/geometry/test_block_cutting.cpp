@@ -8,17 +8,15 @@
 #include "openclose/geometry/joint_set.h"
 #include "openclose/geometry/overlap.h"
 #include "support/catch.h"
+#include "support/polygons.h"
 
 using namespace openclose;
+using builders::rectangle_between;
 using std::numbers::pi;
 
 namespace {
 
-Polygon rectangle(double x0, double y0, double x1, double y1) {
-  return {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}};
-}
-
-const PolygonWithHoles square{rectangle(0.0, 0.0, 4.0, 4.0), {}};
+const PolygonWithHoles square{rectangle_between({0.0, 0.0}, {4.0, 4.0}), {}};
 
 /// Lines given by their ends, each a joint of its own.
 std::vector<JointTrace> lines(const std::vector<Segment>& segments) {
@@ -97,16 +95,16 @@ TEST_CASE("a domain without joints is one block", "[geometry][cutting]") {
 }
 
 TEST_CASE("a grid cuts a rectangle into a known number of blocks", "[geometry][cutting]") {
-  const PolygonWithHoles domain{rectangle(0.0, 0.0, 7.0, 3.0), {}};
+  const PolygonWithHoles domain{rectangle_between({0.0, 0.0}, {7.0, 3.0}), {}};
   const Cutting cutting = cut(domain, grid(7, 3, 7.0, 3.0));
   check_sound(cutting, domain);
   REQUIRE(cutting.blocks.size() == 21);
   CHECK(cutting.dangling_ends == 0);
   check_vertices_coincide(cutting.blocks);
   SECTION("in rows from below, each from left to right") {
-    CHECK(cutting.blocks[0] == rectangle(0.0, 0.0, 1.0, 1.0));
-    CHECK(cutting.blocks[1] == rectangle(1.0, 0.0, 2.0, 1.0));
-    CHECK(cutting.blocks[20] == rectangle(6.0, 2.0, 7.0, 3.0));
+    CHECK(cutting.blocks[0] == rectangle_between({0.0, 0.0}, {1.0, 1.0}));
+    CHECK(cutting.blocks[1] == rectangle_between({1.0, 0.0}, {2.0, 1.0}));
+    CHECK(cutting.blocks[20] == rectangle_between({6.0, 2.0}, {7.0, 3.0}));
   }
 }
 
@@ -164,14 +162,14 @@ TEST_CASE("domains and blocks that are not convex", "[geometry][cutting]") {
     check_sound(cutting, domain);
     REQUIRE(cutting.blocks.size() == 3);
     CHECK(cutting.blocks[0].size() == 8);
-    CHECK(cutting.blocks[1] == rectangle(0.0, 2.0, 2.0, 3.0));
-    CHECK(cutting.blocks[2] == rectangle(3.0, 2.0, 5.0, 3.0));
+    CHECK(cutting.blocks[1] == rectangle_between({0.0, 2.0}, {2.0, 3.0}));
+    CHECK(cutting.blocks[2] == rectangle_between({3.0, 2.0}, {5.0, 3.0}));
   }
   SECTION("a joint that bends makes a block with a re-entrant corner") {
     const Cutting cutting = cut(square, {{{2.0, 0.0}, {2.0, 2.0}}, {{2.0, 2.0}, {4.0, 2.0}}});
     check_sound(cutting, square);
     REQUIRE(cutting.blocks.size() == 2);
-    CHECK(cutting.blocks[0] == rectangle(2.0, 0.0, 4.0, 2.0));
+    CHECK(cutting.blocks[0] == rectangle_between({2.0, 0.0}, {4.0, 2.0}));
     CHECK(cutting.blocks[1] == Polygon{{0.0, 0.0}, {2.0, 0.0}, {2.0, 2.0}, {4.0, 2.0}, {4.0, 4.0}, {0.0, 4.0}});
   }
   SECTION("joints that close outside the domain enclose nothing there") {
@@ -190,7 +188,7 @@ TEST_CASE("domains and blocks that are not convex", "[geometry][cutting]") {
 }
 
 TEST_CASE("holes in the domain", "[geometry][cutting]") {
-  const PolygonWithHoles domain{rectangle(0.0, 0.0, 4.0, 4.0), {rectangle(1.0, 1.0, 2.0, 2.0)}};
+  const PolygonWithHoles domain{rectangle_between({0.0, 0.0}, {4.0, 4.0}), {rectangle_between({1.0, 1.0}, {2.0, 2.0})}};
   SECTION("a joint through the hole leaves two blocks with re-entrant corners") {
     const Cutting cutting = cut(domain, {{{-1.0, 1.5}, {5.0, 1.5}}});
     check_sound(cutting, domain);
@@ -211,13 +209,13 @@ TEST_CASE("holes in the domain", "[geometry][cutting]") {
   }
   SECTION("faults") {
     CHECK_FALSE(first_ring_fault(domain));
-    const auto fault = [](const Polygon& a, const Polygon& b) { return first_ring_fault({rectangle(0.0, 0.0, 4.0, 4.0), {a, b}})->kind; };
-    const Polygon good = rectangle(1.0, 1.0, 2.0, 2.0);
-    CHECK(fault(good, rectangle(2.0, 1.0, 3.0, 2.0)) == RingFault::Kind::meets);
-    CHECK(fault(good, rectangle(3.0, 3.0, 5.0, 5.0)) == RingFault::Kind::meets);
-    CHECK(fault(good, rectangle(5.0, 5.0, 6.0, 6.0)) == RingFault::Kind::outside);
-    CHECK(fault(good, rectangle(1.2, 1.2, 1.8, 1.8)) == RingFault::Kind::nested);
-    CHECK(fault(rectangle(1.2, 1.2, 1.8, 1.8), good) == RingFault::Kind::nested);
+    const auto fault = [](const Polygon& a, const Polygon& b) { return first_ring_fault({rectangle_between({0.0, 0.0}, {4.0, 4.0}), {a, b}})->kind; };
+    const Polygon good = rectangle_between({1.0, 1.0}, {2.0, 2.0});
+    CHECK(fault(good, rectangle_between({2.0, 1.0}, {3.0, 2.0})) == RingFault::Kind::meets);
+    CHECK(fault(good, rectangle_between({3.0, 3.0}, {5.0, 5.0})) == RingFault::Kind::meets);
+    CHECK(fault(good, rectangle_between({5.0, 5.0}, {6.0, 6.0})) == RingFault::Kind::outside);
+    CHECK(fault(good, rectangle_between({1.2, 1.2}, {1.8, 1.8})) == RingFault::Kind::nested);
+    CHECK(fault(rectangle_between({1.2, 1.2}, {1.8, 1.8}), good) == RingFault::Kind::nested);
   }
 }
 
@@ -229,7 +227,7 @@ TEST_CASE("T-junctions and ends", "[geometry][cutting]") {
     REQUIRE(cutting.blocks.size() == 3);
     CHECK(cutting.dangling_ends == 0);
     // The other side of the joint has no corner there.
-    CHECK(cutting.blocks[1] == rectangle(2.0, 0.0, 4.0, 4.0));
+    CHECK(cutting.blocks[1] == rectangle_between({2.0, 0.0}, {4.0, 4.0}));
   }
   SECTION("one that ends short of it by less than the reach gets there") {
     CHECK(cut(square, {through, {{0.0009, 1.0}, {1.9991, 1.0}}}).blocks.size() == 3);
@@ -320,7 +318,7 @@ TEST_CASE("joints that coincide count once", "[geometry][cutting]") {
   SECTION("also where only parts of them do") {
     const Cutting parts = cut(square, {{{-1.0, 1.0}, {3.0, 1.0}}, {{2.0, 1.0}, {5.0, 1.0}}});
     CHECK(parts.blocks.size() == 2);
-    CHECK(parts.blocks[0] == rectangle(0.0, 0.0, 4.0, 1.0));
+    CHECK(parts.blocks[0] == rectangle_between({0.0, 0.0}, {4.0, 1.0}));
   }
 }
 
@@ -369,7 +367,7 @@ TEST_CASE("slivers go to the neighbour with the longest common edge", "[geometry
 
 TEST_CASE("slivers around a hole do not fill it", "[geometry][cutting]") {
   // Two wedges and the rest of the domain meet around the hole: with both wedges gone to the rest only one joint would lead to it.
-  const PolygonWithHoles domain{rectangle(0.0, 0.0, 4.0, 4.0), {rectangle(2.0, 2.0, 2.001, 2.001)}};
+  const PolygonWithHoles domain{rectangle_between({0.0, 0.0}, {4.0, 4.0}), {rectangle_between({2.0, 2.0}, {2.001, 2.001})}};
   CuttingLimits limits;
   limits.sliver_width = 0.1;
   const Vec2 middle(2.0005, 2.0005);

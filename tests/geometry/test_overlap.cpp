@@ -5,27 +5,18 @@
 #include "openclose/core/tolerance.h"
 #include "openclose/geometry/overlap.h"
 #include "support/catch.h"
+#include "support/polygons.h"
 
 using namespace openclose;
+using builders::placed;
+using builders::rectangle_between;
 
 namespace {
 
-Polygon rectangle(double x0, double y0, double x1, double y1) {
-  return {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}};
-}
-
-const Polygon square = rectangle(0.0, 0.0, 1.0, 1.0);
+const Polygon square = rectangle_between({0.0, 0.0}, {1.0, 1.0});
 
 /// A base of 4 x 2 with a notch of 1 x 1 in the middle of its top.
 const Polygon notched{{0.0, 0.0}, {4.0, 0.0}, {4.0, 2.0}, {2.5, 2.0}, {2.5, 1.0}, {1.5, 1.0}, {1.5, 2.0}, {0.0, 2.0}};
-
-Polygon placed(const Polygon& polygon, double angle, const Vec2& shift) {
-  Polygon result;
-  for (const Vec2& v : polygon) {
-    result.emplace_back(shift.x() + std::cos(angle) * v.x() - std::sin(angle) * v.y(), shift.y() + std::sin(angle) * v.x() + std::cos(angle) * v.y());
-  }
-  return result;
-}
 
 /// Symmetric by definition; checked wherever a depth is asked for.
 double depth(const Polygon& a, const Polygon& b) {
@@ -37,28 +28,28 @@ double depth(const Polygon& a, const Polygon& b) {
 }  // namespace
 
 TEST_CASE("polygons apart do not overlap", "[geometry][overlap]") {
-  CHECK(depth(square, rectangle(2.0, 0.0, 3.0, 1.0)) == 0.0);
-  CHECK(depth(square, rectangle(1.0 + 1e-6, 0.0, 2.0, 1.0)) == 0.0);
+  CHECK(depth(square, rectangle_between({2.0, 0.0}, {3.0, 1.0})) == 0.0);
+  CHECK(depth(square, rectangle_between({1.0 + 1e-6, 0.0}, {2.0, 1.0})) == 0.0);
   // The boxes overlap, the polygons do not.
   CHECK(depth({{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}}, {{1.0, 1.0}, {0.2, 1.0}, {1.0, 0.2}}) == 0.0);
 }
 
 TEST_CASE("touching is not overlapping", "[geometry][overlap]") {
   SECTION("whole edge") {
-    CHECK(depth(square, rectangle(1.0, 0.0, 2.0, 1.0)) == 0.0);
+    CHECK(depth(square, rectangle_between({1.0, 0.0}, {2.0, 1.0})) == 0.0);
   }
   SECTION("part of an edge: T-junctions") {
-    CHECK(depth(square, rectangle(1.0, 0.25, 2.0, 0.75)) == 0.0);
-    CHECK(depth(square, rectangle(1.0, 0.5, 2.0, 3.0)) == 0.0);
+    CHECK(depth(square, rectangle_between({1.0, 0.25}, {2.0, 0.75})) == 0.0);
+    CHECK(depth(square, rectangle_between({1.0, 0.5}, {2.0, 3.0})) == 0.0);
   }
   SECTION("corner on corner, corner on edge") {
-    CHECK(depth(square, rectangle(1.0, 1.0, 2.0, 2.0)) == 0.0);
+    CHECK(depth(square, rectangle_between({1.0, 1.0}, {2.0, 2.0})) == 0.0);
     CHECK(depth(square, {{1.0, 0.5}, {2.0, 0.0}, {2.0, 1.0}}) == 0.0);
   }
   SECTION("a block in a notch, filling it or not, or standing out") {
-    CHECK(depth(notched, rectangle(1.5, 1.0, 2.5, 2.0)) == 0.0);
-    CHECK(depth(notched, rectangle(1.5, 1.0, 2.0, 1.5)) == 0.0);
-    CHECK(depth(notched, rectangle(1.5, 1.0, 2.5, 4.0)) == 0.0);
+    CHECK(depth(notched, rectangle_between({1.5, 1.0}, {2.5, 2.0})) == 0.0);
+    CHECK(depth(notched, rectangle_between({1.5, 1.0}, {2.0, 1.5})) == 0.0);
+    CHECK(depth(notched, rectangle_between({1.5, 1.0}, {2.5, 4.0})) == 0.0);
   }
 }
 
@@ -71,31 +62,31 @@ TEST_CASE("rounding of turned and shifted neighbours is not overlapping", "[geom
     const double turn = angle(generator);
     const Vec2 shift(coordinate(generator), coordinate(generator));
     const auto turned = [&](const Polygon& polygon) { return placed(polygon, turn, shift); };
-    CHECK(depth(turned(square), turned(rectangle(1.0, 0.0, 2.0, 1.0))) == 0.0);
-    CHECK(depth(turned(square), turned(rectangle(1.0, 0.3, 2.0, 2.3))) == 0.0);
-    CHECK(depth(turned(notched), turned(rectangle(1.5, 1.0, 2.5, 2.0))) == 0.0);
-    CHECK(depth(turned(notched), turned(rectangle(1.5, 1.0, 2.1, 3.0))) == 0.0);
+    CHECK(depth(turned(square), turned(rectangle_between({1.0, 0.0}, {2.0, 1.0}))) == 0.0);
+    CHECK(depth(turned(square), turned(rectangle_between({1.0, 0.3}, {2.0, 2.3}))) == 0.0);
+    CHECK(depth(turned(notched), turned(rectangle_between({1.5, 1.0}, {2.5, 2.0}))) == 0.0);
+    CHECK(depth(turned(notched), turned(rectangle_between({1.5, 1.0}, {2.1, 3.0}))) == 0.0);
   }
 }
 
 TEST_CASE("an overlap of rounding size stays of rounding size", "[geometry][overlap]") {
   const double pushed = 1e-9;
-  CHECK(depth(square, rectangle(1.0 - pushed, 0.0, 2.0, 1.0)) == 0.0);
-  CHECK(depth(notched, rectangle(1.5 - pushed, 1.0 - pushed, 2.5 + pushed, 2.0)) == 0.0);
+  CHECK(depth(square, rectangle_between({1.0 - pushed, 0.0}, {2.0, 1.0})) == 0.0);
+  CHECK(depth(notched, rectangle_between({1.5 - pushed, 1.0 - pushed}, {2.5 + pushed, 2.0})) == 0.0);
 }
 
 TEST_CASE("depth of known overlaps", "[geometry][overlap]") {
   SECTION("edge pushed into an edge") {
     const double pushed = GENERATE(1e-6, 1e-3, 0.25);
-    CHECK(depth(square, rectangle(1.0 - pushed, 0.25, 2.0, 0.75)) == Approx(pushed).epsilon(1e-9));
-    CHECK(depth(square, rectangle(1.0 - pushed, 0.0, 2.0, 1.0)) == Approx(pushed).epsilon(1e-9));
+    CHECK(depth(square, rectangle_between({1.0 - pushed, 0.25}, {2.0, 0.75})) == Approx(pushed).epsilon(1e-9));
+    CHECK(depth(square, rectangle_between({1.0 - pushed, 0.0}, {2.0, 1.0})) == Approx(pushed).epsilon(1e-9));
   }
   SECTION("corner pushed into an edge") {
     CHECK(depth(square, {{0.9, 0.5}, {2.0, 0.0}, {2.0, 1.0}}) == Approx(0.1));
   }
   SECTION("cross: no vertex of one inside the other") {
-    CHECK(depth(rectangle(-5.0, -0.5, 5.0, 0.5), rectangle(-0.5, -5.0, 0.5, 5.0)) == Approx(0.5));
-    CHECK(depth(rectangle(-5.0, -0.1, 5.0, 0.1), rectangle(-0.5, -5.0, 0.5, 5.0)) == Approx(0.5));
+    CHECK(depth(rectangle_between({-5.0, -0.5}, {5.0, 0.5}), rectangle_between({-0.5, -5.0}, {0.5, 5.0})) == Approx(0.5));
+    CHECK(depth(rectangle_between({-5.0, -0.1}, {5.0, 0.1}), rectangle_between({-0.5, -5.0}, {0.5, 5.0})) == Approx(0.5));
   }
   SECTION("star of David") {
     const Polygon up{{-1.0, -0.5}, {1.0, -0.5}, {0.0, 1.2}};
@@ -103,11 +94,11 @@ TEST_CASE("depth of known overlaps", "[geometry][overlap]") {
     CHECK(depth(up, down) > 0.3);
   }
   SECTION("one inside the other") {
-    CHECK(depth(rectangle(-1.0, -1.0, 2.0, 2.0), square) == Approx(1.0));
+    CHECK(depth(rectangle_between({-1.0, -1.0}, {2.0, 2.0}), square) == Approx(1.0));
   }
   SECTION("one inside the other with flush edges") {
-    CHECK(depth(square, rectangle(0.0, 0.0, 1.0, 0.5)) == Approx(0.5));
-    CHECK(depth(rectangle(0.0, 0.0, 2.0, 1.0), square) == Approx(0.5));
+    CHECK(depth(square, rectangle_between({0.0, 0.0}, {1.0, 0.5})) == Approx(0.5));
+    CHECK(depth(rectangle_between({0.0, 0.0}, {2.0, 1.0}), square) == Approx(0.5));
   }
   SECTION("identical") {
     CHECK(depth(square, square) > 0.3);
@@ -119,27 +110,27 @@ TEST_CASE("depth of known overlaps", "[geometry][overlap]") {
     for (int i = 0; i < 400; ++i) round.emplace_back(std::cos(i * std::numbers::pi / 200.0), std::sin(i * std::numbers::pi / 200.0));
     CHECK(depth(round, round) > 0.9);
     CHECK(depth(round, placed(round, 0.003, {1e-5, 0.0})) > 0.9);
-    const Polygon strip = rectangle(0.0, 0.0, 100.0, 0.004);
+    const Polygon strip = rectangle_between({0.0, 0.0}, {100.0, 0.004});
     CHECK(depth(strip, strip) == Approx(0.002));
-    CHECK(depth(strip, rectangle(0.0, 0.0, 50.0, 0.004)) == Approx(0.002));
+    CHECK(depth(strip, rectangle_between({0.0, 0.0}, {50.0, 0.004})) == Approx(0.002));
   }
   SECTION("identical but for a tail, whose mouth is all that is of one inside the other") {
     CHECK(depth(square, {{0.0, 0.0}, {5.0, 0.0}, {5.0, 1e-4}, {1.0, 1e-4}, {1.0, 1.0}, {0.0, 1.0}}) > 0.3);
   }
   SECTION("identical to rounding") {
     const double off = GENERATE(-1e-9, 1e-9, 1e-5);
-    CHECK(depth(square, rectangle(off, -off, 1.0 + off, 1.0)) > 0.3);
+    CHECK(depth(square, rectangle_between({off, -off}, {1.0 + off, 1.0})) > 0.3);
     CHECK(depth(placed(notched, 0.3, {1e6, 1e6}), placed(notched, 0.3 + 1e-15, {1e6, 1e6})) > 0.2);
   }
   SECTION("a block too wide for the notch") {
-    CHECK(depth(notched, rectangle(1.4, 1.0, 2.6, 3.0)) == Approx(0.1));
+    CHECK(depth(notched, rectangle_between({1.4, 1.0}, {2.6, 3.0})) == Approx(0.1));
   }
   SECTION("a beam through both cheeks of the notch") {
-    CHECK(depth(notched, rectangle(-1.0, 1.4, 5.0, 1.6)) == Approx(0.6));
+    CHECK(depth(notched, rectangle_between({-1.0, 1.4}, {5.0, 1.6})) == Approx(0.6));
   }
   SECTION("an edge that runs along a notch's tip is deep on both sides of it") {
     const Polygon pricked{{0.0, 0.0}, {4.0, 0.0}, {4.0, 2.0}, {2.01, 2.0}, {2.0, 1.0}, {1.99, 2.0}, {0.0, 2.0}};
-    CHECK(depth(pricked, rectangle(0.0, 1.0, 4.0, 3.0)) > 0.4);
+    CHECK(depth(pricked, rectangle_between({0.0, 1.0}, {4.0, 3.0})) > 0.4);
   }
 }
 

@@ -7,6 +7,7 @@
 
 #include "openclose/core/tolerance.h"
 #include "openclose/law/joint_law.h"
+#include "support/builders.h"
 #include "support/catch.h"
 
 using namespace openclose;
@@ -16,10 +17,7 @@ namespace {
 constexpr double rounding = 8.0 * std::numeric_limits<double>::epsilon();
 
 JointProperties joint_with(double friction, double cohesion, double tension, CohesionBehaviour behaviour = CohesionBehaviour::ductile) {
-  JointProperties joint;
-  joint.normal_stiffness = 1e9;
-  joint.shear_stiffness = 4e8;
-  joint.friction_angle = std::atan(friction);
+  JointProperties joint = builders::frictional_joint(1e9, 4e8, std::atan(friction));
   joint.cohesion = cohesion;
   joint.tensile_strength = tension;
   joint.cohesion_behaviour = behaviour;

@@ -9,11 +9,11 @@
 
 using namespace openclose;
 using test::degree;
-using test::empty_scene;
 using test::fixed_block;
 using test::free_block;
 using test::placed;
 using test::rectangle;
+using test::scene_with;
 
 namespace {
 
@@ -25,12 +25,6 @@ constexpr double density = 2500.0;  // [kg/m3] of test::empty_scene
 
 /// Feet 2 m and 1 m wide: a rectangle 2 x 1 at the origin and one 1 x 2 on its left half.
 const Polygon l_shape{{0.0, 0.0}, {2.0, 0.0}, {2.0, 1.0}, {1.0, 1.0}, {1.0, 3.0}, {0.0, 3.0}};
-
-Scene scene_with(std::vector<BlockInput> blocks) {
-  Scene scene = empty_scene();
-  scene.blocks = std::move(blocks);
-  return scene;
-}
 
 /// Of a single block, as the system places it, in its own coordinates.
 Polygon outline(const System& system, int b) {

@@ -3,34 +3,23 @@
 
 #include "openclose/scene/check.h"
 #include "scene_file.h"
+#include "support/builders.h"
 #include "support/catch.h"
 
 using namespace openclose;
 using Catch::Matchers::ContainsSubstring;
+using openclose::builders::free_block;
+using openclose::builders::rectangle;
 using openclose::test::block_on_base;
 using openclose::test::read_text;
 
 namespace {
 
-BlockInput block(const std::string& name, double x, double y, double width, double height) {
-  BlockInput input;
-  input.name = name;
-  input.vertices = {{x, y}, {x + width, y}, {x + width, y + height}, {x, y + height}};
-  return input;
-}
-
-/// A wall of unit bricks in running bond, each course shifted by half a brick.
-Scene wall(int courses, int length) {
-  Scene scene;
-  scene.where = {"scene.toml", 0};
-  scene.materials = {{"rock", 2700.0}};
-  scene.joints.resize(1);
-  for (int row = 0; row < courses; ++row) {
-    for (int column = 0; column < length; ++column) {
-      scene.blocks.push_back(block(std::to_string(row) + "/" + std::to_string(column), column + 0.5 * (row % 2), row, 1.0, 1.0));
-      scene.blocks.back().fixed = row == 0;
-    }
-  }
+/// A wall of unit bricks in running bond on a fixed course, each course shifted by half a brick.
+Scene running_bond(int courses, int length) {
+  Scene scene = builders::rock_scene(2700.0, {}, 1e-11);
+  scene.blocks = builders::wall(courses, length, 1.0, 0.5);
+  for (int i = 0; i < length; ++i) scene.blocks[i].fixed = true;
   return scene;
 }
 
@@ -38,7 +27,7 @@ Scene wall(int courses, int length) {
 
 TEST_CASE("a sound scene has nothing to complain of", "[scene][check]") {
   CHECK(check_scene(read_text(block_on_base)).empty());
-  CHECK(check_scene(wall(4, 4)).empty());
+  CHECK(check_scene(running_bond(4, 4)).empty());
 }
 
 TEST_CASE("blocks that overlap at the start are refused", "[scene][check]") {
@@ -64,25 +53,25 @@ TEST_CASE("overlaps of drawing accuracy are allowed", "[scene][check]") {
 }
 
 TEST_CASE("overlaps of every kind are found among many blocks", "[scene][check]") {
-  Scene scene = wall(10, 10);
+  Scene scene = running_bond(10, 10);
   SECTION("the same block twice") {
-    scene.blocks.push_back(block("twice", 5.0, 4.0, 1.0, 1.0));
+    scene.blocks.push_back(free_block("twice", rectangle(5.0, 4.0, 1.0, 1.0)));
   }
   SECTION("a small block inside one") {
-    scene.blocks.push_back(block("inside", 5.4, 4.4, 0.2, 0.2));
+    scene.blocks.push_back(free_block("inside", rectangle(5.4, 4.4, 0.2, 0.2)));
   }
   SECTION("a beam across all") {
-    scene.blocks.push_back(block("beam", -1.0, 4.4, 20.0, 0.2));
+    scene.blocks.push_back(free_block("beam", rectangle(-1.0, 4.4, 20.0, 0.2)));
   }
   SECTION("a block around all") {
-    scene.blocks.push_back(block("around", -1.0, -1.0, 20.0, 20.0));
+    scene.blocks.push_back(free_block("around", rectangle(-1.0, -1.0, 20.0, 20.0)));
   }
   CHECK_THROWS_AS(check_scene(scene), InputError);
   CHECK_THROWS_WITH(check_scene(scene), ContainsSubstring(scene.blocks.back().name));
 }
 
 TEST_CASE("a thousand blocks are checked at once", "[scene][check]") {
-  const Scene scene = wall(20, 50);
+  const Scene scene = running_bond(20, 50);
   const auto begin = std::chrono::steady_clock::now();
   CHECK(check_scene(scene).empty());
   CHECK(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() < 2.0);

@@ -1,61 +1,33 @@
 // Small scenes that several test folders share, built in memory.
 #pragma once
 
-#include <array>
-#include <cmath>
+#include <cstddef>
 #include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "openclose/scene/scene.h"
+#include "support/builders.h"
 
 namespace openclose::test {
 
-inline const std::array<std::string, 4> all_methods = {"soft", "hard", "shi", "dem"};
+using namespace builders;
+
 inline constexpr double degree = std::numbers::pi / 180.0;
-
-inline std::vector<Vec2> rectangle(double x, double y, double width, double height) {
-  return {{x, y}, {x + width, y}, {x + width, y + height}, {x, y + height}};
-}
-
-/// The polygon turned by `angle` [rad] about the origin, then shifted.
-inline std::vector<Vec2> placed(std::vector<Vec2> polygon, double angle, const Vec2& shift = Vec2::Zero()) {
-  for (Vec2& v : polygon) v = Vec2(std::cos(angle) * v.x() - std::sin(angle) * v.y(), std::sin(angle) * v.x() + std::cos(angle) * v.y()) + shift;
-  return polygon;
-}
-
-inline BlockInput free_block(const std::string& name, std::vector<Vec2> vertices) {
-  BlockInput block;
-  block.name = name;
-  block.vertices = std::move(vertices);
-  block.line = 11;
-  return block;
-}
-
-inline BlockInput fixed_block(const std::string& name, std::vector<Vec2> vertices) {
-  BlockInput block = free_block(name, std::move(vertices));
-  block.fixed = true;
-  return block;
-}
 
 /// [m] of `hard`: so tight that rigid contacts can be told from stiff ones.
 inline constexpr double gap_tolerance = 1e-11;
 
 /// One material of 2500 kg/m3, a joint without cohesion, steps of 1 ms, start "unloaded"; no blocks.
 inline Scene empty_scene() {
-  Scene scene;
-  scene.where = {"scene.toml", 0};
-  scene.materials = {{"rock", 2500.0}};
-  JointProperties joint;
-  joint.normal_stiffness = 1e9;
-  joint.shear_stiffness = 4e8;
-  joint.friction_angle = 30.0 * degree;
-  scene.joints = {joint};
-  scene.method.contact_where = {"scene.toml", 7};
-  scene.method.start = Start::unloaded;
-  scene.method.gap_tolerance = gap_tolerance;
+  Scene scene = rock_scene(2500.0, frictional_joint(1e9, 4e8, 30.0 * degree), gap_tolerance);
   scene.step.dt = 1e-3;
+  return scene;
+}
+
+inline Scene scene_with(std::vector<BlockInput> blocks) {
+  Scene scene = empty_scene();
+  scene.blocks = std::move(blocks);
   return scene;
 }
 
@@ -82,13 +54,6 @@ inline Scene block_on_incline(double slope) {
   Scene scene = block_on_base();
   for (BlockInput& block : scene.blocks) block.vertices = placed(block.vertices, -slope);
   return scene;
-}
-
-inline Vec2 downhill(double slope) {
-  return {std::cos(slope), -std::sin(slope)};
-}
-inline Vec2 off_slope(double slope) {
-  return {std::sin(slope), std::cos(slope)};
 }
 
 /// A column of n of these blocks on the base, each shifted against the one below by 0.3 m, to and fro.
@@ -121,22 +86,10 @@ inline Scene struck_wall(int blocks = 40) {
   constexpr int courses = 16;
   Scene scene = empty_scene();
   scene.blocks = {fixed_block("base", rectangle(-1.0, -1.0, 2.0 * blocks + 3.0, 1.0))};
-  for (int course = 0; course < courses; ++course) {
-    for (int i = 0; i < blocks; ++i) {
-      const std::string name = "block " + std::to_string(course) + " " + std::to_string(i);
-      scene.blocks.push_back(free_block(name, rectangle(2.0 * i + course % 2, course, 2.0, 1.0)));
-      if (course == courses - 1 && i % 10 == 5) scene.blocks.back().velocity = {3.0, -1.0};
-    }
-  }
+  for (BlockInput& block : wall(courses, blocks, 2.0, 1.0)) scene.blocks.push_back(std::move(block));
+  for (std::size_t i = scene.blocks.size() - blocks + 5; i < scene.blocks.size(); i += 10) scene.blocks[i].velocity = {3.0, -1.0};
   scene.step.dt = 5e-3;
   return scene;
-}
-
-/// `shi` with the joint's own springs for penalties, so that it differs from `soft` in its way of solving only.
-inline void use_joint_springs_as_penalty(Scene& scene) {
-  scene.method.penalty = scene.joints[0].normal_stiffness;
-  scene.method.penalty_shear_ratio = scene.joints[0].shear_stiffness / scene.joints[0].normal_stiffness;
-  scene.method.penetration_tolerance = 1.0;
 }
 
 }  // namespace openclose::test

@@ -12,8 +12,10 @@ import csv
 import json
 import math
 import pathlib
-import subprocess
 import tempfile
+
+from openclose_scripts.csv_rows import read_rows
+from openclose_scripts.processes import run_process
 
 HERE = pathlib.Path(__file__).resolve().parent
 GRAVITY = 9.81
@@ -36,8 +38,8 @@ class Programs:
         """None where the program gives no factor."""
         with tempfile.TemporaryDirectory() as out:
             options = [f"gravity_m_per_s2=[{gravity[0]!r}, {gravity[1]!r}]", *settings]
-            command = [self._folder / "openclose", "fos", "-q", scene, "-o", out, *(word for o in options for word in ("--set", o))]
-            subprocess.run(command, capture_output=True, check=False)
+            command = [str(self._folder / "openclose"), "fos", "-q", str(scene), "-o", out, *(word for o in options for word in ("--set", o))]
+            run_process(command)
             summary = pathlib.Path(out) / "summary.json"
             return json.loads(summary.read_text())["factor_of_safety"] if summary.exists() else None
 
@@ -46,7 +48,7 @@ class Programs:
             lines = (line for line in scene.read_text().splitlines(True) if not line.startswith("gravity_m_per_s2"))
             copy.write(f"gravity_m_per_s2 = [{gravity[0]!r}, {gravity[1]!r}]\n" + "".join(lines))
             copy.flush()
-            run = subprocess.run([self._folder / "analytical/openclose-reference", "limit-analysis", copy.name], capture_output=True, text=True, check=False)
+            run = run_process([str(self._folder / "analytical/openclose-reference"), "limit-analysis", copy.name])
             values = dict(line.split(",", 1) for line in run.stdout.splitlines() if "," in line)
             return float(values["factor_of_safety"]) if values.get("factor_of_safety") else None
 
@@ -95,7 +97,7 @@ def main():
     with open(results / "blind.csv", "w", newline="") as file:
         table = csv.writer(file)
         table.writerow(["scene", "load", "printed", "rounding", "variant", "found", "difference_percent"])
-        for case in csv.DictReader(open(HERE / "cases.csv")):
+        for case in read_rows(HERE / "cases.csv"):
             if options.scenes and case["scene"] not in options.scenes:
                 continue
             scene = HERE / f"{case['scene']}.toml"

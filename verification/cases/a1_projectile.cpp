@@ -6,6 +6,7 @@
 #include "scenes.h"
 
 namespace openclose::verification {
+namespace {
 
 void projectile(Report& report) {
   const analytical::Projectile thrown;
@@ -34,4 +35,7 @@ void projectile(Report& report) {
   }
 }
 
+const Registered<Case> registered{{"A1", "projectile", &projectile}};
+
+}  // namespace
 }  // namespace openclose::verification

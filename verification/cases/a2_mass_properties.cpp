@@ -37,8 +37,6 @@ Response push(const Report& report, const std::string& method, const std::vector
   return {mass, moment * dt * dt / (2.0 * rotation), arm * (point - centroid).normalized()};
 }
 
-}  // namespace
-
 void mass_properties(Report& report) {
   const std::string source = "regular n-gon, I = (m R^2/6)(1 + 2 cos^2(pi/n))";
   for (const std::string& method : all_methods) {
@@ -69,4 +67,7 @@ void mass_properties(Report& report) {
   }
 }
 
+const Registered<Case> registered{{"A2", "mass properties from the response to a load", &mass_properties}};
+
+}  // namespace
 }  // namespace openclose::verification

@@ -31,8 +31,6 @@ void check_kinetic_energy(Report& report, RotationKind kind, const std::string& 
               "nothing acts; rounding of 100 steps");
 }
 
-}  // namespace
-
 void free_spin(Report& report) {
   const double omega = 10.0, dt = 0.01;
   const int steps = 100;
@@ -64,4 +62,7 @@ void free_spin(Report& report) {
   }
 }
 
+const Registered<Case> registered{{"A3", "free spin", &free_spin}};
+
+}  // namespace
 }  // namespace openclose::verification

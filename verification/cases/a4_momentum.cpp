@@ -34,7 +34,7 @@ Scene cluster(const std::string& method, double dt) {
   Scene scene = empty_scene(data);
   scene.gravity = Vec2::Zero();
   scene.method.contact = method;
-  use_joint_springs_as_penalty(scene, data);
+  use_joint_springs_as_penalty(scene);
   scene.step = {dt, 1.0, 1e-6};
   scene.end_time = 0.3;
   BlockInput left = free_block("left", rectangle(0.0, 0.0, 2.0, 1.0));
@@ -82,8 +82,6 @@ Drift drift(const Report& report, const std::string& method, double dt, const st
   return collided ? d : Drift{not_measured(), not_measured()};
 }
 
-}  // namespace
-
 void momentum(Report& report) {
   for (const Scheme& scheme : schemes()) ledger(report, scheme);
   for (const double dt : {2e-3, 4e-4, 1e-4}) {
@@ -122,4 +120,7 @@ void momentum(Report& report) {
   }
 }
 
+const Registered<Case> registered{{"A4", "momentum of a free cluster", &momentum}};
+
+}  // namespace
 }  // namespace openclose::verification

@@ -112,7 +112,7 @@ void transients(Report& report) {
           if (method == "soft") scene.method.integrator = trapezoid ? "theta" : integrator;
           if (trapezoid) scene.method.theta = 0.5;
           scene.output_every = every;
-          use_joint_springs_as_penalty(scene, data);
+          use_joint_springs_as_penalty(scene);
           return distance_to(report, scene, data, exact);
         };
         for (const double refinement : {1.0, 2.0, 4.0, 8.0, 16.0, 32.0}) {
@@ -181,13 +181,11 @@ void ledgers(Report& report) {
     const analytical::BlockOnPlane data;
     Scene scene = scene_of(data, scheme.contact, Start::unloaded, 1e-3, 1.0);
     set_scheme(scene, scheme);
-    use_joint_springs_as_penalty(scene, data);
+    use_joint_springs_as_penalty(scene);
     Simulation simulation = report.simulate(scene);
     check_ledger(report, with_variant("(a) unloaded, phi = 20 deg", scheme), scheme.contact, simulation, !history(simulation).empty());
   }
 }
-
-}  // namespace
 
 void incline(Report& report) {
   ledgers(report);
@@ -197,4 +195,7 @@ void incline(Report& report) {
   invariant(report);
 }
 
+const Registered<Case> registered{{"B1", "block on an incline", &incline}};
+
+}  // namespace
 }  // namespace openclose::verification

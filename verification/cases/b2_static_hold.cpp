@@ -36,7 +36,7 @@ Hold settle_on(const Report& report, const analytical::BlockOnPlane& data, const
   Scene scene = block_on_plane(data);
   scene.method.contact = method;
   scene.step.dt = 0.01;
-  use_joint_springs_as_penalty(scene, data);
+  use_joint_springs_as_penalty(scene);
   Simulation simulation = report.simulate(scene);
   const SettleResult result = settle(simulation);
   return forces_of(simulation, result.settled);
@@ -110,12 +110,13 @@ void drift(Report& report) {
   }
 }
 
-}  // namespace
-
 void static_hold(Report& report) {
   corner_forces(report);
   threshold(report);
   drift(report);
 }
 
+const Registered<Case> registered{{"B2", "static hold", &static_hold}};
+
+}  // namespace
 }  // namespace openclose::verification

@@ -14,7 +14,7 @@ bool holds(const Report& report, const analytical::BlockOnPlane& data, const std
   scene.joints[0].cohesion_behaviour = behaviour;
   scene.method.contact = method;
   scene.step.dt = 0.01;
-  use_joint_springs_as_penalty(scene, data);
+  use_joint_springs_as_penalty(scene);
   Simulation simulation = report.simulate(scene);
   return settle(simulation).settled;
 }
@@ -29,8 +29,6 @@ double threshold(const Report& report, const analytical::BlockOnPlane& data, con
   }
   return 0.5 * (low + high);
 }
-
-}  // namespace
 
 void cohesion_threshold(Report& report) {
   const analytical::BlockOnPlane data;
@@ -65,4 +63,7 @@ void cohesion_threshold(Report& report) {
   report.relative("threshold, lost on slip", "hard", brittle, measured, 1e-6, "Pa", "equal shares of T; rigid: no tilt");
 }
 
+const Registered<Case> registered{{"B3", "cohesion threshold", &cohesion_threshold}};
+
+}  // namespace
 }  // namespace openclose::verification

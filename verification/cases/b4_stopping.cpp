@@ -33,8 +33,8 @@ Scene scene_of(const Throw& t, const std::string& method, double dt, double end)
   scene.step.dt = dt;
   scene.end_time = end;
   scene.output_every = 0.05;
-  use_joint_springs_as_penalty(scene, t.data);
-  scene.blocks[1].velocity = t.direction * speed * Vec2(std::cos(t.data.slope_angle), -std::sin(t.data.slope_angle));
+  use_joint_springs_as_penalty(scene);
+  scene.blocks[1].velocity = t.direction * speed * downhill(t.data.slope_angle);
   return scene;
 }
 
@@ -143,8 +143,6 @@ void ledger(Report& report, const Throw& t) {
   }
 }
 
-}  // namespace
-
 void stopping(Report& report) {
   for (const Throw& t : throws()) {
     rigid(report, t);
@@ -155,4 +153,7 @@ void stopping(Report& report) {
   rebound(report, throws().front());
 }
 
+const Registered<Case> registered{{"B4", "initial velocity to a stop", &stopping}};
+
+}  // namespace
 }  // namespace openclose::verification

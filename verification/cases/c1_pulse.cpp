@@ -32,7 +32,7 @@ Scene scene_of(const std::string& method, const analytical::BlockOnPlane& data, 
   // To the left: the block moves on to the right.
   scene.base_motion.emplace();
   scene.base_motion->pulses = {{0.0, duration, {-pulse, 0.0}}};
-  use_joint_springs_as_penalty(scene, data);
+  use_joint_springs_as_penalty(scene);
   return scene;
 }
 
@@ -117,8 +117,6 @@ void stiffness(Report& report) {
                "speed won on slack springs, mu g/w: order -1/2", stiffness_name);
 }
 
-}  // namespace
-
 void pulse_under_block(Report& report) {
   rigid(report);
   elastic(report);
@@ -130,4 +128,7 @@ void pulse_under_block(Report& report) {
   }
 }
 
+const Registered<Case> registered{{"C1", "block on a base with a rectangular pulse", &pulse_under_block}};
+
+}  // namespace
 }  // namespace openclose::verification

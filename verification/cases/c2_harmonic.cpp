@@ -33,7 +33,7 @@ Scene scene_of(const std::string& method, const analytical::BlockOnPlane& data, 
   scene.base_motion->kind = BaseMotionKind::harmonic;
   scene.base_motion->amplitude = {-amplitude, 0.0};
   scene.base_motion->frequency = frequency;
-  use_joint_springs_as_penalty(scene, data);
+  use_joint_springs_as_penalty(scene);
   return scene;
 }
 
@@ -113,8 +113,6 @@ void elastic(Report& report) {
   }
 }
 
-}  // namespace
-
 void shaken_incline(Report& report) {
   rigid(report);
   stiffness(report);
@@ -125,4 +123,7 @@ void shaken_incline(Report& report) {
   }
 }
 
+const Registered<Case> registered{{"C2", "block on an incline under harmonic shaking", &shaken_incline}};
+
+}  // namespace
 }  // namespace openclose::verification

@@ -28,7 +28,7 @@ Scene scene_of(const std::string& method, double dt, double end) {
   scene.step.dt = dt;
   scene.end_time = end;
   scene.output_every = every;
-  use_joint_springs_as_penalty(scene, data_of_scene());
+  use_joint_springs_as_penalty(scene);
   return scene;
 }
 
@@ -113,8 +113,6 @@ void own_limit(Report& report) {
                "converges within itself with the order of the scheme");
 }
 
-}  // namespace
-
 void recorded_motion(Report& report) {
   rigid(report);
   elastic(report);
@@ -125,4 +123,7 @@ void recorded_motion(Report& report) {
   }
 }
 
+const Registered<Case> registered{{"C3", "block on an incline under a record", &recorded_motion}};
+
+}  // namespace
 }  // namespace openclose::verification

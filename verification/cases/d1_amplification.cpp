@@ -23,7 +23,7 @@ Scene scene_of(const std::string& method, double theta, double dt) {
   scene.method.contact = method;
   scene.method.theta = theta;
   scene.step.dt = dt;
-  use_joint_springs_as_penalty(scene, level_block());
+  use_joint_springs_as_penalty(scene);
   scene.settle.unbalanced_fraction = 1e-12;
   return scene;
 }
@@ -99,8 +99,6 @@ void ledger(Report& report, const Scheme& scheme) {
   check_ledger(report, with_variant("free vibration", scheme), scheme.contact, simulation, done);
 }
 
-}  // namespace
-
 void amplification(Report& report) {
   for (const double phase : {0.5, 1.0, 3.9, 4.1}) {
     matrix(report, "soft", 1.0, phase);
@@ -114,4 +112,7 @@ void amplification(Report& report) {
   report.leave_out("amplification matrix", "hard", "rigid contacts do not vibrate");
 }
 
+const Registered<Case> registered{{"D1", "amplification matrix of one block on a spring", &amplification}};
+
+}  // namespace
 }  // namespace openclose::verification

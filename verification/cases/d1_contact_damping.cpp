@@ -25,9 +25,7 @@ Scene scene_of(const Scheme& scheme, double ratio, double dt) {
                   free_block("block", {{0.0, 0.0}, {length, length}, {0.0, 2.0 * length}, {-length, length}})};
   scene.blocks[1].rotation_locked = true;
   set_scheme(scene, scheme);
-  scene.method.penalty = stiffness;
-  scene.method.penalty_shear_ratio = 0.5;
-  scene.method.penetration_tolerance = 1.0;
+  use_joint_springs_as_penalty(scene);
   scene.settle.unbalanced_fraction = 1e-12;
   scene.step.dt = dt;
   return scene;
@@ -76,8 +74,6 @@ void damping(Report& report, const Scheme& scheme, double ratio, bool along) {
                "damped oscillator, m* = mass of the block on a fixed base");
 }
 
-}  // namespace
-
 void contact_damping(Report& report) {
   for (const double ratio : {0.1, 1.0, 2.0}) {
     for (const bool along : {false, true}) {
@@ -87,4 +83,7 @@ void contact_damping(Report& report) {
   report.leave_out("contact damping", "hard", "rigid contacts have no springs and impacts without rebound");
 }
 
+const Registered<Case> registered{{"D1c", "contact damping of one block on one contact", &contact_damping}};
+
+}  // namespace
 }  // namespace openclose::verification

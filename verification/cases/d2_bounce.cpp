@@ -30,7 +30,7 @@ Scene scene_of(const Scheme& scheme, double time, double dt) {
   scene.blocks[1].rotation_locked = true;
   set_scheme(scene, scheme);
   scene.step.dt = dt;
-  use_joint_springs_as_penalty(scene, level_block());
+  use_joint_springs_as_penalty(scene);
   return scene;
 }
 
@@ -208,8 +208,6 @@ void plastic(Report& report) {
   report.leave_out("contact time, depth, period, drift", "hard", "rigid contacts do not rebound");
 }
 
-}  // namespace
-
 void bounce(Report& report) {
   for (const Scheme& scheme : spring_schemes()) {
     orders(report, scheme);
@@ -228,4 +226,7 @@ void bounce(Report& report) {
   plastic(report);
 }
 
+const Registered<Case> registered{{"D2", "bounce on a contact", &bounce}};
+
+}  // namespace
 }  // namespace openclose::verification

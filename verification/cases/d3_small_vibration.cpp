@@ -41,7 +41,7 @@ Scene scene_of(const Scheme& scheme, double dt) {
   set_scheme(scene, scheme);
   scene.step.dt = dt;
   scene.settle.unbalanced_fraction = 1e-12;
-  use_joint_springs_as_penalty(scene, level_block());
+  use_joint_springs_as_penalty(scene);
   return scene;
 }
 
@@ -103,8 +103,6 @@ void critical(Report& report, double highest) {
               "cosh(2 n arcosh 1.01), 46 times the first: unstable; the amplitude changes w by itself over the height");
 }
 
-}  // namespace
-
 void small_vibration(Report& report) {
   const auto sway = analytical::sway_rock_frequencies(level_block());
   const std::array<double, 3> expected = {sway[0], analytical::bounce_frequency(level_block()), sway[1]};
@@ -136,4 +134,7 @@ void small_vibration(Report& report) {
   report.leave_out("small vibration", "hard", "rigid contacts do not vibrate");
 }
 
+const Registered<Case> registered{{"D3", "small vibration of a block on two springs", &small_vibration}};
+
+}  // namespace
 }  // namespace openclose::verification

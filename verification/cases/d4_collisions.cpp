@@ -19,8 +19,7 @@ Scene scene_of(const Scheme& scheme, const analytical::MassRow& row, double dt) 
   scene.materials[0].density = density;
   scene.joints[0].normal_stiffness = scene.joints[0].shear_stiffness = row.stiffness;
   set_scheme(scene, scheme);
-  use_joint_springs_as_penalty(scene, data);
-  scene.method.penalty_shear_ratio = 1.0;
+  use_joint_springs_as_penalty(scene);
   scene.step.dt = dt;
   double x = 0.0;
   for (std::size_t i = 0; i < row.masses.size(); ++i) {
@@ -160,8 +159,6 @@ void plastic(Report& report) {
   report.leave_out("elastic collisions", "hard", "restitution 0: rigid contacts are plastic");
 }
 
-}  // namespace
-
 void collisions(Report& report) {
   for (const Scheme& scheme : spring_schemes()) {
     elastic_pairs(report, scheme);
@@ -176,4 +173,7 @@ void collisions(Report& report) {
   }
 }
 
+const Registered<Case> registered{{"D4", "collisions", &collisions}};
+
+}  // namespace
 }  // namespace openclose::verification

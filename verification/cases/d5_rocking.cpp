@@ -25,12 +25,10 @@ analytical::BlockOnPlane tall_block() {
 /// Leaning by an angle [rad] to the left, its lower left corner on the base, or pressed into it by what its weight closes there [m].
 Scene leaning(const std::string& method, double angle, double dt, double closure = 0.0) {
   Scene scene = block_on_plane(tall_block());
-  for (Vec2& v : scene.blocks[1].vertices) {
-    v = Vec2(std::cos(angle) * v.x() - std::sin(angle) * v.y(), std::sin(angle) * v.x() + std::cos(angle) * v.y() - closure);
-  }
+  scene.blocks[1].vertices = placed(scene.blocks[1].vertices, angle, {0.0, -closure});
   scene.method.contact = method;
   scene.step.dt = dt;
-  use_joint_springs_as_penalty(scene, tall_block());
+  use_joint_springs_as_penalty(scene);
   return scene;
 }
 
@@ -207,12 +205,13 @@ void overturning(Report& report) {
   report.leave_out("overturning map", "dem", "as soft");
 }
 
-}  // namespace
-
 void rocking_block(Report& report) {
   rigid(report);
   elastic(report);
   overturning(report);
 }
 
+const Registered<Case> registered{{"D5", "rocking block", &rocking_block}};
+
+}  // namespace
 }  // namespace openclose::verification

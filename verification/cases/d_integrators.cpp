@@ -156,14 +156,12 @@ void bounces(Report& report) {
   }
 }
 
-}  // namespace
-
 void second_order_integrators(Report& report) {
   for (const std::string integrator : {"generalized_alpha", "tr_bdf2", "path_average"}) amplification(report, integrator);
 }
 
-void conserving_bounces(Report& report) {
-  bounces(report);
-}
+const Registered<Case> registered_amplification{{"D1i", "amplification by the integrators of second order", &second_order_integrators}};
+const Registered<Case> registered_bounces{{"D2i", "bounces with path-averaged forces", &bounces}};
 
+}  // namespace
 }  // namespace openclose::verification

@@ -35,8 +35,6 @@ Safety safety_of(const Report& report, const Scene& scene) {
   return {result.stable(), deepest};
 }
 
-}  // namespace
-
 void planar_wedge(Report& report) {
   const double expected = analytical::factor_of_safety(analytical::PlanarWedge{});
   // Forces along and normal to one plane decide, so nothing but the width of the bracket is left; the elastic tilt of the wedge turns the plane by
@@ -55,4 +53,7 @@ void planar_wedge(Report& report) {
   }
 }
 
+const Registered<Case> registered{{"E1", "planar wedge", &planar_wedge}};
+
+}  // namespace
 }  // namespace openclose::verification

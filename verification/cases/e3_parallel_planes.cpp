@@ -19,8 +19,6 @@ analytical::PlanarWedge whole_wedge() {
   return {260, 55 * degree, 35.2 * degree, 0.1e6, 40 * degree, 26.1e3};
 }
 
-}  // namespace
-
 void parallel_planes(Report& report) {
   struct Model {
     const char* file;
@@ -50,4 +48,7 @@ void parallel_planes(Report& report) {
   }
 }
 
+const Registered<Case> registered{{"E3", "plane failure on parallel joints", &parallel_planes}};
+
+}  // namespace
 }  // namespace openclose::verification

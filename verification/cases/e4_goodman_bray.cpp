@@ -51,8 +51,6 @@ double degrees(double radians) {
   return radians / analytical::degree;
 }
 
-}  // namespace
-
 /// The recursion is where the columns fall: as they lean over, each turns about its lower corner, presses on its neighbour with the upper end of
 /// their common side and slides there, which is what the recursion assumes. Limit analysis chooses its forces so that the columns hold best; with
 /// forces that dilatancy does not tie to the motion neither is wrong, but what comes to rest from slack or settled joints finds the state of the
@@ -83,4 +81,7 @@ void goodman_bray(Report& report) {
       "its passes, with the friction of the pass before, do not come to an end in the last 0.4 % before the limit: it answers with an interval");
 }
 
+const Registered<Case> registered{{"E4", "toppling columns of Goodman and Bray", &goodman_bray}};
+
+}  // namespace
 }  // namespace openclose::verification

@@ -20,8 +20,6 @@ constexpr Behaviour behaviours[] = {{CohesionBehaviour::ductile, "ductile", 1.95
 constexpr double code_to_code = 0.03;  // [-] how far two codes may differ in what they count as failed
 constexpr double above_limit = 0.005;  // [-] by which geometry that has changed before failure may raise the factor
 
-}  // namespace
-
 void two_joint_sets(Report& report) {
   Scene scene = read_scene(OPENCLOSE_PAPER_SCENES "/example_3_4.toml");
   scene.strength_reduction.width = 5e-3;
@@ -50,4 +48,7 @@ void two_joint_sets(Report& report) {
                    "number of steps that a trial may take, which leaves a lower bound; make reproduce prints it");
 }
 
+const Registered<Case> registered{{"E5", "slope with two joint sets", &two_joint_sets}};
+
+}  // namespace
 }  // namespace openclose::verification

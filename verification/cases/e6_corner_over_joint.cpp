@@ -1,6 +1,6 @@
-// E6, its other mechanism: a block slides down a plane of two fixed blocks, and its front corner stands on the joint between them: three blocks meet
-// in one corner, and air. This is so wherever joints cross in the face of a slope, and at its toe. A contact of the front corner with the joint's
-// wall below, or of the wall's corner with the block's front, would lock the block; it slides as eq. (8) says.
+// E6c, the other mechanism of E6: a block slides down a plane of two fixed blocks, and its front corner stands on the joint between them: three
+// blocks meet in one corner, and air. This is so wherever joints cross in the face of a slope, and at its toe. A contact of the front corner with the
+// joint's wall below, or of the wall's corner with the block's front, would lock the block; it slides as eq. (8) says.
 #include <cmath>
 
 #include "harness.h"
@@ -17,8 +17,7 @@ constexpr double duration = 0.5;  // [s]
 /// Angles from the plane, uphill: of the joint below it and of the block's front above.
 Scene block_over_joint(const analytical::BlockOnPlane& data, double joint_angle, double front_angle) {
   Scene scene = empty_scene(data);
-  const double a = data.slope_angle;
-  const auto place = [&](double s, double h) { return Vec2(s * std::cos(a) + h * std::sin(a), -s * std::sin(a) + h * std::cos(a)); };
+  const auto place = [&](double along, double above) { return on_slope(data.slope_angle, along, above); };
   const double joint_lean = 1.0 / std::tan(joint_angle), front_lean = data.height / std::tan(front_angle);
   scene.blocks = {fixed_block("base up", {place(-8.0, 0.0), place(-8.0, -1.0), place(-joint_lean, -1.0), place(0.0, 0.0)}),
                   fixed_block("base down", {place(0.0, 0.0), place(-joint_lean, -1.0), place(8.0, -1.0), place(8.0, 0.0)}),
@@ -34,8 +33,6 @@ double slide(const Report& report, const Scene& scene, const analytical::BlockOn
   const std::vector<Sample> samples = history(simulation);
   return samples.empty() ? not_measured() : downhill(data, samples.back().motion.displacement);
 }
-
-}  // namespace
 
 void corner_over_joint(Report& report) {
   analytical::BlockOnPlane data;
@@ -58,4 +55,7 @@ void corner_over_joint(Report& report) {
   }
 }
 
+const Registered<Case> registered{{"E6c", "a corner that stands on a joint", &corner_over_joint}};
+
+}  // namespace
 }  // namespace openclose::verification

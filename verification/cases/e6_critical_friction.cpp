@@ -33,8 +33,6 @@ double degrees(double radians) {
   return radians / analytical::degree;
 }
 
-}  // namespace
-
 void critical_friction(Report& report) {
   for (const Slope& slope : slopes) {
     Scene scene = read_scene(std::string(OPENCLOSE_VERIFICATION_SCENES "/") + slope.file + ".toml");
@@ -57,4 +55,7 @@ void critical_friction(Report& report) {
   }
 }
 
+const Registered<Case> registered{{"E6", "critical friction angle of jointed slopes", &critical_friction}};
+
+}  // namespace
 }  // namespace openclose::verification

@@ -1,4 +1,4 @@
-// E6, the mechanism behind it: two blocks slide as a slab over two fixed ones, and all four meet exactly in one corner. A contact between the
+// E6f, the mechanism behind E6: two blocks slide as a slab over two fixed ones, and all four meet exactly in one corner. A contact between the
 // diagonal blocks would lock the slab; without one it slides as eq. (8) says.
 #include <cmath>
 
@@ -14,8 +14,7 @@ namespace {
 /// Slab and base on an incline, cut by one joint at `joint_angle` from the plane (90: normal to it).
 Scene slab(const analytical::BlockOnPlane& data, double joint_angle) {
   Scene scene = empty_scene(data);
-  const double a = data.slope_angle;
-  const auto place = [&](double s, double h) { return Vec2(s * std::cos(a) + h * std::sin(a), -s * std::sin(a) + h * std::cos(a)); };
+  const auto place = [&](double along, double above) { return on_slope(data.slope_angle, along, above); };
   const double lean = 1.0 / std::tan(joint_angle);  // shift of the joint per metre of height
   scene.blocks = {fixed_block("base up", {place(-8.0, 0.0), place(-8.0, -1.0), place(-lean, -1.0), place(0.0, 0.0)}),
                   fixed_block("base down", {place(0.0, 0.0), place(-lean, -1.0), place(8.0, -1.0), place(8.0, 0.0)}),
@@ -36,14 +35,12 @@ double slide(const Report& report, const Scene& scene, const analytical::BlockOn
 Scene scene_of(const analytical::BlockOnPlane& data, double degrees, const std::string& method, double dt) {
   Scene scene = slab(data, degrees * analytical::degree);
   scene.method.contact = method;
-  use_joint_springs_as_penalty(scene, data);
+  use_joint_springs_as_penalty(scene);
   scene.step.dt = dt;
   scene.end_time = 0.5;
   scene.output_every = scene.end_time;
   return scene;
 }
-
-}  // namespace
 
 void four_block_corner(Report& report) {
   const analytical::BlockOnPlane data;
@@ -69,4 +66,7 @@ void four_block_corner(Report& report) {
   }
 }
 
+const Registered<Case> registered{{"E6f", "four blocks that meet in one corner", &four_block_corner}};
+
+}  // namespace
 }  // namespace openclose::verification

@@ -41,8 +41,6 @@ double smallest_thickness(const Report& report, int voussoirs, const std::string
                    [&](double thickness) { return stands(report, arch(voussoirs, thickness, method, stiffness)); });
 }
 
-}  // namespace
-
 void arch(Report& report) {
   for (const int n : {6, 7, 10, 27}) {
     const double limit = analytical::smallest_arch_thickness(n, analytical::VoussoirShape::straight);
@@ -63,4 +61,7 @@ void arch(Report& report) {
   report.leave_out("smallest t/R of ring sectors", "all", "blocks are polygons; the formula for both shapes is in analytical/masonry_arch.h");
 }
 
+const Registered<Case> registered{{"F1", "smallest thickness of an arch", &arch}};
+
+}  // namespace
 }  // namespace openclose::verification

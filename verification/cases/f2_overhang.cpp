@@ -29,8 +29,6 @@ Scene stack(int blocks, double scale, const std::string& method, double stiffnes
   return scene;
 }
 
-}  // namespace
-
 void overhang(Report& report) {
   // On springs a stack reaches less far by its closures over its lengths: here by 1e-6 for 4 blocks, far less than the thousandth.
   constexpr double stiff = 1e11;  // [Pa/m]
@@ -58,4 +56,7 @@ void overhang(Report& report) {
                    "settling starts from slack springs in motion; by how far the blocks swing beyond their rest has no order in 1/kn");
 }
 
+const Registered<Case> registered{{"F2", "overhang of a stack", &overhang}};
+
+}  // namespace
 }  // namespace openclose::verification

@@ -29,7 +29,7 @@ Scene scene_of(const std::string& method, double theta, double dt) {
   scene.method.theta = theta;
   scene.step.dt = dt;
   scene.settle.unbalanced_fraction = 1e-12;
-  use_joint_springs_as_penalty(scene, level_block());
+  use_joint_springs_as_penalty(scene);
   return scene;
 }
 
@@ -120,8 +120,6 @@ void run_in_time(Report& report, const std::string& method, double theta, const 
   }
 }
 
-}  // namespace
-
 void column(Report& report) {
   for (const std::string& method : all_methods) forces(report, method);
   const auto frequencies = analytical::column_frequencies(blocks, level_block().mass(), 2.0 * level_block().normal_stiffness);
@@ -135,4 +133,7 @@ void column(Report& report) {
   report.leave_out("modes", "hard", "rigid contacts do not vibrate");
 }
 
+const Registered<Case> registered{{"F3", "forces and modes of a column", &column}};
+
+}  // namespace
 }  // namespace openclose::verification

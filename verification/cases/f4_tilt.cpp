@@ -36,7 +36,7 @@ double tips_at(const Report& report, analytical::BlockOnPlane data, int blocks, 
     scene.method.contact = method;
     scene.step.dt = 1e-3;
     scene.settle.failure_displacement = 0.1;
-    use_joint_springs_as_penalty(scene, data);
+    use_joint_springs_as_penalty(scene);
     return stands(report, scene);
   });
 }
@@ -44,8 +44,6 @@ double tips_at(const Report& report, analytical::BlockOnPlane data, int blocks, 
 double degrees(double radians) {
   return radians / analytical::degree;
 }
-
-}  // namespace
 
 void tilt(Report& report) {
   const analytical::BlockOnPlane data = column(1.0);
@@ -74,4 +72,7 @@ void tilt(Report& report) {
                compliance_name);
 }
 
+const Registered<Case> registered{{"F4", "a column tips", &tilt}};
+
+}  // namespace
 }  // namespace openclose::verification

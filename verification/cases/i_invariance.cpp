@@ -32,8 +32,7 @@ Scene tumbling(const std::string& method) {
   scene.blocks[2].velocity = {-1.0, -1.0};
   scene.blocks[3].velocity = {0.0, -4.0};
   scene.method.contact = method;
-  use_joint_springs_as_penalty(scene, {});
-  scene.method.penalty_shear_ratio = 0.5;
+  use_joint_springs_as_penalty(scene);
   scene.step = {dt, 1.0, 1e-6};
   scene.end_time = end;
   return scene;
@@ -100,17 +99,14 @@ void invariance_of(Report& report, const std::string& method) {
               rounding(10.0), "m, rad", why);
 
   const double angle = 0.7391;
-  const auto turn = [](const Vec2& v, double a) {
-    return Vec2(std::cos(a) * v.x() - std::sin(a) * v.y(), std::sin(a) * v.x() + std::cos(a) * v.y());
-  };
-  Scene turned = scene;
-  move_vertices(turned, [&](const Vec2& v) { return turn(v, angle); });
-  turned.gravity = turn(turned.gravity, angle);
-  for (BlockInput& b : turned.blocks) b.velocity = turn(b.velocity, angle);
+  Scene rotated = scene;
+  move_vertices(rotated, [&](const Vec2& v) { return turned(v, angle); });
+  rotated.gravity = turned(rotated.gravity, angle);
+  for (BlockInput& b : rotated.blocks) b.velocity = turned(b.velocity, angle);
   report.near("I3 turned by 0.7391 rad, gravity too", method, 0.0,
-              difference(plain, motion(report, turned),
+              difference(plain, motion(report, rotated),
                          [&](const Eigen::Vector3d& d) {
-                           const Vec2 u = turn(d.head<2>(), -angle);
+                           const Vec2 u = turned(d.head<2>(), -angle);
                            return Eigen::Vector3d(u.x(), u.y(), d[2]);
                          }),
               rounding(10.0), "m, rad", why);
@@ -164,13 +160,7 @@ void invariance_of(Report& report, const std::string& method) {
 Scene large_wall(const std::string& method) {
   constexpr int courses = 25, bricks = 42;
   Scene scene = tumbling(method);
-  scene.blocks = {fixed_block("base", rectangle(-10.0, -1.0, 2.0 * bricks + 20.0, 1.0))};
-  for (int c = 0; c < courses; ++c) {
-    for (int b = 0; b < bricks; ++b) {
-      scene.blocks.push_back(free_block(std::to_string(c) + "_" + std::to_string(b), rectangle(2.0 * b + 0.5 * (c % 2), 1.0 * c, 2.0, 1.0)));
-    }
-  }
-  for (int b = 0; b < bricks; ++b) scene.blocks[scene.blocks.size() - 1 - b].velocity = {2.0, 0.0};
+  scene.blocks = wall_with_moving_top(courses, bricks, 0.5);
   scene.method.linear_solver = LinearSolverKind::iterative;
   return scene;
 }
@@ -224,8 +214,6 @@ void moving_frame(Report& report, const std::string& method) {
               text("growth {:.3g}, measured, times eps times coordinates times roundings", growth));
 }
 
-}  // namespace
-
 void invariance(Report& report) {
   for (const std::string& method : all_methods) {
     invariance_of(report, method);
@@ -234,4 +222,7 @@ void invariance(Report& report) {
   }
 }
 
+const Registered<Case> registered{{"I", "invariance: units, mirror, turn, place, frame, order, strangers, restart", &invariance}};
+
+}  // namespace
 }  // namespace openclose::verification

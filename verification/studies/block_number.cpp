@@ -31,8 +31,6 @@ Scene column(const Scheme& scheme, int n, double base_factor) {
   return scene;
 }
 
-}  // namespace
-
 void block_number(Studies& studies) {
   const double weight_over_stiffness = 2700.0 * 9.81 / modulus;  // [1/m]
   for (const Scheme& scheme : spring_schemes()) {
@@ -57,4 +55,7 @@ void block_number(Studies& studies) {
   }
 }
 
+const Registered<Study> registered{{"blocks", "a column of more and more blocks", &block_number}};
+
+}  // namespace
 }  // namespace openclose::verification

@@ -21,8 +21,6 @@ double height(double drop, double gravity, double w, double time) {
   return drop - 0.5 * gravity * from_top * from_top;
 }
 
-}  // namespace
-
 void bounce(Studies& studies) {
   analytical::BlockOnPlane data;
   data.slope_angle = 0.0;
@@ -52,4 +50,7 @@ void bounce(Studies& studies) {
   }
 }
 
+const Registered<Study> registered{{"bounce", "three bounces on contact springs (D2)", &bounce}};
+
+}  // namespace
 }  // namespace openclose::verification

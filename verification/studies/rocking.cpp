@@ -19,15 +19,9 @@ analytical::BlockOnPlane tilted_block() {
   return data;
 }
 
-Vec2 turned(const Vec2& v) {
-  return {std::cos(tilt) * v.x() - std::sin(tilt) * v.y(), std::sin(tilt) * v.x() + std::cos(tilt) * v.y()};
-}
-
-}  // namespace
-
 void rocking(Studies& studies) {
   const analytical::BlockOnPlane data = tilted_block();
-  const Vec2 arm = turned({0.5 * data.width, 0.5 * data.height});  // from the left corner to the centroid
+  const Vec2 arm = turned({0.5 * data.width, 0.5 * data.height}, tilt);  // from the left corner to the centroid
   analytical::SlidingBlockState start;
   start.y = arm.y() - closure - 0.5 * data.height;
   start.x = arm.x() - 0.5 * data.width;
@@ -43,7 +37,7 @@ void rocking(Studies& studies) {
     const Expectation expected{scheme.order - 0.15, scheme.order + 0.15, 0.1 / w, 10.0 * 2.0 * tilt * tilt / 8.0 * closure, scheme.why};
     studies.in_time(scheme.name(), halved(end / 20.0, 10, std::sqrt(2.0)), expected, [&](double dt) {
       Scene scene = block_on_plane(data);
-      for (Vec2& v : scene.blocks[1].vertices) v = turned(v) - Vec2(0.0, closure);
+      for (Vec2& v : scene.blocks[1].vertices) v = turned(v, tilt) - Vec2(0.0, closure);
       use(scheme, scene);
       scene.step.dt = dt;
       Simulation simulation = studies.simulate(scene);
@@ -55,4 +49,7 @@ void rocking(Studies& studies) {
   }
 }
 
+const Registered<Study> registered{{"rocking", "a block that rocks about one corner, before impact", &rocking}};
+
+}  // namespace
 }  // namespace openclose::verification

@@ -9,6 +9,7 @@
 #include "studies.h"
 
 namespace openclose::verification {
+namespace {
 
 void sliding_starts(Studies& studies) {
   const analytical::BlockOnPlane data;  // phi = 20 deg on 30 deg
@@ -38,4 +39,7 @@ void sliding_starts(Studies& studies) {
   }
 }
 
+const Registered<Study> registered{{"incline", "starts with a transient on an incline, stick and slip (B1)", &sliding_starts}};
+
+}  // namespace
 }  // namespace openclose::verification

@@ -5,6 +5,7 @@
 #include "studies.h"
 
 namespace openclose::verification {
+namespace {
 
 void spring_vibration(Studies& studies) {
   analytical::BlockOnPlane data;
@@ -23,4 +24,7 @@ void spring_vibration(Studies& studies) {
   }
 }
 
+const Registered<Study> registered{{"spring", "vertical vibration on contact springs (D1)", &spring_vibration}};
+
+}  // namespace
 }  // namespace openclose::verification

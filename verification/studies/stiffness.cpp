@@ -58,8 +58,6 @@ void lead(Studies& studies, const Scheme& scheme) {
       step);
 }
 
-}  // namespace
-
 void stiffness(Studies& studies) {
   for (const Scheme& scheme : spring_schemes()) {
     closure(studies, scheme);
@@ -67,4 +65,7 @@ void stiffness(Studies& studies) {
   }
 }
 
+const Registered<Study> registered{{"stiffness", "from soft to hard: what contact springs change", &stiffness}};
+
+}  // namespace
 }  // namespace openclose::verification

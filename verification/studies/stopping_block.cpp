@@ -10,6 +10,7 @@
 #include "studies.h"
 
 namespace openclose::verification {
+namespace {
 
 void stopping_block(Studies& studies) {
   analytical::BlockOnPlane data;
@@ -47,4 +48,7 @@ void stopping_block(Studies& studies) {
   }
 }
 
+const Registered<Study> registered{{"stop", "initial velocity to a stop (B4)", &stopping_block}};
+
+}  // namespace
 }  // namespace openclose::verification

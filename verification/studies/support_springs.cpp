@@ -4,6 +4,7 @@
 #include "studies.h"
 
 namespace openclose::verification {
+namespace {
 
 void support_springs(Studies& studies) {
   constexpr double amplitude = 0.01, end = 0.2;  // [m], [s]
@@ -24,4 +25,7 @@ void support_springs(Studies& studies) {
   }
 }
 
+const Registered<Study> registered{{"support", "a block between support springs", &support_springs}};
+
+}  // namespace
 }  // namespace openclose::verification

@@ -5,6 +5,7 @@
 #include "studies.h"
 
 namespace openclose::verification {
+namespace {
 
 void sway_and_rock(Studies& studies) {
   analytical::BlockOnPlane data;
@@ -28,4 +29,7 @@ void sway_and_rock(Studies& studies) {
   }
 }
 
+const Registered<Study> registered{{"sway_rock", "sway and rock on contact springs (D3)", &sway_and_rock}};
+
+}  // namespace
 }  // namespace openclose::verification

@@ -3,11 +3,11 @@
 import math
 import tomllib
 from dataclasses import dataclass
-from pathlib import Path
 
-from runs import Case, Openclose, Reference, outlines
+from openclose_scripts import PAPER_SCENES
+from openclose_scripts.runs import Case, Openclose, Reference, outlines
 
-SCENE = Path(__file__).parent / "scenes" / "example_3_1.toml"
+SCENE = PAPER_SCENES / "example_3_1.toml"
 
 # The paper prints neither the five friction angles nor the times: these are ours.
 ANGLES_DEG = (5, 10, 15, 20, 25)

@@ -6,11 +6,12 @@ from dataclasses import dataclass
 from functools import cache, cached_property
 from pathlib import Path
 
-from jointed_rock import JointedRock
-from runs import Case, Openclose, Reference, outlines
+from openclose_scripts import PAPER_SCENES
+from openclose_scripts.examples.jointed_rock import JointedRock
+from openclose_scripts.runs import Case, Openclose, Reference, outlines
 
-_SCENES = Path(__file__).parent / "scenes"
 METHODS = ("soft", "hard", "dem", "shi")
+HORIZONTAL_SPACING_M, FACE_SPACING_M = 40.0, 10.0  # of the joints of example 3.4
 BEHAVIOURS = ("ductile", "lost_on_opening", "lost_on_slip")
 MODELS = ("wedge", "toe", "shifted")
 
@@ -183,7 +184,7 @@ class PlanarSlope:
 
     @staticmethod
     def _scene(model: str) -> Path:
-        return _SCENES / f"example_3_3_{model}.toml"
+        return PAPER_SCENES / f"example_3_3_{model}.toml"
 
     def _case(self, model: str, method: str) -> Case:
         return Case(f"3.3-{model}-{method}", "fos", self._scene(model), (("method.contact", method),), FOS_CPU_LIMIT_S[method])
@@ -201,8 +202,8 @@ class Milestone:
 class JointedSlope:
     """Example 3.4: two joint sets."""
 
-    SCENE = _SCENES / "example_3_4.toml"
-    POST_FAILURE = _SCENES / "example_3_4_post_failure.toml"
+    SCENE = PAPER_SCENES / "example_3_4.toml"
+    POST_FAILURE = PAPER_SCENES / "example_3_4_post_failure.toml"
 
     def __init__(self, openclose: Openclose, reference: Reference, printed: dict):
         self._openclose = openclose

@@ -3,20 +3,15 @@
 import csv
 import io
 import json
-import resource
 import shutil
-import signal
-import subprocess
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
+from openclose_scripts.csv_rows import read_rows
+from openclose_scripts.processes import DONE, NOT_CONVERGED, RunFailed, call, run_process, was_stopped
+
 PARALLEL_PROCESSES = 2
-DONE, NOT_CONVERGED = 0, 1
-
-
-class RunFailed(Exception):
-    """A command did not end well; the message holds the command line and what it said."""
 
 
 @dataclass(frozen=True)
@@ -31,23 +26,6 @@ class Case:
     scene: Path
     settings: tuple[tuple[str, object], ...] = ()
     cpu_limit_s: int | None = None
-
-
-def run_process(arguments: list[str], cpu_limit_s: int | None = None) -> subprocess.CompletedProcess:
-    def limit() -> None:
-        resource.setrlimit(resource.RLIMIT_CPU, (cpu_limit_s, cpu_limit_s + 1))
-
-    try:
-        return subprocess.run(arguments, capture_output=True, text=True, check=False, preexec_fn=limit if cpu_limit_s else None)
-    except OSError as error:
-        raise RunFailed(f"cannot run {arguments[0]}: {error.strerror}") from error
-
-
-def call(arguments: list[str]) -> str:
-    done = run_process(arguments)
-    if done.returncode != DONE:
-        raise RunFailed(f"exit status {done.returncode} from: {' '.join(arguments)}\n{done.stderr.strip()}")
-    return done.stdout
 
 
 class Openclose:
@@ -89,8 +67,7 @@ class Openclose:
         """Rows of a CSV file that the case has written; none if it was stopped before."""
         if case.cpu_limit_s is not None and self.summary(case).get("stopped"):
             return []
-        with open(self.folder_of(case) / file, newline="", encoding="utf-8") as stream:
-            return list(csv.DictReader(stream))
+        return read_rows(self.folder_of(case) / file)
 
     def summary(self, case: Case) -> dict:
         return json.loads((self.folder_of(case) / "summary.json").read_text(encoding="utf-8"))
@@ -103,7 +80,7 @@ class Openclose:
         folder = self.folder_of(case)
         shutil.rmtree(folder, ignore_errors=True)
         done = run_process(arguments, case.cpu_limit_s)
-        if done.returncode in (-signal.SIGXCPU, -signal.SIGKILL):
+        if was_stopped(done):
             stopped = {"converged": False, "stopped": True, "reason": f"stopped after {case.cpu_limit_s} s of CPU time"}
             folder.mkdir(parents=True, exist_ok=True)
             (folder / "summary.json").write_text(json.dumps(stopped), encoding="utf-8")

@@ -3,12 +3,12 @@
 import math
 import tomllib
 from dataclasses import dataclass
-from pathlib import Path
 
-from jointed_rock import JointedRock
-from runs import Case, Openclose, Reference, outlines
+from openclose_scripts import PAPER_SCENES
+from openclose_scripts.examples.jointed_rock import JointedRock
+from openclose_scripts.runs import Case, Openclose, Reference, outlines
 
-SCENE = Path(__file__).parent / "scenes" / "example_3_2.toml"
+SCENE = PAPER_SCENES / "example_3_2.toml"
 METHODS = ("soft", "hard", "shi")
 BRITTLE = ("lost_on_opening", "lost_on_slip")
 
