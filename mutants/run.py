@@ -35,7 +35,7 @@ from openclose_scripts.csv_rows import read_rows
 from openclose_scripts.markdown import markdown_table
 
 FAULTS = Path(__file__).resolve().parent / "faults.toml"
-COPIED = ["CMakeLists.txt", "CMakePresets.json", "analytical", "cmake", "docs", "mutants", "paper", "scripts", "src", "tests", "verification"]
+COPIED = ["CMakeLists.txt", "CMakePresets.json", "analytical", "cmake", "docs", "mutants", "paper", "python", "scripts", "src", "tests", "verification"]
 COLUMNS = ["id", "folder", "file", "description", "caught_by", "kind", "seconds"]
 CAUGHT = ("unit test", "verification")
 # A check may take this many times as long as without a fault, and so much more: others use the machine, too.
@@ -106,12 +106,15 @@ class Worker:
             source, target = ROOT / name, self.tree / name
             # Files that are the same keep their time, so that what an earlier study has built stays up to date.
             if source.is_dir():
-                wanted = {p.relative_to(source) for p in source.rglob("*") if p.is_file() and "__pycache__" not in p.parts}
+                links = [p.relative_to(source) for p in source.rglob("*") if p.is_symlink()]
+                wanted = {p.relative_to(source) for p in source.rglob("*") if p.is_file() and not p.is_symlink() and "__pycache__" not in p.parts}
                 for path in target.rglob("*") if target.is_dir() else []:
                     if path.is_file() and path.relative_to(target) not in wanted:
                         path.unlink()
                 for path in sorted(wanted):
                     self.copy(source / path, target / path)
+                for path in links:
+                    self.link(source / path, target / path)
             else:
                 self.copy(source, target)
 
@@ -123,6 +126,13 @@ class Worker:
         target.parent.mkdir(parents=True, exist_ok=True)
         target.write_bytes(content)
         shutil.copymode(source, target)
+
+    @staticmethod
+    def link(source, target):
+        if target.is_symlink() or target.exists():
+            target.unlink()
+        target.parent.mkdir(parents=True, exist_ok=True)
+        target.symlink_to(source.readlink())
 
     def build(self, target):
         run = subprocess.run(["scripts/build", "release", target], cwd=self.tree, env=self.environment, capture_output=True, text=True)
