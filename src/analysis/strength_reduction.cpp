@@ -90,8 +90,7 @@ class StrengthReduction {
       const Vec2 arm = point - system.origin() - system.block(b).reference_centroid;
       return Vec2(point + Motion::displacement(d, arm, system.rotation_kind()));
     };
-    for (Load& load : moved.loads) load.point = carried(load.block, load.point);
-    for (Support& support : moved.supports) support.point = carried(support.block, support.point);
+    for_each_force(moved, [&](auto& force) { force.visit_points(force, [&](Vec2& point) { point = carried(force.block, point); }); });
     for (MeasuredPoint& p : moved.measured_points) p.point = carried(p.block, p.point);
     return moved;
   }

@@ -478,7 +478,9 @@ Picture picture_of(const Scene& scene) {
   for (const Material& material : scene.materials) picture.colour_names.push_back(material.name);
   for (const BlockInput& block : scene.blocks) picture.blocks.push_back({block.name, block.vertices, block.material, block.fixed, 0.0});
   for (const Support& s : scene.supports) picture.supports.push_back({s.point, s.stiffness.x() > 0.0, s.stiffness.y() > 0.0});
-  for (const Load& load : scene.loads) picture.loads.push_back({load.point, load.force});
+  for_each_force(scene, [&](const auto& force) {
+    for (const DrawnForce& arrow : force.drawn()) picture.loads.push_back({arrow.point, arrow.force});
+  });
   for (const MeasuredPoint& point : scene.measured_points) picture.points.push_back({point.name, point.point});
   return picture;
 }

@@ -76,6 +76,7 @@ struct Placement {
     const double length = std::hypot(along, across);
     if (length > 0.0) sine = across / length, cosine = along / length;
   }
+  Vec2 turned(const Vec2& vector) const { return cosine * vector + sine * perpendicular(vector); }
   Vec2 of(const Vec2& point) const {
     const Vec2 arm = point - from;
     return to + cosine * arm + sine * perpendicular(arm);
@@ -468,15 +469,19 @@ class ResultPicture {
   }
 
   void add_points() {
-    const auto carried = [&](const json& entry) {
+    const auto placement = [&](const json& entry) {
       const auto b = static_cast<std::size_t>(index_of(entry.at("block").get<std::string>()));
-      return Placement(drawn_[b], now_[b]).of(point_in(entry.at("point_m")));
+      return Placement(drawn_[b], now_[b]);
     };
+    const auto carried = [&](const json& entry) { return placement(entry).of(point_in(entry.at("point_m"))); };
     for (const json& entry : summary_.value("supports", json::array())) {
       const Vec2 stiffness = point_in(entry.at("stiffness_n_per_m"));
       picture_.supports.push_back({carried(entry), stiffness.x() > 0.0, stiffness.y() > 0.0});
     }
-    for (const json& entry : summary_.value("loads", json::array())) picture_.loads.push_back({carried(entry), point_in(entry.at("force_n"))});
+    for (const json& entry : summary_.value("arrows", json::array())) {
+      const Vec2 force = point_in(entry.at("force_n"));
+      picture_.loads.push_back({carried(entry), entry.at("turns_with_block").get<bool>() ? placement(entry).turned(force) : force});
+    }
     for (const json& entry : summary_.value("measured_points", json::array()))
       picture_.points.push_back({entry.at("name").get<std::string>(), carried(entry)});
   }

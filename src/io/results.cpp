@@ -344,11 +344,21 @@ namespace {
 void add_points(const Scene& scene, nlohmann::ordered_json& j) {
   using nlohmann::ordered_json;
   const auto pair = [](const Vec2& v) { return ordered_json::array({v.x(), v.y()}); };
-  j["supports"] = j["loads"] = j["measured_points"] = ordered_json::array();
-  for (const Support& s : scene.supports)
-    j["supports"].push_back({{"block", scene.blocks[s.block].name}, {"point_m", pair(s.point)}, {"stiffness_n_per_m", pair(s.stiffness)}});
-  for (const Load& l : scene.loads)
-    j["loads"].push_back({{"block", scene.blocks[l.block].name}, {"point_m", pair(l.point)}, {"force_n", pair(l.force)}});
+  const auto plural = [](std::string_view table) { return std::string(table) + 's'; };
+  ForceInputs::visit(scene, [&](const auto& list) { j[plural(std::decay_t<decltype(list)>::value_type::table().name)] = ordered_json::array(); });
+  for (const std::vector<KeyEntry>& force : force_entries(scene)) {
+    ordered_json& entry = j[plural(force.front().table.name)].emplace_back();
+    for (const KeyEntry& row : force) entry[std::string(row.key.name)] = ordered_json::parse(row.value.value());
+  }
+  j["arrows"] = j["measured_points"] = ordered_json::array();
+  for_each_force(scene, [&](const auto& force) {
+    for (const DrawnForce& arrow : force.drawn()) {
+      j["arrows"].push_back({{"block", scene.blocks[force.block].name},
+                             {"point_m", pair(arrow.point)},
+                             {"force_n", pair(arrow.force)},
+                             {"turns_with_block", arrow.turns_with_block}});
+    }
+  });
   for (const MeasuredPoint& p : scene.measured_points)
     j["measured_points"].push_back({{"name", p.name}, {"block", scene.blocks[p.block].name}, {"point_m", pair(p.point)}});
 }

@@ -53,18 +53,20 @@ bool can_meet(const std::vector<Use>& uses, std::size_t a, std::size_t b) {
 
 /// A fixed block feels neither: in a domain, a point may lie in a large block that a fixed line happens to touch.
 void warn_of_fixed_points(const Scene& scene, std::vector<std::string>& warnings) {
-  const auto warn = [&](const std::string& what, int block, const Vec2& point) {
-    if (scene.blocks[block].fixed)
-      warnings.push_back(fmt::format("{}: the {} at ({:g}, {:g}) has no effect: its block \"{}\" is fixed", scene.where.file, what, point.x(),
-                                     point.y(), scene.blocks[block].name));
-  };
-  for (const Load& load : scene.loads) warn("load", load.block, load.point);
-  for (const Support& support : scene.supports) warn("support", support.block, support.point);
+  for_each_force(scene, [&](const auto& force) {
+    if (!scene.blocks[force.block].fixed) return;
+    std::vector<Vec2> points;
+    force.visit_points(force, [&](const Vec2& point) { points.push_back(point); });
+    warnings.push_back(fmt::format("{}: the {} at ({:g}, {:g}) has no effect: its block \"{}\" is fixed", scene.where.file, force.table().name,
+                                   points.front().x(), points.front().y(), scene.blocks[force.block].name));
+  });
 }
 
 bool nothing_holds(const Scene& scene) {
   const bool any_fixed = std::any_of(scene.blocks.begin(), scene.blocks.end(), [](const BlockInput& block) { return block.fixed; });
-  return !any_fixed && scene.supports.empty() && !scene.gravity.isZero(0.0);
+  bool any_holds = false;
+  for_each_force(scene, [&](const auto& force) { any_holds |= force.holds; });
+  return !any_fixed && !any_holds && !scene.gravity.isZero(0.0);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// The rows of what a scene is made of: blocks, materials, forces, the domain. Who reads these tables is reader.cpp, base_motion.cpp and domain.cpp; a
-// test compares the names.
+// The rows of what a scene is made of: blocks, materials, joints, forces, the domain. Joints and forces have theirs below their members; who reads
+// the other tables is reader.cpp, base_motion.cpp and domain.cpp; a test compares the names.
 #include "openclose/scene/keys.h"
 #include "openclose/scene/names.h"
 #include "openclose/scene/outline.h"
@@ -71,13 +71,8 @@ void add_point(Rows& rows) {
 }
 
 void add_points(Rows& rows) {
-  rows.table({"support", Audience::user,
-              "Springs that hold a point of a block where it was drawn: an anchor without prestress and without a strength limit", true});
-  add_point(rows);
-  rows.required({"stiffness_n_per_m", "[kx, ky], not both 0"}, ValueType::vector, not_negative);
-  rows.table({"load", Audience::user, "A constant force per metre of thickness on a point of a block", true});
-  add_point(rows);
-  rows.required({"force_n", "[x, y]"}, ValueType::vector);
+  const std::vector<KeyEntry> forces = force_keys();
+  rows.entries.insert(rows.entries.end(), forces.begin(), forces.end());
   rows.table({"measured_point", Audience::user,
               "A point of which the motion is written; without any, the centroids of the free blocks, under the names of the blocks", true});
   rows.required({"name", "unique"}, ValueType::text);

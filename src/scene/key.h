@@ -40,6 +40,8 @@ struct ListOf {
 struct Degrees {
   Range range;
 };
+/// The name of a block; the member is its number.
+struct BlockName {};
 /// A name, or a list of names, in a registry that the scene does not know, because it stands downstream; who looks it up refuses an unknown one.
 enum class NameIn { enforcements, integrators, formats };
 

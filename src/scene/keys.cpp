@@ -37,6 +37,9 @@ template <typename Enum, std::size_t n>
 std::optional<std::string> text_of(const Enum& value, const std::array<Word<Enum>, n>& words) {
   return toml(word_for(words, value));
 }
+std::optional<std::string> text_of(const Vec2& value, const Range&) {
+  return toml(value);
+}
 template <typename T, typename Accepted>
 std::optional<std::string> text_of(const std::optional<T>& value, const Accepted& accepted) {
   return value ? text_of(*value, accepted) : std::nullopt;
@@ -45,6 +48,9 @@ std::optional<std::string> text_of(const std::optional<T>& value, const Accepted
 ValueType number_type(const int&) {
   return ValueType::whole_number;
 }
+ValueType number_type(const Vec2&) {
+  return ValueType::vector;
+}
 template <typename T>
 ValueType number_type(const T&) {
   return ValueType::number;
@@ -52,6 +58,8 @@ ValueType number_type(const T&) {
 
 class Collector {
  public:
+  /// \param blocks  for the names of blocks; without them, those have no value
+  explicit Collector(const std::vector<BlockInput>* blocks = nullptr) : blocks_(blocks) {}
   void table(const KeyTable& table) { table_ = table; }
 
   template <typename T, typename Accepted>
@@ -61,6 +69,15 @@ class Collector {
     entry.key = key;
     describe(entry, member, accepted);
     entry.value = text_of(member, accepted);
+    entries.push_back(std::move(entry));
+  }
+
+  void operator()(const Key& key, const int& block, const BlockName&) {
+    KeyEntry entry;
+    entry.table = table_;
+    entry.key = key;
+    entry.type = ValueType::text;
+    if (blocks_ != nullptr) entry.value = toml(std::string_view((*blocks_)[block].name));
     entries.push_back(std::move(entry));
   }
 
@@ -103,6 +120,7 @@ class Collector {
     for (const auto& word : words) entry.words.push_back(word.text);
   }
 
+  const std::vector<BlockInput>* blocks_;
   KeyTable table_;
 };
 
@@ -120,6 +138,27 @@ std::vector<KeyEntry> joint_entries(const JointProperties& joint) {
   Collector collector;
   collector.table({"joint", Audience::user, "One for every pair of materials that can touch", true});
   visit_joint_keys(joint, collector);
+  return std::move(collector.entries);
+}
+
+std::vector<std::vector<KeyEntry>> force_entries(const Scene& scene) {
+  std::vector<std::vector<KeyEntry>> list;
+  for_each_force(scene, [&](const auto& force) {
+    Collector collector(&scene.blocks);
+    collector.table(force.table());
+    force.visit_keys(force, collector);
+    list.push_back(std::move(collector.entries));
+  });
+  return list;
+}
+
+std::vector<KeyEntry> force_keys() {
+  Collector collector;
+  ForceInputs::visit(static_cast<const ForceInputs&>(ForceInputs()), [&](const auto& list) {
+    const typename std::decay_t<decltype(list)>::value_type untouched;
+    collector.table(untouched.table());
+    untouched.visit_keys(untouched, collector);
+  });
   return std::move(collector.entries);
 }
 

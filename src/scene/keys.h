@@ -40,6 +40,12 @@ std::vector<KeyEntry> key_entries(const Scene& scene);
 /// The rows of [[joint]], but for its materials, with the values of the joint.
 std::vector<KeyEntry> joint_entries(const JointProperties& joint);
 
+/// The rows of every force of the scene, in the order of ForceInputs, with its values.
+std::vector<std::vector<KeyEntry>> force_entries(const Scene& scene);
+
+/// The rows of the tables of forces, with their defaults.
+std::vector<KeyEntry> force_keys();
+
 /// The unit at the end of a key's name as one writes it: "dt_s" -> "s", "penalty_pa_per_m" -> "Pa/m"; empty for a number without one.
 std::string unit_of(std::string_view key);
 

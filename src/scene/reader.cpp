@@ -16,6 +16,7 @@
 #include "openclose/scene/names.h"
 #include "openclose/scene/outline.h"
 #include "openclose/scene/override.h"
+#include "openclose/scene/point_of_block.h"
 #include "openclose/scene/table.h"
 
 namespace openclose {
@@ -74,7 +75,8 @@ void require_increasing(const Value& value, const std::vector<double>& list) {
 /// Reads the rows of one table of keys: what the file gives; of the rest finish() reports what is required.
 class RowReader {
  public:
-  explicit RowReader(Table* table) : table_(table) {}
+  /// \param block_names  for rows that name a block
+  explicit RowReader(Table* table, const NameList* block_names = nullptr) : table_(table), block_names_(block_names) {}
 
   template <typename T, typename Accepted>
   void operator()(const Key& key, T& member, const Accepted& accepted, SourceLocation* where = nullptr) {
@@ -88,10 +90,13 @@ class RowReader {
   Table* table_;
 
  private:
+  const NameList* block_names_;
+
   template <typename T, typename Accepted>
   bool read_member(const std::string& name, T& member, const Accepted& limits) {
     return table_->optional(name, member, limits);
   }
+  bool read_member(const std::string& name, int& member, const BlockName&) { return table_->optional(name, member, *block_names_); }
   bool read_member(const std::string& name, bool& member, const Flag&) { return table_->optional(name, member); }
   bool read_member(const std::string& name, double& member, const Degrees& angle) {
     double in_degrees = 0.0;
@@ -166,88 +171,32 @@ BlockInput read_block(Table table, const std::string& file, const NameList& mate
   return block;
 }
 
-/// The only block that contains the point.
-int block_at(const Value& value, const Vec2& point, const std::vector<BlockInput>& blocks) {
-  std::vector<int> found;
-  for (std::size_t b = 0; b < blocks.size(); ++b) {
-    if (!Box::around(blocks[b].vertices).inflated(tolerance::farthest_point_outside_block_m).contains(point)) continue;
-    if (contains(blocks[b].vertices, point) || distance_to_boundary(blocks[b].vertices, point) <= tolerance::farthest_point_outside_block_m) {
-      found.push_back(static_cast<int>(b));
-    }
-  }
-  const std::string accepted = "a point inside a block, or on the boundary of one that the key block names";
-  const std::string where = fmt::format("({}, {})", point.x(), point.y());
-  if (found.empty()) {
-    const auto nearest = std::ranges::min_element(blocks, {}, [&](const BlockInput& block) { return distance_to_boundary(block.vertices, point); });
-    value.fail(fmt::format("{} lies in no block; the nearest one is {}, {:.3g} m away", where, in_quotes(nearest->name),
-                           distance_to_boundary(nearest->vertices, point)),
-               accepted);
-  }
-  if (found.size() > 1) {
-    value.fail(fmt::format("{} lies where {} and {} meet", where, in_quotes(blocks[found[0]].name), in_quotes(blocks[found[1]].name)), accepted);
-  }
-  return found.front();
-}
-
 bool touches(const BlockInput& block, const Vec2& point) {
   if (!Box::around(block.vertices).inflated(tolerance::farthest_point_from_joint_m).contains(point)) return false;
   return distance_to_boundary(block.vertices, point) <= tolerance::farthest_point_from_joint_m;
 }
 
-/// Reads the keys block and point_m. Without the first, which blocks cut out of a domain have no use for, the point tells the block.
-class PointOfBlock {
- public:
-  PointOfBlock(Table& table, int& block, Vec2& point, const NameList& block_names) : table_(table), block_(block), point_(point) {
-    named_ = table.optional("block", block, block_names);
-    table.required("point_m", point);
-  }
-
-  /// To be called after Table::finish().
-  void check(const Scene& scene) {
-    const Value value = table_.at("point_m");
-    if (named_) {
-      require_inside(value, point_, scene.blocks[block_].vertices, scene.blocks[block_].name);
-    } else {
-      block_ = block_at(value, point_, scene.blocks);
-    }
-  }
-
- private:
-  Table& table_;
-  int& block_;
-  Vec2& point_;
-  bool named_ = false;
-};
-
-Support read_support(Table table, const Scene& scene, const NameList& block_names) {
-  Support support;
-  PointOfBlock place(table, support.block, support.point, block_names);
-  table.required("stiffness_n_per_m", support.stiffness, not_negative);
+template <typename Force>
+Force read_force(Table table, const Scene& scene, const NameList& block_names) {
+  Force force;
+  force.block = unnamed_block;
+  RowReader reader(&table, &block_names);
+  force.visit_keys(force, reader);
   table.finish();
-
-  if (support.stiffness.isZero(0.0)) table.at("stiffness_n_per_m").fail("both stiffnesses are 0", "[kx, ky] of which one may be 0");
-  place.check(scene);
-  return support;
-}
-
-Load read_load(Table table, const Scene& scene, const NameList& block_names) {
-  Load load;
-  PointOfBlock place(table, load.block, load.point, block_names);
-  table.required("force_n", load.force);
-  table.finish();
-
-  place.check(scene);
-  return load;
+  force.complete(table, scene.blocks);
+  return force;
 }
 
 MeasuredPoint read_measured_point(Table table, const Scene& scene, const NameList& block_names, NameList& point_names) {
   MeasuredPoint measured;
+  measured.block = unnamed_block;
   table.required("name", measured.name);
-  PointOfBlock place(table, measured.block, measured.point, block_names);
+  table.optional("block", measured.block, block_names);
+  table.required("point_m", measured.point);
   table.finish();
 
   point_names.add(table.at("name"), measured.name);
-  place.check(scene);
+  measured.block = block_of_point(table.at("point_m"), measured.block, measured.point, scene.blocks);
   return measured;
 }
 
@@ -343,8 +292,11 @@ Scene interpret(const toml::table& document, const std::string& file) {
   const std::vector<Table> blocks = root.tables("block");
   const CuttingTables cutting{root.table("domain"), root.tables("joint_set"), root.tables("joint_line"), root.tables("region")};
   const std::vector<Table> fixed_lines = root.tables("fixed_line");
-  const std::vector<Table> supports = root.tables("support");
-  const std::vector<Table> loads = root.tables("load");
+  std::map<std::string_view, std::vector<Table>> forces;
+  ForceInputs::visit(scene, [&](auto& list) {
+    using Force = typename std::decay_t<decltype(list)>::value_type;
+    forces.emplace(Force::table().name, root.tables(std::string(Force::table().name)));
+  });
   const std::vector<Table> measured_points = root.tables("measured_point");
   const std::vector<Table> measured_contacts = root.tables("measured_contact");
   const Table base_motion = root.table("base_motion");
@@ -365,8 +317,10 @@ Scene interpret(const toml::table& document, const std::string& file) {
   for (const Table& table : blocks) scene.blocks.push_back(read_block(table, scene.where.file, material_names, block_names));
   cut_domain(cutting, material_names, block_names, scene);
   fix_blocks(fixed_lines, scene);
-  for (const Table& table : supports) scene.supports.push_back(read_support(table, scene, block_names));
-  for (const Table& table : loads) scene.loads.push_back(read_load(table, scene, block_names));
+  ForceInputs::visit(scene, [&](auto& list) {
+    using Force = typename std::decay_t<decltype(list)>::value_type;
+    for (const Table& table : forces.at(Force::table().name)) list.push_back(read_force<Force>(table, scene, block_names));
+  });
   for (const Table& table : measured_points) scene.measured_points.push_back(read_measured_point(table, scene, block_names, point_names));
   for (const Table& table : measured_contacts) {
     scene.measured_contacts.push_back(read_measured_contact(table, scene, block_names, contact_names));

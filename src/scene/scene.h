@@ -11,6 +11,7 @@
 #include "openclose/core/tolerance.h"
 #include "openclose/core/vector.h"
 #include "openclose/scene/acceleration_record.h"
+#include "openclose/scene/force_inputs.h"
 #include "openclose/scene/options.h"
 
 namespace openclose {
@@ -71,20 +72,6 @@ struct BlockInput {
   std::shared_ptr<const std::string> source;  ///< null: the scene's file
 };
 
-/// A spring that holds one material point of a block at its initial place.
-struct Support {
-  int block = 0;
-  Vec2 point = Vec2::Zero();      ///< [m]
-  Vec2 stiffness = Vec2::Zero();  ///< [N/m] in x and y; 0 leaves that direction free
-};
-
-/// A constant force at a material point of a block.
-struct Load {
-  int block = 0;
-  Vec2 point = Vec2::Zero();  ///< [m]
-  Vec2 force = Vec2::Zero();  ///< [N]
-};
-
 struct MeasuredPoint {
   std::string name;
   int block = 0;
@@ -136,7 +123,7 @@ struct CuttingSummary {
   std::vector<std::string> warnings;
 };
 
-struct Scene {
+struct Scene : ForceInputs {
   SourceLocation where;
   std::vector<std::string> warnings;  ///< of the reader
   std::string title;
@@ -145,8 +132,6 @@ struct Scene {
   std::vector<JointProperties> joints;
   std::vector<BlockInput> blocks;         ///< those written as they are, then those cut out of the domain
   std::optional<CuttingSummary> cutting;  ///< if there is a domain
-  std::vector<Support> supports;
-  std::vector<Load> loads;
   std::vector<MeasuredPoint> measured_points;
   std::vector<MeasuredContact> measured_contacts;
   std::optional<BaseMotionInput> base_motion;
@@ -208,7 +193,11 @@ void visit_keys(Input& scene, Visitor& visit) {
   visit({"milestones_m", "when has the first measured point moved so far, and at what CPU time"}, scene.milestones, Increasing{positive});
   visit({"snapshots_s", "the state at these times, each after the step that ends nearest to it"}, scene.snapshot_times, Increasing{not_negative});
   visit({"snapshots_every_s", "interval, in whole steps, at which the state is written besides; 0: never"}, scene.snapshots_every, not_negative);
-  visit({"formats", "in which the results are written besides the tables, see [output](output.md): each in a folder of its name", {}, "output.vtk", true},
+  visit({"formats",
+         "in which the results are written besides the tables, see [output](output.md): each in a folder of its name",
+         {},
+         "output.vtk",
+         true},
         scene.formats, NameIn::formats, &scene.formats_where);
   visit_settle_keys(scene.settle, visit);
   visit_strength_reduction_keys(scene.strength_reduction, visit);

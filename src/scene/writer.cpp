@@ -62,17 +62,9 @@ void write_blocks(Text& text, const Scene& scene) {
 }
 
 void write_points(Text& text, const Scene& scene) {
-  for (const Support& support : scene.supports) {
-    text.header("[[support]]");
-    text.line("block", std::string_view(scene.blocks[support.block].name));
-    text.line("point_m", support.point);
-    text.line("stiffness_n_per_m", support.stiffness);
-  }
-  for (const Load& load : scene.loads) {
-    text.header("[[load]]");
-    text.line("block", std::string_view(scene.blocks[load.block].name));
-    text.line("point_m", load.point);
-    text.line("force_n", load.force);
+  for (const std::vector<KeyEntry>& force : force_entries(scene)) {
+    text.header(fmt::format("[[{}]]", force.front().table.name));
+    for (const KeyEntry& entry : force) text.raw_line(entry.key.name, entry.value.value());
   }
   for (const MeasuredPoint& measured : scene.measured_points) {
     text.header("[[measured_point]]");

@@ -1,0 +1,103 @@
+// Forces on blocks, beside gravity and the motion of the base, as the user wrote them. A kind of force is a struct with
+//
+//   static KeyTable table();                        its table, [[name]]
+//   visit_keys(self, visitor)                       its rows: reader, writer, summary.json, docs/keys.md and the schema go through them
+//   visit_points(self, f)                           its material points, f(Vec2&)
+//   void complete(table, blocks)                    finds the block where the file names none; throws InputError for what no single key shows
+//   void change_unit_of_length(double)              what holds metres beside the points, for forces that keep their unit
+//   static constexpr bool holds                     whether it can hold a block against gravity
+//   std::vector<DrawnForce> drawn() const           arrows of drawings
+//
+// and a list of its own in ForceInputs. What it does to its block stands in model/force_elements.cpp.
+#pragma once
+
+#include <vector>
+
+#include "openclose/core/vector.h"
+#include "openclose/scene/key.h"
+
+namespace openclose {
+
+class Table;
+struct BlockInput;
+
+struct DrawnForce {
+  Vec2 point = Vec2::Zero();      ///< [m]
+  Vec2 force = Vec2::Zero();      ///< [N]
+  bool turns_with_block = false;  ///< or keeps its direction
+};
+
+inline constexpr int unnamed_block = -1;  ///< of a force whose block complete() is to find
+
+/// A constant force at a material point of a block.
+struct Load {
+  int block = 0;
+  Vec2 point = Vec2::Zero();  ///< [m]
+  Vec2 force = Vec2::Zero();  ///< [N]
+
+  static constexpr bool holds = false;
+  static KeyTable table() { return {"load", Audience::user, "A constant force per metre of thickness on a point of a block", true}; }
+  template <class Self, class Visitor>
+  static void visit_keys(Self& self, Visitor& visit) {
+    visit({"block", "name of a block", "that at the point"}, self.block, BlockName{});
+    visit({.name = "point_m", .says = "in the block or on its boundary", .required = true}, self.point, any_number);
+    visit({.name = "force_n", .says = "[x, y]", .required = true}, self.force, any_number);
+  }
+  template <class Self, class F>
+  static void visit_points(Self& self, F f) {
+    f(self.point);
+  }
+  void complete(const Table& table, const std::vector<BlockInput>& blocks);
+  void change_unit_of_length(double) {}
+  std::vector<DrawnForce> drawn() const { return {{point, force}}; }
+};
+
+/// A spring that holds one material point of a block at its initial place.
+struct Support {
+  int block = 0;
+  Vec2 point = Vec2::Zero();      ///< [m]
+  Vec2 stiffness = Vec2::Zero();  ///< [N/m] in x and y; 0 leaves that direction free
+
+  static constexpr bool holds = true;
+  static KeyTable table() {
+    return {"support", Audience::user,
+            "Springs that hold a point of a block where it was drawn: an anchor without prestress and without a strength limit", true};
+  }
+  template <class Self, class Visitor>
+  static void visit_keys(Self& self, Visitor& visit) {
+    visit({"block", "name of a block", "that at the point"}, self.block, BlockName{});
+    visit({.name = "point_m", .says = "in the block or on its boundary", .required = true}, self.point, any_number);
+    visit({.name = "stiffness_n_per_m", .says = "[kx, ky], not both 0", .required = true}, self.stiffness, not_negative);
+  }
+  template <class Self, class F>
+  static void visit_points(Self& self, F f) {
+    f(self.point);
+  }
+  void complete(const Table& table, const std::vector<BlockInput>& blocks);
+  /// Stiffnesses stay: displacements keep their unit.
+  void change_unit_of_length(double) {}
+  /// Drawn as springs, not as arrows.
+  std::vector<DrawnForce> drawn() const { return {}; }
+};
+
+struct ForceInputs {
+  std::vector<Load> loads;
+  std::vector<Support> supports;
+
+  /// f(list) for the list of every kind, in the order in which their forces are added up.
+  template <class Self, class F>
+  static void visit(Self& self, F f) {
+    f(self.loads);
+    f(self.supports);
+  }
+};
+
+/// f(force) for every force.
+template <class Inputs, class F>
+void for_each_force(Inputs& inputs, F f) {
+  ForceInputs::visit(inputs, [&](auto& list) {
+    for (auto& force : list) f(force);
+  });
+}
+
+}  // namespace openclose
