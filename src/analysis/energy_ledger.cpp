@@ -117,34 +117,24 @@ void add_step(EnergyLedger& ledger, const StepProblem& problem, const StepSoluti
     ledger.turnover += std::abs(after - before) + std::abs(weight_work) + std::abs(base_work);
   }
 
-  const auto add_point_forces = [&](const auto& forces, double& account) {
-    for (const auto& f : forces) {
-      const int b = system.point_block(f.point);
-      if (system.block(b).equation < 0) continue;
-      const Unknowns d = solution.of(system, b), path = work_displacement[b];
-      const Vec2 arm0 = system.point_arm(f.point);
-      const Vec2 moved = Motion::displacement(d, arm0, system.rotation_kind());
-      const Vec2 arm1 = arm0 + moved - Motion::translation(d);
-      const Vec2 x0 = system.point_position(f.point) - f.anchor, x1 = x0 + moved;
-      const auto force_at = [&](const Vec2& arm, const Vec2& stretch) { return Motion::gradient(arm, f.force - f.stiffness.cwiseProduct(stretch)); };
-      Unknowns force;  // as it acted in this step
-      if (solution.first_order) {
-        force = ExternalForces::linear_force(system, f, d);
-      } else if (problem.averages_path()) {
-        force = force_at(0.5 * (arm0 + arm1), 0.5 * (x0 + x1));
-      } else {
-        force = theta * force_at(arm1, x1) + (1.0 - theta) * force_at(arm0, x0);
-      }
-      const double work = force.dot(path);
-      const double stored = 0.5 * f.stiffness.dot(x1.cwiseAbs2() - x0.cwiseAbs2());
-      const double by_load = f.force.dot(moved);
-      account += stored - by_load;
-      ledger.scheme -= work + stored - by_load;
-      ledger.turnover += std::abs(by_load);
+  for (const auto& element : problem.external.elements()) {
+    const int b = element->block();
+    if (system.block(b).equation < 0) continue;
+    const Unknowns d = solution.of(system, b), path = work_displacement[b];
+    const ElementPath start = element->path(system, Unknowns::Zero()), way = element->path(system, d);
+    Unknowns force;  // as it acted in this step
+    if (solution.first_order) {
+      force = element->force(start) - element->stiffness(start) * d;
+    } else if (problem.averages_path()) {
+      force = element->mean_force(way);
+    } else {
+      force = theta * element->force(way) + (1.0 - theta) * element->force(start);
     }
-  };
-  add_point_forces(problem.external.loads(), ledger.loads);
-  add_point_forces(problem.external.supports(), ledger.support_springs);
+    const double work = force.dot(path), change = element->energy_change(way);
+    (element->account() == ForceAccount::loads ? ledger.loads : ledger.support_springs) += change;
+    ledger.scheme -= work + change;
+    if (element->account() == ForceAccount::loads) ledger.turnover += std::abs(change);
+  }
 
   for (std::size_t c = 0; c < problem.contacts.size(); ++c) {
     const Contact& contact = problem.contacts[c];

@@ -311,7 +311,9 @@ double Simulation::force_scale() const {
   double scale = 0.0;
   for (int b : system_.free_blocks()) scale = std::max(scale, external_.weight(system_, b).norm());
   if (scale > 0.0) return scale;
-  for (const auto& load : external_.loads()) scale = std::max(scale, load.force.norm());
+  for (const auto& element : external_.elements()) {
+    if (element->account() == ForceAccount::loads) scale = std::max(scale, element->magnitude(element->path(system_, Unknowns::Zero())));
+  }
   for (const Contact& c : contacts_) scale = std::max({scale, c.normal_force, std::abs(c.shear_force)});
   return scale > 0.0 ? scale : 1.0;
 }
@@ -872,7 +874,7 @@ void Simulation::exchange(Archive& archive) {
   scheme_->exchange(archive);
   enforcement_->exchange(archive);
   if (loop_) {
-    loop_->exchange(archive, joints_);
+    loop_->exchange(archive, joints_, external_);
     archive(loop_is_ahead_, loop_is_loaded_);
   }
 }

@@ -54,7 +54,7 @@ double local_error(const StepProblem& problem, const StepSolution& solution) {
   Eigen::VectorXd change = Eigen::VectorXd::Zero(dofs * system.free_count());
   const auto push = adds_to(change, system);
   for (int b : system.free_blocks()) {
-    if (!problem.external.has_point_forces(b)) continue;  // the others do not change
+    if (!problem.external.has_elements(b)) continue;  // the others do not change
     push(b, problem.external.force(system, b, solution.of(system, b)) - problem.external.force(system, b, Unknowns::Zero()));
   }
   for (std::size_t i = 0; i < problem.contacts.size(); ++i) {

@@ -19,7 +19,7 @@ Eigen::MatrixXd stiffness(const StepProblem& problem, const Enforcement& enforce
   const Unknowns still = Unknowns::Zero();
   Eigen::MatrixXd k = Eigen::MatrixXd::Zero(dofs * system.free_count(), dofs * system.free_count());
   const auto part = [&](int i, int j) { return k.block<dofs, dofs>(dofs * i, dofs * j); };
-  for (int b : system.free_blocks()) part(system.block(b).equation, system.block(b).equation) += problem.external.stiffness(system, b, still);
+  for (int b : system.free_blocks()) part(system.block(b).equation, system.block(b).equation) += problem.external.symmetric_stiffness(system, b);
   for (const Contact& c : problem.contacts) {
     const ContactSprings springs = enforcement.springs(problem, c);
     if (!may_close(ContactStrength(problem.joints.joint(c.joint), c), springs.normal, c.gap, tolerance::touching_m)) continue;

@@ -128,10 +128,10 @@ std::string Watch::begin(const Simulation& simulation) {
     const auto v = simulation.velocity(b);
     kinetic += 0.5 * v.dot(system.block(b).mass.cwiseProduct(v));
   }
-  for (const auto& load : simulation.external().loads()) weights += load.force.norm();
-  for (const auto& support : simulation.external().supports()) {
-    const Vec2 stretch = system.point_position(support.point) - support.anchor;
-    supports += 0.5 * support.stiffness.dot(stretch.cwiseAbs2());
+  for (const auto& element : simulation.external().elements()) {
+    const ElementPath start = element->path(system, Motion::Unknowns::Zero());
+    if (element->account() == ForceAccount::loads) weights += element->magnitude(start);
+    supports += element->stored_energy(start);
   }
   undetermined_energy_ = weights * undetermined_length(simulation);
   energy_at_start_ = kinetic + supports + simulation.stored_contact_energy();

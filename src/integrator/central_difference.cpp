@@ -49,6 +49,17 @@ double larger_or_nan(double largest, double next) {
   return largest >= next || std::isnan(largest) ? largest : next;
 }
 
+/// From where one way ends to where another one does that began at the same place.
+ElementPath rest_of_way(const ElementPath& first, const ElementPath& whole) {
+  ElementPath rest;
+  rest.d = whole.d - first.d;
+  for (std::size_t i = 0; i < whole.points.size(); ++i) {
+    const PointPath &from = first.points[i], &to = whole.points[i];
+    rest.points[i] = {to.position + from.moved, from.end_arm, to.moved - from.moved, to.end_arm};
+  }
+  return rest;
+}
+
 }  // namespace
 
 void CentralDifference::load(const StepProblem& problem) {
@@ -57,7 +68,7 @@ void CentralDifference::load(const StepProblem& problem) {
   if (depth_limits_.empty()) depth_limits_.begin(problem.system);
   room_ = 0.0;
   load_blocks(problem);
-  load_points(problem);
+  load_elements(problem);
   load_contacts(problem);
   max_penetration_ = 0.0;
   keep();
@@ -119,25 +130,14 @@ void CentralDifference::load_blocks(const StepProblem& problem) {
   }
 }
 
-void CentralDifference::load_points(const StepProblem& problem) {
-  points_.clear();
-  const BlockSystem& system = problem.system;
-  const auto add = [&](const auto& list, bool is_load) {
-    for (const auto& f : list) {
-      const int slot = system.block(system.point_block(f.point)).equation;
-      if (slot < 0) continue;
-      PointForce p;
-      p.slot = slot;
-      p.is_load = is_load;
-      p.arm = system.point_arm(f.point);
-      p.force = f.force;
-      p.stiffness = f.stiffness;
-      p.stretch = system.point_position(f.point) - f.anchor;
-      points_.push_back(p);
-    }
-  };
-  add(problem.external.loads(), true);
-  add(problem.external.supports(), false);
+void CentralDifference::load_elements(const StepProblem& problem) {
+  elements_.clear();
+  external_ = &problem.external;
+  const auto& all = external_->elements();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const int slot = problem.system.block(all[i]->block()).equation;
+    if (slot >= 0) elements_.push_back({static_cast<int>(i), slot, all[i]->path(problem.system, Unknowns::Zero())});
+  }
 }
 
 void CentralDifference::load_contacts(const StepProblem& problem) {
@@ -149,7 +149,7 @@ void CentralDifference::load_contacts(const StepProblem& problem) {
   link_of_.assign(problem.contacts.size(), -1);
   damped_ = false;
   begin_forces();
-  add_point_forces(false);
+  add_element_forces(false);
   // By the skin when their pair is last passed over, by the skin until the pairs are looked at again, and by the step with which blocks leave it.
   approach_ = 2.0 * skin_ + more_speed * step_ahead_;
   list_is_short_ = false;
@@ -375,21 +375,27 @@ void CentralDifference::begin_forces() {
   std::fill(forces_.begin() + static_cast<std::ptrdiff_t>(inertia_.size()), forces_.end(), Rate());
 }
 
-void CentralDifference::add_point_forces(bool step) {
-  for (PointForce& p : points_) {
-    const Pose& pose = poses_[p.slot];
-    const Vec2 turned = pose.cos_minus_1 * p.arm + pose.sin * perpendicular(p.arm), moved = Vec2(pose.x, pose.y) + turned;
-    const Vec2 stretch = p.stretch + moved, force = p.force - p.stiffness.cwiseProduct(stretch), arm = p.arm + turned;
-    forces_[p.slot].x += force.x();
-    forces_[p.slot].y += force.y();
-    forces_[p.slot].turn += cross(arm, force);
+void CentralDifference::add_element_forces(bool step) {
+  for (ElementWay& way : elements_) {
+    const ForceElement& element = *external_->elements()[way.element];
+    const Pose& pose = poses_[way.slot];
+    const ElementPath before = way.path;
+    way.path.d = {pose.x, pose.y, rates_[way.slot].angle};
+    for (std::size_t i = 0; i < element.points().size(); ++i) {
+      PointPath& p = way.path.points[i];
+      const Vec2 turned = pose.cos_minus_1 * p.arm + pose.sin * perpendicular(p.arm);
+      p.moved = Vec2(pose.x, pose.y) + turned;
+      p.end_arm = p.arm + turned;
+    }
+    const Unknowns force = element.force(way.path);
+    forces_[way.slot].x += force[0];
+    forces_[way.slot].y += force[1];
+    forces_[way.slot].turn += force[2];
     if (!step) continue;
-    const double energy = 0.5 * p.stiffness.dot((stretch + p.stretch).cwiseProduct(moved)) - p.force.dot(moved), change = energy - p.energy;
-    (p.is_load ? energies_.loads : energies_.support_springs) += change;
+    const double change = element.energy_change(rest_of_way(before, way.path));
+    (element.account() == ForceAccount::loads ? energies_.loads : energies_.support_springs) += change;
     energies_.scheme -= change;
-    energies_.turnover += std::abs(p.force.dot(moved - p.moved));
-    p.energy = energy;
-    p.moved = moved;
+    if (element.account() == ForceAccount::loads) energies_.turnover += std::abs(change);
   }
 }
 
@@ -481,7 +487,7 @@ void CentralDifference::adapt(double taken, double kinetic_change, double h) {
 
 void CentralDifference::follow_contacts() {
   begin_forces();
-  add_point_forces(true);
+  add_element_forces(true);
   lost_strength_ = false;
   follow_links(damped_);
 }
@@ -847,17 +853,18 @@ ExplicitEnergies CentralDifference::take_energies() {
   return taken;
 }
 
-void CentralDifference::exchange(Archive& archive, const JointTable& joints) {
+void CentralDifference::exchange(Archive& archive, const JointTable& joints, const ExternalForces& external) {
   joints_ = &joints;
-  archive(poses_, rates_, next_rates_, forces_, inertia_, blocks_, rest_slot_, loaded_at_, links_, rest_, link_of_, cleared_, kept_at_, points_,
+  external_ = &external;
+  archive(poses_, rates_, next_rates_, forces_, inertia_, blocks_, rest_slot_, loaded_at_, links_, rest_, link_of_, cleared_, kept_at_, elements_,
           energies_, damped_, lost_strength_, critical_step_, approach_, moved_, unbalanced_, max_penetration_, step_ahead_, list_is_short_, share_,
           room_, h_, base_, local_damping_, viscous_);
 }
 
 Memory CentralDifference::memory() const {
   Memory of;
-  of.blocks = bytes_of(poses_, rates_, next_rates_, forces_, inertia_, blocks_, rest_slot_, loaded_at_, kept_at_, points_) + critical_step_.bytes() +
-              depth_limits_.bytes();
+  of.blocks = bytes_of(poses_, rates_, next_rates_, forces_, inertia_, blocks_, rest_slot_, loaded_at_, kept_at_, elements_) +
+              critical_step_.bytes() + depth_limits_.bytes();
   of.contacts = bytes_of(links_, rest_, link_of_, renumbered_);
   return of;
 }

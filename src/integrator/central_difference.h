@@ -119,8 +119,8 @@ class CentralDifference {
 
   Memory memory() const;
 
-  /// All of it; the joints are those that load() was given.
-  void exchange(Archive& archive, const JointTable& joints);
+  /// All of it; joints and external forces are those that load() was given.
+  void exchange(Archive& archive, const JointTable& joints, const ExternalForces& external);
 
  private:
   struct alignas(32) Pose {
@@ -190,16 +190,15 @@ class CentralDifference {
       archive(a, b, c, d, e, f, g, h, i, j);
     }
   };
-  struct PointForce {
+  /// A force element on its way.
+  struct ElementWay {
+    int element;  ///< of the external forces
     int slot;
-    bool is_load;
-    Vec2 arm, force, stiffness, stretch;  ///< at the load
-    double energy = 0.0;                  ///< [J] stored minus work, since the load
-    Vec2 moved = Vec2::Zero();            ///< since the load
+    ElementPath path;  ///< since the load
 
     void exchange(Archive& archive) {
-      auto& [a, b, c, d, e, f, g, h] = *this;
-      archive(a, b, c, d, e, f, g, h);
+      archive(element, slot, path.d);
+      for (PointPath& p : path.points) archive(p.position, p.arm, p.moved, p.end_arm);
     }
   };
   struct Place {
@@ -209,7 +208,7 @@ class CentralDifference {
 
   void load_blocks(const StepProblem& problem);
   void load_contacts(const StepProblem& problem);
-  void load_points(const StepProblem& problem);
+  void load_elements(const StepProblem& problem);
   void add_link(const StepProblem& problem, int contact);
   void take_link(int slot);
   void add_parts(const Link& link, const LinkRest& rest, double sign);
@@ -238,7 +237,7 @@ class CentralDifference {
     return link.status == ContactStatus::open && link.stretch == 0.0 && link.normal == 0.0 && link.shear == 0.0 && !link.breakable;
   }
   void begin_forces();
-  void add_point_forces(bool step);
+  void add_element_forces(bool step);
   /// Sums of what the links of a step take, and the deepest of them.
   struct LinkSums {
     double friction, damping, scheme, deepest;
@@ -279,8 +278,9 @@ class CentralDifference {
     }
   };
   std::vector<Way> kept_at_;  ///< since the load, where the list was last found to be good
-  std::vector<PointForce> points_;
+  std::vector<ElementWay> elements_;
   const JointTable* joints_ = nullptr;
+  const ExternalForces* external_ = nullptr;
   ExplicitEnergies energies_;
   bool damped_ = false, lost_strength_ = false;
   const double skin_;  ///< [m]

@@ -34,7 +34,7 @@ double critical_step(const StepProblem& problem, double approach) {
   const BlockSystem& system = problem.system;
   const Unknowns still = Unknowns::Zero();
   std::vector<Matrix> stiffness(system.free_count(), Matrix::Zero()), damping(system.free_count(), Matrix::Zero());
-  for (int b : system.free_blocks()) stiffness[system.block(b).equation] = problem.external.stiffness(system, b, still);
+  for (int b : system.free_blocks()) stiffness[system.block(b).equation] = problem.external.symmetric_stiffness(system, b);
   bool damped = false;
   for (const Contact& c : problem.contacts) {
     const TabulatedJoint& joint = problem.joints.joint(c.joint);
@@ -68,7 +68,7 @@ void CriticalStepBound::begin(const StepProblem& problem) {
     const auto& block = system.block(b);
     const double turns = block.rotation_locked ? 0.0 : 1.0;
     const Scale scale{1.0 / block.mass[0], turns / block.mass[2], turns / std::sqrt(block.mass[0] * block.mass[2])};
-    const Motion::Matrix k = problem.external.stiffness(system, b, Motion::Unknowns::Zero());
+    const Motion::Matrix k = problem.external.symmetric_stiffness(system, b);
     stiffness_[block.equation] = {scale.mass * k(0, 0),  scale.mass * k(0, 1),  scale.mass * k(1, 1),
                                   scale.lever * k(0, 2), scale.lever * k(1, 2), scale.moment * k(2, 2)};
     scales_.push_back(scale);

@@ -150,7 +150,7 @@ void Newton::prepare(const StepProblem& problem, const SpringSource& springs) {
   for (int b : system.free_blocks()) {
     const auto& block = system.block(b);
     const Unknowns still = Unknowns::Zero();
-    blocks_.push_back({b, problem.external.has_point_forces(b), block.rotation_locked, block.radius, problem.inertia * block.mass,
+    blocks_.push_back({b, problem.external.has_elements(b), block.rotation_locked, block.radius, problem.inertia * block.mass,
                        problem.external.force(system, b, still), problem.drift(b), problem.external.magnitude(system, b, still),
                        problem.external.spring_scale(system, b)});
   }
@@ -169,7 +169,7 @@ void Newton::prepare(const StepProblem& problem, const SpringSource& springs) {
 }
 
 void Newton::find_blocks_alone() {
-  for (StepBlock& block : blocks_) block.is_alone = !block.has_point_forces;
+  for (StepBlock& block : blocks_) block.is_alone = !block.has_elements;
   const int rows = static_cast<int>(blocks_.size());
   const auto touch = [&](int row) {
     if (row < rows) blocks_[row].is_alone = false;
@@ -210,7 +210,7 @@ void Newton::evaluate_block(int row, const Eigen::VectorXd& d) {
   Lanes& sums = rows_[row].sums;
   sums += rows_[row].of_odd_lanes;
   Unknowns force(sums[0], sums[1], sums[2]);
-  if (block.has_point_forces) {
+  if (block.has_elements) {
     force += averages_path() ? problem_->external.mean_force(system, block.block, db) : problem_->external.force(system, block.block, db);
   } else {
     force += block.force;
@@ -226,7 +226,7 @@ void Newton::evaluate_block(int row, const Eigen::VectorXd& d) {
 }
 
 double Newton::magnitude(const StepBlock& block, const Unknowns& d) const {
-  return block.has_point_forces ? problem_->external.magnitude(problem_->system, block.block, d) : block.magnitude;
+  return block.has_elements ? problem_->external.magnitude(problem_->system, block.block, d) : block.magnitude;
 }
 
 void Newton::move_block(int row, const Eigen::VectorXd& d) {
@@ -340,7 +340,7 @@ void Newton::assemble(const Eigen::VectorXd& d, Tangent tangent) {
     const int row = static_cast<int>(i);
     auto& diagonal = matrix.value(matrix.diagonal(row));
     diagonal.diagonal() += block.inertia;
-    if (!block.has_point_forces) continue;
+    if (!block.has_elements) continue;
     const Unknowns db = d.segment<dofs>(dofs * row);
     if (averages_path()) {
       diagonal += problem_->external.mean_stiffness(problem_->system, block.block, db);

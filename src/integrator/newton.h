@@ -100,7 +100,7 @@ class Newton {
 
   struct StepBlock {
     int block = 0;
-    bool has_point_forces = false, rotation_locked = false;
+    bool has_elements = false, rotation_locked = false;
     double radius = 0.0;
     Unknowns inertia, force, drift;        ///< mass over time squared; all but contacts' at the start; displacement without forces
     double magnitude = 0.0;                ///< [N] of these forces

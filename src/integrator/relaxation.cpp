@@ -119,7 +119,7 @@ TwoLevelFlexibility Newton::flexibility(const Eigen::VectorXd& d, const std::vec
   }
   for (int i = 0; i < rows; ++i) {
     Eigen::Matrix<double, dofs, dofs> own = blocks_[i].inertia.asDiagonal();
-    if (blocks_[i].has_point_forces) own += problem_->external.stiffness(problem_->system, blocks_[i].block, d.segment<dofs>(dofs * i));
+    if (blocks_[i].has_elements) own += problem_->external.stiffness(problem_->system, blocks_[i].block, d.segment<dofs>(dofs * i));
     const double hold = unbalanced(i) / longest_way, radius = blocks_[i].radius;
     own.diagonal() += hold * Unknowns(1.0, 1.0, radius * radius);
     sum.add_own(i, own);

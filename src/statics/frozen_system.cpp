@@ -37,8 +37,10 @@ Scene in_units(const Scene& scene, double unit) {
   for (BlockInput& block : scaled.blocks) {
     for (Vec2& v : block.vertices) scale(v);
   }
-  for (Load& load : scaled.loads) scale(load.point);
-  for (Support& support : scaled.supports) scale(support.point);
+  for_each_force(scaled, [&](auto& force) {
+    force.visit_points(force, scale);
+    force.change_unit_of_length(unit);
+  });
   return scaled;
 }
 
@@ -101,9 +103,7 @@ FrozenSystem::FrozenSystem(const Scene& scene) : length_unit_(median_size(scene)
     block.mass = {mass[0], mass[1], mass[2] / (block.radius * block.radius)};
     // Moments have their arms in units of length.
     BlockVector load = Motion::gradient(Vec2::Zero(), mass[0] * scene.gravity);
-    for (const auto& f : external.loads()) {
-      if (system.point_block(f.point) == b) load += Motion::gradient(system.point_arm(f.point), f.force);
-    }
+    external.for_each_element(b, [&](const ForceElement& element) { load += element.force(element.path(system, BlockVector::Zero())); });
     block.load = scaled_rotation(load, block.radius, system.block(b).rotation_locked);
     if (scene.gravity.norm() == 0.0) acceleration_unit = std::max(acceleration_unit, block.load.norm() / mass[0]);
     heaviest = std::max(heaviest, mass[0]);
@@ -116,15 +116,11 @@ FrozenSystem::FrozenSystem(const Scene& scene) : length_unit_(median_size(scene)
     block.mass /= heaviest;
     block.weight = block.mass[0];
   }
-  for (const auto& f : external.supports()) {
-    const int b = system.point_block(f.point);
-    const int row = system.block(b).equation;
-    if (row < 0) continue;
-    for (int k = 0; k < 2; ++k) {
-      if (f.stiffness[k] == 0.0) continue;
-      const BlockVector direction = Motion::gradient(system.point_arm(f.point), Vec2::Unit(k));
-      supports_.push_back({row, scaled_rotation(direction, system.block(b).radius, system.block(b).rotation_locked), f.stiffness[k]});
-    }
+  for (const auto& element : external.elements()) {
+    const auto& block = system.block(element->block());
+    if (block.equation < 0) continue;
+    for (const auto& [direction, stiffness] : element->springs(element->path(system, BlockVector::Zero())))
+      supports_.push_back({block.equation, scaled_rotation(direction, block.radius, block.rotation_locked), stiffness});
   }
   find_contacts(scaled, system);
   for (FrozenContact& c : contacts_) c.point = scene.blocks.front().vertices.front() + length_unit_ * c.point;
