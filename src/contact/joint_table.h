@@ -1,6 +1,7 @@
 // Joint properties by material pair, ready for look-up by two integers.
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -11,7 +12,9 @@ namespace openclose {
 
 /// A joint with what is derived from it once, not in every contact and step.
 struct TabulatedJoint : JointProperties {
-  double friction = 0.0;  ///< [-] tan(friction angle)
+  explicit TabulatedJoint(const JointProperties& joint) : JointProperties(joint), friction(std::tan(joint.friction_angle)) {}
+
+  double friction;  ///< [-] tan(friction angle)
 };
 
 class JointTable {

@@ -735,7 +735,7 @@ void CentralDifference::book_step_change(double before, double now, const Vec2& 
   }
 }
 
-void CentralDifference::lose_strength(Link& link, const JointProperties& joint, const Place& at) {
+void CentralDifference::lose_strength(Link& link, const TabulatedJoint& joint, const Place& at) {
   if (stays_bonded(joint, true, link.status)) return;
   lost_strength_ = true;
   link.bonded = link.breakable = false;

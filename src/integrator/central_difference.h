@@ -230,7 +230,7 @@ class CentralDifference {
   /// What contacts owe because this step is not as long as the one before, see crossing_energy.h.
   void book_step_change(double before, double now, const Vec2& base);
   void settle_crossing(Link& link, const Crossing& crossing, double& normal, double& shear, double& scheme);
-  void lose_strength(Link& link, const JointProperties& joint, const Place& at);
+  void lose_strength(Link& link, const TabulatedJoint& joint, const Place& at);
   static double stored_energy(const Link& link);
   /// Whether nothing but gap and slip of a contact changes in a step that leaves it open.
   static bool rests(const Link& link) {

@@ -150,14 +150,13 @@ bool Newton::break_slipped_bonds(const SpringSource& springs) {
   bool any = false;
   for (std::size_t c = 0; c < contact_count_; ++c) {
     const Contact& contact = problem_->contacts[c];
-    const JointProperties& joint = problem_->joints.joint(contact.joint);
+    const TabulatedJoint& joint = problem_->joints.joint(contact.joint);
     if (has_broken_[c] || !can_lose_strength(joint, contact.bonded) || stays_bonded(joint, contact.bonded, ContactStatus::sliding)) continue;
     if (status(branches_[c]) == ContactStatus::open || slipped_as_a_whole(springs, c).status != ContactStatus::sliding) continue;
     has_broken_[c] = any = true;
     ContactStrength strength = start(c).strength(lane(c));
     strength.break_bond(joint);
-    contacts()[c / batch_size].cohesion[lane(c)] = strength.cohesion;
-    contacts()[c / batch_size].tension[lane(c)] = strength.tension;
+    contacts()[c / batch_size].set_strength(lane(c), strength);
   }
   return any;
 }

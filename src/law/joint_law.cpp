@@ -2,7 +2,7 @@
 
 namespace openclose {
 
-void ContactStrength::break_bond(const JointProperties& joint) {
+void ContactStrength::break_bond(const TabulatedJoint& joint) {
   if (joint.cohesion_behaviour != CohesionBehaviour::ductile) cohesion = 0.0;
   tension = 0.0;
 }

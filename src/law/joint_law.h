@@ -1,5 +1,6 @@
-// What a joint can carry (strength) and how its springs get there (spring-slider). The springs' stiffness and rest position are chosen by the
-// enforcement: real joint stiffness for `soft` and `dem`, a penalty for `shi`, a penalty shifted by a multiplier for `hard`.
+// The joint law: what a joint can carry (strength), when its bond breaks, and how its springs get there (spring-slider). The springs' stiffness and
+// rest position are chosen by the enforcement: real joint stiffness for `soft` and `dem`, a penalty for `shi`, a penalty shifted by a multiplier for
+// `hard`.
 //
 // Contact damping: dashpots parallel to the springs, c = 2 xi sqrt(k L m*), k the joint's own stiffness (not a penalty), L the tributary length and
 // m* = m1 m2/(m1 + m2) of the two blocks. One block on one contact then has the damping ratio xi; on n equal contacts that share its stiffness
@@ -25,11 +26,15 @@ struct ContactStrength {
   double tension = 0.0;   ///< [N] tensile strength times tributary length, 0 once lost
 
   ContactStrength() = default;
-  ContactStrength(const JointProperties& joint, const Contact& contact) : ContactStrength(joint, std::tan(joint.friction_angle), contact) {}
-  /// The same without a tangent for every contact.
-  ContactStrength(const TabulatedJoint& joint, const Contact& contact) : ContactStrength(joint, joint.friction, contact) {}
+  /// Of a contact in its present state: bonded or not.
+  ContactStrength(const TabulatedJoint& joint, const Contact& contact) : friction(joint.friction) {
+    const bool intact = contact.bonded || joint.cohesion_behaviour == CohesionBehaviour::ductile;
+    cohesion = intact ? joint.cohesion * contact.length : 0.0;
+    tension = contact.bonded ? joint.tensile_strength * contact.length : 0.0;
+  }
 
-  void break_bond(const JointProperties& joint);
+  /// What is left of the strength when the bond breaks.
+  void break_bond(const TabulatedJoint& joint);
   void exchange(Archive& archive) {
     auto& [a, b, c] = *this;
     archive(a, b, c);
@@ -47,13 +52,6 @@ struct ContactStrength {
     return {at.value, at.value > 0.0 ? (at.on_ramp < at.on_slope ? at.steep : friction) : 0.0};
   }
   ShearLimit<double> limit(double n, double ramp) const { return {friction, cohesion, tension, n, ramp}; }
-
- private:
-  ContactStrength(const JointProperties& joint, double tangent, const Contact& contact) : friction(tangent) {
-    const bool intact = contact.bonded || joint.cohesion_behaviour == CohesionBehaviour::ductile;
-    cohesion = intact ? joint.cohesion * contact.length : 0.0;
-    tension = contact.bonded ? joint.tensile_strength * contact.length : 0.0;
-  }
 };
 
 /// Springs of one contact during one step. The normal force is shift - stiffness (gap - target), the shear force starts from initial_shear.
@@ -147,10 +145,10 @@ ContactForces tangent_for_status(const ContactSprings& springs, const ContactStr
 ContactForces prolonged(const ContactSprings& springs, const ContactStrength& strength, ContactStatus status, double normal, double shear,
                         double gap_change, double slip_change);
 
-/// Whether a contact has tensile strength, or cohesion that is not ductile.
+/// Whether a contact has strength that goes with its bond: tensile strength, or cohesion that is not ductile.
 bool can_lose_strength(const JointProperties& joint, bool bonded);
 
-/// Whether cohesion and tensile strength survive a step that ended in this status.
+/// Whether the bond survives a step that ended in this status.
 bool stays_bonded(const JointProperties& joint, bool bonded, ContactStatus status);
 
 }  // namespace openclose

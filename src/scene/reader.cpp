@@ -98,7 +98,8 @@ class RowReader {
   }
   bool read_member(const std::string& name, int& member, const BlockName&) { return table_->optional(name, member, *block_names_); }
   bool read_member(const std::string& name, bool& member, const Flag&) { return table_->optional(name, member); }
-  bool read_member(const std::string& name, double& member, const Degrees& angle) {
+  template <typename Angle>
+  bool read_member(const std::string& name, Angle& member, const Degrees& angle) {
     double in_degrees = 0.0;
     const bool given = table_->optional(name, in_degrees, angle.range);
     if (given) member = radians(in_degrees);
@@ -133,6 +134,7 @@ JointProperties read_joint(Table table, const NameList& material_names) {
 
   if (materials.size() != 2) table.at("materials").fail(fmt::format("there are {} names", materials.size()), "two names of materials");
   joint.materials = {materials[0], materials[1]};
+  if (const auto found = contradiction_in(joint)) table.at(std::string(found->key)).fail(std::string(found->read), std::string(found->accepted));
   return joint;
 }
 

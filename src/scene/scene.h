@@ -12,6 +12,7 @@
 #include "openclose/core/vector.h"
 #include "openclose/scene/acceleration_record.h"
 #include "openclose/scene/force_inputs.h"
+#include "openclose/scene/joint_properties.h"
 #include "openclose/scene/options.h"
 
 namespace openclose {
@@ -20,45 +21,6 @@ struct Material {
   std::string name;
   double density = 0.0;  ///< [kg/m3]
 };
-
-/// What happens to the cohesion of a joint that has failed; its tensile strength is gone once it has opened, whatever this says.
-enum class CohesionBehaviour {
-  ductile,          ///< kept for ever
-  lost_on_opening,  ///< gone once the contact has opened
-  lost_on_slip,     ///< gone once the contact has slipped or opened
-};
-
-inline constexpr std::array cohesion_behaviour_words{
-    Word{"ductile", CohesionBehaviour::ductile},
-    Word{"lost_on_opening", CohesionBehaviour::lost_on_opening},
-    Word{"lost_on_slip", CohesionBehaviour::lost_on_slip},
-};
-
-/// Mohr-Coulomb joint with tension cut-off, for one unordered pair of materials.
-struct JointProperties {
-  std::array<int, 2> materials{};  ///< indices into Scene::materials
-  double normal_stiffness = 0.0;   ///< [Pa/m]
-  double shear_stiffness = 0.0;    ///< [Pa/m]
-  double friction_angle = 0.0;     ///< [rad]
-  double cohesion = 0.0;           ///< [Pa]
-  double tensile_strength = 0.0;   ///< [Pa]
-  CohesionBehaviour cohesion_behaviour = CohesionBehaviour::ductile;
-  double damping_ratio = 0.0;  ///< [-] of dashpots parallel to the springs, see law/joint_law.h
-};
-
-/// The keys of [[joint]], but for its two materials.
-template <class Joint, class Visitor>
-void visit_joint_keys(Joint& j, Visitor& visit) {
-  visit({.name = "normal_stiffness_pa_per_m", .says = "of the springs across the joint, for a square metre of it", .required = true},
-        j.normal_stiffness, positive);
-  visit({.name = "shear_stiffness_pa_per_m", .says = "of the springs along it", .required = true}, j.shear_stiffness, positive);
-  visit({.name = "friction_angle_deg", .says = "of Mohr and Coulomb's law", .required = true}, j.friction_angle,
-        Degrees{{.low = 0.0, .high = 90.0, .low_included = true}});
-  visit({"cohesion_pa", "of Mohr and Coulomb's law"}, j.cohesion, not_negative);
-  visit({"tensile_strength_pa", "gone once the joint has opened"}, j.tensile_strength, not_negative);
-  visit({"cohesion_behaviour", "when the cohesion is lost, if ever"}, j.cohesion_behaviour, cohesion_behaviour_words);
-  visit({"damping_ratio", "dashpots beside the joint's springs, see [methods](methods.md)"}, j.damping_ratio, not_negative);
-}
 
 struct BlockInput {
   std::string name;

@@ -33,7 +33,7 @@ Contact contact_of_length(double length, bool bonded = true) {
 
 /// Friction [-], cohesion [N] and tension [N] of a contact of 1 m.
 ContactStrength strength_of(double friction, double cohesion = 0.0, double tension = 0.0) {
-  return ContactStrength(joint_with(friction, cohesion, tension), contact_of_length(1.0));
+  return ContactStrength(TabulatedJoint(joint_with(friction, cohesion, tension)), contact_of_length(1.0));
 }
 
 /// 1000 N/m normal, 400 N/m shear, closed by 1 m: 1000 N at rest.
@@ -49,7 +49,7 @@ ContactSprings springs_under_load() {
 
 TEST_CASE("strength is the joint's times the tributary length", "[law][strength]") {
   const JointProperties joint = joint_with(0.7, 3e4, 2e4);
-  const ContactStrength strength(joint, contact_of_length(0.25));
+  const ContactStrength strength(TabulatedJoint(joint), contact_of_length(0.25));
   CHECK(strength.friction == Approx(0.7).epsilon(rounding));
   CHECK(strength.cohesion == Approx(7.5e3).epsilon(rounding));
   CHECK(strength.tension == Approx(5e3).epsilon(rounding));
@@ -59,11 +59,11 @@ TEST_CASE("an open or slipped joint keeps only ductile cohesion, and no tension"
   const Contact broken = contact_of_length(0.5, false), bonded = contact_of_length(0.5);
   const auto behaviour = GENERATE(CohesionBehaviour::ductile, CohesionBehaviour::lost_on_opening, CohesionBehaviour::lost_on_slip);
   const JointProperties joint = joint_with(0.7, 3e4, 2e4, behaviour);
-  CHECK(ContactStrength(joint, bonded).cohesion == 1.5e4);
-  CHECK(ContactStrength(joint, bonded).tension == 1e4);
-  CHECK(ContactStrength(joint, broken).cohesion == (behaviour == CohesionBehaviour::ductile ? 1.5e4 : 0.0));
-  CHECK(ContactStrength(joint, broken).tension == 0.0);
-  CHECK(ContactStrength(joint, broken).friction == Approx(0.7).epsilon(rounding));
+  CHECK(ContactStrength(TabulatedJoint(joint), bonded).cohesion == 1.5e4);
+  CHECK(ContactStrength(TabulatedJoint(joint), bonded).tension == 1e4);
+  CHECK(ContactStrength(TabulatedJoint(joint), broken).cohesion == (behaviour == CohesionBehaviour::ductile ? 1.5e4 : 0.0));
+  CHECK(ContactStrength(TabulatedJoint(joint), broken).tension == 0.0);
+  CHECK(ContactStrength(TabulatedJoint(joint), broken).friction == Approx(0.7).epsilon(rounding));
 }
 
 TEST_CASE("the bond survives what its behaviour allows", "[law][strength]") {

@@ -25,7 +25,7 @@ ContactStrength strength_of(double friction, double cohesion, double tension) {
   joint.tensile_strength = tension;
   Contact contact;
   contact.length = 1.0;
-  return ContactStrength(joint, contact);
+  return ContactStrength(TabulatedJoint(joint), contact);
 }
 
 ContactSprings springs_at(double gap, double shear) {

@@ -1,0 +1,71 @@
+// What the user wrote of a joint, and its rows: reader, writer, docs/keys.md and the schema go through them. What a contact carries with these
+// parameters is said in law/joint_law.h; solvers know neither.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <optional>
+#include <string_view>
+
+#include "openclose/scene/key.h"
+
+namespace openclose {
+
+/// What happens to the cohesion of a joint that has failed; its tensile strength is gone once it has opened, whatever this says.
+enum class CohesionBehaviour {
+  ductile,          ///< kept for ever
+  lost_on_opening,  ///< gone once the contact has opened
+  lost_on_slip,     ///< gone once the contact has slipped or opened
+};
+
+inline constexpr std::array cohesion_behaviour_words{
+    Word{"ductile", CohesionBehaviour::ductile},
+    Word{"lost_on_opening", CohesionBehaviour::lost_on_opening},
+    Word{"lost_on_slip", CohesionBehaviour::lost_on_slip},
+};
+
+/// Mohr-Coulomb joint with tension cut-off, for one unordered pair of materials.
+struct JointProperties {
+  std::array<int, 2> materials{};  ///< indices into Scene::materials
+  double normal_stiffness = 0.0;   ///< [Pa/m]
+  double shear_stiffness = 0.0;    ///< [Pa/m]
+  double friction_angle = 0.0;     ///< [rad]
+  double cohesion = 0.0;           ///< [Pa]
+  double tensile_strength = 0.0;   ///< [Pa]
+  CohesionBehaviour cohesion_behaviour = CohesionBehaviour::ductile;
+  double damping_ratio = 0.0;  ///< [-] of dashpots parallel to the springs, see law/joint_law.h
+
+  /// tan(friction angle), cohesion and tensile strength divided by a strength reduction factor.
+  JointProperties reduced_by(double factor) const {
+    JointProperties weaker = *this;
+    weaker.friction_angle = std::atan(std::tan(friction_angle) / factor);
+    weaker.cohesion = cohesion / factor;
+    weaker.tensile_strength = tensile_strength / factor;
+    return weaker;
+  }
+};
+
+/// The keys of [[joint]], but for its two materials.
+template <class Joint, class Visitor>
+void visit_joint_keys(Joint& j, Visitor& visit) {
+  visit({.name = "normal_stiffness_pa_per_m", .says = "of the springs across the joint, for a square metre of it", .required = true},
+        j.normal_stiffness, positive);
+  visit({.name = "shear_stiffness_pa_per_m", .says = "of the springs along it", .required = true}, j.shear_stiffness, positive);
+  visit({.name = "friction_angle_deg", .says = "of Mohr and Coulomb's law", .required = true}, j.friction_angle,
+        Degrees{{.low = 0.0, .high = 90.0, .low_included = true}});
+  visit({"cohesion_pa", "of Mohr and Coulomb's law"}, j.cohesion, not_negative);
+  visit({"tensile_strength_pa", "gone once the joint has opened"}, j.tensile_strength, not_negative);
+  visit({"cohesion_behaviour", "when the cohesion is lost, if ever"}, j.cohesion_behaviour, cohesion_behaviour_words);
+  visit({"damping_ratio", "dashpots beside the joint's springs, see [methods](methods.md)"}, j.damping_ratio, not_negative);
+}
+
+/// Why a value cannot be, beside what its own range says, and what can: of a key that the file gives.
+struct JointContradiction {
+  std::string_view key, read, accepted;
+};
+/// The first contradiction between the values of a joint, if there is one.
+inline std::optional<JointContradiction> contradiction_in(const JointProperties&) {
+  return std::nullopt;
+}
+
+}  // namespace openclose
