@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <stdexcept>
 #include <tuple>
@@ -154,6 +155,7 @@ class Reader {
     read_materials();
     read_blocks();
     read_loads();
+    read_surcharges();
     assembly_.interfaces = find_interfaces(assembly_.blocks);
     read_strengths();
     return std::move(assembly_);
@@ -195,6 +197,25 @@ class Reader {
       RigidBlock& block = assembly_.blocks[blocks_.of(s.word("block"), s.where())];
       const Point force = s.point("force_n");
       block.load += Eigen::Vector3d(force.x(), force.y(), cross(s.point("point_m") - block.centroid, force));
+    }
+  }
+
+  /// Pressure pushes to the left of an outline that runs counter-clockwise.
+  void read_surcharges() {
+    for (const Section& s : sections(file_, "surcharge", name_)) {
+      RigidBlock& block = assembly_.blocks[blocks_.of(s.word("block"), s.where())];
+      const Point from = s.point("from_m"), to = s.point("to_m"), middle = (from + to) / 2;
+      Point along = Point::Zero();
+      double nearest = std::numeric_limits<double>::infinity();
+      for (std::size_t i = 0; i < block.vertices.size(); ++i) {
+        const Point start = block.vertices[i], edge = block.vertices[(i + 1) % block.vertices.size()] - start;
+        const double beside = std::abs(cross(edge, middle - start)) / edge.norm(), on_edge = edge.dot(middle - start) / edge.squaredNorm();
+        if (on_edge < 0 || on_edge > 1 || beside >= nearest) continue;
+        nearest = beside;
+        along = (to - from).dot(edge) > 0 ? to - from : from - to;
+      }
+      const Point force = s.number("pressure_pa") * Point(-along.y(), along.x()) + s.number_or("shear_pa", 0) * along;
+      block.load += Eigen::Vector3d(force.x(), force.y(), cross(middle - block.centroid, force));
     }
   }
 

@@ -83,11 +83,42 @@ class PointSupport : public ForceElement {
   Vec2 anchor_;     ///< [m] where the springs are slack, relative to the system's origin
 };
 
+/// A traction along a part of an edge: its resultant acts in the middle and turns with the block, so that its moment stays as it is.
+class EdgeTraction : public ForceElement {
+ public:
+  EdgeTraction(const Surcharge& surcharge, BlockSystem& system)
+      : ForceElement(surcharge.block, {system.follow_point(surcharge.block, surcharge.from), system.follow_point(surcharge.block, surcharge.to)},
+                     ForceAccount::loads),
+        surcharge_(surcharge) {}
+
+  Unknowns force(const ElementPath& path) const override { return at(path.points[0].end_arm, path.points[1].end_arm); }
+  Matrix stiffness(const ElementPath& path) const override {
+    Matrix k = Matrix::Zero();
+    k.col(Motion::rotation_index).head<2>() = -perpendicular(Motion::translation(force(path)));
+    return k;
+  }
+  Unknowns mean_force(const ElementPath& path) const override {
+    return 0.5 * (at(path.points[0].arm, path.points[1].arm) + at(path.points[0].end_arm, path.points[1].end_arm));
+  }
+  Matrix mean_stiffness(const ElementPath& path) const override { return 0.5 * stiffness(path); }
+  double magnitude(const ElementPath& path) const override { return Motion::translation(force(path)).norm(); }
+  /// No potential: minus the work over the way.
+  double energy_change(const ElementPath& path) const override { return -mean_force(path).dot(path.d); }
+
+ private:
+  Unknowns at(const Vec2& from, const Vec2& to) const { return Motion::gradient(0.5 * (from + to), surcharge_.resultant(to - from)); }
+
+  Surcharge surcharge_;
+};
+
 std::unique_ptr<const ForceElement> element(const Load& load, BlockSystem& system) {
   return std::make_unique<PointLoad>(load, system);
 }
 std::unique_ptr<const ForceElement> element(const Support& support, BlockSystem& system) {
   return std::make_unique<PointSupport>(support, system);
+}
+std::unique_ptr<const ForceElement> element(const Surcharge& surcharge, BlockSystem& system) {
+  return std::make_unique<EdgeTraction>(surcharge, system);
 }
 
 }  // namespace

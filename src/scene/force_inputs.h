@@ -80,15 +80,50 @@ struct Support {
   std::vector<DrawnForce> drawn() const { return {}; }
 };
 
+/// A traction on an edge of a block, or a part of one, that moves and turns with the block.
+struct Surcharge {
+  int block = 0;
+  Vec2 from = Vec2::Zero(), to = Vec2::Zero();  ///< [m] on one edge, in the order in which the outline runs counter-clockwise
+  double pressure = 0.0;                        ///< [Pa] onto the block
+  double shear = 0.0;                           ///< [Pa] in the direction in which the outline runs
+
+  static constexpr bool holds = false;
+  static KeyTable table() {
+    return {"surcharge", Audience::user, "A traction on an edge of a block, or a part of one, that moves and turns with the block", true};
+  }
+  template <class Self, class Visitor>
+  static void visit_keys(Self& self, Visitor& visit) {
+    visit({"block", "name of a block", "that with both points on one edge"}, self.block, BlockName{});
+    visit({.name = "from_m", .says = "one end, on an edge of the block", .required = true}, self.from, any_number);
+    visit({.name = "to_m", .says = "the other end, on the same edge; which of the two comes first does not matter", .required = true}, self.to,
+          any_number);
+    visit({.name = "pressure_pa", .says = "normal to the edge, onto the block; a negative one pulls", .required = true}, self.pressure, any_number);
+    visit({"shear_pa", "along the edge, positive counter-clockwise around the block"}, self.shear, any_number);
+  }
+  template <class Self, class F>
+  static void visit_points(Self& self, F f) {
+    f(self.from);
+    f(self.to);
+  }
+  void complete(const Table& table, const std::vector<BlockInput>& blocks);
+  void change_unit_of_length(double unit) { pressure *= unit, shear *= unit; }
+  std::vector<DrawnForce> drawn() const { return {{0.5 * (from + to), resultant(to - from), true}}; }
+  /// [N] The traction times the length.
+  /// \param along  [m] from one end to the other, as the block lies now
+  Vec2 resultant(const Vec2& along) const { return pressure * perpendicular(along) + shear * along; }
+};
+
 struct ForceInputs {
   std::vector<Load> loads;
   std::vector<Support> supports;
+  std::vector<Surcharge> surcharges;
 
   /// f(list) for the list of every kind, in the order in which their forces are added up.
   template <class Self, class F>
   static void visit(Self& self, F f) {
     f(self.loads);
     f(self.supports);
+    f(self.surcharges);
   }
 };
 

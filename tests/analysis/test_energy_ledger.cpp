@@ -205,6 +205,24 @@ TEST_CASE("the ledger closes with loads and supports that turn a block, with eve
   CHECK(relative_imbalance(simulation.ledger()) < 1e-12);
 }
 
+TEST_CASE("the ledger closes with a surcharge that spins a block, and has all of its work", "[analysis][energy]") {
+  const std::string method = GENERATE(from_range(all_methods));
+  INFO(method);
+  Scene scene = test::falling_block();
+  scene.gravity.setZero();
+  scene.method.contact = method;
+  scene.step.dt = 0.01;
+  scene.surcharges = {{0, scene.blocks[0].vertices[2], 0.5 * (scene.blocks[0].vertices[2] + scene.blocks[0].vertices[3]), 3000.0, -2000.0}};
+  Simulation simulation(scene);
+  advance(simulation, 50);
+  CHECK(std::abs(simulation.system().displacement(0)[2]) > 0.1);
+  const EnergyLedger& ledger = simulation.ledger();
+  CHECK(relative_imbalance(ledger) < 1e-12);
+  CHECK(ledger.kinetic > 0.0);
+  // What the scheme adds falls with the step: the work turns into motion.
+  CHECK(ledger.loads == Approx(-ledger.kinetic).epsilon(0.05));
+}
+
 TEST_CASE("ledger of a stiff impact: all that was fallen is lost", "[analysis][energy]") {
   Scene scene = test::block_on_base();
   scene.method.contact = "hard";

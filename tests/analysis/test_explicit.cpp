@@ -37,6 +37,7 @@ Scene breaking() {
   scene.joints[0].cohesion_behaviour = CohesionBehaviour::lost_on_slip;
   scene.loads = {{1, {1.5, 1.0}, {1e5, 2e4}}};
   scene.supports = {{1, {0.0, 0.5}, {3e5, 1e5}}};
+  scene.surcharges = {{1, scene.blocks[1].vertices[2], scene.blocks[1].vertices[3], 1e4, 3e3}};
   return scene;
 }
 

@@ -74,6 +74,14 @@ TEST_CASE("rigid blocks: point loads act on the centroid with their moment") {
   CHECK(assembly.blocks[3].load.isApprox(Eigen::Vector3d(100, -29950, -50), 1e-14));
 }
 
+TEST_CASE("rigid blocks: surcharges push onto their edge, whichever end comes first") {
+  for (const std::string ends : {"from_m = [3, 1.5]\nto_m = [3, 2]\n", "from_m = [3, 2]\nto_m = [3, 1.5]\n"}) {
+    const RigidBlockAssembly assembly = parse_rigid_blocks(pile + "[[surcharge]]\nblock = 'top'\npressure_pa = 200\nshear_pa = 40\n" + ends);
+    // 0.5 m of the right side: 100 N to the left, 20 N up, 1 m to the right of the centroid and 0.25 m above it.
+    CHECK(assembly.blocks[3].load.isApprox(Eigen::Vector3d(-100, -30000 + 20, 20 + 25), 1e-14));
+  }
+}
+
 TEST_CASE("rigid blocks: an interface is where edges face each other, wherever the blocks lie") {
   for (const double angle : {0.0, 0.3, 1.5707963267948966, 2.0, -1.1}) {
     for (const Point& origin : {Point(0, 0), Point(1e6, -1e6)}) {

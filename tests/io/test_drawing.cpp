@@ -238,6 +238,34 @@ TEST_CASE("the drawing of a run: state, contact forces, what holds and pushes", 
   CHECK_THAT(svg, ContainsSubstring(">1 kN/m<"));
 }
 
+TEST_CASE("a surcharge is drawn by its resultant, which turns with its block", "[io][drawing]") {
+  Scene scene = tower_on_base();
+  const auto& corners = scene.blocks[1].vertices;
+  scene.surcharges = {{1, corners[2], corners[3], 5e3, 0.0}};
+  const Picture picture = picture_of(scene);
+  REQUIRE(picture.loads.size() == 1);
+  CHECK((picture.loads[0].point - Vec2(103.5, 53.0)).norm() < 1e-12);
+  CHECK((picture.loads[0].vector - Vec2(0.0, -5e3)).norm() < 1e-9);
+  const TemporaryFolder place;
+  scene.gravity.setZero();
+  scene.end_time = 0.01;
+  scene.blocks[1].angular_velocity = 50.0;
+  const OutputFolder folder(place.path());
+  Simulation simulation(scene);
+  StateTables states(folder, scene);
+  states.add_drawing(simulation);
+  write_block_properties(folder, scene, std::as_const(simulation).system());
+  simulation.system().advance(1, {0.0, 0.0, 0.5});
+  states.add("final", simulation, simulation.contacts());
+  Summary summary;
+  summary.command = "run";
+  write_summary(folder, summary, simulation);
+  states.close();
+  const Picture turned = picture_of_results(place.path(), {});
+  REQUIRE(turned.loads.size() == 1);
+  CHECK((turned.loads[0].vector - 5e3 * Vec2(std::sin(0.5), -std::cos(0.5))).norm() < 1.0);
+}
+
 TEST_CASE("the drawing of a factor of safety has it in the title and shows the mechanism", "[io][drawing]") {
   const Results results(true);
   const Picture mechanism = picture_of_results(results.place.path(), {});

@@ -172,3 +172,50 @@ TEST_CASE("a trial displacement and an accepted one give the same force", "[mode
   system.advance(1, d);
   CHECK((forces.force(system, 1, Unknowns::Zero()) - trial).norm() <= 50.0 * epsilon * trial.norm());
 }
+
+TEST_CASE("a surcharge turns with its block", "[model][external_forces]") {
+  Scene scene = one_block();
+  scene.gravity.setZero();
+  // On the right half of the top, from right to left: 1 m, 0.5 m to the right of the centroid and above it.
+  scene.surcharges = {{1, {2.0, 1.0}, {1.0, 1.0}, 100.0, 30.0}};
+  System system(scene);
+  const Forces forces(scene, system);
+  CHECK((forces.force(system, 1, Unknowns::Zero()) - Unknowns(-30.0, -100.0, 0.5 * -100.0 + 0.5 * 30.0)).norm() <= 1e-12);
+  const Unknowns quarter(3.0, -1.0, 90.0 * test::degree), turned(100.0, -30.0, -35.0);
+  CHECK((forces.force(system, 1, quarter) - turned).norm() <= 1e-12);
+  system.advance(1, quarter);
+  CHECK((forces.force(system, 1, Unknowns::Zero()) - turned).norm() <= 1e-12);
+  CHECK(forces.magnitude(system, 1, Unknowns::Zero()) == Approx(std::hypot(100.0, 30.0)).epsilon(1e-14));
+}
+
+TEST_CASE("the derivatives of a surcharge are its difference quotients, and its mean force does its work", "[model][external_forces]") {
+  Scene scene = one_block();
+  scene.gravity.setZero();
+  scene.surcharges = {{1, {2.0, 1.0}, {0.5, 1.0}, 1.5, -0.7}, {1, {2.0, 0.0}, {2.0, 1.0}, -0.4, 0.9}};
+  System system(scene);
+  const Forces forces(scene, system);
+  std::mt19937 generator(6);
+  std::uniform_real_distribution<double> number(-1.0, 1.0);
+  const double h = 6e-6, quotient_error = 50.0 * (h * h + 4.0 * epsilon / h);
+  for (int trial = 0; trial < 100; ++trial) {
+    system.advance(1, {number(generator), number(generator), number(generator)});
+    const Unknowns d(number(generator), number(generator), number(generator));
+    for (int k = 0; k < 3; ++k) {
+      Unknowns up = d, down = d;
+      up[k] += h;
+      down[k] -= h;
+      const Unknowns column = (forces.force(system, 1, up) - forces.force(system, 1, down)) / (2.0 * h);
+      CHECK((forces.stiffness(system, 1, d).col(k) + column).cwiseAbs().maxCoeff() <= quotient_error);
+      const Unknowns mean_column = (forces.mean_force(system, 1, up) - forces.mean_force(system, 1, down)) / (2.0 * h);
+      CHECK((forces.mean_stiffness(system, 1, d).col(k) + mean_column).cwiseAbs().maxCoeff() <= quotient_error);
+    }
+    // The work along the straight way in a thousand pieces, each with the force in its middle; of the third order in the rotation.
+    const Unknowns small = 0.01 * d;
+    double work = 0.0;
+    for (int i = 0; i < 1000; ++i) work += forces.force(system, 1, (i + 0.5) / 1000.0 * small).dot(small) / 1000.0;
+    CHECK(std::abs(forces.mean_force(system, 1, small).dot(small) - work) <= 1e-6);
+    double change = 0.0;
+    for (const auto& element : forces.elements()) change += element->energy_change(element->path(system, small));
+    CHECK(std::abs(change + work) <= 1e-6);
+  }
+}

@@ -208,3 +208,18 @@ TEST_CASE("the two blocks of a measured contact are named, or found by its point
   }
   CHECK(read_text(block_on_base + contact + "block_a = 'block'\nblock_b = 'base'\n").measured_contacts[0].block_a == 1);
 }
+
+TEST_CASE("a surcharge lies on one edge of its block, which its points find; its ends are put in the order of the outline", "[scene][reader]") {
+  const std::string ends = GENERATE(as<std::string>{}, "from_m = [0.75, 1]\nto_m = [0.25, 1]\n", "from_m = [0.25, 1]\nto_m = [0.75, 1]\n");
+  const std::string name = GENERATE(as<std::string>{}, "", "block = 'block'\n");
+  const Scene scene = read_text(block_on_base + "[[surcharge]]\n" + name + ends + "pressure_pa = 2e3\nshear_pa = -500\n");
+  const Surcharge& surcharge = scene.surcharges.at(0);
+  CHECK(surcharge.block == 1);
+  // The top of a block is passed from right to left.
+  CHECK(surcharge.from == Vec2(0.75, 1.0));
+  CHECK(surcharge.to == Vec2(0.25, 1.0));
+  CHECK(surcharge.pressure == 2e3);
+  CHECK(surcharge.shear == -500.0);
+  // Down onto the block, and to the right against the outline.
+  CHECK((surcharge.resultant(surcharge.to - surcharge.from) - Vec2(250.0, -1000.0)).norm() <= 1e-12);
+}

@@ -382,3 +382,17 @@ TEST_CASE("intervals of snapshots", "[scene][reader][errors]") {
   CHECK(error_of(block_on_base + "[output]\nsnapshots_every_s = -1\n") ==
         "23: output.snapshots_every_s: -1 is out of range; accepted: a number >= 0");
 }
+
+TEST_CASE("surcharges that are on no edge", "[scene][reader][errors]") {
+  const std::string accepted =
+      "; accepted: from_m and to_m at different points of one edge of a block, which the key block names where two blocks meet";
+  const auto error = [](const std::string& lines) { return error_of(block_on_base + "[[surcharge]]\npressure_pa = 1\n" + lines); };
+  CHECK(error("from_m = [0.25, 1]\nto_m = [1, 0.5]\n") ==
+        "25: surcharge[0].to_m: (0.25, 1) and (1, 0.5) are not on one edge of any block" + accepted);
+  CHECK(error("from_m = [0.25, 1]\nto_m = [0.5, 1.1]\nblock = 'block'\n") ==
+        "25: surcharge[0].to_m: (0.25, 1) and (0.5, 1.1) are not on one edge of \"block\"" + accepted);
+  CHECK(error("from_m = [0.25, 0]\nto_m = [0.5, 0]\n") ==
+        "25: surcharge[0].to_m: (0.25, 0) and (0.5, 0) are on edges of \"base\" and \"block\"" + accepted);
+  CHECK(error("from_m = [0.25, 1]\nto_m = [0.25, 1]\n") == "25: surcharge[0].to_m: (0.25, 1) and (0.25, 1) are one point" + accepted);
+  CHECK_THAT(error("from_m = [0.25, 1]\n"), Catch::Matchers::ContainsSubstring("surcharge[0].to_m"));
+}

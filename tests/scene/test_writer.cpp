@@ -84,6 +84,14 @@ void check_same_points(const Scene& a, const Scene& b) {
     CHECK(a.loads[i].point == b.loads[i].point);
     CHECK(a.loads[i].force == b.loads[i].force);
   }
+  REQUIRE(a.surcharges.size() == b.surcharges.size());
+  for (std::size_t i = 0; i < a.surcharges.size(); ++i) {
+    CHECK(a.surcharges[i].block == b.surcharges[i].block);
+    CHECK(a.surcharges[i].from == b.surcharges[i].from);
+    CHECK(a.surcharges[i].to == b.surcharges[i].to);
+    CHECK(a.surcharges[i].pressure == b.surcharges[i].pressure);
+    CHECK(a.surcharges[i].shear == b.surcharges[i].shear);
+  }
   REQUIRE(a.measured_points.size() == b.measured_points.size());
   for (std::size_t i = 0; i < a.measured_points.size(); ++i) {
     CHECK(a.measured_points[i].name == b.measured_points[i].name);
@@ -184,6 +192,7 @@ Scene random_scene(unsigned seed) {
     block.angular_velocity = -number();
     scene.supports.push_back({i, corner, {0.0, number()}});
     scene.loads.push_back({i, corner, vector()});
+    if (i > 1) scene.surcharges.push_back({i, block.vertices[1], block.vertices[2], number(), -number()});
     scene.measured_points.push_back({"point " + std::to_string(i), i, corner});
     scene.blocks.push_back(block);
   }
