@@ -12,9 +12,13 @@ namespace openclose {
 
 /// A joint with what is derived from it once, not in every contact and step.
 struct TabulatedJoint : JointProperties {
-  explicit TabulatedJoint(const JointProperties& joint) : JointProperties(joint), friction(std::tan(joint.friction_angle)) {}
+  explicit TabulatedJoint(const JointProperties& joint)
+      : JointProperties(joint),
+        friction(std::tan(joint.friction_angle)),
+        residual_friction(joint.softens() ? std::tan(*joint.residual_friction_angle) : friction) {}
 
-  double friction;  ///< [-] tan(friction angle)
+  double friction;           ///< [-] tan(friction angle)
+  double residual_friction;  ///< [-] of contacts that are not bonded
 };
 
 class JointTable {

@@ -5,6 +5,7 @@ namespace openclose {
 void ContactStrength::break_bond(const TabulatedJoint& joint) {
   if (joint.cohesion_behaviour != CohesionBehaviour::ductile) cohesion = 0.0;
   tension = 0.0;
+  friction = joint.residual_friction;
 }
 
 ContactDashpots::ContactDashpots(const JointProperties& joint, double length, double reduced_mass)
@@ -42,12 +43,14 @@ ContactForces prolonged(const ContactSprings& springs, const ContactStrength& st
 }
 
 bool can_lose_strength(const JointProperties& joint, bool bonded) {
-  return bonded && (joint.tensile_strength > 0.0 || (joint.cohesion > 0.0 && joint.cohesion_behaviour != CohesionBehaviour::ductile));
+  return bonded &&
+         (joint.softens() || joint.tensile_strength > 0.0 || (joint.cohesion > 0.0 && joint.cohesion_behaviour != CohesionBehaviour::ductile));
 }
 
 bool stays_bonded(const JointProperties& joint, bool bonded, ContactStatus status) {
   if (status == ContactStatus::open) return false;
-  return bonded && !(joint.cohesion_behaviour == CohesionBehaviour::lost_on_slip && status == ContactStatus::sliding);
+  const bool breaks_by_slip = joint.softens() || joint.cohesion_behaviour == CohesionBehaviour::lost_on_slip;
+  return bonded && !(breaks_by_slip && status == ContactStatus::sliding);
 }
 
 }  // namespace openclose

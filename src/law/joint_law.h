@@ -21,13 +21,13 @@ namespace openclose {
 
 /// Strength of one contact: Mohr-Coulomb with tension cut-off, per metre of thickness.
 struct ContactStrength {
-  double friction = 0.0;  ///< [-] tan(friction angle)
+  double friction = 0.0;  ///< [-] tan(friction angle), the residual one once the bond is broken
   double cohesion = 0.0;  ///< [N] cohesion times tributary length, 0 once lost
   double tension = 0.0;   ///< [N] tensile strength times tributary length, 0 once lost
 
   ContactStrength() = default;
   /// Of a contact in its present state: bonded or not.
-  ContactStrength(const TabulatedJoint& joint, const Contact& contact) : friction(joint.friction) {
+  ContactStrength(const TabulatedJoint& joint, const Contact& contact) : friction(contact.bonded ? joint.friction : joint.residual_friction) {
     const bool intact = contact.bonded || joint.cohesion_behaviour == CohesionBehaviour::ductile;
     cohesion = intact ? joint.cohesion * contact.length : 0.0;
     tension = contact.bonded ? joint.tensile_strength * contact.length : 0.0;
@@ -145,7 +145,7 @@ ContactForces tangent_for_status(const ContactSprings& springs, const ContactStr
 ContactForces prolonged(const ContactSprings& springs, const ContactStrength& strength, ContactStatus status, double normal, double shear,
                         double gap_change, double slip_change);
 
-/// Whether a contact has strength that goes with its bond: tensile strength, or cohesion that is not ductile.
+/// Whether a contact has strength that goes with its bond: tensile strength, cohesion that is not ductile, or friction above the residual one.
 bool can_lose_strength(const JointProperties& joint, bool bonded);
 
 /// Whether the bond survives a step that ended in this status.

@@ -33,12 +33,16 @@ struct JointProperties {
   double cohesion = 0.0;           ///< [Pa]
   double tensile_strength = 0.0;   ///< [Pa]
   CohesionBehaviour cohesion_behaviour = CohesionBehaviour::ductile;
+  /// [rad] Of a contact whose bond is broken, by slip too if it is below the friction angle; absent: that angle, and slip breaks no bond for it.
+  std::optional<double> residual_friction_angle;
   double damping_ratio = 0.0;  ///< [-] of dashpots parallel to the springs, see law/joint_law.h
 
-  /// tan(friction angle), cohesion and tensile strength divided by a strength reduction factor.
+  bool softens() const { return residual_friction_angle && *residual_friction_angle < friction_angle; }
+  /// Tangents of both friction angles, cohesion and tensile strength divided by a strength reduction factor.
   JointProperties reduced_by(double factor) const {
     JointProperties weaker = *this;
     weaker.friction_angle = std::atan(std::tan(friction_angle) / factor);
+    if (residual_friction_angle) weaker.residual_friction_angle = std::atan(std::tan(*residual_friction_angle) / factor);
     weaker.cohesion = cohesion / factor;
     weaker.tensile_strength = tensile_strength / factor;
     return weaker;
@@ -56,6 +60,11 @@ void visit_joint_keys(Joint& j, Visitor& visit) {
   visit({"cohesion_pa", "of Mohr and Coulomb's law"}, j.cohesion, not_negative);
   visit({"tensile_strength_pa", "gone once the joint has opened"}, j.tensile_strength, not_negative);
   visit({"cohesion_behaviour", "when the cohesion is lost, if ever"}, j.cohesion_behaviour, cohesion_behaviour_words);
+  visit({"residual_friction_angle_deg",
+         "at most the friction angle: of a contact that has slipped or opened, for good, and of contacts that form later; the tensile strength, and "
+         "cohesion that is not ductile, go with the difference",
+         "the friction angle"},
+        j.residual_friction_angle, Degrees{{.low = 0.0, .high = 90.0, .low_included = true}});
   visit({"damping_ratio", "dashpots beside the joint's springs, see [methods](methods.md)"}, j.damping_ratio, not_negative);
 }
 
@@ -64,7 +73,13 @@ struct JointContradiction {
   std::string_view key, read, accepted;
 };
 /// The first contradiction between the values of a joint, if there is one.
-inline std::optional<JointContradiction> contradiction_in(const JointProperties&) {
+inline std::optional<JointContradiction> contradiction_in(const JointProperties& joint) {
+  if (joint.residual_friction_angle && *joint.residual_friction_angle > joint.friction_angle)
+    return JointContradiction{"residual_friction_angle_deg", "it is above the friction angle", "an angle up to friction_angle_deg"};
+  if (joint.softens() && joint.cohesion_behaviour == CohesionBehaviour::lost_on_opening) {
+    return JointContradiction{"cohesion_behaviour", "with a lower residual friction angle slip breaks the bond, and this cohesion would go with it",
+                              "\"ductile\" or \"lost_on_slip\", or no residual_friction_angle_deg"};
+  }
   return std::nullopt;
 }
 

@@ -159,6 +159,10 @@ std::vector<KeyEntry> force_keys() {
     collector.table(untouched.table());
     untouched.visit_keys(untouched, collector);
   });
+  // What a file must give has no default.
+  for (KeyEntry& entry : collector.entries) {
+    if (entry.key.required) entry.value.reset();
+  }
   return std::move(collector.entries);
 }
 

@@ -37,7 +37,13 @@ Scene breaking() {
   scene.joints[0].cohesion_behaviour = CohesionBehaviour::lost_on_slip;
   scene.loads = {{1, {1.5, 1.0}, {1e5, 2e4}}};
   scene.supports = {{1, {0.0, 0.5}, {3e5, 1e5}}};
-  scene.surcharges = {{1, scene.blocks[1].vertices[2], scene.blocks[1].vertices[3], 1e4, 3e3}};
+  return scene;
+}
+
+Scene softening() {
+  Scene scene = explicit_scene(test::block_on_base(), 2e-4);
+  scene.joints[0].residual_friction_angle = 0.5 * scene.joints[0].friction_angle;
+  scene.surcharges = {{1, scene.blocks[1].vertices[2], scene.blocks[1].vertices[3], 1e4, 3e4}};
   return scene;
 }
 
@@ -143,6 +149,7 @@ TEST_CASE("the loop moves blocks as the plain steps do, contacts renewed in ever
   };
   const Case c = GENERATE(values<Case>({{"sliding", sliding(), 5000},
                                         {"breaking", breaking(), 5000},
+                                        {"softening", softening(), 5000},
                                         {"rocking", rocking_column(), 5000},
                                         {"locked", locked(), 5000},
                                         {"tumbling", tumbling(), 600}}));

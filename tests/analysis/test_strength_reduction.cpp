@@ -157,6 +157,26 @@ TEST_CASE("cohesion that is lost on slip or opening lowers the factor, never rai
   CHECK(brittle.stable() < 0.99 * ductile.stable());
 }
 
+TEST_CASE("residual friction lowers the factor, limit analysis keeps the friction of joints that have not slipped",
+          "[analysis][strength_reduction]") {
+  const std::string method = GENERATE(as<std::string>{}, "soft", "hard", "shi");
+  INFO(method);
+  Scene scene = test::block_on_incline(30.0 * test::degree);
+  scene.joints[0].friction_angle = 45.0 * test::degree;
+  scene.method.contact = method;
+  const auto peak = factor(scene);
+  scene.joints[0].residual_friction_angle = 5.0 * test::degree;
+  const auto residual = factor(scene);
+  REQUIRE(residual.found());
+  // The upper corner slips first and leaves its share to the lower one.
+  CHECK(peak.stable() == Approx(1.0 / std::tan(30.0 * test::degree)).epsilon(1e-4));
+  CHECK(residual.stable() < 0.8 * peak.stable());
+  REQUIRE(residual.limit_analysis.has_value());
+  REQUIRE(peak.limit_analysis.has_value());
+  // Each is the largest factor with forces in equilibrium, to the width of the search.
+  CHECK(residual.limit_analysis->factor.value() == Approx(peak.limit_analysis->factor.value()).margin(2e-5));
+}
+
 TEST_CASE("the curve in time: free sliding with the reduced strength", "[analysis][strength_reduction]") {
   Scene scene = slope_scene("soft", 30.0, 40.0, 0.0);
   const double srf = 2.0, time = 0.2;

@@ -89,3 +89,15 @@ TEST_CASE("strength reduction divides tan(phi), cohesion and tension, always fro
   CHECK(table.joint(2).friction_angle == Approx(30.0 * degree).epsilon(1e-15));
   CHECK(table.joint(2).cohesion == 5e4);
 }
+
+TEST_CASE("strength reduction divides the tangents of both friction angles", "[contact][joint_table]") {
+  Scene scene = three_materials();
+  scene.joints[1].residual_friction_angle = 12.0 * degree;
+  JointTable table(scene);
+  CHECK(table.joint(1).residual_friction == Approx(std::tan(12.0 * degree)).epsilon(1e-15));
+  CHECK(table.joint(0).residual_friction == table.joint(0).friction);
+  table.reduce_strength(1.6);
+  CHECK(table.joint(1).friction == Approx(std::tan(20.0 * degree) / 1.6).epsilon(1e-15));
+  CHECK(table.joint(1).residual_friction == Approx(std::tan(12.0 * degree) / 1.6).epsilon(1e-15));
+  CHECK(table.joint(0).residual_friction == table.joint(0).friction);
+}

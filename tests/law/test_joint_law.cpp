@@ -89,6 +89,32 @@ TEST_CASE("the bond survives what its behaviour allows", "[law][strength]") {
   }
 }
 
+TEST_CASE("a joint with residual friction has it once it has slipped or opened, and with it goes its bond", "[law][strength]") {
+  const auto behaviour = GENERATE(CohesionBehaviour::ductile, CohesionBehaviour::lost_on_slip);
+  JointProperties joint = joint_with(0.7, 3e4, 2e4, behaviour);
+  joint.residual_friction_angle = std::atan(0.4);
+  const TabulatedJoint tabulated(joint);
+  ContactStrength strength(tabulated, contact_of_length(0.5));
+  CHECK(strength.friction == Approx(0.7).epsilon(rounding));
+  strength.break_bond(tabulated);
+  const ContactStrength broken(tabulated, contact_of_length(0.5, false));
+  CHECK(strength.friction == Approx(0.4).epsilon(rounding));
+  CHECK(strength.friction == broken.friction);
+  CHECK(strength.cohesion == broken.cohesion);
+  CHECK(strength.tension == 0.0);
+  CHECK(stays_bonded(joint, true, ContactStatus::sticking));
+  CHECK_FALSE(stays_bonded(joint, true, ContactStatus::sliding));
+  CHECK_FALSE(stays_bonded(joint, true, ContactStatus::open));
+  joint.cohesion = joint.tensile_strength = 0.0;
+  CHECK(can_lose_strength(joint, true));
+  CHECK_FALSE(can_lose_strength(joint, false));
+  // As high as the friction angle it takes nothing away.
+  joint.residual_friction_angle = joint.friction_angle;
+  CHECK_FALSE(can_lose_strength(joint, true));
+  CHECK(ContactStrength(TabulatedJoint(joint), contact_of_length(0.5, false)).friction == Approx(0.7).epsilon(rounding));
+  if (behaviour == CohesionBehaviour::ductile) CHECK(stays_bonded(joint, true, ContactStatus::sliding));
+}
+
 TEST_CASE("without cohesion the shear strength is friction alone", "[law][shear_bound]") {
   const ContactStrength strength = strength_of(0.6);
   for (const double n : {0.0, 1e-9, 1.0, 1e6}) CHECK(strength.shear_bound(n).value == Approx(0.6 * n).epsilon(rounding));

@@ -214,7 +214,7 @@ TEST_CASE("what a scene is made of is described with the keys that the reader as
     CHECK(all.insert(std::string(entry.key.name)).second);
     if (entry.key.required) required.insert(std::string(entry.key.name));
   }
-  CHECK(described.size() == 15);
+  CHECK(described.size() == 16);
   CHECK(described[""].first == std::set<std::string>{"title", "gravity_m_per_s2"});
   for (const auto& [table, keys] : described) {
     if (table.empty()) continue;

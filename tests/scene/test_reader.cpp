@@ -223,3 +223,12 @@ TEST_CASE("a surcharge lies on one edge of its block, which its points find; its
   // Down onto the block, and to the right against the outline.
   CHECK((surcharge.resultant(surcharge.to - surcharge.from) - Vec2(250.0, -1000.0)).norm() <= 1e-12);
 }
+
+TEST_CASE("the residual friction angle is the friction angle unless it is given", "[scene][reader]") {
+  CHECK_FALSE(read_text(block_on_base).joints[0].residual_friction_angle);
+  const JointProperties joint = read_text(with_line(block_on_base, 10, "residual_friction_angle_deg = 30")).joints[0];
+  CHECK(joint.residual_friction_angle.value() == Approx(std::numbers::pi / 6.0).epsilon(1e-15));
+  CHECK(joint.softens());
+  // As high as the friction angle it is accepted and changes nothing.
+  CHECK_FALSE(read_text(with_line(block_on_base, 10, "residual_friction_angle_deg = 35")).joints[0].softens());
+}

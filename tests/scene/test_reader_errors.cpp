@@ -396,3 +396,10 @@ TEST_CASE("surcharges that are on no edge", "[scene][reader][errors]") {
   CHECK(error("from_m = [0.25, 1]\nto_m = [0.25, 1]\n") == "25: surcharge[0].to_m: (0.25, 1) and (0.25, 1) are one point" + accepted);
   CHECK_THAT(error("from_m = [0.25, 1]\n"), Catch::Matchers::ContainsSubstring("surcharge[0].to_m"));
 }
+
+TEST_CASE("residual friction that contradicts the rest of the joint", "[scene][reader][errors]") {
+  CHECK(error_with(10, "residual_friction_angle_deg = 35.5") ==
+        "10: joint[0].residual_friction_angle_deg: it is above the friction angle; accepted: an angle up to friction_angle_deg");
+  CHECK_THAT(error_with(10, "residual_friction_angle_deg = 20\ncohesion_behaviour = 'lost_on_opening'"),
+             ContainsSubstring("11: joint[0].cohesion_behaviour: with a lower residual friction angle slip breaks the bond"));
+}

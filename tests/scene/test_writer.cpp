@@ -20,6 +20,8 @@ void check_same(const JointProperties& a, const JointProperties& b) {
   CHECK(a.cohesion == b.cohesion);
   CHECK(a.tensile_strength == b.tensile_strength);
   CHECK(a.cohesion_behaviour == b.cohesion_behaviour);
+  REQUIRE(a.residual_friction_angle.has_value() == b.residual_friction_angle.has_value());
+  if (a.residual_friction_angle) CHECK(*a.residual_friction_angle == Approx(*b.residual_friction_angle).epsilon(1e-15));
   CHECK(a.damping_ratio == b.damping_ratio);
 }
 
@@ -178,6 +180,8 @@ Scene random_scene(unsigned seed) {
     joint.cohesion_behaviour = CohesionBehaviour::lost_on_opening;
     joint.damping_ratio = number();
   }
+  scene.joints[1].cohesion_behaviour = CohesionBehaviour::lost_on_slip;
+  scene.joints[1].residual_friction_angle = 0.5 * scene.joints[1].friction_angle;
   scene.joints[0].materials = {0, 0};
   scene.joints[1].materials = {1, 0};
   for (int i = 0; i < 5; ++i) {
