@@ -171,6 +171,7 @@ void Simulation::book_kinetic_energy(double ahead) const {
 void Simulation::unload_loop() {
   collect();
   loop_is_loaded_ = false;
+  still_step_ = 0.0;
 }
 
 void Simulation::take_back() {
@@ -422,6 +423,7 @@ StepResult Simulation::step(double dt, bool statics) {
     collect();
     return taken;
   }
+  if (!statics && repeats_still_step(dt)) return repeat_still_step();
   StepResult result;
   if (statics) take_back();
   const StepProblem p = problem(dt, statics);
@@ -501,18 +503,43 @@ void Simulation::end_of_blow(const Blow& blow) {
   output_velocity_[blow.block] -= blow.part * (output_velocity_[blow.block] - system_.velocity(blow.block));
 }
 
+StepResult Simulation::repeat_still_step() {
+  if (books_steps_) ledger_ += step_ledger_;
+  time_ += still_step_;
+  ++step_counters_.steps;
+  ++step_counters_.still;
+  count_moves();
+  StepResult result;
+  result.accepted = true;
+  return result;
+}
+
+bool Simulation::accept_velocities(const StepProblem& problem, const StepSolution& solution) {
+  bool some = false;
+  double dropped = 0.0;
+  for (int b : system_.free_blocks()) {
+    const Unknowns d = solution.of(system_, b), v = problem.velocity(b), zero = Unknowns::Zero();
+    Unknowns at_end = problem.statics ? zero : scheme_->velocity_at_end(b, problem.dt, d, v);
+    Unknowns next = problem.statics ? zero : scheme_->next_velocity(b, problem.dt, d, v);
+    if (!problem.statics && !enforcement_->is_explicit() && has_come_to_rest(problem, b, next)) {
+      dropped += 0.5 * system_.block(b).mass.dot(next.cwiseAbs2());
+      at_end = next = zero;
+    }
+    output_velocity_[b] = at_end;
+    system_.set_velocity(b, next);
+    if (!problem.statics) scheme_->record(b, problem.dt, d, v);
+    some = some || !next.isZero(0.0);
+  }
+  ledger_.scheme += dropped;
+  return some;
+}
+
 void Simulation::accept(const StepProblem& problem, const StepSolution& solution) {
   if (books_steps_) ledger_ += step_ledger_;
+  const bool may_be_still = moves_nothing(problem, solution) && !cuts_.has_cut_at_entry() && system_.resting_blocks().empty();
   const bool may_be_struck = !problem.statics && !enforcement_->has_elastic_contacts();
   const std::vector<Blow> struck = may_be_struck ? blows(problem, solution) : std::vector<Blow>();
-  accept_contacts(solution);
-  for (int b : system_.free_blocks()) {
-    const Unknowns d = solution.of(system_, b), v = problem.velocity(b);
-    const bool statics = problem.statics;
-    output_velocity_[b] = statics ? Unknowns(Unknowns::Zero()) : scheme_->velocity_at_end(b, problem.dt, d, v);
-    system_.set_velocity(b, statics ? Unknowns(Unknowns::Zero()) : scheme_->next_velocity(b, problem.dt, d, v));
-    if (!statics) scheme_->record(b, problem.dt, d, v);
-  }
+  const bool contacts_change = accept_contacts(solution), some_move = accept_velocities(problem, solution);
   for (int b : system_.free_blocks()) system_.advance(b, solution.of(system_, b));
   for (const Blow& blow : struck) end_of_blow(blow);
   if (!problem.statics) scheme_->accept(problem.dt);
@@ -531,10 +558,12 @@ void Simulation::accept(const StepProblem& problem, const StepSolution& solution
   if (cuts_.has_cut_at_entry()) detector_.look_again();
   cuts_.accept(ledger_);
   contacts_current_ = false;
+  still_step_ = may_be_still && !contacts_change && !some_move ? problem.dt : 0.0;
 }
 
-void Simulation::accept_contacts(const StepSolution& solution) {
+bool Simulation::accept_contacts(const StepSolution& solution) {
   const bool elastic = enforcement_->has_elastic_contacts();
+  bool some_change = false;
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     Contact& c = contacts_[i];
     const Contact start = c;
@@ -544,15 +573,18 @@ void Simulation::accept_contacts(const StepSolution& solution) {
     c.gap += solution.contacts.gap_change(i);
     c.normal_force = c.shear_force = c.elastic_slip = c.stored_energy = 0.0;
     if (enforcement_->is_explicit()) book_crossing(c, solution.contacts[i], start);
-    if (c.status == ContactStatus::open) continue;
-    const CarriedForces f = solution.contacts.forces(i);
-    const double kn = solution.contacts.normal_stiffness(i), ks = solution.contacts.shear_stiffness(i);
-    c.normal_force = f.normal;
-    c.shear_force = f.shear;
-    c.elastic_slip = -f.elastic_shear / ks;
-    if (elastic) c.stored_energy = -c.crossing_energy + stored_energy(kn, ks, f.elastic_normal, f.elastic_shear);
-    max_penetration_ = std::max(max_penetration_, -c.gap);
+    if (c.status != ContactStatus::open) {
+      const CarriedForces f = solution.contacts.forces(i);
+      const double kn = solution.contacts.normal_stiffness(i), ks = solution.contacts.shear_stiffness(i);
+      c.normal_force = f.normal;
+      c.shear_force = f.shear;
+      c.elastic_slip = -f.elastic_shear / ks;
+      if (elastic) c.stored_energy = -c.crossing_energy + stored_energy(kn, ks, f.elastic_normal, f.elastic_shear);
+      max_penetration_ = std::max(max_penetration_, -c.gap);
+    }
+    some_change = some_change || !(c == start);
   }
+  return some_change;
 }
 
 void Simulation::book_crossing(Contact& contact, const ContactOutcome& outcome, const Contact& start) {
@@ -868,8 +900,8 @@ void Simulation::restore(const Snapshot& snapshot) {
 void Simulation::exchange(Archive& archive) {
   archive(system_, resting_, may_rest_, external_, joints_, base_moves_, keep_bonds_, detector_, contacts_, contacts_current_, output_velocity_,
           time_, reason_, ledger_, start_kinetic_energy_, kinetic_ahead_, collected_contact_energy_, max_penetration_, friction_work_,
-          lagging_friction_work_, step_counters_, failed_attempts_, cuts_, last_speed_,
-          control_, begins_, approach_step_, held_step_);
+          lagging_friction_work_, step_counters_, failed_attempts_, cuts_, last_speed_, still_step_, step_ledger_, control_, begins_, approach_step_,
+          held_step_);
   if (archive.reading()) scheme_ = make_scheme();
   scheme_->exchange(archive);
   enforcement_->exchange(archive);

@@ -43,6 +43,7 @@ struct StepCounters {
   long relaxation_steps = 0;            ///< evaluations of all forces in static steps that are relaxed, thrown-away attempts included
   long relaxation_estimates = 0;        ///< of the stiffness of the whole system, made for these
   long eased = 0;                       ///< steps of `hard` that were balanced with a longer ramp of the cohesion only
+  long still = 0;                       ///< steps in which nothing happened, counted without being solved again
   long dissipative = 0;                 ///< steps of path_average that found a solution only with dissipation
   long loads = 0;                       ///< times the explicit loop took over the state anew
   long loads_skipped = 0;               ///< times it took over only contacts that were found anew
@@ -66,8 +67,8 @@ struct StepCounters {
   }
 
   void exchange(Archive& archive) {
-    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, w] = *this;
-    archive(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, w);
+    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, w, x] = *this;
+    archive(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, w, x);
   }
 };
 
@@ -213,7 +214,13 @@ class Simulation {
   /// [s] A step that has failed is not cut to less.
   double shortest_step() const { return scene_.step.smallest_fraction * scene_.step.dt; }
   void accept(const StepProblem& problem, const StepSolution& solution);
-  void accept_contacts(const StepSolution& solution);
+  /// False: nothing of any contact has changed.
+  bool accept_contacts(const StepSolution& solution);
+  /// Gives the blocks their velocities; false: none has one.
+  bool accept_velocities(const StepProblem& problem, const StepSolution& solution);
+  /// Whether a step would repeat the last one, in which nothing happened, bit for bit.
+  bool repeats_still_step(double dt) const { return scene_.method.skip_still_steps && dt == still_step_ && !scene_.base_motion; }
+  StepResult repeat_still_step();
   /// What crossing_energy.h says of a contact, for steps taken one by one.
   void book_crossing(Contact& contact, const ContactOutcome& outcome, const Contact& start);
   bool advance_explicitly(double dt);
@@ -293,6 +300,7 @@ class Simulation {
   StepCounters step_counters_;
   double negligible_force_ = 0.0;  ///< [N]
   bool books_steps_ = true;
+  double still_step_ = 0.0;        ///< [s] the last step, if nothing happened in it and nobody has changed anything since
   int failed_attempts_ = 0;  ///< since the last step that was accepted
   double last_speed_ = 0.0;  ///< [m/s] largest displacement of the last step over its duration
   StepControl control_;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "openclose/core/tolerance.h"
+
 namespace openclose {
 namespace {
 
@@ -99,6 +101,17 @@ bool loses_strength(const StepProblem& problem, const StepSolution& solution) {
     if (can_lose_strength(joint, c.bonded) && !stays_bonded(joint, c.bonded, solution.contacts.status(i))) return true;
   }
   return false;
+}
+
+bool moves_nothing(const StepProblem& problem, const StepSolution& solution) {
+  if (problem.statics || problem.scheme->is_within_step() || !solution.d.isZero(0.0)) return false;
+  return std::ranges::all_of(problem.system.free_blocks(), [&](int b) { return problem.drift(b).isZero(0.0); });
+}
+
+bool has_come_to_rest(const StepProblem& problem, int b, const Motion::Unknowns& velocity) {
+  const double radius = problem.system.block(b).radius;
+  const double speed = std::max(Motion::translation(velocity).norm(), radius * std::abs(Motion::rotation(velocity)));
+  return speed <= tolerance::rest * problem.dt * problem.external.gravity().norm();
 }
 
 double kinetic_change(const StepProblem& problem, const StepSolution& solution) {

@@ -22,6 +22,14 @@ double unbalanced_force(const StepProblem& problem, const StepSolution& solution
 /// Whether a contact loses its cohesion or tensile strength by the status in which it ends.
 bool loses_strength(const StepProblem& problem, const StepSolution& solution);
 
+/// Whether a step in motion begins and ends without velocities and moves no block: in balance. Where contacts stay as they are, too, the next one
+/// that is as long repeats it bit for bit.
+bool moves_nothing(const StepProblem& problem, const StepSolution& solution);
+
+/// Whether a block with this velocity has come to rest by the end of a step in motion: tolerance::rest of gravity gives
+/// it more in the step.
+bool has_come_to_rest(const StepProblem& problem, int b, const Motion::Unknowns& velocity);
+
 /// [J] Of a step in motion.
 double kinetic_change(const StepProblem& problem, const StepSolution& solution);
 

@@ -37,6 +37,8 @@ struct Contact {
   /// [m] What the normal spring reads: the gap from where the spring rests.
   double stretch() const { return gap - rest_gap; }
 
+  bool operator==(const Contact&) const = default;
+
   void exchange(Archive& archive) {
     auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p] = *this;
     archive(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p);

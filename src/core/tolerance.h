@@ -23,6 +23,11 @@ inline constexpr double joint_end_reach_m = 1e-3;
 /// [m] A block touches a line if it lies this near to it: points copied from vertices are written with six decimals.
 inline constexpr double touching_m = 1e-6;
 
+/// [-] of gravity: a smaller acceleration leaves a block at rest that is at rest, and a block that is slower than what this gives it in a step has come
+/// to rest. The balance of a step, 1e-12 of the largest force, leaves that much where forces are a thousand times a block's weight; a slope must be
+/// that near to its limit for it to matter.
+inline constexpr double rest = 1e-9;
+
 /// [m] Depth to which blocks may overlap in the file: drawings are rounded to millimetres, joint closures under load are of that size.
 inline constexpr double deepest_initial_overlap_m = 1e-3;
 

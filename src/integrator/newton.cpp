@@ -711,8 +711,8 @@ Newton::Outcome Newton::iterate(const StepProblem& problem, StepSolution& soluti
       problem.method.skip_balanced && !problem.statics && !is_part_ && static_cast<int>(blocks_.size()) >= smallest_with_parts;
   const bool may_be_lost = !problem.statics && !is_part_;
   Headway headway(course.value, most_iterations_to_halve);
-  // Parts that have not helped will not help in this step: with pauses in place of an end 40 m of a failing slope of 1,773 free blocks cost `hard` 1.1
-  // times as much.
+  // Parts that have not helped will not help in this step: with pauses in place of an end 40 m of a failing slope of 1,773 free blocks cost
+  // `hard` 1.1 times as much.
   bool parts_help = may_help_by_parts;
   Outcome outcome = Outcome::ended;
   for (int iteration = 0; iteration < until.iterations && course.norm > until.norm; ++iteration) {
@@ -761,9 +761,19 @@ Newton::Outcome Newton::iterate(const StepProblem& problem, StepSolution& soluti
   return outcome;
 }
 
+bool Newton::stands_still(const Eigen::VectorXd& d) const {
+  if (problem_->statics || is_part_ || !d.isZero(0.0)) return false;
+  for (int row = 0; row < static_cast<int>(blocks_.size()); ++row) {
+    const StepBlock& block = blocks_[row];
+    const double weight = problem_->external.weight(problem_->system, block.block).norm();
+    if (!block.drift.isZero(0.0) || !(unbalanced(row) <= tolerance::rest * weight)) return false;
+  }
+  return true;
+}
+
 double Newton::begin(const Eigen::VectorXd& d, FirstTangent first) {
   evaluate(d);
-  const double norm = residual_norm();
+  const double norm = stands_still(d) ? std::min(residual_norm(), 1.0) : residual_norm();
   if (norm > 1.0 && first == FirstTangent::last_step) take_last_states();
   if (norm > 1.0 && first == FirstTangent::last_solution) take_states_before();
   return norm;

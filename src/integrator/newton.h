@@ -112,6 +112,9 @@ class Newton {
   void take_back(ContactOutcomes& outcomes);
   /// Evaluates at the displacement to start from and returns its residual_norm().
   double begin(const Eigen::VectorXd& d, FirstTangent first);
+  /// Whether no block has a velocity, nor a force that would give it one worth the name: the iteration's own tolerance, of the largest force, may be
+  /// finer than what the equilibrium was found to.
+  bool stands_still(const Eigen::VectorXd& d) const;
   /// Where an iteration stands.
   struct Course;
   /// Solves parts and says whether that has made the residual smaller.

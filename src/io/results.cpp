@@ -475,6 +475,7 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
                    {"error_cuts", steps.error_cuts},
                    {"entry_cuts", steps.entry_cuts},
                    {"eased_steps", steps.eased},
+                   {"still_steps", steps.still},
                    {"dissipative_steps", steps.dissipative},
                    {"iterations", steps.iterations},
                    {"parts", steps.parts},

@@ -117,6 +117,7 @@ struct MethodInput {
   bool skip_symbolic = true;           ///< plan a factorisation only once the pattern of the matrix has changed
   bool skip_unmoved = true;            ///< after parts were solved, evaluate only contacts of what moved with them
   bool skip_balanced = true;           ///< between iterations of large systems in motion, iterate only where forces are far from balance
+  bool skip_still_steps = true;        ///< do a step in which nothing can happen once, and count it as often as it would be repeated
   bool skip_resting = false;           ///< leave blocks alone that are at rest, see RestInput
   double gap_tolerance = 3e-7;         ///< [m] hard: a closed contact may differ from its target gap, a sticking one from its place, by this much
   std::optional<double> penalty;       ///< [Pa/m] shi: normal penalty, times the tributary length like any stiffness; absent: 10 times the joint's
@@ -254,6 +255,11 @@ void visit_solver_keys(Method& m, Step& s, Visitor& visit) {
          {},
          "method.skip_unmoved"},
         m.skip_unmoved, Flag{});
+  visit({"skip_still_steps",
+         "false: solve every step, also those that begin and end like the one before, in balance and without velocities",
+         {},
+         "method.skip_still_steps"},
+        m.skip_still_steps, Flag{});
   visit({"skip_resting",
          "true: blocks that have come to rest in a motion are left alone until the forces on them change, see [solvers](solvers.md)",
          {},

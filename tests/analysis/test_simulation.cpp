@@ -266,6 +266,61 @@ TEST_CASE("iterating only where forces are far from balance changes no more than
   }
 }
 
+TEST_CASE("steps in which nothing happens are counted without being solved and leave every bit as it is", "[analysis][simulation]") {
+  for (const std::string method : {"soft", "hard"}) {
+    INFO(method);
+    Scene scene = test::column_of_blocks(4);
+    scene.method.contact = method;
+    scene.method.start = Start::settled;
+    Simulation counted(scene);
+    scene.method.skip_still_steps = false;
+    Simulation solved(scene);
+    for (Simulation* s : {&counted, &solved}) REQUIRE(prepare_start(*s).converged);
+    const auto go_on = [&] {
+      for (int i = 0; i < 100; ++i) {
+        REQUIRE(counted.advance(scene.step.dt));
+        REQUIRE(solved.advance(scene.step.dt));
+      }
+    };
+    go_on();
+    const long still = counted.step_counters().still;
+    CHECK(still > 50);
+    CHECK(solved.step_counters().still == 0);
+    CHECK(same_bits(everything(counted), everything(solved)));
+    // Who is pushed is no longer still.
+    const Motion::Unknowns push(0.5, 0.0, 0.0);
+    for (Simulation* s : {&counted, &solved}) {
+      s->set_velocity(4, push);
+      s->restart_clock();
+    }
+    go_on();
+    CHECK(same_bits(everything(counted), everything(solved)));
+    CHECK(counted.system().displacement(4).x() > 1e-3);
+  }
+}
+
+TEST_CASE("a base that moves after a rest is felt", "[analysis][simulation]") {
+  Scene scene = test::block_on_base();
+  BaseMotionInput shake;
+  shake.pulses = {{0.1, 0.09, {8.0, 0.0}}};
+  scene.base_motion = shake;
+  scene.method.start = Start::settled;
+  Simulation simulation(scene);
+  REQUIRE(prepare_start(simulation).converged);
+  for (int i = 0; i < 190; ++i) REQUIRE(simulation.advance(scene.step.dt));
+  CHECK(simulation.step_counters().still == 0);
+  CHECK(std::abs(simulation.system().displacement(1).x()) > 1e-3);
+}
+
+TEST_CASE("a block without gravity keeps the smallest velocity", "[analysis][simulation]") {
+  Scene scene = test::falling_block();
+  scene.gravity.setZero();
+  scene.blocks[0].velocity = {1e-15, 0.0};
+  Simulation simulation(scene);
+  for (int i = 0; i < 10; ++i) REQUIRE(simulation.advance(scene.step.dt));
+  CHECK(simulation.system().displacement(0).x() == Approx(1e-15 * simulation.time()).epsilon(1e-12));
+}
+
 TEST_CASE("steps that begin before its time are the first integrator's, the others start from where it has got to", "[analysis][simulation]") {
   constexpr int at_first = 60;
   Scene scene = tumbling("soft");
@@ -493,6 +548,7 @@ TEST_CASE("the way to an equilibrium is the same without books, which begin with
     CHECK(booked.ledger().turnover > 0.0);
     CHECK(unbooked.ledger().turnover == 0.0);
     for (Simulation* s : {&booked, &unbooked}) {
+      s->set_velocity(3, {0.1, 0.0, 0.0});
       s->restart_clock();
       for (int i = 0; i < 20; ++i) REQUIRE(s->advance(2e-3));
     }

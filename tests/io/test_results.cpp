@@ -376,6 +376,7 @@ TEST_CASE("summary.json has counters under their own names", "[io][results]") {
                                                 {"error_cuts", steps.error_cuts},
                                                 {"eased_steps", steps.eased},
                                                 {"dissipative_steps", steps.dissipative},
+                                                {"still_steps", steps.still},
                                                 {"iterations", steps.iterations},
                                                 {"parts", steps.parts},
                                                 {"part_iterations", steps.part_iterations},

@@ -57,6 +57,7 @@ void check_same(const MethodInput& a, const MethodInput& b) {
   CHECK(a.skip_reload == b.skip_reload);
   CHECK(a.skip_factorisation == b.skip_factorisation);
   CHECK(a.skip_symbolic == b.skip_symbolic);
+  CHECK(a.skip_still_steps == b.skip_still_steps);
   CHECK(a.skip_balanced == b.skip_balanced);
   CHECK(a.skip_unmoved == b.skip_unmoved);
   CHECK(a.skip_resting == b.skip_resting);
@@ -221,6 +222,7 @@ Scene random_scene(unsigned seed) {
   scene.method.skip_reload = false;
   scene.method.skip_factorisation = false;
   scene.method.skip_symbolic = false;
+  scene.method.skip_still_steps = false;
   scene.method.skip_balanced = false;
   scene.method.skip_unmoved = false;
   scene.method.skip_resting = true;
