@@ -173,6 +173,10 @@ class MotionInTime {
       }
       if (observer_.progress) observer_.progress(share_done(i));
       if (there) return;
+      if (!last && observer_.stops && observer_.stops()) {
+        stop();
+        return;
+      }
     }
     result_.ended_by = "end.time_s";
   }
@@ -240,8 +244,20 @@ class MotionInTime {
   /// At least one; for what is longer than the run one more than it takes, which never comes.
   long steps_in(double interval) const { return std::max(1L, std::lround(std::min(interval / scene_.step.dt, static_cast<double>(steps_ + 1)))); }
 
+  void stop() {
+    result_.converged = false;
+    result_.stopped = true;
+    result_.reason = "stopped";
+    write_checkpoint();
+    if (observer_.output && !row_is_there_) observer_.output(simulation_);
+  }
+
   void take_checkpoint() {
-    if (scene_.checkpoint_every == 0.0 || !observer_.checkpoint) return;
+    if (scene_.checkpoint_every != 0.0) write_checkpoint();
+  }
+
+  void write_checkpoint() {
+    if (!observer_.checkpoint) return;
     Archive state;
     state(simulation_, *this);
     observer_.checkpoint(state, simulation_);

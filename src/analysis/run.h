@@ -66,6 +66,7 @@ struct Milestone {
 /// made with the strength of the motion: `steady_sliding` is to go on as it starts, `normal_balanced` knows no strength.
 struct RunResult {
   bool converged = false;
+  bool stopped = false;  ///< it did not converge because the observer has stopped it
   bool refused = false;  ///< it did not converge because the watch has stopped it
   std::string reason;
   WatchReport watch;
@@ -84,7 +85,8 @@ struct RunObserver {
   std::function<void(const std::string& state, const Simulation&)> snapshot;  ///< at the snapshot times ("t=1.5") and milestones ("moved 10 m")
   std::function<void(double fraction)> progress;                              ///< after every step
   SettleProgress settling;                                                    ///< while it settles
-  /// A checkpoint is due (every Scene::checkpoint_every, at the end, and where a step does not converge): `state` holds the whole run, and whatever
+  std::function<bool()> stops;                                                ///< after every step: true ends the run there, with a checkpoint
+  /// A checkpoint is due (every Scene::checkpoint_every, at the end, and where a step does not converge; without that only where it is stopped): `state` holds the whole run, and whatever
   /// the observer adds to it.
   std::function<void(Archive& state, const Simulation&)> checkpoint;
 };

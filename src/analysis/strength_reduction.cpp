@@ -38,7 +38,7 @@ class StrengthReduction {
     SettlingTrials trials(simulation_, shown());
     result_.bracket = search(trials);
     judge();
-    curve(trials);
+    if (!result_.bracket.stopped) curve(trials);
     if (trials.settled()) add_state("settled", *trials.settled());
     if (trials.failed()) add_state("failed", *trials.failed());
   }
@@ -48,10 +48,11 @@ class StrengthReduction {
     FrozenTrials trials(scene, system);
     if (input_.limit_analysis) trials.set_limit_analysis([&](double near) { return limit_near(scene, system, near).failed; });
     result_.bracket = search(trials);
-    if (input_.limit_analysis) limit_near(scene, system, result_.bracket.stable.value_or(1.0));
+    const bool goes_on = !result_.bracket.stopped;
+    if (input_.limit_analysis && goes_on) limit_near(scene, system, result_.bracket.stable.value_or(1.0));
     judge();
     for (double srf : input_.curve) {
-      if (trials.stable()) record(srf, "curve", trials.next(srf));
+      if (trials.stable() && goes_on) record(srf, "curve", trials.next(srf));
     }
     if (trials.stable()) {
       add_frozen_state("stable", system, *trials.stable());
@@ -60,7 +61,7 @@ class StrengthReduction {
     }
     add_mechanism(system, failing_motion(system, trials));
     warn_of_geometry();
-    if (input_.limit_analysis) compare(scene, trials);
+    if (input_.limit_analysis && goes_on) compare(scene, trials);
     result_.linear_solves = trials.solver().linear_solves();
   }
 
@@ -104,6 +105,13 @@ class StrengthReduction {
   /// What the bracket is worth, in a word and in a sentence.
   void judge() {
     const StrengthBracket& b = result_.bracket;
+    if (b.stopped) {
+      result_.verdict = b.stable ? FactorVerdict::interval : FactorVerdict::undecided;
+      result_.reason = !b.stable  ? "stopped before any stable state was found"
+                       : b.failed ? fmt::format("stopped between {:.6g} and {:.6g}", *b.stable, *b.failed)
+                                  : fmt::format("stopped above {:.6g}", *b.stable);
+      return;
+    }
     if (!b.stable) {
       const bool proved = result_.limit_analysis && result_.limit_analysis->no_equilibrium;
       const bool none = proved || b.at_every_strength || (b.failed && b.undecided == 0);

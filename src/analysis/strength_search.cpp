@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "openclose/core/error.h"
+
 namespace openclose {
 namespace {
 
@@ -16,8 +18,12 @@ class Search {
       : trials_(trials), input_(input), done_(done), progress_(progress) {}
 
   StrengthBracket run() {
-    if (!find_first()) return std::move(bracket_);
-    while (const std::optional<double> srf = choose()) attempt(*srf);
+    try {
+      if (find_first()) narrow();
+    } catch (const Stopped&) {
+      bracket_.stopped = true;
+    }
+    if (!bracket_.stable) return std::move(bracket_);
     bracket_.undecided = static_cast<int>(undecided_.size());
     for (double srf : failures_) {
       if (srf < *bracket_.stable) bracket_.failed_below.push_back(srf);
@@ -26,6 +32,10 @@ class Search {
   }
 
  private:
+  void narrow() {
+    while (const std::optional<double> srf = choose()) attempt(*srf);
+  }
+
   /// At factor 1, or at a smaller one if the scene fails with its own strength. Where that is not decided, also a little above: which factor is hard
   /// to decide is a matter of chance.
   bool find_first() {
@@ -39,6 +49,7 @@ class Search {
   }
 
   TrialOutcome begin_at(double srf) {
+    if (progress_) progress_(0.0);
     const TrialResult result = record(srf, "bracket", trials_.first(srf));
     if (result.outcome == TrialOutcome::stable) {
       bracket_.stable = srf;

@@ -52,6 +52,7 @@ struct StrengthBracket {
   std::optional<double> failed;      ///< [-] smallest failed factor above it
   std::string failed_by;             ///< what decided there
   bool at_limit = false;             ///< stable at the upper limit
+  bool stopped = false;              ///< the observer has stopped the search, see core/error.h
   bool at_every_strength = false;    ///< no strength whatever holds the system
   int undecided = 0;                 ///< trials between the two ends that stayed undecided
   std::vector<double> failed_below;  ///< [-] failed factors below the largest stable one
@@ -66,7 +67,8 @@ using TrialObserver = std::function<void(const StrengthTrial&)>;
 double widest_bracket(const StrengthReductionInput& input, double factor);
 
 /// Each trial starts from the last stable state. Where one stays undecided, the search comes near it from below with smaller increments, tries again,
-/// and then looks above it for the smallest factor at which failure is certain.
+/// and then looks above it for the smallest factor at which failure is certain. Where `progress` throws Stopped, before a trial or in it, what is known by
+/// then is the answer.
 StrengthBracket search_strength(StrengthTrials& trials, const StrengthReductionInput& input, const TrialObserver& done,
                                 const std::function<void(double share)>& progress = {});
 

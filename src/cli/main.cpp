@@ -25,6 +25,7 @@
 #include "openclose/scene/reader.h"
 #include "openclose/scene/writer.h"
 #include "openclose/version.h"
+#include "stop_signal.h"
 
 namespace openclose {
 namespace {
@@ -70,6 +71,13 @@ Loaded load(const Options& options) {
 OutputFolder output_folder(const Options& options) {
   if (!options.folder.empty()) return OutputFolder(options.folder);
   return OutputFolder("results/" + std::filesystem::path(options.scene_file).stem().string());
+}
+
+/// What no result may replace. The checkpoint that a run goes on from is one of its own results.
+std::vector<std::string> files_read(const Options& options, const Scene& scene) {
+  std::vector<std::string> files{options.scene_file};
+  if (scene.base_motion) files.insert(files.end(), scene.base_motion->files.begin(), scene.base_motion->files.end());
+  return files;
 }
 
 /// Refuses what would take longer than anyone waits.
@@ -139,6 +147,13 @@ Summary summary_of(const std::string& command, const Options& options, const Loa
   return summary;
 }
 
+/// For the shell of who has stopped a run.
+std::string command_to_go_on(const Options& options, const OutputFolder& folder) {
+  std::string command = fmt::format("openclose run '{}'", options.scene_file);
+  for (const std::string& key_and_value : options.overrides) command += fmt::format(" --set '{}'", key_and_value);
+  return command + fmt::format(" -o '{}' --restart '{}'", folder.path(), folder.path_of(checkpoint_name));
+}
+
 int run_command(const Options& options) {
   Loaded loaded = load(options);
   require_run(loaded.scene);
@@ -152,7 +167,7 @@ int run_command(const Options& options) {
   if (!restart) require_start(scene);
 
   const OutputFolder folder = output_folder(options);
-  folder.require_other_than(options.scene_file);
+  folder.claim(files_read(options, scene));
   const RestartPoint* goes_on_from = restart ? &*restart : nullptr;
   if (restart && folder.has(restart->checkpoint_file)) {
     folder.remove_last_results();
@@ -177,7 +192,11 @@ int run_command(const Options& options) {
     states.add("start", s);
     progress.emplace("run", options.quiet);
   };
-  observer.settling = [&](double fraction) { progress->update(fraction); };
+  observer.settling = [&](double fraction) {
+    progress->update(fraction);
+    throw_if_stopped();
+  };
+  observer.stops = [] { return stop_signal() != 0; };
   observer.snapshot = [&](const std::string& state, const Simulation& s) { states.add(state, s); };
   observer.output = [&](const Simulation& s) {
     history.add(s.time(), points.motions());
@@ -194,6 +213,7 @@ int run_command(const Options& options) {
     write_checkpoint(folder.path_of(checkpoint_name), s.scene(), {s.time(), std::move(tables), state.take()});
   };
   RunResult result;
+  watch_for_stop_signals();
   if (restart) {
     Archive state(restart->checkpoint.state);
     result = resume(simulation, observer, state, [&] { state(points); });
@@ -225,6 +245,11 @@ int run_command(const Options& options) {
   write_summary(folder, summary, simulation);
   write_formats(scene.formats, folder);
 
+  if (result.stopped) {
+    fmt::print(stderr, "openclose: stopped at t = {:.6g} s; state saved in {}; to go on: {}\n", simulation.time(), folder.path(),
+               command_to_go_on(options, folder));
+    return exit_status_of_stop();
+  }
   if (!result.converged) {
     fmt::print(stderr, "openclose: {} at t = {:.6g} s: {}; state saved in {}\n", result.refused ? "refused" : "not converged", simulation.time(),
                result.reason, folder.path());
@@ -275,7 +300,7 @@ int fos_command(const Options& options) {
   if (loaded.scene.step.dt <= 0.0) loaded.scene.step.dt = loaded.scene.settle.first_dt;
   Simulation simulation(std::move(loaded.scene));
   const OutputFolder folder = output_folder(options);
-  folder.require_other_than(options.scene_file);
+  folder.claim(files_read(options, simulation.scene()));
   folder.remove_results();
   folder.write_scene_copy(write_scene(simulation.scene()));
   write_block_properties(folder, simulation.scene(), std::as_const(simulation).system());
@@ -286,7 +311,11 @@ int fos_command(const Options& options) {
   {
     Progress progress("strength reduction", options.quiet);
     const double begin = process_cpu_time();
-    safety = factor_of_safety(simulation, [&](double fraction) { progress.update(fraction); });
+    watch_for_stop_signals();
+    safety = factor_of_safety(simulation, [&](double fraction) {
+      progress.update(fraction);
+      throw_if_stopped();
+    });
     cpu_of_search = process_cpu_time() - begin;
   }
 
@@ -308,6 +337,10 @@ int fos_command(const Options& options) {
   write_summary(folder, summary, simulation, &safety);
   write_formats(simulation.scene().formats, folder);
 
+  if (safety.bracket.stopped) {
+    fmt::print(stderr, "openclose: {}; state saved in {}\n", safety.reason, folder.path());
+    return exit_status_of_stop();
+  }
   if (!safety.found()) {
     fmt::print(stderr, "openclose: no factor of safety: {}; state saved in {}\n", safety.reason, folder.path());
     return exit_not_converged;
@@ -367,7 +400,7 @@ int cut_command(const Options& options) {
   if (place_of(file) == place_of(drawing)) {
     throw InputError({file, 0}, "", "the scene and its drawing cannot be the same file", "another name with --svg");
   }
-  write_files({{file, write_scene(loaded.scene)}, {drawing, svg_drawing(picture_of(loaded.scene))}});
+  write_files({{file, "# Blocks that openclose has cut.\n" + write_scene(loaded.scene)}, {drawing, svg_drawing(picture_of(loaded.scene))}});
   if (options.quiet) return exit_success;
   const auto fixed = std::count_if(loaded.scene.blocks.begin(), loaded.scene.blocks.end(), [](const BlockInput& block) { return block.fixed; });
   fmt::print("{}: {} blocks cut by {} traces, {:.9g} m2 (domain {:.9g} m2), smallest {:.3g} m2; {} of {} blocks fixed\n", options.scene_file,
@@ -470,7 +503,7 @@ CLI::App* add_explain(CLI::App& app, Options& options) {
 int main_checked(int argc, char** argv) {
   CLI::App app{
       "Openclose: 2-D block systems of jointed rock and masonry. Exit status: 0 success, 1 not converged (state saved), 2 bad input (nothing "
-      "written), 3 broken off (a result cannot be written, or an internal error)."};
+      "written), 3 broken off (a result cannot be written, or an internal error), 130 and 143 stopped by SIGINT (Ctrl-C) and SIGTERM."};
   app.set_version_flag("--version", version);
   app.require_subcommand(1);
   Options options;
@@ -522,6 +555,9 @@ int main(int argc, char** argv) {
   } catch (const openclose::InputError& e) {
     fmt::print(stderr, "openclose: {}\n", e.what());
     return openclose::exit_bad_input;
+  } catch (const openclose::Stopped&) {
+    fmt::print(stderr, "openclose: stopped before there was a state to go on from\n");
+    return openclose::exit_status_of_stop();
   } catch (const openclose::WriteError& e) {
     fmt::print(stderr, "openclose: {}\n", e.what());
     return openclose::exit_broken_off;

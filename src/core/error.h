@@ -37,4 +37,10 @@ class WriteError : public std::runtime_error {
       : std::runtime_error(path + ": " + what) {}
 };
 
+/// Thrown out of a long computation whose observer has been asked to stop; who knows something by then catches it.
+class Stopped : public std::runtime_error {
+ public:
+  Stopped() : std::runtime_error("stopped") {}
+};
+
 }  // namespace openclose

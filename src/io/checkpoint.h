@@ -7,7 +7,6 @@
 
 #include <cstdint>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "openclose/core/archive.h"
@@ -15,10 +14,20 @@
 
 namespace openclose {
 
+/// A table of a run as it was at the time of a checkpoint.
+struct TableMark {
+  std::string name;
+  std::uint64_t length = 0;  ///< [bytes]
+  std::uint64_t sum = 0;     ///< see core/check_sum.h, of so many bytes
+
+  bool operator==(const TableMark&) const = default;
+  void exchange(Archive& archive) { archive(name, length, sum); }
+};
+
 struct Checkpoint {
-  double time = 0.0;                                          ///< [s] of the run
-  std::vector<std::pair<std::string, std::uint64_t>> tables;  ///< names, and lengths [bytes] at that time
-  std::string state;                                          ///< bytes of an Archive
+  double time = 0.0;              ///< [s] of the run
+  std::vector<TableMark> tables;  ///< at that time
+  std::string state;              ///< bytes of an Archive
 
   void exchange(Archive& archive) {
     auto& [a, b, c] = *this;
@@ -31,7 +40,7 @@ void write_checkpoint(const std::string& path, const Scene& scene, Checkpoint ch
 
 /// Throws InputError if there is no such file, if it is damaged or of another version of the program or another scene (other in more than
 /// end.time_s, output.every_s, output.checkpoint_every_s, solver.smallest_fraction, solver.max_iterations and method.threads), if the scene ends before
-/// it, or if one of the tables that were there when it was written is no longer beside it, or shorter.
+/// it, or if one of the tables that were there when it was written is no longer beside it, shorter, or begins otherwise.
 Checkpoint read_checkpoint(const std::string& path, const Scene& scene);
 
 /// The file of a table that lay beside this checkpoint.

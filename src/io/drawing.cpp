@@ -124,7 +124,7 @@ class Drawing {
     SvgPage page;
     page.print(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" viewBox=\"0 0 {0:.0f} {1:.0f}\" "
-        "font-family=\"sans-serif\">\n",
+        "font-family=\"sans-serif\">\n<!-- drawn by openclose -->\n",
         page_width_, legend_y_ + row_extra_ + margin);
     page.print(
         "<defs><pattern id=\"fixed\" width=\"7\" height=\"7\" patternUnits=\"userSpaceOnUse\">"

@@ -22,16 +22,36 @@ constexpr const char* last_results[] = {"block_properties.csv", "trials.csv",   
 /// The first line of the scene that belongs to the results: a file of that name without it is somebody's own.
 constexpr std::string_view scene_heading = "# The scene as openclose has read it. The next run here writes it anew: copy it before you change it.\n";
 
+constexpr const char* list_heading = "# Names of results in this folder that openclose may replace and remove.";
+constexpr const char* part_ending = ".part";
+
 [[noreturn]] void fail_unwritable(const std::string& path) {
   throw InputError({path, 0}, "", "cannot be written", "a file in a folder that exists or can be made, and may be written to");
 }
 
-void require_replaceable(const std::string& path) {
+/// The first line, or the first few of a file with long ones.
+std::string beginning_of(const std::string& text) {
+  constexpr std::size_t some_lines = 512;
+  return text.substr(0, some_lines);
+}
+
+/// Whether a file of ours begins like this one: both name the program, or both have the same columns.
+bool begins_as_ours(const std::string& there, const std::string& ours) {
+  const auto names_us = [](const std::string& text) { return text.find("openclose") != std::string::npos; };
+  return there.empty() || (names_us(there) && names_us(ours)) || there.substr(0, there.find('\n')) == ours.substr(0, ours.find('\n'));
+}
+
+void require_replaceable(const TextFile& file) {
   std::error_code error;
-  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  const std::filesystem::file_status status = std::filesystem::status(file.path, error);
   if (!std::filesystem::exists(status)) return;
-  if (std::filesystem::is_regular_file(status) && access(path.c_str(), W_OK) == 0) return;
-  throw InputError({path, 0}, "", "is there and cannot be written over", "the name of a new file, or of one that may be replaced");
+  const std::string accepted = "the name of a new file, or of one that may be replaced";
+  if (!std::filesystem::is_regular_file(status) || access(file.path.c_str(), W_OK) != 0)
+    throw InputError({file.path, 0}, "", "is there and cannot be written over", accepted);
+  std::ifstream stream(file.path, std::ios::binary);
+  const std::string there{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  if (!begins_as_ours(beginning_of(there), beginning_of(file.text)))
+    throw InputError({file.path, 0}, "", "is there and has not been written by openclose", accepted);
 }
 
 /// Takes away what was begun and not finished: files that have not got their names yet, and folders made for them that are empty.
@@ -84,9 +104,6 @@ OutputFolder::OutputFolder(const std::string& path) : path_(path) {
   std::ranges::for_each(growing_results, require_replaceable_name);
   std::ranges::for_each(last_results, require_replaceable_name);
   require_replaceable_name(scene_copy_name);
-  if (std::filesystem::exists(path_of(scene_copy_name)) && !has_own_scene_copy()) {
-    throw InputError({path_of(scene_copy_name), 0}, "", "is there and has not been written by openclose", "-o with another folder");
-  }
 }
 
 bool OutputFolder::has_own_scene_copy() const {
@@ -95,10 +112,41 @@ bool OutputFolder::has_own_scene_copy() const {
   return file.read(heading.data(), static_cast<std::streamsize>(heading.size())) && heading == scene_heading;
 }
 
-void OutputFolder::require_other_than(const std::string& scene_file) const {
-  std::error_code unknown;
-  if (std::filesystem::equivalent(scene_file, path_of(scene_copy_name), unknown))
-    throw InputError({scene_file, 0}, "", "this is where the scene would be written as it was read", "-o with another folder");
+std::vector<std::string> OutputFolder::names_of_results() const {
+  std::vector<std::string> names(std::begin(growing_results), std::end(growing_results));
+  names.insert(names.end(), std::begin(last_results), std::end(last_results));
+  names.emplace_back(scene_copy_name);
+  for (const OutputFormat& format : output_formats()) names.push_back(std::string(format.name) + "/");
+  return names;
+}
+
+std::vector<std::string> OutputFolder::own_names() const {
+  std::ifstream list(path_of(list_name));
+  // Earlier versions kept no list, and wrote the scene first.
+  if (!list) return has_own_scene_copy() ? names_of_results() : std::vector<std::string>();
+  std::vector<std::string> names;
+  for (std::string name; std::getline(list, name);) names.push_back(name);
+  return names;
+}
+
+void OutputFolder::claim(const std::vector<std::string>& read_files) const {
+  const std::vector<std::string> own = own_names();
+  for (const std::string& name : names_of_results()) {
+    const std::string file = path_of(name);
+    std::error_code unknown;
+    const bool is_there = name.back() == '/' ? !format_files(name).empty() : std::filesystem::exists(file, unknown);
+    if (!is_there) continue;
+    for (const std::string& read : read_files) {
+      if (std::filesystem::equivalent(read, file, unknown))
+        throw InputError({read, 0}, "", "is read, and a result of this name would replace it", "-o with another folder");
+    }
+    if (std::ranges::find(own, name) == own.end())
+      throw InputError({file, 0}, "", "is there and has not been written by openclose", "-o with another folder");
+  }
+  std::ofstream list = open(list_name);
+  list << list_heading << '\n';
+  for (const std::string& name : names_of_results()) list << name << '\n';
+  finish(list, path_of(list_name));
 }
 
 void OutputFolder::write_scene_copy(const std::string& text) const {
@@ -118,6 +166,20 @@ void OutputFolder::remove_results() const {
   remove_last_results();
 }
 
+std::vector<std::string> OutputFolder::format_files(const std::string& folder_name) const {
+  std::vector<std::string> names;
+  for (const OutputFormat& format : output_formats()) {
+    if (std::string(format.name) + "/" != folder_name) continue;
+    const std::regex ours(format.files);
+    std::error_code error;
+    for (const auto& entry : std::filesystem::directory_iterator(path_of(format.name), error)) {
+      const std::string name = entry.path().filename().string();
+      if (std::regex_match(name, ours)) names.push_back(folder_name + name);
+    }
+  }
+  return names;
+}
+
 void OutputFolder::remove_last_results() const {
   for (const char* name : last_results) remove(name);
   if (has_own_scene_copy()) remove(scene_copy_name);
@@ -126,17 +188,10 @@ void OutputFolder::remove_last_results() const {
 
 void OutputFolder::remove_format_files() const {
   for (const OutputFormat& format : output_formats()) {
-    const std::regex ours(format.files);
-    const std::filesystem::path folder = path_of(format.name);
-    std::error_code error;
-    if (!std::filesystem::is_directory(folder, error)) continue;
-    std::vector<std::string> names;
-    for (const auto& entry : std::filesystem::directory_iterator(folder)) names.push_back(entry.path().filename().string());
-    for (const std::string& name : names) {
-      if (std::regex_match(name, ours)) remove((std::string(format.name) + "/" + name).c_str());
-    }
+    for (const std::string& name : format_files(std::string(format.name) + "/")) remove(name.c_str());
     // Only an empty folder goes.
-    std::filesystem::remove(folder, error);
+    std::error_code error;
+    std::filesystem::remove(path_of(format.name), error);
   }
 }
 
@@ -156,12 +211,18 @@ bool OutputFolder::has(const std::string& checkpoint_file) const {
 }
 
 std::ofstream OutputFolder::open(const std::string& name) const {
+  std::ofstream file(path_of(name) + part_ending);
+  if (!file) throw WriteError(path_of(name));
+  return file;
+}
+
+std::ofstream OutputFolder::open_growing(const std::string& name) const {
   std::ofstream file(path_of(name));
   if (!file) throw WriteError(path_of(name));
   return file;
 }
 
-std::ofstream OutputFolder::open(const std::string& name, const std::string& head, std::uintmax_t length) const {
+std::ofstream OutputFolder::open_growing(const std::string& name, const std::string& head, std::uintmax_t length) const {
   const std::string full = path_of(name);
   std::error_code error, differs;
   if (!std::filesystem::equivalent(head, full, differs))
@@ -175,24 +236,32 @@ std::ofstream OutputFolder::open(const std::string& name, const std::string& hea
 void write_files(const std::vector<TextFile>& files) {
   Unfinished unfinished;
   for (const TextFile& file : files) {
-    require_replaceable(file.path);
+    require_replaceable(file);
     unfinished.make_folders(file.path);
-    const std::string part = unfinished.add(file.path + ".part");
+    const std::string part = unfinished.add(file.path + part_ending);
     std::ofstream stream(part);
     if (!stream) fail_unwritable(file.path);
     stream << file.text;
-    finish(stream, part);
+    stream.close();
+    if (!stream) throw WriteError(file.path);
   }
   for (const TextFile& file : files) {
     std::error_code error;
-    std::filesystem::rename(file.path + ".part", file.path, error);
+    std::filesystem::rename(file.path + part_ending, file.path, error);
     if (error) throw WriteError(file.path);
   }
 }
 
 void finish(std::ofstream& file, const std::string& path) {
   file.close();
-  if (!file) throw WriteError(path);
+  std::error_code error;
+  if (!file) {
+    std::filesystem::remove(path + part_ending, error);
+    throw WriteError(path);
+  }
+  const bool is_part = std::filesystem::exists(path + part_ending, error);
+  if (is_part) std::filesystem::rename(path + part_ending, path, error);
+  if (error || !std::filesystem::exists(path, error)) throw WriteError(path, "has been removed while it was written");
 }
 
 }  // namespace openclose

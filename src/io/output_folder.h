@@ -1,4 +1,7 @@
 // The folder a run writes to. Made, and tried, before anything is computed, so that a run is never lost to a folder that cannot be written.
+//
+// A folder that is claimed keeps a list of the names that results have there: what stands there under such a name and is not listed is somebody
+// else's, and the folder is refused. Files that are written as a whole get their names when they are complete.
 #pragma once
 
 #include <cstdint>
@@ -10,13 +13,15 @@ namespace openclose {
 
 inline constexpr const char* checkpoint_name = "checkpoint.bin";
 inline constexpr const char* scene_copy_name = "scene_as_read.toml";
+inline constexpr const char* list_name = ".openclose";
 
 class OutputFolder {
  public:
   /// Creates the folder if it is missing. Throws InputError if the files of a run cannot be written there.
   explicit OutputFolder(const std::string& path);
-  /// Throws InputError if this scene, which is to be read, is the file that write_scene_copy() would write over.
-  void require_other_than(const std::string& scene_file) const;
+  /// From now on the names of results in this folder are ours. Throws InputError if one of them is a file that is read, or one that openclose has not
+  /// written; nothing has changed then.
+  void claim(const std::vector<std::string>& read_files) const;
   /// The scene as it was read, with its blocks cut and its overrides applied.
   void write_scene_copy(const std::string& text) const;
   /// A file of this name in the folder of a format, which is made where it is missing.
@@ -29,17 +34,23 @@ class OutputFolder {
   /// Whether a run that goes on from this checkpoint goes on in this folder, whatever the paths look like.
   bool has(const std::string& checkpoint_file) const;
 
-  /// A new file, replacing an old one of that name. Throws WriteError if it cannot be made any more.
+  /// A new file, which gets its name with finish(), replacing an old one. Throws WriteError if it cannot be made any more.
   std::ofstream open(const std::string& name) const;
+  /// A new file that has its name at once, for rows that a broken-off run is to leave behind.
+  std::ofstream open_growing(const std::string& name) const;
   /// The same, but beginning with the first `length` bytes of the file `head`, which may be this one.
-  std::ofstream open(const std::string& name, const std::string& head, std::uintmax_t length) const;
+  std::ofstream open_growing(const std::string& name, const std::string& head, std::uintmax_t length) const;
   const std::string& path() const { return path_; }
   std::string path_of(const std::string& name) const { return path_ + "/" + name; }
 
  private:
   void remove(const char* name) const;
   bool has_own_scene_copy() const;
+  std::vector<std::string> names_of_results() const;
+  std::vector<std::string> own_names() const;
   void remove_format_files() const;
+  /// With the folder, as "vtk/a.vtu"; of the one of this name, which ends with a stroke.
+  std::vector<std::string> format_files(const std::string& folder_name) const;
 
   std::string path_;
 };
@@ -50,10 +61,12 @@ struct TextFile {
 };
 
 /// Writes whole files, with the folders they need: all of them, or none and no folder. Old ones are replaced only when all new ones are complete;
-/// until then these have ".part" after their names. Throws InputError if a file cannot be made, WriteError if one cannot be written to its end.
+/// until then these have ".part" after their names. Throws InputError if a file cannot be made or is there and was not written by openclose, which
+/// its beginning tells; WriteError if one cannot be written to its end.
 void write_files(const std::vector<TextFile>& files);
 
-/// Closes a file after its last line; throws WriteError if anything of it was not written (a full disk, say).
+/// Closes a file after its last line and gives it its name; throws WriteError if anything of it was not written (a full disk, say) or if the file has
+/// been removed.
 void finish(std::ofstream& file, const std::string& path);
 
 }  // namespace openclose

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "openclose/core/check_sum.h"
 #include "openclose/core/error.h"
 #include "openclose/core/parallel.h"
 #include "openclose/core/process.h"
@@ -92,21 +93,31 @@ std::string energy_columns() {
 }  // namespace
 
 RunTable::RunTable(const OutputFolder& folder, const std::string& name, const std::string& columns, const RestartPoint* restart)
-    : name_(name), path_(folder.path_of(name)) {
+    : path_(folder.path_of(name)) {
+  mark_ = {name, 0, empty_check_sum};
   if (restart) {
-    for (const auto& [table, length] : restart->checkpoint.tables) {
-      if (table == name) file_ = folder.open(name, table_beside(restart->checkpoint_file, name), length);
+    for (const TableMark& mark : restart->checkpoint.tables) {
+      if (mark.name != name) continue;
+      file_ = folder.open_growing(name, table_beside(restart->checkpoint_file, name), mark.length);
+      mark_ = mark;
     }
     return;
   }
-  file_ = folder.open(name);
+  file_ = folder.open_growing(name);
   file_ << columns << '\n';
 }
 
-std::pair<std::string, std::uint64_t> RunTable::written() {
+TableMark RunTable::written() {
   file_.flush();
   require_written();
-  return {name_, static_cast<std::uint64_t>(file_.tellp())};
+  const auto length = static_cast<std::uint64_t>(file_.tellp());
+  std::ifstream disk(path_, std::ios::binary);
+  std::string added(length - mark_.length, ' ');
+  if (!disk.seekg(static_cast<std::streamoff>(mark_.length)) || !disk.read(added.data(), static_cast<std::streamsize>(added.size())))
+    throw WriteError(path_, "has been removed or cut while the run went on");
+  mark_.sum = check_sum(added, mark_.sum);
+  mark_.length = length;
+  return mark_;
 }
 
 void RunTable::require_written() const {
@@ -248,7 +259,7 @@ void StateTables::add(const NamedState& state, const Scene& scene) {
   cracks_.add(state.name, scene, state.system);
 }
 
-std::vector<std::pair<std::string, std::uint64_t>> StateTables::written() {
+std::vector<TableMark> StateTables::written() {
   return {blocks_.written(), contacts_.written(), states_.written(), cracks_.written()};
 }
 

@@ -24,8 +24,8 @@ struct RestartPoint {
 class RunTable {
  public:
   void close() { finish(file_, path_); }
-  /// Name and length [bytes] of what has reached the disk: everything so far. Throws WriteError if it has not.
-  std::pair<std::string, std::uint64_t> written();
+  /// What has reached the disk: everything so far. Throws WriteError if it has not.
+  TableMark written();
 
  protected:
   /// With these column names, or with what the table had when the run it goes on from was saved.
@@ -35,7 +35,8 @@ class RunTable {
   std::ofstream file_;
 
  private:
-  std::string name_, path_;
+  std::string path_;
+  TableMark mark_;  ///< of what was written when it was last asked for
 };
 
 /// history.csv: motion of the measured points.
@@ -107,7 +108,7 @@ class StateTables {
   /// A state of a factor of safety.
   void add(const NamedState& state, const Scene& scene);
   /// See RunTable::written().
-  std::vector<std::pair<std::string, std::uint64_t>> written();
+  std::vector<TableMark> written();
   void close();
 
  private:

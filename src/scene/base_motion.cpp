@@ -39,9 +39,10 @@ class RecordKeys {
   bool given() const { return has_file_ || has_times_ || has_values_; }
 
   /// To be called after Table::finish().
-  AccelerationRecord record(const std::string& folder) const {
+  /// \param files  to which the file is added from which it is read
+  AccelerationRecord record(const std::string& folder, std::vector<std::string>& files) const {
     if (has_file_ && (has_times_ || has_values_)) table_.at(file_key_).fail("file and numbers are both given", "one of the two");
-    if (has_file_) return read_acceleration_record((std::filesystem::path(folder) / file_).string());
+    if (has_file_) return read_acceleration_record(files.emplace_back((std::filesystem::path(folder) / file_).string()));
     if (has_times_ != has_values_) table_.fail(fmt::format("only one of {} and {} is given", times_key_, values_key_), "both of them");
     if (!given()) return {};
     const std::vector<double>& times = numbers_.times;
@@ -77,8 +78,8 @@ void read_record(Table& table, const std::string& scene_file, BaseMotionInput& m
   table.finish();
   if (!horizontal.given() && !vertical.given()) table.fail("there is no record", "horizontal_file, vertical_file or both");
   const std::string folder = std::filesystem::path(scene_file).parent_path().string();
-  motion.horizontal = horizontal.record(folder);
-  motion.vertical = vertical.record(folder);
+  motion.horizontal = horizontal.record(folder, motion.files);
+  motion.vertical = vertical.record(folder, motion.files);
 }
 
 }  // namespace

@@ -69,6 +69,7 @@ struct BaseMotionInput {
   double phase = 0.0;             ///< [rad]
   AccelerationRecord horizontal;  ///< positive to the right; empty: none
   AccelerationRecord vertical;    ///< positive upwards; empty: none
+  std::vector<std::string> files;  ///< from which records were read
 };
 
 /// What the joints made of a domain.

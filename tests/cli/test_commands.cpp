@@ -34,7 +34,7 @@ std::set<std::string> entries(const std::string& folder) {
 
 /// What a run has written before it ends.
 const std::set<std::string> tables_of_run = {"block_properties.csv", "block_states.csv", "blocks.csv",  "contacts.csv",
-                                             "cracks.csv",           "energy.csv",       "history.csv", "scene_as_read.toml"};
+                                             "cracks.csv",           "energy.csv",       "history.csv", "scene_as_read.toml", ".openclose"};
 
 }  // namespace
 
@@ -140,7 +140,7 @@ TEST_CASE("a folder has the results of one run only, beside files of the user's 
                    "--set strength_reduction.curve_time_s=0.01")
               .status == 0);
     CHECK(in_out() == std::set<std::string>{"block_properties.csv", "block_states.csv", "blocks.csv", "contacts.csv", "cracks.csv", "curve.csv",
-                                            "mine.csv", "scene_as_read.toml", "summary.json", "trials.csv"});
+                                            "mine.csv", "scene_as_read.toml", "summary.json", "trials.csv", ".openclose"});
     CHECK(place.run(run).status == 0);
     CHECK(in_out() == bare);
   }
@@ -179,7 +179,7 @@ TEST_CASE("a result that cannot be written to its end breaks the command off", "
       "[domain]\nmaterial = 'rock'\nvertices_m = [[-30, -9], [30, -9], [30, -3], [-30, -3]]\n"
       "[[joint_set]]\ndip_deg = 90\nspacing_m = 0.1\norigin_m = [0, 0]\n";
   place.folder().write("scene.toml", block_on_base + cut);
-  broken_off_at("cut/blocks.toml.part", "cut scene.toml -o " + place.folder() / "cut/blocks.toml");
+  broken_off_at("cut/blocks.toml", "cut scene.toml -o " + place.folder() / "cut/blocks.toml");
   CHECK_FALSE(std::filesystem::exists(place.folder() / "cut"));
 }
 
@@ -243,7 +243,7 @@ TEST_CASE("factor of safety", "[cli]") {
   CHECK_THAT(result.out, StartsWith("factor of safety 1.21") && ContainsSubstring("soft") && ContainsSubstring("limit analysis"));
   const std::string out = place.folder() / "out";
   CHECK(entries(out) == std::set<std::string>{"block_properties.csv", "block_states.csv", "blocks.csv", "contacts.csv", "cracks.csv", "mechanism.csv",
-                                              "scene_as_read.toml", "summary.json", "trials.csv"});
+                                              "scene_as_read.toml", "summary.json", "trials.csv", ".openclose"});
   const auto summary = summary_in(out);
   CHECK(summary.at("command") == "fos");
   CHECK(summary.at("converged") == true);
@@ -534,4 +534,26 @@ TEST_CASE("a form of results that there is not is refused before anything is wri
   CHECK(result.status == 2);
   CHECK_THAT(result.errors.at(0), ContainsSubstring("output.formats: \"dxf\" is no known form of results; accepted: \"vtk\", \"svg\""));
   CHECK_FALSE(std::filesystem::exists(place.folder() / "out"));
+}
+
+TEST_CASE("no result takes the place of a file that is read", "[cli]") {
+  const Workplace place("");
+  place.folder().write("history.csv", block_on_base);
+  for (const std::string command : {"run", "fos"}) {
+    const CommandResult result = place.run(command + " history.csv --dt 0.001 --end 0.01 -o .");
+    CHECK(result.status == 2);
+    REQUIRE(result.errors.size() == 1);
+    CHECK_THAT(result.errors[0], ContainsSubstring("history.csv: is read, and a result of this name would replace it"));
+    CHECK(text_of(place.folder() / "history.csv") == block_on_base);
+    CHECK(place.folder().entries() == std::set<std::string>{"history.csv"});
+  }
+}
+
+TEST_CASE("a run whose folder is removed is broken off", "[cli]") {
+  const Workplace place;
+  const CommandResult result =
+      place.run("run scene.toml --dt 0.001 --end 1000 --set output.checkpoint_every_s=0.05 -o out", "(sleep 0.5; rm -rf out) & ");
+  CHECK(result.status == 3);
+  REQUIRE(result.errors.size() == 1);
+  CHECK_THAT(result.errors[0], ContainsSubstring("out/") && ContainsSubstring("has been removed"));
 }

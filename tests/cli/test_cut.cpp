@@ -110,9 +110,10 @@ TEST_CASE("names of the files that cut writes", "[cli][cut]") {
     CHECK(std::filesystem::is_regular_file(place.folder() / "pictures/deep/wall.svg"));
   }
   SECTION("old ones are replaced") {
-    place.folder().write("wall.toml", "old");
-    place.folder().write("wall.svg", "old");
+    REQUIRE(place.run("cut scene.toml -o wall.toml").status == 0);
+    for (const char* old : {"wall.toml", "wall.svg"}) std::ofstream(place.folder() / old, std::ios::app) << "old";
     CHECK(place.run("cut scene.toml -o wall.toml").status == 0);
+    CHECK(text_of(place.folder() / "wall.toml").find("old") == std::string::npos);
     CHECK(count_of(text_of(place.folder() / "wall.toml"), "[[block]]") == 12);
     CHECK_THAT(text_of(place.folder() / "wall.svg"), StartsWith("<svg "));
     CHECK(place.folder().entries() == Names{"scene.toml", "wall.toml", "wall.svg"});
@@ -155,9 +156,19 @@ TEST_CASE("cut writes both files or none", "[cli][cut][bad_input]") {
   check_refused(place, "cut scene.toml -o a.toml --svg ./a.toml", "a.toml: the scene and its drawing cannot be the same file");
   CHECK(text_of(place.folder() / "file") == "kept");
   SECTION("an older scene stays when the drawing cannot be made") {
-    place.folder().write("wall.toml", "old");
-    check_refused(place, "cut scene.toml -o wall.toml --svg file/wall.svg", cannot);
-    CHECK(text_of(place.folder() / "wall.toml") == "old");
+    REQUIRE(place.run("cut scene.toml -o wall.toml --svg wall.svg").status == 0);
+    std::ofstream(place.folder() / "wall.toml", std::ios::app) << "# old";
+    const std::string old = text_of(place.folder() / "wall.toml");
+    CHECK(place.run("cut scene.toml -o wall.toml --svg file/wall.svg").status == 2);
+    CHECK(text_of(place.folder() / "wall.toml") == old);
+  }
+  SECTION("files that openclose has not written stay") {
+    place.folder().write("wall.toml", "title = 'mine'");
+    place.folder().write("wall.svg", "<svg>mine</svg>");
+    check_refused(place, "cut scene.toml -o wall.toml --svg new.svg", "wall.toml: is there and has not been written by openclose");
+    check_refused(place, "cut scene.toml -o new.toml --svg wall.svg", "wall.svg: is there and has not been written by openclose");
+    CHECK(text_of(place.folder() / "wall.toml") == "title = 'mine'");
+    CHECK(text_of(place.folder() / "wall.svg") == "<svg>mine</svg>");
   }
 }
 

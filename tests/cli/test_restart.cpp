@@ -1,5 +1,6 @@
 // `run --restart`: the tables of a run that stopped and went on are those of one that never stopped, byte for byte.
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "cli/command.h"
@@ -144,4 +145,37 @@ TEST_CASE("a restart that cannot be writes nothing", "[cli][restart]") {
   refused(common + " --end 0.02 --restart out/checkpoint.bin", "lies before the checkpoint");
   refused(common + " --end 0.1 --restart out/history.csv", "this is no checkpoint");
   refused(common + " --end 0.1 --restart nothing.bin", "there is no such file");
+}
+
+TEST_CASE("a run that is stopped by a signal saves its state and says how to go on from it", "[cli][restart]") {
+  struct Stop {
+    const char* signal;
+    int status;
+  };
+  const Stop stop = GENERATE(values<Stop>({{"INT", 130}, {"TERM", 143}}));
+  INFO(stop.signal);
+  const Workplace place(openclose::test::block_on_incline(35.0));
+  const std::string common = std::string("run scene.toml") + motion;
+  const CommandResult stopped = place.run(common + " --end 1000 -o parts", std::string("timeout --preserve-status -s ") + stop.signal + " 1 ");
+  CHECK(stopped.status == stop.status);
+  REQUIRE(stopped.errors.size() == 1);
+  CHECK_THAT(stopped.errors[0], ContainsSubstring("stopped at t = ") && ContainsSubstring("--restart 'parts/checkpoint.bin'"));
+  const double time = nlohmann::json::parse(text_of(place.folder() / "parts/summary.json")).at("time_s").get<double>();
+  const std::string end = " --end " + std::to_string(time + 0.05);
+  CHECK(place.run(common + end + " -o parts --restart parts/checkpoint.bin").status == 0);
+  CHECK(place.run(common + end + " -o whole").status == 0);
+  check_same_tables(place, "whole", "parts");
+}
+
+TEST_CASE("a search for the factor of safety that is stopped tells what it knows", "[cli][restart]") {
+  const Workplace place(openclose::test::block_on_incline(20.0));
+  // The search ends by itself, or tells what it knows: it has found a stable factor by the time of its first look at the signal.
+  const CommandResult stopped = place.run("fos scene.toml --contact dem --set strength_reduction.definition=large_displacements --set settle.first_dt_s=1e-7 -o out",
+                                          "timeout --preserve-status -s INT 1 ");
+  CHECK(stopped.status == 130);
+  REQUIRE(stopped.errors.size() == 1);
+  CHECK_THAT(stopped.errors[0], ContainsSubstring("stopped ") && ContainsSubstring("state saved in out"));
+  const nlohmann::json summary = nlohmann::json::parse(text_of(place.folder() / "out/summary.json"));
+  CHECK_THAT(summary.at("reason").get<std::string>(), ContainsSubstring("stopped"));
+  CHECK(summary.at("verdict").get<std::string>() != "certified");
 }

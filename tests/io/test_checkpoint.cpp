@@ -3,6 +3,7 @@
 #include <string>
 
 #include "io/files.h"
+#include "openclose/core/check_sum.h"
 #include "openclose/core/error.h"
 #include "openclose/io/checkpoint.h"
 #include "openclose/version.h"
@@ -23,7 +24,7 @@ Scene a_scene() {
 }
 
 Checkpoint a_checkpoint() {
-  return {1.5, {{"history.csv", 5}}, "state"};
+  return {1.5, {{"history.csv", 5, check_sum("12345")}}, "state"};
 }
 
 struct Saved {
@@ -108,6 +109,8 @@ TEST_CASE("a checkpoint that stands at the end but for rounding is read", "[io][
 
 TEST_CASE("a checkpoint without the tables of its run is refused", "[io][checkpoint]") {
   const Saved saved;
+  saved.folder.write("history.csv", "12845678");
+  CHECK_THAT(refusal(saved.path, a_scene()), ContainsSubstring("history.csv") && ContainsSubstring("are not those that the run has written"));
   saved.folder.write("history.csv", "1234");
   CHECK_THAT(refusal(saved.path, a_scene()), ContainsSubstring("history.csv") && ContainsSubstring("first 5 bytes"));
   std::filesystem::remove(saved.folder / "history.csv");

@@ -25,25 +25,25 @@ TEST_CASE("an existing output folder keeps its other files", "[io][output_folder
   const OutputFolder folder(place.path());
   std::ofstream file = folder.open("history.csv");
   file << "new";
-  finish(file, "history.csv");
+  finish(file, place / "history.csv");
   CHECK(test::text_of(place / "history.csv") == "new");
   CHECK(test::text_of(place / "mine.txt") == "kept");
 }
 
 TEST_CASE("files are written together or not at all", "[io][output_folder]") {
   const TemporaryFolder place;
-  place.write("file", "x");
+  place.write("file", "x\n1");
   SECTION("with the folders they need") {
-    write_files({{place / "a/b/one", "1"}, {place / "a/two", "2"}, {place / "file", "3"}});
+    write_files({{place / "a/b/one", "1"}, {place / "a/two", "2"}, {place / "file", "x\n2"}});
     CHECK(test::text_of(place / "a/b/one") == "1");
     CHECK(test::text_of(place / "a/two") == "2");
-    CHECK(test::text_of(place / "file") == "3");
+    CHECK(test::text_of(place / "file") == "x\n2");
     CHECK_FALSE(std::filesystem::exists(place / "a/two.part"));
   }
   SECTION("none, and no folder, if one cannot be made") {
-    CHECK_THROWS_AS(write_files({{place / "a/b/one", "1"}, {place / "file", "2"}, {place / "file/below", "3"}}), InputError);
+    CHECK_THROWS_AS(write_files({{place / "a/b/one", "1"}, {place / "file", "x\n2"}, {place / "file/below", "3"}}), InputError);
     CHECK(place.entries() == std::set<std::string>{"file"});
-    CHECK(test::text_of(place / "file") == "x");
+    CHECK(test::text_of(place / "file") == "x\n1");
   }
   SECTION("a folder is not written over") {
     std::filesystem::create_directory(place / "folder");
@@ -122,14 +122,14 @@ TEST_CASE("the copy of the scene takes the place of no other file", "[io][output
   }
   SECTION("somebody's own scene of that name stays, and the folder is refused") {
     place.write(scene_copy_name, "title = 'mine'\n");
-    CHECK_THROWS_WITH(OutputFolder(place.path()), ContainsSubstring("scene_as_read.toml: is there and has not been written by openclose"));
+    CHECK_THROWS_WITH(OutputFolder(place.path()).claim({}), ContainsSubstring("scene_as_read.toml: is there and has not been written by openclose"));
     CHECK(test::text_of(place / scene_copy_name) == "title = 'mine'\n");
   }
   SECTION("a copy that is itself the scene to be read is refused") {
     const OutputFolder folder(place.path());
     folder.write_scene_copy("title = 'first'\n");
-    CHECK_THROWS_AS(folder.require_other_than(place / scene_copy_name), InputError);
-    CHECK_NOTHROW(folder.require_other_than(place / "other.toml"));
+    CHECK_THROWS_WITH(folder.claim({place / scene_copy_name}), ContainsSubstring("is read, and a result of this name would replace it"));
+    CHECK_NOTHROW(folder.claim({place / "other.toml"}));
   }
 }
 
@@ -144,4 +144,73 @@ TEST_CASE("a folder knows the checkpoints that lie in it", "[io][output_folder]"
   CHECK(folder.has(place / "../" + std::filesystem::path(place.path()).filename().string() + "/checkpoint.bin"));
   CHECK(folder.has(other / "latest.bin"));
   CHECK_FALSE(folder.has(other / "checkpoint.bin"));
+}
+
+TEST_CASE("a claimed folder keeps what is not ours", "[io][output_folder]") {
+  const TemporaryFolder place;
+  SECTION("a table of somebody else's is not replaced") {
+    place.write("history.csv", "mine");
+    CHECK_THROWS_WITH(OutputFolder(place.path()).claim({}), ContainsSubstring("history.csv: is there and has not been written by openclose"));
+    CHECK(place.entries() == std::set<std::string>{"history.csv"});
+  }
+  SECTION("nor are files in the folder of a format") {
+    std::filesystem::create_directory(place / "svg");
+    place.write("svg/0001.svg", "mine");
+    CHECK_THROWS_AS(OutputFolder(place.path()).claim({}), InputError);
+    CHECK(test::text_of(place / "svg/0001.svg") == "mine");
+  }
+  SECTION("a file that is read is named, by whatever path it is read") {
+    const OutputFolder folder(place.path());
+    folder.claim({});
+    place.write("energy.csv", "t a\n");
+    std::filesystem::create_symlink(place / "energy.csv", place / "record.csv");
+    CHECK_THROWS_WITH(folder.claim({place / "record.csv"}), ContainsSubstring("record.csv: is read, and a result of this name would replace it"));
+    CHECK(test::text_of(place / "energy.csv") == "t a\n");
+  }
+  SECTION("what was claimed before may be replaced") {
+    OutputFolder(place.path()).claim({});
+    place.write("history.csv", "ours");
+    CHECK_NOTHROW(OutputFolder(place.path()).claim({}));
+    OutputFolder(place.path()).remove_results();
+    CHECK(place.entries() == std::set<std::string>{list_name});
+  }
+  SECTION("a folder without a list is ours if the scene in it is") {
+    const OutputFolder folder(place.path());
+    folder.write_scene_copy("title = 'first'\n");
+    place.write("history.csv", "ours");
+    CHECK_NOTHROW(folder.claim({}));
+  }
+}
+
+TEST_CASE("a file gets its name when it is complete", "[io][output_folder]") {
+  const TemporaryFolder place;
+  const OutputFolder folder(place.path());
+  place.write("curve.csv", "old");
+  {
+    std::ofstream file = folder.open("curve.csv");
+    file << "new";
+    CHECK(test::text_of(place / "curve.csv") == "old");
+    finish(file, place / "curve.csv");
+  }
+  CHECK(test::text_of(place / "curve.csv") == "new");
+  CHECK(place.entries() == std::set<std::string>{"curve.csv"});
+}
+
+TEST_CASE("a file that is removed while it is written is an error", "[io][output_folder]") {
+  const TemporaryFolder place;
+  const OutputFolder folder(place.path());
+  std::ofstream file = folder.open_growing("history.csv");
+  std::filesystem::remove(place / "history.csv");
+  CHECK_THROWS_WITH(finish(file, place / "history.csv"), ContainsSubstring("has been removed while it was written"));
+  CHECK_THROWS_AS(finish(file, place / "history.csv"), WriteError);
+}
+
+TEST_CASE("a whole file does not take the place of one that is not ours", "[io][output_folder]") {
+  const TemporaryFolder place;
+  place.write("notes.svg", "<svg>mine</svg>");
+  CHECK_THROWS_WITH(write_files({{place / "notes.svg", "<svg>\n<!-- drawn by openclose -->"}}), ContainsSubstring("has not been written by openclose"));
+  CHECK(test::text_of(place / "notes.svg") == "<svg>mine</svg>");
+  CHECK_NOTHROW(write_files({{place / "new.svg", "<svg>\n<!-- drawn by openclose -->1"}}));
+  CHECK_NOTHROW(write_files({{place / "new.svg", "<svg>\n<!-- drawn by openclose -->2"}}));
+  CHECK(test::text_of(place / "new.svg").back() == '2');
 }
