@@ -184,7 +184,7 @@ class MotionInTime {
   /// The checkpoint comes before the row that is only there because the run ends: a run that goes on to a later end has no such row.
   void conclude() {
     take_checkpoint();
-    if (observer_.output && !row_is_there_) observer_.output(simulation_);
+    add_last_row();
   }
 
   /// Whether a run that goes on has no step left to take.
@@ -244,12 +244,16 @@ class MotionInTime {
   /// At least one; for what is longer than the run one more than it takes, which never comes.
   long steps_in(double interval) const { return std::max(1L, std::lround(std::min(interval / scene_.step.dt, static_cast<double>(steps_ + 1)))); }
 
+  void add_last_row() {
+    if (observer_.output && !row_is_there_) observer_.output(simulation_);
+  }
+
   void stop() {
     result_.converged = false;
     result_.stopped = true;
     result_.reason = "stopped";
     write_checkpoint();
-    if (observer_.output && !row_is_there_) observer_.output(simulation_);
+    add_last_row();
   }
 
   void take_checkpoint() {
