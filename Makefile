@@ -1,5 +1,5 @@
 # The front door. Needs nothing but make; what else is missing, the targets install. Settings: JOBS=2 (processes), PYTHON=/path/to/python3,
-# BENCH=quick (make bench with fewer sizes, steps and repeats) or long (with more), SEED=1 COUNT=20 PART=all METHODS='soft dem' (make stress).
+# BENCH=quick (make bench with fewer sizes, steps and repeats) or long (with more), SEED=1 COUNT=20 PART=all METHODS='soft dem' (make stress), MINUTES=10 (make fuzz, each reader).
 
 JOBS ?= $(shell nproc)
 export JOBS PYTHON
@@ -14,11 +14,12 @@ BENCH ?= full
 SEED ?= 1
 COUNT ?= 20
 PART ?= all
+MINUTES ?= 10
 COMPARISON := $(PAPER_RESULTS)/comparison.csv
 NULL_SOLVER := results/verify-null-solver.txt
 
 .DEFAULT_GOAL := help
-.PHONY: help build test verify reproduce convergence stress regression bench bench-peers sanitize mutants clean verify-vtk packages vtk-packages stress-packages figure-packages bench-packages peer-packages
+.PHONY: help build test verify reproduce convergence stress regression bench bench-peers sanitize compilers fuzz mutants clean verify-vtk packages clang-packages vtk-packages stress-packages figure-packages bench-packages peer-packages
 
 help: ## print the targets
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(firstword $(MAKEFILE_LIST)) | while read -r target text; do printf '  make %-11s %s\n' "$$target" "$$text"; done
@@ -70,9 +71,19 @@ bench-peers: peer-packages ## the same with Box2D and Chipmunk on the slope of e
 	@OPTIONS='-DOPENCLOSE_BENCH=ON -DOPENCLOSE_BENCH_PEERS=ON' scripts/build release openclose openclose_reference openclose_bench openclose_peers
 	@python=$$(scripts/find-python) && "$$python" bench/bench.py --mode $(BENCH) --micro $(BUILD)/bench/openclose-bench --peers $(BUILD)/bench/openclose-peers
 
-sanitize: packages ## build with the address and undefined-behaviour sanitizers (build/sanitize) and run the unit tests
+sanitize: packages clang-packages ## build with the address and undefined-behaviour sanitizers of g++ and of clang++ (build/sanitize*) and run the unit tests
 	@scripts/build sanitize openclose_tests
 	@ctest --preset sanitize --parallel $(JOBS)
+	@scripts/build sanitize-clang openclose_tests
+	@ctest --preset sanitize-clang --parallel $(JOBS)
+
+compilers: build clang-packages ## build with clang++ too, warnings as errors, and compare the results of ten scenes with those of g++ bit for bit
+	@OPTIONS=-DCMAKE_COMPILE_WARNING_AS_ERROR=ON scripts/build clang
+	@"$${PYTHON:-python3}" verification/compare_builds.py $(OPENCLOSE) build/clang/openclose
+
+fuzz: clang-packages packages ## attack the readers of scenes, records and checkpoints with libFuzzer for MINUTES each; a finding is kept in tests/fuzz/corpus
+	@scripts/build fuzz fuzz_scene fuzz_record fuzz_checkpoint
+	@scripts/fuzz $(MINUTES)
 
 mutants: packages ## plant the faults of mutants/faults.toml one by one and report which check notices each (results/mutants.md); takes half an hour
 	"$${PYTHON:-python3}" mutants/run.py --results results
@@ -85,6 +96,9 @@ clean: ## remove what these targets have made; other results stay
 
 packages:
 	@scripts/install-packages build
+
+clang-packages:
+	@scripts/install-packages clang
 
 vtk-packages:
 	@scripts/install-packages build vtk

@@ -18,6 +18,12 @@ if(OPENCLOSE_SANITIZE)
   target_link_options(openclose_options INTERFACE -fsanitize=address,undefined)
 endif()
 
+if(OPENCLOSE_FUZZ)
+  # fuzzer-no-link: what runs is watched; only the harnesses have the fuzzer's main program.
+  target_compile_options(openclose_options INTERFACE -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(openclose_options INTERFACE -fsanitize=address,undefined)
+endif()
+
 function(openclose_include_root target folder)
   set(root ${PROJECT_BINARY_DIR}/include/${folder})
   file(MAKE_DIRECTORY ${root}/openclose)

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "openclose/analysis/equilibrium.h"
+#include "openclose/analysis/loose_motion.h"
 #include "openclose/analysis/start.h"
 #include "openclose/core/process.h"
 #include "openclose/core/tolerance.h"
@@ -93,8 +94,12 @@ RunResult prepare_start(Simulation& simulation, const SettleProgress& progress) 
       simulation.book_steps(false);
       result.settling = settle_start(simulation, progress);
       result.converged = result.settling.settled;
-      if (!result.converged)
-        result.reason = "no static equilibrium to start from (" + result.settling.verdict() + "); method.start = \"unloaded\" starts in motion";
+      if (!result.converged) {
+        const bool moves = result.settling.limit == "settle.failure_displacement_m";
+        result.reason = "no static equilibrium to start from (" + result.settling.verdict() + ")" +
+                        (moves ? ": " + motion_in_words(simulation.scene(), moved_blocks(simulation)) : "") +
+                        "; method.start = \"unloaded\" starts in motion";
+      }
       simulation.restore_velocities();
       reduce_strength();
       break;
@@ -199,6 +204,8 @@ class MotionInTime {
 
   void exchange(Archive& archive) {
     archive(begun_, done_, moved_before_, snapshots_taken_, row_is_there_, result_.settling, result_.milestones, watch_);
+    archive.require(done_ >= 0 && result_.milestones.size() <= scene_.milestones.size() && watch_.fits(simulation_),
+                    "the saved state is of another run");
     if (points_) archive(*points_);
   }
 

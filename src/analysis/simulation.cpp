@@ -902,6 +902,7 @@ void Simulation::exchange(Archive& archive) {
           time_, reason_, ledger_, start_kinetic_energy_, kinetic_ahead_, collected_contact_energy_, max_penetration_, friction_work_,
           lagging_friction_work_, step_counters_, failed_attempts_, cuts_, last_speed_, still_step_, step_ledger_, control_, begins_, approach_step_,
           held_step_);
+  archive.require(detector_.fits(system_, joints_, contacts_), "the saved state has contacts of blocks that are not there");
   if (archive.reading()) scheme_ = make_scheme();
   scheme_->exchange(archive);
   enforcement_->exchange(archive);

@@ -60,6 +60,8 @@ class StrengthReduction {
       warn_of_travel(trials.travel());
     }
     add_mechanism(system, failing_motion(system, trials));
+    if (result_.verdict == FactorVerdict::no_equilibrium && !result_.mechanism.empty())
+      result_.reason += ": " + motion_in_words(scene, result_.mechanism);
     warn_of_geometry();
     if (input_.limit_analysis && goes_on) compare(scene, trials);
     result_.linear_solves = trials.solver().linear_solves();

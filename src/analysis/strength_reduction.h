@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "openclose/analysis/loose_motion.h"
 #include "openclose/analysis/run.h"
 #include "openclose/analysis/second_opinion.h"
 #include "openclose/analysis/strength_search.h"
@@ -41,15 +42,6 @@ struct NamedState {
   std::vector<Contact> contacts;
 };
 
-/// A block that moves in the mechanism, faster than a hundredth of the fastest.
-struct FailingBlock {
-  int block = 0;
-  double area = 0.0;             ///< [m2]
-  Vec2 centroid = Vec2::Zero();  ///< [m]
-  Vec2 velocity = Vec2::Zero();  ///< [-] of the centroid; the fastest point of all blocks has about 1
-  double rotation = 0.0;         ///< [1/m] counter-clockwise
-};
-
 struct FactorOfSafety {
   FactorVerdict verdict = FactorVerdict::undecided;
   StrengthBracket bracket;
@@ -58,7 +50,7 @@ struct FactorOfSafety {
   std::vector<StrengthTrial> trials;
   std::vector<CurvePoint> curve;
   std::vector<NamedState> states;
-  std::vector<FailingBlock> mechanism;
+  std::vector<FailingBlock> mechanism;  ///< blocks that move faster than a hundredth of the fastest
   std::optional<LimitAnalysisResult> limit_analysis;
   std::vector<StiffnessEffect> stiffness_effects;
   std::optional<double> largest_travel;  ///< [m] between two stable states of the search, of any point of a block

@@ -310,4 +310,10 @@ std::string Watch::check_overlaps(const Simulation& simulation, std::size_t firs
   return {};
 }
 
+bool Watch::fits(const Simulation& simulation) const {
+  const auto blocks = static_cast<std::size_t>(simulation.system().block_count());
+  const auto fits = [blocks](const auto& list) { return list.empty() || list.size() == blocks; };
+  return fits(start_) && fits(widths_) && fits(convex_);
+}
+
 }  // namespace openclose

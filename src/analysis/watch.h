@@ -72,6 +72,8 @@ class Watch {
   void exchange(Archive& archive) {
     archive(report_, energy_at_start_, released_, work_, lowest_energy_, undetermined_energy_, start_, depth_at_start_, next_pair_, widths_, convex_);
   }
+  /// Whether what was read is of as many blocks.
+  bool fits(const Simulation& simulation) const;
 
  private:
   std::string check(const Simulation& simulation, std::size_t first_pair, std::size_t pairs);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <iostream>
+#include <new>
 #include <optional>
 
 #include "openclose/analysis/spectrum.h"
@@ -43,6 +44,7 @@ struct Options {
   DrawingRequest drawing;
   std::vector<std::string> overrides;
   bool quiet = false;
+  mutable std::string work;  ///< what the memory is needed for, should there be too little
 };
 
 void print_warnings(const std::vector<std::string>& warnings) {
@@ -61,7 +63,10 @@ struct Loaded {
 };
 
 Loaded load(const Options& options) {
+  options.work = "reading " + options.scene_file + " ([[block]], or domain.max_blocks and joint_set.spacing_m, limit what it makes)";
   Loaded loaded{read_scene(options.scene_file, options.overrides), {}};
+  options.work = fmt::format("{} of {} ([[block]], or domain.max_blocks and joint_set.spacing_m, limit their number)", size_of(loaded.scene),
+                             options.scene_file);
   require_formats(loaded.scene.formats, loaded.scene.formats_where);
   loaded.warnings = check_scene(loaded.scene);
   print_warnings(loaded.warnings);
@@ -157,6 +162,7 @@ std::string command_to_go_on(const Options& options, const OutputFolder& folder)
 int run_command(const Options& options) {
   Loaded loaded = load(options);
   require_run(loaded.scene);
+  require_memory(loaded.scene, available_memory());
   if (is_settled_by_another(loaded.scene) && loaded.scene.method.start != Start::settled)
     loaded.warn("run.settled_by is for method.start = \"settled\"; the other starts are not settled");
   std::optional<RestartPoint> restart;
@@ -216,7 +222,11 @@ int run_command(const Options& options) {
   watch_for_stop_signals();
   if (restart) {
     Archive state(restart->checkpoint.state);
-    result = resume(simulation, observer, state, [&] { state(points); });
+    try {
+      result = resume(simulation, observer, state, [&] { state(points); });
+    } catch (const DamagedState& damage) {
+      throw InputError({restart->checkpoint_file, 0}, "", damage.what(), "a checkpoint as a run has written it");
+    }
   } else {
     result = run(simulation, observer);
   }
@@ -297,6 +307,7 @@ int fos_command(const Options& options) {
   if (loaded.scene.base_motion) loaded.warn("base_motion is for run; fos asks for static equilibrium on a base at rest");
   if (!loaded.scene.measured_contacts.empty()) loaded.warn("measured_contact is for run; contacts.csv has what every contact carries");
   require_strength_reduction(loaded.scene);
+  require_memory(loaded.scene, available_memory());
   if (loaded.scene.step.dt <= 0.0) loaded.scene.step.dt = loaded.scene.settle.first_dt;
   Simulation simulation(std::move(loaded.scene));
   const OutputFolder folder = output_folder(options);
@@ -362,7 +373,9 @@ void write_spectrum(Simulation& simulation, const std::string& file) {
 }
 
 int check_command(const Options& options) {
-  Simulation simulation(load(options).scene);
+  Loaded loaded = load(options);
+  require_memory(loaded.scene, available_memory());
+  Simulation simulation(std::move(loaded.scene));
   require_use(simulation.scene());
   const auto& system = std::as_const(simulation).system();
   double area = 0.0, free_area = 0.0;
@@ -541,7 +554,12 @@ int main_checked(int argc, char** argv) {
     fmt::print(stderr, "openclose: {}{}; see openclose --help\n", e.what(), names);
     return exit_bad_input;
   }
-  return command(options);
+  try {
+    return command(options);
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "openclose: out of memory{}{}\n", options.work.empty() ? "" : ": ", options.work);
+    return exit_broken_off;
+  }
 }
 
 }  // namespace

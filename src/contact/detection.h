@@ -105,6 +105,8 @@ class Detector {
   Memory memory() const;
   /// What decides when something is found anew.
   void exchange(Archive& archive);
+  /// Whether everything that was read, and these contacts beside it, is of blocks, vertices, joints, pairs and contacts that there are.
+  bool fits(const BlockSystem& system, const JointTable& joints, const std::vector<Contact>& contacts) const;
 
  private:
   using Unknowns = BlockSystem::Unknowns;
@@ -163,6 +165,9 @@ class Detector {
     }
   };
 
+  static bool pairs_fit(const BlockSystem& system, const std::vector<std::pair<int, int>>& pairs, const std::vector<Range>& ranges,
+                        std::size_t contacts);
+  bool lists_of_blocks_fit(std::size_t blocks) const;
   bool moved_beyond_search_skin(const BlockSystem& system) const;
   void search(const BlockSystem& system);
   void find_pairs(const BlockSystem& system, const std::vector<Box>& boxes, double room);

@@ -27,6 +27,7 @@ class JointTable {
   explicit JointTable(const Scene& scene);
 
   int index(int material_a, int material_b) const { return index_[material_a * material_count_ + material_b]; }
+  int count() const { return static_cast<int>(joints_.size()); }
   const TabulatedJoint& joint(int i) const { return joints_[i]; }
 
   /// Divides tan(friction angle), cohesion and tensile strength of every joint, as the scene gave them, by the strength reduction factor.

@@ -18,17 +18,27 @@
 
 namespace openclose {
 
+/// What is read cannot be a state that was written.
+class DamagedState : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
 class Archive {
  public:
   /// Collects what it is given.
   Archive() = default;
-  /// Gives back what another one has collected. Throws std::runtime_error, then or while it is read, if there is less than is asked for.
+  /// Gives back what another one has collected. Throws DamagedState, then or while it is read, if there is less than is asked for.
   explicit Archive(std::string bytes) : reading_(true), bytes_(std::move(bytes)) {}
 
   bool reading() const { return reading_; }
   const std::string& bytes() const { return bytes_; }
   /// The same, which this archive then no longer has.
   std::string take() { return std::move(bytes_); }
+  /// Throws DamagedState for something that no state has which was written; what is read may be anything.
+  void require(bool sound, const char* what) const {
+    if (reading_ && !sound) throw DamagedState(what);
+  }
   bool at_end() const { return at_ == bytes_.size(); }
 
   template <class... T>
@@ -46,7 +56,7 @@ class Archive {
       bytes_.append(static_cast<const char*>(data), size);
       return;
     }
-    if (size > bytes_.size() - at_) throw std::runtime_error("the saved state is shorter than what it should hold");
+    if (size > bytes_.size() - at_) throw DamagedState("the saved state is shorter than what it should hold");
     std::memcpy(data, bytes_.data() + at_, size);
     at_ += size;
   }
@@ -55,13 +65,18 @@ class Archive {
   std::size_t length(std::size_t of_written) {
     std::uint64_t n = of_written;
     raw(&n, sizeof n);
-    if (reading_ && n > bytes_.size() - at_) throw std::runtime_error("the saved state is shorter than what it should hold");
+    if (reading_ && n > bytes_.size() - at_) throw DamagedState("the saved state is shorter than what it should hold");
     return n;
   }
 
   template <class T>
   void exchange(T& value) {
-    if constexpr (is_plain<T>) {
+    if constexpr (std::is_same_v<T, bool>) {
+      unsigned char byte = value ? 1 : 0;  // others are no bool, and reading one as such is undefined
+      raw(&byte, sizeof byte);
+      require(byte <= 1, "the saved state has a switch that is neither on nor off");
+      value = byte == 1;
+    } else if constexpr (is_plain<T>) {
       raw(&value, sizeof value);
     } else if constexpr (requires {
                            typename T::Scalar;
@@ -98,7 +113,7 @@ class Archive {
   template <class T>
   void exchange(std::optional<T>& value) {
     bool there = value.has_value();
-    raw(&there, sizeof there);
+    exchange(there);
     if (reading_) value = there ? std::optional<T>(T()) : std::nullopt;
     if (there) exchange(*value);
   }

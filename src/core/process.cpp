@@ -1,11 +1,15 @@
 #include "openclose/core/process.h"
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstdint>
 #include <fstream>
+#include <limits>
 #include <memory>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "openclose/core/parallel.h"
@@ -13,6 +17,7 @@
 #ifdef __GLIBC__
 #include <malloc.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
 #include <unistd.h>
 #endif
 
@@ -28,6 +33,21 @@ long status_of_process(const std::string& key) {
     if (word == key && status >> value) return bytes_per_unit * value;
   }
   return 0;
+}
+
+/// [bytes] The number that follows the key in a file of the system, or the first one without a key; none where there is no such file or number.
+std::optional<std::size_t> number_in(const char* path, std::string_view key, std::size_t unit) {
+  std::ifstream file(path);
+  std::string word;
+  while (!key.empty() && file >> word && word != key) {
+  }
+  std::size_t value = 0;
+  if (!(file >> value) || value > std::numeric_limits<std::size_t>::max() / unit) return std::nullopt;
+  return unit * value;
+}
+
+std::size_t left_of(std::size_t limit, std::size_t used) {
+  return limit > used ? limit - used : 0;
 }
 
 /// Far below what glibc takes for large, with or without return_large_memory().
@@ -57,6 +77,19 @@ long resident_memory() {
 
 long memory_of_program() {
   return memory_at_start;
+}
+
+std::size_t available_memory() {
+  constexpr std::size_t kilobyte = 1024;
+  std::size_t least = number_in("/proc/meminfo", "MemAvailable:", kilobyte).value_or(std::numeric_limits<std::size_t>::max());
+  const auto group_limit = number_in("/sys/fs/cgroup/memory.max", "", 1), group_used = number_in("/sys/fs/cgroup/memory.current", "", 1);
+  if (group_limit && group_used) least = std::min(least, left_of(*group_limit, *group_used));
+#ifdef __GLIBC__
+  rlimit addresses{};
+  if (getrlimit(RLIMIT_AS, &addresses) == 0 && addresses.rlim_cur != RLIM_INFINITY)
+    least = std::min(least, left_of(addresses.rlim_cur, number_in("/proc/self/status", "VmSize:", kilobyte).value_or(0)));
+#endif
+  return least;
 }
 
 void return_large_memory() {

@@ -15,6 +15,9 @@ long peak_memory();
 long resident_memory();
 /// [bytes] The same when the program began: its code and libraries, as far as they were read.
 long memory_of_program();
+/// [bytes] What this process can still have: of the machine, of its control group and below the limit on its addresses (ulimit -v); the largest
+/// number where none of them is known.
+std::size_t available_memory();
 /// From now on large pieces of memory go back to the system as soon as they are freed, instead of lying in holes that fit nothing else; to be called
 /// once, before much has been allocated. Nothing where the C library has no way to.
 void return_large_memory();

@@ -6,6 +6,7 @@
 
 #include "openclose/core/tolerance.h"
 #include "openclose/geometry/box.h"
+#include "openclose/geometry/near_pairs.h"
 
 namespace openclose {
 namespace {
@@ -54,6 +55,22 @@ bool on_opposite_sides(const Vec2& a, const Vec2& b, const Vec2& p, const Vec2& 
 bool folded(const Vec2& before, const Vec2& corner, const Vec2& after) {
   return std::min(distance_to_segment(before, corner, after), distance_to_segment(after, before, corner)) < tolerance::shortest_edge_m;
 }
+
+/// Whether edges i < j have a point in common that is not the corner between them.
+bool edges_meet(const Polygon& polygon, int i, int j) {
+  const Vec2& a = polygon[i];
+  const Vec2& b = vertex_after(polygon, i);
+  const Vec2& p = polygon[j];
+  const Vec2& q = vertex_after(polygon, j);
+  const bool next = j == i + 1;
+  const bool closing = i == 0 && j == size_of(polygon) - 1;
+  if (!next && !closing) return segments_meet(a, b, p, q);
+  return (next && folded(a, b, q)) || (closing && folded(p, a, b));
+}
+
+/// Comparisons that a simple outline needs for each of its edges are a few tens; where many more edges lie near each other, they are compared each
+/// with each in their order, which takes no memory and soon finds two that meet.
+constexpr std::size_t comparisons_of_edge = 100;
 
 }  // namespace
 
@@ -118,19 +135,18 @@ bool segments_meet(const Vec2& a, const Vec2& b, const Vec2& p, const Vec2& q) {
 
 std::optional<std::pair<int, int>> first_self_intersection(const Polygon& polygon) {
   const int n = size_of(polygon);
+  std::vector<Segment> edges;
+  edges.reserve(polygon.size());
+  for (int i = 0; i < n; ++i) edges.push_back({polygon[i], vertex_after(polygon, i)});
+  if (const auto near = near_pairs(edges, tolerance::shortest_edge_m, comparisons_of_edge * polygon.size())) {
+    for (const auto& [i, j] : *near) {
+      if (edges_meet(polygon, i, j)) return std::pair{i, j};
+    }
+    return std::nullopt;
+  }
   for (int i = 0; i < n; ++i) {
     for (int j = i + 1; j < n; ++j) {
-      const Vec2& a = polygon[i];
-      const Vec2& b = polygon[i + 1 < n ? i + 1 : 0];
-      const Vec2& p = polygon[j];
-      const Vec2& q = vertex_after(polygon, j);
-      const bool next = j == i + 1;
-      const bool closing = i == 0 && j == n - 1;
-      bool meet = false;
-      if (next) meet = folded(a, b, q);
-      if (closing) meet = meet || folded(p, a, b);
-      if (!next && !closing) meet = segments_meet(a, b, p, q);
-      if (meet) return std::pair{i, j};
+      if (edges_meet(polygon, i, j)) return std::pair{i, j};
     }
   }
   return std::nullopt;

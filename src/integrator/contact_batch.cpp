@@ -212,7 +212,7 @@ struct ActingPose {
 /// \param at  as in ContactBatch
 OPENCLOSE_KERNEL Lanes& sums_at(ForceRow* rows, unsigned at, int lane) {
   static_assert(sizeof(ForceRow) == doubles_of_move * sizeof(double));
-  double* const row = &rows->sums[0] + at;
+  double* const row = reinterpret_cast<double*>(rows) + at;
   return *reinterpret_cast<Lanes*>(lane % 2 == 0 ? row : row + batch_size);
 }
 

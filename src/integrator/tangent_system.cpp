@@ -4,6 +4,16 @@
 #include <numeric>
 
 namespace openclose {
+namespace {
+
+/// A saved state with more rows is damaged: no scene has so many blocks.
+constexpr int most_rows = 1 << 24;
+
+bool is_row(int row, int rows) {
+  return row >= 0 && row < rows;
+}
+
+}  // namespace
 
 template <class BlocksOf>
 bool TangentSystem::find_slots(std::size_t count, const BlocksOf& blocks_of) {
@@ -116,7 +126,12 @@ void TangentSystem::exchange(Archive& archive) {
   int rows = matrix_.rows();
   auto couplings = matrix_.couplings();
   archive(solver_rows_, rows, couplings, kind_, factoring_);
+  const bool known = kind_ <= LinearSolverKind::plain && factoring_ <= Factoring::needed;
+  archive.require(known && rows >= 0 && rows < most_rows, "the saved state has a solver that there is not");
   if (solver_rows_ == no_solver) return;
+  archive.require(std::all_of(couplings.begin(), couplings.end(),
+                              [rows](const auto& c) { return c.first != c.second && is_row(c.first, rows) && is_row(c.second, rows); }),
+                  "the saved state has a matrix with rows that are not there");
   if (archive.reading()) {
     choose_solver(solver_rows_);
     set_pattern(rows, couplings);

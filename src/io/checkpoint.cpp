@@ -51,8 +51,7 @@ std::string read_bytes(const std::string& path) {
 }
 
 /// What stands between the heading and the check sum.
-std::string body_of(const std::string& path) {
-  std::string bytes = read_bytes(path);
+std::string body_of(const std::string& bytes, const std::string& path) {
   const std::string expected = heading(), found = bytes.substr(0, bytes.find('\n') + 1);
   if (found != expected) {
     const bool other = found.rfind("openclose checkpoint, ", 0) == 0;
@@ -84,12 +83,16 @@ void require_same_scene(const std::string& path, const std::string& saved, const
 
 void require_tables(const std::string& path, const Checkpoint& checkpoint) {
   for (const TableMark& mark : checkpoint.tables) {
-    const std::string table = table_beside(path, mark.name);
+    if (mark.name.empty() || std::filesystem::path(mark.name).filename() != mark.name)
+      refuse(path, "it names a table that is none of a run", "a checkpoint as a run has written it");
+    const std::string table = table_beside(path, mark.name), accepted = "the tables of the run, beside its checkpoint";
+    std::error_code error;
+    const std::uintmax_t there = std::filesystem::file_size(table, error);
+    if (error || there < mark.length)
+      refuse(table, fmt::format("the run goes on behind the first {} bytes of this table", mark.length), accepted);
     std::ifstream stream(table, std::ios::binary);
     std::string head(mark.length, ' ');
-    const std::string accepted = "the tables of the run, beside its checkpoint";
-    if (!stream.read(head.data(), static_cast<std::streamsize>(head.size())))
-      refuse(table, fmt::format("the run goes on behind the first {} bytes of this table", mark.length), accepted);
+    stream.read(head.data(), static_cast<std::streamsize>(head.size()));
     if (check_sum(head) != mark.sum)
       refuse(table, fmt::format("the first {} bytes of this table are not those that the run has written", mark.length), accepted);
   }
@@ -97,7 +100,7 @@ void require_tables(const std::string& path, const Checkpoint& checkpoint) {
 
 }  // namespace
 
-void write_checkpoint(const std::string& path, const Scene& scene, Checkpoint checkpoint) {
+std::string checkpoint_bytes(const Scene& scene, Checkpoint checkpoint) {
   Archive body;
   std::uint32_t order = byte_order;
   std::string text = write_fixed_part(scene);
@@ -106,12 +109,20 @@ void write_checkpoint(const std::string& path, const Scene& scene, Checkpoint ch
   std::string().swap(checkpoint.state);
   std::string bytes = body.take();
   bytes.insert(0, heading());
+  append_check_sum(bytes);
+  return bytes;
+}
+
+void append_check_sum(std::string& bytes) {
   const std::uint64_t sum = check_sum(bytes);
   bytes.append(reinterpret_cast<const char*>(&sum), sizeof sum);
+}
+
+void write_checkpoint(const std::string& path, const Scene& scene, Checkpoint checkpoint) {
   const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
   if (!std::filesystem::is_directory(folder)) throw WriteError(path, "its folder has been removed while the run went on");
   std::vector<TextFile> files(1);
-  files.front() = {path, std::move(bytes)};
+  files.front() = {path, checkpoint_bytes(scene, std::move(checkpoint))};
   try {
     write_files(files);
   } catch (const InputError&) {
@@ -120,13 +131,21 @@ void write_checkpoint(const std::string& path, const Scene& scene, Checkpoint ch
 }
 
 Checkpoint read_checkpoint(const std::string& path, const Scene& scene) {
-  Archive body(body_of(path));
+  return checkpoint_of_bytes(read_bytes(path), path, scene);
+}
+
+Checkpoint checkpoint_of_bytes(const std::string& bytes, const std::string& path, const Scene& scene) {
+  Archive body(body_of(bytes, path));
   std::uint32_t order = 0;
   std::string text;
   Checkpoint checkpoint;
-  body(order);
-  if (order != byte_order) refuse(path, "it was written by a processor with another order of bytes", "a checkpoint of this machine");
-  body(text, checkpoint);
+  try {
+    body(order);
+    if (order != byte_order) refuse(path, "it was written by a processor with another order of bytes", "a checkpoint of this machine");
+    body(text, checkpoint);
+  } catch (const DamagedState& damage) {
+    refuse(path, damage.what(), "a checkpoint as a run has written it");
+  }
   require_same_scene(path, text, scene);
   if (scene.end_time * (1.0 + tolerance::rounding_of_times) < checkpoint.time)
     throw InputError(scene.where, "end.time_s",

@@ -38,10 +38,16 @@ struct Checkpoint {
 /// Throws WriteError if the file cannot be made or not be written to its end; the older one is still there then.
 void write_checkpoint(const std::string& path, const Scene& scene, Checkpoint checkpoint);
 
+/// What stands in the file. The check sum at its end is against disks and half copies, not against people.
+std::string checkpoint_bytes(const Scene& scene, Checkpoint checkpoint);
+void append_check_sum(std::string& bytes);
+
 /// Throws InputError if there is no such file, if it is damaged or of another version of the program or another scene (other in more than
-/// end.time_s, output.every_s, output.checkpoint_every_s, solver.smallest_fraction, solver.max_iterations and method.threads), if the scene ends before
-/// it, or if one of the tables that were there when it was written is no longer beside it, shorter, or begins otherwise.
+/// end.time_s, output.every_s, output.checkpoint_every_s, solver.smallest_fraction, solver.max_iterations and method.threads), if the scene ends
+/// before it, or if one of the tables that were there when it was written is no longer beside it, shorter, or begins otherwise.
 Checkpoint read_checkpoint(const std::string& path, const Scene& scene);
+/// The same for what stands in the file of that path.
+Checkpoint checkpoint_of_bytes(const std::string& bytes, const std::string& path, const Scene& scene);
 
 /// The file of a table that lay beside this checkpoint.
 std::string table_beside(const std::string& checkpoint_path, const std::string& table);

@@ -241,7 +241,7 @@ std::string explanation_of(const std::string& key) {
   if (!text.empty()) return text;
   // Names such as `name` stand in several tables.
   std::ranges::sort(names);
-  names.erase(std::ranges::unique(names).begin(), names.end());
+  names.erase(std::unique(names.begin(), names.end()), names.end());
   const std::optional<std::string> meant = similar(key, names);
   throw InputError({"explain", 0}, key, meant ? fmt::format("this key is not known, did you mean {}?", *meant) : "this key is not known",
                    suggestions(key, names));

@@ -411,6 +411,7 @@ class BlockLuSolver : public LinearSolver {
     archive(known);
     if (!known) return;
     archive(slots, has_factor);
+    archive.require(slots.size() == static_cast<std::size_t>(matrix.row_start(matrix.rows())), "the saved state has a factor of another matrix");
     if (archive.reading()) plan(matrix, std::move(slots));
     if (has_factor) exchange_factor(archive);
   }

@@ -152,8 +152,13 @@ void IncompleteLu::exchange(Archive& archive, const BlockMatrix& matrix) {
   archive(known);
   if (!known) return;
   archive(slots);
+  archive.require(slots.size() == static_cast<std::size_t>(matrix.row_start(matrix.rows())), "the saved state has a factor of another matrix");
   if (archive.reading()) plan(matrix, std::move(slots));
   archive(value_, worth_, taken_, scale_);
+  const auto fits = [](const auto& list, std::size_t size) { return list.empty() || list.size() == size; };
+  const std::size_t rows = order_.size();
+  archive.require(fits(value_, column_.size()) && fits(worth_, rows) && fits(taken_, rows) && fits(scale_, numbers_of_row * rows),
+                  "the saved state has a factor of another matrix");
 }
 
 void IncompleteLu::plan(const BlockMatrix& matrix, std::vector<char> slots) {

@@ -1,6 +1,7 @@
 #include "openclose/model/block_system.h"
 
 #include <algorithm>
+#include <array>
 
 #include "openclose/geometry/polygon.h"
 
@@ -101,7 +102,10 @@ void BlockSystem::wake(const std::vector<int>& blocks) {
 void BlockSystem::exchange(Archive& archive) {
   std::vector<char> is_free(blocks_.size(), 0);
   for (const int b : free_blocks_) is_free[b] = 1;
+  const auto sizes = [this] { return std::array{state_.displacement.size(), state_.velocity.size(), state_.arm.size(), state_.point_arm.size()}; };
+  const auto sizes_of_scene = sizes();
   archive(state_, is_free);
+  archive.require(sizes() == sizes_of_scene && is_free.size() == blocks_.size(), "the saved state is of other blocks");
   number(is_free);
 }
 

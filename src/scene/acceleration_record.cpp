@@ -45,12 +45,7 @@ std::optional<double> number(const std::string& text) {
 /// The lines of a file, counted.
 class Lines {
  public:
-  explicit Lines(const std::string& path) : path_(path) {
-    std::error_code error;
-    if (!std::filesystem::is_regular_file(path, error))
-      fail("there is no such file", "the path of an acceleration record, from the folder of the scene");
-    stream_.open(path);
-  }
+  Lines(std::istream& stream, const std::string& path) : stream_(stream), path_(path) {}
   bool next(std::string& line) {
     if (!std::getline(stream_, line)) return false;
     ++count_;
@@ -60,8 +55,8 @@ class Lines {
   [[noreturn]] void fail(const std::string& read, const std::string& accepted) const { throw_input_error({path_, count_}, "", read, accepted); }
 
  private:
+  std::istream& stream_;
   std::string path_;
-  std::ifstream stream_;
   int count_ = 0;
 };
 
@@ -143,13 +138,27 @@ AccelerationRecord read_at2(Lines& lines) {
   return record;
 }
 
+/// Or AT2, by the ending of the name, which must be one of the two.
+bool is_csv(const std::string& path) {
+  const std::string ending = in_capitals(std::filesystem::path(path).extension().string());
+  if (ending != ".CSV" && ending != ".AT2") throw_input_error({path, 0}, "", "the name ends in neither .csv nor .AT2", "NAME.csv or NAME.AT2");
+  return ending == ".CSV";
+}
+
 }  // namespace
 
 AccelerationRecord read_acceleration_record(const std::string& path) {
-  const std::string ending = in_capitals(std::filesystem::path(path).extension().string());
-  if (ending != ".CSV" && ending != ".AT2") throw_input_error({path, 0}, "", "the name ends in neither .csv nor .AT2", "NAME.csv or NAME.AT2");
-  Lines lines(path);
-  return ending == ".CSV" ? read_csv(lines) : read_at2(lines);
+  is_csv(path);  // a name of neither kind is refused before the file is looked for
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error))
+    throw_input_error({path, 0}, "", "there is no such file", "the path of an acceleration record, from the folder of the scene");
+  std::ifstream stream(path);
+  return acceleration_record_in(stream, path);
+}
+
+AccelerationRecord acceleration_record_in(std::istream& stream, const std::string& path) {
+  Lines lines(stream, path);
+  return is_csv(path) ? read_csv(lines) : read_at2(lines);
 }
 
 }  // namespace openclose

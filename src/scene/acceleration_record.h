@@ -7,6 +7,7 @@
 //             one at time 0
 #pragma once
 
+#include <iosfwd>
 #include <string>
 #include <vector>
 
@@ -25,5 +26,8 @@ struct AccelerationRecord {
 
 /// Which of the two it is follows from the ending of the name, in capitals or not. Throws InputError with file and line.
 AccelerationRecord read_acceleration_record(const std::string& path);
+/// The same for text that has been opened.
+/// \param path  by which the kind is known and errors name the file
+AccelerationRecord acceleration_record_in(std::istream& stream, const std::string& path);
 
 }  // namespace openclose

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <numeric>
 
+#include "openclose/core/memory.h"
 #include "openclose/core/tolerance.h"
 #include "openclose/geometry/box.h"
 #include "openclose/geometry/overlap.h"
+#include "openclose/scene/plausibility.h"
 #include "openclose/scene/table.h"
 
 namespace openclose {
@@ -87,11 +89,30 @@ void require_joints(const Scene& scene) {
   }
 }
 
+std::string size_of(const Scene& scene) {
+  std::size_t vertices = 0;
+  for (const BlockInput& block : scene.blocks) vertices += block.vertices.size();
+  return fmt::format("{} blocks with {} vertices", scene.blocks.size(), vertices);
+}
+
+void require_memory(const Scene& scene, std::size_t available) {
+  std::size_t needed = bytes_of_simulated_block * scene.blocks.size();
+  for (const BlockInput& block : scene.blocks) needed += bytes_of_simulated_vertex * block.vertices.size();
+  if (needed <= available) return;
+  constexpr double megabyte = 1e6;
+  throw InputError(scene.where, scene.cutting ? "domain" : "block",
+                   fmt::format("{} need {:.3g} MB of memory at least, and there are {:.3g} MB", size_of(scene),
+                               static_cast<double>(needed) / megabyte, static_cast<double>(available) / megabyte),
+                   scene.cutting ? "fewer blocks (joint_set.spacing_m, domain.vertices_m; domain.max_blocks limits their number), or more memory"
+                                 : "fewer [[block]], fewer vertices, or more memory");
+}
+
 std::vector<std::string> check_scene(const Scene& scene) {
   require_joints(scene);
   require_no_overlap(scene);
   std::vector<std::string> warnings = scene.warnings;
   if (scene.cutting) warnings.insert(warnings.end(), scene.cutting->warnings.begin(), scene.cutting->warnings.end());
+  for (std::string& warning : implausible_numbers(scene)) warnings.push_back(std::move(warning));
   if (nothing_holds(scene)) warnings.push_back(scene.where.file + ": nothing is fixed or supported under gravity: every block will fall");
   warn_of_fixed_points(scene, warnings);
   return warnings;

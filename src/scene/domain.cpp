@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "openclose/core/memory.h"
+#include "openclose/core/process.h"
 #include "openclose/geometry/touch.h"
 #include "openclose/scene/angle.h"
 #include "openclose/scene/names.h"
@@ -22,7 +24,8 @@ struct DomainInput {
   PolygonWithHoles shape;
   int material = 0;
   EnclosedJoints enclosed = EnclosedJoints::refuse;
-  CuttingLimits limits;
+  CuttingLimits limits;        ///< with no more blocks than there is memory for
+  int written_max_blocks = 0;  ///< domain.max_blocks
 };
 
 struct Region {
@@ -44,6 +47,9 @@ DomainInput read_domain(Table& table, const NameList& material_names) {
   table.optional("enclosed_joints", domain.enclosed, enclosed_joints_words);
   table.optional("max_blocks", domain.limits.max_blocks, Range{.low = 1.0, .high = most_blocks, .low_included = true, .high_included = true});
   table.finish();
+  domain.written_max_blocks = domain.limits.max_blocks;
+  const double room = static_cast<double>(available_memory() / bytes_of_cut_block);
+  domain.limits.max_blocks = static_cast<int>(std::clamp(room, 1.0, static_cast<double>(domain.written_max_blocks)));
 
   domain.shape.outer = outline(table.at("vertices_m"), outer, "domain");
   for (std::size_t i = 0; i < holes.size(); ++i) domain.shape.holes.push_back(outline(table.at("holes_m").element(i), holes[i], "hole"));
@@ -168,6 +174,10 @@ class Joints {
 };
 
 void refuse_faults(const Cutting& cutting, const Joints& joints, const DomainInput& domain, const Table& table) {
+  if (cutting.too_many && domain.limits.max_blocks < domain.written_max_blocks) {
+    table.fail(fmt::format("the joints cut the domain into more than {} blocks, for which there is no memory", domain.limits.max_blocks),
+               "fewer joints, or more memory; domain.max_blocks only limits their number");
+  }
   if (cutting.too_many) {
     table.fail(fmt::format("the joints cut the domain into more than {} blocks", domain.limits.max_blocks),
                "fewer joints, or a higher domain.max_blocks");

@@ -3,6 +3,7 @@
 #include "openclose/scene/keys.h"
 #include "openclose/scene/names.h"
 #include "openclose/scene/outline.h"
+#include "openclose/scene/plausibility.h"
 
 namespace openclose {
 namespace {
@@ -40,7 +41,7 @@ constexpr Range whole_turn{.low = -180.0, .high = 180.0, .low_included = true, .
 void add_blocks(Rows& rows) {
   rows.table({"", Audience::user, "At the top of the file, before the first table"});
   rows.optional({"title", "of the scene", "\"\""}, ValueType::text);
-  rows.optional({"gravity_m_per_s2", "[x, y]", "[0, -9.81]"}, ValueType::vector);
+  rows.optional({"gravity_m_per_s2", "[x, y]", "[0, -9.81]"}, ValueType::vector, believable_gravity);
   rows.table({"material", Audience::user, "What blocks consist of; a scene has at least one", true});
   rows.required({"name", "unique; no name of a scene may hold commas or quotes"}, ValueType::text);
   rows.optional({"density_kg_per_m3", "this or the next", "from the unit weight"}, ValueType::number, positive);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include "openclose/scene/key_depth.h"
 #include "openclose/scene/table.h"
 
 namespace openclose {
@@ -24,7 +25,7 @@ Override parse_override(const std::string& file, const std::string& text) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || equals == 0) throw_input_error({file, 0}, "--set " + text, "this is no assignment", accepted_form);
   const std::string key = text.substr(0, text.find_last_not_of(' ', equals - 1) + 1);
-  return {fmt::format("{}: --set {}", file, key), key, text.substr(equals + 1)};
+  return {fmt::format("{}: --set {}", file, shortened(key)), key, text.substr(equals + 1)};
 }
 
 bool is_word(const std::string& text) {
@@ -70,6 +71,8 @@ toml::node& member(const Override& override, toml::node& parent, const std::stri
 
 void apply_override(toml::table& scene, const std::string& file, const std::string& key_and_value) {
   const Override override = parse_override(file, key_and_value);
+  if (line_of_deep_key(override.key) || line_of_deep_key(override.value))
+    override.fail(fmt::format("a key has more than {} parts", most_key_parts), accepted_form);
   const toml::path path(override.key);
   // The parser of paths mends some that are wrong, e.g. "joint[0"; what it made of the key tells.
   if (path.empty() || path.str() != override.key) override.fail("this is not a dotted key", accepted_form);

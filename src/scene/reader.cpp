@@ -13,9 +13,11 @@
 #include "openclose/scene/base_motion.h"
 #include "openclose/scene/domain.h"
 #include "openclose/scene/former_keys.h"
+#include "openclose/scene/key_depth.h"
 #include "openclose/scene/names.h"
 #include "openclose/scene/outline.h"
 #include "openclose/scene/override.h"
+#include "openclose/scene/plausibility.h"
 #include "openclose/scene/point_of_block.h"
 #include "openclose/scene/table.h"
 
@@ -34,8 +36,9 @@ std::string read_text(const std::string& path) {
   return text;
 }
 
-toml::table parse(const std::string& path) {
-  const std::string text = read_text(path);
+toml::table parse(const std::string& text, const std::string& path) {
+  if (const auto line = line_of_deep_key(text))
+    throw_input_error({path, *line}, "", fmt::format("a key has more than {} parts", most_key_parts), "keys such as step.dt_s");
   try {
     toml::table document = toml::parse(text, path);
     if (document.empty())
@@ -288,7 +291,7 @@ Scene interpret(const toml::table& document, const std::string& file) {
   scene.where = {file, 0};
   Table root(&document, "", file);
   root.optional("title", scene.title);
-  root.optional("gravity_m_per_s2", scene.gravity);
+  root.optional("gravity_m_per_s2", scene.gravity, believable_gravity);
   const std::vector<Table> materials = root.tables("material");
   const std::vector<Table> joints = root.tables("joint");
   const std::vector<Table> blocks = root.tables("block");
@@ -339,7 +342,11 @@ Scene interpret(const toml::table& document, const std::string& file) {
 }  // namespace
 
 Scene read_scene(const std::string& path, const std::vector<std::string>& overrides) {
-  toml::table document = parse(path);
+  return scene_of_text(read_text(path), path, overrides);
+}
+
+Scene scene_of_text(const std::string& text, const std::string& path, const std::vector<std::string>& overrides) {
+  toml::table document = parse(text, path);
   std::vector<std::string> warnings;
   move_former_keys(document, path, warnings);
   for (const std::string& key_and_value : overrides) apply_override(document, path, with_current_key(key_and_value, path, warnings));

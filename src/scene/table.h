@@ -26,7 +26,10 @@
 
 namespace openclose {
 
-/// A text of the user in quotes, control characters escaped, so that a message stays one line.
+/// The text, or both of its ends if it is longer than anything that people write.
+std::string shortened(std::string_view text);
+
+/// A text of the user in quotes, shortened and its control characters escaped, so that a message stays one line.
 std::string in_quotes(std::string_view text);
 
 /// An InputError whose key comes from the file: control characters in it are escaped.

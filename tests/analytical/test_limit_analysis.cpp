@@ -12,8 +12,6 @@ using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
-const LimitAnalysisOptions defaults;
-
 RigidBlock block_of(const std::vector<Point>& vertices, double density, const Point& gravity, bool fixed = false) {
   RigidBlock block;
   block.name = fixed ? "fixed" : "free";

@@ -229,7 +229,7 @@ TEST_CASE("the four blocks of a contact's stiffness are those of its gradients a
     const auto block = [&](const Unknowns& n1, const Unknowns& t1, const Unknowns& n2, const Unknowns& t2) -> Eigen::Matrix3d {
       return (nn * n1 + tn * t1) * n2.transpose() + tt * t1 * t2.transpose();
     };
-    const auto h = at.hessian(turning);
+    const auto hessian = at.hessian(turning);
     const auto check = [&](auto add, const Eigen::Matrix3d& expected) {
       Eigen::Matrix3d sum = Eigen::Matrix3d::Ones();
       add(sum);
@@ -237,9 +237,9 @@ TEST_CASE("the four blocks of a contact's stiffness are those of its gradients a
       CHECK((sum - Eigen::Matrix3d::Ones() - expected).norm() <= 20.0 * 400.0 * epsilon);
     };
     const Unknowns &nv = at.normal_vertex, &ne = at.normal_edge, &tv = at.shear_vertex, &te = at.shear_edge;
-    check([&](Eigen::Matrix3d& m) { k.add_to_vertex(m); }, block(nv, tv, nv, tv) - h.vertex_vertex);
-    check([&](Eigen::Matrix3d& m) { k.add_to_edge(m); }, block(ne, te, ne, te) - h.edge_edge);
-    check([&](Eigen::Matrix3d& m) { k.add_to_vertex_edge(m); }, block(nv, tv, ne, te) - h.vertex_edge);
-    check([&](Eigen::Matrix3d& m) { k.add_to_edge_vertex(m); }, block(ne, te, nv, tv) - h.vertex_edge.transpose());
+    check([&](Eigen::Matrix3d& m) { k.add_to_vertex(m); }, block(nv, tv, nv, tv) - hessian.vertex_vertex);
+    check([&](Eigen::Matrix3d& m) { k.add_to_edge(m); }, block(ne, te, ne, te) - hessian.edge_edge);
+    check([&](Eigen::Matrix3d& m) { k.add_to_vertex_edge(m); }, block(nv, tv, ne, te) - hessian.vertex_edge);
+    check([&](Eigen::Matrix3d& m) { k.add_to_edge_vertex(m); }, block(ne, te, nv, tv) - hessian.vertex_edge.transpose());
   }
 }

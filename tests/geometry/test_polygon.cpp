@@ -259,3 +259,46 @@ TEST_CASE("distance to the boundary from inside and outside", "[geometry][polygo
   CHECK(distance_to_boundary(corner_piece, {1.5, 1.75}) == 0.5);
   CHECK(distance_to_segment({3.0, 4.0}, {0.0, 0.0}, {0.0, 0.0}) == 5.0);
 }
+
+namespace {
+
+using EdgePair = std::pair<int, int>;
+
+/// Every vertex is joined with the one that follows after `stride` others on a circle of 100 m.
+Polygon star(int vertices, int stride) {
+  Polygon polygon;
+  for (int i = 0; i < vertices; ++i) {
+    const double angle = 2.0 * 3.14159265358979323846 * static_cast<double>(static_cast<long>(i) * stride % vertices) / vertices;
+    polygon.emplace_back(100.0 * std::cos(angle), 100.0 * std::sin(angle));
+  }
+  return polygon;
+}
+
+std::optional<EdgePair> first_of_all_pairs(const Polygon& polygon) {
+  const int n = static_cast<int>(polygon.size());
+  for (int i = 0; i < n; ++i) {
+    for (int j = i + 2; j < n - (i == 0 ? 1 : 0); ++j) {
+      if (segments_meet(polygon[i], polygon[i + 1], polygon[j], polygon[(j + 1) % n])) return EdgePair{i, j};
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+TEST_CASE("outlines of very many vertices intersect themselves or not", "[geometry][polygon]") {
+  Polygon outline = star(200'000, 1);
+  CHECK_FALSE(first_self_intersection(outline));
+  std::swap(outline[150'000], outline[150'001]);
+  CHECK(first_self_intersection(outline) == EdgePair{149'999, 150'001});
+}
+
+TEST_CASE("the first of many intersections is found, however many edges lie near each other", "[geometry][polygon]") {
+  for (const auto& [vertices, stride] : {std::pair{7, 2}, std::pair{101, 7}, std::pair{1001, 500}}) {
+    INFO(vertices << " / " << stride);
+    Polygon outline = star(vertices, stride);
+    CHECK(first_self_intersection(outline) == first_of_all_pairs(outline));
+    std::reverse(outline.begin() + 1, outline.end());
+    CHECK(first_self_intersection(outline) == first_of_all_pairs(outline));
+  }
+}

@@ -17,7 +17,7 @@ namespace {
 
 /// A wall of unit bricks in running bond on a fixed course, each course shifted by half a brick.
 Scene running_bond(int courses, int length) {
-  Scene scene = builders::rock_scene(2700.0, {}, 1e-11);
+  Scene scene = builders::rock_scene(2700.0, {.normal_stiffness = 1e9, .shear_stiffness = 1e9}, 1e-11);
   scene.blocks = builders::wall(courses, length, 1.0, 0.5);
   for (int i = 0; i < length; ++i) scene.blocks[i].fixed = true;
   return scene;
@@ -124,4 +124,27 @@ TEST_CASE("materials that can meet need a joint", "[scene][check]") {
     scene.blocks[1].fixed = true;
     CHECK(check_scene(scene).empty());
   }
+}
+
+TEST_CASE("numbers that no material has are warned of", "[scene][check]") {
+  const auto warning_of = [](const std::string& key, const std::string& value) {
+    const std::vector<std::string> warnings = check_scene(read_text(block_on_base, {key + "=" + value}));
+    REQUIRE(warnings.size() == 1);
+    return warnings.front();
+  };
+  CHECK_THAT(warning_of("joint[0].friction_angle_deg", "89.99999"),
+             ContainsSubstring("joint of \"rock\" and \"rock\": friction_angle_deg = 89.99999 is hardly meant"));
+  CHECK_THAT(warning_of("joint[0].normal_stiffness_pa_per_m", "1e16"), ContainsSubstring("normal_stiffness_pa_per_m = 1e+16"));
+  CHECK_THAT(warning_of("joint[0].shear_stiffness_pa_per_m", "100"), ContainsSubstring("shear_stiffness_pa_per_m = 100"));
+  CHECK_THAT(warning_of("joint[0].damping_ratio", "11"), ContainsSubstring("damping_ratio = 11"));
+  CHECK_THAT(warning_of("joint[0].cohesion_pa", "2e10"), ContainsSubstring("cohesion_pa = 20000000000"));
+  CHECK_THAT(warning_of("material[0].density_kg_per_m3", "2.7e6"), ContainsSubstring("material \"rock\": density_kg_per_m3 = 2700000"));
+  CHECK(check_scene(read_text(block_on_base, {"joint[0].friction_angle_deg=80"})).empty());
+}
+
+TEST_CASE("a scene is judged by its memory before it is taken", "[scene][check]") {
+  const Scene scene = running_bond(100, 100);
+  CHECK_NOTHROW(require_memory(scene, std::size_t{1} << 30));
+  CHECK_THROWS_WITH(require_memory(scene, std::size_t{10} << 20),
+                    ContainsSubstring("block: ") && ContainsSubstring(" blocks with ") && ContainsSubstring("accepted: fewer [[block]]"));
 }

@@ -1,0 +1,169 @@
+#include "openclose/analysis/loose_motion.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "openclose/analysis/simulation.h"
+#include "openclose/geometry/box.h"
+#include "openclose/geometry/polygon.h"
+
+namespace openclose {
+namespace {
+
+/// [-] of the fastest corner of a block: a point that is slower stands still, and a joint that parts more slowly is slid along. Mechanisms are known
+/// to three digits, displacements of a block that has moved a metre bend the path by some percent.
+constexpr double slow = 0.1;
+constexpr std::size_t most_named = 3;
+/// Blocks that are looked at; of more, the fastest.
+constexpr std::size_t most_described = 200;
+
+/// A point at which a block touches another one, and the direction of the edge there.
+struct Touch {
+  int other;
+  Vec2 along;
+};
+
+struct Description {
+  std::string words;
+  bool by_itself = true;  ///< not carried by another block that moves
+};
+
+class Describer {
+ public:
+  Describer(const Scene& scene, const std::vector<FailingBlock>& mechanism) : scene_(scene), moving_(scene.blocks.size(), nullptr) {
+    for (const FailingBlock& block : mechanism) moving_[static_cast<std::size_t>(block.block)] = &block;
+  }
+
+  static Vec2 velocity_at(const FailingBlock& block, const Vec2& point) {
+    return block.velocity + block.rotation * perpendicular(point - block.centroid);
+  }
+
+  double fastest(const FailingBlock& block) const {
+    double speed = 0.0;
+    for (const Vec2& vertex : polygon(block)) speed = std::max(speed, velocity_at(block, vertex).norm());
+    return speed;
+  }
+
+  Description describe(const FailingBlock& block) const {
+    const std::string name = fmt::format("\"{}\"", scene_.blocks[static_cast<std::size_t>(block.block)].name);
+    const std::vector<Touch> touches = touches_of(block);
+    const std::optional<std::string> centre = centre_of(block);
+    if (centre) return {fmt::format("{} turns about {} ({})", name, *centre, held_in_turning), true};
+    if (touches.empty()) return {fmt::format("{} touches no other block and moves {} ({})", name, heading(block), held_by_anything), true};
+    if (const auto sliding = sliding_of(block, touches)) return {name + *sliding, true};
+    const bool carried = std::any_of(touches.begin(), touches.end(), [&](const Touch& t) { return moving_[static_cast<std::size_t>(t.other)]; });
+    return {fmt::format("{} moves {} ({})", name, heading(block), held_by_anything), !carried};
+  }
+
+ private:
+  static constexpr const char* held_by_anything = "a block in its way, a [[support]] or fixed = true would hold it";
+  static constexpr const char* held_in_turning =
+      "a block or a [[support]] on the side that goes down, or tensile_strength_pa of its joints, would hold it";
+
+  const Polygon& polygon(const FailingBlock& block) const { return scene_.blocks[static_cast<std::size_t>(block.block)].vertices; }
+
+  std::string heading(const FailingBlock& block) const {
+    const Vec2 direction = block.velocity.normalized();
+    if (!scene_.gravity.isZero(0.0) && direction.dot(scene_.gravity.normalized()) > 1.0 - slow) return "down";
+    return fmt::format("towards ({:.2f}, {:.2f})", direction.x(), direction.y());
+  }
+
+  static std::string at(const Vec2& point) { return fmt::format("({:.4g}, {:.4g})", point.x(), point.y()); }
+
+  /// The point of the block about which it turns; none if it does not turn, or moves on with that point.
+  std::optional<std::string> centre_of(const FailingBlock& block) const {
+    const double still = slow * fastest(block);
+    for (const Support& support : scene_.supports) {
+      if (support.block == block.block && velocity_at(block, support.point).norm() < still) return "its support at " + at(support.point);
+    }
+    const Polygon& vertices = polygon(block);
+    const auto slower = [&](const Vec2& a, const Vec2& b) { return velocity_at(block, a).norm() < velocity_at(block, b).norm(); };
+    const Vec2 slowest = *std::min_element(vertices.begin(), vertices.end(), slower);
+    if (velocity_at(block, slowest).norm() < still) return "its corner at " + at(slowest);
+    double reach = 0.0;
+    for (const Vec2& vertex : vertices) reach = std::max(reach, (vertex - block.centroid).norm());
+    if (std::abs(block.rotation) * reach < 0.5 * fastest(block)) return std::nullopt;
+    return at(block.centroid + perpendicular(block.velocity) / block.rotation);
+  }
+
+  void add_touches(const Polygon& corners, const Polygon& edges, int other, std::vector<Touch>& touches) const {
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+      const Vec2 &from = edges[e], &to = edges[(e + 1) % edges.size()];
+      for (const Vec2& corner : corners) {
+        if (distance_to_segment(corner, from, to) <= tolerance::farthest_point_from_joint_m) touches.push_back({other, (to - from).normalized()});
+      }
+    }
+  }
+
+  std::vector<Touch> touches_of(const FailingBlock& block) const {
+    std::vector<Touch> touches;
+    const Box reach = Box::around(polygon(block)).inflated(tolerance::farthest_point_from_joint_m);
+    for (std::size_t other = 0; other < scene_.blocks.size(); ++other) {
+      const Polygon& vertices = scene_.blocks[other].vertices;
+      if (static_cast<int>(other) == block.block || !reach.overlaps(Box::around(vertices))) continue;
+      add_touches(polygon(block), vertices, static_cast<int>(other), touches);
+      add_touches(vertices, polygon(block), static_cast<int>(other), touches);
+    }
+    return touches;
+  }
+
+  /// Along a joint with a block that does not move in the same way.
+  std::optional<std::string> sliding_of(const FailingBlock& block, const std::vector<Touch>& touches) const {
+    for (const Touch& touch : touches) {
+      const FailingBlock* other = moving_[static_cast<std::size_t>(touch.other)];
+      const Vec2 relative = block.velocity - (other == nullptr ? Vec2(Vec2::Zero()) : velocity_at(*other, block.centroid));
+      if (relative.norm() < slow * block.velocity.norm() || std::abs(cross(touch.along, relative)) > slow * relative.norm()) continue;
+      return fmt::format(" slides along its joint with \"{}\" {} ({}cohesion_pa or a [[support]] would hold it)",
+                         scene_.blocks[static_cast<std::size_t>(touch.other)].name, heading(block), friction_on(touch.along));
+    }
+    return std::nullopt;
+  }
+
+  /// Under its weight alone a block stands on an edge with friction above the edge's slope.
+  std::string friction_on(const Vec2& along) const {
+    if (scene_.gravity.isZero(0.0)) return "";
+    const double slope = std::atan2(std::abs(along.dot(scene_.gravity)), std::abs(cross(along, scene_.gravity))) * 180.0 / std::numbers::pi;
+    constexpr double steepest = 80.0;  // no joint has so much
+    return slope < steepest ? fmt::format("friction above {:.3g} degrees under its weight alone, ", slope) : "";
+  }
+
+  const Scene& scene_;
+  std::vector<const FailingBlock*> moving_;
+};
+
+}  // namespace
+
+std::string motion_in_words(const Scene& scene, const std::vector<FailingBlock>& mechanism) {
+  const Describer describer(scene, mechanism);
+  std::vector<FailingBlock> fastest = mechanism;
+  std::stable_sort(fastest.begin(), fastest.end(),
+                   [&](const FailingBlock& a, const FailingBlock& b) { return describer.fastest(a) > describer.fastest(b); });
+  if (fastest.size() > most_described) fastest.resize(most_described);
+  std::vector<Description> descriptions;
+  for (const FailingBlock& block : fastest) descriptions.push_back(describer.describe(block));
+  std::stable_partition(descriptions.begin(), descriptions.end(), [](const Description& d) { return d.by_itself; });
+  std::string words;
+  for (std::size_t i = 0; i < std::min(most_named, descriptions.size()); ++i) words += (i > 0 ? "; " : "") + descriptions[i].words;
+  if (mechanism.size() > most_named) words += fmt::format("; {} more blocks move", mechanism.size() - most_named);
+  return words;
+}
+
+std::vector<FailingBlock> moved_blocks(const Simulation& simulation) {
+  const BlockSystem& system = simulation.system();
+  std::vector<FailingBlock> moved;
+  double farthest = 0.0;
+  const auto way = [](const FailingBlock& block, double radius) { return block.velocity.norm() + std::abs(block.rotation) * radius; };
+  for (const int b : system.free_blocks()) {
+    const auto& d = system.displacement(b);
+    moved.push_back({b, system.block(b).area, system.block(b).reference_centroid + system.origin(), d.head<2>(), d[2]});
+    farthest = std::max(farthest, way(moved.back(), system.block(b).radius));
+  }
+  std::erase_if(moved, [&](const FailingBlock& block) { return way(block, system.block(block.block).radius) <= slow * farthest; });
+  return moved;
+}
+
+}  // namespace openclose

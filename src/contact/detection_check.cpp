@@ -1,0 +1,59 @@
+// Whether the state of a detector that was read from a file can be one that was written.
+#include <algorithm>
+
+#include "openclose/contact/detection.h"
+#include "openclose/contact/joint_table.h"
+
+namespace openclose {
+namespace {
+
+bool is_index(int i, std::size_t size) {
+  return i >= 0 && static_cast<std::size_t>(i) < size;
+}
+
+bool has_vertex(const BlockSystem& system, int block, int vertex) {
+  if (!is_index(block, static_cast<std::size_t>(system.block_count()))) return false;
+  const auto& b = system.block(block);
+  return vertex >= b.first_vertex && vertex < b.first_vertex + b.vertex_count;
+}
+
+bool contacts_fit(const BlockSystem& system, const JointTable& joints, const std::vector<Contact>& contacts) {
+  return std::all_of(contacts.begin(), contacts.end(), [&](const Contact& c) {
+    return has_vertex(system, c.vertex_block, c.vertex) && has_vertex(system, c.edge_block, c.edge) && c.vertex_block != c.edge_block &&
+           is_index(c.joint, static_cast<std::size_t>(joints.count())) && c.status <= ContactStatus::sliding;
+  });
+}
+
+}  // namespace
+
+bool Detector::pairs_fit(const BlockSystem& system, const std::vector<std::pair<int, int>>& pairs, const std::vector<Range>& ranges,
+                         std::size_t contacts) {
+  const auto blocks = static_cast<std::size_t>(system.block_count());
+  const bool known = std::all_of(pairs.begin(), pairs.end(), [&](const auto& pair) {
+    return pair.first != pair.second && is_index(pair.first, blocks) && is_index(pair.second, blocks);
+  });
+  return known && ranges.size() == pairs.size() && std::all_of(ranges.begin(), ranges.end(), [&](const Range& range) {
+           return range.begin >= 0 && range.begin <= range.end && static_cast<std::size_t>(range.end) <= contacts;
+         });
+}
+
+/// Lists are there for all blocks or for none.
+bool Detector::lists_of_blocks_fit(std::size_t blocks) const {
+  const auto fits = [blocks](const auto& list) { return list.empty() || list.size() == blocks; };
+  if (!fits(searched_at_) || !fits(searched_moving_at_) || !fits(places_) || ways_.size() != places_.size()) return false;
+  if (searched_at_.empty() && !pairs_.empty()) return false;
+  if (pairs_of_start_.empty()) return pairs_.empty() && pairs_of_.empty();
+  if (pairs_of_start_.size() != blocks + 1 || pairs_of_start_.front() != 0 || !std::is_sorted(pairs_of_start_.begin(), pairs_of_start_.end()))
+    return false;
+  return static_cast<std::size_t>(pairs_of_start_.back()) == pairs_of_.size() &&
+         std::all_of(pairs_of_.begin(), pairs_of_.end(), [&](int pair) { return is_index(pair, pairs_.size()); });
+}
+
+bool Detector::fits(const BlockSystem& system, const JointTable& joints, const std::vector<Contact>& contacts) const {
+  return lists_of_blocks_fit(static_cast<std::size_t>(system.block_count())) && states_.size() == pairs_.size() &&
+         pairs_fit(system, pairs_, ranges_, contacts.size()) && resting_.states.size() == resting_.pairs.size() &&
+         pairs_fit(system, resting_.pairs, resting_.ranges, resting_.contacts.size()) && contacts_fit(system, joints, contacts) &&
+         contacts_fit(system, joints, resting_.contacts);
+}
+
+}  // namespace openclose

@@ -1,0 +1,84 @@
+// Which blocks move, how, and what would hold them, in words.
+#include "openclose/analysis/loose_motion.h"
+#include "openclose/analysis/run.h"
+#include "openclose/analysis/strength_reduction.h"
+#include "openclose/scene/reader.h"
+#include "support/catch.h"
+
+using namespace openclose;
+using Catch::Matchers::ContainsSubstring;
+
+namespace {
+
+/// A fixed base and what stands on it.
+Scene scene_with(const std::string& base, const std::string& rest, const std::string& friction_deg = "30") {
+  return scene_of_text(
+      "[[material]]\nname = 'rock'\ndensity_kg_per_m3 = 2700\n"
+      "[[joint]]\nmaterials = ['rock', 'rock']\nnormal_stiffness_pa_per_m = 1e9\nshear_stiffness_pa_per_m = 1e9\nfriction_angle_deg = " +
+          friction_deg + "\n[[block]]\nname = 'base'\nmaterial = 'rock'\nfixed = true\nvertices_m = " + base +
+          "\n[[block]]\nname = 'top'\nmaterial = 'rock'\n" + rest + "\n[step]\ndt_s = 0.01\n[end]\ntime_s = 0.1\n",
+      "scene.toml");
+}
+
+const std::string floor_m = "[[-5, -1], [5, -1], [5, 0], [-5, 0]]";
+
+std::string reason_of_run(const Scene& scene) {
+  Simulation simulation(scene);
+  const RunResult result = prepare_start(simulation);
+  CHECK_FALSE(result.converged);
+  return result.reason;
+}
+
+std::string reason_of_fos(const Scene& scene) {
+  Simulation simulation(scene);
+  const FactorOfSafety safety = factor_of_safety(simulation);
+  CHECK_FALSE(safety.found());
+  return safety.reason;
+}
+
+void check_both(const Scene& scene, const std::string& words) {
+  CHECK_THAT(reason_of_run(scene), ContainsSubstring(words));
+  CHECK_THAT(reason_of_fos(scene), ContainsSubstring(words));
+}
+
+}  // namespace
+
+TEST_CASE("a block in the air is named", "[analysis][loose_motion]") {
+  check_both(scene_with(floor_m, "vertices_m = [[6, 5], [7, 5], [7, 6], [6, 6]]"), "\"top\" touches no other block and moves down");
+}
+
+TEST_CASE("a block that slides is named with its joint, and the friction that would hold it", "[analysis][loose_motion]") {
+  const Scene scene = scene_with("[[-5, -1], [5, -5], [5, -2], [-5, 2]]", "vertices_m = [[-1, 0.4], [1, -0.4], [1, 1], [-1, 1]]", "0");
+  check_both(scene, "\"top\" slides along its joint with \"base\" towards (0.93, -0.37) (friction above 21.8 degrees");  // tan 21.8 = 0.4
+}
+
+TEST_CASE("a block that turns is named with the corner about which it does", "[analysis][loose_motion]") {
+  const Scene scene = scene_with("[[-5, -1], [5, -1], [5, 0], [-5, 0]]", "vertices_m = [[5, 0], [5, 1], [2, 1], [4.9, 0]]", "60");
+  CHECK_THAT(reason_of_fos(scene), ContainsSubstring("\"top\" turns about its corner at (4.9, 0)"));
+}
+
+TEST_CASE("a block hung at a point turns about it", "[analysis][loose_motion]") {
+  const Scene scene =
+      scene_with(floor_m, "vertices_m = [[0, 4], [2, 4], [2, 5], [0, 5]]\n[[support]]\npoint_m = [0.5, 4.5]\nstiffness_n_per_m = [1e8, 1e8]");
+  CHECK_THAT(reason_of_fos(scene), ContainsSubstring("\"top\" turns about its support at (0.5, 4.5)"));
+}
+
+TEST_CASE("a turn about no corner is told with its centre", "[analysis][loose_motion]") {
+  const Scene scene = scene_with(floor_m, "vertices_m = [[0, 4], [2, 4], [2, 5], [0, 5]]");
+  const FailingBlock spinning{.block = 1, .area = 2.0, .centroid = {1.0, 4.5}, .velocity = {0.0, 0.5}, .rotation = 1.0};
+  CHECK_THAT(motion_in_words(scene, {spinning}), ContainsSubstring("\"top\" turns about (0.5, 4.5)"));  // v + w x (p - c) = 0
+}
+
+TEST_CASE("of many blocks three are named and the others counted", "[analysis][loose_motion]") {
+  Scene scene = scene_with(floor_m, "vertices_m = [[6, 0], [7, 0], [7, 1], [6, 1]]");
+  std::vector<FailingBlock> mechanism;
+  for (int i = 0; i < 5; ++i) {
+    BlockInput block = scene.blocks[1];
+    block.name = "b" + std::to_string(i);
+    for (Vec2& v : block.vertices) v.y() += 1.0 + i;
+    scene.blocks.push_back(block);
+    mechanism.push_back({.block = 2 + i, .area = 1.0, .centroid = {6.5, 1.5 + i}, .velocity = {0.0, -1.0}});
+  }
+  const std::string words = motion_in_words(scene, mechanism);
+  CHECK_THAT(words, ContainsSubstring("; 2 more blocks move"));
+}
