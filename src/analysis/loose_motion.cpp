@@ -24,7 +24,7 @@ constexpr std::size_t most_described = 200;
 /// A point at which a block touches another one, and the direction of the edge there.
 struct Touch {
   int other;
-  Vec2 along;
+  Vec2 along, point;
 };
 
 struct Description {
@@ -49,9 +49,9 @@ class Describer {
   }
 
   Description describe(const FailingBlock& block) const {
-    const std::string name = fmt::format("\"{}\"", scene_.blocks[static_cast<std::size_t>(block.block)].name);
+    const std::string name = name_of(block.block);
     const std::vector<Touch> touches = touches_of(block);
-    const std::optional<std::string> centre = centre_of(block);
+    const std::optional<std::string> centre = centre_of(block, touches);
     if (centre) return {fmt::format("{} turns about {} ({})", name, *centre, held_in_turning), true};
     if (touches.empty()) return {fmt::format("{} touches no other block and moves {} ({})", name, heading(block), held_by_anything), true};
     if (const auto sliding = sliding_of(block, touches)) return {name + *sliding, true};
@@ -72,10 +72,12 @@ class Describer {
     return fmt::format("towards ({:.2f}, {:.2f})", direction.x(), direction.y());
   }
 
+  std::string name_of(int block) const { return fmt::format("\"{}\"", scene_.blocks[static_cast<std::size_t>(block)].name); }
+
   static std::string at(const Vec2& point) { return fmt::format("({:.4g}, {:.4g})", point.x(), point.y()); }
 
   /// The point of the block about which it turns; none if it does not turn, or moves on with that point.
-  std::optional<std::string> centre_of(const FailingBlock& block) const {
+  std::optional<std::string> centre_of(const FailingBlock& block, const std::vector<Touch>& touches) const {
     const double still = slow * fastest(block);
     for (const Support& support : scene_.supports) {
       if (support.block == block.block && velocity_at(block, support.point).norm() < still) return "its support at " + at(support.point);
@@ -84,6 +86,9 @@ class Describer {
     const auto slower = [&](const Vec2& a, const Vec2& b) { return velocity_at(block, a).norm() < velocity_at(block, b).norm(); };
     const Vec2 slowest = *std::min_element(vertices.begin(), vertices.end(), slower);
     if (velocity_at(block, slowest).norm() < still) return "its corner at " + at(slowest);
+    for (const Touch& touch : touches) {
+      if (velocity_at(block, touch.point).norm() < still) return fmt::format("the corner of {} at {}", name_of(touch.other), at(touch.point));
+    }
     double reach = 0.0;
     for (const Vec2& vertex : vertices) reach = std::max(reach, (vertex - block.centroid).norm());
     if (std::abs(block.rotation) * reach < 0.5 * fastest(block)) return std::nullopt;
@@ -94,7 +99,8 @@ class Describer {
     for (std::size_t e = 0; e < edges.size(); ++e) {
       const Vec2 &from = edges[e], &to = edges[(e + 1) % edges.size()];
       for (const Vec2& corner : corners) {
-        if (distance_to_segment(corner, from, to) <= tolerance::farthest_point_from_joint_m) touches.push_back({other, (to - from).normalized()});
+        if (distance_to_segment(corner, from, to) <= tolerance::farthest_point_from_joint_m)
+          touches.push_back({other, (to - from).normalized(), corner});
       }
     }
   }
@@ -117,8 +123,8 @@ class Describer {
       const FailingBlock* other = moving_[static_cast<std::size_t>(touch.other)];
       const Vec2 relative = block.velocity - (other == nullptr ? Vec2(Vec2::Zero()) : velocity_at(*other, block.centroid));
       if (relative.norm() < slow * block.velocity.norm() || std::abs(cross(touch.along, relative)) > slow * relative.norm()) continue;
-      return fmt::format(" slides along its joint with \"{}\" {} ({}cohesion_pa or a [[support]] would hold it)",
-                         scene_.blocks[static_cast<std::size_t>(touch.other)].name, heading(block), friction_on(touch.along));
+      return fmt::format(" slides along its joint with {} {} ({}cohesion_pa or a [[support]] would hold it)", name_of(touch.other), heading(block),
+                         friction_on(touch.along));
     }
     return std::nullopt;
   }
@@ -152,6 +158,16 @@ std::string motion_in_words(const Scene& scene, const std::vector<FailingBlock>&
   return words;
 }
 
+namespace {
+
+/// The velocity of a steady turn about one point that has brought the centroid this far [m]: half the angle over its tangent, and across.
+Vec2 velocity_of_turn(const Vec2& way, double angle) {
+  const double half = 0.5 * angle;
+  return std::abs(half) < slow * slow ? way : Vec2(half / std::tan(half) * way - half * perpendicular(way));
+}
+
+}  // namespace
+
 std::vector<FailingBlock> moved_blocks(const Simulation& simulation) {
   const BlockSystem& system = simulation.system();
   std::vector<FailingBlock> moved;
@@ -159,7 +175,7 @@ std::vector<FailingBlock> moved_blocks(const Simulation& simulation) {
   const auto way = [](const FailingBlock& block, double radius) { return block.velocity.norm() + std::abs(block.rotation) * radius; };
   for (const int b : system.free_blocks()) {
     const auto& d = system.displacement(b);
-    moved.push_back({b, system.block(b).area, system.block(b).reference_centroid + system.origin(), d.head<2>(), d[2]});
+    moved.push_back({b, system.block(b).area, system.block(b).reference_centroid + system.origin(), velocity_of_turn(d.head<2>(), d[2]), d[2]});
     farthest = std::max(farthest, way(moved.back(), system.block(b).radius));
   }
   std::erase_if(moved, [&](const FailingBlock& block) { return way(block, system.block(block.block).radius) <= slow * farthest; });

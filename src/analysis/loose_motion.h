@@ -25,7 +25,7 @@ struct FailingBlock {
 /// looked up there
 std::string motion_in_words(const Scene& scene, const std::vector<FailingBlock>& mechanism);
 
-/// The blocks that have moved farther than a tenth of the farthest, with their displacements for velocities.
+/// The blocks that have moved farther than a tenth of the farthest, with the velocities of steady turns that would bring them where they are.
 std::vector<FailingBlock> moved_blocks(const Simulation& simulation);
 
 }  // namespace openclose
