@@ -19,7 +19,7 @@ COMPARISON := $(PAPER_RESULTS)/comparison.csv
 NULL_SOLVER := results/verify-null-solver.txt
 
 .DEFAULT_GOAL := help
-.PHONY: help build test verify reproduce convergence stress regression bench bench-peers sanitize compilers fuzz mutants clean verify-vtk packages clang-packages vtk-packages stress-packages figure-packages bench-packages peer-packages
+.PHONY: help build test verify reproduce convergence stress regression bench bench-peers sanitize compilers fuzz mutants clean verify-vtk verify-page packages clang-packages vtk-packages page-packages stress-packages figure-packages bench-packages peer-packages
 
 help: ## print the targets
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(firstword $(MAKEFILE_LIST)) | while read -r target text; do printf '  make %-11s %s\n' "$$target" "$$text"; done
@@ -46,6 +46,9 @@ verify: build stress-packages ## build, run the unit tests and the verification 
 
 verify-vtk: build vtk-packages ## read the files for ParaView with VTK and compare them with the tables; installs python3-vtk9, which is large
 	/usr/bin/python3 tests/vtk/read_back.py $(OPENCLOSE)
+
+verify-page: build page-packages ## click through the page of results in a headless browser and compare it with the tables; installs chromium, which is large
+	/usr/bin/python3 tests/page/click_through.py $(OPENCLOSE)
 
 reproduce: figure-packages $(COMPARISON) ## build, run the paper's examples, draw the figures and print the comparison (results/paper)
 	$(if $(comparison_printed),,@"$${PYTHON:-python3}" paper/reproduce.py --print-only --results $(PAPER_RESULTS))
@@ -102,6 +105,9 @@ clang-packages:
 
 vtk-packages:
 	@scripts/install-packages build vtk
+
+page-packages:
+	@scripts/install-packages build page
 
 stress-packages:
 	@scripts/install-packages stress

@@ -26,6 +26,7 @@
 #include "openclose/scene/reader.h"
 #include "openclose/scene/writer.h"
 #include "openclose/version.h"
+#include "report_command.h"
 #include "stop_signal.h"
 
 namespace openclose {
@@ -521,6 +522,7 @@ int main_checked(int argc, char** argv) {
   app.require_subcommand(1);
   Options options;
   int (*command)(const Options&) = nullptr;
+  std::function<int()> chosen;
   const auto subcommand = [&](const char* name, const char* help, bool writes_folder, int (*f)(const Options&)) {
     CLI::App* sub = app.add_subcommand(name, help);
     add_options(*sub, options, writes_folder);
@@ -542,6 +544,7 @@ int main_checked(int argc, char** argv) {
   add_quiet(*cut, options);
   add_draw(app, options)->callback([&command] { command = &draw_command; });
   add_explain(app, options)->callback([&command] { command = &explain_command; });
+  add_report(app, chosen);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& e) {
@@ -555,7 +558,7 @@ int main_checked(int argc, char** argv) {
     return exit_bad_input;
   }
   try {
-    return command(options);
+    return chosen ? chosen() : command(options);
   } catch (const std::bad_alloc&) {
     fmt::print(stderr, "openclose: out of memory{}{}\n", options.work.empty() ? "" : ": ", options.work);
     return exit_broken_off;

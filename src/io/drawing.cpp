@@ -7,10 +7,13 @@
 #include <utility>
 
 #include "openclose/geometry/box.h"
+#include "openclose/io/drawing_colours.h"
 #include "openclose/io/svg_page.h"
 
 namespace openclose {
 namespace {
+
+using namespace drawing_colour;
 
 /// [px] The blocks fill one of these two, and titles and legends have at least the last one.
 constexpr double widest_drawing = 1140.0, highest_drawing = 820.0, narrowest_page = 760.0;
@@ -29,19 +32,6 @@ constexpr int colour_classes = 32;
 constexpr double least_drawn_part = 0.005;
 /// Names are written beside no more points and loads than this; tooltips tell the others.
 constexpr std::size_t most_labels = 12;
-
-constexpr std::array fills = {"#e8dcc3", "#c9d8c5", "#c7d3e3", "#e3c9c5", "#d9cde3", "#e0e0d0"};
-constexpr const char* fixed_fill = "#a5a096";
-constexpr const char* outline_colour = "#333";
-constexpr const char* sliding_colour = "#f16913";
-constexpr const char* open_colour = "#cb181d";
-constexpr const char* force_colour = "#6a0a78";
-constexpr const char* load_colour = "#08519c";
-constexpr const char* support_colour = "#006d2c";
-
-/// From 0 to 1: light to dark, told apart in grey, too (YlGnBu of ColorBrewer, without its darkest end, on which no outline can be seen).
-constexpr std::array<std::array<int, 3>, 7> gradient = {
-    {{255, 255, 229}, {237, 248, 177}, {199, 233, 180}, {127, 205, 187}, {65, 182, 196}, {29, 145, 192}, {44, 110, 180}}};
 
 std::string colour_at(double part) {
   const double place = std::clamp(part, 0.0, 1.0) * static_cast<double>(gradient.size() - 1);

@@ -18,7 +18,7 @@ constexpr const char* growing_results[] = {"history.csv",      "energy.csv", "bl
                                            "block_states.csv", "cracks.csv", "contact_history.csv", checkpoint_name};
 /// What comes at its end.
 constexpr const char* last_results[] = {"block_properties.csv", "trials.csv",   "mechanism.csv",       "curve.csv",
-                                        "milestones.csv",       "summary.json", "checkpoint.bin.part", "drawing.svg"};
+                                        "milestones.csv",       "summary.json", "checkpoint.bin.part", "drawing.svg", "report.html"};
 /// The first line of the scene that belongs to the results: a file of that name without it is somebody's own.
 constexpr std::string_view scene_heading = "# The scene as openclose has read it. The next run here writes it anew: copy it before you change it.\n";
 

@@ -10,6 +10,7 @@
 #include <unordered_map>
 
 #include "openclose/core/error.h"
+#include "openclose/io/result_answer.h"
 #include "openclose/io/state_table.h"
 #include "openclose/scene/nearest.h"
 
@@ -490,27 +491,8 @@ class ResultPicture {
     const std::string title = summary_.value("title", "");
     const std::filesystem::path folder = std::filesystem::path(folder_ + "/").lexically_normal().parent_path();
     picture_.title = title.empty() ? folder.filename().string() : title;
-    if (summary_.contains("command")) picture_.notes.push_back(is_factor() ? answer_of_factor() : answer_of_run());
+    if (summary_.contains("command")) picture_.notes.push_back(answer_of(summary_));
     picture_.notes.push_back(fmt::format("{} blocks; state \"{}\"{}", now_.size(), state_, explanation()));
-  }
-
-  std::string answer_of_factor() const {
-    const json& bracket = summary_.at("bracket");
-    const std::string verdict = summary_.at("verdict"), method = summary_.at("options").at("method").at("contact");
-    const json& stable = bracket.at("stable");
-    if (stable.is_null() || verdict == "no_equilibrium" || verdict == "undecided")
-      return fmt::format("no factor of safety ({}): {}", method, summary_.value("reason", ""));
-    if (verdict == "no_failure") return fmt::format("factor of safety above {:.6g} ({}: no failure found up to there)", stable.get<double>(), method);
-    const json& failed = bracket.at("failed");
-    const std::string end = failed.is_null() ? "no failure proved" : fmt::format("failed at {:.6g}", failed.get<double>());
-    return fmt::format("factor of safety {:.6g} ({}, {}; {})", stable.get<double>(), end, verdict, method);
-  }
-
-  std::string answer_of_run() const {
-    const std::string method = summary_.at("options").at("method").at("contact");
-    std::string answer = fmt::format("{}: run to t = {:.5g} s", method, summary_.value("time_s", 0.0));
-    if (!summary_.value("converged", false)) answer += fmt::format("; stopped: {}", summary_.value("reason", ""));
-    return answer;
   }
 
   std::string explanation() const {

@@ -1,6 +1,7 @@
 // A table of states as a run has written it: its first column names the state, and the rows of a state stand together.
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -26,6 +27,14 @@ class StateTable {
     for (std::size_t i = 0; i < states_.size(); ++i) {
       if (states_[i] == state) visit_rows(ranges_[i], visit);
     }
+  }
+  /// The same for the first row alone, if there is one.
+  template <typename Visit>
+  void first_row(const std::string& state, const Visit& visit) const {
+    const auto place = std::ranges::find(states_, state);
+    if (place == states_.end()) return;
+    const std::string_view range = ranges_[static_cast<std::size_t>(place - states_.begin())];
+    visit_rows(range.substr(0, std::min(range.find('\n'), range.size() - 1) + 1), visit);
   }
 
  private:

@@ -1,0 +1,53 @@
+#include "report_command.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "openclose/core/error.h"
+#include "openclose/io/output_folder.h"
+#include "openclose/report/report.h"
+
+namespace openclose {
+namespace {
+
+constexpr double bytes_per_mb = 1e6;
+
+struct ReportOptions {
+  std::string results;
+  std::string file;
+  double most_mb = 100.0;
+  bool quiet = false;
+};
+
+int report_command(const ReportOptions& options) {
+  const std::string file = options.file.empty() ? options.results + "/report.html" : options.file;
+  // A name that is left out, or mistaken for another option's, would write over a scene or a table.
+  if (std::filesystem::path(file).extension() != ".html")
+    throw InputError({file, 0}, "-o", "a page would be written over what is no page", "a name that ends in .html");
+  const Report report = report_of_results(options.results, {static_cast<std::size_t>(options.most_mb * bytes_per_mb)});
+  write_files({{file, report.html}});
+  if (options.quiet) return exit_success;
+  fmt::print("{}: page of {} states{}{}; written to {}\n", options.results, report.states, report.answer.empty() ? "" : "; ", report.answer, file);
+  if (report.left_out + report.without_contacts > 0)
+    fmt::print("{} states are left out and {} are without contacts, so that the page has {:.3g} MB; --most-mb allows more\n", report.left_out,
+               report.without_contacts, static_cast<double>(report.html.size()) / bytes_per_mb);
+  return exit_success;
+}
+
+}  // namespace
+
+void add_report(CLI::App& app, std::function<int()>& chosen) {
+  const auto options = std::make_shared<ReportOptions>();
+  CLI::App* report = app.add_subcommand(
+      "report", "write a run or fos as one HTML page: the answer and how far to trust it, a film of the states, curves; needs no network");
+  report->add_option("results", options->results, "folder that run or fos has written")->required();
+  report->add_option("-o,--output", options->file, "HTML file to write (default: report.html in the folder)");
+  report->add_option("--most-mb", options->most_mb, "size of the page above which contacts and states are left out, evenly [MB] (default: 100)")
+      ->check(CLI::Range(1.0, 2000.0));
+  report->add_flag("-q,--quiet", options->quiet, "print nothing but warnings and errors");
+  report->callback([options, &chosen] { chosen = [options] { return report_command(*options); }; });
+}
+
+}  // namespace openclose

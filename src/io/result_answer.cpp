@@ -1,0 +1,37 @@
+#include "openclose/io/result_answer.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+namespace openclose {
+namespace {
+
+using nlohmann::json;
+
+std::string answer_of_factor(const json& summary) {
+  const json& bracket = summary.at("bracket");
+  const std::string verdict = summary.at("verdict"), method = summary.at("options").at("method").at("contact");
+  const json& stable = bracket.at("stable");
+  if (stable.is_null() || verdict == "no_equilibrium" || verdict == "undecided")
+    return fmt::format("no factor of safety ({}): {}", method, summary.value("reason", ""));
+  if (verdict == "no_failure") return fmt::format("factor of safety above {:.6g} ({}: no failure found up to there)", stable.get<double>(), method);
+  const json& failed = bracket.at("failed");
+  const std::string end = failed.is_null() ? "no failure proved" : fmt::format("failed at {:.6g}", failed.get<double>());
+  return fmt::format("factor of safety {:.6g} ({}, {}; {})", stable.get<double>(), end, verdict, method);
+}
+
+std::string answer_of_run(const json& summary) {
+  const std::string method = summary.at("options").at("method").at("contact");
+  std::string answer = fmt::format("{}: run to t = {:.5g} s", method, summary.value("time_s", 0.0));
+  if (!summary.value("converged", false)) answer += fmt::format("; stopped: {}", summary.value("reason", ""));
+  return answer;
+}
+
+}  // namespace
+
+std::string answer_of(const json& summary) {
+  return summary.value("command", "") == "fos" ? answer_of_factor(summary) : answer_of_run(summary);
+}
+
+}  // namespace openclose

@@ -1,0 +1,426 @@
+#include "openclose/report/page_data.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <unordered_map>
+
+#include "openclose/analysis/watch.h"
+#include "openclose/core/error.h"
+#include "openclose/geometry/box.h"
+#include "openclose/geometry/polygon.h"
+#include "openclose/io/drawing_colours.h"
+#include "openclose/io/result_answer.h"
+#include "openclose/io/state_table.h"
+#include "openclose/report/page_tables.h"
+
+namespace openclose {
+namespace {
+
+using nlohmann::json;
+
+/// The drawing in blocks.csv, and the mechanism of a factor of safety.
+constexpr const char* drawn_state = "initial";
+constexpr const char* mechanism_state = "failed";
+/// [-] Openings and slips below this part of the largest one are thinner than a line can be drawn.
+constexpr double least_drawn_part = 0.005;
+/// [-] Two contacts whose lengths add up to their distance to this accuracy are the ends of one face.
+constexpr double accuracy_of_lengths = 0.1;
+
+struct ContactRow {
+  std::int32_t a = 0, b = 0;
+  Vec2 point = Vec2::Zero(), normal = Vec2::Zero();
+  double length = 0.0, gap = 0.0, normal_force = 0.0, shear_force = 0.0;
+  std::uint8_t status = 0;
+  double reach = 0.0;  ///< [m] so far along its face, counter-clockwise along the normal's perpendicular; 0: a point
+};
+
+std::uint8_t status_in(std::string_view word) {
+  if (word == "sliding") return 2;
+  return word == "sticking" ? 1 : 0;
+}
+
+class PageData {
+ public:
+  PageData(const std::string& folder, const ReportRequest& request, Report& report)
+      : folder_(require_folder(folder)),
+        request_(request),
+        report_(report),
+        outlines_(path_of("blocks.csv"), {"block", "x_m", "y_m"}),
+        motions_(path_of("block_states.csv"), {"block", "displacement_x_m", "displacement_y_m", "rotation_rad", "velocity_x_m_per_s",
+                                               "velocity_y_m_per_s", "angular_velocity_rad_per_s", "time_s"}),
+        contacts_(path_of("contacts.csv"),
+                  {"block_a", "block_b", "x_m", "y_m", "normal_x", "normal_y", "length_m", "gap_m", "normal_force_n", "shear_force_n", "status"}),
+        cracks_(path_of("cracks.csv"), {"block_a", "block_b", "x1_m", "y1_m", "x2_m", "y2_m", "opening1_m", "opening2_m", "slip1_m", "slip2_m"}) {
+    if (!outlines_.has(drawn_state)) {
+      throw InputError({path_of("blocks.csv"), 0}, "",
+                       std::filesystem::exists(path_of("blocks.csv")) ? "the drawing is not written there" : "there is no such file",
+                       "the folder of a run or fos");
+    }
+    read_summary();
+  }
+
+  json data() {
+    json page;
+    page["folder"] = std::filesystem::path(folder_ + "/").lexically_normal().parent_path().filename().string();
+    page["summary"] = summary_;
+    if (page["summary"].contains("failing_blocks")) page["summary"]["failing_blocks"].erase("names");
+    report_.answer = summary_.contains("command") ? answer_of(summary_) : "";
+    page["answer"] = report_.answer;
+    page["bounds"] = {{"created_energy", watch_bound::created_energy}, {"penetration", watch_bound::penetration}, {"reach", 1.0}};
+    page["colours"] = colours();
+    page["blocks"] = blocks();
+    page["origin"] = {origin_.x(), origin_.y()};
+    page["symbols"] = symbols();
+    page["states"] = states();
+    page["states_left_out"] = report_.left_out;
+    page["states_without_contacts"] = report_.without_contacts;
+    add_tables(page);
+    page["scene"] = scene_text(path_of("scene_as_read.toml"));
+    return page;
+  }
+
+ private:
+  static std::string require_folder(const std::string& folder) {
+    std::error_code error;
+    const std::string accepted = "the folder of a run or fos, results/<name of the scene> by default";
+    if (!std::filesystem::exists(folder, error)) throw InputError({folder, 0}, "", "there is no such folder", accepted);
+    if (!std::filesystem::is_directory(folder, error)) throw InputError({folder, 0}, "", "this is no folder", accepted);
+    return folder;
+  }
+  std::string path_of(const std::string& name) const { return folder_ + "/" + name; }
+  bool is_factor() const { return summary_.value("command", "") == "fos"; }
+
+  void read_summary() {
+    std::ifstream file(path_of("summary.json"));
+    if (!file) return;  // a run that goes on, or was broken off: what it has written can be shown
+    summary_ = json::parse(file, nullptr, false);
+    if (!summary_.is_object()) throw InputError({path_of("summary.json"), 0}, "", "this is not JSON", "the file as openclose has written it");
+  }
+
+  static json colours() {
+    using namespace drawing_colour;
+    return {{"fills", fills},        {"fixed", fixed_fill}, {"outline", outline_colour}, {"sliding", sliding_colour}, {"open", open_colour},
+            {"force", force_colour}, {"load", load_colour}, {"support", support_colour}, {"gradient", gradient}};
+  }
+
+  /// The blocks of the drawing; their index is what everything else names them by.
+  json blocks() {
+    std::vector<Polygon> polygons;
+    std::vector<std::string> names;
+    outlines_.rows(drawn_state, [&](const Row& row) {
+      if (names.empty() || row[0] != names.back()) {
+        index_.emplace(std::string(row[0]), static_cast<std::int32_t>(names.size()));
+        names.emplace_back(row[0]);
+        polygons.emplace_back();
+      }
+      polygons.back().emplace_back(number_in(row[1]), number_in(row[2]));
+    });
+    Box box = Box::around(polygons.front());
+    for (const Polygon& polygon : polygons) {
+      const Box other = Box::around(polygon);
+      box = {box.low.cwiseMin(other.low), box.high.cwiseMax(other.high)};
+    }
+    origin_ = 0.5 * (box.low + box.high);
+    std::vector<std::int32_t> counts;
+    std::vector<double> vertices, centroids;
+    for (const Polygon& polygon : polygons) {
+      counts.push_back(static_cast<std::int32_t>(polygon.size()));
+      for (const Vec2& vertex : polygon) vertices.insert(vertices.end(), {vertex.x() - origin_.x(), vertex.y() - origin_.y()});
+      const Vec2 centroid = polygon_properties(polygon).centroid - origin_;
+      centroids.insert(centroids.end(), {centroid.x(), centroid.y()});
+    }
+    json blocks = {{"names", names},
+                   {"counts_i4", packed<std::int32_t>(counts)},
+                   {"vertices_f8", packed<double>(vertices)},
+                   {"centroids_f8", packed<double>(centroids)}};
+    add_properties(blocks);
+    return blocks;
+  }
+
+  void add_properties(json& blocks) const {
+    const std::size_t count = index_.size();
+    std::vector<std::int32_t> material(count, 0);
+    std::vector<std::uint8_t> fixed(count, 0);
+    std::vector<double> area(count, 0.0), mass(count, 0.0);
+    std::vector<std::string> materials;
+    const TextTable table(path_of("block_properties.csv"));
+    for (const std::vector<std::string>& row : table.rows) {
+      const std::int32_t b = index_of(table.field(row, "block"));
+      if (b < 0) continue;
+      const std::string& name = table.field(row, "material");
+      auto place = std::ranges::find(materials, name);
+      if (place == materials.end()) place = materials.insert(place, name);
+      material[b] = static_cast<std::int32_t>(place - materials.begin());
+      fixed[b] = table.field(row, "fixed") == "1";
+      area[b] = number_in(table.field(row, "area_m2"));
+      mass[b] = number_in(table.field(row, "mass_kg"));
+    }
+    blocks["materials"] = materials;
+    blocks["material_i4"] = packed<std::int32_t>(material);
+    blocks["fixed_u1"] = packed<std::uint8_t>(fixed);
+    blocks["area_f8"] = packed<double>(area);
+    blocks["mass_f8"] = packed<double>(mass);
+  }
+
+  std::int32_t index_of(std::string_view name) const {
+    const auto place = index_.find(std::string(name));
+    return place == index_.end() ? -1 : place->second;
+  }
+
+  /// What holds, pushes and measures blocks, at points of the drawing.
+  json symbols() const {
+    json list = json::array();
+    const auto add = [&](const char* kind, const json& entry, json more) {
+      const std::int32_t block = index_of(entry.at("block").get<std::string>());
+      if (block < 0) return;
+      more["kind"] = kind;
+      more["block"] = block;
+      const json& point = entry.at("point_m");
+      more["point"] = {point.at(0).get<double>() - origin_.x(), point.at(1).get<double>() - origin_.y()};
+      list.push_back(std::move(more));
+    };
+    for (const json& entry : summary_.value("supports", json::array())) {
+      const json& stiffness = entry.at("stiffness_n_per_m");
+      add("support", entry, {{"in_x", stiffness.at(0).get<double>() > 0.0}, {"in_y", stiffness.at(1).get<double>() > 0.0}});
+    }
+    for (const json& entry : summary_.value("arrows", json::array()))
+      add("load", entry, {{"force", entry.at("force_n")}, {"turns", entry.at("turns_with_block")}});
+    for (const json& entry : summary_.value("measured_points", json::array())) add("point", entry, {{"name", entry.at("name")}});
+    return list;
+  }
+
+  /// Names of the states in their order, without those at the time of the one before.
+  std::vector<std::string> different_states() const {
+    std::vector<std::string> names;
+    std::optional<double> last;
+    for (const std::string& state : outlines_.states()) {
+      const std::optional<double> time = time_of(state);
+      if (time && time == last) continue;
+      last = time;
+      names.push_back(state);
+    }
+    return names;
+  }
+
+  std::optional<double> time_of(const std::string& state) const {
+    std::optional<double> time;
+    motions_.first_row(state, [&](const Row& row) {
+      if (!row[7].empty()) time = number_in(row[7]);
+    });
+    return time;
+  }
+
+  /// Where all would take too much, motions may have half of the page, so that a film stays one, and contacts with joints what they leave.
+  json states() {
+    const std::vector<std::string> names = different_states();
+    const std::size_t last = names.size() - 1;
+    const std::size_t motion = size_of(motion_of(names[last])), contacts = size_of(contacts_of(names[last]));
+    const std::size_t every = stride(motion * names.size(), request_.most_bytes / 2);
+    const std::size_t shown = names.size() / every;
+    const std::size_t left = request_.most_bytes - std::min(request_.most_bytes, motion * shown);
+    const std::size_t every_contacts = stride(contacts * shown, left);
+    json list = json::array();
+    std::size_t with_contacts = 0;
+    // The drawing, the start and the end are always there.
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      if (i > 0 && i < last && (i - 1) % every != 0) continue;
+      json& state = list.emplace_back(motion_of(names[i]));
+      if (i > 0 && i < last && ((i - 1) / every) % every_contacts != 0) continue;
+      state.update(contacts_of(names[i]));
+      ++with_contacts;
+    }
+    report_.states = list.size();
+    report_.left_out = names.size() - list.size();
+    report_.without_contacts = list.size() - with_contacts;
+    return list;
+  }
+
+  /// One in how many is kept so that all of this size become at most that.
+  static std::size_t stride(std::size_t all, std::size_t most) {
+    const std::size_t least = std::max<std::size_t>(1, most);
+    return std::max<std::size_t>(1, (all + least - 1) / least);
+  }
+
+  /// [bytes] As JSON, without the little that is not packed.
+  static std::size_t size_of(const json& value) {
+    if (value.is_string()) return value.get_ref<const std::string&>().size();
+    std::size_t size = 0;
+    if (value.is_structured()) {
+      for (const json& part : value) size += size_of(part);
+    }
+    return size;
+  }
+
+  json motion_of(const std::string& name) const {
+    json state = {{"name", name}};
+    const std::optional<double> time = time_of(name);
+    if (time) state["time_s"] = *time;
+    add_motion(name, state);
+    if (is_factor() && name == mechanism_state) add_mechanism(state);
+    return state;
+  }
+
+  json contacts_of(const std::string& name) const {
+    json state = json::object();
+    add_contacts(name, state);
+    add_cracks(name, state);
+    return state;
+  }
+
+  void add_motion(const std::string& name, json& state) const {
+    std::vector<float> motion(3 * index_.size(), 0.0f), velocity(3 * index_.size(), 0.0f);
+    bool moves = false;
+    motions_.rows(name, [&](const Row& row) {
+      const std::int32_t b = index_of(row[0]);
+      if (b < 0) return;
+      for (std::size_t k = 0; k < 3; ++k) {
+        motion[3 * b + k] = static_cast<float>(number_in(row[1 + k]));
+        velocity[3 * b + k] = static_cast<float>(number_in(row[4 + k]));
+      }
+      moves = moves || !row[4].empty();
+    });
+    if (motions_.has(name)) {
+      state["motion_f4"] = packed<float>(motion);
+      state["largest_displacement"] = largest_vector(motion);
+    }
+    if (moves) {
+      state["velocity_f4"] = packed<float>(velocity);
+      state["largest_velocity"] = largest_vector(velocity);
+    }
+  }
+
+  static double largest_vector(const std::vector<float>& triples) {
+    double largest = 0.0;
+    for (std::size_t i = 0; i + 2 < triples.size(); i += 3)
+      largest = std::max(largest, std::hypot(static_cast<double>(triples[i]), static_cast<double>(triples[i + 1])));
+    return largest;
+  }
+
+  void add_contacts(const std::string& name, json& state) const {
+    std::vector<ContactRow> rows;
+    contacts_.rows(name, [&](const Row& row) {
+      const std::int32_t a = index_of(row[0]), b = index_of(row[1]);
+      if (a < 0 || b < 0) return;
+      rows.push_back({a,
+                      b,
+                      {number_in(row[2]), number_in(row[3])},
+                      {number_in(row[4]), number_in(row[5])},
+                      number_in(row[6]),
+                      number_in(row[7]),
+                      number_in(row[8]),
+                      number_in(row[9]),
+                      status_in(row[10])});
+    });
+    if (rows.empty()) return;
+    find_faces(rows);
+    std::vector<std::int32_t> blocks;
+    std::vector<float> numbers;
+    std::vector<std::uint8_t> status;
+    double largest = 0.0;
+    for (const ContactRow& c : rows) {
+      blocks.insert(blocks.end(), {c.a, c.b});
+      const Vec2 point = c.point - origin_;
+      for (const double number : {point.x(), point.y(), c.normal.x(), c.normal.y(), c.length, c.gap, c.normal_force, c.shear_force, c.reach})
+        numbers.push_back(static_cast<float>(number));
+      status.push_back(c.status);
+      largest = std::max(largest, std::hypot(c.normal_force, c.shear_force));
+    }
+    state["contacts"] = {{"blocks_i4", packed<std::int32_t>(blocks)},
+                         {"numbers_f4", packed<float>(numbers)},
+                         {"status_u1", packed<std::uint8_t>(status)},
+                         {"largest_force", largest}};
+  }
+
+  /// Two contacts at the ends of the stretch along which two edges face each other have a part of it each.
+  static void find_faces(std::vector<ContactRow>& rows) {
+    std::unordered_map<std::uint64_t, std::vector<std::size_t>> of_pair;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const auto [low, high] = std::minmax(rows[i].a, rows[i].b);
+      of_pair[(static_cast<std::uint64_t>(low) << 32) | static_cast<std::uint64_t>(high)].push_back(i);
+    }
+    for (const auto& [pair, list] : of_pair) {
+      for (const std::size_t i : list) {
+        for (const std::size_t k : list) {
+          const Vec2 way = rows[k].point - rows[i].point;
+          const double length = rows[i].length + rows[k].length;
+          if (i == k || std::abs(way.norm() - length) > accuracy_of_lengths * length) continue;
+          rows[i].reach = std::copysign(rows[i].length, way.dot(perpendicular(rows[i].normal)));
+        }
+      }
+    }
+  }
+
+  void add_cracks(const std::string& name, json& state) const {
+    std::vector<std::vector<double>> rows;
+    std::vector<std::int32_t> blocks;
+    double largest = 0.0;
+    cracks_.rows(name, [&](const Row& row) {
+      std::vector<double> numbers;
+      for (std::size_t k = 2; k < 10; ++k) numbers.push_back(number_in(row[k]));
+      for (std::size_t k = 4; k < 8; ++k) largest = std::max(largest, k < 6 ? numbers[k] : std::abs(numbers[k]));
+      rows.push_back(std::move(numbers));
+      blocks.insert(blocks.end(), {index_of(row[0]), index_of(row[1])});
+    });
+    std::vector<std::int32_t> kept_blocks;
+    std::vector<float> kept;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const std::vector<double>& r = rows[i];
+      const double size = std::max({r[4], r[5], std::abs(r[6]), std::abs(r[7])});
+      if (size <= least_drawn_part * largest) continue;
+      kept_blocks.insert(kept_blocks.end(), {blocks[2 * i], blocks[2 * i + 1]});
+      for (std::size_t k = 0; k < r.size(); ++k) kept.push_back(static_cast<float>(k < 4 ? r[k] - origin_[k % 2] : r[k]));
+    }
+    if (!kept.empty())
+      state["cracks"] = {{"blocks_i4", packed<std::int32_t>(kept_blocks)}, {"numbers_f4", packed<float>(kept)}, {"largest", largest}};
+  }
+
+  /// At large displacements the failed state is one of a motion, and no mechanism.
+  void add_mechanism(json& state) const {
+    const TextTable table(path_of("mechanism.csv"));
+    if (table.rows.empty()) return;
+    std::vector<float> velocity(3 * index_.size(), 0.0f);
+    for (const std::vector<std::string>& row : table.rows) {
+      const std::int32_t b = index_of(table.field(row, "block"));
+      if (b < 0) continue;
+      velocity[3 * b] = static_cast<float>(number_in(table.field(row, "velocity_x")));
+      velocity[3 * b + 1] = static_cast<float>(number_in(table.field(row, "velocity_y")));
+      velocity[3 * b + 2] = static_cast<float>(number_in(table.field(row, "rotation_per_m")));
+    }
+    state["is_mechanism"] = true;
+    state["velocity_f4"] = packed<float>(velocity);
+    state["largest_velocity"] = largest_vector(velocity);
+  }
+
+  void add_tables(json& page) const {
+    std::vector<std::string> measured;
+    for (const json& point : summary_.value("measured_points", json::array())) measured.push_back(point.at("name").get<std::string>());
+    page["history"] = curves_in(path_of("history.csv"), "point", measured, {"displacement_x_m", "displacement_y_m"});
+    page["energy"] = curves_in(path_of("energy.csv"), "", {});
+    page["contact_history"] = curves_in(path_of("contact_history.csv"), "contact", {}, {"normal_force_n"});
+    page["curve"] = curves_in(path_of("curve.csv"), "point", {}, {"displacement_m"});
+    page["trials"] = rows_in(path_of("trials.csv"));
+    page["milestones"] = rows_in(path_of("milestones.csv"));
+  }
+
+  std::string folder_;
+  ReportRequest request_;
+  Report& report_;
+  StateTable outlines_, motions_, contacts_, cracks_;
+  json summary_ = json::object();  ///< empty where the run has not ended
+  std::unordered_map<std::string, std::int32_t> index_;
+  Vec2 origin_ = Vec2::Zero();  ///< the middle of the drawing
+};
+
+}  // namespace
+
+json page_data(const std::string& folder, const ReportRequest& request, Report& report) {
+  return PageData(folder, request, report).data();
+}
+
+}  // namespace openclose

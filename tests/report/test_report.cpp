@@ -1,0 +1,198 @@
+// The page of results: what it holds is what the tables hold, and nothing in a scene can break out of it.
+#include <bit>
+#include <cstring>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "io/files.h"
+#include "openclose/core/error.h"
+#include "openclose/core/vector.h"
+#include "openclose/io/results.h"
+#include "openclose/report/report.h"
+#include "support/catch.h"
+#include "support/scenes.h"
+
+using namespace openclose;
+using Catch::Matchers::ContainsSubstring;
+using nlohmann::json;
+using openclose::test::fields_of;
+using openclose::test::lines_of;
+using openclose::test::TemporaryFolder;
+
+namespace {
+
+/// A run with snapshots, its tables and its summary.
+void run_into(const TemporaryFolder& place, Scene scene) {
+  scene.step.dt = 1e-3;
+  scene.end_time = 0.4;
+  scene.snapshots_every = 0.1;
+  Simulation simulation(scene);
+  const OutputFolder folder(place.path());
+  StateTables states(folder, scene);
+  write_block_properties(folder, scene, std::as_const(simulation).system());
+  states.add_drawing(simulation);
+  EnergyFile energy(folder);
+  RunObserver observer;
+  observer.started = [&](const Simulation& s) { states.add("start", s); };
+  observer.snapshot = [&](const std::string& state, const Simulation& s) { states.add(state, s); };
+  observer.output = [&](const Simulation& s) { energy.add(s.time(), s.ledger()); };
+  const RunResult result = run(simulation, observer);
+  states.add("final", simulation, simulation.contacts());
+  states.close();
+  energy.close();
+  Summary summary;
+  summary.command = "run";
+  summary.converged = result.converged;
+  write_summary(folder, summary, simulation);
+}
+
+json data_of(const std::string& html) {
+  const std::string begin = "<script type=\"application/json\" id=\"data\">", end = "</script>";
+  const std::size_t from = html.find(begin) + begin.size();
+  return json::parse(html.substr(from, html.find(end, from) - from));
+}
+
+template <typename Number>
+std::vector<Number> numbers_in(const std::string& text) {
+  const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string bytes;
+  unsigned bits = 0;
+  int count = 0;
+  for (const char c : text) {
+    if (c == '=') break;
+    bits = (bits << 6) | static_cast<unsigned>(digits.find(c));
+    if ((count += 6) >= 8) bytes += static_cast<char>((bits >> (count -= 8)) & 255u);
+  }
+  std::vector<Number> numbers(bytes.size() / sizeof(Number));
+  std::memcpy(numbers.data(), bytes.data(), numbers.size() * sizeof(Number));
+  return numbers;
+}
+
+std::vector<std::vector<std::string>> rows_of(const std::string& path, const std::string& state) {
+  std::vector<std::vector<std::string>> rows;
+  for (const std::string& line : lines_of(path)) {
+    if (fields_of(line)[0] == state) rows.push_back(fields_of(line));
+  }
+  return rows;
+}
+
+bool nearly(float shown, const std::string& field) {
+  return shown == static_cast<float>(std::stod(field));
+}
+
+Scene sliding_block() {
+  return test::block_on_incline(40.0 * test::degree);
+}
+
+}  // namespace
+
+TEST_CASE("the page holds the motions, velocities and contacts of every state as the tables have them", "[report]") {
+  const TemporaryFolder place;
+  run_into(place, sliding_block());
+  const Report report = report_of_results(place.path());
+  const json data = data_of(report.html);
+  const json& states = data.at("states");
+  REQUIRE(states.size() == report.states);
+  REQUIRE(states.size() >= 6);
+  CHECK(report.left_out == 0);
+  CHECK(states.front().at("name") == "initial");
+  const Vec2 origin(data.at("origin").at(0).get<double>(), data.at("origin").at(1).get<double>());
+  std::size_t contacts = 0;
+  for (const json& state : states) {
+    const std::string name = state.at("name");
+    INFO(name);
+    if (name == "initial") continue;
+    const auto rows = rows_of(place / "block_states.csv", name);
+    const auto motion = numbers_in<float>(state.at("motion_f4")), velocity = numbers_in<float>(state.at("velocity_f4"));
+    REQUIRE(motion.size() == 3 * rows.size());
+    for (std::size_t b = 0; b < rows.size(); ++b) {
+      CHECK(data.at("blocks").at("names").at(b) == rows[b][2]);
+      for (std::size_t k = 0; k < 3; ++k) {
+        CHECK(nearly(motion[3 * b + k], rows[b][5 + k]));
+        CHECK(nearly(velocity[3 * b + k], rows[b][8 + k]));
+      }
+    }
+    const auto touching = rows_of(place / "contacts.csv", name);
+    const auto numbers = numbers_in<float>(state.at("contacts").at("numbers_f4"));
+    const auto status = numbers_in<std::uint8_t>(state.at("contacts").at("status_u1"));
+    REQUIRE(numbers.size() == 9 * touching.size());
+    for (std::size_t i = 0; i < touching.size(); ++i) {
+      CHECK(numbers[9 * i] == static_cast<float>(std::stod(touching[i][3]) - origin.x()));
+      CHECK(numbers[9 * i + 1] == static_cast<float>(std::stod(touching[i][4]) - origin.y()));
+      CHECK(nearly(numbers[9 * i + 5], touching[i][8]));
+      CHECK(nearly(numbers[9 * i + 6], touching[i][9]));
+      CHECK(nearly(numbers[9 * i + 7], touching[i][10]));
+      CHECK(std::vector<std::string>{"open", "sticking", "sliding"}.at(status[i]) == touching[i][11]);
+      ++contacts;
+    }
+  }
+  CHECK(contacts >= 10);
+}
+
+TEST_CASE("the two contacts of a face reach towards each other and cover it", "[report]") {
+  const TemporaryFolder place;
+  run_into(place, sliding_block());
+  const json data = data_of(report_of_results(place.path()).html);
+  const json& state = data.at("states").at(1);
+  const auto numbers = numbers_in<float>(state.at("contacts").at("numbers_f4"));
+  REQUIRE(numbers.size() == 18);
+  const auto end = [&](std::size_t i) {
+    const float* c = numbers.data() + 9 * i;
+    return Vec2(Vec2(c[0], c[1]) + c[8] * perpendicular(Vec2(c[2], c[3])));
+  };
+  // They meet: the end of the one is the end of the other.
+  CHECK((end(0) - end(1)).norm() < 1e-3);
+  CHECK(std::abs(numbers[8]) == numbers[4]);
+}
+
+TEST_CASE("no title of a scene ends the data of the page", "[report]") {
+  const TemporaryFolder place;
+  Scene scene = sliding_block();
+  scene.title = "</script><script>alert(1)</script><!-- \"quoted\" \\";
+  run_into(place, scene);
+  const std::string html = report_of_results(place.path()).html;
+  CHECK(data_of(html).at("summary").at("title") == scene.title);
+  CHECK_THAT(html, !ContainsSubstring("alert(1)</script>"));
+  // Complete in itself: nothing is fetched.
+  for (const std::string fetched : {"src=", "href=\"http", "@import", "url(", "fetch("}) CHECK_THAT(html, !ContainsSubstring(fetched));
+  CHECK_THAT(html, !ContainsSubstring("{{"));
+}
+
+TEST_CASE("a page that would become too large leaves out contacts first, then states, and says so", "[report]") {
+  const TemporaryFolder place;
+  run_into(place, sliding_block());
+  const Report whole = report_of_results(place.path());
+  const std::size_t states = whole.states;
+  const Report some = report_of_results(place.path(), {1000});
+  CHECK(some.left_out == 0);
+  CHECK(some.without_contacts > whole.without_contacts);
+  const Report few = report_of_results(place.path(), {400});
+  CHECK(few.left_out > 0);
+  CHECK(few.states + few.left_out == states);
+  const json data = data_of(few.html);
+  CHECK(data.at("states_left_out") == few.left_out);
+  // The drawing and the end stay, and the end has its contacts.
+  CHECK(data.at("states").front().at("name") == "initial");
+  CHECK(data.at("states").back().at("name") == data_of(whole.html).at("states").back().at("name"));
+  CHECK(data.at("states").back().contains("contacts"));
+  CHECK(few.html.size() < some.html.size());
+}
+
+TEST_CASE("what is no folder of results is refused with what would be one", "[report]") {
+  const TemporaryFolder place;
+  CHECK_THROWS_WITH(report_of_results(place / "nowhere"), ContainsSubstring("there is no such folder"));
+  CHECK_THROWS_WITH(report_of_results(place.write("file", "")), ContainsSubstring("this is no folder"));
+  CHECK_THROWS_WITH(report_of_results(place.path()), ContainsSubstring("blocks.csv: there is no such file"));
+  place.write("blocks.csv", "state,block,vertex,x_m,y_m\nfinal,a,0,0,0\n");
+  CHECK_THROWS_WITH(report_of_results(place.path()), ContainsSubstring("the drawing is not written there"));
+  place.write("blocks.csv", "state,block,vertex,x_m,y_m\ninitial,a,0,0,0\ninitial,a,1,1,0\ninitial,a,2,0,1\n");
+  place.write("summary.json", "[]");
+  CHECK_THROWS_AS(report_of_results(place.path()), InputError);
+  place.write("summary.json", "{\"command\": \"fos\"}");
+  CHECK_THROWS_AS(report_of_results(place.path()), InputError);
+  // A run that goes on has no summary yet.
+  std::filesystem::remove(place / "summary.json");
+  const Report unfinished = report_of_results(place.path());
+  CHECK(unfinished.answer.empty());
+  CHECK(unfinished.states == 1);
+}
