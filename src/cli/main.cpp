@@ -28,6 +28,8 @@
 #include "openclose/version.h"
 #include "report_command.h"
 #include "stop_signal.h"
+#include "study_command.h"
+#include "sweep_command.h"
 
 namespace openclose {
 namespace {
@@ -545,6 +547,8 @@ int main_checked(int argc, char** argv) {
   add_draw(app, options)->callback([&command] { command = &draw_command; });
   add_explain(app, options)->callback([&command] { command = &explain_command; });
   add_report(app, chosen);
+  add_study(app, chosen);
+  add_sweep(app, chosen);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& e) {

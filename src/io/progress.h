@@ -6,6 +6,11 @@
 
 namespace openclose {
 
+/// ", about 12 s left", if the rest takes as long as what was done; empty where that cannot be told yet.
+/// \param elapsed   [s]
+/// \param fraction  of the work that is done, 0 to 1
+std::string remaining_text(double elapsed, double fraction);
+
 class Progress {
  public:
   Progress(std::string label, bool quiet);

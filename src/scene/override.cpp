@@ -56,12 +56,23 @@ toml::node& element(const Override& override, toml::node& parent, std::size_t in
 toml::table& as_table(const Override& override, toml::node& parent, const std::string& key) {
   if (toml::table* table = parent.as_table()) return *table;
   if (const toml::array* array = parent.as_array(); array != nullptr && !array->empty()) {
-    override.fail(fmt::format("{} follows an array", in_quotes(key)), fmt::format("an index, [0] to [{}], before it", array->size() - 1));
+    override.fail(fmt::format("{} follows an array", in_quotes(key)), fmt::format("an index, [0] to [{}], before it, or the name of an element", array->size() - 1));
   }
   override.fail(fmt::format("{} follows something that is not a table", in_quotes(key)), "a key that the scene has");
 }
 
+/// The element of an array that has this name: a block, a material, a measured point; null if none has.
+toml::node* named_element(toml::node& parent, const std::string& name) {
+  toml::array* array = parent.as_array();
+  for (std::size_t i = 0; array != nullptr && i < array->size(); ++i) {
+    const toml::table* table = array->get(i)->as_table();
+    if (table != nullptr && (*table)["name"].value<std::string>() == name) return array->get(i);
+  }
+  return nullptr;
+}
+
 toml::node& member(const Override& override, toml::node& parent, const std::string& key) {
+  if (toml::node* element = named_element(parent, key)) return *element;
   toml::table& table = as_table(override, parent, key);
   if (!table.contains(key)) table.insert_or_assign(key, std::move(*parse_value(override, "{}").get_as<toml::table>("value")));
   return *table.get(key);

@@ -46,6 +46,13 @@ TEST_CASE("overrides add what the file leaves out", "[scene][override]") {
   CHECK(read_text(block_on_base, {"end.time_s=1e-3"}).end_time == 1e-3);
 }
 
+TEST_CASE("elements of arrays go by their names, too", "[scene][override]") {
+  const Scene scene = read_text(block_on_base, {"material.rock.density_kg_per_m3=1234", "block.base.fixed=false"});
+  CHECK(scene.materials.at(0).density == 1234.0);
+  CHECK_FALSE(scene.blocks.at(0).fixed);
+  CHECK_THROWS_WITH(read_text(block_on_base, {"material.granite.density_kg_per_m3=1"}), ContainsSubstring("\"granite\" follows an array"));
+}
+
 TEST_CASE("a single word is a text with or without quotes", "[scene][override]") {
   CHECK(read_text(block_on_base, {"method.contact=shi"}).method.contact == "shi");
   CHECK(read_text(block_on_base, {"method.contact=\"shi\""}).method.contact == "shi");
@@ -79,7 +86,7 @@ TEST_CASE("overrides of keys that are not known", "[scene][override]") {
 TEST_CASE("overrides of elements that are not there", "[scene][override]") {
   CHECK(error_of("joint[1].cohesion_pa=1") == "--set joint[1].cohesion_pa: there is no [1]; accepted: [0] to [0]");
   CHECK(error_of("block[1].vertices_m[4]=[0, 0]") == "--set block[1].vertices_m[4]: there is no [4]; accepted: [0] to [3]");
-  CHECK(error_of("joint.cohesion_pa=1") == "--set joint.cohesion_pa: \"cohesion_pa\" follows an array; accepted: an index, [0] to [0], before it");
+  CHECK(error_of("joint.cohesion_pa=1") == "--set joint.cohesion_pa: \"cohesion_pa\" follows an array; accepted: an index, [0] to [0], before it, or the name of an element");
   CHECK(error_of("method[0]=1") == "--set method[0]: [0] follows something that is not an array; accepted: a key that the scene has");
   CHECK(error_of("block[0].name.x=1") == "--set block[0].name.x: \"x\" follows something that is not a table; accepted: a key that the scene has");
   CHECK_THAT(error_of("load[0].force_n=[1, 1]"), ContainsSubstring("--set load[0].force_n: [0] follows something that is not an array"));

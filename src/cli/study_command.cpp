@@ -1,0 +1,67 @@
+#include "study_command.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "case_options.h"
+#include "openclose/core/error.h"
+#include "openclose/integrator/registry.h"
+#include "openclose/io/progress.h"
+#include "openclose/study/study.h"
+
+namespace openclose {
+namespace {
+
+struct StudyOptions {
+  CaseOptions cases;
+  std::vector<double> steps;
+  std::vector<std::string> contacts;
+  std::string quantity;
+  std::optional<double> reference;
+};
+
+int study_command(const StudyOptions& options) {
+  StudyOrder order;
+  order.cases = case_order(options.cases, "run", "study");
+  // What is timed must not share a processor.
+  if (options.cases.jobs == 0) order.cases.jobs = 1;
+  order.overrides = options.cases.overrides;
+  order.steps = options.steps;
+  order.contacts = options.contacts;
+  order.quantity = options.quantity;
+  order.reference = options.reference;
+  Study study;
+  {
+    Progress progress("study", options.cases.quiet);
+    study = make_study(order, [&](double fraction) { progress.update(fraction); });
+  }
+  write_files(study_files(study, order.cases.folder));
+  print_case_warnings(study.warnings);
+  if (!options.cases.quiet) fmt::print("{}written to {}/study.csv and study.svg\n", study_table(study), order.cases.folder);
+  const bool all_ended = std::ranges::all_of(study.rows, [](const StudyRow& row) { return row.status == exit_success; });
+  return all_ended ? exit_success : exit_not_converged;
+}
+
+}  // namespace
+
+void add_study(CLI::App& app, std::function<int()>& chosen) {
+  const auto options = std::make_shared<StudyOptions>();
+  CLI::App* study =
+      app.add_subcommand("study", "run a scene with several time steps and contacts: error, observed order and run time of one of its quantities");
+  add_case_options(*study, options->cases);
+  study->add_option("--dt", options->steps, "time steps [s], e.g. 1e-2,5e-3,2.5e-3")->required()->delimiter(',')->check(CLI::PositiveNumber);
+  std::vector<std::string> names;
+  for (const auto& entry : enforcements()) names.emplace_back(entry.name);
+  study->add_option("--contact", options->contacts, "contact enforcements, e.g. soft,hard,dem (default: the scene's)")
+      ->delimiter(',')
+      ->check(CLI::IsMember(names));
+  study->add_option("--quantity", options->quantity,
+                    "what is compared at the end: POINT.displacement_m or another column of history.csv, energy.kinetic_j, largest_displacement_m "
+                    "(default: displacement of the first measured point, else the largest of a block)");
+  study->add_option("--reference", options->reference, "exact value, if it is known (default: Richardson's limit, or the smallest step)");
+  study->callback([options, &chosen] { chosen = [options] { return study_command(*options); }; });
+}
+
+}  // namespace openclose

@@ -1,0 +1,181 @@
+#include "openclose/study/cases.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "openclose/core/error.h"
+#include "openclose/io/output_folder.h"
+#include "openclose/scene/check.h"
+#include "openclose/scene/reader.h"
+#include "openclose/scene/writer.h"
+#include "openclose/version.h"
+
+extern char** environ;
+
+namespace openclose {
+namespace {
+
+/// Stands in the folder of a case that has come to its end, whatever that was.
+constexpr const char* mark_name = "case.txt";
+
+/// FNV-1a (G. Fowler, L. C. Noll, K.-P. Vo): tells scenes apart; nobody forges one here.
+std::uint64_t fingerprint(const std::string& text) {
+  std::uint64_t hash = 14695981039346656037u;
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211u;
+  return hash;
+}
+
+std::string text_of(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+std::string last_line(const std::string& text) {
+  const std::size_t end = text.find_last_not_of('\n');
+  if (end == std::string::npos) return "";
+  const std::size_t begin = text.rfind('\n', end);
+  return text.substr(begin == std::string::npos ? 0 : begin + 1, end - (begin == std::string::npos ? 0 : begin + 1) + 1);
+}
+
+class Runner {
+ public:
+  Runner(const CaseOrder& order, const std::vector<Case>& cases, const std::function<void(std::size_t, const CaseResult&)>& done)
+      : order_(order), cases_(cases), done_(done), results_(cases.size()) {
+    std::set<std::string> names;
+    // All of them first: a wrong value among the last must not be found after an hour.
+    for (const Case& one : cases) {
+      if (!names.insert(one.name).second) throw InputError({one.name, 0}, "", "two cases have the same values", "different values");
+      const Scene scene = read_scene(order.scene_file, one.overrides);
+      check_scene(scene);
+      marks_.push_back(fmt::format("openclose {} {} {:016x}\n", version, order.command, fingerprint(write_scene(scene))));
+    }
+  }
+
+  std::vector<CaseResult> run() {
+    std::error_code error;
+    std::filesystem::create_directories(order_.folder, error);
+    if (error || access(order_.folder.c_str(), W_OK | X_OK) != 0)
+      throw InputError({order_.folder, 0}, "", "cannot write to this folder", "-o with a folder that exists or can be made, and may be written to");
+    std::size_t next = 0;
+    while (next < cases_.size() || !running_.empty()) {
+      while (next < cases_.size() && running_.size() < static_cast<std::size_t>(order_.jobs)) start(next++);
+      if (!running_.empty()) wait_for_one();
+    }
+    return std::move(results_);
+  }
+
+ private:
+  std::string folder_of(std::size_t i) const { return order_.folder + "/" + cases_[i].name; }
+  std::string path_of(std::size_t i, const char* name) const { return folder_of(i) + "/" + name; }
+  std::string log_of(std::size_t i) const { return folder_of(i) + ".log"; }
+
+  void start(std::size_t i) {
+    if (text_of(path_of(i, mark_name)).starts_with(marks_[i])) {
+      results_[i].was_there = true;
+      take(i, std::stoi(text_of(path_of(i, mark_name)).substr(marks_[i].size())));
+      return;
+    }
+    std::error_code ignored;
+    std::filesystem::remove(path_of(i, mark_name), ignored);
+    std::vector<std::string> words = {order_.program, order_.command, order_.scene_file, "-q", "-o", folder_of(i)};
+    for (const std::string& assignment : cases_[i].overrides) words.insert(words.end(), {"--set", assignment});
+    std::vector<char*> arguments;
+    for (std::string& word : words) arguments.push_back(word.data());
+    arguments.push_back(nullptr);
+    posix_spawn_file_actions_t files;
+    posix_spawn_file_actions_init(&files);
+    posix_spawn_file_actions_addopen(&files, STDERR_FILENO, log_of(i).c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+    pid_t process = 0;
+    const int failed = posix_spawn(&process, order_.program.c_str(), &files, nullptr, arguments.data(), environ);
+    posix_spawn_file_actions_destroy(&files);
+    if (failed != 0) throw WriteError(order_.program, fmt::format("cannot be started: {}", std::generic_category().message(failed)));
+    running_.emplace(process, i);
+  }
+
+  void wait_for_one() {
+    int state = 0;
+    pid_t process = 0;
+    while ((process = waitpid(-1, &state, 0)) < 0 && errno == EINTR) continue;
+    const auto place = running_.find(process);
+    if (place == running_.end()) return;
+    const std::size_t i = place->second;
+    running_.erase(place);
+    const int status = WIFEXITED(state) ? WEXITSTATUS(state) : 128 + WTERMSIG(state);
+    if (status != exit_success) results_[i].message = last_line(text_of(log_of(i)));
+    std::error_code ignored;
+    std::filesystem::remove(log_of(i), ignored);
+    // What was broken off, or refused as input, is tried again another time.
+    if (status == exit_success || status == exit_not_converged) write_files({{path_of(i, mark_name), marks_[i] + std::to_string(status) + "\n"}});
+    take(i, status);
+  }
+
+  void take(std::size_t i, int status) {
+    CaseResult& result = results_[i];
+    result.status = status;
+    if (status == exit_success || status == exit_not_converged) {
+      result.summary = text_of(path_of(i, "summary.json"));
+      const nlohmann::json summary = nlohmann::json::parse(result.summary, nullptr, false);
+      if (!summary.is_object()) {
+        result.summary.clear();
+      } else if (status == exit_not_converged) {
+        result.message = summary.value("reason", "");
+      }
+    }
+    done_(i, result);
+  }
+
+  const CaseOrder& order_;
+  const std::vector<Case>& cases_;
+  const std::function<void(std::size_t, const CaseResult&)>& done_;
+  std::vector<std::string> marks_;
+  std::vector<CaseResult> results_;
+  std::map<pid_t, std::size_t> running_;
+};
+
+}  // namespace
+
+std::vector<CaseResult> run_cases(const CaseOrder& order, const std::vector<Case>& cases,
+                                  const std::function<void(std::size_t, const CaseResult&)>& done) {
+  return Runner(order, cases, done).run();
+}
+
+std::string this_program() {
+  return std::filesystem::read_symlink("/proc/self/exe").string();
+}
+
+std::string status_word(int status) {
+  switch (status) {
+    case exit_success:
+      return "success";
+    case exit_not_converged:
+      return "not converged";
+    case exit_bad_input:
+      return "bad input";
+    default:
+      return "broken off";
+  }
+}
+
+std::string folder_name(const std::vector<std::string>& overrides) {
+  std::string name;
+  for (const std::string& assignment : overrides) {
+    if (!name.empty()) name += ',';
+    for (const char c : assignment)
+      name += std::isalnum(static_cast<unsigned char>(c)) || std::string_view("._-=[]+").find(c) != std::string_view::npos ? c : '_';
+  }
+  return name;
+}
+
+}  // namespace openclose

@@ -1,0 +1,30 @@
+// What a quantity tends to as the time step goes to zero, and how fast.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace openclose {
+
+/// A quantity, computed with a step.
+struct Refinement {
+  double dt = 0.0;  ///< [s]
+  double value = 0.0;
+};
+
+struct Limit {
+  double value = 0.0;
+  double order = 0.0;  ///< with which it is approached
+};
+
+/// Richardson's extrapolation (L. F. Richardson, 1911) from the three smallest steps h1 > h2 > h3 with h1/h2 = h2/h3 = r: the value q(h) = q + C h^p
+/// gives r^p = (q1 - q2)/(q2 - q3) and q = q3 + (q3 - q2)/(r^p - 1). None if there are not three, their ratios differ, or the differences do not
+/// shrink at least by the half of what first order gives: then these steps say nothing of a limit.
+/// \param refinements  by falling steps
+std::optional<Limit> richardson_limit(std::span<const Refinement> refinements);
+
+/// Order between neighbouring steps, log(e1/e2) / log(h1/h2), where both errors are above zero; the first has none.
+std::vector<std::optional<double>> observed_orders(std::span<const double> steps, std::span<const double> errors);
+
+}  // namespace openclose

@@ -1,0 +1,176 @@
+#include "openclose/study/study.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "openclose/core/error.h"
+#include "openclose/scene/reader.h"
+#include "openclose/study/convergence.h"
+#include "openclose/study/plot.h"
+#include "openclose/study/quantity.h"
+
+namespace openclose {
+namespace {
+
+using nlohmann::json;
+
+/// [-] Ends that differ by more are not the same moment.
+constexpr double accuracy_of_end = 1e-9;
+
+std::string number_text(const std::optional<double>& value, int digits) {
+  return value ? fmt::format("{:.{}g}", *value, digits) : "";
+}
+
+std::vector<Case> cases_of(const StudyOrder& order) {
+  std::vector<Case> cases;
+  for (const std::string& contact : order.contacts) {
+    for (const double dt : order.steps) {
+      Case& one = cases.emplace_back();
+      one.overrides = {"method.contact=" + contact, fmt::format("step.dt_s={:.12g}", dt)};
+      // Their folder says what is different; what is the same in all is in scene_as_read.toml.
+      one.name = fmt::format("{},dt={:.12g}", contact, dt);
+      one.overrides.insert(one.overrides.end(), order.overrides.begin(), order.overrides.end());
+    }
+  }
+  return cases;
+}
+
+StudyRow row_of(const StudyOrder& order, const std::string& contact, double dt, const std::string& folder, const CaseResult& result) {
+  StudyRow row;
+  row.contact = contact;
+  row.dt = dt;
+  row.status = result.status;
+  row.message = result.message;
+  if (result.summary.empty()) return row;
+  const json summary = json::parse(result.summary);
+  row.cpu = summary.at("cpu_s").at("start").get<double>() + summary.at("cpu_s").at("motion").get<double>();
+  row.steps = summary.at("counters").at("steps").get<long>();
+  row.end_time = summary.at("time_s").get<double>();
+  if (result.status == exit_success) row.value = quantity_in(folder, order.quantity);
+  return row;
+}
+
+/// Errors and orders of the rows of one method.
+StudyLimit judge(std::span<StudyRow> rows, const std::optional<double>& reference) {
+  StudyLimit limit{rows.front().contact, reference, "the given value"};
+  std::vector<Refinement> found;
+  std::vector<StudyRow*> judged;
+  for (StudyRow& row : rows) {
+    if (!row.value) continue;
+    found.push_back({row.dt, *row.value});
+    judged.push_back(&row);
+  }
+  bool is_finest = false;
+  if (!reference && !found.empty()) {
+    const std::optional<Limit> richardson = richardson_limit(found);
+    is_finest = !richardson;
+    limit.value = richardson ? richardson->value : found.back().value;
+    limit.how = richardson ? fmt::format("Richardson's extrapolation from the three smallest steps, order {:.3g}", richardson->order)
+                           : std::string("the smallest step");
+  }
+  if (found.empty()) return {limit.contact, std::nullopt, "no run came to its end"};
+  std::vector<double> steps, errors;
+  for (StudyRow* row : judged) {
+    if (is_finest && row == judged.back()) continue;
+    row->error = std::abs(*row->value - *limit.value);
+    steps.push_back(row->dt);
+    errors.push_back(*row->error);
+  }
+  const auto orders = observed_orders(steps, errors);
+  for (std::size_t i = 0; i < orders.size(); ++i) judged[i]->order = orders[i];
+  return limit;
+}
+
+std::vector<std::string> warnings_of(const Study& study) {
+  std::vector<std::string> warnings;
+  std::optional<double> end;
+  for (const StudyRow& row : study.rows) {
+    if (row.status != exit_success) {
+      warnings.push_back(fmt::format("{} at dt = {:g} s: {}: {}", row.contact, row.dt, status_word(row.status), row.message));
+      continue;
+    }
+    if (!row.value) warnings.push_back(fmt::format("{} at dt = {:g} s has no {}", row.contact, row.dt, study.quantity));
+    if (!end) end = row.end_time;
+    if (std::abs(row.end_time - *end) > accuracy_of_end * std::abs(*end))
+      warnings.push_back(fmt::format("{} at dt = {:g} s ends at {:.9g} s, others at {:.9g} s: choose steps that divide end.time_s", row.contact,
+                                     row.dt, row.end_time, *end));
+  }
+  for (std::size_t i = 1; i < study.rows.size(); ++i) {
+    const StudyRow &a = study.rows[i - 1], &b = study.rows[i];
+    if (a.contact == b.contact && a.value && b.value && a.steps == b.steps)
+      warnings.push_back(
+          fmt::format("{} took as many steps at dt = {:g} s as at {:g} s: the scene or the method allows no longer ones", b.contact, b.dt, a.dt));
+  }
+  return warnings;
+}
+
+}  // namespace
+
+Study make_study(StudyOrder order, const std::function<void(double)>& progress) {
+  std::ranges::sort(order.steps, std::greater());
+  if (std::ranges::adjacent_find(order.steps) != order.steps.end())
+    throw InputError({"study", 0}, "--dt", "a step is named twice", "different steps in seconds");
+  // As the first case, so that steps and ends may come from the command line alone.
+  std::vector<std::string> overrides = {fmt::format("step.dt_s={:.12g}", order.steps.front())};
+  overrides.insert(overrides.end(), order.overrides.begin(), order.overrides.end());
+  const Scene scene = read_scene(order.cases.scene_file, overrides);
+  if (scene.end_time <= 0.0) throw InputError(scene.where, "end.time_s", "missing, or 0", "an end time > 0 in seconds, here or with --end");
+  if (order.contacts.empty()) order.contacts = {scene.method.contact};
+  if (order.quantity.empty()) order.quantity = usual_quantity(scene);
+  require_quantity(order.quantity, scene);
+
+  const std::vector<Case> cases = cases_of(order);
+  std::size_t done = 0;
+  const auto results = run_cases(order.cases, cases,
+                                 [&](std::size_t, const CaseResult&) { progress(static_cast<double>(++done) / static_cast<double>(cases.size())); });
+  Study study;
+  study.quantity = order.quantity;
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    study.rows.push_back(row_of(order, order.contacts[i / order.steps.size()], order.steps[i % order.steps.size()],
+                                order.cases.folder + "/" + cases[i].name, results[i]));
+  }
+  for (std::size_t m = 0; m < order.contacts.size(); ++m)
+    study.limits.push_back(judge(std::span(study.rows).subspan(m * order.steps.size(), order.steps.size()), order.reference));
+  study.warnings = warnings_of(study);
+  return study;
+}
+
+std::vector<TextFile> study_files(const Study& study, const std::string& folder) {
+  std::string rows = "contact,dt_s,quantity,value,reference,error,observed_order,cpu_s,steps,end_time_s,status\n";
+  Plot errors{"Error", "time step [s]", "error of " + study.quantity, true, true, {}},
+      cost{"Cost", "error of " + study.quantity, "CPU time [s]", true, true, {}};
+  for (const StudyLimit& limit : study.limits) {
+    PlotSeries error{limit.contact, {}}, price{limit.contact, {}};
+    for (const StudyRow& row : study.rows) {
+      if (row.contact != limit.contact) continue;
+      rows += fmt::format("{},{:.17g},{},{},{},{},{},{:.6g},{},{:.17g},{}\n", row.contact, row.dt, study.quantity, number_text(row.value, 17),
+                          number_text(limit.value, 17), number_text(row.error, 17), number_text(row.order, 6), row.cpu, row.steps, row.end_time,
+                          status_word(row.status));
+      if (!row.error) continue;
+      error.points.push_back({row.dt, *row.error, {}, false});
+      price.points.push_back({*row.error, row.cpu, {}, false});
+    }
+    errors.series.push_back(error);
+    cost.series.push_back(price);
+  }
+  std::vector<std::string> notes;
+  for (const StudyLimit& limit : study.limits) notes.push_back(fmt::format("{}: {} ({})", limit.contact, number_text(limit.value, 9), limit.how));
+  return {{folder + "/study.csv", rows}, {folder + "/study.svg", svg_plots("Convergence of " + study.quantity, notes, {errors, cost})}};
+}
+
+std::string study_table(const Study& study) {
+  std::string text = fmt::format("{:<8} {:>11} {:>16} {:>11} {:>7} {:>10}\n", "contact", "dt [s]", study.quantity, "error", "order", "CPU [s]");
+  for (const StudyRow& row : study.rows) {
+    text +=
+        fmt::format("{:<8} {:>11.6g} {:>16} {:>11} {:>7} {:>10.3g}\n", row.contact, row.dt,
+                    row.value ? number_text(row.value, 9) : status_word(row.status), number_text(row.error, 3), number_text(row.order, 3), row.cpu);
+  }
+  for (const StudyLimit& limit : study.limits)
+    text += fmt::format("{}: errors against {}, {}\n", limit.contact, limit.value ? number_text(limit.value, 9) : "nothing", limit.how);
+  return text;
+}
+
+}  // namespace openclose

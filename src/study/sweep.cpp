@@ -1,0 +1,177 @@
+#include "openclose/study/sweep.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "openclose/core/error.h"
+#include "openclose/scene/reader.h"
+#include "openclose/study/plot.h"
+#include "openclose/study/quantity.h"
+
+namespace openclose {
+namespace {
+
+using nlohmann::json;
+
+std::string value_of(const std::string& assignment) {
+  return assignment.substr(assignment.find('=') + 1);
+}
+
+std::optional<double> as_number(const std::string& text) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+/// A text with a comma or a quote in quotes.
+std::string field(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
+std::string number_at(const json& summary, const char* key) {
+  const auto place = summary.find(key);
+  return place == summary.end() || !place->is_number() ? "" : fmt::format("{:.17g}", place->get<double>());
+}
+
+/// Columns of the answer, and what a case has in them.
+class Answers {
+ public:
+  Answers(const SweepOrder& order) : order_(order), is_factor_(order.cases.command == "fos") {}
+
+  std::string columns() const {
+    std::string text;
+    for (const Variation& variation : order_.variations) text += field(variation.key) + ",";
+    text += is_factor_ ? "factor_of_safety,failed_at,verdict,limit_analysis,failing_blocks,failing_area_m2,"
+                       : field(order_.quantity) + ",time_s,ended_by,";
+    return text + "warnings,cpu_s,status,message,folder\n";
+  }
+
+  std::string row(const Case& one, const CaseResult& result) const {
+    std::string text;
+    for (std::size_t k = 0; k < order_.variations.size(); ++k) text += field(value_of(one.overrides[k])) + ",";
+    const json summary = result.summary.empty() ? json::object() : json::parse(result.summary);
+    text += is_factor_ ? factor(summary) : motion(summary, one, result);
+    double cpu = 0.0;
+    if (summary.contains("cpu_s")) {
+      for (const json& part : summary.at("cpu_s")) cpu += part.get<double>();
+    }
+    text += fmt::format("{},{:.6g},{},{},{}\n", summary.contains("warnings") ? std::to_string(summary.at("warnings").size()) : "", cpu,
+                        status_word(result.status), field(result.message), field(one.name));
+    return text;
+  }
+
+  /// What is drawn: the factor, from its stable to its failed end, or the quantity.
+  std::optional<PlotPoint> point(const Case& one, const CaseResult& result) const {
+    if (result.summary.empty() || result.status != exit_success) return std::nullopt;
+    PlotPoint point;
+    if (is_factor_) {
+      const json bracket = json::parse(result.summary).at("bracket");
+      if (!bracket.at("stable").is_number()) return std::nullopt;
+      point.y = bracket.at("stable").get<double>();
+      if (bracket.at("failed").is_number()) point.high = bracket.at("failed").get<double>();
+      return point;
+    }
+    const std::optional<double> value = quantity_in(order_.cases.folder + "/" + one.name, order_.quantity);
+    if (!value) return std::nullopt;
+    point.y = *value;
+    return point;
+  }
+
+ private:
+  static std::string factor(const json& summary) {
+    if (!summary.contains("bracket")) return ",,,,,,";
+    const json& limit = summary.at("limit_analysis");
+    const json& failing = summary.at("failing_blocks");
+    return fmt::format("{},{},{},{},{},{},", number_at(summary, "factor_of_safety"), number_at(summary.at("bracket"), "failed"),
+                       summary.at("verdict").get<std::string>(), limit.is_object() ? number_at(limit, "factor") : "", failing.at("number").get<int>(),
+                       number_at(failing, "area_m2"));
+  }
+
+  std::string motion(const json& summary, const Case& one, const CaseResult& result) const {
+    std::optional<double> value;
+    if (result.status == exit_success) value = quantity_in(order_.cases.folder + "/" + one.name, order_.quantity);
+    return fmt::format("{},{},{},", value ? fmt::format("{:.17g}", *value) : "", number_at(summary, "time_s"), summary.value("ended_by", ""));
+  }
+
+  const SweepOrder& order_;
+  bool is_factor_;
+};
+
+/// Over the first key whose values are numbers, a curve for each combination of the others; empty if no key has numbers.
+std::string picture(const SweepOrder& order, const Answers& answers, const std::vector<Case>& cases, const std::vector<CaseResult>& results) {
+  const auto is_numeric = [](const Variation& v) {
+    return std::ranges::all_of(v.values, [](const std::string& s) { return as_number(s).has_value(); });
+  };
+  const auto place = std::ranges::find_if(order.variations, is_numeric);
+  if (place == order.variations.end()) return "";
+  const auto k = static_cast<std::size_t>(place - order.variations.begin());
+  const std::string quantity = order.cases.command == "fos" ? "factor of safety" : order.quantity;
+  Plot plot{"", place->key, quantity, false, false, {}};
+  std::map<std::string, std::size_t> series;
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    std::string name;
+    for (std::size_t other = 0; other < order.variations.size(); ++other) {
+      if (other != k) name += (name.empty() ? "" : ", ") + cases[i].overrides[other];
+    }
+    const auto [entry, is_new] = series.try_emplace(name, plot.series.size());
+    if (is_new) plot.series.push_back({name, {}});
+    std::optional<PlotPoint> point = answers.point(cases[i], results[i]);
+    if (!point) continue;
+    point->x = *as_number(value_of(cases[i].overrides[k]));
+    plot.series[entry->second].points.push_back(*point);
+  }
+  for (PlotSeries& one : plot.series) std::ranges::sort(one.points, {}, &PlotPoint::x);
+  const std::string note = order.cases.command == "fos" ? "Points: the largest factor proved stable; bars: to the smallest one proved to fail." : "";
+  return svg_plots(quantity + " of " + order.cases.scene_file, note.empty() ? std::vector<std::string>{} : std::vector{note}, {plot});
+}
+
+}  // namespace
+
+Sweep make_sweep(SweepOrder order, const std::function<void(double)>& progress) {
+  std::vector<Case> cases;
+  for (std::vector<std::string>& assignments : combinations(order.variations)) {
+    Case& one = cases.emplace_back();
+    one.name = folder_name(assignments);
+    one.overrides = std::move(assignments);
+    one.overrides.insert(one.overrides.end(), order.overrides.begin(), order.overrides.end());
+  }
+  const Scene scene = read_scene(order.cases.scene_file, cases.front().overrides);
+  if (order.cases.command == "run") {
+    if (order.quantity.empty()) order.quantity = usual_quantity(scene);
+    require_quantity(order.quantity, scene);
+  }
+  const Answers answers(order);
+  const std::string table = order.cases.folder + "/sweep.csv";
+  std::vector<std::string> rows(cases.size());
+  const auto text = [&] {
+    std::string all = answers.columns();
+    for (const std::string& row : rows) all += row;
+    return all;
+  };
+  Sweep sweep;
+  sweep.cases = cases.size();
+  std::size_t done = 0;
+  const auto results = run_cases(order.cases, cases, [&](std::size_t i, const CaseResult& result) {
+    rows[i] = answers.row(cases[i], result);
+    sweep.were_there += result.was_there;
+    sweep.found += result.status == exit_success;
+    if (result.status != exit_success) sweep.warnings.push_back(fmt::format("{}: {}: {}", cases[i].name, status_word(result.status), result.message));
+    if (!result.was_there) write_files({{table, text()}});
+    progress(static_cast<double>(++done) / static_cast<double>(cases.size()));
+  });
+  sweep.files.push_back({table, text()});
+  const std::string drawing = picture(order, answers, cases, results);
+  if (!drawing.empty()) sweep.files.push_back({order.cases.folder + "/sweep.svg", drawing});
+  return sweep;
+}
+
+}  // namespace openclose

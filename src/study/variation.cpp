@@ -1,0 +1,96 @@
+#include "openclose/study/variation.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <optional>
+
+#include "openclose/core/error.h"
+
+namespace openclose {
+namespace {
+
+constexpr const char* accepted_form = "KEY=FROM:TO:STEP or KEY=A,B,C, e.g. joint[0].friction_angle_deg=25:40:1";
+/// More cases than this are a mistake in a step.
+constexpr std::size_t most_cases = 100'000;
+/// [-] Of a step: rounding of the ends does not lose the last value.
+constexpr double rounding_of_steps = 1e-6;
+
+std::optional<double> number_in(const std::string& text) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+/// Split where no bracket and no quote is open.
+std::vector<std::string> split(const std::string& text, char separator) {
+  std::vector<std::string> parts(1);
+  int depth = 0;
+  bool quoted = false;
+  for (const char c : text) {
+    if (c == '"') quoted = !quoted;
+    if (c == '[' || c == '{') ++depth;
+    if (c == ']' || c == '}') --depth;
+    if (c == separator && depth == 0 && !quoted) {
+      parts.emplace_back();
+    } else {
+      parts.back() += c;
+    }
+  }
+  return parts;
+}
+
+std::vector<std::string> stepped(const std::string& text, const std::vector<std::string>& parts) {
+  const auto from = number_in(parts[0]), to = number_in(parts[1]), step = number_in(parts[2]);
+  if (!from || !to || !step) throw InputError({"--vary " + text, 0}, "", "FROM, TO and STEP are not all numbers", accepted_form);
+  const double steps = (*to - *from) / *step;
+  if (*step == 0.0 || steps < 0.0) throw InputError({"--vary " + text, 0}, "", "the step does not lead from FROM to TO", accepted_form);
+  if (steps > static_cast<double>(most_cases))
+    throw InputError({"--vary " + text, 0}, "", fmt::format("{:.3g} values", steps), fmt::format("at most {}", most_cases));
+  std::vector<std::string> values;
+  for (int i = 0; i <= steps + rounding_of_steps; ++i) values.push_back(fmt::format("{:.12g}", *from + i * *step));
+  return values;
+}
+
+}  // namespace
+
+Variation variation_from(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
+    throw InputError({"--vary " + text, 0}, "", "this does not say which values a key gets", accepted_form);
+  Variation variation{text.substr(0, equals), {}};
+  const std::string list = text.substr(equals + 1);
+  const std::vector<std::string> parts = split(list, ':');
+  if (parts.size() == 3) {
+    variation.values = stepped(text, parts);
+  } else if (parts.size() == 1) {
+    variation.values = split(list, ',');
+    for (const std::string& value : variation.values) {
+      if (value.empty()) throw InputError({"--vary " + text, 0}, "", "a value is empty", accepted_form);
+    }
+  } else {
+    throw InputError({"--vary " + text, 0}, "", "this is no range", accepted_form);
+  }
+  return variation;
+}
+
+std::vector<std::vector<std::string>> combinations(const std::vector<Variation>& variations) {
+  std::vector<std::vector<std::string>> list(1);
+  for (const Variation& variation : variations) {
+    if (list.size() * variation.values.size() > most_cases)
+      throw InputError({"--vary", 0}, "", "too many combinations of values", fmt::format("at most {} cases", most_cases));
+    std::vector<std::vector<std::string>> longer;
+    for (const auto& assignments : list) {
+      for (const std::string& value : variation.values) {
+        longer.push_back(assignments);
+        longer.back().push_back(variation.key + "=" + value);
+      }
+    }
+    list = std::move(longer);
+  }
+  return list;
+}
+
+}  // namespace openclose

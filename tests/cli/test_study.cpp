@@ -1,0 +1,135 @@
+// `study` and `sweep`: many runs of one scene, against closed forms.
+#include <filesystem>
+#include <map>
+#include <numbers>
+#include <string>
+
+#include "cli/command.h"
+#include "support/catch.h"
+
+using Catch::Matchers::ContainsSubstring;
+using Catch::Matchers::StartsWith;
+using openclose::test::CommandResult;
+using openclose::test::fields_of;
+using openclose::test::lines_of;
+using openclose::test::text_of;
+using openclose::test::Workplace;
+
+namespace {
+
+constexpr double degree = std::numbers::pi / 180.0;
+
+std::vector<std::map<std::string, std::string>> rows_of(const std::string& path) {
+  const auto lines = lines_of(path);
+  const auto columns = fields_of(lines.at(0));
+  std::vector<std::map<std::string, std::string>> rows;
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    const auto fields = fields_of(lines[i]);
+    auto& row = rows.emplace_back();
+    for (std::size_t k = 0; k < columns.size() && k < fields.size(); ++k) row[columns[k]] = fields[k];
+  }
+  return rows;
+}
+
+}  // namespace
+
+TEST_CASE("sweep finds tan(phi)/tan(slope) for every friction angle, and does not run it twice", "[cli][sweep]") {
+  const Workplace place(openclose::test::block_on_incline(20.0));
+  const std::string command = "sweep scene.toml --vary joint[0].friction_angle_deg=25:35:5 --set joint[0].cohesion_pa=0 -o out";
+  const CommandResult result = place.run(command);
+  CHECK(result.status == 0);
+  CHECK_THAT(result.out, ContainsSubstring("3 of 3 cases have an answer; written to out/sweep.csv and sweep.svg"));
+  const auto rows = rows_of(place.folder() / "out/sweep.csv");
+  REQUIRE(rows.size() == 3);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const double angle = 25.0 + 5.0 * static_cast<double>(i);
+    CHECK(std::stod(rows[i].at("joint[0].friction_angle_deg")) == angle);
+    CHECK(std::stod(rows[i].at("factor_of_safety")) == Approx(std::tan(angle * degree) / std::tan(20.0 * degree)).epsilon(2e-4));
+    CHECK(rows[i].at("verdict") == "certified");
+    CHECK(rows[i].at("status") == "success");
+  }
+  const auto written = [&] { return std::filesystem::last_write_time(place.folder() / "out/joint[0].friction_angle_deg=30/summary.json"); };
+  const auto before = written();
+  CHECK_THAT(place.run(command).out, ContainsSubstring("(3 were there)"));
+  CHECK(written() == before);
+  // More values: only these are run. Another scene: all.
+  CHECK_THAT(place.run("sweep scene.toml --vary joint[0].friction_angle_deg=25:40:5 --set joint[0].cohesion_pa=0 -o out").out,
+             ContainsSubstring("4 of 4 cases have an answer (3 were there)"));
+  CHECK_THAT(place.run("sweep scene.toml --vary joint[0].friction_angle_deg=25:35:5 --set joint[0].cohesion_pa=1 -o out").out,
+             ContainsSubstring("3 of 3 cases have an answer; written"));
+  CHECK(written() != before);
+}
+
+TEST_CASE("sweep goes on where it was broken off", "[cli][sweep]") {
+  const Workplace place(openclose::test::block_on_incline(20.0));
+  const std::string command = "sweep scene.toml --vary joint[0].friction_angle_deg=25:35:5 -j 1 -o out";
+  REQUIRE(place.run(command).status == 0);
+  // As a case leaves it that was killed: without its mark.
+  std::filesystem::remove(place.folder() / "out/joint[0].friction_angle_deg=30/case.txt");
+  std::filesystem::remove(place.folder() / "out/sweep.csv");
+  CHECK_THAT(place.run(command).out, ContainsSubstring("(2 were there)"));
+  CHECK(rows_of(place.folder() / "out/sweep.csv").size() == 3);
+}
+
+TEST_CASE("sweep of run has a quantity, and names the case that does not come to its end", "[cli][sweep]") {
+  const Workplace place(openclose::test::block_on_incline(40.0));
+  const CommandResult result = place.run(
+      "sweep scene.toml --command run --vary step.dt_s=0.001,0.002 --vary method.contact=soft,hard --end 0.1 --set method.start=unloaded "
+      "--quantity block.displacement_m -o out");
+  CHECK(result.status == 0);
+  const auto rows = rows_of(place.folder() / "out/sweep.csv");
+  REQUIRE(rows.size() == 4);
+  // Half of g (sin - cos tan(phi)) t^2, to which the springs add their closure.
+  for (const auto& row : rows) {
+    CHECK(std::stod(row.at("block.displacement_m")) > 0.0);
+    CHECK(std::stod(row.at("time_s")) == Approx(0.1));
+  }
+  const CommandResult refused =
+      place.run("sweep scene.toml --command run --vary method.start=settled,unloaded --set step.dt_s=0.001 --end 0.01 -o other");
+  CHECK(refused.status == 1);
+  CHECK_THAT(refused.out, ContainsSubstring("1 of 2 cases have an answer"));
+  REQUIRE(refused.errors.size() == 1);
+  CHECK_THAT(refused.errors[0], ContainsSubstring("method.start=settled: not converged: no static equilibrium"));
+}
+
+TEST_CASE("study measures errors against a known value, and their order", "[cli][study]") {
+  const Workplace place(openclose::test::block_on_incline(40.0));
+  const double exact = 0.5 * 9.81 * (std::sin(40.0 * degree) - std::cos(40.0 * degree) * std::tan(30.0 * degree)) * 0.2 * 0.2;
+  const CommandResult result = place.run("study scene.toml --dt 0.01,0.005,0.0025 --contact hard --end 0.2 --set joint[0].friction_angle_deg=30 --set method.start=unloaded --reference " +
+                                         std::to_string(exact) + " --quantity block.displacement_m -o out");
+  CHECK(result.status == 0);
+  CHECK_THAT(result.out, ContainsSubstring("observed") || ContainsSubstring("order"));
+  const auto rows = rows_of(place.folder() / "out/study.csv");
+  REQUIRE(rows.size() == 3);
+  for (const auto& row : rows) {
+    const double value = std::stod(row.at("value"));
+    CHECK(std::stod(row.at("error")) == Approx(std::abs(value - std::stod(row.at("reference")))));
+    CHECK(value == Approx(exact).epsilon(0.1));
+  }
+  CHECK(std::stol(rows[2].at("steps")) >= 80);
+  CHECK_THAT(text_of(place.folder() / "out/study.svg"), StartsWith("<svg ") && ContainsSubstring("the given value"));
+}
+
+TEST_CASE("study and sweep refuse in one line, and write nothing", "[cli][study][sweep]") {
+  const Workplace place(openclose::test::block_on_incline(30.0));
+  const auto refused = [&](const std::string& arguments, const std::string& message) {
+    INFO(arguments);
+    const CommandResult result = place.run(arguments + " -o out");
+    CHECK(result.status == 2);
+    CHECK(result.out.empty());
+    REQUIRE(result.errors.size() == 1);
+    CHECK_THAT(result.errors[0], StartsWith("openclose: ") && ContainsSubstring(message));
+    CHECK_FALSE(std::filesystem::exists(place.folder() / "out"));
+  };
+  refused("sweep scene.toml --vary joint[0].friction_angle_deg=25:", "this is no range");
+  refused("sweep scene.toml", "--vary");
+  refused("sweep scene.toml --vary joint[0].friction_angle_deg=25,95", "95");
+  refused("sweep scene.toml --vary joint[0].friction=25,30", "friction");
+  refused("sweep scene.toml --vary joint[0].friction_angle_deg=25,25", "the same values");
+  refused("sweep nothing.toml --vary joint[0].friction_angle_deg=25,30", "nothing.toml");
+  refused("study scene.toml --dt 0.01,0.005", "end.time_s");
+  refused("study scene.toml --end 1 --dt 0.01,0.01", "twice");
+  refused("study scene.toml --end 1 --dt 0.01 --contact sof", "sof");
+  refused("study scene.toml --end 1 --dt 0.01 --quantity nowhere.displacement_m", "is no quantity");
+  refused("study scene.toml --end 1", "--dt");
+}

@@ -1,0 +1,52 @@
+// Limits and orders of sequences whose limits and orders are known.
+#include <cmath>
+
+#include "openclose/study/convergence.h"
+#include "support/catch.h"
+
+using namespace openclose;
+
+namespace {
+
+/// q(h) = 3 + C h^p
+std::vector<Refinement> sequence(double order, double factor, std::vector<double> steps) {
+  std::vector<Refinement> list;
+  for (const double h : steps) list.push_back({h, 3.0 + factor * std::pow(h, order)});
+  return list;
+}
+
+}  // namespace
+
+TEST_CASE("Richardson's extrapolation finds the limit and the order of a power law", "[study]") {
+  for (const double order : {1.0, 1.5, 2.0, 4.0}) {
+    for (const double factor : {2.0, -0.7}) {
+      for (const double ratio : {2.0, 3.0}) {
+        INFO(order << ' ' << factor << ' ' << ratio);
+        const auto limit = richardson_limit(sequence(order, factor, {0.4, 0.1 * ratio * ratio, 0.1 * ratio, 0.1}));
+        REQUIRE(limit);
+        CHECK(limit->value == Approx(3.0).epsilon(1e-9));
+        CHECK(limit->order == Approx(order).epsilon(1e-6));
+      }
+    }
+  }
+}
+
+TEST_CASE("steps that say nothing of a limit give none", "[study]") {
+  CHECK_FALSE(richardson_limit(sequence(1.0, 1.0, {0.2, 0.1})));
+  CHECK_FALSE(richardson_limit(sequence(1.0, 1.0, {0.3, 0.2, 0.1})));
+  CHECK_FALSE(richardson_limit(sequence(0.2, 1.0, {0.4, 0.2, 0.1})));
+  // To and fro, away, and no change at all.
+  CHECK_FALSE(richardson_limit(std::vector<Refinement>{{0.4, 1.0}, {0.2, 2.0}, {0.1, 1.5}}));
+  CHECK_FALSE(richardson_limit(std::vector<Refinement>{{0.4, 1.0}, {0.2, 1.1}, {0.1, 1.4}}));
+  CHECK_FALSE(richardson_limit(std::vector<Refinement>{{0.4, 1.0}, {0.2, 1.0}, {0.1, 1.0}}));
+}
+
+TEST_CASE("observed orders are those between neighbouring steps", "[study]") {
+  const std::vector<double> steps = {0.4, 0.2, 0.05, 0.025, 0.0125}, errors = {0.16, 0.04, 0.01, 0.0, 1e-9};
+  const auto orders = observed_orders(steps, errors);
+  CHECK_FALSE(orders[0]);
+  CHECK(orders[1].value() == Approx(2.0));
+  CHECK(orders[2].value() == Approx(1.0));
+  CHECK_FALSE(orders[3]);
+  CHECK_FALSE(orders[4]);
+}
