@@ -1,5 +1,6 @@
 # The front door. Needs nothing but make; what else is missing, the targets install. Settings: JOBS=2 (processes), PYTHON=/path/to/python3,
-# BENCH=quick (make bench with fewer sizes, steps and repeats) or long (with more), SEED=1 COUNT=20 PART=all METHODS='soft dem' (make stress), MINUTES=10 (make fuzz, each reader).
+# PREFIX=/usr/local and DESTDIR (make install, make uninstall), BENCH=quick (make bench with fewer sizes, steps and repeats) or long (with more),
+# SEED=1 COUNT=20 PART=all METHODS='soft dem' (make stress), MINUTES=10 (make fuzz, each reader).
 
 JOBS ?= $(shell nproc)
 export JOBS PYTHON
@@ -11,6 +12,7 @@ VERIFY := $(BUILD)/verification/openclose-verify
 CONVERGENCE := $(BUILD)/verification/openclose-convergence
 PAPER_RESULTS := results/paper
 BENCH ?= full
+PREFIX ?= /usr/local
 SEED ?= 1
 COUNT ?= 20
 PART ?= all
@@ -19,10 +21,10 @@ COMPARISON := $(PAPER_RESULTS)/comparison.csv
 NULL_SOLVER := results/verify-null-solver.txt
 
 .DEFAULT_GOAL := help
-.PHONY: help build test verify reproduce convergence stress regression bench bench-peers sanitize compilers fuzz mutants clean verify-vtk verify-page packages clang-packages vtk-packages page-packages stress-packages figure-packages bench-packages peer-packages
+.PHONY: help build test verify reproduce convergence stress regression bench bench-peers sanitize compilers fuzz mutants clean verify-vtk verify-page verify-install install uninstall packages clang-packages vtk-packages page-packages shell-packages stress-packages figure-packages bench-packages peer-packages
 
 help: ## print the targets
-	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(firstword $(MAKEFILE_LIST)) | while read -r target text; do printf '  make %-11s %s\n' "$$target" "$$text"; done
+	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(firstword $(MAKEFILE_LIST)) | while read -r target text; do printf '  make %-14s %s\n' "$$target" "$$text"; done
 
 build: packages ## install missing packages, configure and compile everything (build/release)
 	@scripts/build release
@@ -49,6 +51,16 @@ verify-vtk: build vtk-packages ## read the files for ParaView with VTK and compa
 
 verify-page: build page-packages ## click through the page of results in a headless browser and compare it with the tables; installs chromium, which is large
 	/usr/bin/python3 tests/page/click_through.py $(OPENCLOSE)
+
+verify-install: build shell-packages ## install into a folder of its own, use it as a person and as a program would, and remove it again
+	/usr/bin/python3 tests/install/try_installation.py .
+
+install: build ## install the command, its manual pages and completions, libraries, headers and a CMake package (PREFIX=/usr/local)
+	cmake --install $(BUILD) --prefix "$(PREFIX)" >/dev/null
+	@echo "installed into $(DESTDIR)$(PREFIX); make uninstall removes it"
+
+uninstall: ## remove what the last make install has put in place
+	@cmake -DMANIFEST=$(BUILD)/install_manifest.txt -P cmake/uninstall.cmake
 
 reproduce: figure-packages $(COMPARISON) ## build, run the paper's examples, draw the figures and print the comparison (results/paper)
 	$(if $(comparison_printed),,@"$${PYTHON:-python3}" paper/reproduce.py --print-only --results $(PAPER_RESULTS))
@@ -105,6 +117,9 @@ clang-packages:
 
 vtk-packages:
 	@scripts/install-packages build vtk
+
+shell-packages:
+	@scripts/install-packages build shells
 
 page-packages:
 	@scripts/install-packages build page

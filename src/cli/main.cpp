@@ -27,6 +27,7 @@
 #include "openclose/scene/writer.h"
 #include "openclose/version.h"
 #include "report_command.h"
+#include "shell_commands.h"
 #include "stop_signal.h"
 #include "study_command.h"
 #include "sweep_command.h"
@@ -549,6 +550,7 @@ int main_checked(int argc, char** argv) {
   add_report(app, chosen);
   add_study(app, chosen);
   add_sweep(app, chosen);
+  add_shell_commands(app, chosen);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& e) {

@@ -37,11 +37,6 @@ std::vector<std::string> known_names(NameIn list) {
   return names;
 }
 
-std::vector<std::string> accepted_words(const KeyEntry& entry) {
-  if (entry.names) return known_names(*entry.names);
-  return {entry.words.begin(), entry.words.end()};
-}
-
 std::string accepted_names(const KeyEntry& entry) {
   std::vector<std::string> quoted;
   for (const std::string& word : accepted_words(entry)) quoted.push_back(in_quotes(word));
@@ -172,6 +167,11 @@ std::string explained(const KeyEntry& entry) {
 }
 
 }  // namespace
+
+std::vector<std::string> accepted_words(const KeyEntry& entry) {
+  if (entry.names) return known_names(*entry.names);
+  return {entry.words.begin(), entry.words.end()};
+}
 
 std::string keys_page() {
   std::string page =

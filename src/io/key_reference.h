@@ -3,8 +3,14 @@
 #pragma once
 
 #include <string>
+#include <vector>
+
+#include "openclose/scene/keys.h"
 
 namespace openclose {
+
+/// The words that a key accepts, those of registries included; empty if it accepts something else.
+std::vector<std::string> accepted_words(const KeyEntry& entry);
 
 /// Markdown: every key with unit, default, what is accepted and what it does.
 std::string keys_page();
