@@ -7,6 +7,8 @@
 #include <filesystem>
 #include <thread>
 
+#include "machine_output.h"
+
 namespace openclose {
 
 void add_case_options(CLI::App& app, CaseOptions& options) {
@@ -21,6 +23,7 @@ void add_case_options(CLI::App& app, CaseOptions& options) {
       ->check(CLI::Range(1, 1024));
   app.add_option("-o,--output", options.folder, "folder with the table, the picture and a folder for each case; what is there is not run again");
   app.add_flag("-q,--quiet", options.quiet, "print nothing but warnings and errors");
+  add_json_flag(app, options.json, options.quiet);
 }
 
 CaseOrder case_order(const CaseOptions& options, const std::string& command, const std::string& kind) {

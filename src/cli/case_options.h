@@ -14,7 +14,7 @@ struct CaseOptions {
   std::string folder;
   std::vector<std::string> overrides;
   int jobs = 0;
-  bool quiet = false;
+  bool quiet = false, json = false;
 };
 
 void add_case_options(CLI::App& app, CaseOptions& options);

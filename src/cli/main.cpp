@@ -9,6 +9,7 @@
 #include <new>
 #include <optional>
 
+#include "machine_output.h"
 #include "openclose/analysis/spectrum.h"
 #include "openclose/analysis/strength_reduction.h"
 #include "openclose/core/parallel.h"
@@ -49,6 +50,7 @@ struct Options {
   std::vector<std::string> overrides;
   bool quiet = false;
   mutable std::string work;  ///< what the memory is needed for, should there be too little
+  bool json = false;
 };
 
 void print_warnings(const std::vector<std::string>& warnings) {
@@ -385,6 +387,15 @@ int check_command(const Options& options) {
   double area = 0.0, free_area = 0.0;
   for (const auto& block : system.blocks()) area += block.area;
   for (const int b : system.free_blocks()) free_area += system.block(b).area;
+  if (options.json) {
+    nlohmann::ordered_json found = {
+        {"scene", options.scene_file}, {"blocks", system.block_count()},           {"free_blocks", system.free_count()},         {"area_m2", area},
+        {"free_area_m2", free_area},   {"contacts", simulation.contacts().size()}, {"method", simulation.scene().method.contact}};
+    if (simulation.is_explicit() && std::isfinite(simulation.critical_step())) found["critical_step_s"] = simulation.critical_step();
+    if (!options.spectrum_file.empty()) write_spectrum(simulation, options.spectrum_file);
+    print_json(exit_success, found);
+    return exit_success;
+  }
   fmt::print("{}: {} blocks, {} of them free, {:.6g} m2 ({:.6g} m2 free); {} contacts within reach at the start; method {}\n", options.scene_file,
              system.block_count(), system.free_count(), area, free_area, simulation.contacts().size(), simulation.scene().method.contact);
   if (simulation.is_explicit()) {
@@ -418,6 +429,17 @@ int cut_command(const Options& options) {
     throw InputError({file, 0}, "", "the scene and its drawing cannot be the same file", "another name with --svg");
   }
   write_files({{file, "# Blocks that openclose has cut.\n" + write_scene(loaded.scene)}, {drawing, svg_drawing(picture_of(loaded.scene))}});
+  if (options.json) {
+    print_json(exit_success, {{"scene", options.scene_file},
+                              {"blocks", cutting.blocks},
+                              {"traces", cutting.traces},
+                              {"area_m2", cutting.area},
+                              {"domain_area_m2", cutting.domain_area},
+                              {"smallest_block_m2", cutting.smallest_block},
+                              {"slivers_merged", cutting.slivers_merged},
+                              {"dangling_ends", cutting.dangling_ends},
+                              {"written", {file, drawing}}});
+  }
   if (options.quiet) return exit_success;
   const auto fixed = std::count_if(loaded.scene.blocks.begin(), loaded.scene.blocks.end(), [](const BlockInput& block) { return block.fixed; });
   fmt::print("{}: {} blocks cut by {} traces, {:.9g} m2 (domain {:.9g} m2), smallest {:.3g} m2; {} of {} blocks fixed\n", options.scene_file,
@@ -434,6 +456,8 @@ int draw_command(const Options& options) {
     throw InputError({file, 0}, "-o", "a drawing would be written over what is no drawing", "a name that ends in .svg");
   const Picture picture = picture_of_results(options.results, options.drawing);
   write_files({{file, svg_drawing(picture)}});
+  if (options.json)
+    print_json(exit_success, {{"results", options.results}, {"blocks", picture.blocks.size()}, {"notes", picture.notes}, {"written", {file}}});
   if (!options.quiet) fmt::print("{}: {} blocks drawn; {}; written to {}\n", options.results, picture.blocks.size(), picture.notes.front(), file);
   return exit_success;
 }
@@ -453,6 +477,7 @@ int explain_command(const Options& options) {
 
 void add_quiet(CLI::App& app, Options& options) {
   app.add_flag("-q,--quiet", options.quiet, "print nothing but warnings and errors");
+  add_json_flag(app, options.json, options.quiet);
 }
 
 /// "soft (springs ...), hard (...)" from the entries of a registry.
@@ -517,6 +542,12 @@ CLI::App* add_explain(CLI::App& app, Options& options) {
   return explain;
 }
 
+int report_failure(int status, const std::string& message, bool json) {
+  fmt::print(stderr, "openclose: {}\n", message);
+  if (json) print_json_error(status, message);
+  return status;
+}
+
 int main_checked(int argc, char** argv) {
   CLI::App app{
       "Openclose: 2-D block systems of jointed rock and masonry. Exit status: 0 success, 1 not converged (state saved), 2 bad input (nothing "
@@ -545,6 +576,7 @@ int main_checked(int argc, char** argv) {
   cut->add_option("-o,--output", options.blocks_file, "scene file to write (default: results/<name of the scene>/blocks.toml)");
   cut->add_option("--svg", options.drawing_file, "drawing to write (default: beside the scene file, .svg)");
   add_quiet(*cut, options);
+  add_json_flag(*check, options.json, options.quiet);
   add_draw(app, options)->callback([&command] { command = &draw_command; });
   add_explain(app, options)->callback([&command] { command = &explain_command; });
   add_report(app, chosen);
@@ -560,14 +592,14 @@ int main_checked(int argc, char** argv) {
     if (app.get_subcommands().empty()) {
       for (const CLI::App* sub : app.get_subcommands({})) names += (names.empty() ? "; accepted: " : ", ") + sub->get_name();
     }
-    fmt::print(stderr, "openclose: {}{}; see openclose --help\n", e.what(), names);
-    return exit_bad_input;
+    return report_failure(exit_bad_input, fmt::format("{}{}; see openclose --help", e.what(), names), wants_json(argc, argv));
   }
   try {
-    return chosen ? chosen() : command(options);
+    const int status = chosen ? chosen() : command(options);
+    if (options.json && (command == &run_command || command == &fos_command)) print_json_results(status, output_folder(options).path());
+    return status;
   } catch (const std::bad_alloc&) {
-    fmt::print(stderr, "openclose: out of memory{}{}\n", options.work.empty() ? "" : ": ", options.work);
-    return exit_broken_off;
+    return report_failure(exit_broken_off, "out of memory" + (options.work.empty() ? "" : ": " + options.work), wants_json(argc, argv));
   }
 }
 
@@ -580,16 +612,12 @@ int main(int argc, char** argv) {
   try {
     return openclose::main_checked(argc, argv);
   } catch (const openclose::InputError& e) {
-    fmt::print(stderr, "openclose: {}\n", e.what());
-    return openclose::exit_bad_input;
+    return openclose::report_failure(openclose::exit_bad_input, e.what(), openclose::wants_json(argc, argv));
   } catch (const openclose::Stopped&) {
-    fmt::print(stderr, "openclose: stopped before there was a state to go on from\n");
-    return openclose::exit_status_of_stop();
+    return openclose::report_failure(openclose::exit_status_of_stop(), "stopped before there was a state to go on from", openclose::wants_json(argc, argv));
   } catch (const openclose::WriteError& e) {
-    fmt::print(stderr, "openclose: {}\n", e.what());
-    return openclose::exit_broken_off;
+    return openclose::report_failure(openclose::exit_broken_off, e.what(), openclose::wants_json(argc, argv));
   } catch (const std::exception& e) {
-    fmt::print(stderr, "openclose: internal error: {}\n", e.what());
-    return openclose::exit_broken_off;
+    return openclose::report_failure(openclose::exit_broken_off, fmt::format("internal error: {}", e.what()), openclose::wants_json(argc, argv));
   }
 }

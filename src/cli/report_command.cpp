@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "machine_output.h"
 #include "openclose/core/error.h"
 #include "openclose/io/output_folder.h"
 #include "openclose/report/report.h"
@@ -18,7 +19,7 @@ struct ReportOptions {
   std::string results;
   std::string file;
   double most_mb = 100.0;
-  bool quiet = false;
+  bool quiet = false, json = false;
 };
 
 int report_command(const ReportOptions& options) {
@@ -28,6 +29,13 @@ int report_command(const ReportOptions& options) {
     throw InputError({file, 0}, "-o", "a page would be written over what is no page", "a name that ends in .html");
   const Report report = report_of_results(options.results, {static_cast<std::size_t>(options.most_mb * bytes_per_mb)});
   write_files({{file, report.html}});
+  if (options.json)
+    print_json(exit_success, {{"results", options.results},
+                              {"answer", report.answer},
+                              {"states", report.states},
+                              {"states_left_out", report.left_out},
+                              {"states_without_contacts", report.without_contacts},
+                              {"written", {file}}});
   if (options.quiet) return exit_success;
   fmt::print("{}: page of {} states{}{}; written to {}\n", options.results, report.states, report.answer.empty() ? "" : "; ", report.answer, file);
   if (report.left_out + report.without_contacts > 0)
@@ -47,6 +55,7 @@ void add_report(CLI::App& app, std::function<int()>& chosen) {
   report->add_option("--most-mb", options->most_mb, "size of the page above which contacts and states are left out, evenly [MB] (default: 100)")
       ->check(CLI::Range(1.0, 2000.0));
   report->add_flag("-q,--quiet", options->quiet, "print nothing but warnings and errors");
+  add_json_flag(*report, options->json, options->quiet);
   report->callback([options, &chosen] { chosen = [options] { return report_command(*options); }; });
 }
 

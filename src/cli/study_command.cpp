@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "case_options.h"
+#include "machine_output.h"
 #include "openclose/core/error.h"
 #include "openclose/integrator/registry.h"
 #include "openclose/io/progress.h"
@@ -37,11 +38,25 @@ int study_command(const StudyOptions& options) {
     Progress progress("study", options.cases.quiet);
     study = make_study(order, [&](double fraction) { progress.update(fraction); });
   }
-  write_files(study_files(study, order.cases.folder));
+  const std::vector<TextFile> files = study_files(study, order.cases.folder);
+  write_files(files);
   print_case_warnings(study.warnings);
   if (!options.cases.quiet) fmt::print("{}written to {}/study.csv and study.svg\n", study_table(study), order.cases.folder);
   const bool all_ended = std::ranges::all_of(study.rows, [](const StudyRow& row) { return row.status == exit_success; });
-  return all_ended ? exit_success : exit_not_converged;
+  const int status = all_ended ? exit_success : exit_not_converged;
+  if (options.cases.json) {
+    nlohmann::ordered_json limits = nlohmann::ordered_json::array();
+    for (const StudyLimit& limit : study.limits) {
+      limits.push_back({{"contact", limit.contact}, {"value", nullptr}, {"how", limit.how}});
+      if (limit.value) limits.back()["value"] = *limit.value;
+    }
+    print_json(status, {{"folder", order.cases.folder},
+                        {"quantity", study.quantity},
+                        {"limits", limits},
+                        {"rows", json_of_table(files.front().text)},
+                        {"warnings", study.warnings}});
+  }
+  return status;
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "case_options.h"
+#include "machine_output.h"
 #include "openclose/core/error.h"
 #include "openclose/io/progress.h"
 #include "openclose/study/sweep.h"
@@ -39,7 +40,16 @@ int sweep_command(const SweepOptions& options) {
     if (sweep.were_there > 0) fmt::print(" ({} were there)", sweep.were_there);
     fmt::print("; written to {}{}\n", sweep.files.front().path, sweep.files.size() > 1 ? " and sweep.svg" : "");
   }
-  return sweep.found == sweep.cases ? exit_success : exit_not_converged;
+  const int status = sweep.found == sweep.cases ? exit_success : exit_not_converged;
+  if (options.cases.json) {
+    print_json(status, {{"folder", order.cases.folder},
+                        {"cases", sweep.cases},
+                        {"found", sweep.found},
+                        {"were_there", sweep.were_there},
+                        {"rows", json_of_table(sweep.files.front().text)},
+                        {"warnings", sweep.warnings}});
+  }
+  return status;
 }
 
 }  // namespace

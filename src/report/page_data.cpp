@@ -404,8 +404,8 @@ class PageData {
     page["energy"] = curves_in(path_of("energy.csv"), "", {});
     page["contact_history"] = curves_in(path_of("contact_history.csv"), "contact", {}, {"normal_force_n"});
     page["curve"] = curves_in(path_of("curve.csv"), "point", {}, {"displacement_m"});
-    page["trials"] = rows_in(path_of("trials.csv"));
-    page["milestones"] = rows_in(path_of("milestones.csv"));
+    page["trials"] = json(rows_in(path_of("trials.csv")));
+    page["milestones"] = json(rows_in(path_of("milestones.csv")));
   }
 
   std::string folder_;

@@ -22,26 +22,6 @@ constexpr std::size_t most_curves = 12;
 /// [bytes] Of the scene as it was read; a longer one is shown without its blocks.
 constexpr std::size_t longest_scene = 200'000;
 
-/// The fields of a line, of which some may be quoted.
-std::vector<std::string> fields_of(const std::string& line) {
-  std::vector<std::string> fields(1);
-  bool quoted = false;
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    if (line[i] == '"') {
-      if (quoted && i + 1 < line.size() && line[i + 1] == '"') {
-        fields.back() += line[++i];
-      } else {
-        quoted = !quoted;
-      }
-    } else if (line[i] == ',' && !quoted) {
-      fields.emplace_back();
-    } else {
-      fields.back() += line[i];
-    }
-  }
-  return fields;
-}
-
 std::optional<double> number_or_none(const std::string& field) {
   double value = 0.0;
   const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
@@ -59,10 +39,10 @@ struct Curves {
     std::ifstream file(path);
     std::string line;
     if (!std::getline(file, line)) return;
-    columns = fields_of(line);
+    columns = csv_fields(line);
     const auto key_place = static_cast<std::size_t>(std::ranges::find(columns, key) - columns.begin());
     while (std::getline(file, line)) {
-      const std::vector<std::string> fields = fields_of(line);
+      const std::vector<std::string> fields = csv_fields(line);
       if (fields.size() != columns.size()) continue;
       const std::string name = key_place < fields.size() ? fields[key_place] : std::string();
       auto [place, is_new] = rows.try_emplace(name);
@@ -108,15 +88,38 @@ std::string without_blocks(const std::string& text, std::size_t& blocks) {
 
 }  // namespace
 
-TextTable::TextTable(const std::string& path) {
-  std::ifstream file(path);
+std::vector<std::string> csv_fields(const std::string& line) {
+  std::vector<std::string> fields(1);
+  bool quoted = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    if (line[i] == '"') {
+      if (quoted && i + 1 < line.size() && line[i + 1] == '"') {
+        fields.back() += line[++i];
+      } else {
+        quoted = !quoted;
+      }
+    } else if (line[i] == ',' && !quoted) {
+      fields.emplace_back();
+    } else {
+      fields.back() += line[i];
+    }
+  }
+  return fields;
+}
+
+TextTable::TextTable(std::istream& table) {
   std::string line;
-  if (!std::getline(file, line)) return;
-  columns = fields_of(line);
-  while (std::getline(file, line)) {
-    std::vector<std::string> fields = fields_of(line);
+  if (!std::getline(table, line)) return;
+  columns = csv_fields(line);
+  while (std::getline(table, line)) {
+    std::vector<std::string> fields = csv_fields(line);
     if (fields.size() == columns.size()) rows.push_back(std::move(fields));
   }
+}
+
+TextTable::TextTable(const std::string& path) {
+  std::ifstream file(path);
+  *this = TextTable(file);
 }
 
 std::size_t TextTable::column(const std::string& name) const {
@@ -169,17 +172,28 @@ json curves_in(const std::string& path, const std::string& key, const std::vecto
   return {{"columns", curves.columns}, {"every", every}, {"curves", list}, {"curves_in_table", curves.names.size()}};
 }
 
-json rows_in(const std::string& path) {
-  const TextTable table(path);
-  json list = json::array();
+nlohmann::ordered_json rows_in(std::istream& lines) {
+  using nlohmann::ordered_json;
+  const TextTable table(lines);
+  ordered_json list = ordered_json::array();
   for (const std::vector<std::string>& fields : table.rows) {
-    json& row = list.emplace_back();
+    ordered_json& row = list.emplace_back();
     for (std::size_t k = 0; k < fields.size(); ++k) {
       const std::optional<double> number = number_or_none(fields[k]);
-      row[table.columns[k]] = number ? json(*number) : json(fields[k]);
+      ordered_json& value = row[table.columns[k]];
+      if (number) {
+        value = *number;
+      } else if (!fields[k].empty()) {
+        value = fields[k];
+      }
     }
   }
   return list;
+}
+
+nlohmann::ordered_json rows_in(const std::string& path) {
+  std::ifstream file(path);
+  return rows_in(file);
 }
 
 json scene_text(const std::string& path) {

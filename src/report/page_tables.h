@@ -1,6 +1,7 @@
 // The tables of results that the page draws as curves, and the scene as it was read.
 #pragma once
 
+#include <iosfwd>
 #include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <string>
@@ -13,11 +14,15 @@ namespace openclose {
 template <typename Number>
 std::string packed(std::span<const Number> numbers);
 
+/// The fields of a line of a table, of which some may be quoted.
+std::vector<std::string> csv_fields(const std::string& line);
+
 /// A small table as text; a row that was not written to its end is left out.
 struct TextTable {
   std::vector<std::string> columns;
   std::vector<std::vector<std::string>> rows;
 
+  explicit TextTable(std::istream& table);
   /// Empty where the file is not there.
   explicit TextTable(const std::string& path);
   /// Place of a column, or the number of columns.
@@ -32,8 +37,9 @@ struct TextTable {
 nlohmann::json curves_in(const std::string& path, const std::string& key, const std::vector<std::string>& names,
                          const std::vector<std::string>& by_size = {});
 
-/// The rows of a small table, as a list of objects; numbers where a field is one.
-nlohmann::json rows_in(const std::string& path);
+/// The rows of a small table, as a list of objects: numbers where a field is one, null where it is empty.
+nlohmann::ordered_json rows_in(std::istream& table);
+nlohmann::ordered_json rows_in(const std::string& path);
 
 /// The scene as it was read, without its blocks where they are many: {"text", "blocks_left_out"}.
 nlohmann::json scene_text(const std::string& path);

@@ -160,7 +160,7 @@ function addMilestones(parent, milestones) {
   for (const name of ["displacement [m]", "time [s]", "CPU [s]", ""]) element("th", { textContent: name }, head);
   for (const m of milestones) {
     const row = element("tr", {}, table);
-    for (const text of [number(m.displacement_m), m.time_s === "" ? "not reached" : number(m.time_s), m.cpu_s === "" ? "" : number(m.cpu_s, 3), m.reason]) element("td", { textContent: text }, row);
+    for (const text of [number(m.displacement_m), m.time_s === null ? "not reached" : number(m.time_s), m.cpu_s === null ? "" : number(m.cpu_s, 3), m.reason || ""]) element("td", { textContent: text }, row);
   }
 }
 
