@@ -61,29 +61,7 @@ std::string keys_for_explain() {
   return joined(keys);
 }
 
-std::string bash_script(const CommandTree& tree) {
-  std::string options, words;
-  for (const CommandEntry& command : tree.commands) {
-    const CommandOption* argument = argument_words(command);
-    options += fmt::format("    {}) options={}; arguments={} ;;\n", command.name, in_single_quotes(joined(names_of(command.options))),
-                           takes_key(command) ? "\"$keys\"" : in_single_quotes(argument ? joined(argument->words) : ""));
-    for (const CommandOption& option : command.options) {
-      if (option.is_argument || !option.has_value) continue;
-      std::string action = "files=1";
-      if (!option.words.empty()) {
-        action = "choices=" + in_single_quotes(joined(option.words));
-      } else if (option.value == Value::assignment) {
-        action = "choices=$assignable; compopt -o nospace";
-      } else if (option.value == Value::other) {
-        action = "files=";
-      }
-      for (const std::string& name : option.names) words += fmt::format("    {}:{}) {} ;;\n", command.name, name, action);
-    }
-  }
-  std::string assignable;
-  for (const std::string& key : assignable_keys()) assignable += key + "= ";
-  // Keys have a "=" in them, at which bash breaks words: what is before it in the line belongs to the word.
-  return fmt::format(R"(# bash completion of openclose, made by: openclose completion bash
+constexpr const char* bash_template = R"(# bash completion of openclose, made by: openclose completion bash
 _openclose() {{
   local current previous command options arguments choices files=1 i
   local keys={keys}
@@ -117,8 +95,31 @@ _openclose() {{
   [ -z "$files" ] || compopt -o default
 }}
 complete -F _openclose openclose
-)",
-                     fmt::arg("keys", in_single_quotes(keys_for_explain())), fmt::arg("assignable", in_single_quotes(assignable)),
+)";
+
+std::string bash_script(const CommandTree& tree) {
+  std::string options, words;
+  for (const CommandEntry& command : tree.commands) {
+    const CommandOption* argument = argument_words(command);
+    options += fmt::format("    {}) options={}; arguments={} ;;\n", command.name, in_single_quotes(joined(names_of(command.options))),
+                           takes_key(command) ? "\"$keys\"" : in_single_quotes(argument ? joined(argument->words) : ""));
+    for (const CommandOption& option : command.options) {
+      if (option.is_argument || !option.has_value) continue;
+      std::string action = "files=1";
+      if (!option.words.empty()) {
+        action = "choices=" + in_single_quotes(joined(option.words));
+      } else if (option.value == Value::assignment) {
+        action = "choices=$assignable; compopt -o nospace";
+      } else if (option.value == Value::other) {
+        action = "files=";
+      }
+      for (const std::string& name : option.names) words += fmt::format("    {}:{}) {} ;;\n", command.name, name, action);
+    }
+  }
+  std::string assignable;
+  for (const std::string& key : assignable_keys()) assignable += key + "= ";
+  return fmt::format(fmt::runtime(bash_template), fmt::arg("keys", in_single_quotes(keys_for_explain())),
+                     fmt::arg("assignable", in_single_quotes(assignable)),
                      fmt::arg("commands", in_single_quotes(joined(names_of(tree.commands)) + " --help --version")), fmt::arg("options", options),
                      fmt::arg("words", words));
 }
