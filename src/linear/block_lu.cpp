@@ -24,6 +24,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <span>
 #include <utility>
@@ -65,7 +66,6 @@ constexpr double refined_to_rounding = std::numeric_limits<double>::epsilon();
 
 /// Rows of blocks are padded to four numbers, one register of four. The padding of products is that of their right factor; nobody reads it.
 constexpr int alignment = sizeof(Lanes);
-typedef double LooseLanes __attribute__((vector_size(alignment), aligned(sizeof(double)), may_alias));
 
 /// N x N, row by row.
 struct alignas(alignment) PaddedBlock {
@@ -190,8 +190,11 @@ OPENCLOSE_KERNEL void subtract_panel(Factor& f, int i, int panel, int* place) {
   }
 }
 
-OPENCLOSE_KERNEL const LooseLanes& lanes_at(const double* from) {
-  return *reinterpret_cast<const LooseLanes*>(from);
+/// By value: clang++ takes what a reference refers to for aligned in full.
+OPENCLOSE_KERNEL Lanes lanes_at(const double* from) {
+  Lanes numbers;
+  std::memcpy(&numbers, from, sizeof numbers);
+  return numbers;
 }
 
 /// A block of the matrix, column by column. The padding repeats the last column.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cstring>
 #include <numeric>
 #include <stdexcept>
 
@@ -16,8 +17,11 @@ constexpr int rows_of_a_part = 500;
 
 typedef double FourNumbers __attribute__((vector_size(4 * sizeof(double)), aligned(alignof(double))));
 
-OPENCLOSE_KERNEL const FourNumbers& load(const double* numbers) {
-  return *reinterpret_cast<const FourNumbers*>(numbers);
+/// By value: clang++ takes what a reference refers to for aligned in full.
+OPENCLOSE_KERNEL FourNumbers load(const double* numbers) {
+  FourNumbers loaded;
+  std::memcpy(&loaded, numbers, sizeof loaded);
+  return loaded;
 }
 
 /// Sum of the products of a row's blocks with x, column by column of each: the operations of Eigen in their order, three rows at a time.
