@@ -109,7 +109,9 @@ TEST_CASE("a settled start that does not exist ends the run with its reason", "[
   const RunResult result = run(simulation, observer);
   CHECK_FALSE(result.converged);
   CHECK(result.reason ==
-        "no static equilibrium to start from (displacement, limited by settle.failure_displacement_m); method.start = \"unloaded\" starts in motion");
+        "no static equilibrium to start from (displacement, limited by settle.failure_displacement_m): \"block\" slides along its joint with "
+        "\"base\" towards (0.77, -0.64) (friction above 40 degrees under its weight alone, cohesion_pa or a [[support]] would hold it); "
+        "method.start = \"unloaded\" starts in motion");
   CHECK(outputs == 1);
   CHECK(steps == 0);
   CHECK(result.warnings == std::vector<std::string>{"milestone 0.5 m not reached: the run had no state to start from",
