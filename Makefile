@@ -55,7 +55,8 @@ verify-page: build page-packages ## click through the page of results in a headl
 verify-install: build shell-packages ## install into a folder of its own, use it as a person and as a program would, and remove it again
 	/usr/bin/python3 tests/install/try_installation.py .
 
-install: build ## install the command, its manual pages and completions, libraries, headers and a CMake package (PREFIX=/usr/local)
+install: packages ## build and install the command, its manual pages and completions, libraries, headers and a CMake package (PREFIX=/usr/local)
+	@scripts/build release openclose openclose_manual
 	cmake --install $(BUILD) --prefix "$(PREFIX)" >/dev/null
 	@echo "installed into $(DESTDIR)$(PREFIX); make uninstall removes it"
 

@@ -359,11 +359,12 @@ class PageData {
   void add_cracks(const std::string& name, json& state) const {
     std::vector<std::vector<double>> rows;
     std::vector<std::int32_t> blocks;
-    double largest = 0.0;
+    double largest = 0.0, largest_opening = 0.0;
     cracks_.rows(name, [&](const Row& row) {
       std::vector<double> numbers;
       for (std::size_t k = 2; k < 10; ++k) numbers.push_back(number_in(row[k]));
-      for (std::size_t k = 4; k < 8; ++k) largest = std::max(largest, k < 6 ? numbers[k] : std::abs(numbers[k]));
+      largest_opening = std::max({largest_opening, numbers[4], numbers[5]});
+      largest = std::max({largest, largest_opening, std::abs(numbers[6]), std::abs(numbers[7])});
       rows.push_back(std::move(numbers));
       blocks.insert(blocks.end(), {index_of(row[0]), index_of(row[1])});
     });
@@ -377,7 +378,7 @@ class PageData {
       for (std::size_t k = 0; k < r.size(); ++k) kept.push_back(static_cast<float>(k < 4 ? r[k] - origin_[k % 2] : r[k]));
     }
     if (!kept.empty())
-      state["cracks"] = {{"blocks_i4", packed<std::int32_t>(kept_blocks)}, {"numbers_f4", packed<float>(kept)}, {"largest", largest}};
+      state["cracks"] = {{"blocks_i4", packed<std::int32_t>(kept_blocks)}, {"numbers_f4", packed<float>(kept)}, {"largest_opening", largest_opening}};
   }
 
   /// At large displacements the failed state is one of a motion, and no mechanism.

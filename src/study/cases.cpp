@@ -151,6 +151,13 @@ std::vector<CaseResult> run_cases(const CaseOrder& order, const std::vector<Case
   return Runner(order, cases, done).run();
 }
 
+void require_not_set(const std::vector<std::string>& overrides, const std::string& key, const std::string& option) {
+  for (const std::string& assignment : overrides) {
+    if (assignment.substr(0, assignment.find('=')) == key)
+      throw InputError({"--set " + assignment, 0}, "", fmt::format("{} has values of its own in every case", key), option + " alone for this key");
+  }
+}
+
 std::string this_program() {
   return std::filesystem::read_symlink("/proc/self/exe").string();
 }

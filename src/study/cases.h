@@ -34,6 +34,9 @@ struct CaseOrder {
 std::vector<CaseResult> run_cases(const CaseOrder& order, const std::vector<Case>& cases,
                                   const std::function<void(std::size_t, const CaseResult&)>& done);
 
+/// Throws InputError if one of these "KEY=VALUE" sets a key that has values of its own in every case.
+void require_not_set(const std::vector<std::string>& overrides, const std::string& key, const std::string& option);
+
 /// Path of the program that runs now.
 std::string this_program();
 

@@ -113,6 +113,8 @@ Study make_study(StudyOrder order, const std::function<void(double)>& progress) 
   std::ranges::sort(order.steps, std::greater());
   if (std::ranges::adjacent_find(order.steps) != order.steps.end())
     throw InputError({"study", 0}, "--dt", "a step is named twice", "different steps in seconds");
+  require_not_set(order.overrides, "step.dt_s", "--dt");
+  if (!order.contacts.empty()) require_not_set(order.overrides, "method.contact", "--contact");
   // As the first case, so that steps and ends may come from the command line alone.
   std::vector<std::string> overrides = {fmt::format("step.dt_s={:.12g}", order.steps.front())};
   overrides.insert(overrides.end(), order.overrides.begin(), order.overrides.end());

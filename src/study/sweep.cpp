@@ -137,6 +137,11 @@ std::string picture(const SweepOrder& order, const Answers& answers, const std::
 }  // namespace
 
 Sweep make_sweep(SweepOrder order, const std::function<void(double)>& progress) {
+  for (const Variation& variation : order.variations) {
+    require_not_set(order.overrides, variation.key, "--vary");
+    if (std::ranges::count(order.variations, variation.key, &Variation::key) > 1)
+      throw InputError({"--vary " + variation.key, 0}, "", "this key is varied twice", "each key once");
+  }
   std::vector<Case> cases;
   for (std::vector<std::string>& assignments : combinations(order.variations)) {
     Case& one = cases.emplace_back();

@@ -95,8 +95,10 @@ TEST_CASE("sweep of run has a quantity, and names the case that does not come to
 TEST_CASE("study measures errors against a known value, and their order", "[cli][study]") {
   const Workplace place(openclose::test::block_on_incline(40.0));
   const double exact = 0.5 * 9.81 * (std::sin(40.0 * degree) - std::cos(40.0 * degree) * std::tan(30.0 * degree)) * 0.2 * 0.2;
-  const CommandResult result = place.run("study scene.toml --dt 0.01,0.005,0.0025 --contact hard --end 0.2 --set joint[0].friction_angle_deg=30 --set method.start=unloaded --reference " +
-                                         std::to_string(exact) + " --quantity block.displacement_m -o out");
+  const CommandResult result = place.run(
+      "study scene.toml --dt 0.01,0.005,0.0025 --contact hard --end 0.2 --set joint[0].friction_angle_deg=30 --set method.start=unloaded "
+      "--reference " +
+      std::to_string(exact) + " --quantity block.displacement_m -o out");
   CHECK(result.status == 0);
   CHECK_THAT(result.out, ContainsSubstring("observed") || ContainsSubstring("order"));
   const auto rows = rows_of(place.folder() / "out/study.csv");
@@ -126,6 +128,10 @@ TEST_CASE("study and sweep refuse in one line, and write nothing", "[cli][study]
   refused("sweep scene.toml --vary joint[0].friction_angle_deg=25,95", "95");
   refused("sweep scene.toml --vary joint[0].friction=25,30", "friction");
   refused("sweep scene.toml --vary joint[0].friction_angle_deg=25,25", "the same values");
+  refused("sweep scene.toml --vary joint[0].friction_angle_deg=25 --set joint[0].friction_angle_deg=30", "--vary alone for this key");
+  refused("sweep scene.toml --vary joint[0].friction_angle_deg=25 --vary joint[0].friction_angle_deg=30", "varied twice");
+  refused("study scene.toml --end 1 --dt 0.01 --set step.dt_s=0.1", "--dt alone for this key");
+  refused("study scene.toml --end 1 --dt 0.01 --contact soft --set method.contact=dem", "--contact alone for this key");
   refused("sweep nothing.toml --vary joint[0].friction_angle_deg=25,30", "nothing.toml");
   refused("study scene.toml --dt 0.01,0.005", "end.time_s");
   refused("study scene.toml --end 1 --dt 0.01,0.01", "twice");

@@ -160,8 +160,8 @@ function drawKey(view) {
     key.addLine(colours.open, 3, "open");
   }
   const contacts = view.results.contacts(view.state), cracks = view.results.cracks(view.state);
-  if (view.layers.forces && contacts) key.addLine(colours.force, view.widestLine, forceText(view.forceScale()));
-  if (view.layers.openings && cracks && cracks.largest > 0) key.addLine(colours.open, view.widestLine, `largest opening or slip ${lengthText(cracks.largest)}`);
+  if (view.layers.forces && contacts) key.addLine(colours.force, view.widestLine, `force ${forceText(view.forceScale())}`);
+  if (view.layers.openings && cracks && cracks.largestOpening > 0 && !view.isMechanism) key.addLine(colours.open, view.widestLine, `largest opening ${lengthText(cracks.largestOpening)}`);
   if (view.layers.symbols) {
     if (symbols.some((symbol) => symbol.kind === "load")) key.addLine(colours.load, 2.4, "load");
     if (symbols.some((symbol) => symbol.kind === "support")) key.addLine(colours.support, 2.4, "support");

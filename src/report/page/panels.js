@@ -1,5 +1,8 @@
 // The values of what was clicked, the curves below the player, and the scene.
 
+/** Places in the coordinates of a survey lie a million metres from its origin. */
+const PLACE_DIGITS = 10;
+
 /** Columns of a curve, unpacked. */
 function columnsOf(table, curve) {
   const columns = {};
@@ -40,7 +43,7 @@ function blockRows(view, table, b) {
     return;
   }
   const names = ["x", "y"], origin = [ox, oy];
-  for (const k of [0, 1]) addRow(table, `centroid ${names[k]}`, number(origin[k] + results.centroids[2 * b + k] + motion[3 * b + k]), "m", `${names[k]}_m`);
+  for (const k of [0, 1]) addRow(table, `centroid ${names[k]}`, number(origin[k] + results.centroids[2 * b + k] + motion[3 * b + k], PLACE_DIGITS), "m", `${names[k]}_m`);
   for (const k of [0, 1]) addRow(table, `displacement ${names[k]}`, number(motion[3 * b + k]), "m", `displacement_${names[k]}_m`);
   addRow(table, "displacement", number(Math.hypot(motion[3 * b], motion[3 * b + 1])), "m", "displacement_m");
   addRow(table, "rotation", number(motion[3 * b + 2]), "rad", "rotation_rad");
@@ -58,8 +61,8 @@ function contactRows(view, table, k) {
   if (c.normalForce > 0) addRow(table, "inclination of the force", number((Math.atan2(Math.abs(c.shearForce), c.normalForce) * 180) / Math.PI, 4), "\u00b0 from the normal", "inclination_deg");
   addRow(table, "gap (open above 0)", number(c.gap), "m", "gap_m");
   addRow(table, "tributary length", number(c.length), "m", "length_m");
-  addRow(table, "x", number(ox + c.x), "m", "x_m");
-  addRow(table, "y", number(oy + c.y), "m", "y_m");
+  addRow(table, "x", number(ox + c.x, PLACE_DIGITS), "m", "x_m");
+  addRow(table, "y", number(oy + c.y, PLACE_DIGITS), "m", "y_m");
 }
 
 /** A picture of curves with a choice of what they show. */

@@ -112,7 +112,7 @@ class Results {
       const packed = state.cracks;
       if (!packed) return null;
       const blocks = unpack.i4(packed.blocks_i4);
-      return { count: blocks.length / 2, blocks, numbers: unpack.f4(packed.numbers_f4), largest: packed.largest };
+      return { count: blocks.length / 2, blocks, numbers: unpack.f4(packed.numbers_f4), largestOpening: packed.largest_opening };
     });
   }
 

@@ -118,13 +118,20 @@ class View {
   /** [px] Of the median free block. */
   get blockSize() { return this.results.size * this.scale; }
 
+  /** What the colours show of this state: what it has not falls back to the materials. */
+  get shownColour() {
+    if (this.colour === "velocity" && !this.results.velocity(this.state)) return "material";
+    if (this.colour === "contacts" && !this.results.contacts(this.state)) return "material";
+    return this.colour;
+  }
+
   /** What the colours tell: {quantity, largest} of a number, or {names} of classes. */
   key() {
     const state = this.results.states[this.state];
-    if (this.colour === "material") return { names: this.results.materials };
-    if (this.colour === "contacts") return { names: TOUCH_NAMES };
+    if (this.shownColour === "material") return { names: this.results.materials };
+    if (this.shownColour === "contacts") return { names: TOUCH_NAMES };
     const isFilm = state.time_s !== undefined;
-    if (this.colour === "velocity") {
+    if (this.shownColour === "velocity") {
       const largest = isFilm ? this.results.largestVelocity : state.largest_velocity || 0;
       return { quantity: this.isMechanism ? "velocity / that of the fastest point" : "velocity [m/s]", largest };
     }
@@ -135,13 +142,13 @@ class View {
 
   findClasses() {
     const { results, classes } = this;
-    const touched = this.colour === "contacts" ? this.touchedBlocks() : null;
-    const triples = this.colour === "velocity" ? results.velocity(this.state) : this.colour === "displacement" ? this.motion : null;
+    const touched = this.shownColour === "contacts" ? this.touchedBlocks() : null;
+    const triples = this.shownColour === "velocity" ? results.velocity(this.state) : this.shownColour === "displacement" ? this.motion : null;
     const largest = this.key().largest || Infinity;
     for (let b = 0; b < results.count; ++b) {
       if (results.fixed[b]) classes[b] = FIXED_CLASS;
       else if (touched) classes[b] = touched[b];
-      else if (this.colour === "material") classes[b] = results.material[b] % results.data.colours.fills.length;
+      else if (this.shownColour === "material") classes[b] = results.material[b] % results.data.colours.fills.length;
       else classes[b] = triples ? Math.min(COLOUR_STEPS, Math.round((COLOUR_STEPS * Math.hypot(triples[3 * b], triples[3 * b + 1])) / largest)) : 0;
     }
   }
@@ -281,7 +288,7 @@ class View {
   drawOpenings() {
     const cracks = this.results.cracks(this.state);
     this.drawSized(this.results.data.colours.open, 0.8, (line) =>
-      this.eachHalfCrack(cracks, (from, to, opening) => { if (opening > 0) line(opening / cracks.largest, ...from, ...to); }));
+      this.eachHalfCrack(cracks, (from, to, opening) => { if (opening > 0) line(opening / cracks.largestOpening, ...from, ...to); }));
   }
 
   drawForces() {
