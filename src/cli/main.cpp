@@ -614,7 +614,8 @@ int main(int argc, char** argv) {
   } catch (const openclose::InputError& e) {
     return openclose::report_failure(openclose::exit_bad_input, e.what(), openclose::wants_json(argc, argv));
   } catch (const openclose::Stopped&) {
-    return openclose::report_failure(openclose::exit_status_of_stop(), "stopped before there was a state to go on from", openclose::wants_json(argc, argv));
+    return openclose::report_failure(openclose::exit_status_of_stop(), "stopped before there was a state to go on from",
+                                     openclose::wants_json(argc, argv));
   } catch (const openclose::WriteError& e) {
     return openclose::report_failure(openclose::exit_broken_off, e.what(), openclose::wants_json(argc, argv));
   } catch (const std::exception& e) {

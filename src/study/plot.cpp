@@ -155,7 +155,7 @@ std::string svg_plots(const std::string& title, const std::vector<std::string>& 
                height = head + plot_height + key_line * static_cast<double>(most_series) + 12.0;
   page.print(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" viewBox=\"0 0 {0:.0f} {1:.0f}\" "
-      "font-family=\"sans-serif\">\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n",
+      "font-family=\"sans-serif\">\n<!-- drawn by openclose -->\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n",
       width, height);
   page.write(20.0, 30.0, title, 18.0, " font-weight=\"bold\"");
   for (std::size_t i = 0; i < notes.size(); ++i) page.write(20.0, 30.0 + line_height * static_cast<double>(i + 1), notes[i], 13.0, " fill=\"#333\"");

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <charconv>
+#include <filesystem>
+#include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -42,6 +44,17 @@ std::string number_at(const json& summary, const char* key) {
   return place == summary.end() || !place->is_number() ? "" : fmt::format("{:.17g}", place->get<double>());
 }
 
+/// With which every table of a sweep ends its heading, whatever its keys are.
+constexpr const char* last_columns = "warnings,cpu_s,status,message,folder";
+
+/// Throws InputError if a file stands where the table is to be written that no sweep has written.
+void require_own_table(const std::string& path) {
+  std::ifstream file(path);
+  std::string heading;
+  if (!file || !std::getline(file, heading) || heading.ends_with(last_columns)) return;
+  throw InputError({path, 0}, "", "is there and is no table of a sweep", "-o with another folder");
+}
+
 /// Columns of the answer, and what a case has in them.
 class Answers {
  public:
@@ -52,7 +65,7 @@ class Answers {
     for (const Variation& variation : order_.variations) text += field(variation.key) + ",";
     text += is_factor_ ? "factor_of_safety,failed_at,verdict,limit_analysis,failing_blocks,failing_area_m2,"
                        : field(order_.quantity) + ",time_s,ended_by,";
-    return text + "warnings,cpu_s,status,message,folder\n";
+    return text + last_columns + "\n";
   }
 
   std::string row(const Case& one, const CaseResult& result) const {
@@ -156,6 +169,7 @@ Sweep make_sweep(SweepOrder order, const std::function<void(double)>& progress) 
   }
   const Answers answers(order);
   const std::string table = order.cases.folder + "/sweep.csv";
+  require_own_table(table);
   std::vector<std::string> rows(cases.size());
   const auto text = [&] {
     std::string all = answers.columns();
@@ -170,6 +184,11 @@ Sweep make_sweep(SweepOrder order, const std::function<void(double)>& progress) 
     sweep.were_there += result.was_there;
     sweep.found += result.status == exit_success;
     if (result.status != exit_success) sweep.warnings.push_back(fmt::format("{}: {}: {}", cases[i].name, status_word(result.status), result.message));
+    if (done == 0) {
+      // One with other keys has another heading, by which it would not be known as ours.
+      std::error_code ignored;
+      std::filesystem::remove(table, ignored);
+    }
     if (!result.was_there) write_files({{table, text()}});
     progress(static_cast<double>(++done) / static_cast<double>(cases.size()));
   });

@@ -71,6 +71,16 @@ TEST_CASE("sweep goes on where it was broken off", "[cli][sweep]") {
   CHECK(rows_of(place.folder() / "out/sweep.csv").size() == 3);
 }
 
+TEST_CASE("a sweep over another key takes the place of the table of the one before, but of no other file", "[cli][sweep]") {
+  const Workplace place(openclose::test::block_on_incline(20.0));
+  REQUIRE(place.run("sweep scene.toml --vary joint[0].friction_angle_deg=25 -o out").status == 0);
+  CHECK(place.run("sweep scene.toml --vary joint[0].cohesion_pa=0 -o out").status == 0);
+  CHECK_THAT(lines_of(place.folder() / "out/sweep.csv").at(0), StartsWith("joint[0].cohesion_pa,"));
+  place.folder().write("out/sweep.csv", "mine\n1\n");
+  CHECK(place.run("sweep scene.toml --vary joint[0].cohesion_pa=0 -o out").status == 2);
+  CHECK(text_of(place.folder() / "out/sweep.csv") == "mine\n1\n");
+}
+
 TEST_CASE("sweep of run has a quantity, and names the case that does not come to its end", "[cli][sweep]") {
   const Workplace place(openclose::test::block_on_incline(40.0));
   const CommandResult result = place.run(
