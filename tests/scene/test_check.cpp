@@ -17,7 +17,7 @@ namespace {
 
 /// A wall of unit bricks in running bond on a fixed course, each course shifted by half a brick.
 Scene running_bond(int courses, int length) {
-  Scene scene = builders::rock_scene(2700.0, {.normal_stiffness = 1e9, .shear_stiffness = 1e9}, 1e-11);
+  Scene scene = builders::rock_scene(2700.0, builders::frictional_joint(1e9, 1e9, 0.0), 1e-11);
   scene.blocks = builders::wall(courses, length, 1.0, 0.5);
   for (int i = 0; i < length; ++i) scene.blocks[i].fixed = true;
   return scene;
