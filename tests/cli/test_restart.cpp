@@ -147,6 +147,7 @@ TEST_CASE("a restart that cannot be writes nothing", "[cli][restart]") {
   refused(common + " --end 0.1 --restart nothing.bin", "there is no such file");
 }
 
+// `timeout` in the foreground sends one signal; else it sends it to its group as well, and the second one ends a command at once.
 TEST_CASE("a run that is stopped by a signal saves its state and says how to go on from it", "[cli][restart]") {
   struct Stop {
     const char* signal;
@@ -156,7 +157,7 @@ TEST_CASE("a run that is stopped by a signal saves its state and says how to go 
   INFO(stop.signal);
   const Workplace place(openclose::test::block_on_incline(35.0));
   const std::string common = std::string("run scene.toml") + motion;
-  const CommandResult stopped = place.run(common + " --end 1000 -o parts", std::string("timeout --preserve-status -s ") + stop.signal + " 1 ");
+  const CommandResult stopped = place.run(common + " --end 1000 -o parts", std::string("timeout --foreground --preserve-status -s ") + stop.signal + " 1 ");
   CHECK(stopped.status == stop.status);
   REQUIRE(stopped.errors.size() == 1);
   CHECK_THAT(stopped.errors[0], ContainsSubstring("stopped at t = ") && ContainsSubstring("--restart 'parts/checkpoint.bin'"));
@@ -171,7 +172,7 @@ TEST_CASE("a search for the factor of safety that is stopped tells what it knows
   const Workplace place(openclose::test::block_on_incline(20.0));
   // The search ends by itself, or tells what it knows: it has found a stable factor by the time of its first look at the signal.
   const CommandResult stopped = place.run("fos scene.toml --contact dem --set strength_reduction.definition=large_displacements --set settle.first_dt_s=1e-7 -o out",
-                                          "timeout --preserve-status -s INT 1 ");
+                                          "timeout --foreground --preserve-status -s INT 1 ");
   CHECK(stopped.status == 130);
   REQUIRE(stopped.errors.size() == 1);
   CHECK_THAT(stopped.errors[0], ContainsSubstring("stopped ") && ContainsSubstring("state saved in out"));

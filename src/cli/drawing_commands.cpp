@@ -1,0 +1,65 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "commands.h"
+#include "machine_output.h"
+#include "openclose/core/error.h"
+#include "openclose/io/drawing.h"
+#include "openclose/scene/writer.h"
+
+namespace openclose {
+
+int cut_command(const Options& options) {
+  const Loaded loaded = load(options);
+  if (!loaded.scene.cutting) throw InputError(loaded.scene.where, "domain", "the scene has none", "a scene with a [domain] to cut");
+  const CuttingSummary& cutting = *loaded.scene.cutting;
+  const std::filesystem::path stem = std::filesystem::path(options.scene_file).stem();
+  const std::string file = options.blocks_file.empty() ? "results/" + stem.string() + "/blocks.toml" : options.blocks_file;
+  const std::string drawing = options.drawing_file.empty() ? std::filesystem::path(file).replace_extension(".svg").string() : options.drawing_file;
+  for (const std::string& written : {file, drawing}) {
+    std::error_code unknown;
+    if (std::filesystem::equivalent(written, options.scene_file, unknown)) {
+      throw InputError({written, 0}, "", "this is the scene that is being cut", "another file to write to");
+    }
+  }
+  const auto place_of = [](const std::string& path) { return std::filesystem::weakly_canonical(std::filesystem::absolute(path)); };
+  if (place_of(file) == place_of(drawing)) {
+    throw InputError({file, 0}, "", "the scene and its drawing cannot be the same file", "another name with --svg");
+  }
+  write_files({{file, "# Blocks that openclose has cut.\n" + write_scene(loaded.scene)}, {drawing, svg_drawing(picture_of(loaded.scene))}});
+  if (options.json) {
+    print_json(exit_success, {{"scene", options.scene_file},
+                              {"blocks", cutting.blocks},
+                              {"traces", cutting.traces},
+                              {"area_m2", cutting.area},
+                              {"domain_area_m2", cutting.domain_area},
+                              {"smallest_block_m2", cutting.smallest_block},
+                              {"slivers_merged", cutting.slivers_merged},
+                              {"dangling_ends", cutting.dangling_ends},
+                              {"written", {file, drawing}}});
+  }
+  if (options.quiet) return exit_success;
+  const auto fixed = std::count_if(loaded.scene.blocks.begin(), loaded.scene.blocks.end(), [](const BlockInput& block) { return block.fixed; });
+  fmt::print("{}: {} blocks cut by {} traces, {:.9g} m2 (domain {:.9g} m2), smallest {:.3g} m2; {} of {} blocks fixed\n", options.scene_file,
+             cutting.blocks, cutting.traces, cutting.area, cutting.domain_area, cutting.smallest_block, fixed, loaded.scene.blocks.size());
+  fmt::print("{} slivers merged ({:.3g} m2), {} dangling ends dropped; written to {} and {}\n", cutting.slivers_merged, cutting.slivers_area,
+             cutting.dangling_ends, file, drawing);
+  return exit_success;
+}
+
+int draw_command(const Options& options) {
+  const std::string file = options.drawing_file.empty() ? options.results + "/drawing.svg" : options.drawing_file;
+  // A name that is left out, or mistaken for another option's, would write over a scene or a table.
+  if (std::filesystem::path(file).extension() != ".svg")
+    throw InputError({file, 0}, "-o", "a drawing would be written over what is no drawing", "a name that ends in .svg");
+  const Picture picture = picture_of_results(options.results, options.drawing);
+  write_files({{file, svg_drawing(picture)}});
+  if (options.json)
+    print_json(exit_success, {{"results", options.results}, {"blocks", picture.blocks.size()}, {"notes", picture.notes}, {"written", {file}}});
+  if (!options.quiet) fmt::print("{}: {} blocks drawn; {}; written to {}\n", options.results, picture.blocks.size(), picture.notes.front(), file);
+  return exit_success;
+}
+
+}  // namespace openclose

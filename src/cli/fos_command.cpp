@@ -1,0 +1,115 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "commands.h"
+#include "openclose/analysis/strength_reduction.h"
+#include "openclose/core/error.h"
+#include "openclose/core/process.h"
+#include "openclose/io/formats.h"
+#include "openclose/io/progress.h"
+#include "openclose/scene/check.h"
+#include "openclose/scene/writer.h"
+#include "stop_signal.h"
+
+namespace openclose {
+namespace {
+
+/// Deepest closed contact [m].
+double deepest_of(const std::vector<Contact>& contacts) {
+  double deepest = 0.0;
+  for (const Contact& c : contacts) {
+    if (c.status != ContactStatus::open) deepest = std::max(deepest, -c.gap);
+  }
+  return deepest;
+}
+
+/// The answer and what it is worth, in two or three lines.
+void print_factor(const Scene& scene, const FactorOfSafety& safety, const OutputFolder& folder) {
+  const std::string stable = fmt::format("{:.6g}", safety.stable());
+  if (safety.verdict == FactorVerdict::no_failure) {
+    fmt::print("factor of safety above {} ({}): {}; written to {}\n", stable, scene.method.contact, safety.reason, folder.path());
+    return;
+  }
+  const std::string failed = safety.bracket.failed ? fmt::format("failed at {:.6g} by {}", safety.failed(), safety.bracket.failed_by)
+                                                   : std::string("no failure proved above");
+  fmt::print("factor of safety {} ({}; {}: stable at {}, {}); written to {}\n", stable, scene.method.contact, factor_verdict_word(safety.verdict),
+             stable, failed, folder.path());
+  if (safety.limit_analysis && safety.limit_analysis->factor) {
+    fmt::print("rigid-block limit analysis: at most {:.6g}\n", *safety.limit_analysis->factor);
+  }
+  if (!safety.mechanism.empty()) {
+    double area = 0.0;
+    for (const FailingBlock& block : safety.mechanism) area += block.area;
+    const auto free = std::ranges::count_if(scene.blocks, [](const BlockInput& block) { return !block.fixed; });
+    fmt::print("what fails: {} of {} free blocks, {:.4g} m2, see mechanism.csv\n", safety.mechanism.size(), free, area);
+  }
+}
+
+}  // namespace
+
+int fos_command(const Options& options) {
+  Loaded loaded = load(options);
+  if (loaded.scene.run_strength_reduction_factor != 1.0) loaded.warn("run.strength_reduction_factor is for run; fos starts from the full strength");
+  if (is_settled_by_another(loaded.scene)) loaded.warn("run.settled_by is for run; fos settles by method.contact");
+  if (loaded.scene.method.first_integrator) {
+    loaded.warn("method.first_integrator is for run; fos settles by method.integrator");
+    loaded.scene.method.first_integrator.reset();
+  }
+  if (loaded.scene.base_motion) loaded.warn("base_motion is for run; fos asks for static equilibrium on a base at rest");
+  if (!loaded.scene.measured_contacts.empty()) loaded.warn("measured_contact is for run; contacts.csv has what every contact carries");
+  require_strength_reduction(loaded.scene);
+  require_memory(loaded.scene, available_memory());
+  if (loaded.scene.step.dt <= 0.0) loaded.scene.step.dt = loaded.scene.settle.first_dt;
+  Simulation simulation(std::move(loaded.scene));
+  const OutputFolder folder = output_folder(options);
+  folder.claim(files_read(options, simulation.scene()));
+  folder.remove_results();
+  folder.write_scene_copy(write_scene(simulation.scene()));
+  write_block_properties(folder, simulation.scene(), std::as_const(simulation).system());
+  StateTables states(folder, simulation.scene());
+  states.add_drawing(simulation);
+  FactorOfSafety safety;
+  double cpu_of_search = 0.0;
+  {
+    Progress progress("strength reduction", options.quiet);
+    const double begin = process_cpu_time();
+    watch_for_stop_signals();
+    safety = factor_of_safety(simulation, [&](double fraction) {
+      progress.update(fraction);
+      throw_if_stopped();
+    });
+    cpu_of_search = process_cpu_time() - begin;
+  }
+
+  Summary summary = summary_of("fos", options, loaded);
+  summary.cpu_of_search = cpu_of_search;
+  summary.warnings.insert(summary.warnings.end(), safety.warnings.begin(), safety.warnings.end());
+  print_warnings(safety.warnings);
+  for (const NamedState& state : safety.states) {
+    states.add(state, simulation.scene());
+    if (state.contacts.empty()) continue;
+    if (state.name != "failed") summary.max_penetration = deepest_of(state.contacts);
+  }
+  states.close();
+  write_trials(folder, safety.trials);
+  if (!safety.mechanism.empty()) write_mechanism(folder, simulation.scene(), safety.mechanism);
+  if (!safety.curve.empty()) write_curve(folder, safety.curve);
+  summary.converged = safety.found();
+  summary.reason = safety.reason;
+  write_summary(folder, summary, simulation, &safety);
+  write_formats(simulation.scene().formats, folder);
+
+  if (safety.bracket.stopped) {
+    fmt::print(stderr, "openclose: {}; state saved in {}\n", safety.reason, folder.path());
+    return exit_status_of_stop();
+  }
+  if (!safety.found()) {
+    fmt::print(stderr, "openclose: no factor of safety: {}; state saved in {}\n", safety.reason, folder.path());
+    return exit_not_converged;
+  }
+  if (!options.quiet) print_factor(simulation.scene(), safety, folder);
+  return exit_success;
+}
+
+}  // namespace openclose

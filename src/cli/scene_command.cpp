@@ -1,0 +1,95 @@
+#include "scene_command.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "openclose/analysis/run.h"
+#include "openclose/io/formats.h"
+#include "openclose/scene/check.h"
+#include "openclose/scene/reader.h"
+
+namespace openclose {
+namespace {
+
+/// Refuses what would take longer than anyone waits.
+void require_countable_steps(const Scene& scene, const std::string& key, double time) {
+  constexpr double most_steps = 1e9;
+  if (time / scene.step.dt <= most_steps) return;
+  throw InputError(scene.where, key, fmt::format("{:g} s in steps of {:g} s", time, scene.step.dt),
+                   fmt::format("at most {:g} steps of step.dt_s", most_steps));
+}
+
+}  // namespace
+
+void print_warnings(const std::vector<std::string>& warnings) {
+  for (const std::string& warning : warnings) fmt::print(stderr, "openclose: warning: {}\n", warning);
+}
+
+void Loaded::warn(const std::string& text) {
+  warnings.push_back(scene.where.file + ": " + text);
+  print_warnings({warnings.back()});
+}
+
+Loaded load(const Options& options) {
+  options.work = "reading " + options.scene_file + " ([[block]], or domain.max_blocks and joint_set.spacing_m, limit what it makes)";
+  Loaded loaded{read_scene(options.scene_file, options.overrides), {}};
+  options.work = fmt::format("{} of {} ([[block]], or domain.max_blocks and joint_set.spacing_m, limit their number)", size_of(loaded.scene),
+                             options.scene_file);
+  require_formats(loaded.scene.formats, loaded.scene.formats_where);
+  loaded.warnings = check_scene(loaded.scene);
+  print_warnings(loaded.warnings);
+  return loaded;
+}
+
+OutputFolder output_folder(const Options& options) {
+  if (!options.folder.empty()) return OutputFolder(options.folder);
+  return OutputFolder("results/" + std::filesystem::path(options.scene_file).stem().string());
+}
+
+std::vector<std::string> files_read(const Options& options, const Scene& scene) {
+  std::vector<std::string> files{options.scene_file};
+  if (scene.base_motion) files.insert(files.end(), scene.base_motion->files.begin(), scene.base_motion->files.end());
+  return files;
+}
+
+void require_run(const Scene& scene) {
+  if (scene.step.dt <= 0.0) throw InputError(scene.where, "step.dt_s", "missing", "a step in seconds, here or with --dt");
+  if (scene.end_time <= 0.0) throw InputError(scene.where, "end.time_s", "missing, or 0", "an end time > 0 in seconds, here or with --end");
+  require_countable_steps(scene, "end.time_s", scene.end_time);
+}
+
+void require_start(const Scene& scene) {
+  const bool can_be_refused = scene.method.start == Start::normal_balanced || scene.method.start == Start::steady_sliding;
+  if (!can_be_refused) return;
+  Simulation trial(scene);
+  prepare_start(trial);
+}
+
+void require_strength_reduction(const Scene& scene) {
+  const std::optional<double>& curve_time = scene.strength_reduction.curve_time;
+  const bool paper = scene.settle.criterion == SettleCriterion::paper;
+  if (scene.step.dt <= 0.0 && (curve_time || paper)) {
+    throw InputError(scene.where, "step.dt_s", "missing",
+                     fmt::format("a step in seconds: {} asks for motion", paper ? "settle.criterion" : "strength_reduction.curve_time_s"));
+  }
+  if (curve_time) require_countable_steps(scene, "strength_reduction.curve_time_s", *curve_time);
+  if (scene.strength_reduction.definition == FactorDefinition::large_displacements) return;
+  const std::string large = "strength_reduction.definition = \"large_displacements\", in which blocks move";
+  if (paper) throw InputError(scene.where, "settle.criterion", "\"paper\" is a rule for motion", large);
+  if (curve_time) {
+    throw InputError(scene.strength_reduction.curve_time_where, "strength_reduction.curve_time_s", "asks for motion, which this definition has not",
+                     large);
+  }
+}
+
+Summary summary_of(const std::string& command, const Options& options, const Loaded& loaded) {
+  Summary summary;
+  summary.command = command;
+  summary.scene_file = options.scene_file;
+  summary.overrides = options.overrides;
+  summary.warnings = loaded.warnings;
+  return summary;
+}
+
+}  // namespace openclose

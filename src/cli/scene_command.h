@@ -1,0 +1,57 @@
+// What the commands share that read a scene: the options of the command line, the scene with its warnings, and what a scene must say for each use.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "openclose/io/result_picture.h"
+#include "openclose/io/results.h"
+#include "openclose/scene/scene.h"
+
+namespace openclose {
+
+struct Options {
+  std::string scene_file;
+  std::string folder;
+  std::string blocks_file;
+  std::string drawing_file;
+  std::string spectrum_file;
+  std::string restart_file;
+  std::string results;
+  std::string key;
+  bool page = false, schema = false;
+  DrawingRequest drawing;
+  std::vector<std::string> overrides;
+  bool quiet = false;
+  mutable std::string work;  ///< what the memory is needed for, should there be too little
+  bool json = false;
+};
+
+struct Loaded {
+  Scene scene;
+  std::vector<std::string> warnings;
+
+  /// Of what the command leaves unused.
+  void warn(const std::string& text);
+};
+
+void print_warnings(const std::vector<std::string>& warnings);
+
+/// Prints what the reader warns of.
+Loaded load(const Options& options);
+/// That of the command line, or the one named after the scene.
+OutputFolder output_folder(const Options& options);
+/// What no result may replace. The checkpoint that a run goes on from is one of its own results.
+std::vector<std::string> files_read(const Options& options, const Scene& scene);
+
+/// Throws InputError where a scene does not say what `run` has to know.
+void require_run(const Scene& scene);
+/// Throws InputError for blocks that do not have the start that the scene asks for; found out on a copy, before any file is written.
+void require_start(const Scene& scene);
+/// Throws InputError where a scene does not say what `fos` has to know.
+void require_strength_reduction(const Scene& scene);
+
+/// With what the command line said and what has been warned of.
+Summary summary_of(const std::string& command, const Options& options, const Loaded& loaded);
+
+}  // namespace openclose
