@@ -12,6 +12,7 @@
 #include "openclose/core/parallel.h"
 #include "openclose/core/process.h"
 #include "openclose/integrator/integrators.h"
+#include "openclose/io/state_hash.h"
 #include "openclose/scene/keys.h"
 #include "openclose/scene/names.h"
 #include "openclose/version.h"
@@ -449,6 +450,7 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
   j["free_blocks"] = simulation.system().free_count() + static_cast<int>(simulation.system().resting_blocks().size());
   j["converged"] = summary.converged;
   j["reason"] = summary.reason;
+  j["state_hash"] = safety ? state_hash(*safety, scene) : state_hash(simulation);
   if (!safety) j["time_s"] = simulation.time();
   if (summary.settling.steps > 0) j["settling"] = settling_json(summary.settling);
   if (safety) {

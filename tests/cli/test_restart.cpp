@@ -15,6 +15,10 @@ namespace {
 
 constexpr const char* motion = " --dt 0.001 --start unloaded --set output.every_s=0.003 --set output.snapshots_s=[0.02,0.1] --set output.snapshots_every_s=0.03";
 
+std::string hash_of(const Workplace& place, const std::string& results) {
+  return nlohmann::json::parse(text_of(place.folder() / (results + "/summary.json"))).at("state_hash").get<std::string>();
+}
+
 void check_same_tables(const Workplace& place, const std::string& a, const std::string& b) {
   for (const char* table : {"history.csv", "energy.csv", "blocks.csv", "contacts.csv", "block_states.csv", "cracks.csv"}) {
     INFO(table);
@@ -22,6 +26,7 @@ void check_same_tables(const Workplace& place, const std::string& a, const std::
     CHECK(text.size() > 100);
     CHECK(text == text_of(place.folder() / (b + "/" + table)));
   }
+  CHECK(hash_of(place, a) == hash_of(place, b));
 }
 
 }  // namespace
