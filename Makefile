@@ -21,7 +21,7 @@ COMPARISON := $(PAPER_RESULTS)/comparison.csv
 NULL_SOLVER := results/verify-null-solver.txt
 
 .DEFAULT_GOAL := help
-.PHONY: help build test verify reproduce convergence stress regression bench bench-peers sanitize compilers fuzz mutants clean verify-vtk verify-page verify-install install uninstall packages clang-packages vtk-packages page-packages shell-packages stress-packages figure-packages bench-packages peer-packages
+.PHONY: help build test verify reproduce convergence stress regression bench bench-peers sanitize compilers fuzz mutants clean verify-vtk verify-page verify-install verify-stops install uninstall packages clang-packages vtk-packages page-packages shell-packages stress-packages figure-packages bench-packages peer-packages
 
 help: ## print the targets
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(firstword $(MAKEFILE_LIST)) | while read -r target text; do printf '  make %-14s %s\n' "$$target" "$$text"; done
@@ -48,6 +48,9 @@ verify: build stress-packages ## build, run the unit tests and the verification 
 
 verify-vtk: build vtk-packages ## read the files for ParaView with VTK and compare them with the tables; installs python3-vtk9, which is large
 	/usr/bin/python3 tests/vtk/read_back.py $(OPENCLOSE)
+
+verify-stops: build stress-packages ## stop runs by kill -9 and Ctrl-C at 50 random moments each and compare what went on with what was never stopped, some minutes
+	/usr/bin/python3 tests/cli/interrupt.py $(OPENCLOSE)
 
 verify-page: build page-packages ## click through the page of results in a headless browser and compare it with the tables; installs chromium, which is large
 	/usr/bin/python3 tests/page/click_through.py $(OPENCLOSE)

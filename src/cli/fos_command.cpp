@@ -63,6 +63,8 @@ int fos_command(const Options& options) {
   if (loaded.scene.step.dt <= 0.0) loaded.scene.step.dt = loaded.scene.settle.first_dt;
   Simulation simulation(std::move(loaded.scene));
   const OutputFolder folder = output_folder(options);
+  // As in `run`: before this nothing is lost.
+  watch_for_stop_signals();
   folder.claim(files_read(options, simulation.scene()));
   folder.remove_results();
   folder.write_scene_copy(write_scene(simulation.scene()));
@@ -74,7 +76,6 @@ int fos_command(const Options& options) {
   {
     Progress progress("strength reduction", options.quiet);
     const double begin = process_cpu_time();
-    watch_for_stop_signals();
     safety = factor_of_safety(simulation, [&](double fraction) {
       progress.update(fraction);
       throw_if_stopped();

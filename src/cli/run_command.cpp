@@ -150,6 +150,8 @@ int run_command(const Options& options) {
   if (!restart) require_start(scene);
 
   const OutputFolder folder = output_folder(options);
+  // Who stops the command before this loses nothing; from here on results of another run go, and what is stopped ends with its own.
+  watch_for_stop_signals();
   folder.claim(files_read(options, scene));
   if (restart && folder.has(restart->checkpoint_file)) {
     folder.remove_last_results();
@@ -160,7 +162,6 @@ int run_command(const Options& options) {
   write_block_properties(folder, scene, std::as_const(simulation).system());
   GrowingFiles files(folder, simulation, restart ? &*restart : nullptr, options.quiet);
   RunResult result;
-  watch_for_stop_signals();
   if (restart) {
     Archive state(restart->checkpoint.state);
     try {
