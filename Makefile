@@ -21,7 +21,7 @@ COMPARISON := $(PAPER_RESULTS)/comparison.csv
 NULL_SOLVER := results/verify-null-solver.txt
 
 .DEFAULT_GOAL := help
-.PHONY: help build test verify reproduce convergence stress regression bench bench-peers sanitize compilers fuzz mutants clean verify-vtk verify-page verify-install verify-stops install uninstall packages clang-packages vtk-packages page-packages shell-packages stress-packages figure-packages bench-packages peer-packages
+.PHONY: help build test verify reproduce convergence stress regression bench bench-peers sanitize compilers fuzz mutants mutants-random clean verify-vtk verify-page verify-install verify-stops install uninstall packages clang-packages vtk-packages page-packages shell-packages stress-packages figure-packages bench-packages peer-packages
 
 help: ## print the targets
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(firstword $(MAKEFILE_LIST)) | while read -r target text; do printf '  make %-14s %s\n' "$$target" "$$text"; done
@@ -107,11 +107,14 @@ fuzz: clang-packages packages ## attack the readers of scenes, records and check
 mutants: packages ## plant the faults of mutants/faults.toml one by one and report which check notices each (results/mutants.md); takes half an hour
 	"$${PYTHON:-python3}" mutants/run.py --results results
 
+mutants-random: packages ## plant COUNT faults of one token at places drawn by SEED and report which checks notice (results/mutants-random.md); minutes each
+	"$${PYTHON:-python3}" mutants/run.py --results results --random $(COUNT) --seed $(SEED)
+
 clean: ## remove what these targets have made; other results stay
 	rm -rf build $(PAPER_RESULTS) results/verify.csv results/verify_series.csv results/verify_cases.csv results/verification results/verification.md $(NULL_SOLVER) results/convergence results/convergence.csv
 	rm -rf results/stress results/stress.csv results/stress.md results/regression
 	rm -rf results/bench results/bench.csv results/bench.md results/bench_machine.json
-	rm -f results/mutants.csv results/mutants.md
+	rm -f results/mutants.csv results/mutants.md results/mutants-random.csv results/mutants-random.md
 
 packages:
 	@scripts/install-packages build

@@ -3,11 +3,15 @@
 
     mutants/run.py [--jobs N] [--results DIR] [--unit-tests-only] [ID...]     all faults, or the named ones
     mutants/run.py --check-list                                               only whether every fault still fits the source
+    mutants/run.py --random 200 --seed 1                                      faults of one token at random places, see random_faults.py
 
 Every worker has a copy of the tree with a build of its own under build/mutants. A fault is tried on the unit tests of its own folder, then on those
 of the folders after it in the order of the data, then of those before it, then on the verification cases, one group after the other until one is red;
 only what they need is built. Writes mutants.csv and mutants.md; named faults replace their rows there and leave the others. A fault that only ends
 checks by an exception that no test expects, by a signal or by their time limit has not been caught by an assertion: it is listed as such.
+
+Random faults go to mutants-random.csv and .md. One that does not compile is none. Those that survive are to be judged one by one: the same answers, or a
+check that is missing; their rate is of all that compile.
 
 Exit status: 0 if every fault was caught, 1 if one was not, 2 if the list does not fit the source or the source without a fault is red.
 """
@@ -30,6 +34,7 @@ try:
 except ImportError:
     sys.exit("mutants: Python 3.11 or later is needed, which reads TOML")
 
+import random_faults
 from openclose_scripts import ROOT
 from openclose_scripts.csv_rows import read_rows
 from openclose_scripts.markdown import markdown_table
@@ -38,6 +43,9 @@ FAULTS = Path(__file__).resolve().parent / "faults.toml"
 COPIED = ["CMakeLists.txt", "CMakePresets.json", "analytical", "cmake", "docs", "mutants", "paper", "python", "scripts", "src", "tests", "verification"]
 COLUMNS = ["id", "folder", "file", "description", "caught_by", "kind", "seconds"]
 CAUGHT = ("unit test", "verification")
+DOES_NOT_COMPILE = "does not compile"
+# What a random fault is noticed by, too: whoever changes the code sees it.
+NOTICED = (*CAUGHT, "crash", "time-out")
 # A check may take this many times as long as without a fault, and so much more: others use the machine, too.
 TIME_FACTOR, TIME_MARGIN_S = 10.0, 60.0
 FEWEST_PER_FOLDER = 4
@@ -149,7 +157,7 @@ class Worker:
         target, command = self.command(check)
         built, text = self.build(target)
         if not built:
-            return Outcome("does not compile", target, text)
+            return Outcome(DOES_NOT_COMPILE, target, text)
         begin = time.monotonic()
         outcome = self.run_verification(command) if check == "verification" else self.run_tests(check, command)
         if check not in self.limits and outcome.kind is None:
@@ -214,19 +222,25 @@ class Worker:
         path = self.tree / fault["file"]
         original = path.read_text()
         first = Outcome()
-        path.write_text(original.replace(fault["original"], fault["replacement"]))
+        path.write_text(planted(fault, original))
         try:
             for check in checks_for(folder_of(fault), verify):
                 outcome = self.run(check)
                 if first.kind is None:
                     first = outcome
-                if outcome.kind in CAUGHT or outcome.kind == "does not compile":
+                if outcome.kind in CAUGHT or outcome.kind == DOES_NOT_COMPILE:
                     first = outcome
                     break
         finally:
             path.write_text(original)
         row = described(fault) | {"caught_by": first.by, "kind": first.kind or "survived", "seconds": f"{time.monotonic() - begin:.1f}"}
         return row
+
+
+def planted(fault, text):
+    """The source with the fault; those of the list are where their text stands, random ones at a place."""
+    at = fault["at"] if "at" in fault else text.index(fault["original"])
+    return text[:at] + fault["replacement"] + text[at + len(fault["original"]):]
 
 
 def described(fault):
@@ -296,7 +310,8 @@ def study(faults, wanted, options):
     for worker in workers[1:]:
         worker.limits = dict(workers[0].limits)
     options.results.mkdir(parents=True, exist_ok=True)
-    table = options.results / "mutants.csv"
+    name = "mutants-random" if options.random else "mutants"
+    table, page = options.results / f"{name}.csv", options.results / f"{name}.md"
     rows = earlier_rows(table, faults) if len(wanted) < len(faults) else {}
     free, done, lock = list(workers), [], threading.Lock()
 
@@ -314,12 +329,14 @@ def study(faults, wanted, options):
             print(f"{len(done):3}/{len(wanted)} {row['id']:<14} {row['kind']:<12} {row['seconds']:>6} s  {row['caught_by']}", flush=True)
             ordered = [rows[f["id"]] for f in faults if f["id"] in rows]
             write_csv(table, ordered)
-            write_page(options.results / "mutants.md", ordered, {f["id"]: f["note"] for f in faults if "note" in f})
+            write_page(page, ordered, {f["id"]: f["note"] for f in faults if "note" in f})
 
     with ThreadPoolExecutor(options.jobs) as pool:
         list(pool.map(try_one, wanted))
-    caught = sum(row["kind"] in CAUGHT for row in done)
-    print(f"{caught} of {len(done)} faults caught; {table}, {options.results / 'mutants.md'}")
+    if options.random:
+        done = [row for row in done if row["kind"] != DOES_NOT_COMPILE]
+    caught = sum(row["kind"] in (NOTICED if options.random else CAUGHT) for row in done)
+    print(f"{caught} of {len(done)} faults caught; {table}, {page}")
     return 0 if caught == len(done) else 1
 
 
@@ -329,10 +346,12 @@ def main():
     parser.add_argument("--jobs", type=int, default=2, help="workers, each with a build of its own (default: 2)")
     parser.add_argument("--results", type=Path, default=ROOT / "results", help="folder of mutants.csv and mutants.md")
     parser.add_argument("--unit-tests-only", action="store_true", help="leave out the verification cases, with which some faults then survive")
+    parser.add_argument("--random", type=int, metavar="COUNT", help="so many faults at random places in place of those of the list")
+    parser.add_argument("--seed", type=int, default=1, help="of the random places (default: %(default)s)")
     parser.add_argument("--check-list", action="store_true", help="only check that every fault fits the source")
     options = parser.parse_args()
     try:
-        faults = read_faults()
+        faults = random_faults.draw(ROOT, options.seed, options.random) if options.random else read_faults()
         unknown = set(options.ids) - {fault["id"] for fault in faults}
         if unknown:
             raise ListError(f"there is no fault {', '.join(sorted(unknown))}")
