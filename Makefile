@@ -49,7 +49,7 @@ verify: build stress-packages ## build, run the unit tests and the verification 
 verify-vtk: build vtk-packages ## read the files for ParaView with VTK and compare them with the tables; installs python3-vtk9, which is large
 	/usr/bin/python3 tests/vtk/read_back.py $(OPENCLOSE)
 
-verify-stops: build stress-packages ## stop runs by kill -9 and Ctrl-C at 50 random moments each and compare what went on with what was never stopped, some minutes
+verify-stops: build stress-packages ## stop runs and searches by kill -9 and Ctrl-C at 50 random moments each and compare what went on with what was never stopped, some minutes
 	/usr/bin/python3 tests/cli/interrupt.py $(OPENCLOSE)
 
 verify-page: build page-packages ## click through the page of results in a headless browser and compare it with the tables; installs chromium, which is large

@@ -44,6 +44,7 @@ class ByRelativeDisplacement : public EquilibriumSearch {
     return result;
   }
   SettleResult settle_trial(const SettleProgress& progress) override { return follow(2 * first_steps_, false, progress); }
+  void exchange(Archive& archive) override { archive(first_steps_); }
 
  private:
   using Displacements = std::vector<Motion::Unknowns>;

@@ -30,6 +30,7 @@ class EquilibriumSearch {
   virtual SettleResult settle_first(const SettleProgress& progress) = 0;
   /// From a state in which settle_first() succeeded, with another strength of the joints.
   virtual SettleResult settle_trial(const SettleProgress& progress) = 0;
+  virtual void exchange(Archive&) {}  ///< the measure of the trials
 };
 
 /// The simulation must outlive the search.

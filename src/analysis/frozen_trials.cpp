@@ -71,7 +71,15 @@ TrialResult FrozenTrials::first(double srf) {
 
 TrialResult FrozenTrials::next(double srf) {
   strength_.reduce(srf);
-  return result_of(solver_->relax(*stable_), srf);
+  return result_of(solver_->relax(stable_.value()), srf);
+}
+
+void FrozenTrials::exchange(Archive& archive) {
+  archive(bonded_, bonded_failed_, first_stable_, stable_, stable_factor_, mechanism_, travel_);
+  bool sound = mechanism_.size() == 0 || mechanism_.size() == 3 * system_.rows();
+  for (const std::optional<FrozenState>* state : {&bonded_, &first_stable_, &stable_}) sound = sound && (!*state || (*state)->fits(system_));
+  archive.require(sound, "the saved state has blocks or contacts that are not there");
+  solver_->exchange(archive);
 }
 
 TrialResult FrozenTrials::result_of(RelaxationResult&& relaxed, double srf) {

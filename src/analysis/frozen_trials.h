@@ -14,6 +14,11 @@ struct TravelOnPath {
   double largest = 0.0;                      ///< between two stable states
   double at_factor = 0.0;                    ///< [-] of the state that it led to
   std::optional<double> factor_before_jump;  ///< [-] the largest stable factor before the first travel beyond a jump's
+
+  void exchange(Archive& archive) {
+    auto& [a, b, c] = *this;
+    archive(a, b, c);
+  }
 };
 
 /// [-] In closures: a travel that is no closure of joints any more, but a way to another place.
@@ -30,6 +35,8 @@ class FrozenTrials : public StrengthTrials {
   std::optional<double> proved_failure(double near) override { return limit_analysis_ ? limit_analysis_(near) : std::nullopt; }
   /// Another way to prove a failure: the smallest factor at which nothing can stand, found from one near it.
   void set_limit_analysis(std::function<std::optional<double>(double near)> f) { limit_analysis_ = std::move(f); }
+
+  void exchange(Archive& archive) override;
 
   FrozenStrength& strength() { return strength_; }
   FrozenSolver& solver() { return *solver_; }

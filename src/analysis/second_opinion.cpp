@@ -16,6 +16,14 @@ constexpr double first_of_effect = 0.8;  ///< [-] of the smaller of 1 and the fa
 
 }  // namespace
 
+void LimitAnalysisResult::exchange(Archive& archive) {
+  std::vector<Eigen::Vector3d> motion;
+  for (const limit_analysis::BlockVelocity& v : mechanism) motion.emplace_back(v.velocity.x(), v.velocity.y(), v.rotation);
+  archive(factor, verdict, programs, failed, motion, is_conclusive, no_equilibrium);
+  mechanism.clear();
+  for (const Eigen::Vector3d& m : motion) mechanism.push_back({m.head<2>(), m[2]});
+}
+
 LimitAnalysisResult limit_analysis_of(const Scene& scene, const FrozenSystem& system, double upper_limit, double near) {
   using Verdict = limit_analysis::Bracket::Verdict;
   LimitAnalysisResult result;
@@ -83,17 +91,13 @@ class EffectSearch {
 
 }  // namespace
 
-std::vector<StiffnessEffect> stiffness_effects(const Scene& scene, double factor, std::optional<double> proved_failure) {
+StiffnessEffect stiffness_effect(const Scene& scene, double ratio, double factor, std::optional<double> proved_failure) {
   Scene other = scene;
   other.method.contact = "soft";
-  std::vector<StiffnessEffect> effects;
-  for (const double ratio : stiffness_ratios) {
-    for (JointProperties& joint : other.joints) joint.shear_stiffness = ratio * joint.normal_stiffness;
-    const FrozenSystem system(other);
-    FrozenTrials trials(other, system);
-    effects.push_back(EffectSearch(trials, ratio, factor, proved_failure).run());
-  }
-  return effects;
+  for (JointProperties& joint : other.joints) joint.shear_stiffness = ratio * joint.normal_stiffness;
+  const FrozenSystem system(other);
+  FrozenTrials trials(other, system);
+  return EffectSearch(trials, ratio, factor, proved_failure).run();
 }
 
 }  // namespace openclose

@@ -21,6 +21,8 @@ struct LimitAnalysisResult {
   limit_analysis::Mechanism mechanism;  ///< there
   bool is_conclusive = false;           ///< a factor, or the proof that there is none
   bool no_equilibrium = false;          ///< proved: at any factor
+
+  void exchange(Archive& archive);
 };
 
 /// \param upper_limit  [-] of the search
@@ -31,6 +33,11 @@ LimitAnalysisResult limit_analysis_of(const Scene& scene, const FrozenSystem& sy
 struct StiffnessEffect {
   double ratio = 0.0;  ///< [-]
   std::optional<double> stable, failed;
+
+  void exchange(Archive& archive) {
+    auto& [a, b, c] = *this;
+    archive(a, b, c);
+  }
 };
 
 /// The ratios between which joints are found to lie.
@@ -39,8 +46,9 @@ inline constexpr double stiffness_ratios[] = {0.1, 1.0};
 inline constexpr double width_of_stiffness_effect = 0.01;
 
 /// By Newton's method, whatever the method of the scene.
+/// \param ratio           [-] of shear to normal stiffness
 /// \param factor          [-] of the scene with its own stiffness
 /// \param proved_failure  [-] where no stiffness helps
-std::vector<StiffnessEffect> stiffness_effects(const Scene& scene, double factor, std::optional<double> proved_failure);
+StiffnessEffect stiffness_effect(const Scene& scene, double ratio, double factor, std::optional<double> proved_failure);
 
 }  // namespace openclose

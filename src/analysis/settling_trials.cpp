@@ -24,9 +24,16 @@ TrialResult SettlingTrials::first(double srf) {
 }
 
 TrialResult SettlingTrials::next(double srf) {
-  simulation_.restore(*settled_);
+  simulation_.restore(settled_.value());
   simulation_.joints().reduce_strength(srf);
   return result_of(search_->settle_trial(progress_));
+}
+
+void SettlingTrials::exchange(Archive& archive) {
+  search_->exchange(archive);
+  archive(points_, initial_, settled_, failed_);
+  const bool sound = simulation_.fits(initial_) && (!settled_ || simulation_.fits(*settled_)) && (!failed_ || simulation_.fits(*failed_));
+  archive.require(sound, "the saved state has blocks that are not there");
 }
 
 TrialResult SettlingTrials::result_of(const SettleResult& settled) {

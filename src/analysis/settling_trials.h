@@ -18,7 +18,10 @@ class SettlingTrials : public StrengthTrials {
 
   using Snapshot = Simulation::Snapshot;
   const std::optional<Snapshot>& settled() const { return settled_; }
+  /// Whose displacements count from the settled state. No others may be followed during the search: snapshots would not know them.
+  MeasuredPoints& points() { return points_; }
   const std::optional<Snapshot>& failed() const { return failed_; }  ///< of the last trial that was not stable
+  void exchange(Archive& archive) override;
 
  private:
   TrialResult result_of(const SettleResult& settled);

@@ -897,6 +897,12 @@ void Simulation::restore(const Snapshot& snapshot) {
   restart_scheme();
 }
 
+bool Simulation::fits(const Snapshot& snapshot) const {
+  const BlockSystem::State &own = system_.state(), &other = snapshot.blocks;
+  return other.displacement.size() == own.displacement.size() && other.velocity.size() == own.velocity.size() && other.arm.size() == own.arm.size() &&
+         other.point_arm.size() == own.point_arm.size() && Detector::contacts_fit(system_, joints_, snapshot.contacts);
+}
+
 void Simulation::exchange(Archive& archive) {
   archive(system_, resting_, may_rest_, external_, joints_, base_moves_, keep_bonds_, detector_, contacts_, contacts_current_, output_velocity_,
           time_, reason_, ledger_, start_kinetic_energy_, kinetic_ahead_, collected_contact_energy_, max_penetration_, friction_work_,

@@ -191,9 +191,16 @@ class Simulation {
   struct Snapshot {
     BlockSystem::State blocks;
     std::vector<Contact> contacts;
+
+    void exchange(Archive& archive) {
+      auto& [a, b] = *this;
+      archive(a, b);
+    }
   };
   Snapshot save();
   void restore(const Snapshot& snapshot);
+  /// Whether a snapshot that was read is of these blocks.
+  bool fits(const Snapshot& snapshot) const;
 
   /// Everything that the next steps depend on and all that has been counted, so that another simulation of the same scene goes on bit for bit; unlike
   /// save() it leaves everything as it is. The wall times of the stages are not in it.

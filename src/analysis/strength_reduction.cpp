@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "openclose/analysis/frozen_trials.h"
+#include "openclose/analysis/search_journal.h"
 #include "openclose/analysis/settling_trials.h"
 
 namespace openclose {
@@ -18,8 +19,14 @@ constexpr double drawn_travel = 0.5;               ///< [-] of the median block'
 
 class StrengthReduction {
  public:
-  StrengthReduction(Simulation& simulation, const std::function<void(double)>& progress)
-      : simulation_(simulation), scene_(simulation.scene()), input_(scene_.strength_reduction), progress_(progress) {}
+  StrengthReduction(Simulation& simulation, const SearchObserver& observer)
+      : simulation_(simulation), scene_(simulation.scene()), input_(scene_.strength_reduction), observer_(observer), journal_([this] { save(); }) {}
+
+  FactorOfSafety resume(std::string state) {
+    saved_.emplace(std::move(state));
+    (*saved_)(journal_);
+    return run();
+  }
 
   FactorOfSafety run() {
     if (input_.definition == FactorDefinition::large_displacements) {
@@ -36,6 +43,8 @@ class StrengthReduction {
   void at_large_displacements() {
     simulation_.book_steps(false);
     SettlingTrials trials(simulation_, shown());
+    if (saved_) (*saved_)(simulation_);
+    begin(trials);
     result_.bracket = search(trials);
     judge();
     if (!result_.bracket.stopped) curve(trials);
@@ -46,13 +55,14 @@ class StrengthReduction {
   void at_small_displacements(const Scene& scene) {
     const FrozenSystem system(scene);
     FrozenTrials trials(scene, system);
+    begin(trials);
     if (input_.limit_analysis) trials.set_limit_analysis([&](double near) { return limit_near(scene, system, near).failed; });
     result_.bracket = search(trials);
     const bool goes_on = !result_.bracket.stopped;
     if (input_.limit_analysis && goes_on) limit_near(scene, system, result_.bracket.stable.value_or(1.0));
     judge();
     for (double srf : input_.curve) {
-      if (trials.stable() && goes_on) record(srf, "curve", trials.next(srf));
+      if (trials.stable() && goes_on) record(srf, "curve", JournalledTrials(trials, journal_).next(srf));
     }
     if (trials.stable()) {
       add_frozen_state("stable", system, *trials.stable());
@@ -69,14 +79,20 @@ class StrengthReduction {
 
   /// Done once, at the latest when the search has ended.
   const LimitAnalysisResult& limit_near(const Scene& scene, const FrozenSystem& system, double near) {
-    if (!result_.limit_analysis) result_.limit_analysis = limit_analysis_of(scene, system, input_.upper_limit, near);
+    if (!result_.limit_analysis) {
+      result_.limit_analysis = journal_.once([&] { return limit_analysis_of(scene, system, input_.upper_limit, near); });
+      const auto& mechanism = result_.limit_analysis->mechanism;
+      if (!mechanism.empty() && static_cast<int>(mechanism.size()) != system.rows())
+        throw DamagedState("the saved state has a mechanism of blocks that are not there");
+    }
     return *result_.limit_analysis;
   }
 
   /// The scene with its blocks where gravity has brought them with their full strength; nothing if they do not come to rest.
   std::optional<Scene> settled_scene() {
     simulation_.book_steps(false);
-    const SettleResult settled = make_equilibrium_search(simulation_)->settle_first(shown());
+    if (saved_) (*saved_)(simulation_);
+    const SettleResult settled = journal_.once([&] { return make_equilibrium_search(simulation_)->settle_first(shown()); });
     if (!settled.settled) {
       result_.reason = "the joints' closures are not known, since the scene does not settle with its own strength (" + settled.verdict() + ")";
       return std::nullopt;
@@ -98,10 +114,31 @@ class StrengthReduction {
     return moved;
   }
 
+  /// From now on these trials are what has led to all that is known.
+  void begin(StrengthTrials& trials) {
+    trials_ = &trials;
+    bool has_trials = false;
+    if (saved_) (*saved_)(has_trials);
+    if (has_trials) trials.exchange(*saved_);
+  }
+
+  /// The work that is done, the blocks where they are moved, and the trials with the states that the next ones start from.
+  void save() {
+    if (!observer_.done) return;
+    Archive state;
+    state(journal_);
+    if (input_.definition != FactorDefinition::small_displacements) state(simulation_);
+    bool has_trials = trials_ != nullptr;
+    state(has_trials);
+    if (has_trials) trials_->exchange(state);
+    observer_.done(state.take());
+  }
+
   StrengthBracket search(StrengthTrials& trials) {
+    JournalledTrials journalled(trials, journal_);
     return search_strength(
-        trials, input_, [this](const StrengthTrial& trial) { result_.trials.push_back(trial); },
-        progress_ ? [this](double share) { progress_(share_done_ = share); } : std::function<void(double)>());
+        journalled, input_, [this](const StrengthTrial& trial) { result_.trials.push_back(trial); },
+        observer_.progress ? [this](double share) { observer_.progress(share_done_ = share); } : std::function<void(double)>());
   }
 
   /// What the bracket is worth, in a word and in a sentence.
@@ -140,18 +177,36 @@ class StrengthReduction {
 
   void curve(SettlingTrials& trials) {
     if (!trials.settled()) return;
-    MeasuredPoints points(simulation_);
     for (double srf : input_.curve) {
-      record(srf, "curve", trials.next(srf));
+      record(srf, "curve", JournalledTrials(trials, journal_).next(srf));
       if (!input_.curve_time) continue;
-      simulation_.restore(*trials.settled());
-      points.restart();
-      if (!move(*input_.curve_time)) {
-        result_.warnings.push_back(fmt::format("no displacement for the curve at factor {:g}: {}", srf, simulation_.reason()));
-        continue;
-      }
-      for (const PointMotion& m : points.motions()) result_.curve.push_back({srf, m.name, m.displacement.norm()});
+      const CurveMotion motion = journal_.once([&] { return motion_for_curve(trials, srf); });
+      result_.curve.insert(result_.curve.end(), motion.points.begin(), motion.points.end());
+      if (!motion.failure.empty())
+        result_.warnings.push_back(fmt::format("no displacement for the curve at factor {:g}: {}", srf, motion.failure));
     }
+  }
+
+  struct CurveMotion {
+    std::vector<CurvePoint> points;
+    std::string failure;  ///< why there are none
+
+    void exchange(Archive& archive) {
+      auto& [a, b] = *this;
+      archive(a, b);
+    }
+  };
+
+  CurveMotion motion_for_curve(SettlingTrials& trials, double srf) {
+    simulation_.restore(*trials.settled());
+    trials.points().restart();
+    CurveMotion motion;
+    if (!move(*input_.curve_time)) {
+      motion.failure = simulation_.reason();
+      return motion;
+    }
+    for (const PointMotion& m : trials.points().motions()) motion.points.push_back({srf, m.name, m.displacement.norm()});
+    return motion;
   }
 
   bool move(double time) {
@@ -164,8 +219,8 @@ class StrengthReduction {
 
   /// While a trial settles the share stands still, but the bar is there.
   SettleProgress shown() const {
-    if (!progress_) return {};
-    return [this](double) { progress_(share_done_); };
+    if (!observer_.progress) return {};
+    return [this](double) { observer_.progress(share_done_); };
   }
 
   void record(double srf, const char* stage, const TrialResult& trial_result) {
@@ -238,7 +293,10 @@ class StrengthReduction {
     const LimitAnalysisResult& limit = *result_.limit_analysis;
     if (!limit.is_conclusive) result_.warnings.push_back("limit analysis has no factor: " + limit.verdict);
     if (!result_.bracket.stable || result_.bracket.at_limit) return;
-    result_.stiffness_effects = openclose::stiffness_effects(scene, *result_.bracket.stable, limit.failed);
+    for (const double ratio : stiffness_ratios) {
+      const auto effect = [&] { return stiffness_effect(scene, ratio, *result_.bracket.stable, limit.failed); };
+      result_.stiffness_effects.push_back(journal_.once(effect));
+    }
     const double low = *result_.bracket.stable, high = result_.bracket.failed.value_or(low);
     double largest = low;
     std::string others;
@@ -301,8 +359,11 @@ class StrengthReduction {
   Simulation& simulation_;
   const Scene& scene_;
   const StrengthReductionInput& input_;
-  std::function<void(double)> progress_;
-  double share_done_ = 0.0;  ///< of the bisection
+  const SearchObserver& observer_;
+  SearchJournal journal_;
+  std::optional<Archive> saved_;      ///< read as far as it was needed
+  StrengthTrials* trials_ = nullptr;  ///< those of the search, once they have begun
+  double share_done_ = 0.0;           ///< of the bisection
   FactorOfSafety result_;
 };
 
@@ -324,8 +385,16 @@ const char* factor_verdict_word(FactorVerdict verdict) {
   return "";
 }
 
+FactorOfSafety factor_of_safety(Simulation& simulation, const SearchObserver& observer) {
+  return StrengthReduction(simulation, observer).run();
+}
+
 FactorOfSafety factor_of_safety(Simulation& simulation, const std::function<void(double)>& progress) {
-  return StrengthReduction(simulation, progress).run();
+  return factor_of_safety(simulation, SearchObserver{progress, {}});
+}
+
+FactorOfSafety resume_search(Simulation& simulation, const SearchObserver& observer, std::string state) {
+  return StrengthReduction(simulation, observer).resume(std::move(state));
 }
 
 }  // namespace openclose

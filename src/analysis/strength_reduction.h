@@ -22,6 +22,11 @@ struct CurvePoint {
   double srf = 1.0;
   std::string point;
   double displacement = 0.0;  ///< [m]
+
+  void exchange(Archive& archive) {
+    auto& [a, b, c] = *this;
+    archive(a, b, c);
+  }
 };
 
 enum class FactorVerdict {
@@ -62,6 +67,17 @@ struct FactorOfSafety {
   double failed() const { return bracket.failed.value_or(0.0); }
 };
 
+/// What a search tells while it goes on.
+struct SearchObserver {
+  std::function<void(double fraction)> progress;  ///< may throw Stopped: what is known by then is the answer
+  std::function<void(std::string state)> done;    ///< after every trial and other piece of work, with all that is known: resume_search() goes on from it
+};
+
+FactorOfSafety factor_of_safety(Simulation& simulation, const SearchObserver& observer);
 FactorOfSafety factor_of_safety(Simulation& simulation, const std::function<void(double fraction)>& progress = {});
+
+/// Goes on, bit for bit, from the state that an observer was given, in a simulation of the same scene that has not been used. Throws DamagedState if
+/// the state does not fit the scene.
+FactorOfSafety resume_search(Simulation& simulation, const SearchObserver& observer, std::string state);
 
 }  // namespace openclose

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "openclose/core/archive.h"
 #include "openclose/scene/scene.h"
 
 namespace openclose {
@@ -26,6 +27,12 @@ struct TrialResult {
   int steps = 0;
   double displacement = 0.0;       ///< [m] largest of a measured point since the first stable state
   bool at_every_strength = false;  ///< failed, and no strength whatever would help
+
+  void exchange(Archive& archive) {
+    auto& [a, b, c, d, e] = *this;
+    archive(a, b, c, d, e);
+    archive.require(outcome <= TrialOutcome::undecided, "the saved state has a trial with an end that there is not");
+  }
 };
 
 struct StrengthTrial : TrialResult {
@@ -44,6 +51,8 @@ class StrengthTrials {
   /// The smallest factor whose failure is proved without a trial; none if no proof is to be had. Asked for once a trial has stayed undecided.
   /// \param near  [-] a factor near which it may lie
   virtual std::optional<double> proved_failure(double /*near*/) { return std::nullopt; }
+  /// What the next trials depend on, and the states that they have led to.
+  virtual void exchange(Archive&) {}
 };
 
 /// What is known of the factor.

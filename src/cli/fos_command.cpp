@@ -1,11 +1,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <optional>
+#include <utility>
 
 #include "commands.h"
 #include "openclose/analysis/strength_reduction.h"
 #include "openclose/core/error.h"
 #include "openclose/core/process.h"
+#include "openclose/io/checkpoint.h"
 #include "openclose/io/formats.h"
 #include "openclose/io/progress.h"
 #include "openclose/scene/check.h"
@@ -46,10 +50,34 @@ void print_factor(const Scene& scene, const FactorOfSafety& safety, const Output
   }
 }
 
-}  // namespace
+/// With what has been found out in the checkpoint after every trial.
+FactorOfSafety search(Simulation& simulation, const Options& options, const OutputFolder& folder, std::optional<Checkpoint> restart) {
+  Progress progress("strength reduction", options.quiet);
+  SearchObserver observer;
+  observer.progress = [&](double fraction) {
+    progress.update(fraction);
+    throw_if_stopped();
+  };
+  observer.done = [&](std::string state) {
+    write_checkpoint(folder.path_of(checkpoint_name), simulation.scene(), {0.0, {}, std::move(state), "fos"});
+  };
+  if (!restart) return factor_of_safety(simulation, observer);
+  try {
+    return resume_search(simulation, observer, std::move(restart->state));
+  } catch (const DamagedState& damage) {
+    throw InputError({options.restart_file, 0}, "", damage.what(), "a checkpoint as fos has written it");
+  }
+}
 
-int fos_command(const Options& options) {
-  Loaded loaded = load(options);
+int report_stop(const FactorOfSafety& safety, const Options& options, const OutputFolder& folder) {
+  const bool can_go_on = std::filesystem::exists(folder.path_of(checkpoint_name));
+  fmt::print(stderr, "openclose: {}; state saved in {}{}\n", safety.reason, folder.path(),
+             can_go_on ? "; to go on: " + command_to_go_on("fos", options, folder) : "");
+  return exit_status_of_stop();
+}
+
+/// What fos does not use.
+void warn_of_what_is_for_run(Loaded& loaded) {
   if (loaded.scene.run_strength_reduction_factor != 1.0) loaded.warn("run.strength_reduction_factor is for run; fos starts from the full strength");
   if (is_settled_by_another(loaded.scene)) loaded.warn("run.settled_by is for run; fos settles by method.contact");
   if (loaded.scene.method.first_integrator) {
@@ -58,33 +86,33 @@ int fos_command(const Options& options) {
   }
   if (loaded.scene.base_motion) loaded.warn("base_motion is for run; fos asks for static equilibrium on a base at rest");
   if (!loaded.scene.measured_contacts.empty()) loaded.warn("measured_contact is for run; contacts.csv has what every contact carries");
+}
+
+}  // namespace
+
+int fos_command(const Options& options) {
+  Loaded loaded = load(options);
+  warn_of_what_is_for_run(loaded);
   require_strength_reduction(loaded.scene);
   require_memory(loaded.scene, available_memory());
   if (loaded.scene.step.dt <= 0.0) loaded.scene.step.dt = loaded.scene.settle.first_dt;
+  std::optional<Checkpoint> restart;
+  if (!options.restart_file.empty()) restart = read_checkpoint(options.restart_file, loaded.scene, "fos");
   Simulation simulation(std::move(loaded.scene));
   const OutputFolder folder = output_folder(options);
   // As in `run`: before this nothing is lost.
   watch_for_stop_signals();
   folder.claim(files_read(options, simulation.scene()));
-  folder.remove_results();
+  make_room(folder, options);
   folder.write_scene_copy(write_scene(simulation.scene()));
   write_block_properties(folder, simulation.scene(), std::as_const(simulation).system());
   StateTables states(folder, simulation.scene());
   states.add_drawing(simulation);
-  FactorOfSafety safety;
-  double cpu_of_search = 0.0;
-  {
-    Progress progress("strength reduction", options.quiet);
-    const double begin = process_cpu_time();
-    safety = factor_of_safety(simulation, [&](double fraction) {
-      progress.update(fraction);
-      throw_if_stopped();
-    });
-    cpu_of_search = process_cpu_time() - begin;
-  }
+  const double begin = process_cpu_time();
+  const FactorOfSafety safety = search(simulation, options, folder, std::move(restart));
 
   Summary summary = summary_of("fos", options, loaded);
-  summary.cpu_of_search = cpu_of_search;
+  summary.cpu_of_search = process_cpu_time() - begin;
   summary.warnings.insert(summary.warnings.end(), safety.warnings.begin(), safety.warnings.end());
   print_warnings(safety.warnings);
   for (const NamedState& state : safety.states) {
@@ -101,10 +129,8 @@ int fos_command(const Options& options) {
   write_summary(folder, summary, simulation, &safety);
   write_formats(simulation.scene().formats, folder);
 
-  if (safety.bracket.stopped) {
-    fmt::print(stderr, "openclose: {}; state saved in {}\n", safety.reason, folder.path());
-    return exit_status_of_stop();
-  }
+  if (safety.bracket.stopped) return report_stop(safety, options, folder);
+  folder.remove_checkpoint();
   if (!safety.found()) {
     fmt::print(stderr, "openclose: no factor of safety: {}; state saved in {}\n", safety.reason, folder.path());
     return exit_not_converged;

@@ -129,7 +129,8 @@ int main_checked(int argc, char** argv) {
   CLI::App* run = subcommand("run", "follow the blocks in time", true, &run_command);
   run->add_option("--restart", options.restart_file,
                   "go on from this checkpoint.bin of an earlier run of the scene (see output.checkpoint_every_s), continuing the tables beside it");
-  subcommand("fos", "factor of safety by strength reduction", true, &fos_command);
+  CLI::App* fos = subcommand("fos", "factor of safety by strength reduction", true, &fos_command);
+  fos->add_option("--restart", options.restart_file, "go on from the checkpoint.bin that a search which was broken off has left: no trial is made again");
   CLI::App* check = subcommand(
       "check", "read and check a scene, write nothing but --spectrum; what run or fos would refuse is refused, whether it settles only they find out",
       false, &check_command);

@@ -91,13 +91,6 @@ class GrowingFiles {
   std::optional<Progress> progress_;
 };
 
-/// For the shell of who has stopped a run.
-std::string command_to_go_on(const Options& options, const OutputFolder& folder) {
-  std::string command = fmt::format("openclose run '{}'", options.scene_file);
-  for (const std::string& key_and_value : options.overrides) command += fmt::format(" --set '{}'", key_and_value);
-  return command + fmt::format(" -o '{}' --restart '{}'", folder.path(), folder.path_of(checkpoint_name));
-}
-
 Summary summary_of_run(const Options& options, const Loaded& loaded, const RunResult& result, const Simulation& simulation) {
   Summary summary = summary_of("run", options, loaded);
   summary.warnings.insert(summary.warnings.end(), result.warnings.begin(), result.warnings.end());
@@ -118,7 +111,7 @@ Summary summary_of_run(const Options& options, const Loaded& loaded, const RunRe
 int report_end(const Options& options, const RunResult& result, const Simulation& simulation, const OutputFolder& folder) {
   if (result.stopped) {
     fmt::print(stderr, "openclose: stopped at t = {:.6g} s; state saved in {}; to go on: {}\n", simulation.time(), folder.path(),
-               command_to_go_on(options, folder));
+               command_to_go_on("run", options, folder));
     return exit_status_of_stop();
   }
   if (!result.converged) {
@@ -153,11 +146,7 @@ int run_command(const Options& options) {
   // Who stops the command before this loses nothing; from here on results of another run go, and what is stopped ends with its own.
   watch_for_stop_signals();
   folder.claim(files_read(options, scene));
-  if (restart && folder.has(restart->checkpoint_file)) {
-    folder.remove_last_results();
-  } else {
-    folder.remove_results();
-  }
+  make_room(folder, options);
   folder.write_scene_copy(write_scene(scene));
   write_block_properties(folder, scene, std::as_const(simulation).system());
   GrowingFiles files(folder, simulation, restart ? &*restart : nullptr, options.quiet);

@@ -47,6 +47,20 @@ OutputFolder output_folder(const Options& options) {
   return OutputFolder("results/" + std::filesystem::path(options.scene_file).stem().string());
 }
 
+std::string command_to_go_on(const std::string& command, const Options& options, const OutputFolder& folder) {
+  std::string line = fmt::format("openclose {} '{}'", command, options.scene_file);
+  for (const std::string& key_and_value : options.overrides) line += fmt::format(" --set '{}'", key_and_value);
+  return line + fmt::format(" -o '{}' --restart '{}'", folder.path(), folder.path_of(checkpoint_name));
+}
+
+void make_room(const OutputFolder& folder, const Options& options) {
+  if (!options.restart_file.empty() && folder.has(options.restart_file)) {
+    folder.remove_last_results();
+  } else {
+    folder.remove_results();
+  }
+}
+
 std::vector<std::string> files_read(const Options& options, const Scene& scene) {
   std::vector<std::string> files{options.scene_file};
   if (scene.base_motion) files.insert(files.end(), scene.base_motion->files.begin(), scene.base_motion->files.end());

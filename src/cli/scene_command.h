@@ -41,6 +41,10 @@ void print_warnings(const std::vector<std::string>& warnings);
 Loaded load(const Options& options);
 /// That of the command line, or the one named after the scene.
 OutputFolder output_folder(const Options& options);
+/// For the shell of who has stopped the command: how to go on from its checkpoint.
+std::string command_to_go_on(const std::string& command, const Options& options, const OutputFolder& folder);
+/// Removes what an earlier analysis has left in the folder; of one that goes on from a checkpoint there only what came at its end.
+void make_room(const OutputFolder& folder, const Options& options);
 /// What no result may replace. The checkpoint that a run goes on from is one of its own results.
 std::vector<std::string> files_read(const Options& options, const Scene& scene);
 

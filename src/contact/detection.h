@@ -107,6 +107,8 @@ class Detector {
   void exchange(Archive& archive);
   /// Whether everything that was read, and these contacts beside it, is of blocks, vertices, joints, pairs and contacts that there are.
   bool fits(const BlockSystem& system, const JointTable& joints, const std::vector<Contact>& contacts) const;
+  /// Whether contacts that were read for a detector that knows nothing are of blocks, vertices and joints that there are.
+  static bool contacts_fit(const BlockSystem& system, const JointTable& joints, const std::vector<Contact>& contacts);
 
  private:
   using Unknowns = BlockSystem::Unknowns;

@@ -17,14 +17,14 @@ bool has_vertex(const BlockSystem& system, int block, int vertex) {
   return vertex >= b.first_vertex && vertex < b.first_vertex + b.vertex_count;
 }
 
-bool contacts_fit(const BlockSystem& system, const JointTable& joints, const std::vector<Contact>& contacts) {
+}  // namespace
+
+bool Detector::contacts_fit(const BlockSystem& system, const JointTable& joints, const std::vector<Contact>& contacts) {
   return std::all_of(contacts.begin(), contacts.end(), [&](const Contact& c) {
     return has_vertex(system, c.vertex_block, c.vertex) && has_vertex(system, c.edge_block, c.edge) && c.vertex_block != c.edge_block &&
            is_index(c.joint, static_cast<std::size_t>(joints.count())) && c.status <= ContactStatus::sliding;
   });
 }
-
-}  // namespace
 
 bool Detector::pairs_fit(const BlockSystem& system, const std::vector<std::pair<int, int>>& pairs, const std::vector<Range>& ranges,
                          std::size_t contacts) {

@@ -19,7 +19,7 @@ namespace openclose {
 namespace {
 
 /// To be raised with every change of what any exchange() hands over.
-constexpr int format = 29;
+constexpr int format = 30;
 /// Reads differently where the order of bytes is another one.
 constexpr std::uint32_t byte_order = 0x01020304;
 
@@ -40,7 +40,7 @@ std::string changeable_keys() {
 }
 
 std::string read_bytes(const std::string& path) {
-  const std::string accepted = "the path of a checkpoint.bin that a run has written";
+  const std::string accepted = "the path of a checkpoint.bin that a run or fos that was broken off has left";
   std::error_code error;
   if (!std::filesystem::exists(path, error)) refuse(path, "there is no such file", accepted);
   if (!std::filesystem::is_regular_file(path, error)) refuse(path, "this is not a regular file", accepted);
@@ -120,18 +120,25 @@ void append_check_sum(std::string& bytes) {
 
 void write_checkpoint(const std::string& path, const Scene& scene, Checkpoint checkpoint) {
   const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
-  if (!std::filesystem::is_directory(folder)) throw WriteError(path, "its folder has been removed while the run went on");
+  const auto require_folder = [&] {
+    if (!std::filesystem::is_directory(folder)) throw WriteError(path, "its folder has been removed while the run went on");
+  };
+  require_folder();
   std::vector<TextFile> files(1);
   files.front() = {path, checkpoint_bytes(scene, std::move(checkpoint))};
   try {
     write_files(files);
-  } catch (const InputError&) {
+  } catch (const std::runtime_error&) {
+    require_folder();
     throw WriteError(path);  // the run has begun: its input was good
   }
 }
 
-Checkpoint read_checkpoint(const std::string& path, const Scene& scene) {
-  return checkpoint_of_bytes(read_bytes(path), path, scene);
+Checkpoint read_checkpoint(const std::string& path, const Scene& scene, const std::string& command) {
+  Checkpoint checkpoint = checkpoint_of_bytes(read_bytes(path), path, scene);
+  if (checkpoint.command != command)
+    refuse(path, fmt::format("it was written by openclose {}", checkpoint.command), fmt::format("a checkpoint of openclose {}", command));
+  return checkpoint;
 }
 
 Checkpoint checkpoint_of_bytes(const std::string& bytes, const std::string& path, const Scene& scene) {

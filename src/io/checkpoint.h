@@ -1,7 +1,8 @@
-// checkpoint.bin: a run as it stood at one moment, so that `openclose run --restart` goes on as if it had never stopped.
+// checkpoint.bin: a run as it stood at one moment, or what a search for the factor of safety has found out, so that `openclose run --restart` and
+// `openclose fos --restart` go on as if they had never stopped.
 //
 // A line that names format and version, the order of the bytes, the scene as text, the time, how long the tables of the run were, the state
-// (analysis/run.h) and a check sum over all of it. Numbers stand as they are in memory. The file takes the place of an older one only when it is
+// (analysis/run.h, analysis/strength_reduction.h), the command and a check sum over all of it. Numbers stand as they are in memory. The file takes the place of an older one only when it is
 // complete.
 #pragma once
 
@@ -28,10 +29,11 @@ struct Checkpoint {
   double time = 0.0;              ///< [s] of the run
   std::vector<TableMark> tables;  ///< at that time
   std::string state;              ///< bytes of an Archive
+  std::string command = "run";    ///< that goes on from it
 
   void exchange(Archive& archive) {
-    auto& [a, b, c] = *this;
-    archive(a, b, c);
+    auto& [a, b, c, d] = *this;
+    archive(a, b, c, d);
   }
 };
 
@@ -44,8 +46,9 @@ void append_check_sum(std::string& bytes);
 
 /// Throws InputError if there is no such file, if it is damaged or of another version of the program or another scene (other in more than
 /// end.time_s, output.every_s, output.checkpoint_every_s, solver.smallest_fraction, solver.max_iterations and method.threads), if the scene ends
-/// before it, or if one of the tables that were there when it was written is no longer beside it, shorter, or begins otherwise.
-Checkpoint read_checkpoint(const std::string& path, const Scene& scene);
+/// before it, if one of the tables that were there when it was written is no longer beside it, shorter, or begins otherwise, or if it is of another
+/// command.
+Checkpoint read_checkpoint(const std::string& path, const Scene& scene, const std::string& command = "run");
 /// The same for what stands in the file of that path.
 Checkpoint checkpoint_of_bytes(const std::string& bytes, const std::string& path, const Scene& scene);
 

@@ -31,6 +31,8 @@ class OutputFolder {
   void remove_results() const;
   /// Of these only what comes at the end of an analysis, not the tables and the checkpoint with which one that was broken off goes on.
   void remove_last_results() const;
+  /// Of an analysis that is over and leaves nothing to go on from.
+  void remove_checkpoint() const { remove(checkpoint_name); }
   /// Whether a run that goes on from this checkpoint goes on in this folder, whatever the paths look like.
   bool has(const std::string& checkpoint_file) const;
 

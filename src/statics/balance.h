@@ -56,6 +56,11 @@ class Balance {
   static double size(const Increment& x) { return x.size() == 0 ? 0.0 : x.cwiseAbs().maxCoeff(); }
 
   const BalanceCounters& counters() const { return counters_; }
+  /// What is kept from one state to the next: what has been counted, and how the solver rounds.
+  void exchange(Archive& archive) {
+    archive(counters_.factorisations);
+    solver_->exchange(archive, matrix_);
+  }
 
  private:
   struct Spring {  // what a contact starts the increment with

@@ -29,6 +29,8 @@ class FrozenSolver {
   /// From a state, at the present strength.
   virtual RelaxationResult relax(const FrozenState& from) = 0;
   virtual long linear_solves() const { return 0; }
+  /// What it remembers from one state to the next.
+  virtual void exchange(Archive&) {}
 };
 
 }  // namespace openclose

@@ -15,6 +15,12 @@ struct FrozenContactState {
   double shear = 0.0;   ///< also what the shear spring remembers
   bool bonded = true;   ///< cohesion and tensile strength are still there
   ContactStatus status = ContactStatus::sticking;
+
+  void exchange(Archive& archive) {
+    auto& [a, b, c, d, e] = *this;
+    archive(a, b, c, d, e);
+    archive.require(status <= ContactStatus::sliding, "the saved state has a contact with a status that there is not");
+  }
 };
 
 struct FrozenState {
@@ -25,6 +31,15 @@ struct FrozenState {
   FrozenState() = default;
   explicit FrozenState(const FrozenSystem& system)
       : contacts(system.contacts().size()), supports(system.supports().size(), 0.0), displacement(system.blocks().size(), BlockVector::Zero()) {}
+
+  void exchange(Archive& archive) {
+    auto& [a, b, c] = *this;
+    archive(a, b, c);
+  }
+  /// Whether one that was read is of these blocks.
+  bool fits(const FrozenSystem& system) const {
+    return contacts.size() == system.contacts().size() && supports.size() == system.supports().size() && displacement.size() == system.blocks().size();
+  }
 };
 
 /// Strengths of all contacts at a factor, over the unit of force.

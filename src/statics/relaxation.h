@@ -23,6 +23,7 @@ class Relaxation : public FrozenSolver {
   RelaxationResult bonded_state() override;
   RelaxationResult relax(const FrozenState& from) override;
   long linear_solves() const override { return balance_.counters().factorisations; }
+  void exchange(Archive& archive) override { archive(balance_); }
 
  private:
   void accept(const Eigen::VectorXd& x, FrozenState& state);

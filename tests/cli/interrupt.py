@@ -2,9 +2,9 @@
 
     python3 tests/cli/interrupt.py OPENCLOSE [--count 50] [--seed 1]
 
-Every scene and method is run once without a stop. Then it is begun `count` times with each signal, SIGKILL (no chance to say anything) and SIGINT (Ctrl-C),
-sent at a moment drawn from the whole length of the run, and continued; of what was continued, every third is stopped once more. In the end all tables and
-the hash of the state must be those of the run that was never stopped. Exit status 0 or 1.
+Every run, and every search for a factor of safety, is made once without a stop. Then it is begun `count` times with each signal, SIGKILL (no chance to say
+anything) and SIGINT (Ctrl-C), sent at a moment drawn from its whole length, and continued; of what was continued, every third is stopped once more. In the
+end all tables and the hash of the state must be those of the one that was never stopped. Exit status 0 or 1.
 """
 
 import argparse
@@ -18,8 +18,16 @@ import tempfile
 import time
 from pathlib import Path
 
-TABLES = ("history.csv", "energy.csv", "blocks.csv", "contacts.csv", "block_states.csv", "cracks.csv")
+STATE_TABLES = ("blocks.csv", "contacts.csv", "block_states.csv", "cracks.csv")
+TABLES = {"run": ("history.csv", "energy.csv", *STATE_TABLES), "fos": ("trials.csv", *STATE_TABLES)}
 METHODS = ("soft", "hard", "dem", "shi")
+# Narrower than anyone needs, for more trials.
+SEARCHES = {
+    "small displacements": ["strength_reduction.width=1e-9"],
+    "joint closures": ["strength_reduction.definition=joint_closures", "strength_reduction.width=1e-9"],
+    "large displacements": ["strength_reduction.definition=large_displacements", "strength_reduction.width=1e-4", "settle.failure_displacement_m=0.05"],
+    "large displacements, dem": ["method.contact=dem", "strength_reduction.definition=large_displacements", "settle.failure_displacement_m=0.05"],
+}
 STOPPED_BY_INTERRUPT = 130
 HEAD = """title = "A pile of boxes that falls"
 [[material]]
@@ -49,29 +57,61 @@ vertices_m = [[-3, -1], [9, -1], [9, 0], [-3, 0]]
 ROWS, COLUMNS = 8, 5
 
 
-def scene():
-    """Boxes a little apart, each row moved sideways, so that they knock each other over."""
-    text = HEAD
+def boxes(head, place):
+    """The scene of rows of them; place(row, column) is the lower left corner of one."""
+    text = head
     for row in range(ROWS):
         for column in range(COLUMNS):
-            x, y = 1.05 * column + 0.21 * (row % 3), 0.02 + 1.03 * row
+            x, y = place(row, column)
             corners = [[x, y], [x + 1, y], [x + 1, y + 1], [x, y + 1]]
             text += f'[[block]]\nname = "box {row}-{column}"\nmaterial = "rock"\nvertices_m = {corners}\n'
     return text + '[[measured_point]]\nname = "top"\npoint_m = [2.7, 7.5]\n'
 
 
-class Trial:
-    """One folder of results, with what it should be in the end."""
+def falling_pile():
+    """Boxes a little apart, each row moved sideways, so that they knock each other over."""
+    return boxes(HEAD, lambda row, column: (1.05 * column + 0.21 * (row % 3), 0.02 + 1.03 * row))
 
-    def __init__(self, openclose, place, method, whole):
-        self.place, self.whole, self.folder = place, whole, place / f"{method}-stopped"
-        self.command = [openclose, "run", "scene.toml", "--contact", method, "--quiet", "-o", self.folder.name]
+
+def leaning_wall():
+    """Boxes on each other, every other row moved by a fifth of one, on a floor that is tilted a little."""
+    return boxes('gravity_m_per_s2 = [1.0, -9.81]\n' + HEAD, lambda row, column: (column + 0.2 * (row % 2), float(row)))
+
+
+class Case:
+    """One command with its results when nothing stops it."""
+
+    def __init__(self, openclose, place, title, command, scene, arguments):
+        self.place, self.title, self.kind = place, title, command
+        name = title.replace(",", "").replace(" ", "-")
+        self.whole, self.stopped = place / f"{name}-whole", place / f"{name}-stopped"
+        self.command = [openclose, command, scene, "--quiet", *arguments, "-o"]
+
+    def run_whole(self):
+        """The seconds that it takes."""
+        begin = time.monotonic()
+        subprocess.run([*self.command, self.whole.name], cwd=self.place, check=True)
+        return time.monotonic() - begin
+
+    def differences(self):
+        """Between what was stopped and what was not; empty if there are none."""
+        different = [name for name in TABLES[self.kind] if (self.whole / name).read_bytes() != (self.stopped / name).read_bytes()]
+        if state_hash(self.whole) != state_hash(self.stopped):
+            different.append("state_hash")
+        return ", ".join(different)
+
+
+class Trial:
+    """One folder of results, made by a command that is stopped."""
+
+    def __init__(self, case):
+        self.case, self.folder = case, case.stopped
         shutil.rmtree(self.folder, ignore_errors=True)
 
     def start(self):
         checkpoint = self.folder / "checkpoint.bin"
         restart = ["--restart", f"{self.folder.name}/checkpoint.bin"] if checkpoint.is_file() else []
-        return subprocess.Popen(self.command + restart, cwd=self.place, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        return subprocess.Popen([*self.case.command, self.folder.name, *restart], cwd=self.case.place, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
 
     def stop_after(self, seconds, sign):
         """Exit status, and what was said."""
@@ -84,19 +124,11 @@ class Trial:
     def finish(self):
         process = self.start()
         errors = process.communicate()[1]
-        return f"exit status {process.returncode} of the run that went on: {errors.strip()}" if process.returncode else differences(self.whole, self.folder)
+        return f"exit status {process.returncode} of what went on: {errors.strip()}" if process.returncode else self.case.differences()
 
 
 def state_hash(folder):
     return json.loads((folder / "summary.json").read_text())["state_hash"]
-
-
-def differences(whole, other):
-    """Empty if there are none."""
-    different = [name for name in TABLES if (whole / name).read_bytes() != (other / name).read_bytes()]
-    if state_hash(whole) != state_hash(other):
-        different.append("state_hash")
-    return ", ".join(different)
 
 
 def content_of(folder):
@@ -122,37 +154,42 @@ def interrupt(trial, sign, length, moments, again):
     return trial.finish(), in_time
 
 
-def try_method(openclose, place, method, count, moments):
-    whole = place / f"{method}-whole"
-    begin = time.monotonic()
-    subprocess.run([openclose, "run", "scene.toml", "--contact", method, "--quiet", "-o", whole.name], cwd=place, check=True)
-    length = time.monotonic() - begin
+def try_case(case, count, moments):
+    length = case.run_whole()
     faults = 0
     for sign in (signal.SIGKILL, signal.SIGINT):
         in_time = 0
         for number in range(count):
-            trial = Trial(openclose, place, method, whole)
-            fault, hits = interrupt(trial, sign, length, moments, again=number % 3 == 2)
+            fault, hits = interrupt(Trial(case), sign, length, moments, again=number % 3 == 2)
             in_time += hits
             if fault:
                 faults += 1
-                print(f"{method}, {sign.name}, number {number}: {fault}")
-        print(f"{method}: {count} runs stopped by {sign.name} ({in_time} signals in time) and continued")
+                print(f"{case.title}, {sign.name}, number {number}: {fault}")
+        print(f"{case.title}: {count} stopped by {sign.name} ({in_time} signals in time) and continued", flush=True)
     return faults
+
+
+def cases(openclose, place, methods):
+    (place / "pile.toml").write_text(falling_pile())
+    (place / "wall.toml").write_text(leaning_wall())
+    for method in methods:
+        yield Case(openclose, place, f"run {method}", "run", "pile.toml", ["--contact", method])
+    for definition, settings in SEARCHES.items():
+        arguments = [argument for setting in settings for argument in ("--set", setting)]
+        yield Case(openclose, place, f"fos {definition}", "fos", "wall.toml", arguments)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("openclose", type=Path)
-    parser.add_argument("--count", type=int, default=50, help="moments for each signal and method (default: %(default)s)")
+    parser.add_argument("--count", type=int, default=50, help="moments for each signal and case (default: %(default)s)")
     parser.add_argument("--seed", type=int, default=1, help="of the moments (default: %(default)s)")
     parser.add_argument("--methods", nargs="+", choices=METHODS, default=list(METHODS))
     arguments = parser.parse_args()
     moments = random.Random(arguments.seed)
     with tempfile.TemporaryDirectory() as folder:
-        place = Path(folder)
-        (place / "scene.toml").write_text(scene())
-        faults = sum(try_method(arguments.openclose.resolve(), place, method, arguments.count, moments) for method in arguments.methods)
+        found = cases(arguments.openclose.resolve(), Path(folder), arguments.methods)
+        faults = sum(try_case(case, arguments.count, moments) for case in found)
     return 1 if faults else 0
 
 

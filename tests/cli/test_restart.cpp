@@ -185,3 +185,36 @@ TEST_CASE("a search for the factor of safety that is stopped tells what it knows
   CHECK_THAT(summary.at("reason").get<std::string>(), ContainsSubstring("stopped"));
   CHECK(summary.at("verdict").get<std::string>() != "certified");
 }
+
+TEST_CASE("a search whose tables cannot be written goes on from its checkpoint to the same answer", "[cli][restart]") {
+  const Workplace place(openclose::test::block_on_incline(20.0));
+  REQUIRE(place.run("fos scene.toml -o whole").status == 0);
+  CHECK_FALSE(std::filesystem::exists(place.folder() / "whole/checkpoint.bin"));
+  std::filesystem::create_directories(place.folder() / "parts/trials.csv.part");
+  CHECK(place.run("fos scene.toml -o parts").status == 3);
+  REQUIRE(std::filesystem::exists(place.folder() / "parts/checkpoint.bin"));
+  std::filesystem::remove(place.folder() / "parts/trials.csv.part");
+
+  SECTION("in its folder") {
+    CHECK(place.run("fos scene.toml -o parts --restart parts/checkpoint.bin").status == 0);
+    for (const char* table : {"trials.csv", "blocks.csv", "contacts.csv", "block_states.csv", "cracks.csv", "mechanism.csv"}) {
+      INFO(table);
+      CHECK(text_of(place.folder() / ("whole/" + std::string(table))) == text_of(place.folder() / ("parts/" + std::string(table))));
+    }
+    CHECK(hash_of(place, "whole") == hash_of(place, "parts"));
+    CHECK_FALSE(std::filesystem::exists(place.folder() / "parts/checkpoint.bin"));
+  }
+  SECTION("not with another scene, and not as a run") {
+    const auto refused = [&](const std::string& arguments, const std::string& reason) {
+      const CommandResult result = place.run(arguments + " -o other --restart parts/checkpoint.bin");
+      CHECK(result.status == 2);
+      REQUIRE(result.errors.size() == 1);
+      CHECK_THAT(result.errors[0], ContainsSubstring(reason));
+      CHECK_FALSE(std::filesystem::exists(place.folder() / "other"));
+    };
+    refused("fos scene.toml --set joint[0].friction_angle_deg=21", "it belongs to another scene");
+    refused("fos scene.toml --set strength_reduction.width=1e-5", "it belongs to another scene");
+    // With the step that fos takes where a scene has none, so that the scenes are the same.
+    refused("run scene.toml --end 1 --dt 1", "it was written by openclose fos; accepted: a checkpoint of openclose run");
+  }
+}
