@@ -39,7 +39,8 @@ class NullEnforcement : public Enforcement {
 void Report::add(const std::string& quantity, const std::string& method, double expected, double measured, double error, double tolerance,
                  const std::string& unit, const std::string& source) {
   const Status status = error <= tolerance ? Status::pass : Status::fail;  // NaN fails
-  checks_.push_back({case_, quantity, method, expected, measured, unit, error, tolerance, status, source});
+  checks_.push_back({case_, quantity, method, expected, measured, unit, error, tolerance, status, source, reference_});
+  reference_ = reference_of_case_;
 }
 
 void Report::near(const std::string& quantity, const std::string& method, double expected, double measured, double tolerance, const std::string& unit,
@@ -71,7 +72,7 @@ void Report::order(const std::string& quantity, const std::string& method, const
 
 void Report::leave_out(const std::string& quantity, const std::string& method, const std::string& reason) {
   const double none = not_measured();
-  checks_.push_back({case_, quantity, method, none, none, "", none, none, Status::left_out, reason});
+  checks_.push_back({case_, quantity, method, none, none, "", none, none, Status::left_out, reason, reference_of_case_});
 }
 
 Simulation Report::simulate(const Scene& scene) const {
@@ -105,6 +106,20 @@ std::vector<Sample> history(Simulation& simulation) {
 
 double not_measured() {
   return std::numeric_limits<double>::quiet_NaN();
+}
+
+double larger(double a, double b) {
+  return std::isnan(a) || a > b ? a : b;
+}
+
+std::string passed_by_reference(const std::vector<Check>& checks) {
+  std::array<long, reference_names.size()> counts{};
+  for (const Check& c : checks) counts[static_cast<std::size_t>(c.reference)] += c.status == Status::pass;
+  std::string text;
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    if (counts[i] > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", counts[i], reference_names[i]);
+  }
+  return text;
 }
 
 double exceedance(double measured, double bound) {

@@ -2,6 +2,7 @@
 // run with a solver that does nothing, to show that no check passes without one.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <map>
 #include <memory>
@@ -19,6 +20,20 @@ inline constexpr const char* stiffness_name = "stiffness_n_per_m2";
 
 enum class Status { pass, fail, left_out };
 
+/// What a row is compared with, for the count at the end.
+enum class Reference {
+  closed_form,
+  ode,             ///< integrated with its events located
+  limit_analysis,  ///< a linear program
+  conservation,    ///< of momentum, energy, areas
+  invariance,      ///< under what must not matter
+  ledger,          ///< of energies
+  other_run,       ///< of the program itself, with another method or step
+  last_value,      ///< what the program gave before
+};
+inline constexpr std::array reference_names = {"closed forms", "ODEs",    "linear programs",           "conservation",
+                                               "invariance",   "ledgers", "other runs of the program", "last values"};
+
 struct Check {
   std::string case_name;  ///< "B1"
   std::string quantity;
@@ -30,6 +45,7 @@ struct Check {
   double tolerance = 0.0;
   Status status = Status::fail;
   std::string source;  ///< where expected value and tolerance come from; for a check left out, why
+  Reference reference = Reference::closed_form;
 };
 
 /// One point of a convergence series.
@@ -46,7 +62,16 @@ class Report {
  public:
   explicit Report(bool null_solver) : null_solver_(null_solver) {}
 
-  void begin_case(const std::string& name) { case_ = name; }
+  /// \param reference  of the rows that do not say theirs
+  void begin_case(const std::string& name, Reference reference = Reference::closed_form) {
+    case_ = name;
+    reference_of_case_ = reference_ = reference;
+  }
+  /// What the next row is compared with: `report.against(Reference::ode).order(...)`.
+  Report& against(Reference reference) {
+    reference_ = reference;
+    return *this;
+  }
   /// |measured - expected| <= tolerance.
   void near(const std::string& quantity, const std::string& method, double expected, double measured, double tolerance, const std::string& unit,
             const std::string& source);
@@ -75,6 +100,7 @@ class Report {
 
   bool null_solver_;
   std::string case_;
+  Reference reference_of_case_ = Reference::closed_form, reference_ = Reference::closed_form;
   std::vector<Check> checks_;
   std::vector<SeriesPoint> series_;
 };
@@ -87,6 +113,7 @@ struct Case {
   const char* name;  ///< "B1", its identifier
   const char* title;
   void (*run)(Report&);
+  Reference reference = Reference::closed_form;  ///< of the rows that do not say theirs
 };
 
 /// Runs to the scene's end and hands out the motion of the first measured point (or first free block) at the output times.
@@ -99,6 +126,12 @@ std::vector<Sample> history(Simulation& simulation);
 
 /// NaN, for a measurement whose conditions were not met.
 double not_measured();
+
+/// The larger of two; NaN if one of them is, which std::max() may swallow.
+double larger(double a, double b);
+
+/// How many rows passed against what: "12 closed forms, 3 ODEs".
+std::string passed_by_reference(const std::vector<Check>& checks);
 
 /// By how much a measurement exceeds a bound: 0 up to it, and NaN for NaN, which max() would turn into 0.
 double exceedance(double measured, double bound);

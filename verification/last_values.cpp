@@ -78,8 +78,9 @@ void compare(Report& report, const std::vector<LastValue>& values) {
     if (std::none_of(checks.begin(), checks.end(), [&](const Check& c) { return c.case_name == v.case_name; })) continue;
     const Check* check = find(checks, v);
     report.begin_case(v.case_name);
-    report.relative("last value: " + v.quantity, v.method, v.value, check ? check->measured : not_measured(), v.relative_tolerance,
-                    check ? check->unit : "", check ? "verification/last_values.csv" : "verification/last_values.csv names a row that is not there");
+    report.against(Reference::last_value)
+        .relative("last value: " + v.quantity, v.method, v.value, check ? check->measured : not_measured(), v.relative_tolerance,
+                  check ? check->unit : "", check ? "verification/last_values.csv" : "verification/last_values.csv names a row that is not there");
   }
 }
 

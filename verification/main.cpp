@@ -38,10 +38,11 @@ std::string quoted(const std::string& s) {
 
 void write_checks(const std::string& path, const std::vector<Check>& checks) {
   std::ofstream file(path);
-  file << "case,quantity,method,expected,measured,unit,error,tolerance,status,source\n";
+  file << "case,quantity,method,expected,measured,unit,error,tolerance,status,source,reference\n";
   for (const Check& c : checks) {
-    fmt::print(file, "{},{},{},{:.17g},{:.17g},{},{:.6g},{:.6g},{},{}\n", c.case_name, quoted(c.quantity), c.method, c.expected, c.measured,
-               quoted(c.unit), c.error, c.tolerance, c.status == Status::fail ? "fail" : name_of(c.status), quoted(c.source));
+    fmt::print(file, "{},{},{},{:.17g},{:.17g},{},{:.6g},{:.6g},{},{},{}\n", c.case_name, quoted(c.quantity), c.method, c.expected, c.measured,
+               quoted(c.unit), c.error, c.tolerance, c.status == Status::fail ? "fail" : name_of(c.status), quoted(c.source),
+               reference_names[static_cast<std::size_t>(c.reference)]);
   }
   if (!file) throw std::runtime_error("cannot write " + path);
 }
@@ -110,7 +111,7 @@ int run_all(const Options& options) {
   for (const Case& c : cases) {
     if (!options.wanted.empty() && std::find(options.wanted.begin(), options.wanted.end(), c.name) == options.wanted.end()) continue;
     const std::size_t from = checks.size();
-    report.begin_case(c.name);
+    report.begin_case(c.name, c.reference);
     c.run(report);
     print_group(c.name, c.title, checks, from);
   }
@@ -134,8 +135,8 @@ int run_all(const Options& options) {
   write_checks(options.folder + "/verify.csv", checks);
   write_series(options.folder + "/verify_series.csv", report.series());
   write_cases(options.folder + "/verify_cases.csv", cases);
-  fmt::print("\n{} left out, with their reasons; all rows in {}/verify.csv\n{} passed, {} failed\n", totals.left_out, options.folder, totals.passed,
-             totals.failed);
+  fmt::print("\n{} left out, with their reasons; all rows in {}/verify.csv\npassed against: {}\n{} passed, {} failed\n", totals.left_out,
+             options.folder, passed_by_reference(checks), totals.passed, totals.failed);
   return totals.failed == 0 && totals.passed > 0 ? 0 : 1;
 }
 

@@ -77,8 +77,9 @@ std::string with_variant(const std::string& quantity, const Scheme& scheme) {
 
 void check_ledger(Report& report, const std::string& name, const std::string& method, const Simulation& simulation, bool done) {
   const EnergyLedger& l = simulation.ledger();
-  report.near(name + ": energy ledger, imbalance over turnover", method, 0.0, done ? std::abs(l.imbalance()) / l.turnover : not_measured(), 1e-10,
-              "-", "work of the forces = change of kinetic energy");
+  report.against(Reference::ledger)
+      .near(name + ": energy ledger, imbalance over turnover", method, 0.0, done ? std::abs(l.imbalance()) / l.turnover : not_measured(), 1e-10, "-",
+            "work of the forces = change of kinetic energy");
 }
 
 std::vector<double> downhill_history(Simulation& simulation, const analytical::BlockOnPlane& data, std::size_t count) {

@@ -9,14 +9,14 @@ namespace openclose::verification {
 namespace {
 
 struct Hold {
-  bool settled = false;
+  double holds = not_measured();                          ///< 1 if it settled, 0 if it slid away
   double lower = not_measured(), upper = not_measured();  ///< normal forces [N]
 };
 
 /// Normal forces of the two corners, the downhill one first.
-Hold forces_of(Simulation& simulation, bool settled) {
+Hold forces_of(Simulation& simulation, double holds) {
   Hold hold;
-  hold.settled = settled;
+  hold.holds = holds;
   double downhill_x = -1e300;
   for (const Contact& c : simulation.contacts()) {
     if (c.status == ContactStatus::open) continue;
@@ -39,7 +39,7 @@ Hold settle_on(const Report& report, const analytical::BlockOnPlane& data, const
   use_joint_springs_as_penalty(scene);
   Simulation simulation = report.simulate(scene);
   const SettleResult result = settle(simulation);
-  return forces_of(simulation, result.settled);
+  return forces_of(simulation, result.settled ? 1.0 : result.criterion == "displacement" ? 0.0 : not_measured());
 }
 
 /// Hard contacts give the rigid forces; springs tilt the block by (N_low - N_up)/(kn b), and the forces differ by that angle, so the error is
@@ -69,9 +69,9 @@ void corner_forces(Report& report) {
   report.relative("force of the upper corner", "hard", expected.upper, hold.upper, 1e-8, "N", "rigid block; settled to 1e-8 of the weight");
 }
 
-/// 1 if the block settled under its weight, 0 if it slid away, NaN if the contacts do not carry the weight.
+/// 1 if the block settled under its weight, 0 if it slid away, NaN if the contacts do not carry the weight or settling came to another end.
 double holds(const Hold& hold, const analytical::BlockOnPlane& data) {
-  if (!hold.settled) return 0.0;
+  if (hold.holds != 1.0) return hold.holds;
   return std::abs((hold.lower + hold.upper) / data.normal_weight() - 1.0) < 1e-3 ? 1.0 : not_measured();
 }
 
@@ -101,17 +101,42 @@ void drift(Report& report) {
     const auto samples = history(simulation);
     // From the first second on: before, the 1e-8 of the weight that settling leaves unbalanced is worked off.
     for (const Sample& s : samples) {
-      if (s.time >= 1.0) worst = std::max(worst, (s.motion.displacement - samples[1].motion.displacement).norm());
+      if (s.time >= 1.0) worst = larger(worst, (s.motion.displacement - samples[1].motion.displacement).norm());
     }
-    const bool carried = !samples.empty() && holds(forces_of(simulation, true), data) == 1.0;
+    const bool carried = !samples.empty() && holds(forces_of(simulation, 1.0), data) == 1.0;
     // The explicit method has nothing that damps the vibration with which the last of the unbalanced force is worked off.
     const double vibration = method == "dem" ? 2.0 * scene.settle.unbalanced_fraction * data.weight() / (2.0 * data.normal_stiffness) : 0.0;
     report.near("drift over 1e5 steps", method, 0.0, carried ? worst : not_measured(), 1e-12 + vibration, "m", "static equilibrium");
   }
 }
 
+/// Springs tilt the block by (N_low - N_up)/(kn b), which changes lever arms and weight's parts by that angle and twice the slenderness.
+void sliding_forces(Report& report) {
+  const analytical::BlockOnPlane data;
+  const auto expected = analytical::sliding_corner_forces(data);
+  const double tilt = (expected.lower - expected.upper) / (data.normal_stiffness * data.width);
+  for (const std::string& method : all_methods) {
+    Scene scene = block_on_plane(data);
+    scene.method.contact = method;
+    scene.method.start = Start::steady_sliding;
+    scene.step.dt = 1e-3;
+    scene.end_time = scene.output_every = 0.5;
+    use_joint_springs_as_penalty(scene);
+    Simulation simulation = report.simulate(scene);
+    const bool slid = downhill_history(simulation, data, 2).back() > 0.1;
+    const Hold hold = slid ? forces_of(simulation, 0.0) : Hold{};
+    const double tolerance = method == "hard" ? 1e-8 : 2.0 * tilt;
+    const char* source = method == "hard" ? "W cos(alpha)/2 (1 +- mu h/b)" : "W cos(alpha)/2 (1 +- mu h/b); twice the elastic tilt";
+    report.relative("while sliding: force of the lower corner over the weight", method, expected.lower / data.weight(), hold.lower / data.weight(),
+                    tolerance, "-", source);
+    report.relative("while sliding: force of the upper corner over the weight", method, expected.upper / data.weight(), hold.upper / data.weight(),
+                    tolerance, "-", source);
+  }
+}
+
 void static_hold(Report& report) {
   corner_forces(report);
+  sliding_forces(report);
   threshold(report);
   drift(report);
 }

@@ -45,7 +45,7 @@ void sliding(Report& report) {
       const auto samples = history(simulation);
       for (const Sample& s : samples) {
         if (s.time < 0.5) continue;
-        worst = std::max(worst, std::abs(downhill(data, s.motion.displacement) / (0.5 * acceleration * s.time * s.time) - 1.0));
+        worst = larger(worst, std::abs(downhill(data, s.motion.displacement) / (0.5 * acceleration * s.time * s.time) - 1.0));
       }
       report.near(std::string("sliding with a traction on its top") + (locked ? ", rotation locked" : ""), method, 0.0,
                   samples.empty() ? not_measured() : worst, 1e-10, "-", "m x'' = W sin alpha - s b - mu (W cos alpha + p b); constant forces");

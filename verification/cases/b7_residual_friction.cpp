@@ -45,7 +45,7 @@ void rest(Report& report) {
     double worst = 0.0;
     const auto samples = history(simulation);
     for (const Sample& s : samples) {
-      if (s.time >= 0.5) worst = std::max(worst, (s.motion.displacement - samples[1].motion.displacement).norm());
+      if (s.time >= 0.5) worst = larger(worst, (s.motion.displacement - samples[1].motion.displacement).norm());
     }
     const bool carries = !samples.empty() && std::abs(carried(simulation) / data.normal_weight() - 1.0) < 1e-3;
     // What settling leaves unbalanced vibrates on with `dem`, as in case B2.

@@ -91,9 +91,10 @@ void elastic(Report& report) {
     const double order = anticipates ? 1.0 : s.order;
     // The place of a change between sticking and sliding within its step is a random factor of a second-order error.
     const double slack = order == 2.0 ? 0.4 : 0.2;
-    report.order(with_variant("place in mid-slip", s), s.contact, steps, errors, order - slack, order + slack,
-                 anticipates ? "SUNDIALS ODE on the shaken plane; order 1 at the jump that ends the pulse"
-                             : "SUNDIALS ODE on the shaken plane; order of the scheme");
+    report.against(Reference::ode)
+        .order(with_variant("place in mid-slip", s), s.contact, steps, errors, order - slack, order + slack,
+               anticipates ? "SUNDIALS ODE on the shaken plane; order 1 at the jump that ends the pulse"
+                           : "SUNDIALS ODE on the shaken plane; order of the scheme");
   }
 }
 

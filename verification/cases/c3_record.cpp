@@ -64,8 +64,9 @@ void rigid(Report& report) {
     steps.push_back(dt);
     errors.push_back(largest_difference(places(report, scene_of("hard", dt, whole)), exact));
   }
-  report.order(text("largest distance from Newmark's block over 5 s, {} slips and stops", static_cast<double>(motion.events.size())), "hard", steps,
-               errors, 1.6, 2.4, "CVODE with events; order 2, where in their steps slips begin and end is a random factor");
+  report.against(Reference::ode)
+      .order(text("largest distance from Newmark's block over 5 s, {} slips and stops", static_cast<double>(motion.events.size())), "hard", steps,
+             errors, 1.6, 2.4, "CVODE with events; order 2, where in their steps slips begin and end is a random factor");
 }
 
 void elastic(Report& report) {
@@ -87,8 +88,9 @@ void elastic(Report& report) {
       errors.push_back(largest_difference(places(report, scene), exact));
     }
     const double slack = s.order == 2.0 ? 0.4 : 0.2;
-    report.order(with_variant(text("largest distance from the ODE over {} s", end), s), s.contact, steps, errors, s.order - slack, s.order + slack,
-                 "SUNDIALS ODE on the shaken plane; order of the scheme");
+    report.against(Reference::ode)
+        .order(with_variant(text("largest distance from the ODE over {} s", end), s), s.contact, steps, errors, s.order - slack, s.order + slack,
+               "SUNDIALS ODE on the shaken plane; order of the scheme");
   }
 }
 
@@ -109,8 +111,9 @@ void own_limit(Report& report) {
     }
     coarser = std::move(now);
   }
-  report.order("largest difference of a step and its half over 1 s", "shi", steps, differences, 0.8, 1.2,
-               "converges within itself with the order of the scheme");
+  report.against(Reference::other_run)
+      .order("largest difference of a step and its half over 1 s", "shi", steps, differences, 0.8, 1.2,
+             "converges within itself with the order of the scheme");
 }
 
 void recorded_motion(Report& report) {

@@ -75,8 +75,9 @@ double share_after(Simulation& simulation, int mode, int steps) {
 /// round: eps W times coordinates of a metre in each of 40 steps.
 void check_small_ledger(Report& report, const std::string& name, const std::string& method, const Simulation& simulation, bool done) {
   const double bound = 40.0 * 2.2e-16 * level_block().weight();
-  report.near(name + ": energy ledger, imbalance", method, 0.0, done ? std::abs(simulation.ledger().imbalance()) : not_measured(), bound, "J",
-              "work of the forces = change of kinetic energy; rounding of the weight's work in coordinates of a metre");
+  report.against(Reference::ledger)
+      .near(name + ": energy ledger, imbalance", method, 0.0, done ? std::abs(simulation.ledger().imbalance()) : not_measured(), bound, "J",
+            "work of the forces = change of kinetic energy; rounding of the weight's work in coordinates of a metre");
 }
 
 /// 2/w_max of the two corner springs, what the program says of it, and what happens on either side.

@@ -30,7 +30,7 @@ Safety safety_of(const Report& report, const Scene& scene) {
   if (!result.found() || !result.bracket.failed) return {};
   double deepest = 0.0;
   for (const Contact& c : result.states.front().contacts) {
-    if (c.status != ContactStatus::open) deepest = std::max(deepest, -c.gap);
+    if (c.status != ContactStatus::open) deepest = larger(deepest, -c.gap);
   }
   return {result.stable(), deepest};
 }

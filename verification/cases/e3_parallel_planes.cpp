@@ -34,8 +34,9 @@ void parallel_planes(Report& report) {
     for (const std::string& method : all_methods) {
       scene.method.contact = method;
       const double factor = strength_reduction_factor(report, scene);
-      report.near(std::string(model.name) + ": factor of safety", method, limit.factor, factor, tolerance, "-",
-                  "limit analysis; width of the bracket and tilt by closure");
+      report.against(Reference::limit_analysis)
+          .near(std::string(model.name) + ": factor of safety", method, limit.factor, factor, tolerance, "-",
+                "limit analysis; width of the bracket and tilt by closure");
       if (model.whole) {
         report.near(std::string(model.name) + ": factor of safety", method, analytical::factor_of_safety(whole_wedge()), factor, tolerance, "-",
                     "Hoek & Bray; width of the bracket and tilt by closure");

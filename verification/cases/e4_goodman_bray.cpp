@@ -69,10 +69,11 @@ void goodman_bray(Report& report) {
     const double angle = std::atan(trial / strength_reduction_factor(report, columns(setting)));
     // d(phi) = sin(phi) cos(phi) dF/F.
     const double tolerance = 0.5 * std::sin(2.0 * recursion) * setting.width + turned_by_closures(setting);
-    report.between(
-        "critical friction angle between the limits", setting.method, degrees(associated), degrees(recursion + tolerance), degrees(angle), "deg",
-        "limit analysis with dilatancy, an upper bound of strength (at constant volume, by Gilbert et al.: " + text("{:.2f}", degrees(other)) +
-            "); recursion");
+    report.against(Reference::limit_analysis)
+        .between(
+            "critical friction angle between the limits", setting.method, degrees(associated), degrees(recursion + tolerance), degrees(angle), "deg",
+            "limit analysis with dilatancy, an upper bound of strength (at constant volume, by Gilbert et al.: " + text("{:.2f}", degrees(other)) +
+                "); recursion");
     report.near("critical friction angle", setting.method, degrees(recursion), degrees(angle), degrees(tolerance), "deg",
                 "recursion; width of the bracket and what closures turn");
   }

@@ -56,7 +56,7 @@ template <class F>
 double difference(const std::vector<Eigen::Vector3d>& plain, const std::vector<Eigen::Vector3d>& other, F carried_back) {
   if (plain.empty() || other.empty()) return not_measured();
   double worst = 0.0;
-  for (int b = 1; b <= 3; ++b) worst = std::max(worst, (carried_back(other[b]) - plain[b]).cwiseAbs().maxCoeff());
+  for (int b = 1; b <= 3; ++b) worst = larger(worst, (carried_back(other[b]) - plain[b]).cwiseAbs().maxCoeff());
   return worst;
 }
 
@@ -191,7 +191,7 @@ void threads_of(Report& report, const std::string& method) {
   const Scene scene = large_wall(method);
   const std::vector<double> one = moved_with(report, scene, 1), two = moved_with(report, scene, 2);
   double worst = one.empty() || two.empty() || std::abs(one[one.size() - 3]) < 1e-3 ? not_measured() : 0.0;
-  for (std::size_t i = 0; i < one.size() && i < two.size(); ++i) worst = std::max(worst, std::abs(one[i] - two[i]));
+  for (std::size_t i = 0; i < one.size() && i < two.size(); ++i) worst = larger(worst, std::abs(one[i] - two[i]));
   report.near(name, method, 0.0, worst, 0.0, "m, rad", "each number is computed by the same operations in the same order");
 }
 
@@ -222,7 +222,8 @@ void invariance(Report& report) {
   }
 }
 
-const Registered<Case> registered{{"I", "invariance: units, mirror, turn, place, frame, order, strangers, restart", &invariance}};
+const Registered<Case> registered{
+    {"I", "invariance: units, mirror, turn, place, frame, order, strangers, restart", &invariance, Reference::invariance}};
 
 }  // namespace
 }  // namespace openclose::verification
