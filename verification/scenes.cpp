@@ -107,7 +107,7 @@ double stands(const Report& report, const Scene& scene) {
   const BlockSystem& system = simulation.system();
   Vec2 weight = Vec2::Zero(), carried = Vec2::Zero();
   for (const int b : system.free_blocks()) weight += simulation.external().weight(system, b).head<2>();
-  for (const Contact& c : simulation.contacts()) {
+  for (const Contact& c : simulation.change_contacts()) {
     if (c.status == ContactStatus::open) continue;
     const Eigen::Vector3d still = Eigen::Vector3d::Zero();
     const ContactKinematics k(system, c, still, still);

@@ -17,7 +17,7 @@ namespace openclose {
 
 MeasuredPoints::MeasuredPoints(Simulation& simulation) : simulation_(simulation) {
   const Scene& scene = simulation.scene();
-  auto& system = simulation.system();
+  BlockSystem& system = simulation.change_system();
   const auto follow = [&](const std::string& name, int block, const Vec2& position) {
     points_.push_back({name, system.follow_point(block, position), Vec2::Zero(), Motion::Unknowns::Zero()});
   };
@@ -85,13 +85,13 @@ RunResult prepare_start(Simulation& simulation, const SettleProgress& progress) 
   RunResult result;
   result.converged = true;
   const Start start = simulation.scene().method.start;
-  const auto reduce_strength = [&] { simulation.joints().reduce_strength(simulation.scene().run_strength_reduction_factor); };
+  const auto reduce_strength = [&] { simulation.change_joints().reduce_strength(simulation.scene().run_strength_reduction_factor); };
   if (start != Start::settled) reduce_strength();
   switch (start) {
     case Start::unloaded:
       break;
     case Start::settled:
-      simulation.book_steps(false);
+      simulation.solved_stepper().book_steps(false);
       result.settling = settle_start(simulation, progress);
       result.converged = result.settling.settled;
       if (!result.converged) {
@@ -112,7 +112,7 @@ RunResult prepare_start(Simulation& simulation, const SettleProgress& progress) 
   }
   result.cpu_of_start = process_cpu_time() - begin;
   // Contacts are found for the first step of the motion; the start has been found without them.
-  simulation.contacts();
+  simulation.change_contacts();
   simulation.restart_clock();
   simulation.start_base_motion();
   simulation.allow_resting();
@@ -238,7 +238,7 @@ class MotionInTime {
  private:
   /// Takes the watch's answer: the run ends where it has found something.
   bool accepted(const std::string& found) {
-    simulation_.allow_energy(watch_.creatable_energy());
+    simulation_.solved_stepper().allow_energy(watch_.creatable_energy());
     if (found.empty()) return true;
     result_.converged = false;
     result_.refused = true;

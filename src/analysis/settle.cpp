@@ -31,12 +31,12 @@ constexpr int fewest_blocks_with_fresh_memory = 200, most_blocks_in_heap = 1000;
 class Neglect {
  public:
   explicit Neglect(Simulation& simulation) : simulation_(simulation) {}
-  ~Neglect() { simulation_.neglect(0.0); }
+  ~Neglect() { simulation_.solved_stepper().neglect(0.0); }
   Neglect(const Neglect&) = delete;
   Neglect& operator=(const Neglect&) = delete;
 
   /// Before a step: the forces that it is a part of change.
-  void renew() { simulation_.neglect(negligible_part * simulation_.scene().settle.unbalanced_fraction * simulation_.force_scale()); }
+  void renew() { simulation_.solved_stepper().neglect(negligible_part * simulation_.scene().settle.unbalanced_fraction * simulation_.force_scale()); }
 
  private:
   Simulation& simulation_;
@@ -66,7 +66,7 @@ SettleResult settle(Simulation& simulation, const SettleProgress& progress) {
   if (is_first && blocks >= fewest_blocks_with_fresh_memory && blocks <= most_blocks_in_heap) provide_memory(fresh_bytes_of_a_block * blocks);
   std::vector<Motion::Unknowns> start;
   for (int b = 0; b < system.block_count(); ++b) start.push_back(system.displacement(b));
-  simulation.system().stop();
+  simulation.change_system().stop();
   Neglect neglect(simulation);
 
   SettleResult result;

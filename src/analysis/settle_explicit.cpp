@@ -66,6 +66,7 @@ class Standstill {
 constexpr double shorter = 0.5, shortest = 0.125;
 
 SettleResult seek_rest(Simulation& simulation, const RestLimits& limits, const SettleProgress& progress) {
+  ExplicitStepper& stepper = *simulation.explicit_stepper();
   const MassDamping asked = simulation.scene().method.damping;
   const MassDamping damping = asked == MassDamping::none ? MassDamping::local : asked;
   simulation.come_to_rest();
@@ -78,8 +79,8 @@ SettleResult seek_rest(Simulation& simulation, const RestLimits& limits, const S
   double fraction = 1.0;
   for (double part = 1.0; result.steps < limits.max_steps;) {
     // Without contacts and supports nothing bounds the step but the way it may go.
-    const double h = part * fraction * std::min(simulation.longest_stable_step(damping), simulation.scene().settle.first_dt);
-    const StepResult step = simulation.explicit_step(h, damping);
+    const double h = part * fraction * std::min(stepper.longest_stable_step(damping), simulation.scene().settle.first_dt);
+    const StepResult step = stepper.step(h, damping);
     if (step.relisted) continue;
     if (!step.accepted) {
       part *= cut;
@@ -97,9 +98,10 @@ SettleResult seek_rest(Simulation& simulation, const RestLimits& limits, const S
     result.unbalanced_fraction = step.unbalanced_force / scale;
     // A block may swing through its place of rest: what counts is the state after the step. Forces that were in balance with cohesion that is gone
     // now are to be balanced anew.
-    if (result.unbalanced_fraction <= wanted) result.unbalanced_fraction = simulation.unbalanced_force() / scale;
+    if (result.unbalanced_fraction <= wanted) result.unbalanced_fraction = stepper.unbalanced_force() / scale;
     result.settled = result.unbalanced_fraction <= wanted && !step.lost_strength;
     if (result.settled || result.steps % displacement_every == 0) {
+      stepper.collect();
       result.displacement = std::max(result.displacement, travel.largest());
       if (progress) progress(settled_share(result.unbalanced_fraction, wanted));
     }
@@ -107,6 +109,7 @@ SettleResult seek_rest(Simulation& simulation, const RestLimits& limits, const S
     if (result.settled) break;
     standstill.add(result.unbalanced_fraction);
     if (standstill.is_due(result.steps)) {
+      stepper.collect();
       result.displacement = std::max(result.displacement, travel.largest());
       if (standstill.ends_here(result.displacement)) {
         if (fraction <= shortest) {

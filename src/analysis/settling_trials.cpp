@@ -12,7 +12,7 @@ SettlingTrials::SettlingTrials(Simulation& simulation, const SettleProgress& pro
 
 TrialResult SettlingTrials::first(double srf) {
   simulation_.restore(initial_);
-  simulation_.joints().reduce_strength(srf);
+  simulation_.change_joints().reduce_strength(srf);
   const SettleResult settled = search_->settle_first(progress_);
   TrialResult result = result_of(settled);
   result.criterion = settled.verdict();
@@ -25,7 +25,7 @@ TrialResult SettlingTrials::first(double srf) {
 
 TrialResult SettlingTrials::next(double srf) {
   simulation_.restore(settled_.value());
-  simulation_.joints().reduce_strength(srf);
+  simulation_.change_joints().reduce_strength(srf);
   return result_of(search_->settle_trial(progress_));
 }
 

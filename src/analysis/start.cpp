@@ -22,7 +22,7 @@ class Balance {
   using Unknowns = Motion::Unknowns;
 
   Balance(Simulation& simulation, int block, bool mobilised) : simulation_(simulation), block_(block), mobilised_(mobilised) {
-    const auto& contacts = simulation.contacts();
+    const auto& contacts = simulation.change_contacts();
     for (std::size_t c = 0; c < contacts.size(); ++c) {
       if (touches(contacts[c])) contacts_.push_back(c);
     }
@@ -112,7 +112,7 @@ class Balance {
 
   void store(const Unknowns& d) {
     for (std::size_t k = 0; k < contacts_.size(); ++k) {
-      Contact& c = simulation_.contacts()[contacts_[k]];
+      Contact& c = simulation_.change_contacts()[contacts_[k]];
       if (forces_[k].normal <= 0.0) continue;
       c.status = mobilised_ ? ContactStatus::sliding : ContactStatus::sticking;
       c.normal_force = forces_[k].normal;
@@ -120,7 +120,7 @@ class Balance {
       c.elastic_slip = -forces_[k].shear / forces_[k].shear_stiffness;
     }
     // Rigid contacts carry the same forces without any closure.
-    if (simulation_.enforcement().has_elastic_contacts()) simulation_.system().advance(block_, d);
+    if (simulation_.enforcement().has_elastic_contacts()) simulation_.change_system().advance(block_, d);
   }
 
   struct Forces {

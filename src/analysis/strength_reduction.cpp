@@ -41,7 +41,7 @@ class StrengthReduction {
 
  private:
   void at_large_displacements() {
-    simulation_.book_steps(false);
+    simulation_.solved_stepper().book_steps(false);
     SettlingTrials trials(simulation_, shown());
     if (saved_) (*saved_)(simulation_);
     begin(trials);
@@ -90,7 +90,7 @@ class StrengthReduction {
 
   /// The scene with its blocks where gravity has brought them with their full strength; nothing if they do not come to rest.
   std::optional<Scene> settled_scene() {
-    simulation_.book_steps(false);
+    simulation_.solved_stepper().book_steps(false);
     if (saved_) (*saved_)(simulation_);
     const SettleResult settled = journal_.once([&] { return make_equilibrium_search(simulation_)->settle_first(shown()); });
     if (!settled.settled) {
@@ -233,7 +233,7 @@ class StrengthReduction {
 
   void add_state(const char* name, const Simulation::Snapshot& snapshot) {
     simulation_.restore(snapshot);
-    result_.states.push_back({name, std::as_const(simulation_).system(), simulation_.contacts()});
+    result_.states.push_back({name, simulation_.system(), simulation_.change_contacts()});
   }
 
   /// The drawn blocks, moved by the closures, and the forces that hold them.
@@ -336,7 +336,7 @@ class StrengthReduction {
 
   void warn_of_geometry() {
     std::vector<double> areas;
-    const BlockSystem& system = std::as_const(simulation_).system();
+    const BlockSystem& system = simulation_.system();
     for (int b : system.free_blocks()) areas.push_back(system.block(b).area);
     if (areas.empty()) return;
     const auto middle = areas.begin() + static_cast<std::ptrdiff_t>(areas.size() / 2);

@@ -40,26 +40,26 @@ int check_command(const Options& options) {
   require_memory(loaded.scene, available_memory());
   Simulation simulation(std::move(loaded.scene));
   require_use(simulation.scene());
-  const auto& system = std::as_const(simulation).system();
+  const auto& system = simulation.system();
   double area = 0.0, free_area = 0.0;
   for (const auto& block : system.blocks()) area += block.area;
   for (const int b : system.free_blocks()) free_area += system.block(b).area;
   if (options.json) {
     nlohmann::ordered_json found = {
         {"scene", options.scene_file}, {"blocks", system.block_count()},           {"free_blocks", system.free_count()},         {"area_m2", area},
-        {"free_area_m2", free_area},   {"contacts", simulation.contacts().size()}, {"method", simulation.scene().method.contact}};
+        {"free_area_m2", free_area},   {"contacts", simulation.change_contacts().size()}, {"method", simulation.scene().method.contact}};
     if (simulation.is_explicit() && std::isfinite(simulation.critical_step())) found["critical_step_s"] = simulation.critical_step();
     if (!options.spectrum_file.empty()) write_spectrum(simulation, options.spectrum_file);
     print_json(exit_success, found);
     return exit_success;
   }
   fmt::print("{}: {} blocks, {} of them free, {:.6g} m2 ({:.6g} m2 free); {} contacts within reach at the start; method {}\n", options.scene_file,
-             system.block_count(), system.free_count(), area, free_area, simulation.contacts().size(), simulation.scene().method.contact);
+             system.block_count(), system.free_count(), area, free_area, simulation.change_contacts().size(), simulation.scene().method.contact);
   if (simulation.is_explicit()) {
     const double critical = simulation.critical_step();
     if (std::isfinite(critical)) {
       fmt::print("critical step {:.6g} s; the longest step taken is {:.6g} s\n", critical,
-                 simulation.longest_stable_step(simulation.scene().method.damping));
+                 simulation.explicit_stepper()->longest_stable_step(simulation.scene().method.damping));
     } else {
       fmt::print("no critical step, since no contact or support is there; the longest step taken is step.dt_s\n");
     }

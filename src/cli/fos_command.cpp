@@ -105,7 +105,7 @@ int fos_command(const Options& options) {
   folder.claim(files_read(options, simulation.scene()));
   make_room(folder, options);
   folder.write_scene_copy(write_scene(simulation.scene()));
-  write_block_properties(folder, simulation.scene(), std::as_const(simulation).system());
+  write_block_properties(folder, simulation.scene(), simulation.system());
   StateTables states(folder, simulation.scene());
   states.add_drawing(simulation);
   const double begin = process_cpu_time();

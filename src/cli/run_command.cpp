@@ -57,7 +57,7 @@ class GrowingFiles {
   void close(Simulation& simulation) {
     progress_.reset();
     // Asking for the contacts finds those of the last positions.
-    states_.add("final", simulation, simulation.contacts());
+    states_.add("final", simulation, simulation.change_contacts());
     history_.close();
     energy_.close();
     states_.close();
@@ -148,7 +148,7 @@ int run_command(const Options& options) {
   folder.claim(files_read(options, scene));
   make_room(folder, options);
   folder.write_scene_copy(write_scene(scene));
-  write_block_properties(folder, scene, std::as_const(simulation).system());
+  write_block_properties(folder, scene, simulation.system());
   GrowingFiles files(folder, simulation, restart ? &*restart : nullptr, options.quiet);
   RunResult result;
   if (restart) {

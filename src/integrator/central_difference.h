@@ -283,7 +283,7 @@ class CentralDifference {
   const ExternalForces* external_ = nullptr;
   ExplicitEnergies energies_;
   bool damped_ = false, lost_strength_ = false;
-  const double skin_;  ///< [m]
+  double skin_;  ///< [m]
   bool fours_;
   CriticalStepBound critical_step_;
   double approach_ = 0.0, moved_ = 0.0, unbalanced_ = 0.0, max_penetration_ = 0.0;

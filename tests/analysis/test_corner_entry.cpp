@@ -163,7 +163,7 @@ TEST_CASE("rigid corners that meet within a step do not enter each other", "[ana
     double deepest = 0.0;
     while (simulation.time() < 0.1) {
       REQUIRE(simulation.advance(dt));
-      const BlockSystem& system = std::as_const(simulation).system();
+      const BlockSystem& system = simulation.system();
       Polygon base, square;
       for (int v = 0; v < 4; ++v) base.push_back(system.position(0, v));
       for (int v = 4; v < 8; ++v) square.push_back(system.position(1, v));

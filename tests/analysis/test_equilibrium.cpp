@@ -80,13 +80,13 @@ TEST_CASE("a trial goes on for twice the steps of the first settling", "[analysi
   const SettleResult first = search->settle_first({});
   REQUIRE(first.settled);
   SECTION("stable") {
-    simulation.joints().reduce_strength(1.2);
+    simulation.change_joints().reduce_strength(1.2);
     const SettleResult trial = search->settle_trial({});
     CHECK(trial.settled);
     CHECK(trial.steps == 2 * first.steps);
   }
   SECTION("failing") {
-    simulation.joints().reduce_strength(2.0);
+    simulation.change_joints().reduce_strength(2.0);
     const SettleResult trial = search->settle_trial({});
     CHECK_FALSE(trial.settled);
     CHECK(trial.criterion == "steps");
@@ -121,11 +121,11 @@ TEST_CASE("of an explicit method the paper's criterion is a force within a numbe
   const SettleResult first = search->settle_first({});
   REQUIRE(first.settled);
   CHECK(first.criterion == "unbalanced force");
-  const double left = simulation.unbalanced_force();
+  const double left = simulation.explicit_stepper()->unbalanced_force();
   CHECK(left <= scene.settle.unbalanced_force);
   // It stops there: damping takes the force down by less than a hundredth in the last steps.
   CHECK(left > 1e-2 * scene.settle.unbalanced_force);
-  simulation.joints().reduce_strength(2.0);
+  simulation.change_joints().reduce_strength(2.0);
   const SettleResult trial = search->settle_trial({});
   CHECK_FALSE(trial.settled);
   CHECK(trial.criterion == "steps");

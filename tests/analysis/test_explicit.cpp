@@ -117,7 +117,7 @@ class LedgerDifference {
   void add_step(Simulation& like, const Simulation& a, const Simulation& b, double dt) {
     constexpr double digit = 2.2e-15;  // [m] last one of coordinates of up to 10 m
     double force = 0.0, stiffness = 0.0, apart = digit, way = 0.0, momentum = 0.0;
-    for (const Contact& c : like.contacts()) {
+    for (const Contact& c : like.change_contacts()) {
       const JointProperties& joint = like.joints().joint(c.joint);
       force += std::abs(c.normal_force) + std::abs(c.shear_force);
       if (c.status != ContactStatus::open) stiffness += c.length * (joint.normal_stiffness + joint.shear_stiffness);
@@ -166,7 +166,7 @@ TEST_CASE("the loop moves blocks as the plain steps do, contacts renewed in ever
     REQUIRE(reference.step(scene.step.dt, false).accepted);
     of_ledger.add_step(reference, reference, loop, scene.step.dt);
   }
-  loop.contacts();  // found anew, as those of the reference are
+  loop.change_contacts();  // found anew, as those of the reference are
   // Gaps are rounded in every step, gravity only once; contacts that rattle or collide multiply both.
   // A gap rounded by 1e-15 m changes a velocity by w^2 dt 1e-15 m = 1e-13 m/s, at random in 5000 steps; collisions multiply it.
   const double rounding = 100.0 * rounding_of(scene, c.steps) + (std::string(c.name) == "tumbling" ? 1e-9 : 1e-11);
@@ -251,7 +251,7 @@ TEST_CASE("the ledger closes where a contact is closed when it is found", "[anal
   for (int i = 0; i < 5000; ++i) {
     REQUIRE(watched.step(scene.step.dt, false).accepted);
     std::set<std::pair<int, int>> now;
-    for (const Contact& c : watched.contacts()) {
+    for (const Contact& c : watched.change_contacts()) {
       now.emplace(c.vertex, c.edge);
       const double stiffness = scene.joints[0].normal_stiffness * c.length;
       const bool closed = c.gap < 0.0 && 0.5 * stiffness * c.gap * c.gap > 1e-8 * l.turnover;
@@ -322,7 +322,7 @@ TEST_CASE("settling explicitly finds the closure under the weight", "[analysis][
   CHECK(settled.unbalanced_fraction <= scene.settle.unbalanced_fraction);
   // Forces balance to 1e-8 of the weight of one block, closures with them.
   double carried = 0.0;
-  for (const Contact& c : simulation.contacts()) carried += c.edge_block == 0 || c.vertex_block == 0 ? c.normal_force : 0.0;
+  for (const Contact& c : simulation.change_contacts()) carried += c.edge_block == 0 || c.vertex_block == 0 ? c.normal_force : 0.0;
   CHECK(carried == Approx(4.0 * test::block_weight).epsilon(1e-7));
   CHECK(simulation.system().kinetic_energy() == 0.0);
   const EnergyLedger& l = simulation.ledger();
@@ -355,7 +355,7 @@ TEST_CASE("a contact that is open at rest has lost its bond", "[analysis][explic
   Simulation simulation(scene);
   REQUIRE(settle(simulation).settled);
   int open = 0;
-  for (const Contact& c : simulation.contacts()) {
+  for (const Contact& c : simulation.change_contacts()) {
     CHECK(c.bonded == (c.status != ContactStatus::open));
     open += c.status == ContactStatus::open;
   }

@@ -252,7 +252,7 @@ TEST_CASE("whoever changes a scene wakes it", "[analysis][resting]") {
     Follower run(prepared(test::block_on_incline(20.0 * degree), method, true));
     run.go(0.5);
     REQUIRE(run.resting() == 1);
-    run.simulation.joints().reduce_strength(3.0);
+    run.simulation.change_joints().reduce_strength(3.0);
     CHECK(run.resting() == 0);
     run.go(0.2);
     // tan 30 deg / 3 against tan 20 deg.
@@ -340,7 +340,7 @@ TEST_CASE("energies stay in balance when blocks rest and wake, and steps are cou
     CHECK(std::abs(run.simulation.ledger().imbalance()) < 1e-10 * run.simulation.ledger().turnover);
     const double stored = std::as_const(run.simulation).stored_contact_energy();
     CHECK(run.simulation.stored_contact_energy() == stored);
-    run.simulation.contacts();
+    run.simulation.change_contacts();
     CHECK(run.simulation.stored_contact_energy() == Approx(stored).epsilon(1e-9));
   };
   for (const std::string& method : all_methods) {

@@ -32,7 +32,7 @@ void append(std::vector<double>& list, const EnergyLedger& l) {
 /// Everything that a step may change, as numbers to be compared bit for bit.
 std::vector<double> everything(Simulation& simulation) {
   std::vector<double> list{simulation.time(), simulation.max_penetration(), static_cast<double>(simulation.step_counters().steps)};
-  for (const Contact& c : simulation.contacts()) append(list, c);
+  for (const Contact& c : simulation.change_contacts()) append(list, c);
   append(list, simulation.ledger());
   const auto& state = simulation.system().state();
   for (const auto& d : state.displacement) list.insert(list.end(), d.begin(), d.end());
@@ -543,7 +543,7 @@ TEST_CASE("the way to an equilibrium is the same without books, which begin with
     INFO(method);
     Scene scene = tumbling(method);
     Simulation booked(scene), unbooked(scene);
-    unbooked.book_steps(false);
+    unbooked.solved_stepper().book_steps(false);
     for (Simulation* s : {&booked, &unbooked}) REQUIRE(settle(*s).settled);
     CHECK(booked.ledger().turnover > 0.0);
     CHECK(unbooked.ledger().turnover == 0.0);
@@ -562,7 +562,7 @@ TEST_CASE("restarting the clock empties the books and nothing else", "[analysis]
   for (int i = 0; i < 200; ++i) REQUIRE(simulation.advance(2e-3));
   const auto state = simulation.system().state();
   std::vector<double> contacts, after;
-  for (const Contact& c : simulation.contacts()) append(contacts, c);
+  for (const Contact& c : simulation.change_contacts()) append(contacts, c);
   REQUIRE(simulation.max_penetration() > 0.0);
 
   simulation.restart_clock();
@@ -572,7 +572,7 @@ TEST_CASE("restarting the clock empties the books and nothing else", "[analysis]
   CHECK(simulation.ledger().imbalance() == 0.0);
   CHECK(simulation.system().state().displacement == state.displacement);
   CHECK(simulation.system().state().velocity == state.velocity);
-  for (const Contact& c : simulation.contacts()) append(after, c);
+  for (const Contact& c : simulation.change_contacts()) append(after, c);
   CHECK(same_bits(contacts, after));
 }
 
@@ -584,7 +584,7 @@ TEST_CASE("an account of the memory, by what has it", "[analysis][simulation]") 
     REQUIRE(few.advance(2e-3));
     const Memory of = few.memory();
     CHECK(of.blocks > few.system().block_count() * (sizeof(BlockSystem::Block) + sizeof(BlockInput)));
-    CHECK(of.contacts > few.contacts().size() * (sizeof(Contact) + 100));
+    CHECK(of.contacts > few.change_contacts().size() * (sizeof(Contact) + 100));
     CHECK((of.matrix > 0) == (method != "dem"));
     CHECK((of.factor > of.matrix) == (method != "dem"));
     CHECK(of.krylov == 0);
@@ -594,7 +594,7 @@ TEST_CASE("an account of the memory, by what has it", "[analysis][simulation]") 
     for (BlockInput& block : named.blocks) block.name = std::string(letters, 'b');
     Simulation same(named);
     const std::size_t before = same.system().bytes();
-    for (std::size_t i = 0; i < points; ++i) same.system().follow_point(1, named.blocks[1].vertices[0]);
+    for (std::size_t i = 0; i < points; ++i) same.change_system().follow_point(1, named.blocks[1].vertices[0]);
     const std::size_t of_points = same.system().bytes() - before;
     CHECK(of_points >= points * sizeof(Vec2));
     REQUIRE(same.advance(2e-3));
@@ -619,7 +619,7 @@ TEST_CASE("an account of the memory, by what has it", "[analysis][simulation]") 
 TEST_CASE("velocities of the scene come back after they were stopped", "[analysis][simulation]") {
   Scene scene = test::tumbling_blocks();
   Simulation simulation(scene);
-  simulation.system().stop();
+  simulation.change_system().stop();
   CHECK(simulation.system().kinetic_energy() == 0.0);
   simulation.restore_velocities();
   simulation.restart_clock();

@@ -52,7 +52,7 @@ TEST_CASE("adaptive steps: the error goes with the tolerance, and falls are take
     trial.step.error_tolerance = tolerance;
     trial.step.adaptive = adaptive;
     Simulation simulation(trial);
-    simulation.system().advance(1, {0.0, 0.05, 0.0});
+    simulation.change_system().advance(1, {0.0, 0.05, 0.0});
     simulation.positions_changed();
     simulation.restart_clock();
     for (int i = 0; i < std::lround(0.4 / dt); ++i) REQUIRE(simulation.advance(dt));

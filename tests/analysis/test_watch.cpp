@@ -102,7 +102,7 @@ TEST_CASE("motion from nowhere is found by the energy ledger", "[analysis][watch
     Watched w(scene);
     for (int i = 0; i < 20; ++i) REQUIRE(w.simulation.advance(scene.step.dt));
     REQUIRE(w.watch.check(w.simulation).empty());
-    auto& system = w.simulation.system();
+    BlockSystem& system = w.simulation.change_system();
     system.set_velocity(1, 1.02 * system.velocity(1));  // 4 % more kinetic energy
     REQUIRE(w.simulation.advance(scene.step.dt));
     CHECK_THAT(w.watch.check(w.simulation), ContainsSubstring("energy was created") && ContainsSubstring("step.dt_s = "));
@@ -113,7 +113,7 @@ TEST_CASE("motion from nowhere is found by the energy ledger", "[analysis][watch
 TEST_CASE("a block faster than all energy could make it is found without the ledger", "[analysis][watch]") {
   Watched w(dropped_block(0.3));
   const Motion::Unknowns fast(0.0, 5.0, 0.0);
-  w.simulation.system().set_velocity(1, fast);
+  w.simulation.change_system().set_velocity(1, fast);
   w.simulation.set_velocity(1, fast);
   CHECK_THAT(w.watch.check(w.simulation), ContainsSubstring("block \"block\" moves at 5 m/s"));
 }
@@ -127,7 +127,7 @@ TEST_CASE("numbers that are none are found", "[analysis][watch]") {
 TEST_CASE("blocks that have passed into each other are found without a contact", "[analysis][watch]") {
   Watched w(dropped_block(0.05));
   for (double depth : {0.1, 0.3}) {
-    w.simulation.system().move_to(1, {0.0, -0.05 - depth, 0.0});
+    w.simulation.change_system().move_to(1, {0.0, -0.05 - depth, 0.0});
     // The width of the block is 2/3 m.
     const std::string found = w.watch.check_at_end(w.simulation);
     INFO(found);

@@ -48,7 +48,7 @@ TEST_CASE("springs kept from step to step are those made anew", "[integrator][sp
   scene.joints[0].cohesion = 1e5;
   scene.joints[0].tensile_strength = 1e4;
   Simulation simulation(scene);
-  std::vector<Contact> contacts = simulation.contacts();
+  std::vector<Contact> contacts = simulation.change_contacts();
   const StepProblem present = simulation.problem(1e-3, false);
   StepProblem problem{present.system, present.external, present.joints, contacts, present.method};
   problem.dt = 1e-3;
@@ -95,7 +95,7 @@ TEST_CASE("springs kept from step to step are those made anew", "[integrator][sp
   }
   SECTION("the strength of joints is reduced") {
     const double before = batches[0].tension[1];
-    simulation.joints().reduce_strength(2.0);
+    simulation.change_joints().reduce_strength(2.0);
     renew();
     CHECK(made == contacts.size());
     CHECK(batches[0].tension[1] == 0.5 * before);
@@ -111,7 +111,7 @@ TEST_CASE("springs kept from step to step are those made anew", "[integrator][sp
     contacts.pop_back();
     move_on();
     renew();
-    contacts = simulation.contacts();
+    contacts = simulation.change_contacts();
     renew();
   }
   SECTION("two blocks in the place of two others") {

@@ -32,9 +32,9 @@ bool same(const std::vector<Contact>& a, const std::vector<Contact>& b) {
 
 /// With the contacts that the step to come may close.
 void load_anew(CentralDifference& loop, Simulation& simulation, const StepProblem& problem) {
-  loop.store_blocks(simulation.system());
-  loop.store_contacts(simulation.contacts());
-  loop.store_far_gaps(simulation.system(), simulation.contacts());
+  loop.store_blocks(simulation.change_system());
+  loop.store_contacts(simulation.change_contacts());
+  loop.store_far_gaps(simulation.system(), simulation.change_contacts());
   loop.load(problem);
 }
 
@@ -47,7 +47,7 @@ TEST_CASE("links four at a time do what each does", "[integrator][explicit]") {
   scene.joints[0].cohesion_behaviour = GENERATE(CohesionBehaviour::ductile, CohesionBehaviour::lost_on_slip);
   Simulation simulation(scene);
   constexpr double h = 1e-4;  // [s]
-  std::vector<Contact> by_fours = simulation.contacts();
+  std::vector<Contact> by_fours = simulation.change_contacts();
   const StepProblem problem = simulation.problem(h, false);
   CentralDifference fours(tolerance::contact_skin_m, true), ones(tolerance::contact_skin_m, false);
   fours.load(problem);

@@ -143,7 +143,7 @@ TEST_CASE("a step reports of each contact what its law says of it", "[integrator
   if (integrator == "theta") scene.method.theta = 0.6;
   scene.method.residual_tolerance = 1e-9;
   Simulation simulation(scene);
-  std::vector<Contact> contacts = simulation.contacts();
+  std::vector<Contact> contacts = simulation.change_contacts();
   const StepProblem present = simulation.problem(1e-4, false);
   // Every third contact is far away and open, the others carry something.
   for (std::size_t c = 0; c < contacts.size(); ++c) {

@@ -80,7 +80,7 @@ struct Results {
     Simulation simulation(scene);
     StateTables states(folder, scene);
     states.add_drawing(simulation);
-    write_block_properties(folder, scene, std::as_const(simulation).system());
+    write_block_properties(folder, scene, simulation.system());
     Summary summary;
     if (is_factor) {
       summary.command = "fos";
@@ -91,7 +91,7 @@ struct Results {
     } else {
       summary.command = "run";
       summary.converged = run(simulation, RunObserver()).converged;
-      states.add("final", simulation, simulation.contacts());
+      states.add("final", simulation, simulation.change_contacts());
       write_summary(folder, summary, simulation);
     }
     states.close();
@@ -254,9 +254,9 @@ TEST_CASE("a surcharge is drawn by its resultant, which turns with its block", "
   Simulation simulation(scene);
   StateTables states(folder, scene);
   states.add_drawing(simulation);
-  write_block_properties(folder, scene, std::as_const(simulation).system());
-  simulation.system().advance(1, {0.0, 0.0, 0.5});
-  states.add("final", simulation, simulation.contacts());
+  write_block_properties(folder, scene, simulation.system());
+  simulation.change_system().advance(1, {0.0, 0.0, 0.5});
+  states.add("final", simulation, simulation.change_contacts());
   Summary summary;
   summary.command = "run";
   write_summary(folder, summary, simulation);

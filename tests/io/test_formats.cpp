@@ -26,7 +26,7 @@ TEST_CASE("a drawing of every state", "[io][formats]") {
   {
     StateTables tables(folder, simulation.scene());
     tables.add_drawing(simulation);
-    tables.add("start", simulation, simulation.contacts());
+    tables.add("start", simulation, simulation.change_contacts());
     tables.close();
   }
   write_block_properties(folder, simulation.scene(), simulation.system());

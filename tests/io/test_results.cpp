@@ -136,7 +136,7 @@ TEST_CASE("blocks.csv holds the polygons of each state in scene coordinates", "[
   BlocksFile file(OutputFolder(place.path()));
   file.add("initial", simulation);
   // A quarter turn about the centroid (101, 50.5), and 3 m up.
-  simulation.system().advance(1, {0.0, 3.0, 90.0 * test::degree});
+  simulation.change_system().advance(1, {0.0, 3.0, 90.0 * test::degree});
   file.add("final", simulation);
   file.close();
   const auto lines = lines_of(place / "blocks.csv");
@@ -158,7 +158,7 @@ TEST_CASE("contacts.csv tells what every contact carries", "[io][results]") {
   Simulation simulation(test::block_on_base());
   REQUIRE(settle(simulation).settled);
   ContactsFile file(OutputFolder(place.path()));
-  file.add("final", simulation.scene(), std::as_const(simulation).system(), simulation.contacts());
+  file.add("final", simulation.scene(), simulation.system(), simulation.change_contacts());
   file.close();
   const auto lines = lines_of(place / "contacts.csv");
   REQUIRE(lines.size() == 3);

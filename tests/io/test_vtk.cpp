@@ -86,12 +86,12 @@ TEST_CASE("states of a run as grids of blocks and contacts", "[io][vtk]") {
   {
     StateTables states(folder, scene);
     states.add_drawing(simulation);
-    write_block_properties(folder, scene, std::as_const(simulation).system());
+    write_block_properties(folder, scene, simulation.system());
     RunObserver observer;
     observer.started = [&](const Simulation& s) { states.add("start", s); };
     observer.snapshot = [&](const std::string& state, const Simulation& s) { states.add(state, s); };
     REQUIRE(run(simulation, observer).converged);
-    states.add("final", simulation, simulation.contacts());
+    states.add("final", simulation, simulation.change_contacts());
     states.close();
   }
   write_vtk(folder);

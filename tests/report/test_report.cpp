@@ -29,7 +29,7 @@ void run_into(const TemporaryFolder& place, Scene scene) {
   Simulation simulation(scene);
   const OutputFolder folder(place.path());
   StateTables states(folder, scene);
-  write_block_properties(folder, scene, std::as_const(simulation).system());
+  write_block_properties(folder, scene, simulation.system());
   states.add_drawing(simulation);
   EnergyFile energy(folder);
   RunObserver observer;
@@ -37,7 +37,7 @@ void run_into(const TemporaryFolder& place, Scene scene) {
   observer.snapshot = [&](const std::string& state, const Simulation& s) { states.add(state, s); };
   observer.output = [&](const Simulation& s) { energy.add(s.time(), s.ledger()); };
   const RunResult result = run(simulation, observer);
-  states.add("final", simulation, simulation.contacts());
+  states.add("final", simulation, simulation.change_contacts());
   states.close();
   energy.close();
   Summary summary;

@@ -18,7 +18,7 @@ Hold forces_of(Simulation& simulation, double holds) {
   Hold hold;
   hold.holds = holds;
   double downhill_x = -1e300;
-  for (const Contact& c : simulation.contacts()) {
+  for (const Contact& c : simulation.change_contacts()) {
     if (c.status == ContactStatus::open) continue;
     const double x = simulation.system().position(c.vertex_block, c.vertex).x();
     if (x > downhill_x) {

@@ -32,7 +32,7 @@ Scene scene_of(const std::string& method, double theta, double dt) {
 std::array<double, 2> follow(Simulation& simulation, double displacement, double velocity, int steps) {
   if (!settle(simulation).settled) return {not_measured(), not_measured()};
   const Vec2 rest = simulation.system().centroid(1);
-  simulation.system().advance(1, {0.0, displacement, 0.0});
+  simulation.change_system().advance(1, {0.0, displacement, 0.0});
   simulation.set_velocity(1, {0.0, velocity, 0.0});
   simulation.positions_changed();
   simulation.restart_clock();

@@ -49,13 +49,13 @@ Scene scene_of(const Scheme& scheme, double dt) {
 double share_after(Simulation& simulation, int mode, int steps) {
   const Modes modes = modes_of(simulation);
   if (modes.shapes.hasNaN()) return not_measured();
-  auto& system = simulation.system();
+  BlockSystem& system = simulation.change_system();
   const Eigen::Vector3d rest = system.displacement(1), shape = modes.shapes.col(mode);
   // Small against the closure of 5e-4 m, so that contacts stay closed and the change of geometry (amplitude over height) stays below the error.
   const double amplitude = 1e-6 / shape.cwiseAbs().maxCoeff();
   // The shear springs stretch with the corners.
   const Eigen::Vector3d still = Eigen::Vector3d::Zero();
-  for (Contact& c : simulation.contacts()) {
+  for (Contact& c : simulation.change_contacts()) {
     const ContactKinematics k(system, c, still, still);
     c.elastic_slip += amplitude * (c.vertex_block == 1 ? k.shear_vertex : k.shear_edge).dot(shape);
   }

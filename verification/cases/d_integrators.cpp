@@ -36,7 +36,7 @@ std::complex<double> follow(const Report& report, const Scene& scene, std::compl
   Simulation simulation = report.simulate(scene);
   if (!settle(simulation).settled) return nothing;
   const Vec2 rest = simulation.system().centroid(1);
-  simulation.system().advance(1, {0.0, start.real(), 0.0});
+  simulation.change_system().advance(1, {0.0, start.real(), 0.0});
   simulation.set_velocity(1, {0.0, start.imag() * w, 0.0});
   simulation.positions_changed();
   simulation.restart_clock();
@@ -105,7 +105,7 @@ Bounces bounce(const Report& report, double dt, double end) {
   scene.method.start = Start::unloaded;
   Simulation simulation = report.simulate(scene);
   const double loose = simulation.system().centroid(1).y(), weight = 5400.0 * 9.81;
-  simulation.system().advance(1, {0.0, drop, 0.0});
+  simulation.change_system().advance(1, {0.0, drop, 0.0});
   simulation.positions_changed();
   simulation.restart_clock();
   Bounces b;

@@ -37,7 +37,7 @@ void forces(Report& report, const std::string& method) {
   Simulation simulation = report.simulate(scene_of(method, 1.0, 1e-3));
   const bool settled = settle(simulation).settled;
   std::vector<double> carried(blocks, 0.0);  // by the joint under each block
-  for (const Contact& c : simulation.contacts()) {
+  for (const Contact& c : simulation.change_contacts()) {
     const int upper = std::max(c.vertex_block, c.edge_block), lower = std::min(c.vertex_block, c.edge_block);
     if (upper == lower + 1) carried[lower] += c.normal_force;
   }
@@ -77,7 +77,7 @@ void eigenvalues(Report& report, const std::vector<double>& expected) {
 double share_after(const Report& report, const Scene& scene, int mode, int steps) {
   Simulation simulation = report.simulate(scene);
   if (!settle(simulation).settled) return not_measured();
-  auto& system = simulation.system();
+  BlockSystem& system = simulation.change_system();
   const auto shape = analytical::column_shape(blocks, mode);
   std::vector<double> rest;
   for (int b = 1; b <= blocks; ++b) {

@@ -1,0 +1,228 @@
+#include "openclose/analysis/simulation_state.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "openclose/analysis/solved_step.h"
+#include "openclose/core/tolerance.h"
+#include "openclose/geometry/polygon.h"
+#include "openclose/integrator/integrators.h"
+#include "openclose/integrator/registry.h"
+
+namespace openclose {
+
+double default_contact_skin(const std::vector<BlockInput>& blocks) {
+  std::vector<double> areas;
+  for (const BlockInput& block : blocks) {
+    if (!block.fixed) areas.push_back(std::abs(signed_area(block.vertices)));
+  }
+  if (areas.empty()) return tolerance::contact_skin_m;
+  const auto median = areas.begin() + static_cast<std::ptrdiff_t>(areas.size() / 2);
+  std::nth_element(areas.begin(), median, areas.end());
+  return std::min(tolerance::contact_skin_m, tolerance::contact_skin_of_size * std::sqrt(*median));
+}
+
+SimulationState::SimulationState(Scene scene_to_follow, std::unique_ptr<Enforcement> own)
+    : scene(std::move(scene_to_follow)),
+      contact_skin(scene.method.contact_skin.value_or(default_contact_skin(scene.blocks))),
+      system(scene),
+      external(scene, system),
+      joints(scene),
+      enforcement(own ? std::move(own) : make_enforcement(scene.method)),
+      begins(scene.method.first_integrator.has_value()),
+      // Two vertices may approach each other by the largest displacement each.
+      detector(2.0 * scene.step.max_displacement,
+               {scene.method.skip_search, scene.method.skip_narrow_phase && enforcement->follows_gaps(), scene.method.skip_looks, contact_skin}),
+      output_velocity(system.state().velocity),
+      resting(scene.rest, system),
+      start_kinetic_energy(system.kinetic_energy()),
+      bytes_of_scene_(bytes_of_blocks(scene)) {
+  make_scheme();
+}
+
+void SimulationState::take_back() {
+  note_change();
+  wake_all();
+}
+
+bool SimulationState::search(double lead) {
+  // What touches in the drawing is found there.
+  if (lead == 0.0 || !detector.knows_bonds()) return detector.update(system, joints, contacts);
+  BlockSystem ahead = system;
+  for (int b : system.free_blocks()) ahead.advance(b, lead * system.velocity(b));
+  return detector.update(ahead, joints, contacts, &system);
+}
+
+void SimulationState::find_contacts(double lead) {
+  if (contacts_current) return;
+  const Stopwatch watch(stage_times.detection);
+  const bool elastic = enforcement->has_elastic_contacts();
+  const double before = elastic ? moving_contact_energy() : 0.0;
+  contacts_current = true;
+  if (!search(lead) || !elastic) return;
+  store_changed_energies();
+  const StepProblem p = problem(scene.step.dt, false);
+  for (Contact& c : contacts) {
+    if (!c.bonded && c.normal_force < 0.0) store_energy(p, c);  // it lost its strength while it was pulling
+  }
+  const double change = moving_contact_energy() - before;
+  ledger.redefinition -= change;
+  ledger.contact_springs += change;
+}
+
+void SimulationState::store_changed_energies() {
+  const StepProblem p = problem(scene.step.dt, false);
+  for (const DetectionChange& change : detector.changes()) {
+    for (int i = change.after.begin; i < change.after.end; ++i) store_energy(p, contacts[i]);
+  }
+}
+
+void SimulationState::store_energy(const StepProblem& problem, Contact& contact) const {
+  const ContactSprings springs = enforcement->springs(problem, contact);
+  const ContactForces f = spring_slider(springs, ContactStrength(joints.joint(contact.joint), contact), 0.0, 0.0);
+  contact.stored_energy = openclose::stored_energy(springs.normal, springs.shear, f.normal, springs.initial_shear) - contact.crossing_energy;
+}
+
+StepProblem SimulationState::problem(double dt, bool statics) const {
+  StepProblem p{system, external, joints, contacts, scene.method};
+  p.dt = dt;
+  p.statics = statics;
+  p.inertia = statics ? 2.0 / (dt * dt) : scheme->inertia(dt);
+  p.end_weight = statics ? 1.0 : scheme->end_weight();
+  p.keep_bonds = keep_bonds;
+  p.longest_displacement = scene.step.max_displacement;
+  if (!statics) p.scheme = scheme.get();
+  return p;
+}
+
+bool SimulationState::move_base(double dt, bool statics) {
+  const TimeSpan span = scheme->span_of_velocities(dt);
+  if (base_moves && !statics) {
+    external.move_base(time + span.from, time + span.to);
+  } else {
+    external.hold_base();
+  }
+  return !external.base_acceleration().isZero(0.0) && !system.resting_blocks().empty();
+}
+
+void SimulationState::rest_after(double dt) {
+  if (!may_rest) return;
+  if (external.base_acceleration().isZero(0.0)) {
+    resting.follow(system, output_velocity, dt);
+  } else {
+    resting.disturb(system);
+  }
+  const std::vector<int> quiet = resting.quiet_blocks(system, contacts);
+  if (quiet.empty()) return;
+  note_change();
+  const double before = system.kinetic_energy();
+  system.put_to_rest(quiet);
+  const double dropped = before - system.kinetic_energy();
+  ledger.scheme += dropped;
+  ledger.kinetic -= dropped;
+  for (const int b : quiet) {
+    output_velocity[b].setZero();
+    scheme->forget(b);
+  }
+  resting.keep_forces(system, quiet, contacts, detector.resting_contacts());
+  counters.put_to_rest += static_cast<long>(quiet.size());
+  divide();
+}
+
+void SimulationState::wake(const std::vector<int>& blocks) {
+  if (blocks.empty()) return;
+  note_change();
+  system.wake(blocks);
+  contacts_current = false;
+  divide();
+}
+
+void SimulationState::divide() {
+  detector.divide(system, contacts);
+  resting.divide(system, detector.resting_contacts());
+}
+
+std::vector<int> SimulationState::to_wake(Resting::Urgency urgency) {
+  if (system.resting_blocks().empty()) return {};
+  std::vector<int> woken = resting.woken(system, contacts, detector.resting_contacts(), urgency);
+  if (urgency == Resting::Urgency::any) resting.accept(system);
+  counters.woken += static_cast<long>(woken.size());
+  return woken;
+}
+
+bool SimulationState::is_beginning() const {
+  return scene.method.first_integrator && time < scene.method.first_integrator_time * (1.0 - tolerance::rounding_of_times);
+}
+
+void SimulationState::make_scheme() {
+  scheme = enforcement->make_time_scheme(scene.method);  // for its complaints, too
+  if (begins) scheme = enforcement->make_time_scheme(method_at_first(scene.method));
+}
+
+void SimulationState::restart_scheme() {
+  take_back();
+  for (int b : system.free_blocks()) system.set_velocity(b, output_velocity[b]);
+  begins = is_beginning();
+  make_scheme();
+  start_kinetic_energy = system.kinetic_energy() + kinetic_ahead - ledger.kinetic;
+}
+
+double SimulationState::moving_contact_energy() const {
+  double energy = 0.0;
+  for (const Contact& c : contacts) energy += c.stored_energy;
+  return energy;
+}
+
+double SimulationState::stored_contact_energy() const {
+  double energy = moving_contact_energy();
+  for (const Contact& c : detector.resting_contacts()) energy += c.stored_energy;
+  return energy;
+}
+
+std::vector<Contact> SimulationState::every_contact() const {
+  std::vector<Contact> list = contacts;
+  const std::vector<Contact>& resting_ones = detector.resting_contacts();
+  list.insert(list.end(), resting_ones.begin(), resting_ones.end());
+  return list;
+}
+
+double SimulationState::force_scale() const {
+  double scale = 0.0;
+  for (int b : system.free_blocks()) scale = std::max(scale, external.weight(system, b).norm());
+  if (scale > 0.0) return scale;
+  for (const auto& element : external.elements()) {
+    if (element->account() == ForceAccount::loads) scale = std::max(scale, element->magnitude(element->path(system, Unknowns::Zero())));
+  }
+  for (const Contact& c : contacts) scale = std::max({scale, c.normal_force, std::abs(c.shear_force)});
+  return scale > 0.0 ? scale : 1.0;
+}
+
+void SimulationState::book_kinetic_energy(double ahead) {
+  ledger.scheme -= ahead - kinetic_ahead;
+  kinetic_ahead = ahead;
+  ledger.kinetic = system.kinetic_energy() + ahead - start_kinetic_energy;
+}
+
+void SimulationState::count_moves() {
+  counters.block_steps += system.free_count();
+  counters.block_steps_skipped += static_cast<long>(system.resting_blocks().size());
+}
+
+void SimulationState::note_memory(const Memory& of_stepper) {
+  Memory now = enforcement->memory() + detector.memory() + of_stepper;
+  now.blocks += bytes_of_scene_ + system.bytes() + bytes_of(output_velocity);
+  now.contacts += bytes_of(contacts);
+  memory.grow_to(now);
+}
+
+void SimulationState::exchange(Archive& archive) {
+  archive(system, resting, may_rest, external, joints, base_moves, keep_bonds, detector, contacts, contacts_current, output_velocity, time, reason,
+          ledger, start_kinetic_energy, kinetic_ahead, max_penetration, friction_work, lagging_friction_work, counters, begins);
+  archive.require(detector.fits(system, joints, contacts), "the saved state has contacts of blocks that are not there");
+  if (archive.reading()) make_scheme();
+  scheme->exchange(archive);
+  enforcement->exchange(archive);
+}
+
+}  // namespace openclose
