@@ -19,7 +19,7 @@ MeasuredContacts::MeasuredContacts(const Scene& scene) {
 std::vector<ContactMotion> MeasuredContacts::motions(const Simulation& simulation) const {
   if (joints_.empty()) return {};
   const BlockSystem& system = simulation.system();
-  const std::vector<Contact> contacts = simulation.every_contact();
+  const std::vector<Contact> contacts = simulation.state().every_contact();
   std::vector<ContactMotion> list;
   for (std::size_t i = 0; i < joints_.size(); ++i) {
     const JointGap gap = joint_motion(joints_[i], system).from;

@@ -36,7 +36,7 @@ class Neglect {
   Neglect& operator=(const Neglect&) = delete;
 
   /// Before a step: the forces that it is a part of change.
-  void renew() { simulation_.solved_stepper().neglect(negligible_part * simulation_.scene().settle.unbalanced_fraction * simulation_.force_scale()); }
+  void renew() { simulation_.solved_stepper().neglect(negligible_part * simulation_.scene().settle.unbalanced_fraction * simulation_.state().force_scale()); }
 
  private:
   Simulation& simulation_;
@@ -56,12 +56,12 @@ double settled_share(double now, double wanted) {
 SettleResult settle(Simulation& simulation, const SettleProgress& progress) {
   const SettleInput& input = simulation.scene().settle;
   if (simulation.is_explicit()) {
-    const double force = input.unbalanced_fraction * simulation.force_scale();
+    const double force = input.unbalanced_fraction * simulation.state().force_scale();
     return settle_explicitly(simulation, {force, input.max_explicit_steps, "settle.max_explicit_steps", input.failure_displacement, input.keep_bonds},
                              progress);
   }
   const auto& system = simulation.system();
-  const bool is_first = simulation.step_counters().steps + simulation.step_counters().cuts == 0;
+  const bool is_first = simulation.state().counters.steps + simulation.state().counters.cuts == 0;
   const int blocks = system.block_count();
   if (is_first && blocks >= fewest_blocks_with_fresh_memory && blocks <= most_blocks_in_heap) provide_memory(fresh_bytes_of_a_block * blocks);
   std::vector<Motion::Unknowns> start;
@@ -83,7 +83,7 @@ SettleResult settle(Simulation& simulation, const SettleProgress& progress) {
       continue;
     }
     ++result.steps;
-    result.unbalanced_fraction = step.unbalanced_force / simulation.force_scale();
+    result.unbalanced_fraction = step.unbalanced_force / simulation.state().force_scale();
     if (progress) progress(settled_share(result.unbalanced_fraction, input.unbalanced_fraction));
     for (int b : system.free_blocks()) {
       result.displacement = std::max(result.displacement, Motion::displacement_bound(system.displacement(b) - start[b], system.block(b).radius));

@@ -14,7 +14,7 @@ struct SettleResult {
   bool settled = false;
   std::string criterion;  ///< what decided: "unbalanced force", "displacement", "steps", or the reason of a step that failed
   int steps = 0;
-  double unbalanced_fraction = 1.0;             ///< [-] of Simulation::force_scale()
+  double unbalanced_fraction = 1.0;             ///< [-] of SimulationState::force_scale()
   double displacement = 0.0;                    ///< [m] largest of any block on the way
   std::optional<double> relative_displacement;  ///< [-] of the last step, see equilibrium.h; steps in time only, which know no unbalanced fraction
   std::string limit;                            ///< key of the limit that ended the search without equilibrium; empty where a step failed

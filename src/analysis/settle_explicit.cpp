@@ -1,6 +1,6 @@
 #include <algorithm>
 #include <limits>
-#include <utility>
+#include <optional>
 
 #include "openclose/analysis/settle.h"
 
@@ -65,85 +65,114 @@ class Standstill {
 /// [-] On the step where blocks swing without end: what the shortest step leaves swinging swings at any length.
 constexpr double shorter = 0.5, shortest = 0.125;
 
-SettleResult seek_rest(Simulation& simulation, const RestLimits& limits, const SettleProgress& progress) {
-  ExplicitStepper& stepper = *simulation.explicit_stepper();
-  const MassDamping asked = simulation.scene().method.damping;
-  const MassDamping damping = asked == MassDamping::none ? MassDamping::local : asked;
-  simulation.come_to_rest();
-  const Travel travel(simulation);
-  const double scale = simulation.force_scale(), wanted = limits.unbalanced_force / scale;
+/// The way of the explicit loop to rest, from where the blocks are.
+class RestSearch {
+ public:
+  RestSearch(Simulation& simulation, const RestLimits& limits, const SettleProgress& progress)
+      : simulation_(simulation), stepper_(*simulation.explicit_stepper()), limits_(limits), progress_(progress) {
+    const MassDamping asked = simulation.scene().method.damping;
+    damping_ = asked == MassDamping::none ? MassDamping::local : asked;
+    simulation.come_to_rest();
+    travel_.emplace(simulation);
+    scale_ = simulation.state().force_scale();
+    wanted_ = limits.unbalanced_force / scale_;
+  }
 
-  SettleResult result;
-  result.criterion = "steps";
-  Standstill standstill;
-  double fraction = 1.0;
-  for (double part = 1.0; result.steps < limits.max_steps;) {
+  SettleResult run() {
+    result_.criterion = "steps";
+    while (result_.steps < limits_.max_steps && goes_on()) {
+    }
+    if (result_.criterion == "steps") result_.limit = limits_.max_steps_key;
+    simulation_.come_to_rest();
+    return result_;
+  }
+
+ private:
+  bool goes_on() {
     // Without contacts and supports nothing bounds the step but the way it may go.
-    const double h = part * fraction * std::min(stepper.longest_stable_step(damping), simulation.scene().settle.first_dt);
-    const StepResult step = stepper.step(h, damping);
-    if (step.relisted) continue;
+    const double h = part_ * fraction_ * std::min(stepper_.longest_stable_step(damping_), simulation_.scene().settle.first_dt);
+    const StepResult step = stepper_.step(h, damping_);
+    if (step.relisted) return true;
     if (!step.accepted) {
-      part *= cut;
-      result.criterion = step.reason;
-      if (part < simulation.scene().step.smallest_fraction) break;
-      continue;
+      part_ *= cut;
+      result_.criterion = step.reason;
+      return part_ >= simulation_.scene().step.smallest_fraction;
     }
     if (step.stops) {
-      result.criterion = step.reason;
-      break;
+      result_.criterion = step.reason;
+      return false;
     }
-    part = std::min(1.0, part / cut);
-    ++result.steps;
-    result.criterion = "steps";
-    result.unbalanced_fraction = step.unbalanced_force / scale;
+    part_ = std::min(1.0, part_ / cut);
+    ++result_.steps;
+    result_.criterion = "steps";
+    return !is_at_rest(step) && !swings_without_end() && !has_failed();
+  }
+
+  bool is_at_rest(const StepResult& step) {
+    result_.unbalanced_fraction = step.unbalanced_force / scale_;
     // A block may swing through its place of rest: what counts is the state after the step. Forces that were in balance with cohesion that is gone
     // now are to be balanced anew.
-    if (result.unbalanced_fraction <= wanted) result.unbalanced_fraction = stepper.unbalanced_force() / scale;
-    result.settled = result.unbalanced_fraction <= wanted && !step.lost_strength;
-    if (result.settled || result.steps % displacement_every == 0) {
-      stepper.collect();
-      result.displacement = std::max(result.displacement, travel.largest());
-      if (progress) progress(settled_share(result.unbalanced_fraction, wanted));
+    if (result_.unbalanced_fraction <= wanted_) result_.unbalanced_fraction = stepper_.unbalanced_force() / scale_;
+    result_.settled = result_.unbalanced_fraction <= wanted_ && !step.lost_strength;
+    if (result_.settled || result_.steps % displacement_every == 0) {
+      look_at_displacement();
+      if (progress_) progress_(settled_share(result_.unbalanced_fraction, wanted_));
     }
-    if (result.settled) result.criterion = "unbalanced force";
-    if (result.settled) break;
-    standstill.add(result.unbalanced_fraction);
-    if (standstill.is_due(result.steps)) {
-      stepper.collect();
-      result.displacement = std::max(result.displacement, travel.largest());
-      if (standstill.ends_here(result.displacement)) {
-        if (fraction <= shortest) {
-          result.criterion = "blocks swing without end";
-          result.limit = "method.damping";
-          break;
-        }
-        fraction *= shorter;
-        standstill.begin_anew(result.steps);
-      }
-    }
-    if (result.displacement > limits.failure_displacement) {
-      result.criterion = "displacement";
-      result.limit = "settle.failure_displacement_m";
-      break;
-    }
+    if (result_.settled) result_.criterion = "unbalanced force";
+    return result_.settled;
   }
-  if (result.criterion == "steps") result.limit = limits.max_steps_key;
-  simulation.come_to_rest();
-  return result;
-}
+
+  bool swings_without_end() {
+    standstill_.add(result_.unbalanced_fraction);
+    if (!standstill_.is_due(result_.steps)) return false;
+    look_at_displacement();
+    if (!standstill_.ends_here(result_.displacement)) return false;
+    if (fraction_ <= shortest) {
+      result_.criterion = "blocks swing without end";
+      result_.limit = "method.damping";
+      return true;
+    }
+    fraction_ *= shorter;
+    standstill_.begin_anew(result_.steps);
+    return false;
+  }
+
+  bool has_failed() {
+    if (result_.displacement <= limits_.failure_displacement) return false;
+    result_.criterion = "displacement";
+    result_.limit = "settle.failure_displacement_m";
+    return true;
+  }
+
+  void look_at_displacement() {
+    stepper_.collect();
+    result_.displacement = std::max(result_.displacement, travel_->largest());
+  }
+
+  Simulation& simulation_;
+  ExplicitStepper& stepper_;
+  const RestLimits& limits_;
+  const SettleProgress& progress_;
+  MassDamping damping_;
+  std::optional<Travel> travel_;
+  double scale_ = 1.0, wanted_ = 0.0;  ///< [N], [-] of it
+  SettleResult result_;
+  Standstill standstill_;
+  double fraction_ = 1.0, part_ = 1.0;  ///< [-] of the longest stable step: where blocks swing, and after a step that went too far
+};
 
 }  // namespace
 
 SettleResult settle_explicitly(Simulation& simulation, const RestLimits& limits, const SettleProgress& progress) {
-  if (!limits.keep_bonds) return seek_rest(simulation, limits, progress);
+  if (!limits.keep_bonds) return RestSearch(simulation, limits, progress).run();
   simulation.keep_bonds(true);
-  SettleResult kept = seek_rest(simulation, limits, progress);
+  SettleResult kept = RestSearch(simulation, limits, progress).run();
   simulation.keep_bonds(false);
   if (!kept.settled) return kept;
   simulation.judge_bonds();
   RestLimits rest = limits;
   rest.max_steps -= kept.steps;
-  SettleResult result = seek_rest(simulation, rest, progress);
+  SettleResult result = RestSearch(simulation, rest, progress).run();
   result.steps += kept.steps;
   result.displacement = std::max(result.displacement, kept.displacement);
   return result;

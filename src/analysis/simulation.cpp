@@ -28,7 +28,7 @@ Simulation::Simulation(Scene scene, std::unique_ptr<Enforcement> enforcement) : 
   require_settling_method(state_.scene);
 }
 
-const SimulationState& Simulation::now() const {
+const SimulationState& Simulation::state() const {
   if (explicit_ && explicit_->is_ahead()) throw std::logic_error("the explicit loop has left the state behind: collect() comes first");
   return state_;
 }

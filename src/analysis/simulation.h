@@ -37,34 +37,23 @@ class Simulation {
   /// The next step as it stands; for starts, and for those who want the tangent.
   StepProblem problem(double dt, bool statics);
 
+  /// All of it. The explicit stepper must not have left it behind: std::logic_error if it has.
+  const SimulationState& state() const;
   double time() const { return state_.time; }
   const std::string& reason() const { return state_.reason; }
   const Scene& scene() const { return state_.scene; }
-  const BlockSystem& system() const { return now().system; }
+  const BlockSystem& system() const { return state().system; }
   const JointTable& joints() const { return state_.joints; }
   const ExternalForces& external() const { return state_.external; }
   /// As the last step left them.
-  const std::vector<Contact>& contacts() const { return now().contacts; }
-  /// The same with those between blocks at rest, whose forces are the ones they were put to rest with.
-  std::vector<Contact> every_contact() const { return now().every_contact(); }
-  /// Pairs of blocks that may touch, see Detector::candidate_pairs().
-  const std::vector<std::pair<int, int>>& candidate_pairs() const { return state_.detector.candidate_pairs(); }
+  const std::vector<Contact>& contacts() const { return state().contacts; }
   const Enforcement& enforcement() const { return *state_.enforcement; }
   /// Velocity of block b at time() (the system's own may be half a step behind, see time_scheme.h).
-  Unknowns velocity(int b) const { return now().output_velocity[static_cast<std::size_t>(b)]; }
-  double stored_contact_energy() const { return now().stored_contact_energy(); }
-  /// [N] weight of the heaviest free block, or the largest load or contact force if there is no gravity
-  double force_scale() const { return now().force_scale(); }
-  double contact_skin() const { return state_.contact_skin; }  ///< [m] the scene's, or the default for its blocks
-  const EnergyLedger& ledger() const { return now().ledger; }
-  double max_penetration() const { return now().max_penetration; }
+  Unknowns velocity(int b) const { return state().output_velocity[static_cast<std::size_t>(b)]; }
+  const EnergyLedger& ledger() const { return state().ledger; }
+  double max_penetration() const { return state().max_penetration; }
   /// [-] `shi`: by how much of its work the friction of sliding contacts was not that of their normal force, but that of the pass before.
   double friction_lag() const { return state_.friction_work > 0.0 ? state_.lagging_friction_work / state_.friction_work : 0.0; }
-  const StepCounters& step_counters() const { return state_.counters; }
-  const DetectionCounters& detection_counters() const { return state_.detector.counters(); }
-  const StageTimes& stage_times() const { return state_.stage_times; }
-  /// Of the arrays, each part as large as it has been after a step.
-  const Memory& memory() const { return state_.memory; }
 
   // Blocks, joints and contacts to be changed by the caller. No block is at rest any more.
   BlockSystem& change_system();
@@ -115,9 +104,7 @@ class Simulation {
   void exchange(Archive& archive);
 
  private:
-  /// The state, which the explicit stepper must not have left behind. Throws std::logic_error if it has.
-  const SimulationState& now() const;
-  /// The same, for somebody who is going to change it.
+  /// For somebody who is going to change it.
   SimulationState& taken_back();
 
   SimulationState state_;

@@ -57,7 +57,9 @@ struct SimulationState {
 
   double moving_contact_energy() const;  ///< [J] without contacts between blocks at rest
   double stored_contact_energy() const;  ///< [J] of all
+  /// With those between blocks at rest, whose forces are the ones they were put to rest with.
   std::vector<Contact> every_contact() const;
+  /// [N] weight of the heaviest free block, or the largest load or contact force if there is no gravity
   double force_scale() const;
   /// Writes down the kinetic energy of the blocks' velocities and what explicit steps add to it for the present moment.
   void book_kinetic_energy(double ahead);

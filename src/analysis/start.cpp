@@ -32,7 +32,7 @@ class Balance {
   void solve() {
     const auto& system = simulation_.system();
     const StepProblem problem = simulation_.problem(simulation_.scene().step.dt, false);
-    const double weight = std::max(simulation_.force_scale(), 1e-300);
+    const double weight = std::max(simulation_.state().force_scale(), 1e-300);
     const double radius = system.block(block_).radius;
     Unknowns d = Unknowns::Zero();
     for (int i = 0; i < most_iterations; ++i) {

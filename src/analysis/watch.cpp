@@ -88,7 +88,7 @@ std::string better_energy(const Simulation& simulation) {
   if (simulation.is_explicit()) {
     // The step taken is the shorter one of the two.
     return fmt::format("method.step_fraction = {:.2g}, or step.dt_s = {:.2g}, would be a remedy", scene.method.step_fraction / margin,
-                       std::min(scene.step.dt, simulation.step_counters().longest_step) / margin);
+                       std::min(scene.step.dt, simulation.state().counters.longest_step) / margin);
   }
   if (scene.method.contact == "soft" && integrator_name(scene.method) != "path_average")
     return shorter_step(scene, margin) + ", or method.integrator = \"path_average\"";
@@ -134,11 +134,11 @@ std::string Watch::begin(const Simulation& simulation) {
     supports += element->stored_energy(start);
   }
   undetermined_energy_ = weights * undetermined_length(simulation);
-  energy_at_start_ = kinetic + supports + simulation.stored_contact_energy();
+  energy_at_start_ = kinetic + supports + simulation.state().stored_contact_energy();
   report_.available_energy = energy_at_start_;
   depth_at_start_ = std::numeric_limits<double>::infinity();  // rigid contacts begin with what the drawing has
   std::string found = check_contacts(simulation);
-  if (found.empty()) found = check_overlaps(simulation, 0, simulation.candidate_pairs().size());
+  if (found.empty()) found = check_overlaps(simulation, 0, simulation.state().detector.candidate_pairs().size());
   depth_at_start_ = report_.depth;
   return found;
 }
@@ -149,7 +149,7 @@ bool Watch::is_due(const Simulation& simulation, long step) const {
 
 std::string Watch::check(const Simulation& simulation) {
   if (is_rigid(simulation)) return check_at_end(simulation);
-  const std::size_t pairs = simulation.candidate_pairs().size(), checks = static_cast<std::size_t>(report_.checks);
+  const std::size_t pairs = simulation.state().detector.candidate_pairs().size(), checks = static_cast<std::size_t>(report_.checks);
   const std::size_t now = (checks + 1) * pairs / turns - checks * pairs / turns;
   if (next_pair_ >= pairs) next_pair_ = 0;
   const std::size_t first = next_pair_;
@@ -158,7 +158,7 @@ std::string Watch::check(const Simulation& simulation) {
 }
 
 std::string Watch::check_at_end(const Simulation& simulation) {
-  return check(simulation, 0, simulation.candidate_pairs().size());
+  return check(simulation, 0, simulation.state().detector.candidate_pairs().size());
 }
 
 std::string Watch::check(const Simulation& simulation, std::size_t first_pair, std::size_t pairs) {
@@ -295,7 +295,7 @@ std::string Watch::check_contacts(const Simulation& simulation) {
 
 std::string Watch::check_overlaps(const Simulation& simulation, std::size_t first_pair, std::size_t pairs) {
   const BlockSystem& system = simulation.system();
-  const auto& candidates = simulation.candidate_pairs();
+  const auto& candidates = simulation.state().detector.candidate_pairs();
   for (std::size_t i = first_pair; i < std::min(first_pair + pairs, candidates.size()); ++i) {
     const auto [a, b] = candidates[i];
     const double narrower = std::min(widths_[a], widths_[b]), allowed = allowed_depth(simulation, narrower);

@@ -384,7 +384,7 @@ nlohmann::ordered_json options_json(const Simulation& simulation) {
     options[std::string(entry.table.name)][std::string(entry.key.name)] = entry.value ? ordered_json::parse(*entry.value) : ordered_json(nullptr);
   // What a key leaves to the method and to the blocks.
   if (scene.method.contact == "soft") options["method"]["integrator"] = integrator_name(scene.method);
-  options["solver"]["contact_skin_m"] = simulation.contact_skin();
+  options["solver"]["contact_skin_m"] = simulation.state().contact_skin;
   options["base_motion"] = scene.base_motion ? ordered_json(word_for(base_motion_words, scene.base_motion->kind)) : ordered_json(nullptr);
   return options;
 }
@@ -432,10 +432,10 @@ void add_factor(const FactorOfSafety& safety, const Scene& scene, nlohmann::orde
 void write_summary(const OutputFolder& folder, const Summary& summary, const Simulation& simulation, const FactorOfSafety* safety) {
   using nlohmann::ordered_json;
   const Scene& scene = simulation.scene();
-  const StepCounters& steps = simulation.step_counters();
-  const DetectionCounters& detection = simulation.detection_counters();
+  const StepCounters& steps = simulation.state().counters;
+  const DetectionCounters& detection = simulation.state().detector.counters();
   const LinearCounters& linear = simulation.enforcement().linear_counters();
-  const StageTimes& cpu = simulation.stage_times();
+  const StageTimes& cpu = simulation.state().stage_times;
 
   ordered_json j;
   j["version"] = version;
@@ -474,7 +474,7 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
   j["wall_s"] = wall_time();
   j["max_penetration_m"] = summary.max_penetration;
   j["peak_memory_bytes"] = peak_memory();
-  const Memory& memory = simulation.memory();
+  const Memory& memory = simulation.state().memory;
   const std::size_t program = static_cast<std::size_t>(memory_of_program());
   j["memory_bytes"] = {{"program", program},
                        {"blocks", memory.blocks},

@@ -80,7 +80,7 @@ std::string digits(std::uint64_t hash) { return fmt::format("{:016x}", hash); }
 std::string state_hash(const Simulation& simulation) {
   const Scene& scene = simulation.scene();
   const BlockSystem& system = simulation.system();
-  std::uint64_t total = hash_of_contacts(scene, system, simulation.every_contact());
+  std::uint64_t total = hash_of_contacts(scene, system, simulation.state().every_contact());
   for (int b = 0; b < system.block_count(); ++b) total += hash_of_block(scene, system, b, simulation.velocity(b));
   return digits(total);
 }

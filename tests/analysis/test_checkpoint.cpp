@@ -61,7 +61,7 @@ void check_goes_on(const Scene& scene, int at, int to) {
     CHECK(std::as_const(second).system().displacement(1) == std::as_const(first).system().displacement(1));
   }
   CHECK(second.ledger().imbalance() == first.ledger().imbalance());
-  CHECK(second.step_counters().iterations == first.step_counters().iterations);
+  CHECK(second.state().counters.iterations == first.state().counters.iterations);
   for (int b = 0; b < first.system().block_count(); ++b) {
     CHECK(second.system().displacement(b) == first.system().displacement(b));
     CHECK(second.velocity(b) == first.velocity(b));

@@ -128,7 +128,7 @@ TEST_CASE("ledger of contact springs", "[analysis][energy]") {
     const EnergyLedger& l = simulation.ledger();
     const double k = 1e9 * test::block_edge, stored = 0.5 * block_weight * block_weight / k;
     CHECK(l.contact_springs == Approx(stored).epsilon(1e-7));
-    CHECK(l.contact_springs == Approx(simulation.stored_contact_energy()).epsilon(1e-12));
+    CHECK(l.contact_springs == Approx(simulation.state().stored_contact_energy()).epsilon(1e-12));
     CHECK(l.gravity == Approx(-2.0 * stored).epsilon(1e-7));
     CHECK(l.friction == Approx(0.0).margin(1e-12 * stored));
   }
@@ -149,7 +149,7 @@ TEST_CASE("ledger of sliding: mu N s", "[analysis][energy]") {
     Eigen::Vector3d moved = simulation.system().displacement(1) - start;
     const double whole_path = moved.head<2>().dot(test::downhill(slope));
     // The path up to where the books are closed.
-    const double step = simulation.is_explicit() ? simulation.step_counters().longest_step : scene.step.dt;
+    const double step = simulation.is_explicit() ? simulation.state().counters.longest_step : scene.step.dt;
     if (closes_at_midstep(method)) moved -= 0.5 * step * 0.5 * (simulation.velocity(1) + simulation.system().velocity(1));
     const double s = moved.head<2>().dot(test::downhill(slope));
     const EnergyLedger& l = simulation.ledger();
@@ -287,7 +287,7 @@ TEST_CASE("the ledger closes when blocks tumble and collide", "[analysis][energy
 
   // What is a state can be asked for at the end, however it was reached.
   CHECK(l.kinetic == Approx(simulation.system().kinetic_energy() - kinetic_start).margin(1e-12 * l.turnover));
-  CHECK(l.contact_springs == Approx(simulation.stored_contact_energy()).margin(1e-12 * l.turnover));
+  CHECK(l.contact_springs == Approx(simulation.state().stored_contact_energy()).margin(1e-12 * l.turnover));
   if (c.method != "hard") CHECK(l.gravity == Approx(-work_of_gravity(simulation)).margin(1e-12 * l.turnover));
 
   // The scene asks something of every account that is not left out.

@@ -190,7 +190,7 @@ TEST_CASE("left alone the loop keeps to the plain steps where lengths do not cha
     REQUIRE(loop.step(scene.step.dt, false).accepted);
     REQUIRE(reference.step(scene.step.dt, false).accepted);
   }
-  CHECK(loop.step_counters().loads < 5000);
+  CHECK(loop.state().counters.loads < 5000);
   CHECK(difference(loop, std::as_const(reference)) < 100.0 * rounding_of(scene, 5000) + 1e-11);
 }
 
@@ -231,8 +231,8 @@ TEST_CASE("exchanging only the contacts that were found anew changes nothing", "
   INFO("rounding " << rounding << ", motion " << difference(loop, std::as_const(reloaded)) << ", ledgers " << is << " of " << allowed);
   CHECK(difference(loop, std::as_const(reloaded)) < rounding);
   CHECK(is < allowed);
-  CHECK(reloaded.step_counters().loads_skipped == 0);
-  CHECK((loop.step_counters().loads_skipped > 3 * loop.step_counters().loads || !c.goes_far));
+  CHECK(reloaded.state().counters.loads_skipped == 0);
+  CHECK((loop.state().counters.loads_skipped > 3 * loop.state().counters.loads || !c.goes_far));
 }
 
 TEST_CASE("the ledger closes where a contact is closed when it is found", "[analysis][explicit][energy]") {
@@ -299,7 +299,7 @@ TEST_CASE("looking at a run does not change it", "[analysis][explicit]") {
   }
   // Displacements are added up in more parts.
   CHECK(difference(alone, watched) < 1e-12);
-  CHECK(alone.step_counters().loads == watched.step_counters().loads);
+  CHECK(alone.state().counters.loads == watched.state().counters.loads);
 }
 
 TEST_CASE("the explicit ledger closes, with damping of the motion too", "[analysis][explicit][energy]") {
@@ -383,12 +383,12 @@ TEST_CASE("an interval is divided into equal steps below the critical one", "[an
   const double longest = scene.method.step_fraction * simulation.critical_step();
   REQUIRE(simulation.advance(scene.step.dt));
   const auto steps = static_cast<long>(std::ceil(scene.step.dt / longest));
-  CHECK(simulation.step_counters().steps == steps);
-  CHECK(simulation.step_counters().longest_step == Approx(scene.step.dt / static_cast<double>(steps)).epsilon(1e-10));
+  CHECK(simulation.state().counters.steps == steps);
+  CHECK(simulation.state().counters.longest_step == Approx(scene.step.dt / static_cast<double>(steps)).epsilon(1e-10));
   CHECK(simulation.time() == Approx(scene.step.dt).epsilon(1e-12));
   // A shorter interval is one step.
   REQUIRE(simulation.advance(0.5 * longest));
-  CHECK(simulation.step_counters().steps == steps + 1);
+  CHECK(simulation.state().counters.steps == steps + 1);
 }
 
 TEST_CASE("a step that moves a block too far is taken in parts and leaves no trace", "[analysis][explicit]") {
@@ -396,7 +396,7 @@ TEST_CASE("a step that moves a block too far is taken in parts and leaves no tra
   scene.blocks[0].velocity = {1.0, 0.0};
   Simulation simulation(scene);
   REQUIRE(simulation.advance(1.0));
-  CHECK(simulation.step_counters().cuts > 0);
+  CHECK(simulation.state().counters.cuts > 0);
   CHECK(simulation.system().displacement(0)[0] == Approx(1.0).epsilon(1e-12));
   CHECK(simulation.system().displacement(0)[1] == Approx(-0.5 * 9.81).epsilon(1e-12));
   CHECK(std::abs(simulation.ledger().imbalance()) < 1e-12 * simulation.ledger().turnover);

@@ -146,8 +146,8 @@ TEST_CASE("a push goes through a chain at rest", "[analysis][resting]") {
       run.go(0.7);
       last[skips] = run.way(n).x();
       first[skips] = run.way(1).x();
-      if (skips && method != "dem") CHECK(run.simulation.step_counters().repeated_to_wake > 0);
-      if (skips) CHECK(run.simulation.step_counters().woken >= n);
+      if (skips && method != "dem") CHECK(run.simulation.state().counters.repeated_to_wake > 0);
+      if (skips) CHECK(run.simulation.state().counters.woken >= n);
     }
     CHECK(last[0] > 0.05);
     const double missed = 0.5 * denied_velocity(RestInput());  // [m] half a second after the hit it still slides
@@ -221,13 +221,13 @@ TEST_CASE("a block at the top of its flight is not at rest", "[analysis][resting
     scene.blocks[0].velocity = {0.0, 9.81 * 0.1};
     Follower usual(scene);
     usual.go(0.3);
-    CHECK(usual.simulation.step_counters().put_to_rest == 0);
+    CHECK(usual.simulation.state().counters.put_to_rest == 0);
     // Nothing that touches nothing is held.
     scene.rest.acceleration = 1e3;
     scene.rest.displacement = 1e3;
     Follower careless(scene);
     careless.go(0.3);
-    CHECK(careless.simulation.step_counters().put_to_rest == 0);
+    CHECK(careless.simulation.state().counters.put_to_rest == 0);
     CHECK(careless.way(0).y() == Approx(0.5 * 9.81 * (0.01 - 0.04)).epsilon(1e-9));
   }
 }
@@ -241,7 +241,7 @@ TEST_CASE("a block that starts to slide is not at rest", "[analysis][resting]") 
     scene.rest.displacement = 1e-2;
     Follower run(scene);
     run.go(0.2);
-    CHECK(run.simulation.step_counters().put_to_rest == 0);
+    CHECK(run.simulation.state().counters.put_to_rest == 0);
     CHECK(run.speed(1) > 0.15);
   }
 }
@@ -279,10 +279,10 @@ TEST_CASE("no block rests while the base shakes", "[analysis][resting]") {
       CHECK(run.resting() == 0);
       run.go(0.35);
       // The second pulse, by which it does not slip.
-      const long rests = run.simulation.step_counters().put_to_rest;
+      const long rests = run.simulation.state().counters.put_to_rest;
       run.go(0.35);
       CHECK(run.resting() == 0);
-      CHECK(run.simulation.step_counters().put_to_rest == rests);
+      CHECK(run.simulation.state().counters.put_to_rest == rests);
       way[skips] = run.way(1).x();
       run.go(0.4);
       CHECK(run.resting() == (skips ? 1 : 0));
@@ -314,11 +314,11 @@ TEST_CASE("no block rests in pseudo-time or before it may", "[analysis][resting]
   Scene scene = prepared(test::block_on_base(), "soft", true);
   Simulation waits(scene);
   for (int i = 0; i < 500; ++i) REQUIRE(waits.advance(1e-3));
-  CHECK(waits.step_counters().block_steps_skipped == 0);
+  CHECK(waits.state().counters.block_steps_skipped == 0);
   scene.method.statics = true;
   Follower still(scene);
   still.go(0.5);
-  CHECK(still.simulation.step_counters().block_steps_skipped == 0);
+  CHECK(still.simulation.state().counters.block_steps_skipped == 0);
   Follower run(prepared(test::block_on_base(), "soft", true));
   run.go(0.5);
   REQUIRE(run.resting() == 1);
@@ -330,7 +330,7 @@ TEST_CASE("energies stay in balance when blocks rest and wake, and steps are cou
   const auto check = [](const Scene& scene) {
     Follower run(scene);
     run.go(3.0);
-    const StepCounters& now = run.simulation.step_counters();
+    const StepCounters& now = run.simulation.state().counters;
     CHECK(now.put_to_rest > 10);
     CHECK(now.woken == now.put_to_rest - run.resting());
     CHECK(now.block_steps_skipped > 3 * now.steps);
@@ -338,10 +338,10 @@ TEST_CASE("energies stay in balance when blocks rest and wake, and steps are cou
     CHECK(run.resting() == 10);
     CHECK(run.simulation.ledger().kinetic == Approx(-0.5 * 2500.0 * 16.0).epsilon(1e-12));
     CHECK(std::abs(run.simulation.ledger().imbalance()) < 1e-10 * run.simulation.ledger().turnover);
-    const double stored = std::as_const(run.simulation).stored_contact_energy();
-    CHECK(run.simulation.stored_contact_energy() == stored);
+    const double stored = std::as_const(run.simulation).state().stored_contact_energy();
+    CHECK(run.simulation.state().stored_contact_energy() == stored);
     run.simulation.change_contacts();
-    CHECK(run.simulation.stored_contact_energy() == Approx(stored).epsilon(1e-9));
+    CHECK(run.simulation.state().stored_contact_energy() == Approx(stored).epsilon(1e-9));
   };
   for (const std::string& method : all_methods) {
     if (method == "shi") continue;  // its friction lags behind
@@ -382,9 +382,9 @@ TEST_CASE("a saved simulation goes on bit for bit while blocks are at rest", "[a
         CHECK(second.system().is_at_rest(b) == first.system().is_at_rest(b));
       }
       CHECK(second.simulation.ledger().imbalance() == first.simulation.ledger().imbalance());
-      CHECK(second.simulation.step_counters().woken == first.simulation.step_counters().woken);
+      CHECK(second.simulation.state().counters.woken == first.simulation.state().counters.woken);
     }
     CHECK(rests);
-    CHECK(first.simulation.step_counters().woken > 0);
+    CHECK(first.simulation.state().counters.woken > 0);
   }
 }

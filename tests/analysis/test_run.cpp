@@ -430,8 +430,8 @@ TEST_CASE("an end by displacement does not stop the explicit loop in every step"
   scene.end_time = 5.0;
   Simulation simulation(scene);
   REQUIRE(run(simulation, {}).ended_by == "end.displacement_m");
-  CHECK(simulation.step_counters().steps > 100);
-  CHECK(simulation.step_counters().loads < 20);
+  CHECK(simulation.state().counters.steps > 100);
+  CHECK(simulation.state().counters.loads < 20);
 }
 
 TEST_CASE("snapshots are taken after the nearest step", "[analysis][run]") {
@@ -491,7 +491,7 @@ TEST_CASE("hard takes a slope that gravity meets at once in long steps", "[analy
     Simulation simulation(scene);
     REQUIRE(run(simulation, {}).converged);
     if (contact == "hard") CHECK(simulation.max_penetration() < 1.5 * scene.method.gap_tolerance);
-    return simulation.step_counters();
+    return simulation.state().counters;
   };
   const StepCounters hard = counters("hard"), soft = counters("soft");
   CHECK(hard.iterations < 2 * soft.iterations);  // an iteration of hard, without dashpots and with fewer contacts closed, is the cheaper one
@@ -507,7 +507,7 @@ TEST_CASE("hard takes slopes of a thousand and more blocks that gravity meets at
   scene.end_time = 0.3;
   Simulation simulation(scene);
   REQUIRE(run(simulation, {}).converged);
-  const StepCounters& counters = simulation.step_counters();
+  const StepCounters& counters = simulation.state().counters;
   CHECK(counters.eased <= 1);
   CHECK(counters.steps < 2 * 30);
   CHECK(counters.iterations < scene.method.max_iterations * 30);  // the price of one attempt in vain for each step

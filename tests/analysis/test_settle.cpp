@@ -155,7 +155,7 @@ TEST_CASE("the rounding of a drawing opens no contact: an inclined column settle
       const StepResult step = simulation.step(1.0, true);
       CHECK(step.accepted);
       // No contact opens or slides: one solution, another one for the rotations, and in every pass of `hard` one for what it leaves.
-      CHECK(simulation.step_counters().iterations <= (scene.method.contact == "soft" ? 2 : 5));
+      CHECK(simulation.state().counters.iterations <= (scene.method.contact == "soft" ? 2 : 5));
     }
   }
 }
@@ -227,7 +227,7 @@ TEST_CASE("an iteration that has run away once does not end the settling", "[ana
   const Scene scene = test::column_of_blocks(3);
   Simulation simulation(scene, std::make_unique<RunsAwayOnce>(scene.method));
   const SettleResult result = settle(simulation);
-  CHECK(simulation.step_counters().cuts == 1);
+  CHECK(simulation.state().counters.cuts == 1);
   CHECK(result.settled);
   CHECK(result.criterion == "unbalanced force");
 }
@@ -261,7 +261,7 @@ TEST_CASE("a coarse balance is not solved for to the last, and what is left coun
   SettleResult coarse_result, fine_result;
   const auto coarse = settled(scene, fraction, coarse_result), fine = settled(scene, 1e-8, fine_result);
   CHECK(coarse_result.steps == fine_result.steps);
-  CHECK(coarse->step_counters().iterations < fine->step_counters().iterations);
+  CHECK(coarse->state().counters.iterations < fine->state().counters.iterations);
 
   const BlockSystem& system = coarse->system();
   std::vector<Vec2> sums;
@@ -273,7 +273,7 @@ TEST_CASE("a coarse balance is not solved for to the last, and what is left coun
   }
   double left = 0.0, difference = 0.0;
   for (int b : system.free_blocks()) {
-    left = std::max(left, sums[b].norm() / coarse->force_scale());
+    left = std::max(left, sums[b].norm() / coarse->state().force_scale());
     difference = std::max(difference, (system.displacement(b) - fine->system().displacement(b)).head<2>().norm());
   }
   CHECK(left <= coarse_result.unbalanced_fraction * (1.0 + 1e-6));
@@ -283,7 +283,7 @@ TEST_CASE("a coarse balance is not solved for to the last, and what is left coun
   // Steps that nobody settles with leave nothing, and rigid contacts neither.
   const StepResult next = coarse->step(1e3 * scene.settle.first_dt, true);  // too long for inertia to carry anything
   REQUIRE(next.accepted);
-  CHECK(next.unbalanced_force < 1e-6 * coarse->force_scale());
+  CHECK(next.unbalanced_force < 1e-6 * coarse->state().force_scale());
   Scene rigid = scene;
   rigid.method.contact = "hard";
   SettleResult rigid_result;
@@ -297,11 +297,11 @@ TEST_CASE("a slope with thousands of loose contacts settles without a cut", "[an
   Simulation simulation(scene);
   const SettleResult result = settle(simulation);
   CHECK(result.settled);
-  CHECK(simulation.step_counters().cuts == 0);
+  CHECK(simulation.state().counters.cuts == 0);
   // Each of at most 4 steps begins once more and then takes up to about 20 iterations; with cuts there were 134.
-  CHECK(simulation.step_counters().iterations < 80);
+  CHECK(simulation.state().counters.iterations < 80);
 
-  CHECK(worst_balance(simulation) < 1e-6 * simulation.force_scale());
+  CHECK(worst_balance(simulation) < 1e-6 * simulation.state().force_scale());
 }
 
 TEST_CASE("relaxation finds the places of rest without linear equations", "[analysis][settle]") {
@@ -313,8 +313,8 @@ TEST_CASE("relaxation finds the places of rest without linear equations", "[anal
     Simulation simulation(relaxed(test::block_on_base()));
     REQUIRE(settle(simulation).settled);
     CHECK(simulation.system().displacement(1)[1] == Approx(-block_weight / (1e9 * test::block_edge)).epsilon(2e-8));
-    CHECK(simulation.step_counters().relaxation_steps > 0);
-    CHECK(simulation.step_counters().iterations == 0);
+    CHECK(simulation.state().counters.relaxation_steps > 0);
+    CHECK(simulation.state().counters.iterations == 0);
     CHECK(simulation.enforcement().linear_counters().factorisations == 0);
   }
   SECTION("a block on support springs, one of which turns it") {
@@ -323,7 +323,7 @@ TEST_CASE("relaxation finds the places of rest without linear equations", "[anal
     Simulation newton(scene), simulation(relaxed(scene));
     REQUIRE(settle(newton).settled);
     REQUIRE(settle(simulation).settled);
-    CHECK(newton.step_counters().relaxation_steps == 0);
+    CHECK(newton.state().counters.relaxation_steps == 0);
     // The unbalanced force may be 1e-8 of the weight.
     CHECK((newton.system().displacement(0) - simulation.system().displacement(0)).norm() < 1e-7 * newton.system().displacement(0).norm());
   }
@@ -381,9 +381,9 @@ TEST_CASE("relaxation finds the places of rest without linear equations", "[anal
     Simulation newton(scene), simulation(relaxed(scene));
     REQUIRE(settle(newton).settled);
     REQUIRE(settle(simulation).settled);
-    CHECK(simulation.step_counters().cuts == 0);
-    CHECK(simulation.step_counters().relaxation_estimates > simulation.step_counters().steps);
-    CHECK(simulation.step_counters().relaxation_steps < 1000);
+    CHECK(simulation.state().counters.cuts == 0);
+    CHECK(simulation.state().counters.relaxation_estimates > simulation.state().counters.steps);
+    CHECK(simulation.state().counters.relaxation_steps < 1000);
     // A lean of 0.2 m in 4 m, by either.
     CHECK(simulation.system().displacement(1)[2] == Approx(-0.05).epsilon(0.01));
     CHECK(simulation.system().displacement(1)[2] == Approx(newton.system().displacement(1)[2]).epsilon(1e-3));
@@ -408,12 +408,12 @@ TEST_CASE("a slope with thousands of loose contacts is relaxed without a cut", "
   Simulation simulation(scene);
   const SettleResult result = settle(simulation);
   CHECK(result.settled);
-  CHECK(simulation.step_counters().cuts == 0);
-  CHECK(worst_balance(simulation) < 1e-6 * simulation.force_scale());
+  CHECK(simulation.state().counters.cuts == 0);
+  CHECK(worst_balance(simulation) < 1e-6 * simulation.state().force_scale());
   // Two steps to follow the load, one that loses no strength. Bonds that broke in the last moment of a step only would take one more.
   CHECK(result.steps <= 4);
   // Where friction depends on the present place alone, vibrations live four times as long as these 1,226 steps.
-  CHECK(simulation.step_counters().relaxation_steps < 1600);
+  CHECK(simulation.state().counters.relaxation_steps < 1600);
   // Newton's method has it at 21.02 mm, dem at 20.98 mm: what friction holds depends on the way, by a few hundredths.
   CHECK(result.displacement == Approx(0.0210).epsilon(0.03));
   for (const Contact& c : simulation.change_contacts()) {
@@ -427,10 +427,10 @@ TEST_CASE("a slope of 10,208 blocks is relaxed unasked, and what is loose goes n
   const SettleResult result = settle(simulation);
   CHECK(result.settled);
   // The first static step tries whether few contacts change their states, and ends soon where they do not; the others know.
-  CHECK(simulation.step_counters().iterations < 30);
+  CHECK(simulation.state().counters.iterations < 30);
   // 1,921 steps. Contacts that stay open hold blocks in the estimate for 840 more if they are never left out of it; blocks that nothing but their
   // inertia holds there are thrown 73 mm far, which takes twice as many.
-  CHECK(simulation.step_counters().relaxation_steps < 2300);
+  CHECK(simulation.state().counters.relaxation_steps < 2300);
   CHECK(result.displacement == Approx(0.0503).epsilon(0.03));  // of Newton's method
 }
 
@@ -448,11 +448,11 @@ TEST_CASE("a wall of 10,040 bricks settles unasked by Newton's method, which few
   scene.gravity = {0.0, -9.81};
   Simulation simulation(scene);
   CHECK(settle(simulation).settled);
-  CHECK(simulation.step_counters().relaxation_steps == 0);
+  CHECK(simulation.state().counters.relaxation_steps == 0);
   // No factor of which pivots are lost, which costs ten times another one.
   CHECK(simulation.enforcement().linear_counters().pivots_lost == 0);
-  CHECK(simulation.step_counters().iterations < 30);
-  CHECK(worst_balance(simulation) < 1e-6 * simulation.force_scale());
+  CHECK(simulation.state().counters.iterations < 30);
+  CHECK(worst_balance(simulation) < 1e-6 * simulation.state().force_scale());
 }
 
 TEST_CASE("a slope that nothing has loaded yet settles by whole steps", "[analysis][settle]") {
@@ -461,8 +461,8 @@ TEST_CASE("a slope that nothing has loaded yet settles by whole steps", "[analys
   Simulation simulation(scene);
   const StepResult step = simulation.step(scene.settle.first_dt, true);
   CHECK(step.accepted);
-  CHECK(step.unbalanced_force < 1e-2 * simulation.force_scale());
-  CHECK(simulation.step_counters().iterations <= 10);
+  CHECK(step.unbalanced_force < 1e-2 * simulation.state().force_scale());
+  CHECK(simulation.state().counters.iterations <= 10);
   int sliding = 0;
   for (const Contact& c : simulation.change_contacts()) sliding += c.status == ContactStatus::sliding ? 1 : 0;
   CHECK(sliding > 300);
@@ -474,7 +474,7 @@ TEST_CASE("open joints close to the tolerance of rigid contacts", "[analysis][se
     const SettleResult result = settle(simulation);
     INFO(result.criterion);
     REQUIRE(result.settled);
-    const double largest = scene.settle.unbalanced_fraction * simulation.force_scale();
+    const double largest = scene.settle.unbalanced_fraction * simulation.state().force_scale();
     CHECK(worst_balance(simulation) < 2.0 * largest);
     // A closed contact's target is up to half the tolerance behind zero, and places that exclude each other may be missed by three times the
     // tolerance.

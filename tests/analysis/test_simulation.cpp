@@ -31,7 +31,7 @@ void append(std::vector<double>& list, const EnergyLedger& l) {
 
 /// Everything that a step may change, as numbers to be compared bit for bit.
 std::vector<double> everything(Simulation& simulation) {
-  std::vector<double> list{simulation.time(), simulation.max_penetration(), static_cast<double>(simulation.step_counters().steps)};
+  std::vector<double> list{simulation.time(), simulation.max_penetration(), static_cast<double>(simulation.state().counters.steps)};
   for (const Contact& c : simulation.change_contacts()) append(list, c);
   append(list, simulation.ledger());
   const auto& state = simulation.system().state();
@@ -102,14 +102,14 @@ TEST_CASE("a step that fails leaves no trace", "[analysis][simulation]") {
     for (int i = 0; i < 120; ++i) REQUIRE(simulation.advance(2e-3));
     REQUIRE(simulation.ledger().contact_springs + simulation.ledger().impact != 0.0);
     const std::vector<double> before = everything(simulation);
-    const long cuts = simulation.step_counters().cuts;
+    const long cuts = simulation.state().counters.cuts;
 
     // Far too long: whether the collisions do not converge or the falling block goes beyond step.max_displacement_m.
     const StepResult result = simulation.step(5.0, false);
     CHECK_FALSE(result.accepted);
     CHECK_FALSE(result.reason.empty());
     CHECK(same_bits(everything(simulation), before));
-    CHECK(simulation.step_counters().cuts == cuts + 1);
+    CHECK(simulation.state().counters.cuts == cuts + 1);
 
     // What follows does not know of it either.
     Simulation other(scene);
@@ -189,8 +189,8 @@ TEST_CASE("advance covers its time exactly when steps are cut", "[analysis][simu
       CHECK((moved - (v0 * t + 0.5 * t * t * scene.gravity)).norm() < 1e-12);
       CHECK((velocity - (v0 + t * scene.gravity)).norm() < 1e-12);
     }
-    CHECK(simulation.step_counters().cuts > 0);
-    CHECK(simulation.step_counters().steps > 5);
+    CHECK(simulation.state().counters.cuts > 0);
+    CHECK(simulation.state().counters.steps > 5);
   }
 }
 
@@ -205,8 +205,8 @@ TEST_CASE("a step that would go too far is divided into equal parts", "[analysis
     for (Simulation* simulation : {&divided, &halves}) REQUIRE(simulation->advance(1e-3));  // to know the speed
     REQUIRE(divided.advance(0.013));
     for (int i = 0; i < 2; ++i) REQUIRE(halves.advance(0.0065));
-    CHECK(divided.step_counters().steps == 3);
-    CHECK(divided.step_counters().cuts == 0);
+    CHECK(divided.state().counters.steps == 3);
+    CHECK(divided.state().counters.cuts == 0);
     CHECK(divided.system().displacement(4) == halves.system().displacement(4));
     CHECK(divided.system().displacement(4).x() > 4e-3);
   }
@@ -236,8 +236,8 @@ TEST_CASE("skipping searches changes nothing", "[analysis][simulation]") {
   }
   Simulation simulation(tumbling("soft"));
   for (int i = 0; i < 250; ++i) REQUIRE(simulation.advance(2e-3));
-  CHECK(simulation.detection_counters().searches_skipped > 100);
-  CHECK(simulation.detection_counters().searches > 2);
+  CHECK(simulation.state().detector.counters().searches_skipped > 100);
+  CHECK(simulation.state().detector.counters().searches > 2);
 }
 
 TEST_CASE("iterating only where forces are far from balance changes no more than the tolerance of the iteration", "[analysis][simulation]") {
@@ -258,11 +258,11 @@ TEST_CASE("iterating only where forces are far from balance changes no more than
       difference = std::max(difference, (all.system().state().displacement[b] - skipping.system().state().displacement[b]).lpNorm<Eigen::Infinity>());
     }
     CHECK(difference < largest_difference);
-    CHECK(all.step_counters().parts == 0);
-    CHECK(skipping.step_counters().parts > 0);
-    CHECK(skipping.step_counters().part_iterations >= skipping.step_counters().parts);
-    CHECK(skipping.step_counters().part_rows >= skipping.step_counters().part_iterations);
-    CHECK(skipping.step_counters().iterations < all.step_counters().iterations);
+    CHECK(all.state().counters.parts == 0);
+    CHECK(skipping.state().counters.parts > 0);
+    CHECK(skipping.state().counters.part_iterations >= skipping.state().counters.parts);
+    CHECK(skipping.state().counters.part_rows >= skipping.state().counters.part_iterations);
+    CHECK(skipping.state().counters.iterations < all.state().counters.iterations);
   }
 }
 
@@ -283,9 +283,9 @@ TEST_CASE("steps in which nothing happens are counted without being solved and l
       }
     };
     go_on();
-    const long still = counted.step_counters().still;
+    const long still = counted.state().counters.still;
     CHECK(still > 50);
-    CHECK(solved.step_counters().still == 0);
+    CHECK(solved.state().counters.still == 0);
     CHECK(same_bits(everything(counted), everything(solved)));
     // Who is pushed is no longer still.
     const Motion::Unknowns push(0.5, 0.0, 0.0);
@@ -308,7 +308,7 @@ TEST_CASE("a base that moves after a rest is felt", "[analysis][simulation]") {
   Simulation simulation(scene);
   REQUIRE(prepare_start(simulation).converged);
   for (int i = 0; i < 190; ++i) REQUIRE(simulation.advance(scene.step.dt));
-  CHECK(simulation.step_counters().still == 0);
+  CHECK(simulation.state().counters.still == 0);
   CHECK(std::abs(simulation.system().displacement(1).x()) > 1e-3);
 }
 
@@ -354,13 +354,13 @@ TEST_CASE("evaluating only what moved with a part changes no bit", "[analysis][s
     advance_both(all, skipping);
     CHECK(skipping.system().state().displacement == all.system().state().displacement);
     CHECK(skipping.system().state().velocity == all.system().state().velocity);
-    CHECK(skipping.step_counters().iterations == all.step_counters().iterations);
-    CHECK(skipping.step_counters().part_iterations == all.step_counters().part_iterations);
-    const long batches = all.step_counters().part_batches;
+    CHECK(skipping.state().counters.iterations == all.state().counters.iterations);
+    CHECK(skipping.state().counters.part_iterations == all.state().counters.part_iterations);
+    const long batches = all.state().counters.part_batches;
     CHECK(batches > 0);
-    CHECK(all.step_counters().part_batches_skipped == 0);
-    CHECK(skipping.step_counters().part_batches + skipping.step_counters().part_batches_skipped == batches);
-    CHECK(skipping.step_counters().part_batches < batches);
+    CHECK(all.state().counters.part_batches_skipped == 0);
+    CHECK(skipping.state().counters.part_batches + skipping.state().counters.part_batches_skipped == batches);
+    CHECK(skipping.state().counters.part_batches < batches);
   }
 }
 
@@ -397,7 +397,7 @@ TEST_CASE("leaving contacts as they are changes nothing while lengths stay", "[a
       Simulation simulation(scene);
       for (int i = 0; i < 500; ++i) REQUIRE(simulation.advance(1e-4));
       way[skips ? 1 : 0] = simulation.system().displacement(1).x();
-      CHECK((simulation.detection_counters().narrow_phases_skipped > 100) == (skips && simulation.enforcement().follows_gaps()));
+      CHECK((simulation.state().detector.counters().narrow_phases_skipped > 100) == (skips && simulation.enforcement().follows_gaps()));
     }
     CHECK(way[0] > 0.05);
     // Rounding of gaps of 1e-16 m, times what springs of 1e9 Pa/m make of it in 0.05 s.
@@ -417,7 +417,7 @@ TEST_CASE("contacts are found anew after as much motion as the scene says", "[an
     scene.method.contact_skin = skin;
     Simulation simulation(scene);
     for (int i = 0; i < 500; ++i) REQUIRE(simulation.advance(1e-4));
-    const DetectionCounters counters = simulation.detection_counters();
+    const DetectionCounters counters = simulation.state().detector.counters();
     return Renewals{counters.narrow_phases, counters.searches + counters.searches_skipped, simulation.system().displacement(1).x()};
   };
   const Renewals often = renewals(1e-3), seldom = renewals(1e-2);
@@ -520,9 +520,9 @@ TEST_CASE("a restored state is followed with the step that is asked for, not wit
   REQUIRE(simulation.advance(1.0));
   // Now at 9.8 m/s, which allows 0.01 s; from rest it is 0.14 s.
   simulation.restore(at_rest);
-  const long before = simulation.step_counters().steps;
+  const long before = simulation.state().counters.steps;
   REQUIRE(simulation.advance(0.1));
-  CHECK(simulation.step_counters().steps == before + 1);
+  CHECK(simulation.state().counters.steps == before + 1);
 }
 
 TEST_CASE("after a change of the method the motion is that of its time scheme", "[analysis][simulation]") {
@@ -532,10 +532,10 @@ TEST_CASE("after a change of the method the motion is that of its time scheme", 
   of_two_stages.integrator = "tr_bdf2";
   Simulation simulation(scene);
   REQUIRE(simulation.advance(1e-2));
-  CHECK(simulation.step_counters().steps == 1);
+  CHECK(simulation.state().counters.steps == 1);
   simulation.change_method(of_two_stages);
   REQUIRE(simulation.advance(1e-2));
-  CHECK(simulation.step_counters().steps == 1 + 2);
+  CHECK(simulation.state().counters.steps == 1 + 2);
 }
 
 TEST_CASE("the way to an equilibrium is the same without books, which begin with the clock", "[analysis][simulation]") {
@@ -580,9 +580,9 @@ TEST_CASE("an account of the memory, by what has it", "[analysis][simulation]") 
   for (const std::string method : {"soft", "hard", "shi", "dem"}) {
     INFO(method);
     Simulation few(tumbling(method));
-    CHECK(few.memory().without_factor() == 0);  // nothing yet
+    CHECK(few.state().memory.without_factor() == 0);  // nothing yet
     REQUIRE(few.advance(2e-3));
-    const Memory of = few.memory();
+    const Memory of = few.state().memory;
     CHECK(of.blocks > few.system().block_count() * (sizeof(BlockSystem::Block) + sizeof(BlockInput)));
     CHECK(of.contacts > few.change_contacts().size() * (sizeof(Contact) + 100));
     CHECK((of.matrix > 0) == (method != "dem"));
@@ -600,7 +600,7 @@ TEST_CASE("an account of the memory, by what has it", "[analysis][simulation]") 
     REQUIRE(same.advance(2e-3));
     std::size_t of_names = 0;
     for (std::size_t b = 0; b < named.blocks.size(); ++b) of_names += named.blocks[b].name.size() - tumbling(method).blocks[b].name.capacity();
-    CHECK(same.memory().blocks == of.blocks + of_points + of_names);
+    CHECK(same.state().memory.blocks == of.blocks + of_points + of_names);
     // Twice the scene, far from the first, has twice of everything but for the spare room of lists.
     Scene scene = tumbling(method);
     for (BlockInput block : tumbling(method).blocks) {
@@ -609,10 +609,10 @@ TEST_CASE("an account of the memory, by what has it", "[analysis][simulation]") 
     }
     Simulation many(scene);
     REQUIRE(many.advance(2e-3));
-    CHECK(2 * many.memory().blocks > 3 * of.blocks);
-    CHECK(2 * many.memory().contacts > 3 * of.contacts);
-    CHECK(10 * many.memory().matrix >= 19 * of.matrix);
-    CHECK(many.memory().blocks + many.memory().contacts < 3 * (of.blocks + of.contacts));
+    CHECK(2 * many.state().memory.blocks > 3 * of.blocks);
+    CHECK(2 * many.state().memory.contacts > 3 * of.contacts);
+    CHECK(10 * many.state().memory.matrix >= 19 * of.matrix);
+    CHECK(many.state().memory.blocks + many.state().memory.contacts < 3 * (of.blocks + of.contacts));
   }
 }
 
@@ -661,11 +661,11 @@ TEST_CASE("statics creeps to the equilibrium of the springs", "[analysis][simula
 
 TEST_CASE("what a step is measured against", "[analysis][simulation]") {
   Scene scene = test::block_on_base();
-  CHECK(Simulation(scene).force_scale() == Approx(test::block_weight).epsilon(1e-14));
+  CHECK(Simulation(scene).state().force_scale() == Approx(test::block_weight).epsilon(1e-14));
   scene.gravity = {0.0, 0.0};
-  CHECK(Simulation(scene).force_scale() == 1.0);
+  CHECK(Simulation(scene).state().force_scale() == 1.0);
   scene.loads = {{1, {1.0, 1.0}, {30.0, -40.0}}};
-  CHECK(Simulation(scene).force_scale() == Approx(50.0).epsilon(1e-15));
+  CHECK(Simulation(scene).state().force_scale() == Approx(50.0).epsilon(1e-15));
 }
 
 TEST_CASE("scenes that cannot be simulated", "[analysis][simulation]") {

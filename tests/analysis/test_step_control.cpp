@@ -56,7 +56,7 @@ TEST_CASE("adaptive steps: the error goes with the tolerance, and falls are take
     simulation.positions_changed();
     simulation.restart_clock();
     for (int i = 0; i < std::lround(0.4 / dt); ++i) REQUIRE(simulation.advance(dt));
-    if (steps) *steps = simulation.step_counters().steps;
+    if (steps) *steps = simulation.state().counters.steps;
     return simulation.system().centroid(1).y();
   };
   const double exact = height(1.0, false, 1e-5, nullptr);

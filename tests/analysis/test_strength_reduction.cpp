@@ -235,7 +235,7 @@ TEST_CASE("hard finds the factor of a slope with no more solves than soft", "[an
     scene.method.contact = method;
     Simulation simulation(scene);
     found.push_back(factor_of_safety(simulation));
-    solves.push_back(simulation.step_counters().iterations);
+    solves.push_back(simulation.state().counters.iterations);
     if (method == "hard") CHECK(simulation.max_penetration() < scene.method.gap_tolerance);
   }
   INFO("soft " << solves[0] << " solves, hard " << solves[1]);
@@ -254,7 +254,7 @@ TEST_CASE("hard knows columns that topple slowly from such that stand", "[analys
     const auto safety = factor_of_safety(simulation);
     CHECK(safety.bracket.failed_by == "displacement");
     CHECK(safety.warnings.empty());
-    solves.push_back(simulation.step_counters().iterations);
+    solves.push_back(simulation.state().counters.iterations);
   }
   INFO("soft " << solves[0] << " solves, hard " << solves[1]);
   CHECK(solves[1] <= 3 * solves[0]);

@@ -86,7 +86,7 @@ TEST_CASE("hard contacts keep to the tolerance that is asked for", "[integrator]
     Simulation simulation(scene);
     REQUIRE(run(simulation, {}).converged);
     CHECK(simulation.max_penetration() < 1.5 * tolerance);
-    solves.push_back(simulation.step_counters().iterations);
+    solves.push_back(simulation.state().counters.iterations);
   }
   CHECK(solves[0] > solves[1]);
   CHECK(solves[1] > solves[2]);
@@ -189,13 +189,13 @@ TEST_CASE("a force that grows drives a closed contact in no deeper than it is", 
 TEST_CASE("springs of rigid contacts become stiffer where they are too soft for a column", "[integrator][hard]") {
   Simulation simulation(column(200, 1e-2, 10));
   for (int i = 0; i < 10; ++i) REQUIRE(simulation.advance(1e-2));  // as run() does, which would cut steps for the energy of gravity at once, too
-  CHECK(simulation.step_counters().steps == 10);                   // none of them in parts, as where the passes that a step may take are too few
+  CHECK(simulation.state().counters.steps == 10);                   // none of them in parts, as where the passes that a step may take are too few
 }
 
 TEST_CASE("a step of which the passes do not find the multipliers is cut to what their error tells", "[integrator][hard]") {
   Simulation simulation(column(400, 0.1, 3));
   REQUIRE(run(simulation, {}).converged);
-  CHECK(simulation.step_counters().cuts > 0);
+  CHECK(simulation.state().counters.cuts > 0);
 }
 
 TEST_CASE("steps of which the passes find no multipliers are cut before blocks pass into each other", "[integrator][hard]") {
@@ -206,7 +206,7 @@ TEST_CASE("steps of which the passes find no multipliers are cut before blocks p
   Simulation simulation(scene);
   prepare_start(simulation);  // the watch would refuse a run that misses its tolerance so far
   for (int i = 0; i < 20; ++i) REQUIRE(simulation.advance(dt));
-  CHECK(simulation.step_counters().cuts > 0);
+  CHECK(simulation.state().counters.cuts > 0);
   // Springs of 300 times the inertia under the weight of the column would close by a thousand times as much in a whole step.
   CHECK(simulation.max_penetration() < 10.0 * tolerance::rounding_of_ways_m);
 }

@@ -229,7 +229,7 @@ TEST_CASE("integrators: a step in stages that is cut goes on as a new step", "[i
   scene.step.max_displacement = 0.05;
   Simulation simulation(scene);
   REQUIRE(simulation.advance(0.3));
-  CHECK(simulation.step_counters().steps > 6);
+  CHECK(simulation.state().counters.steps > 6);
   // Constant forces are integrated exactly, whatever the stages.
   CHECK(simulation.system().displacement(0)[1] == Approx(-0.5 * 9.81 * 0.09).epsilon(1e-12));
   CHECK(simulation.velocity(0)[1] == Approx(-9.81 * 0.3).epsilon(1e-12));
@@ -285,9 +285,9 @@ TEST_CASE("path averages converge fast where the weight turns a block about soft
   simulation.restart_clock();
   simulation.set_velocity(1, {0.0, 0.0, 0.01});
   simulation.restart_clock();
-  const long before = simulation.step_counters().iterations;
+  const long before = simulation.state().counters.iterations;
   for (int i = 0; i < 40; ++i) REQUIRE(simulation.step(0.05, false).accepted);
-  const long solves = simulation.step_counters().iterations - before;
+  const long solves = simulation.state().counters.iterations - before;
   CHECK(std::abs(simulation.system().displacement(1)[2]) > 1e-3);
   // Contacts keep their states: one solve, and another for what is not linear; four with a tangent whose geometric part is wrong.
   CHECK(solves <= 3 * 40);

@@ -382,7 +382,7 @@ TEST_CASE("Newton counts its linear solves and says why it gives up", "[integrat
   const StepResult result = simulation.step(1.0, true);
   CHECK_FALSE(result.accepted);
   CHECK(result.reason == "Newton's method did not converge");
-  CHECK(simulation.step_counters().iterations == 1);
-  CHECK(simulation.step_counters().steps == 0);
-  CHECK(simulation.step_counters().cuts == 1);
+  CHECK(simulation.state().counters.iterations == 1);
+  CHECK(simulation.state().counters.steps == 0);
+  CHECK(simulation.state().counters.cuts == 1);
 }

@@ -21,7 +21,7 @@ Outcome outcome(Scene scene, const std::string& method) {
   scene.method.contact = method;
   Simulation simulation(scene);
   REQUIRE(run(simulation, {}).converged);
-  return {simulation.system().displacement(1), simulation.step_counters().iterations, simulation.step_counters().steps};
+  return {simulation.system().displacement(1), simulation.state().counters.iterations, simulation.state().counters.steps};
 }
 
 StepResult static_step(const Scene& scene) {

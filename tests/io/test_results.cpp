@@ -294,7 +294,7 @@ TEST_CASE("summary.json has every key as it was used", "[io][results][keys]") {
   CHECK(options.at("solver").at("closing_tolerance_m") == 1e-7);
   CHECK(options.at("solver").at("smallest_fraction") == 0.25);
   CHECK(options.at("solver").at("gap_tolerance_m") == scene.method.gap_tolerance);
-  CHECK(options.at("solver").at("contact_skin_m") == simulation.contact_skin());
+  CHECK(options.at("solver").at("contact_skin_m") == simulation.state().contact_skin);
 }
 
 TEST_CASE("summary.json of a run", "[io][results]") {
@@ -334,15 +334,15 @@ TEST_CASE("summary.json of a run", "[io][results]") {
   CHECK(j.at("reason") == "");
   CHECK(same_bits(j.at("time_s").get<double>(), 10 * 1e-3));
   CHECK(same_bits(j.at("max_penetration_m").get<double>(), 0.1));
-  CHECK(j.at("counters").at("steps") == simulation.step_counters().steps);
+  CHECK(j.at("counters").at("steps") == simulation.state().counters.steps);
   CHECK(j.at("counters").at("steps").get<long>() >= 11);
-  CHECK(j.at("counters").at("iterations") == simulation.step_counters().iterations);
-  CHECK(j.at("counters").at("searches") == simulation.detection_counters().searches);
+  CHECK(j.at("counters").at("iterations") == simulation.state().counters.iterations);
+  CHECK(j.at("counters").at("searches") == simulation.state().detector.counters().searches);
   const nlohmann::json& memory = j.at("memory_bytes");
   CHECK(memory.at("program") == memory_of_program());
   CHECK(memory.at("program").get<long>() < j.at("peak_memory_bytes").get<long>());
-  CHECK(memory.at("contacts") == simulation.memory().contacts);
-  CHECK(memory.at("factor") == simulation.memory().factor);
+  CHECK(memory.at("contacts") == simulation.state().memory.contacts);
+  CHECK(memory.at("factor") == simulation.state().memory.factor);
   CHECK(memory.at("krylov") == 0);
   long sum = 0;
   for (const char* part : {"program", "blocks", "contacts", "matrix"}) {
@@ -368,8 +368,8 @@ TEST_CASE("summary.json has counters under their own names", "[io][results]") {
   Simulation simulation(scene);
   for (int i = 0; i < 100; ++i) REQUIRE(simulation.advance(scene.step.dt));
   write_summary(OutputFolder(place.path()), Summary(), simulation);
-  const StepCounters& steps = simulation.step_counters();
-  const DetectionCounters& detection = simulation.detection_counters();
+  const StepCounters& steps = simulation.state().counters;
+  const DetectionCounters& detection = simulation.state().detector.counters();
   const LinearCounters& linear = simulation.enforcement().linear_counters();
   const std::map<std::string, long> expected = {{"steps", steps.steps},
                                                 {"steps_cut", steps.cuts},
