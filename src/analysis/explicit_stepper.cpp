@@ -112,6 +112,7 @@ std::string ExplicitStepper::too_deep() {
 
 double ExplicitStepper::critical_step() {
   load();
+  collect();
   return loop_.critical_step();
 }
 

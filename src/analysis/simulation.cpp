@@ -48,12 +48,6 @@ bool Simulation::advance(double dt) {
   return explicit_ ? explicit_->advance(dt) : solved_.advance(dt);
 }
 
-double Simulation::critical_step() {
-  const double step = explicit_->critical_step();
-  explicit_->collect();
-  return step;
-}
-
 StepProblem Simulation::problem(double dt, bool statics) {
   if (explicit_) explicit_->collect();
   return solved_.problem(dt, statics);

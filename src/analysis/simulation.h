@@ -32,8 +32,6 @@ class Simulation {
   ExplicitStepper* explicit_stepper() { return explicit_.get(); }
   bool is_explicit() const { return explicit_ != nullptr; }
   SolvedStepper& solved_stepper() { return solved_; }
-  /// [s] Of the present contacts; explicit methods only.
-  double critical_step();
   /// The next step as it stands; for starts, and for those who want the tangent.
   StepProblem problem(double dt, bool statics);
 

@@ -48,7 +48,7 @@ int check_command(const Options& options) {
     nlohmann::ordered_json found = {
         {"scene", options.scene_file}, {"blocks", system.block_count()},           {"free_blocks", system.free_count()},         {"area_m2", area},
         {"free_area_m2", free_area},   {"contacts", simulation.change_contacts().size()}, {"method", simulation.scene().method.contact}};
-    if (simulation.is_explicit() && std::isfinite(simulation.critical_step())) found["critical_step_s"] = simulation.critical_step();
+    if (simulation.is_explicit() && std::isfinite(simulation.explicit_stepper()->critical_step())) found["critical_step_s"] = simulation.explicit_stepper()->critical_step();
     if (!options.spectrum_file.empty()) write_spectrum(simulation, options.spectrum_file);
     print_json(exit_success, found);
     return exit_success;
@@ -56,7 +56,7 @@ int check_command(const Options& options) {
   fmt::print("{}: {} blocks, {} of them free, {:.6g} m2 ({:.6g} m2 free); {} contacts within reach at the start; method {}\n", options.scene_file,
              system.block_count(), system.free_count(), area, free_area, simulation.change_contacts().size(), simulation.scene().method.contact);
   if (simulation.is_explicit()) {
-    const double critical = simulation.critical_step();
+    const double critical = simulation.explicit_stepper()->critical_step();
     if (std::isfinite(critical)) {
       fmt::print("critical step {:.6g} s; the longest step taken is {:.6g} s\n", critical,
                  simulation.explicit_stepper()->longest_stable_step(simulation.scene().method.damping));

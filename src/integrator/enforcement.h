@@ -65,7 +65,7 @@ struct StepEffort {
   long part_rows = 0;        ///< block rows in these
   long part_batches = 0;     ///< of four contacts, evaluated because parts have moved
   long part_batches_skipped = 0;
-  int relaxation_steps = 0;  ///< evaluations of all forces instead, see Newton::relax()
+  int relaxation_steps = 0;  ///< evaluations of all forces instead, see accelerated_relaxation.h
   int estimates = 0;         ///< of the way that forces move blocks, made for these
 
   StepEffort& operator+=(const StepEffort& other) {

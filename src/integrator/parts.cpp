@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "openclose/core/vector.h"
+
 namespace openclose {
 
 namespace {
@@ -10,6 +12,12 @@ namespace {
 constexpr int outside = -1;  ///< of all rings
 
 }  // namespace
+
+Eigen::VectorXd rows_of(const Eigen::VectorXd& whole, const std::vector<int>& rows) {
+  Eigen::VectorXd part(dofs * static_cast<Eigen::Index>(rows.size()));
+  for (std::size_t i = 0; i < rows.size(); ++i) part.segment<dofs>(dofs * i) = whole.segment<dofs>(dofs * rows[i]);
+  return part;
+}
 
 std::vector<int> most_unbalanced(const std::vector<double>& residuals, double largest, double end, double part, int few) {
   if (!std::isfinite(largest)) return {};

@@ -1,6 +1,7 @@
 // Parts of a system of blocks that are solved for themselves while all other blocks stay where they are.
 #pragma once
 
+#include <Eigen/Core>
 #include <utility>
 #include <vector>
 
@@ -12,6 +13,9 @@ struct Part {
   std::vector<int> rows;      ///< of the system, ascending
   std::vector<int> contacts;  ///< all that touch one of them, ascending
 };
+
+/// Those of a vector with three numbers a row.
+Eigen::VectorXd rows_of(const Eigen::VectorXd& whole, const std::vector<int>& rows);
 
 /// Rows with more than a part of the largest residual, and those with more than that part of it, and so on as long as there are few.
 /// \param largest  of the residuals; infinite: none

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <optional>
 
+#include "openclose/integrator/accelerated_relaxation.h"
 #include "openclose/integrator/integrators.h"
 #include "openclose/integrator/newton.h"
 #include "openclose/integrator/registry.h"
@@ -65,7 +66,11 @@ class Soft final : public Enforcement {
   bool has_joint_springs() const override { return true; }
   std::unique_ptr<TimeScheme> make_time_scheme(const MethodInput& method) const override { return make_integrator(method); }
   LinearCounters linear_counters() const override { return newton_.linear_counters(); }
-  Memory memory() const override { return newton_.memory(); }
+  Memory memory() const override {
+    Memory largest = newton_.memory();
+    largest.grow_to(relaxation_.memory());
+    return largest;
+  }
   void exchange(Archive& archive) override { newton_.exchange(archive); }
 
  private:
@@ -83,10 +88,11 @@ class Soft final : public Enforcement {
       solution.effort = wasted;
       solution.d = drift(problem);
     }
-    newton_.relax(problem, springs, solution);
+    relaxation_.solve(problem, springs, solution);
   }
 
   Newton newton_;
+  AcceleratedRelaxation relaxation_{newton_.equations()};
   bool many_come_loose_ = false;  ///< a static step of many blocks has shown that Newton's method is not the way to their balance
 };
 

@@ -380,7 +380,7 @@ TEST_CASE("what cannot be held fails by displacement, what takes too long by ste
 TEST_CASE("an interval is divided into equal steps below the critical one", "[analysis][explicit]") {
   Scene scene = explicit_scene(test::block_on_base(), 1e-1);
   Simulation simulation(scene);
-  const double longest = scene.method.step_fraction * simulation.critical_step();
+  const double longest = scene.method.step_fraction * simulation.explicit_stepper()->critical_step();
   REQUIRE(simulation.advance(scene.step.dt));
   const auto steps = static_cast<long>(std::ceil(scene.step.dt / longest));
   CHECK(simulation.state().counters.steps == steps);

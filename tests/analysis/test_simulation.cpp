@@ -451,7 +451,7 @@ TEST_CASE("the velocity that a step ends with is none of an impact that is over"
   Simulation simulation(scene);
   double fastest = 0.0, slowest = 1.0;
   for (int i = 0; i < 400; ++i) {
-    REQUIRE(simulation.step(method == "dem" ? std::min(0.5 * simulation.critical_step(), 1e-3) : 1e-3, false).accepted);
+    REQUIRE(simulation.step(method == "dem" ? std::min(0.5 * simulation.explicit_stepper()->critical_step(), 1e-3) : 1e-3, false).accepted);
     fastest = std::max(fastest, simulation.velocity(1).norm());
     slowest = std::min(slowest, simulation.velocity(1).norm());
   }

@@ -89,7 +89,7 @@ void critical(Report& report, double highest) {
   const analytical::BlockOnPlane data = level_block();
   const double against_rotation = 0.5 * (data.normal_stiffness * data.width * data.width + data.shear_stiffness * data.height * data.height);
   const double by_weight = 0.5 * data.weight() * 0.5 * data.height / against_rotation;
-  report.relative("critical step", "dem", expected, settled ? simulation.critical_step() : not_measured(), by_weight, "s",
+  report.relative("critical step", "dem", expected, settled ? simulation.explicit_stepper()->critical_step() : not_measured(), by_weight, "s",
                   "2/w_max; geometric stiffness of the weight is not counted");
   // At the fraction f of the critical step the mode is cos(n p) after n steps, sin(p/2) = f. An amplitude of 1e-6 m changes w by 1e-6 of it.
   const double f = 0.99, phase = 2.0 * std::asin(f), steps = 398.0;

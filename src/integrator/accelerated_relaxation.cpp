@@ -1,10 +1,11 @@
-// Newton::relax(): a static step without linear equations.
+#include "openclose/integrator/accelerated_relaxation.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
 
-#include "openclose/integrator/newton.h"
+#include "openclose/core/tolerance.h"
 
 namespace openclose {
 namespace {
@@ -90,50 +91,53 @@ class CountedContacts {
 
 }  // namespace
 
-TwoLevelFlexibility Newton::flexibility(const Eigen::VectorXd& d, const std::vector<bool>& counted, double longest_way) const {
-  const int rows = static_cast<int>(blocks_.size());
+TwoLevelFlexibility AcceleratedRelaxation::flexibility(const Eigen::VectorXd& d, const std::vector<bool>& counted, double longest_way) const {
+  const int rows = equations_.rows();
   const auto row_of = [&](int row) { return row < rows ? row : -1; };
   std::vector<Vec2> centroids;
-  for (const StepBlock& block : blocks_) centroids.push_back(problem_->system.centroid(block.block));
+  for (const StepEquations::StepBlock& block : equations_.blocks()) centroids.push_back(equations_.problem().system.centroid(block.block));
   std::vector<std::pair<int, int>> couplings;
-  for (std::size_t c = 0; c < contact_count_; ++c) {
+  for (std::size_t c = 0; c < contacts().count(); ++c) {
     if (!counted[c]) continue;
-    const std::pair<int, int> pair = std::minmax(row_of(start(c).vertex_place(lane(c))), row_of(start(c).edge_place(lane(c))));
+    const auto [vertex, edge] = contacts().places(c);
+    const std::pair<int, int> pair = std::minmax(row_of(vertex), row_of(edge));
     if (pair.first >= 0 && (couplings.empty() || couplings.back() != pair)) couplings.push_back(pair);
   }
   TwoLevelFlexibility sum(centroids, couplings);
   for (int row = 0; row < rows; ++row) {
-    if (blocks_[row].rotation_locked) sum.lock_rotation(row);
+    if (equations_.blocks()[row].rotation_locked) sum.lock_rotation(row);
   }
   const auto gradient = [&](int row, const Vec2& direction, const Vec2& arm) {
-    const bool turns = row >= 0 && !blocks_[row].rotation_locked;
-    return Unknowns(direction.x(), direction.y(), turns ? arm.x() * direction.y() - arm.y() * direction.x() : 0.0);
+    const bool turns = row >= 0 && !equations_.blocks()[row].rotation_locked;
+    return Motion::Unknowns(direction.x(), direction.y(), turns ? arm.x() * direction.y() - arm.y() * direction.x() : 0.0);
   };
-  for (std::size_t c = 0; c < contact_count_; ++c) {
+  for (std::size_t c = 0; c < contacts().count(); ++c) {
     if (!counted[c]) continue;
-    const int k = lane(c), i = row_of(start(c).vertex_place(k)), j = row_of(start(c).edge_place(k));
-    const ContactPose pose = this->pose(c);
+    const auto [vertex, edge] = contacts().places(c);
+    const int k = StepContacts::lane(c), i = row_of(vertex), j = row_of(edge);
+    const ContactBatch& start = contacts().start(c);
+    const ContactPose pose = contacts().pose(c);
     const Vec2 tangent(-pose.normal.y(), pose.normal.x());
-    for (const auto& [stiffness, way] : {std::pair(start(c).normal[k], pose.normal), std::pair(start(c).shear[k], tangent)})
+    for (const auto& [stiffness, way] : {std::pair(start.normal[k], pose.normal), std::pair(start.shear[k], tangent)})
       sum.add_spring(stiffness, i, gradient(i, way, pose.vertex_arm), j, -gradient(j, way, pose.edge_arm));
   }
   for (int i = 0; i < rows; ++i) {
-    Eigen::Matrix<double, dofs, dofs> own = blocks_[i].inertia.asDiagonal();
-    if (blocks_[i].has_elements) own += problem_->external.stiffness(problem_->system, blocks_[i].block, d.segment<dofs>(dofs * i));
-    const double hold = unbalanced(i) / longest_way, radius = blocks_[i].radius;
-    own.diagonal() += hold * Unknowns(1.0, 1.0, radius * radius);
+    Eigen::Matrix<double, dofs, dofs> own = equations_.blocks()[i].inertia.asDiagonal();
+    if (equations_.blocks()[i].has_elements) own += equations_.problem().external.stiffness(equations_.problem().system, equations_.blocks()[i].block, d.segment<dofs>(dofs * i));
+    const double hold = equations_.unbalanced(i) / longest_way, radius = equations_.blocks()[i].radius;
+    own.diagonal() += hold * Motion::Unknowns(1.0, 1.0, radius * radius);
     sum.add_own(i, own);
   }
   return sum;
 }
 
-void Newton::keep_slip() {  // all of the shear force is in the spring: nothing damps at rest
+void AcceleratedRelaxation::keep_slip() {  // all of the shear force is in the spring: nothing damps at rest
   constexpr auto sticking = static_cast<Branch>(ContactStatus::sticking);
-  for (std::size_t i = 0; i < contacts().size(); ++i) {
-    const Branch* const branches = branches_.data() + batch_size * i;
+  for (std::size_t i = 0; i < contacts().batches().size(); ++i) {
+    const Branch* const branches = contacts().branches().data() + batch_size * i;
     if (std::all_of(branches, branches + batch_size, [](Branch b) { return b == sticking; })) continue;
-    ContactBatch& contact = contacts()[i];
-    const TrialBatch& now = trials_[i];
+    ContactBatch& contact = contacts().batches()[i];
+    const TrialBatch& now = contacts().trials()[i];
     for (int k = 0; k < batch_size; ++k) {
       const bool slid = branches[k] != sticking;
       const double slack = now.shear[k] + contact.shear[k] * now.slip_change[k];
@@ -142,86 +146,89 @@ void Newton::keep_slip() {  // all of the shear force is in the spring: nothing 
   }
 }
 
-ContactForces Newton::slipped_as_a_whole(const SpringSource& springs, std::size_t c) const {
-  return spring_slider(springs.make(c), start(c).strength(lane(c)), trial(c).gap_change[lane(c)], trial(c).slip_change[lane(c)]);
+ContactForces AcceleratedRelaxation::slipped_as_a_whole(const SpringSource& springs, std::size_t c) const {
+  const TrialBatch& now = contacts().trial(c);
+  const int k = StepContacts::lane(c);
+  return spring_slider(springs.make(c), contacts().strength(c), now.gap_change[k], now.slip_change[k]);
 }
 
-bool Newton::break_slipped_bonds(const SpringSource& springs) {
+bool AcceleratedRelaxation::break_slipped_bonds(const SpringSource& springs) {
   bool any = false;
-  for (std::size_t c = 0; c < contact_count_; ++c) {
-    const Contact& contact = problem_->contacts[c];
-    const TabulatedJoint& joint = problem_->joints.joint(contact.joint);
+  for (std::size_t c = 0; c < contacts().count(); ++c) {
+    const Contact& contact = equations_.problem().contacts[c];
+    const TabulatedJoint& joint = equations_.problem().joints.joint(contact.joint);
     if (has_broken_[c] || !can_lose_strength(joint, contact.bonded) || stays_bonded(joint, contact.bonded, ContactStatus::sliding)) continue;
-    if (status(branches_[c]) == ContactStatus::open || slipped_as_a_whole(springs, c).status != ContactStatus::sliding) continue;
+    if (status(contacts().branches()[c]) == ContactStatus::open || slipped_as_a_whole(springs, c).status != ContactStatus::sliding) continue;
     has_broken_[c] = any = true;
-    ContactStrength strength = start(c).strength(lane(c));
+    ContactStrength strength = contacts().strength(c);
     strength.break_bond(joint);
-    contacts()[c / batch_size].set_strength(lane(c), strength);
+    contacts().batches()[c / batch_size].set_strength(StepContacts::lane(c), strength);
   }
   return any;
 }
 
-void Newton::note_slip(const SpringSource& springs) {
-  for (std::size_t c = 0; c < contact_count_; ++c) {
-    if (status(branches_[c]) != ContactStatus::sticking) continue;
+void AcceleratedRelaxation::note_slip(const SpringSource& springs) {
+  for (std::size_t c = 0; c < contacts().count(); ++c) {
+    Branch& piece = contacts().branches()[c];
+    if (status(piece) != ContactStatus::sticking) continue;
     const ContactForces law = slipped_as_a_whole(springs, c);
-    if (law.status == ContactStatus::sliding) branches_[c] = branch(law);
-    if (has_broken_[c]) branches_[c] = trial(c).shear[lane(c)] < 0.0 ? static_cast<Branch>(-sliding_branch) : sliding_branch;
+    if (law.status == ContactStatus::sliding) piece = branch(law);
+    if (has_broken_[c]) piece = contacts().trial(c).shear[StepContacts::lane(c)] < 0.0 ? static_cast<Branch>(-sliding_branch) : sliding_branch;
   }
 }
 
-bool Newton::has_left(const Eigen::VectorXd& d) const {
-  for (std::size_t i = 0; i < blocks_.size(); ++i) {
-    const double way = Motion::displacement_bound(d.segment<dofs>(dofs * static_cast<int>(i)), blocks_[i].radius);
-    if (!(way <= largest_overshoot * problem_->longest_displacement)) return true;
+bool AcceleratedRelaxation::has_left(const Eigen::VectorXd& d) const {
+  for (std::size_t i = 0; i < equations_.blocks().size(); ++i) {
+    const double way = Motion::displacement_bound(d.segment<dofs>(dofs * static_cast<int>(i)), equations_.blocks()[i].radius);
+    if (!(way <= largest_overshoot * equations_.problem().longest_displacement)) return true;
   }
   return false;
 }
 
-void Newton::relax(const StepProblem& problem, const SpringSource& springs, StepSolution& solution) {
-  take_back(solution.contacts);
-  prepare(problem, springs);
-  renewal_.forget();  // bonds may break in the batches, whether or not the step is taken
+void AcceleratedRelaxation::solve(const StepProblem& problem, const SpringSource& springs, StepSolution& solution) {
+  contacts().take_back(solution.contacts);
+  equations_.prepare(problem, springs);
+  contacts().forget_at_next_step();
   Eigen::VectorXd& d = solution.d;
-  move_blocks_alone(d);
-  evaluate(d);
-  double norm = residual_norm(), norm_of_estimate = norm;
-  CountedContacts contacts(problem.contacts, branches_);
+  equations_.move_blocks_alone(d);
+  equations_.evaluate(d);
+  double norm = equations_.residual_norm(), norm_of_estimate = norm;
+  CountedContacts counted(problem.contacts, contacts().branches());
   int& estimates = solution.effort.estimates;
   std::optional<TwoLevelFlexibility> estimate;
   const auto renew = [&](double longest_way) {
     estimate.reset();  // before there is another
-    estimate.emplace(flexibility(d, contacts.counted(), longest_way));
+    estimate.emplace(flexibility(d, counted.counted(), longest_way));
     norm_of_estimate = norm;
     ++estimates;
     const bool is_regular = estimate->factor();
-    note_memory(estimate->memory() + solution.memory());
+    memory_.grow_to(equations_.memory() + estimate->memory() + solution.memory());
     return is_regular;
   };
   // At first, all that touch hold the blocks.
   bool is_regular = renew(std::numeric_limits<double>::infinity());
   Eigen::VectorXd place = d, next(d.size());
   Momentum momentum;
-  has_broken_.assign(contact_count_, false);
+  has_broken_.assign(contacts().count(), false);
   bool bonds_are_known = false;
   int& steps = solution.effort.relaxation_steps;
   while (is_regular && norm > 1.0 && steps < most_relaxation_steps && (steps % steps_between_looks != 0 || !has_left(d))) {
     keep_slip();
-    next = d + safe_step * estimate->displacement(residual_);
-    if (residual_.dot(next - place) < 0.0) momentum.restart();
+    next = d + safe_step * estimate->displacement(equations_.residual());
+    if (equations_.residual().dot(next - place) < 0.0) momentum.restart();
     d = next + momentum.next() * (next - place);
     place.swap(next);
-    evaluate(d);
-    norm = residual_norm();
+    equations_.evaluate(d);
+    norm = equations_.residual_norm();
     ++steps;
     const bool is_near = norm <= 1.0 || norm * problem.method.residual_tolerance <= residual_of_slip;
     if (is_near && !bonds_are_known && break_slipped_bonds(springs)) {
-      evaluate(d);
-      norm = residual_norm();
+      equations_.evaluate(d);
+      norm = equations_.residual_norm();
     }
     bonds_are_known = is_near;
-    bool is_outdated = contacts.follow(branches_);
-    if (steps % steps_between_estimates == 0) is_outdated |= contacts.leave_out() || (estimates > 1 && norm < renewing_decrease * norm_of_estimate);
+    bool is_outdated = counted.follow(contacts().branches());
+    if (steps % steps_between_estimates == 0) is_outdated |= counted.leave_out() || (estimates > 1 && norm < renewing_decrease * norm_of_estimate);
     if (is_outdated) is_regular = renew(longest_lone_way);
   }
   if (!is_regular) {
@@ -229,10 +236,10 @@ void Newton::relax(const StepProblem& problem, const SpringSource& springs, Step
     return;
   }
   solution.converged = norm <= 1.0;
-  solution.unbalanced = largest_unbalanced();
+  solution.unbalanced = equations_.largest_unbalanced();
   if (!solution.converged) solution.reason = "relaxation did not come to rest";
   note_slip(springs);
-  lend(solution);
+  contacts().lend(solution);
 }
 
 }  // namespace openclose
