@@ -22,12 +22,12 @@ constexpr double closure_of_thickness = 0.1;
 void ExplicitStepper::collect() {
   if (!is_ahead_) return;
   is_ahead_ = false;
-  loop_.store_blocks(state_.system);
-  for (int b : state_.system.free_blocks()) state_.output_velocity[b] = loop_.velocity_at_end(state_.system.block(b).equation);
-  loop_.store_contacts(state_.contacts);
-  loop_.store_far_gaps(state_.system, state_.contacts);
-  state_.max_penetration = std::max(state_.max_penetration, loop_.max_penetration());
-  const ExplicitEnergies e = loop_.take_energies();
+  loop_->store_blocks(state_.system);
+  for (int b : state_.system.free_blocks()) state_.output_velocity[b] = loop_->velocity_at_end(state_.system.block(b).equation);
+  loop_->store_contacts(state_.contacts);
+  loop_->store_far_gaps(state_.system, state_.contacts);
+  state_.max_penetration = std::max(state_.max_penetration, loop_->max_penetration());
+  const ExplicitEnergies e = loop_->take_energies();
   const double stored = state_.moving_contact_energy();
   EnergyLedger& ledger = state_.ledger;
   ledger.contact_springs += stored - collected_contact_energy_;
@@ -42,12 +42,12 @@ void ExplicitStepper::collect() {
   ledger.scheme += e.scheme;
   ledger.redefinition += e.redefinition;
   ledger.turnover += e.turnover;
-  state_.book_kinetic_energy(loop_.kinetic_ahead());
+  state_.book_kinetic_energy(loop_->kinetic_ahead());
 }
 
 void ExplicitStepper::forget() {
   held_step_ = 0.0;
-  loop_ = CentralDifference(state_.contact_skin);
+  loop_ = std::make_unique<CentralDifference>(state_.contact_skin);
   is_ahead_ = false;
   loaded_since_ = never;
 }
@@ -58,31 +58,31 @@ void ExplicitStepper::load() {
   if (!is_loaded() || !renew()) {
     collect();
     state_.find_contacts();
-    loop_.load(state_.problem(state_.scene.step.dt, false));
+    loop_->load(state_.problem(state_.scene.step.dt, false));
     collected_contact_energy_ = state_.moving_contact_energy();
     loaded_since_ = state_.changes;
     ++state_.counters.loads;
-    state_.note_memory(loop_.memory());
+    state_.note_memory(loop_->memory());
   }
   double& smallest = state_.counters.smallest_critical_step;
-  smallest = smallest > 0.0 ? std::min(smallest, loop_.critical_step()) : loop_.critical_step();
+  smallest = smallest > 0.0 ? std::min(smallest, loop_->critical_step()) : loop_->critical_step();
 }
 
 bool ExplicitStepper::renew() {
-  if (!state_.scene.method.skip_reload || !loop_.can_renew()) return false;
-  loop_.store_blocks(state_.system);
+  if (!state_.scene.method.skip_reload || !loop_->can_renew()) return false;
+  loop_->store_blocks(state_.system);
   if (state_.detector.needs_search(state_.system)) return false;
   {
     const Stopwatch watch(state_.stage_times.detection);
-    loop_.store_contacts(state_.contacts);
+    loop_->store_contacts(state_.contacts);
     state_.contacts_current = true;
     if (!state_.detector.update(state_.system, state_.joints, state_.contacts)) {
-      loop_.keep();
+      loop_->keep();
       return true;
     }
   }
   state_.store_changed_energies();
-  loop_.renew(state_.problem(state_.scene.step.dt, false), state_.detector.changes());
+  loop_->renew(state_.problem(state_.scene.step.dt, false), state_.detector.changes());
   is_ahead_ = true;  // its energies are
   ++state_.counters.loads_skipped;
   return true;
@@ -90,15 +90,15 @@ bool ExplicitStepper::renew() {
 
 double ExplicitStepper::approach_step() {
   if (!approach_step_) {
-    loop_.store_blocks(state_.system);
-    approach_step_ = approach_bound_.step(state_.system, state_.joints, state_.detector.candidate_pairs(), loop_.approach(), state_.contact_skin,
+    loop_->store_blocks(state_.system);
+    approach_step_ = approach_bound_.step(state_.system, state_.joints, state_.detector.candidate_pairs(), loop_->approach(), state_.contact_skin,
                                           state_.scene.method.step_fraction);
   }
   return *approach_step_;
 }
 
 std::string ExplicitStepper::too_deep() {
-  const auto found = loop_.too_deep();
+  const auto found = loop_->too_deep();
   if (!found) return {};
   const Contact& c = state_.contacts[found->contact];
   // The closure of an impact falls with the root of the stiffness.
@@ -113,19 +113,19 @@ std::string ExplicitStepper::too_deep() {
 double ExplicitStepper::critical_step() {
   load();
   collect();
-  return loop_.critical_step();
+  return loop_->critical_step();
 }
 
 double ExplicitStepper::unbalanced_force() {
   load();
-  return loop_.unbalanced_force();
+  return loop_->unbalanced_force();
 }
 
 double ExplicitStepper::longest_stable_step(MassDamping damping) {
   load();
   const MethodInput& method = state_.scene.method;
-  const double stable = method.step_fraction * loop_.critical_step(damping == MassDamping::local ? method.local_damping : 0.0);
-  const double longest = loop_.is_fast() ? std::min(stable, approach_step()) : stable;
+  const double stable = method.step_fraction * loop_->critical_step(damping == MassDamping::local ? method.local_damping : 0.0);
+  const double longest = loop_->is_fast() ? std::min(stable, approach_step()) : stable;
   // Each change of the step has its price.
   if (longest < held_step_ || longest > worthwhile_growth * held_step_) held_step_ = longest;
   return held_step_;
@@ -134,7 +134,7 @@ double ExplicitStepper::longest_stable_step(MassDamping damping) {
 Move ExplicitStepper::move(double h, MassDamping damping, bool any_length) {
   const double span = 1.0 / (h * state_.scheme->inertia(h));
   const auto with = [&](double fast_step) {
-    return loop_.move(h, span, state_.external.base_acceleration(), state_.scene.step.max_displacement, fast_step, damping,
+    return loop_->move(h, span, state_.external.base_acceleration(), state_.scene.step.max_displacement, fast_step, damping,
                       state_.scene.method.local_damping);
   };
   // What the step would do is known only now.
@@ -163,7 +163,7 @@ StepResult ExplicitStepper::step(double h, MassDamping damping, bool any_length)
 }
 
 StepResult ExplicitStepper::take(double h) {
-  loop_.follow_contacts();
+  loop_->follow_contacts();
   is_ahead_ = true;
   StepResult result;
   result.reason = too_deep();
@@ -174,16 +174,16 @@ StepResult ExplicitStepper::take(double h) {
   ++counters.steps;
   counters.longest_step = std::max(counters.longest_step, h);
   result.accepted = true;
-  result.unbalanced_force = loop_.last_unbalanced_force();
-  result.lost_strength = loop_.lost_strength();
-  if (loop_.moved_beyond_skin()) state_.contacts_current = false;
+  result.unbalanced_force = loop_->last_unbalanced_force();
+  result.lost_strength = loop_->lost_strength();
+  if (loop_->moved_beyond_skin()) state_.contacts_current = false;
   state_.count_moves();
   if (!state_.system.resting_blocks().empty()) wake_by_forces(h);
   return result;
 }
 
 void ExplicitStepper::wake_by_forces(double h) {
-  loop_.rest_forces(state_.resting.pushes(state_.system));
+  loop_->rest_forces(state_.resting.pushes(state_.system));
   state_.resting.judge(state_.system, h);
   const std::vector<int> woken = state_.to_wake(Resting::Urgency::any);
   if (woken.empty()) return;
@@ -249,7 +249,7 @@ void ExplicitStepper::exchange(Archive& archive) {
   bool loaded = is_loaded();
   archive(collected_contact_energy_, approach_step_, held_step_, is_ahead_, loaded);
   loaded_since_ = loaded ? state_.changes : never;
-  loop_.exchange(archive, state_.joints, state_.external);
+  loop_->exchange(archive, state_.joints, state_.external);
 }
 
 }  // namespace openclose

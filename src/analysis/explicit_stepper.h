@@ -2,6 +2,7 @@
 // the state up to date, and nothing of it may be read or changed before.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -15,7 +16,7 @@ namespace openclose {
 class ExplicitStepper {
  public:
   /// The state must outlive the stepper.
-  explicit ExplicitStepper(SimulationState& state) : state_(state), loop_(state.contact_skin) {}
+  explicit ExplicitStepper(SimulationState& state) : state_(state), loop_(std::make_unique<CentralDifference>(state.contact_skin)) {}
 
   /// One step of the loop with this damping of the motion, which stays in the loop. It does not look whether h is below the critical step. A step that
   /// is not taken because it was `relisted` is to be chosen again, from the critical step of more contacts.
@@ -56,7 +57,7 @@ class ExplicitStepper {
   std::string too_deep();
 
   SimulationState& state_;
-  CentralDifference loop_;
+  std::unique_ptr<CentralDifference> loop_;
   bool is_ahead_ = false;
   long loaded_since_ = never;  ///< SimulationState::changes then
   ApproachBound approach_bound_;
