@@ -83,23 +83,26 @@ void add_averaged_contact(EnergyLedger& ledger, const Contact& contact, const Pa
   ledger.scheme += e.scheme - path.normal * normal_rest - path.shear * shear_rest;
 }
 
-}  // namespace
+using Unknowns = Motion::Unknowns;
 
-double stored_energy(double normal_stiffness, double shear_stiffness, double normal, double shear) {
-  return 0.5 * (normal * normal / normal_stiffness + shear * shear / shear_stiffness);
-}
+/// Per block: what the forces of the step worked on.
+using WorkDisplacements = std::vector<Unknowns>;
 
-void add_step(EnergyLedger& ledger, const StepProblem& problem, const StepSolution& solution, const TimeScheme& scheme, bool elastic) {
-  using Unknowns = Motion::Unknowns;
+WorkDisplacements work_displacements(const StepProblem& problem, const StepSolution& solution, const TimeScheme& scheme) {
   const BlockSystem& system = problem.system;
-  const double dt = problem.dt, theta = problem.end_weight;
-  // A static step starts from rest, whatever the scheme, and drops its kinetic energy at the end.
-  std::vector<Unknowns> work_displacement(system.block_count());
+  WorkDisplacements list(system.block_count());
   for (int b = 0; b < system.block_count(); ++b) {
     const Unknowns d = solution.of(system, b);
-    work_displacement[b] = problem.statics ? d : scheme.work_displacement(b, dt, d, system.velocity(b));
+    list[b] = problem.statics ? d : scheme.work_displacement(b, problem.dt, d, system.velocity(b));
   }
+  return list;
+}
 
+/// Kinetic energy, gravity and base motion. A static step starts from rest, whatever the scheme, and drops its kinetic energy at the end.
+void add_blocks(EnergyLedger& ledger, const StepProblem& problem, const StepSolution& solution, const TimeScheme& scheme,
+                const WorkDisplacements& work_displacement) {
+  const BlockSystem& system = problem.system;
+  const double dt = problem.dt;
   for (int b : system.free_blocks()) {
     const auto& mass = system.block(b).mass;
     const Unknowns d = solution.of(system, b), path = work_displacement[b], v0 = problem.velocity(b);
@@ -116,7 +119,12 @@ void add_step(EnergyLedger& ledger, const StepProblem& problem, const StepSoluti
     ledger.base_motion -= base_work;
     ledger.turnover += std::abs(after - before) + std::abs(weight_work) + std::abs(base_work);
   }
+}
 
+/// Loads and supports.
+void add_elements(EnergyLedger& ledger, const StepProblem& problem, const StepSolution& solution, const WorkDisplacements& work_displacement) {
+  const BlockSystem& system = problem.system;
+  const double theta = problem.end_weight;
   for (const auto& element : problem.external.elements()) {
     const int b = element->block();
     if (system.block(b).equation < 0) continue;
@@ -135,7 +143,11 @@ void add_step(EnergyLedger& ledger, const StepProblem& problem, const StepSoluti
     ledger.scheme -= work + change;
     if (element->account() == ForceAccount::loads) ledger.turnover += std::abs(change);
   }
+}
 
+void add_contacts(EnergyLedger& ledger, const StepProblem& problem, const StepSolution& solution, bool elastic,
+                  const WorkDisplacements& work_displacement) {
+  const double theta = problem.end_weight;
   for (std::size_t c = 0; c < problem.contacts.size(); ++c) {
     const Contact& contact = problem.contacts[c];
     if (solution.paths.empty() && rests_open(contact, solution.contacts.status(c))) continue;
@@ -164,6 +176,19 @@ void add_step(EnergyLedger& ledger, const StepProblem& problem, const StepSoluti
     }
     add_elastic_contact(ledger, contact, end, start, paths, theta);
   }
+}
+
+}  // namespace
+
+double stored_energy(double normal_stiffness, double shear_stiffness, double normal, double shear) {
+  return 0.5 * (normal * normal / normal_stiffness + shear * shear / shear_stiffness);
+}
+
+void add_step(EnergyLedger& ledger, const StepProblem& problem, const StepSolution& solution, const TimeScheme& scheme, bool elastic) {
+  const WorkDisplacements work_displacement = work_displacements(problem, solution, scheme);
+  add_blocks(ledger, problem, solution, scheme, work_displacement);
+  add_elements(ledger, problem, solution, work_displacement);
+  add_contacts(ledger, problem, solution, elastic, work_displacement);
 }
 
 }  // namespace openclose

@@ -6,6 +6,7 @@
 
 #include "openclose/io/result_picture.h"
 #include "openclose/io/results.h"
+#include "openclose/io/summary.h"
 #include "openclose/scene/scene.h"
 
 namespace openclose {

@@ -4,6 +4,7 @@
 
 #include <fstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "openclose/analysis/drawn_joints.h"
@@ -19,6 +20,9 @@ struct RestartPoint {
   std::string checkpoint_file;
   Checkpoint checkpoint;
 };
+
+/// The ledger's entries with their names, in the order of the files.
+std::vector<std::pair<const char*, double>> ledger_entries(const EnergyLedger& ledger);
 
 /// A table that grows while a run goes on.
 class RunTable {
@@ -130,26 +134,5 @@ void write_curve(const OutputFolder& folder, const std::vector<CurvePoint>& curv
 
 /// milestones.csv, if the scene asks for any: of one that was not reached time and CPU times are empty.
 void write_milestones(const OutputFolder& folder, const std::vector<Milestone>& milestones);
-
-/// What summary.json says besides the simulation itself.
-struct Summary {
-  std::string command;
-  std::string scene_file;
-  std::vector<std::string> overrides;
-  std::vector<std::string> warnings;
-  bool converged = false;
-  std::string reason;
-  double max_penetration = 0.0;  ///< [m]
-  EnergyLedger ledger;
-  SettleResult settling;
-  std::string ended_by;               ///< see RunResult
-  WatchReport watch;                  ///< see RunResult
-  std::vector<Milestone> milestones;  ///< see RunResult
-  double cpu_of_start = 0.0;          ///< [s]
-  double cpu_of_motion = 0.0;         ///< [s]
-  double cpu_of_search = 0.0;         ///< [s] of a factor of safety, settling included
-};
-
-void write_summary(const OutputFolder& folder, const Summary& summary, const Simulation& simulation, const FactorOfSafety* safety = nullptr);
 
 }  // namespace openclose

@@ -13,6 +13,7 @@
 #include "openclose/io/drawing.h"
 #include "openclose/io/result_picture.h"
 #include "openclose/io/results.h"
+#include "openclose/io/summary.h"
 #include "support/catch.h"
 #include "support/scenes.h"
 

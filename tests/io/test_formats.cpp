@@ -4,6 +4,7 @@
 #include "files.h"
 #include "openclose/io/formats.h"
 #include "openclose/io/results.h"
+#include "openclose/io/summary.h"
 #include "support/catch.h"
 #include "support/scenes.h"
 

@@ -11,6 +11,7 @@
 #include "io/files.h"
 #include "openclose/core/process.h"
 #include "openclose/io/results.h"
+#include "openclose/io/summary.h"
 #include "openclose/scene/keys.h"
 #include "openclose/version.h"
 #include "support/catch.h"

@@ -8,6 +8,7 @@
 #include "openclose/core/error.h"
 #include "openclose/core/vector.h"
 #include "openclose/io/results.h"
+#include "openclose/io/summary.h"
 #include "openclose/report/report.h"
 #include "support/catch.h"
 #include "support/scenes.h"
