@@ -30,12 +30,31 @@ ReleasedSlide released_slide(const BlockOnPlane& block, double residual_angle, d
   return slide;
 }
 
-double residual_strength_factor(const BlockOnPlane& block, double residual_angle) {
+namespace {
+
+/// [N] On the plane.
+struct Corners {
+  double shear;         // of both
+  double upper, lower;  // normal forces
+};
+
+Corners corners(const BlockOnPlane& block) {
   require_valid(block);
   const double shear = block.weight() * std::sin(block.slope_angle), normal = block.normal_weight();
   const double difference = shear * block.height / block.width;
-  const double upper = 0.5 * (normal - difference), lower = 0.5 * (normal + difference);
-  return std::max(2.0 * block.friction() * upper / shear, (std::tan(residual_angle) * upper + block.friction() * lower) / shear);
+  return {shear, 0.5 * (normal - difference), 0.5 * (normal + difference)};
+}
+
+}  // namespace
+
+double first_slip_factor(const BlockOnPlane& block) {
+  const Corners c = corners(block);
+  return 2.0 * block.friction() * c.upper / c.shear;
+}
+
+double residual_strength_factor(const BlockOnPlane& block, double residual_angle) {
+  const Corners c = corners(block);
+  return std::max(first_slip_factor(block), (std::tan(residual_angle) * c.upper + block.friction() * c.lower) / c.shear);
 }
 
 }  // namespace openclose::analytical

@@ -26,6 +26,9 @@ struct ReleasedSlide {
 ReleasedSlide released_slide(const BlockOnPlane& block, double residual_angle, double speed);
 ReleasedSlide released_rigid_slide(const BlockOnPlane& block, double residual_angle, double speed);
 
+// Factor at which the upper corner slips, each corner carrying half of the shear force: 2 mu N_u/T.
+double first_slip_factor(const BlockOnPlane& block);
+
 /// [-] Strength reduction factor of the block at rest, without cohesion, at small displacements. Its corners share the shear force T = W sin alpha
 /// equally and carry N_l - N_u = T h/b more and less. The upper one slips first, at F1 = 2 mu N_u/T, and from then on carries mu_r N_u/F. Then the
 /// lower one holds up to F2 = (mu_r N_u + mu N_l)/T. The block stands up to the larger of the two.

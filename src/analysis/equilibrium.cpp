@@ -12,7 +12,7 @@ class ByUnbalancedForce : public EquilibriumSearch {
  public:
   explicit ByUnbalancedForce(Simulation& simulation) : simulation_(simulation) {}
   SettleResult settle_first(const SettleProgress& progress) override { return settle(simulation_, progress); }
-  SettleResult settle_trial(const SettleProgress& progress) override { return settle(simulation_, progress); }
+  SettleResult settle_trial(const SettleProgress& progress) override { return settle(simulation_, progress, SettleFrom::rest); }
 
  private:
   Simulation& simulation_;
@@ -95,7 +95,7 @@ class ByForceInTime : public EquilibriumSearch {
   SettleResult settle_trial(const SettleProgress& progress) override {
     const SettleInput& input = simulation_.scene().settle;
     return settle_explicitly(
-        simulation_, {input.unbalanced_force, input.max_time_steps, max_time_steps_key, std::numeric_limits<double>::infinity(), false}, progress);
+        simulation_, {input.unbalanced_force, input.max_time_steps, max_time_steps_key, std::numeric_limits<double>::infinity(), false, false}, progress);
   }
 
  private:

@@ -53,12 +53,13 @@ double settled_share(double now, double wanted) {
   return now > 0.0 ? std::clamp(std::log(now) / std::log(wanted), 0.0, 1.0) : 1.0;
 }
 
-SettleResult settle(Simulation& simulation, const SettleProgress& progress) {
+SettleResult settle(Simulation& simulation, const SettleProgress& progress, SettleFrom from) {
   const SettleInput& input = simulation.scene().settle;
   if (simulation.is_explicit()) {
     const double force = input.unbalanced_fraction * simulation.state().force_scale();
-    return settle_explicitly(simulation, {force, input.max_explicit_steps, "settle.max_explicit_steps", input.failure_displacement, input.keep_bonds},
-                             progress);
+    const RestLimits limits{force,           input.max_explicit_steps, "settle.max_explicit_steps", input.failure_displacement,
+                            input.keep_bonds, from == SettleFrom::rest};
+    return settle_explicitly(simulation, limits, progress);
   }
   const auto& system = simulation.system();
   const bool is_first = simulation.state().counters.steps + simulation.state().counters.cuts == 0;

@@ -31,7 +31,13 @@ struct SettleResult {
 /// Told after every step which share of the way is behind; it may fall back.
 using SettleProgress = std::function<void(double fraction)>;
 
-SettleResult settle(Simulation& simulation, const SettleProgress& progress = {});
+/// From where a search for equilibrium starts.
+enum class SettleFrom {
+  anywhere,  ///< such as a drawing whose joints carry nothing yet
+  rest,      ///< with other strengths of the joints: what slips by more than the springs it rests on can carry has slid
+};
+
+SettleResult settle(Simulation& simulation, const SettleProgress& progress = {}, SettleFrom from = SettleFrom::anywhere);
 
 /// The share [-] of the way down to `wanted` on a logarithmic scale, 0 where `now` is 1 or more.
 double settled_share(double now, double wanted);
@@ -43,6 +49,7 @@ struct RestLimits {
   std::string max_steps_key;    ///< that says so
   double failure_displacement;  ///< [m] a block that moved farther is failing
   bool keep_bonds;              ///< contacts lose strength at rest only, see below
+  bool from_rest;               ///< see SettleFrom
 };
 
 /// What settle() does for explicit methods: steps at the longest stable length with damping of the motion (`local`, unless the scene asks for
@@ -50,7 +57,7 @@ struct RestLimits {
 ///
 /// That way is no motion of the slope: waves that the sudden change sends through it open contacts for a moment which equilibrium keeps closed. With
 /// `keep_bonds` it is gone with all bonds (what users of distinct-element codes know as "elastic first"). At rest, contacts that are open (or, where
-/// the joint says so, slide) lose what they have to lose, and what this leaves settles again, now losing on the way, too.
+/// the joint says so, slide or have slid since the last rest) lose what they have to lose, and what this leaves settles again, now losing on the way, too.
 SettleResult settle_explicitly(Simulation& simulation, const RestLimits& limits, const SettleProgress& progress);
 
 }  // namespace openclose

@@ -161,15 +161,32 @@ class RestSearch {
   double fraction_ = 1.0, part_ = 1.0;  ///< [-] of the longest stable step: where blocks swing, and after a step that went too far
 };
 
+/// Where joints lose strength by slip, it counts which of them slip, and not by how the blocks swing before the springs carry them: the state in which
+/// they carry the blocks without any slip, if there is one, and if it matters. If not, the blocks are where they were.
+std::optional<Simulation::Snapshot> rest_without_slip(Simulation& simulation, const RestLimits& limits, const SettleProgress& progress) {
+  const auto loses_by_slip = [](const JointProperties& joint) {
+    return can_lose_strength(joint, true) && !stays_bonded(joint, true, ContactStatus::sliding);
+  };
+  if (std::ranges::none_of(simulation.scene().joints, loses_by_slip)) return std::nullopt;
+  const Simulation::Snapshot start = simulation.save();
+  simulation.keep_bonds(true, true);
+  const bool settled = RestSearch(simulation, limits, progress).run().settled;
+  simulation.keep_bonds(false);
+  if (settled) return simulation.save();
+  simulation.restore(start);
+  return std::nullopt;
+}
+
 }  // namespace
 
 SettleResult settle_explicitly(Simulation& simulation, const RestLimits& limits, const SettleProgress& progress) {
   if (!limits.keep_bonds) return RestSearch(simulation, limits, progress).run();
+  std::optional<Simulation::Snapshot> before = limits.from_rest ? simulation.save() : rest_without_slip(simulation, limits, progress);
   simulation.keep_bonds(true);
   SettleResult kept = RestSearch(simulation, limits, progress).run();
   simulation.keep_bonds(false);
   if (!kept.settled) return kept;
-  simulation.judge_bonds();
+  simulation.judge_bonds(before ? &*before : nullptr);
   RestLimits rest = limits;
   rest.max_steps -= kept.steps;
   SettleResult result = RestSearch(simulation, rest, progress).run();

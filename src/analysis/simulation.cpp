@@ -1,8 +1,13 @@
 #include "openclose/analysis/simulation.h"
 
+#include <algorithm>
+#include <cmath>
+#include <map>
 #include <stdexcept>
 
+#include "openclose/contact/kinematics.h"
 #include "openclose/core/error.h"
+#include "openclose/core/tolerance.h"
 #include "openclose/integrator/registry.h"
 
 namespace openclose {
@@ -15,6 +20,16 @@ void require_step_options(const Scene& scene, const Enforcement& enforcement) {
   if (scene.step.look_ahead > 0.0 && (enforcement.is_explicit() || !enforcement.follows_gaps()))
     throw InputError(scene.step.look_ahead_where, "step.look_ahead", "has no meaning for method.contact = \"" + scene.method.contact + "\"",
                      "contact = \"soft\" or \"hard\", or 0");
+}
+
+/// Whether a contact has slipped between two states by more than its shear spring can carry in the second one.
+bool has_slipped(const BlockSystem& start, const Contact& before, const BlockSystem& system, const Contact& now, const TabulatedJoint& joint) {
+  const auto way = [&](int b) -> Motion::Unknowns { return system.displacement(b) - start.displacement(b); };
+  const ContactKinematics k(start, before, way(now.vertex_block), way(now.edge_block));
+  const ContactStrength strength(joint, now);
+  const double stiffness = joint.shear_stiffness * now.length;
+  const double wanted = stiffness * std::abs(before.elastic_slip + k.slip_change);
+  return wanted > strength.largest_shear(std::max(now.normal_force, -strength.tension)) + stiffness * tolerance::rounding_of_ways_m;
 }
 
 }  // namespace
@@ -92,12 +107,25 @@ void Simulation::come_to_rest() {
   state_.restart_scheme();
 }
 
-void Simulation::keep_bonds(bool keep) {
+void Simulation::keep_bonds(bool keep, bool no_slip) {
   taken_back().keep_bonds = keep;
+  state_.no_slip = no_slip;
 }
 
-void Simulation::judge_bonds() {
-  for (Contact& c : change_contacts()) c.bonded = stays_bonded(state_.joints.joint(c.joint), c.bonded, c.status);
+void Simulation::judge_bonds(const Snapshot* from) {
+  change_contacts();
+  std::map<std::pair<int, int>, const Contact*> before;
+  BlockSystem start = state_.system;
+  if (from) {
+    start.restore(from->blocks);
+    for (const Contact& c : from->contacts) before.emplace(std::pair(c.vertex, c.edge), &c);
+  }
+  for (Contact& c : state_.contacts) {
+    const TabulatedJoint& joint = state_.joints.joint(c.joint);
+    const auto known = before.find({c.vertex, c.edge});
+    const bool slid = c.status == ContactStatus::sticking && known != before.end() && has_slipped(start, *known->second, state_.system, c, joint);
+    c.bonded = stays_bonded(joint, c.bonded, slid ? ContactStatus::sliding : c.status);
+  }
 }
 
 void Simulation::change_method(const MethodInput& method) {

@@ -66,10 +66,8 @@ class Simulation {
   void restore_velocities();
   /// Takes the blocks' velocities away; the kinetic energy goes to the ledger's scheme, as in static steps.
   void come_to_rest();
-  /// From now on contacts lose neither cohesion nor tensile strength; explicit methods only.
-  void keep_bonds(bool keep);
-  /// Takes from every contact what its present status does not leave it.
-  void judge_bonds();
+  /// From now on contacts lose neither cohesion nor tensile strength, nor, if asked for, do they slip; explicit methods only.
+  void keep_bonds(bool keep, bool no_slip = false);
   /// Goes on with this method, from where blocks and contacts are. Both must have springs of the joints (Enforcement::has_joint_springs()). What was
   /// counted of linear equations is lost.
   void change_method(const MethodInput& method);
@@ -93,6 +91,9 @@ class Simulation {
     }
   };
   Snapshot save();
+  /// Takes from every contact what its present status does not leave it. One that sticks, but has gone farther since it carried what it did in `from`
+  /// than its spring could carry, has slid; null: nothing is known of that.
+  void judge_bonds(const Snapshot* from);
   void restore(const Snapshot& snapshot);
   /// Whether a snapshot that was read is of these blocks.
   bool fits(const Snapshot& snapshot) const;

@@ -315,10 +315,16 @@ class StrengthReduction {
       warn_of_distance(*limit.factor, largest, trials);
   }
 
+  bool joints_can_lose_strength() const {
+    return std::ranges::any_of(scene_.joints, [](const JointProperties& joint) { return can_lose_strength(joint, true); });
+  }
+
   void warn_of_distance(double limit, double largest, const FrozenTrials& trials) {
     const auto& contacts = trials.stable()->contacts;
     const auto broken = std::ranges::count_if(contacts, [](const FrozenContactState& s) { return !s.bonded; });
     const std::string reason = broken > 0 ? fmt::format("bonds have broken at {} contacts, which it does not know", broken)
+                               : joints_can_lose_strength()
+                                   ? "joints that slip or open lose strength for good, one contact after the other, which it does not know"
                                : largest >= far_below_limit_analysis * limit
                                    ? "with another ratio of stiffness the joints carry nearly as much"
                                    : "it lets joints open by their friction angle as they slide, which jams blocks; here they slide without opening";

@@ -34,6 +34,7 @@ struct StepProblem {
   double end_weight = 1.0;                                                ///< theta
   int failed_attempts = 0;                                                ///< at steps from here
   bool keep_bonds = false;                                                ///< explicit methods: contacts lose no strength
+  bool no_slip = false;                                                   ///< explicit methods: nor do they slip
   double negligible_force = 0.0;                                          ///< [N] what a static step may leave unbalanced on a block
   double longest_displacement = std::numeric_limits<double>::infinity();  ///< [m] of a vertex; a step that moves one farther is refused
   const TimeScheme* scheme = nullptr;                                     ///< null: every step starts from rest

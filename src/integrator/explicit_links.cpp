@@ -18,6 +18,14 @@ double square(double x) {
   return x * x;
 }
 
+/// [-] No shear force of a contact that carries anything reaches this.
+constexpr double endless_friction = 1e9;
+
+ContactStrength without_slip(ContactStrength strength) {
+  strength.friction = endless_friction;
+  return strength;
+}
+
 /// As it was at the load.
 Vec2 turned_back(const ExplicitPose& pose, const Vec2& r) {
   return r + (pose.cos_minus_1 * r - pose.sin * perpendicular(r));
@@ -118,7 +126,7 @@ std::pair<ExplicitLinks::Link, ExplicitLinks::LinkRest> ExplicitLinks::make(cons
             .per_shear_stiffness = 1.0 / shear_stiffness,
             .normal_dashpot = dashpots.normal,
             .shear_dashpot = dashpots.shear,
-            .strength = ContactStrength(joint, c),
+            .strength = problem.no_slip ? without_slip(ContactStrength(joint, c)) : ContactStrength(joint, c),
             .gap = c.stretch(),
             .slip = 0.0,
             .stretch = c.elastic_slip,

@@ -4,13 +4,13 @@
 #include <cmath>
 
 namespace openclose {
-namespace {
 
-/// Normal and shear force within the strength, but for rounding.
 bool is_within_strength(const ContactStrength& strength, const FrozenContactState& s) {
   const double room = rounding_of_strength * (std::abs(s.normal) * (1.0 + strength.friction) + strength.cohesion + strength.tension);
   return s.normal >= -strength.tension - room && std::abs(s.shear) <= strength.largest_shear(std::max(s.normal, -strength.tension)) + room;
 }
+
+namespace {
 
 struct RelativeMotion {
   double opening = 0.0, slip = 0.0;

@@ -16,6 +16,9 @@ inline constexpr double mechanism_tolerance = 1e-6;
 /// In closures: beyond, gaps lose their digits, and no motion is followed.
 inline constexpr double farthest_way = 1e6;
 
+/// Normal and shear force within the strength, but for rounding.
+bool is_within_strength(const ContactStrength& strength, const FrozenContactState& contact);
+
 /// How far a state is from equilibrium.
 struct EquilibriumCheck {
   double unbalanced = 0.0;  ///< [-] largest unbalanced force of a block over what is negligible on it; equilibrium up to 1

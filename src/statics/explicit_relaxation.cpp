@@ -48,12 +48,29 @@ RelaxationResult ExplicitRelaxation::bonded_state() {
 /// the rest settles again.
 RelaxationResult ExplicitRelaxation::relax(const FrozenState& from) {
   RelaxationResult result = settle(from, ShearBound::strength);
-  while (result.end == RelaxationEnd::stable && lose_bonds(strength_, result.state)) {
+  FrozenState start = from;
+  while (result.end == RelaxationEnd::stable) {
+    note_slip(start, result.state);
+    if (!lose_bonds(strength_, result.state)) break;
     const long steps = result.steps;
-    result = settle(result.state, ShearBound::strength);
+    start = result.state;
+    result = settle(start, ShearBound::strength);
     result.steps += steps;
   }
   return result;
+}
+
+void ExplicitRelaxation::note_slip(const FrozenState& from, FrozenState& state) const {
+  for (std::size_t i = 0; i < state.contacts.size(); ++i) {
+    const FrozenContact& c = system_.contacts()[i];
+    FrozenContactState whole = state.contacts[i];
+    if (whole.status != ContactStatus::sticking || !strength_.can_break(i, whole.bonded)) continue;
+    double slip = 0.0;
+    if (c.a >= 0) slip += c.shear_a.dot(state.displacement[c.a] - from.displacement[c.a]);
+    if (c.b >= 0) slip += c.shear_b.dot(state.displacement[c.b] - from.displacement[c.b]);
+    whole.shear = from.contacts[i].shear - c.shear_stiffness * slip;
+    if (!is_within_strength(strengths_[i], whole)) state.contacts[i].status = ContactStatus::sliding;
+  }
 }
 
 /// What `dem` has not brought to rest is judged by the viscous increments from the same state: nothing counts as failed without a mechanism.

@@ -20,6 +20,9 @@ class ExplicitRelaxation : public FrozenSolver {
  private:
   enum class ShearBound { strength, none };
   RelaxationResult settle(const FrozenState& from, ShearBound bound);
+  /// Joints that stick where they have come to rest, but have gone farther on the way there than their springs could carry, have slid. (What waves do
+  /// on the way counts for nothing: only where it ends.) Marks those that lose strength by it.
+  void note_slip(const FrozenState& from, FrozenState& state) const;
   bool fails(const FrozenState& from, RelaxationResult& result) const;
   void move(FrozenState& state, ShearBound bound);
 

@@ -100,6 +100,26 @@ TEST_CASE("a block in the air is beyond all strength, one on the ground is not",
   }
 }
 
+TEST_CASE("explicit relaxation knows that a corner which sticks at rest has slipped on the way there", "[statics]") {
+  // A block of 2 m x 1 m: its upper corner carries (cos - sin/2)/2 of its weight and half of the shear force sin, until it slips; what it has then, and
+  // the lower corner, do not hold the block.
+  Scene scene = test::block_on_incline(20.0 * test::degree);
+  scene.joints[0].friction_angle = 45.0 * test::degree;
+  scene.joints[0].residual_friction_angle = 20.0 * test::degree;
+  const double sine = std::sin(20.0 * test::degree), cosine = std::cos(20.0 * test::degree);
+  const double first_slip = (cosine - 0.5 * sine) / sine;
+  const FrozenSystem system(scene);
+  FrozenStrength strength(system, scene);
+  ExplicitRelaxation loop(system, strength, 0.8, 100000);
+  for (const double part : {0.99, 1.01}) {
+    INFO(part << " of the factor at the first slip, " << first_slip);
+    strength.reduce(part * first_slip);
+    const RelaxationResult bonded = loop.bonded_state();
+    REQUIRE(bonded.end == RelaxationEnd::stable);
+    CHECK(loop.relax(bonded.state).end == (part < 1.0 ? RelaxationEnd::stable : RelaxationEnd::mechanism));
+  }
+}
+
 TEST_CASE("every way to relax finds the state in which a block stands", "[statics]") {
   const Scene scene = incline();
   const FrozenSystem system(scene);
