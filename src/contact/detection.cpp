@@ -1,15 +1,16 @@
 #include "openclose/contact/detection.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <numeric>
 #include <utility>
 
+#include "openclose/contact/heirs.h"
 #include "openclose/contact/history.h"
 #include "openclose/contact/narrow_phase.h"
+#include "openclose/contact/near_blocks.h"
 #include "openclose/core/tolerance.h"
 
 namespace openclose {
@@ -18,37 +19,12 @@ namespace {
 /// Above, an update gives its working memory back when it is done: 0.4 kB a block, more than 1 MB, which costs 0.1 ms to touch again.
 constexpr int most_blocks_with_working_memory = 2000;
 
-/// A set of numbers, a bit each, and the numbers in ascending order; the set is empty then.
-constexpr int bits = 64;
-void mark(std::vector<std::uint64_t>& set, int number) {
-  set[number / bits] |= std::uint64_t{1} << (number % bits);
-}
-void take_marked(std::vector<std::uint64_t>& set, std::vector<int>& numbers) {
-  numbers.clear();
-  for (std::size_t k = 0; k < set.size(); ++k) {
-    for (; set[k] != 0; set[k] &= set[k] - 1) numbers.push_back(static_cast<int>(bits * k) + std::countr_zero(set[k]));
-  }
-}
-
 /// (R(angle) - 1) r; for most angles, which are small, without sines: what the series leave out is below rounding.
 Vec2 turned_little_by(double angle, const Vec2& r) {
   constexpr double small = 0.01;  // [rad]; angle^9/9! and angle^8/8! are left out
   if (std::abs(angle) >= small) return Motion::turned_by(angle, r, RotationKind::exact);
   const double q = angle * angle;
   return angle * (1.0 - q / 6.0 * (1.0 - q / 20.0 * (1.0 - q / 42.0))) * perpendicular(r) - 0.5 * q * (1.0 - q / 12.0 * (1.0 - q / 30.0)) * r;
-}
-
-const double cosine_collinear = std::cos(tolerance::parallel_none_rad);
-
-/// Whether `now` continues `before` under another name: the same corner has gone on to a nearly collinear edge, or, at the end of an overlap, the
-/// corner that lay on the edge has passed its end and the edge's own corner lies on the other block's edge instead.
-bool continues(const BlockSystem& system, const Contact& before, const Contact& now) {
-  const auto direction = [&](int e) { return (system.arm(system.next(e)) - system.arm(e)).normalized(); };
-  const double cosine = direction(now.edge).dot(direction(before.edge));
-  if (now.vertex == before.vertex) return cosine > cosine_collinear;
-  const bool edge_end_took_over = now.vertex == before.edge || now.vertex == system.next(before.edge);
-  const bool edge_belongs_to_corner = now.edge == before.vertex || system.next(now.edge) == before.vertex;
-  return edge_end_took_over && edge_belongs_to_corner && cosine < -cosine_collinear;
 }
 
 }  // namespace
@@ -64,64 +40,6 @@ bool Detector::moved_beyond_search_skin(const BlockSystem& system) const {
     }
   }
   return false;
-}
-
-/// Pairs of boxes that overlap, but for those of blocks that are more than `room` [m] apart: in a slope with an inclined joint set four out of five.
-/// By sweeping along x within strips of y that are as high as the middling box: in a plane full of blocks each strip holds few at a time, so that the
-/// work grows with the number of blocks, and a block that is larger than others is only in more strips.
-void Detector::find_pairs(const BlockSystem& system, const std::vector<Box>& boxes, double room) {
-  pairs_.clear();
-  const int n = static_cast<int>(boxes.size());
-  if (n < 2) return;
-  std::vector<double> heights;
-  double bottom = boxes[0].low.y(), top = boxes[0].high.y();
-  for (const Box& box : boxes) {
-    heights.push_back(box.high.y() - box.low.y());
-    bottom = std::min(bottom, box.low.y());
-    top = std::max(top, box.high.y());
-  }
-  std::nth_element(heights.begin(), heights.begin() + n / 2, heights.end());
-  const double strip_height = std::max(heights[n / 2], (top - bottom) / n);
-  const auto strip = [&](double y) { return static_cast<int>((y - bottom) / strip_height); };
-  const int strips = strip(top) + 1;
-
-  // Blocks by strip, in each from left to right.
-  std::vector<int> from_left(n), begins(strips + 1, 0);
-  std::iota(from_left.begin(), from_left.end(), 0);
-  std::sort(from_left.begin(), from_left.end(), [&](int i, int j) { return std::pair(boxes[i].low.x(), i) < std::pair(boxes[j].low.x(), j); });
-  for (const Box& box : boxes) {
-    for (int k = strip(box.low.y()); k <= strip(box.high.y()); ++k) ++begins[k + 1];
-  }
-  std::partial_sum(begins.begin(), begins.end(), begins.begin());
-  std::vector<int> members(begins.back()), next(begins.begin(), begins.end() - 1);
-  for (const int b : from_left) {
-    for (int k = strip(boxes[b].low.y()); k <= strip(boxes[b].high.y()); ++k) members[next[k]++] = b;
-  }
-
-  std::vector<int> counts(n + 1, 0);  // of pairs by their lower number
-  for (int k = 0; k < strips; ++k) {
-    for (int i = begins[k]; i < begins[k + 1]; ++i) {
-      const Box& box = boxes[members[i]];
-      for (int j = i + 1; j < begins[k + 1] && boxes[members[j]].low.x() <= box.high.x(); ++j) {
-        const auto [a, b] = std::minmax(members[i], members[j]);
-        const bool someone_moves = system.block(a).equation >= 0 || system.block(b).equation >= 0;
-        if (!someone_moves || !box.overlaps(boxes[members[j]])) continue;
-        // Where both begin, and nowhere else.
-        if (strip(std::max(box.low.y(), boxes[members[j]].low.y())) != k) continue;
-        if (shapes_.apart(a, b, room)) continue;
-        pairs_.emplace_back(a, b);
-        ++counts[a + 1];
-      }
-    }
-  }
-
-  // In order: into their places by the lower number, then sorted among the few that share it.
-  std::partial_sum(counts.begin(), counts.end(), counts.begin());
-  std::vector<std::pair<int, int>> ordered(pairs_.size());
-  std::vector<int> places(counts.begin(), counts.end() - 1);
-  for (const auto& pair : pairs_) ordered[places[pair.first]++] = pair;
-  for (int b = 0; b < n; ++b) std::sort(ordered.begin() + counts[b], ordered.begin() + counts[b + 1]);
-  pairs_.swap(ordered);
 }
 
 void Detector::search(const BlockSystem& system) {
@@ -148,7 +66,7 @@ void Detector::search(const BlockSystem& system) {
   }
   const std::vector<std::pair<int, int>> old_pairs = std::move(pairs_);
   const std::vector<PairState> old_states = std::move(states_);
-  find_pairs(system, boxes, room);
+  pairs_ = near_blocks(system, boxes, shapes_, room);
   states_.assign(pairs_.size(), PairState());
   places_.reserve(system.block_count());
   for (int b = static_cast<int>(places_.size()); b < system.block_count(); ++b) places_.push_back(place(system, b));
@@ -268,27 +186,27 @@ bool Detector::mark_due_pairs(const BlockSystem& system, bool all) {
     return true;
   }
   const auto way = [&](int pair) { return relative_way(states_[pair], places_[pairs_[pair].first], places_[pairs_[pair].second]); };
-  marks_.resize(pairs_.size() / bits + 1);
+  marks_.resize(pairs_.size());
   long looks = 0;
   for_pairs_of(restless_, is_restless_, [&](int pair) {
     ++looks;
     const double gone = way(pair);
     if (due(gone) == Due::yes) {
-      mark(marks_, pair);
+      marks_.add(pair);
     } else {
       look_again_before(pair, gone);
     }
   });
   counters_.looks += looks;
   counters_.looks_skipped += static_cast<long>(pairs_.size()) - looks;
-  take_marked(marks_, due_pairs_);
+  marks_.take(due_pairs_);
   if (due_pairs_.empty()) return false;
   find_blocks_of_due_pairs();
-  for (const int pair : due_pairs_) mark(marks_, pair);
+  for (const int pair : due_pairs_) marks_.add(pair);
   for_pairs_of(in_due_pairs_, in_due_pair_, [&](int pair) {
-    if (due(way(pair)) == Due::moved) mark(marks_, pair);
+    if (due(way(pair)) == Due::moved) marks_.add(pair);
   });
-  take_marked(marks_, due_pairs_);
+  marks_.take(due_pairs_);
   return true;
 }
 
@@ -306,45 +224,10 @@ void Detector::find_blocks_of_due_pairs() {
 /// Those that share a block with a pair that is due, and these.
 const std::vector<int>& Detector::pairs_around_due_ones() {
   find_blocks_of_due_pairs();
-  marks_.resize(pairs_.size() / bits + 1);
-  for_pairs_of(in_due_pairs_, in_due_pair_, [&](int pair) { mark(marks_, pair); });
-  take_marked(marks_, around_due_);
+  marks_.resize(pairs_.size());
+  for_pairs_of(in_due_pairs_, in_due_pair_, [&](int pair) { marks_.add(pair); });
+  marks_.take(around_due_);
   return around_due_;
-}
-
-/// Contacts that are new inherit from those of the same corner that are gone.
-void Detector::pass_on_history(const BlockSystem& system, std::vector<Contact>& before) {
-  if (born_.empty() || gone_.empty()) return;
-  gone_by_vertex_.clear();
-  gone_by_edge_.clear();
-  for (const int k : gone_) {
-    gone_by_vertex_.emplace_back(before[k].vertex, k);
-    gone_by_edge_.emplace_back(before[k].edge, k);
-  }
-  std::sort(gone_by_vertex_.begin(), gone_by_vertex_.end());
-  std::sort(gone_by_edge_.begin(), gone_by_edge_.end());
-  // Longest first: where a corner lies on the seam of two edges the one that carries it inherits.
-  std::sort(born_.begin(), born_.end(),
-            [&](std::size_t i, std::size_t j) { return found_[i].length != found_[j].length ? found_[i].length > found_[j].length : i < j; });
-  constexpr double taken = -1.0;  // in place of a length
-  for (const std::size_t i : born_) {
-    int ancestor = -1;
-    const auto consider = [&](const std::vector<std::pair<int, int>>& gone, int key) {
-      for (auto it = std::lower_bound(gone.begin(), gone.end(), std::pair(key, 0)); it != gone.end() && it->first == key; ++it) {
-        const int k = it->second;
-        if (before[k].length == taken || !continues(system, before[k], found_[i])) continue;
-        const auto rank = [&](int m) { return std::pair(-before[m].length, m); };
-        if (ancestor < 0 || rank(k) < rank(ancestor)) ancestor = k;
-      }
-    };
-    consider(gone_by_vertex_, found_[i].vertex);
-    consider(gone_by_edge_, found_[i].vertex);
-    consider(gone_by_edge_, system.previous(found_[i].vertex));
-    if (ancestor < 0) continue;
-    inherit(before[ancestor], before[ancestor].stretch(), found_[i]);
-    before[ancestor].length = taken;
-    ++counters_.transfers;
-  }
 }
 
 /// Finds the contacts of a pair anew, with the history of those that live on.
@@ -513,8 +396,8 @@ Memory Detector::memory() const {
   Memory of;
   of.blocks = bytes_of(searched_at_, searched_moving_at_, places_, ways_, pairs_of_start_, restless_, in_due_pairs_, is_restless_, in_due_pair_) +
               shapes_.bytes();
-  of.contacts = bytes_of(pairs_, states_, ranges_, pairs_of_, changes_, due_pairs_, around_due_, marks_, found_, kept_, lives_on_, born_, gone_) +
-                bytes_of(gone_by_vertex_, gone_by_edge_, resting_.pairs, resting_.states, resting_.ranges, resting_.contacts) + index_.bytes();
+  of.contacts = bytes_of(pairs_, states_, ranges_, pairs_of_, changes_, due_pairs_, around_due_, found_, kept_, lives_on_, born_, gone_) +
+                bytes_of(resting_.pairs, resting_.states, resting_.ranges, resting_.contacts) + index_.bytes() + marks_.bytes();
   return of;
 }
 
@@ -551,7 +434,7 @@ bool Detector::update(const BlockSystem& system, const JointTable& joints, std::
   for (const int pair : pairs_around_due_ones()) index_.add(ranges_[pair]);
   NarrowPhase narrow(system, present, reach_ + skips_.contact_skin, first_, shapes_, index_);
   for (const int pair : due_pairs_) redo(joints, system, pair, narrow, contacts);
-  if (!first_) pass_on_history(system, contacts);
+  if (!first_) counters_.transfers += pass_on_history(system, contacts, gone_, found_, born_);
   put_in_place(contacts, orphans);
   if (due_pairs_.size() == pairs_.size()) index_.let_go();  // later ones are few
   if (system.block_count() > most_blocks_with_working_memory) let_go_of_working_memory();

@@ -17,7 +17,6 @@
 // long as neither block has gone farther than the skin allows from where it was when it was last searched for with all others.
 #pragma once
 
-#include <cstdint>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -26,9 +25,9 @@
 #include "openclose/contact/contact.h"
 #include "openclose/contact/contact_index.h"
 #include "openclose/contact/joint_table.h"
+#include "openclose/contact/number_set.h"
 #include "openclose/core/memory.h"
 #include "openclose/core/tolerance.h"
-#include "openclose/geometry/box.h"
 #include "openclose/model/block_system.h"
 
 namespace openclose {
@@ -172,7 +171,6 @@ class Detector {
   bool lists_of_blocks_fit(std::size_t blocks) const;
   bool moved_beyond_search_skin(const BlockSystem& system) const;
   void search(const BlockSystem& system);
-  void find_pairs(const BlockSystem& system, const std::vector<Box>& boxes, double room);
   void locate(const std::vector<Contact>& contacts);
   static Place place(const BlockSystem& system, int b);
   double relative_way(const PairState& then, const Place& first, const Place& second) const;
@@ -186,7 +184,6 @@ class Detector {
   void find_blocks_of_due_pairs();
   const std::vector<int>& pairs_around_due_ones();
   void redo(const JointTable& joints, const BlockSystem& system, int pair, NarrowPhase& narrow, const std::vector<Contact>& before);
-  void pass_on_history(const BlockSystem& system, std::vector<Contact>& before);
   void put_in_place(std::vector<Contact>& contacts, bool orphans);
   void find_kept_runs();
   void let_go_of_working_memory();
@@ -214,13 +211,12 @@ class Detector {
   std::vector<int> restless_, in_due_pairs_;  ///< blocks: whose pairs are looked at; of pairs that are due
   std::vector<char> is_restless_, in_due_pair_;
   std::vector<int> due_pairs_, around_due_;  ///< in order
-  std::vector<std::uint64_t> marks_;         ///< a bit a pair
+  NumberSet marks_;                          ///< pairs
   std::vector<Contact> found_;               ///< of the pairs that are due
   std::vector<Run> kept_;                    ///< contacts of other pairs, where the list is renewed
   std::vector<char> lives_on_;               ///< old contacts of a pair
   std::vector<std::size_t> born_;            ///< positions among those that were found
   std::vector<int> gone_;                    ///< positions in the old list
-  std::vector<std::pair<int, int>> gone_by_vertex_, gone_by_edge_;
 };
 
 }  // namespace openclose
