@@ -17,8 +17,6 @@ struct StepCounters {
   long parts = 0;                       ///< of the system, solved for themselves between these
   long part_iterations = 0;             ///< linear solves of parts
   long part_rows = 0;                   ///< block rows in these
-  long part_batches = 0;                ///< of four contacts, evaluated because parts have moved
-  long part_batches_skipped = 0;        ///< not evaluated then, since nothing in them has moved
   long relaxation_steps = 0;            ///< evaluations of all forces in static steps that are relaxed, thrown-away attempts included
   long relaxation_estimates = 0;        ///< of the stiffness of the whole system, made for these
   long eased = 0;                       ///< steps of `hard` that were balanced with a longer ramp of the cohesion only
@@ -39,15 +37,13 @@ struct StepCounters {
     parts += effort.parts;
     part_iterations += effort.part_iterations;
     part_rows += effort.part_rows;
-    part_batches += effort.part_batches;
-    part_batches_skipped += effort.part_batches_skipped;
     relaxation_steps += effort.relaxation_steps;
     relaxation_estimates += effort.estimates;
   }
 
   void exchange(Archive& archive) {
-    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, w, x] = *this;
-    archive(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, w, x);
+    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v] = *this;
+    archive(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v);
   }
 };
 

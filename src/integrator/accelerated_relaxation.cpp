@@ -123,7 +123,8 @@ TwoLevelFlexibility AcceleratedRelaxation::flexibility(const Eigen::VectorXd& d,
   }
   for (int i = 0; i < rows; ++i) {
     Eigen::Matrix<double, dofs, dofs> own = equations_.blocks()[i].inertia.asDiagonal();
-    if (equations_.blocks()[i].has_elements) own += equations_.problem().external.stiffness(equations_.problem().system, equations_.blocks()[i].block, d.segment<dofs>(dofs * i));
+    if (equations_.blocks()[i].has_elements)
+      own += equations_.problem().external.stiffness(equations_.problem().system, equations_.blocks()[i].block, d.segment<dofs>(dofs * i));
     const double hold = equations_.unbalanced(i) / longest_way, radius = equations_.blocks()[i].radius;
     own.diagonal() += hold * Motion::Unknowns(1.0, 1.0, radius * radius);
     sum.add_own(i, own);
@@ -188,7 +189,6 @@ bool AcceleratedRelaxation::has_left(const Eigen::VectorXd& d) const {
 void AcceleratedRelaxation::solve(const StepProblem& problem, const SpringSource& springs, StepSolution& solution) {
   contacts().take_back(solution.contacts);
   equations_.prepare(problem, springs);
-  contacts().forget_at_next_step();
   Eigen::VectorXd& d = solution.d;
   equations_.move_blocks_alone(d);
   equations_.evaluate(d);

@@ -1,8 +1,8 @@
-// A static step without linear equations, for systems whose factors cost more than everything else (n^1.5 operations, n log n numbers) and of which so
-// many contacts come loose that no tangent tells where they go. Blocks follow the forces on them as far as they would go if all closed contacts stuck
-// (two_level.h), with Nesterov's momentum (Y. Nesterov, 1983), which starts anew when the forces turn against it (B. O'Donoghue and E. Candes, 2015).
-// Contacts slip on that way as they do in an explicit method, and keep their slip: friction that depended on the present place alone would feed
-// vibrations instead of damping them. Rest is what it is for Newton's method, the residual alone.
+// A static step without linear equations, for systems whose factors cost more than everything else (n^1.5 operations, n log n numbers) and of which
+// so many contacts come loose that no tangent tells where they go. Blocks follow the forces on them as far as they would go if all closed contacts
+// stuck (two_level.h), with Nesterov's momentum (Y. Nesterov, 1983), which starts anew when the forces turn against it (B. O'Donoghue and E. Candes,
+// 2015). Contacts slip on that way as they do in an explicit method, and keep their slip: friction that depended on the present place alone would
+// feed vibrations instead of damping them. Rest is what it is for Newton's method, the residual alone.
 #pragma once
 
 #include <vector>
@@ -17,7 +17,8 @@ class AcceleratedRelaxation {
   /// Works on the equations, which must outlive it.
   explicit AcceleratedRelaxation(StepEquations& equations) : equations_(equations) {}
 
-  /// Solves a static step for solution.d, starting from the value it has; fills its contacts. What friction holds in the end depends on the way there.
+  /// Solves a static step for solution.d, starting from the value it has; fills its contacts. What friction holds in the end depends on the way
+  /// there.
   void solve(const StepProblem& problem, const SpringSource& springs, StepSolution& solution);
   /// The largest so far, equations included.
   const Memory& memory() const { return memory_; }

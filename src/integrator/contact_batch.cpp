@@ -222,19 +222,8 @@ double evaluate(StepForces forces, double ramp, const std::vector<ContactBatch>&
   return evaluate_all(forces, ramp, contacts.data(), contacts.size(), moves, rounding_of_sums, trials.data(), branches.data(), rows.data());
 }
 
-void evaluate_one(StepForces forces, double ramp, const std::vector<ContactBatch>& contacts, std::size_t batch, const BlockMove* moves,
-                  double rounding_of_sums, std::vector<TrialBatch>& trials, std::vector<Branch>& branches, std::vector<ForceRow>& rows) {
-  evaluate_all(forces, ramp, &contacts[batch], 1, moves, rounding_of_sums, &trials[batch], &branches[batch_size * batch], rows.data());
-}
-
 void find_elastic(double ramp, const std::vector<ContactBatch>& contacts, const std::vector<TrialBatch>& trials, std::vector<ElasticBatch>& elastic) {
   find_all_elastic(ramp, contacts.data(), trials.data(), elastic.size(), elastic.data());
-}
-
-double largest_force(const std::vector<TrialBatch>& trials) {
-  Lanes largest{};
-  for (const TrialBatch& trial : trials) largest = larger(largest, larger(magnitude(trial.normal), magnitude(trial.shear)));
-  return std::max({largest[0], largest[1], largest[2], largest[3]});
 }
 
 ContactStrength ContactBatch::strength(int lane) const {

@@ -59,10 +59,6 @@ struct ContactBatch {
   void set_geometry(int lane, const ContactPlace& at);
   void set_strength(int lane, const ContactStrength& strength);
   void set_springs(int lane, const ContactSprings& springs);
-  /// The part of set_springs() that follows from where the springs start: their gap, its target, and what they carry there.
-  void set_start(int lane, const ContactSprings& springs);
-  /// The same for springs of the joint.
-  void set_start(int lane, const Contact& contact);
   /// All but the places.
   void copy(int lane, const ContactBatch& other, int from);
   ContactStart start(int lane) const;
@@ -106,19 +102,9 @@ inline void ContactBatch::set_springs(int lane, const ContactSprings& springs) {
   normal_damping[lane] = springs.normal_damping;
   shear_damping[lane] = springs.shear_damping;
   dissipation[lane] = springs.dissipation;
-  set_start(lane, springs);
-}
-
-inline void ContactBatch::set_start(int lane, const ContactSprings& springs) {
   gap_off_target[lane] = springs.gap - springs.target;
   shift[lane] = springs.shift;
   initial_shear[lane] = springs.initial_shear;
-}
-
-inline void ContactBatch::set_start(int lane, const Contact& contact) {
-  gap_off_target[lane] = contact.stretch();
-  shift[lane] = 0.0;
-  initial_shear[lane] = -shear[lane] * contact.elastic_slip;
 }
 
 inline void ContactBatch::copy(int lane, const ContactBatch& other, int from) {
@@ -192,11 +178,6 @@ double begin(std::vector<ContactBatch>& contacts);
 /// \param rounding_of_sums  [-] of the forces and changes of force of a contact
 double evaluate(StepForces forces, double ramp, const std::vector<ContactBatch>& contacts, const BlockMove* moves, double rounding_of_sums,
                 std::vector<TrialBatch>& trials, std::vector<Branch>& branches, std::vector<ForceRow>& rows);
-/// The same of one batch.
-void evaluate_one(StepForces forces, double ramp, const std::vector<ContactBatch>& contacts, std::size_t batch, const BlockMove* moves,
-                  double rounding_of_sums, std::vector<TrialBatch>& trials, std::vector<Branch>& branches, std::vector<ForceRow>& rows);
-/// [N] Of all batches that were evaluated.
-double largest_force(const std::vector<TrialBatch>& trials);
 /// Of forces at the end of the step.
 /// \param ramp, trials  with which and to what they were evaluated
 void find_elastic(double ramp, const std::vector<ContactBatch>& contacts, const std::vector<TrialBatch>& trials, std::vector<ElasticBatch>& elastic);

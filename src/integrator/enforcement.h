@@ -64,15 +64,12 @@ struct StepEffort {
   int parts = 0;             ///< of the system, solved for themselves in between
   int part_iterations = 0;   ///< linear solves of parts
   long part_rows = 0;        ///< block rows in these
-  long part_batches = 0;     ///< of four contacts, evaluated because parts have moved
-  long part_batches_skipped = 0;
   int relaxation_steps = 0;  ///< evaluations of all forces instead, see accelerated_relaxation.h
   int estimates = 0;         ///< of the way that forces move blocks, made for these
 
   StepEffort& operator+=(const StepEffort& other) {
     iterations += other.iterations, parts += other.parts, part_iterations += other.part_iterations;
-    part_rows += other.part_rows, part_batches += other.part_batches,
-        part_batches_skipped += other.part_batches_skipped;
+    part_rows += other.part_rows;
     relaxation_steps += other.relaxation_steps, estimates += other.estimates;
     return *this;
   }

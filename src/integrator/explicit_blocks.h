@@ -113,9 +113,7 @@ class ExplicitBlocks {
   void store(BlockSystem& system) const;
 
   std::size_t bytes() const { return bytes_of(poses_, rates_, next_rates_, forces_, inertia_, blocks_, rest_slot_, loaded_at_, marked_at_); }
-  void exchange(Archive& archive) {
-    archive(poses_, rates_, next_rates_, forces_, inertia_, blocks_, rest_slot_, loaded_at_, marked_at_);
-  }
+  void exchange(Archive& archive) { archive(poses_, rates_, next_rates_, forces_, inertia_, blocks_, rest_slot_, loaded_at_, marked_at_); }
 
  private:
   double force_squared(std::size_t i) const;  ///< [N2] on a block, a moment counting at the block's radius

@@ -106,7 +106,8 @@ void Newton::assemble(const Eigen::VectorXd& d, Tangent tangent) {
 Eigen::VectorXd Newton::direction(const Eigen::VectorXd& d, Tangent tangent, double reduction, double enough) {
   assemble(d, tangent);
   Eigen::VectorXd step;
-  if (tangent_.factor(equations_.problem().statics ? static_kept_change : kept_change)) step = tangent_.solve(equations_.residual(), reduction, enough);
+  if (tangent_.factor(equations_.problem().statics ? static_kept_change : kept_change))
+    step = tangent_.solve(equations_.residual(), reduction, enough);
   return step;
 }
 
@@ -253,8 +254,7 @@ Newton::Outcome Newton::iterate(const StepProblem& problem, StepSolution& soluti
   course.value = course.best = equations_.merit(norm);
   course.switches = static_cast<int>(contacts().count());  // any may be in another state than in the first tangent
   const int smallest_with_parts = contacts().averages_path() ? smallest_averaged_system_with_parts : smallest_system_with_parts;
-  const bool may_help_by_parts =
-      problem.method.skip_balanced && !problem.statics && !is_part_ && equations_.rows() >= smallest_with_parts;
+  const bool may_help_by_parts = problem.method.skip_balanced && !problem.statics && !is_part_ && equations_.rows() >= smallest_with_parts;
   const bool may_be_lost = !problem.statics && !is_part_;
   Headway headway(course.value, most_iterations_to_halve);
   // Parts that have not helped will not help in this step: with pauses in place of an end 40 m of a failing slope of 1,773 free blocks cost

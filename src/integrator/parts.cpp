@@ -52,11 +52,6 @@ std::vector<Part> Neighbourhood::parts(const std::vector<int>& seeds, int rings,
   return parts;
 }
 
-std::vector<int> Neighbourhood::with_neighbours(const std::vector<int>& rows) const {
-  std::vector<int> ring(this->rows(), outside);
-  return grow(rows, 1, ring);
-}
-
 std::vector<int> Neighbourhood::grow(const std::vector<int>& seeds, int rings, std::vector<int>& ring) const {
   std::vector<int> blocks = seeds;
   for (int row : seeds) ring[row] = 0;

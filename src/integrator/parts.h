@@ -37,15 +37,6 @@ class Neighbourhood {
   /// \param seeds    rows, each once
   /// \param largest  parts of more rows are left out
   std::vector<Part> parts(const std::vector<int>& seeds, int rings, int largest) const;
-  /// The rows and those of all blocks that a contact joins to one of them.
-  std::vector<int> with_neighbours(const std::vector<int>& rows) const;
-  /// \param of  is called with each contact that touches one of the rows, once or twice
-  template <class Of>
-  void for_contacts_of(const std::vector<int>& rows, const Of& of) const {
-    for (int row : rows) {
-      for (int e = first_[row]; e < first_[row + 1]; ++e) of(ends_[e].contact);
-    }
-  }
 
  private:
   struct End {

@@ -31,7 +31,6 @@ class SoftSprings final : public SpringSource {
     if (dissipation_) springs.dissipation = *dissipation_;
     return springs;
   }
-  bool last() const override { return !dissipation_; }
 
  private:
   const Enforcement& of_;

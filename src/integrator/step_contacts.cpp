@@ -7,14 +7,14 @@ namespace openclose {
 
 void StepContacts::prepare(const StepProblem& problem, const SpringSource& springs) {
   count_ = problem.contacts.size();
-  renewal_.renew(problem, springs, *starts_);
+  openclose::lay_out(problem, springs, *starts_);
   step_forces_ = problem.averages_path() ? StepForces::averaged : StepForces::at_end;
   start_force_ = begin(batches());
-  lay_out();
+  make_room();
   moves_.assign(static_cast<std::size_t>(problem.system.free_count()) + 1, BlockMove());
 }
 
-void StepContacts::lay_out() {
+void StepContacts::make_room() {
   resize_closely(trials_, batches().size());
   branches_.assign(batch_size * batches().size(), 0);
 }
@@ -30,10 +30,6 @@ void StepContacts::set_springs(const std::vector<ContactSprings>& springs) {
 
 double StepContacts::evaluate(std::vector<ForceRow>& rows) {
   return openclose::evaluate(step_forces_, ramp_, batches(), moves_.data(), rounding_of_sums, trials_, branches_, rows);
-}
-
-void StepContacts::evaluate_one(std::size_t batch, std::vector<ForceRow>& rows) {
-  openclose::evaluate_one(step_forces_, ramp_, batches(), batch, moves_.data(), rounding_of_sums, trials_, branches_, rows);
 }
 
 void StepContacts::add_stiffness(const BatchTangent& tangent, const MatrixSlots& slots, BlockMatrix& matrix) const {
@@ -104,7 +100,7 @@ void StepContacts::take_back(ContactOutcomes& outcomes) {
 Memory StepContacts::memory() const {
   Memory of;
   of.blocks = bytes_of(moves_);
-  of.contacts = bytes_of(trials_, branches_) + starts_->bytes() + renewal_.bytes();
+  of.contacts = bytes_of(trials_, branches_) + starts_->bytes();
   return of;
 }
 

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "openclose/core/tolerance.h"
-#include "openclose/integrator/batch_renewal.h"
 #include "openclose/integrator/contact_batch.h"
+#include "openclose/integrator/contact_layout.h"
 #include "openclose/integrator/enforcement.h"
 #include "openclose/integrator/parts.h"
 
@@ -33,14 +33,9 @@ class StepContacts {
   double largest_force_at_start() const { return start_force_; }
   /// [-] Part of the cohesion over which it comes in, in what is evaluated from now on: see ShearLimit.
   void set_cohesion_ramp(double ramp) { ramp_ = ramp; }
-  /// Bonds may break in the batches, whether or not the step is taken.
-  void forget_at_next_step() { renewal_.forget(); }
 
   /// By the present moves. Adds to the rows; returns [N] the largest force.
   double evaluate(std::vector<ForceRow>& rows);
-  /// The same of one batch; to be followed by largest_force().
-  void evaluate_one(std::size_t batch, std::vector<ForceRow>& rows);
-  double largest_force() const { return openclose::largest_force(trials_); }  ///< [N]
   void add_stiffness(const BatchTangent& tangent, const MatrixSlots& slots, BlockMatrix& matrix) const;
 
   std::size_t count() const { return count_; }
@@ -88,13 +83,12 @@ class StepContacts {
   Memory memory() const;
 
  private:
-  void lay_out();
+  void make_room();
   /// The means over the path go to the solution, the forces at its end take their place.
   std::vector<ElasticBatch> report_paths(StepSolution& solution);
   std::vector<ElasticBatch> elastic_parts() const;
 
   double ramp_ = tolerance::cohesion_ramp;  ///< [-]
-  BatchRenewal renewal_;
   std::size_t count_ = 0;
   double start_force_ = 0.0;  ///< [N]
   /// Of the problem's contacts, in statics in the order of the list. Steps that are known by their outcomes have them, too: where they still do,
@@ -126,7 +120,7 @@ std::vector<std::pair<int, int>> StepContacts::take_part(const StepContacts& who
     batch.set_places(k, vertex, edge);
     ends.emplace_back(vertex, edge);
   }
-  lay_out();
+  make_room();
   return ends;
 }
 

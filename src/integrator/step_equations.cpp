@@ -122,46 +122,6 @@ void StepEquations::evaluate(const Eigen::VectorXd& d) {
   const double largest = contacts_.evaluate(rows_);
   for (int row = 0; row < rows(); ++row) evaluate_block(row, d);
   find_force_scale(largest, d);
-  has_replaced_forces_ = false;
-}
-
-void StepEquations::evaluate_moved(const std::vector<int>& moved, const Neighbourhood& neighbourhood, const Eigen::VectorXd& d, StepEffort& effort) {
-  const std::vector<ContactBatch>& batches = contacts_.batches();
-  const auto all = static_cast<long>(batches.size());
-  // Forces that were replaced are to be the law's again everywhere.
-  if (!problem_->method.skip_unmoved || has_replaced_forces_) {
-    effort.part_batches += all;
-    return evaluate(d);
-  }
-  for (int row : moved) move_block(row, d);
-  const std::vector<int> pushed = neighbourhood.with_neighbours(moved);
-  std::vector<char> is_due(batches.size(), 0);
-  neighbourhood.for_contacts_of(pushed, [&](int c) { is_due[c / batch_size] = 1; });
-  for (int row : pushed) rows_[row] = ForceRow();
-  // Their batches have contacts of other rows, too, whose sums stay.
-  std::vector<std::pair<int, ForceRow>> sums_of_others;
-  std::vector<char> is_known(rows_.size(), 0);
-  for (int row : pushed) is_known[row] = 1;
-  const auto keep_sums = [&](int row) {
-    if (is_known[row]) return;
-    is_known[row] = 1;
-    sums_of_others.emplace_back(row, rows_[row]);
-  };
-  long due = 0;
-  for (std::size_t batch = 0; batch < batches.size(); ++batch) {
-    if (!is_due[batch]) continue;
-    ++due;
-    for (int k = 0; k < batch_size; ++k) {
-      keep_sums(batches[batch].vertex_place(k));
-      keep_sums(batches[batch].edge_place(k));
-    }
-    contacts_.evaluate_one(batch, rows_);
-  }
-  effort.part_batches += due;
-  effort.part_batches_skipped += all - due;
-  for (const auto& [row, sums] : sums_of_others) rows_[row] = sums;
-  for (int row : pushed) evaluate_block(row, d);
-  find_force_scale(contacts_.largest_force(), d);
 }
 
 double StepEquations::tolerated(int row) const {
@@ -244,7 +204,6 @@ void StepEquations::replace_forces(std::size_t c, const ContactForces& forces) {
   push(vertex, 1.0, pose.vertex_arm);
   push(edge, -1.0, pose.edge_arm);
   contacts_.set_forces(c, forces);
-  has_replaced_forces_ = true;
 }
 
 int StepEquations::hold_reversed(const std::vector<Branch>& branches_before) {

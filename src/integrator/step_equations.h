@@ -1,5 +1,5 @@
-// The equations of motion of a step as functions of the blocks' displacements: what is left of the forces and the inertia of each block, how much of it
-// is balance, and how it changes with the displacements. It knows nothing of how the displacements are found.
+// The equations of motion of a step as functions of the blocks' displacements: what is left of the forces and the inertia of each block, how much of
+// it is balance, and how it changes with the displacements. It knows nothing of how the displacements are found.
 //
 //   r(d) = inertia M (drift - d) + theta F(d) + (1 - theta) F(0), see time_scheme.h
 #pragma once
@@ -39,8 +39,6 @@ class StepEquations {
   void sum_start_forces();
 
   void evaluate(const Eigen::VectorXd& d);
-  /// The same, to the last bit, where only these rows have moved since the last evaluation.
-  void evaluate_moved(const std::vector<int>& moved, const Neighbourhood& neighbourhood, const Eigen::VectorXd& d, StepEffort& effort);
   const Eigen::VectorXd& residual() const { return residual_; }
   double unbalanced(int row) const;  ///< [N] residual of a block
   double largest_unbalanced() const;
@@ -95,9 +93,8 @@ class StepEquations {
   const StepProblem* problem_ = nullptr;
   StepContacts contacts_;
   std::vector<StepBlock> blocks_;
-  std::vector<ForceRow> rows_;        ///< all forces at the trial position but inertia; of those that have no equation not to be read
-  bool has_replaced_forces_ = false;  ///< since the last evaluation: contacts carry something else than the law says
-  Eigen::VectorXd start_force_;       ///< the same at the start of the step, used if theta < 1
+  std::vector<ForceRow> rows_;   ///< all forces at the trial position but inertia; of those that have no equation not to be read
+  Eigen::VectorXd start_force_;  ///< the same at the start of the step, used if theta < 1
   Eigen::VectorXd residual_;
   double force_scale_ = 0.0;
   double contact_scale_ = 0.0;  ///< [N] of the springs at the start of the step

@@ -40,7 +40,6 @@ double Subdomains::solve(StepEquations& whole, StepSolution& solution, double no
   if (parts.empty()) return norm;
   Newton newton;  // gone again when the whole is solved: a part may be a quarter of it
   Eigen::VectorXd trial = solution.d;
-  std::vector<int> moved;
   const long most_rows = static_cast<long>(work_on_parts * static_cast<double>(whole.rows()));
   long rows = 0;  // of all linear solves
   for (const Part& part : parts) {
@@ -48,7 +47,6 @@ double Subdomains::solve(StepEquations& whole, StepSolution& solution, double no
     found.d = rows_of(solution.d, part.rows);
     if (newton.solve_part(whole, part, end, found)) {
       for (std::size_t i = 0; i < part.rows.size(); ++i) trial.segment<dofs>(dofs * part.rows[i]) = found.d.segment<dofs>(dofs * i);
-      moved.insert(moved.end(), part.rows.begin(), part.rows.end());
     }
     counters_ += newton.linear_counters();
     memory_.grow_to(newton.present_memory());
@@ -58,13 +56,13 @@ double Subdomains::solve(StepEquations& whole, StepSolution& solution, double no
     if (rows > most_rows) break;
   }
   solution.effort.part_rows += rows;
-  whole.evaluate_moved(moved, neighbourhood_, trial, solution.effort);
+  whole.evaluate(trial);
   const double norm_with_parts = whole.residual_norm();
   if (norm_with_parts <= norm) {  // equal where the worst part could not be solved, the others of use all the same
     solution.d = trial;
     return norm_with_parts;
   }
-  whole.evaluate_moved(moved, neighbourhood_, solution.d, solution.effort);
+  whole.evaluate(solution.d);
   return norm;
 }
 

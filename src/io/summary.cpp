@@ -177,8 +177,6 @@ nlohmann::ordered_json counters_json(const Simulation& simulation) {
           {"parts", steps.parts},
           {"part_iterations", steps.part_iterations},
           {"part_rows", steps.part_rows},
-          {"part_batches", steps.part_batches},
-          {"part_batches_skipped", steps.part_batches_skipped},
           {"relaxation_steps", steps.relaxation_steps},
           {"relaxation_estimates", steps.relaxation_estimates},
           {"searches", detection.searches},

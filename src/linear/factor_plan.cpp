@@ -126,7 +126,6 @@ class Planner {
     factor_.row_start.resize(rows + 1);
     factor_.diagonal.resize(rows);
     factor_.column.resize(rows + 2 * upper.column.size());
-    factor_.same_as_next.resize(rows);
     int end = 0;
     for (int i = 0; i < rows; ++i) {
       factor_.row_start[i] = place[i] = end;
@@ -142,9 +141,6 @@ class Planner {
     for (int i = 0; i < rows; ++i) ++place[i];  // over the diagonal
     for (int i = 0; i < rows; ++i) {
       for (int s = factor_.row_start[i]; s < factor_.diagonal[i]; ++s) factor_.column[place[factor_.column[s]]++] = i;
-    }
-    for (int i = 0; i < rows; ++i) {
-      factor_.same_as_next[i] = factor_.parent(i) == i + 1 && upper.row(i).size() == upper.row(i + 1).size() + 1;
     }
     factor_.solution.resize(rows);
     factor_.size.resize(rows);

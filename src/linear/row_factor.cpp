@@ -42,26 +42,6 @@ OPENCLOSE_KERNEL void subtract_row(RowFactor& f, int s, int k, const int* place)
   }
 }
 
-/// Rows k and k + 1 of one pattern: every block of the row under work is fetched once for both.
-OPENCLOSE_KERNEL void subtract_two_rows(RowFactor& f, int s, int k, const int* place) {
-  PaddedBlock* const value = f.value.data();
-  const int* const column = f.column.data();
-  const int first = f.diagonal[k] + 2, second = f.diagonal[k + 1] + 1, count = f.row_start[k + 1] - first;
-  const Multipliers left(value[s]);
-  for (int r = 0; r < dofs; ++r) left.subtract_row_of_product(r, value[first - 1], value[s + 1].row[r]);
-  const Multipliers next_left(value[s + 1]);
-  for (int u = 0; u < count; ++u) {
-    const PaddedBlock &right = value[first + u], &next_right = value[second + u];
-    PaddedBlock& target = value[place[column[second + u]]];
-    for (int r = 0; r < dofs; ++r) {
-      Lanes row = target.row[r];
-      left.subtract_row_of_product(r, right, row);
-      next_left.subtract_row_of_product(r, next_right, row);
-      target.row[r] = row;
-    }
-  }
-}
-
 /// Subtracts from row i what the rows of a panel above it contribute.
 /// \param place  room for the slot of each column in the row
 OPENCLOSE_KERNEL void subtract_panel(RowFactor& f, int i, int panel, int* place) {
@@ -69,11 +49,7 @@ OPENCLOSE_KERNEL void subtract_panel(RowFactor& f, int i, int panel, int* place)
   for (int s = f.row_start[i]; s < f.diagonal[i]; ++s) {
     const int k = f.column[s];
     if (f.panel[k] != panel) continue;
-    if (f.same_as_next[k] && s + 1 < f.diagonal[i] && f.panel[k + 1] == panel) {
-      subtract_two_rows(f, s++, k, place);
-    } else {
-      subtract_row(f, s, k, place);
-    }
+    subtract_row(f, s, k, place);
   }
 }
 

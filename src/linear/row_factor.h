@@ -33,7 +33,6 @@ struct Entry {
 struct RowFactor {
   std::vector<int> order;  ///< row of the matrix at a place in the factor
   std::vector<int> row_start, diagonal, column;
-  std::vector<char> same_as_next;          ///< of rows: to the right of the next diagonal this row of U has the next one's pattern
   std::vector<Entry> entries;              ///< in the order in which elimination meets them
   std::vector<int> entries_start;          ///< where in `entries` a row begins
   std::vector<BlockMatrix::Block> taken;   ///< of the entries, from the matrix: the factor is that of these
@@ -53,7 +52,7 @@ struct RowFactor {
       for (const std::vector<int>& part : *parts) lists += bytes_of(part);
     }
     return lists +
-           bytes_of(order, row_start, diagonal, column, same_as_next, entries, entries_start, taken, scale, stale, size, panel, value, solution);
+           bytes_of(order, row_start, diagonal, column, entries, entries_start, taken, scale, stale, size, panel, value, solution);
   }
   /// The row that is the first to subtract row i; -1 for a root.
   int parent(int i) const {

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <utility>
 
 #include "openclose/scene/keys.h"
@@ -13,6 +15,23 @@ namespace {
 std::pair<std::string_view, std::string_view> split(std::string_view dotted) {
   const std::size_t dot = dotted.find('.');
   return {dotted.substr(0, dot), dotted.substr(dot + 1)};
+}
+
+/// Switches of earlier versions for what is always the same today: whatever a file says, it counts for nothing.
+constexpr std::array retired_keys = {std::string_view("method.skip_unmoved"), std::string_view("solver.skip_unmoved")};
+
+std::string warning_of_retired(const std::string& where, std::string_view key) {
+  return fmt::format("{}: {} is not there any more and counts for nothing; leave it out", where, key);
+}
+
+void remove(toml::table& document, const std::string& file, std::string_view retired, std::vector<std::string>& warnings) {
+  const auto [table, key] = split(retired);
+  toml::table* of = document[table].as_table();
+  const toml::node* node = of == nullptr ? nullptr : of->get(key);
+  if (node == nullptr) return;
+  const SourceLocation where = location(*node, file);
+  warnings.push_back(warning_of_retired(fmt::format("{}:{}", where.file, where.line), retired));
+  of->erase(key);
 }
 
 std::string warning(const std::string& where, const KeyEntry& entry) {
@@ -47,14 +66,19 @@ void move(toml::table& document, const std::string& file, const KeyEntry& entry,
 }  // namespace
 
 void move_former_keys(toml::table& document, const std::string& file, std::vector<std::string>& warnings) {
+  for (const std::string_view retired : retired_keys) remove(document, file, retired, warnings);
   for (const KeyEntry& entry : option_keys()) {
     if (!entry.key.formerly.empty()) move(document, file, entry, warnings);
   }
 }
 
-std::string with_current_key(const std::string& key_and_value, const std::string& file, std::vector<std::string>& warnings) {
+std::optional<std::string> with_current_key(const std::string& key_and_value, const std::string& file, std::vector<std::string>& warnings) {
   const std::size_t equals = key_and_value.find('=');
   const std::string key = key_and_value.substr(0, key_and_value.find_last_not_of(' ', equals == 0 ? 0 : equals - 1) + 1);
+  if (equals != std::string::npos && std::find(retired_keys.begin(), retired_keys.end(), key) != retired_keys.end()) {
+    warnings.push_back(warning_of_retired(fmt::format("{}: --set {}", file, key), key));
+    return std::nullopt;
+  }
   for (const KeyEntry& entry : option_keys()) {
     if (equals == std::string::npos || entry.key.formerly.empty() || entry.key.formerly != key) continue;
     warnings.push_back(warning(fmt::format("{}: --set {}", file, key), entry));

@@ -115,7 +115,6 @@ struct MethodInput {
   int threads = 1;                     ///< that share the work; the results are the same to the last bit
   bool skip_factorisation = true;      ///< factor only rows of the matrix that have changed, and no weak couplings
   bool skip_symbolic = true;           ///< plan a factorisation only once the pattern of the matrix has changed
-  bool skip_unmoved = true;            ///< after parts were solved, evaluate only contacts of what moved with them
   bool skip_balanced = true;           ///< between iterations of large systems in motion, iterate only where forces are far from balance
   bool skip_still_steps = true;        ///< do a step in which nothing can happen once, and count it as often as it would be repeated
   bool skip_resting = false;           ///< leave blocks alone that are at rest, see RestInput
@@ -250,11 +249,6 @@ void visit_solver_keys(Method& m, Step& s, Visitor& visit) {
          {},
          "method.skip_balanced"},
         m.skip_balanced, Flag{});
-  visit({"skip_unmoved",
-         "false: after subdomains were solved evaluate all contacts, not only those of blocks that moved with them",
-         {},
-         "method.skip_unmoved"},
-        m.skip_unmoved, Flag{});
   visit({"skip_still_steps",
          "false: solve every step, also those that begin and end like the one before, in balance and without velocities",
          {},

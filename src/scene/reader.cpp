@@ -349,7 +349,9 @@ Scene scene_of_text(const std::string& text, const std::string& path, const std:
   toml::table document = parse(text, path);
   std::vector<std::string> warnings;
   move_former_keys(document, path, warnings);
-  for (const std::string& key_and_value : overrides) apply_override(document, path, with_current_key(key_and_value, path, warnings));
+  for (const std::string& key_and_value : overrides) {
+    if (const auto current = with_current_key(key_and_value, path, warnings)) apply_override(document, path, *current);
+  }
   Scene scene = interpret(document, path);
   scene.warnings = std::move(warnings);
   return scene;

@@ -343,27 +343,6 @@ TEST_CASE("steps that begin before its time are the first integrator's, the othe
   CHECK(std::abs(changing.ledger().imbalance()) < 1e-9 * changing.ledger().turnover);
 }
 
-TEST_CASE("evaluating only what moved with a part changes no bit", "[analysis][simulation]") {
-  for (const std::string integrator : {"shi", "theta", "path_average"}) {
-    INFO(integrator);
-    Scene scene = test::struck_wall(integrator == "path_average" ? 130 : 40);  // where there are parts
-    scene.method.integrator = integrator;
-    Simulation skipping(scene);
-    scene.method.skip_unmoved = false;
-    Simulation all(scene);
-    advance_both(all, skipping);
-    CHECK(skipping.system().state().displacement == all.system().state().displacement);
-    CHECK(skipping.system().state().velocity == all.system().state().velocity);
-    CHECK(skipping.state().counters.iterations == all.state().counters.iterations);
-    CHECK(skipping.state().counters.part_iterations == all.state().counters.part_iterations);
-    const long batches = all.state().counters.part_batches;
-    CHECK(batches > 0);
-    CHECK(all.state().counters.part_batches_skipped == 0);
-    CHECK(skipping.state().counters.part_batches + skipping.state().counters.part_batches_skipped == batches);
-    CHECK(skipping.state().counters.part_batches < batches);
-  }
-}
-
 TEST_CASE("skipping the symbolic part of factorisations changes no bit", "[analysis][simulation]") {
   for (const std::string method : {"soft", "hard", "shi"}) {
     INFO(method);

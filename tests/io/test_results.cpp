@@ -382,8 +382,6 @@ TEST_CASE("summary.json has counters under their own names", "[io][results]") {
                                                 {"parts", steps.parts},
                                                 {"part_iterations", steps.part_iterations},
                                                 {"part_rows", steps.part_rows},
-                                                {"part_batches", steps.part_batches},
-                                                {"part_batches_skipped", steps.part_batches_skipped},
                                                 {"relaxation_steps", steps.relaxation_steps},
                                                 {"relaxation_estimates", steps.relaxation_estimates},
                                                 {"searches", detection.searches},

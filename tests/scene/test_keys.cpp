@@ -154,6 +154,19 @@ TEST_CASE("a former key is read with one warning that names the new one", "[scen
   CHECK(formerly > 20);
 }
 
+TEST_CASE("a key that is not there any more is left out with one warning", "[scene][keys]") {
+  const SceneFile file(block_on_base + "[method]\nskip_unmoved = false\n[solver]\nskip_unmoved = 'whatever'\n");
+  const auto note = [](const std::string& where, const std::string& key) {
+    return where + ": " + key + " is not there any more and counts for nothing; leave it out";
+  };
+  CHECK(read_scene(file.path()).warnings ==
+        std::vector<std::string>{note(file.path() + ":23", "method.skip_unmoved"), note(file.path() + ":25", "solver.skip_unmoved")});
+  const SceneFile plain(block_on_base);
+  const Scene set = read_scene(plain.path(), {"solver.skip_unmoved = false"});
+  CHECK(set.warnings == std::vector<std::string>{note(plain.path() + ": --set solver.skip_unmoved", "solver.skip_unmoved")});
+  CHECK(write_scene(set) == write_scene(read_scene(plain.path())));
+}
+
 TEST_CASE("a key under both names is refused", "[scene][keys]") {
   CHECK_THAT(
       error_of(block_on_base + "[method]\nmax_iterations = 5\n[solver]\nmax_iterations = 6\n"),

@@ -63,7 +63,7 @@ TEST_CASE("every key reaches its field", "[scene][reader]") {
       "[solver]\nresidual_tolerance = 1e-9\nmax_iterations = 10\nskip_search = false\nskip_narrow_phase = false\nskip_looks = false\n"
       "contact_skin_m = 0.01\nskip_reload = false\nskip_factorisation = false\nskip_symbolic = false\nskip_balanced = false\n"
       "skip_still_steps = false\n"
-      "skip_unmoved = false\nskip_resting = true\npenetration_tolerance_m = 12\ngap_tolerance_m = 2e-9\nclosing_tolerance_m = 0\n"
+      "skip_resting = true\npenetration_tolerance_m = 12\ngap_tolerance_m = 2e-9\nclosing_tolerance_m = 0\n"
       "max_open_close_iterations = 13.0\nstep_cut = 0.25\nlocal_damping = 0.6\nsmallest_fraction = 1\n"
       "[step]\ndt_s = 0.01\nmax_displacement_m = 14\nadaptive = true\nerror_tolerance_m = 1e-3\nlook_ahead = 0.75\n"
       "[rest]\ntime_s = 0.5\ndisplacement_m = 2e-3\nacceleration_m_per_s2 = 0.75\n"
@@ -124,7 +124,6 @@ TEST_CASE("every key reaches its field", "[scene][reader]") {
   CHECK_FALSE(method.skip_symbolic);
   CHECK_FALSE(method.skip_still_steps);
   CHECK_FALSE(method.skip_balanced);
-  CHECK_FALSE(method.skip_unmoved);
   CHECK(method.skip_resting);
   CHECK(method.threads == 3);
   CHECK(scene.rest.time == 0.5);

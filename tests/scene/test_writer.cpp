@@ -59,7 +59,6 @@ void check_same(const MethodInput& a, const MethodInput& b) {
   CHECK(a.skip_symbolic == b.skip_symbolic);
   CHECK(a.skip_still_steps == b.skip_still_steps);
   CHECK(a.skip_balanced == b.skip_balanced);
-  CHECK(a.skip_unmoved == b.skip_unmoved);
   CHECK(a.skip_resting == b.skip_resting);
   CHECK(a.threads == b.threads);
   CHECK(a.penalty == b.penalty);
@@ -224,7 +223,6 @@ Scene random_scene(unsigned seed) {
   scene.method.skip_symbolic = false;
   scene.method.skip_still_steps = false;
   scene.method.skip_balanced = false;
-  scene.method.skip_unmoved = false;
   scene.method.skip_resting = true;
   scene.method.threads = 3;
   scene.method.penalty = number();
