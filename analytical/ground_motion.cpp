@@ -38,6 +38,10 @@ GroundMotion rectangular_pulse(double acceleration, double duration) {
   return {{0, duration, [acceleration](double) { return std::array<double, 2>{acceleration, 0}; }}};
 }
 
+GroundMotion half_sine_pulse(double peak, double duration) {
+  return {{0, duration, [=](double t) { return std::array<double, 2>{peak * std::sin(pi * t / duration), 0}; }}};
+}
+
 GroundMotion harmonic_motion(double amplitude, double frequency, double end) {
   return {{0, end, [amplitude, frequency](double t) { return std::array<double, 2>{amplitude * std::sin(2 * pi * frequency * t), 0}; }}};
 }

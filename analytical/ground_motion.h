@@ -18,6 +18,8 @@ using GroundMotion = std::vector<GroundPiece>;
 
 /// A constant horizontal acceleration [m/s2] from time 0 for a duration [s].
 GroundMotion rectangular_pulse(double acceleration, double duration);
+/// Half a sine, peak sin(pi t/duration), horizontally [m/s2] from time 0 on.
+GroundMotion half_sine_pulse(double peak, double duration);
 /// amplitude sin(2 pi frequency t) horizontally [m/s2, Hz] from time 0 to `end` [s].
 GroundMotion harmonic_motion(double amplitude, double frequency, double end);
 /// Straight lines between points of a record: one list of times [s] that increase, two of accelerations [m/s2].

@@ -13,6 +13,8 @@ namespace {
 
 /// [-] Steps of CVODE within a piece of the ground motion, at least: the shortest stick or slip that is not overlooked is such a part of it.
 constexpr double steps_per_piece = 50;
+/// [-] The same within a swing of the spring.
+constexpr double steps_per_swing = 50;
 /// [m], [m/s] what is small against any slip of interest.
 constexpr double length_tolerance = 1e-15, velocity_tolerance = 1e-14;
 
@@ -22,15 +24,16 @@ struct Pull {
 
 class Motion {
  public:
-  Motion(const BlockOnPlane& block, const GroundMotion& ground, double tolerance) : block_(block), ground_(ground) {
+  Motion(const BlockOnPlane& block, const GroundMotion& ground, double tolerance, const GroundSpring& spring)
+      : block_(block), spring_(spring), ground_(ground) {
     EventOde ode;
     ode.rates = [this](double t, const double* y, double* rates) {
-      const Pull p = pull(t);
+      const Pull p = pull(t, y[0]);
       rates[0] = y[1];
       rates[1] = direction_ == 0 ? 0 : p.driving - direction_ * block_.friction() * p.normal;
     };
     ode.roots = [this](double t, const double* y, double* values) {
-      const Pull p = pull(t);
+      const Pull p = pull(t, y[0]);
       values[0] = direction_ == 0 ? std::abs(p.driving) - block_.friction() * p.normal : y[1];
       values[1] = p.normal;
     };
@@ -39,7 +42,9 @@ class Motion {
     ode.absolute_tolerances = {length_tolerance, velocity_tolerance};
     // One session for all pieces: its longest step must suit the shortest.
     for (const GroundPiece& piece : ground_) ode.longest_step = std::min(ode.longest_step, std::max(piece.to - piece.from, 1e-3) / steps_per_piece);
-    session_ = std::make_unique<EventIntegration>(std::move(ode), 0.0, std::vector<double>{0, 0});
+    if (spring_.stiffness_over_mass > 0)
+      ode.longest_step = std::min(ode.longest_step, 2 * std::numbers::pi / std::sqrt(spring_.stiffness_over_mass) / steps_per_swing);
+    session_ = std::make_unique<EventIntegration>(std::move(ode), 0.0, std::vector<double>{spring_.start, 0});
   }
 
   NewmarkMotion follow(const std::vector<double>& times) {
@@ -59,16 +64,17 @@ class Motion {
   }
 
  private:
-  Pull pull(double t) const {
+  Pull pull(double t, double x) const {
     const auto [horizontal, vertical] = ground_[piece_].acceleration(t);
     const double sine = std::sin(block_.slope_angle), cosine = std::cos(block_.slope_angle), down = block_.gravity + vertical;
-    return {down * sine - horizontal * cosine, down * cosine + horizontal * sine};
+    return {down * sine - horizontal * cosine - spring_.stiffness_over_mass * x, down * cosine + horizontal * sine};
   }
+  Pull pull_now() const { return pull(session_->time(), session_->y()[0]); }
 
   /// At rest: which way it goes now. On the bound the derivative decides.
   int direction_from_rest() const {
     const double now = session_->time(), ahead = 1e-9;
-    const Pull p = pull(now), soon = pull(now + ahead);
+    const Pull p = pull_now(), soon = pull(now + ahead, session_->y()[0]);
     const double margin = std::abs(p.driving) - block_.friction() * p.normal;
     const double growth = std::abs(soon.driving) - block_.friction() * soon.normal - margin;
     const double rounding = 1e-12 * block_.gravity;
@@ -82,7 +88,7 @@ class Motion {
   }
 
   void begin_piece() {
-    if (pull(session_->time()).normal <= 0) throw std::domain_error("the block lifts off");
+    if (pull_now().normal <= 0) throw std::domain_error("the block lifts off");
     if (direction_ == 0) set_direction(direction_from_rest());
     session_->restart();
   }
@@ -96,7 +102,7 @@ class Motion {
       }
       std::vector<double> y = session_->y();
       if (direction_ == 0) {
-        set_direction(found.front().direction > 0 ? (pull(session_->time()).driving > 0 ? 1 : -1) : 0);
+        set_direction(found.front().direction > 0 ? (pull_now().driving > 0 ? 1 : -1) : 0);
       } else if (found.front().direction == -direction_) {
         y[1] = 0;
         const int was = direction_;
@@ -110,6 +116,7 @@ class Motion {
   }
 
   BlockOnPlane block_;
+  GroundSpring spring_;
   const GroundMotion& ground_;
   std::size_t piece_ = 0;
   int direction_ = 0;
@@ -147,11 +154,12 @@ CycleSlip harmonic_slip(const BlockOnPlane& block, double amplitude, double freq
   return {yield, t1, low, kappa * d};
 }
 
-NewmarkMotion newmark_block(const BlockOnPlane& block, const GroundMotion& ground, const std::vector<double>& times, double relative_tolerance) {
+NewmarkMotion newmark_block(const BlockOnPlane& block, const GroundMotion& ground, const std::vector<double>& times, double relative_tolerance,
+                            const GroundSpring& spring) {
   require_valid(block);
   if (times.empty()) return {};
   const GroundMotion whole = without_gaps(ground, times.back() + 1e-9);
-  return Motion(block, whole, relative_tolerance).follow(times);
+  return Motion(block, whole, relative_tolerance, spring).follow(times);
 }
 
 }  // namespace openclose::analytical

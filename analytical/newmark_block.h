@@ -52,9 +52,15 @@ struct NewmarkMotion {
   std::vector<NewmarkEvent> events;
 };
 
+/// Between the block and the ground, along the plane.
+struct GroundSpring {
+  double stiffness_over_mass = 0;  // k/m [1/s2]
+  double start = 0;                // [m] x from which the block is released; the spring is slack at 0
+};
+
 /// The motion from rest, by CVODE with the passages of velocity and of |s| - mu n through zero located.
 /// \param times [s] ascending  \throws std::domain_error if the block lifts off
 NewmarkMotion newmark_block(const BlockOnPlane& block, const GroundMotion& ground, const std::vector<double>& times,
-                            double relative_tolerance = 1e-13);
+                            double relative_tolerance = 1e-13, const GroundSpring& spring = {});
 
 }  // namespace openclose::analytical

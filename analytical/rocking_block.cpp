@@ -1,6 +1,8 @@
 #include "openclose/analytical/rocking_block.h"
 
 #include <cmath>
+#include <functional>
+#include <numbers>
 #include <stdexcept>
 
 #include "openclose/analytical/event_ode.h"
@@ -12,12 +14,15 @@ void require_angle(const RockingBlock& block, double angle) {
   if (!(angle > 0 && angle < block.critical_angle())) throw std::invalid_argument("the angle must be between 0 and the critical one");
 }
 
-EventOde equations(const RockingBlock& block, double acceleration, double tolerance) {
+/// [m/s2] Of the base at a time [s].
+using Acceleration = std::function<double(double)>;
+
+EventOde equations(const RockingBlock& block, const Acceleration& acceleration, double tolerance) {
   EventOde ode;
-  const double square = block.frequency() * block.frequency(), part = acceleration / block.gravity, alpha = block.critical_angle();
-  ode.rates = [=](double, const double* y, double* rates) {
+  const double square = block.frequency() * block.frequency(), gravity = block.gravity, alpha = block.critical_angle();
+  ode.rates = [=](double t, const double* y, double* rates) {
     rates[0] = y[1];
-    rates[1] = -square * (std::sin(alpha - y[0]) - part * std::cos(alpha - y[0]));
+    rates[1] = -square * (std::sin(alpha - y[0]) - acceleration(t) / gravity * std::cos(alpha - y[0]));
   };
   ode.relative_tolerance = tolerance;
   ode.absolute_tolerances = {tolerance * alpha, tolerance * alpha * block.frequency()};
@@ -28,6 +33,34 @@ EventOde equations(const RockingBlock& block, double acceleration, double tolera
 double barrier(const RockingBlock& block, double angle) {
   const double half = std::sin((block.critical_angle() - angle) / 2);
   return 2 * block.frequency() * block.frequency() * half * half;
+}
+
+double no_shaking(double) {
+  return 0;
+}
+
+constexpr double tolerance = 1e-13;  // [-] of CVODE
+
+/// Whether a push of the base that makes the block rise at a time, and ends at another, turns it over.
+bool falls_after(const RockingBlock& block, const Acceleration& acceleration, double rises, double end) {
+  EventOde ode = equations(block, acceleration, tolerance);
+  const double critical = block.critical_angle();
+  ode.roots = [critical](double, const double* y, double* values) { values[0] = y[0] - critical; };
+  ode.root_count = 1;
+  EventIntegration session(ode, rises, {0, 0});
+  if (!session.advance(end).empty()) return true;
+  return session.y()[0] > 0 && session.y()[1] > 0 && session.y()[1] * session.y()[1] / 2 > barrier(block, session.y()[0]);
+}
+
+/// By bisection to rounding, from the acceleration at which the block begins to rise.
+double smallest_acceleration(const RockingBlock& block, const std::function<bool(double)>& overturned) {
+  double low = block.gravity * std::tan(block.critical_angle()), high = 2 * low;
+  while (!overturned(high)) high *= 2;
+  for (;;) {
+    const double middle = low + (high - low) / 2;
+    if (middle == low || middle == high || high - low < tolerance * high) return middle;
+    (overturned(middle) ? high : low) = middle;
+  }
 }
 
 }  // namespace
@@ -47,14 +80,14 @@ double RockingBlock::moment_of_inertia() const {
 
 RockingState rocking_fall(const RockingBlock& block, double angle, double time, double relative_tolerance) {
   require_angle(block, angle);
-  EventIntegration session(equations(block, 0, relative_tolerance), 0, {angle, 0});
+  EventIntegration session(equations(block, no_shaking, relative_tolerance), 0, {angle, 0});
   session.advance(time);
   return {session.y()[0], session.y()[1]};
 }
 
 double rocking_quarter_period(const RockingBlock& block, double angle, double relative_tolerance) {
   require_angle(block, angle);
-  EventOde ode = equations(block, 0, relative_tolerance);
+  EventOde ode = equations(block, no_shaking, relative_tolerance);
   ode.roots = [](double, const double* y, double* values) { values[0] = y[0]; };
   ode.root_count = 1;
   EventIntegration session(ode, 0, {angle, 0});
@@ -93,23 +126,24 @@ double rocking_angle(const RockingBlock& block, double angle, double time) {
 
 bool overturns(const RockingBlock& block, double acceleration, double duration) {
   if (!(acceleration > block.gravity * std::tan(block.critical_angle()))) return false;  // it does not even rise
-  EventOde ode = equations(block, acceleration, 1e-13);
-  const double critical = block.critical_angle();
-  ode.roots = [critical](double, const double* y, double* values) { values[0] = y[0] - critical; };
-  ode.root_count = 1;
-  EventIntegration session(ode, 0, {0, 0});
-  if (!session.advance(duration).empty()) return true;
-  return session.y()[1] * session.y()[1] / 2 > barrier(block, session.y()[0]);
+  return falls_after(
+      block, [acceleration](double) { return acceleration; }, 0, duration);
 }
 
 double overturning_acceleration(const RockingBlock& block, double duration) {
-  double low = block.gravity * std::tan(block.critical_angle()), high = 2 * low;
-  while (!overturns(block, high, duration)) high *= 2;
-  for (;;) {
-    const double middle = low + (high - low) / 2;
-    if (middle == low || middle == high || high - low < 1e-13 * high) return middle;
-    (overturns(block, middle, duration) ? high : low) = middle;
-  }
+  return smallest_acceleration(block, [&](double acceleration) { return overturns(block, acceleration, duration); });
+}
+
+bool overturned_by_half_sine(const RockingBlock& block, double peak, double duration) {
+  const double rising = block.gravity * std::tan(block.critical_angle());
+  if (!(peak > rising)) return false;
+  const double rate = std::numbers::pi / duration;
+  return falls_after(
+      block, [=](double t) { return peak * std::sin(rate * t); }, std::asin(rising / peak) / rate, duration);
+}
+
+double overturning_half_sine(const RockingBlock& block, double duration) {
+  return smallest_acceleration(block, [&](double peak) { return overturned_by_half_sine(block, peak, duration); });
 }
 
 }  // namespace openclose::analytical

@@ -42,4 +42,10 @@ bool overturns(const RockingBlock& block, double acceleration, double duration);
 /// [m/s2] The smallest acceleration of that duration that does, by bisection to rounding.
 double overturning_acceleration(const RockingBlock& block, double duration);
 
+/// The same for half a sine, peak sin(pi t/duration) (Zhang and Makris, J. Engng Mech. 127, 2001): the block rises when the base reaches g
+/// tan(alpha_b). The pulse pushes to one side only: on the way back it takes energy, and so does the impact, so that the first rise decides.
+bool overturned_by_half_sine(const RockingBlock& block, double peak, double duration);
+/// [m/s2] The smallest peak of that duration that does.
+double overturning_half_sine(const RockingBlock& block, double duration);
+
 }  // namespace openclose::analytical

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 #include "openclose/analytical/rocking_block.h"
@@ -81,5 +82,25 @@ TEST_CASE("overturning by a pulse: limits of long and short pulses", "[rocking]"
     const RockingBlock slender{0.02, 2.0, 9.81};
     const double duration = std::acosh(1.0 + 1.0 / (2.0 * part * (part - 1.0))) / slender.frequency();
     CHECK(overturning_acceleration(slender, duration) == Approx(part * slender.gravity * std::tan(slender.critical_angle())).epsilon(1e-3));
+  }
+}
+
+TEST_CASE("overturning by half a sine: a blow, and slender blocks", "[rocking]") {
+  const RockingBlock block;
+  // A short one is the blow of its mean, 2/pi of the peak.
+  const double mean = 2.0 / std::numbers::pi;
+  CHECK(mean * overturning_half_sine(block, 1e-3) == Approx(overturning_acceleration(block, 1e-3)).epsilon(2e-3));
+  CHECK(!overturned_by_half_sine(block, 0.99 * block.gravity * std::tan(block.critical_angle()), 5.0));
+  const double critical = overturning_half_sine(block, 0.5);
+  CHECK(overturned_by_half_sine(block, 1.0001 * critical, 0.5));
+  CHECK(!overturned_by_half_sine(block, 0.9999 * critical, 0.5));
+  // theta'' = p^2 (theta - alpha + (a/g) sin w t) from t0 on, at rest: the part that grows as exp(p t) vanishes at the limit, that is
+  // (a/g) int_t0^T exp(-p t) sin w t dt = alpha exp(-p t0)/p.
+  for (const double duration : {0.3, 0.8}) {
+    const RockingBlock slender{0.002, 2.0, 9.81};
+    const double p = slender.frequency(), w = std::numbers::pi / duration, alpha = slender.critical_angle();
+    const double part = overturning_half_sine(slender, duration) / slender.gravity, begin = std::asin(alpha / part) / w;
+    const auto primitive = [&](double t) { return -std::exp(-p * t) * (p * std::sin(w * t) + w * std::cos(w * t)) / (p * p + w * w); };
+    CHECK(part * (primitive(duration) - primitive(begin)) == Approx(alpha * std::exp(-p * begin) / p).epsilon(1e-5));
   }
 }

@@ -4,33 +4,12 @@
 #include <cmath>
 
 #include "harness.h"
-#include "openclose/analytical/rocking_block.h"
 #include "openclose/analytical/sliding_block_reference.h"
+#include "rocking.h"
 #include "scenes.h"
 
 namespace openclose::verification {
 namespace {
-
-const analytical::RockingBlock rocking;
-
-analytical::BlockOnPlane tall_block() {
-  analytical::BlockOnPlane data;
-  data.width = rocking.width;
-  data.height = rocking.height;
-  data.slope_angle = 0.0;
-  data.friction_angle = 60.0 * analytical::degree;
-  return data;
-}
-
-/// Leaning by an angle [rad] to the left, its lower left corner on the base, or pressed into it by what its weight closes there [m].
-Scene leaning(const std::string& method, double angle, double dt, double closure = 0.0) {
-  Scene scene = block_on_plane(tall_block());
-  scene.blocks[1].vertices = placed(scene.blocks[1].vertices, angle, {0.0, -closure});
-  scene.method.contact = method;
-  scene.step.dt = dt;
-  use_joint_springs_as_penalty(scene);
-  return scene;
-}
 
 struct Rocking {
   double at_time = not_measured();         ///< [rad] at `time`
@@ -154,22 +133,11 @@ void elastic(Report& report) {
   }
 }
 
-/// Whether a pulse of the base turns the block over: 1 or 0; NaN if a step does not succeed, or the block is still on its way at the end.
+/// Under a rectangular pulse.
 double overturned(const Report& report, double acceleration, double duration, double dt) {
-  Scene scene = leaning("hard", 0.0, dt);
-  scene.method.start = Start::settled;
-  scene.base_motion.emplace();
-  scene.base_motion->pulses = {{0.0, duration, {acceleration, 0.0}}};
-  Simulation simulation = report.simulate(scene);
-  if (!prepare_start(simulation).converged) return not_measured();
-  const double critical = rocking.critical_angle();
-  for (int i = 1; i * dt < duration + 5.0; ++i) {
-    if (!simulation.advance(dt)) return not_measured();
-    const double angle = simulation.system().displacement(1)[2], turning = simulation.velocity(1)[2];
-    if (angle > 1.2 * critical) return 1.0;
-    if (i * dt > duration && turning <= 0.0) return 0.0;
-  }
-  return not_measured();
+  BaseMotionInput base;
+  base.pulses = {{0.0, duration, {acceleration, 0.0}}};
+  return overturned(report, base, duration, dt);
 }
 
 /// The smallest acceleration that does, to a tenth of the error of interest.
