@@ -1,7 +1,8 @@
 # Writes a C++ source that holds text files: cmake -DFILES=a.html;b.js -DOUTPUT=page_files.cpp -P embed_files.cmake
 #
 # The source defines embedded_style, embedded_scripts (all .js in their order) and embedded_page of src/report/page_files.h. Compilers limit the length
-# of one string literal, so that a file becomes several, which the compiler joins.
+# of a string literal as it is written, so that a file becomes several, and of what they are joined to (65,536 bytes need to be accepted): the scripts
+# stay apart.
 
 set(longest_literal 12000)
 
@@ -21,15 +22,16 @@ set(scripts "")
 foreach(path ${FILES})
   file(READ "${path}" text)
   if(path MATCHES "\\.js$")
-    string(APPEND scripts "${text}\n")
+    literal_of("${text}\n" script)
+    string(APPEND scripts "${script},\n")
   elseif(path MATCHES "\\.css$")
     literal_of("${text}" style)
   else()
     literal_of("${text}" page)
   endif()
 endforeach()
-literal_of("${scripts}" scripts)
 
 file(WRITE "${OUTPUT}" "#include \"openclose/report/page_files.h\"\n\nnamespace openclose {\n\n"
-  "const char* const embedded_page =\n${page};\nconst char* const embedded_style =\n${style};\nconst char* const embedded_scripts =\n${scripts};\n\n"
+  "const char* const embedded_page =\n${page};\nconst char* const embedded_style =\n${style};\n"
+  "static const char* const scripts[] = {\n${scripts}};\nconst std::span<const char* const> embedded_scripts = scripts;\n\n"
   "}  // namespace openclose\n")

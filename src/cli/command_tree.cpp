@@ -64,7 +64,7 @@ std::vector<CommandOption> options_of(const CLI::App& app) {
   std::vector<CommandOption> options;
   for (const CLI::Option* option : app.get_options()) options.push_back(option_of(*option));
   // Arguments in their order, then options.
-  std::ranges::stable_partition(options, &CommandOption::is_argument);
+  std::stable_partition(options.begin(), options.end(), [](const CommandOption& option) { return option.is_argument; });
   return options;
 }
 

@@ -38,7 +38,9 @@ Report report_of_results(const std::string& folder, const ReportRequest& request
     const std::string data = page_data(folder, request, report).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
     report.html = embedded_page;
     replace(report.html, "{{style}}", embedded_style);
-    replace(report.html, "{{scripts}}", embedded_scripts);
+    std::string scripts;
+    for (const char* script : embedded_scripts) scripts += script;
+    replace(report.html, "{{scripts}}", scripts);
     replace(report.html, "{{data}}", harmless(data));
   } catch (const nlohmann::json::exception&) {
     throw InputError({folder + "/summary.json", 0}, "", "this is not what openclose writes of a run or fos",

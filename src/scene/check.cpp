@@ -24,21 +24,9 @@ namespace {
 /// Sweep over x: a block is compared only with those that begin before it ends.
 void require_no_overlap(const Scene& scene) {
   const std::vector<BlockInput>& blocks = scene.blocks;
-  std::vector<Box> boxes;
-  for (const BlockInput& block : blocks) boxes.push_back(Box::around(block.vertices));
-  std::vector<int> by_x(blocks.size());
-  std::iota(by_x.begin(), by_x.end(), 0);
-  std::sort(by_x.begin(), by_x.end(), [&](int a, int b) { return boxes[a].low.x() < boxes[b].low.x(); });
-
-  for (std::size_t i = 0; i < by_x.size(); ++i) {
-    // Polygons cannot be deeper in each other than their boxes are.
-    const Box reach = boxes[by_x[i]].inflated(-tolerance::deepest_initial_overlap_m);
-    for (std::size_t j = i + 1; j < by_x.size() && boxes[by_x[j]].low.x() <= reach.high.x(); ++j) {
-      if (!boxes[by_x[i]].overlaps(boxes[by_x[j]].inflated(-tolerance::deepest_initial_overlap_m))) continue;
-      const auto [first, second] = std::minmax(by_x[i], by_x[j]);
-      const double depth = overlap_depth(blocks[first].vertices, blocks[second].vertices);
-      if (depth > tolerance::deepest_initial_overlap_m) fail_overlap(scene, blocks[first], blocks[second], depth);
-    }
+  for (const auto& [first, second] : blocks_that_may_overlap(blocks)) {
+    const double depth = overlap_depth(blocks[first].vertices, blocks[second].vertices);
+    if (depth > tolerance::deepest_initial_overlap_m) fail_overlap(scene, blocks[first], blocks[second], depth);
   }
 }
 
@@ -72,6 +60,24 @@ bool nothing_holds(const Scene& scene) {
 }
 
 }  // namespace
+
+std::vector<std::pair<int, int>> blocks_that_may_overlap(const std::vector<BlockInput>& blocks) {
+  std::vector<Box> boxes;
+  for (const BlockInput& block : blocks) boxes.push_back(Box::around(block.vertices));
+  std::vector<int> by_x(blocks.size());
+  std::iota(by_x.begin(), by_x.end(), 0);
+  std::sort(by_x.begin(), by_x.end(), [&](int a, int b) { return boxes[a].low.x() < boxes[b].low.x(); });
+
+  std::vector<std::pair<int, int>> pairs;
+  for (std::size_t i = 0; i < by_x.size(); ++i) {
+    // Polygons cannot be deeper in each other than their boxes are.
+    const Box reach = boxes[by_x[i]].inflated(-tolerance::deepest_initial_overlap_m);
+    for (std::size_t j = i + 1; j < by_x.size() && boxes[by_x[j]].low.x() <= reach.high.x(); ++j) {
+      if (boxes[by_x[i]].overlaps(boxes[by_x[j]].inflated(-tolerance::deepest_initial_overlap_m))) pairs.emplace_back(std::minmax(by_x[i], by_x[j]));
+    }
+  }
+  return pairs;
+}
 
 void require_joints(const Scene& scene) {
   std::vector<Use> uses(scene.materials.size());

