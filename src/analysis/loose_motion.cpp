@@ -66,8 +66,9 @@ class Describer {
 
   const Polygon& polygon(const FailingBlock& block) const { return scene_.blocks[static_cast<std::size_t>(block.block)].vertices; }
 
-  std::string heading(const FailingBlock& block) const {
-    const Vec2 direction = block.velocity.normalized();
+  std::string heading(const FailingBlock& block) const { return heading(Vec2(block.velocity.normalized())); }
+
+  std::string heading(const Vec2& direction) const {
     if (!scene_.gravity.isZero(0.0) && direction.dot(scene_.gravity.normalized()) > 1.0 - slow) return "down";
     return fmt::format("towards ({:.2f}, {:.2f})", direction.x(), direction.y());
   }
@@ -122,11 +123,21 @@ class Describer {
     for (const Touch& touch : touches) {
       const FailingBlock* other = moving_[static_cast<std::size_t>(touch.other)];
       const Vec2 relative = block.velocity - (other == nullptr ? Vec2(Vec2::Zero()) : velocity_at(*other, block.centroid));
-      if (relative.norm() < slow * block.velocity.norm() || std::abs(cross(touch.along, relative)) > slow * relative.norm()) continue;
-      return fmt::format(" slides along its joint with {} {} ({}cohesion_pa or a [[support]] would hold it)", name_of(touch.other), heading(block),
-                         friction_on(touch.along));
+      if (relative.norm() < slow * block.velocity.norm() || !is_along(relative, touch.along, block.block, touch.other)) continue;
+      const Vec2 along = touch.along.dot(relative) < 0.0 ? Vec2(-touch.along) : touch.along;
+      return fmt::format(" slides along its joint with {} {} ({}cohesion_pa or a [[support]] would hold it)", name_of(touch.other),
+                         other == nullptr ? heading(along) : heading(block), friction_on(touch.along));
     }
     return std::nullopt;
+  }
+
+  /// Mechanisms of limit analysis open what slides at the friction angle.
+  bool is_along(const Vec2& relative, const Vec2& along, int block, int other) const {
+    const double opening = std::abs(cross(along, relative));
+    if (opening <= slow * relative.norm()) return true;
+    const auto material = [&](int b) { return scene_.blocks[static_cast<std::size_t>(b)].material; };
+    const JointProperties* joint = scene_.joint(material(block), material(other));
+    return joint != nullptr && std::abs(opening - std::tan(joint->friction_angle) * std::abs(along.dot(relative))) <= slow * relative.norm();
   }
 
   /// Under its weight alone a block stands on an edge with friction above the edge's slope.

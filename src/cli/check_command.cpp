@@ -5,6 +5,7 @@
 
 #include "commands.h"
 #include "machine_output.h"
+#include "openclose/analysis/loose_blocks.h"
 #include "openclose/analysis/spectrum.h"
 #include "openclose/core/error.h"
 #include "openclose/core/process.h"
@@ -44,11 +45,18 @@ int check_command(const Options& options) {
   double area = 0.0, free_area = 0.0;
   for (const auto& block : system.blocks()) area += block.area;
   for (const int b : system.free_blocks()) free_area += system.block(b).area;
+  const std::string loose = loose_blocks_in_words(simulation.scene());
   if (options.json) {
-    nlohmann::ordered_json found = {
-        {"scene", options.scene_file}, {"blocks", system.block_count()},           {"free_blocks", system.free_count()},         {"area_m2", area},
-        {"free_area_m2", free_area},   {"contacts", simulation.change_contacts().size()}, {"method", simulation.scene().method.contact}};
-    if (simulation.is_explicit() && std::isfinite(simulation.explicit_stepper()->critical_step())) found["critical_step_s"] = simulation.explicit_stepper()->critical_step();
+    nlohmann::ordered_json found = {{"scene", options.scene_file},
+                                    {"blocks", system.block_count()},
+                                    {"free_blocks", system.free_count()},
+                                    {"area_m2", area},
+                                    {"free_area_m2", free_area},
+                                    {"contacts", simulation.change_contacts().size()},
+                                    {"method", simulation.scene().method.contact}};
+    if (simulation.is_explicit() && std::isfinite(simulation.explicit_stepper()->critical_step()))
+      found["critical_step_s"] = simulation.explicit_stepper()->critical_step();
+    if (!loose.empty()) found["loose_blocks"] = loose;
     if (!options.spectrum_file.empty()) write_spectrum(simulation, options.spectrum_file);
     print_json(exit_success, found);
     return exit_success;
@@ -64,6 +72,7 @@ int check_command(const Options& options) {
       fmt::print("no critical step, since no contact or support is there; the longest step taken is step.dt_s\n");
     }
   }
+  if (!loose.empty()) fmt::print("{}\n", loose);
   if (!options.spectrum_file.empty()) write_spectrum(simulation, options.spectrum_file);
   return exit_success;
 }

@@ -1,4 +1,5 @@
 // Which blocks move, how, and what would hold them, in words.
+#include "openclose/analysis/loose_blocks.h"
 #include "openclose/analysis/loose_motion.h"
 #include "openclose/analysis/run.h"
 #include "openclose/analysis/strength_reduction.h"
@@ -86,4 +87,29 @@ TEST_CASE("of many blocks three are named and the others counted", "[analysis][l
   }
   const std::string words = motion_in_words(scene, mechanism);
   CHECK_THAT(words, ContainsSubstring("; 2 more blocks move"));
+}
+
+TEST_CASE("what does not stand as it is drawn is known without a run", "[analysis][loose_motion]") {
+  const std::string on_floor = "vertices_m = [[-1, 0], [1, 0], [1, 1], [-1, 1]]";
+  CHECK(loose_blocks_in_words(scene_with(floor_m, on_floor)).empty());
+  CHECK_THAT(loose_blocks_in_words(scene_with(floor_m, "vertices_m = [[6, 5], [7, 5], [7, 6], [6, 6]]")),
+             ContainsSubstring("do not stand as they are drawn: \"top\" touches no other block and moves down"));
+  // Its centre of gravity is 0.1 m beside its lower corner.
+  CHECK_THAT(loose_blocks_in_words(scene_with(floor_m, "vertices_m = [[4, 0], [5, 0], [6.2, 1], [5, 1]]", "60")),
+             ContainsSubstring("\"top\" turns about its corner at (5, 0)"));
+  const Scene slope = scene_with("[[-5, -1], [5, -5], [5, -2], [-5, 2]]", "vertices_m = [[-1, 0.4], [1, -0.4], [1, 1], [-1, 1]]", "21.7");
+  CHECK_THAT(loose_blocks_in_words(slope), ContainsSubstring("\"top\" slides along its joint with \"base\""));
+}
+
+TEST_CASE("what stands but is held by nothing is named with its neutral motion", "[analysis][loose_motion]") {
+  const std::string on_floor = "vertices_m = [[-1, 0], [1, 0], [1, 1], [-1, 1]]", push = "nothing holds these blocks against a push of 0.0001";
+  const std::string on_ice = loose_blocks_in_words(scene_with(floor_m, on_floor, "0"));
+  CHECK_THAT(on_ice, ContainsSubstring(push) && ContainsSubstring("\"top\" slides along its joint with \"base\""));
+  // Friction of a hundredth of a degree is 1.7 times the push.
+  CHECK(loose_blocks_in_words(scene_with(floor_m, on_floor, "0.01")).empty());
+  // Hung at its centre of gravity it turns about it.
+  const Scene hung = scene_with(floor_m,
+                                "vertices_m = [[6, 5], [8, 5], [8, 6], [6, 6]]\n[[support]]\nblock = 'top'\npoint_m = [7, 5.5]\n"
+                                "stiffness_n_per_m = [1e8, 1e8]");
+  CHECK_THAT(loose_blocks_in_words(hung), ContainsSubstring(push) && ContainsSubstring("\"top\" turns about its support at (7, 5.5)"));
 }

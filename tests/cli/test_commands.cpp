@@ -335,6 +335,17 @@ TEST_CASE("check tells what it has read and writes nothing", "[cli]") {
   CHECK(place.folder().entries() == std::set<std::string>{"scene.toml"});
 }
 
+TEST_CASE("check names what does not stand, in its text and in its object", "[cli]") {
+  const Workplace place;
+  const std::string in_the_air = "check scene.toml --set 'block[1].vertices_m=[[0, 5], [1, 5], [1, 6], [0, 6]]'";
+  const std::string words = "touches no other block and moves down (a block in its way, a [[support]] or fixed = true would hold it)";
+  const CommandResult text = place.run(in_the_air);
+  CHECK(text.status == 0);
+  CHECK_THAT(text.out, ContainsSubstring("do not stand as they are drawn: ") && ContainsSubstring(words));
+  CHECK_THAT(place.run(in_the_air + " --json").out, ContainsSubstring("\"loose_blocks\": ") && ContainsSubstring(words));
+  CHECK_THAT(place.run("check scene.toml --json").out, !ContainsSubstring("loose_blocks"));
+}
+
 TEST_CASE("a failing slope: reduced strength, milestones, snapshots, end by displacement", "[cli]") {
   const Workplace place(openclose::test::block_on_incline(30.0));
   const std::string arguments =
