@@ -36,8 +36,4 @@ CaseOrder case_order(const CaseOptions& options, const std::string& command, con
   return order;
 }
 
-void print_case_warnings(const std::vector<std::string>& warnings) {
-  for (const std::string& warning : warnings) fmt::print(stderr, "openclose: warning: {}\n", warning);
-}
-
 }  // namespace openclose

@@ -22,6 +22,4 @@ void add_case_options(CLI::App& app, CaseOptions& options);
 /// \param kind  of the folder where none is named: results/<name of the scene>-<kind>
 CaseOrder case_order(const CaseOptions& options, const std::string& command, const std::string& kind);
 
-void print_case_warnings(const std::vector<std::string>& warnings);
-
 }  // namespace openclose

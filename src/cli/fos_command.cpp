@@ -71,8 +71,8 @@ FactorOfSafety search(Simulation& simulation, const Options& options, const Outp
 
 int report_stop(const FactorOfSafety& safety, const Options& options, const OutputFolder& folder) {
   const bool can_go_on = std::filesystem::exists(folder.path_of(checkpoint_name));
-  fmt::print(stderr, "openclose: {}; state saved in {}{}\n", safety.reason, folder.path(),
-             can_go_on ? "; to go on: " + command_to_go_on("fos", options, folder) : "");
+  print_message(fmt::format("{}; state saved in {}{}", safety.reason, folder.path(),
+                            can_go_on ? "; to go on: " + command_to_go_on("fos", options, folder) : ""));
   return exit_status_of_stop();
 }
 
@@ -132,7 +132,7 @@ int fos_command(const Options& options) {
   if (safety.bracket.stopped) return report_stop(safety, options, folder);
   folder.remove_checkpoint();
   if (!safety.found()) {
-    fmt::print(stderr, "openclose: no factor of safety: {}; state saved in {}\n", safety.reason, folder.path());
+    print_message(fmt::format("no factor of safety: {}; state saved in {}", safety.reason, folder.path()));
     return exit_not_converged;
   }
   if (!options.quiet) print_factor(simulation.scene(), safety, folder);

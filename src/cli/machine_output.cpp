@@ -25,7 +25,8 @@ bool wants_json(int argc, char** argv) {
 void print_json(int status, const ordered_json& object) {
   ordered_json all = {{"exit_status", status}};
   all.update(object);
-  fmt::print("{}\n", all.dump(2, ' ', false, ordered_json::error_handler_t::replace));
+  // Not by what throws: errors come this way, too, and main looks at the end whether all has been written.
+  std::fputs((all.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n").c_str(), stdout);
 }
 
 void print_json_error(int status, const std::string& message) {

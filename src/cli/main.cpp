@@ -7,6 +7,7 @@
 
 #include "commands.h"
 #include "machine_output.h"
+#include "messages.h"
 #include "openclose/core/error.h"
 #include "openclose/core/parallel.h"
 #include "openclose/core/process.h"
@@ -106,7 +107,7 @@ CLI::App* add_explain(CLI::App& app, Options& options) {
 }
 
 int report_failure(int status, const std::string& message, bool json) {
-  fmt::print(stderr, "openclose: {}\n", message);
+  print_message(message);
   if (json) print_json_error(status, message);
   return status;
 }
@@ -130,7 +131,8 @@ int main_checked(int argc, char** argv) {
   run->add_option("--restart", options.restart_file,
                   "go on from this checkpoint.bin of an earlier run of the scene (see output.checkpoint_every_s), continuing the tables beside it");
   CLI::App* fos = subcommand("fos", "factor of safety by strength reduction", true, &fos_command);
-  fos->add_option("--restart", options.restart_file, "go on from the checkpoint.bin that a search which was broken off has left: no trial is made again");
+  fos->add_option("--restart", options.restart_file,
+                  "go on from the checkpoint.bin that a search which was broken off has left: no trial is made again");
   CLI::App* check = subcommand(
       "check", "read and check a scene, write nothing but --spectrum; what run or fos would refuse is refused, whether it settles only they find out",
       false, &check_command);
@@ -167,22 +169,26 @@ int main_checked(int argc, char** argv) {
   }
 }
 
+int main_caught(int argc, char** argv) {
+  try {
+    return main_checked(argc, argv);
+  } catch (const InputError& e) {
+    return report_failure(exit_bad_input, e.what(), wants_json(argc, argv));
+  } catch (const Stopped&) {
+    return report_failure(exit_status_of_stop(), "stopped before there was a state to go on from", wants_json(argc, argv));
+  } catch (const WriteError& e) {
+    return report_failure(exit_broken_off, e.what(), wants_json(argc, argv));
+  } catch (const std::exception& e) {
+    if (has_lost_output()) return exit_success;  // which turns into the status of lost output
+    return report_failure(exit_broken_off, fmt::format("internal error: {}", e.what()), wants_json(argc, argv));
+  }
+}
+
 }  // namespace
 }  // namespace openclose
 
 int main(int argc, char** argv) {
   openclose::return_large_memory();
   openclose::fail_beyond_size_limit();
-  try {
-    return openclose::main_checked(argc, argv);
-  } catch (const openclose::InputError& e) {
-    return openclose::report_failure(openclose::exit_bad_input, e.what(), openclose::wants_json(argc, argv));
-  } catch (const openclose::Stopped&) {
-    return openclose::report_failure(openclose::exit_status_of_stop(), "stopped before there was a state to go on from",
-                                     openclose::wants_json(argc, argv));
-  } catch (const openclose::WriteError& e) {
-    return openclose::report_failure(openclose::exit_broken_off, e.what(), openclose::wants_json(argc, argv));
-  } catch (const std::exception& e) {
-    return openclose::report_failure(openclose::exit_broken_off, fmt::format("internal error: {}", e.what()), openclose::wants_json(argc, argv));
-  }
+  return openclose::status_after_output(openclose::main_caught(argc, argv));
 }

@@ -110,13 +110,13 @@ Summary summary_of_run(const Options& options, const Loaded& loaded, const RunRe
 /// Says how the run has ended; returns the exit status.
 int report_end(const Options& options, const RunResult& result, const Simulation& simulation, const OutputFolder& folder) {
   if (result.stopped) {
-    fmt::print(stderr, "openclose: stopped at t = {:.6g} s; state saved in {}; to go on: {}\n", simulation.time(), folder.path(),
-               command_to_go_on("run", options, folder));
+    print_message(fmt::format("stopped at t = {:.6g} s; state saved in {}; to go on: {}", simulation.time(), folder.path(),
+                              command_to_go_on("run", options, folder)));
     return exit_status_of_stop();
   }
   if (!result.converged) {
-    fmt::print(stderr, "openclose: {} at t = {:.6g} s: {}; state saved in {}\n", result.refused ? "refused" : "not converged", simulation.time(),
-               result.reason, folder.path());
+    print_message(fmt::format("{} at t = {:.6g} s: {}; state saved in {}", result.refused ? "refused" : "not converged", simulation.time(),
+                              result.reason, folder.path()));
     return exit_not_converged;
   }
   if (!options.quiet) {

@@ -22,10 +22,6 @@ void require_countable_steps(const Scene& scene, const std::string& key, double 
 
 }  // namespace
 
-void print_warnings(const std::vector<std::string>& warnings) {
-  for (const std::string& warning : warnings) fmt::print(stderr, "openclose: warning: {}\n", warning);
-}
-
 void Loaded::warn(const std::string& text) {
   warnings.push_back(scene.where.file + ": " + text);
   print_warnings({warnings.back()});

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "messages.h"
 #include "openclose/io/result_picture.h"
 #include "openclose/io/results.h"
 #include "openclose/io/summary.h"
@@ -35,8 +36,6 @@ struct Loaded {
   /// Of what the command leaves unused.
   void warn(const std::string& text);
 };
-
-void print_warnings(const std::vector<std::string>& warnings);
 
 /// Prints what the reader warns of.
 Loaded load(const Options& options);

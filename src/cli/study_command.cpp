@@ -7,6 +7,7 @@
 
 #include "case_options.h"
 #include "machine_output.h"
+#include "messages.h"
 #include "openclose/core/error.h"
 #include "openclose/integrator/registry.h"
 #include "openclose/io/progress.h"
@@ -40,7 +41,7 @@ int study_command(const StudyOptions& options) {
   }
   const std::vector<TextFile> files = study_files(study, order.cases.folder);
   write_files(files);
-  print_case_warnings(study.warnings);
+  print_warnings(study.warnings);
   if (!options.cases.quiet) fmt::print("{}written to {}/study.csv and study.svg\n", study_table(study), order.cases.folder);
   const bool all_ended = std::ranges::all_of(study.rows, [](const StudyRow& row) { return row.status == exit_success; });
   const int status = all_ended ? exit_success : exit_not_converged;

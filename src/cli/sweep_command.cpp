@@ -6,6 +6,7 @@
 
 #include "case_options.h"
 #include "machine_output.h"
+#include "messages.h"
 #include "openclose/core/error.h"
 #include "openclose/io/progress.h"
 #include "openclose/study/sweep.h"
@@ -34,7 +35,7 @@ int sweep_command(const SweepOptions& options) {
     sweep = make_sweep(order, [&](double fraction) { progress.update(fraction); });
   }
   write_files(sweep.files);
-  print_case_warnings(sweep.warnings);
+  print_warnings(sweep.warnings);
   if (!options.cases.quiet) {
     fmt::print("{} of {} cases have an answer", sweep.found, sweep.cases);
     if (sweep.were_there > 0) fmt::print(" ({} were there)", sweep.were_there);

@@ -236,7 +236,7 @@ std::ofstream OutputFolder::open_growing(const std::string& name, const std::str
 void write_files(const std::vector<TextFile>& files) {
   Unfinished unfinished;
   for (const TextFile& file : files) {
-    require_replaceable(file);
+    if (!file.replaces_ours) require_replaceable(file);
     unfinished.make_folders(file.path);
     const std::string part = unfinished.add(file.path + part_ending);
     std::ofstream stream(part);

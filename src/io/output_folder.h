@@ -60,6 +60,7 @@ class OutputFolder {
 struct TextFile {
   std::string path;
   std::string text;
+  bool replaces_ours = false;  ///< the caller has looked at what stands there: openclose has written it
 };
 
 /// Writes whole files, with the folders they need: all of them, or none and no folder. Old ones are replaced only when all new ones are complete;

@@ -42,7 +42,7 @@ void Progress::update(double fraction) {
   const int filled = static_cast<int>(std::clamp(fraction, 0.0, 1.0) * width);
   const std::string bar = std::string(filled, '#') + std::string(width - filled, '.');
   const double elapsed = std::chrono::duration<double>(now - start_).count();
-  fmt::print(stderr, "\r{} [{}] {:3.0f} %{}\033[K", label_, bar, 100.0 * fraction, remaining_text(elapsed, fraction));
+  std::fputs(fmt::format("\r{} [{}] {:3.0f} %{}\033[K", label_, bar, 100.0 * fraction, remaining_text(elapsed, fraction)).c_str(), stderr);
   std::fflush(stderr);
 }
 

@@ -184,15 +184,11 @@ Sweep make_sweep(SweepOrder order, const std::function<void(double)>& progress) 
     sweep.were_there += result.was_there;
     sweep.found += result.status == exit_success;
     if (result.status != exit_success) sweep.warnings.push_back(fmt::format("{}: {}: {}", cases[i].name, status_word(result.status), result.message));
-    if (done == 0) {
-      // One with other keys has another heading, by which it would not be known as ours.
-      std::error_code ignored;
-      std::filesystem::remove(table, ignored);
-    }
-    if (!result.was_there) write_files({{table, text()}});
+    // One with other keys has another heading, by which it would not be known as ours; it has been looked at above.
+    if (!result.was_there) write_files({{table, text(), true}});
     progress(static_cast<double>(++done) / static_cast<double>(cases.size()));
   });
-  sweep.files.push_back({table, text()});
+  sweep.files.push_back({table, text(), true});
   const std::string drawing = picture(order, answers, cases, results);
   if (!drawing.empty()) sweep.files.push_back({order.cases.folder + "/sweep.svg", drawing});
   return sweep;

@@ -1,0 +1,27 @@
+#include "messages.h"
+
+#include <cstdio>
+
+#include "openclose/core/error.h"
+
+namespace openclose {
+
+void print_message(const std::string& text) {
+  std::fputs(("openclose: " + text + "\n").c_str(), stderr);
+}
+
+void print_warnings(const std::vector<std::string>& warnings) {
+  for (const std::string& warning : warnings) print_message("warning: " + warning);
+}
+
+bool has_lost_output() {
+  return std::ferror(stdout) != 0;
+}
+
+int status_after_output(int status) {
+  if (std::fflush(stdout) == 0 && !has_lost_output()) return status;
+  print_message("standard output: cannot be written to its end: is the disk full?");
+  return status == exit_success ? exit_broken_off : status;
+}
+
+}  // namespace openclose
