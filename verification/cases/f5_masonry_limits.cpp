@@ -68,8 +68,8 @@ void tilted_arch(Report& report) {
   masonry(report, {"lact3_arch", "arch of 25 voussoirs", true, 17.10, 0.005});
 }
 
-const Registered<Case> walls_registered{{"F5", "walls under a horizontal acceleration", &walls}};
-const Registered<Case> arch_registered{{"F6", "arch on a tilting base", &tilted_arch}};
+const Registered<Case> walls_registered{{"F5", "walls under a horizontal acceleration", &walls, Reference::limit_analysis}};
+const Registered<Case> arch_registered{{"F6", "arch on a tilting base", &tilted_arch, Reference::limit_analysis}};
 
 }  // namespace
 }  // namespace openclose::verification
