@@ -40,7 +40,7 @@ void write_checks(const std::string& path, const std::vector<Check>& checks) {
   std::ofstream file(path);
   file << "case,quantity,method,expected,measured,unit,error,tolerance,status,source,reference\n";
   for (const Check& c : checks) {
-    fmt::print(file, "{},{},{},{:.17g},{:.17g},{},{:.6g},{:.6g},{},{},{}\n", c.case_name, quoted(c.quantity), c.method, c.expected, c.measured,
+    fmt::print(file, "{},{},{},{:.17g},{:.17g},{},{:.6g},{:.6g},{},{},{}\n", c.case_name, quoted(c.quantity), quoted(c.method), c.expected, c.measured,
                quoted(c.unit), c.error, c.tolerance, c.status == Status::fail ? "fail" : name_of(c.status), quoted(c.source),
                reference_names[static_cast<std::size_t>(c.reference)]);
   }
@@ -51,7 +51,7 @@ void write_series(const std::string& path, const std::vector<SeriesPoint>& serie
   std::ofstream file(path);
   file << "case,quantity,method,size_name,size,error\n";
   for (const SeriesPoint& p : series) {
-    fmt::print(file, "{},{},{},{},{:.17g},{:.17g}\n", p.case_name, quoted(p.quantity), p.method, p.size_name, p.size, p.error);
+    fmt::print(file, "{},{},{},{},{:.17g},{:.17g}\n", p.case_name, quoted(p.quantity), quoted(p.method), p.size_name, p.size, p.error);
   }
   if (!file) throw std::runtime_error("cannot write " + path);
 }
