@@ -142,7 +142,7 @@ class Entries {
     }
     // Corners that lie on each other have one contact, that of either.
     const bool is_held_by_tip = is_held(tip, v) || is_held(tip, system_.previous(v));
-    return is_within_step(late) && !is_held_by_tip ? late : 1.0;
+    return is_held_by_tip ? 1.0 : is_within_step(late) ? late : is_behind_at_once ? 1.0 : early;
   }
   /// [m] Of a corner behind the line of an edge at the end of the step.
   double depth_at_end(const Way& corner, int into, int e) const {

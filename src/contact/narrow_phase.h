@@ -37,8 +37,10 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <ranges>
 #include <span>
 #include <vector>
 
@@ -164,7 +166,7 @@ class NarrowPhase {
         const double beyond = std::max(-along, along - edge.length);
         if (beyond > 0.0 && beyond > end_margin(v, edge) && !(beyond <= reach_ && ends_in_notch(v, e, along < 0.0))) continue;
         const double weight = sides.lone_weight(edge);
-        if (weight == 0.0 || passes_over(v, edge_block, e)) continue;
+        if (weight == 0.0 || passes_over(vertex_block, v, edge_block, e)) continue;
         const Vec2 ahead = system_.arm(system_.next(v)) - system_.arm(v), back = system_.arm(system_.previous(v)) - system_.arm(v);
         const auto projection = [&](const Vec2& side) { return std::min(std::abs(side.dot(edge.direction)), edge.length); };
         add(vertex_block, v, edge_block, e, 0.5 * weight * (projection(ahead) + projection(back)), Rule::lone_corner,
@@ -258,7 +260,7 @@ class NarrowPhase {
   /// from e does, v does not run into e. Blocks that lie flush but for the closures of their contacts must not catch on the seams between them: a
   /// corner that slides on something keeps its way if what it slides on is lower than the seam's height. Where corners coincide and nothing has
   /// closed yet, the motion decides. An overlap no longer than a seam is high is no closed contact.
-  bool passes_over(int v, int edge_block, int e) const {
+  bool passes_over(int vertex_block, int v, int edge_block, int e) const {
     const Edge& edge = shapes_.edge(edge_block, e);
     const Vec2& p = shapes_.edge(v).start;
     const bool near_start = edge.along(p) < 0.5 * edge.length;
@@ -271,8 +273,9 @@ class NarrowPhase {
     const double gap = edge.gap(p);
     const bool in_front = gap > -tolerance::shortest_edge_m, in_notch = ends_in_notch(v, e, near_start);
     const bool coincide = (p - q).norm() <= tolerance::edge_end_m + tolerance::seam_closures * std::max(closure_around(v), closure_around(end));
-    const auto separates = [&](int corner, const Vec2& position, const Edge& other) {
-      if (!turns_away(edge, other) || !stands_on(corner, other)) return false;
+    const auto separates = [&](int corner, const Vec2& position, int other_block, int line) {
+      const Edge& other = shapes_.edge(other_block, line);
+      if (!turns_away(edge, other) || !stands_on(corner, other) || has_come_off(corner, position, line, other)) return false;
       const bool slides_on_it = slides_along(v, other) || slides_along(end, other);
       const double step = in_front && slides_on_it ? tolerance::seam_height_m : tolerance::edge_end_m;
       const double closure = std::max(closure_across(v, other), closure_across(end, other)), height = step + tolerance::seam_closures * closure;
@@ -281,8 +284,19 @@ class NarrowPhase {
       if (!slides_on_it && (in_notch || gap > height || !coincide) && other_gap <= gap) return false;
       return other_gap > -height;
     };
-    return separates(v, p, shapes_.edge(near_start ? system_.previous(e) : system_.next(e))) || separates(end, q, shapes_.edge(v)) ||
-           separates(end, q, shapes_.edge(system_.previous(v)));
+    return separates(v, p, edge_block, near_start ? system_.previous(e) : system_.next(e)) || separates(end, q, vertex_block, v) ||
+           separates(end, q, vertex_block, system_.previous(v));
+  }
+
+  /// Whether a corner that an edge held has come off its end, while it is behind its line: nothing holds the blocks apart there any more.
+  bool has_come_off(int corner, const Vec2& position, int e, const Edge& edge) const {
+    return previous_.was_closed(corner, e) && edge.gap(position) < -tolerance::edge_end_m && !is_opposite(position, corner, edge);
+  }
+
+  /// Whether a corner that is at p lies between the ends of an edge, or beyond one by no more than end_margin().
+  bool is_opposite(const Vec2& p, int v, const Edge& edge) const {
+    const double along = edge.along(p);
+    return std::max(-along, along - edge.length) <= end_margin(v, edge);
   }
 
   static bool turns_away(const Edge& a, const Edge& b) { return std::abs(a.direction.dot(b.direction)) < cosine_none; }
@@ -335,7 +349,7 @@ class NarrowPhase {
     // at the ends of two edges that face each other, which may lie beside the block's corner: that is not beyond a thin block.
     const bool faces_as_drawn = is_drawing_ && rule == Rule::facing_edges;
     const double beside = faces_as_drawn ? std::min(tolerance::deepest_initial_overlap_m, depth_behind(edge_block, edge)) : 0.0;
-    if (-gap > beside && !in_block(edge_block, p) && !closed() && (is_drawing_ || !is_pierced(v, e))) return false;
+    if (-gap > beside && !in_block(edge_block, p) && !closed() && (is_drawing_ || !is_between_tips(vertex_block, v, e))) return false;
     const auto& block = system_.block(edge_block);
     for (int f = block.first_vertex; f < block.first_vertex + block.vertex_count; ++f) {
       const Edge& other = shapes_.edge(f);
@@ -350,25 +364,43 @@ class NarrowPhase {
     return true;
   }
 
-  /// Whether a corner is behind an edge because the tip at the edge's end has gone right through the tip that the corner is: both sides of one cross
-  /// both sides of the other. What they have in common lies between these sides, and neither corner is in the other block. Of the lines that could
-  /// separate the tips, see passes_over(), they touch along the one that they are least behind.
-  bool is_pierced(int v, int e) const {
+  /// Whether a corner is behind an edge, though not in its block, because the tip at the edge's end is in the block of the tip that the corner is. Of
+  /// the up to four lines that could separate two tips, see passes_over(), they touch along the one that they are least behind. Either the tip of the
+  /// edge has come off the ends of the corner's two sides, which hold it no more, and did not come in through another one; or it has gone right
+  /// through the other tip: both sides of one cross both sides of the other, and neither corner is in the other block.
+  bool is_between_tips(int vertex_block, int v, int e) {
     const Edge& edge = shapes_.edge(e);
     const Vec2& p = shapes_.edge(v).start;
     const int end = edge.along(p) < 0.5 * edge.length ? e : system_.next(e);
     if (system_.is_reflex(end)) return false;
-    const double gap = edge.gap(p);
-    const auto is_nearer = [&](int corner, const Edge& line) { return stands_on(corner, line) && line.gap(shapes_.edge(corner).start) > gap; };
+    const Vec2& q = shapes_.edge(end).start;
+    const std::array<int, 2> sides{v, system_.previous(v)}, others{end, system_.previous(end)};
+    const auto is_nearer = [&](int corner, const Vec2& position, int line) {
+      const Edge& other = shapes_.edge(line);
+      return stands_on(corner, other) && other.gap(position) > edge.gap(p);
+    };
+    if (std::ranges::any_of(sides, [&](int s) { return is_nearer(end, q, s); }) ||
+        std::ranges::any_of(others, [&](int o) { return is_nearer(v, p, o); }))
+      return false;
+    if (in_block(vertex_block, q)) {
+      const auto& block = system_.block(vertex_block);
+      const auto edges = std::views::iota(block.first_vertex, block.first_vertex + block.vertex_count);
+      return has_come_off_sides(end, q, v) && std::ranges::none_of(edges, [&](int s) { return is_nearer(end, q, s); });
+    }
+    return std::ranges::all_of(
+        sides, [&](int s) { return std::ranges::all_of(others, [&](int o) { return cross_each_other(shapes_.edge(s), shapes_.edge(o)); }); });
+  }
+  /// Whether a tip q has come off the sides of corner v on which it stands, past v.
+  bool has_come_off_sides(int q, const Vec2& position, int v) const {
+    bool is_past = false;
     for (const int s : {v, system_.previous(v)}) {
       const Edge& side = shapes_.edge(s);
-      if (is_nearer(end, side)) return false;
-      for (const int o : {end, system_.previous(end)}) {
-        const Edge& other = shapes_.edge(o);
-        if (!cross_each_other(side, other) || is_nearer(v, other)) return false;
-      }
+      if (!stands_on(q, side)) continue;
+      const double along = side.along(position), past = s == v ? -along : along - side.length;
+      if (past <= end_margin(q, side)) return false;
+      is_past = true;
     }
-    return true;
+    return is_past;
   }
   static bool cross_each_other(const Edge& a, const Edge& b) {
     return (a.gap(b.start) < 0.0) != (a.gap(b.end()) < 0.0) && (b.gap(a.start) < 0.0) != (b.gap(a.end()) < 0.0);

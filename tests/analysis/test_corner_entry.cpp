@@ -104,6 +104,31 @@ TEST_CASE("a corner that goes through another one's tip within a step is stopped
   CHECK(part({0.013, -1e-2, 0.0}) == 1.0);  // passes below the tip
 }
 
+TEST_CASE("a tip that is behind another tip's face already, and nothing holds, is stopped before it is deep in the block",
+          "[analysis][corner_entry]") {
+  // The tip of the needle's block lies at the end of the wedge's face, behind it by more than flush corners are, and goes on into the wedge.
+  Scene scene = test::empty_scene();
+  const Vec2 along = Vec2(std::cos(37.0 * test::degree), std::sin(37.0 * test::degree)), inwards = perpendicular(along);
+  const Vec2 tip = 1e-5 * inwards + 1e-5 * along;
+  scene.blocks = {test::fixed_block("wedge", {{0.0, 0.0}, along, {-0.9, 0.4}}),
+                  test::free_block("needle", {tip, tip + Vec2(2.0, 0.05), tip + Vec2(2.0, 0.5)})};
+  const BlockSystem system(scene);
+  StepSolution solution;
+  const double way = 1e-2, deep = 1e-3;
+  const Vec2 gone = way * inwards;
+  solution.d = Motion::Unknowns(gone.x(), gone.y(), 0.0);
+  const double part = first_entry(system, solution, {{0, 1}}, {deep});
+  // Until it is behind by half of what is tolerated.
+  CHECK(part == Approx((0.5 * deep - 1e-5) / way).epsilon(1e-6));
+  const std::vector<Contact> held = [&] {
+    Contact of_tip;
+    of_tip.vertex = 3;
+    of_tip.edge = 0;
+    return std::vector<Contact>{of_tip};
+  }();
+  CHECK(first_entry(system, solution, {{0, 1}}, {deep}, &held) == 1.0);
+}
+
 TEST_CASE("blocks whose sides cross pass into each other with no corner in the other one", "[analysis][corner_entry]") {
   // The tip of the right foot comes between the left one and the floor, which is not there.
   Scene scene = test::empty_scene();

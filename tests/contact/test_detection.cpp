@@ -1,6 +1,7 @@
 // Which vertices touch which edges, and nothing else.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 #include <tuple>
 
@@ -508,4 +509,94 @@ TEST_CASE("a needle's tip that has gone right through another tip is held by the
   REQUIRE(d.contacts.size() == 1);
   REQUIRE(d.find(0, upper_side) != nullptr);
   CHECK(d.find(0, upper_side)->gap == Approx(-perpendicular(at(1.0, 25.5)).dot(tip)).margin(1e-12));
+}
+
+TEST_CASE("a needle that has come off the face that held it, behind its line, is held by the other block's tip", "[contact][detection]") {
+  // The needle's tip (3) has slid down the face (0) of the other block to past its end and stands 37 micrometres behind its line, in no block any
+  // more; the needle's upper side (5) has come behind the other block's tip (0).
+  const auto at = [](double length, double angle) -> Vec2 { return length * Vec2(std::cos(angle * degree), std::sin(angle * degree)); };
+  const Vec2 along = at(1.0, 37.0), inwards = at(1.0, 127.0), on_face = 6e-4 * along;
+  const double depth = 3.7e-5, beyond = GENERATE(5.4e-5, 2e-5);
+  Detection d(scene_with({free_block("block", {Vec2(0.0, 0.0), along, at(1.0, 157.0)}),
+                          free_block("needle", {on_face, on_face + at(3.0, 1.5), on_face + at(2.0, 14.8)})}));
+  REQUIRE(d.find(3, 0) != nullptr);
+  d.find(3, 0)->status = ContactStatus::sliding;
+  const Vec2 tip = depth * inwards - beyond * along;
+  d.move(1, tip.x() - on_face.x(), tip.y() - on_face.y());
+  d.find(3, 0)->gap = -depth;
+  d.update();
+  CAPTURE(beyond);
+  REQUIRE(d.contacts.size() == 1);
+  REQUIRE(d.find(0, 5) != nullptr);
+  CHECK(d.find(0, 5)->gap == Approx(-perpendicular(at(1.0, 14.8)).dot(tip)).margin(1e-12));
+}
+
+TEST_CASE("a needle's tip in the side of a block does not hold the block's far end", "[contact][detection]") {
+  // The tip of the upper block (15) is in the right side of the lower one, far beyond the end of the short side (8) at its left; that end (0) is
+  // behind the line along the upper block's side (15), far beyond the block.
+  const double lift = 0.02;  // [m] within reach, so that all corners are looked at
+  const std::vector<Vec2> lower{{-22.6803, 1.7895}, {-22.4331, 1.3109}, {-20.9390, 0.1968}, {-18.7395, 0.0025}, {-18.9423, 0.3649},
+                                {-19.1071, 0.5496}, {-21.7289, 2.0163}, {-22.4404, 2.0644}, {-22.6370, 1.9495}};
+  const std::vector<Vec2> upper{{-19.1748, 1.8349}, {-19.7415, 2.3939}, {-20.1762, 2.6933}, {-21.1559, 3.1544},
+                                {-21.8506, 3.3243}, {-22.9573, 2.7036}, {-19.4190, 0.7241}};
+  Detection d(scene_with({free_block("lower", lower), free_block("upper", placed(upper, 0.0, {0.0, lift}))}));
+  d.move(1, 0.0, -lift - 1e-3);
+  d.update();
+  REQUIRE_FALSE(d.contacts.empty());
+  for (const Contact& c : d.contacts) CHECK(c.gap > -0.01);
+}
+
+namespace {
+
+/// [m] Of two convex blocks: by the line along an edge of one of them that parts them most; negative if they overlap.
+double parted_by(const BlockSystem& system, int a, int b) {
+  double most = -std::numeric_limits<double>::infinity();
+  for (const auto& [of, from] : {std::pair(a, b), std::pair(b, a)}) {
+    const auto &edges = system.block(of), &corners = system.block(from);
+    for (int e = edges.first_vertex; e < edges.first_vertex + edges.vertex_count; ++e) {
+      const Vec2 start = system.position(of, e), along = (system.position(of, system.next(e)) - start).normalized();
+      double least = std::numeric_limits<double>::infinity();
+      for (int v = corners.first_vertex; v < corners.first_vertex + corners.vertex_count; ++v) {
+        least = std::min(least, -cross(along, system.position(from, v) - start));
+      }
+      most = std::max(most, least);
+    }
+  }
+  return most;
+}
+
+}  // namespace
+
+TEST_CASE("two tips that overlap have a contact, whichever way they have come past each other", "[contact][detection]") {
+  // Of two convex blocks that overlap, the line that they are least behind has the foot of its corner between the ends of its edge: there is always a
+  // contact to be found.
+  std::mt19937 random(20);
+  const auto draw = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); };
+  const auto at = [](double length, double angle) -> Vec2 { return length * Vec2(std::cos(angle * degree), std::sin(angle * degree)); };
+  constexpr double deepest = 1e-4, stride = 2e-5;  // [m]
+  int overlaps = 0;
+  for (int pair = 0; pair < 300; ++pair) {
+    const double left = draw(0.0, 360.0), right = left + 180.0 + draw(-60.0, 60.0), wide = draw(10.0, 170.0), narrow = draw(5.0, 60.0);
+    Scene scene = scene_with(
+        {free_block("wide", {Vec2(0.0, 0.0), at(1.0, left - 0.5 * wide), at(1.0, left + 0.5 * wide)}),
+         free_block("narrow", placed({Vec2(0.0, 0.0), at(2.0, right - 0.5 * narrow), at(2.0, right + 0.5 * narrow)}, 0.0, at(3e-4, left + 180.0)))});
+    Detection d(scene);
+    for (int step = 0; step < 200; ++step) {
+      const Vec2 way = at(stride, draw(0.0, 360.0)) + 2e-6 * at(1.0, left) * (parted_by(d.system, 0, 1) > 0.0 ? 5.0 : -1.0);
+      d.move(1, way.x(), way.y());
+      if (parted_by(d.system, 0, 1) < -deepest) d.move(1, -way.x(), -way.y());
+      double closure = 0.0;
+      for (Contact& c : d.contacts) {
+        c.status = c.gap < 0.0 ? ContactStatus::sliding : ContactStatus::open;
+        closure = std::max(closure, -c.gap);
+      }
+      d.update();
+      const double parted = parted_by(d.system, 0, 1);
+      if (parted > -tolerance::edge_end_m - tolerance::seam_closures * closure) continue;
+      ++overlaps;
+      CAPTURE(pair, step, left, right, wide, narrow, parted, closure);
+      CHECK(std::ranges::any_of(d.contacts, [](const Contact& c) { return c.gap < 0.0; }));
+    }
+  }
+  CHECK(overlaps > 1000);
 }
