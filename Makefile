@@ -21,7 +21,7 @@ COMPARISON := $(PAPER_RESULTS)/comparison.csv
 NULL_SOLVER := results/verify-null-solver.txt
 
 .DEFAULT_GOAL := help
-.PHONY: help build test verify reproduce convergence stress regression bench bench-peers sanitize compilers fuzz mutants mutants-random clean verify-vtk verify-page verify-install verify-stops install uninstall packages clang-packages vtk-packages page-packages shell-packages stress-packages figure-packages bench-packages peer-packages
+.PHONY: help build test verify examples handbook reproduce convergence stress regression bench bench-peers sanitize compilers fuzz mutants mutants-random clean verify-vtk verify-page verify-install verify-stops install uninstall packages clang-packages vtk-packages page-packages handbook-packages shell-packages stress-packages figure-packages bench-packages peer-packages
 
 help: ## print the targets
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(firstword $(MAKEFILE_LIST)) | while read -r target text; do printf '  make %-14s %s\n' "$$target" "$$text"; done
@@ -45,6 +45,9 @@ verify: build stress-packages ## build, run the unit tests and the verification 
 	  if python=$$(scripts/find-python 2>/dev/null); then "$$python" verification/report.py --results results; fi; \
 	  "$${PYTHON:-python3}" stress/stress.py --regression --jobs $(JOBS) --results results/regression || status=1; \
 	  exit $$status
+
+examples: build stress-packages ## run the eight examples of examples/ and compare their answers with theory, some seconds
+	@"$${PYTHON:-python3}" examples/check.py $(OPENCLOSE)
 
 verify-vtk: build vtk-packages ## read the files for ParaView with VTK and compare them with the tables; installs python3-vtk9, which is large
 	/usr/bin/python3 tests/vtk/read_back.py $(OPENCLOSE)
