@@ -49,6 +49,11 @@ verify: build stress-packages ## build, run the unit tests and the verification 
 examples: build stress-packages ## run the eight examples of examples/ and compare their answers with theory, some seconds
 	@"$${PYTHON:-python3}" examples/check.py $(OPENCLOSE)
 
+# Read anew each time: whether the report of make verify is there decides about a chapter. A warning is an error.
+handbook: handbook-packages ## make the handbook from the pages of docs/ and examples/ (build/handbook/docs/index.html); with results/verification.md if make verify has written it
+	@/usr/bin/python3 -m sphinx -q -E -W --keep-going -b html -c docs . build/handbook
+	@echo 'written to build/handbook/docs/index.html'
+
 verify-vtk: build vtk-packages ## read the files for ParaView with VTK and compare them with the tables; installs python3-vtk9, which is large
 	/usr/bin/python3 tests/vtk/read_back.py $(OPENCLOSE)
 
@@ -133,6 +138,9 @@ shell-packages:
 
 page-packages:
 	@scripts/install-packages build page
+
+handbook-packages:
+	@scripts/install-packages handbook
 
 stress-packages:
 	@scripts/install-packages stress

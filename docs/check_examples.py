@@ -71,7 +71,7 @@ def failure(command: str, expected: list[str], openclose: Path, folder: Path) ->
 def check(document: Path, openclose: Path, folder: Path) -> tuple[int, list[str]]:
     """Runs a document in an empty folder. Number of commands, and what is wrong with them."""
     count, wrong = 0, []
-    for path in (ROOT / "paper", ROOT / "verification", *document.parent.glob("*.toml"), *document.parent.glob("*.csv")):
+    for path in (ROOT / "examples", ROOT / "paper", ROOT / "verification", *document.parent.glob("*.toml"), *document.parent.glob("*.csv")):
         (folder / path.name).symlink_to(path)
     for head, lines in blocks(document.read_text()):
         words = head.split()
