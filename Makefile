@@ -1,6 +1,6 @@
 # The front door. Needs nothing but make; what else is missing, the targets install. Settings: JOBS=2 (processes), PYTHON=/path/to/python3,
 # PREFIX=/usr/local and DESTDIR (make install, make uninstall), BENCH=quick (make bench with fewer sizes, steps and repeats) or long (with more),
-# SEED=1 COUNT=20 PART=all METHODS='soft dem' (make stress), MINUTES=10 (make fuzz, each reader).
+# FIGURE=3 (make reproduce: one figure), SEED=1 COUNT=20 PART=all METHODS='soft dem' (make stress), MINUTES=10 (make fuzz, each reader).
 
 JOBS ?= $(shell nproc)
 export JOBS PYTHON
@@ -74,8 +74,13 @@ install: packages ## build and install the command, its manual pages and complet
 uninstall: ## remove what the last make install has put in place
 	@cmake -DMANIFEST=$(BUILD)/install_manifest.txt -P cmake/uninstall.cmake
 
-reproduce: figure-packages $(COMPARISON) ## build, run the paper's examples, draw the figures and print the comparison (results/paper)
+ifdef FIGURE
+reproduce: figure-packages $(OPENCLOSE) $(REFERENCE)
+	@python=$$(scripts/find-python) && "$$python" paper/reproduce.py --openclose $(OPENCLOSE) --reference $(REFERENCE) --results $(PAPER_RESULTS) --figure $(FIGURE)
+else
+reproduce: figure-packages $(COMPARISON) ## build, run the paper's examples, draw the figures and print the comparison (results/paper); FIGURE=3: only one of the ten figures
 	$(if $(comparison_printed),,@"$${PYTHON:-python3}" paper/reproduce.py --print-only --results $(PAPER_RESULTS))
+endif
 
 # Drawn even where an order is out of its bounds: the picture shows why.
 convergence: build figure-packages ## measure the orders of convergence against theory (results/convergence.csv) and draw them; the exit status says pass or fail

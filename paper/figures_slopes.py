@@ -18,14 +18,6 @@ _LEAST_SPEED = 0.01  # [-] of the largest; slower blocks of the limit analysis s
 _VIEW = (-75, 420, -65, 275)  # [m] the part of the slope of example 3.4 that takes part
 
 
-def draw(planar: PlanarSlope, jointed: JointedSlope, printed: dict, folder: Path) -> None:
-    """Writes fig7.png to fig10.png."""
-    figure_7(planar, folder / "fig7.png")
-    figure_8(jointed, printed["jointed_slope"], folder / "fig8.png")
-    figure_9(jointed, folder / "fig9.png")
-    figure_10(jointed, printed["table_4"], folder / "fig10.png")
-
-
 def _block_axes(axes: plt.Axes, title: str) -> None:
     axes.set_aspect("equal")
     axes.set_xlabel("x [m]")

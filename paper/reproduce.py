@@ -5,6 +5,7 @@ Exit status: 0 done, 1 a run failed, 2 wrong options or no matplotlib.
 
 import argparse
 import sys
+import time
 from pathlib import Path
 
 import claims
@@ -17,7 +18,7 @@ from openclose_scripts.examples.plane_failure import PlaneFailure
 from openclose_scripts.examples.slopes import JointedSlope, PlanarSlope
 from openclose_scripts.printed import read_printed
 from openclose_scripts.processes import RunFailed
-from openclose_scripts.runs import Openclose, Reference
+from openclose_scripts.runs import Openclose, OpencloseOnDemand, Reference
 
 EXIT_RUN_FAILED = 1
 EXIT_CANNOT_START = 2
@@ -29,6 +30,7 @@ def parse_arguments() -> argparse.Namespace:
     parser.add_argument("--reference", type=Path, default=Path("build/release/analytical/openclose-reference"),
                         help="closed forms and reference ODE (default: %(default)s)")
     parser.add_argument("--results", type=Path, default=Path("results/paper"), help="folder to write (default: %(default)s)")
+    parser.add_argument("--figure", type=int, choices=range(1, 11), help="run only what this figure shows, and draw it")
     parser.add_argument("--print-only", action="store_true", help="print the comparison of an earlier run, run nothing")
     return parser.parse_args()
 
@@ -58,7 +60,7 @@ def reproduce(arguments: argparse.Namespace) -> None:
     cases = [*jointed.cases(), *planar.cases(), *claimed.cases(), *slider.cases(), *wedge.cases()]
     print(f"{len(cases)} runs of the examples and the claims ...", flush=True)
     openclose.run_all(cases)
-    figures.draw_all(slider, wedge, planar, jointed, printed, results)
+    figures.draw_all(figures.Examples(slider, wedge, planar, jointed, printed), results)
     figures_claims.draw(claimed, printed["claims"], results)
     rows = [*comparison.build(slider, wedge, printed), *comparison_slopes.build(planar, jointed, printed), *report_claims.rows(claimed, printed["claims"])]
     more = {**report_slopes.fields(planar, jointed, rows, printed), "claims": report_claims.text(claimed, printed["claims"])}
@@ -66,9 +68,26 @@ def reproduce(arguments: argparse.Namespace) -> None:
     comparison.write_csv(rows, results / "comparison.csv")
 
 
+def reproduce_figure(arguments: argparse.Namespace) -> None:
+    """What an earlier run of everything has left stays valid: the runs are the same."""
+    import figures
+
+    arguments.results.mkdir(parents=True, exist_ok=True)
+    openclose, reference = OpencloseOnDemand(arguments.openclose, arguments.results / "runs"), Reference(arguments.reference)
+    print(f"figure {arguments.figure}: about {figures.FIGURES[arguments.figure].seconds} s", flush=True)
+    start, printed = time.monotonic(), read_printed()
+    examples = figures.Examples(Incline(openclose, reference), PlaneFailure(openclose, reference), PlanarSlope(openclose, reference),
+                                JointedSlope(openclose, reference, printed), printed)
+    file = figures.draw(arguments.figure, examples, arguments.results)
+    print(f"{file} after {time.monotonic() - start:.0f} s")
+
+
 def main() -> int:
     arguments = parse_arguments()
     try:
+        if arguments.figure:
+            reproduce_figure(arguments)
+            return 0
         if not arguments.print_only:
             reproduce(arguments)
         print_comparison(arguments.results)

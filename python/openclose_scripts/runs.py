@@ -88,6 +88,33 @@ class Openclose:
             raise RunFailed(f"exit status {done.returncode} from: {' '.join(arguments)}\n{done.stderr.strip()}")
 
 
+class OpencloseOnDemand(Openclose):
+    """Runs a case when its results are asked for the first time, so that one figure needs no more than it shows."""
+
+    def __init__(self, executable: Path, folder: Path):
+        super().__init__(executable, folder)
+        self._asked: set[Case] = set()
+
+    def table(self, case: Case, file: str) -> list[dict[str, str]]:
+        self._run_once(case)
+        return super().table(case, file)
+
+    def summary(self, case: Case) -> dict:
+        self._run_once(case)
+        return super().summary(case)
+
+    def blocks_file(self, case: Case) -> Path:
+        self._run_once(case)
+        return super().blocks_file(case)
+
+    def _run_once(self, case: Case) -> None:
+        if case in self._asked:
+            return
+        self._asked.add(case)
+        print(f"  {case.command} {case.name}", flush=True)
+        self.run(case)
+
+
 class Reference:
     """The closed forms and the reference ODE of `openclose-reference`."""
 
