@@ -19,6 +19,7 @@ include_patterns = ["README.md", "CHANGELOG.md", "CONTRIBUTING.md", "docs/*.md",
 exclude_patterns = ["build", ".git"]
 myst_enable_extensions = ["dollarmath"]
 myst_heading_anchors = 4
+smartquotes = False  # words of scenes are copied from here with their quotes
 pygments_style = "friendly"
 html_theme = "sphinx_rtd_theme"
 # The font is fonts-stix's (SIL Open Font License): with it the folder is whole, and can be sent to a colleague.
