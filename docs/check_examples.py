@@ -4,7 +4,8 @@
     docs/check_examples.py OPENCLOSE [FILE.md ...]
 
 In a document, a block that begins with ```toml NAME is written to the file NAME (```toml NAME + adds to it), and in a block that begins with ```console every
-line after "$ " is run. Lines below a command are lines of its output, in their order; the numbers in them may differ by NUMBERS_DIFFER.
+line after "$ " is run. Lines below a command are lines of its output, in their order; the numbers in them may differ by NUMBERS_DIFFER, and ... stands for a
+word that is rounding or time.
 A command that ends with "; echo $?" may fail: its exit status is its last line. Commands find the other files of the document's folder beside them.
 Exit status: 0 if every command succeeds and prints these lines, else 1.
 """
@@ -21,6 +22,7 @@ ROOT = Path(__file__).resolve().parent.parent
 NUMBERS_DIFFER = 1e-3
 LIMIT_S = 120
 SHOWS_STATUS = "; echo $?"
+ANYTHING = "..."
 NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 
 
@@ -32,9 +34,14 @@ def blocks(text: str) -> list[tuple[str, list[str]]]:
 
 def same_line(expected: str, line: str) -> bool:
     """The same words, and numbers that are nearly the same."""
-    if NUMBER.sub("#", expected).split() != NUMBER.sub("#", line).split():
+    pairs = list(zip(expected.split(), line.split()))
+    return len(expected.split()) == len(line.split()) and all(want == ANYTHING or same_word(want, word) for want, word in pairs)
+
+
+def same_word(expected: str, word: str) -> bool:
+    if NUMBER.sub("#", expected) != NUMBER.sub("#", word):
         return False
-    pairs = zip(map(float, NUMBER.findall(expected)), map(float, NUMBER.findall(line)))
+    pairs = zip(map(float, NUMBER.findall(expected)), map(float, NUMBER.findall(word)))
     return all(abs(a - b) <= NUMBERS_DIFFER * abs(a) for a, b in pairs)
 
 
@@ -56,9 +63,10 @@ def commands(lines: list[str]) -> list[tuple[str, list[str]]]:
 
 def failure(command: str, expected: list[str], openclose: Path, folder: Path) -> str | None:
     words = shlex.split(command.removesuffix(SHOWS_STATUS))
-    if words[0] != "openclose":
-        return "only openclose can be run"
-    result = subprocess.run([str(openclose), *words[1:]], cwd=folder, capture_output=True, text=True, timeout=LIMIT_S)
+    programs = {"openclose": openclose, "openclose-reference": openclose.parent / "analytical" / "openclose-reference"}
+    if words[0] not in programs:
+        return f"only {' and '.join(programs)} can be run"
+    result = subprocess.run([str(programs[words[0]]), *words[1:]], cwd=folder, capture_output=True, text=True, timeout=LIMIT_S)
     output = result.stdout + result.stderr
     if command.endswith(SHOWS_STATUS):
         output += f"\n{result.returncode}"
