@@ -13,7 +13,6 @@ namespace openclose {
 namespace {
 
 constexpr double slowest_of_mechanism = 1e-2;      ///< [-] of the fastest block: slower ones are carried along by rounding and springs
-constexpr double sliver_of_median = 1e-4;          ///< [-] area of a block over the median one below which it is a sliver
 constexpr double far_below_limit_analysis = 0.98;  ///< [-] of its factor: below it the reason for the distance is given
 constexpr double drawn_travel = 0.5;               ///< [-] of the median block's size by which the fastest block of a mechanism is drawn away
 
@@ -182,8 +181,7 @@ class StrengthReduction {
       if (!input_.curve_time) continue;
       const CurveMotion motion = journal_.once([&] { return motion_for_curve(trials, srf); });
       result_.curve.insert(result_.curve.end(), motion.points.begin(), motion.points.end());
-      if (!motion.failure.empty())
-        result_.warnings.push_back(fmt::format("no displacement for the curve at factor {:g}: {}", srf, motion.failure));
+      if (!motion.failure.empty()) result_.warnings.push_back(fmt::format("no displacement for the curve at factor {:g}: {}", srf, motion.failure));
     }
   }
 
@@ -348,12 +346,6 @@ class StrengthReduction {
     const auto middle = areas.begin() + static_cast<std::ptrdiff_t>(areas.size() / 2);
     std::ranges::nth_element(areas, middle);
     const double median = *middle;
-    const auto slivers = std::ranges::count_if(areas, [&](double area) { return area < sliver_of_median * median; });
-    if (slivers > 0) {
-      result_.warnings.push_back(fmt::format(
-          "{} of {} free blocks are slivers, smaller than {:g} of the median block; domain.sliver_area_m2 unites them with their neighbours", slivers,
-          areas.size(), sliver_of_median));
-    }
     double failing = 0.0;
     for (const FailingBlock& block : result_.mechanism) failing += block.area;
     if (!result_.mechanism.empty() && areas.size() > 1 && failing < median) {

@@ -242,7 +242,7 @@ void Detector::redo(const JointTable& joints, const BlockSystem& system, int pai
   lives_on_.assign(old.end - old.begin, 0);
   for (std::size_t k = begin; k < found_.size(); ++k) {
     Contact& c = found_[k];
-    c.joint = joints.index(system.block(a).material, system.block(b).material);
+    c.joint = joints.index(system, c);
     const int known = index_.find(c.vertex, c.edge);
     if (known >= 0) {
       inherit(before[known], stretch_at(before[known], c.gap, moved_by_others_), c);

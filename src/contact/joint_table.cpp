@@ -11,6 +11,7 @@ JointTable::JointTable(const Scene& scene)
   require_joints(scene);
   for (const JointProperties& joint : scene.joints) joints_.emplace_back(joint);
   for (std::size_t j = 0; j < joints_.size(); ++j) {
+    if (!joints_[j].has_materials()) continue;
     const auto [a, b] = joints_[j].materials;
     index_[a * material_count_ + b] = index_[b * material_count_ + a] = static_cast<int>(j);
   }

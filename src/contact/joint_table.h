@@ -1,11 +1,13 @@
-// Joint properties by material pair, ready for look-up by two integers.
+// Joint properties by material pair and by the seams that name them, ready for look-up by integers.
 #pragma once
 
 #include <cmath>
 #include <optional>
 #include <vector>
 
+#include "openclose/contact/contact.h"
 #include "openclose/core/archive.h"
+#include "openclose/model/block_system.h"
 #include "openclose/scene/scene.h"
 
 namespace openclose {
@@ -27,6 +29,14 @@ class JointTable {
   explicit JointTable(const Scene& scene);
 
   int index(int material_a, int material_b) const { return index_[material_a * material_count_ + material_b]; }
+  /// Of a contact: what the scene names for the edge, if one of the two edges at the corner has the same name, for then both lie in one seam, or in
+  /// two that are alike; else that of the materials.
+  int index(const BlockSystem& system, const Contact& contact) const {
+    const int seam = system.edge_joint(contact.edge);
+    const bool is_in_seam =
+        seam != BlockInput::by_materials && (system.edge_joint(contact.vertex) == seam || system.edge_joint(system.previous(contact.vertex)) == seam);
+    return is_in_seam ? seam : index(system.block(contact.vertex_block).material, system.block(contact.edge_block).material);
+  }
   int count() const { return static_cast<int>(joints_.size()); }
   const TabulatedJoint& joint(int i) const { return joints_[i]; }
 

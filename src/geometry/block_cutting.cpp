@@ -10,6 +10,7 @@
 #include <tuple>
 
 #include "openclose/geometry/arrangement.h"
+#include "openclose/geometry/labelled_outline.h"
 #include "openclose/geometry/plane_graph.h"
 
 namespace openclose {
@@ -44,23 +45,6 @@ void make_canonical(std::vector<JointTrace>& traces) {
     return std::tuple(from.x(), from.y(), to.x(), to.y(), trace.joint);
   };
   std::sort(traces.begin(), traces.end(), [&](const JointTrace& a, const JointTrace& b) { return key(a) < key(b); });
-}
-
-int lowest_vertex(const Polygon& polygon) {
-  const auto lower = [](const Vec2& a, const Vec2& b) { return std::pair(a.y(), a.x()) < std::pair(b.y(), b.x()); };
-  return static_cast<int>(std::min_element(polygon.begin(), polygon.end(), lower) - polygon.begin());
-}
-
-/// The same polygon, beginning with the lowest vertex (leftmost of several).
-Polygon from_lowest(Polygon polygon) {
-  if (!polygon.empty()) std::rotate(polygon.begin(), polygon.begin() + lowest_vertex(polygon), polygon.end());
-  return polygon;
-}
-
-Polygon corners_only(const Polygon& polygon) {
-  Polygon kept;
-  for (const int i : corners(polygon)) kept.push_back(polygon[i]);
-  return kept;
 }
 
 std::vector<const Polygon*> rings_of(const PolygonWithHoles& domain) {
@@ -290,17 +274,27 @@ class Cut {
   }
 
   struct Face {
-    std::vector<int> cycle;  ///< half-edges
-    Polygon polygon;         ///< corners only, beginning with the lowest (leftmost of several)
-    double area = 0.0;       ///< [m2]
-    double width = 0.0;      ///< [m]
+    std::vector<int> cycle;   ///< half-edges
+    Polygon polygon;          ///< corners only, beginning with the lowest (leftmost of several)
+    std::vector<int> joints;  ///< of the edges of the polygon
+    double area = 0.0;        ///< [m2]
+    double width = 0.0;       ///< [m]
   };
+
+  /// The first one, where several run along each other.
+  int joint_of(const Edge& edge) const { return edge.boundary ? Cutting::no_joint : owners_[edge.owners]; }
 
   Face make_face(std::vector<int> cycle, const std::vector<GraphEdge>& graph) const {
     Face face;
     Polygon all;
-    for (const int h : cycle) all.push_back(nodes_[half_edge_from(graph, h)]);
-    face.polygon = from_lowest(corners_only(all));
+    std::vector<int> joints;
+    for (const int h : cycle) {
+      all.push_back(nodes_[half_edge_from(graph, h)]);
+      joints.push_back(joint_of(edges_[h / 2]));
+    }
+    LabelledOutline outline = simplified(all, joints);
+    face.polygon = std::move(outline.polygon);
+    face.joints = std::move(outline.labels);
     face.area = face.polygon.size() < 3 ? 0.0 : signed_area(face.polygon);
     face.width = face.polygon.size() < 3 ? 0.0 : 2.0 * face.area / longest_edge(face.polygon);
     face.cycle = std::move(cycle);
@@ -420,7 +414,10 @@ class Cut {
     }
     if (std::abs(sum - domain_.area()) > area_rounding * domain_.area()) throw std::logic_error("the blocks do not add up to the domain");
     std::sort(order.begin(), order.end());
-    for (const auto& [y, x, f] : order) result_.blocks.push_back(std::move(faces_[f].polygon));
+    for (const auto& [y, x, f] : order) {
+      result_.blocks.push_back(std::move(faces_[f].polygon));
+      result_.edge_joints.push_back(std::move(faces_[f].joints));
+    }
   }
 
   const PolygonWithHoles& domain_;
@@ -516,7 +513,11 @@ Cutting cut_blocks(const PolygonWithHoles& domain, std::vector<JointTrace> trace
   for (JointTrace& trace : traces) trace.segment = {trace.segment.from - origin, trace.segment.to - origin};
   Cutting cutting = cut_near_origin(moved(domain, -origin), std::move(traces), joint_count, limits);
   // Rounding can straighten what was hardly a corner.
-  for (Polygon& block : cutting.blocks) block = from_lowest(corners_only(moved(std::move(block), origin)));
+  for (std::size_t b = 0; b < cutting.blocks.size(); ++b) {
+    LabelledOutline outline = simplified(moved(std::move(cutting.blocks[b]), origin), cutting.edge_joints[b]);
+    cutting.blocks[b] = std::move(outline.polygon);
+    cutting.edge_joints[b] = std::move(outline.labels);
+  }
   for (Vec2& point : cutting.enclosed) point += origin;
   return cutting;
 }

@@ -69,7 +69,12 @@ struct JointUse {
 };
 
 struct Cutting {
+  static constexpr int no_joint = -1;  ///< on the boundary of the domain
+
   std::vector<Polygon> blocks;  ///< by height of the centroid, then from left to right; each begins with its lowest vertex
+  /// Of the edges of each block, from every vertex to the next: the joint, or no_joint. Where joints run along each other the first one, where an
+  /// edge is made of several the one that most of its length is.
+  std::vector<std::vector<int>> edge_joints;
   int slivers_merged = 0;
   double slivers_area = 0.0;                  ///< [m2] of those merged
   int slivers_left = 0;                       ///< that no neighbour could take

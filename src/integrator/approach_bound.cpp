@@ -20,16 +20,25 @@ double speed(const BlockSystem& system, int b) {
   return Vec2(v[0], v[1]).norm() + system.block(b).radius * std::abs(v[2]);
 }
 
+/// [Pa/m]
+double largest_stiffness(const JointProperties& joint) {
+  return std::max(joint.normal_stiffness, joint.shear_stiffness);
+}
+
 }  // namespace
 
 double ApproachBound::step(const BlockSystem& system, const JointTable& joints, const std::vector<std::pair<int, int>>& pairs, double room,
                            double skin, double fraction) {
   if (longest_edges_.empty()) {
     for (const auto& block : system.blocks()) {
-      double longest = 0.0;
+      double longest = 0.0, stiffest = 0.0;
       for (int v = block.first_vertex; v < block.first_vertex + block.vertex_count; ++v)
         longest = std::max(longest, (system.arm(system.next(v)) - system.arm(v)).norm());
+      for (int v = block.first_vertex; v < block.first_vertex + block.vertex_count; ++v) {
+        if (system.edge_joint(v) != BlockInput::by_materials) stiffest = std::max(stiffest, largest_stiffness(joints.joint(system.edge_joint(v))));
+      }
       longest_edges_.push_back(longest);
+      stiffest_seams_.push_back(stiffest);
     }
   }
   double step = std::numeric_limits<double>::infinity();
@@ -39,7 +48,9 @@ double ApproachBound::step(const BlockSystem& system, const JointTable& joints, 
     const double apart = (system.centroid(a) - system.centroid(b)).norm() - system.block(a).radius - system.block(b).radius;
     if (apart > room) continue;
     const JointProperties& joint = joints.joint(joints.index(system.block(a).material, system.block(b).material));
-    const double stiffness = std::max(joint.normal_stiffness, joint.shear_stiffness) * std::min(longest_edges_[a], longest_edges_[b]);
+    // A seam names the joint of both its sides.
+    const double stiffest = std::max(largest_stiffness(joint), std::min(stiffest_seams_[a], stiffest_seams_[b]));
+    const double stiffness = stiffest * std::min(longest_edges_[a], longest_edges_[b]);
     const double own = 2.0 * fraction / std::sqrt(stiffness * (mobility(system, a) + mobility(system, b)));
     step = std::min(step, std::max(own, skin / relative));
   }

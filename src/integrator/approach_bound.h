@@ -5,8 +5,9 @@
 // v/w of its own impact, with p = 0.5 no more than one. Pairs that move by less than the skin against each other within the step need no such bound:
 // what they come by is found within the skin anyhow.
 //
-// w^2 <= k l (1/m_1 + r_1^2/I_1 + 1/m_2 + r_2^2/I_2), with k the larger stiffness of the joint, l the largest tributary length that a corner of one
-// block can have on an edge of the other (no longer than the longest edge of either, see narrow_phase.h), r the blocks' radii.
+// w^2 <= k l (1/m_1 + r_1^2/I_1 + 1/m_2 + r_2^2/I_2), with k the larger stiffness of the joint, or of the stiffest that edges of both blocks may
+// name, l the largest tributary length that a corner of one block can have on an edge of the other (no longer than the longest edge of either, see
+// narrow_phase.h), r the blocks' radii.
 #pragma once
 
 #include <utility>
@@ -25,10 +26,11 @@ class ApproachBound {
   /// \param fraction  [-] p
   double step(const BlockSystem& system, const JointTable& joints, const std::vector<std::pair<int, int>>& pairs, double room, double skin,
               double fraction);
-  std::size_t bytes() const { return bytes_of(longest_edges_); }
+  std::size_t bytes() const { return bytes_of(longest_edges_, stiffest_seams_); }
 
  private:
-  std::vector<double> longest_edges_;  ///< [m] of the blocks
+  std::vector<double> longest_edges_;   ///< [m] of the blocks
+  std::vector<double> stiffest_seams_;  ///< [Pa/m] of the joints that the blocks' edges name; 0 without any
 };
 
 }  // namespace openclose

@@ -49,8 +49,20 @@ BlockSystem::BlockSystem(const Scene& scene) : rotation_kind_(scene.method.rotat
     state_.displacement.push_back(Unknowns::Zero());
     state_.velocity.push_back(velocity_at_start(input));
   }
+  name_joints(scene);
   state_.arm = reference_arm_;
   first_point_.assign(blocks_.size(), -1);
+}
+
+void BlockSystem::name_joints(const Scene& scene) {
+  if (std::all_of(scene.blocks.begin(), scene.blocks.end(), [](const BlockInput& input) { return input.edge_joints.empty(); })) return;
+  for (const BlockInput& input : scene.blocks) {
+    if (input.edge_joints.empty()) {
+      edge_joints_.insert(edge_joints_.end(), input.vertices.size(), BlockInput::by_materials);
+    } else {
+      edge_joints_.insert(edge_joints_.end(), input.edge_joints.begin(), input.edge_joints.end());
+    }
+  }
 }
 
 BlockSystem::Unknowns BlockSystem::velocity_at_start(const BlockInput& input) {

@@ -63,6 +63,8 @@ class BlockSystem {
   int next(int vertex) const { return next_[vertex]; }
   int previous(int vertex) const { return previous_[vertex]; }
   bool is_reflex(int vertex) const { return reflex_[vertex]; }  ///< interior angle above pi
+  /// The joint that the scene names for an edge, or BlockInput::by_materials.
+  int edge_joint(int edge) const { return edge_joints_.empty() ? BlockInput::by_materials : edge_joints_[edge]; }
 
   Vec2 centroid(int b) const { return blocks_[b].reference_centroid + Motion::translation(state_.displacement[b]); }
   const Vec2& arm(int vertex) const { return state_.arm[vertex]; }
@@ -77,7 +79,7 @@ class BlockSystem {
 
   const State& state() const { return state_; }
   std::size_t bytes() const {
-    return bytes_of(blocks_, free_blocks_, resting_blocks_, next_, previous_, reflex_, reference_arm_, points_, first_point_) +
+    return bytes_of(blocks_, free_blocks_, resting_blocks_, next_, previous_, reflex_, edge_joints_, reference_arm_, points_, first_point_) +
            bytes_of(state_.displacement, state_.velocity, state_.arm, state_.point_arm);
   }
   void restore(const State& state) { state_ = state; }
@@ -103,6 +105,7 @@ class BlockSystem {
   double reduced_mass(int a, int b) const;
 
  private:
+  void name_joints(const Scene& scene);
   /// Equations in the order of the blocks; those of which is_free tells no get none.
   void number(const std::vector<char>& is_free);
 
@@ -110,6 +113,7 @@ class BlockSystem {
   std::vector<int> free_blocks_, resting_blocks_;
   std::vector<int> next_, previous_;
   std::vector<char> reflex_;
+  std::vector<int> edge_joints_;  ///< empty where the scene names none
   struct Point {
     int block = 0;
     Vec2 reference_arm = Vec2::Zero();

@@ -9,6 +9,7 @@
 #include "openclose/core/tolerance.h"
 #include "openclose/geometry/box.h"
 #include "openclose/geometry/overlap.h"
+#include "openclose/geometry/polygon.h"
 #include "openclose/scene/plausibility.h"
 #include "openclose/scene/table.h"
 
@@ -29,6 +30,9 @@ void require_no_overlap(const Scene& scene) {
     if (depth > tolerance::deepest_initial_overlap_m) fail_overlap(scene, blocks[first], blocks[second], depth);
   }
 }
+
+/// [-] Area of a block over the median one of the free blocks, below which it is a sliver: a hundredth of its size.
+constexpr double sliver_of_median = 1e-4;
 
 struct Use {
   int blocks = 0;
@@ -95,6 +99,24 @@ void require_joints(const Scene& scene) {
   }
 }
 
+/// The smallest blocks by area: a factor of safety can be that of one of them.
+void warn_of_slivers(const Scene& scene, std::vector<std::string>& warnings) {
+  std::vector<std::pair<double, std::size_t>> areas;
+  for (std::size_t b = 0; b < scene.blocks.size(); ++b) {
+    if (!scene.blocks[b].fixed) areas.emplace_back(signed_area(scene.blocks[b].vertices), b);
+  }
+  if (areas.empty()) return;
+  std::ranges::sort(areas);
+  const double most = sliver_of_median * areas[areas.size() / 2].first;
+  const auto count = std::ranges::count_if(areas, [&](const auto& area) { return area.first < most; });
+  if (count == 0) return;
+  const std::string others = count > 1 ? fmt::format(" and {} others", count - 1) : "";
+  warnings.push_back(fmt::format("{}: \"{}\" with {:.3g} m2{}, of {} free blocks, {} smaller than {:g} of the median block{}", scene.where.file,
+                                 scene.blocks[areas.front().second].name, areas.front().first, others, areas.size(), count > 1 ? "are" : "is",
+                                 sliver_of_median,
+                                 scene.cutting ? fmt::format("; domain.sliver_area_m2 = {:.2g} unites such with their neighbours", most) : ""));
+}
+
 std::string size_of(const Scene& scene) {
   std::size_t vertices = 0;
   for (const BlockInput& block : scene.blocks) vertices += block.vertices.size();
@@ -121,6 +143,7 @@ std::vector<std::string> check_scene(const Scene& scene) {
   for (std::string& warning : implausible_numbers(scene)) warnings.push_back(std::move(warning));
   if (nothing_holds(scene)) warnings.push_back(scene.where.file + ": nothing is fixed or supported under gravity: every block will fall");
   warn_of_fixed_points(scene, warnings);
+  warn_of_slivers(scene, warnings);
   return warnings;
 }
 

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <optional>
 
 #include "openclose/core/memory.h"
 #include "openclose/core/process.h"
@@ -11,6 +13,7 @@
 #include "openclose/scene/angle.h"
 #include "openclose/scene/names.h"
 #include "openclose/scene/outline.h"
+#include "openclose/scene/section.h"
 
 namespace openclose {
 namespace {
@@ -19,13 +22,19 @@ namespace {
 constexpr double most_blocks = 1e7;
 
 constexpr Range part{.low = 0.0, .high = 1.0, .low_included = true};
+constexpr Range azimuth_deg{.low = 0.0, .high = 360.0, .low_included = true, .high_included = true};
+
+/// [-] Of a joint plane's normal, out of the section: planes that strike more than 20 degrees off the line across it do not slide in it (Hoek and
+/// Bray, Rock Slope Engineering, conditions of plane failure).
+const double most_oblique = std::sin(radians(20.0));
 
 struct DomainInput {
   PolygonWithHoles shape;
   int material = 0;
   EnclosedJoints enclosed = EnclosedJoints::refuse;
-  CuttingLimits limits;        ///< with no more blocks than there is memory for
-  int written_max_blocks = 0;  ///< domain.max_blocks
+  std::optional<double> section;  ///< [rad] azimuth into which the x axis points
+  CuttingLimits limits;           ///< with no more blocks than there is memory for
+  int written_max_blocks = 0;     ///< domain.max_blocks
 };
 
 struct Region {
@@ -45,9 +54,12 @@ DomainInput read_domain(Table& table, const NameList& material_names) {
   table.optional("sliver_area_m2", domain.limits.sliver_area, not_negative);
   table.optional("joint_end_reach_m", domain.limits.end_reach, not_negative);
   table.optional("enclosed_joints", domain.enclosed, enclosed_joints_words);
+  std::optional<double> section_deg;
+  table.optional("section_direction_deg", section_deg, azimuth_deg);
   table.optional("max_blocks", domain.limits.max_blocks, Range{.low = 1.0, .high = most_blocks, .low_included = true, .high_included = true});
   table.finish();
   domain.written_max_blocks = domain.limits.max_blocks;
+  if (section_deg) domain.section = radians(*section_deg);
   const double room = static_cast<double>(available_memory() / bytes_of_cut_block);
   domain.limits.max_blocks = static_cast<int>(std::clamp(room, 1.0, static_cast<double>(domain.written_max_blocks)));
 
@@ -90,26 +102,51 @@ void read_traces_of(Table& table, JointSet& set) {
   set.gap = gap ? *gap : *set.trace_length * (1.0 / *persistence - 1.0);
 }
 
-JointSet read_joint_set(Table table) {
+/// A joint set as the file has it.
+struct SetInput {
   JointSet set;
+  int properties = BlockInput::by_materials;  ///< the joint that it names, see BlockInput::edge_joints
+  double oblique = 0.0;                       ///< see PlaneInSection
+};
+
+/// Turns the dip of a plane in space into that of its lines in the section, and the spacing with it.
+void put_into_section(const Table& table, double direction, const DomainInput& domain, SetInput& input) {
+  const Value value = table.at("dip_direction_deg");
+  if (!domain.section) value.fail("nothing says where the section points", "domain.section_direction_deg, the azimuth of its x axis, with it");
+  if (input.set.dip < 0.0 || input.set.dip > 0.5 * std::numbers::pi)
+    table.at("dip_deg").fail("the dip of a plane with a dip direction is not between 0 and 90", "a number in [0, 90]");
+  const std::optional<PlaneInSection> line = plane_in_section(input.set.dip, direction, *domain.section);
+  if (!line) value.fail("the planes lie in the section and have no line there", "a set that crosses the section");
+  input.set.dip = line->dip;
+  input.set.spacing *= line->spacing;
+  input.oblique = line->oblique;
+}
+
+SetInput read_joint_set(Table table, const NameList& joint_names, const DomainInput& domain) {
+  SetInput input;
+  JointSet& set = input.set;
   double dip_deg = 0.0;
+  std::optional<double> direction_deg;
   double dip_scatter_deg = 0.0;
   int seed = 1;
   Polygon region;
   table.required("dip_deg", dip_deg, Range{.low = -180.0, .high = 180.0, .low_included = true, .high_included = true});
   table.required("spacing_m", set.spacing, positive);
   table.required("origin_m", set.origin, coordinate);
+  table.optional("dip_direction_deg", direction_deg, azimuth_deg);
   table.optional("dip_scatter_deg", dip_scatter_deg, Range{.low = 0.0, .high = 45.0, .low_included = true});
   table.optional("spacing_scatter", set.spacing_scatter, part);
   table.optional("seed", seed, Range{.low = 0.0, .high = 1e9, .low_included = true, .high_included = true});
   const bool bounded = table.optional("region_m", region, coordinate);
+  table.optional("joint", input.properties, joint_names);
   read_traces_of(table, set);
 
   set.dip = radians(dip_deg);
   set.dip_scatter = radians(dip_scatter_deg);
   set.seed = static_cast<std::uint64_t>(seed);
   if (bounded) set.region = outline(table.at("region_m"), region, "region");
-  return set;
+  if (direction_deg) put_into_section(table, radians(*direction_deg), domain, input);
+  return input;
 }
 
 Segment read_segment(Table& table) {
@@ -138,16 +175,27 @@ std::string place(const Vec2& point) {
 /// The joints of a scene: the sets, then the lines.
 class Joints {
  public:
-  Joints(const CuttingTables& tables, const DomainInput& domain) : tables_(tables), domain_(domain) {
-    for (std::size_t i = 0; i < tables.joint_sets.size(); ++i) add_set(static_cast<int>(i));
+  Joints(const CuttingTables& tables, const DomainInput& domain, const NameList& joint_names) : tables_(tables), domain_(domain) {
+    for (std::size_t i = 0; i < tables.joint_sets.size(); ++i) add_set(static_cast<int>(i), joint_names);
     for (const Table& table : tables.joint_lines) {
       Table line = table;
+      properties_.push_back(BlockInput::by_materials);
+      line.optional("joint", properties_.back(), joint_names);
       traces_.push_back({read_segment(line), count_++});
     }
   }
 
+  /// Of the edges of a block that the joints have cut: see BlockInput::edge_joints.
+  std::vector<int> properties_of(const std::vector<int>& edge_joints) const {
+    std::vector<int> properties;
+    for (const int joint : edge_joints) properties.push_back(joint == Cutting::no_joint ? BlockInput::by_materials : properties_[joint]);
+    const auto is_named = [](int property) { return property != BlockInput::by_materials; };
+    return std::any_of(properties.begin(), properties.end(), is_named) ? properties : std::vector<int>();
+  }
+
   const std::vector<JointTrace>& traces() const { return traces_; }
   int count() const { return count_; }
+  const std::vector<int>& oblique() const { return oblique_; }
 
   const Table& table(int joint) const {
     const int sets = static_cast<int>(tables_.joint_sets.size());
@@ -156,9 +204,12 @@ class Joints {
   bool is_set(int joint) const { return joint < static_cast<int>(tables_.joint_sets.size()); }
 
  private:
-  void add_set(int index) {
+  void add_set(int index, const NameList& joint_names) {
     const Table& table = tables_.joint_sets[index];
-    const auto of_set = openclose::traces(read_joint_set(table), domain_.shape.outer, domain_.limits.max_blocks);
+    const SetInput input = read_joint_set(table, joint_names, domain_);
+    properties_.push_back(input.properties);
+    if (input.oblique > most_oblique) oblique_.push_back(count_);
+    const auto of_set = openclose::traces(input.set, domain_.shape.outer, domain_.limits.max_blocks);
     if (!of_set) {
       table.fail(fmt::format("the set has more than {} traces in the domain, or its origin lies as many of them away", domain_.limits.max_blocks),
                  "a wider spacing, longer traces, a nearer origin, or a higher domain.max_blocks");
@@ -170,6 +221,8 @@ class Joints {
   const CuttingTables& tables_;
   const DomainInput& domain_;
   std::vector<JointTrace> traces_;
+  std::vector<int> properties_;  ///< by joint: index into Scene::joints, or BlockInput::by_materials
+  std::vector<int> oblique_;     ///< sets that strike obliquely to the section
   int count_ = 0;
 };
 
@@ -225,6 +278,9 @@ std::vector<std::string> warnings_of(const Cutting& cutting, const Joints& joint
   }
   if (!cutting.enclosed.empty())
     warnings.push_back(fmt::format("{}: {} group(s) of joints enclosed in one block left out", file, cutting.enclosed.size()));
+  for (const int j : joints.oblique())
+    warnings.push_back(fmt::format("{}: {}: the planes strike more than 20 degrees off the line across the section; what slides on them leaves it",
+                                   file, place_name(joints.table(j).where())));
   if (cutting.slivers_left > 0) warnings.push_back(fmt::format("{}: {} sliver(s) that no neighbour could take are left", file, cutting.slivers_left));
   return warnings;
 }
@@ -267,7 +323,7 @@ void refuse_empty_regions(const std::vector<Region>& regions, const std::vector<
 
 }  // namespace
 
-void cut_domain(const CuttingTables& tables, const NameList& material_names, NameList& block_names, Scene& scene) {
+void cut_domain(const CuttingTables& tables, const NameList& material_names, const NameList& joint_names, NameList& block_names, Scene& scene) {
   if (!tables.domain.is_there()) {
     for (const auto* list : {&tables.joint_sets, &tables.joint_lines, &tables.regions}) {
       if (!list->empty()) list->front().fail("there is no domain to cut", "a scene with a [domain]");
@@ -278,18 +334,20 @@ void cut_domain(const CuttingTables& tables, const NameList& material_names, Nam
   const DomainInput domain = read_domain(table, material_names);
   std::vector<Region> regions;
   for (const Table& region : tables.regions) regions.push_back(read_region(region, material_names));
-  const Joints joints(tables, domain);
+  const Joints joints(tables, domain, joint_names);
   const Cutting cutting = cut_blocks(domain.shape, joints.traces(), joints.count(), domain.limits);
   refuse_faults(cutting, joints, domain, table);
 
   const int digits = std::max(4, static_cast<int>(std::to_string(cutting.blocks.size()).size()));
   int number = 0;
   scene.blocks.reserve(scene.blocks.size() + cutting.blocks.size());
-  for (const Polygon& polygon : cutting.blocks) {
+  for (std::size_t b = 0; b < cutting.blocks.size(); ++b) {
+    const Polygon& polygon = cutting.blocks[b];
     BlockInput block;
     block.name = fmt::format("b{:0{}}", ++number, digits);
     block.material = material_at(polygon_properties(polygon).centroid, regions, domain.material);
     block.vertices = polygon;
+    block.edge_joints = joints.properties_of(cutting.edge_joints[b]);
     block.line = table.where().line;
     block_names.add(table.at("vertices_m"), block.name);
     scene.blocks.push_back(std::move(block));

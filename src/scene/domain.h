@@ -31,7 +31,7 @@ struct CuttingTables {
 /// Throws InputError, for what is written and for what comes of it: a joint that misses the domain, a set that bounds no block, sets that run along
 /// each other, no blocks or too many of them, blocks that would have holes, a region without
 /// blocks.
-void cut_domain(const CuttingTables& tables, const NameList& material_names, NameList& block_names, Scene& scene);
+void cut_domain(const CuttingTables& tables, const NameList& material_names, const NameList& joint_names, NameList& block_names, Scene& scene);
 
 /// Fixes every block, cut or written, that touches one of these lines over more than a point (tolerance::touching_m,
 /// tolerance::shortest_overlap_m). Throws InputError for a line that no block touches.

@@ -36,6 +36,7 @@ class Rows {
 };
 
 constexpr Range part_of_one{.low = 0.0, .high = 1.0, .low_included = true};
+constexpr Range azimuth{.low = 0.0, .high = 360.0, .low_included = true, .high_included = true};
 constexpr Range whole_turn{.low = -180.0, .high = 180.0, .low_included = true, .high_included = true};
 
 void add_blocks(Rows& rows) {
@@ -57,12 +58,21 @@ void add_blocks(Rows& rows) {
   rows.optional({"rotation_locked", "true: moves without turning", "false"}, ValueType::boolean);
   rows.optional({"velocity_m_per_s", "[x, y], of the centroid at time 0", "[0, 0]"}, ValueType::vector);
   rows.optional({"angular_velocity_rad_per_s", "at time 0, counter-clockwise", "0"}, ValueType::number);
+  rows.optional({"edge_joints",
+                 "a name of a joint for the edge from each vertex to the next, \"\" where the joint is that of the materials, see [scenes](scene.md)",
+                 "that of the materials"},
+                ValueType::names);
 }
 
 void add_joints(Rows& rows) {
   const std::vector<KeyEntry> values = joint_entries(JointProperties{});
   rows.table(values.front().table);
-  rows.required({"materials", "two names, in either order, the same one twice for a joint within a material"}, ValueType::names);
+  rows.optional({"name", "unique: by which joint_set, joint_line and block give it to their edges", "none"}, ValueType::text);
+  rows.optional({"materials",
+                 "two names, in either order, the same one twice for a joint within a material: all contacts between their blocks but those in seams "
+                 "that name a joint",
+                 "asked for without a name"},
+                ValueType::names);
   rows.entries.insert(rows.entries.end(), values.begin(), values.end());
 }
 
@@ -115,12 +125,19 @@ void add_domain(Rows& rows) {
   rows.optional({"sliver_area_m2", "smaller blocks likewise", "0"}, ValueType::number, not_negative);
   rows.optional({"joint_end_reach_m", "joints that end this close to another reach it", "1e-3"}, ValueType::number, not_negative);
   rows.word({"enclosed_joints", "joints inside one block, connected to no other", "\"refuse\""}, enclosed_joints_words);
+  rows.optional({"section_direction_deg", "azimuth into which x points, clockwise from north; for `dip_direction_deg`", "asked for with it"},
+                ValueType::number, azimuth);
   rows.optional({"max_blocks", "more blocks, or joints, are refused at once", "1000000"}, ValueType::whole_number,
                 {.low = 1.0, .high = 1e7, .low_included = true, .high_included = true});
   rows.table({"joint_set", Audience::user, "Parallel joints through the domain", true});
-  rows.required({"dip_deg", "counter-clockwise from the horizontal"}, ValueType::number, whole_turn);
-  rows.required({"spacing_m", "between joints"}, ValueType::number, positive);
+  rows.required({"dip_deg", "counter-clockwise from the horizontal; with `dip_direction_deg` that of the plane in space, downwards"},
+                ValueType::number, whole_turn);
+  rows.required({"spacing_m", "between joints, at right angles to them"}, ValueType::number, positive);
   rows.required({"origin_m", "a point on one joint of the set"}, ValueType::vector, coordinate);
+  rows.optional({"joint", "name of the joint that gives its seams their properties", "that of the materials"}, ValueType::text);
+  rows.optional({"dip_direction_deg", "azimuth into which the plane falls: dip and spacing are those of the plane in space, see [scenes](scene.md)",
+                 "dip and spacing are those of the section"},
+                ValueType::number, azimuth);
   rows.optional({"trace_length_m", "of joints of finite length along each line; with `gap_m` or `persistence`", "through-going"}, ValueType::number,
                 positive);
   rows.optional({"gap_m", "rock between two traces of a line", "none"}, ValueType::number, not_negative);
@@ -138,6 +155,7 @@ void add_domain(Rows& rows) {
                 fixed ? "Every block that shares more than a point with it is fixed" : "A single joint", true});
     rows.required({"from_m", "one end"}, ValueType::vector, coordinate);
     rows.required({"to_m", "the other"}, ValueType::vector, coordinate);
+    if (!fixed) rows.optional({"joint", "name of the joint that gives its seams their properties", "that of the materials"}, ValueType::text);
   }
   rows.table({"region", Audience::user, "Blocks whose centroid lies inside have its material, the last region wins", true});
   rows.required({"vertices_m", "a simple polygon"}, ValueType::polygon, coordinate);

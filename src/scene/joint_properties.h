@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "openclose/scene/key.h"
@@ -24,9 +25,12 @@ inline constexpr std::array cohesion_behaviour_words{
     Word{"lost_on_slip", CohesionBehaviour::lost_on_slip},
 };
 
-/// Mohr-Coulomb joint with tension cut-off, for one unordered pair of materials.
+/// Mohr-Coulomb joint with tension cut-off: for an unordered pair of materials, for the seams that name it, or for both.
 struct JointProperties {
-  std::array<int, 2> materials{};  ///< indices into Scene::materials
+  static constexpr int no_material = -1;
+
+  std::string name;                ///< empty: no seam can name it
+  std::array<int, 2> materials{};  ///< indices into Scene::materials, or twice no_material
   double normal_stiffness = 0.0;   ///< [Pa/m]
   double shear_stiffness = 0.0;    ///< [Pa/m]
   double friction_angle = 0.0;     ///< [rad]
@@ -37,6 +41,7 @@ struct JointProperties {
   std::optional<double> residual_friction_angle;
   double damping_ratio = 0.0;  ///< [-] of dashpots parallel to the springs, see law/joint_law.h
 
+  bool has_materials() const { return materials[0] != no_material; }
   bool softens() const { return residual_friction_angle && *residual_friction_angle < friction_angle; }
   /// Tangents of both friction angles, cohesion and tensile strength divided by a strength reduction factor.
   JointProperties reduced_by(double factor) const {
@@ -49,7 +54,7 @@ struct JointProperties {
   }
 };
 
-/// The keys of [[joint]], but for its two materials.
+/// The keys of [[joint]], but for its name and its two materials.
 template <class Joint, class Visitor>
 void visit_joint_keys(Joint& j, Visitor& visit) {
   visit({.name = "normal_stiffness_pa_per_m", .says = "of the springs across the joint, for a square metre of it", .required = true},

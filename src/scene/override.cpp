@@ -56,7 +56,8 @@ toml::node& element(const Override& override, toml::node& parent, std::size_t in
 toml::table& as_table(const Override& override, toml::node& parent, const std::string& key) {
   if (toml::table* table = parent.as_table()) return *table;
   if (const toml::array* array = parent.as_array(); array != nullptr && !array->empty()) {
-    override.fail(fmt::format("{} follows an array", in_quotes(key)), fmt::format("an index, [0] to [{}], before it, or the name of an element", array->size() - 1));
+    override.fail(fmt::format("{} follows an array", in_quotes(key)),
+                  fmt::format("an index, [0] to [{}], before it, or the name of an element", array->size() - 1));
   }
   override.fail(fmt::format("{} follows something that is not a table", in_quotes(key)), "a key that the scene has");
 }

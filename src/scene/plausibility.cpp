@@ -40,7 +40,8 @@ class Judge {
     judge("density_kg_per_m3", material.density);
   }
   void look_at(const JointProperties& joint) {
-    owner_ = fmt::format("joint of {} and {}", name(joint.materials[0]), name(joint.materials[1]));
+    owner_ = joint.has_materials() ? fmt::format("joint of {} and {}", name(joint.materials[0]), name(joint.materials[1]))
+                                   : "joint " + in_quotes(joint.name);
     visit_joint_keys(joint, *this);
   }
 

@@ -127,25 +127,39 @@ class RowReader {
   }
 };
 
-JointProperties read_joint(Table table, const NameList& material_names) {
+JointProperties read_joint(Table table, const NameList& material_names, NameList& joint_names) {
   JointProperties joint;
   std::vector<int> materials;
-  table.required("materials", materials, material_names);
+  const bool is_named = table.optional("name", joint.name);
+  const bool has_materials = table.optional("materials", materials, material_names);
+  if (!has_materials && !is_named) table.required("materials", materials, material_names);
   RowReader reader(&table);
   visit_joint_keys(joint, reader);
   table.finish();
 
-  if (materials.size() != 2) table.at("materials").fail(fmt::format("there are {} names", materials.size()), "two names of materials");
-  joint.materials = {materials[0], materials[1]};
+  // Every joint has a place among the names, so that these are numbered as the joints are.
+  if (is_named) {
+    joint_names.add(table.at("name"), joint.name);
+  } else {
+    joint_names.add_nameless();
+  }
+  if (has_materials && materials.size() != 2)
+    table.at("materials").fail(fmt::format("there are {} names", materials.size()), "two names of materials");
+  if (has_materials) {
+    joint.materials = {materials[0], materials[1]};
+  } else {
+    joint.materials = {JointProperties::no_material, JointProperties::no_material};
+  }
   if (const auto found = contradiction_in(joint)) table.at(std::string(found->key)).fail(std::string(found->read), std::string(found->accepted));
   return joint;
 }
 
-std::vector<JointProperties> read_joints(const std::vector<Table>& tables, const NameList& material_names) {
+std::vector<JointProperties> read_joints(const std::vector<Table>& tables, const NameList& material_names, NameList& joint_names) {
   std::vector<JointProperties> joints;
   std::map<std::pair<int, int>, SourceLocation> known;
   for (const Table& table : tables) {
-    joints.push_back(read_joint(table, material_names));
+    joints.push_back(read_joint(table, material_names, joint_names));
+    if (!joints.back().has_materials()) continue;
     const auto& [a, b] = joints.back().materials;
     const auto [earlier, is_new] = known.try_emplace(std::minmax(a, b), table.where());
     if (!is_new) {
@@ -156,7 +170,44 @@ std::vector<JointProperties> read_joints(const std::vector<Table>& tables, const
   return joints;
 }
 
-BlockInput read_block(Table table, const std::string& file, const NameList& material_names, NameList& block_names) {
+/// The joint of each edge of a block as the file has it, to each edge of its outline, which has fewer vertices and may run the other way.
+std::vector<int> joints_of_outline(const Value& value, Polygon written, std::vector<int> joints, const Polygon& outline) {
+  if (signed_area(written) < 0.0) {
+    std::reverse(written.begin(), written.end());
+    std::reverse(joints.begin(), joints.end() - 1);  // the last edge, back to the first vertex, stays the last
+  }
+  const std::size_t count = written.size();
+  std::size_t at = std::find(written.begin(), written.end(), outline.front()) - written.begin();
+  std::vector<int> result;
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const Vec2& end = outline[(i + 1) % outline.size()];
+    std::optional<int> joint;
+    do {
+      const std::size_t next = (at + 1) % count;
+      if (joint && *joint != joints[at] && written[next] != written[at])
+        value.fail("edges along one straight line have different joints",
+                   "one joint for each side of the block; vertices on a straight line are dropped");
+      if (!joint) joint = joints[at];
+      at = next;
+    } while (written[at] != end);
+    result.push_back(*joint);
+  }
+  return result;
+}
+
+void set_edge_joints(const Value& value, const std::vector<std::string>& names, const Polygon& written, const NameList& joint_names,
+                     BlockInput& block) {
+  if (names.size() != written.size())
+    value.fail(fmt::format("there are {} names for {} vertices", names.size(), written.size()),
+               "a name for the edge from each vertex to the next, \"\" where the joint is that of the materials");
+  std::vector<int> joints;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    joints.push_back(names[i].empty() ? BlockInput::by_materials : joint_names.index(value.element(i), names[i]));
+  if (std::all_of(joints.begin(), joints.end(), [](int joint) { return joint == BlockInput::by_materials; })) return;
+  block.edge_joints = joints_of_outline(value, written, std::move(joints), block.vertices);
+}
+
+BlockInput read_block(Table table, const std::string& file, const NameList& material_names, const NameList& joint_names, NameList& block_names) {
   BlockInput block;
   Polygon vertices;
   const SourceLocation where = table.where();
@@ -169,10 +220,14 @@ BlockInput read_block(Table table, const std::string& file, const NameList& mate
   table.optional("rotation_locked", block.rotation_locked);
   table.optional("velocity_m_per_s", block.velocity);
   table.optional("angular_velocity_rad_per_s", block.angular_velocity);
+  const bool has_edge_joints = table.has("edge_joints");
+  std::vector<std::string> edge_joints;
+  table.optional("edge_joints", edge_joints);
   table.finish();
 
   block_names.add(table.at("name"), block.name);
   block.vertices = outline(table.at("vertices_m"), vertices);
+  if (has_edge_joints) set_edge_joints(table.at("edge_joints"), edge_joints, vertices, joint_names, block);
   return block;
 }
 
@@ -314,13 +369,14 @@ Scene interpret(const toml::table& document, const std::string& file) {
   if (!cutting.domain.is_there()) require_some(blocks, scene.where, "block");
 
   NameList material_names("material");
+  NameList joint_names("joint");
   NameList block_names("block");
   NameList point_names("measured point");
   NameList contact_names("measured contact");
   for (const Table& table : materials) scene.materials.push_back(read_material(table, scene.gravity, material_names));
-  scene.joints = read_joints(joints, material_names);
-  for (const Table& table : blocks) scene.blocks.push_back(read_block(table, scene.where.file, material_names, block_names));
-  cut_domain(cutting, material_names, block_names, scene);
+  scene.joints = read_joints(joints, material_names, joint_names);
+  for (const Table& table : blocks) scene.blocks.push_back(read_block(table, scene.where.file, material_names, joint_names, block_names));
+  cut_domain(cutting, material_names, joint_names, block_names, scene);
   fix_blocks(fixed_lines, scene);
   ForceInputs::visit(scene, [&](auto& list) {
     using Force = typename std::decay_t<decltype(list)>::value_type;

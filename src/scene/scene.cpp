@@ -15,7 +15,7 @@ const JointProperties* Scene::joint(int material_a, int material_b) const {
 std::size_t bytes_of_blocks(const Scene& scene) {
   // Short texts are in the string itself, longer ones beside it; counted as if all were.
   std::size_t bytes = bytes_of(scene.blocks);
-  for (const BlockInput& block : scene.blocks) bytes += bytes_of(block.vertices, block.name);
+  for (const BlockInput& block : scene.blocks) bytes += bytes_of(block.vertices, block.name, block.edge_joints);
   return bytes;
 }
 

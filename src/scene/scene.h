@@ -23,13 +23,17 @@ struct Material {
 };
 
 struct BlockInput {
+  static constexpr int by_materials = -1;  ///< in place of a joint: the one of the materials of the two blocks
+
   std::string name;
   int material = 0;
   std::vector<Vec2> vertices;  ///< [m] counter-clockwise, simple, no repeated first vertex
   bool fixed = false;
   bool rotation_locked = false;
-  Vec2 velocity = Vec2::Zero();               ///< [m/s]
-  double angular_velocity = 0.0;              ///< [rad/s] counter-clockwise
+  Vec2 velocity = Vec2::Zero();   ///< [m/s]
+  double angular_velocity = 0.0;  ///< [rad/s] counter-clockwise
+  /// Of the edge from each vertex to the next: index into Scene::joints, or by_materials. Empty: all by_materials.
+  std::vector<int> edge_joints;
   int line = 0;                               ///< where it was read, for errors; see Scene::place_of()
   std::shared_ptr<const std::string> source;  ///< null: the scene's file
 };
@@ -64,11 +68,11 @@ struct BaseMotionInput {
   BaseMotionKind kind = BaseMotionKind::pulses;
   double factor = 1.0;  ///< [-] on all accelerations
   std::vector<BasePulse> pulses;
-  Vec2 amplitude = Vec2::Zero();  ///< [m/s2]
-  double frequency = 0.0;         ///< [Hz]
-  double phase = 0.0;             ///< [rad]
-  AccelerationRecord horizontal;  ///< positive to the right; empty: none
-  AccelerationRecord vertical;    ///< positive upwards; empty: none
+  Vec2 amplitude = Vec2::Zero();   ///< [m/s2]
+  double frequency = 0.0;          ///< [Hz]
+  double phase = 0.0;              ///< [rad]
+  AccelerationRecord horizontal;   ///< positive to the right; empty: none
+  AccelerationRecord vertical;     ///< positive upwards; empty: none
   std::vector<std::string> files;  ///< from which records were read
 };
 

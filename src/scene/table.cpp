@@ -117,7 +117,10 @@ int NameList::index(const Value& value, const std::string& name) const {
   const auto place = places_.find(name);
   if (place != places_.end()) return place->second.first;
   std::vector<std::string> accepted;
-  for (const std::string& known : names_) accepted.push_back(in_quotes(known));
+  for (const std::string& known : names_) {
+    if (!known.empty()) accepted.push_back(in_quotes(known));
+  }
+  if (accepted.empty()) accepted.push_back(fmt::format("none, since no {} has a name", noun_));
   value.fail(fmt::format("there is no {} {}", noun_, in_quotes(name)), suggestions(in_quotes(name), accepted));
 }
 

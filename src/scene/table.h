@@ -68,6 +68,8 @@ class NameList {
   explicit NameList(std::string noun) : noun_(std::move(noun)) {}
 
   void add(const Value& value, const std::string& name);
+  /// Something that has no name takes its place in the numbering.
+  void add_nameless() { names_.emplace_back(); }
   int index(const Value& value, const std::string& name) const;
 
  private:

@@ -41,7 +41,9 @@ void write_materials(Text& text, const Scene& scene) {
 void write_joints(Text& text, const Scene& scene) {
   for (const JointProperties& joint : scene.joints) {
     text.header("[[joint]]");
-    text.line("materials", std::vector<std::string_view>{scene.materials[joint.materials[0]].name, scene.materials[joint.materials[1]].name});
+    if (!joint.name.empty()) text.line("name", std::string_view(joint.name));
+    if (joint.has_materials())
+      text.line("materials", std::vector<std::string_view>{scene.materials[joint.materials[0]].name, scene.materials[joint.materials[1]].name});
     for (const KeyEntry& entry : joint_entries(joint)) {
       if (entry.value) text.raw_line(entry.key.name, *entry.value);
     }
@@ -58,6 +60,10 @@ void write_blocks(Text& text, const Scene& scene) {
     text.line_unless(false, "rotation_locked", block.rotation_locked);
     text.line_unless(Vec2(0.0, 0.0), "velocity_m_per_s", block.velocity);
     text.line_unless(0.0, "angular_velocity_rad_per_s", block.angular_velocity);
+    if (block.edge_joints.empty()) continue;
+    std::vector<std::string_view> joints;
+    for (const int joint : block.edge_joints) joints.push_back(joint == BlockInput::by_materials ? std::string_view() : scene.joints[joint].name);
+    text.line("edge_joints", joints);
   }
 }
 

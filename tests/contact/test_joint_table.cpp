@@ -46,6 +46,32 @@ TEST_CASE("joints are found in either order of the materials", "[contact][joint_
   CHECK(table.joint(table.index(2, 1)).friction_angle == 20.0 * degree);
 }
 
+TEST_CASE("a seam that both blocks name has its own joint, everything else that of the materials", "[contact][joint_table]") {
+  Scene scene = three_materials();
+  JointProperties seam = joint_between(JointProperties::no_material, JointProperties::no_material, 5.0);
+  seam.name = "bedding";
+  scene.joints.push_back(seam);
+  constexpr int none = BlockInput::by_materials;
+  scene.blocks[0].edge_joints = {none, none, 3, none};  // the top of the base
+  scene.blocks[1].edge_joints = {3, none, none, none};  // the lower side of a
+  const JointTable table(scene);
+  const BlockSystem system(scene);
+  const auto joint = [&](int vertex_block, int vertex, int edge_block, int edge) {
+    Contact contact;
+    contact.vertex_block = vertex_block;
+    contact.vertex = system.block(vertex_block).first_vertex + vertex;
+    contact.edge_block = edge_block;
+    contact.edge = system.block(edge_block).first_vertex + edge;
+    return table.index(system, contact);
+  };
+  CHECK(joint(1, 0, 0, 2) == 3);                  // the edge that begins at the corner
+  CHECK(joint(1, 1, 0, 2) == 3);                  // the edge that ends there
+  CHECK(joint(1, 2, 0, 2) == table.index(0, 1));  // neither of its edges
+  CHECK(joint(1, 0, 0, 1) == table.index(0, 1));  // another side of the base
+  CHECK(joint(2, 0, 0, 2) == table.index(0, 2));  // a block that names nothing
+  CHECK(joint(0, 3, 1, 0) == 3);
+}
+
 TEST_CASE("a missing joint is bad input, in the words of the scene", "[contact][joint_table]") {
   Scene scene = three_materials();
   scene.joints.pop_back();

@@ -442,6 +442,34 @@ TEST_CASE("more blocks than allowed", "[geometry][cutting]") {
   }
 }
 
+TEST_CASE("every edge of a block knows its joint", "[geometry][cutting]") {
+  // Joint 0 across the middle, joint 1 upright through the upper half, joint 2 along the right half of joint 0.
+  const std::vector<Segment> segments = {{{0.0, 2.0}, {4.0, 2.0}}, {{1.0, 2.0}, {1.0, 4.0}}, {{2.5, 2.0}, {4.0, 2.0}}};
+  for (const double away : {0.0, 5e6}) {
+    INFO("moved by " << away);
+    const Vec2 by(away, -away);
+    PolygonWithHoles domain = square;
+    for (Vec2& vertex : domain.outer) vertex += by;
+    std::vector<Segment> there = segments;
+    for (Segment& segment : there) segment = {segment.from + by, segment.to + by};
+    const Cutting cutting = cut(domain, there);
+    REQUIRE(cutting.blocks.size() == 3);
+    REQUIRE(cutting.edge_joints.size() == 3);
+    constexpr int none = Cutting::no_joint;
+    // Each begins with its lowest vertex. Where joints run along each other the first one counts.
+    CHECK(cutting.edge_joints[0] == std::vector<int>{none, none, 0, none});
+    CHECK(cutting.edge_joints[1] == std::vector<int>{0, 1, none, none});
+    CHECK(cutting.edge_joints[2] == std::vector<int>{0, none, none, 1});
+  }
+}
+
+TEST_CASE("an edge of several joints has the one that most of it is", "[geometry][cutting]") {
+  // Two lines one behind the other, which are one edge of the block below.
+  const Cutting cutting = cut(square, {{{0.0, 2.0}, {1.5, 2.0}}, {{1.5, 2.0}, {4.0, 2.0}}});
+  REQUIRE(cutting.blocks.size() == 2);
+  CHECK(cutting.edge_joints[0] == std::vector<int>{Cutting::no_joint, Cutting::no_joint, 1, Cutting::no_joint});
+}
+
 TEST_CASE("fifty thousand blocks take as many comparisons as blocks, times a number", "[geometry][cutting]") {
   const PolygonWithHoles domain{{{0.0, 0.0}, {1000.0, 0.0}, {1000.0, 600.0}, {400.0, 600.0}, {200.0, 200.0}, {0.0, 200.0}}, {}};
   std::vector<JointTrace> all;

@@ -148,6 +148,20 @@ TEST_CASE("numbers that no material has are warned of", "[scene][check]") {
   CHECK(check_scene(read_text(block_on_base, {"joint[0].friction_angle_deg=80"})).empty());
 }
 
+TEST_CASE("slivers are named with the key that unites them", "[scene][check]") {
+  const auto sliver = [](const std::string& height) {
+    return "[[block]]\nname = 'sliver'\nmaterial = 'rock'\nvertices_m = [[1.5, 0], [1.51, 0], [1.51, " + height + "], [1.5, " + height + "]]\n";
+  };
+  const std::string third = "[[block]]\nname = 'third'\nmaterial = 'rock'\nvertices_m = [[0, 1], [1, 1], [1, 2], [0, 2]]\n";
+  const std::vector<std::string> warnings = check_scene(read_text(block_on_base + third + sliver("0.009")));
+  REQUIRE(warnings.size() == 1);
+  CHECK_THAT(warnings.front(), ContainsSubstring("\"sliver\" with 9e-05 m2, of 3 free blocks, is smaller than 0.0001 of the median block"));
+  CHECK_THAT(warnings.front(), !ContainsSubstring("domain"));
+  // A hundredth of the size of the median block, and one that is fixed, are none.
+  CHECK(check_scene(read_text(block_on_base + third + sliver("0.0101"))).empty());
+  CHECK(check_scene(read_text(block_on_base + third + sliver("0.009") + "fixed = true\n")).empty());
+}
+
 TEST_CASE("a scene is judged by its memory before it is taken", "[scene][check]") {
   const Scene scene = running_bond(100, 100);
   CHECK_NOTHROW(require_memory(scene, std::size_t{1} << 30));

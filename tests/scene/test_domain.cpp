@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <map>
 
+#include "openclose/geometry/polygon.h"
 #include "openclose/scene/check.h"
 #include "openclose/scene/writer.h"
 #include "scene_file.h"
@@ -351,6 +352,59 @@ TEST_CASE("blocks that would have holes", "[scene][domain][errors]") {
     CHECK(scene.cutting->enclosed_groups == 1);
     CHECK(scene.cutting->warnings.size() == 4);
   }
+}
+
+TEST_CASE("sets and lines give their seams the joint they name", "[scene][domain]") {
+  const std::string bedding =
+      "[[joint]]\nname = 'bedding'\nnormal_stiffness_pa_per_m = 1e9\nshear_stiffness_pa_per_m = 4e8\nfriction_angle_deg = 20\n";
+  const Scene scene = read_text(bedding + bare_domain + "[[joint_set]]\ndip_deg = 0\nspacing_m = 2\norigin_m = [0, 0]\njoint = 'bedding'\n" +
+                                "[[joint_line]]\nfrom_m = [1, 0]\nto_m = [1, 2]\n");
+  REQUIRE(scene.joints.size() == 2);
+  CHECK_FALSE(scene.joints[0].has_materials());
+  REQUIRE(scene.blocks.size() == 3);
+  constexpr int none = BlockInput::by_materials;
+  CHECK(scene.blocks[0].edge_joints == std::vector<int>{none, none, 0, none});
+  CHECK(scene.blocks[2].edge_joints == std::vector<int>{0, none, none, none});
+
+  // What cut writes is the same scene.
+  const Scene again = read_text(write_scene(scene));
+  for (std::size_t b = 0; b < 3; ++b) CHECK(again.blocks[b].edge_joints == scene.blocks[b].edge_joints);
+  CHECK(again.joints[0].name == "bedding");
+  CHECK_FALSE(again.joints[0].has_materials());
+  CHECK(write_scene(again) == write_scene(scene));
+
+  // Without a name nothing is kept of the edges.
+  const Scene plain = read_text(bare_domain + "[[joint_set]]\ndip_deg = 0\nspacing_m = 2\norigin_m = [0, 0]\n");
+  for (const BlockInput& block : plain.blocks) CHECK(block.edge_joints.empty());
+}
+
+TEST_CASE("sets by dip and dip direction", "[scene][domain]") {
+  const auto cut_with = [](const std::string& set) {
+    return read_text(bare_domain + "section_direction_deg = 90\n" + "[[joint_set]]\nspacing_m = 1\norigin_m = [0, 0]\n" + set);
+  };
+  const Scene by_direction = cut_with("dip_deg = 60\ndip_direction_deg = 270\n");
+  const Scene by_angle = cut_with("dip_deg = 60\n");
+  REQUIRE(by_direction.blocks.size() == by_angle.blocks.size());
+  CHECK(by_direction.blocks.size() > 3);
+  for (std::size_t b = 0; b < by_angle.blocks.size(); ++b)
+    CHECK((polygon_properties(by_direction.blocks[b].vertices).centroid - polygon_properties(by_angle.blocks[b].vertices).centroid).norm() < 1e-9);
+  CHECK(by_direction.cutting->warnings.empty());
+  // Lines of a set that strikes obliquely are flatter and farther apart: fewer blocks, and what slides leaves the section.
+  const Scene oblique = cut_with("dip_deg = 60\ndip_direction_deg = 220\n");
+  CHECK(oblique.blocks.size() < by_angle.blocks.size());
+  REQUIRE(oblique.cutting->warnings.size() == 1);
+  CHECK_THAT(oblique.cutting->warnings.front(), ContainsSubstring("the planes strike more than 20 degrees off the line across the section"));
+}
+
+TEST_CASE("dip directions that say nothing", "[scene][domain][errors]") {
+  const auto error_of_set = [](const std::string& section, const std::string& set) {
+    return error_of(bare_domain + section + "[[joint_set]]\nspacing_m = 1\norigin_m = [0, 0]\n" + set);
+  };
+  const std::string section = "section_direction_deg = 90\n";
+  CHECK_THAT(error_of_set("", "dip_deg = 60\ndip_direction_deg = 270\n"),
+             ContainsSubstring("joint_set[0].dip_direction_deg: nothing says where the section points; accepted: domain.section_direction_deg"));
+  CHECK_THAT(error_of_set(section, "dip_deg = -60\ndip_direction_deg = 270\n"), ContainsSubstring("accepted: a number in [0, 90]"));
+  CHECK_THAT(error_of_set(section, "dip_deg = 90\ndip_direction_deg = 0\n"), ContainsSubstring("the planes lie in the section"));
 }
 
 TEST_CASE("cutting without a domain", "[scene][domain][errors]") {

@@ -213,6 +213,7 @@ std::vector<std::string> scenes_with(const std::string& table) {
     return kinds;
   }
   if (table == "domain") return {block_on_base + "[domain]\n"};
+  if (table == "joint") return {block_on_base + "[[joint]]\nname = 'seam'\n"};  // one without a name needs materials
   return {block_on_base + domain + "[[" + table + "]]\n"};
 }
 

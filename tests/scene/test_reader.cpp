@@ -225,6 +225,24 @@ TEST_CASE("a surcharge lies on one edge of its block, which its points find; its
   CHECK((surcharge.resultant(surcharge.to - surcharge.from) - Vec2(250.0, -1000.0)).norm() <= 1e-12);
 }
 
+TEST_CASE("edges of a block name their joints, however its vertices are written", "[scene][reader]") {
+  const std::string joint = "[[joint]]\nname = 'bedding'\nnormal_stiffness_pa_per_m = 1e9\nshear_stiffness_pa_per_m = 4e8\nfriction_angle_deg = 20\n";
+  const auto block = [&](const std::string& vertices, const std::string& joints) {
+    return block_on_base + joint + "[[block]]\nname = 'c'\nmaterial = 'rock'\nvertices_m = " + vertices + "\nedge_joints = " + joints + "\n";
+  };
+  constexpr int none = BlockInput::by_materials;
+  const auto joints_of = [&](const std::string& text) { return read_text(text).blocks.back().edge_joints; };
+  const int bedding = static_cast<int>(read_text(block("[[50, 0], [52, 0], [50, 1]]", "['', 'bedding', '']")).joints.size()) - 1;
+  CHECK(joints_of(block("[[50, 0], [52, 0], [50, 1]]", "['bedding', '', '']")) == std::vector<int>{bedding, none, none});
+  // Clockwise: the outline is turned about its first vertex.
+  const Scene turned = read_text(block("[[50, 0], [50, 1], [52, 0]]", "['', '', 'bedding']"));
+  CHECK(turned.blocks.back().vertices[1].isApprox(Vec2(52.0, 0.0)));
+  CHECK(turned.blocks.back().edge_joints == std::vector<int>{bedding, none, none});
+  // A vertex on a straight line is dropped.
+  CHECK(joints_of(block("[[50, 0], [51, 0], [52, 0], [50, 1]]", "['bedding', 'bedding', '', '']")) == std::vector<int>{bedding, none, none});
+  CHECK(joints_of(block("[[50, 0], [52, 0], [50, 1]]", "['', '', '']")).empty());
+}
+
 TEST_CASE("the residual friction angle is the friction angle unless it is given", "[scene][reader]") {
   CHECK_FALSE(read_text(block_on_base).joints[0].residual_friction_angle);
   const JointProperties joint = read_text(with_line(block_on_base, 10, "residual_friction_angle_deg = 30")).joints[0];

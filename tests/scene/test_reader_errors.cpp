@@ -439,3 +439,15 @@ TEST_CASE("gravity that nobody has is refused", "[scene][reader][errors]") {
   CHECK_THAT(error_of("gravity_m_per_s2 = [0, -1e17]\n" + std::string(block_on_base)),
              ContainsSubstring("gravity_m_per_s2[1]: -1e+17 is out of range; accepted: a number in [-1000000, 1000000]"));
 }
+
+TEST_CASE("joints that edges of blocks name", "[scene][reader][errors]") {
+  const std::string joint = "[[joint]]\nname = 'bedding'\nnormal_stiffness_pa_per_m = 1e9\nshear_stiffness_pa_per_m = 4e8\nfriction_angle_deg = 20\n";
+  const auto block = [&](const std::string& vertices, const std::string& joints) {
+    return block_on_base + joint + "[[block]]\nname = 'c'\nmaterial = 'rock'\nvertices_m = " + vertices + "\nedge_joints = " + joints + "\n";
+  };
+  CHECK_THAT(error_of(block("[[50, 0], [51, 0], [52, 0], [50, 1]]", "['bedding', '', '', '']")), ContainsSubstring("along one straight line"));
+  CHECK_THAT(error_of(block("[[50, 0], [52, 0], [50, 1]]", "['bedding']")), ContainsSubstring("there are 1 names for 3 vertices"));
+  CHECK_THAT(error_of(block("[[50, 0], [52, 0], [50, 1]]", "['beding', '', '']")),
+             ContainsSubstring("edge_joints[0]: there is no joint \"beding\"; accepted: \"bedding\""));
+  CHECK_THAT(error_of(block_on_base + joint + joint), ContainsSubstring("\"bedding\" is already the name of the joint"));
+}

@@ -1,0 +1,46 @@
+#include "openclose/geometry/labelled_outline.h"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+namespace openclose {
+namespace {
+
+int lowest_vertex(const Polygon& polygon) {
+  const auto lower = [](const Vec2& a, const Vec2& b) { return std::pair(a.y(), a.x()) < std::pair(b.y(), b.x()); };
+  return static_cast<int>(std::min_element(polygon.begin(), polygon.end(), lower) - polygon.begin());
+}
+
+}  // namespace
+
+Polygon from_lowest(Polygon polygon) {
+  if (!polygon.empty()) std::rotate(polygon.begin(), polygon.begin() + lowest_vertex(polygon), polygon.end());
+  return polygon;
+}
+
+LabelledOutline simplified(const Polygon& polygon, const std::vector<int>& labels) {
+  const std::vector<int> kept = corners(polygon);
+  const int count = static_cast<int>(polygon.size());
+  LabelledOutline outline;
+  for (std::size_t k = 0; k < kept.size(); ++k) {
+    outline.polygon.push_back(polygon[kept[k]]);
+    const int end = kept[(k + 1) % kept.size()];
+    std::map<int, double> lengths;
+    int i = kept[k];
+    do {
+      const int next = (i + 1) % count;
+      lengths[labels[i]] += (polygon[next] - polygon[i]).norm();
+      i = next;
+    } while (i != end);
+    const auto shorter = [](const auto& a, const auto& b) { return a.second < b.second; };
+    outline.labels.push_back(std::max_element(lengths.begin(), lengths.end(), shorter)->first);
+  }
+  if (kept.empty()) return outline;
+  const int lowest = lowest_vertex(outline.polygon);
+  std::rotate(outline.polygon.begin(), outline.polygon.begin() + lowest, outline.polygon.end());
+  std::rotate(outline.labels.begin(), outline.labels.begin() + lowest, outline.labels.end());
+  return outline;
+}
+
+}  // namespace openclose
