@@ -10,6 +10,8 @@ namespace {
 /// are undecided with five times as many of them, and still three with twenty-five times.
 constexpr int open_close_increments_per_step = 5;
 
+constexpr int trials_of_full_effort = 4;  ///< that stay undecided
+
 /// Rigid contacts at rest carry what springs do, since only the ratios of stiffnesses count.
 std::unique_ptr<FrozenSolver> solver_of(const Scene& scene, const FrozenSystem& system, const FrozenStrength& strength) {
   if (scene.method.contact == "dem")
@@ -64,28 +66,34 @@ TrialResult FrozenTrials::first(double srf) {
     none.criterion = "no equilibrium even of joints that neither slip nor open in shear";
     return none;
   }
-  TrialResult result = result_of(solver_->relax(*bonded_), srf);
+  TrialResult result = result_of(solver_->relax(*bonded_, effort()), srf);
   result.displacement = 0.0;
   return result;
 }
 
 TrialResult FrozenTrials::next(double srf) {
   strength_.reduce(srf);
-  return result_of(solver_->relax(stable_.value()), srf);
+  return result_of(solver_->relax(stable_.value(), effort()), srf);
 }
 
 void FrozenTrials::exchange(Archive& archive) {
-  archive(bonded_, bonded_failed_, first_stable_, stable_, stable_factor_, mechanism_, travel_);
+  archive(bonded_, bonded_failed_, first_stable_, stable_, stable_factor_, mechanism_, undecided_, travel_);
   bool sound = mechanism_.size() == 0 || mechanism_.size() == 3 * system_.rows();
   for (const std::optional<FrozenState>* state : {&bonded_, &first_stable_, &stable_}) sound = sound && (!*state || (*state)->fits(system_));
   archive.require(sound, "the saved state has blocks or contacts that are not there");
   solver_->exchange(archive);
 }
 
+/// Where several trials have stayed undecided, most of the others do.
+Effort FrozenTrials::effort() const {
+  return undecided_ < trials_of_full_effort ? Effort::full : Effort::reduced;
+}
+
 TrialResult FrozenTrials::result_of(RelaxationResult&& relaxed, double srf) {
   TrialResult result;
   result.criterion = word_of(relaxed.end);
   result.steps = static_cast<int>(relaxed.steps);
+  result.exhausted = solver_->is_exhausted();
   const bool is_first = !stable_;
   if (relaxed.end == RelaxationEnd::stable) {
     result.outcome = TrialOutcome::stable;
@@ -101,6 +109,8 @@ TrialResult FrozenTrials::result_of(RelaxationResult&& relaxed, double srf) {
   if (relaxed.end == RelaxationEnd::mechanism) {
     result.outcome = TrialOutcome::failed;
     mechanism_ = std::move(relaxed.mechanism);
+  } else if (stable_) {
+    ++undecided_;
   }
   return result;
 }

@@ -46,6 +46,7 @@ class FrozenTrials : public StrengthTrials {
   const TravelOnPath& travel() const { return travel_; }
 
  private:
+  Effort effort() const;
   TrialResult result_of(RelaxationResult&& relaxed, double srf);
   double displacement_of_points(const FrozenState& state) const;
 
@@ -63,6 +64,7 @@ class FrozenTrials : public StrengthTrials {
   double stable_factor_ = 0.0;
   std::function<std::optional<double>(double near)> limit_analysis_;
   Eigen::VectorXd mechanism_;
+  int undecided_ = 0;  ///< trials from a stable state so far
   TravelOnPath travel_;
 };
 

@@ -73,6 +73,7 @@ class Search {
     const double stable = *bracket_.stable;
     std::erase_if(undecided_, [&](double srf) { return srf <= stable || (bracket_.failed && srf >= *bracket_.failed); });
     if (undecided_.empty()) return bracket_.failed ? middle(stable, *bracket_.failed) : above(stable);
+    if (exhausted_) return std::nullopt;
     std::ranges::sort(undecided_);
     const double lowest = undecided_.front(), highest = undecided_.back();
     if (undecided_.size() < most_undecided) {
@@ -145,6 +146,7 @@ class Search {
     static_cast<TrialResult&>(trial) = result;
     trial.srf = srf;
     trial.stage = stage;
+    exhausted_ = exhausted_ || result.exhausted;
     done_(trial);
     return result;
   }
@@ -166,6 +168,7 @@ class Search {
   bool started_ = false;
   std::vector<double> undecided_;  ///< factors between the two ends
   double retried_ = 0.0;
+  bool exhausted_ = false;
   bool has_looked_for_proof_ = false;
   std::vector<double> failures_;
   double first_width_ = 0.0, share_ = 0.0;

@@ -27,10 +27,11 @@ struct TrialResult {
   int steps = 0;
   double displacement = 0.0;       ///< [m] largest of a measured point since the first stable state
   bool at_every_strength = false;  ///< failed, and no strength whatever would help
+  bool exhausted = false;          ///< so much work has been done by then that what is undecided stays so
 
   void exchange(Archive& archive) {
-    auto& [a, b, c, d, e] = *this;
-    archive(a, b, c, d, e);
+    auto& [a, b, c, d, e, f] = *this;
+    archive(a, b, c, d, e, f);
     archive.require(outcome <= TrialOutcome::undecided, "the saved state has a trial with an end that there is not");
   }
 };

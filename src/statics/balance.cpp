@@ -23,58 +23,25 @@ constexpr double convex_reduction = 1e-10;  ///< [-] residual of a pass over tha
 
 }  // namespace
 
-Balance::Balance(const FrozenSystem& system, const FrozenStrength& strength) : system_(system), strength_(strength), solver_(make_solver()) {
+Balance::Balance(const FrozenSystem& system, const FrozenStrength& strength) : system_(system), strength_(strength), solver_(make_solver()), contacts_(system) {
   std::vector<std::pair<int, int>> couplings;
   for (const FrozenContact& c : system.contacts()) {
     if (c.a >= 0 && c.b >= 0) couplings.emplace_back(c.a, c.b);
   }
   matrix_.set_pattern(system.rows(), couplings);
-  for (const FrozenContact& c : system.contacts()) {
-    Row row{c.a >= 0 ? c.a : system.rows(), c.b >= 0 ? c.b : system.rows(), {}, {}, {}, {}};
-    for (int k = 0; k < 3; ++k) {
-      if (c.a >= 0) row.normal_a[k] = c.normal_a[k], row.shear_a[k] = c.shear_a[k];
-      if (c.b >= 0) row.normal_b[k] = c.normal_b[k], row.shear_b[k] = c.shear_b[k];
-    }
-    rows_.push_back(row);
-  }
   list_shares();
   padded_ = forces_ = Eigen::VectorXd::Zero(3 * (system.rows() + 1));
-  responses_.resize(system.contacts().size());
-  springs_.resize(system.contacts().size());
   residual_.resize(3 * system.rows());
 }
 
 void Balance::start(const FrozenState& state, double eps) {
   eps_ = eps;
   support_forces_ = state.supports;
-  for (std::size_t i = 0; i < springs_.size(); ++i) {
-    const FrozenContact& c = system_.contacts()[i];
-    springs_[i] = {state.contacts[i].gap, state.contacts[i].shear, c.normal_stiffness, c.shear_stiffness, springs_[i].strength};
-  }
+  for (std::size_t i = 0; i < state.contacts.size(); ++i) contacts_.start(i, state.contacts[i]);
 }
 
 void Balance::renew_strength(const FrozenState& state) {
-  for (std::size_t i = 0; i < springs_.size(); ++i) springs_[i].strength = strength_.of(i, state.contacts[i].bonded);
-}
-
-Balance::Response Balance::respond(const Spring& spring, double gap_change, double slip_change, ShearLaw law) const {
-  Response r;
-  const double trial = -spring.normal_stiffness * (spring.gap + gap_change);
-  const bool closed = trial >= -spring.strength.tension;  // joints that just touch, as drawn, resist
-  r.normal = closed ? trial : -spring.strength.tension;
-  r.normal_by_gap = closed ? -spring.normal_stiffness : 0.0;
-  const double shear = spring.shear - spring.shear_stiffness * slip_change;
-  r.shear = shear;
-  r.shear_by_gap = 0.0;
-  r.shear_by_slip = -spring.shear_stiffness;
-  if (law == ShearLaw::elastic) return r;
-  const ContactStrength::ShearBound bound =
-      law == ShearLaw::coulomb ? spring.strength.shear_bound(r.normal) : ContactStrength::ShearBound{spring.bound, 0.0};
-  if (std::abs(shear) <= bound.value) return r;
-  r.shear = std::copysign(bound.value, shear);
-  r.shear_by_gap = std::copysign(bound.slope, shear) * r.normal_by_gap;
-  r.shear_by_slip = 0.0;
-  return r;
+  for (std::size_t i = 0; i < state.contacts.size(); ++i) contacts_.set_strength(i, strength_.of(i, state.contacts[i].bonded));
 }
 
 const double* Balance::padded(const Increment& x) {
@@ -83,18 +50,8 @@ const double* Balance::padded(const Increment& x) {
 }
 
 void Balance::evaluate(const Increment& x, ShearLaw law) {
-  const double* motion = padded(x);
   forces_.setZero();
-  double* force = forces_.data();
-  for (std::size_t i = 0; i < rows_.size(); ++i) {
-    const Row& row = rows_[i];
-    const Response& r = responses_[i] = respond(springs_[i], row.gap(motion), row.slip(motion), law);
-    if (r.normal == 0.0 && r.shear == 0.0) continue;
-    for (int k = 0; k < 3; ++k) {
-      force[3 * row.a + k] += r.normal * row.normal_a[k] + r.shear * row.shear_a[k];
-      force[3 * row.b + k] += r.normal * row.normal_b[k] + r.shear * row.shear_b[k];
-    }
-  }
+  contacts_.evaluate(padded(x), law, forces_.data());
   const auto& supports = system_.supports();
   for (std::size_t i = 0; i < supports.size(); ++i) {
     const double stretch = supports[i].direction.dot(x.segment<3>(3 * supports[i].row));
@@ -148,11 +105,11 @@ void Balance::renew(int slot) {
   block.setZero();
   for (int k = share_start_[slot]; k < share_start_[slot + 1]; ++k) {
     const Share& share = shares_[k];
-    const Response& r = responses_[share.contact];
+    const ContactResponse& r = assembled_[share.contact];
     if (r.normal_by_gap == 0.0 && r.shear_by_slip == 0.0) continue;
-    const Row& row = rows_[share.contact];
-    const double *force_n = share.force_on_b ? row.normal_b : row.normal_a, *force_t = share.force_on_b ? row.shear_b : row.shear_a;
-    const double *way_n = share.motion_of_b ? row.normal_b : row.normal_a, *way_t = share.motion_of_b ? row.shear_b : row.shear_a;
+    const FrozenContact& c = system_.contacts()[share.contact];
+    const BlockVector &force_n = share.force_on_b ? c.normal_b : c.normal_a, &force_t = share.force_on_b ? c.shear_b : c.shear_a;
+    const BlockVector &way_n = share.motion_of_b ? c.normal_b : c.normal_a, &way_t = share.motion_of_b ? c.shear_b : c.shear_a;
     for (int i = 0; i < 3; ++i) {
       const double by_gap = -(r.normal_by_gap * force_n[i] + r.shear_by_gap * force_t[i]), by_slip = -r.shear_by_slip * force_t[i];
       for (int j = 0; j < 3; ++j) block(i, j) += by_gap * way_n[j] + by_slip * way_t[j];
@@ -161,14 +118,16 @@ void Balance::renew(int slot) {
 }
 
 /// The tangent at the last evaluation; what has not changed since the last one stays.
-void Balance::assemble() {
-  const auto differ = [](const Response& a, const Response& b) {
+void Balance::assemble(Friction friction) {
+  const auto differ = [](const ContactResponse& a, const ContactResponse& b) {
     return a.normal_by_gap != b.normal_by_gap || a.shear_by_gap != b.shear_by_gap || a.shear_by_slip != b.shear_by_slip;
   };
   const bool first = assembled_eps_ < 0.0;
-  for (std::size_t i = 0; i < responses_.size(); ++i) {
-    if (!first && !differ(responses_[i], assembled_[i])) continue;
-    assembled_[i] = responses_[i];
+  for (std::size_t i = 0; i < assembled_.size(); ++i) {
+    ContactResponse r = contacts_.response(i);
+    if (friction == Friction::known) r.shear_by_gap = 0.0;
+    if (!first && !differ(r, assembled_[i])) continue;
+    assembled_[i] = r;
     for (const int slot : slots_of_contact_[i]) mark_stale(slot);
   }
   if (eps_ != assembled_eps_) {
@@ -230,11 +189,8 @@ bool Balance::newton(Increment& x, int most_iterations) {
 }
 
 void Balance::begin_search(const Increment& x, const Increment& way) {
-  ways_.resize(rows_.size());
-  const double* motion = padded(x);
-  for (std::size_t i = 0; i < rows_.size(); ++i) ways_[i].gap = rows_[i].gap(motion), ways_[i].slip = rows_[i].slip(motion);
-  motion = padded(way);
-  for (std::size_t i = 0; i < rows_.size(); ++i) ways_[i].opening = rows_[i].gap(motion), ways_[i].slipping = rows_[i].slip(motion);
+  const Eigen::VectorXd start = Eigen::Map<const Eigen::VectorXd>(padded(x), padded_.size());
+  contacts_.begin_search(start.data(), padded(way));
   linear_slope_ = curvature_ = 0.0;
   for (int b = 0; b < system_.rows(); ++b) {
     const FrozenBlock& block = system_.blocks()[b];
@@ -253,13 +209,7 @@ void Balance::begin_search(const Increment& x, const Increment& way) {
 
 /// Derivative of the energy of a convex problem along the way of the search.
 double Balance::slope_at(double part, ShearLaw law) const {
-  double slope = linear_slope_ + part * curvature_;
-  for (std::size_t i = 0; i < ways_.size(); ++i) {
-    const WayOfContact& w = ways_[i];
-    const Response r = respond(springs_[i], w.gap + part * w.opening, w.slip + part * w.slipping, law);
-    slope -= r.normal * w.opening + r.shear * w.slipping;
-  }
-  return slope;
+  return contacts_.subtract_power(linear_slope_ + part * curvature_, part, law);
 }
 
 /// The part of a Newton step at which the slope of the energy has nearly vanished. The slope never falls along the step. Where it is still negative
@@ -306,14 +256,14 @@ bool Balance::convex(Increment& x, ShearLaw law) {
 /// Where Newton's method stalls: problems with the friction bounds held fixed, the bounds being those of mean normal forces, and from every second
 /// Newton's method anew.
 bool Balance::restart(Increment& x) {
-  std::vector<double> mean(springs_.size());
+  std::vector<double> mean(system_.contacts().size());
   evaluate(x, ShearLaw::coulomb);
-  for (std::size_t i = 0; i < springs_.size(); ++i) mean[i] = responses_[i].normal;
+  for (std::size_t i = 0; i < mean.size(); ++i) mean[i] = contacts_.response(i).normal;
   Increment y = Increment::Zero(x.size());
   for (int pass = 1; pass <= most_passes; ++pass) {
-    for (std::size_t i = 0; i < springs_.size(); ++i) springs_[i].bound = springs_[i].strength.shear_bound(mean[i]).value;
+    for (std::size_t i = 0; i < mean.size(); ++i) contacts_.set_bound_of(i, mean[i]);
     if (!convex(y, ShearLaw::fixed)) return false;
-    for (std::size_t i = 0; i < springs_.size(); ++i) mean[i] = 0.5 * (mean[i] + responses_[i].normal);
+    for (std::size_t i = 0; i < mean.size(); ++i) mean[i] = 0.5 * (mean[i] + contacts_.response(i).normal);
     if (pass % 2 != 0) continue;
     Increment trial = y;
     if (newton(trial, most_newton_iterations)) {
@@ -333,24 +283,22 @@ bool Balance::solve(Increment& x) {
 }
 
 bool Balance::solve_open_close(Increment& x) {
-  const auto state_of = [](const Response& r) { return r.normal_by_gap == 0.0 ? 0 : r.shear_by_slip == 0.0 ? 1 : 2; };
+  const auto states = [&] {
+    std::vector<char> of(system_.contacts().size());
+    for (std::size_t i = 0; i < of.size(); ++i) of[i] = static_cast<char>(contacts_.response(i).status());
+    return of;
+  };
   evaluate(x, ShearLaw::coulomb);
   for (int pass = 0; pass < most_open_close_passes; ++pass) {
-    std::vector<int> states;
-    for (Response& r : responses_) {
-      states.push_back(state_of(r));
-      r.shear_by_gap = 0.0;  // friction is a known force
-    }
-    assemble();
+    const std::vector<char> before = states();
+    assemble(Friction::known);
     ++counters_.factorisations;
     if (!solver_->factor(matrix_)) return false;
     const Increment step = solver_->solve(residual_);
     if (step.size() == 0 || !step.allFinite()) return false;
     x -= step;
     evaluate(x, ShearLaw::coulomb);
-    bool same = true;
-    for (std::size_t i = 0; i < responses_.size() && same; ++i) same = state_of(responses_[i]) == states[i];
-    if (same) return true;
+    if (states() == before) return true;
   }
   return false;
 }
@@ -359,19 +307,20 @@ bool Balance::solve_bonded(Increment& x) {
   return convex(x, ShearLaw::elastic);
 }
 
-void Balance::accept(const Increment& x, FrozenState& state, ShearLaw law) const {
+void Balance::accept(const Increment& x, FrozenState& state, ShearLaw law) {
+  evaluate(x, law);
   const auto& contacts = system_.contacts();
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const FrozenContact& c = contacts[i];
     double gap = 0.0, slip = 0.0;
     if (c.a >= 0) gap += c.normal_a.dot(x.segment<3>(3 * c.a)), slip += c.shear_a.dot(x.segment<3>(3 * c.a));
     if (c.b >= 0) gap += c.normal_b.dot(x.segment<3>(3 * c.b)), slip += c.shear_b.dot(x.segment<3>(3 * c.b));
-    const Response r = respond(springs_[i], gap, slip, law);
+    const ContactResponse r = contacts_.response(i);
     FrozenContactState& s = state.contacts[i];
     s.gap += gap;
     s.normal = r.normal;
     s.shear = r.shear;
-    s.status = r.normal_by_gap == 0.0 ? ContactStatus::open : r.shear_by_slip == 0.0 ? ContactStatus::sliding : ContactStatus::sticking;
+    s.status = r.status();
   }
   for (std::size_t i = 0; i < state.supports.size(); ++i) {
     const FrozenSupport& s = system_.supports()[i];

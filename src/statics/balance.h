@@ -13,16 +13,9 @@
 #include <memory>
 
 #include "openclose/linear/solver.h"
-#include "openclose/statics/frozen_state.h"
+#include "openclose/statics/increment_packs.h"
 
 namespace openclose {
-
-/// What a contact's shear force is bounded by during an increment.
-enum class ShearLaw {
-  coulomb,  ///< by the strength at the normal force of the same increment
-  fixed,    ///< by given bounds: a convex problem
-  elastic,  ///< by nothing: neither slips nor opens; a convex problem
-};
 
 struct BalanceCounters {
   long factorisations = 0;
@@ -51,7 +44,7 @@ class Balance {
   /// [-] of R at x.
   double residual_norm(const Increment& x);
   /// The forces after the increment x.
-  void accept(const Increment& x, FrozenState& state, ShearLaw law = ShearLaw::coulomb) const;
+  void accept(const Increment& x, FrozenState& state, ShearLaw law = ShearLaw::coulomb);
   /// Largest component of an increment.
   static double size(const Increment& x) { return x.size() == 0 ? 0.0 : x.cwiseAbs().maxCoeff(); }
 
@@ -63,32 +56,16 @@ class Balance {
   }
 
  private:
-  struct Spring {  // what a contact starts the increment with
-    double gap, shear, normal_stiffness, shear_stiffness;
-    ContactStrength strength;
-    double bound = 0.0;  // of ShearLaw::fixed
-  };
-  struct Response {
-    double normal, shear;
-    double normal_by_gap, shear_by_gap, shear_by_slip;
-  };
-  /// What the loops over all contacts read of one: the rows of its blocks, a fixed one being the row after the last, whose numbers nothing reads.
-  struct Row {
-    int a, b;
-    double normal_a[3], normal_b[3], shear_a[3], shear_b[3];
-    double gap(const double* x) const { return along(normal_a, x + 3 * a) + along(normal_b, x + 3 * b); }
-    double slip(const double* x) const { return along(shear_a, x + 3 * a) + along(shear_b, x + 3 * b); }
-    static double along(const double* g, const double* d) { return g[0] * d[0] + g[1] * d[1] + g[2] * d[2]; }
-  };
   /// A block of the matrix to which a contact adds: the products of its forces on one block by the motion of one.
   struct Share {
     int contact;
     bool force_on_b, motion_of_b;
   };
 
-  Response respond(const Spring& spring, double gap_change, double slip_change, ShearLaw law) const;
   void evaluate(const Increment& x, ShearLaw law);
-  void assemble();
+  /// Whether the tangent has how friction changes with the normal force, or takes it as a known force.
+  enum class Friction { coupled, known };
+  void assemble(Friction friction = Friction::coupled);
   void list_shares();
   void mark_stale(int slot);
   void renew(int slot);
@@ -105,24 +82,18 @@ class Balance {
   const FrozenStrength& strength_;
   std::unique_ptr<LinearSolver> solver_;
   BlockMatrix matrix_;
-  std::vector<Row> rows_;
+  IncrementPacks contacts_;
   std::vector<int> share_start_;  ///< of the slots of the matrix, in shares_
   std::vector<Share> shares_;
   std::vector<std::vector<int>> slots_of_contact_;
-  std::vector<Response> assembled_;  ///< with whose tangents the matrix was assembled
+  std::vector<ContactResponse> assembled_;  ///< with whose tangents the matrix was assembled
   std::vector<char> is_stale_;       ///< slots
   std::vector<int> stale_;
   double assembled_eps_ = -1.0;
   Eigen::VectorXd padded_, forces_;  ///< with the row of fixed blocks
-  std::vector<Spring> springs_;
   std::vector<double> support_forces_;
-  /// The way of a line search: each contact's gap and slip at its start and along it; of the linear rest the slope at its start and the curvature.
-  struct WayOfContact {
-    double gap, slip, opening, slipping;
-  };
-  std::vector<WayOfContact> ways_;
+  /// Of what is linear along the way of a line search: the slope of the energy at its start, and the curvature.
   double linear_slope_ = 0.0, curvature_ = 0.0;
-  std::vector<Response> responses_;
   Eigen::VectorXd residual_;
   double eps_ = 1.0;
   BalanceCounters counters_;

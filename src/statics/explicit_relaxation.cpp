@@ -31,7 +31,7 @@ std::vector<BlockVector> stiffness_sums(const FrozenSystem& system) {
 }  // namespace
 
 ExplicitRelaxation::ExplicitRelaxation(const FrozenSystem& system, const FrozenStrength& strength, double local_damping, long most_steps)
-    : system_(system), strength_(strength), local_damping_(local_damping), most_steps_(most_steps), inertia_(stiffness_sums(system)) {
+    : system_(system), strength_(strength), local_damping_(local_damping), most_steps_(most_steps), inertia_(stiffness_sums(system)), contacts_(system) {
   // What no spring holds in a direction has its own mass there.
   for (std::size_t b = 0; b < inertia_.size(); ++b) {
     for (int k = 0; k < 3; ++k) {
@@ -41,20 +41,20 @@ ExplicitRelaxation::ExplicitRelaxation(const FrozenSystem& system, const FrozenS
 }
 
 RelaxationResult ExplicitRelaxation::bonded_state() {
-  return settle(FrozenState(system_), ShearBound::none);
+  return settle(FrozenState(system_), ShearLaw::elastic, Effort::full);
 }
 
 /// On the way waves open contacts that equilibrium keeps closed, so joints keep their bonds until rest; what is open or slides there loses them, and
 /// the rest settles again.
-RelaxationResult ExplicitRelaxation::relax(const FrozenState& from) {
-  RelaxationResult result = settle(from, ShearBound::strength);
+RelaxationResult ExplicitRelaxation::relax(const FrozenState& from, Effort effort) {
+  RelaxationResult result = settle(from, ShearLaw::coulomb, effort);
   FrozenState start = from;
   while (result.end == RelaxationEnd::stable) {
     note_slip(start, result.state);
     if (!lose_bonds(strength_, result.state)) break;
     const long steps = result.steps;
     start = result.state;
-    result = settle(start, ShearBound::strength);
+    result = settle(start, ShearLaw::coulomb, effort);
     result.steps += steps;
   }
   return result;
@@ -74,33 +74,33 @@ void ExplicitRelaxation::note_slip(const FrozenState& from, FrozenState& state) 
 }
 
 /// What `dem` has not brought to rest is judged by the viscous increments from the same state: nothing counts as failed without a mechanism.
-bool ExplicitRelaxation::fails(const FrozenState& from, RelaxationResult& result) const {
-  RelaxationResult judged = Relaxation(system_, strength_, IncrementRule::newton).relax(from);
+bool ExplicitRelaxation::fails(const FrozenState& from, Effort effort, RelaxationResult& result) const {
+  RelaxationResult judged = Relaxation(system_, strength_, IncrementRule::newton).relax(from, effort);
   if (judged.end != RelaxationEnd::mechanism) return false;
   result.end = RelaxationEnd::mechanism;
   result.mechanism = std::move(judged.mechanism);
   return true;
 }
 
-RelaxationResult ExplicitRelaxation::settle(const FrozenState& from, ShearBound bound) {
+RelaxationResult ExplicitRelaxation::settle(const FrozenState& from, ShearLaw law, Effort effort) {
   RelaxationResult result;
   result.state = from;
-  velocity_.assign(system_.blocks().size(), BlockVector::Zero());
-  strengths_.clear();
-  for (std::size_t i = 0; i < from.contacts.size(); ++i) strengths_.push_back(strength_.of(i, from.contacts[i].bonded));
+  begin(from, law);
   long judgement = first_judgement;
-  while (result.steps < most_steps_) {
-    for (long k = 0; k < steps_between_checks; ++k) move(result.state, bound);
+  while (result.steps < share_of(effort, most_steps_)) {
+    for (long k = 0; k < steps_between_checks; ++k) move(law, result.state);
+    read_contacts(result.state);
     result.steps += steps_between_checks;
+    steps_ += steps_between_checks;
     result.travel = farthest_between(result.state, from);
     const EquilibriumCheck check = check_equilibrium(system_, strength_, result.state);
-    if (bound == ShearBound::none ? check.in_balance() : check.holds()) {
+    if (law == ShearLaw::elastic ? check.in_balance() : check.holds()) {
       result.end = RelaxationEnd::stable;
       return result;
     }
     const bool escaped = !(result.travel <= most_travel);
-    if (bound == ShearBound::strength && (escaped || result.steps >= judgement)) {
-      if (fails(from, result)) return result;
+    if (law == ShearLaw::coulomb && (escaped || result.steps >= judgement)) {
+      if (fails(from, effort, result)) return result;
       judgement *= between_judgements;
     }
     if (escaped) {
@@ -111,35 +111,48 @@ RelaxationResult ExplicitRelaxation::settle(const FrozenState& from, ShearBound 
   return result;
 }
 
+void ExplicitRelaxation::begin(const FrozenState& from, ShearLaw law) {
+  velocity_ = force_ = Eigen::VectorXd::Zero(3 * (system_.rows() + 1));
+  strengths_.clear();
+  for (std::size_t i = 0; i < from.contacts.size(); ++i) {
+    strengths_.push_back(strength_.of(i, from.contacts[i].bonded));
+    contacts_.set_strength(i, strengths_[i]);
+    contacts_.start(i, from.contacts[i]);
+  }
+  contacts_.evaluate(velocity_.data(), law, force_.data());
+}
+
 /// One step: forces move the blocks, and their motion gives the next forces.
-void ExplicitRelaxation::move(FrozenState& state, ShearBound bound) {
-  const std::vector<BlockVector> force = unbalanced_forces(system_, state);
-  for (std::size_t b = 0; b < force.size(); ++b) {
+void ExplicitRelaxation::move(ShearLaw law, FrozenState& state) {
+  for (std::size_t i = 0; i < state.supports.size(); ++i) {
+    force_.segment<3>(3 * system_.supports()[i].row) += state.supports[i] * system_.supports()[i].direction;
+  }
+  for (int b = 0; b < system_.rows(); ++b) {
+    const BlockVector force = system_.blocks()[b].load + force_.segment<3>(3 * b);
     for (int k = 0; k < 3; ++k) {
-      double& v = velocity_[b][k];
-      const double damping = v == 0.0 ? 0.0 : std::copysign(local_damping_ * std::abs(force[b][k]), v);
-      v += time_step * (force[b][k] - damping) / inertia_[b][k];
+      double& v = velocity_[3 * b + k];
+      const double damping = v == 0.0 ? 0.0 : std::copysign(local_damping_ * std::abs(force[k]), v);
+      v += time_step * (force[k] - damping) / inertia_[b][k];
     }
-    state.displacement[b] += time_step * velocity_[b];
+    state.displacement[b] += time_step * velocity_.segment<3>(3 * b);
   }
-  for (std::size_t i = 0; i < state.contacts.size(); ++i) {
-    const FrozenContact& c = system_.contacts()[i];
-    FrozenContactState& s = state.contacts[i];
-    double gap = 0.0, slip = 0.0;
-    if (c.a >= 0) gap += c.normal_a.dot(velocity_[c.a]), slip += c.shear_a.dot(velocity_[c.a]);
-    if (c.b >= 0) gap += c.normal_b.dot(velocity_[c.b]), slip += c.shear_b.dot(velocity_[c.b]);
-    s.gap += time_step * gap;
-    const double normal = -c.normal_stiffness * s.gap, shear = s.shear - c.shear_stiffness * time_step * slip;
-    const bool open = normal < -strengths_[i].tension;
-    s.normal = open ? -strengths_[i].tension : normal;
-    const double largest = strengths_[i].largest_shear(s.normal);
-    const bool slides = bound == ShearBound::strength && std::abs(shear) > largest;
-    s.shear = slides ? std::copysign(largest, shear) : shear;
-    s.status = open ? ContactStatus::open : slides ? ContactStatus::sliding : ContactStatus::sticking;
-  }
+  force_.setZero();
+  static_assert(time_step == 1.0, "contacts follow the velocities");
+  contacts_.follow(velocity_.data(), law, force_.data());
   for (std::size_t i = 0; i < state.supports.size(); ++i) {
     const FrozenSupport& s = system_.supports()[i];
-    state.supports[i] -= s.stiffness * time_step * s.direction.dot(velocity_[s.row]);
+    state.supports[i] -= s.stiffness * time_step * s.direction.dot(velocity_.segment<3>(3 * s.row));
+  }
+}
+
+void ExplicitRelaxation::read_contacts(FrozenState& state) const {
+  for (std::size_t i = 0; i < state.contacts.size(); ++i) {
+    const ContactResponse r = contacts_.response(i);
+    FrozenContactState& s = state.contacts[i];
+    s.gap = contacts_.gap(i);
+    s.normal = r.normal;
+    s.shear = r.shear;
+    s.status = r.status();
   }
 }
 

@@ -6,6 +6,7 @@
 #pragma once
 
 #include "openclose/statics/frozen_solver.h"
+#include "openclose/statics/increment_packs.h"
 
 namespace openclose {
 
@@ -15,23 +16,29 @@ class ExplicitRelaxation : public FrozenSolver {
   ExplicitRelaxation(const FrozenSystem& system, const FrozenStrength& strength, double local_damping, long most_steps);
 
   RelaxationResult bonded_state() override;
-  RelaxationResult relax(const FrozenState& from) override;
+  bool is_exhausted() const override { return steps_ >= 2 * most_steps_; }
+  void exchange(Archive& archive) override { archive(steps_); }
+  using FrozenSolver::relax;
+  RelaxationResult relax(const FrozenState& from, Effort effort) override;
 
  private:
-  enum class ShearBound { strength, none };
-  RelaxationResult settle(const FrozenState& from, ShearBound bound);
+  RelaxationResult settle(const FrozenState& from, ShearLaw law, Effort effort);
   /// Joints that stick where they have come to rest, but have gone farther on the way there than their springs could carry, have slid. (What waves do
   /// on the way counts for nothing: only where it ends.) Marks those that lose strength by it.
   void note_slip(const FrozenState& from, FrozenState& state) const;
-  bool fails(const FrozenState& from, RelaxationResult& result) const;
-  void move(FrozenState& state, ShearBound bound);
+  bool fails(const FrozenState& from, Effort effort, RelaxationResult& result) const;
+  void begin(const FrozenState& from, ShearLaw law);
+  void move(ShearLaw law, FrozenState& state);
+  void read_contacts(FrozenState& state) const;
 
   const FrozenSystem& system_;
   const FrozenStrength& strength_;
   double local_damping_;
-  long most_steps_;
+  long most_steps_;  ///< of a state; of all together twice as many
+  long steps_ = 0;   ///< of all states so far
   std::vector<BlockVector> inertia_;  ///< by which one step of time is stable for every block
-  std::vector<BlockVector> velocity_;
+  IncrementPacks contacts_;
+  Eigen::VectorXd velocity_, force_;  ///< three numbers a block and three for fixed ones
   std::vector<ContactStrength> strengths_;
 };
 

@@ -9,9 +9,13 @@ namespace {
 constexpr double least_viscosity = 1e-9;
 constexpr double first_viscosity = 1e-2;
 constexpr double most_viscosity = 1e4;
-constexpr long effort_of_steady_motion = 2;  ///< [factorisations] of an increment that begins with the velocity of the one before
+constexpr long work_of_steady_motion = 2;  ///< [factorisations] of an increment that begins with the velocity of the one before
 constexpr int increments_of_caution = 3;     ///< after one that was not found
 constexpr long most_factorisations = 1500;   ///< of one relaxation by Newton's method; twice as many decide no more trials
+
+/// [factorisations] of all states together: two seconds with 600 blocks. Of 400 random slopes all that were certified took fewer. Passes with known
+/// friction take five times as many increments, see frozen_trials.cpp.
+constexpr long most_work_of_newton = 10000, most_work_of_open_close = 5 * most_work_of_newton;
 
 // Ways are in closures.
 constexpr double least_travel_of_escape = 1e3;  ///< what has gone so far without rest is a motion, if an unsteady one
@@ -52,6 +56,10 @@ RelaxationResult Relaxation::bonded_state() {
     eps = std::max(least_viscosity, 0.1 * eps);
   }
   return result;
+}
+
+bool Relaxation::is_exhausted() const {
+  return linear_solves() >= (rule_ == IncrementRule::newton ? most_work_of_newton : most_work_of_open_close);
 }
 
 /// Where the first increment, which is to end it at once, is not found easily, shorter ones are.
@@ -97,7 +105,10 @@ bool Relaxation::ends_in_a_short_increment(const Eigen::VectorXd& velocity, Rela
   return ended(result, x);
 }
 
-RelaxationResult Relaxation::relax(const FrozenState& from) {
+RelaxationResult Relaxation::relax(const FrozenState& from, Effort effort) {
+  // Passes with known friction are counted by increments, since each takes a few; Newton's method by factorisations.
+  const bool is_newton = rule_ == IncrementRule::newton;
+  const long most_work = share_of(effort, most_factorisations), most_steps = is_newton ? most_steps_ : share_of(effort, most_steps_);
   RelaxationResult result;
   result.state = from;
   balance_.renew_strength(result.state);
@@ -105,7 +116,7 @@ RelaxationResult Relaxation::relax(const FrozenState& from) {
   double eps = least_viscosity, stalled = 0.0;  // the latter of the last increment that was not found
   int found_since = 0;
   const long begin = balance_.counters().factorisations;
-  while (result.steps < most_steps_ && (rule_ == IncrementRule::open_close || balance_.counters().factorisations - begin < most_factorisations)) {
+  while (result.steps < most_steps && (!is_newton || balance_.counters().factorisations - begin < most_work)) {
     ++result.steps;
     const long before = balance_.counters().factorisations;
     balance_.start(result.state, eps);
@@ -131,11 +142,11 @@ RelaxationResult Relaxation::relax(const FrozenState& from) {
     result.travel = std::max(result.travel, farthest_between(result.state, from));
     if (ended(result, x)) return result;
     if (result.travel > farthest_way) break;
-    const long effort = balance_.counters().factorisations - before;
-    if (effort <= effort_of_steady_motion && length > first_increment_of_motion && ends_in_a_short_increment(velocity, result)) return result;
+    const long work = balance_.counters().factorisations - before;
+    if (work <= work_of_steady_motion && length > first_increment_of_motion && ends_in_a_short_increment(velocity, result)) return result;
     // What was too much a moment ago is not tried again at once.
     const double bearable = found_since < increments_of_caution ? std::min(eps, 2.0 * stalled) : 0.0;
-    eps = std::max({least_viscosity, bearable, eps / (effort <= 6 ? 10.0 : effort <= 15 ? 4.0 : 2.0), Balance::size(velocity) / longest});
+    eps = std::max({least_viscosity, bearable, eps / (work <= 6 ? 10.0 : work <= 15 ? 4.0 : 2.0), Balance::size(velocity) / longest});
   }
   result.end = result.travel > least_travel_of_escape ? RelaxationEnd::escaped : RelaxationEnd::undecided;
   return result;

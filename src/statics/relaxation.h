@@ -21,8 +21,10 @@ class Relaxation : public FrozenSolver {
   static constexpr int default_most_steps = 80;
 
   RelaxationResult bonded_state() override;
-  RelaxationResult relax(const FrozenState& from) override;
+  using FrozenSolver::relax;
+  RelaxationResult relax(const FrozenState& from, Effort effort) override;
   long linear_solves() const override { return balance_.counters().factorisations; }
+  bool is_exhausted() const override;
   void exchange(Archive& archive) override { archive(balance_); }
 
  private:

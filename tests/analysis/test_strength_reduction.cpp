@@ -336,6 +336,34 @@ TEST_CASE("an undecided trial is never a failed one", "[analysis][strength_reduc
   }
 }
 
+TEST_CASE("where so much work is done that undecided factors stay so, the search ends; where trials are decided it goes on",
+          "[analysis][strength_reduction]") {
+  /// Exhausted from the beginning, and counting.
+  class TiredTrials : public ToldTrials {
+   public:
+    using ToldTrials::ToldTrials;
+    TrialResult next(double srf) override {
+      ++count;
+      TrialResult result = ToldTrials::next(srf);
+      result.exhausted = true;
+      return result;
+    }
+    int count = 0;
+  };
+  StrengthReductionInput input;
+  input.width = 1e-3;
+  TiredTrials undecided([](double srf) { return srf < 1.3 ? TrialOutcome::stable : TrialOutcome::undecided; });
+  const StrengthBracket open = search_strength(undecided, input, [](const StrengthTrial&) {});
+  REQUIRE(open.stable);
+  CHECK_FALSE(open.failed);
+  // Factors 1, 1.25 and 1.5625, the last of which is undecided.
+  CHECK(undecided.count == 3);
+  TiredTrials decided([](double srf) { return srf < 1.3 ? TrialOutcome::stable : TrialOutcome::failed; });
+  const StrengthBracket narrow = search_strength(decided, input, [](const StrengthTrial&) {});
+  REQUIRE((narrow.stable && narrow.failed));
+  CHECK(*narrow.failed - *narrow.stable <= 1e-3);
+}
+
 TEST_CASE("the bracket of a small factor is narrow beside the factor", "[analysis][strength_reduction]") {
   const double limit = 0.0637, width = 1e-3;
   const auto b = searched([&](double srf) { return srf < limit ? TrialOutcome::stable : TrialOutcome::failed; }, std::nullopt, width);
