@@ -50,23 +50,60 @@ void print_factor(const Scene& scene, const FactorOfSafety& safety, const Output
   }
 }
 
-/// With what has been found out in the checkpoint after every trial.
+/// [-] Of the time of a search that its checkpoints may take: what a kill loses is then twenty times what a checkpoint costs.
+constexpr double share_of_checkpoints = 0.05;
+
+/// What a search has found out, written often enough to lose little and seldom enough to cost little.
+class SearchCheckpoint {
+ public:
+  SearchCheckpoint(std::string path, const Scene& scene) : path_(std::move(path)), scene_(scene) {}
+
+  /// The first state is written at once.
+  void keep(std::string state) {
+    latest_ = std::move(state);
+    if (process_cpu_time() >= next_write_) write();
+  }
+  /// What has not been written yet.
+  void flush() {
+    if (latest_) write();
+  }
+
+ private:
+  void write() {
+    const double begin = process_cpu_time();
+    write_checkpoint(path_, scene_, {0.0, {}, std::move(*latest_), "fos"});
+    latest_.reset();
+    const double end = process_cpu_time();
+    next_write_ = end + (end - begin) / share_of_checkpoints;
+  }
+
+  std::string path_;
+  const Scene& scene_;
+  std::optional<std::string> latest_;
+  double next_write_ = 0.0;  ///< [s] of CPU
+};
+
+/// With what has been found out in the checkpoint; all of it where the search is stopped.
 FactorOfSafety search(Simulation& simulation, const Options& options, const OutputFolder& folder, std::optional<Checkpoint> restart) {
   Progress progress("strength reduction", options.quiet);
+  SearchCheckpoint checkpoint(folder.path_of(checkpoint_name), simulation.scene());
   SearchObserver observer;
   observer.progress = [&](double fraction) {
     progress.update(fraction);
     throw_if_stopped();
   };
-  observer.done = [&](std::string state) {
-    write_checkpoint(folder.path_of(checkpoint_name), simulation.scene(), {0.0, {}, std::move(state), "fos"});
+  observer.done = [&](std::string state) { checkpoint.keep(std::move(state)); };
+  const auto found = [&] {
+    if (!restart) return factor_of_safety(simulation, observer);
+    try {
+      return resume_search(simulation, observer, std::move(restart->state));
+    } catch (const DamagedState& damage) {
+      throw InputError({options.restart_file, 0}, "", damage.what(), "a checkpoint as fos has written it");
+    }
   };
-  if (!restart) return factor_of_safety(simulation, observer);
-  try {
-    return resume_search(simulation, observer, std::move(restart->state));
-  } catch (const DamagedState& damage) {
-    throw InputError({options.restart_file, 0}, "", damage.what(), "a checkpoint as fos has written it");
-  }
+  FactorOfSafety safety = found();
+  if (safety.bracket.stopped) checkpoint.flush();
+  return safety;
 }
 
 int report_stop(const FactorOfSafety& safety, const Options& options, const OutputFolder& folder) {
