@@ -138,7 +138,7 @@ arm: build arm-packages ## build for ARM=arm64 or armhf with a cross compiler; r
 	@scripts/sysroot $(ARM)
 	@scripts/build $(ARM) openclose $(ARM_TESTS:%=test_%)
 	@ctest --preset $(ARM) --parallel $(JOBS)
-	@"$${PYTHON:-python3}" verification/compare_builds.py $(OPENCLOSE) '$(QEMU_$(ARM)) -L build/sysroot-$(ARM) build/$(ARM)/openclose' --only sliding wedge toe
+	@"$${PYTHON:-python3}" verification/compare_builds.py $(OPENCLOSE) '$(QEMU_$(ARM)) -L build/sysroot-$(ARM) build/$(ARM)/openclose'
 
 wasm: build wasm-packages ## build the command in WebAssembly (build/wasm/openclose.js) and compare the factors of safety that it finds under node with this machine's
 	@scripts/build wasm openclose
