@@ -1,6 +1,7 @@
 # The front door. Needs nothing but make; what else is missing, the targets install. Settings: JOBS=2 (processes), PYTHON=/path/to/python3,
 # PREFIX=/usr/local and DESTDIR (make install, make uninstall), BENCH=quick (make bench with fewer sizes, steps and repeats) or long (with more),
-# FIGURE=3 (make reproduce: one figure), SEED=1 COUNT=20 PART=all METHODS='soft dem' (make stress), MINUTES=10 (make fuzz, each reader).
+# FIGURE=3 (make reproduce: one figure), SEED=1 COUNT=20 PART=all METHODS='soft dem' (make stress), MINUTES=10 (make fuzz, each reader),
+# ARM=arm64 or armhf (make arm).
 
 JOBS ?= $(shell nproc)
 export JOBS PYTHON
@@ -17,11 +18,21 @@ SEED ?= 1
 COUNT ?= 20
 PART ?= all
 MINUTES ?= 10
+ARM ?= arm64
 COMPARISON := $(PAPER_RESULTS)/comparison.csv
 NULL_SOLVER := results/verify-null-solver.txt
+SLOPE := paper/scenes/example_3_4.toml
+FAILING_SLOPE := paper/scenes/example_3_4_post_failure.toml
+WEDGE := paper/scenes/example_3_3_wedge.toml
+QEMU_arm64 := qemu-aarch64
+QEMU_armhf := qemu-arm
+# Those of what computes; the preset of ctest has the same list.
+ARM_TESTS := core geometry contact law linear model statics integrator limit_analysis
+NOT_RANDOM := setarch --addr-no-randomize
+VALGRIND := valgrind --quiet --error-exitcode=1 --leak-check=full --errors-for-leak-kinds=definite,indirect
 
 .DEFAULT_GOAL := help
-.PHONY: help build test verify examples handbook reproduce convergence stress regression bench bench-peers sanitize compilers fuzz mutants mutants-random clean verify-vtk verify-page verify-install verify-stops install uninstall packages clang-packages vtk-packages page-packages handbook-packages shell-packages stress-packages figure-packages bench-packages peer-packages
+.PHONY: help build test verify examples handbook reproduce convergence stress regression bench bench-peers sanitize sanitize-threads memcheck compilers arm wasm fuzz mutants mutants-random clean verify-vtk verify-page verify-install verify-stops install uninstall packages clang-packages memcheck-packages arm-packages wasm-packages vtk-packages page-packages handbook-packages shell-packages stress-packages figure-packages bench-packages peer-packages
 
 help: ## print the targets
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(firstword $(MAKEFILE_LIST)) | while read -r target text; do printf '  make %-14s %s\n' "$$target" "$$text"; done
@@ -103,15 +114,35 @@ bench-peers: peer-packages ## the same with Box2D and Chipmunk on the slope of e
 	@OPTIONS='-DOPENCLOSE_BENCH=ON -DOPENCLOSE_BENCH_PEERS=ON' scripts/build release openclose openclose_reference openclose_bench openclose_peers
 	@python=$$(scripts/find-python) && "$$python" bench/bench.py --mode $(BENCH) --micro $(BUILD)/bench/openclose-bench --peers $(BUILD)/bench/openclose-peers
 
-sanitize: packages clang-packages ## build with the address and undefined-behaviour sanitizers of g++ and of clang++ (build/sanitize*) and run the unit tests
+sanitize: packages clang-packages ## build with the address and undefined-behaviour sanitizers of g++ (with traps for numbers without a value) and of clang++, run the unit tests
 	@scripts/build sanitize openclose_tests
 	@ctest --preset sanitize --parallel $(JOBS)
 	@scripts/build sanitize-clang openclose_tests
 	@ctest --preset sanitize-clang --parallel $(JOBS)
 
+# Its shadow memory wants addresses that are not drawn at random.
+sanitize-threads: packages ## build with the thread sanitizer and run a failing slope and a factor of safety on two threads
+	@scripts/build sanitize-threads openclose
+	$(NOT_RANDOM) build/sanitize-threads/openclose run $(FAILING_SLOPE) --end 0.05 --set method.threads=2 --quiet -o build/sanitize-threads/run
+	$(NOT_RANDOM) build/sanitize-threads/openclose fos $(SLOPE) --set method.threads=2 --quiet -o build/sanitize-threads/fos
+
+memcheck: build memcheck-packages ## run a failing slope and a factor of safety under valgrind, some minutes; a finding is an error
+	$(VALGRIND) $(OPENCLOSE) run $(FAILING_SLOPE) --end 0.01 --quiet -o build/memcheck/run
+	$(VALGRIND) $(OPENCLOSE) fos $(WEDGE) --quiet -o build/memcheck/fos
+
 compilers: build clang-packages ## build with clang++ too, warnings as errors, and compare the results of ten scenes with those of g++ bit for bit
 	@OPTIONS=-DCMAKE_COMPILE_WARNING_AS_ERROR=ON scripts/build clang
 	@"$${PYTHON:-python3}" verification/compare_builds.py $(OPENCLOSE) build/clang/openclose
+
+arm: build arm-packages ## build for ARM=arm64 or armhf with a cross compiler; run unit tests under qemu and compare the results of scenes with this machine's bit for bit
+	@scripts/sysroot $(ARM)
+	@scripts/build $(ARM) openclose $(ARM_TESTS:%=test_%)
+	@ctest --preset $(ARM) --parallel $(JOBS)
+	@"$${PYTHON:-python3}" verification/compare_builds.py $(OPENCLOSE) '$(QEMU_$(ARM)) -L build/sysroot-$(ARM) build/$(ARM)/openclose'
+
+wasm: build wasm-packages ## build the command in WebAssembly (build/wasm/openclose.js) and compare the factors of safety that it finds under node with this machine's
+	@scripts/build wasm openclose
+	@"$${PYTHON:-python3}" verification/compare_builds.py $(OPENCLOSE) 'node build/wasm/openclose.js' --answers
 
 fuzz: clang-packages packages ## attack the readers of scenes, records and checkpoints with libFuzzer for MINUTES each; a finding is kept in tests/fuzz/corpus
 	@scripts/build fuzz fuzz_scene fuzz_record fuzz_checkpoint
@@ -134,6 +165,15 @@ packages:
 
 clang-packages:
 	@scripts/install-packages clang
+
+memcheck-packages:
+	@scripts/install-packages memcheck
+
+arm-packages:
+	@scripts/install-packages $(ARM)
+
+wasm-packages:
+	@scripts/install-packages wasm
 
 vtk-packages:
 	@scripts/install-packages build vtk

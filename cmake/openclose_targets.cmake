@@ -10,13 +10,26 @@ add_library(openclose_options INTERFACE)
 target_compile_options(openclose_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
   -ffp-contract=off)  # the same bits on every machine
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(aarch64|arm)")
+  # Where this is defined, Eigen multiplies and adds in one operation, which rounds once; nobody asks the compiler.
+  target_compile_options(openclose_options INTERFACE -U__ARM_FEATURE_FMA)
+endif()
 if(OPENCLOSE_TUNE)
   target_compile_options(openclose_options INTERFACE -march=native)
 endif()
 if(OPENCLOSE_SANITIZE)
-  target_compile_options(openclose_options INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
-  target_link_options(openclose_options INTERFACE -fsanitize=address,undefined)
+  target_compile_options(openclose_options INTERFACE -fsanitize=${OPENCLOSE_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(openclose_options INTERFACE -fsanitize=${OPENCLOSE_SANITIZE})
 endif()
+if(OPENCLOSE_TRAPS)
+  # clang++ moves operations in front of the question whether they are needed, g++ does not.
+  if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    message(FATAL_ERROR "OPENCLOSE_TRAPS needs g++")
+  endif()
+  target_sources(openclose_options INTERFACE $<$<STREQUAL:$<TARGET_PROPERTY:TYPE>,EXECUTABLE>:${CMAKE_CURRENT_LIST_DIR}/traps/traps.cpp>)
+  target_compile_definitions(openclose_options INTERFACE OPENCLOSE_TRAPS)
+endif()
+target_include_directories(openclose_options INTERFACE ${CMAKE_CURRENT_LIST_DIR}/traps)
 
 if(OPENCLOSE_FUZZ)
   # fuzzer-no-link: what runs is watched; only the harnesses have the fuzzer's main program.

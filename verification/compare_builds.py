@@ -1,12 +1,18 @@
 #!/usr/bin/env python3
 """Runs the same scenes with two builds of the program and compares what they write byte by byte.
 
-    compare_builds.py FIRST SECOND      two openclose programs, e.g. of g++ and of clang++
+    compare_builds.py FIRST SECOND                 two openclose programs, e.g. of g++ and of clang++
+    compare_builds.py FIRST SECOND --only fos      only scenes whose title or command has one of these words
+    compare_builds.py FIRST SECOND --answers       only what fos finds, where machines have other sines and tangents; both without limit analysis
 
-Compared are all tables of results but for CPU times, and for runs the state at the end with all its bits (checkpoint.bin). Exit status 1 if anything
-differs; the first line that does is printed.
+A program may be a command, such as 'qemu-aarch64 -L build/sysroot-arm64 build/arm64/openclose'. Compared are all tables of results but for CPU times, the
+hash of the state at the end, and for runs that state with all its bits (checkpoint.bin). Exit status 1 if anything differs; the first line that does is
+printed.
 """
+import argparse
+import json
 import pathlib
+import shlex
 import subprocess
 import sys
 import tempfile
@@ -28,13 +34,34 @@ CASES = {
     "slope, factor of safety": ["fos", SCENES / "slope_face_70_joints_20_m60.toml"],
 }
 WITH_TIMES = {"milestones.csv"}
+ANSWERS = ["factor_of_safety", "verdict", "bracket"]
+
+
+def run(program: str, arguments: list, folder: pathlib.Path) -> int:
+    command = [*shlex.split(program), *map(str, arguments), "--quiet", "-o", str(folder)]
+    return subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False).returncode
+
+
+def summary_of(folder: pathlib.Path) -> dict:
+    summary = folder / "summary.json"
+    return json.loads(summary.read_text()) if summary.exists() else {}
 
 
 def results_of(program: str, arguments: list, folder: pathlib.Path) -> tuple[int, dict[str, bytes]]:
-    command = [program, *map(str, arguments), "--quiet", "-o", str(folder)]
-    status = subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False).returncode
+    status = run(program, arguments, folder)
     names = [*folder.glob("*.csv"), *folder.glob("checkpoint.bin")]
-    return status, {f.name: f.read_bytes() for f in names if f.name not in WITH_TIMES}
+    results = {f.name: f.read_bytes() for f in names if f.name not in WITH_TIMES}
+    if summary := summary_of(folder):
+        results["state_hash"] = summary["state_hash"].encode()
+    return status, results
+
+
+def answer_of(program: str, arguments: list, folder: pathlib.Path) -> tuple[int, dict[str, bytes]]:
+    status = run(program, [*arguments, "--set", "strength_reduction.limit_analysis=false"], folder)
+    summary = summary_of(folder)
+    answers = {key: json.dumps(summary[key]).encode() for key in ANSWERS if key in summary}
+    answers["failing_blocks"] = json.dumps(summary.get("failing_blocks", {}).get("names")).encode()
+    return status, answers if summary else {}
 
 
 def first_difference(name: str, one: bytes, other: bytes) -> str:
@@ -47,10 +74,10 @@ def first_difference(name: str, one: bytes, other: bytes) -> str:
     return f"{name}: one is longer"
 
 
-def differences(first: str, second: str, arguments: list) -> list[str]:
+def differences(first: str, second: str, arguments: list, results_by) -> list[str]:
     with tempfile.TemporaryDirectory() as folder:
-        one, a = results_of(first, arguments, pathlib.Path(folder) / "first")
-        other, b = results_of(second, arguments, pathlib.Path(folder) / "second")
+        one, a = results_by(first, arguments, pathlib.Path(folder) / "first")
+        other, b = results_by(second, arguments, pathlib.Path(folder) / "second")
     if one != other:
         return [f"exit status {one} and {other}"]
     if not a:
@@ -61,15 +88,27 @@ def differences(first: str, second: str, arguments: list) -> list[str]:
 
 
 def main() -> int:
-    if len(sys.argv) != 3:
-        print(__doc__, file=sys.stderr)
-        return 2
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("first")
+    parser.add_argument("second")
+    parser.add_argument("--only", nargs="+", metavar="WORD")
+    parser.add_argument("--answers", action="store_true")
+    options = parser.parse_args()
+    cases = {
+        title: arguments
+        for title, arguments in CASES.items()
+        if not options.only or any(word in title or word == arguments[0] for word in options.only)
+        if not options.answers or arguments[0] == "fos"
+    }
+    if not cases:
+        parser.error("no scene has one of these words")
+    same = "the same answer" if options.answers else "the same bits"
     failed = 0
-    for title, arguments in CASES.items():
-        found = differences(sys.argv[1], sys.argv[2], arguments)
-        print(f"{title}: {'the same bits' if not found else 'DIFFERS: ' + '; '.join(found)}", flush=True)
+    for title, arguments in cases.items():
+        found = differences(options.first, options.second, arguments, answer_of if options.answers else results_of)
+        print(f"{title}: {same if not found else 'DIFFERS: ' + '; '.join(found)}", flush=True)
         failed += bool(found)
-    print(f"{len(CASES) - failed} of {len(CASES)} scenes agree bit for bit")
+    print(f"{len(cases) - failed} of {len(cases)} scenes: {same}")
     return 1 if failed else 0
 
 

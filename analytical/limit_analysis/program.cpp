@@ -1,7 +1,5 @@
 #include "openclose/limit_analysis/program.h"
 
-#include <ClpSolve.hpp>
-#include <CoinError.hpp>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -40,13 +38,10 @@ struct Cone {
 
 }  // namespace
 
-LimitAnalysis::Program::Program(Problem problem) : problem_(std::move(problem)) {
+LimitAnalysis::Program::Program(Problem problem) : problem_(std::move(problem)), simplex_(program_tolerance) {
   check(problem_);
   number_rows();
   number_columns();
-  model_.setLogLevel(0);
-  model_.setPrimalTolerance(program_tolerance);
-  model_.setDualTolerance(program_tolerance);
 }
 
 void LimitAnalysis::Program::number_rows() {
@@ -71,7 +66,7 @@ void LimitAnalysis::Program::replace_contacts(std::vector<Contact> contacts) {
   if (basis_.empty()) return;
   // The status of what has still a column is kept.
   const auto tail = basis_.begin() + count_before;
-  std::vector<unsigned char> basis(column_count_, static_cast<unsigned char>(ClpSimplex::atLowerBound));
+  Simplex::Basis basis(column_count_, Simplex::at_lower_bound);
   for (std::size_t p = 0; p < std::min(before.size(), columns_.size()); ++p) {
     for (const auto column : {&ContactColumns::first_ray, &ContactColumns::second_ray, &ContactColumns::shear}) {
       if (before[p].*column >= 0 && columns_[p].*column >= 0) basis[columns_[p].*column] = basis_[before[p].*column];
@@ -97,37 +92,6 @@ void LimitAnalysis::Program::number_columns() {
   }
 }
 
-namespace {
-
-/// Columns of a linear program, filled one after the other.
-class Columns {
- public:
-  void add(double low, double high, double cost) {
-    low_.push_back(low);
-    high_.push_back(high);
-    cost_.push_back(cost);
-    starts_.push_back(static_cast<CoinBigIndex>(values_.size()));
-  }
-  /// An entry of the column that was added last.
-  void enter(int row, double value) {
-    if (row < 0 || value == 0) return;
-    rows_.push_back(row);
-    values_.push_back(value);
-  }
-  void load(ClpSimplex& model, const std::vector<double>& right_side) {
-    starts_.push_back(static_cast<CoinBigIndex>(values_.size()));
-    model.loadProblem(static_cast<int>(low_.size()), static_cast<int>(right_side.size()), starts_.data(), rows_.data(), values_.data(), low_.data(),
-                      high_.data(), cost_.data(), right_side.data(), right_side.data());
-  }
-
- private:
-  std::vector<double> low_, high_, cost_, values_;
-  std::vector<CoinBigIndex> starts_;
-  std::vector<int> rows_;
-};
-
-}  // namespace
-
 Eigen::Vector3d LimitAnalysis::Program::in_rows(int block, const Point& point, const Point& force) const {
   const BlockRows& rows = rows_[block];
   const Point arm = point - problem_.blocks[block].centroid;
@@ -142,7 +106,7 @@ void LimitAnalysis::Program::build(double factor) {
       if (rows_[b].row[k] >= 0) right_side[rows_[b].row[k]] = -load[k] / (k < 2 ? rows_[b].load : rows_[b].load * rows_[b].radius);
     }
   }
-  const double infinity = COIN_DBL_MAX;
+  const double infinity = Columns::infinity;
   Columns columns;
   for (std::size_t p = 0; p < columns_.size(); ++p) {
     if (columns_[p].first_ray < 0) continue;
@@ -188,37 +152,26 @@ void LimitAnalysis::Program::build(double factor) {
       columns.enter(row, sign);
     }
   }
-  columns.load(model_, right_side);
+  simplex_.load(columns, right_side);
 }
 
-bool LimitAnalysis::Program::solve_by(Way way) try {
+bool LimitAnalysis::Program::solve_by(Way way) {
   ++solved_;
-  ClpSolve barrier;
   switch (way) {
     case Way::warm_simplex:
-      model_.copyinStatus(basis_.data());
-      model_.primal();
-      break;
+      return simplex_.solve_from(basis_);
     case Way::barrier:
     case Way::barrier_and_crossover:
-      barrier.setSolveType(way == Way::barrier ? ClpSolve::useBarrierNoCross : ClpSolve::useBarrier);
-      barrier.setPresolveType(ClpSolve::presolveOff);
-      model_.initialSolve(barrier);
-      break;
+      return simplex_.solve_by_barrier(way == Way::barrier_and_crossover);
     case Way::simplex:
       // Without any contact force every price is right, since nothing costs less than zero.
-      model_.allSlackBasis(true);
-      model_.dual();
-      break;
+      return simplex_.solve_from_zero();
   }
-  // A barrier that stops early may have what is asked for; the certificates say so.
-  return way == Way::barrier || model_.isProvenOptimal();
-} catch (const CoinError&) {
   return false;
 }
 
 Forces LimitAnalysis::Program::forces(double factor) const {
-  const double* x = model_.primalColumnSolution();
+  const double* x = simplex_.columns();
   const auto value = [&](int column) { return column < 0 ? 0.0 : x[column]; };
   Forces forces;
   for (std::size_t p = 0; p < columns_.size(); ++p) {
@@ -239,7 +192,7 @@ Forces LimitAnalysis::Program::forces(double factor) const {
 
 /// The prices of the equilibrium rows, as velocities with which the loads do work.
 Mechanism LimitAnalysis::Program::mechanism() const {
-  const double* price = model_.dualRowSolution();
+  const double* price = simplex_.prices();
   Mechanism mechanism(problem_.blocks.size());
   for (std::size_t b = 0; b < mechanism.size(); ++b) {
     const BlockRows& rows = rows_[b];
@@ -278,6 +231,7 @@ std::vector<LimitAnalysis::Program::Way> LimitAnalysis::Program::ways(double fac
 }
 
 Trial LimitAnalysis::Program::at(double factor) {
+  if (!Simplex::available) return undecided(factor, "this program was built without linear programs");
   Trial trial;
   for (const Way way : ways(factor)) {
     build(factor);
@@ -285,7 +239,7 @@ Trial LimitAnalysis::Program::at(double factor) {
     trial = solved ? judge(factor, way == Way::barrier ? clean_barrier : force_tolerance) : undecided(factor, "a linear program was not solved");
     if (trial.verdict == Verdict::undecided) continue;
     if (way != Way::barrier) {
-      basis_.assign(model_.statusArray(), model_.statusArray() + model_.numberRows() + model_.numberColumns());
+      basis_ = simplex_.basis();
       basis_factor_ = factor;
     }
     break;
@@ -307,7 +261,7 @@ Trial LimitAnalysis::Program::judge(double factor, double tolerance) {
   Mechanism mechanism = this->mechanism();
   if (check_mechanism(problem_, factor, mechanism).holds()) {
     trial.verdict = Verdict::infeasible;
-    artificial_ = model_.objectiveValue();
+    artificial_ = simplex_.cost();
     slope_ = slope_of(factor, forces, mechanism);
     normalise(mechanism);
     trial.mechanism = std::move(mechanism);

@@ -1,10 +1,10 @@
 // The linear program of one factor: the least artificial force that equilibrium needs besides forces within the strength.
 #pragma once
 
-#include <ClpSimplex.hpp>
 #include <vector>
 
 #include "openclose/limit_analysis/limit_analysis.h"
+#include "openclose/limit_analysis/simplex.h"
 
 namespace openclose::limit_analysis {
 
@@ -54,11 +54,11 @@ class LimitAnalysis::Program {
   std::vector<BlockRows> rows_;
   std::vector<ContactColumns> columns_;
   int row_count_ = 0, column_count_ = 0;
-  ClpSimplex model_;
+  Simplex simplex_;
   int solved_ = 0;
   double artificial_ = 0, slope_ = 0;
   double last_factor_ = 0;
-  std::vector<unsigned char> basis_;  // of the program of `basis_factor_`
+  Simplex::Basis basis_;  // of the program of `basis_factor_`
   double basis_factor_ = 0;
 };
 

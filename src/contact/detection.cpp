@@ -123,8 +123,9 @@ double Detector::relative_way(const PairState& then, const Place& first, const P
 }
 
 Detector::Due Detector::due(double way) const {
-  constexpr double companion_part = 0.1;               // of the skin
-  if (!(way <= skips_.contact_skin)) return Due::yes;  // also where nothing is known of the pair
+  constexpr double companion_part = 0.1;  // of the skin
+  // Also where nothing is known of the pair, so that the way is no number.
+  if (!std::islessequal(way, skips_.contact_skin)) return Due::yes;
   return way > companion_part * skips_.contact_skin ? Due::moved : Due::no;
 }
 

@@ -25,8 +25,8 @@ OPENCLOSE_KERNEL double begin(ContactBatch* contacts, std::size_t count) {
     ContactBatch& c = contacts[i];
     const Lanes edge_x = c.normal_x, edge_y = c.normal_y, edge = length(edge_x, edge_y);
     // Places without a contact have no edge.
-    c.normal_x = edge > 0.0 ? edge_y / edge : Lanes{};
-    c.normal_y = edge > 0.0 ? -(edge_x / edge) : Lanes{};
+    c.normal_x = quotient(edge > 0.0, edge_y, edge);
+    c.normal_y = quotient(edge > 0.0, -edge_x, edge);
     largest = larger(largest, larger(c.shift - c.normal * c.gap_off_target, magnitude(c.initial_shear)));
   }
   return std::max({largest[0], largest[1], largest[2], largest[3]});
@@ -69,8 +69,8 @@ OPENCLOSE_KERNEL void find_elastic(double ramp, const ContactBatch* contacts, co
 OPENCLOSE_KERNEL Mask find_forces(const ContactBatch& c, double ramp, TrialBatch& trial, Branch* branches) {
   const Lanes zero{};
   const Lanes elastic_normal = elastic_normal_at(c, trial);
-  // By how much the gap is wider than where the spring opens; not a number where there is no contact.
-  const Lanes parted = larger(zero, c.gap_off_target - (c.shift + c.tension) / c.normal);
+  // By how much the gap is wider than where the spring opens.
+  const Lanes parted = larger(zero, c.gap_off_target - quotient(c.normal > 0.0, c.shift + c.tension, c.normal));
   const Lanes viscous_normal = -c.normal_damping * (parted + trial.gap_change);
   const Lanes shear = elastic_shear_at(c, trial) + -c.shear_damping * trial.slip_change;
   const Mask closed = ~spring_is_open(c.tension, elastic_normal);
@@ -97,7 +97,8 @@ OPENCLOSE_KERNEL Mask find_forces(const ContactBatch& c, double ramp, TrialBatch
 OPENCLOSE_KERNEL Lanes kink_of_bound(const ContactBatch& c) {
   const Lanes lowest = c.friction * c.tension;
   const Lanes on_ramp = (c.cohesion - lowest) * tolerance::cohesion_ramp - c.tension;
-  return c.cohesion > lowest ? on_ramp : (c.friction > 0.0 ? -c.cohesion / c.friction : -c.tension);
+  const Mask has_friction = c.friction > 0.0;
+  return c.cohesion > lowest ? on_ramp : (has_friction ? quotient(has_friction, -c.cohesion, c.friction) : -c.tension);
 }
 
 /// The means of path_average() in place of the forces of the joint law; returns which contacts carry something on the way.

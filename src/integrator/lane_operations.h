@@ -26,6 +26,10 @@ OPENCLOSE_KERNEL void store(double* to, Lanes x) {
 OPENCLOSE_KERNEL Lanes only_where(Mask mask, Lanes x) {
   return (Lanes)((Mask)x & mask);
 }
+/// a / b in the lanes of the mask, 0 in the others, whose b may be 0.
+OPENCLOSE_KERNEL Lanes quotient(Mask mask, Lanes a, Lanes b) {
+  return only_where(mask, a / (mask ? b : all(1.0)));
+}
 OPENCLOSE_KERNEL Lanes magnitude(Lanes x) {
   return (Lanes)((Mask)x & ~(Mask)-Lanes{});
 }

@@ -61,7 +61,8 @@ std::string body_of(const std::string& bytes, const std::string& path) {
   std::uint64_t sum = 0;
   const bool whole = bytes.size() >= expected.size() + sizeof sum;
   if (whole) std::memcpy(&sum, bytes.data() + bytes.size() - sizeof sum, sizeof sum);
-  if (!whole || sum != check_sum(std::string_view(bytes).substr(0, bytes.size() - sizeof sum))) refuse(path, "the checkpoint is damaged", "a whole one");
+  if (!whole || sum != check_sum(std::string_view(bytes).substr(0, bytes.size() - sizeof sum)))
+    refuse(path, "the checkpoint is damaged", "a whole one");
   return bytes.substr(expected.size(), bytes.size() - expected.size() - sizeof sum);
 }
 
@@ -88,10 +89,9 @@ void require_tables(const std::string& path, const Checkpoint& checkpoint) {
     const std::string table = table_beside(path, mark.name), accepted = "the tables of the run, beside its checkpoint";
     std::error_code error;
     const std::uintmax_t there = std::filesystem::file_size(table, error);
-    if (error || there < mark.length)
-      refuse(table, fmt::format("the run goes on behind the first {} bytes of this table", mark.length), accepted);
+    if (error || there < mark.length) refuse(table, fmt::format("the run goes on behind the first {} bytes of this table", mark.length), accepted);
     std::ifstream stream(table, std::ios::binary);
-    std::string head(mark.length, ' ');
+    std::string head(static_cast<std::size_t>(mark.length), ' ');
     stream.read(head.data(), static_cast<std::streamsize>(head.size()));
     if (check_sum(head) != mark.sum)
       refuse(table, fmt::format("the first {} bytes of this table are not those that the run has written", mark.length), accepted);

@@ -112,7 +112,7 @@ TableMark RunTable::written() {
   require_written();
   const auto length = static_cast<std::uint64_t>(file_.tellp());
   std::ifstream disk(path_, std::ios::binary);
-  std::string added(length - mark_.length, ' ');
+  std::string added(static_cast<std::size_t>(length - mark_.length), ' ');
   if (!disk.seekg(static_cast<std::streamoff>(mark_.length)) || !disk.read(added.data(), static_cast<std::streamsize>(added.size())))
     throw WriteError(path_, "has been removed or cut while the run went on");
   mark_.sum = check_sum(added, mark_.sum);

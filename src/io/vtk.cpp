@@ -40,8 +40,9 @@ class Grid {
   void close(const char* section) { text_ += fmt::format("</{}>\n", section); }
   template <typename T>
   void array(const std::string& name, const std::vector<T>& values, int components = 1) {
-    const std::uint64_t size = values.size() * sizeof(T);
-    std::string bytes(reinterpret_cast<const char*>(&size), sizeof size);
+    const std::size_t size = values.size() * sizeof(T);
+    const std::uint64_t header = size;
+    std::string bytes(reinterpret_cast<const char*>(&header), sizeof header);
     bytes.append(reinterpret_cast<const char*>(values.data()), size);
     text_ += fmt::format("<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"binary\">{}</DataArray>\n", vtk_type<T>(), name,
                          components, base64(bytes.data(), bytes.size()));

@@ -71,7 +71,7 @@ class Planner {
     // One half, from the diagonal on.
     Eigen::SparseMatrix<float> pattern(rows, rows);
     const auto after = [&](int i) {
-      const auto begin = graph.neighbour.begin() + graph.start[part[i]], end = graph.neighbour.begin() + graph.start[part[i] + 1];
+      const int *const begin = graph.neighbour.data() + graph.start[part[i]], *const end = graph.neighbour.data() + graph.start[part[i] + 1];
       return std::span(std::upper_bound(begin, end, part[i]), end);
     };
     for (int i = 0; i < rows; ++i) pattern.outerIndexPtr()[i + 1] = pattern.outerIndexPtr()[i] + 1 + static_cast<int>(after(i).size());

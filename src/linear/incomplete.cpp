@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "openclose/linear/packed_block.h"
+#include "openclose_traps.h"
 
 namespace openclose {
 namespace {
@@ -335,6 +336,7 @@ void IncompleteLu::take_row(const BlockMatrix& matrix, int i) {
 }
 
 bool IncompleteLu::factor(const BlockMatrix& matrix) {
+  const NonStop non_stop;  // whether numbers have come out is asked for row by row
   const bool anew = factoring_ == Factoring::whole || value_.empty();
   if (anew) {
     value_.assign(column_.size(), StoredBlock{});

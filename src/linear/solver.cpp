@@ -3,6 +3,8 @@
 #include <Eigen/LU>
 #include <Eigen/SparseLU>
 
+#include "openclose_traps.h"
+
 namespace openclose {
 namespace {
 
@@ -13,6 +15,7 @@ constexpr int smallest_iterative_system_blocks = 1500;
 class DenseSolver : public LinearSolver {
  public:
   bool factor(const BlockMatrix& matrix, double) override {
+    const NonStop non_stop;  // whether numbers have come out is asked for at the end
     ++this->counters_.factorisations;
     lu_.compute(matrix.dense());
     return lu_.matrixLU().diagonal().cwiseAbs().minCoeff() > 0.0 && lu_.matrixLU().allFinite();

@@ -45,8 +45,8 @@ std::vector<std::string> split(const std::string& text, char separator) {
 std::vector<std::string> stepped(const std::string& text, const std::vector<std::string>& parts) {
   const auto from = number_in(parts[0]), to = number_in(parts[1]), step = number_in(parts[2]);
   if (!from || !to || !step) throw InputError({"--vary " + text, 0}, "", "FROM, TO and STEP are not all numbers", accepted_form);
-  const double steps = (*to - *from) / *step;
-  if (*step == 0.0 || steps < 0.0) throw InputError({"--vary " + text, 0}, "", "the step does not lead from FROM to TO", accepted_form);
+  const double steps = *step == 0.0 ? -1.0 : (*to - *from) / *step;
+  if (steps < 0.0) throw InputError({"--vary " + text, 0}, "", "the step does not lead from FROM to TO", accepted_form);
   if (steps > static_cast<double>(most_cases))
     throw InputError({"--vary " + text, 0}, "", fmt::format("{:.3g} values", steps), fmt::format("at most {}", most_cases));
   std::vector<std::string> values;

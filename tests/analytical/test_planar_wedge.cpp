@@ -2,6 +2,7 @@
 #include <stdexcept>
 
 #include "openclose/analytical/planar_wedge.h"
+#include "openclose_traps.h"
 #include "support/catch.h"
 
 using namespace openclose::analytical;
@@ -44,6 +45,7 @@ TEST_CASE("planar wedge: limits") {
 }
 
 TEST_CASE("planar wedge: data out of range are refused") {
+  const openclose::NonStop non_stop;  // one of them is no number
   PlanarWedge wedge;
   CHECK_NOTHROW(require_valid(wedge));
   wedge.plane_angle = wedge.face_angle;

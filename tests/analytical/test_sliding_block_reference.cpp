@@ -10,6 +10,7 @@
 #include "openclose/analytical/sliding_block_reference.h"
 #include "openclose/analytical/stopping_distance.h"
 #include "openclose/analytical/two_spring_block.h"
+#include "openclose_traps.h"
 #include "support/catch.h"
 
 using namespace openclose::analytical;
@@ -410,7 +411,10 @@ TEST_CASE("sliding block: bad data are refused") {
   SlidingBlockReference reference(block, unloaded_start());
   reference.advance(0.1);
   CHECK_THROWS_AS(reference.advance(0.05), std::invalid_argument);
-  CHECK_THROWS_AS(reference.advance(std::nan("")), std::invalid_argument);
+  {
+    const openclose::NonStop non_stop;
+    CHECK_THROWS_AS(reference.advance(std::nan("")), std::invalid_argument);
+  }
   block.density = 0;
   CHECK_THROWS_AS(SlidingBlockReference(block, unloaded_start()), std::invalid_argument);
 }

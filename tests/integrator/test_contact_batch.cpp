@@ -139,7 +139,7 @@ TEST_CASE("four contacts at a time are where each is and carry what each carries
   const std::size_t count = GENERATE(0, 1, 3, 4, 401);
   const unsigned seed = GENERATE(1, 2);
   const StepForces step_forces = GENERATE(StepForces::at_end, StepForces::averaged);
-  const double ramp = step_forces == StepForces::averaged ? tolerance::cohesion_ramp : GENERATE(tolerance::cohesion_ramp, 1.0);
+  const double ramp = step_forces == StepForces::averaged ? tolerance::cohesion_ramp : GENERATE(as<double>(), tolerance::cohesion_ramp, 1.0);
   const RandomContacts contacts(seed, count);
   const Evaluated all(contacts, step_forces, ramp);
   std::vector<std::array<Eigen::Vector4d, 2>> sums(block_count + 1, {Eigen::Vector4d::Zero(), Eigen::Vector4d::Zero()});

@@ -124,7 +124,7 @@ TEST_CASE("without cohesion the shear strength is friction alone", "[law][shear_
 TEST_CASE("cohesion comes in over a ramp, the lower of two lines", "[law][shear_bound]") {
   const double friction = GENERATE(0.0, 0.6), cohesion = GENERATE(0.0, 100.0, 3000.0), tension = GENERATE(0.0, 50.0, 1000.0);
   const ContactStrength strength = strength_of(friction, cohesion, tension);
-  const double ramp = GENERATE(tolerance::cohesion_ramp, 1.0), steep = friction + 1.0 / ramp;
+  const double ramp = GENERATE(as<double>(), tolerance::cohesion_ramp, 1.0), steep = friction + 1.0 / ramp;
   const double scale = friction * 5000.0 + cohesion + steep * (5000.0 + tension);
   for (double n = -tension; n <= 5000.0; n += 7.3) {
     const double lower = std::max(0.0, std::min(friction * n + cohesion, steep * (n + tension)));

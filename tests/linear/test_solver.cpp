@@ -4,6 +4,7 @@
 #include "grids.h"
 #include "openclose/core/parallel.h"
 #include "openclose/linear/solver.h"
+#include "openclose_traps.h"
 #include "random_systems.h"
 #include "support/catch.h"
 
@@ -275,6 +276,7 @@ TEST_CASE("an eliminated unknown makes a floating system regular and keeps its r
 TEST_CASE("numbers that are none do not pass for a factorisation", "[linear][solver]") {
   const std::string name = GENERATE("dense", "sparse", "block");
   const Solver solver = make(name);
+  const NonStop non_stop;
   BlockMatrix matrix = floating_pair();
   matrix.add(0, 0, Eigen::Matrix3d::Constant(std::numeric_limits<double>::quiet_NaN()));
   CHECK_FALSE(solver->factor(matrix));

@@ -3,6 +3,7 @@
 #include "openclose/statics/certificate.h"
 #include "openclose/statics/explicit_relaxation.h"
 #include "openclose/statics/relaxation.h"
+#include "openclose_traps.h"
 #include "support/catch.h"
 #include "support/scenes.h"
 
@@ -56,6 +57,7 @@ TEST_CASE("forces that balance within the strength prove that a block stands, ot
     CHECK_FALSE(check.within_strength);
   }
   SECTION("no number") {
+    const NonStop non_stop;
     FrozenState other = stands.state;
     other.contacts[0].normal = std::nan("");
     CHECK_FALSE(check_equilibrium(system, strength, other).holds());
@@ -101,8 +103,8 @@ TEST_CASE("a block in the air is beyond all strength, one on the ground is not",
 }
 
 TEST_CASE("explicit relaxation knows that a corner which sticks at rest has slipped on the way there", "[statics]") {
-  // A block of 2 m x 1 m: its upper corner carries (cos - sin/2)/2 of its weight and half of the shear force sin, until it slips; what it has then, and
-  // the lower corner, do not hold the block.
+  // A block of 2 m x 1 m: its upper corner carries (cos - sin/2)/2 of its weight and half of the shear force sin, until it slips; what it has then,
+  // and the lower corner, do not hold the block.
   Scene scene = test::block_on_incline(20.0 * test::degree);
   scene.joints[0].friction_angle = 45.0 * test::degree;
   scene.joints[0].residual_friction_angle = 20.0 * test::degree;

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "harness.h"
+#include "openclose_traps.h"
 #include "support/catch.h"
 
 using namespace openclose::verification;
@@ -17,6 +18,7 @@ int passed(const Report& report) {
 }  // namespace
 
 TEST_CASE("a row that was not measured fails, whatever its kind", "[harness]") {
+  const openclose::NonStop non_stop;
   Report report(false);
   const double none = not_measured();
   report.near("", "soft", 0.0, none, 1e300, "m", "");
@@ -29,6 +31,7 @@ TEST_CASE("a row that was not measured fails, whatever its kind", "[harness]") {
 }
 
 TEST_CASE("one NaN in a history is its largest value, wherever it comes", "[harness]") {
+  const openclose::NonStop non_stop;
   for (const int at : {0, 1, 2}) {
     double worst = 0.0;
     for (int i = 0; i < 3; ++i) worst = larger(worst, i == at ? not_measured() : 1.0 + i);
