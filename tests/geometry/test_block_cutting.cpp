@@ -25,7 +25,7 @@ std::vector<JointTrace> lines(const std::vector<Segment>& segments) {
 }
 
 Cutting cut(const PolygonWithHoles& domain, const std::vector<Segment>& segments, const CuttingLimits& limits = {}) {
-  return cut_blocks(domain, lines(segments), std::vector<int>(segments.size(), 0), limits);
+  return cut_blocks(domain, lines(segments), std::vector<int>(segments.size(), Cutting::label_of_boundary), limits);
 }
 
 double total_area(const std::vector<Polygon>& blocks) {
@@ -508,12 +508,13 @@ TEST_CASE("fifty thousand blocks take as many comparisons as blocks, times a num
     set.dip = dip * pi / 180.0;
     set.spacing = spacing;
     set.origin = {0.3, 0.1};
-    for (const SetTrace& segment : traces(set, domain.outer, 10000).value()) all.push_back({segment, 0});
+    const std::vector<SetTrace> found = traces(set, domain.outer, 10000).value();
+    for (const SetTrace& segment : found) all.push_back({segment, 0});
   }
   // Refused is what needs more than 32 comparisons of traces for each block that is allowed: of all pairs it would be 200,000.
   CuttingLimits limits;
   limits.max_blocks = 60000;
-  const Cutting cutting = cut_blocks(domain, all, {0}, limits);
+  const Cutting cutting = cut_blocks(domain, all, {Cutting::label_of_boundary}, limits);
   CHECK_FALSE(cutting.too_many);
   CHECK(cutting.blocks.size() > 50000);
   CHECK(total_area(cutting.blocks) == Approx(domain.area()).epsilon(1e-12).margin(0.0));

