@@ -8,7 +8,6 @@
 #include <iterator>
 #include <map>
 #include <memory>
-#include <set>
 
 #include "machine_output.h"
 #include "messages.h"
@@ -44,6 +43,7 @@ std::string option_of(std::string_view dimension) {
 
 /// A file that is there is replaced only as long as nobody has edited it: it is the beginning of somebody's work.
 bool is_unedited(const std::string& path) {
+  if (!std::filesystem::is_regular_file(path)) return false;
   std::ifstream stream(path, std::ios::binary);
   return is_as_written(std::string{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()});
 }
