@@ -8,6 +8,7 @@
 #include "commands.h"
 #include "machine_output.h"
 #include "messages.h"
+#include "new_command.h"
 #include "openclose/core/error.h"
 #include "openclose/core/parallel.h"
 #include "openclose/core/process.h"
@@ -145,6 +146,7 @@ int main_checked(int argc, char** argv) {
   add_json_flag(*check, options.json, options.quiet);
   add_draw(app, options)->callback([&command] { command = &draw_command; });
   add_explain(app, options)->callback([&command] { command = &explain_command; });
+  add_new(app, chosen);
   add_report(app, chosen);
   add_study(app, chosen);
   add_sweep(app, chosen);

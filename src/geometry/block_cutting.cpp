@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <numeric>
 #include <set>
@@ -12,6 +13,7 @@
 #include "openclose/geometry/arrangement.h"
 #include "openclose/geometry/labelled_outline.h"
 #include "openclose/geometry/plane_graph.h"
+#include "openclose/geometry/trace_continuation.h"
 
 namespace openclose {
 namespace {
@@ -38,7 +40,9 @@ bool before(const Vec2& a, const Vec2& b) {
 
 void make_canonical(std::vector<JointTrace>& traces) {
   for (JointTrace& trace : traces) {
-    if (before(trace.segment.to, trace.segment.from)) std::swap(trace.segment.from, trace.segment.to);
+    if (!before(trace.segment.to, trace.segment.from)) continue;
+    std::swap(trace.segment.from, trace.segment.to);
+    std::swap(trace.goes_on_from, trace.goes_on_to);
   }
   const auto key = [](const JointTrace& trace) {
     const auto& [from, to] = trace.segment;
@@ -76,8 +80,8 @@ std::vector<SourceSegment> sources_of(const PolygonWithHoles& domain, const std:
   for (const JointTrace& trace : traces) {
     const auto& [from, to] = trace.segment;
     const Vec2 more = reach * (to - from).normalized();
-    if (reach > 0.0 && box.contains(from)) sources.push_back({{from - more, from}, trace.joint, false});
-    if (reach > 0.0 && box.contains(to)) sources.push_back({{to, to + more}, trace.joint, false});
+    if (reach > 0.0 && !trace.goes_on_from && box.contains(from)) sources.push_back({{from - more, from}, trace.joint, false});
+    if (reach > 0.0 && !trace.goes_on_to && box.contains(to)) sources.push_back({{to, to + more}, trace.joint, false});
   }
   return sources;
 }
@@ -103,9 +107,9 @@ class Groups {
 /// The blocks as they are found: nodes and edges of the arrangement, of which fewer and fewer are left.
 class Cut {
  public:
-  Cut(const PolygonWithHoles& domain, Arrangement arrangement, const CuttingLimits& limits, int joint_count)
-      : domain_(domain), limits_(limits), nodes_(std::move(arrangement.nodes)) {
-    result_.uses.resize(joint_count);
+  Cut(const PolygonWithHoles& domain, Arrangement arrangement, const CuttingLimits& limits, const std::vector<int>& labels)
+      : domain_(domain), limits_(limits), labels_(labels), nodes_(std::move(arrangement.nodes)) {
+    result_.uses.resize(labels.size());
     collect_edges(arrangement.pieces);
   }
 
@@ -116,6 +120,7 @@ class Cut {
     drop_what_bounds_nothing();
     if (!result_.loose_holes.empty()) return std::move(result_);
     note_uses();
+    label_edges();
     trace();
     merge_slivers();
     if (static_cast<int>(faces_.size()) > limits_.max_blocks) {
@@ -130,7 +135,8 @@ class Cut {
   struct Edge {
     int from = 0;
     int to = 0;
-    bool boundary = false;   ///< the domain is on the left only
+    bool boundary = false;  ///< the domain is on the left only
+    int label = Cutting::label_of_boundary;
     std::size_t owners = 0;  ///< the first of them
     std::size_t owners_end = 0;
   };
@@ -142,7 +148,7 @@ class Cut {
       const auto [low, high] = std::minmax(piece.from, piece.to);
       const bool known = !edges_.empty() && std::minmax(edges_.back().from, edges_.back().to) == std::pair<const int&, const int&>(low, high);
       // Rings come first among the owners and give the edge its direction.
-      if (!known) edges_.push_back({piece.from, piece.to, is_ring(piece.source), owners_.size(), owners_.size()});
+      if (!known) edges_.push_back({piece.from, piece.to, is_ring(piece.source), Cutting::label_of_boundary, owners_.size(), owners_.size()});
       if (owners_.size() == edges_.back().owners || owners_.back() != piece.source) owners_.push_back(piece.source);
       edges_.back().owners_end = owners_.size();
     }
@@ -273,30 +279,57 @@ class Cut {
     drop_edges([&](int e) { return component[e] != kept; });
   }
 
+  /// Where several joints run along each other the first one counts. A label that changes a little beside a meeting changes there: what lies between
+  /// would be an edge so short that no drawing means it.
+  void label_edges() {
+    std::vector<std::array<int, 2>> edges_at(nodes_.size(), {-1, -1});
+    std::vector<int> degree(nodes_.size(), 0);
+    for (int e = 0; e < static_cast<int>(edges_.size()); ++e) {
+      Edge& edge = edges_[e];
+      if (!edge.boundary) edge.label = labels_[owners_[edge.owners]];
+      for (const int node : {edge.from, edge.to}) {
+        if (degree[node] < 2) edges_at[node][degree[node]] = e;
+        ++degree[node];
+      }
+    }
+    for (int e = 0; e < static_cast<int>(edges_.size()); ++e) {
+      Edge& edge = edges_[e];
+      if (edge.boundary || length(edge) > limits_.end_reach + tolerance::shortest_edge_m) continue;
+      for (const int node : {edge.from, edge.to}) {
+        if (degree[node] != 2) continue;
+        const Edge& other = edges_[edges_at[node][0] == e ? edges_at[node][1] : edges_at[node][0]];
+        if (!other.boundary && length(other) > length(edge)) edge.label = other.label;
+      }
+    }
+  }
+
   struct Face {
     std::vector<int> cycle;   ///< half-edges
-    Polygon polygon;          ///< corners only, beginning with the lowest (leftmost of several)
-    std::vector<int> joints;  ///< of the edges of the polygon
+    Polygon polygon;          ///< corners, and vertices where the label changes, beginning with the lowest (leftmost of several)
+    std::vector<int> labels;  ///< of the edges of the polygon
     double area = 0.0;        ///< [m2]
     double width = 0.0;       ///< [m]
   };
 
-  /// The first one, where several run along each other.
-  int joint_of(const Edge& edge) const { return edge.boundary ? Cutting::no_joint : owners_[edge.owners]; }
+  /// [m] Of a side from corner to corner.
+  static double longest_side(const Face& face) {
+    if (std::ranges::adjacent_find(face.labels, std::not_equal_to()) == face.labels.end()) return longest_edge(face.polygon);
+    return longest_edge(simplified(face.polygon, std::vector<int>(face.labels.size(), 0)).polygon);
+  }
 
   Face make_face(std::vector<int> cycle, const std::vector<GraphEdge>& graph) const {
     Face face;
     Polygon all;
-    std::vector<int> joints;
+    std::vector<int> labels;
     for (const int h : cycle) {
       all.push_back(nodes_[half_edge_from(graph, h)]);
-      joints.push_back(joint_of(edges_[h / 2]));
+      labels.push_back(edges_[h / 2].label);
     }
-    LabelledOutline outline = simplified(all, joints);
+    LabelledOutline outline = from_lowest(simplified(all, labels));
     face.polygon = std::move(outline.polygon);
-    face.joints = std::move(outline.labels);
+    face.labels = std::move(outline.labels);
     face.area = face.polygon.size() < 3 ? 0.0 : signed_area(face.polygon);
-    face.width = face.polygon.size() < 3 ? 0.0 : 2.0 * face.area / longest_edge(face.polygon);
+    face.width = face.polygon.size() < 3 ? 0.0 : 2.0 * face.area / longest_side(face);
     face.cycle = std::move(cycle);
     return face;
   }
@@ -416,12 +449,13 @@ class Cut {
     std::sort(order.begin(), order.end());
     for (const auto& [y, x, f] : order) {
       result_.blocks.push_back(std::move(faces_[f].polygon));
-      result_.edge_joints.push_back(std::move(faces_[f].joints));
+      result_.edge_labels.push_back(std::move(faces_[f].labels));
     }
   }
 
   const PolygonWithHoles& domain_;
   const CuttingLimits& limits_;
+  const std::vector<int>& labels_;  ///< of the joints
   std::vector<Vec2> nodes_;
   std::vector<Edge> edges_;
   std::vector<int> owners_;  ///< sources of all edges, one edge after the other
@@ -463,8 +497,9 @@ PolygonWithHoles moved(PolygonWithHoles domain, const Vec2& by) {
   return domain;
 }
 
-Cutting cut_near_origin(const PolygonWithHoles& domain, std::vector<JointTrace> traces, int joint_count, const CuttingLimits& limits) {
+Cutting cut_near_origin(const PolygonWithHoles& domain, std::vector<JointTrace> traces, const std::vector<int>& labels, const CuttingLimits& limits) {
   make_canonical(traces);
+  if (continue_traces(traces, rings_of(domain), limits.end_reach)) make_canonical(traces);
   // A crossing of two traces in the domain makes a block more, but for one that each trace may have in vain. Twice as many are let pass, since
   // slivers go. Crossings beside the domain and comparisons in vain make no block, hence many more of these.
   constexpr std::size_t comparisons = 32;
@@ -477,7 +512,7 @@ Cutting cut_near_origin(const PolygonWithHoles& domain, std::vector<JointTrace> 
     refused.too_many = true;
     return refused;
   }
-  return Cut(domain, std::move(*arrangement), limits, joint_count).blocks();
+  return Cut(domain, std::move(*arrangement), limits, labels).blocks();
 }
 
 }  // namespace
@@ -507,16 +542,16 @@ std::optional<RingFault> first_ring_fault(const PolygonWithHoles& domain) {
   return std::nullopt;
 }
 
-Cutting cut_blocks(const PolygonWithHoles& domain, std::vector<JointTrace> traces, int joint_count, const CuttingLimits& limits) {
+Cutting cut_blocks(const PolygonWithHoles& domain, std::vector<JointTrace> traces, const std::vector<int>& labels, const CuttingLimits& limits) {
   const Vec2 origin = local_origin(domain.outer);
-  if (origin.isZero(0.0)) return cut_near_origin(domain, std::move(traces), joint_count, limits);
+  if (origin.isZero(0.0)) return cut_near_origin(domain, std::move(traces), labels, limits);
   for (JointTrace& trace : traces) trace.segment = {trace.segment.from - origin, trace.segment.to - origin};
-  Cutting cutting = cut_near_origin(moved(domain, -origin), std::move(traces), joint_count, limits);
+  Cutting cutting = cut_near_origin(moved(domain, -origin), std::move(traces), labels, limits);
   // Rounding can straighten what was hardly a corner.
   for (std::size_t b = 0; b < cutting.blocks.size(); ++b) {
-    LabelledOutline outline = simplified(moved(std::move(cutting.blocks[b]), origin), cutting.edge_joints[b]);
+    LabelledOutline outline = from_lowest(simplified(moved(std::move(cutting.blocks[b]), origin), cutting.edge_labels[b]));
     cutting.blocks[b] = std::move(outline.polygon);
-    cutting.edge_joints[b] = std::move(outline.labels);
+    cutting.edge_labels[b] = std::move(outline.labels);
   }
   for (Vec2& point : cutting.enclosed) point += origin;
   return cutting;

@@ -11,7 +11,8 @@
 // each other without meeting, their nodes are united (arrangement.h), and a line bent by less than tolerance::straight_corner_rad there counts as
 // straight: a vertex may then lie 2e-8 m beside its neighbour's edge, and areas miss that times the length of the edge.
 //
-// What a trace does beyond its last meeting with another trace or the boundary bounds no block; it is cut back (a dangling end). Joints that enclose
+// What a trace does beyond its last meeting with another trace or the boundary bounds no block; it is cut back (a dangling end), unless it has a
+// bridge: then it goes on in its direction, as that, to the next trace or the boundary. Joints that enclose
 // something but hang on the rest by fewer than two points would leave a block with a hole, which a simple polygon cannot be: they are dropped, and
 // counted, for the caller to accept or to refuse.
 #pragma once
@@ -45,10 +46,15 @@ struct RingFault {
 };
 std::optional<RingFault> first_ring_fault(const PolygonWithHoles& domain);
 
-/// A joint trace and the number of the joint (set or line) it belongs to.
+/// A joint trace and the number of the joint (set or line, or the bridges of one) it belongs to.
 struct JointTrace {
+  static constexpr int no_bridge = -1;
+
   Segment segment;
   int joint = 0;  ///< from 0
+  /// The joint as which it goes on at its ends that reach nothing, to the next of the given traces or the boundary; no_bridge: it is cut back.
+  int bridge = no_bridge;
+  bool goes_on_from = false, goes_on_to = false;  ///< another trace continues it at this end, which then neither reaches nor goes any farther
 };
 
 struct CuttingLimits {
@@ -69,12 +75,12 @@ struct JointUse {
 };
 
 struct Cutting {
-  static constexpr int no_joint = -1;  ///< on the boundary of the domain
+  static constexpr int label_of_boundary = -1;
 
   std::vector<Polygon> blocks;  ///< by height of the centroid, then from left to right; each begins with its lowest vertex
-  /// Of the edges of each block, from every vertex to the next: the joint, or no_joint. Where joints run along each other the first one, where an
-  /// edge is made of several the one that most of its length is.
-  std::vector<std::vector<int>> edge_joints;
+  /// Of the edges of each block, from every vertex to the next: the label of the joint, of the first one where several run along each other, or
+  /// label_of_boundary. Where it changes on a straight side, the block has a vertex there; a change within the reach of a meeting is put to it.
+  std::vector<std::vector<int>> edge_labels;
   int slivers_merged = 0;
   double slivers_area = 0.0;                  ///< [m2] of those merged
   int slivers_left = 0;                       ///< that no neighbour could take
@@ -86,8 +92,8 @@ struct Cutting {
   bool too_many = false;                      ///< more than max_blocks, or crossings for twice as many; no blocks then
 };
 
-/// \param domain      without faults (first_ring_fault)
-/// \param joint_count  joints are numbered below it
-Cutting cut_blocks(const PolygonWithHoles& domain, std::vector<JointTrace> traces, int joint_count, const CuttingLimits& limits = {});
+/// \param domain  without faults (first_ring_fault)
+/// \param labels  of the joints, by their numbers: edges that become one straight side of a block are told apart by them
+Cutting cut_blocks(const PolygonWithHoles& domain, std::vector<JointTrace> traces, const std::vector<int>& labels, const CuttingLimits& limits = {});
 
 }  // namespace openclose

@@ -100,7 +100,7 @@ class Tracer {
     return true;
   }
 
-  std::vector<Segment> take() { return std::move(traces_); }
+  std::vector<SetTrace> take() { return std::move(traces_); }
 
  private:
   /// Spacings are summed up from the origin, so that they do not depend on where the domain begins.
@@ -124,11 +124,14 @@ class Tracer {
     const Vec2 along = set_.dip_scatter > 0.0 ? direction(set_.dip + set_.dip_scatter * uniform(set_.seed, k, turn, 0)) : along_;
     const std::optional<Interval> part = clipped(foot, along, box_);
     if (!part) return true;
-    if (!set_.trace_length) {
+    open_.clear();
+    if (set_.trace_length) {
+      if (!add_traces(k, foot, along, *part)) return false;
+    } else {
       add(foot, along, *part);
-      return traces_.size() <= limit_;
     }
-    return add_traces(k, foot, along, *part);
+    if (set_.has_bridges) add_with_bridges(foot, along, *part);
+    return traces_.size() <= limit_;
   }
 
   bool add_traces(std::int64_t k, const Vec2& foot, const Vec2& along, const Interval& part) {
@@ -140,7 +143,7 @@ class Tracer {
     if (set_.trace_scatter > 0.0) return add_scattered_traces(k, foot, along, part, start);
     for (double i = std::floor((part.from - start) / period); start + i * period < part.to; ++i) {
       add_within(foot, along, {start + i * period, start + i * period + length}, part);
-      if (traces_.size() > limit_) return false;
+      if (are_too_many()) return false;
     }
     return true;
   }
@@ -155,7 +158,7 @@ class Tracer {
       const double end = place + varied(*set_.trace_length, trace_ahead, i);
       add_within(foot, along, {place, end}, part);
       place = end + varied(set_.gap, gap_ahead, i);
-      if (traces_.size() > limit_) return false;
+      if (are_too_many()) return false;
     }
     place = start;
     for (std::int64_t i = 0; place > part.from; ++i) {
@@ -163,10 +166,12 @@ class Tracer {
       const double end = place - varied(set_.gap, gap_behind, i);
       place = end - varied(*set_.trace_length, trace_behind, i);
       add_within(foot, along, {place, end}, part);
-      if (traces_.size() > limit_) return false;
+      if (are_too_many()) return false;
     }
     return true;
   }
+
+  bool are_too_many() const { return traces_.size() + open_.size() > limit_; }
 
   /// Counts the lengths summed up between the origin and the domain.
   bool too_far() { return static_cast<double>(++summed_) > far * static_cast<double>(limit_); }
@@ -176,12 +181,38 @@ class Tracer {
     if (common.from < common.to) add(foot, along, common);
   }
 
+  std::vector<Interval> within_region(const Vec2& foot, const Vec2& along, const Interval& part) const {
+    if (set_.region.empty()) return {part};
+    return clipped(foot, along, part, set_.region);
+  }
+
   void add(const Vec2& foot, const Vec2& along, const Interval& part) {
-    if (set_.region.empty()) {
-      traces_.push_back({foot + part.from * along, foot + part.to * along});
+    if (set_.has_bridges) {
+      open_.push_back(part);
       return;
     }
-    for (const Interval& piece : clipped(foot, along, part, set_.region)) traces_.push_back({foot + piece.from * along, foot + piece.to * along});
+    for (const Interval& piece : within_region(foot, along, part)) traces_.push_back({{foot + piece.from * along, foot + piece.to * along}});
+  }
+
+  /// The open parts of a line with what lies between and beside them.
+  void add_with_bridges(const Vec2& foot, const Vec2& along, const Interval& part) {
+    std::ranges::sort(open_, {}, &Interval::from);
+    for (const Interval& whole : within_region(foot, along, part)) {
+      std::vector<std::pair<Interval, bool>> pieces;
+      double place = whole.from;
+      for (const Interval& open : open_) {
+        const Interval common{std::max(open.from, place), std::min(open.to, whole.to)};
+        if (common.from >= common.to) continue;
+        if (common.from > place) pieces.push_back({{place, common.from}, true});
+        pieces.push_back({common, false});
+        place = common.to;
+      }
+      if (pieces.empty()) continue;
+      if (place < whole.to) pieces.push_back({{place, whole.to}, true});
+      for (const auto& [piece, is_bridge] : pieces) {
+        traces_.push_back({{foot + piece.from * along, foot + piece.to * along}, is_bridge, piece.from > whole.from, piece.to < whole.to});
+      }
+    }
   }
 
   const JointSet& set_;
@@ -190,7 +221,8 @@ class Tracer {
   Box box_;
   Vec2 along_;
   Vec2 normal_;
-  std::vector<Segment> traces_;
+  std::vector<SetTrace> traces_;
+  std::vector<Interval> open_;  ///< of the present line, where the rest of it is bridges
 };
 
 }  // namespace
@@ -210,7 +242,7 @@ double uniform(std::uint64_t seed, std::int64_t joint, std::uint64_t kind, std::
   return 2.0 * (static_cast<double>(z >> 11) * 0x1.0p-53) - 1.0;
 }
 
-std::optional<std::vector<Segment>> traces(const JointSet& set, const Polygon& domain, int limit) {
+std::optional<std::vector<SetTrace>> traces(const JointSet& set, const Polygon& domain, int limit) {
   Tracer tracer(set, domain, limit);
   if (!tracer.trace()) return std::nullopt;
   return tracer.take();

@@ -27,6 +27,13 @@ struct JointSet {
   double trace_scatter = 0.0;          ///< [-] in [0, 1): each trace length and each gap differs by up to this part of it
   std::uint64_t seed = 1;
   Polygon region;  ///< [m] the joints exist inside it only; empty: everywhere
+  /// What lies between and beside the traces of a line, in the region, is part of the set, too: bridges of rock. A line without a trace has none.
+  bool has_bridges = false;
+};
+
+struct SetTrace : Segment {
+  bool is_bridge = false;
+  bool goes_on_from = false, goes_on_to = false;  ///< another one of the same line, bridge or not, follows at this end
 };
 
 /// The unit vector at this angle [rad] from the x-axis, exact for multiples of a right angle.
@@ -38,6 +45,6 @@ Vec2 direction(double angle);
 double uniform(std::uint64_t seed, std::int64_t joint, std::uint64_t kind, std::int64_t draw);
 
 /// The traces of a set within the box around the domain; those that run through end a little outside of it. None: more than `limit` of them.
-std::optional<std::vector<Segment>> traces(const JointSet& set, const Polygon& domain, int limit);
+std::optional<std::vector<SetTrace>> traces(const JointSet& set, const Polygon& domain, int limit);
 
 }  // namespace openclose

@@ -1,8 +1,9 @@
 #include "openclose/geometry/labelled_outline.h"
 
 #include <algorithm>
-#include <map>
 #include <utility>
+
+#include "openclose/core/tolerance.h"
 
 namespace openclose {
 namespace {
@@ -19,27 +20,33 @@ Polygon from_lowest(Polygon polygon) {
   return polygon;
 }
 
+LabelledOutline from_lowest(LabelledOutline outline) {
+  if (outline.polygon.empty()) return outline;
+  const int lowest = lowest_vertex(outline.polygon);
+  std::rotate(outline.polygon.begin(), outline.polygon.begin() + lowest, outline.polygon.end());
+  std::rotate(outline.labels.begin(), outline.labels.begin() + lowest, outline.labels.end());
+  return outline;
+}
+
 LabelledOutline simplified(const Polygon& polygon, const std::vector<int>& labels) {
   const std::vector<int> kept = corners(polygon);
   const int count = static_cast<int>(polygon.size());
   LabelledOutline outline;
   for (std::size_t k = 0; k < kept.size(); ++k) {
-    outline.polygon.push_back(polygon[kept[k]]);
     const int end = kept[(k + 1) % kept.size()];
-    std::map<int, double> lengths;
+    bool has_begun = false;
     int i = kept[k];
     do {
       const int next = (i + 1) % count;
-      lengths[labels[i]] += (polygon[next] - polygon[i]).norm();
+      const bool has_length = (polygon[next] - polygon[i]).norm() >= tolerance::shortest_edge_m;
+      if (has_length && (!has_begun || labels[i] != outline.labels.back())) {
+        outline.polygon.push_back(has_begun ? polygon[i] : polygon[kept[k]]);
+        outline.labels.push_back(labels[i]);
+        has_begun = true;
+      }
       i = next;
     } while (i != end);
-    const auto shorter = [](const auto& a, const auto& b) { return a.second < b.second; };
-    outline.labels.push_back(std::max_element(lengths.begin(), lengths.end(), shorter)->first);
   }
-  if (kept.empty()) return outline;
-  const int lowest = lowest_vertex(outline.polygon);
-  std::rotate(outline.polygon.begin(), outline.polygon.begin() + lowest, outline.polygon.end());
-  std::rotate(outline.labels.begin(), outline.labels.begin() + lowest, outline.labels.end());
   return outline;
 }
 

@@ -15,8 +15,9 @@ struct LabelledOutline {
 /// The same polygon, beginning with the lowest vertex (leftmost of several).
 Polygon from_lowest(Polygon polygon);
 
-/// Corners only, beginning with the lowest vertex. Edges that become one have the label that most of their length has; of two with as much, the
-/// smaller.
+LabelledOutline from_lowest(LabelledOutline outline);
+
+/// Without the vertices that are no corners (see corners), but for those at which a straight edge gets another label.
 /// \param labels  of the edges of the polygon
 LabelledOutline simplified(const Polygon& polygon, const std::vector<int>& labels);
 

@@ -102,6 +102,7 @@ class Drawing {
 
   std::string svg() {
     draw_blocks();
+    draw_seams();
     draw_joints();
     draw_cracks();
     draw_forces();
@@ -189,6 +190,17 @@ class Drawing {
       page_.path(path, fmt::format("fill=\"{}\" stroke=\"{}\" stroke-linejoin=\"round\"", fill, outline_colour), outline_width());
     }
   }
+
+  static const char* colour_of_seam(std::size_t name) { return drawing_colour::seams[name % drawing_colour::seams.size()]; }
+
+  void draw_seams() {
+    std::vector<PathData> paths(picture_.seam_names.size());
+    for (const Picture::Seam& seam : picture_.seams) paths[static_cast<std::size_t>(seam.name)].segment(at(seam.from), at(seam.to));
+    for (std::size_t n = 0; n < paths.size(); ++n) {
+      page_.path(paths[n], fmt::format("class=\"seam\" fill=\"none\" stroke=\"{}\" stroke-linecap=\"butt\"", colour_of_seam(n)), seam_width());
+    }
+  }
+  double seam_width() const { return std::clamp(0.05 * block_size_, 0.4, 2.5); }
 
   void draw_joints() {
     std::map<std::pair<JointDrawing, bool>, PathData> paths;
@@ -413,6 +425,7 @@ class Drawing {
       }
     }
     if (std::ranges::any_of(picture_.blocks, &Picture::Block::fixed)) add_swatch(fixed_fill, "fixed", "url(#fixed)");
+    for (std::size_t n = 0; n < picture_.seam_names.size(); ++n) add_line("seam-key", colour_of_seam(n), 2.5, picture_.seam_names[n]);
     const auto has = [&](JointDrawing state) {
       return std::ranges::any_of(picture_.joints, [&](const Picture::Joint& joint) { return joint.state == state; });
     };
@@ -456,6 +469,27 @@ class Drawing {
   SvgPage page_;
 };
 
+/// Those joints that edges name, in the order of the scene.
+void add_seams(const Scene& scene, Picture& picture) {
+  std::map<int, int> number_of;
+  for (const BlockInput& block : scene.blocks) {
+    for (const int joint : block.edge_joints) {
+      if (joint != BlockInput::by_materials) number_of.emplace(joint, 0);
+    }
+  }
+  for (auto& [joint, number] : number_of) {
+    number = static_cast<int>(picture.seam_names.size());
+    picture.seam_names.push_back(scene.joints[joint].name);
+  }
+  for (const BlockInput& block : scene.blocks) {
+    for (std::size_t i = 0; i < block.edge_joints.size(); ++i) {
+      const auto number = number_of.find(block.edge_joints[i]);
+      if (number == number_of.end()) continue;
+      picture.seams.push_back({block.vertices[i], block.vertices[(i + 1) % block.vertices.size()], number->second});
+    }
+  }
+}
+
 }  // namespace
 
 std::string svg_drawing(const Picture& picture) {
@@ -467,6 +501,7 @@ Picture picture_of(const Scene& scene) {
   picture.title = fmt::format("{} ({} blocks)", scene.title.empty() ? "Blocks" : scene.title, scene.blocks.size());
   for (const Material& material : scene.materials) picture.colour_names.push_back(material.name);
   for (const BlockInput& block : scene.blocks) picture.blocks.push_back({block.name, block.vertices, block.material, block.fixed, 0.0});
+  add_seams(scene, picture);
   for (const Support& s : scene.supports) picture.supports.push_back({s.point, s.stiffness.x() > 0.0, s.stiffness.y() > 0.0});
   for_each_force(scene, [&](const auto& force) {
     for (const DrawnForce& arrow : force.drawn()) picture.loads.push_back({arrow.point, arrow.force});

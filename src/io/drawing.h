@@ -27,6 +27,11 @@ struct Picture {
     std::string quantity;  ///< with its unit
     double largest = 0.0;
   };
+  /// An edge of a block for which the scene names a joint.
+  struct Seam {
+    Vec2 from = Vec2::Zero(), to = Vec2::Zero();
+    int name = 0;  ///< index into seam_names
+  };
   struct Joint {
     Vec2 from = Vec2::Zero(), to = Vec2::Zero();
     JointDrawing state = JointDrawing::plain;
@@ -58,6 +63,8 @@ struct Picture {
   std::vector<Block> blocks;
   std::vector<std::string> colour_names;  ///< a colour each, for the legend
   std::optional<Scale> scale;
+  std::vector<Seam> seams;
+  std::vector<std::string> seam_names;  ///< a colour each, for the legend
   std::vector<Joint> joints;
   std::vector<Force> forces;
   std::vector<Crack> cracks;
@@ -73,7 +80,7 @@ struct Picture {
 /// explained below, with a scale bar of a round length in metres and scales for what has a size. Widths of lines follow the size of the blocks.
 std::string svg_drawing(const Picture& picture);
 
-/// The blocks of a scene, a colour for each material, with supports, loads and measured points.
+/// The blocks of a scene, a colour for each material and each joint that edges name, with supports, loads and measured points.
 Picture picture_of(const Scene& scene);
 
 }  // namespace openclose

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "openclose/core/tolerance.h"
 #include "openclose/geometry/polygon.h"
 
 namespace openclose {
@@ -37,7 +38,8 @@ BlockSystem::BlockSystem(const Scene& scene) : rotation_kind_(scene.method.rotat
       reference_arm_.push_back(arm);
       next_.push_back(block.first_vertex + (i + 1) % block.vertex_count);
       previous_.push_back(block.first_vertex + (i + block.vertex_count - 1) % block.vertex_count);
-      reflex_.push_back(cross(ahead, back) < 0.0);
+      // A vertex on a straight side, where two joints meet, is no notch for rounding.
+      reflex_.push_back(cross(ahead, back) < -tolerance::straight_corner_rad * ahead.norm() * back.norm());
       block.radius = std::max(block.radius, arm.norm());
     }
     const int b = block_count();

@@ -114,7 +114,7 @@ void warn_of_slivers(const Scene& scene, std::vector<std::string>& warnings) {
   warnings.push_back(fmt::format("{}: \"{}\" with {:.3g} m2{}, of {} free blocks, {} smaller than {:g} of the median block{}", scene.where.file,
                                  scene.blocks[areas.front().second].name, areas.front().first, others, areas.size(), count > 1 ? "are" : "is",
                                  sliver_of_median,
-                                 scene.cutting ? fmt::format("; domain.sliver_area_m2 = {:.2g} unites such with their neighbours", most) : ""));
+                                 scene.cutting ? fmt::format("; domain.sliver_area_m2 = {:.2g} unites such with their neighbours, of which they may make teeth that lock a joint", most) : ""));
 }
 
 std::string size_of(const Scene& scene) {

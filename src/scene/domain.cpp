@@ -28,6 +28,9 @@ constexpr Range azimuth_deg{.low = 0.0, .high = 360.0, .low_included = true, .hi
 /// Bray, Rock Slope Engineering, conditions of plane failure).
 const double most_oblique = std::sin(radians(20.0));
 
+// The cutting marks the edges of blocks with the properties of their joints.
+static_assert(Cutting::label_of_boundary == BlockInput::by_materials);
+
 struct DomainInput {
   PolygonWithHoles shape;
   int material = 0;
@@ -106,6 +109,7 @@ void read_traces_of(Table& table, JointSet& set) {
 struct SetInput {
   JointSet set;
   int properties = BlockInput::by_materials;  ///< the joint that it names, see BlockInput::edge_joints
+  std::optional<int> bridge;                  ///< the joint that its rock bridges have; absent: they are not cut
   double oblique = 0.0;                       ///< see PlaneInSection
 };
 
@@ -139,7 +143,11 @@ SetInput read_joint_set(Table table, const NameList& joint_names, const DomainIn
   table.optional("seed", seed, Range{.low = 0.0, .high = 1e9, .low_included = true, .high_included = true});
   const bool bounded = table.optional("region_m", region, coordinate);
   table.optional("joint", input.properties, joint_names);
+  table.optional("bridge", input.bridge, joint_names);
   read_traces_of(table, set);
+  set.has_bridges = input.bridge.has_value();
+  if (input.bridge && !set.trace_length && !bounded)
+    table.at("bridge").fail("joints that run through have no bridges", "trace_length_m or region_m with it");
 
   set.dip = radians(dip_deg);
   set.dip_scatter = radians(dip_scatter_deg);
@@ -175,26 +183,27 @@ std::string place(const Vec2& point) {
 /// The joints of a scene: the sets, then the lines.
 class Joints {
  public:
-  Joints(const CuttingTables& tables, const DomainInput& domain, const NameList& joint_names) : tables_(tables), domain_(domain) {
+  Joints(const CuttingTables& tables, const DomainInput& domain, const NameList& joint_names)
+      : tables_(tables), domain_(domain), properties_(static_cast<std::size_t>(2 * count()), BlockInput::by_materials) {
     for (std::size_t i = 0; i < tables.joint_sets.size(); ++i) add_set(static_cast<int>(i), joint_names);
-    for (const Table& table : tables.joint_lines) {
+    for (std::size_t i = 0; i < tables.joint_lines.size(); ++i) {
+      const Table& table = tables.joint_lines[i];
       Table line = table;
-      properties_.push_back(BlockInput::by_materials);
-      line.optional("joint", properties_.back(), joint_names);
-      traces_.push_back({read_segment(line), count_++});
+      const int joint = static_cast<int>(tables.joint_sets.size() + i);
+      std::optional<int> bridge;
+      line.optional("joint", properties_[joint], joint_names);
+      line.optional("bridge", bridge, joint_names);
+      if (bridge) properties_[bridges_of(joint)] = *bridge;
+      traces_.push_back({read_segment(line), joint, bridge ? bridges_of(joint) : JointTrace::no_bridge});
     }
   }
 
-  /// Of the edges of a block that the joints have cut: see BlockInput::edge_joints.
-  std::vector<int> properties_of(const std::vector<int>& edge_joints) const {
-    std::vector<int> properties;
-    for (const int joint : edge_joints) properties.push_back(joint == Cutting::no_joint ? BlockInput::by_materials : properties_[joint]);
-    const auto is_named = [](int property) { return property != BlockInput::by_materials; };
-    return std::any_of(properties.begin(), properties.end(), is_named) ? properties : std::vector<int>();
-  }
-
   const std::vector<JointTrace>& traces() const { return traces_; }
-  int count() const { return count_; }
+  /// Of sets and lines. Their bridges are joints of their own for the cutting, with numbers above these.
+  int count() const { return static_cast<int>(tables_.joint_sets.size() + tables_.joint_lines.size()); }
+  int bridges_of(int joint) const { return count() + joint; }
+  /// By joint, bridges included: index into Scene::joints, or BlockInput::by_materials.
+  const std::vector<int>& properties() const { return properties_; }
   const std::vector<int>& oblique() const { return oblique_; }
 
   const Table& table(int joint) const {
@@ -207,23 +216,23 @@ class Joints {
   void add_set(int index, const NameList& joint_names) {
     const Table& table = tables_.joint_sets[index];
     const SetInput input = read_joint_set(table, joint_names, domain_);
-    properties_.push_back(input.properties);
-    if (input.oblique > most_oblique) oblique_.push_back(count_);
+    properties_[index] = input.properties;
+    if (input.bridge) properties_[bridges_of(index)] = *input.bridge;
+    if (input.oblique > most_oblique) oblique_.push_back(index);
     const auto of_set = openclose::traces(input.set, domain_.shape.outer, domain_.limits.max_blocks);
     if (!of_set) {
       table.fail(fmt::format("the set has more than {} traces in the domain, or its origin lies as many of them away", domain_.limits.max_blocks),
                  "a wider spacing, longer traces, a nearer origin, or a higher domain.max_blocks");
     }
-    for (const Segment& segment : *of_set) traces_.push_back({segment, count_});
-    ++count_;
+    const int bridge = input.bridge ? bridges_of(index) : JointTrace::no_bridge;
+    for (const SetTrace& trace : *of_set) traces_.push_back({trace, trace.is_bridge ? bridge : index, bridge, trace.goes_on_from, trace.goes_on_to});
   }
 
   const CuttingTables& tables_;
   const DomainInput& domain_;
   std::vector<JointTrace> traces_;
-  std::vector<int> properties_;  ///< by joint: index into Scene::joints, or BlockInput::by_materials
-  std::vector<int> oblique_;     ///< sets that strike obliquely to the section
-  int count_ = 0;
+  std::vector<int> properties_;
+  std::vector<int> oblique_;  ///< sets that strike obliquely to the section
 };
 
 void refuse_faults(const Cutting& cutting, const Joints& joints, const DomainInput& domain, const Table& table) {
@@ -295,7 +304,8 @@ CuttingSummary summary_of(const Cutting& cutting, const Joints& joints, const Do
     summary.smallest_block = std::min(summary.smallest_block, area);
   }
   summary.domain_area = domain.shape.area();
-  summary.traces = static_cast<int>(joints.traces().size());
+  const auto is_joint = [&](const JointTrace& trace) { return trace.joint < joints.count(); };
+  summary.traces = static_cast<int>(std::ranges::count_if(joints.traces(), is_joint));
   summary.dangling_ends = cutting.dangling_ends;
   summary.slivers_merged = cutting.slivers_merged;
   summary.slivers_area = cutting.slivers_area;
@@ -335,7 +345,7 @@ void cut_domain(const CuttingTables& tables, const NameList& material_names, con
   std::vector<Region> regions;
   for (const Table& region : tables.regions) regions.push_back(read_region(region, material_names));
   const Joints joints(tables, domain, joint_names);
-  const Cutting cutting = cut_blocks(domain.shape, joints.traces(), joints.count(), domain.limits);
+  const Cutting cutting = cut_blocks(domain.shape, joints.traces(), joints.properties(), domain.limits);
   refuse_faults(cutting, joints, domain, table);
 
   const int digits = std::max(4, static_cast<int>(std::to_string(cutting.blocks.size()).size()));
@@ -347,7 +357,8 @@ void cut_domain(const CuttingTables& tables, const NameList& material_names, con
     block.name = fmt::format("b{:0{}}", ++number, digits);
     block.material = material_at(polygon_properties(polygon).centroid, regions, domain.material);
     block.vertices = polygon;
-    block.edge_joints = joints.properties_of(cutting.edge_joints[b]);
+    const std::vector<int>& properties = cutting.edge_labels[b];
+    if (std::ranges::any_of(properties, [](int property) { return property != BlockInput::by_materials; })) block.edge_joints = properties;
     block.line = table.where().line;
     block_names.add(table.at("vertices_m"), block.name);
     scene.blocks.push_back(std::move(block));

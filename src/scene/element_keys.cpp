@@ -50,10 +50,10 @@ void add_blocks(Rows& rows) {
   rows.table({"block", Audience::user, "A block; a scene has at least one, or a domain", true});
   rows.required({"name", "unique"}, ValueType::text);
   rows.required({"material", "name of a material"}, ValueType::text);
-  rows.required(
-      {"vertices_m",
-       "a simple polygon, convex or not; clockwise ones are turned, vertices on a straight line are dropped; blocks may overlap by up to 1 mm"},
-      ValueType::polygon, coordinate);
+  rows.required({"vertices_m",
+                 "a simple polygon, convex or not; clockwise ones are turned, vertices on a straight line are dropped where no joint changes; blocks "
+                 "may overlap by up to 1 mm"},
+                ValueType::polygon, coordinate);
   rows.optional({"fixed", "true: never moves", "false"}, ValueType::boolean);
   rows.optional({"rotation_locked", "true: moves without turning", "false"}, ValueType::boolean);
   rows.optional({"velocity_m_per_s", "[x, y], of the centroid at time 0", "[0, 0]"}, ValueType::vector);
@@ -135,6 +135,12 @@ void add_domain(Rows& rows) {
   rows.required({"spacing_m", "between joints, at right angles to them"}, ValueType::number, positive);
   rows.required({"origin_m", "a point on one joint of the set"}, ValueType::vector, coordinate);
   rows.optional({"joint", "name of the joint that gives its seams their properties", "that of the materials"}, ValueType::text);
+  rows.optional(
+      {"bridge",
+       "name of the joint that has the strength of rock: each line with a trace is cut through, also where it is rock, and its ends in rock "
+       "go on to the next joint, see [scenes](scene.md)",
+       "traces are cut back to the last joint that they cross"},
+      ValueType::text);
   rows.optional({"dip_direction_deg", "azimuth into which the plane falls: dip and spacing are those of the plane in space, see [scenes](scene.md)",
                  "dip and spacing are those of the section"},
                 ValueType::number, azimuth);
@@ -155,7 +161,10 @@ void add_domain(Rows& rows) {
                 fixed ? "Every block that shares more than a point with it is fixed" : "A single joint", true});
     rows.required({"from_m", "one end"}, ValueType::vector, coordinate);
     rows.required({"to_m", "the other"}, ValueType::vector, coordinate);
-    if (!fixed) rows.optional({"joint", "name of the joint that gives its seams their properties", "that of the materials"}, ValueType::text);
+    if (fixed) continue;
+    rows.optional({"joint", "name of the joint that gives its seams their properties", "that of the materials"}, ValueType::text);
+    rows.optional({"bridge", "name of the joint as which ends that lie in rock go on to the next joint or the outline", "ends in rock are cut back"},
+                  ValueType::text);
   }
   rows.table({"region", Audience::user, "Blocks whose centroid lies inside have its material, the last region wins", true});
   rows.required({"vertices_m", "a simple polygon"}, ValueType::polygon, coordinate);

@@ -9,6 +9,7 @@
 #include <map>
 
 #include "openclose/geometry/box.h"
+#include "openclose/geometry/labelled_outline.h"
 #include "openclose/scene/angle.h"
 #include "openclose/scene/base_motion.h"
 #include "openclose/scene/domain.h"
@@ -170,31 +171,6 @@ std::vector<JointProperties> read_joints(const std::vector<Table>& tables, const
   return joints;
 }
 
-/// The joint of each edge of a block as the file has it, to each edge of its outline, which has fewer vertices and may run the other way.
-std::vector<int> joints_of_outline(const Value& value, Polygon written, std::vector<int> joints, const Polygon& outline) {
-  if (signed_area(written) < 0.0) {
-    std::reverse(written.begin(), written.end());
-    std::reverse(joints.begin(), joints.end() - 1);  // the last edge, back to the first vertex, stays the last
-  }
-  const std::size_t count = written.size();
-  std::size_t at = std::find(written.begin(), written.end(), outline.front()) - written.begin();
-  std::vector<int> result;
-  for (std::size_t i = 0; i < outline.size(); ++i) {
-    const Vec2& end = outline[(i + 1) % outline.size()];
-    std::optional<int> joint;
-    do {
-      const std::size_t next = (at + 1) % count;
-      if (joint && *joint != joints[at] && written[next] != written[at])
-        value.fail("edges along one straight line have different joints",
-                   "one joint for each side of the block; vertices on a straight line are dropped");
-      if (!joint) joint = joints[at];
-      at = next;
-    } while (written[at] != end);
-    result.push_back(*joint);
-  }
-  return result;
-}
-
 void set_edge_joints(const Value& value, const std::vector<std::string>& names, const Polygon& written, const NameList& joint_names,
                      BlockInput& block) {
   if (names.size() != written.size())
@@ -204,7 +180,14 @@ void set_edge_joints(const Value& value, const std::vector<std::string>& names, 
   for (std::size_t i = 0; i < names.size(); ++i)
     joints.push_back(names[i].empty() ? BlockInput::by_materials : joint_names.index(value.element(i), names[i]));
   if (std::all_of(joints.begin(), joints.end(), [](int joint) { return joint == BlockInput::by_materials; })) return;
-  block.edge_joints = joints_of_outline(value, written, std::move(joints), block.vertices);
+  // The outline keeps those vertices of a straight side at which its joint changes.
+  LabelledOutline outline = simplified(written, joints);
+  if (signed_area(outline.polygon) < 0.0) {
+    outline.polygon = reversed(outline.polygon);
+    std::ranges::reverse(outline.labels);
+  }
+  block.vertices = std::move(outline.polygon);
+  block.edge_joints = std::move(outline.labels);
 }
 
 BlockInput read_block(Table table, const std::string& file, const NameList& material_names, const NameList& joint_names, NameList& block_names) {

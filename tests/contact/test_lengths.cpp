@@ -113,3 +113,64 @@ TEST_CASE("over the seam of two collinear edges the length is that of one", "[co
     CHECK(flat.total_length() == Approx(width).epsilon(1e-14));
   }
 }
+
+TEST_CASE("where the joint changes on straight sides of both blocks each one has the length of its part", "[contact][lengths]") {
+  // Of a seam of 6 m the piece from 1 to 3 m has another joint.
+  for (const double angle : {0.0, 35.0, -60.0, 90.0}) {
+    const auto at = [&](double x, double y) { return placed({{x, y}}, angle * degree).front(); };
+    Scene scene = scene_with({fixed_block("base", {at(0, -1), at(6, -1), at(6, 0), at(3, 0), at(1, 0), at(0, 0)}),
+                              free_block("block", {at(0, 0), at(1, 0), at(3, 0), at(6, 0), at(6, 2), at(0, 2)})});
+    JointProperties other = scene.joints.front();
+    other.name = "bridge";
+    other.materials = {JointProperties::no_material, JointProperties::no_material};
+    scene.joints.push_back(other);
+    const int bridge = static_cast<int>(scene.joints.size()) - 1;
+    constexpr int none = BlockInput::by_materials;
+    scene.blocks[0].edge_joints = {none, none, none, bridge, none, none};
+    scene.blocks[1].edge_joints = {none, bridge, none, none, none, none};
+    Detection d(scene);
+    // It slides over the changes, by less than the shortest part.
+    for (const double way : {0.0, 1e-7, 1e-3, 0.5, 0.99}) {
+      INFO("at " << angle << " degrees, " << way << " m on");
+      const Vec2 from = d.system.centroid(1) - d.system.block(1).reference_centroid;
+      const Vec2 step = at(way, 0.0) - from;
+      d.move(1, step.x(), step.y());
+      d.update();
+      double of_bridge = 0.0;
+      for (const Contact& c : d.contacts) {
+        if (c.joint == bridge) of_bridge += c.length;
+        CHECK(std::abs(c.gap) < 1e-12);
+      }
+      CHECK(d.total_length() == Approx(6.0 - way).margin(4.0 * tolerance::shortest_overlap_m));
+      CHECK(of_bridge == Approx(2.0).margin(4.0 * tolerance::shortest_overlap_m));
+      for (int v = 0; v < 12; ++v) CHECK_FALSE(d.system.is_reflex(v));
+    }
+  }
+}
+
+TEST_CASE("where the joint changes on straight sides contacts hand on what they carry while the block slides", "[contact][lengths]") {
+  constexpr double closure = 5e-5;
+  for (const double angle : {0.0, -35.0, 35.0, 90.0}) {
+    const auto at = [&](double x, double y) { return placed({{x, y}}, angle * degree).front(); };
+    Scene scene = scene_with({fixed_block("base", {at(0, -1), at(6, -1), at(6, 0), at(3, 0), at(1, 0), at(0, 0)}),
+                              free_block("block", {at(0, 0), at(1, 0), at(3, 0), at(6, 0), at(6, 2), at(0, 2)})});
+    for (const double direction : {1.0, -1.0}) {
+      Detection d(scene);
+      const Vec2 along = direction * at(1.0, 0.0), down = -closure * at(0.0, 1.0);
+      d.move(1, down.x(), down.y());
+      for (int step = 0; step < 300; ++step) {
+        INFO("at " << angle << " degrees, step " << step << " in direction " << direction);
+        for (Contact& c : d.contacts) {
+          c.gap = -closure;
+          c.status = ContactStatus::sticking;
+        }
+        d.update();
+        double carried = 0.0;
+        for (const Contact& c : d.contacts) carried -= c.length * c.stretch();
+        CHECK(carried == Approx(d.total_length() * closure).epsilon(1e-6));
+        const double way = step < 3 ? 1e-7 : step < 10 ? 1e-4 : 3e-3;
+        d.move(1, way * along.x(), way * along.y());
+      }
+    }
+  }
+}

@@ -25,7 +25,7 @@ std::vector<JointTrace> lines(const std::vector<Segment>& segments) {
 }
 
 Cutting cut(const PolygonWithHoles& domain, const std::vector<Segment>& segments, const CuttingLimits& limits = {}) {
-  return cut_blocks(domain, lines(segments), static_cast<int>(segments.size()), limits);
+  return cut_blocks(domain, lines(segments), std::vector<int>(segments.size(), Cutting::label_of_boundary), limits);
 }
 
 double total_area(const std::vector<Polygon>& blocks) {
@@ -452,22 +452,52 @@ TEST_CASE("every edge of a block knows its joint", "[geometry][cutting]") {
     for (Vec2& vertex : domain.outer) vertex += by;
     std::vector<Segment> there = segments;
     for (Segment& segment : there) segment = {segment.from + by, segment.to + by};
-    const Cutting cutting = cut(domain, there);
+    const Cutting cutting = cut_blocks(domain, lines(there), {10, 11, 12});
     REQUIRE(cutting.blocks.size() == 3);
-    REQUIRE(cutting.edge_joints.size() == 3);
-    constexpr int none = Cutting::no_joint;
+    REQUIRE(cutting.edge_labels.size() == 3);
+    constexpr int none = Cutting::label_of_boundary;
     // Each begins with its lowest vertex. Where joints run along each other the first one counts.
-    CHECK(cutting.edge_joints[0] == std::vector<int>{none, none, 0, none});
-    CHECK(cutting.edge_joints[1] == std::vector<int>{0, 1, none, none});
-    CHECK(cutting.edge_joints[2] == std::vector<int>{0, none, none, 1});
+    CHECK(cutting.edge_labels[0] == std::vector<int>{none, none, 10, none});
+    CHECK(cutting.edge_labels[1] == std::vector<int>{10, 11, none, none});
+    CHECK(cutting.edge_labels[2] == std::vector<int>{10, none, none, 11});
   }
 }
 
-TEST_CASE("an edge of several joints has the one that most of it is", "[geometry][cutting]") {
-  // Two lines one behind the other, which are one edge of the block below.
-  const Cutting cutting = cut(square, {{{0.0, 2.0}, {1.5, 2.0}}, {{1.5, 2.0}, {4.0, 2.0}}});
-  REQUIRE(cutting.blocks.size() == 2);
-  CHECK(cutting.edge_joints[0] == std::vector<int>{Cutting::no_joint, Cutting::no_joint, 1, Cutting::no_joint});
+TEST_CASE("a side of a block that two joints share has a vertex where the one goes over into the other", "[geometry][cutting]") {
+  // Two lines one behind the other, and one that makes the upper half two blocks: the change is on a straight side of the lower block and the left
+  // one.
+  const std::vector<Segment> segments = {{{0.0, 2.0}, {1.5, 2.0}}, {{1.5, 2.0}, {4.0, 2.0}}, {{3.0, 2.0}, {3.0, 4.0}}};
+  constexpr int none = Cutting::label_of_boundary;
+  for (const double away : {0.0, 5e6}) {
+    INFO("moved by " << away);
+    const Vec2 by(away, -away);
+    PolygonWithHoles domain = square;
+    for (Vec2& vertex : domain.outer) vertex += by;
+    std::vector<Segment> there = segments;
+    for (Segment& segment : there) segment = {segment.from + by, segment.to + by};
+    const Cutting cutting = cut_blocks(domain, lines(there), {5, 6, 7});
+    REQUIRE(cutting.blocks.size() == 3);
+    CHECK(cutting.edge_labels[0] == std::vector<int>{none, none, 6, 5, none});
+    CHECK(cutting.blocks[0][3] == Vec2(1.5, 2.0) + by);
+    CHECK(cutting.edge_labels[1] == std::vector<int>{5, 6, 7, none, none});
+    CHECK(cutting.blocks[1][1] == Vec2(1.5, 2.0) + by);
+    CHECK(cutting.edge_labels[2] == std::vector<int>{6, none, none, 7});
+    // Alike they have no vertex there.
+    CHECK(cut_blocks(domain, lines(there), {5, 5, 7}).blocks[0].size() == 4);
+  }
+}
+
+TEST_CASE("a joint that ends a little beside a meeting ends there", "[geometry][cutting]") {
+  // Half a millimetre is less than the reach, two millimetres are more.
+  for (const auto& [past, vertices] : {std::pair(5e-4, 4u), std::pair(-5e-4, 4u), std::pair(2e-3, 5u), std::pair(-2e-3, 5u)}) {
+    INFO("past the upright by " << past);
+    std::vector<JointTrace> traces = lines({{{0.0, 2.0}, {1.0 + past, 2.0}}, {{1.0 + past, 2.0}, {4.0, 2.0}}, {{1.0, 2.0}, {1.0, 4.0}}});
+    traces[0].goes_on_to = traces[1].goes_on_from = true;
+    const Cutting cutting = cut_blocks(square, traces, {5, 6, 7});
+    REQUIRE(cutting.blocks.size() == 3);
+    CHECK(cutting.blocks[0].size() == 5);
+    CHECK(cutting.blocks[past > 0.0 ? 1 : 2].size() + cutting.blocks[past > 0.0 ? 2 : 1].size() == 4 + vertices);
+  }
 }
 
 TEST_CASE("fifty thousand blocks take as many comparisons as blocks, times a number", "[geometry][cutting]") {
@@ -478,13 +508,13 @@ TEST_CASE("fifty thousand blocks take as many comparisons as blocks, times a num
     set.dip = dip * pi / 180.0;
     set.spacing = spacing;
     set.origin = {0.3, 0.1};
-    const std::vector<Segment> of_set = traces(set, domain.outer, 10000).value();
-    for (const Segment& segment : of_set) all.push_back({segment, 0});
+    const std::vector<SetTrace> found = traces(set, domain.outer, 10000).value();
+    for (const SetTrace& segment : found) all.push_back({segment, 0});
   }
   // Refused is what needs more than 32 comparisons of traces for each block that is allowed: of all pairs it would be 200,000.
   CuttingLimits limits;
   limits.max_blocks = 60000;
-  const Cutting cutting = cut_blocks(domain, all, 1, limits);
+  const Cutting cutting = cut_blocks(domain, all, {Cutting::label_of_boundary}, limits);
   CHECK_FALSE(cutting.too_many);
   CHECK(cutting.blocks.size() > 50000);
   CHECK(total_area(cutting.blocks) == Approx(domain.area()).epsilon(1e-12).margin(0.0));

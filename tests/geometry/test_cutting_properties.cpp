@@ -40,9 +40,11 @@ struct Problem {
   int joints = 0;
 
   void add(const Segment& segment) { traces.push_back({segment, joints++}); }
+  /// All alike, so that only corners are vertices.
+  std::vector<int> labels() const { return std::vector<int>(joints, Cutting::label_of_boundary); }
   void add(const JointSet& set) {
-    const std::vector<Segment> segments = *openclose::traces(set, domain.outer, 100000);
-    for (const Segment& segment : segments) traces.push_back({segment, joints});
+    const std::vector<SetTrace> found = *openclose::traces(set, domain.outer, 100000);
+    for (const SetTrace& segment : found) traces.push_back({segment, joints});
     ++joints;
   }
 };
@@ -111,7 +113,7 @@ Problem random_problem(Generator& generator, double size, const Vec2& centre) {
 }
 
 Cutting cut(const Problem& problem) {
-  return cut_blocks(problem.domain, problem.traces, problem.joints);
+  return cut_blocks(problem.domain, problem.traces, problem.labels());
 }
 
 /// The same joints in another order, some of them from the other end, with other numbers.
@@ -274,7 +276,7 @@ TEST_CASE("so many crossings are refused before they are built", "[geometry][cut
   }
   CuttingLimits limits;
   limits.max_blocks = 50000;
-  CHECK(cut_blocks(problem.domain, problem.traces, problem.joints, limits).too_many);
+  CHECK(cut_blocks(problem.domain, problem.traces, problem.labels(), limits).too_many);
   // No crossing is looked at after the one that is too many.
   std::vector<SourceSegment> segments;
   for (const JointTrace& trace : problem.traces) segments.push_back({trace.segment, trace.joint, false});

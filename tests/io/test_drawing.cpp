@@ -214,6 +214,32 @@ TEST_CASE("lines are as wide as forces and openings are large", "[io][drawing]")
   CHECK_THAT(svg, ContainsSubstring(">opening 20 mm<"));
 }
 
+TEST_CASE("joints that edges name are drawn in a colour each, with their names", "[io][drawing]") {
+  Scene scene = tower_on_base();
+  CHECK(svg_drawing(picture_of(scene)).find("class=\"seam") == std::string::npos);
+  constexpr int none = BlockInput::by_materials;
+  for (const char* name : {"unused", "rock <bridge>", "bedding"}) {
+    scene.joints.push_back(scene.joints.front());
+    scene.joints.back().name = name;
+  }
+  const int bedding = static_cast<int>(scene.joints.size()) - 1, bridge = bedding - 1;
+  scene.blocks[1].edge_joints = {bedding, none, bridge, none};
+  const Picture picture = picture_of(scene);
+  CHECK(picture.seam_names == std::vector<std::string>{"rock <bridge>", "bedding"});
+  REQUIRE(picture.seams.size() == 2);
+  CHECK(picture.seams[0].name == 1);
+  CHECK(picture.seams[0].from == scene.blocks[1].vertices[0]);
+  CHECK(picture.seams[0].to == scene.blocks[1].vertices[1]);
+  CHECK(picture.seams[1].name == 0);
+  CHECK(picture.seams[1].from == scene.blocks[1].vertices[2]);
+  const std::string svg = svg_drawing(picture);
+  const auto colours = all_matches(svg, "class=\"seam\" fill=\"none\" stroke=\"(#[0-9a-f]+)\"");
+  REQUIRE(colours.size() == 2);
+  CHECK(colours[0] != colours[1]);
+  CHECK(svg.find("rock &lt;bridge&gt;</text>") != std::string::npos);
+  CHECK(svg.find("unused") == std::string::npos);
+}
+
 TEST_CASE("the drawing of a run: state, contact forces, what holds and pushes", "[io][drawing]") {
   const Results results;
   DrawingRequest request;

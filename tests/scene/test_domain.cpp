@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "openclose/geometry/polygon.h"
@@ -50,6 +51,17 @@ const std::string bare_domain = square_domain.substr(0, square_domain.find("[[jo
 std::string line(double x0, double y0, double x1, double y1) {
   return "[[joint_line]]\nfrom_m = [" + std::to_string(x0) + ", " + std::to_string(y0) + "]\nto_m = [" + std::to_string(x1) + ", " +
          std::to_string(y1) + "]\n";
+}
+
+/// [m] Of all edges of blocks that have this joint.
+double length_of(const Scene& scene, int joint) {
+  double length = 0.0;
+  for (const BlockInput& block : scene.blocks) {
+    for (std::size_t i = 0; i < block.edge_joints.size(); ++i) {
+      if (block.edge_joints[i] == joint) length += (block.vertices[(i + 1) % block.vertices.size()] - block.vertices[i]).norm();
+    }
+  }
+  return length;
 }
 
 std::string error_of(const std::string& text, const std::vector<std::string>& overrides = {}) {
@@ -376,6 +388,45 @@ TEST_CASE("sets and lines give their seams the joint they name", "[scene][domain
   // Without a name nothing is kept of the edges.
   const Scene plain = read_text(bare_domain + "[[joint_set]]\ndip_deg = 0\nspacing_m = 2\norigin_m = [0, 0]\n");
   for (const BlockInput& block : plain.blocks) CHECK(block.edge_joints.empty());
+}
+
+TEST_CASE("bridges of sets and lines are cut with the joint that they name", "[scene][domain]") {
+  const std::string joints =
+      "[[joint]]\nname = 'rock'\nnormal_stiffness_pa_per_m = 1e9\nshear_stiffness_pa_per_m = 4e8\nfriction_angle_deg = 50\ncohesion_pa = 1e6\n"
+      "[[joint]]\nname = 'bedding'\nnormal_stiffness_pa_per_m = 1e9\nshear_stiffness_pa_per_m = 4e8\nfriction_angle_deg = 20\n";
+  const std::string set = "[[joint_set]]\ndip_deg = 0\nspacing_m = 2\norigin_m = [0, 0]\njoint = 'bedding'\ntrace_length_m = 3\ngap_m = 1\n";
+  constexpr int none = BlockInput::by_materials, rock = 0, bedding = 1;
+  SECTION("a set of traces") {
+    // Cut back, the trace reaches the left side only and bounds nothing.
+    CHECK_THAT(error_of(joints + bare_domain + set), ContainsSubstring("the joints cut no block out of the domain"));
+    const Scene scene = read_text(joints + bare_domain + set + "bridge = 'rock'\n");
+    REQUIRE(scene.blocks.size() == 2);
+    CHECK(scene.blocks[0].edge_joints == std::vector<int>{none, none, rock, bedding, none});
+    CHECK(scene.blocks[1].edge_joints == std::vector<int>{bedding, rock, none, none, none});
+    CHECK(scene.blocks[0].vertices[3] == Vec2(3.0, 2.0));
+    CHECK(scene.blocks[1].vertices[1] == Vec2(3.0, 2.0));
+    CHECK(length_of(scene, rock) == Approx(2.0 * 1.0).epsilon(1e-12));
+    CHECK(scene.cutting->dangling_ends == 0);
+    CHECK(scene.cutting->warnings.empty());
+    const Scene again = read_text(write_scene(scene));
+    CHECK(write_scene(again) == write_scene(scene));
+    CHECK(again.blocks[1].vertices.size() == 5);
+  }
+  SECTION("a set that ends at its region") {
+    const std::string through = "[[joint_set]]\ndip_deg = 0\nspacing_m = 2\norigin_m = [0, 0]\n";
+    const std::string left = "region_m = [[-1, 1], [2.5, 1], [2.5, 3], [-1, 3]]\n";
+    CHECK(length_of(read_text(joints + bare_domain + through + left + "bridge = 'rock'\n"), rock) == Approx(2.0 * 1.5).epsilon(1e-9));
+    CHECK_THAT(error_of(joints + bare_domain + through + "bridge = 'rock'\n"),
+               ContainsSubstring("joint_set[0].bridge: joints that run through have no bridges; accepted: trace_length_m or region_m with it"));
+  }
+  SECTION("a single line") {
+    const Scene scene = read_text(joints + bare_domain + line(1, 1, 2, 2) + "bridge = 'rock'\n");
+    REQUIRE(scene.blocks.size() == 2);
+    CHECK(length_of(scene, rock) == Approx(2.0 * std::sqrt(18.0)).epsilon(1e-9));
+    CHECK(std::ranges::count(scene.blocks[0].edge_joints, rock) == 2);
+    CHECK_THAT(error_of(joints + bare_domain + line(1, 1, 2, 2) + "bridge = 'rack'\n"),
+               ContainsSubstring("joint_line[0].bridge: there is no joint \"rack\"; accepted: \"rock\", \"bedding\""));
+  }
 }
 
 TEST_CASE("sets by dip and dip direction", "[scene][domain]") {

@@ -238,9 +238,20 @@ TEST_CASE("edges of a block name their joints, however its vertices are written"
   const Scene turned = read_text(block("[[50, 0], [50, 1], [52, 0]]", "['', '', 'bedding']"));
   CHECK(turned.blocks.back().vertices[1].isApprox(Vec2(52.0, 0.0)));
   CHECK(turned.blocks.back().edge_joints == std::vector<int>{bedding, none, none});
-  // A vertex on a straight line is dropped.
+  // A vertex on a straight line is dropped, unless the joint changes there: on a repeated vertex the edge without a length says nothing.
   CHECK(joints_of(block("[[50, 0], [51, 0], [52, 0], [50, 1]]", "['bedding', 'bedding', '', '']")) == std::vector<int>{bedding, none, none});
   CHECK(joints_of(block("[[50, 0], [52, 0], [50, 1]]", "['', '', '']")).empty());
+  for (const char* split : {"[[50, 0], [51, 0], [51.5, 0], [52, 0], [50, 1]]", "[[50, 0], [50, 1], [52, 0], [51.5, 0], [51, 0]]"}) {
+    const bool is_clockwise = split[12] == '0';
+    const Scene scene = read_text(block(split, is_clockwise ? "['', '', '', '', 'bedding']" : "['bedding', '', '', '', '']"));
+    const BlockInput& c = scene.blocks.back();
+    REQUIRE(c.vertices.size() == 4);
+    CHECK(c.vertices[1] == Vec2(51.0, 0.0));
+    CHECK(c.vertices[2] == Vec2(52.0, 0.0));
+    CHECK(c.edge_joints == std::vector<int>{bedding, none, none, none});
+  }
+  const Scene repeated = read_text(block("[[50, 0], [50, 0], [52, 0], [50, 1]]", "['', 'bedding', '', '']"));
+  CHECK(repeated.blocks.back().edge_joints == std::vector<int>{bedding, none, none});
 }
 
 TEST_CASE("the residual friction angle is the friction angle unless it is given", "[scene][reader]") {
