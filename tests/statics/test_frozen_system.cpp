@@ -90,7 +90,7 @@ TEST_CASE("the load that a scene increases is apart from the others, and away un
   Scene scene = test::block_on_base();
   const Vec2 top(1.0, 1.0);
   scene.loads = {{1, top, {3000.0, 0.0}, "push"}, {1, top, {0.0, -5000.0}}};
-  const auto load_at = [&](const std::string& what, double multiplier) {
+  const auto load_at = [&](const std::string& what, double multiplier) -> Eigen::Vector3d {
     scene.strength_reduction.increase = what;
     FrozenSystem system(scene);
     const Eigen::Vector3d begin = system.blocks()[0].load;
