@@ -138,6 +138,13 @@ double strength_reduction_factor(const Report& report, const Scene& scene) {
   return result.found() && result.bracket.failed ? result.stable() : not_measured();
 }
 
+double load_multiplier(const Report& report, const Scene& scene, const std::string& load) {
+  Scene asked = scene;
+  // Where blocks move there is no multiplier: a solver that does nothing is asked for the factor of safety, which it has not either.
+  if (!report.null_solver()) asked.strength_reduction.increase = load;
+  return strength_reduction_factor(report, asked);
+}
+
 analytical::LimitState limit_state(const Scene& scene) {
   return analytical::limit_analysis(analytical::parse_rigid_blocks(write_scene(scene)));
 }

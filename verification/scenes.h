@@ -76,6 +76,9 @@ double threshold(double fails, double holds, double width, const std::function<d
 /// The factor of safety by strength reduction; NaN if none was found.
 double strength_reduction_factor(const Report& report, const Scene& scene);
 
+/// The multiplier of a load as strength_reduction.increase names it; NaN if none was found.
+double load_multiplier(const Report& report, const Scene& scene, const std::string& load);
+
 /// Limit analysis of a scene's blocks, handed over as the text of their file.
 analytical::LimitState limit_state(const Scene& scene);
 

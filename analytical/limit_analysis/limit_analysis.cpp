@@ -17,7 +17,7 @@ constexpr int most_programs = 300;       // far beyond bisection of any bracket 
 
 }  // namespace
 
-/// Newton's iteration on the least artificial force as a function of 1/F, kept inside the bracket.
+/// Newton's iteration on the least artificial force as a function of 1/F, or of the multiplier of loads, kept inside the bracket.
 class LimitAnalysis::Search {
  public:
   Search(Program& program, const Options& options)
@@ -40,9 +40,10 @@ class LimitAnalysis::Search {
       b.reason = reason;
       return true;
     };
-    if (b.factor > 0 && b.failed > 0 && b.failed - b.factor <= options_.width) return ends(Bracket::Verdict::found, "");
+    if (feasible_ && infeasible_ && b.failed - b.factor <= width(b.factor)) return ends(Bracket::Verdict::found, "");
     if (b.factor >= options_.upper_limit) return ends(Bracket::Verdict::stands_at_every_factor, "stands at every factor");
-    if (b.failed > 0 && b.failed <= options_.lower_limit) return ends(Bracket::Verdict::no_equilibrium, "no equilibrium at any factor");
+    if (infeasible_ && b.failed <= lowest())
+      return ends(Bracket::Verdict::no_equilibrium, varies_loads() ? "no equilibrium without live loads" : "no equilibrium at any factor");
     if (program_.solved() - before_ >= most_programs) return ends(Bracket::Verdict::undecided, "too many linear programs");
     if (undecided_ == most_undecided) return ends(Bracket::Verdict::undecided, reason_);
     return false;
@@ -54,11 +55,13 @@ class LimitAnalysis::Search {
     feasible_in_a_row_ = trial.verdict == Verdict::feasible ? feasible_in_a_row_ + 1 : 0;
     if (trial.verdict == Verdict::feasible) {
       bracket_.factor = factor_;
+      feasible_ = true;
       bracket_.forces = std::move(trial.forces);
     } else if (trial.verdict == Verdict::infeasible) {
       bracket_.failed = factor_;
+      infeasible_ = true;
       bracket_.mechanism = std::move(trial.mechanism);
-      guess_ = program_.slope() < 0 ? 1 / (1 / factor_ - program_.artificial() / program_.slope()) : 0;
+      guess_ = program_.root();
       fresh_ = true;
     } else {
       reason_ = trial.reason;
@@ -68,8 +71,8 @@ class LimitAnalysis::Search {
   double next() {
     const double low = bracket_.factor, high = bracket_.failed;
     if (undecided_ > 0) return aside();
-    if (high == 0) {
-      const double next = std::min(factor_ * ratio_, options_.upper_limit);
+    if (!infeasible_) {
+      const double next = std::min(factor_ > 0 ? factor_ * ratio_ : options_.first, options_.upper_limit);
       if (++raised_ >= equal_ratios) ratio_ *= ratio_;
       return next;
     }
@@ -84,24 +87,29 @@ class LimitAnalysis::Search {
 
   /// After an infeasible factor.
   double below(double low, double high) {
-    const double near = almost * options_.width, step = high - guess_, last_step = std::exchange(last_step_, step);
+    const double near = almost * width(std::max(low, guess_)), step = high - guess_, last_step = std::exchange(last_step_, step);
     // Where the guess is as good as the root, its other side is wanted.
-    if (low > 0 && guess_ < low + near / 2) return high - low > 2 * near ? low + near : (low + high) / 2;
+    if (feasible_ && guess_ < low + near / 2) return high - low > 2 * near ? low + near : (low + high) / 2;
     const double guess = step < near / 2 ? high - near : guess_;
-    if (low == 0) return std::max(guess, options_.lower_limit);
+    if (!feasible_) return std::max(guess, lowest());
     return last_step == 0 || step < last_step / 2 ? guess : (low + high) / 2;
   }
 
   /// Beside a factor whose program said nothing.
   double aside() const {
-    const double low = bracket_.factor, high = bracket_.failed > 0 ? bracket_.failed : factor_ * options_.ratio;
+    const double low = bracket_.factor, high = infeasible_ ? bracket_.failed : factor_ * options_.ratio;
     return low + (high - low) * (undecided_ + 1) / (most_undecided + 1);
   }
+
+  bool varies_loads() const { return program_.problem().varied == Varied::live_loads; }
+  double lowest() const { return varies_loads() ? 0 : options_.lower_limit; }
+  double width(double factor) const { return varies_loads() ? options_.width * std::max(factor, options_.lower_limit) : options_.width; }
 
   Program& program_;
   const Options& options_;
   const int before_;  // programs
   Bracket bracket_;
+  bool feasible_ = false, infeasible_ = false;  // a factor that is known
   double factor_, ratio_;
   int raised_ = 0;
   double guess_ = 0;      // of the root, from the smallest infeasible factor

@@ -2,6 +2,8 @@
 // the certificates): the largest F for which forces in equilibrium within the strength over F exist. Sliding opens contacts at the friction angle
 // (associated flow), so the factor is an upper bound of every one that a path with other dilatancy reaches.
 //
+// With Varied::live_loads the factor is the one that loads are multiplied by: the largest multiplier at which such forces exist.
+//
 //   LimitAnalysis analysis(problem);
 //   analysis.at(1.3)            one linear program, warm from the last: forces or mechanism, each verified without the program
 //   analysis.largest_factor()   bracket of the largest feasible factor, a handful of programs
@@ -15,11 +17,11 @@
 namespace openclose::limit_analysis {
 
 struct Options {
-  double width = 1e-5;        // [-] of the bracket: failed - factor
+  double width = 1e-5;        // [-] of the bracket: failed - factor; of a multiplier of loads over the multiplier
   double first = 1.0;         // [-] factor tried first: near the answer if it is known roughly
   double ratio = 2;           // [-] of the factors tried next while all are feasible; later its squares
   double upper_limit = 1000;  // [-] feasible there: stands at every factor
-  double lower_limit = 1e-3;  // [-] infeasible there: no equilibrium at any factor
+  double lower_limit = 1e-3;  // [-] infeasible there: no equilibrium at any factor. Multipliers go down to 0, with the width of this one
 };
 
 enum class Verdict {
@@ -45,8 +47,8 @@ struct Bracket {
   };
   Verdict verdict = Verdict::undecided;
   std::string reason;   // in words, unless found
-  double factor = 0;    // largest feasible F; 0: none known
-  double failed = 0;    // smallest infeasible F; 0: none known
+  double factor = 0;    // largest feasible F; 0: none known, or, of a multiplier of loads, 0 itself
+  double failed = 0;    // smallest infeasible F; 0: none known, or, of a multiplier without equilibrium, 0 itself
   Forces forces;        // at `factor`
   Mechanism mechanism;  // at `failed`
   int programs = 0;     // linear programs solved

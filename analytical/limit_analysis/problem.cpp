@@ -25,7 +25,7 @@ bool is_strength(double value) {
 }
 
 void check_block(const Block& block, std::size_t number) {
-  require(block.centroid.allFinite() && block.load.allFinite(), "block", number, "has a number that is not finite");
+  require(block.centroid.allFinite() && block.load.allFinite() && block.live.allFinite(), "block", number, "has a number that is not finite");
   if (block.fixed()) return;
   require(block.load.head<2>().norm() > 0, "block", number, "is free and has no weight");
   require(block.radius > 0 && std::isfinite(block.radius), "block", number, "is free and has no radius");
@@ -50,9 +50,9 @@ double load_of(const Problem& problem, int block) {
   return problem.blocks[block].load.head<2>().norm();
 }
 
-double total_load(const Problem& problem) {
+double total_load(const Problem& problem, double factor) {
   double sum = 0;
-  for (const Block& block : problem.blocks) sum += block.fixed() ? 0 : block.load.head<2>().norm();
+  for (int b = 0; b < static_cast<int>(problem.blocks.size()); ++b) sum += problem.blocks[b].fixed() ? 0 : problem.load(b, factor).head<2>().norm();
   return sum;
 }
 
@@ -106,10 +106,11 @@ bool ForceCheck::holds() const {
 ForceCheck check_forces(const Problem& problem, double factor, const Forces& forces) {
   std::vector<Eigen::Vector3d> sums;
   std::vector<double> scales;  // [N]
-  for (const Block& block : problem.blocks) {
-    sums.push_back(block.load);
-    scales.push_back(block.load.head<2>().norm());
+  for (int b = 0; b < static_cast<int>(problem.blocks.size()); ++b) {
+    sums.push_back(problem.load(b, factor));
+    scales.push_back(problem.blocks[b].load.head<2>().norm());
   }
+  const double reduction = problem.strength_factor(factor);
   ForceCheck result;
   if (!all_finite(forces)) return {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
   for (std::size_t k = 0; k < problem.contacts.size(); ++k) {
@@ -122,7 +123,7 @@ ForceCheck check_forces(const Problem& problem, double factor, const Forces& for
       sums[block] += sign * Eigen::Vector3d(force.x(), force.y(), cross(arm, force));
       scales[block] += share_of_large_forces * force.norm();
     }
-    const double beyond = std::max(std::abs(f.shear) - (c.cohesion + c.friction * f.normal) / factor, -c.tension / factor - f.normal);
+    const double beyond = std::max(std::abs(f.shear) - (c.cohesion + c.friction * f.normal) / reduction, -c.tension / reduction - f.normal);
     const double load = std::min(load_of(problem, c.a), load_of(problem, c.b));
     // Between blocks that cannot move any force is right.
     if (std::isfinite(load)) result.excess = std::max(result.excess, beyond / (load + share_of_large_forces * force.norm()));
@@ -144,6 +145,7 @@ bool MechanismCheck::holds() const {
 }
 
 MechanismCheck check_mechanism(const Problem& problem, double factor, const Mechanism& mechanism) {
+  const double reduction = problem.strength_factor(factor);
   MechanismCheck result;
   for (std::size_t b = 0; b < problem.blocks.size(); ++b) {
     const Block& block = problem.blocks[b];
@@ -151,7 +153,7 @@ MechanismCheck check_mechanism(const Problem& problem, double factor, const Mech
     const Eigen::Vector3d v(m.velocity.x(), m.velocity.y(), m.rotation);
     // Neither work nor anything else is right then.
     if (!v.allFinite()) return {};
-    result.work += block.load.dot(v);
+    result.work += problem.load(static_cast<int>(b), factor).dot(v);
     for (int k = 0; k < 3; ++k) {
       if (!block.free[k]) result.support += std::abs(v[k]) * (k < 2 ? 1.0 : block.radius);
     }
@@ -159,8 +161,8 @@ MechanismCheck check_mechanism(const Problem& problem, double factor, const Mech
   for (const Contact& c : problem.contacts) {
     const Point relative = velocity_of(problem, mechanism, c.a, c.point) - velocity_of(problem, mechanism, c.b, c.point);
     const double opening = relative.dot(c.normal), sliding = std::abs(relative.dot(c.tangent()));
-    result.penetration += std::max(0.0, c.friction / factor * sliding - opening);
-    result.resistance += resistance_of(c, factor, opening, sliding);
+    result.penetration += std::max(0.0, c.friction / reduction * sliding - opening);
+    result.resistance += resistance_of(c, reduction, opening, sliding);
   }
   for (const FreeForce& f : problem.free_forces) {
     const BlockVelocity& m = mechanism[f.block];
@@ -168,7 +170,7 @@ MechanismCheck check_mechanism(const Problem& problem, double factor, const Mech
     const double unit = f.unit.head<2>().norm() > 0 ? f.unit.head<2>().norm() : std::abs(f.unit[2]) / problem.blocks[f.block].radius;
     result.support += std::abs(f.unit.dot(Eigen::Vector3d(m.velocity.x(), m.velocity.y(), m.rotation))) / unit;
   }
-  const double beyond = (result.work - result.resistance) / total_load(problem), barred = result.penetration + result.support;
+  const double beyond = (result.work - result.resistance) / total_load(problem, factor), barred = result.penetration + result.support;
   if (barred > 0) {
     result.least_force = beyond / barred;
   } else {

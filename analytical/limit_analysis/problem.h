@@ -5,6 +5,10 @@
 //   n >= -tension/F,   |t| <= (cohesion + friction n)/F.
 // F is feasible if forces within this strength keep every free block in equilibrium.
 //
+// Instead of the strength, a factor can vary the loads: with Varied::live_loads the strength is that of F = 1, and the load of a block is its dead
+// load plus the factor times its live load. Where 0 is feasible, everything below holds for this factor, too: forces in equilibrium at two factors,
+// mixed, are forces in equilibrium in between, so that what is beyond an infeasible factor is infeasible.
+//
 // Two certificates say which, and each can be checked by adding up:
 //   forces     equilibrium of every block and strength at every contact: F, and every smaller factor, is feasible.
 //   mechanism  velocities v of the blocks with relative velocities (g opening, h sliding) at the contacts. Forces in equilibrium do no work on v:
@@ -27,6 +31,7 @@ struct Block {
   Eigen::Vector3d load = Eigen::Vector3d::Zero();  // force x, y [N], moment about the centroid [N m]; a free block has a force
   double radius = 0;                               // [m] of the vertex farthest from the centroid
   std::array<bool, 3> free = {true, true, true};   // x, y, rotation
+  Eigen::Vector3d live = Eigen::Vector3d::Zero();  // as the load; for Varied::live_loads
 
   bool fixed() const { return !free[0] && !free[1] && !free[2]; }
 };
@@ -51,10 +56,23 @@ struct FreeForce {
 };
 FreeForce support(const Block& block, int number, const Point& point, const Point& direction);
 
+/// What a factor changes.
+enum class Varied {
+  strength,    // divided by the factor
+  live_loads,  // multiplied by the factor
+};
+
 struct Problem {
   std::vector<Block> blocks;
   std::vector<Contact> contacts;
   std::vector<FreeForce> free_forces;
+  Varied varied = Varied::strength;
+
+  double strength_factor(double factor) const { return varied == Varied::strength ? factor : 1.0; }
+  /// Force x, y [N], moment [N m].
+  Eigen::Vector3d load(int block, double factor) const {
+    return varied == Varied::strength ? blocks[block].load : Eigen::Vector3d(blocks[block].load + factor * blocks[block].live);
+  }
 };
 
 /// \throws std::invalid_argument if no block is free, a free one has no load or radius, or a number is out of its range

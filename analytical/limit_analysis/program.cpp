@@ -23,7 +23,7 @@ Trial undecided(double factor, const char* reason) {
   return trial;
 }
 
-/// The cone of a contact at a factor: n >= -tension, |t| <= friction (n + tension) + half_width.
+/// The cone of a contact at a factor on its strength: n >= -tension, |t| <= friction (n + tension) + half_width.
 struct Cone {
   double tension;     // [N]
   double friction;    // [-]
@@ -57,7 +57,7 @@ void LimitAnalysis::Program::number_rows() {
 }
 
 void LimitAnalysis::Program::replace_contacts(std::vector<Contact> contacts) {
-  Problem next{problem_.blocks, std::move(contacts), problem_.free_forces};
+  Problem next{problem_.blocks, std::move(contacts), problem_.free_forces, problem_.varied};
   check(next);
   const std::vector<ContactColumns> before = columns_;
   const int count_before = column_count_;
@@ -101,7 +101,7 @@ Eigen::Vector3d LimitAnalysis::Program::in_rows(int block, const Point& point, c
 void LimitAnalysis::Program::build(double factor) {
   std::vector<double> right_side(row_count_);
   for (std::size_t b = 0; b < rows_.size(); ++b) {
-    const Eigen::Vector3d& load = problem_.blocks[b].load;
+    const Eigen::Vector3d load = problem_.load(static_cast<int>(b), factor);
     for (int k = 0; k < 3; ++k) {
       if (rows_[b].row[k] >= 0) right_side[rows_[b].row[k]] = -load[k] / (k < 2 ? rows_[b].load : rows_[b].load * rows_[b].radius);
     }
@@ -111,7 +111,7 @@ void LimitAnalysis::Program::build(double factor) {
   for (std::size_t p = 0; p < columns_.size(); ++p) {
     if (columns_[p].first_ray < 0) continue;
     const Contact& c = problem_.contacts[p];
-    const Cone cone(c, factor);
+    const Cone cone(c, problem_.strength_factor(factor));
     const double unit = columns_[p].unit;
     const Point normal = c.normal, tangent = c.tangent();
     const auto enter = [&](const Point& force) {
@@ -175,7 +175,7 @@ Forces LimitAnalysis::Program::forces(double factor) const {
   const auto value = [&](int column) { return column < 0 ? 0.0 : x[column]; };
   Forces forces;
   for (std::size_t p = 0; p < columns_.size(); ++p) {
-    const Cone cone(problem_.contacts[p], factor);
+    const Cone cone(problem_.contacts[p], problem_.strength_factor(factor));
     const ContactColumns& c = columns_[p];
     ContactForce force;
     if (c.first_ray >= 0) {
@@ -203,7 +203,7 @@ Mechanism LimitAnalysis::Program::mechanism() const {
 }
 
 /// d(least artificial force)/d(1/F): by the shear and tension that a larger 1/F gives to what the mechanism slides and tears.
-double LimitAnalysis::Program::slope_of(double factor, const Forces& forces, const Mechanism& mechanism) const {
+double LimitAnalysis::Program::slope_by_strength(double factor, const Forces& forces, const Mechanism& mechanism) const {
   double slope = 0;
   for (std::size_t p = 0; p < columns_.size(); ++p) {
     if (columns_[p].first_ray < 0) continue;
@@ -216,6 +216,25 @@ double LimitAnalysis::Program::slope_of(double factor, const Forces& forces, con
     if (!to_tip) slope += c.tension * std::max(0.0, relative.dot(c.normal) - c.friction / factor * sliding);
   }
   return -slope;
+}
+
+/// d(least artificial force)/d(factor): by the work that the live loads do on the mechanism.
+double LimitAnalysis::Program::slope_by_live_loads(const Mechanism& mechanism) const {
+  double slope = 0;
+  for (std::size_t b = 0; b < mechanism.size(); ++b) {
+    const Eigen::Vector3d& live = problem_.blocks[b].live;
+    slope += live.head<2>().dot(mechanism[b].velocity) + live[2] * mechanism[b].rotation;
+  }
+  return slope;
+}
+
+double LimitAnalysis::Program::root_of(double factor, double artificial, const Forces& forces, const Mechanism& mechanism) const {
+  if (problem_.varied == Varied::live_loads) {
+    const double slope = slope_by_live_loads(mechanism);
+    return slope > 0 ? std::max(0.0, factor - artificial / slope) : 0;
+  }
+  const double slope = slope_by_strength(factor, forces, mechanism);
+  return slope < 0 ? 1 / (1 / factor - artificial / slope) : 0;
 }
 
 std::vector<LimitAnalysis::Program::Way> LimitAnalysis::Program::ways(double factor) const {
@@ -261,8 +280,7 @@ Trial LimitAnalysis::Program::judge(double factor, double tolerance) {
   Mechanism mechanism = this->mechanism();
   if (check_mechanism(problem_, factor, mechanism).holds()) {
     trial.verdict = Verdict::infeasible;
-    artificial_ = simplex_.cost();
-    slope_ = slope_of(factor, forces, mechanism);
+    root_ = root_of(factor, simplex_.cost(), forces, mechanism);
     normalise(mechanism);
     trial.mechanism = std::move(mechanism);
     return trial;

@@ -20,9 +20,9 @@ class LimitAnalysis::Program {
   const Problem& problem() const { return problem_; }
   int solved() const { return solved_; }
 
-  /// Of the last infeasible program: the least artificial force, in loads of blocks, and its derivative with respect to 1/F.
-  double artificial() const { return artificial_; }
-  double slope() const { return slope_; }
+  /// Where the least artificial force of the last infeasible program would vanish if it went on as it is there: a step of Newton's method. It is a
+  /// convex function, piecewise linear, of a multiplier of loads, and nearly so of 1/F. 0 where it would not vanish.
+  double root() const { return root_; }
 
  private:
   struct BlockRows {
@@ -48,7 +48,9 @@ class LimitAnalysis::Program {
   Forces forces(double factor) const;
   Mechanism mechanism() const;
   void normalise(Mechanism& mechanism) const;
-  double slope_of(double factor, const Forces& forces, const Mechanism& mechanism) const;
+  double root_of(double factor, double artificial, const Forces& forces, const Mechanism& mechanism) const;
+  double slope_by_strength(double factor, const Forces& forces, const Mechanism& mechanism) const;
+  double slope_by_live_loads(const Mechanism& mechanism) const;
 
   Problem problem_;
   std::vector<BlockRows> rows_;
@@ -56,7 +58,7 @@ class LimitAnalysis::Program {
   int row_count_ = 0, column_count_ = 0;
   Simplex simplex_;
   int solved_ = 0;
-  double artificial_ = 0, slope_ = 0;
+  double root_ = 0;
   double last_factor_ = 0;
   Simplex::Basis basis_;  // of the program of `basis_factor_`
   double basis_factor_ = 0;

@@ -11,10 +11,12 @@ Eigen::Vector3d in_newtons(const FrozenSystem& system, const FrozenBlock& block,
 
 limit_analysis::Problem limit_problem(const FrozenSystem& system, const FrozenStrength& strength) {
   limit_analysis::Problem problem;
+  problem.varied = system.has_live_load() ? limit_analysis::Varied::live_loads : limit_analysis::Varied::strength;
   for (const FrozenBlock& block : system.blocks()) {
     limit_analysis::Block b;
     b.centroid = block.centroid;
-    b.load = in_newtons(system, block, block.load);
+    b.load = in_newtons(system, block, block.dead_load);
+    b.live = in_newtons(system, block, block.live_load);
     b.radius = block.radius * system.length_unit();
     b.free[2] = !block.rotation_locked;
     problem.blocks.push_back(b);

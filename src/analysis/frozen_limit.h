@@ -6,8 +6,8 @@
 
 namespace openclose {
 
-/// The same blocks, contact points and strengths, in metres and newtons. Supports hold without limit.
-/// \param strength  at factor 1
+/// The same blocks, contact points and strengths, in metres and newtons. Supports hold without limit. What varies is the strength, or the live load
+/// of the system, if it has one. \param strength  at factor 1
 limit_analysis::Problem limit_problem(const FrozenSystem& system, const FrozenStrength& strength);
 
 }  // namespace openclose

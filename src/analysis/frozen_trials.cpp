@@ -1,5 +1,8 @@
 #include "openclose/analysis/frozen_trials.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "openclose/statics/explicit_relaxation.h"
 #include "openclose/statics/relaxation.h"
 
@@ -37,7 +40,7 @@ const char* word_of(RelaxationEnd end) {
 
 }  // namespace
 
-FrozenTrials::FrozenTrials(const Scene& scene, const FrozenSystem& system)
+FrozenTrials::FrozenTrials(const Scene& scene, FrozenSystem& system)
     : system_(system), strength_(system, scene), solver_(solver_of(scene, system, strength_)) {
   for (int row = 0; row < system.rows(); ++row) {
     const FrozenBlock& block = system.blocks()[row];
@@ -48,8 +51,16 @@ FrozenTrials::FrozenTrials(const Scene& scene, const FrozenSystem& system)
   }
 }
 
+void FrozenTrials::apply(double srf) {
+  if (system_.has_live_load()) {
+    system_.multiply_live_load(srf);
+  } else {
+    strength_.reduce(srf);
+  }
+}
+
 TrialResult FrozenTrials::first(double srf) {
-  strength_.reduce(srf);
+  apply(srf);
   if (!bonded_ && !bonded_failed_) {
     RelaxationResult bonded = solver_->bonded_state();
     if (bonded.end == RelaxationEnd::stable) {
@@ -72,12 +83,12 @@ TrialResult FrozenTrials::first(double srf) {
 }
 
 TrialResult FrozenTrials::next(double srf) {
-  strength_.reduce(srf);
+  apply(srf);
   return result_of(solver_->relax(stable_.value(), effort()), srf);
 }
 
 void FrozenTrials::exchange(Archive& archive) {
-  archive(bonded_, bonded_failed_, first_stable_, stable_, stable_factor_, mechanism_, undecided_, travel_);
+  archive(bonded_, bonded_failed_, first_stable_, stable_, stable_factor_, least_compliance_, mechanism_, undecided_, travel_);
   bool sound = mechanism_.size() == 0 || mechanism_.size() == 3 * system_.rows();
   for (const std::optional<FrozenState>* state : {&bonded_, &first_stable_, &stable_}) sound = sound && (!*state || (*state)->fits(system_));
   archive.require(sound, "the saved state has blocks or contacts that are not there");
@@ -86,7 +97,7 @@ void FrozenTrials::exchange(Archive& archive) {
 
 /// Where several trials have stayed undecided, most of the others do.
 Effort FrozenTrials::effort() const {
-  return undecided_ < trials_of_full_effort ? Effort::full : Effort::reduced;
+  return !reduced_ && undecided_ < trials_of_full_effort ? Effort::full : Effort::reduced;
 }
 
 TrialResult FrozenTrials::result_of(RelaxationResult&& relaxed, double srf) {
@@ -98,8 +109,7 @@ TrialResult FrozenTrials::result_of(RelaxationResult&& relaxed, double srf) {
   if (relaxed.end == RelaxationEnd::stable) {
     result.outcome = TrialOutcome::stable;
     if (is_first) first_stable_ = relaxed.state;
-    if (!is_first && relaxed.travel > travel_.largest) travel_.largest = relaxed.travel, travel_.at_factor = srf;
-    if (!is_first && relaxed.travel > jump_in_closures && !travel_.factor_before_jump) travel_.factor_before_jump = stable_factor_;
+    if (!is_first) follow(relaxed.travel, srf);
     result.displacement = displacement_of_points(relaxed.state);
     stable_ = std::move(relaxed.state);
     stable_factor_ = srf;
@@ -113,6 +123,18 @@ TrialResult FrozenTrials::result_of(RelaxationResult&& relaxed, double srf) {
     ++undecided_;
   }
   return result;
+}
+
+/// What the way from the last stable state to the one at this factor says.
+void FrozenTrials::follow(double travel, double srf) {
+  if (travel > travel_.largest) travel_.largest = travel, travel_.at_factor = srf;
+  bool is_jump = travel > jump_in_closures;
+  if (system_.has_live_load() && srf != stable_factor_) {
+    const double compliance = travel / std::abs(srf - stable_factor_);
+    least_compliance_ = std::min(compliance, least_compliance_.value_or(compliance));
+    is_jump = is_jump && compliance > jump_over_stiffest * *least_compliance_;
+  }
+  if (is_jump && !travel_.factor_before_jump) travel_.factor_before_jump = stable_factor_;
 }
 
 double FrozenTrials::displacement_of_points(const FrozenState& state) const {

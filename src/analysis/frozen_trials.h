@@ -23,11 +23,15 @@ struct TravelOnPath {
 
 /// [-] In closures: a travel that is no closure of joints any more, but a way to another place.
 inline constexpr double jump_in_closures = 10.0;
+/// [-] A load that grows moves the blocks on their joints, too: a jump is so many times as far, for the same growth, as on the stiffest part of the
+/// path.
+inline constexpr double jump_over_stiffest = 10.0;
 
 class FrozenTrials : public StrengthTrials {
  public:
-  /// The joint's own stiffnesses, solved as method.contact does.
-  FrozenTrials(const Scene& scene, const FrozenSystem& system);
+  /// The joint's own stiffnesses, solved as method.contact does. What a trial's factor changes is the strength, or the load of the system that the
+  /// scene increases.
+  FrozenTrials(const Scene& scene, FrozenSystem& system);
 
   TrialResult first(double srf) override;
   TrialResult next(double srf) override;
@@ -38,6 +42,9 @@ class FrozenTrials : public StrengthTrials {
 
   void exchange(Archive& archive) override;
 
+  /// From now on trials are worth less work before they stay undecided.
+  void reduce_effort() { reduced_ = true; }
+
   FrozenStrength& strength() { return strength_; }
   FrozenSolver& solver() { return *solver_; }
   const std::optional<FrozenState>& stable() const { return stable_; }
@@ -47,7 +54,9 @@ class FrozenTrials : public StrengthTrials {
 
  private:
   Effort effort() const;
+  void apply(double srf);
   TrialResult result_of(RelaxationResult&& relaxed, double srf);
+  void follow(double travel, double srf);
   double displacement_of_points(const FrozenState& state) const;
 
   struct Point {
@@ -55,15 +64,17 @@ class FrozenTrials : public StrengthTrials {
     Vec2 arm;  ///< in radii of the block
   };
 
-  const FrozenSystem& system_;
+  FrozenSystem& system_;
   FrozenStrength strength_;
   std::unique_ptr<FrozenSolver> solver_;
   std::vector<Point> points_;
   std::optional<FrozenState> bonded_, first_stable_, stable_;
   bool bonded_failed_ = false;
   double stable_factor_ = 0.0;
+  std::optional<double> least_compliance_;  ///< travel over growth of the load, between any two stable states on the way
   std::function<std::optional<double>(double near)> limit_analysis_;
   Eigen::VectorXd mechanism_;
+  bool reduced_ = false;
   int undecided_ = 0;  ///< trials from a stable state so far
   TravelOnPath travel_;
 };

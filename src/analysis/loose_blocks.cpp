@@ -8,6 +8,7 @@
 
 #include "openclose/analysis/frozen_limit.h"
 #include "openclose/analysis/loose_motion.h"
+#include "openclose/scene/increased_load.h"
 #include "openclose/statics/frozen_system.h"
 
 namespace openclose {
@@ -52,7 +53,10 @@ std::vector<FailingBlock> moving(const FrozenSystem& system, const Problem& prob
 std::string loose_blocks_in_words(const Scene& scene) {
   const auto free = std::count_if(scene.blocks.begin(), scene.blocks.end(), [](const BlockInput& block) { return !block.fixed; });
   if (scene.gravity.isZero(0.0) || free == 0 || free > most_blocks_to_try) return {};
-  const FrozenSystem system(scene);
+  // `fos` begins without the load that it increases.
+  Scene begin = with_increased_load(scene, 0.0);
+  begin.strength_reduction.increase.reset();
+  const FrozenSystem system(begin);
   const Problem problem = limit_problem(system, FrozenStrength(system, scene));
   try {
     if (const Mechanism found = mechanism_of(problem); !found.empty())

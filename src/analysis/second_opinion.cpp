@@ -12,7 +12,7 @@ namespace {
 /// [-] The bound lies above what a path has reached, often by less than a bracket and seldom by more than a tenth: tried first and next.
 constexpr double first_above = 1.002;
 constexpr double ratio_above = 1.1;
-constexpr double first_of_effect = 0.8;  ///< [-] of the smaller of 1 and the factor: where gravity acts first
+constexpr double first_of_effect = 0.8;  ///< [-] of the smaller of 1 and the factor: where gravity acts first. Loads grow from 0
 
 }  // namespace
 
@@ -29,16 +29,17 @@ LimitAnalysisResult limit_analysis_of(const Scene& scene, const FrozenSystem& sy
   LimitAnalysisResult result;
   limit_analysis::Options options;
   options.upper_limit = std::max(options.upper_limit, 2.0 * upper_limit);
-  options.first = first_above * near;
+  if (near > 0.0) options.first = first_above * near;
   options.ratio = ratio_above;
   try {
-    limit_analysis::Bracket bracket = limit_analysis::limit_analysis(limit_problem(system, FrozenStrength(system, scene)), options);
+    const limit_analysis::Problem problem = limit_problem(system, FrozenStrength(system, scene));
+    limit_analysis::Bracket bracket = limit_analysis::limit_analysis(problem, options);
     result.programs = bracket.programs;
     result.verdict = bracket.found() ? "found" : bracket.reason;
     result.is_conclusive = bracket.verdict != Verdict::undecided;
     result.no_equilibrium = bracket.verdict == Verdict::no_equilibrium;
-    if (bracket.found() && bracket.factor > 0.0) result.factor = bracket.factor;
-    if (bracket.failed > 0.0) {
+    if (bracket.found()) result.factor = bracket.factor;
+    if (!bracket.mechanism.empty()) {
       result.failed = bracket.failed;
       result.mechanism = std::move(bracket.mechanism);
     }
@@ -53,20 +54,20 @@ namespace {
 /// From the factor of the scene's own stiffness up or down in growing steps, until one trial stands and the next does not.
 class EffectSearch {
  public:
-  EffectSearch(StrengthTrials& trials, double ratio, double factor, std::optional<double> proved_failure)
-      : trials_(trials), factor_(factor), proved_failure_(proved_failure) {
+  /// \param first  [-] the factor at which gravity acts
+  EffectSearch(StrengthTrials& trials, double ratio, double first, double factor, std::optional<double> proved_failure)
+      : trials_(trials), first_(first), factor_(factor), proved_failure_(proved_failure) {
     effect_.ratio = ratio;
   }
 
   StiffnessEffect run() {
-    const double first = first_of_effect * std::min(1.0, factor_);
-    if (trials_.first(first).outcome != TrialOutcome::stable) return effect_;
-    effect_.stable = first;
+    if (trials_.first(first_).outcome != TrialOutcome::stable) return effect_;
+    effect_.stable = first_;
     double step = width_of_stiffness_effect;
     if (stands(factor_)) {
       while (stands(factor_ * (1.0 + step))) step *= 2.0;
     } else {
-      while (factor_ * (1.0 - step) > first && !stands(factor_ * (1.0 - step))) step *= 2.0;
+      while (factor_ * (1.0 - step) > first_ && !stands(factor_ * (1.0 - step))) step *= 2.0;
     }
     return effect_;
   }
@@ -84,7 +85,7 @@ class EffectSearch {
   }
 
   StrengthTrials& trials_;
-  double factor_;
+  double first_, factor_;
   std::optional<double> proved_failure_;
   StiffnessEffect effect_;
 };
@@ -95,9 +96,11 @@ StiffnessEffect stiffness_effect(const Scene& scene, double ratio, double factor
   Scene other = scene;
   other.method.contact = "soft";
   for (JointProperties& joint : other.joints) joint.shear_stiffness = ratio * joint.normal_stiffness;
-  const FrozenSystem system(other);
+  FrozenSystem system(other);
   FrozenTrials trials(other, system);
-  return EffectSearch(trials, ratio, factor, proved_failure).run();
+  trials.reduce_effort();  // a bracket of a per cent, and what it cannot decide says no more than that
+  const double first = system.has_live_load() ? 0.0 : first_of_effect * std::min(1.0, factor);
+  return EffectSearch(trials, ratio, first, factor, proved_failure).run();
 }
 
 }  // namespace openclose

@@ -12,7 +12,7 @@
 
 namespace openclose {
 
-/// Rigid-block limit analysis: an upper bound of every factor at small displacements.
+/// Rigid-block limit analysis: an upper bound of every factor, or multiplier of a load, at small displacements.
 struct LimitAnalysisResult {
   std::optional<double> factor;         ///< [-] largest for which forces within the strength exist; none where there is no such largest one
   std::string verdict;                  ///< in words, where there is no factor
@@ -20,7 +20,7 @@ struct LimitAnalysisResult {
   std::optional<double> failed;         ///< [-] smallest factor at which failure is proved
   limit_analysis::Mechanism mechanism;  ///< there
   bool is_conclusive = false;           ///< a factor, or the proof that there is none
-  bool no_equilibrium = false;          ///< proved: at any factor
+  bool no_equilibrium = false;          ///< proved: at any factor, or without the load that grows
 
   void exchange(Archive& archive);
 };

@@ -52,7 +52,7 @@ class StrengthReduction {
   }
 
   void at_small_displacements(const Scene& scene) {
-    const FrozenSystem system(scene);
+    FrozenSystem system(scene);
     FrozenTrials trials(scene, system);
     begin(trials);
     if (input_.limit_analysis) trials.set_limit_analysis([&](double near) { return limit_near(scene, system, near).failed; });
@@ -155,6 +155,7 @@ class StrengthReduction {
       const bool none = proved || b.at_every_strength || (b.failed && b.undecided == 0);
       result_.verdict = none ? FactorVerdict::no_equilibrium : FactorVerdict::undecided;
       result_.reason = b.at_every_strength ? "no strength of the joints could hold the blocks: " + b.first_verdict
+                       : input_.increase   ? fmt::format("not stable before {} grows ({})", *input_.increase, b.first_verdict)
                                            : "not stable even at a strength reduction factor of 0.001 (" + b.first_verdict + ")";
       return;
     }
@@ -290,7 +291,8 @@ class StrengthReduction {
   void compare(const Scene& scene, const FrozenTrials& trials) {
     const LimitAnalysisResult& limit = *result_.limit_analysis;
     if (!limit.is_conclusive) result_.warnings.push_back("limit analysis has no factor: " + limit.verdict);
-    if (!result_.bracket.stable || result_.bracket.at_limit) return;
+    // Without a factor, or at a multiplier of 0, there is nothing to compare with.
+    if (!(result_.bracket.stable > 0.0) || result_.bracket.at_limit) return;
     for (const double ratio : stiffness_ratios) {
       const auto effect = [&] { return stiffness_effect(scene, ratio, *result_.bracket.stable, limit.failed); };
       result_.stiffness_effects.push_back(journal_.once(effect));
@@ -308,10 +310,12 @@ class StrengthReduction {
     }
     if (!others.empty())
       result_.warnings.push_back(
-          fmt::format("the factor depends on the ratio of shear to normal stiffness: {}, where the scene's own give {:.4g}", others, low));
+          fmt::format("the {} depends on the ratio of shear to normal stiffness: {}, where the scene's own give {:.4g}", noun(), others, low));
     if (result_.verdict == FactorVerdict::certified && limit.factor && low < far_below_limit_analysis * *limit.factor)
       warn_of_distance(*limit.factor, largest, trials);
   }
+
+  const char* noun() const { return input_.increase ? "multiplier" : "factor"; }
 
   bool joints_can_lose_strength() const {
     return std::ranges::any_of(scene_.joints, [](const JointProperties& joint) { return can_lose_strength(joint, true); });
@@ -333,9 +337,9 @@ class StrengthReduction {
   void warn_of_travel(const TravelOnPath& travel) {
     if (!travel.factor_before_jump) return;
     result_.warnings.push_back(
-        fmt::format("the blocks moved by up to {:.3g} joint closures on the way to a new equilibrium (at {:.6g}); the factor before "
+        fmt::format("the blocks moved by up to {:.3g} joint closures on the way to a new equilibrium (at {:.6g}); the {} before "
                     "the first such way is {:.6g}",
-                    travel.largest, travel.at_factor, *travel.factor_before_jump));
+                    travel.largest, travel.at_factor, noun(), *travel.factor_before_jump));
   }
 
   void warn_of_geometry() {
@@ -366,6 +370,14 @@ class StrengthReduction {
 };
 
 }  // namespace
+
+std::string name_of_answer(const std::optional<std::string>& increase) {
+  return increase ? "multiplier of " + *increase : "factor of safety";
+}
+
+const char* column_of_answer(const std::optional<std::string>& increase) {
+  return increase ? "multiplier" : "srf";
+}
 
 const char* factor_verdict_word(FactorVerdict verdict) {
   switch (verdict) {

@@ -3,6 +3,9 @@
 //   small_displacements  the drawn geometry; both ends of the bracket are proved (frozen_trials.h)
 //   joint_closures       the same on the geometry that the joints' closures under gravity leave
 //   large_displacements  blocks move; stable is what settles, failed what moves beyond settle.failure_displacement_m (settling_trials.h)
+//
+// With strength_reduction.increase the strength stays, and the factor is the multiplier of a load, see increased_load.h: the largest for which the
+// system stands, at small displacements.
 #pragma once
 
 #include <functional>
@@ -33,9 +36,14 @@ enum class FactorVerdict {
   certified,       ///< a stable and a failed factor, no farther apart than asked for
   interval,        ///< farther apart, or without a failed one
   no_failure,      ///< stable up to the limit of the search
-  no_equilibrium,  ///< failed down to the smallest factor
+  no_equilibrium,  ///< failed down to the smallest factor, of a multiplier 0
   undecided,       ///< no stable state found
 };
+
+/// What is searched, in words: the factor of safety, or the multiplier of the load that strength_reduction.increase names.
+std::string name_of_answer(const std::optional<std::string>& increase);
+/// The name of its values in tables of results.
+const char* column_of_answer(const std::optional<std::string>& increase);
 
 /// As summary.json has it.
 const char* factor_verdict_word(FactorVerdict verdict);

@@ -12,6 +12,10 @@ constexpr double bracket_ratio = 1.25;     ///< [-] between the factors tried fi
 constexpr std::size_t most_undecided = 4;  ///< trials: each may cost as much as all that are decided
 constexpr double smallest_factor = 1e-3;   ///< [-] below which nothing is stable at any strength one could mean
 
+constexpr double first_multiplier = 0.125;    ///< [-] of a load, after 0: an earthquake's, or some of what the user wrote
+constexpr double multiplier_ratio = 2.0;      ///< [-] between the next ones
+constexpr double smallest_multiplier = 1e-3;  ///< [-] below which brackets become no narrower
+
 class Search {
  public:
   Search(StrengthTrials& trials, const StrengthReductionInput& input, const TrialObserver& done, const std::function<void(double)>& progress)
@@ -37,8 +41,9 @@ class Search {
   }
 
   /// At factor 1, or at a smaller one if the scene fails with its own strength. Where that is not decided, also a little above: which factor is hard
-  /// to decide is a matter of chance.
+  /// to decide is a matter of chance. Multipliers of a load begin at 0.
   bool find_first() {
+    if (input_.increase) return begin_at(0.0) == TrialOutcome::stable;
     for (double srf = 1.0; srf >= smallest_factor; srf /= bracket_ratio * bracket_ratio) {
       const TrialOutcome outcome = begin_at(srf);
       if (outcome == TrialOutcome::stable) return true;
@@ -99,7 +104,7 @@ class Search {
       bracket_.at_limit = srf == *bracket_.stable;
       return std::nullopt;
     }
-    return std::min(srf * bracket_ratio, input_.upper_limit);
+    return std::min(input_.increase ? std::max(first_multiplier, srf * multiplier_ratio) : srf * bracket_ratio, input_.upper_limit);
   }
 
   void attempt(double srf) {
@@ -176,7 +181,9 @@ class Search {
 
 }  // namespace
 
-double widest_bracket(const StrengthReductionInput& input, double factor) { return input.width * std::min(1.0, factor); }
+double widest_bracket(const StrengthReductionInput& input, double factor) {
+  return input.width * (input.increase ? std::max(factor, smallest_multiplier) : std::min(1.0, factor));
+}
 
 StrengthBracket search_strength(StrengthTrials& trials, const StrengthReductionInput& input, const TrialObserver& done,
                                 const std::function<void(double share)>& progress) {

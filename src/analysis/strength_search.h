@@ -1,5 +1,5 @@
-// The search for the largest strength reduction factor at which a system stands. It knows trials by their outcome only: stable, failed, or undecided,
-// and an undecided trial never counts as failed.
+// The search for the largest strength reduction factor at which a system stands, or for the largest multiplier of a load (both are called factor
+// here). It knows trials by their outcome only: stable, failed, or undecided, and an undecided trial never counts as failed.
 #pragma once
 
 #include <functional>
@@ -37,7 +37,7 @@ struct TrialResult {
 };
 
 struct StrengthTrial : TrialResult {
-  double srf = 1.0;   ///< [-] strength reduction factor
+  double srf = 1.0;   ///< [-] strength reduction factor, or multiplier of the load
   std::string stage;  ///< bracket, bisect or curve
 };
 
@@ -73,7 +73,7 @@ struct StrengthBracket {
 using TrialObserver = std::function<void(const StrengthTrial&)>;
 
 /// [-] Between the ends of a bracket that is narrow enough: strength_reduction.width, and below a factor of 1 that part of the factor, since an error
-/// of 5e-4 is nothing at 1.3 and nearly one per cent at 0.06.
+/// of 5e-4 is nothing at 1.3 and nearly one per cent at 0.06. Multipliers have the unit of their load, so that of them it is always a part.
 double widest_bracket(const StrengthReductionInput& input, double factor);
 
 /// Each trial starts from the last stable state. Where one stays undecided, the search comes near it from below with smaller increments, tries again,

@@ -30,15 +30,15 @@ double deepest_of(const std::vector<Contact>& contacts) {
 
 /// The answer and what it is worth, in two or three lines.
 void print_factor(const Scene& scene, const FactorOfSafety& safety, const OutputFolder& folder) {
-  const std::string stable = fmt::format("{:.6g}", safety.stable());
+  const std::string stable = fmt::format("{:.6g}", safety.stable()), name = name_of_answer(scene.strength_reduction.increase);
   if (safety.verdict == FactorVerdict::no_failure) {
-    fmt::print("factor of safety above {} ({}): {}; written to {}\n", stable, scene.method.contact, safety.reason, folder.path());
+    fmt::print("{} above {} ({}): {}; written to {}\n", name, stable, scene.method.contact, safety.reason, folder.path());
     return;
   }
   const std::string failed = safety.bracket.failed ? fmt::format("failed at {:.6g} by {}", safety.failed(), safety.bracket.failed_by)
                                                    : std::string("no failure proved above");
-  fmt::print("factor of safety {} ({}; {}: stable at {}, {}); written to {}\n", stable, scene.method.contact, factor_verdict_word(safety.verdict),
-             stable, failed, folder.path());
+  fmt::print("{} {} ({}; {}: stable at {}, {}); written to {}\n", name, stable, scene.method.contact, factor_verdict_word(safety.verdict), stable,
+             failed, folder.path());
   if (safety.limit_analysis && safety.limit_analysis->factor) {
     fmt::print("rigid-block limit analysis: at most {:.6g}\n", *safety.limit_analysis->factor);
   }
@@ -145,6 +145,7 @@ int fos_command(const Options& options) {
   write_block_properties(folder, simulation.scene(), simulation.system());
   StateTables states(folder, simulation.scene());
   states.add_drawing(simulation);
+  const std::optional<std::string>& increase = simulation.scene().strength_reduction.increase;
   const double begin = process_cpu_time();
   const FactorOfSafety safety = search(simulation, options, folder, std::move(restart));
 
@@ -158,7 +159,7 @@ int fos_command(const Options& options) {
     if (state.name != "failed") summary.max_penetration = deepest_of(state.contacts);
   }
   states.close();
-  write_trials(folder, safety.trials);
+  write_trials(folder, safety.trials, column_of_answer(increase));
   if (!safety.mechanism.empty()) write_mechanism(folder, simulation.scene(), safety.mechanism);
   if (!safety.curve.empty()) write_curve(folder, safety.curve);
   summary.converged = safety.found();
@@ -169,7 +170,7 @@ int fos_command(const Options& options) {
   if (safety.bracket.stopped) return report_stop(safety, options, folder);
   folder.remove_checkpoint();
   if (!safety.found()) {
-    print_message(fmt::format("no factor of safety: {}; state saved in {}", safety.reason, folder.path()));
+    print_message(fmt::format("no {}: {}; state saved in {}", name_of_answer(increase), safety.reason, folder.path()));
     return exit_not_converged;
   }
   if (!options.quiet) print_factor(simulation.scene(), safety, folder);

@@ -16,6 +16,7 @@
 #include "openclose/integrator/registry.h"
 #include "openclose/io/key_reference.h"
 #include "openclose/io/progress.h"
+#include "openclose/scene/toml_text.h"
 #include "openclose/version.h"
 #include "report_command.h"
 #include "shell_commands.h"
@@ -131,7 +132,12 @@ int main_checked(int argc, char** argv) {
   CLI::App* run = subcommand("run", "follow the blocks in time", true, &run_command);
   run->add_option("--restart", options.restart_file,
                   "go on from this checkpoint.bin of an earlier run of the scene (see output.checkpoint_every_s), continuing the tables beside it");
-  CLI::App* fos = subcommand("fos", "factor of safety by strength reduction", true, &fos_command);
+  CLI::App* fos = subcommand("fos", "factor of safety by strength reduction, or the multiplier of a load", true, &fos_command);
+  fos->add_option_function<std::string>(
+      "--increase",
+      [&options](const std::string& load) { options.overrides.push_back("strength_reduction.increase=" + toml(std::string_view(load))); },
+      "the strength stays, and this load grows from 0 until the blocks fail: gravity_x, gravity_y or the name of loads; --increase=-gravity_x turns "
+      "it around");
   fos->add_option("--restart", options.restart_file,
                   "go on from the checkpoint.bin that a search which was broken off has left: no trial is made again");
   CLI::App* check = subcommand(

@@ -84,6 +84,10 @@ void require_strength_reduction(const Scene& scene) {
                      fmt::format("a step in seconds: {} asks for motion", paper ? "settle.criterion" : "strength_reduction.curve_time_s"));
   }
   if (curve_time) require_countable_steps(scene, "strength_reduction.curve_time_s", *curve_time);
+  const StrengthReductionInput& input = scene.strength_reduction;
+  if (input.increase && input.definition != FactorDefinition::small_displacements)
+    throw InputError(input.increase_where, "strength_reduction.increase", "a load grows on the drawn geometry only",
+                     "strength_reduction.definition = \"small_displacements\"");
   if (scene.strength_reduction.definition == FactorDefinition::large_displacements) return;
   const std::string large = "strength_reduction.definition = \"large_displacements\", in which blocks move";
   if (paper) throw InputError(scene.where, "settle.criterion", "\"paper\" is a rule for motion", large);

@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
+#include <optional>
+
+#include "openclose/analysis/strength_reduction.h"
 
 namespace openclose {
 namespace {
@@ -11,14 +14,16 @@ using nlohmann::json;
 
 std::string answer_of_factor(const json& summary) {
   const json& bracket = summary.at("bracket");
+  const json& increase = summary.at("options").value("strength_reduction", json::object()).value("increase", json());
+  const std::string name = name_of_answer(increase.is_string() ? std::optional(increase.get<std::string>()) : std::nullopt);
   const std::string verdict = summary.at("verdict"), method = summary.at("options").at("method").at("contact");
   const json& stable = bracket.at("stable");
   if (stable.is_null() || verdict == "no_equilibrium" || verdict == "undecided")
-    return fmt::format("no factor of safety ({}): {}", method, summary.value("reason", ""));
-  if (verdict == "no_failure") return fmt::format("factor of safety above {:.6g} ({}: no failure found up to there)", stable.get<double>(), method);
+    return fmt::format("no {} ({}): {}", name, method, summary.value("reason", ""));
+  if (verdict == "no_failure") return fmt::format("{} above {:.6g} ({}: no failure found up to there)", name, stable.get<double>(), method);
   const json& failed = bracket.at("failed");
   const std::string end = failed.is_null() ? "no failure proved" : fmt::format("failed at {:.6g}", failed.get<double>());
-  return fmt::format("factor of safety {:.6g} ({}, {}; {})", stable.get<double>(), end, verdict, method);
+  return fmt::format("{} {:.6g} ({}, {}; {})", name, stable.get<double>(), end, verdict, method);
 }
 
 std::string answer_of_run(const json& summary) {

@@ -291,9 +291,9 @@ void write_mechanism(const OutputFolder& folder, const Scene& scene, const std::
   finish(file, folder.path_of("mechanism.csv"));
 }
 
-void write_trials(const OutputFolder& folder, const std::vector<StrengthTrial>& trials) {
+void write_trials(const OutputFolder& folder, const std::vector<StrengthTrial>& trials, const char* factor) {
   std::ofstream file = folder.open("trials.csv");
-  file << "srf,stage,stable,criterion,steps,displacement_m\n";
+  file << factor << ",stage,stable,criterion,steps,displacement_m\n";
   for (const StrengthTrial& t : trials) {
     fmt::print(file, "{:.17g},{},{},{},{},{:.17g}\n", t.srf, t.stage, word_of(t.outcome), field(t.criterion), t.steps, t.displacement);
   }

@@ -128,8 +128,8 @@ void write_block_properties(const OutputFolder& folder, const Scene& scene, cons
 /// mechanism.csv: the blocks that move when the scene fails.
 void write_mechanism(const OutputFolder& folder, const Scene& scene, const std::vector<FailingBlock>& blocks);
 
-/// trials.csv and, if the scene asks for motion, curve.csv.
-void write_trials(const OutputFolder& folder, const std::vector<StrengthTrial>& trials);
+/// trials.csv and, if the scene asks for motion, curve.csv. \param factor  see column_of_answer()
+void write_trials(const OutputFolder& folder, const std::vector<StrengthTrial>& trials, const char* factor = "srf");
 void write_curve(const OutputFolder& folder, const std::vector<CurvePoint>& curve);
 
 /// milestones.csv, if the scene asks for any: of one that was not reached time and CPU times are empty.

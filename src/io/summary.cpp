@@ -8,6 +8,7 @@
 #include "openclose/integrator/integrators.h"
 #include "openclose/io/results.h"
 #include "openclose/io/state_hash.h"
+#include "openclose/scene/increased_load.h"
 #include "openclose/scene/keys.h"
 #include "openclose/scene/names.h"
 #include "openclose/version.h"
@@ -44,18 +45,20 @@ nlohmann::ordered_json settling_json(const SettleResult& settling) {
   return j;
 }
 
-/// Where something is held, pushed or measured: points of the drawing.
-void add_points(const Scene& scene, nlohmann::ordered_json& j) {
+/// Where something is held, pushed or measured: points of the drawing. \param pushed  the forces as they are in the results
+void add_points(const Scene& scene, const ForceInputs& pushed, nlohmann::ordered_json& j) {
   using nlohmann::ordered_json;
   const auto pair = [](const Vec2& v) { return ordered_json::array({v.x(), v.y()}); };
   const auto plural = [](std::string_view table) { return std::string(table) + 's'; };
   ForceInputs::visit(scene, [&](const auto& list) { j[plural(std::decay_t<decltype(list)>::value_type::table().name)] = ordered_json::array(); });
   for (const std::vector<KeyEntry>& force : force_entries(scene)) {
     ordered_json& entry = j[plural(force.front().table.name)].emplace_back();
-    for (const KeyEntry& row : force) entry[std::string(row.key.name)] = ordered_json::parse(row.value.value());
+    for (const KeyEntry& row : force) {
+      if (row.value) entry[std::string(row.key.name)] = ordered_json::parse(*row.value);
+    }
   }
   j["arrows"] = j["measured_points"] = ordered_json::array();
-  for_each_force(scene, [&](const auto& force) {
+  for_each_force(pushed, [&](const auto& force) {
     for (const DrawnForce& arrow : force.drawn()) {
       j["arrows"].push_back({{"block", scene.blocks[force.block].name},
                              {"point_m", pair(arrow.point)},
@@ -83,7 +86,9 @@ nlohmann::ordered_json options_json(const Simulation& simulation) {
 
 void add_factor(const FactorOfSafety& safety, const Scene& scene, nlohmann::ordered_json& j) {
   using nlohmann::ordered_json;
-  j["factor_of_safety"] = optional_json(safety.bracket.stable);
+  const bool increases_load = scene.strength_reduction.increase.has_value();
+  j["factor_of_safety"] = increases_load ? ordered_json(nullptr) : optional_json(safety.bracket.stable);
+  j["load_multiplier"] = increases_load ? optional_json(safety.bracket.stable) : ordered_json(nullptr);
   j["verdict"] = factor_verdict_word(safety.verdict);
   j["definition"] = word_for(factor_definition_words, scene.strength_reduction.definition);
   const bool failed = safety.bracket.failed.has_value();
@@ -113,13 +118,14 @@ void add_factor(const FactorOfSafety& safety, const Scene& scene, nlohmann::orde
   j["largest_travel_m"] = optional_json(safety.largest_travel);
   ordered_json curve = ordered_json::array();
   for (const StrengthTrial& t : safety.trials) {
-    if (t.outcome == TrialOutcome::stable) curve.push_back({{"srf", t.srf}, {"displacement_m", t.displacement}});
+    if (t.outcome == TrialOutcome::stable)
+      curve.push_back({{column_of_answer(scene.strength_reduction.increase), t.srf}, {"displacement_m", t.displacement}});
   }
   j["displacement_curve"] = curve;
   j["small_displacement_factorisations"] = safety.linear_solves;
 }
 
-void add_question(const Summary& summary, const Simulation& simulation, nlohmann::ordered_json& j) {
+void add_question(const Summary& summary, const Simulation& simulation, const FactorOfSafety* safety, nlohmann::ordered_json& j) {
   const Scene& scene = simulation.scene();
   j["version"] = version;
   j["command"] = summary.command;
@@ -127,7 +133,7 @@ void add_question(const Summary& summary, const Simulation& simulation, nlohmann
   j["title"] = scene.title;
   j["overrides"] = summary.overrides;
   j["options"] = options_json(simulation);
-  add_points(scene, j);
+  add_points(scene, safety ? with_increased_load(scene, safety->stable()) : scene, j);
   j["warnings"] = summary.warnings;
   j["blocks"] = simulation.system().block_count();
   j["free_blocks"] = simulation.system().free_count() + static_cast<int>(simulation.system().resting_blocks().size());
@@ -209,7 +215,7 @@ nlohmann::ordered_json counters_json(const Simulation& simulation) {
 void write_summary(const OutputFolder& folder, const Summary& summary, const Simulation& simulation, const FactorOfSafety* safety) {
   const Scene& scene = simulation.scene();
   nlohmann::ordered_json j;
-  add_question(summary, simulation, j);
+  add_question(summary, simulation, safety, j);
   j["state_hash"] = safety ? state_hash(*safety, scene) : state_hash(simulation);
   if (!safety) j["time_s"] = simulation.time();
   if (summary.settling.steps > 0) j["settling"] = settling_json(summary.settling);

@@ -6,11 +6,13 @@
 //   void complete(table, blocks)                    finds the block where the file names none; throws InputError for what no single key shows
 //   void change_unit_of_length(double)              what holds metres beside the points, for forces that keep their unit
 //   static constexpr bool holds                     whether it can hold a block against gravity
+//   void multiply(double)                           makes it so many times as large, unless it holds
 //   std::vector<DrawnForce> drawn() const           arrows of drawings
 //
 // and a list of its own in ForceInputs. What it does to its block stands in model/force_elements.cpp.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "openclose/core/vector.h"
@@ -34,11 +36,14 @@ struct Load {
   int block = 0;
   Vec2 point = Vec2::Zero();  ///< [m]
   Vec2 force = Vec2::Zero();  ///< [N]
+  std::string name{};
 
   static constexpr bool holds = false;
   static KeyTable table() { return {"load", Audience::user, "A constant force per metre of thickness on a point of a block", true}; }
   template <class Self, class Visitor>
   static void visit_keys(Self& self, Visitor& visit) {
+    visit({"name", "for `--set` and `strength_reduction.increase`; loads and surcharges of one name increase together", "none"}, self.name,
+          OwnName{});
     visit({"block", "name of a block", "that at the point"}, self.block, BlockName{});
     visit({.name = "point_m", .says = "in the block or on its boundary", .required = true}, self.point, any_number);
     visit({.name = "force_n", .says = "[x, y]", .required = true}, self.force, any_number);
@@ -49,6 +54,7 @@ struct Load {
   }
   void complete(const Table& table, const std::vector<BlockInput>& blocks);
   void change_unit_of_length(double) {}
+  void multiply(double factor) { force *= factor; }
   std::vector<DrawnForce> drawn() const { return {{point, force}}; }
 };
 
@@ -57,6 +63,7 @@ struct Support {
   int block = 0;
   Vec2 point = Vec2::Zero();      ///< [m]
   Vec2 stiffness = Vec2::Zero();  ///< [N/m] in x and y; 0 leaves that direction free
+  std::string name{};
 
   static constexpr bool holds = true;
   static KeyTable table() {
@@ -65,6 +72,7 @@ struct Support {
   }
   template <class Self, class Visitor>
   static void visit_keys(Self& self, Visitor& visit) {
+    visit({"name", "for `--set`", "none"}, self.name, OwnName{});
     visit({"block", "name of a block", "that at the point"}, self.block, BlockName{});
     visit({.name = "point_m", .says = "in the block or on its boundary", .required = true}, self.point, any_number);
     visit({.name = "stiffness_n_per_m", .says = "[kx, ky], not both 0", .required = true}, self.stiffness, not_negative);
@@ -86,6 +94,7 @@ struct Surcharge {
   Vec2 from = Vec2::Zero(), to = Vec2::Zero();  ///< [m] on one edge, in the order in which the outline runs counter-clockwise
   double pressure = 0.0;                        ///< [Pa] onto the block
   double shear = 0.0;                           ///< [Pa] in the direction in which the outline runs
+  std::string name{};
 
   static constexpr bool holds = false;
   static KeyTable table() {
@@ -93,6 +102,8 @@ struct Surcharge {
   }
   template <class Self, class Visitor>
   static void visit_keys(Self& self, Visitor& visit) {
+    visit({"name", "for `--set` and `strength_reduction.increase`; loads and surcharges of one name increase together", "none"}, self.name,
+          OwnName{});
     visit({"block", "name of a block", "that with both points on one edge"}, self.block, BlockName{});
     visit({.name = "from_m", .says = "one end, on an edge of the block", .required = true}, self.from, any_number);
     visit({.name = "to_m", .says = "the other end, on the same edge; which of the two comes first does not matter", .required = true}, self.to,
@@ -106,7 +117,8 @@ struct Surcharge {
     f(self.to);
   }
   void complete(const Table& table, const std::vector<BlockInput>& blocks);
-  void change_unit_of_length(double unit) { pressure *= unit, shear *= unit; }
+  void change_unit_of_length(double unit) { multiply(unit); }
+  void multiply(double factor) { pressure *= factor, shear *= factor; }
   std::vector<DrawnForce> drawn() const { return {{0.5 * (from + to), resultant(to - from), true}}; }
   /// [N] The traction times the length.
   /// \param along  [m] from one end to the other, as the block lies now

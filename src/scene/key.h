@@ -42,6 +42,10 @@ struct Degrees {
 };
 /// The name of a block; the member is its number.
 struct BlockName {};
+/// A name that the user gives something; empty: none.
+struct OwnName {};
+/// What names a load, see increased_load.h.
+struct LoadName {};
 /// A name, or a list of names, in a registry that the scene does not know, because it stands downstream; who looks it up refuses an unknown one.
 enum class NameIn { enforcements, integrators, formats };
 

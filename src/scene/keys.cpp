@@ -19,6 +19,12 @@ std::optional<std::string> text_of(bool value, const Flag&) {
 std::optional<std::string> text_of(const std::string& value, const NameIn&) {
   return toml(std::string_view(value));
 }
+std::optional<std::string> text_of(const std::string& value, const OwnName&) {
+  return value.empty() ? std::nullopt : std::optional(toml(std::string_view(value)));
+}
+std::optional<std::string> text_of(const std::string& value, const LoadName&) {
+  return toml(std::string_view(value));
+}
 template <typename Number>
 requires std::is_arithmetic_v<Number> std::optional<std::string> text_of(Number value, const Range& range) {
   return range.contains(value) ? std::optional(toml(value)) : std::nullopt;
@@ -108,6 +114,14 @@ class Collector {
   static void describe(KeyEntry& entry, const T&, const Degrees& angle) {
     entry.type = ValueType::number;
     entry.range = angle.range;
+  }
+  template <typename T>
+  static void describe(KeyEntry& entry, const T&, const OwnName&) {
+    entry.type = ValueType::text;
+  }
+  template <typename T>
+  static void describe(KeyEntry& entry, const T&, const LoadName&) {
+    entry.type = ValueType::text;
   }
   template <typename T>
   static void describe(KeyEntry& entry, const T&, const NameIn& names) {

@@ -362,12 +362,14 @@ inline constexpr std::array factor_definition_words{
 
 struct StrengthReductionInput {
   FactorDefinition definition = FactorDefinition::small_displacements;
-  bool limit_analysis = true;         ///< rigid-block limit analysis beside it: a proof of failure and a second opinion
-  double width = 1e-4;                ///< [-] of the final bracket; times the factor where that is below 1
-  double upper_limit = 100.0;         ///< [-] strength reduction factor beyond which the search stops
-  std::vector<double> curve;          ///< [-] further factors at which displacement is recorded
-  std::optional<double> curve_time;   ///< [s] physical time of a dynamic run at each of them; absent: settled displacement only
-  SourceLocation curve_time_where{};  ///< for the error of a definition that knows no motion
+  bool limit_analysis = true;           ///< rigid-block limit analysis beside it: a proof of failure and a second opinion
+  std::optional<std::string> increase;  ///< the load that is increased instead, see increased_load.h
+  double width = 1e-4;                  ///< [-] of the final bracket; times the factor where that is below 1, and times every multiplier
+  double upper_limit = 100.0;           ///< [-] strength reduction factor, or multiplier, beyond which the search stops
+  std::vector<double> curve;            ///< [-] further factors at which displacement is recorded
+  std::optional<double> curve_time;     ///< [s] physical time of a dynamic run at each of them; absent: settled displacement only
+  /// For the errors of a load that is not there, of a factor below 1, and of a definition that knows no motion.
+  SourceLocation increase_where{}, upper_limit_where{}, curve_time_where{};
 };
 
 /// The keys of [strength_reduction].
@@ -383,8 +385,14 @@ void visit_strength_reduction_keys(Reduction& r, Visitor& visit) {
          "a second opinion: rigid-block limit analysis, which also proves failure above it, and the factor at shear to normal stiffness ratios of "
          "0.1 and 1"},
         r.limit_analysis, Flag{});
-  visit({"width", "of the final bracket of the factor; below a factor of 1 that part of the factor"}, r.width, positive);
-  visit({"upper_limit", "factor beyond which the search stops"}, r.upper_limit, Range{.low = 1.0});
+  visit({"increase",
+         "the strength stays, and the factor multiplies this load instead, from 0 up: \"gravity_x\" or \"gravity_y\", a body force of so many times "
+         "gravity to the right or upwards, or the `name` of loads and surcharges; a minus before it turns it around, see [factor of "
+         "safety](factor_of_safety.md#the-multiplier-of-a-load)",
+         "none"},
+        r.increase, LoadName{}, &r.increase_where);
+  visit({"width", "of the final bracket of the factor; below a factor of 1, and of a multiplier always, that part of it"}, r.width, positive);
+  visit({"upper_limit", "factor, above 1, or multiplier beyond which the search stops"}, r.upper_limit, positive, &r.upper_limit_where);
   visit({"curve", "further factors at which the displacement is recorded"}, r.curve, ListOf{positive});
   visit({"curve_time_s", "also the displacement after this time of motion at each of them; with \"large_displacements\"", "none"}, r.curve_time,
         positive, &r.curve_time_where);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <vector>
 
 #include "openclose/scene/key_depth.h"
 #include "openclose/scene/table.h"
@@ -62,18 +63,21 @@ toml::table& as_table(const Override& override, toml::node& parent, const std::s
   override.fail(fmt::format("{} follows something that is not a table", in_quotes(key)), "a key that the scene has");
 }
 
-/// The element of an array that has this name: a block, a material, a measured point; null if none has.
-toml::node* named_element(toml::node& parent, const std::string& name) {
+/// The element of an array that has this name: a block, a material, a load; null if none has.
+toml::node* named_element(const Override& override, toml::node& parent, const std::string& name) {
   toml::array* array = parent.as_array();
+  std::vector<std::size_t> found;
   for (std::size_t i = 0; array != nullptr && i < array->size(); ++i) {
     const toml::table* table = array->get(i)->as_table();
-    if (table != nullptr && (*table)["name"].value<std::string>() == name) return array->get(i);
+    if (table != nullptr && (*table)["name"].value<std::string>() == name) found.push_back(i);
   }
-  return nullptr;
+  if (found.size() > 1)
+    override.fail(fmt::format("{} are called {}", found.size(), in_quotes(name)), fmt::format("an index, such as [{}]", found.front()));
+  return found.empty() ? nullptr : array->get(found.front());
 }
 
 toml::node& member(const Override& override, toml::node& parent, const std::string& key) {
-  if (toml::node* element = named_element(parent, key)) return *element;
+  if (toml::node* element = named_element(override, parent, key)) return *element;
   toml::table& table = as_table(override, parent, key);
   if (!table.contains(key)) table.insert_or_assign(key, std::move(*parse_value(override, "{}").get_as<toml::table>("value")));
   return *table.get(key);

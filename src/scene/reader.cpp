@@ -14,6 +14,7 @@
 #include "openclose/scene/base_motion.h"
 #include "openclose/scene/domain.h"
 #include "openclose/scene/former_keys.h"
+#include "openclose/scene/increased_load.h"
 #include "openclose/scene/key_depth.h"
 #include "openclose/scene/names.h"
 #include "openclose/scene/outline.h"
@@ -76,6 +77,16 @@ void require_increasing(const Value& value, const std::vector<double>& list) {
   }
 }
 
+/// A name that strength_reduction.increase can tell from a direction of gravity, and with a minus before it.
+void require_load_name(const Value& value, const std::string& name) {
+  const bool can_be_named = !name.empty() && name.front() != '-' && can_be_written(name) && !names_gravity(name);
+  if (can_be_named) return;
+  value.fail(
+      in_quotes(name) + " cannot name a load",
+      "a name that is not empty, does not begin with a minus and has no commas, quotes and control characters; \"gravity_x\" and \"gravity_y\" "
+      "are taken");
+}
+
 /// Reads the rows of one table of keys: what the file gives; of the rest finish() reports what is required.
 class RowReader {
  public:
@@ -101,6 +112,12 @@ class RowReader {
     return table_->optional(name, member, limits);
   }
   bool read_member(const std::string& name, int& member, const BlockName&) { return table_->optional(name, member, *block_names_); }
+  bool read_member(const std::string& name, std::string& member, const OwnName&) {
+    const bool given = table_->optional(name, member);
+    if (given) require_load_name(table_->at(name), member);
+    return given;
+  }
+  bool read_member(const std::string& name, std::optional<std::string>& member, const LoadName&) { return table_->optional(name, member); }
   bool read_member(const std::string& name, bool& member, const Flag&) { return table_->optional(name, member); }
   template <typename Angle>
   bool read_member(const std::string& name, Angle& member, const Degrees& angle) {
@@ -317,6 +334,7 @@ void read_keys(std::map<std::string, Table>& tables, Scene& scene) {
   visit_keys(scene, reader);
   reader.finish();
   require_both(tables.at("method"), "first_integrator", "first_integrator_s");
+  require_increased_load(scene);
 }
 
 void require_some(const std::vector<Table>& tables, const SourceLocation& where, const std::string& key) {

@@ -101,13 +101,14 @@ void Value::fail_type(const std::string& accepted) const {
   fail(description(*node_), accepted);
 }
 
+bool can_be_written(const std::string& name) {
+  return std::none_of(name.begin(), name.end(), [](char character) { return is_control(character) || character == ',' || character == '"'; });
+}
+
 void NameList::add(const Value& value, const std::string& name) {
   const std::string accepted = "a name of its own for every " + noun_ + ", not empty, without commas, quotes and control characters";
   if (name.empty()) value.fail("the name is empty", accepted);
-  // Names stand in the columns of the result files.
-  const bool writable =
-      std::none_of(name.begin(), name.end(), [](char character) { return is_control(character) || character == ',' || character == '"'; });
-  if (!writable) value.fail(in_quotes(name) + " cannot be written to a table of results", accepted);
+  if (!can_be_written(name)) value.fail(in_quotes(name) + " cannot be written to a table of results", accepted);
   const auto [place, is_new] = places_.try_emplace(name, static_cast<int>(names_.size()), value.where());
   if (!is_new) value.fail(fmt::format("{} is already the name of the {} of {}", in_quotes(name), noun_, place_name(place->second.second)), accepted);
   names_.push_back(name);

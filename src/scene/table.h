@@ -61,6 +61,9 @@ class Value {
   const std::string* file_;
 };
 
+/// Whether a name can stand in the columns of the result files.
+bool can_be_written(const std::string& name);
+
 /// Unique, non-empty names of one kind of thing, in the order of the file.
 class NameList {
  public:

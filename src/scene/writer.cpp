@@ -70,7 +70,9 @@ void write_blocks(Text& text, const Scene& scene) {
 void write_points(Text& text, const Scene& scene) {
   for (const std::vector<KeyEntry>& force : force_entries(scene)) {
     text.header(fmt::format("[[{}]]", force.front().table.name));
-    for (const KeyEntry& entry : force) text.raw_line(entry.key.name, entry.value.value());
+    for (const KeyEntry& entry : force) {
+      if (entry.value) text.raw_line(entry.key.name, *entry.value);
+    }
   }
   for (const MeasuredPoint& measured : scene.measured_points) {
     text.header("[[measured_point]]");

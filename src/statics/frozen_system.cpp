@@ -9,6 +9,7 @@
 #include "openclose/contact/kinematics.h"
 #include "openclose/geometry/polygon.h"
 #include "openclose/model/external_forces.h"
+#include "openclose/scene/increased_load.h"
 
 namespace openclose {
 namespace {
@@ -84,12 +85,19 @@ BlockVector scaled_rotation(const Eigen::Vector3d& gradient, double radius, bool
   return {gradient[0], gradient[1], locked ? 0.0 : gradient[2] / radius};
 }
 
+/// [N] Gravity and loads on a block. Moments have their arms in units of length.
+BlockVector load_on(const BlockSystem& system, int b, double mass, const ExternalForces& external) {
+  BlockVector load = Motion::gradient(Vec2::Zero(), mass * external.gravity());
+  external.for_each_element(b, [&](const ForceElement& element) { load += element.force(element.path(system, BlockVector::Zero())); });
+  return scaled_rotation(load, system.block(b).radius, system.block(b).rotation_locked);
+}
+
 }  // namespace
 
-FrozenSystem::FrozenSystem(const Scene& scene) : length_unit_(median_size(scene)) {
+FrozenSystem::FrozenSystem(const Scene& scene) : has_live_load_(scene.strength_reduction.increase), length_unit_(median_size(scene)) {
   const Scene scaled = in_units(scene, length_unit_);
   BlockSystem system(scaled);
-  const ExternalForces external(scaled, system);
+  const ExternalForces dead(with_increased_load(scaled, 0.0), system), all(with_increased_load(scaled, 1.0), system);
   const double area_unit = length_unit_ * length_unit_;
 
   double acceleration_unit = scene.gravity.norm(), heaviest = 0.0;
@@ -101,22 +109,22 @@ FrozenSystem::FrozenSystem(const Scene& scene) : length_unit_(median_size(scene)
     block.rotation_locked = system.block(b).rotation_locked;
     const BlockSystem::Unknowns mass = system.block(b).mass * area_unit;  // [kg, kg, kg in units of length squared]
     block.mass = {mass[0], mass[1], mass[2] / (block.radius * block.radius)};
-    // Moments have their arms in units of length.
-    BlockVector load = Motion::gradient(Vec2::Zero(), mass[0] * scene.gravity);
-    external.for_each_element(b, [&](const ForceElement& element) { load += element.force(element.path(system, BlockVector::Zero())); });
-    block.load = scaled_rotation(load, block.radius, system.block(b).rotation_locked);
-    if (scene.gravity.norm() == 0.0) acceleration_unit = std::max(acceleration_unit, block.load.norm() / mass[0]);
+    block.dead_load = load_on(system, b, mass[0], dead);
+    block.live_load = load_on(system, b, mass[0], all) - block.dead_load;
+    if (scene.gravity.norm() == 0.0) acceleration_unit = std::max(acceleration_unit, (block.dead_load + block.live_load).norm() / mass[0]);
     heaviest = std::max(heaviest, mass[0]);
     blocks_.push_back(block);
   }
   if (acceleration_unit == 0.0) acceleration_unit = 1.0;  // nothing to carry
   force_unit_ = heaviest > 0.0 ? heaviest * acceleration_unit : 1.0;
   for (FrozenBlock& block : blocks_) {
-    block.load /= force_unit_;
+    block.dead_load /= force_unit_;
+    block.live_load /= force_unit_;
     block.mass /= heaviest;
     block.weight = block.mass[0];
   }
-  for (const auto& element : external.elements()) {
+  multiply_live_load(0.0);
+  for (const auto& element : dead.elements()) {
     const auto& block = system.block(element->block());
     if (block.equation < 0) continue;
     for (const auto& [direction, stiffness] : element->springs(element->path(system, BlockVector::Zero())))
@@ -125,6 +133,10 @@ FrozenSystem::FrozenSystem(const Scene& scene) : length_unit_(median_size(scene)
   find_contacts(scaled, system);
   for (FrozenContact& c : contacts_) c.point = scene.blocks.front().vertices.front() + length_unit_ * c.point;
   set_units(scene);
+}
+
+void FrozenSystem::multiply_live_load(double multiplier) {
+  for (FrozenBlock& block : blocks_) block.load = block.dead_load + multiplier * block.live_load;
 }
 
 void FrozenSystem::find_contacts(const Scene& scaled, const BlockSystem& system) {

@@ -3,8 +3,8 @@
 // computed from here is a property of the drawn geometry.
 //
 // Everything is without dimension. Units: of length the root of the median area of the free blocks; of force the weight of the heaviest free block
-// (without gravity: its mass times the largest acceleration that the loads would give a block); of displacement the closure of a mean contact under
-// that force. Unknowns of a block are (x, y, rotation times its radius).
+// (without gravity: its mass times the largest acceleration that the loads of the scene would give a block); of displacement the closure of a mean
+// contact under that force. Unknowns of a block are (x, y, rotation times its radius).
 //
 // Contacts are those that the detection finds in the drawing, seen in the units above, so that a scene drawn a thousand times smaller has the same
 // ones. Joints drawn open or overlapping by less than closed_gap are closed; whatever is farther apart does not touch.
@@ -31,7 +31,9 @@ struct FrozenBlock {
   Vec2 centroid = Vec2::Zero();            ///< [m] of the scene
   double radius = 0.0;                     ///< [-] of the farthest vertex
   BlockVector mass = BlockVector::Zero();  ///< over that of the heaviest block
-  BlockVector load = BlockVector::Zero();  ///< gravity and loads
+  BlockVector load = BlockVector::Zero();  ///< gravity and loads, at the present multiplier of what strength_reduction.increase names
+  BlockVector dead_load = BlockVector::Zero();
+  BlockVector live_load = BlockVector::Zero();  ///< what is multiplied, at 1
   bool rotation_locked = false;
   double weight = 0.0;  ///< [-] mass times the unit of acceleration: the scale of forces on this block
 };
@@ -61,6 +63,11 @@ class FrozenSystem {
   /// \throws InputError for a missing joint
   explicit FrozenSystem(const Scene& scene);
 
+  /// Whether the scene asks for the multiplier of a load, which is its live load.
+  bool has_live_load() const { return has_live_load_; }
+  /// Every block carries its dead load and so many times [-] its live load; from the beginning the dead load alone.
+  void multiply_live_load(double multiplier);
+
   const std::vector<FrozenBlock>& blocks() const { return blocks_; }  ///< the free ones, in the order of their rows
   const std::vector<FrozenContact>& contacts() const { return contacts_; }
   const std::vector<FrozenSupport>& supports() const { return supports_; }
@@ -77,6 +84,7 @@ class FrozenSystem {
   std::vector<FrozenBlock> blocks_;
   std::vector<FrozenContact> contacts_;
   std::vector<FrozenSupport> supports_;
+  bool has_live_load_ = false;
   double force_unit_ = 1.0, closure_unit_ = 1.0, length_unit_ = 1.0;
 };
 

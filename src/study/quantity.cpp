@@ -17,7 +17,7 @@
 namespace openclose {
 namespace {
 
-constexpr std::array summary_quantities = {"factor_of_safety", "max_penetration_m"};
+constexpr std::array summary_quantities = {"factor_of_safety", "load_multiplier", "max_penetration_m"};
 constexpr const char* largest_displacement = "largest_displacement_m";
 const std::vector<std::string> history_columns = {"displacement_m",   "displacement_x_m",   "displacement_y_m",   "rotation_rad",
                                                   "velocity_m_per_s", "velocity_x_m_per_s", "velocity_y_m_per_s", "angular_velocity_rad_per_s"};
@@ -103,7 +103,7 @@ void require_quantity(const std::string& quantity, const Scene& scene) {
       if (block.name == point && std::ranges::count(history_columns, column) > 0) return;
     }
   }
-  known.insert(known.end(), {largest_displacement, "max_penetration_m", "factor_of_safety", "energy.kinetic_j"});
+  known.insert(known.end(), {largest_displacement, "max_penetration_m", "factor_of_safety", "load_multiplier", "energy.kinetic_j"});
   if (std::ranges::count(known, quantity) == 0)
     throw InputError(scene.where, "--quantity", fmt::format("\"{}\" is no quantity of these results", quantity), suggestions(quantity, known));
 }

@@ -17,7 +17,7 @@ void require_quantity(const std::string& quantity, const Scene& scene);
 /// The last value in a folder of results; none where it is not written.
 ///   POINT.COLUMN       of history.csv, besides its columns displacement_m and velocity_m_per_s, the lengths of the vectors
 ///   energy.COLUMN      of energy.csv
-///   largest_displacement_m, max_penetration_m, factor_of_safety
+///   largest_displacement_m, max_penetration_m, factor_of_safety, load_multiplier
 std::optional<double> quantity_in(const std::string& folder, const std::string& quantity);
 
 }  // namespace openclose

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "openclose/analysis/strength_reduction.h"
 #include "openclose/core/error.h"
 #include "openclose/scene/reader.h"
 #include "openclose/study/plot.h"
@@ -58,12 +59,14 @@ void require_own_table(const std::string& path) {
 /// Columns of the answer, and what a case has in them.
 class Answers {
  public:
-  Answers(const SweepOrder& order) : order_(order), is_factor_(order.cases.command == "fos") {}
+  /// \param increase  the load whose multiplier is searched instead of a factor of safety
+  Answers(const SweepOrder& order, const std::optional<std::string>& increase)
+      : order_(order), is_factor_(order.cases.command == "fos"), factor_(increase ? "load_multiplier" : "factor_of_safety") {}
 
   std::string columns() const {
     std::string text;
     for (const Variation& variation : order_.variations) text += field(variation.key) + ",";
-    text += is_factor_ ? "factor_of_safety,failed_at,verdict,limit_analysis,failing_blocks,failing_area_m2,"
+    text += is_factor_ ? std::string(factor_) + ",failed_at,verdict,limit_analysis,failing_blocks,failing_area_m2,"
                        : field(order_.quantity) + ",time_s,ended_by,";
     return text + last_columns + "\n";
   }
@@ -100,11 +103,11 @@ class Answers {
   }
 
  private:
-  static std::string factor(const json& summary) {
+  std::string factor(const json& summary) const {
     if (!summary.contains("bracket")) return ",,,,,,";
     const json& limit = summary.at("limit_analysis");
     const json& failing = summary.at("failing_blocks");
-    return fmt::format("{},{},{},{},{},{},", number_at(summary, "factor_of_safety"), number_at(summary.at("bracket"), "failed"),
+    return fmt::format("{},{},{},{},{},{},", number_at(summary, factor_), number_at(summary.at("bracket"), "failed"),
                        summary.at("verdict").get<std::string>(), limit.is_object() ? number_at(limit, "factor") : "", failing.at("number").get<int>(),
                        number_at(failing, "area_m2"));
   }
@@ -117,17 +120,18 @@ class Answers {
 
   const SweepOrder& order_;
   bool is_factor_;
+  const char* factor_;  ///< its key in summary.json
 };
 
 /// Over the first key whose values are numbers, a curve for each combination of the others; empty if no key has numbers.
-std::string picture(const SweepOrder& order, const Answers& answers, const std::vector<Case>& cases, const std::vector<CaseResult>& results) {
+std::string picture(const SweepOrder& order, const std::string& quantity, const Answers& answers, const std::vector<Case>& cases,
+                    const std::vector<CaseResult>& results) {
   const auto is_numeric = [](const Variation& v) {
     return std::ranges::all_of(v.values, [](const std::string& s) { return as_number(s).has_value(); });
   };
   const auto place = std::ranges::find_if(order.variations, is_numeric);
   if (place == order.variations.end()) return "";
   const auto k = static_cast<std::size_t>(place - order.variations.begin());
-  const std::string quantity = order.cases.command == "fos" ? "factor of safety" : order.quantity;
   Plot plot{"", place->key, quantity, false, false, {}};
   std::map<std::string, std::size_t> series;
   for (std::size_t i = 0; i < cases.size(); ++i) {
@@ -167,7 +171,8 @@ Sweep make_sweep(SweepOrder order, const std::function<void(double)>& progress) 
     if (order.quantity.empty()) order.quantity = usual_quantity(scene);
     require_quantity(order.quantity, scene);
   }
-  const Answers answers(order);
+  const std::optional<std::string>& increase = scene.strength_reduction.increase;
+  const Answers answers(order, increase);
   const std::string table = order.cases.folder + "/sweep.csv";
   require_own_table(table);
   std::vector<std::string> rows(cases.size());
@@ -189,7 +194,7 @@ Sweep make_sweep(SweepOrder order, const std::function<void(double)>& progress) 
     progress(static_cast<double>(++done) / static_cast<double>(cases.size()));
   });
   sweep.files.push_back({table, text(), true});
-  const std::string drawing = picture(order, answers, cases, results);
+  const std::string drawing = picture(order, order.cases.command == "fos" ? name_of_answer(increase) : order.quantity, answers, cases, results);
   if (!drawing.empty()) sweep.files.push_back({order.cases.folder + "/sweep.svg", drawing});
   return sweep;
 }

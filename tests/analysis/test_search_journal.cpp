@@ -110,6 +110,16 @@ TEST_CASE("a search goes on bit for bit from after every piece of work", "[analy
   }
 }
 
+TEST_CASE("a search for the multiplier of a load goes on bit for bit", "[analysis][search_journal][load_multiplier]") {
+  for (const std::string& method : all_methods) {
+    INFO(method);
+    Scene scene = slope(method, FactorDefinition::small_displacements);
+    scene.strength_reduction.increase = "gravity_x";
+    scene.strength_reduction.curve = {0.1, 0.15};
+    check_goes_on(scene);
+  }
+}
+
 TEST_CASE("a search among many blocks goes on bit for bit, with what the linear solver keeps", "[analysis][search_journal]") {
   Scene scene = read_scene(std::string(OPENCLOSE_VERIFICATION_SCENES) + "/slope_face_60_columns_m70.toml");
   for (const std::string method : {"soft", "shi"}) {

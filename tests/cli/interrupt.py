@@ -24,6 +24,7 @@ METHODS = ("soft", "hard", "dem", "shi")
 # Narrower than anyone needs, for more trials.
 SEARCHES = {
     "small displacements": ["strength_reduction.width=1e-9"],
+    "multiplier of a load": ["strength_reduction.increase=gravity_x", "strength_reduction.width=1e-9"],
     "joint closures": ["strength_reduction.definition=joint_closures", "strength_reduction.width=1e-9"],
     "large displacements": ["strength_reduction.definition=large_displacements", "strength_reduction.width=1e-4", "settle.failure_displacement_m=0.05"],
     "large displacements, dem": ["method.contact=dem", "strength_reduction.definition=large_displacements", "settle.failure_displacement_m=0.05"],

@@ -310,3 +310,16 @@ TEST_CASE("methods that have no use for keys of the step name their lines", "[cl
   CHECK_THAT(refusal_of_scene(scene + "look_ahead = 0.5\n"), ContainsSubstring("scene.toml:25: step.look_ahead: has no meaning"));
   CHECK_THAT(refusal_of_scene(scene + "adaptive = true\n"), ContainsSubstring("scene.toml:25: step.adaptive: true has no meaning"));
 }
+
+TEST_CASE("loads that fos cannot increase", "[cli][bad_input]") {
+  const Workplace place;
+  CHECK_THAT(refusal(place, "fos scene.toml --increase gravity_z"),
+             ContainsSubstring("strength_reduction.increase: no load or surcharge has the name \"gravity_z\"; accepted: \"gravity_x\", \"gravity_y\""));
+  for (const std::string definition : {"joint_closures", "large_displacements"}) {
+    const std::string options = " --set strength_reduction.increase=gravity_x --set strength_reduction.definition=" + definition;
+    const std::string message = refusal(place, "fos scene.toml" + options);
+    CHECK_THAT(message, ContainsSubstring("strength_reduction.increase: a load grows on the drawn geometry only; accepted: "
+                                          "strength_reduction.definition = \"small_displacements\""));
+  }
+  CHECK_THAT(refusal(place, "run scene.toml --increase gravity_x"), ContainsSubstring("--increase"));
+}

@@ -259,6 +259,34 @@ TEST_CASE("factor of safety", "[cli]") {
   CHECK_THAT(text_of(out + "/trials.csv"), StartsWith("srf,stage,stable,criterion,steps,displacement_m\n1,bracket,1,"));
 }
 
+TEST_CASE("the multiplier of a load", "[cli]") {
+  const Workplace place(openclose::test::block_on_incline(15.0));
+  const double exact = std::tan(20.0 * std::numbers::pi / 180.0);
+  const CommandResult result = place.run("fos scene.toml --increase gravity_x -o out");
+  CHECK(result.status == 0);
+  CHECK(result.errors.empty());
+  CHECK_THAT(result.out, StartsWith("multiplier of gravity_x 0.3639") && ContainsSubstring("certified: stable at 0.3639") &&
+                             ContainsSubstring("rigid-block limit analysis: at most 0.36397"));
+  const auto summary = summary_in(place.folder() / "out");
+  CHECK(summary.at("factor_of_safety").is_null());
+  CHECK(summary.at("load_multiplier").get<double>() == Approx(exact).epsilon(1e-4));
+  CHECK(summary.at("options").at("strength_reduction").at("increase") == "gravity_x");
+  CHECK(summary.at("limit_analysis").at("factor").get<double>() == Approx(exact).epsilon(2e-5));
+  CHECK_THAT(text_of(place.folder() / "out/trials.csv"), StartsWith("multiplier,stage,stable,criterion,steps,displacement_m\n0,bracket,1,"));
+  // Uphill, and as a key of the scene.
+  CHECK_THAT(place.run("fos scene.toml --increase=-gravity_x -o up").out, StartsWith("multiplier of -gravity_x 1.191"));
+  CHECK_THAT(place.run("fos scene.toml --set strength_reduction.increase=-gravity_x -o up").out, StartsWith("multiplier of -gravity_x 1.191"));
+  CHECK_THAT(place.run("fos scene.toml --increase gravity_x --set strength_reduction.upper_limit=0.2 -o out").out,
+             StartsWith("multiplier of gravity_x above 0.2 (soft): still stable at strength_reduction.upper_limit"));
+  const CommandResult slides = place.run("fos scene.toml --increase gravity_x --set joint[0].friction_angle_deg=10 -o out");
+  CHECK(slides.status == 1);
+  REQUIRE(slides.errors.size() == 1);
+  CHECK_THAT(slides.errors[0], ContainsSubstring("no multiplier of gravity_x: not stable before gravity_x grows (mechanism)"));
+  REQUIRE(place.run("fos scene.toml --increase gravity_x -o out -q").status == 0);
+  REQUIRE(place.run("draw out").status == 0);
+  CHECK_THAT(text_of(place.folder() / "out/drawing.svg"), ContainsSubstring("multiplier of gravity_x 0.3639"));
+}
+
 TEST_CASE("factor of safety: the settled state penetrates by what its contacts carry, the failed one has moved", "[cli]") {
   const double slope = 30.0 * std::numbers::pi / 180.0;
   const Workplace place(openclose::test::block_on_incline(30.0));
@@ -344,6 +372,12 @@ TEST_CASE("check names what does not stand, in its text and in its object", "[cl
   CHECK_THAT(text.out, ContainsSubstring("do not stand as they are drawn: ") && ContainsSubstring(words));
   CHECK_THAT(place.run(in_the_air + " --json").out, ContainsSubstring("\"loose_blocks\": ") && ContainsSubstring(words));
   CHECK_THAT(place.run("check scene.toml --json").out, !ContainsSubstring("loose_blocks"));
+}
+
+TEST_CASE("check begins without the load that fos increases", "[cli]") {
+  const Workplace place(openclose::test::block_on_base + "[[load]]\nname = 'push'\npoint_m = [0, 1]\nforce_n = [1e6, 0]\n");
+  CHECK_THAT(place.run("check scene.toml").out, ContainsSubstring("do not stand as they are drawn"));
+  CHECK_THAT(place.run("check scene.toml --set strength_reduction.increase=push").out, !ContainsSubstring("do not stand"));
 }
 
 TEST_CASE("a failing slope: reduced strength, milestones, snapshots, end by displacement", "[cli]") {

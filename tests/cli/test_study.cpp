@@ -60,6 +60,18 @@ TEST_CASE("sweep finds tan(phi)/tan(slope) for every friction angle, and does no
   CHECK(written() != before);
 }
 
+TEST_CASE("a sweep of the multiplier of a load", "[cli][sweep]") {
+  const Workplace place(openclose::test::block_on_incline(20.0));
+  const CommandResult result = place.run(
+      "sweep scene.toml --vary joint[0].friction_angle_deg=25:35:5 --set joint[0].cohesion_pa=0 --set strength_reduction.increase=gravity_x -o out");
+  CHECK(result.status == 0);
+  const auto rows = rows_of(place.folder() / "out/sweep.csv");
+  REQUIRE(rows.size() == 3);
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    CHECK(std::stod(rows[i].at("load_multiplier")) == Approx(std::tan((5.0 + 5.0 * static_cast<double>(i)) * degree)).epsilon(2e-4));
+  CHECK_THAT(text_of(place.folder() / "out/sweep.svg"), ContainsSubstring("multiplier of gravity_x"));
+}
+
 TEST_CASE("sweep goes on where it was broken off", "[cli][sweep]") {
   const Workplace place(openclose::test::block_on_incline(20.0));
   const std::string command = "sweep scene.toml --vary joint[0].friction_angle_deg=25:35:5 -j 1 -o out";

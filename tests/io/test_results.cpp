@@ -433,6 +433,7 @@ TEST_CASE("summary.json of a factor of safety", "[io][results]") {
     write_summary(OutputFolder(place.path()), summary, simulation, &safety);
     const nlohmann::json j = summary_json(place);
     CHECK(j.at("factor_of_safety") == 1.25);
+    CHECK(j.at("load_multiplier").is_null());
     CHECK(j.at("verdict") == "certified");
     CHECK(j.at("definition") == "small_displacements");
     CHECK(j.at("bracket").at("stable") == 1.25);
@@ -444,6 +445,26 @@ TEST_CASE("summary.json of a factor of safety", "[io][results]") {
     CHECK(j.at("failing_blocks").at("names").at(0) == scene.blocks[1].name);
     CHECK(j.at("displacement_curve").at(0).at("srf") == 1.25);
     CHECK(j.at("converged") == true);
+  }
+  SECTION("multiplier of a load: the arrows are those of the stable end") {
+    scene.loads = {{1, {1.0, 0.5}, {2.0, 0.0}, "push"}, {1, {1.0, 0.5}, {0.0, -3.0}}};
+    scene.strength_reduction.increase = "-push";
+    Simulation pushed(scene);
+    safety.bracket.stable = 0.5;
+    safety.trials.resize(1);
+    safety.trials[0].outcome = TrialOutcome::stable;
+    safety.trials[0].srf = 0.5;
+    write_summary(OutputFolder(place.path()), summary, pushed, &safety);
+    const nlohmann::json j = summary_json(place);
+    CHECK(j.at("factor_of_safety").is_null());
+    CHECK(j.at("load_multiplier") == 0.5);
+    CHECK(j.at("displacement_curve").at(0).at("multiplier") == 0.5);
+    CHECK(j.at("options").at("strength_reduction").at("increase") == "-push");
+    CHECK(j.at("loads").at(0).at("name") == "push");
+    CHECK(j.at("loads").at(0).at("force_n").at(0) == 2.0);
+    CHECK_FALSE(j.at("loads").at(1).contains("name"));
+    CHECK(j.at("arrows").at(0).at("force_n").at(0) == -1.0);
+    CHECK(j.at("arrows").at(1).at("force_n").at(1) == -3.0);
   }
   SECTION("not found") {
     write_summary(OutputFolder(place.path()), summary, simulation, &safety);

@@ -132,3 +132,80 @@ TEST_CASE("limit analysis: a sliver among large blocks") {
     CHECK(speed(problem.blocks[0], bracket.mechanism[0]) < 1e-6);
   }
 }
+
+namespace {
+
+/// A block on a plane that its own weight pushes sideways: a horizontal load, downhill.
+Problem pushed_block(double b, double h, double slope, double cohesion, double friction) {
+  Problem problem = block_on_plane(b, h, slope, 100, cohesion, friction);
+  problem.blocks[0].live = 100 * Eigen::Vector3d(std::cos(slope), std::sin(slope), 0);
+  problem.varied = Varied::live_loads;
+  return problem;
+}
+
+}  // namespace
+
+TEST_CASE("limit analysis: the multiplier of a horizontal load on a block on a plane") {
+  for (const double slope : {0.0, 10 * degree, 30 * degree}) {
+    for (const double friction : {0.7, 1.2}) {
+      for (const double cohesion : {0.0, 20.0, 1e4}) {
+        const Problem problem = pushed_block(100, 1, slope, cohesion, friction);
+        const double cosine = std::cos(slope), sine = std::sin(slope);
+        const double slides = (friction * cosine - sine + cohesion / 100) / (cosine + friction * sine);
+        const double tips = (100 * cosine - sine) / (cosine + 100 * sine);
+        const double expected = std::min(slides, tips);
+        const Bracket bracket = limit_analysis(problem);
+        check_bracket(problem, bracket, Options().width * bracket.factor);
+        CHECK(bracket.factor <= expected + slack(1 + expected));
+        CHECK(bracket.failed >= expected - slack(1 + expected));
+        CHECK(bracket.programs <= 25);
+      }
+    }
+  }
+}
+
+TEST_CASE("limit analysis: the multiplier at which a block tips, in any unit of the load") {
+  for (const double unit : {1e-3, 1.0, 1e4}) {
+    Problem problem = pushed_block(1, 4, 0, 0, 2);
+    problem.blocks[0].live *= unit;
+    Options options;
+    options.upper_limit = 1e7;
+    const Bracket bracket = limit_analysis(problem, options);
+    check_bracket(problem, bracket, Options().width * std::max(bracket.factor, 1e-3));
+    CHECK(bracket.factor * unit == Approx(0.25).epsilon(2e-5 + 10 * force_tolerance));
+  }
+}
+
+TEST_CASE("limit analysis: loads that have no largest multiplier, and such that do not stand without it") {
+  // Pressed on, it never slides; uphill of friction it slides before any load is there.
+  Problem pressed = pushed_block(100, 1, 0, 0, 0.5);
+  pressed.blocks[0].live = {0, -100, 0};
+  CHECK(limit_analysis(pressed).verdict == Bracket::Verdict::stands_at_every_factor);
+  const Bracket slides = limit_analysis(pushed_block(100, 1, 30 * degree, 0, 0.5));
+  CHECK(slides.verdict == Bracket::Verdict::no_equilibrium);
+  CHECK(slides.failed == 0);
+  CHECK(check_mechanism(pushed_block(100, 1, 30 * degree, 0, 0.5), 0, slides.mechanism).holds());
+  // At the limit of friction the load has nothing left to take.
+  const double slope = 20 * degree;
+  const Bracket nothing = limit_analysis(pushed_block(100, 1, slope, 0, std::tan(slope) * (1 + 1e-9)));
+  CHECK(nothing.found());
+  CHECK(nothing.failed < 1e-6);
+}
+
+TEST_CASE("limit analysis: a wall falls at the multiplier whose gravity a wall with its strength just bears") {
+  const double friction = 0.65, multiplier = [&] {
+    Problem wall = tilted_wall(5, 4, 0.4, 0.2, 0, 0, friction);
+    for (Block& block : wall.blocks) block.live = Eigen::Vector3d(-block.load.y(), 0, 0);
+    wall.varied = Varied::live_loads;
+    const Bracket bracket = limit_analysis(wall);
+    check_bracket(wall, bracket, Options().width * bracket.factor);
+    return bracket.factor;
+  }();
+  CHECK(multiplier > 0.1);
+  CHECK(multiplier < friction);
+  // Without cohesion only the direction of gravity counts.
+  LimitAnalysis below(tilted_wall(5, 4, 0.4, 0.2, std::atan(multiplier * (1 - 1e-4)), 0, friction));
+  LimitAnalysis above(tilted_wall(5, 4, 0.4, 0.2, std::atan(multiplier * (1 + 1e-4)), 0, friction));
+  CHECK(below.at(1).verdict == Verdict::feasible);
+  CHECK(above.at(1).verdict == Verdict::infeasible);
+}

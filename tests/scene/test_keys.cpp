@@ -51,13 +51,14 @@ std::string other_value(const KeyEntry& entry) {
   return {};
 }
 
-/// The key set to the value in a file; keys that are asked for together get a value each.
+/// The key set to the value in a file; keys that are asked for together get a value each, and what a key names is there.
 std::string file_with(const std::string& dotted, const std::string& value) {
   const std::size_t dot = dotted.find('.');
   const std::string table = dotted.substr(0, dot), key = dotted.substr(dot + 1);
   std::string text = block_on_base + "[" + table + "]\n" + key + " = " + value + "\n";
   if (key == "first_integrator") text += "first_integrator_s = 1\n";
   if (key == "first_integrator_s") text += "first_integrator = \"something\"\n";
+  if (key == "increase") text += "[[load]]\nname = \"something\"\npoint_m = [0, 1]\nforce_n = [1, 0]\n";
   return text;
 }
 

@@ -53,6 +53,15 @@ TEST_CASE("elements of arrays go by their names, too", "[scene][override]") {
   CHECK_THROWS_WITH(read_text(block_on_base, {"material.granite.density_kg_per_m3=1"}), ContainsSubstring("\"granite\" follows an array"));
 }
 
+TEST_CASE("what several loads share is no name of one of them", "[scene][override]") {
+  const std::string loads = block_on_base +
+                            "[[load]]\nname = 'a'\npoint_m = [0, 1]\nforce_n = [1, 0]\n[[load]]\nname = 'b'\npoint_m = [0, 1]\nforce_n = [2, 0]\n"
+                            "[[load]]\nname = 'b'\npoint_m = [1, 1]\nforce_n = [3, 0]\n";
+  CHECK(read_text(loads, {"load.a.force_n=[7, 8]"}).loads.at(0).force == Vec2(7.0, 8.0));
+  CHECK(read_text(loads, {"strength_reduction.increase=-b"}).strength_reduction.increase == "-b");
+  CHECK_THROWS_WITH(read_text(loads, {"load.b.force_n=[7, 8]"}), ContainsSubstring("2 are called \"b\"; accepted: an index, such as [1]"));
+}
+
 TEST_CASE("a single word is a text with or without quotes", "[scene][override]") {
   CHECK(read_text(block_on_base, {"method.contact=shi"}).method.contact == "shi");
   CHECK(read_text(block_on_base, {"method.contact=\"shi\""}).method.contact == "shi");

@@ -54,8 +54,8 @@ TEST_CASE("every key reaches its field", "[scene][reader]") {
       "cohesion_pa = 5\ntensile_strength_pa = 6\ncohesion_behaviour = 'lost_on_slip'\ndamping_ratio = 0.1\n"
       "[[block]]\nname = 'one'\nmaterial = 'b'\nvertices_m = [[0, 0], [1, 0], [0, 1]]\nrotation_locked = true\n"
       "velocity_m_per_s = [1, 2]\nangular_velocity_rad_per_s = -3\n"
-      "[[support]]\nblock = 'one'\npoint_m = [0, 0]\nstiffness_n_per_m = [0, 7]\n"
-      "[[load]]\nblock = 'one'\npoint_m = [0.25, 0.25]\nforce_n = [-8, 9]\n"
+      "[[support]]\nname = 'anchor'\nblock = 'one'\npoint_m = [0, 0]\nstiffness_n_per_m = [0, 7]\n"
+      "[[load]]\nname = 'push'\nblock = 'one'\npoint_m = [0.25, 0.25]\nforce_n = [-8, 9]\n"
       "[[measured_point]]\nname = 'p'\nblock = 'one'\npoint_m = [1, 0]\n"
       "[method]\ncontact = 'anything'\ntheta = 0.5\nintegrator = 'any'\nrho_inf = 0.25\ndissipation = 0.01\n"
       "first_integrator = 'other'\nfirst_integrator_s = 0.5\nrotation = 'linear'\nstart = 'steady_sliding'\nstatics = true\n"
@@ -72,7 +72,7 @@ TEST_CASE("every key reaches its field", "[scene][reader]") {
       "1.522]\nsnapshots_every_s = 0.25\nformats = ['vtk']\n"
       "[settle]\nunbalanced_fraction = 1e-3\nfirst_dt_s = 17\nmax_steps = 18\nfailure_displacement_m = 19\n"
       "criterion = 'paper'\nrelative_displacement = 1e-6\nsteady_steps = 22\nmax_time_steps = 23\nunbalanced_force_n = 24\nkeep_bonds = false\n"
-      "[strength_reduction]\nwidth = 0.125\nupper_limit = 20\ncurve = [1, 1.5]\ncurve_time_s = 21\n");
+      "[strength_reduction]\nincrease = '-push'\nwidth = 0.125\nupper_limit = 20\ncurve = [1, 1.5]\ncurve_time_s = 21\n");
   CHECK(scene.title == "all of it");
   CHECK(scene.gravity == Vec2(1.0, -2.5));
   CHECK(scene.materials[1].density == Approx(26926.0 / std::sqrt(7.25)).epsilon(1e-15));
@@ -97,13 +97,15 @@ TEST_CASE("every key reaches its field", "[scene][reader]") {
   CHECK(scene.supports.at(0).stiffness == Vec2(0.0, 7.0));
   CHECK(scene.loads.at(0).point == Vec2(0.25, 0.25));
   CHECK(scene.loads.at(0).force == Vec2(-8.0, 9.0));
+  CHECK(scene.loads.at(0).name == "push");
+  CHECK(scene.supports.at(0).name == "anchor");
   CHECK(scene.measured_points.at(0).name == "p");
   CHECK(scene.measured_points.at(0).point == Vec2(1.0, 0.0));
   CHECK(scene.snapshots_every == 0.25);
   CHECK(scene.formats == std::vector<std::string>{"vtk"});
   const MethodInput& method = scene.method;
   CHECK(method.contact == "anything");
-  CHECK(method.contact_where.line == 38);
+  CHECK(method.contact_where.line == 40);
   CHECK(method.theta == 0.5);
   CHECK(method.integrator == "any");
   CHECK(method.rho_inf == 0.25);
@@ -166,6 +168,7 @@ TEST_CASE("every key reaches its field", "[scene][reader]") {
   CHECK_FALSE(scene.settle.keep_bonds);
   CHECK(scene.strength_reduction.width == 0.125);
   CHECK(scene.strength_reduction.upper_limit == 20.0);
+  CHECK(scene.strength_reduction.increase == "-push");
   CHECK(scene.strength_reduction.curve == std::vector<double>{1.0, 1.5});
   CHECK(scene.strength_reduction.curve_time == 21.0);
 }

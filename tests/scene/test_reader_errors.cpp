@@ -223,7 +223,8 @@ TEST_CASE("options out of range", "[scene][reader][errors]") {
       {"settle", "max_steps = 0", "0", "a whole number in [1, 1000000000]"},
       {"settle", "failure_displacement_m = 0", "0", "a number > 0"},
       {"strength_reduction", "width = 0", "0", "a number > 0"},
-      {"strength_reduction", "upper_limit = 1", "1", "a number > 1"},
+      {"strength_reduction", "upper_limit = 0", "0", "a number > 0"},
+      {"strength_reduction", "upper_limit = 1", "1", "a number > 1, or with strength_reduction.increase a number > 0"},
       {"strength_reduction", "curve_time_s = 0", "0", "a number > 0"},
   }));
   const std::string key = c.table + "." + c.line.substr(0, c.line.find(' '));
@@ -449,4 +450,24 @@ TEST_CASE("joints that edges of blocks name", "[scene][reader][errors]") {
   CHECK_THAT(error_of(block("[[50, 0], [52, 0], [50, 1]]", "['beding', '', '']")),
              ContainsSubstring("edge_joints[0]: there is no joint \"beding\"; accepted: \"bedding\""));
   CHECK_THAT(error_of(block_on_base + joint + joint), ContainsSubstring("\"bedding\" is already the name of the joint"));
+}
+
+TEST_CASE("loads that cannot be named, and loads to increase that are not there", "[scene][reader][errors]") {
+  const std::string load = block_on_base + "[[load]]\nname = 'push'\npoint_m = [0, 1]\nforce_n = [1, 0]\n";
+  const auto named = [](const std::string& name) {
+    return error_of(block_on_base + "[[load]]\npoint_m = [0, 1]\nforce_n = [1, 0]\nname = '" + name + "'\n");
+  };
+  for (const std::string name : {"", "-push", "gravity_x", "a,b"}) CHECK_THAT(named(name), ContainsSubstring("25: load[0].name: \"" + name + "\" cannot name a load"));
+  const auto increased = [&](const std::string& what) { return error_of(load + "[strength_reduction]\nincrease = '" + what + "'\n"); };
+  const std::string accepted = "; accepted: \"push\", \"gravity_x\", \"gravity_y\", with a minus before it or without";
+  CHECK(increased("pusch") == "27: strength_reduction.increase: no load or surcharge has the name \"pusch\"" + accepted);
+  CHECK(increased("-pusch") == "27: strength_reduction.increase: no load or surcharge has the name \"pusch\"" + accepted);
+  CHECK_THAT(increased(""), ContainsSubstring("27: strength_reduction.increase: no load or surcharge has the name \"\""));
+  CHECK(error_of("gravity_m_per_s2 = [0, 0]\n" + block_on_base + "[strength_reduction]\nincrease = 'gravity_x'\n") ==
+        "24: strength_reduction.increase: \"gravity_x\" is a multiple of gravity, which is 0; accepted: the name of a load or surcharge");
+}
+
+TEST_CASE("a support has a name, and is no load", "[scene][reader][errors]") {
+  CHECK_THAT(error_of(block_on_base + "[[support]]\nname = 'anchor'\npoint_m = [0, 1]\nstiffness_n_per_m = [1, 0]\n[strength_reduction]\nincrease = 'anchor'\n"),
+             ContainsSubstring("27: strength_reduction.increase: no load or surcharge has the name \"anchor\""));
 }

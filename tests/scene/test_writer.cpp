@@ -79,12 +79,14 @@ void check_same_points(const Scene& a, const Scene& b) {
     CHECK(a.supports[i].block == b.supports[i].block);
     CHECK(a.supports[i].point == b.supports[i].point);
     CHECK(a.supports[i].stiffness == b.supports[i].stiffness);
+    CHECK(a.supports[i].name == b.supports[i].name);
   }
   REQUIRE(a.loads.size() == b.loads.size());
   for (std::size_t i = 0; i < a.loads.size(); ++i) {
     CHECK(a.loads[i].block == b.loads[i].block);
     CHECK(a.loads[i].point == b.loads[i].point);
     CHECK(a.loads[i].force == b.loads[i].force);
+    CHECK(a.loads[i].name == b.loads[i].name);
   }
   REQUIRE(a.surcharges.size() == b.surcharges.size());
   for (std::size_t i = 0; i < a.surcharges.size(); ++i) {
@@ -93,6 +95,7 @@ void check_same_points(const Scene& a, const Scene& b) {
     CHECK(a.surcharges[i].to == b.surcharges[i].to);
     CHECK(a.surcharges[i].pressure == b.surcharges[i].pressure);
     CHECK(a.surcharges[i].shear == b.surcharges[i].shear);
+    CHECK(a.surcharges[i].name == b.surcharges[i].name);
   }
   REQUIRE(a.measured_points.size() == b.measured_points.size());
   for (std::size_t i = 0; i < a.measured_points.size(); ++i) {
@@ -154,6 +157,7 @@ void check_same(const Scene& a, const Scene& b) {
   CHECK(a.settle.keep_bonds == b.settle.keep_bonds);
   CHECK(a.settle.unbalanced_force == b.settle.unbalanced_force);
   CHECK(a.strength_reduction.width == b.strength_reduction.width);
+  CHECK(a.strength_reduction.increase == b.strength_reduction.increase);
   CHECK(a.strength_reduction.upper_limit == b.strength_reduction.upper_limit);
   CHECK(a.strength_reduction.curve == b.strength_reduction.curve);
   CHECK(a.strength_reduction.curve_time == b.strength_reduction.curve_time);
@@ -194,9 +198,10 @@ Scene random_scene(unsigned seed) {
     block.rotation_locked = i == 1;
     block.velocity = vector();
     block.angular_velocity = -number();
-    scene.supports.push_back({i, corner, {0.0, number()}});
-    scene.loads.push_back({i, corner, vector()});
-    if (i > 1) scene.surcharges.push_back({i, block.vertices[1], block.vertices[2], number(), -number()});
+    const std::string name = i % 2 == 0 ? "" : "push " + std::to_string(i);
+    scene.supports.push_back({i, corner, {0.0, number()}, name});
+    scene.loads.push_back({i, corner, vector(), name});
+    if (i > 1) scene.surcharges.push_back({i, block.vertices[1], block.vertices[2], number(), -number(), name});
     scene.measured_points.push_back({"point " + std::to_string(i), i, corner});
     scene.blocks.push_back(block);
   }
@@ -254,7 +259,7 @@ Scene random_scene(unsigned seed) {
   scene.supports[1].point = scene.loads[1].point = scene.measured_points[1].point = scene.blocks[0].vertices[0];
   scene.measured_contacts = {{"contact", 1, 0, scene.blocks[0].vertices[0]}};
   scene.settle = {fraction(generator), number(), 77, number(), SettleCriterion::paper, fraction(generator), 78, 79, 80};
-  scene.strength_reduction = {FactorDefinition::joint_closures, false, number(), 1.0 + number(), {number(), number()}, number()};
+  scene.strength_reduction = {FactorDefinition::joint_closures, false, "-push 3", number(), 1.0 + number(), {number(), number()}, number()};
   return scene;
 }
 

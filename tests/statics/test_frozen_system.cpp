@@ -85,3 +85,31 @@ TEST_CASE("beside a joint of the same blocks a corner that is drawn open touches
   REQUIRE(system.contacts().size() == 2);
   for (const FrozenContact& c : system.contacts()) CHECK(std::abs(c.normal.y()) < 0.99);
 }
+
+TEST_CASE("the load that a scene increases is apart from the others, and away until it is multiplied", "[statics]") {
+  Scene scene = test::block_on_base();
+  const Vec2 top(1.0, 1.0);
+  scene.loads = {{1, top, {3000.0, 0.0}, "push"}, {1, top, {0.0, -5000.0}}};
+  const auto load_at = [&](const std::string& what, double multiplier) -> Eigen::Vector3d {
+    scene.strength_reduction.increase = what;
+    FrozenSystem system(scene);
+    const Eigen::Vector3d begin = system.blocks()[0].load;
+    system.multiply_live_load(0.0);
+    CHECK(system.blocks()[0].load == begin);
+    CHECK(system.has_live_load());
+    CHECK(system.force_unit() == Approx(test::block_weight));
+    system.multiply_live_load(multiplier);
+    // Force, and moment about the centroid, half a metre below.
+    const Eigen::Vector3d& load = system.blocks()[0].load;
+    return Eigen::Vector3d(load[0], load[1], load[2] * system.blocks()[0].radius * system.length_unit()) * system.force_unit();
+  };
+  const double down = -test::block_weight - 5000.0;
+  const auto differs = [](const Eigen::Vector3d& a, const Eigen::Vector3d& b) { return (a - b).norm() / test::block_weight; };
+  CHECK(differs(load_at("push", 0.0), {0.0, down, 0.0}) < 1e-14);
+  CHECK(differs(load_at("push", 2.0), {6000.0, down, -3000.0}) < 1e-14);
+  CHECK(differs(load_at("-push", 2.0), {-6000.0, down, 3000.0}) < 1e-14);
+  // The body force acts in the centroid; the load stays.
+  CHECK(differs(load_at("gravity_x", 0.5), {3000.0 + 0.5 * test::block_weight, down, -1500.0}) < 1e-14);
+  CHECK(differs(load_at("-gravity_x", 0.5), {3000.0 - 0.5 * test::block_weight, down, -1500.0}) < 1e-14);
+  CHECK(differs(load_at("gravity_y", 1.0), {3000.0, -5000.0, -1500.0}) < 1e-14);
+}

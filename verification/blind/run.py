@@ -3,9 +3,10 @@
 
     verification/blind/run.py [--bin build/release] [--results results/blind] [--quick] [scene ...]
 
-The load (tilt of the table, or horizontal acceleration) at which a system falls is found by bisection: it stands where the factor of safety is at
-least 1. Each source is named in the scene. The program's answer is repeated with other stiffnesses, which no source gives, and with the friction
-angle half a degree up and down. Nothing here passes or fails: the table says what comes out.
+The load (tilt of the table, or horizontal acceleration) at which a system falls is the multiplier of horizontal gravity that `openclose fos --increase`
+proves; without cohesion the tangent of a tilt is such a multiplier. Limit analysis finds it by bisection: a system stands where its factor is at least
+1. Each source is named in the scene. The program's answer is repeated with other stiffnesses, which no source gives, and with the friction angle half a
+degree up and down. Nothing here passes or fails: the table says what comes out.
 """
 import argparse
 import csv
@@ -34,16 +35,35 @@ class Programs:
     def __init__(self, folder):
         self._folder = pathlib.Path(folder)
 
-    def fos(self, scene, gravity, settings):
-        """None where the program gives no factor."""
+    def fos(self, scene, case, settings):
+        """The load up to which the system is proved to stand; None where the program gives no multiplier."""
         with tempfile.TemporaryDirectory() as out:
-            options = [f"gravity_m_per_s2=[{gravity[0]!r}, {gravity[1]!r}]", *settings]
-            command = [str(self._folder / "openclose"), "fos", "-q", str(scene), "-o", out, *(word for o in options for word in ("--set", o))]
-            run_process(command)
+            options = [f"gravity_m_per_s2=[0, {-GRAVITY}]", *settings]
+            command = [str(self._folder / "openclose"), "fos", "-q", str(scene), "--increase", "gravity_x", "-o", out]
+            run_process([*command, *(word for o in options for word in ("--set", o))])
             summary = pathlib.Path(out) / "summary.json"
-            return json.loads(summary.read_text())["factor_of_safety"] if summary.exists() else None
+            multiplier = json.loads(summary.read_text())["load_multiplier"] if summary.exists() else None
+        if multiplier is None:
+            return None
+        return math.degrees(math.atan(multiplier)) if case["load"] == "tilt_deg" else multiplier
 
-    def limit_analysis(self, scene, gravity, _):
+    def limit_analysis(self, scene, case, _):
+        """The largest load with a factor of at least 1; None if it is not within reach of the printed one."""
+        printed = float(case["printed"])
+
+        def stands(value):
+            found = self._factor(scene, gravity_of(case["load"], value))
+            return found is not None and found >= 1.0
+
+        low, high = printed * (1 - REACH), printed * (1 + REACH)
+        if not stands(low) or stands(high):
+            return None
+        while high - low > WIDTH * printed:
+            middle = (low + high) / 2
+            low, high = (middle, high) if stands(middle) else (low, middle)
+        return (low + high) / 2
+
+    def _factor(self, scene, gravity):
         with tempfile.NamedTemporaryFile("w", suffix=".toml") as copy:
             lines = (line for line in scene.read_text().splitlines(True) if not line.startswith("gravity_m_per_s2"))
             copy.write(f"gravity_m_per_s2 = [{gravity[0]!r}, {gravity[1]!r}]\n" + "".join(lines))
@@ -51,23 +71,6 @@ class Programs:
             run = run_process([str(self._folder / "analytical/openclose-reference"), "limit-analysis", copy.name])
             values = dict(line.split(",", 1) for line in run.stdout.splitlines() if "," in line)
             return float(values["factor_of_safety"]) if values.get("factor_of_safety") else None
-
-
-def limit(factor, scene, case, settings=()):
-    """The largest load with a factor of at least 1, or None if it is not within reach of the printed one."""
-    printed = float(case["printed"])
-
-    def stands(value):
-        found = factor(scene, gravity_of(case["load"], value), settings)
-        return found is not None and found >= 1.0
-
-    low, high = printed * (1 - REACH), printed * (1 + REACH)
-    if not stands(low) or stands(high):
-        return None
-    while high - low > WIDTH * printed:
-        middle = (low + high) / 2
-        low, high = (middle, high) if stands(middle) else (low, middle)
-    return (low + high) / 2
 
 
 def variants(scene, quick):
@@ -102,9 +105,9 @@ def main():
                 continue
             scene = HERE / f"{case['scene']}.toml"
             for name, factor, settings in [("limit analysis", programs.limit_analysis, ()), *((n, programs.fos, s) for n, s in variants(scene, options.quick))]:
-                found = limit(factor, scene, case, settings)
+                found = factor(scene, case, settings)
                 difference = "" if found is None else f"{100 * (found / float(case['printed']) - 1):.2f}"
-                row = [case["scene"], case["load"], case["printed"], case["rounding"], name, "none within reach" if found is None else f"{found:.4f}", difference]
+                row = [case["scene"], case["load"], case["printed"], case["rounding"], name, "none" if found is None else f"{found:.4f}", difference]
                 table.writerow(row)
                 file.flush()
                 print(*row, sep="  ", flush=True)

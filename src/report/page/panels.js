@@ -118,34 +118,38 @@ function addEnergy(parent, table, onPick) {
   return chart;
 }
 
+/** What was searched: the factor of a strength reduction, or the multiplier of a load. */
+const factorOf = (row) => row.srf ?? row.multiplier;
+const factorName = (summary) => (summary.options?.strength_reduction?.increase ? `multiplier of ${summary.options.strength_reduction.increase}` : "strength reduction factor");
+
 /** Stable, failed and undecided trials in their order. */
 function addTrials(parent, trials, summary) {
-  const chart = new Chart(parent, { title: "Trials", xLabel: "trial", yLabel: "strength reduction factor" });
+  const chart = new Chart(parent, { title: "Trials", xLabel: "trial", yLabel: factorName(summary) });
   const kinds = [["stable", 1, "dot", "#1a7a3a"], ["failed", 0, "cross", "#b91c1c"], ["undecided", "undecided", "ring", "#b45309"]];
-  const all = { name: "", x: trials.map((_, i) => i + 1), y: trials.map((trial) => trial.srf), colour: "#ccc" };
+  const all = { name: "", x: trials.map((_, i) => i + 1), y: trials.map(factorOf), colour: "#ccc" };
   const series = kinds.map(([name, value, marks, colour]) => {
-    const chosen = trials.map((trial, i) => [i + 1, trial.srf, trial.stable]).filter((trial) => trial[2] === value);
+    const chosen = trials.map((trial, i) => [i + 1, factorOf(trial), trial.stable]).filter((trial) => trial[2] === value);
     return { name, marks, colour, line: false, x: chosen.map((t) => t[0]), y: chosen.map((t) => t[1]) };
   });
   chart.set([all, ...series.filter((curve) => curve.x.length)]);
   const box = element("div", { className: "scroll" }, chart.box), table = element("table", { id: "trials-table" }, box), head = element("tr", {}, table);
-  for (const name of ["factor", "outcome", "stage", "criterion", "steps", "displacement [m]"]) element("th", { textContent: name }, head);
+  for (const name of [trials[0].srf === undefined ? "multiplier" : "factor", "outcome", "stage", "criterion", "steps", "displacement [m]"]) element("th", { textContent: name }, head);
   for (const trial of trials) {
     const row = element("tr", {}, table), outcome = trial.stable === 1 ? "stable" : trial.stable === 0 ? "failed" : "undecided";
-    for (const text of [number(trial.srf, 8), outcome, trial.stage, trial.criterion, trial.steps, number(trial.displacement_m)]) element("td", { textContent: text, className: "number" }, row);
+    for (const text of [number(factorOf(trial), 8), outcome, trial.stage, trial.criterion, trial.steps, number(trial.displacement_m)]) element("td", { textContent: text, className: "number" }, row);
   }
 }
 
 function addDisplacementCurve(parent, summary) {
-  const points = [...(summary.displacement_curve || [])].sort((a, b) => a.srf - b.srf);
+  const points = [...(summary.displacement_curve || [])].sort((a, b) => factorOf(a) - factorOf(b));
   if (points.length < 2) return;
-  const chart = new Chart(parent, { title: "Displacement of stable trials", xLabel: "strength reduction factor", yLabel: "largest displacement [m]",
+  const chart = new Chart(parent, { title: "Displacement of stable trials", xLabel: factorName(summary), yLabel: "largest displacement [m]",
     note: "Largest displacement of a measured point from the settled state." });
   const lines = [];
   if (summary.bracket.stable !== null) lines.push({ x: summary.bracket.stable, text: `stable ${number(summary.bracket.stable)}`, colour: "#1a7a3a" });
   if (summary.bracket.failed !== null) lines.push({ x: summary.bracket.failed, text: `failed ${number(summary.bracket.failed)}`, colour: "#b91c1c" });
   if (summary.limit_analysis && summary.limit_analysis.factor) lines.push({ x: summary.limit_analysis.factor, text: `limit analysis ${number(summary.limit_analysis.factor)}`, colour: "#8e2b8e" });
-  chart.set([{ name: "", marks: "dot", x: points.map((p) => p.srf), y: points.map((p) => p.displacement_m) }], { lines });
+  chart.set([{ name: "", marks: "dot", x: points.map(factorOf), y: points.map((p) => p.displacement_m) }], { lines });
 }
 
 function addMotionCurve(parent, table) {

@@ -2,9 +2,9 @@
 
 const VERDICTS = {
   certified: ["good", "Both ends are proved: below, forces that balance inside the strength of the joints; above, a mechanism or a limit analysis."],
-  interval: ["poor", "The bracket is wider than was asked for, or has no proved failure: the factor lies in it, and no better is known."],
+  interval: ["poor", "The bracket is wider than was asked for, or has no proved failure: the answer lies in it, and no better is known."],
   no_failure: ["poor", "No failure was found up to the limit of the search (strength_reduction.upper_limit)."],
-  no_equilibrium: ["bad", "The blocks stand at no strength that was tried."],
+  no_equilibrium: ["bad", "The blocks do not stand where the search begins: at no strength that was tried, or without the load that is to grow."],
   undecided: ["bad", "No stable state could be proved."],
 };
 
