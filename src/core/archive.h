@@ -66,7 +66,7 @@ class Archive {
     std::uint64_t n = of_written;
     raw(&n, sizeof n);
     if (reading_ && n > bytes_.size() - at_) throw DamagedState("the saved state is shorter than what it should hold");
-    return n;
+    return static_cast<std::size_t>(n);
   }
 
   template <class T>

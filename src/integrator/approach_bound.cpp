@@ -44,7 +44,7 @@ double ApproachBound::step(const BlockSystem& system, const JointTable& joints, 
   double step = std::numeric_limits<double>::infinity();
   for (const auto& [a, b] : pairs) {
     const double relative = speed(system, a) + speed(system, b);
-    if (relative * step <= skin) continue;  // as long as the shortest one so far it moves less than the skin
+    if (relative == 0.0 || relative * step <= skin) continue;  // as long as the shortest one so far it moves less than the skin
     const double apart = (system.centroid(a) - system.centroid(b)).norm() - system.block(a).radius - system.block(b).radius;
     if (apart > room) continue;
     const JointProperties& joint = joints.joint(joints.index(system.block(a).material, system.block(b).material));
