@@ -487,6 +487,20 @@ TEST_CASE("a side of a block that two joints share has a vertex where the one go
   }
 }
 
+TEST_CASE("a sliver is as wide as its sides from corner to corner make it", "[geometry][cutting]") {
+  // 4 m by 0.4 mm, with a change of the joint in the middle of both long sides.
+  std::vector<JointTrace> traces;
+  for (const double y : {2.0, 2.0004}) {
+    traces.push_back({{{0.0, y}, {2.0, y}}, 0, JointTrace::no_bridge, false, true});
+    traces.push_back({{{2.0, y}, {4.0, y}}, 1, JointTrace::no_bridge, true, false});
+  }
+  CuttingLimits limits;
+  limits.end_reach = 0.0;
+  const Cutting cutting = cut_blocks(square, traces, {5, 6}, limits);
+  CHECK(cutting.slivers_merged == 1);
+  CHECK(cutting.blocks.size() == 2);
+}
+
 TEST_CASE("a joint that ends a little beside a meeting ends there", "[geometry][cutting]") {
   // Half a millimetre is less than the reach, two millimetres are more.
   for (const auto& [past, vertices] : {std::pair(5e-4, 4u), std::pair(-5e-4, 4u), std::pair(2e-3, 5u), std::pair(-2e-3, 5u)}) {

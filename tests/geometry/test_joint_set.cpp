@@ -264,9 +264,16 @@ TEST_CASE("a set with bridges is the whole of every line that has a trace", "[ge
     set.gap = 1.0;
     set.trace_scatter = 0.5;
     const std::vector<SetTrace> scattered = *traces(set, square, 1000);
-    double sum = 0.0;
-    for (const SetTrace& trace : scattered) sum += trace.length();
+    set.has_bridges = false;
+    const std::vector<SetTrace> without = *traces(set, square, 1000);
+    double sum = 0.0, joint = 0.0, alone = 0.0;
+    for (const SetTrace& trace : scattered) {
+      sum += trace.length();
+      if (!trace.is_bridge) joint += trace.length();
+    }
+    for (const SetTrace& trace : without) alone += trace.length();
     CHECK(sum == Approx(4 * 10.2).epsilon(1e-12));
+    CHECK(joint == Approx(alone).epsilon(1e-12));
   }
   SECTION("joints that run through end at the region") {
     JointSet through = set_of(0.0, 3.0);
