@@ -218,7 +218,7 @@ bool SolvedStepper::accept_contacts() {
     c.slack = solution_.contacts.slack(i);
     c.gap += solution_.contacts.gap_change(i);
     c.normal_force = c.shear_force = c.elastic_slip = c.stored_energy = 0.0;
-    if (is_explicit) book_crossing(c, solution_.contacts[i], start);
+    if (is_explicit) book_crossing(c, i, start);
     if (c.status != ContactStatus::open) {
       const CarriedForces f = solution_.contacts.forces(i);
       const double kn = solution_.contacts.normal_stiffness(i), ks = solution_.contacts.shear_stiffness(i);
@@ -233,18 +233,19 @@ bool SolvedStepper::accept_contacts() {
   return some_change;
 }
 
-void SolvedStepper::book_crossing(Contact& contact, const ContactOutcome& outcome, const Contact& start) {
+void SolvedStepper::book_crossing(Contact& contact, std::size_t c, const Contact& start) {
   const double before = contact.crossing_energy;
   contact.crossing_energy = 0.0;
   const bool is_open = contact.status == ContactStatus::open;
   if (is_open) {
-    contact.normal_force = outcome.forces.normal;
-    contact.shear_force = outcome.forces.shear;
-    contact.crossing_energy = outcome.crossing_energy;
+    const CarriedForces settling = solution_.contacts.forces(c);
+    contact.normal_force = settling.normal;
+    contact.shear_force = settling.shear;
+    contact.crossing_energy = solution_.contacts.crossing_energy(c);
     contact.stored_energy = -contact.crossing_energy;
   } else if (ContactStrength(state_.joints.joint(contact.joint), contact).tension == 0.0) {
     contact.crossing_energy =
-        start.status == ContactStatus::open ? closing_energy(outcome.normal_stiffness, start.stretch(), contact.stretch()) : before;
+        start.status == ContactStatus::open ? closing_energy(solution_.contacts.normal_stiffness(c), start.stretch(), contact.stretch()) : before;
   }
   state_.ledger.contact_springs -= contact.crossing_energy - before;
   state_.ledger.scheme += contact.crossing_energy - before;

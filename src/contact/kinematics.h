@@ -161,7 +161,6 @@ struct ContactKinematics {
   /// Kinematics after the two blocks have moved by d_vertex, d_edge from the system's present state.
   ContactKinematics(const BlockSystem& system, const Contact& contact, const Unknowns& d_vertex, const Unknowns& d_edge);
   explicit ContactKinematics(const ContactPose& pose);
-  ContactPose pose() const;
 
   /// Second derivatives of m . (p - e), m turning with the edge's block: blocks (vertex, vertex), (vertex, edge), (edge, edge).
   struct Hessian {

@@ -247,17 +247,6 @@ ContactSprings ContactBatch::springs(int lane) const {
   return s;
 }
 
-ContactForces TrialBatch::forces(int lane, Branch branch) const {
-  ContactForces f;
-  f.status = status(branch);
-  f.normal = normal[lane];
-  f.shear = shear[lane];
-  f.normal_by_gap = normal_by_gap[lane];
-  f.shear_by_gap = shear_by_gap[lane];
-  f.shear_by_slip = shear_by_slip[lane];
-  return f;
-}
-
 void TrialBatch::set_forces(int lane, const ContactForces& f) {
   normal[lane] = f.normal;
   shear[lane] = f.shear;

@@ -252,13 +252,13 @@ class Hard final : public Enforcement {
       }
       if (solution.converged || problem.statics || cohesion == Cohesion::as_it_is) return;
     }
-    newton_.set_cohesion_ramp(long_cohesion_ramp);
+    solution.contacts.set_cohesion_ramp(long_cohesion_ramp);
     solution.d = start;
     newton_.solve_again(springs_, solution,
                         solution.eased ? FirstTangent::last_solution
                         : pass == 0    ? FirstTangent::last_step
                                        : FirstTangent::present);
-    newton_.set_cohesion_ramp(tolerance::cohesion_ramp);
+    solution.contacts.set_cohesion_ramp(tolerance::cohesion_ramp);
     if (!solution.converged || solution.eased) return;
     StepSolution eased = solution;
     newton_.solve_again(springs_, solution, FirstTangent::present);
@@ -275,21 +275,21 @@ class Hard final : public Enforcement {
   }
 
   /// What the springs of the next pass start from.
-  void carry_on(const StepProblem& problem, const ContactOutcomes& outcomes, std::size_t c) {
+  void carry_on(const StepProblem& problem, const ContactTrial& contacts, std::size_t c) {
     ContactSprings& s = springs_[c];
-    const CarriedForces forces = outcomes.forces(c);
+    const CarriedForces forces = contacts.forces(c);
     const bool open = forces.status == ContactStatus::open;
     if (!problem.statics) {
       s.shift = forces.normal;
       s.initial_shear = forces.shear;
     } else if (open) {
       // A gap that was there before is one on every pass; only what has come to it is remembered.
-      const double parted = outcomes.gap_change(c) + std::min(0.0, s.gap - s.target);
+      const double parted = contacts.gap_change(c) + std::min(0.0, s.gap - s.target);
       s.shift = std::min(0.0, s.shift - s.normal * parted);
       s.initial_shear = 0.0;
     } else {
       s.shift = forces.normal;
-      s.initial_shear -= s.shear * outcomes.slip_change(c);
+      s.initial_shear -= s.shear * contacts.slip_change(c);
     }
   }
 
