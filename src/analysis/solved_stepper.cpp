@@ -101,7 +101,7 @@ StepResult SolvedStepper::step(double dt, bool statics) {
 bool SolvedStepper::is_no_step(StepResult& result) {
   if (solution_.converged) {
     result.moved = largest_move(state_.system, solution_);
-    const bool turned = turns_too_far(state_.system, state_.contacts, solution_);
+    const bool turned = turns_too_far(state_.system, state_.contacts.moving, solution_);
     if (!turned && result.moved <= state_.scene.step.max_displacement) return false;
     result.reason = turned ? "a block that is in contact turned by more than 15 degrees in one step"
                            : "a block moved farther in one step than step.max_displacement_m";
@@ -164,8 +164,8 @@ bool SolvedStepper::wake_in_haste(double dt) {
   BlockSystem& system = state_.system;
   if (system.resting_blocks().empty()) return false;
   std::vector<Unknowns>& pushes = state_.resting.pushes(system);
-  for (std::size_t i = 0; i < state_.contacts.size(); ++i) {
-    const int a = state_.contacts[i].vertex_block, b = state_.contacts[i].edge_block;
+  for (std::size_t i = 0; i < state_.contacts.moving.size(); ++i) {
+    const int a = state_.contacts.moving[i].vertex_block, b = state_.contacts.moving[i].edge_block;
     if (solution_.contacts.status(i) == ContactStatus::open || !(system.is_at_rest(a) || system.is_at_rest(b))) continue;
     const ContactOutcome o = solution_.contacts[i];
     const Vec2 force = o.forces.normal * o.pose.normal + o.forces.shear * o.pose.tangent();
@@ -210,8 +210,8 @@ void SolvedStepper::accept(const StepProblem& problem) {
 bool SolvedStepper::accept_contacts() {
   const bool elastic = state_.enforcement->has_elastic_contacts(), is_explicit = state_.enforcement->is_explicit();
   bool some_change = false;
-  for (std::size_t i = 0; i < state_.contacts.size(); ++i) {
-    Contact& c = state_.contacts[i];
+  for (std::size_t i = 0; i < state_.contacts.moving.size(); ++i) {
+    Contact& c = state_.contacts.moving[i];
     const Contact start = c;
     c.status = solution_.contacts.status(i);
     c.bonded = stays_bonded(state_.joints.joint(c.joint), c.bonded, c.status);
