@@ -19,9 +19,7 @@ void add_forces(const BlockSystem& system, const std::vector<Contact>& contacts,
   for (const Contact& c : contacts) {
     if (c.status == ContactStatus::open || !(system.is_at_rest(c.vertex_block) || system.is_at_rest(c.edge_block))) continue;
     const ContactPose pose(ContactStart(system, c), {}, {});
-    const Vec2 force = sign * (c.normal_force * pose.normal + c.shear_force * pose.tangent());
-    per_block[c.vertex_block] += Motion::gradient(pose.vertex_arm, force);
-    per_block[c.edge_block] -= Motion::gradient(pose.edge_arm, force);
+    push_apart(c, pose, sign * c.normal_force, sign * c.shear_force, [&](int b, const Motion::Unknowns& force) { per_block[b] += force; });
   }
 }
 

@@ -27,7 +27,7 @@ bool has_slipped(const BlockSystem& start, const Contact& before, const BlockSys
   const auto way = [&](int b) -> Motion::Unknowns { return system.displacement(b) - start.displacement(b); };
   const ContactKinematics k(start, before, way(now.vertex_block), way(now.edge_block));
   const ContactStrength strength(joint, now);
-  const double stiffness = joint.shear_stiffness * now.length;
+  const double stiffness = JointSprings(joint, now.length).shear;
   const double wanted = stiffness * std::abs(before.elastic_slip + k.slip_change);
   return wanted > strength.largest_shear(std::max(now.normal_force, -strength.tension)) + stiffness * tolerance::rounding_of_ways_m;
 }

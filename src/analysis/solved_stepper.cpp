@@ -165,12 +165,12 @@ bool SolvedStepper::wake_in_haste(double dt) {
   if (system.resting_blocks().empty()) return false;
   std::vector<Unknowns>& pushes = state_.resting.pushes(system);
   for (std::size_t i = 0; i < state_.contacts.moving.size(); ++i) {
-    const int a = state_.contacts.moving[i].vertex_block, b = state_.contacts.moving[i].edge_block;
-    if (solution_.contacts.status(i) == ContactStatus::open || !(system.is_at_rest(a) || system.is_at_rest(b))) continue;
+    const Contact& c = state_.contacts.moving[i];
+    if (solution_.contacts.status(i) == ContactStatus::open || !(system.is_at_rest(c.vertex_block) || system.is_at_rest(c.edge_block))) continue;
     const ContactOutcome o = solution_.contacts[i];
-    const Vec2 force = o.forces.normal * o.pose.normal + o.forces.shear * o.pose.tangent();
-    if (system.is_at_rest(a)) pushes[system.rest_number(a)] += Motion::gradient(o.pose.vertex_arm, force);
-    if (system.is_at_rest(b)) pushes[system.rest_number(b)] -= Motion::gradient(o.pose.edge_arm, force);
+    push_apart(c, o.pose, o.forces.normal, o.forces.shear, [&](int b, const Unknowns& force) {
+      if (system.is_at_rest(b)) pushes[system.rest_number(b)] += force;
+    });
   }
   state_.resting.judge(system, dt);
   const std::vector<int> woken = state_.to_wake(Resting::Urgency::in_haste);

@@ -155,9 +155,10 @@ inline Eigen::VectorXd drift(const StepProblem& problem) {
 /// force change alike.
 inline ContactSprings joint_springs(const StepProblem& problem, const Contact& contact) {
   const JointProperties& joint = problem.joints.joint(contact.joint);
+  const JointSprings own(joint, contact.length);
   ContactSprings s;
-  s.normal = joint.normal_stiffness * contact.length;
-  s.shear = joint.shear_stiffness * contact.length;
+  s.normal = own.normal;
+  s.shear = own.shear;
   s.gap = contact.gap;
   s.target = contact.rest_gap;
   s.initial_shear = -s.shear * contact.elastic_slip;

@@ -131,10 +131,10 @@ class Hard final : public Enforcement {
   static ContactSprings springs(const StepProblem& problem, const Contact& contact, double ratio) {
     const JointProperties& joint = problem.joints.joint(contact.joint);
     const double from_inertia = ratio * inertia(problem, contact);
-    const double from_joint = problem.statics ? contact.length : 0.0;
+    const JointSprings own(joint, problem.statics ? contact.length : 0.0);
     ContactSprings s;
-    s.normal = std::max(from_inertia, from_joint * joint.normal_stiffness);
-    s.shear = std::max(from_inertia, from_joint * joint.shear_stiffness);
+    s.normal = std::max(from_inertia, own.normal);
+    s.shear = std::max(from_inertia, own.shear);
     s.gap = contact.gap;
     s.target = target_gap(problem, contact);
     s.shift = problem.statics && contact.status == ContactStatus::open ? -s.normal * contact.slack : contact.normal_force;

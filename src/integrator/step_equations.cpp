@@ -192,19 +192,18 @@ void StepEquations::replace_forces(std::size_t c, const ContactForces& forces) {
   const int k = ContactTrial::lane(c);
   const ContactPose pose = contacts_->force_pose(c);
   const double normal = problem_->end_weight * (forces.normal - batch.normal[k]), shear = problem_->end_weight * (forces.shear - batch.shear[k]);
-  // In single numbers: what has just been stored number by number cannot be loaded in pairs at once.
-  const double x = normal * pose.normal.x() - shear * pose.normal.y(), y = normal * pose.normal.y() + shear * pose.normal.x();
-  const auto push = [&](int row, double sign, const Vec2& arm) {
+  const ContactPush<double> change(normal, shear, force_place(pose));
+  const auto push = [&](int row, double x, double y, double moment) {
     if (row >= rows()) return;
     double* const residual = residual_.data() + static_cast<std::ptrdiff_t>(dofs) * row;
-    residual[0] += sign * x;
-    residual[1] += sign * y;
-    residual[2] += sign * (arm.x() * y - arm.y() * x);
+    residual[0] += x;
+    residual[1] += y;
+    residual[2] += moment;
     if (blocks_[row].rotation_locked) residual[Motion::rotation_index] = 0.0;
   };
   const auto [vertex, edge] = contacts_->places(c);
-  push(vertex, 1.0, pose.vertex_arm);
-  push(edge, -1.0, pose.edge_arm);
+  push(vertex, change.x, change.y, change.on_vertex);
+  push(edge, -change.x, -change.y, -change.on_edge);
   contacts_->replace_forces(c, forces);
 }
 
