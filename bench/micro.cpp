@@ -130,7 +130,7 @@ void say_size(benchmark::State& state, Slope& slope) {
 void detect(benchmark::State& state, bool search) {
   Slope& slope = Slope::of(state.range(0));
   const auto& simulation = std::as_const(slope.simulation());
-  std::vector<Contact> contacts;
+  ContactSet contacts;
   DetectionSkips skips;
   skips.search = !search;
   skips.narrow_phase = false;

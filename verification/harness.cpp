@@ -19,11 +19,9 @@ class NullEnforcement : public Enforcement {
   void solve(const StepProblem& problem, StepSolution& solution) override {
     solution.converged = true;
     solution.d = Eigen::VectorXd::Zero(dofs * problem.system.free_count());
-    const auto still = Motion::Unknowns::Zero().eval();
-    for (const Contact& c : problem.contacts) {
-      solution.contacts.push_back({real_->springs(problem, c), CarriedForces{}, ContactKinematics(problem.system, c, still, still).pose()});
-    }
-    if (problem.end_weight < 1.0) solution.start_contacts = solution.contacts;
+    solution.contacts.prepare(problem, OwnSprings(*real_, problem));
+    for (std::size_t c = 0; c < problem.contacts.size(); ++c) solution.contacts.set(c, CarriedForces{}, 0.0, 0.0);
+    if (problem.end_weight < 1.0) solution.contacts.keep_start_forces();
   }
   bool takes_adaptive_steps() const override { return real_->takes_adaptive_steps(); }
   std::unique_ptr<TimeScheme> make_time_scheme(const MethodInput& method) const override { return real_->make_time_scheme(method); }

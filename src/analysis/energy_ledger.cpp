@@ -150,11 +150,11 @@ void add_contacts(EnergyLedger& ledger, const StepProblem& problem, const StepSo
   const double theta = problem.end_weight;
   for (std::size_t c = 0; c < problem.contacts.size(); ++c) {
     const Contact& contact = problem.contacts[c];
-    if (solution.paths.empty() && rests_open(contact, solution.contacts.status(c))) continue;
+    if (solution.contacts.paths().empty() && rests_open(contact, solution.contacts.status(c))) continue;
     const ContactOutcome end = solution.contacts[c];
     const Unknowns &pv = work_displacement[contact.vertex_block], &pe = work_displacement[contact.edge_block];
-    if (!solution.paths.empty()) {
-      const PathOutcome& mean = solution.paths[c];
+    if (!solution.contacts.paths().empty()) {
+      const PathOutcome& mean = solution.contacts.paths()[c];
       add_averaged_contact(ledger, contact, mean, mean.pose.normal_way(pv, pe) - end.pose.gap_change,
                            mean.pose.shear_way(pv, pe) - end.pose.slip_change, end);
       continue;
@@ -169,8 +169,8 @@ void add_contacts(EnergyLedger& ledger, const StepProblem& problem, const StepSo
     if (theta == 1.0) {
       start.elastic_normal = elastic_normal_at_start(contact, problem.joints.joint(contact.joint), end);
     } else {
-      const ContactPose pose = solution.start_contacts.pose(c);
-      start = solution.start_contacts.forces(c);
+      const ContactPose pose = solution.contacts.pose_at_start(c);
+      start = solution.contacts.start_forces()[c];
       paths.normal_start = pose.normal_way(pv, pe);
       paths.shear_start = pose.shear_way(pv, pe);
     }

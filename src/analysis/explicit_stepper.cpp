@@ -24,8 +24,8 @@ void ExplicitStepper::collect() {
   is_ahead_ = false;
   loop_->store_blocks(state_.system);
   for (int b : state_.system.free_blocks()) state_.output_velocity[b] = loop_->velocity_at_end(state_.system.block(b).equation);
-  loop_->store_contacts(state_.contacts);
-  loop_->store_far_gaps(state_.system, state_.contacts);
+  loop_->store_contacts(state_.contacts.moving);
+  loop_->store_far_gaps(state_.system, state_.contacts.moving);
   state_.max_penetration = std::max(state_.max_penetration, loop_->max_penetration());
   const ExplicitEnergies e = loop_->take_energies();
   const double stored = state_.moving_contact_energy();
@@ -74,7 +74,7 @@ bool ExplicitStepper::renew() {
   if (state_.detector.needs_search(state_.system)) return false;
   {
     const Stopwatch watch(state_.stage_times.detection);
-    loop_->store_contacts(state_.contacts);
+    loop_->store_contacts(state_.contacts.moving);
     state_.contacts_current = true;
     if (!state_.detector.update(state_.system, state_.joints, state_.contacts)) {
       loop_->keep();
@@ -100,7 +100,7 @@ double ExplicitStepper::approach_step() {
 std::string ExplicitStepper::too_deep() {
   const auto found = loop_->too_deep();
   if (!found) return {};
-  const Contact& c = state_.contacts[found->contact];
+  const Contact& c = state_.contacts.moving[found->contact];
   // The closure of an impact falls with the root of the stiffness.
   const double wanted = closure_of_thickness * found->limit / DepthLimits::part, factor = found->depth / wanted;
   return fmt::format(
@@ -135,7 +135,7 @@ Move ExplicitStepper::move(double h, MassDamping damping, bool any_length) {
   const double span = 1.0 / (h * state_.scheme->inertia(h));
   const auto with = [&](double fast_step) {
     return loop_->move(h, span, state_.external.base_acceleration(), state_.scene.step.max_displacement, fast_step, damping,
-                      state_.scene.method.local_damping);
+                       state_.scene.method.local_damping);
   };
   // What the step would do is known only now.
   constexpr double any = std::numeric_limits<double>::infinity(), rounding = 1.0 + tolerance::rounding_of_times;

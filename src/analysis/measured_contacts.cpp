@@ -19,7 +19,6 @@ MeasuredContacts::MeasuredContacts(const Scene& scene) {
 std::vector<ContactMotion> MeasuredContacts::motions(const Simulation& simulation) const {
   if (joints_.empty()) return {};
   const BlockSystem& system = simulation.system();
-  const std::vector<Contact> contacts = simulation.state().every_contact();
   std::vector<ContactMotion> list;
   for (std::size_t i = 0; i < joints_.size(); ++i) {
     const JointGap gap = joint_motion(joints_[i], system).from;
@@ -28,14 +27,14 @@ std::vector<ContactMotion> MeasuredContacts::motions(const Simulation& simulatio
     m.gap = gap.opening;
     m.slip = gap.slip;
     int sliding = 0;
-    for (const Contact& c : contacts) {
-      if (c.status == ContactStatus::open || !lies_on(c, joints_[i], system)) continue;
+    simulation.state().contacts.for_each([&](const Contact& c) {
+      if (c.status == ContactStatus::open || !lies_on(c, joints_[i], system)) return;
       m.normal_force += c.normal_force;
       // Along opposite edges: the force on a along that of b is the one on b along that of a.
       m.shear_force += c.shear_force;
       ++m.closed;
       if (c.status == ContactStatus::sliding) ++sliding;
-    }
+    });
     if (m.closed > 0) m.status = sliding == m.closed ? ContactStatus::sliding : ContactStatus::sticking;
     list.push_back(m);
   }

@@ -19,9 +19,7 @@ void add_forces(const BlockSystem& system, const std::vector<Contact>& contacts,
   for (const Contact& c : contacts) {
     if (c.status == ContactStatus::open || !(system.is_at_rest(c.vertex_block) || system.is_at_rest(c.edge_block))) continue;
     const ContactPose pose(ContactStart(system, c), {}, {});
-    const Vec2 force = sign * (c.normal_force * pose.normal + c.shear_force * pose.tangent());
-    per_block[c.vertex_block] += Motion::gradient(pose.vertex_arm, force);
-    per_block[c.edge_block] -= Motion::gradient(pose.edge_arm, force);
+    push_apart(c, pose, sign * c.normal_force, sign * c.shear_force, [&](int b, const Motion::Unknowns& force) { per_block[b] += force; });
   }
 }
 
@@ -70,11 +68,10 @@ std::vector<int> Resting::quiet_blocks(const BlockSystem& system, const std::vec
   return list;
 }
 
-void Resting::keep_forces(const BlockSystem& system, const std::vector<int>& blocks, const std::vector<Contact>& contacts,
-                          const std::vector<Contact>& resting_contacts) {
+void Resting::keep_forces(const BlockSystem& system, const std::vector<int>& blocks, const ContactSet& contacts) {
   std::vector<Unknowns> forces(system.block_count(), Unknowns::Zero());
-  add_forces(system, contacts, 1.0, forces);
-  add_forces(system, resting_contacts, 1.0, forces);
+  add_forces(system, contacts.moving, 1.0, forces);
+  add_forces(system, contacts.resting, 1.0, forces);
   for (const int b : blocks) {
     held_[b] = forces[b];
     change_[b].setZero();
@@ -105,8 +102,7 @@ void Resting::judge(const BlockSystem& system, double dt) {
   }
 }
 
-std::vector<int> Resting::woken(const BlockSystem& system, const std::vector<Contact>& contacts, const std::vector<Contact>& resting_contacts,
-                                Urgency urgency) {
+std::vector<int> Resting::woken(const BlockSystem& system, const ContactSet& contacts, Urgency urgency) {
   const double limit = input_.acceleration * (urgency == Urgency::in_haste ? haste : 1.0);
   std::vector<int> list, nearly_woken;
   for (std::size_t i = 0; i < judged_.size(); ++i) {
@@ -123,20 +119,17 @@ std::vector<int> Resting::woken(const BlockSystem& system, const std::vector<Con
 
   std::vector<int> layer(system.block_count(), 0);
   for (const int b : list) layer[b] = 1;
-  const auto spread = [&](int k, const std::vector<Contact>& touching) {
-    for (const Contact& c : touching) {
-      if (c.status == ContactStatus::open) continue;
+  const auto spread = [&](int k) {
+    contacts.for_each([&](const Contact& c) {
+      if (c.status == ContactStatus::open) return;
       for (const auto& [from, to] : {std::pair(c.vertex_block, c.edge_block), std::pair(c.edge_block, c.vertex_block)}) {
         if (layer[from] != k || layer[to] != 0 || system.block(to).equation == BlockSystem::fixed) continue;
         layer[to] = k + 1;
         if (system.is_at_rest(to)) list.push_back(to);
       }
-    }
+    });
   };
-  for (int k = 1; k <= layers_; ++k) {
-    spread(k, contacts);
-    spread(k, resting_contacts);
-  }
+  for (int k = 1; k <= layers_; ++k) spread(k);
   layers_ = std::min(2 * layers_, system.block_count());
   return list;
 }

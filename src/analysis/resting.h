@@ -19,6 +19,7 @@
 
 #include <vector>
 
+#include "openclose/contact/contact_set.h"
 #include "openclose/integrator/enforcement.h"
 
 namespace openclose {
@@ -37,8 +38,7 @@ class Resting {
   std::vector<int> quiet_blocks(const BlockSystem& system, const std::vector<Contact>& contacts);
 
   /// These blocks have been put to rest, the contacts still being divided as before: what holds them now is what is to hold them from now on.
-  void keep_forces(const BlockSystem& system, const std::vector<int>& blocks, const std::vector<Contact>& contacts,
-                   const std::vector<Contact>& resting_contacts);
+  void keep_forces(const BlockSystem& system, const std::vector<int>& blocks, const ContactSet& contacts);
   /// Blocks have been put to rest or woken: works out which part of that is to come from blocks that move.
   void divide(const BlockSystem& system, const std::vector<Contact>& resting_contacts);
 
@@ -51,8 +51,7 @@ class Resting {
     in_haste,  ///< before it, which is to be done again
   };
   /// Blocks that the step wakes, with layers of those at rest that they touch.
-  std::vector<int> woken(const BlockSystem& system, const std::vector<Contact>& contacts, const std::vector<Contact>& resting_contacts,
-                         Urgency urgency);
+  std::vector<int> woken(const BlockSystem& system, const ContactSet& contacts, Urgency urgency);
   /// The step that was judged counts.
   void accept(const BlockSystem& system);
 

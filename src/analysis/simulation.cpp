@@ -27,7 +27,7 @@ bool has_slipped(const BlockSystem& start, const Contact& before, const BlockSys
   const auto way = [&](int b) -> Motion::Unknowns { return system.displacement(b) - start.displacement(b); };
   const ContactKinematics k(start, before, way(now.vertex_block), way(now.edge_block));
   const ContactStrength strength(joint, now);
-  const double stiffness = joint.shear_stiffness * now.length;
+  const double stiffness = JointSprings(joint, now.length).shear;
   const double wanted = stiffness * std::abs(before.elastic_slip + k.slip_change);
   return wanted > strength.largest_shear(std::max(now.normal_force, -strength.tension)) + stiffness * tolerance::rounding_of_ways_m;
 }
@@ -78,7 +78,7 @@ JointTable& Simulation::change_joints() {
 
 std::vector<Contact>& Simulation::change_contacts() {
   taken_back().find_contacts();
-  return state_.contacts;
+  return state_.contacts.moving;
 }
 
 void Simulation::positions_changed() {
@@ -120,7 +120,7 @@ void Simulation::judge_bonds(const Snapshot* from) {
     start.restore(from->blocks);
     for (const Contact& c : from->contacts) before.emplace(std::pair(c.vertex, c.edge), &c);
   }
-  for (Contact& c : state_.contacts) {
+  for (Contact& c : state_.contacts.moving) {
     const TabulatedJoint& joint = state_.joints.joint(c.joint);
     const auto known = before.find({c.vertex, c.edge});
     const bool slid = c.status == ContactStatus::sticking && known != before.end() && has_slipped(start, *known->second, state_.system, c, joint);
@@ -148,7 +148,7 @@ void Simulation::restart_clock() {
 
 Simulation::Snapshot Simulation::save() {
   change_contacts();
-  Snapshot snapshot{state_.system.state(), state_.contacts};
+  Snapshot snapshot{state_.system.state(), state_.contacts.moving};
   snapshot.blocks.velocity = state_.output_velocity;
   return snapshot;
 }
@@ -156,7 +156,7 @@ Simulation::Snapshot Simulation::save() {
 void Simulation::restore(const Snapshot& snapshot) {
   taken_back();
   state_.system.restore(snapshot.blocks);
-  state_.contacts = snapshot.contacts;
+  state_.contacts.moving = snapshot.contacts;
   state_.detector.forget();
   state_.may_rest = false;  // what is known of quiet blocks and their contacts is of another state
   state_.contacts_current = true;

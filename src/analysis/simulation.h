@@ -43,8 +43,8 @@ class Simulation {
   const BlockSystem& system() const { return state().system; }
   const JointTable& joints() const { return state_.joints; }
   const ExternalForces& external() const { return state_.external; }
-  /// As the last step left them.
-  const std::vector<Contact>& contacts() const { return state().contacts; }
+  /// Of blocks that move, as the last step left them.
+  const std::vector<Contact>& contacts() const { return state().contacts.moving; }
   const Enforcement& enforcement() const { return *state_.enforcement; }
   /// Velocity of block b at time() (the system's own may be half a step behind, see time_scheme.h).
   Unknowns velocity(int b) const { return state().output_velocity[static_cast<std::size_t>(b)]; }

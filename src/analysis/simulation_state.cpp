@@ -63,7 +63,7 @@ void SimulationState::find_contacts(double lead) {
   if (!search(lead) || !elastic) return;
   store_changed_energies();
   const StepProblem p = problem(scene.step.dt, false);
-  for (Contact& c : contacts) {
+  for (Contact& c : contacts.moving) {
     if (!c.bonded && c.normal_force < 0.0) store_energy(p, c);  // it lost its strength while it was pulling
   }
   const double change = moving_contact_energy() - before;
@@ -74,7 +74,7 @@ void SimulationState::find_contacts(double lead) {
 void SimulationState::store_changed_energies() {
   const StepProblem p = problem(scene.step.dt, false);
   for (const DetectionChange& change : detector.changes()) {
-    for (int i = change.after.begin; i < change.after.end; ++i) store_energy(p, contacts[i]);
+    for (int i = change.after.begin; i < change.after.end; ++i) store_energy(p, contacts.moving[i]);
   }
 }
 
@@ -85,7 +85,7 @@ void SimulationState::store_energy(const StepProblem& problem, Contact& contact)
 }
 
 StepProblem SimulationState::problem(double dt, bool statics) const {
-  StepProblem p{system, external, joints, contacts, scene.method};
+  StepProblem p{system, external, joints, contacts.moving, scene.method};
   p.dt = dt;
   p.statics = statics;
   p.inertia = statics ? 2.0 / (dt * dt) : scheme->inertia(dt);
@@ -114,7 +114,7 @@ void SimulationState::rest_after(double dt) {
   } else {
     resting.disturb(system);
   }
-  const std::vector<int> quiet = resting.quiet_blocks(system, contacts);
+  const std::vector<int> quiet = resting.quiet_blocks(system, contacts.moving);
   if (quiet.empty()) return;
   note_change();
   const double before = system.kinetic_energy();
@@ -126,7 +126,7 @@ void SimulationState::rest_after(double dt) {
     output_velocity[b].setZero();
     scheme->forget(b);
   }
-  resting.keep_forces(system, quiet, contacts, detector.resting_contacts());
+  resting.keep_forces(system, quiet, contacts);
   counters.put_to_rest += static_cast<long>(quiet.size());
   divide();
 }
@@ -141,12 +141,12 @@ void SimulationState::wake(const std::vector<int>& blocks) {
 
 void SimulationState::divide() {
   detector.divide(system, contacts);
-  resting.divide(system, detector.resting_contacts());
+  resting.divide(system, contacts.resting);
 }
 
 std::vector<int> SimulationState::to_wake(Resting::Urgency urgency) {
   if (system.resting_blocks().empty()) return {};
-  std::vector<int> woken = resting.woken(system, contacts, detector.resting_contacts(), urgency);
+  std::vector<int> woken = resting.woken(system, contacts, urgency);
   if (urgency == Resting::Urgency::any) resting.accept(system);
   counters.woken += static_cast<long>(woken.size());
   return woken;
@@ -171,21 +171,14 @@ void SimulationState::restart_scheme() {
 
 double SimulationState::moving_contact_energy() const {
   double energy = 0.0;
-  for (const Contact& c : contacts) energy += c.stored_energy;
+  for (const Contact& c : contacts.moving) energy += c.stored_energy;
   return energy;
 }
 
 double SimulationState::stored_contact_energy() const {
-  double energy = moving_contact_energy();
-  for (const Contact& c : detector.resting_contacts()) energy += c.stored_energy;
+  double energy = 0.0;
+  contacts.for_each([&](const Contact& c) { energy += c.stored_energy; });
   return energy;
-}
-
-std::vector<Contact> SimulationState::every_contact() const {
-  std::vector<Contact> list = contacts;
-  const std::vector<Contact>& resting_ones = detector.resting_contacts();
-  list.insert(list.end(), resting_ones.begin(), resting_ones.end());
-  return list;
 }
 
 double SimulationState::force_scale() const {
@@ -195,7 +188,7 @@ double SimulationState::force_scale() const {
   for (const auto& element : external.elements()) {
     if (element->account() == ForceAccount::loads) scale = std::max(scale, element->magnitude(element->path(system, Unknowns::Zero())));
   }
-  for (const Contact& c : contacts) scale = std::max({scale, c.normal_force, std::abs(c.shear_force)});
+  for (const Contact& c : contacts.moving) scale = std::max({scale, c.normal_force, std::abs(c.shear_force)});
   return scale > 0.0 ? scale : 1.0;
 }
 
@@ -213,13 +206,13 @@ void SimulationState::count_moves() {
 void SimulationState::note_memory(const Memory& of_stepper) {
   Memory now = enforcement->memory() + detector.memory() + of_stepper;
   now.blocks += bytes_of_scene_ + system.bytes() + bytes_of(output_velocity);
-  now.contacts += bytes_of(contacts);
+  now.contacts += contacts.bytes();
   memory.grow_to(now);
 }
 
 void SimulationState::exchange(Archive& archive) {
-  archive(system, resting, may_rest, external, joints, base_moves, keep_bonds, no_slip, detector, contacts, contacts_current, output_velocity, time, reason,
-          ledger, start_kinetic_energy, kinetic_ahead, max_penetration, friction_work, lagging_friction_work, counters, begins);
+  archive(system, resting, may_rest, external, joints, base_moves, keep_bonds, no_slip, detector, contacts, contacts_current, output_velocity, time,
+          reason, ledger, start_kinetic_energy, kinetic_ahead, max_penetration, friction_work, lagging_friction_work, counters, begins);
   archive.require(detector.fits(system, joints, contacts), "the saved state has contacts of blocks that are not there");
   if (archive.reading()) make_scheme();
   scheme->exchange(archive);

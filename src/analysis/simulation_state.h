@@ -57,8 +57,6 @@ struct SimulationState {
 
   double moving_contact_energy() const;  ///< [J] without contacts between blocks at rest
   double stored_contact_energy() const;  ///< [J] of all
-  /// With those between blocks at rest, whose forces are the ones they were put to rest with.
-  std::vector<Contact> every_contact() const;
   /// [N] weight of the heaviest free block, or the largest load or contact force if there is no gravity
   double force_scale() const;
   /// Writes down the kinetic energy of the blocks' velocities and what explicit steps add to it for the present moment.
@@ -77,8 +75,8 @@ struct SimulationState {
   bool begins;  ///< the scheme is method.first_integrator
   std::unique_ptr<TimeScheme> scheme;
   Detector detector;
-  std::vector<Contact> contacts;          ///< of blocks that move
-  bool contacts_current = false;          ///< they are those of the present positions
+  ContactSet contacts;                    ///< forces of those between blocks at rest are the ones these were put to rest with
+  bool contacts_current = false;          ///< those of blocks that move are of the present positions
   std::vector<Unknowns> output_velocity;  ///< per block, at `time`
   Resting resting;
   bool may_rest = false;
@@ -88,13 +86,13 @@ struct SimulationState {
   double time = 0.0;        ///< [s]
   std::string reason;       ///< why the last advance got nowhere
   EnergyLedger ledger;
-  double start_kinetic_energy = 0.0;                         ///< [J]
-  double kinetic_ahead = 0.0;                                ///< [J] in the ledger, see CentralDifference::kinetic_ahead()
-  double max_penetration = 0.0;                              ///< [m]
-  double friction_work = 0.0, lagging_friction_work = 0.0;   ///< [J] see Simulation::friction_lag()
+  double start_kinetic_energy = 0.0;                        ///< [J]
+  double kinetic_ahead = 0.0;                               ///< [J] in the ledger, see CentralDifference::kinetic_ahead()
+  double max_penetration = 0.0;                             ///< [m]
+  double friction_work = 0.0, lagging_friction_work = 0.0;  ///< [J] see Simulation::friction_lag()
   StepCounters counters;
   StageTimes stage_times;
-  Memory memory;  ///< of the arrays, each part as large as it has been after a step
+  Memory memory;     ///< of the arrays, each part as large as it has been after a step
   long changes = 0;  ///< see note_change(); steppers compare it with what it was
 
  private:

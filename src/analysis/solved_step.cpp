@@ -10,22 +10,9 @@ namespace {
 
 using Unknowns = Motion::Unknowns;
 
-/// The generalised forces of a force at a contact on its two blocks: push(block, forces).
-template <class F>
-void push_apart(const Contact& contact, const ContactPose& at, const CarriedForces& carried, F push) {
-  const Vec2 force = carried.normal * at.normal + carried.shear * at.tangent();
-  push(contact.vertex_block, Motion::gradient(at.vertex_arm, force));
-  push(contact.edge_block, Motion::gradient(at.edge_arm, -force));
-}
-
 /// A contact as it stands at the start of a step.
 ContactPose pose_at_start(const BlockSystem& system, const Contact& contact) {
-  const ContactStart start(system, contact);
-  ContactPose pose;
-  pose.normal = start.normal;
-  pose.vertex_arm = start.vertex_arm;
-  pose.edge_arm = start.end_arm + start.lever;
-  return pose;
+  return {ContactStart(system, contact), {}, {}};
 }
 
 /// Adds to the rows of free blocks.
@@ -61,10 +48,9 @@ double local_error(const StepProblem& problem, const StepSolution& solution) {
   }
   for (std::size_t i = 0; i < problem.contacts.size(); ++i) {
     const Contact& c = problem.contacts[i];
-    if (solution.contacts.status(i) != ContactStatus::open) push_apart(c, solution.contacts.pose(i), solution.contacts.forces(i), push);
-    if (c.status == ContactStatus::open) continue;
-    const CarriedForces taken_back{c.status, -c.normal_force, -c.shear_force, 0.0, 0.0};
-    push_apart(c, pose_at_start(system, c), taken_back, push);
+    const CarriedForces now = solution.contacts.forces(i);
+    if (now.status != ContactStatus::open) push_apart(c, solution.contacts.pose(i), now.normal, now.shear, push);
+    if (c.status != ContactStatus::open) push_apart(c, solution.contacts.pose_at_start(i), -c.normal_force, -c.shear_force, push);
   }
   double largest = 0.0;
   for (int b : system.free_blocks()) {
@@ -143,7 +129,7 @@ Eigen::VectorXd forces_now(const StepProblem& problem, const Enforcement& enforc
   for (int b : system.free_blocks()) force.segment<dofs>(dofs * system.block(b).equation) = problem.external.force(system, b, Unknowns::Zero());
   for (const Contact& c : problem.contacts) {
     const ContactForces f = spring_slider(enforcement.springs(problem, c), ContactStrength(problem.joints.joint(c.joint), c), 0.0, 0.0);
-    if (f.status != ContactStatus::open) push_apart(c, pose_at_start(system, c), f, adds_to(force, system));
+    if (f.status != ContactStatus::open) push_apart(c, pose_at_start(system, c), f.normal, f.shear, adds_to(force, system));
   }
   for (int b : system.free_blocks()) {
     if (system.block(b).rotation_locked) force[dofs * system.block(b).equation + Motion::rotation_index] = 0.0;
@@ -157,7 +143,7 @@ std::vector<Unknowns> forces_at_end(const StepProblem& problem, const StepSoluti
   for (int b : system.free_blocks()) force[b] = problem.external.force(system, b, Unknowns::Zero());
   for (std::size_t i = 0; i < problem.contacts.size(); ++i) {
     const ContactOutcome o = solution.contacts[i];
-    push_apart(problem.contacts[i], o.pose, o.forces, [&](int b, const Unknowns& f) { force[b] += f; });
+    push_apart(problem.contacts[i], o.pose, o.forces.normal, o.forces.shear, [&](int b, const Unknowns& f) { force[b] += f; });
   }
   return force;
 }

@@ -101,7 +101,7 @@ StepResult SolvedStepper::step(double dt, bool statics) {
 bool SolvedStepper::is_no_step(StepResult& result) {
   if (solution_.converged) {
     result.moved = largest_move(state_.system, solution_);
-    const bool turned = turns_too_far(state_.system, state_.contacts, solution_);
+    const bool turned = turns_too_far(state_.system, state_.contacts.moving, solution_);
     if (!turned && result.moved <= state_.scene.step.max_displacement) return false;
     result.reason = turned ? "a block that is in contact turned by more than 15 degrees in one step"
                            : "a block moved farther in one step than step.max_displacement_m";
@@ -164,13 +164,13 @@ bool SolvedStepper::wake_in_haste(double dt) {
   BlockSystem& system = state_.system;
   if (system.resting_blocks().empty()) return false;
   std::vector<Unknowns>& pushes = state_.resting.pushes(system);
-  for (std::size_t i = 0; i < state_.contacts.size(); ++i) {
-    const int a = state_.contacts[i].vertex_block, b = state_.contacts[i].edge_block;
-    if (solution_.contacts.status(i) == ContactStatus::open || !(system.is_at_rest(a) || system.is_at_rest(b))) continue;
+  for (std::size_t i = 0; i < state_.contacts.moving.size(); ++i) {
+    const Contact& c = state_.contacts.moving[i];
+    if (solution_.contacts.status(i) == ContactStatus::open || !(system.is_at_rest(c.vertex_block) || system.is_at_rest(c.edge_block))) continue;
     const ContactOutcome o = solution_.contacts[i];
-    const Vec2 force = o.forces.normal * o.pose.normal + o.forces.shear * o.pose.tangent();
-    if (system.is_at_rest(a)) pushes[system.rest_number(a)] += Motion::gradient(o.pose.vertex_arm, force);
-    if (system.is_at_rest(b)) pushes[system.rest_number(b)] -= Motion::gradient(o.pose.edge_arm, force);
+    push_apart(c, o.pose, o.forces.normal, o.forces.shear, [&](int b, const Unknowns& force) {
+      if (system.is_at_rest(b)) pushes[system.rest_number(b)] += force;
+    });
   }
   state_.resting.judge(system, dt);
   const std::vector<int> woken = state_.to_wake(Resting::Urgency::in_haste);
@@ -210,15 +210,15 @@ void SolvedStepper::accept(const StepProblem& problem) {
 bool SolvedStepper::accept_contacts() {
   const bool elastic = state_.enforcement->has_elastic_contacts(), is_explicit = state_.enforcement->is_explicit();
   bool some_change = false;
-  for (std::size_t i = 0; i < state_.contacts.size(); ++i) {
-    Contact& c = state_.contacts[i];
+  for (std::size_t i = 0; i < state_.contacts.moving.size(); ++i) {
+    Contact& c = state_.contacts.moving[i];
     const Contact start = c;
     c.status = solution_.contacts.status(i);
     c.bonded = stays_bonded(state_.joints.joint(c.joint), c.bonded, c.status);
     c.slack = solution_.contacts.slack(i);
     c.gap += solution_.contacts.gap_change(i);
     c.normal_force = c.shear_force = c.elastic_slip = c.stored_energy = 0.0;
-    if (is_explicit) book_crossing(c, solution_.contacts[i], start);
+    if (is_explicit) book_crossing(c, i, start);
     if (c.status != ContactStatus::open) {
       const CarriedForces f = solution_.contacts.forces(i);
       const double kn = solution_.contacts.normal_stiffness(i), ks = solution_.contacts.shear_stiffness(i);
@@ -233,18 +233,19 @@ bool SolvedStepper::accept_contacts() {
   return some_change;
 }
 
-void SolvedStepper::book_crossing(Contact& contact, const ContactOutcome& outcome, const Contact& start) {
+void SolvedStepper::book_crossing(Contact& contact, std::size_t c, const Contact& start) {
   const double before = contact.crossing_energy;
   contact.crossing_energy = 0.0;
   const bool is_open = contact.status == ContactStatus::open;
   if (is_open) {
-    contact.normal_force = outcome.forces.normal;
-    contact.shear_force = outcome.forces.shear;
-    contact.crossing_energy = outcome.crossing_energy;
+    const CarriedForces settling = solution_.contacts.forces(c);
+    contact.normal_force = settling.normal;
+    contact.shear_force = settling.shear;
+    contact.crossing_energy = solution_.contacts.crossing_energy(c);
     contact.stored_energy = -contact.crossing_energy;
   } else if (ContactStrength(state_.joints.joint(contact.joint), contact).tension == 0.0) {
     contact.crossing_energy =
-        start.status == ContactStatus::open ? closing_energy(outcome.normal_stiffness, start.stretch(), contact.stretch()) : before;
+        start.status == ContactStatus::open ? closing_energy(solution_.contacts.normal_stiffness(c), start.stretch(), contact.stretch()) : before;
   }
   state_.ledger.contact_springs -= contact.crossing_energy - before;
   state_.ledger.scheme += contact.crossing_energy - before;

@@ -18,7 +18,8 @@ class SolvedStepper {
 
   /// One attempt at a step, or at the next stage of one where the integrator has several; advance() puts them together.
   StepResult step(double dt, bool statics);
-  /// Advances by exactly dt, in smaller steps where one does not converge or moves too far; false, with the reason in the state, if that gets nowhere.
+  /// Advances by exactly dt, in smaller steps where one does not converge or moves too far; false, with the reason in the state, if that gets
+  /// nowhere.
   bool advance(double dt);
   /// The next step as it stands.
   StepProblem problem(double dt, bool statics);
@@ -57,7 +58,7 @@ class SolvedStepper {
   /// Gives the blocks their velocities; false: none has one.
   bool accept_velocities(const StepProblem& problem);
   /// What crossing_energy.h says of a contact.
-  void book_crossing(Contact& contact, const ContactOutcome& outcome, const Contact& start);
+  void book_crossing(Contact& contact, std::size_t c, const Contact& start);
   /// Velocities at the end of an explicit step, half a step after those of the system, see CentralDifference::velocity_at_end().
   void take_end_of_explicit_step(const StepProblem& problem);
   /// The velocity at the end of a step goes on from that of its middle with the forces of the step. A blow is over then, and what it has changed is

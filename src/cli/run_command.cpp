@@ -57,7 +57,8 @@ class GrowingFiles {
   void close(Simulation& simulation) {
     progress_.reset();
     // Asking for the contacts finds those of the last positions.
-    states_.add("final", simulation, simulation.change_contacts());
+    simulation.change_contacts();
+    states_.add("final", simulation);
     history_.close();
     energy_.close();
     states_.close();

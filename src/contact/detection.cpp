@@ -64,22 +64,22 @@ void Detector::search(const BlockSystem& system) {
     }
     boxes.push_back(Box{system.centroid(b) + box.low, system.centroid(b) + box.high}.inflated(0.5 * room));
   }
-  const std::vector<std::pair<int, int>> old_pairs = std::move(pairs_);
-  const std::vector<PairState> old_states = std::move(states_);
-  pairs_ = near_blocks(system, boxes, shapes_, room);
-  states_.assign(pairs_.size(), PairState());
+  const std::vector<std::pair<int, int>> old_pairs = std::move(candidates_.pairs);
+  const std::vector<PairState> old_states = std::move(candidates_.states);
+  candidates_.pairs = near_blocks(system, boxes, shapes_, room);
+  candidates_.states.assign(candidates_.pairs.size(), PairState());
   places_.reserve(system.block_count());
   for (int b = static_cast<int>(places_.size()); b < system.block_count(); ++b) places_.push_back(place(system, b));
   ways_.resize(places_.size());
-  for (std::size_t i = 0, old = 0; i < pairs_.size(); ++i) {
-    while (old < old_pairs.size() && old_pairs[old] < pairs_[i]) ++old;
-    if (old < old_pairs.size() && old_pairs[old] == pairs_[i]) {
-      states_[i] = old_states[old];
+  for (std::size_t i = 0, old = 0; i < candidates_.pairs.size(); ++i) {
+    while (old < old_pairs.size() && old_pairs[old] < candidates_.pairs[i]) ++old;
+    if (old < old_pairs.size() && old_pairs[old] == candidates_.pairs[i]) {
+      candidates_.states[i] = old_states[old];
       continue;
     }
     // A rotation moves a block's own points where it touches the other, and all of a larger one's surroundings. The boxes of a pair overlap, so that
     // its centroids are never farther apart than this.
-    const auto [a, b] = pairs_[i];
+    const auto [a, b] = candidates_.pairs[i];
     const double farthest = std::numbers::sqrt2 * (places_[a].radius + places_[b].radius + room + 2.0 * tolerance::search_skin_m);
     const double arm = farthest + std::min(places_[a].radius, places_[b].radius) + reach_ + skips_.contact_skin;
     for (Way* way : {&ways_[a], &ways_[b]}) {
@@ -93,14 +93,14 @@ void Detector::search(const BlockSystem& system) {
 /// Finds the contacts of each pair in the list, which is in the order of the pairs; those whose blocks are no pair any more are gone.
 void Detector::locate(const std::vector<Contact>& contacts) {
   const auto pair_of = [](const Contact& c) { return std::pair<int, int>(std::minmax(c.vertex_block, c.edge_block)); };
-  ranges_.resize(pairs_.size());
+  candidates_.ranges.resize(candidates_.pairs.size());
   const int count = static_cast<int>(contacts.size());
   int at = 0;
-  for (std::size_t i = 0; i < pairs_.size(); ++i) {
-    for (; at < count && pair_of(contacts[at]) < pairs_[i]; ++at) gone_.push_back(at);
-    ranges_[i].begin = at;
-    while (at < count && pair_of(contacts[at]) == pairs_[i]) ++at;
-    ranges_[i].end = at;
+  for (std::size_t i = 0; i < candidates_.pairs.size(); ++i) {
+    for (; at < count && pair_of(contacts[at]) < candidates_.pairs[i]; ++at) gone_.push_back(at);
+    candidates_.ranges[i].begin = at;
+    while (at < count && pair_of(contacts[at]) == candidates_.pairs[i]) ++at;
+    candidates_.ranges[i].end = at;
   }
   for (; at < count; ++at) gone_.push_back(at);
 }
@@ -131,15 +131,15 @@ Detector::Due Detector::due(double way) const {
 
 void Detector::list_pairs_of_blocks(int blocks) {
   pairs_of_start_.assign(blocks + 1, 0);
-  pairs_of_.resize(2 * pairs_.size());
-  for (const auto& [a, b] : pairs_) {
+  pairs_of_.resize(2 * candidates_.pairs.size());
+  for (const auto& [a, b] : candidates_.pairs) {
     ++pairs_of_start_[a];
     ++pairs_of_start_[b];
   }
   std::partial_sum(pairs_of_start_.begin(), pairs_of_start_.end(), pairs_of_start_.begin());
-  for (int i = static_cast<int>(pairs_.size()) - 1; i >= 0; --i) {  // from the ends, so that each block's pairs come in order
-    pairs_of_[--pairs_of_start_[pairs_[i].first]] = i;
-    pairs_of_[--pairs_of_start_[pairs_[i].second]] = i;
+  for (int i = static_cast<int>(candidates_.pairs.size()) - 1; i >= 0; --i) {  // from the ends, so that each block's pairs come in order
+    pairs_of_[--pairs_of_start_[candidates_.pairs[i].first]] = i;
+    pairs_of_[--pairs_of_start_[candidates_.pairs[i].second]] = i;
   }
 }
 
@@ -166,7 +166,7 @@ template <class F>
 void Detector::for_pairs_of(const std::vector<int>& blocks, const std::vector<char>& is_among_them, F f) const {
   for (const int b : blocks) {
     for (int k = pairs_of_start_[b]; k < pairs_of_start_[b + 1]; ++k) {
-      const auto& [first, second] = pairs_[pairs_of_[k]];
+      const auto& [first, second] = candidates_.pairs[pairs_of_[k]];
       if (b == first || !is_among_them[first]) f(pairs_of_[k]);
     }
   }
@@ -175,19 +175,22 @@ void Detector::for_pairs_of(const std::vector<int>& blocks, const std::vector<ch
 /// A pair in which something has moved by `way` is not due before its blocks have gone what is left of the skin.
 void Detector::look_again_before(int pair, double way) {
   const double left = skips_.contact_skin - tolerance::rounding_of_ways_m - way;
-  for (const int b : {pairs_[pair].first, pairs_[pair].second}) ways_[b].look_at = std::min(ways_[b].look_at, ways_[b].gone + 0.5 * left);
+  for (const int b : {candidates_.pairs[pair].first, candidates_.pairs[pair].second})
+    ways_[b].look_at = std::min(ways_[b].look_at, ways_[b].gone + 0.5 * left);
 }
 
 bool Detector::mark_due_pairs(const BlockSystem& system, bool all) {
   follow_blocks(system, all || !skips_.looks);
   due_pairs_.clear();
   if (all) {
-    due_pairs_.resize(pairs_.size());
+    due_pairs_.resize(candidates_.pairs.size());
     std::iota(due_pairs_.begin(), due_pairs_.end(), 0);
     return true;
   }
-  const auto way = [&](int pair) { return relative_way(states_[pair], places_[pairs_[pair].first], places_[pairs_[pair].second]); };
-  marks_.resize(pairs_.size());
+  const auto way = [&](int pair) {
+    return relative_way(candidates_.states[pair], places_[candidates_.pairs[pair].first], places_[candidates_.pairs[pair].second]);
+  };
+  marks_.resize(candidates_.pairs.size());
   long looks = 0;
   for_pairs_of(restless_, is_restless_, [&](int pair) {
     ++looks;
@@ -199,7 +202,7 @@ bool Detector::mark_due_pairs(const BlockSystem& system, bool all) {
     }
   });
   counters_.looks += looks;
-  counters_.looks_skipped += static_cast<long>(pairs_.size()) - looks;
+  counters_.looks_skipped += static_cast<long>(candidates_.pairs.size()) - looks;
   marks_.take(due_pairs_);
   if (due_pairs_.empty()) return false;
   find_blocks_of_due_pairs();
@@ -215,7 +218,7 @@ void Detector::find_blocks_of_due_pairs() {
   in_due_pair_.assign(places_.size(), 0);
   in_due_pairs_.clear();
   for (const int i : due_pairs_) {
-    for (const int b : {pairs_[i].first, pairs_[i].second}) {
+    for (const int b : {candidates_.pairs[i].first, candidates_.pairs[i].second}) {
       if (!in_due_pair_[b]) in_due_pairs_.push_back(b);
       in_due_pair_[b] = 1;
     }
@@ -225,7 +228,7 @@ void Detector::find_blocks_of_due_pairs() {
 /// Those that share a block with a pair that is due, and these.
 const std::vector<int>& Detector::pairs_around_due_ones() {
   find_blocks_of_due_pairs();
-  marks_.resize(pairs_.size());
+  marks_.resize(candidates_.pairs.size());
   for_pairs_of(in_due_pairs_, in_due_pair_, [&](int pair) { marks_.add(pair); });
   marks_.take(around_due_);
   return around_due_;
@@ -233,10 +236,10 @@ const std::vector<int>& Detector::pairs_around_due_ones() {
 
 /// Finds the contacts of a pair anew, with the history of those that live on.
 void Detector::redo(const JointTable& joints, const BlockSystem& system, int pair, NarrowPhase& narrow, const std::vector<Contact>& before) {
-  const auto [a, b] = pairs_[pair];
-  states_[pair] = {places_[a].x - places_[b].x, places_[a].y - places_[b].y, places_[a].turn, places_[b].turn};
+  const auto [a, b] = candidates_.pairs[pair];
+  candidates_.states[pair] = {places_[a].x - places_[b].x, places_[a].y - places_[b].y, places_[a].turn, places_[b].turn};
   look_again_before(pair, 0.0);
-  const Range old = ranges_[pair];
+  const Range old = candidates_.ranges[pair];
   const std::size_t begin = found_.size();
   index_.select(old);
   narrow.run(a, b, found_);
@@ -262,24 +265,24 @@ void Detector::redo(const JointTable& joints, const BlockSystem& system, int pai
   }
 }
 
-/// Where the contacts of pairs that are not due go; ranges_ are those of the new list from then on.
+/// Where the contacts of pairs that are not due go; candidates_.ranges are those of the new list from then on.
 void Detector::find_kept_runs() {
   kept_.clear();
   auto change = changes_.begin();
   int end = 0;
-  for (std::size_t i = 0; i < pairs_.size(); ++i) {
+  for (std::size_t i = 0; i < candidates_.pairs.size(); ++i) {
     const bool changed = change != changes_.end() && change->pair == static_cast<int>(i);
-    const Range old = ranges_[i];
+    const Range old = candidates_.ranges[i];
     const int size = changed ? change++->after.size() : old.size();
-    ranges_[i] = {end, end + size};
+    candidates_.ranges[i] = {end, end + size};
     end += size;
     if (changed || size == 0) continue;
     const bool goes_on =
-        !kept_.empty() && kept_.back().from + kept_.back().size == old.begin && kept_.back().to + kept_.back().size == ranges_[i].begin;
+        !kept_.empty() && kept_.back().from + kept_.back().size == old.begin && kept_.back().to + kept_.back().size == candidates_.ranges[i].begin;
     if (goes_on) {
       kept_.back().size += size;
     } else {
-      kept_.push_back({old.begin, ranges_[i].begin, size});
+      kept_.push_back({old.begin, candidates_.ranges[i].begin, size});
     }
   }
 }
@@ -301,7 +304,7 @@ void Detector::put_in_place(std::vector<Contact>& contacts, bool orphans) {
     return;
   }
   find_kept_runs();
-  const std::size_t count = ranges_.empty() ? 0 : ranges_.back().end;
+  const std::size_t count = candidates_.ranges.empty() ? 0 : candidates_.ranges.back().end;
   if (kept_.empty()) {
     if (contacts.capacity() < count) std::vector<Contact>().swap(contacts);  // before there is room for those that come
     contacts = found;
@@ -315,28 +318,28 @@ void Detector::put_in_place(std::vector<Contact>& contacts, bool orphans) {
       if (run->to > run->from) std::copy_backward(at(run->from), at(run->from + run->size), at(run->to + run->size));
     }
     contacts.resize(count);
-    for (const DetectionChange& change : changes_) put(change.after, ranges_[change.pair]);
+    for (const DetectionChange& change : changes_) put(change.after, candidates_.ranges[change.pair]);
   }
-  for (DetectionChange& change : changes_) change.after = ranges_[change.pair];
+  for (DetectionChange& change : changes_) change.after = candidates_.ranges[change.pair];
 }
 
-void Detector::PairList::reserve(std::size_t pair_count, std::size_t contact_count) {
-  pairs.reserve(pair_count);
-  states.reserve(pair_count);
-  ranges.reserve(pair_count);
-  contacts.reserve(contact_count);
+void Detector::PairList::reserve(std::size_t count) {
+  pairs.reserve(count);
+  states.reserve(count);
+  ranges.reserve(count);
 }
 
-void Detector::PairList::add(const std::pair<int, int>& pair, const PairState& state, const Range& range, const std::vector<Contact>& range_of) {
-  const int begin = static_cast<int>(contacts.size());
-  pairs.push_back(pair);
-  states.push_back(state);
+void Detector::PairList::take(const PairList& other, std::size_t i, const std::vector<Contact>& from, std::vector<Contact>& to) {
+  const Range range = other.ranges[i];
+  const int begin = static_cast<int>(to.size());
+  pairs.push_back(other.pairs[i]);
+  states.push_back(other.states[i]);
   ranges.push_back({begin, begin + range.size()});
-  contacts.insert(contacts.end(), range_of.begin() + range.begin, range_of.begin() + range.end);
+  to.insert(to.end(), from.begin() + range.begin, from.begin() + range.end);
 }
 
 template <class F>
-void Detector::PairList::remove_if(F leaves) {
+void Detector::PairList::remove_if(F leaves, std::vector<Contact>& contacts) {
   std::size_t kept = 0;
   int end = 0;
   for (std::size_t k = 0; k < pairs.size(); ++k) {
@@ -354,7 +357,7 @@ void Detector::PairList::remove_if(F leaves) {
   contacts.resize(end);
 }
 
-void Detector::divide(const BlockSystem& system, std::vector<Contact>& contacts) {
+void Detector::divide(const BlockSystem& system, ContactSet& contacts) {
   const auto moves = [&](const std::pair<int, int>& pair) {
     return system.block(pair.first).equation >= 0 || system.block(pair.second).equation >= 0;
   };
@@ -370,26 +373,31 @@ void Detector::divide(const BlockSystem& system, std::vector<Contact>& contacts)
   std::sort(woken.begin(), woken.end(), [&](int i, int j) { return resting_.pairs[i] < resting_.pairs[j]; });
 
   // Those that move stay in order.
-  PairList moving;
-  moving.reserve(pairs_.size() + woken.size(), contacts.size() + more);
+  const PairList before = std::move(candidates_);
+  const std::vector<Contact> moved = std::move(contacts.moving);
+  candidates_ = {};
+  candidates_.reserve(before.pairs.size() + woken.size());
+  contacts.moving.clear();
+  contacts.moving.reserve(moved.size() + more);
   auto next = woken.begin();
-  for (std::size_t i = 0; i <= pairs_.size(); ++i) {
-    for (; next != woken.end() && (i == pairs_.size() || resting_.pairs[*next] < pairs_[i]); ++next)
-      moving.add(resting_.pairs[*next], resting_.states[*next], resting_.ranges[*next], resting_.contacts);
-    if (i < pairs_.size()) (moves(pairs_[i]) ? moving : resting_).add(pairs_[i], states_[i], ranges_[i], contacts);
+  for (std::size_t i = 0; i <= before.pairs.size(); ++i) {
+    for (; next != woken.end() && (i == before.pairs.size() || resting_.pairs[*next] < before.pairs[i]); ++next)
+      candidates_.take(resting_, static_cast<std::size_t>(*next), contacts.resting, contacts.moving);
+    if (i == before.pairs.size()) break;
+    if (moves(before.pairs[i])) {
+      candidates_.take(before, i, moved, contacts.moving);
+    } else {
+      resting_.take(before, i, moved, contacts.resting);
+    }
   }
-  if (!woken.empty()) resting_.remove_if(moves);
-  pairs_.swap(moving.pairs);
-  states_.swap(moving.states);
-  ranges_.swap(moving.ranges);
-  contacts.swap(moving.contacts);
+  if (!woken.empty()) resting_.remove_if(moves, contacts.resting);
   list_pairs_of_blocks(system.block_count());
   index_.forget_resting();
 }
 
 void Detector::exchange(Archive& archive) {
-  archive(first_, forgotten_, looks_again_, pairs_, states_, ranges_, resting_, searched_at_, searched_moving_at_, counters_, places_, ways_,
-          pairs_of_start_, pairs_of_);
+  archive(first_, forgotten_, looks_again_, candidates_, resting_, searched_at_, searched_moving_at_, counters_, places_, ways_, pairs_of_start_,
+          pairs_of_);
   if (archive.reading()) index_.forget_resting();
 }
 
@@ -397,8 +405,9 @@ Memory Detector::memory() const {
   Memory of;
   of.blocks = bytes_of(searched_at_, searched_moving_at_, places_, ways_, pairs_of_start_, restless_, in_due_pairs_, is_restless_, in_due_pair_) +
               shapes_.bytes();
-  of.contacts = bytes_of(pairs_, states_, ranges_, pairs_of_, changes_, due_pairs_, around_due_, found_, kept_, lives_on_, born_, gone_) +
-                bytes_of(resting_.pairs, resting_.states, resting_.ranges, resting_.contacts) + index_.bytes() + marks_.bytes();
+  of.contacts = bytes_of(candidates_.pairs, candidates_.states, candidates_.ranges, pairs_of_, changes_, due_pairs_, around_due_, found_, kept_,
+                         lives_on_, born_, gone_) +
+                bytes_of(resting_.pairs, resting_.states, resting_.ranges) + index_.bytes() + marks_.bytes();
   return of;
 }
 
@@ -409,7 +418,8 @@ void Detector::let_go_of_working_memory() {
   std::vector<Run>().swap(kept_);
 }
 
-bool Detector::update(const BlockSystem& system, const JointTable& joints, std::vector<Contact>& contacts, const BlockSystem* present) {
+bool Detector::update(const BlockSystem& system, const JointTable& joints, ContactSet& contacts, const BlockSystem* present) {
+  std::vector<Contact>& moving = contacts.moving;
   const bool all = std::exchange(looks_again_, false) || forgotten_ || !skips_.search || !skips_.narrow_phase;
   const bool searches = needs_search(system);
   moved_by_others_ = std::exchange(forgotten_, false);
@@ -419,25 +429,25 @@ bool Detector::update(const BlockSystem& system, const JointTable& joints, std::
   if (system.block_count() > most_blocks_with_working_memory) std::vector<DetectionChange>().swap(changes_);  // the first ones are all
   if (searches) {
     search(system);
-    locate(contacts);
+    locate(moving);
   } else {
     ++counters_.searches_skipped;
   }
   if (!mark_due_pairs(system, all) && !searches) {
-    counters_.narrow_phases_skipped += static_cast<long>(pairs_.size());
+    counters_.narrow_phases_skipped += static_cast<long>(candidates_.pairs.size());
     return false;
   }
   counters_.narrow_phases += static_cast<long>(due_pairs_.size());
-  counters_.narrow_phases_skipped += static_cast<long>(pairs_.size() - due_pairs_.size());
+  counters_.narrow_phases_skipped += static_cast<long>(candidates_.pairs.size() - due_pairs_.size());
   const bool orphans = !gone_.empty();
   if (!searches) shapes_.begin(system);
-  index_.begin(system, contacts, resting_.contacts);
-  for (const int pair : pairs_around_due_ones()) index_.add(ranges_[pair]);
+  index_.begin(system, moving, contacts.resting);
+  for (const int pair : pairs_around_due_ones()) index_.add(candidates_.ranges[pair]);
   NarrowPhase narrow(system, present, reach_ + skips_.contact_skin, first_, shapes_, index_);
-  for (const int pair : due_pairs_) redo(joints, system, pair, narrow, contacts);
-  if (!first_) counters_.transfers += pass_on_history(system, contacts, gone_, found_, born_);
-  put_in_place(contacts, orphans);
-  if (due_pairs_.size() == pairs_.size()) index_.let_go();  // later ones are few
+  for (const int pair : due_pairs_) redo(joints, system, pair, narrow, moving);
+  if (!first_) counters_.transfers += pass_on_history(system, moving, gone_, found_, born_);
+  put_in_place(moving, orphans);
+  if (due_pairs_.size() == candidates_.pairs.size()) index_.let_go();  // later ones are few
   if (system.block_count() > most_blocks_with_working_memory) let_go_of_working_memory();
   first_ = false;
   return true;

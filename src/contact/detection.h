@@ -24,6 +24,7 @@
 #include "openclose/contact/block_shapes.h"
 #include "openclose/contact/contact.h"
 #include "openclose/contact/contact_index.h"
+#include "openclose/contact/contact_set.h"
 #include "openclose/contact/joint_table.h"
 #include "openclose/contact/number_set.h"
 #include "openclose/core/memory.h"
@@ -69,19 +70,16 @@ class Detector {
   explicit Detector(double reach, const DetectionSkips& skips = {});
   Detector(Detector&&) noexcept = default;  // and no copy: the index points into the contacts at rest
 
-  /// Contacts of the present positions; false if the list stays as it is. `contacts` is the list as it came from the last call, with the history of
-  /// the last step, and is renewed where needed; whoever adds to it or takes from it calls forget() first.
+  /// Contacts of the present positions; false if their list stays as it is. `contacts` are those of the last call, with the history of the last step;
+  /// those of blocks that move are renewed where needed. Whoever adds to them or takes from them calls forget() first.
   /// Only what touches in the very first call is bonded: those joints exist in the rock; surfaces that meet later have no cohesion unless it is
   /// ductile.
   /// \param present  where the blocks are, if `system` has them where they are expected: gaps are those of `present`, and what has not gone behind an
   ///                 edge there is met by it however deep it is behind it in `system`. Null: `system` has them where they are.
-  bool update(const BlockSystem& system, const JointTable& joints, std::vector<Contact>& contacts, const BlockSystem* present = nullptr);
+  bool update(const BlockSystem& system, const JointTable& joints, ContactSet& contacts, const BlockSystem* present = nullptr);
 
-  /// Which blocks are at rest has changed. From now on `contacts`, the list as the last update() left it, has those of pairs of which a block moves;
-  /// the others are kept here.
-  void divide(const BlockSystem& system, std::vector<Contact>& contacts);
-  /// Between blocks of which neither moves, one at least being at rest.
-  const std::vector<Contact>& resting_contacts() const { return resting_.contacts; }
+  /// Which blocks are at rest has changed: contacts of pairs of which a block moves now, and of those of which none moves any more, change sides.
+  void divide(const BlockSystem& system, ContactSet& contacts);
 
   /// What the last update() has renewed, in the order of the list, pairs without contacts before and after left out. Where it has searched, contacts
   /// may also have gone whose blocks are no pair any more.
@@ -91,7 +89,7 @@ class Detector {
 
   /// Pairs of blocks, at least one of them free, that may come within reach before something has moved beyond the skin: their boxes, with reach and
   /// skin, overlap, and no line along an edge of one of them keeps them as far apart. Renewed only when something moved beyond the skin.
-  const std::vector<std::pair<int, int>>& candidate_pairs() const { return pairs_; }
+  const std::vector<std::pair<int, int>>& candidate_pairs() const { return candidates_.pairs; }
   const DetectionCounters& counters() const { return counters_; }
   /// Whether there has been an update(), the first of which decides what is bonded.
   bool knows_bonds() const { return !first_; }
@@ -105,7 +103,7 @@ class Detector {
   /// What decides when something is found anew.
   void exchange(Archive& archive);
   /// Whether everything that was read, and these contacts beside it, is of blocks, vertices, joints, pairs and contacts that there are.
-  bool fits(const BlockSystem& system, const JointTable& joints, const std::vector<Contact>& contacts) const;
+  bool fits(const BlockSystem& system, const JointTable& joints, const ContactSet& contacts) const;
   /// Whether contacts that were read for a detector that knows nothing are of blocks, vertices and joints that there are.
   static bool contacts_fit(const BlockSystem& system, const JointTable& joints, const std::vector<Contact>& contacts);
 
@@ -148,26 +146,25 @@ class Detector {
     int from, to, size;
   };
   enum class Due : unsigned char { no, moved, yes };
-  /// Pairs with their contacts.
+  /// Pairs, and which part of a list of contacts is theirs.
   struct PairList {
     std::vector<std::pair<int, int>> pairs;
     std::vector<PairState> states;
-    std::vector<Range> ranges;  ///< in these contacts
-    std::vector<Contact> contacts;
+    std::vector<Range> ranges;
 
-    void reserve(std::size_t pair_count, std::size_t contact_count);
-    void add(const std::pair<int, int>& pair, const PairState& state, const Range& range, const std::vector<Contact>& range_of);
+    void reserve(std::size_t count);
+    /// Moves pair i of another list with its contacts behind these.
+    void take(const PairList& other, std::size_t i, const std::vector<Contact>& from, std::vector<Contact>& to);
     template <class F>
-    void remove_if(F leaves);
+    void remove_if(F leaves, std::vector<Contact>& contacts);
 
     void exchange(Archive& archive) {
-      auto& [a, b, c, d] = *this;
-      archive(a, b, c, d);
+      auto& [a, b, c] = *this;
+      archive(a, b, c);
     }
   };
 
-  static bool pairs_fit(const BlockSystem& system, const std::vector<std::pair<int, int>>& pairs, const std::vector<Range>& ranges,
-                        std::size_t contacts);
+  static bool pairs_fit(const BlockSystem& system, const PairList& list, std::size_t contacts);
   bool lists_of_blocks_fit(std::size_t blocks) const;
   bool moved_beyond_search_skin(const BlockSystem& system) const;
   void search(const BlockSystem& system);
@@ -192,10 +189,8 @@ class Detector {
   DetectionSkips skips_;
   bool first_ = true;
   bool forgotten_ = true, looks_again_ = false;
-  bool moved_by_others_ = false;  ///< before this update()
-  std::vector<std::pair<int, int>> pairs_;
-  std::vector<PairState> states_;               ///< of the pairs
-  std::vector<Range> ranges_;                   ///< of the pairs, in the list as the last update() left it
+  bool moved_by_others_ = false;                ///< before this update()
+  PairList candidates_;                         ///< of which a block moves, in order; their contacts as the last update() left them
   PairList resting_;                            ///< set aside, in any order
   std::vector<Unknowns> searched_at_;           ///< displacements of the blocks in the last search
   std::vector<Unknowns> searched_moving_at_;    ///< in the last one before which they were not at rest; empty while none is

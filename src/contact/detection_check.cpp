@@ -26,13 +26,13 @@ bool Detector::contacts_fit(const BlockSystem& system, const JointTable& joints,
   });
 }
 
-bool Detector::pairs_fit(const BlockSystem& system, const std::vector<std::pair<int, int>>& pairs, const std::vector<Range>& ranges,
-                         std::size_t contacts) {
+bool Detector::pairs_fit(const BlockSystem& system, const PairList& list, std::size_t contacts) {
   const auto blocks = static_cast<std::size_t>(system.block_count());
-  const bool known = std::all_of(pairs.begin(), pairs.end(), [&](const auto& pair) {
+  const bool known = std::all_of(list.pairs.begin(), list.pairs.end(), [&](const auto& pair) {
     return pair.first != pair.second && is_index(pair.first, blocks) && is_index(pair.second, blocks);
   });
-  return known && ranges.size() == pairs.size() && std::all_of(ranges.begin(), ranges.end(), [&](const Range& range) {
+  return known && list.states.size() == list.pairs.size() && list.ranges.size() == list.pairs.size() &&
+         std::all_of(list.ranges.begin(), list.ranges.end(), [&](const Range& range) {
            return range.begin >= 0 && range.begin <= range.end && static_cast<std::size_t>(range.end) <= contacts;
          });
 }
@@ -41,19 +41,18 @@ bool Detector::pairs_fit(const BlockSystem& system, const std::vector<std::pair<
 bool Detector::lists_of_blocks_fit(std::size_t blocks) const {
   const auto fits = [blocks](const auto& list) { return list.empty() || list.size() == blocks; };
   if (!fits(searched_at_) || !fits(searched_moving_at_) || !fits(places_) || ways_.size() != places_.size()) return false;
-  if (searched_at_.empty() && !pairs_.empty()) return false;
-  if (pairs_of_start_.empty()) return pairs_.empty() && pairs_of_.empty();
+  if (searched_at_.empty() && !candidates_.pairs.empty()) return false;
+  if (pairs_of_start_.empty()) return candidates_.pairs.empty() && pairs_of_.empty();
   if (pairs_of_start_.size() != blocks + 1 || pairs_of_start_.front() != 0 || !std::is_sorted(pairs_of_start_.begin(), pairs_of_start_.end()))
     return false;
   return static_cast<std::size_t>(pairs_of_start_.back()) == pairs_of_.size() &&
-         std::all_of(pairs_of_.begin(), pairs_of_.end(), [&](int pair) { return is_index(pair, pairs_.size()); });
+         std::all_of(pairs_of_.begin(), pairs_of_.end(), [&](int pair) { return is_index(pair, candidates_.pairs.size()); });
 }
 
-bool Detector::fits(const BlockSystem& system, const JointTable& joints, const std::vector<Contact>& contacts) const {
-  return lists_of_blocks_fit(static_cast<std::size_t>(system.block_count())) && states_.size() == pairs_.size() &&
-         pairs_fit(system, pairs_, ranges_, contacts.size()) && resting_.states.size() == resting_.pairs.size() &&
-         pairs_fit(system, resting_.pairs, resting_.ranges, resting_.contacts.size()) && contacts_fit(system, joints, contacts) &&
-         contacts_fit(system, joints, resting_.contacts);
+bool Detector::fits(const BlockSystem& system, const JointTable& joints, const ContactSet& contacts) const {
+  return lists_of_blocks_fit(static_cast<std::size_t>(system.block_count())) && pairs_fit(system, candidates_, contacts.moving.size()) &&
+         pairs_fit(system, resting_, contacts.resting.size()) && contacts_fit(system, joints, contacts.moving) &&
+         contacts_fit(system, joints, contacts.resting);
 }
 
 }  // namespace openclose

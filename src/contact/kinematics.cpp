@@ -19,16 +19,6 @@ ContactKinematics::ContactKinematics(const ContactPose& pose)
       shear_vertex(Motion::gradient(vertex_arm, tangent)),
       shear_edge(-Motion::gradient(edge_arm, tangent)) {}
 
-ContactPose ContactKinematics::pose() const {
-  ContactPose p;
-  p.normal = normal;
-  p.vertex_arm = vertex_arm;
-  p.edge_arm = edge_arm;
-  p.gap_change = gap_change;
-  p.slip_change = slip_change;
-  return p;
-}
-
 ContactKinematics::Hessian ContactKinematics::hessian(const Vec2& m) const {
   // m . (p - e) depends on the rotation of the edge's block through m and through the lever of p: see the derivation of ContactKinematics.
   Hessian h{Motion::hessian(vertex_arm, m), Matrix::Zero(), Motion::hessian(edge_arm, m)};

@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "openclose/contact/contact.h"
+#include "openclose/core/packs.h"
 #include "openclose/model/block_system.h"
 
 namespace openclose {
@@ -108,6 +109,38 @@ struct ContactPose {
   }
 };
 
+/// Where and in which directions the forces of a contact act, of four contacts for Real = Lanes.
+template <class Real>
+struct ForcePlace {
+  Real normal_x, normal_y;
+  Real vertex_arm_x, vertex_arm_y, edge_arm_x, edge_arm_y;  ///< [m]
+};
+inline ForcePlace<double> force_place(const ContactPose& pose) {
+  return {pose.normal.x(), pose.normal.y(), pose.vertex_arm.x(), pose.vertex_arm.y(), pose.edge_arm.x(), pose.edge_arm.y()};
+}
+
+/// What the forces of a contact do to its blocks. The one place of these formulas, for one contact and for four; in single numbers, because vectors
+/// of two cost more in shuffling than they save.
+template <class Real>
+struct ContactPush {
+  Real x, y;                ///< [N] on the vertex's block; the edge's gets as much the other way
+  Real on_vertex, on_edge;  ///< [N m] moment on the vertex's block, and the one that is to be taken from the edge's
+
+  OPENCLOSE_KERNEL ContactPush(Real normal, Real shear, const ForcePlace<Real>& at)
+      : x(normal * at.normal_x - shear * at.normal_y),
+        y(normal * at.normal_y + shear * at.normal_x),
+        on_vertex(at.vertex_arm_x * y - at.vertex_arm_y * x),
+        on_edge(at.edge_arm_x * y - at.edge_arm_y * x) {}
+};
+
+/// Hands the forces of a contact [N] to its blocks: push(block, generalised force).
+template <class F>
+void push_apart(const Contact& contact, const ContactPose& at, double normal, double shear, F push) {
+  const ContactPush<double> f(normal, shear, force_place(at));
+  push(contact.vertex_block, Motion::Unknowns(f.x, f.y, f.on_vertex));
+  push(contact.edge_block, Motion::Unknowns(-f.x, -f.y, -f.on_edge));
+}
+
 /// Stiffness of a contact: the four blocks of minus the derivative of the generalised forces by the unknowns. The force f acts at p on the vertex's
 /// block and -f on the edge's, at its arms; `by_shift` is minus its derivative by the displacement of p against the edge's block, `turning` the
 /// part of it that turns with that block (for second derivatives; zero leaves them out).
@@ -161,7 +194,6 @@ struct ContactKinematics {
   /// Kinematics after the two blocks have moved by d_vertex, d_edge from the system's present state.
   ContactKinematics(const BlockSystem& system, const Contact& contact, const Unknowns& d_vertex, const Unknowns& d_edge);
   explicit ContactKinematics(const ContactPose& pose);
-  ContactPose pose() const;
 
   /// Second derivatives of m . (p - e), m turning with the edge's block: blocks (vertex, vertex), (vertex, edge), (edge, edge).
   struct Hessian {

@@ -97,7 +97,7 @@ TwoLevelFlexibility AcceleratedRelaxation::flexibility(const Eigen::VectorXd& d,
   std::vector<Vec2> centroids;
   for (const StepEquations::StepBlock& block : equations_.blocks()) centroids.push_back(equations_.problem().system.centroid(block.block));
   std::vector<std::pair<int, int>> couplings;
-  for (std::size_t c = 0; c < contacts().count(); ++c) {
+  for (std::size_t c = 0; c < contacts().size(); ++c) {
     if (!counted[c]) continue;
     const auto [vertex, edge] = contacts().places(c);
     const std::pair<int, int> pair = std::minmax(row_of(vertex), row_of(edge));
@@ -111,10 +111,10 @@ TwoLevelFlexibility AcceleratedRelaxation::flexibility(const Eigen::VectorXd& d,
     const bool turns = row >= 0 && !equations_.blocks()[row].rotation_locked;
     return Motion::Unknowns(direction.x(), direction.y(), turns ? arm.x() * direction.y() - arm.y() * direction.x() : 0.0);
   };
-  for (std::size_t c = 0; c < contacts().count(); ++c) {
+  for (std::size_t c = 0; c < contacts().size(); ++c) {
     if (!counted[c]) continue;
     const auto [vertex, edge] = contacts().places(c);
-    const int k = StepContacts::lane(c), i = row_of(vertex), j = row_of(edge);
+    const int k = ContactTrial::lane(c), i = row_of(vertex), j = row_of(edge);
     const ContactBatch& start = contacts().start(c);
     const ContactPose pose = contacts().pose(c);
     const Vec2 tangent(-pose.normal.y(), pose.normal.x());
@@ -149,32 +149,32 @@ void AcceleratedRelaxation::keep_slip() {  // all of the shear force is in the s
 
 ContactForces AcceleratedRelaxation::slipped_as_a_whole(const SpringSource& springs, std::size_t c) const {
   const TrialBatch& now = contacts().trial(c);
-  const int k = StepContacts::lane(c);
+  const int k = ContactTrial::lane(c);
   return spring_slider(springs.make(c), contacts().strength(c), now.gap_change[k], now.slip_change[k]);
 }
 
 bool AcceleratedRelaxation::break_slipped_bonds(const SpringSource& springs) {
   bool any = false;
-  for (std::size_t c = 0; c < contacts().count(); ++c) {
+  for (std::size_t c = 0; c < contacts().size(); ++c) {
     const Contact& contact = equations_.problem().contacts[c];
     const TabulatedJoint& joint = equations_.problem().joints.joint(contact.joint);
     if (has_broken_[c] || !can_lose_strength(joint, contact.bonded) || stays_bonded(joint, contact.bonded, ContactStatus::sliding)) continue;
-    if (status(contacts().branches()[c]) == ContactStatus::open || slipped_as_a_whole(springs, c).status != ContactStatus::sliding) continue;
+    if (contacts().status(c) == ContactStatus::open || slipped_as_a_whole(springs, c).status != ContactStatus::sliding) continue;
     has_broken_[c] = any = true;
     ContactStrength strength = contacts().strength(c);
     strength.break_bond(joint);
-    contacts().batches()[c / batch_size].set_strength(StepContacts::lane(c), strength);
+    contacts().start(c).set_strength(ContactTrial::lane(c), strength);
   }
   return any;
 }
 
 void AcceleratedRelaxation::note_slip(const SpringSource& springs) {
-  for (std::size_t c = 0; c < contacts().count(); ++c) {
+  for (std::size_t c = 0; c < contacts().size(); ++c) {
     Branch& piece = contacts().branches()[c];
     if (status(piece) != ContactStatus::sticking) continue;
     const ContactForces law = slipped_as_a_whole(springs, c);
     if (law.status == ContactStatus::sliding) piece = branch(law);
-    if (has_broken_[c]) piece = contacts().trial(c).shear[StepContacts::lane(c)] < 0.0 ? static_cast<Branch>(-sliding_branch) : sliding_branch;
+    if (has_broken_[c]) piece = contacts().trial(c).shear[ContactTrial::lane(c)] < 0.0 ? static_cast<Branch>(-sliding_branch) : sliding_branch;
   }
 }
 
@@ -187,8 +187,7 @@ bool AcceleratedRelaxation::has_left(const Eigen::VectorXd& d) const {
 }
 
 void AcceleratedRelaxation::solve(const StepProblem& problem, const SpringSource& springs, StepSolution& solution) {
-  contacts().take_back(solution.contacts);
-  equations_.prepare(problem, springs);
+  equations_.prepare(problem, springs, solution.contacts);
   Eigen::VectorXd& d = solution.d;
   equations_.move_blocks_alone(d);
   equations_.evaluate(d);
@@ -209,7 +208,7 @@ void AcceleratedRelaxation::solve(const StepProblem& problem, const SpringSource
   bool is_regular = renew(std::numeric_limits<double>::infinity());
   Eigen::VectorXd place = d, next(d.size());
   Momentum momentum;
-  has_broken_.assign(contacts().count(), false);
+  has_broken_.assign(contacts().size(), false);
   bool bonds_are_known = false;
   int& steps = solution.effort.relaxation_steps;
   while (is_regular && norm > 1.0 && steps < most_relaxation_steps && (steps % steps_between_looks != 0 || !has_left(d))) {
@@ -239,7 +238,7 @@ void AcceleratedRelaxation::solve(const StepProblem& problem, const SpringSource
   solution.unbalanced = equations_.largest_unbalanced();
   if (!solution.converged) solution.reason = "relaxation did not come to rest";
   note_slip(springs);
-  contacts().lend(solution);
+  contacts().finish();
 }
 
 }  // namespace openclose

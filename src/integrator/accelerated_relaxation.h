@@ -37,8 +37,8 @@ class AcceleratedRelaxation {
   void note_slip(const SpringSource& springs);
   /// Whether a block has gone so far that the step will be refused.
   bool has_left(const Eigen::VectorXd& d) const;
-  StepContacts& contacts() { return equations_.contacts(); }
-  const StepContacts& contacts() const { return equations_.contacts(); }
+  ContactTrial& contacts() { return equations_.contacts(); }
+  const ContactTrial& contacts() const { return equations_.contacts(); }
 
   StepEquations& equations_;
   std::vector<bool> has_broken_;  ///< contacts that have lost strength on the way

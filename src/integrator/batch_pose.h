@@ -52,26 +52,19 @@ struct Pose {
 };
 
 /// Where the forces of four contacts act.
-struct ActingPose {
-  Lanes normal_x, normal_y, vertex_arm_x, vertex_arm_y, edge_arm_x, edge_arm_y;
-
-  ActingPose() = default;
-  OPENCLOSE_KERNEL explicit ActingPose(const Pose& t)
-      : normal_x(t.normal_x),
-        normal_y(t.normal_y),
-        vertex_arm_x(t.vertex_arm_x),
-        vertex_arm_y(t.vertex_arm_y),
-        edge_arm_x(t.edge_arm_x),
-        edge_arm_y(t.edge_arm_y) {}
-  /// As mean_pose().
-  OPENCLOSE_KERNEL ActingPose(const ContactBatch& c, const Pose& t)
-      : normal_x(0.5 * (c.normal_x + t.normal_x)),
-        normal_y(0.5 * (c.normal_y + t.normal_y)),
-        vertex_arm_x(0.5 * (c.vertex_arm_x + t.vertex_arm_x)),
-        vertex_arm_y(0.5 * (c.vertex_arm_y + t.vertex_arm_y)),
-        edge_arm_x(0.5 * ((c.end_arm_x + c.lever_x) + t.edge_arm_x)),
-        edge_arm_y(0.5 * ((c.end_arm_y + c.lever_y) + t.edge_arm_y)) {}
-};
+using ActingPose = ForcePlace<Lanes>;
+OPENCLOSE_KERNEL ActingPose acting_pose(const Pose& t) {
+  return {t.normal_x, t.normal_y, t.vertex_arm_x, t.vertex_arm_y, t.edge_arm_x, t.edge_arm_y};
+}
+/// As mean_pose().
+OPENCLOSE_KERNEL ActingPose mean_acting_pose(const ContactBatch& c, const Pose& t) {
+  return {0.5 * (c.normal_x + t.normal_x),
+          0.5 * (c.normal_y + t.normal_y),
+          0.5 * (c.vertex_arm_x + t.vertex_arm_x),
+          0.5 * (c.vertex_arm_y + t.vertex_arm_y),
+          0.5 * ((c.end_arm_x + c.lever_x) + t.edge_arm_x),
+          0.5 * ((c.end_arm_y + c.lever_y) + t.edge_arm_y)};
+}
 
 OPENCLOSE_KERNEL bool all_are_open(const Branch* branches) {
   int all;

@@ -58,7 +58,7 @@ OPENCLOSE_KERNEL void add_stiffness(const ContactBatch* contacts, const BlockMov
     const TrialBatch& at = trials[i];
     if (adds_nothing(at, branches, tangent.open_ones_too)) continue;
     const Pose pose(contacts[i], Moves(moves, contacts[i].vertex_at), Moves(moves, contacts[i].edge_at));
-    const ActingPose acting = averaged ? ActingPose(contacts[i], pose) : ActingPose(pose);
+    const ActingPose acting = averaged ? mean_acting_pose(contacts[i], pose) : acting_pose(pose);
     const Lanes nn = -theta * at.normal_by_gap, tn = tangent.exact ? -theta * at.shear_by_gap : zero;
     Lanes tt = -theta * at.shear_by_slip;
     if (!tangent.exact && tangent.static_slip_stiffness > 0.0) {

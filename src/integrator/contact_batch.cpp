@@ -93,21 +93,13 @@ OPENCLOSE_KERNEL Mask find_forces(const ContactBatch& c, double ramp, TrialBatch
   return closed;
 }
 
-/// The normal force at which the shear bound changes its slope.
-OPENCLOSE_KERNEL Lanes kink_of_bound(const ContactBatch& c) {
-  const Lanes lowest = c.friction * c.tension;
-  const Lanes on_ramp = (c.cohesion - lowest) * tolerance::cohesion_ramp - c.tension;
-  const Mask has_friction = c.friction > 0.0;
-  return c.cohesion > lowest ? on_ramp : (has_friction ? quotient(has_friction, -c.cohesion, c.friction) : -c.tension);
-}
-
 /// The means of path_average() in place of the forces of the joint law; returns which contacts carry something on the way.
 OPENCLOSE_KERNEL Mask find_mean_forces(const ContactBatch& c, TrialBatch& trial, Branch* branches) {
   const Lanes zero{};
   const Lanes start = c.shift - c.normal * c.gap_off_target, end = start - c.normal * trial.gap_change;
   const Mask starts_closed = start + c.tension > 0.0, ends_closed = end + c.tension > 0.0;
   const Lanes viscous = c.normal_damping * trial.gap_change, first = start - viscous, last = end - viscous;
-  const Lanes kink = kink_of_bound(c);
+  const Lanes kink = kink_of_bound(c.friction, c.cohesion, c.tension, tolerance::cohesion_ramp);
   const auto bound = [&](Lanes normal) { return ShearLimit(c.friction, c.cohesion, c.tension, normal, tolerance::cohesion_ramp).value; };
   const Lanes bound_0 = bound(first), bound_1 = bound(last);
   const Lanes shear_0 = c.initial_shear, shear_1 = shear_0 - c.shear * trial.slip_change;
@@ -147,9 +139,8 @@ OPENCLOSE_KERNEL Lanes& sums_at(ForceRow* rows, unsigned at, int lane) {
 
 /// Adds the forces of four contacts to their blocks, those of even and of odd lanes to sums of their own.
 OPENCLOSE_KERNEL void push(const ContactBatch& c, const TrialBatch& trial, const ActingPose& at, Lanes rounding, ForceRow* rows) {
-  const Lanes x = trial.normal * at.normal_x - trial.shear * at.normal_y, y = trial.normal * at.normal_y + trial.shear * at.normal_x;
-  const Lanes on_vertex = at.vertex_arm_x * y - at.vertex_arm_y * x, on_edge = at.edge_arm_x * y - at.edge_arm_y * x;
-  Lanes forward[] = {x, y, on_vertex, rounding}, back[] = {-x, -y, -on_edge, rounding};
+  const ContactPush<Lanes> push(trial.normal, trial.shear, at);
+  Lanes forward[] = {push.x, push.y, push.on_vertex, rounding}, back[] = {-push.x, -push.y, -push.on_edge, rounding};
   transpose(forward[0], forward[1], forward[2], forward[3]);
   transpose(back[0], back[1], back[2], back[3]);
   for (int k = 0; k < batch_size; ++k) {
@@ -179,7 +170,7 @@ OPENCLOSE_KERNEL double evaluate(double ramp, const ContactBatch* contacts, std:
       const Pose pose(starts[i], vertex, edge);
       trial[i].gap_change = pose.gap_change;
       trial[i].slip_change = pose.slip_change;
-      acting[i] = averaged ? ActingPose(starts[i], pose) : ActingPose(pose);
+      acting[i] = averaged ? mean_acting_pose(starts[i], pose) : acting_pose(pose);
       moved[i] = vertex.bound + edge.bound;
     }
     for (std::size_t i = 0; i < at_once; ++i) {
@@ -246,17 +237,6 @@ ContactSprings ContactBatch::springs(int lane) const {
   s.shear_damping = shear_damping[lane];
   s.dissipation = dissipation[lane];
   return s;
-}
-
-ContactForces TrialBatch::forces(int lane, Branch branch) const {
-  ContactForces f;
-  f.status = status(branch);
-  f.normal = normal[lane];
-  f.shear = shear[lane];
-  f.normal_by_gap = normal_by_gap[lane];
-  f.shear_by_gap = shear_by_gap[lane];
-  f.shear_by_slip = shear_by_slip[lane];
-  return f;
 }
 
 void TrialBatch::set_forces(int lane, const ContactForces& f) {

@@ -118,23 +118,12 @@ inline void ContactBatch::copy(int lane, const ContactBatch& other, int from) {
   }
 }
 
-/// All contacts of a step at its start, in the order of their list.
-struct ContactStarts {
-  std::size_t count = 0;  ///< of contacts; the last batch may have lanes without one
-  std::vector<ContactBatch> batches;
-
-  std::size_t bytes() const { return bytes_of(batches); }
-};
-
 /// What contacts carry at the trial displacement, or means of it, and the derivatives of these forces. Where they are then follows from their start
 /// and the moves of their blocks.
 struct TrialBatch {
   Lanes gap_change{}, slip_change{};                                          // as in ContactPose
   Lanes normal{}, shear{}, normal_by_gap{}, shear_by_gap{}, shear_by_slip{};  // as in ContactForces
 
-  /// All but what is in the springs.
-  /// \param branch  which has the status
-  ContactForces forces(int lane, Branch branch) const;
   void set_forces(int lane, const ContactForces& forces);
 };
 

@@ -1,5 +1,7 @@
 #include "openclose/integrator/contact_layout.h"
 
+#include "openclose/integrator/enforcement.h"
+
 namespace openclose {
 namespace {
 
@@ -20,9 +22,8 @@ std::vector<BlockPlace> places_of(const BlockSystem& system) {
 
 }  // namespace
 
-void lay_out(const StepProblem& problem, const SpringSource& springs, ContactStarts& starts) {
-  std::vector<ContactBatch>& batches = starts.batches;
-  const std::size_t count = starts.count = problem.contacts.size();
+void lay_out(const StepProblem& problem, const SpringSource& springs, std::vector<ContactBatch>& batches) {
+  const std::size_t count = problem.contacts.size();
   resize_closely(batches, (count + batch_size - 1) / batch_size);
   const std::vector<BlockPlace> places = places_of(problem.system);
   for (std::size_t c = 0; c < count; ++c) {

@@ -4,9 +4,10 @@
 #include <vector>
 
 #include "openclose/integrator/contact_batch.h"
-#include "openclose/integrator/enforcement.h"
 
 namespace openclose {
+
+struct StepProblem;
 
 /// The springs of the contacts of a step.
 class SpringSource {
@@ -26,6 +27,6 @@ class GivenSprings final : public SpringSource {
 };
 
 /// Sets all batches up to begin(). The places of blocks are their equations; those without have the one that comes after these.
-void lay_out(const StepProblem& problem, const SpringSource& springs, ContactStarts& starts);
+void lay_out(const StepProblem& problem, const SpringSource& springs, std::vector<ContactBatch>& batches);
 
 }  // namespace openclose

@@ -38,7 +38,7 @@ double critical_step(const StepProblem& problem, double approach) {
   bool damped = false;
   for (const Contact& c : problem.contacts) {
     const TabulatedJoint& joint = problem.joints.joint(c.joint);
-    if (!may_close(ContactStrength(joint, c), joint.normal_stiffness * c.length, c.gap, approach)) continue;
+    if (!may_close(ContactStrength(joint, c), JointSprings(joint, c.length).normal, c.gap, approach)) continue;
     const ContactKinematics k(system, c, still, still);
     const ContactDashpots dashpots(joint, c.length, system.reduced_mass(c.vertex_block, c.edge_block));
     damped |= joint.damping_ratio > 0.0;

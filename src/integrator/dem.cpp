@@ -24,32 +24,35 @@ class Dem : public Enforcement {
     }
     const Unknowns still = Unknowns::Zero();
     Eigen::VectorXd force = Eigen::VectorXd::Zero(dofs * system.free_count());
-    for (const Contact& c : problem.contacts) {
-      const auto velocity = [&](int b) { return problem.velocity(b); };
-      ContactOutcome o = outcome(
-          problem, c, [&](int) { return still; }, velocity);
-      if (o.forces.status == ContactStatus::open && c.status == ContactStatus::open) {
-        o.forces.normal = c.normal_force;
-        o.forces.shear = c.shear_force;
+    ContactTrial& contacts = solution.contacts;
+    contacts.prepare(problem, OwnSprings(*this, problem));
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      const Contact& c = problem.contacts[i];
+      const ContactKinematics k(contacts.pose_at_start(i));
+      CarriedForces f = forces(problem, c, k, [&](int b) { return problem.velocity(b); });
+      if (f.status == ContactStatus::open && c.status == ContactStatus::open) {
+        f.normal = c.normal_force;
+        f.shear = c.shear_force;
       }
-      const ContactKinematics k(o.pose);
-      add(force, system.block(c.vertex_block).equation, o.forces.normal * k.normal_vertex + o.forces.shear * k.shear_vertex);
-      add(force, system.block(c.edge_block).equation, o.forces.normal * k.normal_edge + o.forces.shear * k.shear_edge);
-      solution.start_contacts.push_back(o);
+      add(force, system.block(c.vertex_block).equation, f.normal * k.normal_vertex + f.shear * k.shear_vertex);
+      add(force, system.block(c.edge_block).equation, f.normal * k.normal_edge + f.shear * k.shear_edge);
+      contacts.set(i, f, 0.0, 0.0);
     }
+    contacts.keep_start_forces();
     for (int b : system.free_blocks()) {
       const auto& block = system.block(b);
       const Unknowns total = force.segment<dofs>(dofs * block.equation) + problem.external.force(system, b, still);
       Unknowns d = problem.dt * problem.velocity(b) + total.cwiseQuotient(problem.inertia * block.mass);
       if (block.rotation_locked) d[Motion::rotation_index] = 0.0;
       solution.d.segment<dofs>(dofs * block.equation) = d;
+      contacts.moves()[static_cast<std::size_t>(block.equation)] = BlockMove(d, system.rotation_kind(), block.radius);
     }
-    const auto displacement = [&](int b) { return solution.of(system, b); };
-    const auto velocity = [&](int b) { return Unknowns(solution.of(system, b) / problem.dt); };
-    for (std::size_t i = 0; i < problem.contacts.size(); ++i) {
-      ContactOutcome end = outcome(problem, problem.contacts[i], displacement, velocity);
-      settle_opening(problem, problem.contacts[i], solution.start_contacts.forces(i), end);
-      solution.contacts.push_back(end);
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      const Contact& c = problem.contacts[i];
+      const ContactKinematics k(ContactPose(contacts.start(i).pose(ContactTrial::lane(i), contacts.moves())));
+      const CarriedForces end = forces(problem, c, k, [&](int b) { return Unknowns(solution.of(system, b) / problem.dt); });
+      contacts.set(i, end, k.gap_change, k.slip_change);
+      settle_opening(problem, i, contacts);
     }
     solution.converged = true;
   }
@@ -69,33 +72,36 @@ class Dem : public Enforcement {
 
  private:
   /// Springs and dashpots of a contact after the blocks have moved, with the velocities of the middle of the last step.
-  template <class Displacement, class Velocity>
-  ContactOutcome outcome(const StepProblem& problem, const Contact& contact, const Displacement& d, const Velocity& v) const {
+  template <class Velocity>
+  CarriedForces forces(const StepProblem& problem, const Contact& contact, const ContactKinematics& k, const Velocity& v) const {
     const int a = contact.vertex_block, b = contact.edge_block;
     const TabulatedJoint& joint = problem.joints.joint(contact.joint);
     const ContactDashpots dashpots(joint, contact.length, problem.system.reduced_mass(a, b));
     const ContactSprings s = springs(problem, contact);
-    const ContactKinematics k(problem.system, contact, d(a), d(b));
     ForceTrials trial;
     trial.elastic_normal = -s.normal * ((s.gap - s.target) + k.gap_change);
     trial.viscous_normal = -dashpots.normal * (k.normal_vertex.dot(v(a)) + k.normal_edge.dot(v(b)));
     trial.elastic_shear = s.initial_shear - s.shear * k.slip_change;
     trial.viscous_shear = -dashpots.shear * (k.shear_vertex.dot(v(a)) + k.shear_edge.dot(v(b)));
-    return {s, carry(ContactStrength(joint, contact), trial), k.pose()};
+    return carry(ContactStrength(joint, contact), trial);
   }
 
   /// See crossing_energy.h.
-  static void settle_opening(const StepProblem& problem, const Contact& contact, const CarriedForces& start, ContactOutcome& end) {
-    if (start.status == ContactStatus::open || end.forces.status != ContactStatus::open) return;
+  static void settle_opening(const StepProblem& problem, std::size_t c, ContactTrial& contacts) {
+    const Contact& contact = problem.contacts[c];
+    const CarriedForces& start = contacts.start_forces()[c];
+    CarriedForces end = contacts.forces(c);
+    if (start.status == ContactStatus::open || end.status != ContactStatus::open) return;
     const double share = problem.method.step_fraction * problem.method.step_fraction;
-    if (ContactStrength(problem.joints.joint(contact.joint), contact).tension > 0.0) return;
-    const double gap = contact.stretch() + end.pose.gap_change;
+    if (contacts.strength(c).tension > 0.0) return;
+    const double gap_change = contacts.gap_change(c), slip_change = contacts.slip_change(c), gap = contact.stretch() + gap_change;
     const double energy = 0.5 * std::min(start.normal, start.elastic_normal) * gap + contact.crossing_energy;
-    const Opening opening = settled(energy, end.normal_stiffness, end.pose.gap_change, end.shear_stiffness, end.pose.slip_change,
-                                    contact.elastic_slip, start.shear, share);
-    end.forces.normal = opening.normal;
-    end.forces.shear = opening.shear;
-    end.crossing_energy = opening.energy;
+    const Opening opening =
+        settled(energy, contacts.normal_stiffness(c), gap_change, contacts.shear_stiffness(c), slip_change, contact.elastic_slip, start.shear, share);
+    end.normal = opening.normal;
+    end.shear = opening.shear;
+    contacts.set(c, end, gap_change, slip_change);
+    contacts.set_crossing_energy(c, opening.energy);
   }
 
   static void add(Eigen::VectorXd& force, int equation, const Unknowns& f) {

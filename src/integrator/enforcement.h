@@ -11,11 +11,9 @@
 #include <vector>
 
 #include "openclose/contact/joint_table.h"
-#include "openclose/contact/mean_pose.h"
 #include "openclose/core/memory.h"
-#include "openclose/integrator/contact_outcomes.h"
+#include "openclose/integrator/contact_trial.h"
 #include "openclose/integrator/time_scheme.h"
-#include "openclose/law/path_average.h"
 #include "openclose/linear/solver.h"
 #include "openclose/model/external_forces.h"
 
@@ -51,13 +49,6 @@ struct StepProblem {
   }
 };
 
-/// What one contact carried on the average of a step, for schemes that average over its path.
-struct PathOutcome {
-  double normal = 0.0, shear = 0.0;  ///< [N]
-  PathEnergies energies;
-  ContactPose pose;  ///< the mean one, whose gradients carried the forces
-};
-
 /// What a step has cost.
 struct StepEffort {
   int iterations = 0;        ///< linear solves of the whole system
@@ -87,9 +78,7 @@ struct StepSolution {
   StepEffort effort;
   Eigen::VectorXd d;        ///< displacement of the step, three numbers per free block
   double unbalanced = 0.0;  ///< [N] largest residual of a block, if static
-  ContactOutcomes contacts;
-  ContactOutcomes start_contacts;  ///< forces that entered with weight 1 - theta: of every contact, or none for theta = 1
-  std::vector<PathOutcome> paths;  ///< mean forces that entered instead of those at the end; empty for other schemes
+  ContactTrial contacts;    ///< on which the step is solved, and what they did in it
 
   /// Empty again, with its memory for the next step.
   void clear() {
@@ -100,13 +89,10 @@ struct StepSolution {
     effort = {};
     unbalanced = 0.0;
     contacts.clear();
-    start_contacts.clear();
-    paths.clear();
   }
   Memory memory() const {
-    Memory of = contacts.memory() + start_contacts.memory();
+    Memory of = contacts.memory();
     of.blocks += sizeof(double) * static_cast<std::size_t>(d.size());
-    of.contacts += bytes_of(paths);
     return of;
   }
 
@@ -146,6 +132,18 @@ class Enforcement {
   virtual void exchange(Archive&) {}
 };
 
+/// As an enforcement makes them.
+class OwnSprings : public SpringSource {
+ public:
+  /// Both must outlive it.
+  OwnSprings(const Enforcement& of, const StepProblem& problem) : of_(of), problem_(problem) {}
+  ContactSprings make(std::size_t c) const override { return of_.springs(problem_, problem_.contacts[c]); }
+
+ private:
+  const Enforcement& of_;
+  const StepProblem& problem_;
+};
+
 /// Displacements of a step without forces, dt v: zero in statics. Three numbers per free block.
 inline Eigen::VectorXd drift(const StepProblem& problem) {
   Eigen::VectorXd d(dofs * problem.system.free_count());
@@ -157,9 +155,10 @@ inline Eigen::VectorXd drift(const StepProblem& problem) {
 /// force change alike.
 inline ContactSprings joint_springs(const StepProblem& problem, const Contact& contact) {
   const JointProperties& joint = problem.joints.joint(contact.joint);
+  const JointSprings own(joint, contact.length);
   ContactSprings s;
-  s.normal = joint.normal_stiffness * contact.length;
-  s.shear = joint.shear_stiffness * contact.length;
+  s.normal = own.normal;
+  s.shear = own.shear;
   s.gap = contact.gap;
   s.target = contact.rest_gap;
   s.initial_shear = -s.shear * contact.elastic_slip;

@@ -83,7 +83,7 @@ void ExplicitLinks::add(const StepProblem& problem, int contact) {
   const TabulatedJoint& joint = problem.joints.joint(c.joint);
   const bool at_rest = c.status == ContactStatus::open && c.elastic_slip == 0.0 && c.normal_force == 0.0 && c.shear_force == 0.0;
   link_of_[contact] = none;
-  if (at_rest && !may_close(ContactStrength(joint, c), joint.normal_stiffness * c.length, c.gap, approach_)) return;
+  if (at_rest && !may_close(ContactStrength(joint, c), JointSprings(joint, c.length).normal, c.gap, approach_)) return;
 
   damped_ |= joint.damping_ratio > 0.0;
   const auto [link, rest] = make(problem, contact);
@@ -113,7 +113,7 @@ std::pair<ExplicitLinks::Link, ExplicitLinks::LinkRest> ExplicitLinks::make(cons
   const Vec2 across = across_now - (arm_now - arm) - Vec2(v.x - e.x, v.y - e.y);
   const ContactDashpots dashpots =
       joint.damping_ratio > 0.0 ? ContactDashpots(joint, c.length, system.reduced_mass(c.vertex_block, c.edge_block)) : ContactDashpots();
-  const double shear_stiffness = joint.shear_stiffness * c.length;
+  const JointSprings own(joint, c.length);
   Link link{.arm_x = arm.x(),
             .arm_y = arm.y(),
             .across_x = across.x(),
@@ -121,9 +121,9 @@ std::pair<ExplicitLinks::Link, ExplicitLinks::LinkRest> ExplicitLinks::make(cons
             .normal_x = normal.x(),
             .normal_y = normal.y(),
             .loaded_gap = 0.0,
-            .normal_stiffness = joint.normal_stiffness * c.length,
-            .shear_stiffness = shear_stiffness,
-            .per_shear_stiffness = 1.0 / shear_stiffness,
+            .normal_stiffness = own.normal,
+            .shear_stiffness = own.shear,
+            .per_shear_stiffness = 1.0 / own.shear,
             .normal_dashpot = dashpots.normal,
             .shear_dashpot = dashpots.shear,
             .strength = problem.no_slip ? without_slip(ContactStrength(joint, c)) : ContactStrength(joint, c),

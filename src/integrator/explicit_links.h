@@ -17,6 +17,7 @@
 #include "openclose/integrator/critical_step.h"
 #include "openclose/integrator/depth_limits.h"
 #include "openclose/integrator/explicit_blocks.h"
+#include "openclose/integrator/link_formulas.h"
 
 namespace openclose {
 
@@ -96,10 +97,7 @@ class ExplicitLinks {
       archive(a, b, c, d, e, f, g, h, i, j);
     }
   };
-  struct Place {
-    double gap, slip;
-    double normal_x, normal_y, arm_x, arm_y, across_x, across_y;
-  };
+  using Place = LinkPlace<double>;
   /// A contact on its way to other positions.
   struct Crossing {
     double normal_before, shear_before;  ///< [N]
@@ -110,6 +108,8 @@ class ExplicitLinks {
   struct LinkSums {
     double friction, damping, scheme, deepest;
   };
+  struct FourLinks;
+  struct FourForces;
 
   void add(const StepProblem& problem, int contact);
   std::pair<Link, LinkRest> make(const StepProblem& problem, int contact);
@@ -121,8 +121,8 @@ class ExplicitLinks {
   void remove_cleared();
   // In the innermost loop; as calls they cost more than what they do.
   [[gnu::always_inline]] inline Place place(const Link& link) const;
-  [[gnu::always_inline]] inline void push(const Link& link, const Place& at);
-  [[gnu::always_inline]] inline ForceTrials trials(const Link& link, const Place& at, double elastic_shear) const;
+  [[gnu::always_inline]] inline void push(const Link& link, const Place& now);
+  [[gnu::always_inline]] inline ForceTrials trials(const Link& link, const Place& now, double elastic_shear) const;
   /// [N] In the normal spring.
   double carry_now(Link& link, const Place& at);
   void settle_crossing(Link& link, const Crossing& crossing, double& normal, double& shear, double& scheme);
@@ -137,6 +137,8 @@ class ExplicitLinks {
   /// The same for four links, to the last bit; false, and nothing has changed, if one of them may lose its strength.
   template <bool damped>
   [[gnu::always_inline]] inline bool follow_four(Link* links, LinkSums& sums);
+  [[gnu::always_inline]] inline void settle_crossings(Link* links, const FourLinks& four, FourForces& forces, double (&scheme)[batch_size]);
+  [[gnu::always_inline]] inline void push_four(Link* links, const FourForces& forces);
   template <bool damped>
   [[gnu::always_inline]] inline void follow_all(LinkSums& sums);
   void follow_damped(LinkSums& sums);
@@ -163,40 +165,24 @@ class ExplicitLinks {
 };
 
 inline ExplicitLinks::Place ExplicitLinks::place(const Link& link) const {
-  const ExplicitPose& v = blocks_.pose(link.vertex_slot);
-  const ExplicitPose& e = blocks_.pose(link.edge_slot);
-  const double turned_x = v.cos_minus_1 * link.arm_x - v.sin * link.arm_y, turned_y = v.cos_minus_1 * link.arm_y + v.sin * link.arm_x;
-  const double dx = v.x - e.x + turned_x, dy = v.y - e.y + turned_y;
-  const double change_x = e.cos_minus_1 * link.normal_x - e.sin * link.normal_y, change_y = e.cos_minus_1 * link.normal_y + e.sin * link.normal_x;
-  const double nx = link.normal_x + change_x, ny = link.normal_y + change_y;
-  return {link.loaded_gap + (change_x * link.across_x + change_y * link.across_y + (nx * dx + ny * dy)),
-          change_x * link.across_y - change_y * link.across_x + (nx * dy - ny * dx),
-          nx,
-          ny,
-          link.arm_x + turned_x,
-          link.arm_y + turned_y,
-          link.across_x + dx,
-          link.across_y + dy};
+  return link_place<double>(blocks_.pose(link.vertex_slot), blocks_.pose(link.edge_slot), link);
 }
 
-inline ForceTrials ExplicitLinks::trials(const Link& link, const Place& at, double elastic_shear) const {
-  const ExplicitRate& v = blocks_.rate(link.vertex_slot);
-  const ExplicitRate& e = blocks_.rate(link.edge_slot);
-  const double x = (v.x - v.turn * at.arm_y) - (e.x - e.turn * at.across_y), y = (v.y + v.turn * at.arm_x) - (e.y + e.turn * at.across_x);
-  return {-link.normal_stiffness * at.gap, -link.normal_dashpot * (at.normal_x * x + at.normal_y * y), elastic_shear,
-          -link.shear_dashpot * (at.normal_x * y - at.normal_y * x)};
+inline ForceTrials ExplicitLinks::trials(const Link& link, const Place& now, double elastic_shear) const {
+  const LinkRate<double> rate = link_rate<double>(blocks_.rate(link.vertex_slot), blocks_.rate(link.edge_slot), now.at);
+  return {-link.normal_stiffness * now.gap, -link.normal_dashpot * rate.normal, elastic_shear, -link.shear_dashpot * rate.shear};
 }
 
-inline void ExplicitLinks::push(const Link& link, const Place& at) {
-  const double x = link.normal * at.normal_x - link.shear * at.normal_y, y = link.normal * at.normal_y + link.shear * at.normal_x;
+inline void ExplicitLinks::push(const Link& link, const Place& now) {
+  const ContactPush<double> push(link.normal, link.shear, now.at);
   ExplicitRate& v = blocks_.forces()[link.vertex_slot];
-  v.x += x;
-  v.y += y;
-  v.turn += at.arm_x * y - at.arm_y * x;
+  v.x += push.x;
+  v.y += push.y;
+  v.turn += push.on_vertex;
   ExplicitRate& e = blocks_.forces()[link.edge_slot];
-  e.x -= x;
-  e.y -= y;
-  e.turn -= at.across_x * y - at.across_y * x;
+  e.x -= push.x;
+  e.y -= push.y;
+  e.turn -= push.on_edge;
 }
 
 }  // namespace openclose

@@ -131,10 +131,10 @@ class Hard final : public Enforcement {
   static ContactSprings springs(const StepProblem& problem, const Contact& contact, double ratio) {
     const JointProperties& joint = problem.joints.joint(contact.joint);
     const double from_inertia = ratio * inertia(problem, contact);
-    const double from_joint = problem.statics ? contact.length : 0.0;
+    const JointSprings own(joint, problem.statics ? contact.length : 0.0);
     ContactSprings s;
-    s.normal = std::max(from_inertia, from_joint * joint.normal_stiffness);
-    s.shear = std::max(from_inertia, from_joint * joint.shear_stiffness);
+    s.normal = std::max(from_inertia, own.normal);
+    s.shear = std::max(from_inertia, own.shear);
     s.gap = contact.gap;
     s.target = target_gap(problem, contact);
     s.shift = problem.statics && contact.status == ContactStatus::open ? -s.normal * contact.slack : contact.normal_force;
@@ -252,13 +252,13 @@ class Hard final : public Enforcement {
       }
       if (solution.converged || problem.statics || cohesion == Cohesion::as_it_is) return;
     }
-    newton_.set_cohesion_ramp(long_cohesion_ramp);
+    solution.contacts.set_cohesion_ramp(long_cohesion_ramp);
     solution.d = start;
     newton_.solve_again(springs_, solution,
                         solution.eased ? FirstTangent::last_solution
                         : pass == 0    ? FirstTangent::last_step
                                        : FirstTangent::present);
-    newton_.set_cohesion_ramp(tolerance::cohesion_ramp);
+    solution.contacts.set_cohesion_ramp(tolerance::cohesion_ramp);
     if (!solution.converged || solution.eased) return;
     StepSolution eased = solution;
     newton_.solve_again(springs_, solution, FirstTangent::present);
@@ -275,21 +275,21 @@ class Hard final : public Enforcement {
   }
 
   /// What the springs of the next pass start from.
-  void carry_on(const StepProblem& problem, const ContactOutcomes& outcomes, std::size_t c) {
+  void carry_on(const StepProblem& problem, const ContactTrial& contacts, std::size_t c) {
     ContactSprings& s = springs_[c];
-    const CarriedForces forces = outcomes.forces(c);
+    const CarriedForces forces = contacts.forces(c);
     const bool open = forces.status == ContactStatus::open;
     if (!problem.statics) {
       s.shift = forces.normal;
       s.initial_shear = forces.shear;
     } else if (open) {
       // A gap that was there before is one on every pass; only what has come to it is remembered.
-      const double parted = outcomes.gap_change(c) + std::min(0.0, s.gap - s.target);
+      const double parted = contacts.gap_change(c) + std::min(0.0, s.gap - s.target);
       s.shift = std::min(0.0, s.shift - s.normal * parted);
       s.initial_shear = 0.0;
     } else {
       s.shift = forces.normal;
-      s.initial_shear -= s.shear * outcomes.slip_change(c);
+      s.initial_shear -= s.shear * contacts.slip_change(c);
     }
   }
 

@@ -155,11 +155,11 @@ void Newton::hold_changed(double norm) {
 bool Newton::iterate_from_cold(StepSolution& solution, double& norm) {
   Eigen::VectorXd& d = solution.d;
   const double longest = d.lpNorm<Eigen::Infinity>();
-  holds_.resize(contacts().count());
+  holds_.resize(contacts().size());
   for (int iteration = 1; iteration < most_cold_iterations && norm > 1.0 && std::isfinite(norm); ++iteration) {
-    for (std::size_t c = 0; c < contacts().count(); ++c) {
+    for (std::size_t c = 0; c < contacts().size(); ++c) {
       const bool has_changed = branches()[c] != branches_before_[c];
-      holds_[c] = !has_changed ? 0.0 : (status(branches()[c]) == ContactStatus::open ? hold_of_opened : hold_of_slid);
+      holds_[c] = !has_changed ? 0.0 : (contacts().status(c) == ContactStatus::open ? hold_of_opened : hold_of_slid);
     }
     branches_before_ = branches();
     contacts().hold(holds_, false);
@@ -175,7 +175,7 @@ bool Newton::iterate_from_cold(StepSolution& solution, double& norm) {
 
 Newton::Outcome Newton::iterate_holding(StepSolution& solution, double& norm, int done) {
   Eigen::VectorXd& d = solution.d;
-  holds_.assign(contacts().count(), 0.0);
+  holds_.assign(contacts().size(), 0.0);
   if (done > 0) hold_changed(norm);
   Outcome outcome = Outcome::ended;
   Headway headway(norm, only_if_few_change_ ? most_iterations_to_halve_if_few_change : most_iterations_to_halve_holding);
@@ -241,7 +241,7 @@ void Newton::follow(Course& course, double norm) {
 }
 
 void Newton::choose_tangent(Course& course) {
-  const int few = static_cast<int>(few_switches * static_cast<double>(contacts().count()));
+  const int few = static_cast<int>(few_switches * static_cast<double>(contacts().size()));
   const bool held = course.norm > 1.0 && !course.gets_on && equations_.hold_reversed(branches_before_) > 0;  // a solution keeps the forces of the law
   const bool exact_works = held || course.switches <= few || (course.tangent == Tangent::exact && course.gets_on);
   course.tangent = exact_works ? Tangent::exact : Tangent::symmetric;
@@ -252,7 +252,7 @@ Newton::Outcome Newton::iterate(const StepProblem& problem, StepSolution& soluti
   Course course;
   course.norm = norm;
   course.value = course.best = equations_.merit(norm);
-  course.switches = static_cast<int>(contacts().count());  // any may be in another state than in the first tangent
+  course.switches = static_cast<int>(contacts().size());  // any may be in another state than in the first tangent
   const int smallest_with_parts = contacts().averages_path() ? smallest_averaged_system_with_parts : smallest_system_with_parts;
   const bool may_help_by_parts = problem.method.skip_balanced && !problem.statics && !is_part_ && equations_.rows() >= smallest_with_parts;
   const bool may_be_lost = !problem.statics && !is_part_;
@@ -297,7 +297,7 @@ Newton::Outcome Newton::iterate(const StepProblem& problem, StepSolution& soluti
     }
     d += alpha * step;
     follow(course, next_norm);
-    if (may_start_cold && iteration == 0 && course.switches > cold_start_switches * static_cast<double>(contacts().count())) {
+    if (may_start_cold && iteration == 0 && course.switches > cold_start_switches * static_cast<double>(contacts().size())) {
       outcome = Outcome::cold_start;
       break;
     }
@@ -319,15 +319,9 @@ double Newton::begin(const Eigen::VectorXd& d, FirstTangent first) {
   return norm;
 }
 
-void Newton::begin_step(StepSolution& solution) {
-  contacts().take_back(solution.contacts);
-  branches_before_ = branches();
-  subdomains_.begin_step();
-}
-
 bool Newton::solve_part(const StepEquations& whole, const Part& part, NewtonEnd end, StepSolution& found) {
   is_part_ = true;
-  const std::vector<std::pair<int, int>> ends = equations_.take_part(whole, part);
+  const std::vector<std::pair<int, int>> ends = equations_.take_part(whole, part, found.contacts);
   tangent_.fit_part(whole.problem().method, equations_.rows(), static_cast<int>(contacts().moves().size()), ends);
   equations_.evaluate(found.d);
   double norm = equations_.residual_norm();
@@ -337,8 +331,9 @@ bool Newton::solve_part(const StepEquations& whole, const Part& part, NewtonEnd 
 }
 
 void Newton::solve(const StepProblem& problem, const SpringSource& springs, StepSolution& solution, FirstTangent first) {
-  begin_step(solution);
-  equations_.prepare(problem, springs);
+  branches_before_ = solution.contacts.branches();
+  subdomains_.begin_step();
+  equations_.prepare(problem, springs, solution.contacts);
   tangent_.fit(problem, contacts().batches());
   solve_prepared(solution, first);
 }
@@ -350,9 +345,8 @@ void Newton::solve_if_few_change(const StepProblem& problem, const SpringSource&
 }
 
 void Newton::solve_again(const std::vector<ContactSprings>& springs, StepSolution& solution, FirstTangent first) {
-  contacts().take_back(solution.contacts);
-  branches_before_ = branches();
-  equations_.prepare_again(springs);
+  branches_before_ = solution.contacts.branches();
+  equations_.prepare_again(springs, solution.contacts);
   solve_prepared(solution, first);
 }
 
@@ -361,7 +355,8 @@ void Newton::solve_prepared(StepSolution& solution, FirstTangent first) {
   equations_.move_blocks_alone(solution.d);
   if (problem.end_weight < 1.0) {
     equations_.sum_start_forces();
-    contacts().report_start(solution);
+    contacts().find_elastic();
+    contacts().keep_start_forces();
   }
   const Eigen::VectorXd start = solution.d;
   double norm = begin(start, first);
@@ -389,7 +384,7 @@ void Newton::solve_prepared(StepSolution& solution, FirstTangent first) {
   solution.converged = norm <= 1.0;
   if (problem.statics) solution.unbalanced = equations_.largest_unbalanced();
   if (!solution.converged) solution.reason = outcome == Outcome::singular ? "singular matrix" : "Newton's method did not converge";
-  contacts().lend(solution);
+  contacts().finish();
   note_memory(solution.memory());
 }
 
@@ -405,8 +400,9 @@ Eigen::MatrixXd Newton::stiffness(const StepProblem& problem, const std::vector<
   static_problem.inertia = 0.0;
   static_problem.end_weight = 1.0;
   static_problem.scheme = nullptr;
-  equations_.prepare(static_problem, GivenSprings(springs));
-  tangent_.fit(static_problem, contacts().batches());
+  ContactTrial contacts;
+  equations_.prepare(static_problem, GivenSprings(springs), contacts);
+  tangent_.fit(static_problem, contacts.batches());
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(dofs * problem.system.free_count());
   equations_.evaluate(zero);
   assemble(zero, Tangent::exact);
@@ -414,7 +410,8 @@ Eigen::MatrixXd Newton::stiffness(const StepProblem& problem, const std::vector<
 }
 
 Eigen::VectorXd Newton::forces(const StepProblem& problem, const std::vector<ContactSprings>& springs) {
-  equations_.prepare(problem, GivenSprings(springs));
+  ContactTrial contacts;
+  equations_.prepare(problem, GivenSprings(springs), contacts);
   equations_.sum_start_forces();
   return equations_.start_force();
 }

@@ -66,9 +66,6 @@ class Newton {
   /// A part of another system for itself, while all other blocks stay where they are there, from found.d. True if its residual is smaller then.
   bool solve_part(const StepEquations& whole, const Part& part, NewtonEnd end, StepSolution& found);
 
-  /// [-] Part of the cohesion over which it comes in, in what is solved from now on: see ShearLimit.
-  void set_cohesion_ramp(double ramp) { contacts().set_cohesion_ramp(ramp); }
-
   /// Minus the derivative of all forces but inertia by the unknowns, at the start of the step, contacts in the status they have. Rows and columns of
   /// locked rotations are those of the unit matrix.
   Eigen::MatrixXd stiffness(const StepProblem& problem, const std::vector<ContactSprings>& springs);
@@ -95,7 +92,6 @@ class Newton {
   /// Where an iteration stands.
   struct Course;
 
-  void begin_step(StepSolution& solution);
   void solve_prepared(StepSolution& solution, FirstTangent first);
   /// Evaluates at the displacement to start from and returns its residual_norm().
   double begin(const Eigen::VectorXd& d, FirstTangent first);
@@ -123,7 +119,7 @@ class Newton {
   void assemble(const Eigen::VectorXd& d, Tangent tangent);
   /// \param reduction, enough  [-] of the residual by a linear solver, see LinearSolver::solve()
   Eigen::VectorXd direction(const Eigen::VectorXd& d, Tangent tangent, double reduction, double enough = 0.0);
-  StepContacts& contacts() { return equations_.contacts(); }
+  ContactTrial& contacts() { return equations_.contacts(); }
   const std::vector<Branch>& branches() { return equations_.contacts().branches(); }
   /// Takes what there is now into the account.
   /// \param others  what is there beside it

@@ -43,10 +43,10 @@ class Shi : public Enforcement {
   }
 
   void solve(const StepProblem& problem, StepSolution& solution) override {
-    begin(problem);
+    begin(problem, solution.contacts);
     for (int pass = 0; pass < problem.method.max_open_close_iterations; ++pass) {
       if (!solve_once(problem, solution)) return;
-      if (!change_states(problem, solution.d)) {
+      if (!change_states(problem, solution)) {
         finish(problem, solution);
         memory_of_solution_.grow_to(solution.memory());
         return;
@@ -68,7 +68,7 @@ class Shi : public Enforcement {
   LinearCounters linear_counters() const override { return tangent_.counters(); }
   Memory memory() const override {
     Memory of = tangent_.memory() + memory_of_solution_;
-    of.contacts += bytes_of(outcome_, strength_, applied_shear_);
+    of.contacts += bytes_of(kinematics_, applied_shear_);
     return of;
   }
   void exchange(Archive& archive) override { tangent_.exchange(archive); }
@@ -76,26 +76,18 @@ class Shi : public Enforcement {
  private:
   using Unknowns = Motion::Unknowns;
 
-  /// A contact in the geometry of the start of the step; its changes of gap and slip are linear in the displacement.
-  struct LinearContact {
-    ContactSprings springs;
-    CarriedForces forces;
-    ContactKinematics kinematics;
-  };
-
-  void begin(const StepProblem& problem) {
-    const Unknowns still = Unknowns::Zero();
-    outcome_.clear();
-    strength_.clear();
-    applied_shear_.clear();
-    for (const Contact& c : problem.contacts) {
-      strength_.emplace_back(problem.joints.joint(c.joint), c);
-      LinearContact o{springs(problem, c), {}, ContactKinematics(problem.system, c, still, still)};
-      o.forces.status = c.status == ContactStatus::open && c.stretch() < -problem.method.closing_tolerance ? ContactStatus::sticking : c.status;
-      o.forces.normal = c.normal_force;
-      o.forces.shear = std::copysign(strength_.back().shear_bound(c.normal_force).value, c.shear_force);
-      outcome_.push_back(o);
-      applied_shear_.push_back(0.0);
+  void begin(const StepProblem& problem, ContactTrial& contacts) {
+    contacts.prepare(problem, OwnSprings(*this, problem));
+    kinematics_.clear();
+    applied_shear_.assign(contacts.size(), 0.0);
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      const Contact& c = problem.contacts[i];
+      CarriedForces f;
+      f.status = c.status == ContactStatus::open && c.stretch() < -problem.method.closing_tolerance ? ContactStatus::sticking : c.status;
+      f.normal = c.normal_force;
+      f.shear = std::copysign(contacts.strength(i).shear_bound(c.normal_force).value, c.shear_force);
+      contacts.set(i, f, 0.0, 0.0);
+      kinematics_.emplace_back(contacts.pose_at_start(i));
     }
     tangent_.fit(problem);
   }
@@ -113,7 +105,7 @@ class Shi : public Enforcement {
       right.segment<dofs>(dofs * block.equation) =
           problem.inertia * problem.dt * block.mass.cwiseProduct(problem.velocity(b)) + problem.external.force(system, b, still);
     }
-    for (std::size_t c = 0; c < outcome_.size(); ++c) add_contact(problem, c, right);
+    for (std::size_t c = 0; c < solution.contacts.size(); ++c) add_contact(problem, solution.contacts, c, right);
     for (int b : system.free_blocks()) {
       const auto& block = system.block(b);
       if (!block.rotation_locked) continue;
@@ -130,16 +122,16 @@ class Shi : public Enforcement {
     return true;
   }
 
-  void add_contact(const StepProblem& problem, std::size_t c, Eigen::VectorXd& right) {
+  void add_contact(const StepProblem& problem, const ContactTrial& contacts, std::size_t c, Eigen::VectorXd& right) {
     const Contact& contact = problem.contacts[c];
-    const LinearContact& o = outcome_[c];
-    if (o.forces.status == ContactStatus::open) return;
-    const bool locked = o.forces.status == ContactStatus::sticking;
-    const double kn = o.springs.normal + o.springs.normal_damping, ks = locked ? o.springs.shear + o.springs.shear_damping : 0.0;
-    const double normal = -o.springs.normal * (o.springs.gap - o.springs.target) + viscous_normal(o.springs, strength_[c], 0.0);
-    const double shear = locked ? o.springs.initial_shear : o.forces.shear;
+    if (contacts.status(c) == ContactStatus::open) return;
+    const bool locked = contacts.status(c) == ContactStatus::sticking;
+    const ContactSprings springs = contacts.springs(c);
+    const double kn = springs.normal + springs.normal_damping, ks = locked ? springs.shear + springs.shear_damping : 0.0;
+    const double normal = -springs.normal * (springs.gap - springs.target) + viscous_normal(springs, contacts.strength(c), 0.0);
+    const double shear = locked ? springs.initial_shear : contacts.forces(c).shear;
     applied_shear_[c] = shear;
-    const ContactKinematics& k = o.kinematics;
+    const ContactKinematics& k = kinematics_[c];
     const int i = problem.system.block(contact.vertex_block).equation, j = problem.system.block(contact.edge_block).equation;
     const auto block = [&](const Unknowns& n1, const Unknowns& t1, const Unknowns& n2, const Unknowns& t2) {
       return Motion::Matrix(kn * n1 * n2.transpose() + ks * t1 * t2.transpose());
@@ -159,52 +151,58 @@ class Shi : public Enforcement {
   }
 
   /// Moves every contact to the state its springs ask for; true if any state has changed. Forces are updated either way.
-  bool change_states(const StepProblem& problem, const Eigen::VectorXd& d) {
+  bool change_states(const StepProblem& problem, StepSolution& solution) {
+    ContactTrial& contacts = solution.contacts;
     bool changed = false;
-    for (std::size_t c = 0; c < outcome_.size(); ++c) {
+    for (std::size_t c = 0; c < contacts.size(); ++c) {
       const Contact& contact = problem.contacts[c];
-      LinearContact& o = outcome_[c];
+      const ContactKinematics& k = kinematics_[c];
       const auto path = [&](int b, const Unknowns& gradient) {
         const int i = problem.system.block(b).equation;
-        return i < 0 ? 0.0 : gradient.dot(d.segment<dofs>(dofs * i));
+        return i < 0 ? 0.0 : gradient.dot(solution.d.segment<dofs>(dofs * i));
       };
-      o.kinematics.gap_change = path(contact.vertex_block, o.kinematics.normal_vertex) + path(contact.edge_block, o.kinematics.normal_edge);
-      o.kinematics.slip_change = path(contact.vertex_block, o.kinematics.shear_vertex) + path(contact.edge_block, o.kinematics.shear_edge);
-      const ContactStatus before = o.forces.status;
-      o.forces = next_forces(problem, o, strength_[c]);
+      const double gap_change = path(contact.vertex_block, k.normal_vertex) + path(contact.edge_block, k.normal_edge);
+      const double slip_change = path(contact.vertex_block, k.shear_vertex) + path(contact.edge_block, k.shear_edge);
+      const ContactStatus before = contacts.status(c);
+      contacts.set(c, next_forces(problem, contacts, c, gap_change, slip_change), gap_change, slip_change);
       // A contact locks again with the friction it has, not with what its spring held before it slid.
-      if (before == ContactStatus::sliding && o.forces.status == ContactStatus::sticking) o.springs.initial_shear = o.forces.shear;
-      changed |= o.forces.status != before;
+      if (before == ContactStatus::sliding && contacts.status(c) == ContactStatus::sticking)
+        contacts.start(c).initial_shear[ContactTrial::lane(c)] = contacts.forces(c).shear;
+      changed |= contacts.status(c) != before;
     }
     return changed;
   }
 
-  static CarriedForces next_forces(const StepProblem& problem, const LinearContact& o, const ContactStrength& strength) {
-    const double stretch = (o.springs.gap - o.springs.target) + o.kinematics.gap_change;
-    const double elastic = -o.springs.normal * stretch, normal = elastic + viscous_normal(o.springs, strength, o.kinematics.gap_change);
-    const double elastic_trial = o.springs.initial_shear - o.springs.shear * o.kinematics.slip_change;
-    const double trial = elastic_trial - o.springs.shear_damping * o.kinematics.slip_change;
+  static CarriedForces next_forces(const StepProblem& problem, const ContactTrial& contacts, std::size_t c, double gap_change, double slip_change) {
+    const ContactSprings springs = contacts.springs(c);
+    const ContactStrength strength = contacts.strength(c);
+    const ContactStatus before = contacts.status(c);
+    const double shear_before = contacts.forces(c).shear;
+    const double stretch = (springs.gap - springs.target) + gap_change;
+    const double elastic = -springs.normal * stretch, normal = elastic + viscous_normal(springs, strength, gap_change);
+    const double elastic_trial = springs.initial_shear - springs.shear * slip_change;
+    const double trial = elastic_trial - springs.shear_damping * slip_change;
     const bool opens = normal < -strength.tension || (strength.tension == 0.0 && normal <= 0.0);
     CarriedForces f;
-    if (opens || (o.forces.status == ContactStatus::open && stretch >= -problem.method.closing_tolerance)) return f;
+    if (opens || (before == ContactStatus::open && stretch >= -problem.method.closing_tolerance)) return f;
     f.normal = normal;
     f.elastic_normal = elastic;
-    if (o.forces.status == ContactStatus::open) {
+    if (before == ContactStatus::open) {
       f.status = ContactStatus::sticking;
       f.shear = trial;
       f.elastic_shear = elastic_trial;
       return f;
     }
     const double bound = strength.shear_bound(normal).value;
-    if (o.forces.status == ContactStatus::sticking) {
+    if (before == ContactStatus::sticking) {
       f.status = std::abs(trial) > bound ? ContactStatus::sliding : ContactStatus::sticking;
       f.shear = std::clamp(trial, -bound, bound);
       f.elastic_shear = std::clamp(elastic_trial, -bound, bound);
       return f;
     }
-    const bool runs_against_friction = o.forces.shear * o.kinematics.slip_change > 0.0;
+    const bool runs_against_friction = shear_before * slip_change > 0.0;
     f.status = runs_against_friction ? ContactStatus::sticking : ContactStatus::sliding;
-    f.shear = f.elastic_shear = std::copysign(bound, o.forces.shear);
+    f.shear = f.elastic_shear = std::copysign(bound, shear_before);
     return f;
   }
 
@@ -220,8 +218,9 @@ class Shi : public Enforcement {
 
   void finish(const StepProblem& problem, StepSolution& solution) {
     std::optional<double> tolerated = problem.method.penetration_tolerance;
-    for (const LinearContact& o : outcome_) {
-      const double depth = o.forces.status == ContactStatus::open ? 0.0 : -(o.springs.gap + o.kinematics.gap_change);
+    ContactTrial& contacts = solution.contacts;
+    for (std::size_t c = 0; c < contacts.size(); ++c) {
+      const double depth = contacts.status(c) == ContactStatus::open ? 0.0 : -(problem.contacts[c].gap + contacts.gap_change(c));
       if (depth <= tolerated.value_or(default_penetration_m)) continue;
       if (!tolerated) tolerated = default_penetration_tolerance(problem.system);
       if (depth > *tolerated) {
@@ -232,23 +231,20 @@ class Shi : public Enforcement {
       }
     }
     solution.converged = solution.first_order = true;
-    for (std::size_t c = 0; c < outcome_.size(); ++c) {
-      const ContactKinematics& k = outcome_[c].kinematics;
+    for (std::size_t c = 0; c < contacts.size(); ++c) {
       // What a sliding contact carried in this step is the friction of the pass before.
-      CarriedForces f = outcome_[c].forces;
-      if (f.status == ContactStatus::sliding) {
-        const double slip = std::abs(outcome_[c].kinematics.slip_change);
-        solution.friction_work += std::abs(f.shear) * slip;
-        solution.lagging_friction_work += std::abs(applied_shear_[c] - f.shear) * slip;
-        f.shear = f.elastic_shear = applied_shear_[c];
-      }
-      solution.contacts.push_back({outcome_[c].springs, f, k.pose()});
+      if (contacts.status(c) != ContactStatus::sliding) continue;
+      CarriedForces f = contacts.forces(c);
+      const double slip = std::abs(contacts.slip_change(c));
+      solution.friction_work += std::abs(f.shear) * slip;
+      solution.lagging_friction_work += std::abs(applied_shear_[c] - f.shear) * slip;
+      f.shear = f.elastic_shear = applied_shear_[c];
+      contacts.set(c, f, contacts.gap_change(c), contacts.slip_change(c));
     }
   }
 
-  std::vector<LinearContact> outcome_;
-  std::vector<ContactStrength> strength_;
-  std::vector<double> applied_shear_;  ///< [N] right side of the last pass
+  std::vector<ContactKinematics> kinematics_;  ///< at the start of the step: changes of gap and slip are linear in the displacement
+  std::vector<double> applied_shear_;          ///< [N] right side of the last pass
   TangentSystem tangent_;
   Memory memory_of_solution_;
 };

@@ -21,20 +21,18 @@ constexpr double largest_dissipation = 0.1;
 constexpr int many_blocks = 9000;
 
 /// Those of a step.
-class SoftSprings final : public SpringSource {
+class SoftSprings final : public OwnSprings {
  public:
   /// \param dissipation  [-] for path_average, instead of what the scene says
   SoftSprings(const Enforcement& of, const StepProblem& problem, std::optional<double> dissipation = {})
-      : of_(of), problem_(problem), dissipation_(dissipation) {}
+      : OwnSprings(of, problem), dissipation_(dissipation) {}
   ContactSprings make(std::size_t c) const override {
-    ContactSprings springs = of_.springs(problem_, problem_.contacts[c]);
+    ContactSprings springs = OwnSprings::make(c);
     if (dissipation_) springs.dissipation = *dissipation_;
     return springs;
   }
 
  private:
-  const Enforcement& of_;
-  const StepProblem& problem_;
   std::optional<double> dissipation_;
 };
 

@@ -25,11 +25,12 @@ bool is_on_piece(ContactStatus now, double normal_by_gap, ContactStatus wanted) 
 
 }  // namespace
 
-void StepEquations::prepare(const StepProblem& problem, const SpringSource& springs) {
+void StepEquations::prepare(const StepProblem& problem, const SpringSource& springs, ContactTrial& contacts) {
   const BlockSystem& system = problem.system;
   problem_ = &problem;
-  contacts_.prepare(problem, springs);
-  contact_scale_ = contacts_.largest_force_at_start();
+  contacts_ = &contacts;
+  contacts_->prepare(problem, springs);
+  contact_scale_ = contacts_->largest_force_at_start();
   blocks_.clear();
   blocks_.reserve(system.free_count());
   for (int b : system.free_blocks()) {
@@ -52,7 +53,7 @@ void StepEquations::find_blocks_alone() {
   const auto touch = [&](int row) {
     if (row < rows()) blocks_[row].is_alone = false;
   };
-  for (const ContactBatch& batch : contacts_.batches()) {
+  for (const ContactBatch& batch : contacts_->batches()) {
     for (int k = 0; k < batch_size; ++k) {
       touch(batch.vertex_place(k));
       touch(batch.edge_place(k));
@@ -70,9 +71,10 @@ void StepEquations::move_blocks_alone(Eigen::VectorXd& d) const {
   }
 }
 
-void StepEquations::prepare_again(const std::vector<ContactSprings>& springs) {
-  contacts_.set_springs(springs);
-  contact_scale_ = contacts_.largest_force_at_start();
+void StepEquations::prepare_again(const std::vector<ContactSprings>& springs, ContactTrial& contacts) {
+  contacts_ = &contacts;
+  contacts_->set_springs(springs);
+  contact_scale_ = contacts_->largest_force_at_start();
 }
 
 void StepEquations::evaluate_block(int row, const Eigen::VectorXd& d) {
@@ -85,7 +87,7 @@ void StepEquations::evaluate_block(int row, const Eigen::VectorXd& d) {
   sums += rows_[row].of_odd_lanes;
   Unknowns force(sums[0], sums[1], sums[2]);
   if (block.has_elements) {
-    force += contacts_.averages_path() ? problem_->external.mean_force(system, block.block, db) : problem_->external.force(system, block.block, db);
+    force += contacts_->averages_path() ? problem_->external.mean_force(system, block.block, db) : problem_->external.force(system, block.block, db);
   } else {
     force += block.force;
   }
@@ -104,7 +106,7 @@ double StepEquations::magnitude(const StepBlock& block, const Unknowns& d) const
 }
 
 void StepEquations::move_block(int row, const Eigen::VectorXd& d) {
-  contacts_.moves()[static_cast<std::size_t>(row)] = BlockMove(d.segment<dofs>(dofs * row), problem_->system.rotation_kind(), blocks_[row].radius);
+  contacts_->moves()[static_cast<std::size_t>(row)] = BlockMove(d.segment<dofs>(dofs * row), problem_->system.rotation_kind(), blocks_[row].radius);
 }
 
 void StepEquations::find_force_scale(double of_contacts, const Eigen::VectorXd& d) {
@@ -117,9 +119,9 @@ void StepEquations::find_force_scale(double of_contacts, const Eigen::VectorXd& 
 
 void StepEquations::evaluate(const Eigen::VectorXd& d) {
   for (int row = 0; row < rows(); ++row) move_block(row, d);
-  rows_.assign(contacts_.moves().size(), ForceRow());
+  rows_.assign(contacts_->moves().size(), ForceRow());
   residual_.resize(dofs * static_cast<Eigen::Index>(blocks_.size()));
-  const double largest = contacts_.evaluate(rows_);
+  const double largest = contacts_->evaluate(rows_);
   for (int row = 0; row < rows(); ++row) evaluate_block(row, d);
   find_force_scale(largest, d);
 }
@@ -164,9 +166,9 @@ double StepEquations::merit(double norm) const {
 
 void StepEquations::assemble(const Eigen::VectorXd& d, bool exact, bool open_ones_too, const MatrixSlots& slots, BlockMatrix& matrix) const {
   matrix.set_zero();
-  const BatchTangent asked{contacts_.step_forces(), exact, problem_->end_weight, problem_->statics ? static_slip_stiffness : 0.0,
-                           open_ones_too || contacts_.averages_path()};
-  contacts_.add_stiffness(asked, slots, matrix);
+  const BatchTangent asked{contacts_->step_forces(), exact, problem_->end_weight, problem_->statics ? static_slip_stiffness : 0.0,
+                           open_ones_too || contacts_->averages_path()};
+  contacts_->add_stiffness(asked, slots, matrix);
   for (std::size_t i = 0; i < blocks_.size(); ++i) {
     const StepBlock& block = blocks_[i];
     const int row = static_cast<int>(i);
@@ -174,7 +176,7 @@ void StepEquations::assemble(const Eigen::VectorXd& d, bool exact, bool open_one
     diagonal.diagonal() += block.inertia;
     if (!block.has_elements) continue;
     const Unknowns db = d.segment<dofs>(dofs * row);
-    if (contacts_.averages_path()) {
+    if (contacts_->averages_path()) {
       diagonal += problem_->external.mean_stiffness(problem_->system, block.block, db);
     } else {
       diagonal += problem_->end_weight * problem_->external.stiffness(problem_->system, block.block, db);
@@ -186,89 +188,90 @@ void StepEquations::assemble(const Eigen::VectorXd& d, bool exact, bool open_one
 }
 
 void StepEquations::replace_forces(std::size_t c, const ContactForces& forces) {
-  const TrialBatch& batch = contacts_.trial(c);
-  const int k = StepContacts::lane(c);
-  const ContactPose pose = contacts_.force_pose(c);
+  const TrialBatch& batch = contacts_->trial(c);
+  const int k = ContactTrial::lane(c);
+  const ContactPose pose = contacts_->force_pose(c);
   const double normal = problem_->end_weight * (forces.normal - batch.normal[k]), shear = problem_->end_weight * (forces.shear - batch.shear[k]);
-  // In single numbers: what has just been stored number by number cannot be loaded in pairs at once.
-  const double x = normal * pose.normal.x() - shear * pose.normal.y(), y = normal * pose.normal.y() + shear * pose.normal.x();
-  const auto push = [&](int row, double sign, const Vec2& arm) {
+  const ContactPush<double> change(normal, shear, force_place(pose));
+  const auto push = [&](int row, double x, double y, double moment) {
     if (row >= rows()) return;
     double* const residual = residual_.data() + static_cast<std::ptrdiff_t>(dofs) * row;
-    residual[0] += sign * x;
-    residual[1] += sign * y;
-    residual[2] += sign * (arm.x() * y - arm.y() * x);
+    residual[0] += x;
+    residual[1] += y;
+    residual[2] += moment;
     if (blocks_[row].rotation_locked) residual[Motion::rotation_index] = 0.0;
   };
-  const auto [vertex, edge] = contacts_.places(c);
-  push(vertex, 1.0, pose.vertex_arm);
-  push(edge, -1.0, pose.edge_arm);
-  contacts_.set_forces(c, forces);
+  const auto [vertex, edge] = contacts_->places(c);
+  push(vertex, change.x, change.y, change.on_vertex);
+  push(edge, -change.x, -change.y, -change.on_edge);
+  contacts_->replace_forces(c, forces);
 }
 
 int StepEquations::hold_reversed(const std::vector<Branch>& branches_before) {
   int held = 0;
-  for (std::size_t c = 0; c < contacts_.count(); ++c) {
+  for (std::size_t c = 0; c < contacts_->size(); ++c) {
     const Branch before = branches_before[c];
-    const bool reversed = std::abs(before) == sliding_branch && before == -contacts_.branches()[c];
+    const bool reversed = std::abs(before) == sliding_branch && before == -contacts_->branches()[c];
     if (!reversed) continue;
     ++held;
-    const ContactSprings springs = contacts_.seen_springs(c);
-    const ContactForces f = contacts_.forces(c);
-    ContactForces stuck = tangent_for_status(springs, contacts_.strength(c), ContactStatus::sticking, f.normal, f.shear);
-    stuck.normal = f.normal;
-    stuck.shear = springs.initial_shear - (springs.shear + springs.shear_damping) * contacts_.trial(c).slip_change[StepContacts::lane(c)];
+    const ContactSprings springs = contacts_->seen_springs(c);
+    const TrialBatch& now = contacts_->trial(c);
+    const int k = ContactTrial::lane(c);
+    ContactForces stuck = tangent_for_status(springs, contacts_->strength(c), ContactStatus::sticking, now.normal[k], now.shear[k]);
+    stuck.normal = now.normal[k];
+    stuck.shear = springs.initial_shear - (springs.shear + springs.shear_damping) * contacts_->slip_change(c);
     replace_forces(c, stuck);
   }
   return held;
 }
 
 void StepEquations::take_state(std::size_t c, ContactStatus wanted, double normal, double shear) {
-  const TrialBatch& now = contacts_.trial(c);
-  const int k = StepContacts::lane(c);
-  if (!contacts_.averages_path() && is_on_piece(status(contacts_.branches()[c]), now.normal_by_gap[k], wanted)) return;
-  replace_forces(c, prolonged(contacts_.seen_springs(c), contacts_.strength(c), wanted, normal, shear, now.gap_change[k], now.slip_change[k]));
+  const TrialBatch& now = contacts_->trial(c);
+  const int k = ContactTrial::lane(c);
+  if (!contacts_->averages_path() && is_on_piece(contacts_->status(c), now.normal_by_gap[k], wanted)) return;
+  replace_forces(c, prolonged(contacts_->seen_springs(c), contacts_->strength(c), wanted, normal, shear, now.gap_change[k], now.slip_change[k]));
 }
 
 void StepEquations::take_last_states() {
   // Statics begins with the drawing, whose rounding is in the gaps; a motion knows which of its contacts are open.
   const double touching_gap = problem_->statics ? tolerance::rounding_of_ways_m : 0.0;
-  for (std::size_t c = 0; c < contacts_.count(); ++c) {
+  for (std::size_t c = 0; c < contacts_->size(); ++c) {
     const Contact& contact = problem_->contacts[c];
-    const ContactBatch& start = contacts_.start(c);
-    const int k = StepContacts::lane(c);
+    const ContactBatch& start = contacts_->start(c);
+    const int k = ContactTrial::lane(c);
     const bool touching = contact.status == ContactStatus::open && start.gap_off_target[k] <= touching_gap && start.shift[k] >= 0.0;
     take_state(c, touching ? ContactStatus::sticking : contact.status, contact.normal_force, contact.shear_force);
   }
 }
 
 void StepEquations::take_states(const std::vector<Branch>& branches) {
-  for (std::size_t c = 0; c < contacts_.count(); ++c) {
-    const ContactBatch& start = contacts_.start(c);
-    const int k = StepContacts::lane(c);
+  for (std::size_t c = 0; c < contacts_->size(); ++c) {
+    const ContactBatch& start = contacts_->start(c);
+    const int k = ContactTrial::lane(c);
     take_state(c, status(branches[c]), start.shift[k], start.initial_shear[k]);
   }
 }
 
-std::vector<std::pair<int, int>> StepEquations::take_part(const StepEquations& whole, const Part& part) {
+std::vector<std::pair<int, int>> StepEquations::take_part(const StepEquations& whole, const Part& part, ContactTrial& contacts) {
   problem_ = whole.problem_;
+  contacts_ = &contacts;
   contact_scale_ = whole.contact_scale_;
   block_scale_ = whole.block_scale_;
   blocks_.clear();
-  std::vector<BlockMove>& moves = contacts_.moves();
+  std::vector<BlockMove>& moves = contacts_->moves();
   moves.clear();
   if (problem_->end_weight < 1.0) start_force_ = rows_of(whole.start_force_, part.rows);
   std::unordered_map<int, int> places;  // by those in the whole
   const auto place = [&](int of_whole) {
     const auto [at, is_new] = places.try_emplace(of_whole, static_cast<int>(moves.size()));
-    if (is_new) moves.push_back(whole.contacts_.moves()[static_cast<std::size_t>(of_whole)]);
+    if (is_new) moves.push_back(whole.contacts().moves()[static_cast<std::size_t>(of_whole)]);
     return at->second;
   };
   for (int row : part.rows) {
     blocks_.push_back(whole.blocks_[row]);
     place(row);
   }
-  return contacts_.take_part(whole.contacts_, part, place);
+  return contacts_->take_part(*whole.contacts_, part, place);
 }
 
 bool StepEquations::stands_still() const {
@@ -292,8 +295,8 @@ double StepEquations::start_scale() const {
 }
 
 Memory StepEquations::memory() const {
-  Memory of = contacts_.memory();
-  of.blocks += bytes_of(blocks_, rows_);
+  Memory of;
+  of.blocks = bytes_of(blocks_, rows_);
   for (const Eigen::VectorXd* vector : {&start_force_, &residual_}) of.blocks += sizeof(double) * static_cast<std::size_t>(vector->size());
   return of;
 }

@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "openclose/integrator/step_contacts.h"
+#include "openclose/integrator/contact_trial.h"
 #include "openclose/integrator/tangent_system.h"
 
 namespace openclose {
@@ -26,12 +26,13 @@ class StepEquations {
     bool is_alone = false;                 ///< without contacts and point forces
   };
 
-  void prepare(const StepProblem& problem, const SpringSource& springs);
+  /// \param contacts  to be laid out for the step; they must outlive what is asked of its equations
+  void prepare(const StepProblem& problem, const SpringSource& springs, ContactTrial& contacts);
   /// The same step with springs that differ only in what they carry at its start, in the gaps they keep and in their stiffness.
-  void prepare_again(const std::vector<ContactSprings>& springs);
+  void prepare_again(const std::vector<ContactSprings>& springs, ContactTrial& contacts);
   /// The equations of a part of another system, while all other blocks stay where they are there.
   /// \return places of the blocks of each contact
-  std::vector<std::pair<int, int>> take_part(const StepEquations& whole, const Part& part);
+  std::vector<std::pair<int, int>> take_part(const StepEquations& whole, const Part& part, ContactTrial& contacts);
   /// Blocks that nothing touches go where constant forces move them, which is known at once. They have no residual, and their forces are no measure
   /// of others, so that whatever they are changes not a bit of what the others do.
   void move_blocks_alone(Eigen::VectorXd& d) const;
@@ -72,10 +73,10 @@ class StepEquations {
   const StepProblem& problem() const { return *problem_; }
   int rows() const { return static_cast<int>(blocks_.size()); }
   const std::vector<StepBlock>& blocks() const { return blocks_; }
-  StepContacts& contacts() { return contacts_; }
-  const StepContacts& contacts() const { return contacts_; }
+  ContactTrial& contacts() { return *contacts_; }
+  const ContactTrial& contacts() const { return *contacts_; }
   const Eigen::VectorXd& start_force() const { return start_force_; }
-  Memory memory() const;
+  Memory memory() const;  ///< without the contacts
 
  private:
   void find_blocks_alone();
@@ -91,7 +92,7 @@ class StepEquations {
   void take_state(std::size_t c, ContactStatus status, double normal, double shear);
 
   const StepProblem* problem_ = nullptr;
-  StepContacts contacts_;
+  ContactTrial* contacts_ = nullptr;
   std::vector<StepBlock> blocks_;
   std::vector<ForceRow> rows_;   ///< all forces at the trial position but inertia; of those that have no equation not to be read
   Eigen::VectorXd start_force_;  ///< the same at the start of the step, used if theta < 1

@@ -26,7 +26,7 @@ constexpr double work_on_parts = 3.0;
 
 std::vector<Part> Subdomains::unbalanced_parts(const StepEquations& whole, double norm, double end) {
   const int rows = whole.rows();
-  if (neighbourhood_.rows() != rows) neighbourhood_.build(rows, whole.contacts().count(), [&](std::size_t c) { return whole.contacts().places(c); });
+  if (neighbourhood_.rows() != rows) neighbourhood_.build(rows, whole.contacts().size(), [&](std::size_t c) { return whole.contacts().places(c); });
   std::vector<double> residuals(static_cast<std::size_t>(rows));
   for (int row = 0; row < rows; ++row) residuals[static_cast<std::size_t>(row)] = whole.unbalanced(row) / whole.tolerated(row);
   const std::vector<int> seeds = most_unbalanced(residuals, norm, end, seed_residual, static_cast<int>(few_seeds * rows));
@@ -42,14 +42,15 @@ double Subdomains::solve(StepEquations& whole, StepSolution& solution, double no
   Eigen::VectorXd trial = solution.d;
   const long most_rows = static_cast<long>(work_on_parts * static_cast<double>(whole.rows()));
   long rows = 0;  // of all linear solves
+  StepSolution found;
   for (const Part& part : parts) {
-    StepSolution found;
+    found.clear();
     found.d = rows_of(solution.d, part.rows);
     if (newton.solve_part(whole, part, end, found)) {
       for (std::size_t i = 0; i < part.rows.size(); ++i) trial.segment<dofs>(dofs * part.rows[i]) = found.d.segment<dofs>(dofs * i);
     }
     counters_ += newton.linear_counters();
-    memory_.grow_to(newton.present_memory());
+    memory_.grow_to(newton.present_memory() + found.memory());
     ++solution.effort.parts;
     solution.effort.part_iterations += found.effort.iterations;
     rows += static_cast<long>(found.effort.iterations) * static_cast<long>(part.rows.size());

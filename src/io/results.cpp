@@ -245,9 +245,10 @@ void ContactHistoryFile::add(double time, const std::vector<ContactMotion>& moti
 StateTables::StateTables(const OutputFolder& folder, const Scene& scene, const RestartPoint* restart)
     : blocks_(folder, restart), contacts_(folder, restart), states_(folder, restart), cracks_(folder, scene, restart) {}
 
-void StateTables::add(const std::string& state, const Simulation& simulation, const std::vector<Contact>& contacts) {
+void StateTables::add(const std::string& state, const Simulation& simulation) {
   blocks_.add(state, simulation);
-  contacts_.add(state, simulation.scene(), simulation.system(), contacts);
+  const ContactSet& contacts = simulation.state().contacts;
+  for (const std::vector<Contact>* list : {&contacts.moving, &contacts.resting}) contacts_.add(state, simulation.scene(), simulation.system(), *list);
   states_.add(state, simulation);
   cracks_.add(state, simulation.scene(), simulation.system());
 }

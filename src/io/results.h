@@ -107,8 +107,7 @@ class StateTables {
   /// The drawing: nothing has moved, and no force acts yet.
   void add_drawing(const Simulation& simulation) { blocks_.add("initial", simulation); }
   /// A moment of a run.
-  void add(const std::string& state, const Simulation& simulation) { add(state, simulation, simulation.state().every_contact()); }
-  void add(const std::string& state, const Simulation& simulation, const std::vector<Contact>& contacts);
+  void add(const std::string& state, const Simulation& simulation);
   /// A state of a factor of safety.
   void add(const NamedState& state, const Scene& scene);
   /// See RunTable::written().

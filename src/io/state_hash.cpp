@@ -73,14 +73,17 @@ std::uint64_t hash_of_contacts(const Scene& scene, const BlockSystem& system, co
   return total;
 }
 
-std::string digits(std::uint64_t hash) { return fmt::format("{:016x}", hash); }
+std::string digits(std::uint64_t hash) {
+  return fmt::format("{:016x}", hash);
+}
 
 }  // namespace
 
 std::string state_hash(const Simulation& simulation) {
   const Scene& scene = simulation.scene();
   const BlockSystem& system = simulation.system();
-  std::uint64_t total = hash_of_contacts(scene, system, simulation.state().every_contact());
+  const ContactSet& contacts = simulation.state().contacts;
+  std::uint64_t total = hash_of_contacts(scene, system, contacts.moving) + hash_of_contacts(scene, system, contacts.resting);
   for (int b = 0; b < system.block_count(); ++b) total += hash_of_block(scene, system, b, simulation.velocity(b));
   return digits(total);
 }

@@ -8,10 +8,12 @@ void ContactStrength::break_bond(const TabulatedJoint& joint) {
   friction = joint.residual_friction;
 }
 
-ContactDashpots::ContactDashpots(const JointProperties& joint, double length, double reduced_mass)
-    : normal(2.0 * joint.damping_ratio * std::sqrt(joint.normal_stiffness * length * reduced_mass)),
-      shear(joint.shear_stiffness == joint.normal_stiffness ? normal
-                                                            : 2.0 * joint.damping_ratio * std::sqrt(joint.shear_stiffness * length * reduced_mass)) {}
+ContactDashpots::ContactDashpots(const JointProperties& joint, double length, double reduced_mass) {
+  const JointSprings springs(joint, length);
+  const auto dashpot = [&](double stiffness) { return 2.0 * joint.damping_ratio * std::sqrt(stiffness * reduced_mass); };
+  normal = dashpot(springs.normal);
+  shear = joint.shear_stiffness == joint.normal_stiffness ? normal : dashpot(springs.shear);
+}
 
 ContactForces tangent_for_status(const ContactSprings& springs, const ContactStrength& strength, ContactStatus status, double normal, double shear) {
   ContactForces f;

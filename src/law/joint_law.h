@@ -102,6 +102,12 @@ struct ContactForces : CarriedForces {
   double normal_by_gap = 0.0, shear_by_gap = 0.0, shear_by_slip = 0.0;  ///< [N/m] dN/dg, dT/dg, dT/ds
 };
 
+/// Springs of a joint's own stiffness over a contact's tributary length [N/m].
+struct JointSprings {
+  double normal, shear;
+  JointSprings(const JointProperties& joint, double length) : normal(joint.normal_stiffness * length), shear(joint.shear_stiffness * length) {}
+};
+
 /// Dashpots of a contact [N s/m].
 struct ContactDashpots {
   double normal = 0.0, shear = 0.0;

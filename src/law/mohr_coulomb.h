@@ -28,6 +28,14 @@ struct ShearLimit {
   }
 };
 
+/// [N] The normal force at which the shear bound changes its slope; none lies below -tension.
+template <class Number>
+OPENCLOSE_KERNEL Number kink_of_bound(Number friction, Number cohesion, Number tension, double ramp) {
+  const Number lowest = friction * tension, on_ramp = (cohesion - lowest) * ramp - tension;
+  const Number divisor = friction > 0.0 ? friction : friction + 1.0;  // of what is not taken, and may not trap either
+  return cohesion > lowest ? on_ramp : (friction > 0.0 ? -cohesion / divisor : -tension);
+}
+
 /// Whether the normal spring carries nothing.
 template <class Number>
 OPENCLOSE_KERNEL auto spring_is_open(Number tension, Number elastic_normal) {

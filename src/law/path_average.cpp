@@ -69,11 +69,8 @@ Dual shear_bound(const ContactStrength& strength, const Dual& normal) {
   return {bound.value, bound.slope * normal.by_gap, bound.slope * normal.by_slip};
 }
 
-/// The normal force at which the shear bound changes its slope; none lies below -tension.
 double kink_of_bound(const ContactStrength& strength) {
-  const double lowest = strength.friction * strength.tension;
-  if (strength.cohesion > lowest) return (strength.cohesion - lowest) * tolerance::cohesion_ramp - strength.tension;
-  return strength.friction > 0.0 ? -strength.cohesion / strength.friction : -strength.tension;
+  return openclose::kink_of_bound(strength.friction, strength.cohesion, strength.tension, tolerance::cohesion_ramp);
 }
 
 double stored(double force, double stiffness) {

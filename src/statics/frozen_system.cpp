@@ -144,8 +144,9 @@ void FrozenSystem::find_contacts(const Scene& scaled, const BlockSystem& system)
   DetectionSkips skips;
   skips.contact_skin = tolerance::rounding_of_ways_m;
   Detector detector(closed_gap, skips);
-  std::vector<Contact> found;
-  detector.update(system, joints, found);
+  ContactSet contacts;
+  detector.update(system, joints, contacts);
+  const std::vector<Contact>& found = contacts.moving;
   std::vector<std::vector<int>> neighbours(system.block_count());
   for (const auto& [a, b] : detector.candidate_pairs()) {
     neighbours[a].push_back(b);

@@ -166,10 +166,10 @@ struct Row {
     JointTable joints(scene());
     Detector detector(0.05);
     detector.update(system, joints, contacts);
-    for (Contact& c : contacts) c.status = ContactStatus::sticking;
+    for (Contact& c : contacts.moving) c.status = ContactStatus::sticking;
     const std::vector<int> at_rest{0, 2, 4, 6};
     system.put_to_rest(at_rest);
-    resting.keep_forces(system, at_rest, contacts, {});
+    resting.keep_forces(system, at_rest, contacts);
     resting.divide(system, {});
   }
   static Scene scene() {
@@ -184,13 +184,13 @@ struct Row {
     for (std::size_t i = 0; i < parts.size(); ++i)
       pushes[i].x() = parts[i] * rest.acceleration * system.block(system.resting_blocks()[i]).mass[0] / -std::expm1(-dt / rest.time);
     resting.judge(system, dt);
-    std::vector<int> list = resting.woken(system, contacts, {}, urgency);
+    std::vector<int> list = resting.woken(system, contacts, urgency);
     std::sort(list.begin(), list.end());
     return list;
   }
 
   BlockSystem system;
-  std::vector<Contact> contacts;
+  ContactSet contacts;
   Resting resting;
 };
 

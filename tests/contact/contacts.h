@@ -17,9 +17,11 @@ class Detection {
       : system(scene), joints(scene), detector(reach, skips) {
     update();
   }
+  Detection(const Detection&) = delete;
+  Detection& operator=(const Detection&) = delete;
 
   const std::vector<Contact>& update() {
-    detector.update(system, joints, contacts);
+    detector.update(system, joints, set);
     return contacts;
   }
   void move(int block, double x, double y, double rotation = 0.0) { system.advance(block, {x, y, rotation}); }
@@ -44,7 +46,8 @@ class Detection {
   BlockSystem system;
   JointTable joints;
   Detector detector;
-  std::vector<Contact> contacts;
+  ContactSet set;
+  std::vector<Contact>& contacts = set.moving;
 };
 
 }  // namespace openclose::test

@@ -331,9 +331,10 @@ TEST_CASE("corners that are left out because they are too far from the other blo
     const std::vector<Vec2> below = leaning();
     const std::vector<Vec2> above = placed(leaning(), tilt(generator), Vec2(place(generator), below[2].y() + reach * share(generator)));
     const Detection all_new(turned(scene_with({fixed_block("below", below), free_block("above", above)}), place(generator), {0.0, 0.0}), reach);
-    std::vector<Contact> found{known};
+    ContactSet set{{known}, {}};
     Detector detector(reach, {true, false, true, 0.0});
-    REQUIRE(detector.update(all_new.system, all_new.joints, found));
+    REQUIRE(detector.update(all_new.system, all_new.joints, set));
+    const std::vector<Contact>& found = set.moving;
     REQUIRE(found.size() == all_new.contacts.size());
     for (std::size_t i = 0; i < found.size(); ++i) {
       CHECK(found[i].vertex == all_new.contacts[i].vertex);
@@ -357,9 +358,10 @@ TEST_CASE("a joint that has closed under one of two corners stays closed for the
   known.edge = 4;
   known.gap = -0.02;
   known.status = ContactStatus::sticking;
-  std::vector<Contact> found{known};
+  ContactSet set{{known}, {}};
   Detector detector(1e-3, {true, false, true, 0.0});
-  REQUIRE(detector.update(all_new.system, all_new.joints, found));
+  REQUIRE(detector.update(all_new.system, all_new.joints, set));
+  const std::vector<Contact>& found = set.moving;
   REQUIRE(found.size() == 1);
   CHECK(found[0].vertex == 4);
   CHECK(found[0].edge == 2);
@@ -382,13 +384,13 @@ TEST_CASE("a corner that leans on one block is opposite to another one's edge up
   known.edge = 2;
   known.gap = -closure;
   known.status = ContactStatus::sticking;
-  std::vector<Contact> found{known};
+  ContactSet set{{known}, {}};
   const BlockSystem system(scene);
   const JointTable joints(scene);
   constexpr double reach = 2e-4;  // [m] of steps of 0.1 mm
   Detector detector(reach, {true, false, true, 0.0});
-  REQUIRE(detector.update(system, joints, found));
-  const bool meets = std::ranges::any_of(found, [](const Contact& c) { return c.vertex == 4 && c.edge == 9; });
+  REQUIRE(detector.update(system, joints, set));
+  const bool meets = std::ranges::any_of(set.moving, [](const Contact& c) { return c.vertex == 4 && c.edge == 9; });
   CHECK(meets == (beyond < 2.0 * closure));
 }
 

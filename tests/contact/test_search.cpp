@@ -195,16 +195,16 @@ TEST_CASE("a list that stays as it is is not touched", "[contact][search]") {
   const Contact* place = d.contacts.data();
   d.contacts[0].gap = 0.25;
   d.move(1, 0.6 * tolerance::contact_skin_m, 0.0);
-  CHECK_FALSE(d.detector.update(d.system, d.joints, d.contacts));
+  CHECK_FALSE(d.detector.update(d.system, d.joints, d.set));
   CHECK(d.contacts.data() == place);
   CHECK(d.contacts[0].gap == 0.25);
   CHECK(d.detector.counters().narrow_phases == 1);
   CHECK(d.detector.counters().narrow_phases_skipped == 1);
   d.move(1, 0.6 * tolerance::contact_skin_m, 0.0);
-  CHECK(d.detector.update(d.system, d.joints, d.contacts));
+  CHECK(d.detector.update(d.system, d.joints, d.set));
   CHECK(d.contacts[0].gap == 0.0);
   d.detector.forget();
-  CHECK(d.detector.update(d.system, d.joints, d.contacts));
+  CHECK(d.detector.update(d.system, d.joints, d.set));
   CHECK(d.detector.counters().narrow_phases == 3);
 }
 
@@ -265,16 +265,16 @@ TEST_CASE("contacts of blocks at rest are set aside and come back as they were",
   REQUIRE(d.contacts.size() == 4);
   for (std::size_t i = 0; i < 4; ++i) d.contacts[i].normal_force = 1.0 + static_cast<double>(i);
   d.system.put_to_rest({1});
-  d.detector.divide(d.system, d.contacts);
+  d.detector.divide(d.system, d.set);
   REQUIRE(d.contacts.size() == 2);
-  REQUIRE(d.detector.resting_contacts().size() == 2);
+  REQUIRE(d.set.resting.size() == 2);
   for (const Contact& c : d.contacts) CHECK(std::max(c.vertex_block, c.edge_block) == 2);
-  for (const Contact& c : d.detector.resting_contacts()) CHECK(std::max(c.vertex_block, c.edge_block) == 1);
+  for (const Contact& c : d.set.resting) CHECK(std::max(c.vertex_block, c.edge_block) == 1);
   d.move(2, 0.01, 0.0);
   REQUIRE(d.update().size() == 2);
   d.system.wake({1});
-  d.detector.divide(d.system, d.contacts);
-  REQUIRE(d.detector.resting_contacts().empty());
+  d.detector.divide(d.system, d.set);
+  REQUIRE(d.set.resting.empty());
   const long found_anew = d.detector.counters().narrow_phases;
   REQUIRE(d.update().size() == 4);
   CHECK(d.detector.counters().narrow_phases == found_anew);
@@ -291,12 +291,12 @@ TEST_CASE("blocks that are woken are searched for once they have moved enough si
   d.move(1, -little, 0.0);
   d.update();
   d.system.put_to_rest({0, 1});
-  d.detector.divide(d.system, d.contacts);
+  d.detector.divide(d.system, d.set);
   d.move(2, 1.0, 0.0);
   d.update();
   REQUIRE(d.detector.counters().searches == 2);
   d.system.wake({0, 1});
-  d.detector.divide(d.system, d.contacts);
+  d.detector.divide(d.system, d.set);
   d.update();
   CHECK(d.detector.counters().searches == 2);
   d.move(0, little, 0.0);
@@ -319,9 +319,9 @@ TEST_CASE("whoever rests and wakes, in whatever order, every contact stays with 
     }
     d.system.put_to_rest(rest);
     d.system.wake(wake);
-    d.detector.divide(d.system, d.contacts);
+    d.detector.divide(d.system, d.set);
     d.update();
-    std::vector<Contact> moving, resting = d.detector.resting_contacts();
+    std::vector<Contact> moving, resting = d.set.resting;
     for (const Contact& c : all) {
       if (d.system.block(c.vertex_block).equation >= 0 || d.system.block(c.edge_block).equation >= 0) moving.push_back(c);
     }
@@ -349,7 +349,7 @@ TEST_CASE("what blocks at rest have closed among themselves still counts for cor
     }
     if (rests) {
       d.system.put_to_rest({1, 2});
-      d.detector.divide(d.system, d.contacts);
+      d.detector.divide(d.system, d.set);
     }
     d.move(3, 0.195, 0.0);
     std::vector<std::pair<int, int>> list;
