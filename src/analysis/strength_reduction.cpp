@@ -136,7 +136,11 @@ class StrengthReduction {
   StrengthBracket search(StrengthTrials& trials) {
     JournalledTrials journalled(trials, journal_);
     return search_strength(
-        journalled, input_, [this](const StrengthTrial& trial) { result_.trials.push_back(trial); },
+        journalled, input_,
+        [this](const StrengthTrial& trial) {
+          result_.trials.push_back(trial);
+          if (observer_.trial) observer_.trial(trial);
+        },
         observer_.progress ? [this](double share) { observer_.progress(share_done_ = share); } : std::function<void(double)>());
   }
 

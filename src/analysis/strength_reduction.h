@@ -79,6 +79,7 @@ struct FactorOfSafety {
 struct SearchObserver {
   std::function<void(double fraction)> progress;  ///< may throw Stopped: what is known by then is the answer
   std::function<void(std::string state)> done;    ///< after every trial and other piece of work, with all that is known: resume_search() goes on from it
+  std::function<void(const StrengthTrial& trial)> trial = {};  ///< after every trial of the search, also those that a restart already has
 };
 
 FactorOfSafety factor_of_safety(Simulation& simulation, const SearchObserver& observer);

@@ -83,9 +83,17 @@ class SearchCheckpoint {
   double next_write_ = 0.0;  ///< [s] of CPU
 };
 
+/// "1.25  stable", "1.5625  failed (mechanism)"
+std::string line_of(const StrengthTrial& trial) {
+  const char* outcome = trial.outcome == TrialOutcome::stable ? "stable" : trial.outcome == TrialOutcome::failed ? "failed" : "undecided";
+  const std::string reason = trial.outcome == TrialOutcome::stable ? "" : " (" + trial.criterion + ")";
+  return fmt::format("{:<9.6g} {}{}", trial.srf, outcome, reason);
+}
+
 /// With what has been found out in the checkpoint; all of it where the search is stopped.
 FactorOfSafety search(Simulation& simulation, const Options& options, const OutputFolder& folder, std::optional<Checkpoint> restart) {
-  Progress progress("strength reduction", options.quiet);
+  const bool grows = simulation.scene().strength_reduction.increase.has_value();
+  Progress progress(grows ? "load" : "strength reduction", options.quiet);
   SearchCheckpoint checkpoint(folder.path_of(checkpoint_name), simulation.scene());
   SearchObserver observer;
   observer.progress = [&](double fraction) {
@@ -93,6 +101,7 @@ FactorOfSafety search(Simulation& simulation, const Options& options, const Outp
     throw_if_stopped();
   };
   observer.done = [&](std::string state) { checkpoint.keep(std::move(state)); };
+  observer.trial = [&](const StrengthTrial& trial) { progress.note(line_of(trial)); };
   const auto found = [&] {
     if (!restart) return factor_of_safety(simulation, observer);
     try {

@@ -30,7 +30,11 @@ Progress::Progress(std::string label, bool quiet)
     : label_(std::move(label)), enabled_(!quiet && isatty(STDERR_FILENO)), start_(Clock::now()), last_(start_) {}
 
 Progress::~Progress() {
-  if (drawn_) std::fputs("\r\033[K", stderr);
+  if (drawn_) std::fputs(("\r\033[K" + notes_).c_str(), stderr);
+}
+
+void Progress::note(const std::string& line) {
+  if (enabled_) notes_ += line + "\n";
 }
 
 void Progress::update(double fraction) {
@@ -38,6 +42,8 @@ void Progress::update(double fraction) {
   const auto now = Clock::now();
   if (now - start_ < patience || now - last_ < interval) return;
   last_ = now;
+  if (!notes_.empty()) std::fputs(("\r\033[K" + notes_).c_str(), stderr);
+  notes_.clear();
   drawn_ = true;
   const int filled = static_cast<int>(std::clamp(fraction, 0.0, 1.0) * width);
   const std::string bar = std::string(filled, '#') + std::string(width - filled, '.');

@@ -20,12 +20,15 @@ class Progress {
 
   /// \param fraction  of the work that is done, 0 to 1
   void update(double fraction);
+  /// A line that stays above the bar, once there is one.
+  void note(const std::string& line);
 
  private:
   using Clock = std::chrono::steady_clock;
   std::string label_;
   bool enabled_;
   bool drawn_ = false;
+  std::string notes_;  ///< not shown yet
   Clock::time_point start_;
   Clock::time_point last_;
 };

@@ -45,7 +45,7 @@ void run_into(const TemporaryFolder& place, const Scene& scene) {
   observer.started = [&](const Simulation& s) { states.add("start", s); };
   observer.snapshot = [&](const std::string& state, const Simulation& s) { states.add(state, s); };
   REQUIRE(run(simulation, observer).converged);
-  states.add("final", simulation, simulation.change_contacts());
+  states.add("final", simulation);
   states.close();
 }
 

@@ -91,7 +91,7 @@ TEST_CASE("states of a run as grids of blocks and contacts", "[io][vtk]") {
     observer.started = [&](const Simulation& s) { states.add("start", s); };
     observer.snapshot = [&](const std::string& state, const Simulation& s) { states.add(state, s); };
     REQUIRE(run(simulation, observer).converged);
-    states.add("final", simulation, simulation.change_contacts());
+    states.add("final", simulation);
     states.close();
   }
   write_vtk(folder);

@@ -38,7 +38,7 @@ void run_into(const TemporaryFolder& place, Scene scene) {
   observer.snapshot = [&](const std::string& state, const Simulation& s) { states.add(state, s); };
   observer.output = [&](const Simulation& s) { energy.add(s.time(), s.ledger()); };
   const RunResult result = run(simulation, observer);
-  states.add("final", simulation, simulation.change_contacts());
+  states.add("final", simulation);
   states.close();
   energy.close();
   Summary summary;
