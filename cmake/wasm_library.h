@@ -81,9 +81,9 @@ void transform(Range&& range, Output output, Action action) {
   std::transform(std::begin(range), std::end(range), output, std::move(action));
 }
 
-template <class Range>
-auto adjacent_find(Range&& range) {
-  return std::adjacent_find(std::begin(range), std::end(range));
+template <class Range, class Test = equal_to>
+auto adjacent_find(Range&& range, Test test = {}) {
+  return std::adjacent_find(std::begin(range), std::end(range), test);
 }
 
 template <class Range, class Compare = less, class Part = identity>

@@ -88,7 +88,8 @@ StepProblem SimulationState::problem(double dt, bool statics) const {
   StepProblem p{system, external, joints, contacts.moving, scene.method};
   p.dt = dt;
   p.statics = statics;
-  p.inertia = statics ? 2.0 / (dt * dt) : scheme->inertia(dt);
+  // A search for a factor may have no step in time; what it needs of a problem then does not depend on inertia.
+  if (dt > 0.0) p.inertia = statics ? 2.0 / (dt * dt) : scheme->inertia(dt);
   p.end_weight = statics ? 1.0 : scheme->end_weight();
   p.keep_bonds = keep_bonds;
   p.no_slip = no_slip;
