@@ -114,6 +114,17 @@ int report_failure(int status, const std::string& message, bool json) {
   return status;
 }
 
+/// What `fos` has besides the options of every analysis.
+void add_fos_options(CLI::App& fos, Options& options) {
+  fos.add_option_function<std::string>(
+      "--increase",
+      [&options](const std::string& load) { options.overrides.push_back("strength_reduction.increase=" + toml(std::string_view(load))); },
+      "the strength stays, and this load grows from 0 until the blocks fail: gravity_x, gravity_y or the name of loads; --increase=-gravity_x turns "
+      "it around");
+  fos.add_option("--restart", options.restart_file,
+                 "go on from the checkpoint.bin that a search which was broken off has left: no trial is made again");
+}
+
 int main_checked(int argc, char** argv) {
   CLI::App app{
       "Openclose: 2-D block systems of jointed rock and masonry. Exit status: 0 success, 1 not converged (state saved), 2 bad input (nothing "
@@ -133,13 +144,7 @@ int main_checked(int argc, char** argv) {
   run->add_option("--restart", options.restart_file,
                   "go on from this checkpoint.bin of an earlier run of the scene (see output.checkpoint_every_s), continuing the tables beside it");
   CLI::App* fos = subcommand("fos", "factor of safety by strength reduction, or the multiplier of a load", true, &fos_command);
-  fos->add_option_function<std::string>(
-      "--increase",
-      [&options](const std::string& load) { options.overrides.push_back("strength_reduction.increase=" + toml(std::string_view(load))); },
-      "the strength stays, and this load grows from 0 until the blocks fail: gravity_x, gravity_y or the name of loads; --increase=-gravity_x turns "
-      "it around");
-  fos->add_option("--restart", options.restart_file,
-                  "go on from the checkpoint.bin that a search which was broken off has left: no trial is made again");
+  add_fos_options(*fos, options);
   CLI::App* check = subcommand(
       "check", "read and check a scene, write nothing but --spectrum; what run or fos would refuse is refused, whether it settles only they find out",
       false, &check_command);

@@ -23,7 +23,8 @@ constexpr double convex_reduction = 1e-10;  ///< [-] residual of a pass over tha
 
 }  // namespace
 
-Balance::Balance(const FrozenSystem& system, const FrozenStrength& strength) : system_(system), strength_(strength), solver_(make_solver()), contacts_(system) {
+Balance::Balance(const FrozenSystem& system, const FrozenStrength& strength)
+    : system_(system), strength_(strength), solver_(make_solver()), contacts_(system) {
   std::vector<std::pair<int, int>> couplings;
   for (const FrozenContact& c : system.contacts()) {
     if (c.a >= 0 && c.b >= 0) couplings.emplace_back(c.a, c.b);

@@ -87,7 +87,7 @@ class Balance {
   std::vector<Share> shares_;
   std::vector<std::vector<int>> slots_of_contact_;
   std::vector<ContactResponse> assembled_;  ///< with whose tangents the matrix was assembled
-  std::vector<char> is_stale_;       ///< slots
+  std::vector<char> is_stale_;              ///< slots
   std::vector<int> stale_;
   double assembled_eps_ = -1.0;
   Eigen::VectorXd padded_, forces_;  ///< with the row of fixed blocks

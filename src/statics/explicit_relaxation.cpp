@@ -31,7 +31,12 @@ std::vector<BlockVector> stiffness_sums(const FrozenSystem& system) {
 }  // namespace
 
 ExplicitRelaxation::ExplicitRelaxation(const FrozenSystem& system, const FrozenStrength& strength, double local_damping, long most_steps)
-    : system_(system), strength_(strength), local_damping_(local_damping), most_steps_(most_steps), inertia_(stiffness_sums(system)), contacts_(system) {
+    : system_(system),
+      strength_(strength),
+      local_damping_(local_damping),
+      most_steps_(most_steps),
+      inertia_(stiffness_sums(system)),
+      contacts_(system) {
   // What no spring holds in a direction has its own mass there.
   for (std::size_t b = 0; b < inertia_.size(); ++b) {
     for (int k = 0; k < 3; ++k) {

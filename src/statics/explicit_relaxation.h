@@ -34,8 +34,8 @@ class ExplicitRelaxation : public FrozenSolver {
   const FrozenSystem& system_;
   const FrozenStrength& strength_;
   double local_damping_;
-  long most_steps_;  ///< of a state; of all together twice as many
-  long steps_ = 0;   ///< of all states so far
+  long most_steps_;                   ///< of a state; of all together twice as many
+  long steps_ = 0;                    ///< of all states so far
   std::vector<BlockVector> inertia_;  ///< by which one step of time is stable for every block
   IncrementPacks contacts_;
   Eigen::VectorXd velocity_, force_;  ///< three numbers a block and three for fixed ones

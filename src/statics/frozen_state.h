@@ -38,7 +38,8 @@ struct FrozenState {
   }
   /// Whether one that was read is of these blocks.
   bool fits(const FrozenSystem& system) const {
-    return contacts.size() == system.contacts().size() && supports.size() == system.supports().size() && displacement.size() == system.blocks().size();
+    return contacts.size() == system.contacts().size() && supports.size() == system.supports().size() &&
+           displacement.size() == system.blocks().size();
   }
 };
 

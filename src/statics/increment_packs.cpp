@@ -113,7 +113,7 @@ OPENCLOSE_FOR_WIDE_REGISTERS_TOO void follow_increment(ShearLaw law, IncrementPa
 }
 
 OPENCLOSE_FOR_WIDE_REGISTERS_TOO double subtract_increment_power(ShearLaw law, double from, const IncrementPack* packs, const SearchPack* ways,
-                                                            std::size_t count, double part) {
+                                                                 std::size_t count, double part) {
   if (law == ShearLaw::coulomb) return subtract_power_of_all<ShearLaw::coulomb>(from, packs, ways, count, part);
   if (law == ShearLaw::fixed) return subtract_power_of_all<ShearLaw::fixed>(from, packs, ways, count, part);
   return subtract_power_of_all<ShearLaw::elastic>(from, packs, ways, count, part);

@@ -9,9 +9,9 @@ namespace {
 constexpr double least_viscosity = 1e-9;
 constexpr double first_viscosity = 1e-2;
 constexpr double most_viscosity = 1e4;
-constexpr long work_of_steady_motion = 2;  ///< [factorisations] of an increment that begins with the velocity of the one before
-constexpr int increments_of_caution = 3;     ///< after one that was not found
-constexpr long most_factorisations = 1500;   ///< of one relaxation by Newton's method; twice as many decide no more trials
+constexpr long work_of_steady_motion = 2;   ///< [factorisations] of an increment that begins with the velocity of the one before
+constexpr int increments_of_caution = 3;    ///< after one that was not found
+constexpr long most_factorisations = 1500;  ///< of one relaxation by Newton's method; twice as many decide no more trials
 
 /// [factorisations] of all states together: two seconds with 600 blocks. Of 400 random slopes all that were certified took fewer. Passes with known
 /// friction take five times as many increments, see frozen_trials.cpp.
