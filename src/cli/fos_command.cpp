@@ -12,6 +12,7 @@
 #include "openclose/io/checkpoint.h"
 #include "openclose/io/formats.h"
 #include "openclose/io/progress.h"
+#include "openclose/io/search_checkpoint.h"
 #include "openclose/scene/check.h"
 #include "openclose/scene/writer.h"
 #include "stop_signal.h"
@@ -50,39 +51,6 @@ void print_factor(const Scene& scene, const FactorOfSafety& safety, const Output
   }
 }
 
-/// [-] Of the time of a search that its checkpoints may take: what a kill loses is then twenty times what a checkpoint costs.
-constexpr double share_of_checkpoints = 0.05;
-
-/// What a search has found out, written often enough to lose little and seldom enough to cost little.
-class SearchCheckpoint {
- public:
-  SearchCheckpoint(std::string path, const Scene& scene) : path_(std::move(path)), scene_(scene) {}
-
-  /// The first state is written at once.
-  void keep(std::string state) {
-    latest_ = std::move(state);
-    if (process_cpu_time() >= next_write_) write();
-  }
-  /// What has not been written yet.
-  void flush() {
-    if (latest_) write();
-  }
-
- private:
-  void write() {
-    const double begin = process_cpu_time();
-    write_checkpoint(path_, scene_, {0.0, {}, std::move(*latest_), "fos"});
-    latest_.reset();
-    const double end = process_cpu_time();
-    next_write_ = end + (end - begin) / share_of_checkpoints;
-  }
-
-  std::string path_;
-  const Scene& scene_;
-  std::optional<std::string> latest_;
-  double next_write_ = 0.0;  ///< [s] of CPU
-};
-
 /// "1.25  stable", "1.5625  failed (mechanism)"
 std::string line_of(const StrengthTrial& trial) {
   const char* outcome = trial.outcome == TrialOutcome::stable ? "stable" : trial.outcome == TrialOutcome::failed ? "failed" : "undecided";
@@ -94,7 +62,10 @@ std::string line_of(const StrengthTrial& trial) {
 FactorOfSafety search(Simulation& simulation, const Options& options, const OutputFolder& folder, std::optional<Checkpoint> restart) {
   const bool grows = simulation.scene().strength_reduction.increase.has_value();
   Progress progress(grows ? "load" : "strength reduction", options.quiet);
-  SearchCheckpoint checkpoint(folder.path_of(checkpoint_name), simulation.scene());
+  const auto write = [&](std::string state) {
+    write_checkpoint(folder.path_of(checkpoint_name), simulation.scene(), {0.0, {}, std::move(state), "fos"});
+  };
+  SearchCheckpoint checkpoint(write, &process_cpu_time);
   SearchObserver observer;
   observer.progress = [&](double fraction) {
     progress.update(fraction);
