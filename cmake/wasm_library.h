@@ -81,6 +81,16 @@ void transform(Range&& range, Output output, Action action) {
   std::transform(std::begin(range), std::end(range), output, std::move(action));
 }
 
+template <class Range>
+auto reverse(Range&& range) {
+  std::reverse(std::begin(range), std::end(range));
+}
+
+template <class Range, class Value>
+auto fill(Range&& range, const Value& value) {
+  std::fill(std::begin(range), std::end(range), value);
+}
+
 template <class Range, class Test = equal_to>
 auto adjacent_find(Range&& range, Test test = {}) {
   return std::adjacent_find(std::begin(range), std::end(range), test);

@@ -309,7 +309,7 @@ class StrengthReduction {
       const double clear = 0.5 * width_of_stiffness_effect * low;
       const bool differs = !effect.stable || *effect.stable > high + clear || (effect.failed && *effect.failed < low - clear);
       if (!differs) continue;
-      const std::string factor = effect.stable ? fmt::format("{:.4g}", *effect.stable) : "no equilibrium found";
+      const std::string factor = words_of(effect);
       others += fmt::format("{}{} at a ratio of {:g}", others.empty() ? "" : ", ", factor, effect.ratio);
     }
     if (!others.empty())
@@ -320,6 +320,14 @@ class StrengthReduction {
   }
 
   const char* noun() const { return input_.increase ? "multiplier" : "factor"; }
+
+  /// A bracket as narrow as it was to be in one number; a wide or open one as it is, since its lower end alone would say too much.
+  static std::string words_of(const StiffnessEffect& effect) {
+    if (!effect.stable) return "no equilibrium found";
+    if (!effect.failed) return fmt::format("at least {:.4g}", *effect.stable);
+    const bool is_narrow = *effect.failed - *effect.stable <= 2.0 * width_of_stiffness_effect * *effect.stable;
+    return is_narrow ? fmt::format("{:.4g}", *effect.stable) : fmt::format("between {:.4g} and {:.4g}", *effect.stable, *effect.failed);
+  }
 
   bool joints_can_lose_strength() const {
     return std::ranges::any_of(scene_.joints, [](const JointProperties& joint) { return can_lose_strength(joint, true); });

@@ -147,8 +147,9 @@ int fos_command(const Options& options) {
   write_summary(folder, summary, simulation, &safety);
   write_formats(simulation.scene().formats, folder);
 
+  if (!safety.bracket.stopped) folder.remove_checkpoint();
+  folder.list_results();
   if (safety.bracket.stopped) return report_stop(safety, options, folder);
-  folder.remove_checkpoint();
   if (!safety.found()) {
     print_message(fmt::format("no {}: {}; state saved in {}", name_of_answer(increase), safety.reason, folder.path()));
     return exit_not_converged;

@@ -167,6 +167,7 @@ int run_command(const Options& options) {
   if (!result.milestones.empty()) write_milestones(folder, result.milestones);
   write_summary(folder, summary_of_run(options, loaded, result, simulation), simulation);
   write_formats(scene.formats, folder);
+  folder.list_results();
   return report_end(options, result, simulation, folder);
 }
 }  // namespace openclose

@@ -19,6 +19,8 @@ constexpr const char* growing_results[] = {"history.csv",      "energy.csv", "bl
 /// What comes at its end.
 constexpr const char* last_results[] = {"block_properties.csv", "trials.csv",   "mechanism.csv",       "curve.csv",
                                         "milestones.csv",       "summary.json", "checkpoint.bin.part", "drawing.svg", "report.html"};
+/// Of these: what other commands write later. They name openclose where they begin.
+constexpr std::string_view later_results[] = {"drawing.svg", "report.html"};
 /// The first line of the scene that belongs to the results: a file of that name without it is somebody's own.
 constexpr std::string_view scene_heading = "# The scene as openclose has read it. The next run here writes it anew: copy it before you change it.\n";
 
@@ -134,18 +136,39 @@ void OutputFolder::claim(const std::vector<std::string>& read_files) const {
   for (const std::string& name : names_of_results()) {
     const std::string file = path_of(name);
     std::error_code unknown;
-    const bool is_there = name.back() == '/' ? !format_files(name).empty() : std::filesystem::exists(file, unknown);
-    if (!is_there) continue;
+    if (!is_there(name)) continue;
     for (const std::string& read : read_files) {
       if (std::filesystem::equivalent(read, file, unknown))
         throw InputError({read, 0}, "", "is read, and a result of this name would replace it", "-o with another folder");
     }
-    if (std::ranges::find(own, name) == own.end())
+    if (std::ranges::find(own, name) == own.end() && !is_own_picture(name))
       throw InputError({file, 0}, "", "is there and has not been written by openclose", "-o with another folder");
   }
+  write_list(names_of_results());
+}
+
+void OutputFolder::list_results() const {
+  std::vector<std::string> names = names_of_results();
+  // What a killed run leaves unfinished under our own ending stays ours.
+  std::erase_if(names, [&](const std::string& name) { return !is_there(name) && !name.ends_with(part_ending); });
+  write_list(names);
+}
+
+bool OutputFolder::is_there(const std::string& name) const {
+  std::error_code unknown;
+  return name.back() == '/' ? !format_files(name).empty() : std::filesystem::exists(path_of(name), unknown);
+}
+
+bool OutputFolder::is_own_picture(const std::string& name) const {
+  if (std::ranges::find(later_results, name) == std::end(later_results)) return false;
+  std::ifstream file(path_of(name), std::ios::binary);
+  return beginning_of({std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()}).find("openclose") != std::string::npos;
+}
+
+void OutputFolder::write_list(const std::vector<std::string>& names) const {
   std::ofstream list = open(list_name);
   list << list_heading << '\n';
-  for (const std::string& name : names_of_results()) list << name << '\n';
+  for (const std::string& name : names) list << name << '\n';
   finish(list, path_of(list_name));
 }
 

@@ -22,6 +22,8 @@ class OutputFolder {
   /// From now on the names of results in this folder are ours. Throws InputError if one of them is a file that is read, or one that openclose has not
   /// written; nothing has changed then.
   void claim(const std::vector<std::string>& read_files) const;
+  /// The analysis is over: from now on only those of these names are ours that are there.
+  void list_results() const;
   /// The scene as it was read, with its blocks cut and its overrides applied.
   void write_scene_copy(const std::string& text) const;
   /// A file of this name in the folder of a format, which is made where it is missing.
@@ -50,6 +52,9 @@ class OutputFolder {
   bool has_own_scene_copy() const;
   std::vector<std::string> names_of_results() const;
   std::vector<std::string> own_names() const;
+  bool is_there(const std::string& name) const;
+  bool is_own_picture(const std::string& name) const;
+  void write_list(const std::vector<std::string>& names) const;
   void remove_format_files() const;
   /// With the folder, as "vtk/a.vtu"; of the one of this name, which ends with a stroke.
   std::vector<std::string> format_files(const std::string& folder_name) const;

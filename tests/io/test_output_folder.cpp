@@ -174,6 +174,22 @@ TEST_CASE("a claimed folder keeps what is not ours", "[io][output_folder]") {
     OutputFolder(place.path()).remove_results();
     CHECK(place.entries() == std::set<std::string>{list_name});
   }
+  SECTION("what comes into the folder after the analysis is not ours, but for pictures that name us") {
+    const OutputFolder folder(place.path());
+    folder.claim({});
+    place.write("energy.csv", "ours");
+    folder.list_results();
+    CHECK_NOTHROW(OutputFolder(place.path()).claim({}));
+    folder.list_results();
+    place.write("drawing.svg", "<svg><!-- drawn by openclose -->");
+    CHECK_NOTHROW(OutputFolder(place.path()).claim({}));
+    folder.list_results();
+    for (const char* name : {"report.html", "history.csv", "curve.csv"}) {
+      place.write(name, "mine");
+      CHECK_THROWS_WITH(OutputFolder(place.path()).claim({}), ContainsSubstring(std::string(name) + ": is there and has not been written by"));
+      std::filesystem::remove(place / name);
+    }
+  }
   SECTION("a folder without a list is ours if the scene in it is") {
     const OutputFolder folder(place.path());
     folder.write_scene_copy("title = 'first'\n");

@@ -22,7 +22,9 @@ function trustOfFactor(summary) {
     rows.push(["rigid-block limit analysis", factor === null ? limit.verdict : `at most ${number(factor)}${apart}`, factor === null ? "poor" : ""]);
   }
   for (const effect of summary.shear_to_normal_stiffness || [])
-    rows.push([`with shear/normal stiffness ${number(effect.ratio, 3)}`, effect.stable === null ? "not found" : number(effect.stable, 4)]);
+    rows.push([`with shear/normal stiffness ${number(effect.ratio, 3)}`, effect.stable === null ? "not found"
+      : effect.failed === null ? `at least ${number(effect.stable, 4)}`
+      : `${number(effect.stable, 4)} to ${number(effect.failed, 4)}`]);
   if (summary.largest_travel_m) rows.push(["farthest motion between two stable trials", lengthText(summary.largest_travel_m)]);
   if (failing && failing.number) rows.push(["what fails", `${failing.number} of ${summary.free_blocks} free blocks, ${number(failing.area_m2, 4)} m\u00b2`]);
   rows.push(["definition", String(summary.definition).replaceAll("_", " ")]);
