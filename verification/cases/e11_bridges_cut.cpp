@@ -85,7 +85,8 @@ void slabs_on_a_plane(Report& report) {
       const Scene scene = slab_scene(slab, method, joint_cohesion, bridge_cohesion);
       report.near(std::string(slab.name) + ": factor of safety", method, expected, strength_reduction_factor(report, scene),
                   scene.strength_reduction.width, "-", "(sum of c L + W cos psi tan phi)/(W sin psi); width of the bracket");
-      if (method != all_methods.front()) continue;
+      // The cut needs no solver, so one that does nothing says nothing about it.
+      if (method != all_methods.front() || report.null_solver()) continue;
       report.near(std::string(slab.name) + ": length of bridges", "all", slab.bridges, length_of_bridges(scene), 1e-9, "m", "drawn; rounding");
     }
   }
