@@ -92,6 +92,10 @@ class EffectSearch {
 
 }  // namespace
 
+bool has_stiffness_ratio(const Scene& scene, double ratio) {
+  return std::ranges::all_of(scene.joints, [&](const JointProperties& joint) { return joint.shear_stiffness == ratio * joint.normal_stiffness; });
+}
+
 StiffnessEffect stiffness_effect(const Scene& scene, double ratio, double factor, std::optional<double> proved_failure) {
   Scene other = scene;
   other.method.contact = "soft";

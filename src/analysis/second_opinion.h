@@ -45,6 +45,9 @@ inline constexpr double stiffness_ratios[] = {0.1, 1.0};
 /// [-] Over the factor: what differs by less is not told apart.
 inline constexpr double width_of_stiffness_effect = 0.01;
 
+/// True if all joints have this ratio already, so that the factor of the scene is the factor at it.
+bool has_stiffness_ratio(const Scene& scene, double ratio);
+
 /// By Newton's method, whatever the method of the scene.
 /// \param ratio           [-] of shear to normal stiffness
 /// \param factor          [-] of the scene with its own stiffness

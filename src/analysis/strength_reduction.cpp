@@ -298,7 +298,10 @@ class StrengthReduction {
     // Without a factor, or at a multiplier of 0, there is nothing to compare with.
     if (!(result_.bracket.stable > 0.0) || result_.bracket.at_limit) return;
     for (const double ratio : stiffness_ratios) {
-      const auto effect = [&] { return stiffness_effect(scene, ratio, *result_.bracket.stable, limit.failed); };
+      const auto effect = [&] {
+        return has_stiffness_ratio(scene, ratio) ? StiffnessEffect{ratio, result_.bracket.stable, result_.bracket.failed}
+                                                 : stiffness_effect(scene, ratio, *result_.bracket.stable, limit.failed);
+      };
       result_.stiffness_effects.push_back(journal_.once(effect));
     }
     const double low = *result_.bracket.stable, high = result_.bracket.failed.value_or(low);

@@ -460,6 +460,11 @@ TEST_CASE("what the ratio of the stiffnesses does to the factor is what a search
       CHECK(*effect.stable <= other.failed());
       CHECK(*effect.failed >= other.stable());
       CHECK(*effect.failed <= *safety.limit_analysis->failed);
+      // At a ratio that the joints have already, the answer is the scene's own.
+      const auto own = std::ranges::find(other.stiffness_effects, effect.ratio, &StiffnessEffect::ratio);
+      REQUIRE(own != other.stiffness_effects.end());
+      CHECK(own->stable == other.bracket.stable);
+      CHECK(own->failed == other.bracket.failed);
     }
     CHECK(*safety.stiffness_effects[0].failed < safety.stable());  // soft in shear, they stand less
     CHECK(mentions_ratio(safety));
