@@ -65,15 +65,19 @@ std::optional<DrawnJoint> common_stretch(const OutlineEdge& a, const OutlineEdge
   return apart ? std::nullopt : std::optional(joint);
 }
 
-JointGap gap_between(const DrawnJoint& joint, const Vec2& on_a, const Vec2& on_b, const BlockSystem& system) {
+Vec2 tangent_of(const DrawnJoint& joint, const BlockSystem& system, JointDirection direction) {
+  if (direction == JointDirection::drawn) return (joint.to_b - joint.from_b).normalized();
+  const int first = system.block(joint.block_b).first_vertex + joint.edge_b;
+  return (system.arm(system.next(first)) - system.arm(first)).normalized();
+}
+
+JointGap gap_between(const DrawnJoint& joint, const Vec2& on_a, const Vec2& on_b, const BlockSystem& system, JointDirection direction) {
   const auto moved = [&](int b, const Vec2& point) {
     const Vec2 arm = (point - system.origin()) - system.block(b).reference_centroid;
     return Motion::displacement(system.displacement(b), arm, system.rotation_kind());
   };
   const Vec2 way_a = moved(joint.block_a, on_a), way_b = moved(joint.block_b, on_b);
-  const auto& block = system.block(joint.block_b);
-  const int first = block.first_vertex + joint.edge_b;
-  const Vec2 tangent = (system.arm(system.next(first)) - system.arm(first)).normalized();
+  const Vec2 tangent = tangent_of(joint, system, direction);
   // Differences of the drawing first: they are small, while coordinates may be large.
   const Vec2 apart = (on_a - on_b) + (way_a - way_b);
   return {0.5 * ((on_a + way_a) + (on_b + way_b)), -perpendicular(tangent).dot(apart), tangent.dot(apart)};
@@ -130,8 +134,8 @@ DrawnJoint joint_at(const Scene& scene, int block_a, int block_b, const Vec2& po
   return best;
 }
 
-JointMotion joint_motion(const DrawnJoint& joint, const BlockSystem& system) {
-  return {gap_between(joint, joint.from_a, joint.from_b, system), gap_between(joint, joint.to_a, joint.to_b, system)};
+JointMotion joint_motion(const DrawnJoint& joint, const BlockSystem& system, JointDirection direction) {
+  return {gap_between(joint, joint.from_a, joint.from_b, system, direction), gap_between(joint, joint.to_a, joint.to_b, system, direction)};
 }
 
 }  // namespace openclose

@@ -20,7 +20,7 @@ struct DrawnJoint {
   Vec2 from_b = Vec2::Zero(), to_b = Vec2::Zero();  ///< opposite to these on the side of b
 };
 
-/// Two points that faced each other in the drawing. The normal is that of b's edge, which turns with b.
+/// Two points that faced each other in the drawing. The normal is that of b's edge, see JointDirection.
 struct JointGap {
   Vec2 middle = Vec2::Zero();  ///< [m] between the two
   double opening = 0.0;        ///< [m] along the normal, with what the drawing has; negative: closed that far
@@ -39,6 +39,11 @@ std::vector<DrawnJoint> drawn_joints(const Scene& scene);
 /// The joint between two blocks at a point of it, of no length: that of the two edges there which face each other best.
 DrawnJoint joint_at(const Scene& scene, int block_a, int block_b, const Vec2& point);
 
-JointMotion joint_motion(const DrawnJoint& joint, const BlockSystem& system);
+/// Of which edge of b the normal and the tangent of a gap are.
+enum class JointDirection {
+  moved,  ///< where the block is now
+  drawn,  ///< of the drawing: gaps are then linear in the motions of the blocks, as velocities are
+};
+JointMotion joint_motion(const DrawnJoint& joint, const BlockSystem& system, JointDirection direction = JointDirection::moved);
 
 }  // namespace openclose

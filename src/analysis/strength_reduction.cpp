@@ -15,6 +15,7 @@ namespace {
 constexpr double slowest_of_mechanism = 1e-2;      ///< [-] of the fastest block: slower ones are carried along by rounding and springs
 constexpr double far_below_limit_analysis = 0.98;  ///< [-] of its factor: below it the reason for the distance is given
 constexpr double drawn_travel = 0.5;               ///< [-] of the median block's size by which the fastest block of a mechanism is drawn away
+constexpr double most_drawn_turn = 0.25;           ///< [rad] of any of its blocks: drawn to first order, areas grow by the square of it
 
 class StrengthReduction {
  public:
@@ -276,13 +277,19 @@ class StrengthReduction {
 
   void add_mechanism(const FrozenSystem& system, const Eigen::VectorXd& direction) {
     if (direction.size() == 0) return;
-    NamedState failed{"failed", BlockSystem(scene_), {}};
-    double fastest = 0.0;
+    Scene first_order = scene_;
+    first_order.method.rotation = RotationKind::linear;
+    NamedState failed{"failed", BlockSystem(first_order), {}, true};
+    double fastest = 0.0, fastest_turn = 0.0;
     const auto speed = [&](int row) { return direction.segment<2>(3 * row).norm() + std::abs(direction[3 * row + 2]); };
-    for (int row = 0; row < system.rows(); ++row) fastest = std::max(fastest, speed(row));
+    for (int row = 0; row < system.rows(); ++row) {
+      fastest = std::max(fastest, speed(row));
+      fastest_turn = std::max(fastest_turn, std::abs(direction[3 * row + 2]) / system.blocks()[row].radius);
+    }
+    const double travel = fastest_turn > 0.0 ? std::min(drawn_travel, most_drawn_turn * fastest / fastest_turn) : drawn_travel;
     for (int row = 0; row < system.rows(); ++row) {
       const BlockVector velocity = direction.segment<3>(3 * row) / fastest;
-      move_block(system, row, velocity * drawn_travel * system.length_unit(), failed.system);
+      move_block(system, row, velocity * travel * system.length_unit(), failed.system);
       if (speed(row) <= slowest_of_mechanism * fastest) continue;
       const FrozenBlock& block = system.blocks()[row];
       result_.mechanism.push_back({block.block, failed.system.block(block.block).area, block.centroid, velocity.head<2>(),

@@ -53,6 +53,7 @@ struct NamedState {
   std::string name;
   BlockSystem system;
   std::vector<Contact> contacts;
+  bool is_mechanism = false;  ///< moved by velocities as if they were displacements: to first order, so that what turns as one body stays joined
 };
 
 struct FactorOfSafety {

@@ -243,8 +243,7 @@ class ResultPicture {
   double largest_displacement() const {
     double largest = 0.0;
     for (std::size_t b = 0; b < now_.size(); ++b) {
-      const Placement placement(drawn_[b], now_[b]);
-      largest = std::max(largest, (placement.to - placement.from).norm());
+      for (std::size_t i = 0; i < now_[b].size(); ++i) largest = std::max(largest, (now_[b][i] - drawn_[b][i]).norm());
     }
     return largest;
   }
@@ -498,7 +497,7 @@ class ResultPicture {
   std::string explanation() const {
     if (shows_mechanism_) {
       const json failing = summary_.value("failing_blocks", json::object());
-      return fmt::format(": the mechanism of {} of them, drawn moved by half the median block's size", failing.value("number", 0));
+      return fmt::format(": the mechanism of {} of them, velocities drawn as displacements", failing.value("number", 0));
     }
     if (is_factor() && state_ == mechanism_state) return ": after failure";
     if (is_factor() && state_ == "stable") return ": the last one that stands";
@@ -518,7 +517,7 @@ class ResultPicture {
   std::unordered_map<std::string, int> index_;
   std::vector<Polygon> drawn_, now_;
   double size_ = 1.0;                  ///< [m] of the median block
-  double largest_displacement_ = 0.0;  ///< [m] of the mechanism
+  double largest_displacement_ = 0.0;  ///< [m] of a vertex in the mechanism
   std::vector<ContactRow> contacts_;
   std::unordered_map<std::uint64_t, std::vector<std::size_t>> of_pair_;
   std::vector<CrackRow> cracks_;

@@ -219,10 +219,10 @@ CracksFile::CracksFile(const OutputFolder& folder, const Scene& scene, const Res
     : RunTable(folder, "cracks.csv", "state,block_a,block_b,x1_m,y1_m,x2_m,y2_m,length_m,opening1_m,opening2_m,slip1_m,slip2_m", restart),
       joints_(drawn_joints(scene)) {}
 
-void CracksFile::add(const std::string& state, const Scene& scene, const BlockSystem& system) {
+void CracksFile::add(const std::string& state, const Scene& scene, const BlockSystem& system, JointDirection direction) {
   std::string rows;
   for (const DrawnJoint& joint : joints_) {
-    const JointMotion m = joint_motion(joint, system);
+    const JointMotion m = joint_motion(joint, system, direction);
     print(rows, "{},{},{},{},{},{},{},{},{},{},{},{}\n", state, field(scene.blocks[joint.block_a].name), field(scene.blocks[joint.block_b].name),
           m.from.middle.x(), m.from.middle.y(), m.to.middle.x(), m.to.middle.y(), (joint.to_b - joint.from_b).norm(), m.from.opening, m.to.opening,
           m.from.slip, m.to.slip);
@@ -257,7 +257,7 @@ void StateTables::add(const NamedState& state, const Scene& scene) {
   blocks_.add(state.name, scene, state.system);
   contacts_.add(state.name, scene, state.system, state.contacts);
   states_.add(state.name, scene, state.system);
-  cracks_.add(state.name, scene, state.system);
+  cracks_.add(state.name, scene, state.system, state.is_mechanism ? JointDirection::drawn : JointDirection::moved);
 }
 
 std::vector<TableMark> StateTables::written() {

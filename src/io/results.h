@@ -87,7 +87,7 @@ class BlockStatesFile : public RunTable {
 class CracksFile : public RunTable {
  public:
   CracksFile(const OutputFolder& folder, const Scene& scene, const RestartPoint* restart = nullptr);
-  void add(const std::string& state, const Scene& scene, const BlockSystem& system);
+  void add(const std::string& state, const Scene& scene, const BlockSystem& system, JointDirection direction = JointDirection::moved);
 
  private:
   std::vector<DrawnJoint> joints_;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <string>
 
+#include "openclose/analysis/drawn_joints.h"
 #include "openclose/analysis/strength_reduction.h"
 #include "support/catch.h"
 #include "support/scenes.h"
@@ -161,4 +162,25 @@ TEST_CASE("joints that share a load in more than one way: the multiplier has the
   // At the limit: friction of what presses on the plane, of weight and body force.
   const double pressing = block_weight * (std::cos(20.0 * degree) - found.stable() * std::sin(20.0 * degree));
   CHECK(shear == Approx(std::tan(35.0 * degree) * pressing).epsilon(1e-3));
+}
+
+TEST_CASE("what tips as one body is drawn with its inner joints closed, and opens at its foot alone", "[analysis][load_multiplier]") {
+  Scene scene = tall_block();
+  scene.blocks.pop_back();
+  for (int i = 0; i < 4; ++i) scene.blocks.push_back(test::free_block("block " + std::to_string(i), test::rectangle(0.0, i, 1.0, 1.0)));
+  const auto found = multiplier(scene, "gravity_x");
+  REQUIRE(found.mechanism.size() == 4);
+  const NamedState& failed = found.states.back();
+  REQUIRE(failed.is_mechanism);
+  const double turn = std::abs(Motion::rotation(failed.system.displacement(4)));
+  CHECK(turn > 0.05);
+  CHECK(turn <= 0.25);
+  constexpr double rounding = 1e-6;  // of the springs, over the travel
+  for (const DrawnJoint& joint : drawn_joints(scene)) {
+    const JointMotion m = joint_motion(joint, failed.system, JointDirection::drawn);
+    const auto [closed, open] = std::minmax(m.from.opening, m.to.opening);
+    CHECK(std::abs(closed) < rounding);
+    CHECK(open == Approx(joint.block_a == 0 ? turn : 0.0).margin(rounding));
+    CHECK(std::abs(m.from.slip) < rounding);
+  }
 }
