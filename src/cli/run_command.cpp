@@ -121,7 +121,7 @@ int report_end(const Options& options, const RunResult& result, const Simulation
     return exit_not_converged;
   }
   if (!options.quiet) {
-    fmt::print("{}: {} blocks, {} steps to t = {:.6g} s{}, deepest penetration {:.3g} m, energy imbalance {:.2g} of {:.3g} J; written to {}\n",
+    fmt::print("{}: {} blocks, {} steps to t = {:.6g} s{}, deepest penetration {:.3g} m, energy imbalance {:.2g} of {:.3g} J moved; written to {}\n",
                simulation.scene().method.contact, simulation.system().block_count(), simulation.state().counters.steps, simulation.time(),
                result.ended_by == "end.displacement_m" ? " (end.displacement_m)" : "", simulation.max_penetration(), simulation.ledger().imbalance(),
                simulation.ledger().turnover, folder.path());

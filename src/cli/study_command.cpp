@@ -12,6 +12,7 @@
 #include "openclose/integrator/registry.h"
 #include "openclose/io/progress.h"
 #include "openclose/study/study.h"
+#include "openclose/study/variation.h"
 
 namespace openclose {
 namespace {
@@ -23,6 +24,14 @@ struct StudyOptions {
   std::string quantity;
   std::optional<double> reference;
 };
+
+CLI::Validator time_step() {
+  return {[](const std::string& text) {
+            const std::optional<double> value = number_from(text);
+            return value && *value > 0.0 ? std::string() : fmt::format("{} is no time step; accepted: numbers > 0 in seconds", text);
+          },
+          "SECONDS"};
+}
 
 int study_command(const StudyOptions& options) {
   StudyOrder order;
@@ -67,7 +76,7 @@ void add_study(CLI::App& app, std::function<int()>& chosen) {
   CLI::App* study =
       app.add_subcommand("study", "run a scene with several time steps and contacts: error, observed order and run time of one of its quantities");
   add_case_options(*study, options->cases);
-  study->add_option("--dt", options->steps, "time steps [s], e.g. 1e-2,5e-3,2.5e-3")->required()->delimiter(',')->check(CLI::PositiveNumber);
+  study->add_option("--dt", options->steps, "time steps [s], e.g. 1e-2,5e-3,2.5e-3")->required()->delimiter(',')->check(time_step());
   std::vector<std::string> names;
   for (const auto& entry : enforcements()) names.emplace_back(entry.name);
   study->add_option("--contact", options->contacts, "contact enforcements, e.g. soft,hard,dem (default: the scene's)")

@@ -225,7 +225,7 @@ class Shi : public Enforcement {
       if (!tolerated) tolerated = default_penetration_tolerance(problem.system);
       if (depth > *tolerated) {
         solution.reason =
-            fmt::format("penetration of {:.3g} m exceeds solver.penetration_tolerance_m = {:.3g}; a larger method.penalty_pa_per_m would reduce it",
+            fmt::format("penetration of {:.6g} m exceeds solver.penetration_tolerance_m = {:.6g}; a larger method.penalty_pa_per_m would reduce it",
                         depth, *tolerated);
         return;
       }

@@ -132,6 +132,11 @@ std::vector<std::string> OutputFolder::own_names() const {
 }
 
 void OutputFolder::claim(const std::vector<std::string>& read_files) const {
+  require_ours(read_files);
+  write_list(names_of_results());
+}
+
+void OutputFolder::require_ours(const std::vector<std::string>& read_files) const {
   const std::vector<std::string> own = own_names();
   for (const std::string& name : names_of_results()) {
     const std::string file = path_of(name);
@@ -144,7 +149,6 @@ void OutputFolder::claim(const std::vector<std::string>& read_files) const {
     if (std::ranges::find(own, name) == own.end() && !is_own_picture(name))
       throw InputError({file, 0}, "", "is there and has not been written by openclose", "-o with another folder");
   }
-  write_list(names_of_results());
 }
 
 void OutputFolder::list_results() const {
@@ -254,6 +258,12 @@ std::ofstream OutputFolder::open_growing(const std::string& name, const std::str
   std::ofstream file(full, std::ios::app);
   if (error || !file) throw WriteError(full);
   return file;
+}
+
+void require_replaceable(const std::vector<TextFile>& files) {
+  for (const TextFile& file : files) {
+    if (!file.replaces_ours) require_replaceable(file);
+  }
 }
 
 void write_files(const std::vector<TextFile>& files) {

@@ -22,6 +22,8 @@ class OutputFolder {
   /// From now on the names of results in this folder are ours. Throws InputError if one of them is a file that is read, or one that openclose has not
   /// written; nothing has changed then.
   void claim(const std::vector<std::string>& read_files) const;
+  /// Throws as claim() would, and changes nothing.
+  void require_ours(const std::vector<std::string>& read_files) const;
   /// The analysis is over: from now on only those of these names are ours that are there.
   void list_results() const;
   /// The scene as it was read, with its blocks cut and its overrides applied.
@@ -72,6 +74,9 @@ struct TextFile {
 /// until then these have ".part" after their names. Throws InputError if a file cannot be made or is there and was not written by openclose, which
 /// its beginning tells; WriteError if one cannot be written to its end.
 void write_files(const std::vector<TextFile>& files);
+
+/// Throws InputError as write_files() would of files that begin like these: to be asked before anything is computed.
+void require_replaceable(const std::vector<TextFile>& files);
 
 /// Closes a file after its last line and gives it its name; throws WriteError if anything of it was not written (a full disk, say) or if the file has
 /// been removed.

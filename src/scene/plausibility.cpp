@@ -20,7 +20,7 @@ struct Usual {
 };
 
 constexpr std::array usual_numbers{
-    Usual{"density_kg_per_m3", 1.0, 1e5, "air has 1.2, the heaviest metal 22,600"},
+    Usual{"density_kg_per_m3", 50.0, 1e5, "foam has 15 to 30, rock 2,000 to 3,000 (a unit weight of 2e4 to 3e4 N/m3), the heaviest metal 22,600"},
     Usual{"normal_stiffness_pa_per_m", 1e3, 1e15, "joints in rock have 1e7 to 1e12"},
     Usual{"shear_stiffness_pa_per_m", 1e3, 1e15, "joints in rock have 1e6 to 1e12"},
     Usual{"friction_angle_deg", 0.0, 80.0, "rough joints reach 70; cohesion_pa and tensile_strength_pa bond blocks"},

@@ -59,6 +59,7 @@ class Runner {
       if (!names.insert(one.name).second) throw InputError({one.name, 0}, "", "two cases have the same values", "different values");
       const Scene scene = read_scene(order.scene_file, one.overrides);
       check_scene(scene);
+      if (std::filesystem::exists(order.folder + "/" + one.name)) OutputFolder(order.folder + "/" + one.name).require_ours({order.scene_file});
       marks_.push_back(fmt::format("openclose {} {} {:016x}\n", version, order.command, fingerprint(write_scene(scene))));
     }
   }
@@ -149,6 +150,33 @@ class Runner {
 std::vector<CaseResult> run_cases(const CaseOrder& order, const std::vector<Case>& cases,
                                   const std::function<void(std::size_t, const CaseResult&)>& done) {
   return Runner(order, cases, done).run();
+}
+
+void CaseWarnings::add(const std::string& name, const std::string& summary) {
+  if (summary.empty()) return;
+  std::set<std::string> told;
+  const nlohmann::json warnings = nlohmann::json::parse(summary).value("warnings", nlohmann::json::array());
+  for (const nlohmann::json& entry : warnings) {
+    const auto text = entry.get<std::string>();
+    std::string pattern;
+    std::ranges::copy_if(text, std::back_inserter(pattern), [](unsigned char c) { return !std::isdigit(c) && c != '.'; });
+    if (!told.insert(pattern).second) continue;
+    const auto place = std::ranges::find(kinds_, pattern, &Kind::pattern);
+    if (place == kinds_.end()) {
+      kinds_.push_back({pattern, fmt::format("{}: {}", name, text)});
+    } else {
+      ++place->others;
+    }
+  }
+}
+
+std::vector<std::string> CaseWarnings::texts() const {
+  std::vector<std::string> list;
+  for (const Kind& kind : kinds_) {
+    const std::string others = kind.others == 0 ? "" : fmt::format(" (and {} of other cases, with their own numbers: their summary.json)", kind.others);
+    list.push_back(kind.first + others);
+  }
+  return list;
 }
 
 void require_not_set(const std::vector<std::string>& overrides, const std::string& key, const std::string& option) {

@@ -29,7 +29,23 @@ struct CaseOrder {
   int jobs = 1;        ///< processes at a time
 };
 
-/// Throws InputError, before anything is written, if one of the scenes is refused.
+/// What the runs of cases warn of, one after the other. Of warnings that differ in their numbers only the first is told, with the number of the others.
+class CaseWarnings {
+ public:
+  /// \param summary  as in CaseResult
+  void add(const std::string& name, const std::string& summary);
+  std::vector<std::string> texts() const;
+
+ private:
+  struct Kind {
+    std::string pattern;  ///< the text without its numbers
+    std::string first;
+    int others = 0;  ///< cases
+  };
+  std::vector<Kind> kinds_;
+};
+
+/// Throws InputError, before anything is written, if one of the scenes is refused, or if the folder of a case has files of somebody else.
 /// \param done  called after each case, with its number
 std::vector<CaseResult> run_cases(const CaseOrder& order, const std::vector<Case>& cases,
                                   const std::function<void(std::size_t, const CaseResult&)>& done);

@@ -9,6 +9,8 @@ namespace {
 constexpr double accuracy_of_ratio = 1e-3;
 /// A sequence that converges slower has not come to where its order shows.
 constexpr double least_order = 0.5;
+/// The integrators are of second order at most: where differences shrink faster, two of them agree by chance.
+constexpr double highest_order = 3.0;
 
 }  // namespace
 
@@ -20,7 +22,7 @@ std::optional<Limit> richardson_limit(std::span<const Refinement> refinements) {
   const double before = coarse->value - middle->value, now = middle->value - fine->value;
   if (now == 0.0 || before / now <= 1.0) return std::nullopt;
   const double order = std::log(before / now) / std::log(ratio);
-  if (order < least_order) return std::nullopt;
+  if (order < least_order || order > highest_order) return std::nullopt;
   return Limit{fine->value - now / (before / now - 1.0), order};
 }
 

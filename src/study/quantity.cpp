@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <fstream>
@@ -11,13 +10,14 @@
 #include <vector>
 
 #include "openclose/core/error.h"
+#include "openclose/io/results.h"
 #include "openclose/io/state_table.h"
 #include "openclose/scene/nearest.h"
 
 namespace openclose {
 namespace {
 
-constexpr std::array summary_quantities = {"factor_of_safety", "load_multiplier", "max_penetration_m"};
+constexpr const char* deepest_penetration = "max_penetration_m";
 constexpr const char* largest_displacement = "largest_displacement_m";
 const std::vector<std::string> history_columns = {"displacement_m",   "displacement_x_m",   "displacement_y_m",   "rotation_rad",
                                                   "velocity_m_per_s", "velocity_x_m_per_s", "velocity_y_m_per_s", "angular_velocity_rad_per_s"};
@@ -92,7 +92,6 @@ std::string usual_quantity(const Scene& scene) {
 
 void require_quantity(const std::string& quantity, const Scene& scene) {
   const auto [point, column] = parts_of(quantity);
-  if (point == "energy" || quantity == largest_displacement || std::ranges::count(summary_quantities, quantity) > 0) return;
   std::vector<std::string> known;
   for (const MeasuredPoint& measured : scene.measured_points) {
     for (const std::string& name : history_columns) known.push_back(measured.name + "." + name);
@@ -103,14 +102,15 @@ void require_quantity(const std::string& quantity, const Scene& scene) {
       if (block.name == point && std::ranges::count(history_columns, column) > 0) return;
     }
   }
-  known.insert(known.end(), {largest_displacement, "max_penetration_m", "factor_of_safety", "load_multiplier", "energy.kinetic_j"});
+  known.insert(known.end(), {largest_displacement, deepest_penetration});
+  for (const auto& entry : ledger_entries({})) known.push_back(std::string("energy.") + entry.first);
   if (std::ranges::count(known, quantity) == 0)
     throw InputError(scene.where, "--quantity", fmt::format("\"{}\" is no quantity of these results", quantity), suggestions(quantity, known));
 }
 
 std::optional<double> quantity_in(const std::string& folder, const std::string& quantity) {
   if (quantity == largest_displacement) return largest_displacement_in(folder);
-  if (std::ranges::count(summary_quantities, quantity) > 0) {
+  if (quantity == deepest_penetration) {
     std::ifstream file(folder + "/summary.json");
     const nlohmann::json summary = nlohmann::json::parse(file, nullptr, false);
     if (!summary.is_object() || !summary.contains(quantity) || !summary.at(quantity).is_number()) return std::nullopt;

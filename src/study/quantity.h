@@ -1,4 +1,4 @@
-// A number that says what has come of a case, named as a person would: POINT.displacement_m, energy.kinetic_j, factor_of_safety.
+// A number that says what has come of a case, named as a person would: POINT.displacement_m, energy.kinetic_j, max_penetration_m.
 #pragma once
 
 #include <optional>
@@ -17,7 +17,7 @@ void require_quantity(const std::string& quantity, const Scene& scene);
 /// The last value in a folder of results; none where it is not written.
 ///   POINT.COLUMN       of history.csv, besides its columns displacement_m and velocity_m_per_s, the lengths of the vectors
 ///   energy.COLUMN      of energy.csv
-///   largest_displacement_m, max_penetration_m, factor_of_safety, load_multiplier
+///   largest_displacement_m, max_penetration_m
 std::optional<double> quantity_in(const std::string& folder, const std::string& quantity);
 
 }  // namespace openclose

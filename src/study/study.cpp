@@ -49,6 +49,7 @@ StudyRow row_of(const StudyOrder& order, const std::string& contact, double dt, 
   row.cpu = summary.at("cpu_s").at("start").get<double>() + summary.at("cpu_s").at("motion").get<double>();
   row.steps = summary.at("counters").at("steps").get<long>();
   row.end_time = summary.at("time_s").get<double>();
+  row.warnings = static_cast<int>(summary.at("warnings").size());
   if (result.status == exit_success) row.value = quantity_in(folder, order.quantity);
   return row;
 }
@@ -124,6 +125,7 @@ Study make_study(StudyOrder order, const std::function<void(double)>& progress) 
   if (order.quantity.empty()) order.quantity = usual_quantity(scene);
   require_quantity(order.quantity, scene);
 
+  require_replaceable(study_files({}, order.cases.folder));
   const std::vector<Case> cases = cases_of(order);
   std::size_t done = 0;
   const auto results = run_cases(order.cases, cases,
@@ -137,24 +139,28 @@ Study make_study(StudyOrder order, const std::function<void(double)>& progress) 
   for (std::size_t m = 0; m < order.contacts.size(); ++m)
     study.limits.push_back(judge(std::span(study.rows).subspan(m * order.steps.size(), order.steps.size()), order.reference));
   study.warnings = warnings_of(study);
+  CaseWarnings of_runs;
+  for (std::size_t i = 0; i < cases.size(); ++i) of_runs.add(cases[i].name, results[i].summary);
+  for (std::string& text : of_runs.texts()) study.warnings.push_back(std::move(text));
   return study;
 }
 
 std::vector<TextFile> study_files(const Study& study, const std::string& folder) {
-  std::string rows = "contact,dt_s,quantity,value,reference,error,observed_order,cpu_s,steps,end_time_s,status\n";
+  std::string rows = "contact,dt_s,quantity,value,reference,error,observed_order,cpu_s,steps,end_time_s,warnings,status\n";
   Plot errors{"Error", "time step [s]", "error of " + study.quantity, true, true, {}},
       cost{"Cost", "error of " + study.quantity, "CPU time [s]", true, true, {}};
   for (const StudyLimit& limit : study.limits) {
     PlotSeries error{limit.contact, {}}, price{limit.contact, {}};
     for (const StudyRow& row : study.rows) {
       if (row.contact != limit.contact) continue;
-      rows += fmt::format("{},{:.17g},{},{},{},{},{},{:.6g},{},{:.17g},{}\n", row.contact, row.dt, study.quantity, number_text(row.value, 17),
+      rows += fmt::format("{},{:.17g},{},{},{},{},{},{:.6g},{},{:.17g},{},{}\n", row.contact, row.dt, study.quantity, number_text(row.value, 17),
                           number_text(limit.value, 17), number_text(row.error, 17), number_text(row.order, 6), row.cpu, row.steps, row.end_time,
-                          status_word(row.status));
+                          row.warnings, status_word(row.status));
       if (!row.error) continue;
       error.points.push_back({row.dt, *row.error, {}, false});
       price.points.push_back({*row.error, row.cpu, {}, false});
     }
+    if (error.points.empty()) continue;  // a name in the key without a curve says nothing; the notes say why
     errors.series.push_back(error);
     cost.series.push_back(price);
   }

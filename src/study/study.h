@@ -26,6 +26,7 @@ struct StudyRow {
   double cpu = 0.0;  ///< [s] of start and motion
   long steps = 0;
   double end_time = 0.0;  ///< [s]
+  int warnings = 0;       ///< of the run
   int status = 0;
   std::string message;
 };

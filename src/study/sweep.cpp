@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -23,13 +22,6 @@ using nlohmann::json;
 
 std::string value_of(const std::string& assignment) {
   return assignment.substr(assignment.find('=') + 1);
-}
-
-std::optional<double> as_number(const std::string& text) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return value;
 }
 
 /// A text with a comma or a quote in quotes.
@@ -127,7 +119,7 @@ class Answers {
 std::string picture(const SweepOrder& order, const std::string& quantity, const Answers& answers, const std::vector<Case>& cases,
                     const std::vector<CaseResult>& results) {
   const auto is_numeric = [](const Variation& v) {
-    return std::ranges::all_of(v.values, [](const std::string& s) { return as_number(s).has_value(); });
+    return std::ranges::all_of(v.values, [](const std::string& s) { return number_from(s).has_value(); });
   };
   const auto place = std::ranges::find_if(order.variations, is_numeric);
   if (place == order.variations.end()) return "";
@@ -143,7 +135,7 @@ std::string picture(const SweepOrder& order, const std::string& quantity, const 
     if (is_new) plot.series.push_back({name, {}});
     std::optional<PlotPoint> point = answers.point(cases[i], results[i]);
     if (!point) continue;
-    point->x = *as_number(value_of(cases[i].overrides[k]));
+    point->x = *number_from(value_of(cases[i].overrides[k]));
     plot.series[entry->second].points.push_back(*point);
   }
   for (PlotSeries& one : plot.series) std::ranges::sort(one.points, {}, &PlotPoint::x);
@@ -175,6 +167,7 @@ Sweep make_sweep(SweepOrder order, const std::function<void(double)>& progress) 
   const Answers answers(order, increase);
   const std::string table = order.cases.folder + "/sweep.csv";
   require_own_table(table);
+  require_replaceable({{order.cases.folder + "/sweep.svg", svg_plots("", {}, {})}});
   std::vector<std::string> rows(cases.size());
   const auto text = [&] {
     std::string all = answers.columns();
@@ -193,6 +186,9 @@ Sweep make_sweep(SweepOrder order, const std::function<void(double)>& progress) 
     if (!result.was_there) write_files({{table, text(), true}});
     progress(static_cast<double>(++done) / static_cast<double>(cases.size()));
   });
+  CaseWarnings of_runs;
+  for (std::size_t i = 0; i < cases.size(); ++i) of_runs.add(cases[i].name, results[i].summary);
+  for (std::string& warning : of_runs.texts()) sweep.warnings.push_back(std::move(warning));
   sweep.files.push_back({table, text(), true});
   const std::string drawing = picture(order, order.cases.command == "fos" ? name_of_answer(increase) : order.quantity, answers, cases, results);
   if (!drawing.empty()) sweep.files.push_back({order.cases.folder + "/sweep.svg", drawing});

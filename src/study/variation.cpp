@@ -4,7 +4,6 @@
 
 #include <charconv>
 #include <cmath>
-#include <optional>
 
 #include "openclose/core/error.h"
 
@@ -16,13 +15,6 @@ constexpr const char* accepted_form = "KEY=FROM:TO:STEP or KEY=A,B,C, e.g. joint
 constexpr std::size_t most_cases = 100'000;
 /// [-] Of a step: rounding of the ends does not lose the last value.
 constexpr double rounding_of_steps = 1e-6;
-
-std::optional<double> number_in(const std::string& text) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
-  return value;
-}
 
 /// Split where no bracket and no quote is open.
 std::vector<std::string> split(const std::string& text, char separator) {
@@ -43,7 +35,7 @@ std::vector<std::string> split(const std::string& text, char separator) {
 }
 
 std::vector<std::string> stepped(const std::string& text, const std::vector<std::string>& parts) {
-  const auto from = number_in(parts[0]), to = number_in(parts[1]), step = number_in(parts[2]);
+  const auto from = number_from(parts[0]), to = number_from(parts[1]), step = number_from(parts[2]);
   if (!from || !to || !step) throw InputError({"--vary " + text, 0}, "", "FROM, TO and STEP are not all numbers", accepted_form);
   const double steps = *step == 0.0 ? -1.0 : (*to - *from) / *step;
   if (steps < 0.0) throw InputError({"--vary " + text, 0}, "", "the step does not lead from FROM to TO", accepted_form);
@@ -55,6 +47,13 @@ std::vector<std::string> stepped(const std::string& text, const std::vector<std:
 }
 
 }  // namespace
+
+std::optional<double> number_from(const std::string& text) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
 
 Variation variation_from(const std::string& text) {
   const std::size_t equals = text.find('=');

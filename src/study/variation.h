@@ -1,6 +1,7 @@
 // Keys of a scene and the values they are to have, one after the other.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,5 +18,8 @@ Variation variation_from(const std::string& text);
 
 /// "KEY=VALUE" of each variation, for every combination; the last key runs fastest. Throws InputError where there are more than anyone runs.
 std::vector<std::vector<std::string>> combinations(const std::vector<Variation>& variations);
+
+/// The finite number that a text is, and nothing else.
+std::optional<double> number_from(const std::string& text);
 
 }  // namespace openclose

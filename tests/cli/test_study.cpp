@@ -1,5 +1,7 @@
 // `study` and `sweep`: many runs of one scene, against closed forms.
+#include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <numbers>
 #include <string>
@@ -160,4 +162,45 @@ TEST_CASE("study and sweep refuse in one line, and write nothing", "[cli][study]
   refused("study scene.toml --end 1 --dt 0.01 --contact sof", "sof");
   refused("study scene.toml --end 1 --dt 0.01 --quantity nowhere.displacement_m", "is no quantity");
   refused("study scene.toml --end 1", "--dt");
+  refused("study scene.toml --end 1 --dt 1e-3,-1", "-1 is no time step");
+}
+
+TEST_CASE("files of somebody else are found before the first case runs", "[cli][study][sweep]") {
+  const std::string study = "study scene.toml --end 0.02 --dt 0.01 --set method.start=unloaded -o out",
+                    sweep = "sweep scene.toml --vary joint[0].friction_angle_deg=25 -o out";
+  const auto refused = [&](const std::string& command, const std::string& foreign) {
+    INFO(command << ' ' << foreign);
+    const Workplace place(openclose::test::block_on_incline(30.0));
+    std::filesystem::create_directories(std::filesystem::path(place.folder() / foreign).parent_path());
+    std::ofstream(place.folder() / foreign) << "mine\n";
+    const CommandResult result = place.run(command);
+    CHECK(result.status == 2);
+    REQUIRE(result.errors.size() == 1);
+    CHECK_THAT(result.errors[0], ContainsSubstring(foreign) && ContainsSubstring("has not been written by openclose"));
+    CHECK(text_of(place.folder() / foreign) == "mine\n");
+    const auto files = std::filesystem::recursive_directory_iterator(place.folder() / "out");
+    CHECK(std::ranges::count_if(files, [](const auto& entry) { return entry.is_regular_file(); }) == 1);
+  };
+  refused(study, "out/study.svg");
+  refused(study, "out/study.csv");
+  refused(study, "out/soft,dt=0.01/energy.csv");
+  refused(sweep, "out/sweep.svg");
+  refused(sweep, "out/joint[0].friction_angle_deg=25/trials.csv");
+}
+
+TEST_CASE("what runs warn of is told by study and sweep, alike warnings once", "[cli][study][sweep]") {
+  const Workplace place(openclose::test::block_on_incline(40.0));
+  const auto warned = [&](const std::string& command, const std::string& first) {
+    const CommandResult result = place.run(command + " --set material[0].density_kg_per_m3=2.7");  // as if in t/m3
+    CHECK(result.status == 0);
+    const auto about_density = [](const std::string& line) { return line.find("density") != std::string::npos; };
+    REQUIRE(std::ranges::count_if(result.errors, about_density) == 1);
+    const std::string& line = *std::ranges::find_if(result.errors, about_density);
+    CHECK_THAT(line, ContainsSubstring(first) && ContainsSubstring("(and 1 of other cases"));
+  };
+  warned("study scene.toml --dt 0.01,0.005 --end 0.05 --set method.start=unloaded -o study", "soft,dt=0.01: ");
+  warned("sweep scene.toml --vary joint[0].friction_angle_deg=46,47 -o sweep", "friction_angle_deg=46: ");
+  const auto rows = rows_of(place.folder() / "study/study.csv");
+  REQUIRE(rows.size() == 2);
+  CHECK(std::stoi(rows[0].at("warnings")) >= 1);
 }

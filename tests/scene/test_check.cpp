@@ -144,6 +144,9 @@ TEST_CASE("numbers that no material has are warned of", "[scene][check]") {
   CHECK_THAT(warning_of("joint[0].shear_stiffness_pa_per_m", "100"), ContainsSubstring("shear_stiffness_pa_per_m = 100"));
   CHECK_THAT(warning_of("joint[0].damping_ratio", "11"), ContainsSubstring("damping_ratio = 11"));
   CHECK_THAT(warning_of("joint[0].cohesion_pa", "2e10"), ContainsSubstring("cohesion_pa = 20000000000"));
+  // t/m3, kN/m3 divided by nothing, g/m3.
+  for (const std::string density : {"2.7", "27"})
+    CHECK_THAT(warning_of("material[0].density_kg_per_m3", density), ContainsSubstring("material \"rock\": density_kg_per_m3 = " + density));
   CHECK_THAT(warning_of("material[0].density_kg_per_m3", "2.7e6"), ContainsSubstring("material \"rock\": density_kg_per_m3 = 2700000"));
   CHECK(check_scene(read_text(block_on_base, {"joint[0].friction_angle_deg=80"})).empty());
 }

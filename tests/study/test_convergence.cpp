@@ -18,7 +18,7 @@ std::vector<Refinement> sequence(double order, double factor, std::vector<double
 }  // namespace
 
 TEST_CASE("Richardson's extrapolation finds the limit and the order of a power law", "[study]") {
-  for (const double order : {1.0, 1.5, 2.0, 4.0}) {
+  for (const double order : {1.0, 1.5, 2.0, 2.9}) {
     for (const double factor : {2.0, -0.7}) {
       for (const double ratio : {2.0, 3.0}) {
         INFO(order << ' ' << factor << ' ' << ratio);
@@ -35,6 +35,7 @@ TEST_CASE("steps that say nothing of a limit give none", "[study]") {
   CHECK_FALSE(richardson_limit(sequence(1.0, 1.0, {0.2, 0.1})));
   CHECK_FALSE(richardson_limit(sequence(1.0, 1.0, {0.3, 0.2, 0.1})));
   CHECK_FALSE(richardson_limit(sequence(0.2, 1.0, {0.4, 0.2, 0.1})));
+  CHECK_FALSE(richardson_limit(sequence(4.0, 1.0, {0.4, 0.2, 0.1})));
   // To and fro, away, and no change at all.
   CHECK_FALSE(richardson_limit(std::vector<Refinement>{{0.4, 1.0}, {0.2, 2.0}, {0.1, 1.5}}));
   CHECK_FALSE(richardson_limit(std::vector<Refinement>{{0.4, 1.0}, {0.2, 1.1}, {0.1, 1.4}}));
