@@ -21,10 +21,11 @@ constexpr std::size_t most_named = 3;
 /// Blocks that are looked at; of more, the fastest.
 constexpr std::size_t most_described = 200;
 
-/// A point at which a block touches another one, and the direction of the edge there.
+/// A point at which a block touches another one, the direction of the edge there and its joint, if there is one.
 struct Touch {
   int other;
   Vec2 along, point;
+  const JointProperties* joint;
 };
 
 struct Description {
@@ -96,24 +97,37 @@ class Describer {
     return at(block.centroid + perpendicular(block.velocity) / block.rotation);
   }
 
-  void add_touches(const Polygon& corners, const Polygon& edges, int other, std::vector<Touch>& touches) const {
-    for (std::size_t e = 0; e < edges.size(); ++e) {
-      const Vec2 &from = edges[e], &to = edges[(e + 1) % edges.size()];
-      for (const Vec2& corner : corners) {
+  void add_touches(const BlockInput& corners, const BlockInput& edges, int other, std::vector<Touch>& touches) const {
+    const std::size_t count = edges.vertices.size();
+    for (std::size_t e = 0; e < count; ++e) {
+      const Vec2 &from = edges.vertices[e], &to = edges.vertices[(e + 1) % count];
+      for (std::size_t v = 0; v < corners.vertices.size(); ++v) {
+        const Vec2& corner = corners.vertices[v];
         if (distance_to_segment(corner, from, to) <= tolerance::farthest_point_from_joint_m)
-          touches.push_back({other, (to - from).normalized(), corner});
+          touches.push_back({other, (to - from).normalized(), corner, joint_of(corners, v, edges, e)});
       }
     }
+  }
+
+  /// As JointTable has it of contacts: of the name of the edge where an edge at the corner has the same, else of the materials.
+  const JointProperties* joint_of(const BlockInput& corners, std::size_t v, const BlockInput& edges, std::size_t e) const {
+    const auto seam_at = [](const BlockInput& block, std::size_t edge) {
+      return block.edge_joints.empty() ? BlockInput::by_materials : block.edge_joints[edge];
+    };
+    const int seam = seam_at(edges, e);
+    const std::size_t before = (v + corners.vertices.size() - 1) % corners.vertices.size();
+    const bool is_in_seam = seam != BlockInput::by_materials && (seam_at(corners, v) == seam || seam_at(corners, before) == seam);
+    return is_in_seam ? &scene_.joints[static_cast<std::size_t>(seam)] : scene_.joint(corners.material, edges.material);
   }
 
   std::vector<Touch> touches_of(const FailingBlock& block) const {
     std::vector<Touch> touches;
     const Box reach = Box::around(polygon(block)).inflated(tolerance::farthest_point_from_joint_m);
     for (std::size_t other = 0; other < scene_.blocks.size(); ++other) {
-      const Polygon& vertices = scene_.blocks[other].vertices;
-      if (static_cast<int>(other) == block.block || !reach.overlaps(Box::around(vertices))) continue;
-      add_touches(polygon(block), vertices, static_cast<int>(other), touches);
-      add_touches(vertices, polygon(block), static_cast<int>(other), touches);
+      const BlockInput &one = scene_.blocks[static_cast<std::size_t>(block.block)], &another = scene_.blocks[other];
+      if (static_cast<int>(other) == block.block || !reach.overlaps(Box::around(another.vertices))) continue;
+      add_touches(one, another, static_cast<int>(other), touches);
+      add_touches(another, one, static_cast<int>(other), touches);
     }
     return touches;
   }
@@ -123,21 +137,19 @@ class Describer {
     for (const Touch& touch : touches) {
       const FailingBlock* other = moving_[static_cast<std::size_t>(touch.other)];
       const Vec2 relative = block.velocity - (other == nullptr ? Vec2(Vec2::Zero()) : velocity_at(*other, block.centroid));
-      if (relative.norm() < slow * block.velocity.norm() || !is_along(relative, touch.along, block.block, touch.other)) continue;
+      if (relative.norm() < slow * block.velocity.norm() || !is_along(relative, touch)) continue;
       const Vec2 along = touch.along.dot(relative) < 0.0 ? Vec2(-touch.along) : touch.along;
-      return fmt::format(" slides along its joint with {} {} ({}cohesion_pa or a [[support]] would hold it)", name_of(touch.other),
-                         other == nullptr ? heading(along) : heading(block), friction_on(touch.along));
+      return fmt::format(" slides along its joint with {} {} ({}cohesion_pa or a [[support]] would hold it)", name_of(touch.other), heading(along),
+                         friction_on(touch.along));
     }
     return std::nullopt;
   }
 
   /// Mechanisms of limit analysis open what slides at the friction angle.
-  bool is_along(const Vec2& relative, const Vec2& along, int block, int other) const {
-    const double opening = std::abs(cross(along, relative));
-    if (opening <= slow * relative.norm()) return true;
-    const auto material = [&](int b) { return scene_.blocks[static_cast<std::size_t>(b)].material; };
-    const JointProperties* joint = scene_.joint(material(block), material(other));
-    return joint != nullptr && std::abs(opening - std::tan(joint->friction_angle) * std::abs(along.dot(relative))) <= slow * relative.norm();
+  static bool is_along(const Vec2& relative, const Touch& touch) {
+    const double opening = std::abs(cross(touch.along, relative)), tolerated = slow * relative.norm();
+    if (opening <= tolerated) return true;
+    return touch.joint != nullptr && std::abs(opening - std::tan(touch.joint->friction_angle) * std::abs(touch.along.dot(relative))) <= tolerated;
   }
 
   /// Under its weight alone a block stands on an edge with friction above the edge's slope.

@@ -267,9 +267,9 @@ void require_replaceable(const std::vector<TextFile>& files) {
 }
 
 void write_files(const std::vector<TextFile>& files) {
+  require_replaceable(files);
   Unfinished unfinished;
   for (const TextFile& file : files) {
-    if (!file.replaces_ours) require_replaceable(file);
     unfinished.make_folders(file.path);
     const std::string part = unfinished.add(file.path + part_ending);
     std::ofstream stream(part);

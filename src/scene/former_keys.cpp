@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "openclose/scene/keys.h"
+#include "openclose/scene/override.h"
 #include "openclose/scene/table.h"
 
 namespace openclose {
@@ -76,12 +77,12 @@ std::optional<std::string> with_current_key(const std::string& key_and_value, co
   const std::size_t equals = key_and_value.find('=');
   const std::string key = key_and_value.substr(0, key_and_value.find_last_not_of(' ', equals == 0 ? 0 : equals - 1) + 1);
   if (equals != std::string::npos && std::find(retired_keys.begin(), retired_keys.end(), key) != retired_keys.end()) {
-    warnings.push_back(warning_of_retired(fmt::format("{}: --set {}", file, key), key));
+    warnings.push_back(warning_of_retired(source_of_overrides(file), key));
     return std::nullopt;
   }
   for (const KeyEntry& entry : option_keys()) {
     if (equals == std::string::npos || entry.key.formerly.empty() || entry.key.formerly != key) continue;
-    warnings.push_back(warning(fmt::format("{}: --set {}", file, key), entry));
+    warnings.push_back(warning(source_of_overrides(file), entry));
     const std::string value = key_and_value.substr(equals + 1);
     if (entry.type != ValueType::names || (value != "true" && value != "false")) return entry.dotted() + "=" + value;
     return fmt::format("{}=[{}]", entry.dotted(), value == "true" ? in_quotes(split(key).second) : "");

@@ -39,11 +39,27 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
   return row[b.size()];
 }
 
+bool may_be_meant(std::size_t distance, const std::string& name) {
+  return distance <= most_misspelt_letters && distance < name.size() / 2;
+}
+
+/// Of the whole name, or of a part that may be meant, as people remember "friction" of joint.friction_angle_deg.
+std::size_t distance_of_parts(const std::string& word, const std::string& name) {
+  std::size_t least = edit_distance(word, name);
+  for (std::size_t begin = 0; begin < name.size();) {
+    const std::size_t end = std::min(name.find_first_of("_.", begin), name.size());
+    const std::string part = name.substr(begin, end - begin);
+    const std::size_t distance = edit_distance(word, part);
+    if (may_be_meant(distance, part)) least = std::min(least, distance + 1);
+    begin = end + 1;
+  }
+  return least;
+}
+
 }  // namespace
 
 std::string suggestions(const std::string& word, std::vector<std::string> accepted) {
-  std::stable_sort(accepted.begin(), accepted.end(),
-                   [&](const std::string& a, const std::string& b) { return edit_distance(word, a) < edit_distance(word, b); });
+  std::ranges::stable_sort(accepted, {}, [&](const std::string& name) { return distance_of_parts(word, name); });
   const std::size_t shown = std::min(accepted.size(), longest_list);
   std::string text = fmt::format("{}", fmt::join(accepted.begin(), accepted.begin() + static_cast<std::ptrdiff_t>(shown), ", "));
   if (shown < accepted.size()) text += fmt::format(" ... ({} in all)", accepted.size());
@@ -53,7 +69,7 @@ std::string suggestions(const std::string& word, std::vector<std::string> accept
 std::optional<std::string> similar(const std::string& word, const std::vector<std::string>& accepted) {
   const auto distance = [&](const std::string& candidate) { return edit_distance(word, candidate); };
   const auto nearest = std::ranges::min_element(accepted, {}, distance);
-  if (nearest == accepted.end() || distance(*nearest) > most_misspelt_letters || distance(*nearest) >= nearest->size() / 2) return std::nullopt;
+  if (nearest == accepted.end() || !may_be_meant(distance(*nearest), *nearest)) return std::nullopt;
   return *nearest;
 }
 

@@ -19,14 +19,14 @@ struct Override {
   std::string key;
   std::string value;
 
-  [[noreturn]] void fail(const std::string& read, const std::string& accepted) const { throw_input_error({source, 0}, "", read, accepted); }
+  [[noreturn]] void fail(const std::string& read, const std::string& accepted) const { throw_input_error({source, 0}, shortened(key), read, accepted); }
 };
 
 Override parse_override(const std::string& file, const std::string& text) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || equals == 0) throw_input_error({file, 0}, "--set " + text, "this is no assignment", accepted_form);
   const std::string key = text.substr(0, text.find_last_not_of(' ', equals - 1) + 1);
-  return {fmt::format("{}: --set {}", file, shortened(key)), key, text.substr(equals + 1)};
+  return {source_of_overrides(file), key, text.substr(equals + 1)};
 }
 
 bool is_word(const std::string& text) {
@@ -85,13 +85,17 @@ toml::node& member(const Override& override, toml::node& parent, const std::stri
 
 }  // namespace
 
+std::string source_of_overrides(const std::string& file) {
+  return file + ": command line";
+}
+
 void apply_override(toml::table& scene, const std::string& file, const std::string& key_and_value) {
   const Override override = parse_override(file, key_and_value);
   if (line_of_deep_key(override.key) || line_of_deep_key(override.value))
     override.fail(fmt::format("a key has more than {} parts", most_key_parts), accepted_form);
   const toml::path path(override.key);
   // The parser of paths mends some that are wrong, e.g. "joint[0"; what it made of the key tells.
-  if (path.empty() || path.str() != override.key) override.fail("this is not a dotted key", accepted_form);
+  if (path.empty() || path.str() != override.key) override.fail("this is not a dotted key", "one such as joint[0].friction_angle_deg");
 
   toml::table replacement = parse_value(override, override.value);
   toml::node* parent = &scene;

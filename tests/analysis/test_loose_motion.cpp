@@ -5,6 +5,7 @@
 #include "openclose/analysis/strength_reduction.h"
 #include "openclose/scene/reader.h"
 #include "support/catch.h"
+#include "support/scenes.h"
 
 using namespace openclose;
 using Catch::Matchers::ContainsSubstring;
@@ -73,6 +74,19 @@ TEST_CASE("a turn about no corner is told with its centre", "[analysis][loose_mo
   const Scene scene = scene_with(floor_m, "vertices_m = [[0, 4], [2, 4], [2, 5], [0, 5]]");
   const FailingBlock spinning{.block = 1, .area = 2.0, .centroid = {1.0, 4.5}, .velocity = {0.0, 0.5}, .rotation = 1.0};
   CHECK_THAT(motion_in_words(scene, {spinning}), ContainsSubstring("\"top\" turns about (0.5, 4.5)"));  // v + w x (p - c) = 0
+}
+
+TEST_CASE("what slides along a joint with a name is told so, though the mechanism opens it by the friction of the name", "[analysis][loose_motion]") {
+  Scene scene = scene_with("[[-5, -1], [5, -5], [5, -2], [-5, 2]]", "vertices_m = [[-1, 0.4], [1, -0.4], [1, 1], [-1, 1]]", "60");
+  JointProperties bedding = scene.joints[0];
+  bedding.name = "bedding";
+  bedding.materials = {JointProperties::no_material, JointProperties::no_material};
+  bedding.friction_angle = 15.0 * openclose::test::degree;
+  scene.joints.push_back(bedding);
+  constexpr int none = BlockInput::by_materials;
+  scene.blocks[0].edge_joints = {none, none, 1, none};
+  scene.blocks[1].edge_joints = {1, none, none, none};
+  CHECK_THAT(loose_blocks_in_words(scene), ContainsSubstring("\"top\" slides along its joint with \"base\" towards (0.93, -0.37)"));
 }
 
 TEST_CASE("of many blocks three are named and the others counted", "[analysis][loose_motion]") {

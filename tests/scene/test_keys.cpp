@@ -147,7 +147,7 @@ TEST_CASE("a former key is read with one warning that names the new one", "[scen
     const Scene set = read_scene(plain.path(), {old + " =" + value});
     CHECK(value_of(set, entry.dotted()) == value);
     CHECK(set.warnings ==
-          std::vector<std::string>{plain.path() + ": --set " + old + ": " + old + " is now " + entry.dotted() + "; the old name is still read"});
+          std::vector<std::string>{plain.path() + ": command line: " + old + " is now " + entry.dotted() + "; the old name is still read"});
     // What is set on the command line counts, whichever name the file has.
     const Scene over = read_scene(file.path(), {entry.dotted() + "=" + entry.value.value_or(value)});
     CHECK(value_of(over, entry.dotted()) == entry.value.value_or(value));
@@ -164,7 +164,7 @@ TEST_CASE("a key that is not there any more is left out with one warning", "[sce
         std::vector<std::string>{note(file.path() + ":23", "method.skip_unmoved"), note(file.path() + ":25", "solver.skip_unmoved")});
   const SceneFile plain(block_on_base);
   const Scene set = read_scene(plain.path(), {"solver.skip_unmoved = false"});
-  CHECK(set.warnings == std::vector<std::string>{note(plain.path() + ": --set solver.skip_unmoved", "solver.skip_unmoved")});
+  CHECK(set.warnings == std::vector<std::string>{note(plain.path() + ": command line", "solver.skip_unmoved")});
   CHECK(write_scene(set) == write_scene(read_scene(plain.path())));
 }
 

@@ -72,42 +72,42 @@ TEST_CASE("a single word is a text with or without quotes", "[scene][override]")
 TEST_CASE("where an overridden contact method stands", "[scene][override]") {
   const SceneFile file(block_on_base);
   const SourceLocation where = read_scene(file.path(), {"method.contact=shi"}).method.contact_where;
-  CHECK(where.file == file.path() + ": --set method.contact");
+  CHECK(where.file == file.path() + ": command line");
   CHECK(where.line == 0);
 }
 
 TEST_CASE("errors in overridden values name the override", "[scene][override]") {
-  CHECK(error_of("method.theta=2") == "--set method.theta: method.theta: 2 is out of range; accepted: a number in [0.5, 1]");
-  CHECK(error_of("step.dt_s=abc") == "--set step.dt_s: step.dt_s: \"abc\" is a string; accepted: a number > 0");
-  CHECK(error_of("step.dt_s=") == "--set step.dt_s: \"\" is not a TOML value; accepted: a number, true, false, a text, or [x, y]");
-  CHECK(error_of("step.dt_s=nan") == "--set step.dt_s: step.dt_s: nan is not a finite number; accepted: a number > 0");
-  CHECK(error_of("step={dt_s=0}") == "--set step: step.dt_s: 0 is out of range; accepted: a number > 0");
+  CHECK(error_of("method.theta=2") == "command line: method.theta: 2 is out of range; accepted: a number in [0.5, 1]");
+  CHECK(error_of("step.dt_s=abc") == "command line: step.dt_s: \"abc\" is a string; accepted: a number > 0");
+  CHECK(error_of("step.dt_s=") == "command line: step.dt_s: \"\" is not a TOML value; accepted: a number, true, false, a text, or [x, y]");
+  CHECK(error_of("step.dt_s=nan") == "command line: step.dt_s: nan is not a finite number; accepted: a number > 0");
+  CHECK(error_of("step={dt_s=0}") == "command line: step.dt_s: 0 is out of range; accepted: a number > 0");
   CHECK(error_of("block[1].vertices_m[2]=[5]") ==
-        "--set block[1].vertices_m[2]: block[1].vertices_m[2]: is an array of 1 values; accepted: [x, y], each a number in [-10000000, 10000000]");
+        "command line: block[1].vertices_m[2]: is an array of 1 values; accepted: [x, y], each a number in [-10000000, 10000000]");
 }
 
 TEST_CASE("overrides of keys that are not known", "[scene][override]") {
-  CHECK_THAT(error_of("method.thetta=1"), ContainsSubstring("--set method.thetta: method.thetta: this key is not known, did you mean theta?; accepted: theta, "));
-  CHECK_THAT(error_of("metod.theta=1"), ContainsSubstring("--set metod.theta: metod: this key is not known, did you mean method?; accepted: method, "));
-  CHECK(error_of("step.dt_ms=1") == "--set step.dt_ms: step.dt_ms: this key has another unit; accepted: dt_s");
+  CHECK_THAT(error_of("method.thetta=1"), ContainsSubstring("command line: method.thetta: this key is not known, did you mean theta?; accepted: theta, "));
+  CHECK_THAT(error_of("metod.theta=1"), ContainsSubstring("command line: metod: this key is not known, did you mean method?; accepted: method, "));
+  CHECK(error_of("step.dt_ms=1") == "command line: step.dt_ms: this key has another unit; accepted: dt_s");
 }
 
 TEST_CASE("overrides of elements that are not there", "[scene][override]") {
-  CHECK(error_of("joint[1].cohesion_pa=1") == "--set joint[1].cohesion_pa: there is no [1]; accepted: [0] to [0]");
-  CHECK(error_of("block[1].vertices_m[4]=[0, 0]") == "--set block[1].vertices_m[4]: there is no [4]; accepted: [0] to [3]");
-  CHECK(error_of("joint.cohesion_pa=1") == "--set joint.cohesion_pa: \"cohesion_pa\" follows an array; accepted: an index, [0] to [0], before it, or the name of an element");
-  CHECK(error_of("method[0]=1") == "--set method[0]: [0] follows something that is not an array; accepted: a key that the scene has");
-  CHECK(error_of("block[0].name.x=1") == "--set block[0].name.x: \"x\" follows something that is not a table; accepted: a key that the scene has");
-  CHECK_THAT(error_of("load[0].force_n=[1, 1]"), ContainsSubstring("--set load[0].force_n: [0] follows something that is not an array"));
+  CHECK(error_of("joint[1].cohesion_pa=1") == "command line: joint[1].cohesion_pa: there is no [1]; accepted: [0] to [0]");
+  CHECK(error_of("block[1].vertices_m[4]=[0, 0]") == "command line: block[1].vertices_m[4]: there is no [4]; accepted: [0] to [3]");
+  CHECK(error_of("joint.cohesion_pa=1") == "command line: joint.cohesion_pa: \"cohesion_pa\" follows an array; accepted: an index, [0] to [0], before it, or the name of an element");
+  CHECK(error_of("method[0]=1") == "command line: method[0]: [0] follows something that is not an array; accepted: a key that the scene has");
+  CHECK(error_of("block[0].name.x=1") == "command line: block[0].name.x: \"x\" follows something that is not a table; accepted: a key that the scene has");
+  CHECK_THAT(error_of("load[0].force_n=[1, 1]"), ContainsSubstring("command line: load[0].force_n: [0] follows something that is not an array"));
 }
 
 TEST_CASE("overrides that are no assignments", "[scene][override]") {
   const std::string accepted = "; accepted: --set KEY=VALUE, e.g. --set joint[0].friction_angle_deg=20";
   CHECK(error_of("method.theta") == "--set method.theta: this is no assignment" + accepted);
   CHECK(error_of("=1") == "--set =1: this is no assignment" + accepted);
-  CHECK(error_of("joint[0=1") == "--set joint[0: this is not a dotted key" + accepted);
-  CHECK(error_of("joint[x].cohesion_pa=1") == "--set joint[x].cohesion_pa: this is not a dotted key" + accepted);
-  CHECK(error_of("joint[-1].cohesion_pa=1") == "--set joint[-1].cohesion_pa: this is not a dotted key" + accepted);
+  CHECK(error_of("joint[0=1") == "command line: joint[0: this is not a dotted key; accepted: one such as joint[0].friction_angle_deg");
+  CHECK(error_of("joint[x].cohesion_pa=1") == "command line: joint[x].cohesion_pa: this is not a dotted key; accepted: one such as joint[0].friction_angle_deg");
+  CHECK(error_of("joint[-1].cohesion_pa=1") == "command line: joint[-1].cohesion_pa: this is not a dotted key; accepted: one such as joint[0].friction_angle_deg");
   CHECK_THAT(error_of("step.dt_s=1\nother=2"), ContainsSubstring("is not a TOML value"));
   CHECK_THAT(error_of("title=two words"), ContainsSubstring("\"two words\" is not a TOML value"));
 }
