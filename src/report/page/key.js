@@ -37,7 +37,7 @@ function drawSymbols(view) {
   const labelled = symbols.length <= MOST_LABELS;
   context.font = "13px system-ui, sans-serif";
   for (const symbol of symbols) {
-    const [x, y] = view.toScreen(...carriedPoint(results, view.motion, view.shownAmplitude, symbol.block, symbol.point));
+    const [x, y] = view.toScreen(...carriedPoint(results, view.motion, view.shownAmplitude, view.isMechanism, symbol.block, symbol.point));
     if (symbol.kind === "load") drawLoad(view, symbol, x, y, largest, labelled);
     if (symbol.kind === "support") drawSupport(context, symbol, x, y, colours.support);
     if (symbol.kind === "point") {

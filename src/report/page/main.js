@@ -122,7 +122,7 @@ function addTools(view) {
   addSearch(view);
 }
 
-function fitState(view) { view.fit(movedVertices(view.results, view.motion, view.shownAmplitude, view.places)); }
+function fitState(view) { view.fit(movedVertices(view.results, view.motion, view.shownAmplitude, view.isMechanism, view.places)); }
 
 function addSearch(view) {
   const find = byId("find");

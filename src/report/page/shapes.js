@@ -1,7 +1,10 @@
 // Where the blocks of a state are on the screen, and which block or contact is at a place.
 
+/** Cosine and sine of a turn; of a mechanism to first order, as velocities are, so that blocks that turn as one body stay joined. */
+function turnBy(angle, toFirstOrder) { return toFirstOrder ? [1, angle] : [Math.cos(angle), Math.sin(angle)]; }
+
 /** Vertices of all blocks moved as rigid bodies; amplitude scales the motion (rotation included). Metres from the origin of the page. */
-function movedVertices(results, motion, amplitude, into) {
+function movedVertices(results, motion, amplitude, toFirstOrder, into) {
   const { first, centroids, vertices, count } = results;
   for (let b = 0; b < count; ++b) {
     const cx = centroids[2 * b], cy = centroids[2 * b + 1];
@@ -13,7 +16,7 @@ function movedVertices(results, motion, amplitude, into) {
       }
       continue;
     }
-    const c = Math.cos(turn), s = Math.sin(turn);
+    const [c, s] = turnBy(turn, toFirstOrder);
     for (let k = 2 * first[b]; k < 2 * first[b + 1]; k += 2) {
       const u = vertices[k] - cx, v = vertices[k + 1] - cy;
       into[k] = x + c * u - s * v;
@@ -24,9 +27,9 @@ function movedVertices(results, motion, amplitude, into) {
 }
 
 /** A point of the drawing on a block, moved with it. */
-function carriedPoint(results, motion, amplitude, block, point) {
-  const cx = results.centroids[2 * block], cy = results.centroids[2 * block + 1], turn = amplitude * motion[3 * block + 2];
-  const u = point[0] - cx, v = point[1] - cy, c = Math.cos(turn), s = Math.sin(turn);
+function carriedPoint(results, motion, amplitude, toFirstOrder, block, point) {
+  const cx = results.centroids[2 * block], cy = results.centroids[2 * block + 1];
+  const u = point[0] - cx, v = point[1] - cy, [c, s] = turnBy(amplitude * motion[3 * block + 2], toFirstOrder);
   return [cx + amplitude * motion[3 * block] + c * u - s * v, cy + amplitude * motion[3 * block + 1] + s * u + c * v];
 }
 

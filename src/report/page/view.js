@@ -96,7 +96,7 @@ class View {
     context.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
     context.fillStyle = "white";
     context.fillRect(0, 0, this.width, this.height);
-    movedVertices(this.results, this.motion, this.shownAmplitude, this.places);
+    movedVertices(this.results, this.motion, this.shownAmplitude, this.isMechanism, this.places);
     for (let k = 0; k < this.places.length; k += 2) {
       this.screen[k] = 0.5 * this.width + (this.places[k] - this.x) * this.scale;
       this.screen[k + 1] = 0.5 * this.height - (this.places[k + 1] - this.y) * this.scale;
@@ -133,7 +133,7 @@ class View {
     const isFilm = state.time_s !== undefined;
     if (this.shownColour === "velocity") {
       const largest = isFilm ? this.results.largestVelocity : state.largest_velocity || 0;
-      return { quantity: this.isMechanism ? "velocity / that of the fastest point" : "velocity [m/s]", largest };
+      return this.isMechanism ? { quantity: "velocity / largest velocity", largest, shown: 1 } : { quantity: "velocity [m/s]", largest };
     }
     const largest = isFilm ? this.results.largestDisplacement : state.largest_displacement || 0;
     if (this.isMechanism) return { quantity: "motion / largest", largest, shown: 1 };
@@ -236,11 +236,20 @@ class View {
 
   jointsOfMechanism(lines) {
     const cracks = this.results.cracks(this.state);
-    const noticeable = NOTICEABLE_PART * (this.results.states[this.state].largest_displacement || 0);
+    const noticeable = NOTICEABLE_PART * this.largestMotion();
     this.eachHalfCrack(cracks, (from, to, opening, slip) => {
       if (opening > noticeable) lines.open.push(...from, ...to);
       else if (Math.abs(slip) > noticeable) lines.sliding.push(...from, ...to);
     });
+  }
+
+  /** [m] Of a point of a block, at most. */
+  largestMotion() {
+    const { motion, results } = this;
+    let largest = 0;
+    for (let b = 0; b < results.count; ++b)
+      largest = Math.max(largest, Math.hypot(motion[3 * b], motion[3 * b + 1]) + Math.abs(motion[3 * b + 2]) * results.radius[b]);
+    return largest;
   }
 
   /** Half of a joint stands for each of its ends. Its places are those of the state as it is, not of another amplitude. */
@@ -329,7 +338,7 @@ class View {
     }
   }
 
-  centroidOf(b) { return carriedPoint(this.results, this.motion, this.shownAmplitude, b, [this.results.centroids[2 * b], this.results.centroids[2 * b + 1]]); }
+  centroidOf(b) { return carriedPoint(this.results, this.motion, this.shownAmplitude, this.isMechanism, b, [this.results.centroids[2 * b], this.results.centroids[2 * b + 1]]); }
 
   drawSelected() {
     if (!this.selected) return;
@@ -360,7 +369,7 @@ class View {
     const [x, y] = this.toPlace(px, py), contacts = this.results.contacts(this.state);
     const farthest = Math.min(CONTACT_REACH, CONTACT_PART * this.blockSize) / this.scale;
     const found = (contacts ? contactsAt(contacts, x, y, farthest) : []).map((contact) => ({ kind: "contact", contact }));
-    movedVertices(this.results, this.motion, this.shownAmplitude, this.places);
+    movedVertices(this.results, this.motion, this.shownAmplitude, this.isMechanism, this.places);
     const block = blockAt(this.results, this.places, x, y);
     if (block >= 0) found.push({ kind: "block", block });
     if (!found.length) return null;
