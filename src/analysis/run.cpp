@@ -215,9 +215,7 @@ class MotionInTime {
     result_.watch = watch_.report();
     if (const double lag = simulation_.friction_lag(); lag > noticeable_friction_lag) {
       result_.warnings.push_back(fmt::format(
-          "friction of sliding contacts was that of the iteration before, off by {:.2g} % of its work; method.contact = \"soft\" would be a remedy, "
-          "a smaller step.dt_s only where this share falls with it",
-          100.0 * lag));
+          "friction of sliding contacts was that of the iteration before, off by {:.2g} % of its work; {}", 100.0 * lag, soft_instead_of_shi));
     }
     const std::string ending = begun_ ? fmt::format("the run ended at t = {:.6g} s", simulation_.time()) : "the run had no state to start from";
     while (result_.milestones.size() < scene_.milestones.size()) {

@@ -359,9 +359,9 @@ class StrengthReduction {
   void warn_of_travel(const TravelOnPath& travel) {
     if (!travel.factor_before_jump) return;
     result_.warnings.push_back(
-        fmt::format("the blocks moved by up to {:.3g} joint closures on the way to a new equilibrium (at {:.6g}); the {} before "
+        fmt::format("the blocks moved by up to {:.3g} mm, {:.3g} joint closures, on the way to a new equilibrium (at {:.6g}); the {} before "
                     "the first such way is {:.6g}",
-                    travel.largest, travel.at_factor, noun(), *travel.factor_before_jump));
+                    1e3 * *result_.largest_travel, travel.largest, travel.at_factor, noun(), *travel.factor_before_jump));
   }
 
   void warn_of_geometry() {

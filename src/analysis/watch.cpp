@@ -90,6 +90,8 @@ std::string better_energy(const Simulation& simulation) {
     return fmt::format("method.step_fraction = {:.2g}, or step.dt_s = {:.2g}, would be a remedy", scene.method.step_fraction / margin,
                        std::min(scene.step.dt, simulation.state().counters.longest_step) / margin);
   }
+  // What the open-close iteration takes from the pass before need not shrink with the step.
+  if (scene.method.contact == "shi") return std::string(soft_instead_of_shi);
   if (scene.method.contact == "soft" && integrator_name(scene.method) != "path_average")
     return shorter_step(scene, margin) + ", or method.integrator = \"path_average\"";
   return shorter_step(scene, margin);

@@ -52,6 +52,10 @@ struct WatchReport {
   }
 };
 
+/// Of what `shi` takes from the iteration before.
+inline constexpr const char* soft_instead_of_shi =
+    "method.contact = \"soft\" would be a remedy, a smaller step.dt_s only where this share falls with it";
+
 class Watch {
  public:
   /// The run starts from the state that the simulation is in; its ledger is empty. Returns what check_at_end() does, but for energies.

@@ -26,7 +26,8 @@ int cut_command(const Options& options) {
   }
   const auto place_of = [](const std::string& path) { return std::filesystem::weakly_canonical(std::filesystem::absolute(path)); };
   if (place_of(file) == place_of(drawing)) {
-    throw InputError({file, 0}, "", "the scene and its drawing cannot be the same file", "another name with --svg");
+    throw InputError({file, 0}, "", "the blocks and their drawing cannot be the same file",
+                     "-o with the name of a scene (.toml), --svg with that of the drawing");
   }
   write_files({{file, "# Blocks that openclose has cut.\n" + write_scene(loaded.scene)}, {drawing, svg_drawing(picture_of(loaded.scene))}});
   if (options.json) {

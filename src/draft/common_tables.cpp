@@ -12,7 +12,9 @@ void begin(AnnotatedText& text, const std::string& title, double tilt) {
   if (tilt == 0.0) {
     text.key("gravity_m_per_s2", Vec2(0.0, -gravity));
   } else {
-    text.comment("The table on which it stands is tilted: gravity has a part along the beds.");
+    text.comment(
+        "The table on which it stands is tilted: gravity has a part along the beds. What fos --increase gravity_x finds comes on top of that part; "
+        "for the coefficient of a level table write [0, -9.81].");
     text.key("gravity_m_per_s2", Vec2(gravity * std::sin(radians(tilt)), -gravity * std::cos(radians(tilt))));
   }
 }

@@ -152,8 +152,8 @@ TEST_CASE("cut writes both files or none", "[cli][cut][bad_input]") {
   check_refused(place, "cut scene.toml -o wall.toml --svg /proc/openclose/wall.svg", "/proc/openclose/wall.svg: " + cannot);
   check_refused(place, "cut scene.toml -o file/wall.toml --svg new/wall.svg", "file/wall.toml: " + cannot);
   check_refused(place, "cut scene.toml -o wall.toml --svg folder.svg", "folder.svg: is there and cannot be written over");
-  check_refused(place, "cut scene.toml -o same.svg", "same.svg: the scene and its drawing cannot be the same file");
-  check_refused(place, "cut scene.toml -o a.toml --svg ./a.toml", "a.toml: the scene and its drawing cannot be the same file");
+  check_refused(place, "cut scene.toml -o same.svg", "same.svg: the blocks and their drawing cannot be the same file");
+  check_refused(place, "cut scene.toml -o a.toml --svg ./a.toml", "a.toml: the blocks and their drawing cannot be the same file");
   CHECK(text_of(place.folder() / "file") == "kept");
   SECTION("an older scene stays when the drawing cannot be made") {
     REQUIRE(place.run("cut scene.toml -o wall.toml --svg wall.svg").status == 0);

@@ -196,7 +196,7 @@ TEST_CASE("what runs warn of is told by study and sweep, alike warnings once", "
     const auto about_density = [](const std::string& line) { return line.find("density") != std::string::npos; };
     REQUIRE(std::ranges::count_if(result.errors, about_density) == 1);
     const std::string& line = *std::ranges::find_if(result.errors, about_density);
-    CHECK_THAT(line, ContainsSubstring(first) && ContainsSubstring("(and 1 of other cases"));
+    CHECK_THAT(line, ContainsSubstring(first) && ContainsSubstring("(and 1 other cases"));
   };
   warned("study scene.toml --dt 0.01,0.005 --end 0.05 --set method.start=unloaded -o study", "soft,dt=0.01: ");
   warned("sweep scene.toml --vary joint[0].friction_angle_deg=46,47 -o sweep", "friction_angle_deg=46: ");
