@@ -10,7 +10,9 @@
 #include <unordered_map>
 
 #include "openclose/core/error.h"
+#include "openclose/io/force_chain.h"
 #include "openclose/io/result_answer.h"
+#include "openclose/io/result_rows.h"
 #include "openclose/io/state_table.h"
 #include "openclose/scene/nearest.h"
 
@@ -23,9 +25,6 @@ using nlohmann::json;
 constexpr const char* mechanism_state = "failed";
 /// [-] Of the size of the median block: a joint that has opened or slipped by more is no line any more, the gap itself is to be seen.
 constexpr double widest_drawn_opening = 0.1;
-/// [-] Of the size of the median block.
-constexpr double stump_of_force = 0.25;
-constexpr double step_into_block = 1e-3;
 /// [-] Two contacts whose lengths add up to their distance to this accuracy are the ends of one face.
 constexpr double accuracy_of_lengths = 0.1;
 /// [-] Of the largest displacement of the mechanism: what opens or slips by less has been moved by rounding.
@@ -37,52 +36,9 @@ struct BlockInfo {
   bool fixed = false;
 };
 
-struct ContactRow {
-  int a = 0, b = 0;
-  Vec2 point = Vec2::Zero(), force = Vec2::Zero();  ///< force on a [N]
-  double length = 0.0;                              ///< [m]
-  JointDrawing state = JointDrawing::plain;
-  bool used = false;
-};
-
-struct CrackRow {
-  int a = 0, b = 0;
-  Vec2 from = Vec2::Zero(), to = Vec2::Zero();
-  double opening_from = 0.0, opening_to = 0.0, slip_from = 0.0, slip_to = 0.0;
-};
-
-JointDrawing status_in(std::string_view word) {
-  if (word == "sliding") return JointDrawing::sliding;
-  return word == "sticking" ? JointDrawing::sticking : JointDrawing::open;
-}
-
 Vec2 point_in(const json& list) {
   return {list.at(0).get<double>(), list.at(1).get<double>()};
 }
-
-/// How a block has moved from one polygon to another, as a rigid body.
-struct Placement {
-  Vec2 from = Vec2::Zero(), to = Vec2::Zero();  ///< the mean of the vertices
-  double sine = 0.0, cosine = 1.0;
-
-  Placement(const Polygon& before, const Polygon& after) {
-    for (std::size_t i = 0; i < before.size(); ++i) from += before[i], to += after[i];
-    from /= static_cast<double>(before.size());
-    to /= static_cast<double>(before.size());
-    double along = 0.0, across = 0.0;
-    for (std::size_t i = 0; i < before.size(); ++i) {
-      along += (before[i] - from).dot(after[i] - to);
-      across += cross(before[i] - from, after[i] - to);
-    }
-    const double length = std::hypot(along, across);
-    if (length > 0.0) sine = across / length, cosine = along / length;
-  }
-  Vec2 turned(const Vec2& vector) const { return cosine * vector + sine * perpendicular(vector); }
-  Vec2 of(const Vec2& point) const {
-    const Vec2 arm = point - from;
-    return to + cosine * arm + sine * perpendicular(arm);
-  }
-};
 
 class ResultPicture {
  public:
@@ -195,17 +151,8 @@ class ResultPicture {
   }
 
   void read_contacts() {
-    const StateTable table(path_of("contacts.csv"),
-                           {"block_a", "block_b", "x_m", "y_m", "normal_x", "normal_y", "normal_force_n", "shear_force_n", "status", "length_m"});
-    table.rows(state_, [&](const Row& row) {
-      const Vec2 normal(number_in(row[4]), number_in(row[5]));
-      contacts_.push_back({index_of(row[0]),
-                           index_of(row[1]),
-                           {number_in(row[2]), number_in(row[3])},
-                           number_in(row[6]) * normal + number_in(row[7]) * perpendicular(normal),
-                           number_in(row[9]),
-                           status_in(row[8])});
-    });
+    const StateTable table = contact_table(path_of("contacts.csv"));
+    contacts_ = contact_rows(table, state_, [&](std::string_view name) { return index_of(name); });
     if (request_.forces && contacts_.empty()) {
       std::string accepted;
       for (const std::string& state : table.states()) accepted += fmt::format("{}\"{}\"", accepted.empty() ? "" : ", ", state);
@@ -216,18 +163,7 @@ class ResultPicture {
   }
 
   void read_cracks() {
-    const StateTable table(path_of("cracks.csv"),
-                           {"block_a", "block_b", "x1_m", "y1_m", "x2_m", "y2_m", "opening1_m", "opening2_m", "slip1_m", "slip2_m"});
-    table.rows(state_, [&](const Row& row) {
-      cracks_.push_back({index_of(row[0]),
-                         index_of(row[1]),
-                         {number_in(row[2]), number_in(row[3])},
-                         {number_in(row[4]), number_in(row[5])},
-                         number_in(row[6]),
-                         number_in(row[7]),
-                         number_in(row[8]),
-                         number_in(row[9])});
-    });
+    cracks_ = crack_rows(path_of("cracks.csv"), state_, [&](std::string_view name) { return index_of(name); });
     if (request_.cracks && cracks_.empty()) {
       throw InputError({path_of("cracks.csv"), 0}, "--cracks", fmt::format("no joints are written of the state \"{}\"", state_),
                        "another --state than \"initial\", of a result whose drawing has joints");
@@ -409,53 +345,18 @@ class ResultPicture {
 
   void add_forces() {
     for (const auto& [key, list] : of_pair_) {
-      Picture::Force force;
-      Vec2 sum = Vec2::Zero(), point = Vec2::Zero();
+      PairForce pair{contacts_[list.front()].a, contacts_[list.front()].b};
       double weights = 0.0;
-      const int a = contacts_[list.front()].a, b = contacts_[list.front()].b;
       for (const std::size_t i : list) {
         const double weight = contacts_[i].force.norm();
-        sum += contacts_[i].a == a ? contacts_[i].force : Vec2(-contacts_[i].force);
-        point += weight * contacts_[i].point;
+        pair.on_a += contacts_[i].a == pair.a ? contacts_[i].force : Vec2(-contacts_[i].force);
+        pair.point += weight * contacts_[i].point;
         weights += weight;
       }
-      if (weights == 0.0) continue;
-      point /= weights;
-      force.size = sum.norm();
-      if (force.size == 0.0) continue;
-      const Vec2 direction = sum.normalized();
-      double into_a = reach_into(a, point, direction), into_b = reach_into(b, point, -direction);
-      // A hinge presses corner on corner, and its force leaves both blocks at once: without a stump it would be a dot, and the chain be broken.
-      const double stump = 0.5 * stump_of_force * size_;
-      if (into_a + into_b < stump) into_a = into_b = stump;
-      force.from = point + into_a * direction;
-      force.to = point - into_b * direction;
-      picture_.forces.push_back(force);
+      if (weights == 0.0 || pair.on_a.isZero(0.0)) continue;
+      pair.point /= weights;
+      picture_.forces.push_back(force_through(pair, picture_.blocks, size_));
     }
-  }
-
-  /// [m] About as far as the centroid, so that what passes through a block makes a chain, and not out of the block; of a fixed block, which may be
-  /// large, a stump.
-  double reach_into(int b, const Vec2& point, const Vec2& direction) const {
-    const auto& block = picture_.blocks[static_cast<std::size_t>(b)];
-    double reach = stump_of_force * size_;
-    if (!block.fixed) {
-      const PolygonProperties shape = polygon_properties(block.outline);
-      reach = std::min((shape.centroid - point).norm(), 0.5 * std::sqrt(shape.area));
-    }
-    // Where the way leaves the block, seen from just within it: the point itself lies on its boundary.
-    const Polygon& outline = block.outline;
-    const double within = step_into_block * size_;
-    const Vec2 start = point + within * direction;
-    if (!contains(outline, start)) return 0.0;
-    for (std::size_t i = 0; i < outline.size(); ++i) {
-      const Vec2 edge = outline[(i + 1) % outline.size()] - outline[i], to_edge = outline[i] - start;
-      const double slope = cross(direction, edge);
-      if (slope == 0.0) continue;
-      const double along = cross(to_edge, edge) / slope, on_edge = cross(to_edge, direction) / slope;
-      if (along >= 0.0 && on_edge >= 0.0 && on_edge <= 1.0) reach = std::min(reach, within + along);
-    }
-    return reach;
   }
 
   void add_cracks() {

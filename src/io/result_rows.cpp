@@ -1,0 +1,62 @@
+#include "openclose/io/result_rows.h"
+
+#include <cmath>
+
+namespace openclose {
+namespace {
+
+JointDrawing status_in(std::string_view word) {
+  if (word == "sliding") return JointDrawing::sliding;
+  return word == "sticking" ? JointDrawing::sticking : JointDrawing::open;
+}
+
+}  // namespace
+
+StateTable contact_table(const std::string& path) {
+  return {path, {"block_a", "block_b", "x_m", "y_m", "normal_x", "normal_y", "normal_force_n", "shear_force_n", "status", "length_m"}};
+}
+
+std::vector<ContactRow> contact_rows(const StateTable& table, const std::string& state, const IndexOfBlock& index_of) {
+  std::vector<ContactRow> contacts;
+  table.rows(state, [&](const Row& row) {
+    const Vec2 normal(number_in(row[4]), number_in(row[5]));
+    contacts.push_back({index_of(row[0]),
+                        index_of(row[1]),
+                        {number_in(row[2]), number_in(row[3])},
+                        number_in(row[6]) * normal + number_in(row[7]) * perpendicular(normal),
+                        number_in(row[9]),
+                        status_in(row[8])});
+  });
+  return contacts;
+}
+
+std::vector<CrackRow> crack_rows(const std::string& path, const std::string& state, const IndexOfBlock& index_of) {
+  const StateTable table(path, {"block_a", "block_b", "x1_m", "y1_m", "x2_m", "y2_m", "opening1_m", "opening2_m", "slip1_m", "slip2_m"});
+  std::vector<CrackRow> cracks;
+  table.rows(state, [&](const Row& row) {
+    cracks.push_back({index_of(row[0]),
+                      index_of(row[1]),
+                      {number_in(row[2]), number_in(row[3])},
+                      {number_in(row[4]), number_in(row[5])},
+                      number_in(row[6]),
+                      number_in(row[7]),
+                      number_in(row[8]),
+                      number_in(row[9])});
+  });
+  return cracks;
+}
+
+Placement::Placement(const Polygon& before, const Polygon& after) {
+  for (std::size_t i = 0; i < before.size(); ++i) from += before[i], to += after[i];
+  from /= static_cast<double>(before.size());
+  to /= static_cast<double>(before.size());
+  double along = 0.0, across = 0.0;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    along += (before[i] - from).dot(after[i] - to);
+    across += cross(before[i] - from, after[i] - to);
+  }
+  const double length = std::hypot(along, across);
+  if (length > 0.0) sine = across / length, cosine = along / length;
+}
+
+}  // namespace openclose

@@ -1,0 +1,47 @@
+// Rows of the tables of results, as drawings need them.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "openclose/geometry/polygon.h"
+#include "openclose/io/drawing.h"
+#include "openclose/io/state_table.h"
+
+namespace openclose {
+
+/// Of contacts.csv.
+struct ContactRow {
+  int a = 0, b = 0;
+  Vec2 point = Vec2::Zero(), force = Vec2::Zero();  ///< force on a [N]
+  double length = 0.0;                              ///< [m]
+  JointDrawing state = JointDrawing::plain;
+  bool used = false;  ///< by a joint that is drawn
+};
+
+/// Of cracks.csv.
+struct CrackRow {
+  int a = 0, b = 0;
+  Vec2 from = Vec2::Zero(), to = Vec2::Zero();
+  double opening_from = 0.0, opening_to = 0.0, slip_from = 0.0, slip_to = 0.0;
+};
+
+/// The number of a block by its name.
+using IndexOfBlock = std::function<int(std::string_view name)>;
+
+StateTable contact_table(const std::string& path);
+std::vector<ContactRow> contact_rows(const StateTable& table, const std::string& state, const IndexOfBlock& index_of);
+std::vector<CrackRow> crack_rows(const std::string& path, const std::string& state, const IndexOfBlock& index_of);
+
+/// How a block has moved from one polygon to another, as a rigid body.
+struct Placement {
+  Vec2 from = Vec2::Zero(), to = Vec2::Zero();  ///< the mean of the vertices
+  double sine = 0.0, cosine = 1.0;
+
+  Placement(const Polygon& before, const Polygon& after);
+  Vec2 turned(const Vec2& vector) const { return cosine * vector + sine * perpendicular(vector); }
+  Vec2 of(const Vec2& point) const { return to + turned(point - from); }
+};
+
+}  // namespace openclose
