@@ -1,13 +1,13 @@
 #include "openclose/io/drawing.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <utility>
 
 #include "openclose/geometry/box.h"
 #include "openclose/io/drawing_colours.h"
+#include "openclose/io/drawing_legend.h"
 #include "openclose/io/svg_page.h"
 
 namespace openclose {
@@ -32,15 +32,6 @@ constexpr int colour_classes = 32;
 constexpr double least_drawn_part = 0.005;
 /// Names are written beside no more points and loads than this; tooltips tell the others.
 constexpr std::size_t most_labels = 12;
-
-std::string colour_at(double part) {
-  const double place = std::clamp(part, 0.0, 1.0) * static_cast<double>(gradient.size() - 1);
-  const std::size_t i = std::min(static_cast<std::size_t>(place), gradient.size() - 2);
-  const double share = place - static_cast<double>(i);
-  std::array<int, 3> c;
-  for (std::size_t k = 0; k < 3; ++k) c[k] = static_cast<int>(std::lround((1.0 - share) * gradient[i][k] + share * gradient[i + 1][k]));
-  return fmt::format("#{:02x}{:02x}{:02x}", c[0], c[1], c[2]);
-}
 
 /// 1, 2 or 5 times a power of ten, not above the value.
 double round_length(double value) {
@@ -116,7 +107,7 @@ class Drawing {
     page.print(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" viewBox=\"0 0 {0:.0f} {1:.0f}\" "
         "font-family=\"sans-serif\">\n<!-- drawn by openclose -->\n",
-        page_width_, legend_y_ + row_extra_ + margin);
+        page_width_, bottom_ + margin);
     page.print(
         "<defs><pattern id=\"fixed\" width=\"7\" height=\"7\" patternUnits=\"userSpaceOnUse\">"
         "<circle cx=\"3.5\" cy=\"3.5\" r=\"1.1\" fill=\"#444\"/></pattern></defs>\n"
@@ -355,103 +346,47 @@ class Drawing {
     page_.print("</g>\n");
   }
 
-  /// The left end of the next entry of the legend, which is this wide; it begins a new row where the present one is full.
-  double next_entry(double width) {
-    if (legend_x_ > margin && legend_x_ + width > page_width_ - margin) {
-      legend_x_ = margin;
-      legend_y_ += 1.5 * line_height + row_extra_;
-      row_extra_ = 0.0;
-    }
-    const double x = legend_x_;
-    legend_x_ += width + 22.0;
-    return x;
-  }
-
-  void add_swatch(const std::string& fill, const std::string& text, const char* over = nullptr) {
-    const double x = next_entry(36.0 + width_of(text, 14.0));
-    for (const std::string& colour : {fill, std::string(over ? over : "")}) {
-      if (!colour.empty())
-        page_.print("<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"28\" height=\"16\" fill=\"{}\" stroke=\"#333\" stroke-width=\"0.6\"/>\n", x,
-                    legend_y_ - 13.0, colour);
-    }
-    page_.write(x + 36.0, legend_y_, text);
-  }
-
-  void add_line(const char* name, const std::string& colour, double width, const std::string& text, double opacity = 1.0) {
-    const double x = next_entry(42.0 + width_of(text, 14.0));
-    page_.line({x, legend_y_ - 5.0}, {x + 34.0, legend_y_ - 5.0},
-               fmt::format("class=\"{}\" stroke=\"{}\" stroke-width=\"{:.3f}\" stroke-opacity=\"{:g}\"", name, colour, width, opacity));
-    page_.write(x + 42.0, legend_y_, text);
-  }
-
-  void add_colour_bar(const Picture::Scale& scale) {
-    constexpr double length = 240.0;
-    const double text = width_of(scale.quantity, 14.0), x = next_entry(text + 12.0 + length + 20.0) + text + 12.0;
-    page_.write(x - text - 12.0, legend_y_, scale.quantity);
-    page_.print("<defs><linearGradient id=\"colours\">");
-    for (std::size_t i = 0; i < gradient.size(); ++i) {
-      const double part = static_cast<double>(i) / static_cast<double>(gradient.size() - 1);
-      page_.print("<stop offset=\"{:.4f}\" stop-color=\"{}\"/>", part, colour_at(part));
-    }
-    page_.print(
-        "</linearGradient></defs>\n<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:g}\" height=\"14\" fill=\"url(#colours)\" stroke=\"#333\" "
-        "stroke-width=\"0.6\"/>\n",
-        x, legend_y_ - 12.0, length);
-    for (const double part : {0.0, 0.5, 1.0})
-      page_.write(x + part * length, legend_y_ + 16.0, fmt::format("{:.3g}", part * scale.largest), 12.0, " text-anchor=\"middle\"");
-    row_extra_ = 12.0;
-  }
-
-  void add_scale_bar() {
-    const double length = round_length(std::min(0.25 * (box_.high.x() - box_.low.x()), 300.0 / scale_));
-    const double x = next_entry(scale_ * length + 60.0);
-    page_.print("<path class=\"scale\" d=\"M{:.2f},{:.2f} v8 H{:.2f} v-8\" fill=\"none\" stroke=\"black\" stroke-width=\"1.4\"/>\n", x,
-                legend_y_ - 10.0, x + scale_ * length);
-    page_.write(x + scale_ * length + 8.0, legend_y_, fmt::format("{:g} m", length));
-  }
-
   void draw_legend() {
-    legend_y_ = top_ + scale_ * (box_.high.y() - box_.low.y()) + legend_gap + 14.0;
-    legend_x_ = margin;
-    add_scale_bar();
-    if (picture_.scale) add_colour_bar(*picture_.scale);
+    Legend legend(page_, {margin, top_ + scale_ * (box_.high.y() - box_.low.y()) + legend_gap + 14.0}, page_width_ - margin);
+    const double bar = round_length(std::min(0.25 * (box_.high.x() - box_.low.x()), 300.0 / scale_));
+    legend.add_scale_bar(scale_ * bar, fmt::format("{:g} m", bar));
+    if (picture_.scale) legend.add_colour_bar(*picture_.scale);
     if (!picture_.scale) {
       std::vector<char> used(picture_.colour_names.size(), 0);
       for (const Picture::Block& block : picture_.blocks) {
         if (!block.fixed && static_cast<std::size_t>(block.colour) < used.size()) used[static_cast<std::size_t>(block.colour)] = 1;
       }
       for (std::size_t m = 0; m < picture_.colour_names.size(); ++m) {
-        if (used[m]) add_swatch(fills[m % fills.size()], picture_.colour_names[m]);
+        if (used[m]) legend.add_swatch(fills[m % fills.size()], picture_.colour_names[m]);
       }
     }
-    if (std::ranges::any_of(picture_.blocks, &Picture::Block::fixed)) add_swatch(fixed_fill, "fixed", "url(#fixed)");
-    for (std::size_t n = 0; n < picture_.seam_names.size(); ++n) add_line("seam-key", colour_of_seam(n), 2.5, picture_.seam_names[n]);
+    if (std::ranges::any_of(picture_.blocks, &Picture::Block::fixed)) legend.add_swatch(fixed_fill, "fixed", "url(#fixed)");
+    for (std::size_t n = 0; n < picture_.seam_names.size(); ++n) legend.add_line("seam-key", colour_of_seam(n), 2.5, picture_.seam_names[n]);
     const auto has = [&](JointDrawing state) {
       return std::ranges::any_of(picture_.joints, [&](const Picture::Joint& joint) { return joint.state == state; });
     };
-    if (has(JointDrawing::sticking)) add_line("sticking", outline_colour, 1.0, "joint that holds");
-    if (has(JointDrawing::sliding)) add_line("sliding", sliding_colour, 3.0, "slides");
-    if (has(JointDrawing::open)) add_line("open", open_colour, 3.0, "open");
+    if (has(JointDrawing::sticking)) legend.add_line("sticking", outline_colour, 1.0, "joint that holds");
+    if (has(JointDrawing::sliding)) legend.add_line("sliding", sliding_colour, 3.0, "slides");
+    if (has(JointDrawing::open)) legend.add_line("open", open_colour, 3.0, "open");
     if (largest_opening_ > 0.0)
-      add_line("crack-scale", open_colour, widest_line(), fmt::format("{} {}", picture_.crack_name, length_text(largest_opening_)), 0.8);
+      legend.add_line("crack-scale", open_colour, widest_line(), fmt::format("{} {}", picture_.crack_name, length_text(largest_opening_)), 0.8);
     if (largest_force_ > 0.0) {
       for (const double part : {1.0, 0.3}) {
         const double size = part == 1.0 ? largest_force_ : round_length(part * largest_force_);
-        add_line("force-scale", force_colour, widest_line() * size / largest_force_, (part == 1.0 ? "largest force " : "") + force_text(size), 0.72);
+        legend.add_line("force-scale", force_colour, widest_line() * size / largest_force_, (part == 1.0 ? "largest force " : "") + force_text(size), 0.72);
       }
     }
     if (longest_arrow_ > 0.0) {
-      const double x = next_entry(longest_arrow_ + 8.0 + width_of(picture_.velocity_name, 14.0));
-      draw_arrow({x, legend_y_ - 5.0}, {x + longest_arrow_, legend_y_ - 5.0}, 8.0, "black", 1.4);
-      page_.write(x + longest_arrow_ + 8.0, legend_y_, picture_.velocity_name);
+      const Vec2 left = legend.add_symbol(longest_arrow_, picture_.velocity_name);
+      draw_arrow(left, left + Vec2(longest_arrow_, 0.0), 8.0, "black", 1.4);
     }
-    if (!picture_.loads.empty()) add_line("load-key", load_colour, 2.4, "load");
-    if (!picture_.supports.empty()) add_line("support-key", support_colour, 2.4, "support");
+    if (!picture_.loads.empty()) legend.add_line("load-key", load_colour, 2.4, "load");
+    if (!picture_.supports.empty()) legend.add_line("support-key", support_colour, 2.4, "support");
     if (!picture_.points.empty()) {
-      const double x = next_entry(14.0 + width_of("measured point", 14.0));
-      page_.print("<circle cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"4\" fill=\"white\" stroke=\"black\" stroke-width=\"1.4\"/>\n", x + 4.0, legend_y_ - 5.0);
-      page_.write(x + 14.0, legend_y_, "measured point");
+      const Vec2 left = legend.add_symbol(6.0, "measured point");
+      page_.print("<circle cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"4\" fill=\"white\" stroke=\"black\" stroke-width=\"1.4\"/>\n", left.x() + 4.0, left.y());
     }
+    bottom_ = legend.bottom();
   }
 
   const Picture& picture_;
@@ -461,53 +396,17 @@ class Drawing {
   double notes_bottom_ = 0.0;               ///< [px] where title and notes end
   double page_width_ = 0.0;                 ///< [px]
   double block_size_ = 0.0;                 ///< [px] of the median free block
-  double legend_x_ = 0.0, legend_y_ = 0.0;  ///< [px]
-  double row_extra_ = 0.0;                  ///< [px] what the present row of the legend has below its line
+  double bottom_ = 0.0;  ///< [px] where the legend ends
   double largest_force_ = 0.0, largest_opening_ = 0.0, largest_load_ = 0.0;
   double longest_arrow_ = 0.0;  ///< [px] of the velocities
   std::vector<std::string> title_lines_, note_lines_;
   SvgPage page_;
 };
 
-/// Those joints that edges name, in the order of the scene.
-void add_seams(const Scene& scene, Picture& picture) {
-  std::map<int, int> number_of;
-  for (const BlockInput& block : scene.blocks) {
-    for (const int joint : block.edge_joints) {
-      if (joint != BlockInput::by_materials) number_of.emplace(joint, 0);
-    }
-  }
-  for (auto& [joint, number] : number_of) {
-    number = static_cast<int>(picture.seam_names.size());
-    picture.seam_names.push_back(scene.joints[joint].name);
-  }
-  for (const BlockInput& block : scene.blocks) {
-    for (std::size_t i = 0; i < block.edge_joints.size(); ++i) {
-      const auto number = number_of.find(block.edge_joints[i]);
-      if (number == number_of.end()) continue;
-      picture.seams.push_back({block.vertices[i], block.vertices[(i + 1) % block.vertices.size()], number->second});
-    }
-  }
-}
-
 }  // namespace
 
 std::string svg_drawing(const Picture& picture) {
   return Drawing(picture).svg();
-}
-
-Picture picture_of(const Scene& scene) {
-  Picture picture;
-  picture.title = fmt::format("{} ({} blocks)", scene.title.empty() ? "Blocks" : scene.title, scene.blocks.size());
-  for (const Material& material : scene.materials) picture.colour_names.push_back(material.name);
-  for (const BlockInput& block : scene.blocks) picture.blocks.push_back({block.name, block.vertices, block.material, block.fixed, 0.0});
-  add_seams(scene, picture);
-  for (const Support& s : scene.supports) picture.supports.push_back({s.point, s.stiffness.x() > 0.0, s.stiffness.y() > 0.0});
-  for_each_force(scene, [&](const auto& force) {
-    for (const DrawnForce& arrow : force.drawn()) picture.loads.push_back({arrow.point, arrow.force});
-  });
-  for (const MeasuredPoint& point : scene.measured_points) picture.points.push_back({point.name, point.point});
-  return picture;
 }
 
 }  // namespace openclose
