@@ -214,8 +214,8 @@ class MotionInTime {
     result_.cpu_of_motion = process_cpu_time() - cpu_at_start_;
     result_.watch = watch_.report();
     if (const double lag = simulation_.friction_lag(); lag > noticeable_friction_lag) {
-      result_.warnings.push_back(fmt::format(
-          "friction of sliding contacts was that of the iteration before, off by {:.2g} % of its work; {}", 100.0 * lag, soft_instead_of_shi));
+      result_.warnings.push_back(fmt::format("friction of sliding contacts was that of the iteration before, off by {:.2g} % of its work; {}",
+                                             100.0 * lag, soft_instead_of_shi));
     }
     const std::string ending = begun_ ? fmt::format("the run ended at t = {:.6g} s", simulation_.time()) : "the run had no state to start from";
     while (result_.milestones.size() < scene_.milestones.size()) {

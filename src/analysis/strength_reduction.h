@@ -79,7 +79,8 @@ struct FactorOfSafety {
 /// What a search tells while it goes on.
 struct SearchObserver {
   std::function<void(double fraction)> progress;  ///< may throw Stopped: what is known by then is the answer
-  std::function<void(std::string state)> done;    ///< after every trial and other piece of work, with all that is known: resume_search() goes on from it
+  std::function<void(std::string state)>
+      done;  ///< after every trial and other piece of work, with all that is known: resume_search() goes on from it
   std::function<void(const StrengthTrial& trial)> trial = {};  ///< after every trial of the search, also those that a restart already has
 };
 

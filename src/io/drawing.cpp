@@ -373,7 +373,8 @@ class Drawing {
     if (largest_force_ > 0.0) {
       for (const double part : {1.0, 0.3}) {
         const double size = part == 1.0 ? largest_force_ : round_length(part * largest_force_);
-        legend.add_line("force-scale", force_colour, widest_line() * size / largest_force_, (part == 1.0 ? "largest force " : "") + force_text(size), 0.72);
+        legend.add_line("force-scale", force_colour, widest_line() * size / largest_force_, (part == 1.0 ? "largest force " : "") + force_text(size),
+                        0.72);
       }
     }
     if (longest_arrow_ > 0.0) {
@@ -391,12 +392,12 @@ class Drawing {
 
   const Picture& picture_;
   Box box_;
-  double scale_ = 1.0;                      ///< [px/m]
-  double left_ = 0.0, top_ = 0.0;           ///< [px] of the blocks
-  double notes_bottom_ = 0.0;               ///< [px] where title and notes end
-  double page_width_ = 0.0;                 ///< [px]
-  double block_size_ = 0.0;                 ///< [px] of the median free block
-  double bottom_ = 0.0;  ///< [px] where the legend ends
+  double scale_ = 1.0;             ///< [px/m]
+  double left_ = 0.0, top_ = 0.0;  ///< [px] of the blocks
+  double notes_bottom_ = 0.0;      ///< [px] where title and notes end
+  double page_width_ = 0.0;        ///< [px]
+  double block_size_ = 0.0;        ///< [px] of the median free block
+  double bottom_ = 0.0;            ///< [px] where the legend ends
   double largest_force_ = 0.0, largest_opening_ = 0.0, largest_load_ = 0.0;
   double longest_arrow_ = 0.0;  ///< [px] of the velocities
   std::vector<std::string> title_lines_, note_lines_;

@@ -18,7 +18,8 @@ std::string colour_at(double part) {
   const std::size_t i = std::min(static_cast<std::size_t>(place), drawing_colour::gradient.size() - 2);
   const double share = place - static_cast<double>(i);
   std::array<int, 3> c;
-  for (std::size_t k = 0; k < 3; ++k) c[k] = static_cast<int>(std::lround((1.0 - share) * drawing_colour::gradient[i][k] + share * drawing_colour::gradient[i + 1][k]));
+  for (std::size_t k = 0; k < 3; ++k)
+    c[k] = static_cast<int>(std::lround((1.0 - share) * drawing_colour::gradient[i][k] + share * drawing_colour::gradient[i + 1][k]));
   return fmt::format("#{:02x}{:02x}{:02x}", c[0], c[1], c[2]);
 }
 
@@ -38,8 +39,8 @@ void Legend::add_swatch(const std::string& fill, const std::string& text, const 
   const double x = next_entry(36.0 + width_of(text, 14.0));
   for (const std::string& colour : {fill, std::string(over ? over : "")}) {
     if (!colour.empty())
-      page_.print("<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"28\" height=\"16\" fill=\"{}\" stroke=\"#333\" stroke-width=\"0.6\"/>\n", x,
-                  y_ - 13.0, colour);
+      page_.print("<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"28\" height=\"16\" fill=\"{}\" stroke=\"#333\" stroke-width=\"0.6\"/>\n", x, y_ - 13.0,
+                  colour);
   }
   page_.write(x + 36.0, y_, text);
 }

@@ -17,8 +17,8 @@ namespace {
 constexpr const char* growing_results[] = {"history.csv",      "energy.csv", "blocks.csv",          "contacts.csv",
                                            "block_states.csv", "cracks.csv", "contact_history.csv", checkpoint_name};
 /// What comes at its end.
-constexpr const char* last_results[] = {"block_properties.csv", "trials.csv",   "mechanism.csv",       "curve.csv",
-                                        "milestones.csv",       "summary.json", "checkpoint.bin.part", "drawing.svg", "report.html"};
+constexpr const char* last_results[] = {"block_properties.csv", "trials.csv",          "mechanism.csv", "curve.csv",  "milestones.csv",
+                                        "summary.json",         "checkpoint.bin.part", "drawing.svg",   "report.html"};
 /// Of these: what other commands write later. They name openclose where they begin.
 constexpr std::string_view later_results[] = {"drawing.svg", "report.html"};
 /// The first line of the scene that belongs to the results: a file of that name without it is somebody's own.

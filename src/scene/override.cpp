@@ -19,7 +19,9 @@ struct Override {
   std::string key;
   std::string value;
 
-  [[noreturn]] void fail(const std::string& read, const std::string& accepted) const { throw_input_error({source, 0}, shortened(key), read, accepted); }
+  [[noreturn]] void fail(const std::string& read, const std::string& accepted) const {
+    throw_input_error({source, 0}, shortened(key), read, accepted);
+  }
 };
 
 Override parse_override(const std::string& file, const std::string& text) {

@@ -173,7 +173,8 @@ void CaseWarnings::add(const std::string& name, const std::string& summary) {
 std::vector<std::string> CaseWarnings::texts() const {
   std::vector<std::string> list;
   for (const Kind& kind : kinds_) {
-    const std::string others = kind.others == 0 ? "" : fmt::format(" (and {} other cases with their own numbers, see their summary.json)", kind.others);
+    const std::string others =
+        kind.others == 0 ? "" : fmt::format(" (and {} other cases with their own numbers, see their summary.json)", kind.others);
     list.push_back(kind.first + others);
   }
   return list;

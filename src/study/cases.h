@@ -29,7 +29,8 @@ struct CaseOrder {
   int jobs = 1;        ///< processes at a time
 };
 
-/// What the runs of cases warn of, one after the other. Of warnings that differ in their numbers only the first is told, with the number of the others.
+/// What the runs of cases warn of, one after the other. Of warnings that differ in their numbers only the first is told, with the number of the
+/// others.
 class CaseWarnings {
  public:
   /// \param summary  as in CaseResult

@@ -43,8 +43,7 @@ TEST_CASE("overlaps of blocks that overrides bring name these", "[scene][check]"
   const test::SceneFile file(block_on_base);
   const std::string square = "material='rock', vertices_m=[[0, 5], [1, 5], [1, 6], [0, 6]]}";
   const Scene scene = read_scene(file.path(), {"block[0]={name='a', fixed=true, " + square, "block[1]={name='b', " + square});
-  CHECK_THROWS_WITH(check_scene(scene),
-                    ContainsSubstring("command line: block: \"b\" overlaps \"a\" (") && ContainsSubstring("command line) by"));
+  CHECK_THROWS_WITH(check_scene(scene), ContainsSubstring("command line: block: \"b\" overlaps \"a\" (") && ContainsSubstring("command line) by"));
 }
 
 TEST_CASE("overlaps of drawing accuracy are allowed", "[scene][check]") {

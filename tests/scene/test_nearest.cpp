@@ -24,7 +24,8 @@ TEST_CASE("the same quantity in another unit", "[scene][nearest]") {
 
 TEST_CASE("suggestions begin with the most alike and do not grow without bound", "[scene][nearest]") {
   CHECK(suggestions("fixd", {"name", "vertices_m", "fixed"}) == "fixed, name, vertices_m");
-  CHECK(suggestions("friktion", {"fraction", "function_of_time", "joint.friction_angle_deg"}) == "fraction, joint.friction_angle_deg, function_of_time");
+  CHECK(suggestions("friktion", {"fraction", "function_of_time", "joint.friction_angle_deg"}) ==
+        "fraction, joint.friction_angle_deg, function_of_time");
   std::vector<std::string> many;
   for (int i = 0; i < 1000; ++i) many.push_back("block" + std::to_string(i));
   const std::string text = suggestions("block777x", many);

@@ -87,7 +87,8 @@ TEST_CASE("errors in overridden values name the override", "[scene][override]") 
 }
 
 TEST_CASE("overrides of keys that are not known", "[scene][override]") {
-  CHECK_THAT(error_of("method.thetta=1"), ContainsSubstring("command line: method.thetta: this key is not known, did you mean theta?; accepted: theta, "));
+  CHECK_THAT(error_of("method.thetta=1"),
+             ContainsSubstring("command line: method.thetta: this key is not known, did you mean theta?; accepted: theta, "));
   CHECK_THAT(error_of("metod.theta=1"), ContainsSubstring("command line: metod: this key is not known, did you mean method?; accepted: method, "));
   CHECK(error_of("step.dt_ms=1") == "command line: step.dt_ms: this key has another unit; accepted: dt_s");
 }
@@ -95,9 +96,11 @@ TEST_CASE("overrides of keys that are not known", "[scene][override]") {
 TEST_CASE("overrides of elements that are not there", "[scene][override]") {
   CHECK(error_of("joint[1].cohesion_pa=1") == "command line: joint[1].cohesion_pa: there is no [1]; accepted: [0] to [0]");
   CHECK(error_of("block[1].vertices_m[4]=[0, 0]") == "command line: block[1].vertices_m[4]: there is no [4]; accepted: [0] to [3]");
-  CHECK(error_of("joint.cohesion_pa=1") == "command line: joint.cohesion_pa: \"cohesion_pa\" follows an array; accepted: an index, [0] to [0], before it, or the name of an element");
+  CHECK(error_of("joint.cohesion_pa=1") ==
+        "command line: joint.cohesion_pa: \"cohesion_pa\" follows an array; accepted: an index, [0] to [0], before it, or the name of an element");
   CHECK(error_of("method[0]=1") == "command line: method[0]: [0] follows something that is not an array; accepted: a key that the scene has");
-  CHECK(error_of("block[0].name.x=1") == "command line: block[0].name.x: \"x\" follows something that is not a table; accepted: a key that the scene has");
+  CHECK(error_of("block[0].name.x=1") ==
+        "command line: block[0].name.x: \"x\" follows something that is not a table; accepted: a key that the scene has");
   CHECK_THAT(error_of("load[0].force_n=[1, 1]"), ContainsSubstring("command line: load[0].force_n: [0] follows something that is not an array"));
 }
 
@@ -106,8 +109,10 @@ TEST_CASE("overrides that are no assignments", "[scene][override]") {
   CHECK(error_of("method.theta") == "--set method.theta: this is no assignment" + accepted);
   CHECK(error_of("=1") == "--set =1: this is no assignment" + accepted);
   CHECK(error_of("joint[0=1") == "command line: joint[0: this is not a dotted key; accepted: one such as joint[0].friction_angle_deg");
-  CHECK(error_of("joint[x].cohesion_pa=1") == "command line: joint[x].cohesion_pa: this is not a dotted key; accepted: one such as joint[0].friction_angle_deg");
-  CHECK(error_of("joint[-1].cohesion_pa=1") == "command line: joint[-1].cohesion_pa: this is not a dotted key; accepted: one such as joint[0].friction_angle_deg");
+  CHECK(error_of("joint[x].cohesion_pa=1") ==
+        "command line: joint[x].cohesion_pa: this is not a dotted key; accepted: one such as joint[0].friction_angle_deg");
+  CHECK(error_of("joint[-1].cohesion_pa=1") ==
+        "command line: joint[-1].cohesion_pa: this is not a dotted key; accepted: one such as joint[0].friction_angle_deg");
   CHECK_THAT(error_of("step.dt_s=1\nother=2"), ContainsSubstring("is not a TOML value"));
   CHECK_THAT(error_of("title=two words"), ContainsSubstring("\"two words\" is not a TOML value"));
 }
