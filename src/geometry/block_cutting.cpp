@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <map>
 #include <numeric>
 #include <set>
@@ -11,6 +10,7 @@
 #include <tuple>
 
 #include "openclose/geometry/arrangement.h"
+#include "openclose/geometry/cutting_sources.h"
 #include "openclose/geometry/labelled_outline.h"
 #include "openclose/geometry/plane_graph.h"
 #include "openclose/geometry/trace_continuation.h"
@@ -22,69 +22,6 @@ namespace {
 constexpr double level = 1e-6;
 /// [-] Blocks add up to the domain but for rounding; more than this is a fault of the program.
 constexpr double area_rounding = 1e-7;
-
-/// Numbers of the rings of the domain among the sources, which are joints from 0 up.
-int source_of_ring(int ring) {
-  return -1 - ring;
-}
-bool is_ring(int source) {
-  return source < 0;
-}
-int ring_of_source(int source) {
-  return -1 - source;
-}
-
-bool before(const Vec2& a, const Vec2& b) {
-  return std::pair(a.x(), a.y()) < std::pair(b.x(), b.y());
-}
-
-void make_canonical(std::vector<JointTrace>& traces) {
-  for (JointTrace& trace : traces) {
-    if (!before(trace.segment.to, trace.segment.from)) continue;
-    std::swap(trace.segment.from, trace.segment.to);
-    std::swap(trace.goes_on_from, trace.goes_on_to);
-  }
-  const auto key = [](const JointTrace& trace) {
-    const auto& [from, to] = trace.segment;
-    return std::tuple(from.x(), from.y(), to.x(), to.y(), trace.joint);
-  };
-  std::sort(traces.begin(), traces.end(), [&](const JointTrace& a, const JointTrace& b) { return key(a) < key(b); });
-}
-
-std::vector<const Polygon*> rings_of(const PolygonWithHoles& domain) {
-  std::vector<const Polygon*> rings{&domain.outer};
-  for (const Polygon& hole : domain.holes) rings.push_back(&hole);
-  return rings;
-}
-
-/// With their numbers, in an order that depends neither on that of the holes nor on which vertex of a ring is written first.
-std::vector<std::pair<int, Polygon>> rings_in_order(const PolygonWithHoles& domain) {
-  std::vector<std::pair<int, Polygon>> rings{{0, from_lowest(domain.outer)}};
-  for (const Polygon& hole : domain.holes) rings.emplace_back(static_cast<int>(rings.size()), from_lowest(hole));
-  std::sort(rings.begin() + 1, rings.end(), [](const auto& a, const auto& b) { return before(a.second.front(), b.second.front()); });
-  return rings;
-}
-
-std::vector<SourceSegment> sources_of(const PolygonWithHoles& domain, const std::vector<JointTrace>& traces, double reach) {
-  std::vector<SourceSegment> sources;
-  for (const auto& [number, ring] : rings_in_order(domain)) {
-    for (std::size_t i = 0; i < ring.size(); ++i) {
-      const Vec2& next = ring[i + 1 < ring.size() ? i + 1 : 0];
-      // The domain is on the left of the outer boundary and on the right of a hole's.
-      sources.push_back({number == 0 ? Segment{ring[i], next} : Segment{next, ring[i]}, source_of_ring(number), true});
-    }
-  }
-  for (const JointTrace& trace : traces) sources.push_back({trace.segment, trace.joint, false});
-  // A stub at each end makes it reach what it misses; the trace itself stays as it was given, to the last bit.
-  const Box box = Box::around(domain.outer).inflated(reach);
-  for (const JointTrace& trace : traces) {
-    const auto& [from, to] = trace.segment;
-    const Vec2 more = reach * (to - from).normalized();
-    if (reach > 0.0 && !trace.goes_on_from && box.contains(from)) sources.push_back({{from - more, from}, trace.joint, false});
-    if (reach > 0.0 && !trace.goes_on_to && box.contains(to)) sources.push_back({{to, to + more}, trace.joint, false});
-  }
-  return sources;
-}
 
 /// Sets of things that belong together.
 class Groups {
@@ -464,39 +401,6 @@ class Cut {
   Cutting result_;
 };
 
-bool rings_meet(const Polygon& a, const Polygon& b) {
-  if (!Box::around(a).inflated(tolerance::shortest_edge_m).overlaps(Box::around(b))) return false;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      if (segments_meet(a[i], a[(i + 1) % a.size()], b[j], b[(j + 1) % b.size()])) return true;
-    }
-  }
-  return false;
-}
-
-/// A place near a domain that lies far from the origin, else the origin itself. What is taken from the coordinates there has so few digits that no
-/// vertex of the domain loses any, there and back: multiples of a power of two above the domain's size, and none of a coordinate that is not at least
-/// as far away. The cutting then has all digits for crossings and angles, and only the corners of the blocks are rounded to what is left of them.
-Vec2 local_origin(const Polygon& outer) {
-  const Box box = Box::around(outer);
-  const double grid = std::exp2(std::ceil(std::log2((box.high - box.low).maxCoeff())));
-  const auto near = [&](double low, double high) {
-    return std::min(std::abs(low), std::abs(high)) < 2.0 * grid || low * high < 0.0 ? 0.0 : grid * std::round(0.5 * (low + high) / grid);
-  };
-  return {near(box.low.x(), box.high.x()), near(box.low.y(), box.high.y())};
-}
-
-Polygon moved(Polygon polygon, const Vec2& by) {
-  for (Vec2& vertex : polygon) vertex += by;
-  return polygon;
-}
-
-PolygonWithHoles moved(PolygonWithHoles domain, const Vec2& by) {
-  domain.outer = moved(std::move(domain.outer), by);
-  for (Polygon& hole : domain.holes) hole = moved(std::move(hole), by);
-  return domain;
-}
-
 Cutting cut_near_origin(const PolygonWithHoles& domain, std::vector<JointTrace> traces, const std::vector<int>& labels, const CuttingLimits& limits) {
   make_canonical(traces);
   if (continue_traces(traces, rings_of(domain), limits.end_reach)) make_canonical(traces);
@@ -516,31 +420,6 @@ Cutting cut_near_origin(const PolygonWithHoles& domain, std::vector<JointTrace> 
 }
 
 }  // namespace
-
-bool PolygonWithHoles::contains(const Vec2& point) const {
-  const auto in_hole = [&](const Polygon& hole) { return openclose::contains(hole, point); };
-  return openclose::contains(outer, point) && std::none_of(holes.begin(), holes.end(), in_hole);
-}
-
-double PolygonWithHoles::area() const {
-  double area = signed_area(outer);
-  for (const Polygon& hole : holes) area -= signed_area(hole);
-  return area;
-}
-
-std::optional<RingFault> first_ring_fault(const PolygonWithHoles& domain) {
-  const std::vector<const Polygon*> rings = rings_of(domain);
-  for (int r = 1; r < static_cast<int>(rings.size()); ++r) {
-    for (int other = 0; other < r; ++other) {
-      if (rings_meet(*rings[r], *rings[other])) return RingFault{RingFault::Kind::meets, r, other};
-      if (other == 0 && !contains(*rings[0], rings[r]->front())) return RingFault{RingFault::Kind::outside, r, 0};
-      if (other > 0 && (contains(*rings[other], rings[r]->front()) || contains(*rings[r], rings[other]->front()))) {
-        return RingFault{RingFault::Kind::nested, r, other};
-      }
-    }
-  }
-  return std::nullopt;
-}
 
 Cutting cut_blocks(const PolygonWithHoles& domain, std::vector<JointTrace> traces, const std::vector<int>& labels, const CuttingLimits& limits) {
   const Vec2 origin = local_origin(domain.outer);

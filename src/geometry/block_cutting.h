@@ -24,27 +24,10 @@
 
 #include "openclose/core/tolerance.h"
 #include "openclose/geometry/polygon.h"
+#include "openclose/geometry/polygon_with_holes.h"
 #include "openclose/geometry/segment.h"
 
 namespace openclose {
-
-/// A simple polygon less simple polygons inside it, all counter-clockwise, none touching another.
-struct PolygonWithHoles {
-  Polygon outer;
-  std::vector<Polygon> holes;
-
-  bool contains(const Vec2& point) const;
-  double area() const;  ///< [m2]
-};
-
-/// What is wrong with a domain: the first of its rings (0: the outer one, k: hole k - 1) that meets the one before it in the pair, lies outside
-/// the outer one, or inside another hole.
-struct RingFault {
-  enum class Kind { meets, outside, nested } kind = Kind::meets;
-  int ring = 0;
-  int other = 0;
-};
-std::optional<RingFault> first_ring_fault(const PolygonWithHoles& domain);
 
 /// A joint trace and the number of the joint (set or line, or the bridges of one) it belongs to.
 struct JointTrace {
