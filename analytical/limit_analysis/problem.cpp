@@ -60,16 +60,16 @@ Point velocity_of(const Problem& problem, const Mechanism& mechanism, int block,
   return block < 0 ? Point(Point::Zero()) : velocity_at(problem.blocks[block], mechanism[block], point);
 }
 
-/// The most that cohesion and tension take up at a contact that opens by g - d >= 0 beyond the dilatancy of its sliding |h|. The tension that
-/// counts ends where the cohesion ends, at the tip of the cone.
-double resistance_of(const Contact& c, double factor, double opening, double sliding) {
-  const double to_tip = c.friction > 0 ? c.cohesion / c.friction : std::numeric_limits<double>::infinity();
-  const double tension = std::min(c.tension / factor, to_tip);
-  const double beyond = std::max(0.0, opening - c.friction / factor * sliding);
-  return c.cohesion / factor * sliding + tension * beyond;
+/// The most that cohesion and tension take up at a contact that opens by g - d >= 0 beyond the dilatancy of its sliding |h|.
+double resistance_of(const Cone& cone, double opening, double sliding) {
+  const double beyond = std::max(0.0, opening - cone.friction * sliding);
+  return cone.largest_shear(0.0) * sliding + cone.tension * beyond;
 }
 
 }  // namespace
+
+Cone::Cone(const Contact& c, double factor)
+    : tension(c.tension / factor), friction(c.friction / factor), half_width(std::max(0.0, c.cohesion / factor - friction * tension)) {}
 
 FreeForce support(const Block& block, int number, const Point& point, const Point& direction) {
   return {number, Eigen::Vector3d(direction.x(), direction.y(), cross(point - block.centroid, direction))};
@@ -123,7 +123,8 @@ ForceCheck check_forces(const Problem& problem, double factor, const Forces& for
       sums[block] += sign * Eigen::Vector3d(force.x(), force.y(), cross(arm, force));
       scales[block] += share_of_large_forces * force.norm();
     }
-    const double beyond = std::max(std::abs(f.shear) - (c.cohesion + c.friction * f.normal) / reduction, -c.tension / reduction - f.normal);
+    const Cone cone(c, reduction);
+    const double beyond = std::max(std::abs(f.shear) - cone.largest_shear(f.normal), -cone.tension - f.normal);
     const double load = std::min(load_of(problem, c.a), load_of(problem, c.b));
     // Between blocks that cannot move any force is right.
     if (std::isfinite(load)) result.excess = std::max(result.excess, beyond / (load + share_of_large_forces * force.norm()));
@@ -161,8 +162,9 @@ MechanismCheck check_mechanism(const Problem& problem, double factor, const Mech
   for (const Contact& c : problem.contacts) {
     const Point relative = velocity_of(problem, mechanism, c.a, c.point) - velocity_of(problem, mechanism, c.b, c.point);
     const double opening = relative.dot(c.normal), sliding = std::abs(relative.dot(c.tangent()));
-    result.penetration += std::max(0.0, c.friction / reduction * sliding - opening);
-    result.resistance += resistance_of(c, reduction, opening, sliding);
+    const Cone cone(c, reduction);
+    result.penetration += std::max(0.0, cone.friction * sliding - opening);
+    result.resistance += resistance_of(cone, opening, sliding);
   }
   for (const FreeForce& f : problem.free_forces) {
     const BlockVelocity& m = mechanism[f.block];

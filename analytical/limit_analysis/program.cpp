@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace openclose::limit_analysis {
 namespace {
@@ -22,19 +21,6 @@ Trial undecided(double factor, const char* reason) {
   trial.reason = reason;
   return trial;
 }
-
-/// The cone of a contact at a factor on its strength: n >= -tension, |t| <= friction (n + tension) + half_width.
-struct Cone {
-  double tension;     // [N]
-  double friction;    // [-]
-  double half_width;  // [N]
-
-  Cone(const Contact& c, double factor) : tension(c.tension / factor), friction(c.friction / factor) {
-    // The cone has its tip where cohesion and friction leave no shear.
-    if (c.friction > 0) tension = std::min(tension, c.cohesion / c.friction);
-    half_width = std::max(0.0, c.cohesion / factor - friction * tension);
-  }
-};
 
 }  // namespace
 
@@ -211,9 +197,10 @@ double LimitAnalysis::Program::slope_by_strength(double factor, const Forces& fo
     const auto velocity = [&](int b) { return b < 0 ? Point(Point::Zero()) : velocity_at(problem_.blocks[b], mechanism[b], c.point); };
     const Point relative = velocity(c.a) - velocity(c.b);
     const double sliding = std::abs(relative.dot(c.tangent()));
-    slope += sliding * std::max(0.0, c.cohesion + c.friction * forces.contacts[p].normal);
-    const bool to_tip = c.friction > 0 && c.cohesion * factor <= c.friction * c.tension;
-    if (!to_tip) slope += c.tension * std::max(0.0, relative.dot(c.normal) - c.friction / factor * sliding);
+    // Of friction (n + tension) + half_width, in which friction and tension both fall with F where nothing is left of the last one.
+    const double cohesion = Cone(c, factor).half_width > 0 ? c.cohesion : std::max(c.cohesion, 2.0 * c.friction * c.tension / factor);
+    slope += sliding * std::max(0.0, cohesion + c.friction * forces.contacts[p].normal);
+    slope += c.tension * std::max(0.0, relative.dot(c.normal) - c.friction / factor * sliding);
   }
   return -slope;
 }

@@ -39,19 +39,27 @@ TEST_CASE("certificates: forces hold in equilibrium within the strength and nowh
   CHECK_FALSE(check_forces(problem, 1.0, turned).holds());
 }
 
-TEST_CASE("certificates: tension counts as strength, at most to the tip of the cone") {
+TEST_CASE("certificates: tension counts as strength, beyond the tip of the cone, too") {
   Problem problem = block_on_plane(2, 1, 0, 100, 0, 0.5, 300);
   problem.blocks[0].load = {0, 200, 0};
   const Forces hanging{{{-100, 0}, {-100, 0}}, {}};
-  // Without cohesion a joint that hangs has no shear strength left: the tip of the cone is at no tension.
-  CHECK_FALSE(check_forces(problem, 1.0, hanging).holds());
+  // As the contacts of the program have it: who has tensile strength and no cohesion holds a pull.
+  CHECK(check_forces(problem, 1.0, hanging).holds());
+  CHECK_FALSE(check_forces(problem, 1.51, hanging).holds());
   for (Contact& c : problem.contacts) c.cohesion = 60;
   CHECK(check_forces(problem, 1.0, hanging).holds());
   CHECK(check_forces(problem, 1.5, hanging).holds());
   CHECK_FALSE(check_forces(problem, 1.51, hanging).holds());
-  // Lifting it: the tension of 2 * 150 N resists at F = 1, the tip of the cone, 2 * 120 N, comes first.
+  // Shear and pull together: a mixture of the pull of 150 N and of what friction and cohesion carry is not the strength of the law, but within the
+  // cone that the bound is of. It narrows to the cone of cohesion and friction where the tension ends before its tip, at F = 1.25.
+  const Forces mixed{{{-100, 24}, {-100, 24}}, {}};
+  problem.blocks[0].load = {-48, 200, 48 * 0.5};
+  CHECK(check_forces(problem, 1.0, mixed).excess <= 0.0);
+  CHECK(check_forces(problem, 1.3, mixed).excess > 0.0);
+  problem.blocks[0].load = {0, 200, 0};
+  // Lifting it: the tension of 2 * 150 N resists at F = 1, though the tip of the cone is at 2 * 120 N.
   const Mechanism up{{{0, 1}, 0}};
-  CHECK(std::abs(check_mechanism(problem, 1.0, up).resistance - 240) < 1e-12);
+  CHECK(std::abs(check_mechanism(problem, 1.0, up).resistance - 300) < 1e-12);
   CHECK(std::abs(check_mechanism(problem, 2.0, up).resistance - 150) < 1e-12);
 }
 
