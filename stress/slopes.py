@@ -34,7 +34,7 @@ def draw(seed: int, attempt: int = 0) -> Scene:
     # Cohesion as a share of what the height weighs, so that it matters on any height.
     cohesion = 0.0 if r.random() < 0.5 else rounded(log_uniform(r, 1e-3, 0.05) * density * GRAVITY * height, 4)
     joint = {"materials": ["rock", "rock"], "normal_stiffness_pa_per_m": kn, "shear_stiffness_pa_per_m": rounded(kn * ratio, 4),
-             "friction_angle_deg": friction, "cohesion_pa": cohesion}
+             "friction_angle_deg": friction, "cohesion_pa": cohesion} | _tension(random.Random(f"{PART} {seed} {attempt} tension"), density * GRAVITY * height)
     document = {
         "title": f"{PART} {seed}",
         "material": [{"name": "rock", "density_kg_per_m3": rounded(density, 5)}],
@@ -45,8 +45,13 @@ def draw(seed: int, attempt: int = 0) -> Scene:
         "strength_reduction": {"width": 5e-4},
     }
     drawn = {"height_m": height, "face_deg": face, "sets": count, "finite": sum("persistence" in s for s in sets), "friction_deg": friction,
-             "cohesion_pa": cohesion, "kn": kn, "ks_over_kn": ratio}
+             "cohesion_pa": cohesion, "tension_pa": joint.get("tensile_strength_pa", 0.0), "kn": kn, "ks_over_kn": ratio}
     return Scene(PART, seed, "fos", document, drawn)
+
+
+def _tension(r: random.Random, weight_pa: float) -> dict:
+    """In a quarter of the slopes, below the tip of the cone of friction and cohesion or far beyond it. With random numbers of its own."""
+    return {"tensile_strength_pa": rounded(log_uniform(r, 1e-3, 0.05) * weight_pa, 4)} if r.random() < 0.25 else {}
 
 
 def _joint_set(r: random.Random, seed: int, height: float) -> dict:

@@ -369,7 +369,7 @@ class Assembly:
             joint = self.joints[frozenset((self.material[f.a], self.material[f.b]))]
             tension = joint.get("tensile_strength_pa", 0.0) * f.length / factor
             cohesion = joint.get("cohesion_pa", 0.0) * f.length / factor
-            bound = cohesion + max(0.0, f.normal_force) * math.tan(math.radians(joint["friction_angle_deg"])) / factor
+            bound = max(0.0, cohesion + f.normal_force * math.tan(math.radians(joint["friction_angle_deg"])) / factor)
             if f.normal_force < -tension - allowed or abs(f.shear_force) > bound + allowed:
                 return (f"{f.a} on {f.b}: normal force {f.normal_force:.6g} N, shear force {f.shear_force:.6g} N beyond the strength over {factor:.6g} "
                         f"({bound:.6g} N)")
