@@ -50,6 +50,7 @@ class LimitAnalysis::Search {
   }
 
   void try_factor() {
+    if (options_.interruption) options_.interruption();
     Trial trial = program_.at(factor_);
     undecided_ = trial.verdict == Verdict::undecided ? undecided_ + 1 : 0;
     feasible_in_a_row_ = trial.verdict == Verdict::feasible ? feasible_in_a_row_ + 1 : 0;

@@ -9,6 +9,7 @@
 //   analysis.largest_factor()   bracket of the largest feasible factor, a handful of programs
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -17,10 +18,11 @@
 namespace openclose::limit_analysis {
 
 struct Options {
-  double width = 1e-5;        // [-] of the bracket: failed - factor; of a multiplier of loads over the multiplier
-  double first = 1.0;         // [-] factor tried first: near the answer if it is known roughly
-  double ratio = 2;           // [-] of the factors tried next while all are feasible; later its squares
-  double upper_limit = 1000;  // [-] feasible there: stands at every factor
+  double width = 1e-5;                      // [-] of the bracket: failed - factor; of a multiplier of loads over the multiplier
+  double first = 1.0;                       // [-] factor tried first: near the answer if it is known roughly
+  double ratio = 2;                         // [-] of the factors tried next while all are feasible; later its squares
+  double upper_limit = 1000;                // [-] feasible there: stands at every factor
+  std::function<void()> interruption = {};  // called before each program; may throw
   double lower_limit = 1e-3;  // [-] infeasible there: no equilibrium at any factor. Multipliers go down to 0, with the width of this one
 };
 

@@ -4,8 +4,8 @@
 // Each contact point carries a normal force n (compression positive) and a shear force t. At the factor F the strength is
 //   n >= -tension/F,   |t| <= (cohesion + friction n)/F.
 // F is feasible if forces within this strength keep every free block in equilibrium. Where tension reaches beyond the tip of the cone, at
-// cohesion/friction, forces mixed of a pull there and of others need not be within the strength; what counts then is the smallest cone around it, with
-// its tip at n = -tension/F (Cone). An infeasible factor is one of the strength, too; a feasible one need not be.
+// cohesion/friction, forces mixed of a pull there and of others need not be within the strength; what counts then is the smallest cone around it,
+// with its tip at n = -tension/F (Cone). An infeasible factor is one of the strength, too; a feasible one need not be.
 //
 // Instead of the strength, a factor can vary the loads: with Varied::live_loads the strength is that of F = 1, and the load of a block is its dead
 // load plus the factor times its live load. Where 0 is feasible, everything below holds for this factor, too: forces in equilibrium at two factors,

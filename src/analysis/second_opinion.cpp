@@ -24,13 +24,15 @@ void LimitAnalysisResult::exchange(Archive& archive) {
   for (const Eigen::Vector3d& m : motion) mechanism.push_back({m.head<2>(), m[2]});
 }
 
-LimitAnalysisResult limit_analysis_of(const Scene& scene, const FrozenSystem& system, double upper_limit, double near) {
+LimitAnalysisResult limit_analysis_of(const Scene& scene, const FrozenSystem& system, double upper_limit, double near,
+                                      const std::function<void()>& interruption) {
   using Verdict = limit_analysis::Bracket::Verdict;
   LimitAnalysisResult result;
   limit_analysis::Options options;
   options.upper_limit = std::max(options.upper_limit, 2.0 * upper_limit);
   if (near > 0.0) options.first = first_above * near;
   options.ratio = ratio_above;
+  options.interruption = interruption;
   try {
     const limit_analysis::Problem problem = limit_problem(system, FrozenStrength(system, scene));
     limit_analysis::Bracket bracket = limit_analysis::limit_analysis(problem, options);
@@ -96,12 +98,14 @@ bool has_stiffness_ratio(const Scene& scene, double ratio) {
   return std::ranges::all_of(scene.joints, [&](const JointProperties& joint) { return joint.shear_stiffness == ratio * joint.normal_stiffness; });
 }
 
-StiffnessEffect stiffness_effect(const Scene& scene, double ratio, double factor, std::optional<double> proved_failure) {
+StiffnessEffect stiffness_effect(const Scene& scene, double ratio, double factor, std::optional<double> proved_failure,
+                                 const std::function<void()>& interruption) {
   Scene other = scene;
   other.method.contact = "soft";
   for (JointProperties& joint : other.joints) joint.shear_stiffness = ratio * joint.normal_stiffness;
   FrozenSystem system(other);
   FrozenTrials trials(other, system);
+  trials.solver().set_interruption(interruption);
   trials.reduce_effort();  // a bracket of a per cent, and what it cannot decide says no more than that
   const double first = system.has_live_load() ? 0.0 : first_of_effect * std::min(1.0, factor);
   return EffectSearch(trials, ratio, first, factor, proved_failure).run();

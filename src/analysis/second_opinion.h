@@ -2,6 +2,7 @@
 // joints' shear and normal stiffness, which is seldom known, does to the factor.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,7 +28,9 @@ struct LimitAnalysisResult {
 
 /// \param upper_limit  [-] of the search
 /// \param near         [-] a factor near which the answer may lie: it saves programs
-LimitAnalysisResult limit_analysis_of(const Scene& scene, const FrozenSystem& system, double upper_limit, double near);
+/// \param interruption called now and then; may throw
+LimitAnalysisResult limit_analysis_of(const Scene& scene, const FrozenSystem& system, double upper_limit, double near,
+                                      const std::function<void()>& interruption = {});
 
 /// The factor if all joints had this ratio of shear to normal stiffness.
 struct StiffnessEffect {
@@ -52,6 +55,8 @@ bool has_stiffness_ratio(const Scene& scene, double ratio);
 /// \param ratio           [-] of shear to normal stiffness
 /// \param factor          [-] of the scene with its own stiffness
 /// \param proved_failure  [-] where no stiffness helps
-StiffnessEffect stiffness_effect(const Scene& scene, double ratio, double factor, std::optional<double> proved_failure);
+/// \param interruption    called often; may throw
+StiffnessEffect stiffness_effect(const Scene& scene, double ratio, double factor, std::optional<double> proved_failure,
+                                 const std::function<void()>& interruption = {});
 
 }  // namespace openclose

@@ -8,6 +8,7 @@
 #include "openclose/analysis/frozen_trials.h"
 #include "openclose/analysis/search_journal.h"
 #include "openclose/analysis/settling_trials.h"
+#include "openclose/core/error.h"
 
 namespace openclose {
 namespace {
@@ -56,14 +57,16 @@ class StrengthReduction {
     FrozenSystem system(scene);
     FrozenTrials trials(scene, system);
     begin(trials);
+    trials.solver().set_interruption(observer_.interruption);
     if (input_.limit_analysis) trials.set_limit_analysis([&](double near) { return limit_near(scene, system, near).failed; });
     result_.bracket = search(trials);
-    const bool goes_on = !result_.bracket.stopped;
-    if (input_.limit_analysis && goes_on) limit_near(scene, system, result_.bracket.stable.value_or(1.0));
+    if (input_.limit_analysis) unless_stopped([&] { limit_near(scene, system, result_.bracket.stable.value_or(1.0)); });
     judge();
-    for (double srf : input_.curve) {
-      if (trials.stable() && goes_on) record(srf, "curve", JournalledTrials(trials, journal_).next(srf));
-    }
+    unless_stopped([&] {
+      for (double srf : input_.curve) {
+        if (trials.stable()) record(srf, "curve", JournalledTrials(trials, journal_).next(srf));
+      }
+    });
     if (trials.stable()) {
       add_frozen_state("stable", system, *trials.stable());
       result_.largest_travel = trials.travel().largest * system.closure_unit();
@@ -73,14 +76,26 @@ class StrengthReduction {
     if (result_.verdict == FactorVerdict::no_equilibrium && !result_.mechanism.empty())
       result_.reason += ": " + motion_in_words(scene, result_.mechanism);
     warn_of_geometry();
-    if (input_.limit_analysis && goes_on) compare(scene, trials);
+    if (input_.limit_analysis) unless_stopped([&] { compare(scene, trials); });
     result_.linear_solves = trials.solver().linear_solves();
+  }
+
+  /// What comes after the search; where that is stopped, what is known of the factor is told as of a search that was.
+  template <typename F>
+  void unless_stopped(const F& f) {
+    if (result_.bracket.stopped) return;
+    try {
+      f();
+    } catch (const Stopped&) {
+      result_.bracket.stopped = true;
+      judge();
+    }
   }
 
   /// Done once, at the latest when the search has ended.
   const LimitAnalysisResult& limit_near(const Scene& scene, const FrozenSystem& system, double near) {
     if (!result_.limit_analysis) {
-      result_.limit_analysis = journal_.once([&] { return limit_analysis_of(scene, system, input_.upper_limit, near); });
+      result_.limit_analysis = journal_.once([&] { return limit_analysis_of(scene, system, input_.upper_limit, near, observer_.interruption); });
       const auto& mechanism = result_.limit_analysis->mechanism;
       if (!mechanism.empty() && static_cast<int>(mechanism.size()) != system.rows())
         throw DamagedState("the saved state has a mechanism of blocks that are not there");
@@ -307,7 +322,7 @@ class StrengthReduction {
     for (const double ratio : stiffness_ratios) {
       const auto effect = [&] {
         return has_stiffness_ratio(scene, ratio) ? StiffnessEffect{ratio, result_.bracket.stable, result_.bracket.failed}
-                                                 : stiffness_effect(scene, ratio, *result_.bracket.stable, limit.failed);
+                                                 : stiffness_effect(scene, ratio, *result_.bracket.stable, limit.failed, observer_.interruption);
       };
       result_.stiffness_effects.push_back(journal_.once(effect));
     }

@@ -82,6 +82,7 @@ struct SearchObserver {
   std::function<void(std::string state)>
       done;  ///< after every trial and other piece of work, with all that is known: resume_search() goes on from it
   std::function<void(const StrengthTrial& trial)> trial = {};  ///< after every trial of the search, also those that a restart already has
+  std::function<void()> interruption = {};                     ///< called a fraction of a second apart; may throw Stopped, too
 };
 
 FactorOfSafety factor_of_safety(Simulation& simulation, const SearchObserver& observer);

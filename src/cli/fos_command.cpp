@@ -71,6 +71,7 @@ FactorOfSafety search(Simulation& simulation, const Options& options, const Outp
     progress.update(fraction);
     throw_if_stopped();
   };
+  observer.interruption = throw_if_stopped;
   observer.done = [&](std::string state) { checkpoint.keep(std::move(state)); };
   observer.trial = [&](const StrengthTrial& trial) { progress.note(line_of(trial)); };
   const auto found = [&] {

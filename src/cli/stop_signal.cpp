@@ -1,5 +1,7 @@
 #include "stop_signal.h"
 
+#include <unistd.h>
+
 #include <csignal>
 
 #include "openclose/core/error.h"
@@ -9,13 +11,18 @@ namespace {
 
 volatile std::sig_atomic_t received = 0;
 
+bool is_watched = false;  ///< by somebody at a terminal
+
 extern "C" void note_signal(int signal) {
   received = signal;
+  constexpr char text[] = "\nopenclose: stopping; a second Ctrl-C ends at once\n";
+  if (is_watched && write(STDERR_FILENO, text, sizeof text - 1) < 0) return;
 }
 
 }  // namespace
 
 void watch_for_stop_signals() {
+  is_watched = isatty(STDERR_FILENO) == 1;
   struct sigaction action = {};
   action.sa_handler = note_signal;
   // The second signal finds the system's own handler, and what waits for the disk goes on.

@@ -156,6 +156,12 @@ double Balance::residual_norm(const Increment& x) {
   return residual_.norm();
 }
 
+bool Balance::factor() {
+  if (interruption_) interruption_();
+  ++counters_.factorisations;
+  return solver_->factor(matrix_);
+}
+
 /// Newton's method with the full tangent; the residual's norm decides how much of a step is taken.
 bool Balance::newton(Increment& x, int most_iterations) {
   evaluate(x, ShearLaw::coulomb);
@@ -165,8 +171,7 @@ bool Balance::newton(Increment& x, int most_iterations) {
     if (!std::isfinite(norm)) return false;
     if (norm <= tolerance_at(x)) return true;
     assemble();
-    ++counters_.factorisations;
-    if (!solver_->factor(matrix_)) return false;
+    if (!factor()) return false;
     const Increment step = solver_->solve(residual_);
     if (step.size() == 0 || !step.allFinite()) return false;
     double part = 1.0;
@@ -244,8 +249,7 @@ bool Balance::convex(Increment& x, ShearLaw law) {
     const double norm = residual_.norm();
     if (norm <= std::max(tolerance_at(x), convex_reduction * first)) return true;
     assemble();
-    ++counters_.factorisations;
-    if (!solver_->factor(matrix_)) return false;
+    if (!factor()) return false;
     const Increment way = -solver_->solve(residual_);
     if (way.size() == 0 || !way.allFinite()) return false;
     x += search(x, way, law) * way;
@@ -293,8 +297,7 @@ bool Balance::solve_open_close(Increment& x) {
   for (int pass = 0; pass < most_open_close_passes; ++pass) {
     const std::vector<char> before = states();
     assemble(Friction::known);
-    ++counters_.factorisations;
-    if (!solver_->factor(matrix_)) return false;
+    if (!factor()) return false;
     const Increment step = solver_->solve(residual_);
     if (step.size() == 0 || !step.allFinite()) return false;
     x -= step;

@@ -10,6 +10,7 @@
 // large increment (Brouwer's theorem). It need not be unique.
 #pragma once
 
+#include <functional>
 #include <memory>
 
 #include "openclose/linear/solver.h"
@@ -49,6 +50,8 @@ class Balance {
   static double size(const Increment& x) { return x.size() == 0 ? 0.0 : x.cwiseAbs().maxCoeff(); }
 
   const BalanceCounters& counters() const { return counters_; }
+  /// Called before every factorisation.
+  void set_interruption(std::function<void()> f) { interruption_ = std::move(f); }
   /// What is kept from one state to the next: what has been counted, and how the solver rounds.
   void exchange(Archive& archive) {
     archive(counters_.factorisations);
@@ -70,6 +73,7 @@ class Balance {
   void mark_stale(int slot);
   void renew(int slot);
   const double* padded(const Increment& x);
+  bool factor();
   bool newton(Increment& x, int most_iterations);
   bool convex(Increment& x, ShearLaw law);
   void begin_search(const Increment& x, const Increment& way);
@@ -97,6 +101,7 @@ class Balance {
   Eigen::VectorXd residual_;
   double eps_ = 1.0;
   BalanceCounters counters_;
+  std::function<void()> interruption_;
 };
 
 }  // namespace openclose

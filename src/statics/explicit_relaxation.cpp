@@ -80,7 +80,9 @@ void ExplicitRelaxation::note_slip(const FrozenState& from, FrozenState& state) 
 
 /// What `dem` has not brought to rest is judged by the viscous increments from the same state: nothing counts as failed without a mechanism.
 bool ExplicitRelaxation::fails(const FrozenState& from, Effort effort, RelaxationResult& result) const {
-  RelaxationResult judged = Relaxation(system_, strength_, IncrementRule::newton).relax(from, effort);
+  Relaxation judge(system_, strength_, IncrementRule::newton);
+  judge.set_interruption(interruption_);
+  RelaxationResult judged = judge.relax(from, effort);
   if (judged.end != RelaxationEnd::mechanism) return false;
   result.end = RelaxationEnd::mechanism;
   result.mechanism = std::move(judged.mechanism);
@@ -93,6 +95,7 @@ RelaxationResult ExplicitRelaxation::settle(const FrozenState& from, ShearLaw la
   begin(from, law);
   long judgement = first_judgement;
   while (result.steps < share_of(effort, most_steps_)) {
+    if (interruption_) interruption_();
     for (long k = 0; k < steps_between_checks; ++k) move(law, result.state);
     read_contacts(result.state);
     result.steps += steps_between_checks;

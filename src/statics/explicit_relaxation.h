@@ -18,6 +18,7 @@ class ExplicitRelaxation : public FrozenSolver {
   RelaxationResult bonded_state() override;
   bool is_exhausted() const override { return steps_ >= 2 * most_steps_; }
   void exchange(Archive& archive) override { archive(steps_); }
+  void set_interruption(std::function<void()> f) override { interruption_ = std::move(f); }
   using FrozenSolver::relax;
   RelaxationResult relax(const FrozenState& from, Effort effort) override;
 
@@ -40,6 +41,7 @@ class ExplicitRelaxation : public FrozenSolver {
   IncrementPacks contacts_;
   Eigen::VectorXd velocity_, force_;  ///< three numbers a block and three for fixed ones
   std::vector<ContactStrength> strengths_;
+  std::function<void()> interruption_;
 };
 
 }  // namespace openclose

@@ -1,6 +1,8 @@
 // How a method finds out whether a FrozenSystem stands.
 #pragma once
 
+#include <functional>
+
 #include "openclose/statics/certificate.h"
 
 namespace openclose {
@@ -44,6 +46,8 @@ class FrozenSolver {
   virtual bool is_exhausted() const = 0;
   /// What it remembers from one state to the next.
   virtual void exchange(Archive&) {}
+  /// Called often, a fraction of a second apart; may throw to end the work. Nothing is to be asked of the solver after that.
+  virtual void set_interruption(std::function<void()> f) = 0;
 };
 
 }  // namespace openclose

@@ -26,6 +26,7 @@ class Relaxation : public FrozenSolver {
   long linear_solves() const override { return balance_.counters().factorisations; }
   bool is_exhausted() const override;
   void exchange(Archive& archive) override { archive(balance_); }
+  void set_interruption(std::function<void()> f) override { balance_.set_interruption(std::move(f)); }
 
  private:
   void accept(const Eigen::VectorXd& x, FrozenState& state);
