@@ -133,6 +133,38 @@ TEST_CASE("a search among many blocks goes on bit for bit, with what the linear 
   check_goes_on(scene);
 }
 
+TEST_CASE("a search that is stopped in the middle of its work has what was done by then, and goes on bit for bit", "[analysis][search_journal]") {
+  Scene scene = read_scene(std::string(OPENCLOSE_VERIFICATION_SCENES) + "/slope_face_60_columns_m70.toml");
+  scene.strength_reduction.width = 0.01;
+  for (const std::string method : {"soft", "dem"}) {
+    scene.method.contact = method;
+    const auto stopped_after = [&](long calls, Saved& saved) {
+      Simulation simulation(scene);
+      long called = 0;
+      SearchObserver observer{{}, [&](std::string state) { saved.states.push_back(std::move(state)); }};
+      observer.interruption = [&] {
+        if (++called == calls) throw Stopped();
+      };
+      saved.safety = factor_of_safety(simulation, observer);
+      return called;
+    };
+    Saved whole;
+    const long all = stopped_after(0, whole);
+    REQUIRE(all > 100);
+    CHECK_FALSE(whole.safety.bracket.stopped);
+    // In the first trial, in others, in what follows the search.
+    for (const double share : {0.01, 0.3, 0.5, 0.7, 0.9, 0.99}) {
+      INFO(method << " stopped at " << share << " of " << all);
+      Saved part;
+      const long last = std::max(1L, static_cast<long>(share * static_cast<double>(all)));
+      CHECK(stopped_after(last, part) == last);
+      CHECK(part.safety.bracket.stopped);
+      CHECK(part.safety.verdict != FactorVerdict::certified);
+      if (!part.states.empty()) check_same(whole.safety, resume(scene, part.states.back()).safety);
+    }
+  }
+}
+
 TEST_CASE("a state of another scene is refused", "[analysis][search_journal]") {
   const Saved saved = search(slope("soft", FactorDefinition::small_displacements));
   const Scene other = read_scene(std::string(OPENCLOSE_VERIFICATION_SCENES) + "/slope_face_60_columns_m70.toml");
