@@ -26,6 +26,7 @@ struct Touch {
   int other;
   Vec2 along, point;
   const JointProperties* joint;
+  bool is_within_edge;  ///< not at its end
 };
 
 struct Description {
@@ -56,12 +57,14 @@ class Describer {
     if (centre) return {fmt::format("{} turns about {} ({})", name, *centre, held_in_turning), true};
     if (touches.empty()) return {fmt::format("{} touches no other block and moves {} ({})", name, heading(block), held_by_anything), true};
     if (const auto sliding = sliding_of(block, touches)) return {name + *sliding, true};
+    if (const auto hinge = hinge_of(block, touches)) return {name + *hinge, true};
     const bool carried = std::any_of(touches.begin(), touches.end(), [&](const Touch& t) { return moving_[static_cast<std::size_t>(t.other)]; });
     return {fmt::format("{} moves {} ({})", name, heading(block), held_by_anything), !carried};
   }
 
  private:
   static constexpr const char* held_by_anything = "a block in its way, a [[support]] or fixed = true would hold it";
+  static constexpr const char* held_at_hinge = "thicker blocks, a [[support]] or tensile_strength_pa of the joints that open would hold it";
   static constexpr const char* held_in_turning =
       "a block or a [[support]] on the side that goes down, or tensile_strength_pa of its joints, would hold it";
 
@@ -71,7 +74,9 @@ class Describer {
 
   std::string heading(const Vec2& direction) const {
     if (!scene_.gravity.isZero(0.0) && direction.dot(scene_.gravity.normalized()) > 1.0 - slow) return "down";
-    return fmt::format("towards ({:.2f}, {:.2f})", direction.x(), direction.y());
+    // Not "-0.00": a zero with a sign adds to zero without one.
+    const auto rounded = [](double part) { return std::round(100.0 * part) / 100.0 + 0.0; };
+    return fmt::format("towards ({:.2f}, {:.2f})", rounded(direction.x()), rounded(direction.y()));
   }
 
   std::string name_of(int block) const { return fmt::format("\"{}\"", scene_.blocks[static_cast<std::size_t>(block)].name); }
@@ -104,10 +109,13 @@ class Describer {
       for (std::size_t v = 0; v < corners.vertices.size(); ++v) {
         const Vec2& corner = corners.vertices[v];
         if (distance_to_segment(corner, from, to) <= tolerance::farthest_point_from_joint_m)
-          touches.push_back({other, (to - from).normalized(), corner, joint_of(corners, v, edges, e)});
+          touches.push_back(
+              {other, (to - from).normalized(), corner, joint_of(corners, v, edges, e), is_apart(corner, from) && is_apart(corner, to)});
       }
     }
   }
+
+  static bool is_apart(const Vec2& a, const Vec2& b) { return (a - b).norm() > tolerance::farthest_point_from_joint_m; }
 
   /// As JointTable has it of contacts: of the name of the edge where an edge at the corner has the same, else of the materials.
   const JointProperties* joint_of(const BlockInput& corners, std::size_t v, const BlockInput& edges, std::size_t e) const {
@@ -135,12 +143,45 @@ class Describer {
   /// Along a joint with a block that does not move in the same way.
   std::optional<std::string> sliding_of(const FailingBlock& block, const std::vector<Touch>& touches) const {
     for (const Touch& touch : touches) {
-      const FailingBlock* other = moving_[static_cast<std::size_t>(touch.other)];
-      const Vec2 relative = block.velocity - (other == nullptr ? Vec2(Vec2::Zero()) : velocity_at(*other, block.centroid));
-      if (relative.norm() < slow * block.velocity.norm() || !is_along(relative, touch)) continue;
+      const Vec2 relative = relative_velocity(block, touch.other, touch.point);
+      if (relative.norm() < slow * fastest(block) || !is_along(relative, touch)) continue;
+      if (!is_joint(touch, touches) || turns_against(block, touch.other, relative)) continue;
       const Vec2 along = touch.along.dot(relative) < 0.0 ? Vec2(-touch.along) : touch.along;
       return fmt::format(" slides along its joint with {} {} ({}cohesion_pa or a [[support]] would hold it)", name_of(touch.other), heading(along),
-                         friction_on(touch.along));
+                         friction_on(touch));
+    }
+    return std::nullopt;
+  }
+
+  Vec2 relative_velocity(const FailingBlock& block, int other, const Vec2& point) const {
+    const FailingBlock* moving = moving_[static_cast<std::size_t>(other)];
+    return velocity_at(block, point) - (moving == nullptr ? Vec2(Vec2::Zero()) : velocity_at(*moving, point));
+  }
+
+  /// What turns against its neighbour opens their joint and does not slide along it.
+  bool turns_against(const FailingBlock& block, int other, const Vec2& relative) const {
+    const FailingBlock* moving = moving_[static_cast<std::size_t>(other)];
+    const double turn = std::abs(block.rotation - (moving == nullptr ? 0.0 : moving->rotation));
+    double reach = 0.0;
+    for (const Vec2& vertex : polygon(block)) reach = std::max(reach, (vertex - block.centroid).norm());
+    return turn * reach > 2.0 * slow * relative.norm();
+  }
+
+  /// Whether a corner lies within the edge, or the edge is touched at two places: two edges that end in the same corner are no joint.
+  static bool is_joint(const Touch& touch, const std::vector<Touch>& touches) {
+    if (touch.is_within_edge) return true;
+    return std::any_of(touches.begin(), touches.end(), [&](const Touch& t) {
+      return t.other == touch.other && std::abs(cross(t.along, touch.along)) < slow && is_apart(t.point, touch.point);
+    });
+  }
+
+  /// The place at which the block turns against a neighbour.
+  std::optional<std::string> hinge_of(const FailingBlock& block, const std::vector<Touch>& touches) const {
+    const double still = slow * fastest(block);
+    for (const Touch& touch : touches) {
+      const bool is_hinge =
+          relative_velocity(block, touch.other, touch.point).norm() < still && relative_velocity(block, touch.other, block.centroid).norm() >= still;
+      if (is_hinge) return fmt::format(" turns against {} about {} ({})", name_of(touch.other), at(touch.point), held_at_hinge);
     }
     return std::nullopt;
   }
@@ -153,11 +194,13 @@ class Describer {
   }
 
   /// Under its weight alone a block stands on an edge with friction above the edge's slope.
-  std::string friction_on(const Vec2& along) const {
+  std::string friction_on(const Touch& touch) const {
     if (scene_.gravity.isZero(0.0)) return "";
+    const Vec2& along = touch.along;
     const double slope = std::atan2(std::abs(along.dot(scene_.gravity)), std::abs(cross(along, scene_.gravity))) * 180.0 / std::numbers::pi;
     constexpr double steepest = 80.0;  // no joint has so much
-    return slope < steepest ? fmt::format("friction above {:.3g} degrees under its weight alone, ", slope) : "";
+    const double there_is = touch.joint == nullptr ? 0.0 : touch.joint->friction_angle * 180.0 / std::numbers::pi;
+    return slope < steepest && slope > there_is ? fmt::format("friction above {:.3g} degrees under its weight alone, ", slope) : "";
   }
 
   const Scene& scene_;

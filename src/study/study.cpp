@@ -19,6 +19,8 @@ using nlohmann::json;
 
 /// [-] Ends that differ by more are not the same moment.
 constexpr double accuracy_of_end = 1e-9;
+/// [-] Than the step makes: a few that are divided, as at impacts, leave the step what it is.
+constexpr double more_steps = 1.5;
 
 std::string number_text(const std::optional<double>& value, int digits) {
   return value ? fmt::format("{:.{}g}", *value, digits) : "";
@@ -98,6 +100,13 @@ std::vector<std::string> warnings_of(const Study& study) {
     if (std::abs(row.end_time - *end) > accuracy_of_end * std::abs(*end))
       warnings.push_back(fmt::format("{} at dt = {:g} s ends at {:.9g} s, others at {:.9g} s: choose steps that divide end.time_s", row.contact,
                                      row.dt, row.end_time, *end));
+  }
+  for (const StudyRow& row : study.rows) {
+    const double asked = row.end_time / row.dt;
+    if (row.value && static_cast<double>(row.steps) > more_steps * asked)
+      warnings.push_back(fmt::format(
+          "{} took {} steps at dt = {:g} s, which are {:.0f}: the scene or the method asks for shorter ones, and orders by dt mean little",
+          row.contact, row.steps, row.dt, asked));
   }
   for (std::size_t i = 1; i < study.rows.size(); ++i) {
     const StudyRow &a = study.rows[i - 1], &b = study.rows[i];

@@ -89,6 +89,26 @@ TEST_CASE("what slides along a joint with a name is told so, though the mechanis
   CHECK_THAT(loose_blocks_in_words(scene), ContainsSubstring("\"top\" slides along its joint with \"base\" towards (0.93, -0.37)"));
 }
 
+TEST_CASE("what turns against a neighbour that moves, too, does not slide along it", "[analysis][loose_motion]") {
+  Scene scene = scene_with(floor_m, "vertices_m = [[0, 1], [1, 1], [1, 2], [0, 2]]");
+  scene.blocks.push_back(scene.blocks[1]);
+  scene.blocks[2].name = "middle";
+  for (Vec2& v : scene.blocks[2].vertices) v.y() -= 1.0;
+  const FailingBlock middle{.block = 2, .area = 1.0, .centroid = {0.5, 0.5}, .velocity = {0.5, 0.0}};
+  // It has the velocity of the middle one at the corner (0, 1), about which it turns against it.
+  const FailingBlock top{.block = 1, .area = 1.0, .centroid = {0.5, 1.5}, .velocity = {0.7, -0.2}, .rotation = -0.4};
+  const std::string words = motion_in_words(scene, {middle, top});
+  CHECK_THAT(words, ContainsSubstring("\"top\" turns against \"middle\" about (0, 1)"));
+  CHECK_THAT(words, ContainsSubstring("\"middle\" slides along its joint with \"base\" towards (1.00, 0.00) (cohesion_pa"));
+}
+
+TEST_CASE("friction is no remedy where the joint has more already", "[analysis][loose_motion]") {
+  const std::string slope = "[[-5, -1], [5, -5], [5, -2], [-5, 2]]", block = "vertices_m = [[-1, 0.4], [1, -0.4], [1, 1], [-1, 1]]";
+  const FailingBlock sliding{.block = 1, .area = 2.0, .centroid = {0.0, 0.5}, .velocity = {0.93, -0.37}};
+  CHECK_THAT(motion_in_words(scene_with(slope, block, "20"), {sliding}), ContainsSubstring("friction above 21.8 degrees"));
+  CHECK_THAT(motion_in_words(scene_with(slope, block, "30"), {sliding}), !ContainsSubstring("friction"));
+}
+
 TEST_CASE("of many blocks three are named and the others counted", "[analysis][loose_motion]") {
   Scene scene = scene_with(floor_m, "vertices_m = [[6, 0], [7, 0], [7, 1], [6, 1]]");
   std::vector<FailingBlock> mechanism;

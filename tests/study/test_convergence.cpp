@@ -22,7 +22,7 @@ TEST_CASE("Richardson's extrapolation finds the limit and the order of a power l
     for (const double factor : {2.0, -0.7}) {
       for (const double ratio : {2.0, 3.0}) {
         INFO(order << ' ' << factor << ' ' << ratio);
-        const auto limit = richardson_limit(sequence(order, factor, {0.4, 0.1 * ratio * ratio, 0.1 * ratio, 0.1}));
+        const auto limit = richardson_limit(sequence(order, factor, {0.1 * ratio * ratio * ratio, 0.1 * ratio * ratio, 0.1 * ratio, 0.1}));
         REQUIRE(limit);
         CHECK(limit->value == Approx(3.0).epsilon(1e-9));
         CHECK(limit->order == Approx(order).epsilon(1e-6));
@@ -36,6 +36,11 @@ TEST_CASE("steps that say nothing of a limit give none", "[study]") {
   CHECK_FALSE(richardson_limit(sequence(1.0, 1.0, {0.3, 0.2, 0.1})));
   CHECK_FALSE(richardson_limit(sequence(0.2, 1.0, {0.4, 0.2, 0.1})));
   CHECK_FALSE(richardson_limit(sequence(4.0, 1.0, {0.4, 0.2, 0.1})));
+  // Three that agree by chance, after one that does not.
+  CHECK(richardson_limit(std::vector<Refinement>{{0.4, 1.4}, {0.2, 1.2}, {0.1, 1.1}}));
+  CHECK(richardson_limit(std::vector<Refinement>{{0.8, 1.8}, {0.4, 1.4}, {0.2, 1.2}, {0.1, 1.1}}));
+  CHECK_FALSE(richardson_limit(std::vector<Refinement>{{0.8, 1.0}, {0.4, 1.4}, {0.2, 1.2}, {0.1, 1.1}}));
+  CHECK_FALSE(richardson_limit(std::vector<Refinement>{{0.8, 3.0}, {0.4, 1.4}, {0.2, 1.2}, {0.1, 1.1}}));
   // To and fro, away, and no change at all.
   CHECK_FALSE(richardson_limit(std::vector<Refinement>{{0.4, 1.0}, {0.2, 2.0}, {0.1, 1.5}}));
   CHECK_FALSE(richardson_limit(std::vector<Refinement>{{0.4, 1.0}, {0.2, 1.1}, {0.1, 1.4}}));
