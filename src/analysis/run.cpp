@@ -124,6 +124,8 @@ namespace {
 
 /// [-] Of the work of friction: as large as what the watch lets pass of the energy, and as friction angles are known.
 constexpr double noticeable_friction_lag = 0.01;
+/// [-] Of the median block's size, far beyond the closure of joints: seen in a drawing.
+constexpr double noticeable_settlement = 0.1;
 
 /// The motion from time 0 to what ends it.
 class MotionInTime {
@@ -217,6 +219,12 @@ class MotionInTime {
       result_.warnings.push_back(fmt::format("friction of sliding contacts was that of the iteration before, off by {:.2g} % of its work; {}",
                                              100.0 * lag, soft_instead_of_shi));
     }
+    if (const double way = result_.settling.displacement / median_size(); begun_ && way > noticeable_settlement) {
+      result_.warnings.push_back(fmt::format(
+          "until the start had settled, blocks moved by up to {:.3g} m, {:.2g} of the median block's size: the motion starts from another "
+          "geometry than the drawn one; fos says whether that stands",
+          result_.settling.displacement, way));
+    }
     const std::string ending = begun_ ? fmt::format("the run ended at t = {:.6g} s", simulation_.time()) : "the run had no state to start from";
     while (result_.milestones.size() < scene_.milestones.size()) {
       Milestone missing;
@@ -234,6 +242,17 @@ class MotionInTime {
   }
 
  private:
+  /// [m] The root of the median area of the free blocks.
+  double median_size() const {
+    std::vector<double> areas;
+    const BlockSystem& system = simulation_.system();
+    for (const int b : system.free_blocks()) areas.push_back(system.block(b).area);
+    if (areas.empty()) return 1.0;
+    const auto middle = areas.begin() + static_cast<std::ptrdiff_t>(areas.size() / 2);
+    std::ranges::nth_element(areas, middle);
+    return std::sqrt(*middle);
+  }
+
   /// Takes the watch's answer: the run ends where it has found something.
   bool accepted(const std::string& found) {
     simulation_.solved_stepper().allow_energy(watch_.creatable_energy());

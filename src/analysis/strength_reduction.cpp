@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "openclose/analysis/frozen_trials.h"
+#include "openclose/analysis/loose_blocks.h"
 #include "openclose/analysis/search_journal.h"
 #include "openclose/analysis/settling_trials.h"
 #include "openclose/core/error.h"
@@ -77,6 +78,10 @@ class StrengthReduction {
       result_.reason += ": " + motion_in_words(scene, result_.mechanism);
     warn_of_geometry();
     if (input_.limit_analysis) unless_stopped([&] { compare(scene, trials); });
+    // What stands whatever its strength may stand on a point.
+    if (input_.limit_analysis && result_.verdict == FactorVerdict::no_failure) {
+      if (const std::string words = loose_blocks_in_words(scene); !words.empty()) result_.warnings.push_back(words);
+    }
     result_.linear_solves = trials.solver().linear_solves();
   }
 

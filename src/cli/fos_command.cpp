@@ -112,6 +112,8 @@ int fos_command(const Options& options) {
   Loaded loaded = load(options);
   warn_of_what_is_for_run(loaded);
   require_strength_reduction(loaded.scene);
+  if (std::ranges::all_of(loaded.scene.blocks, &BlockInput::fixed))
+    throw InputError(loaded.scene.where, "block.fixed", "no block is free, so that nothing can fail", "a block that is not fixed");
   require_memory(loaded.scene, available_memory());
   if (loaded.scene.step.dt <= 0.0) loaded.scene.step.dt = loaded.scene.settle.first_dt;
   std::optional<Checkpoint> restart;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <optional>
 #include <vector>
 
 #include "openclose/scene/key_depth.h"
@@ -12,6 +13,7 @@
 namespace openclose {
 namespace {
 
+constexpr std::size_t longest_list_of_names = 200;  ///< [characters] about
 constexpr const char* accepted_form = "--set KEY=VALUE, e.g. --set joint[0].friction_angle_deg=20";
 
 struct Override {
@@ -44,7 +46,11 @@ toml::table parse_value(const Override& override, const std::string& value) {
   } catch (const toml::parse_error&) {
     if (is_word(value)) return parse_value(override, fmt::format("\"{}\"", value));
   }
-  override.fail(in_quotes(value) + " is not a TOML value", "a number, true, false, a text, or [x, y]");
+  // A list of words whose quotes the shell has taken.
+  const bool has_lost_quotes = value.starts_with('[') && value.find('"') == std::string::npos && value.find('\'') == std::string::npos;
+  override.fail(in_quotes(value) + " is not a TOML value",
+                std::string("a number, true, false, a text, or [x, y]") +
+                    (has_lost_quotes ? "; texts in a list have quotes, which the shell leaves in '[\"a\", \"b\"]'" : ""));
 }
 
 /// The element of an array that an index names.
@@ -56,12 +62,21 @@ toml::node& element(const Override& override, toml::node& parent, std::size_t in
                 array->empty() ? "no index, the array is empty" : fmt::format("[0] to [{}]", array->size() - 1));
 }
 
+/// "an index, [0] to [1], before it, or the name of an element: "bedding"".
+std::string ways_to_elements(const toml::array& array) {
+  std::string names;
+  for (const toml::node& node : array) {
+    const toml::table* table = node.as_table();
+    const std::optional<std::string> name = table == nullptr ? std::nullopt : (*table)["name"].value<std::string>();
+    if (name && names.size() < longest_list_of_names) names += fmt::format("{}{}", names.empty() ? ": " : ", ", in_quotes(*name));
+  }
+  return fmt::format("an index, [0] to [{}], before it, or the name of an element{}", array.size() - 1, names);
+}
+
 toml::table& as_table(const Override& override, toml::node& parent, const std::string& key) {
   if (toml::table* table = parent.as_table()) return *table;
-  if (const toml::array* array = parent.as_array(); array != nullptr && !array->empty()) {
-    override.fail(fmt::format("{} follows an array", in_quotes(key)),
-                  fmt::format("an index, [0] to [{}], before it, or the name of an element", array->size() - 1));
-  }
+  if (const toml::array* array = parent.as_array(); array != nullptr && !array->empty())
+    override.fail(fmt::format("{} follows an array", in_quotes(key)), ways_to_elements(*array));
   override.fail(fmt::format("{} follows something that is not a table", in_quotes(key)), "a key that the scene has");
 }
 

@@ -144,7 +144,7 @@ function addDisplacementCurve(parent, summary) {
   const points = [...(summary.displacement_curve || [])].sort((a, b) => factorOf(a) - factorOf(b));
   if (points.length < 2) return;
   const chart = new Chart(parent, { title: "Displacement of stable trials", xLabel: factorName(summary), yLabel: "largest displacement [m]",
-    note: "Largest displacement of a measured point from the settled state." });
+    note: "Largest displacement of a measured point, or of a block where none is measured, since the first stable state." });
   const lines = [];
   if (summary.bracket.stable !== null) lines.push({ x: summary.bracket.stable, text: `stable ${number(summary.bracket.stable)}`, colour: "#1a7a3a" });
   if (summary.bracket.failed !== null) lines.push({ x: summary.bracket.failed, text: `failed ${number(summary.bracket.failed)}`, colour: "#b91c1c" });
