@@ -219,7 +219,8 @@ class MotionInTime {
       result_.warnings.push_back(fmt::format("friction of sliding contacts was that of the iteration before, off by {:.2g} % of its work; {}",
                                              100.0 * lag, soft_instead_of_shi));
     }
-    if (const double way = result_.settling.displacement / median_size(); begun_ && way > noticeable_settlement) {
+    if (const double size = simulation_.system().median_size(), way = result_.settling.displacement / size;
+        begun_ && size > 0.0 && way > noticeable_settlement) {
       result_.warnings.push_back(fmt::format(
           "until the start had settled, blocks moved by up to {:.3g} m, {:.2g} of the median block's size: the motion starts from another "
           "geometry than the drawn one; fos says whether that stands",
@@ -242,17 +243,6 @@ class MotionInTime {
   }
 
  private:
-  /// [m] The root of the median area of the free blocks.
-  double median_size() const {
-    std::vector<double> areas;
-    const BlockSystem& system = simulation_.system();
-    for (const int b : system.free_blocks()) areas.push_back(system.block(b).area);
-    if (areas.empty()) return 1.0;
-    const auto middle = areas.begin() + static_cast<std::ptrdiff_t>(areas.size() / 2);
-    std::ranges::nth_element(areas, middle);
-    return std::sqrt(*middle);
-  }
-
   /// Takes the watch's answer: the run ends where it has found something.
   bool accepted(const std::string& found) {
     simulation_.solved_stepper().allow_energy(watch_.creatable_energy());

@@ -16,6 +16,7 @@ namespace {
 
 constexpr double slowest_of_mechanism = 1e-2;      ///< [-] of the fastest block: slower ones are carried along by rounding and springs
 constexpr double far_below_limit_analysis = 0.98;  ///< [-] of its factor: below it the reason for the distance is given
+constexpr double rounding_of_areas = 1e-9;         ///< [-] equal blocks are not smaller than each other
 constexpr double drawn_travel = 0.5;               ///< [-] of the median block's size by which the fastest block of a mechanism is drawn away
 constexpr double most_drawn_turn = 0.25;           ///< [rad] of any of its blocks: drawn to first order, areas grow by the square of it
 
@@ -385,18 +386,13 @@ class StrengthReduction {
   }
 
   void warn_of_geometry() {
-    std::vector<double> areas;
     const BlockSystem& system = simulation_.system();
-    for (int b : system.free_blocks()) areas.push_back(system.block(b).area);
-    if (areas.empty()) return;
-    const auto middle = areas.begin() + static_cast<std::ptrdiff_t>(areas.size() / 2);
-    std::ranges::nth_element(areas, middle);
-    const double median = *middle;
+    const double median = system.median_size() * system.median_size();
     double failing = 0.0;
     for (const FailingBlock& block : result_.mechanism) failing += block.area;
-    if (!result_.mechanism.empty() && areas.size() > 1 && failing < median) {
+    if (!result_.mechanism.empty() && system.free_count() > 1 && failing < (1.0 - rounding_of_areas) * median) {
       result_.warnings.push_back(fmt::format("what fails is small: {} of {} free blocks with {:.3g} m2, the median block has {:.3g} m2",
-                                             result_.mechanism.size(), areas.size(), failing, median));
+                                             result_.mechanism.size(), system.free_count(), failing, median));
     }
   }
 

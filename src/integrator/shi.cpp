@@ -206,14 +206,9 @@ class Shi : public Enforcement {
     return f;
   }
 
-  /// [m] The size is the root of the median area, so that single slivers or giants do not decide.
+  /// [m]
   static double default_penetration_tolerance(const BlockSystem& system) {
-    std::vector<double> areas;
-    for (int b : system.free_blocks()) areas.push_back(system.block(b).area);
-    if (areas.empty()) return default_penetration_m;
-    const auto median = areas.begin() + static_cast<std::ptrdiff_t>(areas.size() / 2);
-    std::nth_element(areas.begin(), median, areas.end());
-    return std::max(default_penetration_m, default_penetration_of_size * std::sqrt(*median));
+    return std::max(default_penetration_m, default_penetration_of_size * system.median_size());
   }
 
   void finish(const StepProblem& problem, StepSolution& solution) {

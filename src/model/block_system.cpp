@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "openclose/core/tolerance.h"
 #include "openclose/geometry/polygon.h"
@@ -54,6 +55,15 @@ BlockSystem::BlockSystem(const Scene& scene) : rotation_kind_(scene.method.rotat
   name_joints(scene);
   state_.arm = reference_arm_;
   first_point_.assign(blocks_.size(), -1);
+}
+
+double BlockSystem::median_size() const {
+  std::vector<double> areas;
+  for (const int b : free_blocks_) areas.push_back(blocks_[b].area);
+  if (areas.empty()) return 0.0;
+  const auto median = areas.begin() + static_cast<std::ptrdiff_t>(areas.size() / 2);
+  std::ranges::nth_element(areas, median);
+  return std::sqrt(*median);
 }
 
 void BlockSystem::name_joints(const Scene& scene) {
