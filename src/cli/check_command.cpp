@@ -63,6 +63,10 @@ int check_command(const Options& options) {
   }
   fmt::print("{}: {} blocks, {} of them free, {:.6g} m2 ({:.6g} m2 free); {} contacts within reach at the start; method {}\n", options.scene_file,
              system.block_count(), system.free_count(), area, free_area, simulation.change_contacts().size(), simulation.scene().method.contact);
+  if (const auto& cutting = simulation.scene().cutting; cutting && cutting->dangling_ends > 0)
+    fmt::print(
+        "{} ends of joints lead to no other joint and were cut back, see the drawing of cut; the key bridge keeps them as rock that can break\n",
+        cutting->dangling_ends);
   if (simulation.is_explicit()) {
     const double critical = simulation.explicit_stepper()->critical_step();
     if (std::isfinite(critical)) {

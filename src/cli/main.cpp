@@ -16,6 +16,7 @@
 #include "openclose/integrator/registry.h"
 #include "openclose/io/key_reference.h"
 #include "openclose/io/progress.h"
+#include "openclose/scene/nearest.h"
 #include "openclose/scene/toml_text.h"
 #include "openclose/version.h"
 #include "report_command.h"
@@ -125,6 +126,16 @@ void add_fos_options(CLI::App& fos, Options& options) {
                  "go on from the checkpoint.bin that a search which was broken off has left: no trial is made again");
 }
 
+/// What is wrong with a line without a command, and which ones there are.
+std::string no_command(const CLI::App& app, int argc, char** argv, const std::string& parsed) {
+  std::vector<std::string> names;
+  for (const CLI::App* sub : app.get_subcommands({})) names.push_back(sub->get_name());
+  const std::string word = argc > 1 ? argv[1] : "";
+  if (word.empty() || word[0] == '-') return fmt::format("{}; accepted: {}", parsed, fmt::join(names, ", "));
+  const std::optional<std::string> meant = similar(word, names);
+  return fmt::format("{}: there is no such command{}; accepted: {}", word, meant ? ", did you mean " + *meant + "?" : "", fmt::join(names, ", "));
+}
+
 int main_checked(int argc, char** argv) {
   CLI::App app{
       "Openclose: 2-D block systems of jointed rock and masonry. Exit status: 0 success, 1 not converged (state saved), 2 bad input (nothing "
@@ -167,11 +178,9 @@ int main_checked(int argc, char** argv) {
   } catch (const CLI::Success& e) {
     return app.exit(e);
   } catch (const CLI::ParseError& e) {
-    std::string names;
-    if (app.get_subcommands().empty()) {
-      for (const CLI::App* sub : app.get_subcommands({})) names += (names.empty() ? "; accepted: " : ", ") + sub->get_name();
-    }
-    return report_failure(exit_bad_input, fmt::format("{}{}; see openclose --help", e.what(), names), wants_json(argc, argv));
+    const bool has_command = !app.get_subcommands().empty();
+    const std::string what = has_command ? e.what() : no_command(app, argc, argv, e.what());
+    return report_failure(exit_bad_input, what + "; see openclose --help", wants_json(argc, argv));
   }
   try {
     const int status = chosen ? chosen() : command(options);

@@ -131,10 +131,11 @@ int report_end(const Options& options, const RunResult& result, const Simulation
   }
   if (!options.quiet) {
     const EnergyLedger& ledger = simulation.ledger();
-    fmt::print("{}: {} blocks, {} steps to t = {:.6g} s{}, deepest penetration {:.3g} m, energy imbalance {:.2g} of {:.3g} J moved{}; written to {}\n",
-               simulation.scene().method.contact, simulation.system().block_count(), simulation.state().counters.steps, simulation.time(),
-               result.ended_by == "end.displacement_m" ? " (end.displacement_m)" : "", simulation.max_penetration(), ledger.imbalance(),
-               ledger.turnover, loss_by_integrator(ledger), folder.path());
+    fmt::print(
+        "{}: {} blocks, {} steps to t = {:.6g} s{}, deepest penetration {:.3g} m, energy imbalance {:.2g} of {:.3g} J moved{}; written to {}\n",
+        simulation.scene().method.contact, simulation.system().block_count(), simulation.state().counters.steps, simulation.time(),
+        result.ended_by == "end.displacement_m" ? " (end.displacement_m)" : "", simulation.max_penetration(), ledger.imbalance(), ledger.turnover,
+        loss_by_integrator(ledger), folder.path());
   }
   return exit_success;
 }

@@ -38,9 +38,26 @@ Loaded load(const Options& options) {
   return loaded;
 }
 
+namespace {
+
+std::string without_quotes(std::string word) {
+  std::erase_if(word, [](char c) { return c == '"' || c == '\'' || c == '/'; });
+  return word;
+}
+
+}  // namespace
+
 OutputFolder output_folder(const Options& options) {
   if (!options.folder.empty()) return OutputFolder(options.folder);
-  return OutputFolder("results/" + std::filesystem::path(options.scene_file).stem().string());
+  std::string name = std::filesystem::path(options.scene_file).stem().string();
+  // The multiplier of a load does not take the place of the factor of safety.
+  constexpr std::string_view increase = "strength_reduction.increase=";
+  for (const std::string& assignment : options.overrides) {
+    if (!assignment.starts_with(increase)) continue;
+    name += '-';
+    name += without_quotes(assignment.substr(increase.size()));
+  }
+  return OutputFolder("results/" + name);
 }
 
 std::string command_to_go_on(const std::string& command, const Options& options, const OutputFolder& folder) {

@@ -39,7 +39,7 @@ struct Loaded {
 
 /// Prints what the reader warns of.
 Loaded load(const Options& options);
-/// That of the command line, or the one named after the scene.
+/// That of the command line, or the one named after the scene, and after the load that is increased.
 OutputFolder output_folder(const Options& options);
 /// For the shell of who has stopped the command: how to go on from its checkpoint.
 std::string command_to_go_on(const std::string& command, const Options& options, const OutputFolder& folder);

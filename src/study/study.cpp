@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "openclose/analysis/simulation.h"
 #include "openclose/core/error.h"
 #include "openclose/scene/reader.h"
 #include "openclose/study/convergence.h"
@@ -136,6 +137,8 @@ Study make_study(StudyOrder order, const std::function<void(double)>& progress) 
 
   require_replaceable(study_files({}, order.cases.folder));
   const std::vector<Case> cases = cases_of(order);
+  // An integrator that a method does not have is refused before the first run, too.
+  for (std::size_t i = 0; i < cases.size(); i += order.steps.size()) Simulation(read_scene(order.cases.scene_file, cases[i].overrides));
   std::size_t done = 0;
   const auto results = run_cases(order.cases, cases,
                                  [&](std::size_t, const CaseResult&) { progress(static_cast<double>(++done) / static_cast<double>(cases.size())); });

@@ -311,10 +311,17 @@ TEST_CASE("methods that have no use for keys of the step name their lines", "[cl
   CHECK_THAT(refusal_of_scene(scene + "adaptive = true\n"), ContainsSubstring("scene.toml:25: step.adaptive: true has no meaning"));
 }
 
+TEST_CASE("a word that is no command is named", "[cli][bad_input]") {
+  const Workplace place;
+  CHECK_THAT(refusal(place, "chek scene.toml"),
+             ContainsSubstring("chek: there is no such command, did you mean check?; accepted: run, fos, check, "));
+}
+
 TEST_CASE("loads that fos cannot increase", "[cli][bad_input]") {
   const Workplace place;
-  CHECK_THAT(refusal(place, "fos scene.toml --increase gravity_z"),
-             ContainsSubstring("strength_reduction.increase: no load or surcharge has the name \"gravity_z\"; accepted: \"gravity_x\", \"gravity_y\""));
+  CHECK_THAT(
+      refusal(place, "fos scene.toml --increase gravity_z"),
+      ContainsSubstring("strength_reduction.increase: no load or surcharge has the name \"gravity_z\"; accepted: \"gravity_x\", \"gravity_y\""));
   for (const std::string definition : {"joint_closures", "large_displacements"}) {
     const std::string options = " --set strength_reduction.increase=gravity_x --set strength_reduction.definition=" + definition;
     const std::string message = refusal(place, "fos scene.toml" + options);

@@ -33,8 +33,8 @@ std::set<std::string> entries(const std::string& folder) {
 }
 
 /// What a run has written before it ends.
-const std::set<std::string> tables_of_run = {"block_properties.csv", "block_states.csv", "blocks.csv",  "contacts.csv",
-                                             "cracks.csv",           "energy.csv",       "history.csv", "scene_as_read.toml", ".openclose"};
+const std::set<std::string> tables_of_run = {"block_properties.csv", "block_states.csv", "blocks.csv",         "contacts.csv", "cracks.csv",
+                                             "energy.csv",           "history.csv",      "scene_as_read.toml", ".openclose"};
 
 }  // namespace
 
@@ -372,6 +372,15 @@ TEST_CASE("check names what does not stand, in its text and in its object", "[cl
   CHECK_THAT(text.out, ContainsSubstring("do not stand as they are drawn: ") && ContainsSubstring(words));
   CHECK_THAT(place.run(in_the_air + " --json").out, ContainsSubstring("\"loose_blocks\": ") && ContainsSubstring(words));
   CHECK_THAT(place.run("check scene.toml --json").out, !ContainsSubstring("loose_blocks"));
+}
+
+TEST_CASE("a multiplier has a results folder of its own", "[cli]") {
+  const Workplace place(openclose::test::block_on_incline(20.0));
+  CHECK(place.run("fos scene.toml").status == 0);
+  CHECK(place.run("fos scene.toml --increase gravity_x").status == 0);
+  CHECK(place.run("fos scene.toml --increase=-gravity_x").status == 0);
+  for (const std::string name : {"scene", "scene-gravity_x", "scene--gravity_x"})
+    CHECK(std::filesystem::exists(place.folder() / ("results/" + name + "/summary.json")));
 }
 
 TEST_CASE("check begins without the load that fos increases", "[cli]") {

@@ -162,6 +162,7 @@ TEST_CASE("study and sweep refuse in one line, and write nothing", "[cli][study]
   refused("study scene.toml --end 1 --dt 0.01 --contact sof", "sof");
   refused("study scene.toml --end 1 --dt 0.01 --quantity nowhere.displacement_m", "is no quantity");
   refused("study scene.toml --end 1", "--dt");
+  refused("study scene.toml --end 1 --dt 0.01 --contact soft,dem --set method.integrator=path_average", "has no meaning for method.contact");
   refused("study scene.toml --end 1 --dt 1e-3,-1", "-1 is no time step");
 }
 
