@@ -22,6 +22,7 @@ double cross(const Point& a, const Point& b) {
 
 struct Edge {
   int block;
+  int joint;  // that it names, see RigidBlock::edge_joints
   Point from, to;
   Point low, high;  // corners of its box
 };
@@ -33,7 +34,8 @@ std::vector<Edge> edges_of(const std::vector<RigidBlock>& blocks) {
     for (std::size_t i = 0; i < v.size(); ++i) {
       const Point& to = v[(i + 1) % v.size()];
       if ((to - v[i]).norm() <= touching_distance) continue;
-      edges.push_back({static_cast<int>(b), v[i], to, v[i].cwiseMin(to), v[i].cwiseMax(to)});
+      const int joint = blocks[b].edge_joints.empty() ? Interface::by_materials : blocks[b].edge_joints[i];
+      edges.push_back({static_cast<int>(b), joint, v[i], to, v[i].cwiseMin(to), v[i].cwiseMax(to)});
     }
   }
   return edges;
@@ -58,8 +60,12 @@ void match(const Edge& a, const Edge& b, std::vector<Interface>& interfaces) {
     if (std::abs(cross(direction, on_other - line.from)) > touching_distance) return;
   }
   const Point into_line_block(-direction.y(), direction.x());
-  interfaces.push_back(
-      {a.block, b.block, {line.from + begin * direction, line.from + end * direction}, along_a ? into_line_block : Point(-into_line_block), {}});
+  interfaces.push_back({a.block,
+                        b.block,
+                        {line.from + begin * direction, line.from + end * direction},
+                        along_a ? into_line_block : Point(-into_line_block),
+                        a.joint == b.joint ? a.joint : Interface::by_materials,
+                        {}});
 }
 
 // --- reading ---
@@ -153,11 +159,12 @@ class Reader {
     if (file_.contains("support")) refuse(name_, "has supports; limit analysis knows rigid bodies only");
     if (file_.contains("gravity_m_per_s2")) gravity_ = Section(file_, name_).point("gravity_m_per_s2");
     read_materials();
+    read_joints();
     read_blocks();
     read_loads();
     read_surcharges();
     assembly_.interfaces = find_interfaces(assembly_.blocks);
-    read_strengths();
+    set_strengths();
     return std::move(assembly_);
   }
 
@@ -181,6 +188,7 @@ class Reader {
       RigidBlock block;
       block.name = s.word("name");
       block.vertices = s.points("vertices_m");
+      block.edge_joints = edge_joints(s, block.vertices.size());
       block.fixed = s.flag("fixed");
       block.rotation_locked = s.flag("rotation_locked");
       block.material = materials_.of(s.word("material"), s.where());
@@ -219,20 +227,38 @@ class Reader {
     }
   }
 
-  void read_strengths() {
-    std::map<std::pair<int, int>, InterfaceStrength> strengths;
+  void read_joints() {
     for (const Section& s : sections(file_, "joint", name_)) {
-      const auto words = s.words("materials");
-      if (words.size() != 2) refuse(s.where(), "materials must be two names");
       const InterfaceStrength strength{std::tan(s.number("friction_angle_deg") * degree), s.number_or("cohesion_pa", 0),
                                        s.number_or("tensile_strength_pa", 0)};
       if (!(strength.friction >= 0 && strength.cohesion >= 0 && strength.tension >= 0)) refuse(s.where(), "strength must not be negative");
-      strengths[std::minmax({materials_.of(words[0], s.where()), materials_.of(words[1], s.where())})] = strength;
+      const auto words = s.has("materials") || !s.has("name") ? s.words("materials") : std::vector<std::string>();
+      if (!words.empty() && words.size() != 2) refuse(s.where(), "materials must be two names");
+      if (!words.empty()) of_materials_[std::minmax({materials_.of(words[0], s.where()), materials_.of(words[1], s.where())})] = strength;
+      if (s.has("name")) joints_.numbers[s.word("name")] = static_cast<int>(strengths_.size());
+      strengths_.push_back(strength);
     }
+  }
+
+  /// Names of joints for the edges from each vertex to the next, "" for that of the materials.
+  std::vector<int> edge_joints(const Section& s, std::size_t edges) const {
+    if (!s.has("edge_joints")) return {};
+    const auto words = s.words("edge_joints");
+    if (words.size() != edges) refuse(s.where(), "edge_joints needs a name for each edge");
+    std::vector<int> joints;
+    for (const std::string& word : words) joints.push_back(word.empty() ? Interface::by_materials : joints_.of(word, s.where()));
+    return joints;
+  }
+
+  void set_strengths() {
     for (Interface& i : assembly_.interfaces) {
+      if (i.joint != Interface::by_materials) {
+        i.strength = strengths_[i.joint];
+        continue;
+      }
       const RigidBlock &a = assembly_.blocks[i.a], &b = assembly_.blocks[i.b];
-      const auto found = strengths.find(std::minmax({a.material, b.material}));
-      if (found == strengths.end()) refuse(name_, "no joint for the materials of blocks " + a.name + " and " + b.name);
+      const auto found = of_materials_.find(std::minmax({a.material, b.material}));
+      if (found == of_materials_.end()) refuse(name_, "no joint for the materials of blocks " + a.name + " and " + b.name);
       i.strength = found->second;
     }
   }
@@ -240,8 +266,10 @@ class Reader {
   const toml::table& file_;
   const std::string& name_;
   Point gravity_{0, -9.81};
-  Names materials_, blocks_;
+  Names materials_, joints_, blocks_;
   std::vector<double> densities_;
+  std::vector<InterfaceStrength> strengths_;
+  std::map<std::pair<int, int>, InterfaceStrength> of_materials_;
   RigidBlockAssembly assembly_;
 };
 
@@ -265,7 +293,11 @@ void complete_block(RigidBlock& block, const Point& gravity) {
   if (twice_area == 0) throw std::invalid_argument("block " + block.name + " has no area");
   block.centroid = origin + moment / (3 * twice_area);
   block.area = std::abs(twice_area) / 2;
-  if (twice_area < 0) std::reverse(block.vertices.begin(), block.vertices.end());
+  if (twice_area < 0) {
+    std::reverse(block.vertices.begin(), block.vertices.end());
+    // The edge from the last vertex to the first stays the last one.
+    if (!block.edge_joints.empty()) std::reverse(block.edge_joints.begin(), block.edge_joints.end() - 1);
+  }
   block.load.head<2>() += block.density * block.area * gravity;
 }
 

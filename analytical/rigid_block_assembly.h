@@ -13,7 +13,8 @@ using Point = Eigen::Vector2d;  // [m]
 
 struct RigidBlock {
   std::string name;
-  std::vector<Point> vertices;  // counter-clockwise
+  std::vector<Point> vertices;   // counter-clockwise
+  std::vector<int> edge_joints;  // of the edge from each vertex to the next, numbers of joints or Interface::by_materials; empty: all the latter
   bool fixed = false;
   bool rotation_locked = false;
   int material = 0;
@@ -32,9 +33,12 @@ struct InterfaceStrength {
 
 /// Straight line along which two blocks face each other.
 struct Interface {
+  static constexpr int by_materials = -1;
+
   int a = 0, b = 0;           // blocks; at least one of them is free
   std::array<Point, 2> ends;  // [m]
   Point normal;               // unit vector from b into a: compression pushes a along it
+  int joint = by_materials;   // number of the joint that both edges name
   InterfaceStrength strength;
 
   double length() const { return (ends[1] - ends[0]).norm(); }  // [m]

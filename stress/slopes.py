@@ -9,6 +9,8 @@ PART = "slopes"
 MOST_BLOCKS = 600
 DAYLIGHTING_SHARE = 0.5  # of scenes whose first set dips out of the face for sure: with dips of any direction most slopes never fail
 CLOSEST_SETS_DEG = 10  # joint sets nearer than this to each other would be one set
+NAMED_SHARE = 0.25
+BRITTLE = "lost_on_slip"
 GRAVITY = 9.81
 
 
@@ -35,23 +37,49 @@ def draw(seed: int, attempt: int = 0) -> Scene:
     cohesion = 0.0 if r.random() < 0.5 else rounded(log_uniform(r, 1e-3, 0.05) * density * GRAVITY * height, 4)
     joint = {"materials": ["rock", "rock"], "normal_stiffness_pa_per_m": kn, "shear_stiffness_pa_per_m": rounded(kn * ratio, 4),
              "friction_angle_deg": friction, "cohesion_pa": cohesion} | _tension(random.Random(f"{PART} {seed} {attempt} tension"), density * GRAVITY * height)
+    named = _named_joints(random.Random(f"{PART} {seed} {attempt} named"), sets, joint, density * GRAVITY * height)
     document = {
         "title": f"{PART} {seed}",
         "material": [{"name": "rock", "density_kg_per_m3": rounded(density, 5)}],
-        "joint": [joint],
+        "joint": [joint, *named],
         "domain": {"material": "rock", "vertices_m": corners, "enclosed_joints": "drop"},
         "joint_set": sets,
         "fixed_line": [{"from_m": a, "to_m": b} for a, b in ((corners[0], corners[1]), (corners[0], corners[5]), (corners[1], corners[2]))],
         "strength_reduction": {"width": 5e-4},
     }
     drawn = {"height_m": height, "face_deg": face, "sets": count, "finite": sum("persistence" in s for s in sets), "friction_deg": friction,
-             "cohesion_pa": cohesion, "tension_pa": joint.get("tensile_strength_pa", 0.0), "kn": kn, "ks_over_kn": ratio}
+             "cohesion_pa": cohesion, "tension_pa": joint.get("tensile_strength_pa", 0.0), "named": len(named),
+             "brittle": sum(j.get("cohesion_behaviour") == BRITTLE for j in named), "kn": kn, "ks_over_kn": ratio}
     return Scene(PART, seed, "fos", document, drawn)
 
 
 def _tension(r: random.Random, weight_pa: float) -> dict:
     """In a quarter of the slopes, below the tip of the cone of friction and cohesion or far beyond it. With random numbers of its own."""
     return {"tensile_strength_pa": rounded(log_uniform(r, 1e-3, 0.05) * weight_pa, 4)} if r.random() < 0.25 else {}
+
+
+def _named_joints(r: random.Random, sets: list[dict], joint: dict, weight_pa: float) -> list[dict]:
+    """In a quarter of the slopes the first set has strength and stiffness of its own, and in a quarter of those with finite traces rock breaks between
+    these. Cohesion is lost on slip in half of what has any."""
+    named = []
+
+    def add(name: str, friction: tuple[float, float], cohesion: tuple[float, float] | None, tensile_part: float) -> None:
+        kn = rounded(joint["normal_stiffness_pa_per_m"] * log_uniform(r, 0.1, 10), 4)
+        strength = {"friction_angle_deg": rounded(r.uniform(*friction), 4)}
+        if cohesion:
+            strength["cohesion_pa"] = rounded(log_uniform(r, *cohesion) * weight_pa, 4)
+            strength |= {"tensile_strength_pa": rounded(tensile_part * strength["cohesion_pa"], 4)} if tensile_part else {}
+            strength |= {"cohesion_behaviour": BRITTLE} if r.random() < 0.5 else {}
+        named.append({"name": name, "normal_stiffness_pa_per_m": kn, "shear_stiffness_pa_per_m": rounded(kn * log_uniform(r, 0.05, 1), 4)} | strength)
+
+    if r.random() < NAMED_SHARE:
+        add("first", (10, 45), (1e-3, 0.05) if r.random() < 0.5 else None, r.choice((0.0, 0.5)))
+        sets[0]["joint"] = "first"
+    finite = [joints for joints in sets if "persistence" in joints]
+    if finite and r.random() < NAMED_SHARE:
+        add("intact", (35, 55), (0.02, 0.5), r.uniform(0.1, 0.5))
+        finite[0]["bridge"] = "intact"
+    return named
 
 
 def _joint_set(r: random.Random, seed: int, height: float) -> dict:

@@ -97,6 +97,12 @@ class Variants(unittest.TestCase):
         for a, b in zip(document["block"], other["block"]):
             self.assertAlmostEqual(geometry.integrals(a["vertices_m"]).area, geometry.integrals(b["vertices_m"]).area, 9)
 
+    def test_mirrored_edges_keep_their_joints(self):
+        document = {"block": [{"vertices_m": [[0, 0], [2, 0], [0, 1]], "edge_joints": ["floor", "slope", ""]}], "joint": []}
+        (block,) = variants.mirrored(document)["block"]
+        edges = {frozenset(map(tuple, edge)): name for edge, name in zip(geometry.edges(block["vertices_m"]), block["edge_joints"])}
+        self.assertEqual(edges, {frozenset(((0, 0), (-2, 0))): "floor", frozenset(((-2, 0), (0, 1))): "slope", frozenset(((0, 1), (0, 0))): ""})
+
 
 class Page(unittest.TestCase):
     ROWS = [Row("tumbles", 1, "a=1", "soft", 3, "right", "", energy_rise=0.001, overlap=1e-6, exit=0),

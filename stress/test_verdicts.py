@@ -171,12 +171,14 @@ ON_SLOPE = [[3.2, 2.4], [4.0, 3.0], [3.4, 3.8], [2.6, 3.2]]
 WEIGHT = DENSITY * GRAVITY
 
 
-def incline(corner: bool = False) -> verdicts.Assembly:
-    """With `corner` the block stands on one corner instead: it is turned a little."""
+def incline(corner: bool = False, seam: tuple[list[str], list[str]] | None = None) -> verdicts.Assembly:
+    """With `corner` the block stands on one corner instead: it is turned a little. `seam`: what the edges of base and block name, a joint without friction."""
     on_slope = [[3.2, 2.4], [4.0, 3.2], [3.2, 4.0], [2.4, 3.2]] if corner else ON_SLOPE
     blocks = [{"name": "base", "material": "rock", "fixed": True, "vertices_m": SLOPE}, {"name": "b", "material": "rock", "vertices_m": on_slope}]
-    joint = {"materials": ["rock", "rock"], "friction_angle_deg": 45.0, "cohesion_pa": 0.0}
-    return verdicts.Assembly({"gravity_m_per_s2": [0.0, -GRAVITY], "material": [{"name": "rock", "density_kg_per_m3": DENSITY}], "joint": [joint], "block": blocks})
+    joints = [{"materials": ["rock", "rock"], "friction_angle_deg": 45.0, "cohesion_pa": 0.0}, {"name": "seam", "friction_angle_deg": 0.0}]
+    for block, names in zip(blocks, seam or ()):
+        block["edge_joints"] = names
+    return verdicts.Assembly({"gravity_m_per_s2": [0.0, -GRAVITY], "material": [{"name": "rock", "density_kg_per_m3": DENSITY}], "joint": joints, "block": blocks})
 
 
 def _lifted(points: list, by: float) -> list:
@@ -227,6 +229,13 @@ class OfFactors(unittest.TestCase):
 
     def test_forces_beyond_the_reduced_strength(self):
         self.false("beyond the strength", stable=1.334, limit=None)
+
+    def test_the_joint_is_the_one_that_both_edges_name(self):
+        base, block = ["", "", "seam"], ["seam", "", "", ""]
+        self.false("beyond the strength", assembly=incline(seam=(base, block)), limit=None)
+        # The block, or the base, names it for an edge that is not touched.
+        self.assertEqual(self.verdict(assembly=incline(seam=(base, ["", "", "seam", ""]))).kind, verdicts.RIGHT)
+        self.assertEqual(self.verdict(assembly=incline(seam=(["seam", "seam", ""], block))).kind, verdicts.RIGHT)
 
     def test_above_limit_analysis(self):
         self.false("limit analysis", limit=1.32)

@@ -29,6 +29,8 @@ def mirrored(document: dict) -> dict:
     changed = _points(document, lambda x, y: [-x, y])
     for block in changed["block"]:
         block["vertices_m"].reverse()
+        if "edge_joints" in block:  # each from its vertex to the next one: the edge between the last and the first vertex stays the last one
+            block["edge_joints"] = block["edge_joints"][-2::-1] + block["edge_joints"][-1:]
     gravity = changed.get("gravity_m_per_s2", [0.0, -9.81])
     changed["gravity_m_per_s2"] = [-gravity[0], gravity[1]]
     for load in changed.get("load", []):

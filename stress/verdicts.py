@@ -30,6 +30,8 @@ BALANCE = 1e-6
 LIMIT_ANALYSIS = 1e-4
 # [m] From the line of an edge: what limit analysis takes for an interface.
 ON_AN_EDGE = 1e-6
+# [-] Between normals: coordinates of files are exact to 1e-9 m, edges are longer than 1e-3 m.
+SAME_DIRECTION = 1e-5
 # [-] Of the same weight: contacts with less carry nothing.
 LOADED = 1e-9
 # [-] Of the factor: soft and hard, which are one solver in statics, give one bracket no wider than this.
@@ -308,7 +310,9 @@ class Assembly:
     def __init__(self, document: dict):
         self.gravity = document.get("gravity_m_per_s2", [0.0, -9.81])
         density = densities(document)
-        self.joints = {frozenset(j["materials"]): j for j in document["joint"]}
+        self.joints = {frozenset(j["materials"]): j for j in document["joint"] if "materials" in j}
+        self.named = {j["name"]: j for j in document["joint"] if "name" in j}
+        self.edge_joints = {b["name"]: _joints_of_edges(b) for b in document["block"]}
         self.material = {b["name"]: b["material"] for b in document["block"]}
         self.vertices = {b["name"]: geometry.counter_clockwise([tuple(p) for p in b["vertices_m"]]) for b in document["block"]}
         self.fixed = {b["name"] for b in document["block"] if b.get("fixed")}
@@ -366,14 +370,21 @@ class Assembly:
     def _too_strong(self, forces: list[Force], factor: float) -> str:
         allowed = BALANCE * self.heaviest
         for f in forces:
-            joint = self.joints[frozenset((self.material[f.a], self.material[f.b]))]
-            tension = joint.get("tensile_strength_pa", 0.0) * f.length / factor
-            cohesion = joint.get("cohesion_pa", 0.0) * f.length / factor
-            bound = max(0.0, cohesion + f.normal_force * math.tan(math.radians(joint["friction_angle_deg"])) / factor)
-            if f.normal_force < -tension - allowed or abs(f.shear_force) > bound + allowed:
+            strengths = [_strength(joint, f, factor) for joint in self.possible_joints(f)]
+            if not any(f.normal_force >= -tension - allowed and abs(f.shear_force) <= bound + allowed for tension, bound in strengths):
                 return (f"{f.a} on {f.b}: normal force {f.normal_force:.6g} N, shear force {f.shear_force:.6g} N beyond the strength over {factor:.6g} "
-                        f"({bound:.6g} N)")
+                        f"({max(bound for _, bound in strengths):.6g} N)")
         return ""
+
+    def possible_joints(self, f: Force) -> list[dict]:
+        """What an edge that is touched names, if one of the two edges at the corner does so, too; else that of the materials. At the end of an edge that
+        another one continues it may be either of the two."""
+        outline, names = self.vertices[f.b], self.edge_joints[f.b]
+        touched = [i for i, (p, q) in enumerate(geometry.edges(outline)) if math.dist(_outward(p, q), f.normal) <= SAME_DIRECTION and geometry.on_segment(f.point, p, q, 2 * ON_AN_EDGE)]
+        corner = min(range(len(self.vertices[f.a])), key=lambda i: math.dist(self.vertices[f.a][i], f.point))
+        at_corner = self.edge_joints[f.a][corner], self.edge_joints[f.a][corner - 1]
+        found = {names[i] if names[i] in at_corner else "" for i in touched} or {""}
+        return [self.named[name] if name else self.joints[frozenset((self.material[f.a], self.material[f.b]))] for name in found]
 
     def lone_corners(self, forces: list[Force]) -> int:
         """Loaded contacts that lie on no two edges facing each other: limit analysis does not know them."""
@@ -382,6 +393,19 @@ class Assembly:
     def _on_interface(self, f: Force) -> bool:
         a, b = ([(p, q) for p, q in geometry.edges(self.vertices[name]) if geometry.on_segment(f.point, p, q, 2 * ON_AN_EDGE)] for name in (f.a, f.b))
         return any(_face(one, other) for one in a for other in b)
+
+
+def _strength(joint: dict, f: Force, factor: float) -> tuple[float, float]:
+    """[N] That a contact bears in tension and, under its normal force, in shear, if it has lost nothing."""
+    tension, cohesion = (joint.get(key, 0.0) * f.length / factor for key in ("tensile_strength_pa", "cohesion_pa"))
+    return tension, max(0.0, cohesion + f.normal_force * math.tan(math.radians(joint["friction_angle_deg"])) / factor)
+
+
+def _joints_of_edges(block: dict) -> list[str]:
+    """By the corners as the assembly has them, counter-clockwise."""
+    vertices = [tuple(p) for p in block["vertices_m"]]
+    names = block.get("edge_joints", [""] * len(vertices))
+    return names if geometry.counter_clockwise(vertices) == vertices else names[-2::-1] + names[-1:]
 
 
 def _face(one: tuple, other: tuple) -> bool:

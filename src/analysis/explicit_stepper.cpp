@@ -125,9 +125,11 @@ double ExplicitStepper::longest_stable_step(MassDamping damping) {
   load();
   const MethodInput& method = state_.scene.method;
   const double stable = method.step_fraction * loop_->critical_step(damping == MassDamping::local ? method.local_damping : 0.0);
-  const double longest = loop_->is_fast() ? std::min(stable, approach_step()) : stable;
-  // Each change of the step has its price.
-  if (longest < held_step_ || longest > worthwhile_growth * held_step_) held_step_ = longest;
+  const double found_in_time = loop_->is_fast() ? approach_step() : std::numeric_limits<double>::infinity();
+  const auto longest = [&](double way) { return std::min({stable, found_in_time, loop_->step_within(way)}); };
+  // Each change of the step has its price; blocks may become faster before the next one.
+  const double limit = state_.scene.step.max_displacement, with_room = longest(limit / worthwhile_growth);
+  if (longest(limit) < held_step_ || with_room > worthwhile_growth * held_step_) held_step_ = with_room;
   return held_step_;
 }
 
@@ -200,7 +202,6 @@ StepResult ExplicitStepper::step_of_any_length(double h) {
 
 bool ExplicitStepper::advance(double dt) {
   const MassDamping damping = state_.scene.method.damping;
-  const double smallest = state_.scene.step.smallest_fraction * dt;
   double remaining = dt, longest = 0.0, part = 1.0;
   for (long steps = 0; remaining > 0.0;) {  // equal ones, of the remaining time
     const double now = part * std::min(longest_stable_step(damping), dt);
@@ -235,7 +236,7 @@ bool ExplicitStepper::advance(double dt) {
       continue;
     }
     part *= state_.enforcement->step_cut(state_.scene.method);
-    if (part * longest < smallest) {
+    if (part < state_.scene.step.smallest_fraction) {
       state_.reason = result.reason;
       break;
     }

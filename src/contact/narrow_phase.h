@@ -377,15 +377,20 @@ class NarrowPhase {
     const std::array<int, 2> sides{v, system_.previous(v)}, others{end, system_.previous(end)};
     const auto is_nearer = [&](int corner, const Vec2& position, int line) {
       const Edge& other = shapes_.edge(line);
-      return stands_on(corner, other) && other.gap(position) > edge.gap(p);
+      return outside(corner, other) && other.gap(position) > edge.gap(p);
     };
     if (std::ranges::any_of(sides, [&](int s) { return is_nearer(end, q, s); }) ||
         std::ranges::any_of(others, [&](int o) { return is_nearer(v, p, o); }))
       return false;
     if (in_block(vertex_block, q)) {
+      // Whether q could stand on that other edge does not matter: with a block that is deep in another one, corners come in that lead nowhere.
+      const auto came_through = [&](int s) {
+        const Edge& other = shapes_.edge(s);
+        return s != sides[0] && s != sides[1] && distance_to_segment(q, other.start, other.end()) < -edge.gap(p);
+      };
       const auto& block = system_.block(vertex_block);
       const auto edges = std::views::iota(block.first_vertex, block.first_vertex + block.vertex_count);
-      return has_come_off_sides(end, q, v) && std::ranges::none_of(edges, [&](int s) { return is_nearer(end, q, s); });
+      return has_come_off_sides(end, q, v) && std::ranges::none_of(edges, came_through);
     }
     return std::ranges::all_of(
         sides, [&](int s) { return std::ranges::all_of(others, [&](int o) { return cross_each_other(shapes_.edge(s), shapes_.edge(o)); }); });

@@ -94,6 +94,7 @@ Move CentralDifference::move(double h, double span, const Vec2& base, double lim
   if (damping == MassDamping::automatic && motion_.viscous == 0.0) motion_.viscous = first_viscous / h;
   const ExplicitMotion motion{h, span, base, damping == MassDamping::local ? local_damping : 0.0, motion_.viscous};
   const ExplicitBlocks::Trial trial = blocks_.try_motion(motion);
+  fastest_ = trial.farthest / h;
   if (!(trial.farthest <= limit)) return Move::too_far;
   step_ahead_ = 2.0 * trial.farthest;  // two blocks that move against each other
   list_is_short_ = 2.0 * skin_ + step_ahead_ > links_.approach();
@@ -147,7 +148,7 @@ ExplicitEnergies CentralDifference::take_energies() {
 void CentralDifference::exchange(Archive& archive, const JointTable& joints, const ExternalForces& external) {
   external_ = &external;
   archive(blocks_, elements_, energies_, motion_.h, motion_.span, motion_.base, motion_.local_damping, motion_.viscous, moved_, unbalanced_square_,
-          step_ahead_, list_is_short_);
+          step_ahead_, fastest_, list_is_short_);
   links_.exchange(archive, joints);
 }
 

@@ -14,6 +14,7 @@
 // step by a constant factor so that the power it takes is half the rate at which the kinetic energy changes.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -61,6 +62,8 @@ class CentralDifference {
   double approach() const { return links_.approach(); }
   /// Whether two blocks may have moved by more than the skin against each other in the last step, or in one that was not taken.
   bool is_fast() const { return step_ahead_ > skin_; }
+  /// [s] In which no block moves by more than this [m], at the speeds of the last step or of one that was not taken; infinite before the first.
+  double step_within(double way) const { return fastest_ > 0.0 ? way / fastest_ : std::numeric_limits<double>::infinity(); }
   std::optional<ExplicitLinks::TooDeep> too_deep() { return links_.too_deep(); }
 
   bool moved_beyond_skin();
@@ -121,6 +124,7 @@ class CentralDifference {
   double moved_ = 0.0;                                       ///< [m] against each other since the list was found to be good, at most
   double unbalanced_square_ = 0.0;                           ///< [N2]
   double step_ahead_ = 0.0;     ///< [m] by which two blocks may have approached in the last step, or in one that was not taken
+  double fastest_ = 0.0;        ///< [m/s] of a block in the same
   bool list_is_short_ = false;  ///< such a step might have closed contacts that were left out
 };
 

@@ -346,8 +346,8 @@ TEST_CASE("brittle joints lose at rest what they cannot keep there, not on the w
 }
 
 TEST_CASE("a corner that has slipped on the way from rest to rest has lost what goes with slip", "[analysis][explicit][settle]") {
-  // A block of 2 m x 1 m: its upper corner carries (cos - sin/2)/2 of its weight and half of the shear force sin, until it slips; what it has then, and
-  // the lower corner, do not hold the block.
+  // A block of 2 m x 1 m: its upper corner carries (cos - sin/2)/2 of its weight and half of the shear force sin, until it slips; what it has then,
+  // and the lower corner, do not hold the block.
   const double slope = 20.0 * test::degree, first_slip = (std::cos(slope) - 0.5 * std::sin(slope)) / std::sin(slope);
   Scene scene = explicit_scene(test::block_on_incline(slope), 1e-3);
   scene.joints[0].friction_angle = 45.0 * test::degree;
@@ -417,6 +417,19 @@ TEST_CASE("a step that moves a block too far is taken in parts and leaves no tra
   CHECK(simulation.system().displacement(0)[0] == Approx(1.0).epsilon(1e-12));
   CHECK(simulation.system().displacement(0)[1] == Approx(-0.5 * 9.81).epsilon(1e-12));
   CHECK(std::abs(simulation.ledger().imbalance()) < 1e-12 * simulation.ledger().turnover);
+}
+
+TEST_CASE("a block is thrown as far as it flies, in steps however much shorter than the one that was asked for", "[analysis][explicit]") {
+  Scene scene = explicit_scene(test::falling_block(), 10.0);
+  scene.blocks[0].velocity = {50.0, 0.0};
+  scene.step.max_displacement = 0.02;
+  Simulation simulation(scene);
+  REQUIRE(simulation.advance(10.0));
+  const StepCounters& counters = simulation.state().counters;
+  CHECK(simulation.system().displacement(0)[0] == Approx(500.0).epsilon(1e-10));
+  CHECK(simulation.system().displacement(0)[1] == Approx(-0.5 * 9.81 * 100.0).epsilon(1e-10));
+  // Its speed chooses the steps: they are not found by cutting longer ones each time.
+  CHECK(counters.cuts < counters.steps / 100);
 }
 
 TEST_CASE("motions that are no numbers end an explicit run", "[analysis][explicit]") {

@@ -69,6 +69,25 @@ TEST_CASE("rigid blocks: a file is read with weights, strengths and interfaces")
   }
 }
 
+TEST_CASE("rigid blocks: an interface has the joint that both of its edges name, else that of the materials") {
+  // The upper block is written clockwise: its last edge, from (3, 1) to (1, 1), stays the last one when it is turned.
+  const std::string top = "vertices_m = [[1, 1], [1, 2], [3, 2], [3, 1]]\n", left = "vertices_m = [[0, 0], [2, 0], [2, 1], [0, 1]]\n";
+  std::string text = pile;
+  text.replace(text.find(left), left.size(), left + "edge_joints = ['', '', 'seam', 'seam']\n");
+  text.replace(text.find(top), top.size(), top + "edge_joints = ['', '', '', 'seam']\n");
+  text.replace(text.find("[[joint]]"), 0, "[[joint]]\nname = 'seam'\nfriction_angle_deg = 0\ncohesion_pa = 500\n");
+  const RigidBlockAssembly assembly = parse_rigid_blocks(text);
+  REQUIRE(assembly.interfaces.size() == 5);
+  for (const Interface& i : assembly.interfaces) {
+    const bool is_seam = i.a == 1 && i.b == 3;
+    CHECK((i.joint != Interface::by_materials) == is_seam);
+    if (is_seam) CHECK(i.strength.cohesion == 500.0);
+    if (i.a == 2 && i.b == 3) CHECK(i.strength.tension == 7.0);
+  }
+  text.replace(text.find("'seam']"), 6, "'none'");
+  CHECK_THAT(error_of(text), ContainsSubstring("\"none\""));
+}
+
 TEST_CASE("rigid blocks: point loads act on the centroid with their moment") {
   const RigidBlockAssembly assembly = parse_rigid_blocks(pile + "[[load]]\nblock = 'top'\npoint_m = [2, 2]\nforce_n = [100, 50]\n");
   CHECK(assembly.blocks[3].load.isApprox(Eigen::Vector3d(100, -29950, -50), 1e-14));

@@ -548,6 +548,27 @@ TEST_CASE("a needle's tip in the side of a block does not hold the block's far e
   for (const Contact& c : d.contacts) CHECK(c.gap > -0.01);
 }
 
+TEST_CASE("a block that has gone into another one through one side does not hold the far end of another side", "[contact][detection]") {
+  // Caught between two steps of a fast impact. First: the end (3) of the lower block's upper side is in the upper block's lower side, and that side's
+  // line is far in front of the upper block's corner (3), beyond its own block. Second: the tip of the lower block, with three corners, has come in
+  // through the side of the upper one, whose right corner (0) is far behind the lower block's left side.
+  const std::vector<Vec2> first_upper{{3.434130, 2.251201}, {3.346770, 2.261538}, {3.336431, 2.262069}, {3.195592, 2.256349},
+                                      {3.091202, 2.230032}, {3.309922, 2.115584}, {3.334148, 2.116158}, {3.481439, 2.138074}};
+  const std::vector<Vec2> first_lower{{3.296511, 2.123705}, {3.235266, 2.160292}, {2.935842, 2.108793}, {2.863787, 2.062453}, {2.854515, 2.054097}};
+  const std::vector<Vec2> second_upper{{0.887900, 2.000646}, {0.990436, 2.248918}, {0.853178, 2.217326}, {0.832305, 2.181066},
+                                       {0.809686, 2.057575}, {0.822795, 2.020474}, {0.837410, 2.005000}, {0.841374, 2.002497}};
+  const std::vector<Vec2> second_lower{{0.832906, 2.038892}, {0.830648, 2.034475}, {0.826263, 2.023336}, {0.822759, 2.011531}, {0.816517, 1.980996},
+                                       {0.809913, 1.884794}, {0.823475, 1.773198}, {0.830606, 1.757466}, {0.876301, 1.890662}};
+  const double lift = 0.04;  // [m] clear of each other, and within reach
+  for (const auto& [upper, lower, deepest] : {std::tuple(first_upper, first_lower, 0.006), std::tuple(second_upper, second_lower, 0.03)}) {
+    Detection d(scene_with({free_block("upper", placed(upper, 0.0, {0.0, lift})), free_block("lower", lower)}));
+    d.move(0, 0.0, -lift);
+    d.update();
+    REQUIRE_FALSE(d.contacts.empty());
+    for (const Contact& c : d.contacts) CHECK(c.gap > -deepest);
+  }
+}
+
 namespace {
 
 /// [m] Of two convex blocks: by the line along an edge of one of them that parts them most; negative if they overlap.
