@@ -83,13 +83,20 @@ class Shi : public Enforcement {
     for (std::size_t i = 0; i < contacts.size(); ++i) {
       const Contact& c = problem.contacts[i];
       CarriedForces f;
-      f.status = c.status == ContactStatus::open && c.stretch() < -problem.method.closing_tolerance ? ContactStatus::sticking : c.status;
+      f.status = c.status == ContactStatus::open && closes(problem, contacts, i, c.stretch()) ? ContactStatus::sticking : c.status;
       f.normal = c.normal_force;
       f.shear = std::copysign(contacts.strength(i).shear_bound(c.normal_force).value, c.shear_force);
       contacts.set(i, f, 0.0, 0.0);
       kinematics_.emplace_back(contacts.pose_at_start(i));
     }
     tangent_.fit(problem);
+  }
+
+  /// Whether an open contact closes at this stretch: where it is compressed, or where its tensile strength holds the two together, as it does in a
+  /// joint from which a block hangs.
+  static bool closes(const StepProblem& problem, const ContactTrial& contacts, std::size_t c, double stretch) {
+    const double tension = contacts.strength(c).tension;
+    return stretch < -problem.method.closing_tolerance || (tension > 0.0 && contacts.springs(c).normal * stretch <= tension);
   }
 
   bool solve_once(const StepProblem& problem, StepSolution& solution) {
@@ -184,7 +191,7 @@ class Shi : public Enforcement {
     const double trial = elastic_trial - springs.shear_damping * slip_change;
     const bool opens = normal < -strength.tension || (strength.tension == 0.0 && normal <= 0.0);
     CarriedForces f;
-    if (opens || (before == ContactStatus::open && stretch >= -problem.method.closing_tolerance)) return f;
+    if (opens || (before == ContactStatus::open && !closes(problem, contacts, c, stretch))) return f;
     f.normal = normal;
     f.elastic_normal = elastic;
     if (before == ContactStatus::open) {

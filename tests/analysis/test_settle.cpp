@@ -160,6 +160,23 @@ TEST_CASE("the rounding of a drawing opens no contact: an inclined column settle
   }
 }
 
+TEST_CASE("a block hangs by the tensile strength of its joint, and falls where that is less than its weight", "[analysis][settle]") {
+  // Explicit settling with local damping alpha = 0.8 swings beyond the place of rest by sqrt((1 - alpha)/(1 + alpha)) = 1/3 of the sink.
+  for (const std::string& method : all_methods) {
+    for (const bool holds : {true, false}) {
+      CAPTURE(method, holds);
+      const double enough = method == "dem" ? 1.5 : 1.05;
+      Scene scene = test::column_of_blocks(1);
+      scene.method.contact = method;
+      scene.gravity = -scene.gravity;
+      scene.joints[0].tensile_strength = scene.joints[0].cohesion = (holds ? enough : 0.95) * block_weight / test::block_edge;
+      Simulation simulation(scene);
+      CHECK(settle(simulation).settled == holds);
+      if (holds) CHECK(between(simulation, 0, 1).y() == Approx(-block_weight).epsilon(2e-8));
+    }
+  }
+}
+
 TEST_CASE("a support carries a block with a sink of W/k", "[analysis][settle]") {
   for (const std::string& method : all_methods) {
     INFO(method);
