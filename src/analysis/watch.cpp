@@ -73,6 +73,13 @@ std::string shorter_step(const Scene& scene, double factor) {
   return fmt::format("step.dt_s = {:.2g} would be a remedy", scene.step.dt / factor);
 }
 
+/// Where blocks pass into each other. What loads rigid contacts at once, in a start that is not settled, can leave more than shorter steps mend.
+std::string held_apart(const Simulation& simulation) {
+  const Scene& scene = simulation.scene();
+  const bool is_loaded_at_once = !simulation.enforcement().has_elastic_contacts() && scene.method.start == Start::unloaded;
+  return shorter_step(scene, margin) + (is_loaded_at_once ? ", or method.start = \"settled\" if the blocks rest at first" : "");
+}
+
 /// The key that makes a contact stiffer by a factor, with its value.
 std::string stiffer_contact(const Simulation& simulation, int joint, double factor) {
   const MethodInput& method = simulation.scene().method;
@@ -94,7 +101,7 @@ std::string better_energy(const Simulation& simulation) {
   if (scene.method.contact == "shi") return std::string(soft_instead_of_shi);
   if (scene.method.contact == "soft" && integrator_name(scene.method) != "path_average")
     return shorter_step(scene, margin) + ", or method.integrator = \"path_average\"";
-  return shorter_step(scene, margin);
+  return held_apart(simulation);
 }
 
 }  // namespace
@@ -284,7 +291,7 @@ std::string Watch::check_contacts(const Simulation& simulation) {
   const int a = deepest->vertex_block, b = deepest->edge_block;
   const double narrower = std::min(widths_[a], widths_[b]);
   const std::string found = too_deep(simulation, a, b, -deepest->gap, watch_bound::penetration * narrower);
-  if (is_rigid(simulation)) return "rigid contacts have not been held: " + found + "; " + shorter_step(simulation.scene(), margin);
+  if (is_rigid(simulation)) return "rigid contacts have not been held: " + found + "; " + held_apart(simulation);
   // The square of the closure goes with the energy that the springs have to take: what they have, and what still moves the two blocks.
   double stored = 0.0;
   for (const Contact& c : simulation.contacts()) {
@@ -307,7 +314,7 @@ std::string Watch::check_overlaps(const Simulation& simulation, std::size_t firs
     report_.overlap = std::max(report_.overlap, depth / narrower);
     report_.depth = std::max(report_.depth, depth);
     if (depth <= allowed) continue;
-    return "blocks have passed into each other: " + too_deep(simulation, a, b, depth, allowed) + "; " + shorter_step(simulation.scene(), margin);
+    return "blocks have passed into each other: " + too_deep(simulation, a, b, depth, allowed) + "; " + held_apart(simulation);
   }
   return {};
 }

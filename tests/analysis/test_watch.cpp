@@ -160,6 +160,28 @@ TEST_CASE("springs too soft for their blocks are refused, with the stiffness tha
   CHECK(run(stiffer, {}).converged);
 }
 
+TEST_CASE("rigid contacts that are loaded at once and not held name a start that serves", "[analysis][watch]") {
+  // A weight of 1e6 blocks on a column of ten.
+  Scene scene = test::column_of_blocks(11);
+  for (std::size_t b = 1; b < scene.blocks.size(); ++b) scene.blocks[b].vertices = test::rectangle(0.0, static_cast<double>(b - 1), 2.0, 1.0);
+  scene.materials.push_back(scene.materials[0]);
+  scene.materials[1].density *= 1e6;
+  scene.blocks.back().material = 1;
+  scene.joints.push_back(scene.joints[0]);
+  scene.joints[1].materials = {0, 1};
+  scene.method.contact = "hard";
+  scene.end_time = 0.02;
+  {
+    Simulation simulation(scene);
+    const RunResult result = run(simulation, {});
+    CHECK(result.refused);
+    CHECK_THAT(result.reason, ContainsSubstring("method.start = \"settled\" if the blocks rest at first"));
+  }
+  scene.method.start = Start::settled;
+  Simulation simulation(scene);
+  CHECK(run(simulation, {}).converged);
+}
+
 TEST_CASE("with rigid contacts the watch looks after every step", "[analysis][watch]") {
   constexpr long some_step = 1000001;  // between the checks of other methods
   Scene scene = test::block_on_base();
