@@ -61,6 +61,12 @@ void FrozenTrials::apply(double srf) {
 
 TrialResult FrozenTrials::first(double srf) {
   apply(srf);
+  const bool is_alike_at_all = !system_.has_live_load() && !strength_.has_tension();
+  if (!is_alike_at_all) {
+    bonded_.reset();
+    bonded_failed_ = false;
+    mechanism_.resize(0);
+  }
   if (!bonded_ && !bonded_failed_) {
     RelaxationResult bonded = solver_->bonded_state();
     if (bonded.end == RelaxationEnd::stable) {
@@ -72,8 +78,9 @@ TrialResult FrozenTrials::first(double srf) {
   }
   if (bonded_failed_) {
     TrialResult none;
-    none.at_every_strength = mechanism_.size() > 0;
-    none.outcome = none.at_every_strength ? TrialOutcome::failed : TrialOutcome::undecided;
+    const bool is_proved = mechanism_.size() > 0;
+    none.at_every_strength = is_proved && is_alike_at_all;
+    none.outcome = is_proved ? TrialOutcome::failed : TrialOutcome::undecided;
     none.criterion = "no equilibrium even of joints that neither slip nor open in shear";
     return none;
   }

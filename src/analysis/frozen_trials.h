@@ -68,8 +68,10 @@ class FrozenTrials : public StrengthTrials {
   FrozenStrength strength_;
   std::unique_ptr<FrozenSolver> solver_;
   std::vector<Point> points_;
-  std::optional<FrozenState> bonded_, first_stable_, stable_;
+  // The intact rock under its load: alike in all trials unless these change the load or what the joints bear in tension.
+  std::optional<FrozenState> bonded_;
   bool bonded_failed_ = false;
+  std::optional<FrozenState> first_stable_, stable_;
   double stable_factor_ = 0.0;
   std::optional<double> least_compliance_;  ///< travel over growth of the load, between any two stable states on the way
   std::function<std::optional<double>(double near)> limit_analysis_;

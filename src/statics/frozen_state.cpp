@@ -29,6 +29,13 @@ bool FrozenStrength::can_break(std::size_t i, bool bonded) const {
   return can_lose_strength(joints_.joint(system_.contacts()[i].source.joint), bonded);
 }
 
+bool FrozenStrength::has_tension() const {
+  for (int j = 0; j < joints_.count(); ++j) {
+    if (joints_.joint(j).tensile_strength > 0.0) return true;
+  }
+  return false;
+}
+
 bool lose_bonds(const FrozenStrength& strength, FrozenState& state) {
   bool lost = false;
   for (std::size_t i = 0; i < state.contacts.size(); ++i) {

@@ -55,6 +55,7 @@ class FrozenStrength {
   /// Whether bonds survive a state of the contact.
   bool stays_bonded(std::size_t i, const FrozenContactState& state) const;
   bool can_break(std::size_t i, bool bonded) const;
+  bool has_tension() const;
 
  private:
   const FrozenSystem& system_;

@@ -430,6 +430,25 @@ TEST_CASE("supports, loads and tensile strength count in the factor at small dis
   }
 }
 
+TEST_CASE("a block that hangs by less tensile strength than its weight has a factor below 1: strength over weight",
+          "[analysis][strength_reduction]") {
+  for (const std::string& method : all_methods) {
+    for (const double exact : {0.8, 0.05}) {
+      CAPTURE(method, exact);
+      Scene scene = test::column_of_blocks(1);
+      scene.method.contact = method;
+      scene.gravity = -scene.gravity;
+      scene.joints[0].tensile_strength = exact * block_weight / test::block_edge;
+      scene.joints[0].cohesion = 10.0 * scene.joints[0].tensile_strength;
+      const auto safety = factor(scene);
+      REQUIRE(safety.found());
+      CHECK(safety.verdict == FactorVerdict::certified);
+      CHECK(safety.stable() <= exact * (1.0 + 1e-6));
+      CHECK(safety.failed() >= exact * (1.0 - 1e-6));
+    }
+  }
+}
+
 TEST_CASE("closures of the joints before the search: the same factor where the plane does not turn", "[analysis][strength_reduction]") {
   Scene scene = slope_scene("soft", 30.0, 40.0, 0.0);
   scene.strength_reduction.definition = FactorDefinition::joint_closures;
