@@ -3,11 +3,13 @@
 import math
 import random
 
+from geometry import integrals
 from scene import Scene, log_uniform, rounded
 
 PART = "masonry"
 GRAVITY = 9.81
 SHAKEN_SHARE = 0.25
+LOADED_SHARE = 0.4
 SHAKEN_S = 1.5
 OUTPUTS = 60
 
@@ -38,7 +40,20 @@ def draw(seed: int, attempt: int = 0) -> Scene:
     if shaken:
         return _shaken(r, seed, document, drawn, size)
     document["strength_reduction"] = {"width": 5e-4}
-    return Scene(PART, seed, "fos", document, drawn)
+    document["load"] = _loads(random.Random(f"{PART} {seed} {attempt} loads"), document["block"], density)
+    return Scene(PART, seed, "fos", document, {**drawn, "loads": len(document["load"])})
+
+
+def _loads(r: random.Random, blocks: list[dict], density: float) -> list[dict]:
+    """One or two pushes in any direction, of up to half a stone's weight, on one of its corners. Random numbers of its own."""
+    if r.random() >= LOADED_SHARE:
+        return []
+    loads = []
+    for block in r.choices([b for b in blocks if not b.get("fixed")], k=r.randint(1, 2)):
+        force, direction = r.uniform(0.02, 0.5) * density * GRAVITY * abs(integrals(block["vertices_m"]).area), r.uniform(0, 2 * math.pi)
+        loads.append({"block": block["name"], "point_m": r.choice(block["vertices_m"]),
+                      "force_n": [rounded(force * math.cos(direction)), rounded(force * math.sin(direction))]})
+    return loads
 
 
 def _shaken(r: random.Random, seed: int, document: dict, drawn: dict, size: float) -> Scene:

@@ -60,7 +60,7 @@ def _tension(r: random.Random, weight_pa: float) -> dict:
 
 def _named_joints(r: random.Random, sets: list[dict], joint: dict, weight_pa: float) -> list[dict]:
     """In a quarter of the slopes the first set has strength and stiffness of its own, and in a quarter of those with finite traces rock breaks between
-    these. Cohesion is lost on slip in half of what has any."""
+    these. Cohesion is lost on slip in half of what has any, and some of its friction in a third."""
     named = []
 
     def add(name: str, friction: tuple[float, float], cohesion: tuple[float, float] | None, tensile_part: float) -> None:
@@ -70,6 +70,7 @@ def _named_joints(r: random.Random, sets: list[dict], joint: dict, weight_pa: fl
             strength["cohesion_pa"] = rounded(log_uniform(r, *cohesion) * weight_pa, 4)
             strength |= {"tensile_strength_pa": rounded(tensile_part * strength["cohesion_pa"], 4)} if tensile_part else {}
             strength |= {"cohesion_behaviour": BRITTLE} if r.random() < 0.5 else {}
+            strength |= {"residual_friction_angle_deg": rounded(r.uniform(0.5, 1) * strength["friction_angle_deg"], 4)} if r.random() < 0.3 else {}
         named.append({"name": name, "normal_stiffness_pa_per_m": kn, "shear_stiffness_pa_per_m": rounded(kn * log_uniform(r, 0.05, 1), 4)} | strength)
 
     if r.random() < NAMED_SHARE:
