@@ -58,6 +58,7 @@ struct RestLimits {
 /// That way is no motion of the slope: waves that the sudden change sends through it open contacts for a moment which equilibrium keeps closed. With
 /// `keep_bonds` it is gone with all bonds (what users of distinct-element codes know as "elastic first"). At rest, contacts that are open (or, where
 /// the joint says so, slide or have slid since the last rest) lose what they have to lose, and what this leaves settles again, now losing on the way, too.
+/// A load that comes at once pulls more than it does at rest: where no rest is found so, joints with tensile strength are not parted on the way either.
 SettleResult settle_explicitly(Simulation& simulation, const RestLimits& limits, const SettleProgress& progress);
 
 }  // namespace openclose

@@ -161,20 +161,42 @@ class RestSearch {
   double fraction_ = 1.0, part_ = 1.0;  ///< [-] of the longest stable step: where blocks swing, and after a step that went too far
 };
 
-/// Where joints lose strength by slip, it counts which of them slip, and not by how the blocks swing before the springs carry them: the state in which
-/// they carry the blocks without any slip, if there is one, and if it matters. If not, the blocks are where they were.
+/// Where joints lose strength by slip, it counts which of them slip, and not by how the blocks swing before the springs carry them: the state in
+/// which they carry the blocks without any slip, if there is one, and if it matters. If not, the blocks are where they were.
 std::optional<Simulation::Snapshot> rest_without_slip(Simulation& simulation, const RestLimits& limits, const SettleProgress& progress) {
   const auto loses_by_slip = [](const JointProperties& joint) {
     return can_lose_strength(joint, true) && !stays_bonded(joint, true, ContactStatus::sliding);
   };
   if (std::ranges::none_of(simulation.scene().joints, loses_by_slip)) return std::nullopt;
   const Simulation::Snapshot start = simulation.save();
-  simulation.keep_bonds(true, true);
+  simulation.set_bonds(Bonds::last_without_slip);
   const bool settled = RestSearch(simulation, limits, progress).run().settled;
-  simulation.keep_bonds(false);
+  simulation.set_bonds(Bonds::break_under_load);
   if (settled) return simulation.save();
   simulation.restore(start);
   return std::nullopt;
+}
+
+/// From where the blocks are, with all bonds. A load that comes at once pulls more than it does at rest, so that what hangs may part on the way and
+/// fall: then from where the blocks were once more, now with joints that no tension parts before the blocks are at rest.
+SettleResult rest_with_bonds(Simulation& simulation, const RestLimits& limits, const SettleProgress& progress) {
+  const auto bears_tension = [](const JointProperties& joint) { return joint.tensile_strength > 0.0; };
+  std::optional<Simulation::Snapshot> start;
+  if (std::ranges::any_of(simulation.scene().joints, bears_tension)) start = simulation.save();
+  const auto search = [&](Bonds bonds) {
+    simulation.set_bonds(bonds);
+    SettleResult result = RestSearch(simulation, limits, progress).run();
+    simulation.set_bonds(Bonds::break_under_load);
+    return result;
+  };
+  SettleResult parted = search(Bonds::last);
+  if (parted.settled || !start) return parted;
+  const Simulation::Snapshot end = simulation.save();
+  simulation.restore(*start);
+  SettleResult held = search(Bonds::last_unparted);
+  if (held.settled) return held;
+  simulation.restore(end);
+  return parted;
 }
 
 }  // namespace
@@ -182,9 +204,7 @@ std::optional<Simulation::Snapshot> rest_without_slip(Simulation& simulation, co
 SettleResult settle_explicitly(Simulation& simulation, const RestLimits& limits, const SettleProgress& progress) {
   if (!limits.keep_bonds) return RestSearch(simulation, limits, progress).run();
   std::optional<Simulation::Snapshot> before = limits.from_rest ? simulation.save() : rest_without_slip(simulation, limits, progress);
-  simulation.keep_bonds(true);
-  SettleResult kept = RestSearch(simulation, limits, progress).run();
-  simulation.keep_bonds(false);
+  SettleResult kept = rest_with_bonds(simulation, limits, progress);
   if (!kept.settled) return kept;
   simulation.judge_bonds(before ? &*before : nullptr);
   RestLimits rest = limits;

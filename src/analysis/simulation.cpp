@@ -107,11 +107,6 @@ void Simulation::come_to_rest() {
   state_.restart_scheme();
 }
 
-void Simulation::keep_bonds(bool keep, bool no_slip) {
-  taken_back().keep_bonds = keep;
-  state_.no_slip = no_slip;
-}
-
 void Simulation::judge_bonds(const Snapshot* from) {
   change_contacts();
   std::map<std::pair<int, int>, const Contact*> before;

@@ -66,8 +66,8 @@ class Simulation {
   void restore_velocities();
   /// Takes the blocks' velocities away; the kinetic energy goes to the ledger's scheme, as in static steps.
   void come_to_rest();
-  /// From now on contacts lose neither cohesion nor tensile strength, nor, if asked for, do they slip; explicit methods only.
-  void keep_bonds(bool keep, bool no_slip = false);
+  /// From now on; explicit methods only.
+  void set_bonds(Bonds bonds) { taken_back().bonds = bonds; }
   /// Goes on with this method, from where blocks and contacts are. Both must have springs of the joints (Enforcement::has_joint_springs()). What was
   /// counted of linear equations is lost.
   void change_method(const MethodInput& method);

@@ -91,8 +91,7 @@ StepProblem SimulationState::problem(double dt, bool statics) const {
   // A search for a factor may have no step in time; what it needs of a problem then does not depend on inertia.
   if (dt > 0.0) p.inertia = statics ? 2.0 / (dt * dt) : scheme->inertia(dt);
   p.end_weight = statics ? 1.0 : scheme->end_weight();
-  p.keep_bonds = keep_bonds;
-  p.no_slip = no_slip;
+  p.bonds = bonds;
   p.longest_displacement = scene.step.max_displacement;
   if (!statics) p.scheme = scheme.get();
   return p;
@@ -212,7 +211,7 @@ void SimulationState::note_memory(const Memory& of_stepper) {
 }
 
 void SimulationState::exchange(Archive& archive) {
-  archive(system, resting, may_rest, external, joints, base_moves, keep_bonds, no_slip, detector, contacts, contacts_current, output_velocity, time,
+  archive(system, resting, may_rest, external, joints, base_moves, bonds, detector, contacts, contacts_current, output_velocity, time,
           reason, ledger, start_kinetic_energy, kinetic_ahead, max_penetration, friction_work, lagging_friction_work, counters, begins);
   archive.require(detector.fits(system, joints, contacts), "the saved state has contacts of blocks that are not there");
   if (archive.reading()) make_scheme();

@@ -81,8 +81,7 @@ struct SimulationState {
   Resting resting;
   bool may_rest = false;
   bool base_moves = false;
-  bool keep_bonds = false;  ///< contacts lose neither cohesion nor tensile strength
-  bool no_slip = false;     ///< nor do they slip; explicit methods only
+  Bonds bonds = Bonds::break_under_load;
   double time = 0.0;        ///< [s]
   std::string reason;       ///< why the last advance got nowhere
   EnergyLedger ledger;

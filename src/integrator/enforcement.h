@@ -19,6 +19,14 @@
 
 namespace openclose {
 
+/// What an explicit method lets happen to the strength of joints; other methods know the first only.
+enum class Bonds : unsigned char {
+  break_under_load,   ///< as the joints say
+  last,               ///< contacts lose neither cohesion nor tensile strength
+  last_without_slip,  ///< nor do they slip
+  last_unparted,      ///< nor does tension part those that have tensile strength
+};
+
 /// One step to be solved. Everything is as it stands at the start of the step.
 struct StepProblem {
   const BlockSystem& system;
@@ -26,13 +34,12 @@ struct StepProblem {
   const JointTable& joints;
   const std::vector<Contact>& contacts;
   const MethodInput& method;
-  double dt = 0.0;                                                        ///< [s]
-  bool statics = false;                                                   ///< velocities count as zero
-  double inertia = 0.0;                                                   ///< [1/s2] see time_scheme.h
-  double end_weight = 1.0;                                                ///< theta
-  int failed_attempts = 0;                                                ///< at steps from here
-  bool keep_bonds = false;                                                ///< explicit methods: contacts lose no strength
-  bool no_slip = false;                                                   ///< explicit methods: nor do they slip
+  double dt = 0.0;          ///< [s]
+  bool statics = false;     ///< velocities count as zero
+  double inertia = 0.0;     ///< [1/s2] see time_scheme.h
+  double end_weight = 1.0;  ///< theta
+  int failed_attempts = 0;  ///< at steps from here
+  Bonds bonds = Bonds::break_under_load;
   double negligible_force = 0.0;                                          ///< [N] what a static step may leave unbalanced on a block
   double longest_displacement = std::numeric_limits<double>::infinity();  ///< [m] of a vertex; a step that moves one farther is refused
   const TimeScheme* scheme = nullptr;                                     ///< null: every step starts from rest

@@ -20,9 +20,13 @@ double square(double x) {
 
 /// [-] No shear force of a contact that carries anything reaches this.
 constexpr double endless_friction = 1e9;
+/// [-] Over the tensile strength: beyond what any load makes of it.
+constexpr double endless_tension = 1e9;
 
-ContactStrength without_slip(ContactStrength strength) {
-  strength.friction = endless_friction;
+ContactStrength strength_of(const TabulatedJoint& joint, const Contact& contact, Bonds bonds) {
+  ContactStrength strength(joint, contact);
+  if (bonds == Bonds::last_without_slip) strength.friction = endless_friction;
+  if (bonds == Bonds::last_unparted) strength.tension *= endless_tension;
   return strength;
 }
 
@@ -126,7 +130,7 @@ std::pair<ExplicitLinks::Link, ExplicitLinks::LinkRest> ExplicitLinks::make(cons
             .per_shear_stiffness = 1.0 / own.shear,
             .normal_dashpot = dashpots.normal,
             .shear_dashpot = dashpots.shear,
-            .strength = problem.no_slip ? without_slip(ContactStrength(joint, c)) : ContactStrength(joint, c),
+            .strength = strength_of(joint, c, problem.bonds),
             .gap = c.stretch(),
             .slip = 0.0,
             .stretch = c.elastic_slip,
@@ -139,7 +143,7 @@ std::pair<ExplicitLinks::Link, ExplicitLinks::LinkRest> ExplicitLinks::make(cons
             .rest_gap = static_cast<float>(c.rest_gap),
             .status = c.status,
             .bonded = c.bonded,
-            .breakable = !problem.keep_bonds && can_lose_strength(joint, c.bonded)};
+            .breakable = problem.bonds == Bonds::break_under_load && can_lose_strength(joint, c.bonded)};
   begin_forces(link, c);
 
   const auto share = [&](int b, int other) {
