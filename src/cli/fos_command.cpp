@@ -14,6 +14,7 @@
 #include "openclose/io/progress.h"
 #include "openclose/io/search_checkpoint.h"
 #include "openclose/scene/check.h"
+#include "openclose/scene/override.h"
 #include "openclose/scene/writer.h"
 #include "stop_signal.h"
 
@@ -106,6 +107,22 @@ void warn_of_what_is_for_run(Loaded& loaded) {
   if (!loaded.scene.measured_contacts.empty()) loaded.warn("measured_contact is for run; contacts.csv has what every contact carries");
 }
 
+/// What steps in time ask for: `fos` reads it where something moves in time, and nowhere else. In a scene it may stand for `run`; who gives it to
+/// `fos` by hand expects another factor from it.
+std::vector<std::string> unused_steps(const Scene& scene, const Options& options) {
+  std::vector<std::string> warnings;
+  if (scene.strength_reduction.curve_time || scene.settle.criterion == SettleCriterion::paper) return warnings;
+  for (const std::string key : {"step.dt_s", "method.integrator", "method.theta", "method.rho_inf", "method.dissipation"}) {
+    if (std::ranges::count(options.overrides, key, key_of_override) == 0) continue;
+    warnings.push_back(
+        fmt::format("{}: {} has no effect on fos: equilibrium is found without steps in time, unless strength_reduction.curve_time_s or "
+                    "settle.criterion = \"paper\" "
+                    "asks for motion",
+                    source_of_overrides(scene.where.file), key));
+  }
+  return warnings;
+}
+
 }  // namespace
 
 int fos_command(const Options& options) {
@@ -124,6 +141,10 @@ int fos_command(const Options& options) {
   watch_for_stop_signals();
   folder.claim(files_read(options, simulation.scene()));
   make_room(folder, options);
+  // Once nothing is refused any more: a key that has no meaning for the method is an error, and no warning besides.
+  const std::vector<std::string> unused = unused_steps(simulation.scene(), options);
+  print_warnings(unused);
+  loaded.warnings.insert(loaded.warnings.end(), unused.begin(), unused.end());
   folder.write_scene_copy(write_scene(simulation.scene()));
   write_block_properties(folder, simulation.scene(), simulation.system());
   StateTables states(folder, simulation.scene());
