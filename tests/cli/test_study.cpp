@@ -165,6 +165,7 @@ TEST_CASE("study and sweep refuse in one line, and write nothing", "[cli][study]
     CHECK_FALSE(std::filesystem::exists(place.folder() / "out"));
   };
   refused("sweep scene.toml --vary joint[0].friction_angle_deg=25:", "this is no range");
+  refused("sweep scene.toml --vary joint[0].friction_angle_deg=25-40", "joint[0].friction_angle_deg=25:40:STEP");
   refused("sweep scene.toml", "--vary");
   refused("sweep scene.toml --vary joint[0].friction_angle_deg=25,95", "95");
   refused("sweep scene.toml --vary joint[0].friction=25,30", "friction");
