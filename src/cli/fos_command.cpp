@@ -59,20 +59,31 @@ std::string line_of(const StrengthTrial& trial) {
   return fmt::format("{:<9.6g} {}{}", trial.srf, outcome, reason);
 }
 
+/// For who waits: the bar says nothing of the rest before the first trials have ended, and most of the time is that of many blocks.
+std::string number_of_blocks(const Scene& scene) {
+  return size_of(scene) + (scene.cutting ? "; a larger joint_set.spacing_m makes fewer" : "");
+}
+
 /// With what has been found out in the checkpoint; all of it where the search is stopped.
 FactorOfSafety search(Simulation& simulation, const Options& options, const OutputFolder& folder, std::optional<Checkpoint> restart) {
   const bool grows = simulation.scene().strength_reduction.increase.has_value();
   Progress progress(grows ? "load" : "strength reduction", options.quiet);
+  progress.note(number_of_blocks(simulation.scene()));
   const auto write = [&](std::string state) {
     write_checkpoint(folder.path_of(checkpoint_name), simulation.scene(), {0.0, {}, std::move(state), "fos"});
   };
   SearchCheckpoint checkpoint(write, &process_cpu_time);
   SearchObserver observer;
+  double done = 0.0;
   observer.progress = [&](double fraction) {
-    progress.update(fraction);
+    progress.update(done = fraction);
     throw_if_stopped();
   };
-  observer.interruption = throw_if_stopped;
+  // Within a trial, too: the first one of many blocks takes long, and without the bar nothing would show that it is at work.
+  observer.interruption = [&] {
+    progress.update(done);
+    throw_if_stopped();
+  };
   observer.done = [&](std::string state) { checkpoint.keep(std::move(state)); };
   observer.trial = [&](const StrengthTrial& trial) { progress.note(line_of(trial)); };
   const auto found = [&] {

@@ -344,6 +344,15 @@ TEST_CASE("fos warns of what it is given for steps in time and does not take", "
   trials("", 0);
 }
 
+TEST_CASE("who waits for fos at a terminal is told how many blocks there are", "[cli]") {
+  const Workplace place("");
+  REQUIRE(place.run("new slope -o scene.toml --bedding-spacing-m 0.8 --cross-spacing-m 0.9").status == 0);
+  // Minutes of work, of which the first seconds are enough.
+  place.run("--version", "script -qec \"timeout -s INT 3 '" OPENCLOSE_COMMAND "' fos scene.toml -o out\" /dev/null >shown; ");
+  CHECK_THAT(text_of(place.folder() / "shown"), ContainsSubstring("6266 blocks with 25063 vertices; a larger joint_set.spacing_m makes fewer") &&
+                                                    ContainsSubstring("strength reduction ["));
+}
+
 TEST_CASE("factor of safety with a curve", "[cli]") {
   const Workplace place(openclose::test::block_on_incline(30.0));
   const CommandResult result = place.run(
