@@ -54,6 +54,9 @@ struct EnergyLedger {
     return kinetic + gravity + base_motion + contact_springs + support_springs + loads + friction + contact_damping + mass_damping + impact + scheme +
            redefinition;
   }
+
+  /// [-] Share of the energy moved that the time integration took as if it were damping; below zero where it gave energy. Zero where nothing moved.
+  double integrator_loss() const { return turnover > 0.0 ? scheme / turnover : 0.0; }
 };
 
 /// Adds an accepted step. `system` still holds the state at its start; `elastic` is Enforcement::has_elastic_contacts().

@@ -14,6 +14,7 @@
 #include "openclose/io/progress.h"
 #include "openclose/io/search_checkpoint.h"
 #include "openclose/scene/check.h"
+#include "openclose/scene/override.h"
 #include "openclose/scene/writer.h"
 #include "stop_signal.h"
 
@@ -58,20 +59,31 @@ std::string line_of(const StrengthTrial& trial) {
   return fmt::format("{:<9.6g} {}{}", trial.srf, outcome, reason);
 }
 
+/// For who waits: the bar says nothing of the rest before the first trials have ended, and most of the time is that of many blocks.
+std::string number_of_blocks(const Scene& scene) {
+  return size_of(scene) + (scene.cutting ? "; a larger joint_set.spacing_m makes fewer" : "");
+}
+
 /// With what has been found out in the checkpoint; all of it where the search is stopped.
 FactorOfSafety search(Simulation& simulation, const Options& options, const OutputFolder& folder, std::optional<Checkpoint> restart) {
   const bool grows = simulation.scene().strength_reduction.increase.has_value();
   Progress progress(grows ? "load" : "strength reduction", options.quiet);
+  progress.note(number_of_blocks(simulation.scene()));
   const auto write = [&](std::string state) {
     write_checkpoint(folder.path_of(checkpoint_name), simulation.scene(), {0.0, {}, std::move(state), "fos"});
   };
   SearchCheckpoint checkpoint(write, &process_cpu_time);
   SearchObserver observer;
+  double done = 0.0;
   observer.progress = [&](double fraction) {
-    progress.update(fraction);
+    progress.update(done = fraction);
     throw_if_stopped();
   };
-  observer.interruption = throw_if_stopped;
+  // Within a trial, too: the first one of many blocks takes long, and without the bar nothing would show that it is at work.
+  observer.interruption = [&] {
+    progress.update(done);
+    throw_if_stopped();
+  };
   observer.done = [&](std::string state) { checkpoint.keep(std::move(state)); };
   observer.trial = [&](const StrengthTrial& trial) { progress.note(line_of(trial)); };
   const auto found = [&] {
@@ -106,6 +118,22 @@ void warn_of_what_is_for_run(Loaded& loaded) {
   if (!loaded.scene.measured_contacts.empty()) loaded.warn("measured_contact is for run; contacts.csv has what every contact carries");
 }
 
+/// What steps in time ask for: `fos` reads it where something moves in time, and nowhere else. In a scene it may stand for `run`; who gives it to
+/// `fos` by hand expects another factor from it.
+std::vector<std::string> unused_steps(const Scene& scene, const Options& options) {
+  std::vector<std::string> warnings;
+  if (scene.strength_reduction.curve_time || scene.settle.criterion == SettleCriterion::paper) return warnings;
+  for (const std::string key : {"step.dt_s", "method.integrator", "method.theta", "method.rho_inf", "method.dissipation"}) {
+    if (std::ranges::count(options.overrides, key, key_of_override) == 0) continue;
+    warnings.push_back(
+        fmt::format("{}: {} has no effect on fos: equilibrium is found without steps in time, unless strength_reduction.curve_time_s or "
+                    "settle.criterion = \"paper\" "
+                    "asks for motion",
+                    source_of_overrides(scene.where.file), key));
+  }
+  return warnings;
+}
+
 }  // namespace
 
 int fos_command(const Options& options) {
@@ -124,6 +152,10 @@ int fos_command(const Options& options) {
   watch_for_stop_signals();
   folder.claim(files_read(options, simulation.scene()));
   make_room(folder, options);
+  // Once nothing is refused any more: a key that has no meaning for the method is an error, and no warning besides.
+  const std::vector<std::string> unused = unused_steps(simulation.scene(), options);
+  print_warnings(unused);
+  loaded.warnings.insert(loaded.warnings.end(), unused.begin(), unused.end());
   folder.write_scene_copy(write_scene(simulation.scene()));
   write_block_properties(folder, simulation.scene(), simulation.system());
   StateTables states(folder, simulation.scene());

@@ -22,7 +22,7 @@ constexpr double noticeable_loss = 0.01;
 
 /// Numerical damping is an entry of the ledger of its own, so that the imbalance does not show it.
 std::string loss_by_integrator(const EnergyLedger& ledger) {
-  const double share = ledger.turnover > 0.0 ? ledger.scheme / ledger.turnover : 0.0;
+  const double share = ledger.integrator_loss();
   return share > noticeable_loss ? fmt::format(", {:.2g} % of them taken by the integrator", 100.0 * share) : std::string();
 }
 

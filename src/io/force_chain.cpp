@@ -10,9 +10,12 @@ namespace {
 
 /// [-] Of the size of the median block.
 constexpr double stump_of_force = 0.25;
+/// [-] Of the size of the median block, how far a bar may come to lie outside: the thrust of an arch grazes the edge of its crown, and a chain that
+/// ended there would seem to carry nothing through the keystone.
+constexpr double grazing_depth = 0.1;
 constexpr double step_into_block = 1e-3;
 
-/// [m] About as far as the centroid, and not out of the block; of a fixed block, which may be large, a stump.
+/// [m] About as far as the centroid, and hardly out of the block; of a fixed block, which may be large, a stump.
 double reach_into(const Picture::Block& block, const Vec2& point, const Vec2& direction, double size) {
   double reach = stump_of_force * size;
   if (!block.fixed) {
@@ -29,7 +32,8 @@ double reach_into(const Picture::Block& block, const Vec2& point, const Vec2& di
     const double slope = cross(direction, edge);
     if (slope == 0.0) continue;
     const double along = cross(to_edge, edge) / slope, on_edge = cross(to_edge, direction) / slope;
-    if (along >= 0.0 && on_edge >= 0.0 && on_edge <= 1.0) reach = std::min(reach, within + along);
+    const double beyond = grazing_depth * size * edge.norm() / std::abs(slope);
+    if (along >= 0.0 && on_edge >= 0.0 && on_edge <= 1.0) reach = std::min(reach, within + along + beyond);
   }
   return reach;
 }

@@ -11,7 +11,7 @@ void write_svg(const OutputFolder& folder);
 
 const std::vector<OutputFormat>& output_formats() {
   static const std::vector<OutputFormat> list{
-      {"vtk", "the states for ParaView", "(blocks|contacts)(\\.pvd|_[0-9]{4,}\\.vtu)", &write_vtk},
+      {"vtk", "the states for ParaView", "(blocks|contacts)(\\.pvd|_[0-9]{4,}_[a-z0-9_=.+-]+\\.vtu)", &write_vtk},
       {"svg", "a drawing of every state", "[0-9]{4,}\\.svg", &write_svg},
   };
   return list;

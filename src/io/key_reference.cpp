@@ -6,6 +6,7 @@
 #include <cctype>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <span>
 
 #include "openclose/core/error.h"
 #include "openclose/integrator/integrators.h"
@@ -20,21 +21,25 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// The names that a text may be; they stand in the registries.
-std::vector<std::string> known_names(NameIn list) {
-  std::vector<std::string> names;
-  switch (list) {
+template <typename Entries>
+std::vector<KnownWord> words_in(const Entries& registry) {
+  std::vector<KnownWord> words;
+  for (const auto& entry : registry) words.push_back({entry.name, entry.summary});
+  return words;
+}
+
+/// The words of the key, or those that stand in the registry where it is looked up.
+std::vector<KnownWord> known_words(const KeyEntry& key) {
+  if (!key.names) return key.words;
+  switch (*key.names) {
     case NameIn::enforcements:
-      for (const auto& entry : enforcements()) names.emplace_back(entry.name);
-      break;
+      return words_in(enforcements());
     case NameIn::integrators:
-      for (const auto& entry : integrators()) names.emplace_back(entry.name);
-      break;
+      return words_in(integrators());
     case NameIn::formats:
-      for (const OutputFormat& entry : output_formats()) names.emplace_back(entry.name);
-      break;
+      return words_in(output_formats());
   }
-  return names;
+  return {};
 }
 
 std::string accepted_names(const KeyEntry& entry) {
@@ -69,6 +74,13 @@ std::string accepted(const KeyEntry& entry) {
   return {};
 }
 
+/// A line for each word: "a": what it chooses. Empty for keys without words.
+std::string lines_of_words(const KeyEntry& entry, const std::string& begin) {
+  std::string lines;
+  for (const KnownWord& word : known_words(entry)) lines += fmt::format("{}{}: {}", begin, in_quotes(word.text), word.says);
+  return lines;
+}
+
 std::string default_of(const KeyEntry& entry) {
   if (entry.key.required) return "required";
   return entry.value ? *entry.value : std::string(entry.key.absent);
@@ -85,16 +97,36 @@ std::string heading(const KeyTable& table) {
   return table.many ? fmt::format("## [[{}]]", table.name) : fmt::format("## [{}]", table.name);
 }
 
+/// What the words of a table's keys choose; below the table, whose columns they would widen. Keys with the same words share a list.
+void add_words(std::string& page, std::span<const KeyEntry> table) {
+  std::vector<std::pair<std::string, std::string>> lines;  // the words and the keys that accept them
+  for (const KeyEntry& entry : table) {
+    const std::string words = lines_of_words(entry, "\n  - "), key = fmt::format("`{}`", entry.key.name);
+    if (words.empty()) continue;
+    const auto place = std::ranges::find(lines, words, &std::pair<std::string, std::string>::first);
+    if (place == lines.end()) {
+      lines.emplace_back(words, key);
+    } else {
+      place->second += ", " + key;
+    }
+  }
+  if (!lines.empty()) page += '\n';
+  for (const auto& [words, keys] : lines) page += fmt::format("- {}{}\n", keys, words);
+}
+
 void add_tables(std::string& page, const std::vector<KeyEntry>& entries, Audience audience) {
-  std::optional<std::string_view> table;
-  for (const KeyEntry& entry : entries) {
-    if (entry.table.audience != audience) continue;
-    if (table != entry.table.name)
-      page += fmt::format("\n{}\n\n{}\n\n| key | unit | default | accepted | what it does |\n|---|---|---|---|---|\n", heading(entry.table),
-                          sentence(entry.table.says));
-    table = entry.table.name;
-    page +=
-        fmt::format("| `{}` | {} | {} | {} | {} |\n", entry.key.name, unit_of(entry.key.name), default_of(entry), accepted(entry), entry.key.says);
+  for (auto first = entries.begin(); first != entries.end();) {
+    const auto end = std::find_if(first, entries.end(), [&](const KeyEntry& entry) { return entry.table.name != first->table.name; });
+    const std::span<const KeyEntry> table(first, end);
+    first = end;
+    if (table.front().table.audience != audience) continue;
+    page += fmt::format("\n{}\n\n{}\n\n| key | unit | default | accepted | what it does |\n|---|---|---|---|---|\n", heading(table.front().table),
+                        sentence(table.front().table.says));
+    for (const KeyEntry& entry : table) {
+      page +=
+          fmt::format("| `{}` | {} | {} | {} | {} |\n", entry.key.name, unit_of(entry.key.name), default_of(entry), accepted(entry), entry.key.says);
+    }
+    add_words(page, table);
   }
 }
 
@@ -151,7 +183,7 @@ ordered_json value_schema(const KeyEntry& entry) {
 ordered_json key_schema(const KeyEntry& entry) {
   ordered_json schema = value_schema(entry);
   const std::string unit = unit_of(entry.key.name);
-  schema["description"] = fmt::format("{}{}", unit.empty() ? "" : "[" + unit + "] ", entry.key.says);
+  schema["description"] = fmt::format("{}{}{}", unit.empty() ? "" : "[" + unit + "] ", entry.key.says, lines_of_words(entry, "\n"));
   if (entry.value) schema["default"] = ordered_json::parse(*entry.value);
   return schema;
 }
@@ -161,6 +193,10 @@ std::string explained(const KeyEntry& entry) {
   const std::string unit = unit_of(entry.key.name), value = default_of(entry);
   if (!unit.empty()) text += fmt::format("  unit      {}\n", unit);
   text += fmt::format("  accepted  {}\n", accepted(entry));
+  const std::vector<KnownWord> words = known_words(entry);
+  std::size_t longest = 0;
+  for (const KnownWord& word : words) longest = std::max(longest, word.text.size());
+  for (const KnownWord& word : words) text += fmt::format("            {:<{}}  {}\n", word.text, longest, word.says);
   if (!value.empty()) text += fmt::format("  default   {}\n", value);
   if (!entry.key.formerly.empty()) text += fmt::format("  formerly  {}\n", entry.key.formerly);
   return text;
@@ -169,8 +205,9 @@ std::string explained(const KeyEntry& entry) {
 }  // namespace
 
 std::vector<std::string> accepted_words(const KeyEntry& entry) {
-  if (entry.names) return known_names(*entry.names);
-  return {entry.words.begin(), entry.words.end()};
+  std::vector<std::string> texts;
+  for (const KnownWord& word : known_words(entry)) texts.emplace_back(word.text);
+  return texts;
 }
 
 std::string keys_page() {

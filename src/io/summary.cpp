@@ -145,6 +145,7 @@ void add_motion(const Summary& summary, nlohmann::ordered_json& j) {
   nlohmann::ordered_json ledger;
   for (const auto& [name, value] : ledger_entries(summary.ledger)) ledger[name] = value;
   j["energy_ledger"] = ledger;
+  j["integrator_loss"] = summary.ledger.integrator_loss();
   j["ended_by"] = summary.ended_by;
   j["watch"] = {{"checks", summary.watch.checks},
                 {"created_energy", summary.watch.created_energy},

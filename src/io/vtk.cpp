@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <fstream>
@@ -167,6 +168,12 @@ std::string grid_of_contacts(const StateTable& contacts, const std::string& stat
   return grid.take();
 }
 
+/// "moved 10 m" without its blanks, which have to be quoted in every shell.
+std::string name_in_file(std::string state) {
+  std::ranges::replace(state, ' ', '_');
+  return state;
+}
+
 std::string collection(const std::vector<std::pair<double, std::string>>& files) {
   std::string text = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n<Collection>\n";
   for (const auto& [time, file] : files) text += fmt::format("<DataSet timestep=\"{:.17g}\" part=\"0\" file=\"{}\"/>\n", time, file);
@@ -202,9 +209,9 @@ void write_vtk(const OutputFolder& folder) {
       if (!time) time = row[7].empty() ? static_cast<double>(block_files.size()) : number_in(row[7]);
     });
     if (!block_files.empty() && block_files.back().first == time) continue;
-    const std::string number = fmt::format("{:04}.vtu", block_files.size());
-    block_files.emplace_back(time.value_or(0.0), "blocks_" + number);
-    contact_files.emplace_back(time.value_or(0.0), "contacts_" + number);
+    const std::string name = fmt::format("{:04}_{}.vtu", block_files.size(), name_in_file(state));
+    block_files.emplace_back(time.value_or(0.0), "blocks_" + name);
+    contact_files.emplace_back(time.value_or(0.0), "contacts_" + name);
     folder.write_format_file("vtk", block_files.back().second, grid_of_blocks(outlines, motions, state, numbers));
     folder.write_format_file("vtk", contact_files.back().second, grid_of_contacts(contacts, state, numbers));
   }

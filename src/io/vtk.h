@@ -1,8 +1,8 @@
 // The states of a result for ParaView and everything else that reads VTK's XML files.
 //
-// In the folder vtk: blocks_0000.vtu, ... with a polygon a block, contacts_0000.vtu, ... with a point a contact, and blocks.pvd, contacts.pvd, which
-// name them in the order of time. Arrays are base64 (inline binary, little-endian, header UInt64), so that no digit is lost. Units stand in the
-// names.
+// In the folder vtk: blocks_0000_start.vtu, ... with a polygon a block, contacts_0000_start.vtu, ... with a point a contact, and blocks.pvd,
+// contacts.pvd, which name them in the order of time. Arrays are base64 (inline binary, little-endian, header UInt64), so that no digit is lost.
+// Units stand in the names.
 #pragma once
 
 #include <string>

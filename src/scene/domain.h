@@ -12,10 +12,7 @@ namespace openclose {
 
 /// Joints that lie within one block, not connected to its boundary or in one point only, cannot bound a block of their own: it would leave the
 /// other with a hole.
-enum class EnclosedJoints {
-  refuse,  ///< an error
-  drop,    ///< as if they were not there; the block is rigid and what it encloses moves with it
-};
+enum class EnclosedJoints { refuse, drop };
 
 /// The tables that concern cutting. All but [domain] may be empty.
 struct CuttingTables {

@@ -16,7 +16,7 @@ class Rows {
   template <typename Enum, std::size_t n>
   void word(const Key& key, const std::array<Word<Enum>, n>& words) {
     KeyEntry& entry = add(key, ValueType::word, any_number);
-    for (const auto& word : words) entry.words.push_back(word.text);
+    for (const auto& word : words) entry.words.push_back({word.text, word.says});
   }
 
   std::vector<KeyEntry> entries;

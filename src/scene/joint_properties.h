@@ -13,16 +13,12 @@
 namespace openclose {
 
 /// What happens to the cohesion of a joint that has failed; its tensile strength is gone once it has opened, whatever this says.
-enum class CohesionBehaviour {
-  ductile,          ///< kept for ever
-  lost_on_opening,  ///< gone once the contact has opened
-  lost_on_slip,     ///< gone once the contact has slipped or opened
-};
+enum class CohesionBehaviour { ductile, lost_on_opening, lost_on_slip };
 
 inline constexpr std::array cohesion_behaviour_words{
-    Word{"ductile", CohesionBehaviour::ductile},
-    Word{"lost_on_opening", CohesionBehaviour::lost_on_opening},
-    Word{"lost_on_slip", CohesionBehaviour::lost_on_slip},
+    Word{"ductile", CohesionBehaviour::ductile, "kept for ever"},
+    Word{"lost_on_opening", CohesionBehaviour::lost_on_opening, "gone once the contact has opened"},
+    Word{"lost_on_slip", CohesionBehaviour::lost_on_slip, "gone once the contact has slipped or opened"},
 };
 
 /// Mohr-Coulomb joint with tension cut-off: for an unordered pair of materials, for the seams that name it, or for both.

@@ -131,7 +131,7 @@ class Collector {
   template <typename T, typename Enum, std::size_t n>
   static void describe(KeyEntry& entry, const T&, const std::array<Word<Enum>, n>& words) {
     entry.type = ValueType::word;
-    for (const auto& word : words) entry.words.push_back(word.text);
+    for (const auto& word : words) entry.words.push_back({word.text, word.says});
   }
 
   const std::vector<BlockInput>* blocks_;

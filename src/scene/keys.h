@@ -13,16 +13,21 @@ namespace openclose {
 
 enum class ValueType { boolean, number, whole_number, text, word, list, names, vector, polygon, polygons };
 
+/// A word that a key accepts, and what it chooses.
+struct KnownWord {
+  std::string_view text, says;
+};
+
 /// A row with the value of its member.
 struct KeyEntry {
   KeyTable table;
   Key key;
   ValueType type = ValueType::boolean;
-  Range range{};                        ///< of numbers, and of each number of a list or vector
-  bool increasing = false;              ///< of a list
-  std::vector<std::string_view> words;  ///< of ValueType::word
-  std::optional<NameIn> names;          ///< of ValueType::text and names: where they are looked up
-  std::optional<std::string> value;     ///< as TOML and JSON; absent where the key was not given and has no default of its own
+  Range range{};                     ///< of numbers, and of each number of a list or vector
+  bool increasing = false;           ///< of a list
+  std::vector<KnownWord> words;      ///< of ValueType::word
+  std::optional<NameIn> names;       ///< of ValueType::text and names: where they are looked up
+  std::optional<std::string> value;  ///< as TOML and JSON; absent where the key was not given and has no default of its own
 
   std::string dotted() const { return (table.name.empty() ? "" : std::string(table.name) + '.') + std::string(key.name); }
 };

@@ -32,9 +32,10 @@ template <typename Enum>
 struct Word {
   std::string_view text;
   Enum value;
+  std::string_view says;  ///< what it chooses, in a phrase
 };
 template <typename Enum>
-Word(const char*, Enum) -> Word<Enum>;
+Word(const char*, Enum, const char*) -> Word<Enum>;
 
 /// The word for a value; every value has one.
 template <typename Words, typename Enum>

@@ -11,14 +11,14 @@
 namespace openclose {
 
 inline constexpr std::array base_motion_words{
-    Word{"pulses", BaseMotionKind::pulses},
-    Word{"harmonic", BaseMotionKind::harmonic},
-    Word{"record", BaseMotionKind::record},
+    Word{"pulses", BaseMotionKind::pulses, "rectangular ones, which add up where they overlap"},
+    Word{"harmonic", BaseMotionKind::harmonic, "amplitude sin(2 pi frequency t + phase) from time 0 on"},
+    Word{"record", BaseMotionKind::record, "accelerations at times, linear between them, one series for each direction"},
 };
 
 inline constexpr std::array enclosed_joints_words{
-    Word{"refuse", EnclosedJoints::refuse},
-    Word{"drop", EnclosedJoints::drop},
+    Word{"refuse", EnclosedJoints::refuse, "an error"},
+    Word{"drop", EnclosedJoints::drop, "as if they were not there: the block is rigid, and what it encloses moves with it"},
 };
 
 }  // namespace openclose

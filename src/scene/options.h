@@ -22,69 +22,48 @@
 namespace openclose {
 
 /// How a run starts.
-enum class Start {
-  unloaded,         ///< gravity drops on unloaded springs at t = 0
-  settled,          ///< static equilibrium first
-  normal_balanced,  ///< normal forces and moments in balance, shear springs relaxed
-  steady_sliding,   ///< as normal_balanced, with friction fully mobilised against the driving force
-};
+enum class Start { unloaded, settled, normal_balanced, steady_sliding };
 
 inline constexpr std::array start_words{
-    Word{"unloaded", Start::unloaded},
-    Word{"settled", Start::settled},
-    Word{"normal_balanced", Start::normal_balanced},
-    Word{"steady_sliding", Start::steady_sliding},
+    Word{"unloaded", Start::unloaded, "gravity drops on unloaded springs at time 0"},
+    Word{"settled", Start::settled, "static equilibrium first; refused where the blocks do not stand"},
+    Word{"normal_balanced", Start::normal_balanced, "normal forces and moments in balance, shear springs relaxed"},
+    Word{"steady_sliding", Start::steady_sliding, "as normal_balanced, with friction fully mobilised against the driving force"},
 };
 
-enum class RotationKind {
-  exact,   ///< rotation matrix
-  linear,  ///< Shi's first-order rotation, which makes spinning blocks grow
-};
+enum class RotationKind { exact, linear };
 
 inline constexpr std::array rotation_words{
-    Word{"exact", RotationKind::exact},
-    Word{"linear", RotationKind::linear},
+    Word{"exact", RotationKind::exact, "by the rotation matrix"},
+    Word{"linear", RotationKind::linear, "Shi's first-order rotation, for comparison; it makes spinning blocks grow"},
 };
 
 /// Damping of the blocks' motion, for `dem`.
-enum class MassDamping {
-  none,
-  local,      ///< against the motion, in proportion to the unbalanced force
-  automatic,  ///< viscous, its coefficient following what the kinetic energy does
-};
+enum class MassDamping { none, local, automatic };
 
 inline constexpr std::array mass_damping_words{
-    Word{"none", MassDamping::none},
-    Word{"local", MassDamping::local},
-    Word{"automatic", MassDamping::automatic},
+    Word{"none", MassDamping::none, "no damping of the blocks' motion"},
+    Word{"local", MassDamping::local, "against the motion, in proportion to the unbalanced force"},
+    Word{"automatic", MassDamping::automatic, "viscous, its coefficient following what the kinetic energy does"},
 };
 
 /// How the linear equations of a step are solved.
-enum class LinearSolverKind {
-  automatic,  ///< directly, and for many blocks iteratively
-  direct,     ///< every matrix is factored
-  iterative,  ///< with an incomplete factor, or that of an earlier matrix, as preconditioner
-  plain,      ///< by the library's sparse LU, to compare with
-};
+enum class LinearSolverKind { automatic, direct, iterative, plain };
 
 inline constexpr std::array linear_solver_words{
-    Word{"automatic", LinearSolverKind::automatic},
-    Word{"direct", LinearSolverKind::direct},
-    Word{"iterative", LinearSolverKind::iterative},
-    Word{"plain", LinearSolverKind::plain},
+    Word{"automatic", LinearSolverKind::automatic, "directly, and for many blocks iteratively"},
+    Word{"direct", LinearSolverKind::direct, "every matrix is factored"},
+    Word{"iterative", LinearSolverKind::iterative, "with an incomplete factor, or that of an earlier matrix, as preconditioner"},
+    Word{"plain", LinearSolverKind::plain, "by the library's sparse LU, to compare with"},
 };
 
 /// How `soft` finds the balance of a static step.
-enum class StaticSolver {
-  automatic,   ///< by Newton's method, and for many blocks by relaxation
-  newton,      ///< by linear equations
-  relaxation,  ///< every block follows the force on it, with momentum: no linear equations
-};
+enum class StaticSolver { automatic, newton, relaxation };
 
 inline constexpr std::array static_solver_words{
-    Word{"automatic", StaticSolver::automatic},
-    Word{"newton", StaticSolver::newton},
-    Word{"relaxation", StaticSolver::relaxation},
+    Word{"automatic", StaticSolver::automatic, "by Newton's method, and for many blocks by relaxation"},
+    Word{"newton", StaticSolver::newton, "by linear equations"},
+    Word{"relaxation", StaticSolver::relaxation, "every block follows the force on it, with momentum: no linear equations"},
 };
 
 inline constexpr double default_rho_inf = 0.5;  ///< [-] of MethodInput::rho_inf
@@ -152,7 +131,7 @@ void visit_method_keys(Method& m, Visitor& visit) {
          "stiffness over the reduced mass",
          "0"},
         m.dissipation, from_0_to_1);
-  visit({"rotation", "\"linear\" is Shi's first-order rotation, for comparison"}, m.rotation, rotation_words);
+  visit({"rotation", "how blocks turn"}, m.rotation, rotation_words);
   visit({"statics", "true: every step starts from rest (dynamic coefficient 0)"}, m.statics, Flag{});
   visit({"penalty_pa_per_m", "`shi`: normal penalty", "10 times the joint's normal stiffness"}, m.penalty, positive);
   visit({"penalty_shear_ratio", "`shi`: shear over normal penalty"}, m.penalty_shear_ratio, positive);
@@ -297,14 +276,13 @@ void visit_rest_keys(Rest& r, Visitor& visit) {
 }
 
 /// What tells that a scene has settled.
-enum class SettleCriterion {
-  unbalanced_force,  ///< static steps until forces are in balance
-  paper,             ///< the reference paper's: steps in time until blocks move little in a step; dem: until a force in newtons is left
-};
+enum class SettleCriterion { unbalanced_force, paper };
 
 inline constexpr std::array settle_criterion_words{
-    Word{"unbalanced_force", SettleCriterion::unbalanced_force},
-    Word{"paper", SettleCriterion::paper},
+    Word{"unbalanced_force", SettleCriterion::unbalanced_force, "static steps until forces are in balance"},
+    Word{"paper", SettleCriterion::paper,
+         "the reference paper's: steps in time until blocks move little in a step, with `dem` until no more than a force in newtons is left; the "
+         "last four of these keys belong to it"},
 };
 
 /// Static settling: when it is done, and when it has failed.
@@ -326,8 +304,7 @@ struct SettleInput {
 template <class Settle, class Visitor>
 void visit_settle_keys(Settle& s, Visitor& visit) {
   visit.table({"settle", Audience::user, "static equilibrium, for the start \"settled\" and for `fos`"});
-  visit({"criterion", "what tells equilibrium: \"paper\" is the reference paper's rule, with the last four of these keys"}, s.criterion,
-        settle_criterion_words);
+  visit({"criterion", "what tells equilibrium"}, s.criterion, settle_criterion_words);
   visit({"unbalanced_fraction",
          "largest unbalanced force over the weight of the heaviest free block; steps of `soft` may leave half of it in their equations"},
         s.unbalanced_fraction, between_0_and_1);
@@ -348,16 +325,13 @@ void visit_settle_keys(Settle& s, Visitor& visit) {
 }
 
 /// Which factor of safety is meant.
-enum class FactorDefinition {
-  small_displacements,  ///< of the drawn geometry: lengths and directions of contacts stay as drawn; no stiffness scale, no length counts
-  joint_closures,       ///< the same on the geometry that the joints' closures under gravity leave
-  large_displacements,  ///< blocks move as far as they do; failed is what moves beyond settle.failure_displacement_m
-};
+enum class FactorDefinition { small_displacements, joint_closures, large_displacements };
 
 inline constexpr std::array factor_definition_words{
-    Word{"small_displacements", FactorDefinition::small_displacements},
-    Word{"joint_closures", FactorDefinition::joint_closures},
-    Word{"large_displacements", FactorDefinition::large_displacements},
+    Word{"small_displacements", FactorDefinition::small_displacements, "of the drawn geometry: lengths and directions of contacts stay as drawn"},
+    Word{"joint_closures", FactorDefinition::joint_closures, "the same on the geometry that the closures of the joints under gravity leave"},
+    Word{"large_displacements", FactorDefinition::large_displacements,
+         "blocks move in every trial, what settles is stable, what moves beyond `settle.failure_displacement_m` has failed"},
 };
 
 struct StrengthReductionInput {
@@ -376,11 +350,7 @@ struct StrengthReductionInput {
 template <class Reduction, class Visitor>
 void visit_strength_reduction_keys(Reduction& r, Visitor& visit) {
   visit.table({"strength_reduction", Audience::user, "`fos` divides tan(friction angle), cohesion and tensile strength by the factor"});
-  visit({"definition",
-         "\"small_displacements\": of the drawn geometry, see [factor of safety](factor_of_safety.md); \"joint_closures\": the same on the geometry "
-         "that the closures of the joints under gravity leave; \"large_displacements\": blocks move in every trial, what settles is stable, what "
-         "moves beyond `settle.failure_displacement_m` has failed"},
-        r.definition, factor_definition_words);
+  visit({"definition", "which factor is meant, see [factor of safety](factor_of_safety.md)"}, r.definition, factor_definition_words);
   visit({"limit_analysis",
          "a second opinion: rigid-block limit analysis, which also proves failure above it, and the factor at shear to normal stiffness ratios of "
          "0.1 and 1"},

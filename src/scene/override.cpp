@@ -29,8 +29,7 @@ struct Override {
 Override parse_override(const std::string& file, const std::string& text) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || equals == 0) throw_input_error({file, 0}, "--set " + text, "this is no assignment", accepted_form);
-  const std::string key = text.substr(0, text.find_last_not_of(' ', equals - 1) + 1);
-  return {source_of_overrides(file), key, text.substr(equals + 1)};
+  return {source_of_overrides(file), key_of_override(text), text.substr(equals + 1)};
 }
 
 bool is_word(const std::string& text) {
@@ -101,6 +100,11 @@ toml::node& member(const Override& override, toml::node& parent, const std::stri
 }
 
 }  // namespace
+
+std::string key_of_override(const std::string& key_and_value) {
+  const std::string key = key_and_value.substr(0, key_and_value.find('='));
+  return key.substr(0, key.find_last_not_of(' ') + 1);
+}
 
 std::string source_of_overrides(const std::string& file) {
   return file + ": command line";

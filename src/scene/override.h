@@ -13,6 +13,9 @@ namespace openclose {
 /// Throws InputError.
 void apply_override(toml::table& scene, const std::string& file, const std::string& key_and_value);
 
+/// KEY of KEY=VALUE, without the blanks behind it.
+std::string key_of_override(const std::string& key_and_value);
+
 /// In place of a file and a line where something of the scene file was given on the command line, by --set or by an option of its own.
 std::string source_of_overrides(const std::string& file);
 

@@ -51,11 +51,7 @@ struct MeasuredContact {
   Vec2 point = Vec2::Zero();  ///< [m] on the boundaries of both, as drawn
 };
 
-enum class BaseMotionKind {
-  pulses,    ///< rectangular ones; where they overlap they add up
-  harmonic,  ///< amplitude sin(2 pi frequency t + phase) from time 0 on
-  record,    ///< linear between its times, one for each direction
-};
+enum class BaseMotionKind { pulses, harmonic, record };
 
 struct BasePulse {
   double start = 0.0;                ///< [s]

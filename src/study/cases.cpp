@@ -18,6 +18,7 @@
 #include "openclose/core/error.h"
 #include "openclose/io/output_folder.h"
 #include "openclose/scene/check.h"
+#include "openclose/scene/override.h"
 #include "openclose/scene/reader.h"
 #include "openclose/scene/writer.h"
 #include "openclose/version.h"
@@ -182,7 +183,7 @@ std::vector<std::string> CaseWarnings::texts() const {
 
 void require_not_set(const std::vector<std::string>& overrides, const std::string& key, const std::string& option) {
   for (const std::string& assignment : overrides) {
-    if (assignment.substr(0, assignment.find('=')) == key)
+    if (key_of_override(assignment) == key)
       throw InputError({"--set " + assignment, 0}, "", fmt::format("{} has values of its own in every case", key), option + " alone for this key");
   }
 }

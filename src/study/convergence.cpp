@@ -11,7 +11,7 @@ constexpr double accuracy_of_ratio = 1e-3;
 constexpr double least_order = 0.5;
 /// [-] Orders of two triples of steps in a row that differ by more say that the first of them, or both, have not come to where an order shows.
 constexpr double most_change_of_order = 0.5;
-/// The integrators are of second order at most: where differences shrink faster, two of them agree by chance.
+/// The integrators are of second order at most: where differences or errors shrink faster, two values agree by chance.
 constexpr double highest_order = 3.0;
 
 /// Of three values by falling steps: the ratio of the steps, and the order with which the differences shrink; none where they do not.
@@ -46,8 +46,9 @@ std::optional<Limit> richardson_limit(std::span<const Refinement> refinements) {
 std::vector<std::optional<double>> observed_orders(std::span<const double> steps, std::span<const double> errors) {
   std::vector<std::optional<double>> orders(steps.size());
   for (std::size_t i = 1; i < steps.size(); ++i) {
-    if (errors[i - 1] > 0.0 && errors[i] > 0.0 && steps[i - 1] != steps[i])
-      orders[i] = std::log(errors[i - 1] / errors[i]) / std::log(steps[i - 1] / steps[i]);
+    if (!(errors[i - 1] > 0.0 && errors[i] > 0.0) || steps[i - 1] == steps[i]) continue;
+    const double order = std::log(errors[i - 1] / errors[i]) / std::log(steps[i - 1] / steps[i]);
+    if (order <= highest_order) orders[i] = order;
   }
   return orders;
 }

@@ -25,7 +25,8 @@ struct Limit {
 /// \param refinements  by falling steps
 std::optional<Limit> richardson_limit(std::span<const Refinement> refinements);
 
-/// Order between neighbouring steps, log(e1/e2) / log(h1/h2), where both errors are above zero; the first has none.
+/// Order between neighbouring steps, log(e1/e2) / log(h1/h2), where both errors are above zero; the first has none. Orders above 3 are left out, too:
+/// the smaller of the two errors is small by chance.
 std::vector<std::optional<double>> observed_orders(std::span<const double> steps, std::span<const double> errors);
 
 }  // namespace openclose

@@ -132,8 +132,8 @@ class PlotDrawing {
         page_.print("<path class=\"failed\" d=\"M{0:.2f} {1:.2f}l8 8m0 -8l-8 8\" stroke=\"{2}\" stroke-width=\"1.8\"/>\n", p.x() - 4.0, p.y() - 4.0,
                     colour);
       } else {
-        page_.print("<circle class=\"point\" cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"3.2\" fill=\"{}\"><title>{}</title></circle>\n", p.x(), p.y(), colour,
-                    escaped(fmt::format("{} {:.6g}: {:.6g}", series.name, point.x, point.y)));
+        page_.print("<circle class=\"point\" cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"3.2\" fill=\"{}\" stroke=\"{}\"><title>{}</title></circle>\n", p.x(),
+                    p.y(), point.hollow ? "white" : colour, colour, escaped(fmt::format("{} {:.6g}: {:.6g}", series.name, point.x, point.y)));
       }
     }
   }

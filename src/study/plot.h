@@ -11,6 +11,7 @@ struct PlotPoint {
   double x = 0.0, y = 0.0;
   std::optional<double> high;  ///< upper end of an interval that begins at y
   bool failed = false;         ///< drawn as a cross
+  bool hollow = false;         ///< drawn as a ring: a value that is trusted less
 };
 
 struct PlotSeries {

@@ -23,6 +23,13 @@ constexpr double accuracy_of_end = 1e-9;
 /// [-] Than the step makes: a few that are divided, as at impacts, leave the step what it is.
 constexpr double more_steps = 1.5;
 
+/// Of the rows that has_warnings() marks.
+constexpr const char* meaning_of_mark = "runs that gave warnings, see \"warnings\" in their summary.json";
+
+bool has_warnings(const StudyRow& row) {
+  return row.warnings > 0;
+}
+
 std::string number_text(const std::optional<double>& value, int digits) {
   return value ? fmt::format("{:.{}g}", *value, digits) : "";
 }
@@ -53,6 +60,8 @@ StudyRow row_of(const StudyOrder& order, const std::string& contact, double dt, 
   row.steps = summary.at("counters").at("steps").get<long>();
   row.end_time = summary.at("time_s").get<double>();
   row.warnings = static_cast<int>(summary.at("warnings").size());
+  // A case that was run by an earlier build, and is not run again, may lack it.
+  if (const auto loss = summary.find("integrator_loss"); loss != summary.end()) row.integrator_loss = loss->get<double>();
   if (result.status == exit_success) row.value = quantity_in(folder, order.quantity);
   return row;
 }
@@ -158,19 +167,19 @@ Study make_study(StudyOrder order, const std::function<void(double)>& progress) 
 }
 
 std::vector<TextFile> study_files(const Study& study, const std::string& folder) {
-  std::string rows = "contact,dt_s,quantity,value,reference,error,observed_order,cpu_s,steps,end_time_s,warnings,status\n";
+  std::string rows = "contact,dt_s,quantity,value,reference,error,observed_order,cpu_s,steps,end_time_s,integrator_loss,warnings,status\n";
   Plot errors{"Error", "time step [s]", "error of " + study.quantity, true, true, {}},
       cost{"Cost", "error of " + study.quantity, "CPU time [s]", true, true, {}};
   for (const StudyLimit& limit : study.limits) {
     PlotSeries error{limit.contact, {}}, price{limit.contact, {}};
     for (const StudyRow& row : study.rows) {
       if (row.contact != limit.contact) continue;
-      rows += fmt::format("{},{:.17g},{},{},{},{},{},{:.6g},{},{:.17g},{},{}\n", row.contact, row.dt, study.quantity, number_text(row.value, 17),
+      rows += fmt::format("{},{:.17g},{},{},{},{},{},{:.6g},{},{:.17g},{},{},{}\n", row.contact, row.dt, study.quantity, number_text(row.value, 17),
                           number_text(limit.value, 17), number_text(row.error, 17), number_text(row.order, 6), row.cpu, row.steps, row.end_time,
-                          row.warnings, status_word(row.status));
+                          number_text(row.integrator_loss, 6), row.warnings, status_word(row.status));
       if (!row.error) continue;
-      error.points.push_back({row.dt, *row.error, {}, false});
-      price.points.push_back({*row.error, row.cpu, {}, false});
+      error.points.push_back({row.dt, *row.error, {}, false, has_warnings(row)});
+      price.points.push_back({*row.error, row.cpu, {}, false, has_warnings(row)});
     }
     if (error.points.empty()) continue;  // a name in the key without a curve says nothing; the notes say why
     errors.series.push_back(error);
@@ -178,16 +187,21 @@ std::vector<TextFile> study_files(const Study& study, const std::string& folder)
   }
   std::vector<std::string> notes;
   for (const StudyLimit& limit : study.limits) notes.push_back(fmt::format("{}: {} ({})", limit.contact, number_text(limit.value, 9), limit.how));
+  if (std::ranges::any_of(study.rows, has_warnings)) notes.emplace_back(std::string("Hollow points: ") + meaning_of_mark);
   return {{folder + "/study.csv", rows}, {folder + "/study.svg", svg_plots("Convergence of " + study.quantity, notes, {errors, cost})}};
 }
 
 std::string study_table(const Study& study) {
-  std::string text = fmt::format("{:<8} {:>11} {:>16} {:>11} {:>7} {:>10}\n", "contact", "dt [s]", study.quantity, "error", "order", "CPU [s]");
+  const std::size_t width = std::max<std::size_t>(16, study.quantity.size());
+  // The column behind the value is that of the mark.
+  std::string text =
+      fmt::format("{:<8} {:>11} {:>{}}  {:>11} {:>7} {:>10}\n", "contact", "dt [s]", study.quantity, width, "error", "order", "CPU [s]");
   for (const StudyRow& row : study.rows) {
-    text +=
-        fmt::format("{:<8} {:>11.6g} {:>16} {:>11} {:>7} {:>10.3g}\n", row.contact, row.dt,
-                    row.value ? number_text(row.value, 9) : status_word(row.status), number_text(row.error, 3), number_text(row.order, 3), row.cpu);
+    text += fmt::format("{:<8} {:>11.6g} {:>{}}{} {:>11} {:>7} {:>10.3g}\n", row.contact, row.dt,
+                        row.value ? number_text(row.value, 9) : status_word(row.status), width, has_warnings(row) ? '*' : ' ',
+                        number_text(row.error, 3), number_text(row.order, 3), row.cpu);
   }
+  if (std::ranges::any_of(study.rows, has_warnings)) text += fmt::format("* {}\n", meaning_of_mark);
   for (const StudyLimit& limit : study.limits)
     text += fmt::format("{}: errors against {}, {}\n", limit.contact, limit.value ? number_text(limit.value, 9) : "nothing", limit.how);
   return text;

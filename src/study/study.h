@@ -25,8 +25,9 @@ struct StudyRow {
   std::optional<double> value, error, order;
   double cpu = 0.0;  ///< [s] of start and motion
   long steps = 0;
-  double end_time = 0.0;  ///< [s]
-  int warnings = 0;       ///< of the run
+  double end_time = 0.0;                  ///< [s]
+  std::optional<double> integrator_loss;  ///< [-] see EnergyLedger; none where the summary does not tell
+  int warnings = 0;                       ///< of the run
   int status = 0;
   std::string message;
 };

@@ -16,6 +16,32 @@ constexpr std::size_t most_cases = 100'000;
 /// [-] Of a step: rounding of the ends does not lose the last value.
 constexpr double rounding_of_steps = 1e-6;
 
+/// The numbers of a text that has nothing else but hyphens, dashes or two dots between them, as in 25-40, 25-40-5 and 25..40; none where it is no
+/// such text.
+std::vector<std::string> joined_numbers(const std::string& text) {
+  for (const std::string separator : {"-", "\u2013", ".."}) {
+    // From the second character on: a hyphen before a number is its sign.
+    for (std::size_t place = text.find(separator, 1); place != std::string::npos; place = text.find(separator, place + 1)) {
+      const std::string first = text.substr(0, place), rest = text.substr(place + separator.size());
+      if (!number_from(first)) continue;
+      std::vector<std::string> numbers = number_from(rest) ? std::vector{rest} : joined_numbers(rest);
+      if (numbers.empty()) continue;
+      numbers.insert(numbers.begin(), first);
+      return numbers;
+    }
+  }
+  return {};
+}
+
+/// A range as people write it elsewhere would be taken for a word, and be refused only as the value of the key. A name like "1-2" has quotes here.
+void require_no_hyphens(const std::string& text, const std::string& key, std::string value) {
+  std::erase(value, ' ');
+  const std::vector<std::string> numbers = joined_numbers(value);
+  if (numbers.empty()) return;
+  const std::string step = numbers.size() == 3 ? numbers[2] : "STEP";
+  throw InputError({"--vary " + text, 0}, "", "a range has colons", fmt::format("{}={}:{}:{}", key, numbers[0], numbers[1], step));
+}
+
 /// Split where no bracket and no quote is open.
 std::vector<std::string> split(const std::string& text, char separator) {
   std::vector<std::string> parts(1);
@@ -68,6 +94,7 @@ Variation variation_from(const std::string& text) {
     variation.values = split(list, ',');
     for (const std::string& value : variation.values) {
       if (value.empty()) throw InputError({"--vary " + text, 0}, "", "a value is empty", accepted_form);
+      require_no_hyphens(text, variation.key, value);
     }
   } else {
     throw InputError({"--vary " + text, 0}, "", "this is no range", accepted_form);

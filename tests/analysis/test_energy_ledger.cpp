@@ -47,6 +47,14 @@ Scene tumbling(const std::string& method, double theta) {
 
 }  // namespace
 
+TEST_CASE("the loss by the integrator is the scheme's entry over the energy moved", "[analysis][energy]") {
+  EnergyLedger ledger;
+  CHECK(ledger.integrator_loss() == 0.0);
+  ledger.scheme = -3.0;
+  ledger.turnover = 12.0;
+  CHECK(ledger.integrator_loss() == -0.25);
+}
+
 TEST_CASE("ledger of a fall", "[analysis][energy]") {
   for (const std::string& method : all_methods) {
     INFO(method);

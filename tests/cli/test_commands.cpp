@@ -314,6 +314,45 @@ TEST_CASE("factor of safety: the settled state penetrates by what its contacts c
   CHECK(along > 0.05 - 1e-4);
 }
 
+TEST_CASE("fos warns of what it is given for steps in time and does not take", "[cli]") {
+  const Workplace place(openclose::test::block_on_incline(20.0));
+  const auto trials = [&](const std::string& arguments, std::size_t warnings) {
+    INFO(arguments);
+    const CommandResult result =
+        place.run("fos scene.toml -o out -q --set strength_reduction.width=0.1 --set settle.failure_displacement_m=0.05 " + arguments);
+    CHECK(result.status == 0);
+    const auto warns = [](const std::string& line) { return line.find("has no effect on fos") != std::string::npos; };
+    CHECK(static_cast<std::size_t>(std::ranges::count_if(result.errors, warns)) == warnings);
+    if (warnings > 0) CHECK_THAT(result.errors[0], StartsWith("openclose: warning: scene.toml: command line: step.dt_s has no effect on fos"));
+    const nlohmann::json summary = nlohmann::json::parse(text_of(place.folder() / "out/summary.json"));
+    CHECK(std::ranges::count_if(summary.at("warnings"), [&](const nlohmann::json& text) { return warns(text.get<std::string>()); }) ==
+          static_cast<std::ptrdiff_t>(warnings));
+    return text_of(place.folder() / "out/trials.csv");
+  };
+  const std::string given = " --dt 0.02 --integrator path_average --set 'method.dissipation = 0.5'";
+  for (const std::string definition : {"small_displacements", "joint_closures", "large_displacements"}) {
+    const std::string common = "--set strength_reduction.definition=" + definition;
+    CHECK(trials(common, 0) == trials(common + given, 3));
+  }
+  for (const std::string contact : {"hard", "shi", "dem"})
+    CHECK(trials("--contact " + contact, 0) == trials("--contact " + contact + " --dt 0.02", 1));
+  // With motion they count, and so they do in a scene that is for `run`, too.
+  const std::string paper = "--set strength_reduction.definition=large_displacements --set settle.criterion=paper --dt ";
+  CHECK(trials(paper + "0.001", 0) != trials(paper + "0.002", 0));
+  trials("--set strength_reduction.definition=large_displacements --set strength_reduction.curve_time_s=0.1" + given, 0);
+  place.folder().write("scene.toml", openclose::test::block_on_incline(20.0) + "[step]\ndt_s = 0.02\n");
+  trials("", 0);
+}
+
+TEST_CASE("who waits for fos at a terminal is told how many blocks there are", "[cli]") {
+  const Workplace place("");
+  REQUIRE(place.run("new slope -o scene.toml --bedding-spacing-m 0.8 --cross-spacing-m 0.9").status == 0);
+  // Minutes of work, of which the first seconds are enough.
+  place.run("--version", "script -qec \"timeout -s INT 3 '" OPENCLOSE_COMMAND "' fos scene.toml -o out\" /dev/null >shown; ");
+  CHECK_THAT(text_of(place.folder() / "shown"), ContainsSubstring("6266 blocks with 25063 vertices; a larger joint_set.spacing_m makes fewer") &&
+                                                    ContainsSubstring("strength reduction ["));
+}
+
 TEST_CASE("factor of safety with a curve", "[cli]") {
   const Workplace place(openclose::test::block_on_incline(30.0));
   const CommandResult result = place.run(

@@ -42,13 +42,13 @@ TEST_CASE("a full disk under any file of a run or a search is named; the tables 
     std::vector<std::string> files;
   };
   const std::vector<Part> parts = {
-      {"run scene.toml --start unloaded",
+      {"run scene.toml --start unloaded --dt 0.001 --end 0.1",
        {".openclose", "scene_as_read.toml", "block_properties.csv", "milestones.csv", "summary.json", "vtk/blocks.pvd", "svg/0000.svg"}},
       {"fos scene.toml",
        {".openclose", "scene_as_read.toml", "block_properties.csv", "trials.csv", "mechanism.csv", "summary.json", "vtk/blocks.pvd"}}};
   for (const Part& part : parts) {
     const Workplace place(sliding_scene());
-    const std::string command = part.command + " --dt 0.001 --end 0.1 -q -o out";
+    const std::string command = part.command + " -q -o out";
     REQUIRE(place.run(command).status == 0);
     for (const std::string& file : part.files) {
       INFO(part.command);

@@ -136,6 +136,23 @@ TEST_CASE("study measures errors against a known value, and their order", "[cli]
   CHECK_THAT(text_of(place.folder() / "out/study.svg"), StartsWith("<svg ") && ContainsSubstring("the given value"));
 }
 
+TEST_CASE("study marks what gave warnings, and tells how much energy the integrator took", "[cli][study]") {
+  const Workplace place(openclose::test::block_on_incline(40.0));
+  const std::string command = "study scene.toml --dt 0.01,0.005 --end 0.05 --set method.start=unloaded";
+  const CommandResult clean = place.run(command + " -o clean"), marked = place.run(command + " -o marked --set material[0].density_kg_per_m3=2.7");
+  CHECK_THAT(clean.out, !ContainsSubstring("*"));
+  CHECK_THAT(text_of(place.folder() / "clean/study.svg"), !ContainsSubstring("Hollow points"));
+  CHECK(std::ranges::count(marked.out, '*') == 3);
+  CHECK_THAT(marked.out, ContainsSubstring("\n* runs that gave warnings"));
+  for (const auto& row : rows_of(place.folder() / "clean/study.csv")) {
+    const std::string folder = "clean/soft,dt=" + std::string(row.at("dt_s").starts_with("0.01") ? "0.01" : "0.005");
+    const auto last = rows_of(place.folder() / folder + "/energy.csv").back();
+    const double share = std::stod(last.at("scheme_j")) / std::stod(last.at("turnover_j"));
+    CHECK(std::abs(share) > 1e-6);
+    CHECK(std::stod(row.at("integrator_loss")) == Approx(share).epsilon(1e-5));
+  }
+}
+
 TEST_CASE("study and sweep refuse in one line, and write nothing", "[cli][study][sweep]") {
   const Workplace place(openclose::test::block_on_incline(30.0));
   const auto refused = [&](const std::string& arguments, const std::string& message) {
@@ -148,6 +165,7 @@ TEST_CASE("study and sweep refuse in one line, and write nothing", "[cli][study]
     CHECK_FALSE(std::filesystem::exists(place.folder() / "out"));
   };
   refused("sweep scene.toml --vary joint[0].friction_angle_deg=25:", "this is no range");
+  refused("sweep scene.toml --vary joint[0].friction_angle_deg=25-40", "joint[0].friction_angle_deg=25:40:STEP");
   refused("sweep scene.toml", "--vary");
   refused("sweep scene.toml --vary joint[0].friction_angle_deg=25,95", "95");
   refused("sweep scene.toml --vary joint[0].friction=25,30", "friction");
@@ -200,6 +218,8 @@ TEST_CASE("what runs warn of is told by study and sweep, alike warnings once", "
     CHECK_THAT(line, ContainsSubstring(first) && ContainsSubstring("(and 1 other cases"));
   };
   warned("study scene.toml --dt 0.01,0.005 --end 0.05 --set method.start=unloaded -o study", "soft,dt=0.01: ");
+  CHECK_THAT(text_of(place.folder() / "study/study.svg"),
+             ContainsSubstring("Hollow points: runs that gave warnings") && ContainsSubstring("fill=\"white\" stroke"));
   warned("sweep scene.toml --vary joint[0].friction_angle_deg=46,47 -o sweep", "friction_angle_deg=46: ");
   const auto rows = rows_of(place.folder() / "study/study.csv");
   REQUIRE(rows.size() == 2);

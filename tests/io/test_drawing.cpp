@@ -11,6 +11,7 @@
 #include "openclose/geometry/box.h"
 #include "openclose/geometry/polygon.h"
 #include "openclose/io/drawing.h"
+#include "openclose/io/force_chain.h"
 #include "openclose/io/result_picture.h"
 #include "openclose/io/results.h"
 #include "openclose/io/summary.h"
@@ -263,6 +264,24 @@ TEST_CASE("the drawing of a run: state, contact forces, what holds and pushes", 
   CHECK_THAT(svg, ContainsSubstring(">A &lt;small&gt; one<") && ContainsSubstring("soft: run to t = 0.01 s") && ContainsSubstring("state \"final\""));
   CHECK_THAT(svg, ContainsSubstring("class=\"supports\"") && ContainsSubstring("class=\"loads\"") && ContainsSubstring(">mark<"));
   CHECK_THAT(svg, ContainsSubstring(">1 kN/m<"));
+}
+
+TEST_CASE("a bar of force that grazes an edge goes on, one that leaves a block ends", "[io][drawing]") {
+  // The crown of an arch, pressed between two stones just below its upper edge.
+  const auto stone = [](double left) { return Picture::Block{"", {{left, 0.0}, {left + 1.0, 0.0}, {left + 1.0, 1.0}, {left, 1.0}}, 0, false, 0.0}; };
+  const std::vector<Picture::Block> blocks = {stone(0.0), stone(1.0)};
+  const Vec2 hinge(1.0, 0.98);
+  for (const double rise : {0.0, 0.1, 0.2}) {
+    INFO(rise);
+    const Picture::Force bar = force_through({1, 0, Vec2(10.0, 10.0 * rise), hinge}, blocks, 1.0);
+    CHECK(bar.size == Approx(10.0 * std::hypot(1.0, rise)));
+    CHECK((bar.from - hinge).norm() == Approx(0.5));
+    CHECK((bar.to - hinge).norm() == Approx(0.5));
+    CHECK(bar.from.y() <= 1.0 + 0.1);
+  }
+  const Picture::Force steep = force_through({1, 0, Vec2(10.0, 10.0), hinge}, blocks, 1.0);
+  CHECK(steep.from.y() > 1.0);
+  CHECK(steep.from.y() <= 1.0 + 0.1 + 1e-9);
 }
 
 TEST_CASE("a surcharge is drawn by its resultant, which turns with its block", "[io][drawing]") {

@@ -56,6 +56,26 @@ TEST_CASE("the names of methods come from their registries", "[io][keys]") {
   CHECK(method.at("theta").at("maximum") == 1.0);
 }
 
+TEST_CASE("what a word chooses is told by explanation, page and schema", "[io][keys]") {
+  const std::string says = "static equilibrium first; refused where the blocks do not stand";
+  CHECK_THAT(explanation_of("start"), ContainsSubstring("\n            settled          " + says + "\n"));
+  CHECK_THAT(keys_page(), ContainsSubstring("\n- `start`\n  - \"unloaded\": ") && ContainsSubstring("\n  - \"settled\": " + says + "\n"));
+  const nlohmann::json method = nlohmann::json::parse(scene_schema()).at("properties").at("method").at("properties");
+  CHECK_THAT(method.at("start").at("description").get<std::string>(), ContainsSubstring("the state at time 0\n\"unloaded\": "));
+  CHECK_THAT(method.at("start").at("description").get<std::string>(), ContainsSubstring("\n\"settled\": " + says + "\n"));
+  // Those of registries are told by these, and once where two keys of a table have the same.
+  CHECK_THAT(explanation_of("contact"), ContainsSubstring("            dem   explicit: central difference"));
+  CHECK_THAT(keys_page(), ContainsSubstring("\n- `integrator`, `first_integrator`\n  - \"shi\": "));
+  for (const auto* entries : {&option_keys(), &element_keys()}) {
+    for (const KeyEntry& entry : *entries) {
+      for (const KnownWord& word : entry.words) {
+        INFO(entry.dotted() << ' ' << word.text);
+        CHECK_FALSE(word.says.empty());
+      }
+    }
+  }
+}
+
 TEST_CASE("a key is explained by its name, its table or its former name", "[io][keys]") {
   const std::string theta = explanation_of("theta");
   CHECK(theta == explanation_of("method.theta"));

@@ -355,6 +355,7 @@ TEST_CASE("summary.json of a run", "[io][results]") {
   CHECK(same_bits(j.at("energy_ledger").at("friction_j").get<double>(), 1.0 / 3.0));
   CHECK(j.at("energy_ledger").at("imbalance_j") == 1.0 / 3.0);
   CHECK(j.at("energy_ledger").size() == 14);
+  CHECK(j.at("integrator_loss") == summary.ledger.integrator_loss());
   CHECK(j.at("settling").at("settled") == true);
   CHECK(j.at("settling").at("criterion") == "unbalanced force");
   CHECK_FALSE(j.contains("factor_of_safety"));

@@ -98,10 +98,10 @@ TEST_CASE("states of a run as grids of blocks and contacts", "[io][vtk]") {
   // "final" is the state of t = 0.2 once more.
   const std::string series = text_of(place / "vtk/blocks.pvd");
   CHECK(is_well_formed(series));
-  CHECK_THAT(series, ContainsSubstring("timestep=\"0\" part=\"0\" file=\"blocks_0000.vtu\"") && ContainsSubstring("file=\"blocks_0002.vtu\"") &&
-                         !ContainsSubstring("blocks_0003"));
+  CHECK_THAT(series, ContainsSubstring("timestep=\"0\" part=\"0\" file=\"blocks_0000_start.vtu\"") &&
+                         ContainsSubstring("file=\"blocks_0002_t=0.2.vtu\"") && !ContainsSubstring("blocks_0003"));
   CHECK_THAT(series, ContainsSubstring("timestep=\"0.1"));
-  const std::string blocks = text_of(place / "vtk/blocks_0001.vtu"), contacts = text_of(place / "vtk/contacts_0001.vtu");
+  const std::string blocks = text_of(place / "vtk/blocks_0001_t=0.1.vtu"), contacts = text_of(place / "vtk/contacts_0001_t=0.1.vtu");
   CHECK(is_well_formed(blocks));
   CHECK(is_well_formed(contacts));
   CHECK_THAT(blocks, ContainsSubstring("<Piece NumberOfPoints=\"12\" NumberOfCells=\"3\">"));
@@ -129,6 +129,6 @@ TEST_CASE("states of a run as grids of blocks and contacts", "[io][vtk]") {
   folder.remove_results();
   CHECK(place.entries() == std::set<std::string>{"vtk"});
   CHECK(std::filesystem::exists(place / "vtk/view.pvsm"));
-  CHECK_FALSE(std::filesystem::exists(place / "vtk/blocks_0000.vtu"));
+  CHECK_FALSE(std::filesystem::exists(place / "vtk/blocks_0000_start.vtu"));
   CHECK_FALSE(std::filesystem::exists(place / "vtk/contacts.pvd"));
 }

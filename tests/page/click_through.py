@@ -332,6 +332,20 @@ def check_curves(page: Page, results: Path) -> None:
         require(len(shown) == len(energy) and all(abs(a - float(b[column])) <= 1e-6 * abs(float(b[column])) for a, b in zip(shown, energy)), f"the curve of {column}")
 
 
+def check_labels(page: Page) -> None:
+    """The labels of the bracket lie over no point of the curve and over no other label."""
+    labels, points = page.ask(
+        "[document.querySelector('.picture canvas').chart].map((chart) => [chart.labels, chart.series[0].x.map((x, i) => [chart.atX(x), chart.atY(chart.series[0].y[i])])])[0]"
+    )
+    require(len(labels) == 3 and labels[0]["text"].startswith("stable "), f"labels of the bracket: {labels}")
+    for k, label in enumerate(labels):
+        inside = [point for point in points if label["left"] <= point[0] <= label["right"] and label["top"] <= point[1] <= label["bottom"]]
+        require(not inside, f"{label['text']} covers points at {inside}")
+        for other in labels[:k]:
+            apart = label["right"] <= other["left"] or other["right"] <= label["left"] or label["bottom"] <= other["top"] or other["bottom"] <= label["top"]
+            require(apart, f"{label['text']} lies over {other['text']}")
+
+
 def check_factor(browser: webdriver.Chrome, results: Path, path: Path) -> str:
     page = Page(browser, path)
     summary = json.loads((results / "summary.json").read_text())
@@ -347,6 +361,7 @@ def check_factor(browser: webdriver.Chrome, results: Path, path: Path) -> str:
     words = {"1": "stable", "0": "failed", "undecided": "undecided"}
     for cell, row in zip(cells, trials):
         require(same(cell[0], float(row["srf"])) and cell[1] == words[row["stable"]] and same(cell[5], float(row["displacement_m"]), 1e-9), f"trial {row}")
+    check_labels(page)
     moving = 0
     page.choose_state("failed")
     check_places(page, results, "failed")

@@ -40,7 +40,7 @@ std::string other_value(const KeyEntry& entry) {
     case ValueType::text:
       return "\"something\"";
     case ValueType::word:
-      return toml(entry.value == toml(entry.words.front()) ? entry.words.back() : entry.words.front());
+      return toml(entry.value == toml(entry.words.front().text) ? entry.words.back().text : entry.words.front().text);
     case ValueType::list:
       return "[" + toml(a) + ", " + toml(b) + "]";
     case ValueType::names:

@@ -390,11 +390,21 @@ TEST_CASE("intervals of snapshots", "[scene][reader][errors]") {
 TEST_CASE("surcharges that are on no edge", "[scene][reader][errors]") {
   const std::string accepted =
       "; accepted: from_m and to_m at different points of one edge of a block, which the key block names where two blocks meet";
+  const std::string for_each = "; a [[surcharge]] for each edge";
   const auto error = [](const std::string& lines) { return error_of(block_on_base + "[[surcharge]]\npressure_pa = 1\n" + lines); };
-  CHECK(error("from_m = [0.25, 1]\nto_m = [1, 0.5]\n") ==
-        "25: surcharge[0].to_m: (0.25, 1) and (1, 0.5) are not on one edge of any block" + accepted);
+  CHECK(
+      error("from_m = [0.25, 1]\nto_m = [1, 0.5]\n") ==
+      "25: surcharge[0].to_m: (0.25, 1) and (1, 0.5) are not on one edge of any block: (0.25, 1) is on the edge from (1, 1) to (0, 1) of \"block\", "
+      "(1, 0.5) is on the edge from (1, 0) to (1, 1) of \"block\"" +
+          accepted + for_each);
   CHECK(error("from_m = [0.25, 1]\nto_m = [0.5, 1.1]\nblock = 'block'\n") ==
-        "25: surcharge[0].to_m: (0.25, 1) and (0.5, 1.1) are not on one edge of \"block\"" + accepted);
+        "25: surcharge[0].to_m: (0.25, 1) and (0.5, 1.1) are not on one edge of \"block\": (0.25, 1) is on the edge from (1, 1) to (0, 1) of "
+        "\"block\", "
+        "(0.5, 1.1) is 0.1 m from the edge from (1, 1) to (0, 1) of \"block\"" +
+            accepted + for_each);
+  // A corner belongs to two edges: the one that leads to the other end is named.
+  CHECK_THAT(error("from_m = [0, 1]\nto_m = [2, 1]\n"),
+             ContainsSubstring("(0, 1) is on the edge from (1, 1) to (0, 1) of \"block\", (2, 1) is 1 m from the edge from "));
   CHECK(error("from_m = [0.25, 0]\nto_m = [0.5, 0]\n") ==
         "25: surcharge[0].to_m: (0.25, 0) and (0.5, 0) are on edges of \"base\" and \"block\"" + accepted);
   CHECK(error("from_m = [0.25, 1]\nto_m = [0.25, 1]\n") == "25: surcharge[0].to_m: (0.25, 1) and (0.25, 1) are one point" + accepted);
@@ -457,7 +467,8 @@ TEST_CASE("loads that cannot be named, and loads to increase that are not there"
   const auto named = [](const std::string& name) {
     return error_of(block_on_base + "[[load]]\npoint_m = [0, 1]\nforce_n = [1, 0]\nname = '" + name + "'\n");
   };
-  for (const std::string name : {"", "-push", "gravity_x", "a,b"}) CHECK_THAT(named(name), ContainsSubstring("25: load[0].name: \"" + name + "\" cannot name a load"));
+  for (const std::string name : {"", "-push", "gravity_x", "a,b"})
+    CHECK_THAT(named(name), ContainsSubstring("25: load[0].name: \"" + name + "\" cannot name a load"));
   const auto increased = [&](const std::string& what) { return error_of(load + "[strength_reduction]\nincrease = '" + what + "'\n"); };
   const std::string accepted = "; accepted: \"push\", \"gravity_x\", \"gravity_y\", with a minus before it or without";
   CHECK(increased("pusch") == "27: strength_reduction.increase: no load or surcharge has the name \"pusch\"" + accepted);
@@ -468,6 +479,7 @@ TEST_CASE("loads that cannot be named, and loads to increase that are not there"
 }
 
 TEST_CASE("a support has a name, and is no load", "[scene][reader][errors]") {
-  CHECK_THAT(error_of(block_on_base + "[[support]]\nname = 'anchor'\npoint_m = [0, 1]\nstiffness_n_per_m = [1, 0]\n[strength_reduction]\nincrease = 'anchor'\n"),
+  CHECK_THAT(error_of(block_on_base +
+                      "[[support]]\nname = 'anchor'\npoint_m = [0, 1]\nstiffness_n_per_m = [1, 0]\n[strength_reduction]\nincrease = 'anchor'\n"),
              ContainsSubstring("27: strength_reduction.increase: no load or surcharge has the name \"anchor\""));
 }

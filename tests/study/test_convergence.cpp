@@ -56,3 +56,12 @@ TEST_CASE("observed orders are those between neighbouring steps", "[study]") {
   CHECK_FALSE(orders[3]);
   CHECK_FALSE(orders[4]);
 }
+
+TEST_CASE("an order that no integrator has is left out of the observed ones", "[study]") {
+  const std::vector<double> steps = {0.4, 0.2, 0.1, 0.05};
+  // Of order 4, of 2.9 and, where the error grows, of -1.
+  const auto orders = observed_orders(steps, std::vector<double>{16.0, 1.0, std::pow(0.5, 2.9), 2.0 * std::pow(0.5, 2.9)});
+  CHECK_FALSE(orders[1]);
+  CHECK(orders[2].value() == Approx(2.9));
+  CHECK(orders[3].value() == Approx(-1.0));
+}

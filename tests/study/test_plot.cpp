@@ -31,6 +31,18 @@ TEST_CASE("a power law is a straight line on logarithmic axes, a straight line o
   }
 }
 
+TEST_CASE("a hollow point is a ring in the colour of its series", "[study]") {
+  const Plot plot{"", "x", "y", false, false, {{"a", {{1.0, 1.0, {}, false, true}, {2.0, 2.0, {}, false, false}}}}};
+  const std::string svg = svg_plots("title", {}, {plot});
+  std::vector<std::pair<std::string, std::string>> looks;
+  const std::regex circle("class=\"point\"[^>]* fill=\"([^\"]+)\" stroke=\"([^\"]+)\"");
+  for (std::sregex_iterator i(svg.begin(), svg.end(), circle), end; i != end; ++i) looks.emplace_back((*i)[1], (*i)[2]);
+  REQUIRE(looks.size() == 2);
+  CHECK(looks[0].first == "white");
+  CHECK(looks[0].second == looks[1].second);
+  CHECK(looks[1].first == looks[1].second);
+}
+
 TEST_CASE("what an axis cannot have is left out, and names cannot break the picture", "[study]") {
   const Plot plot{"",   "x",
                   "y",  true,

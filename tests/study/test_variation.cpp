@@ -32,6 +32,25 @@ TEST_CASE("what is no variation is refused with the form that is accepted", "[st
   CHECK_THROWS_WITH(variation_from("a=1:2"), ContainsSubstring("KEY=FROM:TO:STEP"));
 }
 
+TEST_CASE("a range with hyphens or dots is told how to be written", "[study]") {
+  const auto told = [](const std::string& value, const std::string& range) {
+    INFO(value);
+    CHECK_THROWS_WITH(variation_from("a=" + value), ContainsSubstring("accepted: a=" + range));
+  };
+  told("25-40", "25:40:STEP");
+  told("25-40-5", "25:40:5");
+  told("25..40", "25:40:STEP");
+  told("0.5 - 1.5", "0.5:1.5:STEP");
+  told("25\u201340", "25:40:STEP");
+  told("-5--1", "-5:-1:STEP");
+  told("1e-3-1e-2", "1e-3:1e-2:STEP");
+  told("10,25-40", "25:40:STEP");
+  for (const std::string value : {"-5", "1e-3", "soft-hard", "a-1", "bed-1-2", "\"1-2\"", "[1-2]", "-gravity_x", "5-"}) {
+    INFO(value);
+    CHECK(variation_from("a=" + value).values == Values{value});
+  }
+}
+
 TEST_CASE("combinations run through the last key first, and their folders differ", "[study]") {
   const auto list = combinations({variation_from("a=1,2"), variation_from("b.c=x,y")});
   REQUIRE(list.size() == 4);

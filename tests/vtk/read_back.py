@@ -115,6 +115,7 @@ def main() -> None:
             for entry, state in zip(series, states):
                 time = float(rows_of(out / "block_states.csv", state)[0]["time_s"])
                 require(float(entry.get("timestep")) == time, f"{kind}.pvd: the time of {state}")
+                require(entry.get("file").endswith(f"_{state}.vtu"), f"{kind}.pvd: {entry.get('file')} is to be {state}")
                 grid = grid_in(out / "vtk" / entry.get("file"))
                 if kind == "blocks":
                     compare_blocks(grid, out, state)

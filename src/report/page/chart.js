@@ -3,6 +3,8 @@
 const CURVE_COLOURS = ["#1f5fa8", "#d95f0e", "#1a8a4a", "#8e2b8e", "#b8860b", "#c0392b", "#0e8f9c", "#5d6d7e", "#7a5230", "#e377c2", "#6b8e23", "#333333"];
 /** [px] Around the curves. */
 const CHART_MARGIN = { left: 74, right: 14, top: 10, bottom: 38 };
+/** [px] Of a label of a vertical line, and how far from its line it may stand, beyond a curve or another line: its colour tells whose it is. */
+const LABEL_HEIGHT = 16, FARTHEST_LABEL = 150;
 
 /** Some five round numbers from low to high. */
 function ticks(low, high, wanted) {
@@ -22,14 +24,15 @@ function tickText(value) {
 
 class Chart {
   /**
-   * series: [{name, x, y, marks?: "dot" | "cross" | "ring", line?: false}]; lines: [{x, text, colour}] are vertical ones.
+   * series: [{name, x, y, marks?: "dot" | "cross" | "ring", line?: false}]; lines: [{x, text, colour}] are vertical ones, which draw() gives their
+   * labels: [{text, left, right, top, bottom}].
    * onPick(x) is called for a click on the curves.
    */
   constructor(parent, { title, xLabel, yLabel, note, onPick }) {
     this.box = element("div", { className: "picture" }, parent);
     this.bar = element("div", { className: "bar" }, this.box);
     element("h2", { textContent: title }, this.bar);
-    this.canvas = element("canvas", {}, this.box);
+    this.canvas = element("canvas", { chart: this }, this.box);
     this.keys = element("div", { className: "keys" }, this.box);
     if (note) element("p", { className: "note", textContent: note }, this.box);
     Object.assign(this, { xLabel, yLabel, onPick, series: [], lines: [], hidden: new Set(), cursor: null, pointer: null });
@@ -111,8 +114,10 @@ class Chart {
     context.clip();
     for (const curve of this.shown()) this.drawCurve(context, curve);
     context.restore();
-    if (this.cursor !== null) this.drawVertical(context, this.cursor, "#888", height, "");
-    this.lines.forEach((line, i) => this.drawVertical(context, line.x, line.colour, height, line.text, i));
+    if (this.cursor !== null) this.drawVertical(context, this.cursor, "#888", height);
+    for (const line of this.lines) this.drawVertical(context, line.x, line.colour, height);
+    this.labels = this.placedLabels(context, height);
+    for (const label of this.labels) write(context, label.text, label.left, label.bottom - 4, label.colour);
     if (this.pointer) this.drawPointer(context, height);
   }
 
@@ -187,7 +192,7 @@ class Chart {
     }
   }
 
-  drawVertical(context, x, colour, height, text, row = 0) {
+  drawVertical(context, x, colour, height) {
     context.strokeStyle = colour;
     context.setLineDash([5, 4]);
     context.lineWidth = 1.2;
@@ -196,11 +201,43 @@ class Chart {
     context.lineTo(this.atX(x), CHART_MARGIN.top + height);
     context.stroke();
     context.setLineDash([]);
-    if (!text) return;
-    const isRight = this.atX(x) + context.measureText(text).width + 8 > this.canvas.clientWidth - CHART_MARGIN.right;
-    context.textAlign = isRight ? "right" : "left";
-    write(context, text, this.atX(x) + (isRight ? -5 : 5), CHART_MARGIN.top + 14 + 16 * row, colour);
-    context.textAlign = "left";
+  }
+
+  /** The texts of the vertical lines, as near to the upper end of each as they lie over no curve, line or other text. One that finds no room is left out. */
+  placedLabels(context, height) {
+    const placed = [], right = this.canvas.clientWidth - CHART_MARGIN.right;
+    const lines = this.lines.map((line) => this.atX(line.x)), points = this.drawnPoints();
+    context.font = "12px system-ui, sans-serif";
+    const isFree = (box) => box.left >= CHART_MARGIN.left && box.right <= right && !lines.some((x) => x > box.left && x < box.right)
+      && !points.some(([x, y]) => x > box.left - 5 && x < box.right + 5 && y > box.top - 5 && y < box.bottom + 5)
+      && !placed.some((other) => other.left < box.right && box.left < other.right && other.top < box.bottom && box.top < other.bottom);
+    for (const line of this.lines) {
+      const x = this.atX(line.x), width = context.measureText(line.text).width, boxes = [];
+      for (let top = CHART_MARGIN.top + 2; top + LABEL_HEIGHT <= CHART_MARGIN.top + height; top += LABEL_HEIGHT) {
+        for (let away = 5; away <= FARTHEST_LABEL; away += 5) {
+          for (const left of [x + away, x - away - width]) boxes.push({ away, left, right: left + width, top, bottom: top + LABEL_HEIGHT });
+        }
+      }
+      const free = boxes.sort((one, other) => one.away + one.top - other.away - other.top).find(isFree);
+      if (free) placed.push({ ...free, text: line.text, colour: line.colour });
+    }
+    return placed;
+  }
+
+  /** [px] Of the curves, close enough to each other that no text fits between two of them. */
+  drawnPoints() {
+    const points = [];
+    for (const { x, y, line } of this.shown()) {
+      for (let i = 0; i < x.length; ++i) {
+        const end = [this.atX(x[i]), this.atY(y[i])];
+        if (!isFinite(end[1])) continue;
+        points.push(end);
+        if (line === false || i === 0 || !isFinite(y[i - 1])) continue;
+        const begin = [this.atX(x[i - 1]), this.atY(y[i - 1])], pieces = Math.ceil(Math.hypot(end[0] - begin[0], end[1] - begin[1]) / 5);
+        for (let k = 1; k < pieces; ++k) points.push([0, 1].map((axis) => begin[axis] + (k / pieces) * (end[axis] - begin[axis])));
+      }
+    }
+    return points;
   }
 
   point(event) {
@@ -220,7 +257,7 @@ class Chart {
       lines.push({ text: `${curve.name ? curve.name + " " : ""}${number(curve.y[nearest])}`, colour: curve.colour });
     }
     if (shownX === null) return;
-    this.drawVertical(context, shownX, "#bbb", height, "");
+    this.drawVertical(context, shownX, "#bbb", height);
     lines.unshift({ text: `${this.xLabel} ${number(shownX)}`, colour: "#222" });
     context.font = "12px system-ui, sans-serif";
     const width = Math.max(...lines.map((line) => context.measureText(line.text).width)) + 12;
