@@ -1,6 +1,7 @@
 #include "openclose/statics/explicit_relaxation.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "openclose/statics/relaxation.h"
 
@@ -79,10 +80,10 @@ void ExplicitRelaxation::note_slip(const FrozenState& from, FrozenState& state) 
 }
 
 /// What `dem` has not brought to rest is judged by the viscous increments from the same state: nothing counts as failed without a mechanism.
-bool ExplicitRelaxation::fails(const FrozenState& from, Effort effort, RelaxationResult& result) const {
+bool ExplicitRelaxation::fails(const FrozenState& from, ShearLaw law, Effort effort, RelaxationResult& result) const {
   Relaxation judge(system_, strength_, IncrementRule::newton);
   judge.set_interruption(interruption_);
-  RelaxationResult judged = judge.relax(from, effort);
+  RelaxationResult judged = law == ShearLaw::elastic ? judge.bonded_state() : judge.relax(from, effort);
   if (judged.end != RelaxationEnd::mechanism) return false;
   result.end = RelaxationEnd::mechanism;
   result.mechanism = std::move(judged.mechanism);
@@ -94,6 +95,7 @@ RelaxationResult ExplicitRelaxation::settle(const FrozenState& from, ShearLaw la
   result.state = from;
   begin(from, law);
   long judgement = first_judgement;
+  bool was_away = false;
   while (result.steps < share_of(effort, most_steps_)) {
     if (interruption_) interruption_();
     for (long k = 0; k < steps_between_checks; ++k) move(law, result.state);
@@ -107,11 +109,13 @@ RelaxationResult ExplicitRelaxation::settle(const FrozenState& from, ShearLaw la
       return result;
     }
     const bool escaped = !(result.travel <= most_travel);
-    if (law == ShearLaw::coulomb && (escaped || result.steps >= judgement)) {
-      if (fails(from, effort, result)) return result;
+    if (result.steps >= judgement || (escaped && !was_away)) {
+      if (fails(from, law, effort, result)) return result;
       judgement *= between_judgements;
     }
-    if (escaped) {
+    was_away |= escaped;
+    // Springs alone bring back what is elastic, from however far away: a slender column sways by a thousand closures and more.
+    if (escaped && !(law == ShearLaw::elastic && std::isfinite(result.travel))) {
       result.end = RelaxationEnd::escaped;
       return result;
     }

@@ -27,7 +27,7 @@ class ExplicitRelaxation : public FrozenSolver {
   /// Joints that stick where they have come to rest, but have gone farther on the way there than their springs could carry, have slid. (What waves do
   /// on the way counts for nothing: only where it ends.) Marks those that lose strength by it.
   void note_slip(const FrozenState& from, FrozenState& state) const;
-  bool fails(const FrozenState& from, Effort effort, RelaxationResult& result) const;
+  bool fails(const FrozenState& from, ShearLaw law, Effort effort, RelaxationResult& result) const;
   void begin(const FrozenState& from, ShearLaw law);
   void move(ShearLaw law, FrozenState& state);
   void read_contacts(FrozenState& state) const;

@@ -449,6 +449,25 @@ TEST_CASE("a block that hangs by less tensile strength than its weight has a fac
   }
 }
 
+TEST_CASE("a slender column that sways by a thousand closures slides at tan(friction) over tan(tilt)", "[analysis][strength_reduction]") {
+  constexpr int drums = 15;
+  constexpr double height = 1.757, tilt = 2.1 * test::degree;  // it topples at atan(1/(15 * 1.757)) = 2.17 deg
+  for (const std::string& method : all_methods) {
+    CAPTURE(method);
+    Scene scene = test::empty_scene();
+    scene.method.contact = method;
+    scene.blocks = {test::fixed_block("base", test::rectangle(-2.0, -1.0, 5.0, 1.0))};
+    for (int i = 0; i < drums; ++i)
+      scene.blocks.push_back(test::free_block("drum " + std::to_string(i), test::rectangle(0.0, i * height, 1.0, height)));
+    scene.gravity = 9.81 * Vec2(std::sin(tilt), -std::cos(tilt));
+    const double exact = std::tan(scene.joints[0].friction_angle) / std::tan(tilt);
+    const auto safety = factor(scene);
+    REQUIRE(safety.found());
+    CHECK(safety.stable() <= exact * (1.0 + 1e-6));
+    CHECK(safety.failed() >= exact * (1.0 - 1e-6));
+  }
+}
+
 TEST_CASE("closures of the joints before the search: the same factor where the plane does not turn", "[analysis][strength_reduction]") {
   Scene scene = slope_scene("soft", 30.0, 40.0, 0.0);
   scene.strength_reduction.definition = FactorDefinition::joint_closures;
