@@ -79,7 +79,7 @@ TrialResult FrozenTrials::first(double srf) {
   if (bonded_failed_) {
     TrialResult none;
     const bool is_proved = mechanism_.size() > 0;
-    none.at_every_strength = is_proved && is_alike_at_all;
+    none.at_every_strength = is_proved && !strength_.has_tension();
     none.outcome = is_proved ? TrialOutcome::failed : TrialOutcome::undecided;
     none.criterion = "no equilibrium even of joints that neither slip nor open in shear";
     return none;
