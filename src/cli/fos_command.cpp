@@ -127,8 +127,7 @@ std::vector<std::string> unused_steps(const Scene& scene, const Options& options
     if (std::ranges::count(options.overrides, key, key_of_override) == 0) continue;
     warnings.push_back(
         fmt::format("{}: {} has no effect on fos: equilibrium is found without steps in time, unless strength_reduction.curve_time_s or "
-                    "settle.criterion = \"paper\" "
-                    "asks for motion",
+                    "settle.criterion = \"paper\" asks for motion",
                     source_of_overrides(scene.where.file), key));
   }
   return warnings;
