@@ -98,8 +98,9 @@ convergence: build figure-packages ## measure the orders of convergence against 
 	@$(CONVERGENCE) --results results; status=$$?; \
 	  python=$$(scripts/find-python) && "$$python" verification/draw_convergence.py results/convergence.csv results/convergence || exit 2; exit $$status
 
-stress: build stress-packages ## random scenes from seeds, judged by rules that know nothing of the method (results/stress.csv); exit status 1 for a false answer
+stress: build stress-packages ## random scenes from seeds, judged by rules that know nothing of the method (results/stress.csv), and what broke a reader once; exit status 1 for a false answer
 	@"$${PYTHON:-python3}" -m unittest discover -q -s stress
+	@ctest --preset release --quiet --tests-regex '^fuzz_'
 	@python=$$(scripts/find-python 2>/dev/null || echo "$${PYTHON:-python3}"); "$$python" stress/stress.py --seed $(SEED) --count $(COUNT) --part $(PART) $(if $(METHODS),--methods $(METHODS)) --jobs $(JOBS)
 
 regression: build stress-packages ## the fixed seeds of the random scenes, a minute or two (results/regression/stress.md); exit status 1 for a false answer
