@@ -40,7 +40,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <ranges>
 #include <span>
 #include <vector>
 
@@ -383,17 +382,20 @@ class NarrowPhase {
         std::ranges::any_of(others, [&](int o) { return is_nearer(v, p, o); }))
       return false;
     if (in_block(vertex_block, q)) {
-      // Whether q could stand on that other edge does not matter: with a block that is deep in another one, corners come in that lead nowhere.
-      const auto came_through = [&](int s) {
-        const Edge& other = shapes_.edge(s);
-        return s != sides[0] && s != sides[1] && distance_to_segment(q, other.start, other.end()) < -edge.gap(p);
-      };
-      const auto& block = system_.block(vertex_block);
-      const auto edges = std::views::iota(block.first_vertex, block.first_vertex + block.vertex_count);
-      return has_come_off_sides(end, q, v) && std::ranges::none_of(edges, came_through);
+      return has_come_off_sides(end, q, v) && !is_nearer_to_another_edge(vertex_block, q, sides, -edge.gap(p));
     }
     return std::ranges::all_of(
         sides, [&](int s) { return std::ranges::all_of(others, [&](int o) { return cross_each_other(shapes_.edge(s), shapes_.edge(o)); }); });
+  }
+  /// Whether a block has an edge, other than two of its sides, that a point in it is nearer to than a depth. Whether the point's corner could stand
+  /// on that edge does not matter: with a block that is deep in another one, corners come in that lead nowhere.
+  bool is_nearer_to_another_edge(int b, const Vec2& q, const std::array<int, 2>& sides, double depth) const {
+    const auto& block = system_.block(b);
+    for (int s = block.first_vertex; s < block.first_vertex + block.vertex_count; ++s) {
+      const Edge& other = shapes_.edge(s);
+      if (s != sides[0] && s != sides[1] && distance_to_segment(q, other.start, other.end()) < depth) return true;
+    }
+    return false;
   }
   /// Whether a tip q has come off the sides of corner v on which it stands, past v.
   bool has_come_off_sides(int q, const Vec2& position, int v) const {
