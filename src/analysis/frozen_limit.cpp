@@ -9,7 +9,7 @@ Eigen::Vector3d in_newtons(const FrozenSystem& system, const FrozenBlock& block,
 
 }  // namespace
 
-limit_analysis::Problem limit_problem(const FrozenSystem& system, const FrozenStrength& strength) {
+limit_analysis::Problem limit_problem(const FrozenSystem& system, const FrozenStrength& strength, LoneCorners lone_corners) {
   limit_analysis::Problem problem;
   problem.varied = system.has_live_load() ? limit_analysis::Varied::live_loads : limit_analysis::Varied::strength;
   for (const FrozenBlock& block : system.blocks()) {
@@ -23,6 +23,7 @@ limit_analysis::Problem limit_problem(const FrozenSystem& system, const FrozenSt
   }
   for (std::size_t i = 0; i < system.contacts().size(); ++i) {
     const FrozenContact& c = system.contacts()[i];
+    if (lone_corners == LoneCorners::left_out && c.joined_length == 0.0) continue;
     const ContactStrength s = strength.of(i, true);
     // A fixed block is the outside world, which is the second one.
     const bool corner_is_free = c.a >= 0;

@@ -84,14 +84,37 @@ TrialResult FrozenTrials::first(double srf) {
     none.criterion = "no equilibrium even of joints that neither slip nor open in shear";
     return none;
   }
-  TrialResult result = result_of(solver_->relax(*bonded_, effort()), srf);
+  RelaxationResult relaxed = solver_->relax(*bonded_, effort());
+  const bool broke = has_broken(*bonded_, relaxed.state);
+  TrialResult result = result_of(std::move(relaxed), srf);
   result.displacement = 0.0;
+  result.broke = broke;
   return result;
 }
 
-TrialResult FrozenTrials::next(double srf) {
+TrialResult FrozenTrials::next(double srf, OnBreak on_break) {
   apply(srf);
-  return result_of(solver_->relax(stable_.value(), effort()), srf);
+  RelaxationResult relaxed = solver_->relax(stable_.value(), effort());
+  const bool broke = has_broken(*stable_, relaxed.state);
+  TrialResult result;
+  if (broke && on_break == OnBreak::go_back) {
+    result.criterion = "joints broke on too long a stride";
+    result.steps = static_cast<int>(relaxed.steps);
+    result.exhausted = solver_->is_exhausted();
+  } else {
+    result = result_of(std::move(relaxed), srf);
+  }
+  result.broke = broke;
+  return result;
+}
+
+/// What is open at the beginning has no strength to lose: it breaks at every factor.
+bool FrozenTrials::has_broken(const FrozenState& before, const FrozenState& after) const {
+  for (std::size_t i = 0; i < before.contacts.size(); ++i) {
+    const bool had_bond = before.contacts[i].bonded && before.contacts[i].status != ContactStatus::open;
+    if (had_bond && !after.contacts[i].bonded && strength_.can_break(i, true)) return true;
+  }
+  return false;
 }
 
 void FrozenTrials::exchange(Archive& archive) {

@@ -34,7 +34,7 @@ class FrozenTrials : public StrengthTrials {
   FrozenTrials(const Scene& scene, FrozenSystem& system);
 
   TrialResult first(double srf) override;
-  TrialResult next(double srf) override;
+  TrialResult next(double srf, OnBreak on_break) override;
   /// By limit analysis, if that is to be done.
   std::optional<double> proved_failure(double near) override { return limit_analysis_ ? limit_analysis_(near) : std::nullopt; }
   /// Another way to prove a failure: the smallest factor at which nothing can stand, found from one near it.
@@ -56,6 +56,7 @@ class FrozenTrials : public StrengthTrials {
   Effort effort() const;
   void apply(double srf);
   TrialResult result_of(RelaxationResult&& relaxed, double srf);
+  bool has_broken(const FrozenState& before, const FrozenState& after) const;
   void follow(double travel, double srf);
   double displacement_of_points(const FrozenState& state) const;
 

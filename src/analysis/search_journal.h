@@ -51,8 +51,8 @@ class JournalledTrials : public StrengthTrials {
   TrialResult first(double srf) override {
     return journal_.once([&] { return trials_.first(srf); });
   }
-  TrialResult next(double srf) override {
-    return journal_.once([&] { return trials_.next(srf); });
+  TrialResult next(double srf, OnBreak on_break) override {
+    return journal_.once([&] { return trials_.next(srf, on_break); });
   }
   std::optional<double> proved_failure(double near) override { return trials_.proved_failure(near); }
 

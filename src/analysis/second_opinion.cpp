@@ -1,9 +1,10 @@
 #include "openclose/analysis/second_opinion.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <stdexcept>
 
-#include "openclose/analysis/frozen_limit.h"
 #include "openclose/analysis/frozen_trials.h"
 
 namespace openclose {
@@ -25,7 +26,7 @@ void LimitAnalysisResult::exchange(Archive& archive) {
 }
 
 LimitAnalysisResult limit_analysis_of(const Scene& scene, const FrozenSystem& system, double upper_limit, double near,
-                                      const std::function<void()>& interruption) {
+                                      const std::function<void()>& interruption, LoneCorners lone_corners) {
   using Verdict = limit_analysis::Bracket::Verdict;
   LimitAnalysisResult result;
   limit_analysis::Options options;
@@ -34,7 +35,7 @@ LimitAnalysisResult limit_analysis_of(const Scene& scene, const FrozenSystem& sy
   options.ratio = ratio_above;
   options.interruption = interruption;
   try {
-    const limit_analysis::Problem problem = limit_problem(system, FrozenStrength(system, scene));
+    const limit_analysis::Problem problem = limit_problem(system, FrozenStrength(system, scene), lone_corners);
     limit_analysis::Bracket bracket = limit_analysis::limit_analysis(problem, options);
     result.programs = bracket.programs;
     result.verdict = bracket.found() ? "found" : bracket.reason;
@@ -80,7 +81,7 @@ class EffectSearch {
       effect_.failed = *proved_failure_;
       return false;
     }
-    const TrialOutcome outcome = trials_.next(srf).outcome;
+    const TrialOutcome outcome = trials_.next(srf, OnBreak::go_on).outcome;
     if (outcome == TrialOutcome::stable) effect_.stable = srf;
     if (outcome == TrialOutcome::failed) effect_.failed = srf;
     return outcome == TrialOutcome::stable;
@@ -93,6 +94,13 @@ class EffectSearch {
 };
 
 }  // namespace
+
+std::string in_words(const StiffnessEffect& effect) {
+  if (!effect.stable) return "no equilibrium found";
+  if (!effect.failed) return fmt::format("at least {:.4g}", *effect.stable);
+  const bool is_narrow = *effect.failed - *effect.stable <= 2.0 * width_of_stiffness_effect * *effect.stable;
+  return is_narrow ? fmt::format("{:.4g}", *effect.stable) : fmt::format("between {:.4g} and {:.4g}", *effect.stable, *effect.failed);
+}
 
 bool has_stiffness_ratio(const Scene& scene, double ratio) {
   return std::ranges::all_of(scene.joints, [&](const JointProperties& joint) { return joint.shear_stiffness == ratio * joint.normal_stiffness; });

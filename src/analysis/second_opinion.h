@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "openclose/analysis/frozen_limit.h"
 #include "openclose/analysis/strength_search.h"
 #include "openclose/limit_analysis/limit_analysis.h"
 #include "openclose/statics/frozen_system.h"
@@ -30,7 +31,7 @@ struct LimitAnalysisResult {
 /// \param near         [-] a factor near which the answer may lie: it saves programs
 /// \param interruption called now and then; may throw
 LimitAnalysisResult limit_analysis_of(const Scene& scene, const FrozenSystem& system, double upper_limit, double near,
-                                      const std::function<void()>& interruption = {});
+                                      const std::function<void()>& interruption = {}, LoneCorners lone_corners = LoneCorners::counted);
 
 /// The factor if all joints had this ratio of shear to normal stiffness.
 struct StiffnessEffect {
@@ -42,6 +43,9 @@ struct StiffnessEffect {
     archive(a, b, c);
   }
 };
+
+/// A bracket as narrow as it was to be in one number; a wide or open one as it is, since its lower end alone would say too much.
+std::string in_words(const StiffnessEffect& effect);
 
 /// The ratios between which joints are found to lie.
 inline constexpr double stiffness_ratios[] = {0.1, 1.0};

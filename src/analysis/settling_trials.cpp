@@ -23,7 +23,7 @@ TrialResult SettlingTrials::first(double srf) {
   return result;
 }
 
-TrialResult SettlingTrials::next(double srf) {
+TrialResult SettlingTrials::next(double srf, OnBreak) {
   simulation_.restore(settled_.value());
   simulation_.change_joints().reduce_strength(srf);
   return result_of(search_->settle_trial(progress_));

@@ -13,8 +13,8 @@ class SettlingTrials : public StrengthTrials {
   SettlingTrials(Simulation& simulation, const SettleProgress& progress);
 
   TrialResult first(double srf) override;
-  /// From the first state that settled.
-  TrialResult next(double srf) override;
+  /// From the first state that settled, on which joints break one after the other in time.
+  TrialResult next(double srf, OnBreak on_break) override;
 
   using Snapshot = Simulation::Snapshot;
   const std::optional<Snapshot>& settled() const { return settled_; }

@@ -7,6 +7,7 @@
 
 #include "openclose/analysis/frozen_trials.h"
 #include "openclose/analysis/loose_blocks.h"
+#include "openclose/analysis/reservations.h"
 #include "openclose/analysis/search_journal.h"
 #include "openclose/analysis/settling_trials.h"
 #include "openclose/core/error.h"
@@ -14,11 +15,12 @@
 namespace openclose {
 namespace {
 
-constexpr double slowest_of_mechanism = 1e-2;      ///< [-] of the fastest block: slower ones are carried along by rounding and springs
-constexpr double far_below_limit_analysis = 0.98;  ///< [-] of its factor: below it the reason for the distance is given
-constexpr double rounding_of_areas = 1e-9;         ///< [-] equal blocks are not smaller than each other
-constexpr double drawn_travel = 0.5;               ///< [-] of the median block's size by which the fastest block of a mechanism is drawn away
-constexpr double most_drawn_turn = 0.25;           ///< [rad] of any of its blocks: drawn to first order, areas grow by the square of it
+constexpr double slowest_of_mechanism = 1e-2;       ///< [-] of the fastest block: slower ones are carried along by rounding and springs
+constexpr double noticeable_share_of_corner = 0.1;  ///< [-] of the weight of what fails
+constexpr double far_below_limit_analysis = 0.98;   ///< [-] of its factor: below it the reason for the distance is given
+constexpr double rounding_of_areas = 1e-9;          ///< [-] equal blocks are not smaller than each other
+constexpr double drawn_travel = 0.5;                ///< [-] of the median block's size by which the fastest block of a mechanism is drawn away
+constexpr double most_drawn_turn = 0.25;            ///< [rad] of any of its blocks: drawn to first order, areas grow by the square of it
 
 class StrengthReduction {
  public:
@@ -66,7 +68,7 @@ class StrengthReduction {
     judge();
     unless_stopped([&] {
       for (double srf : input_.curve) {
-        if (trials.stable()) record(srf, "curve", JournalledTrials(trials, journal_).next(srf));
+        if (trials.stable()) record(srf, "curve", JournalledTrials(trials, journal_).next(srf, OnBreak::go_on));
       }
     });
     if (trials.stable()) {
@@ -77,8 +79,9 @@ class StrengthReduction {
     add_mechanism(system, failing_motion(system, trials));
     if (result_.verdict == FactorVerdict::no_equilibrium && !result_.mechanism.empty())
       result_.reason += ": " + motion_in_words(scene, result_.mechanism);
+    warn_of_interval();
     warn_of_geometry();
-    if (input_.limit_analysis) unless_stopped([&] { compare(scene, trials); });
+    if (input_.limit_analysis) unless_stopped([&] { compare(scene, system, trials); });
     // What stands whatever its strength may stand on a point.
     if (input_.limit_analysis && result_.verdict == FactorVerdict::no_failure) {
       if (const std::string words = loose_blocks_in_words(scene); !words.empty()) result_.warnings.push_back(words);
@@ -204,7 +207,7 @@ class StrengthReduction {
   void curve(SettlingTrials& trials) {
     if (!trials.settled()) return;
     for (double srf : input_.curve) {
-      record(srf, "curve", JournalledTrials(trials, journal_).next(srf));
+      record(srf, "curve", JournalledTrials(trials, journal_).next(srf, OnBreak::go_on));
       if (!input_.curve_time) continue;
       const CurveMotion motion = journal_.once([&] { return motion_for_curve(trials, srf); });
       result_.curve.insert(result_.curve.end(), motion.points.begin(), motion.points.end());
@@ -320,7 +323,7 @@ class StrengthReduction {
   }
 
   /// What speaks for a factor and what against it: limit analysis, and joints of other ratios of stiffness.
-  void compare(const Scene& scene, const FrozenTrials& trials) {
+  void compare(const Scene& scene, const FrozenSystem& system, const FrozenTrials& trials) {
     const LimitAnalysisResult& limit = *result_.limit_analysis;
     if (!limit.is_conclusive) result_.warnings.push_back("limit analysis has no factor: " + limit.verdict);
     // Without a factor, or at a multiplier of 0, there is nothing to compare with.
@@ -340,41 +343,51 @@ class StrengthReduction {
       const double clear = 0.5 * width_of_stiffness_effect * low;
       const bool differs = !effect.stable || *effect.stable > high + clear || (effect.failed && *effect.failed < low - clear);
       if (!differs) continue;
-      const std::string factor = words_of(effect);
+      const std::string factor = in_words(effect);
       others += fmt::format("{}{} at a ratio of {:g}", others.empty() ? "" : ", ", factor, effect.ratio);
     }
     if (!others.empty())
       result_.warnings.push_back(
           fmt::format("the {} depends on the ratio of shear to normal stiffness: {}, where the scene's own give {:.4g}", noun(), others, low));
     if (result_.verdict == FactorVerdict::certified && limit.factor && low < far_below_limit_analysis * *limit.factor)
-      warn_of_distance(*limit.factor, largest, trials);
+      warn_of_distance(*limit.factor, largest, scene, system, trials);
+    warn_of_corner(scene, system, trials);
+  }
+
+  /// A factor that rests on one corner is worth what the rock there is.
+  void warn_of_corner(const Scene& scene, const FrozenSystem& system, const FrozenTrials& trials) {
+    const std::optional<CornerLoad> corner = heaviest_lone_corner(system, *trials.stable(), rows_of(system, result_.mechanism));
+    if (!corner || corner->share < noticeable_share_of_corner) return;
+    const LimitAnalysisResult without = journal_.once(
+        [&] { return limit_analysis_of(scene, system, input_.upper_limit, *result_.bracket.stable, observer_.interruption, LoneCorners::left_out); });
+    if (!without.factor || *without.factor >= far_below_limit_analysis * *result_.bracket.stable) return;
+    result_.warnings.push_back(fmt::format("{}: where the rock crushes there, the {} is at most {:.4g} (limit analysis without such corners)",
+                                           in_words(scene, system, *corner), noun(), *without.factor));
   }
 
   const char* noun() const { return input_.increase ? "multiplier" : "factor"; }
 
-  /// A bracket as narrow as it was to be in one number; a wide or open one as it is, since its lower end alone would say too much.
-  static std::string words_of(const StiffnessEffect& effect) {
-    if (!effect.stable) return "no equilibrium found";
-    if (!effect.failed) return fmt::format("at least {:.4g}", *effect.stable);
-    const bool is_narrow = *effect.failed - *effect.stable <= 2.0 * width_of_stiffness_effect * *effect.stable;
-    return is_narrow ? fmt::format("{:.4g}", *effect.stable) : fmt::format("between {:.4g} and {:.4g}", *effect.stable, *effect.failed);
+  void warn_of_distance(double limit, double largest, const Scene& scene, const FrozenSystem& system, const FrozenTrials& trials) {
+    result_.warnings.push_back(fmt::format("limit analysis has {:.4g}, {:.2g} % above: {}", limit, 100.0 * (limit / *result_.bracket.stable - 1.0),
+                                           reason_of_distance(limit, largest, scene, system, trials)));
   }
 
-  bool joints_can_lose_strength() const {
-    return std::ranges::any_of(scene_.joints, [](const JointProperties& joint) { return can_lose_strength(joint, true); });
-  }
-
-  void warn_of_distance(double limit, double largest, const FrozenTrials& trials) {
-    const auto& contacts = trials.stable()->contacts;
-    const auto broken = std::ranges::count_if(contacts, [](const FrozenContactState& s) { return !s.bonded; });
-    const std::string reason = broken > 0 ? fmt::format("bonds have broken at {} contacts, which it does not know", broken)
-                               : joints_can_lose_strength()
-                                   ? "joints that slip or open lose strength for good, one contact after the other, which it does not know"
-                               : largest >= far_below_limit_analysis * limit
-                                   ? "with another ratio of stiffness the joints carry nearly as much"
-                                   : "it lets joints open by their friction angle as they slide, which jams blocks; here they slide without opening";
-    result_.warnings.push_back(
-        fmt::format("limit analysis has {:.4g}, {:.2g} % above: {}", limit, 100.0 * (limit / *result_.bracket.stable - 1.0), reason));
+  std::string reason_of_distance(double limit, double largest, const Scene& scene, const FrozenSystem& system, const FrozenTrials& trials) const {
+    const auto broken = std::ranges::count_if(trials.stable()->contacts, [](const FrozenContactState& s) { return !s.bonded; });
+    if (broken > 0) return fmt::format("bonds have broken at {} contacts, which it does not know", broken);
+    FrozenStrength strength(system, scene);
+    if (!input_.increase) strength.reduce(*result_.bracket.stable);
+    const double withheld = withheld_strength(system, strength, *trials.stable(), rows_of(system, result_.mechanism));
+    if (withheld > 0.5 * (1.0 - *result_.bracket.stable / limit))
+      return fmt::format(
+          "it counts the whole cohesion of joints on which hardly anything presses, or that open; here {:.2g} % of the strength along what fails is "
+          "not "
+          "there, since cohesion comes with the normal force, up to ten times that",
+          100.0 * withheld);
+    if (std::ranges::any_of(scene_.joints, [](const JointProperties& joint) { return can_lose_strength(joint, true); }))
+      return "joints that slip or open lose strength for good, one contact after the other, which it does not know";
+    if (largest >= far_below_limit_analysis * limit) return "with another ratio of stiffness the joints carry nearly as much";
+    return "it lets joints open by their friction angle as they slide, which jams blocks; here they slide without opening";
   }
 
   void warn_of_travel(const TravelOnPath& travel) {
@@ -383,6 +396,25 @@ class StrengthReduction {
         fmt::format("the blocks moved by up to {:.3g} mm, {:.3g} joint closures, on the way to a new equilibrium (at {:.6g}); the {} before "
                     "the first such way is {:.6g}",
                     1e3 * *result_.largest_travel, travel.largest, travel.at_factor, noun(), *travel.factor_before_jump));
+  }
+
+  /// What an interval leaves to be done.
+  void warn_of_interval() {
+    const StrengthBracket& b = result_.bracket;
+    if (result_.verdict != FactorVerdict::interval || b.stopped) return;
+    std::optional<double> first;
+    for (const StrengthTrial& trial : result_.trials) {
+      const bool is_open = trial.outcome == TrialOutcome::undecided && !trial.broke && trial.srf > *b.stable;
+      if (is_open && trial.srf < first.value_or(trial.srf + 1.0)) first = trial.srf;
+    }
+    if (!first) return;
+    const std::string width =
+        b.failed ? fmt::format("an interval, {:.2g} % wide", 100.0 * (*b.failed / *b.stable - 1.0)) : "an interval without an end";
+    result_.warnings.push_back(
+        fmt::format("{}: at {:.4g} the blocks neither came to rest nor moved steadily; another method.contact or strength_reduction.definition may "
+                    "tell more, fewer "
+                    "blocks do",
+                    width, *first));
   }
 
   void warn_of_geometry() {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "openclose/core/error.h"
 
@@ -11,6 +12,7 @@ namespace {
 constexpr double bracket_ratio = 1.25;     ///< [-] between the factors tried first
 constexpr std::size_t most_undecided = 4;  ///< trials: each may cost as much as all that are decided
 constexpr double smallest_factor = 1e-3;   ///< [-] below which nothing is stable at any strength one could mean
+constexpr double unbroken_ratio = 4.0;     ///< [-] between the factors tried below the first stable one, where joints have broken
 
 constexpr double first_multiplier = 0.125;    ///< [-] of a load, after 0: an earthquake's, or some of what the user wrote
 constexpr double multiplier_ratio = 2.0;      ///< [-] between the next ones
@@ -46,16 +48,26 @@ class Search {
     if (input_.increase) return begin_at(0.0) == TrialOutcome::stable;
     for (double srf = 1.0; srf >= smallest_factor; srf /= bracket_ratio * bracket_ratio) {
       const TrialOutcome outcome = begin_at(srf);
-      if (outcome == TrialOutcome::stable) return true;
+      if (outcome == TrialOutcome::stable) return begin_unbroken(srf);
       if (bracket_.at_every_strength) return false;
-      if (outcome == TrialOutcome::undecided && srf == 1.0 && begin_at(bracket_ratio) == TrialOutcome::stable) return true;
+      if (outcome == TrialOutcome::undecided && srf == 1.0 && begin_at(bracket_ratio) == TrialOutcome::stable) return begin_unbroken(bracket_ratio);
     }
     return false;
+  }
+
+  /// If joints have broken in the first stable state: from a stronger one in which none has; from the first one if there is none.
+  bool begin_unbroken(double first) {
+    if (!first_broke_) return true;
+    for (double srf = first / unbroken_ratio; srf >= smallest_factor; srf /= unbroken_ratio) {
+      if (begin_at(srf) == TrialOutcome::stable && !first_broke_) return true;
+    }
+    return begin_at(first) == TrialOutcome::stable;
   }
 
   TrialOutcome begin_at(double srf) {
     if (progress_) progress_(0.0);
     const TrialResult result = record(srf, "bracket", trials_.first(srf));
+    first_broke_ = result.broke;
     if (result.outcome == TrialOutcome::stable) {
       bracket_.stable = srf;
       return result.outcome;
@@ -107,12 +119,30 @@ class Search {
     return std::min(input_.increase ? std::max(first_multiplier, srf * multiplier_ratio) : srf * bracket_ratio, input_.upper_limit);
   }
 
-  void attempt(double srf) {
+  /// Not past the factor at which joints break from the last stable state: half way to it, until that is a stride in which they may. After a break
+  /// strides grow from the finest one.
+  double within_stride(double target) {
+    const double stable = *bracket_.stable, finest = widest_bracket(input_, stable);
+    if (breaks_at_ && *breaks_at_ <= stable) breaks_at_.reset();
+    const double end = std::min(target, breaks_at_.value_or(target)), stride = end - stable;
+    if (breaks_at_ && end == *breaks_at_ && stride > finest) return stable + 0.5 * stride;
+    return stride_ < stride ? stable + stride_ : end;
+  }
+
+  void attempt(double target) {
     if (progress_) progress_(share_done());
-    const TrialResult result = record(srf, bracket_.failed ? "bisect" : "bracket", trials_.next(srf));
+    const double stable = *bracket_.stable, finest = widest_bracket(input_, stable), srf = within_stride(target);
+    const bool may_break = srf - stable <= finest;
+    const TrialResult result = record(srf, bracket_.failed ? "bisect" : "bracket", trials_.next(srf, may_break ? OnBreak::go_on : OnBreak::go_back));
+    if (result.broke && !may_break) {
+      breaks_at_ = srf;
+      return;
+    }
+    if (result.broke) stride_ = finest;
     switch (result.outcome) {
       case TrialOutcome::stable:
         bracket_.stable = std::max(*bracket_.stable, srf);
+        if (!result.broke) stride_ *= 2.0;
         break;
       case TrialOutcome::failed:
         add_failure(srf, result.criterion);
@@ -171,7 +201,10 @@ class Search {
   const std::function<void(double)>& progress_;
   StrengthBracket bracket_;
   bool started_ = false;
-  std::vector<double> undecided_;  ///< factors between the two ends
+  bool first_broke_ = false;                                 ///< in the last trial from the beginning
+  double stride_ = std::numeric_limits<double>::infinity();  ///< [-] the longest from a stable factor to the next one
+  std::optional<double> breaks_at_;                          ///< [-] by a stride from the last stable factor that was too long for it
+  std::vector<double> undecided_;                            ///< factors between the two ends
   double retried_ = 0.0;
   bool exhausted_ = false;
   bool has_looked_for_proof_ = false;

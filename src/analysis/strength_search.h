@@ -28,10 +28,11 @@ struct TrialResult {
   double displacement = 0.0;       ///< [m] largest of a measured point since the first stable state
   bool at_every_strength = false;  ///< failed, and no strength whatever would help
   bool exhausted = false;          ///< so much work has been done by then that what is undecided stays so
+  bool broke = false;              ///< joints have lost strength for good on the way
 
   void exchange(Archive& archive) {
-    auto& [a, b, c, d, e, f] = *this;
-    archive(a, b, c, d, e, f);
+    auto& [a, b, c, d, e, f, g] = *this;
+    archive(a, b, c, d, e, f, g);
     archive.require(outcome <= TrialOutcome::undecided, "the saved state has a trial with an end that there is not");
   }
 };
@@ -41,6 +42,12 @@ struct StrengthTrial : TrialResult {
   std::string stage;  ///< bracket, bisect or curve
 };
 
+/// What becomes of a trial in which joints have lost strength for good.
+enum class OnBreak {
+  go_on,    ///< it counts as any other
+  go_back,  ///< it decides nothing and leaves the last stable state as it was
+};
+
 /// One way to find out whether a system stands at a factor.
 class StrengthTrials {
  public:
@@ -48,7 +55,7 @@ class StrengthTrials {
   /// From the beginning: gravity on the scene as it starts. A stable state becomes the one that next() starts from.
   virtual TrialResult first(double srf) = 0;
   /// From the last stable state, which is replaced if this one is stable, too.
-  virtual TrialResult next(double srf) = 0;
+  virtual TrialResult next(double srf, OnBreak on_break) = 0;
   /// The smallest factor whose failure is proved without a trial; none if no proof is to be had. Asked for once a trial has stayed undecided.
   /// \param near  [-] a factor near which it may lie
   virtual std::optional<double> proved_failure(double /*near*/) { return std::nullopt; }
@@ -79,6 +86,10 @@ double widest_bracket(const StrengthReductionInput& input, double factor);
 /// Each trial starts from the last stable state. Where one stays undecided, the search comes near it from below with smaller increments, tries again,
 /// and then looks above it for the smallest factor at which failure is certain. Where `progress` throws Stopped, before a trial or in it, what is known by
 /// then is the answer.
+///
+/// Which joints lose strength for good depends on the way: over a long stride many reach their strength at once that would have reached it one after
+/// the other, each passing its load on. So joints may break only in strides as short as the bracket is to be narrow, and the way begins at a factor
+/// at which none has broken, if there is one.
 StrengthBracket search_strength(StrengthTrials& trials, const StrengthReductionInput& input, const TrialObserver& done,
                                 const std::function<void(double share)>& progress = {});
 

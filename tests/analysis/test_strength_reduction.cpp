@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -177,6 +179,122 @@ TEST_CASE("residual friction lowers the factor, limit analysis keeps the frictio
   CHECK(residual.limit_analysis->factor.value() == Approx(peak.limit_analysis->factor.value()).margin(2e-5));
 }
 
+TEST_CASE("joints of which all have a part of the strength have that part of the factor, though they break on the way",
+          "[analysis][strength_reduction]") {
+  // A light block bridges two heavy ones, one of which a load lifts: its joints break first, and the others carry on.
+  JointProperties weak = builders::frictional_joint(1e10, 1e10, 35.0 * test::degree);
+  weak.cohesion = weak.tensile_strength = 5e3;
+  weak.cohesion_behaviour = CohesionBehaviour::lost_on_slip;
+  weak.residual_friction_angle = 20.0 * test::degree;
+  JointProperties strong = weak, stronger = weak;
+  strong.cohesion = strong.tensile_strength = 5e4;
+  stronger.cohesion = stronger.tensile_strength = 9e4;
+  strong.materials = {1, 1};
+  stronger.materials = {0, 1};
+  Scene scene = builders::rock_scene(2600.0, weak, 1e-6);
+  scene.materials.push_back({"light", 200.0});
+  scene.blocks = {
+      builders::fixed_block("base", test::rectangle(-10.0, -1.0, 20.0, 1.0)), builders::free_block("left", test::rectangle(0.0, 0.0, 1.0, 0.5)),
+      builders::free_block("right", test::rectangle(1.0, 0.0, 1.0, 0.5)), builders::free_block("top", test::rectangle(0.5, 0.5, 1.0, 0.5))};
+  scene.blocks[3].material = 1;
+  scene.loads = {{1, {1.0, 0.5}, {-1000.0, 13000.0}}};
+  scene.strength_reduction.width = 1e-3;
+  scene.strength_reduction.limit_analysis = false;
+  scene.method.contact = GENERATE(as<std::string>{}, "soft", "dem");
+
+  std::vector<double> factors;
+  for (const double part : {1.0, 1.0 / 1.1, 1.0 / 4.2, 1.0 / 5.2}) {
+    scene.joints = {weak.reduced_by(1.0 / part), stronger.reduced_by(1.0 / part), strong.reduced_by(1.0 / part)};
+    const auto safety = factor(scene);
+    INFO(scene.method.contact << ", " << part << " of the strength");
+    REQUIRE(safety.verdict == FactorVerdict::certified);
+    factors.push_back(safety.stable() / part);
+  }
+  // Each to the width of its bracket.
+  for (const double f : factors) CHECK(f == Approx(factors[0]).epsilon(2e-3));
+}
+
+TEST_CASE("a stride of the search over which joints break is taken back and made short", "[analysis][strength_reduction]") {
+  // Joints break at 1.5. Over a long stride all at once, which nothing survives or all does; over a short one the blocks stand up to 1.7.
+  constexpr double breaks_at = 1.5, fails_at = 1.7;
+  class BreakingTrials : public StrengthTrials {
+   public:
+    explicit BreakingTrials(bool survives) : survives_(survives) {}
+    TrialResult first(double srf) override {
+      broke_ = srf > breaks_at;
+      return at(srf, broke_);
+    }
+    TrialResult next(double srf, OnBreak on_break) override {
+      const bool breaks = !broke_ && srf > breaks_at, is_long = srf - stable_ > 2e-3;
+      TrialResult result = at(srf, breaks);
+      if (breaks && is_long) result.outcome = survives_ ? TrialOutcome::stable : TrialOutcome::failed;
+      if (breaks && on_break == OnBreak::go_back) {
+        result.outcome = TrialOutcome::undecided;
+        return result;
+      }
+      if (result.outcome == TrialOutcome::stable) stable_ = srf;
+      broke_ = broke_ || breaks;
+      return result;
+    }
+
+   private:
+    TrialResult at(double srf, bool breaks) {
+      TrialResult result;
+      result.outcome = srf < fails_at ? TrialOutcome::stable : TrialOutcome::failed;
+      result.criterion = "told";
+      result.broke = breaks;
+      if (result.outcome == TrialOutcome::stable) stable_ = srf;
+      return result;
+    }
+    bool survives_;
+    double stable_ = 0.0;
+    bool broke_ = false;
+  };
+  BreakingTrials trials(GENERATE(true, false));
+  StrengthReductionInput input;
+  input.width = 1e-3;
+  const StrengthBracket bracket = search_strength(trials, input, [](const StrengthTrial&) {});
+  REQUIRE((bracket.stable && bracket.failed));
+  CHECK(*bracket.stable == Approx(1.7).margin(1e-3));
+  CHECK(*bracket.failed == Approx(1.7).margin(1e-3));
+  CHECK(bracket.undecided == 0);
+}
+
+TEST_CASE("a factor that rests on one corner is told what it would be without", "[analysis][strength_reduction]") {
+  // A wedge on a plane of 35 deg through the toe of a slope, whose tip stands on the level bench; slid off in closed form without it.
+  const double dip = 35.0 * test::degree, face = 60.0 * test::degree, height = 30.0, density = 2600.0, cohesion = 2e4, friction = 28.0 * test::degree;
+  JointProperties joint = builders::frictional_joint(1e10, 1e10, friction);
+  joint.cohesion = cohesion;
+  Scene scene = builders::rock_scene(density, joint, 1e-6);
+  const double back = height / std::tan(dip), crest = height / std::tan(face);
+  scene.blocks = {builders::fixed_block("ground", {{-30.0, -15.0}, {back, -15.0}, {back, height}, {0.0, 0.0}, {-30.0, 0.0}}),
+                  builders::free_block("wedge", {{0.0, 0.0}, {back, height}, {crest, height}})};
+  const auto safety = factor(scene);
+  REQUIRE(safety.verdict == FactorVerdict::certified);
+  const double weight = density * 9.81 * 0.5 * height * (back - crest), length = std::hypot(back, height);
+  const double sliding = (weight * std::cos(dip) * std::tan(friction) + cohesion * length) / (weight * std::sin(dip));
+  CHECK(safety.stable() > 2.0 * sliding);
+  const auto told = std::ranges::find_if(safety.warnings, [&](const std::string& w) { return w.find("corner") != std::string::npos; });
+  REQUIRE(told != safety.warnings.end());
+  INFO(*told << "; slides at " << sliding);
+  CHECK(told->find("block wedge, alone on block ground") != std::string::npos);
+  CHECK(told->find(fmt::format("at most {:.3f}", sliding)) != std::string::npos);
+}
+
+TEST_CASE("cohesion that needs a normal force is named where limit analysis counts all of it", "[analysis][strength_reduction]") {
+  // A thin slab on a plane so steep that its weight hardly presses on it: cohesion of ten times the normal force holds it, no more.
+  Scene scene = test::block_on_incline(86.0 * test::degree);
+  scene.blocks[1].vertices = test::placed(test::rectangle(0.0, 0.0, 10.0, 0.3), -86.0 * test::degree);
+  scene.joints[0].cohesion = 2e5;
+  const auto safety = factor(scene);
+  REQUIRE(safety.verdict == FactorVerdict::certified);
+  REQUIRE(safety.limit_analysis.has_value());
+  REQUIRE(safety.stable() < 0.5 * *safety.limit_analysis->factor);
+  const bool told =
+      std::ranges::any_of(safety.warnings, [](const std::string& w) { return w.find("counts the whole cohesion") != std::string::npos; });
+  CHECK(told);
+}
+
 TEST_CASE("the curve in time: free sliding with the reduced strength", "[analysis][strength_reduction]") {
   Scene scene = slope_scene("soft", 30.0, 40.0, 0.0);
   const double srf = 2.0, time = 0.2;
@@ -267,8 +385,8 @@ class ToldTrials : public StrengthTrials {
  public:
   explicit ToldTrials(std::function<TrialOutcome(double)> outcome, std::optional<double> proved = std::nullopt)
       : outcome_(std::move(outcome)), proved_(proved) {}
-  TrialResult first(double srf) override { return next(srf); }
-  TrialResult next(double srf) override {
+  TrialResult first(double srf) override { return next(srf, OnBreak::go_on); }
+  TrialResult next(double srf, OnBreak) override {
     TrialResult result;
     result.outcome = outcome_(srf);
     result.criterion = "told";
@@ -342,9 +460,9 @@ TEST_CASE("where so much work is done that undecided factors stay so, the search
   class TiredTrials : public ToldTrials {
    public:
     using ToldTrials::ToldTrials;
-    TrialResult next(double srf) override {
+    TrialResult next(double srf, OnBreak on_break) override {
       ++count;
-      TrialResult result = ToldTrials::next(srf);
+      TrialResult result = ToldTrials::next(srf, on_break);
       result.exhausted = true;
       return result;
     }

@@ -1,0 +1,64 @@
+#include "openclose/analysis/reservations.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace openclose {
+namespace {
+
+bool is_of(const FrozenContact& contact, const std::vector<char>& chosen) {
+  return (contact.a >= 0 && chosen[contact.a]) || (contact.b >= 0 && chosen[contact.b]);
+}
+
+std::vector<char> marked(const FrozenSystem& system, const std::vector<int>& rows) {
+  std::vector<char> chosen(system.rows(), 0);
+  for (const int row : rows) chosen[row] = 1;
+  return chosen;
+}
+
+}  // namespace
+
+std::vector<int> rows_of(const FrozenSystem& system, const std::vector<FailingBlock>& mechanism) {
+  std::vector<int> rows;
+  for (int row = 0; row < system.rows(); ++row) {
+    if (std::ranges::find(mechanism, system.blocks()[row].block, &FailingBlock::block) != mechanism.end()) rows.push_back(row);
+  }
+  return rows;
+}
+
+std::optional<CornerLoad> heaviest_lone_corner(const FrozenSystem& system, const FrozenState& state, const std::vector<int>& rows) {
+  const std::vector<char> chosen = marked(system, rows);
+  double weight = 0.0;
+  for (const int row : rows) weight += system.blocks()[row].weight;
+  CornerLoad heaviest;
+  for (std::size_t i = 0; i < state.contacts.size(); ++i) {
+    const FrozenContact& contact = system.contacts()[i];
+    if (contact.joined_length > 0.0 || !is_of(contact, chosen)) continue;
+    const double share = state.contacts[i].normal / weight;
+    if (share > heaviest.share) heaviest = {static_cast<int>(i), share};
+  }
+  return heaviest.contact < 0 ? std::nullopt : std::optional(heaviest);
+}
+
+std::string in_words(const Scene& scene, const FrozenSystem& system, const CornerLoad& corner) {
+  const FrozenContact& c = system.contacts()[corner.contact];
+  return fmt::format("the corner at ({:.4g}, {:.4g}) m of block {}, alone on block {}, carries {:.0f} % of the weight of what fails", c.point.x(),
+                     c.point.y(), scene.blocks[c.source.vertex_block].name, scene.blocks[c.source.edge_block].name, 100.0 * corner.share);
+}
+
+double withheld_strength(const FrozenSystem& system, const FrozenStrength& strength, const FrozenState& state, const std::vector<int>& rows) {
+  const std::vector<char> chosen = marked(system, rows);
+  double whole = 0.0, there = 0.0;
+  for (std::size_t i = 0; i < state.contacts.size(); ++i) {
+    if (!is_of(system.contacts()[i], chosen)) continue;
+    const FrozenContactState& s = state.contacts[i];
+    const ContactStrength bounds = strength.of(i, s.bonded);
+    const double normal = std::max(s.normal, -bounds.tension);
+    whole += std::max(0.0, bounds.friction * normal + bounds.cohesion);
+    there += bounds.largest_shear(normal);
+  }
+  return whole > 0.0 ? 1.0 - there / whole : 0.0;
+}
+
+}  // namespace openclose
