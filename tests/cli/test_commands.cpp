@@ -4,6 +4,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <regex>
 #include <set>
 #include <string>
 
@@ -420,6 +421,21 @@ TEST_CASE("a multiplier has a results folder of its own", "[cli]") {
   CHECK(place.run("fos scene.toml --increase=-gravity_x").status == 0);
   for (const std::string name : {"scene", "scene-gravity_x", "scene--gravity_x"})
     CHECK(std::filesystem::exists(place.folder() / ("results/" + name + "/summary.json")));
+}
+
+TEST_CASE("fos names the two factors between which blocks moved to another equilibrium", "[cli]") {
+  const Workplace place;
+  REQUIRE(place.run("new arch --voussoirs 21 --radius-m 5 --thickness-m 0.75 --springing-deg 10 -o arch.toml").status == 0);
+  // The blocks move farthest while the load takes its large strides, which is no jump: these are found after it.
+  const CommandResult result = place.run("fos arch.toml --increase gravity_x -o out");
+  REQUIRE(result.errors.size() == 1);
+  const std::regex words("another equilibrium between the multipliers ([0-9.]+) and ([0-9.]+).*; up to ([0-9.]+) they stand where they are drawn");
+  std::smatch found;
+  REQUIRE(std::regex_search(result.errors[0], found, words));
+  const double before = std::stod(found[1]), after = std::stod(found[2]), undisturbed = std::stod(found[3]);
+  CHECK(undisturbed <= before);
+  CHECK(before < after);
+  CHECK(after <= summary_in(place.folder() / "out").at("load_multiplier"));
 }
 
 TEST_CASE("check begins without the load that fos increases", "[cli]") {
