@@ -1,5 +1,6 @@
 // Drawings show the blocks as they lie, and what they say of sizes is measured from their lines.
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <regex>
 #include <sstream>
@@ -56,6 +57,29 @@ std::vector<std::vector<std::string>> all_matches(const std::string& text, const
 std::string group(const std::string& svg, const std::string& name) {
   const std::size_t begin = svg.find("<g class=\"" + name + "\"");
   return begin == std::string::npos ? "" : svg.substr(begin, svg.find("</g>", begin) - begin);
+}
+
+/// What drawings need of the summary of a run.
+std::string summary_of_run(int blocks) {
+  return "{\"command\": \"run\", \"blocks\": " + std::to_string(blocks) +
+         R"(, "time_s": 1, "converged": true, "options": {"method": {"contact": "soft"}}})";
+}
+
+/// blocks.csv of a run that has moved nothing. \param vertices  "name,number,x,y" each
+std::string outlines_of_run(const std::vector<std::string>& vertices) {
+  std::string text = "state,block,vertex,x_m,y_m\n";
+  for (const char* state : {"initial", "final"}) {
+    for (const std::string& vertex : vertices) text += std::string(state) + "," + vertex + "\n";
+  }
+  return text;
+}
+
+/// Two squares, one on top of the other, with their joint.
+void write_two_squares(const TemporaryFolder& place, const std::string& contacts, const std::string& crack) {
+  place.write("summary.json", summary_of_run(2));
+  place.write("blocks.csv", outlines_of_run({"a,0,0,0", "a,1,1,0", "a,2,1,1", "a,3,0,1", "b,0,0,1", "b,1,1,1", "b,2,1,2", "b,3,0,2"}));
+  place.write("contacts.csv", "state,block_a,block_b,x_m,y_m,normal_x,normal_y,length_m,gap_m,normal_force_n,shear_force_n,status\n" + contacts);
+  place.write("cracks.csv", "state,block_a,block_b,x1_m,y1_m,x2_m,y2_m,length_m,opening1_m,opening2_m,slip1_m,slip2_m\n" + crack);
 }
 
 Scene tower_on_base() {
@@ -343,17 +367,7 @@ TEST_CASE("the drawing of a factor of safety has it in the title and shows the m
 TEST_CASE("joints are drawn as their contacts are", "[io][drawing]") {
   const TemporaryFolder place;
   const auto write = [&](const std::string& status) {
-    place.write("blocks.csv",
-                "state,block,vertex,x_m,y_m\n"
-                "final,a,0,0,0\nfinal,a,1,1,0\nfinal,a,2,1,1\nfinal,a,3,0,1\n"
-                "final,b,0,0,1\nfinal,b,1,1,1\nfinal,b,2,1,2\nfinal,b,3,0,2\n");
-    place.write("contacts.csv",
-                "state,block_a,block_b,x_m,y_m,normal_x,normal_y,length_m,gap_m,normal_force_n,shear_force_n,status\n"
-                "final,b,a,0,1,0,1,0.5,0,1,0," +
-                    status + "\nfinal,b,a,1,1,0,1,0.5,0,1,0,sticking\n");
-    place.write("cracks.csv",
-                "state,block_a,block_b,x1_m,y1_m,x2_m,y2_m,length_m,opening1_m,opening2_m,slip1_m,slip2_m\n"
-                "final,a,b,0,1,1,1,1,0,0,0,0\n");
+    write_two_squares(place, "final,b,a,0,1,0,1,0.5,0,1,0," + status + "\nfinal,b,a,1,1,0,1,0.5,0,1,0,sticking\n", "final,a,b,0,1,1,1,1,0,0,0,0\n");
   };
   const std::map<std::string, JointDrawing> states = {{"open", JointDrawing::open}, {"sliding", JointDrawing::sliding}};
   for (const auto& [word, state] : states) {
@@ -371,10 +385,9 @@ TEST_CASE("joints are drawn as their contacts are", "[io][drawing]") {
 
 TEST_CASE("the force of a hinge is seen, though it leaves both blocks at once", "[io][drawing]") {
   const TemporaryFolder folder;
-  std::string outlines = "state,block,vertex,x_m,y_m\n";
-  for (const char* row : {"left,1,0,0", "left,2,1,0", "left,3,1,1", "left,4,0,0.5", "right,1,1,0", "right,2,2,0", "right,3,2,0.5", "right,4,1,1"})
-    outlines += std::string("final,") + row + "\n";
-  folder.write("blocks.csv", outlines);
+  folder.write("summary.json", summary_of_run(2));
+  folder.write("blocks.csv", outlines_of_run({"left,1,0,0", "left,2,1,0", "left,3,1,1", "left,4,0,0.5", "right,1,1,0", "right,2,2,0", "right,3,2,0.5",
+                                              "right,4,1,1"}));
   folder.write("contacts.csv",
                "state,block_a,block_b,x_m,y_m,normal_x,normal_y,length_m,gap_m,normal_force_n,shear_force_n,status\n"
                "final,left,right,1,1,-1,0,0.5,0,1000,0,sticking\n");
@@ -421,6 +434,8 @@ TEST_CASE("what cannot be drawn is refused with what can", "[io][drawing]") {
              ContainsSubstring("nowhere: there is no such folder; accepted: the folder of a run or fos"));
   CHECK_THAT(refusal(results.place / "blocks.csv", request), ContainsSubstring("this is no folder"));
   const TemporaryFolder empty;
+  CHECK_THAT(refusal(empty.path(), request), ContainsSubstring("summary.json: there is no such file"));
+  empty.write("summary.json", summary_of_run(2));
   CHECK_THAT(refusal(empty.path(), request), ContainsSubstring("blocks.csv: there is no such file"));
   empty.write("blocks.csv", "state,block,vertex,x_m,y_m\n");
   CHECK_THAT(refusal(empty.path(), request), ContainsSubstring("no state is written there"));
@@ -436,4 +451,48 @@ TEST_CASE("what cannot be drawn is refused with what can", "[io][drawing]") {
   request.cracks = false;
   request.colour = BlockColour::velocity;
   CHECK_THAT(refusal(results.place.path(), request), ContainsSubstring("--colour: there are no velocities in the state \"initial\""));
+}
+
+TEST_CASE("tables that are damaged, cut off or of another analysis are refused with file, line and column", "[io][drawing]") {
+  const Results results, factor(true);
+  DrawingRequest everything;
+  everything.forces = everything.cracks = true;
+  /// What is said when a text in a table is another one.
+  const auto refusal = [&](const Results& from, const std::string& file, const std::string& text, const std::string& instead,
+                           DrawingRequest request) {
+    const TemporaryFolder place;
+    for (const auto& entry : std::filesystem::directory_iterator(from.place.path())) std::filesystem::copy(entry.path(), place.path());
+    std::string table = test::text_of(place / file);
+    REQUIRE(table.find(text) != std::string::npos);
+    table.replace(table.find(text), text.size(), instead);
+    place.write(file, table);
+    try {
+      picture_of_results(place.path(), request);
+    } catch (const InputError& e) {
+      return std::string(e.what()).substr(place.path().size());
+    }
+    return std::string("nothing is refused");
+  };
+  const std::string vertex = "final,base,0,-10,", accepted = "; accepted: a number, as openclose has written it";
+  for (const std::string wrong : {"nan", "inf", "abc", "", "1e999", "5 "}) {
+    CHECK(refusal(results, "blocks.csv", vertex, "final,base,0," + wrong + ",", {}) ==
+          "/blocks.csv:18: x_m: \"" + wrong + "\" is no finite number" + accepted);
+  }
+  CHECK_THAT(refusal(results, "blocks.csv", vertex, "final,base,0,", {}), ContainsSubstring("/blocks.csv:18: a row of 4 fields; accepted: 5 fields"));
+  CHECK_THAT(refusal(results, "blocks.csv", "x_m", "x", {}), ContainsSubstring("/blocks.csv:1: there is no column x_m"));
+  CHECK_THAT(refusal(results, "summary.json", "\"blocks\": 4", "\"blocks\": 5", {}),
+             ContainsSubstring("blocks.csv: it has 4 blocks; accepted: the 5"));
+  CHECK_THAT(refusal(results, "summary.json", "\"command\": \"run\"", "\"command\": \"fos\"", {}), ContainsSubstring("not the states of fos"));
+  CHECK_THAT(refusal(factor, "summary.json", "\"command\": \"fos\"", "\"command\": \"run\"", {}), ContainsSubstring("not the states of a run"));
+  const std::string outlines = test::text_of(results.place / "blocks.csv"), last = outlines.substr(outlines.rfind("final,"));
+  CHECK_THAT(refusal(results, "blocks.csv", last, "", {}), ContainsSubstring("is not the same in the states \"initial\" and \"final\""));
+  CHECK_THAT(refusal(results, "contacts.csv", "final,", "final,nobody", everything), ContainsSubstring("contacts.csv:") &&
+                                                                                         ContainsSubstring("block_a: there is no block \"nobody") &&
+                                                                                         ContainsSubstring("accepted: the name of a block in "));
+  CHECK_THAT(refusal(results, "cracks.csv", "final,", "final,nobody", everything), ContainsSubstring("block_a: there is no block \"nobody"));
+  CHECK_THAT(refusal(results, "block_properties.csv", "\nbase", "\nnobody", {}), ContainsSubstring("block: there is no block \"nobody"));
+  DrawingRequest speeds;
+  speeds.colour = BlockColour::velocity;
+  CHECK_THAT(refusal(results, "block_states.csv", ",base,", ",nobody,", speeds), ContainsSubstring("block_states.csv:2: block: there is no block"));
+  CHECK_THAT(refusal(factor, "mechanism.csv", "\nblock,", "\nnobody,", {}), ContainsSubstring("mechanism.csv:2: block: there is no block"));
 }
