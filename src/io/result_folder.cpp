@@ -26,8 +26,31 @@ std::string require_folder(const std::string& folder) {
   return folder;
 }
 
-json read_summary(const std::string& path) {
+/// Of the cases of a study or sweep the first one by its name.
+std::string first_case(const std::string& folder) {
+  std::string first;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+    const std::string name = entry.path().string();
+    if (std::filesystem::exists(entry.path() / "summary.json", error) && (first.empty() || name < first)) first = name;
+  }
+  return first;
+}
+
+void require_no_cases(const std::string& folder) {
+  for (const char* command : {"study", "sweep"}) {
+    std::error_code error;
+    if (!std::filesystem::exists(folder + "/" + command + ".csv", error)) continue;
+    const std::string one = first_case(folder);
+    throw InputError({folder, 0}, "", fmt::format("this is a folder of {}", command),
+                     "the folder of one of its cases" + (one.empty() ? "" : ", e.g. " + one));
+  }
+}
+
+json read_summary(const std::string& folder) {
+  const std::string path = folder + "/summary.json";
   std::ifstream file(path);
+  if (!file) require_no_cases(folder);
   if (!file)
     throw InputError({path, 0}, "", "there is no such file", "the folder of a run or fos that has ended; it writes its summary when it ends");
   json summary = json::parse(file, nullptr, false);
@@ -56,7 +79,7 @@ int BlockIndex::of(const json& entry, const std::string& summary_file) const {
 }
 
 ResultFolder::ResultFolder(const std::string& folder)
-    : folder_(require_folder(folder)), summary_(read_summary(path_of("summary.json"))), outlines_(path_of("blocks.csv"), {"block", "x_m", "y_m"}) {
+    : folder_(require_folder(folder)), summary_(read_summary(folder_)), outlines_(path_of("blocks.csv"), {"block", "x_m", "y_m"}) {
   require_summary();
   is_factor_ = summary_.at("command") == "fos";
   require_states();

@@ -6,14 +6,18 @@
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <unordered_map>
+#include <utility>
 
+#include "openclose/analysis/strength_search.h"
 #include "openclose/core/error.h"
 #include "openclose/io/force_chain.h"
 #include "openclose/io/result_answer.h"
 #include "openclose/io/result_folder.h"
 #include "openclose/io/result_rows.h"
 #include "openclose/io/state_table.h"
+#include "openclose/scene/increased_load.h"
 #include "openclose/scene/nearest.h"
 
 namespace openclose {
@@ -25,6 +29,8 @@ using nlohmann::json;
 constexpr const char* mechanism_state = "failed";
 /// [-] Of the size of the median block: a joint that has opened or slipped by more is no line any more, the gap itself is to be seen.
 constexpr double widest_drawn_opening = 0.1;
+/// [-] Of the widest opening that is drawn as a line: what is open by less is drawn thin.
+constexpr double slight_part_of_opening = 0.01;
 /// [-] Two contacts whose lengths add up to their distance to this accuracy are the ends of one face.
 constexpr double accuracy_of_lengths = 0.1;
 /// [-] Of the largest displacement of the mechanism: what opens or slips by less has been moved by rounding.
@@ -102,13 +108,18 @@ class ResultPicture {
   void read_contacts() {
     const StateTable table = contact_table(path_of("contacts.csv"));
     contacts_ = contact_rows(table, state_, block_index_);
-    if (request_.forces && contacts_.empty()) {
-      std::string accepted;
-      for (const std::string& state : table.states()) accepted += fmt::format("{}\"{}\"", accepted.empty() ? "" : ", ", state);
-      throw InputError({path_of("contacts.csv"), 0}, "--forces", fmt::format("there are no contacts in the state \"{}\"", state_),
-                       accepted.empty() ? "a result with contacts" : "--state with one of " + accepted);
-    }
+    // A state in which nothing touches has none, either; the drawing and the states of fos without contacts have had none written.
+    const bool lacks_contacts = contacts_.empty() && !shows_mechanism_ && (is_factor() || state_ == "initial");
+    if (request_.forces && contacts_.empty()) refuse_without_contacts("--forces", table);
+    if (colour_ == BlockColour::state && lacks_contacts) refuse_without_contacts("--colour", table);
     for (std::size_t i = 0; i < contacts_.size(); ++i) of_pair_[pair_key(contacts_[i].a, contacts_[i].b)].push_back(i);
+  }
+
+  [[noreturn]] void refuse_without_contacts(const char* option, const StateTable& table) const {
+    std::string accepted;
+    for (const std::string& state : table.states()) accepted += fmt::format("{}\"{}\"", accepted.empty() ? "" : ", ", state);
+    throw InputError({path_of("contacts.csv"), 0}, option, fmt::format("there are no contacts in the state \"{}\"", state_),
+                     accepted.empty() ? "a result with contacts" : "--state with one of " + accepted);
   }
 
   void read_cracks() {
@@ -150,18 +161,37 @@ class ResultPicture {
     return contacts_[nearest].state;
   }
 
+  bool is_line(const CrackRow& crack) const {
+    const double widest = std::max({crack.opening_from, crack.opening_to, std::abs(crack.slip_from), std::abs(crack.slip_to)});
+    return widest <= widest_drawn_opening * size_ || shows_mechanism_;
+  }
+
   void add_joints() {
     if (shows_mechanism_) largest_displacement_ = largest_displacement();
+    double widest = 0.0;
+    std::unordered_map<std::uint64_t, int> joints_of_pair;
     for (const CrackRow& crack : cracks_) {
-      const double widest = std::max({crack.opening_from, crack.opening_to, std::abs(crack.slip_from), std::abs(crack.slip_to)});
-      if (widest > widest_drawn_opening * size_ && !shows_mechanism_) continue;
-      const Vec2 middle = 0.5 * (crack.from + crack.to);
+      if (is_line(crack)) widest = std::max({widest, crack.opening_from, crack.opening_to});
+      ++joints_of_pair[pair_key(crack.a, crack.b)];
+    }
+    for (const CrackRow& crack : cracks_) {
+      if (!is_line(crack)) continue;
+      const std::uint64_t key = pair_key(crack.a, crack.b);
       const JointDrawing from = state_at(crack, true), to = state_at(crack, false);
+      // Where the blocks touch now is told by their contacts.
+      if (from != JointDrawing::open && to != JointDrawing::open && joints_of_pair[key] == 1 && of_pair_.contains(key) && add_face(of_pair_[key]))
+        continue;
+      const std::optional<std::pair<Vec2, Vec2>> common = common_stretch(crack);
+      if (!common) continue;
+      const auto add = [&](const Vec2& begin, const Vec2& end, JointDrawing state, double opening) {
+        picture_.joints.push_back({begin, end, state, state == JointDrawing::open && opening < slight_part_of_opening * widest});
+      };
+      const Vec2 middle = 0.5 * (common->first + common->second);
       if (from == to) {
-        picture_.joints.push_back({crack.from, crack.to, from});
+        add(common->first, common->second, from, std::max(crack.opening_from, crack.opening_to));
       } else {
-        picture_.joints.push_back({crack.from, middle, from});
-        picture_.joints.push_back({middle, crack.to, to});
+        add(common->first, middle, from, crack.opening_from);
+        add(middle, common->second, to, crack.opening_to);
       }
     }
     // What touches now and did not in the drawing.
@@ -176,15 +206,25 @@ class ResultPicture {
     }
   }
 
-  /// Two contacts at the ends of the stretch along which two edges face each other, of which each has a part. False if it is something else.
+  /// Where both blocks still have their side of the joint: its line lies in the middle of theirs, which have moved along it by half of the slip, to
+  /// and fro. Nothing where they have passed each other.
+  static std::optional<std::pair<Vec2, Vec2>> common_stretch(const CrackRow& crack) {
+    const Vec2 along = (crack.to - crack.from).normalized();
+    const Vec2 from = crack.from + 0.5 * std::abs(crack.slip_from) * along, to = crack.to - 0.5 * std::abs(crack.slip_to) * along;
+    if ((to - from).dot(along) <= 0.0) return std::nullopt;
+    return std::pair(from, to);
+  }
+
+  /// Two contacts at the ends of the stretch along which two edges face each other, of which each has a part. Draws those that are closed: open ones
+  /// may have their corners far apart. False if it is something else.
   bool add_face(const std::vector<std::size_t>& list) {
     if (list.size() != 2) return false;
     const ContactRow &a = contacts_[list[0]], &b = contacts_[list[1]];
     const double apart = (a.point - b.point).norm(), length = a.length + b.length;
     if (std::abs(apart - length) > accuracy_of_lengths * length) return false;
     const Vec2 between = a.point + a.length / length * (b.point - a.point);
-    picture_.joints.push_back({a.point, between, a.state});
-    picture_.joints.push_back({between, b.point, b.state});
+    if (a.state != JointDrawing::open) picture_.joints.push_back({a.point, between, a.state});
+    if (b.state != JointDrawing::open) picture_.joints.push_back({between, b.point, b.state});
     return true;
   }
 
@@ -302,12 +342,16 @@ class ResultPicture {
   }
 
   void add_cracks() {
-    picture_.crack_name = shows_mechanism_ ? "largest opening, as drawn," : "largest opening";
+    // A gap as wide as a part of a block is seen itself; a bar in its middle would stand in the air.
+    const bool all = std::ranges::all_of(cracks_, [&](const CrackRow& crack) { return is_line(crack); });
+    picture_.crack_name = shows_mechanism_ ? "largest opening, as drawn," : all ? "largest opening" : "largest opening of joints that still face each other";
     for (const CrackRow& crack : cracks_) {
+      const std::optional<std::pair<Vec2, Vec2>> common = common_stretch(crack);
+      if (!common || !is_line(crack)) continue;
       // Half of the joint stands for each end.
-      const Vec2 middle = 0.5 * (crack.from + crack.to);
-      picture_.cracks.push_back({crack.from, middle, std::max(0.0, crack.opening_from)});
-      picture_.cracks.push_back({middle, crack.to, std::max(0.0, crack.opening_to)});
+      const Vec2 middle = 0.5 * (common->first + common->second);
+      picture_.cracks.push_back({common->first, middle, std::max(0.0, crack.opening_from)});
+      picture_.cracks.push_back({middle, common->second, std::max(0.0, crack.opening_to)});
     }
   }
 
@@ -319,14 +363,26 @@ class ResultPicture {
     const auto carried = [&](const json& entry) { return placement(entry).of(point_in(entry.at("point_m"))); };
     for (const json& entry : summary().value("supports", json::array())) {
       const Vec2 stiffness = point_in(entry.at("stiffness_n_per_m"));
-      picture_.supports.push_back({carried(entry), stiffness.x() > 0.0, stiffness.y() > 0.0});
+      picture_.supports.push_back({carried(entry), stiffness.x() > 0.0, stiffness.y() > 0.0, carried(entry) - placement(entry).to});
     }
     for (const json& entry : summary().value("arrows", json::array())) {
       const Vec2 force = point_in(entry.at("force_n"));
       picture_.loads.push_back({carried(entry), entry.at("turns_with_block").get<bool>() ? placement(entry).turned(force) : force});
     }
+    add_push();
     for (const json& entry : summary().value("measured_points", json::array()))
       picture_.points.push_back({entry.at("name").get<std::string>(), carried(entry)});
+  }
+
+  /// Of a multiplier of gravity_x, -gravity_x, gravity_y or -gravity_y; the arrows of other loads stand where they act.
+  void add_push() {
+    const json& increase = summary().at("options").value("strength_reduction", json::object()).value("increase", json());
+    if (!increase.is_string()) return;
+    const std::string name = increase.get<std::string>();
+    const bool is_back = name.starts_with('-');
+    if (!names_gravity(name.substr(is_back ? 1 : 0))) return;
+    const Vec2 direction = name.ends_with('x') ? Vec2::UnitX() : Vec2::UnitY();
+    picture_.push = {is_back ? Vec2(-direction) : direction, name + ", which grows"};
   }
 
   void add_titles() {
@@ -339,7 +395,9 @@ class ResultPicture {
   std::string explanation() const {
     if (shows_mechanism_) {
       const json failing = summary().value("failing_blocks", json::object());
-      return fmt::format(": the mechanism of {} of them, velocities drawn as displacements", failing.value("number", 0));
+      const bool by_limit = summary().at("bracket").value("failed_by", json()) == by_limit_analysis;
+      return fmt::format(": the mechanism{} of {} of them, velocities drawn as displacements", by_limit ? " of the limit analysis" : "",
+                         failing.value("number", 0));
     }
     if (is_factor() && state_ == mechanism_state) return ": after failure";
     if (is_factor() && state_ == "stable") return ": the last one that stands";
