@@ -7,11 +7,6 @@
 namespace openclose {
 namespace {
 
-std::string did_you_mean(const std::string& word, const std::vector<std::string>& accepted) {
-  const std::optional<std::string> meant = similar(word, accepted);
-  return meant ? fmt::format(", did you mean {}?", *meant) : "";
-}
-
 std::vector<std::string> option_names(const CLI::App& command) {
   std::vector<std::string> names;
   for (const CLI::Option* option : command.get_options()) {

@@ -344,7 +344,9 @@ class ResultPicture {
   void add_cracks() {
     // A gap as wide as a part of a block is seen itself; a bar in its middle would stand in the air.
     const bool all = std::ranges::all_of(cracks_, [&](const CrackRow& crack) { return is_line(crack); });
-    picture_.crack_name = shows_mechanism_ ? "largest opening, as drawn," : all ? "largest opening" : "largest opening of joints that still face each other";
+    picture_.crack_name = shows_mechanism_ ? "largest opening, as drawn,"
+                          : all            ? "largest opening"
+                                           : "largest opening of joints that still face each other";
     for (const CrackRow& crack : cracks_) {
       const std::optional<std::pair<Vec2, Vec2>> common = common_stretch(crack);
       if (!common || !is_line(crack)) continue;

@@ -78,6 +78,11 @@ std::optional<std::string> similar(const std::string& word, const std::vector<st
   return *nearest;
 }
 
+std::string did_you_mean(const std::string& word, const std::vector<std::string>& accepted) {
+  const std::optional<std::string> meant = similar(word, accepted);
+  return meant ? fmt::format(", did you mean {}?", *meant) : "";
+}
+
 std::string without_unit(const std::string& key) {
   std::string rest = key;
   for (std::size_t cut = rest.rfind('_'); cut != std::string::npos && is_unit_word(std::string_view(rest).substr(cut + 1)); cut = rest.rfind('_')) {

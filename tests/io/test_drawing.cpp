@@ -449,6 +449,9 @@ TEST_CASE("what cannot be drawn is refused with what can", "[io][drawing]") {
   request.cracks = true;
   CHECK_THAT(refusal(results.place.path(), request), ContainsSubstring("--cracks"));
   request.cracks = false;
+  request.colour = BlockColour::state;
+  CHECK_THAT(refusal(results.place.path(), request),
+             ContainsSubstring("--colour: there are no contacts in the state \"initial\"; accepted: --state with one of \"final\""));
   request.colour = BlockColour::velocity;
   CHECK_THAT(refusal(results.place.path(), request), ContainsSubstring("--colour: there are no velocities in the state \"initial\""));
 }
@@ -495,4 +498,91 @@ TEST_CASE("tables that are damaged, cut off or of another analysis are refused w
   speeds.colour = BlockColour::velocity;
   CHECK_THAT(refusal(results, "block_states.csv", ",base,", ",nobody,", speeds), ContainsSubstring("block_states.csv:2: block: there is no block"));
   CHECK_THAT(refusal(factor, "mechanism.csv", "\nblock,", "\nnobody,", {}), ContainsSubstring("mechanism.csv:2: block: there is no block"));
+}
+
+TEST_CASE("bars of openings and lines of joints stand only where the two blocks still face each other", "[io][drawing]") {
+  const TemporaryFolder place;
+  DrawingRequest request;
+  request.cracks = true;
+  const auto picture = [&](const std::string& contacts, const std::string& crack) {
+    write_two_squares(place, contacts, crack);
+    return picture_of_results(place.path(), request);
+  };
+  const std::string open = "final,b,a,0,1,0,1,0.5,0.05,0,0,open\nfinal,b,a,1,1,0,1,0.5,0.05,0,0,open\n";
+  CHECK(picture(open, "final,a,b,0,1,1,1,1,0.05,0.05,0,0\n").cracks.size() == 2);
+  // A gap of half a block is seen itself.
+  const Picture far = picture(open, "final,a,b,0,1,1,1,1,0.5,0.5,0,0\n");
+  CHECK(far.cracks.empty());
+  CHECK(far.joints.empty());
+  CHECK_THAT(far.crack_name, ContainsSubstring("still face each other"));
+  // The line in the middle of the two sides, of which either has moved along it by half of the slip.
+  const Picture slipped = picture(open, "final,a,b,0,1,1,1,1,0.05,0.05,0.04,-0.06\n");
+  REQUIRE(slipped.joints.size() == 1);
+  CHECK(slipped.joints[0].from.x() == Approx(0.02));
+  CHECK(slipped.joints[0].to.x() == Approx(0.97));
+  CHECK(slipped.cracks.front().from.x() == Approx(0.02));
+  CHECK(picture(open, "final,a,b,0,1,0.05,1,0.05,0.02,0.02,0.06,0.06\n").joints.empty());
+  // Where they touch now.
+  const Picture slid =
+      picture("final,b,a,0.1,1,0,1,0.45,0,1,0,sliding\nfinal,b,a,1,1,0,1,0.45,0,1,0,sliding\n", "final,a,b,0.05,1,1.05,1,1,0,0,0.1,0.1\n");
+  REQUIRE(slid.joints.size() == 2);
+  CHECK(slid.joints[0].from.x() == Approx(0.1));
+  CHECK(slid.joints[1].to.x() == Approx(1.0));
+}
+
+TEST_CASE("corners of open contacts are not joined by a line", "[io][drawing]") {
+  const TemporaryFolder place;
+  const std::map<std::string, std::size_t> lines = {{"open", 0}, {"sliding", 2}};
+  for (const auto& [status, number] : lines) {
+    // A joint elsewhere, so that the two contacts are new ones.
+    write_two_squares(place, "final,b,a,0,1,0,1,0.5,0,0,0," + status + "\nfinal,b,a,1,1,0,1,0.5,0,0,0," + status + "\n", "");
+    CHECK(picture_of_results(place.path(), {}).joints.size() == number);
+  }
+}
+
+TEST_CASE("what is open by less than a hundredth of the widest joint has a thin line", "[io][drawing]") {
+  const TemporaryFolder place;
+  write_two_squares(place, "final,b,a,0,1,0,1,0.5,0,0,0,open\nfinal,b,a,1,1,0,1,0.5,0,0,0,open\n",
+                    "final,a,b,0,1,0.5,1,0.5,0.05,0.05,0,0\nfinal,a,b,0.5,1,1,1,0.5,4e-4,1e-6,0,0\n");
+  const Picture picture = picture_of_results(place.path(), {});
+  REQUIRE(picture.joints.size() == 2);
+  CHECK_FALSE(picture.joints[0].is_slight);
+  CHECK(picture.joints[1].is_slight);
+  const std::string svg = svg_drawing(picture);
+  CHECK_THAT(svg, ContainsSubstring("less than a hundredth of the widest"));
+  const auto widths = all_matches(svg, "class=\"open\"[^>]*stroke-width=\"([0-9.]+)\"");
+  REQUIRE(widths.size() >= 2);
+  CHECK(std::stod(widths[0][0]) > 2.0 * std::stod(widths[1][0]));
+}
+
+TEST_CASE("titles tell a reduced strength, a mechanism of limit analysis and the push that grows", "[io][drawing]") {
+  const auto picture = [](const Results& from, const std::string& text, const std::string& instead) {
+    const std::string file = from.place / "summary.json";
+    std::string summary = test::text_of(file);
+    REQUIRE(summary.find(text) != std::string::npos);
+    from.place.write("summary.json", summary.replace(summary.find(text), text.size(), instead));
+    return picture_of_results(from.place.path(), {});
+  };
+  const Results run;
+  CHECK_THAT(run.draw(), !ContainsSubstring("strength divided"));
+  CHECK_THAT(picture(run, "\"strength_reduction_factor\": 1.0", "\"strength_reduction_factor\": 1.8").notes.at(0),
+             ContainsSubstring("with the strength divided by 1.8"));
+  const Results factor(true);
+  CHECK_THAT(factor.draw(), !ContainsSubstring("limit analysis") && !ContainsSubstring("which grows"));
+  CHECK_THAT(picture(factor, "\"failed_by\": \"mechanism\"", "\"failed_by\": \"limit analysis\"").notes.at(1),
+             ContainsSubstring("the mechanism of the limit analysis of 1 of them"));
+  const Picture pushed = picture(factor, "\"increase\": null", "\"increase\": \"-gravity_x\"");
+  REQUIRE(pushed.push);
+  CHECK(pushed.push->direction == Vec2(-1.0, 0.0));
+  CHECK_THAT(group(svg_drawing(pushed), "push"), ContainsSubstring("<path"));
+}
+
+TEST_CASE("a spring is drawn outside of the block that it holds", "[io][drawing]") {
+  Scene scene = tower_on_base();
+  const auto& corners = scene.blocks[1].vertices;
+  scene.supports = {{1, 0.5 * (corners[1] + corners[2]), {1e3, 0.0}}, {1, 0.5 * (corners[0] + corners[3]), {1e3, 0.0}}};
+  const auto sides = all_matches(group(svg_drawing(picture_of(scene)), "supports"), "scale\\((-?1) (-?1)\\)");
+  REQUIRE(sides.size() == 2);
+  CHECK(sides[0][0] == "-1");
+  CHECK(sides[1][0] == "1");
 }
