@@ -147,7 +147,14 @@ class PageData {
     };
     for (const json& entry : summary().value("supports", json::array())) {
       const json& stiffness = entry.at("stiffness_n_per_m");
-      add("support", entry, {{"in_x", stiffness.at(0).get<double>() > 0.0}, {"in_y", stiffness.at(1).get<double>() > 0.0}});
+      const auto block = static_cast<std::size_t>(block_index_.of(entry, path_of("summary.json")));
+      const Vec2 middle = polygon_properties(folder_.drawing().polygons[block]).centroid;
+      const json& point = entry.at("point_m");
+      add("support", entry,
+          {{"in_x", stiffness.at(0).get<double>() > 0.0},
+           {"in_y", stiffness.at(1).get<double>() > 0.0},
+           {"on_the_right", point.at(0).get<double>() > middle.x()},
+           {"on_top", point.at(1).get<double>() > middle.y()}});
     }
     for (const json& entry : summary().value("arrows", json::array()))
       add("load", entry, {{"force", entry.at("force_n")}, {"turns", entry.at("turns_with_block")}});

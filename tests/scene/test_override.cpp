@@ -52,7 +52,7 @@ TEST_CASE("elements of arrays go by their names, too", "[scene][override]") {
   CHECK_FALSE(scene.blocks.at(0).fixed);
   CHECK_THROWS_WITH(
       read_text(block_on_base, {"material.granite.density_kg_per_m3=1"}),
-      ContainsSubstring("none of these has the name \"granite\"; accepted: an index, [0] to [0], before it, or the name of an element: \"rock\""));
+      ContainsSubstring("no material is called \"granite\"; accepted: an index, [0] to [0], before it, or the name of an element: \"rock\""));
 }
 
 TEST_CASE("what several loads share is no name of one of them", "[scene][override]") {
