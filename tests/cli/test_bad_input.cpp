@@ -283,7 +283,7 @@ TEST_CASE("overrides that cannot be", "[cli][bad_input]") {
 
 TEST_CASE("bad options", "[cli][bad_input]") {
   const Workplace place;
-  CHECK_THAT(refusal(place, "run scene.toml -o out --fast" + steps), ContainsSubstring("--fast") && ContainsSubstring("see openclose --help"));
+  CHECK_THAT(refusal(place, "run scene.toml -o out --fast" + steps), ContainsSubstring("--fast") && ContainsSubstring("see openclose run --help"));
   CHECK_THAT(refusal(place, "run" + steps), ContainsSubstring("scene"));
   CHECK_THAT(refusal(place, ""), ContainsSubstring("subcommand is required; accepted: run, fos, check, cut, draw"));
   CHECK_THAT(refusal(place, "walk scene.toml"), ContainsSubstring("see openclose --help"));
