@@ -157,14 +157,17 @@ TrialResult FrozenTrials::result_of(RelaxationResult&& relaxed, double srf) {
 
 /// What the way from the last stable state to the one at this factor says.
 void FrozenTrials::follow(double travel, double srf) {
-  if (travel > travel_.largest) travel_.largest = travel, travel_.at_factor = srf;
+  travel_.largest = std::max(travel_.largest, travel);
   bool is_jump = travel > jump_in_closures;
   if (system_.has_live_load() && srf != stable_factor_) {
     const double compliance = travel / std::abs(srf - stable_factor_);
     least_compliance_ = std::min(compliance, least_compliance_.value_or(compliance));
     is_jump = is_jump && compliance > jump_over_stiffest * *least_compliance_;
   }
-  if (is_jump && !travel_.factor_before_jump) travel_.factor_before_jump = stable_factor_;
+  if (!is_jump) return;
+  const TravelOnPath::Jump jump = {travel, stable_factor_, srf};
+  if (!travel_.has_jumped()) travel_.first = jump;
+  if (travel > travel_.farthest.travel) travel_.farthest = jump;
 }
 
 double FrozenTrials::displacement_of_points(const FrozenState& state) const {

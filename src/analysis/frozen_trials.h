@@ -9,15 +9,22 @@
 
 namespace openclose {
 
-/// The largest motion of a stable state on the way, in closures.
+/// How far the blocks moved from one stable state to the next one that was found, in closures.
 struct TravelOnPath {
-  double largest = 0.0;                      ///< between two stable states
-  double at_factor = 0.0;                    ///< [-] of the state that it led to
-  std::optional<double> factor_before_jump;  ///< [-] the largest stable factor before the first travel beyond a jump's
+  /// Two stable states between which the blocks moved to another place.
+  struct Jump {
+    double travel = 0.0;
+    double before = 0.0, after = 0.0;  ///< [-] the factors of the two states
+  };
+  double largest = 0.0;  ///< between any two states, jumps or not
+  Jump farthest, first;  ///< of the jumps; those of no travel are none
+
+  bool has_jumped() const { return farthest.travel > 0.0; }
 
   void exchange(Archive& archive) {
     auto& [a, b, c] = *this;
-    archive(a, b, c);
+    archive(a);
+    for (Jump* jump : {&b, &c}) archive(jump->travel, jump->before, jump->after);
   }
 };
 

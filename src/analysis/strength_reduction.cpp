@@ -74,7 +74,7 @@ class StrengthReduction {
     if (trials.stable()) {
       add_frozen_state("stable", system, *trials.stable());
       result_.largest_travel = trials.travel().largest * system.closure_unit();
-      warn_of_travel(trials.travel());
+      warn_of_travel(trials.travel(), system.closure_unit());
     }
     add_mechanism(system, failing_motion(system, trials));
     if (result_.verdict == FactorVerdict::no_equilibrium && !result_.mechanism.empty())
@@ -390,12 +390,15 @@ class StrengthReduction {
     return "it lets joints open by their friction angle as they slide, which jams blocks; here they slide without opening";
   }
 
-  void warn_of_travel(const TravelOnPath& travel) {
-    if (!travel.factor_before_jump) return;
+  void warn_of_travel(const TravelOnPath& travel, double closure) {
+    if (!travel.has_jumped()) return;
+    const TravelOnPath::Jump &farthest = travel.farthest, &first = travel.first;
+    const bool is_first = farthest.before == first.before && farthest.after == first.after;
+    const std::string only_below = is_first ? "" : fmt::format(", the first time above {:.6g}", first.before);
     result_.warnings.push_back(
-        fmt::format("the blocks moved by up to {:.3g} mm, {:.3g} joint closures, on the way to a new equilibrium (at {:.6g}); the {} before "
-                    "the first such way is {:.6g}",
-                    1e3 * *result_.largest_travel, travel.largest, travel.at_factor, noun(), *travel.factor_before_jump));
+        fmt::format("the blocks moved by up to {:.3g} mm, {:.3g} joint closures, to another equilibrium between the {}s {:.6g} and {:.6g}{}; up to "
+                    "{:.6g} they stand where they are drawn",
+                    1e3 * farthest.travel * closure, farthest.travel, noun(), farthest.before, farthest.after, only_below, first.before));
   }
 
   /// What an interval leaves to be done.

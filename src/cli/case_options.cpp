@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "machine_output.h"
+#include "openclose/io/output_folder.h"
 
 namespace openclose {
 
@@ -32,6 +33,7 @@ CaseOrder case_order(const CaseOptions& options, const std::string& command, con
   order.command = command;
   order.scene_file = options.scene_file;
   order.folder = options.folder.empty() ? "results/" + std::filesystem::path(options.scene_file).stem().string() + "-" + kind : options.folder;
+  require_no_root(order.folder);
   order.jobs = options.jobs > 0 ? options.jobs : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   return order;
 }

@@ -52,9 +52,7 @@ int cut_command(const Options& options) {
 
 int draw_command(const Options& options) {
   const std::string file = options.drawing_file.empty() ? options.results + "/drawing.svg" : options.drawing_file;
-  // A name that is left out, or mistaken for another option's, would write over a scene or a table.
-  if (std::filesystem::path(file).extension() != ".svg")
-    throw InputError({file, 0}, "-o", "a drawing would be written over what is no drawing", "a name that ends in .svg");
+  require_ending(file, ".svg", "drawing");
   const Picture picture = picture_of_results(options.results, options.drawing);
   write_files({{file, svg_drawing(picture)}});
   if (options.json)

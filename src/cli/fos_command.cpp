@@ -48,7 +48,8 @@ void print_factor(const Scene& scene, const FactorOfSafety& safety, const Output
     double area = 0.0;
     for (const FailingBlock& block : safety.mechanism) area += block.area;
     const auto free = std::ranges::count_if(scene.blocks, [](const BlockInput& block) { return !block.fixed; });
-    fmt::print("what fails: {} of {} free blocks, {:.4g} m2, see mechanism.csv\n", safety.mechanism.size(), free, area);
+    fmt::print("what fails: {} of {} free blocks, {:.4g} m2, see mechanism.csv{}\n", safety.mechanism.size(), free, area,
+               safety.bracket.failed_by == by_limit_analysis ? ": the mechanism of the limit analysis" : "");
   }
 }
 

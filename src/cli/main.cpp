@@ -16,9 +16,9 @@
 #include "openclose/integrator/registry.h"
 #include "openclose/io/key_reference.h"
 #include "openclose/io/progress.h"
-#include "openclose/scene/nearest.h"
 #include "openclose/scene/toml_text.h"
 #include "openclose/version.h"
+#include "option_errors.h"
 #include "report_command.h"
 #include "shell_commands.h"
 #include "stop_signal.h"
@@ -35,7 +35,7 @@ int explain_command(const Options& options) {
   } else if (!options.key.empty()) {
     fmt::print("{}", explanation_of(options.key));
   } else {
-    throw InputError({"explain", 0}, "", "nothing is asked for", "a key or a table, e.g. theta, step.dt_s or settle; --page; --schema");
+    fmt::print("{}", tables_in_words());
   }
   return exit_success;
 }
@@ -56,7 +56,8 @@ std::string listed(const Entries& entries) {
 }
 
 /// The options that scene commands share; the named ones are short for --set.
-void add_options(CLI::App& app, Options& options, bool writes_folder) {
+/// \param idle  those that change nothing of what the command does: they are accepted, as on any scene, and not told in its help
+void add_options(CLI::App& app, Options& options, bool writes_folder, const std::vector<std::string>& idle) {
   app.add_option("scene", options.scene_file, "scene file (TOML)")->required();
   const auto shorthand = [&app, &options](const std::string& flag, const std::string& key, const std::string& help) {
     app.add_option_function<std::string>(
@@ -73,6 +74,7 @@ void add_options(CLI::App& app, Options& options, bool writes_folder) {
          "--set", [&options](const std::vector<std::string>& v) { options.overrides.insert(options.overrides.end(), v.begin(), v.end()); },
          "KEY=VALUE: overrides any key of the scene, e.g. joint[0].friction_angle_deg=20")
       ->allow_extra_args(false);
+  for (const std::string& name : idle) app.get_option(name)->group("");
   if (!writes_folder) return;
   app.add_option("-o,--output", options.folder,
                  "output folder (default: results/<name of the scene>); files of an earlier run there are removed first");
@@ -93,7 +95,7 @@ CLI::App* add_draw(CLI::App& app, Options& options) {
           },
           "what the colours of the blocks tell: material, displacement, velocity (with arrows) or state (default: velocity for a mechanism, else "
           "material)")
-      ->check(CLI::IsMember(block_colour_names()));
+      ->check(one_of(block_colour_names()));
   draw->add_flag("--forces", options.drawing.forces, "draw the resultants between blocks, as wide as they are large");
   draw->add_flag("--cracks", options.drawing.cracks, "draw the openings of joints, as wide as they are open");
   draw->add_option("-o,--output", options.drawing_file, "SVG file to write (default: drawing.svg in the folder)");
@@ -103,7 +105,7 @@ CLI::App* add_draw(CLI::App& app, Options& options) {
 
 CLI::App* add_explain(CLI::App& app, Options& options) {
   CLI::App* explain = app.add_subcommand("explain", "tell what a key of the scene file does, its unit, default and what is accepted");
-  explain->add_option("key", options.key, "a key, alone or with its table, or a table: theta, step.dt_s, settle");
+  explain->add_option("key", options.key, "a key, alone or with its table, or a table: theta, step.dt_s, settle (default: lists the tables)");
   explain->add_flag("--page", options.page, "print the reference page of all keys instead (Markdown)");
   explain->add_flag("--schema", options.schema, "print the JSON Schema of scene files instead, for editors that know TOML");
   return explain;
@@ -126,16 +128,6 @@ void add_fos_options(CLI::App& fos, Options& options) {
                  "go on from the checkpoint.bin that a search which was broken off has left: no trial is made again");
 }
 
-/// What is wrong with a line without a command, and which ones there are.
-std::string no_command(const CLI::App& app, int argc, char** argv, const std::string& parsed) {
-  std::vector<std::string> names;
-  for (const CLI::App* sub : app.get_subcommands({})) names.push_back(sub->get_name());
-  const std::string word = argc > 1 ? argv[1] : "";
-  if (word.empty() || word[0] == '-') return fmt::format("{}; accepted: {}", parsed, fmt::join(names, ", "));
-  const std::optional<std::string> meant = similar(word, names);
-  return fmt::format("{}: there is no such command{}; accepted: {}", word, meant ? ", did you mean " + *meant + "?" : "", fmt::join(names, ", "));
-}
-
 int main_checked(int argc, char** argv) {
   CLI::App app{
       "Openclose: 2-D block systems of jointed rock and masonry. Exit status: 0 success, 1 not converged (state saved), 2 bad input (nothing "
@@ -145,9 +137,10 @@ int main_checked(int argc, char** argv) {
   Options options;
   int (*command)(const Options&) = nullptr;
   std::function<int()> chosen;
-  const auto subcommand = [&](const char* name, const char* help, bool writes_folder, int (*f)(const Options&)) {
+  const auto subcommand = [&](const char* name, const char* help, bool writes_folder, int (*f)(const Options&),
+                              const std::vector<std::string>& idle = {}) {
     CLI::App* sub = app.add_subcommand(name, help);
-    add_options(*sub, options, writes_folder);
+    add_options(*sub, options, writes_folder, idle);
     sub->callback([&command, f] { command = f; });
     return sub;
   };
@@ -158,10 +151,11 @@ int main_checked(int argc, char** argv) {
   add_fos_options(*fos, options);
   CLI::App* check = subcommand(
       "check", "read and check a scene, write nothing but --spectrum; what run or fos would refuse is refused, whether it settles only they find out",
-      false, &check_command);
+      false, &check_command, {"--threads"});
   check->add_option("--spectrum", options.spectrum_file,
                     "CSV file to write: frequencies of the contacts' springs, critical step 2/w_max, condition number of a step's matrix");
-  CLI::App* cut = subcommand("cut", "cut the domain of a scene into blocks, write them as a scene and draw them", false, &cut_command);
+  CLI::App* cut = subcommand("cut", "cut the domain of a scene into blocks, write them as a scene and draw them", false, &cut_command,
+                             {"--contact", "--start", "--integrator", "--threads", "--dt", "--end"});
   cut->add_option("-o,--output", options.blocks_file, "scene file to write (default: results/<name of the scene>/blocks.toml)");
   cut->add_option("--svg", options.drawing_file, "drawing to write (default: beside the scene file, .svg)");
   add_quiet(*cut, options);
@@ -178,9 +172,7 @@ int main_checked(int argc, char** argv) {
   } catch (const CLI::Success& e) {
     return app.exit(e);
   } catch (const CLI::ParseError& e) {
-    const bool has_command = !app.get_subcommands().empty();
-    const std::string what = has_command ? e.what() : no_command(app, argc, argv, e.what());
-    return report_failure(exit_bad_input, what + "; see openclose --help", wants_json(argc, argv));
+    return report_failure(exit_bad_input, words_of(e, app, {argv + std::min(argc, 1), argv + argc}), wants_json(argc, argv));
   }
   try {
     const int status = chosen ? chosen() : command(options);

@@ -1,6 +1,7 @@
 #include "messages.h"
 
 #include <cstdio>
+#include <filesystem>
 
 #include "openclose/core/error.h"
 
@@ -12,6 +13,11 @@ void print_message(const std::string& text) {
 
 void print_warnings(const std::vector<std::string>& warnings) {
   for (const std::string& warning : warnings) print_message("warning: " + warning);
+}
+
+void require_ending(const std::string& file, const std::string& ending, const std::string& noun) {
+  if (std::filesystem::path(file).extension() != ending)
+    throw InputError({file, 0}, "-o", "this is not the name of a " + noun, "a name that ends in " + ending);
 }
 
 bool has_lost_output() {

@@ -17,6 +17,7 @@
 #include "openclose/io/output_folder.h"
 #include "openclose/scene/check.h"
 #include "openclose/scene/reader.h"
+#include "option_errors.h"
 
 namespace openclose {
 namespace {
@@ -72,7 +73,7 @@ void add_new(CLI::App& app, std::function<int()>& chosen) {
   CLI::App* command = app.add_subcommand("new", "write a scene to begin with, with a comment on every key");
   std::string kinds;
   for (const Draft& draft : drafts()) kinds += fmt::format("{}{} ({})", kinds.empty() ? "" : ", ", draft.name, draft.summary);
-  command->add_option("kind", options->kind, "what is drawn: " + kinds)->required()->check(CLI::IsMember(names_of_drafts()));
+  command->add_option("kind", options->kind, "what is drawn: " + kinds)->required()->check(one_of(names_of_drafts()));
   std::map<std::string, std::string> help_of;
   std::vector<std::string> in_order;
   for (const Draft& draft : drafts()) {

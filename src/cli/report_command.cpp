@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <memory>
 
 #include "machine_output.h"
+#include "messages.h"
 #include "openclose/core/error.h"
 #include "openclose/io/output_folder.h"
 #include "openclose/report/report.h"
@@ -24,9 +24,7 @@ struct ReportOptions {
 
 int report_command(const ReportOptions& options) {
   const std::string file = options.file.empty() ? options.results + "/report.html" : options.file;
-  // A name that is left out, or mistaken for another option's, would write over a scene or a table.
-  if (std::filesystem::path(file).extension() != ".html")
-    throw InputError({file, 0}, "-o", "a page would be written over what is no page", "a name that ends in .html");
+  require_ending(file, ".html", "page");
   const Report report = report_of_results(options.results, {static_cast<std::size_t>(options.most_mb * bytes_per_mb)});
   write_files({{file, report.html}});
   if (options.json)

@@ -8,6 +8,7 @@
 #include "manual.h"
 #include "openclose/core/error.h"
 #include "openclose/io/output_folder.h"
+#include "option_errors.h"
 
 namespace openclose {
 namespace {
@@ -29,7 +30,7 @@ void add_shell_commands(CLI::App& app, std::function<int()>& chosen) {
   CLI::App* completion = app.add_subcommand("completion", "print a script with which a shell completes commands, options and keys");
   completion->add_option("shell", *word, "bash: source <(openclose completion bash); zsh: the same; fish: openclose completion fish | source")
       ->required()
-      ->check(CLI::IsMember(completion_shells()));
+      ->check(one_of(completion_shells()));
   completion->callback([&app, &chosen, word] {
     chosen = [&app, word] {
       fmt::print("{}", completion_script(command_tree(app), *word));
@@ -39,7 +40,7 @@ void add_shell_commands(CLI::App& app, std::function<int()>& chosen) {
 
   pages.insert(pages.end(), {"completion", "manual"});
   CLI::App* manual = app.add_subcommand("manual", "print the manual page of the program or of a command, as man -l - reads it");
-  manual->add_option("command", *word, "a command; none: the program")->check(CLI::IsMember(pages));
+  manual->add_option("command", *word, "a command; none: the program")->check(one_of(pages));
   manual->add_option("--write", *folder, "write all pages and completions into this folder instead");
   manual->callback([&app, &chosen, word, folder] {
     chosen = [&app, word, folder] {

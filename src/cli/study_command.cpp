@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 
 #include "case_options.h"
@@ -13,6 +14,7 @@
 #include "openclose/io/progress.h"
 #include "openclose/study/study.h"
 #include "openclose/study/variation.h"
+#include "option_errors.h"
 
 namespace openclose {
 namespace {
@@ -51,7 +53,12 @@ int study_command(const StudyOptions& options) {
   const std::vector<TextFile> files = study_files(study, order.cases.folder);
   write_files(files);
   print_warnings(study.warnings);
-  if (!options.cases.quiet) fmt::print("{}written to {}/study.csv and study.svg\n", study_table(study), order.cases.folder);
+  const bool has_picture = files.size() > 1;
+  // One of an earlier study would be taken for the picture of this one.
+  if (!has_picture) std::filesystem::remove(order.cases.folder + "/study.svg");
+  if (!options.cases.quiet)
+    fmt::print("{}written to {}/study.csv{}\n", study_table(study), order.cases.folder,
+               has_picture ? " and study.svg" : "; no picture, since there is no error to draw");
   const bool all_ended = std::ranges::all_of(study.rows, [](const StudyRow& row) { return row.status == exit_success; });
   const int status = all_ended ? exit_success : exit_not_converged;
   if (options.cases.json) {
@@ -81,7 +88,7 @@ void add_study(CLI::App& app, std::function<int()>& chosen) {
   for (const auto& entry : enforcements()) names.emplace_back(entry.name);
   study->add_option("--contact", options->contacts, "contact enforcements, e.g. soft,hard,dem (default: the scene's)")
       ->delimiter(',')
-      ->check(CLI::IsMember(names));
+      ->check(one_of(names));
   study->add_option("--quantity", options->quantity,
                     "what is compared at the end: POINT.displacement_m or another column of history.csv, energy.kinetic_j, largest_displacement_m "
                     "(default: displacement of the first measured point, else the largest of a block)");

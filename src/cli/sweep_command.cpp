@@ -10,6 +10,7 @@
 #include "openclose/core/error.h"
 #include "openclose/io/progress.h"
 #include "openclose/study/sweep.h"
+#include "option_errors.h"
 
 namespace openclose {
 namespace {
@@ -38,6 +39,7 @@ int sweep_command(const SweepOptions& options) {
   print_warnings(sweep.warnings);
   if (!options.cases.quiet) {
     fmt::print("{} of {} cases have an answer", sweep.found, sweep.cases);
+    if (sweep.intervals > 0) fmt::print(", {} of them only an interval", sweep.intervals);
     if (sweep.were_there > 0) fmt::print(" ({} were there)", sweep.were_there);
     fmt::print("; written to {}{}\n", sweep.files.front().path, sweep.files.size() > 1 ? " and sweep.svg" : "");
   }
@@ -46,6 +48,7 @@ int sweep_command(const SweepOptions& options) {
     print_json(status, {{"folder", order.cases.folder},
                         {"cases", sweep.cases},
                         {"found", sweep.found},
+                        {"intervals", sweep.intervals},
                         {"were_there", sweep.were_there},
                         {"rows", json_of_table(sweep.files.front().text)},
                         {"warnings", sweep.warnings}});
@@ -63,7 +66,7 @@ void add_sweep(CLI::App& app, std::function<int()>& chosen) {
   sweep->add_option("--vary", options->variations, "KEY=FROM:TO:STEP or KEY=A,B,C, once for each key, e.g. joint[0].friction_angle_deg=25:40:1")
       ->required()
       ->allow_extra_args(false);
-  sweep->add_option("--command", options->command, "what is run: fos (default) or run")->check(CLI::IsMember({"fos", "run"}));
+  sweep->add_option("--command", options->command, "what is run: fos (default) or run")->check(one_of({"fos", "run"}));
   sweep->add_option("--quantity", options->quantity, "of run, what is written of the end: as for study");
   sweep->callback([options, &chosen] { chosen = [options] { return sweep_command(*options); }; });
 }

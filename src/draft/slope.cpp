@@ -34,6 +34,14 @@ std::string write_slope(const Dimensions& d) {
   begin(text, fmt::format("A rock slope of {} m", height), 0.0);
   add_material(text, {"rock", 2600.0, 1e10, 2e9, 35.0, 25e3});
   text.blank_line();
+  text.comment("The strength of one joint set alone, for the key joint below; the sets that name no joint keep the one above.");
+  text.left_out_table("joint");
+  text.left_out_key("name", std::string_view("bedding"));
+  text.left_out_key("normal_stiffness_pa_per_m", 1e10);
+  text.left_out_key("shear_stiffness_pa_per_m", 2e9);
+  text.left_out_key("friction_angle_deg", 28.0);
+  text.left_out_key("cohesion_pa", 0.0);
+  text.blank_line();
   text.comment("Rock between joints of finite length, for the key bridge below: the strength of rock, which is lost once it has slipped.");
   text.left_out_table("joint");
   text.left_out_key("name", std::string_view("rock bridge"));
@@ -49,6 +57,7 @@ std::string write_slope(const Dimensions& d) {
   text.points("vertices_m", {{left, bottom}, {right, bottom}, {right, height}, {crest, height}, {0.0, 0.0}, {left, 0.0}});
   add_joint_set(text, "The first set, the bedding: a positive dip comes out of the face, and a joint of it ends in the toe", d.of("bedding_dip_deg"),
                 d.of("bedding_spacing_m"));
+  text.left_out_key("joint", std::string_view("bedding"));
   add_joint_set(text, "The second set, the cross joints: a negative dip goes into the slope", d.of("cross_dip_deg"), d.of("cross_spacing_m"));
   text.left_out_key("trace_length_m", 12.0);
   text.left_out_key("gap_m", 2.0);

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "openclose/scene/nearest.h"
+
 namespace openclose {
 
 const std::vector<EnforcementEntry>& enforcements() {
@@ -16,11 +18,14 @@ const std::vector<EnforcementEntry>& enforcements() {
 
 std::unique_ptr<Enforcement> make_enforcement(const MethodInput& method) {
   std::string names;
+  std::vector<std::string> words;
   for (const auto& entry : enforcements()) {
     if (method.contact == entry.name) return entry.make();
     names += fmt::format("{}\"{}\"", names.empty() ? "" : ", ", entry.name);
+    words.emplace_back(entry.name);
   }
-  throw InputError(method.contact_where, "method.contact", fmt::format("\"{}\" is no known contact enforcement", method.contact), names);
+  throw InputError(method.contact_where, "method.contact",
+                   fmt::format("\"{}\" is no known contact enforcement{}", method.contact, did_you_mean(method.contact, words)), names);
 }
 
 }  // namespace openclose

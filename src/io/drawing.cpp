@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <tuple>
 #include <utility>
 
 #include "openclose/geometry/box.h"
@@ -32,6 +33,8 @@ constexpr int colour_classes = 32;
 constexpr double least_drawn_part = 0.005;
 /// Names are written beside no more points and loads than this; tooltips tell the others.
 constexpr std::size_t most_labels = 12;
+/// [px] Of the arrow of a growing part of gravity in the legend.
+constexpr double push_length = 34.0;
 
 /// 1, 2 or 5 times a power of ten, not above the value.
 double round_length(double value) {
@@ -194,11 +197,11 @@ class Drawing {
   double seam_width() const { return std::clamp(0.05 * block_size_, 0.4, 2.5); }
 
   void draw_joints() {
-    std::map<std::pair<JointDrawing, bool>, PathData> paths;
+    std::map<std::tuple<JointDrawing, bool, bool>, PathData> paths;
     for (const Picture::Joint& joint : picture_.joints) {
       if (joint.state == JointDrawing::plain) continue;
       const bool is_point = joint.from == joint.to;
-      PathData& path = paths[{joint.state, is_point}];
+      PathData& path = paths[{joint.state, is_point, joint.is_slight}];
       if (is_point) {
         path.dot(at(joint.from));
       } else if (joint.state != JointDrawing::sticking) {  // as the outlines have it
@@ -206,8 +209,8 @@ class Drawing {
       }
     }
     for (const auto& [kind, path] : paths) {
-      const auto [state, is_point] = kind;
-      const double width = std::clamp(0.06 * block_size_, 0.25, 3.0) * (is_point ? 2.0 : 1.0);
+      const auto [state, is_point, is_slight] = kind;
+      const double width = is_slight ? slight_width() : std::clamp(0.06 * block_size_, 0.25, 3.0) * (is_point ? 2.0 : 1.0);
       if (state == JointDrawing::sticking) {
         page_.path(path, fmt::format("class=\"sticking\" fill=\"none\" stroke=\"{}\" stroke-linecap=\"round\"", outline_colour), width);
         continue;
@@ -219,6 +222,8 @@ class Drawing {
                  width);
     }
   }
+
+  double slight_width() const { return std::clamp(0.02 * block_size_, 0.25, 1.0); }
 
   /// [px] Of the widest line that stands for a size.
   double widest_line() const { return std::clamp(0.3 * block_size_, 1.5, 14.0); }
@@ -327,8 +332,13 @@ class Drawing {
     page_.print("<g class=\"supports\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.8\">\n", support_colour);
     for (const Picture::Spring& support : picture_.supports) {
       const Vec2 p = at(support.point);
-      if (support.in_x) page_.print("<path d=\"M{:.2f} {:.2f}h-6l-2 -5l-4 10l-4 -10l-4 10l-2 -5h-4m0 -8v16\"/>\n", p.x(), p.y());
-      if (support.in_y) page_.print("<path d=\"M{:.2f} {:.2f}v6l-5 2l10 4l-10 4l10 4l-5 2v4m-8 0h16\"/>\n", p.x(), p.y());
+      // As if the left and the lower side were outside; on the others they are mirrored.
+      const int x = support.outwards.x() > 0.0 ? -1 : 1, y = support.outwards.y() > 0.0 ? -1 : 1;
+      const auto mirrored = [&](const char* path) {
+        page_.print("<path transform=\"translate({:.2f} {:.2f}) scale({} {})\" d=\"M0 0{}\"/>\n", p.x(), p.y(), x, y, path);
+      };
+      if (support.in_x) mirrored("h-6l-2 -5l-4 10l-4 -10l-4 10l-2 -5h-4m0 -8v16");
+      if (support.in_y) mirrored("v6l-5 2l10 4l-10 4l10 4l-5 2v4m-8 0h16");
       page_.print("<circle cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"2.6\" fill=\"{}\"/>\n", p.x(), p.y(), support_colour);
     }
     page_.print("</g>\n");
@@ -362,12 +372,13 @@ class Drawing {
     }
     if (std::ranges::any_of(picture_.blocks, &Picture::Block::fixed)) legend.add_swatch(fixed_fill, "fixed", "url(#fixed)");
     for (std::size_t n = 0; n < picture_.seam_names.size(); ++n) legend.add_line("seam-key", colour_of_seam(n), 2.5, picture_.seam_names[n]);
-    const auto has = [&](JointDrawing state) {
-      return std::ranges::any_of(picture_.joints, [&](const Picture::Joint& joint) { return joint.state == state; });
+    const auto has = [&](JointDrawing state, bool is_slight = false) {
+      return std::ranges::any_of(picture_.joints, [&](const Picture::Joint& joint) { return joint.state == state && joint.is_slight == is_slight; });
     };
     if (has(JointDrawing::sticking)) legend.add_line("sticking", outline_colour, 1.0, "joint that holds");
     if (has(JointDrawing::sliding)) legend.add_line("sliding", sliding_colour, 3.0, "slides");
     if (has(JointDrawing::open)) legend.add_line("open", open_colour, 3.0, "open");
+    if (has(JointDrawing::open, true)) legend.add_line("open", open_colour, slight_width(), "open by less than a hundredth of the widest");
     if (largest_opening_ > 0.0)
       legend.add_line("crack-scale", open_colour, widest_line(), fmt::format("{} {}", picture_.crack_name, length_text(largest_opening_)), 0.8);
     if (largest_force_ > 0.0) {
@@ -382,6 +393,13 @@ class Drawing {
       draw_arrow(left, left + Vec2(longest_arrow_, 0.0), 8.0, "black", 1.4);
     }
     if (!picture_.loads.empty()) legend.add_line("load-key", load_colour, 2.4, "load");
+    if (picture_.push) {
+      const Vec2 way = push_length * Vec2(picture_.push->direction.x(), -picture_.push->direction.y()).normalized();
+      const Vec2 middle = legend.add_symbol(push_length, picture_.push->name) + Vec2(0.5 * push_length, 0.0);
+      page_.print("<g class=\"push\">\n");
+      draw_arrow(middle - 0.5 * way, middle + 0.5 * way, 11.0, load_colour, 2.4);
+      page_.print("</g>\n");
+    }
     if (!picture_.supports.empty()) legend.add_line("support-key", support_colour, 2.4, "support");
     if (!picture_.points.empty()) {
       const Vec2 left = legend.add_symbol(6.0, "measured point");

@@ -35,6 +35,7 @@ struct Picture {
   struct Joint {
     Vec2 from = Vec2::Zero(), to = Vec2::Zero();
     JointDrawing state = JointDrawing::plain;
+    bool is_slight = false;  ///< open by so little beside others that a line as wide as theirs would mislead
   };
   /// The resultant between two blocks, drawn along its direction so far into either of them.
   struct Force {
@@ -52,6 +53,12 @@ struct Picture {
   struct Spring {
     Vec2 point = Vec2::Zero();
     bool in_x = false, in_y = false;
+    Vec2 outwards = Vec2::Zero();  ///< from the middle of its block: a spring is drawn on this side, by default on the left and below
+  };
+  /// A part of gravity that grows until the blocks fail.
+  struct Push {
+    Vec2 direction = Vec2::Zero();
+    std::string name;
   };
   struct Point {
     std::string name;
@@ -72,6 +79,7 @@ struct Picture {
   std::vector<Arrow> velocities;
   std::string velocity_name;  ///< for the legend
   std::vector<Arrow> loads;
+  std::optional<Push> push;
   std::vector<Spring> supports;
   std::vector<Point> points;
 };

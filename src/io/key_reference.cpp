@@ -188,15 +188,27 @@ ordered_json key_schema(const KeyEntry& entry) {
   return schema;
 }
 
+/// For a terminal: "[methods](methods.md)" -> "docs/methods.md".
+std::string without_links(std::string_view page) {
+  std::string text;
+  while (!page.empty()) {
+    const std::size_t middle = page.find("]("), begin = page.substr(0, middle).rfind('['), end = page.find(')', std::min(middle, page.size()));
+    if (middle == std::string_view::npos || begin == std::string_view::npos || end == std::string_view::npos) break;
+    text += fmt::format("{}docs/{}", page.substr(0, begin), page.substr(middle + 2, end - middle - 2));
+    page.remove_prefix(end + 1);
+  }
+  return text + std::string(page);
+}
+
 std::string explained(const KeyEntry& entry) {
-  std::string text = fmt::format("{}: {}\n", entry.dotted(), entry.key.says);
+  std::string text = fmt::format("{}: {}\n", entry.dotted(), without_links(entry.key.says));
   const std::string unit = unit_of(entry.key.name), value = default_of(entry);
   if (!unit.empty()) text += fmt::format("  unit      {}\n", unit);
   text += fmt::format("  accepted  {}\n", accepted(entry));
   const std::vector<KnownWord> words = known_words(entry);
   std::size_t longest = 0;
   for (const KnownWord& word : words) longest = std::max(longest, word.text.size());
-  for (const KnownWord& word : words) text += fmt::format("            {:<{}}  {}\n", word.text, longest, word.says);
+  for (const KnownWord& word : words) text += fmt::format("            {:<{}}  {}\n", word.text, longest, without_links(word.says));
   if (!value.empty()) text += fmt::format("  default   {}\n", value);
   if (!entry.key.formerly.empty()) text += fmt::format("  formerly  {}\n", entry.key.formerly);
   return text;
@@ -266,12 +278,28 @@ std::string scene_schema() {
   return root.dump(1) + "\n";
 }
 
+std::string tables_in_words() {
+  std::string text = "Tables of a scene; openclose explain TABLE tells their keys:\n";
+  std::vector<std::string> told;
+  for (const auto* entries : {&element_keys(), &option_keys()}) {
+    for (const KeyEntry& entry : *entries) {
+      const KeyTable& table = entry.table;
+      const std::string name(table.name);
+      if (name.empty() || std::ranges::find(told, name) != told.end()) continue;
+      told.push_back(name);
+      text += fmt::format("  {:<24}{}\n", table.many ? "[[" + name + "]]" : "[" + name + "]", without_links(table.says));
+    }
+  }
+  return text;
+}
+
 std::string explanation_of(const std::string& key) {
   std::string text;
   std::vector<std::string> names;
   for (const auto* entries : {&option_keys(), &element_keys()}) {
     for (const KeyEntry& entry : *entries) {
       names.emplace_back(key.find('.') == std::string::npos ? std::string(entry.key.name) : entry.dotted());
+      if (!entry.table.name.empty()) names.emplace_back(entry.table.name);
       if (key == entry.dotted() || key == entry.key.name || key == entry.table.name || key == entry.key.formerly) text += explained(entry);
     }
   }

@@ -18,6 +18,9 @@ std::string keys_page();
 /// JSON Schema (draft 2020-12) of a scene file, for editors that know TOML: types, ranges, words and keys that there are.
 std::string scene_schema();
 
+/// The tables of a scene with what each is about, a line each.
+std::string tables_in_words();
+
 /// What the page tells about one key, or about each key of a table, in lines for a terminal. The key may be dotted or only its name.
 /// Throws InputError for a key that is not known.
 std::string explanation_of(const std::string& key);

@@ -31,6 +31,13 @@ constexpr const char* part_ending = ".part";
   throw InputError({path, 0}, "", "cannot be written", "a file in a folder that exists or can be made, and may be written to");
 }
 
+/// Of a system: what is written and removed in it would be anybody's.
+bool is_root(const std::string& folder) {
+  std::error_code unknown;
+  const std::filesystem::path place = std::filesystem::weakly_canonical(std::filesystem::absolute(folder), unknown);
+  return !unknown && place == place.root_path();
+}
+
 /// The first line, or the first few of a file with long ones.
 std::string beginning_of(const std::string& text) {
   constexpr std::size_t some_lines = 512;
@@ -91,7 +98,12 @@ class Unfinished {
 
 }  // namespace
 
+void require_no_root(const std::string& folder) {
+  if (is_root(folder)) throw InputError({folder, 0}, "-o", "this is the root of the file system", "a folder for the results of one analysis alone");
+}
+
 OutputFolder::OutputFolder(const std::string& path) : path_(path) {
+  require_no_root(path_);
   std::error_code error;
   std::filesystem::create_directories(path, error);
   const bool usable = !error && std::filesystem::is_directory(path) && access(path.c_str(), W_OK | X_OK) == 0;

@@ -15,6 +15,9 @@ inline constexpr const char* checkpoint_name = "checkpoint.bin";
 inline constexpr const char* scene_copy_name = "scene_as_read.toml";
 inline constexpr const char* list_name = ".openclose";
 
+/// Throws InputError for "/", which is no place for results.
+void require_no_root(const std::string& folder);
+
 class OutputFolder {
  public:
   /// Creates the folder if it is missing. Throws InputError if the files of a run cannot be written there.

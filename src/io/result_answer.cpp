@@ -29,6 +29,8 @@ std::string answer_of_factor(const json& summary) {
 std::string answer_of_run(const json& summary) {
   const std::string method = summary.at("options").at("method").at("contact");
   std::string answer = fmt::format("{}: run to t = {:.5g} s", method, summary.value("time_s", 0.0));
+  const double factor = summary.at("options").value("run", json::object()).value("strength_reduction_factor", 1.0);
+  if (factor != 1.0) answer += fmt::format(" with the strength divided by {:.6g}", factor);
   if (!summary.value("converged", false)) answer += fmt::format("; stopped: {}", summary.value("reason", ""));
   return answer;
 }

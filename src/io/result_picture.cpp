@@ -5,15 +5,19 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <unordered_map>
+#include <utility>
 
+#include "openclose/analysis/strength_search.h"
 #include "openclose/core/error.h"
 #include "openclose/io/force_chain.h"
 #include "openclose/io/result_answer.h"
+#include "openclose/io/result_folder.h"
 #include "openclose/io/result_rows.h"
 #include "openclose/io/state_table.h"
+#include "openclose/scene/increased_load.h"
 #include "openclose/scene/nearest.h"
 
 namespace openclose {
@@ -25,16 +29,12 @@ using nlohmann::json;
 constexpr const char* mechanism_state = "failed";
 /// [-] Of the size of the median block: a joint that has opened or slipped by more is no line any more, the gap itself is to be seen.
 constexpr double widest_drawn_opening = 0.1;
+/// [-] Of the widest opening that is drawn as a line: what is open by less is drawn thin.
+constexpr double slight_part_of_opening = 0.01;
 /// [-] Two contacts whose lengths add up to their distance to this accuracy are the ends of one face.
 constexpr double accuracy_of_lengths = 0.1;
 /// [-] Of the largest displacement of the mechanism: what opens or slips by less has been moved by rounding.
 constexpr double noticeable_part_of_mechanism = 0.01;
-
-struct BlockInfo {
-  std::string name;
-  std::string material;
-  bool fixed = false;
-};
 
 Vec2 point_in(const json& list) {
   return {list.at(0).get<double>(), list.at(1).get<double>()};
@@ -43,12 +43,7 @@ Vec2 point_in(const json& list) {
 class ResultPicture {
  public:
   ResultPicture(const std::string& folder, const DrawingRequest& request)
-      : folder_(require_folder(folder)), request_(request), outlines_(path_of("blocks.csv"), {"block", "x_m", "y_m"}) {
-    if (outlines_.states().empty())
-      throw InputError({path_of("blocks.csv"), 0}, "",
-                       std::filesystem::exists(path_of("blocks.csv")) ? "no state is written there" : "there is no such file",
-                       "the folder of a run or fos");
-    read_summary();
+      : folder_(folder), request_(request), drawn_(folder_.drawing().polygons), block_index_(folder_.path_of("blocks.csv"), folder_.drawing().names) {
     choose_state();
   }
 
@@ -67,27 +62,14 @@ class ResultPicture {
   }
 
  private:
-  static std::string require_folder(const std::string& folder) {
-    std::error_code error;
-    const std::string accepted = "the folder of a run or fos, results/<name of the scene> by default";
-    if (!std::filesystem::exists(folder, error)) throw InputError({folder, 0}, "", "there is no such folder", accepted);
-    if (!std::filesystem::is_directory(folder, error)) throw InputError({folder, 0}, "", "this is no folder", accepted);
-    return folder;
-  }
-  std::string path_of(const std::string& name) const { return folder_ + "/" + name; }
-
-  void read_summary() {
-    std::ifstream file(path_of("summary.json"));
-    if (!file) return;  // a run that goes on, or was broken off: what it has written can be drawn
-    summary_ = json::parse(file, nullptr, false);
-    if (summary_.is_discarded()) throw InputError({path_of("summary.json"), 0}, "", "this is not JSON", "the file as openclose has written it");
-  }
-  bool is_factor() const { return summary_.value("command", "") == "fos"; }
+  std::string path_of(const std::string& name) const { return folder_.path_of(name); }
+  const json& summary() const { return folder_.summary(); }
+  bool is_factor() const { return folder_.is_factor(); }
 
   void choose_state() {
-    const std::vector<std::string>& states = outlines_.states();
+    const std::vector<std::string>& states = folder_.states();
     if (request_.state) {
-      if (!outlines_.has(*request_.state)) {
+      if (!folder_.has(*request_.state)) {
         std::vector<std::string> quoted;
         for (const std::string& state : states) quoted.push_back('"' + state + '"');
         throw InputError({path_of("blocks.csv"), 0}, "--state", fmt::format("there is no state \"{}\"", *request_.state),
@@ -96,7 +78,7 @@ class ResultPicture {
       state_ = *request_.state;
     } else {
       state_ = states.back();
-      if (is_factor() && outlines_.has(mechanism_state)) state_ = mechanism_state;
+      if (is_factor() && folder_.has(mechanism_state)) state_ = mechanism_state;
     }
     const bool shows_failure = is_factor() && state_ == mechanism_state;
     // At large displacements the failed state is one of a motion, and no mechanism.
@@ -105,39 +87,17 @@ class ResultPicture {
     colour_ = request_.colour.value_or(shows_mechanism_ ? BlockColour::velocity : usual);
   }
 
-  std::vector<Polygon> outlines_in(const std::string& state, bool names_them) {
-    std::vector<Polygon> list;
-    std::string_view last;
-    outlines_.rows(state, [&](const Row& row) {
-      if (list.empty() || row[0] != last) {
-        if (names_them) index_.emplace(std::string(row[0]), static_cast<int>(list.size())), blocks_.push_back({std::string(row[0]), "", false});
-        list.emplace_back();
-        last = row[0];
-      }
-      list.back().emplace_back(number_in(row[1]), number_in(row[2]));
-    });
-    return list;
-  }
-
   void read_blocks() {
-    now_ = outlines_in(state_, true);
-    drawn_ = state_ == "initial" ? now_ : outlines_in("initial", false);
-    if (drawn_.size() != now_.size()) drawn_ = now_;  // of a table that was broken off
-    std::ifstream file(path_of("block_properties.csv"));
-    std::string line;
-    std::getline(file, line);
-    std::unordered_map<std::string, int> materials;
-    for (std::size_t b = 0; std::getline(file, line) && b < blocks_.size(); ++b) {
-      const std::size_t first = line.find(','), second = line.find(',', first + 1);
-      if (second == std::string::npos || line.substr(0, first) != blocks_[b].name) continue;
-      blocks_[b].material = line.substr(first + 1, second - first - 1);
-      blocks_[b].fixed = line.substr(second + 1, 1) == "1";
-    }
-    for (std::size_t b = 0; b < blocks_.size(); ++b) {
-      const auto [place, is_new] = materials.try_emplace(blocks_[b].material, static_cast<int>(materials.size()));
-      if (is_new) picture_.colour_names.push_back(blocks_[b].material);
-      picture_.blocks.push_back({blocks_[b].name, now_[b], place->second, blocks_[b].fixed, 0.0});
-    }
+    now_ = folder_.outlines(state_);
+    for (std::size_t b = 0; b < now_.size(); ++b) picture_.blocks.push_back({folder_.drawing().names[b], now_[b], 0, false, 0.0});
+    const StateTable properties(path_of("block_properties.csv"), {"block", "material", "fixed"});
+    properties.all_rows([&](const Row& row) {
+      const auto place = std::ranges::find(picture_.colour_names, row[1]);
+      Picture::Block& block = picture_.blocks[static_cast<std::size_t>(block_index_.of(row, 0))];
+      block.colour = static_cast<int>(place - picture_.colour_names.begin());
+      block.fixed = row[2] == "1";
+      if (place == picture_.colour_names.end()) picture_.colour_names.emplace_back(row[1]);
+    });
     std::vector<double> areas;
     for (const Polygon& outline : now_) areas.push_back(std::abs(signed_area(outline)));
     const auto middle = areas.begin() + static_cast<std::ptrdiff_t>(areas.size() / 2);
@@ -145,25 +105,25 @@ class ResultPicture {
     size_ = std::sqrt(*middle);
   }
 
-  int index_of(std::string_view name) const {
-    const auto place = index_.find(std::string(name));
-    return place == index_.end() ? 0 : place->second;
-  }
-
   void read_contacts() {
     const StateTable table = contact_table(path_of("contacts.csv"));
-    contacts_ = contact_rows(table, state_, [&](std::string_view name) { return index_of(name); });
-    if (request_.forces && contacts_.empty()) {
-      std::string accepted;
-      for (const std::string& state : table.states()) accepted += fmt::format("{}\"{}\"", accepted.empty() ? "" : ", ", state);
-      throw InputError({path_of("contacts.csv"), 0}, "--forces", fmt::format("there are no contacts in the state \"{}\"", state_),
-                       accepted.empty() ? "a result with contacts" : "--state with one of " + accepted);
-    }
+    contacts_ = contact_rows(table, state_, block_index_);
+    // A state in which nothing touches has none, either; the drawing and the states of fos without contacts have had none written.
+    const bool lacks_contacts = contacts_.empty() && !shows_mechanism_ && (is_factor() || state_ == "initial");
+    if (request_.forces && contacts_.empty()) refuse_without_contacts("--forces", table);
+    if (colour_ == BlockColour::state && lacks_contacts) refuse_without_contacts("--colour", table);
     for (std::size_t i = 0; i < contacts_.size(); ++i) of_pair_[pair_key(contacts_[i].a, contacts_[i].b)].push_back(i);
   }
 
+  [[noreturn]] void refuse_without_contacts(const char* option, const StateTable& table) const {
+    std::string accepted;
+    for (const std::string& state : table.states()) accepted += fmt::format("{}\"{}\"", accepted.empty() ? "" : ", ", state);
+    throw InputError({path_of("contacts.csv"), 0}, option, fmt::format("there are no contacts in the state \"{}\"", state_),
+                     accepted.empty() ? "a result with contacts" : "--state with one of " + accepted);
+  }
+
   void read_cracks() {
-    cracks_ = crack_rows(path_of("cracks.csv"), state_, [&](std::string_view name) { return index_of(name); });
+    cracks_ = crack_rows(path_of("cracks.csv"), state_, block_index_);
     if (request_.cracks && cracks_.empty()) {
       throw InputError({path_of("cracks.csv"), 0}, "--cracks", fmt::format("no joints are written of the state \"{}\"", state_),
                        "another --state than \"initial\", of a result whose drawing has joints");
@@ -201,18 +161,37 @@ class ResultPicture {
     return contacts_[nearest].state;
   }
 
+  bool is_line(const CrackRow& crack) const {
+    const double widest = std::max({crack.opening_from, crack.opening_to, std::abs(crack.slip_from), std::abs(crack.slip_to)});
+    return widest <= widest_drawn_opening * size_ || shows_mechanism_;
+  }
+
   void add_joints() {
     if (shows_mechanism_) largest_displacement_ = largest_displacement();
+    double widest = 0.0;
+    std::unordered_map<std::uint64_t, int> joints_of_pair;
     for (const CrackRow& crack : cracks_) {
-      const double widest = std::max({crack.opening_from, crack.opening_to, std::abs(crack.slip_from), std::abs(crack.slip_to)});
-      if (widest > widest_drawn_opening * size_ && !shows_mechanism_) continue;
-      const Vec2 middle = 0.5 * (crack.from + crack.to);
+      if (is_line(crack)) widest = std::max({widest, crack.opening_from, crack.opening_to});
+      ++joints_of_pair[pair_key(crack.a, crack.b)];
+    }
+    for (const CrackRow& crack : cracks_) {
+      if (!is_line(crack)) continue;
+      const std::uint64_t key = pair_key(crack.a, crack.b);
       const JointDrawing from = state_at(crack, true), to = state_at(crack, false);
+      // Where the blocks touch now is told by their contacts.
+      if (from != JointDrawing::open && to != JointDrawing::open && joints_of_pair[key] == 1 && of_pair_.contains(key) && add_face(of_pair_[key]))
+        continue;
+      const std::optional<std::pair<Vec2, Vec2>> common = common_stretch(crack);
+      if (!common) continue;
+      const auto add = [&](const Vec2& begin, const Vec2& end, JointDrawing state, double opening) {
+        picture_.joints.push_back({begin, end, state, state == JointDrawing::open && opening < slight_part_of_opening * widest});
+      };
+      const Vec2 middle = 0.5 * (common->first + common->second);
       if (from == to) {
-        picture_.joints.push_back({crack.from, crack.to, from});
+        add(common->first, common->second, from, std::max(crack.opening_from, crack.opening_to));
       } else {
-        picture_.joints.push_back({crack.from, middle, from});
-        picture_.joints.push_back({middle, crack.to, to});
+        add(common->first, middle, from, crack.opening_from);
+        add(middle, common->second, to, crack.opening_to);
       }
     }
     // What touches now and did not in the drawing.
@@ -227,15 +206,25 @@ class ResultPicture {
     }
   }
 
-  /// Two contacts at the ends of the stretch along which two edges face each other, of which each has a part. False if it is something else.
+  /// Where both blocks still have their side of the joint: its line lies in the middle of theirs, which have moved along it by half of the slip, to
+  /// and fro. Nothing where they have passed each other.
+  static std::optional<std::pair<Vec2, Vec2>> common_stretch(const CrackRow& crack) {
+    const Vec2 along = (crack.to - crack.from).normalized();
+    const Vec2 from = crack.from + 0.5 * std::abs(crack.slip_from) * along, to = crack.to - 0.5 * std::abs(crack.slip_to) * along;
+    if ((to - from).dot(along) <= 0.0) return std::nullopt;
+    return std::pair(from, to);
+  }
+
+  /// Two contacts at the ends of the stretch along which two edges face each other, of which each has a part. Draws those that are closed: open ones
+  /// may have their corners far apart. False if it is something else.
   bool add_face(const std::vector<std::size_t>& list) {
     if (list.size() != 2) return false;
     const ContactRow &a = contacts_[list[0]], &b = contacts_[list[1]];
     const double apart = (a.point - b.point).norm(), length = a.length + b.length;
     if (std::abs(apart - length) > accuracy_of_lengths * length) return false;
     const Vec2 between = a.point + a.length / length * (b.point - a.point);
-    picture_.joints.push_back({a.point, between, a.state});
-    picture_.joints.push_back({between, b.point, b.state});
+    if (a.state != JointDrawing::open) picture_.joints.push_back({a.point, between, a.state});
+    if (b.state != JointDrawing::open) picture_.joints.push_back({between, b.point, b.state});
     return true;
   }
 
@@ -276,30 +265,17 @@ class ResultPicture {
   void colour_by_velocity() {
     velocities_.assign(now_.size(), Vec2::Zero());
     if (shows_mechanism_) {
-      // mechanism.csv has a row a block that moves.
-      std::ifstream file(path_of("mechanism.csv"));
-      std::string line;
-      for (std::getline(file, line); std::getline(file, line);) {
-        std::vector<std::string> fields;
-        for (std::size_t begin = 0; begin <= line.size();) {
-          const std::size_t end = std::min(line.find(',', begin), line.size());
-          fields.push_back(line.substr(begin, end - begin));
-          begin = end + 1;
-        }
-        if (fields.size() < 6) continue;
-        velocities_[static_cast<std::size_t>(index_of(fields[0]))] = {number_in(fields[4]), number_in(fields[5])};
-        has_velocities_ = true;
-      }
+      // It has a row a block that moves.
+      const StateTable mechanism(path_of("mechanism.csv"), {"block", "velocity_x", "velocity_y"});
+      mechanism.all_rows([&](const Row& row) { note_velocity(row); });
     } else {
       const StateTable table(path_of("block_states.csv"), {"block", "velocity_x_m_per_s", "velocity_y_m_per_s"});
       table.rows(state_, [&](const Row& row) {
-        if (row[1].empty()) return;
-        velocities_[static_cast<std::size_t>(index_of(row[0]))] = {number_in(row[1]), number_in(row[2])};
-        has_velocities_ = true;
+        if (!row[1].empty()) note_velocity(row);
       });
     }
     if (!has_velocities_) {
-      throw InputError({folder_, 0}, "--colour", fmt::format("there are no velocities in the state \"{}\"", state_),
+      throw InputError({path_of("block_states.csv"), 0}, "--colour", fmt::format("there are no velocities in the state \"{}\"", state_),
                        is_factor() ? "--state failed, the mechanism" : "a state of a run after its start");
     }
     std::vector<double> values;
@@ -311,6 +287,12 @@ class ResultPicture {
     } else {
       set_values(values, "velocity", "m/s");
     }
+  }
+
+  /// Of a row with the name of a block and its velocity.
+  void note_velocity(const Row& row) {
+    velocities_[static_cast<std::size_t>(block_index_.of(row, 0))] = {row.number(1), row.number(2)};
+    has_velocities_ = true;
   }
 
   void colour_by_state() {
@@ -360,45 +342,64 @@ class ResultPicture {
   }
 
   void add_cracks() {
-    picture_.crack_name = shows_mechanism_ ? "largest opening, as drawn," : "largest opening";
+    // A gap as wide as a part of a block is seen itself; a bar in its middle would stand in the air.
+    const bool all = std::ranges::all_of(cracks_, [&](const CrackRow& crack) { return is_line(crack); });
+    picture_.crack_name = shows_mechanism_ ? "largest opening, as drawn,"
+                          : all            ? "largest opening"
+                                           : "largest opening of joints that still face each other";
     for (const CrackRow& crack : cracks_) {
+      const std::optional<std::pair<Vec2, Vec2>> common = common_stretch(crack);
+      if (!common || !is_line(crack)) continue;
       // Half of the joint stands for each end.
-      const Vec2 middle = 0.5 * (crack.from + crack.to);
-      picture_.cracks.push_back({crack.from, middle, std::max(0.0, crack.opening_from)});
-      picture_.cracks.push_back({middle, crack.to, std::max(0.0, crack.opening_to)});
+      const Vec2 middle = 0.5 * (common->first + common->second);
+      picture_.cracks.push_back({common->first, middle, std::max(0.0, crack.opening_from)});
+      picture_.cracks.push_back({middle, common->second, std::max(0.0, crack.opening_to)});
     }
   }
 
   void add_points() {
     const auto placement = [&](const json& entry) {
-      const auto b = static_cast<std::size_t>(index_of(entry.at("block").get<std::string>()));
+      const auto b = static_cast<std::size_t>(block_index_.of(entry, path_of("summary.json")));
       return Placement(drawn_[b], now_[b]);
     };
     const auto carried = [&](const json& entry) { return placement(entry).of(point_in(entry.at("point_m"))); };
-    for (const json& entry : summary_.value("supports", json::array())) {
+    for (const json& entry : summary().value("supports", json::array())) {
       const Vec2 stiffness = point_in(entry.at("stiffness_n_per_m"));
-      picture_.supports.push_back({carried(entry), stiffness.x() > 0.0, stiffness.y() > 0.0});
+      picture_.supports.push_back({carried(entry), stiffness.x() > 0.0, stiffness.y() > 0.0, carried(entry) - placement(entry).to});
     }
-    for (const json& entry : summary_.value("arrows", json::array())) {
+    for (const json& entry : summary().value("arrows", json::array())) {
       const Vec2 force = point_in(entry.at("force_n"));
       picture_.loads.push_back({carried(entry), entry.at("turns_with_block").get<bool>() ? placement(entry).turned(force) : force});
     }
-    for (const json& entry : summary_.value("measured_points", json::array()))
+    add_push();
+    for (const json& entry : summary().value("measured_points", json::array()))
       picture_.points.push_back({entry.at("name").get<std::string>(), carried(entry)});
   }
 
+  /// Of a multiplier of gravity_x, -gravity_x, gravity_y or -gravity_y; the arrows of other loads stand where they act.
+  void add_push() {
+    const json& increase = summary().at("options").value("strength_reduction", json::object()).value("increase", json());
+    if (!increase.is_string()) return;
+    const std::string name = increase.get<std::string>();
+    const bool is_back = name.starts_with('-');
+    if (!names_gravity(name.substr(is_back ? 1 : 0))) return;
+    const Vec2 direction = name.ends_with('x') ? Vec2::UnitX() : Vec2::UnitY();
+    picture_.push = {is_back ? Vec2(-direction) : direction, name + ", which grows"};
+  }
+
   void add_titles() {
-    const std::string title = summary_.value("title", "");
-    const std::filesystem::path folder = std::filesystem::path(folder_ + "/").lexically_normal().parent_path();
-    picture_.title = title.empty() ? folder.filename().string() : title;
-    if (summary_.contains("command")) picture_.notes.push_back(answer_of(summary_));
+    const std::string title = summary().value("title", "");
+    picture_.title = title.empty() ? folder_.name() : title;
+    picture_.notes.push_back(answer_of(summary()));
     picture_.notes.push_back(fmt::format("{} blocks; state \"{}\"{}", now_.size(), state_, explanation()));
   }
 
   std::string explanation() const {
     if (shows_mechanism_) {
-      const json failing = summary_.value("failing_blocks", json::object());
-      return fmt::format(": the mechanism of {} of them, velocities drawn as displacements", failing.value("number", 0));
+      const json failing = summary().value("failing_blocks", json::object());
+      const bool by_limit = summary().at("bracket").value("failed_by", json()) == by_limit_analysis;
+      return fmt::format(": the mechanism{} of {} of them, velocities drawn as displacements", by_limit ? " of the limit analysis" : "",
+                         failing.value("number", 0));
     }
     if (is_factor() && state_ == mechanism_state) return ": after failure";
     if (is_factor() && state_ == "stable") return ": the last one that stands";
@@ -407,16 +408,13 @@ class ResultPicture {
     return "";
   }
 
-  std::string folder_;
+  ResultFolder folder_;
   DrawingRequest request_;
-  StateTable outlines_;
-  json summary_ = json::object();  ///< empty where the run has not ended
   std::string state_;
   bool shows_mechanism_ = false, has_velocities_ = false;
   BlockColour colour_ = BlockColour::material;
-  std::vector<BlockInfo> blocks_;
-  std::unordered_map<std::string, int> index_;
   std::vector<Polygon> drawn_, now_;
+  BlockIndex block_index_;
   double size_ = 1.0;                  ///< [m] of the median block
   double largest_displacement_ = 0.0;  ///< [m] of a vertex in the mechanism
   std::vector<ContactRow> contacts_;

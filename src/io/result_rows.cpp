@@ -16,32 +16,32 @@ StateTable contact_table(const std::string& path) {
   return {path, {"block_a", "block_b", "x_m", "y_m", "normal_x", "normal_y", "normal_force_n", "shear_force_n", "status", "length_m"}};
 }
 
-std::vector<ContactRow> contact_rows(const StateTable& table, const std::string& state, const IndexOfBlock& index_of) {
+std::vector<ContactRow> contact_rows(const StateTable& table, const std::string& state, const BlockIndex& blocks) {
   std::vector<ContactRow> contacts;
   table.rows(state, [&](const Row& row) {
-    const Vec2 normal(number_in(row[4]), number_in(row[5]));
-    contacts.push_back({index_of(row[0]),
-                        index_of(row[1]),
-                        {number_in(row[2]), number_in(row[3])},
-                        number_in(row[6]) * normal + number_in(row[7]) * perpendicular(normal),
-                        number_in(row[9]),
+    const Vec2 normal(row.number(4), row.number(5));
+    contacts.push_back({blocks.of(row, 0),
+                        blocks.of(row, 1),
+                        {row.number(2), row.number(3)},
+                        row.number(6) * normal + row.number(7) * perpendicular(normal),
+                        row.number(9),
                         status_in(row[8])});
   });
   return contacts;
 }
 
-std::vector<CrackRow> crack_rows(const std::string& path, const std::string& state, const IndexOfBlock& index_of) {
+std::vector<CrackRow> crack_rows(const std::string& path, const std::string& state, const BlockIndex& blocks) {
   const StateTable table(path, {"block_a", "block_b", "x1_m", "y1_m", "x2_m", "y2_m", "opening1_m", "opening2_m", "slip1_m", "slip2_m"});
   std::vector<CrackRow> cracks;
   table.rows(state, [&](const Row& row) {
-    cracks.push_back({index_of(row[0]),
-                      index_of(row[1]),
-                      {number_in(row[2]), number_in(row[3])},
-                      {number_in(row[4]), number_in(row[5])},
-                      number_in(row[6]),
-                      number_in(row[7]),
-                      number_in(row[8]),
-                      number_in(row[9])});
+    cracks.push_back({blocks.of(row, 0),
+                      blocks.of(row, 1),
+                      {row.number(2), row.number(3)},
+                      {row.number(4), row.number(5)},
+                      row.number(6),
+                      row.number(7),
+                      row.number(8),
+                      row.number(9)});
   });
   return cracks;
 }

@@ -1,12 +1,12 @@
 // Rows of the tables of results, as drawings need them.
 #pragma once
 
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "openclose/geometry/polygon.h"
 #include "openclose/io/drawing.h"
+#include "openclose/io/result_folder.h"
 #include "openclose/io/state_table.h"
 
 namespace openclose {
@@ -27,12 +27,9 @@ struct CrackRow {
   double opening_from = 0.0, opening_to = 0.0, slip_from = 0.0, slip_to = 0.0;
 };
 
-/// The number of a block by its name.
-using IndexOfBlock = std::function<int(std::string_view name)>;
-
 StateTable contact_table(const std::string& path);
-std::vector<ContactRow> contact_rows(const StateTable& table, const std::string& state, const IndexOfBlock& index_of);
-std::vector<CrackRow> crack_rows(const std::string& path, const std::string& state, const IndexOfBlock& index_of);
+std::vector<ContactRow> contact_rows(const StateTable& table, const std::string& state, const BlockIndex& blocks);
+std::vector<CrackRow> crack_rows(const std::string& path, const std::string& state, const BlockIndex& blocks);
 
 /// How a block has moved from one polygon to another, as a rigid body.
 struct Placement {

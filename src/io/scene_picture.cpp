@@ -2,6 +2,7 @@
 
 #include <map>
 
+#include "openclose/geometry/polygon.h"
 #include "openclose/io/drawing.h"
 #include "openclose/scene/scene.h"
 
@@ -37,7 +38,10 @@ Picture picture_of(const Scene& scene) {
   for (const Material& material : scene.materials) picture.colour_names.push_back(material.name);
   for (const BlockInput& block : scene.blocks) picture.blocks.push_back({block.name, block.vertices, block.material, block.fixed, 0.0});
   add_seams(scene, picture);
-  for (const Support& s : scene.supports) picture.supports.push_back({s.point, s.stiffness.x() > 0.0, s.stiffness.y() > 0.0});
+  for (const Support& s : scene.supports) {
+    const Vec2 middle = polygon_properties(scene.blocks[s.block].vertices).centroid;
+    picture.supports.push_back({s.point, s.stiffness.x() > 0.0, s.stiffness.y() > 0.0, s.point - middle});
+  }
   for_each_force(scene, [&](const auto& force) {
     for (const DrawnForce& arrow : force.drawn()) picture.loads.push_back({arrow.point, arrow.force});
   });

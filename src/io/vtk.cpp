@@ -77,8 +77,9 @@ struct BlockNumbers {
   }
 };
 
-void add_vector(std::vector<double>& list, std::string_view x, std::string_view y) {
-  list.insert(list.end(), {number_in(x), number_in(y), 0.0});
+/// The two columns from this one on.
+void add_vector(std::vector<double>& list, const Row& row, std::size_t column) {
+  list.insert(list.end(), {row.number_or_zero(column), row.number_or_zero(column + 1), 0.0});
 }
 
 std::string grid_of_blocks(const StateTable& outlines, const StateTable& motions, const std::string& state, const BlockNumbers& numbers) {
@@ -95,14 +96,14 @@ std::string grid_of_blocks(const StateTable& outlines, const StateTable& motions
       last = row[0];
     }
     connectivity.push_back(static_cast<std::int64_t>(connectivity.size()));
-    add_vector(points, row[1], row[2]);
+    add_vector(points, row, 1);
     offsets.back() = static_cast<std::int64_t>(connectivity.size());
   });
   motions.rows(state, [&](const Row& row) {
-    add_vector(displacement, row[1], row[2]);
-    rotation.push_back(number_in(row[3]));
-    add_vector(velocity, row[4], row[5]);
-    angular_velocity.push_back(number_in(row[6]));
+    add_vector(displacement, row, 1);
+    rotation.push_back(row.number(3));
+    add_vector(velocity, row, 4);
+    angular_velocity.push_back(row.number_or_zero(6));
   });
   Grid grid(points.size() / 3, offsets.size());
   grid.open("Points");
@@ -131,12 +132,12 @@ std::string grid_of_contacts(const StateTable& contacts, const std::string& stat
   std::vector<double> points, normal, force, length, gap, normal_force, shear_force;
   std::vector<std::int64_t> cells, offsets, a, b, status;
   contacts.rows(state, [&](const Row& row) {
-    add_vector(points, row[2], row[3]);
-    add_vector(normal, row[4], row[5]);
-    const double nx = number_in(row[4]), ny = number_in(row[5]), n = number_in(row[8]), t = number_in(row[9]);
+    add_vector(points, row, 2);
+    add_vector(normal, row, 4);
+    const double nx = row.number(4), ny = row.number(5), n = row.number(8), t = row.number(9);
     force.insert(force.end(), {n * nx - t * ny, n * ny + t * nx, 0.0});
-    length.push_back(number_in(row[6]));
-    gap.push_back(number_in(row[7]));
+    length.push_back(row.number(6));
+    gap.push_back(row.number(7));
     normal_force.push_back(n);
     shear_force.push_back(t);
     status.push_back(row[10] == "open" ? 0 : row[10] == "sticking" ? 1 : 2);
@@ -206,7 +207,7 @@ void write_vtk(const OutputFolder& folder) {
     if (!motions.has(state)) continue;  // the drawing
     std::optional<double> time;
     motions.rows(state, [&](const Row& row) {
-      if (!time) time = row[7].empty() ? static_cast<double>(block_files.size()) : number_in(row[7]);
+      if (!time) time = row[7].empty() ? static_cast<double>(block_files.size()) : row.number(7);
     });
     if (!block_files.empty() && block_files.back().first == time) continue;
     const std::string name = fmt::format("{:04}_{}.vtu", block_files.size(), name_in_file(state));

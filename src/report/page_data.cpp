@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <unordered_map>
@@ -16,6 +14,7 @@
 #include "openclose/geometry/polygon.h"
 #include "openclose/io/drawing_colours.h"
 #include "openclose/io/result_answer.h"
+#include "openclose/io/result_folder.h"
 #include "openclose/io/state_table.h"
 #include "openclose/report/page_tables.h"
 
@@ -24,8 +23,7 @@ namespace {
 
 using nlohmann::json;
 
-/// The drawing in blocks.csv, and the mechanism of a factor of safety.
-constexpr const char* drawn_state = "initial";
+/// The mechanism of a factor of safety.
 constexpr const char* mechanism_state = "failed";
 /// [-] Openings and slips below this part of the largest one are thinner than a line can be drawn.
 constexpr double least_drawn_part = 0.005;
@@ -48,29 +46,22 @@ std::uint8_t status_in(std::string_view word) {
 class PageData {
  public:
   PageData(const std::string& folder, const ReportRequest& request, Report& report)
-      : folder_(require_folder(folder)),
+      : folder_(folder),
         request_(request),
         report_(report),
-        outlines_(path_of("blocks.csv"), {"block", "x_m", "y_m"}),
+        block_index_(path_of("blocks.csv"), folder_.drawing().names),
         motions_(path_of("block_states.csv"), {"block", "displacement_x_m", "displacement_y_m", "rotation_rad", "velocity_x_m_per_s",
                                                "velocity_y_m_per_s", "angular_velocity_rad_per_s", "time_s"}),
         contacts_(path_of("contacts.csv"),
                   {"block_a", "block_b", "x_m", "y_m", "normal_x", "normal_y", "length_m", "gap_m", "normal_force_n", "shear_force_n", "status"}),
-        cracks_(path_of("cracks.csv"), {"block_a", "block_b", "x1_m", "y1_m", "x2_m", "y2_m", "opening1_m", "opening2_m", "slip1_m", "slip2_m"}) {
-    if (!outlines_.has(drawn_state)) {
-      throw InputError({path_of("blocks.csv"), 0}, "",
-                       std::filesystem::exists(path_of("blocks.csv")) ? "the drawing is not written there" : "there is no such file",
-                       "the folder of a run or fos");
-    }
-    read_summary();
-  }
+        cracks_(path_of("cracks.csv"), {"block_a", "block_b", "x1_m", "y1_m", "x2_m", "y2_m", "opening1_m", "opening2_m", "slip1_m", "slip2_m"}) {}
 
   json data() {
     json page;
-    page["folder"] = std::filesystem::path(folder_ + "/").lexically_normal().parent_path().filename().string();
-    page["summary"] = summary_;
+    page["folder"] = folder_.name();
+    page["summary"] = summary();
     if (page["summary"].contains("failing_blocks")) page["summary"]["failing_blocks"].erase("names");
-    report_.answer = summary_.contains("command") ? answer_of(summary_) : "";
+    report_.answer = answer_of(summary());
     page["answer"] = report_.answer;
     page["bounds"] = {{"created_energy", watch_bound::created_energy}, {"penetration", watch_bound::penetration}, {"reach", 1.0}};
     page["colours"] = colours();
@@ -86,22 +77,9 @@ class PageData {
   }
 
  private:
-  static std::string require_folder(const std::string& folder) {
-    std::error_code error;
-    const std::string accepted = "the folder of a run or fos, results/<name of the scene> by default";
-    if (!std::filesystem::exists(folder, error)) throw InputError({folder, 0}, "", "there is no such folder", accepted);
-    if (!std::filesystem::is_directory(folder, error)) throw InputError({folder, 0}, "", "this is no folder", accepted);
-    return folder;
-  }
-  std::string path_of(const std::string& name) const { return folder_ + "/" + name; }
-  bool is_factor() const { return summary_.value("command", "") == "fos"; }
-
-  void read_summary() {
-    std::ifstream file(path_of("summary.json"));
-    if (!file) return;  // a run that goes on, or was broken off: what it has written can be shown
-    summary_ = json::parse(file, nullptr, false);
-    if (!summary_.is_object()) throw InputError({path_of("summary.json"), 0}, "", "this is not JSON", "the file as openclose has written it");
-  }
+  std::string path_of(const std::string& name) const { return folder_.path_of(name); }
+  const json& summary() const { return folder_.summary(); }
+  bool is_factor() const { return folder_.is_factor(); }
 
   static json colours() {
     using namespace drawing_colour;
@@ -111,16 +89,7 @@ class PageData {
 
   /// The blocks of the drawing; their index is what everything else names them by.
   json blocks() {
-    std::vector<Polygon> polygons;
-    std::vector<std::string> names;
-    outlines_.rows(drawn_state, [&](const Row& row) {
-      if (names.empty() || row[0] != names.back()) {
-        index_.emplace(std::string(row[0]), static_cast<std::int32_t>(names.size()));
-        names.emplace_back(row[0]);
-        polygons.emplace_back();
-      }
-      polygons.back().emplace_back(number_in(row[1]), number_in(row[2]));
-    });
+    const auto& [names, polygons] = folder_.drawing();
     Box box = Box::around(polygons.front());
     for (const Polygon& polygon : polygons) {
       const Box other = Box::around(polygon);
@@ -144,23 +113,21 @@ class PageData {
   }
 
   void add_properties(json& blocks) const {
-    const std::size_t count = index_.size();
+    const std::size_t count = block_index_.size();
     std::vector<std::int32_t> material(count, 0);
     std::vector<std::uint8_t> fixed(count, 0);
     std::vector<double> area(count, 0.0), mass(count, 0.0);
     std::vector<std::string> materials;
-    const TextTable table(path_of("block_properties.csv"));
-    for (const std::vector<std::string>& row : table.rows) {
-      const std::int32_t b = index_of(table.field(row, "block"));
-      if (b < 0) continue;
-      const std::string& name = table.field(row, "material");
-      auto place = std::ranges::find(materials, name);
-      if (place == materials.end()) place = materials.insert(place, name);
+    const StateTable table(path_of("block_properties.csv"), {"block", "material", "fixed", "area_m2", "mass_kg"});
+    table.all_rows([&](const Row& row) {
+      const int b = block_index_.of(row, 0);
+      const auto place = std::ranges::find(materials, row[1]);
       material[b] = static_cast<std::int32_t>(place - materials.begin());
-      fixed[b] = table.field(row, "fixed") == "1";
-      area[b] = number_in(table.field(row, "area_m2"));
-      mass[b] = number_in(table.field(row, "mass_kg"));
-    }
+      if (place == materials.end()) materials.emplace_back(row[1]);
+      fixed[b] = row[2] == "1";
+      area[b] = row.number(3);
+      mass[b] = row.number(4);
+    });
     blocks["materials"] = materials;
     blocks["material_i4"] = packed<std::int32_t>(material);
     blocks["fixed_u1"] = packed<std::uint8_t>(fixed);
@@ -168,30 +135,30 @@ class PageData {
     blocks["mass_f8"] = packed<double>(mass);
   }
 
-  std::int32_t index_of(std::string_view name) const {
-    const auto place = index_.find(std::string(name));
-    return place == index_.end() ? -1 : place->second;
-  }
-
   /// What holds, pushes and measures blocks, at points of the drawing.
   json symbols() const {
     json list = json::array();
     const auto add = [&](const char* kind, const json& entry, json more) {
-      const std::int32_t block = index_of(entry.at("block").get<std::string>());
-      if (block < 0) return;
       more["kind"] = kind;
-      more["block"] = block;
+      more["block"] = block_index_.of(entry, path_of("summary.json"));
       const json& point = entry.at("point_m");
       more["point"] = {point.at(0).get<double>() - origin_.x(), point.at(1).get<double>() - origin_.y()};
       list.push_back(std::move(more));
     };
-    for (const json& entry : summary_.value("supports", json::array())) {
+    for (const json& entry : summary().value("supports", json::array())) {
       const json& stiffness = entry.at("stiffness_n_per_m");
-      add("support", entry, {{"in_x", stiffness.at(0).get<double>() > 0.0}, {"in_y", stiffness.at(1).get<double>() > 0.0}});
+      const auto block = static_cast<std::size_t>(block_index_.of(entry, path_of("summary.json")));
+      const Vec2 middle = polygon_properties(folder_.drawing().polygons[block]).centroid;
+      const json& point = entry.at("point_m");
+      add("support", entry,
+          {{"in_x", stiffness.at(0).get<double>() > 0.0},
+           {"in_y", stiffness.at(1).get<double>() > 0.0},
+           {"on_the_right", point.at(0).get<double>() > middle.x()},
+           {"on_top", point.at(1).get<double>() > middle.y()}});
     }
-    for (const json& entry : summary_.value("arrows", json::array()))
+    for (const json& entry : summary().value("arrows", json::array()))
       add("load", entry, {{"force", entry.at("force_n")}, {"turns", entry.at("turns_with_block")}});
-    for (const json& entry : summary_.value("measured_points", json::array())) add("point", entry, {{"name", entry.at("name")}});
+    for (const json& entry : summary().value("measured_points", json::array())) add("point", entry, {{"name", entry.at("name")}});
     return list;
   }
 
@@ -199,7 +166,7 @@ class PageData {
   std::vector<std::string> different_states() const {
     std::vector<std::string> names;
     std::optional<double> last;
-    for (const std::string& state : outlines_.states()) {
+    for (const std::string& state : folder_.states()) {
       const std::optional<double> time = time_of(state);
       if (time && time == last) continue;
       last = time;
@@ -211,7 +178,7 @@ class PageData {
   std::optional<double> time_of(const std::string& state) const {
     std::optional<double> time;
     motions_.first_row(state, [&](const Row& row) {
-      if (!row[7].empty()) time = number_in(row[7]);
+      if (!row[7].empty()) time = row.number(7);
     });
     return time;
   }
@@ -274,18 +241,22 @@ class PageData {
   }
 
   void add_motion(const std::string& name, json& state) const {
-    std::vector<float> motion(3 * index_.size(), 0.0f), velocity(3 * index_.size(), 0.0f);
+    std::vector<float> motion(3 * block_index_.size(), 0.0f), velocity(3 * block_index_.size(), 0.0f);
     bool moves = false;
+    std::size_t rows = 0;
     motions_.rows(name, [&](const Row& row) {
-      const std::int32_t b = index_of(row[0]);
-      if (b < 0) return;
+      const int b = block_index_.of(row, 0);
       for (std::size_t k = 0; k < 3; ++k) {
-        motion[3 * b + k] = static_cast<float>(number_in(row[1 + k]));
-        velocity[3 * b + k] = static_cast<float>(number_in(row[4 + k]));
+        motion[3 * b + k] = static_cast<float>(row.number(1 + k));
+        velocity[3 * b + k] = static_cast<float>(row.number_or_zero(4 + k));
       }
       moves = moves || !row[4].empty();
+      ++rows;
     });
     if (motions_.has(name)) {
+      if (rows != block_index_.size())
+        throw InputError({motions_.path(), 0}, "", fmt::format("the state \"{}\" has {} blocks", name, rows),
+                         fmt::format("the {} blocks of blocks.csv", block_index_.size()));
       state["motion_f4"] = packed<float>(motion);
       state["largest_displacement"] = largest_vector(motion);
     }
@@ -305,16 +276,14 @@ class PageData {
   void add_contacts(const std::string& name, json& state) const {
     std::vector<ContactRow> rows;
     contacts_.rows(name, [&](const Row& row) {
-      const std::int32_t a = index_of(row[0]), b = index_of(row[1]);
-      if (a < 0 || b < 0) return;
-      rows.push_back({a,
-                      b,
-                      {number_in(row[2]), number_in(row[3])},
-                      {number_in(row[4]), number_in(row[5])},
-                      number_in(row[6]),
-                      number_in(row[7]),
-                      number_in(row[8]),
-                      number_in(row[9]),
+      rows.push_back({block_index_.of(row, 0),
+                      block_index_.of(row, 1),
+                      {row.number(2), row.number(3)},
+                      {row.number(4), row.number(5)},
+                      row.number(6),
+                      row.number(7),
+                      row.number(8),
+                      row.number(9),
                       status_in(row[10])});
     });
     if (rows.empty()) return;
@@ -362,11 +331,11 @@ class PageData {
     double largest = 0.0, largest_opening = 0.0;
     cracks_.rows(name, [&](const Row& row) {
       std::vector<double> numbers;
-      for (std::size_t k = 2; k < 10; ++k) numbers.push_back(number_in(row[k]));
+      for (std::size_t k = 2; k < 10; ++k) numbers.push_back(row.number(k));
       largest_opening = std::max({largest_opening, numbers[4], numbers[5]});
       largest = std::max({largest, largest_opening, std::abs(numbers[6]), std::abs(numbers[7])});
       rows.push_back(std::move(numbers));
-      blocks.insert(blocks.end(), {index_of(row[0]), index_of(row[1])});
+      blocks.insert(blocks.end(), {block_index_.of(row, 0), block_index_.of(row, 1)});
     });
     std::vector<std::int32_t> kept_blocks;
     std::vector<float> kept;
@@ -383,16 +352,13 @@ class PageData {
 
   /// At large displacements the failed state is one of a motion, and no mechanism.
   void add_mechanism(json& state) const {
-    const TextTable table(path_of("mechanism.csv"));
-    if (table.rows.empty()) return;
-    std::vector<float> velocity(3 * index_.size(), 0.0f);
-    for (const std::vector<std::string>& row : table.rows) {
-      const std::int32_t b = index_of(table.field(row, "block"));
-      if (b < 0) continue;
-      velocity[3 * b] = static_cast<float>(number_in(table.field(row, "velocity_x")));
-      velocity[3 * b + 1] = static_cast<float>(number_in(table.field(row, "velocity_y")));
-      velocity[3 * b + 2] = static_cast<float>(number_in(table.field(row, "rotation_per_m")));
-    }
+    const StateTable table(path_of("mechanism.csv"), {"block", "velocity_x", "velocity_y", "rotation_per_m"});
+    if (table.states().empty()) return;
+    std::vector<float> velocity(3 * block_index_.size(), 0.0f);
+    table.all_rows([&](const Row& row) {
+      const int b = block_index_.of(row, 0);
+      for (std::size_t k = 0; k < 3; ++k) velocity[3 * b + k] = static_cast<float>(row.number(1 + k));
+    });
     state["is_mechanism"] = true;
     state["velocity_f4"] = packed<float>(velocity);
     state["largest_velocity"] = largest_vector(velocity);
@@ -400,7 +366,7 @@ class PageData {
 
   void add_tables(json& page) const {
     std::vector<std::string> measured;
-    for (const json& point : summary_.value("measured_points", json::array())) measured.push_back(point.at("name").get<std::string>());
+    for (const json& point : summary().value("measured_points", json::array())) measured.push_back(point.at("name").get<std::string>());
     page["history"] = curves_in(path_of("history.csv"), "point", measured, {"displacement_x_m", "displacement_y_m"});
     page["energy"] = curves_in(path_of("energy.csv"), "", {});
     page["contact_history"] = curves_in(path_of("contact_history.csv"), "contact", {}, {"normal_force_n"});
@@ -409,12 +375,11 @@ class PageData {
     page["milestones"] = json(rows_in(path_of("milestones.csv")));
   }
 
-  std::string folder_;
+  ResultFolder folder_;
   ReportRequest request_;
   Report& report_;
-  StateTable outlines_, motions_, contacts_, cracks_;
-  json summary_ = json::object();  ///< empty where the run has not ended
-  std::unordered_map<std::string, std::int32_t> index_;
+  BlockIndex block_index_;
+  StateTable motions_, contacts_, cracks_;
   Vec2 origin_ = Vec2::Zero();  ///< the middle of the drawing
 };
 

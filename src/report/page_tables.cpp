@@ -1,13 +1,13 @@
 #include "openclose/report/page_tables.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "openclose/io/state_table.h"
 #include "openclose/io/vtk.h"
 
 namespace openclose {
@@ -22,11 +22,24 @@ constexpr std::size_t most_curves = 12;
 /// [bytes] Of the scene as it was read; a longer one is shown without its blocks.
 constexpr std::size_t longest_scene = 200'000;
 
-std::optional<double> number_or_none(const std::string& field) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
-  if (error != std::errc() || end != field.data() + field.size()) return std::nullopt;
-  return value;
+/// The fields of a line of a table, of which some may be quoted.
+std::vector<std::string> csv_fields(const std::string& line) {
+  std::vector<std::string> fields(1);
+  bool quoted = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    if (line[i] == '"') {
+      if (quoted && i + 1 < line.size() && line[i + 1] == '"') {
+        fields.back() += line[++i];
+      } else {
+        quoted = !quoted;
+      }
+    } else if (line[i] == ',' && !quoted) {
+      fields.emplace_back();
+    } else {
+      fields.back() += line[i];
+    }
+  }
+  return fields;
 }
 
 /// The rows of a table by their curves. A row that was not written to its end is left out.
@@ -49,7 +62,7 @@ struct Curves {
       if (is_new) names.push_back(name);
       std::vector<float>& row = place->second.emplace_back();
       for (std::size_t k = 0; k < fields.size(); ++k) {
-        if (k != key_place) row.push_back(static_cast<float>(number_or_none(fields[k]).value_or(NAN)));
+        if (k != key_place) row.push_back(static_cast<float>(finite_number(fields[k]).value_or(NAN)));
       }
     }
     if (key_place < columns.size()) columns.erase(columns.begin() + static_cast<std::ptrdiff_t>(key_place));
@@ -87,50 +100,6 @@ std::string without_blocks(const std::string& text, std::size_t& blocks) {
 }
 
 }  // namespace
-
-std::vector<std::string> csv_fields(const std::string& line) {
-  std::vector<std::string> fields(1);
-  bool quoted = false;
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    if (line[i] == '"') {
-      if (quoted && i + 1 < line.size() && line[i + 1] == '"') {
-        fields.back() += line[++i];
-      } else {
-        quoted = !quoted;
-      }
-    } else if (line[i] == ',' && !quoted) {
-      fields.emplace_back();
-    } else {
-      fields.back() += line[i];
-    }
-  }
-  return fields;
-}
-
-TextTable::TextTable(std::istream& table) {
-  std::string line;
-  if (!std::getline(table, line)) return;
-  columns = csv_fields(line);
-  while (std::getline(table, line)) {
-    std::vector<std::string> fields = csv_fields(line);
-    if (fields.size() == columns.size()) rows.push_back(std::move(fields));
-  }
-}
-
-TextTable::TextTable(const std::string& path) {
-  std::ifstream file(path);
-  *this = TextTable(file);
-}
-
-std::size_t TextTable::column(const std::string& name) const {
-  return static_cast<std::size_t>(std::ranges::find(columns, name) - columns.begin());
-}
-
-const std::string& TextTable::field(const std::vector<std::string>& row, const std::string& name) const {
-  static const std::string empty;
-  const std::size_t place = column(name);
-  return place < row.size() ? row[place] : empty;
-}
 
 template <typename Number>
 std::string packed(std::span<const Number> numbers) {
@@ -174,13 +143,17 @@ json curves_in(const std::string& path, const std::string& key, const std::vecto
 
 nlohmann::ordered_json rows_in(std::istream& lines) {
   using nlohmann::ordered_json;
-  const TextTable table(lines);
   ordered_json list = ordered_json::array();
-  for (const std::vector<std::string>& fields : table.rows) {
+  std::string line;
+  std::getline(lines, line);
+  const std::vector<std::string> columns = csv_fields(line);
+  while (std::getline(lines, line)) {
+    const std::vector<std::string> fields = csv_fields(line);
+    if (fields.size() != columns.size()) continue;  // a row that was not written to its end
     ordered_json& row = list.emplace_back();
     for (std::size_t k = 0; k < fields.size(); ++k) {
-      const std::optional<double> number = number_or_none(fields[k]);
-      ordered_json& value = row[table.columns[k]];
+      const std::optional<double> number = finite_number(fields[k]);
+      ordered_json& value = row[columns[k]];
       if (number) {
         value = *number;
       } else if (!fields[k].empty()) {

@@ -6,12 +6,15 @@
 #include <array>
 #include <numeric>
 #include <string_view>
+#include <utility>
 
 namespace openclose {
 namespace {
 
 constexpr std::size_t longest_list = 15;          // the keys of [method], the largest table for users, all fit
 constexpr std::size_t most_misspelt_letters = 3;  // two letters exchanged, and one forgotten; with more of them another word may be meant
+
+constexpr std::size_t shortest_misspelt = 3;  // [letters] of two every other word is one letter away
 
 constexpr std::array<std::string_view, 45> unit_words{
     "per", "m",   "mm",  "cm",   "km",  "ft",  "m2",  "mm2", "cm2",     "m3",      "mm3", "cm3", "s",       "s2",     "ms",
@@ -23,24 +26,26 @@ bool is_unit_word(std::string_view word) {
   return std::find(unit_words.begin(), unit_words.end(), word) != unit_words.end();
 }
 
-/// Levenshtein's distance: single characters inserted, deleted or replaced.
+/// Optimal string alignment (F. J. Damerau, 1964): single characters inserted, deleted or replaced, or two neighbours exchanged.
 std::size_t edit_distance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
+  std::vector<std::size_t> before(b.size() + 1), above(b.size() + 1), row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
   for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = row[0];
+    std::swap(before, above);
+    std::swap(above, row);
     row[0] = i + 1;
     for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({replaced, diagonal + 1, row[j] + 1});
+      row[j + 1] = std::min({above[j] + (a[i] == b[j] ? 0 : 1), above[j + 1] + 1, row[j] + 1});
+      if (i > 0 && j > 0 && a[i] == b[j - 1] && a[i - 1] == b[j]) row[j + 1] = std::min(row[j + 1], before[j - 1] + 1);
     }
   }
   return row[b.size()];
 }
 
+/// Of a word of three letters one may be wrong: "fso", "cud".
 bool may_be_meant(std::size_t distance, const std::string& name) {
-  return distance <= most_misspelt_letters && distance < name.size() / 2;
+  const std::size_t too_many = name.size() < shortest_misspelt ? 1 : std::max<std::size_t>(2, name.size() / 2);
+  return distance <= most_misspelt_letters && distance < too_many;
 }
 
 /// Of the whole name, or of a part that may be meant, as people remember "friction" of joint.friction_angle_deg.
@@ -71,6 +76,11 @@ std::optional<std::string> similar(const std::string& word, const std::vector<st
   const auto nearest = std::ranges::min_element(accepted, {}, distance);
   if (nearest == accepted.end() || !may_be_meant(distance(*nearest), *nearest)) return std::nullopt;
   return *nearest;
+}
+
+std::string did_you_mean(const std::string& word, const std::vector<std::string>& accepted) {
+  const std::optional<std::string> meant = similar(word, accepted);
+  return meant ? fmt::format(", did you mean {}?", *meant) : "";
 }
 
 std::string without_unit(const std::string& key) {

@@ -13,6 +13,9 @@ std::string suggestions(const std::string& word, std::vector<std::string> accept
 /// The accepted word that the user may have meant: few letters differ.
 std::optional<std::string> similar(const std::string& word, const std::vector<std::string>& accepted);
 
+/// ", did you mean hard?", or nothing.
+std::string did_you_mean(const std::string& word, const std::vector<std::string>& accepted);
+
 /// A key without the unit at its end: "density_kg_per_m3" -> "density". Units are SI and those a user may be tempted to write instead.
 std::string without_unit(const std::string& key);
 

@@ -61,7 +61,7 @@ toml::node& element(const Override& override, toml::node& parent, std::size_t in
                 array->empty() ? "no index, the array is empty" : fmt::format("[0] to [{}]", array->size() - 1));
 }
 
-/// "an index, [0] to [1], before it, or the name of an element: "bedding"".
+/// "an index, [0] to [1], before it, or the name of an element: "bedding"". Where none has a name only the index is left.
 std::string ways_to_elements(const toml::array& array) {
   std::string names;
   for (const toml::node& node : array) {
@@ -69,7 +69,8 @@ std::string ways_to_elements(const toml::array& array) {
     const std::optional<std::string> name = table == nullptr ? std::nullopt : (*table)["name"].value<std::string>();
     if (name && names.size() < longest_list_of_names) names += fmt::format("{}{}", names.empty() ? ": " : ", ", in_quotes(*name));
   }
-  return fmt::format("an index, [0] to [{}], before it, or the name of an element{}", array.size() - 1, names);
+  return fmt::format("an index, [0] to [{}], before it, or the name of an element{}", array.size() - 1,
+                     names.empty() ? "; none of them has one" : names);
 }
 
 toml::table& as_table(const Override& override, toml::node& parent, const std::string& key) {
@@ -92,8 +93,11 @@ toml::node* named_element(const Override& override, toml::node& parent, const st
   return found.empty() ? nullptr : array->get(found.front());
 }
 
-toml::node& member(const Override& override, toml::node& parent, const std::string& key) {
+/// \param noun  what the parent is a list of, if it is one: "joint"
+toml::node& member(const Override& override, toml::node& parent, const std::string& noun, const std::string& key) {
   if (toml::node* element = named_element(override, parent, key)) return *element;
+  if (const toml::array* array = parent.as_array(); array != nullptr && !array->empty())
+    override.fail(fmt::format("no {} is called {}", noun, in_quotes(key)), ways_to_elements(*array));
   toml::table& table = as_table(override, parent, key);
   if (!table.contains(key)) table.insert_or_assign(key, std::move(*parse_value(override, "{}").get_as<toml::table>("value")));
   return *table.get(key);
@@ -122,8 +126,9 @@ void apply_override(toml::table& scene, const std::string& file, const std::stri
   toml::node* parent = &scene;
   for (std::size_t i = 0; i + 1 < path.size(); ++i) {
     const toml::path_component& step = path[i];
-    const bool is_key = step.type() == toml::path_component_type::key;
-    parent = is_key ? &member(override, *parent, step.key()) : &element(override, *parent, step.index());
+    const bool is_key = step.type() == toml::path_component_type::key, is_below_key = i > 0 && path[i - 1].type() == toml::path_component_type::key;
+    parent =
+        is_key ? &member(override, *parent, is_below_key ? path[i - 1].key() : "element", step.key()) : &element(override, *parent, step.index());
   }
 
   const toml::path_component& last = path[path.size() - 1];

@@ -22,6 +22,7 @@
 #include "openclose/scene/plausibility.h"
 #include "openclose/scene/point_of_block.h"
 #include "openclose/scene/table.h"
+#include "openclose/scene/toml_hint.h"
 
 namespace openclose {
 namespace {
@@ -38,6 +39,12 @@ std::string read_text(const std::string& path) {
   return text;
 }
 
+/// \param number  from 1
+std::string_view line_of_text(std::string_view text, std::size_t number) {
+  for (; number > 1 && !text.empty(); --number) text.remove_prefix(std::min(text.find('\n'), text.size() - 1) + 1);
+  return text.substr(0, text.find('\n'));
+}
+
 toml::table parse(const std::string& text, const std::string& path) {
   if (const auto line = line_of_deep_key(text))
     throw_input_error({path, *line}, "", fmt::format("a key has more than {} parts", most_key_parts), "keys such as step.dt_s");
@@ -47,7 +54,9 @@ toml::table parse(const std::string& text, const std::string& path) {
       throw_input_error({path, 0}, "", "the file is empty", "a scene with at least one [[material]] and one [[block]] or a [domain]");
     return document;
   } catch (const toml::parse_error& error) {
-    throw_input_error({path, static_cast<int>(error.source().begin.line)}, "", in_quotes(error.description()), "TOML 1.0");
+    const toml::source_position at = error.source().begin;
+    throw_input_error({path, static_cast<int>(at.line)}, "", fmt::format("{} in column {}", in_quotes(error.description()), at.column),
+                      accepted_instead_of(line_of_text(text, at.line)));
   }
 }
 

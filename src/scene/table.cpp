@@ -101,6 +101,11 @@ void Value::fail_type(const std::string& accepted) const {
   fail(description(*node_), accepted);
 }
 
+void Value::fail_type_of_list() const {
+  const toml::value<std::string>* text = node_->as_string();
+  fail_type(text == nullptr ? "an array" : fmt::format("a list, e.g. [{}]", in_quotes(text->get())));
+}
+
 bool can_be_written(const std::string& name) {
   return std::none_of(name.begin(), name.end(), [](char character) { return is_control(character) || character == ',' || character == '"'; });
 }
@@ -202,8 +207,14 @@ std::vector<Table> Table::tables(const std::string& key) {
 void Table::refuse(const toml::node& node, const std::string& key) const {
   std::vector<std::string> elsewhere = tables_with(key);
   std::erase(elsewhere, without_indices(dotted(key)));
-  if (!elsewhere.empty())
-    throw_input_error(location(node, *file_), dotted(key), "this key belongs in another table", fmt::format("{}", fmt::join(elsewhere, ", ")));
+  if (!elsewhere.empty()) {
+    std::string accepted = fmt::format("{}", fmt::join(elsewhere, ", "));
+    const std::string joint = "joint";
+    const bool names_joint =
+        std::ranges::find(accepted_, joint) != accepted_.end() && std::ranges::find(elsewhere, joint + "." + key) != elsewhere.end();
+    if (names_joint) accepted += fmt::format(", of a [[joint]] with a name, and {} with that name", without_indices(dotted(joint)));
+    throw_input_error(location(node, *file_), dotted(key), "this key belongs in another table", accepted);
+  }
   const std::vector<std::string> other_units = same_quantity(key, accepted_);
   if (!other_units.empty()) {
     throw_input_error(location(node, *file_), dotted(key), "this key has another unit", fmt::format("{}", fmt::join(other_units, ", ")));

@@ -54,6 +54,7 @@ class Value {
   [[noreturn]] void fail(const std::string& read, const std::string& accepted) const { throw_input_error(where(), key_, read, accepted); }
   /// For a value of another type: says what it is.
   [[noreturn]] void fail_type(const std::string& accepted) const;
+  [[noreturn]] void fail_type_of_list() const;
 
  private:
   const toml::node* node_;
@@ -96,7 +97,7 @@ void read(const Value& value, std::optional<T>& target, const Limits&... limits)
 
 template <typename T, typename... Limits>
 void read(const Value& value, std::vector<T>& list, const Limits&... limits) {
-  if (!value.node().is_array()) value.fail_type("an array");
+  if (!value.node().is_array()) value.fail_type_of_list();
   list.resize(value.node().as_array()->size());
   for (std::size_t i = 0; i < list.size(); ++i) read(value.element(i), list[i], limits...);
 }

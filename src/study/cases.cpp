@@ -159,15 +159,23 @@ void CaseWarnings::add(const std::string& name, const std::string& summary) {
   const nlohmann::json warnings = nlohmann::json::parse(summary).value("warnings", nlohmann::json::array());
   for (const nlohmann::json& entry : warnings) {
     const auto text = entry.get<std::string>();
-    std::string pattern;
-    std::ranges::copy_if(text, std::back_inserter(pattern), [](unsigned char c) { return !std::isdigit(c) && c != '.'; });
-    if (!told.insert(pattern).second) continue;
-    const auto place = std::ranges::find(kinds_, pattern, &Kind::pattern);
-    if (place == kinds_.end()) {
-      kinds_.push_back({pattern, fmt::format("{}: {}", name, text)});
-    } else {
-      ++place->others;
-    }
+    if (told.insert(pattern_of(text)).second) note(name, text);
+  }
+}
+
+std::string CaseWarnings::pattern_of(const std::string& text) {
+  std::string pattern;
+  std::ranges::copy_if(text, std::back_inserter(pattern), [](unsigned char c) { return !std::isdigit(c) && c != '.'; });
+  return pattern;
+}
+
+void CaseWarnings::note(const std::string& name, const std::string& text) {
+  const std::string pattern = pattern_of(text);
+  const auto place = std::ranges::find(kinds_, pattern, &Kind::pattern);
+  if (place == kinds_.end()) {
+    kinds_.push_back({pattern, fmt::format("{}: {}", name, text)});
+  } else {
+    ++place->others;
   }
 }
 
@@ -175,7 +183,8 @@ std::vector<std::string> CaseWarnings::texts() const {
   std::vector<std::string> list;
   for (const Kind& kind : kinds_) {
     const std::string others =
-        kind.others == 0 ? "" : fmt::format(" (and {} other cases with their own numbers, see their summary.json)", kind.others);
+        kind.others == 0 ? ""
+                         : fmt::format(" (and the same of {} other case{}, each with its own numbers)", kind.others, kind.others == 1 ? "" : "s");
     list.push_back(kind.first + others);
   }
   return list;

@@ -35,6 +35,7 @@ class CaseWarnings {
  public:
   /// \param summary  as in CaseResult
   void add(const std::string& name, const std::string& summary);
+  void note(const std::string& name, const std::string& text);
   std::vector<std::string> texts() const;
 
  private:
@@ -43,6 +44,7 @@ class CaseWarnings {
     std::string first;
     int others = 0;  ///< cases
   };
+  static std::string pattern_of(const std::string& text);
   std::vector<Kind> kinds_;
 };
 

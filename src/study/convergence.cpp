@@ -11,6 +11,8 @@ constexpr double accuracy_of_ratio = 1e-3;
 constexpr double least_order = 0.5;
 /// [-] Orders of two triples of steps in a row that differ by more say that the first of them, or both, have not come to where an order shows.
 constexpr double most_change_of_order = 0.5;
+/// [-] Of a result: what steps change by less is what their iterations leave, and its order is chance.
+constexpr double rounding_of_results = 1e-9;
 /// The integrators are of second order at most: where differences or errors shrink faster, two values agree by chance.
 constexpr double highest_order = 3.0;
 
@@ -43,10 +45,11 @@ std::optional<Limit> richardson_limit(std::span<const Refinement> refinements) {
   return Limit{refinements.back().value - last->difference / (last->reduction - 1.0), last->order};
 }
 
-std::vector<std::optional<double>> observed_orders(std::span<const double> steps, std::span<const double> errors) {
+std::vector<std::optional<double>> observed_orders(std::span<const double> steps, std::span<const double> errors, double size) {
   std::vector<std::optional<double>> orders(steps.size());
   for (std::size_t i = 1; i < steps.size(); ++i) {
     if (!(errors[i - 1] > 0.0 && errors[i] > 0.0) || steps[i - 1] == steps[i]) continue;
+    if (std::abs(errors[i - 1] - errors[i]) <= rounding_of_results * size) continue;
     const double order = std::log(errors[i - 1] / errors[i]) / std::log(steps[i - 1] / steps[i]);
     if (order <= highest_order) orders[i] = order;
   }

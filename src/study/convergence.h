@@ -26,7 +26,8 @@ struct Limit {
 std::optional<Limit> richardson_limit(std::span<const Refinement> refinements);
 
 /// Order between neighbouring steps, log(e1/e2) / log(h1/h2), where both errors are above zero; the first has none. Orders above 3 are left out, too:
-/// the smaller of the two errors is small by chance.
-std::vector<std::optional<double>> observed_orders(std::span<const double> steps, std::span<const double> errors);
+/// the smaller of the two errors is small by chance. So are those of two errors that differ by rounding.
+/// \param size  of the result that the errors are of
+std::vector<std::optional<double>> observed_orders(std::span<const double> steps, std::span<const double> errors, double size);
 
 }  // namespace openclose

@@ -58,7 +58,7 @@ class LastRow {
   std::optional<double> at(const std::string& column) const {
     const auto place = static_cast<std::size_t>(std::ranges::find(columns_, column) - columns_.begin());
     if (place >= columns_.size() || place >= fields_.size()) return std::nullopt;
-    return number_in(fields_[place]);
+    return finite_number(fields_[place]);
   }
 
  private:
@@ -80,7 +80,7 @@ std::optional<double> largest_displacement_in(const std::string& folder) {
   const StateTable table(folder + "/block_states.csv", {"displacement_x_m", "displacement_y_m"});
   if (table.states().empty()) return std::nullopt;
   double largest = 0.0;
-  table.rows(table.states().back(), [&](const Row& row) { largest = std::max(largest, std::hypot(number_in(row[0]), number_in(row[1]))); });
+  table.rows(table.states().back(), [&](const Row& row) { largest = std::max(largest, std::hypot(row.number(0), row.number(1))); });
   return largest;
 }
 

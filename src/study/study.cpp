@@ -23,6 +23,16 @@ constexpr double accuracy_of_end = 1e-9;
 /// [-] Than the step makes: a few that are divided, as at impacts, leave the step what it is.
 constexpr double more_steps = 1.5;
 
+constexpr const char* columns = "contact,dt_s,quantity,value,reference,error,observed_order,cpu_s,steps,end_time_s,integrator_loss,warnings,status\n";
+
+std::string table_in(const std::string& folder) {
+  return folder + "/study.csv";
+}
+
+std::string picture_in(const std::string& folder) {
+  return folder + "/study.svg";
+}
+
 /// Of the rows that has_warnings() marks.
 constexpr const char* meaning_of_mark = "runs that gave warnings, see \"warnings\" in their summary.json";
 
@@ -92,39 +102,47 @@ StudyLimit judge(std::span<StudyRow> rows, const std::optional<double>& referenc
     steps.push_back(row->dt);
     errors.push_back(*row->error);
   }
-  const auto orders = observed_orders(steps, errors);
+  const auto orders = observed_orders(steps, errors, std::abs(*limit.value));
   for (std::size_t i = 0; i < orders.size(); ++i) judged[i]->order = orders[i];
   return limit;
 }
 
+std::string name_of(const StudyRow& row) {
+  return fmt::format("{} at dt = {:g} s", row.contact, row.dt);
+}
+
+/// Alike ones once, as those of the runs themselves.
 std::vector<std::string> warnings_of(const Study& study) {
-  std::vector<std::string> warnings;
+  CaseWarnings warnings;
   std::optional<double> end;
   for (const StudyRow& row : study.rows) {
     if (row.status != exit_success) {
-      warnings.push_back(fmt::format("{} at dt = {:g} s: {}: {}", row.contact, row.dt, status_word(row.status), row.message));
+      warnings.note(name_of(row), fmt::format("{}: {}", status_word(row.status), row.message));
       continue;
     }
-    if (!row.value) warnings.push_back(fmt::format("{} at dt = {:g} s has no {}", row.contact, row.dt, study.quantity));
+    if (!row.value) warnings.note(name_of(row), "has no " + study.quantity);
     if (!end) end = row.end_time;
     if (std::abs(row.end_time - *end) > accuracy_of_end * std::abs(*end))
-      warnings.push_back(fmt::format("{} at dt = {:g} s ends at {:.9g} s, others at {:.9g} s: choose steps that divide end.time_s", row.contact,
-                                     row.dt, row.end_time, *end));
+      warnings.note(name_of(row), fmt::format("ends at {:.9g} s, others at {:.9g} s: choose steps that divide end.time_s", row.end_time, *end));
   }
   for (const StudyRow& row : study.rows) {
     const double asked = row.end_time / row.dt;
     if (row.value && static_cast<double>(row.steps) > more_steps * asked)
-      warnings.push_back(fmt::format(
-          "{} took {} steps at dt = {:g} s, which are {:.0f}: the scene or the method asks for shorter ones, and orders by dt mean little",
-          row.contact, row.steps, row.dt, asked));
+      warnings.note(name_of(row),
+                    fmt::format("it took {} steps, where its dt makes {:.0f}: the scene or the method asks for shorter ones, and orders "
+                                "by dt mean little",
+                                row.steps, asked));
   }
   for (std::size_t i = 1; i < study.rows.size(); ++i) {
     const StudyRow &a = study.rows[i - 1], &b = study.rows[i];
     if (a.contact == b.contact && a.value && b.value && a.steps == b.steps)
-      warnings.push_back(
-          fmt::format("{} took as many steps at dt = {:g} s as at {:g} s: the scene or the method allows no longer ones", b.contact, b.dt, a.dt));
+      warnings.note(name_of(b), fmt::format("it took as many steps as at {:g} s: the scene or the method allows no longer ones", a.dt));
   }
-  return warnings;
+  return warnings.texts();
+}
+
+bool has_errors(const Study& study) {
+  return std::ranges::any_of(study.rows, [](const StudyRow& row) { return row.error.has_value(); });
 }
 
 }  // namespace
@@ -144,7 +162,7 @@ Study make_study(StudyOrder order, const std::function<void(double)>& progress) 
   if (order.quantity.empty()) order.quantity = usual_quantity(scene);
   require_quantity(order.quantity, scene);
 
-  require_replaceable(study_files({}, order.cases.folder));
+  require_replaceable({{table_in(order.cases.folder), columns}, {picture_in(order.cases.folder), svg_plots("", {}, {})}});
   const std::vector<Case> cases = cases_of(order);
   // An integrator that a method does not have is refused before the first run, too.
   for (std::size_t i = 0; i < cases.size(); i += order.steps.size()) Simulation(read_scene(order.cases.scene_file, cases[i].overrides));
@@ -152,6 +170,7 @@ Study make_study(StudyOrder order, const std::function<void(double)>& progress) 
   const auto results = run_cases(order.cases, cases,
                                  [&](std::size_t, const CaseResult&) { progress(static_cast<double>(++done) / static_cast<double>(cases.size())); });
   Study study;
+  study.scene = scene.title.empty() ? order.cases.scene_file : scene.title;
   study.quantity = order.quantity;
   for (std::size_t i = 0; i < cases.size(); ++i) {
     study.rows.push_back(row_of(order, order.contacts[i / order.steps.size()], order.steps[i % order.steps.size()],
@@ -167,7 +186,7 @@ Study make_study(StudyOrder order, const std::function<void(double)>& progress) 
 }
 
 std::vector<TextFile> study_files(const Study& study, const std::string& folder) {
-  std::string rows = "contact,dt_s,quantity,value,reference,error,observed_order,cpu_s,steps,end_time_s,integrator_loss,warnings,status\n";
+  std::string rows = columns;
   Plot errors{"Error", "time step [s]", "error of " + study.quantity, true, true, {}},
       cost{"Cost", "error of " + study.quantity, "CPU time [s]", true, true, {}};
   for (const StudyLimit& limit : study.limits) {
@@ -188,7 +207,11 @@ std::vector<TextFile> study_files(const Study& study, const std::string& folder)
   std::vector<std::string> notes;
   for (const StudyLimit& limit : study.limits) notes.push_back(fmt::format("{}: {} ({})", limit.contact, number_text(limit.value, 9), limit.how));
   if (std::ranges::any_of(study.rows, has_warnings)) notes.emplace_back(std::string("Hollow points: ") + meaning_of_mark);
-  return {{folder + "/study.csv", rows}, {folder + "/study.svg", svg_plots("Convergence of " + study.quantity, notes, {errors, cost})}};
+  std::vector<TextFile> files = {{table_in(folder), rows}};
+  // Axes without a point would have numbers that nothing has given them.
+  if (has_errors(study))
+    files.push_back({picture_in(folder), svg_plots(fmt::format("{}: convergence of {}", study.scene, study.quantity), notes, {errors, cost})});
+  return files;
 }
 
 std::string study_table(const Study& study) {
@@ -199,7 +222,7 @@ std::string study_table(const Study& study) {
   for (const StudyRow& row : study.rows) {
     text += fmt::format("{:<8} {:>11.6g} {:>{}}{} {:>11} {:>7} {:>10.3g}\n", row.contact, row.dt,
                         row.value ? number_text(row.value, 9) : status_word(row.status), width, has_warnings(row) ? '*' : ' ',
-                        number_text(row.error, 3), number_text(row.order, 3), row.cpu);
+                        number_text(row.error, 3), row.order ? fmt::format("{:.2f}", *row.order) : "", row.cpu);
   }
   if (std::ranges::any_of(study.rows, has_warnings)) text += fmt::format("* {}\n", meaning_of_mark);
   for (const StudyLimit& limit : study.limits)

@@ -40,6 +40,7 @@ struct StudyLimit {
 };
 
 struct Study {
+  std::string scene;  ///< its title, or its file
   std::string quantity;
   std::vector<StudyRow> rows;  ///< by method, the largest step first
   std::vector<StudyLimit> limits;
@@ -49,7 +50,7 @@ struct Study {
 /// Runs what has not been run yet. Throws InputError before anything is written.
 Study make_study(StudyOrder order, const std::function<void(double fraction)>& progress);
 
-/// study.csv and study.svg.
+/// study.csv, and study.svg where there is an error to draw.
 std::vector<TextFile> study_files(const Study& study, const std::string& folder);
 
 /// The table that is printed.

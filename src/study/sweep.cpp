@@ -77,6 +77,10 @@ class Answers {
     return text;
   }
 
+  bool is_interval(const CaseResult& result) const {
+    return is_factor_ && json::parse(result.summary).value("verdict", "") == factor_verdict_word(FactorVerdict::interval);
+  }
+
   /// What is drawn: the factor, from its stable to its failed end, or the quantity.
   std::optional<PlotPoint> point(const Case& one, const CaseResult& result) const {
     if (result.summary.empty() || result.status != exit_success) return std::nullopt;
@@ -181,6 +185,7 @@ Sweep make_sweep(SweepOrder order, const std::function<void(double)>& progress) 
     rows[i] = answers.row(cases[i], result);
     sweep.were_there += result.was_there;
     sweep.found += result.status == exit_success;
+    sweep.intervals += result.status == exit_success && answers.is_interval(result);
     if (result.status != exit_success) sweep.warnings.push_back(fmt::format("{}: {}: {}", cases[i].name, status_word(result.status), result.message));
     // One with other keys has another heading, by which it would not be known as ours; it has been looked at above.
     if (!result.was_there) write_files({{table, text(), true}});

@@ -20,6 +20,7 @@ struct SweepOrder {
 struct Sweep {
   std::vector<TextFile> files;       ///< sweep.csv and, where a key has numbers, sweep.svg
   std::size_t cases = 0, found = 0;  ///< with an answer
+  std::size_t intervals = 0;         ///< of these, whose two ends are not as near as they were asked to be
   std::size_t were_there = 0;        ///< from an earlier time
   std::vector<std::string> warnings;
 };

@@ -1,5 +1,6 @@
 // Every kind of bad input: one line on standard error, exit code 2, nothing written.
 #include <filesystem>
+#include <map>
 #include <string>
 
 #include "cli/command.h"
@@ -282,7 +283,7 @@ TEST_CASE("overrides that cannot be", "[cli][bad_input]") {
 
 TEST_CASE("bad options", "[cli][bad_input]") {
   const Workplace place;
-  CHECK_THAT(refusal(place, "run scene.toml -o out --fast" + steps), ContainsSubstring("--fast") && ContainsSubstring("see openclose --help"));
+  CHECK_THAT(refusal(place, "run scene.toml -o out --fast" + steps), ContainsSubstring("--fast") && ContainsSubstring("see openclose run --help"));
   CHECK_THAT(refusal(place, "run" + steps), ContainsSubstring("scene"));
   CHECK_THAT(refusal(place, ""), ContainsSubstring("subcommand is required; accepted: run, fos, check, cut, draw"));
   CHECK_THAT(refusal(place, "walk scene.toml"), ContainsSubstring("see openclose --help"));
@@ -329,4 +330,33 @@ TEST_CASE("loads that fos cannot increase", "[cli][bad_input]") {
                                           "strength_reduction.definition = \"small_displacements\""));
   }
   CHECK_THAT(refusal(place, "run scene.toml --increase gravity_x"), ContainsSubstring("--increase"));
+}
+
+TEST_CASE("a misspelt command, option or word is told what may be meant, and which help has more", "[cli][errors]") {
+  const Workplace place;
+  const std::map<std::string, std::string> meant = {
+      {"fso scene.toml", "did you mean fos?"},
+      {"fos scene.toml --contcat hard", "--contcat: fos has no such option, did you mean --contact?"},
+      {"fos scene.toml --contact hrad", "did you mean hard?"},
+      {"draw out --colour displacment", "--colour: \"displacment\" is not known, did you mean displacement?"},
+      {"fos scene.toml --nothing", "see openclose fos --help"},
+      {"fos scene.toml more", "more: fos expects no such word here"},
+      {"check scene.toml --set output.formats=vtk", "output.formats: \"vtk\" is a string; accepted: a list, e.g. [\"vtk\"]"},
+      {"fos scene.toml -o /", "/: -o: this is the root of the file system"},
+      {"sweep scene.toml --vary joint[0].friction_angle_deg=20 -o /", "/: -o: this is the root of the file system"}};
+  for (const auto& [arguments, words] : meant) {
+    INFO(arguments);
+    const CommandResult result = place.run(arguments);
+    CHECK(result.status == 2);
+    REQUIRE(result.errors.size() == 1);
+    CHECK_THAT(result.errors[0], ContainsSubstring(words));
+  }
+}
+
+TEST_CASE("the help of cut and check leaves out what they do not use", "[cli]") {
+  const Workplace place;
+  for (const std::string option : {"--dt", "--threads", "--integrator", "--contact"})
+    CHECK_THAT(place.run("cut --help").out, !ContainsSubstring(option));
+  CHECK_THAT(place.run("check --help").out, !ContainsSubstring("--threads") && ContainsSubstring("--dt"));
+  CHECK(place.run("check scene.toml --threads 1").status == 0);
 }

@@ -62,3 +62,15 @@ TEST_CASE("draw refuses in one line, and writes nothing", "[cli][draw]") {
   CHECK(text_of(place.folder() / "scene.toml") == scene);
   CHECK(text_of(place.folder() / "out/blocks.csv") == blocks);
 }
+
+TEST_CASE("draw and report name a case where they are given a folder of cases", "[cli][draw]") {
+  const Workplace place(openclose::test::block_on_incline(30.0));
+  REQUIRE(place.run("sweep scene.toml --vary joint[0].friction_angle_deg=35,36 -o out -q").status == 0);
+  for (const std::string command : {"draw", "report"}) {
+    const CommandResult result = place.run(command + " out");
+    CHECK(result.status == 2);
+    REQUIRE(result.errors.size() == 1);
+    CHECK_THAT(result.errors[0], ContainsSubstring("out: this is a folder of sweep; accepted: the folder of one of its cases, e.g. "
+                                                   "out/joint[0].friction_angle_deg=35"));
+  }
+}

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <numbers>
 #include <string>
 
@@ -215,7 +216,7 @@ TEST_CASE("what runs warn of is told by study and sweep, alike warnings once", "
     const auto about_density = [](const std::string& line) { return line.find("density") != std::string::npos; };
     REQUIRE(std::ranges::count_if(result.errors, about_density) == 1);
     const std::string& line = *std::ranges::find_if(result.errors, about_density);
-    CHECK_THAT(line, ContainsSubstring(first) && ContainsSubstring("(and 1 other cases"));
+    CHECK_THAT(line, ContainsSubstring(first) && ContainsSubstring("(and the same of 1 other case,"));
   };
   warned("study scene.toml --dt 0.01,0.005 --end 0.05 --set method.start=unloaded -o study", "soft,dt=0.01: ");
   CHECK_THAT(text_of(place.folder() / "study/study.svg"),
@@ -224,4 +225,25 @@ TEST_CASE("what runs warn of is told by study and sweep, alike warnings once", "
   const auto rows = rows_of(place.folder() / "study/study.csv");
   REQUIRE(rows.size() == 2);
   CHECK(std::stoi(rows[0].at("warnings")) >= 1);
+}
+
+TEST_CASE("a study in which no run comes to its end has no picture, and one warning", "[cli][study]") {
+  const Workplace place(openclose::test::block_on_incline(40.0));
+  place.folder().write("out/study.svg", "<svg><!-- drawn by openclose --></svg>");
+  const CommandResult result = place.run("study scene.toml --dt 0.01,0.005,0.0025 --end 0.05 -o out");
+  CHECK(result.status == 1);
+  CHECK_THAT(result.out, ContainsSubstring("written to out/study.csv; no picture, since there is no error to draw"));
+  CHECK_FALSE(std::filesystem::exists(place.folder() / "out/study.svg"));
+  REQUIRE(result.errors.size() == 1);
+  CHECK_THAT(result.errors[0], ContainsSubstring("soft at dt = 0.01 s: not converged: ") && ContainsSubstring("the same of 2 other cases,"));
+}
+
+TEST_CASE("sweep tells how many answers are no more than an interval", "[cli][sweep]") {
+  const Workplace place;
+  REQUIRE(place.run("new slope -o slope.toml").status == 0);
+  // So few steps that shi finds no failure, and no limit analysis to prove one.
+  const std::string command =
+      "sweep slope.toml --vary method.contact=soft,shi --set strength_reduction.limit_analysis=false --set settle.max_steps=2 -o out";
+  CHECK_THAT(place.run(command).out, ContainsSubstring("2 of 2 cases have an answer, 1 of them only an interval"));
+  CHECK(nlohmann::json::parse(place.run(command + " --json").out).at("intervals") == 1);
 }

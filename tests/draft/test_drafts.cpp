@@ -140,3 +140,8 @@ TEST_CASE("dimensions that a draft has not, or that are out of range, are refuse
   CHECK(error_of("arch", {{"radius_m", std::nan("")}}) == "new arch: radius_m: nan is out of range; accepted: a number > 0");
   CHECK_THAT(error_of("arch", {{"thickness_m", 5.0}}), StartsWith("new arch: these dimensions make no scene together (new:"));
 }
+
+TEST_CASE("a new slope shows how a joint set gets a strength of its own", "[draft][slope]") {
+  const std::string text = scene_from(draft_named("slope"), {});
+  CHECK_THAT(text, ContainsSubstring("# name = \"bedding\"") && ContainsSubstring("# joint = \"bedding\""));
+}

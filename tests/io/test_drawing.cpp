@@ -1,5 +1,6 @@
 // Drawings show the blocks as they lie, and what they say of sizes is measured from their lines.
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <regex>
 #include <sstream>
@@ -56,6 +57,29 @@ std::vector<std::vector<std::string>> all_matches(const std::string& text, const
 std::string group(const std::string& svg, const std::string& name) {
   const std::size_t begin = svg.find("<g class=\"" + name + "\"");
   return begin == std::string::npos ? "" : svg.substr(begin, svg.find("</g>", begin) - begin);
+}
+
+/// What drawings need of the summary of a run.
+std::string summary_of_run(int blocks) {
+  return "{\"command\": \"run\", \"blocks\": " + std::to_string(blocks) +
+         R"(, "time_s": 1, "converged": true, "options": {"method": {"contact": "soft"}}})";
+}
+
+/// blocks.csv of a run that has moved nothing. \param vertices  "name,number,x,y" each
+std::string outlines_of_run(const std::vector<std::string>& vertices) {
+  std::string text = "state,block,vertex,x_m,y_m\n";
+  for (const char* state : {"initial", "final"}) {
+    for (const std::string& vertex : vertices) text += std::string(state) + "," + vertex + "\n";
+  }
+  return text;
+}
+
+/// Two squares, one on top of the other, with their joint.
+void write_two_squares(const TemporaryFolder& place, const std::string& contacts, const std::string& crack) {
+  place.write("summary.json", summary_of_run(2));
+  place.write("blocks.csv", outlines_of_run({"a,0,0,0", "a,1,1,0", "a,2,1,1", "a,3,0,1", "b,0,0,1", "b,1,1,1", "b,2,1,2", "b,3,0,2"}));
+  place.write("contacts.csv", "state,block_a,block_b,x_m,y_m,normal_x,normal_y,length_m,gap_m,normal_force_n,shear_force_n,status\n" + contacts);
+  place.write("cracks.csv", "state,block_a,block_b,x1_m,y1_m,x2_m,y2_m,length_m,opening1_m,opening2_m,slip1_m,slip2_m\n" + crack);
 }
 
 Scene tower_on_base() {
@@ -343,17 +367,7 @@ TEST_CASE("the drawing of a factor of safety has it in the title and shows the m
 TEST_CASE("joints are drawn as their contacts are", "[io][drawing]") {
   const TemporaryFolder place;
   const auto write = [&](const std::string& status) {
-    place.write("blocks.csv",
-                "state,block,vertex,x_m,y_m\n"
-                "final,a,0,0,0\nfinal,a,1,1,0\nfinal,a,2,1,1\nfinal,a,3,0,1\n"
-                "final,b,0,0,1\nfinal,b,1,1,1\nfinal,b,2,1,2\nfinal,b,3,0,2\n");
-    place.write("contacts.csv",
-                "state,block_a,block_b,x_m,y_m,normal_x,normal_y,length_m,gap_m,normal_force_n,shear_force_n,status\n"
-                "final,b,a,0,1,0,1,0.5,0,1,0," +
-                    status + "\nfinal,b,a,1,1,0,1,0.5,0,1,0,sticking\n");
-    place.write("cracks.csv",
-                "state,block_a,block_b,x1_m,y1_m,x2_m,y2_m,length_m,opening1_m,opening2_m,slip1_m,slip2_m\n"
-                "final,a,b,0,1,1,1,1,0,0,0,0\n");
+    write_two_squares(place, "final,b,a,0,1,0,1,0.5,0,1,0," + status + "\nfinal,b,a,1,1,0,1,0.5,0,1,0,sticking\n", "final,a,b,0,1,1,1,1,0,0,0,0\n");
   };
   const std::map<std::string, JointDrawing> states = {{"open", JointDrawing::open}, {"sliding", JointDrawing::sliding}};
   for (const auto& [word, state] : states) {
@@ -371,10 +385,9 @@ TEST_CASE("joints are drawn as their contacts are", "[io][drawing]") {
 
 TEST_CASE("the force of a hinge is seen, though it leaves both blocks at once", "[io][drawing]") {
   const TemporaryFolder folder;
-  std::string outlines = "state,block,vertex,x_m,y_m\n";
-  for (const char* row : {"left,1,0,0", "left,2,1,0", "left,3,1,1", "left,4,0,0.5", "right,1,1,0", "right,2,2,0", "right,3,2,0.5", "right,4,1,1"})
-    outlines += std::string("final,") + row + "\n";
-  folder.write("blocks.csv", outlines);
+  folder.write("summary.json", summary_of_run(2));
+  folder.write("blocks.csv", outlines_of_run({"left,1,0,0", "left,2,1,0", "left,3,1,1", "left,4,0,0.5", "right,1,1,0", "right,2,2,0", "right,3,2,0.5",
+                                              "right,4,1,1"}));
   folder.write("contacts.csv",
                "state,block_a,block_b,x_m,y_m,normal_x,normal_y,length_m,gap_m,normal_force_n,shear_force_n,status\n"
                "final,left,right,1,1,-1,0,0.5,0,1000,0,sticking\n");
@@ -421,6 +434,8 @@ TEST_CASE("what cannot be drawn is refused with what can", "[io][drawing]") {
              ContainsSubstring("nowhere: there is no such folder; accepted: the folder of a run or fos"));
   CHECK_THAT(refusal(results.place / "blocks.csv", request), ContainsSubstring("this is no folder"));
   const TemporaryFolder empty;
+  CHECK_THAT(refusal(empty.path(), request), ContainsSubstring("summary.json: there is no such file"));
+  empty.write("summary.json", summary_of_run(2));
   CHECK_THAT(refusal(empty.path(), request), ContainsSubstring("blocks.csv: there is no such file"));
   empty.write("blocks.csv", "state,block,vertex,x_m,y_m\n");
   CHECK_THAT(refusal(empty.path(), request), ContainsSubstring("no state is written there"));
@@ -434,6 +449,140 @@ TEST_CASE("what cannot be drawn is refused with what can", "[io][drawing]") {
   request.cracks = true;
   CHECK_THAT(refusal(results.place.path(), request), ContainsSubstring("--cracks"));
   request.cracks = false;
+  request.colour = BlockColour::state;
+  CHECK_THAT(refusal(results.place.path(), request),
+             ContainsSubstring("--colour: there are no contacts in the state \"initial\"; accepted: --state with one of \"final\""));
   request.colour = BlockColour::velocity;
   CHECK_THAT(refusal(results.place.path(), request), ContainsSubstring("--colour: there are no velocities in the state \"initial\""));
+}
+
+TEST_CASE("tables that are damaged, cut off or of another analysis are refused with file, line and column", "[io][drawing]") {
+  const Results results, factor(true);
+  DrawingRequest everything;
+  everything.forces = everything.cracks = true;
+  /// What is said when a text in a table is another one.
+  const auto refusal = [&](const Results& from, const std::string& file, const std::string& text, const std::string& instead,
+                           DrawingRequest request) {
+    const TemporaryFolder place;
+    for (const auto& entry : std::filesystem::directory_iterator(from.place.path())) std::filesystem::copy(entry.path(), place.path());
+    std::string table = test::text_of(place / file);
+    REQUIRE(table.find(text) != std::string::npos);
+    table.replace(table.find(text), text.size(), instead);
+    place.write(file, table);
+    try {
+      picture_of_results(place.path(), request);
+    } catch (const InputError& e) {
+      return std::string(e.what()).substr(place.path().size());
+    }
+    return std::string("nothing is refused");
+  };
+  const std::string vertex = "final,base,0,-10,", accepted = "; accepted: a number, as openclose has written it";
+  for (const std::string wrong : {"nan", "inf", "abc", "", "1e999", "5 "}) {
+    CHECK(refusal(results, "blocks.csv", vertex, "final,base,0," + wrong + ",", {}) ==
+          "/blocks.csv:18: x_m: \"" + wrong + "\" is no finite number" + accepted);
+  }
+  CHECK_THAT(refusal(results, "blocks.csv", vertex, "final,base,0,", {}), ContainsSubstring("/blocks.csv:18: a row of 4 fields; accepted: 5 fields"));
+  CHECK_THAT(refusal(results, "blocks.csv", "x_m", "x", {}), ContainsSubstring("/blocks.csv:1: there is no column x_m"));
+  CHECK_THAT(refusal(results, "summary.json", "\"blocks\": 4", "\"blocks\": 5", {}),
+             ContainsSubstring("blocks.csv: it has 4 blocks; accepted: the 5"));
+  CHECK_THAT(refusal(results, "summary.json", "\"command\": \"run\"", "\"command\": \"fos\"", {}), ContainsSubstring("not the states of fos"));
+  CHECK_THAT(refusal(factor, "summary.json", "\"command\": \"fos\"", "\"command\": \"run\"", {}), ContainsSubstring("not the states of a run"));
+  const std::string outlines = test::text_of(results.place / "blocks.csv"), last = outlines.substr(outlines.rfind("final,"));
+  CHECK_THAT(refusal(results, "blocks.csv", last, "", {}), ContainsSubstring("is not the same in the states \"initial\" and \"final\""));
+  CHECK_THAT(refusal(results, "contacts.csv", "final,", "final,nobody", everything), ContainsSubstring("contacts.csv:") &&
+                                                                                         ContainsSubstring("block_a: there is no block \"nobody") &&
+                                                                                         ContainsSubstring("accepted: the name of a block in "));
+  CHECK_THAT(refusal(results, "cracks.csv", "final,", "final,nobody", everything), ContainsSubstring("block_a: there is no block \"nobody"));
+  CHECK_THAT(refusal(results, "block_properties.csv", "\nbase", "\nnobody", {}), ContainsSubstring("block: there is no block \"nobody"));
+  DrawingRequest speeds;
+  speeds.colour = BlockColour::velocity;
+  CHECK_THAT(refusal(results, "block_states.csv", ",base,", ",nobody,", speeds), ContainsSubstring("block_states.csv:2: block: there is no block"));
+  CHECK_THAT(refusal(factor, "mechanism.csv", "\nblock,", "\nnobody,", {}), ContainsSubstring("mechanism.csv:2: block: there is no block"));
+}
+
+TEST_CASE("bars of openings and lines of joints stand only where the two blocks still face each other", "[io][drawing]") {
+  const TemporaryFolder place;
+  DrawingRequest request;
+  request.cracks = true;
+  const auto picture = [&](const std::string& contacts, const std::string& crack) {
+    write_two_squares(place, contacts, crack);
+    return picture_of_results(place.path(), request);
+  };
+  const std::string open = "final,b,a,0,1,0,1,0.5,0.05,0,0,open\nfinal,b,a,1,1,0,1,0.5,0.05,0,0,open\n";
+  CHECK(picture(open, "final,a,b,0,1,1,1,1,0.05,0.05,0,0\n").cracks.size() == 2);
+  // A gap of half a block is seen itself.
+  const Picture far = picture(open, "final,a,b,0,1,1,1,1,0.5,0.5,0,0\n");
+  CHECK(far.cracks.empty());
+  CHECK(far.joints.empty());
+  CHECK_THAT(far.crack_name, ContainsSubstring("still face each other"));
+  // The line in the middle of the two sides, of which either has moved along it by half of the slip.
+  const Picture slipped = picture(open, "final,a,b,0,1,1,1,1,0.05,0.05,0.04,-0.06\n");
+  REQUIRE(slipped.joints.size() == 1);
+  CHECK(slipped.joints[0].from.x() == Approx(0.02));
+  CHECK(slipped.joints[0].to.x() == Approx(0.97));
+  CHECK(slipped.cracks.front().from.x() == Approx(0.02));
+  CHECK(picture(open, "final,a,b,0,1,0.05,1,0.05,0.02,0.02,0.06,0.06\n").joints.empty());
+  // Where they touch now.
+  const Picture slid =
+      picture("final,b,a,0.1,1,0,1,0.45,0,1,0,sliding\nfinal,b,a,1,1,0,1,0.45,0,1,0,sliding\n", "final,a,b,0.05,1,1.05,1,1,0,0,0.1,0.1\n");
+  REQUIRE(slid.joints.size() == 2);
+  CHECK(slid.joints[0].from.x() == Approx(0.1));
+  CHECK(slid.joints[1].to.x() == Approx(1.0));
+}
+
+TEST_CASE("corners of open contacts are not joined by a line", "[io][drawing]") {
+  const TemporaryFolder place;
+  const std::map<std::string, std::size_t> lines = {{"open", 0}, {"sliding", 2}};
+  for (const auto& [status, number] : lines) {
+    // A joint elsewhere, so that the two contacts are new ones.
+    write_two_squares(place, "final,b,a,0,1,0,1,0.5,0,0,0," + status + "\nfinal,b,a,1,1,0,1,0.5,0,0,0," + status + "\n", "");
+    CHECK(picture_of_results(place.path(), {}).joints.size() == number);
+  }
+}
+
+TEST_CASE("what is open by less than a hundredth of the widest joint has a thin line", "[io][drawing]") {
+  const TemporaryFolder place;
+  write_two_squares(place, "final,b,a,0,1,0,1,0.5,0,0,0,open\nfinal,b,a,1,1,0,1,0.5,0,0,0,open\n",
+                    "final,a,b,0,1,0.5,1,0.5,0.05,0.05,0,0\nfinal,a,b,0.5,1,1,1,0.5,4e-4,1e-6,0,0\n");
+  const Picture picture = picture_of_results(place.path(), {});
+  REQUIRE(picture.joints.size() == 2);
+  CHECK_FALSE(picture.joints[0].is_slight);
+  CHECK(picture.joints[1].is_slight);
+  const std::string svg = svg_drawing(picture);
+  CHECK_THAT(svg, ContainsSubstring("less than a hundredth of the widest"));
+  const auto widths = all_matches(svg, "class=\"open\"[^>]*stroke-width=\"([0-9.]+)\"");
+  REQUIRE(widths.size() >= 2);
+  CHECK(std::stod(widths[0][0]) > 2.0 * std::stod(widths[1][0]));
+}
+
+TEST_CASE("titles tell a reduced strength, a mechanism of limit analysis and the push that grows", "[io][drawing]") {
+  const auto picture = [](const Results& from, const std::string& text, const std::string& instead) {
+    const std::string file = from.place / "summary.json";
+    std::string summary = test::text_of(file);
+    REQUIRE(summary.find(text) != std::string::npos);
+    from.place.write("summary.json", summary.replace(summary.find(text), text.size(), instead));
+    return picture_of_results(from.place.path(), {});
+  };
+  const Results run;
+  CHECK_THAT(run.draw(), !ContainsSubstring("strength divided"));
+  CHECK_THAT(picture(run, "\"strength_reduction_factor\": 1.0", "\"strength_reduction_factor\": 1.8").notes.at(0),
+             ContainsSubstring("with the strength divided by 1.8"));
+  const Results factor(true);
+  CHECK_THAT(factor.draw(), !ContainsSubstring("limit analysis") && !ContainsSubstring("which grows"));
+  CHECK_THAT(picture(factor, "\"failed_by\": \"mechanism\"", "\"failed_by\": \"limit analysis\"").notes.at(1),
+             ContainsSubstring("the mechanism of the limit analysis of 1 of them"));
+  const Picture pushed = picture(factor, "\"increase\": null", "\"increase\": \"-gravity_x\"");
+  REQUIRE(pushed.push);
+  CHECK(pushed.push->direction == Vec2(-1.0, 0.0));
+  CHECK_THAT(group(svg_drawing(pushed), "push"), ContainsSubstring("<path"));
+}
+
+TEST_CASE("a spring is drawn outside of the block that it holds", "[io][drawing]") {
+  Scene scene = tower_on_base();
+  const auto& corners = scene.blocks[1].vertices;
+  scene.supports = {{1, 0.5 * (corners[1] + corners[2]), {1e3, 0.0}}, {1, 0.5 * (corners[0] + corners[3]), {1e3, 0.0}}};
+  const auto sides = all_matches(group(svg_drawing(picture_of(scene)), "supports"), "scale\\((-?1) (-?1)\\)");
+  REQUIRE(sides.size() == 2);
+  CHECK(sides[0][0] == "-1");
+  CHECK(sides[1][0] == "1");
 }

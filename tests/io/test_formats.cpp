@@ -28,11 +28,13 @@ TEST_CASE("a drawing of every state", "[io][formats]") {
     StateTables tables(folder, simulation.scene());
     tables.add_drawing(simulation);
     simulation.change_contacts();  // finds them
-    tables.add("start", simulation);
+    tables.add("final", simulation);
     tables.close();
   }
   write_block_properties(folder, simulation.scene(), simulation.system());
-  write_summary(folder, Summary{}, simulation);
+  Summary summary;
+  summary.command = "run";
+  write_summary(folder, summary, simulation);
   write_formats({"svg"}, folder);
   for (const char* drawing : {"svg/0000.svg", "svg/0001.svg"})
     CHECK_THAT(text_of(place / drawing), ContainsSubstring("<svg") && ContainsSubstring("</svg>"));

@@ -87,3 +87,17 @@ TEST_CASE("a key is explained by its name, its table or its former name", "[io][
   CHECK_THROWS_AS(explanation_of("thetta"), InputError);
   CHECK_THROWS_WITH(explanation_of("method.thetta"), ContainsSubstring("accepted: method.theta, "));
 }
+
+TEST_CASE("tables are told, suggested, and shown without the links of the page", "[io][keys]") {
+  const std::string tables = tables_in_words();
+  CHECK_THAT(tables, ContainsSubstring("  [[joint_set]] ") && ContainsSubstring("  [step] "));
+  for (const auto* entries : {&option_keys(), &element_keys()}) {
+    for (const KeyEntry& entry : *entries) {
+      CHECK_THAT(explanation_of(entry.dotted()), !ContainsSubstring("]("));
+      CHECK_THAT(tables, ContainsSubstring("[" + std::string(entry.table.name)));
+    }
+  }
+  CHECK_THAT(explanation_of("method.contact"), ContainsSubstring("see docs/methods.md"));
+  CHECK_THROWS_WITH(explanation_of("joint_sets"), ContainsSubstring("did you mean joint_set?"));
+  CHECK_THROWS_WITH(explanation_of("loads"), ContainsSubstring("did you mean load?"));
+}

@@ -183,17 +183,45 @@ TEST_CASE("what is no folder of results is refused with what would be one", "[re
   const TemporaryFolder place;
   CHECK_THROWS_WITH(report_of_results(place / "nowhere"), ContainsSubstring("there is no such folder"));
   CHECK_THROWS_WITH(report_of_results(place.write("file", "")), ContainsSubstring("this is no folder"));
-  CHECK_THROWS_WITH(report_of_results(place.path()), ContainsSubstring("blocks.csv: there is no such file"));
-  place.write("blocks.csv", "state,block,vertex,x_m,y_m\nfinal,a,0,0,0\n");
-  CHECK_THROWS_WITH(report_of_results(place.path()), ContainsSubstring("the drawing is not written there"));
-  place.write("blocks.csv", "state,block,vertex,x_m,y_m\ninitial,a,0,0,0\ninitial,a,1,1,0\ninitial,a,2,0,1\n");
+  CHECK_THROWS_WITH(report_of_results(place.path()), ContainsSubstring("summary.json: there is no such file"));
   place.write("summary.json", "[]");
   CHECK_THROWS_AS(report_of_results(place.path()), InputError);
   place.write("summary.json", "{\"command\": \"fos\"}");
   CHECK_THROWS_AS(report_of_results(place.path()), InputError);
-  // A run that goes on has no summary yet.
-  std::filesystem::remove(place / "summary.json");
-  const Report unfinished = report_of_results(place.path());
-  CHECK(unfinished.answer.empty());
-  CHECK(unfinished.states == 1);
+  place.write("summary.json", "{\"command\": \"fos\", \"blocks\": 1}");
+  CHECK_THROWS_WITH(report_of_results(place.path()), ContainsSubstring("blocks.csv: there is no such file"));
+  place.write("blocks.csv", "state,block,vertex,x_m,y_m\nfinal,a,0,0,0\n");
+  CHECK_THROWS_WITH(report_of_results(place.path()), ContainsSubstring("the drawing is not written there"));
+  // A summary without its answer.
+  place.write("blocks.csv", "state,block,vertex,x_m,y_m\ninitial,a,0,0,0\ninitial,a,1,1,0\ninitial,a,2,0,1\n");
+  CHECK_THROWS_WITH(report_of_results(place.path()), ContainsSubstring("this is not what openclose writes"));
+}
+
+TEST_CASE("tables that are damaged or cut off are refused, not shown", "[report]") {
+  const TemporaryFolder place;
+  run_into(place, sliding_block());
+  const auto refusal = [&](const std::string& file, const std::string& text, const std::string& instead) {
+    const std::string whole = test::text_of(place / file);
+    std::string table = whole;
+    const std::size_t at = table.rfind(text);
+    REQUIRE(at != std::string::npos);
+    place.write(file, table.replace(at, text.size(), instead));
+    std::string message = "nothing is refused";
+    try {
+      report_of_results(place.path());
+    } catch (const InputError& e) {
+      message = e.what();
+    }
+    place.write(file, whole);
+    return message;
+  };
+  CHECK_THAT(refusal("contacts.csv", "start,", "start,nobody"), ContainsSubstring("block_a: there is no block \"nobody"));
+  CHECK_THAT(refusal("cracks.csv", "start,", "start,nobody"), ContainsSubstring("block_a: there is no block \"nobody"));
+  CHECK_THAT(refusal("block_properties.csv", "\nb", "\nnobody"),
+             ContainsSubstring("block_properties.csv:") && ContainsSubstring("there is no block"));
+  const std::string states = test::text_of(place / "block_states.csv"),
+                    last = states.substr(states.rfind("start,"), states.find('\n', states.rfind("start,")) + 1 - states.rfind("start,"));
+  CHECK_THAT(refusal("block_states.csv", last, ""), ContainsSubstring("the state \"start\" has 1 blocks; accepted: the 2 blocks"));
+  CHECK_THAT(refusal("block_states.csv", last, "start,0,bar,nan" + last.substr(last.find(",0"))),
+             ContainsSubstring("block_states.csv:") && ContainsSubstring("a row of"));
 }

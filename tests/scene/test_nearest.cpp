@@ -33,3 +33,17 @@ TEST_CASE("suggestions begin with the most alike and do not grow without bound",
   CHECK(text.size() < 200);
   CHECK(text.find("(1000 in all)") != std::string::npos);
 }
+
+TEST_CASE("exchanged letters and short words are understood", "[scene][nearest]") {
+  const std::vector<std::string> words{"run", "fos", "check", "draw", "hard", "dem"};
+  CHECK(similar("fso", words) == "fos");
+  CHECK(similar("darw", words) == "draw");
+  CHECK(similar("hrad", words) == "hard");
+  CHECK(similar("chekc", words) == "check");
+  CHECK(similar("den", words) == "dem");
+  CHECK_FALSE(similar("xyz", words));
+  CHECK_FALSE(similar("dxm", {"me"}));
+  CHECK_FALSE(similar("hwdr", words));
+  CHECK(did_you_mean("fso", words) == ", did you mean fos?");
+  CHECK(did_you_mean("xyz", words).empty());
+}

@@ -50,7 +50,9 @@ TEST_CASE("elements of arrays go by their names, too", "[scene][override]") {
   const Scene scene = read_text(block_on_base, {"material.rock.density_kg_per_m3=1234", "block.base.fixed=false"});
   CHECK(scene.materials.at(0).density == 1234.0);
   CHECK_FALSE(scene.blocks.at(0).fixed);
-  CHECK_THROWS_WITH(read_text(block_on_base, {"material.granite.density_kg_per_m3=1"}), ContainsSubstring("\"granite\" follows an array"));
+  CHECK_THROWS_WITH(
+      read_text(block_on_base, {"material.granite.density_kg_per_m3=1"}),
+      ContainsSubstring("no material is called \"granite\"; accepted: an index, [0] to [0], before it, or the name of an element: \"rock\""));
 }
 
 TEST_CASE("what several loads share is no name of one of them", "[scene][override]") {
@@ -97,7 +99,9 @@ TEST_CASE("overrides of elements that are not there", "[scene][override]") {
   CHECK(error_of("joint[1].cohesion_pa=1") == "command line: joint[1].cohesion_pa: there is no [1]; accepted: [0] to [0]");
   CHECK(error_of("block[1].vertices_m[4]=[0, 0]") == "command line: block[1].vertices_m[4]: there is no [4]; accepted: [0] to [3]");
   CHECK(error_of("joint.cohesion_pa=1") ==
-        "command line: joint.cohesion_pa: \"cohesion_pa\" follows an array; accepted: an index, [0] to [0], before it, or the name of an element");
+        "command line: joint.cohesion_pa: \"cohesion_pa\" follows an array; accepted: an index, [0] to [0], before it, or the name of an element; "
+        "none of them "
+        "has one");
   CHECK(error_of("method[0]=1") == "command line: method[0]: [0] follows something that is not an array; accepted: a key that the scene has");
   CHECK(error_of("block[0].name.x=1") ==
         "command line: block[0].name.x: \"x\" follows something that is not a table; accepted: a key that the scene has");

@@ -1,5 +1,6 @@
 // Each kind of bad input: an InputError, one line, with file, line, key, what was read and what is accepted.
 #include <filesystem>
+#include <map>
 #include <string_view>
 
 #include "scene_file.h"
@@ -7,6 +8,7 @@
 
 using namespace openclose;
 using Catch::Matchers::ContainsSubstring;
+using Catch::Matchers::EndsWith;
 using openclose::test::block_on_base;
 using openclose::test::SceneFile;
 using openclose::test::with_line;
@@ -71,6 +73,25 @@ TEST_CASE("text that is not TOML", "[scene][reader][errors]") {
              ContainsSubstring("accepted: TOML 1.0"));
 }
 
+TEST_CASE("what is likely meant by a line that is not TOML", "[scene][reader][errors]") {
+  const std::map<std::string, std::string> accepted = {
+      {"name = rock", "column 8; accepted: TOML 1.0, where a text has quotes: name = \"rock\""},
+      {"density_kg_per_m3 = 2700,5", "; accepted: TOML 1.0, where decimals follow a point: density_kg_per_m3 = 2700.5"},
+      {"density_kg_per_m3 = -2700 kg # heavy", "where a number stands alone, its unit being part of the key: density_kg_per_m3 = -2700"},
+      {"density_kg_per_m3 = 45%", "its unit being part of the key: density_kg_per_m3 = 45"},
+      {"[joint_set]\ndip_deg = 1\n[joint_set]", "several times has double brackets: [[joint_set]]"}};
+  for (const auto& [line, words] : accepted) CHECK_THAT(error_with(3, line), ContainsSubstring(words));
+  for (const std::string line : {"density_kg_per_m3 =", "= 1", "[method]\n[method]", "density_kg_per_m3 = 1_"})
+    CHECK_THAT(error_with(3, line), EndsWith("accepted: TOML 1.0"));
+}
+
+TEST_CASE("a strength that stands with a joint set is shown the way over a named joint", "[scene][reader][errors]") {
+  CHECK_THAT(error_of(block_on_base +
+                      "[domain]\nmaterial = 'rock'\nvertices_m = [[0, 10], [9, 10], [9, 15], [0, 15]]\n[[joint_set]]\nfriction_angle_deg = 28\n"),
+             ContainsSubstring(
+                 "belongs in another table; accepted: joint.friction_angle_deg, of a [[joint]] with a name, and joint_set.joint with that name"));
+}
+
 TEST_CASE("unknown keys", "[scene][reader][errors]") {
   CHECK_THAT(error_with(15, "fixd = true"), ContainsSubstring("15: block[0].fixd: this key is not known, did you mean fixed?; accepted: fixed, "));
   CHECK_THAT(error_with(11, "[[blok]]"), ContainsSubstring("11: blok: this key is not known, did you mean block?; accepted: block, "));
@@ -130,7 +151,7 @@ TEST_CASE("values of another type", "[scene][reader][errors]") {
   CHECK(error_with_vertices("1") == "20: block[1].vertices_m: 1 is a number; accepted: an array");
   CHECK_THAT(error_with_vertices("[[0, 0],\n [1, 0],\n [1]]"),
              ContainsSubstring("22: block[1].vertices_m[2]: is an array of 1 values; accepted: [x, y], each a number in ["));
-  CHECK(error_with(6, "materials = 'rock'") == "6: joint[0].materials: \"rock\" is a string; accepted: an array");
+  CHECK(error_with(6, "materials = 'rock'") == "6: joint[0].materials: \"rock\" is a string; accepted: a list, e.g. [\"rock\"]");
   CHECK(error_of(block_on_base + "[solver]\nmax_iterations = 1.5\n") ==
         "23: solver.max_iterations: 1.5 is not a whole number; accepted: a whole number in [1, 1000000000]");
   CHECK(error_of(block_on_base + "[solver]\nmax_iterations = 'many'\n") ==

@@ -49,7 +49,7 @@ TEST_CASE("steps that say nothing of a limit give none", "[study]") {
 
 TEST_CASE("observed orders are those between neighbouring steps", "[study]") {
   const std::vector<double> steps = {0.4, 0.2, 0.05, 0.025, 0.0125}, errors = {0.16, 0.04, 0.01, 0.0, 1e-9};
-  const auto orders = observed_orders(steps, errors);
+  const auto orders = observed_orders(steps, errors, 1.0);
   CHECK_FALSE(orders[0]);
   CHECK(orders[1].value() == Approx(2.0));
   CHECK(orders[2].value() == Approx(1.0));
@@ -60,8 +60,16 @@ TEST_CASE("observed orders are those between neighbouring steps", "[study]") {
 TEST_CASE("an order that no integrator has is left out of the observed ones", "[study]") {
   const std::vector<double> steps = {0.4, 0.2, 0.1, 0.05};
   // Of order 4, of 2.9 and, where the error grows, of -1.
-  const auto orders = observed_orders(steps, std::vector<double>{16.0, 1.0, std::pow(0.5, 2.9), 2.0 * std::pow(0.5, 2.9)});
+  const auto orders = observed_orders(steps, std::vector<double>{16.0, 1.0, std::pow(0.5, 2.9), 2.0 * std::pow(0.5, 2.9)}, 1.0);
   CHECK_FALSE(orders[1]);
   CHECK(orders[2].value() == Approx(2.9));
   CHECK(orders[3].value() == Approx(-1.0));
+}
+
+TEST_CASE("errors that differ by rounding have no order", "[study]") {
+  const std::vector<double> steps = {0.4, 0.2, 0.1}, alike = {1e-3, 1e-3 * (1.0 + 5e-8), 1e-3}, tiny = {1e-14, 1.4e-13, 3e-12};
+  for (const auto& errors : {alike, tiny}) {
+    for (const auto& order : observed_orders(steps, errors, 1.0)) CHECK_FALSE(order);
+  }
+  CHECK(observed_orders(steps, tiny, 1e-12)[1]);
 }

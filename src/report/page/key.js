@@ -67,7 +67,9 @@ function drawSupport(context, support, x, y, colour) {
   context.strokeStyle = context.fillStyle = colour;
   context.lineWidth = 1.8;
   const zigzag = [[0, 0], [6, 0], [8, 5], [12, -5], [16, 5], [20, -5], [22, 0], [26, 0]];
-  const bars = [support.in_x ? (p) => [x - p[0], y + p[1]] : null, support.in_y ? (p) => [x + p[1], y + p[0]] : null];
+  // Outside of its block.
+  const right = support.on_the_right ? 1 : -1, down = support.on_top ? -1 : 1;
+  const bars = [support.in_x ? (p) => [x + right * p[0], y + p[1]] : null, support.in_y ? (p) => [x + p[1], y + down * p[0]] : null];
   for (const place of bars.filter(Boolean)) {
     context.beginPath();
     zigzag.forEach((p, i) => (i ? context.lineTo(...place(p)) : context.moveTo(...place(p))));

@@ -26,7 +26,7 @@ function trustOfFactor(summary) {
       : effect.failed === null ? `at least ${number(effect.stable, 4)}`
       : `${number(effect.stable, 4)} to ${number(effect.failed, 4)}`]);
   if (summary.largest_travel_m) rows.push(["farthest motion between two stable trials", lengthText(summary.largest_travel_m)]);
-  if (failing && failing.number) rows.push(["what fails", `${failing.number} of ${summary.free_blocks} free blocks, ${number(failing.area_m2, 4)} m\u00b2`]);
+  if (failing && failing.number) rows.push(["what fails", `${failing.number} of ${summary.free_blocks} free blocks, ${number(failing.area_m2, 4)} m\u00b2${bracket.failed_by === "limit analysis" ? ", in the mechanism of the limit analysis" : ""}`]);
   rows.push(["definition", String(summary.definition).replaceAll("_", " ")]);
   return { rows, sentence };
 }
