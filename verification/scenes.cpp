@@ -90,13 +90,9 @@ std::vector<double> downhill_history(Simulation& simulation, const analytical::B
 }
 
 double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
-  double largest = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    const double difference = std::abs(a[i] - b.at(i));
-    if (!(difference <= largest)) largest = difference;  // NaN stays
-    if (std::isnan(difference)) break;
-  }
-  return largest;
+  double worst = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) worst = larger(worst, std::abs(a[i] - b.at(i)));
+  return worst;
 }
 
 double stands(const Report& report, const Scene& scene) {

@@ -68,7 +68,8 @@ void elastic(Report& report, const Throw& t) {
     steps.push_back(dt);
     errors.push_back(samples.empty() ? not_measured() : std::abs(downhill(t.data, samples.back().motion.displacement) - exact));
   }
-  report.order(std::string(t.name) + ": place after the stop, trapezoid", "soft", steps, errors, 1.6, 2.4, "SUNDIALS ODE; order 2");
+  report.against(Reference::ode)
+      .order(std::string(t.name) + ": place after the stop, trapezoid", "soft", steps, errors, 1.6, 2.4, "SUNDIALS ODE; order 2");
 }
 
 /// Newmark (1/2, 1) damps the swing after the stop: the block comes to rest in its middle, d - mu W/(2 ks), off by at most what the step in which it
@@ -121,8 +122,8 @@ void rebound(Report& report, const Throw& t) {
     for (const Sample& s : history(simulation)) {
       if (s.time < 1.05) continue;
       swing.push_back(s);
-      low = std::min(low, s.motion.displacement.x());
-      high = std::max(high, s.motion.displacement.x());
+      low = smaller(low, s.motion.displacement.x());
+      high = larger(high, s.motion.displacement.x());
     }
     steps.push_back(dt);
     errors.push_back(std::abs(middle_of(swing, 2.0 / dt * std::atan(0.5 * expected.frequency * dt)) - expected.centre));

@@ -55,7 +55,7 @@ void critical_friction(Report& report) {
   }
 }
 
-const Registered<Case> registered{{"E6", "critical friction angle of jointed slopes", &critical_friction}};
+const Registered<Case> registered{{"E6", "critical friction angle of jointed slopes", &critical_friction, Reference::limit_analysis}};
 
 }  // namespace
 }  // namespace openclose::verification
