@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "harness.h"
+#include "near_steps.h"
 #include "openclose/analytical/incline.h"
 #include "openclose/analytical/sliding_block_reference.h"
 #include "scenes.h"
@@ -41,17 +42,6 @@ double distance_to(const Report& report, const Scene& scene, const analytical::B
   const auto samples = history(simulation);
   for (const Sample& s : samples) worst = larger(worst, std::abs(downhill(data, s.motion.displacement) - reference(s.time)));
   return samples.empty() ? not_measured() : worst;
-}
-
-/// A method of second order changes between sticking and sliding at the end of a step, a part p of it late. That costs a velocity of order dt^2 times
-/// a factor that depends on p, beside the smooth error of order dt^2 of the integration; the two may have opposite signs, so that at some steps they
-/// cancel and the error of a single one tells no order. Over steps that differ by a few per cent p takes all values: their largest error falls as
-/// dt^2. All of them divide `every`.
-template <class Error>
-double largest_error_near(double dt, double every, Error error_at) {
-  double largest = 0.0;
-  for (const double part : {1.0, 1.03, 1.07, 1.12, 1.18}) largest = larger(largest, error_at(every / std::round(part * every / dt)));
-  return largest;
 }
 
 void steady(Report& report) {
