@@ -49,8 +49,8 @@ void kept(Report& report, const Behaviour& b) {
                 "limit analysis; width of the bracket");
     report.between(quantity + ": limit of sliding with its normal forces, over the factor", method, 1.0 - width, 1.0 + change_of_normal_forces,
                    sliding.limit / sliding.factor, "-", "limit analysis with shear strengths that do not depend on the normal forces");
-    report.between(quantity + ": area of blocks that move in both, over that of blocks that move in one", method, 0.9, 1.0, sliding.common_area, "-",
-                   "mechanism of the same limit analysis; a block with about a hundredth of the fastest speed may count in one only");
+    report.near(quantity + ": area of blocks that move in both, over that of blocks that move in one", method, 1.0, sliding.common_area, 0.1, "-",
+                "mechanism of the same limit analysis; a block with about a hundredth of the fastest speed may count in one only");
     report.against(Reference::other_run)
         .near(quantity + ", blocks move with every trial: factor of safety", method, sliding.factor, strength_reduction_factor(report, moving),
               width + moved, "-", "factor at small displacements; width of the bracket and geometry that has changed");
