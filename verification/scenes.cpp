@@ -170,7 +170,7 @@ SlidingLimit sliding_limit_of(const Scene& scene, const FactorOfSafety& found) {
   SlidingLimit limit;
   if (found.found() && found.bracket.failed) limit.factor = found.stable();
   const auto stable = std::find_if(found.states.begin(), found.states.end(), [](const NamedState& s) { return s.name == "stable"; });
-  if (found.verdict != FactorVerdict::certified || stable == found.states.end()) return limit;
+  if (std::isnan(limit.factor) || stable == found.states.end()) return limit;
   const FrozenSystem system(scene);
   FrozenStrength strength(system, scene);
   strength.reduce(limit.factor);
