@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "openclose/integrator/registry.h"
 
@@ -108,6 +109,14 @@ double not_measured() {
 
 double larger(double a, double b) {
   return std::isnan(a) || a > b ? a : b;
+}
+
+double smaller(double a, double b) {
+  return -larger(-a, -b);
+}
+
+double largest(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0, larger);
 }
 
 std::string passed_by_reference(const std::vector<Check>& checks) {

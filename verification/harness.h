@@ -129,6 +129,10 @@ double not_measured();
 
 /// The larger of two; NaN if one of them is, which std::max() may swallow.
 double larger(double a, double b);
+/// The smaller of two; NaN if one of them is.
+double smaller(double a, double b);
+/// The largest of values that are not negative; NaN if one of them is NaN, which std::max_element() may skip.
+double largest(const std::vector<double>& values);
 
 /// How many rows passed against what: "12 closed forms, 3 ODEs".
 std::string passed_by_reference(const std::vector<Check>& checks);

@@ -1,9 +1,12 @@
 #include "scenes.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
+#include "openclose/analysis/frozen_limit.h"
 #include "openclose/analysis/strength_reduction.h"
+#include "openclose/geometry/polygon.h"
 #include "openclose/scene/writer.h"
 
 namespace openclose::verification {
@@ -90,13 +93,9 @@ std::vector<double> downhill_history(Simulation& simulation, const analytical::B
 }
 
 double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
-  double largest = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    const double difference = std::abs(a[i] - b.at(i));
-    if (!(difference <= largest)) largest = difference;  // NaN stays
-    if (std::isnan(difference)) break;
-  }
-  return largest;
+  double worst = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) worst = larger(worst, std::abs(a[i] - b.at(i)));
+  return worst;
 }
 
 double stands(const Report& report, const Scene& scene) {
@@ -129,13 +128,71 @@ double threshold(double fails, double holds, double width, const std::function<d
   return 0.5 * (fails + holds);
 }
 
-double strength_reduction_factor(const Report& report, const Scene& scene) {
+namespace {
+
+/// At small displacements nothing takes steps of the simulation, and a solver that does nothing would not show: it is asked where blocks move.
+Scene asked_of(const Report& report, const Scene& scene) {
   Scene asked = scene;
-  // At small displacements nothing takes steps of the simulation, and a solver that does nothing would not show: it answers where blocks move.
   if (report.null_solver()) asked.strength_reduction.definition = FactorDefinition::large_displacements;
-  Simulation simulation = report.simulate(asked);
+  return asked;
+}
+
+}  // namespace
+
+double strength_reduction_factor(const Report& report, const Scene& scene) {
+  Simulation simulation = report.simulate(asked_of(report, scene));
   const auto result = factor_of_safety(simulation);
   return result.found() && result.bracket.failed ? result.stable() : not_measured();
+}
+
+namespace {
+
+/// [-] Of blocks that move in both mechanisms, over that of blocks that move in one of them.
+double common_area(const Scene& scene, const FrozenSystem& system, const limit_analysis::Problem& problem, const limit_analysis::Mechanism& mechanism,
+                   const std::vector<FailingBlock>& of_program) {
+  constexpr double slowest = 0.01;  // [-] of the fastest block, as in FactorOfSafety::mechanism
+  std::vector<double> speeds;
+  for (std::size_t row = 0; row < mechanism.size(); ++row) speeds.push_back(limit_analysis::speed(problem.blocks[row], mechanism[row]));
+  const double fastest = largest(speeds);
+  double in_one = 0.0, in_both = 0.0;
+  for (std::size_t row = 0; row < mechanism.size(); ++row) {
+    const int block = system.blocks()[row].block;
+    const bool moves = speeds[row] > slowest * fastest;
+    const bool moves_there = std::any_of(of_program.begin(), of_program.end(), [&](const FailingBlock& b) { return b.block == block; });
+    const double area = std::abs(signed_area(scene.blocks[static_cast<std::size_t>(block)].vertices));
+    if (moves || moves_there) in_one += area;
+    if (moves && moves_there) in_both += area;
+  }
+  return in_both / in_one;
+}
+
+SlidingLimit sliding_limit_of(const Scene& scene, const FactorOfSafety& found) {
+  SlidingLimit limit;
+  if (found.found() && found.bracket.failed) limit.factor = found.stable();
+  const auto stable = std::find_if(found.states.begin(), found.states.end(), [](const NamedState& s) { return s.name == "stable"; });
+  if (std::isnan(limit.factor) || stable == found.states.end()) return limit;
+  const FrozenSystem system(scene);
+  FrozenStrength strength(system, scene);
+  strength.reduce(limit.factor);
+  limit_analysis::Problem problem = limit_problem(system, strength);
+  for (std::size_t i = 0; i < problem.contacts.size(); ++i) {
+    const Contact& carries = stable->contacts.at(i);
+    const double shear = strength.of(i, carries.bonded).largest_shear(carries.normal_force / system.force_unit());
+    problem.contacts[i].cohesion = limit.factor * shear * system.force_unit();
+    problem.contacts[i].friction = 0.0;
+  }
+  const limit_analysis::Bracket bracket = limit_analysis::limit_analysis(problem);
+  if (!bracket.found()) return limit;
+  limit.limit = bracket.failed;
+  limit.common_area = common_area(scene, system, problem, bracket.mechanism, found.mechanism);
+  return limit;
+}
+
+}  // namespace
+
+SlidingLimit sliding_limit(const Report& report, const Scene& scene) {
+  Simulation simulation = report.simulate(asked_of(report, scene));
+  return sliding_limit_of(scene, factor_of_safety(simulation));
 }
 
 double load_multiplier(const Report& report, const Scene& scene, const std::string& load) {

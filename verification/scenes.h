@@ -76,6 +76,21 @@ double threshold(double fails, double holds, double width, const std::function<d
 /// The factor of safety by strength reduction; NaN if none was found.
 double strength_reduction_factor(const Report& report, const Scene& scene);
 
+/// What limit analysis says where sliding does not open joints and the normal forces are those of the program: the repetition of Gilbert, Casapulla
+/// and Ahmed (2006), of which the factor of a path at small displacements must be a fixed point. Every contact has the shear strength, whatever its
+/// normal force becomes, that the program's normal force at the largest stable factor gives it.
+///
+/// The program's forces are in equilibrium within that strength: `limit` is not below its factor. At failure blocks slide and open contacts that
+/// carry nothing, which is a mechanism of this problem, too: `limit` is not above the factor at which they fail with these normal forces. A factor
+/// found too low, because a trial did not get to its equilibrium, is exceeded by the limit by as much. Normal forces change in the last part of the
+/// way to failure: the difference of both goes to zero with the width of the bracket.
+struct SlidingLimit {
+  double factor = not_measured();       ///< [-] of the program, the largest stable one
+  double limit = not_measured();        ///< [-]
+  double common_area = not_measured();  ///< [-] of blocks that move in both mechanisms, over that of blocks that move in one of them
+};
+SlidingLimit sliding_limit(const Report& report, const Scene& scene);
+
 /// The multiplier of a load as strength_reduction.increase names it; NaN if none was found.
 double load_multiplier(const Report& report, const Scene& scene, const std::string& load);
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -17,6 +18,8 @@ namespace {
 /// [-] of the fastest corner of a block: a point that is slower stands still, and a joint that parts more slowly is slid along. Mechanisms are known
 /// to three digits, displacements of a block that has moved a metre bend the path by some percent.
 constexpr double slow = 0.1;
+/// [-] To which mechanisms of limit analysis open a joint by its friction angle.
+constexpr double exact = 1e-3;
 constexpr std::size_t most_named = 3;
 /// Blocks that are looked at; of more, the fastest.
 constexpr std::size_t most_described = 200;
@@ -31,7 +34,8 @@ struct Touch {
 
 struct Description {
   std::string words;
-  bool by_itself = true;  ///< not carried by another block that moves
+  bool by_itself = true;    ///< not carried by another block that moves
+  bool is_specific = true;  ///< says more than a direction
 };
 
 class Describer {
@@ -50,19 +54,80 @@ class Describer {
     return speed;
   }
 
-  Description describe(const FailingBlock& block) const {
-    const std::string name = name_of(block.block);
-    const std::vector<Touch> touches = touches_of(block);
-    const std::optional<std::string> centre = centre_of(block, touches);
-    if (centre) return {fmt::format("{} turns about {} ({})", name, *centre, held_in_turning), true};
-    if (touches.empty()) return {fmt::format("{} touches no other block and moves {} ({})", name, heading(block), held_by_anything), true};
-    if (const auto sliding = sliding_of(block, touches)) return {name + *sliding, true};
-    if (const auto hinge = hinge_of(block, touches)) return {name + *hinge, true};
-    const bool carried = std::any_of(touches.begin(), touches.end(), [&](const Touch& t) { return moving_[static_cast<std::size_t>(t.other)]; });
-    return {fmt::format("{} moves {} ({})", name, heading(block), held_by_anything), !carried};
+  /// What moves with others as one body is told by the first of them, in the given order, that slides, turns or is hinged against something else.
+  std::vector<Description> describe(const std::vector<FailingBlock>& blocks) const {
+    std::vector<std::vector<Touch>> touches;
+    for (const FailingBlock& block : blocks) touches.push_back(touches_of(block));
+    const std::vector<std::size_t> body = bodies(blocks, touches);
+    std::vector<Description> own;
+    for (std::size_t i = 0; i < blocks.size(); ++i) own.push_back(describe(blocks[i], beyond_body(i, blocks, touches[i], body)));
+    std::vector<Description> told;
+    for (std::size_t i = 0; i < blocks.size(); ++i) {
+      const std::size_t first = teller(body[i], own, body);
+      if (first == i) {
+        told.push_back(own[i]);
+      } else {
+        const std::string leader = name_of(blocks[first].block);
+        told.push_back({fmt::format("{} moves with {} (what holds {} would hold it)", name_of(blocks[i].block), leader, leader), false});
+      }
+    }
+    return told;
   }
 
  private:
+  Description describe(const FailingBlock& block, const std::vector<Touch>& touches) const {
+    const std::string name = name_of(block.block);
+    const std::optional<std::string> centre = centre_of(block, touches);
+    if (centre) return {fmt::format("{} turns about {} ({})", name, *centre, held_in_turning), true};
+    if (touches.empty() && touches_of(block).empty())
+      return {fmt::format("{} touches no other block and moves {} ({})", name, heading(block), held_by_anything), true};
+    if (const auto sliding = sliding_of(block, touches)) return {name + *sliding, true};
+    if (const auto hinge = hinge_of(block, touches)) return {name + *hinge, true};
+    const bool carried = std::any_of(touches.begin(), touches.end(), [&](const Touch& t) { return moving_[static_cast<std::size_t>(t.other)]; });
+    return {fmt::format("{} moves {} ({})", name, heading(block), held_by_anything), !carried, false};
+  }
+
+  /// Of each block, the first block of the body that it is part of.
+  std::vector<std::size_t> bodies(const std::vector<FailingBlock>& blocks, const std::vector<std::vector<Touch>>& touches) const {
+    std::vector<std::size_t> index(scene_.blocks.size(), blocks.size()), body(blocks.size());
+    for (std::size_t i = 0; i < blocks.size(); ++i) index[static_cast<std::size_t>(blocks[i].block)] = body[i] = i;
+    for (std::size_t i = 0; i < blocks.size(); ++i) {
+      for (const Touch& touch : touches[i]) {
+        const std::size_t other = index[static_cast<std::size_t>(touch.other)];
+        if (other == blocks.size() || body[other] == body[i] || !moves_with(blocks[i], touch.other)) continue;
+        const auto [kept, gone] = std::minmax({body[i], body[other]});
+        std::replace(body.begin(), body.end(), gone, kept);
+      }
+    }
+    return body;
+  }
+
+  /// Whether no corner of a block moves against another moving one.
+  bool moves_with(const FailingBlock& block, int other) const {
+    const Polygon& corners = polygon(block);
+    return std::all_of(corners.begin(), corners.end(),
+                       [&](const Vec2& corner) { return relative_velocity(block, other, corner).norm() < slow * fastest(block); });
+  }
+
+  /// Touches with what is not part of the same body.
+  static std::vector<Touch> beyond_body(std::size_t i, const std::vector<FailingBlock>& blocks, const std::vector<Touch>& touches,
+                                        const std::vector<std::size_t>& body) {
+    std::vector<Touch> kept;
+    for (const Touch& touch : touches) {
+      const auto is_other = [&](const FailingBlock& b) { return b.block == touch.other; };
+      const auto other = std::find_if(blocks.begin(), blocks.end(), is_other);
+      if (other == blocks.end() || body[static_cast<std::size_t>(other - blocks.begin())] != body[i]) kept.push_back(touch);
+    }
+    return kept;
+  }
+
+  static std::size_t teller(std::size_t body, const std::vector<Description>& own, const std::vector<std::size_t>& bodies) {
+    for (std::size_t i = body; i < own.size(); ++i) {
+      if (bodies[i] == body && own[i].is_specific) return i;
+    }
+    return body;
+  }
+
   static constexpr const char* held_by_anything = "a block in its way, a [[support]] or fixed = true would hold it";
   static constexpr const char* held_at_hinge = "thicker blocks, a [[support]] or tensile_strength_pa of the joints that open would hold it";
   static constexpr const char* held_in_turning =
@@ -73,7 +138,9 @@ class Describer {
   std::string heading(const FailingBlock& block) const { return heading(Vec2(block.velocity.normalized())); }
 
   std::string heading(const Vec2& direction) const {
-    if (!scene_.gravity.isZero(0.0) && direction.dot(scene_.gravity.normalized()) > 1.0 - slow) return "down";
+    const Vec2 down = -Vec2::UnitY();
+    const bool gravity_is_down = !scene_.gravity.isZero(0.0) && scene_.gravity.normalized().dot(down) > 1.0 - slow;
+    if (gravity_is_down && direction.dot(scene_.gravity.normalized()) > 1.0 - slow) return "down";
     // Not "-0.00": a zero with a sign adds to zero without one.
     const auto rounded = [](double part) { return std::round(100.0 * part) / 100.0 + 0.0; };
     return fmt::format("towards ({:.2f}, {:.2f})", rounded(direction.x()), rounded(direction.y()));
@@ -98,8 +165,40 @@ class Describer {
     }
     double reach = 0.0;
     for (const Vec2& vertex : vertices) reach = std::max(reach, (vertex - block.centroid).norm());
-    if (std::abs(block.rotation) * reach < 0.5 * fastest(block)) return std::nullopt;
-    return at(block.centroid + perpendicular(block.velocity) / block.rotation);
+    const FailingBlock real = without_dilatancy(block, touches, reach);
+    if (std::abs(real.rotation) * reach < 0.5 * fastest(real)) return std::nullopt;
+    return at(real.centroid + perpendicular(real.velocity) / real.rotation);
+  }
+
+  /// The motion nearest to that of the mechanism which does not part joints along which the block slides, and keeps it where it does not move against
+  /// a neighbour.
+  FailingBlock without_dilatancy(const FailingBlock& block, const std::vector<Touch>& touches, double reach) const {
+    std::vector<Eigen::Vector3d> rows;
+    std::vector<double> opening;
+    for (const Touch& touch : touches) {
+      const Vec2 relative = relative_velocity(block, touch.other, touch.point), arm = touch.point - block.centroid;
+      const bool is_still = relative.norm() < slow * fastest(block);
+      if (!is_still && !is_opened_by_friction(relative, touch, exact * relative.norm())) continue;
+      const auto keep = [&](const Vec2& direction, double change) {
+        rows.emplace_back(direction.x(), direction.y(), cross(arm, direction) / reach);
+        opening.push_back(change);
+      };
+      const Vec2 normal = perpendicular(touch.along);
+      keep(normal, is_still ? 0.0 : -normal.dot(relative));
+      if (is_still) keep(touch.along, 0.0);
+    }
+    if (rows.empty()) return block;
+    Eigen::MatrixX3d kept(static_cast<Eigen::Index>(rows.size()), 3);
+    Eigen::VectorXd changes(kept.rows());
+    for (Eigen::Index i = 0; i < kept.rows(); ++i) {
+      kept.row(i) = rows[static_cast<std::size_t>(i)];
+      changes[i] = opening[static_cast<std::size_t>(i)];
+    }
+    const Eigen::Vector3d change = kept.completeOrthogonalDecomposition().solve(changes);
+    FailingBlock real = block;
+    real.velocity += change.head<2>();
+    real.rotation += change[2] / reach;
+    return real;
   }
 
   void add_touches(const BlockInput& corners, const BlockInput& edges, int other, std::vector<Touch>& touches) const {
@@ -189,8 +288,13 @@ class Describer {
   /// Mechanisms of limit analysis open what slides at the friction angle.
   static bool is_along(const Vec2& relative, const Touch& touch) {
     const double opening = std::abs(cross(touch.along, relative)), tolerated = slow * relative.norm();
-    if (opening <= tolerated) return true;
-    return touch.joint != nullptr && std::abs(opening - std::tan(touch.joint->friction_angle) * std::abs(touch.along.dot(relative))) <= tolerated;
+    return opening <= tolerated || is_opened_by_friction(relative, touch, tolerated);
+  }
+
+  static bool is_opened_by_friction(const Vec2& relative, const Touch& touch, double tolerated) {
+    if (touch.joint == nullptr) return false;
+    const double opening = std::abs(cross(touch.along, relative));
+    return std::abs(opening - std::tan(touch.joint->friction_angle) * std::abs(touch.along.dot(relative))) <= tolerated;
   }
 
   /// Under its weight alone a block stands on an edge with friction above the edge's slope.
@@ -215,8 +319,7 @@ std::string motion_in_words(const Scene& scene, const std::vector<FailingBlock>&
   std::stable_sort(fastest.begin(), fastest.end(),
                    [&](const FailingBlock& a, const FailingBlock& b) { return describer.fastest(a) > describer.fastest(b); });
   if (fastest.size() > most_described) fastest.resize(most_described);
-  std::vector<Description> descriptions;
-  for (const FailingBlock& block : fastest) descriptions.push_back(describer.describe(block));
+  std::vector<Description> descriptions = describer.describe(fastest);
   std::stable_partition(descriptions.begin(), descriptions.end(), [](const Description& d) { return d.by_itself; });
   std::string words;
   for (std::size_t i = 0; i < std::min(most_named, descriptions.size()); ++i) words += (i > 0 ? "; " : "") + descriptions[i].words;

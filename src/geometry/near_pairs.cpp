@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
+#include <cstddef>
 
 namespace openclose {
 namespace {
@@ -13,11 +13,30 @@ constexpr std::size_t few = 8;
 /// A cut pays when it leaves less than this part of the comparisons.
 constexpr double worthwhile = 0.8;
 
-bool crosses(const Segment& segment, const Box& cell) {
-  if (!segment.box().overlaps(cell)) return false;
-  const Vec2 half = 0.5 * (cell.high - cell.low);
-  const Vec2 normal = perpendicular(segment.to - segment.from);
-  return std::abs(normal.dot(0.5 * (cell.low + cell.high) - segment.from)) <= normal.cwiseAbs().dot(half);
+/// What of a segment lies in a part of the plane.
+struct Piece {
+  int segment;
+  Vec2 from, to;
+};
+
+/// A line across the plane: points x with normal.dot(x) = offset.
+struct Cut {
+  Vec2 normal;
+  double offset;
+
+  double height(const Vec2& point) const { return normal.dot(point) - offset; }
+};
+
+/// The direction of most of the length: directions, which have no sense, add up when their angles are doubled.
+Vec2 main_direction(const std::vector<Piece>& pieces) {
+  Vec2 doubled = Vec2::Zero();
+  for (const Piece& p : pieces) {
+    const Vec2 way = p.to - p.from;
+    const double length = way.norm();
+    if (length > 0.0) doubled += Vec2(way.x() * way.x() - way.y() * way.y(), 2.0 * way.x() * way.y()) / length;
+  }
+  const double angle = 0.5 * std::atan2(doubled.y(), doubled.x());
+  return {std::cos(angle), std::sin(angle)};
 }
 
 /// Whether both ends of a segment lie on the same side of the other's line, farther than the distance.
@@ -34,18 +53,18 @@ class Search {
     for (const Segment& segment : segments) boxes_.push_back(segment.box());
   }
 
-  /// Collects the pairs of the segments that cross the cell; false when there are too many.
-  bool search(const Box& cell, const std::vector<int>& members) {
-    if (members.size() > few) {
-      const int longer = cell.high.x() - cell.low.x() >= cell.high.y() - cell.low.y() ? 0 : 1;
-      for (const int axis : {longer, 1 - longer}) {
-        const std::array<Box, 2> halves = halved(cell, members, axis);
-        const std::array<std::vector<int>, 2> parts{within(halves[0], members), within(halves[1], members)};
-        if (squared(parts[0]) + squared(parts[1]) > worthwhile * squared(members)) continue;
-        return search(halves[0], parts[0]) && search(halves[1], parts[1]);
+  /// Collects the pairs among pieces that lie in one part of the plane; false when there are too many.
+  bool search(const std::vector<Piece>& pieces) {
+    if (pieces.size() > few) {
+      // Segments side by side that run across both axes are parted by no cut but one along them.
+      for (const Vec2& normal : {Vec2(Vec2::UnitX()), Vec2(Vec2::UnitY()), perpendicular(main_direction(pieces))}) {
+        const Cut cut = middle(pieces, normal);
+        const std::array<std::vector<Piece>, 2> sides{side(pieces, cut, 1.0), side(pieces, cut, -1.0)};
+        if (squared(sides[0]) + squared(sides[1]) > worthwhile * squared(pieces)) continue;
+        return search(sides[0]) && search(sides[1]);
       }
     }
-    return compare(members);
+    return compare(pieces);
   }
 
   std::vector<std::pair<int, int>> sorted_pairs() {
@@ -55,35 +74,41 @@ class Search {
   }
 
  private:
-  static double squared(const std::vector<int>& members) { return static_cast<double>(members.size()) * static_cast<double>(members.size()); }
+  static double squared(const std::vector<Piece>& pieces) { return static_cast<double>(pieces.size()) * static_cast<double>(pieces.size()); }
 
-  std::array<Box, 2> halved(const Box& cell, const std::vector<int>& members, int axis) const {
+  static Cut middle(const std::vector<Piece>& pieces, const Vec2& normal) {
     std::vector<double> middles;
-    middles.reserve(members.size());
-    for (const int i : members)
-      middles.push_back(0.5 * (std::max(boxes_[i].low[axis], cell.low[axis]) + std::min(boxes_[i].high[axis], cell.high[axis])));
-    std::nth_element(middles.begin(), middles.begin() + middles.size() / 2, middles.end());
-    std::array<Box, 2> halves{cell, cell};
-    halves[0].high[axis] = halves[1].low[axis] = middles[middles.size() / 2];
-    return halves;
+    middles.reserve(pieces.size());
+    for (const Piece& p : pieces) middles.push_back(normal.dot(0.5 * (p.from + p.to)));
+    const auto half = middles.begin() + static_cast<std::ptrdiff_t>(middles.size() / 2);
+    std::nth_element(middles.begin(), half, middles.end());
+    return {normal, *half};
   }
 
-  std::vector<int> within(const Box& cell, const std::vector<int>& members) const {
-    const Box wider = cell.inflated(margin_);
-    std::vector<int> kept;
-    for (const int i : members) {
-      if (boxes_[i].overlaps(wider) && crosses(segments_[i], wider)) kept.push_back(i);
+  /// What lies on one side of a cut or less than the margin beyond it: of two points within the margin of each other one side has both. Twice the
+  /// margin, and a part of the coordinates, for rounding.
+  std::vector<Piece> side(const std::vector<Piece>& pieces, const Cut& cut, double sign) const {
+    std::vector<Piece> kept;
+    for (const Piece& p : pieces) {
+      const double from = sign * cut.height(p.from), to = sign * cut.height(p.to);
+      const double reach = -2.0 * margin_ - rounding * (std::abs(cut.offset) + p.from.cwiseAbs().sum() + p.to.cwiseAbs().sum());
+      if (std::max(from, to) < reach) continue;
+      const auto clipped = [&](const Vec2& end, double height, const Vec2& other, double height_of_other) {
+        return height >= reach ? end : Vec2(end + (reach - height) / (height_of_other - height) * (other - end));
+      };
+      kept.push_back({p.segment, clipped(p.from, from, p.to, to), clipped(p.to, to, p.from, from)});
     }
     return kept;
   }
 
-  bool compare(const std::vector<int>& members) {
-    for (std::size_t i = 0; i < members.size(); ++i) {
-      const Box reach = boxes_[members[i]].inflated(margin_);
-      for (std::size_t j = i + 1; j < members.size(); ++j) {
-        if (!reach.overlaps(boxes_[members[j]])) continue;
+  bool compare(const std::vector<Piece>& pieces) {
+    for (std::size_t a = 0; a < pieces.size(); ++a) {
+      const Box reach = boxes_[pieces[a].segment].inflated(margin_);
+      for (std::size_t b = a + 1; b < pieces.size(); ++b) {
+        const auto [i, j] = std::minmax(pieces[a].segment, pieces[b].segment);
+        if (!reach.overlaps(boxes_[pieces[b].segment])) continue;
         ++compared_;
-        if (!apart(members[i], members[j])) pairs_.emplace_back(members[i], members[j]);
+        if (!apart(i, j)) pairs_.emplace_back(i, j);
       }
       if (compared_ > limit_) return false;
     }
@@ -92,6 +117,8 @@ class Search {
 
   /// Farther than the margin, whatever rounding does to it.
   bool apart(int i, int j) const { return beside(segments_[i], segments_[j], 2.0 * margin_) || beside(segments_[j], segments_[i], 2.0 * margin_); }
+
+  static constexpr double rounding = 1e-14;  ///< [-] of coordinates
 
   const std::vector<Segment>& segments_;
   double margin_;
@@ -104,13 +131,11 @@ class Search {
 }  // namespace
 
 std::optional<std::vector<std::pair<int, int>>> near_pairs(const std::vector<Segment>& segments, double margin, std::size_t limit) {
-  if (segments.empty()) return std::vector<std::pair<int, int>>{};
-  Box all = segments.front().box();
-  for (const Segment& segment : segments) all = {all.low.cwiseMin(segment.box().low), all.high.cwiseMax(segment.box().high)};
-  std::vector<int> members(segments.size());
-  std::iota(members.begin(), members.end(), 0);
+  std::vector<Piece> whole;
+  whole.reserve(segments.size());
+  for (const Segment& segment : segments) whole.push_back({static_cast<int>(whole.size()), segment.from, segment.to});
   Search search(segments, margin, limit);
-  if (!search.search(all, members)) return std::nullopt;
+  if (!search.search(whole)) return std::nullopt;
   return search.sorted_pairs();
 }
 

@@ -52,5 +52,6 @@ TEST_CASE("CPU time counts all threads", "[core][parallel]") {
     while (begun < 2) std::this_thread::yield();
     for (const double from = thread_cpu_time(); thread_cpu_time() - from < busy;) continue;
   });
-  CHECK(process_cpu_time() - begin > 1.9 * busy);
+  // One thread alone would have spent half of it.
+  CHECK(process_cpu_time() - begin > 1.5 * busy);
 }

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <random>
 #include <set>
 
@@ -113,6 +114,34 @@ TEST_CASE("no near pair is left out", "[geometry][near_pairs]") {
     }
   }
   CHECK_FALSE(near_pairs(segments, 0.0, 0));
+}
+
+TEST_CASE("needles side by side are parted at any angle", "[geometry][near_pairs]") {
+  constexpr int count = 40000;
+  std::vector<Segment> edges;
+  const auto corner = [](int i) {
+    const double angle = 2.0 * M_PI * i / count;
+    return Vec2((i % 2 == 0 ? 100.0 : 105.0) * Vec2(std::cos(angle), std::sin(angle)));
+  };
+  for (int i = 0; i < count; ++i) edges.push_back({corner(i), corner(i + 1)});
+  // Boxes of hundreds of other edges overlap that of an edge that runs across both axes; only neighbours touch.
+  const auto pairs = near_pairs(edges, 1e-6, 20 * count);
+  REQUIRE(pairs);
+  const std::set<std::pair<int, int>> found(pairs->begin(), pairs->end());
+  for (int i = 0; i + 1 < count; ++i) CHECK(found.count({i, i + 1}) == 1);
+  CHECK(found.count({0, count - 1}) == 1);
+
+  // Another one across two hundred of them: all are found.
+  edges.push_back({Vec2(102.0 * Vec2(std::cos(0.7), std::sin(0.7))), Vec2(102.0 * Vec2(std::cos(0.7 + 0.01 * M_PI), std::sin(0.7 + 0.01 * M_PI)))});
+  int meet = 0;
+  const auto with_it = *near_pairs(edges, 1e-6, 20 * count);
+  const std::set<std::pair<int, int>> all(with_it.begin(), with_it.end());
+  for (int i = 0; i < count; ++i) {
+    if (!segments_meet(edges[i].from, edges[i].to, edges[count].from, edges[count].to)) continue;
+    ++meet;
+    CHECK(all.count({i, count}) == 1);
+  }
+  CHECK(meet >= 199);
 }
 
 TEST_CASE("the part of a line that touches a polygon", "[geometry][touch]") {

@@ -1,5 +1,6 @@
 // What the verification cases rest on: NaN fails every kind of row, bounds hold from both sides, and rows are counted by what they are compared with.
 #include <cmath>
+#include <vector>
 
 #include "harness.h"
 #include "openclose_traps.h"
@@ -33,10 +34,20 @@ TEST_CASE("a row that was not measured fails, whatever its kind", "[harness]") {
 TEST_CASE("one NaN in a history is its largest value, wherever it comes", "[harness]") {
   const openclose::NonStop non_stop;
   for (const int at : {0, 1, 2}) {
-    double worst = 0.0;
-    for (int i = 0; i < 3; ++i) worst = larger(worst, i == at ? not_measured() : 1.0 + i);
+    std::vector<double> values = {1.0, 2.0, 3.0};
+    values[at] = not_measured();
+    double worst = 0.0, least = 10.0;
+    for (const double value : values) {
+      worst = larger(worst, value);
+      least = smaller(least, value);
+    }
     CHECK(std::isnan(worst));
+    CHECK(std::isnan(least));
+    CHECK(std::isnan(largest(values)));
   }
+  CHECK(largest({1.0, 3.0, 2.0}) == 3.0);
+  CHECK(smaller(1.0, 2.0) == 1.0);
+  CHECK(smaller(2.0, 1.0) == 1.0);
   CHECK(larger(1.0, 2.0) == 2.0);
   CHECK(larger(2.0, 1.0) == 2.0);
   CHECK(std::isnan(exceedance(not_measured(), 1.0)));

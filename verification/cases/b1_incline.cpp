@@ -1,8 +1,8 @@
 // B1: the paper's block on an incline, eq. (8), from three starts; the reference of the starts with a transient is the event-resolved ODE.
-#include <algorithm>
 #include <cmath>
 
 #include "harness.h"
+#include "near_steps.h"
 #include "openclose/analytical/incline.h"
 #include "openclose/analytical/sliding_block_reference.h"
 #include "scenes.h"
@@ -29,7 +29,7 @@ double deviation(const Report& report, const Scene& scene, const analytical::Blo
   const auto samples = history(simulation);
   for (const Sample& s : samples) {
     if (s.time < first_time) continue;
-    worst = std::max(worst, std::abs(downhill(data, s.motion.displacement) / analytical::sliding_displacement(data, s.time) - 1.0));
+    worst = larger(worst, std::abs(downhill(data, s.motion.displacement) / analytical::sliding_displacement(data, s.time) - 1.0));
   }
   return samples.empty() ? not_measured() : worst;
 }
@@ -40,19 +40,8 @@ double distance_to(const Report& report, const Scene& scene, const analytical::B
   Simulation simulation = report.simulate(scene);
   double worst = 0.0;
   const auto samples = history(simulation);
-  for (const Sample& s : samples) worst = std::max(worst, std::abs(downhill(data, s.motion.displacement) - reference(s.time)));
+  for (const Sample& s : samples) worst = larger(worst, std::abs(downhill(data, s.motion.displacement) - reference(s.time)));
   return samples.empty() ? not_measured() : worst;
-}
-
-/// A method of second order changes between sticking and sliding at the end of a step, a part p of it late. That costs a velocity of order dt^2 times
-/// a factor that depends on p, beside the smooth error of order dt^2 of the integration; the two may have opposite signs, so that at some steps they
-/// cancel and the error of a single one tells no order. Over steps that differ by a few per cent p takes all values: their largest error falls as
-/// dt^2. All of them divide `every`.
-template <class Error>
-double largest_error_near(double dt, double every, Error error_at) {
-  double largest = 0.0;
-  for (const double part : {1.0, 1.03, 1.07, 1.12, 1.18}) largest = std::max(largest, error_at(every / std::round(part * every / dt)));
-  return largest;
 }
 
 void steady(Report& report) {
@@ -120,8 +109,9 @@ void transients(Report& report) {
           steps.push_back(dt);
           errors.push_back(second ? largest_error_near(dt, every, error_at) : error_at(dt));
         }
-        report.order(name + (integrator != "shi" ? ", " + integrator : ""), method, steps, errors, second ? 1.6 : 0.8, second ? 2.4 : 1.2,
-                     second ? "SUNDIALS ODE; order 2, the largest error of five nearby steps" : "SUNDIALS ODE; order 1");
+        report.against(Reference::ode)
+            .order(name + (integrator != "shi" ? ", " + integrator : ""), method, steps, errors, second ? 1.6 : 0.8, second ? 2.4 : 1.2,
+                   second ? "SUNDIALS ODE; order 2, the largest error of five nearby steps" : "SUNDIALS ODE; order 1");
       }
     }
     Scene scene = scene_of(data, "hard", study.start, 1e-3, 3.0);
@@ -163,7 +153,7 @@ void invariant(Report& report) {
         const auto samples = history(simulation);
         for (const Sample& s : samples) {
           const double measured = downhill(data, s.motion.displacement) + data.friction() * off_plane(data, s.motion.displacement);
-          worst = std::max(worst, std::abs(measured - analytical::sliding_invariant(data, s.time)) / analytical::sliding_invariant(data, 3.0));
+          worst = larger(worst, std::abs(measured - analytical::sliding_invariant(data, s.time)) / analytical::sliding_invariant(data, 3.0));
         }
         report.near((integrator == "path_average" ? "path_average: " : "") + std::string("x + mu y from the unloaded start, phi = ") +
                         text("{} deg", phi) + text(", dt = {} s", dt),

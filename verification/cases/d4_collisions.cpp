@@ -1,5 +1,4 @@
 // D4: blocks that collide face to face without gravity: two of them, and a row of five with gaps.
-#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -80,8 +79,7 @@ void elastic_pairs(Report& report, const Scheme& scheme) {
     const bool settles = scheme.contact == "dem";
     const double expected = scheme.order == 1.0 ? 1.0 : settles ? 4.0 : 3.0;
     if (scheme.conserves) {
-      report.near(with_variant(name + ": largest error at 4 steps", scheme), scheme.contact, 0.0,
-                  *std::max_element(errors.begin(), errors.end(), std::less_equal<>()), residual_share * 3.6, "m/s",
+      report.near(with_variant(name + ": largest error at 4 steps", scheme), scheme.contact, 0.0, largest(errors), residual_share * 3.6, "m/s",
                   "energy and momentum are kept at any step; what a residual may leave of the closing speed");
     } else {
       report.order(with_variant(name, scheme), scheme.contact, steps, errors, expected - 0.1, expected + 0.1,

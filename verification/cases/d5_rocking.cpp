@@ -1,6 +1,5 @@
 // D5: Housner's rocking block: rigid contact against the ODE of a block that turns about its corners with plastic impacts, springs against the ODE of
 // a block on two springs; overturning by a pulse of the base.
-#include <algorithm>
 #include <cmath>
 
 #include "harness.h"
@@ -29,7 +28,7 @@ Rocking free_rocking(const Report& report, double angle, double time, double dt)
     // The last two angles before it is upright, drawn on to zero.
     if (std::isnan(found.quarter_period) && now < 0.5 * (last - now)) found.quarter_period = (i - 1) * dt + last / -turning;
     if (now > 0.0) turning = (now - last) / dt;
-    farthest = std::min(farthest, now);
+    farthest = smaller(farthest, now);
     last = now;
   }
   if (farthest < 0.0) found.other_side = -farthest;

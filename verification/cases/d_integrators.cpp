@@ -124,7 +124,7 @@ Bounces bounce(const Report& report, double dt, double end) {
       b.contact = t + dt + time_at_zero(-1.0, y, simulation.velocity(1)[1]) - first_touch;
       b.depth = -lowest;
     }
-    lowest = std::min(lowest, y);
+    lowest = smaller(lowest, y);
     y0 = y;
   }
   if (first_touch == 0.0) return b;

@@ -43,19 +43,23 @@ void critical_friction(Report& report) {
       scene.method.contact = method;
       scene.settle.failure_displacement = method == "dem" ? sudden_load * failure_displacement : failure_displacement;
       scene.settle.max_steps = method == "shi" ? linear_steps : max_steps;
-      const double angle = degrees(std::atan(std::tan(scene.joints[0].friction_angle) / strength_reduction_factor(report, scene)));
+      const SlidingLimit sliding = sliding_limit(report, scene);
+      const double angle = degrees(std::atan(std::tan(scene.joints[0].friction_angle) / sliding.factor));
       const std::string name = slope.name;
       if (slope.forces_determined) {
         report.near(name + ": critical friction angle", method, expected, angle, tolerance_deg, "deg", "limit analysis");
       } else {
         report.near(name + ": critical friction angle below the limit", method, 0.0, exceedance(expected, angle), tolerance_deg, "deg",
                     "limit analysis: " + text("{:.4g} deg", expected));
+        const double own = degrees(std::atan(std::tan(scene.joints[0].friction_angle) / sliding.limit));
+        report.near(name + ": critical friction angle, sliding with its normal forces", method, own, angle, tolerance_deg, "deg",
+                    "limit analysis with shear strengths that do not depend on the normal forces");
       }
     }
   }
 }
 
-const Registered<Case> registered{{"E6", "critical friction angle of jointed slopes", &critical_friction}};
+const Registered<Case> registered{{"E6", "critical friction angle of jointed slopes", &critical_friction, Reference::limit_analysis}};
 
 }  // namespace
 }  // namespace openclose::verification

@@ -63,7 +63,7 @@ void eigenvalues(Report& report, const std::vector<double>& expected) {
       const Eigen::VectorXd shape = mass.cwiseSqrt().cwiseProduct(solver.eigenvectors().col(i));
       double vertical = 0.0;
       for (int b = 0; b < blocks; ++b) vertical += shape[dofs * b + 1] * shape[dofs * b + 1];
-      if (vertical > 0.5 * shape.squaredNorm()) bouncing.push_back(std::sqrt(std::max(0.0, solver.eigenvalues()[i])));
+      if (vertical > 0.5 * shape.squaredNorm()) bouncing.push_back(std::sqrt(larger(0.0, solver.eigenvalues()[i])));
     }
     if (bouncing.size() == found.size()) found = bouncing;
   }

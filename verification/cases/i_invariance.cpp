@@ -129,7 +129,8 @@ void invariance_of(Report& report, const std::string& method) {
   // Its weight would be the largest force, a part of which is what residuals of all blocks may keep.
   with_stranger.blocks.back().velocity = {3.0, 0.0};
   const char* nothing_connects =
-      "bit for bit: a block without contacts has no part in the equations of the others, nor in what ends their iterations";
+      "bit for bit: a block without contacts has no part in the equations of the others; it has neither the largest force nor the longest way, "
+      "which count for all";
   report.near("I7 a far block that touches nothing", method, 0.0, difference(plain, motion(report, with_stranger), same), 0.0, "m, rad",
               nothing_connects);
   if (method == "soft") {
