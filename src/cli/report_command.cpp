@@ -28,7 +28,7 @@ int report_command(const ReportOptions& options) {
   if (std::filesystem::path(file).extension() != ".html")
     throw InputError({file, 0}, "-o", "a page would be written over what is no page", "a name that ends in .html");
   const Report report = report_of_results(options.results, {static_cast<std::size_t>(options.most_mb * bytes_per_mb)});
-  write_files({{file, report.html}});
+  write_files({{file, report.html, false, Seal::xml}});
   if (options.json)
     print_json(exit_success, {{"results", options.results},
                               {"answer", report.answer},

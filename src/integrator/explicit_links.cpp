@@ -309,6 +309,19 @@ void ExplicitLinks::exchange(Archive& archive, const JointTable& joints) {
   archive(links_, rest_, link_of_, cleared_, damped_, lost_strength_, critical_step_, approach_, max_penetration_, share_, room_);
 }
 
+bool ExplicitLinks::fits(std::size_t contacts) const {
+  const auto is_below = [](int number, std::size_t count) { return number < 0 || static_cast<std::size_t>(number) < count; };
+  const auto fits = [&](const Link& link, const LinkRest& rest) {
+    return blocks_.has_slot(link.vertex_slot) && blocks_.has_slot(link.edge_slot) && link.status <= ContactStatus::sliding &&
+           is_below(rest.contact, contacts) && rest.joint >= 0 && rest.joint < joints_->count();
+  };
+  if (rest_.size() != links_.size() || link_of_.size() != contacts || !critical_step_.fits(static_cast<std::size_t>(blocks_.count()))) return false;
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    if (!fits(links_[i], rest_[i])) return false;
+  }
+  return std::ranges::all_of(link_of_, [&](int link) { return is_below(link, links_.size()); });
+}
+
 Memory ExplicitLinks::memory() const {
   Memory of;
   of.blocks = critical_step_.bytes() + depth_limits_.bytes();

@@ -188,7 +188,7 @@ std::vector<TextFile> study_files(const Study& study, const std::string& folder)
   std::vector<std::string> notes;
   for (const StudyLimit& limit : study.limits) notes.push_back(fmt::format("{}: {} ({})", limit.contact, number_text(limit.value, 9), limit.how));
   if (std::ranges::any_of(study.rows, has_warnings)) notes.emplace_back(std::string("Hollow points: ") + meaning_of_mark);
-  return {{folder + "/study.csv", rows}, {folder + "/study.svg", svg_plots("Convergence of " + study.quantity, notes, {errors, cost})}};
+  return {{folder + "/study.csv", rows}, {folder + "/study.svg", svg_plots("Convergence of " + study.quantity, notes, {errors, cost}), false, Seal::xml}};
 }
 
 std::string study_table(const Study& study) {
