@@ -310,16 +310,22 @@ void ExplicitLinks::exchange(Archive& archive, const JointTable& joints) {
 }
 
 bool ExplicitLinks::fits(std::size_t contacts) const {
-  const auto is_below = [](int number, std::size_t count) { return number < 0 || static_cast<std::size_t>(number) < count; };
-  const auto fits = [&](const Link& link, const LinkRest& rest) {
-    return blocks_.has_slot(link.vertex_slot) && blocks_.has_slot(link.edge_slot) && link.status <= ContactStatus::sliding &&
-           is_below(rest.contact, contacts) && rest.joint >= 0 && rest.joint < joints_->count();
-  };
   if (rest_.size() != links_.size() || link_of_.size() != contacts || !critical_step_.fits(static_cast<std::size_t>(blocks_.count()))) return false;
+  const auto is_below = [](int number, std::size_t count) { return number >= 0 && static_cast<std::size_t>(number) < count; };
+  int cleared = 0;
   for (std::size_t i = 0; i < links_.size(); ++i) {
-    if (!fits(links_[i], rest_[i])) return false;
+    const Link& link = links_[i];
+    const LinkRest& rest = rest_[i];
+    if (!blocks_.has_slot(link.vertex_slot) || !blocks_.has_slot(link.edge_slot) || link.status > ContactStatus::sliding) return false;
+    if (!is_below(rest.joint, static_cast<std::size_t>(joints_->count()))) return false;
+    cleared += rest.contact == none ? 1 : 0;
+    if (rest.contact != none && (!is_below(rest.contact, contacts) || link_of_[rest.contact] != static_cast<int>(i))) return false;
   }
-  return std::ranges::all_of(link_of_, [&](int link) { return is_below(link, links_.size()); });
+  for (std::size_t i = 0; i < contacts; ++i) {
+    const int link = link_of_[i];
+    if (link != none && (!is_below(link, links_.size()) || rest_[link].contact != static_cast<int>(i))) return false;
+  }
+  return cleared == cleared_;
 }
 
 Memory ExplicitLinks::memory() const {

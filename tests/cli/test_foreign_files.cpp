@@ -53,13 +53,15 @@ TEST_CASE("scenes with such names are not written over", "[cli][foreign]") {
 TEST_CASE("nothing is written through a link that has such a name", "[cli][foreign]") {
   const Workplace place;
   REQUIRE(place.run(run_in_out).status == 0);
-  std::filesystem::create_symlink("../scene.toml", place.folder() / "out/summary.json.part");
+  place.folder().write("victim", "mine\n");
+  std::filesystem::create_symlink("../victim", place.folder() / "out/summary.json.part");
   check_refused(place, run_in_out, "out/summary.json.part");
 }
 
 TEST_CASE("cut and draw replace what they have written, as long as nobody has edited it", "[cli][foreign]") {
-  const Workplace place(block_on_base + std::string(domain));
-  const std::string cut = "cut scene.toml -o blocks.toml -q", draw = "draw out -o drawing.svg -q";
+  const Workplace place;
+  place.folder().write("rock.toml", block_on_base + std::string(domain));
+  const std::string cut = "cut rock.toml -o blocks.toml -q", draw = "draw out -o drawing.svg -q";
   REQUIRE(place.run(run_in_out).status == 0);
   for (int i = 0; i < 2; ++i) {
     CHECK(place.run(cut).status == 0);
