@@ -90,8 +90,9 @@ TrialResult FrozenTrials::first(double srf) {
 }
 
 TrialResult FrozenTrials::next(double srf) {
+  if (!stable_) throw DamagedState("the saved state has a stable trial without its forces");
   apply(srf);
-  return result_of(solver_->relax(stable_.value(), effort()), srf);
+  return result_of(solver_->relax(*stable_, effort()), srf);
 }
 
 void FrozenTrials::exchange(Archive& archive) {

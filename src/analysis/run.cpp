@@ -210,7 +210,8 @@ class MotionInTime {
     archive(begun_, done_, moved_before_, snapshots_taken_, row_is_there_, result_.settling, result_.milestones, watch_);
     archive.require(begun_ && done_ >= 0 && done_ <= steps_ && result_.milestones.size() <= scene_.milestones.size() && watch_.fits(simulation_),
                     "the saved state is of another run");
-    const double behind = simulation_.time() - time_after(done_), rounding = tolerance::rounding_of_times * std::max(scene_.step.dt, simulation_.time());
+    const double behind = simulation_.time() - time_after(done_),
+                 rounding = tolerance::rounding_of_times * std::max(scene_.step.dt, simulation_.time());
     archive.require(behind >= -rounding && behind <= scene_.step.dt + rounding, "the saved state has another time than its steps have led to");
     if (points_) archive(*points_);
   }

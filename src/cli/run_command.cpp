@@ -59,11 +59,7 @@ struct GrowingTables {
 class RunInFolder {
  public:
   RunInFolder(const Options& options, Simulation& simulation)
-      : options_(options),
-        simulation_(simulation),
-        points_(simulation),
-        measured_contacts_(simulation.scene()),
-        drawn_(simulation.system()) {}
+      : options_(options), simulation_(simulation), points_(simulation), measured_contacts_(simulation.scene()), drawn_(simulation.system()) {}
 
   /// From the beginning. Throws Stopped if it is stopped before it has any state.
   RunResult run_in(const OutputFolder& folder) {
@@ -84,8 +80,8 @@ class RunInFolder {
       return run(simulation_, observer);
     } catch (const Stopped&) {
       progress_.reset();
-      throw Stopped(fmt::format("stopped while the start was settling, of which there is no checkpoint: {} is as it was; to run again: {}", folder.path(),
-                                command_to_repeat("run", options_, folder)));
+      throw Stopped(fmt::format("stopped while the start was settling, of which there is no checkpoint: {} is as it was; to run again: {}",
+                                folder.path(), command_to_repeat("run", options_, folder)));
     }
   }
 

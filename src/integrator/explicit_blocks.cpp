@@ -67,7 +67,12 @@ bool ExplicitBlocks::fits(const BlockSystem& system) const {
   const std::size_t free = system.free_blocks().size(), slots = free + 1 + system.resting_blocks().size();
   const bool same_slots = poses_.size() == slots && rates_.size() == slots && next_rates_.size() == slots && forces_.size() == slots;
   const bool same_blocks = inertia_.size() == free && blocks_ == system.free_blocks() && loaded_at_.size() == free && marked_at_.size() == free;
-  return same_slots && same_blocks && rest_slot_.size() == system.blocks().size() && std::ranges::all_of(rest_slot_, [&](int s) { return has_slot(s); });
+  const auto is_motion = [](const ExplicitRate& r) { return std::isfinite(r.x + r.y + r.turn + r.angle); };
+  return same_slots && same_blocks && rest_slot_.size() == system.blocks().size() &&
+         std::ranges::all_of(rest_slot_, [&](int s) { return has_slot(s); }) &&
+         std::ranges::all_of(poses_, [](const ExplicitPose& p) { return std::isfinite(p.x + p.y + p.cos_minus_1 + p.sin); }) &&
+         std::ranges::all_of(rates_, is_motion) && std::ranges::all_of(forces_, is_motion) &&
+         std::ranges::all_of(loaded_at_, [](const Unknowns& d) { return d.allFinite(); });
 }
 
 void ExplicitBlocks::begin_forces() {

@@ -125,7 +125,8 @@ void require_own_place(const std::string& path, const std::vector<TextFile>& fil
   try {
     require_replaceable(files);
   } catch (const InputError&) {
-    throw WriteError(path, "has been replaced since the analysis began by something that is no checkpoint of openclose: that stays, and no new one is written");
+    throw WriteError(
+        path, "has been replaced since the analysis began by something that is no checkpoint of openclose: that stays, and no new one is written");
   }
 }
 

@@ -74,8 +74,8 @@ void require_replaceable(const TextFile& file) {
   if (!std::filesystem::is_regular_file(file.path) || access(file.path.c_str(), W_OK) != 0)
     throw InputError({file.path, 0}, "", "is there and cannot be written over", accepted);
   if (!is_ours(content_of(file.path), file))
-    throw InputError({file.path, 0}, "", "is there and has not been written by openclose" + std::string(file.seal == Seal::none ? "" : ", or edited since"),
-                     accepted);
+    throw InputError({file.path, 0}, "",
+                     "is there and has not been written by openclose" + std::string(file.seal == Seal::none ? "" : ", or edited since"), accepted);
 }
 
 /// All that results may be called, those of formats as a folder: its name with a stroke.

@@ -27,8 +27,8 @@ class OutputFolder {
   void claim(const std::vector<std::string>& read_files) const;
   /// Throws as claim() would, and changes nothing.
   void require_ours(const std::vector<std::string>& read_files) const;
-  /// A file of this name is about to be written as a whole. Throws WriteError if somebody else has put one there since the folder was claimed. Changes
-  /// nothing in a folder that nobody has claimed. \return its path
+  /// A file of this name is about to be written as a whole. Throws WriteError if somebody else has put one there since the folder was claimed.
+  /// Changes nothing in a folder that nobody has claimed. \return its path
   std::string claim_whole_file(const std::string& name) const;
   /// The analysis is over: from now on only those of the listed names are ours that are there.
   void list_results() const;
@@ -83,9 +83,9 @@ struct TextFile {
 };
 
 /// Writes whole files, with the folders they need: all of them, or none and no folder. Old ones are replaced only when all new ones are complete;
-/// until then these have ".part" after their names. Throws InputError if a file cannot be made, if something with its name and ".part" is there, or if
-/// it is there and is not as openclose has written it, which its seal tells, or its first line where it has none; WriteError if one cannot be written
-/// to its end.
+/// until then these have ".part" after their names. Throws InputError if a file cannot be made, if something with its name and ".part" is there, or
+/// if it is there and is not as openclose has written it, which its seal tells, or its first line where it has none; WriteError if one cannot be
+/// written to its end.
 void write_files(const std::vector<TextFile>& files);
 
 /// Throws InputError as write_files() would of files with such seals, or that begin like these: to be asked before anything is computed.

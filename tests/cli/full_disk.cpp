@@ -1,5 +1,5 @@
-// To be loaded before the C library (LD_PRELOAD): the disk is full under one file, whose path ends as FULL_DISK says, and under what it is called until
-// it is complete. A link to /dev/full does not serve for that: openclose writes through no link.
+// To be loaded before the C library (LD_PRELOAD): the disk is full under one file, whose path ends as FULL_DISK says, and under what it is called
+// until it is complete. A link to /dev/full does not serve for that: openclose writes through no link.
 #include <sys/syscall.h>
 #include <sys/uio.h>
 #include <unistd.h>

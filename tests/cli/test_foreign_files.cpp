@@ -30,7 +30,8 @@ void check_refused(const Workplace& place, const std::string& command, const std
 }  // namespace
 
 TEST_CASE("names that results have until they are complete, and that of their list, are not taken from anybody", "[cli][foreign]") {
-  for (const std::string name : {"history.csv.part", "scene_as_read.toml.part", "summary.json.part", "checkpoint.bin.part", ".openclose", ".openclose.part"}) {
+  for (const std::string name :
+       {"history.csv.part", "scene_as_read.toml.part", "summary.json.part", "checkpoint.bin.part", ".openclose", ".openclose.part"}) {
     const Workplace place;
     std::filesystem::create_directory(place.folder() / "out");
     place.folder().write("out/" + name, "my notes on openclose\n");

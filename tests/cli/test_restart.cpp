@@ -17,7 +17,8 @@ using openclose::test::Workplace;
 
 namespace {
 
-constexpr const char* motion = " --dt 0.001 --start unloaded --set output.every_s=0.003 --set output.snapshots_s=[0.02,0.1] --set output.snapshots_every_s=0.03";
+constexpr const char* motion =
+    " --dt 0.001 --start unloaded --set output.every_s=0.003 --set output.snapshots_s=[0.02,0.1] --set output.snapshots_every_s=0.03";
 
 /// A checkpoint whose check sum is right and whose state begins with a list that is longer than all of it.
 std::string with_endless_list(std::string checkpoint) {
@@ -198,14 +199,16 @@ TEST_CASE("who stops a run while it settles keeps the results of the one before,
   REQUIRE(place.run("run scene.toml" + std::string(motion) + " --end 0.05 -o out").status == 0);
   const auto before = openclose::test::contents(place.folder() / "out");
   // Rounding leaves more than this, so that it settles for ever.
-  const std::string settled = " --start settled --dt 0.001 --end 1 --set settle.unbalanced_fraction=1e-300 --set settle.max_steps=1000000000 "
-                              "--set settle.max_explicit_steps=1000000000 -o out";
+  const std::string settled =
+      " --start settled --dt 0.001 --end 1 --set settle.unbalanced_fraction=1e-300 --set settle.max_steps=1000000000 "
+      "--set settle.max_explicit_steps=1000000000 -o out";
   for (const std::string method : {"soft", "dem"}) {
     INFO(method);
     const CommandResult stopped = place.run("run wall.toml --contact " + method + settled, "timeout --foreground --preserve-status -s INT 1 ");
     CHECK(stopped.status == 130);
     REQUIRE_FALSE(stopped.errors.empty());
-    CHECK_THAT(stopped.errors.back(), ContainsSubstring("stopped while the start was settling") && ContainsSubstring("to run again: openclose run 'wall.toml' "));
+    CHECK_THAT(stopped.errors.back(),
+               ContainsSubstring("stopped while the start was settling") && ContainsSubstring("to run again: openclose run 'wall.toml' "));
     CHECK(openclose::test::contents(place.folder() / "out") == before);
   }
 }
@@ -220,7 +223,8 @@ TEST_CASE("the command that goes on is one for a shell, whatever the names are",
   const std::string& told = stopped.errors[0];
   const std::size_t arguments = told.find("openclose run ");
   REQUIRE(arguments != std::string::npos);
-  const CommandResult again = place.run(told.substr(arguments + std::string("openclose ").size()), "timeout --foreground --preserve-status -s INT 1 ");
+  const CommandResult again =
+      place.run(told.substr(arguments + std::string("openclose ").size()), "timeout --foreground --preserve-status -s INT 1 ");
   CHECK(again.status == 130);
   CHECK_THAT(again.errors.at(0), ContainsSubstring("stopped at t = "));
 }
@@ -235,7 +239,8 @@ TEST_CASE("a run that is stopped by a signal saves its state and says how to go 
   INFO(stop.signal);
   const Workplace place(openclose::test::block_on_incline(35.0));
   const std::string common = std::string("run scene.toml") + motion;
-  const CommandResult stopped = place.run(common + " --end 1000 -o parts", std::string("timeout --foreground --preserve-status -s ") + stop.signal + " 1 ");
+  const CommandResult stopped =
+      place.run(common + " --end 1000 -o parts", std::string("timeout --foreground --preserve-status -s ") + stop.signal + " 1 ");
   CHECK(stopped.status == stop.status);
   REQUIRE(stopped.errors.size() == 1);
   CHECK_THAT(stopped.errors[0], ContainsSubstring("stopped at t = ") && ContainsSubstring("--restart 'parts/checkpoint.bin'"));
@@ -249,8 +254,9 @@ TEST_CASE("a run that is stopped by a signal saves its state and says how to go 
 TEST_CASE("a search for the factor of safety that is stopped tells what it knows", "[cli][restart]") {
   const Workplace place(openclose::test::block_on_incline(20.0));
   // The search ends by itself, or tells what it knows: it has found a stable factor by the time of its first look at the signal.
-  const CommandResult stopped = place.run("fos scene.toml --contact dem --set strength_reduction.definition=large_displacements --set settle.first_dt_s=1e-7 -o out",
-                                          "timeout --foreground --preserve-status -s INT 1 ");
+  const CommandResult stopped =
+      place.run("fos scene.toml --contact dem --set strength_reduction.definition=large_displacements --set settle.first_dt_s=1e-7 -o out",
+                "timeout --foreground --preserve-status -s INT 1 ");
   CHECK(stopped.status == 130);
   REQUIRE(stopped.errors.size() == 1);
   CHECK_THAT(stopped.errors[0], ContainsSubstring("stopped ") && ContainsSubstring("state saved in out"));

@@ -1,11 +1,10 @@
-#include "stop_signal.h"
-
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <csignal>
 #include <utility>
 
+#include "stop_signal.h"
 #include "support/catch.h"
 
 namespace {
@@ -27,7 +26,8 @@ int end_of_process_with(int first, int second) {
 }  // namespace
 
 TEST_CASE("the second signal ends a command at once, of whichever kind both are", "[cli][stop_signal]") {
-  for (const auto& [first, second] : {std::pair(SIGINT, SIGINT), std::pair(SIGTERM, SIGTERM), std::pair(SIGTERM, SIGINT), std::pair(SIGINT, SIGTERM)}) {
+  for (const auto& [first, second] :
+       {std::pair(SIGINT, SIGINT), std::pair(SIGTERM, SIGTERM), std::pair(SIGTERM, SIGINT), std::pair(SIGINT, SIGTERM)}) {
     const int status = end_of_process_with(first, second);
     CHECK(WIFSIGNALED(status));
     CHECK(WTERMSIG(status) == second);

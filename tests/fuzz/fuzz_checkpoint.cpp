@@ -1,6 +1,6 @@
-// The reader of checkpoints. A checkpoint is made of a small scene and forged: the first byte says what was saved and by which contact method, the others
-// are edits of six bytes: two say where, four are written there; the check sum is put right. So inputs keep their meaning when the format changes. What
-// is read is put into a simulation, a run or a search, which goes on.
+// The reader of checkpoints. A checkpoint is made of a small scene and forged: the first byte says what was saved and by which contact method, the
+// others are edits of six bytes: two say where, four are written there; the check sum is put right. So inputs keep their meaning when the format
+// changes. What is read is put into a simulation, a run or a search, which goes on.
 #include <cstring>
 #include <iterator>
 #include <string>
@@ -68,8 +68,8 @@ Original steps_of(const std::string& method) {
 }
 
 Original rest_of(const std::string& method) {
-  const std::vector<std::string> overrides = {"method.contact=" + method, "solver.skip_resting=true", "rest.time_s=0.002",
-                                              "rest.displacement_m=5e-4", "rest.acceleration_m_per_s2=1e3"};
+  const std::vector<std::string> overrides = {"method.contact=" + method, "solver.skip_resting=true", "rest.time_s=0.002", "rest.displacement_m=5e-4",
+                                              "rest.acceleration_m_per_s2=1e3"};
   Original made = steps_of(scene_of_text(std::string(text) + resting, "scene.toml", overrides), steps_until_rest);
   Archive state(checkpoint_of_bytes(made.bytes, "checkpoint.bin", made.scene).state);
   Simulation simulation(made.scene);
@@ -121,8 +121,8 @@ void go_on_with_search(const Scene& scene, std::string saved) {
 }
 
 Original search_of(const std::string& method, const std::string& definition) {
-  const std::vector<std::string> overrides = {"method.contact=" + method, "strength_reduction.definition=" + definition, "gravity_m_per_s2=[2, -9.81]",
-                                              "strength_reduction.width=0.1", "settle.failure_displacement_m=0.05"};
+  const std::vector<std::string> overrides = {"method.contact=" + method, "strength_reduction.definition=" + definition,
+                                              "gravity_m_per_s2=[2, -9.81]", "strength_reduction.width=0.1", "settle.failure_displacement_m=0.05"};
   Original made{scene_of_text(text, "scene.toml", overrides), {}, &go_on_with_search};
   Simulation simulation(made.scene);
   SearchObserver observer;
@@ -137,9 +137,18 @@ Original search_of(const std::string& method, const std::string& definition) {
 }
 
 const Original& original(int kind) {
-  static const Original made[] = {steps_of("soft"), steps_of("hard"), steps_of("shi"), steps_of("dem"), rest_of("soft"), rest_of("dem"),
-                                  rest_of("hard"), run_of("soft"), run_of("dem"), search_of("soft", "small_displacements"),
-                                  search_of("dem", "small_displacements"), search_of("soft", "large_displacements"),
+  static const Original made[] = {steps_of("soft"),
+                                  steps_of("hard"),
+                                  steps_of("shi"),
+                                  steps_of("dem"),
+                                  rest_of("soft"),
+                                  rest_of("dem"),
+                                  rest_of("hard"),
+                                  run_of("soft"),
+                                  run_of("dem"),
+                                  search_of("soft", "small_displacements"),
+                                  search_of("dem", "small_displacements"),
+                                  search_of("soft", "large_displacements"),
                                   search_of("dem", "large_displacements")};
   return made[kind % std::size(made)];
 }

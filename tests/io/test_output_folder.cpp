@@ -229,7 +229,8 @@ TEST_CASE("a whole file does not take the place of one that is not as openclose 
   const std::string mine = "<svg>\n<!-- drawn by openclose, and by me -->";
   place.write("notes.svg", mine);
   const auto write = [&](const std::string& name, const std::string& text) { write_files({{place / name, text, false, Seal::xml}}); };
-  CHECK_THROWS_WITH(write("notes.svg", "<svg>\n<!-- drawn by openclose -->"), ContainsSubstring("has not been written by openclose, or edited since"));
+  CHECK_THROWS_WITH(write("notes.svg", "<svg>\n<!-- drawn by openclose -->"),
+                    ContainsSubstring("has not been written by openclose, or edited since"));
   CHECK(test::text_of(place / "notes.svg") == mine);
   CHECK_NOTHROW(write("new.svg", "<svg>1"));
   CHECK_NOTHROW(write("new.svg", "<svg>2"));
@@ -303,7 +304,8 @@ TEST_CASE("a list that is none of ours is not replaced", "[io][output_folder]") 
   const TemporaryFolder place;
   for (const char* name : {".openclose", ".openclose.part"}) {
     place.write(name, "title = 'mine'\n");
-    CHECK_THROWS_WITH(OutputFolder(place.path()).claim({}), ContainsSubstring(std::string(name) + ": is there and has not been written by openclose"));
+    CHECK_THROWS_WITH(OutputFolder(place.path()).claim({}),
+                      ContainsSubstring(std::string(name) + ": is there and has not been written by openclose"));
     CHECK(test::text_of(place / name) == "title = 'mine'\n");
     std::filesystem::remove(place / name);
   }
