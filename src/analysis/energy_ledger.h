@@ -55,6 +55,9 @@ struct EnergyLedger {
            redefinition;
   }
 
+  /// Whether every entry is a number.
+  bool is_finite() const;
+
   /// [-] Share of the energy moved that the time integration took as if it were damping; below zero where it gave energy. Zero where nothing moved.
   double integrator_loss() const { return turnover > 0.0 ? scheme / turnover : 0.0; }
 };

@@ -251,6 +251,9 @@ void ExplicitStepper::exchange(Archive& archive) {
   archive(collected_contact_energy_, approach_step_, held_step_, is_ahead_, loaded);
   loaded_since_ = loaded ? state_.changes : never;
   loop_->exchange(archive, state_.joints, state_.external);
+  // What is not loaded is loaded before it is used.
+  archive.require(loaded ? loop_->fits(state_.system, state_.contacts.moving.size()) : !is_ahead_,
+                  "the saved state has explicit steps of other blocks or contacts");
 }
 
 }  // namespace openclose

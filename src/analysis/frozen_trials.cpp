@@ -93,8 +93,9 @@ TrialResult FrozenTrials::first(double srf) {
 }
 
 TrialResult FrozenTrials::next(double srf, OnBreak on_break) {
+  if (!stable_) throw DamagedState("the saved state has a stable trial without its forces");
   apply(srf);
-  RelaxationResult relaxed = solver_->relax(stable_.value(), effort());
+  RelaxationResult relaxed = solver_->relax(*stable_, effort());
   const bool broke = has_broken(*stable_, relaxed.state);
   TrialResult result;
   if (broke && on_break == OnBreak::go_back) {

@@ -46,6 +46,13 @@ void Resting::follow(const BlockSystem& system, const std::vector<Unknowns>& vel
   }
 }
 
+bool Resting::fits(const BlockSystem& system) const {
+  const std::size_t blocks = system.blocks().size();
+  const bool same_blocks =
+      anchor_.size() == blocks && velocity_.size() == blocks && quiet_.size() == blocks && held_.size() == blocks && change_.size() == blocks;
+  return same_blocks && awaited_.size() == system.resting_blocks().size() && layers_ >= 1 && layers_ <= std::max(1, system.block_count());
+}
+
 void Resting::disturb(const BlockSystem& system) {
   for (const int b : system.free_blocks()) quiet_[b] = 0.0;
 }

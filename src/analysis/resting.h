@@ -56,6 +56,8 @@ class Resting {
   void accept(const BlockSystem& system);
 
   void exchange(Archive& archive) { archive(anchor_, velocity_, quiet_, since_, held_, change_, awaited_, layers_); }
+  /// Whether what was read is of these blocks.
+  bool fits(const BlockSystem& system) const;
 
  private:
   RestInput input_;

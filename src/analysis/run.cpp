@@ -127,6 +127,8 @@ constexpr double noticeable_friction_lag = 0.01;
 /// [-] Of the median block's size, far beyond the closure of joints: seen in a drawing.
 constexpr double noticeable_settlement = 0.1;
 
+}  // namespace
+
 /// The motion from time 0 to what ends it.
 class MotionInTime {
  public:
@@ -206,8 +208,11 @@ class MotionInTime {
 
   void exchange(Archive& archive) {
     archive(begun_, done_, moved_before_, snapshots_taken_, row_is_there_, result_.settling, result_.milestones, watch_);
-    archive.require(done_ >= 0 && result_.milestones.size() <= scene_.milestones.size() && watch_.fits(simulation_),
+    archive.require(begun_ && done_ >= 0 && done_ <= steps_ && result_.milestones.size() <= scene_.milestones.size() && watch_.fits(simulation_),
                     "the saved state is of another run");
+    const double behind = simulation_.time() - time_after(done_),
+                 rounding = tolerance::rounding_of_times * std::max(scene_.step.dt, simulation_.time());
+    archive.require(behind >= -rounding && behind <= scene_.step.dt + rounding, "the saved state has another time than its steps have led to");
     if (points_) archive(*points_);
   }
 
@@ -354,8 +359,6 @@ class MotionInTime {
   bool row_is_there_ = false;  ///< observer_.output has been called for the present state
 };
 
-}  // namespace
-
 RunResult run(Simulation& simulation, const RunObserver& observer) {
   RunResult result = prepare_start(simulation, observer.settling);
   if (observer.started) observer.started(simulation);
@@ -368,19 +371,22 @@ RunResult run(Simulation& simulation, const RunObserver& observer) {
   return result;
 }
 
-RunResult resume(Simulation& simulation, const RunObserver& observer, Archive& state, const std::function<void()>& resumed) {
-  RunResult result;
-  result.converged = true;
-  MotionInTime motion(simulation, observer, result);
-  state(simulation, motion);
-  if (resumed) resumed();
-  if (motion.is_over()) {
-    motion.conclude();
+ResumedRun::ResumedRun(Simulation& simulation, Archive& state) : motion_(std::make_unique<MotionInTime>(simulation, observer_, result_)) {
+  result_.converged = true;
+  state(simulation, *motion_);
+}
+
+ResumedRun::~ResumedRun() = default;
+
+RunResult ResumedRun::go_on(const RunObserver& observer) {
+  observer_ = observer;
+  if (motion_->is_over()) {
+    motion_->conclude();
   } else {
-    motion.follow();
+    motion_->follow();
   }
-  motion.finish();
-  return result;
+  motion_->finish();
+  return std::move(result_);
 }
 
 }  // namespace openclose

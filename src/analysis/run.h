@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -96,10 +97,22 @@ RunResult prepare_start(Simulation& simulation, const SettleProgress& progress =
 
 RunResult run(Simulation& simulation, const RunObserver& observer);
 
-/// Goes on, bit for bit, from what a checkpoint of the same scene holds, in a simulation that has not been used. The scene may have another end_time
-/// (not before the state's), output_every, checkpoint_every and method.threads, and another solver.smallest_fraction and solver.max_iterations, to
-/// get over a step that did not converge. `state` is left where the observer's own part begins; `resumed` is called then, before the first step.
-/// Throws std::runtime_error if the state does not fit the scene.
-RunResult resume(Simulation& simulation, const RunObserver& observer, Archive& state, const std::function<void()>& resumed = {});
+class MotionInTime;
+
+/// A run that goes on, bit for bit, from what a checkpoint of the same scene holds, in a simulation that has not been used. The scene may have another
+/// end_time (not before the state's), output_every, checkpoint_every and method.threads, and another solver.smallest_fraction and
+/// solver.max_iterations, to get over a step that did not converge.
+class ResumedRun {
+ public:
+  /// Reads the state, which is left where the observer's own part begins. Throws DamagedState if it does not fit the scene; no step is made yet.
+  ResumedRun(Simulation& simulation, Archive& state);
+  ~ResumedRun();
+  RunResult go_on(const RunObserver& observer);
+
+ private:
+  RunObserver observer_;
+  RunResult result_;
+  std::unique_ptr<MotionInTime> motion_;
+};
 
 }  // namespace openclose

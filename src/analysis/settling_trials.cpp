@@ -24,7 +24,8 @@ TrialResult SettlingTrials::first(double srf) {
 }
 
 TrialResult SettlingTrials::next(double srf, OnBreak) {
-  simulation_.restore(settled_.value());
+  if (!settled_) throw DamagedState("the saved state has a stable trial without its blocks");
+  simulation_.restore(*settled_);
   simulation_.change_joints().reduce_strength(srf);
   return result_of(search_->settle_trial(progress_));
 }

@@ -210,10 +210,25 @@ void SimulationState::note_memory(const Memory& of_stepper) {
   memory.grow_to(now);
 }
 
-void SimulationState::exchange(Archive& archive) {
-  archive(system, resting, may_rest, external, joints, base_moves, bonds, detector, contacts, contacts_current, output_velocity, time,
-          reason, ledger, start_kinetic_energy, kinetic_ahead, max_penetration, friction_work, lagging_friction_work, counters, begins);
+void SimulationState::judge(const Archive& archive) const {
+  const auto is_finite = [](const auto& list) { return std::ranges::all_of(list, [](const auto& v) { return v.allFinite(); }); };
+  const BlockSystem::State& blocks = system.state();
   archive.require(detector.fits(system, joints, contacts), "the saved state has contacts of blocks that are not there");
+  archive.require(resting.fits(system) && output_velocity.size() == system.blocks().size() && bonds <= Bonds::last_unparted,
+                  "the saved state is of other blocks");
+  archive.require(std::isfinite(time) && is_finite(blocks.displacement) && is_finite(blocks.velocity) && is_finite(blocks.arm) &&
+                      is_finite(blocks.point_arm) && is_finite(output_velocity),
+                  "the saved state has blocks without a finite position or velocity");
+  archive.require(ledger.is_finite() && std::isfinite(start_kinetic_energy) && std::isfinite(kinetic_ahead),
+                  "the saved state has energies that are no numbers");
+  archive.require(!joints.reduction() || (std::isfinite(*joints.reduction()) && *joints.reduction() > 0.0),
+                  "the saved state has joints without a strength");
+}
+
+void SimulationState::exchange(Archive& archive) {
+  archive(system, resting, may_rest, external, joints, base_moves, bonds, detector, contacts, contacts_current, output_velocity, time, reason, ledger,
+          start_kinetic_energy, kinetic_ahead, max_penetration, friction_work, lagging_friction_work, counters, begins);
+  judge(archive);
   if (archive.reading()) make_scheme();
   scheme->exchange(archive);
   enforcement->exchange(archive);

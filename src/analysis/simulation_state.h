@@ -95,6 +95,8 @@ struct SimulationState {
   long changes = 0;  ///< see note_change(); steppers compare it with what it was
 
  private:
+  /// Whether what was read is a state of these blocks.
+  void judge(const Archive& archive) const;
   bool search(double lead);
   void store_energy(const StepProblem& problem, Contact& contact) const;
   /// Blocks have been put to rest or woken.

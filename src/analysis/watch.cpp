@@ -229,10 +229,15 @@ std::string Watch::check_energy(const Simulation& simulation) {
                             {-ledger.impact, "impacts released it"},
                             {by_scheme, "the time integration released it"},
                             {std::abs(ledger.imbalance()), "the energy ledger does not close"}};
-  const Source& worst = *std::ranges::max_element(sources, {}, &Source::energy);
   const double scale = energy_scale();
+  // Comparisons pass over what is no number.
+  const auto* wrong = std::ranges::find_if(sources, [](const Source& source) { return !std::isfinite(source.energy); });
+  if (wrong != std::end(sources) || !std::isfinite(scale) || !ledger.is_finite())
+    return fmt::format("the energies are no finite numbers any more ({}); {}", wrong != std::end(sources) ? wrong->name : "energy ledger",
+                       shorter_step(simulation.scene(), margin));
+  const Source& worst = *std::ranges::max_element(sources, {}, &Source::energy);
   const double part = worst.energy > 0.0 ? worst.energy / scale : 0.0;
-  if (!(part <= report_.created_energy)) report_.created_energy = part;
+  report_.created_energy = std::max(report_.created_energy, part);
   if (part <= watch_bound::created_energy) return {};
   return fmt::format("energy was created: {:.3g} J where {:.3g} J were there to move anything ({:.2g} of it, at most {:g}; {}); {}", worst.energy,
                      scale, part, watch_bound::created_energy, worst.name, better_energy(simulation));
@@ -321,8 +326,7 @@ std::string Watch::check_overlaps(const Simulation& simulation, std::size_t firs
 
 bool Watch::fits(const Simulation& simulation) const {
   const auto blocks = static_cast<std::size_t>(simulation.system().block_count());
-  const auto fits = [blocks](const auto& list) { return list.empty() || list.size() == blocks; };
-  return fits(start_) && fits(widths_) && fits(convex_);
+  return start_.size() == blocks && widths_.size() == blocks && convex_.size() == blocks;
 }
 
 }  // namespace openclose

@@ -29,7 +29,8 @@ int cut_command(const Options& options) {
     throw InputError({file, 0}, "", "the blocks and their drawing cannot be the same file",
                      "-o with the name of a scene (.toml), --svg with that of the drawing");
   }
-  write_files({{file, "# Blocks that openclose has cut.\n" + write_scene(loaded.scene)}, {drawing, svg_drawing(picture_of(loaded.scene))}});
+  write_files({{file, "# Blocks that openclose has cut.\n" + write_scene(loaded.scene), false, Seal::hash},
+               {drawing, svg_drawing(picture_of(loaded.scene)), false, Seal::xml}});
   if (options.json) {
     print_json(exit_success, {{"scene", options.scene_file},
                               {"blocks", cutting.blocks},
@@ -54,7 +55,7 @@ int draw_command(const Options& options) {
   const std::string file = options.drawing_file.empty() ? options.results + "/drawing.svg" : options.drawing_file;
   require_ending(file, ".svg", "drawing");
   const Picture picture = picture_of_results(options.results, options.drawing);
-  write_files({{file, svg_drawing(picture)}});
+  write_files({{file, svg_drawing(picture), false, Seal::xml}});
   if (options.json)
     print_json(exit_success, {{"results", options.results}, {"blocks", picture.blocks.size()}, {"notes", picture.notes}, {"written", {file}}});
   if (!options.quiet) fmt::print("{}: {} blocks drawn; {}; written to {}\n", options.results, picture.blocks.size(), picture.notes.front(), file);

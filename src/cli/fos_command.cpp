@@ -65,15 +65,46 @@ std::string number_of_blocks(const Scene& scene) {
   return size_of(scene) + (scene.cutting ? "; a larger joint_set.spacing_m makes fewer" : "");
 }
 
+/// What a search leaves in its folder, from when there is anything new: what an earlier one has left there stays until then.
+class SearchFolder {
+ public:
+  SearchFolder(const Options& options, const Simulation& simulation, const OutputFolder& folder)
+      : options_(options), scene_(simulation.scene()), drawn_(simulation.system()), folder_(folder) {
+    folder.require_ours(files_read(options, scene_));
+  }
+
+  /// Nothing the second time.
+  void begin() {
+    if (states_) return;
+    folder_.claim(files_read(options_, scene_));
+    make_room(folder_, options_);
+    folder_.write_scene_copy(write_scene(scene_));
+    write_block_properties(folder_, scene_, drawn_);
+    states_.emplace(folder_, scene_);
+    states_->add_drawing(scene_, drawn_);
+  }
+
+  void write(std::string state) {
+    begin();
+    write_checkpoint(folder_.claim_whole_file(checkpoint_name), scene_, {0.0, {}, std::move(state), "fos"});
+  }
+
+  StateTables& states() { return *states_; }
+
+ private:
+  const Options& options_;
+  const Scene& scene_;
+  const BlockSystem drawn_;
+  const OutputFolder& folder_;
+  std::optional<StateTables> states_;
+};
+
 /// With what has been found out in the checkpoint; all of it where the search is stopped.
-FactorOfSafety search(Simulation& simulation, const Options& options, const OutputFolder& folder, std::optional<Checkpoint> restart) {
+FactorOfSafety search(Simulation& simulation, const Options& options, SearchFolder& folder, std::optional<Checkpoint> restart) {
   const bool grows = simulation.scene().strength_reduction.increase.has_value();
   Progress progress(grows ? "load" : "strength reduction", options.quiet);
   progress.note(number_of_blocks(simulation.scene()));
-  const auto write = [&](std::string state) {
-    write_checkpoint(folder.path_of(checkpoint_name), simulation.scene(), {0.0, {}, std::move(state), "fos"});
-  };
-  SearchCheckpoint checkpoint(write, &process_cpu_time);
+  SearchCheckpoint checkpoint([&](std::string state) { folder.write(std::move(state)); }, &process_cpu_time);
   SearchObserver observer;
   double done = 0.0;
   observer.progress = [&](double fraction) {
@@ -96,6 +127,7 @@ FactorOfSafety search(Simulation& simulation, const Options& options, const Outp
     }
   };
   FactorOfSafety safety = found();
+  folder.begin();
   if (safety.bracket.stopped) checkpoint.flush();
   return safety;
 }
@@ -150,30 +182,27 @@ int fos_command(const Options& options) {
   const OutputFolder folder = output_folder(options);
   // As in `run`: before this nothing is lost.
   watch_for_stop_signals();
-  folder.claim(files_read(options, simulation.scene()));
-  make_room(folder, options);
+  SearchFolder in_folder(options, simulation, folder);
   // Once nothing is refused any more: a key that has no meaning for the method is an error, and no warning besides.
   const std::vector<std::string> unused = unused_steps(simulation.scene(), options);
   print_warnings(unused);
   loaded.warnings.insert(loaded.warnings.end(), unused.begin(), unused.end());
-  folder.write_scene_copy(write_scene(simulation.scene()));
-  write_block_properties(folder, simulation.scene(), simulation.system());
-  StateTables states(folder, simulation.scene());
-  states.add_drawing(simulation);
   const std::optional<std::string>& increase = simulation.scene().strength_reduction.increase;
   const double begin = process_cpu_time();
-  const FactorOfSafety safety = search(simulation, options, folder, std::move(restart));
+  // What a checkpoint holds is read piece by piece while the search finds its way back: what is damaged is refused before anything is written.
+  if (!restart) in_folder.begin();
+  const FactorOfSafety safety = search(simulation, options, in_folder, std::move(restart));
 
   Summary summary = summary_of("fos", options, loaded);
   summary.cpu_of_search = process_cpu_time() - begin;
   summary.warnings.insert(summary.warnings.end(), safety.warnings.begin(), safety.warnings.end());
   print_warnings(safety.warnings);
   for (const NamedState& state : safety.states) {
-    states.add(state, simulation.scene());
+    in_folder.states().add(state, simulation.scene());
     if (state.contacts.empty()) continue;
     if (state.name != "failed") summary.max_penetration = deepest_of(state.contacts);
   }
-  states.close();
+  in_folder.states().close();
   write_trials(folder, safety.trials, column_of_answer(increase));
   if (!safety.mechanism.empty()) write_mechanism(folder, simulation.scene(), safety.mechanism);
   if (!safety.curve.empty()) write_curve(folder, safety.curve);

@@ -188,8 +188,8 @@ int main_caught(int argc, char** argv) {
     return main_checked(argc, argv);
   } catch (const InputError& e) {
     return report_failure(exit_bad_input, e.what(), wants_json(argc, argv));
-  } catch (const Stopped&) {
-    return report_failure(exit_status_of_stop(), "stopped before there was a state to go on from", wants_json(argc, argv));
+  } catch (const Stopped& stop) {
+    return report_failure(exit_status_of_stop(), stop.what(), wants_json(argc, argv));
   } catch (const WriteError& e) {
     return report_failure(exit_broken_off, e.what(), wants_json(argc, argv));
   } catch (const std::exception& e) {

@@ -26,7 +26,7 @@ int report_command(const ReportOptions& options) {
   const std::string file = options.file.empty() ? options.results + "/report.html" : options.file;
   require_ending(file, ".html", "page");
   const Report report = report_of_results(options.results, {static_cast<std::size_t>(options.most_mb * bytes_per_mb)});
-  write_files({{file, report.html}});
+  write_files({{file, report.html, false, Seal::xml}});
   if (options.json)
     print_json(exit_success, {{"results", options.results},
                               {"answer", report.answer},

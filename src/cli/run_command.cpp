@@ -26,78 +26,131 @@ std::string loss_by_integrator(const EnergyLedger& ledger) {
   return share > noticeable_loss ? fmt::format(", {:.2g} % of them taken by the integrator", 100.0 * share) : std::string();
 }
 
-/// The tables that grow while a run goes on, and the checkpoint that knows how far they are.
-class GrowingFiles {
- public:
-  GrowingFiles(const OutputFolder& folder, Simulation& simulation, const RestartPoint* restart, bool quiet)
-      : folder_(folder),
-        quiet_(quiet),
-        points_(simulation),
-        history_(folder, restart),
-        energy_(folder, restart),
-        states_(folder, simulation.scene(), restart),
-        measured_contacts_(simulation.scene()) {
-    if (!simulation.scene().measured_contacts.empty()) contact_history_.emplace(folder, restart);
-    if (!restart) states_.add_drawing(simulation);
-    progress_.emplace(restart ? "run" : "settle", quiet);
+/// The tables that grow while a run goes on.
+struct GrowingTables {
+  GrowingTables(const OutputFolder& folder, const Scene& scene, const RestartPoint* restart)
+      : history(folder, restart), energy(folder, restart), states(folder, scene, restart) {
+    if (!scene.measured_contacts.empty()) contacts.emplace(folder, restart);
   }
 
-  MeasuredPoints& points() { return points_; }
+  std::vector<TableMark> written() {
+    std::vector<TableMark> marks = states.written();
+    marks.push_back(history.written());
+    marks.push_back(energy.written());
+    if (contacts) marks.push_back(contacts->written());
+    return marks;
+  }
 
-  RunObserver observer() {
-    RunObserver observer;
-    observer.started = [this](const Simulation& s) {
-      points_.restart();
-      states_.add("start", s);
-      progress_.emplace("run", quiet_);
-    };
+  void close() {
+    history.close();
+    energy.close();
+    states.close();
+    if (contacts) contacts->close();
+  }
+
+  HistoryFile history;
+  EnergyFile energy;
+  StateTables states;
+  std::optional<ContactHistoryFile> contacts;
+};
+
+/// What a run leaves in its folder while it goes on, and the checkpoint that knows how far its tables are. What an earlier run has left there stays
+/// until this one has a state to go on from.
+class RunInFolder {
+ public:
+  RunInFolder(const Options& options, Simulation& simulation)
+      : options_(options), simulation_(simulation), points_(simulation), measured_contacts_(simulation.scene()), drawn_(simulation.system()) {}
+
+  /// From the beginning. Throws Stopped if it is stopped before it has any state.
+  RunResult run_in(const OutputFolder& folder) {
+    folder.require_ours(files_read(options_, simulation_.scene()));
+    progress_.emplace("settle", options_.quiet);
+    RunObserver observer = observer_of_motion();
     observer.settling = [this](double fraction) {
       progress_->update(fraction);
       throw_if_stopped();
     };
+    observer.started = [&](const Simulation& s) {
+      points_.restart();
+      begin(folder, nullptr);
+      tables_->states.add_drawing(s.scene(), drawn_);
+      tables_->states.add("start", s);
+    };
+    try {
+      return run(simulation_, observer);
+    } catch (const Stopped&) {
+      progress_.reset();
+      throw Stopped(fmt::format("stopped while the start was settling, of which there is no checkpoint: {} is as it was; to run again: {}",
+                                folder.path(), command_to_repeat("run", options_, folder)));
+    }
+  }
+
+  /// Reads what the checkpoint holds; nothing is written yet.
+  void read(const RestartPoint& restart) {
+    Archive state(restart.checkpoint.state);
+    try {
+      resumed_.emplace(simulation_, state);
+      state(points_);
+    } catch (const DamagedState& damage) {
+      throw InputError({restart.checkpoint_file, 0}, "", damage.what(), "a checkpoint as a run has written it");
+    }
+  }
+
+  RunResult go_on_in(const OutputFolder& folder, const RestartPoint& restart) {
+    begin(folder, &restart);
+    return resumed_->go_on(observer_of_motion());
+  }
+
+  void close() {
+    progress_.reset();
+    // Asking for the contacts finds those of the last positions.
+    simulation_.change_contacts();
+    tables_->states.add("final", simulation_);
+    tables_->close();
+  }
+
+ private:
+  void begin(const OutputFolder& folder, const RestartPoint* restart) {
+    const Scene& scene = simulation_.scene();
+    folder_ = &folder;
+    folder.claim(files_read(options_, scene));
+    make_room(folder, options_);
+    folder.write_scene_copy(write_scene(scene));
+    write_block_properties(folder, scene, simulation_.system());
+    tables_.emplace(folder, scene, restart);
+    progress_.emplace("run", options_.quiet);
+  }
+
+  RunObserver observer_of_motion() {
+    RunObserver observer;
     observer.stops = [] { return stop_signal() != 0; };
-    observer.snapshot = [this](const std::string& state, const Simulation& s) { states_.add(state, s); };
+    observer.snapshot = [this](const std::string& state, const Simulation& s) { tables_->states.add(state, s); };
     observer.output = [this](const Simulation& s) { add_rows(s); };
     observer.progress = [this](double fraction) { progress_->update(fraction); };
     observer.checkpoint = [this](Archive& state, const Simulation& s) { write(state, s); };
     return observer;
   }
 
-  void close(Simulation& simulation) {
-    progress_.reset();
-    // Asking for the contacts finds those of the last positions.
-    simulation.change_contacts();
-    states_.add("final", simulation);
-    history_.close();
-    energy_.close();
-    states_.close();
-    if (contact_history_) contact_history_->close();
-  }
-
- private:
   void add_rows(const Simulation& s) {
-    history_.add(s.time(), points_.motions());
-    energy_.add(s.time(), s.ledger());
-    if (contact_history_) contact_history_->add(s.time(), measured_contacts_.motions(s));
+    tables_->history.add(s.time(), points_.motions());
+    tables_->energy.add(s.time(), s.ledger());
+    if (tables_->contacts) tables_->contacts->add(s.time(), measured_contacts_.motions(s));
   }
 
   void write(Archive& state, const Simulation& s) {
     state(points_);
-    std::vector<TableMark> tables = states_.written();
-    tables.push_back(history_.written());
-    tables.push_back(energy_.written());
-    if (contact_history_) tables.push_back(contact_history_->written());
-    write_checkpoint(folder_.path_of(checkpoint_name), s.scene(), {s.time(), std::move(tables), state.take()});
+    std::vector<TableMark> tables = tables_->written();
+    write_checkpoint(folder_->claim_whole_file(checkpoint_name), s.scene(), {s.time(), std::move(tables), state.take()});
   }
 
-  const OutputFolder& folder_;
-  bool quiet_;
+  const Options& options_;
+  Simulation& simulation_;
   MeasuredPoints points_;
-  HistoryFile history_;
-  EnergyFile energy_;
-  StateTables states_;
   MeasuredContacts measured_contacts_;
-  std::optional<ContactHistoryFile> contact_history_;
+  BlockSystem drawn_;  ///< as it was before the start
+  const OutputFolder* folder_ = nullptr;
+  std::optional<ResumedRun> resumed_;
+  std::optional<GrowingTables> tables_;
   std::optional<Progress> progress_;
 };
 
@@ -153,27 +206,13 @@ int run_command(const Options& options) {
   Simulation simulation(std::move(loaded.scene));
   const Scene& scene = simulation.scene();
   if (!restart) require_start(scene);
-
+  RunInFolder in_folder(options, simulation);
+  if (restart) in_folder.read(*restart);
   const OutputFolder folder = output_folder(options);
-  // Who stops the command before this loses nothing; from here on results of another run go, and what is stopped ends with its own.
+  // Who stops the command before this loses nothing; from here on what is stopped ends with a word on how to go on.
   watch_for_stop_signals();
-  folder.claim(files_read(options, scene));
-  make_room(folder, options);
-  folder.write_scene_copy(write_scene(scene));
-  write_block_properties(folder, scene, simulation.system());
-  GrowingFiles files(folder, simulation, restart ? &*restart : nullptr, options.quiet);
-  RunResult result;
-  if (restart) {
-    Archive state(restart->checkpoint.state);
-    try {
-      result = resume(simulation, files.observer(), state, [&] { state(files.points()); });
-    } catch (const DamagedState& damage) {
-      throw InputError({restart->checkpoint_file, 0}, "", damage.what(), "a checkpoint as a run has written it");
-    }
-  } else {
-    result = run(simulation, files.observer());
-  }
-  files.close(simulation);
+  const RunResult result = restart ? in_folder.go_on_in(folder, *restart) : in_folder.run_in(folder);
+  in_folder.close();
   print_warnings(result.warnings);
   if (!result.milestones.empty()) write_milestones(folder, result.milestones);
   write_summary(folder, summary_of_run(options, loaded, result, simulation), simulation);

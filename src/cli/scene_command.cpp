@@ -40,6 +40,13 @@ Loaded load(const Options& options) {
 
 namespace {
 
+/// One word for a shell, whatever stands in it.
+std::string quoted(const std::string& word) {
+  std::string text = "'";
+  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
+
 std::string without_quotes(std::string word) {
   std::erase_if(word, [](char c) { return c == '"' || c == '\'' || c == '/'; });
   return word;
@@ -60,10 +67,14 @@ OutputFolder output_folder(const Options& options) {
   return OutputFolder("results/" + name);
 }
 
+std::string command_to_repeat(const std::string& command, const Options& options, const OutputFolder& folder) {
+  std::string line = fmt::format("openclose {} {}", command, quoted(options.scene_file));
+  for (const std::string& key_and_value : options.overrides) line += " --set " + quoted(key_and_value);
+  return line + " -o " + quoted(folder.path());
+}
+
 std::string command_to_go_on(const std::string& command, const Options& options, const OutputFolder& folder) {
-  std::string line = fmt::format("openclose {} '{}'", command, options.scene_file);
-  for (const std::string& key_and_value : options.overrides) line += fmt::format(" --set '{}'", key_and_value);
-  return line + fmt::format(" -o '{}' --restart '{}'", folder.path(), folder.path_of(checkpoint_name));
+  return command_to_repeat(command, options, folder) + " --restart " + quoted(folder.path_of(checkpoint_name));
 }
 
 void make_room(const OutputFolder& folder, const Options& options) {
@@ -72,6 +83,8 @@ void make_room(const OutputFolder& folder, const Options& options) {
   } else {
     folder.remove_results();
   }
+  // What is gone is not ours any more, however this analysis ends.
+  folder.list_results();
 }
 
 std::vector<std::string> files_read(const Options& options, const Scene& scene) {

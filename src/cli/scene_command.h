@@ -41,7 +41,9 @@ struct Loaded {
 Loaded load(const Options& options);
 /// That of the command line, or the one named after the scene, and after the load that is increased.
 OutputFolder output_folder(const Options& options);
-/// For the shell of who has stopped the command: how to go on from its checkpoint.
+/// For the shell of who has stopped the command: how to begin it again.
+std::string command_to_repeat(const std::string& command, const Options& options, const OutputFolder& folder);
+/// The same: how to go on from its checkpoint.
 std::string command_to_go_on(const std::string& command, const Options& options, const OutputFolder& folder);
 /// Removes what an earlier analysis has left in the folder; of one that goes on from a checkpoint there only what came at its end.
 void make_room(const OutputFolder& folder, const Options& options);

@@ -40,7 +40,7 @@ class WriteError : public std::runtime_error {
 /// Thrown out of a long computation whose observer has been asked to stop; who knows something by then catches it.
 class Stopped : public std::runtime_error {
  public:
-  Stopped() : std::runtime_error("stopped") {}
+  explicit Stopped(const std::string& what = "stopped before there was a state to go on from") : std::runtime_error(what) {}
 };
 
 }  // namespace openclose

@@ -152,6 +152,13 @@ void CentralDifference::exchange(Archive& archive, const JointTable& joints, con
   links_.exchange(archive, joints);
 }
 
+bool CentralDifference::fits(const BlockSystem& system, std::size_t contacts) const {
+  const auto fits = [&](const ElementWay& way) {
+    return blocks_.has_slot(way.slot) && way.element >= 0 && static_cast<std::size_t>(way.element) < external_->elements().size();
+  };
+  return blocks_.fits(system) && links_.fits(contacts) && std::ranges::all_of(elements_, fits);
+}
+
 Memory CentralDifference::memory() const {
   Memory of = links_.memory();
   of.blocks += blocks_.bytes() + bytes_of(elements_);

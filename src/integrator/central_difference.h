@@ -96,6 +96,8 @@ class CentralDifference {
 
   /// All of it; joints and external forces are those that load() was given.
   void exchange(Archive& archive, const JointTable& joints, const ExternalForces& external);
+  /// Whether what was read is of these blocks, of so many contacts between them, and of their external forces.
+  bool fits(const BlockSystem& system, std::size_t contacts) const;
 
  private:
   /// A force element on its way.

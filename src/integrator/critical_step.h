@@ -50,6 +50,8 @@ class CriticalStepBound {
   /// \param local_damping  [-] alpha
   double step(double local_damping = 0.0);
   void exchange(Archive& archive) { archive(scales_, stiffness_, damping_, damped_, changed_, stiffest_, most_damped_); }
+  /// Whether what was read is of so many blocks.
+  bool fits(std::size_t blocks) const { return scales_.size() == blocks && stiffness_.size() == blocks && damping_.size() == blocks; }
   std::size_t bytes() const { return bytes_of(scales_, stiffness_, damping_); }
 
  private:

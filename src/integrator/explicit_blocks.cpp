@@ -63,6 +63,18 @@ void ExplicitBlocks::load(const StepProblem& problem) {
   }
 }
 
+bool ExplicitBlocks::fits(const BlockSystem& system) const {
+  const std::size_t free = system.free_blocks().size(), slots = free + 1 + system.resting_blocks().size();
+  const bool same_slots = poses_.size() == slots && rates_.size() == slots && next_rates_.size() == slots && forces_.size() == slots;
+  const bool same_blocks = inertia_.size() == free && blocks_ == system.free_blocks() && loaded_at_.size() == free && marked_at_.size() == free;
+  const auto is_motion = [](const ExplicitRate& r) { return std::isfinite(r.x + r.y + r.turn + r.angle); };
+  return same_slots && same_blocks && rest_slot_.size() == system.blocks().size() &&
+         std::ranges::all_of(rest_slot_, [&](int s) { return has_slot(s); }) &&
+         std::ranges::all_of(poses_, [](const ExplicitPose& p) { return std::isfinite(p.x + p.y + p.cos_minus_1 + p.sin); }) &&
+         std::ranges::all_of(rates_, is_motion) && std::ranges::all_of(forces_, is_motion) &&
+         std::ranges::all_of(loaded_at_, [](const Unknowns& d) { return d.allFinite(); });
+}
+
 void ExplicitBlocks::begin_forces() {
   for (std::size_t i = 0; i < inertia_.size(); ++i) forces_[i] = {inertia_[i].weight_x, inertia_[i].weight_y, 0.0, 0.0};
   std::fill(forces_.begin() + static_cast<std::ptrdiff_t>(inertia_.size()), forces_.end(), ExplicitRate());

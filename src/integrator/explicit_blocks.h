@@ -114,6 +114,9 @@ class ExplicitBlocks {
 
   std::size_t bytes() const { return bytes_of(poses_, rates_, next_rates_, forces_, inertia_, blocks_, rest_slot_, loaded_at_, marked_at_); }
   void exchange(Archive& archive) { archive(poses_, rates_, next_rates_, forces_, inertia_, blocks_, rest_slot_, loaded_at_, marked_at_); }
+  /// Whether what was read is of these blocks.
+  bool fits(const BlockSystem& system) const;
+  bool has_slot(int slot) const { return slot >= 0 && slot < static_cast<int>(poses_.size()); }
 
  private:
   double force_squared(std::size_t i) const;  ///< [N2] on a block, a moment counting at the block's radius

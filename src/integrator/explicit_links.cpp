@@ -309,6 +309,25 @@ void ExplicitLinks::exchange(Archive& archive, const JointTable& joints) {
   archive(links_, rest_, link_of_, cleared_, damped_, lost_strength_, critical_step_, approach_, max_penetration_, share_, room_);
 }
 
+bool ExplicitLinks::fits(std::size_t contacts) const {
+  if (rest_.size() != links_.size() || link_of_.size() != contacts || !critical_step_.fits(static_cast<std::size_t>(blocks_.count()))) return false;
+  const auto is_below = [](int number, std::size_t count) { return number >= 0 && static_cast<std::size_t>(number) < count; };
+  int cleared = 0;
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    const Link& link = links_[i];
+    const LinkRest& rest = rest_[i];
+    if (!blocks_.has_slot(link.vertex_slot) || !blocks_.has_slot(link.edge_slot) || link.status > ContactStatus::sliding) return false;
+    if (!is_below(rest.joint, static_cast<std::size_t>(joints_->count()))) return false;
+    cleared += rest.contact == none ? 1 : 0;
+    if (rest.contact != none && (!is_below(rest.contact, contacts) || link_of_[rest.contact] != static_cast<int>(i))) return false;
+  }
+  for (std::size_t i = 0; i < contacts; ++i) {
+    const int link = link_of_[i];
+    if (link != none && (!is_below(link, links_.size()) || rest_[link].contact != static_cast<int>(i))) return false;
+  }
+  return cleared == cleared_;
+}
+
 Memory ExplicitLinks::memory() const {
   Memory of;
   of.blocks = critical_step_.bytes() + depth_limits_.bytes();

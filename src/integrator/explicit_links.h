@@ -58,6 +58,8 @@ class ExplicitLinks {
 
   Memory memory() const;
   void exchange(Archive& archive, const JointTable& joints);
+  /// Whether what was read is of so many contacts between blocks that there are.
+  bool fits(std::size_t contacts) const;
 
  private:
   /// In the order in which four links are fetched, four numbers of each at a time.

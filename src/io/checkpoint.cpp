@@ -118,6 +118,20 @@ void append_check_sum(std::string& bytes) {
   bytes.append(reinterpret_cast<const char*>(&sum), sizeof sum);
 }
 
+namespace {
+
+/// The run has begun: what is there now and is no checkpoint of ours has come since.
+void require_own_place(const std::string& path, const std::vector<TextFile>& files) {
+  try {
+    require_replaceable(files);
+  } catch (const InputError&) {
+    throw WriteError(
+        path, "has been replaced since the analysis began by something that is no checkpoint of openclose: that stays, and no new one is written");
+  }
+}
+
+}  // namespace
+
 void write_checkpoint(const std::string& path, const Scene& scene, Checkpoint checkpoint) {
   const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
   const auto require_folder = [&] {
@@ -126,6 +140,7 @@ void write_checkpoint(const std::string& path, const Scene& scene, Checkpoint ch
   require_folder();
   std::vector<TextFile> files(1);
   files.front() = {path, checkpoint_bytes(scene, std::move(checkpoint))};
+  require_own_place(path, files);
   try {
     write_files(files);
   } catch (const std::runtime_error&) {

@@ -1,13 +1,16 @@
 // The folder a run writes to. Made, and tried, before anything is computed, so that a run is never lost to a folder that cannot be written.
 //
-// A folder that is claimed keeps a list of the names that results have there: what stands there under such a name and is not listed is somebody
-// else's, and the folder is refused. Files that are written as a whole get their names when they are complete.
+// A folder that is claimed keeps a list of the names that results have got there: what stands there under a name that results may get and is not
+// listed is somebody else's, and the folder is refused. A name is listed when its file is made, so that a run that is killed claims no more than it
+// has written. Files that are written as a whole get their names when they are complete; until then these end in ".part".
 #pragma once
 
 #include <cstdint>
 #include <fstream>
 #include <string>
 #include <vector>
+
+#include "openclose/io/seal.h"
 
 namespace openclose {
 
@@ -22,12 +25,15 @@ class OutputFolder {
  public:
   /// Creates the folder if it is missing. Throws InputError if the files of a run cannot be written there.
   explicit OutputFolder(const std::string& path);
-  /// From now on the names of results in this folder are ours. Throws InputError if one of them is a file that is read, or one that openclose has not
-  /// written; nothing has changed then.
+  /// From now on the names of files that are made in this folder are listed as ours, beside those of an earlier run that are there. Throws InputError
+  /// if a name that results may get is a file that is read, or one that openclose has not written; nothing has changed then.
   void claim(const std::vector<std::string>& read_files) const;
   /// Throws as claim() would, and changes nothing.
   void require_ours(const std::vector<std::string>& read_files) const;
-  /// The analysis is over: from now on only those of these names are ours that are there.
+  /// A file of this name is about to be written as a whole. Throws WriteError if somebody else has put one there since the folder was claimed.
+  /// Changes nothing in a folder that nobody has claimed. \return its path
+  std::string claim_whole_file(const std::string& name) const;
+  /// The analysis is over: from now on only those of the listed names are ours that are there.
   void list_results() const;
   /// The scene as it was read, with its blocks cut and its overrides applied.
   void write_scene_copy(const std::string& text) const;
@@ -45,7 +51,7 @@ class OutputFolder {
 
   /// A new file, which gets its name with finish(), replacing an old one. Throws WriteError if it cannot be made any more.
   std::ofstream open(const std::string& name) const;
-  /// A new file that has its name at once, for rows that a broken-off run is to leave behind.
+  /// A new file that has its name at once, for rows that a broken-off run is to leave behind; to be closed by finish_growing().
   std::ofstream open_growing(const std::string& name) const;
   /// The same, but beginning with the first `length` bytes of the file `head`, which may be this one.
   std::ofstream open_growing(const std::string& name, const std::string& head, std::uintmax_t length) const;
@@ -53,13 +59,18 @@ class OutputFolder {
   std::string path_of(const std::string& name) const { return path_ + "/" + name; }
 
  private:
-  void remove(const char* name) const;
+  void remove(const std::string& name) const;
   bool has_own_scene_copy() const;
-  std::vector<std::string> names_of_results() const;
   std::vector<std::string> own_names() const;
+  std::vector<std::string> own_names_there() const;
+  bool is_claimed() const;
   bool is_there(const std::string& name) const;
   bool is_own_picture(const std::string& name) const;
+  bool is_list(const std::string& name) const;
+  std::vector<std::string> listed_names() const;
   void write_list(const std::vector<std::string>& names) const;
+  void list(const std::string& name) const;
+  void claim_name(const std::string& name) const;
   void remove_format_files() const;
   /// With the folder, as "vtk/a.vtu"; of the one of this name, which ends with a stroke.
   std::vector<std::string> format_files(const std::string& folder_name) const;
@@ -71,18 +82,22 @@ struct TextFile {
   std::string path;
   std::string text;
   bool replaces_ours = false;  ///< the caller has looked at what stands there: openclose has written it
+  Seal seal = Seal::none;      ///< its last line, which is added to the text
 };
 
 /// Writes whole files, with the folders they need: all of them, or none and no folder. Old ones are replaced only when all new ones are complete;
-/// until then these have ".part" after their names. Throws InputError if a file cannot be made or is there and was not written by openclose, which
-/// its beginning tells; WriteError if one cannot be written to its end.
+/// until then these have ".part" after their names. Throws InputError if a file cannot be made, if something with its name and ".part" is there, or
+/// if it is there and is not as openclose has written it, which its seal tells, or its first line where it has none; WriteError if one cannot be
+/// written to its end.
 void write_files(const std::vector<TextFile>& files);
 
-/// Throws InputError as write_files() would of files that begin like these: to be asked before anything is computed.
+/// Throws InputError as write_files() would of files with such seals, or that begin like these: to be asked before anything is computed.
 void require_replaceable(const std::vector<TextFile>& files);
 
 /// Closes a file after its last line and gives it its name; throws WriteError if anything of it was not written (a full disk, say) or if the file has
 /// been removed.
 void finish(std::ofstream& file, const std::string& path);
+/// The same for a file that has had its name from the beginning.
+void finish_growing(std::ofstream& file, const std::string& path);
 
 }  // namespace openclose

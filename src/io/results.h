@@ -27,7 +27,7 @@ std::vector<std::pair<const char*, double>> ledger_entries(const EnergyLedger& l
 /// A table that grows while a run goes on.
 class RunTable {
  public:
-  void close() { finish(file_, path_); }
+  void close() { finish_growing(file_, path_); }
   /// What has reached the disk: everything so far. Throws WriteError if it has not.
   TableMark written();
 
@@ -105,7 +105,7 @@ class StateTables {
  public:
   StateTables(const OutputFolder& folder, const Scene& scene, const RestartPoint* restart = nullptr);
   /// The drawing: nothing has moved, and no force acts yet.
-  void add_drawing(const Simulation& simulation) { blocks_.add("initial", simulation); }
+  void add_drawing(const Scene& scene, const BlockSystem& drawn) { blocks_.add("initial", scene, drawn); }
   /// A moment of a run.
   void add(const std::string& state, const Simulation& simulation);
   /// A state of a factor of safety.

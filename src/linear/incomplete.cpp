@@ -158,7 +158,8 @@ void IncompleteLu::exchange(Archive& archive, const BlockMatrix& matrix) {
   archive(value_, worth_, taken_, scale_);
   const auto fits = [](const auto& list, std::size_t size) { return list.empty() || list.size() == size; };
   const std::size_t rows = order_.size();
-  archive.require(fits(value_, column_.size()) && fits(worth_, rows) && fits(taken_, rows) && fits(scale_, numbers_of_row * rows),
+  const bool is_whole = value_.empty() || (worth_.size() == rows && taken_.size() == rows && scale_.size() == numbers_of_row * rows);
+  archive.require(is_whole && fits(value_, column_.size()) && fits(worth_, rows) && fits(taken_, rows) && fits(scale_, numbers_of_row * rows),
                   "the saved state has a factor of another matrix");
 }
 

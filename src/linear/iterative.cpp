@@ -93,6 +93,7 @@ class IncompleteSolver : public LinearSolver {
     direct_->exchange(archive, matrix);
     incomplete_.exchange(archive, matrix);
     archive(own_, pause_, left_to_pause_);
+    archive.require(pause_ >= first_pause && pause_ <= longest_pause && left_to_pause_ >= 0, "the saved state has a solver that there is not");
   }
 
  private:

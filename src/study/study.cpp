@@ -210,7 +210,7 @@ std::vector<TextFile> study_files(const Study& study, const std::string& folder)
   std::vector<TextFile> files = {{table_in(folder), rows}};
   // Axes without a point would have numbers that nothing has given them.
   if (has_errors(study))
-    files.push_back({picture_in(folder), svg_plots(fmt::format("{}: convergence of {}", study.scene, study.quantity), notes, {errors, cost})});
+    files.push_back({picture_in(folder), svg_plots(fmt::format("{}: convergence of {}", study.scene, study.quantity), notes, {errors, cost}), false, Seal::xml});
   return files;
 }
 

@@ -171,7 +171,7 @@ Sweep make_sweep(SweepOrder order, const std::function<void(double)>& progress) 
   const Answers answers(order, increase);
   const std::string table = order.cases.folder + "/sweep.csv";
   require_own_table(table);
-  require_replaceable({{order.cases.folder + "/sweep.svg", svg_plots("", {}, {})}});
+  require_replaceable({{order.cases.folder + "/sweep.svg", {}, false, Seal::xml}});
   std::vector<std::string> rows(cases.size());
   const auto text = [&] {
     std::string all = answers.columns();
@@ -196,7 +196,7 @@ Sweep make_sweep(SweepOrder order, const std::function<void(double)>& progress) 
   for (std::string& warning : of_runs.texts()) sweep.warnings.push_back(std::move(warning));
   sweep.files.push_back({table, text(), true});
   const std::string drawing = picture(order, order.cases.command == "fos" ? name_of_answer(increase) : order.quantity, answers, cases, results);
-  if (!drawing.empty()) sweep.files.push_back({order.cases.folder + "/sweep.svg", drawing});
+  if (!drawing.empty()) sweep.files.push_back({order.cases.folder + "/sweep.svg", drawing, false, Seal::xml});
   return sweep;
 }
 

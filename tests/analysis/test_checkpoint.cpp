@@ -1,4 +1,5 @@
 // A simulation that goes on from a saved state does the same as one that has never stopped, in every bit.
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -144,6 +145,29 @@ TEST_CASE("saving leaves a simulation as it is", "[analysis][checkpoint]") {
   }
 }
 
+TEST_CASE("a state with numbers that are none is refused", "[analysis][checkpoint]") {
+  const double none = std::numeric_limits<double>::quiet_NaN(), endless = std::numeric_limits<double>::infinity();
+  const auto require_refused = [](Simulation& simulation) {
+    Simulation other(simulation.scene());
+    Archive state(state_of(simulation));
+    CHECK_THROWS_AS(state(other), DamagedState);
+  };
+  for (const std::string& method : all_methods) {
+    INFO(method);
+    const Scene scene = prepared(test::falling_block(), method);
+    for (const double wrong : {none, endless}) {
+      Simulation energy(scene), speed(scene), both(scene);
+      // What no step leaves, but a damaged file can hold.
+      const_cast<EnergyLedger&>(energy.ledger()).scheme = wrong;
+      require_refused(energy);
+      speed.change_system().set_velocity(0, Motion::Unknowns(0.0, wrong, 0.0));
+      require_refused(speed);
+      both.set_velocity(0, Motion::Unknowns(wrong, 0.0, 0.0));
+      require_refused(both);
+    }
+  }
+}
+
 TEST_CASE("a run goes on from each of its checkpoints", "[analysis][checkpoint]") {
   for (const std::string& method : all_methods) {
     INFO(method);
@@ -181,9 +205,7 @@ TEST_CASE("a run goes on from each of its checkpoints", "[analysis][checkpoint]"
       other.output = [&](const Simulation& s) { later_rows.push_back(s.time()); };
       other.checkpoint = [&](Archive& state, const Simulation&) { last = state.bytes(); };
       Archive state(checkpoints[c]);
-      bool told = false;
-      const RunResult resumed = resume(rest, other, state, [&] { told = true; });
-      CHECK(told);
+      const RunResult resumed = ResumedRun(rest, state).go_on(other);
       CHECK(resumed.converged);
       CHECK(resumed.ended_by == "end.time_s");
       CHECK(rest.time() == whole.time());
@@ -247,7 +269,7 @@ TEST_CASE("a run that goes on from its end ends as it did", "[analysis][checkpoi
     REQUIRE(result.ended_by == key);
     REQUIRE(first.rows.back() == whole.time());
     Archive state(first.checkpoint);
-    const RunResult resumed = resume(again, watch(second), state);
+    const RunResult resumed = ResumedRun(again, state).go_on(watch(second));
     CHECK(resumed.converged);
     CHECK(resumed.ended_by == key);
     CHECK(resumed.warnings == result.warnings);
@@ -295,7 +317,7 @@ TEST_CASE("a run that ended within a step, or did not converge, goes on where it
   scene.end_time = to;
   Simulation second(scene);
   Archive state(saved);
-  const RunResult result = resume(second, {}, state);
+  const RunResult result = ResumedRun(second, state).go_on({});
   CHECK(result.converged);
   CHECK(second.time() == to);
   CHECK(second.system().displacement(0)[1] == Approx(-0.5 * 9.81 * to * to).epsilon(1e-13));

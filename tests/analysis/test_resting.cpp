@@ -403,3 +403,19 @@ TEST_CASE("a saved simulation goes on bit for bit while blocks are at rest", "[a
     CHECK(first.simulation.state().counters.woken > 0);
   }
 }
+
+TEST_CASE("what is known of blocks at rest is refused where it is of others", "[analysis][resting]") {
+  const Scene few = test::column_of_blocks(2), many = test::column_of_blocks(5);
+  const BlockSystem system(few), other(many);
+  const auto fits = [&](const BlockSystem& saved) {
+    Archive archive;
+    Resting of_saved(RestInput{}, saved);
+    archive(of_saved);
+    Archive state(archive.bytes());
+    Resting read(RestInput{}, system);
+    state(read);
+    return read.fits(system);
+  };
+  CHECK(fits(system));
+  CHECK_FALSE(fits(other));
+}

@@ -124,6 +124,22 @@ TEST_CASE("numbers that are none are found", "[analysis][watch]") {
   CHECK_THAT(w.watch.check(w.simulation), ContainsSubstring("no finite position or velocity"));
 }
 
+TEST_CASE("energies that are no numbers are found, whichever entry of the ledger it is", "[analysis][watch]") {
+  const auto ledger_with = [](double EnergyLedger::*entry, double value) {
+    Scene scene = dropped_block(0.3);
+    Watched w(scene);
+    // The steps are the stepper's; what is asked here is what the watch makes of their ledger.
+    const_cast<EnergyLedger&>(w.simulation.ledger()).*entry = value;
+    return w.watch.check(w.simulation);
+  };
+  for (double EnergyLedger::*entry : {&EnergyLedger::kinetic, &EnergyLedger::friction, &EnergyLedger::impact, &EnergyLedger::scheme,
+                                      &EnergyLedger::redefinition, &EnergyLedger::turnover}) {
+    CHECK_THAT(ledger_with(entry, std::numeric_limits<double>::quiet_NaN()), ContainsSubstring("the energies are no finite numbers any more"));
+    CHECK_THAT(ledger_with(entry, -std::numeric_limits<double>::infinity()), ContainsSubstring("the energies are no finite numbers any more"));
+    CHECK(ledger_with(entry, 0.0).find("finite") == std::string::npos);
+  }
+}
+
 TEST_CASE("blocks that have passed into each other are found without a contact", "[analysis][watch]") {
   Watched w(dropped_block(0.05));
   for (double depth : {0.1, 0.3}) {

@@ -43,6 +43,11 @@ class Workplace {
   TemporaryFolder log_;
 };
 
+/// What a shell does to have the disk full under a file of this path, see full_disk.cpp; a sanitizer that comes second to it is content.
+inline std::string full_under(const std::string& file) {
+  return "FULL_DISK='" + file + "' LD_PRELOAD='" FULL_DISK_LIBRARY "' ASAN_OPTIONS=verify_asan_link_order=0 ";
+}
+
 /// The small scene on an incline that falls to the right: its block 2 m long, its base 20 m.
 inline std::string block_on_incline(double slope_deg) {
   const double slope = slope_deg * std::numbers::pi / 180.0;

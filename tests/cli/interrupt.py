@@ -4,7 +4,8 @@
 
 Every run, and every search for a factor of safety, is made once without a stop. Then it is begun `count` times with each signal, SIGKILL (no chance to say
 anything) and SIGINT (Ctrl-C), sent at a moment drawn from its whole length, and continued; of what was continued, every third is stopped once more. In the
-end all tables and the hash of the state must be those of the one that was never stopped. Exit status 0 or 1.
+end all tables and the hash of the state must be those of the one that was never stopped. A run that is stopped while its start settles has no checkpoint: it
+must have left its folder as it was. Exit status 0 or 1.
 """
 
 import argparse
@@ -21,6 +22,8 @@ from pathlib import Path
 STATE_TABLES = ("blocks.csv", "contacts.csv", "block_states.csv", "cracks.csv")
 TABLES = {"run": ("history.csv", "energy.csv", *STATE_TABLES), "fos": ("trials.csv", *STATE_TABLES)}
 METHODS = ("soft", "hard", "dem", "shi")
+# Short, so that settling is much of it.
+SETTLED_FIRST = ["--start", "settled", "--end", "0.1"]
 # Narrower than anyone needs, for more trials.
 SEARCHES = {
     "small displacements": ["strength_reduction.width=1e-9"],
@@ -143,13 +146,21 @@ def expected_end(sign, status, touched):
     return status in (0, STOPPED_BY_INTERRUPT) or (status == -signal.SIGINT and not touched)
 
 
+def is_lost(trial, status, touched):
+    """Whether a run that was stopped has changed its folder, and left nothing to go on from; a search leaves what it knows."""
+    return trial.case.kind == "run" and status == STOPPED_BY_INTERRUPT and touched and not (trial.folder / "checkpoint.bin").is_file()
+
+
 def interrupt(trial, sign, length, moments, again):
     """What went wrong, or an empty text; and how many of the signals came in time."""
     in_time = 0
     for _ in range(2 if again else 1):
         before = content_of(trial.folder)
         status, errors = trial.stop_after(moments.uniform(0.0, length), sign)
-        if not expected_end(sign, status, content_of(trial.folder) != before):
+        touched = content_of(trial.folder) != before
+        if is_lost(trial, status, touched):
+            return f"stopped without a checkpoint, and the folder is not as it was: {errors.strip()}", in_time
+        if not expected_end(sign, status, touched):
             return f"exit status {status} after signal {sign}: {errors.strip()}", in_time
         in_time += status != 0
     return trial.finish(), in_time
@@ -175,6 +186,7 @@ def cases(openclose, place, methods):
     (place / "wall.toml").write_text(leaning_wall())
     for method in methods:
         yield Case(openclose, place, f"run {method}", "run", "pile.toml", ["--contact", method])
+        yield Case(openclose, place, f"run {method}, settled", "run", "wall.toml", ["--contact", method, *SETTLED_FIRST])
     for definition, settings in SEARCHES.items():
         arguments = [argument for setting in settings for argument in ("--set", setting)]
         yield Case(openclose, place, f"fos {definition}", "fos", "wall.toml", arguments)

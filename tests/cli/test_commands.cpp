@@ -128,6 +128,7 @@ TEST_CASE("a folder has the results of one run only, beside files of the user's 
   REQUIRE(place.run(run + "--set output.milestones_m=[9] --set output.checkpoint_every_s=1").status == 0);
   place.folder().write("out/mine.csv", "kept");
   place.folder().write("out/checkpoint.bin.part", "of a run that was killed");
+  std::ofstream(place.folder() / "out/.openclose", std::ios::app) << "checkpoint.bin.part\n";
 
   SECTION("another run") {
     CHECK(place.run(run).status == 0);

@@ -1,9 +1,13 @@
 // `run --restart`: the tables of a run that stopped and went on are those of one that never stopped, byte for byte.
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "cli/command.h"
+#include "openclose/core/check_sum.h"
 #include "support/catch.h"
 
 using Catch::Matchers::ContainsSubstring;
@@ -13,7 +17,26 @@ using openclose::test::Workplace;
 
 namespace {
 
-constexpr const char* motion = " --dt 0.001 --start unloaded --set output.every_s=0.003 --set output.snapshots_s=[0.02,0.1] --set output.snapshots_every_s=0.03";
+constexpr const char* motion =
+    " --dt 0.001 --start unloaded --set output.every_s=0.003 --set output.snapshots_s=[0.02,0.1] --set output.snapshots_every_s=0.03";
+
+/// A checkpoint whose check sum is right and whose state begins with a list that is longer than all of it.
+std::string with_endless_list(std::string checkpoint) {
+  const auto number_at = [&](std::size_t at) {
+    std::uint64_t number = 0;
+    std::memcpy(&number, checkpoint.data() + at, sizeof number);
+    return static_cast<std::size_t>(number);
+  };
+  constexpr std::size_t number = sizeof(std::uint64_t), order_of_bytes = 4, time = 8;
+  std::size_t at = checkpoint.find('\n') + 1 + order_of_bytes;
+  at += number + number_at(at) + time;  // the scene
+  std::size_t tables = number_at(at);
+  for (at += number; tables > 0; --tables) at += number + number_at(at) + 2 * number;
+  std::fill_n(checkpoint.begin() + static_cast<long>(at + number), number, '\x7f');
+  checkpoint.resize(checkpoint.size() - number);
+  const std::uint64_t sum = openclose::check_sum(checkpoint);
+  return checkpoint.append(reinterpret_cast<const char*>(&sum), sizeof sum);
+}
 
 std::string hash_of(const Workplace& place, const std::string& results) {
   return nlohmann::json::parse(text_of(place.folder() / (results + "/summary.json"))).at("state_hash").get<std::string>();
@@ -152,6 +175,60 @@ TEST_CASE("a restart that cannot be writes nothing", "[cli][restart]") {
   refused(common + " --end 0.1 --restart nothing.bin", "there is no such file");
 }
 
+TEST_CASE("a checkpoint whose state is damaged is refused before anything is written", "[cli][restart]") {
+  const Workplace place(openclose::test::block_on_incline(20.0));
+  const std::string run = std::string("run scene.toml") + motion + " --end 0.05 -o out --set output.checkpoint_every_s=1",
+                    fos = "fos scene.toml -o out --set strength_reduction.width=1e-6";
+  const std::string command = GENERATE_COPY(values({run, fos}));
+  // A search leaves a checkpoint where it is broken off.
+  place.run(command, command == fos ? openclose::test::full_under("out/trials.csv") : "");
+  const std::string checkpoint = place.folder() / "out/checkpoint.bin";
+  REQUIRE(std::filesystem::exists(checkpoint));
+  place.folder().write("out/checkpoint.bin", with_endless_list(text_of(checkpoint)));
+  const auto before = openclose::test::contents(place.folder() / "out");
+  const CommandResult result = place.run(command + " --restart out/checkpoint.bin");
+  CHECK(result.status == 2);
+  REQUIRE(result.errors.size() == 1);
+  CHECK_THAT(result.errors[0], ContainsSubstring("out/checkpoint.bin: the saved state is shorter than what it should hold"));
+  CHECK(openclose::test::contents(place.folder() / "out") == before);
+}
+
+TEST_CASE("who stops a run while it settles keeps the results of the one before, and is told how to run again", "[cli][restart]") {
+  const Workplace place(openclose::test::block_on_incline(20.0));
+  REQUIRE(place.run("new wall -o wall.toml -q").status == 0);
+  REQUIRE(place.run("run scene.toml" + std::string(motion) + " --end 0.05 -o out").status == 0);
+  const auto before = openclose::test::contents(place.folder() / "out");
+  // Rounding leaves more than this, so that it settles for ever.
+  const std::string settled =
+      " --start settled --dt 0.001 --end 1 --set settle.unbalanced_fraction=1e-300 --set settle.max_steps=1000000000 "
+      "--set settle.max_explicit_steps=1000000000 -o out";
+  for (const std::string method : {"soft", "dem"}) {
+    INFO(method);
+    const CommandResult stopped = place.run("run wall.toml --contact " + method + settled, "timeout --foreground --preserve-status -s INT 1 ");
+    CHECK(stopped.status == 130);
+    REQUIRE_FALSE(stopped.errors.empty());
+    CHECK_THAT(stopped.errors.back(),
+               ContainsSubstring("stopped while the start was settling") && ContainsSubstring("to run again: openclose run 'wall.toml' "));
+    CHECK(openclose::test::contents(place.folder() / "out") == before);
+  }
+}
+
+TEST_CASE("the command that goes on is one for a shell, whatever the names are", "[cli][restart]") {
+  const Workplace place("");
+  place.folder().write("it's a slope.toml", openclose::test::block_on_incline(35.0));
+  const CommandResult stopped = place.run("run \"it's a slope.toml\"" + std::string(motion) + " --end 1000 -o \"what's left\"",
+                                          "timeout --foreground --preserve-status -s INT 1 ");
+  CHECK(stopped.status == 130);
+  REQUIRE(stopped.errors.size() == 1);
+  const std::string& told = stopped.errors[0];
+  const std::size_t arguments = told.find("openclose run ");
+  REQUIRE(arguments != std::string::npos);
+  const CommandResult again =
+      place.run(told.substr(arguments + std::string("openclose ").size()), "timeout --foreground --preserve-status -s INT 1 ");
+  CHECK(again.status == 130);
+  CHECK_THAT(again.errors.at(0), ContainsSubstring("stopped at t = "));
+}
+
 // `timeout` in the foreground sends one signal; else it sends it to its group as well, and the second one ends a command at once.
 TEST_CASE("a run that is stopped by a signal saves its state and says how to go on from it", "[cli][restart]") {
   struct Stop {
@@ -162,7 +239,8 @@ TEST_CASE("a run that is stopped by a signal saves its state and says how to go 
   INFO(stop.signal);
   const Workplace place(openclose::test::block_on_incline(35.0));
   const std::string common = std::string("run scene.toml") + motion;
-  const CommandResult stopped = place.run(common + " --end 1000 -o parts", std::string("timeout --foreground --preserve-status -s ") + stop.signal + " 1 ");
+  const CommandResult stopped =
+      place.run(common + " --end 1000 -o parts", std::string("timeout --foreground --preserve-status -s ") + stop.signal + " 1 ");
   CHECK(stopped.status == stop.status);
   REQUIRE(stopped.errors.size() == 1);
   CHECK_THAT(stopped.errors[0], ContainsSubstring("stopped at t = ") && ContainsSubstring("--restart 'parts/checkpoint.bin'"));
@@ -176,8 +254,9 @@ TEST_CASE("a run that is stopped by a signal saves its state and says how to go 
 TEST_CASE("a search for the factor of safety that is stopped tells what it knows", "[cli][restart]") {
   const Workplace place(openclose::test::block_on_incline(20.0));
   // The search ends by itself, or tells what it knows: it has found a stable factor by the time of its first look at the signal.
-  const CommandResult stopped = place.run("fos scene.toml --contact dem --set strength_reduction.definition=large_displacements --set settle.first_dt_s=1e-7 -o out",
-                                          "timeout --foreground --preserve-status -s INT 1 ");
+  const CommandResult stopped =
+      place.run("fos scene.toml --contact dem --set strength_reduction.definition=large_displacements --set settle.first_dt_s=1e-7 -o out",
+                "timeout --foreground --preserve-status -s INT 1 ");
   CHECK(stopped.status == 130);
   REQUIRE(stopped.errors.size() == 1);
   CHECK_THAT(stopped.errors[0], ContainsSubstring("stopped ") && ContainsSubstring("state saved in out"));
@@ -190,10 +269,8 @@ TEST_CASE("a search whose tables cannot be written goes on from its checkpoint t
   const Workplace place(openclose::test::block_on_incline(20.0));
   REQUIRE(place.run("fos scene.toml -o whole").status == 0);
   CHECK_FALSE(std::filesystem::exists(place.folder() / "whole/checkpoint.bin"));
-  std::filesystem::create_directories(place.folder() / "parts/trials.csv.part");
-  CHECK(place.run("fos scene.toml -o parts").status == 3);
+  CHECK(place.run("fos scene.toml -o parts", openclose::test::full_under("parts/trials.csv")).status == 3);
   REQUIRE(std::filesystem::exists(place.folder() / "parts/checkpoint.bin"));
-  std::filesystem::remove(place.folder() / "parts/trials.csv.part");
 
   SECTION("in its folder") {
     CHECK(place.run("fos scene.toml -o parts --restart parts/checkpoint.bin").status == 0);

@@ -1,11 +1,15 @@
-// The reader of checkpoints. A checkpoint is made of a small scene and forged: the first byte says of which contact method it is, the others are
-// edits of six bytes: two say where, four are written there; the check sum is put right. So inputs keep their meaning when the format changes. What
-// is read is put into a simulation, which goes on.
+// The reader of checkpoints. A checkpoint is made of a small scene and forged: the first byte says what was saved and by which contact method, the
+// others are edits of six bytes: two say where, four are written there; the check sum is put right. So inputs keep their meaning when the format
+// changes. What is read is put into a simulation, a run or a search, which goes on.
 #include <cstring>
+#include <iterator>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "harness.h"
 #include "openclose/analysis/run.h"
+#include "openclose/analysis/strength_reduction.h"
 #include "openclose/io/checkpoint.h"
 #include "openclose/scene/reader.h"
 
@@ -20,35 +24,133 @@ constexpr const char* text =
     "[[block]]\nname = 'low'\nmaterial = 'rock'\nvertices_m = [[-1, 0], [1, 0], [1, 1], [-1, 1]]\nvelocity_m_per_s = [1, 0]\n"
     "[[block]]\nname = 'high'\nmaterial = 'rock'\nvertices_m = [[-0.5, 1], [0.5, 1], [0.5, 2], [-0.5, 2]]\n"
     "[method]\nstart = 'unloaded'\n[step]\ndt_s = 1e-3\n[end]\ntime_s = 0.02\n";
-constexpr int steps_before = 5, steps_after = 3;
+/// Of blocks that have come to rest, and of one that still moves.
+constexpr const char* resting =
+    "[[block]]\nname = 'still'\nmaterial = 'rock'\nvertices_m = [[3, 0], [4, 0], [4, 1], [3, 1]]\n"
+    "[[block]]\nname = 'on it'\nmaterial = 'rock'\nvertices_m = [[3, 1], [4, 1], [4, 2], [3, 2]]\n"
+    "[[load]]\nname = 'push'\nblock = 'low'\npoint_m = [-1, 0.5]\nforce_n = [1e3, 0]\n"
+    "[[support]]\nblock = 'high'\npoint_m = [0, 2]\nstiffness_n_per_m = [1e5, 0]\n";
+constexpr int steps_before = 5, steps_until_rest = 15, steps_after = 3;
+/// What a search asks between two pieces of its work, so often.
+constexpr int questions_after = 200;
 
 struct Original {
   Scene scene;
   std::string bytes;
+  void (*go_on)(const Scene& scene, std::string state);
 };
 
-Original original_of(const std::string& method) {
-  Original made{scene_of_text(text, "scene.toml", {"method.contact=" + method}), {}};
-  Simulation simulation(made.scene);
-  for (int i = 0; i < steps_before; ++i) require_promise(simulation.advance(made.scene.step.dt), "the scene of the checkpoint can be run");
-  Archive state;
-  state(simulation);
-  made.bytes = checkpoint_bytes(made.scene, {simulation.time(), {}, state.take()});
-  return made;
+std::string saved(const Scene& scene, double time, std::string state, const char* command = "run") {
+  return checkpoint_bytes(scene, {time, {}, std::move(state), command});
 }
 
-const Original& original(int kind) {
-  static const Original made[] = {original_of("soft"), original_of("hard"), original_of("shi")};
-  return made[kind % 3];
-}
-
-void go_on(const Scene& scene, const std::string& bytes) {
-  Archive state(checkpoint_of_bytes(bytes, "checkpoint.bin", scene).state);
+void go_on_with_steps(const Scene& scene, std::string saved) {
+  Archive state(std::move(saved));
   Simulation simulation(scene);
+  simulation.allow_resting();
   state(simulation);
   for (int i = 0; i < steps_after; ++i) {
     if (!simulation.advance(scene.step.dt)) return;
   }
+}
+
+Original steps_of(const Scene& scene, int steps) {
+  Simulation simulation(scene);
+  simulation.allow_resting();
+  for (int i = 0; i < steps; ++i) require_promise(simulation.advance(scene.step.dt), "the scene of the checkpoint can be run");
+  Archive state;
+  state(simulation);
+  return {scene, saved(scene, simulation.time(), state.take()), &go_on_with_steps};
+}
+
+Original steps_of(const std::string& method) {
+  return steps_of(scene_of_text(text, "scene.toml", {"method.contact=" + method}), steps_before);
+}
+
+Original rest_of(const std::string& method) {
+  const std::vector<std::string> overrides = {"method.contact=" + method, "solver.skip_resting=true", "rest.time_s=0.002", "rest.displacement_m=5e-4",
+                                              "rest.acceleration_m_per_s2=1e3"};
+  Original made = steps_of(scene_of_text(std::string(text) + resting, "scene.toml", overrides), steps_until_rest);
+  Archive state(checkpoint_of_bytes(made.bytes, "checkpoint.bin", made.scene).state);
+  Simulation simulation(made.scene);
+  state(simulation);
+  require_promise(!simulation.system().resting_blocks().empty(), "blocks of the scene of the checkpoint come to rest");
+  return made;
+}
+
+void go_on_with_run(const Scene& scene, std::string saved) {
+  Archive state(std::move(saved));
+  Simulation simulation(scene);
+  MeasuredPoints points(simulation);
+  ResumedRun run(simulation, state);
+  state(points);
+  RunObserver observer;
+  int steps = 0;
+  observer.stops = [&] { return ++steps >= steps_after; };
+  observer.output = [&](const Simulation&) { points.motions(); };
+  run.go_on(observer);
+}
+
+/// With its watch, its measured points and its milestones.
+Original run_of(const std::string& method) {
+  const std::string measured = "[[measured_point]]\nname = 'top'\nblock = 'high'\npoint_m = [0, 2]\n";
+  const std::vector<std::string> overrides = {"method.contact=" + method, "output.checkpoint_every_s=0.005", "output.milestones_m=[1e-6, 1]"};
+  Original made{scene_of_text(text + measured, "scene.toml", overrides), {}, &go_on_with_run};
+  Simulation simulation(made.scene);
+  MeasuredPoints points(simulation);
+  RunObserver observer;
+  observer.checkpoint = [&](Archive& state, const Simulation& s) {
+    if (!made.bytes.empty()) return;
+    state(points);
+    made.bytes = saved(made.scene, s.time(), state.take());
+  };
+  run(simulation, observer);
+  require_promise(!made.bytes.empty(), "a run leaves checkpoints");
+  return made;
+}
+
+void go_on_with_search(const Scene& scene, std::string saved) {
+  Simulation simulation(scene);
+  SearchObserver observer;
+  int questions = 0;
+  observer.interruption = [&] {
+    if (++questions >= questions_after) throw Stopped();
+  };
+  observer.progress = [&](double) { observer.interruption(); };
+  resume_search(simulation, observer, std::move(saved));
+}
+
+Original search_of(const std::string& method, const std::string& definition) {
+  const std::vector<std::string> overrides = {"method.contact=" + method, "strength_reduction.definition=" + definition,
+                                              "gravity_m_per_s2=[2, -9.81]", "strength_reduction.width=0.1", "settle.failure_displacement_m=0.05"};
+  Original made{scene_of_text(text, "scene.toml", overrides), {}, &go_on_with_search};
+  Simulation simulation(made.scene);
+  SearchObserver observer;
+  constexpr int trials = 3;  // so that there is a stable state among what is saved
+  int done = 0;
+  observer.done = [&](std::string state) {
+    if (++done <= trials) made.bytes = saved(made.scene, 0.0, std::move(state), "fos");
+  };
+  factor_of_safety(simulation, observer);
+  require_promise(!made.bytes.empty(), "a search leaves checkpoints");
+  return made;
+}
+
+const Original& original(int kind) {
+  static const Original made[] = {steps_of("soft"),
+                                  steps_of("hard"),
+                                  steps_of("shi"),
+                                  steps_of("dem"),
+                                  rest_of("soft"),
+                                  rest_of("dem"),
+                                  rest_of("hard"),
+                                  run_of("soft"),
+                                  run_of("dem"),
+                                  search_of("soft", "small_displacements"),
+                                  search_of("dem", "small_displacements"),
+                                  search_of("soft", "large_displacements"),
+                                  search_of("dem", "large_displacements")};
+  return made[kind % std::size(made)];
 }
 
 std::string forged(std::string bytes, const std::uint8_t* data, std::size_t size) {
@@ -69,7 +171,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (size == 0) return 0;
   const Original& of = original(data[0]);
   try {
-    go_on(of.scene, forged(of.bytes, data + 1, size - 1));
+    of.go_on(of.scene, checkpoint_of_bytes(forged(of.bytes, data + 1, size - 1), "checkpoint.bin", of.scene).state);
   } catch (const InputError&) {
   } catch (const DamagedState&) {
   }

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <set>
 #include <sstream>
 #include <string>
@@ -46,6 +47,15 @@ class TemporaryFolder {
 inline std::string text_of(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+/// All files of a folder and of those in it, by their paths; links are not followed.
+inline std::map<std::string, std::string> contents(const std::string& folder) {
+  std::map<std::string, std::string> texts;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+    if (!std::filesystem::is_directory(entry.symlink_status())) texts[entry.path().string()] = text_of(entry.path().string());
+  }
+  return texts;
 }
 
 inline std::vector<std::string> lines_of(const std::string& path) {

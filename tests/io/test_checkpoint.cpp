@@ -70,13 +70,27 @@ TEST_CASE("a checkpoint comes back", "[io][checkpoint]") {
   CHECK(read.tables == a_checkpoint().tables);
   CHECK(read.state == "state");
   CHECK(saved.folder.entries() == std::set<std::string>{"checkpoint.bin", "history.csv"});
-  CHECK(text_of(saved.path).rfind("openclose checkpoint, " + format_named_in(text_of(saved.path)) + ", version " + std::string(version) + "\n", 0) == 0);
+  CHECK(text_of(saved.path).rfind("openclose checkpoint, " + format_named_in(text_of(saved.path)) + ", version " + std::string(version) + "\n", 0) ==
+        0);
 }
 
 TEST_CASE("a checkpoint that cannot be made is no bad input: the run has begun", "[io][checkpoint]") {
   const Saved saved;
   CHECK_THROWS_AS(write_checkpoint(saved.folder / "history.csv/checkpoint.bin", a_scene(), a_checkpoint()), WriteError);
   CHECK(saved.folder.entries() == std::set<std::string>{"checkpoint.bin", "history.csv"});
+}
+
+TEST_CASE("a checkpoint does not take the place of a file that has come there while the run went on", "[io][checkpoint]") {
+  const Saved saved;
+  for (const char* name : {"checkpoint.bin", "checkpoint.bin.part"}) {
+    saved.folder.write(name, "notes on openclose");
+    CHECK_THROWS_WITH(write_checkpoint(saved.path, a_scene(), a_checkpoint()),
+                      ContainsSubstring("checkpoint.bin: has been replaced") && !ContainsSubstring("disk"));
+    CHECK_THROWS_AS(write_checkpoint(saved.path, a_scene(), a_checkpoint()), WriteError);
+    CHECK(text_of(saved.folder / name) == "notes on openclose");
+    std::filesystem::remove(saved.folder / name);
+  }
+  CHECK_NOTHROW(write_checkpoint(saved.path, a_scene(), a_checkpoint()));
 }
 
 TEST_CASE("a checkpoint of another scene is refused by what differs first", "[io][checkpoint]") {

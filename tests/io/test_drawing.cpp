@@ -105,7 +105,7 @@ struct Results {
     const OutputFolder folder(place.path());
     Simulation simulation(scene);
     StateTables states(folder, scene);
-    states.add_drawing(simulation);
+    states.add_drawing(simulation.scene(), simulation.system());
     write_block_properties(folder, scene, simulation.system());
     Summary summary;
     if (is_factor) {
@@ -323,7 +323,7 @@ TEST_CASE("a surcharge is drawn by its resultant, which turns with its block", "
   const OutputFolder folder(place.path());
   Simulation simulation(scene);
   StateTables states(folder, scene);
-  states.add_drawing(simulation);
+  states.add_drawing(simulation.scene(), simulation.system());
   write_block_properties(folder, scene, simulation.system());
   simulation.change_system().advance(1, {0.0, 0.0, 0.5});
   simulation.change_contacts();  // finds them where the blocks are now

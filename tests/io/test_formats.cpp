@@ -26,7 +26,7 @@ TEST_CASE("a drawing of every state", "[io][formats]") {
   Simulation simulation(test::block_on_base());
   {
     StateTables tables(folder, simulation.scene());
-    tables.add_drawing(simulation);
+    tables.add_drawing(simulation.scene(), simulation.system());
     simulation.change_contacts();  // finds them
     tables.add("final", simulation);
     tables.close();

@@ -78,10 +78,12 @@ TEST_CASE("a folder in which a result could not be written is refused before any
 }
 
 TEST_CASE("a file that is not written to its end is an error", "[io][output_folder]") {
-  std::ofstream full("/dev/full");
-  REQUIRE(full.is_open());
-  full << "a row\n";
-  CHECK_THROWS_AS(finish(full, "out/history.csv"), WriteError);
+  for (const auto& close : {finish, finish_growing}) {
+    std::ofstream full("/dev/full");
+    REQUIRE(full.is_open());
+    full << "a row\n";
+    CHECK_THROWS_AS(close(full, "out/history.csv"), WriteError);
+  }
 }
 
 TEST_CASE("a table that is not written is an error at once, before a checkpoint counts on it", "[io][output_folder]") {
@@ -162,14 +164,15 @@ TEST_CASE("a claimed folder keeps what is not ours", "[io][output_folder]") {
   SECTION("a file that is read is named, by whatever path it is read") {
     const OutputFolder folder(place.path());
     folder.claim({});
-    place.write("energy.csv", "t a\n");
+    folder.open_growing("energy.csv") << "t a\n";
     std::filesystem::create_symlink(place / "energy.csv", place / "record.csv");
     CHECK_THROWS_WITH(folder.claim({place / "record.csv"}), ContainsSubstring("record.csv: is read, and a result of this name would replace it"));
     CHECK(test::text_of(place / "energy.csv") == "t a\n");
   }
   SECTION("what was claimed before may be replaced") {
-    OutputFolder(place.path()).claim({});
-    place.write("history.csv", "ours");
+    const OutputFolder folder(place.path());
+    folder.claim({});
+    folder.open_growing("history.csv") << "ours";
     CHECK_NOTHROW(OutputFolder(place.path()).claim({}));
     OutputFolder(place.path()).remove_results();
     CHECK(place.entries() == std::set<std::string>{list_name});
@@ -177,11 +180,11 @@ TEST_CASE("a claimed folder keeps what is not ours", "[io][output_folder]") {
   SECTION("what comes into the folder after the analysis is not ours, but for pictures that name us") {
     const OutputFolder folder(place.path());
     folder.claim({});
-    place.write("energy.csv", "ours");
+    folder.open_growing("energy.csv") << "ours";
     folder.list_results();
     CHECK_NOTHROW(OutputFolder(place.path()).claim({}));
     folder.list_results();
-    place.write("drawing.svg", "<svg><!-- drawn by openclose -->");
+    place.write("drawing.svg", "<svg/>\n" + seal_of("<svg/>\n", Seal::xml));
     CHECK_NOTHROW(OutputFolder(place.path()).claim({}));
     folder.list_results();
     for (const char* name : {"report.html", "history.csv", "curve.csv"}) {
@@ -221,12 +224,103 @@ TEST_CASE("a file that is removed while it is written is an error", "[io][output
   CHECK_THROWS_AS(finish(file, place / "history.csv"), WriteError);
 }
 
-TEST_CASE("a whole file does not take the place of one that is not ours", "[io][output_folder]") {
+TEST_CASE("a whole file does not take the place of one that is not as openclose has written it", "[io][output_folder]") {
   const TemporaryFolder place;
-  place.write("notes.svg", "<svg>mine</svg>");
-  CHECK_THROWS_WITH(write_files({{place / "notes.svg", "<svg>\n<!-- drawn by openclose -->"}}), ContainsSubstring("has not been written by openclose"));
-  CHECK(test::text_of(place / "notes.svg") == "<svg>mine</svg>");
-  CHECK_NOTHROW(write_files({{place / "new.svg", "<svg>\n<!-- drawn by openclose -->1"}}));
-  CHECK_NOTHROW(write_files({{place / "new.svg", "<svg>\n<!-- drawn by openclose -->2"}}));
-  CHECK(test::text_of(place / "new.svg").back() == '2');
+  const std::string mine = "<svg>\n<!-- drawn by openclose, and by me -->";
+  place.write("notes.svg", mine);
+  const auto write = [&](const std::string& name, const std::string& text) { write_files({{place / name, text, false, Seal::xml}}); };
+  CHECK_THROWS_WITH(write("notes.svg", "<svg>\n<!-- drawn by openclose -->"),
+                    ContainsSubstring("has not been written by openclose, or edited since"));
+  CHECK(test::text_of(place / "notes.svg") == mine);
+  CHECK_NOTHROW(write("new.svg", "<svg>1"));
+  CHECK_NOTHROW(write("new.svg", "<svg>2"));
+  CHECK(test::text_of(place / "new.svg").starts_with("<svg>2"));
+  std::ofstream(place / "new.svg", std::ios::app) << "edited";
+  CHECK_THROWS_AS(write("new.svg", "<svg>3"), InputError);
+}
+
+TEST_CASE("what has the name that a file has until it is complete stays, and nothing is written", "[io][output_folder]") {
+  const TemporaryFolder place;
+  place.write("mine", "kept");
+  SECTION("a file") {
+    place.write("new.svg.part", "mine");
+  }
+  SECTION("a link, also one that leads to what could be written over") {
+    std::filesystem::create_symlink("mine", place / "new.svg.part");
+  }
+  SECTION("a link that leads nowhere yet") {
+    std::filesystem::create_symlink("nowhere", place / "new.svg.part");
+  }
+  const auto before = place.entries();
+  CHECK_THROWS_WITH(write_files({{place / "new.svg", "text"}}), ContainsSubstring("new.svg.part: is there"));
+  CHECK(place.entries() == before);
+  CHECK(test::text_of(place / "mine") == "kept");
+}
+
+TEST_CASE("a claimed folder lists what is made in it, when it is made", "[io][output_folder]") {
+  const TemporaryFolder place;
+  const OutputFolder folder(place.path());
+  folder.claim({});
+  // As a run that is killed leaves it.
+  const auto refused_after = [&](const std::string& name) {
+    place.write(name, "mine");
+    CHECK_THROWS_WITH(OutputFolder(place.path()).claim({}), ContainsSubstring(name + ": is there and has not been written by openclose"));
+    CHECK(test::text_of(place / name) == "mine");
+    std::filesystem::remove(place / name);
+  };
+  SECTION("not what is not") {
+    for (const char* name : {"history.csv", "curve.csv", "history.csv.part", "summary.json.part", "checkpoint.bin"}) refused_after(name);
+  }
+  SECTION("a table at once, and nothing with its name and an ending") {
+    folder.open_growing("history.csv") << "ours";
+    refused_after("history.csv.part");
+    OutputFolder(place.path()).claim({});
+  }
+  SECTION("a whole file when it is complete, until then only what it is called by then") {
+    std::ofstream file = folder.open("summary.json");
+    refused_after("summary.json");
+    finish(file, place / "summary.json");
+    OutputFolder(place.path()).claim({});
+    CHECK(place.entries() == std::set<std::string>{list_name, "summary.json"});
+  }
+  SECTION("a whole file that replaces its own, in between too") {
+    for (int i = 0; i < 2; ++i) {
+      std::ofstream file = folder.open("summary.json");
+      OutputFolder(place.path()).require_ours({});
+      finish(file, place / "summary.json");
+    }
+  }
+  SECTION("a file that has come in between stays") {
+    for (const char* name : {"summary.json", "summary.json.part", "history.csv"}) {
+      place.write(name, "mine");
+      CHECK_THROWS_AS(name == std::string("history.csv") ? folder.open_growing("history.csv") : folder.open("summary.json"), WriteError);
+      CHECK(test::text_of(place / name) == "mine");
+      std::filesystem::remove(place / name);
+    }
+  }
+}
+
+TEST_CASE("a list that is none of ours is not replaced", "[io][output_folder]") {
+  const TemporaryFolder place;
+  for (const char* name : {".openclose", ".openclose.part"}) {
+    place.write(name, "title = 'mine'\n");
+    CHECK_THROWS_WITH(OutputFolder(place.path()).claim({}),
+                      ContainsSubstring(std::string(name) + ": is there and has not been written by openclose"));
+    CHECK(test::text_of(place / name) == "title = 'mine'\n");
+    std::filesystem::remove(place / name);
+  }
+}
+
+TEST_CASE("a seal holds as long as nobody edits what stands above it", "[io][seal]") {
+  for (const Seal seal : {Seal::hash, Seal::xml}) {
+    for (const std::string text : {"", "a", "a\n# b\n<!-- c -->\n"}) {
+      const std::string file = text + seal_of(text, seal);
+      CHECK(is_sealed(file, seal));
+      CHECK_FALSE(is_sealed("b" + file, seal));
+      CHECK_FALSE(is_sealed(file + " ", seal));
+      CHECK_FALSE(is_sealed(text, seal));
+      CHECK_FALSE(is_sealed(file, Seal::none));
+    }
+  }
+  CHECK(seal_of("text", Seal::none).empty());
 }

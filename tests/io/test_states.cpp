@@ -40,7 +40,7 @@ void run_into(const TemporaryFolder& place, const Scene& scene) {
   Simulation simulation(scene);
   const OutputFolder folder(place.path());
   StateTables states(folder, scene);
-  states.add_drawing(simulation);
+  states.add_drawing(simulation.scene(), simulation.system());
   RunObserver observer;
   observer.started = [&](const Simulation& s) { states.add("start", s); };
   observer.snapshot = [&](const std::string& state, const Simulation& s) { states.add(state, s); };

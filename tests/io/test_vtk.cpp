@@ -85,7 +85,7 @@ TEST_CASE("states of a run as grids of blocks and contacts", "[io][vtk]") {
   const OutputFolder folder(place.path());
   {
     StateTables states(folder, scene);
-    states.add_drawing(simulation);
+    states.add_drawing(simulation.scene(), simulation.system());
     write_block_properties(folder, scene, simulation.system());
     RunObserver observer;
     observer.started = [&](const Simulation& s) { states.add("start", s); };

@@ -31,7 +31,7 @@ void run_into(const TemporaryFolder& place, Scene scene) {
   const OutputFolder folder(place.path());
   StateTables states(folder, scene);
   write_block_properties(folder, scene, simulation.system());
-  states.add_drawing(simulation);
+  states.add_drawing(simulation.scene(), simulation.system());
   EnergyFile energy(folder);
   RunObserver observer;
   observer.started = [&](const Simulation& s) { states.add("start", s); };
