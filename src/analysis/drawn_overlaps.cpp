@@ -24,6 +24,7 @@ struct PressedBlock {
   int block = 0;
   std::vector<double> directions;   ///< [rad] of the forces
   double force = 0.0;               ///< [N] sum of the magnitudes
+  double friction = 0.0;            ///< [N] that goes with them
   double energy = 0.0;              ///< [J]
   double resistance = 0.0;          ///< [N] shear and tension that all its contacts can carry besides
   Unknowns net = Unknowns::Zero();  ///< [N, N, N m] sum of the forces
@@ -32,13 +33,12 @@ struct PressedBlock {
   bool is_between_fixed = true;     ///< all of those it overlaps are fixed
 };
 
-/// Whether no translation opens all overlaps: no half-plane has all the forces in it.
-bool is_clamped(std::vector<double> directions) {
-  if (directions.empty()) return false;
+/// [rad] The widest angle between neighbouring forces: more than pi where a translation opens all overlaps, pi where they press along one line.
+double widest_opening(std::vector<double> directions) {
   std::ranges::sort(directions);
   double widest = directions.front() + 2.0 * std::numbers::pi - directions.back();
   for (std::size_t i = 1; i < directions.size(); ++i) widest = std::max(widest, directions[i] - directions[i - 1]);
-  return widest <= std::numbers::pi + same_direction_rad;
+  return widest;
 }
 
 class Judge {
@@ -96,6 +96,7 @@ class Judge {
     pressed.net += force * direction;
     if (depth <= overlap_bound::rounding_m) return;
     pressed.force += force;
+    pressed.friction += strength.friction * force;
     pressed.energy += 0.5 * force * depth;
     pressed.directions.push_back(std::atan2(direction.y(), direction.x()));
     pressed.is_between_fixed &= simulation_.system().block(other).equation == BlockSystem::fixed;
@@ -115,14 +116,18 @@ class Judge {
   }
 
   void judge(const PressedBlock& pressed) {
-    if (is_clamped(pressed.directions)) {
-      judge_clamped(pressed);
+    const double opening = widest_opening(pressed.directions);
+    if (opening <= std::numbers::pi + same_direction_rad) {
+      const bool is_locked = opening < std::numbers::pi - same_direction_rad;
+      judge_clamped(pressed, is_locked ? 0.5 * pressed.force : pressed.friction);
     } else if (at_once_) {
       judge_thrown(pressed);
     }
   }
 
-  void judge_clamped(const PressedBlock& pressed) {
+  /// \param holding  [N] what the clamping forces hold the block with: themselves, or their friction where they press along one line
+  void judge_clamped(const PressedBlock& pressed, double holding) {
+    if (holding == 0.0) return;
     const std::string overlap = overlap_in_words(pressed) + " and into others on opposite sides: ";
     if (is_rigid()) {
       const std::string text = overlap + "between rigid contacts it has no room, and what they press it with is undetermined";
@@ -130,7 +135,7 @@ class Judge {
       note(clamped_, pressed.deepest, text, drawn_apart);
       return;
     }
-    const double force = 0.5 * pressed.force, part = force / loads(pressed.block);
+    const double force = 0.5 * pressed.force, part = holding / loads(pressed.block);
     if (part <= overlap_bound::noticeable_force) return;
     const std::string text = fmt::format("{}the drawing alone clamps it with {:.3g} N, {}", overlap, force, in_weights(pressed.block, force));
     if (pressed.is_between_fixed && std::isfinite(part) && part > overlap_bound::deciding_force) refuse(pressed, text, drawn_apart);

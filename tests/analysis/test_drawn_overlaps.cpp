@@ -94,6 +94,9 @@ TEST_CASE("overlaps on opposite sides clamp a block", "[analysis][drawn_overlaps
     CHECK_THAT(warnings[0], ContainsSubstring("clamps it with 1e+03 N, 0.041 times its weight"));
     CHECK(judge(block_in_shaft(1e-9), first_motion).empty());
   }
+  Scene smooth = block_in_shaft(1e-4);
+  smooth.joints[0].friction_angle = 0.0;
+  CHECK(judge(smooth, FirstMotion::at_once).empty());  // it falls as if nothing pressed it
   Scene rigid = block_in_shaft(1e-7);
   rigid.method.contact = "hard";
   CHECK_THROWS_WITH(judge(rigid, FirstMotion::at_once), ContainsSubstring("between rigid contacts it has no room"));
