@@ -73,13 +73,6 @@ std::string shorter_step(const Scene& scene, double factor) {
   return fmt::format("step.dt_s = {:.2g} would be a remedy", scene.step.dt / factor);
 }
 
-/// Where blocks pass into each other. What loads rigid contacts at once, in a start that is not settled, can leave more than shorter steps mend.
-std::string held_apart(const Simulation& simulation) {
-  const Scene& scene = simulation.scene();
-  const bool is_loaded_at_once = !simulation.enforcement().has_elastic_contacts() && scene.method.start == Start::unloaded;
-  return shorter_step(scene, margin) + (is_loaded_at_once ? ", or method.start = \"settled\" if the blocks rest at first" : "");
-}
-
 /// The key that makes a contact stiffer by a factor, with its value.
 std::string stiffer_contact(const Simulation& simulation, int joint, double factor) {
   const MethodInput& method = simulation.scene().method;
@@ -89,8 +82,20 @@ std::string stiffer_contact(const Simulation& simulation, int joint, double fact
   return fmt::format("joint[{}].normal_stiffness_pa_per_m = {:.2g} or more would be a remedy", joint, factor * stiffness);
 }
 
-/// What makes the energy of contacts more exact.
-std::string better_energy(const Simulation& simulation) {
+}  // namespace
+
+/// What loads rigid contacts at once, or has them in each other, in a start that is not settled, leaves more than shorter steps mend.
+std::string Watch::held_apart(const Simulation& simulation, std::initializer_list<int> blocks) const {
+  const Scene& scene = simulation.scene();
+  if (!is_rigid(simulation) || scene.method.start != Start::unloaded) return shorter_step(scene, margin);
+  const auto has_moved = [&](int b) {
+    return (Motion::translation(simulation.system().displacement(b)) - start_[b]).norm() > tolerance::contact_skin_m;
+  };
+  if (std::ranges::any_of(blocks, has_moved)) return shorter_step(scene, margin) + ", or method.start = \"settled\" if the blocks rest at first";
+  return "method.start = \"settled\" would be a remedy if the blocks rest at first";
+}
+
+std::string Watch::better_energy(const Simulation& simulation) const {
   const Scene& scene = simulation.scene();
   if (simulation.is_explicit()) {
     // The step taken is the shorter one of the two.
@@ -101,10 +106,8 @@ std::string better_energy(const Simulation& simulation) {
   if (scene.method.contact == "shi") return std::string(soft_instead_of_shi);
   if (scene.method.contact == "soft" && integrator_name(scene.method) != "path_average")
     return shorter_step(scene, margin) + ", or method.integrator = \"path_average\"";
-  return held_apart(simulation);
+  return held_apart(simulation, {static_cast<int>(std::ranges::max_element(energies_) - energies_.begin())});
 }
-
-}  // namespace
 
 bool Watch::is_due(long step) {
   long interval = 1;
@@ -296,7 +299,7 @@ std::string Watch::check_contacts(const Simulation& simulation) {
   const int a = deepest->vertex_block, b = deepest->edge_block;
   const double narrower = std::min(widths_[a], widths_[b]);
   const std::string found = too_deep(simulation, a, b, -deepest->gap, watch_bound::penetration * narrower);
-  if (is_rigid(simulation)) return "rigid contacts have not been held: " + found + "; " + held_apart(simulation);
+  if (is_rigid(simulation)) return "rigid contacts have not been held: " + found + "; " + held_apart(simulation, {a, b});
   // The square of the closure goes with the energy that the springs have to take: what they have, and what still moves the two blocks.
   double stored = 0.0;
   for (const Contact& c : simulation.contacts()) {
@@ -319,7 +322,7 @@ std::string Watch::check_overlaps(const Simulation& simulation, std::size_t firs
     report_.overlap = std::max(report_.overlap, depth / narrower);
     report_.depth = std::max(report_.depth, depth);
     if (depth <= allowed) continue;
-    return "blocks have passed into each other: " + too_deep(simulation, a, b, depth, allowed) + "; " + held_apart(simulation);
+    return "blocks have passed into each other: " + too_deep(simulation, a, b, depth, allowed) + "; " + held_apart(simulation, {a, b});
   }
   return {};
 }

@@ -14,6 +14,7 @@
 // Checks come after every step at first, later after every second, fourth, ... so that each doubling of the run has 64 of them, whatever its length.
 #pragma once
 
+#include <initializer_list>
 #include <string>
 #include <vector>
 
@@ -85,6 +86,10 @@ class Watch {
   /// [m] To which blocks may be in each other, the narrower one having this width [m].
   double allowed_depth(const Simulation& simulation, double narrower) const;
   std::string too_deep(const Simulation& simulation, int a, int b, double depth, double allowed) const;
+  /// What holds these blocks apart.
+  std::string held_apart(const Simulation& simulation, std::initializer_list<int> blocks) const;
+  /// What makes the energy of contacts more exact.
+  std::string better_energy(const Simulation& simulation) const;
   static bool is_rigid(const Simulation& simulation);
   void follow_energy(const Simulation& simulation);
   std::string check_finite(const Simulation& simulation) const;

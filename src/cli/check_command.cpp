@@ -41,6 +41,8 @@ int check_command(const Options& options) {
   require_memory(loaded.scene, available_memory());
   Simulation simulation(std::move(loaded.scene));
   require_use(simulation.scene());
+  const bool is_for_run = simulation.scene().step.dt > 0.0 && simulation.scene().end_time > 0.0;
+  loaded.judge_overlaps(simulation, is_for_run ? first_motion_of_run(simulation.scene()) : FirstMotion::settling);
   const auto& system = simulation.system();
   double area = 0.0, free_area = 0.0;
   for (const auto& block : system.blocks()) area += block.area;

@@ -179,6 +179,7 @@ int fos_command(const Options& options) {
   std::optional<Checkpoint> restart;
   if (!options.restart_file.empty()) restart = read_checkpoint(options.restart_file, loaded.scene, "fos");
   Simulation simulation(std::move(loaded.scene));
+  if (!restart) loaded.judge_overlaps(simulation, FirstMotion::settling);
   const OutputFolder folder = output_folder(options);
   // As in `run`: before this nothing is lost.
   watch_for_stop_signals();

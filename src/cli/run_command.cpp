@@ -205,7 +205,10 @@ int run_command(const Options& options) {
   if (!options.restart_file.empty()) restart = {options.restart_file, read_checkpoint(options.restart_file, loaded.scene)};
   Simulation simulation(std::move(loaded.scene));
   const Scene& scene = simulation.scene();
-  if (!restart) require_start(scene);
+  if (!restart) {
+    require_start(scene);
+    loaded.judge_overlaps(simulation, first_motion_of_run(scene));
+  }
   RunInFolder in_folder(options, simulation);
   if (restart) in_folder.read(*restart);
   const OutputFolder folder = output_folder(options);

@@ -27,6 +27,16 @@ void Loaded::warn(const std::string& text) {
   print_warnings({warnings.back()});
 }
 
+void Loaded::judge_overlaps(Simulation& simulation, FirstMotion first_motion) {
+  const std::vector<std::string> found = judge_drawn_overlaps(simulation, first_motion);
+  print_warnings(found);
+  warnings.insert(warnings.end(), found.begin(), found.end());
+}
+
+FirstMotion first_motion_of_run(const Scene& scene) {
+  return scene.method.start == Start::unloaded ? FirstMotion::at_once : FirstMotion::settling;
+}
+
 Loaded load(const Options& options) {
   options.work = "reading " + options.scene_file + " ([[block]], or domain.max_blocks and joint_set.spacing_m, limit what it makes)";
   Loaded loaded{read_scene(options.scene_file, options.overrides), {}};

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "messages.h"
+#include "openclose/analysis/drawn_overlaps.h"
 #include "openclose/io/result_picture.h"
 #include "openclose/io/results.h"
 #include "openclose/io/summary.h"
@@ -35,7 +36,11 @@ struct Loaded {
 
   /// Of what the command leaves unused.
   void warn(const std::string& text);
+  /// Warns of drawn overlaps, see judge_drawn_overlaps(); throws InputError where they decide the answer.
+  void judge_overlaps(Simulation& simulation, FirstMotion first_motion);
 };
+
+FirstMotion first_motion_of_run(const Scene& scene);
 
 /// Prints what the reader warns of.
 Loaded load(const Options& options);

@@ -36,9 +36,11 @@ void StepEquations::prepare(const StepProblem& problem, const SpringSource& spri
   for (int b : system.free_blocks()) {
     const auto& block = system.block(b);
     const Unknowns still = Unknowns::Zero();
+    // What coordinates round is there before a static step, which moves the blocks until it is balanced; ways are as exact as they are short.
+    const double rounding_of_coordinates = problem.statics ? 0.0 : problem.external.spring_scale(system, b);
     blocks_.push_back({b, problem.external.has_elements(b), block.rotation_locked, block.radius, problem.inertia * block.mass,
                        problem.external.force(system, b, still), problem.drift(b), problem.external.magnitude(system, b, still),
-                       problem.external.spring_scale(system, b)});
+                       rounding_of_coordinates});
   }
   find_blocks_alone();
   block_scale_ = 0.0;

@@ -543,3 +543,26 @@ TEST_CASE("a run of shi says how far the friction of sliding contacts lags behin
     CHECK(lag > 0.01);
   }
 }
+
+TEST_CASE("a motion of shi by a friction of other normal forces is refused", "[analysis][run]") {
+  // Pushed up a slope: the block comes to rest after v^2 / (2 g (sin + tan(phi) cos)), if its friction is that of its weight.
+  Scene scene = test::block_on_incline(30.0 * test::degree);
+  scene.joints[0].friction_angle = 35.0 * test::degree;
+  scene.method.contact = "shi";
+  scene.method.start = Start::normal_balanced;
+  scene.blocks[1].velocity = {-4.0 * std::cos(30.0 * test::degree), 4.0 * std::sin(30.0 * test::degree)};
+  scene.end_time = 1.0;
+  const auto way_of = [](const Simulation& simulation) { return Motion::translation(simulation.system().displacement(1)).norm(); };
+  const double exact = 16.0 / (2.0 * 9.81 * (std::sin(30.0 * test::degree) + std::tan(35.0 * test::degree) * std::cos(30.0 * test::degree)));
+  scene.step.dt = 2e-3;
+  Simulation coarse(scene);
+  const RunResult result = run(coarse, {});
+  CHECK(std::abs(way_of(coarse) / exact - 1.0) > 0.1);
+  CHECK(result.refused);
+  CHECK(result.ended_by.empty());
+  CHECK_THAT(result.reason, ContainsSubstring("friction of sliding contacts") && ContainsSubstring("method.contact = \"soft\" would be a remedy"));
+  scene.method.contact = "soft";
+  Simulation remedied(scene);
+  CHECK(run(remedied, {}).converged);
+  CHECK(way_of(remedied) == Approx(exact).epsilon(0.01));
+}

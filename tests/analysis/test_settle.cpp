@@ -560,3 +560,19 @@ TEST_CASE("steps do not grow while each of them finds a balance", "[analysis][se
   REQUIRE(result.steps > 1);
   CHECK(simulation.time() == result.steps * scene.settle.first_dt);
 }
+
+TEST_CASE("blocks on supports of any stiffness come to rest", "[analysis][settle]") {
+  for (const double stiffness : {1e10, 1e12, 1e14}) {
+    INFO(stiffness);
+    Scene scene = test::block_on_base();
+    scene.supports = {{1, {1.0, 0.5}, {stiffness, 0.0}}};
+    scene.loads = {{1, {1.0, 0.1}, {0.8 * block_weight, 0.0}}};
+    scene.method.contact = "soft";
+    Simulation simulation(scene);
+    const SettleResult result = settle(simulation);
+    CHECK(result.settled);
+    CHECK(result.unbalanced_fraction <= scene.settle.unbalanced_fraction);
+    const Vec2 carried = between(simulation, 0, 1);
+    CHECK(carried.y() == Approx(block_weight).epsilon(1e-6));
+  }
+}
