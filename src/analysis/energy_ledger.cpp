@@ -59,16 +59,6 @@ void add_elastic_contact(EnergyLedger& ledger, const Contact& contact, const Con
   }
 }
 
-/// A rigid contact. What it takes where it closes, or has closed and still approaches, is the loss of an impact. Where it stays closed, or sticks,
-/// its force works on nothing but what the finite rotation of a step leaves between its path and the gap and slip that are held: that is the
-/// scheme's. \param separating  [m] by the velocities at the start of the step
-void add_rigid_contact(EnergyLedger& ledger, const Contact& contact, const ContactOutcome& end, const ContactPaths& paths, double separating) {
-  const bool stays_closed = contact.status != ContactStatus::open && separating >= 0.0;
-  const bool goes_on_sticking = contact.status == ContactStatus::sticking && end.forces.status == ContactStatus::sticking;
-  (stays_closed ? ledger.scheme : ledger.impact) -= end.forces.normal * paths.normal_end;
-  (goes_on_sticking ? ledger.scheme : ledger.friction) -= end.forces.shear * paths.shear_end;
-}
-
 /// [N] All that a step with the forces at its end needs of those at its start. Of the springs of `soft`, `shi` and `dem`.
 double elastic_normal_at_start(const Contact& contact, const TabulatedJoint& joint, const ContactOutcome& end) {
   const double elastic = -end.normal_stiffness * contact.stretch();
@@ -172,9 +162,8 @@ void add_contacts(EnergyLedger& ledger, const StepProblem& problem, const StepSo
     }
     ContactPaths paths{end.pose.normal_way(pv, pe), end.pose.shear_way(pv, pe), 0.0, 0.0};
     if (!elastic) {
-      const Unknowns drift_of_vertex = problem.dt * problem.velocity(contact.vertex_block),
-                     drift_of_edge = problem.dt * problem.velocity(contact.edge_block);
-      add_rigid_contact(ledger, contact, end, paths, solution.contacts.pose_at_start(c).normal_way(drift_of_vertex, drift_of_edge));
+      ledger.impact -= end.forces.normal * paths.normal_end;
+      ledger.friction -= end.forces.shear * paths.shear_end;
       continue;
     }
     CarriedForces start;

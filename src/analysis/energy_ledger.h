@@ -13,8 +13,7 @@
 // The kinetic energy is that of the present velocities, so that motion which comes from elsewhere shows as an imbalance. With mid-step velocities
 // (`hard`) all entries stand at the middle of the last step. With forces at the start of the step (`dem`, theta = 0) gravity and scheme do
 // so; springs, friction and damping stand at its end, and the kinetic energy goes with them (CentralDifference::kinetic_ahead()). Hard contacts store
-// nothing: minus their normal work is the loss of impacts, minus their shear work is friction, but where they stay closed and stick: there their work
-// is what the finite rotation of a step leaves, and the scheme's.
+// nothing: minus their normal work is the loss of impacts, minus their shear work is friction.
 #pragma once
 
 #include "openclose/integrator/enforcement.h"
@@ -31,7 +30,7 @@ struct EnergyLedger {
   double friction = 0.0;         ///< dissipated
   double contact_damping = 0.0;  ///< dissipated by the joints' dashpots
   double mass_damping = 0.0;     ///< dissipated by damping of the blocks' motion (`dem`)
-  double impact = 0.0;           ///< dissipated by hard contacts that close; what they take while they stay closed is the scheme's
+  double impact = 0.0;           ///< dissipated by hard contacts that close
   double scheme = 0.0;           ///< dissipated by the time integration
   double redefinition = 0.0;     ///< released where contacts change their length, their gap's linearisation, or end while loaded, see history.h
   double turnover = 0.0;         ///< sum of the absolute changes of kinetic, gravity, base motion and loads: what an imbalance is compared with
