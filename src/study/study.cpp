@@ -162,7 +162,7 @@ Study make_study(StudyOrder order, const std::function<void(double)>& progress) 
   if (order.quantity.empty()) order.quantity = usual_quantity(scene);
   require_quantity(order.quantity, scene);
 
-  require_replaceable({{table_in(order.cases.folder), columns}, {picture_in(order.cases.folder), svg_plots("", {}, {})}});
+  require_replaceable({{table_in(order.cases.folder), columns}, {picture_in(order.cases.folder), {}, false, Seal::xml}});
   const std::vector<Case> cases = cases_of(order);
   // An integrator that a method does not have is refused before the first run, too.
   for (std::size_t i = 0; i < cases.size(); i += order.steps.size()) Simulation(read_scene(order.cases.scene_file, cases[i].overrides));

@@ -565,7 +565,7 @@ TEST_CASE("titles tell a reduced strength, a mechanism of limit analysis and the
   };
   const Results run;
   CHECK_THAT(run.draw(), !ContainsSubstring("strength divided"));
-  CHECK_THAT(picture(run, "\"strength_reduction_factor\": 1.0", "\"strength_reduction_factor\": 1.8").notes.at(0),
+  CHECK_THAT(picture(run, "\"strength_reduction_factor\": 1,", "\"strength_reduction_factor\": 1.8,").notes.at(0),
              ContainsSubstring("with the strength divided by 1.8"));
   const Results factor(true);
   CHECK_THAT(factor.draw(), !ContainsSubstring("limit analysis") && !ContainsSubstring("which grows"));
