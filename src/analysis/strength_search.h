@@ -84,12 +84,12 @@ using TrialObserver = std::function<void(const StrengthTrial&)>;
 double widest_bracket(const StrengthReductionInput& input, double factor);
 
 /// Each trial starts from the last stable state. Where one stays undecided, the search comes near it from below with smaller increments, tries again,
-/// and then looks above it for the smallest factor at which failure is certain. Where `progress` throws Stopped, before a trial or in it, what is known by
-/// then is the answer.
+/// and then looks above it for the smallest factor at which failure is certain. Where `progress` throws Stopped, before a trial or in it, what is
+/// known by then is the answer.
 ///
 /// Which joints lose strength for good depends on the way: over a long stride many reach their strength at once that would have reached it one after
-/// the other, each passing its load on. So joints may break only in strides as short as the bracket is to be narrow, and the way begins at a factor
-/// at which none has broken, if there is one.
+/// the other, each passing its load on. So joints may break only in short strides, and the way begins at a factor at which none has broken, if
+/// there is one.
 StrengthBracket search_strength(StrengthTrials& trials, const StrengthReductionInput& input, const TrialObserver& done,
                                 const std::function<void(double share)>& progress = {});
 

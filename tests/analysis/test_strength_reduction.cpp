@@ -210,8 +210,8 @@ TEST_CASE("joints of which all have a part of the strength have that part of the
     REQUIRE(safety.verdict == FactorVerdict::certified);
     factors.push_back(safety.stable() / part);
   }
-  // Each to the width of its bracket.
-  for (const double f : factors) CHECK(f == Approx(factors[0]).epsilon(2e-3));
+  // Each to twice the stride in which joints may break, 0.2 % of it.
+  for (const double f : factors) CHECK(f == Approx(factors[0]).epsilon(4e-3));
 }
 
 TEST_CASE("a stride of the search over which joints break is taken back and made short", "[analysis][strength_reduction]") {
@@ -225,7 +225,7 @@ TEST_CASE("a stride of the search over which joints break is taken back and made
       return at(srf, broke_);
     }
     TrialResult next(double srf, OnBreak on_break) override {
-      const bool breaks = !broke_ && srf > breaks_at, is_long = srf - stable_ > 2e-3;
+      const bool breaks = !broke_ && srf > breaks_at, is_long = srf - stable_ > 4e-3;
       TrialResult result = at(srf, breaks);
       if (breaks && is_long) result.outcome = survives_ ? TrialOutcome::stable : TrialOutcome::failed;
       if (breaks && on_break == OnBreak::go_back) {
