@@ -33,7 +33,7 @@ bool has_come_to_rest(const StepProblem& problem, int b, const Motion::Unknowns&
 /// [J] Of a step in motion.
 double kinetic_change(const StepProblem& problem, const StepSolution& solution);
 
-/// A rigid contact in motion carries this part of its force [-] on a block for the first time.
+/// A rigid contact in motion carries this part of its force [-] on a block for this step alone: it did not carry it before, or it stops an approach.
 struct Blow {
   int block;
   double part;

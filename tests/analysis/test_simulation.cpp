@@ -461,6 +461,35 @@ TEST_CASE("a blow that a contact passes on is over at the end of its step, too",
   CHECK(fastest > 0.9 * together);
 }
 
+TEST_CASE("a blow that lasts for two steps leaves no trace in the velocities that are told", "[analysis][simulation]") {
+  // A polygon that turns hits a wall and goes on hitting it in the next step, harder: what is told of it then must not lack energy that comes back.
+  Scene scene = test::empty_scene();
+  scene.joints[0].friction_angle = 40.3 * test::degree;
+  scene.blocks = {
+      test::fixed_block("floor", test::rectangle(-9.6, -0.3, 19.2, 0.3)), test::fixed_block("left", test::rectangle(-9.6, 0.0, 0.282859272, 21.0)),
+      test::free_block(
+          "thrown",
+          {{-2.26243619, 5.71366334}, {0.529662589, 3.33936951}, {2.09396977, 2.97093878}, {1.26235958, 3.77561692}, {-0.351152982, 4.98253934}})};
+  scene.blocks[2].velocity = {-25.096026, -16.954147};
+  scene.blocks[2].angular_velocity = 6.616926738;
+  scene.method.contact = "hard";
+  Simulation simulation(scene);
+  prepare_start(simulation);
+  const auto energy = [&] {
+    const auto& block = simulation.system().block(2);
+    const auto v = simulation.velocity(2);
+    return 0.5 * block.mass.dot(v.cwiseAbs2()) + block.mass[0] * 9.81 * simulation.system().displacement(2)[1];
+  };
+  const double start = energy();
+  double least = start;
+  while (simulation.time() < 0.2) {
+    REQUIRE(simulation.advance(0.003482));
+    CHECK(energy() < least + 1e-3 * start);
+    least = std::min(least, energy());
+  }
+  CHECK(least < 0.6 * start);  // it has hit
+}
+
 TEST_CASE("a block far away is not felt", "[analysis][simulation]") {
   for (const std::string method : {"soft", "hard", "shi"}) {
     INFO(method);
