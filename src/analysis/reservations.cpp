@@ -61,4 +61,31 @@ double withheld_strength(const FrozenSystem& system, const FrozenStrength& stren
   return whole > 0.0 ? 1.0 - there / whole : 0.0;
 }
 
+std::string withheld_in_words(double share) {
+  return fmt::format(
+      "it counts the whole cohesion of joints on which hardly anything presses, or that open; here {:.2g} % of the strength along what fails is not "
+      "there, "
+      "since cohesion comes with the normal force, up to ten times that",
+      100.0 * share);
+}
+
+std::string interval_in_words(const StrengthBracket& bracket, const std::vector<StrengthTrial>& trials) {
+  std::optional<double> first;
+  for (const StrengthTrial& trial : trials) {
+    const bool is_open = trial.outcome == TrialOutcome::undecided && !trial.broke && trial.srf > *bracket.stable;
+    if (is_open && (!first || trial.srf < *first)) first = trial.srf;
+  }
+  if (!first) return {};
+  // A multiplier may stand at 0 alone.
+  const std::string width = bracket.failed && *bracket.stable > 0.0
+                                ? fmt::format("an interval, {:.2g} % wide", 100.0 * (*bracket.failed / *bracket.stable - 1.0))
+                            : bracket.failed ? "an interval"
+                                             : "an interval without an end";
+  return fmt::format(
+      "{}: at {:.4g} the blocks neither came to rest nor moved steadily; another method.contact or strength_reduction.definition may tell more, "
+      "fewer "
+      "blocks do",
+      width, *first);
+}
+
 }  // namespace openclose

@@ -1,5 +1,5 @@
-// What is to be said about a state that stands, though its forces balance within the strength: that it leans on one corner, or that the cohesion of
-// joints is not there because nothing presses on them.
+// What is to be said about a factor though it is proved: that the state it stands on leans on one corner, that the cohesion of joints is not there
+// because nothing presses on them, or that it is the lower end of a wide interval.
 #pragma once
 
 #include <optional>
@@ -28,5 +28,11 @@ std::string in_words(const Scene& scene, const FrozenSystem& system, const Corne
 /// [-] How much of cohesion and friction together the contacts of the rows do not have because their cohesion grows from nothing with the normal
 /// force, see ShearLimit: limit analysis counts all of it.
 double withheld_strength(const FrozenSystem& system, const FrozenStrength& strength, const FrozenState& state, const std::vector<int>& rows);
+
+/// The same as a reason why limit analysis has more.
+std::string withheld_in_words(double share);
+
+/// How wide an interval is, from where on it is open, and what may narrow it; empty if no trial stayed undecided above its stable end.
+std::string interval_in_words(const StrengthBracket& bracket, const std::vector<StrengthTrial>& trials);
 
 }  // namespace openclose

@@ -17,6 +17,7 @@ namespace {
 
 constexpr double slowest_of_mechanism = 1e-2;       ///< [-] of the fastest block: slower ones are carried along by rounding and springs
 constexpr double noticeable_share_of_corner = 0.1;  ///< [-] of the weight of what fails
+constexpr double share_of_main_reason = 0.5;        ///< [-] of the distance to limit analysis that one reason accounts for
 constexpr double far_below_limit_analysis = 0.98;   ///< [-] of its factor: below it the reason for the distance is given
 constexpr double rounding_of_areas = 1e-9;          ///< [-] equal blocks are not smaller than each other
 constexpr double drawn_travel = 0.5;                ///< [-] of the median block's size by which the fastest block of a mechanism is drawn away
@@ -378,12 +379,7 @@ class StrengthReduction {
     FrozenStrength strength(system, scene);
     if (!input_.increase) strength.reduce(*result_.bracket.stable);
     const double withheld = withheld_strength(system, strength, *trials.stable(), rows_of(system, result_.mechanism));
-    if (withheld > 0.5 * (1.0 - *result_.bracket.stable / limit))
-      return fmt::format(
-          "it counts the whole cohesion of joints on which hardly anything presses, or that open; here {:.2g} % of the strength along what fails is "
-          "not "
-          "there, since cohesion comes with the normal force, up to ten times that",
-          100.0 * withheld);
+    if (withheld > share_of_main_reason * (1.0 - *result_.bracket.stable / limit)) return withheld_in_words(withheld);
     if (std::ranges::any_of(scene_.joints, [](const JointProperties& joint) { return can_lose_strength(joint, true); }))
       return "joints that slip or open lose strength for good, one contact after the other, which it does not know";
     if (largest >= far_below_limit_analysis * limit) return "with another ratio of stiffness the joints carry nearly as much";
@@ -401,23 +397,9 @@ class StrengthReduction {
                     1e3 * farthest.travel * closure, farthest.travel, noun(), farthest.before, farthest.after, only_below, first.before));
   }
 
-  /// What an interval leaves to be done.
   void warn_of_interval() {
-    const StrengthBracket& b = result_.bracket;
-    if (result_.verdict != FactorVerdict::interval || b.stopped) return;
-    std::optional<double> first;
-    for (const StrengthTrial& trial : result_.trials) {
-      const bool is_open = trial.outcome == TrialOutcome::undecided && !trial.broke && trial.srf > *b.stable;
-      if (is_open && trial.srf < first.value_or(trial.srf + 1.0)) first = trial.srf;
-    }
-    if (!first) return;
-    const std::string width =
-        b.failed ? fmt::format("an interval, {:.2g} % wide", 100.0 * (*b.failed / *b.stable - 1.0)) : "an interval without an end";
-    result_.warnings.push_back(
-        fmt::format("{}: at {:.4g} the blocks neither came to rest nor moved steadily; another method.contact or strength_reduction.definition may "
-                    "tell more, fewer "
-                    "blocks do",
-                    width, *first));
+    if (result_.verdict != FactorVerdict::interval || result_.bracket.stopped) return;
+    if (const std::string words = interval_in_words(result_.bracket, result_.trials); !words.empty()) result_.warnings.push_back(words);
   }
 
   void warn_of_geometry() {

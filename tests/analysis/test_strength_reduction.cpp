@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "openclose/analysis/reservations.h"
 #include "openclose/analysis/strength_reduction.h"
 #include "openclose/scene/reader.h"
 #include "support/catch.h"
@@ -293,6 +294,22 @@ TEST_CASE("cohesion that needs a normal force is named where limit analysis coun
   const bool told =
       std::ranges::any_of(safety.warnings, [](const std::string& w) { return w.find("counts the whole cohesion") != std::string::npos; });
   CHECK(told);
+}
+
+TEST_CASE("an interval tells how wide it is and from where on it is open", "[analysis][strength_reduction]") {
+  StrengthBracket bracket;
+  bracket.stable = 0.8;
+  std::vector<StrengthTrial> trials(4);
+  for (std::size_t i = 0; i < trials.size(); ++i) trials[i].srf = 0.7 + 0.1 * static_cast<double>(i);
+  trials[1].outcome = TrialOutcome::stable;
+  CHECK_THAT(interval_in_words(bracket, trials), Catch::StartsWith("an interval without an end: at 0.9 "));
+  bracket.failed = 1.2;
+  CHECK_THAT(interval_in_words(bracket, trials), Catch::StartsWith("an interval, 50 % wide: at 0.9 "));
+  // What only broke joints says nothing of the factor.
+  trials[2].broke = true;
+  CHECK_THAT(interval_in_words(bracket, trials), Catch::StartsWith("an interval, 50 % wide: at 1 "));
+  trials[3].outcome = TrialOutcome::failed;
+  CHECK(interval_in_words(bracket, trials).empty());
 }
 
 TEST_CASE("the curve in time: free sliding with the reduced strength", "[analysis][strength_reduction]") {
