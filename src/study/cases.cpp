@@ -7,11 +7,14 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdint>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -43,12 +46,36 @@ std::string text_of(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
+/// A file without a name, which goes with the last who has it open: what a case says of itself stands in nobody's way.
+using NamelessFile = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
+
+NamelessFile nameless_file() {
+  NamelessFile file(std::tmpfile(), &std::fclose);
+  if (!file || fcntl(fileno(file.get()), F_SETFD, FD_CLOEXEC) != 0)
+    throw WriteError(std::filesystem::temp_directory_path().string(), "no file can be made here");
+  return file;
+}
+
+std::string text_of(std::FILE* file) {
+  std::rewind(file);
+  std::string text;
+  std::array<char, 4096> part;
+  while (const std::size_t count = std::fread(part.data(), 1, part.size(), file)) text.append(part.data(), count);
+  return text;
+}
+
 std::string last_line(const std::string& text) {
   const std::size_t end = text.find_last_not_of('\n');
   if (end == std::string::npos) return "";
   const std::size_t begin = text.rfind('\n', end);
   return text.substr(begin == std::string::npos ? 0 : begin + 1, end - (begin == std::string::npos ? 0 : begin + 1) + 1);
 }
+
+/// A case on its way.
+struct Running {
+  std::size_t number;
+  NamelessFile errors;  ///< what it writes to standard error
+};
 
 class Runner {
  public:
@@ -81,7 +108,6 @@ class Runner {
  private:
   std::string folder_of(std::size_t i) const { return order_.folder + "/" + cases_[i].name; }
   std::string path_of(std::size_t i, const char* name) const { return folder_of(i) + "/" + name; }
-  std::string log_of(std::size_t i) const { return folder_of(i) + ".log"; }
 
   void start(std::size_t i) {
     if (text_of(path_of(i, mark_name)).starts_with(marks_[i])) {
@@ -98,12 +124,13 @@ class Runner {
     arguments.push_back(nullptr);
     posix_spawn_file_actions_t files;
     posix_spawn_file_actions_init(&files);
-    posix_spawn_file_actions_addopen(&files, STDERR_FILENO, log_of(i).c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+    NamelessFile errors = nameless_file();
+    posix_spawn_file_actions_adddup2(&files, fileno(errors.get()), STDERR_FILENO);
     pid_t process = 0;
     const int failed = posix_spawn(&process, order_.program.c_str(), &files, nullptr, arguments.data(), environ);
     posix_spawn_file_actions_destroy(&files);
     if (failed != 0) throw WriteError(order_.program, fmt::format("cannot be started: {}", std::generic_category().message(failed)));
-    running_.emplace(process, i);
+    running_.emplace(process, Running{i, std::move(errors)});
   }
 
   void wait_for_one() {
@@ -112,12 +139,11 @@ class Runner {
     while ((process = waitpid(-1, &state, 0)) < 0 && errno == EINTR) continue;
     const auto place = running_.find(process);
     if (place == running_.end()) return;
-    const std::size_t i = place->second;
+    const Running ended = std::move(place->second);
+    const std::size_t i = ended.number;
     running_.erase(place);
     const int status = WIFEXITED(state) ? WEXITSTATUS(state) : 128 + WTERMSIG(state);
-    if (status != exit_success) results_[i].message = last_line(text_of(log_of(i)));
-    std::error_code ignored;
-    std::filesystem::remove(log_of(i), ignored);
+    if (status != exit_success) results_[i].message = last_line(text_of(ended.errors.get()));
     // What was broken off, or refused as input, is tried again another time.
     if (status == exit_success || status == exit_not_converged) write_files({{path_of(i, mark_name), marks_[i] + std::to_string(status) + "\n"}});
     take(i, status);
@@ -143,7 +169,7 @@ class Runner {
   const std::function<void(std::size_t, const CaseResult&)>& done_;
   std::vector<std::string> marks_;
   std::vector<CaseResult> results_;
-  std::map<pid_t, std::size_t> running_;
+  std::map<pid_t, Running> running_;
 };
 
 }  // namespace

@@ -208,6 +208,16 @@ TEST_CASE("files of somebody else are found before the first case runs", "[cli][
   refused(sweep, "out/joint[0].friction_angle_deg=25/trials.csv");
 }
 
+TEST_CASE("what cases say of themselves is written over nobody's file", "[cli][sweep]") {
+  const Workplace place(openclose::test::block_on_incline(20.0));
+  std::filesystem::create_directory(place.folder() / "out");
+  const auto mine = place.folder() / "out/joint[0].friction_angle_deg=25.log";
+  std::ofstream(mine) << "mine\n";
+  const CommandResult result = place.run("sweep scene.toml --vary joint[0].friction_angle_deg=25 --set joint[0].cohesion_pa=0 -o out");
+  CHECK(result.status == 0);
+  CHECK(text_of(mine) == "mine\n");
+}
+
 TEST_CASE("what runs warn of is told by study and sweep, alike warnings once", "[cli][study][sweep]") {
   const Workplace place(openclose::test::block_on_incline(40.0));
   const auto warned = [&](const std::string& command, const std::string& first) {
