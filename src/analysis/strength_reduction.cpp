@@ -78,8 +78,11 @@ class StrengthReduction {
       warn_of_travel(trials.travel(), system.closure_unit());
     }
     add_mechanism(system, failing_motion(system, trials));
-    if (result_.verdict == FactorVerdict::no_equilibrium && !result_.mechanism.empty())
-      result_.reason += ": " + motion_in_words(scene, result_.mechanism);
+    // Of the last trial, if that has failed: the weakest reduction of all. Others may have stayed undecided.
+    const bool has_failed_last = !result_.trials.empty() && result_.trials.back().outcome == TrialOutcome::failed;
+    const bool is_known =
+        result_.verdict == FactorVerdict::no_equilibrium || (!result_.bracket.stable && !result_.bracket.stopped && has_failed_last);
+    if (is_known && !result_.mechanism.empty()) result_.reason += ": " + motion_in_words(scene, result_.mechanism);
     warn_of_interval();
     warn_of_geometry();
     if (input_.limit_analysis) unless_stopped([&] { compare(scene, system, trials); });
