@@ -21,7 +21,7 @@ bool is_full(int file) {
   std::string_view open(path.data(), static_cast<std::size_t>(length));
   constexpr std::string_view part = ".part";
   if (open.ends_with(part)) open.remove_suffix(part.size());
-  return open.ends_with("/" + std::string(name));
+  return open.ends_with(std::string("/").append(name));
 }
 
 ssize_t no_space() {

@@ -96,7 +96,7 @@ TEST_CASE("tables are told, suggested, and shown without the links of the page",
   for (const auto* entries : {&option_keys(), &element_keys()}) {
     for (const KeyEntry& entry : *entries) {
       CHECK_THAT(explanation_of(entry.dotted()), !ContainsSubstring("]("));
-      CHECK_THAT(tables, ContainsSubstring("[" + std::string(entry.table.name)));
+      CHECK_THAT(tables, ContainsSubstring(std::string("[").append(entry.table.name)));
     }
   }
   CHECK_THAT(explanation_of("method.contact"), ContainsSubstring("see docs/methods.md"));
