@@ -20,9 +20,12 @@ std::vector<char> marked(const FrozenSystem& system, const std::vector<int>& row
 }  // namespace
 
 std::vector<int> rows_of(const FrozenSystem& system, const std::vector<FailingBlock>& mechanism) {
+  std::vector<int> failing;
+  for (const FailingBlock& block : mechanism) failing.push_back(block.block);
+  std::ranges::sort(failing);
   std::vector<int> rows;
   for (int row = 0; row < system.rows(); ++row) {
-    if (std::ranges::find(mechanism, system.blocks()[row].block, &FailingBlock::block) != mechanism.end()) rows.push_back(row);
+    if (std::ranges::binary_search(failing, system.blocks()[row].block)) rows.push_back(row);
   }
   return rows;
 }
@@ -63,9 +66,8 @@ double withheld_strength(const FrozenSystem& system, const FrozenStrength& stren
 
 std::string withheld_in_words(double share) {
   return fmt::format(
-      "it counts the whole cohesion of joints on which hardly anything presses, or that open; here {:.2g} % of the strength along what fails is not "
-      "there, "
-      "since cohesion comes with the normal force, up to ten times that",
+      "it counts the whole cohesion of joints on which hardly anything presses, or that open; here {:.2g} % of the strength along what fails "
+      "is not there, since cohesion comes with the normal force, up to ten times that",
       100.0 * share);
 }
 
@@ -82,9 +84,8 @@ std::string interval_in_words(const StrengthBracket& bracket, const std::vector<
                             : bracket.failed ? "an interval"
                                              : "an interval without an end";
   return fmt::format(
-      "{}: at {:.4g} the blocks neither came to rest nor moved steadily; another method.contact or strength_reduction.definition may tell more, "
-      "fewer "
-      "blocks do",
+      "{}: at {:.4g} the blocks neither came to rest nor moved steadily; another method.contact or strength_reduction.definition may tell "
+      "more, fewer blocks do",
       width, *first);
 }
 

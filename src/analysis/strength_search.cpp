@@ -14,8 +14,8 @@ constexpr std::size_t most_undecided = 4;  ///< trials: each may cost as much as
 constexpr double smallest_factor = 1e-3;   ///< [-] below which nothing is stable at any strength one could mean
 /// [-] Of the factor: over longer strides joints may not break, but where the bracket is to be wider. All strengths divided by 1 to 1.37 change which
 /// joints break together and should change nothing else: of 58 random scenes of brittle joints factors then differ by more than 0.5 % in 3, by at
-/// most 5 % (of 29 scenes with tensile strength in one, by 15 %); without a limit in 15 of 53, by up to 19 %. Strides as short as the bracket, 1e-4, leave 2 of 58, and took four times as long on a slope
-/// of 403 blocks that breaks from a factor of 1.5 up to 18.
+/// most 5 % (of 29 scenes with tensile strength in one, by 15 %); without a limit in 15 of 53, by up to 19 %. Strides as short as the bracket, 1e-4,
+/// leave 2 of 58, and took four times as long on a slope of 403 blocks that breaks from a factor of 1.5 up to 18.
 constexpr double longest_breaking_stride = 2e-3;
 constexpr double unbroken_ratio = 4.0;  ///< [-] between the factors tried below the first stable one, where joints have broken
 
