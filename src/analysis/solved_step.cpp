@@ -140,7 +140,8 @@ std::vector<Blow> blows(const StepProblem& problem, const StepSolution& solution
     if (now.status == ContactStatus::open || !(now.normal > 0.0)) continue;
     const double before = c.status == ContactStatus::open ? 0.0 : std::max(0.0, c.normal_force);
     // A collision of bodies can last for two steps, the second as hard as the first: there only the approach tells it from bodies at rest.
-    const double part = stops_approach(problem, c, now.normal) ? 1.0 : 1.0 - before / now.normal;
+    const bool is_steady = std::abs(now.normal - before) <= least_of_collision * now.normal;
+    const double part = !is_steady && stops_approach(problem, c, now.normal) ? 1.0 : 1.0 - before / now.normal;
     if (part <= 0.0) continue;
     for (int b : {c.vertex_block, c.edge_block}) list.push_back({b, part});
   }
