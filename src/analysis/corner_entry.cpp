@@ -14,8 +14,6 @@ namespace {
 constexpr double shortest_part = 1e-5;
 /// [-] Of what is tolerated: closed contacts whose gaps exclude each other miss theirs by three times as much.
 constexpr double behind = 4.0;
-/// [-] Of what the joint of two blocks may yield: half of it may be entered.
-constexpr double entry_of_closure = 0.5 / behind;
 /// [m] To which corners that slide on something count as flush.
 constexpr double flush_m = 2.0 * tolerance::edge_end_m;
 
@@ -98,7 +96,6 @@ class Entries {
     reach_ = ways_.approach(a, b);
     bow_ = ways_.bow(a) + ways_.bow(b);
     tolerated_ = tolerance_.of(std::min(width(a), width(b)));
-    if (tolerance_.yielding) tolerated_ = std::min(tolerated_, std::max(tolerance_.depth, entry_of_closure * closure(*tolerance_.yielding, a, b)));
     return reach_ > flush_m && (system_.centroid(a) - system_.centroid(b)).norm() <= system_.block(a).radius + system_.block(b).radius + reach_;
   }
 
@@ -113,14 +110,6 @@ class Entries {
   }
   /// [m] No more than 2 area / perimeter of a convex block, whose perimeter is at most that of the circle around it.
   double width(int b) const { return system_.block(b).area / (std::numbers::pi * system_.block(b).radius); }
-  /// [m] By which the stiffest spring that the joint can be between two blocks, over the whole of the smaller one, gives way where it stops the two
-  /// at the speed of the fastest corner, v sqrt(m / k), or carries the weight of all blocks. A contact that is found behind its edge has missed that
-  /// much of its spring.
-  double closure(const Yielding& of, int a, int b) const {
-    const double extent = 2.0 * std::min(system_.block(a).radius, system_.block(b).radius);
-    const double stiffness = of.joints.joint(of.joints.index(system_.block(a).material, system_.block(b).material)).normal_stiffness * extent;
-    return of.speed * std::sqrt(system_.reduced_mass(a, b) / stiffness) + of.weight / stiffness;
-  }
   bool is_held(int v, int e) const {
     return held_ && std::ranges::any_of(*held_, [&](const Contact& c) { return c.vertex == v && c.edge == e; });
   }

@@ -16,19 +16,11 @@
 
 namespace openclose {
 
-/// By how much joints give way at most.
-struct Yielding {
-  const JointTable& joints;
-  double speed = 0.0;   ///< [m/s] of the fastest corner
-  double weight = 0.0;  ///< [N] of all free blocks
-};
-
 /// What corners may enter between two steps.
 struct EntryTolerance {
   double depth = 0.0;                                     ///< [m]
   double part_of_width = 0.0;                             ///< [-] of the narrower block, if that is more
   double most = std::numeric_limits<double>::infinity();  ///< [m] and no more than this
-  const Yielding* yielding = nullptr;                     ///< of contacts that give way: no more than a part of that, unless it is below `depth`
 
   double of(double narrower) const { return std::min(std::max(depth, part_of_width * narrower), most); }
 };

@@ -124,6 +124,8 @@ namespace {
 
 /// [-] Of the work of friction: as large as what the watch lets pass of the energy, and as friction angles are known.
 constexpr double noticeable_friction_lag = 0.01;
+/// [-] Of the energy moved, which bounds what the error does to ways and speeds: beyond a tenth not even their first digit is known.
+constexpr double most_energy_of_lag = 0.1;
 /// [-] Of the median block's size, far beyond the closure of joints: seen in a drawing.
 constexpr double noticeable_settlement = 0.1;
 
@@ -251,9 +253,9 @@ class MotionInTime {
     if (lag <= noticeable_friction_lag) return;
     const double of_energy = simulation_.state().lagging_friction_work / simulation_.ledger().turnover;
     const std::string found = fmt::format("friction of sliding contacts was that of the iteration before, off by {:.2g} % of its work", 100.0 * lag);
-    if (of_energy > most_energy_of_friction_lag && result_.converged) {
+    if (of_energy > most_energy_of_lag && result_.converged) {
       result_.ended_by.clear();
-      accepted(fmt::format("{} and {:.2g} % of the energy moved, at most {:g} %; {}", found, 100.0 * of_energy, 100.0 * most_energy_of_friction_lag,
+      accepted(fmt::format("{} and {:.2g} % of the energy moved, at most {:g} %; {}", found, 100.0 * of_energy, 100.0 * most_energy_of_lag,
                            soft_instead_of_shi));
     } else {
       result_.warnings.push_back(found + "; " + soft_instead_of_shi);

@@ -13,8 +13,6 @@ namespace {
 /// [-] of the largest displacement of a step, to be aimed at where steps have to be shorter.
 constexpr double part_of_limit = 0.9;
 
-/// [-] Of what friction may miss in a run: beyond, steps are solved with its own friction.
-constexpr double missable_before_more_passes = 0.1;
 /// [rad] No block that is in contact turns by more than this in a step: then other edges face each other than those whose contacts the step knows,
 /// and a splinter that may turn as it likes finds states of balance after whole turns. Where facing edges have become corners, nothing is left of
 /// them.
@@ -59,9 +57,6 @@ StepProblem SolvedStepper::problem(double dt, bool statics) {
   p.failed_attempts = failed_attempts_;
   // Elsewhere it would show in the places of the blocks.
   if (statics && state_.enforcement->has_elastic_contacts()) p.negligible_force = negligible_force_;
-  if (!statics)
-    p.missable_friction =
-        std::max(0.0, missable_before_more_passes * most_energy_of_friction_lag * state_.ledger.turnover - state_.lagging_friction_work);
   if (!statics && state_.scheme->wants_accelerations()) {
     const Eigen::VectorXd force = forces_now(p, *state_.enforcement);
     for (int b : state_.system.free_blocks()) {

@@ -11,10 +11,6 @@ namespace openclose {
 
 struct Blow;
 
-/// [-] Of the energy moved, which bounds what friction that misses the strength does to ways and speeds: beyond a tenth not even their first digit is
-/// known.
-inline constexpr double most_energy_of_friction_lag = 0.1;
-
 class SolvedStepper {
  public:
   /// The state must outlive the stepper.

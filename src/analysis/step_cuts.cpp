@@ -33,13 +33,6 @@ constexpr double creatable_part_of_kinetic = 0.01;
 /// What so many halvings do not cure is not of the step.
 constexpr int most_cuts_for_energy = 6;
 
-/// [N] Of all free blocks.
-double total_weight(const StepProblem& problem) {
-  double mass = 0.0;
-  for (int b : problem.system.free_blocks()) mass += problem.system.block(b).mass[0];
-  return mass * problem.external.gravity().norm();
-}
-
 }  // namespace
 
 double StepCuts::part_before_entry(const StepProblem& problem, const StepSolution& solution, const Enforcement& enforcement, double moved,
@@ -50,8 +43,7 @@ double StepCuts::part_before_entry(const StepProblem& problem, const StepSolutio
   const bool is_no_shorter = problem.statics && at_entry_ > 0 && moved > shorter_by_cut * way_at_entry_;
   if (is_no_shorter || at_entry_ == most_cuts_at_entry) return 1.0;
   if (is_elastic) {
-    const Yielding yielding{problem.joints, moved / problem.dt, total_weight(problem)};
-    const EntryTolerance tolerance{tolerance::rounding_of_ways_m, unnoticed_part_of_width, enforcement.deepest_entry(problem.method), &yielding};
+    const EntryTolerance tolerance{tolerance::rounding_of_ways_m, unnoticed_part_of_width, enforcement.deepest_entry(problem.method)};
     return first_entry(problem.system, solution, pairs, tolerance, &problem.contacts);
   }
   const double tolerated = std::max(problem.method.gap_tolerance, tolerance::rounding_of_ways_m);

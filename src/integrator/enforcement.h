@@ -42,7 +42,6 @@ struct StepProblem {
   Bonds bonds = Bonds::break_under_load;
   double negligible_force = 0.0;                                          ///< [N] what a static step may leave unbalanced on a block
   double longest_displacement = std::numeric_limits<double>::infinity();  ///< [m] of a vertex; a step that moves one farther is refused
-  double missable_friction = std::numeric_limits<double>::infinity();     ///< [J] by which the work of friction may miss the strength's, see shi.cpp
   const TimeScheme* scheme = nullptr;                                     ///< null: every step starts from rest
 
   bool averages_path() const { return scheme && scheme->averages_path(); }

@@ -70,27 +70,6 @@ TEST_CASE("a step ends where a corner enters a block", "[analysis][corner_entry]
   }
 }
 
-TEST_CASE("a corner enters no deeper than half of what its joint would yield", "[analysis][corner_entry]") {
-  Scene scene = test::block_on_base();
-  for (Vec2& v : scene.blocks[1].vertices) v += Vec2(0.0, 0.05);
-  const BlockSystem system(scene);
-  StepSolution solution;
-  solution.d = Motion::Unknowns(0.3, -0.1, 0.0);
-  const JointTable joints(scene);
-  const double speed = 2.0, weight = 3e5, width = 0.01;
-  const double stiffness = scene.joints[0].normal_stiffness * 2.0 * system.block(1).radius;
-  const auto depth_with = [&](const Yielding* yielding) {
-    const EntryTolerance tolerance{tolerated, width, std::numeric_limits<double>::infinity(), yielding};
-    return 0.1 * first_entry(system, solution, {{0, 1}}, tolerance) - 0.05;
-  };
-  const auto half_of = [&](double closure) { return Approx(0.5 * 0.5 * closure / 4.0).epsilon(1e-6); };  // a step is cut at half of a quarter of it
-  const Yielding at_rest{joints, 0.0, weight}, thrown{joints, speed, 0.0}, by_nothing{joints, 0.0, 0.0};
-  CHECK(depth_with(&at_rest) == half_of(weight / stiffness));
-  CHECK(depth_with(&thrown) == half_of(speed * std::sqrt(system.block(1).mass[0] / stiffness)));
-  CHECK(depth_with(nullptr) > 10.0 * depth_with(&thrown));
-  CHECK(depth_with(&by_nothing) == Approx(0.5 * tolerated).epsilon(1e-6));
-}
-
 TEST_CASE("a tip that is behind another one's face by no more than flush corners are enters it all the same", "[analysis][corner_entry]") {
   // Two feet on one floor, tip to tip; the right one hangs a micrometre higher.
   const Vec2 face = Vec2(std::cos(57.0 * test::degree), std::sin(57.0 * test::degree)), outward(face.y(), -face.x()), tip(-5e-7, 1e-6);
