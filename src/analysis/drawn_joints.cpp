@@ -134,6 +134,16 @@ DrawnJoint joint_at(const Scene& scene, int block_a, int block_b, const Vec2& po
   return best;
 }
 
+const std::string& name_of_joint(const Scene& scene, const DrawnJoint& joint) {
+  static const std::string none;
+  const BlockInput &a = scene.blocks[static_cast<std::size_t>(joint.block_a)], &b = scene.blocks[static_cast<std::size_t>(joint.block_b)];
+  const int named = a.joint_of_edge(static_cast<std::size_t>(joint.edge_a));
+  if (named != BlockInput::by_materials && named == b.joint_of_edge(static_cast<std::size_t>(joint.edge_b)))
+    return scene.joints[static_cast<std::size_t>(named)].name;
+  const JointProperties* of_materials = scene.joint(a.material, b.material);
+  return of_materials ? of_materials->name : none;
+}
+
 JointMotion joint_motion(const DrawnJoint& joint, const BlockSystem& system, JointDirection direction) {
   return {gap_between(joint, joint.from_a, joint.from_b, system, direction), gap_between(joint, joint.to_a, joint.to_b, system, direction)};
 }

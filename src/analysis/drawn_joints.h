@@ -5,6 +5,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "openclose/model/block_system.h"
@@ -38,6 +39,9 @@ std::vector<DrawnJoint> drawn_joints(const Scene& scene);
 
 /// The joint between two blocks at a point of it, of no length: that of the two edges there which face each other best.
 DrawnJoint joint_at(const Scene& scene, int block_a, int block_b, const Vec2& point);
+
+/// Of the joint that acts there: the one that both edges name, else that of the two materials. Empty if it has no name.
+const std::string& name_of_joint(const Scene& scene, const DrawnJoint& joint);
 
 /// Of which edge of b the normal and the tangent of a gap are.
 enum class JointDirection {

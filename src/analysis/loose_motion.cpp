@@ -218,12 +218,9 @@ class Describer {
 
   /// As JointTable has it of contacts: of the name of the edge where an edge at the corner has the same, else of the materials.
   const JointProperties* joint_of(const BlockInput& corners, std::size_t v, const BlockInput& edges, std::size_t e) const {
-    const auto seam_at = [](const BlockInput& block, std::size_t edge) {
-      return block.edge_joints.empty() ? BlockInput::by_materials : block.edge_joints[edge];
-    };
-    const int seam = seam_at(edges, e);
+    const int seam = edges.joint_of_edge(e);
     const std::size_t before = (v + corners.vertices.size() - 1) % corners.vertices.size();
-    const bool is_in_seam = seam != BlockInput::by_materials && (seam_at(corners, v) == seam || seam_at(corners, before) == seam);
+    const bool is_in_seam = seam != BlockInput::by_materials && (corners.joint_of_edge(v) == seam || corners.joint_of_edge(before) == seam);
     return is_in_seam ? &scene_.joints[static_cast<std::size_t>(seam)] : scene_.joint(corners.material, edges.material);
   }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <unordered_map>
@@ -52,6 +53,7 @@ class ResultPicture {
     read_contacts();
     read_cracks();
     colour_blocks();
+    if (colour_ == BlockColour::material) add_seams();
     add_joints();
     if (request_.forces) add_forces();
     if (request_.cracks) add_cracks();
@@ -203,6 +205,22 @@ class ResultPicture {
           if (contact.state == JointDrawing::sliding) picture_.joints.push_back({contact.point, contact.point, contact.state});
         }
       }
+    }
+  }
+
+  /// Joints with a name, where they still face each other, if there are others to be told from them.
+  void add_seams() {
+    std::map<std::string, int> number_of;
+    for (const CrackRow& crack : cracks_) number_of.emplace(crack.joint, 0);
+    if (number_of.size() < 2) return;
+    for (auto& [name, number] : number_of) {
+      if (name.empty()) continue;
+      number = static_cast<int>(picture_.seam_names.size());
+      picture_.seam_names.push_back(name);
+    }
+    for (const CrackRow& crack : cracks_) {
+      const std::optional<std::pair<Vec2, Vec2>> common = common_stretch(crack);
+      if (!crack.joint.empty() && common && is_line(crack)) picture_.seams.push_back({common->first, common->second, number_of[crack.joint]});
     }
   }
 

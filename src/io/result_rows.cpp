@@ -31,7 +31,7 @@ std::vector<ContactRow> contact_rows(const StateTable& table, const std::string&
 }
 
 std::vector<CrackRow> crack_rows(const std::string& path, const std::string& state, const BlockIndex& blocks) {
-  const StateTable table(path, {"block_a", "block_b", "x1_m", "y1_m", "x2_m", "y2_m", "opening1_m", "opening2_m", "slip1_m", "slip2_m"});
+  const StateTable table(path, {"block_a", "block_b", "x1_m", "y1_m", "x2_m", "y2_m", "opening1_m", "opening2_m", "slip1_m", "slip2_m", "joint"});
   std::vector<CrackRow> cracks;
   table.rows(state, [&](const Row& row) {
     cracks.push_back({blocks.of(row, 0),
@@ -41,7 +41,8 @@ std::vector<CrackRow> crack_rows(const std::string& path, const std::string& sta
                       row.number(6),
                       row.number(7),
                       row.number(8),
-                      row.number(9)});
+                      row.number(9),
+                      std::string(row[10])});
   });
   return cracks;
 }

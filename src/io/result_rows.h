@@ -25,6 +25,7 @@ struct CrackRow {
   int a = 0, b = 0;
   Vec2 from = Vec2::Zero(), to = Vec2::Zero();
   double opening_from = 0.0, opening_to = 0.0, slip_from = 0.0, slip_to = 0.0;
+  std::string joint;  ///< empty if it has no name
 };
 
 StateTable contact_table(const std::string& path);

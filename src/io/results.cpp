@@ -216,16 +216,16 @@ void BlockStatesFile::add(const std::string& state, const Scene& scene, const Bl
 }
 
 CracksFile::CracksFile(const OutputFolder& folder, const Scene& scene, const RestartPoint* restart)
-    : RunTable(folder, "cracks.csv", "state,block_a,block_b,x1_m,y1_m,x2_m,y2_m,length_m,opening1_m,opening2_m,slip1_m,slip2_m", restart),
+    : RunTable(folder, "cracks.csv", "state,block_a,block_b,x1_m,y1_m,x2_m,y2_m,length_m,opening1_m,opening2_m,slip1_m,slip2_m,joint", restart),
       joints_(drawn_joints(scene)) {}
 
 void CracksFile::add(const std::string& state, const Scene& scene, const BlockSystem& system, JointDirection direction) {
   std::string rows;
   for (const DrawnJoint& joint : joints_) {
     const JointMotion m = joint_motion(joint, system, direction);
-    print(rows, "{},{},{},{},{},{},{},{},{},{},{},{}\n", state, field(scene.blocks[joint.block_a].name), field(scene.blocks[joint.block_b].name),
+    print(rows, "{},{},{},{},{},{},{},{},{},{},{},{},{}\n", state, field(scene.blocks[joint.block_a].name), field(scene.blocks[joint.block_b].name),
           m.from.middle.x(), m.from.middle.y(), m.to.middle.x(), m.to.middle.y(), (joint.to_b - joint.from_b).norm(), m.from.opening, m.to.opening,
-          m.from.slip, m.to.slip);
+          m.from.slip, m.to.slip, field(name_of_joint(scene, joint)));
   }
   file_ << rows;
   require_written();

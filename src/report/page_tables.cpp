@@ -1,5 +1,7 @@
 #include "openclose/report/page_tables.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -7,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "openclose/core/error.h"
 #include "openclose/io/state_table.h"
 #include "openclose/io/vtk.h"
 
@@ -52,20 +55,30 @@ struct Curves {
     std::ifstream file(path);
     std::string line;
     if (!std::getline(file, line)) return;
+    if (line.ends_with('\r')) line.pop_back();
     columns = csv_fields(line);
     const auto key_place = static_cast<std::size_t>(std::ranges::find(columns, key) - columns.begin());
-    while (std::getline(file, line)) {
+    for (int number = 2; std::getline(file, line); ++number) {
+      if (line.ends_with('\r')) line.pop_back();
       const std::vector<std::string> fields = csv_fields(line);
-      if (fields.size() != columns.size()) continue;
+      if (fields.size() != columns.size() || file.eof()) continue;
       const std::string name = key_place < fields.size() ? fields[key_place] : std::string();
       auto [place, is_new] = rows.try_emplace(name);
       if (is_new) names.push_back(name);
       std::vector<float>& row = place->second.emplace_back();
       for (std::size_t k = 0; k < fields.size(); ++k) {
-        if (k != key_place) row.push_back(static_cast<float>(finite_number(fields[k]).value_or(NAN)));
+        if (k != key_place) row.push_back(value_of(fields[k], columns[k], {path, number}));
       }
     }
     if (key_place < columns.size()) columns.erase(columns.begin() + static_cast<std::ptrdiff_t>(key_place));
+  }
+
+  /// Nothing and what a run that has gone wrong writes are gaps in a curve, words are none of its values; anything else is no table of openclose.
+  static float value_of(const std::string& field, const std::string& column, const SourceLocation& where) {
+    static const std::vector<std::string> gaps = {"", "nan", "-nan", "inf", "-inf"};
+    const std::optional<double> number = finite_number(field);
+    if (number || column == "status" || std::ranges::find(gaps, field) != gaps.end()) return static_cast<float>(number.value_or(NAN));
+    throw InputError(where, column, fmt::format("\"{}\" is no number", field), "the table as openclose wrote it");
   }
 
   /// Square of the largest length of the vector that these columns are.

@@ -34,6 +34,7 @@ struct BlockInput {
   double angular_velocity = 0.0;  ///< [rad/s] counter-clockwise
   /// Of the edge from each vertex to the next: index into Scene::joints, or by_materials. Empty: all by_materials.
   std::vector<int> edge_joints;
+  int joint_of_edge(std::size_t edge) const { return edge_joints.empty() ? by_materials : edge_joints[edge]; }
   int line = 0;                               ///< where it was read, for errors; see Scene::place_of()
   std::shared_ptr<const std::string> source;  ///< null: the scene's file
 };

@@ -49,7 +49,8 @@ int main() {
   const long loads = simulation.state().counters.loads, steps = simulation.state().counters.steps, start = allocations;
   for (int i = 0; i < 20; ++i) good = simulation.advance(scene.step.dt) && good;
   const long allocated = allocations - start, searched = simulation.state().detector.counters().searches - before.searches;
-  const long detected = simulation.state().detector.counters().narrow_phases - before.narrow_phases, loaded = simulation.state().counters.loads - loads;
+  const long detected = simulation.state().detector.counters().narrow_phases - before.narrow_phases,
+             loaded = simulation.state().counters.loads - loads;
   const long taken = simulation.state().counters.steps - steps;
   std::printf("%ld steps: %ld allocations, %ld searches, %ld narrow phases, %ld loads\n", taken, allocated, searched, detected, loaded);
   good = good && taken >= 20 && allocated == 0 && searched == 0 && detected == 0 && loaded == 0;

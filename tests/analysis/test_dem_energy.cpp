@@ -140,7 +140,8 @@ TEST_CASE("dashpots shorten the step of local damping, too", "[analysis][dem]") 
   Scene scene = explicit_scene(test::block_on_base(), 1e-3);
   scene.joints[0].damping_ratio = 0.5;
   Simulation simulation(scene);
-  const double plain = simulation.explicit_stepper()->longest_stable_step(MassDamping::none), damped = simulation.explicit_stepper()->longest_stable_step(MassDamping::local);
+  const double plain = simulation.explicit_stepper()->longest_stable_step(MassDamping::none),
+               damped = simulation.explicit_stepper()->longest_stable_step(MassDamping::local);
   // a h^2 + 2 b h = 4 with a and b 1 + alpha times as large: shorter by more than the root, by less than the factor itself.
   const double share = 1.0 + scene.method.local_damping;
   CHECK(damped < plain / std::sqrt(share));

@@ -140,6 +140,8 @@ TEST_CASE("a push goes through a chain at rest", "[analysis][resting]") {
       scene.blocks[n + 1].velocity = {8.0, 0.0};
       scene.joints[0].friction_angle = 5.0 * degree;
       scene = prepared(scene, method, skips);
+      // Steps of the blow whose friction does not settle are cut, other ones with all blocks in the system than with few: 1 % of the way at 1e-3 s.
+      if (method == "shi") scene.step.dt = 5e-4;
       Follower run(scene);
       run.go(0.5);
       CHECK(run.resting() == (skips ? n : 0));

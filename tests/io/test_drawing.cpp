@@ -79,7 +79,7 @@ void write_two_squares(const TemporaryFolder& place, const std::string& contacts
   place.write("summary.json", summary_of_run(2));
   place.write("blocks.csv", outlines_of_run({"a,0,0,0", "a,1,1,0", "a,2,1,1", "a,3,0,1", "b,0,0,1", "b,1,1,1", "b,2,1,2", "b,3,0,2"}));
   place.write("contacts.csv", "state,block_a,block_b,x_m,y_m,normal_x,normal_y,length_m,gap_m,normal_force_n,shear_force_n,status\n" + contacts);
-  place.write("cracks.csv", "state,block_a,block_b,x1_m,y1_m,x2_m,y2_m,length_m,opening1_m,opening2_m,slip1_m,slip2_m\n" + crack);
+  place.write("cracks.csv", "state,block_a,block_b,x1_m,y1_m,x2_m,y2_m,length_m,opening1_m,opening2_m,slip1_m,slip2_m,joint\n" + crack);
 }
 
 Scene tower_on_base() {
@@ -367,7 +367,7 @@ TEST_CASE("the drawing of a factor of safety has it in the title and shows the m
 TEST_CASE("joints are drawn as their contacts are", "[io][drawing]") {
   const TemporaryFolder place;
   const auto write = [&](const std::string& status) {
-    write_two_squares(place, "final,b,a,0,1,0,1,0.5,0,1,0," + status + "\nfinal,b,a,1,1,0,1,0.5,0,1,0,sticking\n", "final,a,b,0,1,1,1,1,0,0,0,0\n");
+    write_two_squares(place, "final,b,a,0,1,0,1,0.5,0,1,0," + status + "\nfinal,b,a,1,1,0,1,0.5,0,1,0,sticking\n", "final,a,b,0,1,1,1,1,0,0,0,0,\n");
   };
   const std::map<std::string, JointDrawing> states = {{"open", JointDrawing::open}, {"sliding", JointDrawing::sliding}};
   for (const auto& [word, state] : states) {
@@ -391,7 +391,7 @@ TEST_CASE("the force of a hinge is seen, though it leaves both blocks at once", 
   folder.write("contacts.csv",
                "state,block_a,block_b,x_m,y_m,normal_x,normal_y,length_m,gap_m,normal_force_n,shear_force_n,status\n"
                "final,left,right,1,1,-1,0,0.5,0,1000,0,sticking\n");
-  folder.write("cracks.csv", "state,block_a,block_b,x1_m,y1_m,x2_m,y2_m,length_m,opening1_m,opening2_m,slip1_m,slip2_m\n");
+  folder.write("cracks.csv", "state,block_a,block_b,x1_m,y1_m,x2_m,y2_m,length_m,opening1_m,opening2_m,slip1_m,slip2_m,joint\n");
   DrawingRequest request;
   request.forces = true;
   const Picture picture = picture_of_results(folder.path(), request);
@@ -509,22 +509,22 @@ TEST_CASE("bars of openings and lines of joints stand only where the two blocks 
     return picture_of_results(place.path(), request);
   };
   const std::string open = "final,b,a,0,1,0,1,0.5,0.05,0,0,open\nfinal,b,a,1,1,0,1,0.5,0.05,0,0,open\n";
-  CHECK(picture(open, "final,a,b,0,1,1,1,1,0.05,0.05,0,0\n").cracks.size() == 2);
+  CHECK(picture(open, "final,a,b,0,1,1,1,1,0.05,0.05,0,0,\n").cracks.size() == 2);
   // A gap of half a block is seen itself.
-  const Picture far = picture(open, "final,a,b,0,1,1,1,1,0.5,0.5,0,0\n");
+  const Picture far = picture(open, "final,a,b,0,1,1,1,1,0.5,0.5,0,0,\n");
   CHECK(far.cracks.empty());
   CHECK(far.joints.empty());
   CHECK_THAT(far.crack_name, ContainsSubstring("still face each other"));
   // The line in the middle of the two sides, of which either has moved along it by half of the slip.
-  const Picture slipped = picture(open, "final,a,b,0,1,1,1,1,0.05,0.05,0.04,-0.06\n");
+  const Picture slipped = picture(open, "final,a,b,0,1,1,1,1,0.05,0.05,0.04,-0.06,\n");
   REQUIRE(slipped.joints.size() == 1);
   CHECK(slipped.joints[0].from.x() == Approx(0.02));
   CHECK(slipped.joints[0].to.x() == Approx(0.97));
   CHECK(slipped.cracks.front().from.x() == Approx(0.02));
-  CHECK(picture(open, "final,a,b,0,1,0.05,1,0.05,0.02,0.02,0.06,0.06\n").joints.empty());
+  CHECK(picture(open, "final,a,b,0,1,0.05,1,0.05,0.02,0.02,0.06,0.06,\n").joints.empty());
   // Where they touch now.
   const Picture slid =
-      picture("final,b,a,0.1,1,0,1,0.45,0,1,0,sliding\nfinal,b,a,1,1,0,1,0.45,0,1,0,sliding\n", "final,a,b,0.05,1,1.05,1,1,0,0,0.1,0.1\n");
+      picture("final,b,a,0.1,1,0,1,0.45,0,1,0,sliding\nfinal,b,a,1,1,0,1,0.45,0,1,0,sliding\n", "final,a,b,0.05,1,1.05,1,1,0,0,0.1,0.1,\n");
   REQUIRE(slid.joints.size() == 2);
   CHECK(slid.joints[0].from.x() == Approx(0.1));
   CHECK(slid.joints[1].to.x() == Approx(1.0));
@@ -543,7 +543,7 @@ TEST_CASE("corners of open contacts are not joined by a line", "[io][drawing]") 
 TEST_CASE("what is open by less than a hundredth of the widest joint has a thin line", "[io][drawing]") {
   const TemporaryFolder place;
   write_two_squares(place, "final,b,a,0,1,0,1,0.5,0,0,0,open\nfinal,b,a,1,1,0,1,0.5,0,0,0,open\n",
-                    "final,a,b,0,1,0.5,1,0.5,0.05,0.05,0,0\nfinal,a,b,0.5,1,1,1,0.5,4e-4,1e-6,0,0\n");
+                    "final,a,b,0,1,0.5,1,0.5,0.05,0.05,0,0,\nfinal,a,b,0.5,1,1,1,0.5,4e-4,1e-6,0,0,\n");
   const Picture picture = picture_of_results(place.path(), {});
   REQUIRE(picture.joints.size() == 2);
   CHECK_FALSE(picture.joints[0].is_slight);
@@ -585,4 +585,21 @@ TEST_CASE("a spring is drawn outside of the block that it holds", "[io][drawing]
   REQUIRE(sides.size() == 2);
   CHECK(sides[0][0] == "-1");
   CHECK(sides[1][0] == "1");
+}
+
+TEST_CASE("named joints are told from each other in a drawing of blocks by material", "[io][drawing]") {
+  const TemporaryFolder place;
+  const auto drawn = [&](const std::string& first, const std::string& second, BlockColour colour) {
+    write_two_squares(place, "", "final,a,b,0,1,0.5,1,0.5,0,0,0,0," + first + "\nfinal,a,b,0.5,1,1,1,0.5,0,0,0,0," + second + "\n");
+    return picture_of_results(place.path(), {{}, colour});
+  };
+  const Picture two = drawn("cross", "bedding", BlockColour::material);
+  CHECK(two.seam_names == std::vector<std::string>{"bedding", "cross"});
+  REQUIRE(two.seams.size() == 2);
+  CHECK(two.seams[0].name == 1);
+  CHECK(two.seams[0].to == Vec2(0.5, 1.0));
+  CHECK(svg_drawing(two).find(">bedding</text>") != std::string::npos);
+  CHECK(drawn("cross", "", BlockColour::material).seam_names == std::vector<std::string>{"cross"});
+  CHECK(drawn("cross", "cross", BlockColour::material).seams.empty());  // nothing to tell it from
+  CHECK(drawn("cross", "bedding", BlockColour::displacement).seams.empty());
 }
