@@ -279,6 +279,8 @@ void OutputFolder::list(const std::string& name) const {
   std::ofstream list(path_of(list_name), std::ios::app);
   list << name << '\n';
   list.close();
+  std::error_code unknown;
+  if (!list && !std::filesystem::is_directory(path_, unknown)) throw WriteError(path_of(list_name), "its folder has been removed");
   if (!list) throw WriteError(path_of(list_name));
 }
 
