@@ -45,7 +45,7 @@ std::vector<std::string> csv_fields(const std::string& line) {
   return fields;
 }
 
-/// The rows of a table by their curves. A row that was not written to its end is left out.
+/// The rows of a table by their curves. A last row that was not written to its end is left out. Throws InputError for a damaged one.
 struct Curves {
   std::vector<std::string> columns;
   std::vector<std::string> names;                               ///< in the order of the file
@@ -61,7 +61,9 @@ struct Curves {
     for (int number = 2; std::getline(file, line); ++number) {
       if (line.ends_with('\r')) line.pop_back();
       const std::vector<std::string> fields = csv_fields(line);
-      if (fields.size() != columns.size() || file.eof()) continue;
+      if (file.eof()) break;  // cut off before the end of its line
+      if (fields.size() != columns.size())
+        throw InputError({path, number}, "", fmt::format("a row of {} fields", fields.size()), fmt::format("the {} of the heading", columns.size()));
       const std::string name = key_place < fields.size() ? fields[key_place] : std::string();
       auto [place, is_new] = rows.try_emplace(name);
       if (is_new) names.push_back(name);

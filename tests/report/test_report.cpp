@@ -220,10 +220,10 @@ TEST_CASE("tables that are damaged or cut off are refused, not shown", "[report]
   CHECK_THAT(refusal("block_properties.csv", "\nb", "\nnobody"),
              ContainsSubstring("block_properties.csv:") && ContainsSubstring("there is no block"));
   const std::string ledger = test::text_of(place / "energy.csv"), end = ledger.substr(ledger.rfind(','));
-  CHECK_THAT(refusal("energy.csv", end, ",1.2.3\n"),
-             ContainsSubstring("energy.csv:") && ContainsSubstring("imbalance_j: \"1.2.3\" is no number"));
+  CHECK_THAT(refusal("energy.csv", end, ",1.2.3\n"), ContainsSubstring("energy.csv:") && ContainsSubstring("imbalance_j: \"1.2.3\" is no number"));
   CHECK(refusal("energy.csv", end, ",nan\n") == "nothing is refused");  // of a run that has gone wrong
   CHECK(refusal("energy.csv", end, ",1e-") == "nothing is refused");    // cut off within its last number
+  CHECK_THAT(refusal("energy.csv", end, "\n"), ContainsSubstring("energy.csv:") && ContainsSubstring("a row of"));
   CHECK(refusal("energy.csv", "\n", "\r\n") == "nothing is refused");
   const std::string states = test::text_of(place / "block_states.csv"),
                     last = states.substr(states.rfind("start,"), states.find('\n', states.rfind("start,")) + 1 - states.rfind("start,"));
