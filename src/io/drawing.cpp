@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <tuple>
 #include <utility>
 
@@ -33,6 +34,8 @@ constexpr int colour_classes = 32;
 constexpr double least_drawn_part = 0.005;
 /// Names are written beside no more points and loads than this; tooltips tell the others.
 constexpr std::size_t most_labels = 12;
+/// [px] Between the arrows of a load that is spread along an edge, about.
+constexpr double arrow_spacing = 22.0;
 /// [px] Of the arrow of a growing part of gravity in the legend.
 constexpr double push_length = 34.0;
 
@@ -82,7 +85,10 @@ class Drawing {
     for (const Picture::Arrow& load : picture.loads) {
       largest_load_ = std::max(largest_load_, load.vector.norm());
     }
-    for (const Picture::Arrow& load : picture.loads) tails.push_back(scale_ * (load.point - box_.low) - length_of(load) * load.vector.normalized());
+    for (const Picture::Arrow& load : picture.loads) {
+      for (const double part : {-0.5, 0.5})
+        tails.push_back(scale_ * (load.point + part * load.spread - box_.low) - length_of(load) * load.vector.normalized());
+    }
     const Box around = Box::around(tails);
     page_width_ = std::max(narrowest_page, scale_ * size.x() + 2.0 * (margin + std::max(-around.low.x(), around.high.x() - scale_ * size.x())));
     left_ = 0.5 * (page_width_ - scale_ * size.x());
@@ -186,12 +192,19 @@ class Drawing {
   }
 
   static const char* colour_of_seam(std::size_t name) { return drawing_colour::seams[name % drawing_colour::seams.size()]; }
+  /// Names beyond the colours are dashed, ever shorter. \param scale  of the numbers of the line
+  static std::string dashes_of_seam(std::size_t name, double scale) {
+    const std::size_t round = name / drawing_colour::seams.size();
+    return round == 0 ? "" : fmt::format(" stroke-dasharray=\"{0:g} {0:g}\"", scale * 8.0 / static_cast<double>(round));
+  }
 
   void draw_seams() {
     std::vector<PathData> paths(picture_.seam_names.size());
     for (const Picture::Seam& seam : picture_.seams) paths[static_cast<std::size_t>(seam.name)].segment(at(seam.from), at(seam.to));
     for (std::size_t n = 0; n < paths.size(); ++n) {
-      page_.path(paths[n], fmt::format("class=\"seam\" fill=\"none\" stroke=\"{}\" stroke-linecap=\"butt\"", colour_of_seam(n)), seam_width());
+      page_.path(paths[n],
+                 fmt::format("class=\"seam\" fill=\"none\" stroke=\"{}\" stroke-linecap=\"butt\"{}", colour_of_seam(n), dashes_of_seam(n, 100.0)),
+                 seam_width());
     }
   }
   double seam_width() const { return std::clamp(0.05 * block_size_, 0.4, 2.5); }
@@ -311,9 +324,17 @@ class Drawing {
     page_.print("<g class=\"loads\">\n");
     for (const Picture::Arrow& load : picture_.loads) {
       // The head is where the load acts.
-      const Vec2 way = length_of(load) * Vec2(load.vector.x(), -load.vector.y()).normalized(), tip = at(load.point);
-      draw_arrow(tip - way, tip, 11.0, load_colour, 2.4);
-      if (picture_.loads.size() <= most_labels) label(tip - way, force_text(load.vector.norm()), load_colour);
+      const Vec2 way = length_of(load) * Vec2(load.vector.x(), -load.vector.y()).normalized();
+      const int gaps = static_cast<int>(scale_ * load.spread.norm() / arrow_spacing);
+      for (int i = 0; i <= gaps; ++i) {
+        const Vec2 tip = at(load.point + (gaps == 0 ? 0.0 : static_cast<double>(i) / gaps - 0.5) * load.spread);
+        draw_arrow(tip - way, tip, gaps == 0 ? 11.0 : 8.0, load_colour, gaps == 0 ? 2.4 : 1.6);
+      }
+      if (gaps > 0) {
+        const Vec2 from = at(load.point - 0.5 * load.spread) - way, to = at(load.point + 0.5 * load.spread) - way;
+        page_.line(from, to, fmt::format("class=\"spread\" stroke=\"{}\" stroke-width=\"1.6\"", load_colour));
+      }
+      if (picture_.loads.size() <= most_labels) label(at(load.point) - way, force_text(load.vector.norm()), load_colour);
     }
     page_.print("</g>\n");
   }
@@ -371,7 +392,12 @@ class Drawing {
       }
     }
     if (std::ranges::any_of(picture_.blocks, &Picture::Block::fixed)) legend.add_swatch(fixed_fill, "fixed", "url(#fixed)");
-    for (std::size_t n = 0; n < picture_.seam_names.size(); ++n) legend.add_line("seam-key", colour_of_seam(n), 2.5, picture_.seam_names[n]);
+    std::set<int> seams;
+    for (const Picture::Seam& seam : picture_.seams) seams.insert(seam.name);
+    for (const int name : seams) {
+      const auto n = static_cast<std::size_t>(name);
+      legend.add_line("seam-key", colour_of_seam(n), 2.5, picture_.seam_names[n], 1.0, dashes_of_seam(n, 1.0));
+    }
     const auto has = [&](JointDrawing state, bool is_slight = false) {
       return std::ranges::any_of(picture_.joints, [&](const Picture::Joint& joint) { return joint.state == state && joint.is_slight == is_slight; });
     };

@@ -49,6 +49,7 @@ struct Picture {
   /// A velocity of a point, or a load on it.
   struct Arrow {
     Vec2 point = Vec2::Zero(), vector = Vec2::Zero();
+    Vec2 spread = Vec2::Zero();  ///< along which a load is spread evenly, with its middle at the point
   };
   struct Spring {
     Vec2 point = Vec2::Zero();
@@ -90,5 +91,8 @@ std::string svg_drawing(const Picture& picture);
 
 /// The blocks of a scene, a colour for each material and each joint that edges name, with supports, loads and measured points.
 Picture picture_of(const Scene& scene);
+
+/// Indices of the joints that edges of blocks name, in the order of the scene, in which drawings give them their colours.
+std::vector<int> joints_of_edges(const Scene& scene);
 
 }  // namespace openclose

@@ -45,10 +45,10 @@ void Legend::add_swatch(const std::string& fill, const std::string& text, const 
   page_.write(x + 36.0, y_, text);
 }
 
-void Legend::add_line(const char* name, const std::string& colour, double width, const std::string& text, double opacity) {
+void Legend::add_line(const char* name, const std::string& colour, double width, const std::string& text, double opacity, const std::string& dashes) {
   const double x = next_entry(42.0 + width_of(text, 14.0));
   page_.line({x, y_ - 5.0}, {x + 34.0, y_ - 5.0},
-             fmt::format("class=\"{}\" stroke=\"{}\" stroke-width=\"{:.3f}\" stroke-opacity=\"{:g}\"", name, colour, width, opacity));
+             fmt::format("class=\"{}\" stroke=\"{}\" stroke-width=\"{:.3f}\" stroke-opacity=\"{:g}\"{}", name, colour, width, opacity, dashes));
   page_.write(x + 42.0, y_, text);
 }
 

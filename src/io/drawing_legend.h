@@ -19,7 +19,8 @@ class Legend {
   Legend(SvgPage& page, const Vec2& place, double right) : page_(page), left_(place.x()), right_(right), x_(place.x()), y_(place.y()) {}
 
   void add_swatch(const std::string& fill, const std::string& text, const char* over = nullptr);
-  void add_line(const char* name, const std::string& colour, double width, const std::string& text, double opacity = 1.0);
+  void add_line(const char* name, const std::string& colour, double width, const std::string& text, double opacity = 1.0,
+                const std::string& dashes = "");
   void add_colour_bar(const Picture::Scale& scale);
   void add_scale_bar(double length, const std::string& text);
   /// Room for a symbol this wide, and its text. Returns the left end of the symbol, at half of its height.

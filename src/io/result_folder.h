@@ -44,6 +44,8 @@ class ResultFolder {
   std::string path_of(const std::string& name) const { return folder_ + "/" + name; }
   std::string name() const;  ///< without the folders that it is in
   const nlohmann::json& summary() const { return summary_; }
+  /// A list of names in the summary: "materials" or "joints", whose order gives them their colours.
+  std::vector<std::string> names_in(const char* list) const { return summary_.at(list).get<std::vector<std::string>>(); }
   bool is_factor() const { return is_factor_; }
   const std::vector<std::string>& states() const { return outlines_.states(); }
   bool has(const std::string& state) const { return outlines_.has(state); }

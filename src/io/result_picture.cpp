@@ -5,9 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
+#include <string_view>
 #include <unordered_map>
 #include <utility>
 
@@ -39,6 +40,14 @@ constexpr double noticeable_part_of_mechanism = 0.01;
 
 Vec2 point_in(const json& list) {
   return {list.at(0).get<double>(), list.at(1).get<double>()};
+}
+
+/// The place of a name in the list, at whose end it is put where a table has one that the summary lacks.
+int place_of(std::string_view name, std::vector<std::string>& names) {
+  const auto place = std::ranges::find(names, name);
+  const auto index = static_cast<int>(place - names.begin());
+  if (place == names.end()) names.emplace_back(name);
+  return index;
 }
 
 class ResultPicture {
@@ -92,13 +101,12 @@ class ResultPicture {
   void read_blocks() {
     now_ = folder_.outlines(state_);
     for (std::size_t b = 0; b < now_.size(); ++b) picture_.blocks.push_back({folder_.drawing().names[b], now_[b], 0, false, 0.0});
+    picture_.colour_names = folder_.names_in("materials");
     const StateTable properties(path_of("block_properties.csv"), {"block", "material", "fixed"});
     properties.all_rows([&](const Row& row) {
-      const auto place = std::ranges::find(picture_.colour_names, row[1]);
       Picture::Block& block = picture_.blocks[static_cast<std::size_t>(block_index_.of(row, 0))];
-      block.colour = static_cast<int>(place - picture_.colour_names.begin());
+      block.colour = place_of(row[1], picture_.colour_names);
       block.fixed = row[2] == "1";
-      if (place == picture_.colour_names.end()) picture_.colour_names.emplace_back(row[1]);
     });
     std::vector<double> areas;
     for (const Polygon& outline : now_) areas.push_back(std::abs(signed_area(outline)));
@@ -210,17 +218,14 @@ class ResultPicture {
 
   /// Joints with a name, where they still face each other, if there are others to be told from them.
   void add_seams() {
-    std::map<std::string, int> number_of;
-    for (const CrackRow& crack : cracks_) number_of.emplace(crack.joint, 0);
-    if (number_of.size() < 2) return;
-    for (auto& [name, number] : number_of) {
-      if (name.empty()) continue;
-      number = static_cast<int>(picture_.seam_names.size());
-      picture_.seam_names.push_back(name);
-    }
+    std::set<std::string> names;
+    for (const CrackRow& crack : cracks_) names.insert(crack.joint);
+    if (names.size() < 2) return;
+    picture_.seam_names = folder_.names_in("joints");
     for (const CrackRow& crack : cracks_) {
       const std::optional<std::pair<Vec2, Vec2>> common = common_stretch(crack);
-      if (!crack.joint.empty() && common && is_line(crack)) picture_.seams.push_back({common->first, common->second, number_of[crack.joint]});
+      if (crack.joint.empty() || !common || !is_line(crack)) continue;
+      picture_.seams.push_back({common->first, common->second, place_of(crack.joint, picture_.seam_names)});
     }
   }
 
@@ -386,8 +391,9 @@ class ResultPicture {
       picture_.supports.push_back({carried(entry), stiffness.x() > 0.0, stiffness.y() > 0.0, carried(entry) - placement(entry).to});
     }
     for (const json& entry : summary().value("arrows", json::array())) {
-      const Vec2 force = point_in(entry.at("force_n"));
-      picture_.loads.push_back({carried(entry), entry.at("turns_with_block").get<bool>() ? placement(entry).turned(force) : force});
+      const bool turns = entry.at("turns_with_block").get<bool>();
+      const auto turned = [&](const char* key) { return turns ? placement(entry).turned(point_in(entry.at(key))) : point_in(entry.at(key)); };
+      picture_.loads.push_back({carried(entry), turned("force_n"), turned("spread_m")});
     }
     add_push();
     for (const json& entry : summary().value("measured_points", json::array()))

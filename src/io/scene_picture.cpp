@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
-#include <map>
+#include <algorithm>
+#include <set>
 
 #include "openclose/geometry/polygon.h"
 #include "openclose/io/drawing.h"
@@ -9,28 +10,26 @@
 namespace openclose {
 namespace {
 
-/// Those joints that edges name, in the order of the scene.
 void add_seams(const Scene& scene, Picture& picture) {
-  std::map<int, int> number_of;
-  for (const BlockInput& block : scene.blocks) {
-    for (const int joint : block.edge_joints) {
-      if (joint != BlockInput::by_materials) number_of.emplace(joint, 0);
-    }
-  }
-  for (auto& [joint, number] : number_of) {
-    number = static_cast<int>(picture.seam_names.size());
-    picture.seam_names.push_back(scene.joints[joint].name);
-  }
+  const std::vector<int> joints = joints_of_edges(scene);
+  for (const int joint : joints) picture.seam_names.push_back(scene.joints[joint].name);
   for (const BlockInput& block : scene.blocks) {
     for (std::size_t i = 0; i < block.edge_joints.size(); ++i) {
-      const auto number = number_of.find(block.edge_joints[i]);
-      if (number == number_of.end()) continue;
-      picture.seams.push_back({block.vertices[i], block.vertices[(i + 1) % block.vertices.size()], number->second});
+      if (block.edge_joints[i] == BlockInput::by_materials) continue;
+      const auto number = static_cast<int>(std::ranges::lower_bound(joints, block.edge_joints[i]) - joints.begin());
+      picture.seams.push_back({block.vertices[i], block.vertices[(i + 1) % block.vertices.size()], number});
     }
   }
 }
 
 }  // namespace
+
+std::vector<int> joints_of_edges(const Scene& scene) {
+  std::set<int> joints;
+  for (const BlockInput& block : scene.blocks) joints.insert(block.edge_joints.begin(), block.edge_joints.end());
+  joints.erase(BlockInput::by_materials);
+  return {joints.begin(), joints.end()};
+}
 
 Picture picture_of(const Scene& scene) {
   Picture picture;
@@ -43,7 +42,7 @@ Picture picture_of(const Scene& scene) {
     picture.supports.push_back({s.point, s.stiffness.x() > 0.0, s.stiffness.y() > 0.0, s.point - middle});
   }
   for_each_force(scene, [&](const auto& force) {
-    for (const DrawnForce& arrow : force.drawn()) picture.loads.push_back({arrow.point, arrow.force});
+    for (const DrawnForce& arrow : force.drawn()) picture.loads.push_back({arrow.point, arrow.force, arrow.spread});
   });
   for (const MeasuredPoint& point : scene.measured_points) picture.points.push_back({point.name, point.point});
   return picture;

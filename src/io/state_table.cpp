@@ -38,7 +38,9 @@ StateTable::StateTable(const std::string& path, const std::vector<std::string>& 
   split(text.substr(0, heading), names_);
   for (const std::string& column : columns) {
     const auto place = std::ranges::find(names_, column);
-    if (place == names_.end()) throw InputError({path, 1}, "", fmt::format("there is no column {}", column), "the table as openclose has written it");
+    if (place == names_.end())
+      throw InputError({path, 1}, "", fmt::format("there is no column {}", column),
+                       "the table as this version of openclose writes it: run the scene again");
     columns_.push_back(static_cast<std::size_t>(place - names_.begin()));
   }
   std::size_t begin = std::min(heading + 1, text.size()), line = begin;

@@ -6,6 +6,7 @@
 #include "openclose/core/parallel.h"
 #include "openclose/core/process.h"
 #include "openclose/integrator/integrators.h"
+#include "openclose/io/drawing.h"
 #include "openclose/io/results.h"
 #include "openclose/io/state_hash.h"
 #include "openclose/scene/increased_load.h"
@@ -63,7 +64,8 @@ void add_points(const Scene& scene, const ForceInputs& pushed, nlohmann::ordered
       j["arrows"].push_back({{"block", scene.blocks[force.block].name},
                              {"point_m", pair(arrow.point)},
                              {"force_n", pair(arrow.force)},
-                             {"turns_with_block", arrow.turns_with_block}});
+                             {"turns_with_block", arrow.turns_with_block},
+                             {"spread_m", pair(arrow.spread)}});
     }
   });
   for (const MeasuredPoint& p : scene.measured_points)
@@ -126,6 +128,7 @@ void add_factor(const FactorOfSafety& safety, const Scene& scene, nlohmann::orde
 }
 
 void add_question(const Summary& summary, const Simulation& simulation, const FactorOfSafety* safety, nlohmann::ordered_json& j) {
+  using nlohmann::ordered_json;
   const Scene& scene = simulation.scene();
   j["version"] = version;
   j["command"] = summary.command;
@@ -134,6 +137,9 @@ void add_question(const Summary& summary, const Simulation& simulation, const Fa
   j["overrides"] = summary.overrides;
   j["options"] = options_json(simulation);
   add_points(scene, safety ? with_increased_load(scene, safety->stable()) : scene, j);
+  j["materials"] = j["joints"] = ordered_json::array();
+  for (const Material& material : scene.materials) j["materials"].push_back(material.name);
+  for (const int joint : joints_of_edges(scene)) j["joints"].push_back(scene.joints[joint].name);
   j["warnings"] = summary.warnings;
   j["blocks"] = simulation.system().block_count();
   j["free_blocks"] = simulation.system().free_count() + static_cast<int>(simulation.system().resting_blocks().size());

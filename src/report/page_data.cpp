@@ -117,7 +117,7 @@ class PageData {
     std::vector<std::int32_t> material(count, 0);
     std::vector<std::uint8_t> fixed(count, 0);
     std::vector<double> area(count, 0.0), mass(count, 0.0);
-    std::vector<std::string> materials;
+    std::vector<std::string> materials = folder_.names_in("materials");
     const StateTable table(path_of("block_properties.csv"), {"block", "material", "fixed", "area_m2", "mass_kg"});
     table.all_rows([&](const Row& row) {
       const int b = block_index_.of(row, 0);
@@ -157,7 +157,7 @@ class PageData {
            {"on_top", point.at(1).get<double>() > middle.y()}});
     }
     for (const json& entry : summary().value("arrows", json::array()))
-      add("load", entry, {{"force", entry.at("force_n")}, {"turns", entry.at("turns_with_block")}});
+      add("load", entry, {{"force", entry.at("force_n")}, {"turns", entry.at("turns_with_block")}, {"spread", entry.at("spread_m")}});
     for (const json& entry : summary().value("measured_points", json::array())) add("point", entry, {{"name", entry.at("name")}});
     return list;
   }
@@ -371,8 +371,8 @@ class PageData {
     page["energy"] = curves_in(path_of("energy.csv"), "", {});
     page["contact_history"] = curves_in(path_of("contact_history.csv"), "contact", {}, {"normal_force_n"});
     page["curve"] = curves_in(path_of("curve.csv"), "point", {}, {"displacement_m"});
-    page["trials"] = json(rows_in(path_of("trials.csv")));
-    page["milestones"] = json(rows_in(path_of("milestones.csv")));
+    page["trials"] = json(rows_in(path_of("trials.csv"), {"stage", "stable", "criterion"}));
+    page["milestones"] = json(rows_in(path_of("milestones.csv"), {"reason"}));
   }
 
   ResultFolder folder_;

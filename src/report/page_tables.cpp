@@ -22,6 +22,7 @@ using nlohmann::json;
 constexpr std::size_t most_rows = 2000;
 /// Curves in one picture that can still be told apart by their colours.
 constexpr std::size_t most_curves = 12;
+constexpr const char* as_written = "the table as openclose wrote it";
 /// [bytes] Of the scene as it was read; a longer one is shown without its blocks.
 constexpr std::size_t longest_scene = 200'000;
 
@@ -80,7 +81,7 @@ struct Curves {
     static const std::vector<std::string> gaps = {"", "nan", "-nan", "inf", "-inf"};
     const std::optional<double> number = finite_number(field);
     if (number || column == "status" || std::ranges::find(gaps, field) != gaps.end()) return static_cast<float>(number.value_or(NAN));
-    throw InputError(where, column, fmt::format("\"{}\" is no number", field), "the table as openclose wrote it");
+    throw InputError(where, column, fmt::format("\"{}\" is no number", field), as_written);
   }
 
   /// Square of the largest length of the vector that these columns are.
@@ -179,9 +180,16 @@ nlohmann::ordered_json rows_in(std::istream& lines) {
   return list;
 }
 
-nlohmann::ordered_json rows_in(const std::string& path) {
+nlohmann::ordered_json rows_in(const std::string& path, const std::vector<std::string>& words) {
   std::ifstream file(path);
-  return rows_in(file);
+  nlohmann::ordered_json list = rows_in(file);
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    for (const auto& [column, value] : list[i].items()) {
+      if (!value.is_string() || std::ranges::find(words, column) != words.end()) continue;
+      throw InputError({path, static_cast<int>(i) + 2}, column, fmt::format("\"{}\" is no number", value.get<std::string>()), as_written);
+    }
+  }
+  return list;
 }
 
 json scene_text(const std::string& path) {

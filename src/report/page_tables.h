@@ -21,7 +21,8 @@ nlohmann::json curves_in(const std::string& path, const std::string& key, const 
 
 /// The rows of a small table, as a list of objects: numbers where a field is one, null where it is empty.
 nlohmann::ordered_json rows_in(std::istream& table);
-nlohmann::ordered_json rows_in(const std::string& path);
+/// \param words  the columns that may hold something else than numbers; throws InputError where another one does
+nlohmann::ordered_json rows_in(const std::string& path, const std::vector<std::string>& words);
 
 /// The scene as it was read, without its blocks where they are many: {"text", "blocks_left_out"}.
 nlohmann::json scene_text(const std::string& path);

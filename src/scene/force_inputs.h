@@ -25,8 +25,9 @@ struct BlockInput;
 
 struct DrawnForce {
   Vec2 point = Vec2::Zero();      ///< [m]
-  Vec2 force = Vec2::Zero();      ///< [N]
+  Vec2 force = Vec2::Zero();      ///< [N] in all
   bool turns_with_block = false;  ///< or keeps its direction
+  Vec2 spread = Vec2::Zero();     ///< [m] along which it is spread evenly, with its middle at the point
 };
 
 inline constexpr int unnamed_block = -1;  ///< of a force whose block complete() is to find
@@ -119,7 +120,7 @@ struct Surcharge {
   void complete(const Table& table, const std::vector<BlockInput>& blocks);
   void change_unit_of_length(double unit) { multiply(unit); }
   void multiply(double factor) { pressure *= factor, shear *= factor; }
-  std::vector<DrawnForce> drawn() const { return {{0.5 * (from + to), resultant(to - from), true}}; }
+  std::vector<DrawnForce> drawn() const { return {{0.5 * (from + to), resultant(to - from), true, to - from}}; }
   /// [N] The traction times the length.
   /// \param along  [m] from one end to the other, as the block lies now
   Vec2 resultant(const Vec2& along) const { return pressure * perpendicular(along) + shear * along; }

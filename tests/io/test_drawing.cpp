@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <map>
 #include <regex>
+#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -62,7 +63,7 @@ std::string group(const std::string& svg, const std::string& name) {
 /// What drawings need of the summary of a run.
 std::string summary_of_run(int blocks) {
   return "{\"command\": \"run\", \"blocks\": " + std::to_string(blocks) +
-         R"(, "time_s": 1, "converged": true, "options": {"method": {"contact": "soft"}}})";
+         R"(, "time_s": 1, "converged": true, "options": {"method": {"contact": "soft"}}, "materials": ["rock"], "joints": ["cross", "bedding"]})";
 }
 
 /// blocks.csv of a run that has moved nothing. \param vertices  "name,number,x,y" each
@@ -265,6 +266,17 @@ TEST_CASE("joints that edges name are drawn in a colour each, with their names",
   CHECK(svg.find("unused") == std::string::npos);
 }
 
+TEST_CASE("names beyond the colours of joints are dashed", "[io][drawing]") {
+  Picture picture = picture_of(tower_on_base());
+  for (int n = 0; n < 11; ++n) {
+    picture.seam_names.push_back("joint " + std::to_string(n));
+    picture.seams.push_back({{100.0 + n, 50.0}, {100.0 + n, 51.0}, n});
+  }
+  const auto looks = all_matches(svg_drawing(picture), "class=\"seam-key\" stroke=\"(#[0-9a-f]+)\" [^>]*?( stroke-dasharray=\"[0-9. ]+\")?/?>");
+  REQUIRE(looks.size() == 11);
+  CHECK(std::set<std::vector<std::string>>(looks.begin(), looks.end()).size() == 11);
+}
+
 TEST_CASE("the drawing of a run: state, contact forces, what holds and pushes", "[io][drawing]") {
   const Results results;
   DrawingRequest request;
@@ -308,7 +320,7 @@ TEST_CASE("a bar of force that grazes an edge goes on, one that leaves a block e
   CHECK(steep.from.y() <= 1.0 + 0.1 + 1e-9);
 }
 
-TEST_CASE("a surcharge is drawn by its resultant, which turns with its block", "[io][drawing]") {
+TEST_CASE("a surcharge is drawn by arrows along its edge, which turn with the block, and the number of their sum", "[io][drawing]") {
   Scene scene = tower_on_base();
   const auto& corners = scene.blocks[1].vertices;
   scene.surcharges = {{1, corners[2], corners[3], 5e3, 0.0}};
@@ -316,6 +328,17 @@ TEST_CASE("a surcharge is drawn by its resultant, which turns with its block", "
   REQUIRE(picture.loads.size() == 1);
   CHECK((picture.loads[0].point - Vec2(103.5, 53.0)).norm() < 1e-12);
   CHECK((picture.loads[0].vector - Vec2(0.0, -5e3)).norm() < 1e-9);
+  CHECK((picture.loads[0].spread - Vec2(-1.0, 0.0)).norm() < 1e-12);
+  const std::string svg = svg_drawing(picture), drawn = group(svg, "loads");
+  const Box tower = box_of(svg, "tower");
+  const auto lines = all_matches(drawn, "<line x1=\"([0-9.]+)\" y1=\"[0-9.]+\" x2=\"([0-9.]+)\"");
+  REQUIRE(lines.size() > 3);
+  double least = 1e9, most = 0.0;
+  for (const auto& line : lines) least = std::min(least, std::stod(line[0])), most = std::max(most, std::stod(line[0]));
+  CHECK(std::abs(least - tower.low.x()) < 0.02);
+  CHECK(std::abs(most - tower.high.x()) < 0.02);
+  CHECK(count(drawn, "class=\"spread\"") == 1);
+  CHECK(count(drawn, ">5 kN/m<") == 1);
   const TemporaryFolder place;
   scene.gravity.setZero();
   scene.end_time = 0.01;
@@ -335,6 +358,7 @@ TEST_CASE("a surcharge is drawn by its resultant, which turns with its block", "
   const Picture turned = picture_of_results(place.path(), {});
   REQUIRE(turned.loads.size() == 1);
   CHECK((turned.loads[0].vector - 5e3 * Vec2(std::sin(0.5), -std::cos(0.5))).norm() < 1.0);
+  CHECK((turned.loads[0].spread + Vec2(std::cos(0.5), std::sin(0.5))).norm() < 1e-3);
 }
 
 TEST_CASE("the drawing of a factor of safety has it in the title and shows the mechanism", "[io][drawing]") {
@@ -594,12 +618,15 @@ TEST_CASE("named joints are told from each other in a drawing of blocks by mater
     return picture_of_results(place.path(), {{}, colour});
   };
   const Picture two = drawn("cross", "bedding", BlockColour::material);
-  CHECK(two.seam_names == std::vector<std::string>{"bedding", "cross"});
+  CHECK(two.seam_names == std::vector<std::string>{"cross", "bedding"});  // their colours are those that the scene has given them
   REQUIRE(two.seams.size() == 2);
-  CHECK(two.seams[0].name == 1);
+  CHECK(two.seams[0].name == 0);
   CHECK(two.seams[0].to == Vec2(0.5, 1.0));
   CHECK(svg_drawing(two).find(">bedding</text>") != std::string::npos);
-  CHECK(drawn("cross", "", BlockColour::material).seam_names == std::vector<std::string>{"cross"});
+  const Picture one = drawn("bedding", "", BlockColour::material);
+  REQUIRE(one.seams.size() == 1);
+  CHECK(one.seams[0].name == 1);
+  CHECK(svg_drawing(one).find(">cross</text>") == std::string::npos);
   CHECK(drawn("cross", "cross", BlockColour::material).seams.empty());  // nothing to tell it from
   CHECK(drawn("cross", "bedding", BlockColour::displacement).seams.empty());
 }

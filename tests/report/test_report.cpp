@@ -225,6 +225,8 @@ TEST_CASE("tables that are damaged or cut off are refused, not shown", "[report]
   CHECK(refusal("energy.csv", end, ",1e-") == "nothing is refused");    // cut off within its last number
   CHECK_THAT(refusal("energy.csv", end, "\n"), ContainsSubstring("energy.csv:") && ContainsSubstring("a row of"));
   CHECK(refusal("energy.csv", "\n", "\r\n") == "nothing is refused");
+  place.write("trials.csv", "srf,stage,stable,criterion,steps,displacement_m\n1,bracket,1,,3,0.1\n");
+  CHECK_THAT(refusal("trials.csv", "0.1", "much"), ContainsSubstring("trials.csv:2: displacement_m: \"much\" is no number"));
   const std::string states = test::text_of(place / "block_states.csv"),
                     last = states.substr(states.rfind("start,"), states.find('\n', states.rfind("start,")) + 1 - states.rfind("start,"));
   CHECK_THAT(refusal("block_states.csv", last, ""), ContainsSubstring("the state \"start\" has 1 blocks; accepted: the 2 blocks"));

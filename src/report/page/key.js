@@ -1,5 +1,8 @@
 // Colours, arrows, and what stands on the picture besides the blocks: supports, loads and measured points, and the key below with the scale bar.
 
+/** [px] Between the arrows of a load that is spread along an edge, about; and no more of them, however close one looks. */
+const ARROW_SPACING = 22, MOST_LOAD_ARROWS = 60;
+
 function write(context, text, x, y, colour = "#222") {
   context.lineWidth = 3;
   context.strokeStyle = "white";
@@ -37,8 +40,9 @@ function drawSymbols(view) {
   const labelled = symbols.length <= MOST_LABELS;
   context.font = "13px system-ui, sans-serif";
   for (const symbol of symbols) {
-    const [x, y] = view.toScreen(...carriedPoint(results, view.motion, view.shownAmplitude, view.isMechanism, symbol.block, symbol.point));
-    if (symbol.kind === "load") drawLoad(view, symbol, x, y, largest, labelled);
+    const place = (point) => view.toScreen(...carriedPoint(results, view.motion, view.shownAmplitude, view.isMechanism, symbol.block, point));
+    const [x, y] = place(symbol.point);
+    if (symbol.kind === "load") drawLoad(view, symbol, place, largest, labelled);
     if (symbol.kind === "support") drawSupport(context, symbol, x, y, colours.support);
     if (symbol.kind === "point") {
       context.beginPath();
@@ -53,14 +57,28 @@ function drawSymbols(view) {
   }
 }
 
-/** The head is where the load acts. */
-function drawLoad(view, load, x, y, largest, labelled) {
+/** The heads are where the load acts: at a point, or at several of the stretch along which it is spread. */
+function drawLoad(view, load, place, largest, labelled) {
+  const { context } = view, colour = view.results.data.colours.load;
   const turn = load.turns ? view.shownAmplitude * view.motion[3 * load.block + 2] : 0, c = Math.cos(turn), s = Math.sin(turn);
   const fx = c * load.force[0] - s * load.force[1], fy = s * load.force[0] + c * load.force[1], size = Math.hypot(fx, fy);
   if (size === 0) return;
-  const length = Math.max(18, (70 * size) / largest), x1 = x - (length * fx) / size, y1 = y + (length * fy) / size;
-  drawArrow(view.context, x1, y1, x, y, view.results.data.colours.load, 2.4, 11);
-  if (labelled) write(view.context, forceText(size), x1 + 6, y1 - 4, view.results.data.colours.load);
+  const length = Math.max(18, (70 * size) / largest), tail = ([x, y]) => [x - (length * fx) / size, y + (length * fy) / size];
+  const along = (part) => place([load.point[0] + part * load.spread[0], load.point[1] + part * load.spread[1]]);
+  const from = along(-0.5), to = along(0.5), gaps = Math.min(MOST_LOAD_ARROWS, Math.floor(Math.hypot(to[0] - from[0], to[1] - from[1]) / ARROW_SPACING));
+  for (let i = 0; i <= gaps; ++i) {
+    const tip = along(gaps ? i / gaps - 0.5 : 0);
+    drawArrow(context, ...tail(tip), ...tip, colour, gaps ? 1.6 : 2.4, gaps ? 8 : 11);
+  }
+  if (gaps) {
+    context.lineWidth = 1.6;
+    context.beginPath();
+    context.moveTo(...tail(from));
+    context.lineTo(...tail(to));
+    context.stroke();
+  }
+  const [x, y] = tail(along(0));
+  if (labelled) write(context, forceText(size), x + 6, y - 4, colour);
 }
 
 function drawSupport(context, support, x, y, colour) {
@@ -174,7 +192,7 @@ function drawKey(view) {
 function addColours(key, view) {
   const { names, quantity, largest, shown } = view.key(), { colours } = view.results.data, { context } = key;
   if (names) {
-    names.forEach((name, i) => key.addSwatch(colours.fills[i % colours.fills.length], name));
+    names.forEach((name, i) => name !== null && key.addSwatch(colours.fills[i % colours.fills.length], name));
     return;
   }
   const length = 150;

@@ -31,6 +31,8 @@ class Results {
     this.index = new Map(b.names.map((name, i) => [name, i]));
     this.materials = b.materials;
     this.material = unpack.i4(b.material_i4);
+    const used = new Set(this.material);
+    this.materialsInKey = b.materials.map((name, i) => (used.has(i) ? name : null));
     this.fixed = unpack.u1(b.fixed_u1);
     this.area = unpack.f8(b.area_f8);
     this.mass = unpack.f8(b.mass_f8);

@@ -128,7 +128,7 @@ class View {
   /** What the colours tell: {quantity, largest} of a number, or {names} of classes. */
   key() {
     const state = this.results.states[this.state];
-    if (this.shownColour === "material") return { names: this.results.materials };
+    if (this.shownColour === "material") return { names: this.results.materialsInKey };
     if (this.shownColour === "contacts") return { names: TOUCH_NAMES };
     const isFilm = state.time_s !== undefined;
     if (this.shownColour === "velocity") {
