@@ -242,6 +242,8 @@ class Describer {
       const Vec2 relative = relative_velocity(block, touch.other, touch.point);
       if (relative.norm() < slow * fastest(block) || !is_along(relative, touch)) continue;
       if (!is_joint(touch, touches) || turns_against(block, touch.other, relative)) continue;
+      // What moves faster along it overtakes the block: that joint tells the motion of the other one.
+      if (relative.dot(velocity_at(block, touch.point)) <= 0.0) continue;
       const Vec2 along = touch.along.dot(relative) < 0.0 ? Vec2(-touch.along) : touch.along;
       return fmt::format(" slides along its joint with {} {} ({}cohesion_pa or a [[support]] would hold it)", name_of(touch.other), heading(along),
                          friction_on(touch));

@@ -102,6 +102,10 @@ std::string in_words(const StiffnessEffect& effect) {
   return is_narrow ? fmt::format("{:.4g}", *effect.stable) : fmt::format("between {:.4g} and {:.4g}", *effect.stable, *effect.failed);
 }
 
+bool is_unknown(const StiffnessEffect& effect, double factor) {
+  return effect.stable && !effect.failed && *effect.stable < (1.0 - 0.5 * width_of_stiffness_effect) * factor;
+}
+
 bool has_stiffness_ratio(const Scene& scene, double ratio) {
   return std::ranges::all_of(scene.joints, [&](const JointProperties& joint) { return joint.shear_stiffness == ratio * joint.normal_stiffness; });
 }

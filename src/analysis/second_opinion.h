@@ -52,6 +52,9 @@ inline constexpr double stiffness_ratios[] = {0.1, 1.0};
 /// [-] Over the factor: what differs by less is not told apart.
 inline constexpr double width_of_stiffness_effect = 0.01;
 
+/// Whether its search ended undecided so far below the factor of the scene that it says nothing of the factor at its ratio.
+bool is_unknown(const StiffnessEffect& effect, double factor);
+
 /// True if all joints have this ratio already, so that the factor of the scene is the factor at it.
 bool has_stiffness_ratio(const Scene& scene, double ratio);
 

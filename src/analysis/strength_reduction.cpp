@@ -345,6 +345,11 @@ class StrengthReduction {
     for (const StiffnessEffect& effect : result_.stiffness_effects) {
       largest = std::max(largest, effect.stable.value_or(0.0));
       const double clear = 0.5 * width_of_stiffness_effect * low;
+      if (is_unknown(effect, low))
+        result_.warnings.push_back(
+            fmt::format("what the {} is at a ratio of shear to normal stiffness of {:g} is not known: the short search for it ended "
+                        "undecided above {:.4g}; fos with joints of that ratio searches longer",
+                        noun(), effect.ratio, *effect.stable));
       const bool differs = !effect.stable || *effect.stable > high + clear || (effect.failed && *effect.failed < low - clear);
       if (!differs) continue;
       const std::string factor = in_words(effect);

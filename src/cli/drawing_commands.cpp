@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <numbers>
 
 #include "commands.h"
 #include "machine_output.h"
@@ -10,6 +12,22 @@
 #include "openclose/scene/writer.h"
 
 namespace openclose {
+
+namespace {
+
+/// What dips and dip directions come to, so that one sees whether the section was meant.
+void print_sets_in_section(const CuttingSummary& cutting) {
+  for (const SetInSection& set : cutting.sets_in_section) {
+    const double dip = set.dip * 180.0 / std::numbers::pi;
+    fmt::print("joint set of {}: in the section its joints dip {:.3g} degrees{} and lie {:.4g} m apart\n", set.place, std::abs(dip),
+               dip > 0.0   ? " to the left"
+               : dip < 0.0 ? " to the right"
+                           : "",
+               set.spacing);
+  }
+}
+
+}  // namespace
 
 int cut_command(const Options& options) {
   const Loaded loaded = load(options);
@@ -46,12 +64,35 @@ int cut_command(const Options& options) {
   const auto fixed = std::count_if(loaded.scene.blocks.begin(), loaded.scene.blocks.end(), [](const BlockInput& block) { return block.fixed; });
   fmt::print("{}: {} blocks cut by {} traces, {:.9g} m2 (domain {:.9g} m2), smallest {:.3g} m2; {} of {} blocks fixed\n", options.scene_file,
              cutting.blocks, cutting.traces, cutting.area, cutting.domain_area, cutting.smallest_block, fixed, loaded.scene.blocks.size());
+  print_sets_in_section(cutting);
   fmt::print("{} slivers merged ({:.3g} m2), {} dangling ends dropped; written to {} and {}\n", cutting.slivers_merged, cutting.slivers_area,
              cutting.dangling_ends, file, drawing);
   return exit_success;
 }
 
+namespace {
+
+/// A scene has no state to choose: its blocks as they are written or cut, with what holds and pushes them.
+int draw_scene(Options options) {
+  const DrawingRequest& request = options.drawing;
+  if (request.state || request.colour || request.forces || request.cracks)
+    throw InputError({options.results, 0}, "draw", "a scene has no states, forces and openings to choose from",
+                     "no --state, --colour, --forces or --cracks, or the folder of a run or fos");
+  options.scene_file = options.results;
+  const Loaded loaded = load(options);
+  const std::string file =
+      options.drawing_file.empty() ? std::filesystem::path(options.scene_file).replace_extension(".svg").string() : options.drawing_file;
+  require_ending(file, ".svg", "drawing");
+  write_files({{file, svg_drawing(picture_of(loaded.scene)), false, Seal::xml}});
+  if (options.json) print_json(exit_success, {{"scene", options.scene_file}, {"blocks", loaded.scene.blocks.size()}, {"written", {file}}});
+  if (!options.quiet) fmt::print("{}: {} blocks drawn; written to {}\n", options.scene_file, loaded.scene.blocks.size(), file);
+  return exit_success;
+}
+
+}  // namespace
+
 int draw_command(const Options& options) {
+  if (std::filesystem::is_regular_file(options.results)) return draw_scene(options);
   const std::string file = options.drawing_file.empty() ? options.results + "/drawing.svg" : options.drawing_file;
   require_ending(file, ".svg", "drawing");
   const Picture picture = picture_of_results(options.results, options.drawing);

@@ -82,8 +82,9 @@ void add_options(CLI::App& app, Options& options, bool writes_folder, const std:
 }
 
 CLI::App* add_draw(CLI::App& app, Options& options) {
-  CLI::App* draw = app.add_subcommand("draw", "draw a state of a run or fos as SVG: blocks, what their joints do, what holds and pushes them");
-  draw->add_option("results", options.results, "folder that run or fos has written")->required();
+  CLI::App* draw =
+      app.add_subcommand("draw", "draw a scene, or a state of a run or fos, as SVG: blocks, what their joints do, what holds and pushes them");
+  draw->add_option("results", options.results, "folder that run or fos has written, or a scene file (.toml)")->required();
   draw->add_option(
       "--state", options.drawing.state,
       "state in blocks.csv, such as initial, start, t=1.5, final, stable, failed (default: failed, the mechanism, of fos; else the last)");
@@ -98,7 +99,7 @@ CLI::App* add_draw(CLI::App& app, Options& options) {
       ->check(one_of(block_colour_names()));
   draw->add_flag("--forces", options.drawing.forces, "draw the resultants between blocks, as wide as they are large");
   draw->add_flag("--cracks", options.drawing.cracks, "draw the openings of joints, as wide as they are open");
-  draw->add_option("-o,--output", options.drawing_file, "SVG file to write (default: drawing.svg in the folder)");
+  draw->add_option("-o,--output", options.drawing_file, "SVG file to write (default: drawing.svg in the folder; of a scene, beside it)");
   add_quiet(*draw, options);
   return draw;
 }

@@ -75,18 +75,21 @@ void add_new(CLI::App& app, std::function<int()>& chosen) {
   for (const Draft& draft : drafts()) kinds += fmt::format("{}{} ({})", kinds.empty() ? "" : ", ", draft.name, draft.summary);
   command->add_option("kind", options->kind, "what is drawn: " + kinds)->required()->check(one_of(names_of_drafts()));
   std::map<std::string, std::string> help_of;
+  std::map<std::string, bool> is_whole;
   std::vector<std::string> in_order;
   for (const Draft& draft : drafts()) {
     for (const Dimension& dimension : draft.dimensions) {
       const std::string name(dimension.name);
       std::string& help = help_of[name];
       if (help.empty()) in_order.push_back(name);
+      is_whole[name] = dimension.is_whole;
       help += fmt::format("{}{}: {} (default: {})", help.empty() ? "" : "; ", draft.name, dimension.says, dimension.value);
     }
   }
   for (const std::string& name : in_order) {
-    command->add_option_function<double>(
+    CLI::Option* option = command->add_option_function<double>(
         option_of(name), [options, name](const double& value) { options->dimensions[name] = value; }, help_of[name]);
+    if (is_whole[name]) option->type_name("INT");
   }
   command->add_option("-o,--output", options->file, "scene file to write (default: the kind and .toml); one that has been edited is never replaced");
   command->add_flag("-q,--quiet", options->quiet, "print nothing but warnings and errors");

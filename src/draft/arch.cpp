@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "openclose/core/error.h"
 #include "openclose/draft/all_drafts.h"
 #include "openclose/draft/common_tables.h"
 #include "openclose/scene/angle.h"
@@ -16,7 +17,11 @@ class Arch {
       : voussoirs_(d.count("voussoirs")),
         radius_(d.of("radius_m")),
         thickness_(d.of("thickness_m")),
-        half_opening_(radians(90.0 - d.of("springing_deg"))) {}
+        half_opening_(radians(90.0 - d.of("springing_deg"))) {
+    if (thickness_ >= 2.0 * radius_)
+      throw InputError({"new arch", 0}, "thickness_m", fmt::format("an arch of radius {:g} m cannot be {:g} m thick", radius_, thickness_),
+                       fmt::format("less than twice the radius, {:g}", 2.0 * radius_));
+  }
 
   int voussoirs() const { return voussoirs_; }
   /// From the left springer, which is number 0, to the right one; counter-clockwise.

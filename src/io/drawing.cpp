@@ -54,6 +54,12 @@ std::string force_text(double newtons) {
   return fmt::format("{:.4g} N/m", newtons);
 }
 
+std::string pressure_text(double pascals) {
+  if (pascals >= 1e6) return fmt::format("{:.4g} MPa", 1e-6 * pascals);
+  if (pascals >= 1e3) return fmt::format("{:.4g} kPa", 1e-3 * pascals);
+  return fmt::format("{:.4g} Pa", pascals);
+}
+
 std::string length_text(double metres) {
   if (metres >= 1.0) return fmt::format("{:.4g} m", metres);
   if (metres >= 1e-3) return fmt::format("{:.4g} mm", 1e3 * metres);
@@ -80,16 +86,18 @@ class Drawing {
     const Vec2 size = box_.high - box_.low;
     scale_ = std::min(widest_drawing / size.x(), highest_drawing / size.y());
     block_size_ = areas.empty() ? 100.0 : scale_ * std::sqrt(median(std::move(areas)));
-    // Loads push from outside: their tails have to lie on the page, too.
-    std::vector<Vec2> tails = {Vec2::Zero(), scale_ * size};
+    // Loads act from outside: their arrows have to lie on the page, too.
+    std::vector<Vec2> ends = {Vec2::Zero(), scale_ * size};
     for (const Picture::Arrow& load : picture.loads) {
-      largest_load_ = std::max(largest_load_, load.vector.norm());
+      double& largest = is_spread(load) ? largest_traction_ : largest_load_;
+      largest = std::max(largest, size_of(load));
     }
     for (const Picture::Arrow& load : picture.loads) {
       for (const double part : {-0.5, 0.5})
-        tails.push_back(scale_ * (load.point + part * load.spread - box_.low) - length_of(load) * load.vector.normalized());
+        ends.push_back(scale_ * (load.point + part * load.spread - box_.low) +
+                       (pulls(load) ? 1.0 : -1.0) * length_of(load) * load.vector.normalized());
     }
-    const Box around = Box::around(tails);
+    const Box around = Box::around(ends);
     page_width_ = std::max(narrowest_page, scale_ * size.x() + 2.0 * (margin + std::max(-around.low.x(), around.high.x() - scale_ * size.x())));
     left_ = 0.5 * (page_width_ - scale_ * size.x());
     title_lines_ = wrapped(picture.title, title_size);
@@ -145,8 +153,15 @@ class Drawing {
     return lines;
   }
 
-  /// [px] Of the arrow of a load.
-  double length_of(const Picture::Arrow& load) const { return std::max(18.0, 70.0 * load.vector.norm() / largest_load_); }
+  static bool is_spread(const Picture::Arrow& load) { return !load.spread.isZero(0.0); }
+  /// [N] Of a load at a point; [Pa] of one that is spread.
+  static double size_of(const Picture::Arrow& load) { return is_spread(load) ? load.vector.norm() / load.spread.norm() : load.vector.norm(); }
+  /// A traction away from its block, which lies on the left of the stretch.
+  static bool pulls(const Picture::Arrow& load) { return is_spread(load) && cross(load.spread, load.vector) < 0.0; }
+  /// [px] Of the arrows of a load, beside others of its kind.
+  double length_of(const Picture::Arrow& load) const {
+    return is_spread(load) ? std::max(14.0, 45.0 * size_of(load) / largest_traction_) : std::max(18.0, 70.0 * size_of(load) / largest_load_);
+  }
   double outline_width() const { return std::clamp(0.02 * block_size_, 0.08, 0.9); }
 
   std::string fill_of(const Picture::Block& block) const {
@@ -320,23 +335,40 @@ class Drawing {
   }
 
   void draw_loads() {
-    if (largest_load_ == 0.0) return;
+    if (picture_.loads.empty()) return;
     page_.print("<g class=\"loads\">\n");
+    std::map<std::string, const Picture::Arrow*> longest;  // of all stretches with the same number, which is written there
     for (const Picture::Arrow& load : picture_.loads) {
-      // The head is where the load acts.
+      if (size_of(load) == 0.0) continue;
+      // The head is where the load acts, but for one that pulls.
       const Vec2 way = length_of(load) * Vec2(load.vector.x(), -load.vector.y()).normalized();
-      const int gaps = static_cast<int>(scale_ * load.spread.norm() / arrow_spacing);
-      for (int i = 0; i <= gaps; ++i) {
-        const Vec2 tip = at(load.point + (gaps == 0 ? 0.0 : static_cast<double>(i) / gaps - 0.5) * load.spread);
-        draw_arrow(tip - way, tip, gaps == 0 ? 11.0 : 8.0, load_colour, gaps == 0 ? 2.4 : 1.6);
+      if (is_spread(load)) {
+        draw_spread_load(load, way);
+        const Picture::Arrow*& place = longest[pressure_text(size_of(load))];
+        if (!place || place->spread.norm() < load.spread.norm()) place = &load;
+      } else {
+        const Vec2 tip = at(load.point);
+        draw_arrow(tip - way, tip, 11.0, load_colour, 2.4);
+        if (picture_.loads.size() <= most_labels) label(tip - way, force_text(size_of(load)), load_colour);
       }
-      if (gaps > 0) {
-        const Vec2 from = at(load.point - 0.5 * load.spread) - way, to = at(load.point + 0.5 * load.spread) - way;
-        page_.line(from, to, fmt::format("class=\"spread\" stroke=\"{}\" stroke-width=\"1.6\"", load_colour));
-      }
-      if (picture_.loads.size() <= most_labels) label(at(load.point) - way, force_text(load.vector.norm()), load_colour);
+    }
+    for (const auto& [text, load] : longest) {
+      const Vec2 way = length_of(*load) * Vec2(load->vector.x(), -load->vector.y()).normalized();
+      label(at(load->point) + (pulls(*load) ? way : Vec2(-way)), text, load_colour);
     }
     page_.print("</g>\n");
+  }
+
+  /// Arrows along the stretch, at both of its ends and between, with a line along their other ends.
+  void draw_spread_load(const Picture::Arrow& load, const Vec2& way) {
+    const Vec2 outwards = pulls(load) ? way : Vec2(-way);
+    const int gaps = std::max(1, static_cast<int>(scale_ * load.spread.norm() / arrow_spacing));
+    for (int i = 0; i <= gaps; ++i) {
+      const Vec2 foot = at(load.point + (static_cast<double>(i) / gaps - 0.5) * load.spread), end = foot + outwards;
+      draw_arrow(pulls(load) ? foot : end, pulls(load) ? end : foot, 8.0, load_colour, 1.6);
+    }
+    page_.line(at(load.point - 0.5 * load.spread) + outwards, at(load.point + 0.5 * load.spread) + outwards,
+               fmt::format("class=\"spread\" stroke=\"{}\" stroke-width=\"1.6\"", load_colour));
   }
 
   /// With a white rim, readable on blocks; on the side of the point where the page has room for it, and below the lines of the title.
@@ -405,6 +437,7 @@ class Drawing {
     if (has(JointDrawing::sliding)) legend.add_line("sliding", sliding_colour, 3.0, "slides");
     if (has(JointDrawing::open)) legend.add_line("open", open_colour, 3.0, "open");
     if (has(JointDrawing::open, true)) legend.add_line("open", open_colour, slight_width(), "open by less than a hundredth of the widest");
+    if (largest_opening_ == 0.0 && !picture_.crack_name.empty()) legend.add_symbol(0.0, picture_.crack_name);
     if (largest_opening_ > 0.0)
       legend.add_line("crack-scale", open_colour, widest_line(), fmt::format("{} {}", picture_.crack_name, length_text(largest_opening_)), 0.8);
     if (largest_force_ > 0.0) {
@@ -443,7 +476,8 @@ class Drawing {
   double block_size_ = 0.0;        ///< [px] of the median free block
   double bottom_ = 0.0;            ///< [px] where the legend ends
   double largest_force_ = 0.0, largest_opening_ = 0.0, largest_load_ = 0.0;
-  double longest_arrow_ = 0.0;  ///< [px] of the velocities
+  double largest_traction_ = 0.0;  ///< [Pa] of loads that are spread
+  double longest_arrow_ = 0.0;     ///< [px] of the velocities
   std::vector<std::string> title_lines_, note_lines_;
   SvgPage page_;
 };

@@ -7,8 +7,8 @@ namespace openclose::drawing_colour {
 
 /// Materials, or other classes of blocks, in their order; from the first one again where they are more.
 inline constexpr std::array fills = {"#e8dcc3", "#c9d8c5", "#c7d3e3", "#e3c9c5", "#d9cde3", "#e0e0d0"};
-/// Joints that edges of blocks name.
-inline constexpr std::array seams = {"#1f78b4", "#e7298a", "#1b9e77", "#a6761d", "#7570b3"};
+/// Joints that edges of blocks name: none near the red, orange, blue and violet of what joints and loads do.
+inline constexpr std::array seams = {"#00a0b0", "#66a61e", "#b59a00", "#8da0cb", "#8c564b"};
 inline constexpr const char* fixed_fill = "#a5a096";
 inline constexpr const char* outline_colour = "#333";
 inline constexpr const char* sliding_colour = "#f16913";

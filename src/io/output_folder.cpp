@@ -284,6 +284,16 @@ void OutputFolder::list(const std::string& name) const {
   if (!list) throw WriteError(path_of(list_name));
 }
 
+std::map<std::string, std::uintmax_t> OutputFolder::table_sizes() const {
+  std::map<std::string, std::uintmax_t> sizes;
+  for (const std::string& name : names_of_results()) {
+    std::error_code missing;
+    const std::uintmax_t size = name.ends_with(".csv") ? std::filesystem::file_size(path_of(name), missing) : 0;
+    if (name.ends_with(".csv") && !missing) sizes.emplace(name, size);
+  }
+  return sizes;
+}
+
 void OutputFolder::write_scene_copy(const std::string& text) const {
   std::ofstream file = open(scene_copy_name);
   file << scene_heading << text;

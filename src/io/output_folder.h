@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <fstream>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,8 @@ class OutputFolder {
   std::string claim_whole_file(const std::string& name) const;
   /// The analysis is over: from now on only those of the listed names are ours that are there.
   void list_results() const;
+  /// [bytes] Of the tables of results that are there, by name.
+  std::map<std::string, std::uintmax_t> table_sizes() const;
   /// The scene as it was read, with its blocks cut and its overrides applied.
   void write_scene_copy(const std::string& text) const;
   /// A file of this name in the folder of a format, which is made where it is missing.

@@ -108,6 +108,22 @@ void ResultFolder::require_states() const {
                      "the tables of one analysis");
 }
 
+void ResultFolder::require_whole_tables() const {
+  for (const auto& [name, told] : summary_.at("table_bytes").items()) {
+    const std::string path = path_of(name);
+    std::error_code missing;
+    const std::uintmax_t there = std::filesystem::file_size(path, missing), bytes = told.get<std::uintmax_t>();
+    const std::string accepted = fmt::format("the table of {} bytes that summary.json beside it tells of: run the scene again", bytes);
+    if (missing) throw InputError({path, 0}, "", "there is no such file", accepted);
+    if (there == bytes) continue;
+    std::ifstream file(path, std::ios::binary);
+    const auto carriage_returns =
+        static_cast<std::uintmax_t>(std::count(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>(), '\r'));
+    if (there - carriage_returns != bytes)
+      throw InputError({path, 0}, "", fmt::format("it has {} bytes: cut off, changed or of another analysis", there), accepted);
+  }
+}
+
 std::string ResultFolder::name() const {
   return std::filesystem::path(folder_ + "/").lexically_normal().parent_path().filename().string();
 }

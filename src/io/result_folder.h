@@ -50,6 +50,8 @@ class ResultFolder {
   const std::vector<std::string>& states() const { return outlines_.states(); }
   bool has(const std::string& state) const { return outlines_.has(state); }
   const Outlines& drawing() const { return drawing_; }  ///< before anything has moved
+  /// Throws InputError if a table is not as long as the summary has it, for other line ends: it is missing, cut off, changed or of another analysis.
+  void require_whole_tables() const;
   /// Throws InputError unless these are the blocks of the drawing.
   std::vector<Polygon> outlines(const std::string& state) const;
 

@@ -69,6 +69,7 @@ class ResultPicture {
     if (colour_ == BlockColour::velocity) add_velocities();
     add_points();
     add_titles();
+    folder_.require_whole_tables();
     return std::move(picture_);
   }
 
@@ -83,7 +84,8 @@ class ResultPicture {
       if (!folder_.has(*request_.state)) {
         std::vector<std::string> quoted;
         for (const std::string& state : states) quoted.push_back('"' + state + '"');
-        throw InputError({path_of("blocks.csv"), 0}, "--state", fmt::format("there is no state \"{}\"", *request_.state),
+        throw InputError({path_of("blocks.csv"), 0}, "--state",
+                         fmt::format("there is no state \"{}\"{}", *request_.state, did_you_mean('"' + *request_.state + '"', quoted)),
                          suggestions('"' + *request_.state + '"', quoted));
       }
       state_ = *request_.state;
@@ -370,14 +372,21 @@ class ResultPicture {
     picture_.crack_name = shows_mechanism_ ? "largest opening, as drawn,"
                           : all            ? "largest opening"
                                            : "largest opening of joints that still face each other";
+    double largest = 0.0;
+    for (const CrackRow& crack : cracks_)
+      largest = std::max({largest, crack.opening_from, crack.opening_to, std::abs(crack.slip_from), std::abs(crack.slip_to)});
+    const auto add = [&](const Vec2& from, const Vec2& to, double opening) {
+      if (opening > rounding_of_openings * largest) picture_.cracks.push_back({from, to, opening});
+    };
     for (const CrackRow& crack : cracks_) {
       const std::optional<std::pair<Vec2, Vec2>> common = common_stretch(crack);
       if (!common || !is_line(crack)) continue;
       // Half of the joint stands for each end.
       const Vec2 middle = 0.5 * (common->first + common->second);
-      picture_.cracks.push_back({common->first, middle, std::max(0.0, crack.opening_from)});
-      picture_.cracks.push_back({middle, common->second, std::max(0.0, crack.opening_to)});
+      add(common->first, middle, crack.opening_from);
+      add(middle, common->second, crack.opening_to);
     }
+    if (picture_.cracks.empty()) picture_.crack_name = all ? "no joint is open" : "no opening of joints that still face each other";
   }
 
   void add_points() {
@@ -415,7 +424,8 @@ class ResultPicture {
     const std::string title = summary().value("title", "");
     picture_.title = title.empty() ? folder_.name() : title;
     picture_.notes.push_back(answer_of(summary()));
-    picture_.notes.push_back(fmt::format("{} blocks; state \"{}\"{}", now_.size(), state_, explanation()));
+    const std::string gravity = summary().value("gravity_in_words", "");
+    picture_.notes.push_back(fmt::format("{} blocks; state \"{}\"{}{}{}", now_.size(), state_, explanation(), gravity.empty() ? "" : "; ", gravity));
   }
 
   std::string explanation() const {

@@ -32,6 +32,9 @@ StateTable contact_table(const std::string& path);
 std::vector<ContactRow> contact_rows(const StateTable& table, const std::string& state, const BlockIndex& blocks);
 std::vector<CrackRow> crack_rows(const std::string& path, const std::string& state, const BlockIndex& blocks);
 
+/// [-] Of the largest opening or slip of a state: an opening below is the rounding of places.
+inline constexpr double rounding_of_openings = 1e-6;
+
 /// How a block has moved from one polygon to another, as a rigid body.
 struct Placement {
   Vec2 from = Vec2::Zero(), to = Vec2::Zero();  ///< the mean of the vertices

@@ -1,7 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <set>
+#include <utility>
 
 #include "openclose/geometry/polygon.h"
 #include "openclose/io/drawing.h"
@@ -31,8 +34,15 @@ std::vector<int> joints_of_edges(const Scene& scene) {
   return {joints.begin(), joints.end()};
 }
 
+std::string gravity_in_words(const Vec2& gravity) {
+  if (gravity.x() == 0.0 && gravity.y() <= 0.0) return "";
+  const double turn = std::atan2(gravity.x(), -gravity.y()) * 180.0 / std::numbers::pi;
+  return fmt::format("gravity is turned by {:.4g} degrees to the {}", std::abs(turn), turn > 0.0 ? "right" : "left");
+}
+
 Picture picture_of(const Scene& scene) {
   Picture picture;
+  if (std::string words = gravity_in_words(scene.gravity); !words.empty()) picture.notes.push_back(std::move(words));
   picture.title = fmt::format("{} ({} blocks)", scene.title.empty() ? "Blocks" : scene.title, scene.blocks.size());
   for (const Material& material : scene.materials) picture.colour_names.push_back(material.name);
   for (const BlockInput& block : scene.blocks) picture.blocks.push_back({block.name, block.vertices, block.material, block.fixed, 0.0});

@@ -137,6 +137,7 @@ void add_question(const Summary& summary, const Simulation& simulation, const Fa
   j["overrides"] = summary.overrides;
   j["options"] = options_json(simulation);
   add_points(scene, safety ? with_increased_load(scene, safety->stable()) : scene, j);
+  if (const std::string words = gravity_in_words(scene.gravity); !words.empty()) j["gravity_in_words"] = words;
   j["materials"] = j["joints"] = ordered_json::array();
   for (const Material& material : scene.materials) j["materials"].push_back(material.name);
   for (const int joint : joints_of_edges(scene)) j["joints"].push_back(scene.joints[joint].name);
@@ -247,6 +248,7 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
                      {"state_loads", steps.loads},
                      {"state_loads_skipped", steps.loads_skipped}};
   }
+  j["table_bytes"] = folder.table_sizes();
   const StageTimes& stages = simulation.state().stage_times;
   j["stage_s"] = {{"detection", stages.detection}, {"solution", stages.solution}, {"bookkeeping", stages.bookkeeping}};
   std::ofstream file = folder.open("summary.json");

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <unordered_map>
@@ -15,6 +16,7 @@
 #include "openclose/io/drawing_colours.h"
 #include "openclose/io/result_answer.h"
 #include "openclose/io/result_folder.h"
+#include "openclose/io/result_rows.h"
 #include "openclose/io/state_table.h"
 #include "openclose/report/page_tables.h"
 
@@ -54,7 +56,8 @@ class PageData {
                                                "velocity_y_m_per_s", "angular_velocity_rad_per_s", "time_s"}),
         contacts_(path_of("contacts.csv"),
                   {"block_a", "block_b", "x_m", "y_m", "normal_x", "normal_y", "length_m", "gap_m", "normal_force_n", "shear_force_n", "status"}),
-        cracks_(path_of("cracks.csv"), {"block_a", "block_b", "x1_m", "y1_m", "x2_m", "y2_m", "opening1_m", "opening2_m", "slip1_m", "slip2_m"}) {}
+        cracks_(path_of("cracks.csv"),
+                {"block_a", "block_b", "x1_m", "y1_m", "x2_m", "y2_m", "opening1_m", "opening2_m", "slip1_m", "slip2_m", "joint"}) {}
 
   json data() {
     json page;
@@ -69,10 +72,12 @@ class PageData {
     page["origin"] = {origin_.x(), origin_.y()};
     page["symbols"] = symbols();
     page["states"] = states();
+    add_seams(page);
     page["states_left_out"] = report_.left_out;
     page["states_without_contacts"] = report_.without_contacts;
     add_tables(page);
     page["scene"] = scene_text(path_of("scene_as_read.toml"));
+    folder_.require_whole_tables();
     return page;
   }
 
@@ -84,7 +89,7 @@ class PageData {
   static json colours() {
     using namespace drawing_colour;
     return {{"fills", fills},        {"fixed", fixed_fill}, {"outline", outline_colour}, {"sliding", sliding_colour}, {"open", open_colour},
-            {"force", force_colour}, {"load", load_colour}, {"support", support_colour}, {"gradient", gradient}};
+            {"force", force_colour}, {"load", load_colour}, {"support", support_colour}, {"gradient", gradient},      {"seams", seams}};
   }
 
   /// The blocks of the drawing; their index is what everything else names them by.
@@ -337,6 +342,7 @@ class PageData {
       rows.push_back(std::move(numbers));
       blocks.insert(blocks.end(), {block_index_.of(row, 0), block_index_.of(row, 1)});
     });
+    if (largest_opening <= rounding_of_openings * largest) largest_opening = 0.0;
     std::vector<std::int32_t> kept_blocks;
     std::vector<float> kept;
     for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -348,6 +354,38 @@ class PageData {
     }
     if (!kept.empty())
       state["cracks"] = {{"blocks_i4", packed<std::int32_t>(kept_blocks)}, {"numbers_f4", packed<float>(kept)}, {"largest_opening", largest_opening}};
+  }
+
+  /// The joints with a name, where there are others: lines of the drawing that move with the first of their blocks, from the first state that has
+  /// any.
+  void add_seams(json& page) const {
+    if (cracks_.states().empty()) return;
+    const std::string& state = cracks_.states().front();
+    const std::vector<Polygon>& drawn = folder_.drawing().polygons;
+    const std::vector<Polygon> now = folder_.outlines(state);
+    const std::vector<std::string> names = folder_.names_in("joints");
+    std::vector<std::int32_t> blocks, joints;
+    std::vector<float> ends;
+    bool has_others = false;
+    cracks_.rows(state, [&](const Row& row) {
+      const auto name = std::ranges::find(names, row[10]);
+      has_others = has_others || name == names.end();
+      if (name == names.end()) return;
+      const int b = block_index_.of(row, 0);
+      const Placement back(now[b], drawn[b]);
+      blocks.push_back(b);
+      joints.push_back(static_cast<std::int32_t>(name - names.begin()));
+      for (const std::size_t k : {2, 4}) {
+        const Vec2 end = back.of({row.number(k), row.number(k + 1)}) - origin_;
+        ends.insert(ends.end(), {static_cast<float>(end.x()), static_cast<float>(end.y())});
+      }
+    });
+    const bool can_be_told_apart = has_others || std::ranges::adjacent_find(joints, std::not_equal_to()) != joints.end();
+    if (!joints.empty() && can_be_told_apart)
+      page["seams"] = {{"names", names},
+                       {"blocks_i4", packed<std::int32_t>(blocks)},
+                       {"joints_i4", packed<std::int32_t>(joints)},
+                       {"ends_f4", packed<float>(ends)}};
   }
 
   /// At large displacements the failed state is one of a motion, and no mechanism.

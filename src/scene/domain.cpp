@@ -110,6 +110,7 @@ struct SetInput {
   JointSet set;
   int properties = BlockInput::by_materials;  ///< the joint that it names, see BlockInput::edge_joints
   std::optional<int> bridge;                  ///< the joint that its rock bridges have; absent: they are not cut
+  bool is_in_space = false;                   ///< written by a dip direction
   double oblique = 0.0;                       ///< see PlaneInSection
 };
 
@@ -124,6 +125,7 @@ void put_into_section(const Table& table, double direction, const DomainInput& d
   input.set.dip = line->dip;
   input.set.spacing *= line->spacing;
   input.oblique = line->oblique;
+  input.is_in_space = true;
 }
 
 SetInput read_joint_set(Table table, const NameList& joint_names, const DomainInput& domain) {
@@ -205,6 +207,7 @@ class Joints {
   /// By joint, bridges included: index into Scene::joints, or BlockInput::by_materials.
   const std::vector<int>& properties() const { return properties_; }
   const std::vector<int>& oblique() const { return oblique_; }
+  const std::vector<SetInSection>& in_section() const { return in_section_; }
 
   const Table& table(int joint) const {
     const int sets = static_cast<int>(tables_.joint_sets.size());
@@ -218,6 +221,7 @@ class Joints {
     const SetInput input = read_joint_set(table, joint_names, domain_);
     properties_[index] = input.properties;
     if (input.bridge) properties_[bridges_of(index)] = *input.bridge;
+    if (input.is_in_space) in_section_.push_back({place_name(table.where()), input.set.dip, input.set.spacing});
     if (input.oblique > most_oblique) oblique_.push_back(index);
     const auto of_set = openclose::traces(input.set, domain_.shape.outer, domain_.limits.max_blocks);
     if (!of_set) {
@@ -233,6 +237,7 @@ class Joints {
   std::vector<JointTrace> traces_;
   std::vector<int> properties_;
   std::vector<int> oblique_;  ///< sets that strike obliquely to the section
+  std::vector<SetInSection> in_section_;
 };
 
 void refuse_faults(const Cutting& cutting, const Joints& joints, const DomainInput& domain, const Table& table) {
@@ -310,6 +315,7 @@ CuttingSummary summary_of(const Cutting& cutting, const Joints& joints, const Do
   summary.slivers_merged = cutting.slivers_merged;
   summary.slivers_area = cutting.slivers_area;
   summary.enclosed_groups = static_cast<int>(cutting.enclosed.size());
+  summary.sets_in_section = joints.in_section();
   summary.warnings = warnings_of(cutting, joints, table);
   return summary;
 }

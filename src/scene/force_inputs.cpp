@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -51,39 +52,85 @@ std::string place_in_words(const Vec2& point, const Vec2& other_end, const std::
                      in_quotes(blocks[nearest->block].name));
 }
 
+/// A part of an edge that lies along a stretch.
+struct Piece {
+  Edge edge;
+  double begin, end;  ///< [m] from the beginning of the stretch
+};
+
+/// The parts of edges along the stretch whose outlines run the same way as it, or against it, by where they begin.
+std::vector<Piece> pieces_along(const Vec2& from, const Vec2& to, bool same_way, const std::vector<BlockInput>& blocks, int named) {
+  const double length = (to - from).norm();
+  const Vec2 along = (to - from) / length;
+  const auto is_near_line = [&](const Vec2& point) { return std::abs(cross(along, point - from)) <= tolerance::farthest_point_outside_block_m; };
+  std::vector<Piece> pieces;
+  for_each_edge(blocks, named, [&](const Edge& edge) {
+    const double a = along.dot(edge.first - from), b = along.dot(edge.second - from);
+    if ((b > a) != same_way || !is_near_line(edge.first) || !is_near_line(edge.second)) return;
+    const double begin = std::max(std::min(a, b), 0.0), end = std::min(std::max(a, b), length);
+    if (end - begin > tolerance::farthest_point_outside_block_m) pieces.push_back({edge, begin, end});
+  });
+  std::ranges::sort(pieces, {}, &Piece::begin);
+  return pieces;
+}
+
+/// [m] The first part of the stretch on which no piece lies, or two do; nothing if they cover it once.
+std::optional<std::pair<double, double>> uncovered(const std::vector<Piece>& pieces, double length) {
+  double reached = 0.0;
+  for (const Piece& piece : pieces) {
+    if (std::abs(piece.begin - reached) > tolerance::farthest_point_outside_block_m) return std::minmax(reached, piece.begin);
+    reached = piece.end;
+  }
+  if (length - reached > tolerance::farthest_point_outside_block_m) return std::pair(reached, length);
+  return std::nullopt;
+}
+
 }  // namespace
 
-void Load::complete(const Table& table, const std::vector<BlockInput>& blocks) {
-  block = block_of_point(table.at("point_m"), block, point, blocks);
+std::vector<Load> Load::completed(const Table& table, const std::vector<BlockInput>& blocks) const {
+  Load load = *this;
+  load.block = block_of_point(table.at("point_m"), block, point, blocks);
+  return {load};
 }
 
-void Support::complete(const Table& table, const std::vector<BlockInput>& blocks) {
+std::vector<Support> Support::completed(const Table& table, const std::vector<BlockInput>& blocks) const {
   if (stiffness.isZero(0.0)) table.at("stiffness_n_per_m").fail("both stiffnesses are 0", "[kx, ky] of which one may be 0");
-  block = block_of_point(table.at("point_m"), block, point, blocks);
+  Support support = *this;
+  support.block = block_of_point(table.at("point_m"), block, point, blocks);
+  return {support};
 }
 
-void Surcharge::complete(const Table& table, const std::vector<BlockInput>& blocks) {
+std::vector<Surcharge> Surcharge::completed(const Table& table, const std::vector<BlockInput>& blocks) const {
   const Value value = table.at("to_m");
-  const std::string accepted = "from_m and to_m at different points of one edge of a block, which the key block names where two blocks meet";
+  const std::string accepted =
+      "from_m and to_m at different points of edges in one line, with blocks on one side only or with the key block, which names one of them";
   const std::string ends = written(from) + " and " + written(to);
-  if ((to - from).norm() <= tolerance::farthest_point_outside_block_m) value.fail(ends + " are one point", accepted);
-  std::vector<Edge> found;  // the first one of each block
-  for_each_edge(blocks, block, [&](const Edge& edge) {
-    const bool has_both = std::max(edge.distance_to(from), edge.distance_to(to)) <= tolerance::farthest_point_outside_block_m;
-    if (has_both && (found.empty() || found.back().block != edge.block)) found.push_back(edge);
-  });
-  if (found.empty()) {
+  const double length = (to - from).norm(), near = tolerance::farthest_point_outside_block_m;
+  if (length <= near) value.fail(ends + " are one point", accepted);
+  const std::vector<Piece> forwards = pieces_along(from, to, true, blocks, block), backwards = pieces_along(from, to, false, blocks, block);
+  if (!forwards.empty() && !backwards.empty()) {
+    const auto name = [&](const std::vector<Piece>& pieces) { return in_quotes(blocks[pieces.front().edge.block].name); };
+    value.fail(fmt::format("{} are on edges of {} and {}", ends, name(forwards), name(backwards)), accepted);
+  }
+  const std::vector<Piece>& pieces = forwards.empty() ? backwards : forwards;
+  const auto at = [&](double way) { return Vec2(from + way / length * (to - from)); };
+  if (const auto gap = uncovered(pieces, length)) {
     const std::string whose = block == unnamed_block ? "any block" : in_quotes(blocks[block].name);
-    value.fail(fmt::format("{} are not on one edge of {}: {}, {}", ends, whose, place_in_words(from, to, blocks, block),
-                           place_in_words(to, from, blocks, block)),
-               accepted + "; a [[surcharge]] for each edge");
+    value.fail(fmt::format("{} are not on edges of {} in one line, with none from {} to {}: {}, {}", ends, whose, written(at(gap->first)),
+                           written(at(gap->second)), place_in_words(from, to, blocks, block), place_in_words(to, from, blocks, block)),
+               accepted + "; a [[surcharge]] for each straight stretch");
   }
-  if (found.size() > 1) {
-    value.fail(fmt::format("{} are on edges of {} and {}", ends, in_quotes(blocks[found[0].block].name), in_quotes(blocks[found[1].block].name)),
-               accepted);
+  std::vector<Surcharge> list;
+  for (const Piece& piece : pieces) {
+    Surcharge part = *this;
+    part.block = piece.edge.block;
+    // Ends as they are given, not as they are computed.
+    if (piece.begin > near) part.from = at(piece.begin);
+    if (piece.end < length - near) part.to = at(piece.end);
+    if (forwards.empty()) std::swap(part.from, part.to);
+    list.push_back(part);
   }
-  block = found.front().block;
-  if ((to - from).dot(found.front().second - found.front().first) < 0.0) std::swap(from, to);
+  return list;
 }
 
 }  // namespace openclose

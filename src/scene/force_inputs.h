@@ -3,7 +3,8 @@
 //   static KeyTable table();                        its table, [[name]]
 //   visit_keys(self, visitor)                       its rows: reader, writer, summary.json, docs/keys.md and the schema go through them
 //   visit_points(self, f)                           its material points, f(Vec2&)
-//   void complete(table, blocks)                    finds the block where the file names none; throws InputError for what no single key shows
+//   std::vector<Force> completed(table, blocks) const   with the block that its points find where the file names none, or the pieces of it that lie
+//                                                   on several; throws InputError for what no single key shows
 //   void change_unit_of_length(double)              what holds metres beside the points, for forces that keep their unit
 //   static constexpr bool holds                     whether it can hold a block against gravity
 //   void multiply(double)                           makes it so many times as large, unless it holds
@@ -30,7 +31,7 @@ struct DrawnForce {
   Vec2 spread = Vec2::Zero();     ///< [m] along which it is spread evenly, with its middle at the point
 };
 
-inline constexpr int unnamed_block = -1;  ///< of a force whose block complete() is to find
+inline constexpr int unnamed_block = -1;  ///< of a force whose block completed() is to find
 
 /// A constant force at a material point of a block.
 struct Load {
@@ -53,7 +54,7 @@ struct Load {
   static void visit_points(Self& self, F f) {
     f(self.point);
   }
-  void complete(const Table& table, const std::vector<BlockInput>& blocks);
+  std::vector<Load> completed(const Table& table, const std::vector<BlockInput>& blocks) const;
   void change_unit_of_length(double) {}
   void multiply(double factor) { force *= factor; }
   std::vector<DrawnForce> drawn() const { return {{point, force}}; }
@@ -82,7 +83,7 @@ struct Support {
   static void visit_points(Self& self, F f) {
     f(self.point);
   }
-  void complete(const Table& table, const std::vector<BlockInput>& blocks);
+  std::vector<Support> completed(const Table& table, const std::vector<BlockInput>& blocks) const;
   /// Stiffnesses stay: displacements keep their unit.
   void change_unit_of_length(double) {}
   /// Drawn as springs, not as arrows.
@@ -99,16 +100,19 @@ struct Surcharge {
 
   static constexpr bool holds = false;
   static KeyTable table() {
-    return {"surcharge", Audience::user, "A traction on an edge of a block, or a part of one, that moves and turns with the block", true};
+    return {"surcharge", Audience::user, "A traction on a straight stretch of the outlines of blocks; each part of it moves and turns with its block",
+            true};
   }
   template <class Self, class Visitor>
   static void visit_keys(Self& self, Visitor& visit) {
     visit({"name", "for `--set` and `strength_reduction.increase`; loads and surcharges of one name increase together", "none"}, self.name,
           OwnName{});
-    visit({"block", "name of a block", "that with both points on one edge"}, self.block, BlockName{});
-    visit({.name = "from_m", .says = "one end, on an edge of the block", .required = true}, self.from, any_number);
-    visit({.name = "to_m", .says = "the other end, on the same edge; which of the two comes first does not matter", .required = true}, self.to,
-          any_number);
+    visit({"block", "name of a block", "those along whose edges it lies"}, self.block, BlockName{});
+    visit({.name = "from_m", .says = "one end, on an edge of a block", .required = true}, self.from, any_number);
+    visit({.name = "to_m",
+           .says = "the other end, on the same edge or one in line with it; which of the two comes first does not matter",
+           .required = true},
+          self.to, any_number);
     visit({.name = "pressure_pa", .says = "normal to the edge, onto the block; a negative one pulls", .required = true}, self.pressure, any_number);
     visit({"shear_pa", "along the edge, positive counter-clockwise around the block"}, self.shear, any_number);
   }
@@ -117,7 +121,8 @@ struct Surcharge {
     f(self.from);
     f(self.to);
   }
-  void complete(const Table& table, const std::vector<BlockInput>& blocks);
+  /// A stretch over several edges in one line becomes a surcharge of the same name on each of them.
+  std::vector<Surcharge> completed(const Table& table, const std::vector<BlockInput>& blocks) const;
   void change_unit_of_length(double unit) { multiply(unit); }
   void multiply(double factor) { pressure *= factor, shear *= factor; }
   std::vector<DrawnForce> drawn() const { return {{0.5 * (from + to), resultant(to - from), true, to - from}}; }

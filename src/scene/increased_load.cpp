@@ -85,8 +85,10 @@ void require_increased_load(const Scene& scene) {
   int found = 0;
   for_each_load_named(scene, named.name, [&](const auto&) { ++found; });
   if (found > 0) return;
-  throw_input_error(input.increase_where, key, fmt::format("no load or surcharge has the name {}", in_quotes(named.name)),
-                    suggestions(in_quotes(named.name), names_of_loads(scene)) + ", with a minus before it or without");
+  const std::string name = in_quotes(named.name);
+  const std::vector<std::string> accepted = names_of_loads(scene);
+  throw_input_error(input.increase_where, key, fmt::format("no load or surcharge has the name {}{}", name, did_you_mean(name, accepted)),
+                    suggestions(name, accepted) + ", with a minus before it or without");
 }
 
 }  // namespace openclose

@@ -246,14 +246,13 @@ bool touches(const BlockInput& block, const Vec2& point) {
 }
 
 template <typename Force>
-Force read_force(Table table, const Scene& scene, const NameList& block_names) {
+std::vector<Force> read_force(Table table, const Scene& scene, const NameList& block_names) {
   Force force;
   force.block = unnamed_block;
   RowReader reader(&table, &block_names);
   force.visit_keys(force, reader);
   table.finish();
-  force.complete(table, scene.blocks);
-  return force;
+  return force.completed(table, scene.blocks);
 }
 
 MeasuredPoint read_measured_point(Table table, const Scene& scene, const NameList& block_names, NameList& point_names) {
@@ -390,7 +389,9 @@ Scene interpret(const toml::table& document, const std::string& file) {
   fix_blocks(fixed_lines, scene);
   ForceInputs::visit(scene, [&](auto& list) {
     using Force = typename std::decay_t<decltype(list)>::value_type;
-    for (const Table& table : forces.at(Force::table().name)) list.push_back(read_force<Force>(table, scene, block_names));
+    for (const Table& table : forces.at(Force::table().name)) {
+      for (Force& force : read_force<Force>(table, scene, block_names)) list.push_back(std::move(force));
+    }
   });
   for (const Table& table : measured_points) scene.measured_points.push_back(read_measured_point(table, scene, block_names, point_names));
   for (const Table& table : measured_contacts) {

@@ -73,6 +73,13 @@ struct BaseMotionInput {
   std::vector<std::string> files;  ///< from which records were read
 };
 
+/// Of a joint set that was written by the dip and dip direction of its planes in space: its lines in the section.
+struct SetInSection {
+  std::string place;     ///< where it is written
+  double dip = 0.0;      ///< [rad] apparent, counter-clockwise from the horizontal
+  double spacing = 0.0;  ///< [m] at right angles to the lines
+};
+
 /// What the joints made of a domain.
 struct CuttingSummary {
   int blocks = 0;
@@ -84,6 +91,7 @@ struct CuttingSummary {
   int slivers_merged = 0;
   double slivers_area = 0.0;  ///< [m2]
   int enclosed_groups = 0;    ///< of joints within one block, dropped
+  std::vector<SetInSection> sets_in_section;
   std::vector<std::string> warnings;
 };
 

@@ -127,7 +127,8 @@ int NameList::index(const Value& value, const std::string& name) const {
     if (!known.empty()) accepted.push_back(in_quotes(known));
   }
   if (accepted.empty()) accepted.push_back(fmt::format("none, since no {} has a name", noun_));
-  value.fail(fmt::format("there is no {} {}", noun_, in_quotes(name)), suggestions(in_quotes(name), accepted));
+  value.fail(fmt::format("there is no {} {}{}", noun_, in_quotes(name), did_you_mean(in_quotes(name), accepted)),
+             suggestions(in_quotes(name), accepted));
 }
 
 void read(const Value& value, double& number, const Range& range) {

@@ -105,7 +105,8 @@ void require_quantity(const std::string& quantity, const Scene& scene) {
   known.insert(known.end(), {largest_displacement, deepest_penetration});
   for (const auto& entry : ledger_entries({})) known.push_back(std::string("energy.") + entry.first);
   if (std::ranges::count(known, quantity) == 0)
-    throw InputError(scene.where, "--quantity", fmt::format("\"{}\" is no quantity of these results", quantity), suggestions(quantity, known));
+    throw InputError(scene.where, "--quantity", fmt::format("\"{}\" is no quantity of these results{}", quantity, did_you_mean(quantity, known)),
+                     suggestions(quantity, known));
 }
 
 std::optional<double> quantity_in(const std::string& folder, const std::string& quantity) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <span>
 
 #include "openclose/analysis/simulation.h"
 #include "openclose/core/error.h"
@@ -111,6 +112,30 @@ std::string name_of(const StudyRow& row) {
   return fmt::format("{} at dt = {:g} s", row.contact, row.dt);
 }
 
+/// [-] Of the largest value: changes below are rounding and tolerances.
+constexpr double noticeable_change = 1e-6;
+
+/// Values that change as the logarithm of the step or faster with the last refinement, beside the one before, come nowhere yet: an error in a
+/// positive power of the step changes less.
+void warn_of_divergence(std::span<const StudyRow> rows, CaseWarnings& warnings) {
+  std::vector<const StudyRow*> found;
+  double largest = 0.0;
+  for (const StudyRow& row : rows) {
+    if (row.value) found.push_back(&row), largest = std::max(largest, std::abs(*row.value));
+  }
+  if (found.size() < 3) return;
+  const auto change = [&](std::size_t i) { return std::abs(*found[i]->value - *found[i - 1]->value); };
+  const double last = change(found.size() - 1), before = change(found.size() - 2);
+  const auto refinement = [&](std::size_t i) { return std::log(found[i - 1]->dt / found[i]->dt); };
+  const bool converges = last * refinement(found.size() - 2) <= before * refinement(found.size() - 1);
+  if (converges || last <= noticeable_change * largest) return;
+  warnings.note(
+      name_of(*found.back()),
+      fmt::format("the value changes by {:.3g} with the last refinement and by {:.3g} with the one before: these steps do not converge yet, and "
+                  "errors against the smallest one mean nothing; smaller steps, or method.start = \"settled\" where contacts ring",
+                  last, before));
+}
+
 /// Alike ones once, as those of the runs themselves.
 std::vector<std::string> warnings_of(const Study& study) {
   CaseWarnings warnings;
@@ -137,6 +162,12 @@ std::vector<std::string> warnings_of(const Study& study) {
     const StudyRow &a = study.rows[i - 1], &b = study.rows[i];
     if (a.contact == b.contact && a.value && b.value && a.steps == b.steps)
       warnings.note(name_of(b), fmt::format("it took as many steps as at {:g} s: the scene or the method allows no longer ones", a.dt));
+  }
+  for (std::size_t begin = 0; begin < study.rows.size();) {
+    std::size_t end = begin;
+    while (end < study.rows.size() && study.rows[end].contact == study.rows[begin].contact) ++end;
+    warn_of_divergence(std::span(study.rows).subspan(begin, end - begin), warnings);
+    begin = end;
   }
   return warnings.texts();
 }
@@ -210,7 +241,8 @@ std::vector<TextFile> study_files(const Study& study, const std::string& folder)
   std::vector<TextFile> files = {{table_in(folder), rows}};
   // Axes without a point would have numbers that nothing has given them.
   if (has_errors(study))
-    files.push_back({picture_in(folder), svg_plots(fmt::format("{}: convergence of {}", study.scene, study.quantity), notes, {errors, cost}), false, Seal::xml});
+    files.push_back(
+        {picture_in(folder), svg_plots(fmt::format("{}: convergence of {}", study.scene, study.quantity), notes, {errors, cost}), false, Seal::xml});
   return files;
 }
 

@@ -120,6 +120,19 @@ TEST_CASE("what rides on a block that slides moves with it", "[analysis][loose_m
   CHECK_THAT(words, ContainsSubstring("; \"top\" moves with \"middle\" (what holds \"middle\" would hold it)"));
 }
 
+TEST_CASE("a block that a faster one overtakes slides along what carries it, not backwards along the faster one", "[analysis][loose_motion]") {
+  Scene scene = scene_with(floor_m, "vertices_m = [[-1, 1], [1, 1], [1, 2], [-1, 2]]");
+  BlockInput lower = scene.blocks[1];
+  lower.name = "lower";
+  lower.vertices = {{-2.0, 0.0}, {2.0, 0.0}, {2.0, 1.0}, {-2.0, 1.0}};
+  scene.blocks.push_back(lower);
+  const std::vector<FailingBlock> mechanism = {{1, 2.0, {0.0, 1.5}, {2.0, 0.0}, 0.0}, {2, 4.0, {0.0, 0.5}, {1.0, 0.0}, 0.0}};
+  const std::string words = motion_in_words(scene, mechanism);
+  CHECK_THAT(words, ContainsSubstring("\"lower\" slides along its joint with \"base\" towards (1.00, 0.00)"));
+  CHECK_THAT(words, ContainsSubstring("\"top\" slides along its joint with \"lower\" towards (1.00, 0.00)"));
+  CHECK_THAT(words, !ContainsSubstring("-1.00"));
+}
+
 TEST_CASE("a column that turns as one body is told by the block at whose corner it turns", "[analysis][loose_motion]") {
   Scene scene = scene_with(floor_m, "vertices_m = [[4.6, 2], [5.6, 2], [5.6, 3], [4.6, 3]]", "60");
   for (const double y : {0.0, 1.0}) {

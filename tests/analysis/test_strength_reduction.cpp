@@ -661,3 +661,11 @@ TEST_CASE("what the ratio of the stiffnesses does to the factor is what a search
     CHECK(factor(scene).stiffness_effects.empty());
   }
 }
+
+TEST_CASE("a search at another ratio of stiffness that ended undecided below the factor says nothing of it", "[analysis][strength_reduction]") {
+  CHECK(is_unknown({1.0, 0.85, std::nullopt}, 1.25));
+  CHECK_FALSE(is_unknown({1.0, 0.85, 0.9}, 1.25));
+  CHECK_FALSE(is_unknown({1.0, 1.249, std::nullopt}, 1.25));
+  CHECK_FALSE(is_unknown({1.0, 1.3, std::nullopt}, 1.25));
+  CHECK_FALSE(is_unknown({1.0, std::nullopt, std::nullopt}, 1.25));
+}

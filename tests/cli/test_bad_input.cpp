@@ -167,7 +167,7 @@ TEST_CASE("blocks that overlap deeper than the stated depth", "[cli][bad_input]"
 
 TEST_CASE("unknown material", "[cli][bad_input]") {
   CHECK_THAT(refusal_with(19, "material = \"roc\""),
-             ContainsSubstring("scene.toml:19: block[1].material: there is no material \"roc\"; accepted: \"rock\""));
+             ContainsSubstring("scene.toml:19: block[1].material: there is no material \"roc\", did you mean \"rock\"?; accepted: \"rock\""));
 }
 
 TEST_CASE("missing joint", "[cli][bad_input]") {
@@ -320,9 +320,9 @@ TEST_CASE("a word that is no command is named", "[cli][bad_input]") {
 
 TEST_CASE("loads that fos cannot increase", "[cli][bad_input]") {
   const Workplace place;
-  CHECK_THAT(
-      refusal(place, "fos scene.toml --increase gravity_z"),
-      ContainsSubstring("strength_reduction.increase: no load or surcharge has the name \"gravity_z\"; accepted: \"gravity_x\", \"gravity_y\""));
+  CHECK_THAT(refusal(place, "fos scene.toml --increase gravity_z"),
+             ContainsSubstring("strength_reduction.increase: no load or surcharge has the name \"gravity_z\", did you mean \"gravity_x\"?; accepted: "
+                               "\"gravity_x\", \"gravity_y\""));
   for (const std::string definition : {"joint_closures", "large_displacements"}) {
     const std::string options = " --set strength_reduction.increase=gravity_x --set strength_reduction.definition=" + definition;
     const std::string message = refusal(place, "fos scene.toml" + options);

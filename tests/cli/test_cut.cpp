@@ -97,6 +97,17 @@ TEST_CASE("cut writes the blocks as a scene and draws them", "[cli][cut]") {
   }
 }
 
+TEST_CASE("cut tells the dip in the section of a set written by dip and dip direction", "[cli][cut]") {
+  // Planes that fall along the section keep their dip and spacing; of those that fall 60 degrees off its back, tan(dip) is half as much.
+  std::string scene = with_line(wall, 18, "dip_deg = 45\ndip_direction_deg = 330");
+  scene = with_line(scene, 14, "dip_deg = 45\ndip_direction_deg = 90");
+  scene = with_line(scene, 11, "material = 'rock'\nsection_direction_deg = 90");
+  const Workplace place(scene);
+  const std::string out = place.run("cut scene.toml -o out/slope.toml").out;
+  CHECK_THAT(out, ContainsSubstring("joint set of line 14: in the section its joints dip 45 degrees to the right and lie 1 m apart\n"));
+  CHECK_THAT(out, ContainsSubstring("in the section its joints dip 26.6 degrees to the left and lie "));
+}
+
 TEST_CASE("names of the files that cut writes", "[cli][cut]") {
   const Workplace place(wall);
   SECTION("by default after the scene, in results") {

@@ -31,6 +31,42 @@ TEST_CASE("draw writes a picture into the folder, or where it is told to", "[cli
   CHECK_FALSE(std::filesystem::exists(place.folder() / "out/drawing.svg"));
 }
 
+TEST_CASE("draw shows a scene beside its file, before anything is computed", "[cli][draw]") {
+  const Workplace place("gravity_m_per_s2 = [1, -1]\n" + openclose::test::block_on_incline(30.0));
+  const CommandResult result = place.run("draw scene.toml");
+  CHECK(result.status == 0);
+  CHECK(result.out == "scene.toml: 2 blocks drawn; written to scene.svg\n");
+  CHECK_THAT(text_of(place.folder() / "scene.svg"), StartsWith("<svg ") && ContainsSubstring("gravity is turned by 45 degrees to the right"));
+  CHECK_FALSE(std::filesystem::exists(place.folder() / "results"));
+  for (const std::string option : {"--state final", "--forces", "--cracks", "--colour velocity"}) {
+    const CommandResult refused = place.run("draw scene.toml " + option + " -o other.svg");
+    CHECK(refused.status == 2);
+    REQUIRE(refused.errors.size() == 1);
+    CHECK_THAT(refused.errors[0], ContainsSubstring("a scene has no states"));
+    CHECK_FALSE(std::filesystem::exists(place.folder() / "other.svg"));
+  }
+}
+
+TEST_CASE("draw and report refuse tables that are not those of the summary", "[cli][draw]") {
+  const Workplace place(openclose::test::block_on_incline(30.0));
+  REQUIRE(place.run("run scene.toml -o out --dt 0.001 --end 0.01 -q").status == 0);
+  const std::string table = text_of(place.folder() / "out/contacts.csv");
+  const auto refused = [&](const std::string& message) {
+    for (const std::string command : {"draw", "report"}) {
+      const CommandResult result = place.run(command + " out");
+      CHECK(result.status == 2);
+      REQUIRE(result.errors.size() == 1);
+      CHECK_THAT(result.errors[0], ContainsSubstring("out/contacts.csv: ") && ContainsSubstring(message));
+    }
+  };
+  place.folder().write("out/contacts.csv", table.substr(0, table.rfind('\n', table.size() - 2) + 1));
+  refused("cut off, changed or of another analysis");
+  std::filesystem::remove(place.folder() / "out/contacts.csv");
+  refused("there is no such file");
+  place.folder().write("out/contacts.csv", table);
+  CHECK(place.run("draw out").status == 0);
+}
+
 TEST_CASE("draw shows the mechanism of a factor of safety with the factor", "[cli][draw]") {
   const Workplace place(openclose::test::block_on_incline(30.0));
   REQUIRE(place.run("fos scene.toml -o out -q").status == 0);
@@ -54,7 +90,7 @@ TEST_CASE("draw refuses in one line, and writes nothing", "[cli][draw]") {
     CHECK_FALSE(std::filesystem::exists(place.folder() / "out/drawing.svg"));
   };
   refused("nowhere", "nowhere: there is no such folder");
-  refused("out --state finl", "accepted: \"final\"");
+  refused("out --state finl", "there is no state \"finl\", did you mean \"final\"?; accepted: \"final\"");
   refused("out --colour red", "red");
   refused("out -o scene.toml", "a name that ends in .svg");
   refused("out -o out/blocks.csv", "a name that ends in .svg");

@@ -75,6 +75,15 @@ TEST_CASE("a sweep of the multiplier of a load", "[cli][sweep]") {
   CHECK_THAT(text_of(place.folder() / "out/sweep.svg"), ContainsSubstring("multiplier of gravity_x"));
 }
 
+TEST_CASE("sweep tells what earlier ones in its folder have and its table has not", "[cli][sweep]") {
+  const Workplace place(openclose::test::block_on_incline(20.0));
+  CHECK(place.run("sweep scene.toml --vary joint[0].friction_angle_deg=25:35:5 -o out").errors.empty());
+  const CommandResult second = place.run("sweep scene.toml --vary joint[0].friction_angle_deg=30:40:10 -o out");
+  CHECK(rows_of(place.folder() / "out/sweep.csv").size() == 2);
+  REQUIRE(second.errors.size() == 1);
+  CHECK_THAT(second.errors[0], ContainsSubstring("2 cases of earlier sweeps in out are not in this table"));
+}
+
 TEST_CASE("sweep goes on where it was broken off", "[cli][sweep]") {
   const Workplace place(openclose::test::block_on_incline(20.0));
   const std::string command = "sweep scene.toml --vary joint[0].friction_angle_deg=25:35:5 -j 1 -o out";
@@ -135,6 +144,19 @@ TEST_CASE("study measures errors against a known value, and their order", "[cli]
   }
   CHECK(std::stol(rows[2].at("steps")) >= 80);
   CHECK_THAT(text_of(place.folder() / "out/study.svg"), StartsWith("<svg ") && ContainsSubstring("the given value"));
+}
+
+TEST_CASE("study warns where a refinement changes more than the one before", "[cli][study]") {
+  // Contacts that ring from an unloaded start: long steps leave the ringing out, short ones follow it.
+  const Workplace place(openclose::test::block_on_incline(40.0));
+  const std::string command =
+      "study scene.toml --contact soft --end 0.1 --set method.start=unloaded --set joint[0].shear_stiffness_pa_per_m=1e9 --quantity "
+      "block.displacement_m";
+  const auto warned = [](const CommandResult& result) {
+    return std::ranges::any_of(result.errors, [](const std::string& line) { return line.find("do not converge yet") != std::string::npos; });
+  };
+  CHECK(warned(place.run(command + " --dt 0.01,0.005,0.0005 -o coarse")));
+  CHECK_FALSE(warned(place.run(command + " --dt 0.0002,0.0001,0.00005 -o fine")));
 }
 
 TEST_CASE("study marks what gave warnings, and tells how much energy the integrator took", "[cli][study]") {

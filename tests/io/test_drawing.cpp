@@ -63,7 +63,8 @@ std::string group(const std::string& svg, const std::string& name) {
 /// What drawings need of the summary of a run.
 std::string summary_of_run(int blocks) {
   return "{\"command\": \"run\", \"blocks\": " + std::to_string(blocks) +
-         R"(, "time_s": 1, "converged": true, "options": {"method": {"contact": "soft"}}, "materials": ["rock"], "joints": ["cross", "bedding"]})";
+         R"(, "time_s": 1, "converged": true, "options": {"method": {"contact": "soft"}}, "materials": ["rock"], "joints": ["cross", "bedding"],
+          "table_bytes": {}})";
 }
 
 /// blocks.csv of a run that has moved nothing. \param vertices  "name,number,x,y" each
@@ -114,14 +115,15 @@ struct Results {
       const FactorOfSafety safety = factor_of_safety(simulation);
       for (const NamedState& state : safety.states) states.add(state, scene);
       write_mechanism(folder, scene, safety.mechanism);
+      states.close();
       write_summary(folder, summary, simulation, &safety);
     } else {
       summary.command = "run";
       summary.converged = run(simulation, RunObserver()).converged;
       states.add("final", simulation);
+      states.close();
       write_summary(folder, summary, simulation);
     }
-    states.close();
   }
 
   std::string draw(const DrawingRequest& request = {}) const { return svg_drawing(picture_of_results(place.path(), request)); }
@@ -320,7 +322,7 @@ TEST_CASE("a bar of force that grazes an edge goes on, one that leaves a block e
   CHECK(steep.from.y() <= 1.0 + 0.1 + 1e-9);
 }
 
-TEST_CASE("a surcharge is drawn by arrows along its edge, which turn with the block, and the number of their sum", "[io][drawing]") {
+TEST_CASE("a surcharge is drawn by arrows along its edge, which turn with the block, and the traction", "[io][drawing]") {
   Scene scene = tower_on_base();
   const auto& corners = scene.blocks[1].vertices;
   scene.surcharges = {{1, corners[2], corners[3], 5e3, 0.0}};
@@ -338,7 +340,7 @@ TEST_CASE("a surcharge is drawn by arrows along its edge, which turn with the bl
   CHECK(std::abs(least - tower.low.x()) < 0.02);
   CHECK(std::abs(most - tower.high.x()) < 0.02);
   CHECK(count(drawn, "class=\"spread\"") == 1);
-  CHECK(count(drawn, ">5 kN/m<") == 1);
+  CHECK(count(drawn, ">5 kPa<") == 1);
   const TemporaryFolder place;
   scene.gravity.setZero();
   scene.end_time = 0.01;
@@ -353,8 +355,8 @@ TEST_CASE("a surcharge is drawn by arrows along its edge, which turn with the bl
   states.add("final", simulation);
   Summary summary;
   summary.command = "run";
-  write_summary(folder, summary, simulation);
   states.close();
+  write_summary(folder, summary, simulation);
   const Picture turned = picture_of_results(place.path(), {});
   REQUIRE(turned.loads.size() == 1);
   CHECK((turned.loads[0].vector - 5e3 * Vec2(std::sin(0.5), -std::cos(0.5))).norm() < 1.0);
@@ -464,7 +466,8 @@ TEST_CASE("what cannot be drawn is refused with what can", "[io][drawing]") {
   empty.write("blocks.csv", "state,block,vertex,x_m,y_m\n");
   CHECK_THAT(refusal(empty.path(), request), ContainsSubstring("no state is written there"));
   request.state = "finl";
-  CHECK_THAT(refusal(results.place.path(), request), ContainsSubstring("--state: there is no state \"finl\"; accepted: \"final\", \"initial\""));
+  CHECK_THAT(refusal(results.place.path(), request),
+             ContainsSubstring("--state: there is no state \"finl\", did you mean \"final\"?; accepted: \"final\", \"initial\""));
   request.state = "initial";
   request.forces = true;
   CHECK_THAT(refusal(results.place.path(), request),
@@ -552,6 +555,18 @@ TEST_CASE("bars of openings and lines of joints stand only where the two blocks 
   REQUIRE(slid.joints.size() == 2);
   CHECK(slid.joints[0].from.x() == Approx(0.1));
   CHECK(slid.joints[1].to.x() == Approx(1.0));
+}
+
+TEST_CASE("openings that are rounding beside slips are none", "[io][drawing]") {
+  const TemporaryFolder place;
+  DrawingRequest request;
+  request.cracks = true;
+  write_two_squares(place, "", "final,a,b,0,1,1,1,1,1e-12,-1e-12,0.01,0.01,\n");
+  const Picture closed = picture_of_results(place.path(), request);
+  CHECK(closed.cracks.empty());
+  CHECK_THAT(svg_drawing(closed), ContainsSubstring(">no joint is open<"));
+  write_two_squares(place, "", "final,a,b,0,1,1,1,1,1e-5,0,0.01,0.01,\n");
+  CHECK(picture_of_results(place.path(), request).cracks.size() == 1);
 }
 
 TEST_CASE("corners of open contacts are not joined by a line", "[io][drawing]") {

@@ -197,9 +197,46 @@ TEST_CASE("what is no folder of results is refused with what would be one", "[re
   CHECK_THROWS_WITH(report_of_results(place.path()), ContainsSubstring("this is not what openclose writes"));
 }
 
+TEST_CASE("named joints are lines of the drawing that move with a block", "[report]") {
+  Scene scene = test::column_of_blocks(2);
+  const int cross = static_cast<int>(scene.joints.size()), bedding = cross + 1;
+  for (const char* name : {"cross", "bedding"}) {
+    scene.joints.push_back(scene.joints.front());
+    scene.joints.back().name = name;
+  }
+  const auto page = [&](int below, int above) {
+    // From the bottom on, counter-clockwise.
+    scene.blocks[0].edge_joints.assign(4, below);
+    scene.blocks[1].edge_joints = {below, BlockInput::by_materials, above, BlockInput::by_materials};
+    scene.blocks[2].edge_joints.assign(4, above);
+    const TemporaryFolder place;
+    run_into(place, scene);
+    return data_of(report_of_results(place.path()).html);
+  };
+  CHECK_FALSE(page(bedding, bedding).contains("seams"));  // nothing to tell it from
+  const json data = page(bedding, cross);
+  const json& seams = data.at("seams");
+  const auto joints = numbers_in<std::int32_t>(seams.at("joints_i4"));
+  const auto ends = numbers_in<float>(seams.at("ends_f4"));
+  REQUIRE(joints.size() == 2);
+  REQUIRE(ends.size() == 8);
+  for (std::size_t k = 0; k < 2; ++k) {
+    const bool is_below = seams.at("names").at(joints[k]) == "bedding";
+    const double y = scene.blocks[is_below ? 1 : 2].vertices[0].y() - data.at("origin").at(1).get<double>();
+    for (const std::size_t n : {4 * k + 1, 4 * k + 3}) CHECK(static_cast<double>(ends[n]) == Approx(y).margin(1e-4));
+    CHECK(std::abs(ends[4 * k] - ends[4 * k + 2]) > 0.5F);
+  }
+  CHECK(joints[0] != joints[1]);
+}
+
 TEST_CASE("tables that are damaged or cut off are refused, not shown", "[report]") {
   const TemporaryFolder place;
   run_into(place, sliding_block());
+  json summary = json::parse(test::text_of(place / "summary.json"));
+  REQUIRE(summary.at("table_bytes").at("energy.csv") == test::text_of(place / "energy.csv").size());
+  // Of what is still as long as it was.
+  summary["table_bytes"] = json::object();
+  place.write("summary.json", summary.dump());
   const auto refusal = [&](const std::string& file, const std::string& text, const std::string& instead) {
     const std::string whole = test::text_of(place / file);
     std::string table = whole;

@@ -425,7 +425,7 @@ TEST_CASE("bridges of sets and lines are cut with the joint that they name", "[s
     CHECK(length_of(scene, rock) == Approx(2.0 * std::sqrt(18.0)).epsilon(1e-9));
     CHECK(std::ranges::count(scene.blocks[0].edge_joints, rock) == 2);
     CHECK_THAT(error_of(joints + bare_domain + line(1, 1, 2, 2) + "bridge = 'rack'\n"),
-               ContainsSubstring("joint_line[0].bridge: there is no joint \"rack\"; accepted: \"rock\", \"bedding\""));
+               ContainsSubstring("joint_line[0].bridge: there is no joint \"rack\", did you mean \"rock\"?; accepted: \"rock\", \"bedding\""));
   }
 }
 

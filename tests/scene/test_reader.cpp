@@ -228,6 +228,25 @@ TEST_CASE("a surcharge lies on one edge of its block, which its points find; its
   CHECK((surcharge.resultant(surcharge.to - surcharge.from) - Vec2(250.0, -1000.0)).norm() <= 1e-12);
 }
 
+TEST_CASE("a surcharge on several edges in one line is one on each of them, whichever way it is written", "[scene][reader]") {
+  const std::string ends = GENERATE(as<std::string>{}, "from_m = [0.25, 1]\nto_m = [2.5, 1]\n", "from_m = [2.5, 1]\nto_m = [0.25, 1]\n");
+  const std::string next = "[[block]]\nname = 'next'\nmaterial = 'rock'\nvertices_m = [[1, 0], [2, 0], [2, 1], [1, 1]]\n";
+  const std::string last = "[[block]]\nname = 'last'\nmaterial = 'rock'\nvertices_m = [[2, 0], [3, 0], [3, 1], [2, 1]]\n";
+  const Scene scene = read_text(block_on_base + last + next + "[[surcharge]]\nname = 'stock'\n" + ends + "pressure_pa = 2e3\nshear_pa = -500\n");
+  REQUIRE(scene.surcharges.size() == 3);
+  Vec2 sum = Vec2::Zero();
+  for (const Surcharge& part : scene.surcharges) {
+    CHECK(part.name == "stock");
+    sum += part.resultant(part.to - part.from);
+    // The top of a block is passed from right to left.
+    CHECK(part.from.x() > part.to.x());
+    if (scene.blocks[part.block].name == "next") CHECK((part.from - Vec2(2.0, 1.0)).norm() + (part.to - Vec2(1.0, 1.0)).norm() <= 1e-12);
+    if (scene.blocks[part.block].name == "block") CHECK(part.to == Vec2(0.25, 1.0));
+    if (scene.blocks[part.block].name == "last") CHECK(part.from == Vec2(2.5, 1.0));
+  }
+  CHECK((sum - 2.25 * Vec2(500.0, -2000.0)).norm() <= 1e-9);
+}
+
 TEST_CASE("edges of a block name their joints, however its vertices are written", "[scene][reader]") {
   const std::string joint = "[[joint]]\nname = 'bedding'\nnormal_stiffness_pa_per_m = 1e9\nshear_stiffness_pa_per_m = 4e8\nfriction_angle_deg = 20\n";
   const auto block = [&](const std::string& vertices, const std::string& joints) {

@@ -307,11 +307,11 @@ TEST_CASE("density and unit weight", "[scene][reader][errors]") {
 }
 
 TEST_CASE("names that refer to nothing", "[scene][reader][errors]") {
-  CHECK(error_with(13, "material = 'rok'") == "13: block[0].material: there is no material \"rok\"; accepted: \"rock\"");
+  CHECK(error_with(13, "material = 'rok'") == "13: block[0].material: there is no material \"rok\", did you mean \"rock\"?; accepted: \"rock\"");
   CHECK(error_with(6, "materials = ['rock', 'clay']") == "6: joint[0].materials[1]: there is no material \"clay\"; accepted: \"rock\"");
   CHECK(error_with(6, "materials = ['rock']") == "6: joint[0].materials: there are 1 names; accepted: two names of materials");
   CHECK(error_of(block_on_base + "[[load]]\nblock = 'blokc'\npoint_m = [0, 0]\nforce_n = [0, 0]\n") ==
-        "23: load[0].block: there is no block \"blokc\"; accepted: \"block\", \"base\"");
+        "23: load[0].block: there is no block \"blokc\", did you mean \"block\"?; accepted: \"block\", \"base\"");
 }
 
 TEST_CASE("names that are not usable", "[scene][reader][errors]") {
@@ -410,24 +410,25 @@ TEST_CASE("intervals of snapshots", "[scene][reader][errors]") {
 
 TEST_CASE("surcharges that are on no edge", "[scene][reader][errors]") {
   const std::string accepted =
-      "; accepted: from_m and to_m at different points of one edge of a block, which the key block names where two blocks meet";
-  const std::string for_each = "; a [[surcharge]] for each edge";
+      "; accepted: from_m and to_m at different points of edges in one line, with blocks on one side only or with the key block, which names one of "
+      "them";
+  const std::string for_each = "; a [[surcharge]] for each straight stretch";
   const auto error = [](const std::string& lines) { return error_of(block_on_base + "[[surcharge]]\npressure_pa = 1\n" + lines); };
-  CHECK(
-      error("from_m = [0.25, 1]\nto_m = [1, 0.5]\n") ==
-      "25: surcharge[0].to_m: (0.25, 1) and (1, 0.5) are not on one edge of any block: (0.25, 1) is on the edge from (1, 1) to (0, 1) of \"block\", "
-      "(1, 0.5) is on the edge from (1, 0) to (1, 1) of \"block\"" +
-          accepted + for_each);
-  CHECK(error("from_m = [0.25, 1]\nto_m = [0.5, 1.1]\nblock = 'block'\n") ==
-        "25: surcharge[0].to_m: (0.25, 1) and (0.5, 1.1) are not on one edge of \"block\": (0.25, 1) is on the edge from (1, 1) to (0, 1) of "
-        "\"block\", "
-        "(0.5, 1.1) is 0.1 m from the edge from (1, 1) to (0, 1) of \"block\"" +
+  CHECK(error("from_m = [0.25, 1]\nto_m = [1, 0.5]\n") ==
+        "25: surcharge[0].to_m: (0.25, 1) and (1, 0.5) are not on edges of any block in one line, with none from (0.25, 1) to (1, 0.5): "
+        "(0.25, 1) is on the edge from (1, 1) to (0, 1) of \"block\", (1, 0.5) is on the edge from (1, 0) to (1, 1) of \"block\"" +
             accepted + for_each);
-  // A corner belongs to two edges: the one that leads to the other end is named.
-  CHECK_THAT(error("from_m = [0, 1]\nto_m = [2, 1]\n"),
-             ContainsSubstring("(0, 1) is on the edge from (1, 1) to (0, 1) of \"block\", (2, 1) is 1 m from the edge from "));
+  CHECK(error("from_m = [0.25, 1]\nto_m = [0.5, 1.1]\nblock = 'block'\n") ==
+        "25: surcharge[0].to_m: (0.25, 1) and (0.5, 1.1) are not on edges of \"block\" in one line, with none from (0.25, 1) to (0.5, 1.1): "
+        "(0.25, 1) is on the edge from (1, 1) to (0, 1) of \"block\", (0.5, 1.1) is 0.1 m from the edge from (1, 1) to (0, 1) of \"block\"" +
+            accepted + for_each);
+  // The part that has no edge is named. A corner belongs to two edges: the one that leads to the other end is named.
+  CHECK_THAT(
+      error("from_m = [0, 1]\nto_m = [2, 1]\n"),
+      ContainsSubstring("with none from (1, 1) to (2, 1): (0, 1) is on the edge from (1, 1) to (0, 1) of \"block\", (2, 1) is 1 m from the edge"));
+  CHECK_THAT(error("from_m = [-1, 1]\nto_m = [0.5, 1]\n"), ContainsSubstring("with none from (-1, 1) to (0, 1): "));
   CHECK(error("from_m = [0.25, 0]\nto_m = [0.5, 0]\n") ==
-        "25: surcharge[0].to_m: (0.25, 0) and (0.5, 0) are on edges of \"base\" and \"block\"" + accepted);
+        "25: surcharge[0].to_m: (0.25, 0) and (0.5, 0) are on edges of \"block\" and \"base\"" + accepted);
   CHECK(error("from_m = [0.25, 1]\nto_m = [0.25, 1]\n") == "25: surcharge[0].to_m: (0.25, 1) and (0.25, 1) are one point" + accepted);
   CHECK_THAT(error("from_m = [0.25, 1]\n"), Catch::Matchers::ContainsSubstring("surcharge[0].to_m"));
 }
@@ -479,7 +480,7 @@ TEST_CASE("joints that edges of blocks name", "[scene][reader][errors]") {
   };
   CHECK_THAT(error_of(block("[[50, 0], [52, 0], [50, 1]]", "['bedding']")), ContainsSubstring("there are 1 names for 3 vertices"));
   CHECK_THAT(error_of(block("[[50, 0], [52, 0], [50, 1]]", "['beding', '', '']")),
-             ContainsSubstring("edge_joints[0]: there is no joint \"beding\"; accepted: \"bedding\""));
+             ContainsSubstring("edge_joints[0]: there is no joint \"beding\", did you mean \"bedding\"?; accepted: \"bedding\""));
   CHECK_THAT(error_of(block_on_base + joint + joint), ContainsSubstring("\"bedding\" is already the name of the joint"));
 }
 
@@ -492,8 +493,8 @@ TEST_CASE("loads that cannot be named, and loads to increase that are not there"
     CHECK_THAT(named(name), ContainsSubstring("25: load[0].name: \"" + name + "\" cannot name a load"));
   const auto increased = [&](const std::string& what) { return error_of(load + "[strength_reduction]\nincrease = '" + what + "'\n"); };
   const std::string accepted = "; accepted: \"push\", \"gravity_x\", \"gravity_y\", with a minus before it or without";
-  CHECK(increased("pusch") == "27: strength_reduction.increase: no load or surcharge has the name \"pusch\"" + accepted);
-  CHECK(increased("-pusch") == "27: strength_reduction.increase: no load or surcharge has the name \"pusch\"" + accepted);
+  CHECK(increased("pusch") == "27: strength_reduction.increase: no load or surcharge has the name \"pusch\", did you mean \"push\"?" + accepted);
+  CHECK(increased("-pusch") == "27: strength_reduction.increase: no load or surcharge has the name \"pusch\", did you mean \"push\"?" + accepted);
   CHECK_THAT(increased(""), ContainsSubstring("27: strength_reduction.increase: no load or surcharge has the name \"\""));
   CHECK(error_of("gravity_m_per_s2 = [0, 0]\n" + block_on_base + "[strength_reduction]\nincrease = 'gravity_x'\n") ==
         "24: strength_reduction.increase: \"gravity_x\" is a multiple of gravity, which is 0; accepted: the name of a load or surcharge");

@@ -36,13 +36,14 @@ function drawArrow(context, x1, y1, x2, y2, colour, width, head) {
 
 function drawSymbols(view) {
   const { context, results } = view, { symbols, colours } = results.data;
-  const loads = symbols.filter((symbol) => symbol.kind === "load"), largest = Math.max(0, ...loads.map((load) => Math.hypot(...load.force)));
+  const loads = symbols.filter((symbol) => symbol.kind === "load"), labels = labelsOf(loads);
+  const largestOf = (spread) => Math.max(0, ...loads.filter((load) => isSpread(load) === spread).map(sizeOfLoad)), largest = largestOf(false), largestTraction = largestOf(true);
   const labelled = symbols.length <= MOST_LABELS;
   context.font = "13px system-ui, sans-serif";
   for (const symbol of symbols) {
     const place = (point) => view.toScreen(...carriedPoint(results, view.motion, view.shownAmplitude, view.isMechanism, symbol.block, point));
     const [x, y] = place(symbol.point);
-    if (symbol.kind === "load") drawLoad(view, symbol, place, largest, labelled);
+    if (symbol.kind === "load") drawLoad(view, symbol, place, isSpread(symbol) ? largestTraction : largest, labels.get(symbol));
     if (symbol.kind === "support") drawSupport(context, symbol, x, y, colours.support);
     if (symbol.kind === "point") {
       context.beginPath();
@@ -57,28 +58,51 @@ function drawSymbols(view) {
   }
 }
 
-/** The heads are where the load acts: at a point, or at several of the stretch along which it is spread. */
-function drawLoad(view, load, place, largest, labelled) {
-  const { context } = view, colour = view.results.data.colours.load;
-  const turn = load.turns ? view.shownAmplitude * view.motion[3 * load.block + 2] : 0, c = Math.cos(turn), s = Math.sin(turn);
-  const fx = c * load.force[0] - s * load.force[1], fy = s * load.force[0] + c * load.force[1], size = Math.hypot(fx, fy);
+/** [N], or [Pa] of a load that is spread. */
+const sizeOfLoad = (load) => Math.hypot(...load.force) / (isSpread(load) ? Math.hypot(...load.spread) : 1);
+const isSpread = (load) => Math.hypot(...load.spread) > 0;
+/** A traction away from its block, which lies on the left of the stretch. */
+const pullsAway = (load) => isSpread(load) && load.spread[0] * load.force[1] - load.spread[1] * load.force[0] < 0;
+
+/** The heads are where the load acts: at a point, or at several of the stretch along which it is spread. What pulls has its tails there. */
+function drawLoad(view, load, place, largest, label) {
+  const { context } = view, colour = view.results.data.colours.load, size = sizeOfLoad(load);
   if (size === 0) return;
-  const length = Math.max(18, (70 * size) / largest), tail = ([x, y]) => [x - (length * fx) / size, y + (length * fy) / size];
+  const turn = load.turns ? view.shownAmplitude * view.motion[3 * load.block + 2] : 0, c = Math.cos(turn), s = Math.sin(turn), whole = Math.hypot(...load.force);
+  const spread = isSpread(load), length = spread ? Math.max(14, (45 * size) / largest) : Math.max(18, (70 * size) / largest);
+  const wayX = (length * (c * load.force[0] - s * load.force[1])) / whole, wayY = (-length * (s * load.force[0] + c * load.force[1])) / whole;
+  const sign = pullsAway(load) ? 1 : -1, outer = ([x, y]) => [x + sign * wayX, y + sign * wayY];
   const along = (part) => place([load.point[0] + part * load.spread[0], load.point[1] + part * load.spread[1]]);
-  const from = along(-0.5), to = along(0.5), gaps = Math.min(MOST_LOAD_ARROWS, Math.floor(Math.hypot(to[0] - from[0], to[1] - from[1]) / ARROW_SPACING));
-  for (let i = 0; i <= gaps; ++i) {
-    const tip = along(gaps ? i / gaps - 0.5 : 0);
-    drawArrow(context, ...tail(tip), ...tip, colour, gaps ? 1.6 : 2.4, gaps ? 8 : 11);
-  }
-  if (gaps) {
+  if (spread) {
+    const from = along(-0.5), to = along(0.5), reach = Math.hypot(to[0] - from[0], to[1] - from[1]);
+    const gaps = Math.max(1, Math.min(MOST_LOAD_ARROWS, Math.floor(reach / ARROW_SPACING)));
+    for (let i = 0; i <= gaps; ++i) {
+      const foot = along(i / gaps - 0.5), end = outer(foot);
+      drawArrow(context, ...(sign > 0 ? foot : end), ...(sign > 0 ? end : foot), colour, 1.6, 8);
+    }
     context.lineWidth = 1.6;
     context.beginPath();
-    context.moveTo(...tail(from));
-    context.lineTo(...tail(to));
+    context.moveTo(...outer(from));
+    context.lineTo(...outer(to));
     context.stroke();
+  } else drawArrow(context, ...outer(along(0)), ...along(0), colour, 2.4, 11);
+  const [x, y] = outer(along(0));
+  if (label) write(context, label, x + 6, y - 4, colour);
+}
+
+/** What is written at each load: nothing where there are too many of them, and of several stretches with the same number only at the longest. */
+function labelsOf(loads) {
+  const labels = new Map(), longest = new Map();
+  for (const load of loads) {
+    if (!isSpread(load)) {
+      if (loads.length <= MOST_LABELS) labels.set(load, forceText(sizeOfLoad(load)));
+      continue;
+    }
+    const text = pressureText(sizeOfLoad(load)), other = longest.get(text);
+    if (!other || Math.hypot(...other.spread) < Math.hypot(...load.spread)) longest.set(text, load);
   }
-  const [x, y] = tail(along(0));
-  if (labelled) write(context, forceText(size), x + 6, y - 4, colour);
+  for (const [text, load] of longest) labels.set(load, text);
+  return labels;
 }
 
 function drawSupport(context, support, x, y, colour) {
@@ -175,6 +199,8 @@ function drawKey(view) {
   });
   addColours(key, view);
   if (view.results.fixed.some((fixed) => fixed)) key.addSwatch(colours.fixed, "fixed");
+  if (view.layers.joints && view.shownColour === "material" && view.results.seams)
+    for (const n of view.results.seams.used) key.addLine(colours.seams[n % colours.seams.length], 2.5, view.results.seams.names[n]);
   if (view.layers.joints) {
     key.addLine(colours.sliding, 3, "slides");
     key.addLine(colours.open, 3, "open");

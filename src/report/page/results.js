@@ -34,6 +34,8 @@ class Results {
     const used = new Set(this.material);
     this.materialsInKey = b.materials.map((name, i) => (used.has(i) ? name : null));
     this.fixed = unpack.u1(b.fixed_u1);
+    this.seams = data.seams ? { names: data.seams.names, blocks: unpack.i4(data.seams.blocks_i4), joints: unpack.i4(data.seams.joints_i4), ends: unpack.f4(data.seams.ends_f4) } : null;
+    if (this.seams) this.seams.used = [...new Set(this.seams.joints)].sort((a, b) => a - b);
     this.area = unpack.f8(b.area_f8);
     this.mass = unpack.f8(b.mass_f8);
     this.vertices = unpack.f8(b.vertices_f8);

@@ -71,6 +71,11 @@ function forceText(newtons) {
   return newtons >= 1e3 ? `${number(newtons * 1e-3, 4)} kN/m` : `${number(newtons, 4)} N/m`;
 }
 
+function pressureText(pascals) {
+  if (pascals >= 1e6) return `${number(pascals * 1e-6, 4)} MPa`;
+  return pascals >= 1e3 ? `${number(pascals * 1e-3, 4)} kPa` : `${number(pascals, 4)} Pa`;
+}
+
 function lengthText(metres) {
   if (metres >= 1) return `${number(metres, 4)} m`;
   return metres >= 1e-3 ? `${number(metres * 1e3, 4)} mm` : `${number(metres * 1e6, 4)} \u00b5m`;

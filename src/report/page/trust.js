@@ -23,12 +23,18 @@ function trustOfFactor(summary) {
   }
   for (const effect of summary.shear_to_normal_stiffness || [])
     rows.push([`with shear/normal stiffness ${number(effect.ratio, 3)}`, effect.stable === null ? "not found"
-      : effect.failed === null ? `at least ${number(effect.stable, 4)}`
+      : effect.failed === null ? `not known, undecided above ${number(effect.stable, 4)}`
       : `${number(effect.stable, 4)} to ${number(effect.failed, 4)}`]);
   if (summary.largest_travel_m) rows.push(["farthest motion between two stable trials", lengthText(summary.largest_travel_m)]);
   if (failing && failing.number) rows.push(["what fails", `${failing.number} of ${summary.free_blocks} free blocks, ${number(failing.area_m2, 4)} m\u00b2${bracket.failed_by === "limit analysis" ? ", in the mechanism of the limit analysis" : ""}`]);
+  pushGravity(rows, summary);
   rows.push(["definition", String(summary.definition).replaceAll("_", " ")]);
   return { rows, sentence };
+}
+
+/** Where it does not point straight down, factors and motions have it in them. */
+function pushGravity(rows, summary) {
+  if (summary.gravity_in_words) rows.push(["gravity", summary.gravity_in_words]);
 }
 
 function trustOfRun(summary, bounds) {
@@ -49,6 +55,7 @@ function trustOfRun(summary, bounds) {
   }
   const ledger = summary.energy_ledger;
   if (ledger) rows.push(["energy imbalance", `${number(ledger.imbalance_j, 3)} J of ${number(ledger.turnover_j, 3)} J moved`]);
+  pushGravity(rows, summary);
   rows.push(["deepest penetration", lengthText(summary.max_penetration_m)]);
   return { rows, sentence: summary.converged ? "" : summary.reason };
 }

@@ -208,7 +208,25 @@ class View {
     for (const path of paths) context.stroke(path);
   }
 
+  /** Joints with a name, which move with the first of their blocks; beneath what slides or opens. */
+  drawSeams() {
+    const { seams } = this.results, { context } = this, colours = this.results.data.colours.seams;
+    if (!seams || this.shownColour !== "material") return;
+    const lines = seams.names.map(() => []);
+    seams.joints.forEach((joint, k) => {
+      for (const n of [4 * k, 4 * k + 2])
+        lines[joint].push(...this.toScreen(...carriedPoint(this.results, this.motion, this.shownAmplitude, this.isMechanism, seams.blocks[k], [seams.ends[n], seams.ends[n + 1]])));
+    });
+    context.lineCap = "butt";
+    context.lineWidth = Math.min(2.5, Math.max(0.4, 0.05 * this.blockSize));
+    lines.forEach((ends, joint) => {
+      context.strokeStyle = colours[joint % colours.length];
+      this.strokeLines(ends);
+    });
+  }
+
   drawJoints() {
+    this.drawSeams();
     const lines = { sliding: [], open: [] }, dots = [];
     const contacts = this.results.contacts(this.state);
     if (contacts) this.jointsOfContacts(contacts, lines, dots);
@@ -296,6 +314,7 @@ class View {
 
   drawOpenings() {
     const cracks = this.results.cracks(this.state);
+    if (!cracks || cracks.largestOpening === 0) return;
     this.drawSized(this.results.data.colours.open, 0.8, (line) =>
       this.eachHalfCrack(cracks, (from, to, opening) => { if (opening > 0) line(opening / cracks.largestOpening, ...from, ...to); }));
   }
