@@ -126,7 +126,9 @@ TEST_CASE("a block that a faster one overtakes slides along what carries it, not
   lower.name = "lower";
   lower.vertices = {{-2.0, 0.0}, {2.0, 0.0}, {2.0, 1.0}, {-2.0, 1.0}};
   scene.blocks.push_back(lower);
-  const std::vector<FailingBlock> mechanism = {{1, 2.0, {0.0, 1.5}, {2.0, 0.0}, 0.0}, {2, 4.0, {0.0, 0.5}, {1.0, 0.0}, 0.0}};
+  std::ranges::reverse(scene.blocks);
+  std::swap(scene.blocks[0], scene.blocks[1]);  // the faster one is met first
+  const std::vector<FailingBlock> mechanism = {{0, 2.0, {0.0, 1.5}, {2.0, 0.0}, 0.0}, {1, 4.0, {0.0, 0.5}, {1.0, 0.0}, 0.0}};
   const std::string words = motion_in_words(scene, mechanism);
   CHECK_THAT(words, ContainsSubstring("\"lower\" slides along its joint with \"base\" towards (1.00, 0.00)"));
   CHECK_THAT(words, ContainsSubstring("\"top\" slides along its joint with \"lower\" towards (1.00, 0.00)"));
