@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "openclose/core/error.h"
 #include "openclose/draft/all_drafts.h"
@@ -14,31 +15,46 @@ struct Piece {
   double left, right;
 };
 
-/// Running bond, with half bricks at the ends of every second course, and perhaps a door in the middle under a lintel of one stone.
+/// Running bond, with half bricks at the ends of every second course, and perhaps doors or windows at equal distances, each under a lintel of one
+/// stone.
 class Wall {
  public:
   explicit Wall(const Dimensions& d)
-      : courses_(d.count("courses")), bricks_(d.count("bricks")), door_(d.count("door_bricks")), door_courses_(d.count("door_courses")) {
-    const bool has_room = door_ + 4 <= bricks_ && door_courses_ < courses_;
+      : courses_(d.count("courses")),
+        bricks_(d.count("bricks")),
+        door_(d.count("door_bricks")),
+        doors_(d.count("doors")),
+        sill_(d.count("sill_courses")),
+        lintel_(sill_ + d.count("door_courses")) {
+    const bool has_room = doors_ * (door_ + 4) <= bricks_ && lintel_ < courses_;
     if (door_ > 0 && !has_room)
-      throw InputError({"new wall", 0}, "", "the door does not fit into the wall", "door_bricks + 4 <= bricks and door_courses < courses");
+      throw InputError({"new wall", 0}, "", "the doors do not fit into the wall",
+                       "doors * (door_bricks + 4) <= bricks and sill_courses + door_courses < courses");
   }
 
   int courses() const { return courses_; }
   int bricks() const { return bricks_; }
   std::vector<Piece> course(int number) const {
     std::vector<Piece> pieces = whole_course(number);
-    if (door_ == 0 || number > door_courses_) return pieces;
-    const double left = 0.5 * (bricks_ - door_), right = left + door_;
-    const bool is_lintel = number == door_courses_;
+    if (door_ == 0 || number < sill_ || number > lintel_) return pieces;
+    const bool is_lintel = number == lintel_;
     const double support = is_lintel ? 0.5 : 0.0;  // at either side
-    pieces = without(pieces, {left - support, right + support});
-    if (is_lintel) pieces.push_back({left - support, right + support});
+    for (int k = 0; k < doors_; ++k) {
+      const Piece door = opening(k), gap{door.left - support, door.right + support};
+      pieces = without(pieces, gap);
+      if (is_lintel) pieces.push_back(gap);
+    }
     std::ranges::sort(pieces, {}, &Piece::left);
     return pieces;
   }
 
  private:
+  /// Its sides are where bricks end, of this course or of the next one.
+  Piece opening(int number) const {
+    const double middle = (number + 0.5) * bricks_ / doors_, left = 0.5 * std::round(2.0 * middle - door_);
+    return {left, left + door_};
+  }
+
   std::vector<Piece> whole_course(int number) const {
     std::vector<double> joints{0.0};
     for (int brick = 0; brick <= bricks_; ++brick) {
@@ -62,7 +78,8 @@ class Wall {
     return outside;
   }
 
-  int courses_, bricks_, door_, door_courses_;
+  int courses_, bricks_, door_, doors_;
+  int sill_, lintel_;  ///< courses below the openings, and that of their lintels
 };
 
 std::string write_wall(const Dimensions& d) {
@@ -107,8 +124,10 @@ Draft wall_draft() {
            {"bricks", "in a course", 9.0, many, true},
            {"brick_length_m", "of a brick", 0.6},
            {"brick_height_m", "of a brick", 0.4},
-           {"door_bricks", "width of a door in the middle, in bricks; 0 is none", 0.0, none_or_many, true},
-           {"door_courses", "height of the door, in courses", 5.0, many, true},
+           {"door_bricks", "width of a door or window, in bricks; 0 is none", 0.0, none_or_many, true},
+           {"door_courses", "its height, in courses", 5.0, many, true},
+           {"doors", "how many there are, at equal distances", 1.0, many, true},
+           {"sill_courses", "below each, which makes it a window", 0.0, none_or_many, true},
            {"tilt_deg",
             "of the table on which it stands, to the right",
             10.0,

@@ -7,6 +7,7 @@
 #include "openclose/analytical/masonry_arch.h"
 #include "openclose/core/error.h"
 #include "openclose/draft/drafts.h"
+#include "openclose/geometry/box.h"
 #include "openclose/geometry/polygon.h"
 #include "openclose/scene/check.h"
 #include "openclose/scene/reader.h"
@@ -67,13 +68,19 @@ TEST_CASE("every draft is a scene that is checked without a warning, and each of
 
 TEST_CASE("every dimension changes the scene", "[draft]") {
   for (const Draft& draft : drafts()) {
-    const std::string text = scene_from(draft, {});
+    // A wall with a door, in which there is room for another one.
+    std::map<std::string, double> usual;
+    if (draft.name == "wall") usual = {{"bricks", 15.0}, {"door_bricks", 2.0}};
+    const std::string text = scene_from(draft, usual);
     for (const Dimension& dimension : draft.dimensions) {
-      INFO(draft.name << "." << dimension.name);
-      std::map<std::string, double> asked{{std::string(dimension.name), dimension.value + 1.0}};
-      if (dimension.name == "door_courses") asked = {{"door_bricks", 2.0}, {"door_courses", 4.0}};
+      const std::string name(dimension.name);
+      INFO(draft.name << "." << name);
+      const double value = usual.contains(name) ? usual.at(name) : dimension.value;
+      std::map<std::string, double> asked = usual;
+      asked[name] = value + 1.0;
       CHECK(scene_from(draft, asked) != text);
-      CHECK(scene_from(draft, {{std::string(dimension.name), dimension.value}}) == text);
+      asked[name] = value;
+      CHECK(scene_from(draft, asked) == text);
     }
   }
 }
@@ -116,7 +123,28 @@ TEST_CASE("a wall has its bricks, and a door under a lintel", "[draft][wall]") {
   CHECK(check_scene(door).empty());
   CHECK(scene_with("wall", {{"tilt_deg", 0.0}}).gravity == Vec2(0.0, -9.81));
   CHECK(scene_with("wall", {{"tilt_deg", 30.0}}).gravity.isApprox(9.81 * Vec2(0.5, -std::sqrt(0.75)), 1e-14));
-  CHECK_THAT(error_of("wall", {{"door_bricks", 6.0}}), StartsWith("new wall: the door does not fit"));
+  CHECK_THAT(error_of("wall", {{"door_bricks", 6.0}}), StartsWith("new wall: the doors do not fit"));
+}
+
+TEST_CASE("a wall has windows at equal distances, whole courses above and below them", "[draft][wall]") {
+  const Scene scene =
+      scene_with("wall", {{"bricks", 14.0}, {"door_bricks", 2.0}, {"door_courses", 3.0}, {"doors", 2.0}, {"sill_courses", 2.0}, {"tilt_deg", 0.0}});
+  CHECK(check_scene(scene).empty());
+  std::vector<double> of_course(9, 0.0);  // [m2]
+  double narrowest = 1e9, lintels = 0.0;
+  for (const BlockInput& block : scene.blocks) {
+    if (block.fixed) continue;
+    const Box box = Box::around(block.vertices);
+    of_course[static_cast<std::size_t>(std::lround(box.low.y() / 0.4))] += signed_area(block.vertices);
+    narrowest = std::min(narrowest, box.high.x() - box.low.x());
+    lintels += box.high.x() - box.low.x() > 0.61 ? 1.0 : 0.0;
+  }
+  for (std::size_t course = 0; course < of_course.size(); ++course)
+    CHECK(of_course[course] == Approx((course >= 2 && course < 5 ? 10.0 : 14.0) * 0.6 * 0.4));
+  CHECK(narrowest == Approx(0.3));
+  CHECK(lintels == 2.0);
+  CHECK_THAT(error_of("wall", {{"door_bricks", 2.0}, {"doors", 2.0}}), StartsWith("new wall: the doors do not fit"));
+  CHECK_THAT(error_of("wall", {{"door_bricks", 2.0}, {"sill_courses", 4.0}}), StartsWith("new wall: the doors do not fit"));
 }
 
 TEST_CASE("a slope has its outline and its joints", "[draft][slope]") {
