@@ -10,6 +10,8 @@
 #include "openclose/geometry/box.h"
 #include "openclose/io/drawing_colours.h"
 #include "openclose/io/drawing_legend.h"
+#include "openclose/io/drawing_loads.h"
+#include "openclose/io/drawing_units.h"
 #include "openclose/io/svg_page.h"
 
 namespace openclose {
@@ -34,8 +36,6 @@ constexpr int colour_classes = 32;
 constexpr double least_drawn_part = 0.005;
 /// Names are written beside no more points and loads than this; tooltips tell the others.
 constexpr std::size_t most_labels = 12;
-/// [px] Between the arrows of a load that is spread along an edge, about.
-constexpr double arrow_spacing = 22.0;
 /// [px] Of the arrow of a growing part of gravity in the legend.
 constexpr double push_length = 34.0;
 
@@ -48,24 +48,6 @@ double round_length(double value) {
   return power;
 }
 
-std::string force_text(double newtons) {
-  if (newtons >= 1e6) return fmt::format("{:.4g} MN/m", 1e-6 * newtons);
-  if (newtons >= 1e3) return fmt::format("{:.4g} kN/m", 1e-3 * newtons);
-  return fmt::format("{:.4g} N/m", newtons);
-}
-
-std::string pressure_text(double pascals) {
-  if (pascals >= 1e6) return fmt::format("{:.4g} MPa", 1e-6 * pascals);
-  if (pascals >= 1e3) return fmt::format("{:.4g} kPa", 1e-3 * pascals);
-  return fmt::format("{:.4g} Pa", pascals);
-}
-
-std::string length_text(double metres) {
-  if (metres >= 1.0) return fmt::format("{:.4g} m", metres);
-  if (metres >= 1e-3) return fmt::format("{:.4g} mm", 1e3 * metres);
-  return fmt::format("{:.4g} \xc2\xb5m", 1e6 * metres);
-}
-
 double median(std::vector<double> values) {
   if (values.empty()) return 0.0;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -75,7 +57,7 @@ double median(std::vector<double> values) {
 
 class Drawing {
  public:
-  explicit Drawing(const Picture& picture) : picture_(picture) {
+  explicit Drawing(const Picture& picture) : picture_(picture), loads_(picture.loads) {
     box_ = Box::around(picture.blocks.front().outline);
     std::vector<double> areas;
     for (const Picture::Block& block : picture.blocks) {
@@ -89,13 +71,7 @@ class Drawing {
     // Loads act from outside: their arrows have to lie on the page, too.
     std::vector<Vec2> ends = {Vec2::Zero(), scale_ * size};
     for (const Picture::Arrow& load : picture.loads) {
-      double& largest = is_spread(load) ? largest_traction_ : largest_load_;
-      largest = std::max(largest, size_of(load));
-    }
-    for (const Picture::Arrow& load : picture.loads) {
-      for (const double part : {-0.5, 0.5})
-        ends.push_back(scale_ * (load.point + part * load.spread - box_.low) +
-                       (pulls(load) ? 1.0 : -1.0) * length_of(load) * load.vector.normalized());
+      for (const double part : {-0.5, 0.5}) ends.push_back(scale_ * (load.point + part * load.spread - box_.low) + loads_.outwards(load));
     }
     const Box around = Box::around(ends);
     page_width_ = std::max(narrowest_page, scale_ * size.x() + 2.0 * (margin + std::max(-around.low.x(), around.high.x() - scale_ * size.x())));
@@ -153,15 +129,6 @@ class Drawing {
     return lines;
   }
 
-  static bool is_spread(const Picture::Arrow& load) { return !load.spread.isZero(0.0); }
-  /// [N] Of a load at a point; [Pa] of one that is spread.
-  static double size_of(const Picture::Arrow& load) { return is_spread(load) ? load.vector.norm() / load.spread.norm() : load.vector.norm(); }
-  /// A traction away from its block, which lies on the left of the stretch.
-  static bool pulls(const Picture::Arrow& load) { return is_spread(load) && cross(load.spread, load.vector) < 0.0; }
-  /// [px] Of the arrows of a load, beside others of its kind.
-  double length_of(const Picture::Arrow& load) const {
-    return is_spread(load) ? std::max(14.0, 45.0 * size_of(load) / largest_traction_) : std::max(18.0, 70.0 * size_of(load) / largest_load_);
-  }
   double outline_width() const { return std::clamp(0.02 * block_size_, 0.08, 0.9); }
 
   std::string fill_of(const Picture::Block& block) const {
@@ -337,38 +304,17 @@ class Drawing {
   void draw_loads() {
     if (picture_.loads.empty()) return;
     page_.print("<g class=\"loads\">\n");
-    std::map<std::string, const Picture::Arrow*> longest;  // of all stretches with the same number, which is written there
-    for (const Picture::Arrow& load : picture_.loads) {
-      if (size_of(load) == 0.0) continue;
-      // The head is where the load acts, but for one that pulls.
-      const Vec2 way = length_of(load) * Vec2(load.vector.x(), -load.vector.y()).normalized();
-      if (is_spread(load)) {
-        draw_spread_load(load, way);
-        const Picture::Arrow*& place = longest[pressure_text(size_of(load))];
-        if (!place || place->spread.norm() < load.spread.norm()) place = &load;
-      } else {
-        const Vec2 tip = at(load.point);
-        draw_arrow(tip - way, tip, 11.0, load_colour, 2.4);
-        if (picture_.loads.size() <= most_labels) label(tip - way, force_text(size_of(load)), load_colour);
-      }
+    const std::vector<DrawnLoad> drawn = loads_.drawn([this](const Vec2& place) { return at(place); }, picture_.loads.size() <= most_labels);
+    for (const DrawnLoad& load : drawn) {
+      for (const auto& [from, to] : load.arrows) draw_arrow(from, to, load.head, load_colour, load.width);
+      if (load.arrows.size() > 1)
+        page_.line(load.outer_end, load.other_outer_end, fmt::format("class=\"spread\" stroke=\"{}\" stroke-width=\"{}\"", load_colour, load.width));
     }
-    for (const auto& [text, load] : longest) {
-      const Vec2 way = length_of(*load) * Vec2(load->vector.x(), -load->vector.y()).normalized();
-      label(at(load->point) + (pulls(*load) ? way : Vec2(-way)), text, load_colour);
+    // Above the arrows of neighbours.
+    for (const DrawnLoad& load : drawn) {
+      if (!load.label.empty()) label(0.5 * (load.outer_end + load.other_outer_end), load.label, load_colour);
     }
     page_.print("</g>\n");
-  }
-
-  /// Arrows along the stretch, at both of its ends and between, with a line along their other ends.
-  void draw_spread_load(const Picture::Arrow& load, const Vec2& way) {
-    const Vec2 outwards = pulls(load) ? way : Vec2(-way);
-    const int gaps = std::max(1, static_cast<int>(scale_ * load.spread.norm() / arrow_spacing));
-    for (int i = 0; i <= gaps; ++i) {
-      const Vec2 foot = at(load.point + (static_cast<double>(i) / gaps - 0.5) * load.spread), end = foot + outwards;
-      draw_arrow(pulls(load) ? foot : end, pulls(load) ? end : foot, 8.0, load_colour, 1.6);
-    }
-    page_.line(at(load.point - 0.5 * load.spread) + outwards, at(load.point + 0.5 * load.spread) + outwards,
-               fmt::format("class=\"spread\" stroke=\"{}\" stroke-width=\"1.6\"", load_colour));
   }
 
   /// With a white rim, readable on blocks; on the side of the point where the page has room for it, and below the lines of the title.
@@ -468,6 +414,7 @@ class Drawing {
   }
 
   const Picture& picture_;
+  LoadArrows loads_;
   Box box_;
   double scale_ = 1.0;             ///< [px/m]
   double left_ = 0.0, top_ = 0.0;  ///< [px] of the blocks
@@ -475,9 +422,8 @@ class Drawing {
   double page_width_ = 0.0;        ///< [px]
   double block_size_ = 0.0;        ///< [px] of the median free block
   double bottom_ = 0.0;            ///< [px] where the legend ends
-  double largest_force_ = 0.0, largest_opening_ = 0.0, largest_load_ = 0.0;
-  double largest_traction_ = 0.0;  ///< [Pa] of loads that are spread
-  double longest_arrow_ = 0.0;     ///< [px] of the velocities
+  double largest_force_ = 0.0, largest_opening_ = 0.0;
+  double longest_arrow_ = 0.0;  ///< [px] of the velocities
   std::vector<std::string> title_lines_, note_lines_;
   SvgPage page_;
 };

@@ -18,8 +18,8 @@
 #include "openclose/io/result_answer.h"
 #include "openclose/io/result_folder.h"
 #include "openclose/io/result_rows.h"
+#include "openclose/io/result_symbols.h"
 #include "openclose/io/state_table.h"
-#include "openclose/scene/increased_load.h"
 #include "openclose/scene/nearest.h"
 
 namespace openclose {
@@ -37,10 +37,6 @@ constexpr double slight_part_of_opening = 0.01;
 constexpr double accuracy_of_lengths = 0.1;
 /// [-] Of the largest displacement of the mechanism: what opens or slips by less has been moved by rounding.
 constexpr double noticeable_part_of_mechanism = 0.01;
-
-Vec2 point_in(const json& list) {
-  return {list.at(0).get<double>(), list.at(1).get<double>()};
-}
 
 /// The place of a name in the list, at whose end it is put where a table has one that the summary lacks.
 int place_of(std::string_view name, std::vector<std::string>& names) {
@@ -67,7 +63,7 @@ class ResultPicture {
     if (request_.forces) add_forces();
     if (request_.cracks) add_cracks();
     if (colour_ == BlockColour::velocity) add_velocities();
-    add_points();
+    add_symbols(folder_, block_index_, now_, picture_);
     add_titles();
     folder_.require_whole_tables();
     return std::move(picture_);
@@ -387,37 +383,6 @@ class ResultPicture {
       add(middle, common->second, crack.opening_to);
     }
     if (picture_.cracks.empty()) picture_.crack_name = all ? "no joint is open" : "no opening of joints that still face each other";
-  }
-
-  void add_points() {
-    const auto placement = [&](const json& entry) {
-      const auto b = static_cast<std::size_t>(block_index_.of(entry, path_of("summary.json")));
-      return Placement(drawn_[b], now_[b]);
-    };
-    const auto carried = [&](const json& entry) { return placement(entry).of(point_in(entry.at("point_m"))); };
-    for (const json& entry : summary().value("supports", json::array())) {
-      const Vec2 stiffness = point_in(entry.at("stiffness_n_per_m"));
-      picture_.supports.push_back({carried(entry), stiffness.x() > 0.0, stiffness.y() > 0.0, carried(entry) - placement(entry).to});
-    }
-    for (const json& entry : summary().value("arrows", json::array())) {
-      const bool turns = entry.at("turns_with_block").get<bool>();
-      const auto turned = [&](const char* key) { return turns ? placement(entry).turned(point_in(entry.at(key))) : point_in(entry.at(key)); };
-      picture_.loads.push_back({carried(entry), turned("force_n"), turned("spread_m")});
-    }
-    add_push();
-    for (const json& entry : summary().value("measured_points", json::array()))
-      picture_.points.push_back({entry.at("name").get<std::string>(), carried(entry)});
-  }
-
-  /// Of a multiplier of gravity_x, -gravity_x, gravity_y or -gravity_y; the arrows of other loads stand where they act.
-  void add_push() {
-    const json& increase = summary().at("options").value("strength_reduction", json::object()).value("increase", json());
-    if (!increase.is_string()) return;
-    const std::string name = increase.get<std::string>();
-    const bool is_back = name.starts_with('-');
-    if (!names_gravity(name.substr(is_back ? 1 : 0))) return;
-    const Vec2 direction = name.ends_with('x') ? Vec2::UnitX() : Vec2::UnitY();
-    picture_.push = {is_back ? Vec2(-direction) : direction, name + ", which grows"};
   }
 
   void add_titles() {
