@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "commands.h"
@@ -15,16 +16,22 @@ namespace openclose {
 
 namespace {
 
-/// What dips and dip directions come to, so that one sees whether the section was meant.
-void print_sets_in_section(const CuttingSummary& cutting) {
-  for (const SetInSection& set : cutting.sets_in_section) {
-    const double dip = set.dip * 180.0 / std::numbers::pi;
-    fmt::print("joint set of {}: in the section its joints dip {:.3g} degrees{} and lie {:.4g} m apart\n", set.place, std::abs(dip),
-               dip > 0.0   ? " to the left"
-               : dip < 0.0 ? " to the right"
-                           : "",
-               set.spacing);
-  }
+/// "dip 30 degrees to the left", "are horizontal", "are vertical". \param dip  [deg]
+std::string dip_in_words(double dip) {
+  constexpr double rounding = 1e-6;  // [deg]
+  if (std::abs(dip) <= rounding) return "are horizontal";
+  if (90.0 - std::abs(dip) <= rounding) return "are vertical";
+  return fmt::format("dip {:.3g} degrees to the {}", std::abs(dip), dip > 0.0 ? "left" : "right");
+}
+
+double degrees(double angle) {
+  return angle * 180.0 / std::numbers::pi;
+}
+
+nlohmann::ordered_json json_of(const std::vector<SetInSection>& sets) {
+  auto list = nlohmann::ordered_json::array();
+  for (const SetInSection& set : sets) list.push_back({{"joint_set", set.place}, {"dip_deg", degrees(set.dip)}, {"spacing_m", set.spacing}});
+  return list;
 }
 
 }  // namespace
@@ -58,13 +65,16 @@ int cut_command(const Options& options) {
                               {"smallest_block_m2", cutting.smallest_block},
                               {"slivers_merged", cutting.slivers_merged},
                               {"dangling_ends", cutting.dangling_ends},
+                              {"sets_in_section", json_of(cutting.sets_in_section)},
                               {"written", {file, drawing}}});
   }
   if (options.quiet) return exit_success;
   const auto fixed = std::count_if(loaded.scene.blocks.begin(), loaded.scene.blocks.end(), [](const BlockInput& block) { return block.fixed; });
   fmt::print("{}: {} blocks cut by {} traces, {:.9g} m2 (domain {:.9g} m2), smallest {:.3g} m2; {} of {} blocks fixed\n", options.scene_file,
              cutting.blocks, cutting.traces, cutting.area, cutting.domain_area, cutting.smallest_block, fixed, loaded.scene.blocks.size());
-  print_sets_in_section(cutting);
+  // So that one sees whether the section was meant.
+  for (const SetInSection& set : cutting.sets_in_section)
+    fmt::print("joint set of {}: in the section its joints {} and lie {:.4g} m apart\n", set.place, dip_in_words(degrees(set.dip)), set.spacing);
   fmt::print("{} slivers merged ({:.3g} m2), {} dangling ends dropped; written to {} and {}\n", cutting.slivers_merged, cutting.slivers_area,
              cutting.dangling_ends, file, drawing);
   return exit_success;
@@ -93,6 +103,9 @@ int draw_scene(Options options) {
 
 int draw_command(const Options& options) {
   if (std::filesystem::is_regular_file(options.results)) return draw_scene(options);
+  if (!std::filesystem::exists(options.results))
+    throw InputError({options.results, 0}, "", "there is no such folder or file",
+                     "the folder of a run or fos, results/<name of the scene> by default, or a scene");
   const std::string file = options.drawing_file.empty() ? options.results + "/drawing.svg" : options.drawing_file;
   require_ending(file, ".svg", "drawing");
   const Picture picture = picture_of_results(options.results, options.drawing);

@@ -89,6 +89,8 @@ class SearchFolder {
     write_checkpoint(folder_.claim_whole_file(checkpoint_name), scene_, {0.0, {}, std::move(state), "fos"});
   }
 
+  const OutputFolder& folder() const { return folder_; }
+  bool has_begun() const { return states_.has_value(); }
   StateTables& states() { return *states_; }
 
  private:
@@ -117,7 +119,11 @@ FactorOfSafety search(Simulation& simulation, const Options& options, SearchFold
     throw_if_stopped();
   };
   observer.done = [&](std::string state) { checkpoint.keep(std::move(state)); };
-  observer.trial = [&](const StrengthTrial& trial) { progress.note(line_of(trial)); };
+  observer.trial = [&](const StrengthTrial& trial) {
+    progress.note(line_of(trial));
+    // What a checkpoint holds is read piece by piece while the search finds its way back: what is damaged is refused before anything is written.
+    if (!restart) folder.begin();
+  };
   const auto found = [&] {
     if (!restart) return factor_of_safety(simulation, observer);
     try {
@@ -127,6 +133,9 @@ FactorOfSafety search(Simulation& simulation, const Options& options, SearchFold
     }
   };
   FactorOfSafety safety = found();
+  if (safety.bracket.stopped && !restart && !folder.has_begun())
+    throw Stopped(fmt::format("stopped in the first trial, of which there is no checkpoint: {} is as it was; to run again: {}",
+                              folder.folder().path(), command_to_repeat("fos", options, folder.folder())));
   folder.begin();
   if (safety.bracket.stopped) checkpoint.flush();
   return safety;
@@ -190,8 +199,6 @@ int fos_command(const Options& options) {
   loaded.warnings.insert(loaded.warnings.end(), unused.begin(), unused.end());
   const std::optional<std::string>& increase = simulation.scene().strength_reduction.increase;
   const double begin = process_cpu_time();
-  // What a checkpoint holds is read piece by piece while the search finds its way back: what is damaged is refused before anything is written.
-  if (!restart) in_folder.begin();
   const FactorOfSafety safety = search(simulation, options, in_folder, std::move(restart));
 
   Summary summary = summary_of("fos", options, loaded);

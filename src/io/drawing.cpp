@@ -81,7 +81,8 @@ class Drawing {
       for (std::string& line : wrapped(note, note_size)) note_lines_.push_back(std::move(line));
     }
     notes_bottom_ = margin + line_height * static_cast<double>(note_lines_.size()) + 1.3 * title_size * static_cast<double>(title_lines_.size());
-    top_ = notes_bottom_ + 6.0 + (around.high.y() - scale_ * size.y());
+    // With room for the number above an arrow.
+    top_ = notes_bottom_ + (picture.loads.empty() ? 6.0 : 6.0 + line_height) + (around.high.y() - scale_ * size.y());
   }
 
   std::string svg() {
@@ -397,7 +398,8 @@ class Drawing {
       const Vec2 left = legend.add_symbol(longest_arrow_, picture_.velocity_name);
       draw_arrow(left, left + Vec2(longest_arrow_, 0.0), 8.0, "black", 1.4);
     }
-    if (!picture_.loads.empty()) legend.add_line("load-key", load_colour, 2.4, "load");
+    if (std::ranges::any_of(picture_.loads, [](const Picture::Arrow& load) { return !load.vector.isZero(0.0); }))
+      legend.add_line("load-key", load_colour, 2.4, "load");
     if (picture_.push) {
       const Vec2 way = push_length * Vec2(picture_.push->direction.x(), -picture_.push->direction.y()).normalized();
       const Vec2 middle = legend.add_symbol(push_length, picture_.push->name) + Vec2(0.5 * push_length, 0.0);

@@ -192,6 +192,8 @@ class ResultPicture {
       const std::optional<std::pair<Vec2, Vec2>> common = common_stretch(crack);
       if (!common) continue;
       const auto add = [&](const Vec2& begin, const Vec2& end, JointDrawing state, double opening) {
+        // What touches without a force is closed.
+        if (state == JointDrawing::open && opening <= rounding_of_openings * size_) state = JointDrawing::sticking;
         picture_.joints.push_back({begin, end, state, state == JointDrawing::open && opening < slight_part_of_opening * widest});
       };
       const Vec2 middle = 0.5 * (common->first + common->second);
@@ -368,11 +370,8 @@ class ResultPicture {
     picture_.crack_name = shows_mechanism_ ? "largest opening, as drawn,"
                           : all            ? "largest opening"
                                            : "largest opening of joints that still face each other";
-    double largest = 0.0;
-    for (const CrackRow& crack : cracks_)
-      largest = std::max({largest, crack.opening_from, crack.opening_to, std::abs(crack.slip_from), std::abs(crack.slip_to)});
     const auto add = [&](const Vec2& from, const Vec2& to, double opening) {
-      if (opening > rounding_of_openings * largest) picture_.cracks.push_back({from, to, opening});
+      if (opening > rounding_of_openings * size_) picture_.cracks.push_back({from, to, opening});
     };
     for (const CrackRow& crack : cracks_) {
       const std::optional<std::pair<Vec2, Vec2>> common = common_stretch(crack);

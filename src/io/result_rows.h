@@ -32,8 +32,8 @@ StateTable contact_table(const std::string& path);
 std::vector<ContactRow> contact_rows(const StateTable& table, const std::string& state, const BlockIndex& blocks);
 std::vector<CrackRow> crack_rows(const std::string& path, const std::string& state, const BlockIndex& blocks);
 
-/// [-] Of the largest opening or slip of a state: an opening below is the rounding of places.
-inline constexpr double rounding_of_openings = 1e-6;
+/// [-] Of the size of the median block: an opening below is the rounding of places, six orders above that of a double.
+inline constexpr double rounding_of_openings = 1e-9;
 
 /// How a block has moved from one polygon to another, as a rigid body.
 struct Placement {

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <set>
@@ -13,14 +14,21 @@
 namespace openclose {
 namespace {
 
+/// [rad] Less is the rounding of a sine that was typed.
+constexpr double slightest_turn = 1e-9;
+
 void add_seams(const Scene& scene, Picture& picture) {
   const std::vector<int> joints = joints_of_edges(scene);
   for (const int joint : joints) picture.seam_names.push_back(scene.joints[joint].name);
+  // Blocks share their edges: each is drawn once, or dashes would fill each other's gaps.
+  const auto less = [](const Vec2& a, const Vec2& b) { return std::pair(a.x(), a.y()) < std::pair(b.x(), b.y()); };
+  std::set<std::array<double, 4>> drawn;
   for (const BlockInput& block : scene.blocks) {
     for (std::size_t i = 0; i < block.edge_joints.size(); ++i) {
       if (block.edge_joints[i] == BlockInput::by_materials) continue;
       const auto number = static_cast<int>(std::ranges::lower_bound(joints, block.edge_joints[i]) - joints.begin());
-      picture.seams.push_back({block.vertices[i], block.vertices[(i + 1) % block.vertices.size()], number});
+      const auto [from, to] = std::minmax(block.vertices[i], block.vertices[(i + 1) % block.vertices.size()], less);
+      if (drawn.insert({from.x(), from.y(), to.x(), to.y()}).second) picture.seams.push_back({from, to, number});
     }
   }
 }
@@ -35,7 +43,7 @@ std::vector<int> joints_of_edges(const Scene& scene) {
 }
 
 std::string gravity_in_words(const Vec2& gravity) {
-  if (gravity.x() == 0.0 && gravity.y() <= 0.0) return "";
+  if (std::abs(gravity.x()) <= slightest_turn * gravity.norm() && gravity.y() <= 0.0) return "";
   const double turn = std::atan2(gravity.x(), -gravity.y()) * 180.0 / std::numbers::pi;
   return fmt::format("gravity is turned by {:.4g} degrees to the {}", std::abs(turn), turn > 0.0 ? "right" : "left");
 }

@@ -4,6 +4,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 
 #include "openclose/core/error.h"
@@ -28,11 +29,13 @@ void Row::refuse(std::size_t column, const std::string& read, const std::string&
 }
 
 StateTable::StateTable(const std::string& path, const std::vector<std::string>& columns) : path_(path) {
+  std::error_code unknown;
   std::ifstream file(path, std::ios::binary | std::ios::ate);
-  if (!file) return;
+  if (!file || !std::filesystem::is_regular_file(path, unknown)) return;
   text_.resize(static_cast<std::size_t>(file.tellg()));
   file.seekg(0);
   file.read(text_.data(), static_cast<std::streamsize>(text_.size()));
+  std::erase(text_, '\r');  // of an editor that ends lines so
   const std::string_view text = text_;
   const std::size_t heading = std::min(text.find('\n'), text.size());
   split(text.substr(0, heading), names_);

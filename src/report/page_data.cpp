@@ -342,7 +342,6 @@ class PageData {
       rows.push_back(std::move(numbers));
       blocks.insert(blocks.end(), {block_index_.of(row, 0), block_index_.of(row, 1)});
     });
-    if (largest_opening <= rounding_of_openings * largest) largest_opening = 0.0;
     std::vector<std::int32_t> kept_blocks;
     std::vector<float> kept;
     for (std::size_t i = 0; i < rows.size(); ++i) {

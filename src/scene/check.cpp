@@ -45,10 +45,24 @@ bool can_meet(const std::vector<Use>& uses, std::size_t a, std::size_t b) {
   return uses[a].blocks >= 1 && uses[b].blocks >= 1 && uses[a].free_blocks + uses[b].free_blocks >= 1;
 }
 
-/// A fixed block feels neither: in a domain, a point may lie in a large block that a fixed line happens to touch.
+bool is_part_of_one_that_acts(const Scene&, const auto&) {
+  return false;
+}
+
+/// A stretch over several blocks is one on each of them.
+bool is_part_of_one_that_acts(const Scene& scene, const Surcharge& part) {
+  return std::any_of(scene.surcharges.begin(), scene.surcharges.end(), [&](const Surcharge& other) {
+    const bool is_alike = other.name == part.name && other.pressure == part.pressure && other.shear == part.shear;
+    const Vec2 along = (part.to - part.from).normalized();
+    return is_alike && !scene.blocks[other.block].fixed && std::abs(cross(along, other.from - part.from)) <= tolerance::touching_m &&
+           std::abs(cross(along, other.to - part.from)) <= tolerance::touching_m;
+  });
+}
+
+/// A fixed block feels none: in a domain, a point may lie in a large block that a fixed line happens to touch.
 void warn_of_fixed_points(const Scene& scene, std::vector<std::string>& warnings) {
   for_each_force(scene, [&](const auto& force) {
-    if (!scene.blocks[force.block].fixed) return;
+    if (!scene.blocks[force.block].fixed || is_part_of_one_that_acts(scene, force)) return;
     std::vector<Vec2> points;
     force.visit_points(force, [&](const Vec2& point) { points.push_back(point); });
     warnings.push_back(fmt::format("{}: the {} at ({:g}, {:g}) has no effect: its block \"{}\" is fixed", scene.where.file, force.table().name,
@@ -111,10 +125,12 @@ void warn_of_slivers(const Scene& scene, std::vector<std::string>& warnings) {
   const auto count = std::ranges::count_if(areas, [&](const auto& area) { return area.first < most; });
   if (count == 0) return;
   const std::string others = count > 1 ? fmt::format(" and {} others", count - 1) : "";
-  warnings.push_back(fmt::format("{}: \"{}\" with {:.3g} m2{}, of {} free blocks, {} smaller than {:g} of the median block{}", scene.where.file,
-                                 scene.blocks[areas.front().second].name, areas.front().first, others, areas.size(), count > 1 ? "are" : "is",
-                                 sliver_of_median,
-                                 scene.cutting ? fmt::format("; domain.sliver_area_m2 = {:.2g} unites such with their neighbours, of which they may make teeth that lock a joint", most) : ""));
+  warnings.push_back(fmt::format(
+      "{}: \"{}\" with {:.3g} m2{}, of {} free blocks, {} smaller than {:g} of the median block{}", scene.where.file,
+      scene.blocks[areas.front().second].name, areas.front().first, others, areas.size(), count > 1 ? "are" : "is", sliver_of_median,
+      scene.cutting
+          ? fmt::format("; domain.sliver_area_m2 = {:.2g} unites such with their neighbours, of which they may make teeth that lock a joint", most)
+          : ""));
 }
 
 std::string size_of(const Scene& scene) {

@@ -71,17 +71,31 @@ std::vector<Piece> pieces_along(const Vec2& from, const Vec2& to, bool same_way,
     if (end - begin > tolerance::farthest_point_outside_block_m) pieces.push_back({edge, begin, end});
   });
   std::ranges::sort(pieces, {}, &Piece::begin);
+  // Blocks may overlap by the rounding of drawings.
+  for (std::size_t i = 1; i < pieces.size(); ++i) {
+    const double reached = pieces[i - 1].end;
+    if (pieces[i].begin < reached && reached - pieces[i].begin <= tolerance::deepest_initial_overlap_m)
+      pieces[i].begin = std::min(reached, pieces[i].end);
+  }
   return pieces;
 }
 
-/// [m] The first part of the stretch on which no piece lies, or two do; nothing if they cover it once.
-std::optional<std::pair<double, double>> uncovered(const std::vector<Piece>& pieces, double length) {
+/// The first part of a stretch on which no piece lies, or two do.
+struct Fault {
+  double begin, end;  ///< [m]
+  const char* edges;  ///< that there are
+};
+
+/// Nothing if the pieces cover the stretch once.
+std::optional<Fault> fault_of(const std::vector<Piece>& pieces, double length) {
+  constexpr double near = tolerance::farthest_point_outside_block_m;
   double reached = 0.0;
   for (const Piece& piece : pieces) {
-    if (std::abs(piece.begin - reached) > tolerance::farthest_point_outside_block_m) return std::minmax(reached, piece.begin);
+    if (piece.begin - reached > near) return Fault{reached, piece.begin, "none"};
+    if (reached - piece.begin > near) return Fault{piece.begin, reached, "two"};
     reached = piece.end;
   }
-  if (length - reached > tolerance::farthest_point_outside_block_m) return std::pair(reached, length);
+  if (length - reached > near) return Fault{reached, length, "none"};
   return std::nullopt;
 }
 
@@ -114,11 +128,12 @@ std::vector<Surcharge> Surcharge::completed(const Table& table, const std::vecto
   }
   const std::vector<Piece>& pieces = forwards.empty() ? backwards : forwards;
   const auto at = [&](double way) { return Vec2(from + way / length * (to - from)); };
-  if (const auto gap = uncovered(pieces, length)) {
+  if (const auto fault = fault_of(pieces, length)) {
     const std::string whose = block == unnamed_block ? "any block" : in_quotes(blocks[block].name);
-    value.fail(fmt::format("{} are not on edges of {} in one line, with none from {} to {}: {}, {}", ends, whose, written(at(gap->first)),
-                           written(at(gap->second)), place_in_words(from, to, blocks, block), place_in_words(to, from, blocks, block)),
-               accepted + "; a [[surcharge]] for each straight stretch");
+    value.fail(
+        fmt::format("{} are not on edges of {} in one line, with {} from {} to {}: {}, {}", ends, whose, fault->edges, written(at(fault->begin)),
+                    written(at(fault->end)), place_in_words(from, to, blocks, block), place_in_words(to, from, blocks, block)),
+        accepted + "; a [[surcharge]] for each straight stretch");
   }
   std::vector<Surcharge> list;
   for (const Piece& piece : pieces) {

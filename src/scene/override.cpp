@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "openclose/scene/key_depth.h"
+#include "openclose/scene/nearest.h"
 #include "openclose/scene/table.h"
 
 namespace openclose {
@@ -73,6 +74,16 @@ std::string ways_to_elements(const toml::array& array) {
                      names.empty() ? "; none of them has one" : names);
 }
 
+std::vector<std::string> quoted_names(const toml::array& array) {
+  std::vector<std::string> names;
+  for (const toml::node& element : array) {
+    const toml::table* table = element.as_table();
+    const auto name = table == nullptr ? std::optional<std::string>() : (*table)["name"].value<std::string>();
+    if (name) names.push_back(in_quotes(*name));
+  }
+  return names;
+}
+
 toml::table& as_table(const Override& override, toml::node& parent, const std::string& key) {
   if (toml::table* table = parent.as_table()) return *table;
   if (const toml::array* array = parent.as_array(); array != nullptr && !array->empty())
@@ -97,7 +108,8 @@ toml::node* named_element(const Override& override, toml::node& parent, const st
 toml::node& member(const Override& override, toml::node& parent, const std::string& noun, const std::string& key) {
   if (toml::node* element = named_element(override, parent, key)) return *element;
   if (const toml::array* array = parent.as_array(); array != nullptr && !array->empty())
-    override.fail(fmt::format("no {} is called {}", noun, in_quotes(key)), ways_to_elements(*array));
+    override.fail(fmt::format("no {} is called {}{}", noun, in_quotes(key), did_you_mean(in_quotes(key), quoted_names(*array))),
+                  ways_to_elements(*array));
   toml::table& table = as_table(override, parent, key);
   if (!table.contains(key)) table.insert_or_assign(key, std::move(*parse_value(override, "{}").get_as<toml::table>("value")));
   return *table.get(key);

@@ -147,13 +147,15 @@ std::string picture(const SweepOrder& order, const std::string& quantity, const 
   return svg_plots(quantity + " of " + order.cases.scene_file, note.empty() ? std::vector<std::string>{} : std::vector{note}, {plot});
 }
 
-/// Cases of earlier sweeps in the folder that this one has not: the table and the picture have been written anew without them.
-std::size_t earlier_cases(const std::string& folder, const std::vector<Case>& cases) {
+/// Cases of earlier sweeps over the same keys in the folder that this one has not: the table and the picture have been written anew without them.
+std::size_t earlier_cases(const std::string& folder, const std::vector<Variation>& variations, const std::vector<Case>& cases) {
   std::size_t count = 0;
   std::error_code missing;
   for (const auto& entry : std::filesystem::directory_iterator(folder, missing)) {
     const std::string name = entry.path().filename().string();
-    const bool is_case = name.find('=') != std::string::npos && std::filesystem::exists(entry.path() / "summary.json");
+    const bool has_keys =
+        std::ranges::all_of(variations, [&](const Variation& variation) { return name.find(variation.key + "=") != std::string::npos; });
+    const bool is_case = has_keys && std::filesystem::exists(entry.path() / "summary.json");
     if (is_case && std::ranges::find(cases, name, &Case::name) == cases.end()) ++count;
   }
   return count;
@@ -206,11 +208,10 @@ Sweep make_sweep(SweepOrder order, const std::function<void(double)>& progress) 
   CaseWarnings of_runs;
   for (std::size_t i = 0; i < cases.size(); ++i) of_runs.add(cases[i].name, results[i].summary);
   for (std::string& warning : of_runs.texts()) sweep.warnings.push_back(std::move(warning));
-  if (const std::size_t earlier = earlier_cases(order.cases.folder, cases); earlier > 0)
+  if (const std::size_t earlier = earlier_cases(order.cases.folder, order.variations, cases); earlier > 0)
     sweep.warnings.push_back(
-        fmt::format("{} cases of earlier sweeps in {} are not in this table: name their values, too, to have them in it; none is "
-                    "run again",
-                    earlier, order.cases.folder));
+        fmt::format("{} of earlier sweeps in {} not in this table: name the values, too, to have them in it; what has not changed is not run again",
+                    earlier == 1 ? std::string("1 case") : fmt::format("{} cases", earlier), order.cases.folder + (earlier == 1 ? " is" : " are")));
   sweep.files.push_back({table, text(), true});
   const std::string drawing = picture(order, order.cases.command == "fos" ? name_of_answer(increase) : order.quantity, answers, cases, results);
   if (!drawing.empty()) sweep.files.push_back({order.cases.folder + "/sweep.svg", drawing, false, Seal::xml});

@@ -106,6 +106,9 @@ TEST_CASE("cut tells the dip in the section of a set written by dip and dip dire
   const std::string out = place.run("cut scene.toml -o out/slope.toml").out;
   CHECK_THAT(out, ContainsSubstring("joint set of line 14: in the section its joints dip 45 degrees to the right and lie 1 m apart\n"));
   CHECK_THAT(out, ContainsSubstring("in the section its joints dip 26.6 degrees to the left and lie "));
+  // Planes that fall out of the section are level lines in it.
+  place.folder().write("level.toml", with_line(with_line(scene, 15, "dip_deg = 45"), 16, "dip_direction_deg = 0"));
+  CHECK_THAT(place.run("cut level.toml -o out/level.toml").out, ContainsSubstring("in the section its joints are horizontal and lie "));
 }
 
 TEST_CASE("names of the files that cut writes", "[cli][cut]") {

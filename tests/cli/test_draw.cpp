@@ -89,7 +89,7 @@ TEST_CASE("draw refuses in one line, and writes nothing", "[cli][draw]") {
     CHECK_THAT(result.errors[0], StartsWith("openclose: ") && ContainsSubstring(message));
     CHECK_FALSE(std::filesystem::exists(place.folder() / "out/drawing.svg"));
   };
-  refused("nowhere", "nowhere: there is no such folder");
+  refused("nowhere", "nowhere: there is no such folder or file; accepted: the folder of a run or fos, results/<name of the scene> by default, or a scene");
   refused("out --state finl", "there is no state \"finl\", did you mean \"final\"?; accepted: \"final\"");
   refused("out --colour red", "red");
   refused("out -o scene.toml", "a name that ends in .svg");

@@ -259,7 +259,12 @@ TEST_CASE("joints that edges name are drawn in a colour each, with their names",
   CHECK(picture.seams[0].from == scene.blocks[1].vertices[0]);
   CHECK(picture.seams[0].to == scene.blocks[1].vertices[1]);
   CHECK(picture.seams[1].name == 0);
-  CHECK(picture.seams[1].from == scene.blocks[1].vertices[2]);
+  CHECK(picture.seams[1].from == scene.blocks[1].vertices[3]);
+  CHECK(picture.seams[1].to == scene.blocks[1].vertices[2]);
+  // The block beside it with the same edge is drawn over by nothing.
+  scene.blocks[0].vertices = {scene.blocks[1].vertices[1], scene.blocks[1].vertices[0], {103.0, 50.0}, {104.0, 50.0}};
+  scene.blocks[0].edge_joints = {bedding, none, none, none};
+  CHECK(picture_of(scene).seams.size() == 2);
   const std::string svg = svg_drawing(picture);
   const auto colours = all_matches(svg, "class=\"seam\" fill=\"none\" stroke=\"(#[0-9a-f]+)\"");
   REQUIRE(colours.size() == 2);
@@ -393,7 +398,8 @@ TEST_CASE("the drawing of a factor of safety has it in the title and shows the m
 TEST_CASE("joints are drawn as their contacts are", "[io][drawing]") {
   const TemporaryFolder place;
   const auto write = [&](const std::string& status) {
-    write_two_squares(place, "final,b,a,0,1,0,1,0.5,0,1,0," + status + "\nfinal,b,a,1,1,0,1,0.5,0,1,0,sticking\n", "final,a,b,0,1,1,1,1,0,0,0,0,\n");
+    write_two_squares(place, "final,b,a,0,1,0,1,0.5,0,1,0," + status + "\nfinal,b,a,1,1,0,1,0.5,0,1,0,sticking\n",
+                      status == "open" ? "final,a,b,0,1,1,1,1,0.01,0,0,0,\n" : "final,a,b,0,1,1,1,1,0,0,0,0,\n");
   };
   const std::map<std::string, JointDrawing> states = {{"open", JointDrawing::open}, {"sliding", JointDrawing::sliding}};
   for (const auto& [word, state] : states) {
@@ -567,6 +573,30 @@ TEST_CASE("openings that are rounding beside slips are none", "[io][drawing]") {
   CHECK_THAT(svg_drawing(closed), ContainsSubstring(">no joint is open<"));
   write_two_squares(place, "", "final,a,b,0,1,1,1,1,1e-5,0,0.01,0.01,\n");
   CHECK(picture_of_results(place.path(), request).cracks.size() == 1);
+  // Two corners that touch without a force.
+  const std::string open = "final,a,b,0,1,0,1,0.5,1e-21,0,0,open\nfinal,a,b,1,1,0,1,0.5,1e-21,0,0,open\n";
+  write_two_squares(place, open, "final,a,b,0,1,1,1,1,1e-21,1e-21,0,0,\n");
+  CHECK(
+      std::ranges::none_of(picture_of_results(place.path(), request).joints, [](const Picture::Joint& j) { return j.state == JointDrawing::open; }));
+}
+
+TEST_CASE("sizes that round up to a thousand are written in the next unit", "[io][drawing]") {
+  Picture picture = picture_of(tower_on_base());
+  picture.loads = {{{103.2, 53.0}, {0.0, -0.6 * 999.99999}, {-0.6, 0.0}}, {{103.8, 53.0}, {0.0, -0.4 * 1000.00001}, {-0.4, 0.0}}};
+  const std::string svg = svg_drawing(picture);
+  CHECK(count(group(svg, "loads"), "<text") == 1);
+  CHECK(count(svg, ">1 kPa<") == 1);
+}
+
+TEST_CASE("tables with the line ends of another system are read", "[io][drawing]") {
+  const Results results;
+  const std::string before = results.draw();
+  for (const char* name : {"blocks.csv", "contacts.csv", "cracks.csv", "block_states.csv", "block_properties.csv"}) {
+    std::string table = test::text_of(results.place / name), other;
+    for (const char c : table) other += c == '\n' ? std::string("\r\n") : std::string(1, c);
+    results.place.write(name, other);
+  }
+  CHECK(results.draw() == before);
 }
 
 TEST_CASE("corners of open contacts are not joined by a line", "[io][drawing]") {

@@ -427,6 +427,10 @@ TEST_CASE("surcharges that are on no edge", "[scene][reader][errors]") {
       error("from_m = [0, 1]\nto_m = [2, 1]\n"),
       ContainsSubstring("with none from (1, 1) to (2, 1): (0, 1) is on the edge from (1, 1) to (0, 1) of \"block\", (2, 1) is 1 m from the edge"));
   CHECK_THAT(error("from_m = [-1, 1]\nto_m = [0.5, 1]\n"), ContainsSubstring("with none from (-1, 1) to (0, 1): "));
+  // One block over another one, by more than drawings are rounded to.
+  const std::string next = "[[block]]\nname = 'next'\nmaterial = 'rock'\nvertices_m = [[0.9, 0], [2, 0], [2, 1], [0.9, 1]]\n";
+  CHECK_THAT(error_of(block_on_base + next + "[[surcharge]]\npressure_pa = 1\nfrom_m = [0, 1]\nto_m = [2, 1]\n"),
+             ContainsSubstring("with two from (0.9, 1) to (1, 1): "));
   CHECK(error("from_m = [0.25, 0]\nto_m = [0.5, 0]\n") ==
         "25: surcharge[0].to_m: (0.25, 0) and (0.5, 0) are on edges of \"block\" and \"base\"" + accepted);
   CHECK(error("from_m = [0.25, 1]\nto_m = [0.25, 1]\n") == "25: surcharge[0].to_m: (0.25, 1) and (0.25, 1) are one point" + accepted);

@@ -12,6 +12,12 @@ function write(context, text, x, y, colour = "#222") {
   context.fillText(text, x, y);
 }
 
+/** Of a named joint: names beyond the colours are dashed, ever shorter. */
+function dashesOf(joint, colours) {
+  const round = Math.floor(joint / colours.length);
+  return round === 0 ? [] : [8 / round, 8 / round];
+}
+
 function gradientColour(gradient, part) {
   const place = Math.min(1, Math.max(0, part)) * (gradient.length - 1), i = Math.min(Math.floor(place), gradient.length - 2), share = place - i;
   return `rgb(${gradient[i].map((c, k) => Math.round((1 - share) * c + share * gradient[i + 1][k])).join(",")})`;
@@ -135,14 +141,16 @@ class Key {
 
   add(width, text, draw) { this.entries.push({ width, text, draw, all: width + 6 + this.context.measureText(text).width + 18 }); }
 
-  addLine(colour, width, text) {
+  addLine(colour, width, text, dashes = []) {
     this.add(30, text, (x, y) => {
+      this.context.setLineDash(dashes);
       this.context.strokeStyle = colour;
       this.context.lineWidth = width;
       this.context.beginPath();
       this.context.moveTo(x, y);
       this.context.lineTo(x + 30, y);
       this.context.stroke();
+      this.context.setLineDash([]);
     });
   }
 
@@ -200,14 +208,14 @@ function drawKey(view) {
   addColours(key, view);
   if (view.results.fixed.some((fixed) => fixed)) key.addSwatch(colours.fixed, "fixed");
   if (view.layers.joints && view.shownColour === "material" && view.results.seams)
-    for (const n of view.results.seams.used) key.addLine(colours.seams[n % colours.seams.length], 2.5, view.results.seams.names[n]);
+    for (const n of view.results.seams.used) key.addLine(colours.seams[n % colours.seams.length], 2.5, view.results.seams.names[n], dashesOf(n, colours.seams));
   if (view.layers.joints) {
     key.addLine(colours.sliding, 3, "slides");
     key.addLine(colours.open, 3, "open");
   }
   const contacts = view.results.contacts(view.state), cracks = view.results.cracks(view.state);
   if (view.layers.forces && contacts) key.addLine(colours.force, view.widestLine, `force ${forceText(view.forceScale())}`);
-  if (view.layers.openings && cracks && cracks.largestOpening > 0 && !view.isMechanism) key.addLine(colours.open, view.widestLine, `largest opening ${lengthText(cracks.largestOpening)}`);
+  if (view.layers.openings && cracks && cracks.largestOpening > ROUNDING_OF_OPENINGS * view.results.size && !view.isMechanism) key.addLine(colours.open, view.widestLine, `largest opening ${lengthText(cracks.largestOpening)}`);
   if (view.layers.symbols) {
     if (symbols.some((symbol) => symbol.kind === "load")) key.addLine(colours.load, 2.4, "load");
     if (symbols.some((symbol) => symbol.kind === "support")) key.addLine(colours.support, 2.4, "support");

@@ -67,16 +67,19 @@ function roundBelow(value) {
 }
 
 function forceText(newtons) {
+  newtons = Number(newtons.toPrecision(4));
   if (newtons >= 1e6) return `${number(newtons * 1e-6, 4)} MN/m`;
   return newtons >= 1e3 ? `${number(newtons * 1e-3, 4)} kN/m` : `${number(newtons, 4)} N/m`;
 }
 
 function pressureText(pascals) {
+  pascals = Number(pascals.toPrecision(4));
   if (pascals >= 1e6) return `${number(pascals * 1e-6, 4)} MPa`;
   return pascals >= 1e3 ? `${number(pascals * 1e-3, 4)} kPa` : `${number(pascals, 4)} Pa`;
 }
 
 function lengthText(metres) {
+  metres = Number(metres.toPrecision(4));
   if (metres >= 1) return `${number(metres, 4)} m`;
   return metres >= 1e-3 ? `${number(metres * 1e3, 4)} mm` : `${number(metres * 1e6, 4)} \u00b5m`;
 }
