@@ -147,8 +147,8 @@ def expected_end(sign, status, touched):
 
 
 def is_lost(trial, status, touched):
-    """Whether a run that was stopped has changed its folder, and left nothing to go on from; a search leaves what it knows."""
-    return trial.case.kind == "run" and status == STOPPED_BY_INTERRUPT and touched and not (trial.folder / "checkpoint.bin").is_file()
+    """Whether what was stopped has changed its folder, and left nothing to go on from."""
+    return status == STOPPED_BY_INTERRUPT and touched and not (trial.folder / "checkpoint.bin").is_file()
 
 
 def interrupt(trial, sign, length, moments, again):

@@ -265,6 +265,19 @@ TEST_CASE("a search for the factor of safety that is stopped tells what it knows
   CHECK(summary.at("verdict").get<std::string>() != "certified");
 }
 
+TEST_CASE("who stops a search in its first trial keeps the results of the one before, and is told how to run again", "[cli][restart]") {
+  const Workplace place(openclose::test::block_on_incline(20.0));
+  REQUIRE(place.run("fos scene.toml -o out").status == 0);
+  const auto before = openclose::test::contents(place.folder() / "out");
+  // The waves of dem take seconds to come to rest in so high a wall.
+  REQUIRE(place.run("new wall --courses 80 --bricks 40 -o wall.toml -q").status == 0);
+  const CommandResult stopped = place.run("fos wall.toml --contact dem -o out", "timeout --foreground --preserve-status -s INT 1 ");
+  CHECK(stopped.status == 130);
+  REQUIRE_FALSE(stopped.errors.empty());
+  CHECK_THAT(stopped.errors.back(), ContainsSubstring("stopped in the first trial") && ContainsSubstring("to run again: openclose fos 'wall.toml' "));
+  CHECK(openclose::test::contents(place.folder() / "out") == before);
+}
+
 TEST_CASE("a search whose tables cannot be written goes on from its checkpoint to the same answer", "[cli][restart]") {
   const Workplace place(openclose::test::block_on_incline(20.0));
   REQUIRE(place.run("fos scene.toml -o whole").status == 0);
