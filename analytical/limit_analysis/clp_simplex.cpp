@@ -1,25 +1,66 @@
+#include <ClpEventHandler.hpp>
 #include <ClpSimplex.hpp>
 #include <ClpSolve.hpp>
 #include <CoinError.hpp>
+#include <exception>
+#include <utility>
 
 #include "openclose/limit_analysis/simplex.h"
 #include "openclose_traps.h"
 
 namespace openclose::limit_analysis {
-namespace {
 
-/// False, too, where CLP gives up with an error. It computes with its infinity, and its answers are verified without it.
-template <class Solve>
-bool is_solved(const Solve& solve) try {
-  const NonStop non_stop;
-  return solve();
-} catch (const CoinError&) {
-  return false;
-}
+/// Asks in the iterations of CLP whether to stop. What is thrown then must not cross the library: it is kept until that has returned.
+class Simplex::Listener : public ClpEventHandler {
+ public:
+  struct State {
+    std::function<void()> interruption;
+    std::exception_ptr thrown;
+    int iterations = 0;
+  };
 
-}  // namespace
+  explicit Listener(std::shared_ptr<State> state) : state_(std::move(state)) {}
+  ClpEventHandler* clone() const override { return new Listener(*this); }
 
-class Simplex::Model : public ClpSimplex {};
+  int event(Event which) override {
+    constexpr int goes_on = -1, stops = 0, iterations_between = 64;  // the last: some milliseconds where programs are large
+    if (state_->thrown) return stops;                                // CLP tries other ways once it was stopped
+    if (which != endOfIteration || ++state_->iterations % iterations_between != 0 || !state_->interruption) return goes_on;
+    try {
+      state_->interruption();
+    } catch (...) {
+      state_->thrown = std::current_exception();
+      return stops;
+    }
+    return goes_on;
+  }
+
+ private:
+  std::shared_ptr<State> state_;
+};
+
+class Simplex::Model : public ClpSimplex {
+ public:
+  Model() {
+    const Listener listener(heard);
+    passInEventHandler(&listener);
+  }
+
+  /// False, too, where CLP gives up with an error. It computes with its infinity, and its answers are verified without it.
+  template <class Solve>
+  bool is_solved(const Solve& solve) {
+    bool is_proved = false;
+    try {
+      const NonStop non_stop;
+      is_proved = solve();
+    } catch (const CoinError&) {
+    }
+    if (heard->thrown) std::rethrow_exception(std::exchange(heard->thrown, nullptr));
+    return is_proved;
+  }
+
+  std::shared_ptr<Listener::State> heard = std::make_shared<Listener::State>();
+};
 
 const unsigned char Simplex::at_lower_bound = ClpSimplex::atLowerBound;
 const bool Simplex::available = true;
@@ -33,6 +74,10 @@ Simplex::~Simplex() = default;
 Simplex::Simplex(Simplex&&) noexcept = default;
 Simplex& Simplex::operator=(Simplex&&) noexcept = default;
 
+void Simplex::set_interruption(std::function<void()> f) {
+  model_->heard->interruption = std::move(f);
+}
+
 void Simplex::load(const Columns& columns, const std::vector<double>& right_side) {
   std::vector<CoinBigIndex> starts(columns.starts_.begin(), columns.starts_.end());
   starts.push_back(static_cast<CoinBigIndex>(columns.values_.size()));
@@ -41,7 +86,7 @@ void Simplex::load(const Columns& columns, const std::vector<double>& right_side
 }
 
 bool Simplex::solve_from(const Basis& basis) {
-  return is_solved([&] {
+  return model_->is_solved([&] {
     model_->copyinStatus(basis.data());
     model_->primal();
     return model_->isProvenOptimal();
@@ -49,10 +94,13 @@ bool Simplex::solve_from(const Basis& basis) {
 }
 
 bool Simplex::solve_by_barrier(bool with_crossover) {
-  return is_solved([&] {
+  return model_->is_solved([&] {
     ClpSolve barrier;
     barrier.setSolveType(with_crossover ? ClpSolve::useBarrier : ClpSolve::useBarrierNoCross);
     barrier.setPresolveType(ClpSolve::presolveOff);
+    // It would take Ctrl-C for itself, end this way of solving and go on with another one.
+    constexpr int interrupts = 2, left_alone = 1;
+    barrier.setSpecialOption(interrupts, left_alone);
     model_->initialSolve(barrier);
     // A barrier that stops early may have what is asked for; who asks verifies it.
     return !with_crossover || model_->isProvenOptimal();
@@ -60,7 +108,7 @@ bool Simplex::solve_by_barrier(bool with_crossover) {
 }
 
 bool Simplex::solve_from_zero() {
-  return is_solved([&] {
+  return model_->is_solved([&] {
     model_->allSlackBasis(true);
     model_->dual();
     return model_->isProvenOptimal();

@@ -138,6 +138,12 @@ void LimitAnalysis::replace_contacts(std::vector<Contact> contacts) {
 }
 
 Bracket LimitAnalysis::largest_factor(const Options& options) {
+  program_->set_interruption(options.interruption);
+  // What it refers to may be gone after this search.
+  struct Silence {
+    Program& program;
+    ~Silence() { program.set_interruption({}); }
+  } const silence{*program_};
   return Search(*program_, options).run();
 }
 

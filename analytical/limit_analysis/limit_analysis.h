@@ -22,7 +22,7 @@ struct Options {
   double first = 1.0;                       // [-] factor tried first: near the answer if it is known roughly
   double ratio = 2;                         // [-] of the factors tried next while all are feasible; later its squares
   double upper_limit = 1000;                // [-] feasible there: stands at every factor
-  std::function<void()> interruption = {};  // called before each program; may throw
+  std::function<void()> interruption = {};  // called before and in each program; may throw
   double lower_limit = 1e-3;  // [-] infeasible there: no equilibrium at any factor. Multipliers go down to 0, with the width of this one
 };
 

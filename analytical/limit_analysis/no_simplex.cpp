@@ -13,6 +13,8 @@ Simplex::~Simplex() = default;
 Simplex::Simplex(Simplex&&) noexcept = default;
 Simplex& Simplex::operator=(Simplex&&) noexcept = default;
 
+void Simplex::set_interruption(std::function<void()>) {}
+
 void Simplex::load(const Columns&, const std::vector<double>&) {}
 
 bool Simplex::solve_from(const Basis&) {

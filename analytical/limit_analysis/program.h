@@ -1,6 +1,8 @@
 // The linear program of one factor: the least artificial force that equilibrium needs besides forces within the strength.
 #pragma once
 
+#include <functional>
+#include <utility>
 #include <vector>
 
 #include "openclose/limit_analysis/limit_analysis.h"
@@ -16,6 +18,8 @@ class LimitAnalysis::Program {
   explicit Program(Problem problem);
 
   Trial at(double factor);
+  /// Called often while a program is solved; may throw.
+  void set_interruption(std::function<void()> f) { simplex_.set_interruption(std::move(f)); }
   void replace_contacts(std::vector<Contact> contacts);
   const Problem& problem() const { return problem_; }
   int solved() const { return solved_; }

@@ -1,6 +1,7 @@
 // Linear programs: least cost of columns within bounds whose rows have given sums. CLP solves them; a build without CLP solves none.
 #pragma once
 
+#include <functional>
 #include <limits>
 #include <memory>
 #include <vector>
@@ -40,6 +41,9 @@ class Simplex {
   Simplex(Simplex&&) noexcept;
   Simplex& operator=(Simplex&&) noexcept;
 
+  /// Called every few iterations of the simplex methods from now on; what it throws ends the program and comes out of it.
+  void set_interruption(std::function<void()> f);
+
   void load(const Columns& columns, const std::vector<double>& right_side);
 
   /// Ways to solve what was loaded; false if the solution is not proved to be the best. From a basis near the one of the solution:
@@ -57,6 +61,7 @@ class Simplex {
 
  private:
   class Model;
+  class Listener;
   std::unique_ptr<Model> model_;
 };
 

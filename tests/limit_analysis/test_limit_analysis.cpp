@@ -113,6 +113,28 @@ TEST_CASE("limit analysis: the wall of Ferris and Tin-Loi's kind, at every size 
   }
 }
 
+TEST_CASE("limit analysis: what is thrown while a program is solved comes out of it, and the next search finds what it would have found") {
+  const Problem wall = tilted_wall(16, 10, 4, 1.75, 15 * degree, 0.0, 0.65, 1.0, Point::Zero());
+  LimitAnalysis analysis(wall);
+  int calls = 0;
+  Options options;
+  options.interruption = [&] { ++calls; };
+  const Bracket whole = analysis.largest_factor(options);
+  CHECK(calls > whole.programs);  // within programs, too
+  struct Stop {};
+  for (const int last : {1, 2, calls / 2, calls}) {
+    LimitAnalysis stopped(wall);
+    int count = 0;
+    options.interruption = [&] {
+      if (++count == last) throw Stop();
+    };
+    CHECK_THROWS_AS(stopped.largest_factor(options), Stop);
+    CHECK(count == last);
+    options.interruption = {};
+    CHECK(stopped.largest_factor(options).factor == Approx(whole.factor).margin(Options().width));
+  }
+}
+
 TEST_CASE("limit analysis: a sliver among large blocks") {
   // A block on a plane, and on it a chip of a hundred-millionth of its weight that slides at less.
   for (const double weight : {1e-2, 1e-4, 1e-6, 1e-8}) {
