@@ -270,7 +270,7 @@ TEST_CASE("who stops a search in its first trial keeps the results of the one be
   REQUIRE(place.run("fos scene.toml -o out").status == 0);
   const auto before = openclose::test::contents(place.folder() / "out");
   // The waves of dem take seconds to come to rest in so high a wall.
-  REQUIRE(place.run("new wall --courses 80 --bricks 40 -o wall.toml -q").status == 0);
+  REQUIRE(place.run("new wall --courses 160 --bricks 30 -o wall.toml -q").status == 0);
   const CommandResult stopped = place.run("fos wall.toml --contact dem -o out", "timeout --foreground --preserve-status -s INT 1 ");
   CHECK(stopped.status == 130);
   REQUIRE_FALSE(stopped.errors.empty());
