@@ -82,6 +82,18 @@ TEST_CASE("of a thousand blocks only neighbours are compared", "[scene][check]")
   CHECK(blocks_that_may_overlap(larger).size() == beside + above);
 }
 
+TEST_CASE("a surcharge that goes on over a fixed block is not said to have no effect, one that lies on fixed blocks alone is", "[scene][check]") {
+  const std::string next = "[[block]]\nname = 'next'\nmaterial = 'rock'\nfixed = true\nvertices_m = [[1, 0], [2, 0], [2, 1], [1, 1]]\n";
+  const auto warnings = [&](const std::string& from) {
+    const Scene scene = read_text(block_on_base + next + "[[surcharge]]\npressure_pa = 1e3\nfrom_m = " + from + "\nto_m = [2, 1]\n");
+    std::string all;
+    for (const std::string& warning : check_scene(scene)) all += warning;
+    return all;
+  };
+  CHECK_THAT(warnings("[0, 1]"), !ContainsSubstring("has no effect"));
+  CHECK_THAT(warnings("[1.2, 1]"), ContainsSubstring("the surcharge at") && ContainsSubstring("has no effect"));
+}
+
 TEST_CASE("loads and supports of fixed blocks are worth a warning", "[scene][check]") {
   Scene scene = read_text(block_on_base);
   scene.blocks[0].fixed = true;
