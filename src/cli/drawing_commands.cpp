@@ -4,12 +4,12 @@
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "commands.h"
 #include "machine_output.h"
 #include "openclose/core/error.h"
 #include "openclose/io/drawing.h"
+#include "openclose/scene/angle.h"
 #include "openclose/scene/writer.h"
 
 namespace openclose {
@@ -22,10 +22,6 @@ std::string dip_in_words(double dip) {
   if (std::abs(dip) <= rounding) return "are horizontal";
   if (90.0 - std::abs(dip) <= rounding) return "are vertical";
   return fmt::format("dip {:.3g} degrees to the {}", std::abs(dip), dip > 0.0 ? "left" : "right");
-}
-
-double degrees(double angle) {
-  return angle * 180.0 / std::numbers::pi;
 }
 
 nlohmann::ordered_json json_of(const std::vector<SetInSection>& sets) {

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <set>
 #include <utility>
 
 #include "openclose/geometry/polygon.h"
 #include "openclose/io/drawing.h"
+#include "openclose/scene/angle.h"
 #include "openclose/scene/scene.h"
 
 namespace openclose {
@@ -44,7 +44,7 @@ std::vector<int> joints_of_edges(const Scene& scene) {
 
 std::string gravity_in_words(const Vec2& gravity) {
   if (std::abs(gravity.x()) <= slightest_turn * gravity.norm() && gravity.y() <= 0.0) return "";
-  const double turn = std::atan2(gravity.x(), -gravity.y()) * 180.0 / std::numbers::pi;
+  const double turn = degrees(std::atan2(gravity.x(), -gravity.y()));
   return fmt::format("gravity is turned by {:.4g} degrees to the {}", std::abs(turn), turn > 0.0 ? "right" : "left");
 }
 

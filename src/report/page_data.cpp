@@ -68,6 +68,7 @@ class PageData {
     page["answer"] = report_.answer;
     page["bounds"] = {{"created_energy", watch_bound::created_energy}, {"penetration", watch_bound::penetration}, {"reach", 1.0}};
     page["colours"] = colours();
+    page["rounding_of_openings"] = rounding_of_openings;
     page["blocks"] = blocks();
     page["origin"] = {origin_.x(), origin_.y()};
     page["symbols"] = symbols();

@@ -215,7 +215,7 @@ function drawKey(view) {
   }
   const contacts = view.results.contacts(view.state), cracks = view.results.cracks(view.state);
   if (view.layers.forces && contacts) key.addLine(colours.force, view.widestLine, `force ${forceText(view.forceScale())}`);
-  if (view.layers.openings && cracks && cracks.largestOpening > ROUNDING_OF_OPENINGS * view.results.size && !view.isMechanism) key.addLine(colours.open, view.widestLine, `largest opening ${lengthText(cracks.largestOpening)}`);
+  if (view.layers.openings && cracks && cracks.largestOpening > view.results.leastOpening && !view.isMechanism) key.addLine(colours.open, view.widestLine, `largest opening ${lengthText(cracks.largestOpening)}`);
   if (view.layers.symbols) {
     if (symbols.some((symbol) => symbol.kind === "load")) key.addLine(colours.load, 2.4, "load");
     if (symbols.some((symbol) => symbol.kind === "support")) key.addLine(colours.support, 2.4, "support");

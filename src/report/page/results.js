@@ -111,6 +111,9 @@ class Results {
     };
   }
 
+  /** [m] An opening below is the rounding of places. */
+  get leastOpening() { return this.data.rounding_of_openings * this.size; }
+
   cracks(i) {
     return this.part(i, "cracks", (state) => {
       const packed = state.cracks;

@@ -13,8 +13,6 @@ const NOTICEABLE_PART = 0.01;
 const CONTACT_REACH = 7, CONTACT_PART = 0.2;
 /** [px] Shorter ways of the pointer are a click. */
 const CLICK_WAY = 4;
-/** [-] Of the size of the median block: an opening below is the rounding of places. */
-const ROUNDING_OF_OPENINGS = 1e-9;
 /** Names are written beside no more points and loads than this. */
 const MOST_LABELS = 12;
 const FIXED_CLASS = COLOUR_STEPS + 1;
@@ -251,7 +249,7 @@ class View {
     for (let k = 0; k < contacts.count; ++k) {
       if (status[k] === 1) continue;
       // What touches without a force is closed.
-      if (status[k] === 0 && numbers[CONTACT_NUMBERS * k + 5] <= ROUNDING_OF_OPENINGS * this.results.size) continue;
+      if (status[k] === 0 && numbers[CONTACT_NUMBERS * k + 5] <= this.results.leastOpening) continue;
       const n = CONTACT_NUMBERS * k, [x, y] = this.toScreen(numbers[n], numbers[n + 1]), reach = numbers[n + 8] * this.scale;
       if (reach !== 0) lines[STATUS[status[k]]].push(x, y, x - numbers[n + 3] * reach, y - numbers[n + 2] * reach);
       else if (status[k] === 2) dots.push(x, y);
@@ -320,7 +318,7 @@ class View {
 
   drawOpenings() {
     const cracks = this.results.cracks(this.state);
-    if (!cracks || cracks.largestOpening <= ROUNDING_OF_OPENINGS * this.results.size) return;
+    if (!cracks || cracks.largestOpening <= this.results.leastOpening) return;
     this.drawSized(this.results.data.colours.open, 0.8, (line) =>
       this.eachHalfCrack(cracks, (from, to, opening) => { if (opening > 0) line(opening / cracks.largestOpening, ...from, ...to); }));
   }
