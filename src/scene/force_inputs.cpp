@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -62,13 +61,16 @@ struct Piece {
 std::vector<Piece> pieces_along(const Vec2& from, const Vec2& to, bool same_way, const std::vector<BlockInput>& blocks, int named) {
   const double length = (to - from).norm();
   const Vec2 along = (to - from) / length;
-  const auto is_near_line = [&](const Vec2& point) { return std::abs(cross(along, point - from)) <= tolerance::farthest_point_outside_block_m; };
+  // Ends are typed with six decimals or so, which the line through a short stretch magnifies at the far ends of a long edge.
+  const auto is_near = [&](const Edge& edge, double way) {
+    return edge.distance_to(from + way * along) <= tolerance::farthest_point_outside_block_m;
+  };
   std::vector<Piece> pieces;
   for_each_edge(blocks, named, [&](const Edge& edge) {
     const double a = along.dot(edge.first - from), b = along.dot(edge.second - from);
-    if ((b > a) != same_way || !is_near_line(edge.first) || !is_near_line(edge.second)) return;
     const double begin = std::max(std::min(a, b), 0.0), end = std::min(std::max(a, b), length);
-    if (end - begin > tolerance::farthest_point_outside_block_m) pieces.push_back({edge, begin, end});
+    if ((b > a) != same_way || end - begin <= tolerance::farthest_point_outside_block_m) return;
+    if (is_near(edge, begin) && is_near(edge, end)) pieces.push_back({edge, begin, end});
   });
   std::ranges::sort(pieces, {}, &Piece::begin);
   // Blocks may overlap by the rounding of drawings.

@@ -247,6 +247,15 @@ TEST_CASE("a surcharge on several edges in one line is one on each of them, whic
   CHECK((sum - 2.25 * Vec2(500.0, -2000.0)).norm() <= 1e-9);
 }
 
+TEST_CASE("a short surcharge whose ends are rounded lies on a long edge", "[scene][reader]") {
+  const std::string slab = "[[block]]\nname = 'slab'\nmaterial = 'rock'\nvertices_m = [[0, 1], [100, 31], [100, 32], [0, 2]]\n";
+  // Half a millionth of a metre off, to either side.
+  const std::string ends = "from_m = [50, 17.0000005]\nto_m = [51, 17.2999995]\n";
+  const Scene scene = read_text(block_on_base + slab + "[[surcharge]]\npressure_pa = 1\n" + ends);
+  REQUIRE(scene.surcharges.size() == 1);
+  CHECK(scene.blocks[scene.surcharges[0].block].name == "slab");
+}
+
 TEST_CASE("edges of a block name their joints, however its vertices are written", "[scene][reader]") {
   const std::string joint = "[[joint]]\nname = 'bedding'\nnormal_stiffness_pa_per_m = 1e9\nshear_stiffness_pa_per_m = 4e8\nfriction_angle_deg = 20\n";
   const auto block = [&](const std::string& vertices, const std::string& joints) {
