@@ -30,7 +30,7 @@ from openclose_scripts.processes import DONE, NOT_CONVERGED, call, run_process, 
 SCENE = ROOT / "paper/scenes/example_3_4_post_failure.toml"
 COPIED = ("CMakeLists.txt", "CMakePresets.json", "analytical", "cmake", "mutants", "paper", "scripts", "src", "tests", "verification")
 FOLDER = ROOT / "build/ablation"
-SLOPE_METHODS = ("soft",)
+SLOPE_METHODS = ("soft", "hard")
 LIMIT_S = 600
 TIME_LIMIT = "time limit"
 SLOPE_LIMIT_S = 10  # a random slope that takes longer with all mechanisms counts for nothing
@@ -57,7 +57,7 @@ def _of_34(blocks: str, factor: float, contact: str, end_s: float, counted: bool
 
 def runs(slope_count: int, seed: int, program: Path) -> list[Run]:
     found = [_of_34("387", 1, "soft", 4.0, True), _of_34("387", 1, "hard", 1.0, True), _of_34("1.8k", 0.48, "soft", 0.1, True),
-             _of_34("9.7k", 0.206, "soft", 0.1, False)]
+             _of_34("1.8k", 0.48, "hard", 0.1, True), _of_34("9.7k", 0.206, "soft", 0.1, False)]
     for s in range(seed, seed + slope_count):
         # Drawn where random scenes are at home.
         file = Path(call([sys.executable, str(ROOT / "stress/stress.py"), "--part", "slopes", "--keep", str(s), "--openclose", str(program), "--results", str(FOLDER)]).strip())

@@ -4,7 +4,7 @@
 #
 # A header of src/<folder> is included as "openclose/<folder>/file.h". That path is a link in the build
 # tree which only the targets linked to the folder can see, so an include against the direction of the
-# data (scene -> blocks -> contacts -> law -> solve -> analysis -> output) does not compile.
+# data (the order of src/CMakeLists.txt) does not compile.
 
 add_library(openclose_options INTERFACE)
 target_compile_options(openclose_options INTERFACE

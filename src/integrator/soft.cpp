@@ -68,7 +68,10 @@ class Soft final : public Enforcement {
     largest.grow_to(relaxation_.memory());
     return largest;
   }
-  void exchange(Archive& archive) override { newton_.exchange(archive); }
+  void exchange(Archive& archive) override {
+    newton_.exchange(archive);
+    archive(many_come_loose_);
+  }
 
  private:
   void attempt(const StepProblem& problem, const SoftSprings& springs, StepSolution& solution) {

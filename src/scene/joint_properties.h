@@ -1,5 +1,5 @@
 // What the user wrote of a joint, and its rows: reader, writer, docs/keys.md and the schema go through them. What a contact carries with these
-// parameters is said in law/joint_law.h; solvers know neither.
+// parameters is said in law/joint_law.h, which solvers ask for strength.
 #pragma once
 
 #include <array>
