@@ -150,8 +150,13 @@ void residual(benchmark::State& state) {
   Slope& slope = Slope::of(state.range(0));
   const auto springs = slope.springs();
   const StepProblem step = slope.problem();
-  Newton newton;
-  for (auto _ : state) benchmark::DoNotOptimize(newton.forces(step, springs).data());
+  StepEquations equations;
+  ContactTrial contacts;
+  for (auto _ : state) {
+    equations.prepare(step, GivenSprings(springs), contacts);
+    equations.sum_start_forces();
+    benchmark::DoNotOptimize(equations.start_force().data());
+  }
   say_size(state, slope);
 }
 

@@ -48,9 +48,8 @@ constexpr double static_gap = 1e-11;
 /// [-] Units in the last place that rounding may leave in a gap.
 constexpr double rounding_units = 4.0;
 /// [-] Part of the tolerance by which closed contacts may stay apart from zero; what earlier steps have left beyond it is pushed back, by no more
-/// than another part in a step: redundant contacts that have different gaps then ask for motions that exclude each other by less than what is
-/// tolerated.
-constexpr double kept_penetration = 0.5, recovered_penetration = 0.5;
+/// than the rest in a step: redundant contacts that have different gaps then ask for motions that exclude each other by less than what is tolerated.
+constexpr double kept_penetration = 0.5, recovered_penetration = 1.0 - kept_penetration;
 constexpr int most_outer_passes = 100;
 /// Statics: solutions with springs that are stiffer from one to the next, if no passes hold the contacts. The first makes all of them stiffer, each
 /// further one those of the few contacts that carry more than before.
@@ -187,6 +186,10 @@ class Hard final : public Enforcement {
       last_error = error;
       last_way = way;
     }
+    give_up(solution);
+  }
+
+  static void give_up(StepSolution& solution) {
     solution.converged = false;
     solution.reason = "the multipliers of hard contacts did not converge";
   }
@@ -210,8 +213,7 @@ class Hard final : public Enforcement {
     solution.d = drift(problem);
     newton_.solve(problem, springs_, solution);
     const double tolerated = kept_penetration * problem.method.gap_tolerance;
-    double common = 0.0;
-    for (std::size_t c = 0; c < springs_.size(); ++c) common = std::max(common, closure(solution, c) / tolerated);
+    const double common = largest_closure(solution) / tolerated;
     for (int round = 0; solution.converged && round < most_stiffenings; ++round) {
       bool is_held = true;
       for (std::size_t c = 0; c < springs_.size(); ++c) {
@@ -225,12 +227,14 @@ class Hard final : public Enforcement {
       solution.d = drift(problem);
       newton_.solve_again(springs_, solution, FirstTangent::present);
     }
-    if (!solution.converged) return;
+    if (solution.converged && largest_closure(solution) > incompatible_gaps * problem.method.gap_tolerance) give_up(solution);
+  }
+
+  /// [m] Of all contacts that carry.
+  double largest_closure(const StepSolution& solution) const {
     double largest = 0.0;
     for (std::size_t c = 0; c < springs_.size(); ++c) largest = std::max(largest, closure(solution, c));
-    if (largest <= incompatible_gaps * problem.method.gap_tolerance) return;
-    solution.converged = false;
-    solution.reason = "the multipliers of hard contacts did not converge";
+    return largest;
   }
 
   /// [m] Of a contact that carries: by how much it misses its target gap.

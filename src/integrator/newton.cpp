@@ -24,8 +24,6 @@ constexpr double shortest_backtrack = 0.01;
 /// than to a part of what ends the iteration.
 constexpr double farthest_reduction = 1e-6, loosest_reduction = 0.1;
 constexpr double end_to_spare = 0.3;
-/// [-] The same with held contacts: single loose blocks, whose residual is a small part of the whole, need their digits, too.
-constexpr double held_linear_reduction = 1e-12;
 /// [-] Of rows of the tangent that a factor may be left with, see LinearSolver::factor(): the turning of blocks that only tremble. 40 m of a failing
 /// slope of 387 free blocks: with 0 all rows are factored anew in 2,427 iterations, with 1e-8 117 of them in 2,439, with 1e-7 88 in 2,522, with
 /// 1e-5 68 in 2,622, with 1e-4 40 in 3,178.
@@ -152,9 +150,17 @@ void Newton::hold_changed(double norm) {
   }
 }
 
+bool Newton::take_whole_step(StepSolution& solution, double longest, double& norm) {
+  const Eigen::VectorXd step = direction(solution.d, Tangent::exact, full_reduction);
+  ++solution.effort.iterations;
+  if (step.size() == 0 || !(step.lpNorm<Eigen::Infinity>() <= longest)) return false;
+  equations_.evaluate(solution.d += step);
+  norm = equations_.residual_norm();
+  return true;
+}
+
 bool Newton::iterate_from_cold(StepSolution& solution, double& norm) {
-  Eigen::VectorXd& d = solution.d;
-  const double longest = d.lpNorm<Eigen::Infinity>();
+  const double longest = solution.d.lpNorm<Eigen::Infinity>();
   holds_.resize(contacts().size());
   for (int iteration = 1; iteration < most_cold_iterations && norm > 1.0 && std::isfinite(norm); ++iteration) {
     for (std::size_t c = 0; c < contacts().size(); ++c) {
@@ -163,18 +169,13 @@ bool Newton::iterate_from_cold(StepSolution& solution, double& norm) {
     }
     branches_before_ = branches();
     contacts().hold(holds_, false);
-    const Eigen::VectorXd step = direction(d, Tangent::exact, held_linear_reduction);
-    ++solution.effort.iterations;
-    const bool is_held = step.size() > 0 && step.lpNorm<Eigen::Infinity>() <= longest;
-    if (is_held) equations_.evaluate(d += step);
-    norm = is_held ? equations_.residual_norm() : std::numeric_limits<double>::infinity();
+    if (!take_whole_step(solution, longest, norm)) norm = std::numeric_limits<double>::infinity();
   }
   holds_.clear();
   return std::isfinite(norm);
 }
 
 Newton::Outcome Newton::iterate_holding(StepSolution& solution, double& norm, int done) {
-  Eigen::VectorXd& d = solution.d;
   holds_.assign(contacts().size(), 0.0);
   if (done > 0) hold_changed(norm);
   Outcome outcome = Outcome::ended;
@@ -184,15 +185,10 @@ Newton::Outcome Newton::iterate_holding(StepSolution& solution, double& norm, in
     branches_before_ = branches();
     // With the coupling, loose blocks fall from one side to the other; without it, single contacts go round between open and sliding.
     contacts().hold(holds_, iteration % 2 == 1);
-    const Eigen::VectorXd step = direction(d, Tangent::exact, held_linear_reduction);
-    ++solution.effort.iterations;
-    if (step.size() == 0) {
+    if (!take_whole_step(solution, std::numeric_limits<double>::infinity(), norm)) {
       outcome = Outcome::singular;
       break;
     }
-    d += step;
-    equations_.evaluate(d);
-    norm = equations_.residual_norm();
     best = std::min(best, norm);
     hold_changed(norm);
   }
@@ -321,8 +317,9 @@ double Newton::begin(const Eigen::VectorXd& d, FirstTangent first) {
 
 bool Newton::solve_part(const StepEquations& whole, const Part& part, NewtonEnd end, StepSolution& found) {
   is_part_ = true;
-  const std::vector<std::pair<int, int>> ends = equations_.take_part(whole, part, found.contacts);
-  tangent_.fit_part(whole.problem().method, equations_.rows(), static_cast<int>(contacts().moves().size()), ends);
+  equations_.take_part(whole, part, found.contacts);
+  tangent_.forget();
+  tangent_.fit(whole.problem().method, equations_.rows(), contacts());
   equations_.evaluate(found.d);
   double norm = equations_.residual_norm();
   const double norm_before = norm;
@@ -334,7 +331,7 @@ void Newton::solve(const StepProblem& problem, const SpringSource& springs, Step
   branches_before_ = solution.contacts.branches();
   subdomains_.begin_step();
   equations_.prepare(problem, springs, solution.contacts);
-  tangent_.fit(problem, contacts().batches());
+  tangent_.fit(problem.method, equations_.rows(), contacts());
   solve_prepared(solution, first);
 }
 
@@ -393,27 +390,6 @@ Memory Newton::present_memory() const {
   of.blocks += sizeof(double) * static_cast<std::size_t>(trial_.size());
   of.contacts += bytes_of(branches_before_, holds_) + subdomains_.bytes();
   return of;
-}
-
-Eigen::MatrixXd Newton::stiffness(const StepProblem& problem, const std::vector<ContactSprings>& springs) {
-  StepProblem static_problem = problem;
-  static_problem.inertia = 0.0;
-  static_problem.end_weight = 1.0;
-  static_problem.scheme = nullptr;
-  ContactTrial contacts;
-  equations_.prepare(static_problem, GivenSprings(springs), contacts);
-  tangent_.fit(static_problem, contacts.batches());
-  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(dofs * problem.system.free_count());
-  equations_.evaluate(zero);
-  assemble(zero, Tangent::exact);
-  return tangent_.matrix().dense();
-}
-
-Eigen::VectorXd Newton::forces(const StepProblem& problem, const std::vector<ContactSprings>& springs) {
-  ContactTrial contacts;
-  equations_.prepare(problem, GivenSprings(springs), contacts);
-  equations_.sum_start_forces();
-  return equations_.start_force();
 }
 
 }  // namespace openclose

@@ -66,14 +66,6 @@ class Newton {
   /// A part of another system for itself, while all other blocks stay where they are there, from found.d. True if its residual is smaller then.
   bool solve_part(const StepEquations& whole, const Part& part, NewtonEnd end, StepSolution& found);
 
-  /// Minus the derivative of all forces but inertia by the unknowns, at the start of the step, contacts in the status they have. Rows and columns of
-  /// locked rotations are those of the unit matrix.
-  Eigen::MatrixXd stiffness(const StepProblem& problem, const std::vector<ContactSprings>& springs);
-
-  /// [N] forces of contacts, gravity, loads and supports at the present position.
-  Eigen::VectorXd forces(const StepProblem& problem, const std::vector<ContactSprings>& springs);
-
-  double force_scale() const { return equations_.force_scale(); }  ///< [N] largest single force in the last evaluation
   StepEquations& equations() { return equations_; }
   void exchange(Archive& archive) {
     tangent_.exchange(archive);
@@ -101,6 +93,9 @@ class Newton {
   /// Goes on, after the first iteration of a cold start, by whole steps with the exact tangent, in which what has just opened or begun to slide is
   /// still held by a part of its springs. False if blocks come loose all the same.
   bool iterate_from_cold(StepSolution& solution, double& norm);
+  /// One of these: all digits of it, since single loose blocks have a small part of the residual. False if there is none or it goes farther.
+  /// \param longest  [m]
+  bool take_whole_step(StepSolution& solution, double longest, double& norm);
   /// The same by whole steps with tangents that hold contacts which have changed their state.
   /// \param done  iterations that have been made so; the last one from branches_before_
   Outcome iterate_holding(StepSolution& solution, double& norm, int done);

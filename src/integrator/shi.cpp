@@ -111,7 +111,7 @@ class Shi : public Enforcement {
       contacts.set(i, f, 0.0, 0.0);
       kinematics_.emplace_back(contacts.pose_at_start(i));
     }
-    tangent_.fit(problem);
+    tangent_.fit(problem.method, problem.system.free_count(), contacts);
   }
 
   /// Whether an open contact closes at this stretch: where it is compressed, or where its tensile strength holds the two together, as it does in a

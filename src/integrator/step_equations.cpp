@@ -254,7 +254,7 @@ void StepEquations::take_states(const std::vector<Branch>& branches) {
   }
 }
 
-std::vector<std::pair<int, int>> StepEquations::take_part(const StepEquations& whole, const Part& part, ContactTrial& contacts) {
+void StepEquations::take_part(const StepEquations& whole, const Part& part, ContactTrial& contacts) {
   problem_ = whole.problem_;
   contacts_ = &contacts;
   contact_scale_ = whole.contact_scale_;
@@ -273,7 +273,7 @@ std::vector<std::pair<int, int>> StepEquations::take_part(const StepEquations& w
     blocks_.push_back(whole.blocks_[row]);
     place(row);
   }
-  return contacts_->take_part(*whole.contacts_, part, place);
+  contacts_->take_part(*whole.contacts_, part, place);
 }
 
 bool StepEquations::stands_still() const {

@@ -31,8 +31,7 @@ class StepEquations {
   /// The same step with springs that differ only in what they carry at its start, in the gaps they keep and in their stiffness.
   void prepare_again(const std::vector<ContactSprings>& springs, ContactTrial& contacts);
   /// The equations of a part of another system, while all other blocks stay where they are there.
-  /// \return places of the blocks of each contact
-  std::vector<std::pair<int, int>> take_part(const StepEquations& whole, const Part& part, ContactTrial& contacts);
+  void take_part(const StepEquations& whole, const Part& part, ContactTrial& contacts);
   /// Blocks that nothing touches go where constant forces move them, which is known at once. They have no residual, and their forces are no measure
   /// of others, so that whatever they are changes not a bit of what the others do.
   void move_blocks_alone(Eigen::VectorXd& d) const;

@@ -4,8 +4,8 @@
 #include "openclose/analysis/run.h"
 #include "openclose/core/tolerance.h"
 #include "openclose/integrator/critical_step.h"
-#include "openclose/integrator/newton.h"
 #include "support/catch.h"
+#include "support/equations.h"
 #include "support/scenes.h"
 
 using namespace openclose;
@@ -18,8 +18,7 @@ double exact_step(Simulation& simulation) {
   problem.statics = true;  // no dashpots
   std::vector<ContactSprings> springs;
   for (const Contact& c : problem.contacts) springs.push_back(simulation.enforcement().springs(problem, c));
-  Newton newton;
-  const Eigen::MatrixXd k = newton.stiffness(problem, springs);
+  const Eigen::MatrixXd k = test::stiffness_of(problem, springs);
   Eigen::VectorXd mass(k.rows());
   for (int b : problem.system.free_blocks()) mass.segment<3>(3 * problem.system.block(b).equation) = problem.system.block(b).mass;
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(0.5 * (k + k.transpose()), mass.asDiagonal().toDenseMatrix());

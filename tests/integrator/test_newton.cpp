@@ -11,6 +11,7 @@
 #include "openclose/integrator/registry.h"
 #include "openclose/scene/reader.h"
 #include "support/catch.h"
+#include "support/equations.h"
 #include "support/scenes.h"
 
 using namespace openclose;
@@ -71,10 +72,10 @@ struct Probe {
     BlockSystem moved = here.system;
     for (int b : moved.free_blocks()) moved.advance(b, of(b));
     const StepProblem there{moved, here.external, here.joints, here.contacts, here.method, here.dt, here.statics, here.inertia, here.end_weight};
-    return newton.forces(there, moved_springs);
+    return test::forces_of(there, moved_springs);
   }
 
-  Eigen::MatrixXd stiffness() { return newton.stiffness(simulation.problem(1.0, false), springs); }
+  Eigen::MatrixXd stiffness() { return test::stiffness_of(simulation.problem(1.0, false), springs); }
 
   Simulation simulation;
   std::vector<ContactSprings> springs;
@@ -199,7 +200,7 @@ TEST_CASE("solving a step again with springs that start differently is solving i
       newton.solve(problem, probe.springs, solution, first_tangent);
     }
     REQUIRE(solution.converged);
-    return std::pair(solution.d, newton.force_scale());
+    return std::pair(solution.d, newton.equations().force_scale());
   };
   const auto [again, again_scale] = solved(true);
   const auto [anew, anew_scale] = solved(false);

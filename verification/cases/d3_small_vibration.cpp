@@ -5,8 +5,8 @@
 #include "harness.h"
 #include "openclose/analytical/single_spring.h"
 #include "openclose/analytical/two_spring_block.h"
-#include "openclose/integrator/newton.h"
 #include "scenes.h"
+#include "support/equations.h"
 
 namespace openclose::verification {
 namespace {
@@ -29,8 +29,7 @@ Modes modes_of(Simulation& simulation) {
   const auto problem = simulation.problem(1e-3, false);
   std::vector<ContactSprings> springs;
   for (const Contact& c : problem.contacts) springs.push_back(simulation.enforcement().springs(problem, c));
-  Newton newton;
-  const Eigen::Matrix3d k = newton.stiffness(problem, springs);
+  const Eigen::Matrix3d k = test::stiffness_of(problem, springs);
   const Eigen::Matrix3d m = simulation.system().block(1).mass.asDiagonal();
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix3d> solver(k, m);
   return {solver.eigenvalues().cwiseMax(0.0).cwiseSqrt(), solver.eigenvectors()};

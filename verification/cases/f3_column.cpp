@@ -5,8 +5,8 @@
 #include "harness.h"
 #include "openclose/analytical/single_spring.h"
 #include "openclose/analytical/stacked_blocks.h"
-#include "openclose/integrator/newton.h"
 #include "scenes.h"
+#include "support/equations.h"
 
 namespace openclose::verification {
 namespace {
@@ -56,7 +56,7 @@ void eigenvalues(Report& report, const std::vector<double>& expected) {
     Eigen::VectorXd mass(dofs * blocks);
     for (const Contact& c : problem.contacts) springs.push_back(simulation.enforcement().springs(problem, c));
     for (const int b : problem.system.free_blocks()) mass.segment<dofs>(dofs * problem.system.block(b).equation) = problem.system.block(b).mass;
-    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(Newton().stiffness(problem, springs), mass.asDiagonal().toDenseMatrix());
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(test::stiffness_of(problem, springs), mass.asDiagonal().toDenseMatrix());
     // Bouncing does not mix with swaying: a mode is wholly vertical or not at all.
     std::vector<double> bouncing;
     for (int i = 0; i < mass.size(); ++i) {
