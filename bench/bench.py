@@ -17,6 +17,7 @@ import scaling
 import skips
 import statics
 import table_4
+import walls_and_piles
 from measure import MODES, Bench, write_csv
 from openclose_scripts import ROOT
 from openclose_scripts.printed import read_printed
@@ -25,7 +26,7 @@ from openclose_scripts.runs import Openclose, Reference
 
 EXIT_RUN_FAILED = 1
 EXIT_CANNOT_START = 2
-STUDIES = ("motion", "statics", "failure", "scaling", "skips", "table_4", "micro", "peers")
+STUDIES = ("motion", "statics", "failure", "scaling", "skips", "walls_and_piles", "table_4", "micro", "peers")
 
 
 def parse_arguments() -> argparse.Namespace:
@@ -54,6 +55,7 @@ def run_studies(arguments: argparse.Namespace, bench: Bench, reference: Referenc
         "failure": lambda: failure.run(bench),
         "scaling": lambda: scaling.run(bench),
         "skips": lambda: skips.run(bench),
+        "walls_and_piles": lambda: walls_and_piles.run(bench),
         "table_4": lambda: table_4.run(bench),
     }
     if arguments.micro:

@@ -11,6 +11,7 @@ import skips
 import statics
 import table_4
 import targets
+import walls_and_piles
 from measure import Bench, Row
 from openclose_scripts.formats import significant
 from openclose_scripts.markdown import markdown_table
@@ -107,6 +108,16 @@ def _sizes(bench: Bench) -> str:
                     "memory [bytes a block]", "without the factor", "Krylov iterations, settling"], lines)
             + f"\nExponents of the number of blocks, from {scaling.FIT_RANGE[0]:,} to {scaling.FIT_RANGE[1]:,}:\n\n"
             + _table(["method", "of", "exponent", "sizes"], fits))
+
+
+def _walls_and_piles(bench: Bench) -> str:
+    lines = [[r.scene, r.method, str(r.blocks or ""), f"{significant(1e3 * r.cpu_s / r.steps)} ({_spread(r)})" if r.cpu_s else "-",
+              significant(r.iterations / r.steps) if r.iterations is not None and r.steps else "-", significant(r.max_penetration_m), r.reason]
+             for r in bench.of(walls_and_piles.STUDY)]
+    return (f"A wall in running bond, {walls_and_piles.REST_STEPS} steps after it has settled and {walls_and_piles.COLD_STEPS} with gravity that comes at "
+            f"once; boxes that fall on each other, steps of {1e3 * walls_and_piles.PILE_DT_S:g} ms. No closed form stands beside them: they are here for "
+            "what they cost, the deepest penetration beside it.\n\n"
+            + _table(["scene", "method", "blocks", "a step [ms]", "iterations a step", "deepest penetration [m]", "reason"], lines))
 
 
 def _skips(bench: Bench) -> str:
@@ -210,6 +221,7 @@ def write(bench: Bench, found: dict, printed: dict, description: dict, figures: 
     text += section("What the skips save", skips.STUDY, lambda: _skips(bench))
     if bench.of(skips.STUDY):
         text += "\n## Time by stage\n\n" + _stages(bench) + (f"\n![Time by stage](bench/{drawn['stages']})\n" if "stages" in drawn else "")
+    text += section("Walls and piles", walls_and_piles.STUDY, lambda: _walls_and_piles(bench))
     text += section("Table 4 and Fig. 10", table_4.STUDY, lambda: _table_4(bench, printed))
     if found.get("micro"):
         text += "\n## Parts of a step\n\n" + _micro(found["micro"])

@@ -6,6 +6,7 @@ import failure
 import peers
 import scaling
 import statics
+import walls_and_piles
 from measure import Bench, Row
 from winner import LARGEST_ERROR, fastest, may_win
 
@@ -126,6 +127,25 @@ def _memory(bench: Bench, method: str, what: str, asked_kb: float, bytes_of=lamb
     return _at_most(what, None if found is None else found / row.blocks / 1e3, asked_kb, " kB a block", f" ({row.blocks:,} blocks)")
 
 
+def _walls_and_piles(bench: Bench) -> list[Target]:
+    def milliseconds(value: float | None) -> float | None:
+        return None if value is None else 1e3 * value
+
+    rest, cold, pile = walls_and_piles.REST, walls_and_piles.COLD, walls_and_piles.PILE
+    found = []
+    for method in ("soft", "hard"):
+        found.append(_at_most(f"{rest}: a step of {method}", milliseconds(walls_and_piles.per_step(bench, rest, method)), 3.0, " ms"))
+        found.append(_at_most(f"{cold}: a step of {method}", milliseconds(walls_and_piles.per_step(bench, cold, f"{method}, automatic")), 60.0, " ms"))
+    for scene in walls_and_piles.scenes(bench):
+        if scene == rest:
+            continue
+        for method in ("soft", "hard"):
+            found.append(_at_most(f"{scene}, {method}: the solver that is chosen over the best", walls_and_piles.over_the_best(bench, scene, method), 1.1, " x"))
+    soft, hard = (walls_and_piles.cost(bench, pile, f"{m}, automatic") for m in ("soft", "hard"))
+    found.append(_at_most(f"{pile}: hard over soft in time", hard / soft if hard and soft else None, 2.0, " x"))
+    return found
+
+
 def _iteration(method: str, times: float | None) -> Target:
     """How many of them a step of Box2D takes."""
     what = f"a Newton iteration of {method} (residual, assembly, factor, solve) over a step of Box2D"
@@ -157,5 +177,6 @@ def measured(bench: Bench, found: dict) -> list[Target]:
         *_failures(bench, found.get("failure")),
         *_hard(bench),
         *_sizes(bench),
+        *_walls_and_piles(bench),
         *_peers(found.get("peers")),
     ]

@@ -3,16 +3,20 @@
 import random
 from pathlib import Path
 
-from measure import Bench, Row, Trial
-from methods import DEM, HARD, SOFT, Method
+from measure import Bench, Trial
+from methods import DEM, HARD, SOFT, Method, Settings
+from openclose_scripts.examples.slopes import JointedSlope
 from openclose_scripts.runs import Case
+from scaling import LARGEST_STEP, spacings
 
 STUDY = "walls and piles"
 REST, COLD, PILE = "wall at rest", "wall loaded at once", "dropped pile"
 SOLVERS = ("automatic", "direct", "iterative")
 LIMIT_S = 300
-WALL_DT_S, WALL_STEPS = 0.01, 20
+WALL_DT_S, REST_STEPS, COLD_STEPS = 0.01, 40, 20
 PILE_DT_S, PILE_END_S, PILE_QUICK_END_S = 0.005, 3.0, 1.5
+SLOPES, QUICK_SLOPES = (500, 2000, 10000, 50000), (500, 2000)
+SLOPE_DT_S, SLOPE_STEPS = 0.01, 10
 SEED = 1
 
 HEAD = """[[material]]
@@ -66,37 +70,61 @@ def _write(folder: Path, name: str, text: str) -> Path:
     return file
 
 
-def _wall(scene: Path, method: Method, start: str, solver: str, steps: int) -> Case:
-    settings = (*method.settings, ("method.start", start), ("solver.linear_solver", solver), ("step.dt_s", WALL_DT_S),
-                ("end.time_s", WALL_DT_S * steps), ("output.every_s", WALL_DT_S * steps))
-    return Case(f"wall-{method.name}-{start}-{solver}-{steps}", "run", scene, settings, LIMIT_S)
+def _case(name: str, scene: Path, method: Method, start: str, solver: str, dt: float, end: float, more: Settings = ()) -> Case:
+    settings = (*method.settings, ("method.start", start), *((("solver.linear_solver", solver),) if solver else ()), ("step.dt_s", dt),
+                ("end.time_s", end), ("output.every_s", end), *more)
+    return Case(f"{name}-{method.name}-{solver or 'explicit'}", "run", scene, settings, LIMIT_S)
 
 
-def _pile(scene: Path, method: Method, solver: str, end: float) -> Case:
-    settings = (*method.settings, ("method.start", "unloaded"), ("step.dt_s", PILE_DT_S), ("end.time_s", end), ("output.every_s", end))
-    return Case(f"pile-{method.name}-{solver}", "run", scene, settings if method is DEM else (*settings, ("solver.linear_solver", solver)), LIMIT_S)
-
-
-def _farthest(bench: Bench):
-    """[m] that the blocks of a wall at rest have moved."""
+def _way_of_a_wall(bench: Bench):
+    """[m] The farthest that a block has gone since it has settled."""
     def of(case: Case) -> float:
         rows = bench.openclose.table(case, "history.csv")
-        return float(rows[-1]["max_displacement_m"]) - float(rows[0]["max_displacement_m"])
+        ways = [[float(row[key]) for key in ("displacement_x_m", "displacement_y_m")] for row in (rows[0], rows[-1])]
+        return max(abs(a - b) for a, b in zip(*ways))
     return of
+
+
+def _chosen(bench: Bench, scene: str, case_of, end: float, dt: float) -> None:
+    """The same steps with each way to solve the linear equations."""
+    bench.measure([Trial(STUDY, scene, f"{m.name}, {s}", case_of(m, s, dt, end), "motion", "", lambda _: None, dt) for m in (SOFT, HARD) for s in SOLVERS])
 
 
 def run(bench: Bench) -> None:
     folder = bench.openclose.folder_of(Case("walls-and-piles", "run", Path()))
     wall, pile = _write(folder, "wall", wall_scene()), _write(folder, "pile", pile_scene())
+    bench.measure([Trial(STUDY, REST, m.name, _case("wall-at-rest", wall, m, "settled", "automatic", WALL_DT_S, WALL_DT_S * REST_STEPS), "motion",
+                         "way of a block of a wall that stands [m]", _way_of_a_wall(bench), WALL_DT_S) for m in (SOFT, HARD)])
+    _chosen(bench, COLD, lambda m, s, dt, end: _case("wall-cold", wall, m, "unloaded", s, dt, end), WALL_DT_S * COLD_STEPS, WALL_DT_S)
     end = PILE_QUICK_END_S if bench.quick else PILE_END_S
-    bench.measure([Trial(STUDY, REST, m.name, _wall(wall, m, "settled", "automatic", WALL_STEPS), "motion", "way of a wall that stands", _farthest(bench), WALL_DT_S)
-                   for m in (SOFT, HARD)])
-    bench.measure([Trial(STUDY, COLD, f"{m.name}, {s}", _wall(wall, m, "unloaded", s, WALL_STEPS), "motion", "", lambda _: None, WALL_DT_S)
-                   for m in (SOFT, HARD) for s in SOLVERS])
-    bench.measure([Trial(STUDY, PILE, f"{m.name}, {s}" if m is not DEM else m.name, _pile(pile, m, s, end), "motion", "", lambda _: None, PILE_DT_S)
-                   for m, solvers in ((SOFT, SOLVERS), (HARD, SOLVERS), (DEM, ("",))) for s in solvers])
+    _chosen(bench, PILE, lambda m, s, dt, end: _case("pile", pile, m, "unloaded", s, dt, end), end, PILE_DT_S)
+    bench.measure([Trial(STUDY, PILE, DEM.name, _case("pile", pile, DEM, "unloaded", "", PILE_DT_S, end), "motion", "", lambda _: None, PILE_DT_S)])
+    for blocks in QUICK_SLOPES if bench.quick else SLOPES:
+        more = (*spacings(blocks), *LARGEST_STEP, ("output.milestones_m", []))
+        _chosen(bench, slope(blocks), lambda m, s, dt, end: _case(f"slope-{blocks}", JointedSlope.POST_FAILURE, m, "unloaded", s, dt, end, more),
+                SLOPE_DT_S * SLOPE_STEPS, SLOPE_DT_S)
 
 
-def per_step(row: Row) -> float | None:
-    """[s] CPU time"""
-    return row.cpu_s / row.steps if row.cpu_s and row.steps else None
+def slope(blocks: int) -> str:
+    return f"3.4 of {blocks}, loaded at once"
+
+
+def scenes(bench: Bench) -> list[str]:
+    return list(dict.fromkeys(row.scene for row in bench.of(STUDY)))
+
+
+def per_step(bench: Bench, scene: str, method: str) -> float | None:
+    """[s] CPU time of a step, mean over the run."""
+    row = next((r for r in bench.of(STUDY, scene) if r.method == method and not r.reason), None)
+    return row.cpu_s / row.steps if row and row.steps else None
+
+
+def cost(bench: Bench, scene: str, method: str) -> float | None:
+    """[s] CPU time of the run"""
+    return next((r.cpu_s for r in bench.of(STUDY, scene) if r.method == method and not r.reason), None)
+
+
+def over_the_best(bench: Bench, scene: str, method: str) -> float | None:
+    """What the solver that the program chooses costs over the best of them."""
+    costs = [cost(bench, scene, f"{method}, {s}") for s in SOLVERS]
+    return costs[0] / min(c for c in costs if c) if costs[0] else None

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <limits>
 #include <ranges>
 #include <span>
 #include <vector>
@@ -57,6 +58,12 @@ class BlockShapes {
   }
   /// Of a block that has been measured.
   bool is_convex(int block) const { return convex_[block] != 0; }
+  /// [m] By which a line along an edge of one of two blocks parts them, at most: they are no nearer to each other. Zero if none does.
+  double distance_at_least(int a, int b) {
+    if (!measured_[a]) measure(a);
+    if (!measured_[b]) measure(b);
+    return std::max(beyond_edges_of(a, b), beyond_edges_of(b, a));
+  }
   /// Whether two blocks lie on different sides of a line along an edge of one of them, the other one farther from it than `room` [m].
   bool apart(int a, int b, double room) {
     if (!measured_[a]) measure(a);
@@ -76,6 +83,20 @@ class BlockShapes {
       for (const Edge& corner : edges(a)) own = std::max(own, edge.gap(corner.start));
       return own == 0.0 || is_beyond(room + own);
     });
+  }
+  double beyond_edges_of(int a, int b) const {
+    double farthest = 0.0;
+    for (const Edge& edge : edges(a)) {
+      double nearest = std::numeric_limits<double>::infinity();
+      for (const Edge& corner : edges(b)) nearest = std::min(nearest, edge.gap(corner.start));
+      if (nearest <= farthest) continue;
+      double own = 0.0;  // what lies before an edge in a notch
+      if (!is_convex(a)) {
+        for (const Edge& corner : edges(a)) own = std::max(own, edge.gap(corner.start));
+      }
+      farthest = std::max(farthest, nearest - own);
+    }
+    return farthest;
   }
   void measure(int b) {
     measured_[b] = 1;

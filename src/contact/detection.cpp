@@ -122,11 +122,13 @@ double Detector::relative_way(const PairState& then, const Place& first, const P
   return (radius + reach_ + skips_.contact_skin) * std::abs(turns[0] - turns[1]) + shift.norm();
 }
 
-Detector::Due Detector::due(double way) const {
+Detector::Due Detector::due(int pair, double way) const {
   constexpr double companion_part = 0.1;  // of the skin
+  const double room = candidates_.states[pair].room;
   // Also where nothing is known of the pair, so that the way is no number.
-  if (!std::islessequal(way, skips_.contact_skin)) return Due::yes;
-  return way > companion_part * skips_.contact_skin ? Due::moved : Due::no;
+  if (!std::islessequal(way, room)) return Due::yes;
+  // What is out of reach has no history to pass on.
+  return room <= skips_.contact_skin && way > companion_part * room ? Due::moved : Due::no;
 }
 
 void Detector::list_pairs_of_blocks(int blocks) {
@@ -174,7 +176,7 @@ void Detector::for_pairs_of(const std::vector<int>& blocks, const std::vector<ch
 
 /// A pair in which something has moved by `way` is not due before its blocks have gone what is left of the skin.
 void Detector::look_again_before(int pair, double way) {
-  const double left = skips_.contact_skin - tolerance::rounding_of_ways_m - way;
+  const double left = candidates_.states[pair].room - tolerance::rounding_of_ways_m - way;
   for (const int b : {candidates_.pairs[pair].first, candidates_.pairs[pair].second})
     ways_[b].look_at = std::min(ways_[b].look_at, ways_[b].gone + 0.5 * left);
 }
@@ -195,7 +197,7 @@ bool Detector::mark_due_pairs(const BlockSystem& system, bool all) {
   for_pairs_of(restless_, is_restless_, [&](int pair) {
     ++looks;
     const double gone = way(pair);
-    if (due(gone) == Due::yes) {
+    if (due(pair, gone) == Due::yes) {
       marks_.add(pair);
     } else {
       look_again_before(pair, gone);
@@ -208,7 +210,7 @@ bool Detector::mark_due_pairs(const BlockSystem& system, bool all) {
   find_blocks_of_due_pairs();
   for (const int pair : due_pairs_) marks_.add(pair);
   for_pairs_of(in_due_pairs_, in_due_pair_, [&](int pair) {
-    if (due(way(pair)) == Due::moved) marks_.add(pair);
+    if (due(pair, way(pair)) == Due::moved) marks_.add(pair);
   });
   marks_.take(due_pairs_);
   return true;
@@ -237,8 +239,6 @@ const std::vector<int>& Detector::pairs_around_due_ones() {
 /// Finds the contacts of a pair anew, with the history of those that live on.
 void Detector::redo(const JointTable& joints, const BlockSystem& system, int pair, NarrowPhase& narrow, const std::vector<Contact>& before) {
   const auto [a, b] = candidates_.pairs[pair];
-  candidates_.states[pair] = {places_[a].x - places_[b].x, places_[a].y - places_[b].y, places_[a].turn, places_[b].turn};
-  look_again_before(pair, 0.0);
   const Range old = candidates_.ranges[pair];
   const std::size_t begin = found_.size();
   index_.select(old);
@@ -260,7 +260,11 @@ void Detector::redo(const JointTable& joints, const BlockSystem& system, int pai
   for (int k = old.begin; k < old.end; ++k) {
     if (!lives_on_[k - old.begin]) gone_.push_back(k);
   }
-  if (old.begin != old.end || begin != found_.size()) {
+  const bool has_none = old.begin == old.end && begin == found_.size();
+  const double room = has_none ? std::max(skips_.contact_skin, shapes_.distance_at_least(a, b) - reach_) : skips_.contact_skin;
+  candidates_.states[pair] = {places_[a].x - places_[b].x, places_[a].y - places_[b].y, places_[a].turn, places_[b].turn, room};
+  look_again_before(pair, 0.0);
+  if (!has_none) {
     changes_.push_back({pair, old, {static_cast<int>(begin), static_cast<int>(found_.size())}});
   }
 }

@@ -7,10 +7,10 @@
 //
 // What is not done again: candidate pairs are searched anew only when a block has moved beyond search_skin; a pair's contacts are found anew only
 // when a point of one of its blocks near the other may have moved by contact_skin relative to it since they last were, or a tenth of it where a pair
-// that shares a block is due (so that what one loses and another gains is found at once and history can pass between them). Blocks that move together
-// are not redone. Contacts of other pairs stay as they are; their gaps are the caller's to carry on. Contacts are kept to reach + contact_skin, so
-// that none comes within reach unseen; a corner that comes over the end of an edge is found at most contact_skin late, and lengths are off by less
-// than it.
+// that shares a block is due (so that what one loses and another gains is found at once and history can pass between them); those of a pair without
+// contacts, which the line along an edge keeps apart, when it may have moved what is beyond reach of that. Blocks that move together are not redone.
+// Contacts of other pairs stay as they are; their gaps are the caller's to carry on. Contacts are kept to reach + contact_skin, so that none comes
+// within reach unseen; a corner that comes over the end of an edge is found at most contact_skin late, and lengths are off by less than it.
 //
 // Blocks at rest (BlockSystem::is_at_rest) move as little as fixed ones do: pairs of which neither block moves are set aside with their contacts by
 // divide(), are not looked at in a step, and come back as they were when one of the two is woken. A search leaves them out; they stay complete as
@@ -135,10 +135,11 @@ class Detector {
     static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
     double x = unknown, y = unknown;             ///< [m] of the first centroid from the second
     double first_turn = 0.0, second_turn = 0.0;  ///< [rad]
+    double room = 0.0;                           ///< [m] as far as something may move before they are found again
 
     void exchange(Archive& archive) {
-      auto& [a, b, c, d] = *this;
-      archive(a, b, c, d);
+      auto& [a, b, c, d, e] = *this;
+      archive(a, b, c, d, e);
     }
   };
   /// Neighbours in the list that stay so.
@@ -171,7 +172,7 @@ class Detector {
   void locate(const std::vector<Contact>& contacts);
   static Place place(const BlockSystem& system, int b);
   double relative_way(const PairState& then, const Place& first, const Place& second) const;
-  Due due(double way) const;
+  Due due(int pair, double way) const;
   void list_pairs_of_blocks(int blocks);
   void follow_blocks(const BlockSystem& system, bool all);
   template <class F>
