@@ -1,7 +1,6 @@
 #include "openclose/analysis/energy_ledger.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <vector>
 
@@ -183,11 +182,6 @@ void add_contacts(EnergyLedger& ledger, const StepProblem& problem, const StepSo
 
 double stored_energy(double normal_stiffness, double shear_stiffness, double normal, double shear) {
   return 0.5 * (normal * normal / normal_stiffness + shear * shear / shear_stiffness);
-}
-
-bool EnergyLedger::is_finite() const {
-  const auto& [a, b, c, d, e, f, g, h, i, j, k, l, m] = *this;
-  return std::ranges::all_of(std::array{a, b, c, d, e, f, g, h, i, j, k, l, m}, [](double entry) { return std::isfinite(entry); });
 }
 
 void add_step(EnergyLedger& ledger, const StepProblem& problem, const StepSolution& solution, const TimeScheme& scheme, bool elastic) {
