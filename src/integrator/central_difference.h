@@ -1,4 +1,4 @@
-// The explicit method's loop: central difference over rigid blocks on the joint's own springs, the same steps as dem.cpp takes one by one.
+// The explicit method's loop: central difference over rigid blocks on the joint's own springs.
 //
 //   v(t + h/2) = v(t - h/2) + h a(t),  M a = F(x(t)) + damping force,  x(t + h) = x(t) + h v(t + h/2)
 //
