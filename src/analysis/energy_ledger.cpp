@@ -1,7 +1,6 @@
 #include "openclose/analysis/energy_ledger.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <vector>
 
@@ -34,13 +33,11 @@ void add_elastic_contact(EnergyLedger& ledger, const Contact& contact, const Con
   double let_go = 0.0;
   if (theta < 1.0) {
     const double weight = 1.0 - theta, n0 = start.normal, t0 = start.shear, opening1 = contact.stretch() + gap_change + p1;
-    // An open contact's force is none of its spring, see crossing_energy.h.
-    const double of_joint = start.status == ContactStatus::open ? 0.0 : n0, of_joint_t = start.status == ContactStatus::open ? 0.0 : t0;
-    by_springs -= weight * of_joint * opening1;
-    by_rotation += weight * (n0 * paths.normal_start - of_joint * gap_change + t0 * paths.shear_start - of_joint_t * slip);
-    viscous_normal += weight * (of_joint - start.elastic_normal);
-    viscous_shear += weight * (of_joint_t - start.elastic_shear);
-    shear += weight * of_joint_t;
+    by_springs -= weight * n0 * opening1;
+    by_rotation += weight * (n0 * paths.normal_start - n0 * gap_change + t0 * paths.shear_start - t0 * slip);
+    viscous_normal += weight * (n0 - start.elastic_normal);
+    viscous_shear += weight * (t0 - start.elastic_shear);
+    shear += weight * t0;
     // Where the strength has gone since the last step the spring lets go before it starts.
     let_go = weight * (start.elastic_shear + ks * u0) * (u1 - u0);
   }
@@ -51,15 +48,9 @@ void add_elastic_contact(EnergyLedger& ledger, const Contact& contact, const Con
   ledger.scheme -= let_go;
   ledger.contact_damping += viscous_normal * (p1 - p0) - viscous_shear * (u1 - u0);
   ledger.friction -= shear * (slip - (u1 - u0));
-  if (theta == 0.0) {  // what rubs in a step of central difference is the mean force: so its work is summed by parts
-    const double t_end = end.forces.status == ContactStatus::open ? 0.0 : t1, plastic = slip - (u1 - u0);
-    const double rubbed = std::max(0.0, -0.5 * (shear + t_end) * plastic), not_yet = rubbed + shear * plastic;
-    ledger.friction += not_yet;
-    ledger.scheme -= not_yet;
-  }
 }
 
-/// [N] All that a step with the forces at its end needs of those at its start. Of the springs of `soft`, `shi` and `dem`.
+/// [N] All that a step with the forces at its end needs of those at its start. Of the springs of `soft` and `shi`.
 double elastic_normal_at_start(const Contact& contact, const TabulatedJoint& joint, const ContactOutcome& end) {
   const double elastic = -end.normal_stiffness * contact.stretch();
   return is_open(ContactStrength(joint, contact), elastic) ? 0.0 : elastic;
@@ -183,11 +174,6 @@ void add_contacts(EnergyLedger& ledger, const StepProblem& problem, const StepSo
 
 double stored_energy(double normal_stiffness, double shear_stiffness, double normal, double shear) {
   return 0.5 * (normal * normal / normal_stiffness + shear * shear / shear_stiffness);
-}
-
-bool EnergyLedger::is_finite() const {
-  const auto& [a, b, c, d, e, f, g, h, i, j, k, l, m] = *this;
-  return std::ranges::all_of(std::array{a, b, c, d, e, f, g, h, i, j, k, l, m}, [](double entry) { return std::isfinite(entry); });
 }
 
 void add_step(EnergyLedger& ledger, const StepProblem& problem, const StepSolution& solution, const TimeScheme& scheme, bool elastic) {

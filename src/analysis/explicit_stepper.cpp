@@ -27,21 +27,10 @@ void ExplicitStepper::collect() {
   loop_->store_contacts(state_.contacts.moving);
   loop_->store_far_gaps(state_.system, state_.contacts.moving);
   state_.max_penetration = std::max(state_.max_penetration, loop_->max_penetration());
-  const ExplicitEnergies e = loop_->take_energies();
+  state_.ledger += loop_->take_energies();
   const double stored = state_.moving_contact_energy();
-  EnergyLedger& ledger = state_.ledger;
-  ledger.contact_springs += stored - collected_contact_energy_;
+  state_.ledger.contact_springs += stored - collected_contact_energy_;
   collected_contact_energy_ = stored;
-  ledger.gravity += e.gravity;
-  ledger.base_motion += e.base_motion;
-  ledger.loads += e.loads;
-  ledger.support_springs += e.support_springs;
-  ledger.friction += e.friction;
-  ledger.contact_damping += e.contact_damping;
-  ledger.mass_damping += e.mass_damping;
-  ledger.scheme += e.scheme;
-  ledger.redefinition += e.redefinition;
-  ledger.turnover += e.turnover;
   state_.book_kinetic_energy(loop_->kinetic_ahead());
 }
 

@@ -20,7 +20,7 @@ class Simulation {
 
   /// Throws InputError for an unknown enforcement or a missing joint. Explicit methods run in the loop of CentralDifference.
   explicit Simulation(Scene scene);
-  /// With an enforcement of the caller's own, which solves every step itself, also if it is explicit; null: the one that the scene names.
+  /// With an enforcement of the caller's own, which solves every step; null: the one that the scene names.
   Simulation(Scene scene, std::unique_ptr<Enforcement> enforcement);
 
   /// One attempt at a step, or at the next stage of one where the integrator has several; advance() puts them together. Explicit methods do not look

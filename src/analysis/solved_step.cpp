@@ -162,25 +162,4 @@ Eigen::VectorXd forces_now(const StepProblem& problem, const Enforcement& enforc
   return force;
 }
 
-std::vector<Unknowns> forces_at_end(const StepProblem& problem, const StepSolution& solution) {
-  const BlockSystem& system = problem.system;
-  std::vector<Unknowns> force(system.block_count(), Unknowns::Zero());
-  for (int b : system.free_blocks()) force[b] = problem.external.force(system, b, Unknowns::Zero());
-  for (std::size_t i = 0; i < problem.contacts.size(); ++i) {
-    const ContactOutcome o = solution.contacts[i];
-    push_apart(problem.contacts[i], o.pose, o.forces.normal, o.forces.shear, [&](int b, const Unknowns& f) { force[b] += f; });
-  }
-  return force;
-}
-
-double kinetic_ahead(const StepProblem& problem, const std::vector<Unknowns>& forces) {
-  const BlockSystem& system = problem.system;
-  double power = 0.0;
-  for (int b : system.free_blocks()) {
-    const Unknowns others = forces[b] - problem.external.weight(system, b) - problem.external.base_force(system, b);
-    power += system.velocity(b).dot(others);
-  }
-  return 0.5 * problem.dt * power;
-}
-
 }  // namespace openclose

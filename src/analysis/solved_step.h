@@ -44,12 +44,4 @@ std::vector<Blow> blows(const StepProblem& problem, const StepSolution& solution
 /// [N, N, N m] Sum of the forces on every free block as it stands, without dashpots.
 Eigen::VectorXd forces_now(const StepProblem& problem, const Enforcement& enforcement);
 
-/// [N, N, N m] The same after an explicit step, whose contacts carry at its end what they have in the solution; of all blocks. To be asked when
-/// blocks have been moved.
-std::vector<Motion::Unknowns> forces_at_end(const StepProblem& problem, const StepSolution& solution);
-
-/// [J] See CentralDifference::kinetic_ahead(), for explicit steps taken one by one.
-/// \param forces  forces_at_end()
-double kinetic_ahead(const StepProblem& problem, const std::vector<Motion::Unknowns>& forces);
-
 }  // namespace openclose

@@ -5,7 +5,6 @@
 
 #include "openclose/analysis/solved_step.h"
 #include "openclose/core/tolerance.h"
-#include "openclose/integrator/crossing_energy.h"
 
 namespace openclose {
 namespace {
@@ -188,7 +187,7 @@ void SolvedStepper::accept(const StepProblem& problem) {
   for (int b : state_.system.free_blocks()) state_.system.advance(b, solution_.of(state_.system, b));
   for (const Blow& blow : struck) end_of_blow(blow);
   if (!problem.statics) state_.scheme->accept(problem.dt);
-  enforcement.is_explicit() ? take_end_of_explicit_step(problem) : state_.book_kinetic_energy(0.0);
+  state_.book_kinetic_energy(0.0);
   state_.time += problem.dt;
   ++state_.counters.steps;
   state_.count_moves();
@@ -208,7 +207,7 @@ void SolvedStepper::accept(const StepProblem& problem) {
 }
 
 bool SolvedStepper::accept_contacts() {
-  const bool elastic = state_.enforcement->has_elastic_contacts(), is_explicit = state_.enforcement->is_explicit();
+  const bool elastic = state_.enforcement->has_elastic_contacts();
   bool some_change = false;
   for (std::size_t i = 0; i < state_.contacts.moving.size(); ++i) {
     Contact& c = state_.contacts.moving[i];
@@ -218,7 +217,6 @@ bool SolvedStepper::accept_contacts() {
     c.slack = solution_.contacts.slack(i);
     c.gap += solution_.contacts.gap_change(i);
     c.normal_force = c.shear_force = c.elastic_slip = c.stored_energy = 0.0;
-    if (is_explicit) book_crossing(c, i, start);
     if (c.status != ContactStatus::open) {
       const CarriedForces f = solution_.contacts.forces(i);
       const double kn = solution_.contacts.normal_stiffness(i), ks = solution_.contacts.shear_stiffness(i);
@@ -233,24 +231,6 @@ bool SolvedStepper::accept_contacts() {
   return some_change;
 }
 
-void SolvedStepper::book_crossing(Contact& contact, std::size_t c, const Contact& start) {
-  const double before = contact.crossing_energy;
-  contact.crossing_energy = 0.0;
-  const bool is_open = contact.status == ContactStatus::open;
-  if (is_open) {
-    const CarriedForces settling = solution_.contacts.forces(c);
-    contact.normal_force = settling.normal;
-    contact.shear_force = settling.shear;
-    contact.crossing_energy = solution_.contacts.crossing_energy(c);
-    contact.stored_energy = -contact.crossing_energy;
-  } else if (ContactStrength(state_.joints.joint(contact.joint), contact).tension == 0.0) {
-    contact.crossing_energy =
-        start.status == ContactStatus::open ? closing_energy(solution_.contacts.normal_stiffness(c), start.stretch(), contact.stretch()) : before;
-  }
-  state_.ledger.contact_springs -= contact.crossing_energy - before;
-  state_.ledger.scheme += contact.crossing_energy - before;
-}
-
 bool SolvedStepper::accept_velocities(const StepProblem& problem) {
   BlockSystem& system = state_.system;
   bool some = false;
@@ -259,7 +239,7 @@ bool SolvedStepper::accept_velocities(const StepProblem& problem) {
     const Unknowns d = solution_.of(system, b), v = problem.velocity(b), zero = Unknowns::Zero();
     Unknowns at_end = problem.statics ? zero : state_.scheme->velocity_at_end(b, problem.dt, d, v);
     Unknowns next = problem.statics ? zero : state_.scheme->next_velocity(b, problem.dt, d, v);
-    if (!problem.statics && !state_.enforcement->is_explicit() && has_come_to_rest(problem, b, next)) {
+    if (!problem.statics && has_come_to_rest(problem, b, next)) {
       dropped += 0.5 * system.block(b).mass.dot(next.cwiseAbs2());
       at_end = next = zero;
     }
@@ -270,16 +250,6 @@ bool SolvedStepper::accept_velocities(const StepProblem& problem) {
   }
   state_.ledger.scheme += dropped;
   return some;
-}
-
-void SolvedStepper::take_end_of_explicit_step(const StepProblem& problem) {
-  std::vector<Unknowns> force = forces_at_end(problem, solution_);
-  state_.book_kinetic_energy(kinetic_ahead(problem, force));
-  for (int b : state_.system.free_blocks()) {
-    const auto& block = state_.system.block(b);
-    if (block.rotation_locked) force[b][Motion::rotation_index] = 0.0;
-    state_.output_velocity[b] = state_.system.velocity(b) + 0.5 * problem.dt * force[b].cwiseQuotient(block.mass);
-  }
 }
 
 void SolvedStepper::end_of_blow(const Blow& blow) {

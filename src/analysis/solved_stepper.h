@@ -1,5 +1,5 @@
-// Steps that an enforcement solves for: soft, hard and shi, and dem step by step as the reference of its loop. A step either succeeds as a whole or
-// leaves no trace (but for what the linear solver keeps, which shows in the answer as far as Newton's method tolerates).
+// Steps that an enforcement solves for: soft, hard and shi. A step either succeeds as a whole or leaves no trace (but for what the linear solver
+// keeps, which shows in the answer as far as Newton's method tolerates).
 #pragma once
 
 #include "openclose/analysis/simulation_state.h"
@@ -57,10 +57,6 @@ class SolvedStepper {
   bool accept_contacts();
   /// Gives the blocks their velocities; false: none has one.
   bool accept_velocities(const StepProblem& problem);
-  /// What crossing_energy.h says of a contact.
-  void book_crossing(Contact& contact, std::size_t c, const Contact& start);
-  /// Velocities at the end of an explicit step, half a step after those of the system, see CentralDifference::velocity_at_end().
-  void take_end_of_explicit_step(const StepProblem& problem);
   /// The velocity at the end of a step goes on from that of its middle with the forces of the step. A blow is over then, and what it has changed is
   /// in the velocity of the middle: that part of going on is taken back.
   void end_of_blow(const Blow& blow);

@@ -1,5 +1,5 @@
-// Gap and slip of a contact as functions of the unknowns of its two blocks, with exact first and second derivatives (for Shi's linear
-// rotation they are exact where the step starts).
+// Gap and slip of a contact as functions of the unknowns of its two blocks, with exact first derivatives (for Shi's linear rotation they are exact
+// where the step starts).
 //
 // With p the vertex, e the first point of the edge, n its outward normal, t its direction: gap g = n . (p - e), slip s = t . (p - e), the edge
 // turning with its block. Their gradients are the generalised forces of unit forces n, t on the vertex's block and -n, -t on the edge's block, both
@@ -141,48 +141,8 @@ void push_apart(const Contact& contact, const ContactPose& at, double normal, do
   push(contact.edge_block, Motion::Unknowns(-f.x, -f.y, -f.on_edge));
 }
 
-/// Stiffness of a contact: the four blocks of minus the derivative of the generalised forces by the unknowns. The force f acts at p on the vertex's
-/// block and -f on the edge's, at its arms; `by_shift` is minus its derivative by the displacement of p against the edge's block, `turning` the
-/// part of it that turns with that block (for second derivatives; zero leaves them out).
-struct ContactStiffness {
-  using Block = Motion::Matrix;
-  double shift_xx, shift_xy, shift_yx, shift_yy;  ///< [N/m]
-  Vec2 force_vertex_arm, force_edge_arm;          ///< [m] where the force acts
-  Vec2 vertex_arm, edge_arm;                      ///< [m] of the contact's motion: the same, unless the force is a mean over a path
-  Vec2 turning = Vec2::Zero();                    ///< [N]
-  Vec2 on_arms = Vec2::Zero();                    ///< [N] the part of the force whose arms follow the motion; zero with `turning`
-
-  void add_to_vertex(Block& k) const { add(k, 1.0, force_vertex_arm, vertex_arm, on_arms.dot(vertex_arm), Vec2::Zero(), Vec2::Zero()); }
-  void add_to_edge(Block& k) const {
-    add(k, 1.0, force_edge_arm, edge_arm, turning.dot(force_edge_arm), perpendicular(turning), perpendicular(on_arms));
-  }
-  void add_to_vertex_edge(Block& k) const {
-    add(k, -1.0, force_vertex_arm, edge_arm, -turning.dot(force_vertex_arm), -perpendicular(turning), Vec2::Zero());
-  }
-  void add_to_edge_vertex(Block& k) const {
-    add(k, -1.0, force_edge_arm, vertex_arm, -on_arms.dot(vertex_arm), Vec2::Zero(), -perpendicular(on_arms));
-  }
-
- private:
-  /// sign J(force_arm)' shift J(path_arm), J(r) = [1, perpendicular(r)], and the second derivatives: corner, rotation column, rotation row.
-  void add(Block& k, double sign, const Vec2& force_arm, const Vec2& path_arm, double corner, const Vec2& column, const Vec2& row) const {
-    const double column_x = shift_xy * path_arm.x() - shift_xx * path_arm.y(), column_y = shift_yy * path_arm.x() - shift_yx * path_arm.y();
-    const double row_x = shift_yx * force_arm.x() - shift_xx * force_arm.y(), row_y = shift_yy * force_arm.x() - shift_xy * force_arm.y();
-    k(0, 0) += sign * shift_xx;
-    k(1, 0) += sign * shift_yx;
-    k(2, 0) += sign * row_x + row.x();
-    k(0, 1) += sign * shift_xy;
-    k(1, 1) += sign * shift_yy;
-    k(2, 1) += sign * row_y + row.y();
-    k(0, 2) += sign * column_x + column.x();
-    k(1, 2) += sign * column_y + column.y();
-    k(2, 2) += sign * (force_arm.x() * column_y - force_arm.y() * column_x) + corner;
-  }
-};
-
 struct ContactKinematics {
   using Unknowns = Motion::Unknowns;
-  using Matrix = Motion::Matrix;
 
   Vec2 normal, tangent;                 ///< at the trial position
   Vec2 vertex_arm, edge_arm;            ///< [m] from the centroids of the two blocks to p
@@ -194,12 +154,6 @@ struct ContactKinematics {
   /// Kinematics after the two blocks have moved by d_vertex, d_edge from the system's present state.
   ContactKinematics(const BlockSystem& system, const Contact& contact, const Unknowns& d_vertex, const Unknowns& d_edge);
   explicit ContactKinematics(const ContactPose& pose);
-
-  /// Second derivatives of m . (p - e), m turning with the edge's block: blocks (vertex, vertex), (vertex, edge), (edge, edge).
-  struct Hessian {
-    Matrix vertex_vertex, vertex_edge, edge_edge;
-  };
-  Hessian hessian(const Vec2& m) const;
 };
 
 }  // namespace openclose

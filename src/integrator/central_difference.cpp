@@ -139,9 +139,9 @@ double CentralDifference::kinetic_ahead() const {
   return 0.5 * motion_.h * blocks_.power();
 }
 
-ExplicitEnergies CentralDifference::take_energies() {
-  const ExplicitEnergies taken = energies_;
-  energies_ = ExplicitEnergies();
+EnergyLedger CentralDifference::take_energies() {
+  const EnergyLedger taken = energies_;
+  energies_ = EnergyLedger();
   return taken;
 }
 

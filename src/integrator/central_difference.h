@@ -1,4 +1,4 @@
-// The explicit method's loop: central difference over rigid blocks on the joint's own springs, the same steps as dem.cpp takes one by one.
+// The explicit method's loop: central difference over rigid blocks on the joint's own springs.
 //
 //   v(t + h/2) = v(t - h/2) + h a(t),  M a = F(x(t)) + damping force,  x(t + h) = x(t) + h v(t + h/2)
 //
@@ -35,8 +35,7 @@ class CentralDifference {
   using Unknowns = Motion::Unknowns;
 
   /// \param skin [m] by which blocks may move against each other before the list of contacts is to be renewed
-  /// \param fours  false: links one by one; the results are the same to the last bit
-  explicit CentralDifference(double skin, bool fours = true) : skin_(skin), links_(blocks_, energies_, fours) {}
+  explicit CentralDifference(double skin) : skin_(skin), links_(blocks_, energies_) {}
   CentralDifference(const CentralDifference&) = delete;
   CentralDifference& operator=(const CentralDifference&) = delete;
 
@@ -90,7 +89,7 @@ class CentralDifference {
   /// the ledger says: half of what they do in a step as long, which makes v(-1/2) M v(+1/2)/2 of it. So the energy of linear vibration stays exactly
   /// as it is. The work of gravity and base is counted up to the middle of the step.
   double kinetic_ahead() const;
-  ExplicitEnergies take_energies();
+  EnergyLedger take_energies();
 
   Memory memory() const;
 
@@ -118,7 +117,7 @@ class CentralDifference {
 
   double skin_;  ///< [m]
   ExplicitBlocks blocks_;
-  ExplicitEnergies energies_;
+  EnergyLedger energies_;
   ExplicitLinks links_;
   std::vector<ElementWay> elements_;
   const ExternalForces* external_ = nullptr;

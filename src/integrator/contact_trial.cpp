@@ -27,7 +27,6 @@ void ContactTrial::forget_step() {
   start_forces_.clear();
   paths_.clear();
   slack_.clear();
-  crossing_energy_.clear();
 }
 
 void ContactTrial::clear() {
@@ -120,7 +119,7 @@ void ContactTrial::keep_start_forces() {
 Memory ContactTrial::memory() const {
   Memory of;
   of.blocks = bytes_of(moves_);
-  of.contacts = bytes_of(batches_, trials_, branches_, elastic_, start_forces_, paths_, slack_, crossing_energy_);
+  of.contacts = bytes_of(batches_, trials_, branches_, elastic_, start_forces_, paths_, slack_);
   return of;
 }
 

@@ -101,8 +101,10 @@ class ContactTrial {
   void find_elastic();
   /// The present forces, with the springs' parts, are those with which the step starts.
   void keep_start_forces();
-  void set_slack(std::size_t c, double slack) { put(slack_, c, slack); }
-  void set_crossing_energy(std::size_t c, double energy) { put(crossing_energy_, c, energy); }
+  void set_slack(std::size_t c, double slack) {
+    slack_.resize(count_);
+    slack_[c] = slack;
+  }
 
   // What contact c did in the step.
   ContactOutcome operator[](std::size_t c) const { return {normal_stiffness(c), shear_stiffness(c), forces(c), pose(c)}; }
@@ -124,8 +126,6 @@ class ContactTrial {
   double normal_stiffness(std::size_t c) const { return start(c).normal[lane(c)]; }  ///< [N/m]
   double shear_stiffness(std::size_t c) const { return start(c).shear[lane(c)]; }    ///< [N/m]
   double slack(std::size_t c) const { return slack_.empty() ? 0.0 : slack_[c]; }     ///< [m] see Contact
-  /// [J] `dem`, of a contact that opens: see crossing_energy.h.
-  double crossing_energy(std::size_t c) const { return crossing_energy_.empty() ? 0.0 : crossing_energy_[c]; }
   /// Forces that entered with weight 1 - theta: of every contact, or none for theta = 1.
   const std::vector<CarriedForces>& start_forces() const { return start_forces_; }
   /// Mean forces that entered instead of those at the end; empty for other schemes.
@@ -137,10 +137,6 @@ class ContactTrial {
   void make_room();
   void forget_step();
   void find_paths();
-  void put(std::vector<double>& column, std::size_t c, double value) {
-    column.resize(count_);
-    column[c] = value;
-  }
 
   double ramp_ = tolerance::cohesion_ramp;       ///< [-]
   std::size_t count_ = 0;                        ///< the last batch may have lanes without a contact
@@ -153,7 +149,7 @@ class ContactTrial {
   std::vector<ElasticBatch> elastic_;
   std::vector<CarriedForces> start_forces_;
   std::vector<PathOutcome> paths_;
-  std::vector<double> slack_, crossing_energy_;  ///< [m], [J] of all, or empty where there is none
+  std::vector<double> slack_;  ///< [m] of all, or empty where there is none
 };
 
 template <class Place>

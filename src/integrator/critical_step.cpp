@@ -1,61 +1,10 @@
 #include "openclose/integrator/critical_step.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 namespace openclose {
-namespace {
-
-/// Largest eigenvalue of M^-1 A over the blocks' diagonal matrices A; those whose trace stays below what was found are not looked at.
-double largest_eigenvalue(const BlockSystem& system, const std::vector<Motion::Matrix>& matrices) {
-  double largest = 0.0;
-  for (int b : system.free_blocks()) {
-    const auto& block = system.block(b);
-    const Motion::Unknowns scale = block.mass.cwiseSqrt().cwiseInverse();
-    Motion::Matrix m = scale.asDiagonal() * matrices[block.equation] * scale.asDiagonal();
-    if (block.rotation_locked) {
-      m.row(Motion::rotation_index).setZero();
-      m.col(Motion::rotation_index).setZero();
-    }
-    if (m.trace() <= largest) continue;
-    const Eigen::SelfAdjointEigenSolver<Motion::Matrix> solver(m, Eigen::EigenvaluesOnly);
-    largest = std::max(largest, solver.eigenvalues()[dofs - 1]);
-  }
-  return largest;
-}
-
-}  // namespace
-
-double critical_step(const StepProblem& problem, double approach) {
-  using Unknowns = Motion::Unknowns;
-  using Matrix = Motion::Matrix;
-  const BlockSystem& system = problem.system;
-  const Unknowns still = Unknowns::Zero();
-  std::vector<Matrix> stiffness(system.free_count(), Matrix::Zero()), damping(system.free_count(), Matrix::Zero());
-  for (int b : system.free_blocks()) stiffness[system.block(b).equation] = problem.external.symmetric_stiffness(system, b);
-  bool damped = false;
-  for (const Contact& c : problem.contacts) {
-    const TabulatedJoint& joint = problem.joints.joint(c.joint);
-    if (!may_close(ContactStrength(joint, c), JointSprings(joint, c.length).normal, c.gap, approach)) continue;
-    const ContactKinematics k(system, c, still, still);
-    const ContactDashpots dashpots(joint, c.length, system.reduced_mass(c.vertex_block, c.edge_block));
-    damped |= joint.damping_ratio > 0.0;
-    const auto add = [&](int b, int other, const Unknowns& normal, const Unknowns& shear) {
-      const auto& block = system.block(b);
-      if (block.equation < 0) return;
-      const double share = system.block(other).equation < 0 ? 1.0 : 1.0 + block.mass[0] / system.block(other).mass[0];
-      const Matrix nn = share * normal * normal.transpose(), ss = share * shear * shear.transpose();
-      stiffness[block.equation] += c.length * (joint.normal_stiffness * nn + joint.shear_stiffness * ss);
-      damping[block.equation] += dashpots.normal * nn + dashpots.shear * ss;
-    };
-    add(c.vertex_block, c.edge_block, k.normal_vertex, k.shear_vertex);
-    add(c.edge_block, c.vertex_block, k.normal_edge, k.shear_edge);
-  }
-  const double a = largest_eigenvalue(system, stiffness), b = damped ? largest_eigenvalue(system, damping) : 0.0;
-  return a > 0.0 ? 4.0 / (b + std::sqrt(b * b + 4.0 * a)) : std::numeric_limits<double>::infinity();
-}
 
 void CriticalStepBound::begin(const StepProblem& problem) {
   const BlockSystem& system = problem.system;
@@ -104,19 +53,17 @@ double CriticalStepBound::Matrix::bound() const {
 /// so that every iterate is a bound from above.
 double CriticalStepBound::Matrix::largest_eigenvalue() const {
   constexpr double close = 1e-10;  // [-] of the eigenvalue, far below the room that step_fraction leaves
-  constexpr int most = 60;         // a double root halves its distance in every iteration
   const double c_2 = xx + yy + rr;
   const double c_1 = (xx * yy - xy * xy) + (xx * rr - xr * xr) + (yy * rr - yr * yr);
   const double c_0 = xx * (yy * rr - yr * yr) - xy * (xy * rr - yr * xr) + xr * (xy * yr - yy * xr);
   double x = bound();
-  for (int i = 0; i < most; ++i) {
+  while (true) {  // even at a double root the distance is halved every time
     const double value = ((x - c_2) * x + c_1) * x - c_0, slope = (3.0 * x - 2.0 * c_2) * x + c_1;
-    if (!(value > 0.0) || !(slope > 0.0)) break;
+    if (!(value > 0.0) || !(slope > 0.0)) return x;
     const double change = value / slope;
     x -= change;
-    if (change < close * x) break;
+    if (change <= close * std::abs(x)) return x;
   }
-  return x;
 }
 
 double CriticalStepBound::largest(std::vector<Matrix>& matrices) {

@@ -24,10 +24,6 @@ inline bool may_close(const ContactStrength& strength, double normal_stiffness, 
   return gap <= strength.tension / normal_stiffness + approach;
 }
 
-/// [s] Of all contacts that are closed or close when their blocks approach by `approach` [m], and of the supports; infinite without any. Sliding
-/// counts as sticking.
-double critical_step(const StepProblem& problem, double approach);
-
 /// What a contact adds to one of its blocks. Normal, tangent and lever may be taken in any frame that turns with the block, the same for all its
 /// contacts.
 struct StiffnessPart {
@@ -39,7 +35,8 @@ struct StiffnessPart {
   double normal_dashpot, shear_dashpot;      ///< [N s/m]
 };
 
-/// The same bound, kept up to date contact by contact: a change costs its two blocks, and of those only blocks are solved that may decide.
+/// The bound, kept up to date contact by contact: a change costs its two blocks, and of those only blocks are solved that may decide. Sliding counts
+/// as sticking.
 class CriticalStepBound {
  public:
   /// The blocks with their supports, no contacts.

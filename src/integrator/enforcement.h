@@ -132,7 +132,7 @@ class Enforcement {
   /// [m] What a corner may enter a block by before there is a contact, see corner_entry.h.
   virtual double deepest_entry(const MethodInput&) const { return std::numeric_limits<double>::infinity(); }
   virtual double step_cut(const MethodInput&) const { return 0.5; }  ///< factor on a step that failed
-  virtual LinearCounters linear_counters() const = 0;
+  virtual LinearCounters linear_counters() const { return {}; }
   /// The largest so far, that of solutions included.
   virtual Memory memory() const { return {}; }
   /// Hands over what it keeps from step to step and what would change a result, be it in the last bit.

@@ -100,10 +100,10 @@ ExplicitBlocks::Trial ExplicitBlocks::try_motion(const ExplicitMotion& motion) {
   return {motion.h * std::sqrt(2.0 * fastest), unbalanced};
 }
 
-ExplicitBlocks::Work ExplicitBlocks::advance(const ExplicitMotion& motion, ExplicitEnergies& energies) {
+ExplicitBlocks::Work ExplicitBlocks::advance(const ExplicitMotion& motion, EnergyLedger& energies) {
   const double h = motion.h, span = motion.span, alpha = motion.local_damping, viscous = motion.viscous;
   const Vec2 base = motion.base;
-  ExplicitEnergies sum;
+  EnergyLedger sum;
   double kinetic_change = 0.0;
   for (std::size_t i = 0; i < inertia_.size(); ++i) {
     const ExplicitInertia& m = inertia_[i];
@@ -132,11 +132,7 @@ ExplicitBlocks::Work ExplicitBlocks::advance(const ExplicitMotion& motion, Expli
     next.angle = v.angle + h * next.turn;
     turn_to(pose, next.angle);
   }
-  energies.gravity += sum.gravity;
-  energies.base_motion += sum.base_motion;
-  energies.scheme += sum.scheme;
-  energies.mass_damping += sum.mass_damping;
-  energies.turnover += sum.turnover;
+  energies += sum;
   rates_.swap(next_rates_);
   return {kinetic_change, sum.mass_damping};
 }

@@ -7,20 +7,9 @@
 #include "openclose/core/archive.h"
 #include "openclose/core/memory.h"
 #include "openclose/integrator/enforcement.h"
+#include "openclose/model/energies.h"
 
 namespace openclose {
-
-/// Where energy went in the steps since the last question [J]; signs and meaning as in analysis/energy_ledger.h.
-struct ExplicitEnergies {
-  double gravity = 0.0, base_motion = 0.0, loads = 0.0, support_springs = 0.0;
-  double friction = 0.0, contact_damping = 0.0, mass_damping = 0.0, scheme = 0.0, redefinition = 0.0;
-  double turnover = 0.0;
-
-  void exchange(Archive& archive) {
-    auto& [a, b, c, d, e, f, g, h, i, j] = *this;
-    archive(a, b, c, d, e, f, g, h, i, j);
-  }
-};
 
 /// Displacement since the load, in one line of cache with the rotation's cosine and sine: once a block, not a contact.
 struct alignas(32) ExplicitPose {
@@ -94,7 +83,7 @@ class ExplicitBlocks {
     double mass_damping;    ///< [J] taken by damping of the motion
   };
   /// Moves by the velocities of the last try_motion().
-  Work advance(const ExplicitMotion& motion, ExplicitEnergies& energies);
+  Work advance(const ExplicitMotion& motion, EnergyLedger& energies);
   /// [m/s2, m/s2, rad/s2] By the forces, without damping; 0 of what does not move.
   ExplicitRate acceleration(int slot, const Vec2& base) const;
 

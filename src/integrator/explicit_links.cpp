@@ -9,24 +9,17 @@
 namespace openclose {
 namespace {
 
-/// [-] Cleared links among all, a few per cent of a step, above which they are removed.
-constexpr double most_cleared_share = 0.1;
-/// In place of a contact's number, or a link's.
-constexpr int none = -1;
-
 double square(double x) {
   return x * x;
 }
 
-/// [-] No shear force of a contact that carries anything reaches this.
-constexpr double endless_friction = 1e9;
-/// [-] Over the tensile strength: beyond what any load makes of it.
-constexpr double endless_tension = 1e9;
+/// [-] No shear force of a contact that carries anything reaches this times its normal force, and no load makes so much of its tensile strength.
+constexpr double endless = 1e9;
 
 ContactStrength strength_of(const TabulatedJoint& joint, const Contact& contact, Bonds bonds) {
   ContactStrength strength(joint, contact);
-  if (bonds == Bonds::last_without_slip) strength.friction = endless_friction;
-  if (bonds == Bonds::last_unparted) strength.tension *= endless_tension;
+  if (bonds == Bonds::last_without_slip) strength.friction = endless;
+  if (bonds == Bonds::last_unparted) strength.tension *= endless;
   return strength;
 }
 
@@ -44,14 +37,14 @@ void ExplicitLinks::load(const StepProblem& problem, double approach) {
   room_ = 0.0;
   approach_ = approach;
   links_.clear();
-  links_.reserve(problem.contacts.size());
+  links_.reserve(problem.contacts.size() + batch_size);
   rest_.clear();
-  rest_.reserve(problem.contacts.size());
-  cleared_ = 0;
-  link_of_.assign(problem.contacts.size(), none);
+  rest_.reserve(problem.contacts.size() + batch_size);
+  link_of_.assign(problem.contacts.size(), -1);
   damped_ = false;
   critical_step_.begin(problem);
   for (std::size_t i = 0; i < problem.contacts.size(); ++i) add(problem, static_cast<int>(i));
+  close_ranks();
   max_penetration_ = 0.0;
 }
 
@@ -74,10 +67,10 @@ void ExplicitLinks::renew(const StepProblem& problem, const std::vector<Detectio
       energies_.redefinition -= problem.contacts[i].stored_energy;
       add(problem, i);
     }
-    while (next_free_ < free_end_) clear(free_[next_free_++]);
+    while (next_free_ < free_end_) rest_[free_[next_free_++]].contact = -1;
   }
   next_free_ = free_end_ = 0;
-  if (cleared_ > most_cleared_share * static_cast<double>(links_.size())) remove_cleared();
+  close_ranks();
   room_ = 0.0;
 }
 
@@ -86,7 +79,7 @@ void ExplicitLinks::add(const StepProblem& problem, int contact) {
   const Contact& c = problem.contacts[contact];
   const TabulatedJoint& joint = problem.joints.joint(c.joint);
   const bool at_rest = c.status == ContactStatus::open && c.elastic_slip == 0.0 && c.normal_force == 0.0 && c.shear_force == 0.0;
-  link_of_[contact] = none;
+  link_of_[contact] = -1;
   if (at_rest && !may_close(ContactStrength(joint, c), JointSprings(joint, c.length).normal, c.gap, approach_)) return;
 
   damped_ |= joint.damping_ratio > 0.0;
@@ -223,33 +216,29 @@ void ExplicitLinks::renumber(const std::vector<DetectionChange>& changes) {
   }
 }
 
-/// Leaves an open contact between fixed blocks there. Links are never moved into what others leave: the order in which the forces on a block are
-/// added up depends on its own contacts alone, and so do its last digits.
-void ExplicitLinks::clear(int entry) {
-  const int fixed_slot = blocks_.fixed_slot();
-  Link& link = links_[entry];
-  link.vertex_slot = link.edge_slot = fixed_slot;
-  link.loaded_gap = link.gap = 1.0;
-  link.slip = link.stretch = link.normal = link.shear = link.viscous_shear = link.crossing_energy = 0.0;
-  link.strength = ContactStrength();
-  link.status = ContactStatus::open;
-  link.breakable = false;
-  rest_[entry].contact = none;
-  ++cleared_;
-}
-
-void ExplicitLinks::remove_cleared() {
+/// Takes out the links of contacts that are gone, and fills up the last four with open ones between fixed blocks. Links stay in their order: that in
+/// which the forces on a block are added up depends on its own contacts alone, and so do its last digits.
+void ExplicitLinks::close_ranks() {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < links_.size(); ++i) {
-    if (rest_[i].contact == none) continue;
-    links_[kept] = links_[i];
-    rest_[kept] = rest_[i];
-    link_of_[rest_[kept].contact] = static_cast<int>(kept);
+    if (rest_[i].contact < 0) continue;
+    if (kept < i) {
+      links_[kept] = links_[i];
+      rest_[kept] = rest_[i];
+      link_of_[rest_[kept].contact] = static_cast<int>(kept);
+    }
     ++kept;
   }
   links_.resize(kept);
   rest_.resize(kept);
-  cleared_ = 0;
+  const std::size_t filled = (kept + batch_size - 1) / batch_size * batch_size;
+  Link filling{};
+  filling.vertex_slot = filling.edge_slot = blocks_.fixed_slot();
+  LinkRest of_filling{};
+  of_filling.contact = -1;
+  of_filling.depth_limit = std::numeric_limits<double>::infinity();
+  links_.resize(filled, filling);
+  rest_.resize(filled, of_filling);
 }
 
 /// [J] In the springs of a contact; the shear spring of one that has just opened lets go in the next step.
@@ -280,7 +269,7 @@ std::optional<ExplicitLinks::TooDeep> ExplicitLinks::too_deep() {
 
 void ExplicitLinks::store(std::vector<Contact>& contacts) const {
   for (std::size_t i = 0; i < links_.size(); ++i) {
-    if (rest_[i].contact == none) continue;
+    if (rest_[i].contact < 0) continue;
     const Link& link = links_[i];
     Contact& c = contacts[rest_[i].contact];
     c.gap = link.gap + rest_[i].rest_gap;
@@ -306,26 +295,25 @@ void ExplicitLinks::store_far_gaps(const BlockSystem& system, std::vector<Contac
 
 void ExplicitLinks::exchange(Archive& archive, const JointTable& joints) {
   joints_ = &joints;
-  archive(links_, rest_, link_of_, cleared_, damped_, lost_strength_, critical_step_, approach_, max_penetration_, share_, room_);
+  archive(links_, rest_, link_of_, damped_, lost_strength_, critical_step_, approach_, max_penetration_, share_, room_);
 }
 
 bool ExplicitLinks::fits(std::size_t contacts) const {
-  if (rest_.size() != links_.size() || link_of_.size() != contacts || !critical_step_.fits(static_cast<std::size_t>(blocks_.count()))) return false;
+  if (rest_.size() != links_.size() || links_.size() % batch_size != 0 || link_of_.size() != contacts) return false;
+  if (!critical_step_.fits(static_cast<std::size_t>(blocks_.count()))) return false;
   const auto is_below = [](int number, std::size_t count) { return number >= 0 && static_cast<std::size_t>(number) < count; };
-  int cleared = 0;
   for (std::size_t i = 0; i < links_.size(); ++i) {
     const Link& link = links_[i];
     const LinkRest& rest = rest_[i];
     if (!blocks_.has_slot(link.vertex_slot) || !blocks_.has_slot(link.edge_slot) || link.status > ContactStatus::sliding) return false;
     if (!is_below(rest.joint, static_cast<std::size_t>(joints_->count()))) return false;
-    cleared += rest.contact == none ? 1 : 0;
-    if (rest.contact != none && (!is_below(rest.contact, contacts) || link_of_[rest.contact] != static_cast<int>(i))) return false;
+    if (rest.contact >= 0 && (!is_below(rest.contact, contacts) || link_of_[rest.contact] != static_cast<int>(i))) return false;
   }
   for (std::size_t i = 0; i < contacts; ++i) {
     const int link = link_of_[i];
-    if (link != none && (!is_below(link, links_.size()) || rest_[link].contact != static_cast<int>(i))) return false;
+    if (link >= 0 && (!is_below(link, links_.size()) || rest_[link].contact != static_cast<int>(i))) return false;
   }
-  return cleared == cleared_;
+  return true;
 }
 
 Memory ExplicitLinks::memory() const {

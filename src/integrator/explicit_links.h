@@ -24,8 +24,7 @@ namespace openclose {
 class ExplicitLinks {
  public:
   /// Between these blocks, to whose forces and energies theirs are added; both must outlive the links.
-  /// \param fours  false: links one by one; the results are the same to the last bit
-  ExplicitLinks(ExplicitBlocks& blocks, ExplicitEnergies& energies, bool fours) : blocks_(blocks), energies_(energies), fours_(fours) {}
+  ExplicitLinks(ExplicitBlocks& blocks, EnergyLedger& energies) : blocks_(blocks), energies_(energies) {}
 
   /// Takes over contacts with their history, and adds what they carry now to the forces.
   /// \param approach  [m] up to which they are listed
@@ -87,7 +86,7 @@ class ExplicitLinks {
   };
   /// What a step does not need of a contact.
   struct LinkRest {
-    int joint, contact;               ///< in the table, in the list (negative: cleared)
+    int joint, contact;               ///< in the table, in the list (negative: in none, see close_ranks())
     double normal_x, normal_y;        ///< in the frame of the corner's block
     double edge_arm_x, edge_arm_y;    ///< [m] from the edge's centroid to the corner, in the frame of the edge's block
     double vertex_share, edge_share;  ///< see critical_step.h
@@ -119,8 +118,7 @@ class ExplicitLinks {
   void add_parts(const Link& link, const LinkRest& rest, double sign);
   void take(int slot);
   void renumber(const std::vector<DetectionChange>& changes);
-  void clear(int entry);
-  void remove_cleared();
+  void close_ranks();
   // In the innermost loop; as calls they cost more than what they do.
   [[gnu::always_inline]] inline Place place(const Link& link) const;
   [[gnu::always_inline]] inline void push(const Link& link, const Place& now);
@@ -130,33 +128,26 @@ class ExplicitLinks {
   void settle_crossing(Link& link, const Crossing& crossing, double& normal, double& shear, double& scheme);
   void lose_strength(Link& link, const TabulatedJoint& joint, const Place& at);
   static double stored_energy(const Link& link);
-  /// Whether nothing but gap and slip of a contact changes in a step that leaves it open.
-  static bool rests(const Link& link) {
-    return link.status == ContactStatus::open && link.stretch == 0.0 && link.normal == 0.0 && link.shear == 0.0 && !link.breakable;
-  }
   template <bool damped>
-  [[gnu::always_inline]] inline void follow_link(Link& link, LinkSums& sums);
-  /// The same for four links, to the last bit; false, and nothing has changed, if one of them may lose its strength.
-  template <bool damped>
-  [[gnu::always_inline]] inline bool follow_four(Link* links, LinkSums& sums);
+  [[gnu::always_inline]] inline void follow_four(Link* links, LinkSums& sums);
   [[gnu::always_inline]] inline void settle_crossings(Link* links, const FourLinks& four, FourForces& forces, double (&scheme)[batch_size]);
-  [[gnu::always_inline]] inline void push_four(Link* links, const FourForces& forces);
+  [[gnu::always_inline]] inline void store_four(Link* links, const FourForces& forces);
+  [[gnu::always_inline]] inline void lose_strengths(Link* links, const FourLinks& four, FourForces& forces);
+  [[gnu::always_inline]] inline void push_four(const FourLinks& four, const FourForces& forces);
   template <bool damped>
   [[gnu::always_inline]] inline void follow_all(LinkSums& sums);
   void follow_damped(LinkSums& sums);
   void follow_undamped(LinkSums& sums);
 
   ExplicitBlocks& blocks_;
-  ExplicitEnergies& energies_;
-  bool fours_;
-  std::vector<Link> links_;
+  EnergyLedger& energies_;
+  std::vector<Link> links_;     ///< a whole number of fours
   std::vector<LinkRest> rest_;  ///< of the links
   std::vector<int> link_of_;    ///< per contact of the list; -1: too far apart
   std::vector<int> renumbered_;
   std::vector<int> free_;                     ///< links of contacts that are being exchanged, pair by pair
   std::vector<std::size_t> free_ends_;        ///< of the pairs in that list
   std::size_t next_free_ = 0, free_end_ = 0;  ///< of the present pair
-  int cleared_ = 0;                           ///< links that are no contact's
   const JointTable* joints_ = nullptr;
   bool damped_ = false, lost_strength_ = false;
   CriticalStepBound critical_step_;

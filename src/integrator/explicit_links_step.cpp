@@ -78,50 +78,7 @@ struct ExplicitLinks::FourForces {
 };
 
 template <bool damped>
-void ExplicitLinks::follow_link(Link& link, LinkSums& sums) {
-  const Place now = place(link);
-  const double gap = now.gap;
-  if (rests(link) && openclose::is_open(link.strength, -link.normal_stiffness * gap)) {
-    link.gap = gap;
-    link.slip = now.slip;
-    return;
-  }
-  const double slip = now.slip - link.slip, memory = -link.shear_stiffness * (link.stretch + slip);
-  CarriedForces f;
-  if constexpr (damped) {
-    f = carry(link.strength, trials(link, now, memory));
-  } else {
-    f = carry(link.strength, {-link.normal_stiffness * gap, 0.0, memory, 0.0});
-  }
-  const bool was_open = link.status == ContactStatus::open, opened = f.status == ContactStatus::open;
-  const double normal_before = was_open ? 0.0 : link.normal,
-               shear_before = was_open ? 0.0 : link.shear;  // what settles an opening is no joint's force
-  double settled_shear = f.shear;
-  if (was_open != opened || (was_open && (link.normal != 0.0 || link.shear != 0.0))) {
-    settle_crossing(link, {normal_before, shear_before, gap, slip, opened}, f.normal, settled_shear, sums.scheme);
-  }
-  const double stretch = -f.elastic_shear * link.per_shear_stiffness;
-  const LinkEnergies<double> energies({link.normal_stiffness, link.shear_stiffness, was_open ? 0.0 : link.gap, was_open ? link.gap : 0.0,
-                                       link.stretch, normal_before, shear_before, link.viscous_shear, gap - link.gap, slip, opened ? gap : 0.0,
-                                       stretch, f.shear});
-  sums.scheme += energies.scheme;
-  sums.friction += energies.rubbed;
-  sums.scheme -= energies.not_yet;
-  if constexpr (damped) sums.damping += energies.damping;
-  link.gap = gap;
-  link.slip = now.slip;
-  link.stretch = stretch;
-  link.status = f.status;
-  link.normal = f.normal;
-  link.shear = settled_shear;
-  if constexpr (damped) link.viscous_shear = f.shear - f.elastic_shear;
-  if (f.status != ContactStatus::open) sums.deepest = std::max(sums.deepest, -gap - link.rest_gap);
-  if (link.breakable) lose_strength(link, joints_->joint(rest_[&link - links_.data()].joint), now);
-  push(link, now);
-}
-
-template <bool damped>
-bool ExplicitLinks::follow_four(Link* links, LinkSums& sums) {
+void ExplicitLinks::follow_four(Link* links, LinkSums& sums) {
   const Lanes zero{};
   const FourLinks four(links);
   FourForces f;
@@ -143,7 +100,6 @@ bool ExplicitLinks::follow_four(Link* links, LinkSums& sums) {
   const MohrCoulomb carried(four.friction, four.cohesion, four.tension, elastic_normal + viscous_normal, memory + viscous_shear,
                             tolerance::cohesion_ramp);
   f.sticking = f.closed & carried.is_sticking;
-  if (any(four.breakable & ~f.sticking)) return false;
   f.normal = f.closed ? carried.normal : zero;
   const Lanes shear = f.closed ? carried.shear : zero, elastic_shear = f.closed ? carried.limit.of(memory) : zero;
   f.shear = shear;
@@ -164,8 +120,9 @@ bool ExplicitLinks::follow_four(Link* links, LinkSums& sums) {
       links[k].viscous_shear = kept_shear[k];
     }
   }
-  push_four(links, f);
-  return true;
+  store_four(links, f);
+  if (any(four.breakable & ~f.sticking)) lose_strengths(links, four, f);
+  push_four(four, f);
 }
 
 /// Few contacts close or open in a step: one by one.
@@ -182,34 +139,49 @@ void ExplicitLinks::settle_crossings(Link* links, const FourLinks& four, FourFor
   }
 }
 
-/// Writes the history, and adds the forces to the blocks.
-void ExplicitLinks::push_four(Link* links, const FourForces& f) {
-  const ContactPush<Lanes> push(f.normal, f.shear, f.now.at);
-  const Lanes zero{};
-  Lanes history[] = {f.now.slip, f.stretch, f.normal, f.shear}, forward[] = {push.x, push.y, push.on_vertex, zero},
-        back[] = {push.x, push.y, push.on_edge, zero};
+/// Writes the history.
+void ExplicitLinks::store_four(Link* links, const FourForces& f) {
+  Lanes history[] = {f.now.slip, f.stretch, f.normal, f.shear};
   transpose(history[0], history[1], history[2], history[3]);
-  transpose(forward[0], forward[1], forward[2], forward[3]);
-  transpose(back[0], back[1], back[2], back[3]);
   for (int k = 0; k < batch_size; ++k) {
     Link& link = links[k];
     link.gap = f.now.gap[k];
     lanes::store(&link.slip, history[k]);
     link.status = !f.closed[k] ? ContactStatus::open : (f.sticking[k] ? ContactStatus::sticking : ContactStatus::sliding);
-    double* const v = &blocks_.forces()[link.vertex_slot].x;
+  }
+}
+
+/// Few contacts lose their strength: one by one, too.
+void ExplicitLinks::lose_strengths(Link* links, const FourLinks& four, FourForces& f) {
+  const ForcePlace<Lanes>& at = f.now.at;
+  for (int k = 0; k < batch_size; ++k) {
+    if (!four.breakable[k]) continue;
+    lose_strength(
+        links[k], joints_->joint(rest_[&links[k] - links_.data()].joint),
+        {f.now.gap[k], f.now.slip[k], {at.normal_x[k], at.normal_y[k], at.vertex_arm_x[k], at.vertex_arm_y[k], at.edge_arm_x[k], at.edge_arm_y[k]}});
+    f.normal[k] = links[k].normal;
+    f.shear[k] = links[k].shear;
+  }
+}
+
+/// Adds the forces to the blocks.
+void ExplicitLinks::push_four(const FourLinks& four, const FourForces& f) {
+  const ContactPush<Lanes> push(f.normal, f.shear, f.now.at);
+  const Lanes zero{};
+  Lanes forward[] = {push.x, push.y, push.on_vertex, zero}, back[] = {push.x, push.y, push.on_edge, zero};
+  transpose(forward[0], forward[1], forward[2], forward[3]);
+  transpose(back[0], back[1], back[2], back[3]);
+  for (int k = 0; k < batch_size; ++k) {
+    double* const v = &blocks_.forces()[four.vertex[k]].x;
     lanes::store(v, lanes::load(v) + forward[k]);
-    double* const e = &blocks_.forces()[link.edge_slot].x;
+    double* const e = &blocks_.forces()[four.edge[k]].x;
     lanes::store(e, lanes::load(e) - back[k]);
   }
 }
 
 template <bool damped>
 void ExplicitLinks::follow_all(LinkSums& sums) {
-  const std::size_t fours = fours_ ? links_.size() / batch_size * batch_size : 0;
-  for (std::size_t i = 0; i < links_.size(); i += batch_size) {
-    if (i < fours && follow_four<damped>(&links_[i], sums)) continue;
-    for (std::size_t k = i; k < std::min(i + batch_size, links_.size()); ++k) follow_link<damped>(links_[k], sums);
-  }
+  for (std::size_t i = 0; i < links_.size(); i += batch_size) follow_four<damped>(&links_[i], sums);
 }
 
 OPENCLOSE_FOR_WIDE_REGISTERS_TOO void ExplicitLinks::follow_damped(LinkSums& sums) {

@@ -2,9 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "openclose/core/error.h"
-#include "openclose/scene/nearest.h"
-
 namespace openclose {
 
 const std::vector<IntegratorEntry>& integrators() {
@@ -39,14 +36,7 @@ namespace {
 const IntegratorEntry& find_integrator(const MethodInput& method, const std::string& name, const char* key) {
   if (name == "path_average" && method.rotation != RotationKind::exact)
     throw InputError(method.contact_where, "method.rotation", "\"linear\" has no path that could be averaged", "\"exact\", or another integrator");
-  std::string names;
-  std::vector<std::string> words;
-  for (const auto& entry : integrators()) {
-    if (name == entry.name) return entry;
-    names += fmt::format("{}\"{}\"", names.empty() ? "" : ", ", entry.name);
-    words.emplace_back(entry.name);
-  }
-  throw InputError(method.contact_where, key, fmt::format("\"{}\" is no known integrator{}", name, did_you_mean(name, words)), names);
+  return find_named(integrators(), name, method, key, "integrator");
 }
 
 }  // namespace

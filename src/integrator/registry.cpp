@@ -1,8 +1,6 @@
 #include "openclose/integrator/registry.h"
 
-#include <fmt/format.h>
-
-#include "openclose/scene/nearest.h"
+#include "openclose/integrator/integrators.h"
 
 namespace openclose {
 
@@ -17,15 +15,7 @@ const std::vector<EnforcementEntry>& enforcements() {
 }
 
 std::unique_ptr<Enforcement> make_enforcement(const MethodInput& method) {
-  std::string names;
-  std::vector<std::string> words;
-  for (const auto& entry : enforcements()) {
-    if (method.contact == entry.name) return entry.make();
-    names += fmt::format("{}\"{}\"", names.empty() ? "" : ", ", entry.name);
-    words.emplace_back(entry.name);
-  }
-  throw InputError(method.contact_where, "method.contact",
-                   fmt::format("\"{}\" is no known contact enforcement{}", method.contact, did_you_mean(method.contact, words)), names);
+  return find_named(enforcements(), method.contact, method, "method.contact", "contact enforcement").make();
 }
 
 }  // namespace openclose

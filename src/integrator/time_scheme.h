@@ -38,7 +38,7 @@ class TimeScheme {
   /// [J] Change of kinetic energy beyond the work of the forces, for masses M: what accelerations remembered from before add.
   virtual double own_work(int, double, const Unknowns&, const Unknowns&, const Unknowns& /*mass*/) const { return 0.0; }
   /// Velocity at the end of the step, for output.
-  virtual Unknowns velocity_at_end(int b, double dt, const Unknowns& d, const Unknowns& v) const = 0;
+  virtual Unknowns velocity_at_end(int b, double dt, const Unknowns& d, const Unknowns& v) const { return next_velocity(b, dt, d, v); }
 
   /// Accelerations at the start are wanted, by start(b, a), before the first step.
   virtual bool wants_accelerations() const { return false; }
@@ -61,6 +61,11 @@ class TimeScheme {
 /// Newmark (1/4, 1/2), order 2. Exact for constant forces.
 std::unique_ptr<TimeScheme> make_theta_scheme(double theta);
 
+/// Path-averaged contact forces: u1 = u0 + dt (v0 + v1)/2, M (v1 - v0) = dt F with the mean F of the forces along the straight path of the step, in
+/// the mean geometry (law/path_average.h, contact/mean_pose.h). The work of F is then what springs store and friction takes, and the angular
+/// momentum stays. Order 2, also over impacts and where contacts begin to slide.
+std::unique_ptr<TimeScheme> make_path_average();
+
 /// Velocities at mid-steps: v = d/dt, M (v_new - v_old) = h F with h = (dt + previous dt)/2, half a step at the start. Exact for constant forces, of
 /// order 1 for forces that change with the position, which are taken at the end of the step; a gap that is held has no velocity, where 2 d/dt - v
 /// would ring for ever. Used by `hard`.
@@ -70,19 +75,8 @@ std::unique_ptr<TimeScheme> make_midstep_scheme();
 /// whose velocity is half a step old). Used by `dem`.
 std::unique_ptr<TimeScheme> make_central_difference_scheme();
 
-/// What a scheme remembers of every block; zero until it was set.
-class BlockMemory {
- public:
-  using Unknowns = Motion::Unknowns;
-  Unknowns of(int b) const { return b < static_cast<int>(values_.size()) ? values_[b] : Unknowns(Unknowns::Zero()); }
-  void set(int b, const Unknowns& value) {
-    if (b >= static_cast<int>(values_.size())) values_.resize(b + 1, Unknowns::Zero());
-    values_[b] = value;
-  }
-  void exchange(Archive& archive) { archive(values_); }
-
- private:
-  std::vector<Unknowns> values_;
-};
+/// \param rho_inf  [-] spectral radius at infinite frequency
+std::unique_ptr<TimeScheme> make_generalized_alpha(double rho_inf);
+std::unique_ptr<TimeScheme> make_tr_bdf2();
 
 }  // namespace openclose

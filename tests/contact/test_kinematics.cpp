@@ -5,6 +5,7 @@
 
 #include "openclose/contact/kinematics.h"
 #include "support/catch.h"
+#include "support/contact_stiffness.h"
 #include "support/scenes.h"
 
 using namespace openclose;
@@ -172,7 +173,7 @@ TEST_CASE("the hessian is the difference quotient of the gradients", "[contact][
     const Unknowns d_vertex = pose.step_of(system, contact.vertex_block, 1.0), d_edge = pose.step_of(system, contact.edge_block, 1.0);
     const double normal = pose.number(1.0), shear = pose.number(1.0);
     const Kinematics at(system, contact, d_vertex, d_edge);
-    const auto hessian = at.hessian(normal * at.normal + shear * at.tangent);
+    const test::ContactHessian hessian(at, normal * at.normal + shear * at.tangent);
     Eigen::Matrix<double, 6, 6> full;
     full << hessian.vertex_vertex, hessian.vertex_edge, hessian.vertex_edge.transpose(), hessian.edge_edge;
     const auto gradient = [&](int k, double by) {
@@ -224,12 +225,12 @@ TEST_CASE("the four blocks of a contact's stiffness are those of its gradients a
     const double nn = pose.number(1.0), tn = pose.number(1.0), tt = pose.number(1.0);
     const Eigen::Matrix2d shift = (nn * at.normal + tn * at.tangent) * at.normal.transpose() + tt * at.tangent * at.tangent.transpose();
     const Vec2 turning(pose.number(1.0), pose.number(1.0));
-    const ContactStiffness k{shift(0, 0), shift(0, 1),   shift(1, 0), shift(1, 1), at.vertex_arm,
-                             at.edge_arm, at.vertex_arm, at.edge_arm, turning,     turning};
+    const test::ContactStiffness k{shift(0, 0), shift(0, 1),   shift(1, 0), shift(1, 1), at.vertex_arm,
+                                   at.edge_arm, at.vertex_arm, at.edge_arm, turning,     turning};
     const auto block = [&](const Unknowns& n1, const Unknowns& t1, const Unknowns& n2, const Unknowns& t2) -> Eigen::Matrix3d {
       return (nn * n1 + tn * t1) * n2.transpose() + tt * t1 * t2.transpose();
     };
-    const auto hessian = at.hessian(turning);
+    const test::ContactHessian hessian(at, turning);
     const auto check = [&](auto add, const Eigen::Matrix3d& expected) {
       Eigen::Matrix3d sum = Eigen::Matrix3d::Ones();
       add(sum);

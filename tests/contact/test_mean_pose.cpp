@@ -4,6 +4,7 @@
 
 #include "openclose/contact/mean_pose.h"
 #include "support/catch.h"
+#include "support/contact_stiffness.h"
 #include "support/scenes.h"
 
 using namespace openclose;
@@ -119,7 +120,7 @@ TEST_CASE("mean pose: derivatives are difference quotients", "[contact][mean_pos
       return pushed(End(poses(pair.system(), pair.contact, v, e).mean), normal, shear);
     };
     const Poses p = poses(pair.system(), pair.contact, dv, de);
-    ContactStiffness k{0.0, 0.0, 0.0, 0.0, p.mean.vertex_arm, p.mean.edge_arm, p.end.vertex_arm, p.end.edge_arm};
+    test::ContactStiffness k{0.0, 0.0, 0.0, 0.0, p.mean.vertex_arm, p.mean.edge_arm, p.end.vertex_arm, p.end.edge_arm};
     k.turning = 0.5 * (normal * p.end.normal + shear * p.end.tangent());
     k.on_arms = 0.5 * (normal * p.mean.normal + shear * p.mean.tangent());
     Eigen::Matrix3d vertex_vertex = Eigen::Matrix3d::Zero(), vertex_edge = vertex_vertex, edge_vertex = vertex_vertex, edge_edge = vertex_vertex;

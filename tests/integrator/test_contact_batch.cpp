@@ -7,6 +7,7 @@
 #include "openclose/integrator/contact_batch.h"
 #include "openclose/law/path_average.h"
 #include "support/catch.h"
+#include "support/contact_stiffness.h"
 
 using namespace openclose;
 
@@ -238,7 +239,7 @@ TEST_CASE("the stiffness of four contacts at a time is that of each", "[integrat
     if (f.status == ContactStatus::sliding && tangent.static_slip_stiffness > 0.0) tt = tangent.static_slip_stiffness * contacts.springs[c].shear;
     const Vec2 n = pose.normal, t = pose.tangent(), force_n = acting.normal, force_t = acting.tangent();
     const Vec2 by_gap = nn * force_n + tn * force_t, by_slip = tt * force_t;
-    ContactStiffness k;
+    test::ContactStiffness k;
     k.shift_xx = by_gap.x() * n.x() + by_slip.x() * t.x();
     k.shift_xy = by_gap.x() * n.y() + by_slip.x() * t.y();
     k.shift_yx = by_gap.y() * n.x() + by_slip.y() * t.x();

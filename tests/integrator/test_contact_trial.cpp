@@ -88,18 +88,14 @@ TEST_CASE("contacts are where the moves of their blocks bring them", "[integrato
   }
 }
 
-TEST_CASE("slack and crossing energy belong to their contact and to their step", "[integrator][trial]") {
+TEST_CASE("slack belongs to its contact and to its step", "[integrator][trial]") {
   Column column;
   ContactTrial& trial = column.trial;
   trial.set_slack(0, 0.25);
-  trial.set_crossing_energy(1, 0.5);
   CHECK(trial.slack(0) == 0.25);
   CHECK(trial.slack(1) == 0.0);
-  CHECK(trial.crossing_energy(0) == 0.0);
-  CHECK(trial.crossing_energy(1) == 0.5);
   column.prepare();
   CHECK(trial.slack(0) == 0.0);
-  CHECK(trial.crossing_energy(1) == 0.0);
 }
 
 TEST_CASE("a copy of a trial keeps what it had", "[integrator][trial]") {
