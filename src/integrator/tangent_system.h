@@ -31,7 +31,7 @@ class TangentSystem {
   Memory memory() const;
   /// The pattern, which decides in which order the solver eliminates and so how it rounds; the symbolic work is done again after reading.
   void exchange(Archive& archive);
-  const LinearCounters& counters() const { return solver_ ? solver_->counters() : nothing_done_; }
+  LinearCounters counters() const { return solver_ ? solver_->counters() : LinearCounters(); }
 
  private:
   template <class BlocksOf>
@@ -55,7 +55,6 @@ class TangentSystem {
   int solver_rows_ = no_solver;  ///< of the first matrix, by which the solver was chosen: blocks may come to rest since
   std::unique_ptr<LinearSolver> solver_;
   Memory solver_memory_;  ///< the largest
-  LinearCounters nothing_done_;
 };
 
 }  // namespace openclose
