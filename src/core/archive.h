@@ -3,7 +3,11 @@
 //   void exchange(Archive& archive) { archive(first_, second_); }
 //
 // A struct whose members are all public binds each of them by name there (auto& [a, b] = *this): a member that is added later then does not compile
-// until it is in the archive too. The bytes are those of this processor; io/checkpoint.h makes a file of them that says so.
+// until it is in the archive too. One that has numbers of one type only may say which instead, and goes in as it is:
+//
+//   using Numbers = double;
+//
+// The bytes are those of this processor; io/checkpoint.h makes a file of them that says so.
 #pragma once
 
 #include <Eigen/Core>
@@ -47,8 +51,16 @@ class Archive {
   }
 
  private:
+  /// Whether its bytes say all.
   template <class T>
-  static constexpr bool is_plain = std::is_arithmetic_v<T> || std::is_enum_v<T>;
+  static constexpr bool is_plain() {
+    if constexpr (requires { typename T::Numbers; }) {
+      static_assert(std::is_trivially_copyable_v<T> && sizeof(T) % sizeof(typename T::Numbers) == 0);
+      return true;
+    } else {
+      return std::is_arithmetic_v<T> || std::is_enum_v<T>;
+    }
+  }
 
   void raw(void* data, std::size_t size) {
     if (size == 0) return;  // what is empty may have no address
@@ -76,7 +88,7 @@ class Archive {
       raw(&byte, sizeof byte);
       require(byte <= 1, "the saved state has a switch that is neither on nor off");
       value = byte == 1;
-    } else if constexpr (is_plain<T>) {
+    } else if constexpr (is_plain<T>()) {
       raw(&value, sizeof value);
     } else if constexpr (requires {
                            typename T::Scalar;
@@ -97,7 +109,7 @@ class Archive {
   template <class T, class A>
   void exchange(std::vector<T, A>& list) {
     list.resize(length(list.size()));
-    if constexpr (is_plain<T>) {
+    if constexpr (is_plain<T>()) {
       raw(list.data(), sizeof(T) * list.size());
     } else {
       for (T& value : list) exchange(value);

@@ -18,5 +18,7 @@ inline constexpr int batch_size = 4;
 /// One number of each of four contacts, or a row of a block and what fills it up. The alignment is said in full: left to itself it depends on the
 /// instructions that a function may use.
 typedef double Lanes __attribute__((vector_size(batch_size * sizeof(double)), aligned(batch_size * sizeof(double))));
+/// The same in single precision; a register that every processor has.
+typedef float FloatLanes __attribute__((vector_size(batch_size * sizeof(float))));
 
 }  // namespace openclose

@@ -15,6 +15,8 @@ namespace {
 /// Looks for work, some tenth of a millisecond on an idle processor, before a helper sleeps: the next call mostly comes sooner, and waking takes
 /// longer than most parts. Each look leaves the processor to whoever else wants it.
 constexpr int looks_before_sleep = 300;
+/// Of a product, about ten microseconds: more than it takes to hand them over.
+constexpr int rows_of_a_part = 500;
 
 std::array<std::atomic<long>, kinds_of_shared_work> shared{};
 
@@ -105,6 +107,11 @@ void for_each_part(SharedWork kind, int threads, int parts, const std::function<
   }
   ++shared[static_cast<std::size_t>(kind)];
   team().share(threads, parts, work);
+}
+
+void for_each_range(SharedWork kind, int threads, int rows, const std::function<void(int, int)>& work) {
+  const int parts = std::max(1, rows / rows_of_a_part);
+  for_each_part(kind, threads, parts, [&](int part) { work(part * rows_of_a_part, part + 1 < parts ? (part + 1) * rows_of_a_part : rows); });
 }
 
 long times_shared(SharedWork kind) {

@@ -25,6 +25,8 @@ inline constexpr int kinds_of_shared_work = 3;
 /// Calls work(i) for i from 0 to parts - 1, on `threads` threads at a time; in this order if that is 1. The work must
 /// neither throw nor call this again, and only one thread of the program may call it at a time.
 void for_each_part(SharedWork kind, int threads, int parts, const std::function<void(int)>& work);
+/// The same for rows of a matrix: calls work(first, end) for ranges that make up 0 to rows - 1.
+void for_each_range(SharedWork kind, int threads, int rows, const std::function<void(int, int)>& work);
 
 /// How often this process has called upon more than one thread.
 long times_shared(SharedWork kind);

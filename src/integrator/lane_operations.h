@@ -3,9 +3,8 @@
 #pragma once
 
 #include <cmath>
-#include <cstring>
 
-#include "openclose/core/packs.h"
+#include "openclose/core/lane_memory.h"
 
 namespace openclose::lanes {
 
@@ -13,14 +12,6 @@ using Mask = decltype(Lanes{} < Lanes{});
 
 OPENCLOSE_KERNEL Lanes all(double x) {
   return Lanes{x, x, x, x};
-}
-OPENCLOSE_KERNEL Lanes load(const double* from) {
-  Lanes x;
-  std::memcpy(&x, from, sizeof x);
-  return x;
-}
-OPENCLOSE_KERNEL void store(double* to, Lanes x) {
-  std::memcpy(to, &x, sizeof x);
 }
 /// x in the lanes of the mask, 0 in the others.
 OPENCLOSE_KERNEL Lanes only_where(Mask mask, Lanes x) {

@@ -76,7 +76,7 @@ class Newton {
   /// Of what there is now.
   Memory present_memory() const;
   /// Those of parts included.
-  LinearCounters linear_counters() const { return LinearCounters(tangent_.counters()) += subdomains_.counters(); }
+  LinearCounters linear_counters() const { return tangent_.counters() += subdomains_.counters(); }
 
  private:
   enum class Tangent { exact, symmetric };

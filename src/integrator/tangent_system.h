@@ -25,7 +25,7 @@ class TangentSystem {
   Memory memory() const;
   /// The pattern, which decides in which order the solver eliminates and so how it rounds; the symbolic work is done again after reading.
   void exchange(Archive& archive);
-  const LinearCounters& counters() const { return solver_ ? solver_->counters() : nothing_done_; }
+  LinearCounters counters() const { return solver_ ? solver_->counters() : LinearCounters(); }
 
  private:
   /// False if a pair of blocks has none.
@@ -40,7 +40,6 @@ class TangentSystem {
   bool skip_symbolic_ = true;
   std::unique_ptr<LinearSolver> solver_;
   Memory solver_memory_;  ///< the largest
-  LinearCounters nothing_done_;
 };
 
 }  // namespace openclose

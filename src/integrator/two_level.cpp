@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <numeric>
 
-#include "openclose/linear/single_solver.h"
-
 // Within groups four digits do, from a factor of 16 bits an entry: slopes of 10,208 and 20,100 blocks take as many steps as with all digits, in 0.92
 // and 0.78 of the time.
 namespace openclose {

@@ -13,7 +13,7 @@
 // From matrix to matrix most rows stay as they are but for the turning of blocks. A row of the factor whose own row of the matrix has changed by no
 // more than it may, and which subtracts only rows that are kept, is kept: the factor is always that of a matrix each of whose rows is as it was when
 // it was last taken. Putting rows last that change in nearly every matrix gains nothing: those that change now and then lie anywhere. And weak
-// couplings are left out of the factor (weak_couplings.h): what they carry is found by iteration, whose residual they are.
+// couplings are left out of the factor (factor_plan.h): what they carry is found by iteration, whose residual they are.
 #include <algorithm>
 #include <atomic>
 #include <limits>
@@ -22,6 +22,7 @@
 #include "openclose/core/parallel.h"
 #include "openclose/core/process.h"
 #include "openclose/linear/factor_plan.h"
+#include "openclose/linear/row_factor.h"
 #include "openclose/linear/solver.h"
 
 namespace openclose {
@@ -37,8 +38,6 @@ constexpr int most_refinements = 6;
 /// [-] Of the residual, at least. An iteration takes a tenth of one of Newton's method, of which there are 13 % more with 1e-5 and 1 % more with
 /// this.
 constexpr double refined_reduction = 1e-7;
-/// [-] Where all digits are asked for, as those of a factor of the whole matrix.
-constexpr double refined_to_rounding = std::numeric_limits<double>::epsilon();
 
 class BlockLuSolver : public LinearSolver {
  public:
@@ -49,15 +48,13 @@ class BlockLuSolver : public LinearSolver {
     if (version_ != matrix.pattern_version()) {
       analyse(factored_slots(matrix, factoring_));
     } else {
-      ++this->counters_.symbolic_skipped;
+      ++counters_.symbolic_skipped;
     }
     return factor_analysed(kept_change);
   }
 
-  Eigen::VectorXd solve(const Eigen::VectorXd& right_side, double reduction) override { return solve(right_side, reduction, 0.0); }
-
   Eigen::VectorXd solve(const Eigen::VectorXd& right_side, double reduction, double enough) override {
-    ++this->counters_.solves;
+    ++counters_.solves;
     return solve_once(right_side, reduction, enough);
   }
 
@@ -76,20 +73,18 @@ class BlockLuSolver : public LinearSolver {
 
   void exchange(Archive& archive, const BlockMatrix& matrix) override {
     LinearSolver::exchange(archive, matrix);
-    bool known = version_ == matrix.pattern_version(), has_factor = has_factor_;
-    std::vector<char> slots = slots_;
-    archive(known);
-    if (!known) return;
-    archive(slots, has_factor);
-    archive.require(slots.size() == static_cast<std::size_t>(matrix.row_start(matrix.rows())), "the saved state has a factor of another matrix");
-    if (archive.reading()) plan(matrix, std::move(slots));
+    auto slots = exchange_slots(archive, matrix, version_ == matrix.pattern_version(), slots_);
+    if (!slots) return;
+    bool has_factor = has_factor_;
+    archive(has_factor);
+    if (archive.reading()) plan(matrix, std::move(*slots));
     if (has_factor) exchange_factor(archive);
   }
 
  private:
   /// What is stored is the matrix that it is the factor of.
   void exchange_factor(Archive& archive) {
-    for (auto& block : factor_.taken) archive(block);
+    for (BlockMatrix::Block& block : factor_.taken) archive(block);
     if (!archive.reading()) return;
     for (int i = 0; i < factor_.rows(); ++i) note_scale(factor_, i);
     std::fill(factor_.stale.begin(), factor_.stale.end(), true);
@@ -97,15 +92,15 @@ class BlockLuSolver : public LinearSolver {
   }
 
   bool factor_analysed(double kept_change) {
-    ++this->counters_.factorisations;
+    ++counters_.factorisations;
     make_room();
     std::fill(factor_.stale.begin(), factor_.stale.end(), factoring_ == Factoring::whole || !has_factor_);
-    this->counters_.rows += factor_.rows();
-    this->counters_.rows_kept += take_changes(*matrix_, factor_, kept_change);
+    counters_.rows += factor_.rows();
+    counters_.rows_kept += take_changes(*matrix_, factor_, kept_change);
     has_factor_ = eliminate();
     use_plain_ = !has_factor_;
     if (has_factor_) return true;
-    ++this->counters_.pivots_lost;
+    ++counters_.pivots_lost;
     let_go_of_rows();
     if (!plain_) plain_ = make_sparse_solver();
     return plain_->factor(*matrix_);
@@ -119,7 +114,10 @@ class BlockLuSolver : public LinearSolver {
     return take_in() ? solve_once(right_side, reduction, enough) : Eigen::VectorXd();
   }
 
-  static double refined_to(double reduction) { return reduction > full_reduction ? std::min(reduction, refined_reduction) : refined_to_rounding; }
+  /// Where all digits are asked for, as many as a factor of the whole matrix gives.
+  static double refined_to(double reduction) {
+    return reduction > full_reduction ? std::min(reduction, refined_reduction) : std::numeric_limits<double>::epsilon();
+  }
 
   /// Brings the residual, which is what the couplings left out carry, down to `wanted`. False if that takes too long.
   bool refine(const Eigen::VectorXd& right_side, double reduction, Eigen::VectorXd& x) {
@@ -128,7 +126,7 @@ class BlockLuSolver : public LinearSolver {
     for (int iteration = 0; iteration <= most_refinements; ++iteration) {
       subtract_product(step, residual);
       if (residual.norm() <= wanted) return true;
-      ++this->counters_.refinements;
+      ++counters_.refinements;
       substitute(residual.data(), step.data());
       x += step;
     }
@@ -144,7 +142,7 @@ class BlockLuSolver : public LinearSolver {
 
   /// Factors anew with the couplings that have become strong, or, if there are none, with all. False if the matrix is singular.
   bool take_in() {
-    ++this->counters_.couplings_taken_in;
+    ++counters_.couplings_taken_in;
     std::vector<char> slots = factored_slots(*matrix_, factoring_);
     if (slots == slots_) slots = factored_slots(*matrix_, Factoring::whole);
     analyse(std::move(slots));
@@ -155,12 +153,12 @@ class BlockLuSolver : public LinearSolver {
   bool eliminate() {
     const int subtrees = static_cast<int>(factor_.subtrees.size()), panels = static_cast<int>(factor_.panels.size());
     std::atomic<bool> done = true;
-    for_each_part(SharedWork::factorisation, this->threads_, subtrees, [&](int part) {
+    for_each_part(SharedWork::factorisation, threads_, subtrees, [&](int part) {
       if (!eliminate_rows(factor_, factor_.subtrees[part], 0, working_place_[part].data())) done = false;
     });
     for (int panel = 0; panel <= panels && done; ++panel) {
       if (panel > 0) done = eliminate_rows(factor_, factor_.panels[panel - 1], panel, working_place_[0].data());
-      for_each_part(SharedWork::factorisation, this->threads_, panels - panel,
+      for_each_part(SharedWork::factorisation, threads_, panels - panel,
                     [&](int later) { advance(factor_, factor_.panels[panel + later], panel, working_place_[later].data()); });
     }
     return done;
@@ -168,16 +166,15 @@ class BlockLuSolver : public LinearSolver {
 
   void substitute(const double* right_side, double* x) {
     const int subtrees = static_cast<int>(factor_.subtrees.size());
-    for_each_part(SharedWork::substitution, this->threads_, subtrees,
-                  [&](int part) { substitute_forward(factor_, factor_.subtrees[part], right_side); });
+    for_each_part(SharedWork::substitution, threads_, subtrees, [&](int part) { substitute_forward(factor_, factor_.subtrees[part], right_side); });
     for (const std::vector<int>& panel : factor_.panels) substitute_forward(factor_, panel, right_side);
     for (auto panel = factor_.panels.rbegin(); panel != factor_.panels.rend(); ++panel) substitute_back(factor_, *panel, x);
-    for_each_part(SharedWork::substitution, this->threads_, subtrees, [&](int part) { substitute_back(factor_, factor_.subtrees[part], x); });
+    for_each_part(SharedWork::substitution, threads_, subtrees, [&](int part) { substitute_back(factor_, factor_.subtrees[part], x); });
   }
 
   /// \param slots  of the matrix: whether the factor gets them
   void analyse(std::vector<char> slots) {
-    ++this->counters_.symbolic;
+    ++counters_.symbolic;
     plan(*matrix_, std::move(slots));
   }
 

@@ -2,50 +2,24 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cstring>
 #include <numeric>
 #include <stdexcept>
 
-#include "openclose/core/packs.h"
+#include "openclose/core/lane_memory.h"
 #include "openclose/core/parallel.h"
 
 namespace openclose {
 namespace {
 
-/// Of a product, about ten microseconds: more than it takes to hand them over.
-constexpr int rows_of_a_part = 500;
-
-typedef double FourNumbers __attribute__((vector_size(4 * sizeof(double)), aligned(alignof(double))));
-
-/// By value: clang++ takes what a reference refers to for aligned in full.
-OPENCLOSE_KERNEL FourNumbers load(const double* numbers) {
-  FourNumbers loaded;
-  std::memcpy(&loaded, numbers, sizeof loaded);
-  return loaded;
-}
-
 /// Sum of the products of a row's blocks with x, column by column of each: the operations of Eigen in their order, three rows at a time.
 OPENCLOSE_KERNEL void multiply_row(const double* block, const int* column, int count, const double* x, double* y) {
-  FourNumbers sum{};
+  Lanes sum{};
   for (int s = 0; s < count; ++s, block += dofs * dofs) {
     const double* const part = x + dofs * column[s];
-    const FourNumbers last = load(block + 2 * dofs - 1);
-    sum += (load(block) * part[0] + load(block + dofs) * part[1]) + __builtin_shufflevector(last, last, 1, 2, 3, 3) * part[2];
+    const Lanes last = lanes::load(block + 2 * dofs - 1);
+    sum += (lanes::load(block) * part[0] + lanes::load(block + dofs) * part[1]) + __builtin_shufflevector(last, last, 1, 2, 3, 3) * part[2];
   }
   for (int k = 0; k < dofs; ++k) y[k] = sum[k];
-}
-
-/// Of a matrix of blocks, row by row.
-struct Rows {
-  const double* values;
-  const int *start, *columns;
-};
-
-OPENCLOSE_FOR_WIDE_REGISTERS_TOO void multiply_slots(const Rows& rows, int first, int end, const double* x, double* y) {
-  for (int i = first; i < end; ++i) {
-    const int begin = rows.start[i];
-    multiply_row(rows.values + dofs * dofs * begin, rows.columns + begin, rows.start[i + 1] - begin, x, y + dofs * i);
-  }
 }
 
 }  // namespace
@@ -124,15 +98,15 @@ void BlockMatrix::eliminate(int row, int k) {
 
 Eigen::VectorXd BlockMatrix::multiply(const Eigen::VectorXd& x) const {
   Eigen::VectorXd y = Eigen::VectorXd::Zero(unknowns());
-  const int parts = std::max(1, rows() / rows_of_a_part);
-  for_each_part(SharedWork::product, threads_, parts,
-                [&](int part) { multiply_rows(part * rows_of_a_part, part + 1 < parts ? (part + 1) * rows_of_a_part : rows(), x, y); });
+  for_each_range(SharedWork::product, threads_, rows(), [&](int first, int end) { multiply_rows(first, end, x.data(), y.data()); });
   return y;
 }
 
-void BlockMatrix::multiply_rows(int first, int end, const Eigen::VectorXd& x, Eigen::VectorXd& y) const {
-  const Rows all{values_.empty() ? nullptr : values_[0].data(), row_start_.data(), columns_.data()};
-  multiply_slots(all, first, end, x.data(), y.data());
+OPENCLOSE_FOR_WIDE_REGISTERS_TOO void BlockMatrix::multiply_rows(int first, int end, const double* x, double* y) const {
+  for (int i = first; i < end; ++i) {
+    const int begin = row_start_[i];
+    multiply_row(values_[begin].data(), columns_.data() + begin, row_start_[i + 1] - begin, x, y + dofs * i);
+  }
 }
 
 Eigen::MatrixXd BlockMatrix::dense() const {

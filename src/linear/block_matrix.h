@@ -24,7 +24,6 @@ class BlockMatrix {
   long pattern_version() const { return pattern_version_; }  ///< changes with every new pattern, differs between matrices
   void renew_version();                                      ///< lets the pattern pass for a new one
 
-  bool contains(int row, int column) const { return find(row, column) >= 0; }
   int find(int row, int column) const;  ///< slot of the pair, -1 if not in the pattern
   /// Whether this is the slot of the pair.
   bool is_at(int slot, int row, int column) const { return slot >= row_start_[row] && slot < row_start_[row + 1] && columns_[slot] == column; }
@@ -35,7 +34,6 @@ class BlockMatrix {
   void set_zero();
   /// Throws std::logic_error if the pair is not in the pattern.
   void add(int row, int column, const Block& value) { values_[slot(row, column)] += value; }
-  const Block& at(int row, int column) const { return values_[slot(row, column)]; }
 
   /// Takes unknown k of a row out of the system: its row and column become those of the unit matrix.
   void eliminate(int row, int k);
@@ -52,8 +50,7 @@ class BlockMatrix {
 
  private:
   int slot(int row, int column) const;
-
-  void multiply_rows(int first, int end, const Eigen::VectorXd& x, Eigen::VectorXd& y) const;
+  void multiply_rows(int first, int end, const double* x, double* y) const;
 
   long pattern_version_ = 0;
   int threads_ = 1;

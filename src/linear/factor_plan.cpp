@@ -7,18 +7,29 @@
 #include <utility>
 
 #include "openclose/core/parallel.h"
+#include "openclose/linear/row_factor.h"
 
 namespace openclose {
 namespace {
 
 /// [-] Rows from which on the work is cut into parts. Below, a part takes less than the few microseconds it takes to hand it over.
 constexpr int smallest_shared_system = 1000;
-/// The work of a subtree is at most the whole over this, which leaves parts to choose from for as many threads as there may be.
-constexpr double subtrees_of_equal_work = 2.0 * most_threads;
+/// As many parts there are of the subtrees, the work of each of which is at most the whole over this: that leaves parts to choose from for as many
+/// threads as there may be.
 constexpr int subtree_parts = 2 * most_threads;
 /// [-] Rows of the top that are eliminated one after the other before the others go on: a part of the work small against the rest, and large against
 /// a call upon the threads.
 constexpr int panel_rows = 32;
+/// [-] Entries of a weak coupling are smaller than this times the root of the product of the diagonal entries of their row and column. In a failing
+/// slope couplings over edges have more than 3e-2, those over corners less than 1e-3.
+constexpr double weak_coupling = 1e-3;
+
+bool is_weak(const BlockMatrix& matrix, int row, int slot) {
+  const auto rows = matrix.value(matrix.diagonal(row)).diagonal().cwiseAbs();
+  const auto columns = matrix.value(matrix.diagonal(matrix.column(slot))).diagonal().cwiseAbs();
+  const auto& value = matrix.value(slot);
+  return (value.cwiseAbs2().array() <= weak_coupling * weak_coupling * (rows * columns.transpose()).array()).all() && !value.isZero(0.0);
+}
 
 class Planner {
  public:
@@ -38,11 +49,11 @@ class Planner {
   void order_rows(const RowGraph& graph) {
     const int rows = graph.rows();
     factor_.order.clear();
-    place_.assign(rows, unplaced);
+    place_.assign(rows, -1);  // without a place yet
     for (int first = 0; first < rows; ++first) {
-      if (place_[first] == unplaced) order_part(graph, connected_rows(graph, first));
+      if (place_[first] < 0) order_part(graph, connected_rows(graph, first));
     }
-    for (int i = 0; i < rows; ++i) place_[factor_.order[i]] = i;
+    place_ = places_in(factor_.order);
   }
 
   /// In ascending order; their places become those in the list.
@@ -52,7 +63,7 @@ class Planner {
     for (std::size_t next = 0; next < part.size(); ++next) {
       for (int k = graph.start[part[next]]; k < graph.start[part[next] + 1]; ++k) {
         const int neighbour = graph.neighbour[k];
-        if (place_[neighbour] != unplaced) continue;
+        if (place_[neighbour] >= 0) continue;
         place_[neighbour] = 0;
         part.push_back(neighbour);
       }
@@ -167,7 +178,7 @@ class Planner {
     std::vector<int> part_of(rows, 0);
     if (rows >= smallest_shared_system) part_of = share_out_subtrees();
     for (int i = 0, top = 0; i < rows; ++i) {
-      if (part_of[i] != in_top) {
+      if (part_of[i] >= 0) {
         factor_.subtrees[part_of[i]].push_back(i);
         continue;
       }
@@ -177,14 +188,14 @@ class Planner {
     }
   }
 
-  /// The part of each row; large subtrees are dealt out first, each to the part with the least work.
+  /// The part of each row, -1 in the top; large subtrees are dealt out first, each to the part with the least work.
   std::vector<int> share_out_subtrees() {
     const int rows = factor_.rows();
     const std::vector<double> work = work_of_subtrees();
     double whole = 0.0;
     for (int i = 0; i < rows; ++i) whole += factor_.parent(i) < 0 ? work[i] : 0.0;
-    const double most = whole / subtrees_of_equal_work;
-    std::vector<int> part_of(rows, in_top), roots;
+    const double most = whole / subtree_parts;
+    std::vector<int> part_of(rows, -1), roots;
     for (int i = 0; i < rows; ++i) {
       if (work[i] <= most && (factor_.parent(i) < 0 || work[factor_.parent(i)] > most)) roots.push_back(i);
     }
@@ -224,12 +235,50 @@ class Planner {
     }
   }
 
-  static constexpr int unplaced = -1, in_top = -1;
   RowFactor& factor_;
   std::vector<int> place_;  ///< in the factor, of a row of the matrix
 };
 
 }  // namespace
+
+std::vector<char> factored_slots(const BlockMatrix& matrix, Factoring factoring) {
+  std::vector<char> slots(matrix.row_start(matrix.rows()), factoring == Factoring::whole);
+  if (factoring == Factoring::whole) return slots;
+  for (int i = 0; i < matrix.rows(); ++i) {
+    slots[matrix.diagonal(i)] = true;
+    for (int s = matrix.row_start(i); s < matrix.row_start(i + 1); ++s) {
+      if (!slots[s] && !is_weak(matrix, i, s)) slots[s] = slots[matrix.find(matrix.column(s), i)] = true;
+    }
+  }
+  return slots;
+}
+
+RowGraph graph_of(const BlockMatrix& matrix, const std::vector<char>& slots) {
+  RowGraph graph;
+  graph.start.reserve(matrix.rows() + 1);
+  graph.neighbour.reserve(slots.size());
+  for (int i = 0; i < matrix.rows(); ++i) {
+    for (int s = matrix.row_start(i); s < matrix.row_start(i + 1); ++s) {
+      if (slots[s] && matrix.column(s) != i) graph.neighbour.push_back(matrix.column(s));
+    }
+    graph.start.push_back(static_cast<int>(graph.neighbour.size()));
+  }
+  return graph;
+}
+
+std::vector<int> places_in(const std::vector<int>& order) {
+  std::vector<int> place(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i) place[order[i]] = static_cast<int>(i);
+  return place;
+}
+
+std::optional<std::vector<char>> exchange_slots(Archive& archive, const BlockMatrix& matrix, bool known, std::vector<char> slots) {
+  archive(known);
+  if (!known) return std::nullopt;
+  archive(slots);
+  archive.require(slots.size() == static_cast<std::size_t>(matrix.row_start(matrix.rows())), "the saved state has a factor of another matrix");
+  return slots;
+}
 
 void plan_factor(const BlockMatrix& matrix, const std::vector<char>& slots, RowFactor& factor, std::vector<LeftOut>& left_out) {
   Planner(factor).plan(matrix, slots, left_out);

@@ -6,7 +6,9 @@
 #include <functional>
 #include <limits>
 
+#include "openclose/core/lane_memory.h"
 #include "openclose/linear/packed_block.h"
+#include "openclose/linear/single_matrix.h"
 #include "openclose_traps.h"
 
 namespace openclose {
@@ -26,17 +28,12 @@ constexpr int level_of_low_fill = 2;
 /// with 1e-2, 0.27 with 5e-2, 0.18 with 0.2; iterations grow by 0.0, 0.0, 0.4 and 9 %.
 constexpr float kept_change = 1e-2f;
 
-typedef double FourNumbers __attribute__((vector_size(4 * sizeof(double)), aligned(alignof(double))));
-typedef float FourEntries __attribute__((vector_size(4 * sizeof(float)), aligned(alignof(float))));
-
-/// [-] The largest of the whole numbers that a block is kept as.
-constexpr float largest_number = 32767.0f;
 /// [-] What has no larger entries, beside diagonal entries of one, is kept as zero: its scale would have no digits.
 constexpr float negligible_entry = 1e-30f;
 
 /// Four consecutive entries of a block in single precision.
-FourEntries four(const double* entry) {
-  return __builtin_convertvector(*reinterpret_cast<const FourNumbers*>(entry), FourEntries);
+OPENCLOSE_KERNEL FloatLanes four(const double* entry) {
+  return __builtin_convertvector(lanes::load(entry), FloatLanes);
 }
 
 /// Places of the rows by reverse Cuthill-McKee: by distance from a row at the rim, the neighbours of each row by their number of neighbours.
@@ -94,12 +91,6 @@ std::vector<int> from_both_ends(const RowGraph& graph, const std::vector<int>& o
   return result;
 }
 
-std::vector<int> inverse(const std::vector<int>& order) {
-  std::vector<int> place(order.size());
-  for (std::size_t i = 0; i < order.size(); ++i) place[order[i]] = static_cast<int>(i);
-  return place;
-}
-
 /// An entry of the factor to the right of the diagonal.
 struct FillEntry {
   int column, level;
@@ -108,11 +99,11 @@ struct FillEntry {
 /// The columns of one row with their levels, in ascending order, while fill comes in from the rows above.
 class RowPattern {
  public:
-  RowPattern(int rows, int most_fill) : most_fill_(most_fill), level_(rows, dropped) {}
+  RowPattern(int rows, int most_fill) : most_fill_(most_fill), level_(rows, most_fill + 1) {}
 
   void put(int column, int level) {
     if (level > most_fill_) return;
-    if (level_[column] == dropped) {
+    if (level_[column] > most_fill_) {
       waiting_.push_back(column);
       std::push_heap(waiting_.begin(), waiting_.end(), std::greater<>());
     }
@@ -126,14 +117,14 @@ class RowPattern {
     return {taken_.back(), level_[taken_.back()]};
   }
   void clear() {
-    for (int column : taken_) level_[column] = dropped;
+    for (int column : taken_) level_[column] = most_fill_ + 1;
     taken_.clear();
   }
 
  private:
-  static constexpr int dropped = std::numeric_limits<int>::max();
   int most_fill_;
-  std::vector<int> level_, waiting_, taken_;
+  std::vector<int> level_;  ///< beyond the most where there is nothing
+  std::vector<int> waiting_, taken_;
 };
 
 }  // namespace
@@ -148,18 +139,14 @@ bool IncompleteLu::analyse(const BlockMatrix& matrix) {
 }
 
 void IncompleteLu::exchange(Archive& archive, const BlockMatrix& matrix) {
-  bool known = version_ == matrix.pattern_version();
-  std::vector<char> slots = slots_;
-  archive(known);
-  if (!known) return;
-  archive(slots);
-  archive.require(slots.size() == static_cast<std::size_t>(matrix.row_start(matrix.rows())), "the saved state has a factor of another matrix");
-  if (archive.reading()) plan(matrix, std::move(slots));
+  auto slots = exchange_slots(archive, matrix, version_ == matrix.pattern_version(), slots_);
+  if (!slots) return;
+  if (archive.reading()) plan(matrix, std::move(*slots));
   archive(value_, worth_, taken_, scale_);
   const auto fits = [](const auto& list, std::size_t size) { return list.empty() || list.size() == size; };
   const std::size_t rows = order_.size();
-  const bool is_whole = value_.empty() || (worth_.size() == rows && taken_.size() == rows && scale_.size() == numbers_of_row * rows);
-  archive.require(is_whole && fits(value_, column_.size()) && fits(worth_, rows) && fits(taken_, rows) && fits(scale_, numbers_of_row * rows),
+  const bool is_whole = value_.empty() || (worth_.size() == rows && taken_.size() == rows && scale_.size() == batch_size * rows);
+  archive.require(is_whole && fits(value_, column_.size()) && fits(worth_, rows) && fits(taken_, rows) && fits(scale_, batch_size * rows),
                   "the saved state has a factor of another matrix");
 }
 
@@ -168,7 +155,7 @@ void IncompleteLu::plan(const BlockMatrix& matrix, std::vector<char> slots) {
   const int rows = matrix.rows();
   const RowGraph graph = graph_of(matrix, slots_);
   order_ = from_both_ends(graph, reverse_cuthill_mckee(graph));
-  const std::vector<int> place = inverse(order_);
+  const std::vector<int> place = places_in(order_);
   row_start_.assign(1, 0);
   diagonal_.clear();
   column_.clear();
@@ -204,14 +191,6 @@ void IncompleteLu::plan(const BlockMatrix& matrix, std::vector<char> slots) {
   version_ = matrix.pattern_version();
 }
 
-inline void IncompleteLu::subtract_product(const PaddedBlock& left, const PaddedBlock& right, PaddedBlock& target) {
-  for (int c = 0; c < dofs; ++c) {
-    Lanes sum = left.column[0] * right.column[c][0];
-    for (int k = 1; k < dofs; ++k) sum += left.column[k] * right.column[c][k];
-    target.column[c] -= sum;
-  }
-}
-
 inline IncompleteLu::PaddedBlock IncompleteLu::product(const PaddedBlock& left, const PaddedBlock& right) {
   PaddedBlock result;
   for (int c = 0; c < dofs; ++c) {
@@ -222,7 +201,7 @@ inline IncompleteLu::PaddedBlock IncompleteLu::product(const PaddedBlock& left, 
 }
 
 inline IncompleteLu::PaddedBlock IncompleteLu::padded(const BlockMatrix::Block& block) {
-  const Lanes first = four(block.data()), second = four(block.data() + dofs), last = four(block.data() + 2 * dofs - 1), zero{};
+  const FloatLanes first = four(block.data()), second = four(block.data() + dofs), last = four(block.data() + 2 * dofs - 1), zero{};
   return {{__builtin_shufflevector(first, zero, 0, 1, 2, 4), __builtin_shufflevector(second, zero, 0, 1, 2, 4),
            __builtin_shufflevector(last, zero, 1, 2, 3, 4)}};
 }
@@ -239,7 +218,7 @@ bool IncompleteLu::invert(PaddedBlock& pivot) {
 
 inline IncompleteLu::PaddedBlock IncompleteLu::widen(const StoredBlock& block, float scale) {
   const packed::Eight numbers = packed::eight(block.entry);
-  const packed::Four last{block.last};
+  const FloatLanes last{block.last};
   // The fourth of each counts for nothing.
   return {{scale * __builtin_shufflevector(numbers, numbers, 0, 1, 2, 3), scale * __builtin_shufflevector(numbers, numbers, 3, 4, 5, 6),
            scale * __builtin_shufflevector(__builtin_shufflevector(numbers, numbers, 6, 7, 6, 7), last, 0, 1, 4, 4)}};
@@ -255,7 +234,7 @@ float IncompleteLu::store(int first, int end, int row_start) {
     }
   }
   if (!std::isfinite(sum)) return sum;  // no whole number stands for what single precision has none for
-  const float numbers = largest > negligible_entry ? largest_number / largest : 0.0f;
+  const float numbers = largest > negligible_entry ? std::numeric_limits<std::int16_t>::max() / largest : 0.0f;
   for (int s = first; s < end; ++s) {
     for (int k = 0; k < dofs * dofs - 1; ++k) {
       const float number = numbers * entry(s, k);
@@ -263,30 +242,30 @@ float IncompleteLu::store(int first, int end, int row_start) {
     }
     value_[s].last = numbers * entry(s, dofs * dofs - 1);
   }
-  return largest / largest_number;
+  return largest / std::numeric_limits<std::int16_t>::max();
 }
 
 double IncompleteLu::largest_inverse() const {
   float largest = 0.0f;
   for (const RowScale& row : worth_) largest = std::max(largest, row.pivot);
-  return static_cast<double>(largest * largest_number);
+  return static_cast<double>(largest * std::numeric_limits<std::int16_t>::max());
 }
 
 void IncompleteLu::find_scale(const BlockMatrix& matrix) {
-  scale_.assign(static_cast<std::size_t>(numbers_of_row) * order_.size(), 0.0f);
+  scale_.assign(static_cast<std::size_t>(batch_size) * order_.size(), 0.0f);
   for (int i = 0; i < rows(); ++i) {
     const auto& diagonal = matrix.value(matrix.diagonal(order_[i]));
     for (int k = 0; k < dofs; ++k) {
       const double entry = diagonal(k, k);
-      scale_[numbers_of_row * i + k] = std::isnormal(entry) ? std::ldexp(1.0f, -std::ilogb(entry) / 2) : 1.0f;
+      scale_[batch_size * i + k] = std::isnormal(entry) ? std::ldexp(1.0f, -std::ilogb(entry) / 2) : 1.0f;
     }
   }
 }
 
 IncompleteLu::PaddedBlock IncompleteLu::scaled(const BlockMatrix::Block& block, int row, int column) const {
   PaddedBlock result = padded(block);
-  const Lanes of_row = packed::four(&scale_[numbers_of_row * row]);
-  for (int c = 0; c < dofs; ++c) result.column[c] *= of_row * scale_[numbers_of_row * column + c];
+  const FloatLanes of_row = packed::four(&scale_[batch_size * row]);
+  for (int c = 0; c < dofs; ++c) result.column[c] *= of_row * scale_[batch_size * column + c];
   return result;
 }
 
@@ -298,23 +277,25 @@ void IncompleteLu::subtract_rows_above(int i) {
     const PaddedBlock left = working_row_[s - start] = product(working_row_[s - start], widen(value_[diagonal_[k]], worth_[k].pivot));
     for (int u = diagonal_[k] + 1; u < row_start_[k + 1]; ++u) {
       const int t = working_place_[column_[u]];
-      if (t >= 0) subtract_product(left, widen(value_[u], worth_[k].above), working_row_[t]);
+      if (t < 0) continue;
+      const PaddedBlock part = product(left, widen(value_[u], worth_[k].above));
+      for (int c = 0; c < dofs; ++c) working_row_[t].column[c] -= part.column[c];
     }
   }
   for (int s = start; s < row_start_[i + 1]; ++s) working_place_[column_[s]] = -1;
 }
 
-bool IncompleteLu::has_changed(const PaddedBlock& before, const PaddedBlock& now, const Lanes& weight) {
-  Lanes largest{};
+bool IncompleteLu::has_changed(const PaddedBlock& before, const PaddedBlock& now, const FloatLanes& weight) {
+  FloatLanes largest{};
   for (int c = 0; c < dofs; ++c) {
-    const Lanes difference = now.column[c] - before.column[c], change = difference * difference * weight * weight[c];
+    const FloatLanes difference = now.column[c] - before.column[c], change = difference * difference * weight * weight[c];
     largest = change <= largest ? largest : change;  // what is no number is a change
   }
   return !(largest[0] <= kept_change * kept_change && largest[1] <= kept_change * kept_change && largest[2] <= kept_change * kept_change);
 }
 
-IncompleteLu::Lanes IncompleteLu::diagonal_entries(int i) const {
-  Lanes entries{};
+FloatLanes IncompleteLu::diagonal_entries(int i) const {
+  FloatLanes entries{};
   for (int k = 0; k < dofs; ++k) entries[k] = std::abs(taken_[i].column[k][k]);
   return entries;
 }
@@ -373,50 +354,32 @@ bool IncompleteLu::factor(const BlockMatrix& matrix) {
 
 namespace {
 
-template <class StoredBlock>
-OPENCLOSE_KERNEL packed::Four product(const StoredBlock* blocks, const int* columns, int count, const packed::Four* x) {
+OPENCLOSE_KERNEL FloatLanes row_times(const IncompleteLu::StoredBlock* blocks, const int* columns, int count, const FloatLanes* x) {
   packed::RowProduct product;
   for (int s = 0; s < count; ++s) product.add(packed::eight(blocks[s].entry), blocks[s].last, x[columns[s]]);
   return product.sum();
 }
 
-/// Both triangles of a factor, row by row.
-template <class StoredBlock, class RowScale>
-struct Triangles {
-  int rows;
-  const int *row_start, *diagonal, *column;
-  const StoredBlock* value;
-  const RowScale* worth;
-  const float* scale;
-
-  OPENCLOSE_KERNEL void substitute(const float* right_side, packed::Four* solution, float* x) const {
-    for (int i = 0; i < rows; ++i) {
-      const int begin = row_start[i], at = numbers_of_row * i;
-      const packed::Four above = product(value + begin, column + begin, diagonal[i] - begin, solution);
-      solution[i] = packed::four(scale + at) * packed::four(right_side + at) - worth[i].below * above;
-    }
-    for (int i = rows - 1; i >= 0; --i) {
-      const int begin = diagonal[i] + 1, at = numbers_of_row * i;
-      const packed::Four left = solution[i] - worth[i].above * product(value + begin, column + begin, row_start[i + 1] - begin, solution);
-      packed::RowProduct entry;
-      entry.add(packed::eight(value[diagonal[i]].entry), value[diagonal[i]].last, left);
-      solution[i] = worth[i].pivot * entry.sum();
-      packed::store(x + at, packed::four(scale + at) * solution[i]);
-    }
-  }
-};
-
-OPENCLOSE_FOR_WIDE_REGISTERS_TOO void substitute(const Triangles<IncompleteLu::StoredBlock, IncompleteLu::RowScale>& factor, const float* right_side,
-                                                 packed::Four* solution, float* x) {
-  factor.substitute(right_side, solution, x);
-}
-
 }  // namespace
 
-void IncompleteLu::solve_in_order(const Eigen::VectorXf& right_side, Eigen::VectorXf& x) const {
-  const Triangles<StoredBlock, RowScale> factor{rows(),        row_start_.data(), diagonal_.data(), column_.data(),
-                                                value_.data(), worth_.data(),     scale_.data()};
-  substitute(factor, right_side.data(), solution_.data(), x.data());
+OPENCLOSE_FOR_WIDE_REGISTERS_TOO void IncompleteLu::solve_in_order(const Eigen::VectorXf& right_side, Eigen::VectorXf& x) const {
+  const int* const column = column_.data();
+  const StoredBlock* const value = value_.data();
+  FloatLanes* const solution = solution_.data();
+  const auto scale = [&](int i) { return packed::four(scale_.data() + batch_size * i); };
+  for (int i = 0; i < rows(); ++i) {
+    const int begin = row_start_[i];
+    const FloatLanes above = row_times(value + begin, column + begin, diagonal_[i] - begin, solution);
+    solution[i] = scale(i) * packed::four(right_side.data() + batch_size * i) - worth_[i].below * above;
+  }
+  for (int i = rows() - 1; i >= 0; --i) {
+    const int begin = diagonal_[i] + 1;
+    const FloatLanes left = solution[i] - worth_[i].above * row_times(value + begin, column + begin, row_start_[i + 1] - begin, solution);
+    packed::RowProduct entry;
+    entry.add(packed::eight(value[diagonal_[i]].entry), value[diagonal_[i]].last, left);
+    solution[i] = worth_[i].pivot * entry.sum();
+    packed::store(x.data() + batch_size * i, scale(i) * solution[i]);
+  }
 }
 
 Eigen::VectorXd IncompleteLu::solve(const Eigen::VectorXd& right_side) const {

@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "openclose/core/archive.h"
-#include "openclose/linear/single_matrix.h"
-#include "openclose/linear/weak_couplings.h"
+#include "openclose/core/packs.h"
+#include "openclose/linear/factor_plan.h"
 
 namespace openclose {
 
@@ -30,19 +30,14 @@ class IncompleteLu {
  public:
   /// Whole numbers, column by column; the last one as a number of single precision, which fills up the row of bytes.
   struct StoredBlock {
+    using Numbers = float;
     std::int16_t entry[dofs * dofs - 1];
     float last;
-
-    void exchange(Archive& archive) {
-      for (std::int16_t& number : entry) archive(number);
-      archive(last);
-    }
   };
   /// [-] What the numbers of a row are worth.
   struct RowScale {
+    using Numbers = float;
     float below = 0.0f, pivot = 0.0f, above = 0.0f;  ///< the diagonal, with the inverse of the pivot on it
-
-    void exchange(Archive& archive) { archive(below, pivot, above); }
   };
 
   explicit IncompleteLu(Factoring factoring = Factoring::whole, Fill fill = Fill::low);
@@ -76,35 +71,22 @@ class IncompleteLu {
   std::size_t stored_blocks() const { return column_.size(); }
 
  private:
-  static constexpr int lanes = numbers_of_row;
-  typedef float Lanes __attribute__((vector_size(lanes * sizeof(float))));
   /// Columns, padded with zeros to a register of four that every processor has.
   struct PaddedBlock {
-    static_assert(dofs <= lanes);
-    Lanes column[dofs];
-
-    void exchange(Archive& archive) {
-      for (Lanes& lane : column) {
-        for (int k = 0; k < dofs; ++k) {
-          float entry = lane[k];
-          archive(entry);
-          lane[k] = entry;
-        }
-      }
-    }
+    using Numbers = float;
+    FloatLanes column[dofs];
   };
 
   static PaddedBlock widen(const StoredBlock& block, float scale);
   /// Keeps blocks of the row under work; returns the scale.
   float store(int first, int end, int row_start);
-  static void subtract_product(const PaddedBlock& left, const PaddedBlock& right, PaddedBlock& target);
   static PaddedBlock product(const PaddedBlock& left, const PaddedBlock& right);
   static PaddedBlock padded(const BlockMatrix::Block& block);
   static bool invert(PaddedBlock& pivot);
   /// Whether an entry has changed by more than kept_change over the root of the weights of its row and column.
-  static bool has_changed(const PaddedBlock& before, const PaddedBlock& now, const Lanes& weight);
+  static bool has_changed(const PaddedBlock& before, const PaddedBlock& now, const FloatLanes& weight);
   /// Sizes of those of row i when it was taken.
-  Lanes diagonal_entries(int i) const;
+  FloatLanes diagonal_entries(int i) const;
   /// Whether row i of the factor is that of a row of the matrix which has hardly changed since.
   bool is_as_taken(const BlockMatrix& matrix, int i) const;
   bool subtracts_changed_row(int i) const;
@@ -140,7 +122,7 @@ class IncompleteLu {
   int rows_kept_ = 0;
   std::vector<int> working_place_;  ///< of a column in the row under work; -1 where it has none
   std::vector<PaddedBlock> working_row_;
-  mutable std::vector<Lanes> solution_;  ///< a block row each, in the factor's order
+  mutable std::vector<FloatLanes> solution_;  ///< a block row each, in the factor's order
 };
 
 }  // namespace openclose

@@ -3,10 +3,13 @@
 // only the neighbours hold a block, it does not get there, and the matrices go to a direct solver.
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <utility>
 
 #include "openclose/linear/incomplete.h"
-#include "openclose/linear/refinement.h"
+#include "openclose/linear/krylov.h"
+#include "openclose/linear/single_matrix.h"
 #include "openclose/linear/solver.h"
 
 namespace openclose {
@@ -17,9 +20,8 @@ namespace {
 /// solver is quicker. In single precision and with rows that are kept, 0.45 makes 0.997 and 1.002 of the instructions of slopes of 1,973 and 4,887
 /// blocks that settle and make 20 steps.
 constexpr double iterations_of_a_factorisation = 0.3;
-/// After a try in vain so many matrices are factored at once before the next, twice as many after each further one, up to the most. Half as many
-/// again after a success, and the first number after one at half the price.
-constexpr int first_pause = 1;
+/// After a try in vain one matrix is factored at once before the next, twice as many after each further one, up to this many. Half as many
+/// again after a success, and one after one at half the price.
 constexpr int longest_pause = 64;
 /// [-] Of a residual, as far as it is brought down in single precision at a time, at most and at least. Of 500 solves to 1e-5 of a failing slope of
 /// 50,106 blocks half leave what the rotations say, nine tenths 1.01 times as much, the worst 11 times.
@@ -28,6 +30,29 @@ constexpr double most_of_single_precision = 1e-5, least_of_single_precision = 0.
 constexpr double to_spare = 0.8;
 /// [-] Of a residual; where more of it is left then, rounding outweighs the digits of single precision.
 constexpr double slowest_decrease = 0.8;
+/// [-] The residual may be this much larger than the rotations say, from rounding; beyond, the basis has lost its meaning.
+constexpr double rounding_excess = 2.0;
+/// [-] Rounding leaves less than this in a residual as long as the matrix is not singular to half of all digits.
+constexpr double above_rounding = 1e-8;
+
+/// What rounding leaves in the residual: units in the last place of the products in it.
+double rounding_of_residual(const BlockMatrix& matrix, const Eigen::VectorXd& x) {
+  constexpr double rounding_units = 16.0;  // [-] so many units may meet in one residual
+  double sum = 0.0;
+  for (int i = 0; i < matrix.rows(); ++i) {
+    double row = 0.0;
+    for (int s = matrix.row_start(i); s < matrix.row_start(i + 1); ++s) {
+      row += matrix.value(s).norm() * x.segment<dofs>(dofs * matrix.column(s)).norm();
+    }
+    sum += row * row;
+  }
+  return rounding_units * std::numeric_limits<double>::epsilon() * std::sqrt(sum);
+}
+
+struct Refined {
+  std::optional<Eigen::VectorXd> x;  ///< nothing if the residual is not brought down
+  int iterations = 0;
+};
 
 class IncompleteSolver : public LinearSolver {
  public:
@@ -40,41 +65,34 @@ class IncompleteSolver : public LinearSolver {
     use_direct_ = matrix.rows() < smallest_system_ || left_to_pause_ > 0;
     if (use_direct_) {
       left_to_pause_ = std::max(0, left_to_pause_ - 1);
-      return factor_directly();
+      return direct_->factor(*matrix_, kept_change_);
     }
-    if (incomplete_.analyse(matrix)) {
-      ++own_.symbolic;
-    } else {
-      ++own_.symbolic_skipped;
-    }
-    ++own_.incomplete;
+    ++(incomplete_.analyse(matrix) ? counters_.symbolic : counters_.symbolic_skipped);
+    ++counters_.incomplete;
     direct_->let_go();  // several times as large as what takes its place
     if (!incomplete_.factor(matrix)) return give_up();
     single_.take(matrix, incomplete_.order());
-    own_.rows += matrix.rows();
-    own_.rows_kept += incomplete_.rows_kept();
-    return count(true);
+    counters_.rows += matrix.rows();
+    counters_.rows_kept += incomplete_.rows_kept();
+    return true;
   }
-
-  Eigen::VectorXd solve(const Eigen::VectorXd& right_side, double reduction) override { return solve(right_side, reduction, 0.0); }
 
   Eigen::VectorXd solve(const Eigen::VectorXd& right_side, double asked, double enough) override {
     const double reduction = std::max(asked, enough);
     if (!use_direct_) {
       Refined result = refine(right_side, reduction);
-      own_.krylov_iterations += result.iterations;
+      counters_.krylov_iterations += result.iterations;
       if (result.x) {
-        ++own_.solves;
-        pause_ = 2 * result.iterations <= most_iterations() ? first_pause : std::max(first_pause, pause_ / 2);
-        count(true);
+        ++counters_.solves;
+        pause_ = 2 * result.iterations <= most_iterations() ? 1 : std::max(1, pause_ / 2);
         return std::move(*result.x);
       }
       if (!give_up()) return {};
     }
-    Eigen::VectorXd x = direct_->solve(right_side, asked, enough);
-    count(true);
-    return x;
+    return direct_->solve(right_side, asked, enough);
   }
+
+  LinearCounters counters() const override { return LinearCounters(counters_) += direct_->counters(); }
 
   Memory memory() const override {
     Memory of = direct_->memory();
@@ -92,8 +110,8 @@ class IncompleteSolver : public LinearSolver {
     LinearSolver::exchange(archive, matrix);
     direct_->exchange(archive, matrix);
     incomplete_.exchange(archive, matrix);
-    archive(own_, pause_, left_to_pause_);
-    archive.require(pause_ >= first_pause && pause_ <= longest_pause && left_to_pause_ >= 0, "the saved state has a solver that there is not");
+    archive(pause_, left_to_pause_);
+    archive.require(pause_ >= 1 && pause_ <= longest_pause && left_to_pause_ >= 0, "the saved state has a solver that there is not");
   }
 
  private:
@@ -109,7 +127,7 @@ class IncompleteSolver : public LinearSolver {
     // What rounding leaves beside one go would cost another one, a tenth of the iterations of 50,106 blocks; who asks for so little needs less.
     const double excess = is_one_go ? rounding_excess : 1.0;
     while (size > excess * wanted) {
-      const KrylovStep<float> found = step_in_single_precision(residual, size, wanted / size, most_iterations() - result.iterations);
+      const KrylovStep found = step_in_single_precision(residual, size, wanted / size, most_iterations() - result.iterations);
       result.iterations += found.iterations;
       if (!found.converged) return result;
       add_in_order(found.step, size, incomplete_.order(), x);
@@ -124,34 +142,25 @@ class IncompleteSolver : public LinearSolver {
   }
 
   /// Of a residual of this size, down to this part of it or as far as single precision goes.
-  KrylovStep<float> step_in_single_precision(const Eigen::VectorXd& residual, double size, double wanted, int most) {
+  KrylovStep step_in_single_precision(const Eigen::VectorXd& residual, double size, double wanted, int most) {
     const double part = std::clamp(to_spare * wanted, most_of_single_precision, least_of_single_precision);
     // As many of the iterations as it is of the way.
     const int share = static_cast<int>(std::ceil(most * std::min(1.0, std::log(part) / std::log(to_spare * wanted))));
-    KrylovStep<float> found = krylov_step<float>([&](const Eigen::VectorXf& v, Eigen::VectorXf& product) { single_.multiply(v, product); },
-                                                 [&](const Eigen::VectorXf& v, Eigen::VectorXf& product) { incomplete_.solve_in_order(v, product); },
-                                                 in_order(residual, size, incomplete_.order()), part, share, room_);
+    KrylovStep found = krylov_step([&](const Eigen::VectorXf& v, Eigen::VectorXf& product) { single_.multiply(v, product); },
+                                   [&](const Eigen::VectorXf& v, Eigen::VectorXf& product) { incomplete_.solve_in_order(v, product); },
+                                   in_order(residual, size, incomplete_.order()), part, share, room_);
     krylov_bytes_ = std::max(krylov_bytes_, room_.bytes());
     return found;
   }
 
   bool give_up() {
-    ++own_.krylov_given_up;
+    ++counters_.krylov_given_up;
     left_to_pause_ = pause_;
     pause_ = std::min(2 * pause_, longest_pause);
     use_direct_ = true;
     incomplete_.let_go();
     room_ = {};
-    return factor_directly();
-  }
-
-  bool factor_directly() { return count(direct_->factor(*matrix_, kept_change_)); }
-
-  /// Passes on what it is given.
-  bool count(bool done) {
-    this->counters_ = own_;
-    this->counters_ += direct_->counters();
-    return done;
+    return direct_->factor(*matrix_, kept_change_);
   }
 
   std::unique_ptr<LinearSolver> direct_;
@@ -161,10 +170,9 @@ class IncompleteSolver : public LinearSolver {
   IncompleteLu incomplete_;
   SingleMatrix single_;
   bool use_direct_ = false;
-  int pause_ = first_pause, left_to_pause_ = 0;  ///< matrices
-  KrylovRoom<float> room_;
+  int pause_ = 1, left_to_pause_ = 0;  ///< matrices
+  KrylovRoom room_;
   std::size_t krylov_bytes_ = 0;
-  LinearCounters own_;  ///< without those of the direct solver
 };
 
 }  // namespace

@@ -13,14 +13,14 @@ constexpr int iterations_to_judge = 3;
 constexpr double part_to_judge = 0.3;
 /// Numbers of a vector that stay in the nearest cache while two things are done with them, and of which a sum in single precision is good enough.
 constexpr Eigen::Index piece = 1024;
+
 bool too_slow(double start, double now, double wanted, int iterations, int most_iterations) {
   if (iterations < std::max<double>(iterations_to_judge, part_to_judge * most_iterations)) return false;
   if (!(now < start)) return true;
   return iterations * std::log(start / wanted) > most_iterations * std::log(start / now);
 }
 
-template <class Scalar>
-double product(const VectorOf<Scalar>& a, const VectorOf<Scalar>& b) {
+double product(const Eigen::VectorXf& a, const Eigen::VectorXf& b) {
   double sum = 0.0;
   for (Eigen::Index first = 0; first < a.size(); first += piece) {
     const Eigen::Index count = std::min(piece, a.size() - first);
@@ -30,21 +30,19 @@ double product(const VectorOf<Scalar>& a, const VectorOf<Scalar>& b) {
 }
 
 /// Takes `part` of a direction from a vector. Returns the product of what is left with `other`, which may be that itself.
-template <class Scalar>
-double subtract(VectorOf<Scalar>& vector, double part, const VectorOf<Scalar>& direction, const VectorOf<Scalar>& other) {
+double subtract(Eigen::VectorXf& vector, double part, const Eigen::VectorXf& direction, const Eigen::VectorXf& other) {
   double sum = 0.0;
   for (Eigen::Index first = 0; first < vector.size(); first += piece) {
     const Eigen::Index count = std::min(piece, vector.size() - first);
     auto left = vector.segment(first, count);
-    left -= static_cast<Scalar>(part) * direction.segment(first, count);
+    left -= static_cast<float>(part) * direction.segment(first, count);
     sum += static_cast<double>(left.dot(other.segment(first, count)));
   }
   return sum;
 }
 
 /// One of the vectors; makes it if it is not there yet.
-template <class Scalar>
-VectorOf<Scalar>& vector_of(std::vector<VectorOf<Scalar>>& vectors, int number, Eigen::Index size) {
+Eigen::VectorXf& vector_of(std::vector<Eigen::VectorXf>& vectors, int number, Eigen::Index size) {
   if (static_cast<int>(vectors.size()) <= number) vectors.resize(number + 1);
   vectors[number].resize(size);
   return vectors[number];
@@ -52,13 +50,12 @@ VectorOf<Scalar>& vector_of(std::vector<VectorOf<Scalar>>& vectors, int number, 
 
 }  // namespace
 
-template <class Scalar>
-KrylovStep<Scalar> krylov_step(const MapInto<Scalar>& matrix, const MapInto<Scalar>& preconditioner, const VectorOf<Scalar>& residual, double wanted,
-                               int most_iterations, KrylovRoom<Scalar>& room) {
-  KrylovStep<Scalar> result;
+KrylovStep krylov_step(const MapInto& matrix, const MapInto& preconditioner, const Eigen::VectorXf& residual, double wanted, int most_iterations,
+                       KrylovRoom& room) {
+  KrylovStep result;
   const double start = std::sqrt(product(residual, residual));
   result.converged = start <= wanted;
-  if (result.converged) result.step = VectorOf<Scalar>::Zero(residual.size());
+  if (result.converged) result.step = Eigen::VectorXf::Zero(residual.size());
   if (result.converged || !std::isfinite(start)) return result;
 
   auto& [basis, directions] = room;
@@ -66,10 +63,10 @@ KrylovStep<Scalar> krylov_step(const MapInto<Scalar>& matrix, const MapInto<Scal
   Eigen::MatrixXd upper = Eigen::MatrixXd::Zero(most_iterations + 1, most_iterations);  // of the Hessenberg matrix, rotated
   Eigen::VectorXd right = Eigen::VectorXd::Zero(most_iterations + 1);
   right[0] = start;
-  vector_of(basis, 0, residual.size()) = residual / static_cast<Scalar>(start);
+  vector_of(basis, 0, residual.size()) = residual / static_cast<float>(start);
   while (!result.converged && result.iterations < most_iterations) {
     const int k = result.iterations++;
-    VectorOf<Scalar>& next = vector_of(basis, k + 1, residual.size());
+    Eigen::VectorXf& next = vector_of(basis, k + 1, residual.size());
     preconditioner(basis[k], vector_of(directions, k, residual.size()));
     matrix(directions[k], next);
     upper(0, k) = product(basis[0], next);
@@ -85,31 +82,13 @@ KrylovStep<Scalar> krylov_step(const MapInto<Scalar>& matrix, const MapInto<Scal
     if (upper(k, k) == 0.0) return result;  // a singular matrix
     result.converged = now <= wanted;
     if (result.converged || !(length > 0.0) || too_slow(start, now, wanted, result.iterations, most_iterations)) break;
-    next /= static_cast<Scalar>(length);
+    next /= static_cast<float>(length);
   }
   if (!result.converged) return result;
   const int used = result.iterations;
   const Eigen::VectorXd part = upper.topLeftCorner(used, used).triangularView<Eigen::Upper>().solve(right.head(used));
-  result.step = static_cast<Scalar>(part[0]) * directions[0];
-  for (int i = 1; i < used; ++i) result.step += static_cast<Scalar>(part[i]) * directions[i];
-  return result;
-}
-
-template KrylovStep<float> krylov_step<float>(const MapInto<float>&, const MapInto<float>&, const VectorOf<float>&, double, int, KrylovRoom<float>&);
-
-KrylovResult gmres(const LinearMap& matrix, const LinearMap& preconditioner, Eigen::VectorXd& residual, Eigen::VectorXd& x, double wanted,
-                   int most_iterations) {
-  KrylovRoom<double> room;
-  const KrylovStep<double> found = krylov_step<double>([&](const Eigen::VectorXd& v, Eigen::VectorXd& product) { product = matrix(v); },
-                                                       [&](const Eigen::VectorXd& v, Eigen::VectorXd& product) { product = preconditioner(v); },
-                                                       residual, wanted, most_iterations, room);
-  KrylovResult result = found;
-  if (!result.converged || result.iterations == 0) return result;
-  const Eigen::VectorXd left = residual - matrix(found.step);
-  result.converged = left.norm() <= rounding_excess * wanted;
-  if (!result.converged) return result;
-  x += found.step;
-  residual = left;
+  result.step = static_cast<float>(part[0]) * directions[0];
+  for (int i = 1; i < used; ++i) result.step += static_cast<float>(part[i]) * directions[i];
   return result;
 }
 

@@ -9,23 +9,21 @@
 
 namespace openclose::packed {
 
-typedef float Four __attribute__((vector_size(4 * sizeof(float)), aligned(4 * sizeof(float))));
 typedef float LooseFour __attribute__((vector_size(4 * sizeof(float)), aligned(sizeof(float)), may_alias));
 typedef float Eight __attribute__((vector_size(8 * sizeof(float)), aligned(8 * sizeof(float))));
-typedef double FourDoubles __attribute__((vector_size(4 * sizeof(double)), aligned(4 * sizeof(double))));
 typedef std::int16_t EightWholeNumbers __attribute__((vector_size(8 * sizeof(std::int16_t)), aligned(sizeof(std::int16_t)), may_alias));
 
-OPENCLOSE_KERNEL Four four(const float* numbers) {
+OPENCLOSE_KERNEL FloatLanes four(const float* numbers) {
   return *reinterpret_cast<const LooseFour*>(numbers);
 }
 OPENCLOSE_KERNEL Eight eight(const std::int16_t* numbers) {
   typedef int EightIntegers __attribute__((vector_size(8 * sizeof(int)), aligned(8 * sizeof(int))));
   return __builtin_convertvector(__builtin_convertvector(*reinterpret_cast<const EightWholeNumbers*>(numbers), EightIntegers), Eight);
 }
-OPENCLOSE_KERNEL FourDoubles widened(Four numbers) {
-  return __builtin_convertvector(numbers, FourDoubles);
+OPENCLOSE_KERNEL Lanes widened(FloatLanes numbers) {
+  return __builtin_convertvector(numbers, Lanes);
 }
-OPENCLOSE_KERNEL void store(float* to, Four numbers) {
+OPENCLOSE_KERNEL void store(float* to, FloatLanes numbers) {
   *reinterpret_cast<LooseFour*>(to) = numbers;
 }
 
@@ -33,14 +31,14 @@ OPENCLOSE_KERNEL void store(float* to, Four numbers) {
 class RowProduct {
  public:
   /// \param entries  of the block, column by column, and the last one
-  OPENCLOSE_KERNEL void add(Eight entries, float last, Four x) {
+  OPENCLOSE_KERNEL void add(Eight entries, float last, FloatLanes x) {
     sums_ += entries * __builtin_shufflevector(x, x, 0, 0, 0, 1, 1, 1, 2, 2);
     last_ += last * x[2];
   }
   /// The fourth is zero.
-  OPENCLOSE_KERNEL Four sum() const {
+  OPENCLOSE_KERNEL FloatLanes sum() const {
     const Eight zero{};
-    const Four last{0.0f, 0.0f, last_, 0.0f};
+    const FloatLanes last{0.0f, 0.0f, last_, 0.0f};
     return (__builtin_shufflevector(sums_, zero, 0, 1, 2, 8) + __builtin_shufflevector(sums_, zero, 3, 4, 5, 8)) +
            (__builtin_shufflevector(sums_, zero, 6, 7, 8, 8) + last);
   }

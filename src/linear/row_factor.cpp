@@ -1,7 +1,8 @@
 #include "openclose/linear/row_factor.h"
 
 #include <cmath>
-#include <cstring>
+
+#include "openclose/core/lane_memory.h"
 
 namespace openclose {
 namespace {
@@ -18,18 +19,10 @@ struct Multipliers {
       for (int c = 0; c < dofs; ++c) entry[r][c] = block.row[r][c];
     }
   }
-  OPENCLOSE_KERNEL void subtract_row_of_product(int r, const PaddedBlock& right, Lanes& target) const {
+  OPENCLOSE_KERNEL Lanes row_of_product(int r, const PaddedBlock& right) const {
     Lanes sum = entry[r][0] * right.row[0];
     for (int c = 1; c < dofs; ++c) sum += entry[r][c] * right.row[c];
-    target -= sum;
-  }
-  OPENCLOSE_KERNEL void replace_by_product(PaddedBlock& right) const {
-    PaddedBlock result;
-    for (int r = 0; r < dofs; ++r) {
-      result.row[r] = entry[r][0] * right.row[0];
-      for (int c = 1; c < dofs; ++c) result.row[r] += entry[r][c] * right.row[c];
-    }
-    right = result;
+    return sum;
   }
 };
 
@@ -38,7 +31,7 @@ OPENCLOSE_KERNEL void subtract_row(RowFactor& f, int s, int k, const int* place)
   for (int u = f.diagonal[k] + 1; u < f.row_start[k + 1]; ++u) {
     const PaddedBlock& right = f.value[u];
     PaddedBlock& target = f.value[place[f.column[u]]];
-    for (int r = 0; r < dofs; ++r) left.subtract_row_of_product(r, right, target.row[r]);
+    for (int r = 0; r < dofs; ++r) target.row[r] -= left.row_of_product(r, right);
   }
 }
 
@@ -53,16 +46,9 @@ OPENCLOSE_KERNEL void subtract_panel(RowFactor& f, int i, int panel, int* place)
   }
 }
 
-/// By value: clang++ takes what a reference refers to for aligned in full.
-OPENCLOSE_KERNEL Lanes lanes_at(const double* from) {
-  Lanes numbers;
-  std::memcpy(&numbers, from, sizeof numbers);
-  return numbers;
-}
-
 /// A block of the matrix, column by column. The padding repeats the last column.
 OPENCLOSE_KERNEL void pad(const double* block, PaddedBlock& padded) {
-  const Lanes first = lanes_at(block), next = lanes_at(block + 3), last = lanes_at(block + 5);  // of this the numbers from one on
+  const Lanes first = lanes::load(block), next = lanes::load(block + 3), last = lanes::load(block + 5);  // of this the numbers from one on
   const Lanes even = __builtin_shufflevector(first, next, 0, 4, 2, 6), odd = __builtin_shufflevector(first, next, 1, 5, 3, 7);
   padded.row[0] = __builtin_shufflevector(even, last, 0, 1, 5, 5);
   padded.row[1] = __builtin_shufflevector(odd, last, 0, 1, 6, 6);
@@ -99,12 +85,12 @@ OPENCLOSE_KERNEL Lanes cross_product(const Lanes& a, const Lanes& b) {
 /// Replaces the pivot by its inverse; false if it has none worth the name.
 /// \param original_size  square of the block's norm before the elimination
 OPENCLOSE_KERNEL bool invert(PaddedBlock& pivot, double original_size) {
-  constexpr double square = smallest_pivot * smallest_pivot;
   const Lanes squares = squares_of_columns(pivot);
   const Lanes cofactors[dofs] = {cross_product(pivot.row[1], pivot.row[2]), cross_product(pivot.row[2], pivot.row[0]),
                                  cross_product(pivot.row[0], pivot.row[1])};
   const double determinant = sum_of_three(pivot.row[0] * cofactors[0]), columns = squares[0] * squares[1] * squares[2];
-  if (!(sum_of_three(squares) > square * original_size) || !(determinant * determinant > square * columns)) return false;
+  if (!(sum_of_three(squares) > smallest_pivot * smallest_pivot * original_size)) return false;
+  if (!(determinant * determinant > smallest_pivot * smallest_pivot * columns)) return false;
   const Columns rows(cofactors);
   const double factor = 1.0 / determinant;
   pivot.row[0] = rows.first * factor;
@@ -118,7 +104,8 @@ struct Entries {
   Lanes first, next;
   double last;
 
-  OPENCLOSE_KERNEL explicit Entries(const double* block) : first(lanes_at(block)), next(lanes_at(block + batch_size)), last(block[2 * batch_size]) {}
+  OPENCLOSE_KERNEL explicit Entries(const double* block)
+      : first(lanes::load(block)), next(lanes::load(block + batch_size)), last(block[2 * batch_size]) {}
   OPENCLOSE_KERNEL Entries(const Lanes& rows, const Lanes& columns)
       : first(__builtin_shufflevector(rows, rows, 0, 1, 2, 0) * __builtin_shufflevector(columns, columns, 0, 0, 0, 1)),
         next(__builtin_shufflevector(rows, rows, 1, 2, 0, 1) * __builtin_shufflevector(columns, columns, 1, 1, 2, 2)),
@@ -210,7 +197,10 @@ OPENCLOSE_FOR_WIDE_REGISTERS_TOO bool eliminate_rows(RowFactor& f, const std::ve
     subtract_panel(f, i, panel, place);
     if (!invert(f.value[f.diagonal[i]], f.size[i])) return false;
     const Multipliers inverse(f.value[f.diagonal[i]]);
-    for (int s = f.diagonal[i] + 1; s < f.row_start[i + 1]; ++s) inverse.replace_by_product(f.value[s]);
+    for (int s = f.diagonal[i] + 1; s < f.row_start[i + 1]; ++s) {
+      const PaddedBlock right = f.value[s];
+      for (int r = 0; r < dofs; ++r) f.value[s].row[r] = inverse.row_of_product(r, right);
+    }
   }
   return true;
 }

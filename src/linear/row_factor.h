@@ -51,8 +51,7 @@ struct RowFactor {
     for (const auto* parts : {&subtrees, &panels}) {
       for (const std::vector<int>& part : *parts) lists += bytes_of(part);
     }
-    return lists +
-           bytes_of(order, row_start, diagonal, column, entries, entries_start, taken, scale, stale, size, panel, value, solution);
+    return lists + bytes_of(order, row_start, diagonal, column, entries, entries_start, taken, scale, stale, size, panel, value, solution);
   }
   /// The row that is the first to subtract row i; -1 for a root.
   int parent(int i) const {

@@ -1,50 +1,26 @@
 #include "openclose/linear/single_matrix.h"
 
-#include <algorithm>
-
 #include "openclose/core/parallel.h"
+#include "openclose/linear/factor_plan.h"
 #include "openclose/linear/packed_block.h"
 
 namespace openclose {
 namespace {
 
-/// Of a product, about ten microseconds: more than it takes to hand them over.
-constexpr int rows_of_a_part = 1000;
-
-/// Of a matrix of blocks, row by row.
-struct Rows {
-  const float* values;
-  const int *start, *columns;
-};
-
 /// A block times a part of a vector. The fourth number of a column is the next one's first, that of the last what comes after the block.
-OPENCLOSE_KERNEL packed::FourDoubles product(const float* block, packed::FourDoubles x) {
+OPENCLOSE_KERNEL Lanes product(const float* block, Lanes x) {
   const auto column = [block](int k) { return packed::widened(packed::four(block + dofs * k)); };
   return (column(0) * x[0] + column(1) * x[1]) + column(2) * x[2];
-}
-
-OPENCLOSE_FOR_WIDE_REGISTERS_TOO void multiply_rows(const Rows& rows, int first, int end, const float* x, float* y) {
-  static_assert(dofs + 1 == numbers_of_row);
-  const auto part = [x](int row) { return packed::widened(packed::four(x + static_cast<std::ptrdiff_t>(numbers_of_row) * row)); };
-  const float* block = rows.values + static_cast<std::ptrdiff_t>(dofs * dofs) * rows.start[first];
-  for (int i = first; i < end; ++i) {
-    const packed::FourDoubles own = part(i);
-    packed::FourDoubles sum = product(block, own);
-    block += dofs * dofs;
-    for (int s = rows.start[i] + 1; s < rows.start[i + 1]; ++s, block += dofs * dofs) sum += product(block, part(rows.columns[s]) - own);
-    sum[dofs] = 0.0;
-    packed::store(y + static_cast<std::ptrdiff_t>(numbers_of_row) * i, __builtin_convertvector(sum, packed::Four));
-  }
 }
 
 }  // namespace
 
 Eigen::VectorXf in_order(const Eigen::VectorXd& vector, double size, const std::vector<int>& order) {
-  Eigen::VectorXf result(numbers_of_row * static_cast<Eigen::Index>(order.size()));
+  Eigen::VectorXf result(batch_size * static_cast<Eigen::Index>(order.size()));
   const double scale = 1.0 / size;
   for (std::size_t i = 0; i < order.size(); ++i) {
     const double* const numbers = vector.data() + static_cast<std::ptrdiff_t>(dofs) * order[i];
-    float* const row = result.data() + numbers_of_row * i;
+    float* const row = result.data() + batch_size * i;
     for (int k = 0; k < dofs; ++k) row[k] = static_cast<float>(scale * numbers[k]);
     row[dofs] = 0.0f;
   }
@@ -53,15 +29,14 @@ Eigen::VectorXf in_order(const Eigen::VectorXd& vector, double size, const std::
 
 void add_in_order(const Eigen::VectorXf& vector, double size, const std::vector<int>& order, Eigen::VectorXd& sum) {
   for (std::size_t i = 0; i < order.size(); ++i) {
-    const float* const row = vector.data() + numbers_of_row * i;
+    const float* const row = vector.data() + batch_size * i;
     double* const numbers = sum.data() + static_cast<std::ptrdiff_t>(dofs) * order[i];
     for (int k = 0; k < dofs; ++k) numbers[k] += size * static_cast<double>(row[k]);
   }
 }
 
 void SingleMatrix::plan(const BlockMatrix& matrix, const std::vector<int>& order) {
-  std::vector<int> place(order.size());
-  for (std::size_t i = 0; i < order.size(); ++i) place[order[i]] = static_cast<int>(i);
+  const std::vector<int> place = places_in(order);
   row_start_.assign(1, 0);
   columns_.clear();
   for (int i = 0; i < matrix.rows(); ++i) {
@@ -95,12 +70,22 @@ void SingleMatrix::take(const BlockMatrix& matrix, const std::vector<int>& order
 }
 
 void SingleMatrix::multiply(const Eigen::VectorXf& x, Eigen::VectorXf& product) const {
-  const int all = static_cast<int>(row_start_.size()) - 1, parts = std::max(1, all / rows_of_a_part);
-  const Rows rows{values_.data(), row_start_.data(), columns_.data()};
-  for_each_part(SharedWork::product, threads_, parts, [&](int part) {
-    const int first = part * rows_of_a_part, end = part + 1 < parts ? first + rows_of_a_part : all;
-    multiply_rows(rows, first, end, x.data(), product.data());
-  });
+  for_each_range(SharedWork::product, threads_, static_cast<int>(row_start_.size()) - 1,
+                 [&](int first, int end) { multiply_rows(first, end, x.data(), product.data()); });
+}
+
+OPENCLOSE_FOR_WIDE_REGISTERS_TOO void SingleMatrix::multiply_rows(int first, int end, const float* x, float* y) const {
+  static_assert(dofs + 1 == batch_size);
+  const auto part = [x](int row) { return packed::widened(packed::four(x + static_cast<std::ptrdiff_t>(batch_size) * row)); };
+  const float* block = values_.data() + static_cast<std::ptrdiff_t>(dofs * dofs) * row_start_[first];
+  for (int i = first; i < end; ++i) {
+    const Lanes own = part(i);
+    Lanes sum = product(block, own);
+    block += dofs * dofs;
+    for (int s = row_start_[i] + 1; s < row_start_[i + 1]; ++s, block += dofs * dofs) sum += product(block, part(columns_[s]) - own);
+    sum[dofs] = 0.0;
+    packed::store(y + static_cast<std::ptrdiff_t>(batch_size) * i, __builtin_convertvector(sum, FloatLanes));
+  }
 }
 
 }  // namespace openclose

@@ -14,10 +14,7 @@
 
 namespace openclose {
 
-/// Vectors have four numbers for each block row, in the factor's order: its unknowns, and zero.
-inline constexpr int numbers_of_row = 4;
-
-/// The part of a vector over `size`, which makes its numbers fit, in the order of the rows.
+/// A vector over `size`, which makes its numbers fit, in the order of the rows, with batch_size numbers for each: its unknowns, and zero.
 Eigen::VectorXf in_order(const Eigen::VectorXd& vector, double size, const std::vector<int>& order);
 /// Adds `size` times a vector in the order of the rows.
 void add_in_order(const Eigen::VectorXf& vector, double size, const std::vector<int>& order, Eigen::VectorXd& sum);
@@ -34,6 +31,7 @@ class SingleMatrix {
 
  private:
   void plan(const BlockMatrix& matrix, const std::vector<int>& order);
+  void multiply_rows(int first, int end, const float* x, float* y) const;
 
   long version_ = -1;
   int threads_ = 1;

@@ -1,13 +1,12 @@
 // Solvers for BlockMatrix behind one interface.
 #pragma once
 
-#include <algorithm>
 #include <memory>
 
 #include "openclose/core/archive.h"
 #include "openclose/core/memory.h"
 #include "openclose/linear/block_matrix.h"
-#include "openclose/linear/weak_couplings.h"
+#include "openclose/linear/factor_plan.h"
 #include "openclose/scene/scene.h"
 
 namespace openclose {
@@ -16,6 +15,7 @@ namespace openclose {
 inline constexpr double full_reduction = 1e-12;
 
 struct LinearCounters {
+  using Numbers = long;
   long symbolic = 0;
   long symbolic_skipped = 0;  ///< factorisations on a known pattern
   long factorisations = 0;
@@ -35,11 +35,6 @@ struct LinearCounters {
     a += a2, b += b2, c += c2, d += d2, e += e2, f += f2, g += g2, h += h2, i += i2, j += j2, k += k2, l += l2;
     return *this;
   }
-
-  void exchange(Archive& archive) {
-    auto& [a, b, c, d, e, f, g, h, i, j, k, l] = *this;
-    archive(a, b, c, d, e, f, g, h, i, j, k, l);
-  }
 };
 
 class LinearSolver {
@@ -49,18 +44,13 @@ class LinearSolver {
   /// stands. The matrix must stay as it is until the last solve() with it.
   /// \param kept_change  [-] what a solver has done for rows that have changed by no more it may keep: change of an entry over the root of the
   ///                     diagonal entries of its row and column. The solution is then that of a matrix which differs by so much.
-  virtual bool factor(const BlockMatrix& matrix, double kept_change) = 0;
-  bool factor(const BlockMatrix& matrix) { return factor(matrix, 0.0); }
+  virtual bool factor(const BlockMatrix& matrix, double kept_change = 0.0) = 0;
   /// Nothing (size 0) if the matrix turns out to be singular only here.
   /// \param reduction  [-] of the Euclidean norm of the residual over that of the right side, at least, but for rounding: of 1e-5 and more single
   ///                   precision may leave twice as much. Factors of the matrix itself do not ask.
-  virtual Eigen::VectorXd solve(const Eigen::VectorXd& right_side, double reduction) = 0;
-  Eigen::VectorXd solve(const Eigen::VectorXd& right_side) { return solve(right_side, full_reduction); }
-  /// \param enough  [-] a residual below which nobody needs to go, also where it would cost little
-  virtual Eigen::VectorXd solve(const Eigen::VectorXd& right_side, double reduction, double enough) {
-    return solve(right_side, std::max(reduction, enough));
-  }
-  const LinearCounters& counters() const { return counters_; }
+  /// \param enough     [-] a residual below which nobody needs to go, also where it would cost little
+  virtual Eigen::VectorXd solve(const Eigen::VectorXd& right_side, double reduction = full_reduction, double enough = 0.0) = 0;
+  virtual LinearCounters counters() const { return counters_; }
   /// Of the factors that there are now, and of the largest basis of GMRES so far.
   virtual Memory memory() const { return {}; }
   /// Gives back the memory of a factor that is not needed for a while; the next factor() starts anew. Not where later matrices are solved with it.
@@ -76,9 +66,6 @@ class LinearSolver {
   int threads_ = 1;
 };
 
-/// Dense LU with partial pivoting: cheapest for a handful of blocks.
-std::unique_ptr<LinearSolver> make_dense_solver();
-
 /// Eigen's sparse LU with column ordering and exchange of rows: the plain reference for larger systems.
 std::unique_ptr<LinearSolver> make_sparse_solver();
 
@@ -89,6 +76,12 @@ std::unique_ptr<LinearSolver> make_block_solver(Factoring factoring = Factoring:
 /// \param smallest_system  [-] block rows
 std::unique_ptr<LinearSolver> make_incomplete_solver(std::unique_ptr<LinearSolver> direct, int smallest_system,
                                                      Factoring factoring = Factoring::needed);
+
+/// A solver for estimates: the whole factor of a matrix, kept as whole numbers of 16 bits (see incomplete.h). Four to five digits of the solution are
+/// right where the matrix is as well conditioned as groups of blocks that neighbours hold; solves read a fifth of the bytes of a factor in double
+/// precision. Rows are eliminated in an order for narrow bands: for matrices of which only small groups of rows hang together. Where more digits are
+/// needed, as for blocks that hold on to each other but to hardly anything else, it goes over to the solver with all of them.
+std::unique_ptr<LinearSolver> make_estimating_solver();
 
 /// The solver that serves every system, or the one asked for.
 std::unique_ptr<LinearSolver> make_solver(LinearSolverKind kind = LinearSolverKind::automatic, Factoring factoring = Factoring::needed);

@@ -19,8 +19,16 @@ struct Part {
   bool operator==(const Part&) const = default;
 };
 
+struct Size {
+  using Numbers = double;
+  double width = 0.0, height = 0.0;
+  bool operator==(const Size&) const = default;
+};
+
 struct Whole {
   std::vector<Part> parts;
+  Size size;
+  std::vector<Size> sizes;
   std::vector<double> numbers;
   std::vector<std::pair<int, long>> pairs;
   std::optional<double> some, none;
@@ -28,12 +36,14 @@ struct Whole {
   Eigen::Vector3d fixed = Eigen::Vector3d::Zero();
   Eigen::VectorXd dynamic;
   Colour colour = Colour::red;
-  void exchange(Archive& archive) { archive(parts, numbers, pairs, some, none, text, fixed, dynamic, colour); }
+  void exchange(Archive& archive) { archive(parts, size, sizes, numbers, pairs, some, none, text, fixed, dynamic, colour); }
 };
 
 Whole example() {
   Whole w;
   w.parts = {{0.1, true}, {-0.0, false}};
+  w.size = {1.0 / 7.0, -2.0};
+  w.sizes = {{0.3, 4.0}, {-0.0, 1e300}};
   w.numbers = {std::numeric_limits<double>::denorm_min(), std::numeric_limits<double>::infinity(), 1.0 / 3.0};
   w.pairs = {{-1, 5}, {2, 1L << 40}};
   w.some = 7.5;
@@ -60,6 +70,9 @@ TEST_CASE("what an archive collects comes back bit for bit", "[core][archive]") 
   CHECK(in.at_end());
   CHECK(read.parts == written.parts);
   CHECK(std::signbit(read.parts[1].number));
+  CHECK(read.size == written.size);
+  CHECK(read.sizes == written.sizes);
+  CHECK(std::signbit(read.sizes[1].width));
   CHECK(read.numbers == written.numbers);
   CHECK(read.pairs == written.pairs);
   CHECK(read.some == 7.5);

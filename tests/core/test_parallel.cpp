@@ -42,6 +42,18 @@ TEST_CASE("one thread does the parts in their order", "[core][parallel]") {
   CHECK(order == std::vector<int>{0, 1, 2, 3, 4});
 }
 
+TEST_CASE("ranges make up all rows, each once", "[core][parallel]") {
+  for (const int threads : {1, 3}) {
+    for (const int rows : {0, 1, 499, 500, 999, 1000, 1001, 4321}) {
+      std::vector<int> done(rows, 0);
+      for_each_range(SharedWork::product, threads, rows, [&](int first, int end) {
+        for (int i = first; i < end; ++i) ++done[i];
+      });
+      CHECK(std::count(done.begin(), done.end(), 1) == rows);
+    }
+  }
+}
+
 TEST_CASE("CPU time counts all threads", "[core][parallel]") {
   for_each_part(SharedWork::product, 2, 2, [](int) {});
   constexpr double busy = 0.1;  // [s] of each thread

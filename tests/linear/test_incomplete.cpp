@@ -2,7 +2,6 @@
 
 #include "grids.h"
 #include "openclose/linear/incomplete.h"
-#include "openclose/linear/single_solver.h"
 #include "openclose/linear/solver.h"
 #include "random_systems.h"
 #include "support/catch.h"
@@ -32,7 +31,9 @@ BlockMatrix moving(BlockMatrix matrix, double inertia = 1.0) {
 class WatchedSolver : public LinearSolver {
  public:
   bool factor(const BlockMatrix& matrix, double kept_change) override { return real_->factor(matrix, kept_change); }
-  Eigen::VectorXd solve(const Eigen::VectorXd& right_side, double reduction) override { return real_->solve(right_side, reduction); }
+  Eigen::VectorXd solve(const Eigen::VectorXd& right_side, double reduction, double enough) override {
+    return real_->solve(right_side, reduction, enough);
+  }
   void let_go() override {
     ++times_let_go;
     real_->let_go();
@@ -257,12 +258,23 @@ TEST_CASE("memory of factors and of GMRES", "[linear][incomplete]") {
   direct->let_go();
   CHECK(direct->memory().factor < with_fill / 2);
 
+  // A solver that goes on with what another one has counted has no factor yet.
+  const auto plain = make_sparse_solver(), restarted = make_sparse_solver();
+  REQUIRE(plain->factor(at_rest));
+  CHECK(plain->memory().factor > 2 * numbers);
+  Archive written;
+  plain->exchange(written, at_rest);
+  Archive bytes(written.bytes());
+  restarted->exchange(bytes, at_rest);
+  CHECK(restarted->counters().factorisations == 1);
+  CHECK(restarted->memory().factor == 0);
+
   const auto solver = make_solver_for_all_sizes();
   REQUIRE(solver->factor(in_motion));
   solver->solve(right_side, 1e-3);
   // Two vectors an iteration, and the one that the next would start from.
   CHECK(solver->memory().krylov ==
-        sizeof(float) * numbers_of_row * static_cast<std::size_t>((2 * solver->counters().krylov_iterations + 1) * in_motion.rows()));
+        sizeof(float) * batch_size * static_cast<std::size_t>((2 * solver->counters().krylov_iterations + 1) * in_motion.rows()));
   const std::size_t incomplete = solver->memory().factor;
   CHECK(incomplete > numbers / 2);
   CHECK(incomplete < with_fill);
