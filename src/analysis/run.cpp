@@ -94,6 +94,7 @@ RunResult prepare_start(Simulation& simulation, const SettleProgress& progress) 
       simulation.solved_stepper().book_steps(false);
       result.settling = settle_start(simulation, progress);
       result.converged = result.settling.settled;
+      if (result.converged) balance_what_is_left(simulation, result.settling);
       if (!result.converged) {
         const bool moves = result.settling.limit == "settle.failure_displacement_m";
         result.reason = "no static equilibrium to start from (" + result.settling.verdict() + ")" +

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "openclose/core/process.h"
+#include "openclose/core/tolerance.h"
 
 namespace openclose {
 namespace {
@@ -36,7 +37,9 @@ class Neglect {
   Neglect& operator=(const Neglect&) = delete;
 
   /// Before a step: the forces that it is a part of change.
-  void renew() { simulation_.solved_stepper().neglect(negligible_part * simulation_.scene().settle.unbalanced_fraction * simulation_.state().force_scale()); }
+  void renew() {
+    simulation_.solved_stepper().neglect(negligible_part * simulation_.scene().settle.unbalanced_fraction * simulation_.state().force_scale());
+  }
 
  private:
   Simulation& simulation_;
@@ -57,8 +60,8 @@ SettleResult settle(Simulation& simulation, const SettleProgress& progress, Sett
   const SettleInput& input = simulation.scene().settle;
   if (simulation.is_explicit()) {
     const double force = input.unbalanced_fraction * simulation.state().force_scale();
-    const RestLimits limits{force,           input.max_explicit_steps, "settle.max_explicit_steps", input.failure_displacement,
-                            input.keep_bonds, from == SettleFrom::rest};
+    const RestLimits limits{
+        force, input.max_explicit_steps, "settle.max_explicit_steps", input.failure_displacement, input.keep_bonds, from == SettleFrom::rest};
     return settle_explicitly(simulation, limits, progress);
   }
   const auto& system = simulation.system();
@@ -108,6 +111,11 @@ SettleResult settle(Simulation& simulation, const SettleProgress& progress, Sett
   result.criterion = "steps";
   result.limit = "settle.max_steps";
   return result;
+}
+
+void balance_what_is_left(Simulation& simulation, const SettleResult& settled) {
+  if (!simulation.is_explicit() && settled.unbalanced_fraction > tolerance::rest)
+    simulation.step(largest_growth * simulation.scene().settle.first_dt, true);
 }
 
 }  // namespace openclose
