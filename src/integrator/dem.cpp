@@ -25,7 +25,7 @@ class Dem : public Enforcement {
     const Unknowns still = Unknowns::Zero();
     Eigen::VectorXd force = Eigen::VectorXd::Zero(dofs * system.free_count());
     ContactTrial& contacts = solution.contacts;
-    contacts.prepare(problem, OwnSprings(*this, problem));
+    contacts.prepare(problem, springs_of(problem));
     for (std::size_t i = 0; i < contacts.size(); ++i) {
       const Contact& c = problem.contacts[i];
       const ContactKinematics k(contacts.pose_at_start(i));

@@ -330,7 +330,7 @@ bool Newton::solve_part(const StepEquations& whole, const Part& part, NewtonEnd 
   return norm < norm_before;
 }
 
-void Newton::solve(const StepProblem& problem, const SpringSource& springs, StepSolution& solution, FirstTangent first) {
+void Newton::solve(const StepProblem& problem, const SpringsOf& springs, StepSolution& solution, FirstTangent first) {
   branches_before_ = solution.contacts.branches();
   subdomains_.begin_step();
   equations_.prepare(problem, springs, solution.contacts);
@@ -338,7 +338,7 @@ void Newton::solve(const StepProblem& problem, const SpringSource& springs, Step
   solve_prepared(solution, first);
 }
 
-void Newton::solve_if_few_change(const StepProblem& problem, const SpringSource& springs, StepSolution& solution) {
+void Newton::solve_if_few_change(const StepProblem& problem, const SpringsOf& springs, StepSolution& solution) {
   only_if_few_change_ = true;
   solve(problem, springs, solution);
   only_if_few_change_ = false;
@@ -401,7 +401,7 @@ Eigen::MatrixXd Newton::stiffness(const StepProblem& problem, const std::vector<
   static_problem.end_weight = 1.0;
   static_problem.scheme = nullptr;
   ContactTrial contacts;
-  equations_.prepare(static_problem, GivenSprings(springs), contacts);
+  equations_.prepare(static_problem, springs_in(springs), contacts);
   tangent_.fit(static_problem, contacts.batches());
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(dofs * problem.system.free_count());
   equations_.evaluate(zero);
@@ -411,7 +411,7 @@ Eigen::MatrixXd Newton::stiffness(const StepProblem& problem, const std::vector<
 
 Eigen::VectorXd Newton::forces(const StepProblem& problem, const std::vector<ContactSprings>& springs) {
   ContactTrial contacts;
-  equations_.prepare(problem, GivenSprings(springs), contacts);
+  equations_.prepare(problem, springs_in(springs), contacts);
   equations_.sum_start_forces();
   return equations_.start_force();
 }
