@@ -153,7 +153,7 @@ void residual(benchmark::State& state) {
   StepEquations equations;
   ContactTrial contacts;
   for (auto _ : state) {
-    equations.prepare(step, GivenSprings(springs), contacts);
+    equations.prepare(step, springs_in(springs), contacts);
     equations.sum_start_forces();
     benchmark::DoNotOptimize(equations.start_force().data());
   }

@@ -20,7 +20,7 @@ class NullEnforcement : public Enforcement {
   void solve(const StepProblem& problem, StepSolution& solution) override {
     solution.converged = true;
     solution.d = Eigen::VectorXd::Zero(dofs * problem.system.free_count());
-    solution.contacts.prepare(problem, OwnSprings(*real_, problem));
+    solution.contacts.prepare(problem, real_->springs_of(problem));
     for (std::size_t c = 0; c < problem.contacts.size(); ++c) solution.contacts.set(c, CarriedForces{}, 0.0, 0.0);
     if (problem.end_weight < 1.0) solution.contacts.keep_start_forces();
   }

@@ -16,18 +16,17 @@ namespace openclose {
 
 /// Motion of one block within a step, its sines computed once for all its contacts.
 struct BlockMove {
-  Vec2 translation = Vec2::Zero();  ///< [m]
-  double sine = 0.0;                ///< of the rotation
-  double versine = 0.0;             ///< 1 - cosine, free of cancellation
-  double edge_sine = 0.0;           ///< of the angle by which the edges' directions turn
+  double x = 0.0, y = 0.0;  ///< [m] translation
+  double sine = 0.0;        ///< of the rotation
+  double versine = 0.0;     ///< 1 - cosine, free of cancellation
+  double edge_sine = 0.0;   ///< of the angle by which the edges' directions turn
   double edge_versine = 0.0;
   double bound = 0.0;   ///< [m] no point of the block moves farther than this
   double unused = 0.0;  ///< the kernels load four numbers at a time
 
   BlockMove() = default;  ///< no motion
   /// \param radius  [m] of the block, for the bound
-  BlockMove(const Motion::Unknowns& d, RotationKind kind, double radius)
-      : translation(Motion::translation(d)), bound(Motion::displacement_bound(d, radius)) {
+  BlockMove(const Motion::Unknowns& d, RotationKind kind, double radius) : x(d.x()), y(d.y()), bound(Motion::displacement_bound(d, radius)) {
     const double angle = Motion::rotation(d);
     // A linearly rotated edge also grows; its direction turns by the arc tangent.
     const SineCosine half(0.5 * (kind == RotationKind::exact ? angle : std::atan(angle)));
@@ -37,7 +36,7 @@ struct BlockMove {
     versine = kind == RotationKind::exact ? edge_versine : 0.0;
   }
 
-  Vec2 displacement(const Vec2& arm) const { return translation + (sine * perpendicular(arm) - versine * arm); }
+  Vec2 displacement(const Vec2& arm) const { return Vec2(x, y) + (sine * perpendicular(arm) - versine * arm); }
 };
 
 /// Where a contact is, as the system has it.
@@ -56,6 +55,44 @@ struct ContactPlace {
         edge(system.arm(system.next(contact.edge)) - end_arm) {}
 };
 
+/// A contact at the start of a step, in single numbers: vectors of two cost more in shuffling than they save.
+struct StartNumbers {
+  double normal_x = 0.0, normal_y = 0.0;
+  double vertex_arm_x = 0.0, vertex_arm_y = 0.0, end_arm_x = 0.0, end_arm_y = 0.0, lever_x = 0.0, lever_y = 0.0;  ///< [m] as in ContactStart
+};
+
+/// Where and in which directions the forces of a contact act, of four contacts for Real = Lanes.
+template <class Real>
+struct ForcePlace {
+  Real normal_x, normal_y;
+  Real vertex_arm_x, vertex_arm_y, edge_arm_x, edge_arm_y;  ///< [m]
+};
+
+/// A contact at a trial position, as ContactPose. The one place of these formulas, for one contact and for four.
+template <class Real>
+struct MovedContact {
+  ForcePlace<Real> at;
+  Real gap_change, slip_change;  ///< [m]
+
+  /// \param c  with the members of StartNumbers
+  /// \param vertex, edge  of its blocks, with the members of BlockMove
+  template <class Start, class Move>
+  OPENCLOSE_KERNEL MovedContact(const Start& c, const Move& vertex, const Move& edge) {
+    const Real dnx = -edge.edge_sine * c.normal_y - edge.edge_versine * c.normal_x,
+               dny = edge.edge_sine * c.normal_x - edge.edge_versine * c.normal_y;
+    const Real nx = c.normal_x + dnx, ny = c.normal_y + dny;
+    const Real turn_x = -vertex.sine * c.vertex_arm_y - vertex.versine * c.vertex_arm_x,
+               turn_y = vertex.sine * c.vertex_arm_x - vertex.versine * c.vertex_arm_y;
+    // p against the centroid of the edge's block, then against e.
+    const Real shift_x = (vertex.x - edge.x) + turn_x, shift_y = (vertex.y - edge.y) + turn_y;
+    const Real apart_x = shift_x + (edge.sine * c.end_arm_y + edge.versine * c.end_arm_x),
+               apart_y = shift_y - (edge.sine * c.end_arm_x - edge.versine * c.end_arm_y);
+    gap_change = (dnx * c.lever_x + dny * c.lever_y) + (nx * apart_x + ny * apart_y);
+    slip_change = (dnx * c.lever_y - dny * c.lever_x) + (nx * apart_y - ny * apart_x);
+    at = {nx, ny, c.vertex_arm_x + turn_x, c.vertex_arm_y + turn_y, (c.end_arm_x + c.lever_x) + shift_x, (c.end_arm_y + c.lever_y) + shift_y};
+  }
+};
+
 /// A contact at the start of a step.
 struct ContactStart {
   Vec2 normal;
@@ -67,6 +104,7 @@ struct ContactStart {
   explicit ContactStart(const ContactPlace& at)
       : normal(-perpendicular(at.edge.normalized())), vertex_arm(at.vertex_arm), end_arm(at.end_arm), lever(at.lever) {}
   ContactStart(const BlockSystem& system, const Contact& contact) : ContactStart(ContactPlace(system, contact)) {}
+  operator StartNumbers() const { return {normal.x(), normal.y(), vertex_arm.x(), vertex_arm.y(), end_arm.x(), end_arm.y(), lever.x(), lever.y()}; }
 };
 
 /// A contact at a trial position.
@@ -77,24 +115,13 @@ struct ContactPose {
   double slip_change = 0.0;                                 ///< [m]
 
   ContactPose() = default;
-  ContactPose(const ContactStart& start, const BlockMove& vertex, const BlockMove& edge) { set(start, vertex, edge); }
-
-  /// In single numbers: vectors of two cost more in shuffling than they save.
-  void set(const ContactStart& start, const BlockMove& vertex, const BlockMove& edge) {
-    const double n0x = start.normal.x(), n0y = start.normal.y(), lx = start.lever.x(), ly = start.lever.y();
-    const double ax = start.vertex_arm.x(), ay = start.vertex_arm.y(), ex = start.end_arm.x(), ey = start.end_arm.y();
-    const double dnx = -edge.edge_sine * n0y - edge.edge_versine * n0x, dny = edge.edge_sine * n0x - edge.edge_versine * n0y;
-    const double nx = n0x + dnx, ny = n0y + dny;
-    const double turn_x = -vertex.sine * ay - vertex.versine * ax, turn_y = vertex.sine * ax - vertex.versine * ay;
-    // p against the centroid of the edge's block, then against e.
-    const double shift_x = (vertex.translation.x() - edge.translation.x()) + turn_x,
-                 shift_y = (vertex.translation.y() - edge.translation.y()) + turn_y;
-    const double apart_x = shift_x + (edge.sine * ey + edge.versine * ex), apart_y = shift_y - (edge.sine * ex - edge.versine * ey);
-    gap_change = (dnx * lx + dny * ly) + (nx * apart_x + ny * apart_y);
-    slip_change = (dnx * ly - dny * lx) + (nx * apart_y - ny * apart_x);
-    normal = {nx, ny};
-    vertex_arm = {ax + turn_x, ay + turn_y};
-    edge_arm = {(ex + lx) + shift_x, (ey + ly) + shift_y};
+  explicit ContactPose(const ForcePlace<double>& at)
+      : normal(at.normal_x, at.normal_y), vertex_arm(at.vertex_arm_x, at.vertex_arm_y), edge_arm(at.edge_arm_x, at.edge_arm_y) {}
+  ContactPose(const StartNumbers& start, const BlockMove& vertex, const BlockMove& edge) {
+    const MovedContact<double> moved(start, vertex, edge);
+    *this = ContactPose(moved.at);
+    gap_change = moved.gap_change;
+    slip_change = moved.slip_change;
   }
   Vec2 tangent() const { return perpendicular(normal); }
 
@@ -109,12 +136,6 @@ struct ContactPose {
   }
 };
 
-/// Where and in which directions the forces of a contact act, of four contacts for Real = Lanes.
-template <class Real>
-struct ForcePlace {
-  Real normal_x, normal_y;
-  Real vertex_arm_x, vertex_arm_y, edge_arm_x, edge_arm_y;  ///< [m]
-};
 inline ForcePlace<double> force_place(const ContactPose& pose) {
   return {pose.normal.x(), pose.normal.y(), pose.vertex_arm.x(), pose.vertex_arm.y(), pose.edge_arm.x(), pose.edge_arm.y()};
 }

@@ -10,13 +10,20 @@
 
 namespace openclose {
 
-/// For exact rotation. Its changes of gap and slip are left at zero; its normal is shorter than a unit vector where the edge turns.
-inline ContactPose mean_pose(const ContactStart& start, const ContactPose& end) {
-  ContactPose mean;
-  mean.normal = 0.5 * (start.normal + end.normal);
-  mean.vertex_arm = 0.5 * (start.vertex_arm + end.vertex_arm);
-  mean.edge_arm = 0.5 * ((start.end_arm + start.lever) + end.edge_arm);
-  return mean;
+/// For exact rotation. Its normal is shorter than a unit vector where the edge turns. Four contacts for Real = Lanes.
+/// \param start  with the members of StartNumbers
+template <class Start, class Real>
+OPENCLOSE_KERNEL ForcePlace<Real> mean_place(const Start& start, const ForcePlace<Real>& end) {
+  return {0.5 * (start.normal_x + end.normal_x),
+          0.5 * (start.normal_y + end.normal_y),
+          0.5 * (start.vertex_arm_x + end.vertex_arm_x),
+          0.5 * (start.vertex_arm_y + end.vertex_arm_y),
+          0.5 * ((start.end_arm_x + start.lever_x) + end.edge_arm_x),
+          0.5 * ((start.end_arm_y + start.lever_y) + end.edge_arm_y)};
+}
+/// Its changes of gap and slip are left at zero.
+inline ContactPose mean_pose(const StartNumbers& start, const ContactPose& end) {
+  return ContactPose(mean_place(start, force_place(end)));
 }
 
 }  // namespace openclose

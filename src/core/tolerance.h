@@ -1,6 +1,8 @@
 // Every numerical threshold of the program that is not a user's input: name, value, unit, reason. None is scaled by the size of the model.
 #pragma once
 
+#include <limits>
+
 namespace openclose::tolerance {
 
 /// [m] Edges shorter than this are not edges: two orders above the rounding of coordinates of 1e6 m (1e6 * 2^-52 = 2e-10 m).
@@ -23,9 +25,9 @@ inline constexpr double joint_end_reach_m = 1e-3;
 /// [m] A block touches a line if it lies this near to it: points copied from vertices are written with six decimals.
 inline constexpr double touching_m = 1e-6;
 
-/// [-] of gravity: a smaller acceleration leaves a block at rest that is at rest, and a block that is slower than what this gives it in a step has come
-/// to rest. The balance of a step, 1e-12 of the largest force, leaves that much where forces are a thousand times a block's weight; a slope must be
-/// that near to its limit for it to matter.
+/// [-] of gravity: a smaller acceleration leaves a block at rest that is at rest, and a block that is slower than what this gives it in a step has
+/// come to rest. The balance of a step, 1e-12 of the largest force, leaves that much where forces are a thousand times a block's weight; a slope must
+/// be that near to its limit for it to matter.
 inline constexpr double rest = 1e-9;
 
 /// [m] Depth to which blocks may overlap in the file: drawings are rounded to millimetres, joint closures under load are of that size.
@@ -72,6 +74,10 @@ inline constexpr double cohesion_ramp = 0.1;
 /// [m] What rounding may leave in the ways of blocks against each other, and in the gaps between blocks that touch in the drawing: coordinates of 1e7
 /// m have it twice over (1e7 * 2^-52 = 2e-9 m).
 inline constexpr double rounding_of_ways_m = 1e-8;
+
+/// [-] What rounding may leave in a residual, of the forces that meet in it: a dozen products and sums per contact, of which each rounds by a unit in
+/// the last place at most.
+inline constexpr double rounding_of_sums = 16.0 * std::numeric_limits<double>::epsilon();
 
 /// [-] What rounding may leave in a time that is a multiple of the step, and in a quotient of times: some thousand units in the last place, and far
 /// below a step of the longest runs, which have 1e9.

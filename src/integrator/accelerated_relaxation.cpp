@@ -10,8 +10,6 @@
 namespace openclose {
 namespace {
 
-/// [-] Of the way that the estimate gives: the longest step after which momentum never makes a vibration grow.
-constexpr double safe_step = 1.0 / TwoLevelFlexibility::largest_eigenvalue;
 /// Thirty times what the first step of a slope of 100,000 blocks needs. What has no equilibrium ends here, if not by its displacement.
 constexpr int most_relaxation_steps = 100000;
 constexpr int steps_between_looks = 100;  ///< at the displacement
@@ -100,26 +98,20 @@ TwoLevelFlexibility AcceleratedRelaxation::flexibility(const Eigen::VectorXd& d,
   for (std::size_t c = 0; c < contacts().size(); ++c) {
     if (!counted[c]) continue;
     const auto [vertex, edge] = contacts().places(c);
-    const std::pair<int, int> pair = std::minmax(row_of(vertex), row_of(edge));
-    if (pair.first >= 0 && (couplings.empty() || couplings.back() != pair)) couplings.push_back(pair);
+    if (vertex < rows && edge < rows) couplings.emplace_back(vertex, edge);
   }
   TwoLevelFlexibility sum(centroids, couplings);
   for (int row = 0; row < rows; ++row) {
     if (equations_.blocks()[row].rotation_locked) sum.lock_rotation(row);
   }
-  const auto gradient = [&](int row, const Vec2& direction, const Vec2& arm) {
-    const bool turns = row >= 0 && !equations_.blocks()[row].rotation_locked;
-    return Motion::Unknowns(direction.x(), direction.y(), turns ? arm.x() * direction.y() - arm.y() * direction.x() : 0.0);
-  };
   for (std::size_t c = 0; c < contacts().size(); ++c) {
     if (!counted[c]) continue;
     const auto [vertex, edge] = contacts().places(c);
     const int k = ContactTrial::lane(c), i = row_of(vertex), j = row_of(edge);
     const ContactBatch& start = contacts().start(c);
-    const ContactPose pose = contacts().pose(c);
-    const Vec2 tangent(-pose.normal.y(), pose.normal.x());
-    for (const auto& [stiffness, way] : {std::pair(start.normal[k], pose.normal), std::pair(start.shear[k], tangent)})
-      sum.add_spring(stiffness, i, gradient(i, way, pose.vertex_arm), j, -gradient(j, way, pose.edge_arm));
+    const ContactKinematics at(contacts().pose(c));
+    sum.add_spring(start.normal[k], i, at.normal_vertex, j, at.normal_edge);
+    sum.add_spring(start.shear[k], i, at.shear_vertex, j, at.shear_edge);
   }
   for (int i = 0; i < rows; ++i) {
     Eigen::Matrix<double, dofs, dofs> own = equations_.blocks()[i].inertia.asDiagonal();
@@ -133,27 +125,27 @@ TwoLevelFlexibility AcceleratedRelaxation::flexibility(const Eigen::VectorXd& d,
 }
 
 void AcceleratedRelaxation::keep_slip() {  // all of the shear force is in the spring: nothing damps at rest
-  constexpr auto sticking = static_cast<Branch>(ContactStatus::sticking);
+  const auto sticks = [](Branch b) { return status(b) == ContactStatus::sticking; };
   for (std::size_t i = 0; i < contacts().batches().size(); ++i) {
     const Branch* const branches = contacts().branches().data() + batch_size * i;
-    if (std::all_of(branches, branches + batch_size, [](Branch b) { return b == sticking; })) continue;
+    if (std::all_of(branches, branches + batch_size, sticks)) continue;
     ContactBatch& contact = contacts().batches()[i];
     const TrialBatch& now = contacts().trials()[i];
     for (int k = 0; k < batch_size; ++k) {
-      const bool slid = branches[k] != sticking;
+      const bool slid = !sticks(branches[k]);
       const double slack = now.shear[k] + contact.shear[k] * now.slip_change[k];
       contact.initial_shear[k] = slid ? slack : contact.initial_shear[k];
     }
   }
 }
 
-ContactForces AcceleratedRelaxation::slipped_as_a_whole(const SpringSource& springs, std::size_t c) const {
+ContactForces AcceleratedRelaxation::slipped_as_a_whole(const SpringsOf& springs, std::size_t c) const {
   const TrialBatch& now = contacts().trial(c);
   const int k = ContactTrial::lane(c);
-  return spring_slider(springs.make(c), contacts().strength(c), now.gap_change[k], now.slip_change[k]);
+  return spring_slider(springs(c), contacts().strength(c), now.gap_change[k], now.slip_change[k]);
 }
 
-bool AcceleratedRelaxation::break_slipped_bonds(const SpringSource& springs) {
+bool AcceleratedRelaxation::break_slipped_bonds(const SpringsOf& springs) {
   bool any = false;
   for (std::size_t c = 0; c < contacts().size(); ++c) {
     const Contact& contact = equations_.problem().contacts[c];
@@ -168,13 +160,13 @@ bool AcceleratedRelaxation::break_slipped_bonds(const SpringSource& springs) {
   return any;
 }
 
-void AcceleratedRelaxation::note_slip(const SpringSource& springs) {
+void AcceleratedRelaxation::note_slip(const SpringsOf& springs) {
   for (std::size_t c = 0; c < contacts().size(); ++c) {
     Branch& piece = contacts().branches()[c];
     if (status(piece) != ContactStatus::sticking) continue;
     const ContactForces law = slipped_as_a_whole(springs, c);
     if (law.status == ContactStatus::sliding) piece = branch(law);
-    if (has_broken_[c]) piece = contacts().trial(c).shear[ContactTrial::lane(c)] < 0.0 ? static_cast<Branch>(-sliding_branch) : sliding_branch;
+    if (has_broken_[c]) piece = branch(ContactStatus::sliding, contacts().trial(c).shear[ContactTrial::lane(c)] < 0.0);
   }
 }
 
@@ -186,7 +178,7 @@ bool AcceleratedRelaxation::has_left(const Eigen::VectorXd& d) const {
   return false;
 }
 
-void AcceleratedRelaxation::solve(const StepProblem& problem, const SpringSource& springs, StepSolution& solution) {
+void AcceleratedRelaxation::solve(const StepProblem& problem, const SpringsOf& springs, StepSolution& solution) {
   equations_.prepare(problem, springs, solution.contacts);
   Eigen::VectorXd& d = solution.d;
   equations_.move_blocks_alone(d);
@@ -213,7 +205,8 @@ void AcceleratedRelaxation::solve(const StepProblem& problem, const SpringSource
   int& steps = solution.effort.relaxation_steps;
   while (is_regular && norm > 1.0 && steps < most_relaxation_steps && (steps % steps_between_looks != 0 || !has_left(d))) {
     keep_slip();
-    next = d + safe_step * estimate->displacement(equations_.residual());
+    // Of the way that the estimate gives, the longest step after which momentum never makes a vibration grow.
+    next = d + (1.0 / TwoLevelFlexibility::largest_eigenvalue) * estimate->displacement(equations_.residual());
     if (equations_.residual().dot(next - place) < 0.0) momentum.restart();
     d = next + momentum.next() * (next - place);
     place.swap(next);

@@ -19,7 +19,7 @@ class AcceleratedRelaxation {
 
   /// Solves a static step for solution.d, starting from the value it has; fills its contacts. What friction holds in the end depends on the way
   /// there.
-  void solve(const StepProblem& problem, const SpringSource& springs, StepSolution& solution);
+  void solve(const StepProblem& problem, const SpringsOf& springs, StepSolution& solution);
   /// The largest so far, equations included.
   const Memory& memory() const { return memory_; }
 
@@ -30,11 +30,11 @@ class AcceleratedRelaxation {
   void keep_slip();
   /// What the law says of contact c for its way since the start of the step.
   /// \param springs  those that the step has started with
-  ContactForces slipped_as_a_whole(const SpringSource& springs, std::size_t c) const;
+  ContactForces slipped_as_a_whole(const SpringsOf& springs, std::size_t c) const;
   /// Contacts that have slipped in the step as a whole and lose strength by that carry what they can without. True if there are any.
-  bool break_slipped_bonds(const SpringSource& springs);
+  bool break_slipped_bonds(const SpringsOf& springs);
   /// Those have slid for what loses its strength by that, though they stick on what they have kept.
-  void note_slip(const SpringSource& springs);
+  void note_slip(const SpringsOf& springs);
   /// Whether a block has gone so far that the step will be refused.
   bool has_left(const Eigen::VectorXd& d) const;
   ContactTrial& contacts() { return equations_.contacts(); }

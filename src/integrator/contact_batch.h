@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <type_traits>
 #include <vector>
 
 #include "openclose/contact/contact.h"
@@ -22,27 +23,23 @@ namespace openclose {
 
 /// The piece of its law that a contact is on: its status, minus it when sliding backward.
 using Branch = signed char;
-/// Sliding contacts are on this branch or, the other way, on minus it.
-inline constexpr Branch sliding_branch = static_cast<Branch>(ContactStatus::sliding);
+/// \param backward  of a contact that slides
+constexpr Branch branch(ContactStatus status, bool backward = false) {
+  const int piece = static_cast<int>(status);
+  return static_cast<Branch>(backward ? -piece : piece);
+}
 inline Branch branch(const CarriedForces& f) {
-  const bool backward = f.status == ContactStatus::sliding && f.shear < 0.0;
-  return static_cast<Branch>(backward ? -sliding_branch : static_cast<int>(f.status));
+  return branch(f.status, f.status == ContactStatus::sliding && f.shear < 0.0);
 }
 inline ContactStatus status(Branch b) {
   return static_cast<ContactStatus>(b < 0 ? -b : b);
 }
 
-/// Which forces enter the equation of motion.
-enum class StepForces {
-  at_end,    ///< those at the end of the step
-  averaged,  ///< means over its path, see path_average.h
-};
-
 inline constexpr unsigned doubles_of_move = sizeof(BlockMove) / sizeof(double);
 
 /// Four contacts at the start of a step: set one by one, then begin(). What is not set carries nothing and adds nothing.
 struct ContactBatch {
-  Lanes normal_x{}, normal_y{}, lever_x{}, lever_y{}, vertex_arm_x{}, vertex_arm_y{}, end_arm_x{}, end_arm_y{};  // as in ContactStart
+  Lanes normal_x{}, normal_y{}, lever_x{}, lever_y{}, vertex_arm_x{}, vertex_arm_y{}, end_arm_x{}, end_arm_y{};  // as in StartNumbers
   Lanes normal{}, shear{}, gap_off_target{}, shift{}, initial_shear{}, normal_damping{}, shear_damping{};        // as in ContactSprings
   Lanes friction{}, cohesion{}, tension{};                                                                       // as in ContactStrength
   Lanes dissipation{};                                                                                           ///< of path_average()
@@ -56,65 +53,70 @@ struct ContactBatch {
   }
   int vertex_place(int lane) const { return static_cast<int>(vertex_at[lane] / doubles_of_move); }
   int edge_place(int lane) const { return static_cast<int>(edge_at[lane] / doubles_of_move); }
-  void set_geometry(int lane, const ContactPlace& at);
-  void set_strength(int lane, const ContactStrength& strength);
-  void set_springs(int lane, const ContactSprings& springs);
+  void set_geometry(int lane, const ContactPlace& at) {
+    // The edge, until its normal is known.
+    set(lane,
+        StartNumbers{at.edge.x(), at.edge.y(), at.vertex_arm.x(), at.vertex_arm.y(), at.end_arm.x(), at.end_arm.y(), at.lever.x(), at.lever.y()});
+  }
+  void set_strength(int lane, const ContactStrength& strength) { set(lane, strength); }
+  void set_springs(int lane, const ContactSprings& springs) {
+    set(lane, springs);
+    gap_off_target[lane] -= springs.target;
+  }
   /// All but the places.
-  void copy(int lane, const ContactBatch& other, int from);
-  ContactStart start(int lane) const;
+  void copy(int lane, const ContactBatch& other, int from) {
+    set(lane, other.start(from));
+    set(lane, other.strength(from));
+    set(lane, other.springs(from));
+  }
+  StartNumbers start(int lane) const { return get<StartNumbers>(lane); }
   /// \param moves  of the blocks, by their places
   ContactPose pose(int lane, const std::vector<BlockMove>& moves) const { return {start(lane), moves[vertex_place(lane)], moves[edge_place(lane)]}; }
-  ContactStrength strength(int lane) const;
+  ContactStrength strength(int lane) const { return get<ContactStrength>(lane); }
   /// Those that were set, with the gap counted from their target.
-  ContactSprings springs(int lane) const;
+  ContactSprings springs(int lane) const { return get<ContactSprings>(lane); }
+
+ private:
+  /// Calls visit(four numbers, one of them) for what a batch has of the numbers of a contact.
+  template <class Batch, class Numbers, class Visit>
+  static void visit_numbers(Batch& four, Numbers& one, const Visit& visit);
+  template <class Numbers>
+  void set(int lane, const Numbers& numbers) {
+    visit_numbers(*this, numbers, [lane](Lanes& four, double one) { four[lane] = one; });
+  }
+  template <class Numbers>
+  Numbers get(int lane) const {
+    Numbers numbers;
+    visit_numbers(*this, numbers, [lane](const Lanes& four, double& one) { one = four[lane]; });
+    return numbers;
+  }
 };
 
-inline void ContactBatch::set_geometry(int lane, const ContactPlace& at) {
-  // The edge, until its normal is known.
-  normal_x[lane] = at.edge.x();
-  normal_y[lane] = at.edge.y();
-  lever_x[lane] = at.lever.x();
-  lever_y[lane] = at.lever.y();
-  vertex_arm_x[lane] = at.vertex_arm.x();
-  vertex_arm_y[lane] = at.vertex_arm.y();
-  end_arm_x[lane] = at.end_arm.x();
-  end_arm_y[lane] = at.end_arm.y();
-}
-
-inline ContactStart ContactBatch::start(int lane) const {
-  ContactStart s;
-  s.normal = {normal_x[lane], normal_y[lane]};
-  s.vertex_arm = {vertex_arm_x[lane], vertex_arm_y[lane]};
-  s.end_arm = {end_arm_x[lane], end_arm_y[lane]};
-  s.lever = {lever_x[lane], lever_y[lane]};
-  return s;
-}
-
-inline void ContactBatch::set_strength(int lane, const ContactStrength& strength) {
-  friction[lane] = strength.friction;
-  cohesion[lane] = strength.cohesion;
-  tension[lane] = strength.tension;
-}
-
-inline void ContactBatch::set_springs(int lane, const ContactSprings& springs) {
-  normal[lane] = springs.normal;
-  shear[lane] = springs.shear;
-  normal_damping[lane] = springs.normal_damping;
-  shear_damping[lane] = springs.shear_damping;
-  dissipation[lane] = springs.dissipation;
-  gap_off_target[lane] = springs.gap - springs.target;
-  shift[lane] = springs.shift;
-  initial_shear[lane] = springs.initial_shear;
-}
-
-inline void ContactBatch::copy(int lane, const ContactBatch& other, int from) {
+template <class Batch, class Numbers, class Visit>
+void ContactBatch::visit_numbers(Batch& four, Numbers& one, const Visit& visit) {
   static_assert(sizeof(ContactBatch) == 19 * sizeof(Lanes) + 2 * sizeof(vertex_at), "one line here for each member");
-  for (Lanes ContactBatch::*member :
-       {&ContactBatch::normal_x, &ContactBatch::normal_y, &ContactBatch::lever_x, &ContactBatch::lever_y, &ContactBatch::vertex_arm_x,
-        &ContactBatch::vertex_arm_y, &ContactBatch::end_arm_x, &ContactBatch::end_arm_y, &ContactBatch::normal, &ContactBatch::shear,
-        &ContactBatch::gap_off_target, &ContactBatch::shift, &ContactBatch::initial_shear, &ContactBatch::normal_damping,
-        &ContactBatch::shear_damping, &ContactBatch::friction, &ContactBatch::cohesion, &ContactBatch::tension, &ContactBatch::dissipation}) {
-    (this->*member)[lane] = (other.*member)[from];
+  if constexpr (std::is_same_v<std::remove_const_t<Numbers>, StartNumbers>) {
+    visit(four.normal_x, one.normal_x);
+    visit(four.normal_y, one.normal_y);
+    visit(four.vertex_arm_x, one.vertex_arm_x);
+    visit(four.vertex_arm_y, one.vertex_arm_y);
+    visit(four.end_arm_x, one.end_arm_x);
+    visit(four.end_arm_y, one.end_arm_y);
+    visit(four.lever_x, one.lever_x);
+    visit(four.lever_y, one.lever_y);
+  } else if constexpr (std::is_same_v<std::remove_const_t<Numbers>, ContactStrength>) {
+    visit(four.friction, one.friction);
+    visit(four.cohesion, one.cohesion);
+    visit(four.tension, one.tension);
+  } else {
+    visit(four.normal, one.normal);
+    visit(four.shear, one.shear);
+    visit(four.gap_off_target, one.gap);
+    visit(four.shift, one.shift);
+    visit(four.initial_shear, one.initial_shear);
+    visit(four.normal_damping, one.normal_damping);
+    visit(four.shear_damping, one.shear_damping);
+    visit(four.dissipation, one.dissipation);
   }
 }
 
@@ -151,7 +153,7 @@ struct MatrixSlots {
 
 /// Which tangent is added up.
 struct BatchTangent {
-  StepForces forces;
+  bool averaged;                 ///< forces are means over the path of the step
   bool exact;                    ///< with the slip's and the geometric terms, which are not symmetric
   double end_weight;             ///< [-] theta
   double static_slip_stiffness;  ///< [-] part of the shear stiffness that sliding contacts keep in the other tangent
@@ -162,11 +164,11 @@ struct BatchTangent {
 /// a spring at the start of the step, pulling ones not counted.
 double begin(std::vector<ContactBatch>& contacts);
 /// Fills trials and branches; adds to the rows. Returns [N] the largest force.
+/// \param averaged  the forces are means over the path of the step, see path_average.h, instead of those at its end
 /// \param ramp   [-] see ShearLimit; means have the usual one
 /// \param moves  of all blocks; a place of rows for each
-/// \param rounding_of_sums  [-] of the forces and changes of force of a contact
-double evaluate(StepForces forces, double ramp, const std::vector<ContactBatch>& contacts, const BlockMove* moves, double rounding_of_sums,
-                std::vector<TrialBatch>& trials, std::vector<Branch>& branches, std::vector<ForceRow>& rows);
+double evaluate(bool averaged, double ramp, const std::vector<ContactBatch>& contacts, const BlockMove* moves, std::vector<TrialBatch>& trials,
+                std::vector<Branch>& branches, std::vector<ForceRow>& rows);
 /// Of forces at the end of the step.
 /// \param ramp, trials  with which and to what they were evaluated
 void find_elastic(double ramp, const std::vector<ContactBatch>& contacts, const std::vector<TrialBatch>& trials, std::vector<ElasticBatch>& elastic);

@@ -6,12 +6,52 @@
 #include "openclose/integrator/enforcement.h"
 
 namespace openclose {
+namespace {
 
-void ContactTrial::prepare(const StepProblem& problem, const SpringSource& springs) {
+/// What the contacts of a step need of a block.
+struct BlockPlace {
+  Vec2 centroid;  ///< [m]
+  int place;
+};
+
+std::vector<BlockPlace> places_of(const BlockSystem& system) {
+  std::vector<BlockPlace> places(system.block_count());
+  for (int b = 0; b < system.block_count(); ++b) {
+    const int equation = system.block(b).equation;
+    places[b] = {system.centroid(b), equation >= 0 ? equation : system.free_count()};
+  }
+  return places;
+}
+
+/// Sets all batches up to begin().
+void lay_out(const StepProblem& problem, const SpringsOf& springs, std::vector<ContactBatch>& batches) {
+  const std::size_t count = problem.contacts.size();
+  resize_closely(batches, (count + batch_size - 1) / batch_size);
+  const std::vector<BlockPlace> places = places_of(problem.system);
+  for (std::size_t c = 0; c < count; ++c) {
+    ContactBatch& batch = batches[c / batch_size];
+    const int k = static_cast<int>(c % batch_size);
+    const Contact& contact = problem.contacts[c];
+    const BlockPlace &vertex = places[contact.vertex_block], &edge = places[contact.edge_block];
+    batch.set_places(k, vertex.place, edge.place);
+    batch.set_geometry(k, ContactPlace(problem.system, contact, vertex.centroid, edge.centroid));
+    batch.set_strength(k, ContactStrength(problem.joints.joint(contact.joint), contact));
+    batch.set_springs(k, springs(c));
+  }
+  for (std::size_t at = count; at < batch_size * batches.size(); ++at) {
+    const int k = static_cast<int>(at % batch_size);
+    batches.back().copy(k, ContactBatch(), 0);
+    batches.back().set_places(k, problem.system.free_count(), problem.system.free_count());
+  }
+}
+
+}  // namespace
+
+void ContactTrial::prepare(const StepProblem& problem, const SpringsOf& springs) {
   forget_step();
   count_ = problem.contacts.size();
   lay_out(problem, springs, batches_);
-  step_forces_ = problem.averages_path() ? StepForces::averaged : StepForces::at_end;
+  averages_path_ = problem.averages_path();
   start_force_ = begin(batches_);
   make_room();
   moves_.assign(static_cast<std::size_t>(problem.system.free_count()) + 1, BlockMove());
@@ -45,7 +85,7 @@ void ContactTrial::set_springs(const std::vector<ContactSprings>& springs) {
 }
 
 double ContactTrial::evaluate(std::vector<ForceRow>& rows) {
-  return openclose::evaluate(step_forces_, ramp_, batches_, moves_.data(), rounding_of_sums, trials_, branches_, rows);
+  return openclose::evaluate(averages_path_, ramp_, batches_, moves_.data(), trials_, branches_, rows);
 }
 
 void ContactTrial::add_stiffness(const BatchTangent& tangent, const MatrixSlots& slots, BlockMatrix& matrix) const {
@@ -114,13 +154,6 @@ void ContactTrial::finish() {
 
 void ContactTrial::keep_start_forces() {
   for (std::size_t c = 0; c < count_; ++c) start_forces_.push_back(forces(c));
-}
-
-Memory ContactTrial::memory() const {
-  Memory of;
-  of.blocks = bytes_of(moves_);
-  of.contacts = bytes_of(batches_, trials_, branches_, elastic_, start_forces_, paths_, slack_);
-  return of;
 }
 
 }  // namespace openclose

@@ -117,6 +117,10 @@ class Enforcement {
 
   /// Springs of a contact at the start of a step.
   virtual ContactSprings springs(const StepProblem& problem, const Contact& contact) const = 0;
+  /// The same of all contacts of a step; enforcement and problem must outlive what is returned.
+  SpringsOf springs_of(const StepProblem& problem) const {
+    return [this, &problem](std::size_t c) { return springs(problem, problem.contacts[c]); };
+  }
   /// Fills an empty solution.
   virtual void solve(const StepProblem& problem, StepSolution& solution) = 0;
 
@@ -139,18 +143,6 @@ class Enforcement {
   virtual void exchange(Archive&) {}
 };
 
-/// As an enforcement makes them.
-class OwnSprings : public SpringSource {
- public:
-  /// Both must outlive it.
-  OwnSprings(const Enforcement& of, const StepProblem& problem) : of_(of), problem_(problem) {}
-  ContactSprings make(std::size_t c) const override { return of_.springs(problem_, problem_.contacts[c]); }
-
- private:
-  const Enforcement& of_;
-  const StepProblem& problem_;
-};
-
 /// Displacements of a step without forces, dt v: zero in statics. Three numbers per free block.
 inline Eigen::VectorXd drift(const StepProblem& problem) {
   Eigen::VectorXd d(dofs * problem.system.free_count());
@@ -158,18 +150,22 @@ inline Eigen::VectorXd drift(const StepProblem& problem) {
   return d;
 }
 
-/// Springs of the joint's own stiffness. The memory is the stretch of the spring, not its force: when the tributary length changes, strength and
-/// force change alike.
-inline ContactSprings joint_springs(const StepProblem& problem, const Contact& contact) {
-  const JointProperties& joint = problem.joints.joint(contact.joint);
-  const JointSprings own(joint, contact.length);
+/// Springs of this stiffness [N/m]. The memory is the stretch of the spring, not its force: when the tributary length changes, strength and force
+/// change alike.
+inline ContactSprings springs_of_stiffness(const Contact& contact, double normal, double shear) {
   ContactSprings s;
-  s.normal = own.normal;
-  s.shear = own.shear;
+  s.normal = normal;
+  s.shear = shear;
   s.gap = contact.gap;
   s.target = contact.rest_gap;
   s.initial_shear = -s.shear * contact.elastic_slip;
   return s;
+}
+
+/// Springs of the joint's own stiffness.
+inline ContactSprings joint_springs(const StepProblem& problem, const Contact& contact) {
+  const JointSprings own(problem.joints.joint(contact.joint), contact.length);
+  return springs_of_stiffness(contact, own.normal, own.shear);
 }
 
 /// Gives the springs the joint's dashpots for this step. They resist the mean velocity d/dt of the step with their whole force: what enters the

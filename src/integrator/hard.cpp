@@ -45,8 +45,6 @@ constexpr double long_cohesion_ramp = 1.0;
 /// [m] The tolerance of statics: what passes leave there is a share of the forces themselves, on which hangs what joints lose their strength, and
 /// there is no inertia to carry the rest.
 constexpr double static_gap = 1e-11;
-/// [-] Units in the last place that rounding may leave in a gap.
-constexpr double rounding_units = 4.0;
 /// [-] Part of the tolerance by which closed contacts may stay apart from zero; what earlier steps have left beyond it is pushed back, by no more
 /// than the rest in a step: redundant contacts that have different gaps then ask for motions that exclude each other by less than what is tolerated.
 constexpr double kept_penetration = 0.5, recovered_penetration = 1.0 - kept_penetration;
@@ -380,7 +378,7 @@ class Hard final : public Enforcement {
       error = std::max({std::abs(off_target), slip, inward});
     }
     if (error <= 0.0) return 0.0;
-    const double rounding = rounding_units * std::numeric_limits<double>::epsilon() * coordinates(problem, solution, problem.contacts[c]);
+    const double rounding = tolerance::rounding_of_sums * coordinates(problem, solution, problem.contacts[c]);
     return error / std::max(tolerated(problem), rounding);
   }
 

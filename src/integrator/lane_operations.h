@@ -30,12 +30,9 @@ OPENCLOSE_KERNEL Lanes square_root(Lanes x) {
   for (int k = 0; k < batch_size; ++k) root[k] = std::sqrt(x[k]);
   return root;
 }
-/// As std::max and std::min.
+/// As std::max.
 OPENCLOSE_KERNEL Lanes larger(Lanes a, Lanes b) {
   return a < b ? b : a;
-}
-OPENCLOSE_KERNEL Lanes smaller(Lanes a, Lanes b) {
-  return b < a ? b : a;
 }
 OPENCLOSE_KERNEL bool any(Mask m) {
   return (m[0] | m[1] | m[2] | m[3]) != 0;

@@ -327,7 +327,7 @@ bool Newton::solve_part(const StepEquations& whole, const Part& part, NewtonEnd 
   return norm < norm_before;
 }
 
-void Newton::solve(const StepProblem& problem, const SpringSource& springs, StepSolution& solution, FirstTangent first) {
+void Newton::solve(const StepProblem& problem, const SpringsOf& springs, StepSolution& solution, FirstTangent first) {
   branches_before_ = solution.contacts.branches();
   subdomains_.begin_step();
   equations_.prepare(problem, springs, solution.contacts);
@@ -335,7 +335,7 @@ void Newton::solve(const StepProblem& problem, const SpringSource& springs, Step
   solve_prepared(solution, first);
 }
 
-void Newton::solve_if_few_change(const StepProblem& problem, const SpringSource& springs, StepSolution& solution) {
+void Newton::solve_if_few_change(const StepProblem& problem, const SpringsOf& springs, StepSolution& solution) {
   only_if_few_change_ = true;
   solve(problem, springs, solution);
   only_if_few_change_ = false;

@@ -52,17 +52,17 @@ inline constexpr double linear_reduction = 1e-5;
 class Newton {
  public:
   /// Solves for solution.d, starting from the value it has; fills its contacts. effort is added to.
-  void solve(const StepProblem& problem, const SpringSource& springs, StepSolution& solution, FirstTangent first = FirstTangent::last_step);
+  void solve(const StepProblem& problem, const SpringsOf& springs, StepSolution& solution, FirstTangent first = FirstTangent::last_step);
   void solve(const StepProblem& problem, const std::vector<ContactSprings>& springs, StepSolution& solution,
              FirstTangent first = FirstTangent::last_step) {
-    solve(problem, GivenSprings(springs), solution, first);
+    solve(problem, springs_in(springs), solution, first);
   }
   /// The step of the last solve() again, with springs that differ only in what they carry at its start, in the gaps they keep and
   /// in their stiffness.
   void solve_again(const std::vector<ContactSprings>& springs, StepSolution& solution, FirstTangent first);
   /// The same for a static step that has more blocks than Newton's method is quick with, unless few contacts change their state: ends without
   /// convergence as soon as held contacts do not bring the residual down quickly.
-  void solve_if_few_change(const StepProblem& problem, const SpringSource& springs, StepSolution& solution);
+  void solve_if_few_change(const StepProblem& problem, const SpringsOf& springs, StepSolution& solution);
   /// A part of another system for itself, while all other blocks stay where they are there, from found.d. True if its residual is smaller then.
   bool solve_part(const StepEquations& whole, const Part& part, NewtonEnd end, StepSolution& found);
 

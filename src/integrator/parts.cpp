@@ -7,12 +7,6 @@
 
 namespace openclose {
 
-namespace {
-
-constexpr int outside = -1;  ///< of all rings
-
-}  // namespace
-
 Eigen::VectorXd rows_of(const Eigen::VectorXd& whole, const std::vector<int>& rows) {
   Eigen::VectorXd part(dofs * static_cast<Eigen::Index>(rows.size()));
   for (std::size_t i = 0; i < rows.size(); ++i) part.segment<dofs>(dofs * i) = whole.segment<dofs>(dofs * rows[i]);
@@ -40,11 +34,11 @@ std::vector<int> most_unbalanced(const std::vector<double>& residuals, double la
 }
 
 std::vector<Part> Neighbourhood::parts(const std::vector<int>& seeds, int rings, int largest) const {
-  std::vector<int> ring(rows(), outside);
+  std::vector<int> ring(rows(), -1);
   const std::vector<int> blocks = grow(seeds, rings, ring);
   std::vector<Part> parts;
   for (int first : blocks) {
-    if (ring[first] == outside) continue;
+    if (ring[first] < 0) continue;
     Part part = take(first, ring);
     if (static_cast<int>(part.rows.size()) <= largest) parts.push_back(std::move(part));
   }
@@ -60,7 +54,7 @@ std::vector<int> Neighbourhood::grow(const std::vector<int>& seeds, int rings, s
     if (ring[row] == rings) break;
     for (int e = first_[row]; e < first_[row + 1]; ++e) {
       const int other = ends_[e].other;
-      if (other >= rows() || ring[other] != outside) continue;
+      if (other >= rows() || ring[other] >= 0) continue;
       ring[other] = ring[row] + 1;
       blocks.push_back(other);
     }
@@ -70,14 +64,14 @@ std::vector<int> Neighbourhood::grow(const std::vector<int>& seeds, int rings, s
 
 Part Neighbourhood::take(int first, std::vector<int>& ring) const {
   Part part{{first}, {}};
-  ring[first] = outside;
+  ring[first] = -1;
   for (std::size_t k = 0; k < part.rows.size(); ++k) {
     const int row = part.rows[k];
     for (int e = first_[row]; e < first_[row + 1]; ++e) {
       const auto& [contact, other] = ends_[e];
       part.contacts.push_back(contact);
-      if (other >= rows() || ring[other] == outside) continue;
-      ring[other] = outside;
+      if (other >= rows() || ring[other] < 0) continue;
+      ring[other] = -1;
       part.rows.push_back(other);
     }
   }

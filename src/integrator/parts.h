@@ -43,7 +43,7 @@ class Neighbourhood {
     int contact, other;  ///< row of the block on the other side
   };
 
-  /// The seeds and the rings around them; `ring` is that of each row.
+  /// The seeds and the rings around them; `ring` is that of each row, -1 outside of all.
   std::vector<int> grow(const std::vector<int>& seeds, int rings, std::vector<int>& ring) const;
   /// All that hangs together with a row inside of the rings, and takes it out of them.
   Part take(int first, std::vector<int>& ring) const;

@@ -20,11 +20,11 @@ namespace {
 
 /// [-] Default penalty over the joint's stiffness: the original takes about 50 E, and rigid blocks have no E.
 constexpr double default_penalty_over_joint = 10.0;
-/// [m] and [-] of the size of the free blocks: what contacts may penetrate by default, the larger of the two. A hundredth of a block turns the
-/// normals of its contacts by no more than that (the original scales with the height of the model, a slope of 1 km then has 0.1 m), and penalties
-/// that are no stiffer than ten times the joints yield by more than a thousandth where blocks hit each other; what drawings leave is no reason to cut
-/// steps of smaller blocks.
-constexpr double default_penetration_m = 1e-3, default_penetration_of_size = 1e-2;
+/// [-] Of the size of the free blocks: what contacts may penetrate by default, and no less than what blocks may overlap in the file, which is no
+/// reason to cut steps of small ones. A hundredth of a block turns the normals of its contacts by no more than that (the original scales with the
+/// height of the model, a slope of 1 km then has 0.1 m), and penalties that are no stiffer than ten times the joints yield by more than a thousandth
+/// where blocks hit each other.
+constexpr double default_penetration_of_size = 1e-2;
 
 /// [-] Of the penetration that is tolerated: a corner is found up to four times as deep as this, and its contact closes by more before it carries.
 constexpr double entry_of_penetration = 0.1;
@@ -39,12 +39,8 @@ class Shi : public Enforcement {
  public:
   ContactSprings springs(const StepProblem& problem, const Contact& contact) const override {
     const double joint = problem.joints.joint(contact.joint).normal_stiffness;
-    ContactSprings s;
-    s.normal = problem.method.penalty.value_or(default_penalty_over_joint * joint) * contact.length;
-    s.shear = problem.method.penalty_shear_ratio * s.normal;
-    s.gap = contact.gap;
-    s.target = contact.rest_gap;
-    s.initial_shear = -s.shear * contact.elastic_slip;
+    const double normal = problem.method.penalty.value_or(default_penalty_over_joint * joint) * contact.length;
+    ContactSprings s = springs_of_stiffness(contact, normal, problem.method.penalty_shear_ratio * normal);
     add_dashpots(problem, contact, s);
     return s;
   }
@@ -62,7 +58,7 @@ class Shi : public Enforcement {
   bool follows_gaps() const override { return false; }  // they add up first-order changes
   /// A contact that is found deeper than what is tolerated of closed ones would have no step.
   double deepest_entry(const MethodInput& method) const override {
-    return entry_of_penetration * method.penetration_tolerance.value_or(default_penetration_m);
+    return entry_of_penetration * method.penetration_tolerance.value_or(tolerance::deepest_initial_overlap_m);
   }
   double step_cut(const MethodInput& method) const override { return method.step_cut; }
   LinearCounters linear_counters() const override { return tangent_.counters(); }
@@ -99,7 +95,7 @@ class Shi : public Enforcement {
   }
 
   void begin(const StepProblem& problem, ContactTrial& contacts) {
-    contacts.prepare(problem, OwnSprings(*this, problem));
+    contacts.prepare(problem, springs_of(problem));
     kinematics_.clear();
     applied_shear_.assign(contacts.size(), 0.0);
     for (std::size_t i = 0; i < contacts.size(); ++i) {
@@ -161,21 +157,16 @@ class Shi : public Enforcement {
     const double shear = locked ? springs.initial_shear : contacts.forces(c).shear;
     applied_shear_[c] = shear;
     const ContactKinematics& k = kinematics_[c];
-    const int i = problem.system.block(contact.vertex_block).equation, j = problem.system.block(contact.edge_block).equation;
-    const auto block = [&](const Unknowns& n1, const Unknowns& t1, const Unknowns& n2, const Unknowns& t2) {
-      return Motion::Matrix(kn * n1 * n2.transpose() + ks * t1 * t2.transpose());
-    };
-    if (i >= 0) {
-      tangent_.matrix().add(i, i, block(k.normal_vertex, k.shear_vertex, k.normal_vertex, k.shear_vertex));
-      right.segment<dofs>(dofs * i) += normal * k.normal_vertex + shear * k.shear_vertex;
-    }
-    if (j >= 0) {
-      tangent_.matrix().add(j, j, block(k.normal_edge, k.shear_edge, k.normal_edge, k.shear_edge));
-      right.segment<dofs>(dofs * j) += normal * k.normal_edge + shear * k.shear_edge;
-    }
-    if (i >= 0 && j >= 0) {
-      tangent_.matrix().add(i, j, block(k.normal_vertex, k.shear_vertex, k.normal_edge, k.shear_edge));
-      tangent_.matrix().add(j, i, block(k.normal_edge, k.shear_edge, k.normal_vertex, k.shear_vertex));
+    const int equations[] = {problem.system.block(contact.vertex_block).equation, problem.system.block(contact.edge_block).equation};
+    const Unknowns normals[] = {k.normal_vertex, k.normal_edge}, shears[] = {k.shear_vertex, k.shear_edge};
+    for (int i = 0; i < 2; ++i) {
+      if (equations[i] < 0) continue;
+      right.segment<dofs>(dofs * equations[i]) += normal * normals[i] + shear * shears[i];
+      for (int j = 0; j < 2; ++j) {
+        if (equations[j] < 0) continue;
+        const Motion::Matrix stiffness = kn * normals[i] * normals[j].transpose() + ks * shears[i] * shears[j].transpose();
+        tangent_.matrix().add(equations[i], equations[j], stiffness);
+      }
     }
   }
 
@@ -266,7 +257,7 @@ class Shi : public Enforcement {
 
   /// [m]
   static double default_penetration_tolerance(const BlockSystem& system) {
-    return std::max(default_penetration_m, default_penetration_of_size * system.median_size());
+    return std::max(tolerance::deepest_initial_overlap_m, default_penetration_of_size * system.median_size());
   }
 
   void finish(const StepProblem& problem, StepSolution& solution) {
@@ -274,7 +265,7 @@ class Shi : public Enforcement {
     ContactTrial& contacts = solution.contacts;
     for (std::size_t c = 0; c < contacts.size(); ++c) {
       const double depth = contacts.status(c) == ContactStatus::open ? 0.0 : -(problem.contacts[c].gap + contacts.gap_change(c));
-      if (depth <= tolerated.value_or(default_penetration_m)) continue;
+      if (depth <= tolerated.value_or(tolerance::deepest_initial_overlap_m)) continue;
       if (!tolerated) tolerated = default_penetration_tolerance(problem.system);
       if (depth > *tolerated) {
         solution.reason =

@@ -1,7 +1,6 @@
 // `soft`, the paper's DDA-SC: the springs are the joint's own stiffness; penetration is the joint's closure and is not constrained.
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "openclose/integrator/accelerated_relaxation.h"
 #include "openclose/integrator/integrators.h"
@@ -20,22 +19,6 @@ constexpr double largest_dissipation = 0.1;
 /// what the vibrations of a relaxation leave in the joints (a wall of 10,040 bricks: 29 kN in its head joints, which carry nothing).
 constexpr int many_blocks = 9000;
 
-/// Those of a step.
-class SoftSprings final : public OwnSprings {
- public:
-  /// \param dissipation  [-] for path_average, instead of what the scene says
-  SoftSprings(const Enforcement& of, const StepProblem& problem, std::optional<double> dissipation = {})
-      : OwnSprings(of, problem), dissipation_(dissipation) {}
-  ContactSprings make(std::size_t c) const override {
-    ContactSprings springs = OwnSprings::make(c);
-    if (dissipation_) springs.dissipation = *dissipation_;
-    return springs;
-  }
-
- private:
-  std::optional<double> dissipation_;
-};
-
 class Soft final : public Enforcement {
  public:
   ContactSprings springs(const StepProblem& problem, const Contact& contact) const override {
@@ -50,11 +33,16 @@ class Soft final : public Enforcement {
   }
 
   void solve(const StepProblem& problem, StepSolution& solution) override {
-    attempt(problem, SoftSprings(*this, problem), solution);
+    attempt(problem, springs_of(problem), solution);
     if (solution.converged || !problem.averages_path()) return;
     const StepEffort wasted = solution.effort;
     solution.clear();
-    attempt(problem, SoftSprings(*this, problem, largest_dissipation), solution);
+    const auto most_dissipative = [&](std::size_t c) {
+      ContactSprings s = springs(problem, problem.contacts[c]);
+      s.dissipation = largest_dissipation;
+      return s;
+    };
+    attempt(problem, most_dissipative, solution);
     solution.effort += wasted;
     solution.dissipative = true;
   }
@@ -74,7 +62,7 @@ class Soft final : public Enforcement {
   }
 
  private:
-  void attempt(const StepProblem& problem, const SoftSprings& springs, StepSolution& solution) {
+  void attempt(const StepProblem& problem, const SpringsOf& springs, StepSolution& solution) {
     solution.d = drift(problem);
     const StaticSolver solver = problem.statics ? problem.method.static_solver : StaticSolver::newton;
     const bool is_large = problem.system.free_count() >= many_blocks;

@@ -25,7 +25,7 @@ bool is_on_piece(ContactStatus now, double normal_by_gap, ContactStatus wanted) 
 
 }  // namespace
 
-void StepEquations::prepare(const StepProblem& problem, const SpringSource& springs, ContactTrial& contacts) {
+void StepEquations::prepare(const StepProblem& problem, const SpringsOf& springs, ContactTrial& contacts) {
   const BlockSystem& system = problem.system;
   problem_ = &problem;
   contacts_ = &contacts;
@@ -100,7 +100,7 @@ void StepEquations::evaluate_block(int row, const Eigen::VectorXd& d) {
   residual_.segment<dofs>(at) = r;
   const Unknowns moved = block.inertia.cwiseProduct(block.drift.cwiseAbs() + db.cwiseAbs());
   sums = Lanes{force[0], force[1], force[2], sums[dofs]};
-  sums[dofs] += rounding_of_sums * (Motion::largest_force(moved, block.radius) + magnitude(block, db) + block.rounding_of_coordinates);
+  sums[dofs] += tolerance::rounding_of_sums * (Motion::largest_force(moved, block.radius) + magnitude(block, db) + block.rounding_of_coordinates);
 }
 
 double StepEquations::magnitude(const StepBlock& block, const Unknowns& d) const {
@@ -168,7 +168,7 @@ double StepEquations::merit(double norm) const {
 
 void StepEquations::assemble(const Eigen::VectorXd& d, bool exact, bool open_ones_too, const MatrixSlots& slots, BlockMatrix& matrix) const {
   matrix.set_zero();
-  const BatchTangent asked{contacts_->step_forces(), exact, problem_->end_weight, problem_->statics ? static_slip_stiffness : 0.0,
+  const BatchTangent asked{contacts_->averages_path(), exact, problem_->end_weight, problem_->statics ? static_slip_stiffness : 0.0,
                            open_ones_too || contacts_->averages_path()};
   contacts_->add_stiffness(asked, slots, matrix);
   for (std::size_t i = 0; i < blocks_.size(); ++i) {
@@ -213,7 +213,7 @@ int StepEquations::hold_reversed(const std::vector<Branch>& branches_before) {
   int held = 0;
   for (std::size_t c = 0; c < contacts_->size(); ++c) {
     const Branch before = branches_before[c];
-    const bool reversed = std::abs(before) == sliding_branch && before == -contacts_->branches()[c];
+    const bool reversed = status(before) == ContactStatus::sliding && before == -contacts_->branches()[c];
     if (!reversed) continue;
     ++held;
     const ContactSprings springs = contacts_->seen_springs(c);

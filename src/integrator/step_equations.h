@@ -27,7 +27,7 @@ class StepEquations {
   };
 
   /// \param contacts  to be laid out for the step; they must outlive what is asked of its equations
-  void prepare(const StepProblem& problem, const SpringSource& springs, ContactTrial& contacts);
+  void prepare(const StepProblem& problem, const SpringsOf& springs, ContactTrial& contacts);
   /// The same step with springs that differ only in what they carry at its start, in the gaps they keep and in their stiffness.
   void prepare_again(const std::vector<ContactSprings>& springs, ContactTrial& contacts);
   /// The equations of a part of another system, while all other blocks stay where they are there.

@@ -71,7 +71,9 @@ void TwoLevelFlexibility::add_own(int row, const Stiffness& stiffness) {
   between_.add(group_[row], group_[row], on_both);
 }
 
-void TwoLevelFlexibility::add_spring(double stiffness, int i, const Unknowns& first, int j, const Unknowns& second) {
+void TwoLevelFlexibility::add_spring(double stiffness, int i, Unknowns first, int j, Unknowns second) {
+  if (i >= 0) first.z() *= turns_[i];
+  if (j >= 0) second.z() *= turns_[j];
   const auto join = [&](BlockMatrix& matrix, int row, const Unknowns& a, int column, const Unknowns& b) {
     matrix.add(row, column, stiffness * a * b.transpose());
     if (row != column) matrix.add(column, row, stiffness * b * a.transpose());

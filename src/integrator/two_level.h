@@ -33,12 +33,13 @@ class TwoLevelFlexibility {
   /// \param largest_group  blocks
   TwoLevelFlexibility(const std::vector<Vec2>& centroids, const std::vector<std::pair<int, int>>& couplings, int largest_group = usual_group);
 
-  /// A block that does not turn: forces on it have no moment, and where its group turns it only goes along. To be said before anything is added.
+  /// A block that does not turn: forces on it have no moment, springs do not turn it, and where its group turns it only goes along. To be said before
+  /// anything is added.
   void lock_rotation(int row) { turns_[row] = 0.0; }
   /// What holds a block in its place.
   void add_own(int row, const Stiffness& stiffness);
   /// A spring [N/m] whose length grows by first * u_i + second * u_j; a row is -1 where the block is fixed.
-  void add_spring(double stiffness, int i, const Unknowns& first, int j, const Unknowns& second);
+  void add_spring(double stiffness, int i, Unknowns first, int j, Unknowns second);
   /// After everything was added. False if a block is held by nothing.
   bool factor();
   /// [m, rad] by forces [N, N m].

@@ -38,7 +38,7 @@ ContactForces prolonged(const ContactSprings& springs, const ContactStrength& st
   if (status == ContactStatus::sticking) {
     f.shear = f.elastic_shear - springs.shear_damping * slip_change;
   } else {
-    const ContactStrength::ShearBound bound = strength.shear_bound(normal);
+    const ShearLimit<double> bound = strength.shear_bound(normal);
     f.shear = std::copysign(1.0, shear) * (bound.value + bound.slope * (f.normal - normal));
   }
   return f;

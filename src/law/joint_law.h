@@ -40,18 +40,9 @@ struct ContactStrength {
     archive(a, b, c);
   }
 
-  struct ShearBound {
-    double value;  ///< [N]
-    double slope;  ///< [-] derivative by the normal force
-  };
-  /// Largest shear force at normal force n >= -tension, see ShearLimit.
-  /// \param ramp  [-] another one than the usual
-  double largest_shear(double n, double ramp = tolerance::cohesion_ramp) const { return limit(n, ramp).value; }
-  ShearBound shear_bound(double n, double ramp = tolerance::cohesion_ramp) const {
-    const ShearLimit<double> at = limit(n, ramp);
-    return {at.value, at.value > 0.0 ? (at.on_ramp < at.on_slope ? at.steep : friction) : 0.0};
-  }
-  ShearLimit<double> limit(double n, double ramp) const { return {friction, cohesion, tension, n, ramp}; }
+  /// At normal force n >= -tension.
+  ShearLimit<double> shear_bound(double n) const { return {friction, cohesion, tension, n, tolerance::cohesion_ramp}; }
+  double largest_shear(double n) const { return shear_bound(n).value; }  ///< [N]
 };
 
 /// Springs of one contact during one step. The normal force is shift - stiffness (gap - target), the shear force starts from initial_shear.
@@ -89,11 +80,10 @@ inline bool is_open(const ContactStrength& strength, double elastic_normal) {
 
 /// The joint law: what a contact carries of the trials. The elastic shear force is the contact's memory: the spring slips with the friction, the
 /// dashpot does not count in it.
-/// \param ramp  [-] see ShearLimit
-inline CarriedForces carry(const ContactStrength& strength, const ForceTrials& trial, double ramp = tolerance::cohesion_ramp) {
+inline CarriedForces carry(const ContactStrength& strength, const ForceTrials& trial) {
   if (is_open(strength, trial.elastic_normal)) return {};
   const MohrCoulomb<double> carried(strength.friction, strength.cohesion, strength.tension, trial.elastic_normal + trial.viscous_normal,
-                                    trial.elastic_shear + trial.viscous_shear, ramp);
+                                    trial.elastic_shear + trial.viscous_shear, tolerance::cohesion_ramp);
   return {carried.is_sticking ? ContactStatus::sticking : ContactStatus::sliding, carried.normal, carried.shear, trial.elastic_normal,
           carried.limit.of(trial.elastic_shear)};
 }
@@ -124,21 +114,20 @@ inline double viscous_normal(const ContactSprings& springs, const ContactStrengt
 }
 
 /// Forces when gap and slip have changed by these amounts [m] since the start of the step.
-inline ContactForces spring_slider(const ContactSprings& springs, const ContactStrength& strength, double gap_change, double slip_change,
-                                   double ramp = tolerance::cohesion_ramp) {
+inline ContactForces spring_slider(const ContactSprings& springs, const ContactStrength& strength, double gap_change, double slip_change) {
   ForceTrials trial;
   trial.elastic_normal = springs.shift - springs.normal * ((springs.gap - springs.target) + gap_change);
   trial.viscous_normal = viscous_normal(springs, strength, gap_change);
   trial.elastic_shear = springs.initial_shear - springs.shear * slip_change;
   trial.viscous_shear = -springs.shear_damping * slip_change;
-  ContactForces f{carry(strength, trial, ramp)};
+  ContactForces f{carry(strength, trial)};
   if (f.status == ContactStatus::open) return f;
   const bool dashpot_outweighs = springs.normal_damping > 0.0 && f.normal <= -strength.tension;
   f.normal_by_gap = dashpot_outweighs ? 0.0 : -(springs.normal + springs.normal_damping);
   if (f.status == ContactStatus::sticking) {
     f.shear_by_slip = -(springs.shear + springs.shear_damping);
   } else {
-    f.shear_by_gap = std::copysign(strength.shear_bound(f.normal, ramp).slope, trial.elastic_shear + trial.viscous_shear) * f.normal_by_gap;
+    f.shear_by_gap = std::copysign(strength.shear_bound(f.normal).slope, trial.elastic_shear + trial.viscous_shear) * f.normal_by_gap;
   }
   return f;
 }

@@ -65,7 +65,7 @@ Dual mean_within(const Line& x, const Line& bound) {
 }
 
 Dual shear_bound(const ContactStrength& strength, const Dual& normal) {
-  const ContactStrength::ShearBound bound = strength.shear_bound(normal.value);
+  const ShearLimit<double> bound = strength.shear_bound(normal.value);
   return {bound.value, bound.slope * normal.by_gap, bound.slope * normal.by_slip};
 }
 
@@ -174,31 +174,23 @@ class ClosedPart {
   Line elastic_;
 };
 
-/// Sticking all the way, the bound without a kink: what most contacts do in most steps, and linear. The same operations as on a single
-/// piece of the path, so that the numbers are the same. False if the contact does anything else.
+/// The same operations as on a single piece of the path, so that the numbers are the same. False if the contact does anything else than stick.
 /// \param start, end  [N] of the normal spring, above -tension
 bool sticks_all_the_way(const ContactSprings& springs, const ContactStrength& strength, double gap_change, double slip_change, double start,
                         double end, PathAverage& result) {
-  const double viscous = springs.normal_damping * gap_change, first = start - viscous, last = end - viscous;
-  const double kink = kink_of_bound(strength);
-  if (!(first > -strength.tension && last > -strength.tension) || (kink - first) * (kink - last) < 0.0) return false;
-  const double bound_0 = strength.largest_shear(first), bound_1 = strength.largest_shear(last);
-  const double shear_0 = springs.initial_shear, shear_1 = shear_0 - springs.shear * slip_change;
-  const double viscous_shear = -springs.shear_damping * slip_change, total_0 = shear_0 + viscous_shear, total_1 = shear_1 + viscous_shear;
-  // What starts and ends within a bound that is linear in between stays within it.
-  if (!(std::abs(shear_0) <= bound_0 && std::abs(shear_1) <= bound_1 && std::abs(total_0) <= bound_0 && std::abs(total_1) <= bound_1)) return false;
-
-  result.end = {ContactStatus::sticking, last, total_1, end, shear_1};
+  const StickingPath<double> path(springs, strength, start, end, gap_change, slip_change);
+  if (!path.is_one) return false;
+  result.end = {ContactStatus::sticking, path.normal_1, path.shear_1, end, path.elastic_shear_1};
   ContactForces& mean = result.mean;
   mean.status = ContactStatus::sticking;
-  mean.normal = 0.5 * (first + last);
-  mean.shear = 0.5 * (total_0 + total_1);
+  mean.normal = 0.5 * (path.normal_0 + path.normal_1);
+  mean.shear = 0.5 * (path.shear_0 + path.shear_1);
   mean.elastic_normal = 0.5 * (start + end);
-  mean.elastic_shear = 0.5 * (shear_0 + shear_1);
-  mean.normal_by_gap = 0.5 * (-springs.normal_damping + (-springs.normal - springs.normal_damping));
-  mean.shear_by_slip = 0.5 * (-springs.shear_damping + (-springs.shear - springs.shear_damping));
-  result.energies.springs =
-      stored(end, springs.normal) - stored(start, springs.normal) + stored(shear_1, springs.shear) - stored(shear_0, springs.shear);
+  mean.elastic_shear = 0.5 * (path.elastic_shear_0 + path.elastic_shear_1);
+  mean.normal_by_gap = path.normal_by_gap;
+  mean.shear_by_slip = path.shear_by_slip;
+  result.energies.springs = stored(end, springs.normal) - stored(start, springs.normal) + stored(path.elastic_shear_1, springs.shear) -
+                            stored(path.elastic_shear_0, springs.shear);
   result.energies.damping = -(mean.normal - mean.elastic_normal) * gap_change - (mean.shear - mean.elastic_shear) * slip_change;
   return true;
 }

@@ -3,10 +3,10 @@
 // only the neighbours hold a block, it does not get there, and the matrices go to a direct solver.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <utility>
 
+#include "openclose/core/tolerance.h"
 #include "openclose/linear/incomplete.h"
 #include "openclose/linear/krylov.h"
 #include "openclose/linear/single_matrix.h"
@@ -37,7 +37,6 @@ constexpr double above_rounding = 1e-8;
 
 /// What rounding leaves in the residual: units in the last place of the products in it.
 double rounding_of_residual(const BlockMatrix& matrix, const Eigen::VectorXd& x) {
-  constexpr double rounding_units = 16.0;  // [-] so many units may meet in one residual
   double sum = 0.0;
   for (int i = 0; i < matrix.rows(); ++i) {
     double row = 0.0;
@@ -46,7 +45,7 @@ double rounding_of_residual(const BlockMatrix& matrix, const Eigen::VectorXd& x)
     }
     sum += row * row;
   }
-  return rounding_units * std::numeric_limits<double>::epsilon() * std::sqrt(sum);
+  return tolerance::rounding_of_sums * std::sqrt(sum);
 }
 
 struct Refined {

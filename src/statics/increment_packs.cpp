@@ -22,9 +22,8 @@ OPENCLOSE_KERNEL ResponsePack respond(const IncrementSprings& springs, Lanes gap
     r.shear_by_slip = -springs.shear_stiffness;
   } else {
     const ShearLimit limit(springs.friction, springs.cohesion, springs.tension, r.normal, tolerance::cohesion_ramp);
-    const Lanes slope_of_limit = limit.on_ramp < limit.on_slope ? limit.steep : springs.friction;
     const Lanes bound = law == ShearLaw::coulomb ? limit.value : springs.bound;
-    const Lanes slope = law == ShearLaw::coulomb ? (limit.value > zero ? slope_of_limit : zero) : zero;
+    const Lanes slope = law == ShearLaw::coulomb ? limit.slope : zero;
     const auto sticks = (shear <= bound) & (-bound <= shear);
     const auto is_backward = shear < zero;
     const Lanes at_bound = is_backward ? -bound : bound, slope_at_bound = is_backward ? -slope : slope;

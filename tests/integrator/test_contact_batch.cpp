@@ -14,7 +14,6 @@ using namespace openclose;
 namespace {
 
 constexpr int block_count = 12, free_count = 9;  // the last ones are fixed
-constexpr double rounding_of_sums = 16.0 * 2.2e-16;
 
 /// Contacts in every state: open and closed, bonded or not, with dashpots that outweigh the spring or not, sliding both ways, on the cohesion's ramp.
 struct RandomContacts {
@@ -92,10 +91,10 @@ struct RandomContacts {
 };
 
 struct Evaluated {
-  Evaluated(const RandomContacts& contacts, StepForces forces, double ramp = tolerance::cohesion_ramp)
+  Evaluated(const RandomContacts& contacts, bool averaged, double ramp = tolerance::cohesion_ramp)
       : batches(contacts.batches()), trials(batches.size()), branches(batch_size * batches.size(), 77), rows(block_count + 1) {
     largest_at_start = openclose::begin(batches);
-    largest = openclose::evaluate(forces, ramp, batches, contacts.moves.data(), rounding_of_sums, trials, branches, rows);
+    largest = openclose::evaluate(averaged, ramp, batches, contacts.moves.data(), trials, branches, rows);
     elastic.resize(trials.size());
     openclose::find_elastic(ramp, batches, trials, elastic);
   }
@@ -107,15 +106,37 @@ struct Evaluated {
   double largest_at_start, largest;
 };
 
+/// As openclose::spring_slider(), for the joint law with any ramp of the cohesion.
+ContactForces spring_slider(const ContactSprings& springs, const ContactStrength& strength, double gap_change, double slip_change, double ramp) {
+  ContactForces f;
+  f.elastic_normal = springs.shift - springs.normal * ((springs.gap - springs.target) + gap_change);
+  if (is_open(strength, f.elastic_normal)) return {};
+  const double elastic_shear = springs.initial_shear - springs.shear * slip_change, shear = elastic_shear + -springs.shear_damping * slip_change;
+  const MohrCoulomb<double> carried(strength.friction, strength.cohesion, strength.tension,
+                                    f.elastic_normal + viscous_normal(springs, strength, gap_change), shear, ramp);
+  f.status = carried.is_sticking ? ContactStatus::sticking : ContactStatus::sliding;
+  f.normal = carried.normal;
+  f.shear = carried.shear;
+  f.elastic_shear = carried.limit.of(elastic_shear);
+  const bool dashpot_outweighs = springs.normal_damping > 0.0 && f.normal <= -strength.tension;
+  f.normal_by_gap = dashpot_outweighs ? 0.0 : -(springs.normal + springs.normal_damping);
+  if (carried.is_sticking) {
+    f.shear_by_slip = -(springs.shear + springs.shear_damping);
+  } else {
+    f.shear_by_gap = std::copysign(carried.limit.slope, shear) * f.normal_by_gap;
+  }
+  return f;
+}
+
 /// One contact by itself.
 struct Single {
-  Single(const RandomContacts& contacts, std::size_t c, StepForces step_forces, double ramp = tolerance::cohesion_ramp)
+  Single(const RandomContacts& contacts, std::size_t c, bool averaged, double ramp = tolerance::cohesion_ramp)
       : pose(contacts.starts[c], contacts.moves[contacts.vertex_blocks[c]], contacts.moves[contacts.edge_blocks[c]]) {
     const ContactSprings& s = contacts.springs[c];
-    const bool averaged = step_forces == StepForces::averaged;
     acting = averaged ? mean_pose(contacts.starts[c], pose) : pose;
-    forces = averaged ? path_average(s, contacts.strengths[c], pose.gap_change, pose.slip_change, s.dissipation).mean
-                      : spring_slider(s, contacts.strengths[c], pose.gap_change, pose.slip_change, ramp);
+    forces = averaged                           ? path_average(s, contacts.strengths[c], pose.gap_change, pose.slip_change, s.dissipation).mean
+             : ramp == tolerance::cohesion_ramp ? openclose::spring_slider(s, contacts.strengths[c], pose.gap_change, pose.slip_change)
+                                                : spring_slider(s, contacts.strengths[c], pose.gap_change, pose.slip_change, ramp);
   }
   /// Open at the end of the step, it may have carried a force on the way.
   bool carries() const { return forces.status != ContactStatus::open || forces.normal != 0.0 || forces.normal_by_gap != 0.0; }
@@ -139,34 +160,34 @@ int differences(const TrialBatch& a, int lane, const ContactForces& b) {
 TEST_CASE("four contacts at a time are where each is and carry what each carries", "[integrator][batch]") {
   const std::size_t count = GENERATE(0, 1, 3, 4, 401);
   const unsigned seed = GENERATE(1, 2);
-  const StepForces step_forces = GENERATE(StepForces::at_end, StepForces::averaged);
-  const double ramp = step_forces == StepForces::averaged ? tolerance::cohesion_ramp : GENERATE(as<double>(), tolerance::cohesion_ramp, 1.0);
+  const bool averaged = GENERATE(false, true);
+  const double ramp = averaged ? tolerance::cohesion_ramp : GENERATE(as<double>(), tolerance::cohesion_ramp, 1.0);
   const RandomContacts contacts(seed, count);
-  const Evaluated all(contacts, step_forces, ramp);
+  const Evaluated all(contacts, averaged, ramp);
   std::vector<std::array<Eigen::Vector4d, 2>> sums(block_count + 1, {Eigen::Vector4d::Zero(), Eigen::Vector4d::Zero()});
   double largest = 0.0;
   int wrong = 0, of_status[3] = {}, outweighed = 0, backward = 0, opened = 0;
   for (std::size_t c = 0; c < count; ++c) {
     const int lane = static_cast<int>(c % batch_size), a = contacts.vertex_blocks[c], b = contacts.edge_blocks[c];
     const ContactSprings& s = contacts.springs[c];
-    const Single one(contacts, c, step_forces, ramp);
+    const Single one(contacts, c, averaged, ramp);
     const ContactForces& f = one.forces;
     const TrialBatch& trial = all.trials[c / batch_size];
     wrong += (trial.gap_change[lane] != one.pose.gap_change) + (trial.slip_change[lane] != one.pose.slip_change);
     wrong += differences(trial, lane, f) + (all.branches[c] != branch(f));
-    if (step_forces == StepForces::at_end) {
+    if (!averaged) {
       const ElasticBatch& elastic = all.elastic[c / batch_size];
       wrong += (elastic.normal[lane] != f.elastic_normal) + (elastic.shear[lane] != f.elastic_shear);
     }
     wrong += differences(all.batches[c / batch_size].pose(lane, contacts.moves), one.pose);
     ++of_status[static_cast<int>(f.status)];
     outweighed += f.status != ContactStatus::open && f.normal_by_gap == 0.0;
-    backward += all.branches[c] == -sliding_branch;
+    backward += all.branches[c] == branch(ContactStatus::sliding, true);
     if (!one.carries()) continue;
     opened += f.status == ContactStatus::open;
     const double moved = contacts.moves[a].bound + contacts.moves[b].bound;
     const double rounding =
-        rounding_of_sums * ((s.normal + s.normal_damping + s.shear + s.shear_damping) * moved + std::abs(f.normal) + std::abs(f.shear));
+        tolerance::rounding_of_sums * ((s.normal + s.normal_damping + s.shear + s.shear_damping) * moved + std::abs(f.normal) + std::abs(f.shear));
     const Vec2& n = one.acting.normal;
     const Vec2 force(f.normal * n.x() - f.shear * n.y(), f.normal * n.y() + f.shear * n.x());
     Eigen::Vector4d on_vertex, on_edge;
@@ -189,20 +210,19 @@ TEST_CASE("four contacts at a time are where each is and carry what each carries
   if (count < 100) return;
   for (const int number : of_status) CHECK(number > 20);
   CHECK(backward > 20);
-  if (step_forces == StepForces::at_end) CHECK(outweighed > 5);
-  if (step_forces == StepForces::averaged) CHECK(opened > 20);
+  if (!averaged) CHECK(outweighed > 5);
+  if (averaged) CHECK(opened > 20);
 }
 
 TEST_CASE("the stiffness of four contacts at a time is that of each", "[integrator][batch]") {
   const std::size_t count = GENERATE(5, 401);
   const unsigned seed = GENERATE(1, 2);
   const bool exact = GENERATE(false, true);
-  const StepForces step_forces = GENERATE(StepForces::at_end, StepForces::averaged);
-  const bool averaged = step_forces == StepForces::averaged;
+  const bool averaged = GENERATE(false, true);
   const double end_weight = averaged ? 1.0 : GENERATE(1.0, 0.6);
   const RandomContacts contacts(seed, count);
-  const Evaluated all(contacts, step_forces);
-  const BatchTangent tangent{step_forces, exact, end_weight, exact ? 0.0 : GENERATE(0.0, 0.01), averaged ? true : GENERATE(false, true)};
+  const Evaluated all(contacts, averaged);
+  const BatchTangent tangent{averaged, exact, end_weight, exact ? 0.0 : GENERATE(0.0, 0.01), averaged ? true : GENERATE(false, true)};
   const double held = 5e8;  // [N/m] of open contacts, where they may have a stiffness
   std::vector<TrialBatch> trials = all.trials;
   for (std::size_t c = 0; c < count; ++c) {
@@ -227,7 +247,7 @@ TEST_CASE("the stiffness of four contacts at a time is that of each", "[integrat
   openclose::add_stiffness(all.batches, contacts.moves.data(), trials, all.branches, tangent, slots, matrix);
 
   for (std::size_t c = 0; c < count; ++c) {
-    const Single one(contacts, c, step_forces);
+    const Single one(contacts, c, averaged);
     const ContactPose &pose = one.pose, &acting = exact ? one.acting : pose;
     ContactForces f = one.forces;
     if (!averaged && f.status == ContactStatus::open) {

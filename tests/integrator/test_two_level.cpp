@@ -3,6 +3,7 @@
 #include <ranges>
 
 #include "openclose/integrator/two_level.h"
+#include "openclose/model/motion.h"
 #include "support/catch.h"
 
 using namespace openclose;
@@ -51,14 +52,14 @@ struct Wall {
   void join(int i, const Vec2& from_i, int j, const Vec2& from_j, const Vec2& half) {
     for (const double end : {-1.0, 1.0}) {
       for (const Vec2& way : {Vec2(1.0, 0.0), Vec2(0.0, 1.0)}) {
-        const auto gradient = [&](int row, const Vec2& arm) {
-          return Eigen::Vector3d(way.x(), way.y(), turns(row) ? arm.x() * way.y() - arm.y() * way.x() : 0.0);
-        };
-        const Eigen::Vector3d first = gradient(i, from_i + end * half), second = -gradient(j, from_j + end * half);
+        const Eigen::Vector3d first = Motion::gradient(from_i + end * half, way), second = -Motion::gradient(from_j + end * half, way);
         flexibility->add_spring(1.0, i, first, j, second);
         Eigen::VectorXd whole = Eigen::VectorXd::Zero(3 * rows);
         if (i >= 0) whole.segment<3>(3 * i) = first;
         whole.segment<3>(3 * j) = second;
+        for (const int row : {i, j}) {
+          if (!turns(row)) whole[3 * row + 2] = 0.0;
+        }
         stiffness += whole * whole.transpose();
       }
     }

@@ -1,4 +1,4 @@
-// Second derivatives of a contact's gap and slip and its stiffness, written plainly: what the kernels of src/integrator/batch_stiffness.cpp are
+// Second derivatives of a contact's gap and slip and its stiffness, written plainly: what the kernels of src/integrator/contact_batch.cpp are
 // compared with, and what is itself compared with difference quotients (tests/contact).
 #pragma once
 

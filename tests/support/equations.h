@@ -9,7 +9,7 @@ namespace openclose::test {
 inline Eigen::VectorXd forces_of(const StepProblem& problem, const std::vector<ContactSprings>& springs) {
   ContactTrial contacts;
   StepEquations equations;
-  equations.prepare(problem, GivenSprings(springs), contacts);
+  equations.prepare(problem, springs_in(springs), contacts);
   equations.sum_start_forces();
   return equations.start_force();
 }
@@ -24,7 +24,7 @@ inline Eigen::MatrixXd stiffness_of(const StepProblem& problem, const std::vecto
   ContactTrial contacts;
   StepEquations equations;
   TangentSystem tangent;
-  equations.prepare(static_problem, GivenSprings(springs), contacts);
+  equations.prepare(static_problem, springs_in(springs), contacts);
   tangent.fit(problem.method, equations.rows(), contacts);
   const Eigen::VectorXd start = Eigen::VectorXd::Zero(dofs * equations.rows());
   equations.evaluate(start);
