@@ -32,8 +32,6 @@ constexpr double kept_change = 1e-8;
 /// slope of 387 free blocks with `soft` and with `hard`, of its strength reduction with either, and of settling 1,773 free blocks, over those with
 /// 1e-8: 0.98, 0.97, 0.98, 0.95, 0.98 with 1e-6; 0.98, 0.98, 0.98, 0.95, 0.98 with 1e-5.
 constexpr double static_kept_change = 1e-6;
-/// After so many refusals of the exact step without gain the symmetric steps in between get shorter, so that the two do not go round in a circle.
-constexpr int patience = 1;
 /// [-] A static step of which the line search takes less is begun again with held contacts.
 constexpr double shortest_common_step = 1e-3;
 /// [-] Held contacts keep this part of their hold from iteration to iteration, so that what they let go at a time is about twice what they have
@@ -53,10 +51,6 @@ constexpr int most_cold_iterations = 15;
 
 /// Below, the plan of a part's factorisation costs what it saves (387 rows: work 1.04 to 1.08, 850 rows: 0.82 to 0.94).
 constexpr int smallest_system_with_parts = 600;
-/// The same where contact forces are averaged over the path, with which parts take more iterations (1,119 rows: work 1.10 of that without, 1,773 rows
-/// 1.16, 2,740 rows 0.91, 4,568 rows 0.95).
-constexpr int smallest_averaged_system_with_parts = 2000;
-
 /// Whether an iteration still gets somewhere.
 class Headway {
  public:
@@ -179,7 +173,7 @@ Newton::Outcome Newton::iterate_holding(StepSolution& solution, double& norm, in
   holds_.assign(contacts().size(), 0.0);
   if (done > 0) hold_changed(norm);
   Outcome outcome = Outcome::ended;
-  Headway headway(norm, only_if_few_change_ ? most_iterations_to_halve_if_few_change : most_iterations_to_halve_holding);
+  Headway headway(norm, only_if_few_change_ ? most_iterations_to_halve : most_iterations_to_halve_holding);
   double best = norm;
   for (int iteration = done; norm > 1.0 && std::isfinite(norm) && !headway.is_lost(best); ++iteration) {
     branches_before_ = branches();
@@ -199,7 +193,6 @@ Newton::Outcome Newton::iterate_holding(StepSolution& solution, double& norm, in
 struct Newton::Course {
   double norm = 0.0, value = 0.0, best = 0.0;  ///< [-] equations_.residual_norm(), equations_.merit(), and the smallest merit so far
   Tangent tangent = Tangent::exact;
-  int refusals = 0;     ///< of the exact step since the merit was at its smallest
   int switches = 0;     ///< contacts whose state the last iteration has changed
   bool gets_on = true;  ///< the last iteration has halved the merit
 };
@@ -221,16 +214,13 @@ double Newton::try_step(const Eigen::VectorXd& d, const Eigen::VectorXd& step, c
     equations_.evaluate(trial_ = d + step);
     return 1.0;
   }
-  const double alpha = line_search(d, step, slope) / static_cast<double>(std::max(1, course.refusals - patience));
-  if (course.refusals > patience + 1) equations_.evaluate(trial_ = d + alpha * step);
-  return alpha;
+  return line_search(d, step, slope);
 }
 
 void Newton::follow(Course& course, double norm) {
   const double value = equations_.merit(norm);
   course.switches = differences(branches_before_, branches());
   course.gets_on = value <= 0.5 * course.value;
-  if (value < course.best) course.refusals = 0;
   course.best = std::min(course.best, value);
   course.norm = norm;
   course.value = value;
@@ -249,8 +239,7 @@ Newton::Outcome Newton::iterate(const StepProblem& problem, StepSolution& soluti
   course.norm = norm;
   course.value = course.best = equations_.merit(norm);
   course.switches = static_cast<int>(contacts().size());  // any may be in another state than in the first tangent
-  const int smallest_with_parts = contacts().averages_path() ? smallest_averaged_system_with_parts : smallest_system_with_parts;
-  const bool may_help_by_parts = problem.method.skip_balanced && !problem.statics && !is_part_ && equations_.rows() >= smallest_with_parts;
+  const bool may_help_by_parts = problem.method.skip_balanced && !problem.statics && !is_part_ && equations_.rows() >= smallest_system_with_parts;
   const bool may_be_lost = !problem.statics && !is_part_;
   Headway headway(course.value, most_iterations_to_halve);
   // Parts that have not helped will not help in this step: with pauses in place of an end 40 m of a failing slope of 1,773 free blocks cost
@@ -286,7 +275,6 @@ Newton::Outcome Newton::iterate(const StepProblem& problem, StepSolution& soluti
         course.tangent = Tangent::symmetric;
         course.switches = switches;
         course.gets_on = false;
-        ++course.refusals;
         continue;
       }
       next_norm = equations_.residual_norm();

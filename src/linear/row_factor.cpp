@@ -19,10 +19,18 @@ struct Multipliers {
       for (int c = 0; c < dofs; ++c) entry[r][c] = block.row[r][c];
     }
   }
-  OPENCLOSE_KERNEL Lanes row_of_product(int r, const PaddedBlock& right) const {
+  OPENCLOSE_KERNEL void subtract_row_of_product(int r, const PaddedBlock& right, Lanes& target) const {
     Lanes sum = entry[r][0] * right.row[0];
     for (int c = 1; c < dofs; ++c) sum += entry[r][c] * right.row[c];
-    return sum;
+    target -= sum;
+  }
+  OPENCLOSE_KERNEL void replace_by_product(PaddedBlock& right) const {
+    PaddedBlock result;
+    for (int r = 0; r < dofs; ++r) {
+      result.row[r] = entry[r][0] * right.row[0];
+      for (int c = 1; c < dofs; ++c) result.row[r] += entry[r][c] * right.row[c];
+    }
+    right = result;
   }
 };
 
@@ -31,7 +39,7 @@ OPENCLOSE_KERNEL void subtract_row(RowFactor& f, int s, int k, const int* place)
   for (int u = f.diagonal[k] + 1; u < f.row_start[k + 1]; ++u) {
     const PaddedBlock& right = f.value[u];
     PaddedBlock& target = f.value[place[f.column[u]]];
-    for (int r = 0; r < dofs; ++r) target.row[r] -= left.row_of_product(r, right);
+    for (int r = 0; r < dofs; ++r) left.subtract_row_of_product(r, right, target.row[r]);
   }
 }
 
@@ -197,10 +205,7 @@ OPENCLOSE_FOR_WIDE_REGISTERS_TOO bool eliminate_rows(RowFactor& f, const std::ve
     subtract_panel(f, i, panel, place);
     if (!invert(f.value[f.diagonal[i]], f.size[i])) return false;
     const Multipliers inverse(f.value[f.diagonal[i]]);
-    for (int s = f.diagonal[i] + 1; s < f.row_start[i + 1]; ++s) {
-      const PaddedBlock right = f.value[s];
-      for (int r = 0; r < dofs; ++r) f.value[s].row[r] = inverse.row_of_product(r, right);
-    }
+    for (int s = f.diagonal[i] + 1; s < f.row_start[i + 1]; ++s) inverse.replace_by_product(f.value[s]);
   }
   return true;
 }
