@@ -68,12 +68,18 @@ double MeasuredPoints::largest_displacement() const {
 
 namespace {
 
+SettleResult settle_and_balance(Simulation& simulation, const SettleProgress& progress) {
+  const SettleResult result = make_equilibrium_search(simulation)->settle_first(progress);
+  if (result.settled) balance_what_is_left(simulation, result);
+  return result;
+}
+
 /// Settles by the method that the scene names for it, and leaves the simulation with the one of the motion.
 SettleResult settle_start(Simulation& simulation, const SettleProgress& progress) {
   const MethodInput own = simulation.scene().method;
-  if (!is_settled_by_another(simulation.scene())) return make_equilibrium_search(simulation)->settle_first(progress);
+  if (!is_settled_by_another(simulation.scene())) return settle_and_balance(simulation, progress);
   simulation.change_method(settling_method(simulation.scene()));
-  const SettleResult result = make_equilibrium_search(simulation)->settle_first(progress);
+  const SettleResult result = settle_and_balance(simulation, progress);
   simulation.change_method(own);
   return result;
 }
@@ -94,7 +100,6 @@ RunResult prepare_start(Simulation& simulation, const SettleProgress& progress) 
       simulation.solved_stepper().book_steps(false);
       result.settling = settle_start(simulation, progress);
       result.converged = result.settling.settled;
-      if (result.converged) balance_what_is_left(simulation, result.settling);
       if (!result.converged) {
         const bool moves = result.settling.limit == "settle.failure_displacement_m";
         result.reason = "no static equilibrium to start from (" + result.settling.verdict() + ")" +

@@ -173,7 +173,7 @@ Newton::Outcome Newton::iterate_holding(StepSolution& solution, double& norm, in
   holds_.assign(contacts().size(), 0.0);
   if (done > 0) hold_changed(norm);
   Outcome outcome = Outcome::ended;
-  Headway headway(norm, only_if_few_change_ ? most_iterations_to_halve : most_iterations_to_halve_holding);
+  Headway headway(norm, only_if_few_change_ ? most_iterations_to_halve_if_few_change : most_iterations_to_halve_holding);
   double best = norm;
   for (int iteration = done; norm > 1.0 && std::isfinite(norm) && !headway.is_lost(best); ++iteration) {
     branches_before_ = branches();

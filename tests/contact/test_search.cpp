@@ -395,3 +395,25 @@ TEST_CASE("looking only at pairs whose blocks have gone far enough finds the sam
   CHECK((few.looks < all.looks / 3 || creep > 1e-4));
   CHECK(all.narrow_phases > 20);
 }
+
+TEST_CASE("a pair that a line parts is left alone until it may have come within reach, and found then", "[contact][search]") {
+  const double reach = 0.05, step = 0.004, height = 0.2;
+  const bool beside = GENERATE(false, true);  // past the base's end, which another line parts it from
+  const Scene scene =
+      scene_with({fixed_block("base", rectangle(-5.0, -1.0, 10.0, 1.0)),
+                  free_block("block", placed(rectangle(0.0, 0.0, 0.3, 0.3), 0.2, {beside ? 5.0 + height : 0.0, beside ? -0.5 : height}))});
+  Detection d(scene, reach, {});
+  REQUIRE(d.contacts.empty());
+  const Vec2 low = Box::around(scene.blocks[1].vertices).low;
+  const double nearest = beside ? low.x() - 5.0 : low.y();
+  for (double gap = nearest - step; gap > -2.0 * step; gap -= step) {
+    d.move(1, beside ? -step : 0.0, beside ? 0.0 : -step);
+    d.update();
+    INFO("gap " << gap);
+    if (gap > reach + step) {
+      CHECK(d.contacts.empty());
+      CHECK(d.detector.counters().narrow_phases == 1);
+    }
+    if (gap < reach) CHECK_FALSE(d.contacts.empty());
+  }
+}

@@ -30,6 +30,8 @@ class PlainExplicit {
     return state_.contacts.moving;
   }
 
+  void start_base_motion() { state_.base_moves = true; }
+
   void step(double dt) {
     state_.move_base(dt, false);
     state_.find_contacts();
