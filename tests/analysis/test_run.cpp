@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "openclose/analysis/run.h"
+#include "openclose/core/tolerance.h"
 #include "openclose/scene/reader.h"
 #include "support/catch.h"
 #include "support/scenes.h"
@@ -272,6 +273,27 @@ TEST_CASE("a run with reduced strength settles with the full one and slides with
     CHECK(points.largest_displacement() == Approx(sliding_distance(0.4)).margin(5e-4));
     CHECK(std::abs(simulation.ledger().imbalance()) < 1e-10 * simulation.ledger().turnover);
   }
+}
+
+TEST_CASE("what settling may leave unbalanced sets nothing in motion", "[analysis][run]") {
+  Scene scene = read_scene(std::string(OPENCLOSE_PAPER_SCENES) + "/example_3_4_post_failure.toml", {"method.contact=\"soft\""});
+  scene.run_strength_reduction_factor = 1.0;
+  scene.end_displacement.reset();
+  scene.milestones.clear();
+  scene.end_time = 10 * scene.step.dt;
+  Simulation simulation(scene);
+  long iterations_of_start = 0;
+  std::vector<Eigen::Vector3d> settled;
+  RunObserver observer;
+  observer.started = [&](const Simulation& s) {
+    iterations_of_start = s.state().counters.iterations;
+    settled = s.system().state().displacement;
+  };
+  const RunResult result = run(simulation, observer);
+  REQUIRE(result.converged);
+  REQUIRE(result.settling.unbalanced_fraction > tolerance::rest);
+  CHECK(simulation.state().counters.iterations == iterations_of_start);
+  CHECK(simulation.system().state().displacement == settled);
 }
 
 TEST_CASE("a run starts from the equilibrium of the method that settles it, and stays there", "[analysis][run]") {
