@@ -116,7 +116,7 @@ def _walls_and_piles(bench: Bench) -> str:
              for r in bench.of(walls_and_piles.STUDY)]
     return (f"A wall in running bond, {walls_and_piles.REST_STEPS} steps after it has settled and {walls_and_piles.COLD_STEPS} with gravity that comes at "
             f"once; boxes that fall on each other, steps of {1e3 * walls_and_piles.PILE_DT_S:g} ms. No closed form stands beside them: they are here for "
-            "what they cost, the deepest penetration beside it.\n\n"
+            "what they cost, the deepest penetration beside it. Iterations of the wall at rest are those of settling; `dem` counts its own steps.\n\n"
             + _table(["scene", "method", "blocks", "a step [ms]", "iterations a step", "deepest penetration [m]", "reason"], lines))
 
 
