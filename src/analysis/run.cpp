@@ -68,9 +68,11 @@ double MeasuredPoints::largest_displacement() const {
 
 namespace {
 
+/// What the paper takes for equilibrium is left as the paper has it.
 SettleResult settle_and_balance(Simulation& simulation, const SettleProgress& progress) {
   const SettleResult result = make_equilibrium_search(simulation)->settle_first(progress);
-  if (result.settled) balance_what_is_left(simulation, result);
+  const bool asks_for_balance = simulation.scene().settle.criterion == SettleCriterion::unbalanced_force;
+  if (result.settled && asks_for_balance) balance_what_is_left(simulation, result);
   return result;
 }
 

@@ -296,6 +296,21 @@ TEST_CASE("what settling may leave unbalanced sets nothing in motion", "[analysi
   CHECK(simulation.system().state().displacement == settled);
 }
 
+TEST_CASE("what the paper takes for equilibrium is where a run starts that asks for it", "[analysis][run]") {
+  Scene scene = test::block_on_base();
+  scene.settle.criterion = SettleCriterion::paper;
+  scene.method.start = Start::settled;
+  scene.end_time = scene.step.dt;
+  Simulation simulation(scene);
+  long steps_of_start = 0;
+  RunObserver observer;
+  observer.started = [&](const Simulation& s) { steps_of_start = s.state().counters.steps; };
+  const RunResult result = run(simulation, observer);
+  REQUIRE(result.converged);
+  REQUIRE(result.settling.steps > 0);
+  CHECK(steps_of_start == result.settling.steps);
+}
+
 TEST_CASE("a run starts from the equilibrium of the method that settles it, and stays there", "[analysis][run]") {
   // What friction holds in a slope depends on the way to its equilibrium.
   const auto scene_of = [](const std::string& contact, const std::string& by) {
