@@ -37,6 +37,22 @@ Scene hit_column() {
   return scene;
 }
 
+/// Boxes that fall into a trough, a little turned.
+Scene heap() {
+  constexpr int rows = 8, columns = 5;
+  constexpr double cell = 0.6, half = 0.18;
+  Scene scene = test::empty_scene();
+  scene.blocks = {test::fixed_block("floor", test::rectangle(-1.0, -1.0, columns * cell + 2.0, 1.0)),
+                  test::fixed_block("left", test::rectangle(-1.0, 0.0, 1.0, rows * cell)),
+                  test::fixed_block("right", test::rectangle(columns * cell, 0.0, 1.0, rows * cell))};
+  for (int i = 0; i < rows * columns; ++i) {
+    const Vec2 centre{(i % columns + 0.5) * cell, (i / columns + 0.5) * cell};  // NOLINT(bugprone-integer-division)
+    scene.blocks.push_back(test::free_block("box " + std::to_string(i),
+                                            test::placed(test::rectangle(-half, -half, 2.0 * half, 2.0 * half), 0.05 * (i % 7 - 3), centre)));
+  }
+  return scene;
+}
+
 Scene prepared(Scene scene, const std::string& method) {
   scene.method.contact = method;
   scene.step.dt = 1e-3;
@@ -93,6 +109,16 @@ TEST_CASE("the springs that hard has come to are saved too", "[analysis][checkpo
   for (const int at : {1, 2}) {
     INFO("after step " << at);
     check_goes_on(scene, at, at + 1);
+  }
+}
+
+TEST_CASE("how often hard has tried stiffer springs in vain is saved too", "[analysis][checkpoint][hard]") {
+  Scene scene = heap();
+  scene.method.contact = "hard";
+  scene.step.dt = 0.01;
+  for (int at = 30; at < 60; at += 2) {
+    INFO("after step " << at);
+    check_goes_on(scene, at, at + 4);
   }
 }
 
