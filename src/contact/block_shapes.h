@@ -9,6 +9,7 @@
 
 #include "openclose/core/memory.h"
 #include "openclose/geometry/box.h"
+#include "openclose/geometry/polygon.h"
 #include "openclose/model/block_system.h"
 
 namespace openclose {
@@ -28,11 +29,12 @@ class BlockShapes {
     Box box() const { return Box::around(start, end()); }
   };
 
-  std::size_t bytes() const { return bytes_of(measured_, boxes_, convex_, edges_); }
+  std::size_t bytes() const { return bytes_of(measured_, boxes_, convex_, edges_, hulls_); }
   /// Gives its memory back until the next begin().
   void let_go() {
     std::vector<Box>().swap(boxes_);
     std::vector<Edge>().swap(edges_);
+    std::vector<std::vector<Edge>>().swap(hulls_);
   }
   void begin(const BlockSystem& system) {
     system_ = &system;
@@ -40,6 +42,8 @@ class BlockShapes {
     boxes_.resize(system.block_count());
     convex_.resize(system.block_count());
     edges_.resize(system.state().arm.size());
+    hulls_.clear();
+    hulls_.resize(system.block_count());
   }
   const Edge& edge(int block, int e) {
     if (!measured_[block]) measure(block);
@@ -58,13 +62,14 @@ class BlockShapes {
   }
   /// Of a block that has been measured.
   bool is_convex(int block) const { return convex_[block] != 0; }
-  /// [m] By which a line along an edge of one of two blocks parts them, at most: they are no nearer to each other. Zero if none does.
+  /// [m] By which a line along an edge of the convex hull of one of two blocks parts them, at most: they are no nearer to each other. Zero if none
+  /// does.
   double distance_at_least(int a, int b) {
     if (!measured_[a]) measure(a);
     if (!measured_[b]) measure(b);
     return std::max(beyond_edges_of(a, b), beyond_edges_of(b, a));
   }
-  /// Whether two blocks lie on different sides of a line along an edge of one of them, the other one farther from it than `room` [m].
+  /// Whether two blocks lie on different sides of such a line, the other one farther from it than `room` [m].
   bool apart(int a, int b, double room) {
     if (!measured_[a]) measure(a);
     if (!measured_[b]) measure(b);
@@ -72,29 +77,21 @@ class BlockShapes {
   }
 
  private:
+  /// Edges of the convex hull.
+  std::span<const Edge> hull(int block) const { return is_convex(block) ? edges(block) : std::span<const Edge>(hulls_[block]); }
   bool parted_by_edge_of(int a, int b, double room) const {
-    return std::ranges::any_of(edges(a), [&](const Edge& edge) {
-      const auto is_beyond = [&](double distance) {
-        return std::ranges::all_of(edges(b), [&](const Edge& corner) { return edge.gap(corner.start) > distance; });
-      };
-      if (!is_beyond(room)) return false;
-      if (is_convex(a)) return true;
-      double own = 0.0;  // what lies before an edge in a notch
-      for (const Edge& corner : edges(a)) own = std::max(own, edge.gap(corner.start));
-      return own == 0.0 || is_beyond(room + own);
-    });
+    return std::ranges::any_of(
+        hull(a), [&](const Edge& edge) { return std::ranges::all_of(hull(b), [&](const Edge& corner) { return edge.gap(corner.start) > room; }); });
   }
   double beyond_edges_of(int a, int b) const {
     double farthest = 0.0;
-    for (const Edge& edge : edges(a)) {
+    for (const Edge& edge : hull(a)) {
       double nearest = std::numeric_limits<double>::infinity();
-      for (const Edge& corner : edges(b)) nearest = std::min(nearest, edge.gap(corner.start));
-      if (nearest <= farthest) continue;
-      double own = 0.0;  // what lies before an edge in a notch
-      if (!is_convex(a)) {
-        for (const Edge& corner : edges(a)) own = std::max(own, edge.gap(corner.start));
+      for (const Edge& corner : hull(b)) {
+        nearest = std::min(nearest, edge.gap(corner.start));
+        if (nearest <= farthest) break;
       }
-      farthest = std::max(farthest, nearest - own);
+      farthest = std::max(farthest, nearest);
     }
     return farthest;
   }
@@ -111,13 +108,25 @@ class BlockShapes {
       const Box own = edges_[v].box();
       box = v == block.first_vertex ? own : Box{box.low.cwiseMin(own.low), box.high.cwiseMax(own.high)};
     }
+    if (!is_convex(b)) measure_hull(b);
+  }
+  void measure_hull(int b) {
+    std::vector<Vec2> corners;
+    for (const Edge& edge : edges(b)) corners.push_back(edge.start);
+    const Polygon hull = convex_hull(std::move(corners));
+    for (std::size_t i = 0; i < hull.size(); ++i) {
+      const Vec2 span = hull[(i + 1) % hull.size()] - hull[i];
+      const double length = span.norm();
+      hulls_[b].emplace_back(hull[i], span / length, length);
+    }
   }
 
   const BlockSystem* system_ = nullptr;
   std::vector<char> measured_;  ///< of the blocks
   std::vector<Box> boxes_;
   std::vector<char> convex_;
-  std::vector<Edge> edges_;  ///< by the vertex they begin at
+  std::vector<Edge> edges_;               ///< by the vertex they begin at
+  std::vector<std::vector<Edge>> hulls_;  ///< of the blocks that are not convex
 };
 
 }  // namespace openclose

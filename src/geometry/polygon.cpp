@@ -125,6 +125,22 @@ std::vector<int> corners(const Polygon& polygon) {
 }
 
 /// Near misses are left to the distances of the end points, which are the only places where rounding could decide the signs wrongly.
+Polygon convex_hull(std::vector<Vec2> points) {
+  std::sort(points.begin(), points.end(), [](const Vec2& a, const Vec2& b) { return std::pair(a.x(), a.y()) < std::pair(b.x(), b.y()); });
+  Polygon hull;
+  const auto add_chain = [&hull](auto first, auto last) {
+    const std::size_t begin = hull.size();
+    for (; first != last; ++first) {
+      while (hull.size() >= begin + 2 && cross(hull.back() - hull[hull.size() - 2], *first - hull.back()) <= 0.0) hull.pop_back();
+      hull.push_back(*first);
+    }
+    if (hull.size() > begin + 1) hull.pop_back();  // the next chain begins with it
+  };
+  add_chain(points.begin(), points.end());
+  add_chain(points.rbegin(), points.rend());
+  return hull;
+}
+
 bool segments_meet(const Vec2& a, const Vec2& b, const Vec2& p, const Vec2& q) {
   if (!Box::around(a, b).inflated(tolerance::shortest_edge_m).overlaps(Box::around(p, q))) return false;
   if (on_opposite_sides(a, b, p, q) && on_opposite_sides(p, q, a, b)) return true;

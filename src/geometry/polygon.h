@@ -41,6 +41,10 @@ Polygon reversed(const Polygon& polygon);
 /// than three. Applied to its own result it drops nothing.
 std::vector<int> corners(const Polygon& polygon);
 
+/// The convex hull of points, counter-clockwise from the leftmost one (the lowest of these). Points on its edges, to rounding, are left out. Sorted
+/// by x, then one chain below and one above (A. M. Andrew, Information Processing Letters 9, 1979, 216-219).
+Polygon convex_hull(std::vector<Vec2> points);
+
 /// Whether two segments cross, overlap, touch or come closer than tolerance::shortest_edge_m.
 bool segments_meet(const Vec2& a, const Vec2& b, const Vec2& p, const Vec2& q);
 

@@ -149,6 +149,28 @@ TEST_CASE("clockwise polygons have a negative area and can be turned", "[geometr
   CHECK(reversed(clockwise) == corner_piece);
 }
 
+TEST_CASE("a convex hull has all points on its left and turns left at each of its corners", "[geometry][polygon]") {
+  std::mt19937 generator(7);
+  for (int i = 0; i < 200; ++i) {
+    const Polygon star = moved(random_star(generator), {3.0, -2.0});
+    const Polygon hull = convex_hull(star);
+    const std::size_t n = hull.size();
+    REQUIRE(n >= 3);
+    for (std::size_t k = 0; k < n; ++k) {
+      const Vec2 way = hull[(k + 1) % n] - hull[k];
+      CHECK(std::find(star.begin(), star.end(), hull[k]) != star.end());
+      CHECK(cross(way, hull[(k + 2) % n] - hull[(k + 1) % n]) > 0.0);
+      for (const Vec2& point : star) CHECK(cross(way, point - hull[k]) >= -1e-14);
+    }
+  }
+}
+
+TEST_CASE("the convex hull of a polygon that is not convex leaves out what lies in it and on its edges", "[geometry][polygon]") {
+  CHECK(convex_hull(corner_piece) == Polygon{{0.0, 0.0}, {2.0, 0.0}, {2.0, 1.0}, {1.0, 2.0}, {0.0, 2.0}});
+  CHECK(convex_hull({{0.0, 0.0}, {1.0, 1.0}, {2.0, 2.0}, {0.0, 2.0}, {1.0, 0.0}, {2.0, 0.0}, {1.0, 1.5}}) ==
+        Polygon{{0.0, 0.0}, {2.0, 0.0}, {2.0, 2.0}, {0.0, 2.0}});
+}
+
 TEST_CASE("longest edge", "[geometry][polygon]") {
   CHECK(longest_edge({{0.0, 0.0}, {1.0, 0.0}, {0.0, 2.0}}) == std::sqrt(5.0));
 }
