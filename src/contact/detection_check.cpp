@@ -1,5 +1,6 @@
 // Whether the state of a detector that was read from a file can be one that was written.
 #include <algorithm>
+#include <utility>
 
 #include "openclose/contact/detection.h"
 #include "openclose/contact/joint_table.h"
@@ -17,6 +18,20 @@ bool has_vertex(const BlockSystem& system, int block, int vertex) {
   return vertex >= b.first_vertex && vertex < b.first_vertex + b.vertex_count;
 }
 
+/// Whether the pairs of a list have all of the contacts among them, one after another, each its own.
+template <class PairList>
+bool are_shared_out(const PairList& list, const std::vector<Contact>& contacts) {
+  int at = 0;
+  for (std::size_t i = 0; i < list.pairs.size(); ++i) {
+    const ContactRange range = list.ranges[i];
+    if (range.begin != at || range.end < at) return false;
+    for (; at < range.end; ++at) {
+      if (std::pair<int, int>(std::minmax(contacts[at].vertex_block, contacts[at].edge_block)) != list.pairs[i]) return false;
+    }
+  }
+  return static_cast<std::size_t>(at) == contacts.size();
+}
+
 }  // namespace
 
 bool Detector::contacts_fit(const BlockSystem& system, const JointTable& joints, const std::vector<Contact>& contacts) {
@@ -27,12 +42,10 @@ bool Detector::contacts_fit(const BlockSystem& system, const JointTable& joints,
 }
 
 bool Detector::pairs_fit(const BlockSystem& system, const PairList& list, std::size_t contacts) {
-  const auto blocks = static_cast<std::size_t>(system.block_count());
-  const bool known = std::all_of(list.pairs.begin(), list.pairs.end(), [&](const auto& pair) {
-    return pair.first != pair.second && is_index(pair.first, blocks) && is_index(pair.second, blocks);
-  });
-  return known && list.states.size() == list.pairs.size() && list.ranges.size() == list.pairs.size() &&
-         std::all_of(list.ranges.begin(), list.ranges.end(), [&](const Range& range) {
+  const int blocks = system.block_count();
+  return list.states.size() == list.pairs.size() && list.ranges.size() == list.pairs.size() &&
+         std::ranges::all_of(list.pairs, [&](const auto& pair) { return pair.first >= 0 && pair.first < pair.second && pair.second < blocks; }) &&
+         std::ranges::all_of(list.ranges, [&](const Range& range) {
            return range.begin >= 0 && range.begin <= range.end && static_cast<std::size_t>(range.end) <= contacts;
          });
 }
@@ -50,9 +63,13 @@ bool Detector::lists_of_blocks_fit(std::size_t blocks) const {
 }
 
 bool Detector::fits(const BlockSystem& system, const JointTable& joints, const ContactSet& contacts) const {
-  return lists_of_blocks_fit(static_cast<std::size_t>(system.block_count())) && pairs_fit(system, candidates_, contacts.moving.size()) &&
-         pairs_fit(system, resting_, contacts.resting.size()) && contacts_fit(system, joints, contacts.moving) &&
-         contacts_fit(system, joints, contacts.resting);
+  if (!lists_of_blocks_fit(static_cast<std::size_t>(system.block_count())) || !pairs_fit(system, candidates_, contacts.moving.size()) ||
+      !pairs_fit(system, resting_, contacts.resting.size()) || !contacts_fit(system, joints, contacts.moving) ||
+      !contacts_fit(system, joints, contacts.resting))
+    return false;
+  // What others have changed is found anew.
+  if (forgotten_) return true;
+  return std::ranges::is_sorted(candidates_.pairs) && are_shared_out(candidates_, contacts.moving) && are_shared_out(resting_, contacts.resting);
 }
 
 }  // namespace openclose

@@ -417,3 +417,62 @@ TEST_CASE("a pair that a line parts is left alone until it may have come within 
     if (gap < reach) CHECK_FALSE(d.contacts.empty());
   }
 }
+
+TEST_CASE("a list of contacts that the pairs do not share among them is not the detector's", "[contact][search]") {
+  Detection d(scene_with({free_block("left", rectangle(0.0, 0.0, 1.0, 1.0)), free_block("middle", rectangle(1.0, 0.0, 1.0, 1.0)),
+                          free_block("right", rectangle(2.0, 0.0, 1.0, 1.0))}));
+  const auto fits = [&] { return d.detector.fits(d.system, d.joints, d.set); };
+  REQUIRE(d.contacts.size() >= 4);
+  CHECK(fits());
+  SECTION("one is missing") {
+    d.contacts.pop_back();
+    CHECK_FALSE(fits());
+  }
+  SECTION("one is no pair's") {
+    d.contacts.push_back(d.contacts.back());
+    CHECK_FALSE(fits());
+    d.detector.forget();
+    CHECK(fits());  // it is found anew
+  }
+  SECTION("two pairs have each other's") {
+    std::swap(d.contacts.front(), d.contacts.back());
+    CHECK_FALSE(fits());
+  }
+  SECTION("one at rest is no pair's") {
+    d.set.resting.push_back(d.contacts.back());
+    CHECK_FALSE(fits());
+  }
+}
+
+TEST_CASE("a saved detector whose pairs do not share the contacts among them is refused", "[contact][search]") {
+  Detection d(scene_with({free_block("left", rectangle(0.0, 0.0, 1.0, 1.0)), free_block("middle", rectangle(1.0, 0.0, 1.0, 1.0)),
+                          free_block("right", rectangle(2.0, 0.0, 1.0, 1.0))}));
+  const auto in_bytes = [](const std::vector<int>& numbers) {
+    return std::string(reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(int));  // as the archive has them
+  };
+  const auto is_first_pair = [](const Contact& c) { return std::max(c.vertex_block, c.edge_block) == 1; };
+  const int first = static_cast<int>(std::ranges::count_if(d.contacts, is_first_pair)), all = static_cast<int>(d.contacts.size());
+  REQUIRE(first >= 2);
+  REQUIRE(all > first);
+  /// With other begins and ends of the two pairs' contacts.
+  const auto fits_with = [&](const std::vector<int>& ranges) {
+    Archive saved;
+    saved(d.detector);
+    std::string bytes = saved.bytes();
+    const std::string own = in_bytes({0, first, first, all});
+    REQUIRE(bytes.find(own) != std::string::npos);
+    bytes.replace(bytes.find(own), own.size(), in_bytes(ranges));
+    Detector read(0.05);
+    Archive archive(bytes);
+    archive(read);
+    return read.fits(d.system, d.joints, d.set);
+  };
+  CHECK(fits_with({0, first, first, all}));
+  CHECK_FALSE(fits_with({0, first - 1, first, all}));  // one is no pair's
+  CHECK_FALSE(fits_with({0, first, first - 1, all}));  // one is of two
+  CHECK_FALSE(fits_with({0, first, all, first}));
+  d.detector.forget();
+  CHECK(fits_with({0, first - 1, first, all}));  // they are found anew
+  CHECK_FALSE(fits_with({-1, first, first, all}));
+  CHECK_FALSE(fits_with({0, first, first, all + 1}));
+}
