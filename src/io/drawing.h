@@ -92,7 +92,7 @@ std::string svg_drawing(const Picture& picture);
 /// The blocks of a scene, a colour for each material and each joint that edges name, with supports, loads and measured points.
 Picture picture_of(const Scene& scene);
 
-/// "gravity is turned by 10 degrees to the right"; empty where it points straight down, or is none. \param gravity  [m/s2]
+/// "gravity is turned by 10 degrees to the right" or "there is no gravity"; empty where it points straight down. \param gravity  [m/s2]
 std::string gravity_in_words(const Vec2& gravity);
 
 /// Indices of the joints that edges of blocks name, in the order of the scene, in which drawings give them their colours.

@@ -43,6 +43,7 @@ std::vector<int> joints_of_edges(const Scene& scene) {
 }
 
 std::string gravity_in_words(const Vec2& gravity) {
+  if (gravity.isZero(0.0)) return "there is no gravity";
   if (std::abs(gravity.x()) <= slightest_turn * gravity.norm() && gravity.y() <= 0.0) return "";
   const double turn = degrees(std::atan2(gravity.x(), -gravity.y()));
   return fmt::format("gravity is turned by {:.4g} degrees to the {}", std::abs(turn), turn > 0.0 ? "right" : "left");

@@ -77,6 +77,13 @@ bool nothing_holds(const Scene& scene) {
   return !any_fixed && !any_holds && !scene.gravity.isZero(0.0);
 }
 
+bool nothing_loads(const Scene& scene) {
+  bool any_loads = false;
+  for_each_force(scene, [&](const auto& force) { any_loads |= !force.holds; });
+  const auto moves = [](const BlockInput& block) { return !block.velocity.isZero(0.0) || block.angular_velocity != 0.0; };
+  return !any_loads && scene.gravity.isZero(0.0) && !scene.base_motion && std::ranges::none_of(scene.blocks, moves);
+}
+
 }  // namespace
 
 std::vector<std::pair<int, int>> blocks_that_may_overlap(const std::vector<BlockInput>& blocks) {
@@ -158,6 +165,8 @@ std::vector<std::string> check_scene(const Scene& scene) {
   if (scene.cutting) warnings.insert(warnings.end(), scene.cutting->warnings.begin(), scene.cutting->warnings.end());
   for (std::string& warning : implausible_numbers(scene)) warnings.push_back(std::move(warning));
   if (nothing_holds(scene)) warnings.push_back(scene.where.file + ": nothing is fixed or supported under gravity: every block will fall");
+  if (nothing_loads(scene))
+    warnings.push_back(scene.where.file + ": there is no gravity, load, surcharge, base motion or velocity: nothing will move, whatever its strength");
   warn_of_fixed_points(scene, warnings);
   warn_of_slivers(scene, warnings);
   return warnings;

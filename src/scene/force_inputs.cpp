@@ -125,8 +125,8 @@ std::vector<Surcharge> Surcharge::completed(const Table& table, const std::vecto
   if (length <= near) value.fail(ends + " are one point", accepted);
   const std::vector<Piece> forwards = pieces_along(from, to, true, blocks, block), backwards = pieces_along(from, to, false, blocks, block);
   if (!forwards.empty() && !backwards.empty()) {
-    const auto name = [&](const std::vector<Piece>& pieces) { return in_quotes(blocks[pieces.front().edge.block].name); };
-    value.fail(fmt::format("{} are on edges of {} and {}", ends, name(forwards), name(backwards)), accepted);
+    const auto named = [&](const std::vector<Piece>& pieces) { return in_quotes(blocks[pieces.front().edge.block].name); };
+    value.fail(fmt::format("{} are on edges of {} and {}", ends, named(forwards), named(backwards)), accepted);
   }
   const std::vector<Piece>& pieces = forwards.empty() ? backwards : forwards;
   const auto at = [&](double way) { return Vec2(from + way / length * (to - from)); };

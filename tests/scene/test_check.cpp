@@ -118,6 +118,27 @@ TEST_CASE("nothing that holds the blocks is worth a warning", "[scene][check]") 
   }
   SECTION("or no gravity") {
     scene.gravity = Vec2::Zero();
+    scene.blocks[1].velocity = {1.0, 0.0};
+    CHECK(check_scene(scene).empty());
+  }
+}
+
+TEST_CASE("nothing that could move the blocks is worth a warning", "[scene][check]") {
+  Scene scene = read_text(block_on_base);
+  scene.gravity = Vec2::Zero();
+  const std::vector<std::string> warnings = check_scene(scene);
+  REQUIRE(warnings.size() == 1);
+  CHECK_THAT(warnings[0], ContainsSubstring("there is no gravity, load, surcharge, base motion or velocity"));
+  SECTION("unless there is a load") {
+    scene.loads.push_back({1, scene.blocks[1].vertices[0], {0.0, -1.0}});
+    CHECK(check_scene(scene).empty());
+  }
+  SECTION("a support is none") {
+    scene.supports.push_back({1, scene.blocks[1].vertices[0], {0.0, 1e9}});
+    CHECK(check_scene(scene).size() == 1);
+  }
+  SECTION("unless a block turns") {
+    scene.blocks[1].angular_velocity = 1.0;
     CHECK(check_scene(scene).empty());
   }
 }
