@@ -164,10 +164,10 @@ std::vector<std::string> warnings_of(const Study& study) {
       warnings.note(name_of(b), fmt::format("it took as many steps as at {:g} s: the scene or the method allows no longer ones", a.dt));
   }
   for (std::size_t begin = 0; begin < study.rows.size();) {
-    std::size_t end = begin;
-    while (end < study.rows.size() && study.rows[end].contact == study.rows[begin].contact) ++end;
-    warn_of_divergence(std::span(study.rows).subspan(begin, end - begin), warnings);
-    begin = end;
+    std::size_t past = begin;
+    while (past < study.rows.size() && study.rows[past].contact == study.rows[begin].contact) ++past;
+    warn_of_divergence(std::span(study.rows).subspan(begin, past - begin), warnings);
+    begin = past;
   }
   return warnings.texts();
 }
