@@ -111,7 +111,7 @@ bench: bench-packages ## run time beside error, cost by size, what skips save (r
 	@OPTIONS=-DOPENCLOSE_BENCH=ON scripts/build release openclose openclose_reference openclose_bench
 	@python=$$(scripts/find-python) && "$$python" -m unittest discover -q -s bench && "$$python" bench/bench.py --mode $(BENCH) --micro $(BUILD)/bench/openclose-bench
 
-bench-peers: peer-packages ## the same with Box2D and Chipmunk on the slope of example 3.4
+bench-peers: peer-packages ## the same with Box2D and Chipmunk on the slope of example 3.4, a wall and a pile
 	@OPTIONS='-DOPENCLOSE_BENCH=ON -DOPENCLOSE_BENCH_PEERS=ON' scripts/build release openclose openclose_reference openclose_bench openclose_peers
 	@python=$$(scripts/find-python) && "$$python" bench/bench.py --mode $(BENCH) --micro $(BUILD)/bench/openclose-bench --peers $(BUILD)/bench/openclose-peers
 

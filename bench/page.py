@@ -178,6 +178,14 @@ def _peers(findings: peers.Findings) -> str:
     return (text + _table(head, lines) + "\n" + "\n".join(f"- {c.name}: {c.settings}" for c in findings.compared if c.settings) + "\n")
 
 
+def _peers_on_walls_and_piles(bench: Bench) -> str:
+    lines = [[r.scene, r.method, significant(r.dt_s), str(r.steps or ""), f"{significant(r.cpu_s)} ({_spread(r)})" if r.cpu_s else "-",
+              significant(r.max_penetration_m), r.reason] for r in bench.of(peers.BLOCKS_STUDY)]
+    return ("The wall with gravity that comes at once and the boxes that fall on each other, as above: the same time of the scene for all, steps that "
+            "are cut count as several.\n\n"
+            + _table(["scene", "", "dt [s]", "steps", "all of it [s]", "deepest penetration [m]", "reason"], lines))
+
+
 def _micro(timed: list[micro.Timed]) -> str:
     sizes = list(dict.fromkeys(t.blocks for t in timed))
     names = list(dict.fromkeys(t.name for t in timed))
@@ -226,5 +234,5 @@ def write(bench: Bench, found: dict, printed: dict, description: dict, figures: 
     if found.get("micro"):
         text += "\n## Parts of a step\n\n" + _micro(found["micro"])
     if found.get("peers"):
-        text += "\n## Other engines\n\n" + _peers(found["peers"]) + "\n![Other engines](bench/other_engines.png)\n"
+        text += "\n## Other engines\n\n" + _peers(found["peers"]) + "\n![Other engines](bench/other_engines.png)\n\n" + _peers_on_walls_and_piles(bench)
     file.write_text(text, encoding="utf-8")

@@ -1,4 +1,5 @@
-"""Other engines on the slope of example 3.4 without cohesion: time and, beside it, how near they come to its critical friction angle. SI units."""
+"""Other engines on the slope of example 3.4 without cohesion: time and, beside it, how near they come to its critical friction angle; and on the wall and
+the pile of boxes of walls_and_piles.py: time and penetration. SI units."""
 
 import json
 import math
@@ -6,13 +7,14 @@ import statistics
 from dataclasses import dataclass
 from pathlib import Path
 
+import walls_and_piles
 from measure import Bench, Row, Trial
 from methods import DEM, HARD, SOFT_PATH_AVERAGE, SOFT_SHI, Method
 from openclose_scripts.examples.slopes import CutBlocks, JointedSlope
 from openclose_scripts.processes import call
 from openclose_scripts.runs import Case, Reference
 
-STUDY = "other engines"
+STUDY, BLOCKS_STUDY = "other engines", "other engines, walls and piles"
 SCENE = "3.4 without cohesion, in failure"
 ENGINES = ("box2d", "chipmunk")
 DT_S, END_S, REPEATS = 0.01, 5.0, 3
@@ -57,8 +59,8 @@ class Peers:
         self._program = program
         self._blocks = blocks
 
-    def run(self, engine: str, angle_deg: float, end: float) -> dict:
-        answer = call([str(self._program), str(self._blocks), "--engine", engine, "--friction-angle-deg", f"{angle_deg:.17g}", "--dt", str(DT_S),
+    def run(self, engine: str, angle_deg: float, end: float, dt: float = DT_S) -> dict:
+        answer = call([str(self._program), str(self._blocks), "--engine", engine, "--friction-angle-deg", f"{angle_deg:.17g}", "--dt", str(dt),
                        "--end", str(end)])
         # Chipmunk greets on standard output.
         return json.loads(answer[answer.index("{"):])
@@ -104,11 +106,20 @@ def _error_of(exact_deg: float) -> str:
     return f"critical coefficient of friction of the slope without cohesion against limit analysis, {exact_deg:.4g} degrees"
 
 
-def _row(runs: list[dict], error: float | None, error_of: str) -> Row:
+def _row(runs: list[dict], error: float | None, error_of: str, study: str = STUDY, scene: str = SCENE, dt: float = DT_S) -> Row:
     cpu = [run["cpu_s"] for run in runs]
     first = runs[0]
-    return Row(SCENE, first["engine"], first["blocks"], None, DT_S, first["steps"], None, statistics.median(cpu), error, first["max_penetration_m"],
-               first["peak_memory_bytes"], len(cpu), min(cpu), max(cpu), STUDY, error_of, "")
+    return Row(scene, first["engine"], first["blocks"], None, dt, first["steps"], None, statistics.median(cpu), error, first["max_penetration_m"],
+               first["peak_memory_bytes"], len(cpu), min(cpu), max(cpu), study, error_of, "")
+
+
+def _walls_and_piles(bench: Bench, program: Path) -> None:
+    """The scenes that did not shape the program, in steps of one length for all; nothing tells how wrong an engine is on them."""
+    for load in walls_and_piles.loads(bench):
+        engines = Peers(program, load.file)
+        runs = {engine: [engines.run(engine, walls_and_piles.FRICTION_DEG, load.end, load.dt) for _ in range(REPEATS)] for engine in ENGINES}
+        bench.measure([Trial(BLOCKS_STUDY, load.name, m.name, load.case(m), "motion", "", lambda _: None, load.dt) for m in load.methods])
+        bench.rows += [_row(of_engine, None, "", BLOCKS_STUDY, load.name, load.dt) for of_engine in runs.values()]
 
 
 def run(bench: Bench, reference: Reference, program: Path) -> Findings:
@@ -142,6 +153,7 @@ def run(bench: Bench, reference: Reference, program: Path) -> Findings:
         compared.append(Compared(row.method, runs[0]["settings"] + f"; {runs[0]['split_blocks']} blocks split", row, critical[engine], END_S, None))
     for (method, dt), row in zip(OURS, rows):
         compared.append(Compared(row.method, "", row, ours_critical[method.name], END_S, _iteration(bench, _case(method, dt), row)))
+    _walls_and_piles(bench, program)
     return Findings(exact, limit("--zero-dilatancy"), compared)
 
 

@@ -1,6 +1,7 @@
 """Scenes that did not shape the program: a wall of 10,040 bricks, at rest and under a weight that comes at once, and 1,000 boxes dropped on a pile. SI units."""
 
 import random
+from dataclasses import dataclass
 from pathlib import Path
 
 from measure import Bench, Trial
@@ -18,6 +19,7 @@ PILE_DT_S, PILE_END_S, PILE_QUICK_END_S = 0.005, 3.0, 1.5
 SLOPES, QUICK_SLOPES = (500, 2000, 10000, 50000), (500, 2000)
 SLOPE_DT_S, SLOPE_STEPS = 0.01, 10
 SEED = 1
+FRICTION_DEG = 30
 
 HEAD = """[[material]]
 name = "stone"
@@ -45,7 +47,7 @@ def wall_scene(courses: int = 80, bricks: int = 126, length: float = 0.5, height
     for course in range(courses):
         shifted = course % 2
         blocks += [_block(f"b{course}_{k}", _box((k + 0.5 * shifted) * length, course * height, length, height)) for k in range(bricks - shifted)]
-    return HEAD.format(stiffness="1e10", friction=30) + "".join(blocks) + "[step]\ndt_s = 0.01\n[end]\ntime_s = 0.2\n"
+    return HEAD.format(stiffness="1e10", friction=FRICTION_DEG) + "".join(blocks) + "[step]\ndt_s = 0.01\n[end]\ntime_s = 0.2\n"
 
 
 def pile_scene(columns: int = 25, rows: int = 40, seed: int = SEED) -> str:
@@ -60,7 +62,7 @@ def pile_scene(columns: int = 25, rows: int = 40, seed: int = SEED) -> str:
             x, y = cell * (column + 0.5), cell * (row + 0.5)
             corners = [(x + s * a - t * b * turn, y + t * b + s * a * turn) for s, t in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
             blocks.append(_block(f"b{row}_{column}", corners))
-    return HEAD.format(stiffness="1e9", friction=30) + "".join(blocks) + "[step]\ndt_s = 0.005\n[end]\ntime_s = 1.0\n"
+    return HEAD.format(stiffness="1e9", friction=FRICTION_DEG) + "".join(blocks) + "[step]\ndt_s = 0.005\n[end]\ntime_s = 1.0\n"
 
 
 def _write(folder: Path, name: str, text: str) -> Path:
@@ -85,24 +87,45 @@ def _way_of_a_wall(bench: Bench):
     return of
 
 
-def _chosen(bench: Bench, scene: str, case_of, end: float, dt: float) -> None:
+@dataclass(frozen=True)
+class Load:
+    """A scene whose gravity comes at once."""
+
+    name: str
+    stem: str
+    file: Path
+    dt: float
+    end: float
+    methods: tuple[Method, ...]
+
+    def case(self, method: Method, solver: str = "automatic") -> Case:
+        return _case(self.stem, self.file, method, "unloaded", "" if method == DEM else solver, self.dt, self.end)
+
+
+def loads(bench: Bench) -> tuple[Load, Load]:
+    """`dem` takes minutes for the wall."""
+    folder = bench.openclose.folder_of(Case("walls-and-piles", "run", Path()))
+    pile_end = PILE_QUICK_END_S if bench.quick else PILE_END_S
+    return (Load(COLD, "wall-cold", _write(folder, "wall", wall_scene()), WALL_DT_S, WALL_DT_S * COLD_STEPS, (SOFT, HARD)),
+            Load(PILE, "pile", _write(folder, "pile", pile_scene()), PILE_DT_S, pile_end, (SOFT, HARD, DEM)))
+
+
+def _chosen(bench: Bench, scene: str, case_of, dt: float) -> None:
     """The same steps with each way to solve the linear equations."""
-    bench.measure([Trial(STUDY, scene, f"{m.name}, {s}", case_of(m, s, dt, end), "motion", "", lambda _: None, dt) for m in (SOFT, HARD) for s in SOLVERS])
+    bench.measure([Trial(STUDY, scene, f"{m.name}, {s}", case_of(m, s), "motion", "", lambda _: None, dt) for m in (SOFT, HARD) for s in SOLVERS])
 
 
 def run(bench: Bench) -> None:
-    folder = bench.openclose.folder_of(Case("walls-and-piles", "run", Path()))
-    wall, pile = _write(folder, "wall", wall_scene()), _write(folder, "pile", pile_scene())
-    bench.measure([Trial(STUDY, REST, m.name, _case("wall-at-rest", wall, m, "settled", "automatic", WALL_DT_S, WALL_DT_S * REST_STEPS), "motion",
+    cold, pile = loads(bench)
+    bench.measure([Trial(STUDY, REST, m.name, _case("wall-at-rest", cold.file, m, "settled", "automatic", WALL_DT_S, WALL_DT_S * REST_STEPS), "motion",
                          "way of a block of a wall that stands [m]", _way_of_a_wall(bench), WALL_DT_S) for m in (SOFT, HARD)])
-    _chosen(bench, COLD, lambda m, s, dt, end: _case("wall-cold", wall, m, "unloaded", s, dt, end), WALL_DT_S * COLD_STEPS, WALL_DT_S)
-    end = PILE_QUICK_END_S if bench.quick else PILE_END_S
-    _chosen(bench, PILE, lambda m, s, dt, end: _case("pile", pile, m, "unloaded", s, dt, end), end, PILE_DT_S)
-    bench.measure([Trial(STUDY, PILE, DEM.name, _case("pile", pile, DEM, "unloaded", "", PILE_DT_S, end), "motion", "", lambda _: None, PILE_DT_S)])
+    for load in (cold, pile):
+        _chosen(bench, load.name, load.case, load.dt)
+    bench.measure([Trial(STUDY, PILE, DEM.name, pile.case(DEM), "motion", "", lambda _: None, PILE_DT_S)])
     for blocks in QUICK_SLOPES if bench.quick else SLOPES:
         more = (*spacings(blocks), *LARGEST_STEP, ("output.milestones_m", []))
-        _chosen(bench, slope(blocks), lambda m, s, dt, end: _case(f"slope-{blocks}", JointedSlope.POST_FAILURE, m, "unloaded", s, dt, end, more),
-                SLOPE_DT_S * SLOPE_STEPS, SLOPE_DT_S)
+        _chosen(bench, slope(blocks), lambda m, s: _case(f"slope-{blocks}", JointedSlope.POST_FAILURE, m, "unloaded", s, SLOPE_DT_S,
+                                                         SLOPE_DT_S * SLOPE_STEPS, more), SLOPE_DT_S)
 
 
 def slope(blocks: int) -> str:
