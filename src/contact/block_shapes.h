@@ -5,6 +5,7 @@
 #include <limits>
 #include <ranges>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 #include "openclose/core/memory.h"
@@ -29,12 +30,16 @@ class BlockShapes {
     Box box() const { return Box::around(start, end()); }
   };
 
-  std::size_t bytes() const { return bytes_of(measured_, boxes_, convex_, edges_, hulls_); }
+  std::size_t bytes() const {
+    std::size_t bytes = bytes_of(measured_, boxes_, convex_, edges_);
+    for (const auto& [block, hull] : hulls_) bytes += bytes_of(hull);
+    return bytes;
+  }
   /// Gives its memory back until the next begin().
   void let_go() {
     std::vector<Box>().swap(boxes_);
     std::vector<Edge>().swap(edges_);
-    std::vector<std::vector<Edge>>().swap(hulls_);
+    hulls_.clear();
   }
   void begin(const BlockSystem& system) {
     system_ = &system;
@@ -43,7 +48,6 @@ class BlockShapes {
     convex_.resize(system.block_count());
     edges_.resize(system.state().arm.size());
     hulls_.clear();
-    hulls_.resize(system.block_count());
   }
   const Edge& edge(int block, int e) {
     if (!measured_[block]) measure(block);
@@ -78,7 +82,7 @@ class BlockShapes {
 
  private:
   /// Edges of the convex hull.
-  std::span<const Edge> hull(int block) const { return is_convex(block) ? edges(block) : std::span<const Edge>(hulls_[block]); }
+  std::span<const Edge> hull(int block) const { return is_convex(block) ? edges(block) : std::span<const Edge>(hulls_.at(block)); }
   bool parted_by_edge_of(int a, int b, double room) const {
     return std::ranges::any_of(
         hull(a), [&](const Edge& edge) { return std::ranges::all_of(hull(b), [&](const Edge& corner) { return edge.gap(corner.start) > room; }); });
@@ -114,10 +118,11 @@ class BlockShapes {
     std::vector<Vec2> corners;
     for (const Edge& edge : edges(b)) corners.push_back(edge.start);
     const Polygon hull = convex_hull(std::move(corners));
+    std::vector<Edge>& around = hulls_[b];
     for (std::size_t i = 0; i < hull.size(); ++i) {
       const Vec2 span = hull[(i + 1) % hull.size()] - hull[i];
       const double length = span.norm();
-      hulls_[b].emplace_back(hull[i], span / length, length);
+      around.emplace_back(hull[i], span / length, length);
     }
   }
 
@@ -125,8 +130,8 @@ class BlockShapes {
   std::vector<char> measured_;  ///< of the blocks
   std::vector<Box> boxes_;
   std::vector<char> convex_;
-  std::vector<Edge> edges_;               ///< by the vertex they begin at
-  std::vector<std::vector<Edge>> hulls_;  ///< of the blocks that are not convex
+  std::vector<Edge> edges_;                           ///< by the vertex they begin at
+  std::unordered_map<int, std::vector<Edge>> hulls_;  ///< of the blocks that have been measured and are not convex
 };
 
 }  // namespace openclose

@@ -124,7 +124,6 @@ std::vector<int> corners(const Polygon& polygon) {
   return kept;
 }
 
-/// Near misses are left to the distances of the end points, which are the only places where rounding could decide the signs wrongly.
 Polygon convex_hull(std::vector<Vec2> points) {
   std::sort(points.begin(), points.end(), [](const Vec2& a, const Vec2& b) { return std::pair(a.x(), a.y()) < std::pair(b.x(), b.y()); });
   Polygon hull;
@@ -141,6 +140,7 @@ Polygon convex_hull(std::vector<Vec2> points) {
   return hull;
 }
 
+/// Near misses are left to the distances of the end points, which are the only places where rounding could decide the signs wrongly.
 bool segments_meet(const Vec2& a, const Vec2& b, const Vec2& p, const Vec2& q) {
   if (!Box::around(a, b).inflated(tolerance::shortest_edge_m).overlaps(Box::around(p, q))) return false;
   if (on_opposite_sides(a, b, p, q) && on_opposite_sides(p, q, a, b)) return true;
