@@ -11,11 +11,13 @@ constexpr const char* max_time_steps_key = "settle.max_time_steps";
 class ByUnbalancedForce : public EquilibriumSearch {
  public:
   explicit ByUnbalancedForce(Simulation& simulation) : simulation_(simulation) {}
-  SettleResult settle_first(const SettleProgress& progress) override { return settle(simulation_, progress); }
+  SettleResult settle_first(const SettleProgress& progress) override { return settle(simulation_, progress, SettleFrom::anywhere, &course_); }
   SettleResult settle_trial(const SettleProgress& progress) override { return settle(simulation_, progress, SettleFrom::rest); }
+  SettleCourse* course() override { return simulation_.is_explicit() ? nullptr : &course_; }
 
  private:
   Simulation& simulation_;
+  SettleCourse course_;
 };
 
 /// Half the height [m] of all blocks together.
@@ -95,7 +97,8 @@ class ByForceInTime : public EquilibriumSearch {
   SettleResult settle_trial(const SettleProgress& progress) override {
     const SettleInput& input = simulation_.scene().settle;
     return settle_explicitly(
-        simulation_, {input.unbalanced_force, input.max_time_steps, max_time_steps_key, std::numeric_limits<double>::infinity(), false, false}, progress);
+        simulation_, {input.unbalanced_force, input.max_time_steps, max_time_steps_key, std::numeric_limits<double>::infinity(), false, false},
+        progress);
   }
 
  private:

@@ -30,6 +30,8 @@ class EquilibriumSearch {
   virtual SettleResult settle_first(const SettleProgress& progress) = 0;
   /// From a state in which settle_first() succeeded, with another strength of the joints.
   virtual SettleResult settle_trial(const SettleProgress& progress) = 0;
+  /// Where the first settling stands after `progress` has thrown, and goes on from; null where it would have to begin anew.
+  virtual SettleCourse* course() { return nullptr; }
   virtual void exchange(Archive&) {}  ///< the measure of the trials
 };
 

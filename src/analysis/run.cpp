@@ -7,9 +7,9 @@
 #include <optional>
 #include <utility>
 
-#include "openclose/analysis/equilibrium.h"
 #include "openclose/analysis/loose_motion.h"
 #include "openclose/analysis/start.h"
+#include "openclose/core/error.h"
 #include "openclose/core/process.h"
 #include "openclose/core/tolerance.h"
 
@@ -68,64 +68,83 @@ double MeasuredPoints::largest_displacement() const {
 
 namespace {
 
-/// What the paper takes for equilibrium is left as the paper has it.
-SettleResult settle_and_balance(Simulation& simulation, const SettleProgress& progress) {
-  const SettleResult result = make_equilibrium_search(simulation)->settle_first(progress);
-  const bool asks_for_balance = simulation.scene().settle.criterion == SettleCriterion::unbalanced_force;
-  if (result.settled && asks_for_balance) balance_what_is_left(simulation, result);
-  return result;
-}
-
-/// Settles by the method that the scene names for it, and leaves the simulation with the one of the motion.
-SettleResult settle_start(Simulation& simulation, const SettleProgress& progress) {
-  const MethodInput own = simulation.scene().method;
-  if (!is_settled_by_another(simulation.scene())) return settle_and_balance(simulation, progress);
-  simulation.change_method(settling_method(simulation.scene()));
-  const SettleResult result = settle_and_balance(simulation, progress);
-  simulation.change_method(own);
-  return result;
+/// What a start state is found with: the joints of the motion, but for one that is settled.
+void reduce_strength(Simulation& simulation) {
+  simulation.change_joints().reduce_strength(simulation.scene().run_strength_reduction_factor);
 }
 
 }  // namespace
 
-RunResult prepare_start(Simulation& simulation, const SettleProgress& progress) {
+StartSearch::StartSearch(Simulation& simulation)
+    : simulation_(simulation), own_method_(simulation.scene().method), by_another_(is_settled_by_another(simulation.scene())) {}
+
+void StartSearch::begin_to_settle() {
+  if (search_) return;
+  if (by_another_) simulation_.change_method(settling_method(simulation_.scene()));
+  search_ = make_equilibrium_search(simulation_);
+}
+
+/// Settles by the method that the scene names for it, and leaves the simulation with the one of the motion.
+SettleResult StartSearch::settle(const SettleProgress& progress) {
+  simulation_.solved_stepper().book_steps(false);
+  begin_to_settle();
+  const SettleResult result = search_->settle_first(progress);
+  // What the paper takes for equilibrium is left as the paper has it.
+  const bool asks_for_balance = simulation_.scene().settle.criterion == SettleCriterion::unbalanced_force;
+  if (result.settled && asks_for_balance) balance_what_is_left(simulation_, result);
+  if (by_another_) simulation_.change_method(own_method_);
+  return result;
+}
+
+void StartSearch::exchange(Archive& archive) {
+  if (archive.reading()) begin_to_settle();
+  SettleCourse* const course = search_ ? search_->course() : nullptr;
+  archive.require(course != nullptr, "the saved state is of a start that is not settled in static steps");
+  archive(simulation_, *course);
+  archive.require(course->has_begun && course->start.size() == static_cast<std::size_t>(simulation_.system().block_count()),
+                  "the saved state is of another settling");
+}
+
+RunResult StartSearch::find(const SettleProgress& progress) {
   const double begin = process_cpu_time();
   RunResult result;
   result.converged = true;
-  const Start start = simulation.scene().method.start;
-  const auto reduce_strength = [&] { simulation.change_joints().reduce_strength(simulation.scene().run_strength_reduction_factor); };
-  if (start != Start::settled) reduce_strength();
+  const Start start = simulation_.scene().method.start;
+  if (start != Start::settled) reduce_strength(simulation_);
   switch (start) {
     case Start::unloaded:
       break;
     case Start::settled:
-      simulation.solved_stepper().book_steps(false);
-      result.settling = settle_start(simulation, progress);
+      result.settling = settle(progress);
       result.converged = result.settling.settled;
       if (!result.converged) {
         const bool moves = result.settling.limit == "settle.failure_displacement_m";
         result.reason = "no static equilibrium to start from (" + result.settling.verdict() + ")" +
-                        (moves ? ": " + motion_in_words(simulation.scene(), moved_blocks(simulation)) : "") +
+                        (moves ? ": " + motion_in_words(simulation_.scene(), moved_blocks(simulation_)) : "") +
                         "; method.start = \"unloaded\" starts in motion";
       }
-      simulation.restore_velocities();
-      reduce_strength();
+      simulation_.restore_velocities();
+      reduce_strength(simulation_);
       break;
     case Start::normal_balanced:
-      balance_normal_forces(simulation, false);
+      balance_normal_forces(simulation_, false);
       break;
     case Start::steady_sliding:
-      balance_normal_forces(simulation, true);
+      balance_normal_forces(simulation_, true);
       break;
   }
   result.cpu_of_start = process_cpu_time() - begin;
   // Contacts are found for the first step of the motion; the start has been found without them.
-  simulation.change_contacts();
-  simulation.restart_clock();
-  simulation.start_base_motion();
-  simulation.allow_resting();
+  simulation_.change_contacts();
+  simulation_.restart_clock();
+  simulation_.start_base_motion();
+  simulation_.allow_resting();
   result.cpu_of_motion = process_cpu_time() - begin - result.cpu_of_start;
   return result;
+}
+
+RunResult prepare_start(Simulation& simulation, const SettleProgress& progress) {
+  return StartSearch(simulation).find(progress);
 }
 
 namespace {
@@ -304,7 +323,8 @@ class MotionInTime {
   void write_checkpoint() {
     if (!observer_.checkpoint) return;
     Archive state;
-    state(simulation_, *this);
+    bool has_start = true;
+    state(has_start, simulation_, *this);
     observer_.checkpoint(state, simulation_);
   }
 
@@ -381,8 +401,30 @@ class MotionInTime {
   bool row_is_there_ = false;  ///< observer_.output has been called for the present state
 };
 
-RunResult run(Simulation& simulation, const RunObserver& observer) {
-  RunResult result = prepare_start(simulation, observer.settling);
+namespace {
+
+/// What has been found of a start that is not there yet is left in a checkpoint, if it can be gone on from. True if so.
+bool save(StartSearch& start, const Simulation& simulation, const RunObserver& observer) {
+  if (!observer.checkpoint || !start.can_go_on()) return false;
+  Archive state;
+  bool has_start = false;
+  state(has_start, start);
+  observer.checkpoint(state, simulation);
+  return true;
+}
+
+RunResult run_from(StartSearch& start, Simulation& simulation, const RunObserver& observer) {
+  RunResult result;
+  try {
+    result = start.find(observer.settling);
+  } catch (const Stopped&) {
+    if (!save(start, simulation, observer)) throw;
+    result.has_start = false;
+    result.stopped = true;
+    result.reason = "stopped while the start was settling";
+    result.settling = start.settling();
+    return result;
+  }
   if (observer.started) observer.started(simulation);
   if (observer.output) observer.output(simulation);
   MotionInTime motion(simulation, observer, result);
@@ -393,14 +435,30 @@ RunResult run(Simulation& simulation, const RunObserver& observer) {
   return result;
 }
 
-ResumedRun::ResumedRun(Simulation& simulation, Archive& state) : motion_(std::make_unique<MotionInTime>(simulation, observer_, result_)) {
-  result_.converged = true;
-  state(simulation, *motion_);
+}  // namespace
+
+RunResult run(Simulation& simulation, const RunObserver& observer) {
+  StartSearch start(simulation);
+  return run_from(start, simulation, observer);
+}
+
+ResumedRun::ResumedRun(Simulation& simulation, Archive& state) : simulation_(simulation) {
+  bool has_start = true;
+  state(has_start);
+  if (has_start) {
+    motion_ = std::make_unique<MotionInTime>(simulation, observer_, result_);
+    result_.converged = true;
+    state(simulation, *motion_);
+  } else {
+    start_ = std::make_unique<StartSearch>(simulation);
+    state(*start_);
+  }
 }
 
 ResumedRun::~ResumedRun() = default;
 
 RunResult ResumedRun::go_on(const RunObserver& observer) {
+  if (start_) return run_from(*start_, simulation_, observer);
   observer_ = observer;
   if (motion_->is_over()) {
     motion_->conclude();

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "openclose/analysis/settle.h"
+#include "openclose/analysis/equilibrium.h"
 #include "openclose/analysis/simulation.h"
 #include "openclose/analysis/watch.h"
 
@@ -67,8 +67,9 @@ struct Milestone {
 /// made with the strength of the motion: `steady_sliding` is to go on as it starts, `normal_balanced` knows no strength.
 struct RunResult {
   bool converged = false;
-  bool stopped = false;  ///< it did not converge because the observer has stopped it
-  bool refused = false;  ///< it did not converge because the watch has stopped it
+  bool stopped = false;   ///< it did not converge because the observer has stopped it
+  bool refused = false;   ///< it did not converge because the watch has stopped it
+  bool has_start = true;  ///< false: it was stopped on the way to time 0
   std::string reason;
   WatchReport watch;
   std::string ended_by;               ///< key that ended it: end.time_s or end.displacement_m; empty if it did not converge
@@ -87,9 +88,32 @@ struct RunObserver {
   std::function<void(double fraction)> progress;                              ///< after every step
   SettleProgress settling;                                                    ///< while it settles
   std::function<bool()> stops;                                                ///< after every step: true ends the run there, with a checkpoint
-  /// A checkpoint is due (every Scene::checkpoint_every, at the end, and where a step does not converge; without that only where it is stopped): `state` holds the whole run, and whatever
-  /// the observer adds to it.
+  /// A checkpoint is due (every Scene::checkpoint_every, at the end, and where a step does not converge; without that only where it is stopped):
+  /// `state` holds the whole run, and whatever the observer adds to it.
   std::function<void(Archive& state, const Simulation&)> checkpoint;
+};
+
+/// The way of a simulation to the scene's start state.
+class StartSearch {
+ public:
+  explicit StartSearch(Simulation& simulation);
+  /// Throws what `progress` throws; goes on from there where it can.
+  RunResult find(const SettleProgress& progress);
+  /// Whether it has begun to settle in steps one of which it can go on from.
+  bool can_go_on() const { return search_ && search_->course() && search_->course()->has_begun; }
+  /// So far, where it can go on.
+  const SettleResult& settling() const { return search_->course()->result; }
+  /// With the simulation, which has another method while it settles.
+  void exchange(Archive& archive);
+
+ private:
+  void begin_to_settle();
+  SettleResult settle(const SettleProgress& progress);
+
+  Simulation& simulation_;
+  MethodInput own_method_;
+  bool by_another_;                            ///< method is the start settled
+  std::unique_ptr<EquilibriumSearch> search_;  ///< once it settles
 };
 
 /// Brings the simulation into the scene's start state.
@@ -99,20 +123,24 @@ RunResult run(Simulation& simulation, const RunObserver& observer);
 
 class MotionInTime;
 
-/// A run that goes on, bit for bit, from what a checkpoint of the same scene holds, in a simulation that has not been used. The scene may have another
-/// end_time (not before the state's), output_every, checkpoint_every and method.threads, and another solver.smallest_fraction and
+/// A run that goes on, bit for bit, from what a checkpoint of the same scene holds, in a simulation that has not been used. The scene may have
+/// another end_time (not before the state's), output_every, checkpoint_every and method.threads, and another solver.smallest_fraction and
 /// solver.max_iterations, to get over a step that did not converge.
 class ResumedRun {
  public:
   /// Reads the state, which is left where the observer's own part begins. Throws DamagedState if it does not fit the scene; no step is made yet.
   ResumedRun(Simulation& simulation, Archive& state);
   ~ResumedRun();
+  /// False for a run that has been stopped while its start settled.
+  bool has_start() const { return !start_; }
   RunResult go_on(const RunObserver& observer);
 
  private:
+  Simulation& simulation_;
   RunObserver observer_;
   RunResult result_;
-  std::unique_ptr<MotionInTime> motion_;
+  std::unique_ptr<StartSearch> start_;    ///< until there is one
+  std::unique_ptr<MotionInTime> motion_;  ///< from then on
 };
 
 }  // namespace openclose

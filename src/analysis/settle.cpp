@@ -50,13 +50,63 @@ double factor_to_limit(double limit, double moved) {
   return moved > 0.0 ? std::sqrt(part_of_limit * limit / moved) : std::numeric_limits<double>::infinity();
 }
 
+void begin(Simulation& simulation, SettleCourse& course) {
+  const BlockSystem& system = simulation.system();
+  const bool is_first = simulation.state().counters.steps + simulation.state().counters.cuts == 0;
+  const int blocks = system.block_count();
+  if (is_first && blocks >= fewest_blocks_with_fresh_memory && blocks <= most_blocks_in_heap) provide_memory(fresh_bytes_of_a_block * blocks);
+  course = {true, false, simulation.scene().settle.first_dt, fastest_growth, system.state().displacement, {}};
+  simulation.change_system().stop();
+}
+
+/// Takes account of a step; true if it was the last one.
+bool follow(const Simulation& simulation, const StepResult& step, SettleCourse& course) {
+  const SettleInput& input = simulation.scene().settle;
+  const BlockSystem& system = simulation.system();
+  const double limit = simulation.scene().step.max_displacement;
+  SettleResult& result = course.result;
+  if (!step.accepted) {
+    course.dt *= step.moved > limit ? std::clamp(factor_to_limit(limit, step.moved), deepest_cut, 1.0) : cut;
+    course.growth = growth_after_cut;
+    result.criterion = step.reason;
+    return course.dt < simulation.scene().step.smallest_fraction * input.first_dt;
+  }
+  ++result.steps;
+  result.unbalanced_fraction = step.unbalanced_force / simulation.state().force_scale();
+  for (int b : system.free_blocks()) {
+    const Motion::Unknowns way = system.displacement(b) - course.start[b];
+    result.displacement = std::max(result.displacement, Motion::displacement_bound(way, system.block(b).radius));
+  }
+  const bool is_balanced = result.unbalanced_fraction <= input.unbalanced_fraction;
+  // Forces that were in balance with cohesion that is gone now are to be balanced anew.
+  if (is_balanced && !step.lost_strength) {
+    result.settled = true;
+    result.criterion = "unbalanced force";
+    return true;
+  }
+  if (result.displacement > input.failure_displacement) {
+    result.criterion = "displacement";
+    result.limit = "settle.failure_displacement_m";
+    return true;
+  }
+  // A balance that a loss of strength has upset gives no reason for longer steps.
+  if (!is_balanced) {
+    course.dt = std::min(course.dt * std::min(course.growth, factor_to_limit(limit, step.moved)), largest_growth * input.first_dt);
+    course.growth = std::min(course.growth * course.growth, fastest_growth);
+  }
+  if (result.steps < input.max_steps) return false;
+  result.criterion = "steps";
+  result.limit = "settle.max_steps";
+  return true;
+}
+
 }  // namespace
 
 double settled_share(double now, double wanted) {
   return now > 0.0 ? std::clamp(std::log(now) / std::log(wanted), 0.0, 1.0) : 1.0;
 }
 
-SettleResult settle(Simulation& simulation, const SettleProgress& progress, SettleFrom from) {
+SettleResult settle(Simulation& simulation, const SettleProgress& progress, SettleFrom from, SettleCourse* course) {
   const SettleInput& input = simulation.scene().settle;
   if (simulation.is_explicit()) {
     const double force = input.unbalanced_fraction * simulation.state().force_scale();
@@ -64,53 +114,17 @@ SettleResult settle(Simulation& simulation, const SettleProgress& progress, Sett
         force, input.max_explicit_steps, "settle.max_explicit_steps", input.failure_displacement, input.keep_bonds, from == SettleFrom::rest};
     return settle_explicitly(simulation, limits, progress);
   }
-  const auto& system = simulation.system();
-  const bool is_first = simulation.state().counters.steps + simulation.state().counters.cuts == 0;
-  const int blocks = system.block_count();
-  if (is_first && blocks >= fewest_blocks_with_fresh_memory && blocks <= most_blocks_in_heap) provide_memory(fresh_bytes_of_a_block * blocks);
-  std::vector<Motion::Unknowns> start;
-  for (int b = 0; b < system.block_count(); ++b) start.push_back(system.displacement(b));
-  simulation.change_system().stop();
+  SettleCourse own;
+  SettleCourse& c = course ? *course : own;
+  if (!c.has_begun) begin(simulation, c);
   Neglect neglect(simulation);
-
-  SettleResult result;
-  double dt = input.first_dt, growth = fastest_growth;
-  const double limit = simulation.scene().step.max_displacement;
-  while (result.steps < input.max_steps) {
+  while (!c.is_over) {
     neglect.renew();
-    const StepResult step = simulation.step(dt, true);
-    if (!step.accepted) {
-      dt *= step.moved > limit ? std::clamp(factor_to_limit(limit, step.moved), deepest_cut, 1.0) : cut;
-      growth = growth_after_cut;
-      result.criterion = step.reason;
-      if (dt < simulation.scene().step.smallest_fraction * input.first_dt) return result;
-      continue;
-    }
-    ++result.steps;
-    result.unbalanced_fraction = step.unbalanced_force / simulation.state().force_scale();
-    if (progress) progress(settled_share(result.unbalanced_fraction, input.unbalanced_fraction));
-    for (int b : system.free_blocks()) {
-      result.displacement = std::max(result.displacement, Motion::displacement_bound(system.displacement(b) - start[b], system.block(b).radius));
-    }
-    // Forces that were in balance with cohesion that is gone now are to be balanced anew.
-    if (result.unbalanced_fraction <= input.unbalanced_fraction && !step.lost_strength) {
-      result.settled = true;
-      result.criterion = "unbalanced force";
-      return result;
-    }
-    if (result.displacement > input.failure_displacement) {
-      result.criterion = "displacement";
-      result.limit = "settle.failure_displacement_m";
-      return result;
-    }
-    // A balance that a loss of strength has upset gives no reason for longer steps.
-    if (result.unbalanced_fraction <= input.unbalanced_fraction) continue;
-    dt = std::min(dt * std::min(growth, factor_to_limit(limit, step.moved)), largest_growth * input.first_dt);
-    growth = std::min(growth * growth, fastest_growth);
+    const StepResult step = simulation.step(c.dt, true);
+    c.is_over = follow(simulation, step, c);
+    if (step.accepted && progress) progress(settled_share(c.result.unbalanced_fraction, input.unbalanced_fraction));
   }
-  result.criterion = "steps";
-  result.limit = "settle.max_steps";
-  return result;
+  return c.result;
 }
 
 void balance_what_is_left(Simulation& simulation, const SettleResult& settled) {

@@ -5,6 +5,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "openclose/analysis/simulation.h"
 
@@ -37,7 +38,22 @@ enum class SettleFrom {
   rest,      ///< with other strengths of the joints: what slips by more than the springs it rests on can carry has slid
 };
 
-SettleResult settle(Simulation& simulation, const SettleProgress& progress = {}, SettleFrom from = SettleFrom::anywhere);
+/// Where settle() stands between two of its steps. With the simulation as it was then it goes on as if it had never been stopped.
+struct SettleCourse {
+  bool has_begun = false, is_over = false;
+  double dt = 0.0, growth = 0.0;        ///< [s, -] of the next step, and of the one after it
+  std::vector<Motion::Unknowns> start;  ///< displacements of the blocks
+  SettleResult result;                  ///< so far
+
+  void exchange(Archive& archive) {
+    auto& [a, b, c, d, e, f] = *this;
+    archive(a, b, c, d, e, f);
+  }
+};
+
+/// \param course  of a search that is to be gone on with where `progress` has thrown; explicit methods know none
+SettleResult settle(Simulation& simulation, const SettleProgress& progress = {}, SettleFrom from = SettleFrom::anywhere,
+                    SettleCourse* course = nullptr);
 
 /// Before a motion, if settling has left more than tolerance::rest unbalanced: one more static step, which leaves nothing. Else what is left would
 /// set blocks in motion, and each step would be solved anew until that has died away, for twenty steps in a wall of 10,040 bricks.

@@ -61,8 +61,9 @@ class RunInFolder {
   RunInFolder(const Options& options, Simulation& simulation)
       : options_(options), simulation_(simulation), points_(simulation), measured_contacts_(simulation.scene()), drawn_(simulation.system()) {}
 
-  /// From the beginning. Throws Stopped if it is stopped before it has any state.
+  /// From the beginning, or from where its start was settling. Throws Stopped if it is stopped before it has any state to go on from.
   RunResult run_in(const OutputFolder& folder) {
+    folder_ = &folder;
     folder.require_ours(files_read(options_, simulation_.scene()));
     progress_.emplace("settle", options_.quiet);
     RunObserver observer = observer_of_motion();
@@ -77,7 +78,7 @@ class RunInFolder {
       tables_->states.add("start", s);
     };
     try {
-      return run(simulation_, observer);
+      return resumed_ ? resumed_->go_on(observer) : run(simulation_, observer);
     } catch (const Stopped&) {
       progress_.reset();
       throw Stopped(fmt::format("stopped while the start was settling, of which there is no checkpoint: {} is as it was; to run again: {}",
@@ -96,6 +97,9 @@ class RunInFolder {
     }
   }
 
+  /// Whether it goes on from the motion in a checkpoint.
+  bool is_in_motion() const { return resumed_ && resumed_->has_start(); }
+
   RunResult go_on_in(const OutputFolder& folder, const RestartPoint& restart) {
     begin(folder, &restart);
     return resumed_->go_on(observer_of_motion());
@@ -103,6 +107,7 @@ class RunInFolder {
 
   void close() {
     progress_.reset();
+    if (!tables_) return;
     // Asking for the contacts finds those of the last positions.
     simulation_.change_contacts();
     tables_->states.add("final", simulation_);
@@ -113,8 +118,7 @@ class RunInFolder {
   void begin(const OutputFolder& folder, const RestartPoint* restart) {
     const Scene& scene = simulation_.scene();
     folder_ = &folder;
-    folder.claim(files_read(options_, scene));
-    make_room(folder, options_);
+    claim();
     folder.write_scene_copy(write_scene(scene));
     write_block_properties(folder, scene, simulation_.system());
     tables_.emplace(folder, scene, restart);
@@ -137,10 +141,16 @@ class RunInFolder {
     if (tables_->contacts) tables_->contacts->add(s.time(), measured_contacts_.motions(s));
   }
 
+  void claim() const {
+    folder_->claim(files_read(options_, simulation_.scene()));
+    make_room(*folder_, options_);
+  }
+
   void write(Archive& state, const Simulation& s) {
     state(points_);
-    std::vector<TableMark> tables = tables_->written();
-    write_checkpoint(folder_->claim_whole_file(checkpoint_name), s.scene(), {s.time(), std::move(tables), state.take()});
+    if (!tables_) claim();
+    std::vector<TableMark> tables = tables_ ? tables_->written() : std::vector<TableMark>();
+    write_checkpoint(folder_->claim_whole_file(checkpoint_name), s.scene(), {tables_ ? s.time() : 0.0, std::move(tables), state.take()});
   }
 
   const Options& options_;
@@ -172,6 +182,11 @@ Summary summary_of_run(const Options& options, const Loaded& loaded, const RunRe
 
 /// Says how the run has ended; returns the exit status.
 int report_end(const Options& options, const RunResult& result, const Simulation& simulation, const OutputFolder& folder) {
+  if (!result.has_start) {
+    print_message(fmt::format("stopped while the start was settling, {:.2g} of the weight unbalanced; state saved in {}; to go on: {}",
+                              result.settling.unbalanced_fraction, folder.path(), command_to_go_on("run", options, folder)));
+    return exit_status_of_stop();
+  }
   if (result.stopped) {
     print_message(fmt::format("stopped at t = {:.6g} s; state saved in {}; to go on: {}", simulation.time(), folder.path(),
                               command_to_go_on("run", options, folder)));
@@ -214,12 +229,12 @@ int run_command(const Options& options) {
   const OutputFolder folder = output_folder(options);
   // Who stops the command before this loses nothing; from here on what is stopped ends with a word on how to go on.
   watch_for_stop_signals();
-  const RunResult result = restart ? in_folder.go_on_in(folder, *restart) : in_folder.run_in(folder);
+  const RunResult result = in_folder.is_in_motion() ? in_folder.go_on_in(folder, *restart) : in_folder.run_in(folder);
   in_folder.close();
   print_warnings(result.warnings);
   if (!result.milestones.empty()) write_milestones(folder, result.milestones);
   write_summary(folder, summary_of_run(options, loaded, result, simulation), simulation);
-  write_formats(scene.formats, folder);
+  if (result.has_start) write_formats(scene.formats, folder);
   folder.list_results();
   return report_end(options, result, simulation, folder);
 }

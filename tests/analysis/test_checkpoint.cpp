@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "openclose/analysis/run.h"
+#include "openclose/core/error.h"
 #include "openclose/integrator/integrators.h"
 #include "openclose/scene/reader.h"
 #include "support/catch.h"
@@ -249,6 +250,66 @@ TEST_CASE("a run goes on from each of its checkpoints", "[analysis][checkpoint]"
       CHECK(resumed.warnings.empty());
     }
   }
+}
+
+TEST_CASE("a run whose start is stopped while it settles goes on bit for bit", "[analysis][checkpoint]") {
+  const std::string method = GENERATE("soft", "hard", "shi", "dem");
+  CAPTURE(method);
+  Scene scene = prepared(test::column_of_blocks(10), method);
+  scene.joints[0].cohesion = 1e4;
+  scene.joints[0].cohesion_behaviour = CohesionBehaviour::lost_on_slip;
+  scene.method.start = Start::settled;
+  if (method == "dem") scene.settled_by = "soft";
+  scene.step.max_displacement = 1e-5;  // many steps
+  scene.end_time = 0.02;
+  scene.output_every = 0.01;
+  struct End {
+    std::string state;
+    int steps;
+  };
+  const auto end_of = [](const Simulation& simulation, const RunResult& result) {
+    REQUIRE(result.converged);
+    Archive state;
+    state(const_cast<Simulation&>(simulation));
+    return End{state.bytes(), result.settling.steps};
+  };
+  Simulation whole(scene);
+  const End expected = end_of(whole, run(whole, {}));
+  REQUIRE(expected.steps > 6);
+  for (int at = 1; at <= expected.steps; ++at) {
+    INFO("stopped after step " << at);
+    std::string saved;
+    int steps = 0;
+    RunObserver observer;
+    observer.settling = [&](double) {
+      if (++steps == at) throw Stopped();
+    };
+    observer.checkpoint = [&](Archive& state, const Simulation&) { saved = state.bytes(); };
+    Simulation stopped(scene);
+    const RunResult result = run(stopped, observer);
+    CHECK(result.stopped);
+    CHECK_FALSE(result.converged);
+    CHECK_FALSE(result.has_start);
+    CHECK(result.settling.steps == at);
+    Simulation again(scene);
+    Archive archive(saved);
+    ResumedRun resumed(again, archive);
+    CHECK(archive.at_end());
+    CHECK_FALSE(resumed.has_start());
+    const End end = end_of(again, resumed.go_on({}));
+    CHECK(end.steps == expected.steps);
+    CHECK(end.state == expected.state);
+  }
+}
+
+TEST_CASE("a start that is settled explicitly is not gone on with", "[analysis][checkpoint]") {
+  Scene scene = prepared(test::column_of_blocks(3), "dem");
+  scene.method.start = Start::settled;
+  Simulation simulation(scene);
+  RunObserver observer;
+  observer.settling = [](double) { throw Stopped(); };
+  observer.checkpoint = [](Archive&, const Simulation&) { FAIL("a checkpoint"); };
+  CHECK_THROWS_AS(run(simulation, observer), Stopped);
 }
 
 TEST_CASE("a run that goes on from its end ends as it did", "[analysis][checkpoint]") {

@@ -4,8 +4,8 @@
 
 Every run, and every search for a factor of safety, is made once without a stop. Then it is begun `count` times with each signal, SIGKILL (no chance to say
 anything) and SIGINT (Ctrl-C), sent at a moment drawn from its whole length, and continued; of what was continued, every third is stopped once more. In the
-end all tables and the hash of the state must be those of the one that was never stopped. A run that is stopped while its start settles has no checkpoint: it
-must have left its folder as it was. Exit status 0 or 1.
+end all tables and the hash of the state must be those of the one that was never stopped. A run that is stopped while its start settles with `dem` has no
+checkpoint: it must have left its folder as it was. Exit status 0 or 1.
 """
 
 import argparse

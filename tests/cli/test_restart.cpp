@@ -193,7 +193,8 @@ TEST_CASE("a checkpoint whose state is damaged is refused before anything is wri
   CHECK(openclose::test::contents(place.folder() / "out") == before);
 }
 
-TEST_CASE("who stops a run while it settles keeps the results of the one before, and is told how to run again", "[cli][restart]") {
+TEST_CASE("who stops a run while it settles is told how to go on, or keeps the results of the one before and is told how to run again",
+          "[cli][restart]") {
   const Workplace place(openclose::test::block_on_incline(20.0));
   REQUIRE(place.run("new wall -o wall.toml -q").status == 0);
   REQUIRE(place.run("run scene.toml" + std::string(motion) + " --end 0.05 -o out").status == 0);
@@ -202,14 +203,27 @@ TEST_CASE("who stops a run while it settles keeps the results of the one before,
   const std::string settled =
       " --start settled --dt 0.001 --end 1 --set settle.unbalanced_fraction=1e-300 --set settle.max_steps=1000000000 "
       "--set settle.max_explicit_steps=1000000000 -o out";
-  for (const std::string method : {"soft", "dem"}) {
-    INFO(method);
-    const CommandResult stopped = place.run("run wall.toml --contact " + method + settled, "timeout --foreground --preserve-status -s INT 1 ");
+  const std::string stop = "timeout --foreground --preserve-status -s INT 1 ";
+  SECTION("with an explicit method") {
+    const CommandResult stopped = place.run("run wall.toml --contact dem" + settled, stop);
     CHECK(stopped.status == 130);
     REQUIRE_FALSE(stopped.errors.empty());
     CHECK_THAT(stopped.errors.back(),
                ContainsSubstring("stopped while the start was settling") && ContainsSubstring("to run again: openclose run 'wall.toml' "));
     CHECK(openclose::test::contents(place.folder() / "out") == before);
+  }
+  SECTION("or, with another one, gets a state to go on from") {
+    std::string arguments = "run wall.toml --contact soft" + settled;
+    for (int i = 0; i < 2; ++i) {
+      const CommandResult stopped = place.run(arguments, stop);
+      CHECK(stopped.status == 130);
+      REQUIRE_FALSE(stopped.errors.empty());
+      CHECK_THAT(stopped.errors.back(), ContainsSubstring("stopped while the start was settling") && ContainsSubstring(" of the weight unbalanced") &&
+                                            ContainsSubstring("to go on: openclose run 'wall.toml' ") && ContainsSubstring("--restart"));
+      CHECK(exists(place.folder() / "out/checkpoint.bin"));
+      CHECK_FALSE(exists(place.folder() / "out/history.csv"));
+      arguments = "run wall.toml --contact soft" + settled + " --restart out/checkpoint.bin";
+    }
   }
 }
 
