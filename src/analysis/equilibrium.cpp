@@ -11,7 +11,11 @@ constexpr const char* max_time_steps_key = "settle.max_time_steps";
 class ByUnbalancedForce : public EquilibriumSearch {
  public:
   explicit ByUnbalancedForce(Simulation& simulation) : simulation_(simulation) {}
-  SettleResult settle_first(const SettleProgress& progress) override { return settle(simulation_, progress, SettleFrom::anywhere, &course_); }
+  SettleResult settle_first(const SettleProgress& progress) override {
+    const SettleResult result = settle(simulation_, progress, SettleFrom::anywhere, &course_);
+    course_ = {};
+    return result;
+  }
   SettleResult settle_trial(const SettleProgress& progress) override { return settle(simulation_, progress, SettleFrom::rest); }
   SettleCourse* course() override { return simulation_.is_explicit() ? nullptr : &course_; }
 

@@ -21,7 +21,8 @@ constexpr const char* motion =
     " --dt 0.001 --start unloaded --set output.every_s=0.003 --set output.snapshots_s=[0.02,0.1] --set output.snapshots_every_s=0.03";
 
 /// A checkpoint whose check sum is right and whose state begins with a list that is longer than all of it.
-std::string with_endless_list(std::string checkpoint) {
+/// \param before  [bytes] in front of that list
+std::string with_endless_list(std::string checkpoint, std::size_t before) {
   const auto number_at = [&](std::size_t at) {
     std::uint64_t number = 0;
     std::memcpy(&number, checkpoint.data() + at, sizeof number);
@@ -32,7 +33,7 @@ std::string with_endless_list(std::string checkpoint) {
   at += number + number_at(at) + time;  // the scene
   std::size_t tables = number_at(at);
   for (at += number; tables > 0; --tables) at += number + number_at(at) + 2 * number;
-  std::fill_n(checkpoint.begin() + static_cast<long>(at + number), number, '\x7f');
+  std::fill_n(checkpoint.begin() + static_cast<long>(at + number + before), number, '\x7f');
   checkpoint.resize(checkpoint.size() - number);
   const std::uint64_t sum = openclose::check_sum(checkpoint);
   return checkpoint.append(reinterpret_cast<const char*>(&sum), sizeof sum);
@@ -184,7 +185,8 @@ TEST_CASE("a checkpoint whose state is damaged is refused before anything is wri
   place.run(command, command == fos ? openclose::test::full_under("out/trials.csv") : "");
   const std::string checkpoint = place.folder() / "out/checkpoint.bin";
   REQUIRE(std::filesystem::exists(checkpoint));
-  place.folder().write("out/checkpoint.bin", with_endless_list(text_of(checkpoint)));
+  const std::size_t before_list = command == fos ? 0 : 1;  // whether there is a start
+  place.folder().write("out/checkpoint.bin", with_endless_list(text_of(checkpoint), before_list));
   const auto before = openclose::test::contents(place.folder() / "out");
   const CommandResult result = place.run(command + " --restart out/checkpoint.bin");
   CHECK(result.status == 2);
@@ -220,8 +222,8 @@ TEST_CASE("who stops a run while it settles is told how to go on, or keeps the r
       REQUIRE_FALSE(stopped.errors.empty());
       CHECK_THAT(stopped.errors.back(), ContainsSubstring("stopped while the start was settling") && ContainsSubstring(" of the weight unbalanced") &&
                                             ContainsSubstring("to go on: openclose run 'wall.toml' ") && ContainsSubstring("--restart"));
-      CHECK(exists(place.folder() / "out/checkpoint.bin"));
-      CHECK_FALSE(exists(place.folder() / "out/history.csv"));
+      CHECK(std::filesystem::exists(place.folder() / "out/checkpoint.bin"));
+      CHECK_FALSE(std::filesystem::exists(place.folder() / "out/history.csv"));
       arguments = "run wall.toml --contact soft" + settled + " --restart out/checkpoint.bin";
     }
   }
