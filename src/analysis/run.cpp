@@ -68,7 +68,7 @@ double MeasuredPoints::largest_displacement() const {
 
 namespace {
 
-/// What a start state is found with: the joints of the motion, but for one that is settled.
+/// To what the joints have in the motion.
 void reduce_strength(Simulation& simulation) {
   simulation.change_joints().reduce_strength(simulation.scene().run_strength_reduction_factor);
 }
@@ -97,11 +97,13 @@ SettleResult StartSearch::settle(const SettleProgress& progress) {
 }
 
 void StartSearch::exchange(Archive& archive) {
-  if (archive.reading()) begin_to_settle();
+  const bool settles = simulation_.scene().method.start == Start::settled;
+  if (archive.reading() && settles) begin_to_settle();
   SettleCourse* const course = search_ ? search_->course() : nullptr;
-  archive.require(course != nullptr, "the saved state is of a start that is not settled in static steps");
+  archive.require(course != nullptr, "the saved state is of a start that is settled in static steps");
   archive(simulation_, *course);
-  archive.require(course->has_begun && course->start.size() == static_cast<std::size_t>(simulation_.system().block_count()),
+  const bool has_length = std::isfinite(course->dt) && course->dt > 0.0 && std::isfinite(course->growth) && course->growth > 0.0;
+  archive.require(course->has_begun && has_length && course->start.size() == static_cast<std::size_t>(simulation_.system().block_count()),
                   "the saved state is of another settling");
 }
 

@@ -112,7 +112,7 @@ class StartSearch {
 
   Simulation& simulation_;
   MethodInput own_method_;
-  bool by_another_;                            ///< method is the start settled
+  bool by_another_;                            ///< another method than that of the motion settles
   std::unique_ptr<EquilibriumSearch> search_;  ///< once it settles
 };
 

@@ -302,6 +302,57 @@ TEST_CASE("a run whose start is stopped while it settles goes on bit for bit", "
   }
 }
 
+TEST_CASE("a saved start that settles is refused by a scene whose start does not, or not in static steps", "[analysis][checkpoint]") {
+  Scene scene = prepared(test::column_of_blocks(3), "soft");
+  scene.method.start = Start::settled;
+  std::string saved;
+  RunObserver observer;
+  observer.settling = [](double) { throw Stopped(); };
+  observer.checkpoint = [&](Archive& state, const Simulation&) { saved = state.bytes(); };
+  Simulation stopped(scene);
+  REQUIRE(run(stopped, observer).stopped);
+  const auto reads = [&](const std::string& bytes) {
+    Simulation again(scene);
+    Archive archive(bytes);
+    try {
+      ResumedRun resumed(again, archive);
+      return true;
+    } catch (const DamagedState&) {
+      return false;
+    }
+  };
+  CHECK(reads(saved));
+  SECTION("unloaded") {
+    scene.method.start = Start::unloaded;
+    CHECK_FALSE(reads(saved));
+  }
+  SECTION("the paper's steps in time") {
+    scene.settle.criterion = SettleCriterion::paper;
+    CHECK_FALSE(reads(saved));
+  }
+  SECTION("a step without a length") {
+    const double none = 0.0;
+    Simulation other(scene);
+    StartSearch start(other);
+    Archive archive(saved.substr(1));  // without the switch in front of it
+    archive(start);
+    Archive again;
+    again(start);
+    std::string bytes = saved.substr(0, 1) + again.bytes();
+    CHECK(bytes == saved);
+    const std::size_t at = bytes.size() - [&] {
+      Archive end;
+      SettleCourse course;
+      course.start.resize(4);
+      course.result = start.settling();
+      end(course);
+      return end.bytes().size();
+    }() + 2;  // behind its two switches
+    bytes.replace(at, sizeof none, reinterpret_cast<const char*>(&none), sizeof none);
+    CHECK_FALSE(reads(bytes));
+  }
+}
+
 TEST_CASE("a start that is settled explicitly is not gone on with", "[analysis][checkpoint]") {
   Scene scene = prepared(test::column_of_blocks(3), "dem");
   scene.method.start = Start::settled;
