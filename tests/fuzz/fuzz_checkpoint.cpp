@@ -91,10 +91,9 @@ void go_on_with_run(const Scene& scene, std::string saved) {
   run.go_on(observer);
 }
 
-/// With its watch, its measured points and its milestones.
-Original run_of(const std::string& method) {
+/// The first checkpoint of a run, with its watch, its measured points and its milestones.
+Original run_of(const std::vector<std::string>& overrides, bool is_stopped_in_its_start) {
   const std::string measured = "[[measured_point]]\nname = 'top'\nblock = 'high'\npoint_m = [0, 2]\n";
-  const std::vector<std::string> overrides = {"method.contact=" + method, "output.checkpoint_every_s=0.005", "output.milestones_m=[1e-6, 1]"};
   Original made{scene_of_text(text + measured, "scene.toml", overrides), {}, &go_on_with_run};
   Simulation simulation(made.scene);
   MeasuredPoints points(simulation);
@@ -102,11 +101,22 @@ Original run_of(const std::string& method) {
   observer.checkpoint = [&](Archive& state, const Simulation& s) {
     if (!made.bytes.empty()) return;
     state(points);
-    made.bytes = saved(made.scene, s.time(), state.take());
+    made.bytes = saved(made.scene, is_stopped_in_its_start ? 0.0 : s.time(), state.take());
+  };
+  observer.settling = [&](double) {
+    if (is_stopped_in_its_start) throw Stopped();
   };
   run(simulation, observer);
   require_promise(!made.bytes.empty(), "a run leaves checkpoints");
   return made;
+}
+
+Original run_of(const std::string& method) {
+  return run_of({"method.contact=" + method, "output.checkpoint_every_s=0.005", "output.milestones_m=[1e-6, 1]"}, false);
+}
+
+Original start_of(const std::string& method) {
+  return run_of({"method.contact=" + method, "method.start=settled", "settle.first_dt_s=1e-4", "settle.max_steps=20"}, true);
 }
 
 void go_on_with_search(const Scene& scene, std::string saved) {
@@ -149,7 +159,9 @@ const Original& original(int kind) {
                                   search_of("soft", "small_displacements"),
                                   search_of("dem", "small_displacements"),
                                   search_of("soft", "large_displacements"),
-                                  search_of("dem", "large_displacements")};
+                                  search_of("dem", "large_displacements"),
+                                  start_of("soft"),
+                                  start_of("hard")};
   return made[kind % std::size(made)];
 }
 
