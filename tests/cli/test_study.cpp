@@ -159,6 +159,18 @@ TEST_CASE("study warns where a refinement changes more than the one before", "[c
   CHECK_FALSE(warned(place.run(command + " --dt 0.0002,0.0001,0.00005 -o fine")));
 }
 
+TEST_CASE("study warns of runs that end earlier or later than others, and not of rounding", "[cli][study]") {
+  const Workplace place(openclose::test::block_on_incline(40.0));
+  // Three steps of 0.1 s and ten of 0.03 s differ by 6e-17 s.
+  const std::string command = "study scene.toml --contact hard --set method.start=unloaded --quantity block.displacement_m";
+  const CommandResult same = place.run(command + " --end 0.3 --dt 0.1,0.05,0.03 -o same");
+  CHECK(same.status == 0);
+  CHECK(same.errors.empty());
+  const CommandResult earlier = place.run(command + " --end 3 --set end.displacement_m=0.1 --dt 0.1,0.05,0.03 -o earlier");
+  REQUIRE(earlier.errors.size() == 1);
+  CHECK_THAT(earlier.errors[0], ContainsSubstring("choose steps that divide end.time_s") && ContainsSubstring("others at"));
+}
+
 TEST_CASE("study marks what gave warnings, and tells how much energy the integrator took", "[cli][study]") {
   const Workplace place(openclose::test::block_on_incline(40.0));
   const std::string command = "study scene.toml --dt 0.01,0.005 --end 0.05 --set method.start=unloaded";
