@@ -115,6 +115,9 @@ class Hard final : public Enforcement {
   void exchange(Archive& archive) override {
     newton_.exchange(archive);
     archive(level_, failed_trials_, steps_since_trial_);
+    const bool is_level = level_ < stiffness_over_inertia.size() && failed_trials_ >= 0 && failed_trials_ <= most_failed_trials;
+    archive.require(is_level && steps_since_trial_ >= 0 && steps_since_trial_ <= 1 << most_failed_trials,
+                    "the saved state has springs of hard contacts that there are not");
   }
 
  private:

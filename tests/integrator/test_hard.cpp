@@ -1,4 +1,6 @@
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <string>
 
 #include "openclose/analysis/run.h"
@@ -189,7 +191,7 @@ TEST_CASE("a force that grows drives a closed contact in no deeper than it is", 
 TEST_CASE("springs of rigid contacts become stiffer where they are too soft for a column", "[integrator][hard]") {
   Simulation simulation(column(200, 1e-2, 10));
   for (int i = 0; i < 10; ++i) REQUIRE(simulation.advance(1e-2));  // as run() does, which would cut steps for the energy of gravity at once, too
-  CHECK(simulation.state().counters.steps == 10);                   // none of them in parts, as where the passes that a step may take are too few
+  CHECK(simulation.state().counters.steps == 10);                  // none of them in parts, as where the passes that a step may take are too few
 }
 
 TEST_CASE("a step of which the passes do not find the multipliers is cut to what their error tells", "[integrator][hard]") {
@@ -249,4 +251,36 @@ TEST_CASE("a hard block that falls stays where it lands", "[integrator][hard]") 
   REQUIRE(run(simulation, {}).converged);
   CHECK(simulation.system().displacement(1)[1] == Approx(-0.05).margin(100 * test::gap_tolerance));
   CHECK(simulation.velocity(1).norm() < 1e-6);
+}
+
+TEST_CASE("saved springs that there are not are refused", "[integrator][hard]") {
+  MethodInput method;
+  method.contact = "hard";
+  Archive saved;
+  make_enforcement(method)->exchange(saved);
+  struct Springs {
+    std::uint64_t level;
+    int failed_trials, steps_since_trial;
+  };
+  static_assert(sizeof(Springs) == 16);
+  REQUIRE(saved.bytes().size() >= sizeof(Springs));
+  /// They are the last of what is saved.
+  const auto reads = [&](const Springs& springs) {
+    std::string bytes = saved.bytes();
+    std::memcpy(bytes.data() + bytes.size() - sizeof springs, &springs, sizeof springs);
+    Archive archive(bytes);
+    try {
+      make_enforcement(method)->exchange(archive);
+      return archive.at_end();
+    } catch (const DamagedState&) {
+      return false;
+    }
+  };
+  CHECK(reads({0, 0, 0}));
+  CHECK(reads({3, 4, 15}));
+  CHECK_FALSE(reads({4, 0, 0}));
+  CHECK_FALSE(reads({0, -1, 0}));
+  CHECK_FALSE(reads({0, 5, 0}));
+  CHECK_FALSE(reads({0, 0, -1}));
+  CHECK_FALSE(reads({0, 0, 17}));
 }
