@@ -116,7 +116,8 @@ Original run_of(const std::string& method) {
 }
 
 Original start_of(const std::string& method) {
-  return run_of({"method.contact=" + method, "method.start=settled", "settle.first_dt_s=1e-4", "settle.max_steps=20"}, true);
+  return run_of({"method.contact=" + method, "method.start=settled", "settle.first_dt_s=1e-4", "settle.max_steps=4", "solver.max_iterations=12"},
+                true);
 }
 
 void go_on_with_search(const Scene& scene, std::string saved) {
