@@ -1,5 +1,7 @@
 // The command: reads what the user asked for, calls the command that does it, says how it ended. No physics here.
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -202,7 +204,20 @@ int main_caught(int argc, char** argv) {
 }  // namespace
 }  // namespace openclose
 
+namespace {
+
+/// A file that is opened gets the lowest number that is free: where a standard stream has been closed, messages would go into the first table. What
+/// is written to standard output is lost then, and is to be told so, as by a full device.
+void keep_standard_streams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (fcntl(stream, F_GETFD) < 0) open(stream == STDOUT_FILENO ? "/dev/full" : "/dev/null", O_RDWR);
+  }
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
+  keep_standard_streams();
   openclose::return_large_memory();
   openclose::fail_beyond_size_limit();
   return openclose::status_after_output(openclose::main_caught(argc, argv));

@@ -252,7 +252,8 @@ void write_summary(const OutputFolder& folder, const Summary& summary, const Sim
   const StageTimes& stages = simulation.state().stage_times;
   j["stage_s"] = {{"detection", stages.detection}, {"solution", stages.solution}, {"bookkeeping", stages.bookkeeping}};
   std::ofstream file = folder.open("summary.json");
-  file << j.dump(2) << '\n';
+  // The name of a file may be no text: what is none of it is replaced.
+  file << j.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
   finish(file, folder.path_of("summary.json"));
 }
 

@@ -165,8 +165,11 @@ std::vector<std::string> check_scene(const Scene& scene) {
   if (scene.cutting) warnings.insert(warnings.end(), scene.cutting->warnings.begin(), scene.cutting->warnings.end());
   for (std::string& warning : implausible_numbers(scene)) warnings.push_back(std::move(warning));
   if (nothing_holds(scene)) warnings.push_back(scene.where.file + ": nothing is fixed or supported under gravity: every block will fall");
+  if (std::ranges::all_of(scene.blocks, [](const BlockInput& block) { return block.fixed; }))
+    warnings.push_back(scene.where.file + ": no block is free: nothing will move");
   if (nothing_loads(scene))
-    warnings.push_back(scene.where.file + ": there is no gravity, load, surcharge, base motion or velocity: nothing will move, whatever its strength");
+    warnings.push_back(scene.where.file +
+                       ": there is no gravity, load, surcharge, base motion or velocity: nothing will move, whatever its strength");
   warn_of_fixed_points(scene, warnings);
   warn_of_slivers(scene, warnings);
   return warnings;

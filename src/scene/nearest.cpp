@@ -27,7 +27,11 @@ bool is_unit_word(std::string_view word) {
 }
 
 /// Optimal string alignment (F. J. Damerau, 1964): single characters inserted, deleted or replaced, or two neighbours exchanged.
-std::size_t edit_distance(const std::string& a, const std::string& b) {
+/// Of what is longer than any name the beginning tells as much.
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  constexpr std::size_t longest_compared = 100;
+  a = a.substr(0, longest_compared);
+  b = b.substr(0, longest_compared);
   std::vector<std::size_t> before(b.size() + 1), above(b.size() + 1), row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
   for (std::size_t i = 0; i < a.size(); ++i) {

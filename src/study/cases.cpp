@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <charconv>
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
@@ -16,6 +17,7 @@
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 
 #include "openclose/core/error.h"
@@ -33,6 +35,7 @@ namespace {
 
 /// Stands in the folder of a case that has come to its end, whatever that was.
 constexpr const char* mark_name = "case.txt";
+constexpr const char* mark_start = "openclose ";
 
 /// FNV-1a (G. Fowler, L. C. Noll, K.-P. Vo): tells scenes apart; nobody forges one here.
 std::uint64_t fingerprint(const std::string& text) {
@@ -88,7 +91,8 @@ class Runner {
       const Scene scene = read_scene(order.scene_file, one.overrides);
       check_scene(scene);
       if (std::filesystem::exists(order.folder + "/" + one.name)) OutputFolder(order.folder + "/" + one.name).require_ours({order.scene_file});
-      marks_.push_back(fmt::format("openclose {} {} {:016x}\n", version, order.command, fingerprint(write_scene(scene))));
+      require_our_mark(order.folder + "/" + one.name + "/" + mark_name);
+      marks_.push_back(fmt::format("{}{} {} {:016x}\n", mark_start, version, order.command, fingerprint(write_scene(scene))));
     }
   }
 
@@ -106,13 +110,30 @@ class Runner {
   }
 
  private:
+  /// The mark of a case is replaced where it is openclose's own.
+  static void require_our_mark(const std::string& path) {
+    if (std::filesystem::exists(path) && !text_of(path).starts_with(mark_start))
+      throw InputError({path, 0}, "", "has not been written by openclose", "another folder, or that file under another name");
+  }
+
+  /// Of the same case; none if it is not there with all that is read of it.
+  std::optional<int> status_of_earlier(std::size_t i) const {
+    const std::string mark = text_of(path_of(i, mark_name));
+    if (!mark.starts_with(marks_[i])) return std::nullopt;
+    int status = 0;
+    if (std::from_chars(mark.data() + marks_[i].size(), mark.data() + mark.size(), status).ec != std::errc()) return std::nullopt;
+    const bool has_summary = status == exit_success || status == exit_not_converged;
+    if (has_summary && !nlohmann::json::accept(text_of(path_of(i, "summary.json")))) return std::nullopt;
+    return status;
+  }
+
   std::string folder_of(std::size_t i) const { return order_.folder + "/" + cases_[i].name; }
   std::string path_of(std::size_t i, const char* name) const { return folder_of(i) + "/" + name; }
 
   void start(std::size_t i) {
-    if (text_of(path_of(i, mark_name)).starts_with(marks_[i])) {
+    if (const std::optional<int> status = status_of_earlier(i)) {
       results_[i].was_there = true;
-      take(i, std::stoi(text_of(path_of(i, mark_name)).substr(marks_[i].size())));
+      take(i, *status);
       return;
     }
     std::error_code ignored;

@@ -93,6 +93,13 @@ TEST_CASE("sweep goes on where it was broken off", "[cli][sweep]") {
   std::filesystem::remove(place.folder() / "out/sweep.csv");
   CHECK_THAT(place.run(command).out, ContainsSubstring("(2 were there)"));
   CHECK(rows_of(place.folder() / "out/sweep.csv").size() == 3);
+  // As a disk leaves it that was full, or a hand.
+  std::ofstream(place.folder() / "out/joint[0].friction_angle_deg=25/summary.json") << "{";
+  CHECK_THAT(place.run(command).out, ContainsSubstring("(2 were there)"));
+  const std::string mark = place.folder() / "out/joint[0].friction_angle_deg=35/case.txt", text = text_of(mark);
+  std::ofstream(mark) << text.substr(0, text.find('\n') + 1);
+  CHECK_THAT(place.run(command).out, ContainsSubstring("(2 were there)"));
+  CHECK(rows_of(place.folder() / "out/sweep.csv").size() == 3);
 }
 
 TEST_CASE("a sweep over another key takes the place of the table of the one before, but of no other file", "[cli][sweep]") {
@@ -238,6 +245,7 @@ TEST_CASE("files of somebody else are found before the first case runs", "[cli][
   refused(study, "out/study.svg");
   refused(study, "out/study.csv");
   refused(study, "out/soft,dt=0.01/energy.csv");
+  refused(study, "out/soft,dt=0.01/case.txt");
   refused(sweep, "out/sweep.svg");
   refused(sweep, "out/joint[0].friction_angle_deg=25/trials.csv");
 }
