@@ -2,7 +2,10 @@
 #include <ClpSimplex.hpp>
 #include <ClpSolve.hpp>
 #include <CoinError.hpp>
+#include <algorithm>
+#include <cmath>
 #include <exception>
+#include <limits>
 #include <utility>
 
 #include "openclose/limit_analysis/simplex.h"
@@ -60,7 +63,31 @@ class Simplex::Model : public ClpSimplex {
   }
 
   std::shared_ptr<Listener::State> heard = std::make_shared<Listener::State>();
+  bool fits_barrier = true;
 };
+
+namespace {
+
+/// [-] Numbers of a problem that differ by more are none of rock: the barrier method squares them, loses its way and ends the process.
+constexpr double widest_range = 1e25;
+
+class Range {
+ public:
+  void take(const std::vector<double>& numbers) {
+    for (const double number : numbers) {
+      const double size = std::abs(number);
+      if (size == 0.0 || size >= COIN_DBL_MAX || !std::isfinite(size)) continue;
+      smallest_ = std::min(smallest_, size);
+      largest_ = std::max(largest_, size);
+    }
+  }
+  bool is_wide() const { return largest_ > widest_range * smallest_; }
+
+ private:
+  double smallest_ = std::numeric_limits<double>::infinity(), largest_ = 0.0;
+};
+
+}  // namespace
 
 const unsigned char Simplex::at_lower_bound = ClpSimplex::atLowerBound;
 const bool Simplex::available = true;
@@ -83,6 +110,9 @@ void Simplex::load(const Columns& columns, const std::vector<double>& right_side
   starts.push_back(static_cast<CoinBigIndex>(columns.values_.size()));
   model_->loadProblem(columns.count(), static_cast<int>(right_side.size()), starts.data(), columns.rows_.data(), columns.values_.data(),
                       columns.low_.data(), columns.high_.data(), columns.cost_.data(), right_side.data(), right_side.data());
+  Range range;
+  for (const auto* numbers : {&columns.values_, &columns.low_, &columns.high_, &columns.cost_, &right_side}) range.take(*numbers);
+  model_->fits_barrier = !range.is_wide();
 }
 
 bool Simplex::solve_from(const Basis& basis) {
@@ -94,6 +124,7 @@ bool Simplex::solve_from(const Basis& basis) {
 }
 
 bool Simplex::solve_by_barrier(bool with_crossover) {
+  if (!model_->fits_barrier) return false;
   return model_->is_solved([&] {
     ClpSolve barrier;
     barrier.setSolveType(with_crossover ? ClpSolve::useBarrier : ClpSolve::useBarrierNoCross);

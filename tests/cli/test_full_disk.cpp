@@ -144,3 +144,10 @@ TEST_CASE("a scene whose file name is no text is analysed like any other", "[cli
   CHECK(place.run("run b\xf6.toml --dt 0.001 --end 0.01 --start unloaded -q -o out").status == 0);
   CHECK(nlohmann::json::accept(openclose::test::text_of(place.folder() / "out/summary.json")));
 }
+
+TEST_CASE("strengths beyond all rock do not end the process in the midst of a limit analysis", "[cli]") {
+  const Workplace place(block_on_incline(20.0));
+  const std::string strong = " scene.toml --set joint[0].tensile_strength_pa=1e50";
+  CHECK(place.run("check" + strong).status == 0);
+  CHECK(place.run("fos" + strong + " -o out").status == 0);
+}
