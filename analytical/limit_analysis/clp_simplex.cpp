@@ -69,7 +69,7 @@ class Simplex::Model : public ClpSimplex {
 namespace {
 
 /// [-] Numbers of a problem that differ by more are none of rock: the barrier method squares them, loses its way and ends the process.
-constexpr double widest_range = 1e25;
+constexpr double widest_range = 1e35;
 
 class Range {
  public:
