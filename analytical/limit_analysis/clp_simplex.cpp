@@ -52,6 +52,7 @@ class Simplex::Model : public ClpSimplex {
   /// False, too, where CLP gives up with an error. It computes with its infinity, and its answers are verified without it.
   template <class Solve>
   bool is_solved(const Solve& solve) {
+    if (!can_be_solved) return false;
     bool is_proved = false;
     try {
       const NonStop non_stop;
@@ -63,12 +64,13 @@ class Simplex::Model : public ClpSimplex {
   }
 
   std::shared_ptr<Listener::State> heard = std::make_shared<Listener::State>();
-  bool fits_barrier = true;
+  bool can_be_solved = true;
 };
 
 namespace {
 
-/// [-] Numbers of a problem that differ by more are none of rock: the barrier method squares them, loses its way and ends the process.
+/// [-] Numbers of a problem that differ by more are none of rock, and rounding (1e-17 of what is one) is still within it. There CLP ends the process:
+/// its barrier method with strengths of 1e50, its simplex method with bounds of 1e100.
 constexpr double widest_range = 1e35;
 
 class Range {
@@ -112,7 +114,7 @@ void Simplex::load(const Columns& columns, const std::vector<double>& right_side
                       columns.low_.data(), columns.high_.data(), columns.cost_.data(), right_side.data(), right_side.data());
   Range range;
   for (const auto* numbers : {&columns.values_, &columns.low_, &columns.high_, &columns.cost_, &right_side}) range.take(*numbers);
-  model_->fits_barrier = !range.is_wide();
+  model_->can_be_solved = !range.is_wide();
 }
 
 bool Simplex::solve_from(const Basis& basis) {
@@ -124,7 +126,6 @@ bool Simplex::solve_from(const Basis& basis) {
 }
 
 bool Simplex::solve_by_barrier(bool with_crossover) {
-  if (!model_->fits_barrier) return false;
   return model_->is_solved([&] {
     ClpSolve barrier;
     barrier.setSolveType(with_crossover ? ClpSolve::useBarrier : ClpSolve::useBarrierNoCross);

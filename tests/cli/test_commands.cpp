@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -670,4 +671,36 @@ TEST_CASE("a run whose folder is removed is broken off", "[cli]") {
   CHECK(result.status == 3);
   REQUIRE(result.errors.size() == 1);
   CHECK_THAT(result.errors[0], ContainsSubstring("out/") && ContainsSubstring("has been removed"));
+}
+
+TEST_CASE("messages go into no table where standard error is closed", "[cli]") {
+  const Workplace place("");
+  REQUIRE(place.run("new slope -o slope.toml -q").status == 0);
+  const std::string there = "cd '" + place.folder().path() + "' && '" OPENCLOSE_COMMAND "' ";
+  CHECK(std::system((there + "fos slope.toml -o out >/dev/null 2>&-").c_str()) == 0);
+  for (const auto& entry : std::filesystem::directory_iterator(place.folder() / "out")) {
+    INFO(entry.path());
+    if (entry.path().extension() == ".csv") CHECK_THAT(openclose::test::text_of(entry.path()), !ContainsSubstring("openclose"));
+  }
+  const int status = std::system((there + "check slope.toml >&- 2>/dev/null").c_str());
+  CHECK(WEXITSTATUS(status) == 3);
+}
+
+TEST_CASE("a scene whose file name is no text is analysed like any other", "[cli]") {
+  const Workplace place("");
+  place.folder().write("b\xf6.toml", openclose::test::block_on_incline(20.0));
+  CHECK(place.run("run b\xf6.toml --dt 0.001 --end 0.01 --start unloaded -q -o out").status == 0);
+  CHECK(nlohmann::json::accept(openclose::test::text_of(place.folder() / "out/summary.json")));
+}
+
+TEST_CASE("strengths and loads beyond all rock do not end the process in the midst of a limit analysis", "[cli]") {
+  const Workplace place(openclose::test::block_on_incline(20.0));
+  const std::string strong = " scene.toml --set joint[0].tensile_strength_pa=1e50";
+  CHECK(place.run("check" + strong).status == 0);
+  CHECK(place.run("fos" + strong + " -o out").status == 0);
+  // What a load of no rock does to the search is its own affair: a status of its own, and no signal.
+  place.folder().write("loaded.toml",
+                       openclose::test::block_on_incline(20.0) + "[[load]]\nname = 'p'\nblock = 'block'\npoint_m = [0, 0]\nforce_n = [1e150, 0]\n");
+  const int status = place.run("fos loaded.toml --increase p -o loaded").status;
+  CHECK((status == 0 || status == 1));
 }

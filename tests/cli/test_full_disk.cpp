@@ -2,9 +2,7 @@
 // there.
 #include <algorithm>
 #include <cstdint>
-#include <cstdlib>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -123,31 +121,4 @@ TEST_CASE("an answer on standard output that is lost is no success, and a messag
     CHECK(place.run(std::string(command) + " >/dev/full 2>/dev/full #").status == 2);
   // A warning that nobody sees ends nothing.
   CHECK(place.run("run scene.toml --dt 0.001 --end 0.01 --set 'output.milestones_m=[9]' -q -o out 2>/dev/full #").status == 0);
-}
-
-TEST_CASE("messages go into no table where standard error is closed", "[cli]") {
-  const Workplace place("");
-  REQUIRE(place.run("new slope -o slope.toml -q").status == 0);
-  const std::string there = "cd '" + place.folder().path() + "' && '" OPENCLOSE_COMMAND "' ";
-  CHECK(std::system((there + "fos slope.toml -o out >/dev/null 2>&-").c_str()) == 0);
-  for (const auto& entry : std::filesystem::directory_iterator(place.folder() / "out")) {
-    INFO(entry.path());
-    if (entry.path().extension() == ".csv") CHECK_THAT(openclose::test::text_of(entry.path()), !ContainsSubstring("openclose"));
-  }
-  const int status = std::system((there + "check slope.toml >&- 2>/dev/null").c_str());
-  CHECK(WEXITSTATUS(status) == 3);
-}
-
-TEST_CASE("a scene whose file name is no text is analysed like any other", "[cli]") {
-  const Workplace place("");
-  place.folder().write("b\xf6.toml", openclose::test::block_on_incline(20.0));
-  CHECK(place.run("run b\xf6.toml --dt 0.001 --end 0.01 --start unloaded -q -o out").status == 0);
-  CHECK(nlohmann::json::accept(openclose::test::text_of(place.folder() / "out/summary.json")));
-}
-
-TEST_CASE("strengths beyond all rock do not end the process in the midst of a limit analysis", "[cli]") {
-  const Workplace place(block_on_incline(20.0));
-  const std::string strong = " scene.toml --set joint[0].tensile_strength_pa=1e50";
-  CHECK(place.run("check" + strong).status == 0);
-  CHECK(place.run("fos" + strong + " -o out").status == 0);
 }

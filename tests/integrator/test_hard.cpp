@@ -282,5 +282,6 @@ TEST_CASE("saved springs that there are not are refused", "[integrator][hard]") 
   CHECK_FALSE(reads({0, -1, 0}));
   CHECK_FALSE(reads({0, 5, 0}));
   CHECK_FALSE(reads({0, 0, -1}));
-  CHECK_FALSE(reads({0, 0, 17}));
+  CHECK_FALSE(reads({3, 4, 16}));
+  CHECK_FALSE(reads({3, 1, 2}));
 }
