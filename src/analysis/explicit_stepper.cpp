@@ -36,7 +36,7 @@ void ExplicitStepper::collect() {
 
 void ExplicitStepper::forget() {
   held_step_ = 0.0;
-  loop_ = std::make_unique<CentralDifference>(state_.contact_skin);
+  loop_ = std::make_unique<CentralDifference>(state_.lengths.contact_skin);
   is_ahead_ = false;
   loaded_since_ = never;
 }
@@ -80,8 +80,8 @@ bool ExplicitStepper::renew() {
 double ExplicitStepper::approach_step() {
   if (!approach_step_) {
     loop_->store_blocks(state_.system);
-    approach_step_ = approach_bound_.step(state_.system, state_.joints, state_.detector.candidate_pairs(), loop_->approach(), state_.contact_skin,
-                                          state_.scene.method.step_fraction);
+    approach_step_ = approach_bound_.step(state_.system, state_.joints, state_.detector.candidate_pairs(), loop_->approach(),
+                                          state_.lengths.contact_skin, state_.scene.method.step_fraction);
   }
   return *approach_step_;
 }
@@ -117,7 +117,7 @@ double ExplicitStepper::longest_stable_step(MassDamping damping) {
   const double found_in_time = loop_->is_fast() ? approach_step() : std::numeric_limits<double>::infinity();
   const auto longest = [&](double way) { return std::min({stable, found_in_time, loop_->step_within(way)}); };
   // Each change of the step has its price; blocks may become faster before the next one.
-  const double limit = state_.scene.step.max_displacement, with_room = longest(limit / worthwhile_growth);
+  const double limit = state_.lengths.longest_displacement, with_room = longest(limit / worthwhile_growth);
   if (longest(limit) < held_step_ || with_room > worthwhile_growth * held_step_) held_step_ = with_room;
   return held_step_;
 }
@@ -125,7 +125,7 @@ double ExplicitStepper::longest_stable_step(MassDamping damping) {
 Move ExplicitStepper::move(double h, MassDamping damping, bool any_length) {
   const double span = 1.0 / (h * state_.scheme->inertia(h));
   const auto with = [&](double fast_step) {
-    return loop_->move(h, span, state_.external.base_acceleration(), state_.scene.step.max_displacement, fast_step, damping,
+    return loop_->move(h, span, state_.external.base_acceleration(), state_.lengths.longest_displacement, fast_step, damping,
                        state_.scene.method.local_damping);
   };
   // What the step would do is known only now.

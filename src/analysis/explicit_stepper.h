@@ -16,10 +16,10 @@ namespace openclose {
 class ExplicitStepper {
  public:
   /// The state must outlive the stepper.
-  explicit ExplicitStepper(SimulationState& state) : state_(state), loop_(std::make_unique<CentralDifference>(state.contact_skin)) {}
+  explicit ExplicitStepper(SimulationState& state) : state_(state), loop_(std::make_unique<CentralDifference>(state.lengths.contact_skin)) {}
 
-  /// One step of the loop with this damping of the motion, which stays in the loop. It does not look whether h is below the critical step. A step that
-  /// is not taken because it was `relisted` is to be chosen again, from the critical step of more contacts.
+  /// One step of the loop with this damping of the motion, which stays in the loop. It does not look whether h is below the critical step. A step
+  /// that is not taken because it was `relisted` is to be chosen again, from the critical step of more contacts.
   StepResult step(double h, MassDamping damping) { return step(h, damping, false); }
   /// The same with any length: where it needs more contacts than are listed they are, and it is taken then. The state is up to date afterwards.
   StepResult step_of_any_length(double h);

@@ -63,7 +63,7 @@ void begin(Simulation& simulation, SettleCourse& course) {
 bool follow(const Simulation& simulation, const StepResult& step, SettleCourse& course) {
   const SettleInput& input = simulation.scene().settle;
   const BlockSystem& system = simulation.system();
-  const double limit = simulation.scene().step.max_displacement;
+  const double limit = simulation.state().lengths.longest_displacement;
   SettleResult& result = course.result;
   if (!step.accepted) {
     course.dt *= step.moved > limit ? std::clamp(factor_to_limit(limit, step.moved), deepest_cut, 1.0) : cut;

@@ -2,38 +2,47 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "openclose/analysis/solved_step.h"
 #include "openclose/core/tolerance.h"
-#include "openclose/geometry/polygon.h"
 #include "openclose/integrator/integrators.h"
 #include "openclose/integrator/registry.h"
+#include "openclose/scene/median_size.h"
 
 namespace openclose {
 
-double default_contact_skin(const std::vector<BlockInput>& blocks) {
-  std::vector<double> areas;
-  for (const BlockInput& block : blocks) {
-    if (!block.fixed) areas.push_back(std::abs(signed_area(block.vertices)));
-  }
-  if (areas.empty()) return tolerance::contact_skin_m;
-  const auto median = areas.begin() + static_cast<std::ptrdiff_t>(areas.size() / 2);
-  std::nth_element(areas.begin(), median, areas.end());
-  return std::min(tolerance::contact_skin_m, tolerance::contact_skin_of_size * std::sqrt(*median));
+namespace {
+
+LengthsOfBlocks lengths_of(const Scene& scene) {
+  LengthsOfBlocks lengths(scene.blocks);
+  lengths.contact_skin = scene.method.contact_skin.value_or(lengths.contact_skin);
+  lengths.longest_displacement = scene.step.max_displacement.value_or(lengths.longest_displacement);
+  return lengths;
+}
+
+}  // namespace
+
+LengthsOfBlocks::LengthsOfBlocks(const std::vector<BlockInput>& blocks) {
+  const std::optional<double> size = median_size(blocks);
+  if (!size) return;
+  contact_skin = std::min(contact_skin, tolerance::contact_skin_of_size * *size);
+  search_skin = std::min(search_skin, tolerance::search_skin_of_size * *size);
+  longest_displacement = std::min(longest_displacement, tolerance::longest_displacement_of_size * *size);
 }
 
 SimulationState::SimulationState(Scene scene_to_follow, std::unique_ptr<Enforcement> own)
     : scene(std::move(scene_to_follow)),
-      contact_skin(scene.method.contact_skin.value_or(default_contact_skin(scene.blocks))),
+      lengths(lengths_of(scene)),
       system(scene),
       external(scene, system),
       joints(scene),
       enforcement(own ? std::move(own) : make_enforcement(scene.method)),
       begins(scene.method.first_integrator.has_value()),
       // Two vertices may approach each other by the largest displacement each.
-      detector(2.0 * scene.step.max_displacement,
-               {scene.method.skip_search, scene.method.skip_narrow_phase && enforcement->follows_gaps(), scene.method.skip_looks, contact_skin}),
+      detector(2.0 * lengths.longest_displacement, {scene.method.skip_search, scene.method.skip_narrow_phase && enforcement->follows_gaps(),
+                                                    scene.method.skip_looks, lengths.contact_skin, lengths.search_skin}),
       output_velocity(system.state().velocity),
       resting(scene.rest, system),
       start_kinetic_energy(system.kinetic_energy()),
@@ -92,7 +101,7 @@ StepProblem SimulationState::problem(double dt, bool statics) const {
   if (dt > 0.0) p.inertia = statics ? 2.0 / (dt * dt) : scheme->inertia(dt);
   p.end_weight = statics ? 1.0 : scheme->end_weight();
   p.bonds = bonds;
-  p.longest_displacement = scene.step.max_displacement;
+  p.longest_displacement = lengths.longest_displacement;
   if (!statics) p.scheme = scheme.get();
   return p;
 }

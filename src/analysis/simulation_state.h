@@ -11,12 +11,19 @@
 #include "openclose/analysis/step_counters.h"
 #include "openclose/contact/detection.h"
 #include "openclose/core/memory.h"
+#include "openclose/core/tolerance.h"
 #include "openclose/integrator/enforcement.h"
 
 namespace openclose {
 
-/// [m] By which blocks of this size may move against each other before their contacts are found anew.
-double default_contact_skin(const std::vector<BlockInput>& blocks);
+/// [m] Lengths that follow from the size of the free blocks, where the scene does not give them.
+struct LengthsOfBlocks {
+  explicit LengthsOfBlocks(const std::vector<BlockInput>& blocks);
+
+  double contact_skin = tolerance::contact_skin_m;                  ///< see tolerance.h
+  double search_skin = tolerance::search_skin_m;                    ///< see tolerance.h
+  double longest_displacement = tolerance::longest_displacement_m;  ///< see tolerance.h
+};
 
 struct SimulationState {
   using Unknowns = Motion::Unknowns;
@@ -67,8 +74,8 @@ struct SimulationState {
   void exchange(Archive& archive);
 
   Scene scene;
-  const double contact_skin;  ///< [m] the scene's, or the default for its blocks
-  BlockSystem system;         ///< its velocities are those of the scheme, which may be half a step behind
+  const LengthsOfBlocks lengths;  ///< the scene's, or those of its blocks
+  BlockSystem system;             ///< its velocities are those of the scheme, which may be half a step behind
   ExternalForces external;
   JointTable joints;
   std::unique_ptr<Enforcement> enforcement;
@@ -82,8 +89,8 @@ struct SimulationState {
   bool may_rest = false;
   bool base_moves = false;
   Bonds bonds = Bonds::break_under_load;
-  double time = 0.0;        ///< [s]
-  std::string reason;       ///< why the last advance got nowhere
+  double time = 0.0;   ///< [s]
+  std::string reason;  ///< why the last advance got nowhere
   EnergyLedger ledger;
   double start_kinetic_energy = 0.0;                        ///< [J]
   double kinetic_ahead = 0.0;                               ///< [J] in the ledger, see CentralDifference::kinetic_ahead()

@@ -101,7 +101,7 @@ bool SolvedStepper::is_no_step(StepResult& result) {
   if (solution_.converged) {
     result.moved = largest_move(state_.system, solution_);
     const bool turned = turns_too_far(state_.system, state_.contacts.moving, solution_);
-    if (!turned && result.moved <= state_.scene.step.max_displacement) return false;
+    if (!turned && result.moved <= state_.lengths.longest_displacement) return false;
     result.reason = turned ? "a block that is in contact turned by more than 15 degrees in one step"
                            : "a block moved farther in one step than step.max_displacement_m";
   } else {
@@ -273,7 +273,7 @@ bool SolvedStepper::advance(double dt) {
   const bool statics = state_.scene.method.statics, adaptive = state_.scene.step.adaptive && !statics;
   double remaining = dt, trial = adaptive ? control_.step(dt) : dt;
   const double smallest = state_.scene.step.smallest_fraction * dt;
-  const double furthest = state_.scene.step.max_displacement, limit = part_of_limit * furthest;
+  const double furthest = state_.lengths.longest_displacement, limit = part_of_limit * furthest;
   bool ended_at_entry = false;  // the last attempt was cut there: what comes next has its contact and may be long
   while (remaining > 0.0) {
     trial = std::min(trial, remaining);

@@ -9,6 +9,7 @@
 
 #include "machine_output.h"
 #include "openclose/io/output_folder.h"
+#include "stop_signal.h"
 
 namespace openclose {
 
@@ -35,6 +36,7 @@ CaseOrder case_order(const CaseOptions& options, const std::string& command, con
   order.folder = options.folder.empty() ? "results/" + std::filesystem::path(options.scene_file).stem().string() + "-" + kind : options.folder;
   require_no_root(order.folder);
   order.jobs = options.jobs > 0 ? options.jobs : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  order.interruption = throw_if_stopped;
   return order;
 }
 

@@ -9,6 +9,7 @@
 #include "openclose/analysis/spectrum.h"
 #include "openclose/core/error.h"
 #include "openclose/core/process.h"
+#include "openclose/io/text_files.h"
 #include "openclose/scene/check.h"
 
 namespace openclose {

@@ -8,7 +8,9 @@
 #include "commands.h"
 #include "machine_output.h"
 #include "openclose/core/error.h"
+#include "openclose/core/files.h"
 #include "openclose/io/drawing.h"
+#include "openclose/io/text_files.h"
 #include "openclose/scene/angle.h"
 #include "openclose/scene/writer.h"
 
@@ -45,7 +47,11 @@ int cut_command(const Options& options) {
       throw InputError({written, 0}, "", "this is the scene that is being cut", "another file to write to");
     }
   }
-  const auto place_of = [](const std::string& path) { return std::filesystem::weakly_canonical(std::filesystem::absolute(path)); };
+  const auto place_of = [](const std::string& path) {
+    std::error_code unknown;
+    const std::filesystem::path place = std::filesystem::weakly_canonical(absolute_path(path), unknown);
+    return unknown ? absolute_path(path).lexically_normal() : place;
+  };
   if (place_of(file) == place_of(drawing)) {
     throw InputError({file, 0}, "", "the blocks and their drawing cannot be the same file",
                      "-o with the name of a scene (.toml), --svg with that of the drawing");
@@ -98,8 +104,8 @@ int draw_scene(Options options) {
 }  // namespace
 
 int draw_command(const Options& options) {
-  if (std::filesystem::is_regular_file(options.results)) return draw_scene(options);
-  if (!std::filesystem::exists(options.results))
+  if (is_regular_file(options.results)) return draw_scene(options);
+  if (!is_there(options.results))
     throw InputError({options.results, 0}, "", "there is no such folder or file",
                      "the folder of a run or fos, results/<name of the scene> by default, or a scene");
   const std::string file = options.drawing_file.empty() ? options.results + "/drawing.svg" : options.drawing_file;

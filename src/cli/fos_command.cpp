@@ -8,8 +8,10 @@
 #include "commands.h"
 #include "openclose/analysis/strength_reduction.h"
 #include "openclose/core/error.h"
+#include "openclose/core/files.h"
 #include "openclose/core/process.h"
 #include "openclose/io/checkpoint.h"
+#include "openclose/io/folder_lock.h"
 #include "openclose/io/formats.h"
 #include "openclose/io/progress.h"
 #include "openclose/io/search_checkpoint.h"
@@ -142,7 +144,7 @@ FactorOfSafety search(Simulation& simulation, const Options& options, SearchFold
 }
 
 int report_stop(const FactorOfSafety& safety, const Options& options, const OutputFolder& folder) {
-  const bool can_go_on = std::filesystem::exists(folder.path_of(checkpoint_name));
+  const bool can_go_on = is_there(folder.path_of(checkpoint_name));
   print_message(fmt::format("{}; state saved in {}{}", safety.reason, folder.path(),
                             can_go_on ? "; to go on: " + command_to_go_on("fos", options, folder) : ""));
   return exit_status_of_stop();
@@ -190,6 +192,7 @@ int fos_command(const Options& options) {
   Simulation simulation(std::move(loaded.scene));
   if (!restart) loaded.judge_overlaps(simulation, FirstMotion::settling);
   const OutputFolder folder = output_folder(options);
+  const FolderLock lock(folder.path());
   // As in `run`: before this nothing is lost.
   watch_for_stop_signals();
   SearchFolder in_folder(options, simulation, folder);
@@ -221,6 +224,7 @@ int fos_command(const Options& options) {
 
   if (!safety.bracket.stopped) folder.remove_checkpoint();
   folder.list_results();
+  lock.require_same_folder();
   if (safety.bracket.stopped) return report_stop(safety, options, folder);
   if (!safety.found()) {
     print_message(fmt::format("no {}: {}; state saved in {}", name_of_answer(increase), safety.reason, folder.path()));

@@ -12,9 +12,10 @@
 #include "machine_output.h"
 #include "messages.h"
 #include "openclose/core/error.h"
+#include "openclose/core/files.h"
 #include "openclose/draft/drafts.h"
 #include "openclose/draft/written_heading.h"
-#include "openclose/io/output_folder.h"
+#include "openclose/io/text_files.h"
 #include "openclose/scene/check.h"
 #include "openclose/scene/reader.h"
 #include "option_errors.h"
@@ -44,7 +45,7 @@ std::string option_of(std::string_view dimension) {
 
 /// A file that is there is replaced only as long as nobody has edited it: it is the beginning of somebody's work.
 bool is_unedited(const std::string& path) {
-  if (!std::filesystem::is_regular_file(path)) return false;
+  if (!is_regular_file(path)) return false;
   std::ifstream stream(path, std::ios::binary);
   return is_as_written(std::string{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()});
 }
@@ -53,7 +54,7 @@ int new_command(const NewOptions& options) {
   const auto draft = std::ranges::find(drafts(), std::string_view(options.kind), &Draft::name);
   const std::string file = options.file.empty() ? options.kind + ".toml" : options.file;
   const std::string text = with_heading(scene_from(*draft, options.dimensions));
-  const bool is_there = std::filesystem::exists(file);
+  const bool is_there = openclose::is_there(file);
   if (is_there && !is_unedited(file))
     throw InputError({file, 0}, "", "is there, and is not as openclose new has written it", "-o with the name of a new file");
   const Scene scene = scene_of_text(text, file);

@@ -7,7 +7,7 @@
 #include "machine_output.h"
 #include "messages.h"
 #include "openclose/core/error.h"
-#include "openclose/io/output_folder.h"
+#include "openclose/io/text_files.h"
 #include "openclose/report/report.h"
 
 namespace openclose {

@@ -8,6 +8,7 @@
 #include "openclose/core/error.h"
 #include "openclose/core/process.h"
 #include "openclose/io/checkpoint.h"
+#include "openclose/io/folder_lock.h"
 #include "openclose/io/formats.h"
 #include "openclose/io/progress.h"
 #include "openclose/scene/check.h"
@@ -227,6 +228,7 @@ int run_command(const Options& options) {
   RunInFolder in_folder(options, simulation);
   if (restart) in_folder.read(*restart);
   const OutputFolder folder = output_folder(options);
+  const FolderLock lock(folder.path());
   // Who stops the command before this loses nothing; from here on what is stopped ends with a word on how to go on.
   watch_for_stop_signals();
   const RunResult result = in_folder.is_in_motion() ? in_folder.go_on_in(folder, *restart) : in_folder.run_in(folder);
@@ -236,6 +238,7 @@ int run_command(const Options& options) {
   write_summary(folder, summary_of_run(options, loaded, result, simulation), simulation);
   if (result.has_start) write_formats(scene.formats, folder);
   folder.list_results();
+  lock.require_same_folder();
   return report_end(options, result, simulation, folder);
 }
 }  // namespace openclose

@@ -94,7 +94,7 @@ void make_room(const OutputFolder& folder, const Options& options) {
     folder.remove_results();
   }
   // What is gone is not ours any more, however this analysis ends.
-  folder.list_results();
+  folder.forget_removed();
 }
 
 std::vector<std::string> files_read(const Options& options, const Scene& scene) {

@@ -7,7 +7,7 @@
 #include "completion.h"
 #include "manual.h"
 #include "openclose/core/error.h"
-#include "openclose/io/output_folder.h"
+#include "openclose/io/text_files.h"
 #include "option_errors.h"
 
 namespace openclose {

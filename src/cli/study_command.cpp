@@ -15,6 +15,7 @@
 #include "openclose/study/study.h"
 #include "openclose/study/variation.h"
 #include "option_errors.h"
+#include "stop_signal.h"
 
 namespace openclose {
 namespace {
@@ -45,6 +46,7 @@ int study_command(const StudyOptions& options) {
   order.contacts = options.contacts;
   order.quantity = options.quantity;
   order.reference = options.reference;
+  watch_for_stop_signals();
   Study study;
   {
     Progress progress("study", options.cases.quiet);
@@ -55,7 +57,8 @@ int study_command(const StudyOptions& options) {
   print_warnings(study.warnings);
   const bool has_picture = files.size() > 1;
   // One of an earlier study would be taken for the picture of this one.
-  if (!has_picture) std::filesystem::remove(order.cases.folder + "/study.svg");
+  std::error_code was_none;
+  if (!has_picture) std::filesystem::remove(order.cases.folder + "/study.svg", was_none);
   if (!options.cases.quiet)
     fmt::print("{}written to {}/study.csv{}\n", study_table(study), order.cases.folder,
                has_picture ? " and study.svg" : "; no picture, since there is no error to draw");

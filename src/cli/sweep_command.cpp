@@ -11,6 +11,7 @@
 #include "openclose/io/progress.h"
 #include "openclose/study/sweep.h"
 #include "option_errors.h"
+#include "stop_signal.h"
 
 namespace openclose {
 namespace {
@@ -30,6 +31,7 @@ int sweep_command(const SweepOptions& options) {
   for (const std::string& text : options.variations) order.variations.push_back(variation_from(text));
   if (options.command == "fos" && !options.quantity.empty())
     throw InputError({"sweep", 0}, "--quantity", "is for --command run; fos has the factor of safety", "--command run, or none");
+  watch_for_stop_signals();
   Sweep sweep;
   {
     Progress progress("sweep", options.cases.quiet);

@@ -36,7 +36,7 @@ bool Detector::moved_beyond_search_skin(const BlockSystem& system) const {
     if (then->empty()) continue;
     for (int b : system.free_blocks()) {
       const double moved = Motion::displacement_bound(system.displacement(b) - (*then)[b], system.block(b).radius);
-      if (moved > 0.5 * tolerance::search_skin_m) return true;
+      if (moved > 0.5 * skips_.search_skin) return true;
     }
   }
   return false;
@@ -52,7 +52,7 @@ void Detector::search(const BlockSystem& system) {
     searched_moving_at_.clear();
   else if (searched_moving_at_.empty())
     searched_moving_at_ = searched_at_;
-  const double room = reach_ + skips_.contact_skin + tolerance::search_skin_m;
+  const double room = reach_ + skips_.contact_skin + skips_.search_skin;
   for (int b = 0; b < system.block_count(); ++b) {
     const auto& block = system.block(b);
     searched_at_[b] = system.displacement(b);
@@ -80,7 +80,7 @@ void Detector::search(const BlockSystem& system) {
     // A rotation moves a block's own points where it touches the other, and all of a larger one's surroundings. The boxes of a pair overlap, so that
     // its centroids are never farther apart than this.
     const auto [a, b] = candidates_.pairs[i];
-    const double farthest = std::numbers::sqrt2 * (places_[a].radius + places_[b].radius + room + 2.0 * tolerance::search_skin_m);
+    const double farthest = std::numbers::sqrt2 * (places_[a].radius + places_[b].radius + room + 2.0 * skips_.search_skin);
     const double arm = farthest + std::min(places_[a].radius, places_[b].radius) + reach_ + skips_.contact_skin;
     for (Way* way : {&ways_[a], &ways_[b]}) {
       way->arm = std::max(way->arm, arm);

@@ -39,6 +39,7 @@ struct DetectionSkips {
   bool narrow_phase = true;                         ///< false: all candidate pairs are redone in every step
   bool looks = true;                                ///< false: all pairs are looked at in every step, whether or not they may be due
   double contact_skin = tolerance::contact_skin_m;  ///< [m]
+  double search_skin = tolerance::search_skin_m;    ///< [m]
 };
 
 struct DetectionCounters {

@@ -4,17 +4,15 @@
 
 namespace openclose {
 
-JointTable::JointTable(const Scene& scene)
-    : material_count_(static_cast<int>(scene.materials.size())),
-      index_(scene.materials.size() * scene.materials.size(), -1),
-      unreduced_(scene.joints) {
+JointTable::JointTable(const Scene& scene) : unreduced_(scene.joints) {
   require_joints(scene);
   for (const JointProperties& joint : scene.joints) joints_.emplace_back(joint);
   for (std::size_t j = 0; j < joints_.size(); ++j) {
     if (!joints_[j].has_materials()) continue;
-    const auto [a, b] = joints_[j].materials;
-    index_[a * material_count_ + b] = index_[b * material_count_ + a] = static_cast<int>(j);
+    const auto& [a, b] = joints_[j].materials;
+    of_materials_.push_back({std::minmax({a, b}), static_cast<int>(j)});
   }
+  std::ranges::sort(of_materials_, {}, &OfMaterials::materials);
 }
 
 void JointTable::reduce_strength(double factor) {

@@ -1,8 +1,10 @@
 // Joint properties by material pair and by the seams that name them, ready for look-up by integers.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "openclose/contact/contact.h"
@@ -28,7 +30,12 @@ class JointTable {
   /// Throws InputError as require_joints does.
   explicit JointTable(const Scene& scene);
 
-  int index(int material_a, int material_b) const { return index_[material_a * material_count_ + material_b]; }
+  /// -1 if there is none, which is so only of materials whose blocks cannot touch.
+  int index(int material_a, int material_b) const {
+    const std::pair<int, int> materials = std::minmax({material_a, material_b});
+    const auto place = std::ranges::lower_bound(of_materials_, materials, {}, &OfMaterials::materials);
+    return place != of_materials_.end() && place->materials == materials ? place->joint : -1;
+  }
   /// Of a contact: what the scene names for the edge, if one of the two edges at the corner has the same name, for then both lie in one seam, or in
   /// two that are alike; else that of the materials.
   int index(const BlockSystem& system, const Contact& contact) const {
@@ -46,8 +53,13 @@ class JointTable {
   void exchange(Archive& archive);
 
  private:
-  int material_count_ = 0;
-  std::vector<int> index_;
+  /// Scenes may name as many materials as blocks: what is kept goes with the number of joints, not of pairs.
+  struct OfMaterials {
+    std::pair<int, int> materials;  ///< the lower number first
+    int joint;
+  };
+
+  std::vector<OfMaterials> of_materials_;  ///< ascending
   std::vector<TabulatedJoint> joints_;
   std::vector<JointProperties> unreduced_;
   std::optional<double> reduction_;  ///< by reduce_strength(), if it was called

@@ -59,8 +59,14 @@ inline constexpr double seam_closures = 2.0;
 /// [m] A corner this far beyond the end of an edge still counts as opposite to it: corners that coincide in a drawing differ by rounding.
 inline constexpr double edge_end_m = 1e-6;
 
-/// [m] Room around a block's box within which candidates are kept although they cannot touch yet; larger: fewer searches, more candidates.
-inline constexpr double search_skin_m = 0.25;
+/// [m] and [-] of the size of the free blocks, the root of their median area: room around a block's box within which candidates are kept although
+/// they cannot touch yet, the smaller of the two. Larger: fewer searches, more candidates; a model with blocks of a centimetre, all of it smaller
+/// than the length, would have each block as the candidate of each.
+inline constexpr double search_skin_m = 0.25, search_skin_of_size = 0.5;
+
+/// [m] and [-] of the size of the free blocks: how far a vertex may move in a step, the smaller of the two, unless the scene says otherwise. Blocks
+/// twice that far apart are contacts, since they may meet in the step: less than one block's size away.
+inline constexpr double longest_displacement_m = 0.1, longest_displacement_of_size = 0.25;
 
 /// [m] and [-] of the size of the free blocks, the root of their median area: the list of contacts stays as it is until blocks may have moved this
 /// much against each other, the smaller of the two, unless the scene says otherwise. Tributary lengths are off by less, 0.1 % of a joint, and corners

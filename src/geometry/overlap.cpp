@@ -6,17 +6,14 @@
 
 #include "openclose/core/tolerance.h"
 #include "openclose/geometry/box.h"
+#include "openclose/geometry/segment.h"
+#include "openclose/geometry/touching_outlines.h"
 
 namespace openclose {
 namespace {
 
-struct Segment {
-  Vec2 start;
-  Vec2 end;
-
-  Box box() const { return Box::around(start, end); }
-  Vec2 at(double fraction) const { return start + fraction * (end - start); }
-};
+/// Polygons with more corners are looked at only where they are near each other.
+constexpr std::size_t few_corners = 64;
 
 Segment edge(const Polygon& polygon, std::size_t i) {
   return {polygon[i], polygon[i + 1 < polygon.size() ? i + 1 : 0]};
@@ -24,30 +21,32 @@ Segment edge(const Polygon& polygon, std::size_t i) {
 
 /// Where, as a fraction of the segment, it crosses the line of another one; none for parallel ones.
 std::optional<double> crossing(const Segment& segment, const Segment& other) {
-  const Vec2 along = segment.end - segment.start;
-  const Vec2 across = other.end - other.start;
+  const Vec2 along = segment.to - segment.from;
+  const Vec2 across = other.to - other.from;
   const double sine = cross(along, across);
   if (sine == 0.0) return std::nullopt;
-  return cross(other.start - segment.start, across) / sine;
+  return cross(other.from - segment.from, across) / sine;
 }
 
 double foot(const Segment& segment, const Vec2& point) {
-  const Vec2 along = segment.end - segment.start;
-  return (point - segment.start).dot(along) / along.squaredNorm();
+  const Vec2 along = segment.to - segment.from;
+  return (point - segment.from).dot(along) / along.squaredNorm();
 }
 
-/// Fractions of the segment, in order, between which its distance to the boundary of the polygon has no reason to vanish.
+/// Fractions of the segment, in order, between which its distance to the boundary of the polygon has no reason to vanish. Edges are left out that are
+/// farther away than the common box is wide: what is as deep as that is found without them.
 std::vector<double> divisions(const Segment& segment, const Polygon& polygon, const Box& common) {
+  const Box reach = segment.box().inflated(polygon.size() > few_corners ? (common.high - common.low).minCoeff() : (common.high - common.low).sum());
   std::vector<double> fractions{0.0, 1.0};
   const auto add = [&](double fraction) {
     if (fraction > 0.0 && fraction < 1.0) fractions.push_back(fraction);
   };
   for (std::size_t i = 0; i < polygon.size(); ++i) {
     const Segment other = edge(polygon, i);
-    if (!common.overlaps(other.box())) continue;
+    if (!common.overlaps(other.box()) || !reach.overlaps(other.box())) continue;
     if (const std::optional<double> fraction = crossing(segment, other)) add(*fraction);
-    add(foot(segment, other.start));
-    add(foot(segment, other.end));
+    add(foot(segment, other.from));
+    add(foot(segment, other.to));
   }
   std::sort(fractions.begin(), fractions.end());
   return fractions;
@@ -71,21 +70,37 @@ double depth_of_boundary(const Polygon& other, const Polygon& polygon, const Box
   return depth;
 }
 
-/// From vertex i into the polygon along the bisector of its angle, as far as the common box can reach.
-Segment bisector(const Polygon& polygon, std::size_t i, const Box& common) {
+/// The unit vector from vertex i into the polygon, along the bisector of its angle.
+Vec2 inwards(const Polygon& polygon, std::size_t i) {
   const std::size_t n = polygon.size();
   const Vec2 in = (polygon[i] - polygon[(i + n - 1) % n]).normalized();
   const Vec2 out = (polygon[(i + 1) % n] - polygon[i]).normalized();
-  return {polygon[i], polygon[i] + (common.high - common.low).norm() * perpendicular(in + out).normalized()};
+  return perpendicular(in + out).normalized();
+}
+
+/// Where the segment crosses an edge; none where it does not.
+std::optional<double> crossing_of_edge(const Segment& segment, const Segment& side) {
+  const std::optional<double> on_side = crossing(side, segment);
+  if (!on_side || *on_side < 0.0 || *on_side > 1.0) return std::nullopt;
+  const double fraction = *crossing(segment, side);
+  return fraction > 0.0 && fraction < 1.0 ? std::optional(fraction) : std::nullopt;
+}
+
+/// From vertex i along the bisector of its angle, as far as the common box can reach; of a polygon with many corners until it leaves it.
+Segment bisector(const Polygon& polygon, std::size_t i, const Box& common) {
+  const std::size_t n = polygon.size();
+  const Segment whole{polygon[i], polygon[i] + (common.high - common.low).norm() * inwards(polygon, i)};
+  double end = 1.0;
+  for (std::size_t k = 0; k < n && n > few_corners; ++k) {
+    if (k == i || (k + 1) % n == i) continue;
+    if (const std::optional<double> fraction = crossing_of_edge(whole, edge(polygon, k))) end = std::min(end, *fraction);
+  }
+  return {whole.from, whole.at(end)};
 }
 
 void add_crossings(const Segment& segment, const Polygon& polygon, std::vector<double>& fractions) {
   for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Segment side = edge(polygon, i);
-    const std::optional<double> on_side = crossing(side, segment);
-    if (!on_side || *on_side < 0.0 || *on_side > 1.0) continue;
-    const double fraction = *crossing(segment, side);
-    if (fraction > 0.0 && fraction < 1.0) fractions.push_back(fraction);
+    if (const std::optional<double> fraction = crossing_of_edge(segment, edge(polygon, i))) fractions.push_back(*fraction);
   }
 }
 
@@ -96,7 +111,7 @@ double depth_of_bisectors(const Polygon& polygon, const Polygon& other, const Bo
     if (!common.contains(polygon[i])) continue;
     const Segment segment = bisector(polygon, i, common);
     std::vector<double> fractions{0.0, 1.0};
-    add_crossings(segment, polygon, fractions);
+    if (polygon.size() <= few_corners) add_crossings(segment, polygon, fractions);
     add_crossings(segment, other, fractions);
     std::sort(fractions.begin(), fractions.end());
     for (std::size_t k = 0; k + 1 < fractions.size(); ++k) {
@@ -119,6 +134,13 @@ bool parts(const Polygon& convex, const Polygon& other, double depth) {
   return false;
 }
 
+/// Edges that may come into the box.
+std::size_t edges_in(const Polygon& polygon, const Box& box) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < polygon.size(); ++i) count += edge(polygon, i).box().overlaps(box);
+  return count;
+}
+
 /// Whether no edge of the one comes near the box of the other, and a corner of that lies outside: for blocks in a hollow of one that is not convex.
 bool lies_beside(const Polygon& inner, const Polygon& hollow) {
   const Box box = Box::around(inner);
@@ -138,9 +160,21 @@ double overlap_depth(const Polygon& a, const Polygon& b) {
   return depth < tolerance::shortest_edge_m ? 0.0 : depth;
 }
 
+Outline outline_of(const Polygon& polygon) {
+  Outline outline{polygon, true};
+  const std::size_t n = polygon.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vec2 before = polygon[i] - polygon[(i + n - 1) % n], after = polygon[(i + 1) % n] - polygon[i];
+    outline.is_convex = outline.is_convex && cross(before, after) >= 0.0;
+  }
+  return outline;
+}
+
 double overlap_depth_beyond(double depth, const Outline& a, const Outline& b) {
   if ((a.is_convex && parts(a.corners, b.corners, depth)) || (b.is_convex && parts(b.corners, a.corners, depth))) return 0.0;
   if ((!a.is_convex && lies_beside(b.corners, a.corners)) || (!b.is_convex && lies_beside(a.corners, b.corners))) return 0.0;
+  const Box common = Box::around(a.corners).common(Box::around(b.corners));
+  if (edges_in(a.corners, common) * edges_in(b.corners, common) > few_corners * few_corners && only_touch(a.corners, b.corners, depth)) return 0.0;
   return overlap_depth(a.corners, b.corners);
 }
 

@@ -18,8 +18,10 @@ double common_length(const Segment& segment, const Polygon& polygon) {
   };
   for (std::size_t i = 0; i < polygon.size(); ++i) {
     const Vec2& a = polygon[i];
-    const Vec2 edge = polygon[i + 1 < polygon.size() ? i + 1 : 0] - a;
-    add((a - segment.from).dot(along) / along.squaredNorm());
+    const Vec2& b = polygon[i + 1 < polygon.size() ? i + 1 : 0];
+    if (!reach.overlaps(Box::around(a, b))) continue;
+    const Vec2 edge = b - a;
+    for (const Vec2& end : {a, b}) add((end - segment.from).dot(along) / along.squaredNorm());
     const double sine = cross(along, edge);
     if (sine != 0.0) add(cross(a - segment.from, edge) / sine);
   }

@@ -9,8 +9,9 @@
 
 #include "openclose/core/check_sum.h"
 #include "openclose/core/error.h"
+#include "openclose/core/files.h"
 #include "openclose/core/tolerance.h"
-#include "openclose/io/output_folder.h"
+#include "openclose/io/text_files.h"
 #include "openclose/scene/keys.h"
 #include "openclose/scene/writer.h"
 #include "openclose/version.h"
@@ -133,9 +134,9 @@ void require_own_place(const std::string& path, const std::vector<TextFile>& fil
 }  // namespace
 
 void write_checkpoint(const std::string& path, const Scene& scene, Checkpoint checkpoint) {
-  const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
+  const std::filesystem::path folder = absolute_path(path).parent_path();
   const auto require_folder = [&] {
-    if (!std::filesystem::is_directory(folder)) throw WriteError(path, "its folder has been removed while the run went on");
+    if (!is_folder(folder.string())) throw WriteError(path, "its folder has been removed while the run went on");
   };
   require_folder();
   std::vector<TextFile> files(1);

@@ -1,15 +1,19 @@
 #include "openclose/io/output_folder.h"
 
-#include <fcntl.h>
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <charconv>
 #include <filesystem>
 #include <regex>
 #include <string_view>
 
+#include "openclose/core/check_sum.h"
 #include "openclose/core/error.h"
+#include "openclose/core/files.h"
 #include "openclose/io/formats.h"
+#include "openclose/io/seal.h"
 
 namespace openclose {
 namespace {
@@ -26,71 +30,19 @@ constexpr std::string_view later_results[] = {"drawing.svg", "report.html"};
 constexpr std::string_view scene_heading = "# The scene as openclose has read it. The next run here writes it anew: copy it before you change it.\n";
 
 constexpr std::string_view list_heading = "# Names of results in this folder that openclose may replace and remove.";
-constexpr std::string_view part_ending = ".part";
-
-std::string part_of(std::string path) {
-  return path += part_ending;
-}
-
-[[noreturn]] void fail_unwritable(const std::string& path) {
-  throw InputError({path, 0}, "", "cannot be written", "a file in a folder that exists or can be made, and may be written to");
-}
 
 /// Of a system: what is written and removed in it would be anybody's.
 bool is_root(const std::string& folder) {
   std::error_code unknown;
-  const std::filesystem::path place = std::filesystem::weakly_canonical(std::filesystem::absolute(folder), unknown);
+  const std::filesystem::path place = std::filesystem::weakly_canonical(absolute_path(folder), unknown);
   return !unknown && place == place.root_path();
 }
 
-/// Links that lead nowhere are there, too: what is written under their names would go where they lead.
-bool is_at(const std::string& path) {
-  std::error_code unknown;
-  return std::filesystem::exists(std::filesystem::symlink_status(path, unknown));
-}
-
-std::string content_of(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
-
-std::string first_line(const std::string& text) {
-  return text.substr(0, text.find('\n'));
-}
-
-/// Whether it is as openclose has written a file of this kind: with a seal that holds, or, where its kind has none, with the same first line (the
-/// columns of a table).
-bool is_ours(const std::string& there, const TextFile& file) {
-  if (there.empty()) return true;
-  return file.seal == Seal::none ? first_line(there) == first_line(file.text) : is_sealed(there, file.seal);
-}
-
-/// A file that was not there before, whatever is at its path by now. \return whether it could be made
-bool make_new(const std::string& path) {
-  constexpr mode_t as_streams_do = 0666;
-  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, as_streams_do);
-  return file >= 0 && ::close(file) == 0;
-}
-
-void require_replaceable(const TextFile& file) {
-  if (is_at(part_of(file.path)))
-    throw InputError({part_of(file.path), 0}, "", "is there, and a file that is being written would have this name until it is complete",
-                     "another name to write to, or none of this name: openclose leaves such a file where it is killed");
-  if (!is_at(file.path) || file.replaces_ours) return;
-  const std::string accepted = "the name of a new file, or of one that may be replaced";
-  if (!std::filesystem::is_regular_file(file.path) || access(file.path.c_str(), W_OK) != 0)
-    throw InputError({file.path, 0}, "", "is there and cannot be written over", accepted);
-  if (!is_ours(content_of(file.path), file))
-    throw InputError({file.path, 0}, "",
-                     "is there and has not been written by openclose" + std::string(file.seal == Seal::none ? "" : ", or edited since"), accepted);
-}
-
-/// All that results may be called, those of formats as a folder: its name with a stroke.
+/// All that results may be called, but for the files of formats.
 std::vector<std::string> names_of_results() {
   std::vector<std::string> names(std::begin(growing_results), std::end(growing_results));
   names.insert(names.end(), std::begin(last_results), std::end(last_results));
   names.emplace_back(scene_copy_name);
-  for (const OutputFormat& format : output_formats()) names.push_back(std::string(format.name) + "/");
   return names;
 }
 
@@ -99,56 +51,38 @@ std::vector<std::string> names_that_are_used() {
   std::vector<std::string> names = names_of_results();
   names.emplace_back(list_name);
   const std::size_t whole = names.size();
-  for (std::size_t i = 0; i < whole; ++i) {
-    if (names[i].back() != '/') names.push_back(part_of(names[i]));
-  }
+  for (std::size_t i = 0; i < whole; ++i) names.push_back(part_of(names[i]));
   return names;
 }
 
-[[noreturn]] void fail_removed(const std::string& path) {
-  throw WriteError(path, "has been removed while it was written");
+/// What a file of a format stands for in lists of earlier versions: its folder, with a stroke. Empty for other files.
+std::string folder_of(const std::string& name) {
+  return name.substr(0, name.find('/') + 1);
 }
 
-/// In place of what is there, which is ours. \param path  that the file has when it is complete
-std::ofstream open_new(const std::string& path, const std::string& path_until_then) {
-  std::error_code unknown;
-  std::filesystem::remove(path_until_then, unknown);
-  if (!make_new(path_until_then)) throw WriteError(path);
-  return std::ofstream(path_until_then);
+/// Its files are listed one by one: what is no folder, or cannot be looked into, holds what nobody knows.
+void require_folder_of_format(const std::string& path) {
+  std::error_code missing, unreadable;
+  const std::filesystem::file_status status = std::filesystem::symlink_status(path, missing);
+  if (!std::filesystem::exists(status)) return;
+  if (std::filesystem::is_directory(status)) std::filesystem::directory_iterator(path, unreadable);
+  if (!std::filesystem::is_directory(status) || unreadable)
+    throw InputError({path, 0}, "", "is no folder that can be read", "-o with another folder, or that one in another place");
 }
 
-/// Takes away what was begun and not finished: files that have not got their names yet, and folders made for them that are empty.
-class Unfinished {
- public:
-  Unfinished() = default;
-  Unfinished(const Unfinished&) = delete;
-  Unfinished& operator=(const Unfinished&) = delete;
-  ~Unfinished() {
-    std::error_code ignored;
-    for (auto path = paths_.rbegin(); path != paths_.rend(); ++path) std::filesystem::remove(*path, ignored);
-  }
+std::uint64_t sum_of(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  constexpr std::size_t part = 1 << 16;  // [B] read at a time
+  std::string bytes(part, '\0');
+  std::uint64_t sum = empty_check_sum;
+  while (file.read(bytes.data(), static_cast<std::streamsize>(part)) || file.gcount() > 0)
+    sum = check_sum(std::string_view(bytes).substr(0, static_cast<std::size_t>(file.gcount())), sum);
+  return sum;
+}
 
-  std::string add(const std::string& path) {
-    paths_.emplace_back(path);
-    return path;
-  }
-
-  void make_folders(const std::string& file) {
-    std::vector<std::filesystem::path> missing;
-    std::error_code error;
-    for (std::filesystem::path folder = std::filesystem::path(file).parent_path(); !folder.empty() && !std::filesystem::exists(folder, error);
-         folder = folder.parent_path()) {
-      missing.push_back(folder);
-    }
-    for (auto folder = missing.rbegin(); folder != missing.rend(); ++folder) {
-      if (!std::filesystem::create_directory(*folder, error) && error) fail_unwritable(file);
-      paths_.push_back(*folder);
-    }
-  }
-
- private:
-  std::vector<std::filesystem::path> paths_;
-};
+[[noreturn]] void fail_come_in(const std::string& path) {
+  throw WriteError(path, "has come into the folder of results, and not from openclose: it stays, and no result takes its place");
+}
 
 }  // namespace
 
@@ -160,18 +94,16 @@ OutputFolder::OutputFolder(const std::string& path) : path_(path) {
   require_no_root(path_);
   std::error_code error;
   std::filesystem::create_directories(path, error);
-  const bool usable = !error && std::filesystem::is_directory(path) && access(path.c_str(), W_OK | X_OK) == 0;
+  const bool usable = !error && is_folder(path) && access(path.c_str(), W_OK | X_OK) == 0;
   if (!usable)
     throw InputError({path, 0}, "", "cannot write to this output folder", "-o with a folder that exists or can be made, and may be written to");
   const auto require_replaceable_name = [&](const std::string& name) {
     const std::string file = path_of(name);
-    if (!std::filesystem::exists(file)) return;
-    if (std::filesystem::is_regular_file(file) && access(file.c_str(), W_OK) == 0) return;
+    if (!is_there(file)) return;
+    if (is_regular_file(file) && access(file.c_str(), W_OK) == 0) return;
     throw InputError({file, 0}, "", "is there and cannot be written over", "-o with another folder");
   };
-  for (const std::string& name : names_that_are_used()) {
-    if (name.back() != '/') require_replaceable_name(name);
-  }
+  for (const std::string& name : names_that_are_used()) require_replaceable_name(name);
 }
 
 bool OutputFolder::has_own_scene_copy() const {
@@ -181,80 +113,126 @@ bool OutputFolder::has_own_scene_copy() const {
 }
 
 bool OutputFolder::is_claimed() const {
-  return is_there(list_name);
+  return has_file(list_name);
 }
 
-std::vector<std::string> OutputFolder::own_names() const {
-  // Earlier versions kept no list, and wrote the scene first.
-  if (!is_claimed()) return has_own_scene_copy() ? names_of_results() : std::vector<std::string>();
-  std::vector<std::string> names = listed_names();
+OutputFolder::OwnNames OutputFolder::own_names() const {
+  OwnNames names;
+  if (is_claimed()) {
+    names = listed_names();
+  } else if (has_own_scene_copy()) {
+    // Earlier versions kept no list, and wrote the scene first.
+    for (const std::string& name : names_of_results()) names.emplace(name, std::nullopt);
+    for (const std::string& name : format_files()) names.emplace(name, std::nullopt);
+  }
   // What had this name until it was complete has got its own since, unless it is still there.
-  const std::size_t listed = names.size();
-  for (std::size_t i = 0; i < listed; ++i) {
-    if (names[i].ends_with(part_ending) && !is_there(names[i])) names.push_back(names[i].substr(0, names[i].size() - part_ending.size()));
+  std::vector<std::string> complete;
+  for (const auto& [name, sum] : names) {
+    if (name.ends_with(part_ending) && !has_file(name)) complete.push_back(name.substr(0, name.size() - part_ending.size()));
+  }
+  for (const std::string& name : complete) names[name] = std::nullopt;
+  return names;
+}
+
+OutputFolder::OwnNames OutputFolder::listed_names() const {
+  OwnNames names;
+  if (!is_list(list_name)) return names;
+  std::ifstream list(path_of(list_name));
+  for (std::string line; std::getline(list, line);) {
+    if (line.empty()) continue;
+    const std::size_t space = line.find(' ');
+    if (space == std::string::npos) {
+      // Its file has been made anew since its sum was listed.
+      names[line] = std::nullopt;
+      continue;
+    }
+    std::uint64_t sum = 0;
+    constexpr int hexadecimal = 16;
+    const bool is_sum = std::from_chars(line.data() + space + 1, line.data() + line.size(), sum, hexadecimal).ec == std::errc();
+    if (is_sum) names[line.substr(0, space)] = sum;
   }
   return names;
 }
 
-std::vector<std::string> OutputFolder::listed_names() const {
-  std::vector<std::string> names;
-  if (!is_list(list_name)) return names;
-  std::ifstream list(path_of(list_name));
-  for (std::string name; std::getline(list, name);) names.push_back(name);
+std::vector<std::string> OutputFolder::used_names_there() const {
+  std::vector<std::string> names = names_that_are_used();
+  std::erase_if(names, [&](const std::string& name) { return !has_file(name); });
+  const std::vector<std::string> of_formats = format_files();
+  names.insert(names.end(), of_formats.begin(), of_formats.end());
   return names;
 }
 
+bool OutputFolder::is_own(const OwnNames& own, const std::string& name) const {
+  return own.contains(name) || (name.find('/') != std::string::npos && own.contains(folder_of(name))) || is_own_picture(name);
+}
+
 std::vector<std::string> OutputFolder::own_names_there() const {
-  const std::vector<std::string> own = own_names();
-  std::vector<std::string> names = names_that_are_used();
-  std::erase_if(names, [&](const std::string& name) {
-    return name == list_name || !is_there(name) || (std::ranges::find(own, name) == own.end() && !is_own_picture(name));
-  });
+  const OwnNames own = own_names();
+  std::vector<std::string> names = used_names_there();
+  std::erase_if(names, [&](const std::string& name) { return name == list_name || !is_own(own, name); });
   return names;
 }
 
 void OutputFolder::claim(const std::vector<std::string>& read_files) const {
   require_ours(read_files);
-  write_list(own_names_there());
+  forget_removed();
+}
+
+void OutputFolder::require_own(const OwnNames& own, const std::string& name) const {
+  const std::string accepted = "-o with another folder, or that file in another place";
+  if (!is_own(own, name) && !is_list(name)) throw InputError({path_of(name), 0}, "", "is there and has not been written by openclose", accepted);
+  const auto listed = own.find(name);
+  // What draw and report have written later has a sum of its own.
+  if (listed == own.end() || !listed->second || is_own_picture(name) || sum_of(path_of(name)) == *listed->second) return;
+  throw InputError({path_of(name), 0}, "", "has been changed since openclose has written it, and a result would replace it", accepted);
 }
 
 void OutputFolder::require_ours(const std::vector<std::string>& read_files) const {
-  const std::vector<std::string> own = own_names();
-  for (const std::string& name : names_that_are_used()) {
-    const std::string file = path_of(name);
-    std::error_code unknown;
-    if (!is_there(name)) continue;
+  for (const OutputFormat& format : output_formats()) require_folder_of_format(path_of(format.name));
+  const OwnNames own = own_names();
+  for (const std::string& name : used_names_there()) {
     for (const std::string& read : read_files) {
-      if (std::filesystem::equivalent(read, file, unknown))
+      std::error_code unknown;
+      if (std::filesystem::equivalent(read, path_of(name), unknown))
         throw InputError({read, 0}, "", "is read, and a result of this name would replace it", "-o with another folder");
     }
-    if (std::ranges::find(own, name) == own.end() && !is_own_picture(name) && !is_list(name))
-      throw InputError({file, 0}, "", "is there and has not been written by openclose", "-o with another folder");
+    require_own(own, name);
   }
 }
 
 void OutputFolder::claim_name(const std::string& name) const {
   if (!is_claimed()) return;
-  const std::vector<std::string> own = own_names();
-  if (std::ranges::find(own, name) == own.end() && is_there(name))
-    throw WriteError(path_of(name), "has come into the folder of results, and not from openclose: it stays, and no result takes its place");
-  const std::vector<std::string> listed = listed_names();
-  if (std::ranges::find(listed, name) == listed.end()) list(name);
+  if (has_file(name) && !is_own(own_names(), name)) fail_come_in(path_of(name));
+  const OwnNames listed = listed_names();
+  const auto place = listed.find(name);
+  if (place == listed.end() || place->second) list(name);
 }
 
 std::string OutputFolder::claim_whole_file(const std::string& name) const {
   // Until the new file is complete, an old one has its name; where there is none, the name is ours with the complete file only.
-  if (is_there(name)) claim_name(name);
+  if (has_file(name)) claim_name(name);
   claim_name(part_of(name));
   return path_of(name);
 }
 
-void OutputFolder::list_results() const {
-  write_list(own_names_there());
+void OutputFolder::forget_removed() const {
+  const OwnNames own = own_names();
+  OwnNames names;
+  for (const std::string& name : own_names_there()) {
+    const auto listed = own.find(name);
+    names.emplace(name, listed == own.end() ? std::nullopt : listed->second);
+  }
+  write_list(names);
 }
 
-bool OutputFolder::is_there(const std::string& name) const {
-  return name.back() == '/' ? !format_files(name).empty() : is_at(path_of(name));
+void OutputFolder::list_results() const {
+  OwnNames names;
+  for (const std::string& name : own_names_there()) names.emplace(name, sum_of(path_of(name)));
+  write_list(names);
+}
+
+bool OutputFolder::has_file(const std::string& name) const {
+  return is_at(path_of(name));
 }
 
 bool OutputFolder::is_own_picture(const std::string& name) const {
@@ -268,10 +246,10 @@ bool OutputFolder::is_list(const std::string& name) const {
   return content.empty() || first_line(content) == list_heading;
 }
 
-void OutputFolder::write_list(const std::vector<std::string>& names) const {
+void OutputFolder::write_list(const OwnNames& names) const {
   std::ofstream list = open_new(path_of(list_name), part_of(path_of(list_name)));
   list << list_heading << '\n';
-  for (const std::string& name : names) list << name << '\n';
+  for (const auto& [name, sum] : names) list << name << (sum ? fmt::format(" {:016x}", *sum) : "") << '\n';
   finish(list, path_of(list_name));
 }
 
@@ -307,20 +285,21 @@ void OutputFolder::remove(const std::string& name) const {
 }
 
 void OutputFolder::remove_results() const {
+  // First what needs the others: whoever is killed here leaves no checkpoint without its tables.
+  remove(checkpoint_name);
   for (const char* name : growing_results) remove(name);
   remove_last_results();
 }
 
-std::vector<std::string> OutputFolder::format_files(const std::string& folder_name) const {
+std::vector<std::string> OutputFolder::format_files() const {
   std::vector<std::string> names;
   for (const OutputFormat& format : output_formats()) {
-    if (std::string(format.name) + "/" != folder_name) continue;
     const std::regex ours(format.files);
     std::error_code error;
     for (const auto& entry : std::filesystem::directory_iterator(path_of(format.name), error)) {
       const std::string name = entry.path().filename().string();
       const std::string whole = name.ends_with(part_ending) ? name.substr(0, name.size() - part_ending.size()) : name;
-      if (std::regex_match(whole, ours)) names.push_back(folder_name + name);
+      if (std::regex_match(whole, ours)) names.push_back(fmt::format("{}/{}", format.name, name));
     }
   }
   return names;
@@ -329,26 +308,31 @@ std::vector<std::string> OutputFolder::format_files(const std::string& folder_na
 void OutputFolder::remove_last_results() const {
   for (const char* name : last_results) remove(name);
   if (has_own_scene_copy()) remove(scene_copy_name);
-  for (const std::string& name : own_names()) {
+  for (const auto& [name, sum] : own_names()) {
     if (name.ends_with(part_ending)) remove(name);
   }
   remove_format_files();
 }
 
 void OutputFolder::remove_format_files() const {
-  for (const OutputFormat& format : output_formats()) {
-    for (const std::string& name : format_files(std::string(format.name) + "/")) remove(name);
-    // Only an empty folder goes.
-    std::error_code error;
-    std::filesystem::remove(path_of(format.name), error);
+  const OwnNames own = own_names();
+  for (const std::string& name : format_files()) {
+    if (!is_claimed() || is_own(own, name)) remove(name);
   }
+  // Only an empty folder goes, and nothing else of this name.
+  for (const OutputFormat& format : output_formats()) ::rmdir(path_of(format.name).c_str());
 }
 
 void OutputFolder::write_format_file(const std::string& format, const std::string& name, const std::string& text) const {
   std::error_code error;
-  claim_name(format + "/");
   std::filesystem::create_directories(path_of(format), error);
   const std::string path = path_of(format + "/" + name);
+  // Those of an earlier analysis have been removed, and this one writes each of them once: there may be thousands, and none needs to be looked up.
+  if (is_claimed()) {
+    if (is_at(path)) fail_come_in(path);
+    if (is_at(part_of(path))) fail_come_in(part_of(path));
+    list(part_of(format + "/" + name));
+  }
   std::ofstream file = open_new(path, part_of(path));
   file << text;
   finish(file, path);
@@ -356,7 +340,7 @@ void OutputFolder::write_format_file(const std::string& format, const std::strin
 
 bool OutputFolder::has(const std::string& checkpoint_file) const {
   std::error_code unknown;
-  return std::filesystem::equivalent(std::filesystem::absolute(checkpoint_file).parent_path(), path_, unknown) ||
+  return std::filesystem::equivalent(absolute_path(checkpoint_file).parent_path(), path_, unknown) ||
          std::filesystem::equivalent(checkpoint_file, path_of(checkpoint_name), unknown);
 }
 
@@ -372,54 +356,18 @@ std::ofstream OutputFolder::open_growing(const std::string& name) const {
 
 std::ofstream OutputFolder::open_growing(const std::string& name, const std::string& head, std::uintmax_t length) const {
   claim_name(name);
-  const std::string full = path_of(name);
-  std::error_code error, differs;
-  if (!std::filesystem::equivalent(head, full, differs))
-    std::filesystem::copy_file(head, full, std::filesystem::copy_options::overwrite_existing, error);
-  if (!error) std::filesystem::resize_file(full, length, error);
-  std::ofstream file(full, std::ios::app);
-  if (error || !file) throw WriteError(full);
-  return file;
-}
-
-void require_replaceable(const std::vector<TextFile>& files) {
-  for (const TextFile& file : files) require_replaceable(file);
-}
-
-void write_files(const std::vector<TextFile>& files) {
-  require_replaceable(files);
-  Unfinished unfinished;
-  for (const TextFile& file : files) {
-    unfinished.make_folders(file.path);
-    const std::string part = part_of(file.path);
-    if (!make_new(part)) fail_unwritable(file.path);
-    std::ofstream stream(unfinished.add(part));
-    stream << file.text << seal_of(file.text, file.seal);
-    stream.close();
-    if (!stream) throw WriteError(file.path);
-  }
-  for (const TextFile& file : files) {
-    std::error_code error;
-    std::filesystem::rename(part_of(file.path), file.path, error);
-    if (error) throw WriteError(file.path);
-  }
-}
-
-void finish(std::ofstream& file, const std::string& path) {
-  file.close();
+  const std::string full = claim_whole_file(name);
   std::error_code error;
-  if (!file) {
-    std::filesystem::remove(part_of(path), error);
-    throw WriteError(path);
-  }
-  std::filesystem::rename(part_of(path), path, error);
-  if (error) fail_removed(path);
-}
-
-void finish_growing(std::ofstream& file, const std::string& path) {
-  file.close();
-  if (!file) throw WriteError(path);
-  if (!is_at(path)) fail_removed(path);
+  std::filesystem::remove(part_of(full), error);
+  std::filesystem::copy_file(head, part_of(full), error);
+  // Of a file that may only be read the copy is one, too.
+  if (!error) std::filesystem::permissions(part_of(full), std::filesystem::perms::owner_write, std::filesystem::perm_options::add, error);
+  if (!error) std::filesystem::resize_file(part_of(full), length, error);
+  if (!error) std::filesystem::rename(part_of(full), full, error);
+  std::ofstream file(full, std::ios::app);
+  if (!error && file) return file;
+  std::filesystem::remove(part_of(full), error);
+  throw WriteError(full);
 }
 
 }  // namespace openclose

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "openclose/core/error.h"
+#include "openclose/core/files.h"
 
 namespace openclose {
 namespace {
@@ -100,8 +101,7 @@ void ResultFolder::require_summary() const {
 
 void ResultFolder::require_states() const {
   const SourceLocation where = {outlines_.path(), 0};
-  if (states().empty())
-    throw InputError(where, "", std::filesystem::exists(where.file) ? "no state is written there" : "there is no such file", accepted_folder);
+  if (states().empty()) throw InputError(where, "", is_there(where.file) ? "no state is written there" : "there is no such file", accepted_folder);
   if (!has(drawn_state)) throw InputError(where, "", "the drawing is not written there", accepted_folder);
   if (is_factor_ == has(end_of_run))
     throw InputError(where, "", fmt::format("these are not the states of {}, which summary.json beside it tells of", is_factor_ ? "fos" : "a run"),

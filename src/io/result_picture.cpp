@@ -14,6 +14,7 @@
 
 #include "openclose/analysis/strength_search.h"
 #include "openclose/core/error.h"
+#include "openclose/core/files.h"
 #include "openclose/io/force_chain.h"
 #include "openclose/io/result_answer.h"
 #include "openclose/io/result_folder.h"
@@ -91,7 +92,7 @@ class ResultPicture {
     }
     const bool shows_failure = is_factor() && state_ == mechanism_state;
     // At large displacements the failed state is one of a motion, and no mechanism.
-    shows_mechanism_ = shows_failure && std::filesystem::exists(path_of("mechanism.csv"));
+    shows_mechanism_ = shows_failure && is_there(path_of("mechanism.csv"));
     const BlockColour usual = shows_failure ? BlockColour::displacement : BlockColour::material;
     colour_ = request_.colour.value_or(shows_mechanism_ ? BlockColour::velocity : usual);
   }

@@ -81,7 +81,8 @@ nlohmann::ordered_json options_json(const Simulation& simulation) {
     options[std::string(entry.table.name)][std::string(entry.key.name)] = entry.value ? ordered_json::parse(*entry.value) : ordered_json(nullptr);
   // What a key leaves to the method and to the blocks.
   if (scene.method.contact == "soft") options["method"]["integrator"] = integrator_name(scene.method);
-  options["solver"]["contact_skin_m"] = simulation.state().contact_skin;
+  options["solver"]["contact_skin_m"] = simulation.state().lengths.contact_skin;
+  options["step"]["max_displacement_m"] = simulation.state().lengths.longest_displacement;
   options["base_motion"] = scene.base_motion ? ordered_json(word_for(base_motion_words, scene.base_motion->kind)) : ordered_json(nullptr);
   return options;
 }

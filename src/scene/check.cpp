@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <set>
 
 #include "openclose/core/memory.h"
 #include "openclose/core/tolerance.h"
@@ -26,7 +27,8 @@ namespace {
 void require_no_overlap(const Scene& scene) {
   const std::vector<BlockInput>& blocks = scene.blocks;
   for (const auto& [first, second] : blocks_that_may_overlap(blocks)) {
-    const double depth = overlap_depth(blocks[first].vertices, blocks[second].vertices);
+    const double depth = overlap_depth_beyond(tolerance::deepest_initial_overlap_m, outline_of(blocks[first].vertices),  //
+                                              outline_of(blocks[second].vertices));
     if (depth > tolerance::deepest_initial_overlap_m) fail_overlap(scene, blocks[first], blocks[second], depth);
   }
 }
@@ -110,9 +112,20 @@ void require_joints(const Scene& scene) {
     ++uses[block.material].blocks;
     if (!block.fixed) ++uses[block.material].free_blocks;
   }
-  for (std::size_t a = 0; a < uses.size(); ++a) {
-    for (std::size_t b = a; b < uses.size(); ++b) {
-      if (!can_meet(uses, a, b) || scene.joint(static_cast<int>(a), static_cast<int>(b)) != nullptr) continue;
+  std::set<std::pair<std::size_t, std::size_t>> joined;
+  for (const JointProperties& joint : scene.joints) {
+    if (joint.has_materials())
+      joined.insert(std::minmax({static_cast<std::size_t>(joint.materials[0]), static_cast<std::size_t>(joint.materials[1])}));
+  }
+  // Of pairs that can meet one or two blocks are free: as many as the joints there are, or the first one without is soon found.
+  std::vector<std::size_t> used, free;
+  for (std::size_t m = 0; m < uses.size(); ++m) {
+    if (uses[m].blocks > 0) used.push_back(m);
+    if (uses[m].free_blocks > 0) free.push_back(m);
+  }
+  for (const std::size_t a : used) {
+    for (const std::size_t b : uses[a].free_blocks > 0 ? used : free) {
+      if (b < a || !can_meet(uses, a, b) || joined.contains({a, b})) continue;
       throw InputError(scene.where, "joint",
                        fmt::format("none for the materials \"{}\" and \"{}\"", scene.materials[a].name, scene.materials[b].name),
                        "a [[joint]] for every pair of materials whose blocks can touch");

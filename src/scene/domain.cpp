@@ -9,6 +9,7 @@
 
 #include "openclose/core/memory.h"
 #include "openclose/core/process.h"
+#include "openclose/geometry/box.h"
 #include "openclose/geometry/touch.h"
 #include "openclose/scene/angle.h"
 #include "openclose/scene/names.h"
@@ -46,6 +47,18 @@ struct Region {
   bool any_block = false;  ///< has its centroid inside
 };
 
+/// [m] Where joints of this length meet, rounding (1e6 * 2^-52 = 2e-10 m) is below the shortest edge as long as they cross at a degree or more. Ten
+/// times as wide a third of random patterns cannot be put together.
+constexpr double widest_domain_m = 1e6;
+/// [m] Of a joint through such a domain, and of a line along its blocks: twice its width, which is more than its diagonal.
+constexpr double longest_line_m = 2.0 * widest_domain_m;
+
+void require_size(const Value& vertices, const Polygon& outer) {
+  const Box box = Box::around(outer);
+  const double width = (box.high - box.low).maxCoeff();
+  if (width > widest_domain_m) vertices.fail(fmt::format("a domain {} m wide", width), fmt::format("domains at most {} m wide", widest_domain_m));
+}
+
 DomainInput read_domain(Table& table, const NameList& material_names) {
   DomainInput domain;
   Polygon outer;
@@ -66,6 +79,7 @@ DomainInput read_domain(Table& table, const NameList& material_names) {
   const double room = static_cast<double>(available_memory() / bytes_of_cut_block);
   domain.limits.max_blocks = static_cast<int>(std::clamp(room, 1.0, static_cast<double>(domain.written_max_blocks)));
 
+  require_size(table.at("vertices_m"), outer);
   domain.shape.outer = outline(table.at("vertices_m"), outer, "domain");
   for (std::size_t i = 0; i < holes.size(); ++i) domain.shape.holes.push_back(outline(table.at("holes_m").element(i), holes[i], "hole"));
   if (const auto fault = first_ring_fault(domain.shape)) {
@@ -165,6 +179,8 @@ Segment read_segment(Table& table) {
   table.required("to_m", line.to, coordinate);
   table.finish();
   if (line.length() < tolerance::shortest_edge_m) table.fail("the line has no length", "two points from_m and to_m apart from each other");
+  if (line.length() > longest_line_m)
+    table.fail(fmt::format("the line is {:g} m long", line.length()), fmt::format("at most {:g} m", longest_line_m));
   return line;
 }
 

@@ -17,6 +17,7 @@
 
 #include "openclose/core/error.h"
 #include "openclose/core/parallel.h"
+#include "openclose/core/tolerance.h"
 #include "openclose/scene/key.h"
 
 namespace openclose {
@@ -89,7 +90,7 @@ struct MethodInput {
   bool skip_search = true;                               ///< search candidates only once something has moved beyond the skin
   bool skip_narrow_phase = true;       ///< find the contacts of two blocks anew only once they have moved against each other beyond the skin
   bool skip_looks = true;              ///< see DetectionSkips
-  std::optional<double> contact_skin;  ///< [m] the default is that of the blocks, see default_contact_skin()
+  std::optional<double> contact_skin;  ///< [m] the default is that of the blocks, see LengthsOfBlocks
   bool skip_reload = true;             ///< dem: exchange only the contacts that were found anew, and leave the others in the loop
   int threads = 1;                     ///< that share the work; the results are the same to the last bit
   bool skip_factorisation = true;      ///< factor only rows of the matrix that have changed, and no weak couplings
@@ -146,12 +147,12 @@ void visit_method_keys(Method& m, Visitor& visit) {
 }
 
 struct StepInput {
-  double dt = 0.0;                  ///< [s]
-  double max_displacement = 0.1;    ///< [m] of any vertex in one step; a step that would move more is cut
-  double smallest_fraction = 1e-6;  ///< [-] of dt, below which cutting is given up
-  bool adaptive = false;            ///< steps up to dt as long as error_tolerance allows
-  double error_tolerance = 1e-4;    ///< [m] adaptive: local error of a step, of any vertex
-  double look_ahead = 0.0;          ///< [-] part of the step after which the blocks are where its contacts are found, if they keep their velocities
+  double dt = 0.0;                         ///< [s]
+  std::optional<double> max_displacement;  ///< [m] of any vertex in one step; a step that would move more is cut; the default is that of the blocks
+  double smallest_fraction = 1e-6;         ///< [-] of dt, below which cutting is given up
+  bool adaptive = false;                   ///< steps up to dt as long as error_tolerance allows
+  double error_tolerance = 1e-4;           ///< [m] adaptive: local error of a step, of any vertex
+  double look_ahead = 0.0;  ///< [-] part of the step after which the blocks are where its contacts are found, if they keep their velocities
   SourceLocation adaptive_where{}, look_ahead_where{};  ///< for the errors of methods that have no use for them
 };
 
@@ -161,7 +162,8 @@ void visit_step_keys(Step& s, Visitor& visit) {
   visit.table({"step", Audience::user, "the steps in time"});
   visit({"dt_s", "the step; with `adaptive` the longest one", "needed by `run`, and by `fos` with `strength_reduction.curve_time_s`"}, s.dt,
         positive);
-  visit({"max_displacement_m", "of any vertex in one step; a step that would move more is cut"}, s.max_displacement, positive);
+  visit({"max_displacement_m", "of any vertex in one step; a step that would move more is cut", "0.1, or a quarter of the size of small free blocks"},
+        s.max_displacement, Range{.low = 0.0, .high = tolerance::farthest_coordinate_m, .high_included = true});
   visit({"adaptive", "true, for `soft`: each step is as long as `error_tolerance_m` allows"}, s.adaptive, Flag{}, &s.adaptive_where);
   visit({"error_tolerance_m",
          "local error of a step, dt^2/12 times the change of the accelerations, at any vertex; a step beyond it is repeated shorter"},

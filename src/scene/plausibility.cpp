@@ -2,17 +2,21 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <type_traits>
 
 #include "openclose/scene/angle.h"
+#include "openclose/scene/median_size.h"
 #include "openclose/scene/table.h"
 
 namespace openclose {
 namespace {
 
-/// What materials have, with room of an order of magnitude and more, for models and for units of model tests.
+/// What materials, loads and motions have, with room of an order of magnitude and more, for models and for units of model tests. Of vectors the
+/// length is judged; 0 is always meant.
 struct Usual {
   std::string_view key;
   double low, high;
@@ -28,12 +32,23 @@ constexpr std::array usual_numbers{
     Usual{"cohesion_pa", 0.0, 1e10, "intact rock has up to 1e8"},
     Usual{"tensile_strength_pa", 0.0, 1e10, "intact rock has up to 5e7"},
     Usual{"damping_ratio", 0.0, 10.0, "1 is critical"},
+    Usual{"velocity_m_per_s", 0.0, 1e3, "falling rock reaches 100"},
+    Usual{"angular_velocity_rad_per_s", 0.0, 1e4, "falling rock reaches 100"},
+    Usual{"force_n", 0.0, 1e12, "a metre of the highest dam carries 1e8 of water"},
+    Usual{"stiffness_n_per_m", 0.0, 1e15, "a bolt has 1e7 to 1e9"},
+    Usual{"pressure_pa", 0.0, 1e9, "foundations have 1e5 to 1e6, 100 m of water 1e6"},
+    Usual{"shear_pa", 0.0, 1e9, "foundations have less than 1e6"},
+    Usual{"acceleration_m_per_s2", 0.0, 1e3, "earthquakes reach 20, machines and blasts some hundred"},
+    Usual{"frequency_hz", 1e-4, 1e4, "earthquakes have 0.1 to 30, blasts up to 1,000"},
 };
 
-/// Writes a warning for each number that is none of a material.
+/// [-] Of a block's size: the closure of a joint under the block's own weight, from which on it is no joint between blocks but a cushion.
+constexpr double deepest_closure_of_size = 0.1;
+
+/// Writes a warning for each number that is hardly meant.
 class Judge {
  public:
-  Judge(const Scene& scene, std::vector<std::string>& warnings) : scene_(scene), warnings_(warnings) {}
+  Judge(const Scene& scene, std::vector<std::string>& warnings) : scene_(scene), warnings_(warnings), size_(median_size(scene.blocks)) {}
 
   void look_at(const Material& material) {
     owner_ = "material " + in_quotes(material.name);
@@ -42,7 +57,34 @@ class Judge {
   void look_at(const JointProperties& joint) {
     owner_ = joint.has_materials() ? fmt::format("joint of {} and {}", name(joint.materials[0]), name(joint.materials[1]))
                                    : "joint " + in_quotes(joint.name);
+    const std::size_t before = warnings_.size();
     visit_joint_keys(joint, *this);
+    if (warnings_.size() == before) judge_closure(joint);
+  }
+
+  template <class AnyForce>
+  void look_at(const AnyForce& force) {
+    const std::string name = force.name.empty() ? "" : fmt::format(" \"{}\"", force.name);
+    owner_ = fmt::format("{}{} on \"{}\"", force.table().name, name, scene_.blocks[force.block].name);
+    AnyForce::visit_keys(force, *this);
+  }
+  void look_at(const BlockInput& block) {
+    owner_ = fmt::format("block \"{}\"", block.name);
+    judge("velocity_m_per_s", block.velocity.norm(), "length of velocity_m_per_s");
+    judge("angular_velocity_rad_per_s", block.angular_velocity);
+  }
+  void look_at(const BaseMotionInput& motion) {
+    owner_ = "base_motion";
+    if (motion.kind == BaseMotionKind::harmonic) {
+      judge("frequency_hz", motion.frequency);
+      judge("acceleration_m_per_s2", motion.factor * motion.amplitude.norm(), "factor times the length of amplitude_m_per_s2");
+    }
+    double largest = 0.0;
+    for (const BasePulse& pulse : motion.pulses) largest = std::max(largest, pulse.acceleration.norm());
+    for (const AccelerationRecord* record : {&motion.horizontal, &motion.vertical}) {
+      for (const double acceleration : record->accelerations) largest = std::max(largest, std::abs(acceleration));
+    }
+    judge("acceleration_m_per_s2", motion.factor * largest, "factor times the largest acceleration");
   }
 
   template <typename T, typename Accepted>
@@ -52,21 +94,44 @@ class Judge {
       judge(key.name, is_angle ? degrees(member) : member);
     } else if constexpr (std::is_same_v<T, std::optional<double>>) {
       if (member) judge(key.name, is_angle ? degrees(*member) : *member);
+    } else if constexpr (std::is_same_v<T, Vec2>) {
+      judge(key.name, member.norm(), fmt::format("length of {}", key.name));
     }
   }
 
  private:
   std::string name(int material) const { return in_quotes(scene_.materials[material].name); }
 
-  void judge(std::string_view key, double value) {
+  /// [kg/m3] Of the heavier of its materials, or of any that a named joint may come between.
+  double density_at(const JointProperties& joint) const {
+    if (joint.has_materials()) return std::max(scene_.materials[joint.materials[0]].density, scene_.materials[joint.materials[1]].density);
+    return std::ranges::max(scene_.materials, {}, &Material::density).density;
+  }
+
+  /// Of springs that are soft enough for blocks to sink into each other.
+  void judge_closure(const JointProperties& joint) {
+    if (!size_) return;
+    const double closure = density_at(joint) * scene_.gravity.norm() * *size_ / joint.normal_stiffness;
+    if (closure <= deepest_closure_of_size * *size_) return;
+    warnings_.push_back(
+        fmt::format("{}: {}: normal_stiffness_pa_per_m = {} is hardly meant: under its own weight a block of {:.2g} m, the median of the free ones, "
+                    "sinks {:.2g} m into the one below",
+                    scene_.where.file, owner_, joint.normal_stiffness, *size_, closure));
+  }
+
+  /// \param told_as  what it is called in the scene, if not by the key whose usual numbers are its own
+  void judge(std::string_view key, double value, std::string_view told_as = "") {
     for (const Usual& usual : usual_numbers) {
-      if (usual.key != key || (value >= usual.low && value <= usual.high)) continue;
-      warnings_.push_back(fmt::format("{}: {}: {} = {} is hardly meant: {}", scene_.where.file, owner_, key, value, usual.what));
+      const double size = std::abs(value);
+      if (usual.key != key || size == 0.0 || (size >= usual.low && size <= usual.high)) continue;
+      warnings_.push_back(
+          fmt::format("{}: {}: {} = {} is hardly meant: {}", scene_.where.file, owner_, told_as.empty() ? key : told_as, value, usual.what));
     }
   }
 
   const Scene& scene_;
   std::vector<std::string>& warnings_;
+  std::optional<double> size_;  ///< [m] of the median free block
   std::string owner_;
 };
 
@@ -77,6 +142,9 @@ std::vector<std::string> implausible_numbers(const Scene& scene) {
   Judge judge(scene, warnings);
   for (const Material& material : scene.materials) judge.look_at(material);
   for (const JointProperties& joint : scene.joints) judge.look_at(joint);
+  for (const BlockInput& block : scene.blocks) judge.look_at(block);
+  for_each_force(scene, [&](const auto& force) { judge.look_at(force); });
+  if (scene.base_motion) judge.look_at(*scene.base_motion);
   return warnings;
 }
 

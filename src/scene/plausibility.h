@@ -1,4 +1,4 @@
-// Numbers that can be computed with and that no rock has: a wrong unit or a slip of the pen more often than not.
+// Numbers that can be computed with and that no rock, load or motion has: a wrong unit or a slip of the pen more often than not.
 #pragma once
 
 #include <string>
@@ -12,7 +12,7 @@ namespace openclose {
 /// would move blocks there.
 inline constexpr Range believable_gravity{.low = -1e6, .high = 1e6, .low_included = true, .high_included = true};
 
-/// A warning for each number of a material or a joint beyond what any material has.
+/// A warning for each number of a material, joint, block, load or base motion beyond what any has.
 std::vector<std::string> implausible_numbers(const Scene& scene);
 
 }  // namespace openclose

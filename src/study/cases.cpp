@@ -10,18 +10,24 @@
 #include <array>
 #include <cerrno>
 #include <charconv>
-#include <cstdint>
+#include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
+#include <thread>
 
+#include "openclose/core/check_sum.h"
 #include "openclose/core/error.h"
+#include "openclose/core/files.h"
+#include "openclose/io/folder_lock.h"
 #include "openclose/io/output_folder.h"
+#include "openclose/io/part_files.h"
+#include "openclose/io/text_files.h"
 #include "openclose/scene/check.h"
 #include "openclose/scene/override.h"
 #include "openclose/scene/reader.h"
@@ -37,25 +43,15 @@ namespace {
 constexpr const char* mark_name = "case.txt";
 constexpr const char* mark_start = "openclose ";
 
-/// FNV-1a (G. Fowler, L. C. Noll, K.-P. Vo): tells scenes apart; nobody forges one here.
-std::uint64_t fingerprint(const std::string& text) {
-  std::uint64_t hash = 14695981039346656037u;
-  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211u;
-  return hash;
-}
-
-std::string text_of(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
+/// Between two looks at the processes: far below what it takes to start one.
+constexpr std::chrono::milliseconds pause{2};
 
 /// A file without a name, which goes with the last who has it open: what a case says of itself stands in nobody's way.
 using NamelessFile = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
 NamelessFile nameless_file() {
   NamelessFile file(std::tmpfile(), &std::fclose);
-  if (!file || fcntl(fileno(file.get()), F_SETFD, FD_CLOEXEC) != 0)
-    throw WriteError(std::filesystem::temp_directory_path().string(), "no file can be made here");
+  if (!file || fcntl(fileno(file.get()), F_SETFD, FD_CLOEXEC) != 0) throw WriteError(P_tmpdir, "no file can be made here");
   return file;
 }
 
@@ -87,24 +83,35 @@ class Runner {
     std::set<std::string> names;
     // All of them first: a wrong value among the last must not be found after an hour.
     for (const Case& one : cases) {
+      order.interruption();
       if (!names.insert(one.name).second) throw InputError({one.name, 0}, "", "two cases have the same values", "different values");
       const Scene scene = read_scene(order.scene_file, one.overrides);
       check_scene(scene);
-      if (std::filesystem::exists(order.folder + "/" + one.name)) OutputFolder(order.folder + "/" + one.name).require_ours({order.scene_file});
       require_our_mark(order.folder + "/" + one.name + "/" + mark_name);
-      marks_.push_back(fmt::format("{}{} {} {:016x}\n", mark_start, version, order.command, fingerprint(write_scene(scene))));
+      marks_.push_back(fmt::format("{}{} {} {:016x}\n", mark_start, version, order.command, check_sum(write_scene(scene))));
+      // What an earlier one has left, which is not run again, may be anybody's by now.
+      const std::string folder = order.folder + "/" + one.name;
+      if (!status_of_earlier(marks_.size() - 1) && is_there(folder)) OutputFolder(folder).require_ours({order.scene_file});
     }
+    // Whoever has started this program may have left it a disregard for the ends of its children, for which it is to wait.
+    std::signal(SIGCHLD, SIG_DFL);
   }
+
+  Runner(const Runner&) = delete;
+  Runner& operator=(const Runner&) = delete;
+  ~Runner() { stop_running(); }
 
   std::vector<CaseResult> run() {
     std::error_code error;
     std::filesystem::create_directories(order_.folder, error);
     if (error || access(order_.folder.c_str(), W_OK | X_OK) != 0)
       throw InputError({order_.folder, 0}, "", "cannot write to this folder", "-o with a folder that exists or can be made, and may be written to");
-    std::size_t next = 0;
-    while (next < cases_.size() || !running_.empty()) {
-      while (next < cases_.size() && running_.size() < static_cast<std::size_t>(order_.jobs)) start(next++);
-      if (!running_.empty()) wait_for_one();
+    const FolderLock lock(order_.folder);
+    try {
+      run_all();
+    } catch (const Stopped&) {
+      stop_running();
+      throw Stopped(fmt::format("stopped when {} of {} cases had ended; the same command goes on with the others", ended_, cases_.size()));
     }
     return std::move(results_);
   }
@@ -112,18 +119,18 @@ class Runner {
  private:
   /// The mark of a case is replaced where it is openclose's own.
   static void require_our_mark(const std::string& path) {
-    if (std::filesystem::exists(path) && !text_of(path).starts_with(mark_start))
+    if (is_there(path) && !content_of(path).starts_with(mark_start))
       throw InputError({path, 0}, "", "has not been written by openclose", "another folder, or that file under another name");
   }
 
   /// Of the same case; none if it is not there with all that is read of it.
   std::optional<int> status_of_earlier(std::size_t i) const {
-    const std::string mark = text_of(path_of(i, mark_name));
+    const std::string mark = content_of(path_of(i, mark_name));
     if (!mark.starts_with(marks_[i])) return std::nullopt;
     int status = 0;
     if (std::from_chars(mark.data() + marks_[i].size(), mark.data() + mark.size(), status).ec != std::errc()) return std::nullopt;
     const bool has_summary = status == exit_success || status == exit_not_converged;
-    if (has_summary && !nlohmann::json::accept(text_of(path_of(i, "summary.json")))) return std::nullopt;
+    if (has_summary && !nlohmann::json::accept(content_of(path_of(i, "summary.json")))) return std::nullopt;
     return status;
   }
 
@@ -138,6 +145,7 @@ class Runner {
     }
     std::error_code ignored;
     std::filesystem::remove(path_of(i, mark_name), ignored);
+    remove_left_part(path_of(i, mark_name), mark_start);
     std::vector<std::string> words = {order_.program, order_.command, order_.scene_file, "-q", "-o", folder_of(i)};
     for (const std::string& assignment : cases_[i].overrides) words.insert(words.end(), {"--set", assignment});
     std::vector<char*> arguments;
@@ -154,10 +162,33 @@ class Runner {
     running_.emplace(process, Running{i, std::move(errors)});
   }
 
+  void run_all() {
+    std::size_t next = 0;
+    while (next < cases_.size() || !running_.empty()) {
+      while (next < cases_.size() && running_.size() < static_cast<std::size_t>(order_.jobs)) start(next++);
+      order_.interruption();
+      if (!running_.empty()) wait_for_one();
+    }
+  }
+
+  /// Who has stopped the command wants no case to go on; what they have left is begun anew another time.
+  void stop_running() {
+    for (const auto& [process, one] : running_) kill(process, SIGTERM);
+    for (const auto& [process, one] : running_) {
+      while (waitpid(process, nullptr, 0) < 0 && errno == EINTR) continue;
+    }
+    running_.clear();
+  }
+
   void wait_for_one() {
     int state = 0;
     pid_t process = 0;
-    while ((process = waitpid(-1, &state, 0)) < 0 && errno == EINTR) continue;
+    // A signal does not end a wait for processes, which goes on after it.
+    while ((process = waitpid(-1, &state, WNOHANG)) == 0) {
+      order_.interruption();
+      std::this_thread::sleep_for(pause);
+    }
+    if (process < 0) throw WriteError(order_.program, "its cases cannot be waited for");
     const auto place = running_.find(process);
     if (place == running_.end()) return;
     const Running ended = std::move(place->second);
@@ -174,7 +205,7 @@ class Runner {
     CaseResult& result = results_[i];
     result.status = status;
     if (status == exit_success || status == exit_not_converged) {
-      result.summary = text_of(path_of(i, "summary.json"));
+      result.summary = content_of(path_of(i, "summary.json"));
       const nlohmann::json summary = nlohmann::json::parse(result.summary, nullptr, false);
       if (!summary.is_object()) {
         result.summary.clear();
@@ -182,6 +213,7 @@ class Runner {
         result.message = summary.value("reason", "");
       }
     }
+    ++ended_;
     done_(i, result);
   }
 
@@ -191,6 +223,7 @@ class Runner {
   std::vector<std::string> marks_;
   std::vector<CaseResult> results_;
   std::map<pid_t, Running> running_;
+  std::size_t ended_ = 0;
 };
 
 }  // namespace

@@ -27,6 +27,8 @@ struct CaseOrder {
   std::string scene_file;
   std::string folder;  ///< with a folder a case
   int jobs = 1;        ///< processes at a time
+  /// Called some hundred times a second while cases run; may throw Stopped.
+  std::function<void()> interruption = [] {};
 };
 
 /// What the runs of cases warn of, one after the other. Of warnings that differ in their numbers only the first is told, with the number of the
@@ -48,7 +50,8 @@ class CaseWarnings {
   std::vector<Kind> kinds_;
 };
 
-/// Throws InputError, before anything is written, if one of the scenes is refused, or if the folder of a case has files of somebody else.
+/// Throws InputError, before anything is written, if one of the scenes is refused, or if the folder of a case has files of somebody else. However it
+/// ends, no case goes on running; after Stopped those that have ended need not run again.
 /// \param done  called after each case, with its number
 std::vector<CaseResult> run_cases(const CaseOrder& order, const std::vector<Case>& cases,
                                   const std::function<void(std::size_t, const CaseResult&)>& done);

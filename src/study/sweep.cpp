@@ -11,6 +11,7 @@
 
 #include "openclose/analysis/strength_reduction.h"
 #include "openclose/core/error.h"
+#include "openclose/core/files.h"
 #include "openclose/scene/reader.h"
 #include "openclose/study/plot.h"
 #include "openclose/study/quantity.h"
@@ -155,7 +156,7 @@ std::size_t earlier_cases(const std::string& folder, const std::vector<Variation
     const std::string name = entry.path().filename().string();
     const bool has_keys =
         std::ranges::all_of(variations, [&](const Variation& variation) { return name.find(variation.key + "=") != std::string::npos; });
-    const bool is_case = has_keys && std::filesystem::exists(entry.path() / "summary.json");
+    const bool is_case = has_keys && is_there((entry.path() / "summary.json").string());
     if (is_case && std::ranges::find(cases, name, &Case::name) == cases.end()) ++count;
   }
   return count;
@@ -202,7 +203,10 @@ Sweep make_sweep(SweepOrder order, const std::function<void(double)>& progress) 
     sweep.intervals += result.status == exit_success && answers.is_interval(result);
     if (result.status != exit_success) sweep.warnings.push_back(fmt::format("{}: {}: {}", cases[i].name, status_word(result.status), result.message));
     // One with other keys has another heading, by which it would not be known as ours; it has been looked at above.
-    if (!result.was_there) write_files({{table, text(), true}});
+    if (!result.was_there) {
+      remove_left_part(table, answers.columns());
+      write_files({{table, text(), true}});
+    }
     progress(static_cast<double>(++done) / static_cast<double>(cases.size()));
   });
   CaseWarnings of_runs;

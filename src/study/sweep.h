@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "openclose/io/output_folder.h"
+#include "openclose/io/text_files.h"
 #include "openclose/study/cases.h"
 #include "openclose/study/variation.h"
 

@@ -408,14 +408,33 @@ TEST_CASE("contacts are found anew after as much motion as the scene says", "[an
   CHECK(seldom.way == Approx(often.way).margin(1e-9));  // lengths stay; see above
 }
 
-TEST_CASE("contacts of small blocks are found anew after as much less motion", "[analysis][simulation]") {
+TEST_CASE("contacts of small blocks are found anew after as much less motion, and nearer by", "[analysis][simulation]") {
   std::vector<BlockInput> blocks{test::fixed_block("base", test::rectangle(-9.0, -9.0, 18.0, 9.0)),
                                  test::free_block("block", test::rectangle(0.0, 0.0, 2.0, 0.5))};
-  CHECK(default_contact_skin(blocks) == Approx(tolerance::contact_skin_m));
+  const auto check = [&](double contact_skin, double search_skin, double longest_displacement) {
+    const LengthsOfBlocks lengths(blocks);
+    CHECK(lengths.contact_skin == Approx(contact_skin));
+    CHECK(lengths.search_skin == Approx(search_skin));
+    CHECK(lengths.longest_displacement == Approx(longest_displacement));
+  };
+  check(tolerance::contact_skin_m, tolerance::search_skin_m, tolerance::longest_displacement_m);
   blocks[1].vertices = test::rectangle(0.0, 0.0, 0.2, 0.05);
-  CHECK(default_contact_skin(blocks) == Approx(tolerance::contact_skin_of_size * 0.1));
+  check(tolerance::contact_skin_of_size * 0.1, tolerance::search_skin_of_size * 0.1, tolerance::longest_displacement_of_size * 0.1);
   blocks[1].vertices = test::rectangle(0.0, 0.0, 20.0, 5.0);
-  CHECK(default_contact_skin(blocks) == tolerance::contact_skin_m);
+  check(tolerance::contact_skin_m, tolerance::search_skin_m, tolerance::longest_displacement_m);
+}
+
+TEST_CASE("a model does not care whether its blocks are metres or centimetres", "[analysis][simulation]") {
+  // Two rows of bricks; their lengths, and with them their candidates and contacts, go with their size.
+  const auto counts = [](double size) {
+    std::vector<BlockInput> blocks{test::fixed_block("base", test::rectangle(-size, -size, 22.0 * size, size))};
+    for (int i = 0; i < 20; ++i)
+      blocks.push_back(test::free_block("b" + std::to_string(i), test::rectangle(2.0 * size * (i % 10), size * (i / 10), 2.0 * size, size)));
+    Simulation simulation(test::scene_with(blocks));
+    simulation.change_contacts();
+    return std::pair(simulation.state().detector.candidate_pairs().size(), simulation.contacts().size());
+  };
+  CHECK(counts(0.01) == counts(0.1));
 }
 
 TEST_CASE("the velocity that a step ends with is none of an impact that is over", "[analysis][simulation]") {

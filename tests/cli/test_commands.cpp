@@ -38,6 +38,13 @@ std::set<std::string> entries(const std::string& folder) {
 const std::set<std::string> tables_of_run = {"block_properties.csv", "block_states.csv", "blocks.csv",         "contacts.csv", "cracks.csv",
                                              "energy.csv",           "history.csv",      "scene_as_read.toml", ".openclose"};
 
+/// But for the list of names, which has the sum of summary.json with its CPU times.
+void check_same_tables(const Workplace& place, const std::string& a, const std::string& b) {
+  for (const std::string& file : tables_of_run) {
+    if (file != ".openclose") CHECK(text_of(place.folder() / (a + "/" + file)) == text_of(place.folder() / (b + "/" + file)));
+  }
+}
+
 }  // namespace
 
 TEST_CASE("help and version", "[cli]") {
@@ -191,9 +198,7 @@ TEST_CASE("the same run twice gives the same files bit for bit", "[cli]") {
   const std::string arguments = " --dt 0.001 --end 0.1 --start unloaded";
   CHECK(place.run("run scene.toml -o a" + arguments).status == 0);
   CHECK(place.run("run scene.toml -o b" + arguments).status == 0);
-  for (const std::string& file : tables_of_run) {
-    CHECK(text_of(place.folder() / "a/" + file) == text_of(place.folder() / "b/" + file));
-  }
+  check_same_tables(place, "a", "b");
 }
 
 TEST_CASE("overrides change the scene and are on record", "[cli]") {
@@ -483,9 +488,7 @@ TEST_CASE("a failing slope: reduced strength, milestones, snapshots, end by disp
 
   // CPU times differ from run to run and stand in summary.json and milestones.csv only.
   CHECK(place.run("run scene.toml -o again" + arguments).status == 0);
-  for (const std::string& file : tables_of_run) {
-    CHECK(text_of(place.folder() / "out/" + file) == text_of(place.folder() / "again/" + file));
-  }
+  check_same_tables(place, "out", "again");
 }
 
 TEST_CASE("a method to settle by that nothing asks for is worth a warning", "[cli]") {
@@ -559,7 +562,7 @@ TEST_CASE("the scene that a run has read is in its folder, and runs again to the
   const std::string common = " --set output.snapshots_every_s=0.02";
   REQUIRE(place.run("run scene.toml -o a --dt 0.001 --end 0.05 --start unloaded --set joint[0].friction_angle_deg=20" + common).status == 0);
   REQUIRE(place.run("run a/scene_as_read.toml -o b").status == 0);
-  for (const std::string& file : tables_of_run) CHECK(text_of(place.folder() / "a/" + file) == text_of(place.folder() / "b/" + file));
+  check_same_tables(place, "a", "b");
   const std::string copy = text_of(place.folder() / "a/scene_as_read.toml");
   CHECK_THAT(copy, ContainsSubstring("friction_angle_deg = 20"));
 

@@ -77,6 +77,38 @@ TEST_CASE("cut and draw replace what they have written, as long as nobody has ed
   check_refused(place, run_in_out, "out/drawing.svg");
 }
 
+TEST_CASE("results that somebody has changed since are not replaced", "[cli][foreign]") {
+  const Workplace place;
+  const std::string command = run_in_out + std::string(" --set output.formats='[\"svg\",\"vtk\"]'");
+  REQUIRE(place.run(command).status == 0);
+  REQUIRE(place.run(command).status == 0);
+  for (const std::string name : {"history.csv", "summary.json", "scene_as_read.toml", "svg/0001.svg", "vtk/blocks.pvd"}) {
+    const std::string file = place.folder() / ("out/" + name), original = text_of(file);
+    std::ofstream(file, std::ios::app) << "\n";
+    check_refused(place, command, "out/" + name + ": has been changed since openclose has written it");
+    check_refused(place, "fos scene.toml -q -o out", "out/" + name);
+    std::ofstream(file, std::ios::trunc) << original;
+  }
+  // Another state than those of the run, as openclose would call it.
+  place.folder().write("out/svg/0999.svg", "<svg/>");
+  check_refused(place, command, "out/svg/0999.svg: is there and has not been written by openclose");
+  std::filesystem::remove(place.folder() / "out/svg/0999.svg");
+  CHECK(place.run("run scene.toml --dt 0.001 --end 0.01 -q -o out").status == 0);
+  CHECK_FALSE(std::filesystem::exists(place.folder() / "out/svg"));
+  CHECK_FALSE(std::filesystem::exists(place.folder() / "out/vtk"));
+}
+
+TEST_CASE("a run that goes on writes no more to tables that have another name, too", "[cli][foreign][restart]") {
+  const Workplace place;
+  const std::string command = "run scene.toml --dt 0.001 -q --set output.checkpoint_every_s=0.005 -o ";
+  REQUIRE(place.run(command + "out --end 0.01").status == 0);
+  REQUIRE(std::system(("cd '" + place.folder().path() + "' && cp -al out kept").c_str()) == 0);
+  const auto before = contents(place.folder() / "kept");
+  REQUIRE(place.run(command + "out --end 0.02 --restart out/checkpoint.bin").status == 0);
+  CHECK(contents(place.folder() / "kept") == before);
+  CHECK(lines_of(place.folder() / "out/history.csv").size() > lines_of(place.folder() / "kept/history.csv").size());
+}
+
 TEST_CASE("what comes into the folder after a run that was stopped or killed is not taken for its own", "[cli][foreign]") {
   const Workplace place(block_on_incline(35.0));
   const std::string command = "run scene.toml --start unloaded --dt 0.001 -q -o out --end ";

@@ -12,7 +12,9 @@
 
 using Catch::Matchers::ContainsSubstring;
 using Catch::Matchers::StartsWith;
+using openclose::test::block_on_incline;
 using openclose::test::CommandResult;
+using openclose::test::contents;
 using openclose::test::fields_of;
 using openclose::test::lines_of;
 using openclose::test::text_of;
@@ -21,6 +23,11 @@ using openclose::test::Workplace;
 namespace {
 
 constexpr double degree = std::numbers::pi / 180.0;
+
+/// What a shell does to run the command that follows, and to send it SIGTERM as soon as there is such a file, or after a minute.
+std::string stopped_when_there(const std::string& file) {
+  return "sh -c '\"$@\" & for i in $(seq 1200); do [ -s \"" + file + "\" ] && break; sleep 0.05; done; kill -TERM $!; wait $!' sh ";
+}
 
 std::vector<std::map<std::string, std::string>> rows_of(const std::string& path) {
   const auto lines = lines_of(path);
@@ -93,13 +100,55 @@ TEST_CASE("sweep goes on where it was broken off", "[cli][sweep]") {
   std::filesystem::remove(place.folder() / "out/sweep.csv");
   CHECK_THAT(place.run(command).out, ContainsSubstring("(2 were there)"));
   CHECK(rows_of(place.folder() / "out/sweep.csv").size() == 3);
-  // As a disk leaves it that was full, or a hand.
-  std::ofstream(place.folder() / "out/joint[0].friction_angle_deg=25/summary.json") << "{";
+  // What a hand has left is its own; without it the case runs again.
+  const std::string summary = place.folder() / "out/joint[0].friction_angle_deg=25/summary.json";
+  std::ofstream(summary) << "{";
+  const CommandResult refused = place.run(command);
+  CHECK(refused.status == 2);
+  REQUIRE(refused.errors.size() == 1);
+  CHECK_THAT(refused.errors[0], ContainsSubstring("friction_angle_deg=25/summary.json: has been changed since openclose has written it"));
+  std::filesystem::remove(summary);
   CHECK_THAT(place.run(command).out, ContainsSubstring("(2 were there)"));
   const std::string mark = place.folder() / "out/joint[0].friction_angle_deg=35/case.txt", text = text_of(mark);
   std::ofstream(mark) << text.substr(0, text.find('\n') + 1);
   CHECK_THAT(place.run(command).out, ContainsSubstring("(2 were there)"));
   CHECK(rows_of(place.folder() / "out/sweep.csv").size() == 3);
+}
+
+TEST_CASE("a sweep or study that is stopped stops its cases, and goes on where it was", "[cli][sweep][study]") {
+  const Workplace place(block_on_incline(35.0));
+  const std::string cases = " -j 1 -o out --set method.start=unloaded --set output.every_s=0.001 ";
+  for (const std::string& command : {"sweep scene.toml --command run --vary end.time_s=0.01,1000 --set step.dt_s=0.001" + cases,
+                                     "study scene.toml --dt 0.001,0.0011 --quantity energy.kinetic_j --set end.time_s=1000" + cases}) {
+    INFO(command);
+    // As soon as the long case computes.
+    const std::string last = command.starts_with("sweep") ? "end.time_s=1000" : "soft,dt=0.0011";
+    const CommandResult result = place.run(command, stopped_when_there("out/" + last + "/energy.csv"));
+    CHECK(result.status == 143);
+    REQUIRE(result.errors.size() == 1);
+    const std::string ended = command.starts_with("sweep") ? "1 of 2" : "0 of 2";
+    CHECK(result.errors[0] == "openclose: stopped when " + ended + " cases had ended; the same command goes on with the others");
+    // Nobody holds the folders of the cases: none goes on computing.
+    CHECK(std::system(("cd '" + place.folder().path() + "' && for f in out/*/; do flock -n $f true || exit 1; done").c_str()) == 0);
+  }
+  CHECK_THAT(place.run("sweep scene.toml --command run --vary end.time_s=0.01 --set step.dt_s=0.001" + cases).out,
+             ContainsSubstring("(1 were there)"));
+}
+
+TEST_CASE("a folder that another openclose writes to is left to it", "[cli][run][fos][sweep]") {
+  const Workplace place(block_on_incline(35.0));
+  REQUIRE(place.run("run scene.toml --dt 0.001 --end 0.01 --start unloaded -q -o out").status == 0);
+  const auto before = contents(place.folder().path());
+  for (const std::string command : {"run scene.toml --dt 0.001 --end 0.01 --start unloaded -q -o out", "fos scene.toml -q -o out",
+                                    "sweep scene.toml --vary joint[0].friction_angle_deg=25 -q -o out"}) {
+    const CommandResult result = place.run(command, "flock out ");
+    CHECK(result.status == 2);
+    REQUIRE(result.errors.size() == 1);
+    CHECK(result.errors[0] ==
+          "openclose: out: another openclose is writing to this folder; accepted: -o with another folder, or to wait until that one has ended");
+    CHECK(contents(place.folder().path()) == before);
+  }
+  CHECK(place.run("run scene.toml --dt 0.001 --end 0.01 --start unloaded -q -o out").status == 0);
 }
 
 TEST_CASE("a sweep over another key takes the place of the table of the one before, but of no other file", "[cli][sweep]") {

@@ -31,6 +31,8 @@ constexpr const char* resting =
     "[[load]]\nname = 'push'\nblock = 'low'\npoint_m = [-1, 0.5]\nforce_n = [1e3, 0]\n"
     "[[support]]\nblock = 'high'\npoint_m = [0, 2]\nstiffness_n_per_m = [1e5, 0]\n";
 constexpr int steps_before = 5, steps_until_rest = 15, steps_after = 3;
+/// [-] Of a step of the scene, how far dem goes on each time: one step of its own, as the scene is.
+constexpr double part_for_dem = 0.01;
 /// What a search asks between two pieces of its work, so often.
 constexpr int questions_after = 200;
 
@@ -49,8 +51,10 @@ void go_on_with_steps(const Scene& scene, std::string saved) {
   Simulation simulation(scene);
   simulation.allow_resting();
   state(simulation);
+  // A forged stiffness may make the stable step of dem as short as it likes, and who goes on from it may wait: that is no fault of the reader.
+  const double dt = scene.method.contact == "dem" ? part_for_dem * scene.step.dt : scene.step.dt;
   for (int i = 0; i < steps_after; ++i) {
-    if (!simulation.advance(scene.step.dt)) return;
+    if (!simulation.advance(dt)) return;
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include "openclose/core/tolerance.h"
 #include "openclose/geometry/overlap.h"
+#include "openclose/geometry/touching_outlines.h"
 #include "support/catch.h"
 #include "support/polygons.h"
 
@@ -169,4 +170,84 @@ TEST_CASE("random polygons overlap where a grid of points says so", "[geometry][
   }
   CHECK(deep > 100);
   CHECK(apart > 100);
+}
+
+namespace {
+
+/// Two blocks that meet along a joint through these points, from left to right; the upper one pushed down by so much.
+std::pair<Polygon, Polygon> along_joint(const Polygon& joint, double pushed) {
+  Polygon lower{{joint.front().x(), -10.0}, {joint.back().x(), -10.0}}, upper{{joint.back().x(), 10.0}, {joint.front().x(), 10.0}};
+  lower.insert(lower.end(), joint.rbegin(), joint.rend());
+  for (const Vec2& point : joint) upper.emplace_back(point.x(), point.y() - pushed);
+  return {lower, upper};
+}
+
+}  // namespace
+
+TEST_CASE("blocks that meet along a rough joint only touch, unless they overlap", "[geometry][overlap]") {
+  std::mt19937 generator(20);
+  const double rounding = GENERATE(0.0, 1e-4);
+  const double height = GENERATE(0.02, 0.5);
+  std::uniform_real_distribution<double> heights(-height, height), widths(0.01, 0.1), off(-rounding, rounding);
+  for (int i = 0; i < 20; ++i) {
+    Polygon joint{{0.0, 0.0}};
+    for (int k = 0; k < 60; ++k) joint.emplace_back(joint.back().x() + widths(generator), heights(generator));
+    auto [lower, upper] = along_joint(joint, 0.0);
+    for (Vec2& point : upper) point += Vec2(off(generator), off(generator));
+    CHECK(only_touch(lower, upper, 1e-3));
+    CHECK(only_touch(upper, lower, 1e-3));
+    CHECK(overlap_depth_beyond(1e-3, outline_of(lower), outline_of(upper)) <= 1e-3);
+    // Teeth this steep overlap less deep than they are pushed: what is asked for is what the whole formula says.
+    const auto pushed = along_joint(joint, 0.1).second;
+    const double depth = overlap_depth(lower, pushed);
+    REQUIRE(depth > 1e-3);
+    CHECK_FALSE(only_touch(lower, pushed, 1e-3));
+    CHECK(overlap_depth_beyond(1e-3, outline_of(lower), outline_of(pushed)) == depth);
+    // Blocks that coincide have no boundary inside each other.
+    CHECK_FALSE(only_touch(lower, lower, 1e-3));
+    CHECK_FALSE(only_touch(upper, along_joint(joint, 0.0).second, 1e-3));
+  }
+}
+
+TEST_CASE("a joint of many teeth takes no longer than its teeth", "[geometry][overlap]") {
+  // Each edge against each would be 1e10 comparisons.
+  Polygon joint;
+  for (int k = 0; k <= 50000; ++k) joint.emplace_back(2e-3 * k, k % 2 == 0 ? 0.0 : 0.5);
+  const auto [lower, upper] = along_joint(joint, 0.0);
+  CHECK(only_touch(lower, upper, 1e-3));
+  // Teeth that are longer than the joint, and upright.
+  const auto turned = [](Polygon polygon) {
+    for (Vec2& point : polygon) point = Vec2(-point.y(), point.x());
+    return polygon;
+  };
+  Polygon comb;
+  for (int k = 0; k <= 50000; ++k) comb.emplace_back(2e-3 * k, k % 2 == 0 ? -9.0 : 400.0);
+  auto [below, above_comb] = along_joint(comb, 0.0);
+  above_comb[0].y() = above_comb[1].y() = 500.0;
+  CHECK(only_touch(below, above_comb, 1e-3));
+  CHECK(only_touch(turned(below), turned(above_comb), 1e-3));
+  // The long edge of a plane joint beside as many short ones.
+  for (Vec2& point : joint) point.y() = 0.0;
+  const auto [flat, above] = along_joint(joint, 0.0);
+  CHECK(only_touch(rectangle_between({-50.0, -10.0}, {150.0, 0.0}), above, 1e-3));
+}
+
+TEST_CASE("random polygons only touch where no depth is found", "[geometry][overlap]") {
+  std::mt19937 generator(21);
+  std::uniform_real_distribution<double> radius(0.3, 1.0), angle(0.0, 2.0 * std::numbers::pi), shift(-1.5, 1.5);
+  const auto star = [&] {
+    Polygon polygon;
+    for (int i = 0; i < 9; ++i) polygon.push_back(radius(generator) * Vec2(std::cos(i * 0.7), std::sin(i * 0.7)));
+    return polygon;
+  };
+  int touching = 0;
+  for (int i = 0; i < 500; ++i) {
+    const Polygon a = star(), b = placed(star(), angle(generator), {shift(generator), shift(generator)});
+    const double depth = overlap_depth(a, b);
+    const bool touch = only_touch(a, b, 1e-3);
+    if (depth > 1e-3) CHECK_FALSE(touch);
+    if (depth == 0.0) CHECK(touch);
+    touching += touch;
+  }
+  CHECK(touching > 100);
 }

@@ -145,6 +145,15 @@ TEST_CASE("drawings have up above, right on the right and one scale", "[io][draw
   CHECK(base.high.y() - base.low.y() == Approx(scale).margin(2.0 * rounding));
 }
 
+TEST_CASE("up to twelve measured points have their names beside them", "[io][drawing]") {
+  Scene scene = tower_on_base();
+  // Once as the title that a pointer brings up, once beside the point.
+  for (const std::size_t points : {1u, 12u, 13u}) {
+    scene.measured_points.assign(points, {"mark", 1, scene.blocks[1].vertices[0]});
+    CHECK(count(svg_drawing(picture_of(scene)), ">mark<") == (points > 12 ? points : 2 * points));
+  }
+}
+
 TEST_CASE("the scale bar is as long as it says", "[io][drawing]") {
   for (const double size : {0.01, 1.0, 37.0, 1000.0}) {
     Scene scene = tower_on_base();

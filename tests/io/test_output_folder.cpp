@@ -1,10 +1,13 @@
 #include <filesystem>
 #include <fstream>
+#include <optional>
 
 #include "io/files.h"
 #include "openclose/core/error.h"
+#include "openclose/io/folder_lock.h"
 #include "openclose/io/output_folder.h"
 #include "openclose/io/results.h"
+#include "openclose/io/text_files.h"
 #include "support/catch.h"
 
 using namespace openclose;
@@ -298,6 +301,60 @@ TEST_CASE("a claimed folder lists what is made in it, when it is made", "[io][ou
       std::filesystem::remove(place / name);
     }
   }
+}
+
+TEST_CASE("files of formats are listed one by one", "[io][output_folder]") {
+  const TemporaryFolder place;
+  const OutputFolder folder(place.path());
+  folder.claim({});
+  folder.write_format_file("svg", "0001.svg", "ours");
+  SECTION("also where a run was killed, which only knows the names") {
+    place.write("svg/0001.svg", "edited");
+    CHECK_NOTHROW(OutputFolder(place.path()).claim({}));
+  }
+  SECTION("at its end with what is in them") {
+    folder.list_results();
+    CHECK_NOTHROW(OutputFolder(place.path()).require_ours({}));
+    place.write("svg/0001.svg", "edited");
+    CHECK_THROWS_WITH(OutputFolder(place.path()).claim({}), ContainsSubstring("svg/0001.svg: has been changed since openclose has written it"));
+    return;
+  }
+  SECTION("others stay, and are not written over") {
+    place.write("svg/0002.svg", "mine");
+    CHECK_THROWS_WITH(OutputFolder(place.path()).claim({}), ContainsSubstring("svg/0002.svg: is there and has not been written by openclose"));
+    CHECK_THROWS_AS(folder.write_format_file("svg", "0002.svg", "ours"), WriteError);
+    CHECK(test::text_of(place / "svg/0002.svg") == "mine");
+  }
+  folder.remove_results();
+  CHECK_FALSE(std::filesystem::exists(place / "svg/0001.svg"));
+}
+
+TEST_CASE("a table goes on as a new file, not in what has another name, too", "[io][output_folder]") {
+  const TemporaryFolder place;
+  place.write("history.csv", "kept\ngone\n");
+  std::filesystem::create_hard_link(place / "history.csv", place / "copy");
+  const OutputFolder folder(place.path());
+  std::ofstream file = folder.open_growing("history.csv", place / "history.csv", 5);
+  file << "new\n";
+  finish_growing(file, place / "history.csv");
+  CHECK(test::text_of(place / "history.csv") == "kept\nnew\n");
+  CHECK(test::text_of(place / "copy") == "kept\ngone\n");
+  CHECK(place.entries() == std::set<std::string>{"history.csv", "copy"});
+}
+
+TEST_CASE("a folder is held by one, as long as that one lives", "[io][folder_lock]") {
+  const TemporaryFolder place;
+  std::filesystem::create_directory(place / "out");
+  std::optional<FolderLock> first(place / "out");
+  CHECK_THROWS_WITH(FolderLock(place / "out"), ContainsSubstring("out: another openclose is writing to this folder"));
+  CHECK_NOTHROW(FolderLock(place.path()));
+  CHECK_NOTHROW(first->require_same_folder());
+  first.reset();
+  const FolderLock second(place / "out");
+  std::filesystem::rename(place / "out", place / "old");
+  CHECK_THROWS_AS(second.require_same_folder(), WriteError);
+  std::filesystem::create_directory(place / "out");
+  CHECK_THROWS_WITH(second.require_same_folder(), ContainsSubstring("another folder has this name by now, or none"));
 }
 
 TEST_CASE("a list that is none of ours is not replaced", "[io][output_folder]") {

@@ -288,14 +288,15 @@ TEST_CASE("summary.json has every key as it was used", "[io][results][keys]") {
     INFO(entry.dotted());
     const nlohmann::json& value = options.at(std::string(entry.table.name)).at(std::string(entry.key.name));
     if (entry.value) CHECK(value == nlohmann::json::parse(*entry.value));
-    if (!entry.value && entry.key.name != "contact_skin_m") CHECK(value.is_null());
+    if (!entry.value && entry.key.name != "contact_skin_m" && entry.key.name != "max_displacement_m") CHECK(value.is_null());
   }
   CHECK(options.at("method").at("penalty_pa_per_m") == 3e9);
   CHECK(options.at("method").at("integrator").is_null());
   CHECK(options.at("solver").at("closing_tolerance_m") == 1e-7);
   CHECK(options.at("solver").at("smallest_fraction") == 0.25);
   CHECK(options.at("solver").at("gap_tolerance_m") == scene.method.gap_tolerance);
-  CHECK(options.at("solver").at("contact_skin_m") == simulation.state().contact_skin);
+  CHECK(options.at("solver").at("contact_skin_m") == simulation.state().lengths.contact_skin);
+  CHECK(options.at("step").at("max_displacement_m") == simulation.state().lengths.longest_displacement);
 }
 
 TEST_CASE("summary.json of a run", "[io][results]") {

@@ -185,6 +185,59 @@ TEST_CASE("numbers that no material has are warned of", "[scene][check]") {
   CHECK(check_scene(read_text(block_on_base, {"joint[0].friction_angle_deg=80"})).empty());
 }
 
+TEST_CASE("loads and motions that nothing has are warned of", "[scene][check]") {
+  const auto warning_of = [](const std::string& table) {
+    const std::vector<std::string> warnings = check_scene(read_text(block_on_base + table));
+    REQUIRE(warnings.size() == 1);
+    return warnings.front();
+  };
+  const std::string load = "[[load]]\nblock = 'block'\npoint_m = [0, 1]\nforce_n = ";
+  CHECK_THAT(warning_of(load + "[0, -2e12]\n"),
+             ContainsSubstring("load on \"block\": length of force_n = 2000000000000 is hardly meant: a metre of"));
+  CHECK(check_scene(read_text(block_on_base + load + "[0, -1e12]\n")).empty());
+  CHECK(check_scene(read_text(block_on_base + load + "[0, 0]\n")).empty());
+  const std::string surcharge = "[[surcharge]]\nname = 'dam'\nfrom_m = [1, 1]\nto_m = [0, 1]\n";
+  CHECK_THAT(warning_of(surcharge + "pressure_pa = -2e9\n"),
+             ContainsSubstring("surcharge \"dam\" on \"block\": pressure_pa = -2000000000 is hardly"));
+  CHECK_THAT(warning_of(surcharge + "pressure_pa = 1\nshear_pa = 2e9\n"), ContainsSubstring("shear_pa = 2000000000 is hardly meant"));
+  CHECK_THAT(warning_of("[[support]]\npoint_m = [0, 1]\nblock = 'block'\nstiffness_n_per_m = [2e15, 0]\n"),
+             ContainsSubstring("length of stiffness_n_per_m = 2000000000000000 is hardly meant"));
+  const std::string motion = "[base_motion]\nkind = ";
+  CHECK_THAT(warning_of(motion + "'harmonic'\namplitude_m_per_s2 = [1, 0]\nfrequency_hz = 1e20\n"),
+             ContainsSubstring("base_motion: frequency_hz = 1e+20"));
+  CHECK_THAT(warning_of(motion + "'harmonic'\namplitude_m_per_s2 = [1e20, 0]\nfrequency_hz = 1\n"),
+             ContainsSubstring("factor times the length of amplitude_m_per_s2 = 1e+20"));
+  CHECK_THAT(warning_of(motion + "'pulses'\nfactor = 10\n[[base_motion.pulse]]\nduration_s = 1\nacceleration_m_per_s2 = [0, 101]\n"),
+             ContainsSubstring("base_motion: factor times the largest acceleration = 1010 is hardly meant: earthquakes reach 20"));
+  CHECK_THAT(warning_of(motion + "'record'\nvertical_time_s = [0, 1]\nvertical_m_per_s2 = [0, -2000]\n"),
+             ContainsSubstring("factor times the largest acceleration = 2000"));
+}
+
+TEST_CASE("springs into which blocks sink are warned of", "[scene][check]") {
+  // 2700 kg/m3 and 9.81 m/s2, a block of 1 m: a tenth of its size is closed with 10 times its unit weight per metre.
+  const auto warnings_with = [](double stiffness) {
+    return check_scene(read_text(block_on_base, {"joint[0].normal_stiffness_pa_per_m=" + std::to_string(stiffness)}));
+  };
+  CHECK(warnings_with(10.01 * 2700.0 * 9.81).empty());
+  REQUIRE(warnings_with(9.99 * 2700.0 * 9.81).size() == 1);
+  CHECK_THAT(warnings_with(9.99 * 2700.0 * 9.81).front(),
+             ContainsSubstring("a block of 1 m, the median of the free ones, sinks 0.1 m into the one below"));
+  CHECK(check_scene(read_text("gravity_m_per_s2 = [0, 0]\n" + block_on_base, {"joint[0].normal_stiffness_pa_per_m=1e4"})).size() ==
+        1);  // nothing loads
+}
+
+TEST_CASE("velocities that no block has are warned of", "[scene][check]") {
+  const auto warnings_of = [](const std::string& velocity) {
+    return check_scene(
+        read_text(block_on_base + "[[block]]\nname = 'thrown'\nmaterial = 'rock'\nvertices_m = [[3, 5], [4, 5], [4, 6]]\n" + velocity));
+  };
+  REQUIRE(warnings_of("velocity_m_per_s = [0, -1001]\n").size() == 1);
+  CHECK_THAT(warnings_of("velocity_m_per_s = [0, -1001]\n").front(),
+             ContainsSubstring("block \"thrown\": length of velocity_m_per_s = 1001 is hardly meant"));
+  REQUIRE(warnings_of("angular_velocity_rad_per_s = -10001\n").size() == 1);
+  CHECK(warnings_of("velocity_m_per_s = [0, -1000]\nangular_velocity_rad_per_s = 10000\n").empty());
+}
+
 TEST_CASE("slivers are named with the key that unites them", "[scene][check]") {
   const auto sliver = [](const std::string& height) {
     return "[[block]]\nname = 'sliver'\nmaterial = 'rock'\nvertices_m = [[1.5, 0], [1.51, 0], [1.51, " + height + "], [1.5, " + height + "]]\n";

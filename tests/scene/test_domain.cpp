@@ -252,6 +252,13 @@ TEST_CASE("joints that give nothing", "[scene][domain][errors]") {
   }
 }
 
+TEST_CASE("a sliver that no neighbour could take is warned of", "[scene][domain]") {
+  // The whole domain is one.
+  const std::vector<std::string> warnings = read_text(bare_domain, {"domain.sliver_area_m2=100"}).cutting->warnings;
+  CHECK(std::ranges::count_if(warnings,
+                              [](const std::string& text) { return text.ends_with("1 sliver(s) that no neighbour could take are left"); }) == 1);
+}
+
 TEST_CASE("parallel sets that share joints", "[scene][domain][errors]") {
   const std::string accepted = "; accepted: sets of different dips, or parallel ones whose joints lie between each other";
   CHECK(error_with(23, "dip_deg = 180") == "22: joint_set[1]: the set is parallel to the one of line 17 and shares joints with it" + accepted);
@@ -337,6 +344,9 @@ TEST_CASE("domains that are no polygons", "[scene][domain][errors]") {
         "16: domain.holes_m[1]: the hole meets the domain's boundary; accepted: holes inside the domain that touch neither its boundary nor each "
         "other");
   CHECK_THAT(error_with(15, "vertices_m = [[0, 0], [4, 0], [2, 1], [4, 4], [0, 4], [2, 1]]"), ContainsSubstring("intersects or touches itself"));
+  CHECK(error_of(bare_domain + line(-1e6, 1, 1e6 + 20, 1)) == "17: joint_line[0]: the line is 2.00002e+06 m long; accepted: at most 2e+06 m");
+  CHECK(error_with(15, "vertices_m = [[-1, 0], [1000000, 0], [0, 4]]") ==
+        "15: domain.vertices_m: a domain 1000001 m wide; accepted: domains at most 1000000 m wide");
   CHECK_THAT(error_with(15, "vertices_m = [[0, 0], [4, 0]]"),
              ContainsSubstring("15: domain.vertices_m: the polygon has 2 vertices; accepted: at least 3"));
   CHECK_THAT(error_with(16, "holes_m = [[[1, 1], [2, 1], [2, 2]], [[2, 2], [3, 2], [3, 3]]]"),

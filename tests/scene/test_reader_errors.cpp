@@ -221,7 +221,7 @@ TEST_CASE("options out of range", "[scene][reader][errors]") {
       {"settle", "max_explicit_steps = 0", "0", "a whole number in [1, 1000000000]"},
       {"step", "dt_s = 0", "0", "a number > 0"},
       {"step", "dt_s = -0.1", "-0.1", "a number > 0"},
-      {"step", "max_displacement_m = 0", "0", "a number > 0"},
+      {"step", "max_displacement_m = 0", "0", "a number in (0, 10000000]"},
       {"step", "error_tolerance_m = 0", "0", "a number > 0"},
       {"step", "look_ahead = 1.5", "1.5", "a number in [0, 1]"},
       {"solver", "smallest_fraction = 2", "2", "a number in (0, 1]"},
