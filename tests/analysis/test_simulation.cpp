@@ -424,12 +424,12 @@ TEST_CASE("contacts of small blocks are found anew after as much less motion, an
   check(tolerance::contact_skin_m, tolerance::search_skin_m, tolerance::longest_displacement_m);
 }
 
-TEST_CASE("a model does not care whether its blocks are metres or centimetres", "[analysis][simulation]") {
+TEST_CASE("a model does not care whether its blocks are decimetres or centimetres", "[analysis][simulation]") {
   // Two rows of bricks; their lengths, and with them their candidates and contacts, go with their size.
   const auto counts = [](double size) {
     std::vector<BlockInput> blocks{test::fixed_block("base", test::rectangle(-size, -size, 22.0 * size, size))};
     for (int i = 0; i < 20; ++i)
-      blocks.push_back(test::free_block("b" + std::to_string(i), test::rectangle(2.0 * size * (i % 10), size * (i / 10), 2.0 * size, size)));
+      blocks.push_back(test::free_block(std::to_string(i), test::rectangle(2.0 * size * (i % 10), size * (i / 10), 2.0 * size, size)));
     Simulation simulation(test::scene_with(blocks));
     simulation.change_contacts();
     return std::pair(simulation.state().detector.candidate_pairs().size(), simulation.contacts().size());

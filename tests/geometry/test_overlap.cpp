@@ -232,6 +232,12 @@ TEST_CASE("a joint of many teeth takes no longer than its teeth", "[geometry][ov
   CHECK(only_touch(rectangle_between({-50.0, -10.0}, {150.0, 0.0}), above, 1e-3));
 }
 
+TEST_CASE("beams that cross do more than touch, though no corner of one is in the other", "[geometry][overlap]") {
+  const Polygon lying = rectangle_between({-5.0, -0.5}, {5.0, 0.5}), standing = rectangle_between({-0.5, -5.0}, {0.5, 5.0});
+  CHECK_FALSE(only_touch(lying, standing, 1e-3));
+  CHECK_FALSE(only_touch(standing, lying, 1e-3));
+}
+
 TEST_CASE("random polygons only touch where no depth is found", "[geometry][overlap]") {
   std::mt19937 generator(21);
   std::uniform_real_distribution<double> radius(0.3, 1.0), angle(0.0, 2.0 * std::numbers::pi), shift(-1.5, 1.5);

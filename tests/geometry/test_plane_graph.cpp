@@ -148,6 +148,8 @@ TEST_CASE("the part of a line that touches a polygon", "[geometry][touch]") {
   const Polygon square{{0.0, 0.0}, {2.0, 0.0}, {2.0, 2.0}, {0.0, 2.0}};
   CHECK(common_length({{-1.0, 0.0}, {5.0, 0.0}}, square) == Approx(2.0));
   CHECK(common_length({{1.0, 0.0}, {1.5, 0.0}}, square) == Approx(0.5));
+  // No vertex that is away from the line lies above an end of the edge on it.
+  CHECK(common_length({{-5.0, 0.0}, {5.0, 0.0}}, {{0.0, 0.0}, {2.0, 0.0}, {2.3, 1.0}, {-0.7, 1.0}}) == Approx(2.0));
   CHECK(common_length({{-1.0, 1.0}, {1.0, 1.0}}, square) == Approx(1.0));
   CHECK(common_length({{0.5, 0.5}, {1.0, 1.0}}, square) == Approx(std::sqrt(0.5)));
   CHECK(common_length({{-1.0, -1e-7}, {5.0, 1e-7}}, square) == Approx(2.0));

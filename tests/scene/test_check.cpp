@@ -152,6 +152,9 @@ TEST_CASE("materials that can meet need a joint", "[scene][check]") {
   SECTION("between two materials") {
     scene.blocks[1].material = 1;
     CHECK_THROWS_WITH(check_scene(scene), ContainsSubstring("joint: none for the materials \"rock\" and \"clay\""));
+    // Whichever of them is the free one's.
+    std::swap(scene.blocks[0].material, scene.blocks[1].material);
+    CHECK_THROWS_WITH(check_scene(scene), ContainsSubstring("joint: none for the materials \"rock\" and \"clay\""));
   }
   SECTION("within one material, if it has two blocks") {
     scene.joints.clear();
@@ -219,6 +222,9 @@ TEST_CASE("springs into which blocks sink are warned of", "[scene][check]") {
     return check_scene(read_text(block_on_base, {"joint[0].normal_stiffness_pa_per_m=" + std::to_string(stiffness)}));
   };
   CHECK(warnings_with(10.01 * 2700.0 * 9.81).empty());
+  // Twice as large a block closes twice as much, which is as much of it.
+  const std::string larger = test::with_line(block_on_base, 20, "vertices_m = [[0, 0], [2, 0], [2, 2], [0, 2]]");
+  CHECK(check_scene(read_text(larger, {"joint[0].normal_stiffness_pa_per_m=265133"})).empty());
   REQUIRE(warnings_with(9.99 * 2700.0 * 9.81).size() == 1);
   CHECK_THAT(warnings_with(9.99 * 2700.0 * 9.81).front(),
              ContainsSubstring("a block of 1 m, the median of the free ones, sinks 0.1 m into the one below"));
