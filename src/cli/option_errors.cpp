@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "openclose/scene/nearest.h"
+#include "openclose/study/variation.h"
 
 namespace openclose {
 namespace {
@@ -46,6 +47,10 @@ CLI::Validator one_of(const std::vector<std::string>& words) {
             return fmt::format("\"{}\" is not known{}; accepted: {}", word, did_you_mean(word, words), suggestions(word, words));
           },
           fmt::format("{{{}}}", fmt::join(words, ","))};
+}
+
+CLI::Validator finite_number() {
+  return {[](const std::string& text) { return number_from(text) ? std::string() : fmt::format("{} is no finite number", text); }, ""};
 }
 
 std::string words_of(const CLI::ParseError& error, const CLI::App& app, const std::vector<std::string>& arguments) {

@@ -95,7 +95,8 @@ void add_study(CLI::App& app, std::function<int()>& chosen) {
   study->add_option("--quantity", options->quantity,
                     "what is compared at the end: POINT.displacement_m or another column of history.csv, energy.kinetic_j, largest_displacement_m "
                     "(default: displacement of the first measured point, else the largest of a block)");
-  study->add_option("--reference", options->reference, "exact value, if it is known (default: Richardson's limit, or the smallest step)");
+  study->add_option("--reference", options->reference, "exact value, if it is known (default: Richardson's limit, or the smallest step)")
+      ->check(finite_number());
   study->callback([options, &chosen] { chosen = [options] { return study_command(*options); }; });
 }
 

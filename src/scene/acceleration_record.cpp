@@ -48,7 +48,9 @@ class Lines {
   Lines(std::istream& stream, const std::string& path) : stream_(stream), path_(path) {}
   bool next(std::string& line) {
     if (!std::getline(stream_, line)) return false;
-    ++count_;
+    // The mark of UTF-8 with which some programs begin a text.
+    constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+    if (++count_ == 1 && line.starts_with(byte_order_mark)) line.erase(0, byte_order_mark.size());
     line = trimmed(line);
     return true;
   }

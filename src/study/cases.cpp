@@ -80,34 +80,21 @@ class Runner {
  public:
   Runner(const CaseOrder& order, const std::vector<Case>& cases, const std::function<void(std::size_t, const CaseResult&)>& done)
       : order_(order), cases_(cases), done_(done), results_(cases.size()) {
-    std::set<std::string> names;
-    // All of them first: a wrong value among the last must not be found after an hour.
-    for (const Case& one : cases) {
-      order.interruption();
-      if (!names.insert(one.name).second) throw InputError({one.name, 0}, "", "two cases have the same values", "different values");
-      const Scene scene = read_scene(order.scene_file, one.overrides);
-      check_scene(scene);
-      require_our_mark(order.folder + "/" + one.name + "/" + mark_name);
-      marks_.push_back(fmt::format("{}{} {} {:016x}\n", mark_start, version, order.command, check_sum(write_scene(scene))));
-      // What an earlier one has left, which is not run again, may be anybody's by now.
-      const std::string folder = order.folder + "/" + one.name;
-      if (!status_of_earlier(marks_.size() - 1) && is_there(folder)) OutputFolder(folder).require_ours({order.scene_file});
-    }
     // Whoever has started this program may have left it a disregard for the ends of its children, for which it is to wait.
     std::signal(SIGCHLD, SIG_DFL);
   }
-
   Runner(const Runner&) = delete;
   Runner& operator=(const Runner&) = delete;
   ~Runner() { stop_running(); }
 
   std::vector<CaseResult> run() {
-    std::error_code error;
-    std::filesystem::create_directories(order_.folder, error);
-    if (error || access(order_.folder.c_str(), W_OK | X_OK) != 0)
-      throw InputError({order_.folder, 0}, "", "cannot write to this folder", "-o with a folder that exists or can be made, and may be written to");
-    const FolderLock lock(order_.folder);
     try {
+      check_all();
+      std::error_code error;
+      std::filesystem::create_directories(order_.folder, error);
+      if (error || access(order_.folder.c_str(), W_OK | X_OK) != 0)
+        throw InputError({order_.folder, 0}, "", "cannot write to this folder", "-o with a folder that exists or can be made, and may be written to");
+      const FolderLock lock(order_.folder);
       run_all();
     } catch (const Stopped&) {
       stop_running();
@@ -160,6 +147,22 @@ class Runner {
     posix_spawn_file_actions_destroy(&files);
     if (failed != 0) throw WriteError(order_.program, fmt::format("cannot be started: {}", std::generic_category().message(failed)));
     running_.emplace(process, Running{i, std::move(errors)});
+  }
+
+  void check_all() {
+    std::set<std::string> names;
+    // All of them first: a wrong value among the last must not be found after an hour.
+    for (const Case& one : cases_) {
+      order_.interruption();
+      if (!names.insert(one.name).second) throw InputError({one.name, 0}, "", "two cases have the same values", "different values");
+      const Scene scene = read_scene(order_.scene_file, one.overrides);
+      check_scene(scene);
+      require_our_mark(order_.folder + "/" + one.name + "/" + mark_name);
+      marks_.push_back(fmt::format("{}{} {} {:016x}\n", mark_start, version, order_.command, check_sum(write_scene(scene))));
+      // What an earlier one has left, which is not run again, may be anybody's by now.
+      const std::string folder = order_.folder + "/" + one.name;
+      if (!status_of_earlier(marks_.size() - 1) && is_there(folder)) OutputFolder(folder).require_ours({order_.scene_file});
+    }
   }
 
   void run_all() {

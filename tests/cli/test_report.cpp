@@ -52,6 +52,7 @@ TEST_CASE("report refuses in one line, and writes nothing", "[cli][report]") {
   refused("out -o scene.toml", "a name that ends in .html");
   refused("out -o out/blocks.csv", "a name that ends in .html");
   refused("out --most-mb 0", "--most-mb");
+  refused("out --most-mb nan", "nan is no finite number");
   refused("", "results");
   CHECK(text_of(place.folder() / "scene.toml") == scene);
   CHECK(text_of(place.folder() / "out/blocks.csv") == blocks);

@@ -258,6 +258,7 @@ TEST_CASE("study and sweep refuse in one line, and write nothing", "[cli][study]
   refused("sweep scene.toml --vary joint[0].friction_angle_deg=25:", "this is no range");
   refused("sweep scene.toml --vary joint[0].friction_angle_deg=25-40", "joint[0].friction_angle_deg=25:40:STEP");
   refused("sweep scene.toml", "--vary");
+  refused("study scene.toml --dt 0.001 --reference nan", "nan is no finite number");
   refused("sweep scene.toml --vary joint[0].friction_angle_deg=25,95", "95");
   refused("sweep scene.toml --vary joint[0].friction=25,30", "friction");
   refused("sweep scene.toml --vary joint[0].friction_angle_deg=25,25", "the same values");

@@ -153,6 +153,7 @@ TEST_CASE("records as CSV", "[scene][record]") {
   CHECK(record_of("a.csv", "# made by hand\ntime_s,acceleration_m_per_s2\n0,1.5\n\n 0.5 , -2e-1\r\n0.5,+3\n") ==
         AccelerationRecord{{0.0, 0.5, 0.5}, {1.5, -0.2, 3.0}});
   CHECK(record_of("a.CSV", "time_s,acceleration_g\n0,1\n1,0").accelerations.front() == standard_gravity);
+  CHECK(record_of("a.csv", "\xEF\xBB\xBFtime_s,acceleration_g\r\n0,1\r\n1,0").accelerations.front() == standard_gravity);
   CHECK_THAT(record_error("a.csv", "t,a\n0,1\n"),
              ContainsSubstring("1: \"t,a\" is no header of a record; accepted: \"time_s,acceleration_m_per_s2\""));
   CHECK_THAT(record_error("a.csv", ""), ContainsSubstring("has no header"));
