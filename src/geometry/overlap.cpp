@@ -6,7 +6,7 @@
 
 #include "openclose/core/tolerance.h"
 #include "openclose/geometry/box.h"
-#include "openclose/geometry/segment.h"
+#include "openclose/geometry/fractions.h"
 #include "openclose/geometry/touching_outlines.h"
 
 namespace openclose {
@@ -15,35 +15,17 @@ namespace {
 /// Polygons with more corners are looked at only where they are near each other.
 constexpr std::size_t few_corners = 64;
 
-Segment edge(const Polygon& polygon, std::size_t i) {
-  return {polygon[i], polygon[i + 1 < polygon.size() ? i + 1 : 0]};
-}
-
-/// Where, as a fraction of the segment, it crosses the line of another one; none for parallel ones.
-std::optional<double> crossing(const Segment& segment, const Segment& other) {
-  const Vec2 along = segment.to - segment.from;
-  const Vec2 across = other.to - other.from;
-  const double sine = cross(along, across);
-  if (sine == 0.0) return std::nullopt;
-  return cross(other.from - segment.from, across) / sine;
-}
-
-double foot(const Segment& segment, const Vec2& point) {
-  const Vec2 along = segment.to - segment.from;
-  return (point - segment.from).dot(along) / along.squaredNorm();
-}
-
-/// Fractions of the segment, in order, between which its distance to the boundary of the polygon has no reason to vanish. Edges are left out that are
-/// farther away than the common box is wide: what is as deep as that is found without them.
+/// Fractions of the segment, in order, between which its distance to the boundary of the polygon has no reason to vanish. Of many edges those are
+/// left out that are farther away than the common box is wide: what is as deep as that is found without them.
 std::vector<double> divisions(const Segment& segment, const Polygon& polygon, const Box& common) {
-  const Box reach = segment.box().inflated(polygon.size() > few_corners ? (common.high - common.low).minCoeff() : (common.high - common.low).sum());
+  const Box reach = segment.box().inflated((common.high - common.low).minCoeff());
   std::vector<double> fractions{0.0, 1.0};
   const auto add = [&](double fraction) {
     if (fraction > 0.0 && fraction < 1.0) fractions.push_back(fraction);
   };
   for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Segment other = edge(polygon, i);
-    if (!common.overlaps(other.box()) || !reach.overlaps(other.box())) continue;
+    const Segment other = edge_of(polygon, i);
+    if (!common.overlaps(other.box()) || (polygon.size() > few_corners && !reach.overlaps(other.box()))) continue;
     if (const std::optional<double> fraction = crossing(segment, other)) add(*fraction);
     add(foot(segment, other.from));
     add(foot(segment, other.to));
@@ -59,7 +41,7 @@ double depth_of_boundary(const Polygon& other, const Polygon& polygon, const Box
     if (common.contains(point) && contains(polygon, point)) depth = std::max(depth, distance_to_boundary(polygon, point));
   };
   for (std::size_t i = 0; i < other.size(); ++i) {
-    const Segment segment = edge(other, i);
+    const Segment segment = edge_of(other, i);
     if (!common.overlaps(segment.box())) continue;
     const std::vector<double> fractions = divisions(segment, polygon, common);
     for (std::size_t k = 0; k + 1 < fractions.size(); ++k) {
@@ -93,14 +75,14 @@ Segment bisector(const Polygon& polygon, std::size_t i, const Box& common) {
   double end = 1.0;
   for (std::size_t k = 0; k < n && n > few_corners; ++k) {
     if (k == i || (k + 1) % n == i) continue;
-    if (const std::optional<double> fraction = crossing_of_edge(whole, edge(polygon, k))) end = std::min(end, *fraction);
+    if (const std::optional<double> fraction = crossing_of_edge(whole, edge_of(polygon, k))) end = std::min(end, *fraction);
   }
   return {whole.from, whole.at(end)};
 }
 
 void add_crossings(const Segment& segment, const Polygon& polygon, std::vector<double>& fractions) {
   for (std::size_t i = 0; i < polygon.size(); ++i) {
-    if (const std::optional<double> fraction = crossing_of_edge(segment, edge(polygon, i))) fractions.push_back(*fraction);
+    if (const std::optional<double> fraction = crossing_of_edge(segment, edge_of(polygon, i))) fractions.push_back(*fraction);
   }
 }
 
@@ -137,7 +119,7 @@ bool parts(const Polygon& convex, const Polygon& other, double depth) {
 /// Edges that may come into the box.
 std::size_t edges_in(const Polygon& polygon, const Box& box) {
   std::size_t count = 0;
-  for (std::size_t i = 0; i < polygon.size(); ++i) count += edge(polygon, i).box().overlaps(box);
+  for (std::size_t i = 0; i < polygon.size(); ++i) count += edge_of(polygon, i).box().overlaps(box);
   return count;
 }
 

@@ -4,26 +4,24 @@
 #include <vector>
 
 #include "openclose/core/tolerance.h"
+#include "openclose/geometry/fractions.h"
 
 namespace openclose {
 
 double common_length(const Segment& segment, const Polygon& polygon) {
   const Box reach = segment.box().inflated(tolerance::touching_m);
   if (!reach.overlaps(Box::around(polygon))) return 0.0;
-  const Vec2 along = segment.to - segment.from;
   // Between two of these places the segment is either along the polygon or not: the feet of the vertices and the crossings with the edges.
   std::vector<double> places{0.0, 1.0};
   const auto add = [&](double place) {
     if (place > 0.0 && place < 1.0) places.push_back(place);
   };
   for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Vec2& a = polygon[i];
-    const Vec2& b = polygon[i + 1 < polygon.size() ? i + 1 : 0];
-    if (!reach.overlaps(Box::around(a, b))) continue;
-    const Vec2 edge = b - a;
-    for (const Vec2& end : {a, b}) add((end - segment.from).dot(along) / along.squaredNorm());
-    const double sine = cross(along, edge);
-    if (sine != 0.0) add(cross(a - segment.from, edge) / sine);
+    const Segment edge = edge_of(polygon, i);
+    if (!reach.overlaps(edge.box())) continue;
+    add(foot(segment, edge.from));
+    add(foot(segment, edge.to));
+    if (const std::optional<double> place = crossing(segment, edge)) add(*place);
   }
   std::sort(places.begin(), places.end());
   double length = 0.0;

@@ -6,8 +6,8 @@
 
 #include "openclose/core/tolerance.h"
 #include "openclose/geometry/box.h"
+#include "openclose/geometry/fractions.h"
 #include "openclose/geometry/near_pairs.h"
-#include "openclose/geometry/segment.h"
 
 namespace openclose {
 namespace {
@@ -18,7 +18,7 @@ constexpr std::size_t most_of_vertices = 64;
 std::vector<Segment> edges_of(const Polygon& polygon) {
   std::vector<Segment> edges;
   edges.reserve(polygon.size());
-  for (std::size_t i = 0; i < polygon.size(); ++i) edges.push_back({polygon[i], polygon[i + 1 < polygon.size() ? i + 1 : 0]});
+  for (std::size_t i = 0; i < polygon.size(); ++i) edges.push_back(edge_of(polygon, i));
   return edges;
 }
 
@@ -85,11 +85,6 @@ class Inside {
   double low_ = 0.0, width_ = 0.0;
   std::vector<std::vector<Segment>> strips_;
 };
-
-double foot(const Segment& segment, const Vec2& point) {
-  const Vec2 along = segment.to - segment.from;
-  return (point - segment.from).dot(along) / along.squaredNorm();
-}
 
 /// An edge near a segment, and between which fractions of that it lies.
 struct Near {
@@ -161,13 +156,10 @@ class Side {
     const auto add = [&](double place) {
       if (place > 0.0 && place < 1.0) places.push_back(place);
     };
-    const Vec2 along = segment.to - segment.from;
     for (const Near& one : near) {
       add(one.from);
       add(one.to);
-      const Vec2 across = one.edge->to - one.edge->from;
-      const double sine = cross(along, across);
-      if (sine != 0.0) add(cross(one.edge->from - segment.from, across) / sine);
+      if (const std::optional<double> place = crossing(segment, *one.edge)) add(*place);
     }
     std::ranges::sort(places);
     return places;

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "openclose/core/tolerance.h"
 #include "openclose/geometry/polygon.h"
+#include "openclose/scene/median_size.h"
 
 namespace openclose {
 
@@ -60,10 +62,7 @@ BlockSystem::BlockSystem(const Scene& scene) : rotation_kind_(scene.method.rotat
 double BlockSystem::median_size() const {
   std::vector<double> areas;
   for (const int b : free_blocks_) areas.push_back(blocks_[b].area);
-  if (areas.empty()) return 0.0;
-  const auto median = areas.begin() + static_cast<std::ptrdiff_t>(areas.size() / 2);
-  std::ranges::nth_element(areas, median);
-  return std::sqrt(*median);
+  return size_of_median(std::move(areas)).value_or(0.0);
 }
 
 void BlockSystem::name_joints(const Scene& scene) {

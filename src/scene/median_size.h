@@ -8,7 +8,10 @@
 
 namespace openclose {
 
-/// [m] The root of the median area of the free blocks; none if there are none.
+/// [m] The root of the median of some areas [m2]; none if there are none.
+std::optional<double> size_of_median(std::vector<double> areas);
+
+/// [m] The same of the areas of the free blocks.
 std::optional<double> median_size(const std::vector<BlockInput>& blocks);
 
 }  // namespace openclose

@@ -10,12 +10,13 @@
 #include "openclose/geometry/polygon.h"
 #include "openclose/model/external_forces.h"
 #include "openclose/scene/increased_load.h"
+#include "openclose/scene/median_size.h"
 
 namespace openclose {
 namespace {
 
-/// [m] The root of the median area of the free blocks.
-double median_size(const Scene& scene) {
+/// [m] By which lengths are divided.
+double unit_of(const Scene& scene) {
   std::vector<double> areas;
   for (const BlockInput& block : scene.blocks) {
     if (block.fixed) continue;
@@ -23,10 +24,7 @@ double median_size(const Scene& scene) {
     for (const Vec2& v : block.vertices) polygon.push_back(v - block.vertices.front());
     areas.push_back(polygon_properties(polygon).area);
   }
-  if (areas.empty()) return 1.0;
-  const auto middle = areas.begin() + static_cast<std::ptrdiff_t>(areas.size() / 2);
-  std::nth_element(areas.begin(), middle, areas.end());
-  return std::sqrt(*middle);
+  return size_of_median(std::move(areas)).value_or(1.0);
 }
 
 /// The scene with its first vertex at the origin and lengths in this unit [m]; only what detection looks at.
@@ -94,7 +92,7 @@ BlockVector load_on(const BlockSystem& system, int b, double mass, const Externa
 
 }  // namespace
 
-FrozenSystem::FrozenSystem(const Scene& scene) : has_live_load_(scene.strength_reduction.increase), length_unit_(median_size(scene)) {
+FrozenSystem::FrozenSystem(const Scene& scene) : has_live_load_(scene.strength_reduction.increase), length_unit_(unit_of(scene)) {
   const Scene scaled = in_units(scene, length_unit_);
   BlockSystem system(scaled);
   const ExternalForces dead(with_increased_load(scaled, 0.0), system), all(with_increased_load(scaled, 1.0), system);
