@@ -163,7 +163,7 @@ std::vector<std::string> OutputFolder::used_names_there() const {
 }
 
 bool OutputFolder::is_own(const OwnNames& own, const std::string& name) const {
-  return own.contains(name) || (name.find('/') != std::string::npos && own.contains(folder_of(name))) || is_own_picture(name);
+  return own.contains(name) || own.contains(folder_of(name)) || is_own_picture(name);
 }
 
 std::vector<std::string> OutputFolder::own_names_there() const {
@@ -242,8 +242,8 @@ bool OutputFolder::is_own_picture(const std::string& name) const {
 bool OutputFolder::is_list(const std::string& name) const {
   if (!name.starts_with(list_name)) return false;
   const std::string content = content_of(path_of(name));
-  // A run that is killed while it makes its list leaves an empty one.
-  return content.empty() || first_line(content) == list_heading;
+  // A run that is killed while it makes its list, or whose disk is full, leaves an empty one or the beginning of one.
+  return first_line(content) == list_heading || list_heading.starts_with(content);
 }
 
 void OutputFolder::write_list(const OwnNames& names) const {

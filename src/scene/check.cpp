@@ -26,9 +26,11 @@ namespace {
 /// Sweep over x: a block is compared only with those that begin before it ends.
 void require_no_overlap(const Scene& scene) {
   const std::vector<BlockInput>& blocks = scene.blocks;
+  std::vector<Outline> outlines;
+  outlines.reserve(blocks.size());
+  for (const BlockInput& block : blocks) outlines.push_back(outline_of(block.vertices));
   for (const auto& [first, second] : blocks_that_may_overlap(blocks)) {
-    const double depth = overlap_depth_beyond(tolerance::deepest_initial_overlap_m, outline_of(blocks[first].vertices),  //
-                                              outline_of(blocks[second].vertices));
+    const double depth = overlap_depth_beyond(tolerance::deepest_initial_overlap_m, outlines[first], outlines[second]);
     if (depth > tolerance::deepest_initial_overlap_m) fail_overlap(scene, blocks[first], blocks[second], depth);
   }
 }

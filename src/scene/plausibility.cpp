@@ -68,10 +68,15 @@ class Judge {
     owner_ = fmt::format("{}{} on \"{}\"", force.table().name, name, scene_.blocks[force.block].name);
     AnyForce::visit_keys(force, *this);
   }
-  void look_at(const BlockInput& block) {
-    owner_ = fmt::format("block \"{}\"", block.name);
-    judge("velocity_m_per_s", block.velocity.norm(), "length of velocity_m_per_s");
-    judge("angular_velocity_rad_per_s", block.angular_velocity);
+  /// The fastest of them alone: a wrong unit is that of all.
+  void look_at(const std::vector<BlockInput>& blocks) {
+    const auto speed = [](const BlockInput& block) { return block.velocity.norm(); };
+    const auto turn = [](const BlockInput& block) { return std::abs(block.angular_velocity); };
+    const BlockInput &fastest = *std::ranges::max_element(blocks, {}, speed), &turning = *std::ranges::max_element(blocks, {}, turn);
+    owner_ = fmt::format("block \"{}\"", fastest.name);
+    judge("velocity_m_per_s", speed(fastest), "length of velocity_m_per_s");
+    owner_ = fmt::format("block \"{}\"", turning.name);
+    judge("angular_velocity_rad_per_s", turning.angular_velocity);
   }
   void look_at(const BaseMotionInput& motion) {
     owner_ = "base_motion";
@@ -142,7 +147,7 @@ std::vector<std::string> implausible_numbers(const Scene& scene) {
   Judge judge(scene, warnings);
   for (const Material& material : scene.materials) judge.look_at(material);
   for (const JointProperties& joint : scene.joints) judge.look_at(joint);
-  for (const BlockInput& block : scene.blocks) judge.look_at(block);
+  if (!scene.blocks.empty()) judge.look_at(scene.blocks);
   for_each_force(scene, [&](const auto& force) { judge.look_at(force); });
   if (scene.base_motion) judge.look_at(*scene.base_motion);
   return warnings;

@@ -98,6 +98,24 @@ TEST_CASE("results that somebody has changed since are not replaced", "[cli][for
   CHECK_FALSE(std::filesystem::exists(place.folder() / "out/vtk"));
 }
 
+TEST_CASE("what is called like the folder of a format, and is none, stays", "[cli][foreign]") {
+  const Workplace place;
+  std::filesystem::create_directories(place.folder() / "out");
+  std::filesystem::create_directories(place.folder() / "pictures");
+  SECTION("a file") {
+    place.folder().write("out/vtk", "mine\n");
+    check_refused(place, run_in_out, "out/vtk: is no folder that can be read");
+  }
+  SECTION("a link to a folder") {
+    std::filesystem::create_symlink("../pictures", place.folder() / "out/svg");
+    const CommandResult result = place.run(run_in_out);
+    CHECK(result.status == 2);
+    REQUIRE(result.errors.size() == 1);
+    CHECK_THAT(result.errors[0], ContainsSubstring("out/svg: is no folder that can be read"));
+    CHECK(std::filesystem::is_symlink(place.folder() / "out/svg"));
+  }
+}
+
 TEST_CASE("a run that goes on writes no more to tables that have another name, too", "[cli][foreign][restart]") {
   const Workplace place;
   const std::string command = "run scene.toml --dt 0.001 -q --set output.checkpoint_every_s=0.005 -o ";

@@ -135,6 +135,31 @@ TEST_CASE("a sweep or study that is stopped stops its cases, and goes on where i
              ContainsSubstring("(1 were there)"));
 }
 
+TEST_CASE("a sweep takes up what one that was killed has left, and leaves cases alone that have ended", "[cli][sweep]") {
+  const Workplace place(block_on_incline(20.0));
+  const std::string command = "sweep scene.toml --vary joint[0].friction_angle_deg=25,30 -j 1 -o out";
+  REQUIRE(place.run(command).status == 0);
+  // In the midst of writing its mark and its table.
+  const std::string folder = "out/joint[0].friction_angle_deg=30/";
+  std::filesystem::remove(place.folder() / (folder + "case.txt"));
+  place.folder().write(folder + "case.txt.part", "openc");
+  place.folder().write("out/sweep.csv.part", "joint[0].fri");
+  // Notes on a case that is not run again.
+  std::ofstream(place.folder() / "out/joint[0].friction_angle_deg=25/trials.csv", std::ios::app) << "mine\n";
+  CHECK_THAT(place.run(command).out, ContainsSubstring("2 of 2 cases have an answer (1 were there)"));
+  // What is not ours under that name is not removed.
+  std::filesystem::remove(place.folder() / (folder + "case.txt"));
+  place.folder().write(folder + "case.txt.part", "my notes\n");
+  CHECK(place.run(command).status == 2);
+  CHECK(text_of(place.folder() / (folder + "case.txt.part")) == "my notes\n");
+}
+
+TEST_CASE("a sweep waits for its cases though it was started with a disregard for the ends of children", "[cli][sweep]") {
+  const Workplace place(block_on_incline(20.0));
+  CHECK(place.run("sweep scene.toml --vary joint[0].friction_angle_deg=25 -q -o out", "timeout 60 sh -c 'trap \"\" CHLD; exec \"$@\"' sh ").status ==
+        0);
+}
+
 TEST_CASE("a folder that another openclose writes to is left to it", "[cli][run][fos][sweep]") {
   const Workplace place(block_on_incline(35.0));
   REQUIRE(place.run("run scene.toml --dt 0.001 --end 0.01 --start unloaded -q -o out").status == 0);

@@ -342,6 +342,35 @@ TEST_CASE("a table goes on as a new file, not in what has another name, too", "[
   CHECK(place.entries() == std::set<std::string>{"history.csv", "copy"});
 }
 
+TEST_CASE("a damaged list makes nothing ours", "[io][output_folder]") {
+  const TemporaryFolder place;
+  const OutputFolder folder(place.path());
+  folder.claim({});
+  std::ofstream(place / list_name, std::ios::app) << "\ncurve.csv not-a-sum\n";
+  place.write("curve.csv", "mine");
+  CHECK_THROWS_WITH(OutputFolder(place.path()).claim({}), ContainsSubstring("curve.csv: is there and has not been written by openclose"));
+  std::filesystem::remove(place / "curve.csv");
+  // As a full disk cuts it.
+  const std::string list = test::text_of(place / list_name);
+  place.write(".openclose.part", list.substr(0, 20));
+  CHECK_NOTHROW(OutputFolder(place.path()).claim({}));
+  CHECK_FALSE(std::filesystem::exists(place / ".openclose.part"));
+}
+
+TEST_CASE("what an analysis that is killed after its claim leaves is known by its sum", "[io][output_folder]") {
+  const TemporaryFolder place;
+  const OutputFolder folder(place.path());
+  folder.claim({});
+  folder.open_growing("history.csv") << "ours";
+  folder.list_results();
+  folder.claim({});
+  place.write("history.csv", "edited");
+  CHECK_THROWS_WITH(OutputFolder(place.path()).claim({}), ContainsSubstring("history.csv: has been changed since"));
+  // Begun anew it is its own again, however it ends.
+  folder.open_growing("history.csv") << "of the next";
+  CHECK_NOTHROW(OutputFolder(place.path()).claim({}));
+}
+
 TEST_CASE("a folder is held by one, as long as that one lives", "[io][folder_lock]") {
   const TemporaryFolder place;
   std::filesystem::create_directory(place / "out");

@@ -241,6 +241,10 @@ TEST_CASE("velocities that no block has are warned of", "[scene][check]") {
   CHECK_THAT(warnings_of("velocity_m_per_s = [0, -1001]\n").front(),
              ContainsSubstring("block \"thrown\": length of velocity_m_per_s = 1001 is hardly meant"));
   REQUIRE(warnings_of("angular_velocity_rad_per_s = -10001\n").size() == 1);
+  // A wrong unit is that of all blocks: the fastest stands for them.
+  const std::string another = "[[block]]\nname = 'another'\nmaterial = 'rock'\nvertices_m = [[6, 5], [7, 5], [7, 6]]\nvelocity_m_per_s = [2000, 0]\n";
+  REQUIRE(warnings_of("velocity_m_per_s = [0, -1001]\n" + another).size() == 1);
+  CHECK_THAT(warnings_of("velocity_m_per_s = [0, -1001]\n" + another).front(), ContainsSubstring("block \"another\""));
   CHECK(warnings_of("velocity_m_per_s = [0, -1000]\nangular_velocity_rad_per_s = 10000\n").empty());
 }
 
