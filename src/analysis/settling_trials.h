@@ -3,7 +3,7 @@
 #pragma once
 
 #include "openclose/analysis/equilibrium.h"
-#include "openclose/analysis/run.h"
+#include "openclose/analysis/measured_points.h"
 #include "openclose/analysis/strength_search.h"
 
 namespace openclose {
