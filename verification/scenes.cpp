@@ -177,7 +177,7 @@ SlidingLimit sliding_limit_of(const Scene& scene, const FactorOfSafety& found) {
   limit_analysis::Problem problem = limit_problem(system, strength);
   for (std::size_t i = 0; i < problem.contacts.size(); ++i) {
     const Contact& carries = stable->contacts.at(i);
-    const double shear = strength.of(i, carries.bonded).largest_shear(carries.normal_force / system.force_unit());
+    const double shear = strength.of(i, carries.joint_state).largest_shear(carries.normal_force / system.force_unit());
     problem.contacts[i].cohesion = limit.factor * shear * system.force_unit();
     problem.contacts[i].friction = 0.0;
   }

@@ -58,7 +58,7 @@ double elastic_normal_at_start(const Contact& contact, const TabulatedJoint& joi
 
 /// Open before and after, nothing stored: every entry would be zero.
 bool rests_open(const Contact& contact, ContactStatus end) {
-  return end == ContactStatus::open && contact.status == ContactStatus::open && !contact.bonded && contact.stretch() > 0.0 &&
+  return end == ContactStatus::open && contact.status == ContactStatus::open && !contact.joint_state.bonded && contact.stretch() > 0.0 &&
          contact.elastic_slip == 0.0 && contact.stored_energy == 0.0 && contact.normal_force == 0.0 && contact.shear_force == 0.0;
 }
 

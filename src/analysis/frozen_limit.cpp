@@ -24,7 +24,7 @@ limit_analysis::Problem limit_problem(const FrozenSystem& system, const FrozenSt
   for (std::size_t i = 0; i < system.contacts().size(); ++i) {
     const FrozenContact& c = system.contacts()[i];
     if (lone_corners == LoneCorners::left_out && c.joined_length == 0.0) continue;
-    const ContactStrength s = strength.of(i, true);
+    const ContactStrength s = strength.of(i, {});
     // A fixed block is the outside world, which is the second one.
     const bool corner_is_free = c.a >= 0;
     problem.contacts.push_back({corner_is_free ? c.a : c.b, corner_is_free ? c.b : -1, c.point, corner_is_free ? c.normal : Vec2(-c.normal),

@@ -13,6 +13,8 @@ namespace {
 /// are undecided with five times as many of them, and still three with twenty-five times.
 constexpr int open_close_increments_per_step = 5;
 
+/// [-] Of what a joint can lose, on the way to the next factor: more of it counts as a bond that breaks, whose loss depends on the stride.
+constexpr double most_loss_on_a_stride = 0.1;
 constexpr int trials_of_full_effort = 4;  ///< that stay undecided
 
 /// Rigid contacts at rest carry what springs do, since only the ratios of stiffnesses count.
@@ -112,8 +114,9 @@ TrialResult FrozenTrials::next(double srf, OnBreak on_break) {
 /// What is open at the beginning has no strength to lose: it breaks at every factor.
 bool FrozenTrials::has_broken(const FrozenState& before, const FrozenState& after) const {
   for (std::size_t i = 0; i < before.contacts.size(); ++i) {
-    const bool had_bond = before.contacts[i].bonded && before.contacts[i].status != ContactStatus::open;
-    if (had_bond && !after.contacts[i].bonded && strength_.can_break(i, true)) return true;
+    const JointState &then = before.contacts[i].joint_state, &now = after.contacts[i].joint_state;
+    if (before.contacts[i].status == ContactStatus::open || !strength_.can_lose(i, then)) continue;
+    if (strength_.loss(i, then, now) > most_loss_on_a_stride) return true;
   }
   return false;
 }

@@ -56,7 +56,7 @@ double withheld_strength(const FrozenSystem& system, const FrozenStrength& stren
   for (std::size_t i = 0; i < state.contacts.size(); ++i) {
     if (!is_of(system.contacts()[i], chosen)) continue;
     const FrozenContactState& s = state.contacts[i];
-    const ContactStrength bounds = strength.of(i, s.bonded);
+    const ContactStrength bounds = strength.of(i, s.joint_state);
     const double normal = std::max(s.normal, -bounds.tension);
     whole += std::max(0.0, bounds.friction * normal + bounds.cohesion);
     there += bounds.largest_shear(normal);

@@ -164,9 +164,7 @@ class RestSearch {
 /// Where joints lose strength by slip, it counts which of them slip, and not by how the blocks swing before the springs carry them: the state in
 /// which they carry the blocks without any slip, if there is one, and if it matters. If not, the blocks are where they were.
 std::optional<Simulation::Snapshot> rest_without_slip(Simulation& simulation, const RestLimits& limits, const SettleProgress& progress) {
-  const auto loses_by_slip = [](const JointProperties& joint) {
-    return can_lose_strength(joint, true) && !stays_bonded(joint, true, ContactStatus::sliding);
-  };
+  const auto loses_by_slip = [](const JointProperties& joint) { return can_lose_strength(joint, {}) && joint.weakens_by_slip(); };
   if (std::ranges::none_of(simulation.scene().joints, loses_by_slip)) return std::nullopt;
   const Simulation::Snapshot start = simulation.save();
   simulation.set_bonds(Bonds::last_without_slip);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <stdexcept>
 
@@ -22,14 +23,16 @@ void require_step_options(const Scene& scene, const Enforcement& enforcement) {
                      "contact = \"soft\" or \"hard\", or 0");
 }
 
-/// Whether a contact has slipped between two states by more than its shear spring can carry in the second one.
-bool has_slipped(const BlockSystem& start, const Contact& before, const BlockSystem& system, const Contact& now, const TabulatedJoint& joint) {
+/// [m] Slip of a contact between two states if that is more than its shear spring can carry in the second one, or else 0.
+double slip_between(const BlockSystem& start, const Contact& before, const BlockSystem& system, const Contact& now, const TabulatedJoint& joint) {
   const auto way = [&](int b) -> Motion::Unknowns { return system.displacement(b) - start.displacement(b); };
   const ContactKinematics k(start, before, way(now.vertex_block), way(now.edge_block));
   const ContactStrength strength(joint, now);
   const double stiffness = JointSprings(joint, now.length).shear;
   const double wanted = stiffness * std::abs(before.elastic_slip + k.slip_change);
-  return wanted > strength.largest_shear(std::max(now.normal_force, -strength.tension)) + stiffness * tolerance::rounding_of_ways_m;
+  const double carried = strength.largest_shear(std::max(now.normal_force, -strength.tension));
+  const bool slips = wanted > carried + stiffness * tolerance::rounding_of_ways_m;
+  return slips ? std::abs(before.elastic_slip + k.slip_change - now.elastic_slip) : 0.0;
 }
 
 }  // namespace
@@ -118,8 +121,11 @@ void Simulation::judge_bonds(const Snapshot* from) {
   for (Contact& c : state_.contacts.moving) {
     const TabulatedJoint& joint = state_.joints.joint(c.joint);
     const auto known = before.find({c.vertex, c.edge});
-    const bool slid = c.status == ContactStatus::sticking && known != before.end() && has_slipped(start, *known->second, state_.system, c, joint);
-    c.bonded = stays_bonded(joint, c.bonded, slid ? ContactStatus::sliding : c.status);
+    // What slides, nobody knows how far, has slid all the way.
+    const bool is_known = known != before.end();
+    const double slip = is_known && c.status != ContactStatus::open ? slip_between(start, *known->second, state_.system, c, joint) : 0.0;
+    const ContactStatus on_the_way = c.status == ContactStatus::sticking && slip > 0.0 ? ContactStatus::sliding : c.status;
+    c.joint_state = state_after(joint, c.joint_state, on_the_way, is_known ? slip : std::numeric_limits<double>::infinity());
   }
 }
 

@@ -73,7 +73,7 @@ void SimulationState::find_contacts(double lead) {
   store_changed_energies();
   const StepProblem p = problem(scene.step.dt, false);
   for (Contact& c : contacts.moving) {
-    if (!c.bonded && c.normal_force < 0.0) store_energy(p, c);  // it lost its strength while it was pulling
+    if (!c.joint_state.bonded && c.normal_force < 0.0) store_energy(p, c);  // it lost its strength while it was pulling
   }
   const double change = moving_contact_energy() - before;
   ledger.redefinition -= change;

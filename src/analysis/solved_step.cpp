@@ -80,13 +80,23 @@ double unbalanced_force(const StepProblem& problem, const StepSolution& solution
   return largest + solution.unbalanced;
 }
 
-bool loses_strength(const StepProblem& problem, const StepSolution& solution) {
+double friction_slip(const StepProblem& problem, const StepSolution& solution, std::size_t contact, bool elastic) {
+  if (solution.contacts.status(contact) != ContactStatus::sliding) return 0.0;
+  const double elastic_shear = solution.contacts.forces(contact).elastic_shear;
+  const double stretch = elastic ? -elastic_shear / solution.contacts.shear_stiffness(contact) - problem.contacts[contact].elastic_slip : 0.0;
+  return std::abs(solution.contacts.slip_change(contact) - stretch);
+}
+
+double largest_loss(const StepProblem& problem, const StepSolution& solution, bool elastic) {
+  double largest = 0.0;
   for (std::size_t i = 0; i < problem.contacts.size(); ++i) {
     const Contact& c = problem.contacts[i];
     const JointProperties& joint = problem.joints.joint(c.joint);
-    if (can_lose_strength(joint, c.bonded) && !stays_bonded(joint, c.bonded, solution.contacts.status(i))) return true;
+    if (!can_lose_strength(joint, c.joint_state)) continue;
+    const JointState after = state_after(joint, c.joint_state, solution.contacts.status(i), friction_slip(problem, solution, i, elastic));
+    largest = std::max(largest, loss(joint, c.joint_state, after));
   }
-  return false;
+  return largest;
 }
 
 bool moves_nothing(const StepProblem& problem, const StepSolution& solution) {

@@ -19,8 +19,12 @@ double local_error(const StepProblem& problem, const StepSolution& solution);
 /// [N] Largest sum of forces without inertia on a block, with what friction that lags behind the normal force misses its bound by.
 double unbalanced_force(const StepProblem& problem, const StepSolution& solution);
 
-/// Whether a contact loses its cohesion or tensile strength by the status in which it ends.
-bool loses_strength(const StepProblem& problem, const StepSolution& solution);
+/// [m] By how much friction gives way in a contact that slides at the end.
+/// \param elastic  contacts have springs, whose stretch is not slip
+double friction_slip(const StepProblem& problem, const StepSolution& solution, std::size_t contact, bool elastic);
+
+/// [-] The largest share of what it can lose that a joint loses by how its contact ends.
+double largest_loss(const StepProblem& problem, const StepSolution& solution, bool elastic);
 
 /// Whether a step in motion begins and ends without velocities and moves no block: in balance. Where contacts stay as they are, too, the next one
 /// that is as long repeats it bit for bit.

@@ -90,7 +90,8 @@ StepResult SolvedStepper::step(double dt, bool statics) {
   if (books_steps_) add_step(step_ledger_, p, solution_, *state_.scheme, state_.enforcement->has_elastic_contacts());
   if (creates_energy(p, result)) return result;
   if (statics) result.unbalanced_force = openclose::unbalanced_force(p, solution_);
-  result.lost_strength = loses_strength(p, solution_);
+  // What balances forces to this share of them balances strength to it.
+  result.lost_strength = largest_loss(p, solution_, state_.enforcement->has_elastic_contacts()) > state_.scene.settle.unbalanced_fraction;
   accept(p);
   result.accepted = true;
   state_.wake(state_.to_wake(Resting::Urgency::any));
@@ -183,7 +184,7 @@ void SolvedStepper::accept(const StepProblem& problem) {
   const bool may_be_still = moves_nothing(problem, solution_) && !cuts_.has_cut_at_entry() && state_.system.resting_blocks().empty();
   const bool may_be_struck = !problem.statics && !enforcement.has_elastic_contacts();
   const std::vector<Blow> struck = may_be_struck ? blows(problem, solution_) : std::vector<Blow>();
-  const bool contacts_change = accept_contacts(), some_move = accept_velocities(problem);
+  const bool contacts_change = accept_contacts(problem), some_move = accept_velocities(problem);
   for (int b : state_.system.free_blocks()) state_.system.advance(b, solution_.of(state_.system, b));
   for (const Blow& blow : struck) end_of_blow(blow);
   if (!problem.statics) state_.scheme->accept(problem.dt);
@@ -206,14 +207,14 @@ void SolvedStepper::accept(const StepProblem& problem) {
   still_since_ = state_.changes;
 }
 
-bool SolvedStepper::accept_contacts() {
+bool SolvedStepper::accept_contacts(const StepProblem& problem) {
   const bool elastic = state_.enforcement->has_elastic_contacts();
   bool some_change = false;
   for (std::size_t i = 0; i < state_.contacts.moving.size(); ++i) {
     Contact& c = state_.contacts.moving[i];
     const Contact start = c;
     c.status = solution_.contacts.status(i);
-    c.bonded = stays_bonded(state_.joints.joint(c.joint), c.bonded, c.status);
+    c.joint_state = state_after(state_.joints.joint(c.joint), c.joint_state, c.status, friction_slip(problem, solution_, i, elastic));
     c.slack = solution_.contacts.slack(i);
     c.gap += solution_.contacts.gap_change(i);
     c.normal_force = c.shear_force = c.elastic_slip = c.stored_energy = 0.0;

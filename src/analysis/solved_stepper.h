@@ -54,7 +54,7 @@ class SolvedStepper {
 
   void accept(const StepProblem& problem);
   /// False: nothing of any contact has changed.
-  bool accept_contacts();
+  bool accept_contacts(const StepProblem& problem);
   /// Gives the blocks their velocities; false: none has one.
   bool accept_velocities(const StepProblem& problem);
   /// The velocity at the end of a step goes on from that of its middle with the forces of the step. A blow is over then, and what it has changed is

@@ -279,7 +279,7 @@ class StrengthReduction {
       contact.normal_force = s.normal * system.force_unit();
       contact.shear_force = s.shear * system.force_unit();
       contact.status = s.status;
-      contact.bonded = s.bonded;
+      contact.joint_state = s.joint_state;
       named.contacts.push_back(contact);
     }
     result_.states.push_back(std::move(named));
@@ -382,13 +382,13 @@ class StrengthReduction {
   }
 
   std::string reason_of_distance(double limit, double largest, const Scene& scene, const FrozenSystem& system, const FrozenTrials& trials) const {
-    const auto broken = std::ranges::count_if(trials.stable()->contacts, [](const FrozenContactState& s) { return !s.bonded; });
-    if (broken > 0) return fmt::format("bonds have broken at {} contacts, which it does not know", broken);
+    const auto broken = std::ranges::count_if(trials.stable()->contacts, [](const FrozenContactState& s) { return s.joint_state != JointState{}; });
+    if (broken > 0) return fmt::format("joints have lost strength for good at {} contacts, which it does not know", broken);
     FrozenStrength strength(system, scene);
     if (!input_.increase) strength.reduce(*result_.bracket.stable);
     const double withheld = withheld_strength(system, strength, *trials.stable(), rows_of(system, result_.mechanism));
     if (withheld > share_of_main_reason * (1.0 - *result_.bracket.stable / limit)) return withheld_in_words(withheld);
-    if (std::ranges::any_of(scene_.joints, [](const JointProperties& joint) { return can_lose_strength(joint, true); }))
+    if (std::ranges::any_of(scene_.joints, [](const JointProperties& joint) { return can_lose_strength(joint, {}); }))
       return "joints that slip or open lose strength for good, one contact after the other, which it does not know";
     if (largest >= far_below_limit_analysis * limit) return "with another ratio of stiffness the joints carry nearly as much";
     return "it lets joints open by their friction angle as they slide, which jams blocks; here they slide without opening";

@@ -1,6 +1,7 @@
 // A contact: one vertex of a block against one edge of another, with its history.
 #pragma once
 
+#include "openclose/contact/joint_state.h"
 #include "openclose/core/archive.h"
 
 namespace openclose {
@@ -17,9 +18,9 @@ struct Contact {
   int edge = 0;   ///< first vertex of the edge
   int joint = 0;  ///< index into the joint table
 
-  // History, as the last accepted step left it; more of it below. Here because two more numbers of one byte cost nothing.
+  // History, as the last accepted step left it; more of it below. Here because a number of one byte costs nothing beside the others.
   ContactStatus status = ContactStatus::open;
-  bool bonded = true;  ///< cohesion and tensile strength are still there
+  JointState joint_state;
 
   // Geometry at the start of the step.
   double length = 0.0;    ///< [m] tributary length: stiffness, cohesion and tensile strength are per length

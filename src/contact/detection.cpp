@@ -252,7 +252,7 @@ void Detector::redo(const JointTable& joints, const BlockSystem& system, int pai
       inherit(before[known], stretch_at(before[known], c.gap, moved_by_others_), c);
       lives_on_[known - old.begin] = 1;
     } else {
-      c.bonded = first_ && c.gap <= tolerance::deepest_initial_overlap_m;
+      c.joint_state.bonded = first_ && c.gap <= tolerance::deepest_initial_overlap_m;
       if (!first_) rest_at_present_gap(c);
       born_.push_back(k);
     }

@@ -35,7 +35,7 @@ inline double stretch_at(const Contact& before, double gap, bool moved_by_others
 /// \param stretch  [m] of the normal spring of `from`
 inline void inherit(const Contact& from, double stretch, Contact& to) {
   to.status = from.status;
-  to.bonded = from.bonded;
+  to.joint_state = from.joint_state;
   to.normal_force = from.normal_force;
   to.shear_force = from.shear_force;
   to.stored_energy = from.stored_energy;
@@ -43,7 +43,7 @@ inline void inherit(const Contact& from, double stretch, Contact& to) {
   to.slack = from.slack;
   const double longer = to.length > 0.0 ? std::sqrt(from.length / to.length) : 1.0;
   to.elastic_slip = longer * from.elastic_slip;
-  const bool pulls = stretch > 0.0 && from.bonded && from.status != ContactStatus::open;
+  const bool pulls = stretch > 0.0 && from.joint_state.bonded && from.status != ContactStatus::open;
   if (stretch >= 0.0 && !pulls) {
     rest_at_present_gap(to);
   } else if (pulls) {

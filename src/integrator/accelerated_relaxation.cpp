@@ -150,12 +150,16 @@ bool AcceleratedRelaxation::break_slipped_bonds(const SpringsOf& springs) {
   for (std::size_t c = 0; c < contacts().size(); ++c) {
     const Contact& contact = equations_.problem().contacts[c];
     const TabulatedJoint& joint = equations_.problem().joints.joint(contact.joint);
-    if (has_broken_[c] || !can_lose_strength(joint, contact.bonded) || stays_bonded(joint, contact.bonded, ContactStatus::sliding)) continue;
-    if (contacts().status(c) == ContactStatus::open || slipped_as_a_whole(springs, c).status != ContactStatus::sliding) continue;
-    has_broken_[c] = any = true;
-    ContactStrength strength = contacts().strength(c);
-    strength.break_bond(joint);
-    contacts().start(c).set_strength(ContactTrial::lane(c), strength);
+    if (!can_lose_strength(joint, contact.joint_state) || !joint.weakens_by_slip() || contacts().status(c) == ContactStatus::open) continue;
+    const ContactForces whole = slipped_as_a_whole(springs, c);
+    if (whole.status != ContactStatus::sliding) continue;
+    const ContactSprings from = springs(c);
+    const double slip = contacts().trial(c).slip_change[ContactTrial::lane(c)] - (from.initial_shear - whole.elastic_shear) / from.shear;
+    const JointState state = state_after(joint, contact.joint_state, ContactStatus::sliding, std::abs(slip));
+    if (loss(joint, states_[c], state) <= 0.0) continue;
+    any = true;
+    states_[c] = state;
+    contacts().start(c).set_strength(ContactTrial::lane(c), ContactStrength(joint, contact.length, state));
   }
   return any;
 }
@@ -166,7 +170,8 @@ void AcceleratedRelaxation::note_slip(const SpringsOf& springs) {
     if (status(piece) != ContactStatus::sticking) continue;
     const ContactForces law = slipped_as_a_whole(springs, c);
     if (law.status == ContactStatus::sliding) piece = branch(law);
-    if (has_broken_[c]) piece = branch(ContactStatus::sliding, contacts().trial(c).shear[ContactTrial::lane(c)] < 0.0);
+    if (states_[c] != equations_.problem().contacts[c].joint_state)
+      piece = branch(ContactStatus::sliding, contacts().trial(c).shear[ContactTrial::lane(c)] < 0.0);
   }
 }
 
@@ -200,7 +205,8 @@ void AcceleratedRelaxation::solve(const StepProblem& problem, const SpringsOf& s
   bool is_regular = renew(std::numeric_limits<double>::infinity());
   Eigen::VectorXd place = d, next(d.size());
   Momentum momentum;
-  has_broken_.assign(contacts().size(), false);
+  states_.clear();
+  for (const Contact& contact : problem.contacts) states_.push_back(contact.joint_state);
   bool bonds_are_known = false;
   int& steps = solution.effort.relaxation_steps;
   while (is_regular && norm > 1.0 && steps < most_relaxation_steps && (steps % steps_between_looks != 0 || !has_left(d))) {

@@ -41,7 +41,7 @@ class AcceleratedRelaxation {
   const ContactTrial& contacts() const { return equations_.contacts(); }
 
   StepEquations& equations_;
-  std::vector<bool> has_broken_;  ///< contacts that have lost strength on the way
+  std::vector<JointState> states_;  ///< of the joints, with the strength that they have lost on the way
   Memory memory_;
 };
 

@@ -70,7 +70,7 @@ class CentralDifference {
   double critical_step(double local_damping = 0.0) { return links_.critical_step(local_damping); }
   double last_unbalanced_force() const;                                   ///< [N] largest force on a block when the last step began
   double unbalanced_force() const { return blocks_.unbalanced_force(); }  ///< [N] now; a pass over the blocks
-  bool lost_strength() const { return links_.lost_strength(); }           ///< a contact has lost cohesion or tensile strength in the last step
+  bool lost_strength() const { return links_.lost_strength(); }           ///< a joint has lost its bond in the last step
   double max_penetration() const { return links_.max_penetration(); }     ///< [m] since the load
 
   /// [N, N m] What the contacts do to each of the blocks that were at rest at the load, in the system's order.

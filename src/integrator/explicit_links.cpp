@@ -135,8 +135,7 @@ std::pair<ExplicitLinks::Link, ExplicitLinks::LinkRest> ExplicitLinks::make(cons
             .edge_slot = at_edge,
             .rest_gap = static_cast<float>(c.rest_gap),
             .status = c.status,
-            .bonded = c.bonded,
-            .breakable = problem.bonds == Bonds::break_under_load && can_lose_strength(joint, c.bonded)};
+            .breakable = problem.bonds == Bonds::break_under_load && can_lose_strength(joint, c.joint_state)};
   begin_forces(link, c);
 
   const auto share = [&](int b, int other) {
@@ -153,7 +152,9 @@ std::pair<ExplicitLinks::Link, ExplicitLinks::LinkRest> ExplicitLinks::make(cons
                       share(c.vertex_block, c.edge_block),
                       share(c.edge_block, c.vertex_block),
                       c.rest_gap,
-                      depth_limits_.of(c.vertex_block, c.edge)};
+                      depth_limits_.of(c.vertex_block, c.edge),
+                      c.length,
+                      c.joint_state};
   return {link, rest};
 }
 
@@ -274,7 +275,7 @@ void ExplicitLinks::store(std::vector<Contact>& contacts) const {
     Contact& c = contacts[rest_[i].contact];
     c.gap = link.gap + rest_[i].rest_gap;
     c.status = link.status;
-    c.bonded = link.bonded;
+    c.joint_state = rest_[i].joint_state;
     c.elastic_slip = link.stretch;
     c.normal_force = link.normal;
     c.shear_force = link.shear;

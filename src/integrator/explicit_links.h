@@ -47,7 +47,7 @@ class ExplicitLinks {
   double approach() const { return approach_; }
   /// [s] Of the contacts that may close before they are renewed, with local damping of this share.
   double critical_step(double local_damping) { return critical_step_.step(local_damping); }
-  bool lost_strength() const { return lost_strength_; }        ///< a contact has lost cohesion or tensile strength in the last step
+  bool lost_strength() const { return lost_strength_; }        ///< a joint has lost its bond in the last step
   double max_penetration() const { return max_penetration_; }  ///< [m] since the load
 
   /// Gap and history of the contacts, in the order of the list; of those that are too far apart nothing changes but the gap, see store_far_gaps().
@@ -77,11 +77,11 @@ class ExplicitLinks {
     int vertex_slot, edge_slot;
     float rest_gap;  ///< [m] for the depth alone, of which seven digits are enough
     ContactStatus status;
-    bool bonded, breakable;
+    bool breakable;  ///< strength that it can lose
 
     void exchange(Archive& archive) {
-      auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, w, x, y, z] = *this;
-      archive(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, w, x, y, z);
+      auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, w, x, y] = *this;
+      archive(a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t, u, v, w, x, y);
     }
   };
   /// What a step does not need of a contact.
@@ -92,10 +92,12 @@ class ExplicitLinks {
     double vertex_share, edge_share;  ///< see critical_step.h
     double rest_gap;                  ///< [m]
     double depth_limit;               ///< [m]
+    double length;                    ///< [m] tributary
+    JointState joint_state;
 
     void exchange(Archive& archive) {
-      auto& [a, b, c, d, e, f, g, h, i, j] = *this;
-      archive(a, b, c, d, e, f, g, h, i, j);
+      auto& [a, b, c, d, e, f, g, h, i, j, k, l] = *this;
+      archive(a, b, c, d, e, f, g, h, i, j, k, l);
     }
   };
   using Place = LinkPlace<double>;
@@ -126,7 +128,8 @@ class ExplicitLinks {
   /// [N] In the normal spring.
   double carry_now(Link& link, const Place& at);
   void settle_crossing(Link& link, const Crossing& crossing, double& normal, double& shear, double& scheme);
-  void lose_strength(Link& link, const TabulatedJoint& joint, const Place& at);
+  /// \param slip  [m] of friction in the step
+  void lose_strength(Link& link, LinkRest& rest, double slip, const Place& at);
   static double stored_energy(const Link& link);
   template <bool damped>
   [[gnu::always_inline]] inline void follow_four(Link* links, LinkSums& sums);

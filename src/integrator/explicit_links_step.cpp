@@ -157,7 +157,7 @@ void ExplicitLinks::lose_strengths(Link* links, const FourLinks& four, FourForce
   for (int k = 0; k < batch_size; ++k) {
     if (!four.breakable[k]) continue;
     lose_strength(
-        links[k], joints_->joint(rest_[&links[k] - links_.data()].joint),
+        links[k], rest_[&links[k] - links_.data()], f.slip[k] + four.stretch[k] - f.stretch[k],
         {f.now.gap[k], f.now.slip[k], {at.normal_x[k], at.normal_y[k], at.vertex_arm_x[k], at.vertex_arm_y[k], at.edge_arm_x[k], at.edge_arm_y[k]}});
     f.normal[k] = links[k].normal;
     f.shear[k] = links[k].shear;
@@ -234,13 +234,16 @@ void ExplicitLinks::book_step_change(double before, double now, const Vec2& base
   }
 }
 
-void ExplicitLinks::lose_strength(Link& link, const TabulatedJoint& joint, const Place& at) {
-  if (stays_bonded(joint, true, link.status)) return;
-  lost_strength_ = true;
-  link.bonded = link.breakable = false;
-  link.strength.break_bond(joint);
+void ExplicitLinks::lose_strength(Link& link, LinkRest& rest, double slip, const Place& at) {
+  const TabulatedJoint& joint = joints_->joint(rest.joint);
+  const JointState state = state_after(joint, rest.joint_state, link.status, std::abs(slip));
+  if (state == rest.joint_state) return;
+  lost_strength_ |= !state.bonded;  // what it loses little by little shows in the forces of the next steps
+  rest.joint_state = state;
+  link.breakable = can_lose_strength(joint, state);
+  link.strength = ContactStrength(joint, rest.length, state);
   carry_now(link, at);
-  if (at.gap <= 0.0 || link.status == ContactStatus::open) return;
+  if (link.breakable || at.gap <= 0.0 || link.status == ContactStatus::open) return;
   // It slipped while it was pulling: nothing pulls any more.
   link.status = ContactStatus::open;
   energies_.redefinition += 0.5 * link.normal_stiffness * (at.gap * at.gap);

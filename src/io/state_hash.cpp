@@ -62,7 +62,7 @@ std::uint64_t hash_of_contact(const Scene& scene, const BlockSystem& system, con
   sum.add(scene.blocks[c.edge_block].name);
   sum.add(c.edge - system.block(c.edge_block).first_vertex);
   sum.add(static_cast<int>(c.status));
-  sum.add(static_cast<int>(c.bonded));
+  for (const double number : c.joint_state.numbers()) sum.add(number);
   for (const double number : {c.gap, c.normal_force, c.shear_force}) sum.add(number);
   return sum.value();
 }

@@ -2,12 +2,6 @@
 
 namespace openclose {
 
-void ContactStrength::break_bond(const TabulatedJoint& joint) {
-  if (joint.cohesion_behaviour != CohesionBehaviour::ductile) cohesion = 0.0;
-  tension = 0.0;
-  friction = joint.residual_friction;
-}
-
 ContactDashpots::ContactDashpots(const JointProperties& joint, double length, double reduced_mass) {
   const JointSprings springs(joint, length);
   const auto dashpot = [&](double stiffness) { return 2.0 * joint.damping_ratio * std::sqrt(stiffness * reduced_mass); };
@@ -44,15 +38,18 @@ ContactForces prolonged(const ContactSprings& springs, const ContactStrength& st
   return f;
 }
 
-bool can_lose_strength(const JointProperties& joint, bool bonded) {
-  return bonded &&
+bool can_lose_strength(const JointProperties& joint, const JointState& state) {
+  return state.bonded &&
          (joint.softens() || joint.tensile_strength > 0.0 || (joint.cohesion > 0.0 && joint.cohesion_behaviour != CohesionBehaviour::ductile));
 }
 
-bool stays_bonded(const JointProperties& joint, bool bonded, ContactStatus status) {
-  if (status == ContactStatus::open) return false;
-  const bool breaks_by_slip = joint.softens() || joint.cohesion_behaviour == CohesionBehaviour::lost_on_slip;
-  return bonded && !(breaks_by_slip && status == ContactStatus::sliding);
+JointState state_after(const JointProperties& joint, const JointState& before, ContactStatus status, double /*slip*/) {
+  const bool breaks = status == ContactStatus::open || (status == ContactStatus::sliding && joint.weakens_by_slip());
+  return breaks ? JointState{.bonded = false} : before;
+}
+
+double loss(const JointProperties& /*joint*/, const JointState& before, const JointState& after) {
+  return static_cast<double>(before.bonded) - static_cast<double>(after.bonded);
 }
 
 }  // namespace openclose

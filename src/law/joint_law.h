@@ -26,15 +26,17 @@ struct ContactStrength {
   double tension = 0.0;   ///< [N] tensile strength times tributary length, 0 once lost
 
   ContactStrength() = default;
-  /// Of a contact in its present state: bonded or not.
-  ContactStrength(const TabulatedJoint& joint, const Contact& contact) : friction(contact.bonded ? joint.friction : joint.residual_friction) {
-    const bool intact = contact.bonded || joint.cohesion_behaviour == CohesionBehaviour::ductile;
-    cohesion = intact ? joint.cohesion * contact.length : 0.0;
-    tension = contact.bonded ? joint.tensile_strength * contact.length : 0.0;
+  /// What the state of a joint leaves of its strength.
+  /// \param length  [m] tributary
+  ContactStrength(const TabulatedJoint& joint, double length, const JointState& state)
+      : friction(state.bonded ? joint.friction : joint.residual_friction) {
+    const bool intact = state.bonded || joint.cohesion_behaviour == CohesionBehaviour::ductile;
+    cohesion = intact ? joint.cohesion * length : 0.0;
+    tension = state.bonded ? joint.tensile_strength * length : 0.0;
   }
+  /// Of a contact in its present state.
+  ContactStrength(const TabulatedJoint& joint, const Contact& contact) : ContactStrength(joint, contact.length, contact.joint_state) {}
 
-  /// What is left of the strength when the bond breaks.
-  void break_bond(const TabulatedJoint& joint);
   void exchange(Archive& archive) {
     auto& [a, b, c] = *this;
     archive(a, b, c);
@@ -140,10 +142,15 @@ ContactForces tangent_for_status(const ContactSprings& springs, const ContactStr
 ContactForces prolonged(const ContactSprings& springs, const ContactStrength& strength, ContactStatus status, double normal, double shear,
                         double gap_change, double slip_change);
 
-/// Whether a contact has strength that goes with its bond: tensile strength, cohesion that is not ductile, or friction above the residual one.
-bool can_lose_strength(const JointProperties& joint, bool bonded);
+/// Whether a joint in this state has strength that it can lose: tensile strength, cohesion that is not ductile, or friction above the residual one.
+bool can_lose_strength(const JointProperties& joint, const JointState& state);
 
-/// Whether the bond survives a step that ended in this status.
-bool stays_bonded(const JointProperties& joint, bool bonded, ContactStatus status);
+/// The state of a joint after a step, or after a way to equilibrium.
+/// \param status  at its end
+/// \param slip    [m] by how much friction gave way, the shear spring's own stretch left out; counts if the contact slides
+JointState state_after(const JointProperties& joint, const JointState& before, ContactStatus status, double slip);
+
+/// [-] Share of what a joint can lose that it has lost between two states: 1 with its bond, negative if it has gained some.
+double loss(const JointProperties& joint, const JointState& before, const JointState& after);
 
 }  // namespace openclose

@@ -39,6 +39,7 @@ struct JointProperties {
 
   bool has_materials() const { return materials[0] != no_material; }
   bool softens() const { return residual_friction_angle && *residual_friction_angle < friction_angle; }
+  bool weakens_by_slip() const { return softens() || cohesion_behaviour == CohesionBehaviour::lost_on_slip; }
   /// Tangents of both friction angles, cohesion and tensile strength divided by a strength reduction factor.
   JointProperties reduced_by(double factor) const {
     JointProperties weaker = *this;

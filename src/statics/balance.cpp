@@ -42,7 +42,7 @@ void Balance::start(const FrozenState& state, double eps) {
 }
 
 void Balance::renew_strength(const FrozenState& state) {
-  for (std::size_t i = 0; i < state.contacts.size(); ++i) contacts_.set_strength(i, strength_.of(i, state.contacts[i].bonded));
+  for (std::size_t i = 0; i < state.contacts.size(); ++i) contacts_.set_strength(i, strength_.of(i, state.contacts[i].joint_state));
 }
 
 const double* Balance::padded(const Increment& x) {
@@ -322,6 +322,7 @@ void Balance::accept(const Increment& x, FrozenState& state, ShearLaw law) {
     const ContactResponse r = contacts_.response(i);
     FrozenContactState& s = state.contacts[i];
     s.gap += gap;
+    s.slip += slip - (s.shear - r.shear) / c.shear_stiffness;
     s.normal = r.normal;
     s.shear = r.shear;
     s.status = r.status();

@@ -45,7 +45,7 @@ EquilibriumCheck check_equilibrium(const FrozenSystem& system, const FrozenStren
     if (!(ratio <= check.unbalanced)) check.unbalanced = ratio, check.block = static_cast<int>(b);
   }
   for (std::size_t i = 0; i < state.contacts.size() && check.within_strength; ++i) {
-    check.within_strength = is_within_strength(strength.of(i, state.contacts[i].bonded), state.contacts[i]);
+    check.within_strength = is_within_strength(strength.of(i, state.contacts[i].joint_state), state.contacts[i]);
   }
   return check;
 }
@@ -74,7 +74,7 @@ bool is_mechanism(const FrozenSystem& system, const FrozenStrength& strength, co
   for (std::size_t i = 0; i < state.contacts.size(); ++i) {
     const FrozenContact& c = system.contacts()[i];
     const FrozenContactState& s = state.contacts[i];
-    const ContactStrength bounds = strength.of(i, s.bonded);
+    const ContactStrength bounds = strength.of(i, s.joint_state);
     if (!is_within_strength(bounds, s)) return false;
     const auto [way_apart, way_along] = relative_motion(c, direction);
     const double opening = way_apart / fastest, slip = way_along / fastest;
@@ -103,7 +103,7 @@ bool is_beyond_all_strength(const FrozenSystem& system, const FrozenStrength& st
   for (std::size_t i = 0; i < system.contacts().size(); ++i) {
     const auto [opening, slip] = relative_motion(system.contacts()[i], direction / fastest);
     if (opening < -mechanism_tolerance || std::abs(slip) > mechanism_tolerance) return false;
-    if (strength.of(i, true).tension > 0.0 && opening > mechanism_tolerance) return false;
+    if (strength.of(i, {}).tension > 0.0 && opening > mechanism_tolerance) return false;
   }
   return work > mechanism_tolerance * scale;
 }

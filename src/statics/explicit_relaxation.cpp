@@ -57,7 +57,13 @@ RelaxationResult ExplicitRelaxation::relax(const FrozenState& from, Effort effor
   FrozenState start = from;
   while (result.end == RelaxationEnd::stable) {
     note_slip(start, result.state);
-    if (!lose_bonds(strength_, result.state)) break;
+    const double lost = lose_strength(strength_, result.state);
+    if (lost == 0.0 || (lost < 1.0 && check_equilibrium(system_, strength_, result.state).holds())) break;
+    // Bonds are lost one by one and no more than there are; what goes little by little may go on without end.
+    if (lost < 1.0 && result.steps >= share_of(effort, most_steps_)) {
+      result.end = RelaxationEnd::undecided;
+      break;
+    }
     const long steps = result.steps;
     start = result.state;
     result = settle(start, ShearLaw::coulomb, effort);
@@ -69,13 +75,15 @@ RelaxationResult ExplicitRelaxation::relax(const FrozenState& from, Effort effor
 void ExplicitRelaxation::note_slip(const FrozenState& from, FrozenState& state) const {
   for (std::size_t i = 0; i < state.contacts.size(); ++i) {
     const FrozenContact& c = system_.contacts()[i];
-    FrozenContactState whole = state.contacts[i];
-    if (whole.status != ContactStatus::sticking || !strength_.can_break(i, whole.bonded)) continue;
+    FrozenContactState& now = state.contacts[i];
+    if (!strength_.can_lose(i, now.joint_state)) continue;
     double slip = 0.0;
     if (c.a >= 0) slip += c.shear_a.dot(state.displacement[c.a] - from.displacement[c.a]);
     if (c.b >= 0) slip += c.shear_b.dot(state.displacement[c.b] - from.displacement[c.b]);
+    FrozenContactState whole = now;
     whole.shear = from.contacts[i].shear - c.shear_stiffness * slip;
-    if (!is_within_strength(strengths_[i], whole)) state.contacts[i].status = ContactStatus::sliding;
+    if (now.status == ContactStatus::sticking && !is_within_strength(strengths_[i], whole)) now.status = ContactStatus::sliding;
+    now.slip = (now.shear - whole.shear) / c.shear_stiffness;
   }
 }
 
@@ -127,7 +135,7 @@ void ExplicitRelaxation::begin(const FrozenState& from, ShearLaw law) {
   velocity_ = force_ = Eigen::VectorXd::Zero(3 * (system_.rows() + 1));
   strengths_.clear();
   for (std::size_t i = 0; i < from.contacts.size(); ++i) {
-    strengths_.push_back(strength_.of(i, from.contacts[i].bonded));
+    strengths_.push_back(strength_.of(i, from.contacts[i].joint_state));
     contacts_.set_strength(i, strengths_[i]);
     contacts_.start(i, from.contacts[i]);
   }

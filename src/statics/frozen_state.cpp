@@ -1,5 +1,6 @@
 #include "openclose/statics/frozen_state.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace openclose {
@@ -11,22 +12,24 @@ void FrozenStrength::reduce(double factor) {
   joints_.reduce_strength(factor);
 }
 
-ContactStrength FrozenStrength::of(std::size_t i, bool bonded) const {
-  Contact contact = system_.contacts()[i].source;
-  contact.bonded = bonded;
-  contact.length = system_.contacts()[i].joined_length;
-  ContactStrength strength(joints_.joint(contact.joint), contact);
+ContactStrength FrozenStrength::of(std::size_t i, const JointState& state) const {
+  const FrozenContact& contact = system_.contacts()[i];
+  ContactStrength strength(joints_.joint(contact.source.joint), contact.joined_length, state);
   strength.cohesion /= system_.force_unit();
   strength.tension /= system_.force_unit();
   return strength;
 }
 
-bool FrozenStrength::stays_bonded(std::size_t i, const FrozenContactState& state) const {
-  return openclose::stays_bonded(joints_.joint(system_.contacts()[i].source.joint), state.bonded, state.status);
+JointState FrozenStrength::joint_after(std::size_t i, const FrozenContactState& state, double slip) const {
+  return state_after(joints_.joint(system_.contacts()[i].source.joint), state.joint_state, state.status, std::abs(slip) * system_.closure_unit());
 }
 
-bool FrozenStrength::can_break(std::size_t i, bool bonded) const {
-  return can_lose_strength(joints_.joint(system_.contacts()[i].source.joint), bonded);
+double FrozenStrength::loss(std::size_t i, const JointState& before, const JointState& after) const {
+  return openclose::loss(joints_.joint(system_.contacts()[i].source.joint), before, after);
+}
+
+bool FrozenStrength::can_lose(std::size_t i, const JointState& state) const {
+  return can_lose_strength(joints_.joint(system_.contacts()[i].source.joint), state);
 }
 
 bool FrozenStrength::has_tension() const {
@@ -36,15 +39,19 @@ bool FrozenStrength::has_tension() const {
   return false;
 }
 
-bool lose_bonds(const FrozenStrength& strength, FrozenState& state) {
-  bool lost = false;
+double lose_strength(const FrozenStrength& strength, FrozenState& state, SlipOfState slip) {
+  double largest = 0.0;
   for (std::size_t i = 0; i < state.contacts.size(); ++i) {
     FrozenContactState& s = state.contacts[i];
-    if (!s.bonded || !strength.can_break(i, true) || strength.stays_bonded(i, s)) continue;
-    s.bonded = false;
-    lost = true;
+    const bool counts = slip == SlipOfState::counts;
+    if (strength.can_lose(i, s.joint_state)) {
+      const JointState after = strength.joint_after(i, s, counts ? s.slip : 0.0);
+      largest = std::max(largest, strength.loss(i, s.joint_state, after));
+      s.joint_state = after;
+    }
+    if (counts) s.slip = 0.0;
   }
-  return lost;
+  return largest;
 }
 
 double farthest_between(const FrozenState& a, const FrozenState& b) {

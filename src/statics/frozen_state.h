@@ -13,12 +13,13 @@ struct FrozenContactState {
   double gap = 0.0;     ///< in closures; the normal spring's stretch
   double normal = 0.0;  ///< compression positive
   double shear = 0.0;   ///< also what the shear spring remembers
-  bool bonded = true;   ///< cohesion and tensile strength are still there
+  double slip = 0.0;    ///< in closures: of friction, since slip last took strength from the joint
+  JointState joint_state;
   ContactStatus status = ContactStatus::sticking;
 
   void exchange(Archive& archive) {
-    auto& [a, b, c, d, e] = *this;
-    archive(a, b, c, d, e);
+    auto& [a, b, c, d, e, f] = *this;
+    archive(a, b, c, d, e, f);
     archive.require(status <= ContactStatus::sliding, "the saved state has a contact with a status that there is not");
   }
 };
@@ -50,11 +51,13 @@ class FrozenStrength {
   /// Divides tan(friction angle), cohesion and tensile strength by the factor.
   void reduce(double factor);
   double factor() const { return factor_; }
-  /// Of contact i, with what its bonds leave it.
-  ContactStrength of(std::size_t i, bool bonded) const;
-  /// Whether bonds survive a state of the contact.
-  bool stays_bonded(std::size_t i, const FrozenContactState& state) const;
-  bool can_break(std::size_t i, bool bonded) const;
+  /// Of contact i, with what the state of its joint leaves it.
+  ContactStrength of(std::size_t i, const JointState& state) const;
+  /// What is left of the joint after a state of the contact.
+  /// \param slip  in closures
+  JointState joint_after(std::size_t i, const FrozenContactState& state, double slip) const;
+  bool can_lose(std::size_t i, const JointState& state) const;
+  double loss(std::size_t i, const JointState& before, const JointState& after) const;
   bool has_tension() const;
 
  private:
@@ -63,8 +66,12 @@ class FrozenStrength {
   double factor_ = 1.0;
 };
 
-/// Takes bonds from contacts whose state does not leave them; whether any had one to lose.
-bool lose_bonds(const FrozenStrength& strength, FrozenState& state);
+/// Whether the slip of a state takes strength from joints, or what they lose by slip waits until the blocks are at rest. Bonds that slip breaks at
+/// once are broken in either case.
+enum class SlipOfState { counts, waits };
+/// Takes from joints the strength that the states of their contacts do not leave them.
+/// \return [-] the largest loss of a joint, see loss() in joint_law.h
+double lose_strength(const FrozenStrength& strength, FrozenState& state, SlipOfState slip = SlipOfState::counts);
 
 /// In closures: the largest component of what blocks have moved between two states.
 double farthest_between(const FrozenState& a, const FrozenState& b);

@@ -175,7 +175,7 @@ void FrozenSystem::find_contacts(const Scene& scaled, const BlockSystem& system)
     c.shear_b = scaled_rotation(k.shear_edge, edge_block.radius, edge_block.rotation_locked);
     c.source = contact;
     c.source.length *= length_unit_;
-    c.source.bonded = true;
+    c.source.joint_state = {};
     c.joined_length = joined[i] * length_unit_;
     c.normal = k.normal;
     c.point = system.position(contact.vertex_block, contact.vertex);

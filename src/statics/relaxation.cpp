@@ -1,6 +1,7 @@
 #include "openclose/statics/relaxation.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace openclose {
 namespace {
@@ -23,7 +24,15 @@ constexpr double least_travel_of_mechanism = 1.0;
 constexpr double first_increment_of_motion = 10.0;
 constexpr double growth_of_motion = 1.0;    ///< [-]
 constexpr double most_over_longest = 10.0;  ///< [-] an increment longer than the longest by this is taken in shorter ones
+constexpr double rounding_of_slip = 1e-9;   ///< sums of ways of up to least_travel_of_escape have digits of 1e-13
 constexpr double worst_guess = 100.0;       ///< [-] over the residual at rest
+
+/// What has slid on the way and sticks at rest has slipped.
+void note_slip(FrozenState& state) {
+  for (FrozenContactState& s : state.contacts) {
+    if (s.status == ContactStatus::sticking && std::abs(s.slip) > rounding_of_slip) s.status = ContactStatus::sliding;
+  }
+}
 
 }  // namespace
 
@@ -68,10 +77,17 @@ bool Relaxation::solve(Eigen::VectorXd& x, bool is_first) {
   return is_first ? balance_.solve_quickly(x) : balance_.solve(x);
 }
 
-/// Strength that a joint loses for good is lost between increments.
+/// Strength that a joint loses for good is lost between increments. With known friction an increment may slide too far and the next one back: there,
+/// what goes with the length of slip waits for rest.
 void Relaxation::accept(const Eigen::VectorXd& x, FrozenState& state) {
   balance_.accept(x, state);
-  if (lose_bonds(strength_, state)) balance_.renew_strength(state);
+  weaken(state, rule_ == IncrementRule::newton ? SlipOfState::counts : SlipOfState::waits);
+}
+
+double Relaxation::weaken(FrozenState& state, SlipOfState slip) {
+  const double lost = lose_strength(strength_, state, slip);
+  if (lost > 0.0) balance_.renew_strength(state);
+  return lost;
 }
 
 /// A steady motion goes on with its velocity; where that is far from balance, nothing is guessed.
@@ -82,8 +98,10 @@ Eigen::VectorXd Relaxation::guess(const Eigen::VectorXd& velocity, double eps) {
   return balance_.residual_norm(steady) < worst_guess * balance_.residual_norm(still) ? steady : still;
 }
 
-bool Relaxation::ended(RelaxationResult& result, const Eigen::VectorXd& x) const {
-  if (check_equilibrium(system_, strength_, result.state).holds()) {
+bool Relaxation::ended(RelaxationResult& result, const Eigen::VectorXd& x) {
+  const auto stands = [&] { return check_equilibrium(system_, strength_, result.state).holds(); };
+  if (rule_ == IncrementRule::open_close && stands()) note_slip(result.state);
+  if (stands() && (weaken(result.state, SlipOfState::counts) == 0.0 || stands())) {
     result.end = RelaxationEnd::stable;
     return true;
   }

@@ -30,10 +30,11 @@ class Relaxation : public FrozenSolver {
 
  private:
   void accept(const Eigen::VectorXd& x, FrozenState& state);
+  double weaken(FrozenState& state, SlipOfState slip);
   Eigen::VectorXd guess(const Eigen::VectorXd& velocity, double eps);
   bool solve(Eigen::VectorXd& x, bool is_first);
   bool ends_in_a_short_increment(const Eigen::VectorXd& velocity, RelaxationResult& result);
-  bool ended(RelaxationResult& result, const Eigen::VectorXd& x) const;
+  bool ended(RelaxationResult& result, const Eigen::VectorXd& x);
 
   const FrozenSystem& system_;
   const FrozenStrength& strength_;

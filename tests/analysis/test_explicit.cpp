@@ -376,7 +376,7 @@ TEST_CASE("a contact that is open at rest has lost its bond", "[analysis][explic
   REQUIRE(settle(simulation).settled);
   int open = 0;
   for (const Contact& c : simulation.change_contacts()) {
-    CHECK(c.bonded == (c.status != ContactStatus::open));
+    CHECK(c.joint_state.bonded == (c.status != ContactStatus::open));
     open += c.status == ContactStatus::open;
   }
   CHECK(open == 1);

@@ -21,7 +21,7 @@ namespace {
 
 void append(std::vector<double>& list, const Contact& c) {
   list.insert(list.end(), {static_cast<double>(c.vertex), static_cast<double>(c.edge), c.length, c.gap, static_cast<double>(c.status),
-                           static_cast<double>(c.bonded), c.elastic_slip, c.normal_force, c.shear_force, c.stored_energy});
+                           static_cast<double>(c.joint_state.bonded), c.elastic_slip, c.normal_force, c.shear_force, c.stored_energy});
 }
 
 void append(std::vector<double>& list, const EnergyLedger& l) {
@@ -731,7 +731,7 @@ TEST_CASE("contacts are those of where the blocks will be, their gaps those of n
         if (c.vertex_block != 2) continue;  // a base's own corner
         bases.push_back(c.edge_block);
         CHECK(std::abs(c.gap) < 1e-12);
-        CHECK(c.bonded);  // one base inherits from the other
+        CHECK(c.joint_state.bonded);  // one base inherits from the other
       }
       return bases;
     };

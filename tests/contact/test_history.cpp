@@ -20,7 +20,7 @@ BlockInput base_with_seam() {
 
 void load(Contact& contact) {
   contact.status = ContactStatus::sliding;
-  contact.bonded = true;
+  contact.joint_state.bonded = true;
   contact.elastic_slip = 0.25;
   contact.normal_force = 3.0;
   contact.shear_force = -2.0;
@@ -31,7 +31,7 @@ void load(Contact& contact) {
 void check_loaded(const Contact* contact, double shorter = 1.0) {
   REQUIRE(contact != nullptr);
   CHECK(contact->status == ContactStatus::sliding);
-  CHECK(contact->bonded);
+  CHECK(contact->joint_state.bonded);
   CHECK(contact->elastic_slip == Approx(0.25 * std::sqrt(shorter)).epsilon(1e-12));
   CHECK(contact->normal_force == 3.0);
   CHECK(contact->shear_force == -2.0);
@@ -41,7 +41,7 @@ void check_loaded(const Contact* contact, double shorter = 1.0) {
 void check_new(const Contact* contact) {
   REQUIRE(contact != nullptr);
   CHECK(contact->status == ContactStatus::open);
-  CHECK_FALSE(contact->bonded);
+  CHECK_FALSE(contact->joint_state.bonded);
   CHECK(contact->elastic_slip == 0.0);
   CHECK(contact->normal_force == 0.0);
   CHECK(contact->shear_force == 0.0);
@@ -67,7 +67,7 @@ TEST_CASE("only what touches at the start is bonded", "[contact][history]") {
   Detection d(scene_with({fixed_block("base", rectangle(-5.0, -1.0, 10.0, 1.0)), free_block("block", rectangle(0.0, gap, 2.0, 1.0))}));
   REQUIRE(d.contacts.size() == 2);
   for (const Contact& c : d.contacts) {
-    CHECK(c.bonded == (gap <= tolerance::deepest_initial_overlap_m));
+    CHECK(c.joint_state.bonded == (gap <= tolerance::deepest_initial_overlap_m));
     CHECK(c.status == ContactStatus::open);
   }
 }

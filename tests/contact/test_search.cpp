@@ -19,7 +19,7 @@ void require_same(const std::vector<Contact>& a, const std::vector<Contact>& b) 
   for (std::size_t i = 0; i < a.size(); ++i) {
     const bool same = a[i].vertex_block == b[i].vertex_block && a[i].vertex == b[i].vertex && a[i].edge_block == b[i].edge_block &&
                       a[i].edge == b[i].edge && a[i].joint == b[i].joint && a[i].length == b[i].length && a[i].gap == b[i].gap &&
-                      a[i].bonded == b[i].bonded && a[i].elastic_slip == b[i].elastic_slip;
+                      a[i].joint_state == b[i].joint_state && a[i].elastic_slip == b[i].elastic_slip;
     REQUIRE(same);
   }
 }

@@ -26,8 +26,8 @@ Scene shaken_columns() {
 
 bool same(const std::vector<Contact>& a, const std::vector<Contact>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const Contact& x, const Contact& y) {
-    return x.gap == y.gap && x.status == y.status && x.bonded == y.bonded && x.elastic_slip == y.elastic_slip && x.normal_force == y.normal_force &&
-           x.shear_force == y.shear_force && x.stored_energy == y.stored_energy;
+    return x.gap == y.gap && x.status == y.status && x.joint_state == y.joint_state && x.elastic_slip == y.elastic_slip &&
+           x.normal_force == y.normal_force && x.shear_force == y.shear_force && x.stored_energy == y.stored_energy;
   });
 }
 
@@ -118,7 +118,7 @@ class OneByOne {
               dashpots,
               strength,
               damped,
-              can_lose_strength(joint, c.bonded),
+              can_lose_strength(joint, c.joint_state),
               c.stretch(),
               0.0,
               0.0,
@@ -169,23 +169,26 @@ class OneByOne {
     if (!opens) deepest = std::max(deepest, -at.gap - static_cast<float>(c.rest_gap));
     link.gap = at.gap;
     link.slip = at.slip;
+    const double rubbed_over = slip + c.elastic_slip - stretch;
     c.elastic_slip = stretch;
     c.status = f.status;
     carry_on_with(link, f);
     link.viscous_shear = kept_shear;
-    if (link.breakable) lose_strength(link, at);
+    if (link.breakable) lose_strength(link, rubbed_over, at);
     push(link, at);
   }
 
-  void lose_strength(Link& link, const LinkPlace<double>& at) {
+  void lose_strength(Link& link, double slip, const LinkPlace<double>& at) {
     Contact& c = link.contact;
     const TabulatedJoint& joint = joints_->joint(c.joint);
-    if (stays_bonded(joint, true, c.status)) return;
-    lost_strength = true;
-    c.bonded = link.breakable = false;
-    link.strength.break_bond(joint);
+    const JointState state = state_after(joint, c.joint_state, c.status, std::abs(slip));
+    if (state == c.joint_state) return;
+    lost_strength |= !state.bonded;
+    c.joint_state = state;
+    link.breakable = can_lose_strength(joint, state);
+    link.strength = ContactStrength(joint, c);
     carry_on_with(link, carried(link, at, 0.0));
-    if (at.gap <= 0.0 || c.status == ContactStatus::open) return;
+    if (link.breakable || at.gap <= 0.0 || c.status == ContactStatus::open) return;
     c.status = ContactStatus::open;
     energies.redefinition += 0.5 * link.springs.normal * (at.gap * at.gap);
   }

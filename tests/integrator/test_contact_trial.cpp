@@ -56,7 +56,7 @@ TEST_CASE("batches have the places, the springs and the strength of their contac
   scene.joints[0].tensile_strength = 1e4;
   Simulation simulation(scene);
   std::vector<Contact> contacts = simulation.change_contacts();
-  contacts[1].bonded = false;
+  contacts[1].joint_state.bonded = false;
   contacts[2].gap = -1e-4;
   contacts[2].elastic_slip = 2e-5;
   simulation.change_joints().reduce_strength(2.0);

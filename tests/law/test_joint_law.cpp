@@ -27,7 +27,7 @@ JointProperties joint_with(double friction, double cohesion, double tension, Coh
 Contact contact_of_length(double length, bool bonded = true) {
   Contact contact;
   contact.length = length;
-  contact.bonded = bonded;
+  contact.joint_state.bonded = bonded;
   return contact;
 }
 
@@ -81,11 +81,13 @@ TEST_CASE("the bond survives what its behaviour allows", "[law][strength]") {
                                    {CohesionBehaviour::lost_on_slip, ContactStatus::open, false},
                                    {CohesionBehaviour::lost_on_slip, ContactStatus::sticking, true},
                                    {CohesionBehaviour::lost_on_slip, ContactStatus::sliding, false}}};
+  const JointState broken{.bonded = false};
   for (const Case& c : table) {
     const JointProperties joint = joint_with(0.5, 1e4, 1e4, c.behaviour);
-    CHECK(stays_bonded(joint, true, c.status) == c.stays);
+    CHECK(joint.weakens_by_slip() == (c.behaviour == CohesionBehaviour::lost_on_slip));
+    CHECK(state_after(joint, {}, c.status, 1e-6).bonded == c.stays);
     // Nothing heals.
-    CHECK_FALSE(stays_bonded(joint, false, c.status));
+    CHECK_FALSE(state_after(joint, broken, c.status, 1e-6).bonded);
   }
 }
 
@@ -94,25 +96,23 @@ TEST_CASE("a joint with residual friction has it once it has slipped or opened, 
   JointProperties joint = joint_with(0.7, 3e4, 2e4, behaviour);
   joint.residual_friction_angle = std::atan(0.4);
   const TabulatedJoint tabulated(joint);
-  ContactStrength strength(tabulated, contact_of_length(0.5));
-  CHECK(strength.friction == Approx(0.7).epsilon(rounding));
-  strength.break_bond(tabulated);
+  CHECK(ContactStrength(tabulated, contact_of_length(0.5)).friction == Approx(0.7).epsilon(rounding));
   const ContactStrength broken(tabulated, contact_of_length(0.5, false));
-  CHECK(strength.friction == Approx(0.4).epsilon(rounding));
-  CHECK(strength.friction == broken.friction);
-  CHECK(strength.cohesion == broken.cohesion);
-  CHECK(strength.tension == 0.0);
-  CHECK(stays_bonded(joint, true, ContactStatus::sticking));
-  CHECK_FALSE(stays_bonded(joint, true, ContactStatus::sliding));
-  CHECK_FALSE(stays_bonded(joint, true, ContactStatus::open));
+  CHECK(broken.friction == Approx(0.4).epsilon(rounding));
+  CHECK(broken.cohesion == (behaviour == CohesionBehaviour::ductile ? 1.5e4 : 0.0));
+  CHECK(broken.tension == 0.0);
+  CHECK(joint.weakens_by_slip());
+  CHECK(state_after(joint, {}, ContactStatus::sticking, 1e-6).bonded);
+  CHECK_FALSE(state_after(joint, {}, ContactStatus::sliding, 1e-6).bonded);
+  CHECK_FALSE(state_after(joint, {}, ContactStatus::open, 0.0).bonded);
   joint.cohesion = joint.tensile_strength = 0.0;
-  CHECK(can_lose_strength(joint, true));
-  CHECK_FALSE(can_lose_strength(joint, false));
+  CHECK(can_lose_strength(joint, {}));
+  CHECK_FALSE(can_lose_strength(joint, {.bonded = false}));
   // As high as the friction angle it takes nothing away.
   joint.residual_friction_angle = joint.friction_angle;
-  CHECK_FALSE(can_lose_strength(joint, true));
+  CHECK_FALSE(can_lose_strength(joint, {}));
   CHECK(ContactStrength(TabulatedJoint(joint), contact_of_length(0.5, false)).friction == Approx(0.7).epsilon(rounding));
-  if (behaviour == CohesionBehaviour::ductile) CHECK(stays_bonded(joint, true, ContactStatus::sliding));
+  if (behaviour == CohesionBehaviour::ductile) CHECK(state_after(joint, {}, ContactStatus::sliding, 1e-6).bonded);
 }
 
 TEST_CASE("without cohesion the shear strength is friction alone", "[law][shear_bound]") {

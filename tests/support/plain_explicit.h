@@ -173,11 +173,12 @@ class PlainExplicit {
     const double kn = link.springs.normal, ks = link.springs.shear, before = c.crossing_energy, stretch = c.stretch();
     const bool was_open = c.status == ContactStatus::open, is_open = link.end.status == ContactStatus::open;
     c.status = link.end.status;
-    c.bonded = stays_bonded(state_.joints.joint(c.joint), c.bonded, c.status);
+    const double elastic_slip = is_open ? 0.0 : -link.end.elastic_shear / ks;
+    c.joint_state = state_after(state_.joints.joint(c.joint), c.joint_state, c.status, std::abs(link.at.slip_change + c.elastic_slip - elastic_slip));
     c.gap += link.at.gap_change;
     c.normal_force = link.end.normal;
     c.shear_force = link.end.shear;
-    c.elastic_slip = is_open ? 0.0 : -link.end.elastic_shear / ks;
+    c.elastic_slip = elastic_slip;
     c.crossing_energy = is_open ? link.crossing_energy : 0.0;
     if (!is_open && ContactStrength(state_.joints.joint(c.joint), c).tension == 0.0)
       c.crossing_energy = was_open ? closing_energy(kn, stretch, c.stretch()) : before;
