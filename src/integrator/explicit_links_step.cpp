@@ -242,8 +242,9 @@ void ExplicitLinks::lose_strength(Link& link, LinkRest& rest, double slip, const
   rest.joint_state = state;
   link.breakable = can_lose_strength(joint, state);
   link.strength = ContactStrength(joint, rest.length, state);
+  if (link.status == ContactStatus::open) return;  // what settles its opening is not the joint's
   carry_now(link, at);
-  if (link.breakable || at.gap <= 0.0 || link.status == ContactStatus::open) return;
+  if (link.breakable || at.gap <= 0.0) return;
   // It slipped while it was pulling: nothing pulls any more.
   link.status = ContactStatus::open;
   energies_.redefinition += 0.5 * link.normal_stiffness * (at.gap * at.gap);

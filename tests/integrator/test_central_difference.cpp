@@ -187,8 +187,9 @@ class OneByOne {
     c.joint_state = state;
     link.breakable = can_lose_strength(joint, state);
     link.strength = ContactStrength(joint, c);
+    if (c.status == ContactStatus::open) return;
     carry_on_with(link, carried(link, at, 0.0));
-    if (link.breakable || at.gap <= 0.0 || c.status == ContactStatus::open) return;
+    if (link.breakable || at.gap <= 0.0) return;
     c.status = ContactStatus::open;
     energies.redefinition += 0.5 * link.springs.normal * (at.gap * at.gap);
   }
