@@ -10,16 +10,17 @@ namespace openclose {
 
 struct JointState {
   bool bonded = true;  ///< cohesion and tensile strength are still there
+  double slip = 0.0;   ///< [m] of friction while it was bonded; of joints with a slip-weakening distance
 
   bool operator==(const JointState&) const = default;
   /// For sums and comparisons.
-  std::array<double, 1> numbers() const {
-    const auto& [a] = *this;  // all of them: one more does not compile here
-    return {a ? 1.0 : 0.0};
+  std::array<double, 2> numbers() const {
+    const auto& [a, b] = *this;  // all of them: one more does not compile here
+    return {a ? 1.0 : 0.0, b};
   }
   void exchange(Archive& archive) {
-    auto& [a] = *this;
-    archive(a);
+    auto& [a, b] = *this;
+    archive(a, b);
   }
 };
 

@@ -43,13 +43,20 @@ bool can_lose_strength(const JointProperties& joint, const JointState& state) {
          (joint.softens() || joint.tensile_strength > 0.0 || (joint.cohesion > 0.0 && joint.cohesion_behaviour != CohesionBehaviour::ductile));
 }
 
-JointState state_after(const JointProperties& joint, const JointState& before, ContactStatus status, double /*slip*/) {
-  const bool breaks = status == ContactStatus::open || (status == ContactStatus::sliding && joint.weakens_by_slip());
-  return breaks ? JointState{.bonded = false} : before;
+JointState state_after(const JointProperties& joint, const JointState& before, ContactStatus status, double slip) {
+  JointState after = before;
+  if (status == ContactStatus::open) {
+    after.bonded = false;
+  } else if (status == ContactStatus::sliding && before.bonded && joint.weakens_by_slip()) {
+    after.slip = std::min(before.slip + slip, joint.slip_weakening_distance);
+    after.bonded = after.slip < joint.slip_weakening_distance;
+  }
+  return after;
 }
 
-double loss(const JointProperties& /*joint*/, const JointState& before, const JointState& after) {
-  return static_cast<double>(before.bonded) - static_cast<double>(after.bonded);
+double loss(const JointProperties& joint, const JointState& before, const JointState& after) {
+  const auto lost = [&](const JointState& state) { return state.bonded ? weakening(joint, state) : 1.0; };
+  return before.bonded && !after.bonded ? 1.0 : lost(after) - lost(before);
 }
 
 }  // namespace openclose

@@ -19,9 +19,14 @@
 
 namespace openclose {
 
+/// [-] How much slip has taken of what it takes from a bonded joint, 0 to 1: linear slip weakening.
+inline double weakening(const JointProperties& joint, const JointState& state) {
+  return joint.slip_weakening_distance > 0.0 ? std::min(1.0, state.slip / joint.slip_weakening_distance) : 0.0;
+}
+
 /// Strength of one contact: Mohr-Coulomb with tension cut-off, per metre of thickness.
 struct ContactStrength {
-  double friction = 0.0;  ///< [-] tan(friction angle), the residual one once the bond is broken
+  double friction = 0.0;  ///< [-] tan(friction angle), what slip has left of it, the residual one once the bond is broken
   double cohesion = 0.0;  ///< [N] cohesion times tributary length, 0 once lost
   double tension = 0.0;   ///< [N] tensile strength times tributary length, 0 once lost
 
@@ -33,6 +38,7 @@ struct ContactStrength {
     const bool intact = state.bonded || joint.cohesion_behaviour == CohesionBehaviour::ductile;
     cohesion = intact ? joint.cohesion * length : 0.0;
     tension = state.bonded ? joint.tensile_strength * length : 0.0;
+    if (state.bonded && state.slip > 0.0) weaken(joint, weakening(joint, state));
   }
   /// Of a contact in its present state.
   ContactStrength(const TabulatedJoint& joint, const Contact& contact) : ContactStrength(joint, contact.length, contact.joint_state) {}
@@ -45,6 +51,12 @@ struct ContactStrength {
   /// At normal force n >= -tension.
   ShearLimit<double> shear_bound(double n) const { return {friction, cohesion, tension, n, tolerance::cohesion_ramp}; }
   double largest_shear(double n) const { return shear_bound(n).value; }  ///< [N]
+
+ private:
+  void weaken(const TabulatedJoint& joint, double share) {
+    friction += share * (joint.residual_friction - friction);
+    if (joint.cohesion_behaviour == CohesionBehaviour::lost_on_slip) cohesion *= 1.0 - share;
+  }
 };
 
 /// Springs of one contact during one step. The normal force is shift - stiffness (gap - target), the shear force starts from initial_shear.

@@ -35,6 +35,8 @@ struct JointProperties {
   CohesionBehaviour cohesion_behaviour = CohesionBehaviour::ductile;
   /// [rad] Of a contact whose bond is broken, by slip too if it is below the friction angle; absent: that angle, and slip breaks no bond for it.
   std::optional<double> residual_friction_angle;
+  /// [m] Slip over which joints that weaken by slip lose, linearly, what it takes from them; 0: the first slip takes all.
+  double slip_weakening_distance = 0.0;
   double damping_ratio = 0.0;  ///< [-] of dashpots parallel to the springs, see law/joint_law.h
 
   bool has_materials() const { return materials[0] != no_material; }
@@ -67,6 +69,9 @@ void visit_joint_keys(Joint& j, Visitor& visit) {
          "cohesion that is not ductile, go with the difference",
          "the friction angle"},
         j.residual_friction_angle, Degrees{{.low = 0.0, .high = 90.0, .low_included = true}});
+  visit({"slip_weakening_distance_m",
+         "slip over which friction falls to the residual one, and cohesion that is lost on slip to nothing, linearly; 0: at the first slip"},
+        j.slip_weakening_distance, not_negative);
   visit({"damping_ratio", "dashpots beside the joint's springs, see [methods](methods.md)"}, j.damping_ratio, not_negative);
 }
 
@@ -81,6 +86,10 @@ inline std::optional<JointContradiction> contradiction_in(const JointProperties&
   if (joint.softens() && joint.cohesion_behaviour == CohesionBehaviour::lost_on_opening) {
     return JointContradiction{"cohesion_behaviour", "with a lower residual friction angle slip breaks the bond, and this cohesion would go with it",
                               "\"ductile\" or \"lost_on_slip\", or no residual_friction_angle_deg"};
+  }
+  if (joint.slip_weakening_distance > 0.0 && !joint.weakens_by_slip()) {
+    return JointContradiction{"slip_weakening_distance_m", "slip takes no strength from this joint",
+                              "0, or a residual_friction_angle_deg below friction_angle_deg, or cohesion_behaviour = \"lost_on_slip\""};
   }
   return std::nullopt;
 }

@@ -29,6 +29,7 @@ constexpr std::array usual_numbers{
     Usual{"shear_stiffness_pa_per_m", 1e3, 1e15, "joints in rock have 1e6 to 1e12"},
     Usual{"friction_angle_deg", 0.0, 80.0, "rough joints reach 70; cohesion_pa and tensile_strength_pa bond blocks"},
     Usual{"residual_friction_angle_deg", 0.0, 80.0, "rough joints reach 70"},
+    Usual{"slip_weakening_distance_m", 0.0, 1.0, "rock joints lose their peak within millimetres to centimetres"},
     Usual{"cohesion_pa", 0.0, 1e10, "intact rock has up to 1e8"},
     Usual{"tensile_strength_pa", 0.0, 1e10, "intact rock has up to 5e7"},
     Usual{"damping_ratio", 0.0, 10.0, "1 is critical"},

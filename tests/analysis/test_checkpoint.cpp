@@ -32,6 +32,7 @@ Scene hit_column() {
   scene.joints[0].cohesion_behaviour = CohesionBehaviour::lost_on_slip;
   scene.joints[0].damping_ratio = 0.1;
   scene.joints[0].residual_friction_angle = 20.0 * test::degree;
+  scene.joints[0].slip_weakening_distance = 0.02;
   scene.supports = {{2, {0.5, 1.5}, {1e6, 0.0}}};
   scene.loads = {{1, {0.5, 0.5}, {1e3, 0.0}}};
   scene.surcharges = {{3, scene.blocks[3].vertices[1], scene.blocks[3].vertices[2], 1e3, 5e2}};

@@ -47,6 +47,15 @@ Scene softening() {
   return scene;
 }
 
+Scene weakening() {
+  Scene scene = sliding();
+  scene.joints[0].cohesion = 1e3;
+  scene.joints[0].cohesion_behaviour = CohesionBehaviour::lost_on_slip;
+  scene.joints[0].residual_friction_angle = 0.5 * scene.joints[0].friction_angle;
+  scene.joints[0].slip_weakening_distance = 0.1;
+  return scene;
+}
+
 Scene rocking_column() {
   Scene scene = explicit_scene(test::column_of_blocks(3), 2e-4);
   scene.blocks[3].velocity = {0.05, 0.0};
@@ -150,6 +159,7 @@ TEST_CASE("the loop moves blocks as the plain steps do, contacts renewed in ever
   const Case c = GENERATE(values<Case>({{"sliding", sliding(), 5000},
                                         {"breaking", breaking(), 5000},
                                         {"softening", softening(), 5000},
+                                        {"weakening", weakening(), 5000},
                                         {"rocking", rocking_column(), 5000},
                                         {"locked", locked(), 5000},
                                         {"tumbling", tumbling(), 600}}));

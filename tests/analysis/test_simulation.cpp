@@ -20,8 +20,9 @@ using openclose::test::all_methods;
 namespace {
 
 void append(std::vector<double>& list, const Contact& c) {
-  list.insert(list.end(), {static_cast<double>(c.vertex), static_cast<double>(c.edge), c.length, c.gap, static_cast<double>(c.status),
-                           static_cast<double>(c.joint_state.bonded), c.elastic_slip, c.normal_force, c.shear_force, c.stored_energy});
+  list.insert(list.end(),
+              {static_cast<double>(c.vertex), static_cast<double>(c.edge), c.length, c.gap, static_cast<double>(c.status),
+               static_cast<double>(c.joint_state.bonded), c.joint_state.slip, c.elastic_slip, c.normal_force, c.shear_force, c.stored_energy});
 }
 
 void append(std::vector<double>& list, const EnergyLedger& l) {

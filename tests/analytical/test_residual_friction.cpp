@@ -55,3 +55,76 @@ TEST_CASE("residual friction: the factor of a block whose upper corner slips fir
   // Nothing is lost without a difference of the angles.
   CHECK(residual_strength_factor(block, 45.0 * degree) == Approx(1.0 / std::tan(30.0 * degree)).epsilon(1e-13));
 }
+
+TEST_CASE("slip weakening: the equation of motion of a spring and a slider that weakens", "[analytical][residual_friction]") {
+  const BlockOnPlane block = strong_block();
+  const double residual = 20.0 * degree, distance = 5e-3, speed = 1.0;
+  const ReleasedSlide first = released_slide(block, residual, speed), last = weakened_slide(block, residual, distance, first);
+  // The slider by its own law: the spring's stretch u and the slip s = x - u, mu(s) N = k u.
+  const double k = 2.0 * block.shear_stiffness, normal = block.normal_weight(), mu = block.friction(), mu_r = std::tan(residual);
+  const double drive = block.gravity * std::sin(block.slope_angle);
+  const auto friction = [&](double slip) { return normal * (mu - (mu - mu_r) * std::min(1.0, slip / distance)); };
+  const int steps = 200000;
+  const double h = last.slip_time / steps;
+  double x = 0.0, slip = 0.0, v = speed + 0.5 * h * drive;
+  for (int i = 0; i < steps; ++i) {
+    x += h * v;
+    // k (x - s) <= mu(s) N, with equality where it slips: linear in s while it weakens.
+    const double excess = k * (x - slip) - friction(slip);
+    if (excess > 0.0) slip += excess / (k - normal * (mu - mu_r) / distance);
+    v += h * (drive - k * (x - slip) / block.mass());
+  }
+  CHECK(slip == Approx(distance).epsilon(1e-5));
+  CHECK(x == Approx(last.slip_distance).epsilon(1e-5));
+  CHECK(v == Approx(last.slip_velocity).epsilon(1e-5));
+  CHECK(last.acceleration == first.acceleration);
+}
+
+TEST_CASE("slip weakening: no distance is residual friction at once, too short a one lets the springs go, friction stops the slow",
+          "[analytical][residual_friction]") {
+  const BlockOnPlane block = strong_block();
+  const double residual = 20.0 * degree;
+  const ReleasedSlide rigid = released_rigid_slide(block, residual, 1.0);
+  CHECK(weakened_slide(block, residual, 1e-9, rigid).displacement(1.0) == Approx(rigid.displacement(1.0)).margin(1e-8));
+  CHECK(weakened_slide(block, residual, 0.1, rigid).displacement(1.0) < rigid.displacement(1.0) - 0.05);
+  CHECK_THROWS_AS(weakened_slide(block, residual, 1e-5, released_slide(block, residual, 1.0)), std::domain_error);
+  CHECK_THROWS_AS(weakened_slide(block, residual, 0.1, released_rigid_slide(block, residual, 0.1)), std::domain_error);
+}
+
+TEST_CASE("slip weakening: what lateness costs is the response to the acceleration that is missing", "[analytical][residual_friction]") {
+  const BlockOnPlane block = strong_block();
+  const double residual = 20.0 * degree, distance = 0.1, delay = 1e-4, growth = 6.3534;
+  const ReleasedSlide first = released_rigid_slide(block, residual, 1.0), last = weakened_slide(block, residual, distance, first);
+  // e'' = beta^2 (e + delay cosh(beta t)), then e' stays.
+  const double beta = std::sqrt(9.81 * std::sqrt(0.75) * (block.friction() - std::tan(residual)) / distance);
+  CHECK(beta == Approx(growth).epsilon(1e-4));
+  const int steps = 100000;
+  const double h = last.slip_time / steps;
+  double e = 0.0, rate = 0.5 * h * beta * beta * delay;
+  for (int i = 1; i <= steps; ++i) {
+    e += h * rate;
+    rate += (i == steps ? 0.5 : 1.0) * h * beta * beta * (e + delay * std::cosh(beta * h * i));
+  }
+  CHECK(cost_of_late_weakening(block, residual, distance, first, delay, 1.0) == Approx(e + rate * (1.0 - last.slip_time)).epsilon(1e-6));
+}
+
+TEST_CASE("slip weakening: the factor of two corners lies between those of brittle and of ductile friction", "[analytical][residual_friction]") {
+  BlockOnPlane block;
+  block.friction_angle = 45.0 * degree;
+  const double residual = 5.0 * degree, distance = 2e-3;
+  const double brittle = residual_strength_factor(block, residual), ductile = 1.0 / std::tan(30.0 * degree);
+  const double factor = weakened_strength_factor(block, residual, distance);
+  // At the lower corner's first slip both carry the weight's part along the plane: the upper one by its slider, solved by repetition.
+  const double normal = block.normal_weight(), shear = 0.5 * block.weight(), difference = 0.5 * shear;
+  const double upper = 0.5 * (normal - difference), lower = 0.5 * (normal + difference), way = lower / factor / block.shear_stiffness;
+  double slip = 0.0, carried = 0.0;
+  for (int i = 0; i < 200; ++i) {
+    carried = upper / factor * (1.0 - (1.0 - std::tan(residual)) * slip / distance);
+    slip = way - carried / block.shear_stiffness;
+  }
+  CHECK(carried + lower / factor == Approx(shear).epsilon(1e-12));
+  CHECK(brittle < factor);
+  CHECK(factor < ductile);
+  CHECK(weakened_strength_factor(block, residual, 1e3) == Approx(ductile).epsilon(1e-6));
+  CHECK_THROWS_AS(weakened_strength_factor(block, residual, 1e-5), std::domain_error);
+}

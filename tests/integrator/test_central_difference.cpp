@@ -229,6 +229,7 @@ TEST_CASE("links four at a time do what each does", "[integrator][explicit]") {
   scene.method.contact = "dem";
   scene.joints[0].damping_ratio = GENERATE(0.0, 0.2);
   scene.joints[0].cohesion_behaviour = GENERATE(CohesionBehaviour::ductile, CohesionBehaviour::lost_on_slip);
+  if (scene.joints[0].weakens_by_slip()) scene.joints[0].slip_weakening_distance = GENERATE(0.0, 1e-4);
   Simulation simulation(scene);
   constexpr double h = 1e-4;  // [s]
   std::vector<Contact> by_fours = simulation.change_contacts();

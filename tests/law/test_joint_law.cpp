@@ -115,6 +115,46 @@ TEST_CASE("a joint with residual friction has it once it has slipped or opened, 
   if (behaviour == CohesionBehaviour::ductile) CHECK(state_after(joint, {}, ContactStatus::sliding, 1e-6).bonded);
 }
 
+TEST_CASE("slip takes strength over the slip-weakening distance, opening all of it at once", "[law][strength]") {
+  JointProperties joint = joint_with(0.7, 3e4, 2e4, CohesionBehaviour::lost_on_slip);
+  joint.residual_friction_angle = std::atan(0.4);
+  joint.slip_weakening_distance = 0.02;
+  const TabulatedJoint tabulated(joint);
+  const JointState first = state_after(joint, {}, ContactStatus::sliding, 0.004);
+  CHECK(first == JointState{true, 0.004});
+  CHECK(state_after(joint, first, ContactStatus::sticking, 0.5) == first);
+  const JointState second = state_after(joint, first, ContactStatus::sliding, 0.011);
+  CHECK(second.slip == Approx(0.015).epsilon(rounding));
+  const ContactStrength weak(tabulated, 0.5, second);  // three quarters are gone
+  CHECK(weak.friction == Approx(0.475).epsilon(rounding));
+  CHECK(weak.cohesion == Approx(0.25 * 1.5e4).epsilon(rounding));
+  CHECK(weak.tension == 1e4);
+  CHECK(can_lose_strength(joint, second));
+  const JointState all = state_after(joint, second, ContactStatus::sliding, 0.005);
+  CHECK_FALSE(all.bonded);
+  CHECK_FALSE(can_lose_strength(joint, all));
+  for (const JointState& broken : {all, state_after(joint, first, ContactStatus::open, 0.0)}) {
+    const ContactStrength left(tabulated, 0.5, broken);
+    CHECK(left.friction == Approx(0.4).epsilon(rounding));
+    CHECK(left.cohesion == 0.0);
+    CHECK(left.tension == 0.0);
+    CHECK(state_after(joint, broken, ContactStatus::sliding, 1.0) == broken);
+  }
+  // A quarter more of the distance.
+  CHECK(loss(joint, first, {true, 0.009}) == Approx(0.25).epsilon(rounding));
+  CHECK(loss(joint, {true, 0.009}, first) == Approx(-0.25).epsilon(rounding));
+  CHECK(loss(joint, second, all) == 1.0);
+  CHECK(loss(joint, all, all) == 0.0);
+  // Ductile cohesion stays.
+  joint.cohesion_behaviour = CohesionBehaviour::ductile;
+  CHECK(ContactStrength(TabulatedJoint(joint), 0.5, second).cohesion == 1.5e4);
+  // Without a distance the first slip takes all, and is not counted.
+  joint.slip_weakening_distance = 0.0;
+  CHECK(state_after(joint, {}, ContactStatus::sliding, 1e-9) == JointState{false, 0.0});
+  CHECK(loss(joint, {}, {true, 1.0}) == 0.0);
+  CHECK(loss(joint, {}, {false, 0.0}) == 1.0);
+}
+
 TEST_CASE("without cohesion the shear strength is friction alone", "[law][shear_bound]") {
   const ContactStrength strength = strength_of(0.6);
   for (const double n : {0.0, 1e-9, 1.0, 1e6}) CHECK(strength.shear_bound(n).value == Approx(0.6 * n).epsilon(rounding));

@@ -444,6 +444,13 @@ TEST_CASE("residual friction that contradicts the rest of the joint", "[scene][r
              ContainsSubstring("11: joint[0].cohesion_behaviour: with a lower residual friction angle slip breaks the bond"));
 }
 
+TEST_CASE("a slip-weakening distance of a joint that slip does not weaken", "[scene][reader][errors]") {
+  CHECK(error_with(10, "slip_weakening_distance_m = 0.01") ==
+        "10: joint[0].slip_weakening_distance_m: slip takes no strength from this joint; accepted: 0, or a residual_friction_angle_deg below "
+        "friction_angle_deg, or cohesion_behaviour = \"lost_on_slip\"");
+  CHECK_THAT(error_with(10, "slip_weakening_distance_m = -1"), ContainsSubstring("10: joint[0].slip_weakening_distance_m"));
+}
+
 TEST_CASE("keys of very many parts are refused before they are parsed", "[scene][reader][errors]") {
   std::string parts = "a";
   for (int i = 1; i < 50'000; ++i) parts += i % 2 == 0 ? ".a" : " . \"b, c\"";

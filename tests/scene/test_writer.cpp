@@ -20,6 +20,7 @@ void check_same(const JointProperties& a, const JointProperties& b) {
   CHECK(a.cohesion == b.cohesion);
   CHECK(a.tensile_strength == b.tensile_strength);
   CHECK(a.cohesion_behaviour == b.cohesion_behaviour);
+  CHECK(a.slip_weakening_distance == b.slip_weakening_distance);
   REQUIRE(a.residual_friction_angle.has_value() == b.residual_friction_angle.has_value());
   if (a.residual_friction_angle) CHECK(*a.residual_friction_angle == Approx(*b.residual_friction_angle).epsilon(1e-15));
   CHECK(a.damping_ratio == b.damping_ratio);
@@ -186,6 +187,7 @@ Scene random_scene(unsigned seed) {
   }
   scene.joints[1].cohesion_behaviour = CohesionBehaviour::lost_on_slip;
   scene.joints[1].residual_friction_angle = 0.5 * scene.joints[1].friction_angle;
+  scene.joints[1].slip_weakening_distance = 0.1 * fraction(generator);
   scene.joints[0].materials = {0, 0};
   scene.joints[1].materials = {1, 0};
   for (int i = 0; i < 5; ++i) {
@@ -294,6 +296,7 @@ TEST_CASE("what was read is written as a person would", "[scene][writer]") {
       "cohesion_pa = 0\n"
       "tensile_strength_pa = 0\n"
       "cohesion_behaviour = \"ductile\"\n"
+      "slip_weakening_distance_m = 0\n"
       "damping_ratio = 0\n"
       "\n"
       "[[block]]\n"

@@ -122,6 +122,47 @@ TEST_CASE("explicit relaxation knows that a corner which sticks at rest has slip
   }
 }
 
+TEST_CASE("joints that weaken along their slip stand up to more than those that break at the first one", "[statics]") {
+  // The same block, and its factor by hand: at the lower corner's first slip both corners carry what pulls.
+  Scene scene = test::block_on_incline(20.0 * test::degree);
+  JointProperties& joint = scene.joints[0];
+  joint.friction_angle = 45.0 * test::degree;
+  joint.residual_friction_angle = 20.0 * test::degree;
+  joint.slip_weakening_distance = 1.5e-4;
+  const double weight = test::block_weight, pull = weight * std::sin(20.0 * test::degree), normal = weight * std::cos(20.0 * test::degree);
+  const double upper = 0.5 * normal - 0.25 * pull, lower = 0.5 * normal + 0.25 * pull, drop = 1.0 - std::tan(20.0 * test::degree);
+  const auto carried = [&](double factor) {
+    const double way = lower / factor / joint.shear_stiffness;  // corners of one metre
+    double slip = 0.0, by_upper = 0.0;
+    for (int i = 0; i < 200; ++i) {
+      by_upper = upper / factor * (1.0 - drop * slip / joint.slip_weakening_distance);
+      slip = std::max(0.0, way - by_upper / joint.shear_stiffness);
+    }
+    return by_upper + lower / factor;
+  };
+  double limit = normal / pull;  // without weakening
+  while (carried(limit) < pull) limit -= 1e-6 * normal / pull;
+  REQUIRE(limit < 0.99 * normal / pull);
+  REQUIRE(limit > 1.05 * 2.0 * upper / pull);  // at the first slip
+  const FrozenSystem system(scene);
+  FrozenStrength strength(system, scene);
+  Relaxation newton(system, strength, IncrementRule::newton), open_close(system, strength, IncrementRule::open_close);
+  ExplicitRelaxation loop(system, strength, 0.8, 1000000);
+  for (FrozenSolver* solver : {static_cast<FrozenSolver*>(&newton), static_cast<FrozenSolver*>(&open_close), static_cast<FrozenSolver*>(&loop)}) {
+    strength.reduce(1.0);
+    RelaxationResult stands = solver->bonded_state();
+    REQUIRE(stands.end == RelaxationEnd::stable);
+    for (const double part : {0.8, 0.9, 0.98, 0.999}) {
+      strength.reduce(part * limit);
+      stands = solver->relax(stands.state);
+      INFO(part << " of " << limit);
+      REQUIRE(stands.end == RelaxationEnd::stable);
+    }
+    strength.reduce(1.01 * limit);
+    CHECK(solver->relax(stands.state).end == RelaxationEnd::mechanism);
+  }
+}
+
 TEST_CASE("every way to relax finds the state in which a block stands", "[statics]") {
   const Scene scene = incline();
   const FrozenSystem system(scene);

@@ -71,7 +71,7 @@ TEST_CASE("cohesion acts where faces touch", "[statics]") {
     CHECK(system.contacts()[0].source.length > 0.5);
     CHECK(system.contacts()[0].joined_length == 0.0);
     scene.joints[0].cohesion = 1e5;
-    CHECK(FrozenStrength(system, scene).of(0, true).cohesion == 0.0);
+    CHECK(FrozenStrength(system, scene).of(0, {}).cohesion == 0.0);
   }
 }
 

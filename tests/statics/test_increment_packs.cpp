@@ -50,7 +50,7 @@ TEST_CASE("packs of contacts carry what the joint law of one contact gives, to t
       state.contacts[i].gap = number(random);
       state.contacts[i].shear = 0.3 * number(random);
       packs.start(i, state.contacts[i]);
-      packs.set_strength(i, strength.of(i, true));
+      packs.set_strength(i, strength.of(i, {}));
     }
     Eigen::VectorXd motion = Eigen::VectorXd::NullaryExpr(3 * (system.rows() + 1), [&] { return number(random); });
     motion.tail<3>().setZero();
@@ -62,7 +62,7 @@ TEST_CASE("packs of contacts carry what the joint law of one contact gives, to t
       const auto along = [](const BlockVector& g, const BlockVector& d) { return g[0] * d[0] + g[1] * d[1] + g[2] * d[2]; };
       const double opening = (c.a < 0 ? 0.0 : along(c.normal_a, of(c.a))) + (c.b < 0 ? 0.0 : along(c.normal_b, of(c.b)));
       const double slip = (c.a < 0 ? 0.0 : along(c.shear_a, of(c.a))) + (c.b < 0 ? 0.0 : along(c.shear_b, of(c.b)));
-      const Plain one = plain(c, state.contacts[i], strength.of(i, true), opening, slip);
+      const Plain one = plain(c, state.contacts[i], strength.of(i, {}), opening, slip);
       const ContactResponse response = packs.response(i);
       CHECK(response.normal == one.normal);
       CHECK(response.shear == one.shear);
@@ -93,7 +93,7 @@ TEST_CASE("derivatives of packs are difference quotients", "[statics]") {
         FrozenContactState state;
         state.gap = number(random);
         state.shear = 0.3 * number(random);
-        packs.set_strength(i, strength.of(i, true));
+        packs.set_strength(i, strength.of(i, {}));
         packs.set_bound_of(i, std::max(0.0, -system.contacts()[i].normal_stiffness * state.gap));
         const auto carried = [&](double gap, double shear) {
           FrozenContactState moved = state;
@@ -131,7 +131,7 @@ TEST_CASE("contacts that follow a motion in two steps are where one step brings 
   Eigen::VectorXd force = Eigen::VectorXd::Zero(motion.size()), whole = force;
   const auto begin = [&] {
     for (std::size_t i = 0; i < system.contacts().size(); ++i) {
-      packs.set_strength(i, strength.of(i, true));
+      packs.set_strength(i, strength.of(i, {}));
       packs.start(i, {});
     }
   };

@@ -1,5 +1,5 @@
 // B7: a block on a plane between its residual and its peak friction angle: it rests for good, slides for good once it has slipped, and its factor of
-// safety counts what the first corner loses.
+// safety counts what the first corner loses; all that at the first slip, or over a slip-weakening distance.
 #include <algorithm>
 #include <cmath>
 
@@ -23,6 +23,18 @@ Scene softening_block(const analytical::BlockOnPlane& data, double residual) {
   Scene scene = block_on_plane(data);
   scene.joints[0].residual_friction_angle = residual;
   use_joint_springs_as_penalty(scene);
+  return scene;
+}
+
+Scene thrown_block(const analytical::BlockOnPlane& data, const Scheme& scheme, double dt, double end) {
+  Scene scene = softening_block(data, residual_angle);
+  set_scheme(scene, scheme);
+  scene.method.start = Start::normal_balanced;
+  scene.blocks[1].rotation_locked = true;
+  scene.blocks[1].velocity = speed * Vec2(std::cos(data.slope_angle), -std::sin(data.slope_angle));
+  scene.step.dt = dt;
+  scene.end_time = end;
+  scene.output_every = end;
   return scene;
 }
 
@@ -64,20 +76,34 @@ void release(Report& report) {
   for (const Scheme& scheme : schemes()) {
     const auto slide = scheme.contact == "hard" ? analytical::released_rigid_slide(data, residual_angle, speed)
                                                 : analytical::released_slide(data, residual_angle, speed);
-    Scene scene = softening_block(data, residual_angle);
-    set_scheme(scene, scheme);
-    scene.method.start = Start::normal_balanced;
-    scene.blocks[1].rotation_locked = true;
-    scene.blocks[1].velocity = speed * Vec2(std::cos(data.slope_angle), -std::sin(data.slope_angle));
-    scene.step.dt = dt;
-    scene.end_time = end;
-    scene.output_every = end;
+    const Scene scene = thrown_block(data, scheme, dt, end);
     Simulation simulation = report.simulate(scene);
     const auto samples = history(simulation);
     const double place = samples.empty() ? not_measured() : downhill(data, samples.back().motion.displacement);
     report.near(with_variant("thrown down the plane: place after 1 s", scheme), scheme.contact, slide.displacement(end), place,
                 2.0 * difference * dt * end, "m", "residual acceleration from the first slip on; two steps late at most");
     check_ledger(report, with_variant("thrown down the plane", scheme), scheme.contact, simulation, !samples.empty());
+  }
+}
+
+/// The strength of a step is that of the slip before it, two steps late at most as with the bond; what the block does not lose by that lateness it
+/// loses at the end of the distance.
+void weaken(Report& report) {
+  const analytical::BlockOnPlane data = strong_block();
+  const double dt = 1e-4, end = 1.0, distance = 0.1;
+  for (const Scheme& scheme : schemes()) {
+    const auto first = scheme.contact == "hard" ? analytical::released_rigid_slide(data, residual_angle, speed)
+                                                : analytical::released_slide(data, residual_angle, speed);
+    const auto slide = analytical::weakened_slide(data, residual_angle, distance, first);
+    Scene scene = thrown_block(data, scheme, dt, end);
+    scene.joints[0].slip_weakening_distance = distance;
+    Simulation simulation = report.simulate(scene);
+    const auto samples = history(simulation);
+    const double place = samples.empty() ? not_measured() : downhill(data, samples.back().motion.displacement);
+    report.near(with_variant("thrown down the plane, friction falls over 0.1 m: place after 1 s", scheme), scheme.contact, slide.displacement(end),
+                place, analytical::cost_of_late_weakening(data, residual_angle, distance, first, 2.0 * dt, end), "m",
+                "linear slip weakening: hyperbolic functions up to the distance, then the residual acceleration; two steps late at most");
+    check_ledger(report, with_variant("thrown down the plane, friction falls over 0.1 m", scheme), scheme.contact, simulation, !samples.empty());
   }
 }
 
@@ -101,10 +127,33 @@ void factor(Report& report) {
   }
 }
 
+/// Of rigid contacts, too: at rest only the ratios of their forces are undetermined, and these the joint's springs decide.
+void weakened_factor(Report& report) {
+  const analytical::BlockOnPlane data = strong_block(45.0);
+  const double residual = 5.0 * analytical::degree, distance = 2e-3, width = 1e-4;
+  const double expected = analytical::weakened_strength_factor(data, residual, distance);
+  for (const std::string& method : all_methods) {
+    Scene scene = softening_block(data, residual);
+    scene.joints[0].slip_weakening_distance = distance;
+    scene.method.contact = method;
+    const double found = strength_reduction_factor(report, scene);
+    const std::string what = "factor of safety, residual angle 5 deg over 2 mm";
+    if (method == "dem") {
+      report.between(what, method, (1.0 - width) * analytical::residual_strength_factor(data, residual), (1.0 + width) * expected, found, "-",
+                     "from that of an angle that falls at once to what both corners carry together: the corners share by how they swing");
+    } else {
+      report.relative(what, method, expected, found, width, "-",
+                      "the upper corner weakens along its slip while the lower one's spring is loaded; width of the bracket");
+    }
+  }
+}
+
 void residual_friction(Report& report) {
   rest(report);
   release(report);
+  weaken(report);
   factor(report);
+  weakened_factor(report);
 }
 
 const Registered<Case> registered{{"B7", "peak and residual friction", &residual_friction}};
