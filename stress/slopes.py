@@ -38,6 +38,7 @@ def draw(seed: int, attempt: int = 0) -> Scene:
     joint = {"materials": ["rock", "rock"], "normal_stiffness_pa_per_m": kn, "shear_stiffness_pa_per_m": rounded(kn * ratio, 4),
              "friction_angle_deg": friction, "cohesion_pa": cohesion} | _tension(random.Random(f"{PART} {seed} {attempt} tension"), density * GRAVITY * height)
     named = _named_joints(random.Random(f"{PART} {seed} {attempt} named"), sets, joint, density * GRAVITY * height)
+    _weaken(random.Random(f"{PART} {seed} {attempt} weakening"), named, density * GRAVITY * height)
     document = {
         "title": f"{PART} {seed}",
         "material": [{"name": "rock", "density_kg_per_m3": rounded(density, 5)}],
@@ -49,7 +50,8 @@ def draw(seed: int, attempt: int = 0) -> Scene:
     }
     drawn = {"height_m": height, "face_deg": face, "sets": count, "finite": sum("persistence" in s for s in sets), "friction_deg": friction,
              "cohesion_pa": cohesion, "tension_pa": joint.get("tensile_strength_pa", 0.0), "named": len(named),
-             "brittle": sum(j.get("cohesion_behaviour") == BRITTLE for j in named), "kn": kn, "ks_over_kn": ratio}
+             "brittle": sum(j.get("cohesion_behaviour") == BRITTLE for j in named),
+             "weakening": sum("slip_weakening_distance_m" in j for j in named), "kn": kn, "ks_over_kn": ratio}
     return Scene(PART, seed, "fos", document, drawn)
 
 
@@ -81,6 +83,13 @@ def _named_joints(r: random.Random, sets: list[dict], joint: dict, weight_pa: fl
         add("intact", (35, 55), (0.02, 0.5), r.uniform(0.1, 0.5))
         finite[0]["bridge"] = "intact"
     return named
+
+
+def _weaken(r: random.Random, named: list[dict], weight_pa: float) -> None:
+    """Half of the joints that lose strength by slip lose it over a distance: a small or a large part of what their springs give way under the slope."""
+    for joint in named:
+        if (joint.get("cohesion_behaviour") == BRITTLE or "residual_friction_angle_deg" in joint) and r.random() < 0.5:
+            joint["slip_weakening_distance_m"] = rounded(log_uniform(r, 0.03, 3) * weight_pa / joint["shear_stiffness_pa_per_m"], 4)
 
 
 def _joint_set(r: random.Random, seed: int, height: float) -> dict:
