@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "openclose/statics/relaxation.h"
+#include "openclose/statics/weakening_pace.h"
 
 namespace openclose {
 namespace {
@@ -55,8 +56,11 @@ RelaxationResult ExplicitRelaxation::bonded_state() {
 RelaxationResult ExplicitRelaxation::relax(const FrozenState& from, Effort effort) {
   RelaxationResult result = settle(from, ShearLaw::coulomb, effort);
   FrozenState start = from;
+  WeakeningPace pace;
+  pace.restart(from.contacts.size());
   while (result.end == RelaxationEnd::stable) {
     note_slip(start, result.state);
+    pace.prolong(strength_, result.state, true);
     const double lost = lose_strength(strength_, result.state);
     if (lost == 0.0 || (lost < 1.0 && check_equilibrium(system_, strength_, result.state).holds())) break;
     // Bonds are lost one by one and no more than there are; what goes little by little may go on without end.

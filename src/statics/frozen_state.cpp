@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace openclose {
 
@@ -22,6 +23,12 @@ ContactStrength FrozenStrength::of(std::size_t i, const JointState& state) const
 
 JointState FrozenStrength::joint_after(std::size_t i, const FrozenContactState& state, double slip) const {
   return state_after(joints_.joint(system_.contacts()[i].source.joint), state.joint_state, state.status, std::abs(slip) * system_.closure_unit());
+}
+
+bool FrozenStrength::weakens_along_slip(std::size_t i, const JointState& state) const {
+  const JointProperties& joint = joints_.joint(system_.contacts()[i].source.joint);
+  const auto after = [&](double slip) { return state_after(joint, state, ContactStatus::sliding, slip); };
+  return after(0.0) == state && openclose::loss(joint, state, after(std::numeric_limits<double>::infinity())) > 0.0;
 }
 
 double FrozenStrength::loss(std::size_t i, const JointState& before, const JointState& after) const {

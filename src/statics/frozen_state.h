@@ -57,6 +57,8 @@ class FrozenStrength {
   /// \param slip  in closures
   JointState joint_after(std::size_t i, const FrozenContactState& state, double slip) const;
   bool can_lose(std::size_t i, const JointState& state) const;
+  /// Whether the joint has strength that goes with the length of slip and not with the first one.
+  bool weakens_along_slip(std::size_t i, const JointState& state) const;
   double loss(std::size_t i, const JointState& before, const JointState& after) const;
   bool has_tension() const;
 

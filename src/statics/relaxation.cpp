@@ -79,8 +79,9 @@ bool Relaxation::solve(Eigen::VectorXd& x, bool is_first) {
 
 /// Strength that a joint loses for good is lost between increments. With known friction an increment may slide too far and the next one back: there,
 /// what goes with the length of slip waits for rest.
-void Relaxation::accept(const Eigen::VectorXd& x, FrozenState& state) {
+void Relaxation::accept(const Eigen::VectorXd& x, FrozenState& state, double eps) {
   balance_.accept(x, state);
+  if (rule_ == IncrementRule::newton) pace_.prolong(strength_, state, eps == least_viscosity);
   weaken(state, rule_ == IncrementRule::newton ? SlipOfState::counts : SlipOfState::waits);
 }
 
@@ -100,7 +101,10 @@ Eigen::VectorXd Relaxation::guess(const Eigen::VectorXd& velocity, double eps) {
 
 bool Relaxation::ended(RelaxationResult& result, const Eigen::VectorXd& x) {
   const auto stands = [&] { return check_equilibrium(system_, strength_, result.state).holds(); };
-  if (rule_ == IncrementRule::open_close && stands()) note_slip(result.state);
+  if (rule_ == IncrementRule::open_close && stands()) {
+    note_slip(result.state);
+    pace_.prolong(strength_, result.state, true);
+  }
   if (stands() && (weaken(result.state, SlipOfState::counts) == 0.0 || stands())) {
     result.end = RelaxationEnd::stable;
     return true;
@@ -119,7 +123,7 @@ bool Relaxation::ends_in_a_short_increment(const Eigen::VectorXd& velocity, Rela
   balance_.start(result.state, eps);
   Eigen::VectorXd x = velocity / eps;
   if (!balance_.solve_quickly(x)) return false;
-  accept(x, result.state);
+  accept(x, result.state, eps);
   return ended(result, x);
 }
 
@@ -130,6 +134,7 @@ RelaxationResult Relaxation::relax(const FrozenState& from, Effort effort) {
   RelaxationResult result;
   result.state = from;
   balance_.renew_strength(result.state);
+  pace_.restart(from.contacts.size());
   Eigen::VectorXd velocity;                     // of the last increment: its length times its viscosity
   double eps = least_viscosity, stalled = 0.0;  // the latter of the last increment that was not found
   int found_since = 0;
@@ -156,7 +161,7 @@ RelaxationResult Relaxation::relax(const FrozenState& from, Effort effort) {
       eps *= length / longest;
       continue;
     }
-    accept(x, result.state);
+    accept(x, result.state, eps);
     result.travel = std::max(result.travel, farthest_between(result.state, from));
     if (ended(result, x)) return result;
     if (result.travel > farthest_way) break;

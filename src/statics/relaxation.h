@@ -4,6 +4,7 @@
 
 #include "openclose/statics/balance.h"
 #include "openclose/statics/frozen_solver.h"
+#include "openclose/statics/weakening_pace.h"
 
 namespace openclose {
 
@@ -29,7 +30,7 @@ class Relaxation : public FrozenSolver {
   void set_interruption(std::function<void()> f) override { balance_.set_interruption(std::move(f)); }
 
  private:
-  void accept(const Eigen::VectorXd& x, FrozenState& state);
+  void accept(const Eigen::VectorXd& x, FrozenState& state, double eps);
   double weaken(FrozenState& state, SlipOfState slip);
   Eigen::VectorXd guess(const Eigen::VectorXd& velocity, double eps);
   bool solve(Eigen::VectorXd& x, bool is_first);
@@ -41,6 +42,7 @@ class Relaxation : public FrozenSolver {
   IncrementRule rule_;
   int most_steps_;
   Balance balance_;
+  WeakeningPace pace_;
 };
 
 }  // namespace openclose
