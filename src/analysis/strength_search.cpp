@@ -131,7 +131,9 @@ class Search {
   /// strides grow from the finest one.
   double within_stride(double target) {
     const double stable = *bracket_.stable, finest = finest_stride();
-    if (breaks_at_ && *breaks_at_ <= stable) breaks_at_.reset();
+    // A trial that has been made there, joints breaking or not, says no more when it is made again.
+    const auto is_behind = [&](double srf) { return srf <= stable || std::ranges::find(undecided_, srf) != undecided_.end(); };
+    if (breaks_at_ && is_behind(*breaks_at_)) breaks_at_.reset();
     const double end = std::min(target, breaks_at_.value_or(target)), stride = end - stable;
     if (breaks_at_ && end == *breaks_at_ && stride > finest) return stable + 0.5 * stride;
     return stride_ < stride ? stable + stride_ : end;

@@ -1,0 +1,45 @@
+#include "openclose/analysis/strength_search.h"
+#include "support/catch.h"
+
+using namespace openclose;
+
+namespace {
+
+/// Stands below a factor. From there on joints break on any stride, and nothing is found; only limit analysis has a proof, far above.
+class BreakingTrials : public StrengthTrials {
+ public:
+  BreakingTrials(double breaks, double proof) : breaks_(breaks), proof_(proof) {}
+  TrialResult first(double srf) override { return at(srf, OnBreak::go_on); }
+  TrialResult next(double srf, OnBreak on_break) override { return at(srf, on_break); }
+  std::optional<double> proved_failure(double) override { return proof_; }
+  int count() const { return count_; }
+
+ private:
+  TrialResult at(double srf, OnBreak) {
+    if (++count_ > most) FAIL("more than " << most << " trials");
+    TrialResult result;
+    result.outcome = srf < breaks_ ? TrialOutcome::stable : TrialOutcome::undecided;
+    result.broke = srf >= breaks_;
+    result.steps = 1;
+    return result;
+  }
+  static constexpr int most = 200;
+  double breaks_, proof_;
+  int count_ = 0;
+};
+
+}  // namespace
+
+TEST_CASE("a trial that stays undecided where joints break is not made over and over again", "[analysis][search]") {
+  for (const double breaks : {1.003, 1.37, 7.1}) {
+    BreakingTrials trials(breaks, 1.4 * breaks);
+    StrengthReductionInput input;
+    const StrengthBracket found = search_strength(trials, input, [](const StrengthTrial&) {}, {});
+    INFO(breaks << ", " << trials.count() << " trials");
+    REQUIRE(found.stable);
+    REQUIRE(found.failed);
+    CHECK(*found.stable < breaks);
+    CHECK(*found.stable > breaks - 3.0 * std::max(widest_bracket(input, breaks), 2e-3 * breaks));  // half a stride that joints may break in, or two
+    CHECK(*found.failed == 1.4 * breaks);
+  }
+}
