@@ -104,6 +104,8 @@ namespace {
 constexpr double noticeable_friction_lag = 0.01;
 /// [-] Of the energy moved, which bounds what the error does to ways and speeds: beyond a tenth not even their first digit is known.
 constexpr double most_energy_of_lag = 0.1;
+/// [-] Of what slip takes from a joint, in one step: the strength is on the average half a step late, and half of this too high.
+constexpr double noticeable_weakening = 0.1;
 /// [-] Of the median block's size, far beyond the closure of joints: seen in a drawing.
 constexpr double noticeable_settlement = 0.1;
 
@@ -201,6 +203,12 @@ class MotionInTime {
     result_.cpu_of_motion = process_cpu_time() - cpu_at_start_;
     result_.watch = watch_.report();
     judge_friction();
+    if (const double most = simulation_.state().fastest_weakening; most > noticeable_weakening) {
+      result_.warnings.push_back(fmt::format(
+          "joints lost up to {:.0f} % of what slip takes from them in one step, which has the strength before it: shorter steps, or step.adaptive, "
+          "follow slip_weakening_distance_m",
+          100.0 * most));
+    }
     if (const double size = simulation_.system().median_size(), way = result_.settling.displacement / size;
         begun_ && size > 0.0 && way > noticeable_settlement) {
       result_.warnings.push_back(fmt::format(

@@ -143,7 +143,7 @@ void Simulation::restart_clock() {
   state_.ledger = EnergyLedger();
   state_.kinetic_ahead = 0.0;
   solved_.restart_ledger();
-  state_.max_penetration = state_.friction_work = state_.lagging_friction_work = 0.0;
+  state_.max_penetration = state_.friction_work = state_.lagging_friction_work = state_.fastest_weakening = 0.0;
   state_.restart_scheme();
 }
 

@@ -236,7 +236,7 @@ void SimulationState::judge(const Archive& archive) const {
 
 void SimulationState::exchange(Archive& archive) {
   archive(system, resting, may_rest, external, joints, base_moves, bonds, detector, contacts, contacts_current, output_velocity, time, reason, ledger,
-          start_kinetic_energy, kinetic_ahead, max_penetration, friction_work, lagging_friction_work, counters, begins);
+          start_kinetic_energy, kinetic_ahead, max_penetration, friction_work, lagging_friction_work, fastest_weakening, counters, begins);
   judge(archive);
   if (archive.reading()) make_scheme();
   scheme->exchange(archive);

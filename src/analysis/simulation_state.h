@@ -96,6 +96,7 @@ struct SimulationState {
   double kinetic_ahead = 0.0;                               ///< [J] in the ledger, see CentralDifference::kinetic_ahead()
   double max_penetration = 0.0;                             ///< [m]
   double friction_work = 0.0, lagging_friction_work = 0.0;  ///< [J] see Simulation::friction_lag()
+  double fastest_weakening = 0.0;                           ///< [-] the largest LossesOfStep::along_slip of a step in motion
   StepCounters counters;
   StageTimes stage_times;
   Memory memory;     ///< of the arrays, each part as large as it has been after a step

@@ -87,14 +87,18 @@ double friction_slip(const StepProblem& problem, const StepSolution& solution, s
   return std::abs(solution.contacts.slip_change(contact) - stretch);
 }
 
-double largest_loss(const StepProblem& problem, const StepSolution& solution, bool elastic) {
-  double largest = 0.0;
+LossesOfStep losses(const StepProblem& problem, const StepSolution& solution, bool elastic) {
+  LossesOfStep largest;
   for (std::size_t i = 0; i < problem.contacts.size(); ++i) {
     const Contact& c = problem.contacts[i];
     const JointProperties& joint = problem.joints.joint(c.joint);
     if (!can_lose_strength(joint, c.joint_state)) continue;
-    const JointState after = state_after(joint, c.joint_state, solution.contacts.status(i), friction_slip(problem, solution, i, elastic));
-    largest = std::max(largest, loss(joint, c.joint_state, after));
+    const ContactStatus status = solution.contacts.status(i);
+    const double lost = loss(joint, c.joint_state, state_after(joint, c.joint_state, status, friction_slip(problem, solution, i, elastic)));
+    largest.any = std::max(largest.any, lost);
+    if (status != ContactStatus::sliding || !weakens_along_slip(joint, c.joint_state)) continue;
+    const double left = 1.0 - loss(joint, {}, c.joint_state);
+    largest.along_slip = std::max(largest.along_slip, std::min(lost, left));
   }
   return largest;
 }

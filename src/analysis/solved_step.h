@@ -23,8 +23,12 @@ double unbalanced_force(const StepProblem& problem, const StepSolution& solution
 /// \param elastic  contacts have springs, whose stretch is not slip
 double friction_slip(const StepProblem& problem, const StepSolution& solution, std::size_t contact, bool elastic);
 
-/// [-] The largest share of what it can lose that a joint loses by how its contact ends.
-double largest_loss(const StepProblem& problem, const StepSolution& solution, bool elastic);
+/// [-] The largest shares of what they can lose that joints lose by how their contacts end.
+struct LossesOfStep {
+  double any = 0.0;
+  double along_slip = 0.0;  ///< of those that weaken along their slip and do not open
+};
+LossesOfStep losses(const StepProblem& problem, const StepSolution& solution, bool elastic);
 
 /// Whether a step in motion begins and ends without velocities and moves no block: in balance. Where contacts stay as they are, too, the next one
 /// that is as long repeats it bit for bit.

@@ -12,6 +12,9 @@ namespace {
 /// [-] of the largest displacement of a step, to be aimed at where steps have to be shorter.
 constexpr double part_of_limit = 0.9;
 
+/// [-] Of what slip takes from a joint, in one adaptive step: the strength is then too high by half of this on the average.
+constexpr double most_weakening_in_a_step = 0.02;
+
 /// [rad] No block that is in contact turns by more than this in a step: then other edges face each other than those whose contacts the step knows,
 /// and a splinter that may turn as it likes finds states of balance after whole turns. Where facing edges have become corners, nothing is left of
 /// them.
@@ -84,14 +87,17 @@ StepResult SolvedStepper::step(double dt, bool statics) {
     return step(dt, statics);
   }
   StepResult result;
-  if (is_no_step(result) || is_too_wrong(p, result) || enters_unseen(p, result)) return result;
+  if (is_no_step(result)) return result;
+  const LossesOfStep lost = losses(p, solution_, state_.enforcement->has_elastic_contacts());
+  if (is_too_wrong(p, lost, result) || enters_unseen(p, result)) return result;
   const Stopwatch watch(state_.stage_times.bookkeeping);
   step_ledger_ = {};
   if (books_steps_) add_step(step_ledger_, p, solution_, *state_.scheme, state_.enforcement->has_elastic_contacts());
   if (creates_energy(p, result)) return result;
   if (statics) result.unbalanced_force = openclose::unbalanced_force(p, solution_);
   // What balances forces to this share of them balances strength to it.
-  result.lost_strength = largest_loss(p, solution_, state_.enforcement->has_elastic_contacts()) > state_.scene.settle.unbalanced_fraction;
+  result.lost_strength = lost.any > state_.scene.settle.unbalanced_fraction;
+  if (!statics) state_.fastest_weakening = std::max(state_.fastest_weakening, lost.along_slip);
   accept(p);
   result.accepted = true;
   state_.wake(state_.to_wake(Resting::Urgency::any));
@@ -114,9 +120,11 @@ bool SolvedStepper::is_no_step(StepResult& result) {
   return true;
 }
 
-bool SolvedStepper::is_too_wrong(const StepProblem& problem, StepResult& result) {
+bool SolvedStepper::is_too_wrong(const StepProblem& problem, const LossesOfStep& lost, StepResult& result) {
   if (problem.statics || !state_.scene.step.adaptive) return false;
-  result.error = local_error(problem, solution_);
+  // The strength that a step has is the one before it. How much it lacks goes with its length, and the controller's errors with the third power.
+  const double of_weakening = control_.tolerance() * std::pow(lost.along_slip / most_weakening_in_a_step, 3);
+  result.error = std::max(local_error(problem, solution_), of_weakening);
   result.too_wrong = !(result.error <= control_.tolerance());
   if (!result.too_wrong) return false;
   result.reason = "the local error of a step stays above step.error_tolerance_m";

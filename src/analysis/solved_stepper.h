@@ -10,6 +10,7 @@
 namespace openclose {
 
 struct Blow;
+struct LossesOfStep;
 
 class SolvedStepper {
  public:
@@ -43,7 +44,7 @@ class SolvedStepper {
 
   void solve(const StepProblem& problem);
   // Each gives the reason for which the solution is not taken, and counts it.
-  bool is_too_wrong(const StepProblem& problem, StepResult& result);
+  bool is_too_wrong(const StepProblem& problem, const LossesOfStep& lost, StepResult& result);
   bool enters_unseen(const StepProblem& problem, StepResult& result);
   bool is_no_step(StepResult& result);
   bool creates_energy(const StepProblem& problem, StepResult& result);

@@ -52,6 +52,7 @@ std::string write_slope(const Dimensions& d) {
   text.left_out_key("tensile_strength_pa", 5e5);
   text.left_out_key("cohesion_behaviour", std::string_view("lost_on_slip"));
   text.left_out_key("residual_friction_angle_deg", 35.0);
+  text.left_out_key("slip_weakening_distance_m", 0.005);
   text.table("domain", "From the lower left corner: the ground below, the back, the crest, the toe, the bench before it");
   text.key("material", std::string_view("rock"));
   text.points("vertices_m", {{left, bottom}, {right, bottom}, {right, height}, {crest, height}, {0.0, 0.0}, {left, 0.0}});

@@ -43,6 +43,10 @@ bool can_lose_strength(const JointProperties& joint, const JointState& state) {
          (joint.softens() || joint.tensile_strength > 0.0 || (joint.cohesion > 0.0 && joint.cohesion_behaviour != CohesionBehaviour::ductile));
 }
 
+bool weakens_along_slip(const JointProperties& joint, const JointState& state) {
+  return state.bonded && joint.slip_weakening_distance > 0.0;
+}
+
 JointState state_after(const JointProperties& joint, const JointState& before, ContactStatus status, double slip) {
   JointState after = before;
   if (status == ContactStatus::open) {

@@ -157,6 +157,9 @@ ContactForces prolonged(const ContactSprings& springs, const ContactStrength& st
 /// Whether a joint in this state has strength that it can lose: tensile strength, cohesion that is not ductile, or friction above the residual one.
 bool can_lose_strength(const JointProperties& joint, const JointState& state);
 
+/// Whether a joint in this state loses strength along its slip, and not with the first one.
+bool weakens_along_slip(const JointProperties& joint, const JointState& state);
+
 /// The state of a joint after a step, or after a way to equilibrium.
 /// \param status  at its end
 /// \param slip    [m] by how much friction gave way, the shear spring's own stretch left out; counts if the contact slides

@@ -69,9 +69,11 @@ void visit_joint_keys(Joint& j, Visitor& visit) {
          "cohesion that is not ductile, go with the difference",
          "the friction angle"},
         j.residual_friction_angle, Degrees{{.low = 0.0, .high = 90.0, .low_included = true}});
-  visit({"slip_weakening_distance_m",
-         "slip over which friction falls to the residual one, and cohesion that is lost on slip to nothing, linearly; 0: at the first slip"},
-        j.slip_weakening_distance, not_negative);
+  visit(
+      {"slip_weakening_distance_m",
+       "slip over which friction falls to residual_friction_angle_deg, and cohesion that is lost on slip to nothing, linearly; slip to and fro adds "
+       "up; rock joints have millimetres to centimetres; 0: at the first slip"},
+      j.slip_weakening_distance, not_negative);
   visit({"damping_ratio", "dashpots beside the joint's springs, see [methods](methods.md)"}, j.damping_ratio, not_negative);
 }
 
@@ -87,9 +89,11 @@ inline std::optional<JointContradiction> contradiction_in(const JointProperties&
     return JointContradiction{"cohesion_behaviour", "with a lower residual friction angle slip breaks the bond, and this cohesion would go with it",
                               "\"ductile\" or \"lost_on_slip\", or no residual_friction_angle_deg"};
   }
-  if (joint.slip_weakening_distance > 0.0 && !joint.weakens_by_slip()) {
-    return JointContradiction{"slip_weakening_distance_m", "slip takes no strength from this joint",
-                              "0, or a residual_friction_angle_deg below friction_angle_deg, or cohesion_behaviour = \"lost_on_slip\""};
+  const bool loses_by_slip = joint.softens() || (joint.weakens_by_slip() && (joint.cohesion > 0.0 || joint.tensile_strength > 0.0));
+  if (joint.slip_weakening_distance > 0.0 && !loses_by_slip) {
+    return JointContradiction{
+        "slip_weakening_distance_m", "slip takes no strength from this joint",
+        "0, or a residual_friction_angle_deg below friction_angle_deg, or a cohesion_pa with cohesion_behaviour = \"lost_on_slip\""};
   }
   return std::nullopt;
 }

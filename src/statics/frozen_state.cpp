@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace openclose {
 
@@ -26,9 +25,7 @@ JointState FrozenStrength::joint_after(std::size_t i, const FrozenContactState& 
 }
 
 bool FrozenStrength::weakens_along_slip(std::size_t i, const JointState& state) const {
-  const JointProperties& joint = joints_.joint(system_.contacts()[i].source.joint);
-  const auto after = [&](double slip) { return state_after(joint, state, ContactStatus::sliding, slip); };
-  return after(0.0) == state && openclose::loss(joint, state, after(std::numeric_limits<double>::infinity())) > 0.0;
+  return openclose::weakens_along_slip(joints_.joint(system_.contacts()[i].source.joint), state);
 }
 
 double FrozenStrength::loss(std::size_t i, const JointState& before, const JointState& after) const {

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -654,4 +655,36 @@ TEST_CASE("a motion of shi by a friction of other normal forces is refused", "[a
   CHECK(much.refused);
   CHECK(much.ended_by.empty());
   CHECK_THAT(much.reason, ContainsSubstring("friction of sliding contacts") && ContainsSubstring("method.contact = \"soft\" would be a remedy"));
+}
+
+TEST_CASE("steps that are long for the slip-weakening distance are worth a warning, adaptive ones are short enough", "[analysis][run]") {
+  // Thrown over its base, 1 m/s: friction falls within a slip of 2 cm.
+  Scene scene = test::block_on_base();
+  scene.blocks[1].velocity = {1.0, 0.0};
+  scene.blocks[1].rotation_locked = true;
+  scene.method.start = Start::normal_balanced;
+  scene.joints[0].residual_friction_angle = 0.5 * scene.joints[0].friction_angle;
+  scene.joints[0].slip_weakening_distance = 0.02;
+  scene.step.dt = 0.01;
+  scene.end_time = 0.1;
+  const auto weakening = [](const Scene& s) {
+    Simulation simulation(s);
+    const RunResult result = run(simulation, {});
+    REQUIRE(result.converged);
+    const double most = simulation.state().fastest_weakening;
+    const auto is_of_it = [](const std::string& warning) { return warning.find("slip_weakening_distance_m") != std::string::npos; };
+    CHECK(std::ranges::any_of(result.warnings, is_of_it) == (most > 0.1));
+    return most;
+  };
+  CHECK(weakening(scene) > 0.4);  // 1 cm of 2 at most
+  CHECK(weakening(scene) <= 0.5);
+  scene.step.dt = 1e-3;
+  CHECK(weakening(scene) == Approx(0.05).epsilon(0.05));
+  scene.step.dt = 0.01;
+  scene.step.adaptive = true;
+  CHECK(weakening(scene) < 0.02 * 1.001);
+  // What breaks at the first slip does so in any step.
+  scene.step.adaptive = false;
+  scene.joints[0].slip_weakening_distance = 0.0;
+  CHECK(weakening(scene) == 0.0);
 }

@@ -287,7 +287,7 @@ TEST_CASE("edges of a block name their joints, however its vertices are written"
 
 TEST_CASE("a slip-weakening distance goes with what slip weakens, none goes with all joints", "[scene][reader]") {
   CHECK(read_text(block_on_base).joints[0].slip_weakening_distance == 0.0);
-  for (const std::string weak : {"residual_friction_angle_deg = 20", "cohesion_behaviour = 'lost_on_slip'"}) {
+  for (const std::string weak : {"residual_friction_angle_deg = 20", "cohesion_pa = 1e3\ncohesion_behaviour = 'lost_on_slip'"}) {
     const JointProperties joint = read_text(with_line(block_on_base, 10, "slip_weakening_distance_m = 0.01\n" + weak)).joints[0];
     CHECK(joint.weakens_by_slip());
     CHECK(joint.slip_weakening_distance == 0.01);

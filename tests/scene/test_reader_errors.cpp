@@ -447,7 +447,9 @@ TEST_CASE("residual friction that contradicts the rest of the joint", "[scene][r
 TEST_CASE("a slip-weakening distance of a joint that slip does not weaken", "[scene][reader][errors]") {
   CHECK(error_with(10, "slip_weakening_distance_m = 0.01") ==
         "10: joint[0].slip_weakening_distance_m: slip takes no strength from this joint; accepted: 0, or a residual_friction_angle_deg below "
-        "friction_angle_deg, or cohesion_behaviour = \"lost_on_slip\"");
+        "friction_angle_deg, or a cohesion_pa with cohesion_behaviour = \"lost_on_slip\"");
+  CHECK_THAT(error_with(10, "slip_weakening_distance_m = 0.01\ncohesion_behaviour = 'lost_on_slip'"),
+             ContainsSubstring("10: joint[0].slip_weakening_distance_m: slip takes no strength"));
   CHECK_THAT(error_with(10, "slip_weakening_distance_m = -1"), ContainsSubstring("10: joint[0].slip_weakening_distance_m"));
 }
 

@@ -107,6 +107,25 @@ void weaken(Report& report) {
   }
 }
 
+/// Adaptive steps lose at most a fiftieth of the drop each: a way of D/50, at no less than the speed of the throw.
+void weaken_adaptively(Report& report) {
+  const analytical::BlockOnPlane data = strong_block();
+  const double end = 1.0, distance = 0.1, longest = 0.02 * distance / speed;
+  const auto first = analytical::released_slide(data, residual_angle, speed);
+  const auto slide = analytical::weakened_slide(data, residual_angle, distance, first);
+  Scheme soft;
+  soft.contact = "soft";
+  Scene scene = thrown_block(data, soft, 0.02, end);
+  scene.step.adaptive = true;
+  scene.joints[0].slip_weakening_distance = distance;
+  Simulation simulation = report.simulate(scene);
+  const auto samples = history(simulation);
+  const double place = samples.empty() ? not_measured() : downhill(data, samples.back().motion.displacement);
+  report.near("thrown down the plane, friction falls over 0.1 m, adaptive steps: place after 1 s", "soft", slide.displacement(end), place,
+              analytical::cost_of_late_weakening(data, residual_angle, distance, first, 2.0 * longest, end), "m",
+              "linear slip weakening; two steps late at most, in each of which no joint loses more than 2 % of its drop");
+}
+
 void factor(Report& report) {
   const analytical::BlockOnPlane data = strong_block(45.0);
   for (const double residual : {40.0, 5.0}) {
@@ -152,6 +171,7 @@ void residual_friction(Report& report) {
   rest(report);
   release(report);
   weaken(report);
+  weaken_adaptively(report);
   factor(report);
   weakened_factor(report);
 }
