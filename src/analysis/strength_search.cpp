@@ -44,7 +44,9 @@ class Search {
 
  private:
   void narrow() {
-    while (const std::optional<double> srf = choose()) attempt(*srf);
+    while (const std::optional<double> srf = choose()) {
+      if (!attempt(*srf)) return;
+    }
   }
 
   /// At factor 1, or at a smaller one if the scene fails with its own strength. Where that is not decided, also a little above: which factor is hard
@@ -131,22 +133,24 @@ class Search {
   /// strides grow from the finest one.
   double within_stride(double target) {
     const double stable = *bracket_.stable, finest = finest_stride();
-    // A trial that has been made there, joints breaking or not, says no more when it is made again.
-    const auto is_behind = [&](double srf) { return srf <= stable || std::ranges::find(undecided_, srf) != undecided_.end(); };
-    if (breaks_at_ && is_behind(*breaks_at_)) breaks_at_.reset();
+    if (breaks_at_ && *breaks_at_ <= stable) breaks_at_.reset();
     const double end = std::min(target, breaks_at_.value_or(target)), stride = end - stable;
     if (breaks_at_ && end == *breaks_at_ && stride > finest) return stable + 0.5 * stride;
     return stride_ < stride ? stable + stride_ : end;
   }
 
-  void attempt(double target) {
+  bool is_undecided(double srf) const { return std::ranges::find(undecided_, srf) != undecided_.end(); }
+
+  /// False if there is no way to the target: joints break before it, and what becomes of that has stayed open in a stride in which they may.
+  bool attempt(double target) {
     if (progress_) progress_(share_done());
     const double stable = *bracket_.stable, finest = finest_stride(), srf = within_stride(target);
+    if (srf != target && is_undecided(srf)) return false;
     const bool may_break = srf - stable <= finest;
     const TrialResult result = record(srf, bracket_.failed ? "bisect" : "bracket", trials_.next(srf, may_break ? OnBreak::go_on : OnBreak::go_back));
     if (result.broke && !may_break) {
       breaks_at_ = srf;
-      return;
+      return true;
     }
     if (result.broke) stride_ = finest;
     switch (result.outcome) {
@@ -158,10 +162,11 @@ class Search {
         add_failure(srf, result.criterion);
         break;
       case TrialOutcome::undecided:
-        if (std::ranges::find(undecided_, srf) == undecided_.end()) undecided_.push_back(srf);
+        if (!is_undecided(srf)) undecided_.push_back(srf);
         look_for_proof();
         break;
     }
+    return true;
   }
 
   /// Where a trial leaves open what happens, there may be a proof without one.

@@ -1,4 +1,5 @@
 // The explicit loop against the same steps taken plainly, one by one, and what it does between two detections.
+#include <algorithm>
 #include <cmath>
 #include <set>
 #include <string>
@@ -373,6 +374,18 @@ TEST_CASE("a corner that has slipped on the way from rest to rest has lost what 
     simulation.change_joints().reduce_strength(part * first_slip);
     CHECK(settle(simulation, {}, SettleFrom::rest).settled == (part < 1.0));
   }
+}
+
+TEST_CASE("what slides from nobody knows where has lost all that goes with slip", "[analysis][explicit]") {
+  Simulation simulation(weakening());
+  for (int i = 0; i < 25; ++i) REQUIRE(simulation.step(2e-4, false).accepted);  // before the first corner leaves the plane
+  const auto sliding_and_bonded = [&] {
+    return std::ranges::count_if(simulation.change_contacts(),
+                                 [](const Contact& c) { return c.status == ContactStatus::sliding && c.joint_state.bonded; });
+  };
+  REQUIRE(sliding_and_bonded() > 0);
+  simulation.judge_bonds(nullptr);
+  CHECK(sliding_and_bonded() == 0);
 }
 
 TEST_CASE("a contact that is open at rest has lost its bond", "[analysis][explicit][settle]") {
