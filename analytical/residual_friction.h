@@ -28,12 +28,15 @@ ReleasedSlide released_rigid_slide(const BlockOnPlane& block, double residual_an
 
 /// The same where friction falls linearly over a slip D, the slip-weakening distance. With kappa = N (mu - mu_r)/(2 ks D) it slides, from x* and v*
 /// on, with x'' = g (sin alpha - mu cos alpha) + beta^2 (x - x*), beta^2 = g cos alpha (mu - mu_r)/(D (1 - kappa)), and has the residual friction
-/// once x - x* = D (1 - kappa). \param first  of released_slide() or released_rigid_slide() \return       from where friction is residual \throws
-/// std::domain_error if friction stops the block before, or if the springs let go faster than it weakens (kappa >= 1)
+/// once x - x* = D (1 - kappa).
+///
+/// \param first  of released_slide() or released_rigid_slide()
+/// \return       from where friction is residual
+/// \throws std::domain_error if friction stops the block before, or if the springs let go faster than it weakens (kappa >= 1)
 ReleasedSlide weakened_slide(const BlockOnPlane& block, double residual_angle, double distance, const ReleasedSlide& first);
 
-/// [m] What a delay [s] of the weakening costs at most at a time after it: the delay acts like an acceleration beta^2 delay v, with v <= v* cosh(beta
-/// t) of a friction angle of at least the slope's.
+/// [m] What a delay [s] of the weakening costs at most at a time after it: the delay acts like an acceleration beta^2 delay v, and where the peak
+/// friction angle is at least the slope's, v <= v* cosh(beta t).
 double cost_of_late_weakening(const BlockOnPlane& block, double residual_angle, double distance, const ReleasedSlide& first, double delay,
                               double time);
 
@@ -46,8 +49,9 @@ double first_slip_factor(const BlockOnPlane& block);
 double residual_strength_factor(const BlockOnPlane& block, double residual_angle);
 
 /// [-] The same where friction falls linearly over a slip D. Between the upper corner's first slip and the lower one's, at a way x = mu N_l/(F ks),
-/// the upper one carries T_u = (N_u/F)(mu - (mu - mu_r)(x - T_u/ks)/D), no less than mu_r N_u/F; both together carry most at one of the two. \throws
-/// std::domain_error if the upper corner's spring lets go faster than it weakens
+/// the upper one carries T_u = (N_u/F)(mu - (mu - mu_r)(x - T_u/ks)/D), no less than mu_r N_u/F; both together carry most at one of the two.
+///
+/// \throws std::domain_error if the upper corner's spring lets go faster than it weakens
 double weakened_strength_factor(const BlockOnPlane& block, double residual_angle, double distance);
 
 }  // namespace openclose::analytical

@@ -86,8 +86,7 @@ void release(Report& report) {
   }
 }
 
-/// The strength of a step is that of the slip before it, two steps late at most as with the bond; what the block does not lose by that lateness it
-/// loses at the end of the distance.
+/// The strength of a step is that of the slip before it, two steps late at most as with the bond.
 void weaken(Report& report) {
   const analytical::BlockOnPlane data = strong_block();
   const double dt = 1e-4, end = 1.0, distance = 0.1;
@@ -107,7 +106,8 @@ void weaken(Report& report) {
   }
 }
 
-/// Adaptive steps lose at most a fiftieth of the drop each: a way of D/50, at no less than the speed of the throw.
+/// Adaptive steps lose at most a fiftieth of the drop each, as the handbook says: two of them lack what goes with a slip of 2 D/50. The bound has
+/// this slip at the speed of the throw and more of it later on.
 void weaken_adaptively(Report& report) {
   const analytical::BlockOnPlane data = strong_block();
   const double end = 1.0, distance = 0.1, longest = 0.02 * distance / speed;
