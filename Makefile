@@ -149,7 +149,7 @@ fuzz: clang-packages packages ## attack the readers of scenes, records and check
 	@scripts/build fuzz fuzz_scene fuzz_record fuzz_checkpoint
 	@scripts/fuzz $(MINUTES)
 
-mutants: packages ## plant the faults of mutants/faults.toml one by one and report which check notices each (results/mutants.md); takes half an hour
+mutants: packages ## plant the faults of mutants/faults.toml one by one and report which check notices each (results/mutants.md); takes an hour or two
 	"$${PYTHON:-python3}" mutants/run.py --results results
 
 mutants-random: packages ## plant COUNT faults of one token at places drawn by SEED and report which checks notice (results/mutants-random.md); minutes each

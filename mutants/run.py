@@ -7,17 +7,19 @@
 
 Every worker has a copy of the tree with a build of its own under build/mutants. A fault is tried on the unit tests of its own folder, then on those
 of the folders after it in the order of the data, then of those before it, then on the verification cases, one group after the other until one is red;
-only what they need is built. Writes mutants.csv and mutants.md; named faults replace their rows there and leave the others. A fault that only ends
+only what they need is built, and what comes out the same, byte for byte, as without the fault is not run again. Writes mutants.csv and mutants.md; named faults replace their rows there and leave the others. A fault that only ends
 checks by an exception that no test expects, by a signal or by their time limit has not been caught by an assertion: it is listed as such.
 
-Random faults go to mutants-random.csv and .md. One that does not compile is none. Those that survive are to be judged one by one: the same answers, or a
-check that is missing; their rate is of all that compile.
+Random faults go to mutants-random.csv and .md. One that does not compile is none, and neither is one that compiles to the same program, however it is
+written. Those that survive are to be judged one by one: the same answers, or a
+check that is missing; their rate is of all others.
 
 Exit status: 0 if every fault was caught, 1 if one was not, 2 if the list does not fit the source or the source without a fault is red.
 """
 
 import argparse
 import csv
+import hashlib
 import os
 import re
 import shutil
@@ -44,6 +46,8 @@ COPIED = ["CMakeLists.txt", "CMakePresets.json", "analytical", "cmake", "docs", 
 COLUMNS = ["id", "folder", "file", "description", "caught_by", "kind", "seconds"]
 CAUGHT = ("unit test", "verification")
 DOES_NOT_COMPILE = "does not compile"
+SAME_PROGRAM = "same program"
+NO_FAULTS = (DOES_NOT_COMPILE, SAME_PROGRAM)
 # What a random fault is noticed by, too: whoever changes the code sees it.
 NOTICED = (*CAUGHT, "crash", "time-out")
 # A check may take this many times as long as without a fault, and so much more: others use the machine, too.
@@ -101,6 +105,7 @@ class Worker:
     def __init__(self, number):
         self.tree = ROOT / "build/mutants" / str(number)
         self.limits = {}
+        self.faultless = {}
         self.environment = dict(os.environ)
         for name in ("MAKEFLAGS", "MFLAGS", "MAKELEVEL"):
             self.environment.pop(name, None)
@@ -152,12 +157,27 @@ class Worker:
             return "openclose-verify", ["build/release/verification/openclose-verify", "--results", "build/verification-results"]
         return f"test_{check}", [f"build/release/tests/{check}/test_{check}", "--abort", "--reporter", "junit", "--out", f"build/{check}.xml"]
 
+    def programs(self, check):
+        """Digests of what a check runs."""
+        files = [self.command(check)[1][0]] + (["build/release/openclose"] if check == "cli" else [])
+        return [hashlib.sha256((self.tree / file).read_bytes()).hexdigest() for file in files]
+
+    def remember_faultless(self, checks):
+        """Builds the source without a fault and keeps the digests of its programs, which name the folder of their tree."""
+        for check in checks:
+            built, text = self.build(self.command(check)[0])
+            if not built:
+                raise ListError(f"without any fault {check} does not compile\n{text[-3000:]}")
+            self.faultless[check] = self.programs(check)
+
     def run(self, check):
-        """Builds what a check needs and runs it."""
+        """Builds what a check needs and runs it, if that is another program than without the fault."""
         target, command = self.command(check)
         built, text = self.build(target)
         if not built:
             return Outcome(DOES_NOT_COMPILE, target, text)
+        if self.programs(check) == self.faultless.get(check):
+            return Outcome(SAME_PROGRAM)
         begin = time.monotonic()
         outcome = self.run_verification(command) if check == "verification" else self.run_tests(check, command)
         if check not in self.limits and outcome.kind is None:
@@ -221,11 +241,14 @@ class Worker:
         begin = time.monotonic()
         path = self.tree / fault["file"]
         original = path.read_text()
-        first = Outcome()
+        first, changed = Outcome(), False
         path.write_text(planted(fault, original))
         try:
             for check in checks_for(folder_of(fault), verify):
                 outcome = self.run(check)
+                if outcome.kind == SAME_PROGRAM:
+                    continue
+                changed = True
                 if first.kind is None:
                     first = outcome
                 if outcome.kind in CAUGHT or outcome.kind == DOES_NOT_COMPILE:
@@ -233,7 +256,8 @@ class Worker:
                     break
         finally:
             path.write_text(original)
-        row = described(fault) | {"caught_by": first.by, "kind": first.kind or "survived", "seconds": f"{time.monotonic() - begin:.1f}"}
+        green = "survived" if changed else SAME_PROGRAM
+        row = described(fault) | {"caught_by": first.by, "kind": first.kind or green, "seconds": f"{time.monotonic() - begin:.1f}"}
         return row
 
 
@@ -307,8 +331,9 @@ def study(faults, wanted, options):
     verify = not options.unit_tests_only
     print("builds and checks the source without a fault", flush=True)
     baseline(workers[0], verify)
-    for worker in workers[1:]:
+    for worker in workers:
         worker.limits = dict(workers[0].limits)
+        worker.remember_faultless(checks_for(folders()[0], verify))
     options.results.mkdir(parents=True, exist_ok=True)
     name = "mutants-random" if options.random else "mutants"
     table, page = options.results / f"{name}.csv", options.results / f"{name}.md"
@@ -334,7 +359,7 @@ def study(faults, wanted, options):
     with ThreadPoolExecutor(options.jobs) as pool:
         list(pool.map(try_one, wanted))
     if options.random:
-        done = [row for row in done if row["kind"] != DOES_NOT_COMPILE]
+        done = [row for row in done if row["kind"] not in NO_FAULTS]
     caught = sum(row["kind"] in (NOTICED if options.random else CAUGHT) for row in done)
     print(f"{caught} of {len(done)} faults caught; {table}, {page}")
     return 0 if caught == len(done) else 1
