@@ -131,7 +131,7 @@ memcheck: build memcheck-packages ## run a failing slope and a factor of safety 
 	$(VALGRIND) $(OPENCLOSE) run $(FAILING_SLOPE) --end 0.01 --quiet -o build/memcheck/run
 	$(VALGRIND) $(OPENCLOSE) fos $(WEDGE) --quiet -o build/memcheck/fos
 
-compilers: build clang-packages ## build with clang++ too, warnings as errors, and compare the results of ten scenes with those of g++ bit for bit
+compilers: build clang-packages ## build with clang++ too, warnings as errors, and compare the results of eleven scenes with those of g++ bit for bit
 	@OPTIONS=-DCMAKE_COMPILE_WARNING_AS_ERROR=ON scripts/build clang
 	@"$${PYTHON:-python3}" verification/compare_builds.py $(OPENCLOSE) build/clang/openclose
 

@@ -88,6 +88,10 @@ TrialResult FrozenTrials::first(double srf) {
   }
   RelaxationResult relaxed = solver_->relax(*bonded_, effort());
   const bool broke = has_broken(*bonded_, relaxed.state);
+  if (relaxed.end == RelaxationEnd::stable) {  // a path of its own begins here
+    stable_.reset();
+    travel_ = {};
+  }
   TrialResult result = result_of(std::move(relaxed), srf);
   result.displacement = 0.0;
   result.broke = broke;
@@ -101,7 +105,7 @@ TrialResult FrozenTrials::next(double srf, OnBreak on_break) {
   const bool broke = has_broken(*stable_, relaxed.state);
   TrialResult result;
   if (broke && on_break == OnBreak::go_back) {
-    result.criterion = "joints broke on too long a stride";
+    result.criterion = by_breaking_joints;
     result.steps = static_cast<int>(relaxed.steps);
     result.exhausted = solver_->is_exhausted();
   } else {

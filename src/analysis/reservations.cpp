@@ -71,10 +71,28 @@ std::string withheld_in_words(double share) {
       100.0 * share);
 }
 
+std::string bending_in_words(const FrozenStrength& strength, const FrozenState& state) {
+  constexpr double cracked_edge = 1.0 / 3.0;  // [-] of what an end pulls with when stress at its edge, linear along the joint, is the strength
+  int count = 0;
+  double largest = 0.0;
+  for (std::size_t i = 0; i < state.contacts.size(); ++i) {
+    const double tension = strength.of(i, state.contacts[i].joint_state).tension;
+    if (!(tension > 0.0) || !(-state.contacts[i].normal > cracked_edge * tension)) continue;
+    ++count;
+    largest = std::max(largest, -state.contacts[i].normal / tension);
+  }
+  if (count == 0) return {};
+  return fmt::format(
+      "at {} contacts joints pull with up to {:.0f} % of their tensile strength: a joint is held at its two ends, and these bear up to three times "
+      "the "
+      "moment at which one parts that cracks from its edge; with more blocks along it the same joint bears less",
+      count, 100.0 * std::min(largest, 1.0));
+}
+
 std::string interval_in_words(const StrengthBracket& bracket, const std::vector<StrengthTrial>& trials) {
   std::optional<double> first;
   for (const StrengthTrial& trial : trials) {
-    const bool is_open = trial.outcome == TrialOutcome::undecided && !trial.broke && trial.srf > *bracket.stable;
+    const bool is_open = trial.outcome == TrialOutcome::undecided && trial.criterion != by_breaking_joints && trial.srf > *bracket.stable;
     if (is_open && (!first || trial.srf < *first)) first = trial.srf;
   }
   if (!first) return {};

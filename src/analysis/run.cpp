@@ -204,10 +204,10 @@ class MotionInTime {
     result_.watch = watch_.report();
     judge_friction();
     if (const double most = simulation_.state().fastest_weakening; most > noticeable_weakening) {
-      result_.warnings.push_back(fmt::format(
-          "joints lost up to {:.0f} % of what slip takes from them in one step, which has the strength before it: shorter steps, or step.adaptive, "
-          "follow slip_weakening_distance_m",
-          100.0 * most));
+      result_.warnings.push_back(
+          fmt::format("joints lost up to {:.0f} % of what slip takes from them in one step, which has the strength before it: shorter steps{} follow "
+                      "slip_weakening_distance_m",
+                      100.0 * most, simulation_.enforcement().takes_adaptive_steps() && !scene_.step.adaptive ? ", or step.adaptive," : ""));
     }
     if (const double size = simulation_.system().median_size(), way = result_.settling.displacement / size;
         begun_ && size > 0.0 && way > noticeable_settlement) {

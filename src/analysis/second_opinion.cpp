@@ -58,8 +58,9 @@ namespace {
 class EffectSearch {
  public:
   /// \param first  [-] the factor at which gravity acts
-  EffectSearch(StrengthTrials& trials, double ratio, double first, double factor, std::optional<double> proved_failure)
-      : trials_(trials), first_(first), factor_(factor), proved_failure_(proved_failure) {
+  /// \param upper  [-] as far as the search of the scene's own stiffness goes
+  EffectSearch(StrengthTrials& trials, double ratio, double first, double factor, double upper, std::optional<double> proved_failure)
+      : trials_(trials), first_(first), factor_(factor), upper_(std::max(upper, factor)), proved_failure_(proved_failure) {
     effect_.ratio = ratio;
   }
 
@@ -68,7 +69,7 @@ class EffectSearch {
     effect_.stable = first_;
     double step = width_of_stiffness_effect;
     if (stands(factor_)) {
-      while (stands(factor_ * (1.0 + step))) step *= 2.0;
+      while (*effect_.stable < upper_ && stands(std::min(factor_ * (1.0 + step), upper_))) step *= 2.0;
     } else {
       while (factor_ * (1.0 - step) > first_ && !stands(factor_ * (1.0 - step))) step *= 2.0;
     }
@@ -88,7 +89,7 @@ class EffectSearch {
   }
 
   StrengthTrials& trials_;
-  double first_, factor_;
+  double first_, factor_, upper_;
   std::optional<double> proved_failure_;
   StiffnessEffect effect_;
 };
@@ -120,7 +121,7 @@ StiffnessEffect stiffness_effect(const Scene& scene, double ratio, double factor
   trials.solver().set_interruption(interruption);
   trials.reduce_effort();  // a bracket of a per cent, and what it cannot decide says no more than that
   const double first = system.has_live_load() ? 0.0 : first_of_effect * std::min(1.0, factor);
-  return EffectSearch(trials, ratio, first, factor, proved_failure).run();
+  return EffectSearch(trials, ratio, first, factor, scene.strength_reduction.upper_limit, proved_failure).run();
 }
 
 }  // namespace openclose

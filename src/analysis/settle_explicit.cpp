@@ -42,7 +42,9 @@ class Standstill {
     before_ = std::min(before_, lowest_);
     displacement_ = displacement;
     lowest_ = std::numeric_limits<double>::infinity();
-    end_ *= 2;
+    const int stretch = end_ - begin_;
+    begin_ = end_;
+    end_ += 2 * stretch;
     return still;
   }
   /// After something has been changed.
@@ -50,6 +52,7 @@ class Standstill {
     const double displacement = displacement_;
     *this = Standstill();
     displacement_ = displacement;
+    begin_ = steps;
     end_ = steps + first_stretch;
   }
 
@@ -58,7 +61,7 @@ class Standstill {
   static constexpr int first_stretch = 5000;
   static constexpr double least_fall = 0.9;  ///< [-] of the unbalanced force
   static constexpr double least_way = 1.01;  ///< [-] of the displacement
-  int end_ = first_stretch;
+  int begin_ = 0, end_ = first_stretch;      ///< of the stretch
   double lowest_ = std::numeric_limits<double>::infinity(), before_ = lowest_, displacement_ = 0.0;
 };
 
@@ -197,9 +200,7 @@ SettleResult rest_with_bonds(Simulation& simulation, const RestLimits& limits, c
   return parted;
 }
 
-}  // namespace
-
-SettleResult settle_explicitly(Simulation& simulation, const RestLimits& limits, const SettleProgress& progress) {
+SettleResult rest_in_legs(Simulation& simulation, const RestLimits& limits, const SettleProgress& progress) {
   if (!limits.keep_bonds) return RestSearch(simulation, limits, progress).run();
   std::optional<Simulation::Snapshot> before = limits.from_rest ? simulation.save() : rest_without_slip(simulation, limits, progress);
   SettleResult kept = rest_with_bonds(simulation, limits, progress);
@@ -210,6 +211,15 @@ SettleResult settle_explicitly(Simulation& simulation, const RestLimits& limits,
   SettleResult result = RestSearch(simulation, rest, progress).run();
   result.steps += kept.steps;
   result.displacement = std::max(result.displacement, kept.displacement);
+  return result;
+}
+
+}  // namespace
+
+SettleResult settle_explicitly(Simulation& simulation, const RestLimits& limits, const SettleProgress& progress) {
+  const Travel travel(simulation);  // through all legs
+  SettleResult result = rest_in_legs(simulation, limits, progress);
+  result.displacement = std::max(result.displacement, travel.largest());
   return result;
 }
 

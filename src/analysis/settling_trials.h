@@ -20,7 +20,7 @@ class SettlingTrials : public StrengthTrials {
   const std::optional<Snapshot>& settled() const { return settled_; }
   /// Whose displacements count from the settled state. No others may be followed during the search: snapshots would not know them.
   MeasuredPoints& points() { return points_; }
-  const std::optional<Snapshot>& failed() const { return failed_; }  ///< of the last trial that was not stable
+  const std::optional<Snapshot>& failed() const { return failed_; }  ///< of the last trial that failed
   void exchange(Archive& archive) override;
 
  private:

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "openclose/analysis/frozen_trials.h"
 #include "openclose/analysis/loose_blocks.h"
@@ -53,9 +54,9 @@ class StrengthReduction {
     begin(trials);
     result_.bracket = search(trials);
     judge();
-    if (!result_.bracket.stopped) curve(trials);
     if (trials.settled()) add_state("settled", *trials.settled());
     if (trials.failed()) add_state("failed", *trials.failed());
+    if (!result_.bracket.stopped) curve(trials);
   }
 
   void at_small_displacements(const Scene& scene) {
@@ -67,15 +68,11 @@ class StrengthReduction {
     result_.bracket = search(trials);
     if (input_.limit_analysis) unless_stopped([&] { limit_near(scene, system, result_.bracket.stable.value_or(1.0)); });
     judge();
-    unless_stopped([&] {
-      for (double srf : input_.curve) {
-        if (trials.stable()) record(srf, "curve", JournalledTrials(trials, journal_).next(srf, OnBreak::go_on));
-      }
-    });
     if (trials.stable()) {
       add_frozen_state("stable", system, *trials.stable());
       result_.largest_travel = trials.travel().largest * system.closure_unit();
       warn_of_travel(trials.travel(), system.closure_unit());
+      warn_of_bending(scene, system, *trials.stable());
     }
     add_mechanism(system, failing_motion(system, trials));
     // Of the last trial, if that has failed: the weakest reduction of all. Others may have stayed undecided.
@@ -90,6 +87,12 @@ class StrengthReduction {
     if (input_.limit_analysis && result_.verdict == FactorVerdict::no_failure) {
       if (const std::string words = loose_blocks_in_words(scene); !words.empty()) result_.warnings.push_back(words);
     }
+    // Last, since its trials leave other states behind than the search.
+    unless_stopped([&] {
+      for (double srf : input_.curve) {
+        if (trials.stable()) record(srf, "curve", JournalledTrials(trials, journal_).next(srf, OnBreak::go_on));
+      }
+    });
     result_.linear_solves = trials.solver().linear_solves();
   }
 
@@ -339,7 +342,7 @@ class StrengthReduction {
       };
       result_.stiffness_effects.push_back(journal_.once(effect));
     }
-    const double low = *result_.bracket.stable, high = result_.bracket.failed.value_or(low);
+    const double low = *result_.bracket.stable, high = result_.bracket.failed.value_or(std::numeric_limits<double>::infinity());
     double largest = low;
     std::string others;
     for (const StiffnessEffect& effect : result_.stiffness_effects) {
@@ -403,6 +406,12 @@ class StrengthReduction {
         fmt::format("the blocks moved by up to {:.3g} mm, {:.3g} joint closures, to another equilibrium between the {}s {:.6g} and {:.6g}{}; up to "
                     "{:.6g} they stand where they are drawn",
                     1e3 * farthest.travel * closure, farthest.travel, noun(), farthest.before, farthest.after, only_below, first.before));
+  }
+
+  void warn_of_bending(const Scene& scene, const FrozenSystem& system, const FrozenState& stable) {
+    FrozenStrength strength(system, scene);
+    if (!input_.increase) strength.reduce(*result_.bracket.stable);
+    if (const std::string words = bending_in_words(strength, stable); !words.empty()) result_.warnings.push_back(words);
   }
 
   void warn_of_interval() {

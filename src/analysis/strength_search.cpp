@@ -30,7 +30,10 @@ class Search {
 
   StrengthBracket run() {
     try {
-      if (find_first()) narrow();
+      if (find_first()) {
+        narrow();
+        go_on_from_first();
+      }
     } catch (const Stopped&) {
       bracket_.stopped = true;
     }
@@ -65,10 +68,34 @@ class Search {
   /// If joints have broken in the first stable state: from a stronger one in which none has; from the first one if there is none.
   bool begin_unbroken(double first) {
     if (!first_broke_) return true;
+    first_ = first;
     for (double srf = first / unbroken_ratio; srf >= smallest_factor; srf /= unbroken_ratio) {
       if (begin_at(srf) == TrialOutcome::stable && !first_broke_) return true;
     }
-    return begin_at(first) == TrialOutcome::stable;
+    begin_at(first);
+    leave_other_paths();
+    return true;
+  }
+
+  /// Where the way up from an unbroken state has come to an end below the factor that stands from the beginning, the answer is no smaller than that.
+  void go_on_from_first() {
+    if (bracket_.failed || !(first_ > *bracket_.stable)) return;
+    undecided_.clear();
+    breaks_at_.reset();
+    stride_ = std::numeric_limits<double>::infinity();
+    const StrengthBracket before = bracket_;
+    if (begin_at(first_) == TrialOutcome::stable) {
+      narrow();
+    } else {
+      bracket_ = before;
+    }
+  }
+
+  /// Trials from the beginning that have failed below what stands have done so on another path.
+  void leave_other_paths() {
+    if (!bracket_.failed || *bracket_.failed > *bracket_.stable) return;
+    bracket_.failed.reset();
+    bracket_.failed_by.clear();
   }
 
   TrialOutcome begin_at(double srf) {
@@ -77,6 +104,8 @@ class Search {
     first_broke_ = result.broke;
     if (result.outcome == TrialOutcome::stable) {
       bracket_.stable = srf;
+      bracket_.failed.reset();
+      bracket_.failed_by.clear();
       return result.outcome;
     }
     bracket_.failed_by = bracket_.first_verdict = result.criterion;
@@ -88,12 +117,6 @@ class Search {
 
   /// The next factor to try; nothing when the bracket is as narrow as asked for, or cannot become narrower.
   std::optional<double> choose() {
-    if (!started_) {
-      // Trials from the beginning have failed on another path.
-      bracket_.failed.reset();
-      bracket_.failed_by.clear();
-      started_ = true;
-    }
     const double stable = *bracket_.stable;
     std::erase_if(undecided_, [&](double srf) { return srf <= stable || (bracket_.failed && srf >= *bracket_.failed); });
     if (undecided_.empty()) return bracket_.failed ? middle(stable, *bracket_.failed) : above(stable);
@@ -215,7 +238,7 @@ class Search {
   const TrialObserver& done_;
   const std::function<void(double)>& progress_;
   StrengthBracket bracket_;
-  bool started_ = false;
+  double first_ = 0.0;                                       ///< [-] stable from the beginning, with joints broken
   bool first_broke_ = false;                                 ///< in the last trial from the beginning
   double stride_ = std::numeric_limits<double>::infinity();  ///< [-] the longest from a stable factor to the next one
   std::optional<double> breaks_at_;                          ///< [-] by a stride from the last stable factor that was too long for it

@@ -20,6 +20,7 @@ enum class TrialOutcome {
 
 /// TrialResult::criterion of a failure that StrengthTrials::proved_failure() has proved.
 inline constexpr const char* by_limit_analysis = "limit analysis";
+inline constexpr const char* by_breaking_joints = "joints broke on too long a stride";  ///< says nothing of the factor
 
 struct TrialResult {
   TrialOutcome outcome = TrialOutcome::undecided;

@@ -22,7 +22,12 @@ void JointTable::reduce_strength(double factor) {
 
 void JointTable::exchange(Archive& archive) {
   archive(reduction_);
-  if (archive.reading() && reduction_) reduce_strength(*reduction_);
+  if (!archive.reading()) return;
+  if (reduction_) {
+    reduce_strength(*reduction_);
+  } else {
+    for (std::size_t j = 0; j < joints_.size(); ++j) joints_[j] = TabulatedJoint(unreduced_[j]);
+  }
 }
 
 }  // namespace openclose

@@ -26,6 +26,7 @@
 #include "openclose/core/tolerance.h"
 #include "openclose/integrator/newton.h"
 #include "openclose/integrator/registry.h"
+#include "openclose/integrator/spring_groups.h"
 
 namespace openclose {
 namespace {
@@ -34,6 +35,8 @@ namespace {
 /// first is as high as Newton takes without more iterations (40 m of a failing slope: 2900, with 1000 3900, with 100 more passes); where it gets lost
 /// among the contact states, the softer ones are easier.
 constexpr std::array stiffness_over_inertia = {300.0, 100.0, 30.0, 1.0};
+/// [-] Statics: springs of contacts that are short beside the others of their block, and of the stiffest joint, over the inertia.
+constexpr double least_of_short_contacts = stiffness_over_inertia[2];
 /// Where softer springs were needed, the next steps begin with them. The next stiffer ones are tried again after a step, and after twice as many each
 /// time that they fail, up to this number of times: however long it goes on, trials in vain cost a small part of the whole. 1,000 boxes that fall on
 /// a heap take 0.67 of the iterations of a method that begins every step with the stiffest, failing slopes of 500 to 5,000 blocks 0.82 to 1.0.
@@ -77,13 +80,13 @@ constexpr double going_on = 0.5, part_of_way = 0.01;
 class Hard final : public Enforcement {
  public:
   ContactSprings springs(const StepProblem& problem, const Contact& contact) const override {
-    return springs(problem, contact, stiffness_over_inertia.front());
+    return springs_of_inertia(problem, contact, stiffness_over_inertia.front());
   }
 
   void solve(const StepProblem& problem, StepSolution& solution) override {
     if (problem.statics) {
-      // Softer springs would not be those of the joint; shorter steps help more.
-      set_springs(problem, stiffness_over_inertia.front());
+      // Softer springs would take more passes; shorter steps help more.
+      set_static_springs(problem);
       pass_until_held(problem, Cohesion::as_it_is, solution);
       if (!solution.converged) hold_by_stiff_springs(problem, solution);
       if (solution.converged) note_slack(solution);
@@ -140,13 +143,24 @@ class Hard final : public Enforcement {
     return problem.inertia * mass;
   }
 
-  static ContactSprings springs(const StepProblem& problem, const Contact& contact, double ratio) {
+  /// Springs of a motion.
+  static ContactSprings springs_of_inertia(const StepProblem& problem, const Contact& contact, double ratio) {
+    const double stiffness = ratio * inertia(problem, contact);
+    return with_stiffness(problem, contact, stiffness, stiffness);
+  }
+
+  /// Springs of statics: those of the joint times a factor, or with a least stiffness, in the ratio of the joint's normal and shear stiffness.
+  static ContactSprings springs_of_joint(const StepProblem& problem, const Contact& contact, double factor, double least) {
     const JointProperties& joint = problem.joints.joint(contact.joint);
-    const double from_inertia = ratio * inertia(problem, contact);
-    const JointSprings own(joint, problem.statics ? contact.length : 0.0);
+    const JointSprings own(joint, contact.length);
+    const double stiffer = std::max(factor, least / own.normal);
+    return with_stiffness(problem, contact, stiffer * own.normal, stiffer * own.shear);
+  }
+
+  static ContactSprings with_stiffness(const StepProblem& problem, const Contact& contact, double normal, double shear) {
     ContactSprings s;
-    s.normal = std::max(from_inertia, own.normal);
-    s.shear = std::max(from_inertia, own.shear);
+    s.normal = normal;
+    s.shear = shear;
     s.gap = contact.gap;
     s.target = target_gap(problem, contact);
     s.shift = problem.statics && contact.status == ContactStatus::open ? -s.normal * contact.slack : contact.normal_force;
@@ -156,7 +170,19 @@ class Hard final : public Enforcement {
 
   void set_springs(const StepProblem& problem, double ratio) {
     springs_.resize(problem.contacts.size());
-    for (std::size_t c = 0; c < springs_.size(); ++c) springs_[c] = springs(problem, problem.contacts[c], ratio);
+    for (std::size_t c = 0; c < springs_.size(); ++c) springs_[c] = springs_of_inertia(problem, problem.contacts[c], ratio);
+  }
+
+  /// What blocks that hang together leave undetermined they share as the springs of their joints would: all of these become stiffer by one factor,
+  /// until around each block their mean is stiff over its inertia.
+  void set_static_springs(const StepProblem& problem) {
+    const SpringGroups groups(problem, stiffness_over_inertia.front());
+    springs_.resize(problem.contacts.size());
+    for (std::size_t c = 0; c < springs_.size(); ++c) {
+      const Contact& contact = problem.contacts[c];
+      const double relative = problem.joints.joint(contact.joint).normal_stiffness / groups.stiffest_joint(contact);
+      springs_[c] = springs_of_joint(problem, contact, groups.factor(contact), least_of_short_contacts * relative * inertia(problem, contact));
+    }
   }
 
   /// Passes until the contacts are held.
@@ -214,9 +240,9 @@ class Hard final : public Enforcement {
     const StepEffort before = solution.effort;
     solution.clear();
     solution.effort = before;
-    set_springs(problem, 0.0);
     for (std::size_t c = 0; c < springs_.size(); ++c) {
       const Contact& contact = problem.contacts[c];
+      springs_[c] = springs_of_joint(problem, contact, 1.0, 0.0);
       if (contact.status == ContactStatus::open) {
         springs_[c].shift = 0.0;
       } else {

@@ -74,6 +74,14 @@ void warn_of_fixed_points(const Scene& scene, std::vector<std::string>& warnings
   });
 }
 
+/// The base moves what is fixed, and nothing else does.
+void warn_of_fixed_velocities(const Scene& scene, std::vector<std::string>& warnings) {
+  for (const BlockInput& block : scene.blocks) {
+    if (!block.fixed || (block.velocity.isZero(0.0) && block.angular_velocity == 0.0)) continue;
+    warnings.push_back(fmt::format("{}: the velocity of block \"{}\" has no effect: the block is fixed", scene.where.file, block.name));
+  }
+}
+
 bool nothing_holds(const Scene& scene) {
   const bool any_fixed = std::any_of(scene.blocks.begin(), scene.blocks.end(), [](const BlockInput& block) { return block.fixed; });
   bool any_holds = false;
@@ -186,6 +194,7 @@ std::vector<std::string> check_scene(const Scene& scene) {
     warnings.push_back(scene.where.file +
                        ": there is no gravity, load, surcharge, base motion or velocity: nothing will move, whatever its strength");
   warn_of_fixed_points(scene, warnings);
+  warn_of_fixed_velocities(scene, warnings);
   warn_of_slivers(scene, warnings);
   return warnings;
 }

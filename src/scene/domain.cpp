@@ -309,7 +309,7 @@ std::vector<std::string> warnings_of(const Cutting& cutting, const Joints& joint
   if (!cutting.enclosed.empty())
     warnings.push_back(fmt::format("{}: {} group(s) of joints enclosed in one block left out", file, cutting.enclosed.size()));
   for (const int j : joints.oblique())
-    warnings.push_back(fmt::format("{}: {}: the planes strike more than 20 degrees off the line across the section; what slides on them leaves it",
+    warnings.push_back(fmt::format("{}: {}: the normals of the planes leave the section by more than 20 degrees, and so does what slides on them",
                                    file, place_name(joints.table(j).where())));
   if (cutting.slivers_left > 0) warnings.push_back(fmt::format("{}: {} sliver(s) that no neighbour could take are left", file, cutting.slivers_left));
   return warnings;

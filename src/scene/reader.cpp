@@ -229,6 +229,8 @@ BlockInput read_block(Table table, const std::string& file, const NameList& mate
   table.optional("rotation_locked", block.rotation_locked);
   table.optional("velocity_m_per_s", block.velocity);
   table.optional("angular_velocity_rad_per_s", block.angular_velocity);
+  if (block.rotation_locked && block.angular_velocity != 0.0)
+    table.at("angular_velocity_rad_per_s").fail("the block cannot turn: rotation_locked is true", "0, or a block that may turn");
   const bool has_edge_joints = table.has("edge_joints");
   std::vector<std::string> edge_joints;
   table.optional("edge_joints", edge_joints);

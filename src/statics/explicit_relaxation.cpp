@@ -73,6 +73,8 @@ RelaxationResult ExplicitRelaxation::relax(const FrozenState& from, Effort effor
     result = settle(start, ShearLaw::coulomb, effort);
     result.steps += steps;
   }
+  if (result.end == RelaxationEnd::stable) pace.give_back(system_.closure_unit(), result.state);
+  result.travel = std::max(result.travel, farthest_between(result.state, from));
   return result;
 }
 
@@ -99,6 +101,7 @@ bool ExplicitRelaxation::fails(const FrozenState& from, ShearLaw law, Effort eff
   if (judged.end != RelaxationEnd::mechanism) return false;
   result.end = RelaxationEnd::mechanism;
   result.mechanism = std::move(judged.mechanism);
+  result.state = std::move(judged.state);  // in which joints may have broken
   return true;
 }
 

@@ -33,7 +33,9 @@ double FrozenStrength::loss(std::size_t i, const JointState& before, const Joint
 }
 
 bool FrozenStrength::can_lose(std::size_t i, const JointState& state) const {
-  return can_lose_strength(joints_.joint(system_.contacts()[i].source.joint), state);
+  const FrozenContact& contact = system_.contacts()[i];
+  const JointProperties& joint = joints_.joint(contact.source.joint);
+  return can_lose_strength(joint, state) && (joint.softens() || contact.joined_length > 0.0);  // a lone corner has neither cohesion nor tension
 }
 
 bool FrozenStrength::has_tension() const {

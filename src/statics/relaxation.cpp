@@ -107,6 +107,7 @@ bool Relaxation::ended(RelaxationResult& result, const Eigen::VectorXd& x) {
   }
   if (stands() && (weaken(result.state, SlipOfState::counts) == 0.0 || stands())) {
     result.end = RelaxationEnd::stable;
+    pace_.give_back(system_.closure_unit(), result.state);
     return true;
   }
   if (Balance::size(x) > least_travel_of_mechanism && is_mechanism(system_, strength_, result.state, x)) {

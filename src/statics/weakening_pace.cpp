@@ -11,6 +11,7 @@ constexpr double slowest_of_slips = 1e-3;  ///< [-] of the largest slip: smaller
 /// [-] Of the largest ratio of two slips: where the smallest is below it, the slips are not yet those of a geometric series, and prolonging them by
 /// the smallest saves little.
 constexpr double alike = 0.7;
+constexpr double shortest_prolongation = 1.0;  ///< [-] of the slips: less saves not even one increment
 
 }  // namespace
 
@@ -44,13 +45,29 @@ void WeakeningPace::prolong(const FrozenStrength& strength, FrozenState& state, 
     last_ = std::move(slips);
     return;
   }
-  for (std::size_t i = 0; i < slips.size(); ++i) {
-    const double more = slips[i] * least_ratio / (1.0 - least_ratio);
-    if (more == 0.0) continue;
-    state.contacts[i].slip += more;
-    ahead_[i] += more;
+  // Where a joint loses its last strength the series is another one: no farther than to where the first one would.
+  double pace = least_ratio / (1.0 - least_ratio);
+  while (pace >= shortest_prolongation && breaks_any(strength, state, slips, pace)) pace *= 0.5;
+  for (std::size_t i = 0; i < slips.size() && pace >= shortest_prolongation; ++i) {
+    state.contacts[i].slip += pace * slips[i];
+    ahead_[i] += pace * slips[i];
   }
   last_.clear();
+}
+
+bool WeakeningPace::breaks_any(const FrozenStrength& strength, const FrozenState& state, const std::vector<double>& slips, double pace) {
+  for (std::size_t i = 0; i < slips.size(); ++i) {
+    if (slips[i] > 0.0 && !strength.joint_after(i, state.contacts[i], (1.0 + pace) * slips[i]).bonded) return true;
+  }
+  return false;
+}
+
+void WeakeningPace::give_back(double closure_unit, FrozenState& state) {
+  for (std::size_t i = 0; i < ahead_.size(); ++i) {
+    JointState& joint = state.contacts[i].joint_state;
+    if (joint.bonded) joint.slip = std::max(0.0, joint.slip - std::max(0.0, ahead_[i]) * closure_unit);
+    ahead_[i] = 0.0;
+  }
 }
 
 }  // namespace openclose

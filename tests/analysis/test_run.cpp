@@ -688,3 +688,43 @@ TEST_CASE("steps that are long for the slip-weakening distance are worth a warni
   scene.joints[0].slip_weakening_distance = 0.0;
   CHECK(weakening(scene) == 0.0);
 }
+
+TEST_CASE("adaptive steps do not wait for a spring that is relieved at once", "[analysis][run]") {
+  // With less strength than what its spring carries a slab slips by the rest of the spring's stretch however short the step is: 0.2 mm of 1.
+  Scene scene = test::block_on_base();
+  scene.gravity = {4.0, -10.0};
+  scene.method.start = Start::settled;
+  scene.joints[0].shear_stiffness = 1e7;
+  scene.joints[0].residual_friction_angle = 0.9 * scene.joints[0].friction_angle;
+  scene.joints[0].slip_weakening_distance = 1e-3;
+  scene.run_strength_reduction_factor = 1.6;
+  scene.step.dt = 0.01;
+  scene.step.adaptive = true;
+  scene.end_time = 0.1;
+  Simulation simulation(scene);
+  const RunResult result = run(simulation, {});
+  INFO(result.reason);
+  CHECK(result.converged);
+  CHECK(simulation.time() == Approx(0.1));
+}
+
+TEST_CASE("who takes no adaptive steps is not advised to", "[analysis][run]") {
+  for (const std::string method : {"soft", "hard"}) {
+    Scene scene = test::block_on_base();
+    scene.method.contact = method;
+    scene.blocks[1].velocity = {1.0, 0.0};
+    scene.method.start = Start::normal_balanced;
+    scene.joints[0].residual_friction_angle = 0.5 * scene.joints[0].friction_angle;
+    scene.joints[0].slip_weakening_distance = 0.02;
+    scene.step.dt = 0.01;
+    scene.end_time = 0.05;
+    Simulation simulation(scene);
+    const RunResult result = run(simulation, {});
+    const auto names = [&](const char* words) {
+      return std::ranges::any_of(result.warnings, [&](const std::string& warning) { return warning.find(words) != std::string::npos; });
+    };
+    INFO(method);
+    CHECK(names("slip_weakening_distance_m"));
+    CHECK(names("step.adaptive") == (method == "soft"));
+  }
+}

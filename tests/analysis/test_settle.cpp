@@ -617,3 +617,57 @@ TEST_CASE("blocks on supports of any stiffness come to rest", "[analysis][settle
     CHECK(carried.y() == Approx(block_weight).epsilon(1e-6));
   }
 }
+
+TEST_CASE("what rigid contacts leave undetermined is shared as by the joint's springs, however soft", "[analysis][settle]") {
+  // A beam on three pads, the middle one on a softer joint: 1 : r : 1. Far away a block lies on a joint that is much softer still.
+  Scene scene = test::empty_scene();
+  scene.materials.resize(3, scene.materials.front());
+  scene.materials[1].name = "soft";
+  scene.materials[2].name = "mud";
+  scene.blocks = {
+      test::fixed_block("left", test::rectangle(0.0, -1.0, 0.5, 1.0)),  test::fixed_block("middle", test::rectangle(2.75, -1.0, 0.5, 1.0)),
+      test::fixed_block("right", test::rectangle(5.5, -1.0, 0.5, 1.0)), test::free_block("beam", test::rectangle(0.0, 0.0, 6.0, 1.0)),
+      test::fixed_block("bed", test::rectangle(50.0, -1.0, 2.0, 1.0)),  test::free_block("far", test::rectangle(50.0, 0.0, 2.0, 1.0))};
+  scene.blocks[1].material = 1;
+  scene.blocks[5].material = 2;
+  const double ratio = 0.01;
+  JointProperties joint = scene.joints.front(), soft = joint, mud = joint;
+  joint.materials = {0, 0};
+  soft.materials = {0, 1};
+  mud.materials = {0, 2};
+  const double stiffness = GENERATE(1e6, 1e8, 1e11);
+  joint.normal_stiffness = joint.shear_stiffness = stiffness;
+  soft.normal_stiffness = soft.shear_stiffness = ratio * stiffness;
+  mud.normal_stiffness = mud.shear_stiffness = 1e-4 * stiffness;
+  scene.joints = {joint, soft, mud};
+  scene.method.contact = "hard";
+  const double weight = 6.0 * 2500.0 * 9.81;
+  for (const double first_dt : {0.1, 1.0}) {
+    INFO(stiffness << " Pa/m, " << first_dt << " s");
+    scene.settle.first_dt = first_dt;
+    Simulation simulation(scene);
+    REQUIRE(settle(simulation).settled);
+    double middle = 0.0, all = 0.0;
+    for (const Contact& c : simulation.change_contacts()) {
+      if (c.vertex_block == 5 || c.edge_block == 5) continue;
+      all += c.normal_force;
+      if (c.vertex_block == 1 || c.edge_block == 1) middle += c.normal_force;
+    }
+    CHECK(all == Approx(weight).epsilon(1e-8));
+    CHECK(middle == Approx(weight * ratio / (2.0 + ratio)).epsilon(1e-6));
+  }
+}
+
+TEST_CASE("dem: how far blocks have moved until they rest is told for the whole way", "[analysis][settle]") {
+  // Gravity shears the joint before it breaks by slip: the way to its elastic rest comes first.
+  Scene scene = test::block_on_base();
+  scene.gravity = {4.5, -10.0};
+  scene.joints[0].shear_stiffness = 1e7;
+  scene.joints[0].cohesion = 5e3;
+  scene.joints[0].cohesion_behaviour = CohesionBehaviour::lost_on_slip;
+  scene.method.contact = "dem";
+  Simulation simulation(scene);
+  const SettleResult result = settle(simulation);
+  REQUIRE(result.settled);
+  CHECK(result.displacement >= std::abs(simulation.system().displacement(1)[0]) * (1.0 - 1e-12));
+}

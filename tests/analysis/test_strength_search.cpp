@@ -45,3 +45,63 @@ TEST_CASE("a trial that stays undecided where joints break is not made over and 
     CHECK(*found.failed == 1.4 * breaks);
   }
 }
+
+namespace {
+
+/// Stands from the beginning up to a factor of 3, above 0.2 with joints broken; on the way up from below nothing is found beyond 0.3.
+class LostWay : public StrengthTrials {
+ public:
+  TrialResult first(double srf) override {
+    is_on_the_way_up_ = srf < 0.2;
+    TrialResult result;
+    result.outcome = srf < 3.0 ? TrialOutcome::stable : TrialOutcome::failed;
+    result.broke = srf >= 0.2;
+    return result;
+  }
+  TrialResult next(double srf, OnBreak) override {
+    TrialResult result;
+    result.outcome = srf >= 3.0 ? TrialOutcome::failed : is_on_the_way_up_ && srf > 0.3 ? TrialOutcome::undecided : TrialOutcome::stable;
+    return result;
+  }
+
+ private:
+  bool is_on_the_way_up_ = false;
+};
+
+}  // namespace
+
+TEST_CASE("a factor is no smaller than one that stands from the beginning", "[analysis][search]") {
+  LostWay trials;
+  const StrengthBracket found = search_strength(trials, {}, [](const StrengthTrial&) {}, {});
+  REQUIRE(found.stable);
+  REQUIRE(found.failed);
+  CHECK(*found.stable < 3.0);
+  CHECK(*found.failed >= 3.0);
+  CHECK(*found.failed - *found.stable <= widest_bracket({}, 3.0));
+}
+
+TEST_CASE("trials that fail from the beginning below what stands are no end of the bracket", "[analysis][search]") {
+  /// Stands at 1 the first time it is asked, with joints broken, and nowhere from the beginning after that; on from there up to 2.
+  class OnceOnly : public StrengthTrials {
+   public:
+    TrialResult first(double) override {
+      TrialResult result;
+      result.outcome = count_++ == 0 ? TrialOutcome::stable : TrialOutcome::failed;
+      result.broke = true;
+      return result;
+    }
+    TrialResult next(double srf, OnBreak) override {
+      TrialResult result;
+      result.outcome = srf < 2.0 ? TrialOutcome::stable : TrialOutcome::failed;
+      return result;
+    }
+
+   private:
+    int count_ = 0;
+  } trials;
+  const StrengthBracket found = search_strength(trials, {}, [](const StrengthTrial&) {}, {});
+  REQUIRE(found.stable);
+  REQUIRE(found.failed);
+  CHECK(*found.failed > *found.stable);
+  CHECK(*found.stable == Approx(2.0).margin(2.0 * widest_bracket({}, 2.0)));
+}

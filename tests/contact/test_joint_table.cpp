@@ -127,3 +127,16 @@ TEST_CASE("strength reduction divides the tangents of both friction angles", "[c
   CHECK(table.joint(1).residual_friction == Approx(std::tan(12.0 * degree) / 1.6).epsilon(1e-15));
   CHECK(table.joint(0).residual_friction == table.joint(0).friction);
 }
+
+TEST_CASE("the joints of a state that was saved without a reduction have none", "[contact][joint_table]") {
+  const Scene scene = three_materials();
+  JointTable full(scene), reduced(scene);
+  reduced.reduce_strength(2.0);
+  Archive written;
+  full.exchange(written);
+  Archive bytes(written.bytes());
+  reduced.exchange(bytes);
+  CHECK(bytes.at_end());
+  CHECK_FALSE(reduced.reduction());
+  for (int j = 0; j < full.count(); ++j) CHECK(reduced.joint(j).friction_angle == full.joint(j).friction_angle);
+}

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "openclose/scene/check.h"
@@ -267,4 +268,20 @@ TEST_CASE("a scene is judged by its memory before it is taken", "[scene][check]"
   CHECK_NOTHROW(require_memory(scene, std::size_t{1} << 30));
   CHECK_THROWS_WITH(require_memory(scene, std::size_t{10} << 20),
                     ContainsSubstring("block: ") && ContainsSubstring(" blocks with ") && ContainsSubstring("accepted: fewer [[block]]"));
+}
+
+TEST_CASE("a fixed block has no velocity of its own", "[scene][check]") {
+  Scene scene = read_text(block_on_base);
+  const auto warns = [&] {
+    const auto is_of_it = [](const std::string& w) { return w.find("the velocity of block") != std::string::npos; };
+    return std::ranges::any_of(check_scene(scene), is_of_it);
+  };
+  REQUIRE(scene.blocks[0].fixed);
+  scene.blocks[1].velocity = {1.0, 0.0};
+  CHECK_FALSE(warns());
+  scene.blocks[0].velocity = {1.0, 0.0};
+  CHECK(warns());
+  scene.blocks[0].velocity = {0.0, 0.0};
+  scene.blocks[0].angular_velocity = 1.0;
+  CHECK(warns());
 }

@@ -454,7 +454,7 @@ TEST_CASE("sets by dip and dip direction", "[scene][domain]") {
   const Scene oblique = cut_with("dip_deg = 60\ndip_direction_deg = 220\n");
   CHECK(oblique.blocks.size() < by_angle.blocks.size());
   REQUIRE(oblique.cutting->warnings.size() == 1);
-  CHECK_THAT(oblique.cutting->warnings.front(), ContainsSubstring("the planes strike more than 20 degrees off the line across the section"));
+  CHECK_THAT(oblique.cutting->warnings.front(), ContainsSubstring("the normals of the planes leave the section by more than 20 degrees"));
 }
 
 TEST_CASE("dip directions that say nothing", "[scene][domain][errors]") {

@@ -52,8 +52,9 @@ TEST_CASE("every key reaches its field", "[scene][reader]") {
       "[[material]]\nname = 'b'\nunit_weight_n_per_m3 = 26926\n"
       "[[joint]]\nmaterials = ['b', 'a']\nnormal_stiffness_pa_per_m = 1e9\nshear_stiffness_pa_per_m = 2e8\nfriction_angle_deg = 30\n"
       "cohesion_pa = 5\ntensile_strength_pa = 6\ncohesion_behaviour = 'lost_on_slip'\ndamping_ratio = 0.1\n"
-      "[[block]]\nname = 'one'\nmaterial = 'b'\nvertices_m = [[0, 0], [1, 0], [0, 1]]\nrotation_locked = true\n"
+      "[[block]]\nname = 'one'\nmaterial = 'b'\nvertices_m = [[0, 0], [1, 0], [0, 1]]\n"
       "velocity_m_per_s = [1, 2]\nangular_velocity_rad_per_s = -3\n"
+      "[[block]]\nname = 'two'\nmaterial = 'a'\nvertices_m = [[5, 0], [6, 0], [5, 1]]\nrotation_locked = true\n"
       "[[support]]\nname = 'anchor'\nblock = 'one'\npoint_m = [0, 0]\nstiffness_n_per_m = [0, 7]\n"
       "[[load]]\nname = 'push'\nblock = 'one'\npoint_m = [0.25, 0.25]\nforce_n = [-8, 9]\n"
       "[[measured_point]]\nname = 'p'\nblock = 'one'\npoint_m = [1, 0]\n"
@@ -90,7 +91,8 @@ TEST_CASE("every key reaches its field", "[scene][reader]") {
   CHECK(scene.joint(0, 0) == nullptr);
   const BlockInput& block = scene.blocks.at(0);
   CHECK(block.material == 1);
-  CHECK(block.rotation_locked);
+  CHECK_FALSE(block.rotation_locked);
+  CHECK(scene.blocks.at(1).rotation_locked);
   CHECK(block.velocity == Vec2(1.0, 2.0));
   CHECK(block.angular_velocity == -3.0);
   CHECK(scene.supports.at(0).point == Vec2(0.0, 0.0));

@@ -518,3 +518,11 @@ TEST_CASE("a support has a name, and is no load", "[scene][reader][errors]") {
                       "[[support]]\nname = 'anchor'\npoint_m = [0, 1]\nstiffness_n_per_m = [1, 0]\n[strength_reduction]\nincrease = 'anchor'\n"),
              ContainsSubstring("27: strength_reduction.increase: no load or surcharge has the name \"anchor\""));
 }
+
+TEST_CASE("a block that cannot turn does not turn", "[scene][reader][errors]") {
+  CHECK_THAT(error_with(20, "vertices_m = [[0, 0], [1, 0], [0, 1]]\nrotation_locked = true\nangular_velocity_rad_per_s = 1"),
+             ContainsSubstring(
+                 "22: block[1].angular_velocity_rad_per_s: the block cannot turn: rotation_locked is true; accepted: 0, or a block that may turn"));
+  const SceneFile file(with_line(block_on_base, 20, "vertices_m = [[0, 0], [1, 0], [0, 1]]\nrotation_locked = true\nangular_velocity_rad_per_s = 0"));
+  CHECK(read_scene(file.path()).blocks.back().rotation_locked);
+}

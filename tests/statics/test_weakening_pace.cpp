@@ -55,6 +55,34 @@ TEST_CASE("slips that fall like a geometric series are taken to its end at once,
   CHECK(rest == Approx(0.1).epsilon(1e-12));
 }
 
+TEST_CASE("slips are prolonged no farther than to where a joint has nothing more to lose", "[statics][weakening]") {
+  // Slips of 0.9 of the one before would be followed by nine times as much.
+  const auto prolonged = [](double distance_in_closures) {
+    const double closure = FrozenSystem(weakening_incline(1.0)).closure_unit();
+    Slips slips(distance_in_closures * closure);
+    slips.prolonged(1.0, 1.0);
+    return slips.prolonged(0.9, 0.9).first;
+  };
+  CHECK(prolonged(100.0) == Approx(9.0).epsilon(1e-12));
+  CHECK(prolonged(6.0) == Approx(0.9 * (1.0 + 4.5)).epsilon(1e-12));  // half of it
+  CHECK(prolonged(1.5) == 0.9);                                       // what is left would save no increment
+}
+
+TEST_CASE("at rest joints have lost no more than what they have slipped", "[statics][weakening]") {
+  Slips slips(1e-3);
+  const double closure = slips.system.closure_unit();
+  slips.prolonged(1.0, 1.0);
+  slips.prolonged(0.5, 0.5);  // as much again is taken in advance
+  lose_strength(slips.strength, slips.state);
+  REQUIRE(slips.state.contacts[0].joint_state.slip == Approx(1.0 * closure).epsilon(1e-12));
+  slips.pace.give_back(closure, slips.state);
+  CHECK(slips.state.contacts[0].joint_state.slip == Approx(0.5 * closure).epsilon(1e-12));
+  slips.state.contacts[1].joint_state.bonded = false;
+  const JointState broken = slips.state.contacts[1].joint_state;
+  slips.pace.give_back(closure, slips.state);
+  CHECK(slips.state.contacts[1].joint_state == broken);
+}
+
 TEST_CASE("slips without a common pace are counted as they are", "[statics][weakening]") {
   Slips slips(1e-3);
   const auto stays = [&](double first, double second, bool is_balanced = true) {
