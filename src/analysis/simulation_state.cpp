@@ -118,6 +118,7 @@ bool SimulationState::move_base(double dt, bool statics) {
   } else {
     external.hold_base();
   }
+  scheme->move_base(external.base_acceleration());
   return !external.base_acceleration().isZero(0.0) && !system.resting_blocks().empty();
 }
 

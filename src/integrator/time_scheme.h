@@ -30,9 +30,11 @@ class TimeScheme {
   virtual Unknowns drift(int, double dt, const Unknowns& v) const { return dt * v; }
   /// Velocity of block b after a step that was really taken with dt and moved by d.
   virtual Unknowns next_velocity(int b, double dt, const Unknowns& d, const Unknowns& v) const = 0;
-  /// The time over which the forces of a step of dt act: from the velocities at its start to those after it, or about where its equation of motion
-  /// holds.
+  /// The time over which the forces of a step of dt act: from the velocities at its start to those after it.
   virtual TimeSpan span_of_velocities(double dt) const { return {0.0, dt}; }
+  /// [m/s2] Mean acceleration of the base over that time in the step that is to follow. Its forces are in F; a scheme that would make other
+  /// velocities of them than the base has, because it weighs what was before, puts that right in drift().
+  virtual void move_base(const Vec2&) {}
   /// Displacement whose product with the forces of the step is the change of kinetic energy, up to own_work().
   virtual Unknowns work_displacement(int b, double dt, const Unknowns& d, const Unknowns& v) const = 0;
   /// [J] Change of kinetic energy beyond the work of the forces, for masses M: what accelerations remembered from before add.

@@ -66,6 +66,7 @@ Scene prepared(Scene scene, const std::string& method) {
 /// Leaves at the end of the step `at` in the one simulation and goes on in the other. Whether the states agree from there on.
 void check_goes_on(const Scene& scene, int at, int to) {
   Simulation first(scene), second(scene);
+  if (scene.base_motion) first.start_base_motion();
   for (int i = 0; i < at; ++i) REQUIRE(first.advance(scene.step.dt));
   Archive saved;
   saved(first);
@@ -145,6 +146,19 @@ TEST_CASE("a saved simulation goes on bit for bit with every integrator, in adap
       scene.step.error_tolerance = 1e-6;
       for (const int at : {1, 60}) check_goes_on(scene, at, at + 60);
     }
+  }
+}
+
+TEST_CASE("a saved simulation goes on bit for bit on a shaken base with every integrator", "[analysis][checkpoint][base_motion]") {
+  for (const auto& entry : integrators()) {
+    INFO(entry.name);
+    Scene scene = prepared(test::tumbling_blocks(), "soft");
+    scene.method.integrator = entry.name;
+    scene.base_motion.emplace();
+    scene.base_motion->kind = BaseMotionKind::harmonic;
+    scene.base_motion->amplitude = {5.0, 2.0};
+    scene.base_motion->frequency = 20.0;
+    for (const int at : {1, 60}) check_goes_on(scene, at, at + 60);
   }
 }
 
