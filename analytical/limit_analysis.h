@@ -25,7 +25,7 @@
 namespace openclose::analytical {
 
 struct LimitAnalysisOptions {
-  double width = 1e-5;          // [-] of the bracket of F
+  double width = 1e-5;          // [-] of the bracket of F, see limit_analysis::Options
   double excess = 1e-4;         // [-] see LimitState; larger ones ask for another repetition
   double upper_limit = 1000;    // [-] stable beyond: no factor
   bool zero_dilatancy = false;  // sliding at constant volume

@@ -60,8 +60,10 @@ class ListError(Exception):
 
 
 def folders():
-    """The folders of src/ in the order of the data."""
-    return re.findall(r"^add_subdirectory\((\w+)\)", (ROOT / "src/CMakeLists.txt").read_text(), re.M)
+    """The folders of src/ in the order of the data, and limit analysis before those that link it."""
+    found = re.findall(r"^add_subdirectory\((\w+)\)", (ROOT / "src/CMakeLists.txt").read_text(), re.M)
+    found.insert(found.index("analysis"), "limit_analysis")
+    return found
 
 
 def folder_of(fault):
@@ -80,7 +82,7 @@ def read_faults():
             raise ListError(f"{name}: the id is there twice")
         if "\n" in fault["original"] + fault["replacement"] or fault["original"] == fault["replacement"]:
             raise ListError(f"{name}: a fault changes one line")
-        if not re.fullmatch(r"src/\w+/[\w.]+", fault["file"]) or not (ROOT / fault["file"]).is_file():
+        if not re.fullmatch(r"(src/\w+|analytical/limit_analysis)/[\w.]+", fault["file"]) or not (ROOT / fault["file"]).is_file():
             raise ListError(f"{name}: there is no source {fault['file']}")
         found = (ROOT / fault["file"]).read_text().count(fault["original"])
         if found != 1:
@@ -88,7 +90,7 @@ def read_faults():
     for folder in folders():
         count = sum(folder_of(fault) == folder for fault in faults)
         if count < FEWEST_PER_FOLDER:
-            raise ListError(f"src/{folder} has {count} faults; at least {FEWEST_PER_FOLDER} are needed")
+            raise ListError(f"{folder} has {count} faults; at least {FEWEST_PER_FOLDER} are needed")
     return faults
 
 

@@ -26,7 +26,7 @@ GAP_TOLERANCE_M, TOLERANCES = 3e-7, 10
 SAME_PLACE = 1e-6
 # [-] Of the weight of the heaviest free block: the program asks 1e-8 of itself, and the sums of large forces on a block lose some digits.
 BALANCE = 1e-6
-# [-] Both ends of the bracket of limit analysis lie within 1e-5 of each other, and its programs are solved to 1e-9.
+# [-] Both ends of the bracket of limit analysis lie within 1e-5 of the factor, and its programs are solved to 1e-9.
 LIMIT_ANALYSIS = 1e-4
 # [m] From the line of an edge: what limit analysis takes for an interface.
 ON_AN_EDGE = 1e-6

@@ -104,7 +104,10 @@ class LimitAnalysis::Search {
 
   bool varies_loads() const { return program_.problem().varied == Varied::live_loads; }
   double lowest() const { return varies_loads() ? 0 : options_.lower_limit; }
-  double width(double factor) const { return varies_loads() ? options_.width * std::max(factor, options_.lower_limit) : options_.width; }
+  double width(double factor) const {
+    const double size = std::max(factor, options_.lower_limit);
+    return std::max(options_.width * (varies_loads() ? size : std::min(1.0, size)), narrowest_bracket * size);
+  }
 
   Program& program_;
   const Options& options_;

@@ -18,12 +18,12 @@
 namespace openclose::limit_analysis {
 
 struct Options {
-  double width = 1e-5;                      // [-] of the bracket: failed - factor; of a multiplier of loads over the multiplier
+  double width = 1e-5;                      // [-] of the bracket: failed - factor, over the smaller of 1 and the factor; see Bracket
   double first = 1.0;                       // [-] factor tried first: near the answer if it is known roughly
   double ratio = 2;                         // [-] of the factors tried next while all are feasible; later its squares
   double upper_limit = 1000;                // [-] feasible there: stands at every factor
   std::function<void()> interruption = {};  // called before and in each program; may throw
-  double lower_limit = 1e-3;  // [-] infeasible there: no equilibrium at any factor. Multipliers go down to 0, with the width of this one
+  double lower_limit = 1e-3;  // [-] infeasible there: no equilibrium at any factor. Multipliers of loads go down to 0, with the bracket of this one
 };
 
 enum class Verdict {
@@ -31,6 +31,9 @@ enum class Verdict {
   infeasible,  // mechanism holds
   undecided,   // the program was not solved, or its answer does not hold: reason
 };
+
+/// [-] Over the factor: nearer to each other the forces of one factor and the mechanism of the other may both hold with their tolerances.
+inline constexpr double narrowest_bracket = 10 * force_tolerance;
 
 struct Trial {
   Verdict verdict = Verdict::undecided;
@@ -40,6 +43,7 @@ struct Trial {
   std::string reason;   // if undecided
 };
 
+/// As narrow as was asked for, but no narrower than `narrowest_bracket`. Over a multiplier of loads the width is always relative.
 struct Bracket {
   enum class Verdict {
     found,

@@ -12,7 +12,7 @@ namespace openclose::limit_analysis {
 
 /// Rows: the equilibrium of each free unknown, in loads of its block (moments over the radius as well). The forces of a contact are its cone's
 ///   (n, t) = (-tension/F, 0) + a (1, friction/F) + b (1, -friction/F) + q (0, 1),   a, b >= 0,   |q| <= (cohesion - friction tension/F)/F,
-/// so that the strength needs no rows. Two artificial forces for each row, one for each sense, cost what they are.
+/// so that the strength needs no rows. Two artificial forces for each row, one for each sense, have a price; what else there is costs nothing.
 class LimitAnalysis::Program {
  public:
   explicit Program(Problem problem);
@@ -42,13 +42,16 @@ class LimitAnalysis::Program {
   void number_rows();
   void number_columns();
   Eigen::Vector3d in_rows(int block, const Point& point, const Point& force) const;
-  void build(double factor);
+  /// \param price  of an artificial force
+  void build(double factor, double price);
   enum class Way { warm_simplex, barrier, barrier_and_crossover, simplex };
   /// The ways to try, one after the other until forces or mechanism hold.
   std::vector<Way> ways(double factor) const;
   bool solve_by(Way way);
   /// Forces or mechanism of the program that was solved last, if they hold; the forces with errors up to `tolerance`.
   Trial judge(double factor, double tolerance);
+  /// The program that was solved last, once more from its basis, with prices so large that they are right; `blunt` where it is not solved.
+  Trial sharpened(double factor, Trial blunt);
   Forces forces(double factor) const;
   Mechanism mechanism() const;
   void normalise(Mechanism& mechanism) const;
@@ -62,6 +65,7 @@ class LimitAnalysis::Program {
   int row_count_ = 0, column_count_ = 0;
   Simplex simplex_;
   int solved_ = 0;
+  double price_ = 1;  // of an artificial force in the program that was solved last
   double root_ = 0;
   double last_factor_ = 0;
   Simplex::Basis basis_;  // of the program of `basis_factor_`

@@ -41,8 +41,9 @@ LimitAnalysisResult limit_analysis_of(const Scene& scene, const FrozenSystem& sy
     result.verdict = bracket.found() ? "found" : bracket.reason;
     result.is_conclusive = bracket.verdict != Verdict::undecided;
     result.no_equilibrium = bracket.verdict == Verdict::no_equilibrium;
-    if (bracket.found()) result.factor = bracket.factor;
     if (!bracket.mechanism.empty()) {
+      // Forces hold at the other end of the bracket: an end from below is no bound.
+      if (!result.no_equilibrium) result.factor = bracket.failed;
       result.failed = bracket.failed;
       result.mechanism = std::move(bracket.mechanism);
     }

@@ -16,12 +16,12 @@ namespace openclose {
 
 /// Rigid-block limit analysis: an upper bound of every factor, or multiplier of a load, at small displacements.
 struct LimitAnalysisResult {
-  std::optional<double> factor;         ///< [-] largest for which forces within the strength exist; none where there is no such largest one
-  std::string verdict;                  ///< in words, where there is no factor
+  std::optional<double> factor;         ///< [-] the bound: a mechanism proves failure from there on; none where nothing fails, or everything
+  std::string verdict;                  ///< in words, "found" where forces exist just below the factor
   int programs = 0;                     ///< linear programs
   std::optional<double> failed;         ///< [-] smallest factor at which failure is proved
   limit_analysis::Mechanism mechanism;  ///< there
-  bool is_conclusive = false;           ///< a factor, or the proof that there is none
+  bool is_conclusive = false;           ///< no smaller bound is to be had, or it is proved that there is none
   bool no_equilibrium = false;          ///< proved: at any factor, or without the load that grows
 
   void exchange(Archive& archive);

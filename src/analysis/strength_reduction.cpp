@@ -332,7 +332,12 @@ class StrengthReduction {
   /// What speaks for a factor and what against it: limit analysis, and joints of other ratios of stiffness.
   void compare(const Scene& scene, const FrozenSystem& system, const FrozenTrials& trials) {
     const LimitAnalysisResult& limit = *result_.limit_analysis;
-    if (!limit.is_conclusive) result_.warnings.push_back("limit analysis has no factor: " + limit.verdict);
+    if (!limit.is_conclusive) {
+      const std::string known = limit.factor
+                                    ? fmt::format("limit analysis is undecided below {:.6g}, so that its bound may lie too high: ", *limit.factor)
+                                    : "limit analysis has no factor: ";
+      result_.warnings.push_back(known + limit.verdict);
+    }
     // Without a factor, or at a multiplier of 0, there is nothing to compare with.
     if (!(result_.bracket.stable > 0.0) || result_.bracket.at_limit) return;
     for (const double ratio : stiffness_ratios) {

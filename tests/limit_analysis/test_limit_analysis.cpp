@@ -8,11 +8,17 @@ namespace {
 
 constexpr double degree = 3.14159265358979323846 / 180;
 
+/// [-] Of the bracket.
+double width(Varied varied, double factor) {
+  const double size = std::max(factor, Options().lower_limit), part = varied == Varied::strength ? std::min(1.0, size) : size;
+  return std::max(Options().width * part, narrowest_bracket * size);
+}
+
 /// Both ends of the bracket, by adding up.
-void check_bracket(const Problem& problem, const Bracket& bracket, double width = Options().width) {
+void check_bracket(const Problem& problem, const Bracket& bracket) {
   REQUIRE(bracket.found());
   CHECK(bracket.failed > bracket.factor);
-  CHECK(bracket.failed - bracket.factor <= width);
+  CHECK(bracket.failed - bracket.factor <= width(problem.varied, bracket.factor));
   CHECK(check_forces(problem, bracket.factor, bracket.forces).holds());
   CHECK(check_mechanism(problem, bracket.failed, bracket.mechanism).holds());
   // The certificates are of these ends: neither holds on the other side.
@@ -41,6 +47,43 @@ TEST_CASE("limit analysis: a block on a plane, by friction and cohesion") {
         CHECK(bracket.failed >= expected - slack(expected));
         CHECK(bracket.programs <= 25);
       }
+    }
+  }
+}
+
+TEST_CASE("limit analysis: the bracket is as narrow for weak joints as for strong ones, in parts of the factor") {
+  for (const double friction_angle : {5 * degree, 1 * degree, 0.1 * degree}) {
+    for (const double first : {1.0, 1.002 * std::tan(friction_angle)}) {
+      const double expected = std::tan(friction_angle);
+      const Problem problem = block_on_plane(10, 1, 45 * degree, 100, 0, expected);
+      const Bracket bracket = limit_analysis(problem, {.first = first});
+      check_bracket(problem, bracket);
+      CHECK(bracket.factor <= expected + slack(expected));
+      CHECK(bracket.failed >= expected - slack(expected));
+      CHECK(bracket.programs <= 25);
+    }
+  }
+}
+
+TEST_CASE("limit analysis: a joint that rounding has made rough bears what a straight one bears") {
+  // Far from the origin vertices are rounded to 1e-9 m: the faces along a straight joint are no longer in line.
+  const double slope = 35 * degree, expected = std::tan(30 * degree) / std::tan(slope) + 60 / (100 * std::sin(slope));
+  for (const int faces : {2, 8, 32}) {
+    for (const double rounding : {0.0, 1e-10, 1e-9, 1e-8}) {
+      Problem problem = block_on_plane(60, 1, slope, 100, 0, 0);
+      problem.contacts.clear();
+      const auto rounded = [&](int corner) { return rounding * std::sin(7.0 * corner * corner); };
+      const double length = 60.0 / faces;
+      for (int face = 0; face < faces; ++face) {
+        const double from = rounded(face), to = rounded(face + 1);
+        const Point normal = Point(from - to, length).normalized();
+        for (const auto& [x, y] : {std::pair(face * length, from), std::pair((face + 1) * length, to)})
+          problem.contacts.push_back({0, -1, {x, y}, normal, 60.0 / (2 * faces), std::tan(30 * degree), 0});
+      }
+      const Bracket bracket = limit_analysis(problem);
+      check_bracket(problem, bracket);
+      CHECK(bracket.factor <= expected + slack(expected) + rounding);
+      CHECK(bracket.failed >= expected - slack(expected) - rounding);
     }
   }
 }
@@ -177,7 +220,7 @@ TEST_CASE("limit analysis: the multiplier of a horizontal load on a block on a p
         const double tips = (100 * cosine - sine) / (cosine + 100 * sine);
         const double expected = std::min(slides, tips);
         const Bracket bracket = limit_analysis(problem);
-        check_bracket(problem, bracket, Options().width * bracket.factor);
+        check_bracket(problem, bracket);
         CHECK(bracket.factor <= expected + slack(1 + expected));
         CHECK(bracket.failed >= expected - slack(1 + expected));
         CHECK(bracket.programs <= 25);
@@ -193,7 +236,7 @@ TEST_CASE("limit analysis: the multiplier at which a block tips, in any unit of 
     Options options;
     options.upper_limit = 1e7;
     const Bracket bracket = limit_analysis(problem, options);
-    check_bracket(problem, bracket, Options().width * std::max(bracket.factor, 1e-3));
+    check_bracket(problem, bracket);
     CHECK(bracket.factor * unit == Approx(0.25).epsilon(2e-5 + 10 * force_tolerance));
   }
 }
@@ -220,7 +263,7 @@ TEST_CASE("limit analysis: a wall falls at the multiplier whose gravity a wall w
     for (Block& block : wall.blocks) block.live = Eigen::Vector3d(-block.load.y(), 0, 0);
     wall.varied = Varied::live_loads;
     const Bracket bracket = limit_analysis(wall);
-    check_bracket(wall, bracket, Options().width * bracket.factor);
+    check_bracket(wall, bracket);
     return bracket.factor;
   }();
   CHECK(multiplier > 0.1);
