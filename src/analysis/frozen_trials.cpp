@@ -125,10 +125,18 @@ bool FrozenTrials::has_broken(const FrozenState& before, const FrozenState& afte
   return false;
 }
 
+void FrozenTrials::end_search() {
+  if (!found_) found_ = Found{stable_, mechanism_, travel_};
+}
+
 void FrozenTrials::exchange(Archive& archive) {
-  archive(bonded_, bonded_failed_, first_stable_, stable_, stable_factor_, least_compliance_, mechanism_, undecided_, travel_);
+  archive(bonded_, bonded_failed_, first_stable_, stable_, stable_factor_, least_compliance_, mechanism_, undecided_, travel_, found_);
   bool sound = mechanism_.size() == 0 || mechanism_.size() == 3 * system_.rows();
   for (const std::optional<FrozenState>* state : {&bonded_, &first_stable_, &stable_}) sound = sound && (!*state || (*state)->fits(system_));
+  if (found_) {
+    sound = sound && (!found_->stable || found_->stable->fits(system_));
+    sound = sound && (found_->mechanism.size() == 0 || found_->mechanism.size() == 3 * system_.rows());
+  }
   archive.require(sound, "the saved state has blocks or contacts that are not there");
   solver_->exchange(archive);
 }

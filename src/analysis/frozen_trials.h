@@ -54,10 +54,12 @@ class FrozenTrials : public StrengthTrials {
 
   FrozenStrength& strength() { return strength_; }
   FrozenSolver& solver() { return *solver_; }
-  const std::optional<FrozenState>& stable() const { return stable_; }
+  /// The search has ended. What it has found stays, whatever further trials, which begin at its stable state, do.
+  void end_search();
+  const std::optional<FrozenState>& stable() const { return found_ ? found_->stable : stable_; }
   /// Of the last trial that failed by a mechanism; empty if none did.
-  const Eigen::VectorXd& mechanism() const { return mechanism_; }
-  const TravelOnPath& travel() const { return travel_; }
+  const Eigen::VectorXd& mechanism() const { return found_ ? found_->mechanism : mechanism_; }
+  const TravelOnPath& travel() const { return found_ ? found_->travel : travel_; }
 
  private:
   Effort effort() const;
@@ -66,6 +68,13 @@ class FrozenTrials : public StrengthTrials {
   bool has_broken(const FrozenState& before, const FrozenState& after) const;
   void follow(double travel, double srf);
   double displacement_of_points(const FrozenState& state) const;
+
+  struct Found {
+    std::optional<FrozenState> stable;
+    Eigen::VectorXd mechanism;
+    TravelOnPath travel;
+    void exchange(Archive& archive) { archive(stable, mechanism, travel); }
+  };
 
   struct Point {
     int row;
@@ -87,6 +96,7 @@ class FrozenTrials : public StrengthTrials {
   bool reduced_ = false;
   int undecided_ = 0;  ///< trials from a stable state so far
   TravelOnPath travel_;
+  std::optional<Found> found_;
 };
 
 }  // namespace openclose

@@ -69,17 +69,12 @@ void SimulationState::find_contacts(double lead) {
   const bool elastic = enforcement->has_elastic_contacts();
   const double before = elastic ? moving_contact_energy() : 0.0;
   contacts_current = true;
-  const bool is_renewed = search(lead);
-  if (!elastic) return;
-  if (is_renewed) store_changed_energies();
+  if (!search(lead) || !elastic) return;
+  store_changed_energies();
   const StepProblem p = problem(scene.step.dt, false);
-  bool was_pulling = false;
   for (Contact& c : contacts.moving) {
-    if (c.joint_state.bonded || !(c.normal_force < 0.0)) continue;
-    store_energy(p, c);  // it lost its strength while it was pulling
-    was_pulling = true;
+    if (!c.joint_state.bonded && c.normal_force < 0.0) store_energy(p, c);  // it lost its strength while it was pulling
   }
-  if (!is_renewed && !was_pulling) return;
   const double change = moving_contact_energy() - before;
   ledger.redefinition -= change;
   ledger.contact_springs += change;

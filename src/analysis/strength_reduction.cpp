@@ -54,6 +54,7 @@ class StrengthReduction {
     begin(trials);
     result_.bracket = search(trials);
     judge();
+    warn_of_failure_displacement();
     if (trials.settled()) add_state("settled", *trials.settled());
     if (trials.failed()) add_state("failed", *trials.failed());
     if (!result_.bracket.stopped) curve(trials);
@@ -87,7 +88,7 @@ class StrengthReduction {
     if (input_.limit_analysis && result_.verdict == FactorVerdict::no_failure) {
       if (const std::string words = loose_blocks_in_words(scene); !words.empty()) result_.warnings.push_back(words);
     }
-    // Last, since its trials leave other states behind than the search.
+    trials.end_search();
     unless_stopped([&] {
       for (double srf : input_.curve) {
         if (trials.stable()) record(srf, "curve", JournalledTrials(trials, journal_).next(srf, OnBreak::go_on));
@@ -366,7 +367,8 @@ class StrengthReduction {
     if (!others.empty())
       result_.warnings.push_back(
           fmt::format("the {} depends on the ratio of shear to normal stiffness: {}, where the scene's own give {:.4g}", noun(), others, low));
-    if (result_.verdict == FactorVerdict::certified && limit.factor && low < far_below_limit_analysis * *limit.factor)
+    // A wide bracket that has the limit within it needs no other reason.
+    if (result_.verdict == FactorVerdict::certified && limit.factor && result_.bracket.failed < far_below_limit_analysis * *limit.factor)
       warn_of_distance(*limit.factor, largest, scene, system, trials);
     warn_of_corner(scene, system, trials);
   }
@@ -417,6 +419,15 @@ class StrengthReduction {
     FrozenStrength strength(system, scene);
     if (!input_.increase) strength.reduce(*result_.bracket.stable);
     if (const std::string words = bending_in_words(strength, stable); !words.empty()) result_.warnings.push_back(words);
+  }
+
+  void warn_of_failure_displacement() {
+    const double size = simulation_.system().median_size(), asked = scene_.settle.failure_displacement;
+    if (size > 0.0 && asked > size)
+      result_.warnings.push_back(fmt::format(
+          "a block is failing once it has moved by settle.failure_displacement_m = {:g} m, more than the median block's size of {:.3g} m: what fails "
+          "may come to rest before",
+          asked, size));
   }
 
   void warn_of_interval() {

@@ -21,7 +21,9 @@ void add_case_options(CLI::App& app, CaseOptions& options) {
          "--set", [&options](const std::vector<std::string>& v) { options.overrides.insert(options.overrides.end(), v.begin(), v.end()); },
          "KEY=VALUE: overrides any key of the scene in all cases, e.g. joint[0].friction_angle_deg=20")
       ->allow_extra_args(false);
-  app.add_option("-j,--jobs", options.jobs, "cases that run at a time, each a process (default: as many as there are processors)")
+  app.add_option(
+         "-j,--jobs", options.jobs,
+         "cases that run at a time, each a process (default: of a study, whose cases are timed, one; of a sweep as many as there are processors)")
       ->check(CLI::Range(1, 1024));
   app.add_option("-o,--output", options.folder, "folder with the table, the picture and a folder for each case; what is there is not run again");
   app.add_flag("-q,--quiet", options.quiet, "print nothing but warnings and errors");

@@ -9,7 +9,7 @@
 namespace openclose {
 
 struct JointState {
-  bool bonded = true;  ///< cohesion and tensile strength are still there
+  bool bonded = true;  ///< cohesion and tensile strength are there, or what slip has left of them
   double slip = 0.0;   ///< [m] of friction while it was bonded; of joints with a slip-weakening distance
 
   bool operator==(const JointState&) const = default;

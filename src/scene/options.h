@@ -160,8 +160,9 @@ struct StepInput {
 template <class Step, class Visitor>
 void visit_step_keys(Step& s, Visitor& visit) {
   visit.table({"step", Audience::user, "the steps in time"});
-  visit({"dt_s", "the step; with `adaptive` the longest one", "needed by `run`, and by `fos` with `strength_reduction.curve_time_s`"}, s.dt,
-        positive);
+  visit({"dt_s", "the step; with `adaptive` the longest one",
+         "needed by `run`, by `check --spectrum`, and by `fos` with `strength_reduction.curve_time_s` or `settle.criterion = \"paper\"`"},
+        s.dt, positive);
   visit({"max_displacement_m", "of any vertex in one step; a step that would move more is cut", "0.1, or a quarter of the size of small free blocks"},
         s.max_displacement, Range{.low = 0.0, .high = tolerance::farthest_coordinate_m, .high_included = true});
   visit({"adaptive", "true, for `soft`: each step is as long as `error_tolerance_m` allows"}, s.adaptive, Flag{}, &s.adaptive_where);
@@ -250,7 +251,10 @@ void visit_solver_keys(Method& m, Step& s, Visitor& visit) {
         m.penetration_tolerance, positive);
   visit({"closing_tolerance_m", "`shi`: an open contact closes beyond this penetration", {}, "method.closing_tolerance_m"}, m.closing_tolerance,
         not_negative);
-  visit({"max_open_close_iterations", "`shi`: open-close iterations before the step is cut", {}, "method.max_open_close_iterations"},
+  visit({"max_open_close_iterations",
+         "`shi`: passes in which a contact changes its state, before the step is cut; those for friction alone are not counted",
+         {},
+         "method.max_open_close_iterations"},
         m.max_open_close_iterations, at_least_one);
   visit({"step_cut", "`shi`: factor on a step that is cut", {}, "method.step_cut"}, m.step_cut, between_0_and_1);
   visit({"local_damping", "`dem`: part of the unbalanced force that opposes the motion", {}, "method.local_damping"}, m.local_damping,
@@ -305,7 +309,7 @@ struct SettleInput {
 /// The keys of [settle].
 template <class Settle, class Visitor>
 void visit_settle_keys(Settle& s, Visitor& visit) {
-  visit.table({"settle", Audience::user, "static equilibrium, for the start \"settled\" and for `fos`"});
+  visit.table({"settle", Audience::user, "static equilibrium, for the start \"settled\" and for factors of safety that ask for motion"});
   visit({"criterion", "what tells equilibrium"}, s.criterion, settle_criterion_words);
   visit({"unbalanced_fraction",
          "largest unbalanced force over the weight of the heaviest free block; steps of `soft` may leave half of it in their equations"},
@@ -351,7 +355,8 @@ struct StrengthReductionInput {
 /// The keys of [strength_reduction].
 template <class Reduction, class Visitor>
 void visit_strength_reduction_keys(Reduction& r, Visitor& visit) {
-  visit.table({"strength_reduction", Audience::user, "`fos` divides tan(friction angle), cohesion and tensile strength by the factor"});
+  visit.table(
+      {"strength_reduction", Audience::user, "`fos` divides the tangents of both friction angles, cohesion and tensile strength by the factor"});
   visit({"definition", "which factor is meant, see [factor of safety](factor_of_safety.md)"}, r.definition, factor_definition_words);
   visit({"limit_analysis",
          "a second opinion: rigid-block limit analysis, which also proves failure above it, and the factor at shear to normal stiffness ratios of "

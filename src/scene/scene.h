@@ -142,7 +142,8 @@ void visit_keys(Input& scene, Visitor& visit) {
   visit_rest_keys(scene.rest, visit);
   visit.table({"run", Audience::user, "what `run` does with the strength and with the start"});
   visit({"strength_reduction_factor",
-         "tan(friction angle), cohesion and tensile strength are divided by it for the motion; the start \"settled\" is reached with full strength, "
+         "the tangents of both friction angles, cohesion and tensile strength are divided by it for the motion; the start \"settled\" is reached "
+         "with full strength, "
          "before time 0, the other starts have the reduced one from the beginning"},
         scene.run_strength_reduction_factor, positive);
   visit({"settled_by",

@@ -369,31 +369,3 @@ TEST_CASE("energy that comes from outside shows", "[analysis][energy]") {
     CHECK(brought_in > 1e-2 * l.turnover);
   }
 }
-
-TEST_CASE("the energy of a spring that loses its bond while it pulls is released", "[analysis][energy]") {
-  // A block hangs from a roof. With a fourth of its strength it parts at once and falls freely.
-  for (const std::string integrator : {"shi", "theta", "path_average", "tr_bdf2"}) {
-    INFO(integrator);
-    Scene scene = test::scene_with(
-        {test::fixed_block("roof", test::rectangle(-10.0, 1.0, 20.0, 1.0)), test::free_block("block", test::rectangle(0.0, 0.0, 2.0, 1.0))});
-    scene.gravity = {5.0, -6.0};
-    scene.joints[0].normal_stiffness = scene.joints[0].shear_stiffness = 1e8;
-    scene.joints[0].cohesion = 60e3;
-    scene.joints[0].tensile_strength = 150e3;
-    scene.joints[0].cohesion_behaviour = CohesionBehaviour::lost_on_slip;
-    scene.method.start = Start::settled;
-    scene.method.integrator = integrator;
-    scene.run_strength_reduction_factor = 10.0;
-    scene.end_time = 0.1;
-    Simulation at_rest(scene);
-    REQUIRE(prepare_start(at_rest).converged);
-    const double stored = at_rest.state().stored_contact_energy();
-    REQUIRE(stored > 0.0);
-    Simulation simulation(scene);
-    REQUIRE(run(simulation, {}).converged);
-    for (const Contact& contact : simulation.change_contacts()) REQUIRE(contact.normal_force == 0.0);
-    const EnergyLedger& l = simulation.ledger();
-    CHECK(relative_imbalance(l) < 1e-10);
-    CHECK(l.contact_springs == Approx(-stored).epsilon(1e-9));  // nothing is left in springs that do not exist
-  }
-}

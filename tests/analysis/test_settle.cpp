@@ -639,7 +639,9 @@ TEST_CASE("what rigid contacts leave undetermined is shared as by the joint's sp
   joint.normal_stiffness = joint.shear_stiffness = stiffness;
   soft.normal_stiffness = soft.shear_stiffness = ratio * stiffness;
   mud.normal_stiffness = mud.shear_stiffness = 1e-4 * stiffness;
-  scene.joints = {joint, soft, mud};
+  JointProperties nowhere = mud;
+  nowhere.materials = {1, 2};
+  scene.joints = {joint, soft, mud, nowhere};
   scene.method.contact = "hard";
   const double weight = 6.0 * 2500.0 * 9.81;
   for (const double first_dt : {0.1, 1.0}) {

@@ -307,6 +307,7 @@ TEST_CASE("an interval tells how wide it is and from where on it is open", "[ana
   CHECK_THAT(interval_in_words(bracket, trials), Catch::StartsWith("an interval, 50 % wide: at 0.9 "));
   // What only broke joints says nothing of the factor.
   trials[2].broke = true;
+  trials[2].criterion = by_breaking_joints;
   CHECK_THAT(interval_in_words(bracket, trials), Catch::StartsWith("an interval, 50 % wide: at 1 "));
   trials[3].outcome = TrialOutcome::failed;
   CHECK(interval_in_words(bracket, trials).empty());

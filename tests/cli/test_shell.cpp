@@ -44,6 +44,7 @@ TEST_CASE("every command has a manual page with all of its options, and completi
     }
   }
   CHECK_THAT(bash, ContainsSubstring("joint[0].friction_angle_deg=") && ContainsSubstring("soft hard shi dem"));
+  for (const std::string* shell : {&bash, &zsh, &fish}) CHECK_THAT(*shell, ContainsSubstring("tr_bdf2"));  // the words of an option's key
   CHECK(place.run("completion bash").out == bash);
 }
 

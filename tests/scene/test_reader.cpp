@@ -107,7 +107,7 @@ TEST_CASE("every key reaches its field", "[scene][reader]") {
   CHECK(scene.formats == std::vector<std::string>{"vtk"});
   const MethodInput& method = scene.method;
   CHECK(method.contact == "anything");
-  CHECK(method.contact_where.line == 40);
+  CHECK(method.contact_where.line == 44);
   CHECK(method.theta == 0.5);
   CHECK(method.integrator == "any");
   CHECK(method.rho_inf == 0.25);

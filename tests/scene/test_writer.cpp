@@ -199,7 +199,7 @@ Scene random_scene(unsigned seed) {
     block.fixed = i == 0;
     block.rotation_locked = i == 1;
     block.velocity = vector();
-    block.angular_velocity = -number();
+    block.angular_velocity = block.rotation_locked ? 0.0 : -number();
     const std::string name = i % 2 == 0 ? "" : "push " + std::to_string(i);
     scene.supports.push_back({i, corner, {0.0, number()}, name});
     scene.loads.push_back({i, corner, vector(), name});
