@@ -42,9 +42,7 @@ class Standstill {
     before_ = std::min(before_, lowest_);
     displacement_ = displacement;
     lowest_ = std::numeric_limits<double>::infinity();
-    const int stretch = end_ - begin_;
-    begin_ = end_;
-    end_ += 2 * stretch;
+    end_ *= 2;
     return still;
   }
   /// After something has been changed.
@@ -52,7 +50,6 @@ class Standstill {
     const double displacement = displacement_;
     *this = Standstill();
     displacement_ = displacement;
-    begin_ = steps;
     end_ = steps + first_stretch;
   }
 
@@ -61,7 +58,7 @@ class Standstill {
   static constexpr int first_stretch = 5000;
   static constexpr double least_fall = 0.9;  ///< [-] of the unbalanced force
   static constexpr double least_way = 1.01;  ///< [-] of the displacement
-  int begin_ = 0, end_ = first_stretch;      ///< of the stretch
+  int end_ = first_stretch;
   double lowest_ = std::numeric_limits<double>::infinity(), before_ = lowest_, displacement_ = 0.0;
 };
 
