@@ -7,12 +7,12 @@
 
 Every worker has a copy of the tree with a build of its own under build/mutants. A fault is tried on the unit tests of its own folder, then on those
 of the folders after it in the order of the data, then of those before it, then on the verification cases, one group after the other until one is red;
-only what they need is built, and what comes out the same, byte for byte, as without the fault is not run again. Writes mutants.csv and mutants.md; named faults replace their rows there and leave the others. A fault that only ends
-checks by an exception that no test expects, by a signal or by their time limit has not been caught by an assertion: it is listed as such.
+only what they need is built, and what comes out the same, byte for byte, as without the fault is not run again. Writes mutants.csv and mutants.md; named
+faults replace their rows there and leave the others. A fault that only ends checks by an exception that no test expects, by a signal or by their time
+limit has not been caught by an assertion: it is listed as such.
 
 Random faults go to mutants-random.csv and .md. One that does not compile is none, and neither is one that compiles to the same program, however it is
-written. Those that survive are to be judged one by one: the same answers, or a
-check that is missing; their rate is of all others.
+written. Those that survive are to be judged one by one: the same answers, or a check that is missing; their rate is of all others.
 
 Exit status: 0 if every fault was caught, 1 if one was not, 2 if the list does not fit the source or the source without a fault is red.
 """

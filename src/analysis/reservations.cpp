@@ -83,9 +83,8 @@ std::string bending_in_words(const FrozenStrength& strength, const FrozenState& 
   }
   if (count == 0) return {};
   return fmt::format(
-      "at {} contacts joints pull with up to {:.0f} % of their tensile strength: a joint is held at its two ends, and these bear up to three times "
-      "the "
-      "moment at which one parts that cracks from its edge; with more blocks along it the same joint bears less",
+      "at {} contacts joints pull with up to {:.0f} % of their tensile strength: a joint is held at its two ends, and these bear up to three "
+      "times the moment at which one parts that cracks from its edge; with more blocks along it the same joint bears less",
       count, 100.0 * std::min(largest, 1.0));
 }
 

@@ -152,9 +152,8 @@ class Hard final : public Enforcement {
   /// Springs of statics: those of the joint times a factor, or with a least stiffness, in the ratio of the joint's normal and shear stiffness.
   static ContactSprings springs_of_joint(const StepProblem& problem, const Contact& contact, double factor, double least) {
     const JointProperties& joint = problem.joints.joint(contact.joint);
-    const JointSprings own(joint, contact.length);
-    const double stiffer = std::max(factor, least / own.normal);
-    return with_stiffness(problem, contact, stiffer * own.normal, stiffer * own.shear);
+    const double normal = std::max(factor * JointSprings(joint, contact.length).normal, least);
+    return with_stiffness(problem, contact, normal, normal * (joint.shear_stiffness / joint.normal_stiffness));
   }
 
   static ContactSprings with_stiffness(const StepProblem& problem, const Contact& contact, double normal, double shear) {

@@ -48,7 +48,11 @@ void WeakeningPace::prolong(const FrozenStrength& strength, FrozenState& state, 
   // Where a joint loses its last strength the series is another one: no farther than to where the first one would.
   double pace = least_ratio / (1.0 - least_ratio);
   while (pace >= shortest_prolongation && breaks_any(strength, state, slips, pace)) pace *= 0.5;
-  for (std::size_t i = 0; i < slips.size() && pace >= shortest_prolongation; ++i) {
+  if (pace < shortest_prolongation) {
+    last_ = std::move(slips);
+    return;
+  }
+  for (std::size_t i = 0; i < slips.size(); ++i) {
     state.contacts[i].slip += pace * slips[i];
     ahead_[i] += pace * slips[i];
   }

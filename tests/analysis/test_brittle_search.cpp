@@ -84,3 +84,31 @@ TEST_CASE("the search of another ratio of stiffness ends where nothing fails", "
   CHECK(*effect.stable == 20.0);
   CHECK_FALSE(effect.failed);
 }
+
+TEST_CASE("joints that pull with more than a third of their tensile strength are worth a warning", "[analysis][brittle_search]") {
+  // A block hangs from a roof, at the factor with its whole tensile strength; with four times the strength it would have a fourth left.
+  Scene scene = test::scene_with(
+      {test::fixed_block("roof", test::rectangle(-5.0, 1.0, 12.0, 1.0)), test::free_block("block", test::rectangle(0.0, 0.0, 2.0, 1.0))});
+  scene.joints[0].cohesion = 1e5;
+  scene.joints[0].tensile_strength = 3e4;
+  const auto warns = [&] {
+    return std::ranges::any_of(factor(scene).warnings, [](const std::string& w) { return w.find("of their tensile strength") != std::string::npos; });
+  };
+  CHECK(warns());
+  scene.strength_reduction.upper_limit = 1.0;
+  scene.joints[0].tensile_strength = 4.0 * test::block_weight / test::block_edge;
+  CHECK_FALSE(warns());
+}
+
+TEST_CASE("a displacement of failure that is larger than the blocks is worth a warning", "[analysis][brittle_search]") {
+  Scene scene = test::block_on_incline(20.0 * degree);
+  scene.strength_reduction.definition = FactorDefinition::large_displacements;
+  scene.strength_reduction.width = 0.1;
+  const auto warns = [&](double displacement) {
+    scene.settle.failure_displacement = displacement;
+    return std::ranges::any_of(factor(scene).warnings,
+                               [](const std::string& w) { return w.find("settle.failure_displacement_m") != std::string::npos; });
+  };
+  CHECK(warns(1.5));  // the block has a size of 1.41 m
+  CHECK_FALSE(warns(1.4));
+}

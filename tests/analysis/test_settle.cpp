@@ -673,3 +673,35 @@ TEST_CASE("dem: how far blocks have moved until they rest is told for the whole 
   REQUIRE(result.settled);
   CHECK(result.displacement >= std::abs(simulation.system().displacement(1)[0]) * (1.0 - 1e-12));
 }
+
+TEST_CASE("blocks that hang together share as one group of springs, whatever their weights are", "[analysis][settle]") {
+  // A beam on three pillars, the middle one on a soft joint. With K = 1/(1/k_top + 1/k_bottom) and the weight w of a pillar the beam sinks by u,
+  // sum of K (u - w/k_bottom) = W; the springs are all softer than the inertia of the first step asks for.
+  Scene scene = test::empty_scene();
+  scene.materials.resize(2, scene.materials.front());
+  scene.materials[1].name = "soft";
+  scene.blocks = {test::fixed_block("base", test::rectangle(-1.0, -1.0, 3.0, 1.0)), test::fixed_block("middle", test::rectangle(2.5, -1.0, 1.0, 1.0)),
+                  test::fixed_block("end", test::rectangle(4.0, -1.0, 3.0, 1.0))};
+  for (const double x : {0.0, 2.75, 5.5}) scene.blocks.push_back(test::free_block("pillar" + std::to_string(x), test::rectangle(x, 0.0, 0.5, 0.5)));
+  scene.blocks.push_back(test::free_block("beam", test::rectangle(0.0, 0.5, 6.0, 1.0)));
+  scene.blocks[1].material = 1;
+  JointProperties joint = scene.joints.front(), soft = joint;
+  const double stiffness = 1e6, ratio = 0.1;
+  joint.materials = {0, 0};
+  soft.materials = {0, 1};
+  joint.normal_stiffness = joint.shear_stiffness = stiffness;
+  soft.normal_stiffness = soft.shear_stiffness = ratio * stiffness;
+  scene.joints = {joint, soft};
+  scene.method.contact = "hard";
+  scene.settle.first_dt = 0.01;
+  Simulation simulation(scene);
+  REQUIRE(settle(simulation).settled);
+  double middle = 0.0;
+  for (const Contact& c : simulation.change_contacts()) {
+    const int low = std::min(c.vertex_block, c.edge_block), high = std::max(c.vertex_block, c.edge_block);
+    if (low == 4 && high == 6) middle += c.normal_force;
+  }
+  const double beam = 6.0 * 2500.0 * 9.81, pillar = 0.25 * 2500.0 * 9.81, k = 0.5, k_middle = ratio / (1.0 + ratio);  // over stiffness times length
+  const double sink = (beam + pillar * (2.0 * k + k_middle / ratio)) / (2.0 * k + k_middle);
+  CHECK(middle == Approx(k_middle * (sink - pillar / ratio)).epsilon(1e-6));
+}

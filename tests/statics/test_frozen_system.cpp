@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "openclose/statics/explicit_relaxation.h"
 #include "openclose/statics/frozen_state.h"
 #include "openclose/statics/frozen_system.h"
 #include "support/catch.h"
@@ -112,4 +113,41 @@ TEST_CASE("the load that a scene increases is apart from the others, and away un
   CHECK(differs(load_at("gravity_x", 0.5), {3000.0 + 0.5 * test::block_weight, down, -1500.0}) < 1e-14);
   CHECK(differs(load_at("-gravity_x", 0.5), {3000.0 - 0.5 * test::block_weight, down, -1500.0}) < 1e-14);
   CHECK(differs(load_at("gravity_y", 1.0), {3000.0, -5000.0, -1500.0}) < 1e-14);
+}
+
+TEST_CASE("a corner that stands alone has no cohesion and no tension to lose", "[statics]") {
+  Scene scene = test::block_on_base();
+  scene.blocks.push_back(test::fixed_block("nose", {{2.0, 0.5}, {4.0, 0.25}, {4.0, 0.9}}));
+  scene.joints[0].tensile_strength = 1e3;
+  const FrozenSystem system(scene);
+  const FrozenStrength strength(system, scene);
+  int corners = 0;
+  for (std::size_t i = 0; i < system.contacts().size(); ++i) {
+    const bool is_corner = system.contacts()[i].joined_length == 0.0;
+    corners += is_corner;
+    CHECK(strength.can_lose(i, {}) == !is_corner);
+  }
+  CHECK(corners == 1);
+}
+
+TEST_CASE("dem: the travel of a state is at least the way from where it began", "[statics]") {
+  // Gravity first shears the joint, which then breaks: two legs.
+  Scene scene = test::block_on_base();
+  scene.blocks[1].vertices = test::rectangle(0.0, 0.0, 2.0, 4.0);
+  scene.gravity = {4.5, -10.0};
+  scene.joints[0].friction_angle = 38.66 * test::degree;
+  scene.joints[0].cohesion = 5e3;
+  scene.joints[0].cohesion_behaviour = CohesionBehaviour::lost_on_slip;
+  const FrozenSystem system(scene);
+  FrozenStrength strength(system, scene);
+  ExplicitRelaxation dem(system, strength, 0.8, 1000000);
+  for (const double factor : {1.0, 1.5, 1.7}) {
+    INFO(factor);
+    strength.reduce(factor);
+    const RelaxationResult bonded = dem.bonded_state();
+    REQUIRE(bonded.end == RelaxationEnd::stable);
+    const RelaxationResult rest = dem.relax(bonded.state, Effort::full);
+    REQUIRE(rest.end == RelaxationEnd::stable);
+    CHECK(rest.travel >= farthest_between(rest.state, bonded.state));
+  }
 }
