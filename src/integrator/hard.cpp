@@ -152,8 +152,9 @@ class Hard final : public Enforcement {
   /// Springs of statics: those of the joint times a factor, or with a least stiffness, in the ratio of the joint's normal and shear stiffness.
   static ContactSprings springs_of_joint(const StepProblem& problem, const Contact& contact, double factor, double least) {
     const JointProperties& joint = problem.joints.joint(contact.joint);
-    const double normal = std::max(factor * JointSprings(joint, contact.length).normal, least);
-    return with_stiffness(problem, contact, normal, normal * (joint.shear_stiffness / joint.normal_stiffness));
+    const JointSprings own(joint, contact.length);
+    if (factor * own.normal >= least) return with_stiffness(problem, contact, factor * own.normal, factor * own.shear);
+    return with_stiffness(problem, contact, least, least * (joint.shear_stiffness / joint.normal_stiffness));
   }
 
   static ContactSprings with_stiffness(const StepProblem& problem, const Contact& contact, double normal, double shear) {
