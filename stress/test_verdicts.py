@@ -230,6 +230,17 @@ class OfFactors(unittest.TestCase):
     def test_forces_beyond_the_reduced_strength(self):
         self.false("beyond the strength", stable=1.334, limit=None)
 
+    def test_slip_takes_friction_from_what_pulls_only_where_cohesion_stays(self):
+        joint = {"friction_angle_deg": 45.0, "residual_friction_angle_deg": 0.0, "cohesion_pa": 100.0, "tensile_strength_pa": 50.0, "slip_weakening_distance_m": 0.001}
+
+        def shear(normal_force, **changed):
+            return verdicts._strength(joint | changed, verdicts.Force("a", "b", (0, 0), (0, 1), 2.0, normal_force, 0.0), 1.0)[1]
+
+        self.assertAlmostEqual(shear(-80.0), 200.0)
+        for changed in {"cohesion_behaviour": "lost_on_slip"}, {"slip_weakening_distance_m": 0.0}:
+            self.assertAlmostEqual(shear(-80.0, **changed), 120.0)
+        self.assertAlmostEqual(shear(80.0), 280.0)
+
     def test_the_joint_is_the_one_that_both_edges_name(self):
         base, block = ["", "", "seam"], ["seam", "", "", ""]
         self.false("beyond the strength", assembly=incline(seam=(base, block)), limit=None)

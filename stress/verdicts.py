@@ -396,9 +396,13 @@ class Assembly:
 
 
 def _strength(joint: dict, f: Force, factor: float) -> tuple[float, float]:
-    """[N] That a contact bears in tension and, under its normal force, in shear, if it has lost nothing."""
+    """[N] That a contact bears in tension and, under its normal force, in shear, if slip has taken nothing that makes it weaker: where a contact pulls,
+    friction is what its cohesion loses."""
     tension, cohesion = (joint.get(key, 0.0) * f.length / factor for key in ("tensile_strength_pa", "cohesion_pa"))
-    return tension, max(0.0, cohesion + f.normal_force * math.tan(math.radians(joint["friction_angle_deg"])) / factor)
+    friction_deg = joint["friction_angle_deg"]
+    if f.normal_force < 0.0 and joint.get("slip_weakening_distance_m", 0.0) > 0.0 and joint.get("cohesion_behaviour", "ductile") == "ductile":
+        friction_deg = joint.get("residual_friction_angle_deg", friction_deg)
+    return tension, max(0.0, cohesion + f.normal_force * math.tan(math.radians(friction_deg)) / factor)
 
 
 def _joints_of_edges(block: dict) -> list[str]:

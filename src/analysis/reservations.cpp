@@ -64,28 +64,20 @@ double withheld_strength(const FrozenSystem& system, const FrozenStrength& stren
   return whole > 0.0 ? 1.0 - there / whole : 0.0;
 }
 
+bool is_about_to_crack(const FrozenSystem& system, const FrozenStrength& strength, const FrozenState& state, const std::vector<int>& rows) {
+  constexpr double nearly = 0.98;  // [-] of the strength at the edge
+  const std::vector<char> chosen = marked(system, rows);
+  for (std::size_t i = 0; i < state.contacts.size(); ++i) {
+    if (is_of(system.contacts()[i], chosen) && strength.pull_at_edge(i, state) > nearly) return true;
+  }
+  return false;
+}
+
 std::string withheld_in_words(double share) {
   return fmt::format(
       "it counts the whole cohesion of joints on which hardly anything presses, or that open; here {:.2g} % of the strength along what fails "
       "is not there, since cohesion comes with the normal force, up to ten times that",
       100.0 * share);
-}
-
-std::string bending_in_words(const FrozenStrength& strength, const FrozenState& state) {
-  constexpr double cracked_edge = 1.0 / 3.0;  // [-] of what an end pulls with when stress at its edge, linear along the joint, is the strength
-  int count = 0;
-  double largest = 0.0;
-  for (std::size_t i = 0; i < state.contacts.size(); ++i) {
-    const double tension = strength.of(i, state.contacts[i].joint_state).tension;
-    if (!(tension > 0.0) || !(-state.contacts[i].normal > cracked_edge * tension)) continue;
-    ++count;
-    largest = std::max(largest, -state.contacts[i].normal / tension);
-  }
-  if (count == 0) return {};
-  return fmt::format(
-      "at {} contacts joints pull with up to {:.0f} % of their tensile strength: a joint is held at its two ends, and these bear up to three "
-      "times the moment at which one parts that cracks from its edge; with more blocks along it the same joint bears less",
-      count, 100.0 * std::min(largest, 1.0));
 }
 
 std::string interval_in_words(const StrengthBracket& bracket, const std::vector<StrengthTrial>& trials) {

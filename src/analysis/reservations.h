@@ -29,13 +29,11 @@ std::string in_words(const Scene& scene, const FrozenSystem& system, const Corne
 /// force, see ShearLimit: limit analysis counts all of it.
 double withheld_strength(const FrozenSystem& system, const FrozenStrength& strength, const FrozenState& state, const std::vector<int>& rows);
 
-/// The same as a reason why limit analysis has more.
-std::string withheld_in_words(double share);
+/// Whether a joint of the rows is bent so far that it will crack from its edge at hardly less strength.
+bool is_about_to_crack(const FrozenSystem& system, const FrozenStrength& strength, const FrozenState& state, const std::vector<int>& rows);
 
-/// How many contacts pull by more than a third of their tensile strength, and what that means where they bear a moment; empty if none does. An end of
-/// a joint of length L bears sigma_t L/2, so that both of them bear sigma_t L^2/2 about the other one; a joint that cracks from its edge, where
-/// stress is linear along it, bears sigma_t L^2/6.
-std::string bending_in_words(const FrozenStrength& strength, const FrozenState& state);
+/// The strength withheld as a reason why limit analysis has more.
+std::string withheld_in_words(double share);
 
 /// How wide an interval is, from where on it is open, and what may narrow it; empty if no trial stayed undecided above its stable end.
 std::string interval_in_words(const StrengthBracket& bracket, const std::vector<StrengthTrial>& trials);

@@ -30,8 +30,8 @@ class Travel {
 
 /// Notices blocks that swing without end: while the unbalanced force neither falls nor moves anything on, the way to rest leads nowhere.
 ///
-/// It compares one stretch of steps with the next, twice as long: whatever falls at any rate shows in some stretch, and a block that slides away goes
-/// farther in the second one.
+/// It compares each stretch of steps with those before it, which together are as long: whatever falls at any rate shows in some stretch, and a block
+/// that slides away goes farther in each.
 class Standstill {
  public:
   void add(double unbalanced) { lowest_ = std::min(lowest_, unbalanced); }

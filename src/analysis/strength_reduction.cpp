@@ -8,6 +8,7 @@
 
 #include "openclose/analysis/frozen_trials.h"
 #include "openclose/analysis/loose_blocks.h"
+#include "openclose/analysis/named_states.h"
 #include "openclose/analysis/reservations.h"
 #include "openclose/analysis/search_journal.h"
 #include "openclose/analysis/settling_trials.h"
@@ -16,13 +17,10 @@
 namespace openclose {
 namespace {
 
-constexpr double slowest_of_mechanism = 1e-2;       ///< [-] of the fastest block: slower ones are carried along by rounding and springs
 constexpr double noticeable_share_of_corner = 0.1;  ///< [-] of the weight of what fails
 constexpr double share_of_main_reason = 0.5;        ///< [-] of the distance to limit analysis that one reason accounts for
 constexpr double far_below_limit_analysis = 0.98;   ///< [-] of its factor: below it the reason for the distance is given
 constexpr double rounding_of_areas = 1e-9;          ///< [-] equal blocks are not smaller than each other
-constexpr double drawn_travel = 0.5;                ///< [-] of the median block's size by which the fastest block of a mechanism is drawn away
-constexpr double most_drawn_turn = 0.25;            ///< [rad] of any of its blocks: drawn to first order, areas grow by the square of it
 
 class StrengthReduction {
  public:
@@ -70,10 +68,9 @@ class StrengthReduction {
     if (input_.limit_analysis) unless_stopped([&] { limit_near(scene, system, result_.bracket.stable.value_or(1.0)); });
     judge();
     if (trials.stable()) {
-      add_frozen_state("stable", system, *trials.stable());
+      result_.states.push_back(stable_state(scene_, system, *trials.stable()));
       result_.largest_travel = trials.travel().largest * system.closure_unit();
       warn_of_travel(trials.travel(), system.closure_unit());
-      warn_of_bending(scene, system, *trials.stable());
     }
     add_mechanism(system, failing_motion(system, trials));
     // Of the last trial, if that has failed: the weakest reduction of all. Others may have stayed undecided.
@@ -192,8 +189,9 @@ class StrengthReduction {
       const bool none = proved || b.at_every_strength || (b.failed && b.undecided == 0);
       result_.verdict = none ? FactorVerdict::no_equilibrium : FactorVerdict::undecided;
       result_.reason = b.at_every_strength ? "no strength of the joints could hold the blocks: " + b.first_verdict
-                       : input_.increase   ? fmt::format("not stable before {} grows ({})", *input_.increase, b.first_verdict)
-                                           : "not stable even at a strength reduction factor of 0.001 (" + b.first_verdict + ")";
+                       : input_.increase
+                           ? fmt::format("not stable before {} grows ({})", *input_.increase, b.first_verdict)
+                           : fmt::format("not stable even at a strength reduction factor of {:.3g} ({})", smallest_tried(), b.first_verdict);
       return;
     }
     if (b.at_limit) {
@@ -211,6 +209,8 @@ class StrengthReduction {
     }
     for (double srf : b.failed_below) result_.warnings.push_back(fmt::format("failed at {:.6g}, and stands again at {:.6g}", srf, *b.stable));
   }
+
+  double smallest_tried() const { return std::ranges::min(result_.trials, {}, &StrengthTrial::srf).srf; }
 
   void curve(SettlingTrials& trials) {
     if (!trials.settled()) return;
@@ -272,28 +272,6 @@ class StrengthReduction {
     result_.states.push_back({name, simulation_.system(), simulation_.change_contacts()});
   }
 
-  /// The drawn blocks, moved by the closures, and the forces that hold them.
-  void add_frozen_state(const char* name, const FrozenSystem& system, const FrozenState& state) {
-    NamedState named{name, BlockSystem(scene_), {}};
-    for (int row = 0; row < system.rows(); ++row) move_block(system, row, state.displacement[row] * system.closure_unit(), named.system);
-    for (std::size_t i = 0; i < state.contacts.size(); ++i) {
-      const FrozenContactState& s = state.contacts[i];
-      Contact contact = system.contacts()[i].source;
-      contact.gap = s.gap * system.closure_unit();
-      contact.normal_force = s.normal * system.force_unit();
-      contact.shear_force = s.shear * system.force_unit();
-      contact.status = s.status;
-      contact.joint_state = s.joint_state;
-      named.contacts.push_back(contact);
-    }
-    result_.states.push_back(std::move(named));
-  }
-
-  void move_block(const FrozenSystem& system, int row, const BlockVector& d, BlockSystem& blocks) const {
-    const FrozenBlock& block = system.blocks()[row];
-    blocks.advance(block.block, {d[0], d[1], d[2] / (block.radius * system.length_unit())});
-  }
-
   /// Of the failed end of the bracket: accelerations where the blocks start to move, the motion of limit analysis where that has proved the failure.
   Eigen::VectorXd failing_motion(const FrozenSystem& system, const FrozenTrials& trials) const {
     const std::optional<LimitAnalysisResult>& limit = result_.limit_analysis;
@@ -309,25 +287,9 @@ class StrengthReduction {
 
   void add_mechanism(const FrozenSystem& system, const Eigen::VectorXd& direction) {
     if (direction.size() == 0) return;
-    Scene first_order = scene_;
-    first_order.method.rotation = RotationKind::linear;
-    NamedState failed{"failed", BlockSystem(first_order), {}, true};
-    double fastest = 0.0, fastest_turn = 0.0;
-    const auto speed = [&](int row) { return direction.segment<2>(3 * row).norm() + std::abs(direction[3 * row + 2]); };
-    for (int row = 0; row < system.rows(); ++row) {
-      fastest = std::max(fastest, speed(row));
-      fastest_turn = std::max(fastest_turn, std::abs(direction[3 * row + 2]) / system.blocks()[row].radius);
-    }
-    const double travel = fastest_turn > 0.0 ? std::min(drawn_travel, most_drawn_turn * fastest / fastest_turn) : drawn_travel;
-    for (int row = 0; row < system.rows(); ++row) {
-      const BlockVector velocity = direction.segment<3>(3 * row) / fastest;
-      move_block(system, row, velocity * travel * system.length_unit(), failed.system);
-      if (speed(row) <= slowest_of_mechanism * fastest) continue;
-      const FrozenBlock& block = system.blocks()[row];
-      result_.mechanism.push_back({block.block, failed.system.block(block.block).area, block.centroid, velocity.head<2>(),
-                                   velocity[2] / (block.radius * system.length_unit())});
-    }
-    result_.states.push_back(std::move(failed));
+    Mechanism mechanism = mechanism_of(scene_, system, direction);
+    result_.mechanism = std::move(mechanism.blocks);
+    result_.states.push_back(std::move(mechanism.state));
   }
 
   /// What speaks for a factor and what against it: limit analysis, and joints of other ratios of stiffness.
@@ -396,7 +358,10 @@ class StrengthReduction {
     if (broken > 0) return fmt::format("joints have lost strength for good at {} contacts, which it does not know", broken);
     FrozenStrength strength(system, scene);
     if (!input_.increase) strength.reduce(*result_.bracket.stable);
-    const double withheld = withheld_strength(system, strength, *trials.stable(), rows_of(system, result_.mechanism));
+    const std::vector<int> failing = rows_of(system, result_.mechanism);
+    if (is_about_to_crack(system, strength, *trials.stable(), failing))
+      return "it lets joints pull with their tensile strength along their whole length; here one that is bent cracks from its edge";
+    const double withheld = withheld_strength(system, strength, *trials.stable(), failing);
     if (withheld > share_of_main_reason * (1.0 - *result_.bracket.stable / limit)) return withheld_in_words(withheld);
     if (std::ranges::any_of(scene_.joints, [](const JointProperties& joint) { return can_lose_strength(joint, {}); }))
       return "joints that slip or open lose strength for good, one contact after the other, which it does not know";
@@ -413,12 +378,6 @@ class StrengthReduction {
         fmt::format("the blocks moved by up to {:.3g} mm, {:.3g} joint closures, to another equilibrium between the {}s {:.6g} and {:.6g}{}; up to "
                     "{:.6g} they stand where they are drawn",
                     1e3 * farthest.travel * closure, farthest.travel, noun(), farthest.before, farthest.after, only_below, first.before));
-  }
-
-  void warn_of_bending(const Scene& scene, const FrozenSystem& system, const FrozenState& stable) {
-    FrozenStrength strength(system, scene);
-    if (!input_.increase) strength.reduce(*result_.bracket.stable);
-    if (const std::string words = bending_in_words(strength, stable); !words.empty()) result_.warnings.push_back(words);
   }
 
   void warn_of_failure_displacement() {

@@ -202,7 +202,8 @@ void OutputFolder::require_ours(const std::vector<std::string>& read_files) cons
 
 void OutputFolder::claim_name(const std::string& name) const {
   if (!is_claimed()) return;
-  if (has_file(name) && !is_own(own_names(), name)) fail_come_in(path_of(name));
+  // Looked for once more: the folder may have gone in between.
+  if (has_file(name) && !is_own(own_names(), name) && has_file(name)) fail_come_in(path_of(name));
   const OwnNames listed = listed_names();
   const auto place = listed.find(name);
   if (place == listed.end() || place->second) list(name);

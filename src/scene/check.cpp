@@ -82,6 +82,24 @@ void warn_of_fixed_velocities(const Scene& scene, std::vector<std::string>& warn
   }
 }
 
+/// A contact lies in a seam that both blocks name. Those of a domain have been cut, and may end at its outline.
+void warn_of_lone_seams(const Scene& scene, std::vector<std::string>& warnings) {
+  if (scene.cutting) return;
+  std::vector<std::set<const BlockInput*>> named_by(scene.joints.size());
+  for (const BlockInput& block : scene.blocks) {
+    for (const int joint : block.edge_joints) {
+      if (joint != BlockInput::by_materials) named_by[joint].insert(&block);
+    }
+  }
+  for (std::size_t joint = 0; joint < named_by.size(); ++joint) {
+    if (named_by[joint].size() != 1) continue;
+    warnings.push_back(
+        fmt::format("{}: joint \"{}\" is named by edges of block \"{}\" alone, and has no effect: a contact has the joint that the "
+                    "edges of both blocks name",
+                    scene.where.file, scene.joints[joint].name, (*named_by[joint].begin())->name));
+  }
+}
+
 bool nothing_holds(const Scene& scene) {
   const bool any_fixed = std::any_of(scene.blocks.begin(), scene.blocks.end(), [](const BlockInput& block) { return block.fixed; });
   bool any_holds = false;
@@ -195,6 +213,7 @@ std::vector<std::string> check_scene(const Scene& scene) {
                        ": there is no gravity, load, surcharge, base motion or velocity: nothing will move, whatever its strength");
   warn_of_fixed_points(scene, warnings);
   warn_of_fixed_velocities(scene, warnings);
+  warn_of_lone_seams(scene, warnings);
   warn_of_slivers(scene, warnings);
   return warnings;
 }

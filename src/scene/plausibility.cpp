@@ -61,6 +61,7 @@ class Judge {
     const std::size_t before = warnings_.size();
     visit_joint_keys(joint, *this);
     if (warnings_.size() == before) judge_closure(joint);
+    judge_gain_by_slip(joint);
   }
 
   template <class AnyForce>
@@ -123,6 +124,17 @@ class Judge {
         fmt::format("{}: {}: normal_stiffness_pa_per_m = {} is hardly meant: under its own weight a block of {:.2g} m, the median of the free ones, "
                     "sinks {:.2g} m into the one below",
                     scene_.where.file, owner_, joint.normal_stiffness, *size_, closure));
+  }
+
+  /// Of a line of Mohr and Coulomb that turns about its cohesion as slip takes friction: on the side of tension it rises.
+  void judge_gain_by_slip(const JointProperties& joint) {
+    const bool pulls_with_less_friction = joint.softens() && joint.slip_weakening_distance > 0.0 && joint.tensile_strength > 0.0;
+    if (!pulls_with_less_friction || joint.cohesion == 0.0 || joint.cohesion_behaviour != CohesionBehaviour::ductile) return;
+    const double lost = std::tan(joint.friction_angle) - std::tan(*joint.residual_friction_angle);
+    warnings_.push_back(
+        fmt::format("{}: {}: slip takes its friction and leaves cohesion and tensile strength, so that it bears up to {:.4g} Pa more shear where it "
+                    "pulls while it slips over slip_weakening_distance_m; with cohesion_behaviour = \"lost_on_slip\" it never does",
+                    scene_.where.file, owner_, joint.tensile_strength * lost));
   }
 
   /// \param told_as  what it is called in the scene, if not by the key whose usual numbers are its own

@@ -3,7 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "openclose/law/edge_stress.h"
+
 namespace openclose {
+namespace {
+
+constexpr double rounding_of_pull = 1e-9;  ///< [-] of the strength
+
+}  // namespace
 
 FrozenStrength::FrozenStrength(const FrozenSystem& system, const Scene& scene) : system_(system), joints_(scene) {}
 
@@ -38,6 +45,16 @@ bool FrozenStrength::can_lose(std::size_t i, const JointState& state) const {
   return can_lose_strength(joint, state) && (joint.softens() || contact.joined_length > 0.0);  // a lone corner has neither cohesion nor tension
 }
 
+double FrozenStrength::pull_at_edge(std::size_t i, const FrozenState& state) const {
+  const FrozenContact& contact = system_.contacts()[i];
+  const FrozenContactState& here = state.contacts[i];
+  if (contact.other_end < 0 || here.status == ContactStatus::open) return 0.0;
+  const double tension = of(i, here.joint_state).tension;
+  if (tension == 0.0) return 0.0;
+  const double there = state.contacts[contact.other_end].normal * contact.joined_length / system_.contacts()[contact.other_end].joined_length;
+  return std::max(0.0, -force_of_edge_stress(here.normal, there) / tension);
+}
+
 bool FrozenStrength::has_tension() const {
   for (int j = 0; j < joints_.count(); ++j) {
     if (joints_.joint(j).tensile_strength > 0.0) return true;
@@ -51,7 +68,8 @@ double lose_strength(const FrozenStrength& strength, FrozenState& state, SlipOfS
     FrozenContactState& s = state.contacts[i];
     const bool counts = slip == SlipOfState::counts;
     if (strength.can_lose(i, s.joint_state)) {
-      const JointState after = strength.joint_after(i, s, counts ? s.slip : 0.0);
+      JointState after = strength.joint_after(i, s, counts ? s.slip : 0.0);
+      if (strength.pull_at_edge(i, state) > 1.0 + rounding_of_pull) after.bonded = false;
       largest = std::max(largest, strength.loss(i, s.joint_state, after));
       s.joint_state = after;
     }

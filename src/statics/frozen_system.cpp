@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -59,13 +60,22 @@ bool has_block_between(const BlockSystem& system, const Contact& contact, const 
                              [&](int other) { return other != contact.edge_block && contains(polygon_of(system, other), middle); });
 }
 
-/// [units of length] Of the faces at a corner that lie on the edge, those halves of their overlaps that its contact stands for.
-double joined_length(const BlockSystem& system, const Contact& contact) {
+/// Two edges of two blocks, the lower number first.
+using Faces = std::pair<int, int>;
+
+/// What touches at a contact.
+struct Joined {
+  double length = 0.0;       ///< [units of length] those halves of the faces' overlaps that the contact stands for
+  std::vector<Faces> faces;  ///< none, one or two
+};
+
+/// The faces at a corner that lie on the edge.
+Joined joined_at(const BlockSystem& system, const Contact& contact) {
   const Vec2 start = system.position(contact.edge_block, contact.edge), end = system.position(contact.edge_block, system.next(contact.edge));
   const Vec2 along = (end - start).normalized(), outward = -perpendicular(along);
   const double length = (end - start).norm();
   const Vec2 corner = system.position(contact.vertex_block, contact.vertex) - start;
-  double joined = 0.0;
+  Joined joined;
   for (const int other : {system.next(contact.vertex), system.previous(contact.vertex)}) {
     const Vec2 far = system.position(contact.vertex_block, other) - start, side = far - corner;
     // The block lies on the left of its outline: a side that faces the edge runs against it.
@@ -74,9 +84,12 @@ double joined_length(const BlockSystem& system, const Contact& contact) {
     const double low = std::max(0.0, std::min(corner.dot(along), far.dot(along))),
                  high = std::min(length, std::max(corner.dot(along), far.dot(along)));
     const auto gap = [&](double x) { return corner.dot(outward) + (x - corner.dot(along)) / side.dot(along) * side.dot(outward); };
-    if (high > low && std::max(std::abs(gap(low)), std::abs(gap(high))) <= closed_gap) joined += 0.5 * (high - low);
+    if (!(high > low) || std::max(std::abs(gap(low)), std::abs(gap(high))) > closed_gap) continue;
+    joined.length += 0.5 * (high - low);
+    joined.faces.push_back(std::minmax(other == system.next(contact.vertex) ? contact.vertex : other, contact.edge));
   }
-  return std::min(joined, contact.length);
+  joined.length = std::min(joined.length, contact.length);
+  return joined;
 }
 
 BlockVector scaled_rotation(const Eigen::Vector3d& gradient, double radius, bool locked) {
@@ -151,18 +164,20 @@ void FrozenSystem::find_contacts(const Scene& scaled, const BlockSystem& system)
     neighbours[b].push_back(a);
   }
   const BlockSystem::Unknowns still = BlockSystem::Unknowns::Zero();
-  std::vector<double> joined;
+  std::vector<Joined> joined;
+  std::map<Faces, std::vector<int>> ends;  // numbers of contacts
+  std::vector<char> is_end_of_one;         // pair of faces
   std::set<std::pair<int, int>> pairs_with_joint;
   const auto pair_of = [](const Contact& c) { return std::minmax(c.vertex_block, c.edge_block); };
   for (const Contact& contact : found) {
-    joined.push_back(joined_length(system, contact));
-    if (joined.back() > 0.0) pairs_with_joint.insert(pair_of(contact));
+    joined.push_back(joined_at(system, contact));
+    if (joined.back().length > 0.0) pairs_with_joint.insert(pair_of(contact));
   }
   for (std::size_t i = 0; i < found.size(); ++i) {
     const Contact& contact = found[i];
     if (contact.gap > closed_gap || has_block_between(system, contact, neighbours)) continue;
     // Beside a joint of the same two blocks a corner that is drawn open is no careless drawing of a contact.
-    if (joined[i] == 0.0 && contact.gap > tolerance::edge_end_m && pairs_with_joint.contains(pair_of(contact))) continue;
+    if (joined[i].length == 0.0 && contact.gap > tolerance::edge_end_m && pairs_with_joint.contains(pair_of(contact))) continue;
     const auto &corner_block = system.block(contact.vertex_block), &edge_block = system.block(contact.edge_block);
     if (corner_block.equation < 0 && edge_block.equation < 0) continue;
     const ContactKinematics k(system, contact, still, still);
@@ -176,10 +191,17 @@ void FrozenSystem::find_contacts(const Scene& scaled, const BlockSystem& system)
     c.source = contact;
     c.source.length *= length_unit_;
     c.source.joint_state = {};
-    c.joined_length = joined[i] * length_unit_;
+    c.joined_length = joined[i].length * length_unit_;
     c.normal = k.normal;
     c.point = system.position(contact.vertex_block, contact.vertex);
+    for (const Faces& faces : joined[i].faces) ends[faces].push_back(static_cast<int>(contacts_.size()));
+    is_end_of_one.push_back(joined[i].faces.size() == 1);
     contacts_.push_back(c);
+  }
+  for (const auto& [faces, contacts] : ends) {
+    if (contacts.size() != 2) continue;
+    if (is_end_of_one[contacts[0]]) contacts_[contacts[0]].other_end = contacts[1];
+    if (is_end_of_one[contacts[1]]) contacts_[contacts[1]].other_end = contacts[0];
   }
 }
 

@@ -47,6 +47,7 @@ struct FrozenContact {
   double shear_stiffness = 0.0;    ///< [-]
   Contact source;                  ///< blocks, corner, edge, joint; its length in metres
   double joined_length = 0.0;      ///< [m] of the faces that touch each other here, on which cohesion and tensile strength act; 0 at a lone corner
+  int other_end = -1;              ///< contact at the other end of these faces, -1 at a lone corner and where two pairs of faces meet
   Vec2 point = Vec2::Zero();       ///< [m] of the scene
   Vec2 normal = Vec2::Zero();      ///< from the edge's block into the corner's
 };

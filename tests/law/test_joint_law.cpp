@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "openclose/core/tolerance.h"
+#include "openclose/law/edge_stress.h"
 #include "openclose/law/joint_law.h"
 #include "support/builders.h"
 #include "support/catch.h"
@@ -456,4 +457,11 @@ TEST_CASE("damped forces are continuous, and their derivatives are their differe
   }
   CHECK(compared > 4000);
   if (springs.gap < 0.0) CHECK(carrying_nothing > 100);
+}
+
+TEST_CASE("the forces at the two ends of a joint tell the stress at its edge as in a beam: N/L + 6 M/L^2", "[law]") {
+  constexpr double length = 3.0, normal = 5e3, moment = -7e3;
+  const double first = 0.5 * normal + moment / length, second = 0.5 * normal - moment / length;
+  CHECK(force_of_edge_stress(first, second) == Approx(0.5 * length * (normal / length + 6.0 * moment / (length * length))));
+  CHECK(force_of_edge_stress(second, first) == Approx(0.5 * length * (normal / length - 6.0 * moment / (length * length))));
 }

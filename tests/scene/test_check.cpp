@@ -189,6 +189,34 @@ TEST_CASE("numbers that no material has are warned of", "[scene][check]") {
   CHECK(check_scene(read_text(block_on_base, {"joint[0].friction_angle_deg=80"})).empty());
 }
 
+TEST_CASE("a joint that slip makes stronger where it pulls is warned of", "[scene][check]") {
+  const std::vector<std::string> softening{"joint[0].friction_angle_deg=45", "joint[0].residual_friction_angle_deg=0",
+                                           "joint[0].slip_weakening_distance_m=0.01", "joint[0].cohesion_pa=2000",
+                                           "joint[0].tensile_strength_pa=1000"};
+  const auto warnings_with = [&](const std::string& more) {
+    std::vector<std::string> set = softening;
+    set.push_back(more);
+    return check_scene(read_text(block_on_base, set));
+  };
+  // What is lost of tan(45 deg), times the tensile strength.
+  REQUIRE(warnings_with("joint[0].cohesion_behaviour=ductile").size() == 1);
+  CHECK_THAT(warnings_with("joint[0].cohesion_behaviour=ductile").front(), ContainsSubstring("up to 1000 Pa more shear where it pulls"));
+  for (const std::string without : {"joint[0].cohesion_behaviour=lost_on_slip", "joint[0].tensile_strength_pa=0", "joint[0].cohesion_pa=0",
+                                    "joint[0].slip_weakening_distance_m=0"})
+    CHECK(warnings_with(without).empty());
+}
+
+TEST_CASE("a seam that one block alone names is warned of", "[scene][check]") {
+  Scene scene = read_text(std::string(block_on_base) +
+                          "[[joint]]\nname = 'seam'\nnormal_stiffness_pa_per_m = 1e9\nshear_stiffness_pa_per_m = 1e9\nfriction_angle_deg = 20\n");
+  constexpr int none = BlockInput::by_materials, seam = 1;
+  scene.blocks[0].edge_joints = {seam, none, none, none};
+  REQUIRE(check_scene(scene).size() == 1);
+  CHECK_THAT(check_scene(scene).front(), ContainsSubstring("joint \"seam\" is named by edges of block \"" + scene.blocks[0].name + "\" alone"));
+  scene.blocks[1].edge_joints = {none, none, seam, none};
+  CHECK(check_scene(scene).empty());
+}
+
 TEST_CASE("loads and motions that nothing has are warned of", "[scene][check]") {
   const auto warning_of = [](const std::string& table) {
     const std::vector<std::string> warnings = check_scene(read_text(block_on_base + table));

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <utility>
 
 #include "openclose/statics/explicit_relaxation.h"
 #include "openclose/statics/frozen_state.h"
@@ -128,6 +129,68 @@ TEST_CASE("a corner that stands alone has no cohesion and no tension to lose", "
     CHECK(strength.can_lose(i, {}) == !is_corner);
   }
   CHECK(corners == 1);
+}
+
+TEST_CASE("a joint between two faces has two ends, a lone corner and a corner between two faces have no other one", "[statics]") {
+  // The upper block stands back by half, so that the ends of the second joint are corners of both blocks; the nose of a third one touches it.
+  Scene scene = test::block_on_base();
+  scene.blocks.push_back(test::free_block("upper", test::rectangle(1.0, 1.0, 2.0, 1.0)));
+  scene.blocks.push_back(test::fixed_block("nose", {{3.0, 1.5}, {5.0, 1.25}, {5.0, 1.9}}));
+  const FrozenSystem system(scene);
+  int ends = 0, lone = 0;
+  for (int i = 0; i < static_cast<int>(system.contacts().size()); ++i) {
+    const FrozenContact& contact = system.contacts()[i];
+    if (contact.joined_length == 0.0) {
+      ++lone;
+      CHECK(contact.other_end == -1);
+      continue;
+    }
+    ++ends;
+    REQUIRE(contact.other_end >= 0);
+    const FrozenContact& other = system.contacts()[contact.other_end];
+    CHECK(other.other_end == i);
+    CHECK((other.point - contact.point).norm() == Approx(2.0 * contact.joined_length));
+  }
+  CHECK(ends == 4);
+  CHECK(lone == 1);
+  // A vertex in the middle of a face stands between two pairs of faces, each with an end beyond.
+  Scene divided = test::block_on_base();
+  divided.blocks[1].vertices.insert(divided.blocks[1].vertices.begin() + 1, Vec2(1.0, 0.0));
+  const FrozenSystem of_two(divided);
+  REQUIRE(of_two.contacts().size() == 3);
+  int middle = -1;
+  for (int i = 0; i < 3; ++i) {
+    if (of_two.contacts()[i].point.x() == Approx(1.0)) middle = i;
+  }
+  REQUIRE(middle >= 0);
+  for (int i = 0; i < 3; ++i) CHECK(of_two.contacts()[i].other_end == (i == middle ? -1 : middle));
+}
+
+TEST_CASE("a joint cracks at the end where stress that is linear along it reaches the tensile strength", "[statics]") {
+  Scene scene = test::block_on_base();
+  scene.joints[0].tensile_strength = 1e4;
+  scene.joints[0].cohesion = 1e5;
+  scene.joints[0].cohesion_behaviour = CohesionBehaviour::lost_on_opening;
+  const FrozenSystem system(scene);
+  REQUIRE(system.contacts().size() == 2);
+  const FrozenStrength strength(system, scene);
+  const double bears = 1e4 * 0.5 * test::block_edge / system.force_unit();
+  const auto cracked = [&](double left, double right) {
+    FrozenState state(system);
+    state.contacts[0].normal = left * bears;
+    state.contacts[1].normal = right * bears;
+    lose_strength(strength, state);
+    return std::pair(!state.contacts[0].joint_state.bonded, !state.contacts[1].joint_state.bonded);
+  };
+  // N + -6 M/L over the length, against the strength: 2 N1 - N2 over what an end bears.
+  CHECK(cracked(-0.33, 0.33) == std::pair(false, false));
+  CHECK(cracked(-0.34, 0.34) == std::pair(true, false));
+  CHECK(cracked(0.34, -0.34) == std::pair(false, true));
+  CHECK(cracked(-0.99, -0.99) == std::pair(false, false));
+  // Pressed beyond the middle third: the far edge is pulled though its end carries nothing.
+  CHECK(cracked(0.0, 0.99) == std::pair(false, false));
+  CHECK(cracked(0.0, 1.01) == std::pair(true, false));
+  CHECK(cracked(2.0, 4.9) == std::pair(false, false));
 }
 
 TEST_CASE("dem: the travel of a state is at least the way from where it began", "[statics]") {

@@ -1,0 +1,25 @@
+// Blocks as a search at small displacements leaves them, to be drawn.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "openclose/statics/frozen_state.h"
+#include "openclose/analysis/strength_reduction.h"
+
+namespace openclose {
+
+/// The drawn blocks, moved by the closures, and the forces that hold them.
+NamedState stable_state(const Scene& drawn, const FrozenSystem& system, const FrozenState& state);
+
+/// The failed state, and the blocks that move in it.
+struct Mechanism {
+  NamedState state;
+  std::vector<FailingBlock> blocks;
+};
+
+/// \param direction  three numbers a row of the system, of any length but zero: velocity and radius times angular velocity; the fastest block
+///                   is drawn half a median block away
+Mechanism mechanism_of(const Scene& drawn, const FrozenSystem& system, const Eigen::VectorXd& direction);
+
+}  // namespace openclose

@@ -1,0 +1,66 @@
+// F8: joints with tensile strength that are bent crack from their edge: an overhang and a column that is pushed, as beams.
+#include <cmath>
+
+#include "harness.h"
+#include "scenes.h"
+
+namespace openclose::verification {
+namespace {
+
+constexpr double width = 1e-4;  // [-] of factor and multiplier
+constexpr const char* bracket = "; width of the bracket";
+
+/// The joint bears any shear: what fails, bends.
+Scene bonded(const analytical::BlockOnPlane& data, const std::string& method, double tension) {
+  Scene scene = empty_scene(data);
+  scene.method.contact = method;
+  scene.strength_reduction.width = width;
+  scene.joints[0].tensile_strength = tension;
+  scene.joints[0].cohesion = 1e3 * tension;
+  return scene;
+}
+
+/// A block of `data` that a wall of some blocks holds at its left side. With n of them the joint has n pieces, each of which is held at two ends: the
+/// springs at x = +-L/2, +-(L/2 - L/n), ... with lengths of L/(2n), each twice but the outermost, bear k theta L^3/12 (1 + 2/n^2), and the stress at
+/// the edge follows from the outermost piece, k theta L/2 (1 + 2/n).
+void overhang(Report& report, const std::string& method, int pieces) {
+  analytical::BlockOnPlane data;
+  data.width = 2.0;
+  data.height = 1.0;
+  const double moment = data.weight() * 0.5 * data.width, section = data.height * data.height / 6.0, n = pieces;
+  const double tension = 1.6 * moment / section;
+  Scene scene = bonded(data, method, tension);
+  for (int i = 0; i < pieces; ++i)
+    scene.blocks.push_back(fixed_block("wall " + std::to_string(i), rectangle(-1.0, data.height * i / n, 1.0, data.height / n)));
+  scene.blocks.push_back(free_block("beam", rectangle(0.0, 0.0, data.width, data.height)));
+  const double part = (1.0 + 2.0 / (n * n)) / (1.0 + 2.0 / n);
+  report.relative(text("overhang on a joint of {:g} pieces", n), method, part * tension * section / moment, strength_reduction_factor(report, scene),
+                  width, "-", std::string("sigma L^2/(6 M) (1 + 2/n^2)/(1 + 2/n)") + bracket);
+}
+
+/// 6 M/b^2 - W/b at the foot.
+void column(Report& report, const std::string& method) {
+  analytical::BlockOnPlane data;
+  data.width = 0.5;
+  data.height = 2.0;
+  data.slope_angle = 0.0;
+  const double push = 1e3, arm = 1.5, tension = 4.0 * data.weight() / data.width;
+  Scene scene = bonded(data, method, tension);
+  scene.blocks = {fixed_block("base", rectangle(-5.0, -1.0, 10.0, 1.0)), free_block("column", rectangle(0.0, 0.0, data.width, data.height))};
+  scene.loads = {{1, {data.width, arm}, {-push, 0.0}, "push"}};
+  report.relative("column cracks at its foot at a push, in kN", method,
+                  (tension + data.weight() / data.width) * data.width * data.width / (6.0 * arm) / push, load_multiplier(report, scene, "push"),
+                  width, "kN", std::string("(sigma + W/b) b^2/(6 y)") + bracket);
+}
+
+void bending(Report& report) {
+  for (const std::string& method : all_methods) {
+    for (const int pieces : {1, 2, 4}) overhang(report, method, pieces);
+    column(report, method);
+  }
+}
+
+const Registered<Case> registered{{"F8", "joints with tensile strength that are bent", &bending}};
+
+}  // namespace
+}  // namespace openclose::verification
