@@ -24,6 +24,7 @@
 #include <limits>
 
 #include "openclose/core/tolerance.h"
+#include "openclose/integrator/hard_springs.h"
 #include "openclose/integrator/newton.h"
 #include "openclose/integrator/registry.h"
 #include "openclose/integrator/spring_groups.h"
@@ -37,6 +38,9 @@ namespace {
 constexpr std::array stiffness_over_inertia = {300.0, 100.0, 30.0, 1.0};
 /// [-] Statics: springs of contacts that are short beside the others of their block, and of the stiffest joint, over the inertia.
 constexpr double least_of_short_contacts = stiffness_over_inertia[2];
+/// [-] Statics: by which springs are multiplied, one after the other as long as no passes hold the contacts. On the springs of soft joints a slope
+/// sinks by metres in the first pass, and the blocks do not fit each other where that has turned them.
+constexpr std::array stiffer_static_springs = {1.0, 100.0};
 /// Where softer springs were needed, the next steps begin with them. The next stiffer ones are tried again after a step, and after twice as many each
 /// time that they fail, up to this number of times: however long it goes on, trials in vain cost a small part of the whole. 1,000 boxes that fall on
 /// a heap take 0.67 of the iterations of a method that begins every step with the stiffest, failing slopes of 500 to 5,000 blocks 0.82 to 1.0.
@@ -52,9 +56,6 @@ constexpr double long_cohesion_ramp = 1.0;
 /// [m] The tolerance of statics: what passes leave there is a share of the forces themselves, on which hangs what joints lose their strength, and
 /// there is no inertia to carry the rest.
 constexpr double static_gap = 1e-11;
-/// [-] Part of the tolerance by which closed contacts may stay apart from zero; what earlier steps have left beyond it is pushed back, by no more
-/// than the rest in a step: redundant contacts that have different gaps then ask for motions that exclude each other by less than what is tolerated.
-constexpr double kept_penetration = 0.5, recovered_penetration = 1.0 - kept_penetration;
 constexpr int most_outer_passes = 100;
 /// Statics: solutions with springs that are stiffer from one to the next, if no passes hold the contacts. The first makes all of them stiffer, each
 /// further one those of the few contacts that carry more than before.
@@ -80,14 +81,18 @@ constexpr double going_on = 0.5, part_of_way = 0.01;
 class Hard final : public Enforcement {
  public:
   ContactSprings springs(const StepProblem& problem, const Contact& contact) const override {
-    return springs_of_inertia(problem, contact, stiffness_over_inertia.front());
+    return hard_springs_of_inertia(problem, contact, stiffness_over_inertia.front());
   }
 
   void solve(const StepProblem& problem, StepSolution& solution) override {
     if (problem.statics) {
-      // Softer springs would take more passes; shorter steps help more.
-      set_static_springs(problem);
-      pass_until_held(problem, Cohesion::as_it_is, solution);
+      // Softer springs would take more passes.
+      for (const double stiffer : stiffer_static_springs) {
+        set_static_springs(problem, stiffer);
+        pass_until_held(problem, Cohesion::as_it_is, solution);
+        if (solution.converged) break;
+        begin_anew(solution);
+      }
       if (!solution.converged) hold_by_stiff_springs(problem, solution);
       if (solution.converged) note_slack(solution);
       return;
@@ -134,54 +139,21 @@ class Hard final : public Enforcement {
   /// Whether the first pass may take the longer ramp.
   enum class Cohesion { as_it_is, may_be_eased };
 
-  /// [N/m] of the heavier block, which is not fixed.
-  static double inertia(const StepProblem& problem, const Contact& contact) {
-    double mass = 0.0;
-    for (int b : {contact.vertex_block, contact.edge_block}) {
-      if (problem.system.block(b).equation >= 0) mass = std::max(mass, problem.system.block(b).mass[0]);
-    }
-    return problem.inertia * mass;
-  }
-
-  /// Springs of a motion.
-  static ContactSprings springs_of_inertia(const StepProblem& problem, const Contact& contact, double ratio) {
-    const double stiffness = ratio * inertia(problem, contact);
-    return with_stiffness(problem, contact, stiffness, stiffness);
-  }
-
-  /// Springs of statics: those of the joint times a factor, or with a least stiffness, in the ratio of the joint's normal and shear stiffness.
-  static ContactSprings springs_of_joint(const StepProblem& problem, const Contact& contact, double factor, double least) {
-    const JointProperties& joint = problem.joints.joint(contact.joint);
-    const JointSprings own(joint, contact.length);
-    if (factor * own.normal >= least) return with_stiffness(problem, contact, factor * own.normal, factor * own.shear);
-    return with_stiffness(problem, contact, least, least * (joint.shear_stiffness / joint.normal_stiffness));
-  }
-
-  static ContactSprings with_stiffness(const StepProblem& problem, const Contact& contact, double normal, double shear) {
-    ContactSprings s;
-    s.normal = normal;
-    s.shear = shear;
-    s.gap = contact.gap;
-    s.target = target_gap(problem, contact);
-    s.shift = problem.statics && contact.status == ContactStatus::open ? -s.normal * contact.slack : contact.normal_force;
-    s.initial_shear = contact.shear_force;
-    return s;
-  }
-
   void set_springs(const StepProblem& problem, double ratio) {
     springs_.resize(problem.contacts.size());
-    for (std::size_t c = 0; c < springs_.size(); ++c) springs_[c] = springs_of_inertia(problem, problem.contacts[c], ratio);
+    for (std::size_t c = 0; c < springs_.size(); ++c) springs_[c] = hard_springs_of_inertia(problem, problem.contacts[c], ratio);
   }
 
   /// What blocks that hang together leave undetermined they share as the springs of their joints would: all of these become stiffer by one factor,
   /// until around each block their mean is stiff over its inertia.
-  void set_static_springs(const StepProblem& problem) {
+  void set_static_springs(const StepProblem& problem, double stiffer) {
     const SpringGroups groups(problem, stiffness_over_inertia.front());
     springs_.resize(problem.contacts.size());
     for (std::size_t c = 0; c < springs_.size(); ++c) {
       const Contact& contact = problem.contacts[c];
       const double relative = problem.joints.joint(contact.joint).normal_stiffness / groups.stiffest_joint(contact);
-      springs_[c] = springs_of_joint(problem, contact, groups.factor(contact), least_of_short_contacts * relative * inertia(problem, contact));
+      const double least = stiffer * least_of_short_contacts * relative * inertia_at(problem, contact);
+      springs_[c] = hard_springs_of_joint(problem, contact, stiffer * groups.factor(contact), least);
     }
   }
 
@@ -228,6 +200,12 @@ class Hard final : public Enforcement {
     give_up(solution);
   }
 
+  static void begin_anew(StepSolution& solution) {
+    const StepEffort before = solution.effort;
+    solution.clear();
+    solution.effort = before;
+  }
+
   static void give_up(StepSolution& solution) {
     solution.converged = false;
     solution.reason = "the multipliers of hard contacts did not converge";
@@ -237,12 +215,9 @@ class Hard final : public Enforcement {
   /// blocks: those of the joints, made stiffer by one factor until what they close by in this step is part of the tolerance. Contacts of small
   /// tributary length that still give way become stiffer by themselves.
   void hold_by_stiff_springs(const StepProblem& problem, StepSolution& solution) {
-    const StepEffort before = solution.effort;
-    solution.clear();
-    solution.effort = before;
     for (std::size_t c = 0; c < springs_.size(); ++c) {
       const Contact& contact = problem.contacts[c];
-      springs_[c] = springs_of_joint(problem, contact, 1.0, 0.0);
+      springs_[c] = hard_springs_of_joint(problem, contact, 1.0, 0.0);
       if (contact.status == ContactStatus::open) {
         springs_[c].shift = 0.0;
       } else {
@@ -345,7 +320,7 @@ class Hard final : public Enforcement {
       const bool is_slow = error > 1.0F && error > slow_convergence * errors[c];
       errors[c] = error;
       const double stiffer = stiffening * springs_[c].normal;
-      if (is_slow && stiffer <= stiffest_over_inertia * inertia(problem, problem.contacts[c])) springs_[c].normal = springs_[c].shear = stiffer;
+      if (is_slow && stiffer <= stiffest_over_inertia * inertia_at(problem, problem.contacts[c])) springs_[c].normal = springs_[c].shear = stiffer;
     }
   }
 
@@ -372,22 +347,6 @@ class Hard final : public Enforcement {
     for (std::size_t c = 0; c < springs_.size(); ++c) {
       if (solution.contacts.status(c) == ContactStatus::open) solution.contacts.set_slack(c, std::max(0.0, -springs_[c].shift / springs_[c].normal));
     }
-  }
-
-  /// In motion a closed contact keeps the gap it has, so that standing still is always consistent, unless earlier steps have left more than they
-  /// should; an open one closes to zero, and a penetration found on closing is pushed out slowly. In statics every contact goes back to zero gap.
-  static double target_gap(const StepProblem& problem, const Contact& contact) {
-    if (problem.statics) return 0.0;
-    if (contact.status == ContactStatus::open) return std::min(0.0, contact.gap + tolerance::hard_recovery_m_per_s * problem.dt);
-    return held_gap(problem, contact);
-  }
-
-  /// [m] Of a closed contact. In a step that has been cut short, what is pushed back would throw blocks apart: it has a speed, too.
-  static double held_gap(const StepProblem& problem, const Contact& contact) {
-    const double level = -kept_penetration * problem.method.gap_tolerance;
-    if (contact.gap >= level) return contact.gap;
-    const double recovered = recovered_penetration * problem.method.gap_tolerance;
-    return std::min(level, contact.gap + (problem.statics ? recovered : std::min(recovered, tolerance::hard_recovery_m_per_s * problem.dt)));
   }
 
   /// [m]

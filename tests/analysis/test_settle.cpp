@@ -100,6 +100,31 @@ class RunsAwayOnce : public Enforcement {
 
 }  // namespace
 
+TEST_CASE("rigid contacts carry the same at rest however soft the joints are whose springs they share as", "[analysis][settle]") {
+  // On the springs of the softer ones the slope would sink by metres.
+  const auto forces = [](double stiffness) {
+    Scene scene = slope(40.0, 10.0);
+    scene.method.contact = "hard";
+    scene.joints[0].normal_stiffness = scene.joints[0].shear_stiffness = stiffness;
+    scene.joints[0].cohesion_behaviour = CohesionBehaviour::ductile;  // which bonds break first hangs on the way to rest
+    Simulation simulation(scene);
+    const SettleResult result = settle(simulation);
+    CHECK(result.settled);
+    CHECK(result.steps <= 5);
+    std::vector<double> normal;
+    for (const Contact& c : simulation.change_contacts()) normal.push_back(c.normal_force);
+    return normal;
+  };
+  const std::vector<double> soft = forces(1e7), stiff = forces(1e10);
+  REQUIRE(soft.size() == stiff.size());
+  double largest = 0.0, difference = 0.0;
+  for (std::size_t i = 0; i < soft.size(); ++i) {
+    largest = std::max(largest, std::abs(stiff[i]));
+    difference = std::max(difference, std::abs(soft[i] - stiff[i]));
+  }
+  CHECK(difference < 1e-6 * largest);
+}
+
 TEST_CASE("a block on a base sinks by W/(kn L)", "[analysis][settle]") {
   for (const std::string& method : all_methods) {
     INFO(method);
