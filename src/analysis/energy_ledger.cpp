@@ -43,6 +43,12 @@ void add_elastic_contact(EnergyLedger& ledger, const Contact& contact, const Con
   }
 
   ledger.contact_springs += 0.5 * kn * (p1 * p1 - p0 * p0) + 0.5 * ks * (u1 * u1 - u0 * u0);
+  if (!contact.joint_state.bonded && contact.normal_force < 0.0) {
+    // It has lost its strength while it pulled.
+    const double released = contact.stored_energy - (0.5 * kn * p0 * p0 + 0.5 * ks * u0 * u0);
+    ledger.contact_springs -= released;
+    ledger.redefinition += released;
+  }
   ledger.scheme += by_springs;
   ledger.scheme -= by_rotation;
   ledger.scheme -= let_go;

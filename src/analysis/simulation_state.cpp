@@ -71,10 +71,6 @@ void SimulationState::find_contacts(double lead) {
   contacts_current = true;
   if (!search(lead) || !elastic) return;
   store_changed_energies();
-  const StepProblem p = problem(scene.step.dt, false);
-  for (Contact& c : contacts.moving) {
-    if (!c.joint_state.bonded && c.normal_force < 0.0) store_energy(p, c);  // it lost its strength while it was pulling
-  }
   const double change = moving_contact_energy() - before;
   ledger.redefinition -= change;
   ledger.contact_springs += change;
