@@ -67,8 +67,9 @@ double withheld_strength(const FrozenSystem& system, const FrozenStrength& stren
 bool is_about_to_crack(const FrozenSystem& system, const FrozenStrength& strength, const FrozenState& state, const std::vector<int>& rows) {
   constexpr double nearly = 0.98;  // [-] of the strength at the edge
   const std::vector<char> chosen = marked(system, rows);
-  for (std::size_t i = 0; i < state.contacts.size(); ++i) {
-    if (is_of(system.contacts()[i], chosen) && strength.pull_at_edge(i, state) > nearly) return true;
+  const std::vector<double> pulls = strength.pulls_at_edges(state);
+  for (std::size_t i = 0; i < pulls.size(); ++i) {
+    if (is_of(system.contacts()[i], chosen) && pulls[i] > nearly) return true;
   }
   return false;
 }

@@ -82,7 +82,8 @@ void warn_of_fixed_velocities(const Scene& scene, std::vector<std::string>& warn
   }
 }
 
-/// A contact lies in a seam that both blocks name. Those of a domain have been cut, and may end at its outline.
+/// A contact lies in a seam that both blocks name; a joint of materials as well is there where none does. Those of a domain have been cut, and may
+/// end at its outline.
 void warn_of_lone_seams(const Scene& scene, std::vector<std::string>& warnings) {
   if (scene.cutting) return;
   std::vector<std::set<const BlockInput*>> named_by(scene.joints.size());
@@ -92,7 +93,7 @@ void warn_of_lone_seams(const Scene& scene, std::vector<std::string>& warnings) 
     }
   }
   for (std::size_t joint = 0; joint < named_by.size(); ++joint) {
-    if (named_by[joint].size() != 1) continue;
+    if (named_by[joint].size() != 1 || scene.joints[joint].has_materials()) continue;
     warnings.push_back(
         fmt::format("{}: joint \"{}\" is named by edges of block \"{}\" alone, and has no effect: a contact has the joint that the "
                     "edges of both blocks name",

@@ -45,14 +45,33 @@ bool FrozenStrength::can_lose(std::size_t i, const JointState& state) const {
   return can_lose_strength(joint, state) && (joint.softens() || contact.joined_length > 0.0);  // a lone corner has neither cohesion nor tension
 }
 
-double FrozenStrength::pull_at_edge(std::size_t i, const FrozenState& state) const {
-  const FrozenContact& contact = system_.contacts()[i];
-  const FrozenContactState& here = state.contacts[i];
-  if (contact.other_end < 0 || here.status == ContactStatus::open) return 0.0;
-  const double tension = of(i, here.joint_state).tension;
-  if (tension == 0.0) return 0.0;
-  const double there = state.contacts[contact.other_end].normal * contact.joined_length / system_.contacts()[contact.other_end].joined_length;
-  return std::max(0.0, -force_of_edge_stress(here.normal, there) / tension);
+std::vector<double> FrozenStrength::pulls_at_edges(const FrozenState& state) const {
+  std::vector<double> pulls(state.contacts.size(), 0.0);
+  if (!has_tension()) return pulls;
+  std::vector<PartOfJoint> parts;
+  for (const JointSection& section : system_.sections()) {
+    const auto tension = [&](const PlaceInJoint& place) {
+      const FrozenContactState& s = state.contacts[place.contact];
+      return s.status == ContactStatus::open ? 0.0 : of(place.contact, s.joint_state).tension;
+    };
+    parts.clear();
+    bool some_pull = false;
+    for (const PlaceInJoint& place : section) {
+      // What has cracked holds as long as it presses.
+      const double normal = state.contacts[place.contact].normal, strength = tension(place);
+      some_pull |= strength > 0.0;
+      if (strength > 0.0 || normal > 0.0) parts.push_back({place.low, place.high, place.at, normal});
+    }
+    if (!some_pull) continue;
+    const LinearStress stress(parts);
+    for (const PlaceInJoint& place : section) {
+      const double strength = tension(place);
+      if (strength == 0.0) continue;
+      const double pull = -std::min(stress.at(place.low), stress.at(place.high));
+      pulls[place.contact] = std::max(0.0, pull * system_.contacts()[place.contact].joined_length / system_.length_unit() / strength);
+    }
+  }
+  return pulls;
 }
 
 bool FrozenStrength::has_tension() const {
@@ -63,13 +82,14 @@ bool FrozenStrength::has_tension() const {
 }
 
 double lose_strength(const FrozenStrength& strength, FrozenState& state, SlipOfState slip) {
+  const std::vector<double> pulls = strength.pulls_at_edges(state);
   double largest = 0.0;
   for (std::size_t i = 0; i < state.contacts.size(); ++i) {
     FrozenContactState& s = state.contacts[i];
     const bool counts = slip == SlipOfState::counts;
     if (strength.can_lose(i, s.joint_state)) {
       JointState after = strength.joint_after(i, s, counts ? s.slip : 0.0);
-      if (strength.pull_at_edge(i, state) > 1.0 + rounding_of_pull) after.bonded = false;
+      if (pulls[i] > 1.0 + rounding_of_pull) after.bonded = false;
       largest = std::max(largest, strength.loss(i, s.joint_state, after));
       s.joint_state = after;
     }

@@ -57,8 +57,9 @@ class FrozenStrength {
   /// \param slip  in closures
   JointState joint_after(std::size_t i, const FrozenContactState& state, double slip) const;
   bool can_lose(std::size_t i, const JointState& state) const;
-  /// [-] Of the tensile strength at contact i, what the joint's edge there pulls with, see edge_stress.h: from 1 on it cracks. 0 where none is bent.
-  double pull_at_edge(std::size_t i, const FrozenState& state) const;
+  /// [-] For each contact, what the part of the joint that it stands for pulls with at most, over its tensile strength: from 1 on it cracks, see
+  /// edge_stress.h. 0 where nothing pulls.
+  std::vector<double> pulls_at_edges(const FrozenState& state) const;
   /// Whether the joint has strength that goes with the length of slip and not with the first one.
   bool weakens_along_slip(std::size_t i, const JointState& state) const;
   double loss(std::size_t i, const JointState& before, const JointState& after) const;

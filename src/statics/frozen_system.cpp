@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <set>
 #include <utility>
 
@@ -58,38 +57,6 @@ bool has_block_between(const BlockSystem& system, const Contact& contact, const 
   const Vec2 middle = system.position(contact.vertex_block, contact.vertex) - 0.5 * contact.gap * at.normal;
   return std::ranges::any_of(neighbours[contact.vertex_block],
                              [&](int other) { return other != contact.edge_block && contains(polygon_of(system, other), middle); });
-}
-
-/// Two edges of two blocks, the lower number first.
-using Faces = std::pair<int, int>;
-
-/// What touches at a contact.
-struct Joined {
-  double length = 0.0;       ///< [units of length] those halves of the faces' overlaps that the contact stands for
-  std::vector<Faces> faces;  ///< none, one or two
-};
-
-/// The faces at a corner that lie on the edge.
-Joined joined_at(const BlockSystem& system, const Contact& contact) {
-  const Vec2 start = system.position(contact.edge_block, contact.edge), end = system.position(contact.edge_block, system.next(contact.edge));
-  const Vec2 along = (end - start).normalized(), outward = -perpendicular(along);
-  const double length = (end - start).norm();
-  const Vec2 corner = system.position(contact.vertex_block, contact.vertex) - start;
-  Joined joined;
-  for (const int other : {system.next(contact.vertex), system.previous(contact.vertex)}) {
-    const Vec2 far = system.position(contact.vertex_block, other) - start, side = far - corner;
-    // The block lies on the left of its outline: a side that faces the edge runs against it.
-    const double forward = side.dot(along) * (other == system.next(contact.vertex) ? -1.0 : 1.0);
-    if (forward <= std::cos(tolerance::parallel_none_rad) * side.norm()) continue;
-    const double low = std::max(0.0, std::min(corner.dot(along), far.dot(along))),
-                 high = std::min(length, std::max(corner.dot(along), far.dot(along)));
-    const auto gap = [&](double x) { return corner.dot(outward) + (x - corner.dot(along)) / side.dot(along) * side.dot(outward); };
-    if (!(high > low) || std::max(std::abs(gap(low)), std::abs(gap(high))) > closed_gap) continue;
-    joined.length += 0.5 * (high - low);
-    joined.faces.push_back(std::minmax(other == system.next(contact.vertex) ? contact.vertex : other, contact.edge));
-  }
-  joined.length = std::min(joined.length, contact.length);
-  return joined;
 }
 
 BlockVector scaled_rotation(const Eigen::Vector3d& gradient, double radius, bool locked) {
@@ -165,8 +132,8 @@ void FrozenSystem::find_contacts(const Scene& scaled, const BlockSystem& system)
   }
   const BlockSystem::Unknowns still = BlockSystem::Unknowns::Zero();
   std::vector<Joined> joined;
-  std::map<Faces, std::vector<int>> ends;  // numbers of contacts
-  std::vector<char> is_end_of_one;         // pair of faces
+  std::vector<Contact> closed;
+  std::vector<Joined> joined_of_closed;
   std::set<std::pair<int, int>> pairs_with_joint;
   const auto pair_of = [](const Contact& c) { return std::minmax(c.vertex_block, c.edge_block); };
   for (const Contact& contact : found) {
@@ -194,14 +161,13 @@ void FrozenSystem::find_contacts(const Scene& scaled, const BlockSystem& system)
     c.joined_length = joined[i].length * length_unit_;
     c.normal = k.normal;
     c.point = system.position(contact.vertex_block, contact.vertex);
-    for (const Faces& faces : joined[i].faces) ends[faces].push_back(static_cast<int>(contacts_.size()));
-    is_end_of_one.push_back(joined[i].faces.size() == 1);
     contacts_.push_back(c);
+    closed.push_back(contact);
+    joined_of_closed.push_back(joined[i]);
   }
-  for (const auto& [faces, contacts] : ends) {
-    if (contacts.size() != 2) continue;
-    if (is_end_of_one[contacts[0]]) contacts_[contacts[0]].other_end = contacts[1];
-    if (is_end_of_one[contacts[1]]) contacts_[contacts[1]].other_end = contacts[0];
+  sections_ = joint_sections(system, closed, joined_of_closed);
+  for (const JointSection& section : sections_) {
+    for (const PlaceInJoint& place : section) contacts_[place.contact].joined_length += place.filled * length_unit_;
   }
 }
 

@@ -17,6 +17,7 @@
 #include "openclose/contact/joint_table.h"
 #include "openclose/model/block_system.h"
 #include "openclose/scene/scene.h"
+#include "openclose/statics/joint_sections.h"
 
 namespace openclose {
 
@@ -47,7 +48,6 @@ struct FrozenContact {
   double shear_stiffness = 0.0;    ///< [-]
   Contact source;                  ///< blocks, corner, edge, joint; its length in metres
   double joined_length = 0.0;      ///< [m] of the faces that touch each other here, on which cohesion and tensile strength act; 0 at a lone corner
-  int other_end = -1;              ///< contact at the other end of these faces, -1 at a lone corner and where two pairs of faces meet
   Vec2 point = Vec2::Zero();       ///< [m] of the scene
   Vec2 normal = Vec2::Zero();      ///< from the edge's block into the corner's
 };
@@ -71,6 +71,7 @@ class FrozenSystem {
 
   const std::vector<FrozenBlock>& blocks() const { return blocks_; }  ///< the free ones, in the order of their rows
   const std::vector<FrozenContact>& contacts() const { return contacts_; }
+  const std::vector<JointSection>& sections() const { return sections_; }
   const std::vector<FrozenSupport>& supports() const { return supports_; }
   int rows() const { return static_cast<int>(blocks_.size()); }
 
@@ -84,6 +85,7 @@ class FrozenSystem {
 
   std::vector<FrozenBlock> blocks_;
   std::vector<FrozenContact> contacts_;
+  std::vector<JointSection> sections_;
   std::vector<FrozenSupport> supports_;
   bool has_live_load_ = false;
   double force_unit_ = 1.0, closure_unit_ = 1.0, length_unit_ = 1.0;

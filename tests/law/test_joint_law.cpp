@@ -459,9 +459,27 @@ TEST_CASE("damped forces are continuous, and their derivatives are their differe
   if (springs.gap < 0.0) CHECK(carrying_nothing > 100);
 }
 
-TEST_CASE("the forces at the two ends of a joint tell the stress at its edge as in a beam: N/L + 6 M/L^2", "[law]") {
-  constexpr double length = 3.0, normal = 5e3, moment = -7e3;
-  const double first = 0.5 * normal + moment / length, second = 0.5 * normal - moment / length;
-  CHECK(force_of_edge_stress(first, second) == Approx(0.5 * length * (normal / length + 6.0 * moment / (length * length))));
-  CHECK(force_of_edge_stress(second, first) == Approx(0.5 * length * (normal / length - 6.0 * moment / (length * length))));
+TEST_CASE("forces at points of a joint tell the stress along it as in a beam: N/A + M (x - x0)/I", "[law]") {
+  SECTION("held at its two ends") {
+    constexpr double length = 3.0, normal = 5e3, moment = -7e3;
+    const std::array parts = {PartOfJoint{1.0, 2.5, 1.0, 0.5 * normal - moment / length}, PartOfJoint{2.5, 4.0, 4.0, 0.5 * normal + moment / length}};
+    const LinearStress stress(parts);
+    CHECK(stress.at(4.0) == Approx(normal / length + 6.0 * moment / (length * length)));
+    CHECK(stress.at(1.0) == Approx(normal / length - 6.0 * moment / (length * length)));
+  }
+  SECTION("of unequal parts with a hole between them") {
+    // 0 to 1 and 3 to 5: A = 3, x0 = 17/6, I = 1/12 + (7/3)^2 + 8/12 + 2 (7/6)^2.
+    const std::array parts = {PartOfJoint{0.0, 1.0, 0.0, 30.0}, PartOfJoint{3.0, 5.0, 4.0, -60.0}};
+    const double middle = 17.0 / 6.0, inertia = 1.0 / 12.0 + 49.0 / 9.0 + 8.0 / 12.0 + 2.0 * 49.0 / 36.0;
+    const double moment = 30.0 * (0.0 - middle) - 60.0 * (4.0 - middle);
+    const LinearStress stress(parts);
+    CHECK(stress.at(middle) == Approx(-10.0));
+    CHECK(stress.at(5.0) == Approx(-10.0 + moment * (5.0 - middle) / inertia));
+  }
+  SECTION("what is left holds at its edge alone") {
+    const std::array parts = {PartOfJoint{0.0, 2.0, 0.0, -1.0}};
+    const LinearStress stress(parts);
+    CHECK(stress.at(0.0) == Approx(-0.5 - 1.5));
+    CHECK(stress.at(2.0) == Approx(-0.5 + 1.5));
+  }
 }

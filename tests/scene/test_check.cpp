@@ -213,6 +213,9 @@ TEST_CASE("a seam that one block alone names is warned of", "[scene][check]") {
   scene.blocks[0].edge_joints = {seam, none, none, none};
   REQUIRE(check_scene(scene).size() == 1);
   CHECK_THAT(check_scene(scene).front(), ContainsSubstring("joint \"seam\" is named by edges of block \"" + scene.blocks[0].name + "\" alone"));
+  scene.joints[seam].materials = {0, 0};  // there, too, where no block names it
+  CHECK(check_scene(scene).empty());
+  scene.joints[seam].materials = {JointProperties::no_material, JointProperties::no_material};
   scene.blocks[1].edge_joints = {none, none, seam, none};
   CHECK(check_scene(scene).empty());
 }

@@ -131,39 +131,52 @@ TEST_CASE("a corner that stands alone has no cohesion and no tension to lose", "
   CHECK(corners == 1);
 }
 
-TEST_CASE("a joint between two faces has two ends, a lone corner and a corner between two faces have no other one", "[statics]") {
-  // The upper block stands back by half, so that the ends of the second joint are corners of both blocks; the nose of a third one touches it.
-  Scene scene = test::block_on_base();
-  scene.blocks.push_back(test::free_block("upper", test::rectangle(1.0, 1.0, 2.0, 1.0)));
-  scene.blocks.push_back(test::fixed_block("nose", {{3.0, 1.5}, {5.0, 1.25}, {5.0, 1.9}}));
-  const FrozenSystem system(scene);
-  int ends = 0, lone = 0;
-  for (int i = 0; i < static_cast<int>(system.contacts().size()); ++i) {
-    const FrozenContact& contact = system.contacts()[i];
-    if (contact.joined_length == 0.0) {
-      ++lone;
-      CHECK(contact.other_end == -1);
-      continue;
+TEST_CASE("the joints between two blocks are sections, each along one line", "[statics]") {
+  const auto size = [](const FrozenSystem& system, const JointSection& section) {
+    double length = 0.0, joined = 0.0;
+    for (const PlaceInJoint& place : section) {
+      length += (place.high - place.low) * system.length_unit();
+      joined += system.contacts()[place.contact].joined_length;
     }
-    ++ends;
-    REQUIRE(contact.other_end >= 0);
-    const FrozenContact& other = system.contacts()[contact.other_end];
-    CHECK(other.other_end == i);
-    CHECK((other.point - contact.point).norm() == Approx(2.0 * contact.joined_length));
+    CHECK(joined == Approx(length));
+    return length;
+  };
+  SECTION("an upper block that stands back by half, and the nose of a third one that touches it") {
+    Scene scene = test::block_on_base();
+    scene.blocks.push_back(test::free_block("upper", test::rectangle(1.0, 1.0, 2.0, 1.0)));
+    scene.blocks.push_back(test::fixed_block("nose", {{3.0, 1.5}, {5.0, 1.25}, {5.0, 1.9}}));
+    const FrozenSystem system(scene);
+    REQUIRE(system.sections().size() == 2);
+    CHECK(system.contacts().size() == 5);
+    CHECK(system.sections()[0].size() == 2);
+    CHECK(size(system, system.sections()[0]) == Approx(2.0));
+    CHECK(size(system, system.sections()[1]) == Approx(1.0));
   }
-  CHECK(ends == 4);
-  CHECK(lone == 1);
-  // A vertex in the middle of a face stands between two pairs of faces, each with an end beyond.
-  Scene divided = test::block_on_base();
-  divided.blocks[1].vertices.insert(divided.blocks[1].vertices.begin() + 1, Vec2(1.0, 0.0));
-  const FrozenSystem of_two(divided);
-  REQUIRE(of_two.contacts().size() == 3);
-  int middle = -1;
-  for (int i = 0; i < 3; ++i) {
-    if (of_two.contacts()[i].point.x() == Approx(1.0)) middle = i;
+  SECTION("a corner in a face, out of it or in it by what drawings are rounded to, divides no joint") {
+    for (const double off : {-1e-3, -1e-6, 0.0, 1e-6, 1e-3}) {
+      CAPTURE(off);
+      Scene scene = test::block_on_base();
+      auto& corners = scene.blocks[1].vertices;
+      corners.insert(corners.begin() + 1, Vec2(0.4, off));
+      const FrozenSystem system(scene);
+      REQUIRE(system.sections().size() == 1);
+      CHECK(system.sections()[0].size() == (off > 0.0 ? 2 : 3));
+      CHECK(size(system, system.sections()[0]) == Approx(2.0).epsilon(1e-5));
+    }
   }
-  REQUIRE(middle >= 0);
-  for (int i = 0; i < 3; ++i) CHECK(of_two.contacts()[i].other_end == (i == middle ? -1 : middle));
+  SECTION("the two legs of a gate are one section with a hole, a step in a floor makes two") {
+    Scene scene = test::block_on_base();
+    scene.blocks[1].vertices = {{0.0, 0.0}, {0.5, 0.0}, {0.5, 1.0}, {1.5, 1.0}, {1.5, 0.0}, {2.0, 0.0}, {2.0, 2.0}, {0.0, 2.0}};
+    const FrozenSystem gate(scene);
+    REQUIRE(gate.sections().size() == 1);
+    CHECK(gate.sections()[0].size() == 4);
+    CHECK(size(gate, gate.sections()[0]) == Approx(1.0));
+    scene.blocks[0].vertices = {{-10.0, -1.0}, {10.0, -1.0}, {10.0, 0.5}, {1.0, 0.5}, {1.0, 0.0}, {-10.0, 0.0}};
+    scene.blocks[1].vertices = {{0.0, 0.0}, {0.9, 0.0}, {0.9, 0.5}, {2.0, 0.5}, {2.0, 2.0}, {0.0, 2.0}};
+    const FrozenSystem step(scene);
+    REQUIRE(step.sections().size() == 2);
+    CHECK(size(step, step.sections()[0]) + size(step, step.sections()[1]) == Approx(1.9));
+  }
 }
 
 TEST_CASE("a joint cracks at the end where stress that is linear along it reaches the tensile strength", "[statics]") {
@@ -182,7 +195,7 @@ TEST_CASE("a joint cracks at the end where stress that is linear along it reache
     lose_strength(strength, state);
     return std::pair(!state.contacts[0].joint_state.bonded, !state.contacts[1].joint_state.bonded);
   };
-  // N + -6 M/L over the length, against the strength: 2 N1 - N2 over what an end bears.
+  // N/L + -6 M/L^2, against the strength: 2 N1 - N2 over what an end bears.
   CHECK(cracked(-0.33, 0.33) == std::pair(false, false));
   CHECK(cracked(-0.34, 0.34) == std::pair(true, false));
   CHECK(cracked(0.34, -0.34) == std::pair(false, true));
@@ -191,6 +204,19 @@ TEST_CASE("a joint cracks at the end where stress that is linear along it reache
   CHECK(cracked(0.0, 0.99) == std::pair(false, false));
   CHECK(cracked(0.0, 1.01) == std::pair(true, false));
   CHECK(cracked(2.0, 4.9) == std::pair(false, false));
+  // What has cracked at the left is a part of the joint while it presses there; half a joint that hangs at its edge bears a quarter of its strength.
+  const auto right_cracks = [&](double left, double right) {
+    FrozenState state(system);
+    state.contacts[0].joint_state.bonded = false;
+    state.contacts[0].normal = left * bears;
+    state.contacts[1].normal = right * bears;
+    lose_strength(strength, state);
+    return !state.contacts[1].joint_state.bonded;
+  };
+  CHECK_FALSE(right_cracks(0.33, -0.33));
+  CHECK(right_cracks(0.34, -0.34));
+  CHECK_FALSE(right_cracks(0.0, -0.24));
+  CHECK(right_cracks(0.0, -0.26));
 }
 
 TEST_CASE("dem: the travel of a state is at least the way from where it began", "[statics]") {

@@ -34,8 +34,22 @@ void overhang(Report& report, const std::string& method, int pieces) {
     scene.blocks.push_back(fixed_block("wall " + std::to_string(i), rectangle(-1.0, data.height * i / n, 1.0, data.height / n)));
   scene.blocks.push_back(free_block("beam", rectangle(0.0, 0.0, data.width, data.height)));
   const double part = (1.0 + 2.0 / (n * n)) / (1.0 + 2.0 / n);
-  report.relative(text("overhang on a joint of {:g} pieces", n), method, part * tension * section / moment, strength_reduction_factor(report, scene),
+  report.relative(text("overhang, pieces of its joint: {:g}", n), method, part * tension * section / moment, strength_reduction_factor(report, scene),
                   width, "-", std::string("sigma L^2/(6 M) (1 + 2/n^2)/(1 + 2/n)") + bracket);
+}
+
+/// A drawing has corners in faces, out of the straight line or in it by its rounding: the joint stays one.
+void drawn_overhang(Report& report, const std::string& method, double off) {
+  analytical::BlockOnPlane data;
+  data.width = 2.0;
+  data.height = 1.0;
+  const double moment = data.weight() * 0.5 * data.width, section = data.height * data.height / 6.0, tension = 1.6 * moment / section;
+  Scene scene = bonded(data, method, tension);
+  scene.blocks = {fixed_block("wall", rectangle(-1.0, -1.0, 1.0, 3.0)), free_block("beam", rectangle(0.0, 0.0, data.width, data.height))};
+  scene.blocks[1].vertices.push_back({off, 0.8 * data.height});
+  scene.blocks[1].vertices.push_back({-off, 0.5 * data.height});
+  report.relative(text("overhang with corners {:+g} m off its face", off), method, 1.6, strength_reduction_factor(report, scene),
+                  width + 2.0 * std::abs(off) / data.height, "-", "sigma L^2/(6 M); width of the bracket, and arms of the moment");
 }
 
 /// 6 M/b^2 - W/b at the foot.
@@ -56,6 +70,7 @@ void column(Report& report, const std::string& method) {
 void bending(Report& report) {
   for (const std::string& method : all_methods) {
     for (const int pieces : {1, 2, 4}) overhang(report, method, pieces);
+    for (const double off : {5e-4, -5e-4, 1e-6}) drawn_overhang(report, method, off);
     column(report, method);
   }
 }

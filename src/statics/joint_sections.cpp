@@ -1,0 +1,110 @@
+#include "openclose/statics/joint_sections.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <numeric>
+#include <utility>
+
+#include "openclose/core/tolerance.h"
+#include "openclose/statics/frozen_system.h"
+
+namespace openclose {
+namespace {
+
+/// The line on which a contact lies in the drawing, counter-clockwise around the block with the lower number.
+struct Line {
+  Vec2 along;  ///< of length 1
+  Vec2 corner;
+  double ahead, behind;  ///< [units of length] of what is joined at the corner
+
+  Line(const BlockSystem& system, const Contact& contact, const Joined& joined)
+      : along((system.position(contact.edge_block, system.next(contact.edge)) - system.position(contact.edge_block, contact.edge)).normalized()),
+        corner(system.position(contact.vertex_block, contact.vertex)),
+        ahead(joined.ahead),
+        behind(joined.behind) {
+    if (contact.edge_block < contact.vertex_block) return;
+    along = -along;
+    std::swap(ahead, behind);
+  }
+
+  /// A corner may be off a face by the closed gap. The longer of the two faces that it makes of it leaves the line that it lies on by at most twice
+  /// that, at the other end of the shorter one.
+  bool continues(const Line& other) const {
+    return along.dot(other.along) >= std::cos(tolerance::parallel_none_rad) && std::abs(cross(along, other.corner - corner)) <= 2.0 * closed_gap;
+  }
+};
+
+/// A section that grows, with the line of its first contact.
+struct Growing {
+  Line line;
+  JointSection section;
+};
+
+/// A corner that points away from the other block, if only by rounding, has no contact, and half of the faces on both its sides none either: the
+/// contacts at their other ends stand for these halves, too.
+void fill_holes(JointSection& section) {
+  constexpr double rounding = 1e-6;  // [-]
+  std::ranges::sort(section, {}, &PlaceInJoint::at);
+  for (std::size_t i = 0; i + 1 < section.size(); ++i) {
+    PlaceInJoint &here = section[i], &next = section[i + 1];
+    const double ahead = here.high - here.at, behind = next.at - next.low, hole = next.low - here.high;
+    if (hole <= 0.0 || hole > (1.0 + rounding) * (ahead + behind)) continue;
+    const double part = hole * ahead / (ahead + behind);
+    here.high += part;
+    here.filled += part;
+    next.low = here.high;
+    next.filled += hole - part;
+  }
+}
+
+}  // namespace
+
+Joined joined_at(const BlockSystem& system, const Contact& contact) {
+  const Vec2 start = system.position(contact.edge_block, contact.edge), end = system.position(contact.edge_block, system.next(contact.edge));
+  const Vec2 along = (end - start).normalized(), outward = -perpendicular(along);
+  const double length = (end - start).norm();
+  const Vec2 corner = system.position(contact.vertex_block, contact.vertex) - start;
+  Joined joined;
+  for (const int other : {system.next(contact.vertex), system.previous(contact.vertex)}) {
+    const Vec2 far = system.position(contact.vertex_block, other) - start, side = far - corner;
+    // The block lies on the left of its outline: a side that faces the edge runs against it.
+    const double forward = side.dot(along) * (other == system.next(contact.vertex) ? -1.0 : 1.0);
+    if (forward <= std::cos(tolerance::parallel_none_rad) * side.norm()) continue;
+    const double low = std::max(0.0, std::min(corner.dot(along), far.dot(along))),
+                 high = std::min(length, std::max(corner.dot(along), far.dot(along)));
+    const auto gap = [&](double x) { return corner.dot(outward) + (x - corner.dot(along)) / side.dot(along) * side.dot(outward); };
+    if (!(high > low) || std::max(std::abs(gap(low)), std::abs(gap(high))) > closed_gap) continue;
+    (side.dot(along) > 0.0 ? joined.ahead : joined.behind) += 0.5 * (high - low);
+  }
+  joined.length = std::min(joined.ahead + joined.behind, contact.length);
+  return joined;
+}
+
+std::vector<JointSection> joint_sections(const BlockSystem& system, const std::vector<Contact>& contacts, const std::vector<Joined>& joined) {
+  std::map<std::pair<int, int>, std::vector<Growing>> of_blocks;
+  std::vector<int> longest_first(contacts.size());
+  std::iota(longest_first.begin(), longest_first.end(), 0);
+  std::ranges::stable_sort(longest_first, std::greater(), [&](int i) { return joined[i].length; });
+  for (const int i : longest_first) {
+    if (joined[i].length == 0.0) continue;
+    const Contact& contact = contacts[i];
+    const Line line(system, contact, joined[i]);
+    std::vector<Growing>& known = of_blocks[std::minmax(contact.vertex_block, contact.edge_block)];
+    auto growing = std::ranges::find_if(known, [&](const Growing& g) { return g.line.continues(line); });
+    if (growing == known.end()) growing = known.insert(known.end(), {line, {}});
+    const double at = growing->line.along.dot(line.corner - growing->line.corner);
+    growing->section.push_back({i, at, at - line.behind, at + line.ahead});
+  }
+  std::vector<JointSection> sections;
+  for (auto& [blocks, list] : of_blocks) {
+    for (Growing& growing : list) {
+      fill_holes(growing.section);
+      sections.push_back(std::move(growing.section));
+    }
+  }
+  return sections;
+}
+
+}  // namespace openclose

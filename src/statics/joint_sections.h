@@ -1,0 +1,32 @@
+// The joints between two blocks, each along one line, for the stress in them: see edge_stress.h.
+#pragma once
+
+#include <vector>
+
+#include "openclose/contact/contact.h"
+#include "openclose/model/block_system.h"
+
+namespace openclose {
+
+/// What of a contact lies on faces that touch each other [units of length].
+struct Joined {
+  double length = 0.0;               ///< those halves of the faces' overlaps that the contact stands for
+  double ahead = 0.0, behind = 0.0;  ///< of them, what lies along the edge's direction from the corner, and against it
+};
+
+/// The faces at a corner that lie on the edge.
+Joined joined_at(const BlockSystem& system, const Contact& contact);
+
+/// A contact as a part of its joint.
+struct PlaceInJoint {
+  int contact;
+  double at, low, high;  ///< [units of length] along the joint: of the corner, and of what it stands for
+  double filled = 0.0;   ///< [units of length] of that, what lies beyond its halves, where corners that face nothing have left a hole
+};
+
+/// Contacts of two blocks whose faces lie on one line, however many corners these have.
+using JointSection = std::vector<PlaceInJoint>;
+/// \param joined  of the contacts; those of which nothing is joined are in no section
+std::vector<JointSection> joint_sections(const BlockSystem& system, const std::vector<Contact>& contacts, const std::vector<Joined>& joined);
+
+}  // namespace openclose
