@@ -46,7 +46,8 @@ struct Growing {
 /// contacts at their other ends stand for these halves, too.
 void fill_holes(JointSection& section) {
   constexpr double rounding = 1e-6;  // [-]
-  std::ranges::sort(section, {}, &PlaceInJoint::at);
+  // Two that meet at a corner are both there: what tells them apart is where they go from it.
+  std::ranges::sort(section, {}, [](const PlaceInJoint& place) { return place.low + place.high; });
   for (std::size_t i = 0; i + 1 < section.size(); ++i) {
     PlaceInJoint &here = section[i], &next = section[i + 1];
     const double ahead = here.high - here.at, behind = next.at - next.low, hole = next.low - here.high;

@@ -164,6 +164,25 @@ TEST_CASE("the joints between two blocks are sections, each along one line", "[s
       CHECK(size(system, system.sections()[0]) == Approx(2.0).epsilon(1e-5));
     }
   }
+  SECTION("where both blocks have a corner the halves of two pairs of faces meet, and nothing is missing") {
+    Scene scene = test::block_on_base();
+    JointProperties bridge = scene.joints[0];
+    bridge.name = "bridge";
+    bridge.materials = {JointProperties::no_material, JointProperties::no_material};
+    scene.joints.push_back(bridge);
+    constexpr int none = BlockInput::by_materials;
+    scene.blocks[0].vertices = {{-10.0, -1.0}, {10.0, -1.0}, {10.0, 0.0}, {1.3, 0.0}, {0.4, 0.0}, {-10.0, 0.0}};
+    scene.blocks[0].edge_joints = {none, none, none, 1, none, none};
+    scene.blocks[1].vertices = {{0.0, 0.0}, {0.4, 0.0}, {1.3, 0.0}, {2.0, 0.0}, {2.0, 1.0}, {0.0, 1.0}};
+    scene.blocks[1].edge_joints = {none, 1, none, none, none, none};
+    const FrozenSystem system(scene);
+    double of_bridge = 0.0;
+    for (const FrozenContact& c : system.contacts()) of_bridge += c.source.joint == 1 ? c.joined_length : 0.0;
+    CHECK(of_bridge == Approx(0.9));
+    REQUIRE(system.sections().size() == 1);
+    CHECK(size(system, system.sections()[0]) == Approx(2.0));
+    for (const PlaceInJoint& place : system.sections()[0]) CHECK(place.filled == 0.0);
+  }
   SECTION("the two legs of a gate are one section with a hole, a step in a floor makes two") {
     Scene scene = test::block_on_base();
     scene.blocks[1].vertices = {{0.0, 0.0}, {0.5, 0.0}, {0.5, 1.0}, {1.5, 1.0}, {1.5, 0.0}, {2.0, 0.0}, {2.0, 2.0}, {0.0, 2.0}};
