@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "openclose/analysis/bent_joints.h"
 #include "openclose/analysis/loose_motion.h"
 #include "openclose/analysis/start.h"
 #include "openclose/core/error.h"
@@ -216,6 +217,7 @@ class MotionInTime {
           "geometry than the drawn one; fos says whether that stands",
           result_.settling.displacement, way));
     }
+    if (const std::string words = bent_joints_in_words(simulation_); begun_ && !words.empty()) result_.warnings.push_back(words);
     const std::string ending = begun_ ? fmt::format("the run ended at t = {:.6g} s", simulation_.time()) : "the run had no state to start from";
     while (result_.milestones.size() < scene_.milestones.size()) {
       Milestone missing;

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "openclose/law/edge_stress.h"
-
 namespace openclose {
 namespace {
 
@@ -46,32 +44,12 @@ bool FrozenStrength::can_lose(std::size_t i, const JointState& state) const {
 }
 
 std::vector<double> FrozenStrength::pulls_at_edges(const FrozenState& state) const {
-  std::vector<double> pulls(state.contacts.size(), 0.0);
-  if (!has_tension()) return pulls;
-  std::vector<PartOfJoint> parts;
-  for (const JointSection& section : system_.sections()) {
-    const auto tension = [&](const PlaceInJoint& place) {
-      const FrozenContactState& s = state.contacts[place.contact];
-      return s.status == ContactStatus::open ? 0.0 : of(place.contact, s.joint_state).tension;
-    };
-    parts.clear();
-    bool some_pull = false;
-    for (const PlaceInJoint& place : section) {
-      // What has cracked holds as long as it presses.
-      const double normal = state.contacts[place.contact].normal, strength = tension(place);
-      some_pull |= strength > 0.0;
-      if (strength > 0.0 || normal > 0.0) parts.push_back({place.low, place.high, place.at, normal});
-    }
-    if (!some_pull) continue;
-    const LinearStress stress(parts);
-    for (const PlaceInJoint& place : section) {
-      const double strength = tension(place);
-      if (strength == 0.0) continue;
-      const double pull = -std::min(stress.at(place.low), stress.at(place.high));
-      pulls[place.contact] = std::max(0.0, pull * system_.contacts()[place.contact].joined_length / system_.length_unit() / strength);
-    }
-  }
-  return pulls;
+  if (!has_tension()) return std::vector<double>(state.contacts.size(), 0.0);
+  return openclose::pulls_at_edges(system_.sections(), state.contacts.size(), [&](int i) -> EndOfJoint {
+    const FrozenContactState& s = state.contacts[i];
+    const double tension = s.status == ContactStatus::open ? 0.0 : of(i, s.joint_state).tension;
+    return {s.normal, tension, system_.contacts()[i].joined_length / system_.length_unit()};
+  });
 }
 
 bool FrozenStrength::has_tension() const {

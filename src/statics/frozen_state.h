@@ -57,8 +57,7 @@ class FrozenStrength {
   /// \param slip  in closures
   JointState joint_after(std::size_t i, const FrozenContactState& state, double slip) const;
   bool can_lose(std::size_t i, const JointState& state) const;
-  /// [-] For each contact, what the part of the joint that it stands for pulls with at most, over its tensile strength: from 1 on it cracks, see
-  /// edge_stress.h. 0 where nothing pulls.
+  /// See joint_sections.h.
   std::vector<double> pulls_at_edges(const FrozenState& state) const;
   /// Whether the joint has strength that goes with the length of slip and not with the first one.
   bool weakens_along_slip(std::size_t i, const JointState& state) const;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "openclose/core/tolerance.h"
+#include "openclose/law/edge_stress.h"
 #include "openclose/statics/frozen_system.h"
 
 namespace openclose {
@@ -106,6 +107,29 @@ std::vector<JointSection> joint_sections(const BlockSystem& system, const std::v
     }
   }
   return sections;
+}
+
+std::vector<double> pulls_at_edges(const std::vector<JointSection>& sections, std::size_t contacts, const std::function<EndOfJoint(int)>& end_of) {
+  std::vector<double> pulls(contacts, 0.0);
+  std::vector<PartOfJoint> parts;
+  for (const JointSection& section : sections) {
+    parts.clear();
+    bool is_bonded = false;
+    for (const PlaceInJoint& place : section) {
+      const EndOfJoint end = end_of(place.contact);
+      is_bonded |= end.tension > 0.0;
+      // What has cracked holds as long as it presses.
+      if (end.tension > 0.0 || end.normal > 0.0) parts.push_back({place.low, place.high, place.at, end.normal});
+    }
+    if (!is_bonded) continue;
+    const LinearStress stress(parts);
+    for (const PlaceInJoint& place : section) {
+      const EndOfJoint end = end_of(place.contact);
+      const double pull = -std::min(stress.at(place.low), stress.at(place.high)) * end.length;
+      if (end.tension > 0.0) pulls[place.contact] = std::max(0.0, pull / end.tension);
+    }
+  }
+  return pulls;
 }
 
 }  // namespace openclose

@@ -1,6 +1,7 @@
 // The joints between two blocks, each along one line, for the stress in them: see edge_stress.h.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "openclose/contact/contact.h"
@@ -28,5 +29,16 @@ struct PlaceInJoint {
 using JointSection = std::vector<PlaceInJoint>;
 /// \param joined  of the contacts; those of which nothing is joined are in no section
 std::vector<JointSection> joint_sections(const BlockSystem& system, const std::vector<Contact>& contacts, const std::vector<Joined>& joined);
+
+/// What a contact carries, and what its joint bears there.
+struct EndOfJoint {
+  double normal;   ///< [N] compression positive
+  double tension;  ///< [N] of the tensile strength, 0 where nothing is bonded
+  double length;   ///< [units of length] that this strength is of
+};
+
+/// [-] For each contact, what the part of the joint that it stands for pulls with at most, over its tensile strength: from 1 on it cracks, see
+/// edge_stress.h. 0 where nothing pulls.
+std::vector<double> pulls_at_edges(const std::vector<JointSection>& sections, std::size_t contacts, const std::function<EndOfJoint(int)>& end_of);
 
 }  // namespace openclose

@@ -124,6 +124,15 @@ TEST_CASE("what does not stand without the load has no multiplier", "[analysis][
   CHECK_THAT(falls.reason, Catch::Matchers::StartsWith("no strength of the joints could hold the blocks"));
 }
 
+TEST_CASE("what bears nothing of a load has the multiplier 0, with which there is nothing to compare", "[analysis][load_multiplier]") {
+  Scene scene = test::block_on_base();
+  scene.joints[0].friction_angle = 0.0;
+  const FactorOfSafety smooth = multiplier(scene, "gravity_x");
+  REQUIRE(smooth.found());
+  CHECK(smooth.stable() == 0.0);
+  CHECK(smooth.stiffness_effects.empty());
+}
+
 TEST_CASE("without gravity a named load alone pushes the blocks", "[analysis][load_multiplier]") {
   // Pressed against a wall by 8 kN, it bears half of that along the wall.
   Scene scene = test::empty_scene();

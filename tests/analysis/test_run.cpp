@@ -728,3 +728,29 @@ TEST_CASE("who takes no adaptive steps is not advised to", "[analysis][run]") {
     CHECK(names("step.adaptive") == (method == "soft"));
   }
 }
+
+TEST_CASE("a motion that stands on joints that would crack where they are bent says so", "[analysis][run]") {
+  // An overhang of 2 m x 1 m: 6 M/L^2 at the wall; each of its two ends bears three times that.
+  for (const std::string& method : test::all_methods) {
+    CAPTURE(method);
+    Scene scene = test::scene_with(
+        {test::fixed_block("wall", test::rectangle(-1.0, -1.0, 1.0, 3.0)), test::free_block("beam", test::rectangle(0.0, 0.0, 2.0, 1.0))});
+    scene.method.contact = method;
+    scene.method.start = Start::settled;
+    scene.end_time = 0.01;
+    const double at_edge = 6.0 * test::block_weight;
+    scene.joints[0].cohesion = 1e3 * at_edge;
+    const auto warning = [&](double tension) -> std::string {
+      scene.joints[0].tensile_strength = tension;
+      Simulation simulation(scene);
+      const RunResult result = run(simulation, {});
+      CHECK(result.converged);
+      for (const std::string& w : result.warnings) {
+        if (w.find("crack") != std::string::npos) return w;
+      }
+      return "";
+    };
+    CHECK(warning(1.2 * at_edge).empty());
+    CHECK(warning(0.5 * at_edge).find("at 1 contacts joints are bent by up to 2 times") == 0);
+  }
+}
