@@ -167,7 +167,10 @@ void FrozenSystem::find_contacts(const Scene& scaled, const BlockSystem& system)
   }
   sections_ = joint_sections(system, closed, joined_of_closed);
   for (const JointSection& section : sections_) {
-    for (const PlaceInJoint& place : section) contacts_[place.contact].joined_length += place.filled * length_unit_;
+    for (const PlaceInJoint& place : section) {
+      contacts_[place.contact].joined_length += place.filled * length_unit_;
+      contacts_[place.contact].source.length += place.filled * length_unit_;
+    }
   }
 }
 

@@ -43,21 +43,38 @@ struct Growing {
   JointSection section;
 };
 
-/// A corner that points away from the other block, if only by rounding, has no contact, and half of the faces on both its sides none either: the
-/// contacts at their other ends stand for these halves, too.
-void fill_holes(JointSection& section) {
-  constexpr double rounding = 1e-6;  // [-]
+/// Whether the outline of a block stays on a line from a contact to another one, ahead of it.
+bool stays_on_line(const BlockSystem& system, int block, const Line& line, const Contact& from, double ahead) {
+  const bool is_forward = block == std::min(from.vertex_block, from.edge_block);  // the outlines of two blocks run against each other
+  const auto next = [&](int v) { return is_forward ? system.next(v) : system.previous(v); };
+  int v = block == from.vertex_block ? next(from.vertex) : is_forward ? system.next(from.edge) : from.edge;
+  const Vec2 start = system.position(from.vertex_block, from.vertex);
+  for (int k = 0; k < system.block(block).vertex_count; ++k, v = next(v)) {
+    const Vec2 way = system.position(block, v) - start;
+    if (line.along.dot(way) >= ahead) return true;
+    if (std::abs(cross(line.along, way)) > 2.0 * closed_gap) return false;
+  }
+  return false;
+}
+
+/// A corner that points away from the other block, if only by rounding, has no contact, and half of the faces on both its sides none either: where
+/// the faces touch, the contacts on both sides of such a hole stand for it, too, each for what is nearer to it.
+void fill_holes(const BlockSystem& system, const std::vector<Contact>& contacts, Growing& growing) {
+  constexpr double rounding = 1e-9;  // [-]
+  JointSection& section = growing.section;
   // Two that meet at a corner are both there: what tells them apart is where they go from it.
   std::ranges::sort(section, {}, [](const PlaceInJoint& place) { return place.low + place.high; });
   for (std::size_t i = 0; i + 1 < section.size(); ++i) {
     PlaceInJoint &here = section[i], &next = section[i + 1];
-    const double ahead = here.high - here.at, behind = next.at - next.low, hole = next.low - here.high;
-    if (hole <= 0.0 || hole > (1.0 + rounding) * (ahead + behind)) continue;
-    const double part = hole * ahead / (ahead + behind);
-    here.high += part;
-    here.filled += part;
-    next.low = here.high;
-    next.filled += hole - part;
+    const Contact &from = contacts[here.contact], &to = contacts[next.contact];
+    const double between = next.at - here.at;
+    if (next.low - here.high <= rounding * between || from.joint != to.joint) continue;
+    const auto touches = [&](int block) { return stays_on_line(system, block, growing.line, from, (1.0 - rounding) * between); };
+    if (!touches(from.vertex_block) || !touches(from.edge_block)) continue;
+    const double middle = std::clamp(0.5 * (here.at + next.at), here.high, next.low);
+    here.filled += middle - here.high;
+    next.filled += next.low - middle;
+    here.high = next.low = middle;
   }
 }
 
@@ -102,7 +119,7 @@ std::vector<JointSection> joint_sections(const BlockSystem& system, const std::v
   std::vector<JointSection> sections;
   for (auto& [blocks, list] : of_blocks) {
     for (Growing& growing : list) {
-      fill_holes(growing.section);
+      fill_holes(system, contacts, growing);
       sections.push_back(std::move(growing.section));
     }
   }

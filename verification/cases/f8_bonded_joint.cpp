@@ -1,5 +1,7 @@
 // F8: joints with tensile strength that are bent crack from their edge: an overhang and a column that is pushed, as beams.
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "harness.h"
 #include "scenes.h"
@@ -46,8 +48,10 @@ void drawn_overhang(Report& report, const std::string& method, double off) {
   const double moment = data.weight() * 0.5 * data.width, section = data.height * data.height / 6.0, tension = 1.6 * moment / section;
   Scene scene = bonded(data, method, tension);
   scene.blocks = {fixed_block("wall", rectangle(-1.0, -1.0, 1.0, 3.0)), free_block("beam", rectangle(0.0, 0.0, data.width, data.height))};
-  scene.blocks[1].vertices.push_back({off, 0.8 * data.height});
-  scene.blocks[1].vertices.push_back({-off, 0.5 * data.height});
+  // Down the left side of the beam, and up the right one of the wall.
+  for (const auto& [side, at] : {std::pair{off, 0.8}, {-off, 0.5}, {off, 0.3}}) scene.blocks[1].vertices.push_back({side, at * data.height});
+  std::vector<Vec2>& wall = scene.blocks[0].vertices;
+  wall.insert(wall.begin() + 2, {Vec2(off, -0.3), Vec2(-off, 0.4 * data.height), Vec2(off, 0.6 * data.height)});
   report.relative(text("overhang with corners {:+g} m off its face", off), method, 1.6, strength_reduction_factor(report, scene),
                   width + 2.0 * std::abs(off) / data.height, "-", "sigma L^2/(6 M); width of the bracket, and arms of the moment");
 }
