@@ -148,6 +148,8 @@ TEST_CASE("a former key is read with one warning that names the new one", "[scen
     CHECK(value_of(set, entry.dotted()) == value);
     CHECK(set.warnings ==
           std::vector<std::string>{plain.path() + ": command line: " + old + " is now " + entry.dotted() + "; the old name is still read"});
+    // Without a value there is nothing to hand on, whatever the name.
+    CHECK_THROWS_WITH(read_scene(plain.path(), {old}), ContainsSubstring(old) && !ContainsSubstring(entry.dotted()));
     // What is set on the command line counts, whichever name the file has.
     const Scene over = read_scene(file.path(), {entry.dotted() + "=" + entry.value.value_or(value)});
     CHECK(value_of(over, entry.dotted()) == entry.value.value_or(value));
