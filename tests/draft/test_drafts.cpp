@@ -126,6 +126,16 @@ TEST_CASE("a wall has its bricks, and a door under a lintel", "[draft][wall]") {
   CHECK_THAT(error_of("wall", {{"door_bricks", 6.0}}), StartsWith("new wall: the doors do not fit"));
 }
 
+TEST_CASE("walls and arches are dry: friction alone holds their joints", "[draft]") {
+  for (const std::string name : {"wall", "arch"}) {
+    const Scene scene = scene_with(name);
+    REQUIRE(scene.joints.size() == 1);
+    CHECK(scene.joints[0].friction_angle > 0.0);
+    CHECK(scene.joints[0].cohesion == 0.0);
+    CHECK(scene.joints[0].tensile_strength == 0.0);
+  }
+}
+
 TEST_CASE("a wall has windows at equal distances, whole courses above and below them", "[draft][wall]") {
   const Scene scene =
       scene_with("wall", {{"bricks", 14.0}, {"door_bricks", 2.0}, {"door_courses", 3.0}, {"doors", 2.0}, {"sill_courses", 2.0}, {"tilt_deg", 0.0}});
