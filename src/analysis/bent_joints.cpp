@@ -28,8 +28,7 @@ std::string bent_joints_in_words(const Simulation& simulation) {
   if (count == 0) return {};
   return fmt::format(
       "at {} contacts joints are bent by up to {:.2g} times what cracks them from their edge (N/L + 6 M/L^2 over tensile_strength_pa): in a motion "
-      "each "
-      "end of a joint parts by itself; fos at small displacements counts it",
+      "each end of a joint parts by itself; fos at small displacements counts it",
       count, std::ranges::max(pulls));
 }
 

@@ -4,8 +4,8 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "openclose/statics/frozen_state.h"
 #include "openclose/analysis/strength_reduction.h"
+#include "openclose/statics/frozen_state.h"
 
 namespace openclose {
 
