@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "openclose/law/joint_law.h"
+#include "openclose/statics/frozen_system.h"
 #include "openclose/statics/joint_sections.h"
 
 namespace openclose {
@@ -15,14 +16,17 @@ std::string bent_joints_in_words(const Simulation& simulation) {
   bool some_bear_tension = false;
   for (int j = 0; j < joints.count(); ++j) some_bear_tension |= joints.joint(j).tensile_strength > 0.0;
   if (!some_bear_tension) return {};
-  const std::vector<Contact>& contacts = simulation.contacts();
+  std::vector<Contact> contacts;
+  simulation.state().contacts.for_each([&](const Contact& contact) { contacts.push_back(contact); });
+  const double gap = closed_gap * frozen_length_unit(simulation.scene());
   std::vector<Joined> joined;
-  for (const Contact& contact : contacts) joined.push_back(joined_at(simulation.system(), contact));
-  const std::vector<double> pulls = pulls_at_edges(joint_sections(simulation.system(), contacts, joined), contacts.size(), [&](int i) -> EndOfJoint {
-    const Contact& contact = contacts[i];
-    const ContactStrength strength(joints.joint(contact.joint), contact);
-    return {contact.normal_force, contact.status == ContactStatus::open ? 0.0 : strength.tension, contact.length};
-  });
+  for (const Contact& contact : contacts) joined.push_back(joined_at(simulation.system(), contact, gap));
+  const std::vector<double> pulls =
+      pulls_at_edges(joint_sections(simulation.system(), contacts, joined, gap), contacts.size(), [&](int i) -> EndOfJoint {
+        const Contact& contact = contacts[i];
+        const ContactStrength strength(joints.joint(contact.joint), contact);
+        return {contact.normal_force, contact.status == ContactStatus::open ? 0.0 : strength.tension, contact.length};
+      });
   constexpr double rounding = 1e-6;  // [-]
   const auto count = std::ranges::count_if(pulls, [](double pull) { return pull > 1.0 + rounding; });
   if (count == 0) return {};

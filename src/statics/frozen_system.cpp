@@ -15,18 +15,6 @@
 namespace openclose {
 namespace {
 
-/// [m] By which lengths are divided.
-double unit_of(const Scene& scene) {
-  std::vector<double> areas;
-  for (const BlockInput& block : scene.blocks) {
-    if (block.fixed) continue;
-    Polygon polygon;
-    for (const Vec2& v : block.vertices) polygon.push_back(v - block.vertices.front());
-    areas.push_back(polygon_properties(polygon).area);
-  }
-  return size_of_median(std::move(areas)).value_or(1.0);
-}
-
 /// The scene with its first vertex at the origin and lengths in this unit [m]; only what detection looks at.
 Scene in_units(const Scene& scene, double unit) {
   Scene scaled = scene;
@@ -72,7 +60,18 @@ BlockVector load_on(const BlockSystem& system, int b, double mass, const Externa
 
 }  // namespace
 
-FrozenSystem::FrozenSystem(const Scene& scene) : has_live_load_(scene.strength_reduction.increase), length_unit_(unit_of(scene)) {
+double frozen_length_unit(const Scene& scene) {
+  std::vector<double> areas;
+  for (const BlockInput& block : scene.blocks) {
+    if (block.fixed) continue;
+    Polygon polygon;
+    for (const Vec2& v : block.vertices) polygon.push_back(v - block.vertices.front());
+    areas.push_back(polygon_properties(polygon).area);
+  }
+  return size_of_median(std::move(areas)).value_or(1.0);
+}
+
+FrozenSystem::FrozenSystem(const Scene& scene) : has_live_load_(scene.strength_reduction.increase), length_unit_(frozen_length_unit(scene)) {
   const Scene scaled = in_units(scene, length_unit_);
   BlockSystem system(scaled);
   const ExternalForces dead(with_increased_load(scaled, 0.0), system), all(with_increased_load(scaled, 1.0), system);
@@ -137,7 +136,7 @@ void FrozenSystem::find_contacts(const Scene& scaled, const BlockSystem& system)
   std::set<std::pair<int, int>> pairs_with_joint;
   const auto pair_of = [](const Contact& c) { return std::minmax(c.vertex_block, c.edge_block); };
   for (const Contact& contact : found) {
-    joined.push_back(joined_at(system, contact));
+    joined.push_back(joined_at(system, contact, closed_gap));
     if (joined.back().length > 0.0) pairs_with_joint.insert(pair_of(contact));
   }
   for (std::size_t i = 0; i < found.size(); ++i) {
@@ -165,7 +164,7 @@ void FrozenSystem::find_contacts(const Scene& scaled, const BlockSystem& system)
     closed.push_back(contact);
     joined_of_closed.push_back(joined[i]);
   }
-  sections_ = joint_sections(system, closed, joined_of_closed);
+  sections_ = joint_sections(system, closed, joined_of_closed, closed_gap);
   for (const JointSection& section : sections_) {
     for (const PlaceInJoint& place : section) {
       contacts_[place.contact].joined_length += place.filled * length_unit_;

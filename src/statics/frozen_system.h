@@ -24,6 +24,8 @@ namespace openclose {
 /// [-] of the unit of length: a joint drawn open or overlapping by less is closed, unless another block lies in between. Drawings of blocks of a
 /// metre are rounded to the millimetre.
 inline constexpr double closed_gap = 1e-3;
+/// [m]
+double frozen_length_unit(const Scene& scene);
 
 using BlockVector = Eigen::Vector3d;  ///< x, y, rotation times radius
 

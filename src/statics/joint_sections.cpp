@@ -9,7 +9,6 @@
 
 #include "openclose/core/tolerance.h"
 #include "openclose/law/edge_stress.h"
-#include "openclose/statics/frozen_system.h"
 
 namespace openclose {
 namespace {
@@ -30,10 +29,10 @@ struct Line {
     std::swap(ahead, behind);
   }
 
-  /// A corner may be off a face by the closed gap. The longer of the two faces that it makes of it leaves the line that it lies on by at most twice
+  /// A corner may be off a face by the gap. The longer of the two faces that it makes of it leaves the line that it lies on by at most twice
   /// that, at the other end of the shorter one.
-  bool continues(const Line& other) const {
-    return along.dot(other.along) >= std::cos(tolerance::parallel_none_rad) && std::abs(cross(along, other.corner - corner)) <= 2.0 * closed_gap;
+  bool continues(const Line& other, double gap) const {
+    return along.dot(other.along) >= std::cos(tolerance::parallel_none_rad) && std::abs(cross(along, other.corner - corner)) <= 2.0 * gap;
   }
 };
 
@@ -44,7 +43,7 @@ struct Growing {
 };
 
 /// Whether the outline of a block stays on a line from a contact to another one, ahead of it.
-bool stays_on_line(const BlockSystem& system, int block, const Line& line, const Contact& from, double ahead) {
+bool stays_on_line(const BlockSystem& system, int block, const Line& line, const Contact& from, double ahead, double gap) {
   const bool is_forward = block == std::min(from.vertex_block, from.edge_block);  // the outlines of two blocks run against each other
   const auto next = [&](int v) { return is_forward ? system.next(v) : system.previous(v); };
   int v = block == from.vertex_block ? next(from.vertex) : is_forward ? system.next(from.edge) : from.edge;
@@ -52,14 +51,14 @@ bool stays_on_line(const BlockSystem& system, int block, const Line& line, const
   for (int k = 0; k < system.block(block).vertex_count; ++k, v = next(v)) {
     const Vec2 way = system.position(block, v) - start;
     if (line.along.dot(way) >= ahead) return true;
-    if (std::abs(cross(line.along, way)) > 2.0 * closed_gap) return false;
+    if (std::abs(cross(line.along, way)) > 2.0 * gap) return false;
   }
   return false;
 }
 
 /// A corner that points away from the other block, if only by rounding, has no contact, and half of the faces on both its sides none either: where
 /// the faces touch, the contacts on both sides of such a hole stand for it, too, each for what is nearer to it.
-void fill_holes(const BlockSystem& system, const std::vector<Contact>& contacts, Growing& growing) {
+void fill_holes(const BlockSystem& system, const std::vector<Contact>& contacts, double gap, Growing& growing) {
   constexpr double rounding = 1e-9;  // [-]
   JointSection& section = growing.section;
   // Two that meet at a corner are both there: what tells them apart is where they go from it.
@@ -69,7 +68,7 @@ void fill_holes(const BlockSystem& system, const std::vector<Contact>& contacts,
     const Contact &from = contacts[here.contact], &to = contacts[next.contact];
     const double between = next.at - here.at;
     if (next.low - here.high <= rounding * between || from.joint != to.joint) continue;
-    const auto touches = [&](int block) { return stays_on_line(system, block, growing.line, from, (1.0 - rounding) * between); };
+    const auto touches = [&](int block) { return stays_on_line(system, block, growing.line, from, (1.0 - rounding) * between, gap); };
     if (!touches(from.vertex_block) || !touches(from.edge_block)) continue;
     const double middle = std::clamp(0.5 * (here.at + next.at), here.high, next.low);
     here.filled += middle - here.high;
@@ -80,7 +79,7 @@ void fill_holes(const BlockSystem& system, const std::vector<Contact>& contacts,
 
 }  // namespace
 
-Joined joined_at(const BlockSystem& system, const Contact& contact) {
+Joined joined_at(const BlockSystem& system, const Contact& contact, double gap) {
   const Vec2 start = system.position(contact.edge_block, contact.edge), end = system.position(contact.edge_block, system.next(contact.edge));
   const Vec2 along = (end - start).normalized(), outward = -perpendicular(along);
   const double length = (end - start).norm();
@@ -93,15 +92,16 @@ Joined joined_at(const BlockSystem& system, const Contact& contact) {
     if (forward <= std::cos(tolerance::parallel_none_rad) * side.norm()) continue;
     const double low = std::max(0.0, std::min(corner.dot(along), far.dot(along))),
                  high = std::min(length, std::max(corner.dot(along), far.dot(along)));
-    const auto gap = [&](double x) { return corner.dot(outward) + (x - corner.dot(along)) / side.dot(along) * side.dot(outward); };
-    if (!(high > low) || std::max(std::abs(gap(low)), std::abs(gap(high))) > closed_gap) continue;
+    const auto off = [&](double x) { return corner.dot(outward) + (x - corner.dot(along)) / side.dot(along) * side.dot(outward); };
+    if (!(high > low) || std::max(std::abs(off(low)), std::abs(off(high))) > gap) continue;
     (side.dot(along) > 0.0 ? joined.ahead : joined.behind) += 0.5 * (high - low);
   }
   joined.length = std::min(joined.ahead + joined.behind, contact.length);
   return joined;
 }
 
-std::vector<JointSection> joint_sections(const BlockSystem& system, const std::vector<Contact>& contacts, const std::vector<Joined>& joined) {
+std::vector<JointSection> joint_sections(const BlockSystem& system, const std::vector<Contact>& contacts, const std::vector<Joined>& joined,
+                                         double gap) {
   std::map<std::pair<int, int>, std::vector<Growing>> of_blocks;
   std::vector<int> longest_first(contacts.size());
   std::iota(longest_first.begin(), longest_first.end(), 0);
@@ -111,7 +111,7 @@ std::vector<JointSection> joint_sections(const BlockSystem& system, const std::v
     const Contact& contact = contacts[i];
     const Line line(system, contact, joined[i]);
     std::vector<Growing>& known = of_blocks[std::minmax(contact.vertex_block, contact.edge_block)];
-    auto growing = std::ranges::find_if(known, [&](const Growing& g) { return g.line.continues(line); });
+    auto growing = std::ranges::find_if(known, [&](const Growing& g) { return g.line.continues(line, gap); });
     if (growing == known.end()) growing = known.insert(known.end(), {line, {}});
     const double at = growing->line.along.dot(line.corner - growing->line.corner);
     growing->section.push_back({i, at, at - line.behind, at + line.ahead});
@@ -119,7 +119,7 @@ std::vector<JointSection> joint_sections(const BlockSystem& system, const std::v
   std::vector<JointSection> sections;
   for (auto& [blocks, list] : of_blocks) {
     for (Growing& growing : list) {
-      fill_holes(system, contacts, growing);
+      fill_holes(system, contacts, gap, growing);
       sections.push_back(std::move(growing.section));
     }
   }

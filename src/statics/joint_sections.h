@@ -16,7 +16,8 @@ struct Joined {
 };
 
 /// The faces at a corner that lie on the edge.
-Joined joined_at(const BlockSystem& system, const Contact& contact);
+/// \param gap  [units of length] faces that are no farther apart lie on each other, see closed_gap
+Joined joined_at(const BlockSystem& system, const Contact& contact, double gap);
 
 /// A contact as a part of its joint.
 struct PlaceInJoint {
@@ -27,8 +28,9 @@ struct PlaceInJoint {
 
 /// Contacts of two blocks whose faces lie on one line, however many corners these have.
 using JointSection = std::vector<PlaceInJoint>;
-/// \param joined  of the contacts; those of which nothing is joined are in no section
-std::vector<JointSection> joint_sections(const BlockSystem& system, const std::vector<Contact>& contacts, const std::vector<Joined>& joined);
+/// \param joined  of the contacts, with this gap; those of which nothing is joined are in no section
+std::vector<JointSection> joint_sections(const BlockSystem& system, const std::vector<Contact>& contacts, const std::vector<Joined>& joined,
+                                         double gap);
 
 /// What a contact carries, and what its joint bears there.
 struct EndOfJoint {
