@@ -86,6 +86,7 @@ class Hard final : public Enforcement {
 
   void solve(const StepProblem& problem, StepSolution& solution) override {
     if (problem.statics) {
+      newton_.set_another_way(false);
       // Softer springs would take more passes.
       for (const double stiffer : stiffer_static_springs) {
         set_static_springs(problem, stiffer);
@@ -100,6 +101,7 @@ class Hard final : public Enforcement {
     const std::size_t first = first_level(problem);
     for (std::size_t level = first; level < stiffness_over_inertia.size(); ++level) {
       set_springs(problem, stiffness_over_inertia[level]);
+      newton_.set_another_way(level + 1 < stiffness_over_inertia.size());
       pass_until_held(problem, level == 0 ? Cohesion::as_it_is : Cohesion::may_be_eased, solution);
       if (solution.converged || solution.part > 0.0) {  // with softer springs the passes are even slower
         if (first < level_) failed_trials_ = level > first ? std::min(failed_trials_ + 1, most_failed_trials) : 0;

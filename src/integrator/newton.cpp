@@ -173,7 +173,7 @@ Newton::Outcome Newton::iterate_holding(StepSolution& solution, double& norm, in
   holds_.assign(contacts().size(), 0.0);
   if (done > 0) hold_changed(norm);
   Outcome outcome = Outcome::ended;
-  Headway headway(norm, only_if_few_change_ ? most_iterations_to_halve_if_few_change : most_iterations_to_halve_holding);
+  Headway headway(norm, has_another_way_ ? most_iterations_to_halve_beside_another_way : most_iterations_to_halve_holding);
   double best = norm;
   for (int iteration = done; norm > 1.0 && std::isfinite(norm) && !headway.is_lost(best); ++iteration) {
     branches_before_ = branches();
@@ -241,7 +241,7 @@ Newton::Outcome Newton::iterate(const StepProblem& problem, StepSolution& soluti
   course.switches = static_cast<int>(contacts().size());  // any may be in another state than in the first tangent
   const bool may_help_by_parts = problem.method.skip_balanced && !problem.statics && !is_part_ && equations_.rows() >= smallest_system_with_parts;
   const bool may_be_lost = !problem.statics && !is_part_;
-  Headway headway(course.value, most_iterations_to_halve);
+  Headway headway(course.value, has_another_way_ ? most_iterations_to_halve_beside_another_way : most_iterations_to_halve);
   // Parts that have not helped will not help in this step: with pauses in place of an end 40 m of a failing slope of 1,773 free blocks cost
   // `hard` 1.1 times as much.
   bool parts_help = may_help_by_parts;
@@ -321,12 +321,6 @@ void Newton::solve(const StepProblem& problem, const SpringsOf& springs, StepSol
   equations_.prepare(problem, springs, solution.contacts);
   tangent_.fit(problem.method, equations_.rows(), contacts());
   solve_prepared(solution, first);
-}
-
-void Newton::solve_if_few_change(const StepProblem& problem, const SpringsOf& springs, StepSolution& solution) {
-  only_if_few_change_ = true;
-  solve(problem, springs, solution);
-  only_if_few_change_ = false;
 }
 
 void Newton::solve_again(const std::vector<ContactSprings>& springs, StepSolution& solution, FirstTangent first) {

@@ -68,7 +68,10 @@ class Soft final : public Enforcement {
     const bool is_large = problem.system.free_count() >= many_blocks;
     if (solver == StaticSolver::newton || (solver == StaticSolver::automatic && !is_large)) return newton_.solve(problem, springs, solution);
     if (solver == StaticSolver::automatic && !many_come_loose_) {
-      newton_.solve_if_few_change(problem, springs, solution);
+      // Quick only if few contacts change their states.
+      newton_.set_another_way(true);
+      newton_.solve(problem, springs, solution);
+      newton_.set_another_way(false);
       if (solution.converged) return;
       many_come_loose_ = true;
       const StepEffort wasted = solution.effort;

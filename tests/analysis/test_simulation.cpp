@@ -248,7 +248,10 @@ TEST_CASE("iterating only where forces are far from balance changes no more than
     INFO(method);
     Scene scene = test::struck_wall();
     scene.method.contact = method;
-    scene.method.gap_tolerance = 3e-7;  // of which hard finds multipliers: else it would take other springs where an iteration fails in only one way
+    // A blow that never makes hard take softer springs, which it would do wherever an iteration gets lost, be it in only one of the two ways.
+    if (method == "hard") {
+      for (BlockInput& block : scene.blocks) block.velocity *= 0.03;
+    }
     scene.method.skip_balanced = false;
     Simulation all(scene);
     scene.method.skip_balanced = true;

@@ -104,14 +104,16 @@ double deviation(Probe& probe, double largest_move = small_move, const std::vect
 }
 
 /// As Newton's method leaves the first step of a motion, from its drift.
-StepSolution first_step(const Scene& scene) {
+StepSolution first_step(const Scene& scene, bool has_another_way = false) {
   Simulation simulation(scene);
   const StepProblem problem = simulation.problem(scene.step.dt, false);
   std::vector<ContactSprings> springs;
   for (const Contact& c : problem.contacts) springs.push_back(simulation.enforcement().springs(problem, c));
   StepSolution solution;
   solution.d = drift(problem);
-  Newton().solve(problem, springs, solution);
+  Newton newton;
+  newton.set_another_way(has_another_way);
+  newton.solve(problem, springs, solution);
   return solution;
 }
 
@@ -374,6 +376,26 @@ TEST_CASE("Newton with parts ends soon where a few contacts keep it from balance
   }
   CHECK(some_is_found);
   CHECK(some_is_lost);
+}
+
+TEST_CASE("Newton gives up sooner where there is another way", "[integrator][newton]") {
+  Scene scene = read_scene(std::string(OPENCLOSE_PAPER_SCENES) + "/example_3_4_post_failure.toml",
+                           {"joint_set[0].spacing_m=27.2", "joint_set[1].spacing_m=6.8", "method.contact=\"soft\""});
+  scene.method.max_iterations = 1000;
+  int lost = 0, lost_beside_another_way = 0;
+  for (const double cohesion : {20e3, 30e3, 40e3, 50e3, 60e3, 70e3}) {
+    scene.joints[0].cohesion = cohesion;
+    const StepSolution usual = first_step(scene), sooner = first_step(scene, true);
+    const double halvings = std::log2(std::sqrt(sooner.d.size() / 3) / scene.method.residual_tolerance);
+    INFO(cohesion << " Pa: " << sooner.effort.iterations << " iterations");
+    CHECK(sooner.effort.iterations <= halvings * most_iterations_to_halve_beside_another_way);
+    if (sooner.converged) CHECK(sooner.d == usual.d);
+    if (usual.converged) continue;
+    lost += usual.effort.iterations;
+    lost_beside_another_way += sooner.effort.iterations;
+  }
+  CHECK(lost_beside_another_way > 0);
+  CHECK(lost_beside_another_way < lost);
 }
 
 TEST_CASE("Newton counts its linear solves and says why it gives up", "[integrator][newton]") {
