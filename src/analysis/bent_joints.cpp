@@ -13,9 +13,7 @@ namespace openclose {
 
 std::string bent_joints_in_words(const Simulation& simulation) {
   const JointTable& joints = simulation.joints();
-  bool some_bear_tension = false;
-  for (int j = 0; j < joints.count(); ++j) some_bear_tension |= joints.joint(j).tensile_strength > 0.0;
-  if (!some_bear_tension) return {};
+  if (!joints.has_tension()) return {};
   std::vector<Contact> contacts;
   simulation.state().contacts.for_each([&](const Contact& contact) { contacts.push_back(contact); });
   const double gap = closed_gap * frozen_length_unit(simulation.scene());

@@ -178,9 +178,8 @@ std::optional<Simulation::Snapshot> rest_without_slip(Simulation& simulation, co
 /// From where the blocks are, with all bonds. A load that comes at once pulls more than it does at rest, so that what hangs may part on the way and
 /// fall: then from where the blocks were once more, now with joints that no tension parts before the blocks are at rest.
 SettleResult rest_with_bonds(Simulation& simulation, const RestLimits& limits, const SettleProgress& progress) {
-  const auto bears_tension = [](const JointProperties& joint) { return joint.tensile_strength > 0.0; };
   std::optional<Simulation::Snapshot> start;
-  if (std::ranges::any_of(simulation.scene().joints, bears_tension)) start = simulation.save();
+  if (simulation.joints().has_tension()) start = simulation.save();
   const auto search = [&](Bonds bonds) {
     simulation.set_bonds(bonds);
     SettleResult result = RestSearch(simulation, limits, progress).run();

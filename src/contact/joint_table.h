@@ -46,6 +46,10 @@ class JointTable {
   }
   int count() const { return static_cast<int>(joints_.size()); }
   const TabulatedJoint& joint(int i) const { return joints_[i]; }
+  /// Whether any joint bears tension.
+  bool has_tension() const {
+    return std::ranges::any_of(joints_, [](const TabulatedJoint& joint) { return joint.tensile_strength > 0.0; });
+  }
 
   /// Divides tan(friction angle), cohesion and tensile strength of every joint, as the scene gave them, by the strength reduction factor.
   void reduce_strength(double factor);

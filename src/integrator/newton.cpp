@@ -20,10 +20,6 @@ constexpr int line_search_steps = 8;
 /// the step worth taking (6 halvings; below, the symmetric tangent gets on better).
 constexpr double sufficient_decrease = 0.1;
 constexpr double shortest_backtrack = 0.01;
-/// [-] Where the end of the iteration is within reach of a solve with the first of these, it goes as far as that; no residual is brought down farther
-/// than to a part of what ends the iteration.
-constexpr double farthest_reduction = 1e-6, loosest_reduction = 0.1;
-constexpr double end_to_spare = 0.3;
 /// [-] Of rows of the tangent that a factor may be left with, see LinearSolver::factor(): the turning of blocks that only tremble. 40 m of a failing
 /// slope of 387 free blocks: with 0 all rows are factored anew in 2,427 iterations, with 1e-8 117 of them in 2,439, with 1e-7 88 in 2,522, with
 /// 1e-5 68 in 2,622, with 1e-4 40 in 3,178.
@@ -45,7 +41,7 @@ constexpr double residual_of_full_hold = 1e-2;
 /// start: which ones will do so in the end is not known at all.
 constexpr double cold_start_switches = 0.1;
 /// [-] There, contacts that have just opened or begun to slide keep this part of their springs for one iteration.
-constexpr double hold_of_opened = 0.1, hold_of_slid = 0.3;
+constexpr double hold_of_changed = 0.3;
 /// After so many iterations a cold start that has not ended goes round in a circle with few contacts, which the line searches are for.
 constexpr int most_cold_iterations = 15;
 
@@ -72,12 +68,6 @@ class Headway {
   int iterations_ = 0;  ///< since then
 };
 
-/// To be asked of an iterative solver, where the iteration ends with this part of the residual that it has now.
-/// \param usual  as long as that is out of reach
-double reduction_to(double end, double usual) {
-  return end >= farthest_reduction ? std::min(end, usual) : usual;
-}
-
 int differences(const std::vector<Branch>& a, const std::vector<Branch>& b) {
   return std::inner_product(a.begin(), a.end(), b.begin(), 0, std::plus<>(), std::not_equal_to<>());
 }
@@ -95,11 +85,11 @@ void Newton::assemble(const Eigen::VectorXd& d, Tangent tangent) {
   equations_.assemble(d, tangent == Tangent::exact, !holds_.empty(), tangent_.slots(), tangent_.matrix());
 }
 
-Eigen::VectorXd Newton::direction(const Eigen::VectorXd& d, Tangent tangent, double reduction, double enough) {
+Eigen::VectorXd Newton::direction(const Eigen::VectorXd& d, Tangent tangent, double reduction) {
   assemble(d, tangent);
   Eigen::VectorXd step;
   if (tangent_.factor(equations_.problem().statics ? static_kept_change : kept_change))
-    step = tangent_.solve(equations_.residual(), reduction, enough);
+    step = tangent_.solve(equations_.residual(), reduction);
   return step;
 }
 
@@ -157,10 +147,7 @@ bool Newton::iterate_from_cold(StepSolution& solution, double& norm) {
   const double longest = solution.d.lpNorm<Eigen::Infinity>();
   holds_.resize(contacts().size());
   for (int iteration = 1; iteration < most_cold_iterations && norm > 1.0 && std::isfinite(norm); ++iteration) {
-    for (std::size_t c = 0; c < contacts().size(); ++c) {
-      const bool has_changed = branches()[c] != branches_before_[c];
-      holds_[c] = !has_changed ? 0.0 : (contacts().status(c) == ContactStatus::open ? hold_of_opened : hold_of_slid);
-    }
+    for (std::size_t c = 0; c < contacts().size(); ++c) holds_[c] = branches()[c] == branches_before_[c] ? 0.0 : hold_of_changed;
     branches_before_ = branches();
     contacts().hold(holds_, false);
     if (!take_whole_step(solution, longest, norm)) norm = std::numeric_limits<double>::infinity();
@@ -253,9 +240,7 @@ Newton::Outcome Newton::iterate(const StepProblem& problem, StepSolution& soluti
     }
     if (may_be_lost && headway.is_lost(course.best)) break;
     branches_before_ = branches();
-    const double end = end_to_spare * until.norm / course.norm;
-    const double reduction = reduction_to(end, linear_reduction);
-    const Eigen::VectorXd step = direction(d, course.tangent, reduction, std::min(end, loosest_reduction));
+    const Eigen::VectorXd step = direction(d, course.tangent, linear_reduction);
     ++solution.effort.iterations;
     if (step.size() == 0) {
       outcome = Outcome::singular;

@@ -113,8 +113,8 @@ class Newton {
   void follow(Course& course, double norm);
   void choose_tangent(Course& course);
   void assemble(const Eigen::VectorXd& d, Tangent tangent);
-  /// \param reduction, enough  [-] of the residual by a linear solver, see LinearSolver::solve()
-  Eigen::VectorXd direction(const Eigen::VectorXd& d, Tangent tangent, double reduction, double enough = 0.0);
+  /// \param reduction  [-] of the residual by a linear solver, see LinearSolver::solve()
+  Eigen::VectorXd direction(const Eigen::VectorXd& d, Tangent tangent, double reduction);
   ContactTrial& contacts() { return equations_.contacts(); }
   const std::vector<Branch>& branches() { return equations_.contacts().branches(); }
   /// Takes what there is now into the account.

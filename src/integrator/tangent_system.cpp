@@ -78,8 +78,8 @@ bool TangentSystem::factor(double kept_change) {
   return regular;
 }
 
-Eigen::VectorXd TangentSystem::solve(const Eigen::VectorXd& right_side, double reduction, double enough) {
-  Eigen::VectorXd x = solver_->solve(right_side, reduction, enough);
+Eigen::VectorXd TangentSystem::solve(const Eigen::VectorXd& right_side, double reduction) {
+  Eigen::VectorXd x = solver_->solve(right_side, reduction);
   solver_memory_.grow_to(solver_->memory());
   return x;
 }

@@ -20,7 +20,7 @@ class TangentSystem {
   /// \param kept_change  [-] see LinearSolver::factor()
   bool factor(double kept_change);
   /// By the last matrix that was factored; size 0 if it turns out to be singular only here.
-  Eigen::VectorXd solve(const Eigen::VectorXd& right_side, double reduction = full_reduction, double enough = 0.0);
+  Eigen::VectorXd solve(const Eigen::VectorXd& right_side, double reduction = full_reduction);
   /// Of what there is now, and of the largest factor since the solver was chosen.
   Memory memory() const;
   /// The pattern, which decides in which order the solver eliminates and so how it rounds; the symbolic work is done again after reading.

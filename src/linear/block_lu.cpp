@@ -53,9 +53,9 @@ class BlockLuSolver : public LinearSolver {
     return factor_analysed(kept_change);
   }
 
-  Eigen::VectorXd solve(const Eigen::VectorXd& right_side, double reduction, double enough) override {
+  Eigen::VectorXd solve(const Eigen::VectorXd& right_side, double reduction) override {
     ++counters_.solves;
-    return solve_once(right_side, reduction, enough);
+    return solve_once(right_side, reduction);
   }
 
   Memory memory() const override {
@@ -106,12 +106,12 @@ class BlockLuSolver : public LinearSolver {
     return plain_->factor(*matrix_);
   }
 
-  Eigen::VectorXd solve_once(const Eigen::VectorXd& right_side, double reduction, double enough) {
+  Eigen::VectorXd solve_once(const Eigen::VectorXd& right_side, double reduction) {
     if (use_plain_) return plain_->solve(right_side);
     Eigen::VectorXd x(right_side.size());
     substitute(right_side.data(), x.data());
-    if (left_out_.empty() || refine(right_side, std::max(enough, refined_to(reduction)), x)) return x;
-    return take_in() ? solve_once(right_side, reduction, enough) : Eigen::VectorXd();
+    if (left_out_.empty() || refine(right_side, refined_to(reduction), x)) return x;
+    return take_in() ? solve_once(right_side, reduction) : Eigen::VectorXd();
   }
 
   /// Where all digits are asked for, as many as a factor of the whole matrix gives.

@@ -76,8 +76,7 @@ class IncompleteSolver : public LinearSolver {
     return true;
   }
 
-  Eigen::VectorXd solve(const Eigen::VectorXd& right_side, double asked, double enough) override {
-    const double reduction = std::max(asked, enough);
+  Eigen::VectorXd solve(const Eigen::VectorXd& right_side, double reduction) override {
     if (!use_direct_) {
       Refined result = refine(right_side, reduction);
       counters_.krylov_iterations += result.iterations;
@@ -88,7 +87,7 @@ class IncompleteSolver : public LinearSolver {
       }
       if (!give_up()) return {};
     }
-    return direct_->solve(right_side, asked, enough);
+    return direct_->solve(right_side, reduction);
   }
 
   LinearCounters counters() const override { return LinearCounters(counters_) += direct_->counters(); }

@@ -8,17 +8,8 @@
 namespace openclose {
 namespace {
 
-/// After so many iterations, and this part of those allowed, the residuals tell how fast they fall.
-constexpr int iterations_to_judge = 3;
-constexpr double part_to_judge = 0.3;
 /// Numbers of a vector that stay in the nearest cache while two things are done with them, and of which a sum in single precision is good enough.
 constexpr Eigen::Index piece = 1024;
-
-bool too_slow(double start, double now, double wanted, int iterations, int most_iterations) {
-  if (iterations < std::max<double>(iterations_to_judge, part_to_judge * most_iterations)) return false;
-  if (!(now < start)) return true;
-  return iterations * std::log(start / wanted) > most_iterations * std::log(start / now);
-}
 
 double product(const Eigen::VectorXf& a, const Eigen::VectorXf& b) {
   double sum = 0.0;
@@ -81,7 +72,7 @@ KrylovStep krylov_step(const MapInto& matrix, const MapInto& preconditioner, con
     const double now = std::abs(right[k + 1]);
     if (upper(k, k) == 0.0) return result;  // a singular matrix
     result.converged = now <= wanted;
-    if (result.converged || !(length > 0.0) || too_slow(start, now, wanted, result.iterations, most_iterations)) break;
+    if (result.converged || !(length > 0.0)) break;
     next /= static_cast<float>(length);
   }
   if (!result.converged) return result;

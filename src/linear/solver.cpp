@@ -34,7 +34,7 @@ class SparseSolver : public LinearSolver {
     entries_of_factor_ = is_regular ? lu_.nnzL() + lu_.nnzU() : 0;
     return is_regular;
   }
-  Eigen::VectorXd solve(const Eigen::VectorXd& right_side, double, double) override {
+  Eigen::VectorXd solve(const Eigen::VectorXd& right_side, double) override {
     if (right_side.size() == 0) return right_side;
     ++counters_.solves;
     return lu_.solve(right_side);
@@ -83,9 +83,9 @@ class EstimatingSolver : public LinearSolver {
     plain_ = make_block_solver(Factoring::whole);
     return plain_->factor(matrix);
   }
-  Eigen::VectorXd solve(const Eigen::VectorXd& right_side, double reduction, double enough) override {
+  Eigen::VectorXd solve(const Eigen::VectorXd& right_side, double reduction) override {
     ++counters_.solves;
-    return plain_ ? plain_->solve(right_side, reduction, enough) : factor_.solve(right_side);
+    return plain_ ? plain_->solve(right_side, reduction) : factor_.solve(right_side);
   }
   Memory memory() const override {
     Memory of = plain_ ? plain_->memory() : Memory();

@@ -48,8 +48,7 @@ class LinearSolver {
   /// Nothing (size 0) if the matrix turns out to be singular only here.
   /// \param reduction  [-] of the Euclidean norm of the residual over that of the right side, at least, but for rounding: of 1e-5 and more single
   ///                   precision may leave twice as much. Factors of the matrix itself do not ask.
-  /// \param enough     [-] a residual below which nobody needs to go, also where it would cost little
-  virtual Eigen::VectorXd solve(const Eigen::VectorXd& right_side, double reduction = full_reduction, double enough = 0.0) = 0;
+  virtual Eigen::VectorXd solve(const Eigen::VectorXd& right_side, double reduction = full_reduction) = 0;
   virtual LinearCounters counters() const { return counters_; }
   /// Of the factors that there are now, and of the largest basis of GMRES so far.
   virtual Memory memory() const { return {}; }

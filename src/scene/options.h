@@ -175,25 +175,30 @@ void visit_step_keys(Step& s, Visitor& visit) {
         s.look_ahead, from_0_to_1, &s.look_ahead_where);
 }
 
-/// The keys of [solver].
+/// How equations are solved.
 template <class Method, class Step, class Visitor>
-void visit_solver_keys(Method& m, Step& s, Visitor& visit) {
-  visit.table({"solver", Audience::developer, "how equations are solved and what work is skipped: for measurements and comparisons"});
+void visit_equation_keys(Method& m, Step& s, Visitor& visit) {
   visit({"residual_tolerance", "unbalanced force that Newton's method may leave, over the largest force", {}, "method.residual_tolerance"},
         m.residual_tolerance, between_0_and_1);
-  visit({"max_iterations",
-         "Newton iterations of a motion's step before it is cut; `hard` gives up what 30 of them have not halved, `soft` with subdomains (see "
-         "[solvers](solvers.md)) what 10 have not; statics may begin anew, with other tangents",
-         {},
-         "method.max_iterations",
-         true},
-        m.max_iterations, at_least_one);
+  visit(
+      {"max_iterations",
+       "Newton iterations of a motion's step before it is cut; what 30 of them have not halved is given up, with `hard` what 10 have not as long as "
+       "there are softer springs to be tried; statics may begin anew, with other tangents",
+       {},
+       "method.max_iterations",
+       true},
+      m.max_iterations, at_least_one);
   visit({"smallest_fraction", "part of `step.dt_s` below which cutting a step is given up", {}, "step.smallest_fraction", true}, s.smallest_fraction,
         Range{.low = 0.0, .high = 1.0, .high_included = true});
   visit({"linear_solver", "how the linear equations of an iteration are solved, see [solvers](solvers.md)", {}, "method.linear_solver"},
         m.linear_solver, linear_solver_words);
   visit({"static_solver", "`soft`: how static steps are balanced, see [solvers](solvers.md)", {}, "method.static_solver"}, m.static_solver,
         static_solver_words);
+}
+
+/// What work is skipped.
+template <class Method, class Visitor>
+void visit_skip_keys(Method& m, Visitor& visit) {
   visit({"skip_search", "false: search contact candidates in every step, and find all contacts anew", {}, "method.skip_search"}, m.skip_search,
         Flag{});
   visit({"skip_narrow_phase",
@@ -241,6 +246,11 @@ void visit_solver_keys(Method& m, Step& s, Visitor& visit) {
          {},
          "method.skip_resting"},
         m.skip_resting, Flag{});
+}
+
+/// Of single methods.
+template <class Method, class Visitor>
+void visit_method_own_keys(Method& m, Visitor& visit) {
   visit({"gap_tolerance_m",
          "`hard`: a closed contact may differ from its target gap, a sticking one from its place, by this much in a step",
          {},
@@ -259,6 +269,15 @@ void visit_solver_keys(Method& m, Step& s, Visitor& visit) {
   visit({"step_cut", "`shi`: factor on a step that is cut", {}, "method.step_cut"}, m.step_cut, between_0_and_1);
   visit({"local_damping", "`dem`: part of the unbalanced force that opposes the motion", {}, "method.local_damping"}, m.local_damping,
         between_0_and_1);
+}
+
+/// The keys of [solver].
+template <class Method, class Step, class Visitor>
+void visit_solver_keys(Method& m, Step& s, Visitor& visit) {
+  visit.table({"solver", Audience::developer, "how equations are solved and what work is skipped: for measurements and comparisons"});
+  visit_equation_keys(m, s, visit);
+  visit_skip_keys(m, visit);
+  visit_method_own_keys(m, visit);
 }
 
 /// When a block is at rest in a motion, and when it is not any more; the rule is in analysis/resting.h. A tenth of a second is some periods of blocks

@@ -52,13 +52,6 @@ std::vector<double> FrozenStrength::pulls_at_edges(const FrozenState& state) con
   });
 }
 
-bool FrozenStrength::has_tension() const {
-  for (int j = 0; j < joints_.count(); ++j) {
-    if (joints_.joint(j).tensile_strength > 0.0) return true;
-  }
-  return false;
-}
-
 double lose_strength(const FrozenStrength& strength, FrozenState& state, SlipOfState slip) {
   const std::vector<double> pulls = strength.pulls_at_edges(state);
   double largest = 0.0;

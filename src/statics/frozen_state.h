@@ -62,7 +62,7 @@ class FrozenStrength {
   /// Whether the joint has strength that goes with the length of slip and not with the first one.
   bool weakens_along_slip(std::size_t i, const JointState& state) const;
   double loss(std::size_t i, const JointState& before, const JointState& after) const;
-  bool has_tension() const;
+  bool has_tension() const { return joints_.has_tension(); }
 
  private:
   const FrozenSystem& system_;

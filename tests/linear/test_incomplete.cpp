@@ -31,8 +31,8 @@ BlockMatrix moving(BlockMatrix matrix, double inertia = 1.0) {
 class WatchedSolver : public LinearSolver {
  public:
   bool factor(const BlockMatrix& matrix, double kept_change) override { return real_->factor(matrix, kept_change); }
-  Eigen::VectorXd solve(const Eigen::VectorXd& right_side, double reduction, double enough) override {
-    return real_->solve(right_side, reduction, enough);
+  Eigen::VectorXd solve(const Eigen::VectorXd& right_side, double reduction) override {
+    return real_->solve(right_side, reduction);
   }
   void let_go() override {
     ++times_let_go;
