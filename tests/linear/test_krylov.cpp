@@ -57,7 +57,7 @@ TEST_CASE("GMRES brings the residual itself down, whatever the scale of the prec
   }
 }
 
-TEST_CASE("GMRES gives up early where it is too slow and has no step", "[linear][krylov]") {
+TEST_CASE("GMRES ends with the iterations that are allowed and has no step where they do not reach", "[linear][krylov]") {
   // The shift of a ring: no polynomial of low degree brings anything.
   const int n = 50;
   Eigen::MatrixXd shift = Eigen::MatrixXd::Zero(n, n);
@@ -65,6 +65,6 @@ TEST_CASE("GMRES gives up early where it is too slow and has no step", "[linear]
   KrylovRoom room;
   const KrylovStep found = krylov_step(product(shift), same, Eigen::VectorXf::Unit(n, 0), 1e-6, 20, room);
   CHECK_FALSE(found.converged);
-  CHECK(found.iterations <= 6);  // three tenths of those allowed
+  CHECK(found.iterations == 20);
   CHECK(found.step.size() == 0);
 }

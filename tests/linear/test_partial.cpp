@@ -147,11 +147,8 @@ TEST_CASE("what weak couplings carry is found by refining", "[linear][partial]")
   CHECK(left <= 1e-7);
   CHECK(left > 1e-12);
   CHECK(solver->counters().refinements < 2 * full);
-  const long before = solver->counters().refinements;
-  CHECK(relative_residual(matrix, solver->solve(right_side, 1e-3, 1e-2), right_side) <= 1e-2);
-  CHECK(solver->counters().refinements == before);
   CHECK(solver->counters().couplings_taken_in == 0);
-  CHECK(solver->counters().solves == 3);
+  CHECK(solver->counters().solves == 2);
   CHECK(whole->counters().refinements == 0);
 }
 
