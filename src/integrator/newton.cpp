@@ -41,7 +41,7 @@ constexpr double residual_of_full_hold = 1e-2;
 /// start: which ones will do so in the end is not known at all.
 constexpr double cold_start_switches = 0.1;
 /// [-] There, contacts that have just opened or begun to slide keep this part of their springs for one iteration.
-constexpr double hold_of_changed = 0.3;
+constexpr double hold_of_opened = 0.1, hold_of_slid = 0.3;
 /// After so many iterations a cold start that has not ended goes round in a circle with few contacts, which the line searches are for.
 constexpr int most_cold_iterations = 15;
 
@@ -147,7 +147,10 @@ bool Newton::iterate_from_cold(StepSolution& solution, double& norm) {
   const double longest = solution.d.lpNorm<Eigen::Infinity>();
   holds_.resize(contacts().size());
   for (int iteration = 1; iteration < most_cold_iterations && norm > 1.0 && std::isfinite(norm); ++iteration) {
-    for (std::size_t c = 0; c < contacts().size(); ++c) holds_[c] = branches()[c] == branches_before_[c] ? 0.0 : hold_of_changed;
+    for (std::size_t c = 0; c < contacts().size(); ++c) {
+      const bool has_changed = branches()[c] != branches_before_[c];
+      holds_[c] = !has_changed ? 0.0 : (contacts().status(c) == ContactStatus::open ? hold_of_opened : hold_of_slid);
+    }
     branches_before_ = branches();
     contacts().hold(holds_, false);
     if (!take_whole_step(solution, longest, norm)) norm = std::numeric_limits<double>::infinity();
