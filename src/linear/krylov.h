@@ -34,7 +34,7 @@ struct KrylovStep {
 };
 
 /// What brings a residual down to `wanted`, as far as the rotations of the basis tell: rounding is for the caller to see. Gives up after
-/// `most_iterations`, and as soon as the residual falls too slowly to get there. Sums are formed in double precision.
+/// `most_iterations`. Sums are formed in double precision.
 /// \param wanted  Euclidean norm, in the unit of the residual
 KrylovStep krylov_step(const MapInto& matrix, const MapInto& preconditioner, const Eigen::VectorXf& residual, double wanted, int most_iterations,
                        KrylovRoom& room);
