@@ -13,11 +13,22 @@ Eigen::VectorXd rows_of(const Eigen::VectorXd& whole, const std::vector<int>& ro
   return part;
 }
 
-std::vector<int> most_unbalanced(const std::vector<double>& residuals, double largest, double end, double part) {
-  std::vector<int> rows;
-  if (!std::isfinite(largest)) return rows;
-  for (std::size_t row = 0; row < residuals.size(); ++row) {
-    if (residuals[row] > std::max(end, part * largest)) rows.push_back(static_cast<int>(row));
+std::vector<int> most_unbalanced(const std::vector<double>& residuals, double largest, double end, double part, int few) {
+  if (!std::isfinite(largest)) return {};
+  const auto beyond = [&](double limit) {
+    std::vector<int> rows;
+    for (std::size_t row = 0; row < residuals.size(); ++row) {
+      if (residuals[row] > limit) rows.push_back(static_cast<int>(row));
+    }
+    return rows;
+  };
+  double limit = std::max(end, part * largest);
+  std::vector<int> rows = beyond(limit);
+  while (limit > end) {
+    limit = std::max(end, part * limit);
+    std::vector<int> more = beyond(limit);
+    if (static_cast<int>(more.size()) > few) break;
+    rows = std::move(more);
   }
   return rows;
 }

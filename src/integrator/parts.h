@@ -17,10 +17,10 @@ struct Part {
 /// Those of a vector with three numbers a row.
 Eigen::VectorXd rows_of(const Eigen::VectorXd& whole, const std::vector<int>& rows);
 
-/// Rows with more than a part of the largest residual.
+/// Rows with more than a part of the largest residual, and those with more than that part of it, and so on as long as there are few.
 /// \param largest  of the residuals; infinite: none
 /// \param end      rows with less are never among them
-std::vector<int> most_unbalanced(const std::vector<double>& residuals, double largest, double end, double part);
+std::vector<int> most_unbalanced(const std::vector<double>& residuals, double largest, double end, double part, int few);
 
 /// Which contacts join which blocks.
 class Neighbourhood {

@@ -43,13 +43,15 @@ TEST_CASE("seeds whose rings meet make one part", "[integrator][parts]") {
   CHECK(chain().parts({}, 2, no_limit).empty());
 }
 
-TEST_CASE("the most unbalanced rows are those near the largest residual", "[integrator][parts]") {
+TEST_CASE("the most unbalanced rows are those near the largest residual, and all the others if they are few", "[integrator][parts]") {
   const std::vector<double> residuals{2.0, 500.0, 1000.0, 0.5, 30.0, 0.0, 20.0, 1.5};
-  CHECK(most_unbalanced(residuals, 1000.0, 1.0, 0.1) == std::vector<int>{1, 2});
-  CHECK(most_unbalanced(residuals, 1000.0, 1.0, 0.01) == std::vector<int>{1, 2, 4, 6});
-  CHECK(most_unbalanced(residuals, 1000.0, 25.0, 0.01) == std::vector<int>{1, 2, 4});
-  CHECK(most_unbalanced(residuals, 1000.0, 600.0, 0.1) == std::vector<int>{2});
-  CHECK(most_unbalanced(residuals, std::numeric_limits<double>::infinity(), 1.0, 0.1).empty());
+  CHECK(most_unbalanced(residuals, 1000.0, 1.0, 0.1, 0) == std::vector<int>{1, 2});
+  CHECK(most_unbalanced(residuals, 1000.0, 1.0, 0.1, 3) == std::vector<int>{1, 2});
+  CHECK(most_unbalanced(residuals, 1000.0, 1.0, 0.1, 5) == std::vector<int>{1, 2, 4, 6});
+  CHECK(most_unbalanced(residuals, 1000.0, 1.0, 0.1, 8) == std::vector<int>{0, 1, 2, 4, 6, 7});
+  CHECK(most_unbalanced(residuals, 1000.0, 25.0, 0.1, 8) == std::vector<int>{1, 2, 4});
+  CHECK(most_unbalanced(residuals, 1000.0, 600.0, 0.1, 8) == std::vector<int>{2});
+  CHECK(most_unbalanced(residuals, std::numeric_limits<double>::infinity(), 1.0, 0.1, 8).empty());
 }
 
 TEST_CASE("a neighbourhood without rows is that of no system", "[integrator][parts]") {
