@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 """What each mechanism of the solver is worth: the same runs with it and without it, one mechanism at a time.
 
-    bench/ablation.py [--results DIR] [--slopes N] [--seed S] [--cpu-time] [NAME...]     all mechanisms of ablation.toml, or those whose name has a NAME in it
+    bench/ablation.py [--results DIR] [--slopes N] [--seed S] [NAME...]     all mechanisms of ablation.toml, or those whose name has a NAME in it
 
 A mechanism is taken out by settings or by edits of the sources, which are made in a copy under build/ablation. The runs are the slope of example 3.4
-with three spacings of its joints, and random slopes of stress/slopes.py. Each cell of ablation.csv and ablation.md is the ratio of the run without
-the mechanism to the run with it: of instructions (valgrind) for the small runs, of CPU time for the others, or for all with --cpu-time, which takes a
-third of the time; "fails" where only the run without it does. A mechanism stays if it saves 10 % in one column, or if a run fails without it.
+with three spacings of its joints, a dropped pile, and random slopes of stress/slopes.py. Each cell of ablation.csv and ablation.md is the ratio of the
+run without the mechanism to the run with it: of instructions (valgrind) for the small runs, of CPU time for the others; "fails" where only the run
+without it does. A mechanism stays if it saves 10 % in one column, or if a run fails without it.
 
 Exit status: 0, or 2 if an edit does not fit the sources or the build fails.
 """
@@ -19,13 +19,15 @@ import re
 import shutil
 import sys
 import tomllib
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
+from typing import NoReturn
 
 from openclose_scripts import ROOT
 from openclose_scripts.csv_rows import read_rows
 from openclose_scripts.markdown import markdown_table
 from openclose_scripts.processes import DONE, NOT_CONVERGED, call, run_process, was_stopped
+from walls_and_piles import PILE_DT_S, PILE_END_S, pile_scene
 
 SCENE = ROOT / "paper/scenes/example_3_4_post_failure.toml"
 COPIED = ("CMakeLists.txt", "CMakePresets.json", "analytical", "cmake", "mutants", "paper", "scripts", "src", "tests", "verification")
@@ -34,8 +36,7 @@ SLOPE_METHODS = ("soft", "hard")
 LIMIT_S = 600
 TIME_LIMIT = "time limit"
 SLOPE_LIMIT_S = 10  # a random slope that takes longer with all mechanisms counts for nothing
-REPEATS = 2  # of what is measured by CPU time; the shortest counts
-REPEATS_OF_SMALL_RUNS = 5
+REPEATS = 2  # of large runs, which are measured by CPU time; the shortest counts
 
 
 @dataclass(frozen=True)
@@ -59,6 +60,11 @@ def _of_34(blocks: str, factor: float, contact: str, end_s: float, counted: bool
 def runs(slope_count: int, seed: int, program: Path) -> list[Run]:
     found = [_of_34("387", 1, "soft", 4.0, True), _of_34("387", 1, "hard", 1.0, True), _of_34("1.8k", 0.48, "soft", 0.1, True),
              _of_34("1.8k", 0.48, "hard", 0.1, True), _of_34("9.7k", 0.206, "soft", 0.1, False)]
+    # Long enough for the boxes to lie on each other: what helps a heap may do nothing in a fall.
+    pile = FOLDER / "pile.toml"
+    pile.write_text(pile_scene())
+    settings = (f"step.dt_s={PILE_DT_S}", f"end.time_s={PILE_END_S}", f"output.every_s={PILE_END_S}")
+    found += [Run(f"pile {contact}", "run", pile, (*settings, f"method.contact={contact}", "method.start=unloaded"), False) for contact in SLOPE_METHODS]
     for s in range(seed, seed + slope_count):
         # Drawn where random scenes are at home.
         file = Path(call([sys.executable, str(ROOT / "stress/stress.py"), "--part", "slopes", "--keep", str(s), "--openclose", str(program), "--results", str(FOLDER)]).strip())
@@ -110,9 +116,14 @@ def sources_without(mechanism: dict) -> dict[str, str]:
     for file, original, replacement in mechanism.get("edit", []):
         text = edited.get(file) or (ROOT / file).read_text()
         if text.count(original) != 1:
-            sys.exit(f"ablation: {mechanism['name']}: found {text.count(original)} times in {file}: {original}")
+            stop(f"{mechanism['name']}: found {text.count(original)} times in {file}: {original}")
         edited[file] = text.replace(original, replacement)
     return edited
+
+
+def stop(why: str) -> NoReturn:
+    print(f"ablation: {why}", file=sys.stderr)
+    sys.exit(2)
 
 
 def build(mechanism: dict) -> Path:
@@ -136,7 +147,7 @@ def build(mechanism: dict) -> Path:
             shutil.copymode(path, target)
     done = run_process(["scripts/build", "release", "openclose"], folder=tree)
     if done.returncode != DONE:
-        sys.exit(f"ablation: {mechanism['name']}: {done.stdout[-3000:]}{done.stderr[-1000:]}")
+        stop(f"{mechanism['name']}: {done.stdout[-3000:]}{done.stderr[-1000:]}")
     program.parent.mkdir(parents=True, exist_ok=True)
     shutil.copy2(tree / "build/release/openclose", program)
     return program
@@ -163,7 +174,6 @@ def main() -> None:
     parser.add_argument("--results", type=Path, default=ROOT / "results/ablation")
     parser.add_argument("--slopes", type=int, default=10)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--cpu-time", action="store_true", help="of small runs, too")
     parser.add_argument("--only", default="", help="runs whose name has this in it")
     parser.add_argument("name", nargs="*")
     given = parser.parse_args()
@@ -175,8 +185,6 @@ def main() -> None:
     shutil.rmtree(FOLDER / "bin", ignore_errors=True)
     plain = build({"name": "nothing"})
     wanted = [r for r in runs(given.slopes, given.seed, plain) if given.only in r.name]
-    if given.cpu_time:
-        wanted = [replace(r, counted=False, repeats=REPEATS_OF_SMALL_RUNS) if r.counted else r for r in wanted]
     reference = [measure(plain, run, ()) for run in wanted]
     # All random slopes of a method are one column: their costs added up.
     columns = [r.name for r in wanted if not r.name.startswith("slope")]

@@ -35,9 +35,10 @@ constexpr int most_iterations_to_halve = 30;
 /// The same with held contacts, which are let go a few at a time, so that residuals fall in leaps, if the iteration does not go round in a circle.
 /// (With 30 a slope of 4,900 blocks settles in 181 iterations instead of 121, strength reductions of random slopes take 0.84 to 0.9 times as many.)
 constexpr int most_iterations_to_halve_holding = 60;
-/// The same, of either, where the caller has another way, see Newton::set_another_way(): iterations that find their balance have mostly halved the
-/// residuals by then, and what the others cost is lost. Four dropped piles with `hard` take 0.80 to 0.86 of the iterations, failing slopes of 387 to
-/// 4,568 blocks and nine random tumbles 0.71 to 1.11, with 15 0.84 to 1.02 and 0.80 to 1.10.
+/// The same, of either, where the caller has another way, see Newton::set_another_way(): a balance that is not found costs less than one that is
+/// looked for in vain. Iterations with `hard` over those with the number above: four dropped piles 0.80 to 0.86, failing slopes of 387 to 4,568
+/// blocks 0.83 to 1.02, twelve random tumbles 0.71 to 1.11; with 7 0.74 to 0.90, 0.84 to 1.15, 0.73 to 1.26, with 15 0.78 to 1.02, 0.80 to 1.03,
+/// 0.90 to 1.10.
 constexpr int most_iterations_to_halve_beside_another_way = 10;
 
 /// What ends an iteration: a norm of the residual, or a number of linear solves.
