@@ -11,7 +11,8 @@ only what they need is built, and what comes out the same, byte for byte, as wit
 faults replace their rows there and leave the others. A fault that only ends checks by an exception that no test expects, by a signal or by their time
 limit has not been caught by an assertion: it is listed as such.
 
-Random faults go to mutants-random.csv and .md. One that does not compile is none, and neither is one that compiles to the same program, however it is
+Random faults are tried on what the program printed and wrote last, too (tests/last_outputs), after the tests of their own folder: that says that an answer has
+changed, not that it is wrong. They go to mutants-random.csv and .md. One that does not compile is none, and neither is one that compiles to the same program, however it is
 written. Those that survive are to be judged one by one: the same answers, or a check that is missing; their rate is of all others.
 
 Exit status: 0 if every fault was caught, 1 if one was not, 2 if the list does not fit the source or the source without a fault is red.
@@ -42,17 +43,21 @@ from openclose_scripts.csv_rows import read_rows
 from openclose_scripts.markdown import markdown_table
 
 FAULTS = Path(__file__).resolve().parent / "faults.toml"
-COPIED = ["CMakeLists.txt", "CMakePresets.json", "analytical", "cmake", "docs", "mutants", "paper", "python", "scripts", "src", "tests", "verification"]
+COPIED = ["CMakeLists.txt", "CMakePresets.json", "analytical", "cmake", "docs", "examples", "mutants", "paper", "python", "scripts", "src", "stress", "tests",
+          "verification"]
 COLUMNS = ["id", "folder", "file", "description", "caught_by", "kind", "seconds"]
 CAUGHT = ("unit test", "verification")
 DOES_NOT_COMPILE = "does not compile"
 SAME_PROGRAM = "same program"
 NO_FAULTS = (DOES_NOT_COMPILE, SAME_PROGRAM)
 # What a random fault is noticed by, too: whoever changes the code sees it.
-NOTICED = (*CAUGHT, "crash", "time-out")
+LAST_OUTPUTS = "last outputs"
+NOTICED = (*CAUGHT, LAST_OUTPUTS, "crash", "time-out")
 # A check may take this many times as long as without a fault, and so much more: others use the machine, too.
 TIME_FACTOR, TIME_MARGIN_S = 10.0, 60.0
 FEWEST_PER_FOLDER = 4
+SKIPPED = 77  # exit status of a comparison that this machine's sines forbid
+OPENCLOSE = "build/release/openclose"
 
 
 class ListError(Exception):
@@ -157,11 +162,13 @@ class Worker:
         """One red check is enough."""
         if check == "verification":
             return "openclose-verify", ["build/release/verification/openclose-verify", "--results", "build/verification-results"]
+        if check == LAST_OUTPUTS:
+            return "openclose", [sys.executable, "tests/last_outputs/check.py", OPENCLOSE, "--abort"]
         return f"test_{check}", [f"build/release/tests/{check}/test_{check}", "--abort", "--reporter", "junit", "--out", f"build/{check}.xml"]
 
     def programs(self, check):
         """Digests of what a check runs."""
-        files = [self.command(check)[1][0]] + (["build/release/openclose"] if check == "cli" else [])
+        files = ([] if check == LAST_OUTPUTS else [self.command(check)[1][0]]) + ([OPENCLOSE] if check in ("cli", LAST_OUTPUTS) else [])
         return [hashlib.sha256((self.tree / file).read_bytes()).hexdigest() for file in files]
 
     def remember_faultless(self, checks):
@@ -181,7 +188,8 @@ class Worker:
         if self.programs(check) == self.faultless.get(check):
             return Outcome(SAME_PROGRAM)
         begin = time.monotonic()
-        outcome = self.run_verification(command) if check == "verification" else self.run_tests(check, command)
+        runs = {"verification": self.run_verification, LAST_OUTPUTS: self.compare_last_outputs}
+        outcome = runs[check](command) if check in runs else self.run_tests(check, command)
         if check not in self.limits and outcome.kind is None:
             self.limits[check] = TIME_FACTOR * (time.monotonic() - begin) + TIME_MARGIN_S
         return outcome
@@ -214,6 +222,13 @@ class Worker:
                     names.append(case.get("name"))
         return red["failure"], red["error"]
 
+    def compare_last_outputs(self, command):
+        try:
+            run = subprocess.run(command, cwd=self.tree, env=self.environment, capture_output=True, text=True, timeout=self.limits.get(LAST_OUTPUTS))
+        except subprocess.TimeoutExpired:
+            return Outcome("time-out", LAST_OUTPUTS)
+        return Outcome() if run.returncode in (0, SKIPPED) else Outcome(LAST_OUTPUTS, (run.stdout.splitlines() or [f"exit status {run.returncode}"])[0], run.stderr)
+
     def run_verification(self, command):
         """Ends with the first row that is red."""
         run = subprocess.Popen(command, cwd=self.tree, env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
@@ -238,7 +253,7 @@ class Worker:
             return Outcome("time-out", "verification")
         return Outcome() if run.returncode == 0 else Outcome("crash", f"verification: {group}", text)
 
-    def try_fault(self, fault, verify):
+    def try_fault(self, fault, checks):
         """\\return the row of the table."""
         begin = time.monotonic()
         path = self.tree / fault["file"]
@@ -246,14 +261,14 @@ class Worker:
         first, changed = Outcome(), False
         path.write_text(planted(fault, original))
         try:
-            for check in checks_for(folder_of(fault), verify):
+            for check in checks:
                 outcome = self.run(check)
                 if outcome.kind == SAME_PROGRAM:
                     continue
                 changed = True
                 if first.kind is None:
                     first = outcome
-                if outcome.kind in CAUGHT or outcome.kind == DOES_NOT_COMPILE:
+                if outcome.kind in (*CAUGHT, LAST_OUTPUTS, DOES_NOT_COMPILE):
                     first = outcome
                     break
         finally:
@@ -273,10 +288,11 @@ def described(fault):
     return {"id": fault["id"], "folder": folder_of(fault), "file": fault["file"], "description": fault["description"]}
 
 
-def checks_for(folder, verify):
+def checks_for(folder, options):
+    """The folder's own tests come first."""
     order = folders()
     at = order.index(folder)
-    return order[at:] + order[:at] + (["verification"] if verify else [])
+    return order[at:at + 1] + ([LAST_OUTPUTS] if options.random else []) + order[at + 1:] + order[:at] + ([] if options.unit_tests_only else ["verification"])
 
 
 def earlier_rows(path, faults):
@@ -318,9 +334,9 @@ def write_page(path, rows, notes):
     path.write_text("\n".join(lines) + "\n")
 
 
-def baseline(worker, verify):
+def baseline(worker, checks):
     """The limits of time; the source without a fault must be green."""
-    for check in checks_for(folders()[0], verify):
+    for check in checks:
         outcome = worker.run(check)
         if outcome.kind:
             raise ListError(f"without any fault {outcome.by} is red: {outcome.kind}\n{outcome.text[-3000:]}")
@@ -330,12 +346,12 @@ def study(faults, wanted, options):
     workers = [Worker(number) for number in range(options.jobs)]
     for worker in workers:
         worker.prepare()
-    verify = not options.unit_tests_only
+    checks = checks_for(folders()[0], options)
     print("builds and checks the source without a fault", flush=True)
-    baseline(workers[0], verify)
+    baseline(workers[0], checks)
     for worker in workers:
         worker.limits = dict(workers[0].limits)
-        worker.remember_faultless(checks_for(folders()[0], verify))
+        worker.remember_faultless(checks)
     options.results.mkdir(parents=True, exist_ok=True)
     name = "mutants-random" if options.random else "mutants"
     table, page = options.results / f"{name}.csv", options.results / f"{name}.md"
@@ -346,7 +362,7 @@ def study(faults, wanted, options):
         with lock:
             worker = free.pop()
         try:
-            row = worker.try_fault(fault, verify)
+            row = worker.try_fault(fault, checks_for(folder_of(fault), options))
         finally:
             with lock:
                 free.append(worker)

@@ -1,0 +1,163 @@
+"""Commands as a person would give them: what is printed, drawn, written and said of files that are wrong."""
+
+import re
+import sys
+from pathlib import Path
+
+import sweeps
+from case import Case
+from openclose_scripts import ROOT
+
+sys.path.insert(0, str(ROOT / "stress"))
+
+import masonry  # noqa: E402
+import maps  # noqa: E402
+import slopes  # noqa: E402
+import tumbles  # noqa: E402
+from scene import to_toml  # noqa: E402
+
+METHODS = ("soft", "hard", "shi", "dem")
+COMMANDS = ("run", "fos", "cut", "check", "draw", "new", "study", "sweep", "report", "explain", "completion", "manual")
+SHAKEN, INCLINE = "verification/scenes/shaken_block.toml", "paper/scenes/example_3_1.toml"
+FAILING, SLOPE = "paper/scenes/example_3_4_post_failure.toml", "paper/scenes/example_3_4.toml"
+TOE, COLUMNS = "paper/scenes/example_3_3_toe.toml", "paper/scenes/example_3_2.toml"
+ALL_BITS = ["--set", "output.checkpoint_every_s=1e6"]  # a checkpoint at the end
+# Seeds that stay, so that the scenes are small; and how long they move.
+SEEDS, END = range(3000, 3004), "0.3"
+KINDS = {
+    "slope": ["--height-m=12", "--face-angle-deg=90", "--bedding-dip-deg=35", "--bedding-spacing-m=2"],
+    "wall": ["--courses=5", "--bricks=4", "--doors=1", "--door-bricks=1", "--door-courses=2", "--sill-courses=1", "--tilt-deg=7"],
+    "arch": ["--voussoirs=12", "--thickness-m=0.3"],
+}
+
+
+def settings(**values: str) -> list[str]:
+    return [word for key, value in values.items() for word in ("--set", f"{key.replace('__', '.')}={value}")]
+
+
+def texts() -> list[Case]:
+    helps = Case("help of all commands", [["--help"], ["--version"], [], *([name, "--help"] for name in COMMANDS)])
+    manuals = Case("manual pages", [["manual"], *(["manual", name] for name in COMMANDS)])
+    shells = Case("completions", [["completion", shell] for shell in ("bash", "zsh", "fish", "tcsh")])
+    keys = Case("tables of keys", [["explain", "--page"], ["explain", "--schema"], ["explain"]])
+    words = Case("explained keys", [["explain", word] for word in ("theta", "joint.friction_angle_deg", "method", "frictoin", "dt", "vertices_m", "", "[method]", "solver.")])
+    mistakes = Case("mistaken options", [["rum"], ["run"], ["run", "none.toml"], ["run", SHAKEN, "--contcat", "soft"], ["run", SHAKEN, "--contact", "sofd"],
+                                         ["run", SHAKEN, "--set", "method.thetta=1"], ["run", SHAKEN, "--set", "theta"], ["run", SHAKEN, "--dt", "-1"],
+                                         ["run", SHAKEN, "--end", "x"], ["fos", SLOPE, "--increase", "wind"], ["draw", "nowhere"], ["study", SHAKEN],
+                                         ["sweep", SHAKEN, "--vary", "method.theta"], ["report", "nowhere"], ["cut", SHAKEN], ["new", "dam"], ["run", SHAKEN, SHAKEN]])
+    return [helps, manuals, shells, keys, words, mistakes]
+
+
+def drafts() -> list[Case]:
+    """Each kind as it is and with other numbers: written, checked, drawn, and of walls and arches their factor."""
+    cases = [Case(f"new {kind}", [["new", kind, "-o", "a.toml"], ["new", kind, *options, "-o", "b.toml"], ["check", "b.toml"], ["draw", "b.toml", "-o", "b.svg"],
+                                  ["fos", "b.toml", "-o", "b"]]) for kind, options in KINDS.items()]
+    wrong = [[f"{option.partition('=')[0]}={value}"] for options in KINDS.values() for option in options for value in ("0", "-1", "1", "1e9", "0.5", "x")]
+    kinds = [kind for kind, options in KINDS.items() for _ in range(6 * len(options))]
+    cases.append(Case("new with options at their limits", [["new", kind, *option, "-q", "-o", f"{i}.toml"] for i, (kind, option) in enumerate(zip(kinds, wrong))], together=True))
+    return cases
+
+
+def runs() -> list[Case]:
+    cases = []
+    for method in METHODS:
+        contact = ["--contact", method, *ALL_BITS]
+        cases += [
+            Case(f"sliding block, {method}", [["run", INCLINE, *contact, "--end", "0.2", "-o", "r"]]),
+            Case(f"columns in motion, {method}", [["run", COLUMNS, *contact, "--end", "0.3", *settings(method__start="unloaded"), "-o", "r"]]),
+            Case(f"shaken block, {method}", [["run", SHAKEN, *contact, "--end", "1", *settings(output__snapshots_every_s="0.25"), "-o", "r"],
+                                             ["draw", "r", "--state", "t=0.5", "--colour", "velocity", "--forces", "-o", "a.svg"],
+                                             ["draw", "r", "--cracks", "-o", "b.svg"], ["report", "r", "-o", "page.html"]]),
+            Case(f"shaken wall, {method}", [["run", "examples/shaken_wall/scene.toml", *contact, "--end", "0.2", "-o", "r"]]),
+            Case(f"rockfall and a restart, {method}", [["run", "examples/rockfall/scene.toml", *contact, "--end", "0.5", "-o", "r"],
+                                                       ["run", "examples/rockfall/scene.toml", *contact, "--end", "0.7", "--restart", "r/checkpoint.bin", "-o", "r"]]),
+            Case(f"toe in motion, {method}", [["run", TOE, *contact, "--dt", "1e-3", "--end", "0.2", *settings(run__strength_reduction_factor="3"), "-o", "r"]]),
+        ]
+    cases += [
+        Case("483 blocks in failure, soft", [["run", FAILING, *ALL_BITS, "--end", "0.3", "-o", "r"]]),
+        Case("483 blocks in failure, hard", [["run", FAILING, "--contact", "hard", *ALL_BITS, "--end", "0.1", "-o", "r"]]),
+        Case("a film", [["run", SHAKEN, "--end", "0.5", *settings(output__formats='["vtk", "svg"]', output__snapshots_every_s="0.25", output__milestones_m="[1e-4, 1e-3]"), "-o", "r"]]),
+        Case("an adaptive step", [["run", INCLINE, "--end", "0.5", *settings(step__adaptive="true", step__look_ahead="0.5"), *ALL_BITS, "-o", "r"]]),
+        Case("json of a run", [["run", INCLINE, "--end", "0.02", "--json", "-o", "r"], ["check", INCLINE, "--json"], ["check", SHAKEN, "--spectrum", "spectrum.csv"]]),
+    ]
+    return cases
+
+
+def searches() -> list[Case]:
+    cases = []
+    for name in ("planar_slope", "toppling_slope", "roof_wedge", "tilting_arch", "retaining_blocks"):
+        scene = f"examples/{name}/scene.toml"
+        cases += [Case(f"fos {name}, {method}", [["fos", scene, "--contact", method, "-o", "r"], ["draw", "r", "-o", "a.svg"],
+                                                 ["draw", "r", "--state", "stable", "--forces", "-o", "b.svg"]]) for method in (("soft", "dem") if name == "planar_slope" else ("soft",))]
+    cases += [
+        Case(f"fos {Path(scene).stem}, {definition}", [["fos", scene, *settings(strength_reduction__definition=definition), "-o", "r"]])
+        for scene in (TOE, "paper/scenes/example_3_3_wedge.toml", "verification/scenes/slope_face_60_columns_m70.toml")
+        for definition in ("small_displacements", "joint_closures", "large_displacements")
+    ]
+    cases += [Case(f"fos {scene.stem}", [["fos", f"verification/blind/{scene.name}", "-o", "r"]]) for scene in sorted((ROOT / "verification/blind").glob("*.toml"))]
+    cases += [
+        Case("fos by loads", [["fos", "examples/retaining_blocks/scene.toml", "--increase", load, "-o", f"r{i}"]
+                              for i, load in enumerate(("gravity_x", "-gravity_x", "gravity_y", "gravity", "surcharges", "loads", "surcharge 1"))]),
+        Case("fos of a fallen tower", [["fos", "examples/dry_stone_tower/scene.toml", *settings(gravity_m_per_s2="[9.81,-9.81]"), "-o", "r"]]),
+        Case("fos of an open slope", [["fos", SLOPE, "--json", "-o", "r"]]),
+        Case("fos with a curve", [["fos", TOE, *settings(strength_reduction__curve="[1, 2]", strength_reduction__curve_time_s="0.05", step__dt_s="1e-3"), "-o", "r"]]),
+        Case("settling as the paper", [["fos", TOE, *settings(settle__criterion="paper", step__dt_s="1e-3", settle__max_time_steps="200"), "-o", "r"]]),
+        Case("a study", [["study", SHAKEN, "--dt", "1e-2,5e-3", "--contact", "soft,hard", "--end", "0.5", "-q", "-o", "r"],
+                         ["study", "examples/rockfall/scene.toml", "--dt", "8e-3,4e-3", "--end", "0.4", "--quantity", "slab.displacement_x_m", "--reference", "1", "-q", "-o", "s"]]),
+        Case("a sweep", [["sweep", "examples/planar_slope/scene.toml", "--vary", "joint[0].friction_angle_deg=20:30:5", "-o", "r"]]),
+        Case("cuts", [["cut", scene, "-o", f"{i}.toml"] for i, scene in enumerate((SLOPE, "verification/scenes/slope_face_60_joints_20_m70.toml", TOE))]),
+        Case("pictures of scenes", [["draw", scene, *option, "-o", f"{i}.svg"]
+                                    for i, (scene, option) in enumerate(((SLOPE, []), ("examples/retaining_blocks/scene.toml", []), (SHAKEN, []), ("examples/rockfall/scene.toml", [])))]),
+    ]
+    return cases
+
+
+def strangers() -> list[Case]:
+    """Scenes of the campaign's seeds, by all methods that serve."""
+    cases = []
+    for part, methods in ((slopes, ("soft",)), (maps, ("soft",)), (masonry, ("soft", "dem")), (tumbles, METHODS)):
+        for seed in SEEDS:
+            scene = part.draw(seed)
+            files = {"scene.toml": to_toml(scene.document)}
+            ends = ["--end", END, *ALL_BITS] if scene.command == "run" else []
+            cases += [Case(f"{scene.name}, {method}", [[scene.command, "scene.toml", "--contact", method, *ends, "-o", "r"]], files) for method in methods]
+    return cases
+
+
+def attacks() -> list[Case]:
+    """What `check` says of everything that has been thrown at the reader of scenes, and of each line of a scene left out or written twice."""
+    corpus = sorted((ROOT / "tests/fuzz/corpus/scene").iterdir())
+    found = [Case(f"check of what was found by attack, {i}", [["check", path.name]], together=True, files={path.name: text})
+             for i, path in enumerate(corpus) if (text := readable(path)) is not None]
+    text = (ROOT / "examples/retaining_blocks/scene.toml").read_text()
+    lines = text.splitlines(keepends=True)
+    used = [i for i, line in enumerate(lines) if re.match(r"[\w\[]", line)]
+    less = {f"{i}.toml": "".join(lines[:i] + lines[i + 1:]) for i in used}
+    twice = {f"{i}_twice.toml": "".join(lines[:i + 1] + lines[i:]) for i in used}
+    return [*found, Case("check of a scene with a line less", [["check", name] for name in less], less, together=True),
+            Case("check of a scene with a line twice", [["check", name] for name in twice], twice, together=True)]
+
+
+def records() -> list[Case]:
+    """Accelerograms of every form, whole and broken, as the base's motion."""
+    files, tried = {}, []
+    for i, path in enumerate(sorted((ROOT / "tests/fuzz/corpus/record").iterdir())):
+        for ending in ("csv", "at2"):
+            name, text = f"record_{i}.{ending}", readable(path)
+            if text is None:
+                continue
+            files[name] = text
+            files[f"{name}.toml"] = to_toml(sweeps.YARD | {"base_motion": {"kind": "record", "horizontal_file": name, "vertical_file": name, "factor": 0.5}})
+            tried.append(["run", f"{name}.toml", "--end", "0.05", "-q", "-o", f"{i}_{ending}_yard"])
+    return [Case("records", tried, files, together=True)]
+
+
+def readable(path: Path) -> str | None:
+    try:
+        return path.read_text(encoding="utf-8")
+    except UnicodeDecodeError:
+        return None
+
+
+def cases() -> list[Case]:
+    return [*texts(), *drafts(), *runs(), *searches(), *strangers(), *attacks(), *records()]
