@@ -94,11 +94,13 @@ def outputs_of(case: Case, openclose: Path) -> Outputs:
         folder = Path(name)
         for scenes in ("examples", "paper", "verification"):
             (folder / scenes).symlink_to(ROOT / scenes)
+        # Help and messages name the program as it was called.
+        (folder / "openclose").symlink_to(openclose)
         for file, text in case.files.items():
             (folder / file).write_text(text, encoding="utf-8")
         said = []
         for arguments in case.commands:
-            done = run_process([str(openclose), *arguments], LIMIT_S, folder)
+            done = run_process(["./openclose", *arguments], LIMIT_S, folder)
             status = "too long" if was_stopped(done) else done.returncode
             said.append(f"$ {' '.join(arguments)}\n{done.stdout}{done.stderr}[{status}]\n")
         outputs.texts["printed"] = steady("".join(said)).encode()
