@@ -54,7 +54,7 @@ NO_FAULTS = (DOES_NOT_COMPILE, SAME_PROGRAM)
 LAST_OUTPUTS = "last outputs"
 NOTICED = (*CAUGHT, LAST_OUTPUTS, "crash", "time-out")
 # A check may take this many times as long as without a fault, and so much more: others use the machine, too.
-TIME_FACTOR, TIME_MARGIN_S = 10.0, 60.0
+TIME_FACTOR, TIME_MARGIN_S = 4.0, 60.0
 FEWEST_PER_FOLDER = 4
 SKIPPED = 77  # exit status of a comparison that this machine's sines forbid
 OPENCLOSE = "build/release/openclose"

@@ -9,3 +9,4 @@ class Case:
     commands: list[list[str]]
     files: dict[str, str] = field(default_factory=dict)
     together: bool = False  # one digest for everything that is printed and written
+    must_succeed: bool = False  # there are no digests of commands that fail

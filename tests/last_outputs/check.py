@@ -110,6 +110,8 @@ def outputs_of(case: Case, openclose: Path) -> Outputs:
         said = []
         for arguments in case.commands:
             said.append(f"$ {' '.join(arguments)}\n{said_by(arguments, folder)}")
+            if case.must_succeed and not said[-1].endswith("[0]\n"):
+                raise SystemExit(f"{case.title}: this must succeed:\n{said[-1]}")
         outputs.texts["printed"] = steady("".join(said)).encode("utf-8", "surrogateescape")
         for path in sorted(folder.rglob("*")):
             name = str(path.relative_to(folder))
