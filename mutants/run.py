@@ -21,9 +21,11 @@ Exit status: 0 if every fault was caught, 1 if one was not, 2 if the list does n
 import argparse
 import csv
 import hashlib
+import json
 import os
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import threading
@@ -194,19 +196,29 @@ class Worker:
             self.limits[check] = TIME_FACTOR * (time.monotonic() - begin) + TIME_MARGIN_S
         return outcome
 
+    def finished(self, command, limit):
+        """Exit status and output; None for the status of what the limit of time has ended, with all that it had started."""
+        run = subprocess.Popen(command, cwd=self.tree, env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, start_new_session=True)
+        try:
+            text, _ = run.communicate(timeout=limit)
+            return run.returncode, text
+        except subprocess.TimeoutExpired:
+            os.killpg(run.pid, signal.SIGKILL)
+            run.communicate()
+            return None, ""
+
     def run_tests(self, check, command):
         report = self.tree / "build" / f"{check}.xml"
         report.unlink(missing_ok=True)
-        try:
-            run = subprocess.run(command, cwd=self.tree, env=self.environment, capture_output=True, text=True, timeout=self.limits.get(check))
-        except subprocess.TimeoutExpired:
+        status, text = self.finished(command, self.limits.get(check))
+        if status is None:
             return Outcome("time-out", f"tests/{check}")
-        if run.returncode == 0:
+        if status == 0:
             return Outcome()
         failures, errors = self.red_tests(report)
         if failures:
             return Outcome("unit test", f"tests/{check}: {failures[0]}")
-        return Outcome("crash", f"tests/{check}: {errors[0]}" if errors else f"tests/{check}", run.stdout + run.stderr)
+        return Outcome("crash", f"tests/{check}: {errors[0]}" if errors else f"tests/{check}", text)
 
     @staticmethod
     def red_tests(report):
@@ -223,11 +235,10 @@ class Worker:
         return red["failure"], red["error"]
 
     def compare_last_outputs(self, command):
-        try:
-            run = subprocess.run(command, cwd=self.tree, env=self.environment, capture_output=True, text=True, timeout=self.limits.get(LAST_OUTPUTS))
-        except subprocess.TimeoutExpired:
+        status, text = self.finished(command, self.limits.get(LAST_OUTPUTS))
+        if status is None:
             return Outcome("time-out", LAST_OUTPUTS)
-        return Outcome() if run.returncode in (0, SKIPPED) else Outcome(LAST_OUTPUTS, (run.stdout.splitlines() or [f"exit status {run.returncode}"])[0], run.stderr)
+        return Outcome() if status in (0, SKIPPED) else Outcome(LAST_OUTPUTS, (text.splitlines() or [f"exit status {status}"])[0], text)
 
     def run_verification(self, command):
         """Ends with the first row that is red."""
@@ -253,8 +264,8 @@ class Worker:
             return Outcome("time-out", "verification")
         return Outcome() if run.returncode == 0 else Outcome("crash", f"verification: {group}", text)
 
-    def try_fault(self, fault, checks):
-        """\\return the row of the table."""
+    def try_fault(self, fault, checks, enough):
+        """Goes through the checks until one notices the fault in a way that is enough."""
         begin = time.monotonic()
         path = self.tree / fault["file"]
         original = path.read_text()
@@ -268,7 +279,7 @@ class Worker:
                 changed = True
                 if first.kind is None:
                     first = outcome
-                if outcome.kind in (*CAUGHT, LAST_OUTPUTS, DOES_NOT_COMPILE):
+                if outcome.kind in (*enough, DOES_NOT_COMPILE):
                     first = outcome
                     break
         finally:
@@ -334,12 +345,24 @@ def write_page(path, rows, notes):
     path.write_text("\n".join(lines) + "\n")
 
 
+def digest_of_sources():
+    files = sorted(p for name in COPIED for p in ([ROOT / name] if (ROOT / name).is_file() else (ROOT / name).rglob("*"))
+                   if p.is_file() and "__pycache__" not in p.parts)
+    return hashlib.sha256(b"".join(str(p.relative_to(ROOT)).encode() + p.read_bytes() for p in files)).hexdigest()
+
+
 def baseline(worker, checks):
-    """The limits of time; the source without a fault must be green."""
+    """The limits of time; the source without a fault must be green, which is asked once as long as nothing changes."""
+    known, key = ROOT / "build/mutants/baseline.json", digest_of_sources()
+    kept = json.loads(known.read_text()) if known.is_file() else {}
+    if kept.get("sources") == key and set(checks) <= set(kept["limits"]):
+        worker.limits = kept["limits"]
+        return
     for check in checks:
         outcome = worker.run(check)
         if outcome.kind:
             raise ListError(f"without any fault {outcome.by} is red: {outcome.kind}\n{outcome.text[-3000:]}")
+    known.write_text(json.dumps({"sources": key, "limits": worker.limits}))
 
 
 def study(faults, wanted, options):
@@ -362,7 +385,7 @@ def study(faults, wanted, options):
         with lock:
             worker = free.pop()
         try:
-            row = worker.try_fault(fault, checks_for(folder_of(fault), options))
+            row = worker.try_fault(fault, checks_for(folder_of(fault), options), NOTICED if options.random else CAUGHT)
         finally:
             with lock:
                 free.append(worker)
@@ -401,7 +424,9 @@ def main():
         if options.check_list:
             print(f"{len(faults)} faults fit the source")
             return 0
-        return study(faults, [f for f in faults if not options.ids or f["id"] in options.ids], options)
+        # What many sources include is compiled for long: it comes last.
+        wanted = sorted((f for f in faults if not options.ids or f["id"] in options.ids), key=lambda f: options.random and f["file"].endswith(".h"))
+        return study(faults, wanted, options)
     except (ListError, tomllib.TOMLDecodeError) as error:
         print(f"mutants: {error}", file=sys.stderr)
         return 2
