@@ -1,4 +1,4 @@
-"""What the scripts of verification/, mutants/, paper/, stress/ and bench/ share. Each of these folders has a link to it, so that its scripts find it."""
+"""What the scripts of verification/, mutants/, paper/, stress/, bench/ and tests/last_outputs/ share. Each of these folders has a link to it, so that its scripts find it."""
 
 from pathlib import Path
 

@@ -153,6 +153,8 @@ TEST_CASE("the part of a line that touches a polygon", "[geometry][touch]") {
   CHECK(common_length({{-1.0, 1.0}, {1.0, 1.0}}, square) == Approx(1.0));
   CHECK(common_length({{0.5, 0.5}, {1.0, 1.0}}, square) == Approx(std::sqrt(0.5)));
   CHECK(common_length({{-1.0, -1e-7}, {5.0, 1e-7}}, square) == Approx(2.0));
+  // It enters and leaves through slanted edges, at x = 1/3 and x = 3, where no corner lies above it.
+  CHECK(common_length({{-1.0, 1.0}, {5.0, 1.0}}, {{0.0, 0.0}, {4.0, 0.0}, {1.0, 3.0}}) == Approx(8.0 / 3.0));
   SECTION("a corner is not enough") {
     CHECK(common_length({{2.0, 2.0}, {5.0, 2.0}}, square) < 1e-5);
     CHECK(common_length({{1.0, 3.0}, {3.0, 1.0}}, square) < 1e-5);

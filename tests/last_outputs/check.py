@@ -10,20 +10,20 @@ These are no checks of physics: they say that an answer is another one, not whic
 renews the digests and says why. Times of computing and memory of the process are left out. The bits hold where
 sines, cosines and powers of the C library are those of the table's first row; elsewhere nothing is compared.
 
-Exit status: 0 if all are the same, 1 if one is another, 77 if the machine's sines are others.
+Exit status: 0 if all are the same, 1 if one is another, 2 if no case has the title, 77 if the machine's sines are others.
 """
 
 import argparse
 import csv
 import hashlib
 import math
+import os
 import re
 import subprocess
 import sys
 import tempfile
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field
 from pathlib import Path
 
 import commands
@@ -50,16 +50,6 @@ FLEETING = [re.compile(pattern) for pattern in (
     r'("(?:cpu[a-z_]*_s|wall_s|peak_memory_bytes|program|without_factor|milestones\.csv)":\s*)[-+0-9.e]+',
     r"(<!-- Written by openclose )[0-9a-f]+",
 )]
-
-
-@dataclass
-class Outputs:
-    """What a case has printed and written, by name."""
-
-    texts: dict[str, bytes] = field(default_factory=dict)
-
-    def digests(self) -> dict[str, str]:
-        return {name: digest(content) for name, content in sorted(self.texts.items())}
 
 
 def digest(content: bytes) -> str:
@@ -96,10 +86,10 @@ def said_by(arguments: list[str], folder: Path) -> str:
     return f"{done.stdout}{done.stderr}[{done.returncode}]\n"
 
 
-def outputs_of(case: Case, openclose: Path) -> Outputs:
-    """Runs the commands of a case one after the other in a folder of its own, in which they find the tree's scenes."""
-    outputs = Outputs()
-    with tempfile.TemporaryDirectory(dir=MEMORY if MEMORY.is_dir() else None) as name:
+def outputs_of(case: Case, openclose: Path) -> dict[str, bytes]:
+    """What the commands of a case print and write, by name; they run one after the other in a folder of their own, in which they find the tree's scenes."""
+    outputs = {}
+    with tempfile.TemporaryDirectory(dir=MEMORY if os.access(MEMORY, os.W_OK) else None) as name:
         folder = Path(name)
         for scenes in ("examples", "paper", "verification"):
             (folder / scenes).symlink_to(ROOT / scenes)
@@ -112,14 +102,12 @@ def outputs_of(case: Case, openclose: Path) -> Outputs:
             said.append(f"$ {' '.join(arguments)}\n{said_by(arguments, folder)}")
             if case.must_succeed and not said[-1].endswith("[0]\n"):
                 raise SystemExit(f"{case.title}: this must succeed:\n{said[-1]}")
-        outputs.texts["printed"] = steady("".join(said)).encode("utf-8", "surrogateescape")
+        outputs["printed"] = steady("".join(said)).encode("utf-8", "surrogateescape")
         for path in sorted(folder.rglob("*")):
             name = str(path.relative_to(folder))
             if path.is_file() and not path.is_symlink() and path.name not in NOT_COMPARED and name not in case.files:
-                outputs.texts[name] = content_of(path)
-    if case.together:
-        outputs.texts = {"all": b"".join(name.encode() + b"\n" + content for name, content in outputs.texts.items())}
-    return outputs
+                outputs[name] = content_of(path)
+    return {"all": b"".join(name.encode() + b"\n" + content for name, content in outputs.items())} if case.together else outputs
 
 
 def sines() -> str:
@@ -138,7 +126,7 @@ def measured(selected: list[Case], openclose: Path, jobs: int) -> Iterator[tuple
     with ThreadPoolExecutor(jobs) as pool:
         try:
             for case, outputs in zip(selected, pool.map(lambda case: outputs_of(case, openclose), selected)):
-                yield case.title, outputs.digests()
+                yield case.title, {name: digest(content) for name, content in sorted(outputs.items())}
         finally:
             pool.shutdown(cancel_futures=True)
 
@@ -193,11 +181,15 @@ def main() -> int:
     parser.add_argument("--jobs", type=int, default=1, help="commands at a time (default: %(default)s)")
     options = parser.parse_args()
     openclose = options.openclose.resolve()
-    selected = [c for c in cases() if not options.only or any(word in c.title for word in options.only)]
     if options.show:
-        for case in (c for c in selected if c.title == options.show):
-            for name, content in outputs_of(case, openclose).texts.items():
-                sys.stdout.buffer.write(f"=== {name}\n".encode() + content + b"\n")
+        selected = [c for c in cases() if c.title == options.show]
+    else:
+        selected = [c for c in cases() if not options.only or any(word in c.title for word in options.only)]
+    if not selected:
+        parser.error("no case has this title")
+    if options.show:
+        for name, content in outputs_of(selected[0], openclose).items():
+            sys.stdout.buffer.write(f"=== {name}\n".encode() + content + b"\n")
         return 0
     if options.renew:
         write_digests(openclose, options.jobs)

@@ -4,9 +4,9 @@ import re
 import sys
 from pathlib import Path
 
-import sweeps
 from case import Case
 from openclose_scripts import ROOT
+from scenes import METHODS, YARD, landing, leaning_columns
 
 sys.path.insert(0, str(ROOT / "stress"))
 
@@ -16,12 +16,10 @@ import slopes  # noqa: E402
 import tumbles  # noqa: E402
 from scene import to_toml  # noqa: E402
 
-METHODS = ("soft", "hard", "shi", "dem")
 COMMANDS = ("run", "fos", "cut", "check", "draw", "new", "study", "sweep", "report", "explain", "completion", "manual")
 SHAKEN, INCLINE = "verification/scenes/shaken_block.toml", "paper/scenes/example_3_1.toml"
 FAILING, SLOPE = "paper/scenes/example_3_4_post_failure.toml", "paper/scenes/example_3_4.toml"
 TOE, COLUMNS = "paper/scenes/example_3_3_toe.toml", "paper/scenes/example_3_2.toml"
-ALL_BITS = ["--set", "output.checkpoint_every_s=1e6"]  # a checkpoint at the end
 # Seeds that stay, so that the scenes are small; and how long they move.
 SEEDS, END = range(3000, 3004), "0.3"
 KINDS = {
@@ -31,8 +29,11 @@ KINDS = {
 }
 
 
-def settings(**values: str) -> list[str]:
-    return [word for key, value in values.items() for word in ("--set", f"{key.replace('__', '.')}={value}")]
+def settings(*assignments: str) -> list[str]:
+    return [word for assignment in assignments for word in ("--set", assignment)]
+
+
+ALL_BITS = settings("output.checkpoint_every_s=1e6")  # a checkpoint at the end
 
 
 def texts() -> list[Case]:
@@ -64,20 +65,24 @@ def runs() -> list[Case]:
         contact = ["--contact", method, *ALL_BITS]
         cases += [
             Case(f"sliding block, {method}", [["run", INCLINE, *contact, "--end", "0.2", "-o", "r"]]),
-            Case(f"columns in motion, {method}", [["run", COLUMNS, *contact, "--end", "0.3", *settings(method__start="unloaded"), "-o", "r"]]),
-            Case(f"shaken block, {method}", [["run", SHAKEN, *contact, "--end", "1", *settings(output__snapshots_every_s="0.25"), "-o", "r"],
+            Case(f"columns in motion, {method}", [["run", COLUMNS, *contact, "--end", "0.3", *settings("method.start=unloaded"), "-o", "r"]]),
+            Case(f"shaken block, {method}", [["run", SHAKEN, *contact, "--end", "1", *settings("output.snapshots_every_s=0.25"), "-o", "r"],
                                              ["draw", "r", "--state", "t=0.5", "--colour", "velocity", "--forces", "-o", "a.svg"],
                                              ["draw", "r", "--cracks", "-o", "b.svg"], ["report", "r", "-o", "page.html"]]),
             Case(f"shaken wall, {method}", [["run", "examples/shaken_wall/scene.toml", *contact, "--end", "0.2", "-o", "r"]]),
             Case(f"rockfall and a restart, {method}", [["run", "examples/rockfall/scene.toml", *contact, "--end", "0.5", "-o", "r"],
                                                        ["run", "examples/rockfall/scene.toml", *contact, "--end", "0.7", "--restart", "r/checkpoint.bin", "-o", "r"]]),
-            Case(f"toe in motion, {method}", [["run", TOE, *contact, "--dt", "1e-3", "--end", "0.2", *settings(run__strength_reduction_factor="3"), "-o", "r"]]),
+            Case(f"fast landing, {method}", [["run", "landing.toml", *contact, "-o", "r"]], {"landing.toml": to_toml(landing())}, must_succeed=True),
+            Case(f"toe in motion, {method}", [["run", TOE, *contact, "--dt", "1e-3", "--end", "0.2", *settings("run.strength_reduction_factor=3"), "-o", "r"]]),
         ]
+    leaning = [leaning_columns(3, [10, 20, 40, 20, 40, 10, 20, 40], 7e-4, 0.387, 3.048), leaning_columns(3, [10, 20, 40, 10, 40, 10, 10], 7e-3, 0.4764, 1.531),
+               leaning_columns(4, [40, 40, 40, 40], 1.75e-4, 0.4124, 5.022)]
     cases += [
+        *(Case(f"columns that close, {i}", [["run", "columns.toml", *ALL_BITS, "-o", "r"]], {"columns.toml": to_toml(scene)}, must_succeed=True) for i, scene in enumerate(leaning)),
         Case("483 blocks in failure, soft", [["run", FAILING, *ALL_BITS, "--end", "0.3", "-o", "r"]]),
         Case("483 blocks in failure, hard", [["run", FAILING, "--contact", "hard", *ALL_BITS, "--end", "0.1", "-o", "r"]]),
-        Case("a film", [["run", SHAKEN, "--end", "0.5", *settings(output__formats='["vtk", "svg"]', output__snapshots_every_s="0.25", output__milestones_m="[1e-4, 1e-3]"), "-o", "r"]]),
-        Case("an adaptive step", [["run", INCLINE, "--end", "0.5", *settings(step__adaptive="true", step__look_ahead="0.5"), *ALL_BITS, "-o", "r"]]),
+        Case("a film", [["run", SHAKEN, "--end", "0.5", *settings('output.formats=["vtk", "svg"]', "output.snapshots_every_s=0.25", "output.milestones_m=[1e-4, 1e-3]"), "-o", "r"]]),
+        Case("an adaptive step", [["run", INCLINE, "--end", "0.5", *settings("step.adaptive=true", "step.look_ahead=0.5"), *ALL_BITS, "-o", "r"]]),
         Case("json of a run", [["run", INCLINE, "--end", "0.02", "--json", "-o", "r"], ["check", INCLINE, "--json"], ["check", SHAKEN, "--spectrum", "spectrum.csv"]]),
     ]
     return cases
@@ -90,7 +95,7 @@ def searches() -> list[Case]:
         cases += [Case(f"fos {name}, {method}", [["fos", scene, "--contact", method, "-o", "r"], ["draw", "r", "-o", "a.svg"],
                                                  ["draw", "r", "--state", "stable", "--forces", "-o", "b.svg"]]) for method in (("soft", "dem") if name == "planar_slope" else ("soft",))]
     cases += [
-        Case(f"fos {Path(scene).stem}, {definition}", [["fos", scene, *settings(strength_reduction__definition=definition), "-o", "r"]])
+        Case(f"fos {Path(scene).stem}, {definition}", [["fos", scene, *settings(f"strength_reduction.definition={definition}"), "-o", "r"]])
         for scene in (TOE, "paper/scenes/example_3_3_wedge.toml", "verification/scenes/slope_face_60_columns_m70.toml")
         for definition in ("small_displacements", "joint_closures", "large_displacements")
     ]
@@ -98,10 +103,10 @@ def searches() -> list[Case]:
     cases += [
         Case("fos by loads", [["fos", "examples/retaining_blocks/scene.toml", "--increase", load, "-o", f"r{i}"]
                               for i, load in enumerate(("gravity_x", "-gravity_x", "gravity_y", "gravity", "surcharges", "loads", "surcharge 1"))]),
-        Case("fos of a fallen tower", [["fos", "examples/dry_stone_tower/scene.toml", *settings(gravity_m_per_s2="[9.81,-9.81]"), "-o", "r"]]),
+        Case("fos of a fallen tower", [["fos", "examples/dry_stone_tower/scene.toml", *settings("gravity_m_per_s2=[9.81,-9.81]"), "-o", "r"]]),
         Case("fos of an open slope", [["fos", SLOPE, "--json", "-o", "r"]]),
-        Case("fos with a curve", [["fos", TOE, *settings(strength_reduction__curve="[1, 2]", strength_reduction__curve_time_s="0.05", step__dt_s="1e-3"), "-o", "r"]]),
-        Case("settling as the paper", [["fos", TOE, *settings(settle__criterion="paper", step__dt_s="1e-3", settle__max_time_steps="200"), "-o", "r"]]),
+        Case("fos with a curve", [["fos", TOE, *settings("strength_reduction.curve=[1, 2]", "strength_reduction.curve_time_s=0.05", "step.dt_s=1e-3"), "-o", "r"]]),
+        Case("settling as the paper", [["fos", TOE, *settings("settle.criterion=paper", "step.dt_s=1e-3", "settle.max_time_steps=200"), "-o", "r"]]),
         Case("a study", [["study", SHAKEN, "--dt", "1e-2,5e-3", "--contact", "soft,hard", "--end", "0.5", "-q", "-o", "r"],
                          ["study", "examples/rockfall/scene.toml", "--dt", "8e-3,4e-3", "--end", "0.4", "--quantity", "slab.displacement_x_m", "--reference", "1", "-q", "-o", "s"]]),
         Case("a sweep", [["sweep", "examples/planar_slope/scene.toml", "--vary", "joint[0].friction_angle_deg=20:30:5", "-o", "r"]]),
@@ -147,7 +152,7 @@ def records() -> list[Case]:
             if text is None:
                 continue
             files[name] = text
-            files[f"{name}.toml"] = to_toml(sweeps.YARD | {"base_motion": {"kind": "record", "horizontal_file": name, "vertical_file": name, "factor": 0.5}})
+            files[f"{name}.toml"] = to_toml(YARD | {"base_motion": {"kind": "record", "horizontal_file": name, "vertical_file": name, "factor": 0.5}})
             tried.append(["run", f"{name}.toml", "--end", "0.05", "-q", "-o", f"{i}_{ending}_yard"])
     return [Case("records", tried, files, together=True)]
 

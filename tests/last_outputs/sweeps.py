@@ -6,69 +6,34 @@ import sys
 
 from case import Case
 from openclose_scripts import ROOT
+from scenes import HILL, METHODS, MOTIONS, PULSES, SCHEMA, YARD
 
 sys.path += [str(ROOT / "stress"), str(ROOT / "docs")]
 
 from check_schema import faults  # noqa: E402
 from scene import to_toml  # noqa: E402
 
-SCHEMA = json.loads((ROOT / "docs/scene.schema.json").read_text(encoding="utf-8"))["properties"]
-METHODS = ("soft", "hard", "shi", "dem")
 OF_METHODS = {"method", "step", "solver", "rest", "run", "end", "output"}  # tables tried in a motion by each method
-OF_SEARCHES = {"strength_reduction", "settle"}
+OF_SEARCHES = {"strength_reduction"}
 OF_CUTS = {"domain", "joint_set", "joint_line", "fixed_line", "region"}
 END = "0.03"
 # Limits beyond this are of memory and of time: what stands there would not end.
 LARGEST = 1e4
-JOINT = {"normal_stiffness_pa_per_m": 1e8, "shear_stiffness_pa_per_m": 4e7, "friction_angle_deg": 30, "cohesion_pa": 2e3, "tensile_strength_pa": 1e3,
-         "cohesion_behaviour": "lost_on_slip", "residual_friction_angle_deg": 25, "slip_weakening_distance_m": 1e-3, "damping_ratio": 0.05}
-YARD = {
-    "title": "yard",
-    "gravity_m_per_s2": [1.5, -9.0],
-    "material": [{"name": "rock", "density_kg_per_m3": 2500}, {"name": "brick", "unit_weight_n_per_m3": 18e3}],
-    "joint": [{"name": "smooth"} | JOINT, {"materials": ["rock", "brick"]} | JOINT, {"materials": ["rock", "rock"]} | JOINT,
-              {"materials": ["brick", "brick"]} | JOINT],
-    "block": [
-        {"name": "ground", "material": "rock", "vertices_m": [[-1, -1], [6, -1], [6, 0], [-1, 0]], "fixed": True, "edge_joints": ["", "", "smooth", ""]},
-        {"name": "low", "material": "rock", "vertices_m": [[0, 0], [2, 0], [2, 1], [0, 1]], "edge_joints": ["smooth", "", "", ""]},
-        {"name": "high", "material": "brick", "vertices_m": [[0.2, 1], [1.5, 1], [0.9, 2.5], [0.2, 2]], "velocity_m_per_s": [0.3, 0], "angular_velocity_rad_per_s": -0.2},
-        {"name": "guided", "material": "brick", "vertices_m": [[3, 0.01], [4, 0.01], [4, 1], [3, 1]], "rotation_locked": True},
-    ],
-    "load": [{"name": "crane", "block": "high", "point_m": [0.9, 2.5], "force_n": [500, -800]}],
-    "support": [{"name": "anchor", "block": "low", "point_m": [2, 0.5], "stiffness_n_per_m": [1e6, 2e5]}],
-    "surcharge": [{"name": "soil", "block": "low", "from_m": [0, 1], "to_m": [0, 0.2], "pressure_pa": 900, "shear_pa": 50}],
-    "measured_point": [{"name": "top", "block": "high", "point_m": [0.9, 2.5]}],
-    "measured_contact": [{"name": "bed", "point_m": [0.5, 1], "block_a": "low", "block_b": "high"}],
-    "method": {"contact": "soft", "start": "unloaded"},
-    "step": {"dt_s": 2e-3},
-    "end": {"time_s": 0.03},
-    "output": {"every_s": 0.01, "checkpoint_every_s": 1e6},
-}
-MOTIONS = {
-    "harmonic": {"kind": "harmonic", "factor": 2, "amplitude_m_per_s2": [2, 1], "frequency_hz": 15, "phase_deg": 40},
-    "record": {"kind": "record", "factor": 3, "horizontal_time_s": [0, 0.01, 0.05], "horizontal_m_per_s2": [0, 4, -3],
-               "vertical_time_s": [0, 0.02, 0.04], "vertical_m_per_s2": [0, -2, 1]},
-    "pulses": {"kind": "pulses", "factor": 1.5},
-}
-PULSES = [{"start_s": 0.004, "duration_s": 0.01, "acceleration_m_per_s2": [3, -1]}]
-HILL = {
-    "title": "hill",
-    "material": [{"name": "rock", "density_kg_per_m3": 2500}, {"name": "clay", "density_kg_per_m3": 1900}],
-    "joint": [{"materials": ["rock", "rock"]} | JOINT, {"materials": ["rock", "clay"]} | JOINT, {"materials": ["clay", "clay"]} | JOINT,
-              {"name": "smooth"} | JOINT | {"friction_angle_deg": 27}, {"name": "bridge"} | JOINT | {"cohesion_pa": 3e4}],
-    "domain": {"material": "rock", "vertices_m": [[-6, -3], [16, -3], [16, 9], [4, 9], [0, 0], [-6, 0]], "holes_m": [[[12, 2], [14, 2], [14, 4], [12, 4]]],
-               "sliver_width_m": 0.02, "sliver_area_m2": 1e-3, "joint_end_reach_m": 0.05, "enclosed_joints": "drop", "section_direction_deg": 90, "max_blocks": 300},
-    "joint_set": [{"dip_deg": 38, "spacing_m": 2.5, "origin_m": [0, 0], "joint": "smooth", "bridge": "bridge", "trace_length_m": 6, "gap_m": 1, "stagger": 0.4,
-                   "dip_direction_deg": 70, "dip_scatter_deg": 4, "spacing_scatter": 0.2, "trace_scatter": 0.3, "seed": 5,
-                   "region_m": [[-6, -3], [16, -3], [16, 9], [-6, 9]]},
-                  {"dip_deg": -60, "spacing_m": 3, "origin_m": [0.3, 0], "persistence": 0.8, "trace_length_m": 8}],
-    "joint_line": [{"from_m": [-7, -1], "to_m": [17, 3], "joint": "smooth", "bridge": "bridge"}],
-    "fixed_line": [{"from_m": [-6, -3], "to_m": [16, -3]}, {"from_m": [16, -3], "to_m": [16, 9]}],
-    "region": [{"material": "clay", "vertices_m": [[-7, -4], [17, -4], [17, -0.5], [-7, -0.5]]}],
-    "strength_reduction": {"width": 1e-3},
-    "step": {"dt_s": 2e-3},
-}
+# What the scenes call things, and loads that increase: one of them is accepted where another is not known.
+NAMES = ("smooth", "bridge", "rock", "clay", "low", "high", "guided", "gravity_x", "-gravity_y")
 MISSING = object()
+# Keys that mean nothing alone, by table and key: what goes with them; None takes a key out that excludes them.
+COMPANIONS = {
+    "method.theta": {"integrator": "theta"},
+    "method.rho_inf": {"integrator": "generalized_alpha"},
+    "method.dissipation": {"integrator": "path_average"},
+    "method.first_integrator": {"first_integrator_s": 0.015},
+    "method.first_integrator_s": {"first_integrator": "tr_bdf2"},
+    "strength_reduction.curve_time_s": {"definition": "large_displacements", "curve": [1, 2]},
+    "strength_reduction.curve": {"definition": "large_displacements", "curve_time_s": 0.02},
+    "joint_set.persistence": {"gap_m": None},
+    "material.unit_weight_n_per_m3": {"density_kg_per_m3": None},
+}
 
 
 def beside(value: float) -> list[float]:
@@ -97,7 +62,7 @@ def values(schema: dict, base) -> list:
     elif kind in ("number", "integer"):
         found = numbers(schema, base)
     elif kind == "string":
-        found = ["nonsense", "", "smooth", "rock", "low", "gravity_x", "-gravity_y"]
+        found = ["nonsense", "", *NAMES]
     else:
         found = lists(schema, base)
     return [MISSING, 3 if kind in ("string", "array") else "x", *found]
@@ -112,7 +77,7 @@ def lists(schema: dict, base) -> list:
         return [*changed, *([other, *base[1:]] for other in lists({"items": schema["items"].get("items", {})}, base[0]))]
     if isinstance(base[0], str):
         return [*changed, ["nonsense", *base[1:]]]
-    return [*changed, [base[0] + 0.1, *base[1:]], [-base[0] - 0.3, *base[1:]], [0, *base[1:]], [1e9, *base[1:]], ["x", *base[1:]]]
+    return [*changed, [base[0] + 0.1, *base[1:]], [base[0] - 0.1, *base[1:]], [*base[:-1], base[-1] - 0.05], [-base[0] - 0.3, *base[1:]], [0, *base[1:]], [1e9, *base[1:]], ["x", *base[1:]]]
 
 
 def put(scene: dict, table: str, key: str, value) -> dict:
@@ -120,9 +85,10 @@ def put(scene: dict, table: str, key: str, value) -> dict:
     scene = copy.deepcopy(scene)
     found = scene.setdefault(table, {})
     row = found[0] if isinstance(found, list) else found
-    row.pop(key, None)
-    if value is not MISSING:
-        row[key] = value
+    for name, wanted in {**COMPANIONS.get(f"{table}.{key}", {}), key: None if value is MISSING else value}.items():
+        row.pop(name, None)
+        if wanted is not None:
+            row[name] = wanted
     return scene
 
 
@@ -137,6 +103,11 @@ def attempts(table: str, file: str) -> list[list[str]]:
     quiet = [file, "--quiet", "-o", folder]
     if table in OF_METHODS:
         return [["run", *quiet[:-1], f"{folder}_{m}", "--contact", m, "--end", END] for m in METHODS]
+    if table == "settle":
+        # Each criterion and method has keys of its own.
+        run = ["run", *quiet[:-1]]
+        return [[*run, f"{folder}_{m}", "--contact", m, "--end", END, "--set", "method.start=settled"] for m in METHODS] + [
+            [*run, f"{folder}_paper", "--end", END, "--set", "method.start=settled", "--set", "settle.criterion=paper"]]
     if table in OF_CUTS:
         return [["cut", file, "--quiet", "-o", f"{folder}_cut.toml"], ["fos", *quiet]]
     if table in OF_SEARCHES:
