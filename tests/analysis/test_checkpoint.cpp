@@ -475,3 +475,30 @@ TEST_CASE("a run that ended within a step, or did not converge, goes on where it
   CHECK(second.time() == to);
   CHECK(second.system().displacement(0)[1] == Approx(-0.5 * 9.81 * to * to).epsilon(1e-13));
 }
+
+TEST_CASE("a wrong number anywhere in a saved state is refused, or goes on as some number", "[analysis][checkpoint]") {
+  const std::string method = GENERATE("soft", "hard", "shi", "dem");
+  CAPTURE(method);
+  const Scene scene = prepared(test::tumbling_blocks(), method);
+  Simulation simulation(scene);
+  for (int i = 0; i < 300; ++i) REQUIRE(simulation.advance(scene.step.dt));
+  const std::string saved = state_of(simulation);
+  // As a whole number beyond every list, as the upper half of a real one 2.
+  constexpr char wrong[] = {'\xff', '\xff', '\xff', '\x3f'};
+  int refused = 0;
+  for (std::size_t at = 0; at + sizeof wrong <= saved.size(); ++at) {
+    std::string forged = saved;
+    forged.replace(at, sizeof wrong, wrong, sizeof wrong);
+    Simulation again(scene);
+    Archive archive(forged);
+    try {
+      archive(again);
+    } catch (const DamagedState&) {
+      ++refused;
+      continue;
+    }
+    // A wrong stiffness may make the steps of dem as short as it likes.
+    again.advance(0.01 * scene.step.dt);
+  }
+  CHECK(refused > 0);
+}

@@ -153,6 +153,20 @@ TEST_CASE("blocks whose sides cross pass into each other with no corner in the o
   }
 }
 
+TEST_CASE("a block may come into a trough, and not into its floor", "[analysis][corner_entry]") {
+  Scene scene = test::empty_scene();
+  scene.blocks = {test::fixed_block("trough", {{-2.0, -1.0}, {2.0, -1.0}, {2.0, 1.0}, {1.0, 1.0}, {1.0, 0.0}, {-1.0, 0.0}, {-1.0, 1.0}, {-2.0, 1.0}}),
+                  test::free_block("box", test::rectangle(-0.5, 1.2, 1.0, 1.0))};
+  const BlockSystem system(scene);
+  const auto passes = [&](double down) {
+    StepSolution solution;
+    solution.d = Motion::Unknowns(0.0, -down, 0.0);
+    return pass_into_each_other(system, solution, {{0, 1}}, tolerated);
+  };
+  CHECK_FALSE(passes(1.1));
+  CHECK(passes(1.3));
+}
+
 TEST_CASE("what a corner may enter goes with the width of the narrower block", "[analysis][corner_entry]") {
   Scene scene = test::block_on_base();
   for (Vec2& v : scene.blocks[1].vertices) v += Vec2(0.0, 0.05);

@@ -171,6 +171,8 @@ TEST_CASE("what moves along a gravity that does not point down is not said to mo
   CHECK_THAT(loose_blocks_in_words(scene), ContainsSubstring("\"top\" touches no other block and moves towards (0.00, 1.00)"));
   scene.gravity = {9.81, 0.0};
   CHECK_THAT(loose_blocks_in_words(scene), ContainsSubstring("moves towards (1.00, 0.00)"));
+  scene.gravity = {0.3, 0.0};  // of an asteroid
+  CHECK_THAT(loose_blocks_in_words(scene), ContainsSubstring("moves towards (1.00, 0.00)"));
 }
 
 TEST_CASE("friction is no remedy where the joint has more already", "[analysis][loose_motion]") {

@@ -460,6 +460,9 @@ TEST_CASE("keys of very many parts are refused before they are parsed", "[scene]
   CHECK(error_of("# a.b\n" + parts + " = 1\n") == "2: " + expected);
   CHECK(error_of("[" + parts + "]\nx = 1\n") == "1: " + expected);
   CHECK(error_of("x = \"\"\"a\n\"b\"\n\"\"\"\ny = {" + parts + " = 1}\n") == "4: " + expected);
+  // Texts of any length end where they do.
+  for (const char* text : {"\"\"", "\"b\"", "\"bc\"", "\"\\\"\"", "'b'", "'\\'"})
+    CHECK(error_of(std::string("y = {x = ") + text + ", a.b.c.d.e.f.g.h.i.j.k.l.m.n.o.p.q = 1}\n") == "1: " + expected);
 
   const SceneFile file(block_on_base);
   CHECK_THROWS_WITH(read_scene(file.path(), {parts + "=1"}), ContainsSubstring("a key has more than 16 parts"));
