@@ -187,6 +187,10 @@ TEST_CASE("numbers that no material has are warned of", "[scene][check]") {
     CHECK_THAT(warning_of("material[0].density_kg_per_m3", density), ContainsSubstring("material \"rock\": density_kg_per_m3 = " + density));
   CHECK_THAT(warning_of("material[0].density_kg_per_m3", "2.7e6"), ContainsSubstring("material \"rock\": density_kg_per_m3 = 2700000"));
   CHECK(check_scene(read_text(block_on_base, {"joint[0].friction_angle_deg=80"})).empty());
+  const std::vector<std::string> of_two =
+      check_scene(read_text(block_on_base + "[[material]]\nname = 'concrete'\ndensity_kg_per_m3 = 2400\n[[joint]]\nmaterials = ['rock', 'concrete']\n"
+                                            "normal_stiffness_pa_per_m = 1e9\nshear_stiffness_pa_per_m = 4e8\nfriction_angle_deg = 89.99999\n"));
+  CHECK(std::ranges::any_of(of_two, [](const std::string& w) { return w.find("joint of \"rock\" and \"concrete\": friction") != w.npos; }));
 }
 
 TEST_CASE("a joint that slip makes stronger where it pulls is warned of", "[scene][check]") {
