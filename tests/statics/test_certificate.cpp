@@ -74,6 +74,13 @@ TEST_CASE("forces and accelerations prove that a block starts to slide", "[stati
   const Vec2 direction = slides.mechanism.head<2>();
   CHECK(direction.normalized().dot(test::downhill(slope)) == Approx(1.0).epsilon(1e-6));
 
+  SECTION("also where the joint could bear a pull that is larger than what presses it") {
+    Scene bonded = scene;
+    bonded.joints[0].tensile_strength = 2.0 * test::block_weight / test::block_edge;
+    FrozenStrength with_tension(system, bonded);
+    with_tension.reduce(1.001 * std::tan(friction) / std::tan(slope));
+    CHECK(is_mechanism(system, with_tension, slides.state, slides.mechanism));
+  }
   SECTION("uphill is none") {
     CHECK_FALSE(is_mechanism(system, strength, slides.state, -slides.mechanism));
   }
