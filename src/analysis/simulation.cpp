@@ -170,7 +170,8 @@ void Simulation::restore(const Snapshot& snapshot) {
 bool Simulation::fits(const Snapshot& snapshot) const {
   const BlockSystem::State &own = state_.system.state(), &other = snapshot.blocks;
   return other.displacement.size() == own.displacement.size() && other.velocity.size() == own.velocity.size() && other.arm.size() == own.arm.size() &&
-         other.point_arm.size() == own.point_arm.size() && Detector::contacts_fit(state_.system, state_.joints, snapshot.contacts);
+         other.point_arm.size() == own.point_arm.size() && other.is_finite() &&
+         Detector::contacts_fit(state_.system, state_.joints, snapshot.contacts);
 }
 
 void Simulation::exchange(Archive& archive) {

@@ -217,14 +217,12 @@ void SimulationState::note_memory(const Memory& of_stepper) {
 }
 
 void SimulationState::judge(const Archive& archive) const {
-  const auto is_finite = [](const auto& list) { return std::ranges::all_of(list, [](const auto& v) { return v.allFinite(); }); };
-  const BlockSystem::State& blocks = system.state();
   archive.require(detector.fits(system, joints, contacts), "the saved state has contacts of blocks that are not there");
   archive.require(resting.fits(system) && output_velocity.size() == system.blocks().size() && bonds <= Bonds::last_unparted,
                   "the saved state is of other blocks");
-  archive.require(std::isfinite(time) && is_finite(blocks.displacement) && is_finite(blocks.velocity) && is_finite(blocks.arm) &&
-                      is_finite(blocks.point_arm) && is_finite(output_velocity),
-                  "the saved state has blocks without a finite position or velocity");
+  archive.require(
+      std::isfinite(time) && system.state().is_finite() && std::ranges::all_of(output_velocity, [](const Unknowns& v) { return v.allFinite(); }),
+      "the saved state has blocks without a finite position or velocity");
   archive.require(ledger.is_finite() && std::isfinite(start_kinetic_energy) && std::isfinite(kinetic_ahead),
                   "the saved state has energies that are no numbers");
   archive.require(!joints.reduction() || (std::isfinite(*joints.reduction()) && *joints.reduction() > 0.0),

@@ -11,6 +11,11 @@
 
 namespace openclose {
 
+bool BlockSystem::State::is_finite() const {
+  const auto are_finite = [](const auto& list) { return std::ranges::all_of(list, [](const auto& v) { return v.allFinite(); }); };
+  return are_finite(displacement) && are_finite(velocity) && are_finite(arm) && are_finite(point_arm);
+}
+
 BlockSystem::BlockSystem(const Scene& scene) : rotation_kind_(scene.method.rotation) {
   const std::size_t blocks = scene.blocks.size();
   std::size_t vertices = 0;

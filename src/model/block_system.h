@@ -43,6 +43,8 @@ class BlockSystem {
       auto& [a, b, c, d] = *this;
       archive(a, b, c, d);
     }
+    /// A saved one may be none of a simulation.
+    bool is_finite() const;
   };
 
   explicit BlockSystem(const Scene& scene);

@@ -8,6 +8,7 @@
 #include "openclose/core/error.h"
 #include "openclose/integrator/integrators.h"
 #include "openclose/scene/reader.h"
+#include "openclose_traps.h"
 #include "support/catch.h"
 #include "support/scenes.h"
 
@@ -501,4 +502,21 @@ TEST_CASE("a wrong number anywhere in a saved state is refused, or goes on as so
     again.advance(0.01 * scene.step.dt);
   }
   CHECK(refused > 0);
+}
+
+TEST_CASE("a snapshot with a number that is none is of no simulation", "[analysis][checkpoint]") {
+  const NonStop non_stop;
+  Simulation simulation(prepared(test::tumbling_blocks(), "soft"));
+  const Simulation::Snapshot sound = simulation.save();
+  CHECK(simulation.fits(sound));
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  Simulation::Snapshot wrong = sound;
+  wrong.blocks.displacement[1].y() = none;
+  CHECK_FALSE(simulation.fits(wrong));
+  wrong = sound;
+  wrong.blocks.velocity[1].x() = none;
+  CHECK_FALSE(simulation.fits(wrong));
+  wrong = sound;
+  wrong.blocks.arm[2].x() = none;
+  CHECK_FALSE(simulation.fits(wrong));
 }

@@ -12,6 +12,7 @@
 #include "openclose/analysis/strength_reduction.h"
 #include "openclose/io/checkpoint.h"
 #include "openclose/scene/reader.h"
+#include "saved_states.h"
 
 using namespace openclose;
 
@@ -35,6 +36,7 @@ constexpr int steps_before = 5, steps_until_rest = 15, steps_after = 3;
 constexpr double part_for_dem = 0.01;
 /// What a search asks between two pieces of its work, so often.
 constexpr int questions_after = 200;
+constexpr std::size_t bytes_of_sum = 8;  ///< at the end of a checkpoint
 
 struct Original {
   Scene scene;
@@ -151,28 +153,28 @@ Original search_of(const std::string& method, const std::string& definition) {
   return made;
 }
 
-const Original& original(int kind) {
-  static const Original made[] = {steps_of("soft"),
-                                  steps_of("hard"),
-                                  steps_of("shi"),
-                                  steps_of("dem"),
-                                  rest_of("soft"),
-                                  rest_of("dem"),
-                                  rest_of("hard"),
-                                  run_of("soft"),
-                                  run_of("dem"),
-                                  search_of("soft", "small_displacements"),
-                                  search_of("dem", "small_displacements"),
-                                  search_of("soft", "large_displacements"),
-                                  search_of("dem", "large_displacements"),
-                                  start_of("soft"),
-                                  start_of("hard")};
-  return made[kind % std::size(made)];
+const std::vector<Original>& originals() {
+  static const std::vector<Original> made{steps_of("soft"),
+                                          steps_of("hard"),
+                                          steps_of("shi"),
+                                          steps_of("dem"),
+                                          rest_of("soft"),
+                                          rest_of("dem"),
+                                          rest_of("hard"),
+                                          run_of("soft"),
+                                          run_of("dem"),
+                                          search_of("soft", "small_displacements"),
+                                          search_of("dem", "small_displacements"),
+                                          search_of("soft", "large_displacements"),
+                                          search_of("dem", "large_displacements"),
+                                          start_of("soft"),
+                                          start_of("hard")};
+  return made;
 }
 
 std::string forged(std::string bytes, const std::uint8_t* data, std::size_t size) {
-  constexpr std::size_t edit = 6, written = 4, sum = 8;
-  bytes.resize(bytes.size() - sum);
+  constexpr std::size_t edit = 6, written = 4;
+  bytes.resize(bytes.size() - bytes_of_sum);
   for (; size >= edit; data += edit, size -= edit) {
     const std::size_t at = (data[0] + 256u * data[1]) % bytes.size();
     std::memcpy(bytes.data() + at, data + edit - written, std::min(written, bytes.size() - at));
@@ -184,9 +186,17 @@ std::string forged(std::string bytes, const std::uint8_t* data, std::size_t size
 
 }  // namespace
 
+int count_of_saved_states() {
+  return static_cast<int>(originals().size());
+}
+
+std::size_t bytes_of_saved_state(int number) {
+  return originals()[number].bytes.size() - bytes_of_sum;
+}
+
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
-  const Original& of = original(data[0]);
+  const Original& of = originals()[data[0] % originals().size()];
   try {
     of.go_on(of.scene, checkpoint_of_bytes(forged(of.bytes, data + 1, size - 1), "checkpoint.bin", of.scene).state);
   } catch (const InputError&) {

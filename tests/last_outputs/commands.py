@@ -73,6 +73,8 @@ def runs() -> list[Case]:
             Case(f"rockfall and a restart, {method}", [["run", "examples/rockfall/scene.toml", *contact, "--end", "0.5", "-o", "r"],
                                                        ["run", "examples/rockfall/scene.toml", *contact, "--end", "0.7", "--restart", "r/checkpoint.bin", "-o", "r"]]),
             Case(f"fast landing, {method}", [["run", "landing.toml", *contact, "-o", "r"]], {"landing.toml": to_toml(landing())}, must_succeed=True),
+            Case(f"rest after two steps, {method}", [["run", "yard.toml", *contact, "--dt", "0.01", "--end", "0.1", *settings(
+                "method.start=settled", "solver.skip_resting=true", "rest.time_s=0.02"), "-o", "r"]], {"yard.toml": to_toml(YARD)}, must_succeed=True),
             Case(f"toe in motion, {method}", [["run", TOE, *contact, "--dt", "1e-3", "--end", "0.2", *settings("run.strength_reduction_factor=3"), "-o", "r"]]),
         ]
     leaning = [leaning_columns(3, [10, 20, 40, 20, 40, 10, 20, 40], 7e-4, 0.387, 3.048), leaning_columns(3, [10, 20, 40, 10, 40, 10, 10], 7e-3, 0.4764, 1.531),
@@ -82,10 +84,17 @@ def runs() -> list[Case]:
         Case("483 blocks in failure, soft", [["run", FAILING, *ALL_BITS, "--end", "0.3", "-o", "r"]]),
         Case("483 blocks in failure, hard", [["run", FAILING, "--contact", "hard", *ALL_BITS, "--end", "0.1", "-o", "r"]]),
         Case("a film", [["run", SHAKEN, "--end", "0.5", *settings('output.formats=["vtk", "svg"]', "output.snapshots_every_s=0.25", "output.milestones_m=[1e-4, 1e-3]"), "-o", "r"]]),
+        Case("states of every step", [["run", SHAKEN, "--dt", "0.01", "--end", "0.05", *settings("output.snapshots_every_s=0.01"), *ALL_BITS, "-o", "r"]], must_succeed=True),
         Case("an adaptive step", [["run", INCLINE, "--end", "0.5", *settings("step.adaptive=true", "step.look_ahead=0.5"), *ALL_BITS, "-o", "r"]]),
         Case("json of a run", [["run", INCLINE, "--end", "0.02", "--json", "-o", "r"], ["check", INCLINE, "--json"], ["check", SHAKEN, "--spectrum", "spectrum.csv"]]),
     ]
     return cases
+
+
+def measured_at_the_rim() -> dict:
+    """Points to the right of which there is no room for their names, and below the title."""
+    return landing() | {"measured_point": [{"name": "a point whose name is too long to stand to the right of it", "block": "ground", "point_m": [5, 0]},
+                                           {"name": "top", "block": "block", "point_m": [0, 1.33]}]}
 
 
 def searches() -> list[Case]:
@@ -111,6 +120,7 @@ def searches() -> list[Case]:
                          ["study", "examples/rockfall/scene.toml", "--dt", "8e-3,4e-3", "--end", "0.4", "--quantity", "slab.displacement_x_m", "--reference", "1", "-q", "-o", "s"]]),
         Case("a sweep", [["sweep", "examples/planar_slope/scene.toml", "--vary", "joint[0].friction_angle_deg=20:30:5", "-o", "r"]]),
         Case("cuts", [["cut", scene, "-o", f"{i}.toml"] for i, scene in enumerate((SLOPE, "verification/scenes/slope_face_60_joints_20_m70.toml", TOE))]),
+        Case("labels at the rim", [["draw", "landing.toml", "-o", "a.svg"]], {"landing.toml": to_toml(measured_at_the_rim())}, must_succeed=True),
         Case("pictures of scenes", [["draw", scene, *option, "-o", f"{i}.svg"]
                                     for i, (scene, option) in enumerate(((SLOPE, []), ("examples/retaining_blocks/scene.toml", []), (SHAKEN, []), ("examples/rockfall/scene.toml", [])))]),
     ]

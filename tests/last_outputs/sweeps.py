@@ -101,13 +101,16 @@ def attempts(table: str, file: str) -> list[list[str]]:
     """What is tried with a value that the schema accepts."""
     folder = file.removesuffix(".toml")
     quiet = [file, "--quiet", "-o", folder]
+
+    def run(name: str, *options: str) -> list[str]:
+        return ["run", file, "--quiet", "-o", f"{folder}_{name}", "--end", END, *options]
+
+    settled = [run(f"{m}_settled", "--contact", m, "--set", "method.start=settled") for m in METHODS]
     if table in OF_METHODS:
-        return [["run", *quiet[:-1], f"{folder}_{m}", "--contact", m, "--end", END] for m in METHODS]
+        return [run(m, "--contact", m) for m in METHODS] + (settled if table == "solver" else [])
     if table == "settle":
         # Each criterion and method has keys of its own.
-        run = ["run", *quiet[:-1]]
-        return [[*run, f"{folder}_{m}", "--contact", m, "--end", END, "--set", "method.start=settled"] for m in METHODS] + [
-            [*run, f"{folder}_paper", "--end", END, "--set", "method.start=settled", "--set", "settle.criterion=paper"]]
+        return [*settled, run("paper", "--set", "method.start=settled", "--set", "settle.criterion=paper")]
     if table in OF_CUTS:
         return [["cut", file, "--quiet", "-o", f"{folder}_cut.toml"], ["fos", *quiet]]
     if table in OF_SEARCHES:
