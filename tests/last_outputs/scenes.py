@@ -57,20 +57,17 @@ HILL = {
 }
 
 
+def of_rock(title: str, blocks: list[dict], joint: dict, **tables: dict) -> dict:
+    joint = {"materials": ["rock", "rock"], "normal_stiffness_pa_per_m": 1e9} | joint
+    return {"title": title, "material": [{"name": "rock", "density_kg_per_m3": 2500}], "joint": [joint], "block": [{"material": "rock"} | b for b in blocks]} | tables
+
+
 def landing() -> dict:
     """A block comes down and may go a third of its way in a step: steps are parted until it has landed, and grow again."""
-    joint = {"materials": ["rock", "rock"], "normal_stiffness_pa_per_m": 1e9, "shear_stiffness_pa_per_m": 4e8, "friction_angle_deg": 30}
-    return {
-        "title": "landing",
-        "material": [{"name": "rock", "density_kg_per_m3": 2500}],
-        "joint": [joint],
-        "block": [{"name": "ground", "material": "rock", "vertices_m": [[-5, -1], [5, -1], [5, 0], [-5, 0]], "fixed": True},
-                  {"name": "block", "material": "rock", "vertices_m": [[0, 0.33], [1, 0.33], [1, 1.33], [0, 1.33]], "velocity_m_per_s": [0.5, -3]}],
-        "method": {"start": "unloaded"},
-        "step": {"dt_s": 0.1, "max_displacement_m": 0.1},
-        "end": {"time_s": 0.3},
-        "output": {"every_s": 0.1},
-    }
+    blocks = [{"name": "ground", "vertices_m": [[-5, -1], [5, -1], [5, 0], [-5, 0]], "fixed": True},
+              {"name": "block", "vertices_m": [[0, 0.33], [1, 0.33], [1, 1.33], [0, 1.33]], "velocity_m_per_s": [0.5, -3]}]
+    return of_rock("landing", blocks, {"shear_stiffness_pa_per_m": 4e8, "friction_angle_deg": 30}, method={"start": "unloaded"},
+                   step={"dt_s": 0.1, "max_displacement_m": 0.1}, end={"time_s": 0.3}, output={"every_s": 0.1})
 
 
 def leaning_columns(columns: int, heights: list[float], gap: float, lean: float, width: float) -> dict:
@@ -79,21 +76,13 @@ def leaning_columns(columns: int, heights: list[float], gap: float, lean: float,
         return [[x0 + lean * low, low], [x1 + lean * low, low], [x1 + lean * high, high], [x0 + lean * high, high]]
 
     end, top = columns * width, 20.0 + sum(heights)
-    blocks = [{"name": "base", "material": "rock", "vertices_m": [[-600.0, -30.0], [end, -30.0], [end, 0.0], [-600.0, 0.0]], "fixed": True},
-              {"name": "wall", "material": "rock", "vertices_m": sheared(end, end + 60.0, 0.0, top), "fixed": True}]
+    blocks = [{"name": "base", "vertices_m": [[-600.0, -30.0], [end, -30.0], [end, 0.0], [-600.0, 0.0]], "fixed": True},
+              {"name": "wall", "vertices_m": sheared(end, end + 60.0, 0.0, top), "fixed": True}]
     for column in range(columns):
         low = 0.0
         for height in heights:
-            blocks.append({"name": str(len(blocks)), "material": "rock", "vertices_m": sheared(column * width + 0.7 * gap, (column + 1) * width - 0.7 * gap, low + 0.5 * gap,
-                                                                     low + height - 0.5 * gap)})
+            vertices = sheared(column * width + 0.7 * gap, (column + 1) * width - 0.7 * gap, low + 0.5 * gap, low + height - 0.5 * gap)
+            blocks.append({"name": str(len(blocks)), "vertices_m": vertices})
             low += height
-    joint = {"materials": ["rock", "rock"], "normal_stiffness_pa_per_m": 1e9, "shear_stiffness_pa_per_m": 1e9, "friction_angle_deg": 40}
-    return {
-        "title": "leaning columns",
-        "material": [{"name": "rock", "density_kg_per_m3": 2500}],
-        "joint": [joint],
-        "block": blocks,
-        "method": {"contact": "hard", "start": "settled"},
-        "step": {"dt_s": 1e-3, "max_displacement_m": 1},
-        "end": {"time_s": 2e-3},
-    }
+    return of_rock("leaning columns", blocks, {"shear_stiffness_pa_per_m": 1e9, "friction_angle_deg": 40}, method={"contact": "hard", "start": "settled"},
+                   step={"dt_s": 1e-3, "max_displacement_m": 1}, end={"time_s": 2e-3})

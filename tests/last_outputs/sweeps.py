@@ -161,12 +161,17 @@ def former_names() -> Case:
     return Case("former names of keys", commands, files, together=True)
 
 
+def outside_of_tables(key: str, schema: dict) -> Case:
+    scenes = [{k: v for k, v in YARD.items() if k != key}, *(YARD | {key: value} for value in values(schema, YARD[key])[1:])]
+    files = {f"{i}.toml": to_toml(scene) for i, scene in enumerate(scenes)}
+    return Case(f"key {key}", [["run", file, "-q", "--end", END, "-o", file.removesuffix(".toml")] for file in files], files, together=True)
+
+
 def cases() -> list[Case]:
     found = [bases(), former_names()]
     for top, schema in SCHEMA.items():
         if schema["type"] == "string" or schema.get("items", {}).get("type") == "number":
-            found.append(Case(f"key {top}", [["check", "a.toml"], ["run", "b.toml", "-q", "-o", "b"]],
-                              {"a.toml": to_toml(YARD | {top: 3}), "b.toml": to_toml({k: v for k, v in YARD.items() if k != top})}, together=True))
+            found.append(outside_of_tables(top, schema))
             continue
         for table, key, of_key in fields(top, schema):
             if top == "base_motion":
