@@ -43,7 +43,7 @@ class BlockSystem {
       auto& [a, b, c, d] = *this;
       archive(a, b, c, d);
     }
-    /// A saved one may be none of a simulation.
+    /// Whether all of its numbers are; those of a saved one may be anything.
     bool is_finite() const;
   };
 

@@ -6,6 +6,7 @@
 int main() {
   for (int number = 0; number < count_of_saved_states(); ++number) {
     const std::size_t bytes = bytes_of_saved_state(number);
+    require_promise(number < 1 << 8 && bytes <= 1 << 16, "an edit can say which state and where");
     std::fprintf(stderr, "saved state %d, %zu bytes\n", number, bytes);  // the last one is the one that ended the program
     for (std::size_t at = 0; at < bytes; ++at) {
       const std::uint8_t edit[] = {

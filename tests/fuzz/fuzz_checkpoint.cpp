@@ -2,7 +2,6 @@
 // others are edits of six bytes: two say where, four are written there; the check sum is put right. So inputs keep their meaning when the format
 // changes. What is read is put into a simulation, a run or a search, which goes on.
 #include <cstring>
-#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
