@@ -1,7 +1,11 @@
 #include "openclose/analysis/equilibrium.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
+#include <string>
+#include <vector>
 
 namespace openclose {
 namespace {
@@ -49,11 +53,26 @@ class ByRelativeDisplacement : public EquilibriumSearch {
     first_steps_ = result.steps;
     return result;
   }
-  SettleResult settle_trial(const SettleProgress& progress) override { return follow(2 * first_steps_, false, progress); }
+  SettleResult settle_trial(const SettleProgress& progress) override { return follow(steps_of_trial(), false, progress); }
   void exchange(Archive& archive) override { archive(first_steps_); }
+
+  /// What accelerates from rest by a goes a T dt in the last step of a trial of the time T.
+  std::string unseen() const override {
+    const double dt = simulation_.scene().step.dt, gravity = simulation_.scene().gravity.norm();
+    const int steps = steps_of_trial();
+    if (steps == 0) return {};
+    const double acceleration = input_.relative_displacement * half_height_ / (steps * dt * dt);
+    const std::string part = gravity > 0.0 ? fmt::format(" ({:.2g} % of gravity)", 100.0 * acceleration / gravity) : "";
+    return fmt::format(
+        "settle.criterion = \"paper\" takes for resting what accelerates by up to {:.2g} m/s2{}: in the {} steps of {:g} s of a trial it "
+        "goes no farther in a step than settle.relative_displacement allows. The factor may be too high",
+        acceleration, part, steps, dt);
+  }
 
  private:
   using Displacements = std::vector<Motion::Unknowns>;
+
+  int steps_of_trial() const { return 2 * first_steps_; }
 
   double farthest(const Displacements& from) const {
     const auto& system = simulation_.system();
@@ -103,6 +122,19 @@ class ByForceInTime : public EquilibriumSearch {
     return settle_explicitly(
         simulation_, {input.unbalanced_force, input.max_time_steps, max_time_steps_key, std::numeric_limits<double>::infinity(), false, false},
         progress);
+  }
+
+  std::string unseen() const override {
+    const auto& system = simulation_.system();
+    std::vector<double> weights;
+    for (int b : system.free_blocks()) weights.push_back(system.block(b).mass[0] * simulation_.scene().gravity.norm());
+    const auto middle = weights.begin() + static_cast<std::ptrdiff_t>(weights.size() / 2);
+    std::ranges::nth_element(weights, middle);
+    const double force = simulation_.scene().settle.unbalanced_force;
+    const std::string part = *middle > 0.0 ? fmt::format(", {:.2g} % of the weight of the median free block", 100.0 * force / *middle) : "";
+    return fmt::format(
+        "settle.criterion = \"paper\" takes for resting what is moved by up to settle.unbalanced_force_n = {:g} N{}. The factor may be too high",
+        force, part);
   }
 
  private:

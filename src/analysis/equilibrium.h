@@ -18,6 +18,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "openclose/analysis/settle.h"
 
@@ -33,6 +34,8 @@ class EquilibriumSearch {
   /// Where the first settling stands after `progress` has thrown, and goes on from; null where it would have to begin anew.
   virtual SettleCourse* course() { return nullptr; }
   virtual void exchange(Archive&) {}  ///< the measure of the trials
+  /// What a trial takes for resting though it moves on, in words; nothing where forces are in balance.
+  virtual std::string unseen() const { return {}; }
 };
 
 /// The simulation must outlive the search.

@@ -22,6 +22,7 @@ class SettlingTrials : public StrengthTrials {
   MeasuredPoints& points() { return points_; }
   const std::optional<Snapshot>& failed() const { return failed_; }  ///< of the last trial that failed
   void exchange(Archive& archive) override;
+  const EquilibriumSearch& search() const { return *search_; }
 
  private:
   TrialResult result_of(const SettleResult& settled);

@@ -52,6 +52,7 @@ class StrengthReduction {
     begin(trials);
     result_.bracket = search(trials);
     judge();
+    if (const std::string words = trials.search().unseen(); !words.empty()) result_.warnings.push_back(words);
     warn_of_failure_displacement();
     if (trials.settled()) add_state("settled", *trials.settled());
     if (trials.failed()) add_state("failed", *trials.failed());

@@ -51,7 +51,7 @@ void add_report(CLI::App& app, std::function<int()>& chosen) {
       "report", "write a run or fos as one HTML page: the answer and how far to trust it, a film of the states, curves; needs no network");
   report->add_option("results", options->results, "folder that run or fos has written")->required();
   report->add_option("-o,--output", options->file, "HTML file to write (default: report.html in the folder)");
-  report->add_option("--most-mb", options->most_mb, "size of the page above which contacts and states are left out, evenly [MB] (default: 100)")
+  report->add_option("--most-mb", options->most_mb, "size of all states above which contacts and states are left out, evenly [MB] (default: 100)")
       ->check(finite_number())
       ->check(CLI::Range(1.0, 2000.0));
   report->add_flag("-q,--quiet", options->quiet, "print nothing but warnings and errors");

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <cmath>
 #include <string>
 
@@ -7,6 +9,7 @@
 #include "support/scenes.h"
 
 using namespace openclose;
+using Catch::Matchers::ContainsSubstring;
 using openclose::test::block_weight;
 
 namespace {
@@ -125,6 +128,9 @@ TEST_CASE("of an explicit method the paper's criterion is a force within a numbe
   CHECK(left <= scene.settle.unbalanced_force);
   // It stops there: damping takes the force down by less than a hundredth in the last steps.
   CHECK(left > 1e-2 * scene.settle.unbalanced_force);
+  const double force = scene.settle.unbalanced_force;
+  CHECK_THAT(search->unseen(),
+             ContainsSubstring(fmt::format("unbalanced_force_n = {:g} N, {:.2g} % of the weight", force, 100.0 * force / block_weight)));
   simulation.change_joints().reduce_strength(2.0);
   const SettleResult trial = search->settle_trial({});
   CHECK_FALSE(trial.settled);
@@ -146,7 +152,6 @@ TEST_CASE("factor of safety by the paper's criterion", "[analysis][equilibrium]"
     Simulation simulation(scene);
     const auto safety = factor_of_safety(simulation);
     REQUIRE(safety.found());
-    CHECK(safety.warnings.empty());
     CHECK(safety.bracket.failed_by == "steps");
     // Half the height of the scene: a base 20 m long and 1 m thick below a block.
     const double height = 20.0 * std::sin(slope) + std::cos(slope);
@@ -156,5 +161,8 @@ TEST_CASE("factor of safety by the paper's criterion", "[analysis][equilibrium]"
     const double swing = std::sqrt((method == "shi" ? 10.0 : 1.0) * 1e9 * test::block_edge / test::block_mass);
     CHECK(safety.stable() <= exact * (1.0 + 1.1 * slow / (time * 9.81 * std::sin(slope))));
     CHECK(safety.failed() >= exact * (1.0 - swing * slow / (9.81 * std::sin(slope))));
+    REQUIRE(safety.warnings.size() == 1);
+    CHECK_THAT(safety.warnings[0],
+               ContainsSubstring(fmt::format("accelerates by up to {:.2g} m/s2 ({:.2g} % of gravity)", slow / time, 100.0 * slow / time / 9.81)));
   }
 }
