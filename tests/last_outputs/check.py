@@ -27,6 +27,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import commands
+import mixtures
 import sweeps
 from case import Case
 from openclose_scripts import ROOT
@@ -118,7 +119,7 @@ def sines() -> str:
 
 
 def cases() -> list[Case]:
-    return [*commands.cases(), *sweeps.cases()]
+    return [*commands.cases(), *sweeps.cases(), *mixtures.cases()]
 
 
 def measured(selected: list[Case], openclose: Path, jobs: int) -> Iterator[tuple[str, dict[str, str]]]:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from case import Case
 from openclose_scripts import ROOT
-from scenes import METHODS, YARD, landing, leaning_columns
+from scenes import HILL, INTEGRATORS, METHODS, YARD, landing, leaning_columns
 
 sys.path.insert(0, str(ROOT / "stress"))
 
@@ -88,7 +88,33 @@ def runs() -> list[Case]:
         Case("an adaptive step", [["run", INCLINE, "--end", "0.5", *settings("step.adaptive=true", "step.look_ahead=0.5"), *ALL_BITS, "-o", "r"]]),
         Case("json of a run", [["run", INCLINE, "--end", "0.02", "--json", "-o", "r"], ["check", INCLINE, "--json"], ["check", SHAKEN, "--spectrum", "spectrum.csv"]]),
     ]
-    return cases
+    return [*cases, *pages(), *asked_in_vain()]
+
+
+def pages() -> list[Case]:
+    """Of what holds and pushes blocks; of so many blocks and states that some are left out; and what is said to programs."""
+    wall = [["new", "wall", "--courses=44", "--bricks=40", "-q", "-o", "wall.toml"],
+            ["run", "wall.toml", "--dt", "2e-3", "--end", "0.02", *settings("output.snapshots_every_s=2e-3"), "-q", "-o", "r"]]
+    yard, hill = {"yard.toml": to_toml(YARD)}, {"hill.toml": to_toml(HILL)}
+    return [
+        Case("page of a yard", [["run", "yard.toml", *settings("output.snapshots_every_s=0.01"), "-o", "r"], ["report", "r", "--json", "-o", "page.html"]], yard, must_succeed=True),
+        Case("page of a large wall", [*wall, ["report", "r", "--most-mb", "1", "-o", "page.html"], ["report", "r", "--most-mb", "2", "-q", "-o", "second.html"]], together=True,
+             must_succeed=True),
+        Case("json of a cut", [["cut", "hill.toml", "--json", "-o", "blocks.toml"], ["draw", "hill.toml", "--json", "-o", "a.svg"], ["check", "hill.toml", "--json"]], hill,
+             must_succeed=True),
+        Case("a study of a yard", [["study", "yard.toml", "--dt", "1e-2,5e-3,2.5e-3", "--contact", "soft,dem", "--end", "0.02", "-q", "-o", "r"]], yard),
+    ]
+
+
+def asked_in_vain() -> list[Case]:
+    """What a scene that is right cannot be asked."""
+    rockfall = (ROOT / "examples/rockfall/scene.toml").read_text(encoding="utf-8")
+    files = {"no_step.toml": re.sub(r"dt_s = .*", "", rockfall), "fixed.toml": rockfall.replace('name = "slab"', 'name = "slab"\nfixed = true'), "yard.toml": to_toml(YARD)}
+    motion = [("strength_reduction.curve=[1, 2]", "strength_reduction.curve_time_s=0.05"), ("strength_reduction.curve_time_s=0.05",), ("settle.criterion=paper",)]
+    of_motion = [["fos", TOE, *settings(f"strength_reduction.definition={definition}", *keys), "-o", "r"]
+                 for definition in ("small_displacements", "joint_closures", "large_displacements") for keys in motion]
+    return [Case("asked in vain", [["check", "no_step.toml", "--spectrum", "s.csv"], ["run", "no_step.toml"], ["fos", "fixed.toml", "-o", "r"],
+                                   ["sweep", "yard.toml", "--vary", "method.theta=0.5:1:0.25", "--quantity", "high.displacement_x_m", "-o", "r"], *of_motion], files)]
 
 
 def measured_at_the_rim() -> dict:
@@ -102,7 +128,7 @@ def searches() -> list[Case]:
     for name in ("planar_slope", "toppling_slope", "roof_wedge", "tilting_arch", "retaining_blocks"):
         scene = f"examples/{name}/scene.toml"
         cases += [Case(f"fos {name}, {method}", [["fos", scene, "--contact", method, "-o", "r"], ["draw", "r", "-o", "a.svg"],
-                                                 ["draw", "r", "--state", "stable", "--forces", "-o", "b.svg"]]) for method in (("soft", "dem") if name == "planar_slope" else ("soft",))]
+                                                 ["draw", "r", "--state", "stable", "--forces", "-o", "b.svg"], ["report", "r", "-o", "page.html"]]) for method in (("soft", "dem") if name == "planar_slope" else ("soft",))]
     cases += [
         Case(f"fos {Path(scene).stem}, {definition}", [["fos", scene, *settings(f"strength_reduction.definition={definition}"), "-o", "r"]])
         for scene in (TOE, "paper/scenes/example_3_3_wedge.toml", "verification/scenes/slope_face_60_columns_m70.toml")
@@ -136,6 +162,18 @@ def strangers() -> list[Case]:
             files = {"scene.toml": to_toml(scene.document)}
             ends = ["--end", END, *ALL_BITS] if scene.command == "run" else []
             cases += [Case(f"{scene.name}, {method}", [[scene.command, "scene.toml", "--contact", method, *ends, "-o", "r"]], files) for method in methods]
+    return cases
+
+
+def integrators() -> list[Case]:
+    """Blocks thrown about, by each integrator, at steps as they are drawn and so long that a step needs other ways to its end."""
+    cases = []
+    for seed in SEEDS:
+        scene = tumbles.draw(seed)
+        for factor in (1, 10):
+            step = ["--dt", repr(factor * scene.document["step"]["dt_s"]), "--end", END, *ALL_BITS]
+            cases.append(Case(f"{scene.name}, all integrators, {factor} times the step",
+                              [["run", "scene.toml", "--contact", "soft", "--integrator", name, *step, "-o", name] for name in INTEGRATORS], {"scene.toml": to_toml(scene.document)}, together=True))
     return cases
 
 
@@ -175,4 +213,4 @@ def readable(path: Path) -> str | None:
 
 
 def cases() -> list[Case]:
-    return [*texts(), *drafts(), *runs(), *searches(), *strangers(), *attacks(), *records()]
+    return [*texts(), *drafts(), *runs(), *searches(), *strangers(), *integrators(), *attacks(), *records()]

@@ -6,6 +6,7 @@ from openclose_scripts import ROOT
 
 SCHEMA = json.loads((ROOT / "docs/scene.schema.json").read_text(encoding="utf-8"))["properties"]
 METHODS = tuple(SCHEMA["method"]["properties"]["contact"]["enum"])
+INTEGRATORS = tuple(SCHEMA["method"]["properties"]["integrator"]["enum"])
 JOINT = {"normal_stiffness_pa_per_m": 1e8, "shear_stiffness_pa_per_m": 4e7, "friction_angle_deg": 30, "cohesion_pa": 2e3, "tensile_strength_pa": 1e3,
          "cohesion_behaviour": "lost_on_slip", "residual_friction_angle_deg": 25, "slip_weakening_distance_m": 1e-3, "damping_ratio": 0.05}
 YARD = {
@@ -55,6 +56,19 @@ HILL = {
     "strength_reduction": {"width": 1e-3},
     "step": {"dt_s": 2e-3},
 }
+# Keys that mean nothing alone, by table and key: what goes with them; None takes a key out that excludes them.
+COMPANIONS = {
+    "method.theta": {"integrator": "theta"},
+    "method.rho_inf": {"integrator": "generalized_alpha"},
+    "method.dissipation": {"integrator": "path_average"},
+    "method.first_integrator": {"first_integrator_s": 0.015},
+    "method.first_integrator_s": {"first_integrator": "tr_bdf2"},
+    "strength_reduction.curve_time_s": {"definition": "large_displacements", "curve": [1, 2]},
+    "strength_reduction.curve": {"definition": "large_displacements", "curve_time_s": 0.02},
+    "joint_set.persistence": {"gap_m": None},
+    "material.unit_weight_n_per_m3": {"density_kg_per_m3": None},
+    "material.density_kg_per_m3": {"unit_weight_n_per_m3": None},
+}
 
 
 def of_rock(title: str, blocks: list[dict], joint: dict, **tables: dict) -> dict:
@@ -86,3 +100,7 @@ def leaning_columns(columns: int, heights: list[float], gap: float, lean: float,
             low += height
     return of_rock("leaning columns", blocks, {"shear_stiffness_pa_per_m": 1e9, "friction_angle_deg": 40}, method={"contact": "hard", "start": "settled"},
                    step={"dt_s": 1e-3, "max_displacement_m": 1}, end={"time_s": 2e-3})
+
+
+def shaken(kind: str) -> dict:
+    return YARD | {"base_motion": MOTIONS[kind]} | ({"base_motion.pulse": PULSES} if kind == "pulses" else {})

@@ -6,7 +6,7 @@ import sys
 
 from case import Case
 from openclose_scripts import ROOT
-from scenes import HILL, METHODS, MOTIONS, PULSES, SCHEMA, YARD
+from scenes import COMPANIONS, HILL, METHODS, MOTIONS, SCHEMA, YARD, shaken
 
 sys.path += [str(ROOT / "stress"), str(ROOT / "docs")]
 
@@ -22,18 +22,6 @@ LARGEST = 1e4
 # What the scenes call things, and loads that increase: one of them is accepted where another is not known.
 NAMES = ("smooth", "bridge", "rock", "clay", "low", "high", "guided", "gravity_x", "-gravity_y")
 MISSING = object()
-# Keys that mean nothing alone, by table and key: what goes with them; None takes a key out that excludes them.
-COMPANIONS = {
-    "method.theta": {"integrator": "theta"},
-    "method.rho_inf": {"integrator": "generalized_alpha"},
-    "method.dissipation": {"integrator": "path_average"},
-    "method.first_integrator": {"first_integrator_s": 0.015},
-    "method.first_integrator_s": {"first_integrator": "tr_bdf2"},
-    "strength_reduction.curve_time_s": {"definition": "large_displacements", "curve": [1, 2]},
-    "strength_reduction.curve": {"definition": "large_displacements", "curve_time_s": 0.02},
-    "joint_set.persistence": {"gap_m": None},
-    "material.unit_weight_n_per_m3": {"density_kg_per_m3": None},
-}
 
 
 def beside(value: float) -> list[float]:
@@ -136,10 +124,6 @@ def fields(table: str, schema: dict):
             yield from fields(f"{table}.{key}", found)
         else:
             yield table, key, found
-
-
-def shaken(kind: str) -> dict:
-    return YARD | {"base_motion": MOTIONS[kind]} | ({"base_motion.pulse": PULSES} if kind == "pulses" else {})
 
 
 def bases() -> Case:
