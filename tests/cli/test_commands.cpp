@@ -530,9 +530,10 @@ TEST_CASE("factor of safety by the paper's criterion", "[cli]") {
       "settle.relative_displacement=1e-8 --set run.strength_reduction_factor=2 "
       "--set method.first_integrator=path_average --set method.first_integrator_s=10");
   CHECK(result.status == 0);
-  REQUIRE(result.errors.size() == 2);
+  REQUIRE(result.errors.size() == 3);
   CHECK_THAT(result.errors[0], ContainsSubstring("run.strength_reduction_factor is for run"));
   CHECK_THAT(result.errors[1], ContainsSubstring("method.first_integrator is for run"));
+  CHECK_THAT(result.errors[2], ContainsSubstring("settle.criterion = \"paper\" takes for resting what accelerates by up to"));
   CHECK_THAT(result.out, StartsWith("factor of safety 1.21"));
   CHECK(summary_in(place.folder() / "out").at("bracket").at("failed_by") == "steps");
   CHECK_THAT(text_of(place.folder() / "out/trials.csv"), ContainsSubstring("\n1,bracket,1,relative displacement,"));
