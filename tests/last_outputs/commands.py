@@ -6,7 +6,7 @@ from pathlib import Path
 
 from case import Case
 from openclose_scripts import ROOT
-from scenes import HILL, INTEGRATORS, METHODS, YARD, landing, leaning_columns
+from scenes import HILL, INTEGRATORS, METHODS, YARD, closely_jointed_slope, landing, leaning_columns, shaken_late
 
 sys.path.insert(0, str(ROOT / "stress"))
 
@@ -33,6 +33,7 @@ def settings(*assignments: str) -> list[str]:
     return [word for assignment in assignments for word in ("--set", assignment)]
 
 
+THETA = {"theta": settings("method.theta=0.5")}
 ALL_BITS = settings("output.checkpoint_every_s=1e6")  # a checkpoint at the end
 
 
@@ -75,6 +76,7 @@ def runs() -> list[Case]:
             Case(f"fast landing, {method}", [["run", "landing.toml", *contact, "-o", "r"]], {"landing.toml": to_toml(landing())}, must_succeed=True),
             Case(f"rest after two steps, {method}", [["run", "yard.toml", *contact, "--dt", "0.01", "--end", "0.1", *settings(
                 "method.start=settled", "solver.skip_resting=true", "rest.time_s=0.02"), "-o", "r"]], {"yard.toml": to_toml(YARD)}, must_succeed=True),
+            Case(f"a pulse wakes blocks, {method}", [["run", "pile.toml", *contact, "-o", "r"]], {"pile.toml": to_toml(shaken_late())}, must_succeed=True),
             Case(f"toe in motion, {method}", [["run", TOE, *contact, "--dt", "1e-3", "--end", "0.2", *settings("run.strength_reduction_factor=3"), "-o", "r"]]),
         ]
     leaning = [leaning_columns(3, [10, 20, 40, 20, 40, 10, 20, 40], 7e-4, 0.387, 3.048), leaning_columns(3, [10, 20, 40, 10, 40, 10, 10], 7e-3, 0.4764, 1.531),
@@ -174,6 +176,9 @@ def integrators() -> list[Case]:
             step = ["--dt", repr(factor * scene.document["step"]["dt_s"]), "--end", END, *ALL_BITS]
             cases.append(Case(f"{scene.name}, all integrators, {factor} times the step",
                               [["run", "scene.toml", "--contact", "soft", "--integrator", name, *step, "-o", name] for name in INTEGRATORS], {"scene.toml": to_toml(scene.document)}, together=True))
+    files = {"slope.toml": to_toml(closely_jointed_slope())}
+    cases += [Case(f"a thousand blocks in failure, {name}", [["run", "slope.toml", "--integrator", name, *THETA.get(name, []), *ALL_BITS, "-o", "r"]], files, must_succeed=True)
+              for name in INTEGRATORS]
     return cases
 
 

@@ -1,6 +1,7 @@
 """Scenes of these cases alone: as documents, whose keys can be varied."""
 
 import json
+import tomllib
 
 from openclose_scripts import ROOT
 
@@ -100,6 +101,24 @@ def leaning_columns(columns: int, heights: list[float], gap: float, lean: float,
             low += height
     return of_rock("leaning columns", blocks, {"shear_stiffness_pa_per_m": 1e9, "friction_angle_deg": 40}, method={"contact": "hard", "start": "settled"},
                    step={"dt_s": 1e-3, "max_displacement_m": 1}, end={"time_s": 2e-3})
+
+
+def closely_jointed_slope() -> dict:
+    """The slope of example 3.4 with closer joints, in motion from the start: so many blocks that parts of it are solved for themselves."""
+    scene = tomllib.loads((ROOT / "paper/scenes/example_3_4_post_failure.toml").read_text(encoding="utf-8"))
+    joints = [joint | {"spacing_m": 0.7 * joint["spacing_m"]} for joint in scene["joint_set"]]
+    kept = {key: value for key, value in scene.items() if key != "measured_point"}
+    return kept | {"joint_set": joints, "method": {"start": "unloaded"}, "end": {"time_s": 0.05}, "output": {"every_s": 0.01}}
+
+
+def shaken_late() -> dict:
+    """A pile that has come to rest when the ground begins to move."""
+    blocks = [{"name": "ground", "vertices_m": [[-5, -1], [5, -1], [5, 0], [-5, 0]], "fixed": True},
+              *({"name": f"{i}", "vertices_m": [[0, i], [2, i], [2, i + 1], [0, i + 1]]} for i in range(3))]
+    joint = {"shear_stiffness_pa_per_m": 4e8, "friction_angle_deg": 30}
+    scene = of_rock("shaken late", blocks, joint, method={"start": "settled"}, step={"dt_s": 0.01}, end={"time_s": 0.2}, output={"every_s": 0.01},
+                    solver={"skip_resting": True}, rest={"time_s": 0.02})
+    return scene | {"base_motion": MOTIONS["pulses"], "base_motion.pulse": [PULSES[0] | {"start_s": 0.1}]}
 
 
 def shaken(kind: str) -> dict:
