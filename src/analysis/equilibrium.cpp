@@ -54,7 +54,10 @@ class ByRelativeDisplacement : public EquilibriumSearch {
     return result;
   }
   SettleResult settle_trial(const SettleProgress& progress) override { return follow(steps_of_trial(), false, progress); }
-  void exchange(Archive& archive) override { archive(first_steps_); }
+  void exchange(Archive& archive) override {
+    archive(first_steps_);
+    archive.require(first_steps_ >= 0 && first_steps_ <= input_.max_time_steps, "the saved search took other steps than it may take");
+  }
 
   /// What accelerates from rest by a goes a T dt in the last step of a trial of the time T.
   std::string unseen() const override {

@@ -166,3 +166,22 @@ TEST_CASE("factor of safety by the paper's criterion", "[analysis][equilibrium]"
                ContainsSubstring(fmt::format("accelerates by up to {:.2g} m/s2 ({:.2g} % of gravity)", slow / time, 100.0 * slow / time / 9.81)));
   }
 }
+
+TEST_CASE("a saved search by the paper's criterion with steps that it may not take is refused", "[analysis][equilibrium]") {
+  const Scene scene = paper_scene();
+  Simulation simulation(scene);
+  for (const auto& [steps, is_sound] :
+       {std::pair{-1, false}, {0, true}, {scene.settle.max_time_steps, true}, {scene.settle.max_time_steps + 1, false}}) {
+    INFO(steps);
+    int written = steps;
+    Archive saved;
+    saved(written);
+    Archive archive(saved.bytes());
+    const auto search = make_equilibrium_search(simulation);
+    if (is_sound) {
+      CHECK_NOTHROW(search->exchange(archive));
+    } else {
+      CHECK_THROWS_AS(search->exchange(archive), DamagedState);
+    }
+  }
+}

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from case import Case
 from openclose_scripts import ROOT
-from scenes import HILL, INTEGRATORS, METHODS, YARD, closely_jointed_slope, landing, leaning_columns, shaken_late
+from scenes import HILL, INTEGRATORS, METHODS, YARD, closely_jointed_slope, landing, leaning_columns, shaken_late, wall_with_points
 
 sys.path.insert(0, str(ROOT / "stress"))
 
@@ -76,7 +76,8 @@ def runs() -> list[Case]:
             Case(f"fast landing, {method}", [["run", "landing.toml", *contact, "-o", "r"]], {"landing.toml": to_toml(landing())}, must_succeed=True),
             Case(f"rest after two steps, {method}", [["run", "yard.toml", *contact, "--dt", "0.01", "--end", "0.1", *settings(
                 "method.start=settled", "solver.skip_resting=true", "rest.time_s=0.02"), "-o", "r"]], {"yard.toml": to_toml(YARD)}, must_succeed=True),
-            Case(f"a pulse wakes blocks, {method}", [["run", "pile.toml", *contact, "-o", "r"]], {"pile.toml": to_toml(shaken_late())}, must_succeed=True),
+            Case(f"a pulse wakes blocks, {method}", [["run", "pile.toml", *contact, "-o", "r"]], {"pile.toml": to_toml(shaken_late(1.0))}, must_succeed=True),
+            Case(f"a pulse wakes blocks of a millimetre, {method}", [["run", "pile.toml", *contact, "-o", "r"]], {"pile.toml": to_toml(shaken_late(1e-3))}, must_succeed=True),
             Case(f"toe in motion, {method}", [["run", TOE, *contact, "--dt", "1e-3", "--end", "0.2", *settings("run.strength_reduction_factor=3"), "-o", "r"]]),
         ]
     leaning = [leaning_columns(3, [10, 20, 40, 20, 40, 10, 20, 40], 7e-4, 0.387, 3.048), leaning_columns(3, [10, 20, 40, 10, 40, 10, 10], 7e-3, 0.4764, 1.531),
@@ -140,6 +141,8 @@ def searches() -> list[Case]:
     cases += [
         Case("fos by loads", [["fos", "examples/retaining_blocks/scene.toml", "--increase", load, "-o", f"r{i}"]
                               for i, load in enumerate(("gravity_x", "-gravity_x", "gravity_y", "gravity", "surcharges", "loads", "surcharge 1"))]),
+        *(Case(f"fos with measured points, {definition}", [["fos", "wall.toml", *settings(f"strength_reduction.definition={definition}"), "-o", "r"]],
+               {"wall.toml": to_toml(wall_with_points())}, must_succeed=True) for definition in ("small_displacements", "large_displacements")),
         Case("fos of a fallen tower", [["fos", "examples/dry_stone_tower/scene.toml", *settings("gravity_m_per_s2=[9.81,-9.81]"), "-o", "r"]]),
         Case("fos of an open slope", [["fos", SLOPE, "--json", "-o", "r"]]),
         Case("fos with a curve", [["fos", TOE, *settings("strength_reduction.curve=[1, 2]", "strength_reduction.curve_time_s=0.05", "step.dt_s=1e-3"), "-o", "r"]]),

@@ -111,10 +111,19 @@ def closely_jointed_slope() -> dict:
     return kept | {"joint_set": joints, "method": {"start": "unloaded"}, "end": {"time_s": 0.05}, "output": {"every_s": 0.01}}
 
 
-def shaken_late() -> dict:
-    """A pile that has come to rest when the ground begins to move."""
-    blocks = [{"name": "ground", "vertices_m": [[-5, -1], [5, -1], [5, 0], [-5, 0]], "fixed": True},
-              *({"name": f"{i}", "vertices_m": [[0, i], [2, i], [2, i + 1], [0, i + 1]]} for i in range(3))]
+def wall_with_points() -> dict:
+    """Points at corners: they move as their blocks turn, too."""
+    scene = tomllib.loads((ROOT / "examples/retaining_blocks/scene.toml").read_text(encoding="utf-8"))
+    corners = [(block["name"], corner) for block in scene["block"] for corner in block["vertices_m"][1:3]]
+    return scene | {"measured_point": [{"name": f"{name} {i}", "block": name, "point_m": corner} for i, (name, corner) in enumerate(corners)]}
+
+
+def shaken_late(size: float) -> dict:
+    """A pile of blocks of this size [m] that has come to rest when the ground begins to move."""
+    def rectangle(x0: float, x1: float, low: float, high: float) -> list[list[float]]:
+        return [[size * x, size * y] for x, y in ((x0, low), (x1, low), (x1, high), (x0, high))]
+
+    blocks = [{"name": "ground", "vertices_m": rectangle(-5, 5, -1, 0), "fixed": True}, *({"name": f"{i}", "vertices_m": rectangle(0, 2, i, i + 1)} for i in range(3))]
     joint = {"shear_stiffness_pa_per_m": 4e8, "friction_angle_deg": 30}
     scene = of_rock("shaken late", blocks, joint, method={"start": "settled"}, step={"dt_s": 0.01}, end={"time_s": 0.2}, output={"every_s": 0.01},
                     solver={"skip_resting": True}, rest={"time_s": 0.02})
