@@ -75,6 +75,15 @@ TEST_CASE("an overlap that moves a block by a little is told, one that nobody se
   const std::vector<std::string> warnings = judge(sunk_block(1.2e-4, 1e10), FirstMotion::at_once);
   REQUIRE(warnings.size() == 1);
   CHECK_THAT(warnings[0], ContainsSubstring("0.0021 of its size") && ContainsSubstring("a remedy: blocks that touch"));
+  CHECK_THAT(warnings[0], !ContainsSubstring("the worst of"));
+  // Another one on the same base, not so deep: the warning is of the deeper one.
+  Scene two = sunk_block(1.2e-4, 1e10);
+  two.blocks.push_back(two.blocks[1]);
+  two.blocks[2].name = "other";
+  for (Vec2& v : two.blocks[2].vertices) v += Vec2(3.0, 2e-5);
+  const std::vector<std::string> of_two = judge(two, FirstMotion::at_once);
+  REQUIRE(of_two.size() == 1);
+  CHECK_THAT(of_two[0], ContainsSubstring("0.0021 of its size") && ContainsSubstring("(the worst of 2 such blocks)"));
   CHECK(judge(sunk_block(1e-6, 1e10), FirstMotion::at_once).empty());
   Scene rigid = sunk_block(1e-5, 1e10);
   rigid.method.contact = "hard";

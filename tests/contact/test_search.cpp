@@ -444,6 +444,35 @@ TEST_CASE("a list of contacts that the pairs do not share among them is not the 
   }
 }
 
+TEST_CASE("a saved detector with a list that is not of all blocks is refused", "[contact][search]") {
+  Detection d(scene_with({free_block("left", rectangle(0.0, 0.0, 1.0, 1.0)), free_block("right", rectangle(1.0, 0.0, 1.0, 1.0))}));
+  Archive saved;
+  saved(d.detector);
+  REQUIRE(d.detector.fits(d.system, d.joints, d.set));
+  // Wherever a length of two stands, the list behind it loses its last entry.
+  const auto length_of = [](std::uint64_t length) { return std::string(reinterpret_cast<const char*>(&length), sizeof length); };
+  int refused = 0, read = 0;
+  for (std::size_t at = saved.bytes().find(length_of(2)); at != std::string::npos; at = saved.bytes().find(length_of(2), at + 1)) {
+    for (const std::size_t size : {sizeof(Vec2), 2 * sizeof(Vec2), sizeof(double), 3 * sizeof(double)}) {
+      std::string bytes = saved.bytes();
+      if (at + sizeof(std::uint64_t) + 2 * size > bytes.size()) continue;
+      bytes.replace(at, sizeof(std::uint64_t), length_of(1));
+      bytes.erase(at + sizeof(std::uint64_t) + size, size);
+      Detector forged(0.05);
+      Archive archive(bytes);
+      try {
+        archive(forged);
+      } catch (const DamagedState&) {
+        continue;
+      }
+      ++read;
+      refused += !forged.fits(d.system, d.joints, d.set);
+    }
+  }
+  CHECK(read > 0);
+  CHECK(refused == read);
+}
+
 TEST_CASE("a saved detector whose pairs do not share the contacts among them is refused", "[contact][search]") {
   Detection d(scene_with({free_block("left", rectangle(0.0, 0.0, 1.0, 1.0)), free_block("middle", rectangle(1.0, 0.0, 1.0, 1.0)),
                           free_block("right", rectangle(2.0, 0.0, 1.0, 1.0))}));
