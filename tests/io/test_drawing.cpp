@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 // Drawings show the blocks as they lie, and what they say of sizes is measured from their lines.
 #include <cmath>
 #include <filesystem>
@@ -421,6 +423,34 @@ TEST_CASE("joints are drawn as their contacts are", "[io][drawing]") {
     const std::string svg = svg_drawing(picture);
     CHECK(count(svg, "class=\"open\"") == (word == "open" ? 2 : 0));  // the joint, and the legend
     CHECK(count(svg, "class=\"sliding\"") == (word == "sliding" ? 2 : 0));
+  }
+}
+
+TEST_CASE("what counts as open in a mechanism goes by the corner that moves farthest, whichever of a block's it is", "[io][drawing]") {
+  // The upper square turns so that one corner goes 0.5 m and the others 0.1 m: openings count from 5 mm on.
+  const std::vector<std::string> corners = {"0,1", "1,1", "1,2", "0,2"};
+  for (std::size_t far = 0; far < corners.size(); ++far) {
+    INFO("corner " << far);
+    std::string outlines = "state,block,vertex,x_m,y_m\n";
+    for (const char* state : {"initial", "failed"}) {
+      const bool has_moved = std::string(state) == "failed";
+      for (const char* vertex : {"a,0,0,0", "a,1,1,0", "a,2,1,1", "a,3,0,1"}) outlines += std::string(state) + "," + vertex + "\n";
+      for (std::size_t i = 0; i < corners.size(); ++i) {
+        const double x = corners[i][0] - '0', y = corners[i][2] - '0', way = !has_moved ? 0.0 : i == far ? 0.5 : 0.1;
+        outlines += fmt::format("{},b,{},{},{}\n", state, i, x + way, y);
+      }
+    }
+    for (const bool opens : {false, true}) {
+      const TemporaryFolder place;
+      write_two_squares(place, "", fmt::format("failed,a,b,0,1,1,1,1,{},0,0,0,\n", opens ? 0.0051 : 0.0049));
+      place.write("summary.json", std::regex_replace(summary_of_run(2), std::regex("\"run\","),
+                                                     R"("fos", "verdict": "certified", "bracket": {"stable": 1, "failed": 2},)"));
+      place.write("blocks.csv", outlines);
+      place.write("mechanism.csv", "block,velocity_x,velocity_y,angular_velocity\nb,1,0,0\n");
+      const Picture picture = picture_of_results(place.path(), {});
+      REQUIRE(picture.joints.size() == (opens ? 2 : 1));  // the other half is closed
+      CHECK(picture.joints[0].state == (opens ? JointDrawing::open : JointDrawing::sticking));
+    }
   }
 }
 
