@@ -129,6 +129,7 @@ class ByForceInTime : public EquilibriumSearch {
 
   std::string unseen() const override {
     const auto& system = simulation_.system();
+    if (system.free_count() == 0) return {};
     std::vector<double> weights;
     for (int b : system.free_blocks()) weights.push_back(system.block(b).mass[0] * simulation_.scene().gravity.norm());
     const auto middle = weights.begin() + static_cast<std::ptrdiff_t>(weights.size() / 2);

@@ -1,6 +1,6 @@
+// Drawings show the blocks as they lie, and what they say of sizes is measured from their lines.
 #include <fmt/format.h>
 
-// Drawings show the blocks as they lie, and what they say of sizes is measured from their lines.
 #include <cmath>
 #include <filesystem>
 #include <map>
@@ -427,7 +427,7 @@ TEST_CASE("joints are drawn as their contacts are", "[io][drawing]") {
 }
 
 TEST_CASE("what counts as open in a mechanism goes by the corner that moves farthest, whichever of a block's it is", "[io][drawing]") {
-  // The upper square turns so that one corner goes 0.5 m and the others 0.1 m: openings count from 5 mm on.
+  // One corner of the upper square goes 0.5 m, the others 0.1 m: openings count from a hundredth of the longer way on.
   const std::vector<std::string> corners = {"0,1", "1,1", "1,2", "0,2"};
   for (std::size_t far = 0; far < corners.size(); ++far) {
     INFO("corner " << far);
