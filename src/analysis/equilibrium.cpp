@@ -123,7 +123,7 @@ class ByForceInTime : public EquilibriumSearch {
   SettleResult settle_trial(const SettleProgress& progress) override {
     const SettleInput& input = simulation_.scene().settle;
     return settle_explicitly(
-        simulation_, {input.unbalanced_force, input.max_time_steps, max_time_steps_key, std::numeric_limits<double>::infinity(), false, false},
+        simulation_, {input.unbalanced_force, input.max_time_steps, max_time_steps_key, std::numeric_limits<double>::infinity(), false, false, false},
         progress);
   }
 

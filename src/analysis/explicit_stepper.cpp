@@ -105,9 +105,9 @@ double ExplicitStepper::critical_step() {
   return loop_->critical_step();
 }
 
-double ExplicitStepper::unbalanced_force() {
+double ExplicitStepper::unbalanced_force(double heaviest) {
   load();
-  return loop_->unbalanced_force();
+  return loop_->unbalanced_force(heaviest);
 }
 
 double ExplicitStepper::longest_stable_step(MassDamping damping) {

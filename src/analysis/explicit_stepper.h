@@ -28,8 +28,8 @@ class ExplicitStepper {
   bool advance(double dt);
   /// [s] step_fraction of the critical step with this damping of the motion: the longest step that advance() takes.
   double longest_stable_step(MassDamping damping);
-  double critical_step();     ///< [s] of the present contacts; the state is up to date afterwards
-  double unbalanced_force();  ///< [N] largest sum of forces on a block now
+  double critical_step();                    ///< [s] of the present contacts; the state is up to date afterwards
+  double unbalanced_force(double heaviest);  ///< [N] largest sum of forces on a block now, see ExplicitBlocks
 
   /// Brings the state up to date; the loop goes on from its own arrays.
   void collect();

@@ -42,6 +42,13 @@ const char* word_of(RelaxationEnd end) {
 
 }  // namespace
 
+double smallest_multiplier(const FrozenSystem& system) {
+  constexpr double smallest_part = 1e-3;  // [-] of a weight
+  double largest = 0.0;
+  for (const FrozenBlock& block : system.blocks()) largest = std::max(largest, block.live_load.norm() / block.weight);
+  return largest > 0.0 ? smallest_part / largest : smallest_part;
+}
+
 FrozenTrials::FrozenTrials(const Scene& scene, FrozenSystem& system)
     : system_(system), strength_(system, scene), solver_(solver_of(scene, system, strength_)) {
   for (int row = 0; row < system.rows(); ++row) {

@@ -34,6 +34,10 @@ inline constexpr double jump_in_closures = 10.0;
 /// path.
 inline constexpr double jump_over_stiffest = 10.0;
 
+/// [-] Of a live load: makes a thousandth of a block's weight, so that a bracket of 1e-4 of it is still seen in forces that balance to 1e-8 of a
+/// weight.
+double smallest_multiplier(const FrozenSystem& system);
+
 class FrozenTrials : public StrengthTrials {
  public:
   /// The joint's own stiffnesses, solved as method.contact does. What a trial's factor changes is the strength, or the load of the system that the
@@ -47,6 +51,7 @@ class FrozenTrials : public StrengthTrials {
   /// Another way to prove a failure: the smallest factor at which nothing can stand, found from one near it.
   void set_limit_analysis(std::function<std::optional<double>(double near)> f) { limit_analysis_ = std::move(f); }
 
+  double smallest_multiplier() const override { return openclose::smallest_multiplier(system_); }
   void exchange(Archive& archive) override;
 
   /// From now on trials are worth less work before they stay undecided.

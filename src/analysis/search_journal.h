@@ -54,6 +54,7 @@ class JournalledTrials : public StrengthTrials {
   TrialResult next(double srf, OnBreak on_break) override {
     return journal_.once([&] { return trials_.next(srf, on_break); });
   }
+  double smallest_multiplier() const override { return trials_.smallest_multiplier(); }
   std::optional<double> proved_failure(double near) override { return trials_.proved_failure(near); }
 
  private:

@@ -31,6 +31,7 @@ LimitAnalysisResult limit_analysis_of(const Scene& scene, const FrozenSystem& sy
   LimitAnalysisResult result;
   limit_analysis::Options options;
   options.upper_limit = std::max(options.upper_limit, 2.0 * upper_limit);
+  if (system.has_live_load()) options.lower_limit = smallest_multiplier(system);
   if (near > 0.0) options.first = first_above * near;
   options.ratio = ratio_above;
   options.interruption = interruption;

@@ -111,7 +111,7 @@ SettleResult settle(Simulation& simulation, const SettleProgress& progress, Sett
   if (simulation.is_explicit()) {
     const double force = input.unbalanced_fraction * simulation.state().force_scale();
     const RestLimits limits{
-        force, input.max_explicit_steps, "settle.max_explicit_steps", input.failure_displacement, input.keep_bonds, from == SettleFrom::rest};
+        force, input.max_explicit_steps, "settle.max_explicit_steps", input.failure_displacement, input.keep_bonds, from == SettleFrom::rest, true};
     return settle_explicitly(simulation, limits, progress);
   }
   SettleCourse own;

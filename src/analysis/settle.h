@@ -15,7 +15,7 @@ struct SettleResult {
   bool settled = false;
   std::string criterion;  ///< what decided: "unbalanced force", "displacement", "steps", or the reason of a step that failed
   int steps = 0;
-  double unbalanced_fraction = 1.0;             ///< [-] of SimulationState::force_scale()
+  double unbalanced_fraction = 1.0;             ///< [-] of SimulationState::force_scale(), by emphasis_at_rest()
   double displacement = 0.0;                    ///< [m] largest of any block on the way
   std::optional<double> relative_displacement;  ///< [-] of the last step, see equilibrium.h; steps in time only, which know no unbalanced fraction
   std::string limit;                            ///< key of the limit that ended the search without equilibrium; empty where a step failed
@@ -70,6 +70,7 @@ struct RestLimits {
   double failure_displacement;  ///< [m] a block that moved farther is failing
   bool keep_bonds;              ///< contacts lose strength at rest only, see below
   bool from_rest;               ///< see SettleFrom
+  bool by_own_weight;           ///< on light blocks less force counts as rest, see emphasis_at_rest(); the paper's rule knows one force for all
 };
 
 /// What settle() does for explicit methods: steps at the longest stable length with damping of the motion (`local`, unless the scene asks for

@@ -112,7 +112,8 @@ class RestSearch {
     result_.unbalanced_fraction = step.unbalanced_force / scale_;
     // A block may swing through its place of rest: what counts is the state after the step. Forces that were in balance with cohesion that is gone
     // now are to be balanced anew.
-    if (result_.unbalanced_fraction <= wanted_) result_.unbalanced_fraction = stepper_.unbalanced_force() / scale_;
+    if (result_.unbalanced_fraction <= wanted_)
+      result_.unbalanced_fraction = stepper_.unbalanced_force(limits_.by_own_weight ? scale_ : 0.0) / scale_;
     result_.settled = result_.unbalanced_fraction <= wanted_ && !step.lost_strength;
     if (result_.settled || result_.steps % displacement_every == 0) {
       look_at_displacement();

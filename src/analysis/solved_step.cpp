@@ -67,7 +67,7 @@ double unbalanced_force(const StepProblem& problem, const StepSolution& solution
   double largest = 0.0;  // of what inertia carries
   for (int b : system.free_blocks()) {
     const Unknowns inertia_force = problem.inertia * system.block(b).mass.cwiseProduct(solution.of(system, b));
-    largest = std::max(largest, Motion::largest_force(inertia_force, system.block(b).radius));
+    largest = std::max(largest, problem.emphasis(b) * Motion::largest_force(inertia_force, system.block(b).radius));
   }
   // Where friction lags behind the normal force, equilibrium with the old friction is none yet.
   for (std::size_t i = 0; i < problem.contacts.size(); ++i) {
@@ -75,7 +75,11 @@ double unbalanced_force(const StepProblem& problem, const StepSolution& solution
     if (f.status != ContactStatus::sliding) continue;
     const Contact& c = problem.contacts[i];
     const double bound = ContactStrength(problem.joints.joint(c.joint), c).shear_bound(f.normal).value;
-    largest = std::max(largest, std::abs(bound - std::abs(f.shear)));
+    double emphasis = 1.0;
+    for (int b : {c.vertex_block, c.edge_block}) {
+      if (system.block(b).equation >= 0) emphasis = std::max(emphasis, problem.emphasis(b));
+    }
+    largest = std::max(largest, emphasis * std::abs(bound - std::abs(f.shear)));
   }
   return largest + solution.unbalanced;
 }

@@ -16,7 +16,8 @@ double largest_move(const BlockSystem& system, const StepSolution& solution);
 /// the forces that the last step ended with.
 double local_error(const StepProblem& problem, const StepSolution& solution);
 
-/// [N] Largest sum of forces without inertia on a block, with what friction that lags behind the normal force misses its bound by.
+/// [N] Of a static step: largest sum of forces without inertia on a block, with what friction that lags behind the normal force misses its bound by.
+/// On blocks that are much lighter than the heaviest one it counts for more, see emphasis_at_rest().
 double unbalanced_force(const StepProblem& problem, const StepSolution& solution);
 
 /// [m] By how much friction gives way in a contact that slides at the end.

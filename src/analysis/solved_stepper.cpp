@@ -57,6 +57,7 @@ StepProblem SolvedStepper::problem(double dt, bool statics) {
   state_.find_contacts(statics ? 0.0 : state_.scene.step.look_ahead * dt);
   StepProblem p = state_.problem(dt, statics);
   p.failed_attempts = failed_attempts_;
+  if (statics) p.heaviest_weight = state_.force_scale();
   // Elsewhere it would show in the places of the blocks.
   if (statics && state_.enforcement->has_elastic_contacts()) p.negligible_force = negligible_force_;
   if (!statics && state_.scheme->wants_accelerations()) {

@@ -8,7 +8,8 @@ namespace openclose {
 struct StepResult {
   bool accepted = false;
   std::string reason;
-  double unbalanced_force = 0.0;  ///< [N] largest sum of forces without inertia on a block; static and explicit steps only
+  double unbalanced_force = 0.0;  ///< [N] largest sum of forces without inertia on a block; explicit and static steps only, of the latter by
+                                  ///< emphasis_at_rest()
   double moved = 0.0;             ///< [m] farthest way of a vertex, of refused steps too; 0 if nothing was solved
   double error = 0.0;             ///< [m] local error, see local_error(); only if the scene asks for adaptive steps
   bool too_wrong = false;         ///< refused because of it

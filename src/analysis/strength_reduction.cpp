@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "openclose/analysis/bent_joints.h"
 #include "openclose/analysis/frozen_trials.h"
 #include "openclose/analysis/loose_blocks.h"
 #include "openclose/analysis/named_states.h"
@@ -54,7 +55,11 @@ class StrengthReduction {
     judge();
     if (const std::string words = trials.search().unseen(); !words.empty()) result_.warnings.push_back(words);
     warn_of_failure_displacement();
-    if (trials.settled()) add_state("settled", *trials.settled());
+    if (trials.settled()) {
+      add_state("settled", *trials.settled());
+      if (const std::string words = bent_joints_in_words(simulation_); !words.empty()) result_.warnings.push_back(words);
+    }
+    warn_of_loose_blocks(scene_);
     if (trials.failed()) add_state("failed", *trials.failed());
     if (!result_.bracket.stopped) curve(trials);
   }
@@ -82,10 +87,7 @@ class StrengthReduction {
     warn_of_interval();
     warn_of_geometry();
     if (input_.limit_analysis) unless_stopped([&] { compare(scene, system, trials); });
-    // What stands whatever its strength may stand on a point.
-    if (input_.limit_analysis && result_.verdict == FactorVerdict::no_failure) {
-      if (const std::string words = loose_blocks_in_words(scene); !words.empty()) result_.warnings.push_back(words);
-    }
+    warn_of_loose_blocks(scene);
     trials.end_search();
     unless_stopped([&] {
       for (double srf : input_.curve) {
@@ -189,10 +191,11 @@ class StrengthReduction {
       const bool proved = result_.limit_analysis && result_.limit_analysis->no_equilibrium;
       const bool none = proved || b.at_every_strength || (b.failed && b.undecided == 0);
       result_.verdict = none ? FactorVerdict::no_equilibrium : FactorVerdict::undecided;
+      const char* known = none ? "not stable" : "neither equilibrium nor failure found";
       result_.reason = b.at_every_strength ? "no strength of the joints could hold the blocks: " + b.first_verdict
-                       : input_.increase
-                           ? fmt::format("not stable before {} grows ({})", *input_.increase, b.first_verdict)
-                           : fmt::format("not stable even at a strength reduction factor of {:.3g} ({})", smallest_tried(), b.first_verdict);
+                       : input_.increase   ? fmt::format("{} before {} grows ({})", known, *input_.increase, b.first_verdict)
+                                           : fmt::format("{} {} a strength reduction factor of {:.3g} ({})", known, none ? "even at" : "down to",
+                                                         smallest_tried(), b.first_verdict);
       return;
     }
     if (b.at_limit) {
@@ -200,7 +203,7 @@ class StrengthReduction {
       result_.reason = "still stable at strength_reduction.upper_limit";
       return;
     }
-    if (b.failed && *b.failed - *b.stable <= widest_bracket(input_, *b.stable)) {
+    if (b.is_narrow) {
       result_.verdict = FactorVerdict::certified;
     } else {
       result_.verdict = FactorVerdict::interval;
@@ -388,6 +391,12 @@ class StrengthReduction {
           "a block is failing once it has moved by settle.failure_displacement_m = {:g} m, more than the median block's size of {:.3g} m: what fails "
           "may come to rest before",
           asked, size));
+  }
+
+  /// What stands whatever its strength may stand on a point.
+  void warn_of_loose_blocks(const Scene& scene) {
+    if (!input_.limit_analysis || result_.verdict != FactorVerdict::no_failure) return;
+    if (const std::string words = loose_blocks_in_words(scene); !words.empty()) result_.warnings.push_back(words);
   }
 
   void warn_of_interval() {

@@ -19,9 +19,8 @@ constexpr double smallest_factor = 1e-3;   ///< [-] below which nothing is stabl
 constexpr double longest_breaking_stride = 2e-3;
 constexpr double unbroken_ratio = 4.0;  ///< [-] between the factors tried below the first stable one, where joints have broken
 
-constexpr double first_multiplier = 0.125;    ///< [-] of a load, after 0: an earthquake's, or some of what the user wrote
-constexpr double multiplier_ratio = 2.0;      ///< [-] between the next ones
-constexpr double smallest_multiplier = 1e-3;  ///< [-] below which brackets become no narrower
+constexpr double first_multiplier = 0.125;  ///< [-] of a load, after 0: an earthquake's, or some of what the user wrote
+constexpr double multiplier_ratio = 2.0;    ///< [-] between the next ones
 
 class Search {
  public:
@@ -38,6 +37,7 @@ class Search {
       bracket_.stopped = true;
     }
     if (!bracket_.stable) return std::move(bracket_);
+    bracket_.is_narrow = bracket_.failed && *bracket_.failed - *bracket_.stable <= widest(*bracket_.stable);
     bracket_.undecided = static_cast<int>(undecided_.size());
     for (double srf : failures_) {
       if (srf < *bracket_.stable) bracket_.failed_below.push_back(srf);
@@ -108,7 +108,8 @@ class Search {
       bracket_.failed_by.clear();
       return result.outcome;
     }
-    bracket_.failed_by = bracket_.first_verdict = result.criterion;
+    bracket_.failed_by = result.criterion;
+    if (result.outcome == TrialOutcome::undecided || bracket_.undecided == 0) bracket_.first_verdict = result.criterion;
     bracket_.at_every_strength = result.at_every_strength;
     if (result.outcome == TrialOutcome::failed) bracket_.failed = srf;
     if (result.outcome == TrialOutcome::undecided) ++bracket_.undecided;
@@ -124,7 +125,7 @@ class Search {
     std::ranges::sort(undecided_);
     const double lowest = undecided_.front(), highest = undecided_.back();
     if (undecided_.size() < most_undecided) {
-      if (lowest - stable > 0.5 * widest_bracket(input_, stable)) return 0.5 * (stable + lowest);
+      if (lowest - stable > 0.5 * widest(stable)) return 0.5 * (stable + lowest);
       if (retried_ != lowest) return retried_ = lowest;
     }
     if (bracket_.failed) {
@@ -135,9 +136,11 @@ class Search {
     return above(highest);
   }
 
+  double widest(double factor) const { return widest_bracket(input_, factor, trials_.smallest_multiplier()); }
+
   std::optional<double> middle(double low, double high) const {
     const double between = 0.5 * (low + high);
-    if (high - low <= widest_bracket(input_, low) || between <= low || between >= high) return std::nullopt;
+    if (high - low <= widest(low) || between <= low || between >= high) return std::nullopt;
     return between;
   }
 
@@ -150,7 +153,7 @@ class Search {
   }
 
   /// In which joints may break.
-  double finest_stride() const { return std::max(widest_bracket(input_, *bracket_.stable), longest_breaking_stride * *bracket_.stable); }
+  double finest_stride() const { return std::max(widest(*bracket_.stable), longest_breaking_stride * *bracket_.stable); }
 
   /// Not past the factor at which joints break from the last stable state: half way to it, until that is a stride in which they may. After a break
   /// strides grow from the finest one.
@@ -227,7 +230,7 @@ class Search {
   /// Of the bisection, on a logarithmic scale; it never falls back.
   double share_done() {
     if (!bracket_.failed) return share_;
-    const double final_width = widest_bracket(input_, *bracket_.stable);
+    const double final_width = widest(*bracket_.stable);
     if (first_width_ <= final_width) return share_;
     const double width = std::max(*bracket_.failed - *bracket_.stable, final_width);
     return share_ = std::clamp(std::log(first_width_ / width) / std::log(first_width_ / final_width), share_, 1.0);
@@ -252,7 +255,7 @@ class Search {
 
 }  // namespace
 
-double widest_bracket(const StrengthReductionInput& input, double factor) {
+double widest_bracket(const StrengthReductionInput& input, double factor, double smallest_multiplier) {
   return input.width * (input.increase ? std::max(factor, smallest_multiplier) : std::min(1.0, factor));
 }
 

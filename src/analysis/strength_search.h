@@ -60,6 +60,8 @@ class StrengthTrials {
   /// The smallest factor whose failure is proved without a trial; none if no proof is to be had. Asked for once a trial has stayed undecided.
   /// \param near  [-] a factor near which it may lie
   virtual std::optional<double> proved_failure(double /*near*/) { return std::nullopt; }
+  /// [-] Below it brackets of multipliers become no narrower.
+  virtual double smallest_multiplier() const { return 0.0; }
   /// What the next trials depend on, and the states that they have led to.
   virtual void exchange(Archive&) {}
 };
@@ -70,11 +72,12 @@ struct StrengthBracket {
   std::optional<double> failed;      ///< [-] smallest failed factor above it
   std::string failed_by;             ///< what decided there
   bool at_limit = false;             ///< stable at the upper limit
+  bool is_narrow = false;            ///< failed and stable are as near to each other as was asked for
   bool stopped = false;              ///< the observer has stopped the search, see core/error.h
   bool at_every_strength = false;    ///< no strength whatever holds the system
   int undecided = 0;                 ///< trials between the two ends that stayed undecided
   std::vector<double> failed_below;  ///< [-] failed factors below the largest stable one
-  std::string first_verdict;         ///< of the last trial from the beginning that was not stable
+  std::string first_verdict;         ///< of the last trial from the beginning that was not stable; of the undecided ones if there are any
 };
 
 /// Told about every trial.
@@ -82,7 +85,8 @@ using TrialObserver = std::function<void(const StrengthTrial&)>;
 
 /// [-] Between the ends of a bracket that is narrow enough: strength_reduction.width, and below a factor of 1 that part of the factor, since an error
 /// of 5e-4 is nothing at 1.3 and nearly one per cent at 0.06. Multipliers have the unit of their load, so that of them it is always a part.
-double widest_bracket(const StrengthReductionInput& input, double factor);
+/// \param smallest_multiplier  [-] see StrengthTrials
+double widest_bracket(const StrengthReductionInput& input, double factor, double smallest_multiplier);
 
 /// Each trial starts from the last stable state. Where one stays undecided, the search comes near it from below with smaller increments, tries again,
 /// and then looks above it for the smallest factor at which failure is certain. Where `progress` throws Stopped, before a trial or in it, what is

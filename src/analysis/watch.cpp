@@ -146,6 +146,7 @@ std::string Watch::begin(const Simulation& simulation) {
     supports += element->stored_energy(start);
   }
   undetermined_energy_ = weights * undetermined_length(simulation);
+  groups_.begin(simulation, undetermined_length(simulation));
   energy_at_start_ = kinetic + supports + simulation.state().stored_contact_energy();
   report_.available_energy = energy_at_start_;
   depth_at_start_ = std::numeric_limits<double>::infinity();  // rigid contacts begin with what the drawing has
@@ -181,6 +182,7 @@ std::string Watch::check(const Simulation& simulation, std::size_t first_pair, s
   if (std::string wrong = check_contacts(simulation); !wrong.empty()) return wrong;
   if (std::string wrong = check_overlaps(simulation, first_pair, pairs); !wrong.empty()) return wrong;
   if (std::string wrong = check_energy(simulation); !wrong.empty()) return wrong;
+  if (std::string wrong = check_groups(simulation); !wrong.empty()) return wrong;
   return check_reach(simulation);
 }
 
@@ -223,6 +225,9 @@ std::string Watch::check_energy(const Simulation& simulation) {
   const double by_scheme = simulation.is_explicit() ? 0.0 : -ledger.scheme;
   // Where gaps are followed to first order only, what the contact update corrects has gone to the scheme before.
   const double by_contacts = -ledger.redefinition + (simulation.enforcement().follows_gaps() ? 0.0 : -ledger.scheme);
+  most_friction_ = std::max(most_friction_, ledger.friction);
+  // What rigid contacts take in one blow their normal and shear forces may divide in any way.
+  const double by_friction = is_rigid(simulation) ? 0.0 : most_friction_ - ledger.friction;
   struct Source {
     double energy;
     const char* name;
@@ -230,6 +235,7 @@ std::string Watch::check_energy(const Simulation& simulation) {
   const Source sources[] = {{now - lowest_energy_, "the mechanical energy rose"},
                             {by_contacts, "contacts that changed their edges or lengths released it"},
                             {-ledger.impact, "impacts released it"},
+                            {by_friction, "friction released it"},
                             {by_scheme, "the time integration released it"},
                             {std::abs(ledger.imbalance()), "the energy ledger does not close"}};
   const double scale = energy_scale();
@@ -244,6 +250,16 @@ std::string Watch::check_energy(const Simulation& simulation) {
   if (part <= watch_bound::created_energy) return {};
   return fmt::format("energy was created: {:.3g} J where {:.3g} J were there to move anything ({:.2g} of it, at most {:g}; {}); {}", worst.energy,
                      scale, part, watch_bound::created_energy, worst.name, better_energy(simulation));
+}
+
+std::string Watch::check_groups(const Simulation& simulation) {
+  const EnergyGroups::Worst worst = groups_.worst(simulation, watch_bound::created_energy);
+  report_.created_energy = std::max(report_.created_energy, worst.part);
+  if (worst.part <= watch_bound::created_energy) return {};
+  const std::string& name = simulation.scene().blocks[worst.block].name;
+  const std::string group = worst.blocks > 1 ? fmt::format("the group of {} blocks around \"{}\"", worst.blocks, name) : fmt::format("\"{}\"", name);
+  return fmt::format("energy was created: {:.3g} J where {:.3g} J were there to move {} ({:.2g} of it, at most {:g}; its mechanical energy rose); {}",
+                     worst.created, worst.scale, group, worst.part, watch_bound::created_energy, better_energy(simulation));
 }
 
 std::string Watch::check_reach(const Simulation& simulation) {
@@ -329,7 +345,7 @@ std::string Watch::check_overlaps(const Simulation& simulation, std::size_t firs
 
 bool Watch::fits(const Simulation& simulation) const {
   const auto blocks = static_cast<std::size_t>(simulation.system().block_count());
-  return start_.size() == blocks && widths_.size() == blocks && convex_.size() == blocks;
+  return start_.size() == blocks && widths_.size() == blocks && convex_.size() == blocks && groups_.fits(simulation);
 }
 
 }  // namespace openclose

@@ -4,9 +4,10 @@
 //   - energy that was not there. The mechanical energy E = kinetic + gravity + springs + loads + base motion (the work of loads and of the base
 //   counted
 //     as energy that is given back) can only fall. Created energy is the largest of: the rise of E above the least value it has had; and what the
-//     ledger's entries that no physics stands for have released: contact updates, impacts of rigid contacts, the time scheme, and the imbalance. It
-//     is compared with the energy that there was to move anything: kinetic energy and springs at the start, what blocks that lie lower have lost in
-//     height, and the work of loads and base.
+//     ledger's entries that no physics stands for have released: contact updates, impacts of rigid contacts, friction of springs, the time scheme,
+//     and the imbalance. It is compared with the energy that there was to move anything: kinetic energy and springs at the start, what blocks that
+//     lie lower have lost in height, and the work of loads and base. The rise is also compared for each group of blocks by itself, see
+//     energy_groups.h.
 //   - blocks in each other. Springs close by a small part of a block's width; deeper, corners come nearer to other edges than to the one they came in
 //     through. Measured by the closed contacts and, because a block may pass into another one without a contact, by the depth of their overlap.
 //   - blocks that move faster, or lie higher, than all of that energy could make them. This one uses positions and velocities alone, not the ledger.
@@ -18,6 +19,7 @@
 #include <string>
 #include <vector>
 
+#include "openclose/analysis/energy_groups.h"
 #include "openclose/analysis/simulation.h"
 
 namespace openclose {
@@ -66,6 +68,8 @@ class Watch {
   static bool is_due(long step);
   /// With rigid contacts after every step: what goes into another block there comes out of it again within some steps, and nothing else tells.
   bool is_due(const Simulation& simulation, long step) const;
+  /// After every step.
+  void follow(const Simulation& simulation) { groups_.follow(simulation); }
   /// Empty while nothing is wrong, else what is, with the remedy. Of the pairs of blocks that may overlap each check looks at some, in turns; with
   /// rigid contacts at all.
   std::string check(const Simulation& simulation);
@@ -75,7 +79,8 @@ class Watch {
   /// [J] What may be created, as of the last check.
   double creatable_energy() const { return watch_bound::created_energy * energy_scale(); }
   void exchange(Archive& archive) {
-    archive(report_, energy_at_start_, released_, work_, lowest_energy_, undetermined_energy_, start_, depth_at_start_, next_pair_, widths_, convex_);
+    archive(report_, energy_at_start_, released_, work_, lowest_energy_, most_friction_, undetermined_energy_, start_, depth_at_start_, next_pair_,
+            widths_, convex_, groups_);
   }
   /// Whether what was read is of as many blocks.
   bool fits(const Simulation& simulation) const;
@@ -94,6 +99,7 @@ class Watch {
   void follow_energy(const Simulation& simulation);
   std::string check_finite(const Simulation& simulation) const;
   std::string check_energy(const Simulation& simulation);
+  std::string check_groups(const Simulation& simulation);
   std::string check_reach(const Simulation& simulation);
   std::string check_contacts(const Simulation& simulation);
   std::string check_overlaps(const Simulation& simulation, std::size_t first_pair, std::size_t pairs);
@@ -105,10 +111,12 @@ class Watch {
   double released_ = 0.0;             ///< [J] by blocks that lie lower, the most so far
   double work_ = 0.0;                 ///< [J] of loads and base, the most so far
   double lowest_energy_ = 0.0;        ///< [J] mechanical, against that at the start
+  double most_friction_ = 0.0;        ///< [J] that it has taken
   double undetermined_energy_ = 0.0;  ///< [J] weights of all blocks over the length to which the method tells places
   std::vector<Vec2> start_;           ///< [m] displacement of the blocks at the start
   double depth_at_start_ = 0.0;       ///< [m] of blocks in each other
   std::size_t next_pair_ = 0;
+  EnergyGroups groups_;
   std::vector<double> widths_;            ///< [m] of the blocks
   std::vector<char> convex_;              ///< of the blocks
   std::vector<double> energies_, falls_;  ///< [J] of the blocks in this check: kinetic, and lost in height

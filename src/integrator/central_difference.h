@@ -68,10 +68,11 @@ class CentralDifference {
   bool moved_beyond_skin();
   /// [s] Of the contacts that may close before they are renewed, with local damping of this share.
   double critical_step(double local_damping = 0.0) { return links_.critical_step(local_damping); }
-  double last_unbalanced_force() const;                                   ///< [N] largest force on a block when the last step began
-  double unbalanced_force() const { return blocks_.unbalanced_force(); }  ///< [N] now; a pass over the blocks
-  bool lost_strength() const { return links_.lost_strength(); }           ///< a joint has lost its bond in the last step
-  double max_penetration() const { return links_.max_penetration(); }     ///< [m] since the load
+  double last_unbalanced_force() const;  ///< [N] largest force on a block when the last step began
+  /// [N] Now, see ExplicitBlocks; a pass over the blocks.
+  double unbalanced_force(double heaviest) const { return blocks_.unbalanced_force(heaviest); }
+  bool lost_strength() const { return links_.lost_strength(); }        ///< a joint has lost its bond in the last step
+  double max_penetration() const { return links_.max_penetration(); }  ///< [m] since the load
 
   /// [N, N m] What the contacts do to each of the blocks that were at rest at the load, in the system's order.
   void rest_forces(std::vector<Unknowns>& forces) const { blocks_.rest_forces(forces); }

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <limits>
 #include <memory>
 #include <string>
@@ -27,6 +28,15 @@ enum class Bonds : unsigned char {
   last_unparted,      ///< nor does tension part those that have tensile strength
 };
 
+/// [-] A block that is lighter than the heaviest one by more than this is at rest by its own weight. Of settle.unbalanced_fraction = 1e-8 this makes
+/// 1e-5 of it, a tenth of the width to which factors of safety are found.
+inline constexpr double largest_ratio_of_weights = 1e3;
+
+/// [-] By how much more an unbalanced force counts on a block with this weight [N] than on the heaviest one. Blocks without weight count as that.
+inline double emphasis_at_rest(double heaviest, double weight) {
+  return weight > 0.0 ? std::max(1.0, heaviest / (largest_ratio_of_weights * weight)) : 1.0;
+}
+
 /// One step to be solved. Everything is as it stands at the start of the step.
 struct StepProblem {
   const BlockSystem& system;
@@ -40,11 +50,14 @@ struct StepProblem {
   double end_weight = 1.0;  ///< theta
   int failed_attempts = 0;  ///< at steps from here
   Bonds bonds = Bonds::break_under_load;
-  double negligible_force = 0.0;                                          ///< [N] what a static step may leave unbalanced on a block
+  double heaviest_weight = 0.0;   ///< [N] of a static step: SimulationState::force_scale(), see emphasis_at_rest()
+  double negligible_force = 0.0;  ///< [N] what it may leave unbalanced on a block, by that
   double longest_displacement = std::numeric_limits<double>::infinity();  ///< [m] of a vertex; a step that moves one farther is refused
   const TimeScheme* scheme = nullptr;                                     ///< null: every step starts from rest
 
   bool averages_path() const { return scheme && scheme->averages_path(); }
+  /// [-] Of block b, which is free; see emphasis_at_rest().
+  double emphasis(int b) const { return statics ? emphasis_at_rest(heaviest_weight, external.weight(system, b).norm()) : 1.0; }
   /// Displacement of block b if there were no forces.
   Motion::Unknowns drift(int b) const {
     const auto v = velocity(b);
@@ -84,7 +97,7 @@ struct StepSolution {
          lagging_friction_work = 0.0;  ///< [J] `shi`: of sliding contacts by their strength, and what their friction missed it by
   StepEffort effort;
   Eigen::VectorXd d;        ///< displacement of the step, three numbers per free block
-  double unbalanced = 0.0;  ///< [N] largest residual of a block, if static
+  double unbalanced = 0.0;  ///< [N] if static: largest residual of a block, by emphasis_at_rest()
   ContactTrial contacts;    ///< on which the step is solved, and what they did in it
 
   /// Empty again, with its memory for the next step.

@@ -159,10 +159,13 @@ double ExplicitBlocks::farthest_way() const {
   return farthest;
 }
 
-double ExplicitBlocks::unbalanced_force() const {
+double ExplicitBlocks::unbalanced_force(double heaviest) const {
   double largest = 0.0;
-  for (std::size_t i = 0; i < inertia_.size(); ++i) largest = std::max(largest, force_squared(i));
-  return std::sqrt(largest);
+  for (std::size_t i = 0; i < inertia_.size(); ++i) {
+    const double weight = std::hypot(inertia_[i].weight_x, inertia_[i].weight_y);
+    largest = std::max(largest, emphasis_at_rest(heaviest, weight) * std::sqrt(force_squared(i)));
+  }
+  return largest;
 }
 
 double ExplicitBlocks::force_squared(std::size_t i) const {

@@ -91,7 +91,8 @@ class ExplicitBlocks {
   void mark_way();
   double farthest_way() const;  ///< [m] of any point of a block since then
 
-  double unbalanced_force() const;  ///< [N] largest
+  /// [N] Largest; on blocks that are much lighter than the heaviest weight [N] it counts for more, see emphasis_at_rest(). 0: all forces alike.
+  double unbalanced_force(double heaviest) const;
   /// At the end of a step with this motion, half a step after the middle that the rates are of.
   Unknowns velocity_at_end(int equation, const ExplicitMotion& motion) const;
   /// [W] Of all forces but weights.

@@ -40,7 +40,7 @@ void StepEquations::prepare(const StepProblem& problem, const SpringsOf& springs
     const double rounding_of_coordinates = problem.statics ? 0.0 : problem.external.spring_scale(system, b);
     blocks_.push_back({b, problem.external.has_elements(b), block.rotation_locked, block.radius, problem.inertia * block.mass,
                        problem.external.force(system, b, still), problem.drift(b), problem.external.magnitude(system, b, still),
-                       rounding_of_coordinates});
+                       rounding_of_coordinates, problem.emphasis(b)});
   }
   find_blocks_alone();
   block_scale_ = 0.0;
@@ -129,7 +129,7 @@ void StepEquations::evaluate(const Eigen::VectorXd& d) {
 }
 
 double StepEquations::tolerated(int row) const {
-  return problem_->method.residual_tolerance * force_scale_ + rows_[row].sums[dofs];
+  return problem_->method.residual_tolerance * force_scale_ / blocks_[row].emphasis + rows_[row].sums[dofs];
 }
 
 double StepEquations::unbalanced(int row) const {
@@ -145,14 +145,14 @@ double StepEquations::residual_norm() const {
     if (r == 0.0) continue;
     if (tolerated(row) > loosest) return std::numeric_limits<double>::infinity();
     worst = std::max(worst, r / tolerated(row));
-    largest = std::max(largest, r);
+    largest = std::max(largest, blocks_[row].emphasis * r);
   }
   return largest <= problem_->negligible_force ? std::min(worst, 1.0) : worst;
 }
 
 double StepEquations::largest_unbalanced() const {
   double largest = 0.0;
-  for (int row = 0; row < rows(); ++row) largest = std::max(largest, unbalanced(row));
+  for (int row = 0; row < rows(); ++row) largest = std::max(largest, blocks_[row].emphasis * unbalanced(row));
   return largest;
 }
 

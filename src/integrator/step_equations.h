@@ -23,6 +23,7 @@ class StepEquations {
     Unknowns inertia, force, drift;        ///< mass over time squared; all but contacts' at the start; displacement without forces
     double magnitude = 0.0;                ///< [N] of these forces
     double rounding_of_coordinates = 0.0;  ///< [N]
+    double emphasis = 1.0;                 ///< [-] of its residual, see StepProblem::emphasis()
     bool is_alone = false;                 ///< without contacts and point forces
   };
 
@@ -40,9 +41,9 @@ class StepEquations {
 
   void evaluate(const Eigen::VectorXd& d);
   const Eigen::VectorXd& residual() const { return residual_; }
-  double unbalanced(int row) const;  ///< [N] residual of a block
-  double largest_unbalanced() const;
-  double tolerated(int row) const;  ///< [N] of it
+  double unbalanced(int row) const;   ///< [N] residual of a block
+  double largest_unbalanced() const;  ///< [N] by StepProblem::emphasis()
+  double tolerated(int row) const;    ///< [N] of it
   /// Largest residual of a block over what is tolerated: converged at 1, which is also what negligible ones count for; infinite where that tells
   /// nothing.
   double residual_norm() const;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <optional>
 
 #include "openclose/core/memory.h"
@@ -299,7 +300,31 @@ void refuse_faults(const Cutting& cutting, const Joints& joints, const DomainInp
   }
 }
 
-std::vector<std::string> warnings_of(const Cutting& cutting, const Joints& joints, const Table& table) {
+/// [-] Of the area of all blocks: what is seen in a drawing.
+constexpr double noticeable_area = 1e-3;
+/// [-] Of the size of the median block: likewise. Defaults of a millimetre are meant for blocks of a metre.
+constexpr double noticeable_length = 0.01;
+
+/// Lengths that are small beside blocks of a metre and not beside those of the domain.
+void warn_of_lengths(const Cutting& cutting, const DomainInput& domain, const std::string& file, std::vector<std::string>& warnings) {
+  std::vector<double> areas;
+  for (const Polygon& block : cutting.blocks) areas.push_back(signed_area(block));
+  if (areas.empty()) return;
+  const double all = std::accumulate(areas.begin(), areas.end(), 0.0);
+  const auto median = areas.begin() + static_cast<std::ptrdiff_t>(areas.size() / 2);
+  std::ranges::nth_element(areas, median);
+  const double size = std::sqrt(*median);
+  if (cutting.slivers_area > noticeable_area * all)
+    warnings.push_back(
+        fmt::format("{}: {} blocks with {:.2g} % of the area are thinner than domain.sliver_width_m = {:g} or smaller than "
+                    "sliver_area_m2 = {:g} and united with their neighbours",
+                    file, cutting.slivers_merged, 100.0 * cutting.slivers_area / all, domain.limits.sliver_width, domain.limits.sliver_area));
+  if (domain.limits.end_reach > noticeable_length * size)
+    warnings.push_back(fmt::format("{}: domain.joint_end_reach_m = {:g} closes bridges of rock up to {:.2g} % of the median block's size of {:.2g} m",
+                                   file, domain.limits.end_reach, 100.0 * domain.limits.end_reach / size, size));
+}
+
+std::vector<std::string> warnings_of(const Cutting& cutting, const Joints& joints, const DomainInput& domain, const Table& table) {
   std::vector<std::string> warnings;
   const std::string file = table.where().file;
   for (int j = 0; j < joints.count(); ++j) {
@@ -311,6 +336,7 @@ std::vector<std::string> warnings_of(const Cutting& cutting, const Joints& joint
   for (const int j : joints.oblique())
     warnings.push_back(fmt::format("{}: {}: the normals of the planes leave the section by more than 20 degrees, and so does what slides on them",
                                    file, place_name(joints.table(j).where())));
+  warn_of_lengths(cutting, domain, file, warnings);
   if (cutting.slivers_left > 0) warnings.push_back(fmt::format("{}: {} sliver(s) that no neighbour could take are left", file, cutting.slivers_left));
   return warnings;
 }
@@ -332,7 +358,7 @@ CuttingSummary summary_of(const Cutting& cutting, const Joints& joints, const Do
   summary.slivers_area = cutting.slivers_area;
   summary.enclosed_groups = static_cast<int>(cutting.enclosed.size());
   summary.sets_in_section = joints.in_section();
-  summary.warnings = warnings_of(cutting, joints, table);
+  summary.warnings = warnings_of(cutting, joints, domain, table);
   return summary;
 }
 

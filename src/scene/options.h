@@ -312,7 +312,7 @@ inline constexpr std::array settle_criterion_words{
 
 /// Static settling: when it is done, and when it has failed.
 struct SettleInput {
-  double unbalanced_fraction = 1e-8;  ///< [-] largest unbalanced force over the weight of the heaviest free block
+  double unbalanced_fraction = 1e-8;  ///< [-] largest unbalanced force over the weight of the heaviest free block, see emphasis_at_rest()
   double first_dt = 1.0;              ///< [s] first pseudo-time step; grows tenfold while steps succeed
   int max_steps = 200;
   double failure_displacement = 1.0;  ///< [m] a block that moved farther is failing
@@ -331,7 +331,8 @@ void visit_settle_keys(Settle& s, Visitor& visit) {
   visit.table({"settle", Audience::user, "static equilibrium, for the start \"settled\" and for factors of safety that ask for motion"});
   visit({"criterion", "what tells equilibrium"}, s.criterion, settle_criterion_words);
   visit({"unbalanced_fraction",
-         "largest unbalanced force over the weight of the heaviest free block; steps of `soft` may leave half of it in their equations"},
+         "largest unbalanced force over the weight of the heaviest free block, or over 1000 times the block's own weight if that is less; steps of "
+         "`soft` may leave half of it in their equations"},
         s.unbalanced_fraction, between_0_and_1);
   visit({"first_dt_s", "first pseudo-time step; it grows tenfold while steps succeed"}, s.first_dt, positive);
   visit({"max_steps", "steps before settling is given up"}, s.max_steps, at_least_one);

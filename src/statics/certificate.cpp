@@ -23,17 +23,22 @@ RelativeMotion relative_motion(const FrozenContact& c, const Eigen::VectorXd& di
   return m;
 }
 
-/// The springs of supports have no strength: whether one could bring a motion to an end within `farthest_way`.
+/// The springs of supports have no strength: whether one could bring a motion to an end within farthest_way_of().
 /// \param velocity  over the fastest
 /// \param acceleration  [-] of the fastest; 0 for a motion that no support may resist at all
 bool may_be_stopped(const FrozenSystem& system, const Eigen::VectorXd& velocity, double acceleration) {
+  const double way = farthest_way_of(system);
   return std::ranges::any_of(system.supports(), [&](const FrozenSupport& s) {
     const double stretching = std::abs(s.direction.dot(velocity.segment<3>(3 * s.row)));
-    return stretching > mechanism_tolerance && s.stiffness * stretching * farthest_way > acceleration * system.blocks()[s.row].weight;
+    return stretching > mechanism_tolerance && s.stiffness * stretching * way > acceleration * system.blocks()[s.row].weight;
   });
 }
 
 }  // namespace
+
+double farthest_way_of(const FrozenSystem& system) {
+  return system.supports().empty() ? farthest_way : std::max(farthest_way, system.length_unit() / system.closure_unit());
+}
 
 EquilibriumCheck check_equilibrium(const FrozenSystem& system, const FrozenStrength& strength, const FrozenState& state) {
   EquilibriumCheck check;

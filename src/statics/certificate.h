@@ -13,8 +13,13 @@ inline constexpr double rounding_of_forces = 1e-13;
 inline constexpr double rounding_of_strength = 1e-12;
 /// [-] What a mechanism's velocities and forces may miss of its conditions, over the largest.
 inline constexpr double mechanism_tolerance = 1e-6;
-/// In closures: beyond, gaps lose their digits, and no motion is followed.
+/// In closures: farther than any that joints make, and no motion of blocks that nothing but joints holds is followed beyond.
 inline constexpr double farthest_way = 1e6;
+/// In closures: gaps have digits of 1e-16 of the way, and forces are to balance to negligible_share_of_weight.
+inline constexpr double farthest_way_with_digits = 1e8;
+
+/// In closures: where supports may stop a motion, blocks are followed as far as the size of the median one, and farthest_way at least.
+double farthest_way_of(const FrozenSystem& system);
 
 /// Normal and shear force within the strength, but for rounding.
 bool is_within_strength(const ContactStrength& strength, const FrozenContactState& contact);
@@ -33,7 +38,8 @@ EquilibriumCheck check_equilibrium(const FrozenSystem& system, const FrozenStren
 
 /// Proof that the blocks start to move: forces within the strength leave accelerations, under which every contact goes on as it is. Closed contacts
 /// stay closed, sticking ones do not slip, sliding ones slip against their friction at its bound, open ones do not close, and no support is
-/// stretched. The accelerations are those of rigid blocks under these forces. \param direction  of the accelerations, as the solver found it
+/// stretched that could bring the motion to an end within farthest_way_of(). The accelerations are those of rigid blocks under these forces.
+/// \param direction  of the accelerations, as the solver found it
 bool is_mechanism(const FrozenSystem& system, const FrozenStrength& strength, const FrozenState& state, const Eigen::VectorXd& direction);
 
 /// Proof that no strength in shear, however large, could hold the blocks: a motion on which the loads do work, in which no contact closes or slips,

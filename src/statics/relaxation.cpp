@@ -165,7 +165,7 @@ RelaxationResult Relaxation::relax(const FrozenState& from, Effort effort) {
     accept(x, result.state, eps);
     result.travel = std::max(result.travel, farthest_between(result.state, from));
     if (ended(result, x)) return result;
-    if (result.travel > farthest_way) break;
+    if (result.travel > std::min(farthest_way_of(system_), farthest_way_with_digits)) break;
     const long work = balance_.counters().factorisations - before;
     if (work <= work_of_steady_motion && length > first_increment_of_motion && ends_in_a_short_increment(velocity, result)) return result;
     // What was too much a moment ago is not tried again at once.

@@ -38,6 +38,7 @@ std::optional<Limit> richardson_limit(std::span<const Refinement> refinements) {
   if (refinements.size() < 3) return std::nullopt;
   const std::optional<Triple> last = triple_of(refinements.last(3));
   if (!last || last->order < least_order || last->order > highest_order) return std::nullopt;
+  if (std::abs(last->difference) <= rounding_of_results * std::abs(refinements.back().value)) return std::nullopt;
   if (refinements.size() > 3) {
     const std::optional<Triple> before = triple_of(refinements.last(4).first(3));
     if (!before || std::abs(before->order - last->order) > most_change_of_order) return std::nullopt;

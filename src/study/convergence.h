@@ -19,10 +19,9 @@ struct Limit {
 };
 
 /// Richardson's extrapolation (L. F. Richardson, 1911) from the three smallest steps h1 > h2 > h3 with h1/h2 = h2/h3 = r: the value q(h) = q + C h^p
-/// gives r^p = (q1 - q2)/(q2 - q3) and q = q3 + (q3 - q2)/(r^p - 1). None if there are not three, their ratios differ, or the differences shrink
-/// slower than with order 0.5 or faster than with order 3: then these steps say nothing of a limit. Of four steps or more the order of the three
-/// before the last one must be the same to within a half.
-/// \param refinements  by falling steps
+/// gives r^p = (q1 - q2)/(q2 - q3) and q = q3 + (q3 - q2)/(r^p - 1). None if there are not three, their ratios differ, q2 and q3 differ by rounding,
+/// or the differences shrink slower than with order 0.5 or faster than with order 3: then these steps say nothing of a limit. Of four steps or more
+/// the order of the three before the last one must be the same to within a half. \param refinements  by falling steps
 std::optional<Limit> richardson_limit(std::span<const Refinement> refinements);
 
 /// Order between neighbouring steps, log(e1/e2) / log(h1/h2), where both errors are above zero; the first has none. Orders above 3 are left out, too:

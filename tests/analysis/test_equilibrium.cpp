@@ -124,7 +124,7 @@ TEST_CASE("of an explicit method the paper's criterion is a force within a numbe
   const SettleResult first = search->settle_first({});
   REQUIRE(first.settled);
   CHECK(first.criterion == "unbalanced force");
-  const double left = simulation.explicit_stepper()->unbalanced_force();
+  const double left = simulation.explicit_stepper()->unbalanced_force(0.0);
   CHECK(left <= scene.settle.unbalanced_force);
   // It stops there: damping takes the force down by less than a hundredth in the last steps.
   CHECK(left > 1e-2 * scene.settle.unbalanced_force);

@@ -29,7 +29,7 @@ void check_multiplier(const FactorOfSafety& found, double expected) {
   constexpr double rounding = 1e-6;
   CHECK(found.stable() <= expected * (1.0 + rounding));
   CHECK(found.failed() >= expected * (1.0 - rounding));
-  CHECK(found.failed() - found.stable() <= 1e-4 * std::max(found.stable(), 1e-3));
+  CHECK(found.failed() - found.stable() <= 1e-4 * found.stable());
   REQUIRE(found.limit_analysis.has_value());
   REQUIRE(found.limit_analysis->factor.has_value());
   CHECK(*found.limit_analysis->factor == Approx(expected).epsilon(2e-5));
@@ -89,7 +89,7 @@ TEST_CASE("named loads grow together, from nothing, and the others stay", "[anal
 }
 
 TEST_CASE("a load in any unit has the same limit, to the same part of it", "[analysis][load_multiplier]") {
-  const double unit = GENERATE(1.0, 1e3, 1e7);
+  const double unit = GENERATE(1.0, 1e3, 1e7, 1e10);
   INFO(unit << " N");
   Scene scene = tall_block();
   scene.loads = {{1, {0.0, 4.0}, {unit, 0.0}, "push"}};

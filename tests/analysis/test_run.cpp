@@ -689,6 +689,50 @@ TEST_CASE("steps that are long for the slip-weakening distance are worth a warni
   CHECK(weakening(scene) == 0.0);
 }
 
+TEST_CASE("integrators whose dashpots converge to another motion say so", "[analysis][run]") {
+  // A block that hits the base flat: with dashpots of 0.3 it rebounds at 0.35 of its speed.
+  const std::string integrator = GENERATE("theta", "generalized_alpha", "tr_bdf2", "shi", "path_average");
+  const double damping = GENERATE(0.0, 0.3);
+  CAPTURE(integrator, damping);
+  Scene scene = test::block_on_base();
+  scene.gravity.setZero();
+  scene.blocks[1].velocity = {0.0, -1.0};
+  scene.blocks[1].rotation_locked = true;
+  scene.joints[0].damping_ratio = damping;
+  scene.method.integrator = integrator;
+  if (integrator == "theta") scene.method.theta = 0.5;
+  scene.step.dt = 1e-5;
+  scene.end_time = 0.01;
+  Simulation simulation(scene);
+  const RunResult result = run(simulation, {});
+  REQUIRE(result.converged);
+  const bool exact = integrator == "shi" || integrator == "path_average";
+  const auto warnings = std::ranges::count_if(result.warnings, [](const std::string& words) { return words.starts_with("dashpots took "); });
+  CHECK(warnings == (exact || damping == 0.0 ? 0 : 1));
+  // The contact ends where k x + c v = 0; two of half the length give the block a damping of its own of the root of two times the joint's.
+  if (exact && damping > 0.0) CHECK(simulation.velocity(1).y() == Approx(0.3460).epsilon(0.01));
+}
+
+TEST_CASE("a run of rigid contacts does not start from forces that nothing has brought about", "[analysis][run]") {
+  // The last of four bricks in running bond, which rests on half a brick, topples on a floor that leans by six degrees.
+  Scene scene =
+      test::scene_with({test::fixed_block("floor", test::rectangle(-5.0, -1.0, 15.0, 1.0)),
+                        test::free_block("a", test::rectangle(0.0, 0.0, 1.0, 0.6)), test::free_block("b", test::rectangle(1.0, 0.0, 1.0, 0.6)),
+                        test::free_block("c", test::rectangle(0.5, 0.6, 1.0, 0.6)), test::free_block("d", test::rectangle(1.5, 0.6, 1.0, 0.6))});
+  scene.gravity = {9.81 * std::sin(6.0 * test::degree), -9.81 * std::cos(6.0 * test::degree)};
+  scene.joints[0] = test::frictional_joint(1e10, 1e9, 35.0 * test::degree);
+  scene.method.gap_tolerance = MethodInput().gap_tolerance;
+  scene.method.start = Start::settled;
+  for (const std::string& method : all_methods) {
+    INFO(method);
+    scene.method.contact = method;
+    Simulation simulation(scene);
+    const RunResult result = run(simulation, {});
+    CHECK_FALSE(result.converged);
+    CHECK_THAT(result.reason, Catch::Matchers::StartsWith("no static equilibrium to start from"));
+  }
+}
+
 TEST_CASE("adaptive steps do not wait for a spring that is relieved at once", "[analysis][run]") {
   // With less strength than what its spring carries a slab slips by the rest of the spring's stretch however short the step is: 0.2 mm of 1.
   Scene scene = test::block_on_base();

@@ -41,7 +41,8 @@ TEST_CASE("a trial that stays undecided where joints break is not made over and 
     REQUIRE(found.stable);
     REQUIRE(found.failed);
     CHECK(*found.stable < breaks);
-    CHECK(*found.stable > breaks - 3.0 * std::max(widest_bracket(input, breaks), 2e-3 * breaks));  // half a stride that joints may break in, or two
+    CHECK(*found.stable >
+          breaks - 3.0 * std::max(widest_bracket(input, breaks, 0.0), 2e-3 * breaks));  // half a stride that joints may break in, or two
     CHECK(*found.failed == 1.4 * breaks);
   }
 }
@@ -77,7 +78,7 @@ TEST_CASE("a factor is no smaller than one that stands from the beginning", "[an
   REQUIRE(found.failed);
   CHECK(*found.stable < 3.0);
   CHECK(*found.failed >= 3.0);
-  CHECK(*found.failed - *found.stable <= widest_bracket({}, 3.0));
+  CHECK(*found.failed - *found.stable <= widest_bracket({}, 3.0, 0.0));
 }
 
 TEST_CASE("trials that fail from the beginning below what stands are no end of the bracket", "[analysis][search]") {
@@ -103,5 +104,5 @@ TEST_CASE("trials that fail from the beginning below what stands are no end of t
   REQUIRE(found.stable);
   REQUIRE(found.failed);
   CHECK(*found.failed > *found.stable);
-  CHECK(*found.stable == Approx(2.0).margin(2.0 * widest_bracket({}, 2.0)));
+  CHECK(*found.stable == Approx(2.0).margin(2.0 * widest_bracket({}, 2.0, 0.0)));
 }

@@ -259,6 +259,22 @@ TEST_CASE("a sliver that no neighbour could take is warned of", "[scene][domain]
                               [](const std::string& text) { return text.ends_with("1 sliver(s) that no neighbour could take are left"); }) == 1);
 }
 
+TEST_CASE("lengths that are large beside the blocks of a domain are warned of", "[scene][domain]") {
+  // Eight blocks of 2 m2.
+  CHECK(read_text(square_domain).cutting->warnings.empty());
+  const std::vector<std::string> reach = read_text(square_domain, {"domain.joint_end_reach_m=0.015"}).cutting->warnings;
+  REQUIRE(reach.size() == 1);
+  CHECK_THAT(reach[0], ContainsSubstring("joint_end_reach_m = 0.015 closes bridges of rock up to 1.1 % of the median block's size of 1.4 m"));
+  CHECK(read_text(square_domain, {"domain.joint_end_reach_m=0.014"}).cutting->warnings.empty());
+  // A third joint cuts strips of 1 cm off four of them: 0.04 of 16 m2.
+  const std::string strips = square_domain + "[[joint_set]]\ndip_deg = 90\nspacing_m = 5\norigin_m = [1.99, 0]\n";
+  const Scene whole = read_text(strips), merged = read_text(strips, {"domain.sliver_width_m=0.03"});
+  CHECK(whole.cutting->warnings.empty());
+  CHECK(merged.cutting->slivers_merged == 4);
+  REQUIRE(merged.cutting->warnings.size() == 1);
+  CHECK_THAT(merged.cutting->warnings[0], ContainsSubstring("4 blocks with 0.25 % of the area are thinner than domain.sliver_width_m = 0.03"));
+}
+
 TEST_CASE("parallel sets that share joints", "[scene][domain][errors]") {
   const std::string accepted = "; accepted: sets of different dips, or parallel ones whose joints lie between each other";
   CHECK(error_with(23, "dip_deg = 180") == "22: joint_set[1]: the set is parallel to the one of line 17 and shares joints with it" + accepted);

@@ -45,6 +45,9 @@ TEST_CASE("steps that say nothing of a limit give none", "[study]") {
   CHECK_FALSE(richardson_limit(std::vector<Refinement>{{0.4, 1.0}, {0.2, 2.0}, {0.1, 1.5}}));
   CHECK_FALSE(richardson_limit(std::vector<Refinement>{{0.4, 1.0}, {0.2, 1.1}, {0.1, 1.4}}));
   CHECK_FALSE(richardson_limit(std::vector<Refinement>{{0.4, 1.0}, {0.2, 1.0}, {0.1, 1.0}}));
+  // Differences of rounding that shrink by chance; the same ones of a result that is as small.
+  CHECK_FALSE(richardson_limit(std::vector<Refinement>{{0.4, 1.0 + 4e-12}, {0.2, 1.0 + 2e-12}, {0.1, 1.0 + 1e-12}}));
+  CHECK(richardson_limit(std::vector<Refinement>{{0.4, 8e-12}, {0.2, 6e-12}, {0.1, 5e-12}}));
 }
 
 TEST_CASE("observed orders are those between neighbouring steps", "[study]") {

@@ -1,0 +1,31 @@
+#include "openclose/analysis/rigid_balance.h"
+
+#include <utility>
+
+#include "openclose/analysis/frozen_trials.h"
+#include "openclose/analysis/named_states.h"
+
+namespace openclose {
+
+std::string unreached_balance_in_words(const Simulation& simulation, const SettleResult& settled, double factor) {
+  Scene scene = simulation.scene();
+  scene.strength_reduction.increase.reset();
+  const bool is_rigid = !simulation.is_explicit() && !simulation.state().enforcement->has_elastic_contacts();
+  // The ends of a joint with tensile strength, which a motion knows alone, bear more than its edge.
+  if (!is_rigid || simulation.joints().has_tension() || scene.settle.criterion != SettleCriterion::unbalanced_force) return {};
+  if (!settled.settled || settled.displacement > closed_gap * frozen_length_unit(scene)) return {};
+  FrozenSystem system(scene);
+  FrozenTrials trials(scene, system);
+  if (trials.first(factor).outcome != TrialOutcome::failed) return {};
+  return motion_in_words(scene, mechanism_of(scene, system, trials.mechanism()).blocks);
+}
+
+SettleResult without_unreached_balance(const Simulation& simulation, SettleResult settled, double factor) {
+  const std::string words = unreached_balance_in_words(simulation, settled, factor);
+  if (words.empty()) return settled;
+  settled.settled = false;
+  settled.criterion = "rigid contacts hold by locked forces that their joints' springs do not lead to: " + words;
+  return settled;
+}
+
+}  // namespace openclose

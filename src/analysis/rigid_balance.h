@@ -1,0 +1,22 @@
+// Whether rigid contacts that hold blocks at rest do so by forces that their joints lead to.
+//
+// Between rigid blocks friction may lock any number of forces that balance each other, and the passes of `hard`, on whose way there blocks give way
+// and come back, may end on such: a block that topples off a ledge jams against a wall that it only slides along. The joints' springs, from which
+// rigid contacts take how they share what they leave undetermined, know one way from the intact rock to the joints' strength; where that ends in a
+// mechanism, nothing brings the locked forces about.
+#pragma once
+
+#include <string>
+
+#include "openclose/analysis/settle.h"
+
+namespace openclose {
+
+/// Nothing, or in words the mechanism that the springs of the joints lead to at this strength reduction factor [-] where the blocks of a settled
+/// simulation stand as they are drawn. Of blocks that have moved, and of methods with springs, nothing.
+std::string unreached_balance_in_words(const Simulation& simulation, const SettleResult& settled, double factor);
+
+/// What settling has found, and not settled if its balance is unreached.
+SettleResult without_unreached_balance(const Simulation& simulation, SettleResult settled, double factor);
+
+}  // namespace openclose
