@@ -23,6 +23,8 @@ class EnergyGroups {
     double created = 0.0, scale = 0.0;  ///< [J] the rise, and the energy there was to move the group and what the method leaves undetermined
     double part = 0.0;                  ///< [-] of the two
     int block = -1, blocks = 0;         ///< its fastest block, and how many there are
+
+    void exchange(Archive& archive) { archive(created, scale, part, block, blocks); }
   };
   /// The group whose rise is the largest part of its energy; none where all blocks are one group, of which the ledger tells more.
   /// \param most  [-] of it may be created: what is undetermined counts by it

@@ -13,7 +13,7 @@
 namespace openclose {
 
 /// Nothing, or in words the mechanism that the springs of the joints lead to at this strength reduction factor [-] where the blocks of a settled
-/// simulation stand as they are drawn. Of blocks that have moved, and of methods with springs, nothing.
+/// simulation stand as they are drawn. Of blocks that have moved, of a balance that was found at once, and of methods with springs nothing.
 std::string unreached_balance_in_words(const Simulation& simulation, const SettleResult& settled, double factor);
 
 /// What settling has found, and not settled if its balance is unreached.

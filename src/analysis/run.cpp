@@ -106,8 +106,6 @@ namespace {
 constexpr double noticeable_friction_lag = 0.01;
 /// [-] Of the energy moved, which bounds what the error does to ways and speeds: beyond a tenth not even their first digit is known.
 constexpr double most_energy_of_lag = 0.1;
-/// [-] Of the energy there was: a hundredth of it is half a hundredth of the speeds.
-constexpr double noticeable_damping = 0.01;
 /// [-] Of what slip takes from a joint, in one step: the strength is on the average half a step late, and half of this too high.
 constexpr double noticeable_weakening = 0.1;
 /// [-] Of the median block's size, far beyond the closure of joints: seen in a drawing.
@@ -208,7 +206,7 @@ class MotionInTime {
     result_.cpu_of_motion = process_cpu_time() - cpu_at_start_;
     result_.watch = watch_.report();
     judge_friction();
-    warn_of_damping();
+    for (std::string& words : watch_.warnings(simulation_)) result_.warnings.push_back(std::move(words));
     if (const double most = simulation_.state().fastest_weakening; most > noticeable_weakening) {
       result_.warnings.push_back(
           fmt::format("joints lost up to {:.0f} % of what slip takes from them in one step, which has the strength before it: shorter steps{} follow "
@@ -253,17 +251,6 @@ class MotionInTime {
     } else {
       result_.warnings.push_back(found + "; " + soft_instead_of_shi);
     }
-  }
-
-  /// Of integrators whose dashpots meet their bounds at another force, see docs/methods.md.
-  void warn_of_damping() {
-    if (simulation_.is_explicit() || simulation_.state().scheme->end_weight() >= 1.0 || simulation_.state().scheme->averages_path()) return;
-    const double share = simulation_.ledger().contact_damping / watch_.report().available_energy;
-    if (!(share > noticeable_damping)) return;
-    result_.warnings.push_back(
-        fmt::format("dashpots took {:.2g} % of the energy, and with this integrator those that meet a bound converge to another "
-                    "motion (a rebound of 0.33 for 0.21 at a damping ratio of 0.5); {}",
-                    100.0 * share, "method.integrator = \"path_average\" would be a remedy"));
   }
 
   /// Takes the watch's answer: the run ends where it has found something.

@@ -30,6 +30,11 @@ namespace watch_bound {
 /// the energy of single bounces with method's default steps stays below this; creation that grows passes every bound, so that its size matters
 /// little.
 inline constexpr double created_energy = 0.01;
+/// [-] The same of a group of blocks by itself, which is warned of beyond the bound of the whole: its steps are cut for what they do to the whole,
+/// and where more than this is created not even the first digit of its ways and speeds is known.
+inline constexpr double created_energy_of_group = 0.1;
+/// [-] Of the energy there was, taken by dashpots: a hundredth of it is half a hundredth of the speeds.
+inline constexpr double noticeable_damping = 0.01;
 /// [-] Closure or overlap over the width of the narrower block, 2 area / perimeter (half a square's side). A corner that is this deep is still nearer
 /// to the edge it came in through than to any other one of a convex block, whose inscribed circle has at least half this width as its radius.
 inline constexpr double penetration = 0.25;
@@ -42,7 +47,7 @@ inline constexpr double gap_tolerances = 10.0;
 /// The worst that a run has shown so far.
 struct WatchReport {
   long checks = 0;
-  double created_energy = 0.0;    ///< [-] see watch_bound::created_energy
+  double created_energy = 0.0;    ///< [-] see watch_bound::created_energy; of the whole or of a group, whichever is more
   double available_energy = 0.0;  ///< [J] what it is a part of
   double penetration = 0.0;       ///< [-] see watch_bound::penetration; of closed contacts
   double overlap = 0.0;           ///< [-] the same, of polygons
@@ -76,11 +81,13 @@ class Watch {
   /// The same with all pairs.
   std::string check_at_end(const Simulation& simulation);
   const WatchReport& report() const { return report_; }
+  /// What may be wrong though nothing is refused for it, in sentences.
+  std::vector<std::string> warnings(const Simulation& simulation) const;
   /// [J] What may be created, as of the last check.
   double creatable_energy() const { return watch_bound::created_energy * energy_scale(); }
   void exchange(Archive& archive) {
     archive(report_, energy_at_start_, released_, work_, lowest_energy_, most_friction_, undetermined_energy_, start_, depth_at_start_, next_pair_,
-            widths_, convex_, groups_);
+            widths_, convex_, groups_, worst_group_);
   }
   /// Whether what was read is of as many blocks.
   bool fits(const Simulation& simulation) const;
@@ -100,6 +107,8 @@ class Watch {
   std::string check_finite(const Simulation& simulation) const;
   std::string check_energy(const Simulation& simulation);
   std::string check_groups(const Simulation& simulation);
+  /// How much energy a group has created.
+  static std::string in_words(const Simulation& simulation, const EnergyGroups::Worst& worst);
   std::string check_reach(const Simulation& simulation);
   std::string check_contacts(const Simulation& simulation);
   std::string check_overlaps(const Simulation& simulation, std::size_t first_pair, std::size_t pairs);
@@ -117,6 +126,7 @@ class Watch {
   double depth_at_start_ = 0.0;       ///< [m] of blocks in each other
   std::size_t next_pair_ = 0;
   EnergyGroups groups_;
+  EnergyGroups::Worst worst_group_;       ///< so far
   std::vector<double> widths_;            ///< [m] of the blocks
   std::vector<char> convex_;              ///< of the blocks
   std::vector<double> energies_, falls_;  ///< [J] of the blocks in this check: kinetic, and lost in height

@@ -180,6 +180,7 @@ class Hard final : public Enforcement {
       const double error = constraint_error(problem, solution);
       const double way = solution.d.lpNorm<Eigen::Infinity>();
       const bool moves_on = problem.statics && way >= going_on * last_way;
+      solution.moved_on = solution.moved_on || moves_on;
       if (error <= 1.0) return;
       if (error > slow_convergence * last_error && error <= (problem.statics ? incompatible_static_gaps : incompatible_gaps)) return;
       if (moves_on && error * tolerated(problem) <= std::min(problem.method.gap_tolerance, part_of_way * way)) return;
@@ -206,6 +207,7 @@ class Hard final : public Enforcement {
     const StepEffort before = solution.effort;
     solution.clear();
     solution.effort = before;
+    solution.moved_on = true;
   }
 
   static void give_up(StepSolution& solution) {
