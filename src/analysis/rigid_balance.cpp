@@ -8,13 +8,14 @@
 namespace openclose {
 
 std::string unreached_balance_in_words(const Simulation& simulation, const SettleResult& settled, double factor) {
-  Scene scene = simulation.scene();
-  scene.strength_reduction.increase.reset();
+  const SettleCriterion criterion = simulation.scene().settle.criterion;
   const bool is_rigid = !simulation.is_explicit() && !simulation.state().enforcement->has_elastic_contacts();
   // The ends of a joint with tensile strength, which a motion knows alone, bear more than its edge.
-  if (!is_rigid || simulation.joints().has_tension() || scene.settle.criterion != SettleCriterion::unbalanced_force) return {};
+  if (!is_rigid || simulation.joints().has_tension() || criterion != SettleCriterion::unbalanced_force) return {};
   // What the passes find at once, each nearer than the one before, nothing has moved on the way to.
-  if (!settled.settled || !settled.moved_on || settled.displacement > closed_gap * frozen_length_unit(scene)) return {};
+  if (!settled.settled || !settled.moved_on || settled.displacement > closed_gap * frozen_length_unit(simulation.scene())) return {};
+  Scene scene = simulation.scene();
+  scene.strength_reduction.increase.reset();
   FrozenSystem system(scene);
   FrozenTrials trials(scene, system);
   if (trials.first(factor).outcome != TrialOutcome::failed) return {};

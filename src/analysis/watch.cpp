@@ -183,6 +183,7 @@ std::string Watch::check(const Simulation& simulation, std::size_t first_pair, s
   if (std::string wrong = check_overlaps(simulation, first_pair, pairs); !wrong.empty()) return wrong;
   if (std::string wrong = check_energy(simulation); !wrong.empty()) return wrong;
   if (std::string wrong = check_groups(simulation); !wrong.empty()) return wrong;
+  if (std::string wrong = check_friction(simulation); !wrong.empty()) return wrong;
   return check_reach(simulation);
 }
 
@@ -225,9 +226,6 @@ std::string Watch::check_energy(const Simulation& simulation) {
   const double by_scheme = simulation.is_explicit() ? 0.0 : -ledger.scheme;
   // Where gaps are followed to first order only, what the contact update corrects has gone to the scheme before.
   const double by_contacts = -ledger.redefinition + (simulation.enforcement().follows_gaps() ? 0.0 : -ledger.scheme);
-  most_friction_ = std::max(most_friction_, ledger.friction);
-  // What rigid contacts take in one blow their normal and shear forces may divide in any way.
-  const double by_friction = is_rigid(simulation) ? 0.0 : most_friction_ - ledger.friction;
   struct Source {
     double energy;
     const char* name;
@@ -235,7 +233,6 @@ std::string Watch::check_energy(const Simulation& simulation) {
   const Source sources[] = {{now - lowest_energy_, "the mechanical energy rose"},
                             {by_contacts, "contacts that changed their edges or lengths released it"},
                             {-ledger.impact, "impacts released it"},
-                            {by_friction, "friction released it"},
                             {by_scheme, "the time integration released it"},
                             {std::abs(ledger.imbalance()), "the energy ledger does not close"}};
   const double scale = energy_scale();
@@ -262,9 +259,23 @@ std::string Watch::check_groups(const Simulation& simulation) {
   const EnergyGroups::Worst worst = groups_.worst(simulation, watch_bound::created_energy);
   if (worst.part > worst_group_.part) worst_group_ = worst;
   report_.created_energy = std::max(report_.created_energy, worst.part);
-  if (worst.part <= watch_bound::created_energy_of_group) return {};
+  if (worst.part <= watch_bound::created_energy_of_part) return {};
   return fmt::format("energy was created: {} ({:.2g} of it, at most {:g}; its mechanical energy rose); {}", in_words(simulation, worst), worst.part,
-                     watch_bound::created_energy_of_group, better_energy(simulation));
+                     watch_bound::created_energy_of_part, better_energy(simulation));
+}
+
+std::string Watch::check_friction(const Simulation& simulation) {
+  // What rigid contacts take in one blow their normal and shear forces may divide in any way.
+  if (is_rigid(simulation)) return {};
+  const double now = simulation.ledger().friction;
+  most_friction_ = std::max(most_friction_, now);
+  driven_ = std::max(driven_, most_friction_ - now);
+  const double part = driven_ > 0.0 ? driven_ / energy_scale() : 0.0;
+  report_.created_energy = std::max(report_.created_energy, part);
+  if (part <= watch_bound::created_energy_of_part) return {};
+  return fmt::format(
+      "energy was created: friction drove what slides by {:.3g} J where {:.3g} J were there to move anything ({:.2g} of it, at most {:g}); {}",
+      driven_, energy_scale(), part, watch_bound::created_energy_of_part, better_energy(simulation));
 }
 
 std::vector<std::string> Watch::warnings(const Simulation& simulation) const {
@@ -272,6 +283,9 @@ std::vector<std::string> Watch::warnings(const Simulation& simulation) const {
   if (worst_group_.part > watch_bound::created_energy)
     list.push_back(fmt::format("energy was created: {}, {:.2g} % of it; {}", in_words(simulation, worst_group_), 100.0 * worst_group_.part,
                                better_energy(simulation)));
+  if (const double part = driven_ / energy_scale(); part > watch_bound::created_energy)
+    list.push_back(fmt::format("energy was created: friction drove what slides by {:.3g} J, {:.2g} % of the energy there was; {}", driven_,
+                               100.0 * part, better_energy(simulation)));
   // See docs/methods.md.
   const bool is_exact = simulation.is_explicit() || simulation.state().scheme->end_weight() >= 1.0 || simulation.state().scheme->averages_path();
   const double damped = simulation.ledger().contact_damping / report_.available_energy;

@@ -30,9 +30,9 @@ namespace watch_bound {
 /// the energy of single bounces with method's default steps stays below this; creation that grows passes every bound, so that its size matters
 /// little.
 inline constexpr double created_energy = 0.01;
-/// [-] The same of a group of blocks by itself, which is warned of beyond the bound of the whole: its steps are cut for what they do to the whole,
-/// and where more than this is created not even the first digit of its ways and speeds is known.
-inline constexpr double created_energy_of_group = 0.1;
+/// [-] The same of a group of blocks by itself, for which no step is cut, and of the whole by friction, which `shi` takes from the iteration before.
+/// Both are warned of beyond the bound of the whole; where more than this is created not even the first digit of ways and speeds is known.
+inline constexpr double created_energy_of_part = 0.1;
 /// [-] Of the energy there was, taken by dashpots: a hundredth of it is half a hundredth of the speeds.
 inline constexpr double noticeable_damping = 0.01;
 /// [-] Closure or overlap over the width of the narrower block, 2 area / perimeter (half a square's side). A corner that is this deep is still nearer
@@ -86,8 +86,8 @@ class Watch {
   /// [J] What may be created, as of the last check.
   double creatable_energy() const { return watch_bound::created_energy * energy_scale(); }
   void exchange(Archive& archive) {
-    archive(report_, energy_at_start_, released_, work_, lowest_energy_, most_friction_, undetermined_energy_, start_, depth_at_start_, next_pair_,
-            widths_, convex_, groups_, worst_group_);
+    archive(report_, energy_at_start_, released_, work_, lowest_energy_, most_friction_, driven_, undetermined_energy_, start_, depth_at_start_,
+            next_pair_, widths_, convex_, groups_, worst_group_);
   }
   /// Whether what was read is of as many blocks.
   bool fits(const Simulation& simulation) const;
@@ -107,6 +107,7 @@ class Watch {
   std::string check_finite(const Simulation& simulation) const;
   std::string check_energy(const Simulation& simulation);
   std::string check_groups(const Simulation& simulation);
+  std::string check_friction(const Simulation& simulation);
   /// How much energy a group has created.
   static std::string in_words(const Simulation& simulation, const EnergyGroups::Worst& worst);
   std::string check_reach(const Simulation& simulation);
@@ -121,6 +122,7 @@ class Watch {
   double work_ = 0.0;                 ///< [J] of loads and base, the most so far
   double lowest_energy_ = 0.0;        ///< [J] mechanical, against that at the start
   double most_friction_ = 0.0;        ///< [J] that it has taken
+  double driven_ = 0.0;               ///< [J] by friction, the most so far
   double undetermined_energy_ = 0.0;  ///< [J] weights of all blocks over the length to which the method tells places
   std::vector<Vec2> start_;           ///< [m] displacement of the blocks at the start
   double depth_at_start_ = 0.0;       ///< [m] of blocks in each other

@@ -575,7 +575,8 @@ TEST_CASE("a run of shi says how far the friction of sliding contacts lags behin
   SECTION("nor where blocks hit each other") {
     Scene scene = test::tumbling_blocks();
     scene.end_time = 0.4;
-    CHECK(result_of(scene, lag).empty());
+    // What friction drives is another matter, see Watch.
+    CHECK(std::ranges::none_of(result_of(scene, lag), [](const std::string& words) { return words.starts_with("friction of sliding contacts"); }));
     CHECK(lag < 0.01);
   }
   SECTION("but where friction does not settle") {
