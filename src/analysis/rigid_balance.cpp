@@ -1,12 +1,14 @@
 #include "openclose/analysis/rigid_balance.h"
 
-#include <utility>
+#include <string>
 
 #include "openclose/analysis/frozen_trials.h"
 #include "openclose/analysis/named_states.h"
 
 namespace openclose {
+namespace {
 
+/// In words the mechanism, or nothing.
 std::string unreached_balance_in_words(const Simulation& simulation, const SettleResult& settled, double factor) {
   const SettleCriterion criterion = simulation.scene().settle.criterion;
   const bool is_rigid = !simulation.is_explicit() && !simulation.state().enforcement->has_elastic_contacts();
@@ -21,6 +23,8 @@ std::string unreached_balance_in_words(const Simulation& simulation, const Settl
   if (trials.first(factor).outcome != TrialOutcome::failed) return {};
   return motion_in_words(scene, mechanism_of(scene, system, trials.mechanism()).blocks);
 }
+
+}  // namespace
 
 SettleResult without_unreached_balance(const Simulation& simulation, SettleResult settled, double factor) {
   const std::string words = unreached_balance_in_words(simulation, settled, factor);

@@ -6,17 +6,13 @@
 // mechanism, nothing brings the locked forces about.
 #pragma once
 
-#include <string>
-
 #include "openclose/analysis/settle.h"
 
 namespace openclose {
 
-/// Nothing, or in words the mechanism that the springs of the joints lead to at this strength reduction factor [-] where the blocks of a settled
-/// simulation stand as they are drawn. Of blocks that have moved, of a balance that was found at once, and of methods with springs nothing.
-std::string unreached_balance_in_words(const Simulation& simulation, const SettleResult& settled, double factor);
-
-/// What settling has found, and not settled if its balance is unreached.
+/// What settling has found: not settled where the blocks stand as they are drawn, by rigid contacts, and the springs of the joints lead to a
+/// mechanism at this strength reduction factor [-]. Of blocks that have moved, of a balance that was found at once, and of methods with springs
+/// nothing is asked.
 SettleResult without_unreached_balance(const Simulation& simulation, SettleResult settled, double factor);
 
 }  // namespace openclose

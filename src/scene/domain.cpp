@@ -7,12 +7,14 @@
 #include <numbers>
 #include <numeric>
 #include <optional>
+#include <utility>
 
 #include "openclose/core/memory.h"
 #include "openclose/core/process.h"
 #include "openclose/geometry/box.h"
 #include "openclose/geometry/touch.h"
 #include "openclose/scene/angle.h"
+#include "openclose/scene/median_size.h"
 #include "openclose/scene/names.h"
 #include "openclose/scene/outline.h"
 #include "openclose/scene/section.h"
@@ -309,19 +311,16 @@ constexpr double noticeable_length = 0.01;
 void warn_of_lengths(const Cutting& cutting, const DomainInput& domain, const std::string& file, std::vector<std::string>& warnings) {
   std::vector<double> areas;
   for (const Polygon& block : cutting.blocks) areas.push_back(signed_area(block));
-  if (areas.empty()) return;
   const double all = std::accumulate(areas.begin(), areas.end(), 0.0);
-  const auto median = areas.begin() + static_cast<std::ptrdiff_t>(areas.size() / 2);
-  std::ranges::nth_element(areas, median);
-  const double size = std::sqrt(*median);
   if (cutting.slivers_area > noticeable_area * all)
     warnings.push_back(
         fmt::format("{}: {} blocks with {:.2g} % of the area are thinner than domain.sliver_width_m = {:g} or smaller than "
                     "sliver_area_m2 = {:g} and united with their neighbours",
                     file, cutting.slivers_merged, 100.0 * cutting.slivers_area / all, domain.limits.sliver_width, domain.limits.sliver_area));
-  if (domain.limits.end_reach > noticeable_length * size)
+  const std::optional<double> size = size_of_median(std::move(areas));
+  if (size && domain.limits.end_reach > noticeable_length * *size)
     warnings.push_back(fmt::format("{}: domain.joint_end_reach_m = {:g} closes bridges of rock up to {:.2g} % of the median block's size of {:.2g} m",
-                                   file, domain.limits.end_reach, 100.0 * domain.limits.end_reach / size, size));
+                                   file, domain.limits.end_reach, 100.0 * domain.limits.end_reach / *size, *size));
 }
 
 std::vector<std::string> warnings_of(const Cutting& cutting, const Joints& joints, const DomainInput& domain, const Table& table) {

@@ -9,6 +9,7 @@
 #include "openclose/analysis/run.h"
 #include "openclose/core/tolerance.h"
 #include "openclose/scene/reader.h"
+#include "overhanging_bricks.h"
 #include "support/catch.h"
 #include "support/scenes.h"
 
@@ -714,37 +715,18 @@ TEST_CASE("integrators whose dashpots converge to another motion say so", "[anal
   if (exact && damping > 0.0) CHECK(simulation.velocity(1).y() == Approx(0.3460).epsilon(0.01));
 }
 
-namespace {
-
-/// Two courses of bricks in running bond on a floor: the last brick of the upper one rests on half a brick and topples where gravity leans that way.
-Scene overhanging_bricks(int bricks, const Vec2& gravity, const JointProperties& joint) {
-  Scene scene = test::scene_with({test::fixed_block("floor", test::rectangle(-5.0, -1.0, 15.0, 1.0))});
-  for (int course : {0, 1}) {
-    for (int i = 0; i < bricks; ++i) {
-      scene.blocks.push_back(test::free_block(fmt::format("brick {} {}", course, i), test::rectangle(i + 0.5 * course, 0.6 * course, 1.0, 0.6)));
-    }
-  }
-  scene.gravity = gravity;
-  scene.joints[0] = joint;
-  scene.method.gap_tolerance = MethodInput().gap_tolerance;
-  scene.method.start = Start::settled;
-  return scene;
-}
-
-}  // namespace
-
 TEST_CASE("a run of rigid contacts does not start from forces that nothing has brought about", "[analysis][run]") {
   Scene scene;
   SECTION("where steps are cut on the way to them") {
-    const double leaning = 6.0 * test::degree;
-    scene = overhanging_bricks(2, {9.81 * std::sin(leaning), -9.81 * std::cos(leaning)}, test::frictional_joint(1e10, 1e9, 35.0 * test::degree));
+    scene = test::overhanging_bricks();
   }
   SECTION("where blocks move on in one pass") {
-    scene = overhanging_bricks(3, {1.17790118279283, -9.739027097383767},
-                               test::frictional_joint(364255631.41326445, 72851126.2826529, 19.637598603552853 * test::degree));
+    scene = test::overhanging_bricks(3, {1.17790118279283, -9.739027097383767},
+                                     test::frictional_joint(364255631.41326445, 72851126.2826529, 19.637598603552853 * test::degree));
     scene.materials[0].density = 2874.0765943510937;
     scene.loads = {{4, {1.0, 1.0999999999999999}, {243.74627937717378, -12473.221123731833}}};
   }
+  scene.method.start = Start::settled;
   for (const std::string& method : all_methods) {
     INFO(method);
     scene.method.contact = method;
