@@ -410,6 +410,11 @@ def study(faults, wanted, options):
     return 0 if caught == len(done) else 1
 
 
+def in_order(faults, ids):
+    """The faults with these ids, or all, in the order in which they are tried: what many sources include is compiled for long and comes last."""
+    return sorted((f for f in faults if not ids or f["id"] in ids), key=lambda f: f["file"].endswith(".h"))
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("ids", nargs="*", metavar="ID", help="faults to try (default: all)")
@@ -428,9 +433,7 @@ def main():
         if options.check_list:
             print(f"{len(faults)} faults fit the source")
             return 0
-        # What many sources include is compiled for long: it comes last.
-        wanted = sorted((f for f in faults if not options.ids or f["id"] in options.ids), key=lambda f: options.random and f["file"].endswith(".h"))
-        return study(faults, wanted, options)
+        return study(faults, in_order(faults, options.ids), options)
     except (ListError, tomllib.TOMLDecodeError) as error:
         print(f"mutants: {error}", file=sys.stderr)
         return 2

@@ -9,7 +9,6 @@
 
 #include "openclose/analysis/bent_joints.h"
 #include "openclose/analysis/loose_motion.h"
-#include "openclose/analysis/rigid_balance.h"
 #include "openclose/analysis/start.h"
 #include "openclose/core/error.h"
 #include "openclose/core/process.h"
@@ -39,7 +38,7 @@ void StartSearch::begin_to_settle() {
 SettleResult StartSearch::settle(const SettleProgress& progress) {
   simulation_.solved_stepper().book_steps(false);
   begin_to_settle();
-  const SettleResult result = without_unreached_balance(simulation_, search_->settle_first(progress), 1.0);
+  const SettleResult result = search_->settle_first(progress);
   // What the paper takes for equilibrium is left as the paper has it.
   const bool asks_for_balance = simulation_.scene().settle.criterion == SettleCriterion::unbalanced_force;
   if (result.settled && asks_for_balance) balance_what_is_left(simulation_, result);

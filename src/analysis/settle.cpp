@@ -65,7 +65,6 @@ bool follow(const Simulation& simulation, const StepResult& step, SettleCourse& 
   const BlockSystem& system = simulation.system();
   const double limit = simulation.state().lengths.longest_displacement;
   SettleResult& result = course.result;
-  result.moved_on = result.moved_on || step.moved_on || !step.accepted;
   if (!step.accepted) {
     course.dt *= step.moved > limit ? std::clamp(factor_to_limit(limit, step.moved), deepest_cut, 1.0) : cut;
     course.growth = growth_after_cut;

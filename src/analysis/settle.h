@@ -17,7 +17,6 @@ struct SettleResult {
   int steps = 0;
   double unbalanced_fraction = 1.0;             ///< [-] of SimulationState::force_scale(), by emphasis_at_rest()
   double displacement = 0.0;                    ///< [m] largest of any block on the way
-  bool moved_on = false;                        ///< on the way a step was not found, or found after blocks had gone on; see StepSolution
   std::optional<double> relative_displacement;  ///< [-] of the last step, see equilibrium.h; steps in time only, which know no unbalanced fraction
   std::string limit;                            ///< key of the limit that ended the search without equilibrium; empty where a step failed
 
@@ -25,8 +24,8 @@ struct SettleResult {
   std::string verdict() const { return limit.empty() ? criterion : criterion + ", limited by " + limit; }
 
   void exchange(Archive& archive) {
-    auto& [a, b, c, d, e, f, g, h] = *this;
-    archive(a, b, c, d, e, f, g, h);
+    auto& [a, b, c, d, e, f, g] = *this;
+    archive(a, b, c, d, e, f, g);
   }
 };
 

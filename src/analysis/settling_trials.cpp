@@ -1,7 +1,5 @@
 #include "openclose/analysis/settling_trials.h"
 
-#include "openclose/analysis/rigid_balance.h"
-
 namespace openclose {
 namespace {
 
@@ -15,7 +13,7 @@ SettlingTrials::SettlingTrials(Simulation& simulation, const SettleProgress& pro
 TrialResult SettlingTrials::first(double srf) {
   simulation_.restore(initial_);
   simulation_.change_joints().reduce_strength(srf);
-  const SettleResult settled = without_unreached_balance(simulation_, search_->settle_first(progress_), srf);
+  const SettleResult settled = search_->settle_first(progress_);
   TrialResult result = result_of(settled);
   result.criterion = settled.verdict();
   if (result.outcome != TrialOutcome::stable) return result;

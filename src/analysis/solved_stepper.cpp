@@ -88,7 +88,6 @@ StepResult SolvedStepper::step(double dt, bool statics) {
     return step(dt, statics);
   }
   StepResult result;
-  result.moved_on = solution_.moved_on;
   if (is_no_step(result)) return result;
   const LossesOfStep lost = losses(p, solution_, state_.enforcement->has_elastic_contacts());
   if (is_too_wrong(p, lost, result) || enters_unseen(p, result)) return result;

@@ -17,7 +17,6 @@ struct StepResult {
   bool ends_at_entry = false;     ///< refused: `part` ends where a corner enters a block that it is not in contact with
   bool relisted = false;       ///< explicit: not taken, since it needed more contacts than were listed; now they are, and the critical step is known
   bool stops = false;          ///< explicit: taken, but nothing that follows can be right, for this reason
-  bool moved_on = false;       ///< see StepSolution
   bool lost_strength = false;  ///< a joint has lost strength for good at the end of the step; with `dem`, its bond
 };
 

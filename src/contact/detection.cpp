@@ -261,7 +261,11 @@ void Detector::redo(const JointTable& joints, const BlockSystem& system, int pai
     if (!lives_on_[k - old.begin]) gone_.push_back(k);
   }
   const bool has_none = old.begin == old.end && begin == found_.size();
-  const double room = has_none ? std::max(skips_.contact_skin, shapes_.distance_at_least(a, b) - reach_) : skips_.contact_skin;
+  double room = has_none ? std::max(skips_.contact_skin, shapes_.distance_at_least(a, b) - reach_) : skips_.contact_skin;
+  for (std::size_t k = begin; k < found_.size(); ++k) {
+    // Wider ones cannot close before the pair is due.
+    if (found_[k].gap <= skips_.contact_skin) room = std::min(room, narrow.room_before_end(found_[k]));
+  }
   candidates_.states[pair] = {places_[a].x - places_[b].x, places_[a].y - places_[b].y, places_[a].turn, places_[b].turn, room};
   look_again_before(pair, 0.0);
   if (!has_none) {

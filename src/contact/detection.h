@@ -10,7 +10,9 @@
 // that shares a block is due (so that what one loses and another gains is found at once and history can pass between them); those of a pair without
 // contacts, which the line along an edge keeps apart, when it may have moved what is beyond reach of that. Blocks that move together are not redone.
 // Contacts of other pairs stay as they are; their gaps are the caller's to carry on. Contacts are kept to reach + contact_skin, so that none comes
-// within reach unseen; a corner that comes over the end of an edge is found at most contact_skin late, and lengths are off by less than it.
+// within reach unseen; a corner that comes over the end of an edge is found at most contact_skin late, and lengths are off by less than it. A corner
+// that may come off the end of its edge is due before it does: its gap is measured from the line along the edge, into which a block that turns
+// beyond the end goes by a part of its way, and rigid contacts have locked blocks on that.
 //
 // Blocks at rest (BlockSystem::is_at_rest) move as little as fixed ones do: pairs of which neither block moves are set aside with their contacts by
 // divide(), are not looked at in a step, and come back as they were when one of the two is woken. A search leaves them out; they stay complete as

@@ -64,6 +64,16 @@ class NarrowPhase {
     lone_corners(block_b, block_a, near_[1], room);
   }
 
+  /// [m] By how much the blocks of a contact that was found may move before its corner comes off an end of its edge, where another contact takes its
+  /// place: beyond the end the line along the edge, from which the gap is measured, holds nothing. Infinite of a corner that is beyond the end now,
+  /// in front of a notch.
+  double room_before_end(const Contact& contact) const {
+    const Edge& edge = shapes_.edge(contact.edge);
+    const double along = edge.along(shapes_.edge(contact.vertex).start);
+    const double inside = std::min(along, edge.length - along) + meetings_.end_margin(contact.vertex, edge);
+    return inside < 0.0 ? std::numeric_limits<double>::infinity() : std::max(inside, tolerance::edge_end_m);
+  }
+
  private:
   /// Of the corners of a block, those that may touch the other one. Where two convex blocks were not in contact, a corner that touches an edge is at
   /// most as far beyond the lines along other edges as it is from this one, and by 1 % more where edges face each other that are not quite parallel,

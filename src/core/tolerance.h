@@ -70,7 +70,7 @@ inline constexpr double longest_displacement_m = 0.1, longest_displacement_of_si
 
 /// [m] and [-] of the size of the free blocks, the root of their median area: the list of contacts stays as it is until blocks may have moved this
 /// much against each other, the smaller of the two, unless the scene says otherwise. Tributary lengths are off by less, 0.1 % of a joint, and corners
-/// that come over the end of an edge are found by less too late, while gaps are followed exactly.
+/// that come over the end of an edge are found by less too late, while gaps are followed exactly and corners that come off an end are found at once.
 inline constexpr double contact_skin_m = 1e-3, contact_skin_of_size = 1e-3;
 
 /// [-] Part of the cohesion's force, as a normal force, over which the shear strength of a bonded contact rises from zero (a jump there has no

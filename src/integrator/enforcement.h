@@ -90,7 +90,6 @@ struct StepSolution {
   bool converged = false;
   bool eased = false;        ///< `hard`: the cohesion came in over a longer ramp, see hard.cpp
   bool first_order = false;  ///< `shi`: loads and supports act as linearised at the start of the step
-  bool moved_on = false;     ///< `hard`, static: in a pass blocks went as far as in the one before, or softer springs have found no balance
   bool dissipative = false;  ///< path_average: taken with more dissipation than asked for, see soft.cpp
   std::string reason;        ///< why not converged
   double part = 0.0;         ///< [-] not converged: of the step, a length that is likely to; 0 if that is not known
@@ -103,7 +102,7 @@ struct StepSolution {
 
   /// Empty again, with its memory for the next step.
   void clear() {
-    converged = eased = first_order = moved_on = dissipative = false;
+    converged = eased = first_order = dissipative = false;
     reason.clear();
     part = 0.0;
     friction_work = lagging_friction_work = 0.0;

@@ -73,6 +73,11 @@ constexpr double aimed_error = 0.8, shortest_part = 1.0 / 32.0, longest_part = 0
 /// far below that of motion, gaps that motion has left may exclude each other by more.
 constexpr double slow_convergence = 0.5;
 constexpr double incompatible_gaps = 3.0, incompatible_static_gaps = 100.0;
+/// [-] Statics: passes whose error grows by more than this lead nowhere, and another step is tried. The passes are the proximal point iteration for
+/// the multipliers, whose steps, in the energy of the springs, never grow while gaps and slips are linear in the way of the blocks and the contacts'
+/// law has a potential (Rockafellar, Math. Oper. Res. 1 (1976) 97-116). Friction and turning blocks may add a little, less than what doubles the
+/// error. Blocks that topple have jammed on what such passes pumped into their contacts.
+constexpr double largest_growth_of_energy = 4.0;
 /// [-] Statics: blocks that go farther than this part of their way in the last pass move on, and the next pass starts where they are; those that come
 /// to rest leave about a thousandth from pass to pass. A step in which they move on is not the last one, and need not be more exact than motion is,
 /// nor than this part of its way.
@@ -169,7 +174,7 @@ class Hard final : public Enforcement {
     double first_slow_error = 0.0;
     Eigen::VectorXd first;                                      // where the first pass of statics has brought the blocks
     double last_way = std::numeric_limits<double>::infinity();  // [m] of the farthest block in the last pass
-    double last_error = std::numeric_limits<double>::infinity();
+    double last_error = std::numeric_limits<double>::infinity(), last_energy = last_error;
     std::vector<float> errors;  // [-] of the contacts in the last pass
     for (int pass = 0; pass < most_outer_passes; ++pass) {
       solve_pass(problem, pass, pass > 0 ? Cohesion::may_be_eased : cohesion, solution);
@@ -177,10 +182,10 @@ class Hard final : public Enforcement {
         if (pass > 0) solution.part = shorter(last_error);
         return;
       }
-      const double error = constraint_error(problem, solution);
+      const auto [error, energy] = misfit(problem, solution);
       const double way = solution.d.lpNorm<Eigen::Infinity>();
       const bool moves_on = problem.statics && way >= going_on * last_way;
-      solution.moved_on = solution.moved_on || moves_on;
+      if (problem.statics && energy > largest_growth_of_energy * last_energy && error > incompatible_static_gaps) break;
       if (error <= 1.0) return;
       if (error > slow_convergence * last_error && error <= (problem.statics ? incompatible_static_gaps : incompatible_gaps)) return;
       if (moves_on && error * tolerated(problem) <= std::min(problem.method.gap_tolerance, part_of_way * way)) return;
@@ -198,6 +203,7 @@ class Hard final : public Enforcement {
       if (pass == 1 && problem.statics && !moves_on) straighten(problem, solution, first);
       if (problem.statics && !moves_on) solution.d.setZero();
       last_error = error;
+      last_energy = energy;
       last_way = way;
     }
     give_up(solution);
@@ -207,7 +213,6 @@ class Hard final : public Enforcement {
     const StepEffort before = solution.effort;
     solution.clear();
     solution.effort = before;
-    solution.moved_on = true;
   }
 
   static void give_up(StepSolution& solution) {
@@ -358,11 +363,18 @@ class Hard final : public Enforcement {
     return problem.statics ? std::min(static_gap, problem.method.gap_tolerance) : problem.method.gap_tolerance;
   }
 
-  /// Largest error of a contact.
-  double constraint_error(const StepProblem& problem, const StepSolution& solution) const {
-    double worst = 0.0;
-    for (std::size_t c = 0; c < springs_.size(); ++c) worst = std::max(worst, constraint_error(problem, solution, c));
-    return worst;
+  struct Misfit {
+    double error = 0.0;   ///< [-] the largest of a contact
+    double energy = 0.0;  ///< [N/m] of all, their springs' stiffness times the square of the error
+  };
+  Misfit misfit(const StepProblem& problem, const StepSolution& solution) const {
+    Misfit of;
+    for (std::size_t c = 0; c < springs_.size(); ++c) {
+      const double error = constraint_error(problem, solution, c);
+      of.error = std::max(of.error, error);
+      of.energy += springs_[c].normal * error * error;
+    }
+    return of;
   }
 
   /// [-] Error of contact c over what is tolerated: closed contacts off their target gaps, sticking ones off their places. Where more than forces is

@@ -129,7 +129,7 @@ void StepEquations::evaluate(const Eigen::VectorXd& d) {
 }
 
 double StepEquations::tolerated(int row) const {
-  return problem_->method.residual_tolerance * force_scale_ / blocks_[row].emphasis + rows_[row].sums[dofs];
+  return problem_->method.residual_tolerance * force_scale_ + rows_[row].sums[dofs];
 }
 
 double StepEquations::unbalanced(int row) const {

@@ -213,7 +213,7 @@ void visit_skip_keys(Method& m, Visitor& visit) {
         m.skip_looks, Flag{});
   visit({"contact_skin_m",
          "by which blocks may move against each other before the contacts of the two are found anew (`skip_narrow_phase`; all of `dem`): lengths are "
-         "off, and corners found late, by less than it, gaps are exact",
+         "off, and corners that come over an edge found late, by less than it, gaps are exact",
          "1e-3, or a thousandth of the size of small free blocks", "method.contact_skin_m"},
         m.contact_skin, positive);
   visit({"skip_reload",

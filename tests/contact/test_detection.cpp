@@ -394,6 +394,24 @@ TEST_CASE("a corner that leans on one block is opposite to another one's edge up
   CHECK(meets == (beyond < 2.0 * closure));
 }
 
+TEST_CASE("a corner comes off the end of an edge at once, though lists of contacts are kept", "[contact][detection]") {
+  // Two bricks side by side, whose lower corners coincide, the right one of which turns about its far corner: its own one (8) rises along the other's
+  // side (5), and the other's corner (5) is below its side (11).
+  Detection d(scene_with({fixed_block("base", rectangle(-5.0, -1.0, 10.0, 1.0)), free_block("left", rectangle(0.0, 0.0, 1.0, 0.6)),
+                          free_block("right", rectangle(1.0, 0.0, 1.0, 0.6))}),
+              0.05, DetectionSkips());
+  REQUIRE(d.find(5, 11) != nullptr);
+  const double angle = -1e-5;
+  const Vec2 arm(-0.5, 0.3);  // of the right one's middle
+  const Vec2 way = Motion::turned_by(angle, arm, RotationKind::exact);
+  d.move(2, way.x(), way.y(), angle);
+  d.update();
+  CHECK(d.find(5, 11) == nullptr);
+  REQUIRE(d.find(8, 5) != nullptr);
+  CHECK(d.find(8, 5)->gap >= 0.0);
+  CHECK(d.detector.counters().searches == 1);
+}
+
 TEST_CASE("a corner deep in the floor of a wide box does not touch the back of its walls", "[contact][detection]") {
   // A wedge has gone into the floor with its lower side ahead, so that its tip (8) faces neither floor nor underside but, 90 m away, a wall's back.
   const double tilt = GENERATE(-1.0, 1.0);  // the tip to the right or, seen in a mirror, to the left
