@@ -15,6 +15,10 @@
 // Where one tip has gone right through another one, so that all their sides cross and neither corner is in the other block, the contact is that of
 // the line which they are least behind: two feet on one floor that lean over each other may come past each other's tips between two steps.
 //
+// Two tips that meet in a point, with the tip of a third block between the edges that go out from there, touch along none of these edges: each is
+// held from that block. Where joints cross at less than parallel_none the edges face each other over it, and a contact of the two tips, with the
+// normal of one of the two joints, would hold what slides on the other.
+//
 // In front of a notch a corner faces both walls from wherever it may reach them, also where it lies beyond the end of one: what is in front of both
 // is in front of the whole line of either, and a corner that slides down one wall into the notch is to meet the other one there. Two feet that slide
 // towards each other on one floor meet in such a notch.
@@ -28,6 +32,7 @@
 
 #include "openclose/contact/block_shapes.h"
 #include "openclose/contact/contact_index.h"
+#include "openclose/contact/neighbours.h"
 #include "openclose/core/tolerance.h"
 #include "openclose/geometry/polygon.h"
 
@@ -42,8 +47,8 @@ class CornerMeetings {
   using Edge = BlockShapes::Edge;
 
   /// \param is_drawing  the blocks are where they were drawn
-  CornerMeetings(const BlockSystem& system, bool is_drawing, BlockShapes& shapes, const ContactIndex& previous)
-      : system_(system), is_drawing_(is_drawing), shapes_(shapes), previous_(previous) {}
+  CornerMeetings(const BlockSystem& system, bool is_drawing, BlockShapes& shapes, const ContactIndex& previous, const Neighbours& neighbours)
+      : system_(system), is_drawing_(is_drawing), shapes_(shapes), previous_(previous), neighbours_(neighbours) {}
 
   static inline const double cosine_none = std::cos(tolerance::parallel_none_rad), sine_flush = std::sin(tolerance::flush_tilt_rad);
 
@@ -54,6 +59,10 @@ class CornerMeetings {
     /// Both point out of the edge's half-plane, or into it by no more than the tilt, and the corner is not behind the edge.
     bool leave(const Edge& edge, double tilt) const {
       return edge.normal().dot(ahead) >= -tilt && edge.normal().dot(back) >= -tilt && !is_blunt_from_behind(edge);
+    }
+    /// Whether a direction from a corner that is not reflex goes into its block, or along one of its sides.
+    bool enclose(const Vec2& direction) const {
+      return cross(ahead, direction) >= -tolerance::straight_corner_rad && cross(direction, back) >= -tolerance::straight_corner_rad;
     }
     /// A corner of nearly 180 deg has both its sides along the edge from behind, too, as where the tip of a thin wedge lies on it: what tells is
     /// where its block is.
@@ -136,6 +145,23 @@ class CornerMeetings {
     };
     return separates(v, p, edge_block, near_start ? system_.previous(e) : system_.next(e)) || separates(end, q, vertex_block, v) ||
            separates(end, q, vertex_block, system_.previous(v));
+  }
+
+  /// Whether two corners coincide where a third block has a tip between them, in this direction from there.
+  bool has_block_between(int block_a, int va, int block_b, int vb, const Vec2& direction) const {
+    const Vec2& p = shapes_.edge(va).start;
+    const double room = tolerance::edge_end_m + tolerance::seam_closures * std::max(closure(va), closure(vb));
+    const auto is_here = [&](const Vec2& q) { return (q - p).squaredNorm() <= room * room; };
+    if (!is_here(shapes_.edge(vb).start)) return false;
+    const auto is_between = [&](int block) {
+      if (block == block_a || block == block_b) return false;
+      const int first = system_.block(block).first_vertex;
+      for (int r = first; r < first + system_.block(block).vertex_count; ++r) {
+        if (is_here(shapes_.edge(r).start) && sides_of(r).enclose(direction)) return true;
+      }
+      return false;
+    };
+    return neighbours_.any_of(block_a, is_between) || neighbours_.any_of(block_b, is_between);
   }
 
   /// A penetrating corner touches the edge it came in through: no other edge that it could touch is nearer, and its own block reaches the edge, as
@@ -307,6 +333,7 @@ class CornerMeetings {
   bool is_drawing_;
   BlockShapes& shapes_;
   const ContactIndex& previous_;
+  const Neighbours& neighbours_;
   Polygon polygon_;
 };
 

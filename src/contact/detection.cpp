@@ -321,7 +321,8 @@ bool Detector::update(const BlockSystem& system, const JointTable& joints, Conta
   if (!searches) shapes_.begin(system);
   index_.begin(system, moving, contacts.resting);
   for (const int pair : pairs_around_due_ones()) index_.add(candidates_.ranges[pair]);
-  NarrowPhase narrow(system, present, reach_ + skips_.contact_skin, first_, shapes_, index_);
+  const Neighbours neighbours(candidates_.pairs, pairs_of_start_, pairs_of_);
+  NarrowPhase narrow(system, present, reach_ + skips_.contact_skin, first_, shapes_, index_, neighbours);
   for (const int pair : due_pairs_) redo(joints, system, pair, narrow, moving);
   if (!first_) counters_.transfers += pass_on_history(system, moving, gone_, found_, born_);
   put_in_place(moving, orphans);

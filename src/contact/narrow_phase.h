@@ -16,7 +16,8 @@
 // leaves the end of an edge that nothing continues; and at a corner the contact passes from one edge to the next with its gap, not with its
 // direction. What becomes of the energy held there stands in history.h: it never grows.
 //
-// At four-block corners the diagonal blocks have facing edges without overlap and no lone corner, hence no contact: they cannot lock.
+// At four-block corners the diagonal blocks have facing edges without overlap and no lone corner, hence no contact: they cannot lock. Where the
+// joints cross at less than parallel_none, the blocks above and below both face each other over one of the others, which keeps their contact out.
 #pragma once
 
 #include <algorithm>
@@ -38,8 +39,14 @@ class NarrowPhase {
   using Edge = BlockShapes::Edge;
 
   /// \param is_drawing  the blocks are where they were drawn
-  NarrowPhase(const BlockSystem& system, const BlockSystem* present, double reach, bool is_drawing, BlockShapes& shapes, const ContactIndex& previous)
-      : system_(system), present_(present), reach_(reach), shapes_(shapes), previous_(previous), meetings_(system, is_drawing, shapes, previous) {}
+  NarrowPhase(const BlockSystem& system, const BlockSystem* present, double reach, bool is_drawing, BlockShapes& shapes, const ContactIndex& previous,
+              const Neighbours& neighbours)
+      : system_(system),
+        present_(present),
+        reach_(reach),
+        shapes_(shapes),
+        previous_(previous),
+        meetings_(system, is_drawing, shapes, previous, neighbours) {}
 
   void run(int block_a, int block_b, std::vector<Contact>& found) {
     found_ = &found;
@@ -115,25 +122,38 @@ class NarrowPhase {
     const double b_low = along(b), b_high = along(b_end);
     const double overlap = std::min(a_high, b_high) - std::max(a_low, b_low);
     if (overlap < tolerance::shortest_overlap_m) return;
-    const double length = 0.5 * weight * overlap;
-    add_end(block_a, a_end, a, block_b, b, b, a_low >= b_low, std::abs(a_low - b_low), length);
-    add_end(block_a, a, a, block_b, b_end, b, a_high <= b_high, std::abs(a_high - b_high), length);
+    const FacingEdges facing{block_a, a, block_b, b, overlap, 0.5 * weight * overlap, std::abs(cross(edge_a.direction, edge_b.direction))};
+    const bool a_is_low = a_low >= b_low, a_is_high = a_high <= b_high, pass_by = a_is_low != a_is_high;
+    add_end(facing, a_end, b, a_is_low, std::abs(a_low - b_low), pass_by, u);
+    add_end(facing, a, b_end, a_is_high, std::abs(a_high - b_high), pass_by, -u);
   }
+
+  struct FacingEdges {
+    int block_a, a, block_b, b;
+    double overlap, length;  ///< [m] the latter at each end
+    double sine;             ///< of the angle between them
+  };
 
   /// One end of an overlap: vertex va of edge a on edge b, or vertex vb of edge b on edge a; `beyond` [m] is how far the other one lies outside the
   /// overlap. A reflex vertex has material all around and touches nothing: the other block's vertex stands in, if it leans into that notch's wall and
   /// is not far off.
-  void add_end(int block_a, int va, int a, int block_b, int vb, int b, bool a_is_inside, double beyond, double length) {
+  /// \param pass_by  whether the overlap lies between an end of the one and an end of the other
+  /// \param inwards  direction of the overlap from here
+  void add_end(const FacingEdges& facing, int va, int vb, bool a_is_inside, double beyond, bool pass_by, const Vec2& inwards) {
+    const auto& [block_a, a, block_b, b, overlap, length, sine] = facing;
     const bool inside_is_reflex = system_.is_reflex(a_is_inside ? va : vb);
     if (inside_is_reflex && beyond > tolerance::seam_height_m + tolerance::seam_closures * std::max(meetings_.closure(va), meetings_.closure(vb)))
       return;
+    const bool is_vertex_of_a = a_is_inside != inside_is_reflex;
+    const int vertex_block = is_vertex_of_a ? block_a : block_b, v = is_vertex_of_a ? va : vb;
+    const int edge_block = is_vertex_of_a ? block_b : block_a, e = is_vertex_of_a ? b : a;
+    // Edges that are not parallel seem to overlap by a part of what is between them; when they come together they pass each other by their ends.
+    const double apart = std::max(0.0, shapes_.edge(e).gap(shapes_.edge(v).start));
+    if (pass_by && overlap <= tolerance::seam_height_m + sine * apart && meetings_.passes_over(vertex_block, v, edge_block, e)) return;
+    if (sine * overlap > tolerance::edge_end_m && meetings_.has_block_between(block_a, va, block_b, vb, inwards)) return;
     // The two corners take turns: a joint that has closed under one of them is closed for the other.
-    const auto closed = [&] { return previous_.was_closed(va, b) || previous_.was_closed(vb, a); };
-    if (a_is_inside != inside_is_reflex) {
-      add(block_a, va, block_b, b, length, ContactRule::facing_edges, closed);
-    } else {
-      add(block_b, vb, block_a, a, length, ContactRule::facing_edges, closed);
-    }
+    add(vertex_block, v, edge_block, e, length, ContactRule::facing_edges,
+        [&] { return previous_.was_closed(va, b) || previous_.was_closed(vb, a); });
   }
 
   /// \param near  of the corners of the first block
@@ -155,12 +175,23 @@ class NarrowPhase {
         if (beyond > 0.0 && beyond > meetings_.end_margin(v, edge) && !(beyond <= reach_ && meetings_.ends_in_notch(v, e, along < 0.0))) continue;
         const double weight = sides.lone_weight(edge);
         if (weight == 0.0 || meetings_.passes_over(vertex_block, v, edge_block, e)) continue;
+        if (weight < 1.0 && is_over_another_block(vertex_block, v, edge_block, e)) continue;
         const Vec2 ahead = system_.arm(system_.next(v)) - system_.arm(v), back = system_.arm(system_.previous(v)) - system_.arm(v);
         const auto projection = [&](const Vec2& side) { return std::min(std::abs(side.dot(edge.direction)), edge.length); };
         add(vertex_block, v, edge_block, e, 0.5 * weight * (projection(ahead) + projection(back)), ContactRule::lone_corner,
             [&] { return previous_.was_closed(v, e); });
       }
     }
+  }
+
+  /// Whether a corner that comes near to facing an edge is at an end of it, with another block between the edge and its side.
+  bool is_over_another_block(int vertex_block, int v, int edge_block, int e) const {
+    const Edge& edge = shapes_.edge(e);
+    const bool near_start = edge.along(shapes_.edge(v).start) < 0.5 * edge.length;
+    const Vec2 inwards = near_start ? edge.direction : Vec2(-edge.direction);
+    const CornerMeetings::Sides sides = meetings_.sides_of(v);
+    const Vec2& side = sides.ahead.dot(inwards) > sides.back.dot(inwards) ? sides.ahead : sides.back;
+    return meetings_.has_block_between(vertex_block, v, edge_block, near_start ? e : system_.next(e), (inwards + side).normalized());
   }
 
   /// \param closed  tells whether this place was in contact already

@@ -37,8 +37,8 @@ inline constexpr double deepest_initial_overlap_m = 1e-3;
 inline constexpr double straight_corner_rad = 1e-9;
 
 /// [rad] Two edges face each other along their overlap up to parallel_full; beyond parallel_none a corner stands alone. Between them the tributary
-/// length passes from one rule to the other linearly. Joint sets in rock cross at more than parallel_none, so that four blocks that meet in one
-/// corner get no length across the corner; a rocking block stays below parallel_full until long after its far corner has opened.
+/// length passes from one rule to the other linearly. Joint sets in rock mostly cross at more than parallel_none, so that of four blocks that meet in
+/// one corner none face each other across it; a rocking block stays below parallel_full until long after its far corner has opened.
 inline constexpr double parallel_full_rad = 5.0 * 3.14159265358979323846 / 180.0;
 inline constexpr double parallel_none_rad = 15.0 * 3.14159265358979323846 / 180.0;
 

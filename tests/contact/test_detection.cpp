@@ -394,6 +394,55 @@ TEST_CASE("a corner that leans on one block is opposite to another one's edge up
   CHECK(meets == (beyond < 2.0 * closure));
 }
 
+TEST_CASE("a block does not catch on a flush seam that leans towards it, before it is there", "[contact][detection]") {
+  // Its front face and the far side of the seam are not parallel, so that along the line between them they overlap by a part of what is between them.
+  const double lean = GENERATE(-10.0, -5.0, -1.0, 1.0, 5.0, 10.0) * degree;
+  const double sunk = GENERATE(0.0, 1e-8, 1e-4);
+  const double back = std::tan(lean);
+  Detection d(
+      scene_with({fixed_block("near", {{-5.0, -1.0}, {-back, -1.0}, {0.0, 0.0}, {-5.0, 0.0}}),
+                  fixed_block("far", {{-back, -1.0}, {5.0, -1.0}, {5.0, 0.0}, {0.0, 0.0}}), free_block("block", rectangle(-1.5, -sunk, 1.0, 0.3))}),
+      0.05);
+  for (Contact& c : d.contacts) c.status = ContactStatus::sliding;
+  d.move(2, 0.49, 0.0);
+  d.update();
+  CAPTURE(lean, sunk);
+  CHECK(d.find(9, 7) == nullptr);  // its front corner on the far side
+  CHECK(d.find(7, 9) == nullptr);  // the far one's corner on its front
+  CHECK(d.find(9, 2) != nullptr);
+}
+
+TEST_CASE("tips that meet where joints cross at a small angle do not touch while there are wedges between them", "[contact][detection]") {
+  // Below both joints (0), above both (1), the wedge behind (2) and what is ahead.
+  const auto [steep, shallow] = GENERATE(std::pair(12.0, 4.0), std::pair(17.0, 3.0));
+  CAPTURE(steep, shallow);
+  const auto at = [](double x, double slope) { return Vec2(x, x * std::tan(slope * degree)); };
+  const Vec2 corner(0.0, 0.0), low = at(-3.0, steep), middle = at(-3.0, 0.5 * (steep + shallow)), high = at(-3.0, shallow);
+  std::vector<BlockInput> blocks{fixed_block("below", {{-3.0, -3.0}, {3.0, -3.0}, at(3.0, shallow), corner, low}),
+                                 free_block("above", {high, corner, at(3.0, steep), {3.0, 3.0}, {-3.0, 3.0}})};
+  const auto touch = [&](int a, int b) {
+    const Detection d(scene_with(blocks));
+    return std::ranges::any_of(d.contacts, [&](const Contact& c) { return std::pair(a, b) == std::minmax({c.vertex_block, c.edge_block}); });
+  };
+  CHECK(touch(0, 1));
+  blocks.push_back(fixed_block("behind", {corner, at(3.0, shallow), at(3.0, steep)}));
+  CHECK(touch(0, 1));
+  SECTION("with one block in each") {
+    blocks.push_back(free_block("ahead", {low, corner, high}));
+    CHECK(touch(0, 3));
+    CHECK(touch(1, 3));
+  }
+  SECTION("with two, parted by the line half-way") {
+    blocks.push_back(free_block("lower", {low, corner, middle}));
+    CHECK(touch(1, 3));
+    blocks.push_back(free_block("upper", {middle, corner, high}));
+    CHECK_FALSE(touch(1, 3));
+    CHECK_FALSE(touch(0, 4));
+    CHECK(touch(3, 4));
+  }
+  CHECK_FALSE(touch(0, 1));
+}
+
 TEST_CASE("a corner comes off the end of an edge at once, though lists of contacts are kept", "[contact][detection]") {
   // Two bricks side by side, whose lower corners coincide, the right one of which turns about its far corner: its own one (8) rises along the other's
   // side (5), and the other's corner (5) is below its side (11).

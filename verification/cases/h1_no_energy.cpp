@@ -126,7 +126,8 @@ Scene corner_on_corner(const Scheme& scheme) {
   scene.blocks = {fixed_block("base", {{-3.0, -1.0}, {5.0, -1.0}, {5.0, 0.0}, {-3.0, 0.0}}),
                   free_block("diamond", {{0.0, 2.0}, {0.5, 2.5}, {0.0, 3.0}, {-0.5, 2.5}}),
                   free_block("wedge", {{-0.5, 0.0}, {0.5, 0.0}, {0.0, 2.0}})};
-  scene.step = {1e-3, 0.1, 1e-6};
+  // A ninth of the period of the two on each other: of order 2, integrators that do not resolve a closing gain energy by it.
+  scene.step = {2e-4, 0.1, 1e-6};
   scene.end_time = 2.0;
   return scene;
 }
