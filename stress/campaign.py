@@ -9,6 +9,7 @@ from pathlib import Path
 
 import maps
 import masonry
+import planes
 import slopes
 import tumbles
 import verdicts
@@ -17,10 +18,10 @@ from outcome import METHODS, OF_MOTION_ONLY, Programs
 from scene import Scene, measured, of_blocks, to_toml
 from variants import VARIANTS
 
-PARTS = {part.PART: part.draw for part in (slopes, masonry, tumbles, maps)}
+PARTS = {part.PART: part.draw for part in (slopes, planes, masonry, tumbles, maps)}
 MOST_ATTEMPTS = 50
 # `make regression`: seeds that stay, a few of each part. Whoever accepts a change draws others.
-REGRESSION = {slopes.PART: range(2000, 2012), masonry.PART: range(2000, 2012), tumbles.PART: range(2000, 2016), maps.PART: range(2000, 2018)}
+REGRESSION = {slopes.PART: range(2000, 2012), planes.PART: range(2000, 2012), masonry.PART: range(2000, 2012), tumbles.PART: range(2000, 2016), maps.PART: range(2000, 2018)}
 REGRESSION_LIMIT_S = 5
 SAME = {"soft", "hard"}  # in statics they are one solver
 
@@ -115,7 +116,7 @@ class Campaign:
         rows, found = [], {}
         for method in methods:
             outcome = self.programs.analyse("fos", file, METHODS[method], file.parent / f"{method}{variant}".replace(" ", "_"))
-            found[method] = verdicts.of_factor(outcome, assembly, limit)
+            found[method] = verdicts.of_factor(outcome, assembly, limit, scene.most)
             rows.append(_row(scene, f"{method}{variant}", len(assembly.vertices), found[method], outcome))
             self._tidy(outcome.folder, found[method])
         return rows, found

@@ -27,6 +27,7 @@ class Scene:
     enclosure: tuple[float, float, float, float] | None = None
     floor_m: float = 0.0  # no centroid can come lower: potential energy counts from here
     expected: tuple[Expected, ...] = ()
+    most: float | None = None  # of `fos`: no forces balance beyond this factor, by a closed form
     too_soft: bool = False  # springs that give way by too much for these blocks: to refuse is right
 
     @property

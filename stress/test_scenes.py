@@ -1,5 +1,6 @@
 """python3 -m unittest discover -s stress: a seed makes one scene; scenes are what their part promises."""
 
+import math
 import tomllib
 import unittest
 from types import SimpleNamespace
@@ -9,6 +10,7 @@ import geometry
 import maps
 import masonry
 import page
+import planes
 import slopes
 import tumbles
 import variants
@@ -45,6 +47,14 @@ class Scenes(unittest.TestCase):
             dips = [s["dip_deg"] for s in document["joint_set"]]
             self.assertIn(len(dips), (2, 3))
             self.assertGreaterEqual(min(slopes._between(a, b) for i, a in enumerate(dips) for b in dips[:i]), slopes.CLOSEST_SETS_DEG)
+
+    def test_planes_have_the_bound_of_their_plane(self):
+        for seed in SEEDS:
+            scene = planes.draw(seed)
+            plane = next(j for j in scene.document["joint"] if j.get("name") == "plane")
+            (x0, y0), (x1, y1) = (scene.document["joint_line"][0][key] for key in ("from_m", "to_m"))
+            self.assertAlmostEqual(scene.most, math.tan(math.radians(plane["friction_angle_deg"])) / abs((y1 - y0) / (x1 - x0)), 9)
+            self.assertLessEqual(plane["friction_angle_deg"], scene.document["joint"][0]["friction_angle_deg"])
 
     def test_blocks_of_tumbles_and_masonry_do_not_overlap(self):
         for draw in (tumbles.draw, masonry.draw):

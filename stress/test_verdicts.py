@@ -193,7 +193,8 @@ class OfFactors(unittest.TestCase):
         self.folder = tempfile.TemporaryDirectory()
         self.addCleanup(self.folder.cleanup)
 
-    def verdict(self, assembly=None, limit=4 / 3, scale=1.0, shear=0.6, exit_status=0, points=((3.2, 2.4), (4.0, 3.0)), factor=None, reason="", **bracket):
+    def verdict(self, assembly=None, limit=4 / 3, scale=1.0, shear=0.6, exit_status=0, points=((3.2, 2.4), (4.0, 3.0)), factor=None, reason="", most=None,
+                **bracket):
         bracket = {"stable": 1.33, "failed": 1.335, "failed_by": "mechanism"} | bracket
         summary = {"factor_of_safety": factor or bracket["stable"], "verdict": "certified", "bracket": bracket, "reason": reason}
         folder = Path(self.folder.name)
@@ -209,7 +210,7 @@ class OfFactors(unittest.TestCase):
         with open(folder / "blocks.csv", "w", newline="", encoding="utf-8") as stream:
             csv.writer(stream).writerows(["state,block,vertex,x_m,y_m".split(","), *outlines])
         known = None if limit is None else {"factor": limit, "failed": limit * (1 + 1e-5)}
-        return verdicts.of_factor(Outcome(folder, exit_status, "", 0.1), assembly_of, known)
+        return verdicts.of_factor(Outcome(folder, exit_status, "", 0.1), assembly_of, known, most)
 
     def false(self, reason: str, **planted) -> None:
         verdict = self.verdict(**planted)
@@ -218,6 +219,10 @@ class OfFactors(unittest.TestCase):
 
     def test_what_balances_is_right(self):
         self.assertEqual(self.verdict(), verdicts.Verdict(verdicts.RIGHT, "", 1.33, 1.33, 1.335, 4 / 3, answer="certified"))
+
+    def test_nothing_stands_beyond_a_closed_form(self):
+        self.assertEqual(self.verdict(most=1.33).kind, verdicts.RIGHT)
+        self.false("nothing can stand beyond 1.32", most=1.32)
 
     def test_forces_that_do_not_balance(self):
         self.false("out of balance", scale=1 + 1e-5)

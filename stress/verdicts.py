@@ -217,7 +217,8 @@ def read_bracket(summary: dict) -> Bracket:
     return Bracket(stable, failed or None, summary.get("criterion", ""), "", False)
 
 
-def of_factor(outcome: Outcome, assembly: "Assembly", limit: dict[str, float] | None) -> Verdict:
+def of_factor(outcome: Outcome, assembly: "Assembly", limit: dict[str, float] | None, most: float | None = None) -> Verdict:
+    """most: factor beyond which nothing can stand, if one is known"""
     known = of_exit(outcome)
     if known:
         known = replace(known, limit=limit and limit["factor"])
@@ -231,6 +232,7 @@ def of_factor(outcome: Outcome, assembly: "Assembly", limit: dict[str, float] | 
     if corners:
         limit = None
     wrong = next((reason for reason in (_unproved(bracket), _unordered(bracket, factor), assembly.unbalanced(forces, bracket.stable) if bracket.complete else "", _above(bracket, limit),
+                                        _above_known(bracket, most),
                                         _unproved_by_limit_analysis(bracket, limit)) if reason), "")
     note = f"{corners} lone corners carry load, not compared with limit analysis" if corners else ""
     return Verdict(FALSE if wrong else RIGHT, wrong or note, factor, bracket.stable, bracket.failed, limit and limit["factor"], answer=bracket.verdict)
@@ -257,6 +259,12 @@ def _above(bracket: Bracket, limit: dict[str, float] | None) -> str:
     if limit is None or bracket.stable is None or bracket.stable <= limit["failed"] * (1 + LIMIT_ANALYSIS):
         return ""
     return f"stable at {bracket.stable:.6g}, limit analysis {limit['factor']:.6g}"
+
+
+def _above_known(bracket: Bracket, most: float | None) -> str:
+    if most is None or bracket.stable is None or bracket.stable <= most * (1 + LIMIT_ANALYSIS):
+        return ""
+    return f"stable at {bracket.stable:.6g}, but nothing can stand beyond {most:.6g}"
 
 
 def _unproved_by_limit_analysis(bracket: Bracket, limit: dict[str, float] | None) -> str:

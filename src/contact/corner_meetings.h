@@ -17,7 +17,8 @@
 //
 // Two tips that meet in a point, with the tip of a third block between the edges that go out from there, touch along none of these edges: each is
 // held from that block. Where joints cross at less than parallel_none the edges face each other over it, and a contact of the two tips, with the
-// normal of one of the two joints, would hold what slides on the other.
+// normal of one of the two joints, would hold what slides on the other. So do the outer edges of two wedges side by side, which turn their backs to
+// each other.
 //
 // In front of a notch a corner faces both walls from wherever it may reach them, also where it lies beyond the end of one: what is in front of both
 // is in front of the whole line of either, and a corner that slides down one wall into the notch is to meet the other one there. Two feet that slide
@@ -147,12 +148,18 @@ class CornerMeetings {
            separates(end, q, vertex_block, system_.previous(v));
   }
 
-  /// Whether two corners coincide where a third block has a tip between them, in this direction from there.
-  bool has_block_between(int block_a, int va, int block_b, int vb, const Vec2& direction) const {
+  /// Whether two corners coincide and rock fills what is between two edges that go out from there, in this direction: that of a third block, or, of
+  /// edges that turn their backs to each other as those of two wedges side by side do, that of the blocks themselves.
+  /// \param spread  [m] by which the edges part as far as they overlap
+  bool meet_in_a_point(int block_a, int va, int block_b, int vb, const Vec2& direction, double spread) const {
+    if (spread <= tolerance::edge_end_m) return false;
     const Vec2& p = shapes_.edge(va).start;
     const double room = tolerance::edge_end_m + tolerance::seam_closures * std::max(closure(va), closure(vb));
     const auto is_here = [&](const Vec2& q) { return (q - p).squaredNorm() <= room * room; };
     if (!is_here(shapes_.edge(vb).start)) return false;
+    // Blocks that have closed are in each other by less.
+    const bool is_closure = spread <= tolerance::seam_height_m + tolerance::seam_closures * previous_.deepest();
+    if (!is_closure && (sides_of(va).enclose(direction) || sides_of(vb).enclose(direction))) return true;
     const auto is_between = [&](int block) {
       if (block == block_a || block == block_b) return false;
       const int first = system_.block(block).first_vertex;

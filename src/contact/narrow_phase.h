@@ -150,7 +150,7 @@ class NarrowPhase {
     // Edges that are not parallel seem to overlap by a part of what is between them; when they come together they pass each other by their ends.
     const double apart = std::max(0.0, shapes_.edge(e).gap(shapes_.edge(v).start));
     if (pass_by && overlap <= tolerance::seam_height_m + sine * apart && meetings_.passes_over(vertex_block, v, edge_block, e)) return;
-    if (sine * overlap > tolerance::edge_end_m && meetings_.has_block_between(block_a, va, block_b, vb, inwards)) return;
+    if (meetings_.meet_in_a_point(block_a, va, block_b, vb, inwards, sine * overlap)) return;
     // The two corners take turns: a joint that has closed under one of them is closed for the other.
     add(vertex_block, v, edge_block, e, length, ContactRule::facing_edges,
         [&] { return previous_.was_closed(va, b) || previous_.was_closed(vb, a); });
@@ -191,7 +191,9 @@ class NarrowPhase {
     const Vec2 inwards = near_start ? edge.direction : Vec2(-edge.direction);
     const CornerMeetings::Sides sides = meetings_.sides_of(v);
     const Vec2& side = sides.ahead.dot(inwards) > sides.back.dot(inwards) ? sides.ahead : sides.back;
-    return meetings_.has_block_between(vertex_block, v, edge_block, near_start ? e : system_.next(e), (inwards + side).normalized());
+    const int end = near_start ? e : system_.next(e);
+    const double spread = std::abs(cross(inwards, side)) * edge.length;
+    return meetings_.meet_in_a_point(vertex_block, v, edge_block, end, (inwards + side).normalized(), spread);
   }
 
   /// \param closed  tells whether this place was in contact already

@@ -443,6 +443,25 @@ TEST_CASE("tips that meet where joints cross at a small angle do not touch while
   CHECK_FALSE(touch(0, 1));
 }
 
+TEST_CASE("two wedges side by side touch along the joint between them alone", "[contact][detection]") {
+  // Their outer edges (0 and 5) are less than 15 degrees from each other and turn their backs to each other.
+  const auto at = [](double slope) { return Vec2(3.0, 3.0 * std::tan(slope * degree)); };
+  const double lower = GENERATE(15.8, 17.0, 18.0);
+  Detection d(scene_with({fixed_block("under", {{0.0, 0.0}, at(lower), at(18.4)}), free_block("above", {{0.0, 0.0}, at(18.4), at(30.4)})}));
+  REQUIRE_FALSE(d.contacts.empty());
+  for (const Contact& c : d.contacts) CHECK((c.edge == 2 || c.edge == 3));
+}
+
+TEST_CASE("a block that leans on another one of its width keeps the contact at the corner that it leans from", "[contact][detection]") {
+  Detection d(scene_with({fixed_block("lower", rectangle(0.0, 0.0, 1.0, 1.0)), free_block("upper", rectangle(0.0, 1.0, 1.0, 1.0))}));
+  REQUIRE(d.contacts.size() == 2);
+  const double lean = GENERATE(-1e-5, -5e-4, 5e-4);
+  d.move(1, 0.0, -0.5 * std::abs(lean), lean);
+  d.update();
+  CHECK(d.contacts.size() == 2);
+  CHECK(d.total_length() == Approx(1.0).epsilon(1e-3));
+}
+
 TEST_CASE("a corner comes off the end of an edge at once, though lists of contacts are kept", "[contact][detection]") {
   // Two bricks side by side, whose lower corners coincide, the right one of which turns about its far corner: its own one (8) rises along the other's
   // side (5), and the other's corner (5) is below its side (11).
