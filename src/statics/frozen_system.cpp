@@ -123,12 +123,6 @@ void FrozenSystem::find_contacts(const Scene& scaled, const BlockSystem& system)
   Detector detector(closed_gap, skips);
   ContactSet contacts;
   detector.update(system, joints, contacts);
-  // How corners pass over each other depends on what they rest on: the contacts are found as in the second step of a motion.
-  for (Contact& c : contacts.moving) {
-    if (c.gap <= tolerance::edge_end_m) c.status = ContactStatus::sticking;
-  }
-  detector.look_again();
-  detector.update(system, joints, contacts);
   const std::vector<Contact>& found = contacts.moving;
   std::vector<std::vector<int>> neighbours(system.block_count());
   for (const auto& [a, b] : detector.candidate_pairs()) {
