@@ -148,8 +148,8 @@ class NarrowPhase {
     const int vertex_block = is_vertex_of_a ? block_a : block_b, v = is_vertex_of_a ? va : vb;
     const int edge_block = is_vertex_of_a ? block_b : block_a, e = is_vertex_of_a ? b : a;
     // Edges that are not parallel seem to overlap by a part of what is between them; when they come together they pass each other by their ends.
-    const double apart = std::max(0.0, shapes_.edge(e).gap(shapes_.edge(v).start));
-    if (pass_by && overlap <= tolerance::seam_height_m + sine * apart && meetings_.passes_over(vertex_block, v, edge_block, e)) return;
+    const auto apart = [&] { return std::max(0.0, shapes_.edge(e).gap(shapes_.edge(v).start)); };
+    if (pass_by && overlap <= tolerance::seam_height_m + sine * apart() && meetings_.passes_over(vertex_block, v, edge_block, e)) return;
     if (meetings_.meet_in_a_point(block_a, va, block_b, vb, inwards, sine * overlap)) return;
     // The two corners take turns: a joint that has closed under one of them is closed for the other.
     add(vertex_block, v, edge_block, e, length, ContactRule::facing_edges,

@@ -47,6 +47,23 @@ bool has_block_between(const BlockSystem& system, const Contact& contact, const 
                              [&](int other) { return other != contact.edge_block && contains(polygon_of(system, other), middle); });
 }
 
+/// Those that a second look finds again, for which all that touches is closed. How corners pass over each other depends on what they rest on, and in
+/// the first look nothing rests on anything: a tip of rock that lies flush ahead of a block's foot meets the block's face there.
+std::vector<Contact> contacts_of_drawing(Detector& detector, const BlockSystem& system, const JointTable& joints) {
+  ContactSet contacts;
+  detector.update(system, joints, contacts);
+  std::vector<Contact> drawn = contacts.moving;
+  for (Contact& c : contacts.moving) {
+    if (c.gap <= tolerance::edge_end_m) c.status = ContactStatus::sticking;
+  }
+  detector.look_again();
+  detector.update(system, joints, contacts);
+  std::set<std::pair<int, int>> found_again;
+  for (const Contact& c : contacts.moving) found_again.emplace(c.vertex, c.edge);
+  std::erase_if(drawn, [&](const Contact& c) { return !found_again.contains({c.vertex, c.edge}); });
+  return drawn;
+}
+
 BlockVector scaled_rotation(const Eigen::Vector3d& gradient, double radius, bool locked) {
   return {gradient[0], gradient[1], locked ? 0.0 : gradient[2] / radius};
 }
@@ -121,9 +138,7 @@ void FrozenSystem::find_contacts(const Scene& scaled, const BlockSystem& system)
   DetectionSkips skips;
   skips.contact_skin = tolerance::rounding_of_ways_m;
   Detector detector(closed_gap, skips);
-  ContactSet contacts;
-  detector.update(system, joints, contacts);
-  const std::vector<Contact>& found = contacts.moving;
+  const std::vector<Contact> found = contacts_of_drawing(detector, system, joints);
   std::vector<std::vector<int>> neighbours(system.block_count());
   for (const auto& [a, b] : detector.candidate_pairs()) {
     neighbours[a].push_back(b);

@@ -120,6 +120,22 @@ TEST_CASE("a block slides at its own factor, however heavy another one is that r
   }
 }
 
+TEST_CASE("a seam of the ground ahead of a block's toe does not hold it", "[analysis][strength_reduction]") {
+  const double ahead = GENERATE(2e-5, 5e-4, 3e-3);  // [m] of the toe
+  const double fall = GENERATE(10.0, 40.0, 80.0) * test::degree;
+  const double dip = 25.0 * test::degree, friction = 24.0 * test::degree, depth = 6.0, foot = 4.0 + ahead + depth / std::tan(fall);
+  Scene scene = test::scene_with({test::fixed_block("under", {{-20.0, -depth}, {foot, -depth}, {4.0 + ahead, 0.0}, {-20.0, 0.0}}),
+                                  test::free_block("block", test::rectangle(0.0, 0.0, 4.0, 3.0)),
+                                  test::fixed_block("ahead", {{foot, -depth}, {60.0, -depth}, {60.0, 0.0}, {4.0 + ahead, 0.0}})});
+  scene.gravity = {9.81 * std::sin(dip), -9.81 * std::cos(dip)};
+  scene.joints[0] = test::frictional_joint(1e10, 4e9, friction);
+  for (const std::string& method : all_methods) {
+    CAPTURE(ahead, fall, method);
+    scene.method.contact = method;
+    CHECK(factor(scene).stable() == Approx(std::tan(friction) / std::tan(dip)).epsilon(2e-4));
+  }
+}
+
 TEST_CASE("a motion that nothing decides is not said to fail", "[analysis][strength_reduction]") {
   Scene scene = slope_scene("soft", 30.0, 40.0, 0.0);
   scene.settle.max_steps = 1;
