@@ -136,6 +136,47 @@ TEST_CASE("a seam of the ground ahead of a block's toe does not hold it", "[anal
   }
 }
 
+TEST_CASE("a wedge on a joint of which a part is rock has the factor of Jennings", "[analysis][strength_reduction]") {
+  const Scene scene = scene_of_text(R"(
+    [[material]]
+    name = "rock"
+    density_kg_per_m3 = 2600
+    [[joint]]
+    materials = ["rock", "rock"]
+    normal_stiffness_pa_per_m = 1e10
+    shear_stiffness_pa_per_m = 2e9
+    friction_angle_deg = 30
+    [[joint]]
+    name = "intact"
+    normal_stiffness_pa_per_m = 1e10
+    shear_stiffness_pa_per_m = 2e9
+    friction_angle_deg = 30
+    cohesion_pa = 300e3
+    tensile_strength_pa = 150e3
+    [domain]
+    material = "rock"
+    vertices_m = [[-20, -15], [90, -15], [90, 40], [23, 40], [0, 0], [-20, 0]]
+    [[joint_set]]
+    dip_deg = 35
+    spacing_m = 100
+    origin_m = [0, 0]
+    trace_length_m = 9
+    gap_m = 3
+    bridge = "intact"
+    [[fixed_line]]
+    from_m = [-20, -15]
+    to_m = [90, -15]
+    )",
+                                    "bridges.toml");
+  const double dip = 35.0 * test::degree, height = 40.0, plane = height / std::sin(dip);
+  const double weight = 0.5 * height * (height / std::tan(dip) - 23.0) * 2600.0 * scene.gravity.norm();
+  const double rock = 3.0 * std::floor(plane / 12.0) + std::max(0.0, std::fmod(plane, 12.0) - 9.0);  // [m]
+  const double exact = (weight * std::cos(dip) * std::tan(30.0 * test::degree) + 300e3 * rock) / (weight * std::sin(dip));
+  const auto safety = factor(scene);
+  REQUIRE(safety.verdict == FactorVerdict::certified);
+  CHECK(safety.stable() == Approx(exact).epsilon(2e-4));
+}
+
 TEST_CASE("a motion that nothing decides is not said to fail", "[analysis][strength_reduction]") {
   Scene scene = slope_scene("soft", 30.0, 40.0, 0.0);
   scene.settle.max_steps = 1;
