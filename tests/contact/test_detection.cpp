@@ -398,15 +398,16 @@ TEST_CASE("a block does not catch on a flush seam that leans towards it, before 
   // Its front face and the far side of the seam are not parallel, so that along the line between them they overlap by a part of what is between them.
   const double lean = GENERATE(-10.0, -5.0, -1.0, 1.0, 5.0, 10.0) * degree;
   const double sunk = GENERATE(0.0, 1e-8, 1e-4);
+  const double before = GENERATE(0.01, 0.04);  // [m] from the seam
   const double back = std::tan(lean);
   Detection d(
       scene_with({fixed_block("near", {{-5.0, -1.0}, {-back, -1.0}, {0.0, 0.0}, {-5.0, 0.0}}),
                   fixed_block("far", {{-back, -1.0}, {5.0, -1.0}, {5.0, 0.0}, {0.0, 0.0}}), free_block("block", rectangle(-1.5, -sunk, 1.0, 0.3))}),
       0.05);
   for (Contact& c : d.contacts) c.status = ContactStatus::sliding;
-  d.move(2, 0.49, 0.0);
+  d.move(2, 0.5 - before, 0.0);
   d.update();
-  CAPTURE(lean, sunk);
+  CAPTURE(lean, sunk, before);
   CHECK(d.find(9, 7) == nullptr);  // its front corner on the far side
   CHECK(d.find(7, 9) == nullptr);  // the far one's corner on its front
   CHECK(d.find(9, 2) != nullptr);
@@ -463,14 +464,14 @@ TEST_CASE("a block that leans on another one of its width keeps the contact at t
 }
 
 TEST_CASE("a corner comes off the end of an edge at once, though lists of contacts are kept", "[contact][detection]") {
-  // Two bricks side by side, whose lower corners coincide, the right one of which turns about its far corner: its own one (8) rises along the other's
-  // side (5), and the other's corner (5) is below its side (11).
+  // Two bricks side by side, whose lower corners coincide, the right and taller one of which turns about its far corner: its own one (8) rises along
+  // the other's side (5), and the other's corner (5) is below its side (11).
   Detection d(scene_with({fixed_block("base", rectangle(-5.0, -1.0, 10.0, 1.0)), free_block("left", rectangle(0.0, 0.0, 1.0, 0.6)),
-                          free_block("right", rectangle(1.0, 0.0, 1.0, 0.6))}),
+                          free_block("right", rectangle(1.0, 0.0, 1.0, 0.8))}),
               0.05, DetectionSkips());
   REQUIRE(d.find(5, 11) != nullptr);
   const double angle = -1e-5;
-  const Vec2 arm(-0.5, 0.3);  // of the right one's middle
+  const Vec2 arm(-0.5, 0.4);  // of the right one's middle
   const Vec2 way = Motion::turned_by(angle, arm, RotationKind::exact);
   d.move(2, way.x(), way.y(), angle);
   d.update();
