@@ -1,12 +1,16 @@
 """Draws scenes, runs them by every method and judges what comes out: rows of stress.csv."""
 
 import csv
+import random
 import shutil
 import tomllib
+from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import asdict, dataclass, fields, replace
+from functools import partial
 from pathlib import Path
 
+import cut_ground
 import maps
 import masonry
 import planes
@@ -107,9 +111,12 @@ class Campaign:
             rows += self._same(scene, *(found[method] for method in sorted(SAME)))
         for method in set(found) - SAME if "soft" in found else ():
             rows += _comparison(scene, f"{method} = soft", verdicts.nearly_same(found["soft"], found[method]), found["soft"], found[method], verdicts.APART)
-        if self.invariances and scene.part == slopes.PART:
-            rows += self._invariances(scene, blocks, methods, found)
+        rows += self._drawn_otherwise(scene, blocks, methods, found, self._variants(scene))
         return rows
+
+    def _variants(self, scene: Scene) -> dict[str, Callable[[dict], dict]]:
+        variants = {"ground cut": partial(cut_ground.cut, random.Random(f"cut {scene.name}"))}
+        return variants | (VARIANTS if self.invariances and scene.part == slopes.PART else {})
 
     def _factors_of(self, scene: Scene, file: Path, blocks: Path, methods: list[str], variant: str = "") -> tuple[list[Row], dict[str, verdicts.Verdict]]:
         assembly, limit = verdicts.Assembly(read(blocks)), self.programs.limit_analysis(blocks)
@@ -126,17 +133,19 @@ class Campaign:
         wide = next((f"a bracket of {v.stable:.6g} to {v.failed:.6g}" for v in (one, other) if verdicts.too_wide(v)), "")
         return _comparison(scene, " = ".join(sorted(SAME)), verdicts.same_bracket(one, other) or wide, one, other)
 
-    def _invariances(self, scene: Scene, blocks: Path, methods: list[str], found: dict[str, verdicts.Verdict]) -> list[Row]:
-        """The brackets of the same slope drawn in another way."""
+    def _drawn_otherwise(self, scene: Scene, blocks: Path, methods: list[str], found: dict[str, verdicts.Verdict],
+                         variants: dict[str, Callable[[dict], dict]]) -> list[Row]:
+        """The brackets of the same scene drawn in other ways."""
         document = of_blocks(scene.document, read(blocks))
         rows = []
-        for name, change in VARIANTS.items():
+        for name, change in variants.items():
             file = blocks.parent / f"{name}.toml".replace(" ", "_")
             file.write_text(to_toml(change(document)), encoding="utf-8")
             more, changed = self._factors_of(scene, file, file, methods, f", {name}")
             rows += more
             for method in methods:
-                wrong = verdicts.same_bracket(found[method], changed[method])
+                alike = verdicts.same_bracket if method in SAME else verdicts.nearly_same  # explicit steps come to rest at a place of their own
+                wrong = alike(found[method], changed[method])
                 rows += _comparison(scene, f"{method} = {method}, {name}", wrong, found[method], changed[method])
         return rows
 

@@ -9,6 +9,7 @@ from scene import Scene, log_uniform, rounded
 PART = "planes"
 REACH, DEPTH, HEIGHT = 10.0, 9.0, 10.0  # [m] of the domain, from the middle of the plane
 JUST_BELOW = 0.05  # [m] what is touched by a line so far below the plane is fixed
+SLIVER_M = 1e-5  # what is thinner is united with a neighbour, which roughens the plane by that: by default a millimetre, and teeth of that size hold
 MOST_JOINTS = 5
 THROUGH_ONE_POINT = 0.5  # share of joints that go through the point where another one crosses the plane
 SMALL_ANGLE_SHARE, LARGEST_SMALL_ANGLE = 0.6, 18.0  # [-], [deg] of joints that cross the plane at a small angle
@@ -39,7 +40,7 @@ def draw(seed: int, attempt: int = 0) -> Scene:
         "material": [{"name": "rock", "density_kg_per_m3": 2600.0}],
         "joint": [{"materials": ["rock", "rock"], "friction_angle_deg": rounded(max(friction, r.uniform(30, 60)), 4)} | springs,
                   {"name": "plane", "friction_angle_deg": friction} | springs],
-        "domain": {"material": "rock", "vertices_m": corners},
+        "domain": {"material": "rock", "vertices_m": corners, "sliver_width_m": SLIVER_M},
         "joint_line": lines,
         "fixed_line": [{"from_m": below[0], "to_m": below[1]}, {"from_m": corners[0], "to_m": corners[1]}],
         "strength_reduction": {"width": 5e-4},

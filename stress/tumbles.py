@@ -3,6 +3,7 @@
 import math
 import random
 
+import cut_ground
 from geometry import Polygon, convex_parts, diameter, edges, integrals
 from scene import Scene, log_uniform, rounded
 
@@ -18,6 +19,7 @@ CLOSURE_OF_WIDTH = 0.06, 0.4
 TOO_SOFT = 0.25
 WAY_OF_SIZE_IN_A_STEP = 2e-3, 0.1
 CONCAVE_SHARE = 0.3
+GROUND_CUT_SHARE = 0.4
 LEAST_AREA = 0.03  # [-] of the square of a block's size
 
 
@@ -59,6 +61,10 @@ def draw(seed: int, attempt: int = 0) -> Scene:
     }
     drawn = {"thrown": len(places), "size_m": size, "spread": spread, "speed": speed, "kn": kn, "ks_over_kn": ratio, "friction_deg": friction, "damping": damping,
              "dt_s": dt, "closure_over_width": closure}
+    whether = random.Random(f"{PART} {seed} {attempt} ground")
+    drawn["ground_cut"] = int(whether.random() < GROUND_CUT_SHARE)
+    if drawn["ground_cut"]:
+        document = cut_ground.cut(whether, document)
     return Scene(PART, seed, "run", document, drawn, (-half_width, 0.0, half_width, height), 0.0, too_soft=closure > TOO_SOFT)
 
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "openclose/contact/ground_outline.h"
 #include "openclose/law/joint_law.h"
 #include "openclose/statics/frozen_system.h"
 #include "openclose/statics/joint_sections.h"
@@ -17,10 +18,11 @@ std::string bent_joints_in_words(const Simulation& simulation) {
   std::vector<Contact> contacts;
   simulation.state().contacts.for_each([&](const Contact& contact) { contacts.push_back(contact); });
   const double gap = closed_gap * frozen_length_unit(simulation.scene());
+  const GroundOutline ground(simulation.system());
   std::vector<Joined> joined;
-  for (const Contact& contact : contacts) joined.push_back(joined_at(simulation.system(), contact, gap));
+  for (const Contact& contact : contacts) joined.push_back(joined_at(simulation.system(), ground, contact, gap));
   const std::vector<double> pulls =
-      pulls_at_edges(joint_sections(simulation.system(), contacts, joined, gap), contacts.size(), [&](int i) -> EndOfJoint {
+      pulls_at_edges(joint_sections(simulation.system(), ground, contacts, joined, gap), contacts.size(), [&](int i) -> EndOfJoint {
         const Contact& contact = contacts[i];
         const ContactStrength strength(joints.joint(contact.joint), contact);
         return {contact.normal_force, contact.status == ContactStatus::open ? 0.0 : strength.tension, contact.length};

@@ -33,6 +33,7 @@
 
 #include "openclose/contact/block_shapes.h"
 #include "openclose/contact/contact_index.h"
+#include "openclose/contact/ground_outline.h"
 #include "openclose/contact/neighbours.h"
 #include "openclose/core/tolerance.h"
 #include "openclose/geometry/polygon.h"
@@ -48,8 +49,9 @@ class CornerMeetings {
   using Edge = BlockShapes::Edge;
 
   /// \param is_drawing  the blocks are where they were drawn
-  CornerMeetings(const BlockSystem& system, bool is_drawing, BlockShapes& shapes, const ContactIndex& previous, const Neighbours& neighbours)
-      : system_(system), is_drawing_(is_drawing), shapes_(shapes), previous_(previous), neighbours_(neighbours) {}
+  CornerMeetings(const BlockSystem& system, bool is_drawing, BlockShapes& shapes, const ContactIndex& previous, const Neighbours& neighbours,
+                 const GroundOutline& ground)
+      : system_(system), is_drawing_(is_drawing), shapes_(shapes), previous_(previous), neighbours_(neighbours), ground_(ground) {}
 
   static inline const double cosine_none = std::cos(tolerance::parallel_none_rad), sine_flush = std::sin(tolerance::flush_tilt_rad);
 
@@ -76,7 +78,24 @@ class CornerMeetings {
       return 1.0 - std::max(parallel_weight(-ahead.dot(edge.direction)), parallel_weight(back.dot(edge.direction)));
     }
   };
-  Sides sides_of(int v) const { return {shapes_.edge(v).direction, -shapes_.edge(system_.previous(v)).direction}; }
+  Sides sides_of(int v) const {
+    if (const GroundOutline::Corner* corner = ground_.corner(v)) return {corner->ahead.span.normalized(), corner->back.span.normalized()};
+    return {shapes_.edge(v).direction, -shapes_.edge(system_.previous(v)).direction};
+  }
+  /// Whether a vertex sticks out, of its block or of the ground.
+  bool is_corner(int v) const {
+    const GroundOutline::Corner* corner = ground_.corner(v);
+    return corner ? corner->kind == GroundOutline::Kind::corner : !system_.is_reflex(v);
+  }
+  /// Whether a vertex is where two walls of its block, or of the ground, make a notch.
+  bool is_notch(int v) const {
+    const GroundOutline::Corner* corner = ground_.corner(v);
+    return corner ? corner->kind == GroundOutline::Kind::notch : system_.is_reflex(v);
+  }
+  /// Whether an edge is inside the ground where it is nearest to a point.
+  bool is_inside_ground(const Edge& edge, int e, const Vec2& p, double margin) const {
+    return ground_.covers(e, std::clamp(edge.along(p), 0.0, edge.length), margin);
+  }
 
   /// [m] What the contacts of a corner have closed.
   double closure(int v) const {
@@ -97,7 +116,7 @@ class CornerMeetings {
   /// corner and this end slide on.
   bool ends_in_notch(int v, int e, bool at_start) const {
     const int end = at_start ? e : system_.next(e);
-    if (system_.is_reflex(end)) return true;
+    if (is_notch(end)) return true;
     if (!previous_.closed(end)) return false;
     const Edge& edge = shapes_.edge(e);
     const Vec2 near_end = at_start ? edge.start : edge.end(), far_end = at_start ? edge.end() : edge.start;
@@ -125,7 +144,7 @@ class CornerMeetings {
     const Vec2& p = shapes_.edge(v).start;
     const bool near_start = edge.along(p) < 0.5 * edge.length;
     const int end = near_start ? e : system_.next(e);
-    if (system_.is_reflex(end)) return false;
+    if (!is_corner(end)) return false;
     const Vec2& q = shapes_.edge(end).start;
     const bool slides = previous_.closed(v) || previous_.closed(end);
     if (!slides && (p - q).norm() > tolerance::edge_end_m) return false;
@@ -133,8 +152,8 @@ class CornerMeetings {
     const double gap = edge.gap(p);
     const bool in_front = gap > -tolerance::shortest_edge_m, in_notch = ends_in_notch(v, e, near_start);
     const bool coincide = (p - q).norm() <= tolerance::edge_end_m + tolerance::seam_closures * std::max(closure_around(v), closure_around(end));
-    const auto separates = [&](int corner, const Vec2& position, int other_block, int line) {
-      const Edge& other = shapes_.edge(other_block, line);
+    const auto separates = [&](int corner, const Vec2& position, int line_block, int line) {
+      const Edge& other = shapes_.edge(line_block, line);
       if (!turns_away(edge, other) || !stands_on(corner, other) || has_come_off(corner, position, line, other)) return false;
       const bool slides_on_it = slides_along(v, other) || slides_along(end, other);
       const double step = in_front && slides_on_it ? tolerance::seam_height_m : tolerance::edge_end_m;
@@ -144,8 +163,9 @@ class CornerMeetings {
       if (!slides_on_it && (in_notch || gap > height || !coincide) && other_gap <= gap) return false;
       return other_gap > -height;
     };
-    return separates(v, p, edge_block, near_start ? system_.previous(e) : system_.next(e)) || separates(end, q, vertex_block, v) ||
-           separates(end, q, vertex_block, system_.previous(v));
+    const auto [other_block, other] = other_side(edge_block, end, e);
+    return separates(v, p, other_block, other) ||
+           std::ranges::any_of(sides(vertex_block, v), [&](const BlockEdge& side) { return separates(end, q, side.first, side.second); });
   }
 
   /// Whether two corners coincide and rock fills what is between two edges that go out from there, in this direction: that of a third block, or, of
@@ -154,21 +174,17 @@ class CornerMeetings {
   bool meet_in_a_point(int block_a, int va, int block_b, int vb, const Vec2& direction, double spread) const {
     if (spread <= tolerance::edge_end_m) return false;
     const Vec2& p = shapes_.edge(va).start;
-    const double room = tolerance::edge_end_m + tolerance::seam_closures * std::max(closure(va), closure(vb));
-    const auto is_here = [&](const Vec2& q) { return (q - p).squaredNorm() <= room * room; };
-    if (!is_here(shapes_.edge(vb).start)) return false;
-    // Blocks that have closed are in each other by less.
-    const bool is_closure = spread <= tolerance::seam_height_m + tolerance::seam_closures * previous_.deepest();
-    if (!is_closure && (sides_of(va).enclose(direction) || sides_of(vb).enclose(direction))) return true;
-    const auto is_between = [&](int block) {
-      if (block == block_a || block == block_b) return false;
-      const int first = system_.block(block).first_vertex;
-      for (int r = first; r < first + system_.block(block).vertex_count; ++r) {
-        if (is_here(shapes_.edge(r).start) && sides_of(r).enclose(direction)) return true;
-      }
-      return false;
-    };
-    return neighbours_.any_of(block_a, is_between) || neighbours_.any_of(block_b, is_between);
+    const double room = room_at(std::max(closure(va), closure(vb)));
+    if ((shapes_.edge(vb).start - p).squaredNorm() > room * room) return false;
+    if (!is_closure(spread) && (sides_of(va).enclose(direction) || sides_of(vb).enclose(direction))) return true;
+    return is_third_block_between(block_a, block_b, p, room, direction);
+  }
+
+  /// The same of a corner that touches another block's edge away from its ends: whether a third block fills what is between.
+  bool is_over_third_block(int vertex_block, int v, int edge_block, const Edge& edge, const Vec2& direction, double spread) const {
+    const Vec2& p = shapes_.edge(v).start;
+    const double room = room_at(closure(v));
+    return !is_closure(spread) && std::abs(edge.gap(p)) <= room && is_third_block_between(vertex_block, edge_block, p, room, direction);
   }
 
   /// A penetrating corner touches the edge it came in through: no other edge that it could touch is nearer, and its own block reaches the edge, as
@@ -184,19 +200,18 @@ class CornerMeetings {
     // at the ends of two edges that face each other, which may lie beside the block's corner: that is not beyond a thin block.
     const bool faces_as_drawn = is_drawing_ && rule == ContactRule::facing_edges;
     const double beside = faces_as_drawn ? std::min(tolerance::deepest_initial_overlap_m, depth_behind(edge_block, edge)) : 0.0;
-    if (-gap > beside && !in_block(edge_block, p) && !closed() && (is_drawing_ || !is_between_tips(vertex_block, v, e))) return false;
-    const auto& block = system_.block(edge_block);
-    for (int f = block.first_vertex; f < block.first_vertex + block.vertex_count; ++f) {
+    if (-gap > beside && !in_block(edge_block, p) && !closed() && (is_drawing_ || !is_between_tips(vertex_block, v, edge_block, e))) return false;
+    const auto is_nearer = [&](int f) {
       const Edge& other = shapes_.edge(f);
       // An edge is no nearer than the line on which it lies.
-      if (f == e || std::abs(other.gap(p)) > -gap || share_reflex_corner(e, f)) continue;
-      if (distance_to_segment(p, other.start, other.end()) >= -gap - tolerance::shortest_edge_m) continue;
+      if (f == e || std::abs(other.gap(p)) > -gap || share_notch(e, f) || is_inside_ground(other, f, p, 0.0)) return false;
+      if (distance_to_segment(p, other.start, other.end()) >= -gap - tolerance::shortest_edge_m) return false;
       // At a needle's tip, closed by a little, the edge that is faced need not be the nearest one.
       const bool at_needle = std::abs(edge.direction.dot(other.direction)) > cosine_needle;
-      if (at_needle ? stands_on(v, other) : outside(v, other)) return false;
-      if (!reaches(vertex_block, edge) && in_block(edge_block, p)) return false;
-    }
-    return true;
+      if (at_needle ? stands_on(v, other) : outside(v, other)) return true;
+      return !reaches(vertex_block, edge) && in_block(edge_block, p);
+    };
+    return !any_edge_around(edge_block, p, -gap, is_nearer);
   }
 
   /// w of narrow_phase.h: how far two edges may count as facing each other.
@@ -207,6 +222,31 @@ class CornerMeetings {
   }
 
  private:
+  /// [m] How far corners that coincide in the drawing may be from each other where their contacts have closed by this.
+  static double room_at(double closure) { return tolerance::edge_end_m + tolerance::seam_closures * closure; }
+  /// Whether edges part by no more than blocks that have closed are in each other.
+  bool is_closure(double spread) const { return spread <= tolerance::seam_height_m + tolerance::seam_closures * previous_.deepest(); }
+
+  bool is_third_block_between(int block_a, int block_b, const Vec2& p, double room, const Vec2& direction) const {
+    const auto is_between = [&](int block) {
+      if (block == block_a || block == block_b) return false;
+      const int first = system_.block(block).first_vertex;
+      for (int r = first; r < first + system_.block(block).vertex_count; ++r) {
+        if ((shapes_.edge(block, r).start - p).squaredNorm() <= room * room && sides_of(r).enclose(direction)) return true;
+      }
+      return false;
+    };
+    return neighbours_.any_of(block_a, is_between) || neighbours_.any_of(block_b, is_between);
+  }
+
+  using BlockEdge = GroundOutline::BlockEdge;
+  std::array<BlockEdge, 2> sides(int block, int v) const { return {ground_.edge_ahead(block, v), ground_.edge_back(system_, block, v)}; }
+  /// The edge beside e at one of its ends.
+  BlockEdge other_side(int block, int end, int e) const {
+    const auto [ahead, back] = sides(block, end);
+    return ahead.second == e ? back : ahead;
+  }
+
   /// [m] The same with those on its two edges.
   double closure_around(int v) const {
     double largest = 0.0;
@@ -244,44 +284,65 @@ class CornerMeetings {
 
   static bool turns_away(const Edge& a, const Edge& b) { return std::abs(a.direction.dot(b.direction)) < cosine_none; }
 
-  bool share_reflex_corner(int e, int f) const {
-    return (system_.next(e) == f && system_.is_reflex(f)) || (system_.next(f) == e && system_.is_reflex(e));
+  /// Whether two edges are the walls of a notch of a block, or of the ground.
+  bool share_notch(int e, int f) const {
+    if ((system_.next(e) == f && is_notch(f)) || (system_.next(f) == e && is_notch(e))) return true;
+    return std::ranges::any_of(std::array<int, 4>{e, system_.next(e), f, system_.next(f)}, [&](int v) {
+      const GroundOutline::Corner* corner = ground_.corner(v);
+      return corner && corner->kind == GroundOutline::Kind::notch && std::minmax(corner->ahead.edge, corner->back.edge) == std::minmax(e, f);
+    });
+  }
+
+  /// Asks of the edges of a block until one of them is; of the ground all those that may be within `room` [m] of a point.
+  template <class F>
+  bool any_edge_around(int block, const Vec2& p, double room, F f) {
+    pieces_.assign(1, block);
+    for (std::size_t i = 0; i < pieces_.size(); ++i) {
+      const auto& piece = system_.block(pieces_[i]);
+      for (int e = piece.first_vertex; e < piece.first_vertex + piece.vertex_count; ++e) {
+        if (f(e)) return true;
+      }
+      for (const int other : ground_.beside(pieces_[i])) {
+        if (std::ranges::find(pieces_, other) == pieces_.end() && shapes_.box(other).inflated(room).contains(p)) pieces_.push_back(other);
+      }
+    }
+    return false;
   }
 
   /// Whether a corner is behind an edge, though not in its block, because the tip at the edge's end is in the block of the tip that the corner is. Of
   /// the up to four lines that could separate two tips, see passes_over(), they touch along the one that they are least behind. Either the tip of the
   /// edge has come off the ends of the corner's two sides, which hold it no more, and did not come in through another one; or it has gone right
   /// through the other tip: both sides of one cross both sides of the other, and neither corner is in the other block.
-  bool is_between_tips(int vertex_block, int v, int e) {
+  bool is_between_tips(int vertex_block, int v, int edge_block, int e) {
     const Edge& edge = shapes_.edge(e);
     const Vec2& p = shapes_.edge(v).start;
     const int end = edge.along(p) < 0.5 * edge.length ? e : system_.next(e);
-    if (system_.is_reflex(end)) return false;
+    if (!is_corner(end)) return false;
     const Vec2& q = shapes_.edge(end).start;
-    const std::array<int, 2> sides{v, system_.previous(v)}, others{end, system_.previous(end)};
-    const auto is_nearer = [&](int corner, const Vec2& position, int line) {
-      const Edge& other = shapes_.edge(line);
+    const std::array<BlockEdge, 2> own = sides(vertex_block, v), others = sides(edge_block, end);
+    const auto is_nearer = [&](int corner, const Vec2& position, const BlockEdge& line) {
+      const Edge& other = shapes_.edge(line.first, line.second);
       return outside(corner, other) && other.gap(position) > edge.gap(p);
     };
-    if (std::ranges::any_of(sides, [&](int s) { return is_nearer(end, q, s); }) ||
-        std::ranges::any_of(others, [&](int o) { return is_nearer(v, p, o); }))
+    if (std::ranges::any_of(own, [&](const BlockEdge& s) { return is_nearer(end, q, s); }) ||
+        std::ranges::any_of(others, [&](const BlockEdge& o) { return is_nearer(v, p, o); }))
       return false;
     if (in_block(vertex_block, q)) {
-      return has_come_off_sides(end, q, v) && !is_nearer_to_another_edge(vertex_block, q, sides, -edge.gap(p));
+      return has_come_off_sides(end, q, v) && !is_nearer_to_another_edge(vertex_block, q, own, -edge.gap(p));
     }
-    return std::ranges::all_of(
-        sides, [&](int s) { return std::ranges::all_of(others, [&](int o) { return cross_each_other(shapes_.edge(s), shapes_.edge(o)); }); });
+    return std::ranges::all_of(own, [&](const BlockEdge& s) {
+      return std::ranges::all_of(others, [&](const BlockEdge& o) { return cross_each_other(shapes_.edge(s.second), shapes_.edge(o.second)); });
+    });
   }
 
   /// Whether a block has an edge, other than two of its sides, that a point in it is nearer to than a depth. Whether the point's corner could stand
   /// on that edge does not matter: with a block that is deep in another one, corners come in that lead nowhere.
-  bool is_nearer_to_another_edge(int b, const Vec2& q, const std::array<int, 2>& sides, double depth) const {
-    const auto& block = system_.block(b);
-    for (int s = block.first_vertex; s < block.first_vertex + block.vertex_count; ++s) {
+  bool is_nearer_to_another_edge(int block, const Vec2& q, const std::array<BlockEdge, 2>& sides, double depth) {
+    return any_edge_around(block, q, depth, [&](int s) {
       const Edge& other = shapes_.edge(s);
-      if (s != sides[0] && s != sides[1] && distance_to_segment(q, other.start, other.end()) < depth) return true;
-    }
-    return false;
+      return s != sides[0].second && s != sides[1].second && !is_inside_ground(other, s, q, 0.0) &&
+             distance_to_segment(q, other.start, other.end()) < depth;
+    });
   }
 
   /// Whether a tip q has come off the sides of corner v on which it stands, past v.
@@ -319,7 +380,12 @@ class CornerMeetings {
     return depth;
   }
 
+  /// In a block, or in the ground of which it is a part.
   bool in_block(int block, const Vec2& p) {
+    return is_in(block, p) || std::ranges::any_of(ground_.beside(block), [&](int other) { return is_in(other, p); });
+  }
+
+  bool is_in(int block, const Vec2& p) {
     constexpr double margin = 2.0 * tolerance::edge_end_m;  // what is decided so is the same by the distance below
     if (!shapes_.box(block).inflated(margin).contains(p)) return false;
     if (shapes_.is_convex(block)) {
@@ -341,7 +407,9 @@ class CornerMeetings {
   BlockShapes& shapes_;
   const ContactIndex& previous_;
   const Neighbours& neighbours_;
+  const GroundOutline& ground_;
   Polygon polygon_;
+  std::vector<int> pieces_;  ///< of the ground
 };
 
 }  // namespace openclose

@@ -210,10 +210,17 @@ bool Detector::mark_due_pairs(const BlockSystem& system, bool all) {
   find_blocks_of_due_pairs();
   for (const int pair : due_pairs_) marks_.add(pair);
   for_pairs_of(in_due_pairs_, in_due_pair_, [&](int pair) {
-    if (due(pair, way(pair)) == Due::moved) marks_.add(pair);
+    if (due(pair, way(pair)) == Due::moved || passes_corners_on(system, pair)) marks_.add(pair);
   });
   marks_.take(due_pairs_);
   return true;
+}
+
+/// Whether corners of a block of which a pair is due may pass on to the ground of this pair, or come from there.
+bool Detector::passes_corners_on(const BlockSystem& system, int pair) const {
+  const auto [a, b] = candidates_.pairs[pair];
+  const auto is_free_one_of_due_pair = [&](int block) { return in_due_pair_[block] && system.block(block).equation != BlockSystem::fixed; };
+  return (ground_->has_seam(a) && is_free_one_of_due_pair(b)) || (ground_->has_seam(b) && is_free_one_of_due_pair(a));
 }
 
 void Detector::find_blocks_of_due_pairs() {
@@ -301,6 +308,7 @@ bool Detector::update(const BlockSystem& system, const JointTable& joints, Conta
   const bool all = std::exchange(looks_again_, false) || forgotten_ || !skips_.search || !skips_.narrow_phase;
   const bool searches = needs_search(system);
   moved_by_others_ = std::exchange(forgotten_, false);
+  if (!ground_) ground_ = std::make_shared<GroundOutline>(system);
   born_.clear();
   gone_.clear();
   changes_.clear();
@@ -322,7 +330,7 @@ bool Detector::update(const BlockSystem& system, const JointTable& joints, Conta
   index_.begin(system, moving, contacts.resting);
   for (const int pair : pairs_around_due_ones()) index_.add(candidates_.ranges[pair]);
   const Neighbours neighbours(candidates_.pairs, pairs_of_start_, pairs_of_);
-  NarrowPhase narrow(system, present, reach_ + skips_.contact_skin, first_, shapes_, index_, neighbours);
+  NarrowPhase narrow(system, present, reach_ + skips_.contact_skin, first_, shapes_, index_, neighbours, *ground_);
   for (const int pair : due_pairs_) redo(joints, system, pair, narrow, moving);
   if (!first_) counters_.transfers += pass_on_history(system, moving, gone_, found_, born_);
   put_in_place(moving, orphans);

@@ -20,6 +20,7 @@
 #pragma once
 
 #include <limits>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -65,6 +66,7 @@ struct DetectionChange {
   ContactRange before, after;
 };
 
+class GroundOutline;
 class NarrowPhase;
 
 class Detector {
@@ -94,6 +96,8 @@ class Detector {
   /// skin, overlap, and no line along an edge of one of them keeps them as far apart. Renewed only when something moved beyond the skin.
   const std::vector<std::pair<int, int>>& candidate_pairs() const { return candidates_.pairs; }
   const DetectionCounters& counters() const { return counters_; }
+  /// After an update().
+  const GroundOutline& ground() const { return *ground_; }
   /// Whether there has been an update(), the first of which decides what is bonded.
   bool knows_bonds() const { return !first_; }
 
@@ -182,6 +186,7 @@ class Detector {
   void for_pairs_of(const std::vector<int>& blocks, const std::vector<char>& is_among_them, F f) const;
   void look_again_before(int pair, double way);
   bool mark_due_pairs(const BlockSystem& system, bool all);
+  bool passes_corners_on(const BlockSystem& system, int pair) const;
   void find_blocks_of_due_pairs();
   const std::vector<int>& pairs_around_due_ones();
   void redo(const JointTable& joints, const BlockSystem& system, int pair, NarrowPhase& narrow, const std::vector<Contact>& before);
@@ -203,6 +208,8 @@ class Detector {
   std::vector<int> pairs_of_start_, pairs_of_;  ///< of the blocks: pairs_of_[pairs_of_start_[b]] to before that of b + 1
   std::vector<DetectionChange> changes_;
   DetectionCounters counters_;
+
+  std::shared_ptr<const GroundOutline> ground_;  ///< of the first update()
 
   // Working memory of update().
   BlockShapes shapes_;

@@ -37,11 +37,12 @@ class JointTable {
     return place != of_materials_.end() && place->materials == materials ? place->joint : -1;
   }
   /// Of a contact: what the scene names for the edge, if one of the two edges at the corner has the same name, for then both lie in one seam, or in
-  /// two that are alike; else that of the materials.
+  /// two that are alike, or if neither of them runs along the edge, for then the corner has no face of its own there; else that of the materials.
   int index(const BlockSystem& system, const Contact& contact) const {
     const int seam = system.edge_joint(contact.edge);
     const bool is_in_seam =
-        seam != BlockInput::by_materials && (system.edge_joint(contact.vertex) == seam || system.edge_joint(system.previous(contact.vertex)) == seam);
+        seam != BlockInput::by_materials &&
+        (system.edge_joint(contact.vertex) == seam || system.edge_joint(system.previous(contact.vertex)) == seam || stands_alone(system, contact));
     return is_in_seam ? seam : index(system.block(contact.vertex_block).material, system.block(contact.edge_block).material);
   }
   int count() const { return static_cast<int>(joints_.size()); }
@@ -57,6 +58,8 @@ class JointTable {
   void exchange(Archive& archive);
 
  private:
+  static bool stands_alone(const BlockSystem& system, const Contact& contact);
+
   /// Scenes may name as many materials as blocks: what is kept goes with the number of joints, not of pairs.
   struct OfMaterials {
     std::pair<int, int> materials;  ///< the lower number first

@@ -21,6 +21,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <span>
 #include <vector>
@@ -28,6 +29,7 @@
 #include "openclose/contact/block_shapes.h"
 #include "openclose/contact/contact_index.h"
 #include "openclose/contact/corner_meetings.h"
+#include "openclose/contact/ground_outline.h"
 #include "openclose/contact/kinematics.h"
 #include "openclose/core/tolerance.h"
 
@@ -40,13 +42,14 @@ class NarrowPhase {
 
   /// \param is_drawing  the blocks are where they were drawn
   NarrowPhase(const BlockSystem& system, const BlockSystem* present, double reach, bool is_drawing, BlockShapes& shapes, const ContactIndex& previous,
-              const Neighbours& neighbours)
+              const Neighbours& neighbours, const GroundOutline& ground)
       : system_(system),
         present_(present),
         reach_(reach),
         shapes_(shapes),
         previous_(previous),
-        meetings_(system, is_drawing, shapes, previous, neighbours) {}
+        meetings_(system, is_drawing, shapes, previous, neighbours, ground),
+        ground_(ground) {}
 
   void run(int block_a, int block_b, std::vector<Contact>& found) {
     found_ = &found;
@@ -118,8 +121,10 @@ class NarrowPhase {
     const Vec2 u = (edge_b.direction - edge_a.direction).normalized();
     const int a_end = system_.next(a), b_end = system_.next(b);
     const auto along = [&](int v) { return u.dot(shapes_.edge(v).start - edge_b.start); };
-    const double a_low = along(a_end), a_high = along(a);
-    const double b_low = along(b), b_high = along(b_end);
+    const auto [before_a, after_a] = ground_.straight_on(a);
+    const auto [before_b, after_b] = ground_.straight_on(b);
+    const double a_low = along(a_end) - after_a, a_high = along(a) + before_a;
+    const double b_low = along(b) - before_b, b_high = along(b_end) + after_b;
     const double overlap = std::min(a_high, b_high) - std::max(a_low, b_low);
     if (overlap < tolerance::shortest_overlap_m) return;
     const FacingEdges facing{block_a, a, block_b, b, overlap, 0.5 * weight * overlap, std::abs(cross(edge_a.direction, edge_b.direction))};
@@ -141,16 +146,19 @@ class NarrowPhase {
   /// \param inwards  direction of the overlap from here
   void add_end(const FacingEdges& facing, int va, int vb, bool a_is_inside, double beyond, bool pass_by, const Vec2& inwards) {
     const auto& [block_a, a, block_b, b, overlap, length, sine] = facing;
-    const bool inside_is_reflex = system_.is_reflex(a_is_inside ? va : vb);
+    const bool inside_is_reflex = meetings_.is_notch(a_is_inside ? va : vb);
     if (inside_is_reflex && beyond > tolerance::seam_height_m + tolerance::seam_closures * std::max(meetings_.closure(va), meetings_.closure(vb)))
       return;
     const bool is_vertex_of_a = a_is_inside != inside_is_reflex;
     const int vertex_block = is_vertex_of_a ? block_a : block_b, v = is_vertex_of_a ? va : vb;
     const int edge_block = is_vertex_of_a ? block_b : block_a, e = is_vertex_of_a ? b : a;
+    if (is_inside_ground(a, v) || is_inside_ground(b, v) || goes_on(is_vertex_of_a ? a : b, v) || !ground_.is_in_front(e, shapes_.edge(v).start))
+      return;
     // Edges that are not parallel seem to overlap by a part of what is between them; when they come together they pass each other by their ends.
     const auto apart = [&] { return std::max(0.0, shapes_.edge(e).gap(shapes_.edge(v).start)); };
     if (pass_by && overlap <= tolerance::seam_height_m + sine * apart() && meetings_.passes_over(vertex_block, v, edge_block, e)) return;
-    if (meetings_.meet_in_a_point(block_a, va, block_b, vb, inwards, sine * overlap)) return;
+    if (!goes_on(a, va) && !goes_on(b, vb) && meetings_.meet_in_a_point(block_a, va, block_b, vb, inwards, sine * overlap)) return;
+    if (meetings_.is_over_third_block(vertex_block, v, edge_block, shapes_.edge(e), inwards, sine * overlap)) return;
     // The two corners take turns: a joint that has closed under one of them is closed for the other.
     add(vertex_block, v, edge_block, e, length, ContactRule::facing_edges,
         [&] { return previous_.was_closed(va, b) || previous_.was_closed(vb, a); });
@@ -162,7 +170,7 @@ class NarrowPhase {
     const int first = system_.block(vertex_block).first_vertex, first_edge = system_.block(edge_block).first_vertex;
     for (std::size_t k = 0; k < near.size(); ++k) {
       const int v = first + static_cast<int>(k);
-      if (!near[k] || system_.is_reflex(v)) continue;
+      if (!near[k] || !sticks_out(v)) continue;
       const Vec2& p = shapes_.edge(v).start;
       if (!room.contains(p)) continue;
       const CornerMeetings::Sides sides = meetings_.sides_of(v);
@@ -172,34 +180,64 @@ class NarrowPhase {
         const int e = first_edge + static_cast<int>(i);
         const double along = edge.along(p);
         const double beyond = std::max(-along, along - edge.length);
+        if (is_inside_ground(e, v) || !ground_.is_in_front(e, p)) continue;
         if (beyond > 0.0 && beyond > meetings_.end_margin(v, edge) && !(beyond <= reach_ && meetings_.ends_in_notch(v, e, along < 0.0))) continue;
         const double weight = sides.lone_weight(edge);
         if (weight == 0.0 || meetings_.passes_over(vertex_block, v, edge_block, e)) continue;
         if (weight < 1.0 && is_over_another_block(vertex_block, v, edge_block, e)) continue;
-        const Vec2 ahead = system_.arm(system_.next(v)) - system_.arm(v), back = system_.arm(system_.previous(v)) - system_.arm(v);
-        const auto projection = [&](const Vec2& side) { return std::min(std::abs(side.dot(edge.direction)), edge.length); };
+        const auto [ahead, back] = ground_.spans(system_, v);
+        const auto projection = [&](const Vec2& side) { return std::min(std::abs(side.dot(edge.direction)), line_length(e)); };
         add(vertex_block, v, edge_block, e, 0.5 * weight * (projection(ahead) + projection(back)), ContactRule::lone_corner,
             [&] { return previous_.was_closed(v, e); });
       }
     }
   }
 
-  /// Whether a corner that comes near to facing an edge is at an end of it, with another block between the edge and its side.
+  /// Whether a vertex is a corner that may stand alone, of its block or of the ground: of this only the first of the vertices that make it together.
+  bool sticks_out(int v) const {
+    const GroundOutline::Corner* corner = ground_.corner(v);
+    return meetings_.is_corner(v) && (!corner || corner->first == v);
+  }
+  /// Whether the straight line of which an edge is a part goes on at this vertex of it.
+  bool goes_on(int e, int v) const {
+    const auto [before, after] = ground_.straight_on(e);
+    return v == e ? before > 0.0 : after > 0.0;
+  }
+  double line_length(int e) const {
+    const auto [before, after] = ground_.straight_on(e);
+    return before + shapes_.edge(e).length + after;
+  }
+  /// Whether a corner is at a part of an edge of the ground that is inside of it. Where the outline makes a notch with this edge, a corner that leans
+  /// on the other wall may be behind that.
+  bool is_inside_ground(int e, int v) const {
+    const Edge& edge = shapes_.edge(e);
+    return meetings_.is_inside_ground(edge, e, shapes_.edge(v).start, meetings_.end_margin(v, edge));
+  }
+
+  /// Whether a corner comes near to facing an edge with another block between the edge and its side.
   bool is_over_another_block(int vertex_block, int v, int edge_block, int e) const {
     const Edge& edge = shapes_.edge(e);
-    const bool near_start = edge.along(shapes_.edge(v).start) < 0.5 * edge.length;
-    const Vec2 inwards = near_start ? edge.direction : Vec2(-edge.direction);
     const CornerMeetings::Sides sides = meetings_.sides_of(v);
-    const Vec2& side = sides.ahead.dot(inwards) > sides.back.dot(inwards) ? sides.ahead : sides.back;
+    const bool near_start = edge.along(shapes_.edge(v).start) < 0.5 * edge.length;
     const int end = near_start ? e : system_.next(e);
-    const double spread = std::abs(cross(inwards, side)) * edge.length;
-    return meetings_.meet_in_a_point(vertex_block, v, edge_block, end, (inwards + side).normalized(), spread);
+    const auto towards = [&](const Vec2& inwards) -> const Vec2& {
+      return sides.ahead.dot(inwards) > sides.back.dot(inwards) ? sides.ahead : sides.back;
+    };
+    const auto bisector = [](const Vec2& inwards, const Vec2& side) -> Vec2 { return (inwards + side).normalized(); };
+    const auto spread = [&](const Vec2& side) { return std::abs(cross(edge.direction, side)) * line_length(e); };
+    const Vec2 from_end = near_start ? edge.direction : Vec2(-edge.direction), side = towards(from_end);
+    if (!goes_on(e, end) && meetings_.meet_in_a_point(vertex_block, v, edge_block, end, bisector(from_end, side), spread(side))) return true;
+    return std::ranges::any_of(std::array<Vec2, 2>{edge.direction, -edge.direction}, [&](const Vec2& way) {
+      const Vec2& faced = towards(way);
+      return faced.dot(way) > CornerMeetings::cosine_none &&
+             meetings_.is_over_third_block(vertex_block, v, edge_block, edge, bisector(way, faced), spread(faced));
+    });
   }
 
   /// \param closed  tells whether this place was in contact already
   template <class Closed>
   void add(int vertex_block, int v, int edge_block, int e, double length, ContactRule rule, const Closed& closed) {
-    if (system_.is_reflex(v)) return;
+    if (meetings_.is_notch(v)) return;
     for (std::size_t i = first_; i < found_->size(); ++i) {
       Contact& known = (*found_)[i];
       if (known.vertex == v && known.edge == e) {
@@ -234,6 +272,7 @@ class NarrowPhase {
   BlockShapes& shapes_;
   const ContactIndex& previous_;
   CornerMeetings meetings_;
+  const GroundOutline& ground_;
   std::vector<Contact>* found_ = nullptr;
   std::size_t first_ = 0;
   std::vector<char> near_[2];  ///< of the corners of both blocks

@@ -52,7 +52,8 @@ class Strips {
 
 }  // namespace
 
-std::vector<std::pair<int, int>> near_blocks(const BlockSystem& system, const std::vector<Box>& boxes, BlockShapes& shapes, double room) {
+std::vector<std::pair<int, int>> near_blocks(const BlockSystem& system, const std::vector<Box>& boxes, BlockShapes& shapes, double room,
+                                             PairsOf which) {
   std::vector<std::pair<int, int>> pairs;
   const int n = static_cast<int>(boxes.size());
   if (n < 2) return pairs;
@@ -64,8 +65,10 @@ std::vector<std::pair<int, int>> near_blocks(const BlockSystem& system, const st
       const Box& box = boxes[members[i]];
       for (std::size_t j = i + 1; j < members.size() && boxes[members[j]].low.x() <= box.high.x(); ++j) {
         const auto [a, b] = std::minmax(members[i], members[j]);
-        const bool someone_moves = system.block(a).equation >= 0 || system.block(b).equation >= 0;
-        if (!someone_moves || !box.overlaps(boxes[members[j]])) continue;
+        const int first = system.block(a).equation, second = system.block(b).equation;
+        const bool is_asked_for =
+            which == PairsOf::free_blocks ? first >= 0 || second >= 0 : first == BlockSystem::fixed && second == BlockSystem::fixed;
+        if (!is_asked_for || !box.overlaps(boxes[members[j]])) continue;
         // Where both begin, and nowhere else.
         if (strips.at(std::max(box.low.y(), boxes[members[j]].low.y())) != k) continue;
         if (shapes.apart(a, b, room)) continue;

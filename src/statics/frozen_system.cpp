@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "openclose/contact/detection.h"
+#include "openclose/contact/ground_outline.h"
 #include "openclose/contact/kinematics.h"
 #include "openclose/geometry/polygon.h"
 #include "openclose/model/external_forces.h"
@@ -139,6 +140,7 @@ void FrozenSystem::find_contacts(const Scene& scaled, const BlockSystem& system)
   skips.contact_skin = tolerance::rounding_of_ways_m;
   Detector detector(closed_gap, skips);
   const std::vector<Contact> found = contacts_of_drawing(detector, system, joints);
+  const GroundOutline& ground = detector.ground();
   std::vector<std::vector<int>> neighbours(system.block_count());
   for (const auto& [a, b] : detector.candidate_pairs()) {
     neighbours[a].push_back(b);
@@ -149,9 +151,9 @@ void FrozenSystem::find_contacts(const Scene& scaled, const BlockSystem& system)
   std::vector<Contact> closed;
   std::vector<Joined> joined_of_closed;
   std::set<std::pair<int, int>> pairs_with_joint;
-  const auto pair_of = [](const Contact& c) { return std::minmax(c.vertex_block, c.edge_block); };
+  const auto pair_of = [&](const Contact& c) { return std::minmax(ground.joined(c.vertex_block), ground.joined(c.edge_block)); };
   for (const Contact& contact : found) {
-    joined.push_back(joined_at(system, contact, closed_gap));
+    joined.push_back(joined_at(system, ground, contact, closed_gap));
     if (joined.back().length > 0.0) pairs_with_joint.insert(pair_of(contact));
   }
   for (std::size_t i = 0; i < found.size(); ++i) {
@@ -179,7 +181,7 @@ void FrozenSystem::find_contacts(const Scene& scaled, const BlockSystem& system)
     closed.push_back(contact);
     joined_of_closed.push_back(joined[i]);
   }
-  sections_ = joint_sections(system, closed, joined_of_closed, closed_gap);
+  sections_ = joint_sections(system, ground, closed, joined_of_closed, closed_gap);
   for (const JointSection& section : sections_) {
     for (const PlaceInJoint& place : section) {
       contacts_[place.contact].joined_length += place.filled * length_unit_;

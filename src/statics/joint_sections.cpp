@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <numeric>
+#include <tuple>
 #include <utility>
 
 #include "openclose/core/tolerance.h"
@@ -19,12 +20,12 @@ struct Line {
   Vec2 corner;
   double ahead, behind;  ///< [units of length] of what is joined at the corner
 
-  Line(const BlockSystem& system, const Contact& contact, const Joined& joined)
+  Line(const BlockSystem& system, const GroundOutline& ground, const Contact& contact, const Joined& joined)
       : along((system.position(contact.edge_block, system.next(contact.edge)) - system.position(contact.edge_block, contact.edge)).normalized()),
         corner(system.position(contact.vertex_block, contact.vertex)),
         ahead(joined.ahead),
         behind(joined.behind) {
-    if (contact.edge_block < contact.vertex_block) return;
+    if (ground.joined(contact.edge_block) < ground.joined(contact.vertex_block)) return;
     along = -along;
     std::swap(ahead, behind);
   }
@@ -43,22 +44,29 @@ struct Growing {
 };
 
 /// Whether the outline of a block stays on a line from a contact to another one, ahead of it.
-bool stays_on_line(const BlockSystem& system, int block, const Line& line, const Contact& from, double ahead, double gap) {
-  const bool is_forward = block == std::min(from.vertex_block, from.edge_block);  // the outlines of two blocks run against each other
-  const auto next = [&](int v) { return is_forward ? system.next(v) : system.previous(v); };
-  int v = block == from.vertex_block ? next(from.vertex) : is_forward ? system.next(from.edge) : from.edge;
+bool stays_on_line(const BlockSystem& system, const GroundOutline& ground, int block, const Line& line, const Contact& from, double ahead,
+                   double gap) {
+  const int other = block == from.vertex_block ? from.edge_block : from.vertex_block;
+  const bool is_forward = ground.joined(block) < ground.joined(other);  // the outlines of two blocks run against each other
+  const auto next_of = [&](const GroundOutline::BlockEdge& edge) {
+    return std::pair(edge.first, is_forward ? system.next(edge.second) : edge.second);
+  };
+  const auto next = [&](int b, int v) { return next_of(is_forward ? ground.edge_ahead(b, v) : ground.edge_back(system, b, v)); };
   const Vec2 start = system.position(from.vertex_block, from.vertex);
-  for (int k = 0; k < system.block(block).vertex_count; ++k, v = next(v)) {
-    const Vec2 way = system.position(block, v) - start;
+  auto [at_block, v] = block == from.vertex_block ? next(block, from.vertex) : next_of({block, from.edge});
+  const int first = v;
+  do {
+    const Vec2 way = system.position(at_block, v) - start;
     if (line.along.dot(way) >= ahead) return true;
     if (std::abs(cross(line.along, way)) > 2.0 * gap) return false;
-  }
+    std::tie(at_block, v) = next(at_block, v);
+  } while (v != first);
   return false;
 }
 
 /// A corner that points away from the other block, if only by rounding, has no contact, and half of the faces on both its sides none either: where
 /// the faces touch, the contacts on both sides of such a hole stand for it, too, each for what is nearer to it.
-void fill_holes(const BlockSystem& system, const std::vector<Contact>& contacts, double gap, Growing& growing) {
+void fill_holes(const BlockSystem& system, const GroundOutline& ground, const std::vector<Contact>& contacts, double gap, Growing& growing) {
   constexpr double rounding = 1e-9;  // [-]
   JointSection& section = growing.section;
   // Two that meet at a corner are both there: what tells them apart is where they go from it.
@@ -68,7 +76,7 @@ void fill_holes(const BlockSystem& system, const std::vector<Contact>& contacts,
     const Contact &from = contacts[here.contact], &to = contacts[next.contact];
     const double between = next.at - here.at;
     if (next.low - here.high <= rounding * between || from.joint != to.joint) continue;
-    const auto touches = [&](int block) { return stays_on_line(system, block, growing.line, from, (1.0 - rounding) * between, gap); };
+    const auto touches = [&](int block) { return stays_on_line(system, ground, block, growing.line, from, (1.0 - rounding) * between, gap); };
     if (!touches(from.vertex_block) || !touches(from.edge_block)) continue;
     const double middle = std::clamp(0.5 * (here.at + next.at), here.high, next.low);
     here.filled += middle - here.high;
@@ -79,18 +87,20 @@ void fill_holes(const BlockSystem& system, const std::vector<Contact>& contacts,
 
 }  // namespace
 
-Joined joined_at(const BlockSystem& system, const Contact& contact, double gap) {
+Joined joined_at(const BlockSystem& system, const GroundOutline& ground, const Contact& contact, double gap) {
   const Vec2 start = system.position(contact.edge_block, contact.edge), end = system.position(contact.edge_block, system.next(contact.edge));
   const Vec2 along = (end - start).normalized(), outward = -perpendicular(along);
-  const double length = (end - start).norm();
+  const auto [before, after] = ground.straight_on(contact.edge);
+  const double begin = -before, length = (end - start).norm() + after;
   const Vec2 corner = system.position(contact.vertex_block, contact.vertex) - start;
   Joined joined;
-  for (const int other : {system.next(contact.vertex), system.previous(contact.vertex)}) {
-    const Vec2 far = system.position(contact.vertex_block, other) - start, side = far - corner;
+  const auto [ahead, back] = ground.spans(system, contact.vertex);
+  for (const bool is_ahead : {true, false}) {
+    const Vec2 side = is_ahead ? ahead : back, far = corner + side;
     // The block lies on the left of its outline: a side that faces the edge runs against it.
-    const double forward = side.dot(along) * (other == system.next(contact.vertex) ? -1.0 : 1.0);
+    const double forward = side.dot(along) * (is_ahead ? -1.0 : 1.0);
     if (forward <= std::cos(tolerance::parallel_none_rad) * side.norm()) continue;
-    const double low = std::max(0.0, std::min(corner.dot(along), far.dot(along))),
+    const double low = std::max(begin, std::min(corner.dot(along), far.dot(along))),
                  high = std::min(length, std::max(corner.dot(along), far.dot(along)));
     const auto off = [&](double x) { return corner.dot(outward) + (x - corner.dot(along)) / side.dot(along) * side.dot(outward); };
     if (!(high > low) || std::max(std::abs(off(low)), std::abs(off(high))) > gap) continue;
@@ -100,8 +110,8 @@ Joined joined_at(const BlockSystem& system, const Contact& contact, double gap) 
   return joined;
 }
 
-std::vector<JointSection> joint_sections(const BlockSystem& system, const std::vector<Contact>& contacts, const std::vector<Joined>& joined,
-                                         double gap) {
+std::vector<JointSection> joint_sections(const BlockSystem& system, const GroundOutline& ground, const std::vector<Contact>& contacts,
+                                         const std::vector<Joined>& joined, double gap) {
   std::map<std::pair<int, int>, std::vector<Growing>> of_blocks;
   std::vector<int> longest_first(contacts.size());
   std::iota(longest_first.begin(), longest_first.end(), 0);
@@ -109,8 +119,8 @@ std::vector<JointSection> joint_sections(const BlockSystem& system, const std::v
   for (const int i : longest_first) {
     if (joined[i].length == 0.0) continue;
     const Contact& contact = contacts[i];
-    const Line line(system, contact, joined[i]);
-    std::vector<Growing>& known = of_blocks[std::minmax(contact.vertex_block, contact.edge_block)];
+    const Line line(system, ground, contact, joined[i]);
+    std::vector<Growing>& known = of_blocks[std::minmax(ground.joined(contact.vertex_block), ground.joined(contact.edge_block))];
     auto growing = std::ranges::find_if(known, [&](const Growing& g) { return g.line.continues(line, gap); });
     if (growing == known.end()) growing = known.insert(known.end(), {line, {}});
     const double at = growing->line.along.dot(line.corner - growing->line.corner);
@@ -119,7 +129,7 @@ std::vector<JointSection> joint_sections(const BlockSystem& system, const std::v
   std::vector<JointSection> sections;
   for (auto& [blocks, list] : of_blocks) {
     for (Growing& growing : list) {
-      fill_holes(system, contacts, gap, growing);
+      fill_holes(system, ground, contacts, gap, growing);
       sections.push_back(std::move(growing.section));
     }
   }

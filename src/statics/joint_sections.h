@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "openclose/contact/contact.h"
+#include "openclose/contact/ground_outline.h"
 #include "openclose/model/block_system.h"
 
 namespace openclose {
@@ -17,7 +18,7 @@ struct Joined {
 
 /// The faces at a corner that lie on the edge.
 /// \param gap  [units of length] faces that are no farther apart lie on each other, see closed_gap
-Joined joined_at(const BlockSystem& system, const Contact& contact, double gap);
+Joined joined_at(const BlockSystem& system, const GroundOutline& ground, const Contact& contact, double gap);
 
 /// A contact as a part of its joint.
 struct PlaceInJoint {
@@ -26,11 +27,11 @@ struct PlaceInJoint {
   double filled = 0.0;   ///< [units of length] of that, what lies beyond its halves, where corners that face nothing have left a hole
 };
 
-/// Contacts of two blocks whose faces lie on one line, however many corners these have.
+/// Contacts of two blocks whose faces lie on one line, however many corners these have, and however many blocks of the ground there are along it.
 using JointSection = std::vector<PlaceInJoint>;
 /// \param joined  of the contacts, with this gap; those of which nothing is joined are in no section
-std::vector<JointSection> joint_sections(const BlockSystem& system, const std::vector<Contact>& contacts, const std::vector<Joined>& joined,
-                                         double gap);
+std::vector<JointSection> joint_sections(const BlockSystem& system, const GroundOutline& ground, const std::vector<Contact>& contacts,
+                                         const std::vector<Joined>& joined, double gap);
 
 /// What a contact carries, and what its joint bears there.
 struct EndOfJoint {

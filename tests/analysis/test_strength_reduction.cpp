@@ -136,6 +136,75 @@ TEST_CASE("a seam of the ground ahead of a block's toe does not hold it", "[anal
   }
 }
 
+TEST_CASE("cohesion between a block and the ground counts the whole face, however many pieces it has", "[analysis][strength_reduction]") {
+  // tan F = (c L + W cos dip tan phi) / (W sin dip), with the face so low that nothing is bent off; and one so high that it is.
+  const double height = GENERATE(0.5, 6.0), width = 4.0, dip = 40.0 * test::degree, friction = 30.0 * test::degree;
+  std::vector<double> factors;
+  for (const bool is_cut : {false, true}) {
+    std::vector<BlockInput> blocks{test::free_block("block", test::rectangle(0.0, 0.0, width, height))};
+    if (is_cut) {
+      blocks.push_back(test::fixed_block("left", {{-20.0, -6.0}, {0.5, -6.0}, {1.5, 0.0}, {-20.0, 0.0}}));
+      blocks.push_back(test::fixed_block("middle", {{0.5, -6.0}, {9.0, -6.0}, {3.0, 0.0}, {1.5, 0.0}}));
+      blocks.push_back(test::fixed_block("right", {{9.0, -6.0}, {60.0, -6.0}, {60.0, 0.0}, {3.0, 0.0}}));
+    } else {
+      blocks.push_back(test::fixed_block("ground", {{-20.0, -6.0}, {60.0, -6.0}, {60.0, 0.0}, {-20.0, 0.0}}));
+    }
+    Scene scene = test::scene_with(blocks);
+    scene.gravity = {9.81 * std::sin(dip), -9.81 * std::cos(dip)};
+    scene.joints[0] = test::frictional_joint(1e10, 4e9, friction);
+    const double weight = 9.81 * scene.materials[0].density * width * height;
+    scene.joints[0].cohesion = 0.5 * weight * std::sin(dip) / width;
+    scene.joints[0].tensile_strength = height < 1.0 ? 0.0 : 0.9 * weight * std::sin(dip) / width;
+    factors.push_back(factor(scene).stable());
+    if (height < 1.0) CHECK(factors.back() == Approx(0.5 + std::tan(friction) / std::tan(dip)).epsilon(2e-4));
+  }
+  CHECK(factors[0] < 5.0);
+  CHECK(factors[1] == Approx(factors[0]).epsilon(2e-4));
+}
+
+TEST_CASE("a tip that stands on a seam slides on the seam", "[analysis][strength_reduction]") {
+  // A wedge on its tip, held upright between two columns that move with it on a smooth seam of rough rock.
+  Scene scene = scene_of_text(R"(
+    gravity_m_per_s2 = [3, -9]
+    [[material]]
+    name = "rock"
+    density_kg_per_m3 = 2500
+    [[joint]]
+    materials = ["rock", "rock"]
+    normal_stiffness_pa_per_m = 1e10
+    shear_stiffness_pa_per_m = 4e9
+    friction_angle_deg = 60
+    [[joint]]
+    name = "seam"
+    normal_stiffness_pa_per_m = 1e10
+    shear_stiffness_pa_per_m = 4e9
+    friction_angle_deg = 20
+    [[block]]
+    name = "ground"
+    material = "rock"
+    fixed = true
+    vertices_m = [[-9, -1], [9, -1], [9, 0], [-9, 0]]
+    edge_joints = ["", "", "seam", ""]
+    [[block]]
+    name = "left"
+    material = "rock"
+    vertices_m = [[-2, 0], [0, 0], [-1, 2], [-2, 2]]
+    edge_joints = ["seam", "", "", ""]
+    [[block]]
+    name = "right"
+    material = "rock"
+    vertices_m = [[0, 0], [2, 0], [2, 2], [1, 2]]
+    edge_joints = ["seam", "", "", ""]
+    [[block]]
+    name = "wedge"
+    material = "rock"
+    vertices_m = [[0, 0], [1, 2], [-1, 2]]
+  )",
+                              "seam.toml");
+  // No forces on the seam give more than this, whatever those between the blocks are.
+  CHECK(factor(scene).stable() <= std::tan(20.0 * test::degree) / (3.0 / 9.0) * 1.001);
+}
+
 TEST_CASE("a wedge on a joint of which a part is rock has the factor of Jennings", "[analysis][strength_reduction]") {
   const Scene scene = scene_of_text(R"(
     [[material]]

@@ -66,7 +66,7 @@ TEST_CASE("a seam that both blocks name has its own joint, everything else that 
   };
   CHECK(joint(1, 0, 0, 2) == 3);                  // the edge that begins at the corner
   CHECK(joint(1, 1, 0, 2) == 3);                  // the edge that ends there
-  CHECK(joint(1, 2, 0, 2) == table.index(0, 1));  // neither of its edges
+  CHECK(joint(1, 2, 0, 2) == 3);                  // a corner of which neither edge runs along the seam
   CHECK(joint(1, 0, 0, 1) == table.index(0, 1));  // another side of the base
   CHECK(joint(2, 0, 0, 2) == table.index(0, 2));  // a block that names nothing
   CHECK(joint(0, 3, 1, 0) == 3);

@@ -22,22 +22,30 @@ Scene bonded(const analytical::BlockOnPlane& data, const std::string& method, do
   return scene;
 }
 
-/// A block of `data` that a wall of some blocks holds at its left side. With n of them the joint has n pieces, each of which is held at two ends: the
-/// springs at x = +-L/2, +-(L/2 - L/n), ... with lengths of L/(2n), each twice but the outermost, bear k theta L^3/12 (1 + 2/n^2), and the stress at
-/// the edge follows from the outermost piece, k theta L/2 (1 + 2/n).
-void overhang(Report& report, const std::string& method, int pieces) {
+/// A block of `data` that a wall of some blocks holds at its left side. If they are of one rock the joint is one. With n rocks it has n pieces, each
+/// of which is held at two ends: the springs at x = +-L/2, +-(L/2 - L/n), ... with lengths of L/(2n), each twice but the outermost, bear k theta
+/// L^3/12 (1 + 2/n^2), and the stress at the edge follows from the outermost piece, k theta L/2 (1 + 2/n).
+void overhang(Report& report, const std::string& method, int pieces, bool of_one_rock) {
   analytical::BlockOnPlane data;
   data.width = 2.0;
   data.height = 1.0;
   const double moment = data.weight() * 0.5 * data.width, section = data.height * data.height / 6.0, n = pieces;
   const double tension = 1.6 * moment / section;
   Scene scene = bonded(data, method, tension);
-  for (int i = 0; i < pieces; ++i)
+  for (int i = 0; i < pieces; ++i) {
     scene.blocks.push_back(fixed_block("wall " + std::to_string(i), rectangle(-1.0, data.height * i / n, 1.0, data.height / n)));
+    if (of_one_rock || i == 0) continue;
+    scene.blocks.back().material = static_cast<int>(scene.materials.size());
+    scene.materials.push_back(scene.materials[0]);
+    scene.materials.back().name = "rock " + std::to_string(i);
+    scene.joints.push_back(scene.joints[0]);
+    scene.joints.back().materials = {0, scene.blocks.back().material};
+  }
   scene.blocks.push_back(free_block("beam", rectangle(0.0, 0.0, data.width, data.height)));
-  const double part = (1.0 + 2.0 / (n * n)) / (1.0 + 2.0 / n);
-  report.relative(text("overhang, pieces of its joint: {:g}", n), method, part * tension * section / moment, strength_reduction_factor(report, scene),
-                  width, "-", std::string("sigma L^2/(6 M) (1 + 2/n^2)/(1 + 2/n)") + bracket);
+  const double part = of_one_rock ? 1.0 : (1.0 + 2.0 / (n * n)) / (1.0 + 2.0 / n);
+  report.relative(text(of_one_rock ? "overhang, blocks of the wall: {:g}" : "overhang, pieces of its joint: {:g}", n), method,
+                  part * tension * section / moment, strength_reduction_factor(report, scene), width, "-",
+                  std::string("sigma L^2/(6 M) (1 + 2/n^2)/(1 + 2/n)") + bracket);
 }
 
 /// A drawing has corners in faces, out of the straight line or in it by its rounding: the joint stays one.
@@ -73,7 +81,8 @@ void column(Report& report, const std::string& method) {
 
 void bending(Report& report) {
   for (const std::string& method : all_methods) {
-    for (const int pieces : {1, 2, 4}) overhang(report, method, pieces);
+    for (const int pieces : {1, 2, 4}) overhang(report, method, pieces, false);
+    for (const int blocks : {2, 4}) overhang(report, method, blocks, true);
     for (const double off : {5e-4, -5e-4, 1e-6}) drawn_overhang(report, method, off);
     column(report, method);
   }

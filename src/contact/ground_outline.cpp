@@ -1,0 +1,310 @@
+#include "openclose/contact/ground_outline.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+#include <span>
+
+#include "openclose/contact/block_shapes.h"
+#include "openclose/contact/near_blocks.h"
+#include "openclose/core/tolerance.h"
+#include "openclose/geometry/polygon.h"
+
+namespace openclose {
+namespace {
+
+using Edge = BlockShapes::Edge;
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+/// [m] Two fixed edges lie against each other if they are no farther apart: a corner over the slit is within edge_end of one of its sides.
+constexpr double widest_slit = 2.0 * tolerance::edge_end_m;
+
+/// Edges that lie against each other are parallel but for the rounding of coordinates, which turns the shortest ones most.
+const double cosine_flush = std::cos(tolerance::parallel_full_rad);
+
+/// [m] and [-] of the length along which two edges lie against each other: this far beyond the slit in front of the middle of it there is the other
+/// block, at the smaller of the two. Near a sharp tip an edge also runs along the back of a block, which is no more than a slit away.
+constexpr double probe_depth = 0.1 * tolerance::thinnest_block_m, probe_of_length = 0.002;
+
+/// [rad] from one direction to the other, counter-clockwise.
+double angle_between(const Vec2& from, const Vec2& to) {
+  const double angle = std::atan2(cross(from, to), from.dot(to));
+  return angle < 0.0 ? angle + 2.0 * std::numbers::pi : angle;
+}
+
+GroundOutline::Kind kind_of(double angle) {
+  using enum GroundOutline::Kind;
+  if (angle >= 2.0 * std::numbers::pi - tolerance::flush_tilt_rad) return inside;
+  if (angle > std::numbers::pi + tolerance::flush_tilt_rad) return notch;
+  return angle < std::numbers::pi - tolerance::flush_tilt_rad ? corner : straight;
+}
+
+Polygon polygon_of(std::span<const Edge> edges) {
+  Polygon polygon;
+  for (const Edge& edge : edges) polygon.push_back(edge.start);
+  return polygon;
+}
+
+}  // namespace
+
+/// Finds what lies against what, then goes around each vertex from block to block.
+class GroundOutline::Survey {
+ public:
+  Survey(const BlockSystem& system, GroundOutline& outline) : system_(system), outline_(outline) { shapes_.begin(system); }
+
+  void run() {
+    for (int b = 0; b < system_.block_count(); ++b) boxes_.push_back(shapes_.box(b).inflated(widest_slit));
+    for (const auto& [a, b] : near_blocks(system_, boxes_, shapes_, widest_slit, PairsOf::fixed_blocks)) find_covers(a, b);
+    if (covers_.empty()) return;
+    outline_.is_marked_.assign(system_.state().arm.size(), false);
+    outline_.has_seam_.assign(system_.block_count(), false);
+    outline_.joined_.resize(system_.block_count());
+    std::iota(outline_.joined_.begin(), outline_.joined_.end(), 0);
+    for (int b = 0; b < system_.block_count(); ++b) {
+      if (system_.block(b).equation != BlockSystem::fixed) continue;
+      for_vertices(b, [&](int v) {
+        unite_covers(v);
+        find_corner(b, v);
+      });
+    }
+    measure_lines();
+  }
+
+ private:
+  /// A part of an edge, and the edge that lies against it.
+  struct Cover {
+    double from, to;  ///< [m] along the edge
+    int block, edge;
+  };
+  /// A place on an edge, from which the outline goes on along it or up to which it has come.
+  struct Place {
+    int block, edge;
+    double along;  ///< [m]
+  };
+  enum class Way { ahead, back };
+
+  template <class F>
+  void for_vertices(int block, F f) const {
+    const auto& b = system_.block(block);
+    for (int v = b.first_vertex; v < b.first_vertex + b.vertex_count; ++v) f(v);
+  }
+  /// [rad] of the block at its vertex.
+  double interior_angle(int vertex) const { return angle_between(shapes_.edge(vertex).direction, -shapes_.edge(system_.previous(vertex)).direction); }
+
+  void find_covers(int a, int b) {
+    bool touch = false;
+    for_vertices(a, [&](int e) { for_vertices(b, [&](int f) { touch |= find_cover(a, e, b, f); }); });
+    if (!touch) return;
+    outline_.beside_[a].push_back(b);
+    outline_.beside_[b].push_back(a);
+  }
+
+  /// Whether edges of two blocks lie against each other. Drawings are rounded to millimetres: the blocks may overlap by that.
+  bool find_cover(int a, int e, int b, int f) {
+    const Edge &edge = shapes_.edge(e), &other = shapes_.edge(f);
+    if (-edge.direction.dot(other.direction) < cosine_flush) return false;
+    const double from = std::max(0.0, edge.along(other.end())), to = std::min(edge.length, edge.along(other.start));
+    if (to - from < tolerance::shortest_edge_m) return false;
+    const auto point = [&](double along) -> Vec2 { return edge.start + along * edge.direction; };
+    const auto lies_against = [&](double along) {
+      const double gap = other.gap(point(along));
+      return gap <= widest_slit && gap >= -tolerance::deepest_initial_overlap_m;
+    };
+    if (!lies_against(from) || !lies_against(to)) return false;
+    const Vec2 middle = point(0.5 * (from + to)), across = other.start + other.along(middle) * other.direction;
+    const double probe = std::max(0.0, other.gap(middle)) + std::min(probe_depth, probe_of_length * (to - from));
+    if (!contains(polygon_of(shapes_.edges(b)), middle + probe * edge.normal()) ||
+        !contains(polygon_of(shapes_.edges(a)), across + probe * other.normal()))
+      return false;
+    const auto on_other = [&](double along) { return std::clamp(other.along(point(along)), 0.0, other.length); };
+    covers_[e].push_back({from, to, b, f});
+    covers_[f].push_back({on_other(to), on_other(from), a, e});
+    return true;
+  }
+
+  void unite_covers(int edge) {
+    const auto covers = covers_.find(edge);
+    if (covers == covers_.end()) return;
+    outline_.is_marked_[edge] = true;
+    std::vector<Part>& inside = outline_.inside_[edge];
+    const double length = shapes_.edge(edge).length;
+    std::ranges::sort(covers->second, {}, &Cover::from);
+    for (const Cover& cover : covers->second) {
+      const double from = cover.from <= widest_slit ? -infinite : cover.from, to = cover.to >= length - widest_slit ? infinite : cover.to;
+      if (inside.empty() || from > inside.back().second + widest_slit) {
+        inside.emplace_back(from, to);
+      } else {
+        inside.back().second = std::max(inside.back().second, to);
+      }
+    }
+  }
+
+  /// What lies against an edge right beyond a place, on the outline's way.
+  const Cover* cover_beyond(const Place& place, Way way) const {
+    const std::vector<Cover>* covers = find(covers_, place.edge);
+    if (!covers) return nullptr;
+    const Cover* farthest = nullptr;
+    for (const Cover& c : *covers) {
+      const bool is_here = c.from <= place.along + widest_slit && c.to >= place.along - widest_slit;
+      const bool goes_beyond =
+          way == Way::ahead ? c.to > place.along + tolerance::shortest_edge_m : c.from < place.along - tolerance::shortest_edge_m;
+      if (!is_here || !goes_beyond) continue;
+      if (!farthest || (way == Way::ahead ? c.to > farthest->to : c.from < farthest->from)) farthest = &c;
+    }
+    return farthest;
+  }
+
+  void find_corner(int block, int vertex) {
+    const int arriving = system_.previous(vertex);
+    around_ = interior_angle(vertex);
+    first_ = vertex;
+    Place ahead{block, vertex, 0.0}, back{block, arriving, shapes_.edge(arriving).length};
+    const bool goes_on_ahead = go_around(shapes_.edge(vertex).start, ahead, Way::ahead);
+    if (!go_around(shapes_.edge(vertex).start, back, Way::back) && !goes_on_ahead) return;
+    const Edge &leaving = shapes_.edge(ahead.edge), &coming = shapes_.edge(back.edge);
+    const Kind kind = kind_of(around_);
+    // Where a joint comes out in a notch, what slides on it passes over the ground in front of the notch, see corner_meetings.h.
+    if (kind == Kind::notch && ahead.along == 0.0 && back.along == coming.length) return;
+    outline_.is_marked_[vertex] = true;
+    outline_.corners_[vertex] = {kind,
+                                 {ahead.block, ahead.edge, (leaving.length - ahead.along) * leaving.direction},
+                                 {back.block, back.edge, -back.along * coming.direction},
+                                 first_};
+    if (kind == Kind::straight) join(back, ahead);
+  }
+
+  /// Goes from edge to edge around a point until one is not inside, and adds up the angle; whether there was any that is.
+  bool go_around(const Vec2& p, Place& place, Way way) {
+    bool goes_on = false;
+    while (kind_of(around_) != Kind::inside) {
+      const Cover* cover = cover_beyond(place, way);
+      if (!cover) break;
+      goes_on = true;
+      const Edge& other = shapes_.edge(cover->edge);
+      const double along = other.along(p);
+      if (way == Way::ahead ? along < other.length - widest_slit : along > widest_slit) {  // the other block's edge passes the point by
+        around_ += std::numbers::pi;
+        place = {cover->block, cover->edge, along};
+        continue;
+      }
+      const int end = way == Way::ahead ? system_.next(cover->edge) : cover->edge;
+      around_ += interior_angle(end);
+      first_ = std::min(first_, end);
+      place =
+          way == Way::ahead ? Place{cover->block, end, 0.0} : Place{cover->block, system_.previous(end), shapes_.edge(system_.previous(end)).length};
+    }
+    return goes_on;
+  }
+
+  /// Makes one line of two edges of which one ends where the other one begins, if what they touch is one joint and they bend by no more than
+  /// rounding.
+  void join(const Place& back, const Place& ahead) {
+    const Edge &before = shapes_.edge(back.edge), &after = shapes_.edge(ahead.edge);
+    const bool meet_by_their_ends = back.along == before.length && ahead.along == 0.0;
+    const double bend = std::abs(cross(before.direction, after.direction)) * std::min(before.length, after.length);
+    const bool is_one_joint =
+        system_.block(back.block).material == system_.block(ahead.block).material && system_.edge_joint(back.edge) == system_.edge_joint(ahead.edge);
+    if (!meet_by_their_ends || !is_one_joint || bend > widest_slit || outline_.lines_[back.edge].seam_at_end != none) return;
+    outline_.lines_[back.edge].seam_at_end = outline_.lines_[ahead.edge].seam_at_start = static_cast<int>(outline_.seams_.size());
+    outline_.seams_.push_back({0.5 * (before.end() + after.start), (before.direction + after.direction).normalized(), back.edge, ahead.edge});
+    outline_.has_seam_[back.block] = outline_.has_seam_[ahead.block] = true;
+    outline_.is_marked_[back.edge] = outline_.is_marked_[ahead.edge] = true;
+    const auto [least, other] = std::minmax(outline_.joined_[back.block], outline_.joined_[ahead.block]);
+    for (int& block : outline_.joined_) block = block == other ? least : block;
+  }
+
+  void measure_lines() {
+    std::vector<int> edges;
+    for (const Seam& first : outline_.seams_) {
+      if (outline_.lines_[first.before].seam_at_start != none) continue;
+      edges.assign(1, first.before);
+      double length = 0.0;
+      while (true) {
+        Line& line = outline_.lines_[edges.back()];
+        line.straight.before = length;
+        length += shapes_.edge(edges.back()).length;
+        if (line.seam_at_end == none) break;
+        edges.push_back(outline_.seams_[line.seam_at_end].after);
+      }
+      edges.pop_back();  // nothing is after the last one, not even what rounding would leave
+      for (const int e : edges) {
+        Straight& straight = outline_.lines_[e].straight;
+        straight.after = length - straight.before - shapes_.edge(e).length;
+      }
+    }
+  }
+
+  const BlockSystem& system_;
+  GroundOutline& outline_;
+  BlockShapes shapes_;
+  std::vector<Box> boxes_;
+  std::unordered_map<int, std::vector<Cover>> covers_;  ///< of edges
+  double around_ = 0.0;                                 ///< [rad] of ground at the vertex
+  int first_ = 0;                                       ///< of the vertices there
+};
+
+GroundOutline::GroundOutline(const BlockSystem& system) {
+  if (system.block_count() - system.free_count() - static_cast<int>(system.resting_blocks().size()) > 1) Survey(system, *this).run();
+}
+
+bool GroundOutline::covers(int edge, double along, double margin) const {
+  const std::vector<Part>* inside = is_marked(edge) ? find(inside_, edge) : nullptr;
+  return inside && std::ranges::any_of(*inside, [&](const Part& part) { return part.first + margin < along && along < part.second - margin; });
+}
+
+GroundOutline::Straight GroundOutline::straight_on(int edge) const {
+  const Line* line = is_marked(edge) ? find(lines_, edge) : nullptr;
+  return line ? line->straight : Straight();
+}
+
+GroundOutline::Spans GroundOutline::spans(const BlockSystem& system, int vertex) const {
+  const auto along = [](const Vec2& span, double more) -> Vec2 { return more > 0.0 ? span * (1.0 + more / span.norm()) : span; };
+  const Corner* there = corner(vertex);
+  if (!there) {
+    const int arriving = system.previous(vertex);
+    return {along(system.arm(system.next(vertex)) - system.arm(vertex), straight_on(vertex).after),
+            along(system.arm(arriving) - system.arm(vertex), straight_on(arriving).before)};
+  }
+  // Where a straight face has a joint of its own on each side of a vertex, each side is its own block's.
+  const bool is_straight = there->kind == Kind::straight;
+  const auto of = [&](const Side& side, int own, double more) -> Vec2 {
+    return is_straight && side.edge != own ? Vec2::Zero() : along(side.span, more);
+  };
+  return {of(there->ahead, vertex, straight_on(there->ahead.edge).after),
+          of(there->back, system.previous(vertex), straight_on(there->back.edge).before)};
+}
+
+GroundOutline::BlockEdge GroundOutline::edge_ahead(int block, int vertex) const {
+  const Corner* there = corner(vertex);
+  return there ? BlockEdge(there->ahead.block, there->ahead.edge) : BlockEdge(block, vertex);
+}
+
+GroundOutline::BlockEdge GroundOutline::edge_back(const BlockSystem& system, int block, int vertex) const {
+  const Corner* there = corner(vertex);
+  return there ? BlockEdge(there->back.block, there->back.edge) : BlockEdge(block, system.previous(vertex));
+}
+
+bool GroundOutline::is_in_front(int edge, const Vec2& point) const {
+  const Line* line = is_marked(edge) ? find(lines_, edge) : nullptr;
+  if (!line) return true;
+  const auto is_beyond = [&](int seam) { return seams_[seam].onwards.dot(point - seams_[seam].point) >= 0.0; };
+  return (line->seam_at_start == none || is_beyond(line->seam_at_start)) && (line->seam_at_end == none || !is_beyond(line->seam_at_end));
+}
+
+const std::vector<int>& GroundOutline::beside(int block) const {
+  static const std::vector<int> nothing;
+  const std::vector<int>* blocks = find(beside_, block);
+  return blocks ? *blocks : nothing;
+}
+
+std::size_t GroundOutline::bytes() const {
+  std::size_t bytes = bytes_of(is_marked_, has_seam_, seams_) + corners_.size() * sizeof(Corner) + lines_.size() * sizeof(Line);
+  for (const auto& [edge, parts] : inside_) bytes += bytes_of(parts);
+  for (const auto& [block, blocks] : beside_) bytes += bytes_of(blocks);
+  return bytes;
+}
+
+}  // namespace openclose
