@@ -242,3 +242,27 @@ TEST_CASE("a tip does not touch a face away from its ends over the tip of a thir
   blocks.push_back(free_block("between", {{-far, 0.0}, {0.0, 0.0}, {-far, rise}}));
   CHECK_FALSE(touch());
 }
+
+TEST_CASE("a tip at a seam stands on one of its pieces, and the end of the last one is a corner", "[contact][ground]") {
+  // Lengths that do not add up without rounding.
+  std::vector<BlockInput> blocks;
+  double x = 0.0;
+  const double first = GENERATE(0.1, 0.11, 0.13, 0.17, 0.19, 0.23, 0.29, 0.31);
+  for (const double length : {first, 0.7, 0.3}) {
+    blocks.push_back(fixed_block("piece", rectangle(x, -1.0, length, 1.0)));
+    x += length;
+  }
+  SECTION("a tip") {
+    const Vec2 seam = blocks[1].vertices[3];
+    blocks.push_back(free_block("tip", {seam, seam + Vec2(0.5, 0.5), seam + Vec2(-0.5, 0.5)}));
+    const Detection d(scene_with(blocks));
+    CHECK(d.contacts.size() == 1);
+  }
+  SECTION("a block that overhangs both ends") {
+    blocks.push_back(free_block("block", rectangle(-0.2, 0.0, 2.0, 0.5)));
+    Detection d(scene_with(blocks));
+    CHECK(d.contacts.size() == 2);
+    CHECK(d.length(3, 12) == Approx(0.5 * x));   // the upper left corner of the first piece
+    CHECK(d.length(10, 12) == Approx(0.5 * x));  // the upper right one of the last
+  }
+}
