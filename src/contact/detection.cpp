@@ -289,7 +289,7 @@ void Detector::exchange(Archive& archive) {
 Memory Detector::memory() const {
   Memory of;
   of.blocks = bytes_of(searched_at_, searched_moving_at_, places_, ways_, pairs_of_start_, restless_, in_due_pairs_, is_restless_, in_due_pair_) +
-              shapes_.bytes();
+              shapes_.bytes() + (ground_ ? ground_->bytes() : 0);
   of.contacts = bytes_of(candidates_.pairs, candidates_.states, candidates_.ranges, pairs_of_, changes_, due_pairs_, around_due_, found_, kept_,
                          lives_on_, born_, gone_) +
                 bytes_of(resting_.pairs, resting_.states, resting_.ranges) + index_.bytes() + marks_.bytes();

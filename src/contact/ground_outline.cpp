@@ -212,8 +212,9 @@ class GroundOutline::Survey {
     outline_.seams_.push_back({0.5 * (before.end() + after.start), (before.direction + after.direction).normalized(), back.edge, ahead.edge});
     outline_.has_seam_[back.block] = outline_.has_seam_[ahead.block] = true;
     outline_.is_marked_[back.edge] = outline_.is_marked_[ahead.edge] = true;
-    const auto [least, other] = std::minmax(outline_.joined_[back.block], outline_.joined_[ahead.block]);
-    for (int& block : outline_.joined_) block = block == other ? least : block;
+    // Copies: these numbers change in the list.
+    const std::pair<int, int> both = std::minmax(outline_.joined_[back.block], outline_.joined_[ahead.block]);
+    for (int& block : outline_.joined_) block = block == both.second ? both.first : block;
   }
 
   void measure_lines() {

@@ -12,9 +12,9 @@
 //
 // Corners that meet corners have rules of their own: corner_meetings.h.
 //
-// Where it is not continuous: a lone corner within edge_end of the seam of two collinear edges has a contact with both; it loses its length where it
-// leaves the end of an edge that nothing continues; and at a corner the contact passes from one edge to the next with its gap, not with its
-// direction. What becomes of the energy held there stands in history.h: it never grows.
+// Where it is not continuous: a lone corner within edge_end of the seam of two free blocks' collinear edges has a contact with both; it loses its
+// length where it leaves the end of an edge that nothing continues; and at a corner the contact passes from one edge to the next with its gap, not
+// with its direction. What becomes of the energy held there stands in history.h: it never grows.
 //
 // At four-block corners the diagonal blocks have facing edges without overlap and no lone corner, hence no contact: they cannot lock. Where the
 // joints cross at less than parallel_none, the blocks above and below both face each other over one of the others, which keeps their contact out.

@@ -10,11 +10,11 @@
 
 namespace openclose {
 
-/// free_blocks: at least one of the two is free.
+/// free_blocks: at least one of the two is free; fixed_blocks: both are fixed.
 enum class PairsOf { free_blocks, fixed_blocks };
 
-/// Pairs of blocks whose boxes overlap, but for those that are more than `room` [m] apart: in a slope with an inclined
-/// joint set four out of five. In ascending order, the lower number first.
+/// Pairs of blocks whose boxes overlap, but for those that are more than `room` [m] apart: in a slope with an inclined joint set four out of five. In
+/// ascending order, the lower number first.
 /// By sweeping along x within strips of y that are as high as the middling box: in a plane full of blocks each strip holds few at a time, so that the
 /// work grows with the number of blocks, and a block that is larger than others is only in more strips.
 /// \param boxes  of all blocks, with what is to count as near around them

@@ -54,13 +54,13 @@ bool stays_on_line(const BlockSystem& system, const GroundOutline& ground, int b
   const auto next = [&](int b, int v) { return next_of(is_forward ? ground.edge_ahead(b, v) : ground.edge_back(system, b, v)); };
   const Vec2 start = system.position(from.vertex_block, from.vertex);
   auto [at_block, v] = block == from.vertex_block ? next(block, from.vertex) : next_of({block, from.edge});
-  const int first = v;
-  do {
+  // An outline that does not leave the line comes round within as many steps as there are vertices.
+  for (std::size_t k = 0; k < system.state().arm.size(); ++k) {
     const Vec2 way = system.position(at_block, v) - start;
     if (line.along.dot(way) >= ahead) return true;
     if (std::abs(cross(line.along, way)) > 2.0 * gap) return false;
     std::tie(at_block, v) = next(at_block, v);
-  } while (v != first);
+  }
   return false;
 }
 
@@ -120,7 +120,7 @@ std::vector<JointSection> joint_sections(const BlockSystem& system, const Ground
     if (joined[i].length == 0.0) continue;
     const Contact& contact = contacts[i];
     const Line line(system, ground, contact, joined[i]);
-    std::vector<Growing>& known = of_blocks[std::minmax(ground.joined(contact.vertex_block), ground.joined(contact.edge_block))];
+    std::vector<Growing>& known = of_blocks[std::minmax({ground.joined(contact.vertex_block), ground.joined(contact.edge_block)})];
     auto growing = std::ranges::find_if(known, [&](const Growing& g) { return g.line.continues(line, gap); });
     if (growing == known.end()) growing = known.insert(known.end(), {line, {}});
     const double at = growing->line.along.dot(line.corner - growing->line.corner);

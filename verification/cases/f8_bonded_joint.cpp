@@ -45,7 +45,7 @@ void overhang(Report& report, const std::string& method, int pieces, bool of_one
   const double part = of_one_rock ? 1.0 : (1.0 + 2.0 / (n * n)) / (1.0 + 2.0 / n);
   report.relative(text(of_one_rock ? "overhang, blocks of the wall: {:g}" : "overhang, pieces of its joint: {:g}", n), method,
                   part * tension * section / moment, strength_reduction_factor(report, scene), width, "-",
-                  std::string("sigma L^2/(6 M) (1 + 2/n^2)/(1 + 2/n)") + bracket);
+                  std::string(of_one_rock ? "sigma L^2/(6 M)" : "sigma L^2/(6 M) (1 + 2/n^2)/(1 + 2/n)") + bracket);
 }
 
 /// A drawing has corners in faces, out of the straight line or in it by its rounding: the joint stays one.
