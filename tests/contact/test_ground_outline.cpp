@@ -239,6 +239,23 @@ TEST_CASE("a foot is held at every place of its way over a seam of the ground", 
   }
 }
 
+TEST_CASE("a foot that goes to and fro over a seam of the ground by less than lists are late is held all the time", "[contact][ground]") {
+  // The piece that it leaves is looked at because its end is near; the one to which it goes has nothing near, and is looked at with it.
+  const double start = GENERATE(-9e-5, -4e-5, -1e-5, 1e-5, 4e-5, 9e-5);
+  Detection d(
+      scene_with({fixed_block("left", {{-5.0, -1.0}, {-1.0, -1.0}, {0.0, 0.0}, {-5.0, 0.0}}),
+                  fixed_block("right", {{-1.0, -1.0}, {5.0, -1.0}, {5.0, 0.0}, {0.0, 0.0}}), free_block("block", rectangle(start, 0.0, 1.0, 1.0))}),
+      0.05, DetectionSkips());
+  double x = start;
+  for (int step = 0; step < 300; ++step) {
+    const double next = start + 1e-4 * std::sin(0.1 * step);
+    d.move(2, next - x, 0.0);
+    x = next;
+    d.update();
+    REQUIRE(d.contacts.size() == 2);
+  }
+}
+
 TEST_CASE("a tip does not touch a face away from its ends over the tip of a third block", "[contact][detection]") {
   // The lower side of "above" is 10 degrees from the floor, with a wedge between them that ends where the two meet.
   const double far = 2.0, rise = far * std::tan(10.0 * degree);
