@@ -25,7 +25,7 @@ std::string bent_joints_in_words(const Simulation& simulation) {
       pulls_at_edges(joint_sections(simulation.system(), ground, contacts, joined, gap), contacts.size(), [&](int i) -> EndOfJoint {
         const Contact& contact = contacts[i];
         const ContactStrength strength(joints.joint(contact.joint), contact);
-        return {contact.normal_force, contact.status == ContactStatus::open ? 0.0 : strength.tension, contact.length};
+        return {contact.normal_force, contact.status == ContactStatus::open ? 0.0 : strength.tension, contact.length * contact.joint_state.joined};
       });
   constexpr double rounding = 1e-6;  // [-]
   const auto count = std::ranges::count_if(pulls, [](double pull) { return pull > 1.0 + rounding; });

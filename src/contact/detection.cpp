@@ -9,6 +9,7 @@
 
 #include "openclose/contact/heirs.h"
 #include "openclose/contact/history.h"
+#include "openclose/contact/joined_faces.h"
 #include "openclose/contact/narrow_phase.h"
 #include "openclose/contact/near_blocks.h"
 #include "openclose/core/tolerance.h"
@@ -25,6 +26,17 @@ Vec2 turned_little_by(double angle, const Vec2& r) {
   if (std::abs(angle) >= small) return Motion::turned_by(angle, r, RotationKind::exact);
   const double q = angle * angle;
   return angle * (1.0 - q / 6.0 * (1.0 - q / 20.0 * (1.0 - q / 42.0))) * perpendicular(r) - 0.5 * q * (1.0 - q / 12.0 * (1.0 - q / 30.0)) * r;
+}
+
+/// Sets JointState::joined of the contacts of a drawing.
+void join_faces(const BlockSystem& system, const GroundOutline& ground, std::vector<Contact>& drawn) {
+  constexpr double whole = 1.0 - 1e-9;  // [-] what rounding leaves out of a face is none of it
+  const double gap = closed_gap * system.median_size();
+  for (Contact& c : drawn) {
+    if (!c.joint_state.bonded) continue;
+    const double part = joined_at(system, ground, c, gap).length / c.length;
+    c.joint_state.joined = part >= whole ? 1.0 : part;
+  }
 }
 
 }  // namespace
@@ -332,6 +344,7 @@ bool Detector::update(const BlockSystem& system, const JointTable& joints, Conta
   const Neighbours neighbours(candidates_.pairs, pairs_of_start_, pairs_of_);
   NarrowPhase narrow(system, present, reach_ + skips_.contact_skin, first_, shapes_, index_, neighbours, *ground_);
   for (const int pair : due_pairs_) redo(joints, system, pair, narrow, moving);
+  if (first_) join_faces(system, *ground_, found_);
   if (!first_) counters_.transfers += pass_on_history(system, moving, gone_, found_, born_);
   put_in_place(moving, orphans);
   if (due_pairs_.size() == candidates_.pairs.size()) index_.let_go();  // later ones are few

@@ -57,12 +57,12 @@ class GroundOutline::Survey {
 
   void run() {
     for (int b = 0; b < system_.block_count(); ++b) boxes_.push_back(shapes_.box(b).inflated(widest_slit));
+    outline_.body_.resize(system_.block_count());
+    std::iota(outline_.body_.begin(), outline_.body_.end(), 0);
     for (const auto& [a, b] : near_blocks(system_, boxes_, shapes_, widest_slit, PairsOf::fixed_blocks)) find_covers(a, b);
     if (covers_.empty()) return;
     outline_.is_marked_.assign(system_.state().arm.size(), false);
     outline_.has_seam_.assign(system_.block_count(), false);
-    outline_.joined_.resize(system_.block_count());
-    std::iota(outline_.joined_.begin(), outline_.joined_.end(), 0);
     for (int b = 0; b < system_.block_count(); ++b) {
       if (system_.block(b).equation != BlockSystem::fixed) continue;
       for_vertices(b, [&](int v) {
@@ -77,6 +77,7 @@ class GroundOutline::Survey {
   /// A part of an edge, and the edge that lies against it.
   struct Cover {
     double from, to;  ///< [m] along the edge
+    double across;    ///< [m] from one to the other, or by which they overlap
     int block, edge;
   };
   /// A place on an edge, from which the outline goes on along it or up to which it has come.
@@ -100,6 +101,10 @@ class GroundOutline::Survey {
     if (!touch) return;
     outline_.beside_[a].push_back(b);
     outline_.beside_[b].push_back(a);
+    if (system_.block(a).material != system_.block(b).material) return;
+    // Copies: these numbers change in the list.
+    const std::pair<int, int> both = std::minmax(outline_.body_[a], outline_.body_[b]);
+    for (int& body : outline_.body_) body = body == both.second ? both.first : body;
   }
 
   /// Whether edges of two blocks lie against each other. Drawings are rounded to millimetres: the blocks may overlap by that.
@@ -109,20 +114,24 @@ class GroundOutline::Survey {
     const double from = std::max(0.0, edge.along(other.end())), to = std::min(edge.length, edge.along(other.start));
     if (to - from < tolerance::shortest_edge_m) return false;
     const auto point = [&](double along) -> Vec2 { return edge.start + along * edge.direction; };
-    const auto lies_against = [&](double along) {
-      const double gap = other.gap(point(along));
-      return gap <= widest_slit && gap >= -tolerance::deepest_initial_overlap_m;
-    };
-    if (!lies_against(from) || !lies_against(to)) return false;
+    const double gap_from = other.gap(point(from)), gap_to = other.gap(point(to));
+    if (std::max(gap_from, gap_to) > widest_slit || std::min(gap_from, gap_to) < -tolerance::deepest_initial_overlap_m) return false;
+    const double apart = std::max(std::abs(gap_from), std::abs(gap_to));
     const Vec2 middle = point(0.5 * (from + to)), across = other.start + other.along(middle) * other.direction;
     const double probe = std::max(0.0, other.gap(middle)) + std::min(probe_depth, probe_of_length * (to - from));
     if (!contains(polygon_of(shapes_.edges(b)), middle + probe * edge.normal()) ||
         !contains(polygon_of(shapes_.edges(a)), across + probe * other.normal()))
       return false;
     const auto on_other = [&](double along) { return std::clamp(other.along(point(along)), 0.0, other.length); };
-    covers_[e].push_back({from, to, b, f});
-    covers_[f].push_back({on_other(to), on_other(from), a, e});
+    covers_[e].push_back({from, to, apart, b, f});
+    covers_[f].push_back({on_other(to), on_other(from), apart, a, e});
     return true;
+  }
+
+  /// [m] How far from a vertex, along an edge that ends there, the other block may end as well: where the two are apart, or overlap, a line that both
+  /// of them end on cuts their edges so far from each other.
+  double slack(const Cover& cover, int vertex) const {
+    return widest_slit + std::min(tolerance::deepest_initial_overlap_m, cover.across / std::abs(std::tan(interior_angle(vertex))));
   }
 
   void unite_covers(int edge) {
@@ -130,25 +139,32 @@ class GroundOutline::Survey {
     if (covers == covers_.end()) return;
     outline_.is_marked_[edge] = true;
     std::vector<Part>& inside = outline_.inside_[edge];
+    const int end = system_.next(edge);
     const double length = shapes_.edge(edge).length;
     std::ranges::sort(covers->second, {}, &Cover::from);
     for (const Cover& cover : covers->second) {
-      const double from = cover.from <= widest_slit ? -infinite : cover.from, to = cover.to >= length - widest_slit ? infinite : cover.to;
-      if (inside.empty() || from > inside.back().second + widest_slit) {
-        inside.emplace_back(from, to);
-      } else {
-        inside.back().second = std::max(inside.back().second, to);
+      const Part part{cover.from <= slack(cover, edge) ? -infinite : cover.from,
+                      cover.to >= length - slack(cover, end) ? infinite : cover.to,
+                      {cover.block, system_.next(cover.edge)},
+                      {cover.block, cover.edge}};
+      if (inside.empty() || part.from > inside.back().to + widest_slit) {
+        inside.push_back(part);
+      } else if (part.to > inside.back().to) {
+        inside.back().to = part.to;
+        inside.back().at_to = part.at_to;
       }
     }
   }
 
   /// What lies against an edge right beyond a place, on the outline's way.
-  const Cover* cover_beyond(const Place& place, Way way) const {
+  /// \param room  [m] from the place at which that may begin, of a cover
+  template <class Room>
+  const Cover* cover_beyond(const Place& place, Way way, const Room& room) const {
     const std::vector<Cover>* covers = find(covers_, place.edge);
     if (!covers) return nullptr;
     const Cover* farthest = nullptr;
     for (const Cover& c : *covers) {
-      const bool is_here = c.from <= place.along + widest_slit && c.to >= place.along - widest_slit;
+      const bool is_here = c.from <= place.along + room(c) && c.to >= place.along - room(c);
       const bool goes_beyond =
           way == Way::ahead ? c.to > place.along + tolerance::shortest_edge_m : c.from < place.along - tolerance::shortest_edge_m;
       if (!is_here || !goes_beyond) continue;
@@ -180,17 +196,23 @@ class GroundOutline::Survey {
   bool go_around(const Vec2& p, Place& place, Way way) {
     bool goes_on = false;
     while (kind_of(around_) != Kind::inside) {
-      const Cover* cover = cover_beyond(place, way);
+      const double length = shapes_.edge(place.edge).length;
+      const bool is_at_start = place.along == 0.0, is_at_end = place.along == length;
+      const auto room = [&](const Cover& c) {
+        return is_at_start ? slack(c, place.edge) : is_at_end ? slack(c, system_.next(place.edge)) : widest_slit;
+      };
+      const Cover* cover = cover_beyond(place, way, room);
       if (!cover) break;
       goes_on = true;
       const Edge& other = shapes_.edge(cover->edge);
       const double along = other.along(p);
-      if (way == Way::ahead ? along < other.length - widest_slit : along > widest_slit) {  // the other block's edge passes the point by
+      const int end = way == Way::ahead ? system_.next(cover->edge) : cover->edge;
+      const double before_end = way == Way::ahead ? other.length - along : along;
+      if (before_end > std::max(room(*cover), slack(*cover, end))) {  // the other block's edge passes the point by
         around_ += std::numbers::pi;
         place = {cover->block, cover->edge, along};
         continue;
       }
-      const int end = way == Way::ahead ? system_.next(cover->edge) : cover->edge;
       around_ += interior_angle(end);
       first_ = std::min(first_, end);
       place =
@@ -212,9 +234,6 @@ class GroundOutline::Survey {
     outline_.seams_.push_back({0.5 * (before.end() + after.start), (before.direction + after.direction).normalized(), back.edge, ahead.edge});
     outline_.has_seam_[back.block] = outline_.has_seam_[ahead.block] = true;
     outline_.is_marked_[back.edge] = outline_.is_marked_[ahead.edge] = true;
-    // Copies: these numbers change in the list.
-    const std::pair<int, int> both = std::minmax(outline_.joined_[back.block], outline_.joined_[ahead.block]);
-    for (int& block : outline_.joined_) block = block == both.second ? both.first : block;
   }
 
   void measure_lines() {
@@ -222,18 +241,13 @@ class GroundOutline::Survey {
     for (const Seam& first : outline_.seams_) {
       if (outline_.lines_[first.before].seam_at_start != none) continue;
       edges.assign(1, first.before);
-      double length = 0.0;
-      while (true) {
-        Line& line = outline_.lines_[edges.back()];
-        line.straight.before = length;
-        length += shapes_.edge(edges.back()).length;
-        if (line.seam_at_end == none) break;
-        edges.push_back(outline_.seams_[line.seam_at_end].after);
-      }
-      edges.pop_back();  // nothing is after the last one, not even what rounding would leave
+      for (int seam; (seam = outline_.lines_[edges.back()].seam_at_end) != none;) edges.push_back(outline_.seams_[seam].after);
+      // The first one has nothing before it and the last one nothing after it, not even what rounding would leave.
+      const Vec2 start = shapes_.edge(edges.front()).start, end = shapes_.edge(edges.back()).end();
       for (const int e : edges) {
-        Straight& straight = outline_.lines_[e].straight;
-        straight.after = length - straight.before - shapes_.edge(e).length;
+        const Edge& edge = shapes_.edge(e);
+        if (e != edges.front()) outline_.lines_[e].straight.before = -edge.along(start);
+        if (e != edges.back()) outline_.lines_[e].straight.after = edge.along(end) - edge.length;
       }
     }
   }
@@ -253,7 +267,7 @@ GroundOutline::GroundOutline(const BlockSystem& system) {
 
 bool GroundOutline::covers(int edge, double along, double margin) const {
   const std::vector<Part>* inside = is_marked(edge) ? find(inside_, edge) : nullptr;
-  return inside && std::ranges::any_of(*inside, [&](const Part& part) { return part.first + margin < along && along < part.second - margin; });
+  return inside && std::ranges::any_of(*inside, [&](const Part& part) { return part.from + margin < along && along < part.to - margin; });
 }
 
 GroundOutline::Straight GroundOutline::straight_on(int edge) const {
@@ -269,13 +283,16 @@ GroundOutline::Spans GroundOutline::spans(const BlockSystem& system, int vertex)
     return {along(system.arm(system.next(vertex)) - system.arm(vertex), straight_on(vertex).after),
             along(system.arm(arriving) - system.arm(vertex), straight_on(arriving).before)};
   }
-  // Where a straight face has a joint of its own on each side of a vertex, each side is its own block's.
-  const bool is_straight = there->kind == Kind::straight;
-  const auto of = [&](const Side& side, int own, double more) -> Vec2 {
-    return is_straight && side.edge != own ? Vec2::Zero() : along(side.span, more);
-  };
-  return {of(there->ahead, vertex, straight_on(there->ahead.edge).after),
-          of(there->back, system.previous(vertex), straight_on(there->back.edge).before)};
+  return {along(there->ahead.span, straight_on(there->ahead.edge).after), along(there->back.span, straight_on(there->back.edge).before)};
+}
+
+GroundOutline::Spans GroundOutline::own_spans(const BlockSystem& system, int vertex) const {
+  Spans own = spans(system, vertex);
+  if (const Corner* there = corner(vertex)) {
+    if (there->ahead.edge != vertex) own.ahead = Vec2::Zero();
+    if (there->back.edge != system.previous(vertex)) own.back = Vec2::Zero();
+  }
+  return own;
 }
 
 GroundOutline::BlockEdge GroundOutline::edge_ahead(int block, int vertex) const {
@@ -286,6 +303,29 @@ GroundOutline::BlockEdge GroundOutline::edge_ahead(int block, int vertex) const 
 GroundOutline::BlockEdge GroundOutline::edge_back(const BlockSystem& system, int block, int vertex) const {
   const Corner* there = corner(vertex);
   return there ? BlockEdge(there->back.block, there->back.edge) : BlockEdge(block, system.previous(vertex));
+}
+
+GroundOutline::BlockVertex GroundOutline::end_ahead(const BlockSystem& system, const BlockEdge& edge, const Vec2& from) const {
+  const int end = system.next(edge.second);
+  if (const std::vector<Part>* inside = is_marked(edge.second) ? find(inside_, edge.second) : nullptr) {
+    const Vec2 direction = (system.arm(end) - system.arm(edge.second)).normalized();
+    const double along = direction.dot(from - system.position(edge.first, edge.second));
+    for (const Part& part : *inside) {
+      if (part.from >= along - widest_slit) return part.at_from;
+    }
+  }
+  return {edge.first, end};
+}
+
+GroundOutline::BlockVertex GroundOutline::end_back(const BlockSystem& system, const BlockEdge& edge, const Vec2& from) const {
+  if (const std::vector<Part>* inside = is_marked(edge.second) ? find(inside_, edge.second) : nullptr) {
+    const Vec2 direction = (system.arm(system.next(edge.second)) - system.arm(edge.second)).normalized();
+    const double along = direction.dot(from - system.position(edge.first, edge.second));
+    for (auto part = inside->rbegin(); part != inside->rend(); ++part) {
+      if (part->to <= along + widest_slit) return part->at_to;
+    }
+  }
+  return edge;
 }
 
 bool GroundOutline::is_in_front(int edge, const Vec2& point) const {

@@ -56,15 +56,23 @@ class GroundOutline {
     Vec2 ahead, back;
   };
   Spans spans(const BlockSystem& system, int vertex) const;
+  /// The same with zero for an edge that begins or ends at another block's vertex: together the vertices of a corner have each of its edges once.
+  Spans own_spans(const BlockSystem& system, int vertex) const;
   /// A block and an edge of it.
   using BlockEdge = std::pair<int, int>;
   /// The edge that begins at a vertex of a block, and the one that ends there: of the outline if it is one of the ground.
   BlockEdge edge_ahead(int block, int vertex) const;
   BlockEdge edge_back(const BlockSystem& system, int block, int vertex) const;
+  /// A block and a vertex of it.
+  using BlockVertex = std::pair<int, int>;
+  /// To which vertex the outline goes from a point of it along an edge, and from which one it has come: the edge's end, or that of another block that
+  /// lies against the edge from there on.
+  BlockVertex end_ahead(const BlockSystem& system, const BlockEdge& edge, const Vec2& from) const;
+  BlockVertex end_back(const BlockSystem& system, const BlockEdge& edge, const Vec2& from) const;
   /// Whether a point is in front of this one of the edges that make a line. In front of the line it is in front of exactly one of them.
   bool is_in_front(int edge, const Vec2& point) const;
-  /// The least number of the blocks that have such a line in common with this one; its own if there is none.
-  int joined(int block) const { return joined_.empty() ? block : joined_[block]; }
+  /// The least number of the blocks that are one body with this one, of one rock and against each other; its own if nothing lies against it.
+  int body(int block) const { return body_.empty() ? block : body_[block]; }
   /// Whether an edge of this block is a part of such a line.
   bool has_seam(int block) const { return !has_seam_.empty() && has_seam_[block]; }
   /// The fixed blocks that lie against this one.
@@ -84,8 +92,11 @@ class GroundOutline {
     int seam_at_start = none, seam_at_end = none;
     Straight straight;
   };
-  /// [m] A part of an edge, from and to; infinite where it reaches the edge's end.
-  using Part = std::pair<double, double>;
+  /// A part of an edge that others lie against.
+  struct Part {
+    double from, to;             ///< [m]; infinite where it reaches the edge's end
+    BlockVertex at_from, at_to;  ///< of the others
+  };
   static constexpr int none = -1;
 
   template <class Value>
@@ -96,7 +107,7 @@ class GroundOutline {
   bool is_marked(int vertex) const { return !is_marked_.empty() && is_marked_[vertex]; }
 
   std::vector<char> is_marked_, has_seam_;             ///< vertices and edges of which there is something below; blocks; or empty
-  std::vector<int> joined_;                            ///< of the blocks; or empty
+  std::vector<int> body_;                              ///< of the blocks; or empty
   std::unordered_map<int, Corner> corners_;            ///< of vertices
   std::unordered_map<int, std::vector<Part>> inside_;  ///< of edges, in order
   std::vector<Seam> seams_;

@@ -9,18 +9,19 @@
 namespace openclose {
 
 struct JointState {
-  bool bonded = true;  ///< cohesion and tensile strength are there, or what slip has left of them
-  double slip = 0.0;   ///< [m] of friction while it was bonded; of joints with a slip-weakening distance
+  bool bonded = true;   ///< cohesion and tensile strength are there, or what slip has left of them
+  double slip = 0.0;    ///< [m] of friction while it was bonded; of joints with a slip-weakening distance
+  double joined = 1.0;  ///< [-] part of the tributary length along which the drawing has faces on each other: what cohesion and tension act on
 
   bool operator==(const JointState&) const = default;
   /// For sums and comparisons.
-  std::array<double, 2> numbers() const {
-    const auto& [a, b] = *this;  // all of them: one more does not compile here
-    return {a ? 1.0 : 0.0, b};
+  std::array<double, 3> numbers() const {
+    const auto& [a, b, c] = *this;  // all of them: one more does not compile here
+    return {a ? 1.0 : 0.0, b, c};
   }
   void exchange(Archive& archive) {
-    auto& [a, b] = *this;
-    archive(a, b);
+    auto& [a, b, c] = *this;
+    archive(a, b, c);
   }
 };
 

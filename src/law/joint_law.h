@@ -27,8 +27,8 @@ inline double weakening(const JointProperties& joint, const JointState& state) {
 /// Strength of one contact: Mohr-Coulomb with tension cut-off, per metre of thickness.
 struct ContactStrength {
   double friction = 0.0;  ///< [-] tan(friction angle), what slip has left of it, the residual one once the bond is broken
-  double cohesion = 0.0;  ///< [N] cohesion times tributary length, 0 once lost
-  double tension = 0.0;   ///< [N] tensile strength times tributary length, 0 once lost
+  double cohesion = 0.0;  ///< [N] cohesion times what is joined of the tributary length, 0 once lost
+  double tension = 0.0;   ///< [N] tensile strength times the same, 0 once lost
 
   ContactStrength() = default;
   /// What the state of a joint leaves of its strength.
@@ -36,8 +36,9 @@ struct ContactStrength {
   ContactStrength(const TabulatedJoint& joint, double length, const JointState& state)
       : friction(state.bonded ? joint.friction : joint.residual_friction) {
     const bool intact = state.bonded || joint.cohesion_behaviour == CohesionBehaviour::ductile;
-    cohesion = intact ? joint.cohesion * length : 0.0;
-    tension = state.bonded ? joint.tensile_strength * length : 0.0;
+    const double joined = state.joined * length;
+    cohesion = intact ? joint.cohesion * joined : 0.0;
+    tension = state.bonded ? joint.tensile_strength * joined : 0.0;
     if (state.bonded && state.slip > 0.0) weaken(joint, weakening(joint, state));
   }
   /// Of a contact in its present state.

@@ -21,9 +21,6 @@
 
 namespace openclose {
 
-/// [-] of the unit of length: a joint drawn open or overlapping by less is closed, unless another block lies in between. Drawings of blocks of a
-/// metre are rounded to the millimetre.
-inline constexpr double closed_gap = 1e-3;
 /// [m] By which lengths are divided: the root of the median area of the free blocks; 1 if there are none.
 double frozen_length_unit(const Scene& scene);
 

@@ -25,7 +25,7 @@ struct Line {
         corner(system.position(contact.vertex_block, contact.vertex)),
         ahead(joined.ahead),
         behind(joined.behind) {
-    if (ground.joined(contact.edge_block) < ground.joined(contact.vertex_block)) return;
+    if (ground.body(contact.edge_block) < ground.body(contact.vertex_block)) return;
     along = -along;
     std::swap(ahead, behind);
   }
@@ -47,13 +47,15 @@ struct Growing {
 bool stays_on_line(const BlockSystem& system, const GroundOutline& ground, int block, const Line& line, const Contact& from, double ahead,
                    double gap) {
   const int other = block == from.vertex_block ? from.edge_block : from.vertex_block;
-  const bool is_forward = ground.joined(block) < ground.joined(other);  // the outlines of two blocks run against each other
-  const auto next_of = [&](const GroundOutline::BlockEdge& edge) {
-    return std::pair(edge.first, is_forward ? system.next(edge.second) : edge.second);
+  const bool is_forward = ground.body(block) < ground.body(other);  // the outlines of two blocks run against each other
+  const auto end_of = [&](const GroundOutline::BlockEdge& edge, const Vec2& point) {
+    return is_forward ? ground.end_ahead(system, edge, point) : ground.end_back(system, edge, point);
   };
-  const auto next = [&](int b, int v) { return next_of(is_forward ? ground.edge_ahead(b, v) : ground.edge_back(system, b, v)); };
+  const auto next = [&](int b, int v) {
+    return end_of(is_forward ? ground.edge_ahead(b, v) : ground.edge_back(system, b, v), system.position(b, v));
+  };
   const Vec2 start = system.position(from.vertex_block, from.vertex);
-  auto [at_block, v] = block == from.vertex_block ? next(block, from.vertex) : next_of({block, from.edge});
+  auto [at_block, v] = block == from.vertex_block ? next(block, from.vertex) : end_of({block, from.edge}, start);
   // An outline that does not leave the line comes round within as many steps as there are vertices.
   for (std::size_t k = 0; k < system.state().arm.size(); ++k) {
     const Vec2 way = system.position(at_block, v) - start;
@@ -87,29 +89,6 @@ void fill_holes(const BlockSystem& system, const GroundOutline& ground, const st
 
 }  // namespace
 
-Joined joined_at(const BlockSystem& system, const GroundOutline& ground, const Contact& contact, double gap) {
-  const Vec2 start = system.position(contact.edge_block, contact.edge), end = system.position(contact.edge_block, system.next(contact.edge));
-  const Vec2 along = (end - start).normalized(), outward = -perpendicular(along);
-  const auto [before, after] = ground.straight_on(contact.edge);
-  const double begin = -before, length = (end - start).norm() + after;
-  const Vec2 corner = system.position(contact.vertex_block, contact.vertex) - start;
-  Joined joined;
-  const auto [ahead, back] = ground.spans(system, contact.vertex);
-  for (const bool is_ahead : {true, false}) {
-    const Vec2 side = is_ahead ? ahead : back, far = corner + side;
-    // The block lies on the left of its outline: a side that faces the edge runs against it.
-    const double forward = side.dot(along) * (is_ahead ? -1.0 : 1.0);
-    if (forward <= std::cos(tolerance::parallel_none_rad) * side.norm()) continue;
-    const double low = std::max(begin, std::min(corner.dot(along), far.dot(along))),
-                 high = std::min(length, std::max(corner.dot(along), far.dot(along)));
-    const auto off = [&](double x) { return corner.dot(outward) + (x - corner.dot(along)) / side.dot(along) * side.dot(outward); };
-    if (!(high > low) || std::max(std::abs(off(low)), std::abs(off(high))) > gap) continue;
-    (side.dot(along) > 0.0 ? joined.ahead : joined.behind) += 0.5 * (high - low);
-  }
-  joined.length = std::min(joined.ahead + joined.behind, contact.length);
-  return joined;
-}
-
 std::vector<JointSection> joint_sections(const BlockSystem& system, const GroundOutline& ground, const std::vector<Contact>& contacts,
                                          const std::vector<Joined>& joined, double gap) {
   std::map<std::pair<int, int>, std::vector<Growing>> of_blocks;
@@ -120,7 +99,7 @@ std::vector<JointSection> joint_sections(const BlockSystem& system, const Ground
     if (joined[i].length == 0.0) continue;
     const Contact& contact = contacts[i];
     const Line line(system, ground, contact, joined[i]);
-    std::vector<Growing>& known = of_blocks[std::minmax({ground.joined(contact.vertex_block), ground.joined(contact.edge_block)})];
+    std::vector<Growing>& known = of_blocks[std::minmax({ground.body(contact.vertex_block), ground.body(contact.edge_block)})];
     auto growing = std::ranges::find_if(known, [&](const Growing& g) { return g.line.continues(line, gap); });
     if (growing == known.end()) growing = known.insert(known.end(), {line, {}});
     const double at = growing->line.along.dot(line.corner - growing->line.corner);

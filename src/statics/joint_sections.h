@@ -6,19 +6,10 @@
 
 #include "openclose/contact/contact.h"
 #include "openclose/contact/ground_outline.h"
+#include "openclose/contact/joined_faces.h"
 #include "openclose/model/block_system.h"
 
 namespace openclose {
-
-/// What of a contact lies on faces that touch each other [units of length].
-struct Joined {
-  double length = 0.0;               ///< those halves of the faces' overlaps that the contact stands for
-  double ahead = 0.0, behind = 0.0;  ///< of them, what lies along the edge's direction from the corner, and against it
-};
-
-/// The faces at a corner that lie on the edge.
-/// \param gap  [units of length] faces that are no farther apart lie on each other, see closed_gap
-Joined joined_at(const BlockSystem& system, const GroundOutline& ground, const Contact& contact, double gap);
 
 /// A contact as a part of its joint.
 struct PlaceInJoint {

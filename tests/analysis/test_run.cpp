@@ -765,6 +765,42 @@ TEST_CASE("a brick topples off a ledge in steps however short", "[analysis][run]
   }
 }
 
+TEST_CASE("cohesion in a motion acts where faces touch, whole ground or cut", "[analysis][run]") {
+  // The ground falls away by 3 degrees under 45 % of the block, where it does not touch. With cohesion along the whole of its lower side it would
+  // stand.
+  constexpr double end = 0.3, width = 4.0, height = 0.5, touching = 0.55 * width, factor = 0.85;
+  const double dip = 25.0 * test::degree, friction = 1.0 * test::degree, fall = std::tan(3.0 * test::degree) * (20.0 - touching);
+  const std::vector<Vec2> left{{-20.0, -6.0}, {1.0, -6.0}, {touching, 0.0}, {-20.0, 0.0}},
+      right{{1.0, -6.0}, {20.0, -6.0}, {20.0, -fall}, {touching, 0.0}};
+  for (const bool is_cut : {false, true}) {
+    for (const std::string& method : all_methods) {
+      CAPTURE(method, is_cut);
+      std::vector<BlockInput> blocks;
+      blocks.push_back(test::free_block("block", test::rectangle(0.0, 0.0, width, height)));
+      if (is_cut) {
+        blocks.push_back(test::fixed_block("left", left));
+        blocks.push_back(test::fixed_block("right", right));
+      } else {
+        blocks.push_back(test::fixed_block("ground", {left[0], right[1], right[2], left[2], left[3]}));
+      }
+      Scene scene = test::scene_with(blocks);
+      scene.gravity = {9.81 * std::sin(dip), -9.81 * std::cos(dip)};
+      scene.joints[0] = test::frictional_joint(1e10, 4e9, friction);
+      const double weight = 9.81 * scene.materials[0].density * width * height;
+      scene.joints[0].cohesion = weight * (factor * std::sin(dip) - std::cos(dip) * std::tan(friction)) / touching;
+      scene.method.contact = method;
+      scene.method.start = Start::steady_sliding;
+      scene.step.dt = 1e-3;
+      scene.end_time = end;
+      Simulation simulation(scene);
+      REQUIRE(run(simulation, {}).converged);
+      // The block loses of the face that it slides off as much as it slides, half of it counted: far below 1 % of its length.
+      const double slid = Motion::translation(simulation.system().displacement(0)).x();
+      CHECK(slid == Approx(0.5 * 9.81 * std::sin(dip) * (1.0 - factor) * end * end).epsilon(0.05));
+    }
+  }
+}
+
 TEST_CASE("adaptive steps do not wait for a spring that is relieved at once", "[analysis][run]") {
   // With less strength than what its spring carries a slab slips by the rest of the spring's stretch however short the step is: 0.2 mm of 1.
   Scene scene = test::block_on_base();

@@ -162,6 +162,35 @@ TEST_CASE("cohesion between a block and the ground counts the whole face, howeve
   CHECK(factors[1] == Approx(factors[0]).epsilon(2e-4));
 }
 
+TEST_CASE("cohesion acts where a block touches ground in pieces: at a corner, where they overlap, over a step as low as drawings have",
+          "[analysis][strength_reduction]") {
+  struct Ground {
+    const char* name;
+    std::vector<std::vector<Vec2>> pieces;
+    double joined;  // [m] of the block's lower side, which reaches from x = 0 to 4
+  };
+  const double turn = std::tan(3.0 * test::degree), overlap = 5e-5, step = 1e-5;
+  const auto ground = GENERATE_COPY(
+      Ground{"the face falls away beyond a seam", {{{-20, -6}, {1, -6}, {2.5, 0}, {-20, 0}}, {{1, -6}, {30, -6}, {30, -27.5 * turn}, {2.5, 0}}}, 2.5},
+      Ground{"it is whole", {{{-20, -6}, {30, -6}, {30, -27.5 * turn}, {2.5, 0}, {-20, 0}}}, 2.5},
+      Ground{"pieces overlap at a seam that leans ahead",
+             {{{-20, -6}, {1 + overlap, -6}, {2 + overlap, 0}, {-20, 0}}, {{1, -6}, {30, -6}, {30, 0}, {2, 0}}},
+             4},
+      Ground{"that leans back", {{{-20, -6}, {3 + overlap, -6}, {2 + overlap, 0}, {-20, 0}}, {{3, -6}, {30, -6}, {30, 0}, {2, 0}}}, 4},
+      Ground{"the lower piece is lower", {{{-20, -6}, {2, -6}, {2, 0}, {-20, 0}}, {{2, -6}, {30, -6}, {30, -step}, {2, -step}}}, 4},
+      Ground{"the upper piece is lower", {{{-20, -6}, {2, -6}, {2, -step}, {-20, -step}}, {{2, -6}, {30, -6}, {30, 0}, {2, 0}}}, 4});
+  CAPTURE(ground.name);
+  const double height = 0.5, width = 4.0, dip = 40.0 * test::degree, friction = 30.0 * test::degree;
+  std::vector<BlockInput> blocks{test::free_block("block", test::rectangle(0.0, 0.0, width, height))};
+  for (const auto& piece : ground.pieces) blocks.push_back(test::fixed_block("piece", piece));
+  Scene scene = test::scene_with(blocks);
+  scene.gravity = {9.81 * std::sin(dip), -9.81 * std::cos(dip)};
+  scene.joints[0] = test::frictional_joint(1e10, 4e9, friction);
+  const double weight = 9.81 * scene.materials[0].density * width * height;
+  scene.joints[0].cohesion = 0.5 * weight * std::sin(dip) / width;
+  CHECK(factor(scene).stable() == Approx(0.5 * ground.joined / width + std::tan(friction) / std::tan(dip)).epsilon(2e-4));
+}
+
 TEST_CASE("a tip that stands on a seam slides on the seam", "[analysis][strength_reduction]") {
   // A wedge on its tip, held upright between two columns that move with it on a smooth seam of rough rock.
   Scene scene = scene_of_text(R"(

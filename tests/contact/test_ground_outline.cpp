@@ -103,7 +103,7 @@ TEST_CASE("a joint that ends in a straight face of the ground is no corner of it
   CHECK(ground.straight_on(2).after == 0.0);
   CHECK(ground.straight_on(6).before == 0.0);
   CHECK(ground.straight_on(6).after == Approx(2.0));
-  CHECK(ground.joined(1) == 0);
+  CHECK(ground.body(1) == 0);
   CHECK(ground.has_seam(1));
   for (const double x : {-1.0, -1e-9, 1e-9, 1.0}) {
     // The first vertex of the scene is the origin.
@@ -113,14 +113,14 @@ TEST_CASE("a joint that ends in a straight face of the ground is no corner of it
   }
 }
 
-TEST_CASE("blocks that have a straight face in common are joined in whatever order they come", "[contact][ground]") {
+TEST_CASE("blocks that lie against each other are one body in whatever order they come", "[contact][ground]") {
   const std::vector<double> left = GENERATE(std::vector{0.0, 1.0, 2.0, 3.0}, std::vector{3.0, 1.0, 0.0, 2.0}, std::vector{2.0, 0.0, 3.0, 1.0});
   std::vector<BlockInput> blocks;
   for (const double x : left) blocks.push_back(fixed_block("piece", rectangle(x, -1.0, 1.0, 1.0)));
   blocks.push_back(fixed_block("apart", rectangle(6.0, -1.0, 1.0, 1.0)));
   const GroundOutline ground = outline_of(blocks);
-  for (int b = 0; b < 4; ++b) CHECK(ground.joined(b) == 0);
-  CHECK(ground.joined(4) == 4);
+  for (int b = 0; b < 4; ++b) CHECK(ground.body(b) == 0);
+  CHECK(ground.body(4) == 4);
 }
 
 TEST_CASE("what a joint between fixed blocks leaves of a corner", "[contact][ground]") {

@@ -20,7 +20,7 @@ BlockInput base_with_seam() {
 
 void load(Contact& contact) {
   contact.status = ContactStatus::sliding;
-  contact.joint_state = {true, 0.125};
+  contact.joint_state = {true, 0.125, 0.75};
   contact.elastic_slip = 0.25;
   contact.normal_force = 3.0;
   contact.shear_force = -2.0;
@@ -31,7 +31,7 @@ void load(Contact& contact) {
 void check_loaded(const Contact* contact, double shorter = 1.0) {
   REQUIRE(contact != nullptr);
   CHECK(contact->status == ContactStatus::sliding);
-  CHECK(contact->joint_state == JointState{true, 0.125});
+  CHECK(contact->joint_state == JointState{true, 0.125, 0.75});
   CHECK(contact->elastic_slip == Approx(0.25 * std::sqrt(shorter)).epsilon(1e-12));
   CHECK(contact->normal_force == 3.0);
   CHECK(contact->shear_force == -2.0);

@@ -56,6 +56,15 @@ TEST_CASE("strength is the joint's times the tributary length", "[law][strength]
   CHECK(strength.tension == Approx(5e3).epsilon(rounding));
 }
 
+TEST_CASE("cohesion and tension act on what is joined of the tributary length", "[law][strength]") {
+  Contact contact = contact_of_length(0.25);
+  contact.joint_state.joined = 0.4;
+  const ContactStrength strength(TabulatedJoint(joint_with(0.7, 3e4, 2e4)), contact);
+  CHECK(strength.friction == Approx(0.7).epsilon(rounding));
+  CHECK(strength.cohesion == Approx(3e3).epsilon(rounding));
+  CHECK(strength.tension == Approx(2e3).epsilon(rounding));
+}
+
 TEST_CASE("an open or slipped joint keeps only ductile cohesion, and no tension", "[law][strength]") {
   const Contact broken = contact_of_length(0.5, false), bonded = contact_of_length(0.5);
   const auto behaviour = GENERATE(CohesionBehaviour::ductile, CohesionBehaviour::lost_on_opening, CohesionBehaviour::lost_on_slip);

@@ -85,7 +85,7 @@ Scene crossing_joints(const analytical::BlockOnPlane& data, const Crossing& join
   if (joints.has_third) dips.insert(dips.begin() + 1, 0.5 * (joints.steep + joints.shallow));
   scene.blocks = {fixed_block("below", {{-reach, -depth}, {reach, -depth}, at(reach, joints.shallow), corner, at(-reach, joints.steep)}),
                   free_block("above", {at(-reach, joints.shallow), corner, at(reach, joints.steep), {reach, depth}, {-reach, depth}})};
-  for (std::size_t i = 1; i < dips.size(); ++i) {
+  for (int i = 1; i < static_cast<int>(dips.size()); ++i) {
     scene.blocks.push_back(fixed_block(text("behind {}", i), {corner, at(reach, dips[i]), at(reach, dips[i - 1])}));
     scene.blocks.push_back(free_block(text("ahead {}", i), {at(-reach, dips[i - 1]), corner, at(-reach, dips[i])}));
   }
