@@ -8,8 +8,8 @@
 
 namespace openclose {
 
-/// [-] of the size of blocks, BlockSystem::median_size(): faces that are no farther apart, or overlap by no more, lie on each other. Drawings of blocks
-/// of a metre are rounded to the millimetre.
+/// [-] of the size of blocks, BlockSystem::median_size(): faces that are no farther apart, or overlap by no more, lie on each other. Drawings of
+/// blocks of a metre are rounded to the millimetre.
 inline constexpr double closed_gap = 1e-3;
 
 /// What of a contact lies on faces that touch each other [units of length].

@@ -181,8 +181,11 @@ TEST_CASE("cohesion acts where a block touches ground in pieces: at a corner, wh
       Ground{"the upper piece is lower", {{{-20, -6}, {2, -6}, {2, -step}, {-20, -step}}, {{2, -6}, {30, -6}, {30, 0}, {2, 0}}}, 4});
   CAPTURE(ground.name);
   const double height = 0.5, width = 4.0, dip = 40.0 * test::degree, friction = 30.0 * test::degree;
-  std::vector<BlockInput> blocks{test::free_block("block", test::rectangle(0.0, 0.0, width, height))};
+  // Outlines are followed ahead or back by the numbers of the blocks.
+  const bool ground_comes_first = GENERATE(false, true);
+  std::vector<BlockInput> blocks;
   for (const auto& piece : ground.pieces) blocks.push_back(test::fixed_block("piece", piece));
+  blocks.insert(ground_comes_first ? blocks.end() : blocks.begin(), test::free_block("block", test::rectangle(0.0, 0.0, width, height)));
   Scene scene = test::scene_with(blocks);
   scene.gravity = {9.81 * std::sin(dip), -9.81 * std::cos(dip)};
   scene.joints[0] = test::frictional_joint(1e10, 4e9, friction);

@@ -270,24 +270,41 @@ TEST_CASE("a tip does not touch a face away from its ends over the tip of a thir
   CHECK_FALSE(touch());
 }
 
+TEST_CASE("pieces of the ground that overlap by the rounding of a drawing have one face", "[contact][ground]") {
+  const double overlap = GENERATE(1e-5, 2e-4, 9e-4), lean = GENERATE(-2.0, 2.0);
+  CAPTURE(overlap, lean);
+  Detection d(
+      scene_with({fixed_block("left", {{-5.0, -6.0}, {lean + overlap, -6.0}, {overlap, 0.0}, {-5.0, 0.0}}),
+                  fixed_block("right", {{lean, -6.0}, {5.0, -6.0}, {5.0, 0.0}, {0.0, 0.0}}), free_block("block", rectangle(-1.0, 0.0, 2.0, 0.5))}));
+  REQUIRE(d.contacts.size() == 2);
+  CHECK(d.length(8, 2) == Approx(1.0));
+  CHECK(d.length(9, 6) == Approx(1.0));
+}
+
 TEST_CASE("a tip at a seam stands on one of its pieces, and the end of the last one is a corner", "[contact][ground]") {
   // Lengths that do not add up without rounding.
   std::vector<BlockInput> blocks;
   double x = 0.0;
-  const double first = GENERATE(0.1, 0.11, 0.13, 0.17, 0.19, 0.23, 0.29, 0.31);
+  const double first = GENERATE(0.1, 0.11, 0.13, 0.17, 0.19, 0.23, 0.29, 0.31), turn = GENERATE(0.0, 0.3, 1.1);
   for (const double length : {first, 0.7, 0.3}) {
     blocks.push_back(fixed_block("piece", rectangle(x, -1.0, length, 1.0)));
     x += length;
   }
+  const auto turned_scene = [&] {
+    for (BlockInput& block : blocks) {
+      for (Vec2& v : block.vertices) v = Motion::turned_by(turn, v, RotationKind::exact) + v;
+    }
+    return scene_with(blocks);
+  };
   SECTION("a tip") {
     const Vec2 seam = blocks[1].vertices[3];
     blocks.push_back(free_block("tip", {seam, seam + Vec2(0.5, 0.5), seam + Vec2(-0.5, 0.5)}));
-    const Detection d(scene_with(blocks));
+    const Detection d(turned_scene());
     CHECK(d.contacts.size() == 1);
   }
   SECTION("a block that overhangs both ends") {
     blocks.push_back(free_block("block", rectangle(-0.2, 0.0, 2.0, 0.5)));
-    Detection d(scene_with(blocks));
+    Detection d(turned_scene());
     CHECK(d.contacts.size() == 2);
     CHECK(d.length(3, 12) == Approx(0.5 * x));   // the upper left corner of the first piece
     CHECK(d.length(10, 12) == Approx(0.5 * x));  // the upper right one of the last
