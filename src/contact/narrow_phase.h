@@ -161,7 +161,7 @@ class NarrowPhase {
     if (meetings_.is_over_third_block(vertex_block, v, edge_block, shapes_.edge(e), inwards, sine * overlap)) return;
     // The two corners take turns: a joint that has closed under one of them is closed for the other.
     add(vertex_block, v, edge_block, e, length, ContactRule::facing_edges,
-        [&] { return previous_.was_closed(va, b) || previous_.was_closed(vb, a); });
+        [&, a = facing.a, b = facing.b] { return previous_.was_closed(va, b) || previous_.was_closed(vb, a); });
   }
 
   /// \param near  of the corners of the first block
