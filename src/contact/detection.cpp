@@ -34,8 +34,8 @@ void join_faces(const BlockSystem& system, const GroundOutline& ground, std::vec
   const double gap = closed_gap * system.median_size();
   for (Contact& c : drawn) {
     if (!c.joint_state.bonded) continue;
-    const double part = joined_at(system, ground, c, gap).length / c.length;
-    c.joint_state.joined = part >= whole ? 1.0 : part;
+    const double joined = joined_at(system, ground, c, gap).length;
+    c.joint_state.joined = joined >= whole * c.length ? 1.0 : joined / c.length;
   }
 }
 

@@ -42,6 +42,12 @@ GroundOutline::Kind kind_of(double angle) {
   return angle < std::numbers::pi - tolerance::flush_tilt_rad ? corner : straight;
 }
 
+/// [m] Of a point, from the start of an edge.
+double along_edge(const BlockSystem& system, const GroundOutline::BlockEdge& edge, const Vec2& point) {
+  const auto [block, e] = edge;
+  return (system.arm(system.next(e)) - system.arm(e)).normalized().dot(point - system.position(block, e));
+}
+
 Polygon polygon_of(std::span<const Edge> edges) {
   Polygon polygon;
   for (const Edge& edge : edges) polygon.push_back(edge.start);
@@ -308,8 +314,7 @@ GroundOutline::BlockEdge GroundOutline::edge_back(const BlockSystem& system, int
 GroundOutline::BlockVertex GroundOutline::end_ahead(const BlockSystem& system, const BlockEdge& edge, const Vec2& from) const {
   const int end = system.next(edge.second);
   if (const std::vector<Part>* inside = is_marked(edge.second) ? find(inside_, edge.second) : nullptr) {
-    const Vec2 direction = (system.arm(end) - system.arm(edge.second)).normalized();
-    const double along = direction.dot(from - system.position(edge.first, edge.second));
+    const double along = along_edge(system, edge, from);
     for (const Part& part : *inside) {
       if (part.from >= along - widest_slit) return part.at_from;
     }
@@ -319,8 +324,7 @@ GroundOutline::BlockVertex GroundOutline::end_ahead(const BlockSystem& system, c
 
 GroundOutline::BlockVertex GroundOutline::end_back(const BlockSystem& system, const BlockEdge& edge, const Vec2& from) const {
   if (const std::vector<Part>* inside = is_marked(edge.second) ? find(inside_, edge.second) : nullptr) {
-    const Vec2 direction = (system.arm(system.next(edge.second)) - system.arm(edge.second)).normalized();
-    const double along = direction.dot(from - system.position(edge.first, edge.second));
+    const double along = along_edge(system, edge, from);
     for (auto part = inside->rbegin(); part != inside->rend(); ++part) {
       if (part->to <= along + widest_slit) return part->at_to;
     }
