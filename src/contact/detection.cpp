@@ -28,7 +28,7 @@ Vec2 turned_little_by(double angle, const Vec2& r) {
   return angle * (1.0 - q / 6.0 * (1.0 - q / 20.0 * (1.0 - q / 42.0))) * perpendicular(r) - 0.5 * q * (1.0 - q / 12.0 * (1.0 - q / 30.0)) * r;
 }
 
-/// Sets JointState::joined of the contacts of a drawing.
+/// Sets JointState::joined and bonded_length of the contacts of a drawing.
 void join_faces(const BlockSystem& system, const GroundOutline& ground, std::vector<Contact>& drawn) {
   constexpr double whole = 1.0 - 1e-9;  // [-] what rounding leaves out of a face is none of it
   const double gap = closed_gap * system.median_size();
@@ -36,6 +36,7 @@ void join_faces(const BlockSystem& system, const GroundOutline& ground, std::vec
     if (!c.joint_state.bonded) continue;
     const double joined = joined_at(system, ground, c, gap).length;
     c.joint_state.joined = joined >= whole * c.length ? 1.0 : joined / c.length;
+    c.joint_state.bonded_length = c.joint_state.joined * c.length;
   }
 }
 

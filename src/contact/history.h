@@ -36,6 +36,9 @@ inline double stretch_at(const Contact& before, double gap, bool moved_by_others
 inline void inherit(const Contact& from, double stretch, Contact& to) {
   to.status = from.status;
   to.joint_state = from.joint_state;
+  // Faces that have slid off each other have opened: they are not bonded when they come back.
+  JointState& joint = to.joint_state;
+  if (joint.bonded) joint.bonded_length = std::min(joint.bonded_length, joint.joined * to.length);
   to.normal_force = from.normal_force;
   to.shear_force = from.shear_force;
   to.stored_energy = from.stored_energy;

@@ -2,8 +2,9 @@
 //
 // Each outer pass solves N = max(0, shift - k (gap - target)), T = clamp(initial shear - k s) and takes N, T as the next pass's shift and initial
 // shear. The passes converge whatever the stiffness k is (it only sets how fast), so the answer does not depend on the joint's stiffness: a closed
-// contact keeps its gap, a sticking one its place, to the tolerance. In motion k is a multiple of the inertia, in statics the joint's own stiffness,
-// which then decides how rigid contacts share what they leave undetermined.
+// contact keeps its gap, a sticking one its place, to the tolerance. In motion k is a multiple of the inertia, in proportion to the contact's length, in
+// statics the joint's own stiffness: it decides how rigid contacts share what they leave undetermined. With springs that are as stiff at a short contact
+// as at a long one a joint's short end gives its normal force away first, and its cohesion with it.
 //
 // In statics the blocks go back to their places with every pass, and what springs have stretched, slipped or parted is remembered instead, not only
 // what they carry: the next pass starts from N - k gap and T - k s as they are, below zero where a contact is open and beyond its strength where it

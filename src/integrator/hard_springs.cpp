@@ -7,6 +7,17 @@
 namespace openclose {
 namespace {
 
+/// [-] Springs of contacts that are short beside their block, at least, over those of a contact that is half as long as the block's radius: what has to
+/// hold by softer ones alone takes many passes.
+constexpr double softest_of_short_contacts = 0.1;
+
+/// The heavier one of its blocks that are not fixed.
+const BlockSystem::Block& heavier_block(const StepProblem& problem, const Contact& contact) {
+  const auto &one = problem.system.block(contact.vertex_block), &other = problem.system.block(contact.edge_block);
+  if (one.equation < 0) return other;
+  return other.equation >= 0 && other.mass[0] > one.mass[0] ? other : one;
+}
+
 /// In motion a closed contact keeps the gap it has, so that standing still is always consistent, unless earlier steps have left more than they
 /// should; an open one closes to zero, and a penetration found on closing is pushed out slowly. In statics every contact goes back to zero gap.
 double target_gap(const StepProblem& problem, const Contact& contact) {
@@ -29,11 +40,7 @@ ContactSprings with_stiffness(const StepProblem& problem, const Contact& contact
 }  // namespace
 
 double inertia_at(const StepProblem& problem, const Contact& contact) {
-  double mass = 0.0;
-  for (int b : {contact.vertex_block, contact.edge_block}) {
-    if (problem.system.block(b).equation >= 0) mass = std::max(mass, problem.system.block(b).mass[0]);
-  }
-  return problem.inertia * mass;
+  return problem.inertia * heavier_block(problem, contact).mass[0];
 }
 
 double held_gap(const StepProblem& problem, const Contact& contact) {
@@ -44,7 +51,8 @@ double held_gap(const StepProblem& problem, const Contact& contact) {
 }
 
 ContactSprings hard_springs_of_inertia(const StepProblem& problem, const Contact& contact, double ratio) {
-  const double stiffness = ratio * inertia_at(problem, contact);
+  const double relative = std::max(softest_of_short_contacts, contact.length / (0.5 * heavier_block(problem, contact).radius));
+  const double stiffness = ratio * relative * inertia_at(problem, contact);
   return with_stiffness(problem, contact, stiffness, stiffness);
 }
 

@@ -16,8 +16,8 @@ double inertia_at(const StepProblem& problem, const Contact& contact);
 /// too.
 double held_gap(const StepProblem& problem, const Contact& contact);
 
-/// Springs of a motion.
-/// \param ratio  [-] of their stiffness over the inertia
+/// Springs of a motion, in proportion to the contact's length: what rigid contacts leave undetermined is shared as the springs of a joint would.
+/// \param ratio  [-] of the stiffness over the inertia, of a contact that is half as long as the block's radius
 ContactSprings hard_springs_of_inertia(const StepProblem& problem, const Contact& contact, double ratio);
 
 /// Springs of statics: those of the joint times a factor [-], or with a least stiffness [N/m], in the ratio of the joint's normal and shear

@@ -27,18 +27,17 @@ inline double weakening(const JointProperties& joint, const JointState& state) {
 /// Strength of one contact: Mohr-Coulomb with tension cut-off, per metre of thickness.
 struct ContactStrength {
   double friction = 0.0;  ///< [-] tan(friction angle), what slip has left of it, the residual one once the bond is broken
-  double cohesion = 0.0;  ///< [N] cohesion times what is joined of the tributary length, 0 once lost
-  double tension = 0.0;   ///< [N] tensile strength times the same, 0 once lost
+  double cohesion = 0.0;  ///< [N] cohesion times what is joined of the tributary length, or bonded if it is not ductile; 0 once lost
+  double tension = 0.0;   ///< [N] tensile strength times what is bonded, 0 once lost
 
   ContactStrength() = default;
   /// What the state of a joint leaves of its strength.
   /// \param length  [m] tributary
   ContactStrength(const TabulatedJoint& joint, double length, const JointState& state)
       : friction(state.bonded ? joint.friction : joint.residual_friction) {
-    const bool intact = state.bonded || joint.cohesion_behaviour == CohesionBehaviour::ductile;
-    const double joined = state.joined * length;
-    cohesion = intact ? joint.cohesion * joined : 0.0;
-    tension = state.bonded ? joint.tensile_strength * joined : 0.0;
+    const double joined = state.joined * length, bonded = state.bonded ? std::min(joined, state.bonded_length) : 0.0;
+    cohesion = joint.cohesion * (joint.cohesion_behaviour == CohesionBehaviour::ductile ? joined : bonded);
+    tension = joint.tensile_strength * bonded;
     if (state.bonded && state.slip > 0.0) weaken(joint, weakening(joint, state));
   }
   /// Of a contact in its present state.

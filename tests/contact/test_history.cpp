@@ -18,9 +18,11 @@ BlockInput base_with_seam() {
   return fixed_block("base", {{-5.0, -1.0}, {5.0, -1.0}, {5.0, 0.0}, {0.0, 0.0}, {-5.0, 0.0}});
 }
 
+constexpr double bonded_length = 1e-12;  // [m] no contact is shorter
+
 void load(Contact& contact) {
   contact.status = ContactStatus::sliding;
-  contact.joint_state = {true, 0.125, 0.75};
+  contact.joint_state = {true, 0.125, 0.75, bonded_length};
   contact.elastic_slip = 0.25;
   contact.normal_force = 3.0;
   contact.shear_force = -2.0;
@@ -31,7 +33,7 @@ void load(Contact& contact) {
 void check_loaded(const Contact* contact, double shorter = 1.0) {
   REQUIRE(contact != nullptr);
   CHECK(contact->status == ContactStatus::sliding);
-  CHECK(contact->joint_state == JointState{true, 0.125, 0.75});
+  CHECK(contact->joint_state == JointState{true, 0.125, 0.75, bonded_length});
   CHECK(contact->elastic_slip == Approx(0.25 * std::sqrt(shorter)).epsilon(1e-12));
   CHECK(contact->normal_force == 3.0);
   CHECK(contact->shear_force == -2.0);
@@ -252,6 +254,22 @@ TEST_CASE("lengths that change to and fro leave a spring as it was", "[contact][
   }
   CHECK(c.stretch() == Approx(-1.0).epsilon(1e-12));
   CHECK(c.elastic_slip == Approx(0.25).epsilon(1e-12));
+}
+
+TEST_CASE("what has slid off a face is not bonded when it comes back", "[contact][history]") {
+  Contact c;
+  load(c);
+  c.length = 1.0;
+  c.joint_state.joined = 0.8;
+  c.joint_state.bonded_length = 0.8;
+  for (const double length : {0.5, 1.5, 1.0}) {
+    Contact next;
+    next.length = length;
+    inherit(c, c.stretch(), next);
+    c = next;
+  }
+  CHECK(c.joint_state.joined == 0.8);
+  CHECK(c.joint_state.bonded_length == Approx(0.4).epsilon(1e-12));
 }
 
 TEST_CASE("a spring that pulls never gains energy by its length", "[contact][history]") {

@@ -65,6 +65,21 @@ TEST_CASE("cohesion and tension act on what is joined of the tributary length", 
   CHECK(strength.tension == Approx(2e3).epsilon(rounding));
 }
 
+TEST_CASE("a bond does not grow with its contact, ductile cohesion does", "[law][strength]") {
+  const auto behaviour = GENERATE(CohesionBehaviour::ductile, CohesionBehaviour::lost_on_opening, CohesionBehaviour::lost_on_slip);
+  const TabulatedJoint joint(joint_with(0.7, 3e4, 2e4, behaviour));
+  Contact contact = contact_of_length(0.5);
+  contact.joint_state.joined = 0.8;
+  contact.joint_state.bonded_length = 0.2;
+  const ContactStrength longer(joint, contact);
+  CHECK(longer.cohesion == Approx(3e4 * (behaviour == CohesionBehaviour::ductile ? 0.4 : 0.2)).epsilon(rounding));
+  CHECK(longer.tension == Approx(2e4 * 0.2).epsilon(rounding));
+  contact.length = 0.1;
+  const ContactStrength shorter(joint, contact);
+  CHECK(shorter.cohesion == Approx(3e4 * 0.08).epsilon(rounding));
+  CHECK(shorter.tension == Approx(2e4 * 0.08).epsilon(rounding));
+}
+
 TEST_CASE("an open or slipped joint keeps only ductile cohesion, and no tension", "[law][strength]") {
   const Contact broken = contact_of_length(0.5, false), bonded = contact_of_length(0.5);
   const auto behaviour = GENERATE(CohesionBehaviour::ductile, CohesionBehaviour::lost_on_opening, CohesionBehaviour::lost_on_slip);
