@@ -256,6 +256,18 @@ TEST_CASE("lengths that change to and fro leave a spring as it was", "[contact][
   CHECK(c.elastic_slip == Approx(0.25).epsilon(1e-12));
 }
 
+TEST_CASE("contacts of a drawing are bonded along what touches there, however they grow", "[contact][history]") {
+  Detection d(scene_with({fixed_block("base", rectangle(-5.0, -1.0, 5.8, 1.0)), free_block("block", rectangle(0.0, 0.0, 1.0, 1.0))}));
+  REQUIRE(d.contacts.size() == 2);
+  for (const Contact& c : d.contacts) CHECK(c.joint_state.bonded_length == Approx(0.4).epsilon(1e-9));
+  d.move(1, -0.5, 0.0);
+  d.update();
+  for (const Contact& c : d.contacts) {
+    CHECK(c.length == Approx(0.5).epsilon(1e-9));
+    if (c.joint_state.bonded) CHECK(c.joint_state.bonded_length == Approx(0.4).epsilon(1e-9));
+  }
+}
+
 TEST_CASE("what has slid off a face is not bonded when it comes back", "[contact][history]") {
   Contact c;
   load(c);
