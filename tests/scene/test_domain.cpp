@@ -363,6 +363,7 @@ TEST_CASE("domains that are no polygons", "[scene][domain][errors]") {
   CHECK(error_of(bare_domain + line(-1e6, 1, 1e6 + 20, 1)) == "17: joint_line[0]: the line is 2.00002e+06 m long; accepted: at most 2e+06 m");
   CHECK(error_with(15, "vertices_m = [[-1, 0], [1000000, 0], [0, 4]]") ==
         "15: domain.vertices_m: a domain 1000001 m wide; accepted: domains at most 1000000 m wide");
+  CHECK_THAT(error_with(15, "vertices_m = []"), ContainsSubstring("15: domain.vertices_m: the polygon has 0 vertices; accepted: at least 3"));
   CHECK_THAT(error_with(15, "vertices_m = [[0, 0], [4, 0]]"),
              ContainsSubstring("15: domain.vertices_m: the polygon has 2 vertices; accepted: at least 3"));
   CHECK_THAT(error_with(16, "holes_m = [[[1, 1], [2, 1], [2, 2]], [[2, 2], [3, 2], [3, 3]]]"),
