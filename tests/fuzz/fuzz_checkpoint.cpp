@@ -33,8 +33,8 @@ constexpr const char* resting =
     "[[load]]\nname = 'push'\nblock = 'low'\npoint_m = [-1, 0.5]\nforce_n = [1e3, 0]\n"
     "[[support]]\nblock = 'high'\npoint_m = [0, 2]\nstiffness_n_per_m = [1e5, 0]\n";
 constexpr int steps_before = 5, steps_until_rest = 15, steps_after = 3;
-/// [-] Of a step of the scene, how far dem goes on each time: one step of its own, as the scene is.
-constexpr double part_for_dem = 0.01;
+/// [-] Of a step of the scene, how far dem goes on each time: one step of its own, or few where forged masses and forces have made it as short as that.
+constexpr double part_for_dem = 1e-9;
 /// What a search asks between two pieces of its work, so often.
 constexpr int questions_after = 200;
 constexpr std::size_t bytes_of_sum = 8;  ///< at the end of a checkpoint
