@@ -194,6 +194,10 @@ bool ExplicitStepper::advance(double dt) {
   double remaining = dt, longest = 0.0, part = 1.0;
   for (long steps = 0; remaining > 0.0;) {  // equal ones, of the remaining time
     const double now = part * std::min(longest_stable_step(damping), dt);
+    if (!(now > std::numeric_limits<double>::epsilon() * dt)) {  // no sum of times would grow by it
+      state_.reason = fmt::format("the stable step of the springs, {:.2g} s, is nothing beside step.dt_s; softer joints would be a remedy", now);
+      break;
+    }
     if (steps == 0 || now != longest) {
       longest = now;
       // A quotient that is whole but for rounding stays whole.

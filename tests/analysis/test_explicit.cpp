@@ -466,6 +466,14 @@ TEST_CASE("motions that are no numbers end an explicit run", "[analysis][explici
   CHECK(simulation.system().displacement(0).isZero(0.0));
 }
 
+TEST_CASE("springs whose stable step is nothing beside the step end an explicit run", "[analysis][explicit]") {
+  Scene scene = explicit_scene(test::block_on_base(), 2e-4);
+  scene.joints[0].normal_stiffness = scene.joints[0].shear_stiffness = 1e60;
+  Simulation simulation(scene);
+  CHECK_FALSE(simulation.advance(scene.step.dt));
+  CHECK_THAT(simulation.reason(), Catch::Matchers::ContainsSubstring("is nothing beside step.dt_s"));
+}
+
 TEST_CASE("a state that was saved goes on as the original", "[analysis][explicit]") {
   const Scene scene = rocking_column();
   Simulation first(scene);
