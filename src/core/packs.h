@@ -5,8 +5,9 @@
 /// A part of a loop: inlined into each of its two versions.
 #define OPENCLOSE_KERNEL [[gnu::always_inline]] inline
 
-/// A plain function with such a loop: the version is chosen when the program starts. Compilers other than g++ make the one for every processor only.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+/// A plain function with such a loop: the version is chosen when the program starts. Compilers other than g++, and g++'s thread sanitizer, which is
+/// not there yet when the version is chosen, make the one for every processor only.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_THREAD__)
 #define OPENCLOSE_FOR_WIDE_REGISTERS_TOO [[gnu::target_clones("avx2", "default")]]
 #else
 #define OPENCLOSE_FOR_WIDE_REGISTERS_TOO
