@@ -2,9 +2,9 @@
 //
 // Each outer pass solves N = max(0, shift - k (gap - target)), T = clamp(initial shear - k s) and takes N, T as the next pass's shift and initial
 // shear. The passes converge whatever the stiffness k is (it only sets how fast), so the answer does not depend on the joint's stiffness: a closed
-// contact keeps its gap, a sticking one its place, to the tolerance. In motion k is a multiple of the inertia, in proportion to the contact's length, in
-// statics the joint's own stiffness: it decides how rigid contacts share what they leave undetermined. With springs that are as stiff at a short contact
-// as at a long one a joint's short end gives its normal force away first, and its cohesion with it.
+// contact keeps its gap, a sticking one its place, to the tolerance. In motion k is a multiple of the inertia, in proportion to the contact's length,
+// in statics the joint's own stiffness: it decides how rigid contacts share what they leave undetermined. With springs that are as stiff at a short
+// contact as at a long one a joint's short end gives its normal force away first, and its cohesion with it.
 //
 // In statics the blocks go back to their places with every pass, and what springs have stretched, slipped or parted is remembered instead, not only
 // what they carry: the next pass starts from N - k gap and T - k s as they are, below zero where a contact is open and beyond its strength where it
@@ -73,7 +73,7 @@ constexpr double aimed_error = 0.8, shortest_part = 1.0 / 32.0, longest_part = 0
 /// more than this part of the error ends the iteration if what is left is below this multiple of what is tolerated. In statics, whose tolerance is
 /// far below that of motion, gaps that motion has left may exclude each other by more.
 constexpr double slow_convergence = 0.5;
-constexpr double incompatible_gaps = 3.0, incompatible_static_gaps = 100.0;
+constexpr double incompatible_static_gaps = 100.0;  // of motion: incompatible_gaps
 /// [-] Statics: passes whose error grows by more than this lead nowhere, and another step is tried. The passes are the proximal point iteration for
 /// the multipliers, whose steps, in the energy of the springs, never grow while gaps and slips are linear in the way of the blocks and the contacts'
 /// law has a potential (Rockafellar, Math. Oper. Res. 1 (1976) 97-116). Friction and turning blocks may add a little, less than what doubles the

@@ -8,6 +8,8 @@ namespace openclose {
 /// [-] Part of the tolerance by which closed contacts may stay apart from zero; what earlier steps have left beyond it is pushed back, by no more
 /// than the rest in a step: redundant contacts that have different gaps then ask for motions that exclude each other by less than what is tolerated.
 inline constexpr double kept_penetration = 0.5, recovered_penetration = 1.0 - kept_penetration;
+/// [-] Multiple of the tolerance that redundant contacts in motion may be left with, off the gaps that they are held at.
+inline constexpr double incompatible_gaps = 3.0;
 
 /// [N/m] In the equations of the step, of the heavier block, which is not fixed.
 double inertia_at(const StepProblem& problem, const Contact& contact);

@@ -1,6 +1,7 @@
 // The reader of checkpoints. A checkpoint is made of a small scene and forged: the first byte says what was saved and by which contact method, the
 // others are edits of six bytes: two say where, four are written there; the check sum is put right. So inputs keep their meaning when the format
 // changes. What is read is put into a simulation, a run or a search, which goes on.
+#include <algorithm>
 #include <cstring>
 #include <string>
 #include <utility>
@@ -25,7 +26,7 @@ constexpr const char* text =
     "[[block]]\nname = 'base'\nmaterial = 'rock'\nfixed = true\nvertices_m = [[-5, -1], [5, -1], [5, 0], [-5, 0]]\n"
     "[[block]]\nname = 'low'\nmaterial = 'rock'\nvertices_m = [[-1, 0], [1, 0], [1, 1], [-1, 1]]\nvelocity_m_per_s = [1, 0]\n"
     "[[block]]\nname = 'high'\nmaterial = 'rock'\nvertices_m = [[-0.5, 1], [0.5, 1], [0.5, 2], [-0.5, 2]]\n"
-    "[method]\nstart = 'unloaded'\n[step]\ndt_s = 1e-3\n[end]\ntime_s = 0.02\n[solver]\nsmallest_fraction = 1e-4\n";
+    "[method]\nstart = 'unloaded'\n[step]\ndt_s = 1e-3\n[end]\ntime_s = 0.02\n[solver]\nsmallest_fraction = 1e-3\n";
 /// Of blocks that have come to rest, and of one that still moves.
 constexpr const char* resting =
     "[[block]]\nname = 'still'\nmaterial = 'rock'\nvertices_m = [[3, 0], [4, 0], [4, 1], [3, 1]]\n"
@@ -33,8 +34,9 @@ constexpr const char* resting =
     "[[load]]\nname = 'push'\nblock = 'low'\npoint_m = [-1, 0.5]\nforce_n = [1e3, 0]\n"
     "[[support]]\nblock = 'high'\npoint_m = [0, 2]\nstiffness_n_per_m = [1e5, 0]\n";
 constexpr int steps_before = 5, steps_until_rest = 15, steps_after = 3;
-/// [-] Of a step of the scene, how far dem goes on each time: one step of its own, or few where forged masses and forces have made it as short as that.
-constexpr double part_for_dem = 1e-9;
+/// [s] How far dem goes on at first, and [-] by how much farther each time, as long as one step of its own is enough: a forged stiffness may make
+/// that as short as it likes, and who goes on waits, which is no fault of the reader. At most that part of a step of the scene, one as the scene is.
+constexpr double first_of_dem = 1e-150, growth_for_dem = 1e3, part_for_dem = 0.01;
 /// What a search asks between two pieces of its work, so often.
 constexpr int questions_after = 200;
 constexpr std::size_t bytes_of_sum = 8;  ///< at the end of a checkpoint
@@ -49,15 +51,25 @@ std::string saved(const Scene& scene, double time, std::string state, const char
   return checkpoint_bytes(scene, {time, {}, std::move(state), command});
 }
 
+void go_on_with_dem(Simulation& simulation) {
+  const double longest = part_for_dem * simulation.scene().step.dt;
+  const long& steps = simulation.state().counters.steps;
+  int left = steps_after;
+  for (double dt = first_of_dem; left > 0; dt *= growth_for_dem) {
+    const long before = steps;
+    if (!simulation.advance(std::min(dt, longest)) || steps > before + 1) return;
+    if (dt >= longest) --left;
+  }
+}
+
 void go_on_with_steps(const Scene& scene, std::string saved) {
   Archive state(std::move(saved));
   Simulation simulation(scene);
   simulation.allow_resting();
   state(simulation);
-  // A forged stiffness may make the stable step of dem as short as it likes, and who goes on from it may wait: that is no fault of the reader.
-  const double dt = scene.method.contact == "dem" ? part_for_dem * scene.step.dt : scene.step.dt;
+  if (scene.method.contact == "dem") return go_on_with_dem(simulation);
   for (int i = 0; i < steps_after; ++i) {
-    if (!simulation.advance(dt)) return;
+    if (!simulation.advance(scene.step.dt)) return;
   }
 }
 
