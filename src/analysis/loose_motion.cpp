@@ -265,11 +265,13 @@ class Describer {
     return turn * reach > 2.0 * slow * relative.norm();
   }
 
-  /// Whether a corner lies within the edge, or the edge is touched at two places: two edges that end in the same corner are no joint.
+  /// Whether a corner lies within the edge, or the edge is touched at two places: two edges that end in the same corner are no joint, nor are the
+  /// upper and lower sides of blocks that stand beside each other.
   static bool is_joint(const Touch& touch, const std::vector<Touch>& touches) {
     if (touch.is_within_edge) return true;
     return std::any_of(touches.begin(), touches.end(), [&](const Touch& t) {
-      return t.other == touch.other && std::abs(cross(t.along, touch.along)) < slow && is_apart(t.point, touch.point);
+      if (t.other != touch.other || !is_apart(t.point, touch.point)) return false;
+      return std::abs(cross(t.along, touch.along)) < slow && std::abs(cross((t.point - touch.point).normalized(), touch.along)) < slow;
     });
   }
 

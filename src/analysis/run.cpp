@@ -212,12 +212,12 @@ class MotionInTime {
                       "slip_weakening_distance_m",
                       100.0 * most, simulation_.enforcement().takes_adaptive_steps() && !scene_.step.adaptive ? ", or step.adaptive," : ""));
     }
-    if (const double size = simulation_.system().median_size(), way = result_.settling.displacement / size;
-        begun_ && size > 0.0 && way > noticeable_settlement) {
+    if (const double size = simulation_.system().median_size(), way = result_.settling.displacement;
+        begun_ && size > 0.0 && way > noticeable_settlement * size) {
       result_.warnings.push_back(fmt::format(
           "until the start had settled, blocks moved by up to {:.3g} m, {:.2g} of the median block's size: the motion starts from another "
           "geometry than the drawn one; fos says whether that stands",
-          result_.settling.displacement, way));
+          way, way / size));
     }
     if (const std::string words = bent_joints_in_words(simulation_); begun_ && !words.empty()) result_.warnings.push_back(words);
     const std::string ending = begun_ ? fmt::format("the run ended at t = {:.6g} s", simulation_.time()) : "the run had no state to start from";

@@ -66,8 +66,10 @@ void require_folder_of_format(const std::string& path) {
   const std::filesystem::file_status status = std::filesystem::symlink_status(path, missing);
   if (!std::filesystem::exists(status)) return;
   if (std::filesystem::is_directory(status)) std::filesystem::directory_iterator(path, unreadable);
-  if (!std::filesystem::is_directory(status) || unreadable)
-    throw InputError({path, 0}, "", "is no folder that can be read", "-o with another folder, or that one in another place");
+  // What is in it is replaced and removed, and what stands before that is removed first.
+  const bool can_change = access(path.c_str(), R_OK | W_OK | X_OK) == 0;
+  if (!std::filesystem::is_directory(status) || unreadable || !can_change)
+    throw InputError({path, 0}, "", "is no folder that can be read and written to", "-o with another folder, or that one in another place");
 }
 
 std::uint64_t sum_of(const std::string& path) {
@@ -104,6 +106,7 @@ OutputFolder::OutputFolder(const std::string& path) : path_(path) {
     throw InputError({file, 0}, "", "is there and cannot be written over", "-o with another folder");
   };
   for (const std::string& name : names_that_are_used()) require_replaceable_name(name);
+  for (const std::string& name : format_files()) require_replaceable_name(name);
 }
 
 bool OutputFolder::has_own_scene_copy() const {
@@ -117,14 +120,7 @@ bool OutputFolder::is_claimed() const {
 }
 
 OutputFolder::OwnNames OutputFolder::own_names() const {
-  OwnNames names;
-  if (is_claimed()) {
-    names = listed_names();
-  } else if (has_own_scene_copy()) {
-    // Earlier versions kept no list, and wrote the scene first.
-    for (const std::string& name : names_of_results()) names.emplace(name, std::nullopt);
-    for (const std::string& name : format_files()) names.emplace(name, std::nullopt);
-  }
+  OwnNames names = listed_names();
   // What had this name until it was complete has got its own since, unless it is still there.
   std::vector<std::string> complete;
   for (const auto& [name, sum] : names) {

@@ -67,6 +67,7 @@ BlockSystem::BlockSystem(const Scene& scene) : rotation_kind_(scene.method.rotat
 double BlockSystem::median_size() const {
   std::vector<double> areas;
   for (const int b : free_blocks_) areas.push_back(blocks_[b].area);
+  for (const int b : resting_blocks_) areas.push_back(blocks_[b].area);
   return size_of_median(std::move(areas)).value_or(0.0);
 }
 

@@ -72,7 +72,7 @@ DomainInput read_domain(Table& table, const NameList& material_names) {
   table.required("material", domain.material, material_names);
   table.optional("sliver_width_m", domain.limits.sliver_width, Range{.low = tolerance::least_sliver_width_m, .low_included = true});
   table.optional("sliver_area_m2", domain.limits.sliver_area, not_negative);
-  table.optional("joint_end_reach_m", domain.limits.end_reach, not_negative);
+  table.optional("joint_end_reach_m", domain.limits.end_reach, joint_end_reach);
   table.optional("enclosed_joints", domain.enclosed, enclosed_joints_words);
   std::optional<double> section_deg;
   table.optional("section_direction_deg", section_deg, azimuth_deg);

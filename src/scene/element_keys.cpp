@@ -123,7 +123,7 @@ void add_domain(Rows& rows) {
       {"sliver_width_m", "thinner blocks (2 area / longest edge) are merged into the neighbour with the longest common edge, and reported", "1e-3"},
       ValueType::number, Range{.low = tolerance::least_sliver_width_m, .low_included = true});
   rows.optional({"sliver_area_m2", "smaller blocks likewise", "0"}, ValueType::number, not_negative);
-  rows.optional({"joint_end_reach_m", "joints that end this close to another reach it", "1e-3"}, ValueType::number, not_negative);
+  rows.optional({"joint_end_reach_m", "joints that end this close to another reach it", "1e-3"}, ValueType::number, joint_end_reach);
   rows.word({"enclosed_joints", "joints inside one block, connected to no other", "\"refuse\""}, enclosed_joints_words);
   rows.optional({"section_direction_deg", "azimuth into which x points, clockwise from north; for `dip_direction_deg`", "asked for with it"},
                 ValueType::number, azimuth);

@@ -7,8 +7,9 @@
 namespace openclose {
 
 bool Range::contains(double value) const {
-  const bool above = low_included ? value >= low : value > low;
-  const bool below = high_included ? value <= high : value < high;
+  // What is no number is in no interval, which these comparisons say without an exception of the machine.
+  const bool above = low_included ? std::isgreaterequal(value, low) : std::isgreater(value, low);
+  const bool below = high_included ? std::islessequal(value, high) : std::isless(value, high);
   return above && below;
 }
 

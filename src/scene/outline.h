@@ -8,6 +8,8 @@
 namespace openclose {
 
 inline constexpr Range coordinate{-tolerance::farthest_coordinate_m, tolerance::farthest_coordinate_m, true, true};
+/// [m] From the end of a joint: no farther than coordinates go.
+inline constexpr Range joint_end_reach{.low = 0.0, .high = tolerance::farthest_coordinate_m, .low_included = true, .high_included = true};
 
 /// The polygon made counter-clockwise and rid of repeated vertices and straight corners. Throws InputError for fewer than three vertices, for
 /// edges that meet, and for slivers thinner than tolerance::thinnest_block_m.

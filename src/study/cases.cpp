@@ -18,6 +18,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <regex>
 #include <set>
 #include <thread>
 
@@ -104,9 +105,10 @@ class Runner {
   }
 
  private:
-  /// The mark of a case is replaced where it is openclose's own.
+  /// The mark of a case is replaced where it is openclose's own, be it without its end.
   static void require_our_mark(const std::string& path) {
-    if (is_there(path) && !content_of(path).starts_with(mark_start))
+    static const std::regex mark(fmt::format("{}[^ \\n]+ [a-z]+ [0-9a-f]{{16}}\\n[0-9]*\\n?", mark_start));
+    if (is_there(path) && !std::regex_match(content_of(path), mark))
       throw InputError({path, 0}, "", "has not been written by openclose", "another folder, or that file under another name");
   }
 

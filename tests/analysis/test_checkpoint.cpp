@@ -189,6 +189,7 @@ TEST_CASE("saving leaves a simulation as it is", "[analysis][checkpoint]") {
 }
 
 TEST_CASE("a state with numbers that are none is refused", "[analysis][checkpoint]") {
+  const NonStop non_stop;
   const double none = std::numeric_limits<double>::quiet_NaN(), endless = std::numeric_limits<double>::infinity();
   const auto require_refused = [](Simulation& simulation) {
     Simulation other(simulation.scene());

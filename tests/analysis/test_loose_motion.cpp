@@ -49,6 +49,14 @@ TEST_CASE("a block in the air is named", "[analysis][loose_motion]") {
   check_both(scene_with(floor_m, "vertices_m = [[6, 5], [7, 5], [7, 6], [6, 6]]"), "\"top\" touches no other block and moves down");
 }
 
+TEST_CASE("blocks that stand beside each other do not slide along their upper and lower sides", "[analysis][loose_motion]") {
+  const Scene scene = scene_with(floor_m,
+                                 "vertices_m = [[0, 5], [1, 5], [1, 6], [0, 6]]\n[[block]]\nname = 'next'\nmaterial = 'rock'\n"
+                                 "vertices_m = [[1, 5], [2, 5], [2, 6], [1, 6]]");
+  CHECK_THAT(loose_blocks_in_words(scene), !ContainsSubstring("slides"));
+  check_both(scene, "moves down");
+}
+
 TEST_CASE("a block that slides is named with its joint, and the friction that would hold it", "[analysis][loose_motion]") {
   const Scene scene = scene_with("[[-5, -1], [5, -5], [5, -2], [-5, 2]]", "vertices_m = [[-1, 0.4], [1, -0.4], [1, 1], [-1, 1]]", "0");
   check_both(scene, "\"top\" slides along its joint with \"base\" towards (0.93, -0.37) (friction above 21.8 degrees");  // tan 21.8 = 0.4

@@ -333,6 +333,15 @@ TEST_CASE("what cases say of themselves is written over nobody's file", "[cli][s
   const CommandResult result = place.run("sweep scene.toml --vary joint[0].friction_angle_deg=25 --set joint[0].cohesion_pa=0 -o out");
   CHECK(result.status == 0);
   CHECK(text_of(mine) == "mine\n");
+  // A mark is a line of its own make and a status, and not any text about openclose.
+  const auto mark = place.folder() / "out/joint[0].friction_angle_deg=25,joint[0].cohesion_pa=1/case.txt";
+  std::filesystem::create_directories(std::filesystem::path(mark).parent_path());
+  std::ofstream(mark) << "openclose is what I ran here\n";
+  const std::string again = "sweep scene.toml --vary joint[0].friction_angle_deg=25 --vary joint[0].cohesion_pa=1 -o out";
+  const CommandResult refused = place.run(again);
+  CHECK(refused.status == 2);
+  CHECK_THAT(refused.errors.at(0), ContainsSubstring("case.txt: has not been written by openclose"));
+  CHECK(text_of(mark) == "openclose is what I ran here\n");
 }
 
 TEST_CASE("what runs warn of is told by study and sweep, alike warnings once", "[cli][study][sweep]") {

@@ -78,6 +78,10 @@ TEST_CASE("a folder in which a result could not be written is refused before any
   CHECK_THROWS_AS(OutputFolder(place.path()), InputError);
   CHECK_THROWS_WITH(OutputFolder(place.path()), ContainsSubstring("energy.csv: is there and cannot be written over"));
   CHECK(place.entries() == std::set<std::string>{"energy.csv"});
+  std::filesystem::remove(place / "energy.csv");
+  // What an analysis before has left in the folder of a format is removed, too.
+  std::filesystem::create_directories(place / "svg/0000.svg");
+  CHECK_THROWS_WITH(OutputFolder(place.path()), ContainsSubstring("svg/0000.svg: is there and cannot be written over"));
 }
 
 TEST_CASE("a file that is not written to its end is an error", "[io][output_folder]") {
@@ -132,6 +136,7 @@ TEST_CASE("the copy of the scene takes the place of no other file", "[io][output
   }
   SECTION("a copy that is itself the scene to be read is refused") {
     const OutputFolder folder(place.path());
+    folder.claim({});
     folder.write_scene_copy("title = 'first'\n");
     CHECK_THROWS_WITH(folder.claim({place / scene_copy_name}), ContainsSubstring("is read, and a result of this name would replace it"));
     CHECK_NOTHROW(folder.claim({place / "other.toml"}));
@@ -196,11 +201,13 @@ TEST_CASE("a claimed folder keeps what is not ours", "[io][output_folder]") {
       std::filesystem::remove(place / name);
     }
   }
-  SECTION("a folder without a list is ours if the scene in it is") {
+  SECTION("a folder without a list has nothing of ours: results may have been copied there, and changed") {
     const OutputFolder folder(place.path());
     folder.write_scene_copy("title = 'first'\n");
-    place.write("history.csv", "ours");
-    CHECK_NOTHROW(folder.claim({}));
+    CHECK_THROWS_WITH(folder.claim({}), ContainsSubstring("scene_as_read.toml: is there and has not been written by openclose"));
+    place.write("history.csv", "mine");
+    CHECK_THROWS_WITH(folder.claim({}), ContainsSubstring("history.csv: is there and has not been written by openclose"));
+    CHECK(test::text_of(place / "history.csv") == "mine");
   }
 }
 

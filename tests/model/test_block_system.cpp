@@ -97,6 +97,16 @@ TEST_CASE("fixed blocks have neither equation nor velocity", "[model][block_syst
   CHECK(system.kinetic_energy() == Approx(2.0 * (0.5 * 2500.0 * 5.0 + 0.5 * 2500.0 / 6.0 * 9.0)).epsilon(1e-14));
 }
 
+TEST_CASE("the median size is that of all blocks that may move, also of those at rest", "[model][block_system]") {
+  System system(scene_with({fixed_block("base", rectangle(0.0, -1.0, 20.0, 1.0)), free_block("a", rectangle(0.0, 0.0, 2.0, 2.0)),
+                            free_block("b", rectangle(3.0, 0.0, 3.0, 3.0)), free_block("c", rectangle(7.0, 0.0, 5.0, 5.0))}));
+  CHECK(system.median_size() == 3.0);
+  system.put_to_rest({2, 3});
+  CHECK(system.median_size() == 3.0);
+  system.put_to_rest({1});
+  CHECK(system.median_size() == 3.0);
+}
+
 TEST_CASE("velocities can be set and stopped", "[model][block_system]") {
   System system(scene_with({free_block("block", rectangle(0.0, 0.0, 1.0, 1.0))}));
   CHECK(system.kinetic_energy() == 0.0);

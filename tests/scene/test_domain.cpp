@@ -266,6 +266,9 @@ TEST_CASE("lengths that are large beside the blocks of a domain are warned of", 
   REQUIRE(reach.size() == 1);
   CHECK_THAT(reach[0], ContainsSubstring("joint_end_reach_m = 0.015 closes bridges of rock up to 1.1 % of the median block's size of 1.4 m"));
   CHECK(read_text(square_domain, {"domain.joint_end_reach_m=0.014"}).cutting->warnings.empty());
+  // No farther than coordinates go, where lengths lose the digits that cutting needs.
+  CHECK_THROWS_WITH(read_text(square_domain, {"domain.joint_end_reach_m=1e18"}),
+                    ContainsSubstring("domain.joint_end_reach_m: 1e+18 is out of range; accepted: a number in [0, 10000000]"));
   // A third joint cuts strips of 1 cm off four of them: 0.04 of 16 m2.
   const std::string strips = square_domain + "[[joint_set]]\ndip_deg = 90\nspacing_m = 5\norigin_m = [1.99, 0]\n";
   const Scene whole = read_text(strips), merged = read_text(strips, {"domain.sliver_width_m=0.03"});
