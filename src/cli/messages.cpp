@@ -4,14 +4,11 @@
 #include <filesystem>
 
 #include "openclose/core/error.h"
-#include "openclose/scene/quoted.h"
 
 namespace openclose {
 
 void print_message(const std::string& text) {
-  std::string lines = "openclose: ";
-  for (const char character : text) lines += character == '\n' ? "\n" : escaped(std::string_view(&character, 1));
-  std::fputs((lines + "\n").c_str(), stderr);
+  std::fputs(("openclose: " + text + "\n").c_str(), stderr);
 }
 
 void print_warnings(const std::vector<std::string>& warnings) {

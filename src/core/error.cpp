@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "openclose/core/escaped.h"
+
 namespace openclose {
 namespace {
 
@@ -10,7 +12,7 @@ std::string compose(const SourceLocation& where, const std::string& key, const s
   if (!key.empty()) text += key + ": ";
   text += read;
   if (!accepted.empty()) text += "; accepted: " + accepted;
-  return text;
+  return escaped(text);
 }
 
 }  // namespace

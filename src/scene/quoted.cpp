@@ -14,22 +14,6 @@ bool continues_letter(char byte) {
 
 }  // namespace
 
-bool is_control(char character) {
-  return static_cast<unsigned char>(character) < 0x20 || character == 0x7f;
-}
-
-std::string escaped(std::string_view text) {
-  std::string line;
-  for (const char character : text) {
-    if (is_control(character)) {
-      line += fmt::format("\\x{:02x}", static_cast<unsigned char>(character));
-    } else {
-      line += character;
-    }
-  }
-  return line;
-}
-
 std::string shortened(std::string_view text) {
   if (text.size() <= longest_quoted) return std::string(text);
   std::size_t first = longest_quoted / 2, last = text.size() - longest_quoted / 2;

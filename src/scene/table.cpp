@@ -45,7 +45,7 @@ std::string description(const toml::node& node) {
 }  // namespace
 
 void throw_input_error(const SourceLocation& where, const std::string& key, const std::string& read, const std::string& accepted) {
-  throw InputError({escaped(where.file), where.line}, escaped(shortened(key)), read, accepted);
+  throw InputError(where, shortened(key), read, accepted);
 }
 
 SourceLocation location(const toml::node& node, const std::string& file) {

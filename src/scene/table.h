@@ -27,7 +27,7 @@
 
 namespace openclose {
 
-/// An InputError whose key comes from the file: control characters in it are escaped.
+/// An InputError whose key comes from the file: it may be long.
 [[noreturn]] void throw_input_error(const SourceLocation& where, const std::string& key, const std::string& read, const std::string& accepted);
 
 /// Where a node stands. Nodes that came with an override carry its text in place of the file and no line.
