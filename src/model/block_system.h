@@ -61,7 +61,8 @@ class BlockSystem {
   int rest_number(int b) const { return fixed - 1 - blocks_[b].equation; }  ///< of a block at rest: its place among them
   const Vec2& origin() const { return origin_; }
   RotationKind rotation_kind() const { return rotation_kind_; }
-  /// [m] The root of the median area of the free blocks, so that single slivers or giants do not decide; 0 if there are none.
+  /// [m] The root of the median area of the blocks that are not fixed, be they at rest or not, so that single slivers or giants do not decide; 0 if
+  /// there are none.
   double median_size() const;
 
   int next(int vertex) const { return next_[vertex]; }
