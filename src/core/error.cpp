@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "openclose/core/escaped.h"
+#include "openclose/core/one_line.h"
 
 namespace openclose {
 namespace {
@@ -12,7 +12,7 @@ std::string compose(const SourceLocation& where, const std::string& key, const s
   if (!key.empty()) text += key + ": ";
   text += read;
   if (!accepted.empty()) text += "; accepted: " + accepted;
-  return escaped(text);
+  return on_one_line(text);
 }
 
 }  // namespace

@@ -18,7 +18,6 @@
 #include "openclose/core/error.h"
 #include "openclose/integrator/time_scheme.h"
 #include "openclose/scene/nearest.h"
-#include "openclose/scene/quoted.h"
 
 namespace openclose {
 
@@ -53,7 +52,7 @@ const Entry& find_named(const std::vector<Entry>& list, const std::string& name,
     names += fmt::format("{}\"{}\"", names.empty() ? "" : ", ", entry.name);
     words.emplace_back(entry.name);
   }
-  throw InputError(method.contact_where, key, fmt::format("{} is no known {}{}", in_quotes(name), noun, did_you_mean(name, words)), names);
+  throw InputError(method.contact_where, key, fmt::format("\"{}\" is no known {}{}", name, noun, did_you_mean(name, words)), names);
 }
 
 }  // namespace openclose

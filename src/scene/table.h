@@ -23,9 +23,14 @@
 #include "openclose/core/vector.h"
 #include "openclose/scene/limits.h"
 #include "openclose/scene/nearest.h"
-#include "openclose/scene/quoted.h"
 
 namespace openclose {
+
+/// The text, or both of its ends if it is longer than anything that people write.
+std::string shortened(std::string_view text);
+
+/// A text of the user in quotes, shortened and its control characters escaped, so that a message stays one line.
+std::string in_quotes(std::string_view text);
 
 /// An InputError whose key comes from the file: it may be long.
 [[noreturn]] void throw_input_error(const SourceLocation& where, const std::string& key, const std::string& read, const std::string& accepted);

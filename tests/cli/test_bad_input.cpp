@@ -199,12 +199,12 @@ TEST_CASE("unknown method", "[cli][bad_input]") {
     CHECK_THAT(message, ContainsSubstring("method.contact: \"firm\"") && ContainsSubstring("\"soft\"") && ContainsSubstring("\"hard\"") &&
                             ContainsSubstring("\"shi\""));
   }
-}
-
-TEST_CASE("a method that has no use for theta", "[cli][bad_input]") {
   // What a message quotes neither ends it nor breaks its line.
   CHECK_THAT(refusal_of_scene(block_on_base + "[method]\ncontact = \"a\\u0000b\\u001b[31m\\nc\"\n"),
              ContainsSubstring("method.contact: \"a\\x00b\\x1b[31m\\x0ac\" is no known") && ContainsSubstring("accepted: "));
+}
+
+TEST_CASE("a method that has no use for theta", "[cli][bad_input]") {
   CHECK_THAT(refusal_of_scene(block_on_base, " --contact hard --set method.theta=0.5"), ContainsSubstring("method.theta: "));
   CHECK_THAT(refusal_of_scene(block_on_base, " --contact shi --set method.theta=0.5"), ContainsSubstring("method.theta: "));
 }

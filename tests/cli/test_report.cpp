@@ -57,7 +57,8 @@ TEST_CASE("report refuses in one line, and writes nothing", "[cli][report]") {
   CHECK(text_of(place.folder() / "scene.toml") == scene);
   CHECK(text_of(place.folder() / "out/blocks.csv") == blocks);
   // What a message quotes does not cut it off.
-  const std::size_t number = blocks.find("initial,base,0,") + 15;
+  const std::string row = "initial,base,0,";
+  const std::size_t number = blocks.find(row) + row.size();
   place.folder().write("out/blocks.csv", blocks.substr(0, number) + std::string("\0\x1b", 2) + blocks.substr(number));
   refused("out", "out/blocks.csv:2: x_m: \"\\x00\\x1b-");
   refused("out", "is no finite number; accepted: a number");

@@ -1,11 +1,9 @@
 // Writes one wrong number to each place of each saved state in turn: as a whole number it lies beyond every list, as the upper half of a real one it
 // is 2. Whoever reads it refuses it or goes on from it.
 #include "harness.h"
-#include "openclose_traps.h"
 #include "saved_states.h"
 
 int main() {
-  const openclose::NonStop non_stop;  // forged numbers overflow, which is to be refused where it shows
   for (int number = 0; number < count_of_saved_states(); ++number) {
     const std::size_t bytes = bytes_of_saved_state(number);
     require_promise(number < 1 << 8 && bytes <= 1 << 16, "an edit can say which state and where");

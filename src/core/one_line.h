@@ -9,7 +9,7 @@ namespace openclose {
 /// Also the end of a line, which would end a message, and the character 0, which would cut it off.
 bool is_control(char character);
 
-/// Control characters as \x and their code.
-std::string escaped(std::string_view text);
+/// The text with its control characters as \x and their code.
+std::string on_one_line(std::string_view text);
 
 }  // namespace openclose

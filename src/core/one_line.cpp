@@ -1,4 +1,4 @@
-#include "openclose/core/escaped.h"
+#include "openclose/core/one_line.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@ bool is_control(char character) {
   return static_cast<unsigned char>(character) < 0x20 || character == 0x7f;
 }
 
-std::string escaped(std::string_view text) {
+std::string on_one_line(std::string_view text) {
   std::string line;
   for (const char character : text) {
     if (is_control(character)) {
