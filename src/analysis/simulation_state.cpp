@@ -41,8 +41,10 @@ SimulationState::SimulationState(Scene scene_to_follow, std::unique_ptr<Enforcem
       enforcement(own ? std::move(own) : make_enforcement(scene.method)),
       begins(scene.method.first_integrator.has_value()),
       // Two vertices may approach each other by the largest displacement each.
-      detector(2.0 * lengths.longest_displacement, {scene.method.skip_search, scene.method.skip_narrow_phase && enforcement->follows_gaps(),
-                                                    scene.method.skip_looks, lengths.contact_skin, lengths.search_skin}),
+      detector(2.0 * lengths.longest_displacement,
+               {scene.method.skip_search, scene.method.skip_narrow_phase && enforcement->follows_gaps(), scene.method.skip_looks,
+                lengths.contact_skin, lengths.search_skin},
+               enforcement->has_elastic_contacts() ? InheritedForces::as_they_were : InheritedForces::at_same_pressure),
       output_velocity(system.state().velocity),
       resting(scene.rest, system),
       start_kinetic_energy(system.kinetic_energy()),

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "openclose/contact/heirs.h"
-#include "openclose/contact/history.h"
 #include "openclose/contact/joined_faces.h"
 #include "openclose/contact/narrow_phase.h"
 #include "openclose/contact/near_blocks.h"
@@ -42,7 +41,7 @@ void join_faces(const BlockSystem& system, const GroundOutline& ground, std::vec
 
 }  // namespace
 
-Detector::Detector(double reach, const DetectionSkips& skips) : reach_(reach), skips_(skips) {}
+Detector::Detector(double reach, const DetectionSkips& skips, InheritedForces forces) : reach_(reach), skips_(skips), forces_(forces) {}
 
 bool Detector::moved_beyond_search_skin(const BlockSystem& system) const {
   for (const std::vector<Unknowns>* then : {&searched_at_, &searched_moving_at_}) {
@@ -269,7 +268,7 @@ void Detector::redo(const JointTable& joints, const BlockSystem& system, int pai
     c.joint = joints.index(system, c);
     const int known = index_.find(c.vertex, c.edge);
     if (known >= 0) {
-      inherit(before[known], stretch_at(before[known], c.gap, moved_by_others_), c);
+      inherit(before[known], stretch_at(before[known], c.gap, moved_by_others_), forces_, c);
       lives_on_[known - old.begin] = 1;
     } else {
       c.joint_state.bonded = first_ && c.gap <= tolerance::deepest_initial_overlap_m;
@@ -346,7 +345,7 @@ bool Detector::update(const BlockSystem& system, const JointTable& joints, Conta
   NarrowPhase narrow(system, present, reach_ + skips_.contact_skin, first_, shapes_, index_, neighbours, *ground_);
   for (const int pair : due_pairs_) redo(joints, system, pair, narrow, moving);
   if (first_) join_faces(system, *ground_, found_);
-  if (!first_) counters_.transfers += pass_on_history(system, moving, gone_, found_, born_);
+  if (!first_) counters_.transfers += pass_on_history(system, moving, gone_, found_, born_, forces_);
   put_in_place(moving, orphans);
   if (due_pairs_.size() == candidates_.pairs.size()) index_.let_go();  // later ones are few
   if (system.block_count() > most_blocks_with_working_memory) let_go_of_working_memory();

@@ -28,6 +28,7 @@
 #include "openclose/contact/contact.h"
 #include "openclose/contact/contact_index.h"
 #include "openclose/contact/contact_set.h"
+#include "openclose/contact/history.h"
 #include "openclose/contact/joint_table.h"
 #include "openclose/contact/number_set.h"
 #include "openclose/core/memory.h"
@@ -72,7 +73,7 @@ class NarrowPhase;
 class Detector {
  public:
   /// \param reach [m] open contacts are kept up to this gap: at least what two vertices can approach each other within a step
-  explicit Detector(double reach, const DetectionSkips& skips = {});
+  explicit Detector(double reach, const DetectionSkips& skips = {}, InheritedForces forces = InheritedForces::as_they_were);
   Detector(Detector&&) noexcept = default;  // and no copy: the index points into the contacts at rest
 
   /// Contacts of the present positions; false if their list stays as it is. `contacts` are those of the last call, with the history of the last step;
@@ -196,6 +197,7 @@ class Detector {
 
   double reach_;
   DetectionSkips skips_;
+  InheritedForces forces_;
   bool first_ = true;
   bool forgotten_ = true, looks_again_ = false;
   bool moved_by_others_ = false;                ///< before this update()

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "openclose/contact/history.h"
 #include "openclose/core/tolerance.h"
 
 namespace openclose {
@@ -26,7 +25,7 @@ bool continues(const BlockSystem& system, const Contact& before, const Contact& 
 }  // namespace
 
 int pass_on_history(const BlockSystem& system, std::vector<Contact>& before, const std::vector<int>& gone, std::vector<Contact>& found,
-                    std::vector<std::size_t>& born) {
+                    std::vector<std::size_t>& born, InheritedForces forces) {
   if (born.empty() || gone.empty()) return 0;
   std::vector<std::pair<int, int>> gone_by_vertex, gone_by_edge;
   for (const int k : gone) {
@@ -54,7 +53,7 @@ int pass_on_history(const BlockSystem& system, std::vector<Contact>& before, con
     consider(gone_by_edge, found[i].vertex);
     consider(gone_by_edge, system.previous(found[i].vertex));
     if (ancestor < 0) continue;
-    inherit(before[ancestor], before[ancestor].stretch(), found[i]);
+    inherit(before[ancestor], before[ancestor].stretch(), forces, found[i]);
     before[ancestor].length = taken;
     ++transfers;
   }

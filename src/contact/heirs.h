@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "openclose/contact/contact.h"
+#include "openclose/contact/history.h"
 #include "openclose/model/block_system.h"
 
 namespace openclose {
@@ -15,6 +16,6 @@ namespace openclose {
 /// \param born    their places; sorted by length
 /// \return how many inherit
 int pass_on_history(const BlockSystem& system, std::vector<Contact>& before, const std::vector<int>& gone, std::vector<Contact>& found,
-                    std::vector<std::size_t>& born);
+                    std::vector<std::size_t>& born, InheritedForces forces);
 
 }  // namespace openclose

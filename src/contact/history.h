@@ -10,6 +10,10 @@
 //   - one that nothing precedes is born without force, r = min(0, gap), unless it is one of the drawing.
 // Each spring that is kept or inherited has at most the energy it had and each that is born has none. Where lengths change to and fro the factors
 // cancel: the rule has no drift of its own.
+//
+// The forces are those of the last step, but those of rigid contacts keep their pressure, F' = F L'/L. Rigid contacts have no springs that would tell
+// how they share what equilibrium leaves open: as a block slides over a joint of the ground, what one contact has from before and another has not
+// would stay so, until one that covers ground as before carries nothing, and has no cohesion.
 #pragma once
 
 #include <algorithm>
@@ -18,6 +22,17 @@
 #include "openclose/contact/contact.h"
 
 namespace openclose {
+
+/// What becomes of the forces of a contact whose length changes.
+enum class InheritedForces : unsigned char { as_they_were, at_same_pressure };
+
+/// [-] A contact whose length grows or shrinks by more at once has just begun or is about to end: its force says nothing of the pressure around it.
+inline constexpr double most_change_of_length = 2.0;
+
+/// [-] By which the forces of a contact change with its tributary length [m].
+inline double change_at_same_pressure(double from, double to) {
+  return from > 0.0 ? std::clamp(to / from, 1.0 / most_change_of_length, most_change_of_length) : 1.0;
+}
 
 /// From here on the normal spring carries nothing at the present gap, and nothing at positive ones.
 inline void rest_at_present_gap(Contact& contact) {
@@ -33,14 +48,15 @@ inline double stretch_at(const Contact& before, double gap, bool moved_by_others
 
 /// What a contact of the present geometry has from the one that it continues, see above.
 /// \param stretch  [m] of the normal spring of `from`
-inline void inherit(const Contact& from, double stretch, Contact& to) {
+inline void inherit(const Contact& from, double stretch, InheritedForces forces, Contact& to) {
   to.status = from.status;
   to.joint_state = from.joint_state;
   // Faces that have slid off each other have opened: they are not bonded when they come back.
   JointState& joint = to.joint_state;
   if (joint.bonded) joint.bonded_length = std::min(joint.bonded_length, joint.joined * to.length);
-  to.normal_force = from.normal_force;
-  to.shear_force = from.shear_force;
+  const double change = forces == InheritedForces::at_same_pressure ? change_at_same_pressure(from.length, to.length) : 1.0;
+  to.normal_force = change * from.normal_force;
+  to.shear_force = change * from.shear_force;
   to.stored_energy = from.stored_energy;
   to.crossing_energy = from.crossing_energy;
   to.slack = from.slack;

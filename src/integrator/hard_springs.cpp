@@ -7,9 +7,9 @@
 namespace openclose {
 namespace {
 
-/// [-] Springs of contacts that are short beside their block, at least, over those of a contact that is half as long as the block's radius: what has to
-/// hold by softer ones alone takes many passes.
-constexpr double softest_of_short_contacts = 0.1;
+/// [-] Springs of contacts that are short beside their block, at least, over those of a contact that is half as long as the block's radius: what has
+/// to hold by softer ones alone takes many passes. A stiffer one takes more than its share while it is shorter than that, and keeps the pressure.
+constexpr double softest_of_short_contacts = 1e-3;
 
 /// The heavier one of its blocks that are not fixed.
 const BlockSystem::Block& heavier_block(const StepProblem& problem, const Contact& contact) {

@@ -1,6 +1,7 @@
 // What a contact remembers, and how it is passed on.
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "contacts.h"
 #include "openclose/contact/history.h"
@@ -162,6 +163,22 @@ TEST_CASE("when an overlap is divided by a seam the longer contact inherits", "[
   CHECK(d.find(6, 2)->length == Approx(0.005).epsilon(1e-9));
 }
 
+TEST_CASE("forces of rigid contacts keep their pressure, but for those that have just begun", "[contact][history]") {
+  // Of the length and of the force, where contacts are rigid.
+  const auto [length, force] =
+      GENERATE(std::pair(1.5, 1.5), std::pair(0.6, 0.6), std::pair(3.0, most_change_of_length), std::pair(0.2, 1.0 / most_change_of_length));
+  Contact from, rigid, elastic;
+  load(from);
+  from.length = 0.01;
+  rigid.length = elastic.length = length * from.length;
+  inherit(from, -1e-6, InheritedForces::at_same_pressure, rigid);
+  CHECK(rigid.normal_force == Approx(3.0 * force).epsilon(1e-12));
+  CHECK(rigid.shear_force == Approx(-2.0 * force).epsilon(1e-12));
+  inherit(from, -1e-6, InheritedForces::as_they_were, elastic);
+  CHECK(elastic.normal_force == 3.0);
+  CHECK(elastic.shear_force == -2.0);
+}
+
 TEST_CASE("one history is not inherited twice, nor from a contact that lives on", "[contact][history]") {
   Detection d(scene_with({base_with_seam(), free_block("block", rectangle(-1.01, 0.0, 1.0, 1.0))}));
   load(*d.find(6, 3));
@@ -231,7 +248,7 @@ TEST_CASE("a spring that changes its length keeps its energy, or loses some, and
   before.length = length_before;
   now.length = length;
   now.gap = gap;
-  inherit(before, stretch, now);
+  inherit(before, stretch, InheritedForces::as_they_were, now);
   CHECK(now.rest_gap <= std::max(0.0, gap));
   // The stretch is the difference of two gaps.
   const double rounding = 4.0 * std::numeric_limits<double>::epsilon() * std::abs(gap), of_same_energy = stretch * std::sqrt(length_before / length);
@@ -249,7 +266,7 @@ TEST_CASE("lengths that change to and fro leave a spring as it was", "[contact][
     Contact next;
     next.length = length;
     next.gap = -100.0;  // deep enough for all of them
-    inherit(c, c.stretch(), next);
+    inherit(c, c.stretch(), InheritedForces::as_they_were, next);
     c = next;
   }
   CHECK(c.stretch() == Approx(-1.0).epsilon(1e-12));
@@ -277,7 +294,7 @@ TEST_CASE("what has slid off a face is not bonded when it comes back", "[contact
   for (const double length : {0.5, 1.5, 1.0}) {
     Contact next;
     next.length = length;
-    inherit(c, c.stretch(), next);
+    inherit(c, c.stretch(), InheritedForces::as_they_were, next);
     c = next;
   }
   CHECK(c.joint_state.joined == 0.8);
@@ -291,7 +308,7 @@ TEST_CASE("a spring that pulls never gains energy by its length", "[contact][his
   before.length = 1.0;
   now.length = length;
   now.gap = gap;
-  inherit(before, 2e-4, now);
+  inherit(before, 2e-4, InheritedForces::as_they_were, now);
   CHECK(now.stretch() > 0.0);
   CHECK(normal_energy(now, now.stretch()) <= normal_energy(before, 2e-4) * (1.0 + 1e-12));
 }
@@ -301,7 +318,7 @@ TEST_CASE("an open contact begins to carry where it is, at most at gap zero", "[
   Contact before, now;
   before.length = now.length = 1.0;
   now.gap = gap;
-  inherit(before, 1e-5, now);
+  inherit(before, 1e-5, InheritedForces::as_they_were, now);
   CHECK(now.rest_gap == std::min(0.0, gap));
 }
 
