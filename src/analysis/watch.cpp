@@ -283,12 +283,13 @@ std::vector<std::string> Watch::warnings(const Simulation& simulation) const {
   if (worst_group_.part > watch_bound::created_energy)
     list.push_back(fmt::format("energy was created: {}, {:.2g} % of it; {}", in_words(simulation, worst_group_), 100.0 * worst_group_.part,
                                better_energy(simulation)));
-  if (const double part = driven_ / energy_scale(); part > watch_bound::created_energy)
+  if (const double part = driven_ > 0.0 ? driven_ / energy_scale() : 0.0; part > watch_bound::created_energy)
     list.push_back(fmt::format("energy was created: friction drove what slides by {:.3g} J, {:.2g} % of the energy there was; {}", driven_,
                                100.0 * part, better_energy(simulation)));
   // See docs/methods.md.
   const bool is_exact = simulation.is_explicit() || simulation.state().scheme->end_weight() >= 1.0 || simulation.state().scheme->averages_path();
-  const double damped = simulation.ledger().contact_damping / report_.available_energy;
+  // A run that came to nothing had no energy, nor did dashpots take any.
+  const double taken = simulation.ledger().contact_damping, damped = taken > 0.0 ? taken / report_.available_energy : 0.0;
   if (!is_exact && damped > watch_bound::noticeable_damping)
     list.push_back(
         fmt::format("dashpots took {:.2g} % of the energy, and with this integrator those that meet a bound converge to another motion (a "

@@ -15,7 +15,7 @@ namespace {
 /// Refuses what would take longer than anyone waits.
 void require_countable_steps(const Scene& scene, const std::string& key, double time) {
   constexpr double most_steps = 1e9;
-  if (time / scene.step.dt <= most_steps) return;
+  if (time / most_steps <= scene.step.dt) return;
   throw InputError(scene.where, key, fmt::format("{:g} s in steps of {:g} s", time, scene.step.dt),
                    fmt::format("at most {:g} steps of step.dt_s", most_steps));
 }

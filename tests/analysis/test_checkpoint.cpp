@@ -485,6 +485,7 @@ TEST_CASE("a wrong number anywhere in a saved state is refused, or goes on as so
   Simulation simulation(scene);
   for (int i = 0; i < 300; ++i) REQUIRE(simulation.advance(scene.step.dt));
   const std::string saved = state_of(simulation);
+  const NonStop non_stop;
   // As a whole number beyond every list, as the upper half of a real one 2. Runs and searches are forged by tests/fuzz/every_number.cpp.
   constexpr char wrong[] = {'\xff', '\xff', '\xff', '\x3f'};
   int refused = 0;

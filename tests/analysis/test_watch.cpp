@@ -3,6 +3,7 @@
 
 #include "openclose/analysis/run.h"
 #include "openclose/analysis/watch.h"
+#include "openclose_traps.h"
 #include "support/catch.h"
 #include "support/scenes.h"
 
@@ -200,6 +201,7 @@ TEST_CASE("numbers that are none are found", "[analysis][watch]") {
 }
 
 TEST_CASE("energies that are no numbers are found, whichever entry of the ledger it is", "[analysis][watch]") {
+  const NonStop non_stop;
   const auto ledger_with = [](double EnergyLedger::*entry, double value) {
     Scene scene = dropped_block(0.3);
     Watched w(scene);

@@ -9,6 +9,7 @@
 #include "cli/command.h"
 #include "openclose/core/check_sum.h"
 #include "support/catch.h"
+#include "support/sanitized.h"
 
 using Catch::Matchers::ContainsSubstring;
 using openclose::test::CommandResult;
@@ -16,6 +17,16 @@ using openclose::test::text_of;
 using openclose::test::Workplace;
 
 namespace {
+
+/// What a shell does to send a command this signal after it has had time to begin, which under a sanitizer it takes ten times as much of.
+std::string stopped_by(const std::string& signal) {
+#ifdef OPENCLOSE_ADDRESS_SANITIZER
+  constexpr const char* seconds = "10";
+#else
+  constexpr const char* seconds = "1";
+#endif
+  return "timeout --foreground --preserve-status -s " + signal + " " + seconds + " ";
+}
 
 constexpr const char* motion =
     " --dt 0.001 --start unloaded --set output.every_s=0.003 --set output.snapshots_s=[0.02,0.1] --set output.snapshots_every_s=0.03";
@@ -210,7 +221,7 @@ TEST_CASE("who stops a run while it settles is told how to go on, or keeps the r
   const std::string settled =
       " --start settled --dt 0.001 --end 1 --set settle.unbalanced_fraction=1e-300 --set settle.max_steps=1000000000 "
       "--set settle.max_explicit_steps=1000000000 -o out";
-  const std::string stop = "timeout --foreground --preserve-status -s INT 1 ";
+  const std::string stop = stopped_by("INT");
   SECTION("with an explicit method") {
     const CommandResult stopped = place.run("run wall.toml --contact dem" + settled, stop);
     CHECK(stopped.status == 130);
@@ -237,15 +248,13 @@ TEST_CASE("who stops a run while it settles is told how to go on, or keeps the r
 TEST_CASE("the command that goes on is one for a shell, whatever the names are", "[cli][restart]") {
   const Workplace place("");
   place.folder().write("it's a slope.toml", openclose::test::block_on_incline(35.0));
-  const CommandResult stopped = place.run("run \"it's a slope.toml\"" + std::string(motion) + " --end 1000 -o \"what's left\"",
-                                          "timeout --foreground --preserve-status -s INT 1 ");
+  const CommandResult stopped = place.run("run \"it's a slope.toml\"" + std::string(motion) + " --end 1000 -o \"what's left\"", stopped_by("INT"));
   CHECK(stopped.status == 130);
   REQUIRE(stopped.errors.size() == 1);
   const std::string& told = stopped.errors[0];
   const std::size_t arguments = told.find("openclose run ");
   REQUIRE(arguments != std::string::npos);
-  const CommandResult again =
-      place.run(told.substr(arguments + std::string("openclose ").size()), "timeout --foreground --preserve-status -s INT 1 ");
+  const CommandResult again = place.run(told.substr(arguments + std::string("openclose ").size()), stopped_by("INT"));
   CHECK(again.status == 130);
   CHECK_THAT(again.errors.at(0), ContainsSubstring("stopped at t = "));
 }
@@ -260,8 +269,7 @@ TEST_CASE("a run that is stopped by a signal saves its state and says how to go 
   INFO(stop.signal);
   const Workplace place(openclose::test::block_on_incline(35.0));
   const std::string common = std::string("run scene.toml") + motion;
-  const CommandResult stopped =
-      place.run(common + " --end 1000 -o parts", std::string("timeout --foreground --preserve-status -s ") + stop.signal + " 1 ");
+  const CommandResult stopped = place.run(common + " --end 1000 -o parts", stopped_by(stop.signal));
   CHECK(stopped.status == stop.status);
   REQUIRE(stopped.errors.size() == 1);
   CHECK_THAT(stopped.errors[0], ContainsSubstring("stopped at t = ") && ContainsSubstring("--restart 'parts/checkpoint.bin'"));
@@ -275,9 +283,8 @@ TEST_CASE("a run that is stopped by a signal saves its state and says how to go 
 TEST_CASE("a search for the factor of safety that is stopped tells what it knows", "[cli][restart]") {
   const Workplace place(openclose::test::block_on_incline(20.0));
   // The search ends by itself, or tells what it knows: it has found a stable factor by the time of its first look at the signal.
-  const CommandResult stopped =
-      place.run("fos scene.toml --contact dem --set strength_reduction.definition=large_displacements --set settle.first_dt_s=1e-7 -o out",
-                "timeout --foreground --preserve-status -s INT 1 ");
+  const CommandResult stopped = place.run(
+      "fos scene.toml --contact dem --set strength_reduction.definition=large_displacements --set settle.first_dt_s=1e-7 -o out", stopped_by("INT"));
   CHECK(stopped.status == 130);
   REQUIRE(stopped.errors.size() == 1);
   CHECK_THAT(stopped.errors[0], ContainsSubstring("stopped ") && ContainsSubstring("state saved in out"));
@@ -292,7 +299,7 @@ TEST_CASE("who stops a search in its first trial keeps the results of the one be
   const auto before = openclose::test::contents(place.folder() / "out");
   // The waves of dem take seconds to come to rest in so high a wall.
   REQUIRE(place.run("new wall --courses 160 --bricks 30 -o wall.toml -q").status == 0);
-  const CommandResult stopped = place.run("fos wall.toml --contact dem -o out", "timeout --foreground --preserve-status -s INT 1 ");
+  const CommandResult stopped = place.run("fos wall.toml --contact dem -o out", stopped_by("INT"));
   CHECK(stopped.status == 130);
   REQUIRE_FALSE(stopped.errors.empty());
   CHECK_THAT(stopped.errors.back(), ContainsSubstring("stopped in the first trial") && ContainsSubstring("to run again: openclose fos 'wall.toml' "));

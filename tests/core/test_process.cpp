@@ -7,6 +7,7 @@
 
 #include "openclose/core/process.h"
 #include "support/catch.h"
+#include "support/sanitized.h"
 
 using namespace openclose;
 
@@ -47,14 +48,14 @@ TEST_CASE("peak memory counts what was there and is gone", "[core][process]") {
   }
   CHECK(peak_memory() - before > static_cast<long>(bytes) * 9 / 10);
   CHECK(peak_memory() - before < static_cast<long>(bytes) * 12 / 10);
-#ifndef __SANITIZE_ADDRESS__  // whose allocator keeps what is freed
+#ifndef OPENCLOSE_ADDRESS_SANITIZER  // whose allocator keeps what is freed
   CHECK(resident_memory() < peak_memory() - static_cast<long>(bytes) / 2);
 #endif
   CHECK(memory_of_program() > 0);
   CHECK(memory_of_program() <= before);
 }
 
-#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__)
+#if defined(__GLIBC__) && !defined(OPENCLOSE_ADDRESS_SANITIZER)
 TEST_CASE("memory that was provided at once is there when it is touched", "[core][process]") {
   constexpr std::size_t bytes = 8u << 20, piece = 100u << 10;
   return_large_memory();
