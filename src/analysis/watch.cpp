@@ -22,6 +22,11 @@ constexpr std::size_t turns = 32;
 /// [-] A remedy asks for this much more than what would just have been enough.
 constexpr double margin = 2.0;
 
+/// [-] Of energies [J]. Where nothing was gained that is nothing, also of a run that came to nothing and had no energy.
+double part_of(double gained, double available) {
+  return gained > 0.0 ? gained / available : 0.0;
+}
+
 /// How many blocks stand on each other: in the scene as it starts, from what is fixed to the block that the most others part from it; no fewer than
 /// in a pile of all.
 double stacked_blocks(const Simulation& simulation) {
@@ -242,7 +247,7 @@ std::string Watch::check_energy(const Simulation& simulation) {
     return fmt::format("the energies are no finite numbers any more ({}); {}", wrong != std::end(sources) ? wrong->name : "energy ledger",
                        shorter_step(simulation.scene(), margin));
   const Source& worst = *std::ranges::max_element(sources, {}, &Source::energy);
-  const double part = worst.energy > 0.0 ? worst.energy / scale : 0.0;
+  const double part = part_of(worst.energy, scale);
   report_.created_energy = std::max(report_.created_energy, part);
   if (part <= watch_bound::created_energy) return {};
   return fmt::format("energy was created: {:.3g} J where {:.3g} J were there to move anything ({:.2g} of it, at most {:g}; {}); {}", worst.energy,
@@ -270,7 +275,7 @@ std::string Watch::check_friction(const Simulation& simulation) {
   const double now = simulation.ledger().friction;
   most_friction_ = std::max(most_friction_, now);
   driven_ = std::max(driven_, most_friction_ - now);
-  const double part = driven_ > 0.0 ? driven_ / energy_scale() : 0.0;
+  const double part = part_of(driven_, energy_scale());
   report_.created_energy = std::max(report_.created_energy, part);
   if (part <= watch_bound::created_energy_of_part) return {};
   return fmt::format(
@@ -283,13 +288,12 @@ std::vector<std::string> Watch::warnings(const Simulation& simulation) const {
   if (worst_group_.part > watch_bound::created_energy)
     list.push_back(fmt::format("energy was created: {}, {:.2g} % of it; {}", in_words(simulation, worst_group_), 100.0 * worst_group_.part,
                                better_energy(simulation)));
-  if (const double part = driven_ > 0.0 ? driven_ / energy_scale() : 0.0; part > watch_bound::created_energy)
+  if (const double part = part_of(driven_, energy_scale()); part > watch_bound::created_energy)
     list.push_back(fmt::format("energy was created: friction drove what slides by {:.3g} J, {:.2g} % of the energy there was; {}", driven_,
                                100.0 * part, better_energy(simulation)));
   // See docs/methods.md.
   const bool is_exact = simulation.is_explicit() || simulation.state().scheme->end_weight() >= 1.0 || simulation.state().scheme->averages_path();
-  // A run that came to nothing had no energy, nor did dashpots take any.
-  const double taken = simulation.ledger().contact_damping, damped = taken > 0.0 ? taken / report_.available_energy : 0.0;
+  const double damped = part_of(simulation.ledger().contact_damping, report_.available_energy);
   if (!is_exact && damped > watch_bound::noticeable_damping)
     list.push_back(
         fmt::format("dashpots took {:.2g} % of the energy, and with this integrator those that meet a bound converge to another motion (a "
@@ -303,7 +307,7 @@ std::string Watch::check_reach(const Simulation& simulation) {
   const double scale = energy_scale();
   for (int b : system.free_blocks()) {
     const double energy = energies_[b] + std::max(0.0, -falls_[b]);
-    const double part = energy > 0.0 ? energy / scale : 0.0;
+    const double part = part_of(energy, scale);
     if (!(part <= report_.reach)) report_.reach = part;
     if (part <= 1.0 + watch_bound::created_energy) continue;
     const auto v = simulation.velocity(b);
