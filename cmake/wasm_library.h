@@ -1,10 +1,12 @@
-// What the standard library of emscripten 3.1.6 (libc++ 13) lacks of C++20, as far as the program uses it; included before every source by
-// cmake/wasm.cmake.
+// What the libraries of emscripten 3.1.6 lack, as far as the program uses it: of C++20 in libc++ 13, and of POSIX in programs of one thread.
+// Included before every source by cmake/wasm.cmake.
 #pragma once
 
 #include <version>
 
 #if defined(_LIBCPP_VERSION) && _LIBCPP_VERSION < 15000
+
+#include <pthread.h>
 
 #include <algorithm>
 #include <cctype>
@@ -19,6 +21,11 @@
 #include <string>
 #include <type_traits>
 #include <utility>
+
+/// Declared there and never defined: without threads there is none whose time could be asked for.
+extern "C" inline int pthread_getcpuclockid(pthread_t, clockid_t*) {
+  return ENOSYS;
+}
 
 _LIBCPP_BEGIN_NAMESPACE_STD
 
@@ -104,6 +111,42 @@ auto min_element(Range&& range, Compare compare = {}, Part part = {}) {
 template <class Range, class Compare = less, class Part = identity>
 auto max_element(Range&& range, Compare compare = {}, Part part = {}) {
   return std::max_element(std::begin(range), std::end(range), compares_parts(compare, part));
+}
+
+template <class Range, class Compare = less, class Part = identity>
+auto min(Range&& range, Compare compare = {}, Part part = {}) {
+  return *ranges::min_element(range, compare, part);
+}
+
+template <class Range, class Compare = less, class Part = identity>
+auto max(Range&& range, Compare compare = {}, Part part = {}) {
+  return *ranges::max_element(range, compare, part);
+}
+
+template <class Range, class Value, class Compare = less, class Part = identity>
+auto lower_bound(Range&& range, const Value& value, Compare compare = {}, Part part = {}) {
+  return std::lower_bound(std::begin(range), std::end(range), value,
+                          [&](const auto& element, const Value& sought) -> bool { return std::invoke(compare, std::invoke(part, element), sought); });
+}
+
+template <class Range, class Value>
+bool binary_search(Range&& range, const Value& value) {
+  return std::binary_search(std::begin(range), std::end(range), value);
+}
+
+template <class Range>
+bool is_sorted(Range&& range) {
+  return std::is_sorted(std::begin(range), std::end(range));
+}
+
+template <class Range, class Value>
+void replace(Range&& range, const Value& before, const Value& after) {
+  std::replace(std::begin(range), std::end(range), before, after);
+}
+
+template <class Range, class Output, class Test>
+void copy_if(Range&& range, Output output, Test test) {
+  std::copy_if(std::begin(range), std::end(range), output, std::move(test));
 }
 
 template <class Range, class Compare = less, class Part = identity>

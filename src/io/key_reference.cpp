@@ -117,7 +117,7 @@ void add_words(std::string& page, std::span<const KeyEntry> table) {
 void add_tables(std::string& page, const std::vector<KeyEntry>& entries, Audience audience) {
   for (auto first = entries.begin(); first != entries.end();) {
     const auto end = std::find_if(first, entries.end(), [&](const KeyEntry& entry) { return entry.table.name != first->table.name; });
-    const std::span<const KeyEntry> table(first, end);
+    const std::span table(&*first, static_cast<std::size_t>(end - first));
     first = end;
     if (table.front().table.audience != audience) continue;
     page += fmt::format("\n{}\n\n{}\n\n| key | unit | default | accepted | what it does |\n|---|---|---|---|---|\n", heading(table.front().table),
