@@ -22,9 +22,9 @@ constexpr std::size_t turns = 32;
 /// [-] A remedy asks for this much more than what would just have been enough.
 constexpr double margin = 2.0;
 
-/// [-] Of energies [J]. Where nothing was gained that is nothing, also of a run that came to nothing and had no energy.
-double part_of(double gained, double available) {
-  return gained > 0.0 ? gained / available : 0.0;
+/// [-] Of energies [J]. None is no part, also of a run that came to nothing and had no energy; what is no number stays none, so no bound holds it.
+double part_of(double energy, double available) {
+  return energy <= 0.0 ? 0.0 : energy / available;
 }
 
 /// How many blocks stand on each other: in the scene as it starts, from what is fixed to the block that the most others part from it; no fewer than
