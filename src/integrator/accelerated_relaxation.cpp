@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "openclose/core/tolerance.h"
+#include "openclose/integrator/momentum.h"
 
 namespace openclose {
 namespace {
@@ -29,21 +30,6 @@ constexpr double longest_lone_way = 1e-4;
 constexpr double residual_of_slip = 1e-6;
 /// [-] Of the longest displacement: momentum carries blocks a few hundredths beyond their place.
 constexpr double largest_overshoot = 1.1;
-
-/// Momentum of Nesterov's method: grows while it helps, begins anew when the forces oppose it.
-class Momentum {
- public:
-  void restart() { age_ = 1.0; }
-  /// [-] Of the last way that is gone once more.
-  double next() {
-    const double last = age_;
-    age_ = 0.5 * (1.0 + std::sqrt(1.0 + 4.0 * last * last));
-    return (last - 1.0) / age_;
-  }
-
- private:
-  double age_ = 1.0;
-};
 
 /// Which contacts have their springs in the estimate: all that are closed, so that its steps stay safe, and those that may close again. Without the
 /// open ones it is right about blocks that few contacts hold.

@@ -24,10 +24,6 @@ constexpr double shortest_backtrack = 0.01;
 /// slope of 387 free blocks: with 0 all rows are factored anew in 2,427 iterations, with 1e-8 117 of them in 2,439, with 1e-7 88 in 2,522, with
 /// 1e-5 68 in 2,622, with 1e-4 40 in 3,178.
 constexpr double kept_change = 1e-8;
-/// [-] The same in statics, whose steps are few and end with changes of contacts rather than with the turning of blocks. Instructions of settling a
-/// slope of 387 free blocks with `soft` and with `hard`, of its strength reduction with either, and of settling 1,773 free blocks, over those with
-/// 1e-8: 0.98, 0.97, 0.98, 0.95, 0.98 with 1e-6; 0.98, 0.98, 0.98, 0.95, 0.98 with 1e-5.
-constexpr double static_kept_change = 1e-6;
 /// [-] A static step of which the line search takes less is begun again with held contacts.
 constexpr double shortest_common_step = 1e-3;
 /// [-] Held contacts keep this part of their hold from iteration to iteration, so that what they let go at a time is about twice what they have
@@ -88,8 +84,7 @@ void Newton::assemble(const Eigen::VectorXd& d, Tangent tangent) {
 Eigen::VectorXd Newton::direction(const Eigen::VectorXd& d, Tangent tangent, double reduction) {
   assemble(d, tangent);
   Eigen::VectorXd step;
-  if (tangent_.factor(equations_.problem().statics ? static_kept_change : kept_change))
-    step = tangent_.solve(equations_.residual(), reduction);
+  if (tangent_.factor(kept_change)) step = tangent_.solve(equations_.residual(), reduction);
   return step;
 }
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "openclose/core/tolerance.h"
+#include "openclose/linear/factorisation_work.h"
 #include "openclose/linear/incomplete.h"
 #include "openclose/linear/krylov.h"
 #include "openclose/linear/single_matrix.h"
@@ -15,14 +16,23 @@
 namespace openclose {
 namespace {
 
-/// [-] Times the root of the number of block rows: iterations that take as long as a factorisation row by row, whose work grows with the power 1.5 of
-/// that number (0.31, 0.30 and 0.35 at 1,773, 4,568 and 9,745 rows, both in double precision, rows eliminated from one end). Beyond, the direct
-/// solver is quicker. In single precision and with rows that are kept, 0.45 makes 0.997 and 1.002 of the instructions of slopes of 1,973 and 4,887
-/// blocks that settle and make 20 steps.
-constexpr double iterations_of_a_factorisation = 0.3;
+/// Iterations of GMRES that take as long as a factorisation, counted in blocks: an iteration multiplies each block of the matrix and of the
+/// incomplete factor by a vector, and takes from it, and asks of the next one, its part of each direction before it: six products of numbers a row
+/// beside the nine of a block. A block by a vector takes about as long as the product of two blocks in a factorisation, since both wait for memory
+/// (6 to 8 ns beside 7 to 8 on slopes of 4,568 and 9,745 rows and a wall of 10,040).
+///
+/// \param products  of blocks, in the factorisation
+int iterations_of_a_factorisation(double products, double blocks, int rows) {
+  const double blocks_a_direction = 6.0 / 9.0 * rows;
+  const double iterations = 2.0 * products / (blocks + std::sqrt(blocks * blocks + 2.0 * blocks_a_direction * products));
+  return static_cast<int>(std::ceil(std::min<double>(iterations, dofs * rows)));  // after which GMRES is at its end
+}
+
 /// After a try in vain one matrix is factored at once before the next, twice as many after each further one, up to this many. Half as many
 /// again after a success, and one after one at half the price.
 constexpr int longest_pause = 64;
+/// [-] Products of blocks that no matrix needs which fits in memory.
+constexpr double most_work = 1e22;
 /// [-] Of a residual, as far as it is brought down in single precision at a time, at most and at least. Of 500 solves to 1e-5 of a failing slope of
 /// 50,106 blocks half leave what the rotations say, nine tenths 1.01 times as much, the worst 11 times.
 constexpr double most_of_single_precision = 1e-5, least_of_single_precision = 0.4;
@@ -56,7 +66,7 @@ struct Refined {
 class IncompleteSolver : public LinearSolver {
  public:
   IncompleteSolver(std::unique_ptr<LinearSolver> direct, int smallest_system, Factoring factoring)
-      : direct_(std::move(direct)), smallest_system_(smallest_system), incomplete_(factoring) {}
+      : direct_(std::move(direct)), smallest_system_(smallest_system), factoring_(factoring), incomplete_(factoring) {}
 
   bool factor(const BlockMatrix& matrix, double kept_change) override {
     matrix_ = &matrix;
@@ -69,6 +79,7 @@ class IncompleteSolver : public LinearSolver {
     ++(incomplete_.analyse(matrix) ? counters_.symbolic : counters_.symbolic_skipped);
     ++counters_.incomplete;
     direct_->let_go();  // several times as large as what takes its place
+    if (counted_work_ == 0.0) counted_work_ = products_of_factorisation(matrix, factoring_) / power_of_work(stored_blocks());
     if (!incomplete_.factor(matrix)) return give_up();
     single_.take(matrix, incomplete_.order());
     counters_.rows += matrix.rows();
@@ -108,12 +119,23 @@ class IncompleteSolver : public LinearSolver {
     LinearSolver::exchange(archive, matrix);
     direct_->exchange(archive, matrix);
     incomplete_.exchange(archive, matrix);
-    archive(pause_, left_to_pause_);
-    archive.require(pause_ >= 1 && pause_ <= longest_pause && left_to_pause_ >= 0, "the saved state has a solver that there is not");
+    archive(pause_, left_to_pause_, counted_work_);
+    archive.require(pause_ >= 1 && pause_ <= longest_pause && left_to_pause_ >= 0 && counted_work_ >= 0.0 && counted_work_ <= most_work,
+                    "the saved state has a solver that there is not");
   }
 
  private:
-  int most_iterations() const { return static_cast<int>(std::ceil(iterations_of_a_factorisation * std::sqrt(matrix_->rows()))); }
+  /// In the plane the work of a factorisation in an order of little fill grows with the power 1.5 of what is in the matrix (R. J. Lipton, D. J. Rose,
+  /// R. E. Tarjan, Generalized nested dissection, SIAM J. Numer. Anal. 16 (1979)).
+  static double power_of_work(double blocks) { return blocks * std::sqrt(blocks); }
+
+  double stored_blocks() const { return static_cast<double>(incomplete_.stored_blocks()); }
+
+  /// Beyond, the direct solver is quicker.
+  int most_iterations() const {
+    const double blocks = stored_blocks() + matrix_->row_start(matrix_->rows());
+    return iterations_of_a_factorisation(counted_work_ * power_of_work(stored_blocks()), blocks, matrix_->rows());
+  }
 
   /// GMRES in single precision, as often as it takes for the residual in double precision.
   Refined refine(const Eigen::VectorXd& right_side, double reduction) {
@@ -165,7 +187,9 @@ class IncompleteSolver : public LinearSolver {
   int smallest_system_;
   const BlockMatrix* matrix_ = nullptr;
   double kept_change_ = 0.0;
+  Factoring factoring_;
   IncompleteLu incomplete_;
+  double counted_work_ = 0.0;  ///< products of the direct factorisation of the first matrix, over power_of_work() of it; 0: not yet counted
   SingleMatrix single_;
   bool use_direct_ = false;
   int pause_ = 1, left_to_pause_ = 0;  ///< matrices

@@ -195,20 +195,34 @@ TEST_CASE("springs of rigid contacts become stiffer where they are too soft for 
   CHECK(simulation.state().counters.steps == 10);                  // none of them in parts, as where the passes that a step may take are too few
 }
 
+TEST_CASE("passes of rigid contacts grow in number no faster than the column that they carry", "[integrator][hard]") {
+  // An error that falls with the square of the number of passes, of multipliers that grow with the square of the blocks. Without momentum both
+  // columns have a ratio of more than two.
+  const auto iterations = [](int blocks) {
+    Simulation simulation(column(blocks, 0.01, 1));
+    REQUIRE(run(simulation, {}).converged);
+    REQUIRE(simulation.state().counters.steps == 1);
+    return simulation.state().counters.iterations;
+  };
+  CHECK(iterations(400) <= 2 * iterations(200));
+}
+
 TEST_CASE("a step of which the passes do not find the multipliers is cut to what their error tells", "[integrator][hard]") {
-  Simulation simulation(column(400, 0.1, 3));
+  Scene scene = column(1000, 0.1, 1);
+  scene.method.gap_tolerance = 1e-8;
+  Simulation simulation(scene);
   REQUIRE(run(simulation, {}).converged);
   CHECK(simulation.state().counters.cuts > 0);
 }
 
 TEST_CASE("steps of which the passes find no multipliers are cut before blocks pass into each other", "[integrator][hard]") {
-  const int blocks = 200;
+  const int blocks = 1000, steps = 2;
   const double dt = 0.02;
-  Scene scene = column(blocks, dt, 20);
+  Scene scene = column(blocks, dt, steps);
   scene.method.gap_tolerance = 1e-10;  // which passes through so many blocks do not reach
   Simulation simulation(scene);
   prepare_start(simulation);  // the watch would refuse a run that misses its tolerance so far
-  for (int i = 0; i < 20; ++i) REQUIRE(simulation.advance(dt));
+  for (int i = 0; i < steps; ++i) REQUIRE(simulation.advance(dt));
   CHECK(simulation.state().counters.cuts > 0);
   // Springs of 300 times the inertia under the weight of the column would close by a thousand times as much in a whole step.
   CHECK(simulation.max_penetration() < 10.0 * tolerance::rounding_of_ways_m);
@@ -278,11 +292,11 @@ TEST_CASE("saved springs that there are not are refused", "[integrator][hard]") 
     }
   };
   CHECK(reads({0, 0, 0}));
-  CHECK(reads({3, 4, 15}));
-  CHECK_FALSE(reads({4, 0, 0}));
+  CHECK(reads({2, 4, 15}));
+  CHECK_FALSE(reads({3, 0, 0}));
   CHECK_FALSE(reads({0, -1, 0}));
   CHECK_FALSE(reads({0, 5, 0}));
   CHECK_FALSE(reads({0, 0, -1}));
-  CHECK_FALSE(reads({3, 4, 16}));
-  CHECK_FALSE(reads({3, 1, 2}));
+  CHECK_FALSE(reads({2, 4, 16}));
+  CHECK_FALSE(reads({2, 1, 2}));
 }

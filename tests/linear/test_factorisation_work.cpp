@@ -1,0 +1,83 @@
+#include "grids.h"
+#include "openclose/linear/factorisation_work.h"
+#include "openclose/linear/solver.h"
+#include "random_systems.h"
+#include "support/catch.h"
+
+using namespace openclose;
+using openclose::test::RandomSystems;
+
+namespace {
+
+/// Every block holds on to its eight neighbours and to the ground.
+BlockMatrix wall(int columns, int rows, double inertia) {
+  auto pairs = test::grid_pairs(columns, rows);
+  for (int i = 0; i + columns < columns * rows; ++i) {
+    if (i % columns > 0) pairs.emplace_back(i, i + columns - 1);
+    if (i % columns + 1 < columns) pairs.emplace_back(i, i + columns + 1);
+  }
+  BlockMatrix matrix;
+  matrix.set_pattern(columns * rows, pairs);
+  const Eigen::Matrix3d one = Eigen::Matrix3d::Identity();
+  for (int i = 0; i < matrix.rows(); ++i) matrix.add(i, i, inertia * one);
+  for (const auto& [i, j] : pairs) {
+    matrix.add(i, i, one);
+    matrix.add(j, j, one);
+    matrix.add(i, j, -one);
+    matrix.add(j, i, -one);
+  }
+  return matrix;
+}
+
+}  // namespace
+
+TEST_CASE("the products of a factorisation are those that can be counted by hand", "[linear][factorisation_work]") {
+  RandomSystems random(49);
+  const auto products = [&](int rows, const std::vector<std::pair<int, int>>& pairs) {
+    BlockMatrix matrix;
+    matrix.set_pattern(rows, pairs);
+    random.fill(matrix, pairs, 1.5);
+    return products_of_factorisation(matrix, Factoring::whole);
+  };
+  CHECK(products(3, {}) == 3.0);                                                  // pivots alone
+  CHECK(products(5, {{0, 1}, {1, 2}, {2, 3}, {3, 4}}) == 4 * (1 + 1 + 1) + 1.0);  // from either end, no fill
+  // All with all: a row with a blocks above the diagonal is multiplied by its pivot's inverse and subtracted from a rows.
+  CHECK(products(4, {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}) == (3 * 4 + 1) + (2 * 3 + 1) + (1 * 2 + 1) + 1.0);
+  // A star: its middle goes last but for one of its rays.
+  CHECK(products(5, {{0, 1}, {0, 2}, {0, 3}, {0, 4}}) == 4 * (1 + 1 + 1) + 1.0);
+}
+
+TEST_CASE("GMRES may take as long as a factorisation does", "[linear][factorisation_work]") {
+  RandomSystems random(50);
+  const auto counters = [&](int columns, int rows, double inertia) {
+    const BlockMatrix matrix = wall(columns, rows, inertia);
+    const auto solver = make_incomplete_solver(make_block_solver(), 0);
+    REQUIRE(solver->factor(matrix));
+    solver->solve(random.vector(matrix.unknowns()), 1e-5);
+    return solver->counters();
+  };
+  // As many blocks. The factor of the square one takes twenty times as long as that of the tower, an iteration as long.
+  const LinearCounters square = counters(60, 60, 1e-3), tower = counters(6, 600, 1e-1);
+  CHECK(square.krylov_iterations > 20);
+  CHECK(square.krylov_given_up == 0);
+  CHECK(tower.krylov_iterations < 5);
+  CHECK(tower.krylov_given_up == 1);
+}
+
+TEST_CASE("a solver that was written and read goes on with the work that was counted on the first matrix", "[linear][factorisation_work]") {
+  RandomSystems random(51);
+  const BlockMatrix square = wall(60, 60, 1e-1), tower = wall(6, 600, 1e-1);
+  const auto solve_tower = [&](LinearSolver& solver) {
+    REQUIRE(solver.factor(tower));
+    solver.solve(random.vector(tower.unknowns()), 1e-5);
+    return solver.counters().krylov_given_up;
+  };
+  const auto first = make_incomplete_solver(make_block_solver(), 0), second = make_incomplete_solver(make_block_solver(), 0);
+  REQUIRE(first->factor(square));
+  Archive written;
+  first->exchange(written, square);
+  Archive bytes(written.bytes());
+  second->exchange(bytes, square);
+  CHECK(solve_tower(*first) == 0);
+  CHECK(solve_tower(*second) == 0);
+}
