@@ -86,7 +86,7 @@ class Entries {
       const Vec2 p = system_.position(of, v);
       if (system_.is_reflex(v) || (p - system_.centroid(into)).squaredNorm() > std::pow(target.radius + reach_, 2)) continue;
       for (int e = target.first_vertex; e < target.first_vertex + target.vertex_count; ++e) {
-        if (may_end_too_deep() || may_go_through(p, into, e)) first = std::min(first, entry(ways_(of, v), v, into, e));
+        if (may_enter(p, into, e)) first = std::min(first, entry(ways_(of, v), v, into, e));
       }
     }
     return first;
@@ -102,11 +102,12 @@ class Entries {
  private:
   /// Otherwise what the two blocks have moved lets corners enter no deeper than is tolerated, and only tips are gone through within the step.
   bool may_end_too_deep() const { return reach_ > behind * tolerated_; }
-  /// Whether a corner is in front of an edge and near enough to its line.
-  bool may_go_through(const Vec2& p, int into, int e) const {
+  /// Whether a corner is near enough to the line of an edge to come behind it in the step, and not as deep behind it already as it may enter: of most
+  /// edges that is known before its way is.
+  bool may_enter(const Vec2& p, int into, int e) const {
     const Vec2 start = system_.position(into, e), edge = system_.position(into, system_.next(e)) - start;
-    const double area = cross(edge, p - start);
-    return area <= 0.0 && area * area <= reach_ * reach_ * edge.squaredNorm();
+    const double area = cross(edge, p - start), reach = area <= 0.0 ? reach_ : may_end_too_deep() ? std::max(0.5 * tolerated_, flush_m) : 0.0;
+    return area * area <= reach * reach * edge.squaredNorm();
   }
   /// [m] No more than 2 area / perimeter of a convex block, whose perimeter is at most that of the circle around it.
   double width(int b) const { return system_.block(b).area / (std::numbers::pi * system_.block(b).radius); }
