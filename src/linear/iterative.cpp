@@ -79,7 +79,7 @@ class IncompleteSolver : public LinearSolver {
     ++(incomplete_.analyse(matrix) ? counters_.symbolic : counters_.symbolic_skipped);
     ++counters_.incomplete;
     direct_->let_go();  // several times as large as what takes its place
-    if (counted_work_ == 0.0) counted_work_ = products_of_factorisation(matrix, factoring_) / power_of_work(stored_blocks());
+    if (counted_work_ == 0.0 && matrix.rows() > 0) counted_work_ = products_of_factorisation(matrix, factoring_) / power_of_work(stored_blocks());
     if (!incomplete_.factor(matrix)) return give_up();
     single_.take(matrix, incomplete_.order());
     counters_.rows += matrix.rows();
