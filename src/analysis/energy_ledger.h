@@ -1,5 +1,6 @@
-// Where the energy went, in joules per metre of thickness since the start. Each entry comes from its own formula, per contact and step; none is the
-// difference of the others, so that the imbalance can fail.
+// Where the energy went in a solved step, in joules per metre of thickness, for the EnergyLedger of model/energies.h. Each entry comes from its own
+// formula, per contact and step; none is the difference of the others, so that the imbalance can fail. What happens between steps is booked in pairs
+// by simulation_state.cpp, what dem does by explicit_blocks and explicit_links.
 //
 // With the work displacement of the time scheme the change of kinetic energy of a step is exactly the work of the forces in its equation of motion.
 // For a contact with springs k that carry the elastic parts of N and T, compression p = N_el/k, gap g = g+ - p from where the spring rests (g+ the

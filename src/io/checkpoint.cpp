@@ -20,7 +20,7 @@ namespace openclose {
 namespace {
 
 /// To be raised with every change of what any exchange() hands over.
-constexpr int format = 48;
+constexpr int format = 49;
 /// Reads differently where the order of bytes is another one.
 constexpr std::uint32_t byte_order = 0x01020304;
 

@@ -2,8 +2,8 @@
 // `openclose fos --restart` go on as if they had never stopped.
 //
 // A line that names format and version, the order of the bytes, the scene as text, the time, how long the tables of the run were, the state
-// (analysis/run.h, analysis/strength_reduction.h), the command and a check sum over all of it. Numbers stand as they are in memory. The file takes the place of an older one only when it is
-// complete.
+// (analysis/run.h, analysis/strength_reduction.h), the command and a check sum over all of it. Numbers stand as they are in memory. The file takes
+// the place of an older one only when it is complete.
 #pragma once
 
 #include <cstdint>
@@ -44,10 +44,9 @@ void write_checkpoint(const std::string& path, const Scene& scene, Checkpoint ch
 std::string checkpoint_bytes(const Scene& scene, Checkpoint checkpoint);
 void append_check_sum(std::string& bytes);
 
-/// Throws InputError if there is no such file, if it is damaged or of another version of the program or another scene (other in more than
-/// end.time_s, output.every_s, output.checkpoint_every_s, solver.smallest_fraction, solver.max_iterations and method.threads), if the scene ends
-/// before it, if one of the tables that were there when it was written is no longer beside it, shorter, or begins otherwise, or if it is of another
-/// command.
+/// Throws InputError if there is no such file, if it is damaged or of another version of the program or another scene (other in more than the keys
+/// that have may_change_on_restart in their row), if the scene ends before it, if one of the tables that were there when it was written is no longer
+/// beside it, shorter, or begins otherwise, or if it is of another command.
 Checkpoint read_checkpoint(const std::string& path, const Scene& scene, const std::string& command = "run");
 /// The same for what stands in the file of that path.
 Checkpoint checkpoint_of_bytes(const std::string& bytes, const std::string& path, const Scene& scene);

@@ -1,5 +1,5 @@
-// The forms in which results are written beside the tables, chosen by output.formats. A new one is a source file like vtk.cpp, and in formats.cpp its
-// declaration and its line in the list.
+// The forms in which results are written beside the tables, chosen by output.formats. A new one is a source file like svg_states.cpp, and in
+// formats.cpp its declaration and its line in the list.
 #pragma once
 
 #include <string>

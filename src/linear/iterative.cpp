@@ -31,8 +31,9 @@ int iterations_of_a_factorisation(double products, double blocks, int rows) {
 /// After a try in vain one matrix is factored at once before the next, twice as many after each further one, up to this many. Half as many
 /// again after a success, and one after one at half the price.
 constexpr int longest_pause = 64;
-/// [-] Products of blocks that no matrix needs which fits in memory.
-constexpr double most_work = 1e22;
+/// [-] The work of a factorisation is counted anew where the incomplete factor has become so many times larger or smaller. Of a matrix that grows,
+/// all counts together cost no more than twice the last one.
+constexpr double most_scaling = 2.0;
 /// [-] Of a residual, as far as it is brought down in single precision at a time, at most and at least. Of 500 solves to 1e-5 of a failing slope of
 /// 50,106 blocks half leave what the rotations say, nine tenths 1.01 times as much, the worst 11 times.
 constexpr double most_of_single_precision = 1e-5, least_of_single_precision = 0.4;
@@ -79,7 +80,7 @@ class IncompleteSolver : public LinearSolver {
     ++(incomplete_.analyse(matrix) ? counters_.symbolic : counters_.symbolic_skipped);
     ++counters_.incomplete;
     direct_->let_go();  // several times as large as what takes its place
-    if (counted_work_ == 0.0 && matrix.rows() > 0) counted_work_ = products_of_factorisation(matrix, factoring_) / power_of_work(stored_blocks());
+    count_work();
     if (!incomplete_.factor(matrix)) return give_up();
     single_.take(matrix, incomplete_.order());
     counters_.rows += matrix.rows();
@@ -119,22 +120,29 @@ class IncompleteSolver : public LinearSolver {
     LinearSolver::exchange(archive, matrix);
     direct_->exchange(archive, matrix);
     incomplete_.exchange(archive, matrix);
-    archive(pause_, left_to_pause_, counted_work_);
-    archive.require(pause_ >= 1 && pause_ <= longest_pause && left_to_pause_ >= 0 && counted_work_ >= 0.0 && counted_work_ <= most_work,
-                    "the saved state has a solver that there is not");
+    archive(pause_, left_to_pause_, counted_products_, counted_blocks_);
+    archive.require(pause_ >= 1 && pause_ <= longest_pause && left_to_pause_ >= 0, "the saved state has a solver that there is not");
+    // Of rows that all hold on to each other there are fewer than blocks in their factor.
+    const bool is_work = counted_blocks_ >= 0.0 && counted_products_ >= 0.0 && counted_products_ <= std::pow(counted_blocks_, 3);
+    archive.require(is_work && std::isfinite(counted_products_), "the saved state has counted the work of no factorisation");
   }
 
  private:
-  /// In the plane the work of a factorisation in an order of little fill grows with the power 1.5 of what is in the matrix (R. J. Lipton, D. J. Rose,
-  /// R. E. Tarjan, Generalized nested dissection, SIAM J. Numer. Anal. 16 (1979)).
-  static double power_of_work(double blocks) { return blocks * std::sqrt(blocks); }
-
   double stored_blocks() const { return static_cast<double>(incomplete_.stored_blocks()); }
 
-  /// Beyond, the direct solver is quicker.
+  void count_work() {
+    const double blocks = stored_blocks();
+    if (blocks <= most_scaling * counted_blocks_ && most_scaling * blocks >= counted_blocks_) return;
+    counted_blocks_ = blocks;
+    counted_products_ = products_of_factorisation(*matrix_, factoring_);
+  }
+
+  /// Beyond, the direct solver is quicker. In the plane the work of a factorisation in an order of little fill grows with the power 1.5 of what is in
+  /// the matrix (R. J. Lipton, D. J. Rose, R. E. Tarjan, Generalized nested dissection, SIAM J. Numer. Anal. 16 (1979)).
   int most_iterations() const {
-    const double blocks = stored_blocks() + matrix_->row_start(matrix_->rows());
-    return iterations_of_a_factorisation(counted_work_ * power_of_work(stored_blocks()), blocks, matrix_->rows());
+    const double blocks = stored_blocks();
+    const double products = blocks > 0.0 ? counted_products_ * std::pow(blocks / counted_blocks_, 1.5) : 0.0;
+    return iterations_of_a_factorisation(products, blocks + matrix_->row_start(matrix_->rows()), matrix_->rows());
   }
 
   /// GMRES in single precision, as often as it takes for the residual in double precision.
@@ -189,7 +197,7 @@ class IncompleteSolver : public LinearSolver {
   double kept_change_ = 0.0;
   Factoring factoring_;
   IncompleteLu incomplete_;
-  double counted_work_ = 0.0;  ///< products of the direct factorisation of the first matrix, over power_of_work() of it; 0: not yet counted
+  double counted_products_ = 0.0, counted_blocks_ = 0.0;  ///< of a direct factorisation, and stored in the incomplete one of the same matrix
   SingleMatrix single_;
   bool use_direct_ = false;
   int pause_ = 1, left_to_pause_ = 0;  ///< matrices

@@ -16,7 +16,7 @@ struct EnergyLedger {
   double base_motion = 0.0;      ///< minus the work of the body forces -m a of a moving base, in the coordinates that move with it
   double contact_springs = 0.0;  ///< change of stored energy
   double support_springs = 0.0;  ///< change of stored energy: work at the fixed points
-  double loads = 0.0;            ///< minus the work of point loads
+  double loads = 0.0;            ///< minus the work of point loads and surcharges
   double friction = 0.0;         ///< dissipated
   double contact_damping = 0.0;  ///< dissipated by the joints' dashpots
   double mass_damping = 0.0;     ///< dissipated by damping of the blocks' motion (`dem`)

@@ -54,7 +54,7 @@ enum class LinearSolverKind { automatic, direct, iterative, plain };
 inline constexpr std::array linear_solver_words{
     Word{"automatic", LinearSolverKind::automatic, "directly, and for many blocks iteratively"},
     Word{"direct", LinearSolverKind::direct, "every matrix is factored"},
-    Word{"iterative", LinearSolverKind::iterative, "with an incomplete factor, or that of an earlier matrix, as preconditioner"},
+    Word{"iterative", LinearSolverKind::iterative, "with an incomplete factor as preconditioner; what that does not serve is factored"},
     Word{"plain", LinearSolverKind::plain, "by the library's sparse LU, to compare with"},
 };
 
@@ -71,7 +71,7 @@ inline constexpr double default_rho_inf = 0.5;  ///< [-] of MethodInput::rho_inf
 
 /// How contacts are enforced and steps are taken.
 struct MethodInput {
-  std::string contact = "soft";  ///< name in the registry of enforcements (analysis looks it up): soft, hard, shi, dem
+  std::string contact = "soft";  ///< name in the registry of enforcements (integrator/registry.h looks it up) or dem
   SourceLocation contact_where;  ///< for the error of an unknown name
   std::optional<std::string>
       integrator;                 ///< soft: name in the list of integrators (analysis looks it up); absent: theta if there is one, else the default

@@ -151,9 +151,7 @@ void FrozenSystem::find_contacts(const Scene& scaled, const BlockSystem& system)
   std::vector<Contact> closed;
   std::vector<Joined> joined_of_closed;
   std::set<std::pair<int, int>> pairs_with_joint;
-  const auto pair_of = [&](const Contact& c) -> std::pair<int, int> {
-    return std::minmax({ground.body(c.vertex_block), ground.body(c.edge_block)});
-  };
+  const auto pair_of = [&](const Contact& c) -> std::pair<int, int> { return std::minmax({ground.body(c.vertex_block), ground.body(c.edge_block)}); };
   for (const Contact& contact : found) {
     joined.push_back(joined_at(system, ground, contact, closed_gap));
     if (joined.back().length > 0.0) pairs_with_joint.insert(pair_of(contact));

@@ -64,7 +64,33 @@ TEST_CASE("GMRES may take as long as a factorisation does", "[linear][factorisat
   CHECK(tower.krylov_given_up == 1);
 }
 
-TEST_CASE("a solver that was written and read goes on with the work that was counted on the first matrix", "[linear][factorisation_work]") {
+TEST_CASE("blocks that come to hold on to each other have their factorisation counted anew", "[linear][factorisation_work]") {
+  RandomSystems random(52);
+  BlockMatrix apart;
+  apart.set_pattern(3600, {});
+  for (int i = 0; i < apart.rows(); ++i) apart.add(i, i, Eigen::Matrix3d::Identity());
+  const BlockMatrix square = wall(60, 60, 1e-3);
+  const auto solver = make_incomplete_solver(make_block_solver(), 0);
+  REQUIRE(solver->factor(apart));
+  REQUIRE(solver->factor(square));
+  solver->solve(random.vector(square.unknowns()), 1e-5);
+  CHECK(solver->counters().krylov_iterations > 20);
+  CHECK(solver->counters().krylov_given_up == 0);
+}
+
+TEST_CASE("a solver of no blocks is written and read", "[linear][factorisation_work]") {
+  BlockMatrix none;
+  none.set_pattern(0, {});
+  const auto first = make_incomplete_solver(make_block_solver(), 0), second = make_incomplete_solver(make_block_solver(), 0);
+  REQUIRE(first->factor(none));
+  Archive written;
+  first->exchange(written, none);
+  Archive bytes(written.bytes());
+  second->exchange(bytes, none);
+  CHECK(bytes.at_end());
+}
+
+TEST_CASE("a solver that was written and read goes on with the work that was counted before", "[linear][factorisation_work]") {
   RandomSystems random(51);
   const BlockMatrix square = wall(60, 60, 1e-1), tower = wall(6, 600, 1e-1);
   const auto solve_tower = [&](LinearSolver& solver) {
