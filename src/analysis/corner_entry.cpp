@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
+#include <utility>
+#include <vector>
 
 #include "openclose/core/tolerance.h"
 #include "openclose/geometry/overlap.h"
@@ -62,6 +65,8 @@ class Course {
     // It is before that at the start and behind it at the end, so that exactly one root lies between. Without cancellation, since c < 0.
     return -2.0 * c / (c1_ + std::sqrt(std::max(0.0, c1_ * c1_ - 4.0 * c2_ * c)));
   }
+  /// [m] Behind the line of the edge, but for how that becomes longer or shorter.
+  double depth(double part) const { return (c0_ + part * (c1_ + part * c2_)) / length_; }
   /// [m] Where it is along the edge.
   double along(double part) const { return (end_.at(part) - start_.at(part)).dot(corner_.at(part) - start_.at(part)) / length_; }
   double length() const { return length_; }
@@ -72,9 +77,31 @@ class Course {
   double c0_, c1_, c2_;
 };
 
+/// Which edges corners are in contact with: contacts in a chain for each corner, since all of them are too many to go through for one.
+class HeldCorners {
+ public:
+  explicit HeldCorners(std::span<const Contact> contacts) : contacts_(contacts), before_(contacts.size()) {
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+      const auto corner = static_cast<std::size_t>(contacts[i].vertex);
+      if (corner >= last_.size()) last_.resize(corner + 1, none);
+      before_[i] = std::exchange(last_[corner], static_cast<int>(i));
+    }
+  }
+  bool contain(int vertex, int edge) const {
+    int i = vertex < static_cast<int>(last_.size()) ? last_[vertex] : none;
+    while (i != none && contacts_[i].edge != edge) i = before_[i];
+    return i != none;
+  }
+
+ private:
+  static constexpr int none = -1;
+  std::span<const Contact> contacts_;
+  std::vector<int> last_, before_;  ///< contact of a corner, and the one of the same corner before a contact; or none
+};
+
 class Entries {
  public:
-  Entries(const BlockSystem& system, const StepSolution& solution, const EntryTolerance& tolerance, const std::vector<Contact>* held)
+  Entries(const BlockSystem& system, const StepSolution& solution, const EntryTolerance& tolerance, std::span<const Contact> held)
       : system_(system), ways_(system, solution), tolerance_(tolerance), held_(held) {}
 
   /// [-] Of the corners of one block into another one.
@@ -111,9 +138,7 @@ class Entries {
   }
   /// [m] No more than 2 area / perimeter of a convex block, whose perimeter is at most that of the circle around it.
   double width(int b) const { return system_.block(b).area / (std::numbers::pi * system_.block(b).radius); }
-  bool is_held(int v, int e) const {
-    return held_ && std::ranges::any_of(*held_, [&](const Contact& c) { return c.vertex == v && c.edge == e; });
-  }
+  bool is_held(int v, int e) const { return held_.contain(v, e); }
 
   double entry(const Way& corner, int v, int into, int e) const {
     const Way start = ways_(into, e), end = ways_(into, system_.next(e));
@@ -127,7 +152,8 @@ class Entries {
     const int tip = from_start < from_end ? e : system_.next(e), neighbour = from_start < from_end ? system_.previous(e) : system_.next(e);
     const bool in_notch = system_.is_reflex(tip);
     // What has gone through a tip is in no block at the end of the step, and nothing would find it however deep it is behind the edge.
-    if (is_behind_at_once && inside > flush_m && !in_notch && depth_at_end(corner, into, neighbour) < -flush_m) return late;
+    if (is_behind_at_once && inside > flush_m && !in_notch && depth_at_end(corner, into, neighbour) < -flush_m)
+      return before_leaving(course, corner, into, neighbour, late);
     const double near_tip = may_end_too_deep() ? behind * tolerated_ : flush_m, beside_tip = may_end_too_deep() ? tolerated_ : flush_m;
     if (inside > near_tip) return is_behind_at_once ? 1.0 : part;
     // In a notch one wall leads the corner on to the other one, and nothing slides on over that: what is behind one wall beyond its end is behind
@@ -144,6 +170,16 @@ class Entries {
     // Corners that lie on each other have one contact, that of either.
     const bool is_held_by_tip = is_held(tip, v) || is_held(tip, system_.previous(v));
     return is_held_by_tip ? 1.0 : is_within_step(late) ? late : is_behind_at_once ? 1.0 : early;
+  }
+  /// [-] When a corner that has come through an edge and leaves through the next one within the step is half-way to where it is as near to that as to
+  /// the edge. Detection finds it there, and all others that have come by then and have not left: a cut at each one's moment would be one for each
+  /// place where four blocks of a slope meet.
+  double before_leaving(const Course& course, const Way& corner, int into, int next, double come) const {
+    const Way start = ways_(into, next), end = ways_(into, system_.next(next));
+    const Course to_next(corner, start, end);
+    const auto nearer = [&](double part) { return to_next.depth(part) - course.depth(part); };
+    const double at_first = nearer(come), at_last = nearer(1.0);
+    return at_first > 0.0 ? come + 0.5 * (1.0 - come) * at_first / (at_first - at_last) : come;
   }
   /// [m] Of a corner behind the line of an edge at the end of the step.
   double depth_at_end(const Way& corner, int into, int e) const {
@@ -164,7 +200,7 @@ class Entries {
   const BlockSystem& system_;
   const Ways ways_;
   const EntryTolerance tolerance_;
-  const std::vector<Contact>* held_;
+  const HeldCorners held_;
   /// [m] Of the present two blocks: what is tolerated, by how much they come nearer at most, and how far their corners pass beside straight ways.
   double tolerated_ = 0.0, reach_ = 0.0, bow_ = 0.0;
 };
@@ -172,7 +208,7 @@ class Entries {
 }  // namespace
 
 double first_entry(const BlockSystem& system, const StepSolution& solution, const std::vector<std::pair<int, int>>& pairs,
-                   const EntryTolerance& tolerance, const std::vector<Contact>* held) {
+                   const EntryTolerance& tolerance, std::span<const Contact> held) {
   Entries entries(system, solution, tolerance, held);
   double first = 1.0;
   for (const auto& [a, b] : pairs) {

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -31,7 +32,7 @@ struct EntryTolerance {
 /// \param pairs  of blocks that may touch
 /// \param held   contacts of which corners and edges do not count, because their springs have acted; none if rigid ones hold what they should
 double first_entry(const BlockSystem& system, const StepSolution& solution, const std::vector<std::pair<int, int>>& pairs,
-                   const EntryTolerance& tolerance, const std::vector<Contact>* held = nullptr);
+                   const EntryTolerance& tolerance, std::span<const Contact> held = {});
 
 /// Whether two blocks are deeper in each other at the end of a step of these displacements than they may be [m], and were not at its start: as where
 /// two tips cross each other's sides with no corner in the other block, or places that exclude each other have been missed.

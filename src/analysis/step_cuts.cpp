@@ -44,7 +44,7 @@ double StepCuts::part_before_entry(const StepProblem& problem, const StepSolutio
   if (is_no_shorter || at_entry_ == most_cuts_at_entry) return 1.0;
   if (is_elastic) {
     const EntryTolerance tolerance{tolerance::rounding_of_ways_m, unnoticed_part_of_width, enforcement.deepest_entry(problem.method)};
-    return first_entry(problem.system, solution, pairs, tolerance, &problem.contacts);
+    return first_entry(problem.system, solution, pairs, tolerance, problem.contacts);
   }
   const double tolerated = std::max(problem.method.gap_tolerance, tolerance::rounding_of_ways_m);
   if (2.0 * moved <= tolerated) return 1.0;

@@ -85,8 +85,7 @@ TEST_CASE("a tip that is behind another one's face by no more than flush corners
   CHECK(first_entry(system, solution, {{0, 1}}, {tolerated}) == Approx(expected).epsilon(1e-6));
 }
 
-TEST_CASE("a corner that goes through another one's tip within a step is stopped where it enters, however little it may enter",
-          "[analysis][corner_entry]") {
+TEST_CASE("a corner that goes through another one's tip within a step is stopped in it, however little it may enter", "[analysis][corner_entry]") {
   // A thin wedge points at the left; its upper side rises steeply at the tip. The corner comes from the left and ends below the wedge.
   Scene scene = test::empty_scene();
   scene.blocks = {test::fixed_block("wedge", {{0.0, 0.0}, {1.0, 0.2}, {1.0, 2.0}, {0.4, 1.0}}),
@@ -99,7 +98,12 @@ TEST_CASE("a corner that goes through another one's tip within a step is stopped
   };
   // Of the side from (0.4, 1) to (0, 0), which is 0.4 y in front of it: until it is behind by twice what counts as flush.
   const double outside = 0.01 + 0.4 * 1e-3, flush = 2.0 * tolerance::edge_end_m * std::hypot(1.0, 0.4);
-  CHECK(part({0.013, -9e-4, 0.0}) == Approx((outside + flush) / (0.013 + 0.4 * 9e-4)).epsilon(1e-6));
+  const double come = (outside + flush) / (0.013 + 0.4 * 9e-4);
+  // Below the other side from (0, 0) to (1, 0.2): it is half-way to where it is as deep behind the one as behind the other.
+  const auto behind_upper = [&](double p) { return ((0.013 + 0.4 * 9e-4) * p - outside) / std::hypot(1.0, 0.4); };
+  const auto behind_lower = [&](double p) { return (1e-3 - 9e-4 * p - 0.2 * (0.013 * p - 0.01)) / std::hypot(1.0, 0.2); };
+  const double difference = behind_lower(come) - behind_upper(come), slope = (behind_lower(1.0) - behind_upper(1.0) - difference) / (1.0 - come);
+  CHECK(part({0.013, -9e-4, 0.0}) == Approx(come - 0.5 * difference / slope).epsilon(1e-6));
   CHECK(part({0.013, 3e-3, 0.0}) == 1.0);   // ends in the wedge, where it is found
   CHECK(part({0.013, -1e-2, 0.0}) == 1.0);  // passes below the tip
 }
@@ -126,7 +130,7 @@ TEST_CASE("a tip that is behind another tip's face already, and nothing holds, i
     of_tip.edge = 0;
     return std::vector<Contact>{of_tip};
   }();
-  CHECK(first_entry(system, solution, {{0, 1}}, {deep}, &held) == 1.0);
+  CHECK(first_entry(system, solution, {{0, 1}}, {deep}, held) == 1.0);
 }
 
 TEST_CASE("blocks whose sides cross pass into each other with no corner in the other one", "[analysis][corner_entry]") {
@@ -173,7 +177,7 @@ TEST_CASE("what a corner may enter goes with the width of the narrower block", "
   const BlockSystem above(scene);
   const double width = above.block(1).area / (3.14159265358979323846 * above.block(1).radius), tenth = 0.1;
   StepSolution solution;
-  const auto part = [&](double down, const EntryTolerance& tolerance, const std::vector<Contact>* held = nullptr) {
+  const auto part = [&](double down, const EntryTolerance& tolerance, const std::vector<Contact>& held = {}) {
     solution.d = Motion::Unknowns(0.0, -0.05 - down, 0.0);
     return first_entry(above, solution, {{0, 1}}, tolerance, held);
   };
@@ -190,7 +194,7 @@ TEST_CASE("what a corner may enter goes with the width of the narrower block", "
       held.push_back(c);
     }
   }
-  CHECK(part(4.1 * tenth * width, by_width, &held) == 1.0);
+  CHECK(part(4.1 * tenth * width, by_width, held) == 1.0);
 }
 
 TEST_CASE("rigid corners that meet within a step do not enter each other", "[analysis][corner_entry]") {
