@@ -173,13 +173,14 @@ class Entries {
   }
   /// [-] When a corner that has come through an edge and leaves through the next one within the step is half-way to where it is as near to that as to
   /// the edge. Detection finds it there, and all others that have come by then and have not left: a cut at each one's moment would be one for each
-  /// place where four blocks of a slope meet.
+  /// place where four blocks of a slope meet. By then it is no deeper than others may be.
   double before_leaving(const Course& course, const Way& corner, int into, int next, double come) const {
     const Way start = ways_(into, next), end = ways_(into, system_.next(next));
     const Course to_next(corner, start, end);
     const auto nearer = [&](double part) { return to_next.depth(part) - course.depth(part); };
     const double at_first = nearer(come), at_last = nearer(1.0);
-    return at_first > 0.0 ? come + 0.5 * (1.0 - come) * at_first / (at_first - at_last) : come;
+    const double deepest = std::max(flush_m, 0.5 * tolerated_);
+    return at_first > 0.0 ? std::min(come + 0.5 * (1.0 - come) * at_first / (at_first - at_last), course.part(deepest, deepest)) : come;
   }
   /// [m] Of a corner behind the line of an edge at the end of the step.
   double depth_at_end(const Way& corner, int into, int e) const {

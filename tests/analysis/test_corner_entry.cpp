@@ -106,6 +106,13 @@ TEST_CASE("a corner that goes through another one's tip within a step is stopped
   CHECK(part({0.013, -9e-4, 0.0}) == Approx(come - 0.5 * difference / slope).epsilon(1e-6));
   CHECK(part({0.013, 3e-3, 0.0}) == 1.0);   // ends in the wedge, where it is found
   CHECK(part({0.013, -1e-2, 0.0}) == 1.0);  // passes below the tip
+
+  // Where hardly anything is tolerated and the corner is behind the upper side by that already, it is met as soon as it is no longer flush.
+  const double hardly = 1e-8;
+  scene.blocks[1].vertices[0] = Vec2(0.4e-3 + hardly, 1e-3);
+  const BlockSystem rigid(scene);
+  solution.d = Motion::Unknowns(0.0026, -9e-4, 0.0);
+  CHECK(first_entry(rigid, solution, {{0, 1}}, {.depth = hardly}) == Approx((flush - hardly) / (0.0026 + 0.4 * 9e-4)).epsilon(1e-4));
 }
 
 TEST_CASE("a tip that is behind another tip's face already, and nothing holds, is stopped before it is deep in the block",
