@@ -77,17 +77,14 @@ class Course {
   double c0_, c1_, c2_;
 };
 
-/// Which edges corners are in contact with: contacts in a chain for each corner, since all of them are too many to go through for one.
+/// Which edges corners are in contact with: contacts in a chain for each corner, since all of them are too many to go through for one. The chains are
+/// laid when they are first asked for.
 class HeldCorners {
  public:
-  explicit HeldCorners(std::span<const Contact> contacts) : contacts_(contacts), before_(contacts.size()) {
-    for (std::size_t i = 0; i < contacts.size(); ++i) {
-      const auto corner = static_cast<std::size_t>(contacts[i].vertex);
-      if (corner >= last_.size()) last_.resize(corner + 1, none);
-      before_[i] = std::exchange(last_[corner], static_cast<int>(i));
-    }
-  }
-  bool contain(int vertex, int edge) const {
+  explicit HeldCorners(std::span<const Contact> contacts) : contacts_(contacts) {}
+
+  bool contain(int vertex, int edge) {
+    if (before_.size() < contacts_.size()) lay_chains();
     int i = vertex < static_cast<int>(last_.size()) ? last_[vertex] : none;
     while (i != none && contacts_[i].edge != edge) i = before_[i];
     return i != none;
@@ -95,6 +92,16 @@ class HeldCorners {
 
  private:
   static constexpr int none = -1;
+
+  void lay_chains() {
+    before_.resize(contacts_.size());
+    for (std::size_t i = 0; i < contacts_.size(); ++i) {
+      const auto corner = static_cast<std::size_t>(contacts_[i].vertex);
+      if (corner >= last_.size()) last_.resize(corner + 1, none);
+      before_[i] = std::exchange(last_[corner], static_cast<int>(i));
+    }
+  }
+
   std::span<const Contact> contacts_;
   std::vector<int> last_, before_;  ///< contact of a corner, and the one of the same corner before a contact; or none
 };
@@ -105,7 +112,7 @@ class Entries {
       : system_(system), ways_(system, solution), tolerance_(tolerance), held_(held) {}
 
   /// [-] Of the corners of one block into another one.
-  double first(int of, int into) const {
+  double first(int of, int into) {
     const auto& block = system_.block(of);
     const auto& target = system_.block(into);
     double first = 1.0;
@@ -138,9 +145,9 @@ class Entries {
   }
   /// [m] No more than 2 area / perimeter of a convex block, whose perimeter is at most that of the circle around it.
   double width(int b) const { return system_.block(b).area / (std::numbers::pi * system_.block(b).radius); }
-  bool is_held(int v, int e) const { return held_.contain(v, e); }
+  bool is_held(int v, int e) { return held_.contain(v, e); }
 
-  double entry(const Way& corner, int v, int into, int e) const {
+  double entry(const Way& corner, int v, int into, int e) {
     const Way start = ways_(into, e), end = ways_(into, system_.next(e));
     const Course course(corner, start, end);
     const double early = course.part(0.5 * tolerated_, behind * tolerated_), late = course.part(flush_m, flush_m);
@@ -201,7 +208,7 @@ class Entries {
   const BlockSystem& system_;
   const Ways ways_;
   const EntryTolerance tolerance_;
-  const HeldCorners held_;
+  HeldCorners held_;
   /// [m] Of the present two blocks: what is tolerated, by how much they come nearer at most, and how far their corners pass beside straight ways.
   double tolerated_ = 0.0, reach_ = 0.0, bow_ = 0.0;
 };

@@ -26,9 +26,9 @@ struct EntryTolerance {
   double of(double narrower) const { return std::min(std::max(depth, part_of_width * narrower), most); }
 };
 
-/// [-] Part of a step of these displacements after which the first corner has gone through an edge by half of what is tolerated; 1 if none ends
-/// farther behind than closed contacts may miss their places, or has gone through a tip of the block. Corners that are behind at once do not count:
-/// cutting would not help.
+/// [-] Part of a step of these displacements after which the first corner has gone through an edge by half of what is tolerated, or into a tip of the
+/// block through which it goes, so far that it is found at the edge; 1 if none ends farther behind than closed contacts may miss their places, or has
+/// gone through a tip. Corners that are behind at once do not count: cutting would not help.
 /// \param pairs  of blocks that may touch
 /// \param held   contacts of which corners and edges do not count, because their springs have acted; none if rigid ones hold what they should
 double first_entry(const BlockSystem& system, const StepSolution& solution, const std::vector<std::pair<int, int>>& pairs,
