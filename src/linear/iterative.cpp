@@ -122,7 +122,7 @@ class IncompleteSolver : public LinearSolver {
     incomplete_.exchange(archive, matrix);
     archive(pause_, left_to_pause_, counted_products_, counted_blocks_);
     archive.require(pause_ >= 1 && pause_ <= longest_pause && left_to_pause_ >= 0, "the saved state has a solver that there is not");
-    // Of rows that all hold on to each other there are fewer than blocks in their factor.
+    // A factorisation of n rows takes no more than n^3 products, and the incomplete factor has a block of each row.
     const bool is_work = counted_blocks_ >= 0.0 && counted_products_ >= 0.0 && counted_products_ <= std::pow(counted_blocks_, 3);
     archive.require(is_work && std::isfinite(counted_products_), "the saved state has counted the work of no factorisation");
   }

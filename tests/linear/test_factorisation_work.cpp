@@ -1,3 +1,8 @@
+#include <cstring>
+#include <limits>
+#include <memory>
+#include <string>
+
 #include "grids.h"
 #include "openclose/linear/factorisation_work.h"
 #include "openclose/linear/solver.h"
@@ -27,6 +32,17 @@ BlockMatrix wall(int columns, int rows, double inertia) {
     matrix.add(j, i, -one);
   }
   return matrix;
+}
+
+/// A solver that goes on where this one is.
+std::unique_ptr<LinearSolver> written_and_read(LinearSolver& solver, const BlockMatrix& matrix) {
+  Archive written;
+  solver.exchange(written, matrix);
+  Archive bytes(written.bytes());
+  auto read = make_incomplete_solver(make_block_solver(), 0);
+  read->exchange(bytes, matrix);
+  REQUIRE(bytes.at_end());
+  return read;
 }
 
 }  // namespace
@@ -81,13 +97,31 @@ TEST_CASE("blocks that come to hold on to each other have their factorisation co
 TEST_CASE("a solver of no blocks is written and read", "[linear][factorisation_work]") {
   BlockMatrix none;
   none.set_pattern(0, {});
-  const auto first = make_incomplete_solver(make_block_solver(), 0), second = make_incomplete_solver(make_block_solver(), 0);
-  REQUIRE(first->factor(none));
+  const auto solver = make_incomplete_solver(make_block_solver(), 0);
+  REQUIRE(solver->factor(none));
+  CHECK(written_and_read(*solver, none));
+}
+
+TEST_CASE("work that no factorisation takes is refused of a saved solver", "[linear][factorisation_work]") {
+  const BlockMatrix square = wall(60, 60, 1e-1);
+  const auto solver = make_incomplete_solver(make_block_solver(), 0);
+  REQUIRE(solver->factor(square));
   Archive written;
-  first->exchange(written, none);
-  Archive bytes(written.bytes());
-  second->exchange(bytes, none);
-  CHECK(bytes.at_end());
+  solver->exchange(written, square);
+  // Products and blocks are the last two numbers.
+  const auto with = [&](double products, double blocks) {
+    std::string forged = written.bytes();
+    const double numbers[] = {products, blocks};
+    std::memcpy(forged.data() + forged.size() - sizeof numbers, numbers, sizeof numbers);
+    Archive bytes(forged);
+    make_incomplete_solver(make_block_solver(), 0)->exchange(bytes, square);
+  };
+  CHECK_NOTHROW(with(1e12, 1e4));
+  CHECK_THROWS_AS(with(1.01e12, 1e4), DamagedState);
+  CHECK_THROWS_AS(with(-1.0, 1e4), DamagedState);
+  CHECK_THROWS_AS(with(0.0, -1.0), DamagedState);
+  CHECK_THROWS_AS(with(std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()), DamagedState);
+  CHECK_THROWS_AS(with(std::numeric_limits<double>::quiet_NaN(), 1e4), DamagedState);
 }
 
 TEST_CASE("a solver that was written and read goes on with the work that was counted before", "[linear][factorisation_work]") {
@@ -98,12 +132,9 @@ TEST_CASE("a solver that was written and read goes on with the work that was cou
     solver.solve(random.vector(tower.unknowns()), 1e-5);
     return solver.counters().krylov_given_up;
   };
-  const auto first = make_incomplete_solver(make_block_solver(), 0), second = make_incomplete_solver(make_block_solver(), 0);
+  const auto first = make_incomplete_solver(make_block_solver(), 0);
   REQUIRE(first->factor(square));
-  Archive written;
-  first->exchange(written, square);
-  Archive bytes(written.bytes());
-  second->exchange(bytes, square);
+  const auto second = written_and_read(*first, square);
   CHECK(solve_tower(*first) == 0);
   CHECK(solve_tower(*second) == 0);
 }
